@@ -1,0 +1,68 @@
+//! The one trait to extend: a normal contact-force law.
+
+use windfall_numerics::real::Real;
+
+/// A force law evaluated at one state, with its exact first derivatives.
+///
+/// `N` is the number of the law's parameters, in the order of its
+/// [`LawDescription`](crate::parameter::LawDescription).
+#[derive(Clone, Copy, Debug)]
+pub struct ContactForce<R, const N: usize> {
+    /// F, the force of the law before it is clamped to be repulsive; N.
+    pub force: R,
+    /// ∂F/∂d at constant rate; N/m.
+    pub by_displacement: R,
+    /// ∂F/∂v at constant displacement; N s/m.
+    pub by_rate: R,
+    /// ∂F/∂p for each parameter; N per unit of the parameter.
+    pub by_parameter: [R; N],
+    /// ∂F/∂d_peak for laws that remember their largest displacement; N/m.
+    pub by_peak: R,
+}
+
+/// A normal contact-force law F(d, v; p).
+///
+/// * `displacement`: d, indentation, positive in contact; m
+/// * `rate`: v = dd/dt, positive while loading; m/s
+/// * `peak`: largest displacement reached before the present unloading; m.
+///   It is 0 until the first maximum. Only laws with
+///   [`HISTORY`](ContactLaw::HISTORY) use it.
+///
+/// The force is positive when it pushes the bodies apart. The caller clamps it
+/// to be non-negative and ends the contact; the law returns its raw value, so
+/// that the end can be located as a change of sign.
+///
+/// `evaluate` is called with displacements at or above
+/// [`SMALLEST_DISPLACEMENT`], where every law and its derivatives are finite.
+pub trait ContactLaw<const N: usize>: Copy + Send + Sync {
+    /// Whether the force depends on the largest displacement so far.
+    const HISTORY: bool = false;
+
+    /// Power q of the substitution t = s^q that makes the start of contact
+    /// smooth: 2 for a law that starts like √d, 4 for d^¼, 1 for a smooth one.
+    const START_POWER: u32 = 2;
+
+    /// Force and its derivatives.
+    fn evaluate<R: Real>(&self, displacement: R, rate: R, peak: R) -> ContactForce<R, N>;
+
+    /// Displacement at which the law changes its formula while loading, if
+    /// there is one; m. The integrator ends a step there.
+    fn kink(&self) -> f64 {
+        f64::INFINITY
+    }
+}
+
+/// Displacements below this are evaluated here: fractional powers keep finite
+/// derivatives, and the force is indistinguishable from that at touch; m.
+pub const SMALLEST_DISPLACEMENT: f64 = 1e-30;
+
+/// When a contact is over.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
+pub enum EndRule {
+    /// At the first return of the law's force to zero: no adhesion.
+    #[default]
+    ForceZero,
+    /// When the gap opens again (displacement back to zero); the force may be
+    /// attractive before. For comparison with studies that use it.
+    GapZero,
+}

@@ -1,0 +1,6 @@
+//! Rigs forward and backward: simulate an impact under a force law, and
+//! estimate the law's parameters from a measured impact.
+//!
+//! This crate opens no file and reads no clock.
+
+pub mod rig;

@@ -1,0 +1,53 @@
+//! Rigs: how the impactor moves between contacts and under the contact force.
+
+/// Pendulum arm that strikes a fruit fixed to an anvil at the arm's lowest
+/// point: I θ'' = −m g l sin θ − F r cos θ, x = r sin θ.
+///
+/// # Source
+/// Eq. (7) of the 2003 pendulum study, with F positive when repulsive and the
+/// distance l of the centre of mass in the gravity term.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Pendulum {
+    /// Moment of inertia about the pivot, I; kg m².
+    pub inertia: f64,
+    /// Distance from pivot to point of contact, r; m.
+    pub arm: f64,
+    /// Mass of arm and impactor, m; kg.
+    pub mass: f64,
+    /// Distance from pivot to the centre of mass, l; m.
+    pub centre_of_mass: f64,
+    /// Acceleration of gravity, g; m/s².
+    pub gravity: f64,
+}
+
+/// Body on a line under a constant driving acceleration (an incline, a drop
+/// hammer, a cart): m x'' = m a − F.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Carriage {
+    /// Mass, m; kg.
+    pub mass: f64,
+    /// Standard uncertainty of the mass; kg. Zero when it is exact.
+    pub mass_sd: f64,
+    /// Acceleration towards the fruit when there is no contact, a; m/s².
+    pub driving_acceleration: f64,
+}
+
+/// A rig that windfall can simulate and fit.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Rig {
+    /// Pendulum.
+    Pendulum(Pendulum),
+    /// Carriage.
+    Carriage(Carriage),
+}
+
+impl Rig {
+    /// Mass that the contact feels: I/r² of a pendulum, m of a carriage; kg.
+    #[must_use]
+    pub fn effective_mass(&self) -> f64 {
+        match self {
+            Self::Pendulum(rig) => rig.inertia / (rig.arm * rig.arm),
+            Self::Carriage(rig) => rig.mass,
+        }
+    }
+}

@@ -1,0 +1,212 @@
+//! Numbers that a formula can be evaluated for: one `f64`, or several side by
+//! side in [`Lanes`].
+//!
+//! A force law is written once over [`Real`]. The integrator evaluates it for a
+//! single state, the residual kernel for a handful of samples at a time.
+//!
+//! Every operation of `Lanes` is the same operation of `f64` on each lane, in
+//! the same order and without fused multiply-add, so results do not depend on
+//! how wide the machine's vector registers are.
+
+use std::ops::{Add, AddAssign, Div, Mul, Neg, Sub};
+
+/// A real number, or several of them evaluated together.
+pub trait Real:
+    Copy
+    + Add<Output = Self>
+    + Sub<Output = Self>
+    + Mul<Output = Self>
+    + Div<Output = Self>
+    + Neg<Output = Self>
+    + Mul<f64, Output = Self>
+    + Add<f64, Output = Self>
+{
+    /// The same value in every lane.
+    fn splat(value: f64) -> Self;
+    /// Square root of each lane.
+    fn sqrt(self) -> Self;
+    /// Each lane raised to a fixed power.
+    fn powf(self, exponent: f64) -> Self;
+    /// Natural logarithm of each lane.
+    fn ln(self) -> Self;
+    /// Larger of two, lane by lane.
+    fn max(self, other: Self) -> Self;
+    /// Smaller of two, lane by lane.
+    fn min(self, other: Self) -> Self;
+    /// `positive` in the lanes where `self > 0`, `otherwise` in the others.
+    fn select(self, positive: Self, otherwise: Self) -> Self;
+}
+
+impl Real for f64 {
+    #[inline(always)]
+    fn splat(value: f64) -> Self {
+        value
+    }
+    #[inline(always)]
+    fn sqrt(self) -> Self {
+        f64::sqrt(self)
+    }
+    #[inline(always)]
+    fn powf(self, exponent: f64) -> Self {
+        f64::powf(self, exponent)
+    }
+    #[inline(always)]
+    fn ln(self) -> Self {
+        f64::ln(self)
+    }
+    #[inline(always)]
+    fn max(self, other: Self) -> Self {
+        if self > other { self } else { other }
+    }
+    #[inline(always)]
+    fn min(self, other: Self) -> Self {
+        if self < other { self } else { other }
+    }
+    #[inline(always)]
+    fn select(self, positive: Self, otherwise: Self) -> Self {
+        if self > 0.0 { positive } else { otherwise }
+    }
+}
+
+/// `W` numbers side by side.
+///
+/// In the integrator lane 0 holds a value and the other lanes its derivatives
+/// with respect to parameters; in the residual kernel each lane is a sample.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[repr(align(32))]
+pub struct Lanes<const W: usize>(pub [f64; W]);
+
+impl<const W: usize> Lanes<W> {
+    /// Zero in every lane.
+    pub const ZERO: Self = Self([0.0; W]);
+
+    #[inline(always)]
+    fn map(self, f: impl Fn(f64) -> f64) -> Self {
+        let mut out = [0.0; W];
+        for i in 0..W {
+            out[i] = f(self.0[i]);
+        }
+        Self(out)
+    }
+
+    #[inline(always)]
+    fn zip(self, other: Self, f: impl Fn(f64, f64) -> f64) -> Self {
+        let mut out = [0.0; W];
+        for i in 0..W {
+            out[i] = f(self.0[i], other.0[i]);
+        }
+        Self(out)
+    }
+
+    /// A number in lane `lane`, zero in the others.
+    pub fn unit(lane: usize, value: f64) -> Self {
+        let mut out = [0.0; W];
+        out[lane] = value;
+        Self(out)
+    }
+
+    /// Sum over the lanes, from the first to the last.
+    #[inline(always)]
+    pub fn sum(self) -> f64 {
+        let mut total = 0.0;
+        for i in 0..W {
+            total += self.0[i];
+        }
+        total
+    }
+}
+
+impl<const W: usize> Add for Lanes<W> {
+    type Output = Self;
+    #[inline(always)]
+    fn add(self, other: Self) -> Self {
+        self.zip(other, |a, b| a + b)
+    }
+}
+impl<const W: usize> AddAssign for Lanes<W> {
+    #[inline(always)]
+    fn add_assign(&mut self, other: Self) {
+        *self = *self + other;
+    }
+}
+impl<const W: usize> Sub for Lanes<W> {
+    type Output = Self;
+    #[inline(always)]
+    fn sub(self, other: Self) -> Self {
+        self.zip(other, |a, b| a - b)
+    }
+}
+impl<const W: usize> Mul for Lanes<W> {
+    type Output = Self;
+    #[inline(always)]
+    fn mul(self, other: Self) -> Self {
+        self.zip(other, |a, b| a * b)
+    }
+}
+impl<const W: usize> Div for Lanes<W> {
+    type Output = Self;
+    #[inline(always)]
+    fn div(self, other: Self) -> Self {
+        self.zip(other, |a, b| a / b)
+    }
+}
+impl<const W: usize> Neg for Lanes<W> {
+    type Output = Self;
+    #[inline(always)]
+    fn neg(self) -> Self {
+        self.map(|a| -a)
+    }
+}
+impl<const W: usize> Mul<f64> for Lanes<W> {
+    type Output = Self;
+    #[inline(always)]
+    fn mul(self, other: f64) -> Self {
+        self.map(|a| a * other)
+    }
+}
+impl<const W: usize> Add<f64> for Lanes<W> {
+    type Output = Self;
+    #[inline(always)]
+    fn add(self, other: f64) -> Self {
+        self.map(|a| a + other)
+    }
+}
+
+impl<const W: usize> Real for Lanes<W> {
+    #[inline(always)]
+    fn splat(value: f64) -> Self {
+        Self([value; W])
+    }
+    #[inline(always)]
+    fn sqrt(self) -> Self {
+        self.map(f64::sqrt)
+    }
+    #[inline(always)]
+    fn powf(self, exponent: f64) -> Self {
+        self.map(|a| a.powf(exponent))
+    }
+    #[inline(always)]
+    fn ln(self) -> Self {
+        self.map(f64::ln)
+    }
+    #[inline(always)]
+    fn max(self, other: Self) -> Self {
+        self.zip(other, |a, b| if a > b { a } else { b })
+    }
+    #[inline(always)]
+    fn min(self, other: Self) -> Self {
+        self.zip(other, |a, b| if a < b { a } else { b })
+    }
+    #[inline(always)]
+    fn select(self, positive: Self, otherwise: Self) -> Self {
+        let mut out = [0.0; W];
+        for i in 0..W {
+            out[i] = if self.0[i] > 0.0 {
+                positive.0[i]
+            } else {
+                otherwise.0[i]
+            };
+        }
+        Self(out)
+    }
+}

@@ -1,0 +1,62 @@
+//! One impact cut out of a recording: what identification fits.
+
+/// Samples of one quantity around the contact.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Series {
+    /// Sampling times on the clock of the recording, strictly increasing; s.
+    pub times: Vec<f64>,
+    /// Samples, positive into the fruit (displacement, rate, acceleration) or
+    /// pushing the bodies apart (force); SI.
+    pub values: Vec<f64>,
+    /// Standard deviation of the noise of one sample, found from the recording
+    /// itself; SI.
+    pub noise: f64,
+}
+
+/// What can be read off the signals without a law. `None` where the channels
+/// needed are missing.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Measured {
+    /// Velocity just before contact; m/s.
+    pub impact_velocity: Option<f64>,
+    /// Speed of rebound just after contact, positive away from the fruit; m/s.
+    pub rebound_velocity: Option<f64>,
+    /// Rebound over impact speed; 1.
+    pub restitution: Option<f64>,
+    /// Time between the crossings of the force threshold; s.
+    pub contact_duration: Option<f64>,
+    /// Largest force; N.
+    pub peak_force: Option<f64>,
+    /// Largest displacement after first contact; m.
+    pub max_displacement: Option<f64>,
+    /// Kinetic energy just before contact; J.
+    pub impact_energy: Option<f64>,
+    /// Kinetic energy just after contact; J.
+    pub elastic_energy: Option<f64>,
+    /// Their difference; J.
+    pub absorbed_energy: Option<f64>,
+    /// Integral of the force over the contact; N s.
+    pub impulse: Option<f64>,
+}
+
+/// One impact: each channel around the contact, and the contact window.
+///
+/// The displacement is zero at `onset`; the series reach a little before and
+/// after the contact, so that onset and separation can be estimated.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Impact {
+    /// Displacement; m.
+    pub displacement: Option<Series>,
+    /// Displacement rate; m/s.
+    pub rate: Option<Series>,
+    /// Contact force; N.
+    pub force: Option<Series>,
+    /// Acceleration; m/s².
+    pub acceleration: Option<Series>,
+    /// First contact by the threshold; s on the recording's clock.
+    pub onset: f64,
+    /// End of contact by the threshold; s on the recording's clock.
+    pub end: f64,
+    /// What the signals say without a law.
+    pub measured: Measured,
+}

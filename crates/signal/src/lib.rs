@@ -1,0 +1,6 @@
+//! Recording → Impact: decoding, contact windows, displacement rate, energies.
+//!
+//! This crate opens no file and knows no force law.
+
+pub mod impact;
+pub mod recording;
