@@ -1,0 +1,3 @@
+//! The `windfall` command: parses arguments, calls one workflow, displays.
+
+fn main() {}

@@ -1,0 +1,173 @@
+//! A campaign: rig, channels, options, specimens and impacts, in SI units.
+
+use std::path::PathBuf;
+use windfall_contact::expression::LawExpression;
+use windfall_identify::rig::Pendulum;
+use windfall_signal::recording::Quantity;
+
+/// What a campaign directory says.
+#[derive(Clone, Debug)]
+pub struct Campaign {
+    /// The campaign directory.
+    pub directory: PathBuf,
+    /// Title of tables and reports.
+    pub title: String,
+    /// Label shown with every result when the recordings are simulated.
+    pub simulated: Option<String>,
+    /// The rig.
+    pub rig: RigPlan,
+    /// How recordings are read.
+    pub files: FilePlan,
+    /// How contacts are found.
+    pub contact: ContactPlan,
+    /// What is fitted.
+    pub fit: FitPlan,
+    /// Column of specimens.csv or impacts.csv by which results are grouped.
+    pub group: Option<String>,
+    /// Specimens, in the order of specimens.csv; none where there is no such file.
+    pub specimens: Vec<Specimen>,
+    /// Impacts, in the order of impacts.csv.
+    pub impacts: Vec<ImpactEntry>,
+}
+
+/// The rig, as far as the campaign knows it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum RigPlan {
+    /// A pendulum.
+    Pendulum(Pendulum),
+    /// A carriage.
+    Carriage {
+        /// Its mass.
+        mass: MassPlan,
+        /// Acceleration towards the fruit without contact; m/s².
+        driving_acceleration: f64,
+    },
+}
+
+/// Where the mass of a carriage comes from.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum MassPlan {
+    /// Weighed.
+    Given {
+        /// Mass; kg.
+        value: f64,
+        /// Standard uncertainty; kg.
+        sd: f64,
+    },
+    /// From impulse and change of velocity, over all impacts.
+    FromImpulse,
+}
+
+/// How recordings are read.
+#[derive(Clone, Debug, PartialEq)]
+pub struct FilePlan {
+    /// Directory of the recordings.
+    pub directory: PathBuf,
+    /// How samples are timed where a channel does not say otherwise.
+    pub time: TimePlan,
+    /// Seconds per unit of the time columns.
+    pub time_scale: f64,
+    /// Channels.
+    pub channels: Vec<ChannelPlan>,
+    /// Encoder, where there is one.
+    pub encoder: Option<EncoderPlan>,
+}
+
+/// How samples are timed.
+#[derive(Clone, Debug, PartialEq)]
+pub enum TimePlan {
+    /// A column of times.
+    Column(String),
+    /// A sampling rate; Hz.
+    Rate(f64),
+}
+
+/// One channel: value = scale · (cell − offset).
+#[derive(Clone, Debug, PartialEq)]
+pub struct ChannelPlan {
+    /// Name of its table in campaign.toml, with brackets.
+    pub table: &'static str,
+    /// Line of its table in campaign.toml.
+    pub line: usize,
+    /// What it holds.
+    pub quantity: Quantity,
+    /// Column in the file; `{name}` is filled from impacts.csv.
+    pub column: String,
+    /// Column of times of this channel alone; may have placeholders too.
+    pub time: Option<String>,
+    /// SI units per unit of the column.
+    pub scale: f64,
+    /// What the column shows at zero; unit of the column.
+    pub offset: f64,
+}
+
+/// Displacement of one count.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum EncoderPlan {
+    /// On the pivot of a pendulum: counts per revolution after ×4 decoding.
+    CountsPerRevolution(f64),
+    /// On a wheel or a scale; m.
+    CountLength(f64),
+}
+
+/// How contacts are found.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ContactPlan {
+    /// Force threshold; N. `None` finds one from the noise.
+    pub threshold: Option<f64>,
+    /// Whether the force's baseline is removed.
+    pub baseline: BaselinePlan,
+    /// What is kept before the contact, as a part of its duration.
+    pub margin_before: Option<f64>,
+    /// What is kept after the contact, as a part of its duration.
+    pub margin_after: Option<f64>,
+}
+
+/// What happens to the force that the sensor shows before contact.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum BaselinePlan {
+    /// It is subtracted.
+    #[default]
+    Remove,
+    /// It is left.
+    Keep,
+}
+
+/// What is fitted.
+#[derive(Clone, Debug)]
+pub struct FitPlan {
+    /// The laws, each fitted to every impact.
+    pub laws: Vec<LawExpression>,
+    /// Names of parameters that are estimated although they have a value.
+    pub free: Vec<String>,
+    /// Cost function and treatment of the nuisance parameters.
+    pub options: windfall_identify::fit::FitOptions,
+}
+
+/// One row of specimens.csv.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Specimen {
+    /// Its id.
+    pub id: String,
+    /// All columns: name and cell.
+    pub cells: Vec<(String, String)>,
+}
+
+/// One row of impacts.csv.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ImpactEntry {
+    /// Its id.
+    pub id: String,
+    /// The specimen.
+    pub specimen: String,
+    /// The recording, relative to the directory of recordings.
+    pub file: String,
+    /// Line in impacts.csv.
+    pub line: usize,
+    /// Start of the part of the recording to use; s.
+    pub from: Option<f64>,
+    /// End of the part of the recording to use; s.
+    pub to: Option<f64>,
+    /// All columns: name and cell.
+    pub cells: Vec<(String, String)>,
+}

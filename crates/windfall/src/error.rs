@@ -1,0 +1,367 @@
+//! What can go wrong with files and campaigns, said so that it can be mended.
+
+use std::path::PathBuf;
+
+/// A line in a file.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Place {
+    /// The file.
+    pub file: PathBuf,
+    /// Line, counted from 1; 0 when the fault is in the file as a whole.
+    pub line: usize,
+}
+
+impl std::fmt::Display for Place {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        match self.line {
+            0 => write!(f, "{}", self.file.display()),
+            line => write!(f, "{}, line {line}", self.file.display()),
+        }
+    }
+}
+
+/// What can go wrong between a file and a result.
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum Error {
+    /// A file that was named is not there.
+    #[error("{path}: there is no such file; {advice}", path = path.display())]
+    FileAbsent {
+        /// The file.
+        path: PathBuf,
+        /// Where its name came from and what to do.
+        advice: String,
+    },
+    /// A file could not be read or written.
+    #[error("{path}: cannot {action}: {source}", path = path.display())]
+    FileAccess {
+        /// The file.
+        path: PathBuf,
+        /// What was attempted: "read", "write", "create".
+        action: &'static str,
+        /// What the system said.
+        source: std::io::Error,
+    },
+    /// A table without a header.
+    #[error(
+        "{path}: the file is empty; expected a header line with the names of the columns, \
+         then one line per sample", path = path.display()
+    )]
+    TableEmpty {
+        /// The file.
+        path: PathBuf,
+    },
+    /// A table with a header and nothing below it.
+    #[error(
+        "{path}: the file has a header and no rows; expected one line per {row_is}",
+        path = path.display()
+    )]
+    TableWithoutRows {
+        /// The file.
+        path: PathBuf,
+        /// What one row stands for.
+        row_is: &'static str,
+    },
+    /// A column that is asked for is not in the header.
+    #[error(
+        "{path}: there is no column \"{column}\"{asked_by}; {nearest}",
+        path = path.display(),
+        nearest = nearest_columns(nearest, *columns)
+    )]
+    ColumnMissing {
+        /// The file.
+        path: PathBuf,
+        /// The column asked for.
+        column: String,
+        /// Who asks, for the message: " (asked for by [channels.force])" or "".
+        asked_by: String,
+        /// The columns with the most similar names, best first.
+        nearest: Vec<String>,
+        /// How many columns the file has.
+        columns: usize,
+    },
+    /// Two columns of one name.
+    #[error(
+        "{path}, line 1: the column \"{column}\" appears twice in the header; rename one of them, \
+         or map the channel to another column", path = path.display()
+    )]
+    ColumnRepeated {
+        /// The file.
+        path: PathBuf,
+        /// The name.
+        column: String,
+    },
+    /// A row with more or fewer cells than the header.
+    #[error(
+        "{place}: the row has {found} cells where the header has {expected}; \
+         the file may be cut short, or use another separator in this line (it is read with {separator})"
+    )]
+    RowRagged {
+        /// Where.
+        place: Place,
+        /// Cells in the header.
+        expected: usize,
+        /// Cells in the row.
+        found: usize,
+        /// Name of the separator that the header uses.
+        separator: &'static str,
+    },
+    /// A cell that should hold a number.
+    #[error(
+        "{place}, column \"{column}\": \"{text}\" is not a number{hint}; \
+         leave the cell blank where there is no sample"
+    )]
+    CellNotNumber {
+        /// Where.
+        place: Place,
+        /// The column.
+        column: String,
+        /// What stands there.
+        text: String,
+        /// What may be meant, for the message.
+        hint: &'static str,
+    },
+    /// A cell that holds NaN or an infinity.
+    #[error(
+        "{place}, column \"{column}\": the value is {text}, which is not a finite number; \
+         leave the cell blank where there is no sample"
+    )]
+    CellNotFinite {
+        /// Where.
+        place: Place,
+        /// The column.
+        column: String,
+        /// What stands there.
+        text: String,
+    },
+    /// A sample without its time.
+    #[error(
+        "{place}: column \"{column}\" has a sample but its time column \"{time}\" is blank; \
+         fill in the time or leave the sample blank too"
+    )]
+    SampleWithoutTime {
+        /// Where.
+        place: Place,
+        /// The column with the sample.
+        column: String,
+        /// The column of times.
+        time: String,
+    },
+    /// Text that is not UTF-8.
+    #[error(
+        "{place}: the text is not UTF-8; save the file as UTF-8 (in a spreadsheet: \"CSV UTF-8\")"
+    )]
+    NotUtf8 {
+        /// Where.
+        place: Place,
+    },
+    /// A campaign file that is not TOML or does not have the shape of one.
+    #[error("{place}: {message}")]
+    CampaignSyntax {
+        /// Where.
+        place: Place,
+        /// What the reader of TOML says.
+        message: String,
+    },
+    /// A key of a campaign file that windfall does not know.
+    #[error("{place}: there is no key \"{key}\" here{nearest}; known keys: {known}", known = known.join(", "))]
+    KeyUnknown {
+        /// Where.
+        place: Place,
+        /// The key.
+        key: String,
+        /// Suggestion for the message, or "".
+        nearest: String,
+        /// The keys that may stand here.
+        known: Vec<String>,
+    },
+    /// A value that the campaign leaves out and windfall cannot guess.
+    #[error("{place}: {table} needs `{key}` ({meaning}); add for example: {example}")]
+    ValueMissing {
+        /// Where the table starts.
+        place: Place,
+        /// The table, with brackets.
+        table: String,
+        /// The key left out.
+        key: &'static str,
+        /// What it is.
+        meaning: &'static str,
+        /// A line that would do.
+        example: &'static str,
+    },
+    /// A value whose text cannot be used.
+    #[error("{place}: {key} = \"{text}\": {problem}")]
+    ValueInvalid {
+        /// Where.
+        place: Place,
+        /// Table and key.
+        key: String,
+        /// What stands there.
+        text: String,
+        /// What is wrong with it and what was expected.
+        problem: String,
+    },
+    /// A campaign file of a version that this windfall does not read.
+    #[error(
+        "{place}: format = {found}, but this windfall reads format = {expected}; \
+         install a newer windfall, or make a fresh template with `windfall new`"
+    )]
+    CampaignFormat {
+        /// Where.
+        place: Place,
+        /// Version found.
+        found: i64,
+        /// Version expected.
+        expected: i64,
+    },
+    /// An environment variable used in a path is not set.
+    #[error(
+        "{place}: {key} uses the environment variable {variable}, which is not set; \
+         set it, for example: export {variable}=/path/to/recordings"
+    )]
+    VariableUnset {
+        /// Where.
+        place: Place,
+        /// Table and key.
+        key: String,
+        /// The variable.
+        variable: String,
+    },
+    /// A column placeholder that no column of impacts.csv fills.
+    #[error(
+        "{place}: column = \"{text}\" uses {{{name}}}, but impacts.csv has no column \"{name}\"; \
+         add it, or write the column's name in full"
+    )]
+    PlaceholderUnknown {
+        /// Where.
+        place: Place,
+        /// The column's name with its placeholders.
+        text: String,
+        /// The placeholder.
+        name: String,
+    },
+    /// An id given to two rows.
+    #[error("{place}: the {what} \"{id}\" is named twice (first in line {first}); ids must be unique")]
+    IdRepeated {
+        /// The second place.
+        place: Place,
+        /// "specimen" or "impact".
+        what: &'static str,
+        /// The id.
+        id: String,
+        /// Line of the first.
+        first: usize,
+    },
+    /// A row without a value that it must have.
+    #[error("{place}: the cell in column \"{column}\" is blank; every row needs one")]
+    CellBlank {
+        /// Where.
+        place: Place,
+        /// The column.
+        column: String,
+    },
+    /// An impact on a specimen that specimens.csv does not list.
+    #[error("{place}: the specimen \"{specimen}\" is not in specimens.csv{nearest}; add it there or correct the id")]
+    SpecimenUnknown {
+        /// Where.
+        place: Place,
+        /// The specimen.
+        specimen: String,
+        /// Suggestion for the message, or "".
+        nearest: String,
+    },
+    /// A directory or file that a command would have to overwrite.
+    #[error("{path}: exists already and is not overwritten; choose another name or remove it first", path = path.display())]
+    AlreadyThere {
+        /// The file or directory.
+        path: PathBuf,
+    },
+    /// No impact of a campaign, or none that was asked for, could be fitted.
+    #[error("{path}: none of the {impacts} impacts could be fitted; the messages above say why", path = path.display())]
+    NothingFitted {
+        /// The campaign directory.
+        path: PathBuf,
+        /// How many impacts there are.
+        impacts: usize,
+    },
+    /// A results file that is no database, or a damaged one.
+    #[error(
+        "{path}: the results file is damaged or not a database ({detail}); nothing was written. \
+         Move it away (or restore a copy) and run again to make a new one", path = path.display()
+    )]
+    StoreDamaged {
+        /// The file.
+        path: PathBuf,
+        /// What SQLite said.
+        detail: String,
+    },
+    /// A database that another program made.
+    #[error(
+        "{path}: this is a database of another program (application id {application_id}); \
+         nothing was written. Move it away and run again", path = path.display()
+    )]
+    StoreForeign {
+        /// The file.
+        path: PathBuf,
+        /// The application id found.
+        application_id: i64,
+    },
+    /// A results file of a newer windfall.
+    #[error(
+        "{path}: these results were written by a newer windfall (store version {found}, this one \
+         knows {known}); nothing was written. Install the newer windfall, or move the file away",
+        path = path.display()
+    )]
+    StoreNewer {
+        /// The file.
+        path: PathBuf,
+        /// Version found.
+        found: i64,
+        /// Newest version that this windfall knows.
+        known: i64,
+    },
+    /// The database refused an operation.
+    #[error("{path}: cannot {action} the results: {source}", path = path.display())]
+    Store {
+        /// The file.
+        path: PathBuf,
+        /// "open", "read" or "write".
+        action: &'static str,
+        /// What SQLite said.
+        source: rusqlite::Error,
+    },
+    /// An option of a command that cannot be used.
+    #[error("{option}: {problem}")]
+    OptionInvalid {
+        /// The option, as written on the command line.
+        option: String,
+        /// What is wrong with it and what was expected.
+        problem: String,
+    },
+    /// The signals of a recording could not be used.
+    #[error("{path}: {source}", path = path.display())]
+    Signal {
+        /// The recording.
+        path: PathBuf,
+        /// What is wrong.
+        source: windfall_signal::error::Error,
+    },
+    /// A fit or a simulation failed.
+    #[error("{subject}: {source}")]
+    Identify {
+        /// The impact or event.
+        subject: String,
+        /// What is wrong.
+        source: windfall_identify::error::Error,
+    },
+}
+
+fn nearest_columns(nearest: &[String], columns: usize) -> String {
+    match nearest {
+        [] => format!("the header has {columns} columns"),
+        some => format!(
+            "nearest in the header: {} ({columns} columns in all)",
+            some.iter().map(|name| format!("\"{name}\"")).collect::<Vec<_>>().join(", ")
+        ),
+    }
+}
