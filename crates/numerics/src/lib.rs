@@ -4,6 +4,11 @@
 //!
 //! This crate knows no contact law, no instrument and no file.
 
+mod dimension;
+pub mod nearest_name;
 pub mod ode_tableau;
 pub mod real;
 pub mod unit;
+mod unit_error;
+pub mod unit_symbol;
+mod unit_syntax;
