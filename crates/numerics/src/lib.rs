@@ -6,8 +6,10 @@
 
 mod dimension;
 pub mod nearest_name;
+pub mod ode_step;
 pub mod ode_tableau;
 pub mod real;
+pub mod root;
 pub mod unit;
 mod unit_error;
 pub mod unit_symbol;
