@@ -1,7 +1,6 @@
 //! A campaign: rig, channels, options, specimens and impacts, in SI units.
 
 use std::path::PathBuf;
-use windfall_contact::expression::LawExpression;
 use windfall_identify::rig::Pendulum;
 use windfall_signal::recording::Quantity;
 
@@ -137,11 +136,11 @@ pub enum BaselinePlan {
 #[derive(Clone, Debug)]
 pub struct FitPlan {
     /// The laws, each fitted to every impact.
-    pub laws: Vec<LawExpression>,
+    pub laws: Vec<String>,
     /// Names of parameters that are estimated although they have a value.
     pub free: Vec<String>,
     /// Cost function and treatment of the nuisance parameters.
-    pub options: windfall_identify::fit::FitOptions,
+    pub options: (),
 }
 
 /// One row of specimens.csv.

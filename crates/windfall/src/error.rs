@@ -241,7 +241,9 @@ pub enum Error {
         name: String,
     },
     /// An id given to two rows.
-    #[error("{place}: the {what} \"{id}\" is named twice (first in line {first}); ids must be unique")]
+    #[error(
+        "{place}: the {what} \"{id}\" is named twice (first in line {first}); ids must be unique"
+    )]
     IdRepeated {
         /// The second place.
         place: Place,
@@ -261,7 +263,9 @@ pub enum Error {
         column: String,
     },
     /// An impact on a specimen that specimens.csv does not list.
-    #[error("{place}: the specimen \"{specimen}\" is not in specimens.csv{nearest}; add it there or correct the id")]
+    #[error(
+        "{place}: the specimen \"{specimen}\" is not in specimens.csv{nearest}; add it there or correct the id"
+    )]
     SpecimenUnknown {
         /// Where.
         place: Place,
@@ -338,22 +342,6 @@ pub enum Error {
         /// What is wrong with it and what was expected.
         problem: String,
     },
-    /// The signals of a recording could not be used.
-    #[error("{path}: {source}", path = path.display())]
-    Signal {
-        /// The recording.
-        path: PathBuf,
-        /// What is wrong.
-        source: windfall_signal::error::Error,
-    },
-    /// A fit or a simulation failed.
-    #[error("{subject}: {source}")]
-    Identify {
-        /// The impact or event.
-        subject: String,
-        /// What is wrong.
-        source: windfall_identify::error::Error,
-    },
 }
 
 fn nearest_columns(nearest: &[String], columns: usize) -> String {
@@ -361,7 +349,10 @@ fn nearest_columns(nearest: &[String], columns: usize) -> String {
         [] => format!("the header has {columns} columns"),
         some => format!(
             "nearest in the header: {} ({columns} columns in all)",
-            some.iter().map(|name| format!("\"{name}\"")).collect::<Vec<_>>().join(", ")
+            some.iter()
+                .map(|name| format!("\"{name}\""))
+                .collect::<Vec<_>>()
+                .join(", ")
         ),
     }
 }

@@ -1,1 +1,19 @@
-//! x
+//! Files, campaign directories, the store of results and the workflows of
+//! windfall.
+//!
+//! Only this crate opens files, reads clocks and knows file formats. A front end
+//! parses arguments, calls one workflow and displays what it returns.
+
+pub mod campaign;
+pub mod error;
+pub mod file_campaign;
+pub mod named;
+pub mod outcome;
+pub mod provenance;
+pub mod read_channels;
+pub mod read_csv;
+pub mod read_rig;
+pub mod read_tables;
+pub mod store;
+pub mod summary;
+pub mod toml_source;

@@ -4,10 +4,10 @@
 //! order mark is passed over; names may be quoted and hold commas and units.
 
 use crate::error::{Error, Place};
-use windfall_numerics::nearest_name::nearest_names;
 use std::fs::File;
 use std::io::{BufRead, BufReader, Read};
 use std::path::{Path, PathBuf};
+use windfall_numerics::nearest_name::nearest_names;
 
 /// Byte order mark of UTF-8.
 const MARK: &[u8] = b"\xef\xbb\xbf";
@@ -71,13 +71,19 @@ pub fn read_numbers(
     let mut columns = vec![Vec::new(); wanted.len()];
     let mut record = csv::StringRecord::new();
     while next_row(&mut open, &mut record)? {
-        let place = Place { file: path.to_path_buf(), line: line_of(&record) };
+        let place = Place {
+            file: path.to_path_buf(),
+            line: line_of(&record),
+        };
         for ((&index, name), column) in indices.iter().zip(wanted).zip(&mut columns) {
             column.push(number(&record[index], &place, name)?);
         }
     }
     if columns.first().is_some_and(Vec::is_empty) {
-        return Err(Error::TableWithoutRows { path: path.to_path_buf(), row_is: "sample" });
+        return Err(Error::TableWithoutRows {
+            path: path.to_path_buf(),
+            row_is: "sample",
+        });
     }
     Ok(NumberColumns { columns })
 }
@@ -93,9 +99,16 @@ pub fn read_table(path: &Path) -> Result<Table, Error> {
     let mut record = csv::StringRecord::new();
     while next_row(&mut open, &mut record)? {
         let cells = record.iter().map(|cell| cell.trim().to_owned()).collect();
-        rows.push(Row { line: line_of(&record), cells });
+        rows.push(Row {
+            line: line_of(&record),
+            cells,
+        });
     }
-    Ok(Table { path: path.to_path_buf(), columns: open.columns, rows })
+    Ok(Table {
+        path: path.to_path_buf(),
+        columns: open.columns,
+        rows,
+    })
 }
 
 /// Index of a column of a table.
@@ -125,15 +138,21 @@ fn open(path: &Path) -> Result<Open, Error> {
     let mut header = Vec::new();
     while header.iter().all(u8::is_ascii_whitespace) {
         header.clear();
-        let read = reader.read_until(b'\n', &mut header).map_err(|source| access(path, source))?;
+        let read = reader
+            .read_until(b'\n', &mut header)
+            .map_err(|source| access(path, source))?;
         if read == 0 {
-            return Err(Error::TableEmpty { path: path.to_path_buf() });
+            return Err(Error::TableEmpty {
+                path: path.to_path_buf(),
+            });
         }
     }
     let (byte, separator) = separator_of(&header);
     let whole: Box<dyn Read> = Box::new(std::io::Cursor::new(header).chain(reader));
-    let mut reader =
-        csv::ReaderBuilder::new().delimiter(byte).flexible(true).from_reader(whole);
+    let mut reader = csv::ReaderBuilder::new()
+        .delimiter(byte)
+        .flexible(true)
+        .from_reader(whole);
     let columns: Vec<String> = reader
         .headers()
         .map_err(|error| csv_error(path, &error))?
@@ -143,10 +162,18 @@ fn open(path: &Path) -> Result<Open, Error> {
     for (index, column) in columns.iter().enumerate() {
         if !column.is_empty() && columns[..index].contains(column) {
             let column = column.clone();
-            return Err(Error::ColumnRepeated { path: path.to_path_buf(), column });
+            return Err(Error::ColumnRepeated {
+                path: path.to_path_buf(),
+                column,
+            });
         }
     }
-    Ok(Open { path: path.to_path_buf(), columns, separator, reader })
+    Ok(Open {
+        path: path.to_path_buf(),
+        columns,
+        separator,
+        reader,
+    })
 }
 
 /// The separator that occurs most often outside quotes; a comma if none does.
@@ -170,7 +197,11 @@ fn separator_of(header: &[u8]) -> (u8, &'static str) {
 
 /// Reads the next row that is not blank; false at the end of the file.
 fn next_row(open: &mut Open, record: &mut csv::StringRecord) -> Result<bool, Error> {
-    while open.reader.read_record(record).map_err(|error| csv_error(&open.path, &error))? {
+    while open
+        .reader
+        .read_record(record)
+        .map_err(|error| csv_error(&open.path, &error))?
+    {
         if record.len() == open.columns.len() {
             return Ok(true);
         }
@@ -179,7 +210,10 @@ fn next_row(open: &mut Open, record: &mut csv::StringRecord) -> Result<bool, Err
             continue;
         }
         return Err(Error::RowRagged {
-            place: Place { file: open.path.clone(), line: line_of(record) },
+            place: Place {
+                file: open.path.clone(),
+                line: line_of(record),
+            },
             expected: open.columns.len(),
             found: record.len(),
             separator: open.separator,
@@ -189,7 +223,9 @@ fn next_row(open: &mut Open, record: &mut csv::StringRecord) -> Result<bool, Err
 }
 
 fn line_of(record: &csv::StringRecord) -> usize {
-    record.position().map_or(0, |position| position.line() as usize)
+    record
+        .position()
+        .map_or(0, |position| position.line() as usize)
 }
 
 fn number(cell: &str, place: &Place, column: &str) -> Result<Option<f64>, Error> {
@@ -218,35 +254,52 @@ fn number(cell: &str, place: &Place, column: &str) -> Result<Option<f64>, Error>
 }
 
 fn index_of(path: &Path, columns: &[String], column: &str, by: &str) -> Result<usize, Error> {
-    columns.iter().position(|name| name == column).ok_or_else(|| Error::ColumnMissing {
-        path: path.to_path_buf(),
-        column: column.to_owned(),
-        asked_by: by.to_owned(),
-        nearest: nearest_names(column, columns.iter().map(String::as_str))
-            .into_iter()
-            .map(str::to_owned)
-            .collect(),
-        columns: columns.len(),
-    })
+    columns
+        .iter()
+        .position(|name| name == column)
+        .ok_or_else(|| Error::ColumnMissing {
+            path: path.to_path_buf(),
+            column: column.to_owned(),
+            asked_by: by.to_owned(),
+            nearest: nearest_names(column, columns.iter().map(String::as_str))
+                .into_iter()
+                .map(str::to_owned)
+                .collect(),
+            columns: columns.len(),
+        })
 }
 
 fn access(path: &Path, source: std::io::Error) -> Error {
     let path = path.to_path_buf();
     if source.kind() == std::io::ErrorKind::NotFound {
-        return Error::FileAbsent { path, advice: "check the name and the directory".to_owned() };
+        return Error::FileAbsent {
+            path,
+            advice: "check the name and the directory".to_owned(),
+        };
     }
-    Error::FileAccess { path, action: "read", source }
+    Error::FileAccess {
+        path,
+        action: "read",
+        source,
+    }
 }
 
 fn csv_error(path: &Path, error: &csv::Error) -> Error {
-    let line = error.position().map_or(0, |position| position.line() as usize);
+    let line = error
+        .position()
+        .map_or(0, |position| position.line() as usize);
     match error.kind() {
         csv::ErrorKind::Io(source) => Error::FileAccess {
             path: path.to_path_buf(),
             action: "read",
             source: std::io::Error::new(source.kind(), source.to_string()),
         },
-        _ => Error::NotUtf8 { place: Place { file: path.to_path_buf(), line } },
+        _ => Error::NotUtf8 {
+            place: Place {
+                file: path.to_path_buf(),
+                line,
+            },
+        },
     }
 }
 
@@ -276,7 +329,9 @@ mod tests {
     #[test]
     fn closed_form_cells_of_three_separators() {
         for s in [',', ';', '\t'] {
-            let text = format!("\u{feff}\"Run 1: Time (s)\"{s}\"F, tip (N)\"\n0{s}1\n\n0.5{s}\n1e0{s}-2\n");
+            let text = format!(
+                "\u{feff}\"Run 1: Time (s)\"{s}\"F, tip (N)\"\n0{s}1\n\n0.5{s}\n1e0{s}-2\n"
+            );
             let columns = numbers(&text, &["F, tip (N)", "Run 1: Time (s)"]).unwrap();
             assert_eq!(columns[0], [Some(1.0), None, Some(-2.0)]);
             assert_eq!(columns[1], [Some(0.0), Some(0.5), Some(1.0)]);
@@ -286,16 +341,46 @@ mod tests {
     #[test]
     fn rejects_what_is_no_table_of_numbers() {
         for (text, expected) in [
-            ("", ": the file is empty; expected a header line with the names of the columns, then one line per sample"),
-            ("\n\n", ": the file is empty; expected a header line with the names of the columns, then one line per sample"),
-            ("t,F\n", ": the file has a header and no rows; expected one line per sample"),
-            ("t,Force\n0,1\n", ": there is no column \"F\"; the header has 2 columns"),
-            ("t,F,F\n0,1,2\n", ", line 1: the column \"F\" appears twice in the header; rename one of them, or map the channel to another column"),
-            ("t,F\n0,1\n1,x2\n", ", line 3, column \"F\": \"x2\" is not a number; leave the cell blank where there is no sample"),
-            ("t;F\n0;1,5\n", ", line 2, column \"F\": \"1,5\" is not a number (windfall reads a decimal point, not a decimal comma); leave the cell blank where there is no sample"),
-            ("t,F\n0,NaN\n", ", line 2, column \"F\": the value is NaN, which is not a finite number; leave the cell blank where there is no sample"),
-            ("t,F\n0,1\n1,-inf\n", ", line 3, column \"F\": the value is -inf, which is not a finite number; leave the cell blank where there is no sample"),
-            ("t,F\n0,1\n1\n", ", line 3: the row has 1 cells where the header has 2; the file may be cut short, or use another separator in this line (it is read with commas)"),
+            (
+                "",
+                ": the file is empty; expected a header line with the names of the columns, then one line per sample",
+            ),
+            (
+                "\n\n",
+                ": the file is empty; expected a header line with the names of the columns, then one line per sample",
+            ),
+            (
+                "t,F\n",
+                ": the file has a header and no rows; expected one line per sample",
+            ),
+            (
+                "t,Force\n0,1\n",
+                ": there is no column \"F\"; the header has 2 columns",
+            ),
+            (
+                "t,F,F\n0,1,2\n",
+                ", line 1: the column \"F\" appears twice in the header; rename one of them, or map the channel to another column",
+            ),
+            (
+                "t,F\n0,1\n1,x2\n",
+                ", line 3, column \"F\": \"x2\" is not a number; leave the cell blank where there is no sample",
+            ),
+            (
+                "t;F\n0;1,5\n",
+                ", line 2, column \"F\": \"1,5\" is not a number (windfall reads a decimal point, not a decimal comma); leave the cell blank where there is no sample",
+            ),
+            (
+                "t,F\n0,NaN\n",
+                ", line 2, column \"F\": the value is NaN, which is not a finite number; leave the cell blank where there is no sample",
+            ),
+            (
+                "t,F\n0,1\n1,-inf\n",
+                ", line 3, column \"F\": the value is -inf, which is not a finite number; leave the cell blank where there is no sample",
+            ),
+            (
+                "t,F\n0,1\n1\n",
+                ", line 3: the row has 1 cells where the header has 2; the file may be cut short, or use another separator in this line (it is read with commas)",
+            ),
         ] {
             assert_eq!(message(text, &["F"]), expected, "{text:?}");
         }
@@ -311,6 +396,9 @@ mod tests {
     #[test]
     fn rejects_a_misspelt_column_with_the_nearest_names() {
         let text = message("Time (s),Force (N),Position (m)\n0,1,2\n", &["force (n)"]);
-        assert_eq!(text, ": there is no column \"force (n)\"; nearest in the header: \"Force (N)\" (3 columns in all)");
+        assert_eq!(
+            text,
+            ": there is no column \"force (n)\"; nearest in the header: \"Force (N)\" (3 columns in all)"
+        );
     }
 }

@@ -20,7 +20,10 @@ pub fn read_specimens(path: &Path) -> Result<Vec<Specimen>, Error> {
     Ok(table
         .rows
         .iter()
-        .map(|row| Specimen { id: row.cells[id].clone(), cells: named_cells(&table, row) })
+        .map(|row| Specimen {
+            id: row.cells[id].clone(),
+            cells: named_cells(&table, row),
+        })
         .collect())
 }
 
@@ -29,13 +32,19 @@ pub fn read_specimens(path: &Path) -> Result<Vec<Specimen>, Error> {
 /// # Errors
 /// The file cannot be read, lacks a column or a cell that it must have, names
 /// an impact twice or a specimen that is unknown.
-pub fn read_impacts(path: &Path, specimens: Option<&[Specimen]>) -> Result<Vec<ImpactEntry>, Error> {
+pub fn read_impacts(
+    path: &Path,
+    specimens: Option<&[Specimen]>,
+) -> Result<Vec<ImpactEntry>, Error> {
     let table = read_table(path)?;
     let [id, specimen, file] = ["id", "specimen", "file"].map(|name| column_index(&table, name));
     let (id, specimen, file) = (id?, specimen?, file?);
     check_ids(&table, id, "impact")?;
     if table.rows.is_empty() {
-        return Err(Error::TableWithoutRows { path: path.to_path_buf(), row_is: "impact" });
+        return Err(Error::TableWithoutRows {
+            path: path.to_path_buf(),
+            row_is: "impact",
+        });
     }
     table
         .rows
@@ -69,7 +78,10 @@ fn check_ids(table: &Table, column: usize, what: &'static str) -> Result<(), Err
         filled(table, row, column)?;
     }
     rows.sort_by_key(|row| &row.cells[column]);
-    match rows.windows(2).find(|pair| pair[0].cells[column] == pair[1].cells[column]) {
+    match rows
+        .windows(2)
+        .find(|pair| pair[0].cells[column] == pair[1].cells[column])
+    {
         None => Ok(()),
         Some(pair) => Err(Error::IdRepeated {
             place: place(table, pair[1]),
@@ -91,7 +103,9 @@ fn filled<'a>(table: &Table, row: &'a Row, column: usize) -> Result<&'a str, Err
 }
 
 fn optional_number(table: &Table, row: &Row, column: &str) -> Result<Option<f64>, Error> {
-    let Some(index) = table.columns.iter().position(|name| name == column) else { return Ok(None) };
+    let Some(index) = table.columns.iter().position(|name| name == column) else {
+        return Ok(None);
+    };
     let cell = row.cells[index].as_str();
     match cell.parse::<f64>() {
         _ if cell.is_empty() => Ok(None),
@@ -106,11 +120,19 @@ fn optional_number(table: &Table, row: &Row, column: &str) -> Result<Option<f64>
 }
 
 fn named_cells(table: &Table, row: &Row) -> Vec<(String, String)> {
-    table.columns.iter().cloned().zip(row.cells.iter().cloned()).collect()
+    table
+        .columns
+        .iter()
+        .cloned()
+        .zip(row.cells.iter().cloned())
+        .collect()
 }
 
 fn place(table: &Table, row: &Row) -> Place {
-    Place { file: table.path.clone(), line: row.line }
+    Place {
+        file: table.path.clone(),
+        line: row.line,
+    }
 }
 
 #[cfg(test)]
@@ -130,7 +152,10 @@ mod tests {
         std::fs::write(&path, text).unwrap();
         let specimens: Vec<Specimen> = known
             .iter()
-            .map(|id| Specimen { id: (*id).to_owned(), cells: Vec::new() })
+            .map(|id| Specimen {
+                id: (*id).to_owned(),
+                cells: Vec::new(),
+            })
             .collect();
         read_impacts(&path, Some(&specimens))
     }
@@ -142,10 +167,24 @@ mod tests {
 
     #[test]
     fn closed_form_rows_in_order_with_all_cells() {
-        let rows = impacts("id,specimen,file,level,from_s,to_s\na,s1,r.csv,2,0.5,\nb,s1,r.csv,3,,1\n", &["s1"]).unwrap();
-        assert_eq!((rows[0].id.as_str(), rows[0].from, rows[0].to), ("a", Some(0.5), None));
-        assert_eq!((rows[1].line, rows[1].from, rows[1].to), (3, None, Some(1.0)));
-        assert!(rows[1].cells.contains(&("level".to_owned(), "3".to_owned())));
+        let rows = impacts(
+            "id,specimen,file,level,from_s,to_s\na,s1,r.csv,2,0.5,\nb,s1,r.csv,3,,1\n",
+            &["s1"],
+        )
+        .unwrap();
+        assert_eq!(
+            (rows[0].id.as_str(), rows[0].from, rows[0].to),
+            ("a", Some(0.5), None)
+        );
+        assert_eq!(
+            (rows[1].line, rows[1].from, rows[1].to),
+            (3, None, Some(1.0))
+        );
+        assert!(
+            rows[1]
+                .cells
+                .contains(&("level".to_owned(), "3".to_owned()))
+        );
     }
 
     #[test]
@@ -155,7 +194,10 @@ mod tests {
             ", line 4: the specimen \"a1\" is named twice (first in line 2); ids must be unique"
         );
         assert_eq!(
-            message(impacts("id,specimen,file\ni1,a,r.csv\ni1,a,s.csv\n", &["a"])),
+            message(impacts(
+                "id,specimen,file\ni1,a,r.csv\ni1,a,s.csv\n",
+                &["a"]
+            )),
             ", line 3: the impact \"i1\" is named twice (first in line 2); ids must be unique"
         );
     }

@@ -37,13 +37,19 @@ pub struct Needed {
 /// The file is absent or unreadable or not UTF-8.
 pub fn read_source(path: &Path, advice: &str) -> Result<TomlSource, Error> {
     match std::fs::read_to_string(path) {
-        Ok(text) => Ok(TomlSource { path: path.to_path_buf(), text }),
-        Err(error) if error.kind() == std::io::ErrorKind::NotFound => {
-            Err(Error::FileAbsent { path: path.to_path_buf(), advice: advice.to_owned() })
-        }
-        Err(source) => {
-            Err(Error::FileAccess { path: path.to_path_buf(), action: "read", source })
-        }
+        Ok(text) => Ok(TomlSource {
+            path: path.to_path_buf(),
+            text,
+        }),
+        Err(error) if error.kind() == std::io::ErrorKind::NotFound => Err(Error::FileAbsent {
+            path: path.to_path_buf(),
+            advice: advice.to_owned(),
+        }),
+        Err(source) => Err(Error::FileAccess {
+            path: path.to_path_buf(),
+            action: "read",
+            source,
+        }),
     }
 }
 
@@ -59,7 +65,10 @@ pub fn parse_source<T: serde::de::DeserializeOwned>(source: &TomlSource) -> Resu
         if message.starts_with("unknown field") {
             return key_unknown(source, &span, message, place);
         }
-        Error::CampaignSyntax { place, message: syntax_message(source, &span, message) }
+        Error::CampaignSyntax {
+            place,
+            message: syntax_message(source, &span, message),
+        }
     })
 }
 
@@ -68,7 +77,10 @@ pub fn parse_source<T: serde::de::DeserializeOwned>(source: &TomlSource) -> Resu
 pub fn place_at(source: &TomlSource, span: &Range<usize>) -> Place {
     let before = &source.text.as_bytes()[..span.start.min(source.text.len())];
     let line = 1 + before.iter().filter(|&&byte| byte == b'\n').count();
-    Place { file: source.path.clone(), line }
+    Place {
+        file: source.path.clone(),
+        line,
+    }
 }
 
 /// A quantity that may be left out; its SI value.
@@ -83,7 +95,13 @@ pub fn optional_quantity(
     let Some(value) = value else { return Ok(None) };
     let text = &value.get_ref().0;
     parse_as(text, needed.unit).map(Some).map_err(|error| {
-        invalid(source, &value.span(), (needed.table, needed.key), text, error.to_string())
+        invalid(
+            source,
+            &value.span(),
+            (needed.table, needed.key),
+            text,
+            error.to_string(),
+        )
     })
 }
 
@@ -149,9 +167,15 @@ pub fn choice<T: Copy>(
 ) -> Result<Option<T>, Error> {
     let Some(value) = value else { return Ok(None) };
     let word = value.get_ref();
-    let found = choices.iter().find(|(name, _)| name == word).map(|(_, chosen)| *chosen);
+    let found = choices
+        .iter()
+        .find(|(name, _)| name == word)
+        .map(|(_, chosen)| *chosen);
     found.map(Some).ok_or_else(|| {
-        let names: Vec<String> = choices.iter().map(|(name, _)| format!("\"{name}\"")).collect();
+        let names: Vec<String> = choices
+            .iter()
+            .map(|(name, _)| format!("\"{name}\""))
+            .collect();
         let problem = format!(
             "expected {}{}",
             names.join(" or "),
@@ -173,15 +197,24 @@ pub fn suggestion<'a>(name: &str, candidates: impl IntoIterator<Item = &'a str>)
 /// serde says: unknown field `x`, expected one of `a`, `b`.
 fn key_unknown(source: &TomlSource, span: &Range<usize>, message: &str, place: Place) -> Error {
     let mut quoted = message.split('`').skip(1).step_by(2).map(str::to_owned);
-    let key = quoted.next().unwrap_or_else(|| source.text[span.clone()].to_owned());
+    let key = quoted
+        .next()
+        .unwrap_or_else(|| source.text[span.clone()].to_owned());
     let known: Vec<String> = quoted.collect();
     let nearest = suggestion(&key, known.iter().map(String::as_str));
-    Error::KeyUnknown { place, key, nearest, known }
+    Error::KeyUnknown {
+        place,
+        key,
+        nearest,
+        known,
+    }
 }
 
 /// The reader's message with the line that it is about.
 fn syntax_message(source: &TomlSource, span: &Range<usize>, message: &str) -> String {
-    let start = source.text[..span.start.min(source.text.len())].rfind('\n').map_or(0, |at| at + 1);
+    let start = source.text[..span.start.min(source.text.len())]
+        .rfind('\n')
+        .map_or(0, |at| at + 1);
     let line = source.text[start..].lines().next().unwrap_or_default();
     format!("{} in: {}", message.trim().replace('\n', "; "), line.trim())
 }

@@ -1,0 +1,170 @@
+//! What `fit` gives: saved in the store, shown as text, JSON or CSV.
+//!
+//! The names of the fields are the keys of the JSON that scripts rely on.
+//! All numbers are SI.
+
+use crate::named::Named;
+use serde::{Deserialize, Serialize};
+
+/// One estimated or held value.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct EstimateOutcome {
+    /// Value.
+    pub value: f64,
+    /// Standard deviation; `None` for a value that was held.
+    pub sd: Option<f64>,
+    /// Lower end of the 95 % interval.
+    pub low: Option<f64>,
+    /// Upper end of the 95 % interval.
+    pub high: Option<f64>,
+    /// SI unit.
+    pub unit: String,
+}
+
+/// Something that a reader of the result must know.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct FindingOutcome {
+    /// Short name for scripts.
+    pub code: String,
+    /// A sentence.
+    pub message: String,
+}
+
+/// One law fitted to one impact.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct ImpactOutcome {
+    /// Id of the impact.
+    pub id: String,
+    /// Id of the specimen.
+    pub specimen: String,
+    /// Group of the specimen or impact, where the campaign has groups.
+    pub group: Option<String>,
+    /// The recording, as impacts.csv names it.
+    pub file: String,
+    /// Name of the law.
+    pub law: String,
+    /// Quantities in the cost function.
+    pub quantities: Vec<String>,
+    /// Parameters of the law, in its order.
+    pub parameters: Named<EstimateOutcome>,
+    /// Initial velocity, onset and offset, as far as they were estimated.
+    pub nuisances: Named<EstimateOutcome>,
+    /// Correlations of the estimates: "k, c".
+    pub correlations: Named<Option<f64>>,
+    /// Value of the cost function.
+    pub cost: f64,
+    /// Samples in it.
+    pub samples: usize,
+    /// Iterations of the least-squares method.
+    pub iterations: usize,
+    /// Whether it converged.
+    pub converged: bool,
+    /// Root mean square of the weighted residuals, 1 when the noise explains them.
+    pub residual_norm: Option<f64>,
+    /// Runs test of the residuals per quantity: two-sided p.
+    pub runs_p: Named<Option<f64>>,
+    /// Parameters by the linear regression of the force, for comparison.
+    pub regression: Named<EstimateOutcome>,
+    /// Velocities, energies, peaks.
+    pub derived: Named<Option<f64>>,
+    /// "signal" or "fit" for each entry of `derived`.
+    pub derived_from: Named<String>,
+    /// The same quantities in the motion under the fitted law.
+    pub fitted: Named<Option<f64>>,
+    /// What a reader must know.
+    pub findings: Vec<FindingOutcome>,
+}
+
+/// An impact that could not be fitted.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct FailureOutcome {
+    /// Id of the impact.
+    pub id: String,
+    /// Id of the specimen.
+    pub specimen: String,
+    /// The recording, as impacts.csv names it.
+    pub file: String,
+    /// The law, where the failure concerns one law only.
+    pub law: Option<String>,
+    /// What is wrong and what to do.
+    pub message: String,
+}
+
+/// Spread of one quantity over impacts.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct SpreadOutcome {
+    /// Mean.
+    pub mean: f64,
+    /// Standard deviation between impacts (n − 1); `None` for one impact.
+    pub sd: Option<f64>,
+    /// Number of impacts.
+    pub n: usize,
+    /// Coefficient of variation, sd / |mean|.
+    pub cv: Option<f64>,
+}
+
+/// Spread of parameters and derived quantities over the impacts of a group.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct GroupOutcome {
+    /// Name of the group; `None` for all impacts together.
+    pub group: Option<String>,
+    /// Name of the law.
+    pub law: String,
+    /// Impacts fitted.
+    pub impacts: usize,
+    /// Specimens among them.
+    pub specimens: usize,
+    /// Parameters that were estimated.
+    pub parameters: Named<SpreadOutcome>,
+    /// Velocities, energies, peaks.
+    pub derived: Named<SpreadOutcome>,
+}
+
+/// How the results came about.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+pub struct StatusOutcome {
+    /// Fits done in this run.
+    pub fitted: usize,
+    /// Fits answered from the store.
+    pub stored: usize,
+    /// Impacts, or laws on an impact, that failed.
+    pub failed: usize,
+    /// Whether nothing had to be fitted.
+    pub up_to_date: bool,
+}
+
+/// A value of the rig that was found from the recordings.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct MassOutcome {
+    /// Mass; kg.
+    pub value: f64,
+    /// Its standard uncertainty; kg.
+    pub sd: f64,
+    /// Impacts that it was found from; 0 for a mass that was weighed.
+    pub impacts: usize,
+}
+
+/// Everything that `fit` gives for a campaign.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct CampaignOutcome {
+    /// Version of windfall.
+    pub windfall: String,
+    /// Title of the campaign.
+    pub campaign: String,
+    /// Label of simulated recordings.
+    pub simulated: Option<String>,
+    /// Effective mass at the contact.
+    pub effective_mass: MassOutcome,
+    /// How the results came about.
+    pub status: StatusOutcome,
+    /// One entry per impact and law.
+    pub impacts: Vec<ImpactOutcome>,
+    /// What could not be fitted.
+    pub failed: Vec<FailureOutcome>,
+    /// Spread over all impacts, of the first law.
+    pub summary: Named<SpreadOutcome>,
+    /// Spread per group and law.
+    pub groups: Vec<GroupOutcome>,
+    /// What a reader of the whole must know.
+    pub findings: Vec<FindingOutcome>,
+}
