@@ -136,16 +136,29 @@ pub enum Error {
     },
     /// A sample without its time.
     #[error(
-        "{place}: column \"{column}\" has a sample but its time column \"{time}\" is blank; \
-         fill in the time or leave the sample blank too"
+        "{place}: sample {sample} of column \"{column}\" has no time, the cell in column \"{time}\" \
+         is blank; fill in the time or leave the sample blank too"
     )]
     SampleWithoutTime {
         /// Where.
         place: Place,
+        /// Row below the header, from 0.
+        sample: usize,
         /// The column with the sample.
         column: String,
         /// The column of times.
         time: String,
+    },
+    /// A column without a single sample.
+    #[error(
+        "{path}: the column \"{column}\" holds no sample, every cell is blank; \
+         map the channel to another column", path = path.display()
+    )]
+    ColumnBlank {
+        /// The file.
+        path: PathBuf,
+        /// The column.
+        column: String,
     },
     /// Text that is not UTF-8.
     #[error(

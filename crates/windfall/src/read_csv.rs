@@ -88,6 +88,50 @@ pub fn read_numbers(
     Ok(NumberColumns { columns })
 }
 
+/// Most faulty cells that [`read_loose_numbers`] describes.
+pub const DESCRIBED_FAULTS: usize = 10;
+
+/// Every column of a file as far as it is numbers.
+#[derive(Debug)]
+pub struct LooseNumbers {
+    /// One vector per column, one entry per row; blank and faulty are `None`.
+    pub columns: Vec<Vec<Option<f64>>>,
+    /// The first faulty cells.
+    pub faults: Vec<Error>,
+    /// How many more there are.
+    pub more_faults: usize,
+}
+
+/// Reads every column of a file and goes on after faulty cells.
+///
+/// # Errors
+/// The file cannot be read, is empty or not UTF-8; a row is ragged.
+pub fn read_loose_numbers(path: &Path) -> Result<LooseNumbers, Error> {
+    let mut open = open(path)?;
+    let mut loose = LooseNumbers {
+        columns: vec![Vec::new(); open.columns.len()],
+        faults: Vec::new(),
+        more_faults: 0,
+    };
+    let mut record = csv::StringRecord::new();
+    while next_row(&mut open, &mut record)? {
+        let place = Place {
+            file: path.to_path_buf(),
+            line: line_of(&record),
+        };
+        for ((cell, name), column) in record.iter().zip(&open.columns).zip(&mut loose.columns) {
+            let value = number(cell, &place, name);
+            column.push(value.as_ref().ok().copied().flatten());
+            match value {
+                Err(fault) if loose.faults.len() < DESCRIBED_FAULTS => loose.faults.push(fault),
+                Err(_) => loose.more_faults += 1,
+                Ok(_) => {}
+            }
+        }
+    }
+    Ok(loose)
+}
+
 /// Reads a whole table as text.
 ///
 /// # Errors

@@ -1,0 +1,99 @@
+//! `windfall new KIND DIR`: a commented template of a campaign.
+
+use crate::error::Error;
+use std::path::{Path, PathBuf};
+
+/// Rig of a template.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum TemplateKind {
+    /// Pendulum with encoder and force sensor.
+    Pendulum,
+    /// Body on a line with force sensor and position.
+    Carriage,
+}
+
+/// Table of specimens of a template.
+const SPECIMENS: &str = "id,variety,mass_g\nfruit-1,Golden,182\nfruit-2,Golden,175\n";
+
+/// Table of impacts of a template.
+const IMPACTS: &str = "id,specimen,file,level\nfruit-1-a,fruit-1,fruit-1-a.csv,1\n\
+                       fruit-1-b,fruit-1,fruit-1-b.csv,1\nfruit-2-a,fruit-2,fruit-2-a.csv,1\n";
+
+/// The commented campaign.toml of a rig.
+#[must_use]
+pub fn template(kind: TemplateKind) -> &'static str {
+    match kind {
+        TemplateKind::Pendulum => include_str!("templates/pendulum.toml"),
+        TemplateKind::Carriage => include_str!("templates/carriage.toml"),
+    }
+}
+
+/// Writes a template into a directory that does not exist yet, or is empty.
+///
+/// Returns the files written.
+///
+/// # Errors
+/// There is something in the directory already, or it cannot be written.
+pub fn write_template(kind: TemplateKind, directory: &Path) -> Result<Vec<PathBuf>, Error> {
+    create_directory(directory)?;
+    let files = [
+        ("campaign.toml", template(kind)),
+        ("specimens.csv", SPECIMENS),
+        ("impacts.csv", IMPACTS),
+    ];
+    let mut written = Vec::new();
+    for (name, text) in files {
+        let path = directory.join(name);
+        write_file(&path, text.as_bytes())?;
+        written.push(path);
+    }
+    let raw = directory.join("raw");
+    std::fs::create_dir(&raw).map_err(|source| create_error(&raw, source))?;
+    written.push(raw);
+    Ok(written)
+}
+
+/// Creates a directory that is to be filled; one that holds files is refused.
+///
+/// # Errors
+/// Something is there already, or the directory cannot be made.
+pub fn create_directory(directory: &Path) -> Result<(), Error> {
+    match std::fs::read_dir(directory) {
+        Ok(mut entries) => match entries.next() {
+            Some(_) => Err(Error::AlreadyThere {
+                path: directory.to_path_buf(),
+            }),
+            None => Ok(()),
+        },
+        Err(error) if error.kind() == std::io::ErrorKind::NotFound => {
+            std::fs::create_dir_all(directory).map_err(|source| create_error(directory, source))
+        }
+        Err(source) => Err(create_error(directory, source)),
+    }
+}
+
+/// Writes a file that does not exist yet.
+///
+/// # Errors
+/// It exists already or cannot be written.
+pub fn write_file(path: &Path, bytes: &[u8]) -> Result<(), Error> {
+    use std::io::Write;
+    let mut file = std::fs::File::create_new(path).map_err(|source| create_error(path, source))?;
+    file.write_all(bytes).map_err(|source| Error::FileAccess {
+        path: path.to_path_buf(),
+        action: "write",
+        source,
+    })
+}
+
+fn create_error(path: &Path, source: std::io::Error) -> Error {
+    let path = path.to_path_buf();
+    match source.kind() {
+        std::io::ErrorKind::AlreadyExists => Error::AlreadyThere { path },
+        _ => Error::FileAccess {
+            path,
+            action: "create",
+            source,
+        },
+    }
+}
