@@ -70,12 +70,18 @@ pub struct Segment<const W: usize> {
     pub from: f64,
     /// Last time of validity; s.
     pub to: f64,
-    /// Whether the bodies touch.
-    pub contact: bool,
     /// Largest displacement so far, for laws with history; m.
     pub peak: f64,
     /// Its derivatives.
     pub peak_lanes: Lanes<W>,
+}
+
+/// Takes the pieces of a motion as they are integrated.
+pub trait Sink<const W: usize> {
+    /// A piece in which the bodies touch.
+    fn contact(&mut self, segment: &Segment<W>);
+    /// A piece before or after.
+    fn flight(&mut self, segment: &Segment<W>);
 }
 
 /// State at the end of contact.
@@ -185,13 +191,13 @@ pub fn follow<L: ContactLaw<N>, const N: usize, const W: usize>(
     event: &ImpactEvent<L, N, W>,
     before: f64,
     after: f64,
-    mut sink: impl FnMut(&Segment<W>),
+    sink: &mut impl Sink<W>,
 ) -> Result<Option<Separation>, StepError> {
     let mut velocity = event.seeds.velocity;
     velocity.0[0] = event.velocity;
     let touch = [Lanes::ZERO, velocity];
     if before < 0.0 {
-        fly(event, touch, 0.0, before, &mut sink)?;
+        fly(event, touch, 0.0, before, sink)?;
     }
     if after <= 0.0 {
         return Ok(None);
@@ -202,7 +208,7 @@ pub fn follow<L: ContactLaw<N>, const N: usize, const W: usize>(
         peak: 0.0,
         peak_lanes: Lanes::ZERO,
     };
-    match touching(&mut phase, touch, after, &mut sink)? {
+    match touching(&mut phase, touch, after, sink)? {
         None => Ok(None),
         Some((time, mut state)) => {
             let separation = Separation {
@@ -212,7 +218,7 @@ pub fn follow<L: ContactLaw<N>, const N: usize, const W: usize>(
             };
             carry_jump(&phase, &mut state);
             if after > time {
-                fly(event, state, time, after, &mut sink)?;
+                fly(event, state, time, after, sink)?;
             }
             Ok(Some(separation))
         }
@@ -226,7 +232,7 @@ fn fly<L, const N: usize, const W: usize>(
     state: [Lanes<W>; 2],
     from: f64,
     to: f64,
-    sink: &mut impl FnMut(&Segment<W>),
+    sink: &mut impl Sink<W>,
 ) -> Result<(), StepError> {
     let flight = Flight {
         motion: event.motion,
@@ -235,12 +241,11 @@ fn fly<L, const N: usize, const W: usize>(
     for _ in 0..LARGEST_STEPS {
         let done = flight_step(&flight, &mut position, to, &event.tolerance)?;
         let end = done.start + done.width;
-        sink(&Segment {
+        sink.flight(&Segment {
             step: done,
             power: 1,
             from: done.start.min(end),
             to: done.start.max(end),
-            contact: false,
             peak: 0.0,
             peak_lanes: Lanes::ZERO,
         });
@@ -283,7 +288,7 @@ fn touching<L: ContactLaw<N>, const N: usize, const W: usize>(
     phase: &mut Phase<L, N, W>,
     state: [Lanes<W>; 2],
     after: f64,
-    sink: &mut impl FnMut(&Segment<W>),
+    sink: &mut impl Sink<W>,
 ) -> Result<Option<(f64, [Lanes<W>; 2])>, StepError> {
     let power = phase.power;
     let limit = scaled_time(after, power);
@@ -298,7 +303,7 @@ fn touching<L: ContactLaw<N>, const N: usize, const W: usize>(
             None => (position.s, done.to),
             Some((_, sigma)) => (done.start + sigma * done.width, done.at(sigma)),
         };
-        sink(&Segment {
+        sink.contact(&Segment {
             step: done,
             power,
             from: time_of(done.start, power),
@@ -308,7 +313,6 @@ fn touching<L: ContactLaw<N>, const N: usize, const W: usize>(
             } else {
                 time_of(to, power)
             },
-            contact: true,
             peak: phase.peak,
             peak_lanes: phase.peak_lanes,
         });

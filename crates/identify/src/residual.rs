@@ -1,8 +1,9 @@
 //! Residuals of an impact and their derivatives, summed into the normal
 //! equations in one pass over the samples, several samples at a time.
 
-use crate::contact_motion::{ImpactEvent, Segment, follow, scaled_time};
-use windfall_contact::law::{ContactLaw, SMALLEST_DISPLACEMENT};
+use crate::contact_motion::{ImpactEvent, Seeds, Segment, Sink, follow, scaled_time};
+use crate::motion::Acceleration;
+use windfall_contact::law::{ContactForce, ContactLaw, SMALLEST_DISPLACEMENT};
 use windfall_numerics::least_squares::NormalEquations;
 use windfall_numerics::ode_step::{DENSE_COEFFICIENTS, StepError, dense_at};
 use windfall_numerics::real::{Lanes, Real};
@@ -157,38 +158,140 @@ pub struct Model<L, const N: usize, const W: usize, const P: usize> {
 pub fn evaluate<L, const N: usize, const W: usize, const P: usize>(
     model: &Model<L, N, W, P>,
     groups: &[SampleGroup],
-    mut rows: Option<&mut Rows>,
+    rows: Option<&mut Rows>,
 ) -> Result<NormalEquations<P>, StepError>
 where
     L: ContactLaw<N>,
 {
-    let first = groups.iter().filter_map(|g| g.times().first()).copied();
-    let last = groups.iter().filter_map(|g| g.times().last()).copied();
-    let before = first.fold(f64::INFINITY, f64::min) - model.onset;
-    let after = last.fold(f64::NEG_INFINITY, f64::max) - model.onset;
+    pulp::Arch::new().dispatch(Pass {
+        model,
+        groups,
+        rows,
+    })
+}
 
-    pulp::Arch::new().dispatch(
-        #[inline(always)]
-        || {
-            let mut sums = Sums::ZERO;
-            follow(
-                &model.event,
-                before.min(0.0),
-                after,
-                #[inline(always)]
-                |segment| {
-                    for (index, group) in groups.iter().enumerate() {
-                        let rows = rows.as_deref_mut().map(|rows| (rows, index));
-                        read_segment(model, segment, group, after, &mut sums, rows);
-                    }
-                },
-            )?;
-            Ok(sums.total())
-        },
-    )
+/// One pass of [`evaluate`], compiled for the machine's vector instructions.
+struct Pass<'a, L, const N: usize, const W: usize, const P: usize> {
+    model: &'a Model<L, N, W, P>,
+    groups: &'a [SampleGroup],
+    rows: Option<&'a mut Rows>,
+}
+
+impl<L, const N: usize, const W: usize, const P: usize> pulp::WithSimd for Pass<'_, L, N, W, P>
+where
+    L: ContactLaw<N>,
+{
+    type Output = Result<NormalEquations<P>, StepError>;
+
+    #[inline(always)]
+    fn with_simd<S: pulp::Simd>(self, _simd: S) -> Self::Output {
+        let Self {
+            model,
+            groups,
+            mut rows,
+        } = self;
+        let first = groups.iter().filter_map(|g| g.times().first()).copied();
+        let last = groups.iter().filter_map(|g| g.times().last()).copied();
+        let before = first.fold(f64::INFINITY, f64::min) - model.onset;
+        let after = last.fold(f64::NEG_INFINITY, f64::max) - model.onset;
+
+        let mut reading = Reading {
+            model,
+            groups,
+            rows: rows.as_deref_mut(),
+            end: after,
+            sums: Sums::ZERO,
+        };
+        follow(&model.event, before.min(0.0), after, &mut reading)?;
+        Ok(reading.sums.total())
+    }
+}
+
+/// Reads the samples of each piece of the motion.
+struct Reading<'a, L, const N: usize, const W: usize, const P: usize> {
+    model: &'a Model<L, N, W, P>,
+    groups: &'a [SampleGroup],
+    rows: Option<&'a mut Rows>,
+    end: f64,
+    sums: Sums<P>,
+}
+
+impl<L, const N: usize, const W: usize, const P: usize> Sink<W> for Reading<'_, L, N, W, P>
+where
+    L: ContactLaw<N>,
+{
+    #[inline(always)]
+    fn contact(&mut self, segment: &Segment<W>) {
+        for (index, group) in self.groups.iter().enumerate() {
+            let rows = self.rows.as_deref_mut().map(|rows| (rows, index));
+            read_segment(self.model, segment, group, self.end, &mut self.sums, rows);
+        }
+    }
+
+    #[inline(always)]
+    fn flight(&mut self, segment: &Segment<W>) {
+        let event = &self.model.event;
+        let model = Model {
+            event: ImpactEvent {
+                law: NoContact,
+                motion: event.motion,
+                velocity: event.velocity,
+                end: event.end,
+                seeds: Seeds::NONE,
+                tolerance: event.tolerance,
+            },
+            onset: self.model.onset,
+            offset: self.model.offset,
+            columns: self.model.columns,
+        };
+        for (index, group) in self.groups.iter().enumerate() {
+            let rows = self.rows.as_deref_mut().map(|rows| (rows, index));
+            read_flight(&model, segment, group, self.end, &mut self.sums, rows);
+        }
+    }
+}
+
+/// No force: the samples of a flight, the same for every law and so compiled
+/// once.
+#[derive(Clone, Copy)]
+struct NoContact;
+
+impl ContactLaw<0> for NoContact {
+    fn with_parameters(_parameters: [f64; 0]) -> Self {
+        Self
+    }
+
+    fn parameters(&self) -> [f64; 0] {
+        []
+    }
+
+    #[inline(always)]
+    fn evaluate<R: Real>(&self, _d: R, _v: R, _peak: R) -> ContactForce<R, 0> {
+        let zero = R::splat(0.0);
+        ContactForce {
+            force: zero,
+            by_displacement: zero,
+            by_rate: zero,
+            by_parameter: [],
+            by_peak: zero,
+        }
+    }
+}
+
+#[inline(never)]
+fn read_flight<const W: usize, const P: usize>(
+    model: &Model<NoContact, 0, W, P>,
+    segment: &Segment<W>,
+    group: &SampleGroup,
+    end: f64,
+    sums: &mut Sums<P>,
+    rows: Option<(&mut Rows, usize)>,
+) {
+    read_segment(model, segment, group, end, sums, rows);
 }
 
 /// Running sums, one lane per sample of a pack.
+#[derive(Clone, Copy)]
 struct Sums<const P: usize> {
     cost: Pack,
     gradient: [Pack; P],
@@ -204,12 +307,12 @@ impl<const P: usize> Sums<P> {
 
     #[inline(always)]
     fn add(&mut self, weight: Pack, residual: Pack, jacobian: &[Pack; P]) {
-        self.cost += weight * residual * residual;
+        self.cost = (weight * residual).mul_add(residual, self.cost);
         for i in 0..P {
             let weighted = weight * jacobian[i];
-            self.gradient[i] += weighted * residual;
+            self.gradient[i] = weighted.mul_add(residual, self.gradient[i]);
             for j in 0..=i {
-                self.normal[i][j] += weighted * jacobian[j];
+                self.normal[i][j] = weighted.mul_add(jacobian[j], self.normal[i][j]);
             }
         }
     }
@@ -280,6 +383,11 @@ fn read_segment<L, const N: usize, const W: usize, const P: usize>(
         return;
     }
     let reader = reader(segment, &model.columns);
+    // The acceleration matters to a recorded one and to the onset's column.
+    let accelerated = group.holds(Quantity::Acceleration)
+        || model.columns.onset.iter().any(|onset| *onset != 0.0);
+    // A copy that the compiler can keep in registers.
+    let mut running = *sums;
     let mut at = first;
     while at < last {
         let count = PACK.min(last - at);
@@ -288,20 +396,21 @@ fn read_segment<L, const N: usize, const W: usize, const P: usize>(
         let times = times
             .max(Pack::splat(segment.from))
             .min(Pack::splat(segment.to));
-        let pack = pack_model(model, segment, &reader, times);
+        let pack = pack_model(model, segment, &reader, times, accelerated);
         for q in 0..QUANTITIES {
             if group.weights[q] == 0.0 && group.values[q].is_empty() {
                 continue;
             }
             let residual = pack.values[q] - load(&group.values[q], at);
             let weight = masked(group.weights[q], count);
-            sums.add(weight, residual, &pack.jacobian[q]);
+            running.add(weight, residual, &pack.jacobian[q]);
             if let Some((rows, index)) = rows.as_mut() {
                 store_rows(rows, *index, q, count, residual, &pack.jacobian[q]);
             }
         }
         at += PACK;
     }
+    *sums = running;
 }
 
 #[inline(always)]
@@ -329,6 +438,7 @@ fn pack_model<L, const N: usize, const W: usize, const P: usize>(
     segment: &Segment<W>,
     reader: &Reader<P>,
     times: Pack,
+    accelerated: bool,
 ) -> PackModel<P>
 where
     L: ContactLaw<N>,
@@ -341,11 +451,7 @@ where
 
     // The force is repulsive or nothing, and nothing without contact.
     let zero = Pack::ZERO;
-    let touching = if segment.contact {
-        x.select(Pack::splat(1.0), zero)
-    } else {
-        zero
-    };
+    let touching = x.select(Pack::splat(1.0), zero);
     let law = event.law.evaluate(
         x.max(Pack::splat(SMALLEST_DISPLACEMENT)),
         v,
@@ -355,14 +461,22 @@ where
     let force = on.select(law.force, zero);
     let by_displacement = on.select(law.by_displacement, zero);
     let by_rate = on.select(law.by_rate, zero);
-    let motion = event.motion.acceleration(x, v, force);
+    let motion: Acceleration<Pack> = if accelerated {
+        event.motion.acceleration(x, v, force)
+    } else {
+        Acceleration {
+            value: zero,
+            by_displacement: zero,
+            by_rate: zero,
+            by_force: zero,
+        }
+    };
 
     let mut jacobian = [[Pack::ZERO; P]; QUANTITIES];
     for c in 0..P {
         let (mut dx, mut dv) = (zero, zero);
         let lane = model.columns.lanes[c];
         let mut direct = zero;
-        let mut by_mass = zero;
         if lane > 0 {
             let [column_x, column_v] = &reader.columns[c];
             dx = dense_at(column_x, sigma, rest);
@@ -376,20 +490,21 @@ where
             if L::HISTORY {
                 direct += law.by_peak * segment.peak_lanes.0[lane];
             }
-            by_mass = motion.by_force
-                * force
-                * (event.seeds.inverse_mass.0[lane] / event.motion.inverse_mass);
         }
         if model.columns.onset[c] != 0.0 {
             dx += v * -model.columns.onset[c];
             dv += motion.value * -model.columns.onset[c];
         }
         let df = by_displacement * dx + by_rate * dv + on.select(direct, zero);
-        let da = motion.by_displacement * dx + motion.by_rate * dv + motion.by_force * df + by_mass;
         jacobian[0][c] = dx + model.columns.offset[c];
         jacobian[1][c] = dv;
         jacobian[2][c] = df;
-        jacobian[3][c] = da;
+        if accelerated {
+            let seed = event.seeds.inverse_mass.0[lane] / event.motion.inverse_mass;
+            let by_mass = motion.by_force * force * seed;
+            jacobian[3][c] =
+                motion.by_displacement * dx + motion.by_rate * dv + motion.by_force * df + by_mass;
+        }
     }
     PackModel {
         values: [x + model.offset, v, force, motion.value],

@@ -95,13 +95,13 @@ impl<const D: usize, const W: usize> Step<D, W> {
 #[inline(always)]
 pub fn dense_at<R: Real>(coefficients: &[f64; DENSE_COEFFICIENTS], sigma: R, rest: R) -> R {
     let [y, r1, r2, r3, r4, r5, r6, r7] = *coefficients;
-    let sum = sigma * r7 + r6;
-    let sum = rest * sum + r5;
-    let sum = sigma * sum + r4;
-    let sum = rest * sum + r3;
-    let sum = sigma * sum + r2;
-    let sum = rest * sum + r1;
-    sigma * sum + y
+    let sum = sigma.mul_add(R::splat(r7), R::splat(r6));
+    let sum = rest.mul_add(sum, R::splat(r5));
+    let sum = sigma.mul_add(sum, R::splat(r4));
+    let sum = rest.mul_add(sum, R::splat(r3));
+    let sum = sigma.mul_add(sum, R::splat(r2));
+    let sum = rest.mul_add(sum, R::splat(r1));
+    sigma.mul_add(sum, R::splat(y))
 }
 
 /// Where an integration stands between steps.
@@ -225,7 +225,7 @@ fn combine<const D: usize, const W: usize>(
     for (i, component) in out.iter_mut().enumerate() {
         let mut sum = Lanes::ZERO;
         for &(j, a) in row {
-            sum += k[j][i] * a;
+            sum = k[j][i].mul_add(Lanes::splat(a), sum);
         }
         *component = sum;
     }
@@ -243,7 +243,7 @@ fn stage<const I: usize, const D: usize, const W: usize>(
 ) -> [Lanes<W>; D] {
     let mut state = combine(A[I], k);
     for i in 0..D {
-        state[i] = from[i] + state[i] * width;
+        state[i] = state[i].mul_add(Lanes::splat(width), from[i]);
     }
     k[I] = system.derivative(s + C[I] * width, &state);
     state
