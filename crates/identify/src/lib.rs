@@ -4,5 +4,7 @@
 //! This crate opens no file and reads no clock.
 
 pub mod contact_motion;
+pub mod estimator;
 pub mod motion;
+pub mod residual;
 pub mod rig;

@@ -6,6 +6,8 @@
 
 mod dimension;
 pub mod nearest_name;
+pub mod cholesky;
+pub mod least_squares;
 pub mod ode_step;
 pub mod ode_tableau;
 pub mod real;
