@@ -2,6 +2,7 @@
 
 use std::path::PathBuf;
 use windfall_identify::rig::Pendulum;
+use windfall_signal::ExtractOptions;
 use windfall_signal::recording::Quantity;
 
 /// What a campaign directory says.
@@ -17,8 +18,9 @@ pub struct Campaign {
     pub rig: RigPlan,
     /// How recordings are read.
     pub files: FilePlan,
-    /// How contacts are found.
-    pub contact: ContactPlan,
+    /// How contacts are found and impacts cut out; the mass of the rig and the
+    /// time range of an impact are filled in later.
+    pub contact: ExtractOptions,
     /// What is fitted.
     pub fit: FitPlan,
     /// Column of specimens.csv or impacts.csv by which results are grouped.
@@ -68,8 +70,6 @@ pub struct FilePlan {
     pub time_scale: f64,
     /// Channels.
     pub channels: Vec<ChannelPlan>,
-    /// Encoder, where there is one.
-    pub encoder: Option<EncoderPlan>,
 }
 
 /// How samples are timed.
@@ -98,38 +98,6 @@ pub struct ChannelPlan {
     pub scale: f64,
     /// What the column shows at zero; unit of the column.
     pub offset: f64,
-}
-
-/// Displacement of one count.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum EncoderPlan {
-    /// On the pivot of a pendulum: counts per revolution after ×4 decoding.
-    CountsPerRevolution(f64),
-    /// On a wheel or a scale; m.
-    CountLength(f64),
-}
-
-/// How contacts are found.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct ContactPlan {
-    /// Force threshold; N. `None` finds one from the noise.
-    pub threshold: Option<f64>,
-    /// Whether the force's baseline is removed.
-    pub baseline: BaselinePlan,
-    /// What is kept before the contact, as a part of its duration.
-    pub margin_before: Option<f64>,
-    /// What is kept after the contact, as a part of its duration.
-    pub margin_after: Option<f64>,
-}
-
-/// What happens to the force that the sensor shows before contact.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum BaselinePlan {
-    /// It is subtracted.
-    #[default]
-    Remove,
-    /// It is left.
-    Keep,
 }
 
 /// What is fitted.

@@ -149,6 +149,8 @@ pub struct ContactFile {
     pub threshold: Option<Spanned<QuantityText>>,
     /// Whether the mean force before contact is removed: "remove" or "keep".
     pub baseline: Option<Spanned<String>>,
+    /// Which of several contacts is used: "first" or "strongest".
+    pub contact: Option<Spanned<String>>,
     /// What is kept before the contact, as a part of its duration.
     pub margin_before: Option<Spanned<f64>>,
     /// What is kept after the contact, as a part of its duration.

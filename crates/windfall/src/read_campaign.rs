@@ -4,7 +4,7 @@ use crate::campaign::{Campaign, FilePlan, TimePlan};
 use crate::error::{Error, Place};
 use crate::file_campaign::{CampaignFile, FORMAT, FilesFile};
 use crate::read_contact::contact_plan;
-use crate::read_channels::{channel_plans, encoder_plan};
+use crate::read_channels::channel_plans;
 use crate::read_fit::fit_plan;
 use crate::read_rig::rig_plan;
 use crate::read_tables::{read_impacts, read_specimens};
@@ -33,7 +33,7 @@ pub fn read_campaign(directory: &Path) -> Result<Campaign, Error> {
 
     let rig = rig_plan(&source, file.rig.as_ref())?;
     let files = file_plan(&source, directory, &file)?;
-    let contact = contact_plan(&source, &file.contact)?;
+    let contact = contact_plan(&source, &file, &rig)?;
     let fit = fit_plan(&source, &file.fit)?;
 
     let specimens_file = directory.join("specimens.csv");
@@ -89,7 +89,6 @@ fn file_plan(
         time: time_plan(source, files)?,
         time_scale: time_scale(source, files)?,
         channels: channel_plans(source, file.channels.as_ref())?,
-        encoder: encoder_plan(source, file)?,
     })
 }
 

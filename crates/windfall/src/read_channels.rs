@@ -1,11 +1,12 @@
 //! `[channels.*]` and `[encoder]` of campaign.toml.
 
-use crate::campaign::{ChannelPlan, EncoderPlan};
+use crate::campaign::ChannelPlan;
 use crate::error::Error;
 use crate::file_campaign::{CampaignFile, ChannelFile, ChannelsFile, QuantityText};
 use crate::toml_source::{Needed, TomlSource, invalid, missing, optional_quantity, place_at};
 use toml::Spanned;
 use windfall_numerics::unit::{UnitError, parse_as, parse_unit};
+use windfall_signal::kinematics::Encoder;
 use windfall_signal::recording::Quantity;
 
 /// What a channel of a campaign may hold.
@@ -316,7 +317,7 @@ fn sign(source: &TomlSource, kind: &Kind, file: &ChannelFile) -> Result<f64, Err
 pub fn encoder_plan(
     source: &TomlSource,
     file: &CampaignFile,
-) -> Result<Option<EncoderPlan>, Error> {
+) -> Result<Option<Encoder>, Error> {
     let counts = file.channels.as_ref().is_some_and(|channels| {
         let channels = channels.get_ref();
         channels.count.is_some() || channels.phase_a.is_some() || channels.phase_b.is_some()
@@ -344,8 +345,12 @@ pub fn encoder_plan(
     let length = optional_quantity(source, encoder.count_length.as_ref(), &length_key)?;
     let per_revolution = encoder.counts_per_revolution.as_ref().map(|c| *c.get_ref());
     match (per_revolution, length) {
-        (Some(counts), None) if counts > 0.0 => Ok(Some(EncoderPlan::CountsPerRevolution(counts))),
-        (None, Some(length)) if length > 0.0 => Ok(Some(EncoderPlan::CountLength(length))),
+        (Some(counts), None) if counts > 0.0 => Ok(Some(Encoder::Rotary {
+            counts_per_revolution: counts,
+        })),
+        (None, Some(length)) if length > 0.0 => Ok(Some(Encoder::Linear {
+            count_length: length,
+        })),
         (None, None) => Err(missing(source, &at, &needed, needed.table.to_owned())),
         (counts, _) => {
             let text = counts.map_or_else(String::new, |counts| counts.to_string());

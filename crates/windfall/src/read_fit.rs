@@ -1,0 +1,156 @@
+//! `[fit]` of campaign.toml.
+
+use crate::campaign::FitPlan;
+use crate::error::Error;
+use crate::file_campaign::FitFile;
+use crate::toml_source::{Needed, TomlSource, choice, invalid, missing};
+use crate::toml_source::suggestion;
+use toml::Spanned;
+use windfall_contact::expression::{LawExpression, parse_law};
+use windfall_contact::law::EndRule;
+use windfall_identify::fit::{Channels, FitOptions, Treatment, Weighting};
+
+const TABLE: &str = "[fit]";
+
+/// Names of the quantities of a cost function.
+pub const QUANTITIES: [&str; 4] = ["displacement", "rate", "force", "acceleration"];
+
+/// What a campaign fits.
+///
+/// # Errors
+/// No law is named, or a word is not known.
+pub fn fit_plan(source: &TomlSource, file: &FitFile) -> Result<FitPlan, Error> {
+    let laws = laws(source, file)?;
+    let free = free_names(source, file, &laws)?;
+    let mut options = FitOptions::default();
+    if let Some(words) = &file.quantities {
+        options.channels = channels(source, words)?;
+    }
+    let weights = [
+        ("inverse-variance", Weighting::InverseVariance),
+        ("inverse-mean", Weighting::InverseMean),
+    ];
+    if let Some(weights) = choice(source, file.weights.as_ref(), (TABLE, "weights"), &weights)? {
+        options.weighting = weights;
+    }
+    let ends = [("force-zero", EndRule::ForceZero), ("gap-zero", EndRule::GapZero)];
+    if let Some(end) = choice(source, file.end.as_ref(), (TABLE, "end"), &ends)? {
+        options.end = end;
+    }
+    let treatment = |value: Option<&Spanned<String>>, key| {
+        let words =
+            [("auto", Treatment::Auto), ("free", Treatment::Free), ("fixed", Treatment::Fixed)];
+        Ok(choice(source, value, (TABLE, key), &words)?.unwrap_or(Treatment::Auto))
+    };
+    options.initial_velocity = treatment(file.initial_velocity.as_ref(), "initial_velocity")?;
+    options.onset = treatment(file.onset.as_ref(), "onset")?;
+    options.displacement_offset =
+        treatment(file.displacement_offset.as_ref(), "displacement_offset")?;
+    Ok(FitPlan { laws, free, options })
+}
+
+/// Quantities of a cost function by their names.
+///
+/// # Errors
+/// The word that is no quantity, with what was expected.
+pub fn channels_named<'a>(
+    words: impl IntoIterator<Item = &'a str>,
+) -> Result<Channels, (String, String)> {
+    let mut channels =
+        Channels { displacement: false, rate: false, force: false, acceleration: false };
+    let mut any = false;
+    for word in words {
+        any = true;
+        match word {
+            "displacement" => channels.displacement = true,
+            "rate" => channels.rate = true,
+            "force" => channels.force = true,
+            "acceleration" => channels.acceleration = true,
+            other => {
+                let problem = format!(
+                    "expected any of {}{}",
+                    QUANTITIES.join(", "),
+                    suggestion(other, QUANTITIES)
+                );
+                return Err((other.to_owned(), problem));
+            }
+        }
+    }
+    if any {
+        return Ok(channels);
+    }
+    Err((String::new(), format!("expected at least one of {}", QUANTITIES.join(", "))))
+}
+
+/// Names of the quantities of a cost function, in the usual order.
+#[must_use]
+pub fn names_of_channels(channels: &Channels) -> Vec<String> {
+    let on = [channels.displacement, channels.rate, channels.force, channels.acceleration];
+    let chosen = QUANTITIES.iter().zip(on).filter(|(_, on)| *on);
+    chosen.map(|(name, _)| (*name).to_owned()).collect()
+}
+
+/// The first of `free` that is a parameter of none of the laws, with what was
+/// expected.
+#[must_use]
+pub fn unknown_parameter(free: &[String], laws: &[LawExpression]) -> Option<(usize, String)> {
+    let names: Vec<&str> =
+        laws.iter().flat_map(|law| law.kind.describe().parameters).map(|p| p.name).collect();
+    let index = free.iter().position(|name| !names.contains(&name.as_str()))?;
+    let known = names.join(", ");
+    let problem = format!(
+        "no law here has a parameter of that name{}; they have: {known}",
+        suggestion(&free[index], names.iter().copied())
+    );
+    Some((index, problem))
+}
+
+fn channels(source: &TomlSource, words: &[Spanned<String>]) -> Result<Channels, Error> {
+    channels_named(words.iter().map(|word| word.get_ref().as_str())).map_err(|(text, problem)| {
+        let at = words.iter().find(|word| *word.get_ref() == text).map_or(0..0, Spanned::span);
+        invalid(source, &at, (TABLE, "quantities"), &text, problem)
+    })
+}
+
+fn laws(source: &TomlSource, file: &FitFile) -> Result<Vec<LawExpression>, Error> {
+    let texts: Vec<&Spanned<String>> =
+        file.law.iter().chain(file.laws.iter().flatten()).collect();
+    if texts.is_empty() {
+        let needed = Needed {
+            table: TABLE,
+            key: "laws",
+            meaning: "the force laws to fit; `windfall card show --laws` lists them",
+            unit: "",
+            example: "laws = [\"kuwabara-kono\"]",
+        };
+        return Err(missing(source, &(0..0), &needed, TABLE.to_owned()));
+    }
+    let mut laws: Vec<LawExpression> = Vec::new();
+    for text in texts {
+        let law = parse_law(text.get_ref()).map_err(|error| {
+            invalid(source, &text.span(), (TABLE, "law"), text.get_ref(), error.to_string())
+        })?;
+        if laws.iter().any(|known| known.kind == law.kind) {
+            let problem = "this law is named twice; each law can be fitted once".to_owned();
+            return Err(invalid(source, &text.span(), (TABLE, "law"), text.get_ref(), problem));
+        }
+        laws.push(law);
+    }
+    Ok(laws)
+}
+
+fn free_names(
+    source: &TomlSource,
+    file: &FitFile,
+    laws: &[LawExpression],
+) -> Result<Vec<String>, Error> {
+    let words = file.free.as_deref().unwrap_or_default();
+    let names: Vec<String> = words.iter().map(|word| word.get_ref().clone()).collect();
+    match unknown_parameter(&names, laws) {
+        None => Ok(names),
+        Some((index, problem)) => {
+            let at = words[index].span();
+            Err(invalid(source, &at, (TABLE, "free"), &names[index], problem))
+        }
+    }
+}
