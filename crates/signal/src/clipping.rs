@@ -69,8 +69,8 @@ pub fn clipping(
 fn longest_run(values: &[f64], first: usize, last: usize, limit: f64) -> (usize, usize) {
     let mut longest = (first, first);
     let mut begin = first;
-    for i in first..last {
-        if values[i] != limit {
+    for (i, &value) in values.iter().enumerate().take(last).skip(first) {
+        if value != limit {
             begin = i + 1;
         } else if i + 1 - begin > longest.1 - longest.0 {
             longest = (begin, i + 1);

@@ -25,7 +25,9 @@ pub struct Deceleration {
 /// Deceleration by differences of block means, with the longest block that
 /// still resolves the sharpest change of velocity.
 ///
-///     displacement: −(m₊ − 2 m₀ + m₋)/B²      rate: −(m₊ − m₋)/B
+/// ```text
+/// displacement: −(m₊ − 2 m₀ + m₋)/B²      rate: −(m₊ − m₋)/B
+/// ```
 ///
 /// with means m over successive blocks of duration B. Differences over a block
 /// carry far less quantisation noise than differences between samples.

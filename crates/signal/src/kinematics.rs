@@ -51,7 +51,9 @@ pub fn displacement_from_angles(angles: &[f64], angle_at_contact: f64, arm: f64)
 
 /// Displacement rate by central difference, for the samples 1 … n − 2:
 ///
-///     v_i = (x_{i+1} − x_{i−1}) / (t_{i+1} − t_{i−1})
+/// ```text
+/// v_i = (x_{i+1} − x_{i−1}) / (t_{i+1} − t_{i−1})
+/// ```
 ///
 /// On even times this is eq. (1) of the 2003 pendulum study. A displacement in
 /// counts of length q gives a rate in steps of [`rate_quantum`]: at high

@@ -152,7 +152,9 @@ pub fn local_polynomial(
 /// Standard deviation of the filter's output for white noise of unit standard
 /// deviation at its input, in the middle of the signal:
 ///
-///     g = √(Σ wᵢ²)
+/// ```text
+/// g = √(Σ wᵢ²)
+/// ```
 ///
 /// Unit: s to the power −`derivative`. `interval`: time between samples; s.
 #[must_use]

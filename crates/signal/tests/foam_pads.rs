@@ -3,6 +3,8 @@
 //!
 //! The data are not part of windfall. `WINDFALL_DATA` names their folder.
 
+#![allow(clippy::unwrap_used, clippy::print_stdout)]
+
 use std::path::PathBuf;
 use windfall_signal::recording::{Channel, Quantity, Recording, Times};
 use windfall_signal::{ExtractOptions, Finding, extract_impact};
