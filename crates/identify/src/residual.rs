@@ -3,7 +3,7 @@
 
 use crate::contact_motion::{ImpactEvent, Seeds, Segment, Sink, follow, scaled_time};
 use crate::motion::Acceleration;
-use windfall_contact::law::{ContactForce, ContactLaw, SMALLEST_DISPLACEMENT};
+use windfall_contact::law::{ContactForce, ContactLaw, EndRule, SMALLEST_DISPLACEMENT};
 use windfall_numerics::least_squares::NormalEquations;
 use windfall_numerics::ode_step::{DENSE_COEFFICIENTS, StepError, dense_at};
 use windfall_numerics::real::{Lanes, Real};
@@ -457,7 +457,10 @@ where
         v,
         Pack::splat(segment.peak),
     );
-    let on = law.force.select(touching, zero);
+    let on = match event.end {
+        EndRule::ForceZero => law.force.select(touching, zero),
+        EndRule::GapZero => touching,
+    };
     let force = on.select(law.force, zero);
     let by_displacement = on.select(law.by_displacement, zero);
     let by_rate = on.select(law.by_rate, zero);
