@@ -1,6 +1,7 @@
 //! Hertz: elastic spheres.
 
 use crate::law::{ContactForce, ContactLaw};
+use crate::parameter::{LawDescription, ParameterDescription};
 use windfall_numerics::real::Real;
 
 /// F = k d^1.5.
@@ -13,19 +14,40 @@ use windfall_numerics::real::Real;
 /// Hertz (1881); Johnson (1985), Contact Mechanics, eq. (4.23).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Hertz {
-    /// Stiffness; N/m^1.5.
+    /// Stiffness, (4/3) E* √R*; N/m^1.5.
     pub k: f64,
 }
 
-impl ContactLaw<1> for Hertz {
-    fn with_parameters([k]: [f64; 1]) -> Self {
+/// What the law says about itself.
+pub const DESCRIPTION: LawDescription = LawDescription {
+    name: "hertz",
+    formula: "F = k d^1.5",
+    first_touch: "force and slope are zero",
+    source: "Hertz (1881); Johnson (1985), Contact Mechanics, eq. (4.23)",
+    parameters: &[ParameterDescription {
+        name: "k",
+        meaning: "stiffness, (4/3) E* √R*",
+        unit: "N/m^1.5",
+        lower: 1e-9,
+        upper: 1e30,
+        typical: 753_599.0,
+        default: None,
+    }],
+};
+
+impl From<[f64; 1]> for Hertz {
+    fn from([k]: [f64; 1]) -> Self {
         Self { k }
     }
+}
 
-    fn parameters(&self) -> [f64; 1] {
-        [self.k]
+impl From<Hertz> for [f64; 1] {
+    fn from(law: Hertz) -> Self {
+        [law.k]
     }
+}
 
+impl ContactLaw<1> for Hertz {
     #[inline(always)]
     fn evaluate<R: Real>(&self, d: R, _v: R, _peak: R) -> ContactForce<R, 1> {
         let root = d.sqrt();

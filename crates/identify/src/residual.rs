@@ -257,14 +257,6 @@ where
 struct NoContact;
 
 impl ContactLaw<0> for NoContact {
-    fn with_parameters(_parameters: [f64; 0]) -> Self {
-        Self
-    }
-
-    fn parameters(&self) -> [f64; 0] {
-        []
-    }
-
     #[inline(always)]
     fn evaluate<R: Real>(&self, _d: R, _v: R, _peak: R) -> ContactForce<R, 0> {
         let zero = R::splat(0.0);
