@@ -42,12 +42,6 @@ pub trait ContactLaw<const N: usize>: Copy + Send + Sync {
     /// smooth: 2 for a law that starts like √d, 4 for d^¼, 1 for a smooth one.
     const START_POWER: u32 = 2;
 
-    /// The law with these parameters, in the order of its description.
-    fn with_parameters(parameters: [f64; N]) -> Self;
-
-    /// Its parameters.
-    fn parameters(&self) -> [f64; N];
-
     /// Force and its derivatives.
     fn evaluate<R: Real>(&self, displacement: R, rate: R, peak: R) -> ContactForce<R, N>;
 

@@ -48,14 +48,6 @@ impl From<Hertz> for [f64; 1] {
 }
 
 impl ContactLaw<1> for Hertz {
-    fn with_parameters([k]: [f64; 1]) -> Self {
-        Self { k }
-    }
-
-    fn parameters(&self) -> [f64; 1] {
-        [self.k]
-    }
-
     #[inline(always)]
     fn evaluate<R: Real>(&self, d: R, _v: R, _peak: R) -> ContactForce<R, 1> {
         let root = d.sqrt();

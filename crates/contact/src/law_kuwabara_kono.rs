@@ -63,14 +63,6 @@ impl From<KuwabaraKono> for [f64; 2] {
 }
 
 impl ContactLaw<2> for KuwabaraKono {
-    fn with_parameters([k, c]: [f64; 2]) -> Self {
-        Self { k, c }
-    }
-
-    fn parameters(&self) -> [f64; 2] {
-        [self.k, self.c]
-    }
-
     #[inline(always)]
     fn evaluate<R: Real>(&self, d: R, v: R, _peak: R) -> ContactForce<R, 2> {
         let root = d.sqrt();

@@ -147,7 +147,7 @@ pub struct Estimator<'a, L, const N: usize, const W: usize, const P: usize> {
     law: std::marker::PhantomData<L>,
 }
 
-impl<'a, L: ContactLaw<N>, const N: usize, const W: usize, const P: usize>
+impl<'a, L: ContactLaw<N> + From<[f64; N]>, const N: usize, const W: usize, const P: usize>
     Estimator<'a, L, N, W, P>
 {
     /// Problem with `free` parameters, everything else as in `base`. At most
@@ -216,7 +216,7 @@ impl<'a, L: ContactLaw<N>, const N: usize, const W: usize, const P: usize>
         };
         Model {
             event: ImpactEvent {
-                law: L::with_parameters(values.law),
+                law: L::from(values.law),
                 motion,
                 velocity: values.velocity,
                 end: self.setting.end,
@@ -251,7 +251,7 @@ impl<'a, L: ContactLaw<N>, const N: usize, const W: usize, const P: usize>
     }
 }
 
-impl<L: ContactLaw<N>, const N: usize, const W: usize, const P: usize> LeastSquares<P>
+impl<L: ContactLaw<N> + From<[f64; N]>, const N: usize, const W: usize, const P: usize> LeastSquares<P>
     for Estimator<'_, L, N, W, P>
 {
     fn evaluate(&mut self, u: &[f64; P]) -> Option<NormalEquations<P>> {

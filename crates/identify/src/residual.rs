@@ -3,7 +3,7 @@
 
 use crate::contact_motion::{ImpactEvent, Seeds, Segment, Sink, follow, scaled_time};
 use crate::motion::Acceleration;
-use windfall_contact::law::{ContactForce, ContactLaw, SMALLEST_DISPLACEMENT};
+use windfall_contact::law::{ContactForce, ContactLaw, EndRule, SMALLEST_DISPLACEMENT};
 use windfall_numerics::least_squares::NormalEquations;
 use windfall_numerics::ode_step::{DENSE_COEFFICIENTS, StepError, dense_at};
 use windfall_numerics::real::{Lanes, Real};
@@ -257,14 +257,6 @@ where
 struct NoContact;
 
 impl ContactLaw<0> for NoContact {
-    fn with_parameters(_parameters: [f64; 0]) -> Self {
-        Self
-    }
-
-    fn parameters(&self) -> [f64; 0] {
-        []
-    }
-
     #[inline(always)]
     fn evaluate<R: Real>(&self, _d: R, _v: R, _peak: R) -> ContactForce<R, 0> {
         let zero = R::splat(0.0);
@@ -457,7 +449,10 @@ where
         v,
         Pack::splat(segment.peak),
     );
-    let on = law.force.select(touching, zero);
+    let on = match event.end {
+        EndRule::ForceZero => law.force.select(touching, zero),
+        EndRule::GapZero => touching,
+    };
     let force = on.select(law.force, zero);
     let by_displacement = on.select(law.by_displacement, zero);
     let by_rate = on.select(law.by_rate, zero);

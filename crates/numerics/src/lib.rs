@@ -4,10 +4,10 @@
 //!
 //! This crate knows no contact law, no instrument and no file.
 
-mod dimension;
-pub mod nearest_name;
 pub mod cholesky;
+mod dimension;
 pub mod least_squares;
+pub mod nearest_name;
 pub mod ode_step;
 pub mod ode_tableau;
 pub mod real;
