@@ -1,3 +1,47 @@
 //! The `windfall` command: parses arguments, calls one workflow, displays.
+//!
+//! Results go to standard output, messages and progress to standard error.
+//! Exit status: 0 success, 1 the work failed, 2 the request was wrong.
 
-fn main() {}
+mod args;
+mod command_card;
+mod command_fit;
+mod command_inspect;
+mod command_new;
+mod command_simulate;
+mod show;
+
+use args::{Arguments, Command};
+use clap::{CommandFactory, Parser};
+use std::process::ExitCode;
+
+fn main() -> ExitCode {
+    let outcome = match Arguments::parse().command {
+        Command::New(arguments) => command_new::run(&arguments),
+        Command::Inspect(arguments) => command_inspect::run(&arguments),
+        Command::Fit(arguments) => command_fit::run(&arguments),
+        Command::Simulate(arguments) => command_simulate::run(&arguments),
+        Command::Card(arguments) => command_card::run(&arguments),
+        Command::Completions { shell } => {
+            let mut command = Arguments::command();
+            let mut text = Vec::new();
+            clap_complete::generate(shell, &mut command, "windfall", &mut text);
+            show::write_result(&String::from_utf8_lossy(&text))
+        }
+    };
+    match outcome {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(error) => {
+            show::message(&format!("error: {error:#}"));
+            ExitCode::from(status_of(&error))
+        }
+    }
+}
+
+/// 1 when the work failed, 2 when the request was wrong.
+fn status_of(error: &anyhow::Error) -> u8 {
+    match error.downcast_ref::<windfall::error::Error>() {
+        Some(known) if known.is_request() => 2,
+        _ => 1,
+    }
+}

@@ -1,6 +1,8 @@
 //! A campaign: rig, channels, options, specimens and impacts, in SI units.
 
 use std::path::PathBuf;
+use windfall_contact::expression::LawExpression;
+use windfall_identify::fit::FitOptions;
 use windfall_identify::rig::Pendulum;
 use windfall_signal::ExtractOptions;
 use windfall_signal::recording::Quantity;
@@ -42,6 +44,8 @@ pub enum RigPlan {
         mass: MassPlan,
         /// Acceleration towards the fruit without contact; m/s².
         driving_acceleration: f64,
+        /// Standard uncertainty of the acceleration; m/s².
+        driving_acceleration_sd: f64,
     },
 }
 
@@ -104,11 +108,11 @@ pub struct ChannelPlan {
 #[derive(Clone, Debug)]
 pub struct FitPlan {
     /// The laws, each fitted to every impact.
-    pub laws: Vec<String>,
+    pub laws: Vec<LawExpression>,
     /// Names of parameters that are estimated although they have a value.
     pub free: Vec<String>,
     /// Cost function and treatment of the nuisance parameters.
-    pub options: (),
+    pub options: FitOptions,
 }
 
 /// One row of specimens.csv.

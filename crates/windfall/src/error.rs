@@ -355,6 +355,22 @@ pub enum Error {
         /// What is wrong with it and what was expected.
         problem: String,
     },
+    /// The signals of a recording could not be used.
+    #[error("{path}: {source}", path = path.display())]
+    Signal {
+        /// The recording.
+        path: PathBuf,
+        /// What is wrong.
+        source: windfall_signal::error::Error,
+    },
+    /// A fit or a simulation failed.
+    #[error("{subject}: {source}")]
+    Identify {
+        /// The impact or event.
+        subject: String,
+        /// What is wrong.
+        source: windfall_identify::error::Error,
+    },
 }
 
 fn nearest_columns(nearest: &[String], columns: usize) -> String {

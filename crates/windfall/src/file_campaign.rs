@@ -73,6 +73,8 @@ pub struct RigFile {
     pub gravity: Option<Spanned<QuantityText>>,
     /// Acceleration towards the fruit without contact.
     pub driving_acceleration: Option<Spanned<QuantityText>>,
+    /// Standard uncertainty of that acceleration.
+    pub driving_acceleration_sd: Option<Spanned<QuantityText>>,
 }
 
 /// `[files]`

@@ -90,6 +90,13 @@ const DRIVING: Needed = needed(
     "driving_acceleration = \"0 m/s^2\"",
 );
 
+const DRIVING_SD: Needed = needed(
+    "driving_acceleration_sd",
+    "standard uncertainty of the driving acceleration",
+    "m/s^2",
+    "driving_acceleration_sd = \"0.02 m/s^2\"",
+);
+
 #[derive(Clone, Copy)]
 enum Kind {
     Pendulum,
@@ -117,6 +124,10 @@ fn pendulum(source: &TomlSource, at: &Range<usize>, rig: &RigFile) -> Result<Rig
     let strangers = [
         (rig.mass_sd.as_ref(), "mass_sd"),
         (rig.driving_acceleration.as_ref(), "driving_acceleration"),
+        (
+            rig.driving_acceleration_sd.as_ref(),
+            "driving_acceleration_sd",
+        ),
     ];
     refuse(source, strangers, "a pendulum")?;
     let gravity = optional_quantity(source, rig.gravity.as_ref(), &GRAVITY)?;
@@ -158,9 +169,11 @@ fn carriage(source: &TomlSource, at: &Range<usize>, rig: &RigFile) -> Result<Rig
     };
     let driving = rig.driving_acceleration.as_ref();
     let driving_acceleration = needed_quantity(source, at, driving, &DRIVING)?;
+    let driving_sd = rig.driving_acceleration_sd.as_ref();
     Ok(RigPlan::Carriage {
         mass,
         driving_acceleration,
+        driving_acceleration_sd: optional_quantity(source, driving_sd, &DRIVING_SD)?.unwrap_or(0.0),
     })
 }
 

@@ -1,0 +1,286 @@
+//! A whole simulated campaign: recordings as the instrument would have written
+//! them, with tables, campaign.toml and the parameters that were drawn.
+
+use crate::error::Error;
+use crate::workflow_new::{create_directory, write_file};
+use crate::write_csv::csv_text;
+use std::fmt::Write;
+use std::path::{Path, PathBuf};
+use windfall_contact::expression::LawExpression;
+use windfall_contact::law::EndRule;
+use windfall_contact::law_kind::Law;
+use windfall_identify::rig::{Pendulum, Rig};
+use windfall_identify::simulate::{simulate_rig, trajectory};
+use windfall_signal::instrument::{Instrument, Trajectory, record};
+use windfall_signal::kinematics::Encoder;
+use windfall_signal::noise_gaussian::{NoiseSource, noise_source, normal, uniform};
+use windfall_signal::recording::Quantity;
+
+/// Recorded before first touch and after separation; s.
+const LEAD: f64 = 3e-3;
+
+/// Digits of a voltage in the file; V.
+const VOLT_DECIMALS: usize = 6;
+
+/// Stream of the seed that specimens are drawn from; the instrument uses others.
+const SPECIMEN_STREAM: u64 = 100;
+
+/// Draws after which a parameter that must be positive counts as impossible.
+const MOST_DRAWS: usize = 1000;
+
+/// Specimens of one kind.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Batch {
+    /// Name of the kind, and start of the ids.
+    pub variety: String,
+    /// Law with the mean parameters.
+    pub law: Law,
+    /// Standard deviation between specimens, per parameter of the law; SI.
+    pub spread: Vec<f64>,
+    /// Number of specimens.
+    pub specimens: usize,
+    /// Impacts on each.
+    pub repeats: usize,
+}
+
+/// What is common to all recordings.
+#[derive(Clone, Debug, PartialEq)]
+pub struct SimulatedCampaign {
+    /// Title of the campaign.
+    pub title: String,
+    /// Label that marks all results as simulated.
+    pub label: String,
+    /// The rig.
+    pub rig: Pendulum,
+    /// Impact velocity; m/s.
+    pub velocity: f64,
+    /// End of contact.
+    pub end: EndRule,
+    /// What records.
+    pub instrument: Instrument,
+    /// Seed of specimens, noise and encoder positions.
+    pub seed: u64,
+}
+
+/// Writes a campaign of simulated recordings into a new directory.
+///
+/// Every impact has its own seed, so that adding specimens at the end leaves
+/// the others as they are. Returns the number of recordings.
+///
+/// # Errors
+/// The directory is not empty, a file cannot be written, a law has parameters
+/// that cannot be simulated.
+pub fn write_simulated_campaign(
+    directory: &Path,
+    campaign: &SimulatedCampaign,
+    batches: &[Batch],
+) -> Result<usize, Error> {
+    create_directory(directory)?;
+    let raw = directory.join("raw");
+    create_directory(&raw)?;
+    let mut tables = Tables::default();
+    let mut specimen_number = 0;
+    let mut recordings = 0;
+    for batch in batches {
+        for specimen in 0..batch.specimens {
+            specimen_number += 1;
+            let id = format!("{}-{:02}", batch.variety.replace(' ', "-"), specimen + 1);
+            let mut source = noise_source(campaign.seed, SPECIMEN_STREAM + specimen_number);
+            let law = drawn(batch, &mut source)?;
+            tables.specimens.push(vec![id.clone(), batch.variety.clone()]);
+            for repeat in 0..batch.repeats {
+                let impact = match batch.repeats {
+                    1 => id.clone(),
+                    _ => format!("{id}-{:02}", repeat + 1),
+                };
+                let file = format!("{impact}.csv");
+                let seed = seed_of(campaign.seed, specimen_number, repeat as u64);
+                let text = recording_text(campaign, &law, &mut source, seed)?;
+                write_file(&raw.join(&file), text.as_bytes())?;
+                tables.impacts.push(vec![impact.clone(), id.clone(), file]);
+                tables.truth.push(vec![impact, id.clone(), LawExpression::from(law).to_string()]);
+                recordings += 1;
+            }
+        }
+    }
+    write_tables(directory, &tables)?;
+    let toml = campaign_text(campaign, batches);
+    write_file(&directory.join("campaign.toml"), toml.as_bytes())?;
+    Ok(recordings)
+}
+
+#[derive(Default)]
+struct Tables {
+    specimens: Vec<Vec<String>>,
+    impacts: Vec<Vec<String>>,
+    truth: Vec<Vec<String>>,
+}
+
+fn write_tables(directory: &Path, tables: &Tables) -> Result<(), Error> {
+    let write = |name: &str, header: &[&str], rows: &[Vec<String>]| {
+        let header: Vec<String> = header.iter().map(|name| (*name).to_owned()).collect();
+        let text = csv_text(&header, rows.iter().cloned())?;
+        let path: PathBuf = directory.join(name);
+        write_file(&path, text.as_bytes())
+    };
+    write("specimens.csv", &["id", "variety"], &tables.specimens)?;
+    write("impacts.csv", &["id", "specimen", "file"], &tables.impacts)?;
+    write("truth.csv", &["id", "specimen", "law"], &tables.truth)
+}
+
+/// A seed per impact (splitmix64 of Steele, Lea and Flood 2014, chained).
+fn seed_of(seed: u64, specimen: u64, repeat: u64) -> u64 {
+    [specimen, repeat].into_iter().fold(seed, |state, part| {
+        let mut z = state.wrapping_add(part.wrapping_add(1).wrapping_mul(0x9e37_79b9_7f4a_7c15));
+        z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
+        z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
+        z ^ (z >> 31)
+    })
+}
+
+/// The law of one specimen: normal parameters within the law's bounds.
+fn drawn(batch: &Batch, source: &mut NoiseSource) -> Result<Law, Error> {
+    let (kind, means) = (batch.law.kind(), batch.law.parameters());
+    for _ in 0..MOST_DRAWS {
+        let values: Vec<f64> = means
+            .iter()
+            .zip(&batch.spread)
+            .map(|(mean, sd)| if *sd > 0.0 { mean + sd * normal(source) } else { *mean })
+            .collect();
+        if let Ok(law) = kind.with_parameters(&values) {
+            return Ok(law);
+        }
+    }
+    Err(Error::OptionInvalid {
+        option: "--spread".to_owned(),
+        problem: format!(
+            "{MOST_DRAWS} draws around {} all fell outside the bounds of the law; \
+             give a smaller standard deviation",
+            LawExpression::from(batch.law)
+        ),
+    })
+}
+
+/// One recording as CSV: phases and volts at the sampling rate, no times.
+fn recording_text(
+    campaign: &SimulatedCampaign,
+    law: &Law,
+    source: &mut NoiseSource,
+    seed: u64,
+) -> Result<String, Error> {
+    let rig = Rig::Pendulum(campaign.rig);
+    let failed = |source| Error::Identify { subject: LawExpression::from(*law).to_string(), source };
+    let summary = simulate_rig(law, &rig, campaign.velocity, campaign.end).map_err(failed)?;
+    // The clock of the instrument knows nothing of the first touch.
+    let rate = sampling_rate(&campaign.instrument);
+    let start = -LEAD - uniform(source) / rate;
+    let count = ((summary.contact_duration + 2.0 * LEAD) * rate).ceil() as usize;
+    let times: Vec<f64> = (0..count).map(|i| start + i as f64 / rate).collect();
+    let motion =
+        trajectory(law, &rig, campaign.velocity, &times, campaign.end).map_err(failed)?;
+    let motion = Trajectory {
+        times: motion.times,
+        displacement: motion.displacement,
+        rate: motion.rate,
+        force: motion.force,
+        acceleration: motion.acceleration,
+    };
+    let channels = record(&motion, &campaign.instrument, seed).map_err(|source| {
+        Error::Signal { path: PathBuf::from("the simulated recording"), source }
+    })?;
+    let rows = channels.iter().map(|channel| channel.samples.len()).min().unwrap_or(0);
+    let names: Vec<&str> = channels.iter().map(|channel| column_name(channel.quantity)).collect();
+    let mut text = names.join(",") + "\n";
+    for row in 0..rows {
+        for (index, channel) in channels.iter().enumerate() {
+            let separator = if index == 0 { "" } else { "," };
+            let value = channel.samples[row];
+            let _ = match channel.quantity {
+                Quantity::Force => write!(text, "{separator}{value:.VOLT_DECIMALS$}"),
+                _ => write!(text, "{separator}{value}"),
+            };
+        }
+        text.push('\n');
+    }
+    Ok(text)
+}
+
+fn sampling_rate(instrument: &Instrument) -> f64 {
+    instrument.force.map_or(200e3, |sensor| sensor.sampling_rate)
+}
+
+fn column_name(quantity: Quantity) -> &'static str {
+    match quantity {
+        Quantity::PhaseA => "phase_a_V",
+        Quantity::PhaseB => "phase_b_V",
+        Quantity::EncoderCount => "count",
+        Quantity::Force => "force_V",
+        Quantity::Displacement => "displacement_V",
+        Quantity::Rate => "rate_V",
+        Quantity::Acceleration => "acceleration_V",
+        Quantity::Angle => "angle_V",
+    }
+}
+
+fn campaign_text(campaign: &SimulatedCampaign, batches: &[Batch]) -> String {
+    let rig = &campaign.rig;
+    let law = batches.first().map_or("kuwabara-kono", |batch| batch.law.kind().name());
+    let counts = match campaign.instrument.encoder.map(|sensor| sensor.encoder) {
+        Some(Encoder::Rotary { counts_per_revolution }) => counts_per_revolution,
+        _ => 0.0,
+    };
+    let sensitivity = campaign.instrument.force.map_or(0.0, |sensor| sensor.sensitivity);
+    format!(
+        r#"# Simulated by windfall: no fruit was hurt. The parameters that were drawn are in truth.csv.
+format = 1
+
+[campaign]
+title = "{title}"
+simulated = "{label}"
+
+[rig]
+kind = "pendulum"
+inertia = "{inertia} kg m^2"
+arm = "{arm} m"
+mass = "{mass} kg"
+centre_of_mass = "{centre} m"
+gravity = "{gravity} m/s^2"
+
+[files]
+directory = "raw"
+rate = "{rate} Hz"
+
+[channels.force]
+column = "force_V"
+sensitivity = "{sensitivity} V/N"
+
+[channels.phase_a]
+column = "phase_a_V"
+[channels.phase_b]
+column = "phase_b_V"
+
+[encoder]
+counts_per_revolution = {counts:.1}
+
+[contact]
+threshold = "auto"
+
+[fit]
+laws = ["{law}"]
+quantities = ["displacement", "force"]
+end = "{end}"
+
+[summary]
+group = "variety"
+"#,
+        title = campaign.title,
+        label = campaign.label,
+        inertia = rig.inertia,
+        arm = rig.arm,
+        mass = rig.mass,
+        centre = rig.centre_of_mass,
+        gravity = rig.gravity,
+        rate = sampling_rate(&campaign.instrument),
+        end = crate::workflow_simulate::end_name(campaign.end),
+    )
+}
