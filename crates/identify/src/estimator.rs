@@ -251,8 +251,8 @@ impl<'a, L: ContactLaw<N> + From<[f64; N]>, const N: usize, const W: usize, cons
     }
 }
 
-impl<L: ContactLaw<N> + From<[f64; N]>, const N: usize, const W: usize, const P: usize> LeastSquares<P>
-    for Estimator<'_, L, N, W, P>
+impl<L: ContactLaw<N> + From<[f64; N]>, const N: usize, const W: usize, const P: usize>
+    LeastSquares<P> for Estimator<'_, L, N, W, P>
 {
     fn evaluate(&mut self, u: &[f64; P]) -> Option<NormalEquations<P>> {
         evaluate(&self.model(u), self.setting.groups, None).ok()

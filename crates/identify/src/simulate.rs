@@ -18,7 +18,7 @@ const SEARCH_POINTS: usize = 16;
 const PEAK_TOLERANCE: f64 = 1e-13;
 /// First guess of the longest contact, and how often it may be doubled; s.
 const FIRST_DURATION: f64 = 0.02;
-const LARGEST_DOUBLINGS: usize = 16;
+const LARGEST_DOUBLINGS: usize = 8;
 /// Gauss-Legendre nodes and weights on [−1, 1], for the impulse (Abramowitz and
 /// Stegun 1964, table 25.4).
 const GAUSS_NODES: [f64; 8] = [
@@ -146,7 +146,12 @@ fn check_positive(name: &'static str, value: f64) -> Result<(), Error> {
     }
 }
 
-fn event<L, const N: usize>(law: L, rig: &Rig, velocity: f64, end: EndRule) -> ImpactEvent<L, N, 1> {
+fn event<L, const N: usize>(
+    law: L,
+    rig: &Rig,
+    velocity: f64,
+    end: EndRule,
+) -> ImpactEvent<L, N, 1> {
     ImpactEvent {
         law,
         motion: Motion::from(rig),
@@ -250,7 +255,11 @@ impl<L: ContactLaw<N>, const N: usize> Sink<1> for Tally<'_, L, N> {
         let state = |sigma: f64| state_at(self.event, segment, sigma);
 
         // The force's maximum may be at first touch, where some laws jump.
-        let force = highest(end, |sigma| state(sigma).force, |sigma| state(sigma).force_rate);
+        let force = highest(
+            end,
+            |sigma| state(sigma).force,
+            |sigma| state(sigma).force_rate,
+        );
         let peak = state(force);
         if peak.force > self.summary.peak_force {
             self.summary.peak_force = peak.force;
@@ -289,7 +298,10 @@ fn highest(end: f64, value: impl Fn(f64) -> f64, slope: impl Fn(f64) -> f64) -> 
             if next.1 > best.1 { next } else { best }
         })
         .0;
-    let (low, high) = (point(best.saturating_sub(1)), point((best + 1).min(SEARCH_POINTS)));
+    let (low, high) = (
+        point(best.saturating_sub(1)),
+        point((best + 1).min(SEARCH_POINTS)),
+    );
     let root = bracketed_root(low, high, PEAK_TOLERANCE, slope);
     if value(root) >= value(point(best)) {
         root

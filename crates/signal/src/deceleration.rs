@@ -6,7 +6,7 @@ use crate::polynomial::evenly_spaced;
 /// The block is halved until halving raises the largest deceleration by less
 /// than this factor. It is 2 for a block much longer than the contact, and
 /// tends to 1 for a block much shorter.
-const SATURATION: f64 = 1.5;
+const SATURATION: f64 = 1.25;
 
 /// Blocks that the recording is first divided into.
 const FIRST_BLOCKS: usize = 16;

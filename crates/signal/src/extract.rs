@@ -157,6 +157,12 @@ pub fn extract_impact(
         orient(&mut track, wrong, options, &mut findings);
         track
     });
+    for track in [&displacement, &measured_rate, &force, &acceleration]
+        .into_iter()
+        .flatten()
+    {
+        findings.extend(few_samples(track, &place));
+    }
     let noises = Noises {
         displacement: displacement
             .as_ref()
@@ -190,8 +196,8 @@ pub fn extract_impact(
     let acceleration_noise = acceleration
         .as_ref()
         .map(|t| noise_of(t, &place, &mut findings));
-    let mut cut = |track: Option<Track>, noise: Option<f64>| {
-        track.and_then(|track| series(&track, noise?, &place, options, &mut findings))
+    let cut = |track: Option<Track>, noise: Option<f64>| {
+        track.and_then(|track| series(&track, noise?, &place, options))
     };
     let impact = Impact {
         displacement: cut(displacement, noises.displacement),
@@ -625,13 +631,21 @@ fn largest_within(track: &Track, place: &Surroundings) -> Option<f64> {
     track.values[first..last].iter().copied().reduce(f64::max)
 }
 
+fn few_samples(track: &Track, place: &Surroundings) -> Option<Finding> {
+    let onset = track.times.partition_point(|&t| t < place.onset);
+    let end = track.times.partition_point(|&t| t <= place.end);
+    (end - onset < FEW_SAMPLES).then(|| Finding::FewSamples {
+        channel: track.name.clone(),
+        samples: end - onset,
+    })
+}
+
 /// The samples around the contact; `None` if there is none.
 fn series(
     track: &Track,
     noise: f64,
     place: &Surroundings,
     options: &ExtractOptions,
-    findings: &mut Vec<Finding>,
 ) -> Option<Series> {
     let times = &track.times;
     let from = place.onset - options.margin_before * place.duration();
@@ -646,12 +660,6 @@ fn series(
         .partition_point(|&t| t <= until)
         .max(end + options.margin_samples)
         .min(times.partition_point(|&t| t < place.until));
-    if end - onset < FEW_SAMPLES {
-        findings.push(Finding::FewSamples {
-            channel: track.name.clone(),
-            samples: end - onset,
-        });
-    }
     (first < last).then(|| Series {
         times: times[first..last].to_vec(),
         values: track.values[first..last].to_vec(),

@@ -265,3 +265,86 @@ fn inverse_from_cholesky(lower: &Square, size: usize) -> Square {
     }
     inverse
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const SAMPLES: [f64; 11] = [0.0, 1.0, 4.0, 2.0, 7.0, 5.0, 9.0, 6.0, 3.0, 8.0, 2.0];
+
+    fn check(window: usize, order: usize, derivative: usize, expected: [f64; 11]) {
+        let times: Vec<f64> = (0..11).map(|i| 7.0 + 0.5 * f64::from(i)).collect();
+        let filtered = local_polynomial(&times, &SAMPLES, window, order, derivative).unwrap();
+        for (found, expected) in filtered.iter().zip(expected) {
+            assert!((found - expected).abs() < 1e-11, "{found} {expected}");
+        }
+    }
+
+    // scipy.signal.savgol_filter(x, window, order, deriv, delta=0.5,
+    // mode='interp'), SciPy 1.17.1.
+    #[test]
+    fn reference_savitzky_golay() {
+        let smooth = [
+            0.228571428571429,
+            1.08571428571429,
+            2.37142857142857,
+            4.22857142857143,
+            4.68571428571428,
+            7.22857142857143,
+            7.28571428571428,
+            5.91428571428571,
+            5.31428571428571,
+            4.25714285714285,
+            3.48571428571428,
+        ];
+        check(5, 2, 0, smooth);
+        let slope = [
+            4.36507936507935,
+            2.88888888888888,
+            2.07936507936508,
+            1.93650793650794,
+            3.16666666666667,
+            3.22222222222222,
+            -2.71428571428571,
+            -0.293650793650793,
+            -1.34126984126984,
+            -3.05555555555555,
+            -5.43650793650792,
+        ];
+        check(7, 3, 1, slope);
+        let start = 0.380952380952381;
+        let end = -1.42857142857143;
+        let middle = [-1.33333333333333, -3.14285714285714, -1.80952380952381];
+        let [a, b, c] = middle;
+        let bend = [start, start, start, start, a, b, c, end, end, end, end];
+        check(7, 2, 2, bend);
+        // √Σ savgol_coeffs(7, 2, deriv=1, delta=0.5)².
+        assert!((noise_gain(0.5, 7, 2, 1).unwrap() - 0.3779644730092273).abs() < 1e-14);
+    }
+
+    #[test]
+    fn closed_form_cubic_on_uneven_times() {
+        let times: Vec<f64> = (0..9)
+            .map(|i| f64::from(i) + 0.3 * f64::from(i % 3))
+            .collect();
+        let values: Vec<f64> = times.iter().map(|t| t * t * t - 2.0 * t).collect();
+        let slopes = local_polynomial(&times, &values, 5, 3, 1).unwrap();
+        for (t, slope) in times.iter().zip(slopes) {
+            assert!((slope - (3.0 * t * t - 2.0)).abs() < 1e-9);
+        }
+    }
+
+    // Straight line through (0, 1), (1, 3), (2, 4), (3, 4): slope 1, intercept
+    // 1.5; residuals -0.5, 0.5, 0.5, -0.5, so s² = 1/2 on 2 degrees of freedom;
+    // Σ(t - 1.5)² = 5.
+    #[test]
+    fn closed_form_straight_line() {
+        let fit = fit_polynomial(&[0.0, 1.0, 2.0, 3.0], &[1.0, 3.0, 4.0, 4.0], 0.0, 1).unwrap();
+        let close = |a: f64, b: f64| (a - b).abs() < 1e-12;
+        assert!(close(fit.derivatives[0], 1.5) && close(fit.derivatives[1], 1.0));
+        assert!(close(fit.residual_deviation, 0.5f64.sqrt()));
+        assert!(close(fit.standard_deviations[1], 0.1f64.sqrt()));
+        // Intercept: s² (1/4 + 1.5²/5).
+        assert!(close(fit.standard_deviations[0], (0.5f64 * 0.7).sqrt()));
+    }
+}

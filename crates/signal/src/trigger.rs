@@ -235,8 +235,7 @@ pub fn find_contacts(signal: &Signal, options: &TriggerOptions) -> Result<Contac
     let sign = if reversed { -1.0 } else { 1.0 };
 
     // The scale of the contact, to smooth by.
-    let half = half_peak_span(signal.values, extreme, centre, sign);
-    let smoothing = ((1.5 * half as f64 * SMOOTHING_SHARE) as usize) | 1;
+    let smoothing = smoothing_length(signal.values, centre, sign);
 
     // Baseline, threshold and windows; once more when the first contact is known.
     let mut before = pre_contact(signal.values, extreme, centre, sign);
@@ -337,13 +336,21 @@ fn index_of_largest(values: &[f64], measure: impl Fn(f64) -> f64) -> usize {
     })
 }
 
-/// Samples around the extreme that are above half of it.
-fn half_peak_span(values: &[f64], extreme: usize, centre: f64, sign: f64) -> usize {
-    let level = 0.5 * sign * (values[extreme] - centre);
-    let above = |v: &&f64| sign * (**v - centre) >= level;
-    let after = values[extreme..].iter().take_while(above).count();
-    let before = values[..extreme].iter().rev().take_while(above).count();
-    after + before
+/// Samples to average over: 1/50 of the strongest contact, which lasts about
+/// 1.5 times as long as its force is above half. Noise cuts this stretch short,
+/// so it is looked for again in the smoothed signal.
+fn smoothing_length(values: &[f64], centre: f64, sign: f64) -> usize {
+    let mut length = 1;
+    for _ in 0..3 {
+        let smooth = moving_mean(values, length);
+        let extreme = index_of_largest(&smooth, |v| sign * (v - centre));
+        let level = 0.5 * sign * (smooth[extreme] - centre);
+        let above = |v: &&f64| sign * (**v - centre) >= level;
+        let after = smooth[extreme..].iter().take_while(above).count();
+        let before = smooth[..extreme].iter().rev().take_while(above).count();
+        length = ((1.5 * (after + before) as f64 * SMOOTHING_SHARE) as usize) | 1;
+    }
+    length
 }
 
 /// Samples before the strongest contact begins, less a guard.
