@@ -2,7 +2,7 @@
 
 use std::path::PathBuf;
 use windfall_contact::expression::LawExpression;
-use windfall_identify::fit::FitOptions;
+use windfall_identify::problem::FitOptions;
 use windfall_identify::rig::Pendulum;
 use windfall_signal::ExtractOptions;
 use windfall_signal::recording::Quantity;

@@ -301,6 +301,19 @@ pub enum Error {
         /// How many impacts there are.
         impacts: usize,
     },
+    /// No impact shows the mass of the carriage.
+    #[error(
+        "{path}: the mass cannot be found from any of the {impacts} impacts; give it in \
+         campaign.toml: mass = \"0.5 kg\". The first impact says: {first}", path = path.display()
+    )]
+    MassUnknown {
+        /// The campaign directory.
+        path: PathBuf,
+        /// How many impacts there are.
+        impacts: usize,
+        /// Why the first one does not show it.
+        first: String,
+    },
     /// A results file that is no database, or a damaged one.
     #[error(
         "{path}: the results file is damaged or not a database ({detail}); nothing was written. \
@@ -371,6 +384,26 @@ pub enum Error {
         /// What is wrong.
         source: windfall_identify::error::Error,
     },
+}
+
+impl Error {
+    /// Whether the request (options, campaign files) is wrong, rather than the
+    /// work having failed.
+    #[must_use]
+    pub fn is_request(&self) -> bool {
+        !matches!(
+            self,
+            Self::FileAccess { .. }
+                | Self::NothingFitted { .. }
+                | Self::MassUnknown { .. }
+                | Self::StoreDamaged { .. }
+                | Self::StoreForeign { .. }
+                | Self::StoreNewer { .. }
+                | Self::Store { .. }
+                | Self::Signal { .. }
+                | Self::Identify { .. }
+        )
+    }
 }
 
 fn nearest_columns(nearest: &[String], columns: usize) -> String {

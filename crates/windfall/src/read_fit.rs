@@ -8,12 +8,10 @@ use crate::toml_source::suggestion;
 use toml::Spanned;
 use windfall_contact::expression::{LawExpression, parse_law};
 use windfall_contact::law::EndRule;
-use windfall_identify::fit::{Channels, FitOptions, Treatment, Weighting};
+use windfall_identify::problem::{FitOptions, Quantities, Treatment, Weighting};
+use windfall_identify::residual::Quantity;
 
 const TABLE: &str = "[fit]";
-
-/// Names of the quantities of a cost function.
-pub const QUANTITIES: [&str; 4] = ["displacement", "rate", "force", "acceleration"];
 
 /// What a campaign fits.
 ///
@@ -24,7 +22,7 @@ pub fn fit_plan(source: &TomlSource, file: &FitFile) -> Result<FitPlan, Error> {
     let free = free_names(source, file, &laws)?;
     let mut options = FitOptions::default();
     if let Some(words) = &file.quantities {
-        options.channels = channels(source, words)?;
+        options.quantities = quantities(source, words)?;
     }
     let weights = [
         ("inverse-variance", Weighting::InverseVariance),
@@ -53,41 +51,22 @@ pub fn fit_plan(source: &TomlSource, file: &FitFile) -> Result<FitPlan, Error> {
 ///
 /// # Errors
 /// The word that is no quantity, with what was expected.
-pub fn channels_named<'a>(
+pub fn quantities_named<'a>(
     words: impl IntoIterator<Item = &'a str>,
-) -> Result<Channels, (String, String)> {
-    let mut channels =
-        Channels { displacement: false, rate: false, force: false, acceleration: false };
-    let mut any = false;
+) -> Result<Quantities, (String, String)> {
+    let names = Quantity::ALL.map(Quantity::name);
+    let mut chosen = Vec::new();
     for word in words {
-        any = true;
-        match word {
-            "displacement" => channels.displacement = true,
-            "rate" => channels.rate = true,
-            "force" => channels.force = true,
-            "acceleration" => channels.acceleration = true,
-            other => {
-                let problem = format!(
-                    "expected any of {}{}",
-                    QUANTITIES.join(", "),
-                    suggestion(other, QUANTITIES)
-                );
-                return Err((other.to_owned(), problem));
-            }
-        }
+        let found = Quantity::ALL.into_iter().find(|quantity| quantity.name() == word);
+        chosen.push(found.ok_or_else(|| {
+            let hint = suggestion(word, names);
+            (word.to_owned(), format!("expected any of {}{hint}", names.join(", ")))
+        })?);
     }
-    if any {
-        return Ok(channels);
+    match chosen.is_empty() {
+        false => Ok(Quantities::of(&chosen)),
+        true => Err((String::new(), format!("expected at least one of {}", names.join(", ")))),
     }
-    Err((String::new(), format!("expected at least one of {}", QUANTITIES.join(", "))))
-}
-
-/// Names of the quantities of a cost function, in the usual order.
-#[must_use]
-pub fn names_of_channels(channels: &Channels) -> Vec<String> {
-    let on = [channels.displacement, channels.rate, channels.force, channels.acceleration];
-    let chosen = QUANTITIES.iter().zip(on).filter(|(_, on)| *on);
-    chosen.map(|(name, _)| (*name).to_owned()).collect()
 }
 
 /// The first of `free` that is a parameter of none of the laws, with what was
@@ -105,8 +84,8 @@ pub fn unknown_parameter(free: &[String], laws: &[LawExpression]) -> Option<(usi
     Some((index, problem))
 }
 
-fn channels(source: &TomlSource, words: &[Spanned<String>]) -> Result<Channels, Error> {
-    channels_named(words.iter().map(|word| word.get_ref().as_str())).map_err(|(text, problem)| {
+fn quantities(source: &TomlSource, words: &[Spanned<String>]) -> Result<Quantities, Error> {
+    quantities_named(words.iter().map(|word| word.get_ref().as_str())).map_err(|(text, problem)| {
         let at = words.iter().find(|word| *word.get_ref() == text).map_or(0..0, Spanned::span);
         invalid(source, &at, (TABLE, "quantities"), &text, problem)
     })

@@ -1,0 +1,101 @@
+//! What a result depends on, as one digest: equal keys mean equal results.
+
+use crate::campaign::{Campaign, ImpactEntry, TimePlan};
+use crate::error::Error;
+use crate::provenance::{VERSION, digest_file, digest_text};
+use crate::read_campaign::{CAMPAIGN_FILE, fill_placeholders};
+use serde_json::json;
+use std::collections::BTreeMap;
+use std::path::PathBuf;
+use windfall_contact::expression::LawExpression;
+use windfall_identify::rig::Rig;
+
+/// SHA-256 over everything that the fit of one law to one impact depends on.
+///
+/// * `digest`: SHA-256 of the recording
+///
+/// Numbers enter with all their digits. Titles, groups and other columns of the
+/// tables do not enter: changing them keeps the results.
+#[must_use]
+pub fn impact_key(
+    campaign: &Campaign,
+    entry: &ImpactEntry,
+    law: &LawExpression,
+    rig: &Rig,
+    digest: &str,
+) -> String {
+    let filled = |text: &str| fill_placeholders(text, &entry.cells).unwrap_or_default();
+    let channels: Vec<String> = campaign
+        .files
+        .channels
+        .iter()
+        .map(|plan| {
+            let time = match (&plan.time, &campaign.files.time) {
+                (Some(own), _) => filled(own),
+                (None, TimePlan::Column(shared)) => filled(shared),
+                (None, TimePlan::Rate(rate)) => format!("{rate:?} Hz"),
+            };
+            let (quantity, column) = (plan.quantity, filled(&plan.column));
+            format!("{quantity:?} {column:?} {time:?} {:?} {:?}", plan.scale, plan.offset)
+        })
+        .collect();
+    let free: Vec<&String> = campaign
+        .fit
+        .free
+        .iter()
+        .filter(|name| law.kind.describe().parameters.iter().any(|p| p.name == name.as_str()))
+        .collect();
+    let everything = json!({
+        "windfall": VERSION,
+        "recording": digest,
+        "impact": [entry.id, entry.specimen, entry.file],
+        "range": format!("{:?} {:?}", entry.from, entry.to),
+        "rig": format!("{rig:?}"),
+        "time_scale": format!("{:?}", campaign.files.time_scale),
+        "channels": channels,
+        "contact": format!("{:?}", campaign.contact),
+        "law": format!("{:?}", law),
+        "free": free,
+        "fit": format!("{:?}", campaign.fit.options),
+    });
+    digest_text(&everything.to_string())
+}
+
+/// Names and SHA-256 of all files that a run read, and its options as JSON: the
+/// campaign file word for word, and what was fitted in the end.
+///
+/// # Errors
+/// A file of the campaign can no longer be read.
+pub fn input_digests(
+    campaign: &Campaign,
+    recordings: &BTreeMap<PathBuf, Result<String, String>>,
+) -> Result<(Vec<(String, String)>, String), Error> {
+    let mut inputs = Vec::new();
+    for name in [CAMPAIGN_FILE, "specimens.csv", "impacts.csv"] {
+        let path = campaign.directory.join(name);
+        if path.exists() {
+            inputs.push((name.to_owned(), digest_file(&path)?));
+        }
+    }
+    for (path, digest) in recordings {
+        if let Ok(digest) = digest {
+            let name = path.strip_prefix(&campaign.directory).unwrap_or(path);
+            inputs.push((name.display().to_string(), digest.clone()));
+        }
+    }
+    let path = campaign.directory.join(CAMPAIGN_FILE);
+    let text = std::fs::read_to_string(&path).map_err(|source| Error::FileAccess {
+        path,
+        action: "read",
+        source,
+    })?;
+    let options = json!({
+        CAMPAIGN_FILE: text,
+        "laws": campaign.fit.laws.iter().map(ToString::to_string).collect::<Vec<_>>(),
+        "free": campaign.fit.free,
+        "quantities": campaign.fit.options.quantities.names(),
+        "contact": format!("{:?}", campaign.contact),
+        "fit": format!("{:?}", campaign.fit.options),
+    });
+    Ok((inputs, options.to_string()))
+}

@@ -1,0 +1,300 @@
+//! `windfall fit DIR`: the main job, recordings → parameters, table, store.
+
+use crate::campaign::{Campaign, ImpactEntry};
+use crate::error::Error;
+use crate::fit_impact::{FitTask, fit_tasks};
+use crate::fit_key::{impact_key, input_digests};
+use crate::fit_mass::{RigFound, find_rig};
+use crate::outcome::{CampaignOutcome, FailureOutcome, ImpactOutcome, StatusOutcome};
+use crate::provenance::{VERSION, time_now};
+use crate::read_campaign::read_campaign;
+use crate::read_fit::{quantities_named, unknown_parameter};
+use crate::read_recording::recording_path;
+use crate::store::{RunRecord, find_results, latest_run, write_run};
+use crate::summary::{summarise, summarise_groups};
+use crate::toml_source::suggestion;
+use rayon::prelude::*;
+use std::collections::BTreeMap;
+use std::path::{Path, PathBuf};
+use windfall_contact::expression::parse_law;
+
+/// Name of the store in a campaign directory.
+pub const STORE_FILE: &str = "results.sqlite";
+
+/// What `fit` is asked for beyond what the campaign says.
+#[derive(Clone, Debug, Default)]
+pub struct FitRequest {
+    /// Laws in place of those of the campaign; none keeps them.
+    pub laws: Vec<String>,
+    /// Parameters to estimate although they have a value; none keeps those of
+    /// the campaign.
+    pub free: Vec<String>,
+    /// Quantities in place of those of the campaign; none keeps them.
+    pub quantities: Vec<String>,
+    /// Column to group by in place of the campaign's.
+    pub group: Option<String>,
+    /// What becomes of results in the store.
+    pub reuse: Reuse,
+    /// Number of threads; all cores when `None`. It never changes a result.
+    pub threads: Option<usize>,
+}
+
+/// What becomes of results in the store.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Reuse {
+    /// Impacts that have not changed are answered from it.
+    #[default]
+    Unchanged,
+    /// Every impact is fitted again.
+    Nothing,
+}
+
+/// Called with the number of impacts done and of all impacts.
+pub type Progress<'a> = &'a (dyn Fn(usize, usize) + Sync);
+
+/// Fits the impacts of a campaign and keeps the results in its store.
+///
+/// A recording that cannot be used is reported in the outcome and does not stop
+/// the others. Results stand in the order of impacts.csv and have the same bits
+/// for any number of threads.
+///
+/// # Errors
+/// The campaign or the request is wrong, or the store cannot be used.
+pub fn fit_campaign(
+    directory: &Path,
+    request: &FitRequest,
+    progress: Progress,
+) -> Result<CampaignOutcome, Error> {
+    let mut campaign = read_campaign(directory)?;
+    apply_request(&mut campaign, request)?;
+    let threads = request.threads.unwrap_or(0);
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build();
+    let pool = pool.map_err(|error| Error::OptionInvalid {
+        option: format!("--threads {threads}"),
+        problem: error.to_string(),
+    })?;
+    pool.install(|| fit(&campaign, request, progress))
+}
+
+fn apply_request(campaign: &mut Campaign, request: &FitRequest) -> Result<(), Error> {
+    let invalid = |option: String, problem: String| Error::OptionInvalid { option, problem };
+    if !request.laws.is_empty() {
+        let laws = request.laws.iter().map(|text| {
+            parse_law(text).map_err(|error| invalid(format!("--law {text}"), error.to_string()))
+        });
+        campaign.fit.laws = laws.collect::<Result<_, _>>()?;
+        // The campaign's list may name parameters of laws that are not fitted now.
+        let laws = &campaign.fit.laws;
+        campaign.fit.free.retain(|name| unknown_parameter(std::slice::from_ref(name), laws).is_none());
+    }
+    if !request.free.is_empty() {
+        if let Some((index, problem)) = unknown_parameter(&request.free, &campaign.fit.laws) {
+            return Err(invalid(format!("--free {}", request.free[index]), problem));
+        }
+        campaign.fit.free.clone_from(&request.free);
+    }
+    if !request.quantities.is_empty() {
+        let words = request.quantities.iter().map(String::as_str);
+        campaign.fit.options.quantities = quantities_named(words)
+            .map_err(|(word, problem)| invalid(format!("--quantities {word}"), problem))?;
+    }
+    if let Some(group) = &request.group {
+        let names = group_columns(campaign);
+        if !names.contains(&group.as_str()) {
+            let problem = format!(
+                "neither specimens.csv nor impacts.csv has this column{}; they have: {}",
+                suggestion(group, names.iter().copied()),
+                names.join(", ")
+            );
+            return Err(invalid(format!("--group {group}"), problem));
+        }
+        campaign.group = Some(group.clone());
+    }
+    Ok(())
+}
+
+fn group_columns(campaign: &Campaign) -> Vec<&str> {
+    let specimen = campaign.specimens.first().map_or(&[][..], |s| &s.cells);
+    let impact = campaign.impacts.first().map_or(&[][..], |i| &i.cells);
+    specimen.iter().chain(impact).map(|(name, _)| name.as_str()).collect()
+}
+
+fn fit(
+    campaign: &Campaign,
+    request: &FitRequest,
+    progress: Progress,
+) -> Result<CampaignOutcome, Error> {
+    let store = campaign.directory.join(STORE_FILE);
+    let digests = recording_digests(campaign);
+    let rig = find_rig(campaign)?;
+
+    // What each law on each impact depends on, and what the store knows of it.
+    let tasks: Vec<FitTask> = tasks(campaign, &digests, &rig);
+    let keys: Vec<String> = tasks.iter().filter_map(|task| task.key.clone()).collect();
+    let stored = match request.reuse {
+        Reuse::Unchanged => find_results(&store, &keys)?,
+        Reuse::Nothing => {
+            // A store that could not be written is found out before the work.
+            latest_run(&store)?;
+            vec![None; keys.len()]
+        }
+    };
+    let stored: BTreeMap<String, ImpactOutcome> =
+        keys.iter().cloned().zip(stored).filter_map(|(key, found)| Some((key, found?))).collect();
+
+    let results = fit_tasks(campaign, &rig, &tasks, &stored, progress);
+    let mut outcome = assemble(campaign, &rig, &tasks, results, &stored);
+    keep(campaign, &store, &digests, &mut outcome)?;
+    Ok(outcome.shown)
+}
+
+/// SHA-256 of each recording once; a message where it cannot be read.
+fn recording_digests(campaign: &Campaign) -> BTreeMap<PathBuf, Result<String, String>> {
+    let mut first: BTreeMap<PathBuf, &ImpactEntry> = BTreeMap::new();
+    for impact in &campaign.impacts {
+        first.entry(recording_path(&campaign.files, impact)).or_insert(impact);
+    }
+    let paths: Vec<(PathBuf, &ImpactEntry)> = first.into_iter().collect();
+    let digests: Vec<Result<String, String>> = paths
+        .par_iter()
+        .map(|(path, impact)| {
+            crate::provenance::digest_file(path).map_err(|error| match error {
+                Error::FileAccess { source, .. }
+                    if source.kind() == std::io::ErrorKind::NotFound =>
+                {
+                    absent(campaign, impact, path)
+                }
+                other => other.to_string(),
+            })
+        })
+        .collect();
+    paths.into_iter().map(|(path, _)| path).zip(digests).collect()
+}
+
+fn absent(campaign: &Campaign, impact: &ImpactEntry, path: &Path) -> String {
+    let list = campaign.directory.join("impacts.csv");
+    let advice = format!(
+        "{}, line {} names it. Put the file there, correct the name, or remove the line",
+        list.display(),
+        impact.line
+    );
+    Error::FileAbsent { path: path.to_path_buf(), advice }.to_string()
+}
+
+fn tasks(
+    campaign: &Campaign,
+    digests: &BTreeMap<PathBuf, Result<String, String>>,
+    rig: &RigFound,
+) -> Vec<FitTask> {
+    let mut tasks = Vec::new();
+    for (index, entry) in campaign.impacts.iter().enumerate() {
+        let digest = &digests[&recording_path(&campaign.files, entry)];
+        for law in 0..campaign.fit.laws.len() {
+            let key = digest.as_ref().ok().map(|digest| {
+                impact_key(campaign, entry, &campaign.fit.laws[law], &rig.rig, digest)
+            });
+            let problem = digest.as_ref().err().cloned();
+            tasks.push(FitTask { impact: index, law, key, problem });
+        }
+    }
+    tasks
+}
+
+/// What is shown and what is kept.
+struct Assembled {
+    shown: CampaignOutcome,
+    keys: Vec<String>,
+}
+
+fn assemble(
+    campaign: &Campaign,
+    rig: &RigFound,
+    tasks: &[FitTask],
+    results: Vec<Result<ImpactOutcome, FailureOutcome>>,
+    stored: &BTreeMap<String, ImpactOutcome>,
+) -> Assembled {
+    let (mut impacts, mut failed, mut keys) = (Vec::new(), Vec::new(), Vec::new());
+    let mut status = StatusOutcome::default();
+    for (task, result) in tasks.iter().zip(results) {
+        match result {
+            Ok(mut impact) => {
+                let key = task.key.clone().unwrap_or_default();
+                match stored.contains_key(&key) {
+                    true => status.stored += 1,
+                    false => status.fitted += 1,
+                }
+                impact.group = group_of(campaign, &campaign.impacts[task.impact]);
+                keys.push(key);
+                impacts.push(impact);
+            }
+            Err(failure) => {
+                // A recording that cannot be read is one failure, not one per law.
+                if !failed.contains(&failure) {
+                    failed.push(failure);
+                }
+            }
+        }
+    }
+    status.failed = failed.len();
+    let first_law: Vec<&ImpactOutcome> =
+        impacts.iter().filter(|i| Some(&i.law) == impacts.first().map(|first| &first.law)).collect();
+    let law = first_law.first().map_or("", |impact| impact.law.as_str());
+    let all = summarise(law, None, &first_law);
+    let mut summary = all.parameters;
+    summary.0.extend(all.derived.0);
+    let groups = summarise_groups(&impacts);
+    let shown = CampaignOutcome {
+        windfall: VERSION.to_owned(),
+        campaign: campaign.title.clone(),
+        simulated: campaign.simulated.clone(),
+        effective_mass: rig.mass,
+        status,
+        impacts,
+        failed,
+        summary,
+        groups,
+        findings: rig.findings.clone(),
+    };
+    Assembled { shown, keys }
+}
+
+fn group_of(campaign: &Campaign, entry: &ImpactEntry) -> Option<String> {
+    let column = campaign.group.as_ref()?;
+    let specimen = campaign.specimens.iter().find(|specimen| specimen.id == entry.specimen);
+    let specimen_cells = specimen.map_or(&[][..], |specimen| &specimen.cells);
+    let mut cells = specimen_cells.iter().chain(&entry.cells);
+    cells.find(|(name, _)| name == column).map(|(_, cell)| cell.clone())
+}
+
+/// Writes the run, unless the newest one in the store is the same.
+fn keep(
+    campaign: &Campaign,
+    store: &Path,
+    digests: &BTreeMap<PathBuf, Result<String, String>>,
+    outcome: &mut Assembled,
+) -> Result<(), Error> {
+    // A run of nothing but failures is told, not kept.
+    if outcome.keys.is_empty() {
+        return Ok(());
+    }
+    let same = latest_run(store)?
+        .is_some_and(|run| run.keys == outcome.keys && run.failures == outcome.shown.failed);
+    if same && outcome.shown.status.fitted == 0 {
+        outcome.shown.status.up_to_date = true;
+        return Ok(());
+    }
+    let (inputs, options) = input_digests(campaign, digests)?;
+    let results = outcome.keys.iter().cloned().zip(outcome.shown.impacts.iter().cloned());
+    write_run(
+        store,
+        &RunRecord {
+            time: time_now(),
+            windfall: VERSION.to_owned(),
+            options,
+            seed: None,
+            inputs,
+            results: results.collect(),
+            failures: outcome.shown.failed.clone(),
+        },
+    )
+}
