@@ -5,102 +5,22 @@ use crate::deceleration::deceleration;
 use crate::error::{Error, Times};
 use crate::finding::Finding;
 use crate::impact::{Impact, Measured, Series};
-use crate::kinematics::{
-    Encoder, Motion, central_difference, displacement_from_angles, rate_quantum, smoothing_window,
-    value_at,
-};
+use crate::kinematics::Motion;
 use crate::measure::{
     Side, Surroundings, free_velocity, impulse, largest_displacement, with_energies,
 };
-use crate::noise::{Noise, NoiseSource, RELATIVE_FLOOR, combined_noise, scatter_about_polynomial};
-use crate::polynomial::{evenly_spaced, local_polynomial};
-use crate::quadrature::IllegalTransition;
-use crate::recording::Recording;
-use crate::track::{Geometry, Position, Track, Tracks, missing, tracks};
-use crate::trigger::{
-    Baseline, Contacts, Orientation, Signal, Threshold, TriggerOptions, find_contacts,
+use crate::noise_track::{force_noise, noise_of};
+use crate::options::{ExtractOptions, RateMethod, check_options};
+use crate::orient::{
+    leave_out_glitches, mean_between, offset_sd, orient, oriented_displacement, oriented_force,
 };
+use crate::rate::derived_rate;
+use crate::recording::Recording;
+use crate::track::{Geometry, Track, Tracks, mean_interval, missing, tracks};
+use crate::trigger::{Baseline, Contacts, Signal, Threshold, TriggerOptions, find_contacts};
 
 /// Fewer samples in contact than this are reported.
 const FEW_SAMPLES: usize = 8;
-
-/// Fewer samples before contact than this are reported.
-const SHORT_BASELINE: usize = 5;
-
-/// An offset is reported if it exceeds this part of the peak force; 1.
-const OFFSET_SHARE: f64 = 0.01;
-
-/// Samples of a block within which a signal is taken as a parabola plus noise.
-const NOISE_BLOCK: usize = 8;
-
-/// Blocks that a contact must hold to find the noise within it.
-const NOISE_BLOCKS: usize = 10;
-
-/// How the series of the displacement rate is made.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum RateMethod {
-    /// The measured channel if there is one, else the central difference of the
-    /// displacement if that is sampled evenly, else none.
-    #[default]
-    Automatic,
-    /// The measured channel or none.
-    Measured,
-    /// The central difference of the displacement, even if a channel was measured.
-    CentralDifference,
-    /// The derivative of local polynomials (Savitzky-Golay) of the displacement.
-    /// Smooth, for display; neighbouring samples share their noise.
-    LocalPolynomial {
-        /// Order of the polynomial, 1 to 4; 2 or 3 are usual.
-        order: usize,
-        /// Odd number of samples; `None`: about a tenth of the contact.
-        window: Option<usize>,
-    },
-}
-
-/// How an impact is cut out of a recording.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct ExtractOptions {
-    /// Contact window.
-    pub trigger: TriggerOptions,
-    /// What is done about a channel of the wrong sign.
-    pub orientation: Orientation,
-    /// What is kept before onset, as a part of the contact's duration; 1.
-    pub margin_before: f64,
-    /// What is kept after the end, as a part of the contact's duration; 1.
-    pub margin_after: f64,
-    /// Samples kept at least on either side, where the recording has them.
-    pub margin_samples: usize,
-    /// The encoder, if there are phases or counts.
-    pub encoder: Option<Encoder>,
-    /// What an illegal transition of the encoder adds.
-    pub illegal: IllegalTransition,
-    /// Length of the arm, if an angle is measured; m.
-    pub arm: Option<f64>,
-    /// How the series of the displacement rate is made.
-    pub rate: RateMethod,
-    /// Mass that the contact feels, for the energies; kg.
-    pub effective_mass: Option<f64>,
-    /// Acceleration of the free impactor, positive into the fruit; m/s².
-    pub driving_acceleration: f64,
-}
-
-impl Default for ExtractOptions {
-    fn default() -> Self {
-        Self {
-            trigger: TriggerOptions::default(),
-            orientation: Orientation::default(),
-            margin_before: 0.2,
-            margin_after: 0.2,
-            margin_samples: 3,
-            encoder: None,
-            illegal: IllegalTransition::default(),
-            arm: None,
-            rate: RateMethod::default(),
-            effective_mass: None,
-            driving_acceleration: 0.0,
-        }
-    }
-}
 
 /// Cuts one impact out of a recording.
 ///
@@ -146,10 +66,16 @@ pub fn extract_impact(
     let displacement = tracks
         .position
         .take()
-        .map(|position| oriented_displacement(position, &place, options, &mut findings));
+        .map(|position| oriented_displacement(position, &place, options, &mut findings))
+        .map(|mut track| {
+            let motion = Motion::Displacement;
+            leave_out_glitches(&mut track, motion, &place, options, &mut findings);
+            track
+        });
     let measured_rate = tracks.rate.take().map(|mut track| {
         let wrong = mean_between(&track, place.onset - 0.2 * place.duration(), place.onset) < 0.0;
         orient(&mut track, wrong, options, &mut findings);
+        leave_out_glitches(&mut track, Motion::Rate, &place, options, &mut findings);
         track
     });
     let acceleration = tracks.acceleration.take().map(|mut track| {
@@ -185,14 +111,23 @@ pub fn extract_impact(
         options,
     );
 
-    let (rate, rate_noise) = rate(
-        displacement.as_ref(),
-        measured_rate,
-        &noises,
-        &place,
-        options,
-        &mut findings,
-    );
+    // A measured rate is kept unless the method derives one.
+    let keep = match options.rate {
+        RateMethod::Measured => true,
+        RateMethod::Automatic => measured_rate.is_some(),
+        RateMethod::CentralDifference | RateMethod::LocalPolynomial { .. } => false,
+    };
+    let (rate, rate_noise) = if keep {
+        (measured_rate, noises.rate)
+    } else {
+        let rate = displacement
+            .as_ref()
+            .and_then(|track| derived_rate(track, options.rate, &place));
+        let noise = rate
+            .as_ref()
+            .map(|track| noise_of(track, &place, &mut findings));
+        (rate, noise)
+    };
     let acceleration_noise = acceleration
         .as_ref()
         .map(|t| noise_of(t, &place, &mut findings));
@@ -215,55 +150,6 @@ struct Noises {
     displacement: Option<f64>,
     rate: Option<f64>,
     force: Option<f64>,
-}
-
-fn check_options(options: &ExtractOptions) -> Result<(), Error> {
-    let bad = |option, value, expected| {
-        Err(Error::BadOption {
-            option,
-            value,
-            expected,
-        })
-    };
-    for (option, margin) in [
-        ("margin before contact", options.margin_before),
-        ("margin after contact", options.margin_after),
-    ] {
-        if !(margin >= 0.0 && margin.is_finite()) {
-            return bad(
-                option,
-                margin,
-                "a part of the contact's duration, 0 or more",
-            );
-        }
-    }
-    if let Some(mass) = options.effective_mass
-        && !(mass > 0.0 && mass.is_finite())
-    {
-        return bad("effective mass", mass, "a positive mass");
-    }
-    if !options.driving_acceleration.is_finite() {
-        return bad(
-            "driving acceleration",
-            options.driving_acceleration,
-            "a finite number",
-        );
-    }
-    if let RateMethod::LocalPolynomial { order, window } = options.rate {
-        if !(1..=4).contains(&order) {
-            return bad("order of the rate's polynomial", order as f64, "1 to 4");
-        }
-        if let Some(window) = window
-            && (window % 2 == 0 || window <= order)
-        {
-            return bad(
-                "window of the rate's polynomial",
-                window as f64,
-                "an odd number above the order",
-            );
-        }
-    }
-    Ok(())
 }
 
 /// Contacts from the force, else from the deceleration, with its resolution.
@@ -339,15 +225,6 @@ fn window_finding(track: &Track, resolution: f64) -> Finding {
     }
 }
 
-fn mean_interval(times: &[f64]) -> f64 {
-    let n = times.len();
-    if n < 2 {
-        0.0
-    } else {
-        (times[n - 1] - times[0]) / (n - 1) as f64
-    }
-}
-
 /// The contact that is used, up to its neighbours.
 fn choose(
     contacts: &Contacts,
@@ -378,194 +255,6 @@ fn choose(
         end: window.end,
         from: before.unwrap_or(f64::NEG_INFINITY),
         until: after.unwrap_or(f64::INFINITY),
-    })
-}
-
-fn oriented_force(
-    mut track: Track,
-    contacts: &Contacts,
-    options: &ExtractOptions,
-    findings: &mut Vec<Finding>,
-) -> Track {
-    for value in &mut track.values {
-        *value -= contacts.offset;
-    }
-    if contacts.baseline_samples < SHORT_BASELINE {
-        findings.push(Finding::ShortBaseline {
-            channel: track.name.clone(),
-            samples: contacts.baseline_samples,
-        });
-    }
-    let peak = contacts.windows.iter().map(|w| w.peak).fold(0.0, f64::max);
-    if contacts.offset.abs() > OFFSET_SHARE * peak {
-        findings.push(Finding::OffsetRemoved {
-            channel: track.name.clone(),
-            offset: contacts.offset,
-            offset_sd: offset_sd(contacts),
-        });
-    }
-    orient(&mut track, contacts.reversed, options, findings);
-    track
-}
-
-fn offset_sd(contacts: &Contacts) -> f64 {
-    contacts.deviation / (contacts.baseline_samples.max(1) as f64).sqrt()
-}
-
-fn orient(track: &mut Track, wrong: bool, options: &ExtractOptions, findings: &mut Vec<Finding>) {
-    if !wrong {
-        return;
-    }
-    let corrected = options.orientation == Orientation::Correct;
-    if corrected {
-        for value in &mut track.values {
-            *value = -*value;
-        }
-    }
-    findings.push(Finding::Reversed {
-        channel: track.name.clone(),
-        corrected,
-    });
-}
-
-fn oriented_displacement(
-    position: Position,
-    place: &Surroundings,
-    options: &ExtractOptions,
-    findings: &mut Vec<Finding>,
-) -> Track {
-    let Position { mut track, arm } = position;
-    // During contact the impactor is, on average, where it loads the fruit.
-    let zero = value_at(&track.times, &track.values, place.onset);
-    for value in &mut track.values {
-        *value -= zero;
-    }
-    let within = mean_between(&track, place.onset, place.end);
-    orient(&mut track, within < 0.0, options, findings);
-    if let Some(arm) = arm {
-        track.values = displacement_from_angles(&track.values, 0.0, arm);
-        track.quantum = track.quantum.map(|q| q * arm);
-    }
-    track
-}
-
-/// Mean of the samples in a span of time, or the interpolated value in its
-/// middle if there is none.
-fn mean_between(track: &Track, from: f64, to: f64) -> f64 {
-    let first = track.times.partition_point(|&t| t < from);
-    let last = track.times.partition_point(|&t| t <= to);
-    if last <= first {
-        return value_at(&track.times, &track.values, 0.5 * (from + to));
-    }
-    track.values[first..last].iter().sum::<f64>() / (last - first) as f64
-}
-
-/// Scatter about parabolas through blocks of samples, within the contact if it
-/// has enough of them, else before it; at least the rounding of a quantum.
-fn noise_of(track: &Track, place: &Surroundings, findings: &mut Vec<Finding>) -> f64 {
-    let first = track.times.partition_point(|&t| t < place.onset);
-    let last = track.times.partition_point(|&t| t <= place.end);
-    let span = if last - first >= NOISE_BLOCKS * NOISE_BLOCK {
-        first..last
-    } else {
-        let length = (2 * (last - first)).max(3 * NOISE_BLOCK);
-        first.saturating_sub(length)..first
-    };
-    let block = (span.len() / 20).clamp(NOISE_BLOCK, 5 * NOISE_BLOCK);
-    let scatter =
-        scatter_about_polynomial(&track.times[span.clone()], &track.values[span], block, 2);
-    stated(track, scatter, &(first..last), findings)
-}
-
-fn force_noise(
-    track: &Track,
-    contacts: &Contacts,
-    place: &Surroundings,
-    findings: &mut Vec<Finding>,
-) -> f64 {
-    if contacts.baseline_samples < SHORT_BASELINE {
-        return noise_of(track, place, findings);
-    }
-    let first = track.times.partition_point(|&t| t < place.onset);
-    let last = track.times.partition_point(|&t| t <= place.end);
-    stated(track, Some(contacts.deviation), &(first..last), findings)
-}
-
-fn stated(
-    track: &Track,
-    scatter: Option<f64>,
-    within: &std::ops::Range<usize>,
-    findings: &mut Vec<Finding>,
-) -> f64 {
-    let largest = track.values[within.clone()]
-        .iter()
-        .map(|v| v.abs())
-        .fold(0.0, f64::max);
-    let Noise { deviation, source } = combined_noise(scatter, track.quantum, largest);
-    if source == NoiseSource::Floor {
-        findings.push(Finding::NoiseAtFloor {
-            channel: track.name.clone(),
-            floor: deviation,
-            reason: FLOOR_REASON,
-        });
-    }
-    deviation
-}
-
-const FLOOR_REASON: &str = "a millionth of the largest sample: neither scatter nor steps are seen";
-const _: () = assert!(RELATIVE_FLOOR == 1e-6);
-
-/// The series of the rate and its noise.
-fn rate(
-    displacement: Option<&Track>,
-    measured: Option<Track>,
-    noises: &Noises,
-    place: &Surroundings,
-    options: &ExtractOptions,
-    findings: &mut Vec<Finding>,
-) -> (Option<Track>, Option<f64>) {
-    let derived = match options.rate {
-        RateMethod::Measured => return (measured, noises.rate),
-        RateMethod::Automatic if measured.is_some() => return (measured, noises.rate),
-        RateMethod::Automatic => displacement
-            .filter(|track| evenly_spaced(&track.times))
-            .and_then(central_rate),
-        RateMethod::CentralDifference => displacement.and_then(central_rate),
-        RateMethod::LocalPolynomial { order, window } => {
-            displacement.and_then(|track| polynomial_rate(track, order, window, place))
-        }
-    };
-    let noise = derived
-        .as_ref()
-        .map(|track| noise_of(track, place, findings));
-    (derived, noise)
-}
-
-fn central_rate(track: &Track) -> Option<Track> {
-    let n = track.values.len();
-    (n >= 3).then(|| Track {
-        name: format!("rate of {}", track.name),
-        times: track.times[1..n - 1].to_vec(),
-        values: central_difference(&track.times, &track.values),
-        quantum: track
-            .quantum
-            .map(|q| rate_quantum(q, mean_interval(&track.times))),
-    })
-}
-
-fn polynomial_rate(
-    track: &Track,
-    order: usize,
-    window: Option<usize>,
-    place: &Surroundings,
-) -> Option<Track> {
-    let window =
-        window.unwrap_or_else(|| smoothing_window(place.duration(), mean_interval(&track.times)));
-    Some(Track {
-        name: format!("rate of {}", track.name),
-        times: track.times.clone(),
-        values: local_polynomial(&track.times, &track.values, window, order, 1)?,
-        quantum: None,
     })
 }
 

@@ -238,3 +238,13 @@ fn positive(option: &'static str, value: f64) -> Result<f64, Error> {
         expected: "a positive number",
     })
 }
+
+/// Mean time between samples; 0 of one sample; s.
+pub(crate) fn mean_interval(times: &[f64]) -> f64 {
+    let n = times.len();
+    if n < 2 {
+        0.0
+    } else {
+        (times[n - 1] - times[0]) / (n - 1) as f64
+    }
+}
