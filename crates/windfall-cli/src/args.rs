@@ -5,7 +5,12 @@ use std::path::PathBuf;
 
 /// From recordings of fruit impacts to contact-force laws.
 #[derive(Debug, Parser)]
-#[command(name = "windfall", version, propagate_version = true, arg_required_else_help = true)]
+#[command(
+    name = "windfall",
+    version,
+    propagate_version = true,
+    arg_required_else_help = true
+)]
 #[command(after_help = "Examples:
   windfall new pendulum my-campaign       write a commented template
   windfall inspect my-campaign/raw/*.csv  see what the recordings hold
@@ -87,7 +92,8 @@ pub struct InspectArguments {
 
 /// `windfall fit`
 #[derive(Debug, Args)]
-#[command(after_help = "Results go to standard output and to DIR/results.sqlite; impacts whose \
+#[command(
+    after_help = "Results go to standard output and to DIR/results.sqlite; impacts whose \
 recording and options have not changed are answered from there.
 
 Exit status: 0 when at least one impact was fitted (what failed is reported), 1 when none was, \
@@ -96,7 +102,8 @@ Exit status: 0 when at least one impact was fitted (what failed is reported), 1 
 Examples:
   windfall fit my-campaign
   windfall fit my-campaign --law hertz --law kuwabara-kono --format json
-  windfall fit my-campaign --quantities force")]
+  windfall fit my-campaign --quantities force"
+)]
 pub struct FitArguments {
     /// The campaign directory
     #[arg(value_hint = ValueHint::DirPath)]

@@ -4,6 +4,7 @@ use crate::args::{FitArguments, Format};
 use crate::show::{message, write_json, write_result};
 use indicatif::{ProgressBar, ProgressStyle};
 use std::io::IsTerminal;
+use windfall::error::Error;
 use windfall::workflow_fit::{FitRequest, Reuse, fit_campaign};
 use windfall::write_csv::csv_of_campaign;
 use windfall::write_text::text_of_campaign;
@@ -15,7 +16,11 @@ pub fn run(arguments: &FitArguments) -> anyhow::Result<()> {
         free: arguments.free.clone(),
         quantities: arguments.quantities.clone(),
         group: arguments.group.clone(),
-        reuse: if arguments.refit { Reuse::Nothing } else { Reuse::Unchanged },
+        reuse: if arguments.refit {
+            Reuse::Nothing
+        } else {
+            Reuse::Unchanged
+        },
         threads: arguments.threads,
     };
     let bar = progress_bar();
@@ -30,8 +35,22 @@ pub fn run(arguments: &FitArguments) -> anyhow::Result<()> {
         Format::Csv => write_result(&csv_of_campaign(&outcome)?)?,
         Format::Text => write_result(&text_of_campaign(&outcome))?,
     }
-    for failure in &outcome.failed {
+    // The text shows failures itself, beside the results.
+    let told = if arguments.format == Format::Text {
+        &[][..]
+    } else {
+        &outcome.failed
+    };
+    for failure in told {
         message(&format!("not fitted: {}: {}", failure.id, failure.message));
+    }
+    if outcome.impacts.is_empty() {
+        let path = arguments.directory.clone();
+        return Err(Error::NothingFitted {
+            path,
+            failures: outcome.failed.len(),
+        }
+        .into());
     }
     message(&status_line(&outcome.status));
     Ok(())

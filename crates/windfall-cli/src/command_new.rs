@@ -11,7 +11,10 @@ pub fn run(arguments: &NewArguments) -> anyhow::Result<()> {
         NewKind::Carriage => TemplateKind::Carriage,
     };
     let written = write_template(kind, &arguments.directory)?;
-    let names: Vec<String> = written.iter().map(|path| path.display().to_string()).collect();
+    let names: Vec<String> = written
+        .iter()
+        .map(|path| path.display().to_string())
+        .collect();
     match arguments.format {
         Format::Json => write_json(&serde_json::json!({ "written": names })),
         Format::Csv => write_result(&format!("written\n{}\n", names.join("\n"))),

@@ -54,7 +54,10 @@ fn carriage(arguments: &SimulateCarriageArguments) -> anyhow::Result<()> {
         driving_acceleration: arguments.driving_acceleration.clone(),
         end: end_text(arguments.end),
     };
-    show_motion(&simulate_carriage_motion(&request, &arguments.rate)?, arguments.format)
+    show_motion(
+        &simulate_carriage_motion(&request, &arguments.rate)?,
+        arguments.format,
+    )
 }
 
 fn pendulum(arguments: &SimulatePendulumArguments) -> anyhow::Result<()> {
@@ -93,7 +96,9 @@ fn written(directory: &Path, recordings: usize, format: Format) -> anyhow::Resul
         Format::Json => write_json(&serde_json::json!({
             "directory": directory.to_string(), "recordings": recordings, "simulated": true
         })),
-        Format::Csv => write_result(&format!("directory,recordings\n\"{directory}\",{recordings}\n")),
+        Format::Csv => write_result(&format!(
+            "directory,recordings\n\"{directory}\",{recordings}\n"
+        )),
         Format::Text => write_result(&format!(
             "{recordings} simulated recordings in {directory}\n\nNext:\n  windfall fit {directory}\n"
         )),

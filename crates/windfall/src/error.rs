@@ -293,13 +293,13 @@ pub enum Error {
         /// The file or directory.
         path: PathBuf,
     },
-    /// No impact of a campaign, or none that was asked for, could be fitted.
-    #[error("{path}: none of the {impacts} impacts could be fitted; the messages above say why", path = path.display())]
+    /// Not one impact of a campaign could be fitted.
+    #[error("{path}: nothing could be fitted; {failures} messages above say why", path = path.display())]
     NothingFitted {
         /// The campaign directory.
         path: PathBuf,
-        /// How many impacts there are.
-        impacts: usize,
+        /// How many failures there were.
+        failures: usize,
     },
     /// No impact shows the mass of the carriage.
     #[error(

@@ -36,14 +36,23 @@ pub fn impact_key(
                 (None, TimePlan::Rate(rate)) => format!("{rate:?} Hz"),
             };
             let (quantity, column) = (plan.quantity, filled(&plan.column));
-            format!("{quantity:?} {column:?} {time:?} {:?} {:?}", plan.scale, plan.offset)
+            format!(
+                "{quantity:?} {column:?} {time:?} {:?} {:?}",
+                plan.scale, plan.offset
+            )
         })
         .collect();
     let free: Vec<&String> = campaign
         .fit
         .free
         .iter()
-        .filter(|name| law.kind.describe().parameters.iter().any(|p| p.name == name.as_str()))
+        .filter(|name| {
+            law.kind
+                .describe()
+                .parameters
+                .iter()
+                .any(|p| p.name == name.as_str())
+        })
         .collect();
     let everything = json!({
         "windfall": VERSION,

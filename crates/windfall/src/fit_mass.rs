@@ -29,8 +29,16 @@ pub struct RigFound {
 pub fn find_rig(campaign: &Campaign) -> Result<RigFound, Error> {
     match campaign.rig {
         RigPlan::Pendulum(pendulum) => Ok(known(Rig::Pendulum(pendulum), 0.0)),
-        RigPlan::Carriage { mass: MassPlan::Given { value, sd }, driving_acceleration, .. } => {
-            let carriage = Carriage { mass: value, mass_sd: sd, driving_acceleration };
+        RigPlan::Carriage {
+            mass: MassPlan::Given { value, sd },
+            driving_acceleration,
+            ..
+        } => {
+            let carriage = Carriage {
+                mass: value,
+                mass_sd: sd,
+                driving_acceleration,
+            };
             Ok(known(Rig::Carriage(carriage), sd))
         }
         RigPlan::Carriage {
@@ -38,15 +46,26 @@ pub fn find_rig(campaign: &Campaign) -> Result<RigFound, Error> {
             driving_acceleration,
             driving_acceleration_sd,
         } => {
-            let driving = Uncertain { value: driving_acceleration, sd: driving_acceleration_sd };
+            let driving = Uncertain {
+                value: driving_acceleration,
+                sd: driving_acceleration_sd,
+            };
             from_impulse(campaign, driving)
         }
     }
 }
 
 fn known(rig: Rig, sd: f64) -> RigFound {
-    let mass = MassOutcome { value: rig.effective_mass(), sd, impacts: 0 };
-    RigFound { rig, mass, findings: Vec::new() }
+    let mass = MassOutcome {
+        value: rig.effective_mass(),
+        sd,
+        impacts: 0,
+    };
+    RigFound {
+        rig,
+        mass,
+        findings: Vec::new(),
+    }
 }
 
 fn from_impulse(campaign: &Campaign, driving: Uncertain) -> Result<RigFound, Error> {
@@ -71,7 +90,10 @@ fn from_impulse(campaign: &Campaign, driving: Uncertain) -> Result<RigFound, Err
         .filter_map(|(entry, mass)| {
             let problem = mass.as_ref().err()?;
             let message = format!("{} took no part in finding the mass: {problem}", entry.id);
-            Some(FindingOutcome { code: "no-mass".to_owned(), message })
+            Some(FindingOutcome {
+                code: "no-mass".to_owned(),
+                message,
+            })
         })
         .collect();
     let rig = Rig::Carriage(Carriage {
@@ -79,8 +101,16 @@ fn from_impulse(campaign: &Campaign, driving: Uncertain) -> Result<RigFound, Err
         mass_sd: mass.sd,
         driving_acceleration: driving.value,
     });
-    let mass = MassOutcome { value: mass.value, sd: mass.sd, impacts: found.len() };
-    Ok(RigFound { rig, mass, findings })
+    let mass = MassOutcome {
+        value: mass.value,
+        sd: mass.sd,
+        impacts: found.len(),
+    };
+    Ok(RigFound {
+        rig,
+        mass,
+        findings,
+    })
 }
 
 fn mass_of(

@@ -11,7 +11,8 @@ use serde::{Deserialize, Serialize};
 pub struct EstimateOutcome {
     /// Value.
     pub value: f64,
-    /// Standard deviation; `None` for a value that was held.
+    /// Standard deviation; `None` for a value that was held, or when the data
+    /// cannot tell.
     pub sd: Option<f64>,
     /// Lower end of the 95 % interval.
     pub low: Option<f64>,
@@ -19,6 +20,24 @@ pub struct EstimateOutcome {
     pub high: Option<f64>,
     /// SI unit.
     pub unit: String,
+    /// Whether the value was held, not estimated.
+    pub held: bool,
+}
+
+/// How one quantity of the cost function fits.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct ResidualOutcome {
+    /// Samples.
+    pub samples: usize,
+    /// Weight of a square in the cost.
+    pub weight: f64,
+    /// Noise of a sample, from the recording itself.
+    pub noise: f64,
+    /// Root mean square residual.
+    pub rms: f64,
+    /// Runs test: standardised number of runs; far below 0 when the residuals
+    /// are not random.
+    pub runs_z: Option<f64>,
 }
 
 /// Something that a reader of the result must know.
@@ -50,23 +69,25 @@ pub struct ImpactOutcome {
     /// Initial velocity, onset and offset, as far as they were estimated.
     pub nuisances: Named<EstimateOutcome>,
     /// Correlations of the estimates: "k, c".
-    pub correlations: Named<Option<f64>>,
+    pub correlations: Named<f64>,
     /// Value of the cost function.
     pub cost: f64,
     /// Samples in it.
     pub samples: usize,
-    /// Iterations of the least-squares method.
-    pub iterations: usize,
-    /// Whether it converged.
+    /// Evaluations of the model.
+    pub evaluations: usize,
+    /// Whether a minimum was reached.
     pub converged: bool,
-    /// Root mean square of the weighted residuals, 1 when the noise explains them.
-    pub residual_norm: Option<f64>,
-    /// Runs test of the residuals per quantity: two-sided p.
-    pub runs_p: Named<Option<f64>>,
+    /// Root of the cost.
+    pub residual_norm: f64,
+    /// How each quantity fits.
+    pub residuals: Named<ResidualOutcome>,
     /// Parameters by the linear regression of the force, for comparison.
     pub regression: Named<EstimateOutcome>,
     /// Velocities, energies, peaks.
     pub derived: Named<Option<f64>>,
+    /// Standard uncertainties of those read off the signals, where known.
+    pub derived_sd: Named<f64>,
     /// "signal" or "fit" for each entry of `derived`.
     pub derived_from: Named<String>,
     /// The same quantities in the motion under the fitted law.

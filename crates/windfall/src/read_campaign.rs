@@ -3,12 +3,14 @@
 use crate::campaign::{Campaign, FilePlan, TimePlan};
 use crate::error::{Error, Place};
 use crate::file_campaign::{CampaignFile, FORMAT, FilesFile};
-use crate::read_contact::contact_plan;
 use crate::read_channels::channel_plans;
+use crate::read_contact::contact_plan;
 use crate::read_fit::fit_plan;
 use crate::read_rig::rig_plan;
 use crate::read_tables::{read_impacts, read_specimens};
-use crate::toml_source::{Needed, TomlSource, invalid, missing, parse_source, place_at, read_source};
+use crate::toml_source::{
+    Needed, TomlSource, invalid, missing, parse_source, place_at, read_source,
+};
 use crate::toml_source::{optional_quantity, suggestion};
 use std::path::{Path, PathBuf};
 use toml::Spanned;
@@ -37,18 +39,28 @@ pub fn read_campaign(directory: &Path) -> Result<Campaign, Error> {
     let fit = fit_plan(&source, &file.fit)?;
 
     let specimens_file = directory.join("specimens.csv");
-    let specimens =
-        if specimens_file.exists() { Some(read_specimens(&specimens_file)?) } else { None };
+    let specimens = if specimens_file.exists() {
+        Some(read_specimens(&specimens_file)?)
+    } else {
+        None
+    };
     let impacts = read_impacts(&directory.join("impacts.csv"), specimens.as_deref())?;
     let campaign = Campaign {
         directory: directory.to_path_buf(),
-        title: file.campaign.title.unwrap_or_else(|| directory.display().to_string()),
+        title: file
+            .campaign
+            .title
+            .unwrap_or_else(|| directory.display().to_string()),
         simulated: file.campaign.simulated,
         rig,
         files,
         contact,
         fit,
-        group: file.summary.group.as_ref().map(|group| group.get_ref().clone()),
+        group: file
+            .summary
+            .group
+            .as_ref()
+            .map(|group| group.get_ref().clone()),
         specimens: specimens.unwrap_or_default(),
         impacts,
     };
@@ -110,7 +122,13 @@ fn with_variables(source: &TomlSource, text: &Spanned<String>) -> Result<String,
     while let Some((before, after)) = rest.split_once("${") {
         let Some((name, behind)) = after.split_once('}') else {
             let problem = "a \"${\" is not closed by \"}\"".to_owned();
-            return Err(invalid(source, &text.span(), ("[files]", "directory"), text.get_ref(), problem));
+            return Err(invalid(
+                source,
+                &text.span(),
+                ("[files]", "directory"),
+                text.get_ref(),
+                problem,
+            ));
         };
         let value = std::env::var(name).map_err(|_| Error::VariableUnset {
             place: place_at(source, &text.span()),
@@ -132,24 +150,41 @@ fn time_plan(source: &TomlSource, files: &FilesFile) -> Result<TimePlan, Error> 
         unit: "Hz",
         example: "time = \"time_s\"   or   rate = \"200 kHz\"",
     };
-    let rate_key = Needed { key: "rate", ..needed };
-    match (&files.time, optional_quantity(source, files.rate.as_ref(), &rate_key)?) {
+    let rate_key = Needed {
+        key: "rate",
+        ..needed
+    };
+    match (
+        &files.time,
+        optional_quantity(source, files.rate.as_ref(), &rate_key)?,
+    ) {
         (Some(column), None) => Ok(TimePlan::Column(column.get_ref().clone())),
         (None, Some(rate)) if rate > 0.0 => Ok(TimePlan::Rate(rate)),
         (None, None) => Err(missing(source, &(0..0), &needed, needed.table.to_owned())),
         (time, _) => {
-            let rate = files.rate.as_ref().map_or((0..0, ""), |r| (r.span(), &r.get_ref().0));
+            let rate = files
+                .rate
+                .as_ref()
+                .map_or((0..0, ""), |r| (r.span(), &r.get_ref().0));
             let problem = match time {
                 Some(_) => "the times are given by a column too; keep one of `time` and `rate`",
                 None => "a sampling rate must be above zero, such as \"200 kHz\"",
             };
-            Err(invalid(source, &rate.0, ("[files]", "rate"), rate.1, problem.to_owned()))
+            Err(invalid(
+                source,
+                &rate.0,
+                ("[files]", "rate"),
+                rate.1,
+                problem.to_owned(),
+            ))
         }
     }
 }
 
 fn time_scale(source: &TomlSource, files: &FilesFile) -> Result<f64, Error> {
-    let Some(unit) = &files.time_unit else { return Ok(1.0) };
+    let Some(unit) = &files.time_unit else {
+        return Ok(1.0);
+    };
     let at = ("[files]", "time_unit");
     let parsed = parse_unit(unit.get_ref())
         .map_err(|error| invalid(source, &unit.span(), at, unit.get_ref(), error.to_string()))?;
@@ -169,7 +204,12 @@ fn check_group(
     let Some(group) = group else { return Ok(()) };
     let specimen_cells = campaign.specimens.first().map_or(&[][..], |s| &s.cells);
     let impact_cells = campaign.impacts.first().map_or(&[][..], |i| &i.cells);
-    let names = || specimen_cells.iter().chain(impact_cells).map(|(name, _)| name.as_str());
+    let names = || {
+        specimen_cells
+            .iter()
+            .chain(impact_cells)
+            .map(|(name, _)| name.as_str())
+    };
     if names().any(|name| name == group.get_ref()) {
         return Ok(());
     }
@@ -178,15 +218,29 @@ fn check_group(
         suggestion(group.get_ref(), names()),
         names().collect::<Vec<_>>().join(", ")
     );
-    Err(invalid(source, &group.span(), ("[summary]", "group"), group.get_ref(), problem))
+    Err(invalid(
+        source,
+        &group.span(),
+        ("[summary]", "group"),
+        group.get_ref(),
+        problem,
+    ))
 }
 
 fn check_placeholders(source: &TomlSource, campaign: &Campaign) -> Result<(), Error> {
-    let Some(first) = campaign.impacts.first() else { return Ok(()) };
+    let Some(first) = campaign.impacts.first() else {
+        return Ok(());
+    };
     for channel in &campaign.files.channels {
-        for text in [Some(&channel.column), channel.time.as_ref()].into_iter().flatten() {
+        for text in [Some(&channel.column), channel.time.as_ref()]
+            .into_iter()
+            .flatten()
+        {
             fill_placeholders(text, &first.cells).map_err(|name| Error::PlaceholderUnknown {
-                place: Place { file: source.path.clone(), line: channel.line },
+                place: Place {
+                    file: source.path.clone(),
+                    line: channel.line,
+                },
                 text: text.clone(),
                 name,
             })?;
@@ -203,7 +257,9 @@ pub fn fill_placeholders(text: &str, cells: &[(String, String)]) -> Result<Strin
     let mut rest = text;
     let mut whole = String::new();
     while let Some((before, after)) = rest.split_once('{') {
-        let Some((name, behind)) = after.split_once('}') else { break };
+        let Some((name, behind)) = after.split_once('}') else {
+            break;
+        };
         let cell = cells.iter().find(|(column, _)| column == name);
         whole.push_str(before);
         whole.push_str(&cell.ok_or_else(|| name.to_owned())?.1);

@@ -314,10 +314,7 @@ fn sign(source: &TomlSource, kind: &Kind, file: &ChannelFile) -> Result<f64, Err
 ///
 /// # Errors
 /// Phases or counts are recorded and the encoder does not say what they mean.
-pub fn encoder_plan(
-    source: &TomlSource,
-    file: &CampaignFile,
-) -> Result<Option<Encoder>, Error> {
+pub fn encoder_plan(source: &TomlSource, file: &CampaignFile) -> Result<Option<Encoder>, Error> {
     let counts = file.channels.as_ref().is_some_and(|channels| {
         let channels = channels.get_ref();
         channels.count.is_some() || channels.phase_a.is_some() || channels.phase_b.is_some()

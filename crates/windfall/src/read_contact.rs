@@ -28,13 +28,24 @@ pub fn contact_plan(
     let mut options = ExtractOptions::default();
     options.trigger.threshold = threshold(source, contact.threshold.as_ref())?;
     let baselines = [("remove", Baseline::Remove), ("keep", Baseline::Keep)];
-    if let Some(baseline) =
-        choice(source, contact.baseline.as_ref(), (TABLE, "baseline"), &baselines)?
-    {
+    if let Some(baseline) = choice(
+        source,
+        contact.baseline.as_ref(),
+        (TABLE, "baseline"),
+        &baselines,
+    )? {
         options.trigger.baseline = baseline;
     }
-    let contacts = [("first", ContactChoice::First), ("strongest", ContactChoice::Strongest)];
-    if let Some(chosen) = choice(source, contact.contact.as_ref(), (TABLE, "contact"), &contacts)? {
+    let contacts = [
+        ("first", ContactChoice::First),
+        ("strongest", ContactChoice::Strongest),
+    ];
+    if let Some(chosen) = choice(
+        source,
+        contact.contact.as_ref(),
+        (TABLE, "contact"),
+        &contacts,
+    )? {
         options.trigger.choice = chosen;
     }
     if let Some(margin) = &contact.margin_before {
@@ -46,7 +57,10 @@ pub fn contact_plan(
     options.encoder = encoder_plan(source, file)?;
     match rig {
         RigPlan::Pendulum(pendulum) => options.arm = Some(pendulum.arm),
-        RigPlan::Carriage { driving_acceleration, .. } => {
+        RigPlan::Carriage {
+            driving_acceleration,
+            ..
+        } => {
             options.driving_acceleration = *driving_acceleration;
             check_encoder(source, file, options.encoder)?;
         }
@@ -73,7 +87,13 @@ fn threshold(
         _ => {
             let problem = format!("must be above zero, for example: {}", needed.example);
             let at = (TABLE, "threshold");
-            Err(invalid(source, &text.span(), at, &text.get_ref().0, problem))
+            Err(invalid(
+                source,
+                &text.span(),
+                at,
+                &text.get_ref().0,
+                problem,
+            ))
         }
     }
 }
@@ -88,7 +108,13 @@ fn checked_margin(
         return Ok(value);
     }
     let problem = "expected a part of the contact's duration from 0 to 100, such as 0.2".to_owned();
-    Err(invalid(source, &margin.span(), (TABLE, key), &value.to_string(), problem))
+    Err(invalid(
+        source,
+        &margin.span(),
+        (TABLE, key),
+        &value.to_string(),
+        problem,
+    ))
 }
 
 fn check_encoder(
@@ -96,7 +122,12 @@ fn check_encoder(
     file: &CampaignFile,
     encoder: Option<Encoder>,
 ) -> Result<(), Error> {
-    let (Some(Encoder::Rotary { counts_per_revolution }), Some(table)) = (encoder, &file.encoder)
+    let (
+        Some(Encoder::Rotary {
+            counts_per_revolution,
+        }),
+        Some(table),
+    ) = (encoder, &file.encoder)
     else {
         return Ok(());
     };
@@ -104,5 +135,11 @@ fn check_encoder(
                    count_length = \"0.17 mm\""
         .to_owned();
     let at = ("[encoder]", "counts_per_revolution");
-    Err(invalid(source, &table.span(), at, &counts_per_revolution.to_string(), problem))
+    Err(invalid(
+        source,
+        &table.span(),
+        at,
+        &counts_per_revolution.to_string(),
+        problem,
+    ))
 }

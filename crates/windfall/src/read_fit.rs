@@ -3,8 +3,8 @@
 use crate::campaign::FitPlan;
 use crate::error::Error;
 use crate::file_campaign::FitFile;
-use crate::toml_source::{Needed, TomlSource, choice, invalid, missing};
 use crate::toml_source::suggestion;
+use crate::toml_source::{Needed, TomlSource, choice, invalid, missing};
 use toml::Spanned;
 use windfall_contact::expression::{LawExpression, parse_law};
 use windfall_contact::law::EndRule;
@@ -31,20 +31,30 @@ pub fn fit_plan(source: &TomlSource, file: &FitFile) -> Result<FitPlan, Error> {
     if let Some(weights) = choice(source, file.weights.as_ref(), (TABLE, "weights"), &weights)? {
         options.weighting = weights;
     }
-    let ends = [("force-zero", EndRule::ForceZero), ("gap-zero", EndRule::GapZero)];
+    let ends = [
+        ("force-zero", EndRule::ForceZero),
+        ("gap-zero", EndRule::GapZero),
+    ];
     if let Some(end) = choice(source, file.end.as_ref(), (TABLE, "end"), &ends)? {
         options.end = end;
     }
     let treatment = |value: Option<&Spanned<String>>, key| {
-        let words =
-            [("auto", Treatment::Auto), ("free", Treatment::Free), ("fixed", Treatment::Fixed)];
+        let words = [
+            ("auto", Treatment::Auto),
+            ("free", Treatment::Free),
+            ("fixed", Treatment::Fixed),
+        ];
         Ok(choice(source, value, (TABLE, key), &words)?.unwrap_or(Treatment::Auto))
     };
     options.initial_velocity = treatment(file.initial_velocity.as_ref(), "initial_velocity")?;
     options.onset = treatment(file.onset.as_ref(), "onset")?;
     options.displacement_offset =
         treatment(file.displacement_offset.as_ref(), "displacement_offset")?;
-    Ok(FitPlan { laws, free, options })
+    Ok(FitPlan {
+        laws,
+        free,
+        options,
+    })
 }
 
 /// Quantities of a cost function by their names.
@@ -57,15 +67,23 @@ pub fn quantities_named<'a>(
     let names = Quantity::ALL.map(Quantity::name);
     let mut chosen = Vec::new();
     for word in words {
-        let found = Quantity::ALL.into_iter().find(|quantity| quantity.name() == word);
+        let found = Quantity::ALL
+            .into_iter()
+            .find(|quantity| quantity.name() == word);
         chosen.push(found.ok_or_else(|| {
             let hint = suggestion(word, names);
-            (word.to_owned(), format!("expected any of {}{hint}", names.join(", ")))
+            (
+                word.to_owned(),
+                format!("expected any of {}{hint}", names.join(", ")),
+            )
         })?);
     }
     match chosen.is_empty() {
         false => Ok(Quantities::of(&chosen)),
-        true => Err((String::new(), format!("expected at least one of {}", names.join(", ")))),
+        true => Err((
+            String::new(),
+            format!("expected at least one of {}", names.join(", ")),
+        )),
     }
 }
 
@@ -73,9 +91,14 @@ pub fn quantities_named<'a>(
 /// expected.
 #[must_use]
 pub fn unknown_parameter(free: &[String], laws: &[LawExpression]) -> Option<(usize, String)> {
-    let names: Vec<&str> =
-        laws.iter().flat_map(|law| law.kind.describe().parameters).map(|p| p.name).collect();
-    let index = free.iter().position(|name| !names.contains(&name.as_str()))?;
+    let names: Vec<&str> = laws
+        .iter()
+        .flat_map(|law| law.kind.describe().parameters)
+        .map(|p| p.name)
+        .collect();
+    let index = free
+        .iter()
+        .position(|name| !names.contains(&name.as_str()))?;
     let known = names.join(", ");
     let problem = format!(
         "no law here has a parameter of that name{}; they have: {known}",
@@ -86,14 +109,16 @@ pub fn unknown_parameter(free: &[String], laws: &[LawExpression]) -> Option<(usi
 
 fn quantities(source: &TomlSource, words: &[Spanned<String>]) -> Result<Quantities, Error> {
     quantities_named(words.iter().map(|word| word.get_ref().as_str())).map_err(|(text, problem)| {
-        let at = words.iter().find(|word| *word.get_ref() == text).map_or(0..0, Spanned::span);
+        let at = words
+            .iter()
+            .find(|word| *word.get_ref() == text)
+            .map_or(0..0, Spanned::span);
         invalid(source, &at, (TABLE, "quantities"), &text, problem)
     })
 }
 
 fn laws(source: &TomlSource, file: &FitFile) -> Result<Vec<LawExpression>, Error> {
-    let texts: Vec<&Spanned<String>> =
-        file.law.iter().chain(file.laws.iter().flatten()).collect();
+    let texts: Vec<&Spanned<String>> = file.law.iter().chain(file.laws.iter().flatten()).collect();
     if texts.is_empty() {
         let needed = Needed {
             table: TABLE,
@@ -107,11 +132,23 @@ fn laws(source: &TomlSource, file: &FitFile) -> Result<Vec<LawExpression>, Error
     let mut laws: Vec<LawExpression> = Vec::new();
     for text in texts {
         let law = parse_law(text.get_ref()).map_err(|error| {
-            invalid(source, &text.span(), (TABLE, "law"), text.get_ref(), error.to_string())
+            invalid(
+                source,
+                &text.span(),
+                (TABLE, "law"),
+                text.get_ref(),
+                error.to_string(),
+            )
         })?;
         if laws.iter().any(|known| known.kind == law.kind) {
             let problem = "this law is named twice; each law can be fitted once".to_owned();
-            return Err(invalid(source, &text.span(), (TABLE, "law"), text.get_ref(), problem));
+            return Err(invalid(
+                source,
+                &text.span(),
+                (TABLE, "law"),
+                text.get_ref(),
+                problem,
+            ));
         }
         laws.push(law);
     }
@@ -129,7 +166,13 @@ fn free_names(
         None => Ok(names),
         Some((index, problem)) => {
             let at = words[index].span();
-            Err(invalid(source, &at, (TABLE, "free"), &names[index], problem))
+            Err(invalid(
+                source,
+                &at,
+                (TABLE, "free"),
+                &names[index],
+                problem,
+            ))
         }
     }
 }

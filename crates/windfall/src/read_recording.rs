@@ -30,18 +30,27 @@ pub fn read_recording(files: &FilePlan, impact: &ImpactEntry) -> Result<Recordin
     let (columns, asked_by) = columns_of(&sources);
     let numbers = read_numbers(&path, &columns, &asked_by)?.columns;
     let column = |name: &str| {
-        let index = columns.iter().position(|known| known == name).unwrap_or_default();
+        let index = columns
+            .iter()
+            .position(|known| known == name)
+            .unwrap_or_default();
         numbers[index].as_slice()
     };
     let channels = sources
         .iter()
         .map(|source| {
             let samples = column(&source.column);
-            let times = source.time.as_ref().map(|name| (name.as_str(), column(name)));
+            let times = source
+                .time
+                .as_ref()
+                .map(|name| (name.as_str(), column(name)));
             channel_of(files, source, samples, times, &path)
         })
         .collect::<Result<Vec<_>, _>>()?;
-    Ok(Recording { name: impact.file.clone(), channels })
+    Ok(Recording {
+        name: impact.file.clone(),
+        channels,
+    })
 }
 
 /// A channel with the names of its columns in this file.
@@ -59,7 +68,10 @@ fn source_of<'a>(
 ) -> Result<Source<'a>, Error> {
     let fill = |text: &str| {
         fill_placeholders(text, &impact.cells).map_err(|name| Error::PlaceholderUnknown {
-            place: Place { file: path.to_path_buf(), line: 0 },
+            place: Place {
+                file: path.to_path_buf(),
+                line: 0,
+            },
             text: text.to_owned(),
             name,
         })
@@ -69,7 +81,11 @@ fn source_of<'a>(
         (None, TimePlan::Column(shared)) => Some(fill(shared)?),
         (None, TimePlan::Rate(_)) => None,
     };
-    Ok(Source { plan, column: fill(&plan.column)?, time })
+    Ok(Source {
+        plan,
+        column: fill(&plan.column)?,
+        time,
+    })
 }
 
 /// Each column once, with who asks for it.
@@ -77,10 +93,16 @@ fn columns_of(sources: &[Source]) -> (Vec<String>, Vec<String>) {
     let mut columns: Vec<String> = Vec::new();
     let mut asked_by = Vec::new();
     for source in sources {
-        for name in [Some(&source.column), source.time.as_ref()].into_iter().flatten() {
+        for name in [Some(&source.column), source.time.as_ref()]
+            .into_iter()
+            .flatten()
+        {
             if !columns.contains(name) {
                 columns.push(name.clone());
-                asked_by.push(format!(" (campaign.toml, line {}, {})", source.plan.line, source.plan.table));
+                asked_by.push(format!(
+                    " (campaign.toml, line {}, {})",
+                    source.plan.line, source.plan.table
+                ));
             }
         }
     }
@@ -96,10 +118,17 @@ fn channel_of(
 ) -> Result<Channel, Error> {
     let plan = source.plan;
     let calibrated = |cell: f64| plan.scale * (cell - plan.offset);
-    let samples: Vec<f64> = cells.iter().flatten().map(|cell| calibrated(*cell)).collect();
+    let samples: Vec<f64> = cells
+        .iter()
+        .flatten()
+        .map(|cell| calibrated(*cell))
+        .collect();
     if samples.is_empty() {
         let column = source.column.clone();
-        return Err(Error::ColumnBlank { path: path.to_path_buf(), column });
+        return Err(Error::ColumnBlank {
+            path: path.to_path_buf(),
+            column,
+        });
     }
     let times = match (times, &files.time) {
         (Some((name, times)), _) => listed_times(files, source, cells, name, times, path)?,
@@ -107,7 +136,12 @@ fn channel_of(
         // A plan without a rate has a column of times.
         (None, TimePlan::Column(_)) => Times::Listed(Vec::new()),
     };
-    Ok(Channel { name: source.column.clone(), quantity: plan.quantity, times, samples })
+    Ok(Channel {
+        name: source.column.clone(),
+        quantity: plan.quantity,
+        times,
+        samples,
+    })
 }
 
 fn listed_times(
@@ -125,7 +159,10 @@ fn listed_times(
             (Some(_), Some(time)) => listed.push(time * files.time_scale),
             (Some(_), None) => {
                 return Err(Error::SampleWithoutTime {
-                    place: Place { file: path.to_path_buf(), line: 0 },
+                    place: Place {
+                        file: path.to_path_buf(),
+                        line: 0,
+                    },
                     sample: row,
                     column: source.column.clone(),
                     time: name.to_owned(),
@@ -139,7 +176,10 @@ fn listed_times(
 /// Times of rows at a fixed rate; rows without a sample leave a gap.
 fn counted_times(cells: &[Option<f64>], rate: f64) -> Times {
     if cells.iter().all(Option::is_some) {
-        return Times::Uniform { start: 0.0, interval: 1.0 / rate };
+        return Times::Uniform {
+            start: 0.0,
+            interval: 1.0 / rate,
+        };
     }
     let rows = cells.iter().enumerate().filter(|(_, cell)| cell.is_some());
     Times::Listed(rows.map(|(row, _)| row as f64 / rate).collect())

@@ -125,7 +125,11 @@ pub fn simulate_pendulum_recordings(
     }
     let campaign = SimulatedCampaign {
         title: "Simulated pendulum campaign".to_owned(),
-        label: format!("windfall simulate pendulum, {}, seed {}", law_text(&law), recordings.seed),
+        label: format!(
+            "windfall simulate pendulum, {}, seed {}",
+            law_text(&law),
+            recordings.seed
+        ),
         rig,
         velocity: positive("--velocity", &request.velocity, "m/s")?,
         end: end_rule(&request.end)?,
@@ -143,7 +147,9 @@ pub fn simulate_pendulum_recordings(
 }
 
 fn law_text(law: &Law) -> String {
-    windfall_contact::expression::LawExpression::from(*law).to_string().replace('"', "'")
+    windfall_contact::expression::LawExpression::from(*law)
+        .to_string()
+        .replace('"', "'")
 }
 
 fn carriage_event(request: &CarriageRequest) -> Result<(Law, Rig, f64, EndRule), Error> {
@@ -154,7 +160,12 @@ fn carriage_event(request: &CarriageRequest) -> Result<(Law, Rig, f64, EndRule),
         driving_acceleration: quantity("--driving-acceleration", driving, "m/s^2")?,
     });
     let velocity = positive("--velocity", &request.velocity, "m/s")?;
-    Ok((complete_law(&request.law)?, rig, velocity, end_rule(&request.end)?))
+    Ok((
+        complete_law(&request.law)?,
+        rig,
+        velocity,
+        end_rule(&request.end)?,
+    ))
 }
 
 fn pendulum(request: &PendulumRequest) -> Result<Pendulum, Error> {
@@ -203,7 +214,11 @@ fn spread(law: &Law, texts: &[String]) -> Result<Vec<f64>, Error> {
         let option = format!("--spread {text}");
         let names = description.parameters.iter().map(|p| p.name);
         let (name, value) = text.split_once('=').unwrap_or((text, ""));
-        let Some(index) = description.parameters.iter().position(|p| p.name == name.trim()) else {
+        let Some(index) = description
+            .parameters
+            .iter()
+            .position(|p| p.name == name.trim())
+        else {
             let known = names.clone().collect::<Vec<_>>().join(", ");
             let problem = format!(
                 "expected NAME=SD with a parameter of {}{}: {known}",

@@ -87,7 +87,9 @@ pub fn write_simulated_campaign(
             let id = format!("{}-{:02}", batch.variety.replace(' ', "-"), specimen + 1);
             let mut source = noise_source(campaign.seed, SPECIMEN_STREAM + specimen_number);
             let law = drawn(batch, &mut source)?;
-            tables.specimens.push(vec![id.clone(), batch.variety.clone()]);
+            tables
+                .specimens
+                .push(vec![id.clone(), batch.variety.clone()]);
             for repeat in 0..batch.repeats {
                 let impact = match batch.repeats {
                     1 => id.clone(),
@@ -98,7 +100,11 @@ pub fn write_simulated_campaign(
                 let text = recording_text(campaign, &law, &mut source, seed)?;
                 write_file(&raw.join(&file), text.as_bytes())?;
                 tables.impacts.push(vec![impact.clone(), id.clone(), file]);
-                tables.truth.push(vec![impact, id.clone(), LawExpression::from(law).to_string()]);
+                tables.truth.push(vec![
+                    impact,
+                    id.clone(),
+                    LawExpression::from(law).to_string(),
+                ]);
                 recordings += 1;
             }
         }
@@ -145,7 +151,13 @@ fn drawn(batch: &Batch, source: &mut NoiseSource) -> Result<Law, Error> {
         let values: Vec<f64> = means
             .iter()
             .zip(&batch.spread)
-            .map(|(mean, sd)| if *sd > 0.0 { mean + sd * normal(source) } else { *mean })
+            .map(|(mean, sd)| {
+                if *sd > 0.0 {
+                    mean + sd * normal(source)
+                } else {
+                    *mean
+                }
+            })
             .collect();
         if let Ok(law) = kind.with_parameters(&values) {
             return Ok(law);
@@ -169,15 +181,17 @@ fn recording_text(
     seed: u64,
 ) -> Result<String, Error> {
     let rig = Rig::Pendulum(campaign.rig);
-    let failed = |source| Error::Identify { subject: LawExpression::from(*law).to_string(), source };
+    let failed = |source| Error::Identify {
+        subject: LawExpression::from(*law).to_string(),
+        source,
+    };
     let summary = simulate_rig(law, &rig, campaign.velocity, campaign.end).map_err(failed)?;
     // The clock of the instrument knows nothing of the first touch.
     let rate = sampling_rate(&campaign.instrument);
     let start = -LEAD - uniform(source) / rate;
     let count = ((summary.contact_duration + 2.0 * LEAD) * rate).ceil() as usize;
     let times: Vec<f64> = (0..count).map(|i| start + i as f64 / rate).collect();
-    let motion =
-        trajectory(law, &rig, campaign.velocity, &times, campaign.end).map_err(failed)?;
+    let motion = trajectory(law, &rig, campaign.velocity, &times, campaign.end).map_err(failed)?;
     let motion = Trajectory {
         times: motion.times,
         displacement: motion.displacement,
@@ -185,11 +199,19 @@ fn recording_text(
         force: motion.force,
         acceleration: motion.acceleration,
     };
-    let channels = record(&motion, &campaign.instrument, seed).map_err(|source| {
-        Error::Signal { path: PathBuf::from("the simulated recording"), source }
+    let channels = record(&motion, &campaign.instrument, seed).map_err(|source| Error::Signal {
+        path: PathBuf::from("the simulated recording"),
+        source,
     })?;
-    let rows = channels.iter().map(|channel| channel.samples.len()).min().unwrap_or(0);
-    let names: Vec<&str> = channels.iter().map(|channel| column_name(channel.quantity)).collect();
+    let rows = channels
+        .iter()
+        .map(|channel| channel.samples.len())
+        .min()
+        .unwrap_or(0);
+    let names: Vec<&str> = channels
+        .iter()
+        .map(|channel| column_name(channel.quantity))
+        .collect();
     let mut text = names.join(",") + "\n";
     for row in 0..rows {
         for (index, channel) in channels.iter().enumerate() {
@@ -206,7 +228,9 @@ fn recording_text(
 }
 
 fn sampling_rate(instrument: &Instrument) -> f64 {
-    instrument.force.map_or(200e3, |sensor| sensor.sampling_rate)
+    instrument
+        .force
+        .map_or(200e3, |sensor| sensor.sampling_rate)
 }
 
 fn column_name(quantity: Quantity) -> &'static str {
@@ -224,12 +248,19 @@ fn column_name(quantity: Quantity) -> &'static str {
 
 fn campaign_text(campaign: &SimulatedCampaign, batches: &[Batch]) -> String {
     let rig = &campaign.rig;
-    let law = batches.first().map_or("kuwabara-kono", |batch| batch.law.kind().name());
+    let law = batches
+        .first()
+        .map_or("kuwabara-kono", |batch| batch.law.kind().name());
     let counts = match campaign.instrument.encoder.map(|sensor| sensor.encoder) {
-        Some(Encoder::Rotary { counts_per_revolution }) => counts_per_revolution,
+        Some(Encoder::Rotary {
+            counts_per_revolution,
+        }) => counts_per_revolution,
         _ => 0.0,
     };
-    let sensitivity = campaign.instrument.force.map_or(0.0, |sensor| sensor.sensitivity);
+    let sensitivity = campaign
+        .instrument
+        .force
+        .map_or(0.0, |sensor| sensor.sensitivity);
     format!(
         r#"# Simulated by windfall: no fruit was hurt. The parameters that were drawn are in truth.csv.
 format = 1

@@ -60,9 +60,12 @@ pub fn write_example(directory: &Path, seed: u64) -> Result<usize, Error> {
 }
 
 fn batch(variety: &str, means: [f64; 2], spread: [f64; 2]) -> Result<Batch, Error> {
-    let law = LawKind::KuwabaraKono.with_parameters(&means).map_err(|error| {
-        Error::OptionInvalid { option: variety.to_owned(), problem: error.to_string() }
-    })?;
+    let law = LawKind::KuwabaraKono
+        .with_parameters(&means)
+        .map_err(|error| Error::OptionInvalid {
+            option: variety.to_owned(),
+            problem: error.to_string(),
+        })?;
     let one = spread == [0.0, 0.0];
     Ok(Batch {
         variety: variety.to_owned(),

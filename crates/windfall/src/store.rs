@@ -361,6 +361,7 @@ mod tests {
             low: Some(-0.0),
             high: None,
             unit: "N/m^1.5".to_owned(),
+            held: false,
         };
         ImpactOutcome {
             id: id.to_owned(),
@@ -377,12 +378,13 @@ mod tests {
             correlations: Named(Vec::new()),
             cost: 2.0 / 3.0,
             samples: 1111,
-            iterations: 5,
+            evaluations: 5,
             converged: true,
-            residual_norm: None,
-            runs_p: Named(Vec::new()),
+            residual_norm: 0.8,
+            residuals: Named(Vec::new()),
             regression: Named(Vec::new()),
             derived: Named(vec![("restitution".to_owned(), Some(0.47))]),
+            derived_sd: Named(Vec::new()),
             derived_from: Named(vec![("restitution".to_owned(), "signal".to_owned())]),
             fitted: Named(Vec::new()),
             findings: vec![FindingOutcome {

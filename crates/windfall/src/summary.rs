@@ -63,7 +63,7 @@ pub fn summarise(law: &str, group: Option<&str>, impacts: &[&ImpactOutcome]) -> 
             .parameters
             .0
             .iter()
-            .filter(|(_, estimate)| estimate.sd.is_some());
+            .filter(|(_, estimate)| !estimate.held);
         estimated
             .map(|(name, estimate)| (name.as_str(), Some(estimate.value)))
             .collect()

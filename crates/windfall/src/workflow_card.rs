@@ -49,12 +49,17 @@ pub struct ParameterText {
 pub fn law_cards(name: Option<&str>) -> Result<Vec<LawCardText>, Error> {
     let kinds = match name {
         None => LawKind::ALL.to_vec(),
-        Some(name) => vec![LawKind::from_name(name).map_err(|error| Error::OptionInvalid {
-            option: format!("--law {name}"),
-            problem: error.to_string(),
-        })?],
+        Some(name) => vec![
+            LawKind::from_name(name).map_err(|error| Error::OptionInvalid {
+                option: format!("--law {name}"),
+                problem: error.to_string(),
+            })?,
+        ],
     };
-    Ok(kinds.into_iter().map(|kind| card_of(kind.describe())).collect())
+    Ok(kinds
+        .into_iter()
+        .map(|kind| card_of(kind.describe()))
+        .collect())
 }
 
 fn card_of(law: &LawDescription) -> LawCardText {
@@ -87,9 +92,13 @@ pub fn text_of_laws(laws: &[LawCardText]) -> String {
         let _ = writeln!(text, "  source:      {}", law.source);
         let header = ["parameter", "unit", "bounds", "typical", "meaning"].map(str::to_owned);
         let rows = law.parameters.iter().map(|p| {
-            let upper = p.upper.map_or_else(|| "∞".to_owned(), |upper| upper.to_string());
+            let upper = p
+                .upper
+                .map_or_else(|| "∞".to_owned(), |upper| upper.to_string());
             let bounds = format!("{} … {upper}", p.lower);
-            [p.name, p.unit, &bounds, &p.typical.to_string(), p.meaning].map(str::to_owned).to_vec()
+            [p.name, p.unit, &bounds, &p.typical.to_string(), p.meaning]
+                .map(str::to_owned)
+                .to_vec()
         });
         for line in table_text(&header, rows, &[0, 1, 4]).lines() {
             let _ = writeln!(text, "  {line}");
@@ -104,7 +113,10 @@ fn expression(law: &LawCardText) -> String {
     let parameters: Vec<String> = law
         .parameters
         .iter()
-        .map(|p| p.default.map_or_else(|| p.name.to_owned(), |d| format!("{}={d}", p.name)))
+        .map(|p| {
+            p.default
+                .map_or_else(|| p.name.to_owned(), |d| format!("{}={d}", p.name))
+        })
         .collect();
     format!("{}({})", law.name, parameters.join(", "))
 }
@@ -115,7 +127,15 @@ fn expression(law: &LawCardText) -> String {
 /// None in practice: the text is written to memory.
 pub fn csv_of_laws(laws: &[LawCardText]) -> Result<String, Error> {
     let header = [
-        "law", "formula", "source", "parameter", "unit", "lower", "upper", "typical", "default",
+        "law",
+        "formula",
+        "source",
+        "parameter",
+        "unit",
+        "lower",
+        "upper",
+        "typical",
+        "default",
         "meaning",
     ];
     let number = |value: Option<f64>| value.map_or_else(String::new, |value| value.to_string());

@@ -85,7 +85,10 @@ fn apply_request(campaign: &mut Campaign, request: &FitRequest) -> Result<(), Er
         campaign.fit.laws = laws.collect::<Result<_, _>>()?;
         // The campaign's list may name parameters of laws that are not fitted now.
         let laws = &campaign.fit.laws;
-        campaign.fit.free.retain(|name| unknown_parameter(std::slice::from_ref(name), laws).is_none());
+        campaign
+            .fit
+            .free
+            .retain(|name| unknown_parameter(std::slice::from_ref(name), laws).is_none());
     }
     if !request.free.is_empty() {
         if let Some((index, problem)) = unknown_parameter(&request.free, &campaign.fit.laws) {
@@ -116,7 +119,11 @@ fn apply_request(campaign: &mut Campaign, request: &FitRequest) -> Result<(), Er
 fn group_columns(campaign: &Campaign) -> Vec<&str> {
     let specimen = campaign.specimens.first().map_or(&[][..], |s| &s.cells);
     let impact = campaign.impacts.first().map_or(&[][..], |i| &i.cells);
-    specimen.iter().chain(impact).map(|(name, _)| name.as_str()).collect()
+    specimen
+        .iter()
+        .chain(impact)
+        .map(|(name, _)| name.as_str())
+        .collect()
 }
 
 fn fit(
@@ -139,8 +146,12 @@ fn fit(
             vec![None; keys.len()]
         }
     };
-    let stored: BTreeMap<String, ImpactOutcome> =
-        keys.iter().cloned().zip(stored).filter_map(|(key, found)| Some((key, found?))).collect();
+    let stored: BTreeMap<String, ImpactOutcome> = keys
+        .iter()
+        .cloned()
+        .zip(stored)
+        .filter_map(|(key, found)| Some((key, found?)))
+        .collect();
 
     let results = fit_tasks(campaign, &rig, &tasks, &stored, progress);
     let mut outcome = assemble(campaign, &rig, &tasks, results, &stored);
@@ -152,7 +163,9 @@ fn fit(
 fn recording_digests(campaign: &Campaign) -> BTreeMap<PathBuf, Result<String, String>> {
     let mut first: BTreeMap<PathBuf, &ImpactEntry> = BTreeMap::new();
     for impact in &campaign.impacts {
-        first.entry(recording_path(&campaign.files, impact)).or_insert(impact);
+        first
+            .entry(recording_path(&campaign.files, impact))
+            .or_insert(impact);
     }
     let paths: Vec<(PathBuf, &ImpactEntry)> = first.into_iter().collect();
     let digests: Vec<Result<String, String>> = paths
@@ -168,7 +181,11 @@ fn recording_digests(campaign: &Campaign) -> BTreeMap<PathBuf, Result<String, St
             })
         })
         .collect();
-    paths.into_iter().map(|(path, _)| path).zip(digests).collect()
+    paths
+        .into_iter()
+        .map(|(path, _)| path)
+        .zip(digests)
+        .collect()
 }
 
 fn absent(campaign: &Campaign, impact: &ImpactEntry, path: &Path) -> String {
@@ -178,7 +195,11 @@ fn absent(campaign: &Campaign, impact: &ImpactEntry, path: &Path) -> String {
         list.display(),
         impact.line
     );
-    Error::FileAbsent { path: path.to_path_buf(), advice }.to_string()
+    Error::FileAbsent {
+        path: path.to_path_buf(),
+        advice,
+    }
+    .to_string()
 }
 
 fn tasks(
@@ -194,7 +215,12 @@ fn tasks(
                 impact_key(campaign, entry, &campaign.fit.laws[law], &rig.rig, digest)
             });
             let problem = digest.as_ref().err().cloned();
-            tasks.push(FitTask { impact: index, law, key, problem });
+            tasks.push(FitTask {
+                impact: index,
+                law,
+                key,
+                problem,
+            });
         }
     }
     tasks
@@ -236,8 +262,10 @@ fn assemble(
         }
     }
     status.failed = failed.len();
-    let first_law: Vec<&ImpactOutcome> =
-        impacts.iter().filter(|i| Some(&i.law) == impacts.first().map(|first| &first.law)).collect();
+    let first_law: Vec<&ImpactOutcome> = impacts
+        .iter()
+        .filter(|i| Some(&i.law) == impacts.first().map(|first| &first.law))
+        .collect();
     let law = first_law.first().map_or("", |impact| impact.law.as_str());
     let all = summarise(law, None, &first_law);
     let mut summary = all.parameters;
@@ -260,10 +288,15 @@ fn assemble(
 
 fn group_of(campaign: &Campaign, entry: &ImpactEntry) -> Option<String> {
     let column = campaign.group.as_ref()?;
-    let specimen = campaign.specimens.iter().find(|specimen| specimen.id == entry.specimen);
+    let specimen = campaign
+        .specimens
+        .iter()
+        .find(|specimen| specimen.id == entry.specimen);
     let specimen_cells = specimen.map_or(&[][..], |specimen| &specimen.cells);
     let mut cells = specimen_cells.iter().chain(&entry.cells);
-    cells.find(|(name, _)| name == column).map(|(_, cell)| cell.clone())
+    cells
+        .find(|(name, _)| name == column)
+        .map(|(_, cell)| cell.clone())
 }
 
 /// Writes the run, unless the newest one in the store is the same.
@@ -284,7 +317,11 @@ fn keep(
         return Ok(());
     }
     let (inputs, options) = input_digests(campaign, digests)?;
-    let results = outcome.keys.iter().cloned().zip(outcome.shown.impacts.iter().cloned());
+    let results = outcome
+        .keys
+        .iter()
+        .cloned()
+        .zip(outcome.shown.impacts.iter().cloned());
     write_run(
         store,
         &RunRecord {

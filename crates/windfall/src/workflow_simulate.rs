@@ -105,15 +105,19 @@ pub fn simulate_motion(
     let impact = simulate_one(law, rig, velocity, end)?;
     let margin = (MARGIN * impact.contact_duration * rate).ceil();
     let last = ((1.0 + MARGIN) * impact.contact_duration * rate).ceil();
-    let times: Vec<f64> =
-        (0..=(margin + last) as usize).map(|i| (i as f64 - margin) / rate).collect();
+    let times: Vec<f64> = (0..=(margin + last) as usize)
+        .map(|i| (i as f64 - margin) / rate)
+        .collect();
     let trajectory =
         trajectory(law, rig, velocity, &times, end).map_err(|source| failed(law, source))?;
     Ok(SimulatedMotion { impact, trajectory })
 }
 
 fn failed(law: &Law, source: windfall_identify::error::Error) -> Error {
-    Error::Identify { subject: LawExpression::from(*law).to_string(), source }
+    Error::Identify {
+        subject: LawExpression::from(*law).to_string(),
+        source,
+    }
 }
 
 fn simulated(
@@ -159,7 +163,11 @@ fn rows(impact: &SimulatedImpact) -> Vec<(&'static str, f64, &'static str)> {
         ("peak_force", impact.peak_force, "N"),
         ("time_of_peak_force", impact.time_of_peak_force, "s"),
         ("max_displacement", impact.max_displacement, "m"),
-        ("time_of_max_displacement", impact.time_of_max_displacement, "s"),
+        (
+            "time_of_max_displacement",
+            impact.time_of_max_displacement,
+            "s",
+        ),
         ("contact_duration", impact.contact_duration, "s"),
         ("final_displacement", impact.final_displacement, "m"),
         ("separation_velocity", impact.separation_velocity, "m/s"),
@@ -177,9 +185,9 @@ fn rows(impact: &SimulatedImpact) -> Vec<(&'static str, f64, &'static str)> {
 #[must_use]
 pub fn text_of_simulation(impact: &SimulatedImpact) -> String {
     let header = ["quantity", "value", "unit"].map(str::to_owned);
-    let lines = rows(impact)
-        .into_iter()
-        .map(|(name, value, unit)| vec![name.replace('_', " "), six_digits(value), unit.to_owned()]);
+    let lines = rows(impact).into_iter().map(|(name, value, unit)| {
+        vec![name.replace('_', " "), six_digits(value), unit.to_owned()]
+    });
     format!(
         "simulated: {}, contact ends at {}\n\n{}\n",
         impact.law,
@@ -192,7 +200,11 @@ pub fn text_of_simulation(impact: &SimulatedImpact) -> String {
 fn six_digits(value: f64) -> String {
     let size = value.abs();
     if value == 0.0 || !(1e-4..1e6).contains(&size) {
-        return if value == 0.0 { plain(value) } else { format!("{value:.5e}") };
+        return if value == 0.0 {
+            plain(value)
+        } else {
+            format!("{value:.5e}")
+        };
     }
     let decimals = (5 - size.log10().floor() as i32).clamp(0, 12) as usize;
     format!("{value:.decimals$}")
@@ -204,8 +216,14 @@ fn six_digits(value: f64) -> String {
 /// None in practice: the text is written to memory.
 pub fn csv_of_simulation(impact: &SimulatedImpact) -> Result<String, Error> {
     let rows = rows(impact);
-    let header: Vec<String> = rows.iter().map(|(name, _, unit)| column(name, unit)).collect();
-    csv_text(&header, [rows.iter().map(|(_, value, _)| value.to_string()).collect()])
+    let header: Vec<String> = rows
+        .iter()
+        .map(|(name, _, unit)| column(name, unit))
+        .collect();
+    csv_text(
+        &header,
+        [rows.iter().map(|(_, value, _)| value.to_string()).collect()],
+    )
 }
 
 /// "peak_force_N"; no unit for a pure number.
@@ -221,12 +239,24 @@ fn column(name: &str, unit: &str) -> String {
 /// # Errors
 /// None in practice: the text is written to memory.
 pub fn csv_of_motion(motion: &SimulatedMotion) -> Result<String, Error> {
-    let header = ["time_s", "displacement_m", "rate_m_s", "force_N", "acceleration_m_s2"];
+    let header = [
+        "time_s",
+        "displacement_m",
+        "rate_m_s",
+        "force_N",
+        "acceleration_m_s2",
+    ];
     let t = &motion.trajectory;
     let rows = (0..t.times.len()).map(|i| {
-        [t.times[i], t.displacement[i], t.rate[i], t.force[i], t.acceleration[i]]
-            .map(|value| value.to_string())
-            .to_vec()
+        [
+            t.times[i],
+            t.displacement[i],
+            t.rate[i],
+            t.force[i],
+            t.acceleration[i],
+        ]
+        .map(|value| value.to_string())
+        .to_vec()
     });
     csv_text(&header.map(str::to_owned), rows)
 }
@@ -242,6 +272,10 @@ pub fn json_of_motion(motion: &SimulatedMotion) -> serde_json::Value {
         ("force", &t.force),
         ("acceleration", &t.acceleration),
     ];
-    let columns = Named(columns.map(|(name, values)| (name.to_owned(), values)).to_vec());
+    let columns = Named(
+        columns
+            .map(|(name, values)| (name.to_owned(), values))
+            .to_vec(),
+    );
     serde_json::json!({ "simulated": true, "impact": motion.impact, "motion": columns })
 }

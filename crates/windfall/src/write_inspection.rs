@@ -10,8 +10,9 @@ use std::fmt::Write;
 /// An inspection as text: a table of columns, then what looks wrong.
 #[must_use]
 pub fn text_of_inspection(inspection: &Inspection) -> String {
-    let header =
-        ["column", "unit", "could be", "samples", "rate", "length", "smallest", "largest"];
+    let header = [
+        "column", "unit", "could be", "samples", "rate", "length", "smallest", "largest",
+    ];
     let number = |value: Option<f64>| value.map_or_else(|| "-".to_owned(), plain);
     let rows = inspection.columns.iter().map(|column| {
         vec![
@@ -27,7 +28,11 @@ pub fn text_of_inspection(inspection: &Inspection) -> String {
     });
     let table = table_text(&header.map(str::to_owned), rows, &[0, 1, 2]);
     let mut text = format!("{}: {} rows\n\n{table}\n", inspection.file, inspection.rows);
-    if inspection.columns.iter().any(|column| column.rate.is_some()) {
+    if inspection
+        .columns
+        .iter()
+        .any(|column| column.rate.is_some())
+    {
         text += "(rate in samples per unit of the time column to the left, length in that unit)\n";
     }
     if inspection.findings.is_empty() {
@@ -45,8 +50,16 @@ pub fn text_of_inspection(inspection: &Inspection) -> String {
 /// None in practice: the text is written to memory.
 pub fn csv_of_inspections(inspections: &[Inspection]) -> Result<String, Error> {
     let header = [
-        "file", "column", "unit", "could_be", "samples", "rate_per_time_unit", "length", "smallest",
-        "largest", "findings",
+        "file",
+        "column",
+        "unit",
+        "could_be",
+        "samples",
+        "rate_per_time_unit",
+        "length",
+        "smallest",
+        "largest",
+        "findings",
     ];
     let number = |value: Option<f64>| value.map_or_else(String::new, |value| value.to_string());
     let row = |inspection: &Inspection, column: &ColumnInspection| {
@@ -70,8 +83,11 @@ pub fn csv_of_inspections(inspections: &[Inspection]) -> Result<String, Error> {
             codes.join(" "),
         ]
     };
-    let rows = inspections
-        .iter()
-        .flat_map(|inspection| inspection.columns.iter().map(move |column| row(inspection, column)));
+    let rows = inspections.iter().flat_map(|inspection| {
+        inspection
+            .columns
+            .iter()
+            .map(move |column| row(inspection, column))
+    });
     csv_text(&header.map(str::to_owned), rows)
 }

@@ -88,9 +88,9 @@ fn impact_table(impacts: &[&ImpactOutcome]) -> String {
     let rows = impacts.iter().map(|impact| {
         let mut row = vec![impact.id.clone(), impact.specimen.clone()];
         for (_, estimate) in &impact.parameters.0 {
-            row.push(match estimate.sd {
-                Some(_) => value_and_sd(estimate.value, estimate.sd),
-                None => format!("{} held", plain(estimate.value)),
+            row.push(match estimate.held {
+                false => value_and_sd(estimate.value, estimate.sd),
+                true => format!("{} held", plain(estimate.value)),
             });
         }
         for (name, _, factor) in DERIVED {
