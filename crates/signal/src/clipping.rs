@@ -46,9 +46,9 @@ pub fn clipping(
     }
 
     // The flanks, without the plateau.
-    let flank = length.max(LEAST_FLANK);
-    let left = from.saturating_sub(flank)..from;
-    let right = to..(to + flank).min(values.len());
+    let flank = (length / 3).max(LEAST_FLANK);
+    let left = from.saturating_sub(flank).max(first)..from;
+    let right = to..(to + flank).min(last);
     let flank_times = [&times[left.clone()], &times[right.clone()]].concat();
     let flank_values = [&values[left], &values[right]].concat();
     let middle = 0.5 * (times[from] + times[to - 1]);

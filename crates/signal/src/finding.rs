@@ -101,6 +101,15 @@ pub enum Finding {
         /// Where the floor comes from.
         reason: &'static str,
     },
+    /// A sample next to the contact that does not belong to the motion.
+    Glitch {
+        /// Name of the channel.
+        channel: String,
+        /// Its time; s.
+        time: f64,
+        /// Its value; unit of the channel.
+        value: f64,
+    },
     /// Few samples during contact.
     FewSamples {
         /// Name of the channel.
@@ -126,6 +135,7 @@ impl Finding {
             Self::OffsetRemoved { .. } => "offset-removed",
             Self::WindowFromMotion { .. } => "window-from-motion",
             Self::NoiseAtFloor { .. } => "noise-at-floor",
+            Self::Glitch { .. } => "glitch",
             Self::FewSamples { .. } => "few-samples",
         }
     }
@@ -232,6 +242,15 @@ impl fmt::Display for Finding {
             } => write!(
                 f,
                 "the noise of '{channel}' cannot be measured; {floor:.3e} is assumed ({reason})"
+            ),
+            Self::Glitch {
+                channel,
+                time,
+                value,
+            } => write!(
+                f,
+                "channel '{channel}': the sample at {} s ({value:.4e}) does not fit the free motion around it and is left out",
+                Rounded(*time),
             ),
             Self::FewSamples { channel, samples } => write!(
                 f,

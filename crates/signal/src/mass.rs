@@ -66,7 +66,9 @@ pub fn mass_from_impulse(measured: &Measured, driving: Uncertain) -> Result<Unce
 /// Mean of several estimates of one mass, weighted by 1/u², with the larger of
 /// the standard error expected from the u and the one seen in their scatter.
 ///
-/// `None` of nothing.
+/// For independent uncertainties only: what the estimates share (the driving
+/// acceleration, the calibration of the force) must be left out of the u and be
+/// added to the mean. `None` of nothing.
 #[must_use]
 pub fn mean_mass(masses: &[Uncertain]) -> Option<Uncertain> {
     let weight = |mass: &Uncertain| 1.0 / (mass.sd * mass.sd).max(f64::MIN_POSITIVE);

@@ -17,6 +17,14 @@ const CURVATURE_SAMPLES: usize = 10;
 /// A curvature is fitted if it exceeds this many of its standard deviations; 1.
 const SIGNIFICANT: f64 = 4.0;
 
+/// Free motion with more samples than this is not searched for a glitch: one
+/// wrong sample hardly matters there.
+const GLITCH_SAMPLES: usize = 50;
+
+/// Leaving out a glitch lowers the scatter of the others by this factor; 1. Of
+/// five samples with Gaussian noise this happens by chance to less than 1 in 100.
+const GLITCH_FACTOR: f64 = 10.0;
+
 /// Half the length of the stretch around the largest displacement through which
 /// a parabola is fitted, as a part of the contact's duration; 1.
 const TOP_SHARE: f64 = 0.05;
@@ -87,17 +95,7 @@ pub fn free_velocity(
         Side::After => place.end,
     };
     let times = &times[first..last];
-    let free: Vec<f64> = times
-        .iter()
-        .zip(&values[first..last])
-        .map(|(t, value)| {
-            let t = t - origin;
-            match motion {
-                Motion::Displacement => value - 0.5 * driving * t * t,
-                Motion::Rate => value - driving * t,
-            }
-        })
-        .collect();
+    let free = undriven(times, &values[first..last], motion, origin, driving);
     let index = match motion {
         Motion::Displacement => 1,
         Motion::Rate => 0,
@@ -110,6 +108,57 @@ pub fn free_velocity(
         value: fit.derivatives[index],
         sd: fit.noise_gains[index] * scatter(&fit, noise),
     })
+}
+
+/// Index of a sample of the free motion next to the contact that does not belong
+/// to it: without it the others lie on a line (a constant, of a rate) far better.
+#[must_use]
+pub fn glitch(
+    samples: (&[f64], &[f64], Motion),
+    noise: f64,
+    place: &Surroundings,
+    side: Side,
+    driving: f64,
+) -> Option<usize> {
+    let (times, values, motion) = samples;
+    let (first, last) = free_samples(times, place, side);
+    let n = last - first;
+    if !(WANTED_SAMPLES..=GLITCH_SAMPLES).contains(&n) {
+        return None;
+    }
+    let times = &times[first..last];
+    let origin = times[0];
+    let free = undriven(times, &values[first..last], motion, origin, driving);
+    let order = match motion {
+        Motion::Displacement => 1,
+        Motion::Rate => 0,
+    };
+    let without = |left_out: usize| {
+        let kept = |values: &[f64]| [&values[..left_out], &values[left_out + 1..]].concat();
+        fit_polynomial(&kept(times), &kept(&free), origin, order)
+            .map_or(f64::INFINITY, |fit| scatter(&fit, noise))
+    };
+    let all = fit_polynomial(times, &free, origin, order)?;
+    let (index, least) = (0..n)
+        .map(|i| (i, without(i)))
+        .reduce(|best, next| if next.1 < best.1 { next } else { best })?;
+    (all.residual_deviation > GLITCH_FACTOR * least).then_some(first + index)
+}
+
+/// Samples less what the driving acceleration does to them.
+fn undriven(times: &[f64], values: &[f64], motion: Motion, origin: f64, driving: f64) -> Vec<f64> {
+    let driven = |time: f64| {
+        let t = time - origin;
+        match motion {
+            Motion::Displacement => 0.5 * driving * t * t,
+            Motion::Rate => driving * t,
+        }
+    };
+    times
+        .iter()
+        .zip(values)
+        .map(|(&time, value)| value - driven(time))
+        .collect()
 }
 
 fn scatter(fit: &PolynomialFit, noise: f64) -> f64 {

@@ -150,7 +150,7 @@ pub struct Contacts {
     /// Noise of one sample before the first contact; N. May be zero.
     pub deviation: f64,
     /// Samples before the first contact from which offset and noise come; with
-    /// none of them the offset is 0.
+    /// none of them the offset is that of the end, if the signal rests there, or 0.
     pub baseline_samples: usize,
     /// True if the force is negative in contact.
     pub reversed: bool,
@@ -202,7 +202,8 @@ pub struct Signal<'a> {
 
 /// All contacts of a recording.
 ///
-/// The sign is that of the largest departure from the first samples. Offset and
+/// The sign is that of the largest departure from the first samples (from the
+/// last, if the first are in contact). Offset and
 /// noise come from the samples before the first contact. The signal is averaged
 /// over 1/50 of the contact (not at all where that is less than a sample) and
 /// compared with the threshold: a contact begins above it and is over below
@@ -223,9 +224,8 @@ pub fn find_contacts(signal: &Signal, options: &TriggerOptions) -> Result<Contac
         });
     }
 
-    // A first guess of zero and sign, from the beginning of the signal.
-    let pilot_samples = ((PILOT_SHARE * n as f64) as usize).clamp(LEAST_BASELINE.min(n), n);
-    let pilot = median(&signal.values[..pilot_samples]).unwrap_or(0.0);
+    // A first guess of zero and sign.
+    let (pilot, zero_from_end) = pilot_level(signal.values);
     let centre = match options.baseline {
         Baseline::Remove => pilot,
         Baseline::Keep => 0.0,
@@ -250,7 +250,8 @@ pub fn find_contacts(signal: &Signal, options: &TriggerOptions) -> Result<Contac
     };
     for _ in 0..2 {
         before = flat_part(signal, before, (signal.values[extreme] - centre).abs());
-        let (mean, deviation) = baseline(&signal.values[..before]).unwrap_or((0.0, 0.0));
+        let (mean, deviation) = baseline(&signal.values[..before])
+            .unwrap_or((if zero_from_end { pilot } else { 0.0 }, 0.0));
         contacts.deviation = deviation;
         contacts.baseline_samples = before;
         contacts.offset = match options.baseline {
@@ -324,6 +325,26 @@ fn threshold(threshold: &Threshold, deviation: f64, smoothing: usize, largest: f
             noise.max(least).max(share * largest).max(f64::MIN_POSITIVE)
         }
     }
+}
+
+/// Level of the signal outside contact, and whether it comes from the end: that
+/// is so if the signal changes in its first samples and rests in its last.
+fn pilot_level(values: &[f64]) -> (f64, bool) {
+    let n = values.len();
+    let samples = ((PILOT_SHARE * n as f64) as usize).clamp(LEAST_BASELINE.min(n), n);
+    let level = |part: &[f64]| {
+        let middle = median(part).unwrap_or(0.0);
+        let distances: Vec<f64> = part.iter().map(|v| (v - middle).abs()).collect();
+        (middle, median(&distances).unwrap_or(0.0))
+    };
+    let (first, first_spread) = level(&values[..samples]);
+    let (last, last_spread) = level(&values[n - samples..]);
+    let low = values.iter().copied().fold(f64::INFINITY, f64::min);
+    let high = values.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+    if first_spread > BASELINE_RISE * (high - low) && last_spread < first_spread / 3.0 {
+        return (last, true);
+    }
+    (first, false)
 }
 
 fn index_of_largest(values: &[f64], measure: impl Fn(f64) -> f64) -> usize {

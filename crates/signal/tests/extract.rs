@@ -5,7 +5,6 @@
 
 #![allow(clippy::unwrap_used)]
 
-use windfall_signal::extract::RateMethod;
 use windfall_signal::impact::{Impact, Series};
 use windfall_signal::instrument::{
     Converter, EncoderOutput, EncoderSensor, InitialPhase, Instrument, Sensor, Trajectory,
@@ -13,6 +12,7 @@ use windfall_signal::instrument::{
 };
 use windfall_signal::kinematics::{Encoder, count_length};
 use windfall_signal::mass::{Uncertain, mass_from_impulse};
+use windfall_signal::options::RateMethod;
 use windfall_signal::recording::Recording;
 use windfall_signal::trigger::{ContactChoice, Orientation, Threshold};
 use windfall_signal::{Error, ExtractOptions, Finding, extract_impact};

@@ -6,6 +6,7 @@
 #![allow(clippy::unwrap_used, clippy::print_stdout)]
 
 use std::path::PathBuf;
+use windfall_signal::mass::{Uncertain, mass_from_impulse};
 use windfall_signal::recording::{Channel, Quantity, Recording, Times};
 use windfall_signal::{ExtractOptions, Finding, extract_impact};
 
@@ -82,21 +83,49 @@ const AUTHORS_40MM: [(f64, f64); 5] = [
 #[test]
 fn reference_foam_pads_agree_with_their_authors() {
     let Some(folder) = pads() else { return };
+    let text = std::fs::read_to_string(folder.join("pad_40mm.csv")).unwrap();
+    for (number, (duration, peak)) in (1..).zip(AUTHORS_40MM) {
+        let (impact, findings) =
+            extract_impact(&run(&text, number), &ExtractOptions::default()).unwrap();
+        let measured = impact.measured;
+        // Theirs are whole samples of 10 ms above an unknown threshold.
+        assert!((measured.contact_duration.unwrap() - duration).abs() < 0.025);
+        assert!((measured.peak_force.unwrap() - peak).abs() < 0.06);
+        let codes: Vec<_> = findings.iter().map(Finding::code).collect();
+        // Compression is negative in the files; motion is at 25 Hz.
+        assert_eq!(
+            codes,
+            ["reversed", "few-samples", "few-samples"],
+            "{findings:?}"
+        );
+    }
+}
+
+#[test]
+fn conserves_one_mass_over_both_pads() {
+    let Some(folder) = pads() else { return };
+    let mut masses = Vec::new();
     for file in ["pad_4mm.csv", "pad_40mm.csv"] {
         let text = std::fs::read_to_string(folder.join(file)).unwrap();
         for number in 1..=5 {
-            let (impact, findings) =
+            let (impact, _) =
                 extract_impact(&run(&text, number), &ExtractOptions::default()).unwrap();
-            println!(
-                "{file} {number} {:.4} {:.4} {:?}",
-                impact.onset, impact.end, impact.measured
-            );
-            for f in &findings {
-                println!("   {f}");
-            }
-            println!("{:?}", impact.displacement);
+            // The slopes of the velocity before and after lie between 0 and 0.6 m/s².
+            let driving = Uncertain {
+                value: 0.3,
+                sd: 0.17,
+            };
+            let mass = mass_from_impulse(&impact.measured, driving).unwrap();
+            println!("{file} run {number}: {:.4} ± {:.4} kg", mass.value, mass.sd);
+            masses.push(mass.value);
         }
     }
-    let _ = AUTHORS_40MM;
-    let _: Option<Finding> = None;
+    // The notes beside the data say "near 0.5 kg"; one cart has one mass.
+    assert!(
+        masses.iter().all(|mass| (0.45..0.6).contains(mass)),
+        "{masses:?}"
+    );
+    let largest = masses.iter().copied().fold(0.0, f64::max);
+    let smallest = masses.iter().copied().fold(1.0, f64::min);
+    assert!(largest < 1.1 * smallest, "{masses:?}");
 }

@@ -1,0 +1,121 @@
+//! How an impact is cut out of a recording.
+
+use crate::error::Error;
+use crate::kinematics::Encoder;
+use crate::quadrature::IllegalTransition;
+use crate::trigger::{Orientation, TriggerOptions};
+
+/// How the series of the displacement rate is made.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum RateMethod {
+    /// The measured channel if there is one, else the central difference of the
+    /// displacement if that is sampled evenly, else none.
+    #[default]
+    Automatic,
+    /// The measured channel or none.
+    Measured,
+    /// The central difference of the displacement, even if a channel was measured.
+    CentralDifference,
+    /// The derivative of local polynomials (Savitzky-Golay) of the displacement.
+    /// Smooth, for display; neighbouring samples share their noise.
+    LocalPolynomial {
+        /// Order of the polynomial, 1 to 4; 2 or 3 are usual.
+        order: usize,
+        /// Odd number of samples; `None`: about a tenth of the contact.
+        window: Option<usize>,
+    },
+}
+
+/// How an impact is cut out of a recording.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ExtractOptions {
+    /// Contact window.
+    pub trigger: TriggerOptions,
+    /// What is done about a channel of the wrong sign.
+    pub orientation: Orientation,
+    /// What is kept before onset, as a part of the contact's duration; 1.
+    pub margin_before: f64,
+    /// What is kept after the end, as a part of the contact's duration; 1.
+    pub margin_after: f64,
+    /// Samples kept at least on either side, where the recording has them.
+    pub margin_samples: usize,
+    /// The encoder, if there are phases or counts.
+    pub encoder: Option<Encoder>,
+    /// What an illegal transition of the encoder adds.
+    pub illegal: IllegalTransition,
+    /// Length of the arm, if an angle is measured; m.
+    pub arm: Option<f64>,
+    /// How the series of the displacement rate is made.
+    pub rate: RateMethod,
+    /// Mass that the contact feels, for the energies; kg.
+    pub effective_mass: Option<f64>,
+    /// Acceleration of the free impactor, positive into the fruit; m/s².
+    pub driving_acceleration: f64,
+}
+
+impl Default for ExtractOptions {
+    fn default() -> Self {
+        Self {
+            trigger: TriggerOptions::default(),
+            orientation: Orientation::default(),
+            margin_before: 0.2,
+            margin_after: 0.2,
+            margin_samples: 3,
+            encoder: None,
+            illegal: IllegalTransition::default(),
+            arm: None,
+            rate: RateMethod::default(),
+            effective_mass: None,
+            driving_acceleration: 0.0,
+        }
+    }
+}
+
+pub(crate) fn check_options(options: &ExtractOptions) -> Result<(), Error> {
+    let bad = |option, value, expected| {
+        Err(Error::BadOption {
+            option,
+            value,
+            expected,
+        })
+    };
+    for (option, margin) in [
+        ("margin before contact", options.margin_before),
+        ("margin after contact", options.margin_after),
+    ] {
+        if !(margin >= 0.0 && margin.is_finite()) {
+            return bad(
+                option,
+                margin,
+                "a part of the contact's duration, 0 or more",
+            );
+        }
+    }
+    if let Some(mass) = options.effective_mass
+        && !(mass > 0.0 && mass.is_finite())
+    {
+        return bad("effective mass", mass, "a positive mass");
+    }
+    if !options.driving_acceleration.is_finite() {
+        return bad(
+            "driving acceleration",
+            options.driving_acceleration,
+            "a finite number",
+        );
+    }
+    if let RateMethod::LocalPolynomial { order, window } = options.rate {
+        if !(1..=4).contains(&order) {
+            return bad("order of the rate's polynomial", order as f64, "1 to 4");
+        }
+        if let Some(window) = window
+            && (window % 2 == 0 || window <= order)
+        {
+            return bad(
+                "window of the rate's polynomial",
+                window as f64,
+                "an odd number above the order",
+            );
+        }
+    }
+    Ok(())
+}

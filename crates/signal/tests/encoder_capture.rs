@@ -1,0 +1,55 @@
+//! A logic analyser's capture of a rotary encoder whose speed ramps up and down.
+//!
+//! The data are not part of windfall (sigrok-dumps, public domain).
+//! `WINDFALL_DATA` names their folder; the capture is a zip, opened by `unzip`.
+
+#![allow(clippy::unwrap_used, clippy::print_stdout)]
+
+use std::path::PathBuf;
+use std::process::Command;
+use windfall_signal::quadrature::{IllegalTransition, decode_quadrature};
+
+fn capture() -> Option<Vec<u8>> {
+    let data = std::env::var_os("WINDFALL_DATA").map_or_else(
+        || PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("../../../shared/data"),
+        PathBuf::from,
+    );
+    let file = data.join("encoder/sigrok_rotary-ramp.sr");
+    if !file.is_file() {
+        println!("left out: no file {}; set WINDFALL_DATA", file.display());
+        return None;
+    }
+    let output = Command::new("unzip")
+        .arg("-p")
+        .arg(&file)
+        .arg("logic-1-1")
+        .output();
+    match output {
+        Ok(output) if output.status.success() => Some(output.stdout),
+        _ => {
+            println!("left out: no unzip to open {}", file.display());
+            None
+        }
+    }
+}
+
+#[test]
+fn reference_rotary_ramp() {
+    let Some(bytes) = capture() else { return };
+    assert_eq!(bytes.len(), 600_000);
+    let bit = |n: u8| -> Vec<f64> { bytes.iter().map(|b| f64::from((b >> n) & 1)).collect() };
+    let (a, b) = (bit(0), bit(1));
+    let decoded = decode_quadrature(("A", &a), ("B", &b), IllegalTransition::AddNothing).unwrap();
+    // 12,732 changes of the byte in order 0, 1, 3, 2, counted by a script of a
+    // few lines that shares nothing with windfall.
+    assert_eq!(decoded.counts.last(), Some(&12_732));
+    assert_eq!(
+        (decoded.transitions, decoded.illegal, decoded.glitch_pairs),
+        (12_732, 0, 0)
+    );
+    // Every 60th sample: too slow for the fastest part, and this shows.
+    let slow = |phase: &[f64]| phase.iter().copied().step_by(60).collect::<Vec<_>>();
+    let (a, b) = (slow(&a), slow(&b));
+    let decoded = decode_quadrature(("A", &a), ("B", &b), IllegalTransition::AddNothing).unwrap();
+    assert!(decoded.illegal_share() > 0.1);
+}
