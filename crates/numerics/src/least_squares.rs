@@ -4,7 +4,7 @@
 //! data; nothing here depends on how many residuals there are, and nothing is
 //! allocated.
 
-use crate::cholesky;
+use crate::box_quadratic::minimum_in_box;
 
 /// Cost, gradient and normal matrix of weighted least squares:
 ///
@@ -188,7 +188,7 @@ struct Point<const P: usize> {
     equations: NormalEquations<P>,
     /// The undamped Gauss-Newton step within the bounds.
     full: [f64; P],
-    /// Predicted gain of `full`.
+    /// Predicted gain of `full`, at most; not a number when there is no step.
     left: f64,
 }
 
@@ -250,13 +250,17 @@ fn next_point<const P: usize>(
         let added = damping.scaling.map(|scale| scale * damping.relative);
         if let Some(step) = bounded_step(&here.equations, &here.parameters, bounds, &added) {
             let step = shortened(&step, options);
-            let gain = predicted_gain(&here.equations, &step);
+            let (gain, _) = predicted_gain(&here.equations, &step);
             let candidate = moved(&here.parameters, &step, bounds);
-            if gain <= 0.0 || candidate == here.parameters {
+            if candidate == here.parameters {
                 return Err(Stop::Stuck);
             }
-            *evaluations += 1;
-            let found = problem.evaluate(&candidate).filter(finite);
+            // A step without gain is rounding of a nearly singular matrix.
+            let found = (gain > 0.0).then(|| {
+                *evaluations += 1;
+                problem.evaluate(&candidate).filter(finite)
+            });
+            let found = found.flatten();
             if let Some(next) = found.map(|found| point(candidate, found, bounds))
                 && accepted(here, &next)
             {
@@ -264,7 +268,7 @@ fn next_point<const P: usize>(
                 return Ok(next);
             }
             // Shorter steps would gain less than what counts.
-            if gain <= negligible(here, options) {
+            if gain > 0.0 && gain <= negligible(here, options) {
                 return Err(Stop::Stuck);
             }
         }
@@ -320,11 +324,12 @@ fn point<const P: usize>(
     let full = bounded_step(&equations, &parameters, bounds, &[0.0; P])
         .or_else(|| bounded_step(&equations, &parameters, bounds, &least))
         .unwrap_or([f64::NAN; P]);
+    let (gain, rounding) = predicted_gain(&equations, &full);
     Point {
         parameters,
         equations,
         full,
-        left: predicted_gain(&equations, &full),
+        left: gain + rounding,
     }
 }
 
@@ -354,20 +359,17 @@ fn clip<const P: usize>(parameters: &[f64; P], bounds: &Bounds<P>) -> [f64; P] {
     std::array::from_fn(|i| parameters[i].max(bounds.lower[i]).min(bounds.upper[i]))
 }
 
+/// Parameters after a step; a step to a bound ends on it exactly.
 fn moved<const P: usize>(parameters: &[f64; P], step: &[f64; P], bounds: &Bounds<P>) -> [f64; P] {
-    clip(&std::array::from_fn(|i| parameters[i] + step[i]), bounds)
-}
-
-/// What a parameter may do in a step.
-#[derive(Clone, Copy, PartialEq)]
-enum Hold {
-    Free,
-    /// On its lower bound.
-    Lower,
-    /// On its upper bound.
-    Upper,
-    /// Without effect, or without room.
-    Fixed,
+    std::array::from_fn(|i| {
+        if step[i] <= bounds.lower[i] - parameters[i] {
+            bounds.lower[i]
+        } else if step[i] >= bounds.upper[i] - parameters[i] {
+            bounds.upper[i]
+        } else {
+            parameters[i] + step[i]
+        }
+    })
 }
 
 /// Step to the minimum of the damped quadratic model within the bounds; `None`
@@ -382,142 +384,25 @@ fn bounded_step<const P: usize>(
     for i in 0..P {
         matrix[i][i] += added[i];
     }
-    let mut hold = std::array::from_fn(|i| first_hold(equations, parameters, bounds, i));
-    let mut step = [0.0; P];
-    // Each round puts a parameter on its bound or, lower down, releases one.
-    for _ in 0..4 * (P + 1) {
-        let target = solve(&matrix, &equations.gradient, &hold, &step)?;
-        if let Some((i, bound, fraction)) = first_bound(parameters, bounds, &hold, &step, &target) {
-            for j in 0..P {
-                step[j] += fraction * (target[j] - step[j]);
-            }
-            step[i] = match bound {
-                Hold::Lower => bounds.lower[i] - parameters[i],
-                _ => bounds.upper[i] - parameters[i],
-            };
-            hold[i] = bound;
-            continue;
-        }
-        step = target;
-        match held_in_vain(&matrix, &equations.gradient, &hold, &step) {
-            Some(i) => hold[i] = Hold::Free,
-            None => break,
-        }
-    }
-    Some(step)
+    let lower = std::array::from_fn(|i| bounds.lower[i] - parameters[i]);
+    let upper = std::array::from_fn(|i| bounds.upper[i] - parameters[i]);
+    minimum_in_box(&matrix, &equations.gradient, &lower, &upper)
 }
 
-/// A parameter on a bound whose gradient points outwards is held there.
-fn first_hold<const P: usize>(
-    equations: &NormalEquations<P>,
-    parameters: &[f64; P],
-    bounds: &Bounds<P>,
-    i: usize,
-) -> Hold {
-    if equations.normal[i][i] <= 0.0 || bounds.lower[i] >= bounds.upper[i] {
-        Hold::Fixed
-    } else if parameters[i] <= bounds.lower[i] && equations.gradient[i] > 0.0 {
-        Hold::Lower
-    } else if parameters[i] >= bounds.upper[i] && equations.gradient[i] < 0.0 {
-        Hold::Upper
-    } else {
-        Hold::Free
-    }
-}
-
-/// The bound met first on the way from `step` to `target`, and at which
-/// fraction of the way.
-fn first_bound<const P: usize>(
-    parameters: &[f64; P],
-    bounds: &Bounds<P>,
-    hold: &[Hold; P],
-    step: &[f64; P],
-    target: &[f64; P],
-) -> Option<(usize, Hold, f64)> {
-    let mut first: Option<(usize, Hold, f64)> = None;
-    for i in (0..P).filter(|&i| hold[i] == Hold::Free) {
-        let to = parameters[i] + target[i];
-        let (bound, limit) = if to < bounds.lower[i] {
-            (Hold::Lower, bounds.lower[i])
-        } else if to > bounds.upper[i] {
-            (Hold::Upper, bounds.upper[i])
-        } else {
-            continue;
-        };
-        let way = (limit - parameters[i] - step[i]) / (target[i] - step[i]);
-        let fraction = if way.is_finite() {
-            way.clamp(0.0, 1.0)
-        } else {
-            0.0
-        };
-        if first.is_none_or(|(_, _, least)| fraction < least) {
-            first = Some((i, bound, fraction));
-        }
-    }
-    first
-}
-
-/// The parameter on a bound that the model wants away from it most, relative to
-/// what rounding could feign.
-fn held_in_vain<const P: usize>(
-    matrix: &[[f64; P]; P],
-    gradient: &[f64; P],
-    hold: &[Hold; P],
-    step: &[f64; P],
-) -> Option<usize> {
-    let mut worst: Option<(usize, f64)> = None;
+/// −(2 gᵀδ + δᵀNδ): by how much the quadratic model's cost falls; and how much
+/// of that may be rounding, which is all of it when the terms cancel.
+fn predicted_gain<const P: usize>(equations: &NormalEquations<P>, step: &[f64; P]) -> (f64, f64) {
+    let (mut gain, mut size) = (0.0, 0.0);
     for i in 0..P {
-        let (mut slope, mut size) = (gradient[i], gradient[i].abs());
+        let mut slope = 2.0 * equations.gradient[i];
+        let mut steepest = slope.abs();
         for j in 0..P {
-            slope += matrix[i][j] * step[j];
-            size += (matrix[i][j] * step[j]).abs();
+            let curved = equations.normal[i][j] * step[j];
+            slope += curved;
+            steepest += curved.abs();
         }
-        let inward = match hold[i] {
-            Hold::Lower => -slope,
-            Hold::Upper => slope,
-            Hold::Free | Hold::Fixed => continue,
-        };
-        let gain = inward * inward / matrix[i][i];
-        if inward > 8.0 * ROUNDING * size && worst.is_none_or(|(_, most)| gain > most) {
-            worst = Some((i, gain));
-        }
+        gain -= step[i] * slope;
+        size += step[i].abs() * steepest;
     }
-    worst.map(|(i, _)| i)
-}
-
-/// Solves `matrix` δ = −g for the free parameters, given the steps of those
-/// that are held.
-fn solve<const P: usize>(
-    matrix: &[[f64; P]; P],
-    gradient: &[f64; P],
-    hold: &[Hold; P],
-    step: &[f64; P],
-) -> Option<[f64; P]> {
-    let held = |i: usize| hold[i] != Hold::Free;
-    let mut reduced = *matrix;
-    let mut right = gradient.map(|g| -g);
-    for i in 0..P {
-        for j in 0..P {
-            if held(j) && !held(i) {
-                right[i] -= matrix[i][j] * step[j];
-            }
-            if held(i) || held(j) {
-                reduced[i][j] = if i == j { 1.0 } else { 0.0 };
-            }
-        }
-        if held(i) {
-            right[i] = step[i];
-        }
-    }
-    cholesky::solve(&reduced, &right)
-}
-
-/// −(2 gᵀδ + δᵀNδ): by how much the quadratic model's cost falls.
-fn predicted_gain<const P: usize>(equations: &NormalEquations<P>, step: &[f64; P]) -> f64 {
-    let mut gain = 0.0;
-    for i in 0..P {
-        let curved: f64 = (0..P).map(|j| equations.normal[i][j] * step[j]).sum();
-        gain -= step[i] * (2.0 * equations.gradient[i] + curved);
-    }
-    gain
+    (gain, ROUNDING * size)
 }

@@ -8,7 +8,7 @@ use model::Model;
 use read_set::{DataSet, read_set};
 use windfall_numerics::cholesky;
 use windfall_numerics::least_squares::{
-    Bounds, LeastSquares, Minimum, NormalEquations, Options, minimise,
+    Bounds, LeastSquares, Minimum, NormalEquations, Options, Stop, minimise,
 };
 
 /// Residuals of a model against observed responses.
@@ -56,10 +56,14 @@ pub struct Outcome {
     pub sd_digits: f64,
     /// Digits of the residual sum of squares.
     pub cost_digits: f64,
+    /// Digits of the worst standard deviation in units of the residual's.
+    pub shape_digits: f64,
+    /// Largest error of a value in certified standard deviations.
+    pub error_in_sd: f64,
     /// Evaluations used.
     pub evaluations: usize,
-    /// Why it stopped, in words.
-    pub stop: String,
+    /// Why it stopped.
+    pub stop: Stop,
 }
 
 /// One set fitted from start `which` (0 or 1).
@@ -79,17 +83,20 @@ pub fn fit<const P: usize>(
         options,
     );
     let sd = deviations(&minimum, rows.len()).unwrap_or([f64::NAN; P]);
-    let worst = |found: [f64; P], certified: fn(&read_set::Parameter) -> f64| {
-        (0..P)
-            .map(|i| digits(found[i], certified(&set.parameters[i])))
-            .fold(11.0, f64::min)
-    };
+    let certified = &set.parameters;
+    let residual = (minimum.equations.cost / (rows.len() - P) as f64).sqrt();
+    let certified_residual = (set.sum_of_squares / (rows.len() - P) as f64).sqrt();
+    let over = |digits_of: &dyn Fn(usize) -> f64| (0..P).map(digits_of).fold(11.0, f64::min);
     Outcome {
-        value_digits: worst(minimum.parameters, |p| p.value),
-        sd_digits: worst(sd, |p| p.sd),
+        value_digits: over(&|i| digits(minimum.parameters[i], certified[i].value)),
+        sd_digits: over(&|i| digits(sd[i], certified[i].sd)),
+        shape_digits: over(&|i| digits(sd[i] / residual, certified[i].sd / certified_residual)),
+        error_in_sd: (0..P)
+            .map(|i| (minimum.parameters[i] - certified[i].value).abs() / certified[i].sd)
+            .fold(0.0, f64::max),
         cost_digits: digits(minimum.equations.cost, set.sum_of_squares),
         evaluations: minimum.evaluations,
-        stop: format!("{:?}", minimum.stop),
+        stop: minimum.stop,
     }
 }
 
@@ -99,8 +106,7 @@ pub fn fit_both<const P: usize>(
     model: Model<P>,
     cost_tolerance: f64,
 ) -> Option<[Outcome; 2]> {
-    let set = read_set(name)?;
-    let mut set = set;
+    let mut set = read_set(name)?;
     if name == "Nelson" {
         // Its model is of the logarithm of the response.
         set.rows.iter_mut().for_each(|row| row[0] = row[0].ln());
@@ -113,30 +119,36 @@ pub fn fit_both<const P: usize>(
     Some([0, 1].map(|which| fit(&set, model, which, &options)))
 }
 
-/// Every nonlinear set of the collection, in both starts; `None` for a name
-/// that has no model here.
-pub fn fit_named(name: &str, cost_tolerance: f64) -> Option<Option<[Outcome; 2]>> {
-    Some(match name {
-        "Bennett5" => fit_both(name, model::bennett, cost_tolerance),
-        "BoxBOD" | "Misra1a" => fit_both(name, model::misra1a, cost_tolerance),
-        "Chwirut1" | "Chwirut2" => fit_both(name, model::chwirut, cost_tolerance),
-        "DanWood" => fit_both(name, model::danwood, cost_tolerance),
-        "ENSO" => fit_both(name, model::enso, cost_tolerance),
-        "Eckerle4" => fit_both(name, model::eckerle, cost_tolerance),
-        "Gauss1" | "Gauss2" | "Gauss3" => fit_both(name, model::gauss, cost_tolerance),
-        "Hahn1" | "Thurber" => fit_both(name, model::thurber, cost_tolerance),
-        "Kirby2" => fit_both(name, model::kirby, cost_tolerance),
-        "Lanczos1" | "Lanczos2" | "Lanczos3" => fit_both(name, model::lanczos, cost_tolerance),
-        "MGH09" => fit_both(name, model::mgh09, cost_tolerance),
-        "MGH10" => fit_both(name, model::mgh10, cost_tolerance),
-        "MGH17" => fit_both(name, model::mgh17, cost_tolerance),
-        "Misra1b" => fit_both(name, model::misra1b, cost_tolerance),
-        "Misra1c" => fit_both(name, model::misra1c, cost_tolerance),
-        "Misra1d" => fit_both(name, model::misra1d, cost_tolerance),
-        "Nelson" => fit_both(name, model::nelson, cost_tolerance),
-        "Rat42" => fit_both(name, model::rat42, cost_tolerance),
-        "Rat43" => fit_both(name, model::rat43, cost_tolerance),
-        "Roszman1" => fit_both(name, model::roszman, cost_tolerance),
-        _ => return None,
-    })
-}
+/// A data set by name, fitted from both starts with the given cost tolerance.
+pub type Fit = fn(name: &str, cost_tolerance: f64) -> Option<[Outcome; 2]>;
+
+/// Every nonlinear data set of the collection.
+pub const SETS: [(&str, Fit); 27] = [
+    ("Bennett5", |n, t| fit_both(n, model::bennett, t)),
+    ("BoxBOD", |n, t| fit_both(n, model::misra1a, t)),
+    ("Chwirut1", |n, t| fit_both(n, model::chwirut, t)),
+    ("Chwirut2", |n, t| fit_both(n, model::chwirut, t)),
+    ("DanWood", |n, t| fit_both(n, model::danwood, t)),
+    ("ENSO", |n, t| fit_both(n, model::enso, t)),
+    ("Eckerle4", |n, t| fit_both(n, model::eckerle, t)),
+    ("Gauss1", |n, t| fit_both(n, model::gauss, t)),
+    ("Gauss2", |n, t| fit_both(n, model::gauss, t)),
+    ("Gauss3", |n, t| fit_both(n, model::gauss, t)),
+    ("Hahn1", |n, t| fit_both(n, model::thurber, t)),
+    ("Kirby2", |n, t| fit_both(n, model::kirby, t)),
+    ("Lanczos1", |n, t| fit_both(n, model::lanczos, t)),
+    ("Lanczos2", |n, t| fit_both(n, model::lanczos, t)),
+    ("Lanczos3", |n, t| fit_both(n, model::lanczos, t)),
+    ("MGH09", |n, t| fit_both(n, model::mgh09, t)),
+    ("MGH10", |n, t| fit_both(n, model::mgh10, t)),
+    ("MGH17", |n, t| fit_both(n, model::mgh17, t)),
+    ("Misra1a", |n, t| fit_both(n, model::misra1a, t)),
+    ("Misra1b", |n, t| fit_both(n, model::misra1b, t)),
+    ("Misra1c", |n, t| fit_both(n, model::misra1c, t)),
+    ("Misra1d", |n, t| fit_both(n, model::misra1d, t)),
+    ("Nelson", |n, t| fit_both(n, model::nelson, t)),
+    ("Rat42", |n, t| fit_both(n, model::rat42, t)),
+    ("Rat43", |n, t| fit_both(n, model::rat43, t)),
+    ("Roszman1", |n, t| fit_both(n, model::roszman, t)),
+    ("Thurber", |n, t| fit_both(n, model::thurber, t)),
+];
