@@ -157,9 +157,10 @@ const NOISE: f64 = 1e-8;
 ///
 /// # Source
 /// Marquardt (1963), J. SIAM 11:431; Moré (1978), Lecture Notes in Mathematics
-/// 630:105, for the scaling (kept there for ever, here for some steps); Nielsen (1999), IMM-REP-1999-05, for the damping;
-/// Bates and Watts (1981), Technometrics 23:179, for the stopping rule (the
-/// residual's part in the tangent plane).
+/// 630:105, for the scaling (kept there for ever, here for some steps); Nielsen
+/// (1999), IMM-REP-1999-05, for the damping; Bates and Watts (1981),
+/// Technometrics 23:179, for the stopping rule (the residual's part in the
+/// tangent plane).
 pub fn minimise<const P: usize>(
     problem: &mut impl LeastSquares<P>,
     start: &[f64; P],
