@@ -42,6 +42,18 @@ pub trait ContactLaw<const N: usize>: Copy + Send + Sync {
     /// smooth: 2 for a law that starts like √d, 4 for d^¼, 1 for a smooth one.
     const START_POWER: u32 = 2;
 
+    /// [`HISTORY`](Self::HISTORY) of this value.
+    #[inline(always)]
+    fn history(&self) -> bool {
+        Self::HISTORY
+    }
+
+    /// [`START_POWER`](Self::START_POWER) of this value.
+    #[inline(always)]
+    fn start_power(&self) -> u32 {
+        Self::START_POWER
+    }
+
     /// Force and its derivatives.
     fn evaluate<R: Real>(&self, displacement: R, rate: R, peak: R) -> ContactForce<R, N>;
 

@@ -35,8 +35,10 @@ macro_rules! registry {
                 }
             }
 
-            /// The law of these parameters, which have been checked.
-            fn law(self, values: &[f64]) -> Option<Law> {
+            /// The law of these parameters without a check of their bounds;
+            /// `None` when there are too many or too few.
+            #[must_use]
+            pub fn from_values(self, values: &[f64]) -> Option<Law> {
                 Some(match self {
                     $(Self::$variant => Law::$variant($variant::from(<[f64; _]>::try_from(values).ok()?)),)*
                 })
@@ -151,7 +153,7 @@ impl LawKind {
         let known: Vec<_> = values.iter().copied().map(Some).collect();
         (0..values.len().min(self.describe().parameters.len()))
             .try_for_each(|index| self.check_bounds(index, &known))?;
-        self.law(values).ok_or_else(|| {
+        self.from_values(values).ok_or_else(|| {
             let description = self.describe();
             Error::ParameterCount {
                 law: description.name,
@@ -201,14 +203,4 @@ impl Law {
         let unit = self.kind().describe().unit_of(index, &values);
         unit.unwrap_or_default()
     }
-
-    /// Whether the force depends on the largest displacement so far.
-    #[must_use]
-    pub fn has_history(&self) -> bool {
-        with_law!(self, law => history(law))
-    }
-}
-
-fn history<const N: usize, L: ContactLaw<N>>(_law: &L) -> bool {
-    L::HISTORY
 }

@@ -19,6 +19,7 @@
 //!
 //! This crate knows no instrument, no rig and no file.
 
+pub mod any_law;
 pub mod damping_factor;
 pub mod effective;
 pub mod error;

@@ -63,6 +63,7 @@ fn fit<const P: usize>(group: &SampleGroup, k: f64, c: f64) -> (Values<2>, usize
         parameter(Target::InitialVelocity, Coordinate::Logarithm, 0.01, 5.0),
         parameter(Target::Onset, Coordinate::Linear(1e-3), -1e-3, 1e-3),
     ];
+    let law = KuwabaraKono { k, c };
     let four = P == 4;
     let base = Values {
         law: [k, c],
@@ -71,7 +72,7 @@ fn fit<const P: usize>(group: &SampleGroup, k: f64, c: f64) -> (Values<2>, usize
         onset: if four { 0.02e-3 } else { 0.0 },
         offset: 0.0,
     };
-    let mut estimator = Estimator::<KuwabaraKono, 2, 4, P>::new(setting, &free[..P], base);
+    let mut estimator = Estimator::<KuwabaraKono, 2, 4, P>::new(law, setting, &free[..P], base);
     let minimum = estimator.minimise(&Options {
         largest_step: [2.0; P],
         ..Options::default()

@@ -204,7 +204,7 @@ pub fn follow<L: ContactLaw<N>, const N: usize, const W: usize>(
     }
     let mut phase = Phase {
         event,
-        power: L::START_POWER,
+        power: event.law.start_power(),
         peak: 0.0,
         peak_lanes: Lanes::ZERO,
     };
@@ -348,7 +348,7 @@ fn first_stop<L: ContactLaw<N>, const N: usize, const W: usize>(
 ) -> Option<(Stop, f64)> {
     let (x, v) = (done.to[0].0[0], done.to[1].0[0]);
     let mut stop = None;
-    if L::HISTORY {
+    if phase.event.law.history() {
         let turned = if loading {
             v <= 0.0
         } else {

@@ -4,7 +4,9 @@
 use crate::contact_motion::{ImpactEvent, Seeds};
 use crate::motion::Motion;
 use crate::residual::{Columns, Model, Rows, SampleGroup, evaluate};
+use windfall_contact::any_law::{AnyLaw, LARGEST_PARAMETERS};
 use windfall_contact::law::{ContactLaw, EndRule};
+use windfall_contact::law_kuwabara_kono::KuwabaraKono;
 use windfall_numerics::least_squares::{
     Bounds, LeastSquares, Minimum, NormalEquations, Options, minimise,
 };
@@ -123,6 +125,27 @@ impl<const N: usize> Values<N> {
     }
 }
 
+/// A law whose parameters a fit can replace.
+pub trait FreeLaw<const N: usize>: ContactLaw<N> {
+    /// The same law with other parameters.
+    #[must_use]
+    fn with_values(&self, values: [f64; N]) -> Self;
+}
+
+impl FreeLaw<2> for KuwabaraKono {
+    fn with_values(&self, values: [f64; 2]) -> Self {
+        Self::from(values)
+    }
+}
+
+impl FreeLaw<LARGEST_PARAMETERS> for AnyLaw {
+    fn with_values(&self, values: [f64; LARGEST_PARAMETERS]) -> Self {
+        let kind = self.0.kind();
+        let count = kind.describe().parameters.len();
+        Self(kind.from_values(&values[..count]).unwrap_or(self.0))
+    }
+}
+
 /// What a fit holds constant.
 #[derive(Clone, Copy, Debug)]
 pub struct Setting<'a> {
@@ -144,22 +167,21 @@ pub struct Estimator<'a, L, const N: usize, const W: usize, const P: usize> {
     setting: Setting<'a>,
     free: &'a [FreeParameter],
     base: Values<N>,
-    law: std::marker::PhantomData<L>,
+    law: L,
 }
 
-impl<'a, L: ContactLaw<N> + From<[f64; N]>, const N: usize, const W: usize, const P: usize>
-    Estimator<'a, L, N, W, P>
-{
-    /// Problem with `free` parameters, everything else as in `base`. At most
+impl<'a, L: FreeLaw<N>, const N: usize, const W: usize, const P: usize> Estimator<'a, L, N, W, P> {
+    /// Problem of `law` (its parameters do not matter) with `free` parameters,
+    /// everything else as in `base`. At most
     /// `P` parameters, of which at most `W − 1` move the motion.
     #[must_use]
-    pub fn new(setting: Setting<'a>, free: &'a [FreeParameter], base: Values<N>) -> Self {
+    pub fn new(law: L, setting: Setting<'a>, free: &'a [FreeParameter], base: Values<N>) -> Self {
         debug_assert!(free.len() <= P);
         Self {
             setting,
             free,
             base,
-            law: std::marker::PhantomData,
+            law,
         }
     }
 
@@ -216,7 +238,7 @@ impl<'a, L: ContactLaw<N> + From<[f64; N]>, const N: usize, const W: usize, cons
         };
         Model {
             event: ImpactEvent {
-                law: L::from(values.law),
+                law: self.law.with_values(values.law),
                 motion,
                 velocity: values.velocity,
                 end: self.setting.end,
@@ -251,8 +273,8 @@ impl<'a, L: ContactLaw<N> + From<[f64; N]>, const N: usize, const W: usize, cons
     }
 }
 
-impl<L: ContactLaw<N> + From<[f64; N]>, const N: usize, const W: usize, const P: usize>
-    LeastSquares<P> for Estimator<'_, L, N, W, P>
+impl<L: FreeLaw<N>, const N: usize, const W: usize, const P: usize> LeastSquares<P>
+    for Estimator<'_, L, N, W, P>
 {
     fn evaluate(&mut self, u: &[f64; P]) -> Option<NormalEquations<P>> {
         evaluate(&self.model(u), self.setting.groups, None).ok()

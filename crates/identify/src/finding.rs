@@ -12,7 +12,9 @@ pub enum Finding {
         evaluations: usize,
     },
     /// A parameter ended on its bound.
-    #[error("{parameter} ended on its {side} bound {bound} {unit}: the data ask for a value beyond it, or say nothing about it")]
+    #[error(
+        "{parameter} ended on its {side} bound {bound} {unit}: the data ask for a value beyond it, or say nothing about it"
+    )]
     AtBound {
         /// Name of the parameter.
         parameter: String,
@@ -42,7 +44,9 @@ pub enum Finding {
         quantities: String,
     },
     /// Two parameters move together.
-    #[error("{first} and {second} can hardly be told apart in this impact (correlation {correlation:.4})")]
+    #[error(
+        "{first} and {second} can hardly be told apart in this impact (correlation {correlation:.4})"
+    )]
     Correlated {
         /// One parameter.
         first: String,
@@ -52,7 +56,9 @@ pub enum Finding {
         correlation: f64,
     },
     /// The normal matrix is singular.
-    #[error("the data cannot tell the free parameters apart: standard deviations are not available")]
+    #[error(
+        "the data cannot tell the free parameters apart: standard deviations are not available"
+    )]
     Singular,
     /// The residuals of a channel are not random.
     #[error(

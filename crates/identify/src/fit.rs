@@ -15,7 +15,6 @@ use crate::uncertainty::{RunsTest, runs_test};
 use statrs::distribution::{ContinuousCDF, StudentsT};
 use windfall_contact::law_kind::{Law, LawKind};
 use windfall_contact::restitution::nominal_restitution;
-use windfall_contact::with_law;
 use windfall_numerics::least_squares::Stop;
 use windfall_numerics::ode_step::Tolerance;
 use windfall_signal::impact::{Impact, Series};
@@ -230,7 +229,9 @@ fn sample_groups(
         }
     }
     if used.is_empty() {
-        let present = Quantity::ALL.into_iter().filter(|q| series(impact, *q).is_some());
+        let present = Quantity::ALL
+            .into_iter()
+            .filter(|q| series(impact, *q).is_some());
         let present: Vec<_> = present.map(Quantity::name).collect();
         return Err(Error::NoQuantities {
             wanted: options.quantities.names().join(", "),
@@ -269,13 +270,10 @@ fn weight_of(impact: &Impact, series: &Series, weighting: Weighting) -> f64 {
     }
 }
 
-fn regression_of(
-    impact: &Impact,
-    problem: &LawProblem,
-    start: &[f64],
-) -> Vec<RegressionEstimate> {
+fn regression_of(impact: &Impact, problem: &LawProblem, start: &[f64]) -> Vec<RegressionEstimate> {
     let law = problem.kind.with_parameters(start).ok();
-    law.and_then(|law| regress(impact, &law)).unwrap_or_default()
+    law.and_then(|law| regress(impact, &law))
+        .unwrap_or_default()
 }
 
 /// Starting points in the order in which they are tried.
@@ -294,7 +292,9 @@ fn starts(
         out.push(near);
     }
     out.push(start.clone());
-    let mut scales = problem.free_positions().filter(|&i| is_scale(problem.kind, i));
+    let mut scales = problem
+        .free_positions()
+        .filter(|&i| is_scale(problem.kind, i));
     let (first, second) = (scales.next(), scales.next());
     for (stiffness, damping) in OTHER_STARTS {
         let mut other = start.clone();
@@ -329,15 +329,30 @@ fn free_parameters(
             let scale = is_scale(problem.kind, i);
             FreeParameter {
                 target: Target::Law(i),
-                coordinate: if scale { Coordinate::Logarithm } else { Coordinate::Linear(1.0) },
-                lower: if scale { parameter.lower.max(start[i] / SEARCH_FACTOR) } else { parameter.lower },
-                upper: if scale { parameter.upper.min(start[i] * SEARCH_FACTOR) } else { parameter.upper },
+                coordinate: if scale {
+                    Coordinate::Logarithm
+                } else {
+                    Coordinate::Linear(1.0)
+                },
+                lower: if scale {
+                    parameter.lower.max(start[i] / SEARCH_FACTOR)
+                } else {
+                    parameter.lower
+                },
+                upper: if scale {
+                    parameter.upper.min(start[i] * SEARCH_FACTOR)
+                } else {
+                    parameter.upper
+                },
             }
         })
         .collect();
     let nuisances = nuisances(impact, options, features, findings);
     if !nuisances.is_empty() {
-        let names: Vec<_> = nuisances.iter().map(|p| nuisance_name(p.target).0).collect();
+        let names: Vec<_> = nuisances
+            .iter()
+            .map(|p| nuisance_name(p.target).0)
+            .collect();
         findings.push(Finding::Freed {
             quantities: names.join(", "),
         });
@@ -459,9 +474,7 @@ impl Plan<'_> {
             .map(|law| (law.clone(), [self.features.velocity, mass, 0.0, 0.0]))
             .collect();
         let law = self.problem.kind.with_parameters(&starts[0].0)?;
-        let solution = with_law!(law, concrete =>
-            solve(concrete, &setting, &self.free, &starts, &limits));
-        solution.ok_or(no_start)
+        solve(&law, &setting, &self.free, &starts, &limits).ok_or(no_start)
     }
 
     fn report(&self, solution: &Solution, rig: &Rig) -> Result<Fit, Error> {
@@ -585,12 +598,21 @@ impl Plan<'_> {
             });
         }
         let estimates: Vec<_> = fit.parameters.iter().chain(&fit.nuisances).collect();
-        for (i, side) in solution.at_bound.iter().enumerate().filter(|(_, s)| **s != 0) {
+        for (i, side) in solution
+            .at_bound
+            .iter()
+            .enumerate()
+            .filter(|(_, s)| **s != 0)
+        {
             let lower = *side < 0;
             out.push(Finding::AtBound {
                 parameter: estimates[i].name.clone(),
                 side: if lower { "lower" } else { "upper" },
-                bound: if lower { self.free[i].lower } else { self.free[i].upper },
+                bound: if lower {
+                    self.free[i].lower
+                } else {
+                    self.free[i].upper
+                },
                 unit: estimates[i].unit.clone(),
             });
         }
@@ -644,7 +666,13 @@ fn correlations(covariance: &[Vec<f64>]) -> Vec<Vec<f64>> {
     let n = covariance.len();
     (0..n)
         .map(|i| {
-            let entry = |j| if i == j { 1.0 } else { covariance[i][j] / (sd(i) * sd(j)) };
+            let entry = |j| {
+                if i == j {
+                    1.0
+                } else {
+                    covariance[i][j] / (sd(i) * sd(j))
+                }
+            };
             (0..n).map(entry).collect()
         })
         .collect()

@@ -36,7 +36,10 @@ fn linear_positions(kind: LawKind) -> Vec<usize> {
         _ => false,
     };
     let parameters = kind.describe().parameters.iter().enumerate();
-    parameters.filter(|(_, p)| linear(p.name)).map(|(i, _)| i).collect()
+    parameters
+        .filter(|(_, p)| linear(p.name))
+        .map(|(i, _)| i)
+        .collect()
 }
 
 /// Force regressed on the terms of `law` over the contact:

@@ -482,7 +482,7 @@ where
                     direct += law.by_parameter[i] * seed;
                 }
             }
-            if L::HISTORY {
+            if event.law.history() {
                 direct += law.by_peak * segment.peak_lanes.0[lane];
             }
         }

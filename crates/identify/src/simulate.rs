@@ -4,9 +4,9 @@ use crate::contact_motion::{ImpactEvent, Seeds, Segment, Separation, Sink, follo
 use crate::error::Error;
 use crate::motion::Motion;
 use crate::rig::{Carriage, Rig};
+use windfall_contact::any_law::AnyLaw;
 use windfall_contact::law::{ContactLaw, EndRule, SMALLEST_DISPLACEMENT};
 use windfall_contact::law_kind::Law;
-use windfall_contact::with_law;
 use windfall_numerics::ode_step::Tolerance;
 use windfall_numerics::root::bracketed_root;
 
@@ -18,7 +18,7 @@ const SEARCH_POINTS: usize = 16;
 const PEAK_TOLERANCE: f64 = 1e-13;
 /// First guess of the longest contact, and how often it may be doubled; s.
 const FIRST_DURATION: f64 = 0.02;
-const LARGEST_DOUBLINGS: usize = 8;
+const LARGEST_DOUBLINGS: usize = 10;
 /// Gauss-Legendre nodes and weights on [−1, 1], for the impulse (Abramowitz and
 /// Stegun 1964, table 25.4).
 const GAUSS_NODES: [f64; 8] = [
@@ -117,7 +117,7 @@ pub fn simulate_rig(
 ) -> Result<ImpactSummary, Error> {
     rig.check()?;
     check_positive("velocity", velocity)?;
-    with_law!(law, concrete => summarise(*concrete, rig, velocity, end))
+    summarise(AnyLaw(*law), rig, velocity, end)
 }
 
 /// Motion of the impactor of `rig` at `times` (ascending, from first touch;
@@ -135,7 +135,7 @@ pub fn trajectory(
 ) -> Result<Trajectory, Error> {
     rig.check()?;
     check_positive("velocity", velocity)?;
-    with_law!(law, concrete => sample(*concrete, rig, velocity, times, end))
+    sample(AnyLaw(*law), rig, velocity, times, end)
 }
 
 fn check_positive(name: &'static str, value: f64) -> Result<(), Error> {

@@ -1,10 +1,11 @@
 //! From free parameters to estimates with covariance: the part of a fit that
 //! knows the law's concrete type.
 
-use crate::estimator::{Coordinate, Estimator, FreeParameter, Setting, Values};
+use crate::estimator::{Coordinate, Estimator, FreeLaw, FreeParameter, Setting, Values};
 use crate::residual::{Rows, SampleGroup};
 use crate::uncertainty::covariance;
-use windfall_contact::law::ContactLaw;
+use windfall_contact::any_law::{AnyLaw, LARGEST_PARAMETERS};
+use windfall_contact::law_kind::Law;
 use windfall_numerics::least_squares::{Minimum, Options, Stop};
 
 /// Longest step of a logarithmic and of a linear coordinate.
@@ -52,52 +53,65 @@ pub(crate) struct Limits {
 /// Solves from each start in turn until one converges inside the bounds, and
 /// returns the best; `None` when the model cannot be evaluated at any.
 ///
-/// `law` only carries its type.
-pub(crate) fn solve<L, const N: usize>(
-    _law: L,
+pub(crate) fn solve(
+    law: &Law,
     setting: &Setting,
     free: &[FreeParameter],
     starts: &[(Vec<f64>, [f64; 4])],
     limits: &Limits,
-) -> Option<Solution>
-where
-    L: ContactLaw<N> + From<[f64; N]>,
-{
-    let starts: Vec<Values<N>> = starts
-        .iter()
-        .filter_map(|(law, [velocity, mass, onset, offset])| {
-            Some(Values {
-                law: law.as_slice().try_into().ok()?,
-                velocity: *velocity,
-                inverse_mass: 1.0 / mass,
-                onset: *onset,
-                offset: *offset,
-            })
-        })
-        .collect();
-    // The narrowest arrays that hold the free parameters.
+) -> Option<Solution> {
+    // The narrowest arrays that hold the free parameters; the field's usual
+    // law is compiled for itself, the others share their code.
+    let count = starts.first()?.0.len();
     let lanes = free.iter().filter(|p| p.target.needs_lane()).count();
-    match (free.len(), lanes) {
-        (..=2, _) => best_of::<L, N, 4, 2>(setting, free, &starts, limits),
-        (..=4, ..=3) => best_of::<L, N, 4, 4>(setting, free, &starts, limits),
-        (..=5, ..=3) => best_of::<L, N, 4, 5>(setting, free, &starts, limits),
-        _ => best_of::<L, N, 8, LARGEST_FREE>(setting, free, &starts, limits),
+    match (law, free.len(), lanes) {
+        (Law::KuwabaraKono(law), ..=2, _) => {
+            best_of::<_, 2, 4, 2>(*law, setting, free, &values(starts), count, limits)
+        }
+        (Law::KuwabaraKono(law), ..=5, ..=3) => {
+            best_of::<_, 2, 4, 5>(*law, setting, free, &values(starts), count, limits)
+        }
+        (law, _, _) => best_of::<_, LARGEST_PARAMETERS, 8, LARGEST_FREE>(
+            AnyLaw(*law),
+            setting,
+            free,
+            &values(starts),
+            count,
+            limits,
+        ),
     }
 }
 
+fn values<const N: usize>(starts: &[(Vec<f64>, [f64; 4])]) -> Vec<Values<N>> {
+    let value = |(law, [velocity, mass, onset, offset]): &(Vec<f64>, [f64; 4])| {
+        let mut parameters = [0.0; N];
+        parameters[..law.len()].copy_from_slice(law);
+        Values {
+            law: parameters,
+            velocity: *velocity,
+            inverse_mass: 1.0 / mass,
+            onset: *onset,
+            offset: *offset,
+        }
+    };
+    starts.iter().map(value).collect()
+}
+
 fn best_of<L, const N: usize, const W: usize, const P: usize>(
+    law: L,
     setting: &Setting,
     free: &[FreeParameter],
     starts: &[Values<N>],
+    law_count: usize,
     limits: &Limits,
 ) -> Option<Solution>
 where
-    L: ContactLaw<N> + From<[f64; N]>,
+    L: FreeLaw<N>,
 {
     let mut best: Option<(Estimator<L, N, W, P>, Minimum<P>)> = None;
     let mut evaluations = 0;
     for start in starts {
-        let mut estimator = Estimator::<L, N, W, P>::new(*setting, free, *start);
+        let mut estimator = Estimator::<L, N, W, P>::new(law, *setting, free, *start);
         let minimum = estimator.minimise(&options(free, limits));
         evaluations += minimum.evaluations;
         if minimum.stop == Stop::BadStart {
@@ -113,7 +127,14 @@ where
         }
     }
     let (estimator, minimum) = best?;
-    complete(&estimator, &minimum, setting.groups, free, evaluations)
+    complete(
+        law_count,
+        &estimator,
+        &minimum,
+        setting.groups,
+        free,
+        evaluations,
+    )
 }
 
 fn better<const P: usize>(one: &Minimum<P>, other: &Minimum<P>) -> bool {
@@ -137,6 +158,7 @@ fn options<const P: usize>(free: &[FreeParameter], limits: &Limits) -> Options<P
 }
 
 fn complete<L, const N: usize, const W: usize, const P: usize>(
+    law_count: usize,
     estimator: &Estimator<L, N, W, P>,
     minimum: &Minimum<P>,
     groups: &[SampleGroup],
@@ -144,7 +166,7 @@ fn complete<L, const N: usize, const W: usize, const P: usize>(
     evaluations: usize,
 ) -> Option<Solution>
 where
-    L: ContactLaw<N> + From<[f64; N]>,
+    L: FreeLaw<N>,
 {
     let (equations, rows) = estimator.rows(&minimum.parameters)?;
     let values = estimator.values(&minimum.parameters);
@@ -157,7 +179,7 @@ where
             .collect()
     });
     Some(Solution {
-        law: values.law.to_vec(),
+        law: values.law[..law_count].to_vec(),
         free: at,
         covariance,
         velocity: values.velocity,

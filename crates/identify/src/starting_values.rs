@@ -111,11 +111,19 @@ pub(crate) fn starting_values(kind: LawKind, f: &Features, given: &[Option<f64>]
             let n = value_of("n").unwrap_or(1.5);
             let factor = damping_for_restitution(f.restitution, f.velocity);
             let factor = factor.unwrap_or(1.5 * (1.0 - f.restitution) / f.velocity);
-            vec![("k", stiffness(n)), ("lambda", factor * stiffness(n)), ("n", n)]
+            vec![
+                ("k", stiffness(n)),
+                ("lambda", factor * stiffness(n)),
+                ("n", n),
+            ]
         }
         LawKind::LankaraniNikravesh | LawKind::Flores | LawKind::HerbertMcWhannell => {
             let n = value_of("n").unwrap_or(1.5);
-            vec![("k", stiffness(n)), ("n", n), ("restitution", f.restitution)]
+            vec![
+                ("k", stiffness(n)),
+                ("n", n),
+                ("restitution", f.restitution),
+            ]
         }
         LawKind::Tsuji => vec![("k", stiffness(1.5)), ("restitution", f.restitution)],
         LawKind::AdamsImpact => {
@@ -136,7 +144,11 @@ pub(crate) fn starting_values(kind: LawKind, f: &Features, given: &[Option<f64>]
             let modulus = 1.5 * stiffness(1.5) / radius.sqrt();
             // The peak force is reached on the plastic slope π p_y R.
             let pressure = f.force / (PI * radius * f.displacement);
-            vec![("E_star", modulus), ("R_star", radius), ("yield_pressure", pressure)]
+            vec![
+                ("E_star", modulus),
+                ("R_star", radius),
+                ("yield_pressure", pressure),
+            ]
         }
     };
     parameters

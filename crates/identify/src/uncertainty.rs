@@ -55,7 +55,12 @@ pub fn covariance<const P: usize>(
             let weight = group.weight(crate::residual::Quantity::ALL[q]);
             let variance = freedom * mean_square(residuals);
             let correlations = autocorrelation(residuals);
-            add_meat(&mut meat, jacobian, &correlations, weight * weight * variance);
+            add_meat(
+                &mut meat,
+                jacobian,
+                &correlations,
+                weight * weight * variance,
+            );
         }
     }
     let mut out = [[0.0; P]; P];
@@ -146,7 +151,11 @@ pub struct RunsTest {
 /// Wald and Wolfowitz (1940), Ann. Math. Statist. 11:147.
 #[must_use]
 pub fn runs_test(residuals: &[f64]) -> Option<RunsTest> {
-    let signs: Vec<bool> = residuals.iter().filter(|r| **r != 0.0).map(|r| *r > 0.0).collect();
+    let signs: Vec<bool> = residuals
+        .iter()
+        .filter(|r| **r != 0.0)
+        .map(|r| *r > 0.0)
+        .collect();
     let positive = signs.iter().filter(|s| **s).count() as f64;
     let total = signs.len() as f64;
     let negative = total - positive;
@@ -173,7 +182,9 @@ mod tests {
     /// has 10 runs against 11 expected, variance 2·10·10·180/(400·19).
     #[test]
     fn closed_form_runs() {
-        let residuals: Vec<f64> = (0..20).map(|i| if i / 2 % 2 == 0 { 1.0 } else { -1.0 }).collect();
+        let residuals: Vec<f64> = (0..20)
+            .map(|i| if i / 2 % 2 == 0 { 1.0 } else { -1.0 })
+            .collect();
         let found = runs_test(&residuals).unwrap();
         assert_eq!((found.runs, found.expected), (10, 11.0));
         let variance: f64 = 200.0 * 180.0 / (400.0 * 19.0);
@@ -190,7 +201,9 @@ mod tests {
         let mut noise = || {
             let mut sum = 0.0;
             for _ in 0..12 {
-                state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+                state = state
+                    .wrapping_mul(6_364_136_223_846_793_005)
+                    .wrapping_add(1_442_695_040_888_963_407);
                 sum += (state >> 11) as f64 / (1_u64 << 53) as f64;
             }
             sum - 6.0
@@ -201,7 +214,8 @@ mod tests {
         }
         let group = SampleGroup::new(&vec![0.0; n], [Some((&residuals, 3.0)), None, None, None]);
         let mut rows = Rows::default();
-        rows.residuals.push([residuals.clone(), vec![], vec![], vec![]]);
+        rows.residuals
+            .push([residuals.clone(), vec![], vec![], vec![]]);
         rows.jacobian.push([vec![1.0; n], vec![], vec![], vec![]]);
         let mut equations = NormalEquations::<1>::ZERO;
         for r in &residuals {

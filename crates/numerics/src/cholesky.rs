@@ -19,7 +19,7 @@ fn factor<const P: usize>(matrix: &[[f64; P]; P]) -> Option<([[f64; P]; P], [f64
                 sum -= lower[i][k] * lower[j][k];
             }
             if i == j {
-                if sum <= SINGULAR {
+                if sum.is_nan() || sum <= SINGULAR {
                     return None;
                 }
                 lower[i][i] = sum.sqrt();

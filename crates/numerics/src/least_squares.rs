@@ -4,7 +4,7 @@
 //! data; nothing here depends on how many residuals there are, and nothing is
 //! allocated.
 
-use crate::cholesky;
+use crate::box_quadratic::minimum_in_box;
 
 /// Cost, gradient and normal matrix of weighted least squares:
 ///
@@ -96,13 +96,18 @@ impl<const P: usize> Default for Options<P> {
 /// Why the minimiser stopped.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Stop {
-    /// No step lowers the cost noticeably: a minimum.
+    /// No step within the bounds lowers the cost noticeably: the full
+    /// Gauss-Newton step gains less than `cost_tolerance`, or less than the
+    /// rounding of the parameters. A parameter that the data do not tell, at
+    /// this point, has no step to take: look at the normal matrix.
     Converged,
-    /// Shorter and shorter steps did not lower the cost.
+    /// The full step promises a gain, but shorter and shorter steps did not
+    /// deliver it: the model is not smooth, or its derivatives are wrong.
     Stuck,
     /// The evaluations ran out.
     EvaluationLimit,
-    /// The model cannot be evaluated at the start.
+    /// The start is not a number, the bounds exclude each other, or the model
+    /// cannot be evaluated at the start.
     BadStart,
 }
 
@@ -111,124 +116,243 @@ pub enum Stop {
 pub struct Minimum<const P: usize> {
     /// Parameters.
     pub parameters: [f64; P],
-    /// Normal equations of the last evaluation (one negligible step before
-    /// `parameters` when converged).
+    /// Normal equations of the last evaluation that lowered the cost (one
+    /// negligible step before `parameters` when converged).
     pub equations: NormalEquations<P>,
     /// Evaluations used.
     pub evaluations: usize,
     /// Why it stopped.
     pub stop: Stop,
-    /// Whether each parameter ended on a bound: −1 lower, 1 upper, 0 neither.
+    /// Whether each parameter ended on a bound: −1 lower, 1 upper, 0 neither
+    /// (or both, where they are equal).
     pub at_bound: [i8; P],
 }
 
 /// Damping to begin with, relative to the diagonal.
 const FIRST_DAMPING: f64 = 1e-3;
+/// Part of the scaling that each step keeps. With 0 parameters run away (NIST
+/// MGH17, start 1); 1 is Moré's rule, which costs good starts an evaluation.
+/// The NIST sets are fitted with all values from 0.5 to 1.
+const SCALING_MEMORY: f64 = 0.8;
 /// Below this the damping no longer changes a step.
 const SMALLEST_DAMPING: f64 = 1e-12;
 /// Above this every step is negligible.
 const LARGEST_DAMPING: f64 = 1e16;
+/// Relative error of a parameter, or of the model, that is rounding: a few
+/// units in the last place.
+const ROUNDING: f64 = 4.0 * f64::EPSILON;
+/// Changes of the cost below this fraction may be noise of the model, such as
+/// steps of an integrator; there the gradients decide.
+const NOISE: f64 = 1e-8;
 
 /// Minimises a sum of squares from `start` within `bounds`.
 ///
 /// # Numerics
-/// Levenberg-Marquardt with Marquardt's scaling by the diagonal, damping by
-/// the gain ratio, steps clipped to the bounds; a parameter at a bound whose
-/// gradient points outwards is held there for the step.
+/// Levenberg-Marquardt. The damping is scaled by the largest recent diagonal of
+/// the normal matrix, so that a parameter that loses its effect does not run
+/// away; it follows the gain ratio. Each step minimises the damped quadratic
+/// model within the bounds exactly (primal active set). Where the change of the
+/// cost drowns in rounding, a step is accepted when less is left to gain after
+/// it than before, as the gradients tell.
 ///
 /// # Source
-/// Marquardt (1963), J. SIAM 11:431; Nielsen (1999), IMM-REP-1999-05, for the
-/// damping.
+/// Marquardt (1963), J. SIAM 11:431; Moré (1978), Lecture Notes in Mathematics
+/// 630:105, for the scaling (kept there for ever, here for some steps); Nielsen
+/// (1999), IMM-REP-1999-05, for the damping; Bates and Watts (1981),
+/// Technometrics 23:179, for the stopping rule (the residual's part in the
+/// tangent plane).
 pub fn minimise<const P: usize>(
     problem: &mut impl LeastSquares<P>,
     start: &[f64; P],
     bounds: &Bounds<P>,
     options: &Options<P>,
 ) -> Minimum<P> {
-    let mut parameters = clip(start, bounds);
-    let mut evaluations = 1;
-    let Some(mut equations) = problem.evaluate(&parameters).filter(finite) else {
-        return Minimum {
-            parameters,
-            equations: NormalEquations::ZERO,
-            evaluations,
-            stop: Stop::BadStart,
-            at_bound: [0; P],
-        };
+    let mut minimum = Minimum {
+        parameters: *start,
+        equations: NormalEquations::ZERO,
+        evaluations: 0,
+        stop: Stop::BadStart,
+        at_bound: [0; P],
     };
-    let (mut damping, mut growth) = (FIRST_DAMPING, 2.0);
-    let mut settled = false;
-
-    let stop = loop {
-        // A full Gauss-Newton step tells how much there is left to gain.
-        if settled && let Some(full) = bounded_step(&equations, &parameters, bounds, 0.0, options) {
-            let gain = predicted_gain(&equations, &full);
-            if gain <= options.cost_tolerance * equations.cost {
-                parameters = moved(&parameters, &full, bounds);
-                break Stop::Converged;
-            }
+    let legal = (0..P).all(|i| !start[i].is_nan() && bounds.lower[i] <= bounds.upper[i]);
+    if legal {
+        minimum.parameters = clip(start, bounds);
+        minimum.evaluations = 1;
+        if let Some(equations) = problem.evaluate(&minimum.parameters).filter(finite) {
+            minimum.equations = equations;
+            descend(problem, &mut minimum, bounds, options);
         }
-        if evaluations >= options.max_evaluations {
-            break Stop::EvaluationLimit;
-        }
-        let step = bounded_step(&equations, &parameters, bounds, damping, options);
-        let step = step.unwrap_or([0.0; P]);
-        let gain = predicted_gain(&equations, &step);
-        let short = (0..P).all(|i| step[i].abs() <= options.step_tolerance * scale(options, i));
-        if short || gain <= 0.0 {
-            // At a minimum the step vanishes without damping; a damped one says
-            // that no direction helped.
-            break if damping <= 1.0 {
-                Stop::Converged
-            } else {
-                Stop::Stuck
-            };
-        }
-        let candidate = moved(&parameters, &step, bounds);
-        evaluations += 1;
-        let tried = problem.evaluate(&candidate).filter(finite);
-        match tried.filter(|found| found.cost <= equations.cost) {
-            Some(found) => {
-                let ratio = (equations.cost - found.cost) / gain;
-                let shrink = (1.0 - (2.0 * ratio - 1.0).powi(3)).clamp(0.05, 2.0);
-                damping = (damping * shrink).max(SMALLEST_DAMPING);
-                growth = 2.0;
-                (parameters, equations, settled) = (candidate, found, true);
-            }
-            None => {
-                damping *= growth;
-                growth *= 2.0;
-                settled = false;
-                if damping > LARGEST_DAMPING {
-                    break Stop::Stuck;
-                }
-                // Noise of the model, not its shape, decides below this.
-                if gain <= options.cost_tolerance * equations.cost {
-                    break Stop::Converged;
-                }
-            }
-        }
-    };
-    let mut at_bound = [0; P];
-    for i in 0..P {
-        at_bound[i] =
-            i8::from(parameters[i] >= bounds.upper[i]) - i8::from(parameters[i] <= bounds.lower[i]);
     }
-    Minimum {
-        parameters,
-        equations,
-        evaluations,
-        stop,
-        at_bound,
+    minimum
+}
+
+/// Parameters with their normal equations, and what is left to gain there.
+#[derive(Clone, Copy)]
+struct Point<const P: usize> {
+    parameters: [f64; P],
+    equations: NormalEquations<P>,
+    /// The undamped Gauss-Newton step within the bounds.
+    full: [f64; P],
+    /// Predicted gain of `full`, at most; not a number when there is no step.
+    left: f64,
+}
+
+/// Damping of the next step, and how it grows when a step fails.
+struct Damping<const P: usize> {
+    relative: f64,
+    growth: f64,
+    scaling: [f64; P],
+}
+
+/// Moves `minimum` from its evaluated parameters to where it stops.
+fn descend<const P: usize>(
+    problem: &mut impl LeastSquares<P>,
+    minimum: &mut Minimum<P>,
+    bounds: &Bounds<P>,
+    options: &Options<P>,
+) {
+    let mut here = point(minimum.parameters, minimum.equations, bounds);
+    let mut damping = Damping {
+        relative: FIRST_DAMPING,
+        growth: 2.0,
+        scaling: [0.0; P],
+    };
+    minimum.stop = loop {
+        for i in 0..P {
+            damping.scaling[i] =
+                (SCALING_MEMORY * damping.scaling[i]).max(here.equations.normal[i][i]);
+        }
+        if here.left <= negligible(&here, options) || short(&here.full, options) {
+            let last = shortened(&here.full, options);
+            here.parameters = moved(&here.parameters, &last, bounds);
+            break Stop::Converged;
+        }
+        let spent = &mut minimum.evaluations;
+        match next_point(problem, &here, &mut damping, spent, bounds, options) {
+            Ok(next) => here = next,
+            Err(stop) => break stop,
+        }
+    };
+    (minimum.parameters, minimum.equations) = (here.parameters, here.equations);
+    minimum.at_bound = std::array::from_fn(|i| {
+        let at = minimum.parameters[i];
+        i8::from(at >= bounds.upper[i]) - i8::from(at <= bounds.lower[i])
+    });
+}
+
+/// The first point that a step, damped more and more, leads down to.
+fn next_point<const P: usize>(
+    problem: &mut impl LeastSquares<P>,
+    here: &Point<P>,
+    damping: &mut Damping<P>,
+    evaluations: &mut usize,
+    bounds: &Bounds<P>,
+    options: &Options<P>,
+) -> Result<Point<P>, Stop> {
+    while damping.relative <= LARGEST_DAMPING {
+        if *evaluations >= options.max_evaluations {
+            return Err(Stop::EvaluationLimit);
+        }
+        let added = damping.scaling.map(|scale| scale * damping.relative);
+        if let Some(step) = bounded_step(&here.equations, &here.parameters, bounds, &added) {
+            let step = shortened(&step, options);
+            let (gain, _) = predicted_gain(&here.equations, &step);
+            let candidate = moved(&here.parameters, &step, bounds);
+            if candidate == here.parameters {
+                return Err(Stop::Stuck);
+            }
+            // A step without gain is rounding of a nearly singular matrix.
+            let found = (gain > 0.0).then(|| {
+                *evaluations += 1;
+                problem.evaluate(&candidate).filter(finite)
+            });
+            let found = found.flatten();
+            if let Some(next) = found.map(|found| point(candidate, found, bounds))
+                && accepted(here, &next)
+            {
+                damping.follow(here, &next, gain);
+                return Ok(next);
+            }
+            // Shorter steps would gain less than what counts.
+            if gain > 0.0 && gain <= negligible(here, options) {
+                return Err(Stop::Stuck);
+            }
+        }
+        damping.relative *= damping.growth;
+        damping.growth *= 2.0;
+    }
+    Err(Stop::Stuck)
+}
+
+impl<const P: usize> Damping<P> {
+    /// Less damping where the quadratic model foretold the gain, more where it
+    /// promised too much.
+    fn follow(&mut self, from: &Point<P>, to: &Point<P>, gain: f64) {
+        let fall = from.equations.cost - to.equations.cost;
+        let ratio = if gain > noise(from) { fall / gain } else { 1.0 };
+        let shrink = (1.0 - (2.0 * ratio - 1.0).powi(3)).clamp(0.05, 2.0);
+        self.relative = (self.relative * shrink).max(SMALLEST_DAMPING);
+        self.growth = 2.0;
     }
 }
 
-fn scale<const P: usize>(options: &Options<P>, i: usize) -> f64 {
-    if options.largest_step[i].is_finite() {
-        options.largest_step[i]
-    } else {
-        f64::MIN_POSITIVE
+/// Lower cost; or, where the change of the cost is noise, less left to gain.
+fn accepted<const P: usize>(from: &Point<P>, to: &Point<P>) -> bool {
+    let rise = to.equations.cost - from.equations.cost;
+    rise <= 0.0 || (rise <= noise(from) && to.left < from.left)
+}
+
+/// Change of the cost that says nothing.
+fn noise<const P: usize>(at: &Point<P>) -> f64 {
+    let rounding = rounding_gain(at);
+    NOISE * at.equations.cost + 2.0 * (at.equations.cost * rounding).sqrt() + rounding
+}
+
+/// Gain that is not worth an evaluation.
+fn negligible<const P: usize>(at: &Point<P>, options: &Options<P>) -> f64 {
+    (options.cost_tolerance * at.equations.cost).max(rounding_gain(at))
+}
+
+/// Change of the cost when each parameter is off by its rounding, at a minimum.
+fn rounding_gain<const P: usize>(at: &Point<P>) -> f64 {
+    (0..P)
+        .map(|i| at.equations.normal[i][i] * (ROUNDING * at.parameters[i]).powi(2))
+        .sum()
+}
+
+fn point<const P: usize>(
+    parameters: [f64; P],
+    equations: NormalEquations<P>,
+    bounds: &Bounds<P>,
+) -> Point<P> {
+    // Parameters that cannot be told apart need the least damping that works.
+    let least = std::array::from_fn(|i| SMALLEST_DAMPING * equations.normal[i][i]);
+    let full = bounded_step(&equations, &parameters, bounds, &[0.0; P])
+        .or_else(|| bounded_step(&equations, &parameters, bounds, &least))
+        .unwrap_or([f64::NAN; P]);
+    let (gain, rounding) = predicted_gain(&equations, &full);
+    Point {
+        parameters,
+        equations,
+        full,
+        left: gain + rounding,
     }
+}
+
+fn short<const P: usize>(step: &[f64; P], options: &Options<P>) -> bool {
+    (0..P).all(|i| {
+        let unit = options.largest_step[i];
+        let unit = if unit.is_finite() { unit } else { 0.0 };
+        step[i].abs() <= options.step_tolerance * unit
+    })
+}
+
+/// The step in the same direction within the longest step allowed.
+fn shortened<const P: usize>(step: &[f64; P], options: &Options<P>) -> [f64; P] {
+    let longest = (0..P)
+        .map(|i| step[i].abs() / options.largest_step[i])
+        .fold(1.0, f64::max);
+    step.map(|s| s / longest)
 }
 
 fn finite<const P: usize>(equations: &NormalEquations<P>) -> bool {
@@ -241,84 +365,50 @@ fn clip<const P: usize>(parameters: &[f64; P], bounds: &Bounds<P>) -> [f64; P] {
     std::array::from_fn(|i| parameters[i].max(bounds.lower[i]).min(bounds.upper[i]))
 }
 
+/// Parameters after a step; a step to a bound ends on it exactly.
 fn moved<const P: usize>(parameters: &[f64; P], step: &[f64; P], bounds: &Bounds<P>) -> [f64; P] {
-    clip(&std::array::from_fn(|i| parameters[i] + step[i]), bounds)
+    std::array::from_fn(|i| {
+        if step[i] <= bounds.lower[i] - parameters[i] {
+            bounds.lower[i]
+        } else if step[i] >= bounds.upper[i] - parameters[i] {
+            bounds.upper[i]
+        } else {
+            parameters[i] + step[i]
+        }
+    })
 }
 
-/// The damped step, zero for parameters that a bound holds; `None` when the
-/// normal matrix is singular.
+/// Step to the minimum of the damped quadratic model within the bounds; `None`
+/// when its matrix is singular.
 fn bounded_step<const P: usize>(
     equations: &NormalEquations<P>,
     parameters: &[f64; P],
     bounds: &Bounds<P>,
-    damping: f64,
-    options: &Options<P>,
-) -> Option<[f64; P]> {
-    let mut held: [bool; P] = std::array::from_fn(|i| {
-        let out = (parameters[i] <= bounds.lower[i] && equations.gradient[i] > 0.0)
-            || (parameters[i] >= bounds.upper[i] && equations.gradient[i] < 0.0);
-        out || equations.normal[i][i] <= 0.0
-    });
-    // A step that runs into a bound is solved again with that parameter put on
-    // the bound, so that the others take the rest of the way.
-    let mut fixed = [0.0; P];
-    for _ in 0..=P {
-        let mut step = solve(equations, &held, &fixed, damping)?;
-        let mut blocked = false;
-        for i in 0..P {
-            let to = parameters[i] + step[i];
-            if !held[i] && (to < bounds.lower[i] || to > bounds.upper[i]) {
-                held[i] = true;
-                fixed[i] = to.max(bounds.lower[i]).min(bounds.upper[i]) - parameters[i];
-                blocked = true;
-            }
-        }
-        if !blocked {
-            let longest = (0..P)
-                .map(|i| step[i].abs() / options.largest_step[i])
-                .fold(1.0, f64::max);
-            step.iter_mut().for_each(|s| *s /= longest);
-            return Some(step);
-        }
-    }
-    Some(fixed)
-}
-
-/// Solves (N + λ diag N) δ = −g for the parameters that are not held, given
-/// the steps of those that are.
-fn solve<const P: usize>(
-    equations: &NormalEquations<P>,
-    held: &[bool; P],
-    fixed: &[f64; P],
-    damping: f64,
+    added: &[f64; P],
 ) -> Option<[f64; P]> {
     let mut matrix = equations.normal;
-    let mut right = equations.gradient.map(|g| -g);
     for i in 0..P {
-        matrix[i][i] *= 1.0 + damping;
-        for j in 0..P {
-            if held[j] && !held[i] {
-                right[i] -= equations.normal[i][j] * fixed[j];
-            }
-        }
+        matrix[i][i] += added[i];
     }
-    for i in (0..P).filter(|&i| held[i]) {
-        for j in 0..P {
-            matrix[i][j] = 0.0;
-            matrix[j][i] = 0.0;
-        }
-        matrix[i][i] = 1.0;
-        right[i] = fixed[i];
-    }
-    cholesky::solve(&matrix, &right)
+    let lower = std::array::from_fn(|i| bounds.lower[i] - parameters[i]);
+    let upper = std::array::from_fn(|i| bounds.upper[i] - parameters[i]);
+    minimum_in_box(&matrix, &equations.gradient, &lower, &upper)
 }
 
-/// −(2 gᵀδ + δᵀNδ): by how much the quadratic model's cost falls.
-fn predicted_gain<const P: usize>(equations: &NormalEquations<P>, step: &[f64; P]) -> f64 {
-    let mut gain = 0.0;
+/// −(2 gᵀδ + δᵀNδ): by how much the quadratic model's cost falls; and how much
+/// of that may be rounding, which is all of it when the terms cancel.
+fn predicted_gain<const P: usize>(equations: &NormalEquations<P>, step: &[f64; P]) -> (f64, f64) {
+    let (mut gain, mut size) = (0.0, 0.0);
     for i in 0..P {
-        let curved: f64 = (0..P).map(|j| equations.normal[i][j] * step[j]).sum();
-        gain -= step[i] * (2.0 * equations.gradient[i] + curved);
+        let mut slope = 2.0 * equations.gradient[i];
+        let mut steepest = slope.abs();
+        for j in 0..P {
+            let curved = equations.normal[i][j] * step[j];
+            slope += curved;
+            steepest += curved.abs();
+        }
+        gain -= step[i] * slope;
+        size += step[i].abs() * steepest;
     }
-    gain
+    (gain, ROUNDING * size)
 }

@@ -4,6 +4,7 @@
 //!
 //! This crate knows no contact law, no instrument and no file.
 
+mod box_quadratic;
 pub mod cholesky;
 mod dimension;
 pub mod least_squares;

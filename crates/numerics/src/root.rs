@@ -74,10 +74,13 @@ pub fn bracketed_root(low: f64, high: f64, tolerance: f64, function: impl Fn(f64
 mod tests {
     use super::*;
 
+    /// Ends, root and function of a case.
+    type Case = (f64, f64, f64, fn(f64) -> f64);
+
     /// Steep, flat and discontinuous functions with known roots.
     #[test]
     fn closed_form_roots() {
-        let cases: [(f64, f64, f64, fn(f64) -> f64); 4] = [
+        let cases: [Case; 4] = [
             (0.0, 1.0, 0.5, |x| 0.5 - x),
             (0.0, 3.0, 2.0, |x| 8.0 - x * x * x),
             (0.0, 1.0, 1e-6, |x| (1e-6 - x).cbrt()),

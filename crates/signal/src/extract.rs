@@ -7,7 +7,7 @@ use crate::finding::Finding;
 use crate::impact::{Impact, Measured, Series};
 use crate::kinematics::Motion;
 use crate::measure::{
-    Side, Surroundings, free_velocity, impulse, largest_displacement, with_energies,
+    Side, Surroundings, Velocity, free_velocity, impulse, largest_displacement, with_energies,
 };
 use crate::noise_track::{force_noise, noise_of};
 use crate::options::{ExtractOptions, RateMethod, check_options};
@@ -45,100 +45,23 @@ pub fn extract_impact(
         arm: options.arm,
         illegal: options.illegal,
     };
-    let mut tracks = tracks(recording, &geometry, &mut findings)?;
+    let tracks = tracks(recording, &geometry, &mut findings)?;
 
     // The contact, and the free motion around it.
-    let (contacts, resolution) = contacts(recording, &tracks, options)?;
-    let place = choose(&contacts, options, resolution, &mut findings)?;
+    let (contacts, from_motion) = contacts(recording, &tracks, options)?;
+    let place = choose(&contacts, options, from_motion, &mut findings)?;
 
-    // Signs and zeros of the convention.
-    let force = tracks.force.take().map(|track| {
-        let window = (place.onset, place.end);
-        findings.extend(clipping(
-            &track.name,
-            &track.times,
-            &track.values,
-            window,
-            contacts.reversed,
-        ));
-        oriented_force(track, &contacts, options, &mut findings)
-    });
-    let displacement = tracks
-        .position
-        .take()
-        .map(|position| oriented_displacement(position, &place, options, &mut findings))
-        .map(|mut track| {
-            let motion = Motion::Displacement;
-            leave_out_glitches(&mut track, motion, &place, options, &mut findings);
-            track
-        });
-    let measured_rate = tracks.rate.take().map(|mut track| {
-        let wrong = mean_between(&track, place.onset - 0.2 * place.duration(), place.onset) < 0.0;
-        orient(&mut track, wrong, options, &mut findings);
-        leave_out_glitches(&mut track, Motion::Rate, &place, options, &mut findings);
-        track
-    });
-    let acceleration = tracks.acceleration.take().map(|mut track| {
-        let wrong = mean_between(&track, place.onset, place.end) > 0.0;
-        orient(&mut track, wrong, options, &mut findings);
-        track
-    });
-    for track in [&displacement, &measured_rate, &force, &acceleration]
-        .into_iter()
-        .flatten()
-    {
-        findings.extend(few_samples(track, &place));
-    }
-    let noises = Noises {
-        displacement: displacement
-            .as_ref()
-            .map(|t| noise_of(t, &place, &mut findings)),
-        rate: measured_rate
-            .as_ref()
-            .map(|t| noise_of(t, &place, &mut findings)),
-        force: force
-            .as_ref()
-            .map(|t| force_noise(t, &contacts, &place, &mut findings)),
-    };
+    // Signs, zeros and noise; then what they say, and the rate to be fitted.
+    let mut signals = oriented(tracks, &contacts, &place, options, &mut findings);
+    let measured = measure(&signals, &contacts, &place, options);
+    signals.rate = rate(&mut signals, options, &place, &mut findings);
 
-    let measured = measure(
-        displacement.as_ref(),
-        measured_rate.as_ref(),
-        force.as_ref(),
-        &noises,
-        &contacts,
-        &place,
-        options,
-    );
-
-    // A measured rate is kept unless the method derives one.
-    let keep = match options.rate {
-        RateMethod::Measured => true,
-        RateMethod::Automatic => measured_rate.is_some(),
-        RateMethod::CentralDifference | RateMethod::LocalPolynomial { .. } => false,
-    };
-    let (rate, rate_noise) = if keep {
-        (measured_rate, noises.rate)
-    } else {
-        let rate = displacement
-            .as_ref()
-            .and_then(|track| derived_rate(track, options.rate, &place));
-        let noise = rate
-            .as_ref()
-            .map(|track| noise_of(track, &place, &mut findings));
-        (rate, noise)
-    };
-    let acceleration_noise = acceleration
-        .as_ref()
-        .map(|t| noise_of(t, &place, &mut findings));
-    let cut = |track: Option<Track>, noise: Option<f64>| {
-        track.and_then(|track| series(&track, noise?, &place, options))
-    };
+    let cut = |track: Option<Track>| track.and_then(|track| series(&track, &place, options));
     let impact = Impact {
-        displacement: cut(displacement, noises.displacement),
-        rate: cut(rate, rate_noise),
-        force: cut(force, noises.force),
-        acceleration: cut(acceleration, acceleration_noise),
+        displacement: cut(signals.displacement),
+        rate: cut(signals.rate),
+        force: cut(signals.force),
+        acceleration: cut(signals.acceleration),
         onset: place.onset,
         end: place.end,
         measured,
@@ -146,10 +69,89 @@ pub fn extract_impact(
     Ok((impact, findings))
 }
 
-struct Noises {
-    displacement: Option<f64>,
-    rate: Option<f64>,
-    force: Option<f64>,
+/// Channels in the convention of an impact, with their noise.
+struct Signals {
+    displacement: Option<Track>,
+    rate: Option<Track>,
+    force: Option<Track>,
+    acceleration: Option<Track>,
+}
+
+fn oriented(
+    tracks: Tracks,
+    contacts: &Contacts,
+    place: &Surroundings,
+    options: &ExtractOptions,
+    findings: &mut Vec<Finding>,
+) -> Signals {
+    let force = tracks.force.map(|track| {
+        let window = (place.onset, place.end);
+        let (times, values) = (&track.times, &track.values);
+        findings.extend(clipping(
+            &track.name,
+            times,
+            values,
+            window,
+            contacts.reversed,
+        ));
+        let mut track = oriented_force(track, contacts, options, findings);
+        track.noise = force_noise(&track, contacts, place, findings);
+        track
+    });
+    let displacement = tracks.position.map(|position| {
+        let mut track = oriented_displacement(position, place, options, findings);
+        leave_out_glitches(&mut track, Motion::Displacement, place, options, findings);
+        track.noise = noise_of(&track, place, findings);
+        track
+    });
+    let rate = tracks.rate.map(|mut track| {
+        // Just before contact it moves towards the fruit.
+        let wrong = mean_between(&track, place.onset - 0.2 * place.duration(), place.onset) < 0.0;
+        orient(&mut track, wrong, options, findings);
+        leave_out_glitches(&mut track, Motion::Rate, place, options, findings);
+        track.noise = noise_of(&track, place, findings);
+        track
+    });
+    let acceleration = tracks.acceleration.map(|mut track| {
+        // In contact it is pushed away from the fruit.
+        let wrong = mean_between(&track, place.onset, place.end) > 0.0;
+        orient(&mut track, wrong, options, findings);
+        track.noise = noise_of(&track, place, findings);
+        track
+    });
+    for track in [&displacement, &rate, &force, &acceleration]
+        .into_iter()
+        .flatten()
+    {
+        findings.extend(few_samples(track, place));
+    }
+    Signals {
+        displacement,
+        rate,
+        force,
+        acceleration,
+    }
+}
+
+/// The rate to be fitted: measured, or derived from the displacement.
+fn rate(
+    signals: &mut Signals,
+    options: &ExtractOptions,
+    place: &Surroundings,
+    findings: &mut Vec<Finding>,
+) -> Option<Track> {
+    let measured = signals.rate.take();
+    let keep = match options.rate {
+        RateMethod::Measured => true,
+        RateMethod::Automatic => measured.is_some(),
+        RateMethod::CentralDifference | RateMethod::LocalPolynomial { .. } => false,
+    };
+    if keep {
+        return measured;
+    }
+    let mut track = derived_rate(signals.displacement.as_ref()?, options.rate, place)?;
+    track.noise = noise_of(&track, place, findings);
+    Some(track)
 }
 
 /// Contacts from the force, else from the deceleration, with its resolution.
@@ -259,59 +261,67 @@ fn choose(
 }
 
 fn measure(
-    displacement: Option<&Track>,
-    rate: Option<&Track>,
-    force: Option<&Track>,
-    noises: &Noises,
+    signals: &Signals,
     contacts: &Contacts,
     place: &Surroundings,
     options: &ExtractOptions,
 ) -> Measured {
     let window = contacts.windows.iter().find(|w| w.onset == place.onset);
-    let velocity = |side| {
-        let from = |track: Option<&Track>, noise: Option<f64>, motion| {
-            let track = track?;
-            let samples = (&track.times[..], &track.values[..], motion);
-            free_velocity(samples, noise?, place, side, options.driving_acceleration)
-        };
-        from(displacement, noises.displacement, Motion::Displacement)
-            .or_else(|| from(rate, noises.rate, Motion::Rate))
-    };
-    let before = window
-        .filter(|w| w.onset_seen)
-        .and_then(|_| velocity(Side::Before));
-    let after = window
-        .filter(|w| w.end_seen)
-        .and_then(|_| velocity(Side::After));
+    let onset_seen = window.is_some_and(|w| w.onset_seen);
+    let end_seen = window.is_some_and(|w| w.end_seen);
+    let whole = onset_seen && end_seen;
+
+    let before = velocity(signals, place, Side::Before, options).filter(|_| onset_seen);
+    let after = velocity(signals, place, Side::After, options).filter(|_| end_seen);
     let rebound = after.map(|v| -v.value);
-    let impulse = force.zip(noises.force).and_then(|(track, noise)| {
-        impulse(
-            &track.times,
-            &track.values,
-            noise,
-            offset_sd(contacts),
-            place,
-        )
+    let impulse = signals.force.as_ref().filter(|_| whole).and_then(|track| {
+        let zero_sd = offset_sd(contacts);
+        impulse(&track.times, &track.values, track.noise, zero_sd, place)
     });
-    let whole = window.is_some_and(|w| w.onset_seen && w.end_seen);
     let measured = Measured {
         impact_velocity: before.map(|v| v.value),
         rebound_velocity: rebound,
         restitution: before.zip(rebound).map(|(v, r)| r / v.value),
         contact_duration: whole.then(|| place.duration()),
-        peak_force: force.and_then(|track| largest_within(track, place)),
-        max_displacement: displacement
+        peak_force: signals
+            .force
+            .as_ref()
+            .and_then(|track| largest_within(track, place)),
+        max_displacement: signals
+            .displacement
+            .as_ref()
             .and_then(|track| largest_displacement(&track.times, &track.values, place)),
-        impulse: impulse.filter(|_| whole).map(|j| j.0),
+        impulse: impulse.map(|j| j.0),
         impact_velocity_sd: before.map(|v| v.sd),
         rebound_velocity_sd: after.map(|v| v.sd),
-        impulse_sd: impulse.filter(|_| whole).map(|j| j.1),
+        impulse_sd: impulse.map(|j| j.1),
         ..Measured::default()
     };
     match options.effective_mass {
         Some(mass) => with_energies(measured, mass),
         None => measured,
     }
+}
+
+/// Velocity next to the contact, from displacement or else from a measured rate.
+fn velocity(
+    signals: &Signals,
+    place: &Surroundings,
+    side: Side,
+    options: &ExtractOptions,
+) -> Option<Velocity> {
+    let from = |track: &Option<Track>, motion| {
+        let track = track.as_ref()?;
+        let samples = (&track.times[..], &track.values[..], motion);
+        free_velocity(
+            samples,
+            track.noise,
+            place,
+            side,
+            options.driving_acceleration,
+        )
+    };
+    from(&signals.displacement, Motion::Displacement).or_else(|| from(&signals.rate, Motion::Rate))
 }
 
 fn largest_within(track: &Track, place: &Surroundings) -> Option<f64> {
@@ -330,12 +340,7 @@ fn few_samples(track: &Track, place: &Surroundings) -> Option<Finding> {
 }
 
 /// The samples around the contact; `None` if there is none.
-fn series(
-    track: &Track,
-    noise: f64,
-    place: &Surroundings,
-    options: &ExtractOptions,
-) -> Option<Series> {
+fn series(track: &Track, place: &Surroundings, options: &ExtractOptions) -> Option<Series> {
     let times = &track.times;
     let from = place.onset - options.margin_before * place.duration();
     let until = place.end + options.margin_after * place.duration();
@@ -352,6 +357,6 @@ fn series(
     (first < last).then(|| Series {
         times: times[first..last].to_vec(),
         values: track.values[first..last].to_vec(),
-        noise,
+        noise: track.noise,
     })
 }

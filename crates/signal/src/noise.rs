@@ -101,7 +101,7 @@ pub fn quantum(values: &[f64]) -> Option<f64> {
 }
 
 /// Mean and standard deviation of a baseline, leaving out samples more than
-/// [`CLIP`] standard deviations away. `None` if empty; deviation 0 of a single sample.
+/// four standard deviations away. `None` if empty; deviation 0 of a single sample.
 #[must_use]
 pub fn baseline(values: &[f64]) -> Option<(f64, f64)> {
     let mut centre = median(values)?;

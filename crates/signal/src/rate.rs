@@ -32,6 +32,7 @@ fn central_rate(track: &Track) -> Option<Track> {
         quantum: track
             .quantum
             .map(|q| rate_quantum(q, mean_interval(&track.times))),
+        noise: 0.0,
     })
 }
 
@@ -48,5 +49,6 @@ fn polynomial_rate(
         times: track.times.clone(),
         values: local_polynomial(&track.times, &track.values, window, order, 1)?,
         quantum: None,
+        noise: 0.0,
     })
 }

@@ -15,6 +15,8 @@ pub(crate) struct Track {
     pub values: Vec<f64>,
     /// Step of the values, if they are quantised.
     pub quantum: Option<f64>,
+    /// Standard deviation of the noise of one sample; 0 until it is found.
+    pub noise: f64,
 }
 
 /// Position of the impactor: its values are a length, or the angle of an arm.
@@ -87,6 +89,7 @@ fn plain_track(channel: &Channel, findings: &mut Vec<Finding>) -> Result<Track, 
         times,
         values: channel.samples.clone(),
         quantum: quantum(&channel.samples),
+        noise: 0.0,
     })
 }
 
@@ -171,6 +174,7 @@ fn decoded_track(
         times,
         values: decoded.counts.iter().map(|&count| count as f64).collect(),
         quantum: Some(1.0),
+        noise: 0.0,
     })
 }
 
