@@ -3,7 +3,11 @@
 use assert_cmd::Command;
 
 fn windfall(arguments: &[&str]) -> std::process::Output {
-    Command::cargo_bin("windfall").unwrap().args(arguments).output().unwrap()
+    Command::cargo_bin("windfall")
+        .unwrap()
+        .args(arguments)
+        .output()
+        .unwrap()
 }
 
 fn text(bytes: &[u8]) -> String {
@@ -42,34 +46,78 @@ fn reference_simulated_impacts() {
         ("contact_duration", 5.619851785e-3),
         ("absorbed_energy", 0.016),
     ];
-    check("kuwabara-kono(k=753599, c=1524)", "200 g", "0.5 m/s", &kuwabara);
-    check("hertz(k=\"753.599 kN/m^1.5\")", "0.2 kg", "500 mm/s", &hertz);
-    check("walton-braun(k1=40000, k2=111111.1111)", "0.2", "0.5", &walton);
+    check(
+        "kuwabara-kono(k=753599, c=1524)",
+        "200 g",
+        "0.5 m/s",
+        &kuwabara,
+    );
+    check(
+        "hertz(k=\"753.599 kN/m^1.5\")",
+        "0.2 kg",
+        "500 mm/s",
+        &hertz,
+    );
+    check(
+        "walton-braun(k1=40000, k2=111111.1111)",
+        "0.2",
+        "0.5",
+        &walton,
+    );
     let adams = "adams-impact(k=\"0.868 N/mm^1.91\", e=1.91, c=\"5.56e-4 N s/mm\", d=\"0.001 mm\")";
-    let kang = [("peak_force", 12.82377044), ("contact_duration", 3.719021913e-3)];
+    let kang = [
+        ("peak_force", 12.82377044),
+        ("contact_duration", 3.719021913e-3),
+    ];
     check(adams, "4.8 g", "3.13 m/s", &kang);
 }
 
 fn check(law: &str, mass: &str, velocity: &str, expected: &[(&str, f64)]) {
     let found = json(&[
-        "simulate", "impact", "--law", law, "--mass", mass, "--velocity", velocity, "--format", "json",
+        "simulate",
+        "impact",
+        "--law",
+        law,
+        "--mass",
+        mass,
+        "--velocity",
+        velocity,
+        "--format",
+        "json",
     ]);
     for (name, value) in expected {
         let number = found[name].as_f64().unwrap();
-        assert!((number / value - 1.0).abs() < 1e-8, "{law} {name}: {number}, expected {value}");
+        assert!(
+            (number / value - 1.0).abs() < 1e-8,
+            "{law} {name}: {number}, expected {value}"
+        );
     }
 }
 
 #[test]
 fn rejects_wrong_requests_with_status_2_and_a_way_out() {
-    let impact = ["simulate", "impact", "--mass", "0.2 kg", "--velocity", "0.5 m/s", "--law"];
+    let impact = [
+        "simulate",
+        "impact",
+        "--mass",
+        "0.2 kg",
+        "--velocity",
+        "0.5 m/s",
+        "--law",
+    ];
     let cases: [(&[&str], &str); 7] = [
         (&["hertzian(k=1)"], "hertz"),
         (&["hertz"], "k"),
         (&["hertz(k=\"1 N/m\")"], "N/m^1.5"),
         (&["hertz(k=1)", "--mass", "0.2 kgg"], "kg"),
-        (&["hertz(k=1)", "--velocity", "0.5 kg"], "--velocity: \"0.5 kg\" is a mass (kg)"),
-        (&["hertz(k=1)", "--mass", "0 kg"], "--mass: \"0 kg\" must be above zero"),
+        (
+            &["hertz(k=1)", "--velocity", "0.5 kg"],
+            "--velocity: \"0.5 kg\" is a mass (kg)",
+        ),
+        (
+            &["hertz(k=1)", "--mass", "0 kg"],
+            "--mass: \"0 kg\" must be above zero",
+        ),
         (&["hertz(k=1)", "--end", "never"], "force-zero, gap-zero"),
     ];
     for (more, expected) in cases {
@@ -84,9 +132,17 @@ fn rejects_wrong_requests_with_status_2_and_a_way_out() {
         let output = windfall(&arguments);
         assert_eq!(output.status.code(), Some(2), "{more:?}");
         assert!(output.stdout.is_empty(), "{more:?}");
-        assert!(text(&output.stderr).contains(expected), "{more:?}: {}", text(&output.stderr));
+        assert!(
+            text(&output.stderr).contains(expected),
+            "{more:?}: {}",
+            text(&output.stderr)
+        );
     }
-    for arguments in [&["fit", "no-such-directory"][..], &["inspect", "no-such-file.csv"], &["fits"]] {
+    for arguments in [
+        &["fit", "no-such-directory"][..],
+        &["inspect", "no-such-file.csv"],
+        &["fits"],
+    ] {
         assert_eq!(windfall(arguments).status.code(), Some(2), "{arguments:?}");
     }
 }
@@ -94,13 +150,26 @@ fn rejects_wrong_requests_with_status_2_and_a_way_out() {
 #[test]
 fn reference_twelve_laws_are_listed_with_formula_unit_and_source() {
     let laws = json(&["card", "show", "--laws", "--format", "json"]);
-    let names: Vec<&str> =
-        laws["laws"].as_array().unwrap().iter().map(|law| law["name"].as_str().unwrap()).collect();
+    let names: Vec<&str> = laws["laws"]
+        .as_array()
+        .unwrap()
+        .iter()
+        .map(|law| law["name"].as_str().unwrap())
+        .collect();
     // DESIGN.md, section 5.
     let expected = [
-        "hertz", "kelvin-voigt", "kuwabara-kono", "power-law", "hunt-crossley",
-        "lankarani-nikravesh", "flores", "herbert-mcwhannell", "tsuji", "adams-impact",
-        "walton-braun", "thornton",
+        "hertz",
+        "kelvin-voigt",
+        "kuwabara-kono",
+        "power-law",
+        "hunt-crossley",
+        "lankarani-nikravesh",
+        "flores",
+        "herbert-mcwhannell",
+        "tsuji",
+        "adams-impact",
+        "walton-braun",
+        "thornton",
     ];
     for name in expected {
         assert!(names.contains(&name), "{name}");
@@ -113,22 +182,42 @@ fn reference_twelve_laws_are_listed_with_formula_unit_and_source() {
         assert!(!law["parameters"].as_array().unwrap().is_empty(), "{law}");
     }
     let shown = text(&windfall(&["card", "show", "--law", "power-law"]).stdout);
-    assert!(shown.starts_with("power-law(k, n=1.5, c, p=0.5)"), "{shown}");
+    assert!(
+        shown.starts_with("power-law(k, n=1.5, c, p=0.5)"),
+        "{shown}"
+    );
 }
 
 #[test]
 fn closed_form_motion_has_its_columns_and_begins_free() {
     let output = windfall(&[
-        "simulate", "pendulum", "--law", "kuwabara-kono(k=394931, c=681)", "--rate", "10 kHz",
-        "--format", "csv",
+        "simulate",
+        "pendulum",
+        "--law",
+        "kuwabara-kono(k=394931, c=681)",
+        "--rate",
+        "10 kHz",
+        "--format",
+        "csv",
     ]);
     let motion = text(&output.stdout);
     let mut lines = motion.lines();
-    assert_eq!(lines.next(), Some("time_s,displacement_m,rate_m_s,force_N,acceleration_m_s2"));
-    let first: Vec<f64> = lines.next().unwrap().split(',').map(|cell| cell.parse().unwrap()).collect();
+    assert_eq!(
+        lines.next(),
+        Some("time_s,displacement_m,rate_m_s,force_N,acceleration_m_s2")
+    );
+    let first: Vec<f64> = lines
+        .next()
+        .unwrap()
+        .split(',')
+        .map(|cell| cell.parse().unwrap())
+        .collect();
     // Before contact: x = v t to first order, no force.
     assert!(first[0] < 0.0 && first[3] == 0.0);
-    assert!((first[1] / (0.388 * first[0]) - 1.0).abs() < 1e-3, "{first:?}");
+    assert!(
+        (first[1] / (0.388 * first[0]) - 1.0).abs() < 1e-3,
+        "{first:?}"
+    );
 }
 
 #[test]

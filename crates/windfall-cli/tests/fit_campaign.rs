@@ -7,7 +7,10 @@ use std::time::{Duration, Instant};
 use windfall::store::{count_runs, find_results, latest_run};
 
 fn windfall(arguments: &[&str]) -> Output {
-    Command::new(cargo_bin("windfall")).args(arguments).output().unwrap()
+    Command::new(cargo_bin("windfall"))
+        .args(arguments)
+        .output()
+        .unwrap()
 }
 
 fn text(bytes: &[u8]) -> String {
@@ -18,8 +21,19 @@ fn text(bytes: &[u8]) -> String {
 /// and 1524 ± 263 N s/m^1.5.
 fn simulate(directory: &Path, specimens: usize) {
     let output = windfall(&[
-        "simulate", "pendulum", "--law", "kuwabara-kono(k=753599, c=1524)", "--spread", "k=133165",
-        "--spread", "c=263", "--specimens", &specimens.to_string(), "--seed", "11", "--recordings",
+        "simulate",
+        "pendulum",
+        "--law",
+        "kuwabara-kono(k=753599, c=1524)",
+        "--spread",
+        "k=133165",
+        "--spread",
+        "c=263",
+        "--specimens",
+        &specimens.to_string(),
+        "--seed",
+        "11",
+        "--recordings",
         directory.to_str().unwrap(),
     ]);
     assert!(output.status.success(), "{}", text(&output.stderr));
@@ -42,15 +56,24 @@ fn recovers_what_was_put_into_each_simulated_fruit() {
         serde_json::from_slice(&fit(&directory, &["--format", "json"]).stdout).unwrap();
     let truth = std::fs::read_to_string(directory.join("truth.csv")).unwrap();
     let mut scores = Vec::new();
-    for (impact, line) in found["impacts"].as_array().unwrap().iter().zip(truth.lines().skip(1)) {
+    for (impact, line) in found["impacts"]
+        .as_array()
+        .unwrap()
+        .iter()
+        .zip(truth.lines().skip(1))
+    {
         assert!(line.starts_with(impact["id"].as_str().unwrap()));
         for name in ["k", "c"] {
             let (_, rest) = line.split_once(&format!("{name}=")).unwrap();
-            let end = rest.find(|c: char| !(c.is_ascii_digit() || ".e-".contains(c))).unwrap();
+            let end = rest
+                .find(|c: char| !(c.is_ascii_digit() || ".e-".contains(c)))
+                .unwrap();
             let put_in: f64 = rest[..end].parse().unwrap();
             let parameter = &impact["parameters"][name];
-            let (value, sd) =
-                (parameter["value"].as_f64().unwrap(), parameter["sd"].as_f64().unwrap());
+            let (value, sd) = (
+                parameter["value"].as_f64().unwrap(),
+                parameter["sd"].as_f64().unwrap(),
+            );
             assert!(sd > 0.0 && sd < 0.05 * put_in, "{name} {sd}");
             scores.push((value - put_in) / sd);
         }
@@ -59,7 +82,10 @@ fn recovers_what_was_put_into_each_simulated_fruit() {
     // √(2/24) each, and none is absurd.
     let mean_square = scores.iter().map(|z| z * z).sum::<f64>() / scores.len() as f64;
     assert_eq!(scores.len(), 24);
-    assert!(mean_square < 1.0 + 4.0 * (2f64 / 24.0).sqrt(), "{mean_square}: {scores:?}");
+    assert!(
+        mean_square < 1.0 + 4.0 * (2f64 / 24.0).sqrt(),
+        "{mean_square}: {scores:?}"
+    );
     assert!(scores.iter().all(|z| z.abs() < 4.5), "{scores:?}");
     assert!(found["simulated"].as_str().unwrap().contains("seed 11"));
     assert_eq!(found["summary"]["k"]["n"], 12);
@@ -70,9 +96,17 @@ fn repeats_the_same_bits_for_any_number_of_threads() {
     let scratch = tempfile::tempdir().unwrap();
     let directory = scratch.path().join("campaign");
     simulate(&directory, 5);
-    let one = fit(&directory, &["--threads", "1", "--refit", "--format", "json"]).stdout;
+    let one = fit(
+        &directory,
+        &["--threads", "1", "--refit", "--format", "json"],
+    )
+    .stdout;
     for threads in ["2", "8"] {
-        let many = fit(&directory, &["--threads", threads, "--refit", "--format", "json"]).stdout;
+        let many = fit(
+            &directory,
+            &["--threads", threads, "--refit", "--format", "json"],
+        )
+        .stdout;
         assert_eq!(text(&one), text(&many), "{threads} threads");
     }
 }
@@ -83,10 +117,18 @@ fn repeats_an_unchanged_campaign_from_the_store() {
     let directory = scratch.path().join("campaign");
     simulate(&directory, 4);
     let first = fit(&directory, &[]);
-    assert!(text(&first.stderr).contains("4 fitted, 0 unchanged"), "{}", text(&first.stderr));
+    assert!(
+        text(&first.stderr).contains("4 fitted, 0 unchanged"),
+        "{}",
+        text(&first.stderr)
+    );
     assert!(text(&first.stdout).contains("SIMULATED recordings"));
     let second = fit(&directory, &[]);
-    assert!(text(&second.stderr).contains("up to date"), "{}", text(&second.stderr));
+    assert!(
+        text(&second.stderr).contains("up to date"),
+        "{}",
+        text(&second.stderr)
+    );
     assert_eq!(text(&first.stdout), text(&second.stdout));
     assert_eq!(count_runs(&directory.join("results.sqlite")).unwrap(), 1);
 
@@ -95,14 +137,22 @@ fn repeats_an_unchanged_campaign_from_the_store() {
     let recording = std::fs::read_to_string(&changed).unwrap();
     std::fs::write(&changed, recording.replacen("0.0", "0.00", 1)).unwrap();
     let third = fit(&directory, &[]);
-    assert!(text(&third.stderr).contains("1 fitted, 3 unchanged"), "{}", text(&third.stderr));
+    assert!(
+        text(&third.stderr).contains("1 fitted, 3 unchanged"),
+        "{}",
+        text(&third.stderr)
+    );
 
     // So is everything when the rig changes, and nothing when a title does.
     let file = directory.join("campaign.toml");
     let toml = std::fs::read_to_string(&file).unwrap();
     std::fs::write(&file, toml.replace("title = \"", "title = \"Other ")).unwrap();
     assert!(text(&fit(&directory, &[]).stderr).contains("up to date"));
-    std::fs::write(&file, toml.replace("arm = \"0.505 m\"", "arm = \"0.506 m\"")).unwrap();
+    std::fs::write(
+        &file,
+        toml.replace("arm = \"0.505 m\"", "arm = \"0.506 m\""),
+    )
+    .unwrap();
     assert!(text(&fit(&directory, &[]).stderr).contains("4 fitted, 0 unchanged"));
 }
 
@@ -145,7 +195,11 @@ fn conserves_earlier_results_when_fit_is_killed_at_any_moment() {
     }
     assert!(killed >= 5, "only {killed} of 24 were killed in time");
     let after = fit(&directory, &[]);
-    assert!(text(&after.stdout).contains("24"), "{}", text(&after.stdout));
+    assert!(
+        text(&after.stdout).contains("24"),
+        "{}",
+        text(&after.stdout)
+    );
 }
 
 #[test]
@@ -172,6 +226,10 @@ fn rejects_a_foreign_store_and_leaves_it_alone() {
     std::fs::write(&store, &bytes).unwrap();
     let output = windfall(&["fit", directory.to_str().unwrap()]);
     assert_eq!(output.status.code(), Some(1));
-    assert!(text(&output.stderr).contains("damaged or not a database"), "{}", text(&output.stderr));
+    assert!(
+        text(&output.stderr).contains("damaged or not a database"),
+        "{}",
+        text(&output.stderr)
+    );
     assert_eq!(std::fs::read(&store).unwrap(), bytes);
 }

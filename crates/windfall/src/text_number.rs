@@ -1,12 +1,12 @@
 //! Numbers for people: as many digits as their uncertainty lets them have.
 
 /// Digits shown of a standard deviation.
-const SD_DIGITS: i32 = 3;
+const SD_DIGITS: i32 = 2;
 
 /// Digits shown of a number whose uncertainty is not known.
 const PLAIN_DIGITS: i32 = 4;
 
-/// "753599 ± 133165": both with the decimals that give the second three digits.
+/// "753599 ± 133165": both with the decimals that give the second two digits.
 #[must_use]
 pub fn value_and_sd(value: f64, sd: Option<f64>) -> String {
     match sd {
@@ -39,7 +39,7 @@ pub fn plain(value: f64) -> String {
 }
 
 fn percent(cv: f64) -> String {
-    let decimals = decimals_for(100.0 * cv, 2).min(2);
+    let decimals = decimals_for(100.0 * cv, 2).min(4);
     format!("{:.decimals$}", 100.0 * cv)
 }
 
@@ -71,11 +71,11 @@ mod tests {
 
     #[test]
     fn closed_form_digits_follow_the_uncertainty() {
-        assert_eq!(value_and_sd(0.478143, Some(0.0123)), "0.4781 ± 0.0123");
+        assert_eq!(value_and_sd(0.478143, Some(0.0123)), "0.478 ± 0.012");
         assert_eq!(value_and_sd(0.478143, None), "0.4781");
         assert_eq!(
             spread_text(0.478143, Some(0.0123), Some(0.0257)),
-            "0.4781 ± 0.0123 (2.6 %)"
+            "0.478 ± 0.012 (2.6 %)"
         );
         assert_eq!(plain(0.0), "0");
         assert_eq!(plain(1.234e-9), "1.234e-9");

@@ -1,7 +1,7 @@
 //! Results of `fit` as text for a terminal.
 
 use crate::named::Named;
-use crate::outcome::{CampaignOutcome, GroupOutcome, ImpactOutcome};
+use crate::outcome::{CampaignOutcome, GroupOutcome, ImpactOutcome, SpreadOutcome};
 use crate::text_number::{plain, spread_text, value_and_sd};
 use comfy_table::{CellAlignment, ContentArrangement, LineStyle, Table, TableStyle};
 use std::fmt::Write;
@@ -19,6 +19,12 @@ const DERIVED: [(&str, &str, f64); 6] = [
     ("absorbed_energy", "absorbed (mJ)", 1e3),
 ];
 
+/// Derived quantities that stand in the table of impacts too, by position.
+const OF_IMPACTS: [usize; 4] = [0, 1, 3, 4];
+
+/// What the table of groups adds.
+const IMPACT_ENERGY: (&str, &str, f64) = ("impact_energy", "impact energy (mJ)", 1e3);
+
 /// A campaign's results: impacts, groups, what was left out, findings.
 #[must_use]
 pub fn text_of_campaign(outcome: &CampaignOutcome) -> String {
@@ -27,34 +33,58 @@ pub fn text_of_campaign(outcome: &CampaignOutcome) -> String {
         let _ = writeln!(text, "SIMULATED recordings: {label}");
     }
     let _ = writeln!(text, "{}", mass_line(outcome));
-    for law in laws_of(outcome) {
-        let impacts: Vec<&ImpactOutcome> = outcome
-            .impacts
-            .iter()
-            .filter(|impact| impact.law == law)
-            .collect();
-        let _ = writeln!(
-            text,
-            "\n{law}, fitted to {}",
-            impacts[0].quantities.join(", ")
-        );
-        if impacts.len() <= LISTED_IMPACTS {
-            let _ = writeln!(text, "{}\n", impact_table(&impacts));
-        }
-        let groups: Vec<&GroupOutcome> = outcome.groups.iter().filter(|g| g.law == law).collect();
-        text += "Mean ± standard deviation over the impacts (coefficient of variation):\n";
-        let _ = writeln!(text, "{}", group_table(&groups, &impacts));
-        if impacts.len() > LISTED_IMPACTS {
-            let _ = writeln!(
-                text,
-                "Each of the {} impacts: --format csv or json.",
-                impacts.len()
-            );
-        }
+    let laws = laws_of(outcome);
+    for law in &laws {
+        text += &law_text(outcome, law);
+    }
+    if let Some(first) = laws.first() {
+        let groups = groups_of(outcome, first);
+        text += "\nRead off the signals (from the fit where they do not show it), mean ± SD over the impacts:\n";
+        let _ = writeln!(text, "{}", derived_table(&groups));
+    }
+    if laws.len() > 1 {
+        text += "\nThe laws compared; 1 is a law that describes the signal to its noise:\n";
+        let _ = writeln!(text, "{}", law_table(outcome, &laws));
     }
     text += &findings_text(outcome);
     for failure in &outcome.failed {
         let _ = writeln!(text, "not fitted: {}: {}", failure.id, failure.message);
+    }
+    text
+}
+
+fn groups_of<'a>(outcome: &'a CampaignOutcome, law: &str) -> Vec<&'a GroupOutcome> {
+    outcome
+        .groups
+        .iter()
+        .filter(|group| group.law == law)
+        .collect()
+}
+
+/// One law: its impacts, if they are few, and its groups.
+fn law_text(outcome: &CampaignOutcome, law: &str) -> String {
+    let impacts: Vec<&ImpactOutcome> = outcome
+        .impacts
+        .iter()
+        .filter(|impact| impact.law == law)
+        .collect();
+    let mut text = format!("\n{law}, fitted to {}\n", impacts[0].quantities.join(", "));
+    if impacts.len() <= LISTED_IMPACTS {
+        text += "Each impact (± standard deviation of the estimate):\n";
+        let _ = writeln!(text, "{}\n", impact_table(&impacts));
+    }
+    text += "Mean ± standard deviation over the impacts (coefficient of variation):\n";
+    let _ = writeln!(
+        text,
+        "{}",
+        parameter_table(&groups_of(outcome, law), &impacts)
+    );
+    if impacts.len() > LISTED_IMPACTS {
+        let _ = writeln!(
+            text,
+            "Each of the {} impacts: --format csv or json.",
+            impacts.len()
+        );
     }
     text
 }
@@ -83,8 +113,9 @@ fn laws_of(outcome: &CampaignOutcome) -> Vec<&str> {
 fn impact_table(impacts: &[&ImpactOutcome]) -> String {
     let mut header = vec!["impact".to_owned(), "specimen".to_owned()];
     header.extend(parameter_headings(impacts));
-    header.extend(DERIVED.iter().map(|(_, heading, _)| (*heading).to_owned()));
+    header.extend(OF_IMPACTS.map(|index| DERIVED[index].1.to_owned()));
     header.push("findings".to_owned());
+    let shared = shared_codes(impacts);
     let rows = impacts.iter().map(|impact| {
         let mut row = vec![impact.id.clone(), impact.specimen.clone()];
         for (_, estimate) in &impact.parameters.0 {
@@ -93,12 +124,16 @@ fn impact_table(impacts: &[&ImpactOutcome]) -> String {
                 true => format!("{} held", plain(estimate.value)),
             });
         }
-        for (name, _, factor) in DERIVED {
+        for (name, _, factor) in OF_IMPACTS.map(|index| DERIVED[index]) {
             let value = impact.derived.get(name).copied().flatten();
             row.push(value.map_or_else(|| "-".to_owned(), |value| plain(value * factor)));
         }
-        let mut codes: Vec<&str> = impact.findings.iter().map(|f| f.code.as_str()).collect();
-        codes.dedup();
+        let mut codes: Vec<&str> = Vec::new();
+        for code in impact.findings.iter().map(|finding| finding.code.as_str()) {
+            if !shared.contains(&code) && !codes.contains(&code) {
+                codes.push(code);
+            }
+        }
         row.push(codes.join(" "));
         row
     });
@@ -107,7 +142,21 @@ fn impact_table(impacts: &[&ImpactOutcome]) -> String {
     table_text(&header, rows, &left)
 }
 
-fn group_table(groups: &[&GroupOutcome], impacts: &[&ImpactOutcome]) -> String {
+/// Codes of findings that every impact has: said once below the tables, they
+/// tell nothing in a row.
+fn shared_codes<'a>(impacts: &[&'a ImpactOutcome]) -> Vec<&'a str> {
+    let Some((first, rest)) = impacts.split_first() else {
+        return Vec::new();
+    };
+    let has = |impact: &ImpactOutcome, code: &str| impact.findings.iter().any(|f| f.code == code);
+    let codes = first.findings.iter().map(|finding| finding.code.as_str());
+    codes
+        .filter(|code| rest.iter().all(|impact| has(impact, code)))
+        .collect()
+}
+
+/// Parameters per group, as Table 2 of the 2003 pendulum study.
+fn parameter_table(groups: &[&GroupOutcome], impacts: &[&ImpactOutcome]) -> String {
     let mut header = vec![
         "group".to_owned(),
         "impacts".to_owned(),
@@ -115,32 +164,115 @@ fn group_table(groups: &[&GroupOutcome], impacts: &[&ImpactOutcome]) -> String {
     ];
     let estimated: Vec<&str> = parameter_names(groups);
     header.extend(estimated.iter().map(|name| heading_of(impacts, name)));
-    header.extend(DERIVED.iter().map(|(_, heading, _)| (*heading).to_owned()));
     let rows = groups.iter().map(|group| {
         let mut row = vec![
-            group.group.clone().unwrap_or_else(|| "all".to_owned()),
+            group_name(group),
             group.impacts.to_string(),
             group.specimens.to_string(),
         ];
-        let cell = |spreads: &Named<crate::outcome::SpreadOutcome>, name: &str, factor: f64| {
-            spreads.get(name).map_or_else(
-                || "-".to_owned(),
-                |s| spread_text(s.mean * factor, s.sd.map(|sd| sd * factor), s.cv),
-            )
-        };
         row.extend(
             estimated
                 .iter()
-                .map(|name| cell(&group.parameters, name, 1.0)),
-        );
-        row.extend(
-            DERIVED
-                .iter()
-                .map(|(name, _, factor)| cell(&group.derived, name, *factor)),
+                .map(|name| spread_cell(&group.parameters, name, 1.0)),
         );
         row
     });
     table_text(&header, rows, &[0])
+}
+
+/// Velocities, peaks and energies per group, as Table 3 of the same study. They
+/// are read off the signals and hardly depend on the law.
+fn derived_table(groups: &[&GroupOutcome]) -> String {
+    let columns = || DERIVED.iter().chain([&IMPACT_ENERGY]);
+    let mut header = vec!["group".to_owned()];
+    header.extend(columns().map(|(_, heading, _)| (*heading).to_owned()));
+    let rows = groups.iter().map(|group| {
+        let mut row = vec![group_name(group)];
+        row.extend(columns().map(|(name, _, factor)| spread_cell(&group.derived, name, *factor)));
+        row
+    });
+    table_text(&header, rows, &[0])
+}
+
+fn group_name(group: &GroupOutcome) -> String {
+    group.group.clone().unwrap_or_else(|| "all".to_owned())
+}
+
+fn spread_cell(spreads: &Named<SpreadOutcome>, name: &str, factor: f64) -> String {
+    spreads.get(name).map_or_else(
+        || "-".to_owned(),
+        |s| spread_text(s.mean * factor, s.sd.map(|sd| sd * factor), s.cv),
+    )
+}
+
+/// How several laws describe the same impacts: residuals over noise per
+/// quantity, root mean square over impacts.
+fn law_table(outcome: &CampaignOutcome, laws: &[&str]) -> String {
+    let mut quantities: Vec<&str> = Vec::new();
+    for (name, _) in outcome.impacts.iter().flat_map(|i| &i.residuals.0) {
+        if !quantities.contains(&name.as_str()) {
+            quantities.push(name);
+        }
+    }
+    let groups: Vec<Option<&str>> = outcome.groups.iter().fold(Vec::new(), |mut seen, group| {
+        if !seen.contains(&group.group.as_deref()) {
+            seen.push(group.group.as_deref());
+        }
+        seen
+    });
+    let mut header = ["law", "group", "estimated", "impacts", "converged"]
+        .map(str::to_owned)
+        .to_vec();
+    header.extend(
+        quantities
+            .iter()
+            .map(|name| format!("{name} residual/noise")),
+    );
+    let rows = laws
+        .iter()
+        .flat_map(|law| groups.iter().map(move |group| (*law, *group)));
+    let rows = rows.map(|(law, group)| {
+        let of_law = |i: &&ImpactOutcome| i.law == law && i.group.as_deref() == group;
+        let impacts: Vec<&ImpactOutcome> = outcome.impacts.iter().filter(of_law).collect();
+        let free = impacts.first().map_or(0, |i| estimated_count(i));
+        let converged = impacts.iter().filter(|i| i.converged).count();
+        let mut row = vec![
+            law.to_owned(),
+            group.unwrap_or("all").to_owned(),
+            free.to_string(),
+            impacts.len().to_string(),
+            converged.to_string(),
+        ];
+        row.extend(
+            quantities
+                .iter()
+                .map(|name| residual_over_noise(&impacts, name)),
+        );
+        row
+    });
+    table_text(&header, rows, &[0, 1])
+}
+
+fn estimated_count(impact: &ImpactOutcome) -> usize {
+    impact
+        .parameters
+        .0
+        .iter()
+        .filter(|(_, estimate)| !estimate.held)
+        .count()
+}
+
+fn residual_over_noise(impacts: &[&ImpactOutcome], quantity: &str) -> String {
+    let ratios: Vec<f64> = impacts
+        .iter()
+        .filter_map(|impact| impact.residuals.get(quantity))
+        .filter(|residual| residual.noise > 0.0)
+        .map(|residual| (residual.rms / residual.noise).powi(2))
+        .collect();
+    match ratios.len() {
+        0 => "-".to_owned(),
+        n => format!("{:.2}", (ratios.iter().sum::<f64>() / n as f64).sqrt()),
+    }
 }
 
 fn parameter_names<'a>(groups: &[&'a GroupOutcome]) -> Vec<&'a str> {
@@ -200,6 +332,7 @@ fn findings_text(outcome: &CampaignOutcome) -> String {
     for (code, id, message, count) in seen {
         let more = match count {
             1 => String::new(),
+            n if n == outcome.impacts.len() => " (all impacts have one of this kind)".to_owned(),
             n => format!(" (and {} more of this kind)", n - 1),
         };
         let _ = writeln!(text, "  {code}: {id}: {message}{more}");

@@ -47,7 +47,10 @@ fn check(name: &str) -> Result<(), String> {
             let impact = outcome.impacts.iter().find(|impact| impact.id == "bad");
             let impact = impact.ok_or_else(|| format!("not fitted: {:?}", outcome.failed))?;
             let finding = impact.findings.iter().find(|finding| finding.code == code);
-            finding.ok_or_else(|| format!("only {:?}", impact.findings))?.message.clone()
+            finding
+                .ok_or_else(|| format!("only {:?}", impact.findings))?
+                .message
+                .clone()
         }
         (place, other) => return Err(format!("expected {place}, got {other:?}")),
     };
@@ -61,7 +64,8 @@ fn check(name: &str) -> Result<(), String> {
 /// c = 1524 N s/m^1.5 were put into the good one.
 fn good_is_fitted(outcome: &CampaignOutcome) -> Result<(), String> {
     let good = outcome.impacts.iter().find(|impact| impact.id == "good");
-    let good = good.ok_or_else(|| format!("the good impact was not fitted: {:?}", outcome.failed))?;
+    let good =
+        good.ok_or_else(|| format!("the good impact was not fitted: {:?}", outcome.failed))?;
     for (name, truth) in [("k", 753_599.0), ("c", 1524.0)] {
         let found = good.parameters.get(name).ok_or("no such parameter")?;
         let sd = found.sd.ok_or("no standard deviation")?;
@@ -84,7 +88,11 @@ fn rejects_every_fixture_with_its_own_message() {
     assert_eq!(names.len(), 15, "{names:?}");
     let wrong: Vec<String> = names
         .iter()
-        .filter_map(|name| check(name).err().map(|problem| format!("{name}: {problem}")))
+        .filter_map(|name| {
+            check(name)
+                .err()
+                .map(|problem| format!("{name}: {problem}"))
+        })
         .collect();
     assert!(wrong.is_empty(), "{}", wrong.join("\n\n"));
 }
