@@ -294,7 +294,7 @@ column = "phase_b_V"
 counts_per_revolution = {counts:.1}
 
 [contact]
-threshold = "auto"
+threshold = "1 N"                     # that of the 2003 pendulum study
 
 [fit]
 laws = ["{law}"]

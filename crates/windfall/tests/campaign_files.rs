@@ -202,7 +202,11 @@ fn rejects_what_campaign_toml_must_not_say() {
     ];
     let mut wrong = Vec::new();
     for (kind, from, to, expected) in cases {
-        let toml = changed(kind, from, to);
+        // The tables of this test have no groups.
+        let toml = match to.contains("group") {
+            true => changed(kind, from, to),
+            false => changed(kind, from, to).replace("group = \"variety\"", ""),
+        };
         let found = message_of(&toml);
         let line = faulty_line(&toml, to, expected);
         let place = line.map_or(": ".to_owned(), |line| format!(", line {line}: "));
@@ -216,6 +220,9 @@ fn rejects_what_campaign_toml_must_not_say() {
 /// Where the fault is: the line that was put in, or the head of the table that
 /// lacks one; the column of a channel stands under its table's head.
 fn faulty_line(toml: &str, to: &str, expected: &str) -> Option<usize> {
+    if expected.starts_with("the file") {
+        return Some(1);
+    }
     let table = match (to.is_empty(), to.starts_with("column")) {
         (true, _) => expected
             .split(' ')
