@@ -8,9 +8,10 @@ use std::time::Instant;
 use windfall_contact::law::EndRule;
 use windfall_contact::law_kuwabara_kono::KuwabaraKono;
 use windfall_identify::estimator::{Coordinate, Estimator, FreeParameter, Setting, Target, Values};
+use windfall_identify::model::Sampling;
 use windfall_identify::motion::Motion;
-use windfall_identify::residual::SampleGroup;
 use windfall_identify::rig::{Pendulum, Rig};
+use windfall_identify::samples::SampleGroup;
 use windfall_numerics::least_squares::Options;
 use windfall_numerics::ode_step::Tolerance;
 
@@ -56,6 +57,7 @@ fn fit<const P: usize>(group: &SampleGroup, k: f64, c: f64) -> (Values<2>, usize
             absolute: [1e-12 * ARM, 1e-10 * ARM],
         },
         tied_velocity: None,
+        sampling: Sampling::Instantaneous,
     };
     let free = [
         parameter(Target::Law(0), Coordinate::Logarithm, 1e-3, 1e12),

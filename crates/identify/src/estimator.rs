@@ -2,8 +2,10 @@
 //! coordinates of their own, the model behind them, the minimiser around it.
 
 use crate::contact_motion::{ImpactEvent, Seeds};
+use crate::model::{Columns, Model, Sampling};
 use crate::motion::Motion;
-use crate::residual::{Columns, Model, Rows, SampleGroup, evaluate};
+use crate::residual::{Rows, evaluate};
+use crate::samples::SampleGroup;
 use windfall_contact::any_law::{AnyLaw, LARGEST_PARAMETERS};
 use windfall_contact::law::{ContactLaw, EndRule};
 use windfall_contact::law_kuwabara_kono::KuwabaraKono;
@@ -160,6 +162,8 @@ pub struct Setting<'a> {
     /// Position of the law's impact velocity, which follows the velocity at
     /// first touch.
     pub tied_velocity: Option<usize>,
+    /// How force samples near first touch are understood.
+    pub sampling: Sampling,
 }
 
 /// The problem in the minimiser's coordinates.
@@ -248,6 +252,7 @@ impl<'a, L: FreeLaw<N>, const N: usize, const W: usize, const P: usize> Estimato
             onset: values.onset,
             offset: values.offset,
             columns,
+            sampling: self.setting.sampling,
         }
     }
 

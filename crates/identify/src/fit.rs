@@ -3,11 +3,12 @@
 use crate::error::Error;
 use crate::estimator::{Coordinate, FreeParameter, Setting, Target};
 use crate::finding::Finding;
+use crate::model::Sampling;
 use crate::motion::Motion;
 use crate::problem::{FitOptions, IMPACT_VELOCITY, LawProblem, Treatment, Weighting};
 use crate::regression::{RegressionEstimate, regress};
-use crate::residual::{QUANTITIES, Quantity, SampleGroup};
 use crate::rig::Rig;
+use crate::samples::{QUANTITIES, Quantity, SampleGroup};
 use crate::simulate::{ImpactSummary, simulate_rig};
 use crate::solve::{LARGEST_FREE, Limits, Solution, solve};
 use crate::starting_values::{Features, starting_values};
@@ -464,6 +465,7 @@ impl Plan<'_> {
                 ],
             },
             tied_velocity,
+            sampling: Sampling::Averaged,
         };
         let limits = Limits {
             cost_tolerance: self.options.cost_tolerance,

@@ -1,7 +1,7 @@
 //! What to fit and how: the law with its free parameters, the quantities, the
 //! weights and the treatment of what is not of interest.
 
-use crate::residual::{QUANTITIES, Quantity};
+use crate::samples::{QUANTITIES, Quantity};
 use windfall_contact::expression::LawExpression;
 use windfall_contact::law::EndRule;
 use windfall_contact::law_kind::LawKind;

@@ -2,126 +2,16 @@
 //! equations in one pass over the samples, several samples at a time.
 
 use crate::contact_motion::{ImpactEvent, Seeds, Segment, Sink, follow, scaled_time};
+use crate::model::{Columns, Model};
 use crate::motion::Acceleration;
+use crate::onset_average::{OnsetAverage, OnsetCorrection};
+use crate::samples::{PACK, QUANTITIES, Quantity, SampleGroup};
 use windfall_contact::law::{ContactForce, ContactLaw, EndRule, SMALLEST_DISPLACEMENT};
 use windfall_numerics::least_squares::NormalEquations;
 use windfall_numerics::ode_step::{DENSE_COEFFICIENTS, StepError, dense_at};
 use windfall_numerics::real::{Lanes, Real};
 
-/// Samples evaluated side by side.
-const PACK: usize = 4;
-/// Quantities a sample may have, in the order of [`Quantity`].
-pub const QUANTITIES: usize = 4;
-
 type Pack = Lanes<PACK>;
-
-/// Measured quantities that a fit can use.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
-pub enum Quantity {
-    /// Displacement; m.
-    Displacement,
-    /// Displacement rate; m/s.
-    Rate,
-    /// Contact force; N.
-    Force,
-    /// Acceleration; m/s².
-    Acceleration,
-}
-
-impl Quantity {
-    /// All, in the order of the arrays indexed by quantity.
-    pub const ALL: [Self; QUANTITIES] = [
-        Self::Displacement,
-        Self::Rate,
-        Self::Force,
-        Self::Acceleration,
-    ];
-
-    /// Name in campaign files and results.
-    #[must_use]
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::Displacement => "displacement",
-            Self::Rate => "rate",
-            Self::Force => "force",
-            Self::Acceleration => "acceleration",
-        }
-    }
-}
-
-/// Samples of one or more quantities taken at the same times.
-#[derive(Clone, Debug)]
-pub struct SampleGroup {
-    /// Number of samples.
-    len: usize,
-    /// Times, followed by padding for the last pack; s.
-    times: Vec<f64>,
-    /// Samples of each quantity, padded; empty when there are none.
-    values: [Vec<f64>; QUANTITIES],
-    /// Weight of each quantity in the cost; zero when there are none.
-    weights: [f64; QUANTITIES],
-}
-
-impl SampleGroup {
-    /// Samples at `times`, with a weight per quantity. All slices are as long
-    /// as `times`; a quantity that was not measured is `None`.
-    #[must_use]
-    pub fn new(times: &[f64], values: [Option<(&[f64], f64)>; QUANTITIES]) -> Self {
-        let padded = |slice: &[f64]| {
-            let mut out = Vec::with_capacity(slice.len() + PACK);
-            out.extend_from_slice(slice);
-            out.resize(slice.len() + PACK, 0.0);
-            out
-        };
-        Self {
-            len: times.len(),
-            times: padded(times),
-            values: values.map(|v| v.map_or_else(Vec::new, |(samples, _)| padded(samples))),
-            weights: values.map(|v| v.map_or(0.0, |(_, weight)| weight)),
-        }
-    }
-
-    /// Sampling times; s.
-    #[must_use]
-    pub fn times(&self) -> &[f64] {
-        &self.times[..self.len]
-    }
-
-    /// Whether it holds samples of `quantity`.
-    #[must_use]
-    pub fn holds(&self, quantity: Quantity) -> bool {
-        !self.values[quantity as usize].is_empty()
-    }
-
-    /// Weight of a quantity in the cost.
-    #[must_use]
-    pub fn weight(&self, quantity: Quantity) -> f64 {
-        self.weights[quantity as usize]
-    }
-
-    /// Indices of the samples with `from ≤ time − onset < to`; the last ones
-    /// included when `to` is the end of the motion.
-    fn range(&self, onset: f64, segment_from: f64, segment_to: f64, end: f64) -> (usize, usize) {
-        let first = self.times().partition_point(|t| t - onset < segment_from);
-        let last = if segment_to >= end {
-            self.len
-        } else {
-            self.times().partition_point(|t| t - onset < segment_to)
-        };
-        (first, last)
-    }
-}
-
-/// How the columns of the Jacobian come from the motion's lanes.
-#[derive(Clone, Copy, Debug)]
-pub struct Columns<const P: usize> {
-    /// Lane of the motion that each column reads; 0 for none.
-    pub lanes: [usize; P],
-    /// ∂t₀ of each column; s per unit of the column.
-    pub onset: [f64; P],
-    /// ∂(displacement offset) of each column; m per unit of the column.
-    pub offset: [f64; P],
-}
 
 /// Residuals and derivatives of every sample, unweighted, for diagnostics.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -130,19 +20,6 @@ pub struct Rows {
     pub residuals: Vec<[Vec<f64>; QUANTITIES]>,
     /// Per sample group and quantity: P derivatives per sample, in time order.
     pub jacobian: Vec<[Vec<f64>; QUANTITIES]>,
-}
-
-/// A model to compare with samples: an impact with its clock.
-#[derive(Clone, Copy, Debug)]
-pub struct Model<L, const N: usize, const W: usize, const P: usize> {
-    /// The impact.
-    pub event: ImpactEvent<L, N, W>,
-    /// First touch on the clock of the samples; s.
-    pub onset: f64,
-    /// Added to the model's displacement; m.
-    pub offset: f64,
-    /// Columns of the Jacobian.
-    pub columns: Columns<P>,
 }
 
 /// Normal equations of `model` against `groups`; with `rows`, residuals and
@@ -224,7 +101,16 @@ where
     fn contact(&mut self, segment: &Segment<W>) {
         for (index, group) in self.groups.iter().enumerate() {
             let rows = self.rows.as_deref_mut().map(|rows| (rows, index));
-            read_segment(self.model, segment, group, self.end, &mut self.sums, rows);
+            let average = OnsetAverage::new(self.model, group);
+            read_segment(
+                self.model,
+                segment,
+                group,
+                self.end,
+                average.as_ref().map(|a| a as &dyn OnsetCorrection<P>),
+                &mut self.sums,
+                rows,
+            );
         }
     }
 
@@ -243,10 +129,21 @@ where
             onset: self.model.onset,
             offset: self.model.offset,
             columns: self.model.columns,
+            sampling: self.model.sampling,
         };
         for (index, group) in self.groups.iter().enumerate() {
             let rows = self.rows.as_deref_mut().map(|rows| (rows, index));
-            read_flight(&model, segment, group, self.end, &mut self.sums, rows);
+            // Only the flight before touches the onset.
+            let average = OnsetAverage::new(self.model, group).filter(|_| segment.to <= 0.0);
+            read_flight(
+                &model,
+                segment,
+                group,
+                self.end,
+                average.as_ref().map(|a| a as &dyn OnsetCorrection<P>),
+                &mut self.sums,
+                rows,
+            );
         }
     }
 }
@@ -276,10 +173,11 @@ fn read_flight<const W: usize, const P: usize>(
     segment: &Segment<W>,
     group: &SampleGroup,
     end: f64,
+    average: Option<&dyn OnsetCorrection<P>>,
     sums: &mut Sums<P>,
     rows: Option<(&mut Rows, usize)>,
 ) {
-    read_segment(model, segment, group, end, sums, rows);
+    read_segment(model, segment, group, end, average, sums, rows);
 }
 
 /// Running sums, one lane per sample of a pack.
@@ -365,6 +263,7 @@ fn read_segment<L, const N: usize, const W: usize, const P: usize>(
     segment: &Segment<W>,
     group: &SampleGroup,
     end: f64,
+    average: Option<&dyn OnsetCorrection<P>>,
     sums: &mut Sums<P>,
     mut rows: Option<(&mut Rows, usize)>,
 ) where
@@ -388,7 +287,12 @@ fn read_segment<L, const N: usize, const W: usize, const P: usize>(
         let times = times
             .max(Pack::splat(segment.from))
             .min(Pack::splat(segment.to));
-        let pack = pack_model(model, segment, &reader, times, accelerated);
+        let mut pack = pack_model(model, segment, &reader, times, accelerated);
+        if let Some(average) = average
+            && times.0[0] < average.until()
+        {
+            correct_onset(&mut pack, &times, average, model.event.motion.inverse_mass);
+        }
         for q in 0..QUANTITIES {
             if group.weights[q] == 0.0 && group.values[q].is_empty() {
                 continue;
@@ -504,6 +408,29 @@ where
     PackModel {
         values: [x + model.offset, v, force, motion.value],
         jacobian,
+    }
+}
+
+/// Replaces the force at an instant by its mean, in the lanes near first touch.
+#[cold]
+#[inline(never)]
+fn correct_onset<const P: usize>(
+    pack: &mut PackModel<P>,
+    times: &Pack,
+    average: &dyn OnsetCorrection<P>,
+    inverse_mass: f64,
+) {
+    let (force, acceleration) = (Quantity::Force as usize, Quantity::Acceleration as usize);
+    for lane in 0..PACK {
+        let Some((change, by_column)) = average.at(times.0[lane]) else {
+            continue;
+        };
+        pack.values[force].0[lane] += change;
+        pack.values[acceleration].0[lane] -= change * inverse_mass;
+        for c in 0..P {
+            pack.jacobian[force][c].0[lane] += by_column[c];
+            pack.jacobian[acceleration][c].0[lane] -= by_column[c] * inverse_mass;
+        }
     }
 }
 

@@ -2,7 +2,8 @@
 //! knows the law's concrete type.
 
 use crate::estimator::{Coordinate, Estimator, FreeLaw, FreeParameter, Setting, Values};
-use crate::residual::{Rows, SampleGroup};
+use crate::residual::Rows;
+use crate::samples::SampleGroup;
 use crate::uncertainty::covariance;
 use windfall_contact::any_law::{AnyLaw, LARGEST_PARAMETERS};
 use windfall_contact::law_kind::Law;

@@ -1,7 +1,8 @@
 //! How sure a fit is: covariance from the residuals themselves, and a test of
 //! whether they are random.
 
-use crate::residual::{QUANTITIES, Rows, SampleGroup};
+use crate::residual::Rows;
+use crate::samples::{QUANTITIES, SampleGroup};
 use windfall_numerics::cholesky;
 use windfall_numerics::least_squares::NormalEquations;
 
@@ -52,7 +53,7 @@ pub fn covariance<const P: usize>(
             if residuals.is_empty() {
                 continue;
             }
-            let weight = group.weight(crate::residual::Quantity::ALL[q]);
+            let weight = group.weight(crate::samples::Quantity::ALL[q]);
             let variance = freedom * mean_square(residuals);
             let correlations = autocorrelation(residuals);
             add_meat(
