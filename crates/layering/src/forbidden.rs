@@ -1,6 +1,6 @@
 //! What inner crates may not touch: files, clock, environment, network, output.
 
-use crate::source::{Mention, NamedPath, Role, SourceFile};
+use crate::source::{MacroCall, Mention, NamedPath, Role, SourceFile};
 use crate::violation::{Place, Violation};
 
 /// Parts of the standard library that reach outside, and why they are not for
@@ -63,15 +63,16 @@ pub fn check_forbidden(file: &SourceFile) -> Vec<Violation> {
             reason,
         })
     });
-    let macros = file.macros.iter().filter_map(|call| {
-        MACROS
-            .contains(&call.name.as_str())
-            .then(|| Violation::Forbidden {
-                place: place(call.line),
-                found: format!("{}!", call.name),
-                reason: "inner crates print nothing: return a value or a finding",
-            })
-    });
+    let printing = |call: &&MacroCall| MACROS.contains(&call.name.as_str());
+    let macros = file
+        .macros
+        .iter()
+        .filter(printing)
+        .map(|call| Violation::Forbidden {
+            place: place(call.line),
+            found: format!("{}!", call.name),
+            reason: "inner crates print nothing: return a value or a finding",
+        });
     paths.chain(macros).collect()
 }
 

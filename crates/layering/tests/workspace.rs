@@ -38,12 +38,18 @@ fn closed_form_workspace_is_seen_whole() -> Result<(), Error> {
             workspace.packages.iter().any(|name| name == package),
             "{package}"
         );
-        let paths: usize = of_package(&workspace, package)
-            .iter()
-            .map(|f| f.paths.len())
-            .sum();
-        assert!(paths > 10, "{package}: only {paths} paths read");
+        let files = of_package(&workspace, package);
+        assert!(
+            files.iter().any(|file| file.module.is_empty()),
+            "{package}: no root"
+        );
+        assert!(
+            files.iter().any(|file| !file.module.is_empty()),
+            "{package}: no modules"
+        );
     }
+    let named: usize = workspace.sources.iter().map(|file| file.paths.len()).sum();
+    assert!(named > 100, "only {named} paths read");
     assert!(
         workspace
             .dependencies
