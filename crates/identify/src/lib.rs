@@ -3,4 +3,6 @@
 //!
 //! This crate opens no file and reads no clock.
 
+pub mod contact_motion;
+pub mod motion;
 pub mod rig;

@@ -4,6 +4,8 @@
 //!
 //! This crate knows no contact law, no instrument and no file.
 
+pub mod ode_step;
 pub mod ode_tableau;
 pub mod real;
+pub mod root;
 pub mod unit;

@@ -1,0 +1,417 @@
+//! One impact of a rig under a force law, integrated with its sensitivities:
+//! flight before, contact, flight after.
+//!
+//! The state is (x, v) with the derivatives by the free parameters in the
+//! lanes. Time is counted from first touch, and during contact it runs as
+//! t = s^q ([`ContactLaw::START_POWER`]): a law that starts like √x is then
+//! smooth in s and the integrator keeps its order from the first step.
+
+use crate::motion::Motion;
+use windfall_contact::law::{ContactForce, ContactLaw, EndRule, SMALLEST_DISPLACEMENT};
+use windfall_numerics::ode_step::{Position, Step, StepError, System, Tolerance, step};
+use windfall_numerics::real::{Lanes, Real};
+use windfall_numerics::root::bracketed_root;
+
+/// Steps before an integration is given up: an impact takes about ten.
+const LARGEST_STEPS: usize = 20_000;
+/// First step, as a fraction of the range to integrate.
+const FIRST_STEP: f64 = 0.1;
+/// Event times are located to this fraction of a step.
+const EVENT_TOLERANCE: f64 = 1e-14;
+/// Where a contact that ends within its very first step is looked for from.
+const EARLIEST_END: f64 = 1e-3;
+
+/// Derivatives of the inputs by each free parameter, one lane each; lane 0 is
+/// unused.
+#[derive(Clone, Copy, Debug)]
+pub struct Seeds<const N: usize, const W: usize> {
+    /// Of each parameter of the law.
+    pub parameters: [Lanes<W>; N],
+    /// Of the velocity at first touch.
+    pub velocity: Lanes<W>,
+    /// Of 1/m.
+    pub inverse_mass: Lanes<W>,
+}
+
+impl<const N: usize, const W: usize> Seeds<N, W> {
+    /// Nothing is free.
+    pub const NONE: Self = Self {
+        parameters: [Lanes::ZERO; N],
+        velocity: Lanes::ZERO,
+        inverse_mass: Lanes::ZERO,
+    };
+}
+
+/// What happens: a body with `motion` touches at time zero with `velocity`.
+#[derive(Clone, Copy, Debug)]
+pub struct ImpactEvent<L, const N: usize, const W: usize> {
+    /// Force law.
+    pub law: L,
+    /// Equation of motion.
+    pub motion: Motion,
+    /// Velocity at first touch; m/s.
+    pub velocity: f64,
+    /// When the contact is over.
+    pub end: EndRule,
+    /// Free parameters.
+    pub seeds: Seeds<N, W>,
+    /// Accuracy: relative, absolute for x (m) and v (m/s).
+    pub tolerance: Tolerance<2>,
+}
+
+/// A piece of the motion: dense output valid for times in `[from, to]`.
+#[derive(Clone, Copy, Debug)]
+pub struct Segment<const W: usize> {
+    /// Dense output in s.
+    pub step: Step<2, W>,
+    /// q of t = s^q.
+    pub power: u32,
+    /// First time of validity; s.
+    pub from: f64,
+    /// Last time of validity; s.
+    pub to: f64,
+    /// Whether the bodies touch.
+    pub contact: bool,
+    /// Largest displacement so far, for laws with history; m.
+    pub peak: f64,
+    /// Its derivatives.
+    pub peak_lanes: Lanes<W>,
+}
+
+/// State at the end of contact.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Separation {
+    /// Time since first touch; s.
+    pub time: f64,
+    /// Displacement left; m.
+    pub displacement: f64,
+    /// Rate, negative; m/s.
+    pub rate: f64,
+}
+
+/// s of t = s^q.
+#[inline(always)]
+pub fn scaled_time<R: Real>(time: R, power: u32) -> R {
+    match power {
+        1 => time,
+        2 => time.sqrt(),
+        _ => time.sqrt().sqrt(),
+    }
+}
+
+#[inline(always)]
+fn time_of(s: f64, power: u32) -> f64 {
+    match power {
+        1 => s,
+        2 => s * s,
+        _ => (s * s) * (s * s),
+    }
+}
+
+/// Right-hand side during one phase.
+struct Phase<'a, L, const N: usize, const W: usize> {
+    event: &'a ImpactEvent<L, N, W>,
+    contact: bool,
+    power: u32,
+    peak: f64,
+    peak_lanes: Lanes<W>,
+}
+
+impl<L: ContactLaw<N>, const N: usize, const W: usize> Phase<'_, L, N, W> {
+    #[inline(always)]
+    fn force(&self, x: f64, v: f64) -> ContactForce<f64, N> {
+        let d = Real::max(x, SMALLEST_DISPLACEMENT);
+        self.event.law.evaluate(d, v, self.peak)
+    }
+}
+
+impl<L: ContactLaw<N>, const N: usize, const W: usize> System<2, W> for Phase<'_, L, N, W> {
+    #[inline(always)]
+    fn derivative(&self, s: f64, state: &[Lanes<W>; 2]) -> [Lanes<W>; 2] {
+        let [x, v] = *state;
+        let event = self.event;
+        let stretch = match self.power {
+            1 => 1.0,
+            2 => 2.0 * s,
+            _ => 4.0 * s * s * s,
+        };
+        let (value, mut rate) = if self.contact {
+            let force = self.force(x.0[0], v.0[0]);
+            let a = event.motion.acceleration(x.0[0], v.0[0], force.force);
+            let mut direct = self.peak_lanes * force.by_peak;
+            for (by, seed) in force.by_parameter.iter().zip(&event.seeds.parameters) {
+                direct += *seed * *by;
+            }
+            // ∂x''/∂(1/m) at constant force is by_force·F / (1/m).
+            let by_mass = a.by_force * force.force / event.motion.inverse_mass;
+            let rate = x * (a.by_displacement + a.by_force * force.by_displacement)
+                + v * (a.by_rate + a.by_force * force.by_rate)
+                + direct * a.by_force
+                + event.seeds.inverse_mass * by_mass;
+            (a.value, rate)
+        } else {
+            let a = event.motion.acceleration(x.0[0], v.0[0], 0.0);
+            (a.value, x * a.by_displacement + v * a.by_rate)
+        };
+        rate.0[0] = value;
+        [v * stretch, rate * stretch]
+    }
+}
+
+/// Follows the impact from `before` (≤ 0) to `after` (s since first touch) and
+/// hands each piece to `sink` in order of time, the flight before first.
+///
+/// Returns the end of contact, or `None` when it lies after `after`.
+///
+/// # Errors
+/// [`StepError`] when the tolerance cannot be met.
+///
+/// # Numerics
+/// The end of contact, the first maximum of laws with history and the kink of
+/// laws that have one are located on the dense output and end a step. The end
+/// by gap, where the force jumps, carries its jump of the sensitivities.
+/// Nothing is allocated.
+#[inline(always)]
+pub fn follow<L: ContactLaw<N>, const N: usize, const W: usize>(
+    event: &ImpactEvent<L, N, W>,
+    before: f64,
+    after: f64,
+    mut sink: impl FnMut(&Segment<W>),
+) -> Result<Option<Separation>, StepError> {
+    let mut phase = Phase {
+        event,
+        contact: false,
+        power: 1,
+        peak: 0.0,
+        peak_lanes: Lanes::ZERO,
+    };
+    let mut velocity = event.seeds.velocity;
+    velocity.0[0] = event.velocity;
+    let touch = [Lanes::ZERO, velocity];
+    if before < 0.0 {
+        fly(&phase, touch, 0.0, before, &mut sink)?;
+    }
+    if after <= 0.0 {
+        return Ok(None);
+    }
+    phase.contact = true;
+    phase.power = L::START_POWER;
+    match touching(&mut phase, touch, after, &mut sink)? {
+        None => Ok(None),
+        Some((time, mut state)) => {
+            let separation = Separation {
+                time,
+                displacement: state[0].0[0],
+                rate: state[1].0[0],
+            };
+            carry_jump(&phase, &mut state);
+            phase.contact = false;
+            phase.power = 1;
+            if after > time {
+                fly(&phase, state, time, after, &mut sink)?;
+            }
+            Ok(Some(separation))
+        }
+    }
+}
+
+/// Flight without contact from `from` to `to`, in either direction.
+#[inline(always)]
+fn fly<L: ContactLaw<N>, const N: usize, const W: usize>(
+    phase: &Phase<L, N, W>,
+    state: [Lanes<W>; 2],
+    from: f64,
+    to: f64,
+    sink: &mut impl FnMut(&Segment<W>),
+) -> Result<(), StepError> {
+    let mut position = Position::new(phase, from, state, to - from);
+    for _ in 0..LARGEST_STEPS {
+        let done = step(phase, &mut position, to, &phase.event.tolerance)?;
+        let end = done.start + done.width;
+        sink(&Segment {
+            step: done,
+            power: 1,
+            from: done.start.min(end),
+            to: done.start.max(end),
+            contact: false,
+            peak: 0.0,
+            peak_lanes: Lanes::ZERO,
+        });
+        if position.s == to {
+            return Ok(());
+        }
+    }
+    Err(too_long(&position))
+}
+
+fn too_long<const W: usize>(position: &Position<2, W>) -> StepError {
+    StepError {
+        s: position.s,
+        width: position.width,
+    }
+}
+
+/// What ends a step of the contact before its end.
+#[derive(Clone, Copy, PartialEq)]
+enum Stop {
+    End,
+    Peak,
+    Kink,
+}
+
+/// Contact from touch until it ends or `after`; the end's time and state.
+#[inline(always)]
+fn touching<L: ContactLaw<N>, const N: usize, const W: usize>(
+    phase: &mut Phase<L, N, W>,
+    state: [Lanes<W>; 2],
+    after: f64,
+    sink: &mut impl FnMut(&Segment<W>),
+) -> Result<Option<(f64, [Lanes<W>; 2])>, StepError> {
+    let power = phase.power;
+    let limit = scaled_time(after, power);
+    let kink = phase.event.law.kink();
+    let mut beyond_kink = false;
+    let mut loading = true;
+    let mut position = Position::new(phase, 0.0, state, limit * FIRST_STEP);
+    for _ in 0..LARGEST_STEPS {
+        let done = step(phase, &mut position, limit, &phase.event.tolerance)?;
+        let stop = first_stop(phase, &done, loading, kink, beyond_kink);
+        let (to, at) = match stop {
+            None => (position.s, done.to),
+            Some((_, sigma)) => (done.start + sigma * done.width, done.at(sigma)),
+        };
+        sink(&Segment {
+            step: done,
+            power,
+            from: time_of(done.start, power),
+            // The limit was given as a time: do not lose its last bit to the root.
+            to: if to == limit { after } else { time_of(to, power) },
+            contact: true,
+            peak: phase.peak,
+            peak_lanes: phase.peak_lanes,
+        });
+        match stop {
+            Some((Stop::End, _)) => return Ok(Some((time_of(to, power), at))),
+            Some((kind, _)) => {
+                if kind == Stop::Peak {
+                    // Unloading starts from here; or a reloading past the old
+                    // maximum is virgin loading again.
+                    loading = !loading;
+                    phase.peak = if loading { 0.0 } else { at[0].0[0] };
+                    phase.peak_lanes = if loading { Lanes::ZERO } else { at[0] };
+                } else {
+                    beyond_kink = !beyond_kink;
+                }
+                position = Position::new(phase, to, at, position.width);
+            }
+            None if position.s == limit => return Ok(None),
+            None => {}
+        }
+    }
+    Err(too_long(&position))
+}
+
+/// The first event within a step, with its fraction of the step.
+#[inline(always)]
+fn first_stop<L: ContactLaw<N>, const N: usize, const W: usize>(
+    phase: &Phase<L, N, W>,
+    done: &Step<2, W>,
+    loading: bool,
+    kink: f64,
+    beyond_kink: bool,
+) -> Option<(Stop, f64)> {
+    let (x, v) = (done.to[0].0[0], done.to[1].0[0]);
+    let mut stop = None;
+    if L::HISTORY {
+        let turned = if loading { v <= 0.0 } else { x > phase.peak && v > 0.0 };
+        if turned {
+            let sigma = if loading {
+                locate(done, 0.0, 1.0, |y| y[1])
+            } else {
+                let peak = phase.peak;
+                locate(done, 0.0, 1.0, |y| peak - y[0])
+            };
+            stop = Some((Stop::Peak, sigma));
+        }
+    }
+    if kink.is_finite() && (x > kink) != beyond_kink {
+        let side = if beyond_kink { 1.0 } else { -1.0 };
+        let sigma = locate(done, 0.0, 1.0, |y| side * (y[0] - kink));
+        stop = earlier(stop, (Stop::Kink, sigma));
+    }
+    match end_of_contact(phase, done) {
+        Some(sigma) => earlier(stop, (Stop::End, sigma)),
+        None => stop,
+    }
+}
+
+fn earlier(first: Option<(Stop, f64)>, second: (Stop, f64)) -> Option<(Stop, f64)> {
+    match first {
+        Some(found) if found.1 <= second.1 => Some(found),
+        _ => Some(second),
+    }
+}
+
+/// Fraction of the step at which the contact ends, if it does.
+#[inline(always)]
+fn end_of_contact<L: ContactLaw<N>, const N: usize, const W: usize>(
+    phase: &Phase<L, N, W>,
+    done: &Step<2, W>,
+) -> Option<f64> {
+    let (x, v) = (done.to[0].0[0], done.to[1].0[0]);
+    // In the very first step the state starts at zero displacement and force.
+    let lowest = if done.start == 0.0 { EARLIEST_END } else { 0.0 };
+    let opened = x <= 0.0;
+    if phase.event.end == EndRule::GapZero {
+        return opened.then(|| locate(done, lowest, 1.0, |y| y[0]));
+    }
+    if !opened && phase.force(x, v).force > 0.0 {
+        return None;
+    }
+    // The force of an elastic law falls to zero with the gap; that of a damped
+    // one before it.
+    let highest = if opened {
+        locate(done, lowest, 1.0, |y| y[0])
+    } else {
+        1.0
+    };
+    let at = done.at(highest);
+    if opened && phase.force(SMALLEST_DISPLACEMENT, at[1].0[0]).force >= 0.0 {
+        return Some(highest);
+    }
+    Some(locate(done, lowest, highest, |y| phase.force(y[0], y[1]).force))
+}
+
+/// Root in `[low, high]` of a function of (x, v) that is positive before.
+#[inline(always)]
+fn locate<const W: usize>(
+    done: &Step<2, W>,
+    low: f64,
+    high: f64,
+    function: impl Fn([f64; 2]) -> f64,
+) -> f64 {
+    let (x, v) = (done.lane(0, 0), done.lane(1, 0));
+    bracketed_root(low, high, EVENT_TOLERANCE, |sigma| {
+        let dense = windfall_numerics::ode_step::dense_at::<f64>;
+        function([dense(&x, sigma, 1.0 - sigma), dense(&v, sigma, 1.0 - sigma)])
+    })
+}
+
+/// Jump of the sensitivities where the force jumps to zero at the end:
+/// ∂v/∂p grows by (a₋ − a₊) ∂t/∂p, with ∂t/∂p = −(∂x/∂p)/v at the gap.
+#[inline(always)]
+fn carry_jump<L: ContactLaw<N>, const N: usize, const W: usize>(
+    phase: &Phase<L, N, W>,
+    state: &mut [Lanes<W>; 2],
+) {
+    if phase.event.end == EndRule::ForceZero {
+        return;
+    }
+    let (x, v) = (state[0].0[0], state[1].0[0]);
+    let touching = phase.force(x, v).force;
+    let jump = phase.event.motion.acceleration(x, v, touching).value
+        - phase.event.motion.acceleration(x, v, 0.0).value;
+    let mut change = state[0] * (-jump / v);
+    change.0[0] = 0.0;
+    state[1] += change;
+}
