@@ -53,7 +53,7 @@ cargo_version() {
 }
 
 install_rustup() {
-    if have apt-cache && apt-cache show rustup >/dev/null 2>&1; then
+    if have apt-cache && LC_ALL=C apt-cache policy rustup | grep -q 'Candidate: [0-9]'; then
         apt_install rustup
         return
     fi
