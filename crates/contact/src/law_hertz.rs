@@ -1,6 +1,7 @@
 //! Hertz: elastic spheres.
 
 use crate::law::{ContactForce, ContactLaw};
+use crate::parameter::{LawDescription, ParameterDescription};
 use windfall_numerics::real::Real;
 
 /// F = k d^1.5.
@@ -13,8 +14,37 @@ use windfall_numerics::real::Real;
 /// Hertz (1881); Johnson (1985), Contact Mechanics, eq. (4.23).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Hertz {
-    /// Stiffness; N/m^1.5.
+    /// Stiffness, (4/3) E* √R*; N/m^1.5.
     pub k: f64,
+}
+
+/// What the law says about itself.
+pub const DESCRIPTION: LawDescription = LawDescription {
+    name: "hertz",
+    formula: "F = k d^1.5",
+    first_touch: "force and slope are zero",
+    source: "Hertz (1881); Johnson (1985), Contact Mechanics, eq. (4.23)",
+    parameters: &[ParameterDescription {
+        name: "k",
+        meaning: "stiffness, (4/3) E* √R*",
+        unit: "N/m^1.5",
+        lower: 1e-9,
+        upper: 1e30,
+        typical: 753_599.0,
+        default: None,
+    }],
+};
+
+impl From<[f64; 1]> for Hertz {
+    fn from([k]: [f64; 1]) -> Self {
+        Self { k }
+    }
+}
+
+impl From<Hertz> for [f64; 1] {
+    fn from(law: Hertz) -> Self {
+        [law.k]
+    }
 }
 
 impl ContactLaw<1> for Hertz {

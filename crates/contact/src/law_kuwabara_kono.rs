@@ -1,12 +1,13 @@
 //! Kuwabara-Kono: viscoelastic spheres.
 
 use crate::law::{ContactForce, ContactLaw};
+use crate::parameter::{LawDescription, ParameterDescription};
 use windfall_numerics::real::Real;
 
 /// F = k d^1.5 + c d^0.5 v.
 ///
 /// * `k`: stiffness, that of Hertz; N/m^1.5
-/// * `c`: damping; N s/m^1.5 (= kg m^-0.5 s^-1)
+/// * `c`: damping, (3/2) A k with the dissipative time A; N s/m^1.5
 ///
 /// At first touch the force is zero and its slope in d infinite.
 ///
@@ -15,10 +16,50 @@ use windfall_numerics::real::Real;
 /// pendulum study.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct KuwabaraKono {
-    /// Stiffness; N/m^1.5.
+    /// Stiffness, that of Hertz; N/m^1.5.
     pub k: f64,
-    /// Damping; N s/m^1.5.
+    /// Damping, (3/2) A k with the dissipative time A; N s/m^1.5.
     pub c: f64,
+}
+
+/// What the law says about itself.
+pub const DESCRIPTION: LawDescription = LawDescription {
+    name: "kuwabara-kono",
+    formula: "F = k d^1.5 + c d^0.5 v",
+    first_touch: "the force is zero and its slope in d infinite",
+    source: "Kuwabara and Kono (1987); Brilliantov et al. (1996); eq. (5) of the 2003 pendulum study",
+    parameters: &[
+        ParameterDescription {
+            name: "k",
+            meaning: "stiffness, that of Hertz",
+            unit: "N/m^1.5",
+            lower: 1e-9,
+            upper: 1e30,
+            typical: 753_599.0,
+            default: None,
+        },
+        ParameterDescription {
+            name: "c",
+            meaning: "damping, (3/2) A k with the dissipative time A",
+            unit: "N s/m^1.5",
+            lower: 0.0,
+            upper: 1e30,
+            typical: 1524.0,
+            default: None,
+        },
+    ],
+};
+
+impl From<[f64; 2]> for KuwabaraKono {
+    fn from([k, c]: [f64; 2]) -> Self {
+        Self { k, c }
+    }
+}
+
+impl From<KuwabaraKono> for [f64; 2] {
+    fn from(law: KuwabaraKono) -> Self {
+        [law.k, law.c]
+    }
 }
 
 impl ContactLaw<2> for KuwabaraKono {

@@ -1,5 +1,7 @@
 //! What a law says about itself: names, units, bounds, formula and source.
 
+use windfall_numerics::unit::exponent_text;
+
 /// One parameter of a force law.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ParameterDescription {
@@ -7,8 +9,9 @@ pub struct ParameterDescription {
     pub name: &'static str,
     /// What it is, in a few words.
     pub meaning: &'static str,
-    /// SI unit in the syntax of `windfall_numerics::unit`; `n` and `p` stand
-    /// for the law's exponents ("N/m^n").
+    /// SI unit in the syntax of `windfall_numerics::unit`; names of parameters
+    /// stand for the law's exponents ("N/m^n", "N s/m^(p+1)"). With numbers in
+    /// their place: [`LawDescription::unit_of`].
     pub unit: &'static str,
     /// Smallest legal value; SI.
     pub lower: f64,
@@ -35,4 +38,76 @@ pub struct LawDescription {
     pub source: &'static str,
     /// Parameters, in the order of the derivatives of the law.
     pub parameters: &'static [ParameterDescription],
+}
+
+impl LawDescription {
+    /// Position of the parameter `name`; case and `-` or `_` do not count.
+    #[must_use]
+    pub fn index_of(&self, name: &str) -> Option<usize> {
+        let folded = |name: &str| name.to_lowercase().replace('-', "_");
+        let name = folded(name);
+        self.parameters
+            .iter()
+            .position(|parameter| folded(parameter.name) == name)
+    }
+
+    /// SI unit of parameter `index` with numbers for the exponents: "N/m^1.91".
+    ///
+    /// * `values`: one per parameter of the law, SI; exponents that are `None`
+    ///   (or beyond the end) take their default
+    ///
+    /// Returns `None` when an exponent in the unit has neither value nor
+    /// default, or when there is no parameter `index`.
+    #[must_use]
+    pub fn unit_of(&self, index: usize, values: &[Option<f64>]) -> Option<String> {
+        let mut pieces = self.parameters.get(index)?.unit.split('^');
+        let mut unit = pieces.next()?.to_string();
+        for piece in pieces {
+            let end = piece.find([' ', '/']).unwrap_or(piece.len());
+            let (power, rest) = piece.split_at(end);
+            let power = power
+                .trim_matches(['(', ')'])
+                .split('+')
+                .try_fold(0.0, |sum, term| {
+                    let value = term.parse().ok().or_else(|| self.known(term, values))?;
+                    Some(sum + value)
+                })?;
+            unit.push('^');
+            unit.push_str(&exponent_text(power));
+            unit.push_str(rest);
+        }
+        Some(unit)
+    }
+
+    /// Value or default of the parameter `name`.
+    fn known(&self, name: &str, values: &[Option<f64>]) -> Option<f64> {
+        let index = self.index_of(name)?;
+        let given = values.get(index).copied().flatten();
+        given.or(self.parameters[index].default)
+    }
+
+    /// First parameter that the unit of parameter `index` needs and that has
+    /// neither value nor default.
+    pub(crate) fn missing_exponent(
+        &self,
+        index: usize,
+        values: &[Option<f64>],
+    ) -> Option<&'static str> {
+        let unit = self.parameters[index].unit;
+        let names = self.parameters.iter().map(|parameter| parameter.name);
+        names
+            .filter(|name| {
+                unit.contains(&format!("^{name}")) || unit.contains(&format!("^({name}"))
+            })
+            .find(|name| self.known(name, values).is_none())
+    }
+}
+
+/// Shortest text that reads back to the same number, with an exponent where the
+/// digits would be many.
+pub(crate) fn number_text(value: f64) -> String {
+    match value.abs() {
+        0.0 | 1e-4..1e12 => format!("{value}"),
+        _ => format!("{value:e}"),
+    }
 }

@@ -70,12 +70,18 @@ pub struct Segment<const W: usize> {
     pub from: f64,
     /// Last time of validity; s.
     pub to: f64,
-    /// Whether the bodies touch.
-    pub contact: bool,
     /// Largest displacement so far, for laws with history; m.
     pub peak: f64,
     /// Its derivatives.
     pub peak_lanes: Lanes<W>,
+}
+
+/// Takes the pieces of a motion as they are integrated.
+pub trait Sink<const W: usize> {
+    /// A piece in which the bodies touch.
+    fn contact(&mut self, segment: &Segment<W>);
+    /// A piece before or after.
+    fn flight(&mut self, segment: &Segment<W>);
 }
 
 /// State at the end of contact.
@@ -108,10 +114,25 @@ fn time_of(s: f64, power: u32) -> f64 {
     }
 }
 
-/// Right-hand side during one phase.
+/// Right-hand side without contact.
+struct Flight {
+    motion: Motion,
+}
+
+impl<const W: usize> System<2, W> for Flight {
+    #[inline(always)]
+    fn derivative(&self, _s: f64, state: &[Lanes<W>; 2]) -> [Lanes<W>; 2] {
+        let [x, v] = *state;
+        let a = self.motion.acceleration(x.0[0], v.0[0], 0.0);
+        let mut rate = x * a.by_displacement + v * a.by_rate;
+        rate.0[0] = a.value;
+        [v, rate]
+    }
+}
+
+/// Right-hand side during contact.
 struct Phase<'a, L, const N: usize, const W: usize> {
     event: &'a ImpactEvent<L, N, W>,
-    contact: bool,
     power: u32,
     peak: f64,
     peak_lanes: Lanes<W>,
@@ -135,25 +156,19 @@ impl<L: ContactLaw<N>, const N: usize, const W: usize> System<2, W> for Phase<'_
             2 => 2.0 * s,
             _ => 4.0 * s * s * s,
         };
-        let (value, mut rate) = if self.contact {
-            let force = self.force(x.0[0], v.0[0]);
-            let a = event.motion.acceleration(x.0[0], v.0[0], force.force);
-            let mut direct = self.peak_lanes * force.by_peak;
-            for (by, seed) in force.by_parameter.iter().zip(&event.seeds.parameters) {
-                direct += *seed * *by;
-            }
-            // ∂x''/∂(1/m) at constant force is by_force·F / (1/m).
-            let by_mass = a.by_force * force.force / event.motion.inverse_mass;
-            let rate = x * (a.by_displacement + a.by_force * force.by_displacement)
-                + v * (a.by_rate + a.by_force * force.by_rate)
-                + direct * a.by_force
-                + event.seeds.inverse_mass * by_mass;
-            (a.value, rate)
-        } else {
-            let a = event.motion.acceleration(x.0[0], v.0[0], 0.0);
-            (a.value, x * a.by_displacement + v * a.by_rate)
-        };
-        rate.0[0] = value;
+        let force = self.force(x.0[0], v.0[0]);
+        let a = event.motion.acceleration(x.0[0], v.0[0], force.force);
+        let mut direct = self.peak_lanes * force.by_peak;
+        for (by, seed) in force.by_parameter.iter().zip(&event.seeds.parameters) {
+            direct += *seed * *by;
+        }
+        // ∂x''/∂(1/m) at constant force is by_force·F / (1/m).
+        let by_mass = a.by_force * force.force / event.motion.inverse_mass;
+        let mut rate = x * (a.by_displacement + a.by_force * force.by_displacement)
+            + v * (a.by_rate + a.by_force * force.by_rate)
+            + direct * a.by_force
+            + event.seeds.inverse_mass * by_mass;
+        rate.0[0] = a.value;
         [v * stretch, rate * stretch]
     }
 }
@@ -176,27 +191,24 @@ pub fn follow<L: ContactLaw<N>, const N: usize, const W: usize>(
     event: &ImpactEvent<L, N, W>,
     before: f64,
     after: f64,
-    mut sink: impl FnMut(&Segment<W>),
+    sink: &mut impl Sink<W>,
 ) -> Result<Option<Separation>, StepError> {
-    let mut phase = Phase {
-        event,
-        contact: false,
-        power: 1,
-        peak: 0.0,
-        peak_lanes: Lanes::ZERO,
-    };
     let mut velocity = event.seeds.velocity;
     velocity.0[0] = event.velocity;
     let touch = [Lanes::ZERO, velocity];
     if before < 0.0 {
-        fly(&phase, touch, 0.0, before, &mut sink)?;
+        fly(event, touch, 0.0, before, sink)?;
     }
     if after <= 0.0 {
         return Ok(None);
     }
-    phase.contact = true;
-    phase.power = L::START_POWER;
-    match touching(&mut phase, touch, after, &mut sink)? {
+    let mut phase = Phase {
+        event,
+        power: L::START_POWER,
+        peak: 0.0,
+        peak_lanes: Lanes::ZERO,
+    };
+    match touching(&mut phase, touch, after, sink)? {
         None => Ok(None),
         Some((time, mut state)) => {
             let separation = Separation {
@@ -205,10 +217,8 @@ pub fn follow<L: ContactLaw<N>, const N: usize, const W: usize>(
                 rate: state[1].0[0],
             };
             carry_jump(&phase, &mut state);
-            phase.contact = false;
-            phase.power = 1;
             if after > time {
-                fly(&phase, state, time, after, &mut sink)?;
+                fly(event, state, time, after, sink)?;
             }
             Ok(Some(separation))
         }
@@ -217,23 +227,25 @@ pub fn follow<L: ContactLaw<N>, const N: usize, const W: usize>(
 
 /// Flight without contact from `from` to `to`, in either direction.
 #[inline(always)]
-fn fly<L: ContactLaw<N>, const N: usize, const W: usize>(
-    phase: &Phase<L, N, W>,
+fn fly<L, const N: usize, const W: usize>(
+    event: &ImpactEvent<L, N, W>,
     state: [Lanes<W>; 2],
     from: f64,
     to: f64,
-    sink: &mut impl FnMut(&Segment<W>),
+    sink: &mut impl Sink<W>,
 ) -> Result<(), StepError> {
-    let mut position = Position::new(phase, from, state, to - from);
+    let flight = Flight {
+        motion: event.motion,
+    };
+    let mut position = Position::new(&flight, from, state, to - from);
     for _ in 0..LARGEST_STEPS {
-        let done = step(phase, &mut position, to, &phase.event.tolerance)?;
+        let done = flight_step(&flight, &mut position, to, &event.tolerance)?;
         let end = done.start + done.width;
-        sink(&Segment {
+        sink.flight(&Segment {
             step: done,
             power: 1,
             from: done.start.min(end),
             to: done.start.max(end),
-            contact: false,
             peak: 0.0,
             peak_lanes: Lanes::ZERO,
         });
@@ -242,6 +254,17 @@ fn fly<L: ContactLaw<N>, const N: usize, const W: usize>(
         }
     }
     Err(too_long(&position))
+}
+
+/// One step of flight: the same for every law, so compiled once.
+#[inline(never)]
+fn flight_step<const W: usize>(
+    flight: &Flight,
+    position: &mut Position<2, W>,
+    limit: f64,
+    tolerance: &Tolerance<2>,
+) -> Result<Step<2, W>, StepError> {
+    step(flight, position, limit, tolerance)
 }
 
 fn too_long<const W: usize>(position: &Position<2, W>) -> StepError {
@@ -265,7 +288,7 @@ fn touching<L: ContactLaw<N>, const N: usize, const W: usize>(
     phase: &mut Phase<L, N, W>,
     state: [Lanes<W>; 2],
     after: f64,
-    sink: &mut impl FnMut(&Segment<W>),
+    sink: &mut impl Sink<W>,
 ) -> Result<Option<(f64, [Lanes<W>; 2])>, StepError> {
     let power = phase.power;
     let limit = scaled_time(after, power);
@@ -280,13 +303,16 @@ fn touching<L: ContactLaw<N>, const N: usize, const W: usize>(
             None => (position.s, done.to),
             Some((_, sigma)) => (done.start + sigma * done.width, done.at(sigma)),
         };
-        sink(&Segment {
+        sink.contact(&Segment {
             step: done,
             power,
             from: time_of(done.start, power),
             // The limit was given as a time: do not lose its last bit to the root.
-            to: if to == limit { after } else { time_of(to, power) },
-            contact: true,
+            to: if to == limit {
+                after
+            } else {
+                time_of(to, power)
+            },
             peak: phase.peak,
             peak_lanes: phase.peak_lanes,
         });
@@ -323,7 +349,11 @@ fn first_stop<L: ContactLaw<N>, const N: usize, const W: usize>(
     let (x, v) = (done.to[0].0[0], done.to[1].0[0]);
     let mut stop = None;
     if L::HISTORY {
-        let turned = if loading { v <= 0.0 } else { x > phase.peak && v > 0.0 };
+        let turned = if loading {
+            v <= 0.0
+        } else {
+            x > phase.peak && v > 0.0
+        };
         if turned {
             let sigma = if loading {
                 locate(done, 0.0, 1.0, |y| y[1])
@@ -379,7 +409,9 @@ fn end_of_contact<L: ContactLaw<N>, const N: usize, const W: usize>(
     if opened && phase.force(SMALLEST_DISPLACEMENT, at[1].0[0]).force >= 0.0 {
         return Some(highest);
     }
-    Some(locate(done, lowest, highest, |y| phase.force(y[0], y[1]).force))
+    Some(locate(done, lowest, highest, |y| {
+        phase.force(y[0], y[1]).force
+    }))
 }
 
 /// Root in `[low, high]` of a function of (x, v) that is positive before.

@@ -4,5 +4,9 @@
 //! This crate opens no file and reads no clock.
 
 pub mod contact_motion;
+pub mod error;
+pub mod estimator;
 pub mod motion;
+pub mod residual;
 pub mod rig;
+pub mod simulate;

@@ -119,7 +119,10 @@ mod tests {
                 / rig.inertia;
             let expected = rig.arm * (theta.cos() * angular - theta.sin() * omega * omega);
             let found = motion.acceleration(x, v, force).value;
-            assert!((found - expected).abs() < 1e-12 * (1.0 + expected.abs()), "{found} {expected}");
+            assert!(
+                (found - expected).abs() < 1e-12 * (1.0 + expected.abs()),
+                "{found} {expected}"
+            );
         }
     }
 
@@ -146,6 +149,14 @@ mod tests {
             driving_acceleration: 0.3,
         });
         let found = Motion::from(&rig).acceleration(0.01, 2.0, 4.0);
-        assert_eq!((found.value, found.by_displacement, found.by_rate, found.by_force), (0.3 - 8.0, 0.0, 0.0, -2.0));
+        assert_eq!(
+            (
+                found.value,
+                found.by_displacement,
+                found.by_rate,
+                found.by_force
+            ),
+            (0.3 - 8.0, 0.0, 0.0, -2.0)
+        );
     }
 }

@@ -1,5 +1,7 @@
 //! Rigs: how the impactor moves between contacts and under the contact force.
 
+use crate::error::Error;
+
 /// Pendulum arm that strikes a fruit fixed to an anvil at the arm's lowest
 /// point: I θ'' = −m g l sin θ − F r cos θ, x = r sin θ.
 ///
@@ -42,6 +44,29 @@ pub enum Rig {
 }
 
 impl Rig {
+    /// Whether every quantity has a physical value.
+    ///
+    /// # Errors
+    /// [`Error::BadInput`] names the first that has none.
+    pub fn check(&self) -> Result<(), Error> {
+        let quantities = match self {
+            Self::Pendulum(p) => vec![
+                ("inertia", p.inertia),
+                ("arm", p.arm),
+                ("mass", p.mass),
+                ("centre_of_mass", p.centre_of_mass),
+                ("gravity", p.gravity),
+            ],
+            Self::Carriage(c) => vec![("mass", c.mass)],
+        };
+        for (name, value) in quantities {
+            if !(value.is_finite() && value > 0.0) {
+                return Err(Error::BadInput { name, value });
+            }
+        }
+        Ok(())
+    }
+
     /// Mass that the contact feels: I/r² of a pendulum, m of a carriage; kg.
     #[must_use]
     pub fn effective_mass(&self) -> f64 {

@@ -4,8 +4,15 @@
 //!
 //! This crate knows no contact law, no instrument and no file.
 
+pub mod cholesky;
+mod dimension;
+pub mod least_squares;
+pub mod nearest_name;
 pub mod ode_step;
 pub mod ode_tableau;
 pub mod real;
 pub mod root;
 pub mod unit;
+mod unit_error;
+pub mod unit_symbol;
+mod unit_syntax;

@@ -23,6 +23,9 @@ const SMALLEST_STEP: f64 = 1e-15;
 /// Attempts before a step is given up: each shrinks it, so 60 span 10⁻⁴⁰.
 const LARGEST_ATTEMPTS: usize = 60;
 
+/// Numbers that describe one lane's dense output over a step.
+pub const DENSE_COEFFICIENTS: usize = DENSE_TERMS + 1;
+
 /// Right-hand side y' = f(s, y) with the derivatives of f in the lanes.
 pub trait System<const D: usize, const W: usize> {
     /// y' at `(s, state)`.
@@ -78,8 +81,8 @@ impl<const D: usize, const W: usize> Step<D, W> {
     /// many samples at once with [`dense_at`].
     #[inline(always)]
     #[must_use]
-    pub fn lane(&self, component: usize, lane: usize) -> [f64; DENSE_TERMS + 1] {
-        let mut out = [self.from[component].0[lane]; DENSE_TERMS + 1];
+    pub fn lane(&self, component: usize, lane: usize) -> [f64; DENSE_COEFFICIENTS] {
+        let mut out = [self.from[component].0[lane]; DENSE_COEFFICIENTS];
         for (term, value) in out[1..].iter_mut().enumerate() {
             *value = self.terms[term][component].0[lane];
         }
@@ -90,15 +93,15 @@ impl<const D: usize, const W: usize> Step<D, W> {
 /// Dense output of one lane (from [`Step::lane`]) at `sigma`, with
 /// `rest` = 1 − `sigma`.
 #[inline(always)]
-pub fn dense_at<R: Real>(coefficients: &[f64; DENSE_TERMS + 1], sigma: R, rest: R) -> R {
+pub fn dense_at<R: Real>(coefficients: &[f64; DENSE_COEFFICIENTS], sigma: R, rest: R) -> R {
     let [y, r1, r2, r3, r4, r5, r6, r7] = *coefficients;
-    let sum = sigma * r7 + r6;
-    let sum = rest * sum + r5;
-    let sum = sigma * sum + r4;
-    let sum = rest * sum + r3;
-    let sum = sigma * sum + r2;
-    let sum = rest * sum + r1;
-    sigma * sum + y
+    let sum = sigma.mul_add(R::splat(r7), R::splat(r6));
+    let sum = rest.mul_add(sum, R::splat(r5));
+    let sum = sigma.mul_add(sum, R::splat(r4));
+    let sum = rest.mul_add(sum, R::splat(r3));
+    let sum = sigma.mul_add(sum, R::splat(r2));
+    let sum = rest.mul_add(sum, R::splat(r1));
+    sigma.mul_add(sum, R::splat(y))
 }
 
 /// Where an integration stands between steps.
@@ -222,7 +225,7 @@ fn combine<const D: usize, const W: usize>(
     for (i, component) in out.iter_mut().enumerate() {
         let mut sum = Lanes::ZERO;
         for &(j, a) in row {
-            sum += k[j][i] * a;
+            sum = k[j][i].mul_add(Lanes::splat(a), sum);
         }
         *component = sum;
     }
@@ -240,7 +243,7 @@ fn stage<const I: usize, const D: usize, const W: usize>(
 ) -> [Lanes<W>; D] {
     let mut state = combine(A[I], k);
     for i in 0..D {
-        state[i] = from[i] + state[i] * width;
+        state[i] = state[i].mul_add(Lanes::splat(width), from[i]);
     }
     k[I] = system.derivative(s + C[I] * width, &state);
     state

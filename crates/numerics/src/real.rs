@@ -5,8 +5,9 @@
 //! single state, the residual kernel for a handful of samples at a time.
 //!
 //! Every operation of `Lanes` is the same operation of `f64` on each lane, in
-//! the same order and without fused multiply-add, so results do not depend on
-//! how wide the machine's vector registers are.
+//! the same order, and multiply-add is fused only where [`Real::mul_add`] says
+//! so (then on every machine), so results do not depend on how wide the
+//! machine's vector registers are.
 
 use std::ops::{Add, AddAssign, Div, Mul, Neg, Sub};
 
@@ -23,6 +24,8 @@ pub trait Real:
 {
     /// The same value in every lane.
     fn splat(value: f64) -> Self;
+    /// self · factor + summand, rounded once.
+    fn mul_add(self, factor: Self, summand: Self) -> Self;
     /// Square root of each lane.
     fn sqrt(self) -> Self;
     /// Each lane raised to a fixed power.
@@ -41,6 +44,10 @@ impl Real for f64 {
     #[inline(always)]
     fn splat(value: f64) -> Self {
         value
+    }
+    #[inline(always)]
+    fn mul_add(self, factor: Self, summand: Self) -> Self {
+        f64::mul_add(self, factor, summand)
     }
     #[inline(always)]
     fn sqrt(self) -> Self {
@@ -176,6 +183,14 @@ impl<const W: usize> Real for Lanes<W> {
     #[inline(always)]
     fn splat(value: f64) -> Self {
         Self([value; W])
+    }
+    #[inline(always)]
+    fn mul_add(self, factor: Self, summand: Self) -> Self {
+        let mut out = [0.0; W];
+        for i in 0..W {
+            out[i] = self.0[i].mul_add(factor.0[i], summand.0[i]);
+        }
+        Self(out)
     }
     #[inline(always)]
     fn sqrt(self) -> Self {

@@ -1,0 +1,116 @@
+//! ADAMS IMPACT: power-law spring with damping that grows over a depth.
+
+use crate::law::{ContactForce, ContactLaw};
+use crate::parameter::{LawDescription, ParameterDescription};
+use windfall_numerics::real::Real;
+
+/// F = k x^e + c STEP(x; 0, d) v, STEP = w^2 (3 - 2 w), w = min(x/d, 1).
+///
+/// * `k`: stiffness; N/m^e
+/// * `e`: exponent of the displacement; 1
+/// * `c`: damping beyond the depth d; N s/m
+/// * `d`: depth at which the damping is full; m
+///
+/// At first touch force and slope are zero, but with a small d the force is
+/// nearly c v0 at once.
+///
+/// # Source
+/// MSC Adams function reference, IMPACT and (cubic) STEP; x is the
+/// indentation.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct AdamsImpact {
+    /// Stiffness; N/m^e.
+    pub k: f64,
+    /// Exponent of the displacement; 1.
+    pub e: f64,
+    /// Damping beyond the depth d; N s/m.
+    pub c: f64,
+    /// Depth at which the damping is full; m.
+    pub d: f64,
+}
+
+/// What the law says about itself.
+pub const DESCRIPTION: LawDescription = LawDescription {
+    name: "adams-impact",
+    formula: "F = k x^e + c STEP(x; 0, d) v, STEP = w^2 (3 - 2 w), w = min(x/d, 1)",
+    first_touch: "force and slope are zero, but with a small d the force is nearly c v0 at once",
+    source: "MSC Adams function reference, IMPACT and (cubic) STEP; x is the indentation",
+    parameters: &[
+        ParameterDescription {
+            name: "k",
+            meaning: "stiffness",
+            unit: "N/m^e",
+            lower: 1e-9,
+            upper: 1e30,
+            typical: 753_599.0,
+            default: None,
+        },
+        ParameterDescription {
+            name: "e",
+            meaning: "exponent of the displacement",
+            unit: "1",
+            lower: 0.5,
+            upper: 6.0,
+            typical: 1.5,
+            default: None,
+        },
+        ParameterDescription {
+            name: "c",
+            meaning: "damping beyond the depth d",
+            unit: "N s/m",
+            lower: 0.0,
+            upper: 1e30,
+            typical: 40.0,
+            default: None,
+        },
+        ParameterDescription {
+            name: "d",
+            meaning: "depth at which the damping is full",
+            unit: "m",
+            lower: 1e-9,
+            upper: 1.0,
+            typical: 1e-4,
+            default: None,
+        },
+    ],
+};
+
+impl From<[f64; 4]> for AdamsImpact {
+    fn from([k, e, c, d]: [f64; 4]) -> Self {
+        Self { k, e, c, d }
+    }
+}
+
+impl From<AdamsImpact> for [f64; 4] {
+    fn from(law: AdamsImpact) -> Self {
+        [law.k, law.e, law.c, law.d]
+    }
+}
+
+impl ContactLaw<4> for AdamsImpact {
+    #[inline(always)]
+    fn evaluate<R: Real>(&self, x: R, v: R, _peak: R) -> ContactForce<R, 4> {
+        let power = x.powf(self.e);
+        // Share of the depth d, and the cubic step with its derivative.
+        let w = (x * (1.0 / self.d)).min(R::splat(1.0));
+        let step = w * w * (w * -2.0 + 3.0);
+        let step_by_w = w * (-w + 1.0) * 6.0;
+        let viscous = v * self.c;
+        ContactForce {
+            force: power * self.k + step * viscous,
+            by_displacement: power / x * (self.k * self.e) + step_by_w * viscous * (1.0 / self.d),
+            by_rate: step * self.c,
+            by_parameter: [
+                power,
+                power * x.ln() * self.k,
+                step * v,
+                step_by_w * w * viscous * (-1.0 / self.d),
+            ],
+            by_peak: R::splat(0.0),
+        }
+    }
+
+    fn kink(&self) -> f64 {
+        self.d
+    }
+}

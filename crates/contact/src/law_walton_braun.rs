@@ -1,0 +1,86 @@
+//! Walton-Braun: linear loading, steeper linear unloading.
+
+use crate::law::{ContactForce, ContactLaw};
+use crate::parameter::{LawDescription, ParameterDescription};
+use windfall_numerics::real::Real;
+
+/// F = k1 d while loading; k1 d_peak + k2 (d - d_peak) below the largest displacement d_peak.
+///
+/// * `k1`: stiffness while loading; N/m
+/// * `k2`: stiffness while unloading and reloading, at least k1; N/m
+///
+/// At first touch the force is zero and its slope k1.
+///
+/// # Source
+/// Walton and Braun (1986), J. Rheol. 30, 949.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct WaltonBraun {
+    /// Stiffness while loading; N/m.
+    pub k1: f64,
+    /// Stiffness while unloading and reloading, at least k1; N/m.
+    pub k2: f64,
+}
+
+/// What the law says about itself.
+pub const DESCRIPTION: LawDescription = LawDescription {
+    name: "walton-braun",
+    formula: "F = k1 d while loading; k1 d_peak + k2 (d - d_peak) below the largest displacement d_peak",
+    first_touch: "the force is zero and its slope k1",
+    source: "Walton and Braun (1986), J. Rheol. 30, 949",
+    parameters: &[
+        ParameterDescription {
+            name: "k1",
+            meaning: "stiffness while loading",
+            unit: "N/m",
+            lower: 1e-9,
+            upper: 1e30,
+            typical: 40_000.0,
+            default: None,
+        },
+        ParameterDescription {
+            name: "k2",
+            meaning: "stiffness while unloading and reloading, at least k1",
+            unit: "N/m",
+            lower: 1e-9,
+            upper: 1e30,
+            typical: 111_000.0,
+            default: None,
+        },
+    ],
+};
+
+impl From<[f64; 2]> for WaltonBraun {
+    fn from([k1, k2]: [f64; 2]) -> Self {
+        Self { k1, k2 }
+    }
+}
+
+impl From<WaltonBraun> for [f64; 2] {
+    fn from(law: WaltonBraun) -> Self {
+        [law.k1, law.k2]
+    }
+}
+
+/// Unloading is never softer than loading: a `k2` below `k1` acts as `k1`, so
+/// that no parameters make a contact that returns more energy than it got.
+impl ContactLaw<2> for WaltonBraun {
+    const HISTORY: bool = true;
+    const START_POWER: u32 = 1;
+
+    #[inline(always)]
+    fn evaluate<R: Real>(&self, d: R, _v: R, peak: R) -> ContactForce<R, 2> {
+        let zero = R::splat(0.0);
+        let steeper = self.k2 > self.k1;
+        let unloading = if steeper { self.k2 } else { self.k1 };
+        let (by_k1, by_k2) = if steeper { (peak, d - peak) } else { (d, zero) };
+        // Below the peak; never during first loading, where the peak is zero.
+        let below = peak - d;
+        ContactForce {
+            force: below.select(peak * self.k1 - below * unloading, d * self.k1),
+            by_displacement: below.select(R::splat(unloading), R::splat(self.k1)),
+            by_rate: zero,
+            by_parameter: [below.select(by_k1, d), below.select(by_k2, zero)],
+            by_peak: below.select(R::splat(self.k1 - unloading), zero),
+        }
+    }
+}

@@ -1,0 +1,146 @@
+//! Times one Kuwabara-Kono fit of a pendulum impact, for the comparison with
+//! other programs: `fit_speed DATA.csv REFERENCE.txt STARTS.csv`.
+//!
+//! Prints one JSON line each for two and four free parameters, with the keys
+//! that the other programs print.
+
+use std::time::Instant;
+use windfall_contact::law::EndRule;
+use windfall_contact::law_kuwabara_kono::KuwabaraKono;
+use windfall_identify::estimator::{Coordinate, Estimator, FreeParameter, Setting, Target, Values};
+use windfall_identify::motion::Motion;
+use windfall_identify::residual::SampleGroup;
+use windfall_identify::rig::{Pendulum, Rig};
+use windfall_numerics::least_squares::Options;
+use windfall_numerics::ode_step::Tolerance;
+
+const ARM: f64 = 0.505;
+const FITS: usize = 2001;
+
+fn numbers(path: &str) -> Vec<Vec<f64>> {
+    let text = std::fs::read_to_string(path).expect("readable file");
+    text.lines()
+        .filter_map(|line| {
+            line.split([',', ' '])
+                .map(|cell| cell.trim().parse().ok())
+                .collect()
+        })
+        .collect()
+}
+
+fn parameter(target: Target, coordinate: Coordinate, lower: f64, upper: f64) -> FreeParameter {
+    FreeParameter {
+        target,
+        coordinate,
+        lower,
+        upper,
+    }
+}
+
+/// Fit from (k, c) with the first `P` of k, c, velocity and onset free.
+fn fit<const P: usize>(group: &SampleGroup, k: f64, c: f64) -> (Values<2>, usize) {
+    let rig = Rig::Pendulum(Pendulum {
+        inertia: 0.2 * ARM * ARM,
+        arm: ARM,
+        mass: 0.3,
+        centre_of_mass: ARM,
+        gravity: 9.81,
+    });
+    let motion = Motion::from(&rig);
+    let setting = Setting {
+        motion,
+        groups: std::slice::from_ref(group),
+        end: EndRule::ForceZero,
+        tolerance: Tolerance {
+            relative: 1e-8,
+            absolute: [1e-12 * ARM, 1e-10 * ARM],
+        },
+        tied_velocity: None,
+    };
+    let free = [
+        parameter(Target::Law(0), Coordinate::Logarithm, 1e-3, 1e12),
+        parameter(Target::Law(1), Coordinate::Logarithm, 1e-6, 1e9),
+        parameter(Target::InitialVelocity, Coordinate::Logarithm, 0.01, 5.0),
+        parameter(Target::Onset, Coordinate::Linear(1e-3), -1e-3, 1e-3),
+    ];
+    let four = P == 4;
+    let base = Values {
+        law: [k, c],
+        velocity: if four { 0.34 } else { 0.35 },
+        inverse_mass: motion.inverse_mass,
+        onset: if four { 0.02e-3 } else { 0.0 },
+        offset: 0.0,
+    };
+    let mut estimator = Estimator::<KuwabaraKono, 2, 4, P>::new(setting, &free[..P], base);
+    let minimum = estimator.minimise(&Options {
+        largest_step: [2.0; P],
+        ..Options::default()
+    });
+    (estimator.values(&minimum.parameters), minimum.evaluations)
+}
+
+/// Processor seconds and wall seconds, medians over many fits.
+fn measure<const P: usize>(
+    variant: &str,
+    group: &SampleGroup,
+    reference: &[f64],
+    starts: &[Vec<f64>],
+) {
+    let mut seconds: Vec<f64> = (0..FITS)
+        .map(|_| {
+            let begin = Instant::now();
+            std::hint::black_box(fit::<P>(std::hint::black_box(group), 2e5, 300.0));
+            begin.elapsed().as_secs_f64()
+        })
+        .collect();
+    seconds.sort_by(f64::total_cmp);
+    let (values, evaluations) = fit::<P>(group, 2e5, 300.0);
+    let deviation = |values: &Values<2>| {
+        let k = (values.law[0] / reference[0] - 1.0).abs();
+        let c = (values.law[1] / reference[1] - 1.0).abs();
+        k.max(c)
+    };
+    let from_starts: Vec<f64> = starts
+        .iter()
+        .map(|s| deviation(&fit::<P>(group, s[0], s[1]).0))
+        .collect();
+    let good = from_starts.iter().filter(|d| **d < 1e-3).count();
+    let worst = from_starts.iter().fold(0.0, |a: f64, b| a.max(*b));
+    println!(
+        "{{\"tool\":\"windfall\",\"variant\":\"{variant}\",\"seconds_per_fit\":{:e},\"wall_min\":{:e},\"nfev\":{evaluations},\"k\":{:.10},\"c\":{:.10},\"v0\":{:.10},\"t0\":{:e},\"deviation\":{:e},\"worst_deviation_from_starts\":{worst:e},\"robust\":\"{good}/{}\",\"n\":{}}}",
+        seconds[FITS / 2],
+        seconds[0],
+        values.law[0],
+        values.law[1],
+        values.velocity,
+        values.onset,
+        deviation(&values),
+        starts.len(),
+        group.times().len(),
+    );
+}
+
+fn main() {
+    let arguments: Vec<String> = std::env::args().skip(1).collect();
+    let [data, reference, starts] = arguments.as_slice() else {
+        eprintln!("usage: fit_speed DATA.csv REFERENCE.txt STARTS.csv");
+        std::process::exit(2);
+    };
+    let rows = numbers(data);
+    let column = |i: usize| rows.iter().map(|row| row[i]).collect::<Vec<f64>>();
+    let (x, v, force) = (column(1), column(2), column(3));
+    let weight = |q: &[f64]| q.len() as f64 / q.iter().map(|a| a.abs()).sum::<f64>();
+    let group = SampleGroup::new(
+        &column(0),
+        [
+            Some((&x, weight(&x))),
+            Some((&v, weight(&v))),
+            Some((&force, weight(&force))),
+            None,
+        ],
+    );
+    let reference = &numbers(reference)[0];
+    let starts = numbers(starts);
+    measure::<2>("2p", &group, &reference[..2], &starts);
+    measure::<4>("4p", &group, &reference[2..], &starts);
+}

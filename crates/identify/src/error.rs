@@ -1,0 +1,82 @@
+//! What can go wrong in a simulation or a fit.
+
+use windfall_numerics::ode_step::StepError;
+
+/// Errors of this crate.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum Error {
+    /// A quantity of the rig or the impact has no physical value.
+    #[error("{name} is {value}, but it must be a positive number")]
+    BadInput {
+        /// Which quantity.
+        name: &'static str,
+        /// Its value; SI.
+        value: f64,
+    },
+    /// Sampling times must ascend.
+    #[error("time {time} s at index {index} comes after {before} s: times must ascend")]
+    UnorderedTimes {
+        /// Position of the offending time.
+        index: usize,
+        /// That time; s.
+        time: f64,
+        /// The time before it; s.
+        before: f64,
+    },
+    /// The bodies stay together.
+    #[error(
+        "the bodies are still in contact after {duration} s: the damping or the driving acceleration holds them together; check the law's parameters"
+    )]
+    EndlessContact {
+        /// How long the contact was followed; s.
+        duration: f64,
+    },
+    /// The motion cannot be integrated.
+    #[error(transparent)]
+    Integration(#[from] StepError),
+    /// None of the quantities that the fit should use was recorded.
+    #[error(
+        "the impact has none of the quantities to fit ({wanted}); it has {present}. Choose others with `quantities` in [fit]"
+    )]
+    NoQuantities {
+        /// Quantities asked for.
+        wanted: String,
+        /// Quantities of the impact.
+        present: String,
+    },
+    /// Too few samples for the free parameters.
+    #[error(
+        "{samples} samples in the fit window cannot determine {parameters} free parameters; widen the margins or fix parameters"
+    )]
+    TooFewSamples {
+        /// Samples of all quantities.
+        samples: usize,
+        /// Free parameters.
+        parameters: usize,
+    },
+    /// No parameter of the law is free.
+    #[error("no parameter of {law} is free: there is nothing to fit")]
+    NothingToFit {
+        /// Name of the law.
+        law: &'static str,
+    },
+    /// A parameter is neither given nor free.
+    #[error("{law} needs a value for {parameter}: give it in the law expression or free it")]
+    MissingParameter {
+        /// Name of the law.
+        law: &'static str,
+        /// Name of the parameter.
+        parameter: &'static str,
+    },
+    /// No starting point lets the model be evaluated.
+    #[error(
+        "no starting point for {law} gives an impact that can be integrated; give starting values in the law expression"
+    )]
+    NoStart {
+        /// Name of the law.
+        law: &'static str,
+    },
+    /// The law refuses the values.
+    #[error(transparent)]
+    Law(#[from] windfall_contact::error::Error),
+}

@@ -1,0 +1,260 @@
+//! The nonlinear least-squares problem of one impact: free parameters in
+//! coordinates of their own, the model behind them, the minimiser around it.
+
+use crate::contact_motion::{ImpactEvent, Seeds};
+use crate::motion::Motion;
+use crate::residual::{Columns, Model, Rows, SampleGroup, evaluate};
+use windfall_contact::law::{ContactLaw, EndRule};
+use windfall_numerics::least_squares::{
+    Bounds, LeastSquares, Minimum, NormalEquations, Options, minimise,
+};
+use windfall_numerics::ode_step::Tolerance;
+use windfall_numerics::real::Lanes;
+
+/// Something that a fit can estimate.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Target {
+    /// A parameter of the law, by its position.
+    Law(usize),
+    /// Velocity at first touch.
+    InitialVelocity,
+    /// Mass of the impactor.
+    Mass,
+    /// Time of first touch.
+    Onset,
+    /// Constant added to the model's displacement.
+    DisplacementOffset,
+}
+
+impl Target {
+    /// Whether the motion must carry a sensitivity for it.
+    fn needs_lane(self) -> bool {
+        matches!(self, Self::Law(_) | Self::InitialVelocity | Self::Mass)
+    }
+}
+
+/// Coordinate in which the minimiser moves a parameter.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Coordinate {
+    /// u = ln p, for positive scales.
+    Logarithm,
+    /// u = p / scale.
+    Linear(f64),
+}
+
+impl Coordinate {
+    /// Parameter at coordinate `u`.
+    #[must_use]
+    pub fn value(self, u: f64) -> f64 {
+        match self {
+            Self::Logarithm => u.exp(),
+            Self::Linear(scale) => u * scale,
+        }
+    }
+
+    /// Coordinate of a parameter.
+    #[must_use]
+    pub fn of(self, value: f64) -> f64 {
+        match self {
+            Self::Logarithm => value.ln(),
+            Self::Linear(scale) => value / scale,
+        }
+    }
+
+    /// dp/du at parameter `value`.
+    #[must_use]
+    pub fn slope(self, value: f64) -> f64 {
+        match self {
+            Self::Logarithm => value,
+            Self::Linear(scale) => scale,
+        }
+    }
+}
+
+/// One free parameter.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct FreeParameter {
+    /// What it is.
+    pub target: Target,
+    /// How the minimiser moves it.
+    pub coordinate: Coordinate,
+    /// Smallest value; SI.
+    pub lower: f64,
+    /// Largest value; SI.
+    pub upper: f64,
+}
+
+/// Values of everything that the model depends on, free or not; SI.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Values<const N: usize> {
+    /// Parameters of the law.
+    pub law: [f64; N],
+    /// Velocity at first touch.
+    pub velocity: f64,
+    /// 1/m.
+    pub inverse_mass: f64,
+    /// Time of first touch.
+    pub onset: f64,
+    /// Displacement offset.
+    pub offset: f64,
+}
+
+impl<const N: usize> Values<N> {
+    /// Value of one target.
+    #[must_use]
+    pub fn get(&self, target: Target) -> f64 {
+        match target {
+            Target::Law(i) => self.law[i],
+            Target::InitialVelocity => self.velocity,
+            Target::Mass => 1.0 / self.inverse_mass,
+            Target::Onset => self.onset,
+            Target::DisplacementOffset => self.offset,
+        }
+    }
+
+    fn set(&mut self, target: Target, value: f64) {
+        match target {
+            Target::Law(i) => self.law[i] = value,
+            Target::InitialVelocity => self.velocity = value,
+            Target::Mass => self.inverse_mass = 1.0 / value,
+            Target::Onset => self.onset = value,
+            Target::DisplacementOffset => self.offset = value,
+        }
+    }
+}
+
+/// What a fit holds constant.
+#[derive(Clone, Copy, Debug)]
+pub struct Setting<'a> {
+    /// Equation of motion; its mass gives way to that of [`Values`].
+    pub motion: Motion,
+    /// Samples.
+    pub groups: &'a [SampleGroup],
+    /// End of contact.
+    pub end: EndRule,
+    /// Accuracy of the integration.
+    pub tolerance: Tolerance<2>,
+    /// Position of the law's impact velocity, which follows the velocity at
+    /// first touch.
+    pub tied_velocity: Option<usize>,
+}
+
+/// The problem in the minimiser's coordinates.
+pub struct Estimator<'a, L, const N: usize, const W: usize, const P: usize> {
+    setting: Setting<'a>,
+    free: &'a [FreeParameter],
+    base: Values<N>,
+    law: std::marker::PhantomData<L>,
+}
+
+impl<'a, L: ContactLaw<N> + From<[f64; N]>, const N: usize, const W: usize, const P: usize>
+    Estimator<'a, L, N, W, P>
+{
+    /// Problem with `free` parameters, everything else as in `base`. At most
+    /// `P` parameters, of which at most `W − 1` move the motion.
+    #[must_use]
+    pub fn new(setting: Setting<'a>, free: &'a [FreeParameter], base: Values<N>) -> Self {
+        debug_assert!(free.len() <= P);
+        Self {
+            setting,
+            free,
+            base,
+            law: std::marker::PhantomData,
+        }
+    }
+
+    /// Values of everything at coordinates `u`.
+    #[must_use]
+    pub fn values(&self, u: &[f64; P]) -> Values<N> {
+        let mut values = self.base;
+        for (parameter, &u) in self.free.iter().zip(u) {
+            values.set(parameter.target, parameter.coordinate.value(u));
+        }
+        if let Some(tied) = self.setting.tied_velocity {
+            values.law[tied] = values.velocity;
+        }
+        values
+    }
+
+    /// The model at coordinates `u`.
+    #[must_use]
+    pub fn model(&self, u: &[f64; P]) -> Model<L, N, W, P> {
+        let values = self.values(u);
+        let mut seeds = Seeds::NONE;
+        let mut columns = Columns {
+            lanes: [0; P],
+            onset: [0.0; P],
+            offset: [0.0; P],
+        };
+        let mut lane = 0;
+        for (c, parameter) in self.free.iter().enumerate() {
+            let target = parameter.target;
+            let slope = parameter.coordinate.slope(values.get(target));
+            if target.needs_lane() {
+                lane += 1;
+                columns.lanes[c] = lane;
+            }
+            match target {
+                Target::Law(i) => seeds.parameters[i] += Lanes::unit(lane, slope),
+                Target::InitialVelocity => {
+                    seeds.velocity += Lanes::unit(lane, slope);
+                    if let Some(tied) = self.setting.tied_velocity {
+                        seeds.parameters[tied] += Lanes::unit(lane, slope);
+                    }
+                }
+                Target::Mass => {
+                    let by_mass = -values.inverse_mass * values.inverse_mass;
+                    seeds.inverse_mass += Lanes::unit(lane, slope * by_mass);
+                }
+                Target::Onset => columns.onset[c] = slope,
+                Target::DisplacementOffset => columns.offset[c] = slope,
+            }
+        }
+        let motion = Motion {
+            inverse_mass: values.inverse_mass,
+            ..self.setting.motion
+        };
+        Model {
+            event: ImpactEvent {
+                law: L::from(values.law),
+                motion,
+                velocity: values.velocity,
+                end: self.setting.end,
+                seeds,
+                tolerance: self.setting.tolerance,
+            },
+            onset: values.onset,
+            offset: values.offset,
+            columns,
+        }
+    }
+
+    /// Minimum of the cost from the values in `base`.
+    pub fn minimise(&mut self, options: &Options<P>) -> Minimum<P> {
+        let mut start = [0.0; P];
+        let mut bounds = Bounds::NONE;
+        for (i, parameter) in self.free.iter().enumerate() {
+            let coordinate = parameter.coordinate;
+            start[i] = coordinate.of(self.base.get(parameter.target));
+            bounds.lower[i] = coordinate.of(parameter.lower);
+            bounds.upper[i] = coordinate.of(parameter.upper);
+        }
+        minimise(self, &start, &bounds, options)
+    }
+
+    /// Residuals and derivatives of each sample at coordinates `u`.
+    #[must_use]
+    pub fn rows(&self, u: &[f64; P]) -> Option<(NormalEquations<P>, Rows)> {
+        let mut rows = Rows::default();
+        let equations = evaluate(&self.model(u), self.setting.groups, Some(&mut rows)).ok()?;
+        Some((equations, rows))
+    }
+}
+
+impl<L: ContactLaw<N> + From<[f64; N]>, const N: usize, const W: usize, const P: usize>
+    LeastSquares<P> for Estimator<'_, L, N, W, P>
+{
+    fn evaluate(&mut self, u: &[f64; P]) -> Option<NormalEquations<P>> {
+        evaluate(&self.model(u), self.setting.groups, None).ok()
+    }
+}

@@ -1,0 +1,530 @@
+//! Residuals of an impact and their derivatives, summed into the normal
+//! equations in one pass over the samples, several samples at a time.
+
+use crate::contact_motion::{ImpactEvent, Seeds, Segment, Sink, follow, scaled_time};
+use crate::motion::Acceleration;
+use windfall_contact::law::{ContactForce, ContactLaw, EndRule, SMALLEST_DISPLACEMENT};
+use windfall_numerics::least_squares::NormalEquations;
+use windfall_numerics::ode_step::{DENSE_COEFFICIENTS, StepError, dense_at};
+use windfall_numerics::real::{Lanes, Real};
+
+/// Samples evaluated side by side.
+const PACK: usize = 4;
+/// Quantities a sample may have, in the order of [`Quantity`].
+pub const QUANTITIES: usize = 4;
+
+type Pack = Lanes<PACK>;
+
+/// Measured quantities that a fit can use.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Quantity {
+    /// Displacement; m.
+    Displacement,
+    /// Displacement rate; m/s.
+    Rate,
+    /// Contact force; N.
+    Force,
+    /// Acceleration; m/s².
+    Acceleration,
+}
+
+impl Quantity {
+    /// All, in the order of the arrays indexed by quantity.
+    pub const ALL: [Self; QUANTITIES] = [
+        Self::Displacement,
+        Self::Rate,
+        Self::Force,
+        Self::Acceleration,
+    ];
+
+    /// Name in campaign files and results.
+    #[must_use]
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Displacement => "displacement",
+            Self::Rate => "rate",
+            Self::Force => "force",
+            Self::Acceleration => "acceleration",
+        }
+    }
+}
+
+/// Samples of one or more quantities taken at the same times.
+#[derive(Clone, Debug)]
+pub struct SampleGroup {
+    /// Number of samples.
+    len: usize,
+    /// Times, followed by padding for the last pack; s.
+    times: Vec<f64>,
+    /// Samples of each quantity, padded; empty when there are none.
+    values: [Vec<f64>; QUANTITIES],
+    /// Weight of each quantity in the cost; zero when there are none.
+    weights: [f64; QUANTITIES],
+}
+
+impl SampleGroup {
+    /// Samples at `times`, with a weight per quantity. All slices are as long
+    /// as `times`; a quantity that was not measured is `None`.
+    #[must_use]
+    pub fn new(times: &[f64], values: [Option<(&[f64], f64)>; QUANTITIES]) -> Self {
+        let padded = |slice: &[f64]| {
+            let mut out = Vec::with_capacity(slice.len() + PACK);
+            out.extend_from_slice(slice);
+            out.resize(slice.len() + PACK, 0.0);
+            out
+        };
+        Self {
+            len: times.len(),
+            times: padded(times),
+            values: values.map(|v| v.map_or_else(Vec::new, |(samples, _)| padded(samples))),
+            weights: values.map(|v| v.map_or(0.0, |(_, weight)| weight)),
+        }
+    }
+
+    /// Sampling times; s.
+    #[must_use]
+    pub fn times(&self) -> &[f64] {
+        &self.times[..self.len]
+    }
+
+    /// Whether it holds samples of `quantity`.
+    #[must_use]
+    pub fn holds(&self, quantity: Quantity) -> bool {
+        !self.values[quantity as usize].is_empty()
+    }
+
+    /// Weight of a quantity in the cost.
+    #[must_use]
+    pub fn weight(&self, quantity: Quantity) -> f64 {
+        self.weights[quantity as usize]
+    }
+
+    /// Indices of the samples with `from ≤ time − onset < to`; the last ones
+    /// included when `to` is the end of the motion.
+    fn range(&self, onset: f64, segment_from: f64, segment_to: f64, end: f64) -> (usize, usize) {
+        let first = self.times().partition_point(|t| t - onset < segment_from);
+        let last = if segment_to >= end {
+            self.len
+        } else {
+            self.times().partition_point(|t| t - onset < segment_to)
+        };
+        (first, last)
+    }
+}
+
+/// How the columns of the Jacobian come from the motion's lanes.
+#[derive(Clone, Copy, Debug)]
+pub struct Columns<const P: usize> {
+    /// Lane of the motion that each column reads; 0 for none.
+    pub lanes: [usize; P],
+    /// ∂t₀ of each column; s per unit of the column.
+    pub onset: [f64; P],
+    /// ∂(displacement offset) of each column; m per unit of the column.
+    pub offset: [f64; P],
+}
+
+/// Residuals and derivatives of every sample, unweighted, for diagnostics.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Rows {
+    /// Per sample group and quantity: model minus measured, in time order.
+    pub residuals: Vec<[Vec<f64>; QUANTITIES]>,
+    /// Per sample group and quantity: P derivatives per sample, in time order.
+    pub jacobian: Vec<[Vec<f64>; QUANTITIES]>,
+}
+
+/// A model to compare with samples: an impact with its clock.
+#[derive(Clone, Copy, Debug)]
+pub struct Model<L, const N: usize, const W: usize, const P: usize> {
+    /// The impact.
+    pub event: ImpactEvent<L, N, W>,
+    /// First touch on the clock of the samples; s.
+    pub onset: f64,
+    /// Added to the model's displacement; m.
+    pub offset: f64,
+    /// Columns of the Jacobian.
+    pub columns: Columns<P>,
+}
+
+/// Normal equations of `model` against `groups`; with `rows`, residuals and
+/// derivatives of each sample too.
+///
+/// # Errors
+/// [`StepError`] when the motion cannot be integrated.
+///
+/// # Numerics
+/// One integration with sensitivities; the samples read its dense output in
+/// packs. Sums run in the order of time, so they do not depend on threads.
+/// Nothing is allocated (except in `rows`).
+pub fn evaluate<L, const N: usize, const W: usize, const P: usize>(
+    model: &Model<L, N, W, P>,
+    groups: &[SampleGroup],
+    rows: Option<&mut Rows>,
+) -> Result<NormalEquations<P>, StepError>
+where
+    L: ContactLaw<N>,
+{
+    pulp::Arch::new().dispatch(Pass {
+        model,
+        groups,
+        rows,
+    })
+}
+
+/// One pass of [`evaluate`], compiled for the machine's vector instructions.
+struct Pass<'a, L, const N: usize, const W: usize, const P: usize> {
+    model: &'a Model<L, N, W, P>,
+    groups: &'a [SampleGroup],
+    rows: Option<&'a mut Rows>,
+}
+
+impl<L, const N: usize, const W: usize, const P: usize> pulp::WithSimd for Pass<'_, L, N, W, P>
+where
+    L: ContactLaw<N>,
+{
+    type Output = Result<NormalEquations<P>, StepError>;
+
+    #[inline(always)]
+    fn with_simd<S: pulp::Simd>(self, _simd: S) -> Self::Output {
+        let Self {
+            model,
+            groups,
+            mut rows,
+        } = self;
+        let first = groups.iter().filter_map(|g| g.times().first()).copied();
+        let last = groups.iter().filter_map(|g| g.times().last()).copied();
+        let before = first.fold(f64::INFINITY, f64::min) - model.onset;
+        let after = last.fold(f64::NEG_INFINITY, f64::max) - model.onset;
+
+        let mut reading = Reading {
+            model,
+            groups,
+            rows: rows.as_deref_mut(),
+            end: after,
+            sums: Sums::ZERO,
+        };
+        follow(&model.event, before.min(0.0), after, &mut reading)?;
+        Ok(reading.sums.total())
+    }
+}
+
+/// Reads the samples of each piece of the motion.
+struct Reading<'a, L, const N: usize, const W: usize, const P: usize> {
+    model: &'a Model<L, N, W, P>,
+    groups: &'a [SampleGroup],
+    rows: Option<&'a mut Rows>,
+    end: f64,
+    sums: Sums<P>,
+}
+
+impl<L, const N: usize, const W: usize, const P: usize> Sink<W> for Reading<'_, L, N, W, P>
+where
+    L: ContactLaw<N>,
+{
+    #[inline(always)]
+    fn contact(&mut self, segment: &Segment<W>) {
+        for (index, group) in self.groups.iter().enumerate() {
+            let rows = self.rows.as_deref_mut().map(|rows| (rows, index));
+            read_segment(self.model, segment, group, self.end, &mut self.sums, rows);
+        }
+    }
+
+    #[inline(always)]
+    fn flight(&mut self, segment: &Segment<W>) {
+        let event = &self.model.event;
+        let model = Model {
+            event: ImpactEvent {
+                law: NoContact,
+                motion: event.motion,
+                velocity: event.velocity,
+                end: event.end,
+                seeds: Seeds::NONE,
+                tolerance: event.tolerance,
+            },
+            onset: self.model.onset,
+            offset: self.model.offset,
+            columns: self.model.columns,
+        };
+        for (index, group) in self.groups.iter().enumerate() {
+            let rows = self.rows.as_deref_mut().map(|rows| (rows, index));
+            read_flight(&model, segment, group, self.end, &mut self.sums, rows);
+        }
+    }
+}
+
+/// No force: the samples of a flight, the same for every law and so compiled
+/// once.
+#[derive(Clone, Copy)]
+struct NoContact;
+
+impl ContactLaw<0> for NoContact {
+    #[inline(always)]
+    fn evaluate<R: Real>(&self, _d: R, _v: R, _peak: R) -> ContactForce<R, 0> {
+        let zero = R::splat(0.0);
+        ContactForce {
+            force: zero,
+            by_displacement: zero,
+            by_rate: zero,
+            by_parameter: [],
+            by_peak: zero,
+        }
+    }
+}
+
+#[inline(never)]
+fn read_flight<const W: usize, const P: usize>(
+    model: &Model<NoContact, 0, W, P>,
+    segment: &Segment<W>,
+    group: &SampleGroup,
+    end: f64,
+    sums: &mut Sums<P>,
+    rows: Option<(&mut Rows, usize)>,
+) {
+    read_segment(model, segment, group, end, sums, rows);
+}
+
+/// Running sums, one lane per sample of a pack.
+#[derive(Clone, Copy)]
+struct Sums<const P: usize> {
+    cost: Pack,
+    gradient: [Pack; P],
+    normal: [[Pack; P]; P],
+}
+
+impl<const P: usize> Sums<P> {
+    const ZERO: Self = Self {
+        cost: Pack::ZERO,
+        gradient: [Pack::ZERO; P],
+        normal: [[Pack::ZERO; P]; P],
+    };
+
+    #[inline(always)]
+    fn add(&mut self, weight: Pack, residual: Pack, jacobian: &[Pack; P]) {
+        self.cost = (weight * residual).mul_add(residual, self.cost);
+        for i in 0..P {
+            let weighted = weight * jacobian[i];
+            self.gradient[i] = weighted.mul_add(residual, self.gradient[i]);
+            for j in 0..=i {
+                self.normal[i][j] = weighted.mul_add(jacobian[j], self.normal[i][j]);
+            }
+        }
+    }
+
+    #[inline(always)]
+    fn total(&self) -> NormalEquations<P> {
+        let mut normal = [[0.0; P]; P];
+        for i in 0..P {
+            for j in 0..=i {
+                normal[i][j] = self.normal[i][j].sum();
+                normal[j][i] = normal[i][j];
+            }
+        }
+        NormalEquations {
+            cost: self.cost.sum(),
+            gradient: self.gradient.map(|g| g.sum()),
+            normal,
+        }
+    }
+}
+
+/// A segment's dense output, gathered for packs of samples.
+struct Reader<const P: usize> {
+    start: f64,
+    inverse_width: f64,
+    displacement: [f64; DENSE_COEFFICIENTS],
+    rate: [f64; DENSE_COEFFICIENTS],
+    columns: [[[f64; DENSE_COEFFICIENTS]; 2]; P],
+}
+
+#[inline(always)]
+fn reader<const W: usize, const P: usize>(segment: &Segment<W>, columns: &Columns<P>) -> Reader<P> {
+    let step = &segment.step;
+    let mut out = Reader {
+        start: step.start,
+        inverse_width: 1.0 / step.width,
+        displacement: step.lane(0, 0),
+        rate: step.lane(1, 0),
+        columns: [[[0.0; DENSE_COEFFICIENTS]; 2]; P],
+    };
+    for (column, lane) in out.columns.iter_mut().zip(columns.lanes) {
+        if lane > 0 {
+            *column = [step.lane(0, lane), step.lane(1, lane)];
+        }
+    }
+    out
+}
+
+/// Model of one pack of samples: values and derivatives by quantity.
+struct PackModel<const P: usize> {
+    values: [Pack; QUANTITIES],
+    jacobian: [[Pack; P]; QUANTITIES],
+}
+
+#[inline(always)]
+fn read_segment<L, const N: usize, const W: usize, const P: usize>(
+    model: &Model<L, N, W, P>,
+    segment: &Segment<W>,
+    group: &SampleGroup,
+    end: f64,
+    sums: &mut Sums<P>,
+    mut rows: Option<(&mut Rows, usize)>,
+) where
+    L: ContactLaw<N>,
+{
+    let (first, last) = group.range(model.onset, segment.from, segment.to, end);
+    if first >= last {
+        return;
+    }
+    let reader = reader(segment, &model.columns);
+    // The acceleration matters to a recorded one and to the onset's column.
+    let accelerated = group.holds(Quantity::Acceleration)
+        || model.columns.onset.iter().any(|onset| *onset != 0.0);
+    // A copy that the compiler can keep in registers.
+    let mut running = *sums;
+    let mut at = first;
+    while at < last {
+        let count = PACK.min(last - at);
+        let times = load(&group.times, at) + -model.onset;
+        // Lanes past the range read the range's end; their weight is zero.
+        let times = times
+            .max(Pack::splat(segment.from))
+            .min(Pack::splat(segment.to));
+        let pack = pack_model(model, segment, &reader, times, accelerated);
+        for q in 0..QUANTITIES {
+            if group.weights[q] == 0.0 && group.values[q].is_empty() {
+                continue;
+            }
+            let residual = pack.values[q] - load(&group.values[q], at);
+            let weight = masked(group.weights[q], count);
+            running.add(weight, residual, &pack.jacobian[q]);
+            if let Some((rows, index)) = rows.as_mut() {
+                store_rows(rows, *index, q, count, residual, &pack.jacobian[q]);
+            }
+        }
+        at += PACK;
+    }
+    *sums = running;
+}
+
+#[inline(always)]
+fn load(values: &[f64], at: usize) -> Pack {
+    let mut out = [0.0; PACK];
+    out.copy_from_slice(&values[at..at + PACK]);
+    Lanes(out)
+}
+
+/// `weight` in the first `count` lanes.
+#[inline(always)]
+fn masked(weight: f64, count: usize) -> Pack {
+    let mut out = [weight; PACK];
+    if count < PACK {
+        for lane in &mut out[count..] {
+            *lane = 0.0;
+        }
+    }
+    Lanes(out)
+}
+
+#[inline(always)]
+fn pack_model<L, const N: usize, const W: usize, const P: usize>(
+    model: &Model<L, N, W, P>,
+    segment: &Segment<W>,
+    reader: &Reader<P>,
+    times: Pack,
+    accelerated: bool,
+) -> PackModel<P>
+where
+    L: ContactLaw<N>,
+{
+    let event = &model.event;
+    let sigma = (scaled_time(times, segment.power) + -reader.start) * reader.inverse_width;
+    let rest = -sigma + 1.0;
+    let x = dense_at(&reader.displacement, sigma, rest);
+    let v = dense_at(&reader.rate, sigma, rest);
+
+    // The force is repulsive or nothing, and nothing without contact.
+    let zero = Pack::ZERO;
+    let touching = x.select(Pack::splat(1.0), zero);
+    let law = event.law.evaluate(
+        x.max(Pack::splat(SMALLEST_DISPLACEMENT)),
+        v,
+        Pack::splat(segment.peak),
+    );
+    let on = match event.end {
+        EndRule::ForceZero => law.force.select(touching, zero),
+        EndRule::GapZero => touching,
+    };
+    let force = on.select(law.force, zero);
+    let by_displacement = on.select(law.by_displacement, zero);
+    let by_rate = on.select(law.by_rate, zero);
+    let motion: Acceleration<Pack> = if accelerated {
+        event.motion.acceleration(x, v, force)
+    } else {
+        Acceleration {
+            value: zero,
+            by_displacement: zero,
+            by_rate: zero,
+            by_force: zero,
+        }
+    };
+
+    let mut jacobian = [[Pack::ZERO; P]; QUANTITIES];
+    for c in 0..P {
+        let (mut dx, mut dv) = (zero, zero);
+        let lane = model.columns.lanes[c];
+        let mut direct = zero;
+        if lane > 0 {
+            let [column_x, column_v] = &reader.columns[c];
+            dx = dense_at(column_x, sigma, rest);
+            dv = dense_at(column_v, sigma, rest);
+            for i in 0..N {
+                let seed = event.seeds.parameters[i].0[lane];
+                if seed != 0.0 {
+                    direct += law.by_parameter[i] * seed;
+                }
+            }
+            if L::HISTORY {
+                direct += law.by_peak * segment.peak_lanes.0[lane];
+            }
+        }
+        if model.columns.onset[c] != 0.0 {
+            dx += v * -model.columns.onset[c];
+            dv += motion.value * -model.columns.onset[c];
+        }
+        let df = by_displacement * dx + by_rate * dv + on.select(direct, zero);
+        jacobian[0][c] = dx + model.columns.offset[c];
+        jacobian[1][c] = dv;
+        jacobian[2][c] = df;
+        if accelerated {
+            let seed = event.seeds.inverse_mass.0[lane] / event.motion.inverse_mass;
+            let by_mass = motion.by_force * force * seed;
+            jacobian[3][c] =
+                motion.by_displacement * dx + motion.by_rate * dv + motion.by_force * df + by_mass;
+        }
+    }
+    PackModel {
+        values: [x + model.offset, v, force, motion.value],
+        jacobian,
+    }
+}
+
+#[cold]
+#[inline(never)]
+fn store_rows<const P: usize>(
+    rows: &mut Rows,
+    group: usize,
+    quantity: usize,
+    count: usize,
+    residual: Pack,
+    jacobian: &[Pack; P],
+) {
+    while rows.residuals.len() <= group {
+        rows.residuals.push(Default::default());
+        rows.jacobian.push(Default::default());
+    }
+    for lane in 0..count {
+        rows.residuals[group][quantity].push(residual.0[lane]);
+        for column in jacobian {
+            rows.jacobian[group][quantity].push(column.0[lane]);
+        }
+    }
+}
