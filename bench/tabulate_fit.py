@@ -131,7 +131,8 @@ def ratio(line, ours):
 
 def print_table(lines):
     heads = ("tool", "variant", "rounds", "s per fit", "fastest-slowest", "/ windfall", "k", "c", "off optimum", "starts")
-    print("\nSeconds: process CPU time of one fit, each program's own median; here the median over the rounds.")
+    print("\nSeconds: one fit, median of many in one process; here the median over the rounds.")
+    print("  The peers measure process CPU time; windfall wall time, which on one core is never less.")
     print("/ windfall: times as long as windfall, median of the ratios within a round.")
     print("Off optimum: larger relative deviation of k and c from the reference optimum.")
     print("Starts: of 20 starting points, those that end within 1e-3 of the reference.")

@@ -176,12 +176,8 @@ fn read_values(
 ) -> Result<Vec<Option<f64>>, Error> {
     let description = kind.describe();
     let mut values = vec![None; texts.len()];
-    let plain_units = |index: &usize| {
-        description.missing_exponent(*index, &[]).is_none()
-            && description.unit_of(*index, &[]).as_deref()
-                == Some(description.parameters[*index].unit)
-    };
-    let (plain, dependent): (Vec<usize>, Vec<usize>) = (0..texts.len()).partition(plain_units);
+    let (dependent, plain): (Vec<usize>, Vec<usize>) =
+        (0..texts.len()).partition(|&index| description.parameters[index].unit_names_exponents());
     for index in plain.into_iter().chain(dependent) {
         let Some(argument) = texts[index] else {
             continue;

@@ -57,7 +57,7 @@ pub const DESCRIPTION: LawDescription = LawDescription {
         },
         ParameterDescription {
             name: "restitution",
-            meaning: "nominal coefficient of restitution",
+            meaning: "nominal coefficient of restitution, e",
             unit: "1",
             lower: 1e-3,
             upper: 1.0,
@@ -66,7 +66,7 @@ pub const DESCRIPTION: LawDescription = LawDescription {
         },
         ParameterDescription {
             name: "impact_velocity",
-            meaning: "velocity at first touch of this collision",
+            meaning: "velocity at first touch of this collision, v0",
             unit: "m/s",
             lower: 1e-6,
             upper: 1e3,

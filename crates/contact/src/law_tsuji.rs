@@ -45,7 +45,7 @@ pub const DESCRIPTION: LawDescription = LawDescription {
         },
         ParameterDescription {
             name: "restitution",
-            meaning: "nominal coefficient of restitution",
+            meaning: "nominal coefficient of restitution, e",
             unit: "1",
             lower: 1e-3,
             upper: 1.0,
@@ -54,7 +54,7 @@ pub const DESCRIPTION: LawDescription = LawDescription {
         },
         ParameterDescription {
             name: "mass",
-            meaning: "effective mass of the collision",
+            meaning: "effective mass of the collision, m",
             unit: "kg",
             lower: 1e-9,
             upper: 1e6,

@@ -25,6 +25,14 @@ pub struct ParameterDescription {
     pub default: Option<f64>,
 }
 
+impl ParameterDescription {
+    /// Whether the unit contains exponents of the law.
+    pub(crate) fn unit_names_exponents(&self) -> bool {
+        let mut powers = self.unit.split('^').skip(1);
+        powers.any(|power| power.starts_with(|c: char| c.is_alphabetic() || c == '('))
+    }
+}
+
 /// One force law.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct LawDescription {

@@ -37,6 +37,14 @@ pub struct Measured {
     pub absorbed_energy: Option<f64>,
     /// Integral of the force over the contact; N s.
     pub impulse: Option<f64>,
+    /// Standard uncertainty of the impact velocity, from the scatter about the
+    /// fitted line; m/s.
+    pub impact_velocity_sd: Option<f64>,
+    /// Standard uncertainty of the speed of rebound, likewise; m/s.
+    pub rebound_velocity_sd: Option<f64>,
+    /// Standard uncertainty of the impulse, from the noise of the force and of
+    /// its offset; N s.
+    pub impulse_sd: Option<f64>,
 }
 
 /// One impact: each channel around the contact, and the contact window.

@@ -1,7 +1,34 @@
 #![cfg_attr(not(test), warn(clippy::disallowed_methods, clippy::disallowed_types))]
 //! Recording → Impact: decoding, contact windows, displacement rate, energies.
 //!
+//! [`recording::Recording`] is what a reader returns, in SI units;
+//! [`extract::extract_impact`] cuts one impact out of it
+//! ([`impact::Impact`], with [`finding::Finding`]s about what is poor);
+//! [`mass::mass_from_impulse`] finds the mass of a carriage;
+//! [`instrument::record`] goes the other way and writes what an instrument
+//! would have written of a motion.
+//!
 //! This crate opens no file and knows no force law.
 
+pub mod clipping;
+pub mod deceleration;
+pub mod error;
+pub mod extract;
+pub mod finding;
 pub mod impact;
+pub mod instrument;
+pub mod kinematics;
+pub mod mass;
+pub mod measure;
+pub mod noise;
+pub mod noise_gaussian;
+pub mod polynomial;
+pub mod quadrature;
 pub mod recording;
+mod track;
+pub mod trigger;
+pub mod validate;
+
+pub use error::Error;
+pub use extract::{ExtractOptions, extract_impact};
+pub use finding::Finding;

@@ -21,6 +21,21 @@ pub enum Quantity {
     PhaseB,
 }
 
+impl std::fmt::Display for Quantity {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.write_str(match self {
+            Self::Displacement => "displacement",
+            Self::Rate => "displacement rate",
+            Self::Force => "force",
+            Self::Acceleration => "acceleration",
+            Self::Angle => "angle",
+            Self::EncoderCount => "encoder count",
+            Self::PhaseA => "phase A",
+            Self::PhaseB => "phase B",
+        })
+    }
+}
+
 /// Sampling times of a channel; s.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Times {

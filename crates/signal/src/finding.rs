@@ -1,0 +1,242 @@
+//! What is poor in a recording, without stopping the extraction.
+
+use crate::error::{Rounded, Times};
+use std::fmt;
+
+/// Something about the signals that a reader of the results must know.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Finding {
+    /// More than 0.1 % of the encoder's transitions skip a state.
+    IllegalTransitions {
+        /// Names of the phases.
+        channels: String,
+        /// Transitions in which both phases change.
+        illegal: usize,
+        /// All transitions.
+        transitions: usize,
+        /// Time of the first; s.
+        first: f64,
+        /// Sampling rate; Hz.
+        sampling_rate: f64,
+        /// Counts added for skipped states, in the local direction.
+        added: i64,
+    },
+    /// A channel with the opposite sign of the convention.
+    Reversed {
+        /// Name of the channel.
+        channel: String,
+        /// True if its sign has been changed.
+        corrected: bool,
+    },
+    /// Successive force samples at the limit of the instrument.
+    Clipped {
+        /// Name of the channel.
+        channel: String,
+        /// The limit, as recorded (before offset and sign are corrected).
+        value: f64,
+        /// Samples at the limit.
+        samples: usize,
+        /// Time of the first of them; s.
+        from: f64,
+        /// Time of the last of them; s.
+        to: f64,
+    },
+    /// Sampling intervals that differ.
+    IrregularSampling {
+        /// Name of the channel.
+        channel: String,
+        /// Median interval; s.
+        interval: f64,
+        /// Largest departure from it; s.
+        jitter: f64,
+        /// Where that is; s.
+        at: f64,
+    },
+    /// More than one contact.
+    SeveralContacts {
+        /// Onset of each; s.
+        onsets: Times,
+        /// Onset of the one that is used; s.
+        used: f64,
+    },
+    /// The recording begins in contact.
+    ContactAtStart {
+        /// Begin of the recording; s.
+        time: f64,
+    },
+    /// The recording ends in contact.
+    ContactAtEnd {
+        /// End of the recording; s.
+        time: f64,
+    },
+    /// Hardly any sample before contact from which to know zero and noise.
+    ShortBaseline {
+        /// Name of the channel.
+        channel: String,
+        /// Samples before contact.
+        samples: usize,
+    },
+    /// An offset of the force that has been subtracted.
+    OffsetRemoved {
+        /// Name of the channel.
+        channel: String,
+        /// The offset; N.
+        offset: f64,
+        /// Its standard uncertainty; N.
+        offset_sd: f64,
+    },
+    /// No force channel: the contact window comes from the motion.
+    WindowFromMotion {
+        /// Name of the channel.
+        channel: String,
+        /// How finely onset and end are known; s.
+        resolution: f64,
+    },
+    /// The noise could not be measured and a floor stands in for it.
+    NoiseAtFloor {
+        /// Name of the channel.
+        channel: String,
+        /// The floor; unit of the channel.
+        floor: f64,
+        /// Where the floor comes from.
+        reason: &'static str,
+    },
+    /// Few samples during contact.
+    FewSamples {
+        /// Name of the channel.
+        channel: String,
+        /// Samples in contact.
+        samples: usize,
+    },
+}
+
+impl Finding {
+    /// Stable short name, for tables and JSON.
+    #[must_use]
+    pub fn code(&self) -> &'static str {
+        match self {
+            Self::IllegalTransitions { .. } => "illegal-transitions",
+            Self::Reversed { .. } => "reversed",
+            Self::Clipped { .. } => "clipped",
+            Self::IrregularSampling { .. } => "irregular-sampling",
+            Self::SeveralContacts { .. } => "several-contacts",
+            Self::ContactAtStart { .. } => "contact-at-start",
+            Self::ContactAtEnd { .. } => "contact-at-end",
+            Self::ShortBaseline { .. } => "short-baseline",
+            Self::OffsetRemoved { .. } => "offset-removed",
+            Self::WindowFromMotion { .. } => "window-from-motion",
+            Self::NoiseAtFloor { .. } => "noise-at-floor",
+            Self::FewSamples { .. } => "few-samples",
+        }
+    }
+}
+
+impl fmt::Display for Finding {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::IllegalTransitions {
+                channels,
+                illegal,
+                transitions,
+                first,
+                sampling_rate,
+                added,
+            } => {
+                write!(
+                    f,
+                    "{channels}: {illegal} of {transitions} transitions skip a state ({:.2} %), the first at {} s; the displacement is wrong from there by 2 counts each. Raise the sampling rate (now {} Hz; it must exceed speed / count length) or check the wiring",
+                    100.0 * *illegal as f64 / *transitions as f64,
+                    Rounded(*first),
+                    Rounded(*sampling_rate),
+                )?;
+                if *added > 0 {
+                    write!(
+                        f,
+                        "; {added} counts were added in the local direction, as asked"
+                    )?;
+                }
+                Ok(())
+            }
+            Self::Reversed { channel, corrected } => {
+                let what = if *corrected {
+                    "its sign has been changed"
+                } else {
+                    "it is used as recorded"
+                };
+                write!(
+                    f,
+                    "channel '{channel}' has the opposite sign of the convention (motion into the fruit and repulsive force are positive); {what}. Set its sign in campaign.toml, or swap the phases of an encoder"
+                )
+            }
+            Self::Clipped {
+                channel,
+                value,
+                samples,
+                from,
+                to,
+            } => write!(
+                f,
+                "channel '{channel}' is clipped: {samples} successive samples at {value} from {} s to {} s; peak, impulse and fitted parameters are biased. Enlarge the measuring range",
+                Rounded(*from),
+                Rounded(*to),
+            ),
+            Self::IrregularSampling {
+                channel,
+                interval,
+                jitter,
+                at,
+            } => write!(
+                f,
+                "channel '{channel}' is sampled irregularly: the interval departs by up to {jitter:.3e} s from its median of {interval:.3e} s, most at {} s; the recorded times are used as they are",
+                Rounded(*at),
+            ),
+            Self::SeveralContacts { onsets, used } => write!(
+                f,
+                "{} contacts, beginning at {onsets} s; the one at {} s is used. Give a time range to choose another",
+                onsets.0.len(),
+                Rounded(*used),
+            ),
+            Self::ContactAtStart { time } => write!(
+                f,
+                "the recording begins in contact ({} s): onset and impact velocity are not seen. Record some samples before the trigger",
+                Rounded(*time),
+            ),
+            Self::ContactAtEnd { time } => write!(
+                f,
+                "the recording ends in contact ({} s): separation and rebound are not seen. Record longer",
+                Rounded(*time),
+            ),
+            Self::ShortBaseline { channel, samples } => write!(
+                f,
+                "channel '{channel}' has only {samples} samples before contact: its zero and its noise are poorly known"
+            ),
+            Self::OffsetRemoved {
+                channel,
+                offset,
+                offset_sd,
+            } => write!(
+                f,
+                "channel '{channel}' reads {offset:.4} ± {offset_sd:.4} N before contact; this offset has been subtracted"
+            ),
+            Self::WindowFromMotion {
+                channel,
+                resolution,
+            } => write!(
+                f,
+                "no force channel: the contact window comes from the deceleration in '{channel}' and is known to about {resolution:.2e} s"
+            ),
+            Self::NoiseAtFloor {
+                channel,
+                floor,
+                reason,
+            } => write!(
+                f,
+                "the noise of '{channel}' cannot be measured; {floor:.3e} is assumed ({reason})"
+            ),
+            Self::FewSamples { channel, samples } => write!(
+                f,
+                "channel '{channel}' has only {samples} samples during contact: it says little about the shape of the force law"
+            ),
+        }
+    }
+}

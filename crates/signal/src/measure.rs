@@ -1,0 +1,245 @@
+//! What the signals say without a law: velocities, peaks, impulse, energies.
+
+use crate::impact::Measured;
+use crate::kinematics::Motion;
+use crate::polynomial::{PolynomialFit, fit_polynomial};
+
+/// Part of the contact's duration next to onset and end that is left out of the
+/// velocity fits, where a force below the threshold may act already; 1.
+const GUARD: f64 = 0.05;
+
+/// Samples wanted for a velocity fit, where the recording has them.
+const WANTED_SAMPLES: usize = 5;
+
+/// Fewest samples in which a curvature is looked for.
+const CURVATURE_SAMPLES: usize = 10;
+
+/// A curvature is fitted if it exceeds this many of its standard deviations; 1.
+const SIGNIFICANT: f64 = 4.0;
+
+/// Half the length of the stretch around the largest displacement through which
+/// a parabola is fitted, as a part of the contact's duration; 1.
+const TOP_SHARE: f64 = 0.05;
+
+/// Contact window and the time for which its surroundings are free motion.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Surroundings {
+    /// First contact; s.
+    pub onset: f64,
+    /// End of contact; s.
+    pub end: f64,
+    /// Begin of the free motion before it; s.
+    pub from: f64,
+    /// End of the free motion after it; s.
+    pub until: f64,
+}
+
+impl Surroundings {
+    /// `end − onset`; s.
+    #[must_use]
+    pub fn duration(&self) -> f64 {
+        self.end - self.onset
+    }
+}
+
+/// A velocity and its standard uncertainty; m/s.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Velocity {
+    /// Velocity, positive into the fruit; m/s.
+    pub value: f64,
+    /// Standard uncertainty from the scatter about the fit, or from `noise`
+    /// where that is larger; m/s.
+    pub sd: f64,
+}
+
+/// Side of the contact.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Side {
+    /// Just before it.
+    Before,
+    /// Just after it.
+    After,
+}
+
+/// Velocity at the onset or at the end of contact, from free motion.
+///
+/// A straight line through the samples of one contact duration (at least five
+/// samples, where there are as many) next to the contact, less a guard of 5 %
+/// of its duration; the known driving acceleration is taken out first. A
+/// curvature is added if ten samples show it at four of its standard deviations. For a
+/// measured rate: a constant instead of the line, a slope instead of the
+/// curvature. `None` with fewer samples than coefficients.
+///
+/// * `noise`: standard deviation of one sample; the smallest scatter believed
+/// * `driving`: acceleration of the free motion, positive into the fruit; m/s²
+#[must_use]
+pub fn free_velocity(
+    samples: (&[f64], &[f64], Motion),
+    noise: f64,
+    place: &Surroundings,
+    side: Side,
+    driving: f64,
+) -> Option<Velocity> {
+    let (times, values, motion) = samples;
+    let (first, last) = free_samples(times, place, side);
+    let origin = match side {
+        Side::Before => place.onset,
+        Side::After => place.end,
+    };
+    let times = &times[first..last];
+    let free: Vec<f64> = times
+        .iter()
+        .zip(&values[first..last])
+        .map(|(t, value)| {
+            let t = t - origin;
+            match motion {
+                Motion::Displacement => value - 0.5 * driving * t * t,
+                Motion::Rate => value - driving * t,
+            }
+        })
+        .collect();
+    let index = match motion {
+        Motion::Displacement => 1,
+        Motion::Rate => 0,
+    };
+    let simple = fit_polynomial(times, &free, origin, index)?;
+    let curved = fit_polynomial(times, &free, origin, index + 1)
+        .filter(|fit| times.len() >= CURVATURE_SAMPLES && significant(fit, index + 1, noise));
+    let fit = curved.unwrap_or(simple);
+    Some(Velocity {
+        value: fit.derivatives[index],
+        sd: fit.noise_gains[index] * scatter(&fit, noise),
+    })
+}
+
+fn scatter(fit: &PolynomialFit, noise: f64) -> f64 {
+    if fit.residual_deviation > noise {
+        fit.residual_deviation
+    } else {
+        noise
+    }
+}
+
+fn significant(fit: &PolynomialFit, index: usize, noise: f64) -> bool {
+    fit.derivatives[index].abs() > SIGNIFICANT * fit.noise_gains[index] * scatter(fit, noise)
+}
+
+/// Samples of the free motion next to the contact: first, and one past the last.
+fn free_samples(times: &[f64], place: &Surroundings, side: Side) -> (usize, usize) {
+    let length = place.duration();
+    let guard = GUARD * length;
+    match side {
+        Side::Before => {
+            let earliest = times.partition_point(|&t| t < place.from);
+            let last = times.partition_point(|&t| t <= place.onset - guard);
+            let near = times.partition_point(|&t| t < place.onset - guard - length);
+            let first = near.min(last.saturating_sub(WANTED_SAMPLES)).max(earliest);
+            (first.min(last), last)
+        }
+        Side::After => {
+            let latest = times.partition_point(|&t| t <= place.until);
+            let first = times.partition_point(|&t| t < place.end + guard);
+            let near = times.partition_point(|&t| t <= place.end + guard + length);
+            let last = near.max(first + WANTED_SAMPLES).min(latest);
+            (first, last.max(first))
+        }
+    }
+}
+
+/// Largest displacement: the top of a parabola through the samples within 5 %
+/// of the contact's duration of the largest sample (at least one on each side).
+#[must_use]
+pub fn largest_displacement(times: &[f64], values: &[f64], place: &Surroundings) -> Option<f64> {
+    let first = times.partition_point(|&t| t < place.onset);
+    let last = times.partition_point(|&t| t <= place.end);
+    let top = (first..last).reduce(|best, i| if values[i] > values[best] { i } else { best })?;
+    let reach = TOP_SHARE * place.duration();
+    let from = times
+        .partition_point(|&t| t < times[top] - reach)
+        .min(top.saturating_sub(1));
+    let to = times
+        .partition_point(|&t| t <= times[top] + reach)
+        .max(top + 2)
+        .min(times.len());
+    let parabola = fit_polynomial(&times[from..to], &values[from..to], times[top], 2);
+    let summit = parabola.and_then(|fit| {
+        let (value, slope, bend) = (fit.derivatives[0], fit.derivatives[1], fit.derivatives[2]);
+        let shift = -slope / bend;
+        let inside = bend < 0.0 && shift.abs() <= (times[to - 1] - times[from]);
+        inside.then_some(value + 0.5 * slope * shift)
+    });
+    Some(summit.unwrap_or(values[top]))
+}
+
+/// Impulse of the contact force and its standard uncertainty; N s.
+///
+/// Trapezoidal rule over the contact and 5 % of its duration (at least one
+/// interval) on either side, where the force is below the threshold.
+///
+/// The uncertainty is made of white noise, of the zero, and of the error of the
+/// rule at few samples: a jump of the force puts the sums over even and odd
+/// samples ΔF h apart, and leaves the whole sum an error uniform over ΔF h.
+///
+/// * `noise`: standard deviation of one sample; N
+/// * `offset_sd`: standard uncertainty of the zero of the force; N
+#[must_use]
+pub fn impulse(
+    times: &[f64],
+    force: &[f64],
+    noise: f64,
+    offset_sd: f64,
+    place: &Surroundings,
+) -> Option<(f64, f64)> {
+    let guard = GUARD * place.duration();
+    let from = (place.onset - guard).max(place.from);
+    let until = (place.end + guard).min(place.until);
+    let first = times.partition_point(|&t| t < from).saturating_sub(1);
+    let last = (times.partition_point(|&t| t <= until) + 1).min(times.len());
+    if last < first + 2 {
+        return None;
+    }
+    let (times, force) = (&times[first..last], &force[first..last]);
+    let mut sum = 0.0;
+    let mut squares = 0.0;
+    for i in 0..times.len() {
+        let before = if i > 0 { times[i] - times[i - 1] } else { 0.0 };
+        let after = times.get(i + 1).map_or(0.0, |next| next - times[i]);
+        let weight = 0.5 * (before + after);
+        sum += weight * force[i];
+        squares += weight * weight;
+    }
+    let duration = times[times.len() - 1] - times[0];
+    let white = noise * noise * squares;
+    // Even and odd samples differ by their noise, and by what the rule misses.
+    let halves = trapezoid(times, force, 0) - trapezoid(times, force, 1);
+    let missed = (halves * halves - 4.0 * white).max(0.0) / 12.0;
+    let variance = white + missed + (offset_sd * duration).powi(2);
+    Some((sum, variance.sqrt()))
+}
+
+/// Trapezoidal rule over every second sample.
+fn trapezoid(times: &[f64], values: &[f64], first: usize) -> f64 {
+    let end = times.len();
+    (first..end.saturating_sub(2))
+        .step_by(2)
+        .map(|i| 0.5 * (times[i + 2] - times[i]) * (values[i] + values[i + 2]))
+        .sum()
+}
+
+/// Kinetic energies before and after the contact, and what was absorbed:
+/// E = m v²/2 with m = I/r² for a pendulum.
+///
+/// # Source
+/// 2003 pendulum study, eqs. (2) and (3).
+#[must_use]
+pub fn with_energies(measured: Measured, effective_mass: f64) -> Measured {
+    let energy = |speed: f64| 0.5 * effective_mass * speed * speed;
+    let impact = measured.impact_velocity.map(energy);
+    let elastic = measured.rebound_velocity.map(energy);
+    Measured {
+        impact_energy: impact,
+        elastic_energy: elastic,
+        absorbed_energy: impact.zip(elastic).map(|(before, after)| before - after),
+        ..measured
+    }
+}

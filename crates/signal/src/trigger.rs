@@ -1,0 +1,488 @@
+//! Contact windows: when the force is above a threshold.
+
+use crate::error::{Error, Times};
+use crate::noise::{baseline, median};
+use crate::polynomial::fit_polynomial;
+
+/// Samples from which the baseline is first guessed, as a part of the signal; 1.
+const PILOT_SHARE: f64 = 0.05;
+
+/// Fewest samples of a baseline that is worth the name.
+const LEAST_BASELINE: usize = 5;
+
+/// The baseline ends before the contact by this part of the contact's duration; 1.
+const BASELINE_GUARD: f64 = 0.1;
+
+/// A baseline that rises by more than this part of the largest force, and by
+/// more than its own scatter explains, is the begin of a contact; 1.
+const BASELINE_RISE: f64 = 0.01;
+
+/// The force is smoothed over this part of the contact before it is compared
+/// with the threshold, so that noise does not trigger; 1.
+const SMOOTHING_SHARE: f64 = 0.02;
+
+/// Excursions with a smaller peak, relative to the largest, are ringing; 1.
+const RINGING_PEAK: f64 = 0.05;
+
+/// Excursions that are shorter, relative to the longest, are ringing; 1.
+const RINGING_DURATION: f64 = 0.1;
+
+/// Default of [`TriggerOptions::minimum_gap`] as a part of the longest contact; 1.
+const DEFAULT_GAP: f64 = 0.1;
+
+/// Fewest successive smoothed samples of a contact.
+const LEAST_SAMPLES: usize = 3;
+
+/// Above what a force counts as contact.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Threshold {
+    /// A force above the baseline; N.
+    Fixed(f64),
+    /// Found from the noise of the baseline.
+    Automatic {
+        /// Standard deviations of the smoothed force before contact; 1.
+        deviations: f64,
+        /// Never less than this; N.
+        least: f64,
+        /// Never less than this part of the largest force; 1.
+        share: f64,
+    },
+}
+
+impl Default for Threshold {
+    fn default() -> Self {
+        Self::Automatic {
+            deviations: 5.0,
+            least: 0.0,
+            share: 0.01,
+        }
+    }
+}
+
+/// What the force is measured from.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Baseline {
+    /// The mean before the first contact is subtracted.
+    #[default]
+    Remove,
+    /// The force is used as recorded.
+    Keep,
+}
+
+/// What is done about a channel whose sign is opposite to the convention.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Orientation {
+    /// Change its sign, and report it.
+    #[default]
+    Correct,
+    /// Use it as recorded, and report it.
+    AsRecorded,
+}
+
+/// Which of several contacts is used.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub enum ContactChoice {
+    /// The first.
+    #[default]
+    First,
+    /// The one with the largest force.
+    Strongest,
+    /// The first that begins in a range of time.
+    Within {
+        /// Begin of the range; s.
+        from: f64,
+        /// End of the range; s.
+        to: f64,
+    },
+}
+
+/// How contact windows are found.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct TriggerOptions {
+    /// Above what a force counts as contact.
+    pub threshold: Threshold,
+    /// A contact is over when the force is below this part of the threshold; 1.
+    pub release: f64,
+    /// Contacts closer than this are one; s. `None`: a tenth of the longest.
+    pub minimum_gap: Option<f64>,
+    /// What the force is measured from.
+    pub baseline: Baseline,
+    /// Which of several contacts is used.
+    pub choice: ContactChoice,
+}
+
+impl Default for TriggerOptions {
+    fn default() -> Self {
+        Self {
+            threshold: Threshold::default(),
+            release: 0.5,
+            minimum_gap: None,
+            baseline: Baseline::default(),
+            choice: ContactChoice::default(),
+        }
+    }
+}
+
+/// One contact.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ContactWindow {
+    /// First upward crossing of the threshold; s.
+    pub onset: f64,
+    /// Last downward crossing of the threshold; s.
+    pub end: f64,
+    /// Largest smoothed force; N.
+    pub peak: f64,
+    /// False if the recording begins in this contact.
+    pub onset_seen: bool,
+    /// False if the recording ends in this contact.
+    pub end_seen: bool,
+}
+
+/// The contacts of a recording and what they were found with.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Contacts {
+    /// In order of time; at least one.
+    pub windows: Vec<ContactWindow>,
+    /// The threshold, above the baseline; N.
+    pub threshold: f64,
+    /// Mean force before the first contact; N.
+    pub offset: f64,
+    /// Noise of one sample before the first contact; N. May be zero.
+    pub deviation: f64,
+    /// Samples before the first contact from which offset and noise come; with
+    /// none of them the offset is 0.
+    pub baseline_samples: usize,
+    /// True if the force is negative in contact.
+    pub reversed: bool,
+    /// Samples over which the force was averaged to compare it.
+    pub smoothing: usize,
+}
+
+impl Contacts {
+    /// The contact that `choice` names.
+    ///
+    /// # Errors
+    /// [`Error::NoContactInRange`] if none begins in the range asked for.
+    pub fn choose(&self, choice: ContactChoice) -> Result<usize, Error> {
+        let strongest = |best: usize, i: usize| {
+            if self.windows[i].peak > self.windows[best].peak {
+                i
+            } else {
+                best
+            }
+        };
+        match choice {
+            ContactChoice::First => Ok(0),
+            ContactChoice::Strongest => Ok((0..self.windows.len()).fold(0, strongest)),
+            ContactChoice::Within { from, to } => self
+                .windows
+                .iter()
+                .position(|window| window.onset >= from && window.onset <= to)
+                .ok_or_else(|| Error::NoContactInRange {
+                    from,
+                    to,
+                    found: Times(self.windows.iter().map(|w| w.onset).collect()),
+                }),
+        }
+    }
+}
+
+/// A signal that is large during contact, with its name and unit for messages.
+#[derive(Clone, Copy, Debug)]
+pub struct Signal<'a> {
+    /// Name of the channel.
+    pub name: &'a str,
+    /// Unit of the values, for messages.
+    pub unit: &'static str,
+    /// Sampling times; s.
+    pub times: &'a [f64],
+    /// Samples, of either sign.
+    pub values: &'a [f64],
+}
+
+/// All contacts of a recording.
+///
+/// The sign is that of the largest departure from the first samples. Offset and
+/// noise come from the samples before the first contact. The signal is averaged
+/// over 1/50 of the contact (not at all where that is less than a sample) and
+/// compared with the threshold: a contact begins above it and is over below
+/// `release` of it. Excursions that are small or short against the largest are
+/// ringing and left out; contacts with a shorter gap than the minimum are one.
+///
+/// # Errors
+/// [`Error::NoContact`] with the largest force and the threshold,
+/// [`Error::BadOption`], [`Error::TooFewSamples`].
+pub fn find_contacts(signal: &Signal, options: &TriggerOptions) -> Result<Contacts, Error> {
+    check_options(options)?;
+    let n = signal.values.len();
+    if n < LEAST_SAMPLES {
+        return Err(Error::TooFewSamples {
+            channel: signal.name.to_owned(),
+            samples: n,
+            least: LEAST_SAMPLES,
+        });
+    }
+
+    // A first guess of zero and sign, from the beginning of the signal.
+    let pilot_samples = ((PILOT_SHARE * n as f64) as usize).clamp(LEAST_BASELINE.min(n), n);
+    let pilot = median(&signal.values[..pilot_samples]).unwrap_or(0.0);
+    let centre = match options.baseline {
+        Baseline::Remove => pilot,
+        Baseline::Keep => 0.0,
+    };
+    let extreme = index_of_largest(signal.values, |v| (v - centre).abs());
+    let reversed = signal.values[extreme] < centre;
+    let sign = if reversed { -1.0 } else { 1.0 };
+
+    // The scale of the contact, to smooth by.
+    let smoothing = smoothing_length(signal.values, centre, sign);
+
+    // Baseline, threshold and windows; once more when the first contact is known.
+    let mut before = pre_contact(signal.values, extreme, centre, sign);
+    let mut contacts = Contacts {
+        windows: Vec::new(),
+        threshold: 0.0,
+        offset: 0.0,
+        deviation: 0.0,
+        baseline_samples: 0,
+        reversed,
+        smoothing,
+    };
+    for _ in 0..2 {
+        before = flat_part(signal, before, (signal.values[extreme] - centre).abs());
+        let (mean, deviation) = baseline(&signal.values[..before]).unwrap_or((0.0, 0.0));
+        contacts.deviation = deviation;
+        contacts.baseline_samples = before;
+        contacts.offset = match options.baseline {
+            Baseline::Remove => mean,
+            Baseline::Keep => 0.0,
+        };
+        let raised: Vec<f64> = signal
+            .values
+            .iter()
+            .map(|v| sign * (v - contacts.offset))
+            .collect();
+        let smooth = moving_mean(&raised, smoothing);
+        let largest = smooth.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+        contacts.threshold = threshold(&options.threshold, deviation, smoothing, largest);
+        contacts.windows = windows(signal.times, &smooth, contacts.threshold, options);
+        let Some(first) = contacts.windows.first() else {
+            return Err(Error::NoContact {
+                channel: signal.name.to_owned(),
+                largest: raised.iter().copied().fold(f64::NEG_INFINITY, f64::max),
+                threshold: contacts.threshold,
+                unit: signal.unit,
+            });
+        };
+        let until = first.onset - BASELINE_GUARD * (first.end - first.onset);
+        before = signal.times.partition_point(|&t| t < until);
+    }
+    Ok(contacts)
+}
+
+fn check_options(options: &TriggerOptions) -> Result<(), Error> {
+    let bad = |option, value, expected| {
+        Err(Error::BadOption {
+            option,
+            value,
+            expected,
+        })
+    };
+    match options.threshold {
+        Threshold::Fixed(force) if !(force > 0.0 && force.is_finite()) => {
+            return bad("contact threshold", force, "a positive force");
+        }
+        Threshold::Automatic { deviations, .. } if deviations.is_nan() || deviations <= 0.0 => {
+            return bad("threshold deviations", deviations, "a positive number");
+        }
+        _ => {}
+    }
+    if !(options.release > 0.0 && options.release <= 1.0) {
+        return bad(
+            "contact release",
+            options.release,
+            "a part of the threshold, above 0 and up to 1",
+        );
+    }
+    if let Some(gap) = options.minimum_gap
+        && (gap.is_nan() || gap < 0.0)
+    {
+        return bad("minimum gap", gap, "a time of 0 s or more");
+    }
+    Ok(())
+}
+
+fn threshold(threshold: &Threshold, deviation: f64, smoothing: usize, largest: f64) -> f64 {
+    match *threshold {
+        Threshold::Fixed(force) => force,
+        Threshold::Automatic {
+            deviations,
+            least,
+            share,
+        } => {
+            let noise = deviations * deviation / (smoothing as f64).sqrt();
+            noise.max(least).max(share * largest).max(f64::MIN_POSITIVE)
+        }
+    }
+}
+
+fn index_of_largest(values: &[f64], measure: impl Fn(f64) -> f64) -> usize {
+    (1..values.len()).fold(0, |best, i| {
+        if measure(values[i]) > measure(values[best]) {
+            i
+        } else {
+            best
+        }
+    })
+}
+
+/// Samples to average over: 1/50 of the strongest contact, which lasts about
+/// 1.5 times as long as its force is above half. Noise cuts this stretch short,
+/// so it is looked for again in the smoothed signal.
+fn smoothing_length(values: &[f64], centre: f64, sign: f64) -> usize {
+    let mut length = 1;
+    for _ in 0..3 {
+        let smooth = moving_mean(values, length);
+        let extreme = index_of_largest(&smooth, |v| sign * (v - centre));
+        let level = 0.5 * sign * (smooth[extreme] - centre);
+        let above = |v: &&f64| sign * (**v - centre) >= level;
+        let after = smooth[extreme..].iter().take_while(above).count();
+        let before = smooth[..extreme].iter().rev().take_while(above).count();
+        length = ((1.5 * (after + before) as f64 * SMOOTHING_SHARE) as usize) | 1;
+    }
+    length
+}
+
+/// Samples before the strongest contact begins, less a guard.
+fn pre_contact(values: &[f64], extreme: usize, centre: f64, sign: f64) -> usize {
+    let level = RINGING_PEAK * sign * (values[extreme] - centre);
+    let start = values[..extreme]
+        .iter()
+        .rposition(|v| sign * (v - centre) <= level)
+        .map_or(0, |i| i + 1);
+    let guard = BASELINE_GUARD * (extreme - start) as f64;
+    start.saturating_sub(guard.ceil() as usize)
+}
+
+/// `before`, or 0 if the signal rises over these samples already: then they are
+/// in contact and tell nothing about the zero.
+fn flat_part(signal: &Signal, before: usize, largest: f64) -> usize {
+    let (times, values) = (&signal.times[..before], &signal.values[..before]);
+    let Some(fit) = times
+        .first()
+        .and_then(|&start| fit_polynomial(times, values, start, 1))
+    else {
+        return before;
+    };
+    let duration = times[before - 1] - times[0];
+    let rise = (fit.derivatives[1] * duration).abs();
+    let explained = 4.0 * fit.standard_deviations[1] * duration;
+    if rise > BASELINE_RISE * largest && rise > explained {
+        0
+    } else {
+        before
+    }
+}
+
+/// Centred mean over `length` samples (odd), shorter at both ends.
+fn moving_mean(values: &[f64], length: usize) -> Vec<f64> {
+    let half = length / 2;
+    let n = values.len();
+    if half == 0 {
+        return values.to_vec();
+    }
+    let mut sums = Vec::with_capacity(n + 1);
+    sums.push(0.0);
+    let mut sum = 0.0;
+    for value in values {
+        sum += value;
+        sums.push(sum);
+    }
+    (0..n)
+        .map(|i| {
+            let reach = half.min(i).min(n - 1 - i);
+            (sums[i + reach + 1] - sums[i - reach]) / (2 * reach + 1) as f64
+        })
+        .collect()
+}
+
+/// Windows above the threshold, without ringing, joined over small gaps.
+fn windows(
+    times: &[f64],
+    smooth: &[f64],
+    threshold: f64,
+    options: &TriggerOptions,
+) -> Vec<ContactWindow> {
+    let mut found = spans(smooth, threshold, options.release * threshold)
+        .into_iter()
+        .filter(|span| span.1 - span.0 + 1 >= LEAST_SAMPLES)
+        .map(|(first, last)| window(times, smooth, threshold, first, last))
+        .collect::<Vec<_>>();
+
+    let peak = found.iter().map(|w| w.peak).fold(0.0, f64::max);
+    let longest = found.iter().map(|w| w.end - w.onset).fold(0.0, f64::max);
+    found
+        .retain(|w| w.peak >= RINGING_PEAK * peak && w.end - w.onset >= RINGING_DURATION * longest);
+
+    let gap = options.minimum_gap.unwrap_or(DEFAULT_GAP * longest);
+    let mut joined: Vec<ContactWindow> = Vec::with_capacity(found.len());
+    for next in found {
+        match joined.last_mut() {
+            Some(last) if next.onset - last.end < gap => {
+                last.end = next.end;
+                last.end_seen = next.end_seen;
+                last.peak = last.peak.max(next.peak);
+            }
+            _ => joined.push(next),
+        }
+    }
+    joined
+}
+
+/// First and last sample at or above the threshold of each excursion, which is
+/// over below the release level.
+fn spans(smooth: &[f64], threshold: f64, release: f64) -> Vec<(usize, usize)> {
+    let mut spans = Vec::new();
+    let mut open: Option<(usize, usize)> = None;
+    for (i, &value) in smooth.iter().enumerate() {
+        if value >= threshold {
+            open = Some(open.map_or((i, i), |(first, _)| (first, i)));
+        } else if value < release {
+            spans.extend(open.take());
+        }
+    }
+    spans.extend(open);
+    spans
+}
+
+fn window(
+    times: &[f64],
+    smooth: &[f64],
+    threshold: f64,
+    first: usize,
+    last: usize,
+) -> ContactWindow {
+    let crossing = |outside: usize, inside: usize| {
+        let part = (threshold - smooth[outside]) / (smooth[inside] - smooth[outside]);
+        times[outside] + part * (times[inside] - times[outside])
+    };
+    let end_seen = last + 1 < smooth.len();
+    ContactWindow {
+        onset: if first > 0 {
+            crossing(first - 1, first)
+        } else {
+            times[first]
+        },
+        end: if end_seen {
+            crossing(last + 1, last)
+        } else {
+            times[last]
+        },
+        peak: smooth[first..=last]
+            .iter()
+            .copied()
+            .fold(f64::NEG_INFINITY, f64::max),
+        onset_seen: first > 0,
+        end_seen,
+    }
+}
