@@ -108,7 +108,8 @@ fn target_of(module: &Module, path: &NamedPath, modules: &BTreeSet<Module>) -> O
         }
     }
     full.extend(segments.cloned());
-    Some(full)
+    let known = path.mention != Mention::Spliced || modules.contains(&full);
+    known.then_some(full)
 }
 
 /// The module that holds what `target` names, behind any re-exports.
@@ -243,6 +244,18 @@ mod tests {
             ("src/rig.rs", "use crate::Error;"),
         ]);
         assert_eq!(found, [["the crate root", "rig"]]);
+    }
+
+    #[test]
+    fn rejects_a_cycle_through_a_macro_that_splices_module_names() {
+        let registry = "macro_rules! registry { ($($m:ident,)*) => { $(pub use crate::$m::Law;)* } }\nregistry! { hertz, tsuji, }";
+        let found = check(&[
+            ("src/lib.rs", "pub mod hertz; pub mod kind; pub mod tsuji;"),
+            ("src/kind.rs", registry),
+            ("src/hertz.rs", "use crate::kind::Kind;"),
+            ("src/tsuji.rs", "use std::f64::consts::PI;"),
+        ]);
+        assert_eq!(found, [["hertz", "kind"]]);
     }
 
     #[test]

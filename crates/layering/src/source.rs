@@ -56,6 +56,9 @@ pub enum Mention {
     Imported,
     /// In a `pub use`.
     Exported,
+    /// Perhaps, by a macro of this file that writes `crate::$module`: a word
+    /// of its arguments, which may be a module or not.
+    Spliced,
 }
 
 /// A macro call such as `println!(…)`.
@@ -85,6 +88,7 @@ pub fn read_source(
     let shipped = without_tests(tokens, &mut test_lines);
     let mut paths = Vec::new();
     collect_paths(&shipped, &mut paths);
+    paths.extend(spliced_words(&shipped));
     let mut macros = Vec::new();
     collect_macros(&shipped, &mut macros);
     Ok(SourceFile {
@@ -256,6 +260,66 @@ fn collect_paths(tokens: &[TokenTree], found: &mut Vec<NamedPath>) {
                 i += 1;
             }
             _ => i += 1,
+        }
+    }
+}
+
+/// Words that macros of this file may splice into `crate::$module`.
+fn spliced_words(tokens: &[TokenTree]) -> Vec<NamedPath> {
+    let mut found = Vec::new();
+    for definition in tokens.windows(4) {
+        let [
+            TokenTree::Ident(word),
+            _,
+            TokenTree::Ident(name),
+            TokenTree::Group(body),
+        ] = definition
+        else {
+            continue;
+        };
+        if word == "macro_rules" && splices_modules(body) {
+            for arguments in calls_of(&name.to_string(), tokens) {
+                collect_words(arguments, &mut found);
+            }
+        }
+    }
+    found
+}
+
+/// Whether a macro's body writes `crate::$…`.
+fn splices_modules(body: &Group) -> bool {
+    let tokens: Vec<TokenTree> = body.stream().into_iter().collect();
+    tokens.iter().enumerate().any(|(i, token)| match token {
+        TokenTree::Ident(word) => {
+            word == "crate" && is_double_colon(&tokens, i + 1) && is_punct(tokens.get(i + 3), '$')
+        }
+        TokenTree::Group(group) => splices_modules(group),
+        _ => false,
+    })
+}
+
+/// Arguments of the calls of a macro beside its definition.
+fn calls_of<'a>(name: &str, tokens: &'a [TokenTree]) -> impl Iterator<Item = &'a Group> {
+    tokens.windows(3).filter_map(move |call| match call {
+        [TokenTree::Ident(word), sign, TokenTree::Group(arguments)]
+            if word == name && is_punct(Some(sign), '!') =>
+        {
+            Some(arguments)
+        }
+        _ => None,
+    })
+}
+
+fn collect_words(group: &Group, found: &mut Vec<NamedPath>) {
+    for token in group.stream() {
+        match token {
+            TokenTree::Ident(word) => found.push(NamedPath {
+                segments: vec!["crate".to_owned(), word.to_string()],
+                line: word.span().start().line,
+                mention: Mention::Spliced,
+            }),
+            TokenTree::Group(inside) => collect_words(&inside, found),
+            _ => {}
         }
     }
 }
