@@ -28,7 +28,7 @@ pub enum Target {
 
 impl Target {
     /// Whether the motion must carry a sensitivity for it.
-    fn needs_lane(self) -> bool {
+    pub(crate) fn needs_lane(self) -> bool {
         matches!(self, Self::Law(_) | Self::InitialVelocity | Self::Mass)
     }
 }

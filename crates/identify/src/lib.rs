@@ -7,7 +7,14 @@
 pub mod contact_motion;
 pub mod error;
 pub mod estimator;
+pub mod finding;
+pub mod fit;
 pub mod motion;
+pub mod problem;
+pub mod regression;
 pub mod residual;
 pub mod rig;
 pub mod simulate;
+mod solve;
+mod starting_values;
+pub mod uncertainty;

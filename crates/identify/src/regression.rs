@@ -1,0 +1,122 @@
+//! The linear regression of eq. (9): force against the law's terms at the
+//! measured displacement and rate. No motion is simulated.
+
+use windfall_contact::law::ContactLaw;
+use windfall_contact::law_kind::{Law, LawKind};
+use windfall_contact::with_law;
+use windfall_numerics::cholesky;
+use windfall_numerics::least_squares::NormalEquations;
+use windfall_signal::impact::{Impact, Series};
+use windfall_signal::kinematics::{smoothing_window, value_at};
+use windfall_signal::polynomial::local_polynomial;
+
+/// Parameters at most that a law is linear in.
+const TERMS: usize = 2;
+/// Order of the local polynomial that gives the displacement rate.
+const SMOOTHING_ORDER: usize = 2;
+
+/// A parameter estimated by regression.
+#[derive(Clone, Debug, PartialEq)]
+pub struct RegressionEstimate {
+    /// Position in the law's description.
+    pub position: usize,
+    /// Estimate; SI.
+    pub value: f64,
+    /// Standard error of ordinary least squares, which takes displacement and
+    /// rate as exact and residuals as independent; SI.
+    pub standard_error: f64,
+}
+
+/// Parameters that the force is linear in, by position.
+fn linear_positions(kind: LawKind) -> Vec<usize> {
+    let linear = |name: &str| match kind {
+        LawKind::Hertz | LawKind::KelvinVoigt | LawKind::KuwabaraKono => true,
+        LawKind::PowerLaw | LawKind::AdamsImpact => name == "k" || name == "c",
+        LawKind::HuntCrossley => name == "k" || name == "lambda",
+        _ => false,
+    };
+    let parameters = kind.describe().parameters.iter().enumerate();
+    parameters.filter(|(_, p)| linear(p.name)).map(|(i, _)| i).collect()
+}
+
+/// Force regressed on the terms of `law` over the contact:
+///
+/// ```text
+/// F = k X₁ + c X₂,   X₁ = x^1.5,   X₂ = x^0.5 x'    (Kuwabara-Kono)
+/// ```
+///
+/// The rate is the derivative of a local quadratic over a tenth of the
+/// contact: a central difference of counted displacement would bias c towards
+/// zero. Displacement counts from the threshold's onset.
+///
+/// `None` for a law that is linear in none of its parameters, or when force
+/// and motion were not both recorded.
+///
+/// # Source
+/// Eq. (9) of the 2003 pendulum study.
+#[must_use]
+pub fn regress(impact: &Impact, law: &Law) -> Option<Vec<RegressionEstimate>> {
+    let positions = linear_positions(law.kind());
+    if positions.is_empty() {
+        return None;
+    }
+    let force = impact.force.as_ref()?;
+    let displacement = impact.displacement.as_ref()?;
+    let rate = smooth_rate(impact, displacement)?;
+
+    // Keep to the contact: outside, the terms are zero and the force is noise.
+    let mut equations = NormalEquations::<TERMS>::ZERO;
+    let mut samples = 0;
+    for (&time, &measured) in force.times.iter().zip(&force.values) {
+        if time < impact.onset || time > impact.end {
+            continue;
+        }
+        let x = value_at(&displacement.times, &displacement.values, time);
+        if x <= 0.0 {
+            continue;
+        }
+        let v = value_at(&displacement.times, &rate, time);
+        let terms = with_law!(law, concrete => terms_at(concrete, x, v));
+        let mut row = [0.0; TERMS];
+        for (cell, &position) in row.iter_mut().zip(&positions) {
+            *cell = terms[position];
+        }
+        // The residual at zero parameters is −F: its gradient step is the fit.
+        equations.add(1.0, -measured, &row);
+        samples += 1;
+    }
+    solve(&equations, &positions, samples)
+}
+
+fn smooth_rate(impact: &Impact, displacement: &Series) -> Option<Vec<f64>> {
+    let times = &displacement.times;
+    let interval = (times.last()? - times.first()?) / (times.len().max(2) - 1) as f64;
+    let window = smoothing_window(impact.end - impact.onset, interval);
+    local_polynomial(times, &displacement.values, window, SMOOTHING_ORDER, 1)
+}
+
+fn terms_at<const N: usize>(law: &impl ContactLaw<N>, x: f64, v: f64) -> Vec<f64> {
+    law.evaluate(x, v, 0.0).by_parameter.to_vec()
+}
+
+fn solve(
+    equations: &NormalEquations<TERMS>,
+    positions: &[usize],
+    samples: usize,
+) -> Option<Vec<RegressionEstimate>> {
+    let mut normal = equations.normal;
+    for i in positions.len()..TERMS {
+        normal[i][i] = 1.0;
+    }
+    let freedom = samples.checked_sub(positions.len()).filter(|f| *f > 0)?;
+    let inverse = cholesky::inverse(&normal)?;
+    let values = cholesky::solve(&normal, &equations.gradient.map(|g| -g))?;
+    let explained: f64 = (0..TERMS).map(|i| -equations.gradient[i] * values[i]).sum();
+    let variance = (equations.cost - explained).max(0.0) / freedom as f64;
+    let estimate = |(i, &position): (usize, &usize)| RegressionEstimate {
+        position,
+        value: values[i],
+        standard_error: (variance * inverse[i][i]).sqrt(),
+    };
+    Some(positions.iter().enumerate().map(estimate).collect())
+}
