@@ -17,18 +17,14 @@ have() {
 }
 
 as_root() {
-    if [ "$(id -u)" -eq 0 ]; then
-        "$@"
-    elif have sudo; then
-        sudo "$@"
-    else
-        fail "installing needs root, and there is no sudo; as root run: $*"
-    fi
+    if [ "$(id -u)" -eq 0 ]; then "$@"; else sudo "$@"; fi
 }
 
 # Installs Debian packages.
 apt_install() {
     have apt-get || fail "this machine has no apt-get; install these by hand and run again: $*"
+    [ "$(id -u)" -eq 0 ] || have sudo ||
+        fail "installing needs root, and there is no sudo; as root run: apt-get install $*"
     say "set-up: installing $*"
     as_root apt-get update -qq || say "set-up: apt-get update failed; trying with the lists that are there"
     as_root env DEBIAN_FRONTEND=noninteractive \
@@ -48,7 +44,7 @@ at_least() {
 
 # Version of the cargo that would run here; nothing when there is none.
 cargo_version() {
-    # Outside the repository's reach a rustup without a toolchain fails here.
+    # A rustup without a toolchain has a cargo that fails.
     cargo --version 2>/dev/null | cut -d ' ' -f 2
 }
 
