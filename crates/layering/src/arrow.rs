@@ -48,6 +48,9 @@ pub const INNER: &[&str] = &[
     "windfall-scene",
 ];
 
+/// Crates that face people and programs: they parse, call a workflow, display.
+pub const FRONT_ENDS: &[&str] = &["windfall-web", "windfall-cli", "windfall-python"];
+
 /// Dependencies that stand for something an inner crate must not know.
 const OUTER_DEPENDENCIES: &[(&str, &str)] = &[
     ("csv", "only the crate windfall knows file formats"),

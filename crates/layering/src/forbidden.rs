@@ -1,6 +1,7 @@
-//! What inner crates may not touch: files, clock, environment, network, output.
+//! What inner crates may not touch: files, clock, environment, network, output;
+//! and the files that front ends leave to the crate windfall.
 
-use crate::source::{MacroCall, Mention, NamedPath, Role, SourceFile};
+use crate::source::{Mention, NamedPath, Role, SourceFile};
 use crate::violation::{Place, Violation};
 
 /// Parts of the standard library that reach outside, and why they are not for
@@ -41,46 +42,56 @@ const PATHS: &[(&str, &str)] = &[
     ),
 ];
 
+/// What front ends leave to the crate windfall.
+const FRONT_END_PATHS: &[(&str, &str)] = &[(
+    "std::fs",
+    "only the crate windfall opens files: call one of its workflows",
+)];
+
 /// Macros that print.
 const MACROS: &[&str] = &["print", "println", "eprint", "eprintln", "dbg"];
 
 /// Uses of the outside world in the shipped code of an inner crate.
 #[must_use]
-pub fn check_forbidden(file: &SourceFile) -> Vec<Violation> {
-    if file.role != Role::Shipped {
-        return Vec::new();
-    }
-    let place = |line| Place {
-        path: file.path.clone(),
-        line,
-    };
-    let paths = file.paths.iter().filter_map(|path| {
-        let reason = forbidden_reason(path)?;
-        let found = path.segments.join("::");
-        Some(Violation::Forbidden {
-            place: place(path.line),
-            found,
-            reason,
-        })
-    });
-    let printing = |call: &&MacroCall| MACROS.contains(&call.name.as_str());
-    let macros = file
+pub fn check_inner(file: &SourceFile) -> Vec<Violation> {
+    let mut violations = reaching(file, PATHS);
+    let printing = file
         .macros
         .iter()
-        .filter(printing)
-        .map(|call| Violation::Forbidden {
-            place: place(call.line),
-            found: format!("{}!", call.name),
-            reason: "inner crates print nothing: return a value or a finding",
-        });
-    paths.chain(macros).collect()
+        .filter(|call| file.role == Role::Shipped && MACROS.contains(&call.name.as_str()));
+    violations.extend(printing.map(|call| Violation::Forbidden {
+        place: place(file, call.line),
+        found: format!("{}!", call.name),
+        reason: "inner crates print nothing: return a value or a finding",
+    }));
+    violations
 }
 
-fn forbidden_reason(path: &NamedPath) -> Option<&'static str> {
-    PATHS
-        .iter()
-        .find(|(forbidden, _)| reaches(path, forbidden))
-        .map(|(_, reason)| *reason)
+/// Files opened in the shipped code of a front end.
+#[must_use]
+pub fn check_front_end(file: &SourceFile) -> Vec<Violation> {
+    reaching(file, FRONT_END_PATHS)
+}
+
+fn reaching(file: &SourceFile, forbidden: &[(&str, &'static str)]) -> Vec<Violation> {
+    let shipped = file.paths.iter().filter(|_| file.role == Role::Shipped);
+    shipped
+        .filter_map(|path| {
+            let (_, reason) = forbidden.iter().find(|(part, _)| reaches(path, part))?;
+            Some(Violation::Forbidden {
+                place: place(file, path.line),
+                found: path.segments.join("::"),
+                reason,
+            })
+        })
+        .collect()
+}
+
+fn place(file: &SourceFile, line: usize) -> Place {
+    Place {
+        path: file.path.clone(),
+        line,
+    }
 }
 
 /// Whether the path is inside `forbidden`, or imports a module or a glob that
@@ -112,7 +123,7 @@ mod tests {
             "windfall-signal",
             text,
         );
-        check_forbidden(&file.unwrap())
+        check_inner(&file.unwrap())
             .iter()
             .map(|violation| match violation {
                 Violation::Forbidden { found, place, .. } => format!("{}:{found}", place.line),
@@ -154,6 +165,22 @@ mod tests {
         ] {
             assert_eq!(found(text), [expected], "{text}");
         }
+    }
+
+    #[test]
+    fn rejects_files_in_front_ends_but_not_output() {
+        let text = "use std::fs; fn f() { println!(\"a\"); std::env::args(); }";
+        let file = read_source(
+            Path::new("src/a.rs"),
+            Path::new("src/a.rs"),
+            "windfall-cli",
+            text,
+        );
+        let found = check_front_end(&file.unwrap());
+        assert!(
+            matches!(&found[..], [Violation::Forbidden { found, .. }] if found == "std::fs"),
+            "{found:?}"
+        );
     }
 
     #[test]
