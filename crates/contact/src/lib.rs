@@ -1,3 +1,4 @@
+#![cfg_attr(not(test), warn(clippy::disallowed_methods, clippy::disallowed_types))]
 //! Normal contact-force laws of fruit: formulas with exact derivatives, their
 //! registry and the expression language that names them.
 //!

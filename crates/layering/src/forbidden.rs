@@ -1,0 +1,216 @@
+//! What inner crates may not touch: files, clock, environment, network, output;
+//! and the files that front ends leave to the crate windfall.
+
+use crate::source::{Mention, NamedPath, Role, SourceFile};
+use crate::violation::{Place, Violation};
+
+/// Parts of the standard library that reach outside, and why they are not for
+/// inner crates.
+const PATHS: &[(&str, &str)] = &[
+    (
+        "std::fs",
+        "only the crate windfall opens files: take the content as an argument",
+    ),
+    (
+        "std::env",
+        "results must not depend on the environment: take an option",
+    ),
+    ("std::net", "only windfall-web knows the network"),
+    (
+        "std::process",
+        "inner crates start and end no process: return an error",
+    ),
+    (
+        "std::time::SystemTime",
+        "inner crates read no clock: take the time as an argument",
+    ),
+    (
+        "std::time::Instant",
+        "inner crates read no clock: measure in a bench or an example",
+    ),
+    (
+        "std::io::stdin",
+        "inner crates read no input: take it as an argument",
+    ),
+    (
+        "std::io::stdout",
+        "inner crates print nothing: return a value or a finding",
+    ),
+    (
+        "std::io::stderr",
+        "inner crates print nothing: return a value or a finding",
+    ),
+];
+
+/// What front ends leave to the crate windfall.
+const FRONT_END_PATHS: &[(&str, &str)] = &[(
+    "std::fs",
+    "only the crate windfall opens files: call one of its workflows",
+)];
+
+/// Macros that print.
+const MACROS: &[&str] = &["print", "println", "eprint", "eprintln", "dbg"];
+
+/// Uses of the outside world in the shipped code of an inner crate.
+#[must_use]
+pub fn check_inner(file: &SourceFile) -> Vec<Violation> {
+    let mut violations = reaching(file, PATHS);
+    let printing = file
+        .macros
+        .iter()
+        .filter(|call| file.role == Role::Shipped && MACROS.contains(&call.name.as_str()));
+    violations.extend(printing.map(|call| Violation::Forbidden {
+        place: place(file, call.line),
+        found: format!("{}!", call.name),
+        reason: "inner crates print nothing: return a value or a finding",
+    }));
+    violations
+}
+
+/// Files opened in the shipped code of a front end.
+#[must_use]
+pub fn check_front_end(file: &SourceFile) -> Vec<Violation> {
+    reaching(file, FRONT_END_PATHS)
+}
+
+fn reaching(file: &SourceFile, forbidden: &[(&str, &'static str)]) -> Vec<Violation> {
+    let shipped = file.paths.iter().filter(|_| file.role == Role::Shipped);
+    shipped
+        .filter_map(|path| {
+            let (_, reason) = forbidden.iter().find(|(part, _)| reaches(path, part))?;
+            Some(Violation::Forbidden {
+                place: place(file, path.line),
+                found: path.segments.join("::"),
+                reason,
+            })
+        })
+        .collect()
+}
+
+fn place(file: &SourceFile, line: usize) -> Place {
+    Place {
+        path: file.path.clone(),
+        line,
+    }
+}
+
+/// Whether the path is inside `forbidden`, or imports a module or a glob that
+/// would let it be named without saying so (`use std::time;`).
+fn reaches(path: &NamedPath, forbidden: &str) -> bool {
+    let forbidden: Vec<&str> = forbidden.split("::").collect();
+    let named: Vec<&str> = path.segments.iter().map(String::as_str).collect();
+    if named.starts_with(&forbidden) {
+        return true;
+    }
+    let opened = match named.split_last() {
+        Some((&"*", module)) => module,
+        _ if path.mention != Mention::Inline => &named[..],
+        _ => return false,
+    };
+    !opened.is_empty() && opened.len() < forbidden.len() && forbidden.starts_with(opened)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::source::read_source;
+    use std::path::Path;
+
+    fn found_in(within: &str, text: &str) -> Vec<String> {
+        let file = read_source(
+            Path::new(within),
+            Path::new(within),
+            "windfall-signal",
+            text,
+        );
+        check_inner(&file.unwrap())
+            .iter()
+            .map(|violation| match violation {
+                Violation::Forbidden { found, place, .. } => format!("{}:{found}", place.line),
+                other => panic!("{other}"),
+            })
+            .collect()
+    }
+
+    fn found(text: &str) -> Vec<String> {
+        found_in("src/a.rs", text)
+    }
+
+    #[test]
+    fn rejects_files_clock_environment_and_output() {
+        for (text, expected) in [
+            (
+                "fn f() { let _ = std::fs::read(\"a\"); }",
+                "1:std::fs::read",
+            ),
+            ("use std::{f64, fs};", "1:std::fs"),
+            ("use ::std::fs::File;", "1:std::fs::File"),
+            ("use std::env;", "1:std::env"),
+            (
+                "\nuse std::time::{Duration, Instant};",
+                "2:std::time::Instant",
+            ),
+            (
+                "use std::time::SystemTime as Clock;",
+                "1:std::time::SystemTime",
+            ),
+            ("use std::time;", "1:std::time"),
+            ("use std::io::*;", "1:std::io::*"),
+            ("fn f() { println!(\"a\") }", "1:println!"),
+            ("fn f() { g(|| dbg!(1)) }", "1:dbg!"),
+            (
+                "fn f() { assert!(std::env::args().count() > 0) }",
+                "1:std::env::args",
+            ),
+        ] {
+            assert_eq!(found(text), [expected], "{text}");
+        }
+    }
+
+    #[test]
+    fn rejects_files_in_front_ends_but_not_output() {
+        let text = "use std::fs; fn f() { println!(\"a\"); std::env::args(); }";
+        let file = read_source(
+            Path::new("src/a.rs"),
+            Path::new("src/a.rs"),
+            "windfall-cli",
+            text,
+        );
+        let found = check_front_end(&file.unwrap());
+        assert!(
+            matches!(&found[..], [Violation::Forbidden { found, .. }] if found == "std::fs"),
+            "{found:?}"
+        );
+    }
+
+    #[test]
+    fn closed_form_harmless_code_passes() {
+        for text in [
+            "use std::time::Duration;",
+            "use std::f64::consts::PI;",
+            "use std::io::Read;",
+            "fn f() -> String { format!(\"{}\", 1) }",
+            "/// println!(\"{}\", std::env::args())\nfn f() {}",
+            "#[cfg(test)] mod tests { use std::fs; fn f() { println!(\"\") } }",
+            "use crate::time;",
+        ] {
+            assert_eq!(found(text), [] as [&str; 0], "{text}");
+        }
+    }
+
+    #[test]
+    fn closed_form_tests_and_examples_may_open_files() {
+        for within in [
+            "tests/a.rs",
+            "examples/a.rs",
+            "benches/a.rs",
+            "src/a/tests.rs",
+        ] {
+            assert_eq!(
+                found_in(within, "use std::fs;"),
+                [] as [&str; 0],
+                "{within}"
+            );
+        }
+    }
+}

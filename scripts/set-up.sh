@@ -1,0 +1,92 @@
+# shellcheck shell=sh
+# Installs what building windfall needs and this machine lacks: a C compiler
+# (for the bundled SQLite) and a Rust toolchain. Sourced by the other scripts,
+# from the top of the repository; does nothing when nothing is missing.
+
+say() {
+    printf '%s\n' "$*" >&2
+}
+
+fail() {
+    say "set-up: $*"
+    exit 1
+}
+
+have() {
+    command -v "$1" >/dev/null 2>&1
+}
+
+as_root() {
+    if [ "$(id -u)" -eq 0 ]; then "$@"; else sudo "$@"; fi
+}
+
+# Installs Debian packages.
+apt_install() {
+    have apt-get || fail "this machine has no apt-get; install these by hand and run again: $*"
+    [ "$(id -u)" -eq 0 ] || have sudo ||
+        fail "installing needs root, and there is no sudo; as root run: apt-get install $*"
+    say "set-up: installing $*"
+    as_root apt-get update -qq || say "set-up: apt-get update failed; trying with the lists that are there"
+    as_root env DEBIAN_FRONTEND=noninteractive \
+        apt-get install -y -qq --no-install-recommends "$@" >/dev/null ||
+        fail "apt-get could not install: $*"
+}
+
+need_c_compiler() {
+    have cc || apt_install gcc libc6-dev
+    have cc || fail "there is still no C compiler called cc; install gcc or clang and run again"
+}
+
+# Whether version $1 is at least version $2.
+at_least() {
+    [ "$(printf '%s\n%s\n' "$2" "$1" | sort -V | head -n 1)" = "$2" ]
+}
+
+# Version of the cargo that would run here; nothing when there is none.
+cargo_version() {
+    # A rustup without a toolchain has a cargo that fails.
+    cargo --version 2>/dev/null | cut -d ' ' -f 2
+}
+
+install_rustup() {
+    if have apt-cache && LC_ALL=C apt-cache policy rustup | grep -q 'Candidate: [0-9]'; then
+        apt_install rustup
+        return
+    fi
+    have curl || apt_install curl ca-certificates
+    installer=$(mktemp)
+    for address in https://static.rust-lang.org/rustup/rustup-init.sh https://sh.rustup.rs; do
+        say "set-up: fetching the Rust installer from $address"
+        if curl --proto '=https' --tlsv1.2 -fsSL --retry 3 -o "$installer" "$address"; then
+            sh "$installer" -y -q --profile minimal --no-modify-path --default-toolchain none ||
+                fail "the Rust installer failed"
+            rm -f "$installer"
+            return
+        fi
+    done
+    rm -f "$installer"
+    fail "cannot reach the Rust installer; install Rust $rust_wanted or newer from https://rustup.rs and run again"
+}
+
+need_cargo() {
+    rust_wanted=$(sed -n 's/^rust-version = "\(.*\)"$/\1/p' Cargo.toml)
+    PATH="${CARGO_HOME:-${HOME:-}/.cargo}/bin:$PATH"
+    export PATH
+    rust_found=$(cargo_version)
+    if [ -n "$rust_found" ] && at_least "$rust_found" "$rust_wanted"; then
+        return
+    fi
+    say "set-up: windfall needs Rust $rust_wanted or newer; found ${rust_found:-none}"
+    have rustup || install_rustup
+    rustup toolchain install stable --profile minimal --no-self-update >&2 ||
+        fail "rustup could not install the stable toolchain"
+    RUSTUP_TOOLCHAIN=stable
+    export RUSTUP_TOOLCHAIN
+    rust_found=$(cargo_version)
+    if [ -z "$rust_found" ] || ! at_least "$rust_found" "$rust_wanted"; then
+        fail "needs Rust $rust_wanted, but cargo is ${rust_found:-missing}; remove the older cargo from PATH and run again"
+    fi
+}
+
+need_c_compiler
+need_cargo
