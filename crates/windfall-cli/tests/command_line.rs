@@ -1,5 +1,7 @@
 //! The command as a user meets it: results, messages, exit status.
 
+#![allow(clippy::unwrap_used, clippy::print_stdout)]
+
 use assert_cmd::Command;
 
 fn windfall(arguments: &[&str]) -> std::process::Output {

@@ -374,7 +374,7 @@ pub enum Error {
         /// The recording.
         path: PathBuf,
         /// What is wrong.
-        source: windfall_signal::error::Error,
+        source: Box<windfall_signal::error::Error>,
     },
     /// A fit or a simulation failed.
     #[error("{subject}: {source}")]
@@ -382,7 +382,7 @@ pub enum Error {
         /// The impact or event.
         subject: String,
         /// What is wrong.
-        source: windfall_identify::error::Error,
+        source: Box<windfall_identify::error::Error>,
     },
 }
 

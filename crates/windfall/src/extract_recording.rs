@@ -29,6 +29,6 @@ pub fn extract_recording(
     }
     extract_impact(&recording, &options).map_err(|source| Error::Signal {
         path: recording_path(&campaign.files, entry),
-        source,
+        source: Box::new(source),
     })
 }

@@ -87,7 +87,10 @@ fn fit_group(
                     .map(|fit| impact_outcome(entry, &impact, &findings, &fit, &problem, &rig.rig))
                     .map_err(|source| {
                         let subject = law.kind.name().to_owned();
-                        let error = Error::Identify { subject, source };
+                        let error = Error::Identify {
+                            subject,
+                            source: Box::new(source),
+                        };
                         failure(entry, Some(law.kind.name()), error.to_string())
                     })
             }

@@ -121,6 +121,6 @@ fn mass_of(
     let (impact, _) = extract_recording(campaign, entry, None)?;
     mass_from_impulse(&impact.measured, driving).map_err(|source| Error::Signal {
         path: crate::read_recording::recording_path(&campaign.files, entry),
-        source,
+        source: Box::new(source),
     })
 }

@@ -9,7 +9,7 @@ use toml::Spanned;
 use windfall_contact::expression::{LawExpression, parse_law};
 use windfall_contact::law::EndRule;
 use windfall_identify::problem::{FitOptions, Quantities, Treatment, Weighting};
-use windfall_identify::residual::Quantity;
+use windfall_identify::samples::Quantity;
 
 const TABLE: &str = "[fit]";
 

@@ -183,7 +183,7 @@ fn recording_text(
     let rig = Rig::Pendulum(campaign.rig);
     let failed = |source| Error::Identify {
         subject: LawExpression::from(*law).to_string(),
-        source,
+        source: Box::new(source),
     };
     let summary = simulate_rig(law, &rig, campaign.velocity, campaign.end).map_err(failed)?;
     // The clock of the instrument knows nothing of the first touch.
@@ -201,7 +201,7 @@ fn recording_text(
     };
     let channels = record(&motion, &campaign.instrument, seed).map_err(|source| Error::Signal {
         path: PathBuf::from("the simulated recording"),
-        source,
+        source: Box::new(source),
     })?;
     let rows = channels
         .iter()

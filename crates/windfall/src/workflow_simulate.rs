@@ -116,7 +116,7 @@ pub fn simulate_motion(
 fn failed(law: &Law, source: windfall_identify::error::Error) -> Error {
     Error::Identify {
         subject: LawExpression::from(*law).to_string(),
-        source,
+        source: Box::new(source),
     }
 }
 

@@ -3,6 +3,8 @@
 //! The directories under `fixtures` hold their own expected message; the script
 //! beside them says how they were made.
 
+#![allow(clippy::unwrap_used, clippy::print_stdout)]
+
 use std::path::{Path, PathBuf};
 use windfall::outcome::CampaignOutcome;
 use windfall::workflow_fit::{FitRequest, fit_campaign};

@@ -1,5 +1,7 @@
 //! What campaign.toml may say, and the messages when it says it wrongly.
 
+#![allow(clippy::unwrap_used, clippy::print_stdout)]
+
 use std::path::Path;
 use windfall::read_campaign::read_campaign;
 use windfall::workflow_new::{TemplateKind, template, write_template};
