@@ -93,6 +93,53 @@ fn recovers_what_was_put_into_each_simulated_fruit() {
     assert_eq!(found["summary"]["k"]["n"], 12);
 }
 
+/// The keys that scripts rely on: DESIGN.md, section 5.
+#[test]
+fn reference_json_has_the_agreed_keys() {
+    let scratch = tempfile::tempdir().unwrap();
+    let directory = scratch.path().join("campaign");
+    simulate(&directory, 2);
+    let found: serde_json::Value =
+        serde_json::from_slice(&fit(&directory, &["--format", "json"]).stdout).unwrap();
+    let impact = &found["impacts"][0];
+    for key in ["id", "specimen", "law"] {
+        assert!(impact[key].is_string(), "{key}");
+    }
+    assert_eq!(
+        impact["quantities"],
+        serde_json::json!(["displacement", "force"])
+    );
+    for name in ["k", "c"] {
+        for key in ["value", "sd", "low", "high"] {
+            assert!(impact["parameters"][name][key].is_f64(), "{name} {key}");
+        }
+    }
+    assert_eq!(impact["parameters"]["c"]["unit"], "N s/m^1.5");
+    assert!(impact["cost"].is_f64() && impact["samples"].is_u64());
+    assert!(impact["converged"].is_boolean());
+    for key in [
+        "impact_velocity",
+        "rebound_velocity",
+        "restitution",
+        "contact_duration",
+        "peak_force",
+        "max_displacement",
+        "impact_energy",
+        "elastic_energy",
+        "absorbed_energy",
+    ] {
+        assert!(impact["derived"][key].is_f64(), "{key}");
+        assert!(found["summary"][key]["mean"].is_f64(), "{key}");
+    }
+    for finding in impact["findings"].as_array().unwrap() {
+        assert!(finding["code"].is_string() && finding["message"].is_string());
+    }
+    for key in ["mean", "sd"] {
+        assert!(found["summary"]["k"][key].is_f64(), "{key}");
+    }
+    assert_eq!(found["summary"]["k"]["n"], 2);
+}
+
 #[test]
 fn repeats_the_same_bits_for_any_number_of_threads() {
     let scratch = tempfile::tempdir().unwrap();

@@ -95,8 +95,8 @@ pub fn text_of_laws(laws: &[LawCardText]) -> String {
             let upper = p
                 .upper
                 .map_or_else(|| "∞".to_owned(), |upper| upper.to_string());
-            let bounds = format!("{} … {upper}", p.lower);
-            [p.name, p.unit, &bounds, &p.typical.to_string(), p.meaning]
+            let bounds = format!("{} … {upper}", short(p.lower));
+            [p.name, p.unit, &bounds, &short(p.typical), p.meaning]
                 .map(str::to_owned)
                 .to_vec()
         });
@@ -106,6 +106,14 @@ pub fn text_of_laws(laws: &[LawCardText]) -> String {
         text.push('\n');
     }
     text
+}
+
+/// A number without long rows of zeros: "1e30".
+fn short(value: f64) -> String {
+    match value != 0.0 && !(1e-4..1e7).contains(&value.abs()) {
+        true => format!("{value:e}"),
+        false => value.to_string(),
+    }
 }
 
 /// "power-law(k, n=1.5, c, p=0.5)".

@@ -16,6 +16,15 @@ const CLIPPED_RUN: usize = 4;
 /// Distinct values below which a column is a logic level, never clipped.
 const LOGIC_LEVELS: usize = 3;
 
+/// Fewest samples among which a spike can be told.
+const LEAST_FOR_SPIKES: usize = 50;
+
+/// Part of the steps between samples that counts as usual.
+const USUAL_STEPS: f64 = 0.99;
+
+/// A spike stands out by this many times the usual step.
+const SPIKE: f64 = 10.0;
+
 /// What a recording holds.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Inspection {
@@ -77,6 +86,7 @@ pub fn inspect_recording(path: &Path) -> Result<Inspection, Error> {
             findings.extend(time_findings(name, &cells.columns[index]));
         } else {
             findings.extend(clipping(name, &cells.columns[index]));
+            findings.extend(spikes(name, &cells.columns[index]));
         }
         let clock = time.map(|at| cells.columns[at].as_slice());
         columns.push(column_inspection(name, role, &cells.columns[index], clock));
@@ -256,6 +266,39 @@ fn clipping(name: &str, cells: &[Option<f64>]) -> Option<FindingOutcome> {
         })
 }
 
+/// Samples far from both neighbours, against what the channel usually does.
+fn spikes(name: &str, cells: &[Option<f64>]) -> Option<FindingOutcome> {
+    let values: Vec<f64> = cells.iter().flatten().copied().collect();
+    if values.len() < LEAST_FOR_SPIKES {
+        return None;
+    }
+    let mut steps: Vec<f64> = values
+        .windows(2)
+        .map(|pair| (pair[1] - pair[0]).abs())
+        .collect();
+    // A spike has two large steps: those of two spikes are never usual.
+    let rank = ((USUAL_STEPS * steps.len() as f64) as usize).min(steps.len() - 5);
+    let usual = *steps.select_nth_unstable_by(rank, f64::total_cmp).1;
+    // How far a sample stands out beyond the span of its neighbours.
+    let out = |three: &[f64]| {
+        let (low, high) = (three[0].min(three[2]), three[0].max(three[2]));
+        (three[1] - high).max(low - three[1])
+    };
+    let spikes: Vec<usize> = (1..values.len() - 1)
+        .filter(|&i| usual > 0.0 && out(&values[i - 1..=i + 1]) > SPIKE * usual)
+        .collect();
+    let first = *spikes.first()?;
+    let message = format!(
+        "\"{name}\": {} sample(s) far from both neighbours, the first is {} between {} \
+         and {} (sample {first}); blank such cells or choose a range of time without them",
+        spikes.len(),
+        values[first],
+        values[first - 1],
+        values[first + 1]
+    );
+    Some(finding("spike", message))
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -273,6 +316,20 @@ mod tests {
             assert_eq!(unit_of(name).as_deref(), unit, "{name}");
             assert_eq!(role_of(name), role, "{name}");
         }
+    }
+
+    #[test]
+    fn recovers_a_glitch_put_into_a_sine() {
+        let smooth: Vec<Option<f64>> = (0..200).map(|i| Some((0.1 * f64::from(i)).sin())).collect();
+        assert_eq!(spikes("x", &smooth), None);
+        let mut glitched = smooth;
+        glitched[77] = Some(6.0);
+        let found = spikes("x", &glitched).unwrap().message;
+        assert!(
+            found.starts_with("\"x\": 1 sample(s) far from both")
+                && found.contains("the first is 6 between"),
+            "{found}"
+        );
     }
 
     #[test]

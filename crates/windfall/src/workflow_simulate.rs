@@ -2,7 +2,6 @@
 
 use crate::error::Error;
 use crate::named::Named;
-use crate::text_number::plain;
 use crate::write_csv::csv_text;
 use crate::write_text::table_text;
 use serde::Serialize;
@@ -196,15 +195,17 @@ pub fn text_of_simulation(impact: &SimulatedImpact) -> String {
     )
 }
 
+/// Below this a number of a table is rounding of zero; SI.
+const ROUNDING: f64 = 1e-15;
+
 /// Six significant digits.
 fn six_digits(value: f64) -> String {
     let size = value.abs();
-    if value == 0.0 || !(1e-4..1e6).contains(&size) {
-        return if value == 0.0 {
-            plain(value)
-        } else {
-            format!("{value:.5e}")
-        };
+    if size < ROUNDING {
+        return "0".to_owned();
+    }
+    if !(1e-4..1e6).contains(&size) {
+        return format!("{value:.5e}");
     }
     let decimals = (5 - size.log10().floor() as i32).clamp(0, 12) as usize;
     format!("{value:.decimals$}")
