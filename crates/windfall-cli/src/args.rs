@@ -105,8 +105,8 @@ Examples:
   windfall fit my-campaign --quantities force"
 )]
 pub struct FitArguments {
-    /// The campaign directory
-    #[arg(value_hint = ValueHint::DirPath)]
+    /// The campaign directory, or one recording of a campaign
+    #[arg(value_name = "DIR|FILE", value_hint = ValueHint::AnyPath)]
     pub directory: PathBuf,
     /// Law to fit in place of those of the campaign; may be repeated
     #[arg(long = "law", value_name = "LAW")]

@@ -272,6 +272,30 @@ fn rejects_a_campaign_in_which_nothing_can_be_fitted_with_status_1() {
 }
 
 #[test]
+fn repeats_one_recording_as_its_campaign_fits_it() {
+    let scratch = tempfile::tempdir().unwrap();
+    let directory = scratch.path().join("campaign");
+    simulate(&directory, 3);
+    let json = |path: &Path| -> serde_json::Value {
+        serde_json::from_slice(&fit(path, &["--format", "json", "--refit"]).stdout).unwrap()
+    };
+    let one = json(&directory.join("raw/specimen-02.csv"));
+    let all = json(&directory);
+    assert_eq!(one["impacts"].as_array().unwrap().len(), 1);
+    assert_eq!(one["impacts"][0], all["impacts"][1]);
+
+    let stray = scratch.path().join("stray.csv");
+    std::fs::write(&stray, "t,F\n0,1\n").unwrap();
+    let output = windfall(&["fit", stray.to_str().unwrap()]);
+    assert_eq!(output.status.code(), Some(2));
+    let said = text(&output.stderr);
+    assert!(
+        said.contains("no campaign.toml above this recording"),
+        "{said}"
+    );
+}
+
+#[test]
 fn rejects_a_foreign_store_and_leaves_it_alone() {
     let scratch = tempfile::tempdir().unwrap();
     let directory = scratch.path().join("campaign");

@@ -7,7 +7,7 @@ use crate::fit_key::{impact_key, input_digests};
 use crate::fit_mass::{RigFound, find_rig};
 use crate::outcome::{CampaignOutcome, FailureOutcome, ImpactOutcome, StatusOutcome};
 use crate::provenance::{VERSION, time_now};
-use crate::read_campaign::read_campaign;
+use crate::read_campaign::{CAMPAIGN_FILE, read_campaign};
 use crate::read_fit::{quantities_named, unknown_parameter};
 use crate::read_recording::recording_path;
 use crate::store::{RunRecord, find_results, latest_run, write_run};
@@ -54,6 +54,9 @@ pub type Progress<'a> = &'a (dyn Fn(usize, usize) + Sync);
 
 /// Fits the impacts of a campaign and keeps the results in its store.
 ///
+/// Given one recording, fits the impacts that it holds, with the campaign in
+/// whose directory, or a directory below it, the recording lies.
+///
 /// A recording that cannot be used is reported in the outcome and does not stop
 /// the others. Results stand in the order of impacts.csv and have the same bits
 /// for any number of threads.
@@ -65,7 +68,10 @@ pub fn fit_campaign(
     request: &FitRequest,
     progress: Progress,
 ) -> Result<CampaignOutcome, Error> {
-    let mut campaign = read_campaign(directory)?;
+    let mut campaign = match directory.is_file() {
+        true => campaign_of_recording(directory)?,
+        false => read_campaign(directory)?,
+    };
     apply_request(&mut campaign, request)?;
     let threads = request.threads.unwrap_or(0);
     let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build();
@@ -74,6 +80,40 @@ pub fn fit_campaign(
         problem: error.to_string(),
     })?;
     pool.install(|| fit(&campaign, request, progress))
+}
+
+/// The campaign around a recording, with the impacts of that recording only.
+fn campaign_of_recording(file: &Path) -> Result<Campaign, Error> {
+    let real = |path: &Path| path.canonicalize().unwrap_or_else(|_| path.to_path_buf());
+    let file = real(file);
+    let above = file
+        .ancestors()
+        .skip(1)
+        .find(|directory| directory.join(CAMPAIGN_FILE).is_file());
+    let unusable = |problem: String| Error::OptionInvalid {
+        option: file.display().to_string(),
+        problem,
+    };
+    let directory = above.ok_or_else(|| {
+        unusable(
+            "no campaign.toml above this recording says what rig and channels it has; \
+             `windfall new pendulum DIR` writes a template, the recording goes into DIR/raw"
+                .to_owned(),
+        )
+    })?;
+    let mut campaign = read_campaign(directory)?;
+    let files = campaign.files.clone();
+    campaign
+        .impacts
+        .retain(|impact| real(&recording_path(&files, impact)) == file);
+    if campaign.impacts.is_empty() {
+        let list = directory.join("impacts.csv");
+        return Err(unusable(format!(
+            "{} has no line with this recording; add one",
+            list.display()
+        )));
+    }
+    Ok(campaign)
 }
 
 fn apply_request(campaign: &mut Campaign, request: &FitRequest) -> Result<(), Error> {
