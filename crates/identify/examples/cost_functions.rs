@@ -66,7 +66,8 @@ fn main() {
         .nth(1)
         .and_then(|a| a.parse().ok())
         .unwrap_or(200);
-    let impacts: Vec<Impact> = (0..count).map(impact).collect();
+    let first: u64 = std::env::args().nth(2).and_then(|a| a.parse().ok()).unwrap_or(0);
+    let impacts: Vec<Impact> = (first..first + count).map(impact).collect();
     println!("{:?}", impacts[0].measured);
     println!(
         "noise {:?} {:?} {:?}",

@@ -470,6 +470,8 @@ impl Plan<'_> {
         let limits = Limits {
             cost_tolerance: self.options.cost_tolerance,
             max_evaluations: self.options.max_evaluations,
+            samples: self.groups.iter().map(sample_count).sum(),
+            offsets: Quantity::ALL.map(|q| series(self.impact, q).map_or(0.0, |s| s.zero_sd)),
         };
         let starts: Vec<(Vec<f64>, [f64; 4])> = starts
             .iter()

@@ -3,7 +3,7 @@
 
 use crate::estimator::{Coordinate, Estimator, FreeLaw, FreeParameter, Setting, Values};
 use crate::residual::Rows;
-use crate::samples::SampleGroup;
+use crate::samples::{QUANTITIES, SampleGroup};
 use crate::uncertainty::covariance;
 use windfall_contact::any_law::{AnyLaw, LARGEST_PARAMETERS};
 use windfall_contact::law_kind::Law;
@@ -11,6 +11,9 @@ use windfall_numerics::least_squares::{Minimum, Options, Stop};
 
 /// Longest step of a logarithmic and of a linear coordinate.
 const LONGEST_STEP: (f64, f64) = (2.0, 0.5);
+/// Gain, in units of the residual variance, that may be lost to the kinks that
+/// samples leave at separation: a tenth of a standard deviation.
+const ROUGHNESS: f64 = 0.01;
 /// Free parameters that one fit can have.
 pub(crate) const LARGEST_FREE: usize = 8;
 
@@ -42,13 +45,17 @@ pub(crate) struct Solution {
     pub rows: Rows,
 }
 
-/// Limits of the minimiser.
+/// Limits of the minimiser and of what is known.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Limits {
     /// Relative change of the cost at convergence.
     pub cost_tolerance: f64,
     /// Evaluations.
     pub max_evaluations: usize,
+    /// Samples of all quantities.
+    pub samples: usize,
+    /// Standard uncertainty of each quantity's zero; SI.
+    pub offsets: [f64; QUANTITIES],
 }
 
 /// Solves from each start in turn until one converges inside the bounds, and
@@ -134,6 +141,7 @@ where
         &minimum,
         setting.groups,
         free,
+        limits,
         evaluations,
     )
 }
@@ -153,6 +161,7 @@ fn options<const P: usize>(free: &[FreeParameter], limits: &Limits) -> Options<P
     Options {
         cost_tolerance: limits.cost_tolerance,
         max_evaluations: limits.max_evaluations,
+        roughness: ROUGHNESS / limits.samples as f64,
         largest_step,
         ..Options::default()
     }
@@ -164,6 +173,7 @@ fn complete<L, const N: usize, const W: usize, const P: usize>(
     minimum: &Minimum<P>,
     groups: &[SampleGroup],
     free: &[FreeParameter],
+    limits: &Limits,
     evaluations: usize,
 ) -> Option<Solution>
 where
@@ -174,7 +184,7 @@ where
     let at: Vec<f64> = free.iter().map(|p| values.get(p.target)).collect();
     let slope = |i: usize| free[i].coordinate.slope(at[i]);
     let count = free.len();
-    let covariance = covariance(&equations, &rows, groups, count).map_or(vec![], |c| {
+    let covariance = covariance(&equations, &rows, groups, &limits.offsets, count).map_or(vec![], |c| {
         (0..count)
             .map(|i| (0..count).map(|j| c[i][j] * slope(i) * slope(j)).collect())
             .collect()

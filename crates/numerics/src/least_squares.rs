@@ -76,6 +76,10 @@ pub struct Options<const P: usize> {
     pub cost_tolerance: f64,
     /// Stop when every step is shorter than this, in units of `largest_step`.
     pub step_tolerance: f64,
+    /// Also stop when a step fails and less than this fraction of the cost was
+    /// left to gain: for models that are not quite smooth (a sample that an
+    /// event passes), where nothing more can be had. 0: never.
+    pub roughness: f64,
     /// Longest step of each parameter.
     pub largest_step: [f64; P],
     /// Evaluations before giving up.
@@ -87,6 +91,7 @@ impl<const P: usize> Default for Options<P> {
         Self {
             cost_tolerance: 1e-10,
             step_tolerance: 1e-12,
+            roughness: 0.0,
             largest_step: [f64::INFINITY; P],
             max_evaluations: 200,
         }
@@ -98,7 +103,7 @@ impl<const P: usize> Default for Options<P> {
 pub enum Stop {
     /// No step within the bounds lowers the cost noticeably: the full
     /// Gauss-Newton step gains less than `cost_tolerance`, or less than the
-    /// rounding of the parameters. A parameter that the data do not tell, at
+    /// rounding of the parameters, or less than `roughness` and fails. A parameter that the data do not tell, at
     /// this point, has no step to take: look at the normal matrix.
     Converged,
     /// The full step promises a gain, but shorter and shorter steps did not
@@ -272,6 +277,9 @@ fn next_point<const P: usize>(
             {
                 damping.follow(here, &next, gain);
                 return Ok(next);
+            }
+            if here.left <= options.roughness * here.equations.cost {
+                return Err(Stop::Converged);
             }
             // Shorter steps would gain less than what counts.
             if gain > 0.0 && gain <= negligible(here, options) {

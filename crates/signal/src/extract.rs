@@ -57,10 +57,15 @@ pub fn extract_impact(
     signals.rate = rate(&mut signals, options, &place, &mut findings);
 
     let cut = |track: Option<Track>| track.and_then(|track| series(&track, &place, options));
+    let removed = options.trigger.baseline == Baseline::Remove;
+    let force = cut(signals.force).map(|series| Series {
+        zero_sd: if removed { offset_sd(&contacts) } else { 0.0 },
+        ..series
+    });
     let impact = Impact {
         displacement: cut(signals.displacement),
         rate: cut(signals.rate),
-        force: cut(signals.force),
+        force,
         acceleration: cut(signals.acceleration),
         onset: place.onset,
         end: place.end,
@@ -358,5 +363,6 @@ fn series(track: &Track, place: &Surroundings, options: &ExtractOptions) -> Opti
         times: times[first..last].to_vec(),
         values: track.values[first..last].to_vec(),
         noise: track.noise,
+        zero_sd: 0.0,
     })
 }

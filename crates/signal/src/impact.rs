@@ -11,6 +11,9 @@ pub struct Series {
     /// Standard deviation of the noise of one sample, found from the recording
     /// itself; SI.
     pub noise: f64,
+    /// Standard uncertainty of the zero, shared by all samples: that of the
+    /// baseline that has been subtracted from a force, 0 where nothing was; SI.
+    pub zero_sd: f64,
 }
 
 /// What can be read off the signals without a law. `None` where the channels
