@@ -9,9 +9,6 @@ use windfall_contact::law_kind::LawKind;
 use windfall_identify::rig::Pendulum;
 use windfall_signal::instrument::pendulum_instrument;
 
-/// Seed of the example.
-pub const EXAMPLE_SEED: u64 = 2003;
-
 /// Impacts of each material.
 const IMPACTS: usize = 20;
 
@@ -26,7 +23,8 @@ const MATERIALS: [(&str, f64, f64, f64, f64); 4] = [
 ];
 
 /// Rig of the example. The study gives the arm; inertia, mass, centre of mass
-/// and impact velocity are inferred from its contact durations and 10° of swing.
+/// and impact velocity are inferred from its contact durations and 10° of swing;
+/// mass and centre of mass, which hardly matter during contact, are assumed.
 pub const EXAMPLE_RIG: Pendulum = Pendulum {
     inertia: 0.01435,
     arm: 0.505,
@@ -46,7 +44,7 @@ pub fn write_example(directory: &Path, seed: u64) -> Result<usize, Error> {
     let campaign = SimulatedCampaign {
         title: "Example: rubber half-ball, apple, tomato and potato on a pendulum".to_owned(),
         label: "published means and spreads of k and c (2003 pendulum study); \
-                inertia and impact velocity of the rig are inferred"
+                inertia, mass, centre of mass and impact velocity of the rig are inferred"
             .to_owned(),
         rig: EXAMPLE_RIG,
         velocity: EXAMPLE_VELOCITY,
