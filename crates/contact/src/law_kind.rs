@@ -203,4 +203,10 @@ impl Law {
         let unit = self.kind().describe().unit_of(index, &values);
         unit.unwrap_or_default()
     }
+
+    /// Whether the force depends on the largest displacement so far.
+    #[must_use]
+    pub fn has_history(&self) -> bool {
+        with_law!(self, law => law.history())
+    }
 }

@@ -13,11 +13,12 @@ const LARGEST_LAG_FRACTION: f64 = 0.25;
 const QUIET_LAGS: usize = 5;
 /// A correlation below this many times √(log₁₀ n / n) is insignificant.
 const SIGNIFICANT: f64 = 2.0;
-/// Smallest inflation of the variance that is believed. Rounded samples of a
-/// moving impactor have errors that cancel, but where it turns around the error
-/// stands still; with the encoder of the 2003 study, 0.35 gives k its true
-/// spread over repeated simulated impacts.
-const SMALLEST_INFLATION: f64 = 0.35;
+/// Smallest inflation of the variance that is believed. The errors of rounded
+/// samples nearly cancel while the impactor moves, but not where it turns
+/// around, so a cancellation seen on the whole is not counted on: the intervals
+/// err to the wide side (up to twofold for c, with the encoder of the 2003
+/// study).
+const SMALLEST_INFLATION: f64 = 1.0;
 
 /// Covariance of weighted least-squares estimates whose weights need not be
 /// the inverse variances, whose residuals may be correlated in time, and whose
@@ -102,8 +103,7 @@ fn mean_square(values: &[f64]) -> f64 {
 }
 
 /// By how much the correlation of residuals in time widens the variance of
-/// what is estimated from them: λ = Σ ρ(lag) over all lags, 1 for independent
-/// residuals, below 1 for errors that cancel (rounding of a moving encoder).
+/// what is estimated from them: λ = Σ ρ(lag) over all lags, but at least 1.
 ///
 /// # Numerics
 /// Flat-top lag window: correlations count in full up to the lag m after which
