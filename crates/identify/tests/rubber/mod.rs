@@ -1,6 +1,9 @@
 //! Simulated impacts on the rubber half-ball of the 2003 pendulum study, from
 //! the raw signals of its instrument (encoder phases and volts at 200 kHz).
 
+// Each test file uses a part of this.
+#![allow(dead_code)]
+
 use windfall_contact::expression::parse_law;
 use windfall_contact::law::EndRule;
 use windfall_identify::fit::{Estimate, fit_impact};
