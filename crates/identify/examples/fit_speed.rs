@@ -4,6 +4,8 @@
 //! Prints one JSON line each for two and four free parameters, with the keys
 //! that the other programs print.
 
+#![allow(clippy::print_stdout, clippy::print_stderr)]
+
 use std::time::Instant;
 use windfall_contact::law::EndRule;
 use windfall_contact::law_kuwabara_kono::KuwabaraKono;

@@ -167,6 +167,7 @@ pub struct Setting<'a> {
 }
 
 /// The problem in the minimiser's coordinates.
+#[derive(Clone)]
 pub struct Estimator<'a, L, const N: usize, const W: usize, const P: usize> {
     setting: Setting<'a>,
     free: &'a [FreeParameter],
@@ -256,17 +257,38 @@ impl<'a, L: FreeLaw<N>, const N: usize, const W: usize, const P: usize> Estimato
         }
     }
 
+    /// The same problem with force samples understood otherwise.
+    #[must_use]
+    pub fn with_sampling(&self, sampling: Sampling) -> Self {
+        let mut other = self.clone();
+        other.setting.sampling = sampling;
+        other
+    }
+
+    /// Whether force samples near first touch are averages.
+    #[must_use]
+    pub fn averages(&self) -> bool {
+        self.setting.sampling == Sampling::Averaged
+    }
+
     /// Minimum of the cost from the values in `base`.
     pub fn minimise(&mut self, options: &Options<P>) -> Minimum<P> {
         let mut start = [0.0; P];
+        for (u, parameter) in start.iter_mut().zip(self.free) {
+            *u = parameter.coordinate.of(self.base.get(parameter.target));
+        }
+        self.minimise_from(&start, options)
+    }
+
+    /// Minimum of the cost from coordinates `start`.
+    pub fn minimise_from(&mut self, start: &[f64; P], options: &Options<P>) -> Minimum<P> {
         let mut bounds = Bounds::NONE;
         for (i, parameter) in self.free.iter().enumerate() {
             let coordinate = parameter.coordinate;
-            start[i] = coordinate.of(self.base.get(parameter.target));
             bounds.lower[i] = coordinate.of(parameter.lower);
             bounds.upper[i] = coordinate.of(parameter.upper);
         }
-        minimise(self, &start, &bounds, options)
+        minimise(self, start, &bounds, options)
     }
 
     /// Residuals and derivatives of each sample at coordinates `u`.

@@ -1,19 +1,16 @@
 //! The linear regression of eq. (9): force against the law's terms at the
 //! measured displacement and rate. No motion is simulated.
 
+use windfall_contact::any_law::AnyLaw;
 use windfall_contact::law::ContactLaw;
 use windfall_contact::law_kind::{Law, LawKind};
-use windfall_contact::with_law;
 use windfall_numerics::cholesky;
 use windfall_numerics::least_squares::NormalEquations;
 use windfall_signal::impact::{Impact, Series};
 use windfall_signal::kinematics::{smoothing_window, value_at};
-use windfall_signal::polynomial::local_polynomial;
 
 /// Parameters at most that a law is linear in.
 const TERMS: usize = 2;
-/// Order of the local polynomial that gives the displacement rate.
-const SMOOTHING_ORDER: usize = 2;
 
 /// A parameter estimated by regression.
 #[derive(Clone, Debug, PartialEq)]
@@ -48,7 +45,7 @@ fn linear_positions(kind: LawKind) -> Vec<usize> {
 /// F = k X₁ + c X₂,   X₁ = x^1.5,   X₂ = x^0.5 x'    (Kuwabara-Kono)
 /// ```
 ///
-/// The rate is the derivative of a local quadratic over a tenth of the
+/// The rate is the slope of the displacement over a tenth of the
 /// contact: a central difference of counted displacement would bias c towards
 /// zero. Displacement counts from the threshold's onset.
 ///
@@ -65,7 +62,7 @@ pub fn regress(impact: &Impact, law: &Law) -> Option<Vec<RegressionEstimate>> {
     }
     let force = impact.force.as_ref()?;
     let displacement = impact.displacement.as_ref()?;
-    let rate = smooth_rate(impact, displacement)?;
+    let half = smoothing_half(impact, displacement)?;
 
     // Keep to the contact: outside, the terms are zero and the force is noise.
     let mut equations = NormalEquations::<TERMS>::ZERO;
@@ -78,8 +75,8 @@ pub fn regress(impact: &Impact, law: &Law) -> Option<Vec<RegressionEstimate>> {
         if x <= 0.0 {
             continue;
         }
-        let v = value_at(&displacement.times, &rate, time);
-        let terms = with_law!(law, concrete => terms_at(concrete, x, v));
+        let v = local_slope(displacement, time, half);
+        let terms = AnyLaw(*law).evaluate(x, v, 0.0).by_parameter;
         let mut row = [0.0; TERMS];
         for (cell, &position) in row.iter_mut().zip(&positions) {
             *cell = terms[position];
@@ -91,15 +88,32 @@ pub fn regress(impact: &Impact, law: &Law) -> Option<Vec<RegressionEstimate>> {
     solve(&equations, &positions, samples)
 }
 
-fn smooth_rate(impact: &Impact, displacement: &Series) -> Option<Vec<f64>> {
+/// Samples on either side of the local slope.
+fn smoothing_half(impact: &Impact, displacement: &Series) -> Option<usize> {
     let times = &displacement.times;
     let interval = (times.last()? - times.first()?) / (times.len().max(2) - 1) as f64;
-    let window = smoothing_window(impact.end - impact.onset, interval);
-    local_polynomial(times, &displacement.values, window, SMOOTHING_ORDER, 1)
+    let half = smoothing_window(impact.end - impact.onset, interval) / 2;
+    (times.len() > 2 * half).then_some(half)
 }
 
-fn terms_at<const N: usize>(law: &impl ContactLaw<N>, x: f64, v: f64) -> Vec<f64> {
-    law.evaluate(x, v, 0.0).by_parameter.to_vec()
+/// Slope of the straight line through the samples around `time`; on even times
+/// also that of the local quadratic (Savitzky-Golay).
+fn local_slope(series: &Series, time: f64, half: usize) -> f64 {
+    let n = series.times.len();
+    let centre = series.times.partition_point(|t| *t < time);
+    let first = centre.saturating_sub(half).min(n - 2 * half - 1);
+    let window = first..=first + 2 * half;
+    let origin = (series.times[first], series.values[first]);
+    let (mut t1, mut x1, mut t2, mut tx) = (0.0, 0.0, 0.0, 0.0);
+    for i in window {
+        let (t, x) = (series.times[i] - origin.0, series.values[i] - origin.1);
+        t1 += t;
+        x1 += x;
+        t2 += t * t;
+        tx += t * x;
+    }
+    let count = (2 * half + 1) as f64;
+    (tx - t1 * x1 / count) / (t2 - t1 * t1 / count)
 }
 
 fn solve(

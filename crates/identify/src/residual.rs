@@ -65,7 +65,7 @@ where
         let Self {
             model,
             groups,
-            mut rows,
+            rows,
         } = self;
         let first = groups.iter().filter_map(|g| g.times().first()).copied();
         let last = groups.iter().filter_map(|g| g.times().last()).copied();
@@ -75,7 +75,7 @@ where
         let mut reading = Reading {
             model,
             groups,
-            rows: rows.as_deref_mut(),
+            rows,
             end: after,
             sums: Sums::ZERO,
         };

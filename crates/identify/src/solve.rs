@@ -2,6 +2,7 @@
 //! knows the law's concrete type.
 
 use crate::estimator::{Coordinate, Estimator, FreeLaw, FreeParameter, Setting, Values};
+use crate::model::Sampling;
 use crate::residual::Rows;
 use crate::samples::{QUANTITIES, SampleGroup};
 use crate::uncertainty::covariance;
@@ -135,6 +136,8 @@ where
         }
     }
     let (estimator, minimum) = best?;
+    let (minimum, spent) = polished(&estimator, minimum, &options(free, limits));
+    evaluations += spent;
     complete(
         law_count,
         &estimator,
@@ -144,6 +147,28 @@ where
         limits,
         evaluations,
     )
+}
+
+/// The minimum for instantaneous samples nearest to that for averaged ones: the
+/// averaging only made the way there smooth. Where a cusp is in the way, the
+/// smooth minimum stays.
+fn polished<L, const N: usize, const W: usize, const P: usize>(
+    estimator: &Estimator<L, N, W, P>,
+    minimum: Minimum<P>,
+    options: &Options<P>,
+) -> (Minimum<P>, usize)
+where
+    L: FreeLaw<N>,
+{
+    if minimum.stop != Stop::Converged || !estimator.averages() {
+        return (minimum, 0);
+    }
+    let exact = estimator
+        .with_sampling(Sampling::Instantaneous)
+        .minimise_from(&minimum.parameters, options);
+    let good = exact.stop == Stop::Converged && exact.at_bound == minimum.at_bound;
+    let spent = exact.evaluations;
+    (if good { exact } else { minimum }, spent)
 }
 
 fn better<const P: usize>(one: &Minimum<P>, other: &Minimum<P>) -> bool {
@@ -184,11 +209,12 @@ where
     let at: Vec<f64> = free.iter().map(|p| values.get(p.target)).collect();
     let slope = |i: usize| free[i].coordinate.slope(at[i]);
     let count = free.len();
-    let covariance = covariance(&equations, &rows, groups, &limits.offsets, count).map_or(vec![], |c| {
-        (0..count)
-            .map(|i| (0..count).map(|j| c[i][j] * slope(i) * slope(j)).collect())
-            .collect()
-    });
+    let covariance =
+        covariance(&equations, &rows, groups, &limits.offsets, count).map_or(vec![], |c| {
+            (0..count)
+                .map(|i| (0..count).map(|j| c[i][j] * slope(i) * slope(j)).collect())
+                .collect()
+        });
     Some(Solution {
         law: values.law[..law_count].to_vec(),
         free: at,

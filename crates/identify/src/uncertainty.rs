@@ -129,7 +129,11 @@ pub fn inflation(residuals: &[f64]) -> f64 {
     let (mut last, mut quiet) = (0, 0);
     for lag in 1..=limit {
         correlations.push(correlation(lag));
-        quiet = if correlations[lag - 1].abs() < significant { quiet + 1 } else { 0 };
+        quiet = if correlations[lag - 1].abs() < significant {
+            quiet + 1
+        } else {
+            0
+        };
         if quiet == 0 {
             last = lag;
         }

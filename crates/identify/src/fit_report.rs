@@ -1,0 +1,225 @@
+//! From the minimiser's solution to estimates with intervals and findings.
+
+use crate::error::Error;
+use crate::estimator::Target;
+use crate::finding::Finding;
+use crate::fit_plan::{Plan, nuisance_name, sample_count, series};
+use crate::fit_types::{Estimate, Fit, QuantityFit};
+use crate::rig::Rig;
+use crate::samples::Quantity;
+use crate::simulate::simulate_rig;
+use crate::solve::Solution;
+use crate::uncertainty::runs_test;
+use statrs::distribution::{ContinuousCDF, StudentsT};
+use windfall_contact::law_kind::Law;
+use windfall_contact::restitution::nominal_restitution;
+use windfall_numerics::least_squares::Stop;
+
+/// Correlation above which two parameters are reported as inseparable.
+const HIGH_CORRELATION: f64 = 0.99;
+/// Runs-test score below which residuals are called structured.
+const STRUCTURED_Z: f64 = -5.0;
+/// Residuals this many times the noise are called a misfit.
+const MISFIT_RATIO: f64 = 2.0;
+
+impl Plan<'_> {
+    pub(crate) fn report(&self, solution: &Solution, rig: &Rig) -> Result<Fit, Error> {
+        let law = self.problem.kind.with_parameters(&solution.law)?;
+        let samples: usize = self.groups.iter().map(sample_count).sum();
+        let estimates = self.estimates(solution, &law, samples);
+        let law_count = self.problem.free_positions().count();
+        let simulated = simulate_rig(&law, rig, solution.velocity, self.options.end)?;
+        let mut fit = Fit {
+            law,
+            parameters: estimates[..law_count].to_vec(),
+            nuisances: estimates[law_count..].to_vec(),
+            correlations: correlations(&solution.covariance),
+            cost: solution.cost,
+            residual_norm: solution.cost.sqrt(),
+            samples,
+            evaluations: solution.evaluations,
+            converged: solution.stop == Stop::Converged,
+            quantities: self.quantity_fits(solution),
+            regression: self.regression_estimates(&law),
+            simulated,
+            velocity: solution.velocity,
+            onset: self.impact.onset + solution.onset,
+            offset: solution.offset,
+            findings: self.findings.clone(),
+        };
+        let remarks = self.remarks(solution, &fit);
+        fit.findings.extend(remarks);
+        Ok(fit)
+    }
+
+    fn name_and_unit(&self, target: Target, law: &Law) -> (String, String) {
+        match target {
+            Target::Law(i) => {
+                let name = self.problem.kind.describe().parameters[i].name;
+                (name.to_owned(), law.unit_of(i))
+            }
+            other => {
+                let (name, unit) = nuisance_name(other);
+                (name.to_owned(), unit.to_owned())
+            }
+        }
+    }
+
+    pub(crate) fn quantile(&self, samples: usize) -> f64 {
+        let freedom = (samples - self.free.len()) as f64;
+        let student = StudentsT::new(0.0, 1.0, freedom);
+        student.map_or(f64::INFINITY, |t| {
+            t.inverse_cdf(0.5 * (1.0 + self.options.confidence))
+        })
+    }
+
+    fn estimates(&self, solution: &Solution, law: &Law, samples: usize) -> Vec<Estimate> {
+        let quantile = self.quantile(samples);
+        self.free
+            .iter()
+            .enumerate()
+            .map(|(i, parameter)| {
+                let (name, unit) = self.name_and_unit(parameter.target, law);
+                let sd = solution
+                    .covariance
+                    .get(i)
+                    .map_or(f64::INFINITY, |row| row[i].max(0.0).sqrt());
+                // The onset is told on the recording's clock.
+                let value = match parameter.target {
+                    Target::Onset => self.impact.onset + solution.free[i],
+                    _ => solution.free[i],
+                };
+                Estimate {
+                    name,
+                    value,
+                    sd,
+                    low: value - quantile * sd,
+                    high: value + quantile * sd,
+                    unit,
+                }
+            })
+            .collect()
+    }
+
+    fn regression_estimates(&self, law: &Law) -> Vec<Estimate> {
+        let described = self.problem.kind.describe().parameters;
+        self.regression
+            .iter()
+            .map(|r| Estimate {
+                name: described[r.position].name.to_owned(),
+                value: r.value,
+                sd: r.standard_error,
+                low: r.value - 2.0 * r.standard_error,
+                high: r.value + 2.0 * r.standard_error,
+                unit: law.unit_of(r.position),
+            })
+            .collect()
+    }
+
+    fn quantity_fits(&self, solution: &Solution) -> Vec<QuantityFit> {
+        let mut out = Vec::new();
+        for (g, group) in self.groups.iter().enumerate() {
+            for quantity in Quantity::ALL.into_iter().filter(|q| group.holds(*q)) {
+                let residuals = &solution.rows.residuals[g][quantity as usize];
+                let square: f64 = residuals.iter().map(|r| r * r).sum();
+                out.push(QuantityFit {
+                    quantity,
+                    samples: residuals.len(),
+                    weight: group.weight(quantity),
+                    noise: series(self.impact, quantity).map_or(f64::NAN, |s| s.noise),
+                    rms_residual: (square / residuals.len().max(1) as f64).sqrt(),
+                    runs: runs_test(residuals),
+                });
+            }
+        }
+        out.sort_by_key(|q| q.quantity);
+        out
+    }
+
+    fn remarks(&self, solution: &Solution, fit: &Fit) -> Vec<Finding> {
+        let mut out = Vec::new();
+        if !fit.converged {
+            out.push(Finding::NoConvergence {
+                evaluations: fit.evaluations,
+            });
+        }
+        let estimates: Vec<_> = fit.parameters.iter().chain(&fit.nuisances).collect();
+        for (i, side) in solution
+            .at_bound
+            .iter()
+            .enumerate()
+            .filter(|(_, s)| **s != 0)
+        {
+            let lower = *side < 0;
+            out.push(Finding::AtBound {
+                parameter: estimates[i].name.clone(),
+                side: if lower { "lower" } else { "upper" },
+                bound: if lower {
+                    self.free[i].lower
+                } else {
+                    self.free[i].upper
+                },
+                unit: estimates[i].unit.clone(),
+            });
+        }
+        if solution.covariance.is_empty() {
+            out.push(Finding::Singular);
+        }
+        for i in 0..fit.correlations.len() {
+            for j in 0..i {
+                let correlation = fit.correlations[i][j];
+                if correlation.abs() > HIGH_CORRELATION {
+                    out.push(Finding::Correlated {
+                        first: estimates[j].name.clone(),
+                        second: estimates[i].name.clone(),
+                        correlation,
+                    });
+                }
+            }
+        }
+        out.extend(fit.quantities.iter().flat_map(quantity_remarks));
+        if let Some(nominal) = nominal_restitution(&fit.law) {
+            out.push(Finding::NominalRestitution {
+                nominal,
+                delivered: fit.simulated.restitution,
+            });
+        }
+        out
+    }
+}
+
+fn quantity_remarks(found: &QuantityFit) -> Vec<Finding> {
+    let mut out = Vec::new();
+    let ratio = found.rms_residual / found.noise;
+    if ratio > MISFIT_RATIO {
+        out.push(Finding::Misfit {
+            quantity: found.quantity.name(),
+            ratio,
+            noise: found.noise,
+        });
+    }
+    if let Some(runs) = found.runs.filter(|r| r.z < STRUCTURED_Z) {
+        out.push(Finding::StructuredResiduals {
+            quantity: found.quantity.name(),
+            z: runs.z,
+        });
+    }
+    out
+}
+
+fn correlations(covariance: &[Vec<f64>]) -> Vec<Vec<f64>> {
+    let sd = |i: usize| covariance[i][i].sqrt();
+    let n = covariance.len();
+    (0..n)
+        .map(|i| {
+            let entry = |j| {
+                if i == j {
+                    1.0
+                } else {
+                    covariance[i][j] / (sd(i) * sd(j))
+                }
+            };
+            (0..n).map(entry).collect()
+        })
+        .collect()
+}
