@@ -3,12 +3,11 @@
 use crate::error::Error;
 use crate::finding::Finding;
 use crate::fit_plan::{Plan, plan};
-use crate::fit_types::Fit;
 use crate::problem::{FitOptions, LawProblem};
 use crate::rig::Rig;
 use windfall_signal::impact::Impact;
 
-pub use crate::fit_types::{Estimate, QuantityFit};
+pub use crate::fit_types::{Estimate, Fit, QuantityFit};
 
 /// Fits `problem` to `impact` as measured on `rig`.
 ///

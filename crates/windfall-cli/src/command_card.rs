@@ -1,7 +1,7 @@
 //! `windfall card`
 
-use crate::args::Format;
 use crate::args::{CardAction, CardArguments};
+use crate::args_format::Format;
 use crate::show::{write_json, write_result};
 use windfall::workflow_card::{csv_of_laws, law_cards, text_of_laws};
 

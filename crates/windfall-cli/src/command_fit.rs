@@ -1,33 +1,30 @@
 //! `windfall fit`
 
-use crate::args::{FitArguments, Format};
+use crate::args_fit::{FitArguments, RecordingArguments};
+use crate::args_format::Format;
 use crate::show::{message, write_json, write_result};
 use indicatif::{ProgressBar, ProgressStyle};
 use std::io::IsTerminal;
 use windfall::error::Error;
-use windfall::workflow_fit::{FitRequest, Reuse, fit_campaign};
+use windfall::request_fit::{FitRequest, Reuse};
+use windfall::request_recording::RecordingRequest;
+use windfall::workflow_fit::{fit_campaign, fit_recording};
 use windfall::write_csv::csv_of_campaign;
 use windfall::write_text::text_of_campaign;
 
 /// Fits a campaign and shows the result.
 pub fn run(arguments: &FitArguments) -> anyhow::Result<()> {
-    let request = FitRequest {
-        laws: arguments.laws.clone(),
-        free: arguments.free.clone(),
-        quantities: arguments.quantities.clone(),
-        group: arguments.group.clone(),
-        reuse: if arguments.refit {
-            Reuse::Nothing
-        } else {
-            Reuse::Unchanged
-        },
-        threads: arguments.threads,
-    };
+    let request = fit_request(arguments);
     let bar = progress_bar();
-    let outcome = fit_campaign(&arguments.directory, &request, &|done, all| {
+    let progress = |done: usize, all: usize| {
         bar.set_length(all as u64);
         bar.set_position(done as u64);
-    });
+    };
+    let path = &arguments.directory;
+    let outcome = match recording_request(&arguments.recording) {
+        Some(recording) => fit_recording(path, &recording, &request, &progress),
+        None => fit_campaign(path, &request, &progress),
+    };
     bar.finish_and_clear();
     let outcome = outcome?;
     match arguments.format {
@@ -52,8 +49,47 @@ pub fn run(arguments: &FitArguments) -> anyhow::Result<()> {
         }
         .into());
     }
-    message(&status_line(&outcome.status));
+    if arguments.recording.rig.is_none() {
+        message(&status_line(&outcome.status));
+    }
     Ok(())
+}
+
+fn fit_request(arguments: &FitArguments) -> FitRequest {
+    FitRequest {
+        laws: arguments.laws.clone(),
+        free: arguments.free.clone(),
+        quantities: arguments.quantities.clone(),
+        weights: arguments.weights.clone(),
+        initial_velocity: arguments.initial_velocity.clone(),
+        onset: arguments.onset.clone(),
+        displacement_offset: arguments.displacement_offset.clone(),
+        end: arguments.end.clone(),
+        group: arguments.group.clone(),
+        reuse: match arguments.refit {
+            true => Reuse::Nothing,
+            false => Reuse::Unchanged,
+        },
+        threads: arguments.threads,
+    }
+}
+
+fn recording_request(arguments: &RecordingArguments) -> Option<RecordingRequest> {
+    Some(RecordingRequest {
+        rig: arguments.rig.clone()?,
+        inertia: arguments.inertia.clone(),
+        arm: arguments.arm.clone(),
+        mass: arguments.mass.clone(),
+        centre_of_mass: arguments.centre_of_mass.clone(),
+        gravity: arguments.gravity.clone(),
+        driving_acceleration: arguments.driving_acceleration.clone(),
+        channels: arguments.channels.clone(),
+        time: arguments.time.clone(),
+        sampling_rate: arguments.sampling_rate.clone(),
+        counts_per_revolution: arguments.counts_per_revolution,
+        count_length: arguments.count_length.clone(),
+        threshold: arguments.threshold.clone(),
+    })
 }
 
 fn status_line(status: &windfall::outcome::StatusOutcome) -> String {

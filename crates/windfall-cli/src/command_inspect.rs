@@ -1,6 +1,7 @@
 //! `windfall inspect`
 
-use crate::args::{Format, InspectArguments};
+use crate::args::InspectArguments;
+use crate::args_format::Format;
 use crate::show::{message, write_json, write_result};
 use windfall::workflow_inspect::inspect_recording;
 use windfall::write_inspection::{csv_of_inspections, text_of_inspection};

@@ -1,6 +1,7 @@
 //! `windfall new`
 
-use crate::args::{Format, NewArguments, NewKind};
+use crate::args::{NewArguments, NewKind};
+use crate::args_format::Format;
 use crate::show::{write_json, write_result};
 use windfall::workflow_new::{TemplateKind, write_template};
 

@@ -1,8 +1,9 @@
 //! `windfall simulate`
 
-use crate::args::{
-    End, Format, SimulateArguments, SimulateCarriageArguments, SimulateEvent,
-    SimulateImpactArguments, SimulatePendulumArguments,
+use crate::args_format::Format;
+use crate::args_simulate::{
+    End, SimulateArguments, SimulateCarriageArguments, SimulateEvent, SimulateImpactArguments,
+    SimulatePendulumArguments,
 };
 use crate::show::{write_json, write_result};
 use std::path::Path;

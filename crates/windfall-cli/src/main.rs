@@ -4,6 +4,9 @@
 //! Exit status: 0 success, 1 the work failed, 2 the request was wrong.
 
 mod args;
+mod args_fit;
+mod args_format;
+mod args_simulate;
 mod command_card;
 mod command_fit;
 mod command_inspect;

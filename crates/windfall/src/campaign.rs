@@ -90,7 +90,7 @@ pub enum TimePlan {
 pub struct ChannelPlan {
     /// Name of its table in campaign.toml, with brackets.
     pub table: &'static str,
-    /// Line of its table in campaign.toml.
+    /// Line of its table in campaign.toml; 0 where the command line gave it.
     pub line: usize,
     /// What it holds.
     pub quantity: Quantity,

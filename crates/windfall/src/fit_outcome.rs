@@ -3,6 +3,7 @@
 use crate::campaign::ImpactEntry;
 use crate::named::Named;
 use crate::outcome::{EstimateOutcome, FindingOutcome, ImpactOutcome};
+use windfall_contact::restitution::nominal_restitution;
 use windfall_identify::fit::{Estimate, Fit};
 use windfall_identify::problem::LawProblem;
 use windfall_identify::rig::Rig;
@@ -22,6 +23,11 @@ pub fn impact_outcome(
 ) -> ImpactOutcome {
     let fitted = fitted_values(&fit.simulated, fit.velocity, rig.effective_mass());
     let (derived, derived_from) = derived_values(&impact.measured, &fitted);
+    let nominal = nominal_restitution(&fit.law);
+    let mut fitted = fitted;
+    fitted
+        .0
+        .extend(nominal.map(|value| ("nominal_restitution".to_owned(), Some(value))));
     ImpactOutcome {
         id: entry.id.clone(),
         specimen: entry.specimen.clone(),

@@ -90,7 +90,9 @@ pub struct ImpactOutcome {
     pub derived_sd: Named<f64>,
     /// "signal" or "fit" for each entry of `derived`.
     pub derived_from: Named<String>,
-    /// The same quantities in the motion under the fitted law.
+    /// The same quantities in the motion under the fitted law; `restitution` is
+    /// what the law delivers. A law that takes a restitution as a parameter has
+    /// it here too, as `nominal_restitution`.
     pub fitted: Named<Option<f64>>,
     /// What a reader must know.
     pub findings: Vec<FindingOutcome>,

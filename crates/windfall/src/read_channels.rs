@@ -10,14 +10,37 @@ use windfall_signal::kinematics::Encoder;
 use windfall_signal::recording::Quantity;
 
 /// What a channel of a campaign may hold.
-struct Kind {
-    table: &'static str,
-    quantity: Quantity,
+#[derive(Clone, Copy, Debug)]
+pub struct Kind {
+    /// Its table in campaign.toml, with brackets.
+    pub table: &'static str,
+    /// What it holds.
+    pub quantity: Quantity,
     /// SI unit; empty where samples are taken as they are.
-    unit: &'static str,
+    pub unit: &'static str,
 }
 
-const KINDS: [Kind; 8] = [
+impl Kind {
+    /// Name of the channel: that of its table without "channels".
+    #[must_use]
+    pub fn name(&self) -> &'static str {
+        let (_, name) = self.table.rsplit_once('.').unwrap_or_default();
+        name.trim_end_matches(']')
+    }
+
+    /// SI unit of the sensitivity of a sensor of this quantity.
+    #[must_use]
+    pub fn sensitivity_unit(&self) -> String {
+        match self.unit {
+            "m/s" => "V s/m".to_owned(),
+            "m/s^2" => "V s^2/m".to_owned(),
+            unit => format!("V/{unit}"),
+        }
+    }
+}
+
+/// The channels that a campaign may have.
+pub const KINDS: [Kind; 8] = [
     Kind {
         table: "[channels.force]",
         quantity: Quantity::Force,
@@ -177,12 +200,7 @@ fn sensitivity_value(
     text: &Spanned<QuantityText>,
     needed: &Needed,
 ) -> Result<f64, Error> {
-    let unit = match kind.unit {
-        "m/s" => "V s/m".to_owned(),
-        "m/s^2" => "V s^2/m".to_owned(),
-        unit => format!("V/{unit}"),
-    };
-    let value = parse_as(&text.get_ref().0, &unit)
+    let value = parse_as(&text.get_ref().0, &kind.sensitivity_unit())
         .map_err(|error| bad_unit(source, text, needed, &error))?;
     if value == 0.0 {
         let problem = "a sensitivity cannot be zero".to_owned();

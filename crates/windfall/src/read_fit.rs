@@ -13,6 +13,25 @@ use windfall_identify::samples::Quantity;
 
 const TABLE: &str = "[fit]";
 
+/// Words for the weights of a cost function.
+pub const WEIGHTS: [(&str, Weighting); 2] = [
+    ("inverse-variance", Weighting::InverseVariance),
+    ("inverse-mean", Weighting::InverseMean),
+];
+
+/// Words for the end of contact.
+pub const ENDS: [(&str, EndRule); 2] = [
+    ("force-zero", EndRule::ForceZero),
+    ("gap-zero", EndRule::GapZero),
+];
+
+/// Words for what is done about a quantity that is not of interest in itself.
+pub const TREATMENTS: [(&str, Treatment); 3] = [
+    ("auto", Treatment::Auto),
+    ("free", Treatment::Free),
+    ("fixed", Treatment::Fixed),
+];
+
 /// What a campaign fits.
 ///
 /// # Errors
@@ -24,27 +43,14 @@ pub fn fit_plan(source: &TomlSource, file: &FitFile) -> Result<FitPlan, Error> {
     if let Some(words) = &file.quantities {
         options.quantities = quantities(source, words)?;
     }
-    let weights = [
-        ("inverse-variance", Weighting::InverseVariance),
-        ("inverse-mean", Weighting::InverseMean),
-    ];
-    if let Some(weights) = choice(source, file.weights.as_ref(), (TABLE, "weights"), &weights)? {
+    if let Some(weights) = choice(source, file.weights.as_ref(), (TABLE, "weights"), &WEIGHTS)? {
         options.weighting = weights;
     }
-    let ends = [
-        ("force-zero", EndRule::ForceZero),
-        ("gap-zero", EndRule::GapZero),
-    ];
-    if let Some(end) = choice(source, file.end.as_ref(), (TABLE, "end"), &ends)? {
+    if let Some(end) = choice(source, file.end.as_ref(), (TABLE, "end"), &ENDS)? {
         options.end = end;
     }
     let treatment = |value: Option<&Spanned<String>>, key| {
-        let words = [
-            ("auto", Treatment::Auto),
-            ("free", Treatment::Free),
-            ("fixed", Treatment::Fixed),
-        ];
-        Ok(choice(source, value, (TABLE, key), &words)?.unwrap_or(Treatment::Auto))
+        Ok(choice(source, value, (TABLE, key), &TREATMENTS)?.unwrap_or(Treatment::Auto))
     };
     options.initial_velocity = treatment(file.initial_velocity.as_ref(), "initial_velocity")?;
     options.onset = treatment(file.onset.as_ref(), "onset")?;

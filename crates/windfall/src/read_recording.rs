@@ -99,10 +99,10 @@ fn columns_of(sources: &[Source]) -> (Vec<String>, Vec<String>) {
         {
             if !columns.contains(name) {
                 columns.push(name.clone());
-                asked_by.push(format!(
-                    " (campaign.toml, line {}, {})",
-                    source.plan.line, source.plan.table
-                ));
+                asked_by.push(match source.plan.line {
+                    0 => format!(" (asked for as {})", source.plan.table),
+                    line => format!(" (campaign.toml, line {line}, {})", source.plan.table),
+                });
             }
         }
     }

@@ -1,6 +1,8 @@
 //! `windfall simulate` as it is asked for: texts with units → SI.
 
 use crate::error::Error;
+use crate::option_value::{chosen, positive, quantity};
+use crate::read_fit::ENDS;
 use crate::read_rig::STANDARD_GRAVITY;
 use crate::simulate_campaign::{Batch, SimulatedCampaign, write_simulated_campaign};
 use crate::toml_source::suggestion;
@@ -11,7 +13,6 @@ use std::path::Path;
 use windfall_contact::law::EndRule;
 use windfall_contact::law_kind::Law;
 use windfall_identify::rig::{Carriage, Pendulum, Rig};
-use windfall_numerics::unit::parse_as;
 use windfall_signal::instrument::pendulum_instrument;
 
 /// A free body, or one on a line, strikes once.
@@ -98,7 +99,13 @@ pub fn simulate_pendulum_motion(
     let rig = Rig::Pendulum(pendulum(request)?);
     let velocity = positive("--velocity", &request.velocity, "m/s")?;
     let rate = positive("--rate", rate, "Hz")?;
-    simulate_motion(&law, &rig, velocity, rate, end_rule(&request.end)?)
+    simulate_motion(
+        &law,
+        &rig,
+        velocity,
+        rate,
+        chosen("--end", &request.end, &ENDS)?,
+    )
 }
 
 /// Writes a campaign of simulated recordings; returns how many.
@@ -132,7 +139,7 @@ pub fn simulate_pendulum_recordings(
         ),
         rig,
         velocity: positive("--velocity", &request.velocity, "m/s")?,
-        end: end_rule(&request.end)?,
+        end: chosen("--end", &request.end, &ENDS)?,
         instrument,
         seed: recordings.seed,
     };
@@ -164,7 +171,7 @@ fn carriage_event(request: &CarriageRequest) -> Result<(Law, Rig, f64, EndRule),
         complete_law(&request.law)?,
         rig,
         velocity,
-        end_rule(&request.end)?,
+        chosen("--end", &request.end, &ENDS)?,
     ))
 }
 
@@ -176,34 +183,6 @@ fn pendulum(request: &PendulumRequest) -> Result<Pendulum, Error> {
         centre_of_mass: quantity("--centre-of-mass", &request.centre_of_mass, "m")?,
         gravity: STANDARD_GRAVITY,
     })
-}
-
-fn quantity(option: &str, text: &str, unit: &str) -> Result<f64, Error> {
-    parse_as(text, unit).map_err(|error| Error::OptionInvalid {
-        option: option.to_owned(),
-        problem: error.to_string(),
-    })
-}
-
-fn positive(option: &str, text: &str, unit: &str) -> Result<f64, Error> {
-    match quantity(option, text, unit)? {
-        value if value > 0.0 => Ok(value),
-        _ => Err(Error::OptionInvalid {
-            option: option.to_owned(),
-            problem: format!("\"{text}\" must be above zero"),
-        }),
-    }
-}
-
-fn end_rule(text: &str) -> Result<EndRule, Error> {
-    match text {
-        "force-zero" => Ok(EndRule::ForceZero),
-        "gap-zero" => Ok(EndRule::GapZero),
-        other => Err(Error::OptionInvalid {
-            option: "--end".to_owned(),
-            problem: format!("\"{other}\" is no end of contact; expected force-zero or gap-zero"),
-        }),
-    }
 }
 
 /// "k=133165" and "c=\"263 N s/m^1.5\"" → one standard deviation per parameter.

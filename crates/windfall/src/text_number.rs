@@ -27,6 +27,19 @@ pub fn spread_text(mean: f64, sd: Option<f64>, cv: Option<f64>) -> String {
     }
 }
 
+/// "11.35 ± 3.5 %": the standard deviation in percent of the mean.
+#[must_use]
+pub fn spread_percent(mean: f64, cv: Option<f64>) -> String {
+    match cv {
+        Some(cv) if cv.is_finite() && cv > 0.0 => {
+            let by_sd = decimals_for(cv * mean.abs(), SD_DIGITS);
+            let decimals = by_sd.min(decimals_for(mean.abs(), PLAIN_DIGITS));
+            format!("{mean:.decimals$} ± {} %", percent(cv))
+        }
+        _ => plain(mean),
+    }
+}
+
 /// A number with four significant digits, never fewer than its whole digits.
 #[must_use]
 pub fn plain(value: f64) -> String {
@@ -77,6 +90,9 @@ mod tests {
             spread_text(0.478143, Some(0.0123), Some(0.0257)),
             "0.478 ± 0.012 (2.6 %)"
         );
+        assert_eq!(spread_percent(11.352, Some(0.035)), "11.35 ± 3.5 %");
+        assert_eq!(spread_percent(753_599.2, Some(0.18)), "753599 ± 18 %");
+        assert_eq!(spread_percent(0.466718, Some(1e-4)), "0.4667 ± 0.010 %");
         assert_eq!(plain(0.0), "0");
         assert_eq!(plain(1.234e-9), "1.234e-9");
         assert_eq!(plain(466_143.599), "466144");

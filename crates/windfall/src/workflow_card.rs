@@ -2,7 +2,7 @@
 
 use crate::error::Error;
 use crate::write_csv::csv_text;
-use crate::write_text::table_text;
+use crate::write_table::table_text;
 use serde::Serialize;
 use std::fmt::Write;
 use windfall_contact::law_kind::LawKind;

@@ -1,4 +1,4 @@
-//! `windfall fit DIR`: the main job, recordings → parameters, table, store.
+//! `windfall fit`: the main job, recordings → parameters, table, store.
 
 use crate::campaign::{Campaign, ImpactEntry};
 use crate::error::Error;
@@ -8,46 +8,17 @@ use crate::fit_mass::{RigFound, find_rig};
 use crate::outcome::{CampaignOutcome, FailureOutcome, ImpactOutcome, StatusOutcome};
 use crate::provenance::{VERSION, time_now};
 use crate::read_campaign::{CAMPAIGN_FILE, read_campaign};
-use crate::read_fit::{quantities_named, unknown_parameter};
 use crate::read_recording::recording_path;
+use crate::request_fit::{FitRequest, Reuse, apply_request};
+use crate::request_recording::{RecordingRequest, campaign_of_file};
 use crate::store::{RunRecord, find_results, latest_run, write_run};
 use crate::summary::{summarise, summarise_groups};
-use crate::toml_source::suggestion;
 use rayon::prelude::*;
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
-use windfall_contact::expression::parse_law;
 
 /// Name of the store in a campaign directory.
 pub const STORE_FILE: &str = "results.sqlite";
-
-/// What `fit` is asked for beyond what the campaign says.
-#[derive(Clone, Debug, Default)]
-pub struct FitRequest {
-    /// Laws in place of those of the campaign; none keeps them.
-    pub laws: Vec<String>,
-    /// Parameters to estimate although they have a value; none keeps those of
-    /// the campaign.
-    pub free: Vec<String>,
-    /// Quantities in place of those of the campaign; none keeps them.
-    pub quantities: Vec<String>,
-    /// Column to group by in place of the campaign's.
-    pub group: Option<String>,
-    /// What becomes of results in the store.
-    pub reuse: Reuse,
-    /// Number of threads; all cores when `None`. It never changes a result.
-    pub threads: Option<usize>,
-}
-
-/// What becomes of results in the store.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum Reuse {
-    /// Impacts that have not changed are answered from it.
-    #[default]
-    Unchanged,
-    /// Every impact is fitted again.
-    Nothing,
-}
 
 /// Called with the number of impacts done and of all impacts.
 pub type Progress<'a> = &'a (dyn Fn(usize, usize) + Sync);
@@ -73,13 +44,49 @@ pub fn fit_campaign(
         false => read_campaign(directory)?,
     };
     apply_request(&mut campaign, request)?;
+    on_threads(request, || fit(&campaign, request, progress))
+}
+
+/// Fits the impact in one recording that belongs to no campaign; what it needs
+/// to know of rig and channels comes with the request. Nothing is written.
+///
+/// # Errors
+/// The request is wrong, or nothing shows the mass of the rig. A recording that
+/// cannot be used is reported in the outcome.
+pub fn fit_recording(
+    file: &Path,
+    recording: &RecordingRequest,
+    request: &FitRequest,
+    progress: Progress,
+) -> Result<CampaignOutcome, Error> {
+    let mut campaign = campaign_of_file(file, recording)?;
+    apply_request(&mut campaign, request)?;
+    on_threads(request, || {
+        let rig = find_rig(&campaign)?;
+        let task = |law| FitTask {
+            impact: 0,
+            law,
+            key: None,
+            problem: None,
+        };
+        let tasks: Vec<FitTask> = (0..campaign.fit.laws.len()).map(task).collect();
+        let stored = BTreeMap::new();
+        let results = fit_tasks(&campaign, &rig, &tasks, &stored, progress);
+        Ok(assemble(&campaign, &rig, &tasks, results, &stored).shown)
+    })
+}
+
+fn on_threads<T: Send>(
+    request: &FitRequest,
+    work: impl FnOnce() -> Result<T, Error> + Send,
+) -> Result<T, Error> {
     let threads = request.threads.unwrap_or(0);
     let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build();
     let pool = pool.map_err(|error| Error::OptionInvalid {
         option: format!("--threads {threads}"),
         problem: error.to_string(),
     })?;
-    pool.install(|| fit(&campaign, request, progress))
+    pool.install(work)
 }
 
 /// The campaign around a recording, with the impacts of that recording only.
@@ -97,7 +104,8 @@ fn campaign_of_recording(file: &Path) -> Result<Campaign, Error> {
     let directory = above.ok_or_else(|| {
         unusable(
             "no campaign.toml above this recording says what rig and channels it has; \
-             `windfall new pendulum DIR` writes a template, the recording goes into DIR/raw"
+             say it with --rig, --law, --channel … (`windfall fit --help` has an example), or \
+             write a template with `windfall new pendulum DIR` and put the recording into DIR/raw"
                 .to_owned(),
         )
     })?;
@@ -114,56 +122,6 @@ fn campaign_of_recording(file: &Path) -> Result<Campaign, Error> {
         )));
     }
     Ok(campaign)
-}
-
-fn apply_request(campaign: &mut Campaign, request: &FitRequest) -> Result<(), Error> {
-    let invalid = |option: String, problem: String| Error::OptionInvalid { option, problem };
-    if !request.laws.is_empty() {
-        let laws = request.laws.iter().map(|text| {
-            parse_law(text).map_err(|error| invalid(format!("--law {text}"), error.to_string()))
-        });
-        campaign.fit.laws = laws.collect::<Result<_, _>>()?;
-        // The campaign's list may name parameters of laws that are not fitted now.
-        let laws = &campaign.fit.laws;
-        campaign
-            .fit
-            .free
-            .retain(|name| unknown_parameter(std::slice::from_ref(name), laws).is_none());
-    }
-    if !request.free.is_empty() {
-        if let Some((index, problem)) = unknown_parameter(&request.free, &campaign.fit.laws) {
-            return Err(invalid(format!("--free {}", request.free[index]), problem));
-        }
-        campaign.fit.free.clone_from(&request.free);
-    }
-    if !request.quantities.is_empty() {
-        let words = request.quantities.iter().map(String::as_str);
-        campaign.fit.options.quantities = quantities_named(words)
-            .map_err(|(word, problem)| invalid(format!("--quantities {word}"), problem))?;
-    }
-    if let Some(group) = &request.group {
-        let names = group_columns(campaign);
-        if !names.contains(&group.as_str()) {
-            let problem = format!(
-                "neither specimens.csv nor impacts.csv has this column{}; they have: {}",
-                suggestion(group, names.iter().copied()),
-                names.join(", ")
-            );
-            return Err(invalid(format!("--group {group}"), problem));
-        }
-        campaign.group = Some(group.clone());
-    }
-    Ok(())
-}
-
-fn group_columns(campaign: &Campaign) -> Vec<&str> {
-    let specimen = campaign.specimens.first().map_or(&[][..], |s| &s.cells);
-    let impact = campaign.impacts.first().map_or(&[][..], |i| &i.cells);
-    specimen
-        .iter()
-        .chain(impact)
-        .map(|(name, _)| name.as_str())
-        .collect()
 }
 
 fn fit(

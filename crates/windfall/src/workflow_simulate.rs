@@ -3,7 +3,7 @@
 use crate::error::Error;
 use crate::named::Named;
 use crate::write_csv::csv_text;
-use crate::write_text::table_text;
+use crate::write_table::table_text;
 use serde::Serialize;
 use windfall_contact::expression::LawExpression;
 use windfall_contact::expression::parse_law;

@@ -34,6 +34,7 @@ pub fn csv_of_campaign(outcome: &CampaignOutcome) -> Result<String, Error> {
         header.extend(["", "_sd", "_low", "_high", "_unit"].map(|end| format!("{name}{end}")));
     }
     header.extend(DERIVED.map(|(_, column)| column.to_owned()));
+    header.extend(["restitution_delivered", "restitution_nominal"].map(str::to_owned));
     header.extend(["cost", "samples", "converged", "findings", "simulated"].map(str::to_owned));
     let rows = outcome
         .impacts
@@ -88,6 +89,10 @@ fn row_of(impact: &ImpactOutcome, names: &[&str], outcome: &CampaignOutcome) -> 
     }
     for (name, _) in DERIVED {
         row.push(number(impact.derived.get(name).copied().flatten()));
+    }
+    // What the fitted law gives, beside what it takes as a parameter.
+    for name in ["restitution", "nominal_restitution"] {
+        row.push(number(impact.fitted.get(name).copied().flatten()));
     }
     let codes: Vec<&str> = impact
         .findings

@@ -4,7 +4,7 @@ use crate::error::Error;
 use crate::text_number::plain;
 use crate::workflow_inspect::{ColumnInspection, Inspection};
 use crate::write_csv::csv_text;
-use crate::write_text::table_text;
+use crate::write_table::table_text;
 use std::fmt::Write;
 
 /// An inspection as text: a table of columns, then what looks wrong.

@@ -7,7 +7,8 @@
 
 use std::path::{Path, PathBuf};
 use windfall::outcome::CampaignOutcome;
-use windfall::workflow_fit::{FitRequest, fit_campaign};
+use windfall::request_fit::FitRequest;
+use windfall::workflow_fit::fit_campaign;
 
 fn fixtures() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/fixtures")

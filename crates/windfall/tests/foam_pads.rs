@@ -8,7 +8,8 @@
 
 use std::path::{Path, PathBuf};
 use windfall::outcome::ImpactOutcome;
-use windfall::workflow_fit::{FitRequest, fit_campaign};
+use windfall::request_fit::FitRequest;
+use windfall::workflow_fit::fit_campaign;
 
 fn data_folder() -> PathBuf {
     let workspace = Path::new(env!("CARGO_MANIFEST_DIR")).join("../..");

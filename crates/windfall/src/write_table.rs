@@ -1,0 +1,111 @@
+//! Aligned tables for a terminal, none wider than a page.
+
+use comfy_table::{CellAlignment, ContentArrangement, LineStyle, Table, TableStyle};
+
+/// Widest line of a table or a paragraph; characters.
+pub const PAGE: usize = 100;
+
+/// What a column takes beside its text; characters.
+const GAP: usize = 3;
+
+/// An aligned table; columns not in `left` are set flush right.
+#[must_use]
+pub fn table_text(
+    header: &[String],
+    rows: impl IntoIterator<Item = Vec<String>>,
+    left: &[usize],
+) -> String {
+    let line = LineStyle::none().fill('─').junction('─');
+    let mut table = Table::new();
+    table.load_style(TableStyle::new().header_separator(line));
+    table.set_content_arrangement(ContentArrangement::Disabled);
+    table.set_header(header);
+    for row in rows {
+        table.add_row(row);
+    }
+    for (index, column) in table.column_iter_mut().enumerate() {
+        if !left.contains(&index) {
+            column.set_cell_alignment(CellAlignment::Right);
+        }
+    }
+    table.trim_fmt()
+}
+
+/// A table as [`table_text`], in as many parts as it takes to stay within a
+/// page. Every part begins with the first column.
+#[must_use]
+pub fn page_tables(header: &[String], rows: &[Vec<String>], left: &[usize]) -> String {
+    let width = |column: usize| {
+        let cells = rows.iter().map(|row| row[column].chars().count());
+        GAP + cells
+            .chain([header[column].chars().count()])
+            .max()
+            .unwrap_or(0)
+    };
+    let mut parts: Vec<Vec<usize>> = vec![vec![0]];
+    let mut used = width(0);
+    for column in 1..header.len() {
+        let part = parts.len() - 1;
+        if used + width(column) > PAGE && parts[part].len() > 1 {
+            parts.push(vec![0, column]);
+            used = width(0) + width(column);
+        } else {
+            parts[part].push(column);
+            used += width(column);
+        }
+    }
+    let tables = parts.iter().map(|columns| {
+        let pick = |row: &[String]| columns.iter().map(|&i| row[i].clone()).collect::<Vec<_>>();
+        let left: Vec<usize> = (0..columns.len())
+            .filter(|&i| left.contains(&columns[i]))
+            .collect();
+        table_text(&pick(header), rows.iter().map(|row| pick(row)), &left)
+    });
+    tables.collect::<Vec<_>>().join("\n\n")
+}
+
+/// A paragraph broken into lines of a page, all but the first indented.
+#[must_use]
+pub fn paragraph(text: &str, indent: usize) -> String {
+    let mut lines: Vec<String> = Vec::new();
+    for word in text.split(' ') {
+        match lines.last_mut() {
+            Some(line) if line.chars().count() + 1 + word.chars().count() <= PAGE => {
+                line.push(' ');
+                line.push_str(word);
+            }
+            Some(_) => lines.push(" ".repeat(indent) + word),
+            None => lines.push(word.to_owned()),
+        }
+    }
+    lines.join("\n")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn texts(cells: &[&str]) -> Vec<String> {
+        cells.iter().map(|cell| (*cell).to_owned()).collect()
+    }
+
+    #[test]
+    fn closed_form_wide_tables_break_into_pages() {
+        let wide = "w".repeat(40);
+        let header = texts(&["id", "a", "b", "c"]);
+        let rows = [texts(&["first", &wide, &wide, &wide])];
+        let text = page_tables(&header, &rows, &[0]);
+        assert!(text.lines().all(|line| line.chars().count() <= PAGE));
+        assert_eq!(text.matches("first").count(), 2);
+        assert_eq!(text.matches(&wide).count(), 3);
+    }
+
+    #[test]
+    fn closed_form_paragraphs_keep_every_word() {
+        let long = "word ".repeat(60);
+        let text = paragraph(long.trim(), 4);
+        assert!(text.lines().all(|line| line.chars().count() <= PAGE));
+        assert_eq!(text.split_whitespace().count(), 60);
+        assert!(text.lines().nth(1).unwrap().starts_with("    word"));
+    }
+}
