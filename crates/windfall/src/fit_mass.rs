@@ -6,7 +6,8 @@ use crate::extract_recording::extract_recording;
 use crate::outcome::{FindingOutcome, MassOutcome};
 use rayon::prelude::*;
 use windfall_identify::rig::{Carriage, Rig};
-use windfall_signal::mass::{Uncertain, mass_from_impulse, mean_mass};
+use windfall_signal::impact::Measured;
+use windfall_signal::mass::{Uncertain, mass_from_impulse, mass_from_impulses};
 
 /// The rig, and what is to be said about its mass.
 #[derive(Clone, Debug)]
@@ -69,14 +70,17 @@ fn known(rig: Rig, sd: f64) -> RigFound {
 }
 
 fn from_impulse(campaign: &Campaign, driving: Uncertain) -> Result<RigFound, Error> {
-    let masses: Vec<Result<Uncertain, String>> = campaign
+    let measured: Vec<Result<Measured, String>> = campaign
         .impacts
         .par_iter()
-        .map(|entry| mass_of(campaign, entry, driving).map_err(|error| error.to_string()))
+        .map(|entry| measured(campaign, entry, driving).map_err(|error| error.to_string()))
         .collect();
-    let found: Vec<Uncertain> = masses.iter().flatten().copied().collect();
-    let Some(mass) = mean_mass(&found) else {
-        let first = masses.into_iter().find_map(Result::err).unwrap_or_default();
+    let found: Vec<Measured> = measured.iter().flatten().copied().collect();
+    let Some(mass) = mass_from_impulses(&found, driving) else {
+        let first = measured
+            .into_iter()
+            .find_map(Result::err)
+            .unwrap_or_default();
         return Err(Error::MassUnknown {
             path: campaign.directory.clone(),
             impacts: campaign.impacts.len(),
@@ -86,9 +90,9 @@ fn from_impulse(campaign: &Campaign, driving: Uncertain) -> Result<RigFound, Err
     let findings = campaign
         .impacts
         .iter()
-        .zip(&masses)
-        .filter_map(|(entry, mass)| {
-            let problem = mass.as_ref().err()?;
+        .zip(&measured)
+        .filter_map(|(entry, measured)| {
+            let problem = measured.as_ref().err()?;
             let message = format!("{} took no part in finding the mass: {problem}", entry.id);
             Some(FindingOutcome {
                 code: "no-mass".to_owned(),
@@ -113,14 +117,17 @@ fn from_impulse(campaign: &Campaign, driving: Uncertain) -> Result<RigFound, Err
     })
 }
 
-fn mass_of(
+/// What an impact that shows the mass measured.
+fn measured(
     campaign: &Campaign,
     entry: &ImpactEntry,
     driving: Uncertain,
-) -> Result<Uncertain, Error> {
+) -> Result<Measured, Error> {
     let (impact, _) = extract_recording(campaign, entry, None)?;
-    mass_from_impulse(&impact.measured, driving).map_err(|source| Error::Signal {
-        path: crate::read_recording::recording_path(&campaign.files, entry),
-        source: Box::new(source),
-    })
+    mass_from_impulse(&impact.measured, driving)
+        .map(|_| impact.measured)
+        .map_err(|source| Error::Signal {
+            path: crate::read_recording::recording_path(&campaign.files, entry),
+            source: Box::new(source),
+        })
 }
