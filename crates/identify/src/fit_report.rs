@@ -15,10 +15,15 @@ use windfall_contact::law_kind::Law;
 use windfall_contact::restitution::nominal_restitution;
 use windfall_numerics::least_squares::Stop;
 
-/// Correlation above which two parameters are reported as inseparable.
-const HIGH_CORRELATION: f64 = 0.99;
+/// Correlation above which two parameters of the law, and a parameter and a
+/// nuisance, are reported as inseparable. A stiffness always moves with the
+/// onset; that alone is no news.
+const HIGH_CORRELATION: (f64, f64) = (0.98, 0.999);
 /// Runs-test score below which residuals are called structured.
 const STRUCTURED_Z: f64 = -5.0;
+/// Structure in residuals no larger than this times the noise is the noise's
+/// own, such as the rounding of an encoder.
+const STRUCTURED_RATIO: f64 = 1.1;
 /// Residuals this many times the noise are called a misfit.
 const MISFIT_RATIO: f64 = 2.0;
 
@@ -168,7 +173,13 @@ impl Plan<'_> {
         for i in 0..fit.correlations.len() {
             for j in 0..i {
                 let correlation = fit.correlations[i][j];
-                if correlation.abs() > HIGH_CORRELATION {
+                let law = i < fit.parameters.len();
+                let limit = if law {
+                    HIGH_CORRELATION.0
+                } else {
+                    HIGH_CORRELATION.1
+                };
+                if correlation.abs() > limit {
                     out.push(Finding::Correlated {
                         first: estimates[j].name.clone(),
                         second: estimates[i].name.clone(),
@@ -198,7 +209,10 @@ fn quantity_remarks(found: &QuantityFit) -> Vec<Finding> {
             noise: found.noise,
         });
     }
-    if let Some(runs) = found.runs.filter(|r| r.z < STRUCTURED_Z) {
+    if let Some(runs) = found
+        .runs
+        .filter(|r| r.z < STRUCTURED_Z && ratio > STRUCTURED_RATIO)
+    {
         out.push(Finding::StructuredResiduals {
             quantity: found.quantity.name(),
             z: runs.z,

@@ -78,14 +78,16 @@ impl<'a, L: ContactLaw<N>, const N: usize, const W: usize, const P: usize>
         let half = 0.5 * self.interval;
         let (low, high) = ((time - half).max(0.0), time + half);
         let (mut mean, mut by_columns) = (0.0, [0.0; P]);
-        // t = u² makes a √t start smooth.
-        let (from, to) = (low.sqrt(), high.sqrt());
+        // With t = u⁴ the rule is exact for a force that starts like a constant,
+        // t^¼, √t or t.
+        let (from, to) = (low.sqrt().sqrt(), high.sqrt().sqrt());
         for (node, weight) in NODES {
             let u = from + (to - from) * node;
-            let measure = weight * (to - from) * 2.0 * u / self.interval;
-            let force = self.law(u * u);
+            let time = (u * u) * (u * u);
+            let measure = weight * (to - from) * 4.0 * u * u * u / self.interval;
+            let force = self.law(time);
             mean += measure * force.force;
-            for (sum, by) in by_columns.iter_mut().zip(self.by_columns(&force, u * u)) {
+            for (sum, by) in by_columns.iter_mut().zip(self.by_columns(&force, time)) {
                 *sum += measure * by;
             }
         }

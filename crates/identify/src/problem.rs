@@ -29,7 +29,10 @@ impl LawProblem {
             .parameters
             .iter()
             .zip(&expression.values)
-            .map(|(parameter, value)| value.is_none() && !of_the_event(parameter.name))
+            .map(|(parameter, value)| {
+                let known = value.is_some() || parameter.default.is_some();
+                !known && !of_the_event(parameter.name)
+            })
             .collect();
         Self {
             kind: expression.kind,

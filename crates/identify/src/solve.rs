@@ -150,8 +150,8 @@ where
 }
 
 /// The minimum for instantaneous samples nearest to that for averaged ones: the
-/// averaging only made the way there smooth. Where a cusp is in the way, the
-/// smooth minimum stays.
+/// averaging only made the way there smooth. Where a cusp is in the way, or where
+/// averages describe the samples better, the smooth minimum stays.
 fn polished<L, const N: usize, const W: usize, const P: usize>(
     estimator: &Estimator<L, N, W, P>,
     minimum: Minimum<P>,
@@ -166,7 +166,9 @@ where
     let exact = estimator
         .with_sampling(Sampling::Instantaneous)
         .minimise_from(&minimum.parameters, options);
-    let good = exact.stop == Stop::Converged && exact.at_bound == minimum.at_bound;
+    let good = exact.stop == Stop::Converged
+        && exact.at_bound == minimum.at_bound
+        && exact.equations.cost <= minimum.equations.cost;
     let spent = exact.evaluations;
     (if good { exact } else { minimum }, spent)
 }

@@ -31,6 +31,7 @@ mod rate;
 pub mod recording;
 mod track;
 pub mod trigger;
+mod trigger_scale;
 pub mod validate;
 
 pub use error::Error;

@@ -3,6 +3,7 @@
 use crate::error::{Error, Times};
 use crate::noise::{baseline, median};
 use crate::polynomial::fit_polynomial;
+use crate::trigger_scale::{Level, PulseScale, moving_mean, pulse_scale, white_noise};
 
 /// Samples from which the baseline is first guessed, as a part of the signal; 1.
 const PILOT_SHARE: f64 = 0.05;
@@ -17,10 +18,6 @@ const BASELINE_GUARD: f64 = 0.1;
 /// more than its own scatter explains, is the begin of a contact; 1.
 const BASELINE_RISE: f64 = 0.01;
 
-/// The force is smoothed over this part of the contact before it is compared
-/// with the threshold, so that noise does not trigger; 1.
-const SMOOTHING_SHARE: f64 = 0.02;
-
 /// Excursions with a smaller peak, relative to the largest, are ringing; 1.
 const RINGING_PEAK: f64 = 0.05;
 
@@ -29,6 +26,10 @@ const RINGING_DURATION: f64 = 0.1;
 
 /// Default of [`TriggerOptions::minimum_gap`] as a part of the longest contact; 1.
 const DEFAULT_GAP: f64 = 0.1;
+
+/// The noise of the averaged signal is measured where this many independent
+/// averages lie before contact.
+const LEAST_AVERAGES: usize = 40;
 
 /// Fewest successive smoothed samples of a contact.
 const LEAST_SAMPLES: usize = 3;
@@ -203,12 +204,17 @@ pub struct Signal<'a> {
 /// All contacts of a recording.
 ///
 /// The sign is that of the largest departure from the first samples (from the
-/// last, if the first are in contact). Offset and
-/// noise come from the samples before the first contact. The signal is averaged
-/// over 1/50 of the contact (not at all where that is less than a sample) and
-/// compared with the threshold: a contact begins above it and is over below
-/// `release` of it. Excursions that are small or short against the largest are
-/// ringing and left out; contacts with a shorter gap than the minimum are one.
+/// last, if the first are in contact). Offset and noise come from the samples
+/// before the first contact. The signal is averaged over 1/50 of the contact
+/// (not at all where that is less than a sample), over up to 1/5 of it where the
+/// noise asks for that, and compared with the threshold: a contact begins above
+/// it and is over below `release` of it. Excursions that are small or short
+/// against the largest are ringing and left out; contacts with a shorter gap
+/// than the minimum are one.
+///
+/// Noise delays the onset: a threshold of 5 standard deviations of the averaged
+/// force is crossed up to 1/10 of the contact after touch where the peak is
+/// twice the noise of a sample, sooner where it is more.
 ///
 /// # Errors
 /// [`Error::NoContact`] with the largest force and the threshold,
@@ -230,15 +236,31 @@ pub fn find_contacts(signal: &Signal, options: &TriggerOptions) -> Result<Contac
         Baseline::Remove => pilot,
         Baseline::Keep => 0.0,
     };
-    let extreme = index_of_largest(signal.values, |v| (v - centre).abs());
-    let reversed = signal.values[extreme] < centre;
+    let sample_noise = white_noise(signal.values);
+    let PulseScale {
+        top,
+        reversed,
+        smoothing,
+        visible,
+    } = pulse_scale(
+        signal.values,
+        Level {
+            value: centre,
+            samples: pilot_samples(n),
+        },
+        sample_noise,
+        deviations(&options.threshold),
+    );
     let sign = if reversed { -1.0 } else { 1.0 };
-
-    // The scale of the contact, to smooth by.
-    let smoothing = smoothing_length(signal.values, centre, sign);
+    let averaged = moving_mean(signal.values, smoothing);
 
     // Baseline, threshold and windows; once more when the first contact is known.
-    let mut before = pre_contact(signal.values, extreme, centre, sign);
+    // Where nothing stands out, all is baseline.
+    let mut before = if visible {
+        pre_contact(&averaged, top, centre, sign)
+    } else {
+        n
+    };
     let mut contacts = Contacts {
         windows: Vec::new(),
         threshold: 0.0,
@@ -249,7 +271,7 @@ pub fn find_contacts(signal: &Signal, options: &TriggerOptions) -> Result<Contac
         smoothing,
     };
     for _ in 0..2 {
-        before = flat_part(signal, before, (signal.values[extreme] - centre).abs());
+        before = flat_part(signal, before, (averaged[top] - centre).abs());
         let (mean, deviation) = baseline(&signal.values[..before])
             .unwrap_or((if zero_from_end { pilot } else { 0.0 }, 0.0));
         contacts.deviation = deviation;
@@ -265,7 +287,8 @@ pub fn find_contacts(signal: &Signal, options: &TriggerOptions) -> Result<Contac
             .collect();
         let smooth = moving_mean(&raised, smoothing);
         let largest = smooth.iter().copied().fold(f64::NEG_INFINITY, f64::max);
-        contacts.threshold = threshold(&options.threshold, deviation, smoothing, largest);
+        let noise = smoothed_noise(&averaged[..before], deviation.max(sample_noise), smoothing);
+        contacts.threshold = threshold(&options.threshold, noise, largest);
         contacts.windows = windows(signal.times, &smooth, contacts.threshold, options);
         let Some(first) = contacts.windows.first() else {
             return Err(Error::NoContact {
@@ -313,17 +336,40 @@ fn check_options(options: &TriggerOptions) -> Result<(), Error> {
     Ok(())
 }
 
-fn threshold(threshold: &Threshold, deviation: f64, smoothing: usize, largest: f64) -> f64 {
+/// Standard deviations that are to lie between noise and threshold; 0 for a
+/// threshold that does not come from the noise.
+fn deviations(threshold: &Threshold) -> f64 {
+    match *threshold {
+        Threshold::Fixed(_) => 0.0,
+        Threshold::Automatic { deviations, .. } => deviations,
+    }
+}
+
+/// Noise of the averaged signal: that of white noise, or what is seen before
+/// contact if that is more (noise that is correlated averages out less) and if
+/// there is enough to see it in.
+///
+/// * `averaged`: averaged signal before contact
+/// * `noise`: standard deviation of a sample
+fn smoothed_noise(averaged: &[f64], noise: f64, smoothing: usize) -> f64 {
+    let white = noise / (smoothing as f64).sqrt();
+    if averaged.len() < LEAST_AVERAGES * smoothing {
+        return white;
+    }
+    baseline(averaged).map_or(white, |(_, seen)| seen.max(white))
+}
+
+fn threshold(threshold: &Threshold, noise: f64, largest: f64) -> f64 {
     match *threshold {
         Threshold::Fixed(force) => force,
         Threshold::Automatic {
             deviations,
             least,
             share,
-        } => {
-            let noise = deviations * deviation / (smoothing as f64).sqrt();
-            noise.max(least).max(share * largest).max(f64::MIN_POSITIVE)
-        }
+        } => (deviations * noise)
+            .max(least)
+            .max(share * largest)
+            .max(f64::MIN_POSITIVE),
     }
 }
 
@@ -331,7 +377,7 @@ fn threshold(threshold: &Threshold, deviation: f64, smoothing: usize, largest: f
 /// is so if the signal changes in its first samples and rests in its last.
 fn pilot_level(values: &[f64]) -> (f64, bool) {
     let n = values.len();
-    let samples = ((PILOT_SHARE * n as f64) as usize).clamp(LEAST_BASELINE.min(n), n);
+    let samples = pilot_samples(n);
     let level = |part: &[f64]| {
         let middle = median(part).unwrap_or(0.0);
         let distances: Vec<f64> = part.iter().map(|v| (v - middle).abs()).collect();
@@ -347,31 +393,9 @@ fn pilot_level(values: &[f64]) -> (f64, bool) {
     (first, false)
 }
 
-fn index_of_largest(values: &[f64], measure: impl Fn(f64) -> f64) -> usize {
-    (1..values.len()).fold(0, |best, i| {
-        if measure(values[i]) > measure(values[best]) {
-            i
-        } else {
-            best
-        }
-    })
-}
-
-/// Samples to average over: 1/50 of the strongest contact, which lasts about
-/// 1.5 times as long as its force is above half. Noise cuts this stretch short,
-/// so it is looked for again in the smoothed signal.
-fn smoothing_length(values: &[f64], centre: f64, sign: f64) -> usize {
-    let mut length = 1;
-    for _ in 0..3 {
-        let smooth = moving_mean(values, length);
-        let extreme = index_of_largest(&smooth, |v| sign * (v - centre));
-        let level = 0.5 * sign * (smooth[extreme] - centre);
-        let above = |v: &&f64| sign * (**v - centre) >= level;
-        let after = smooth[extreme..].iter().take_while(above).count();
-        let before = smooth[..extreme].iter().rev().take_while(above).count();
-        length = ((1.5 * (after + before) as f64 * SMOOTHING_SHARE) as usize) | 1;
-    }
-    length
+/// Samples of a recording of `n` from which its level is first guessed.
+fn pilot_samples(n: usize) -> usize {
+    ((PILOT_SHARE * n as f64) as usize).clamp(LEAST_BASELINE.min(n), n)
 }
 
 /// Samples before the strongest contact begins, less a guard.
@@ -403,28 +427,6 @@ fn flat_part(signal: &Signal, before: usize, largest: f64) -> usize {
     } else {
         before
     }
-}
-
-/// Centred mean over `length` samples (odd), shorter at both ends.
-fn moving_mean(values: &[f64], length: usize) -> Vec<f64> {
-    let half = length / 2;
-    let n = values.len();
-    if half == 0 {
-        return values.to_vec();
-    }
-    let mut sums = Vec::with_capacity(n + 1);
-    sums.push(0.0);
-    let mut sum = 0.0;
-    for value in values {
-        sum += value;
-        sums.push(sum);
-    }
-    (0..n)
-        .map(|i| {
-            let reach = half.min(i).min(n - 1 - i);
-            (sums[i + reach + 1] - sums[i - reach]) / (2 * reach + 1) as f64
-        })
-        .collect()
 }
 
 /// Windows above the threshold, without ringing, joined over small gaps.

@@ -12,9 +12,12 @@ use windfall_signal::instrument::{
 };
 use windfall_signal::kinematics::{Encoder, count_length};
 use windfall_signal::mass::{Uncertain, mass_from_impulse};
+use windfall_signal::noise_gaussian::{noise_source, normal};
 use windfall_signal::options::RateMethod;
 use windfall_signal::recording::Recording;
-use windfall_signal::trigger::{ContactChoice, Orientation, Threshold};
+use windfall_signal::trigger::{
+    ContactChoice, Contacts, Orientation, Signal, Threshold, TriggerOptions, find_contacts,
+};
 use windfall_signal::{Error, ExtractOptions, Finding, extract_impact};
 
 /// A mass that meets a spring and a damper in parallel at time 0 and leaves
@@ -456,6 +459,74 @@ fn recovers_a_fixed_threshold_of_one_newton() {
         force(impact.end)
     );
     assert!(impact.onset.abs() < 1e-4);
+}
+
+/// Half a sine of force, 6 ms long from 10 ms on, in 30 ms at 200 kHz, with
+/// white noise of 1 N.
+fn noisy_pulse(peak: f64, seed: u64) -> (Vec<f64>, Vec<f64>) {
+    let mut source = noise_source(seed, 0);
+    let times: Vec<f64> = (0..6000).map(|i| f64::from(i) * 5e-6).collect();
+    let force = times.iter().map(|t| {
+        let phase = (t - 0.010) / 0.006;
+        let pulse = if (0.0..1.0).contains(&phase) {
+            peak * (std::f64::consts::PI * phase).sin()
+        } else {
+            0.0
+        };
+        // Compression negative, with an offset: neither must matter.
+        0.4 - pulse + normal(&mut source)
+    });
+    let force = force.collect();
+    (times, force)
+}
+
+fn contacts_of(peak: f64, seed: u64) -> Result<Contacts, Error> {
+    let (times, values) = noisy_pulse(peak, seed);
+    let signal = Signal {
+        name: "force",
+        unit: "N",
+        times: &times,
+        values: &values,
+    };
+    find_contacts(&signal, &TriggerOptions::default())
+}
+
+#[test]
+fn recovers_weak_contacts_in_white_noise() {
+    // Peak over noise of a sample; onset late by at most this part of the
+    // contact, which is what `find_contacts` states.
+    for (ratio, late) in [
+        (2.0, 0.1),
+        (3.0, 0.09),
+        (5.0, 0.07),
+        (10.0, 0.05),
+        (20.0, 0.05),
+    ] {
+        for seed in 0..100 {
+            let contacts = contacts_of(ratio, seed).unwrap();
+            assert_eq!(contacts.windows.len(), 1, "{ratio} {seed} {contacts:?}");
+            assert!(contacts.reversed, "{ratio} {seed}");
+            let window = contacts.windows[0];
+            let onset = (window.onset - 0.010) / 0.006;
+            let end = (0.016 - window.end) / 0.006;
+            assert!(onset > -0.02 && onset < late, "{ratio} {seed} {onset}");
+            assert!(end > -0.04 && end < late, "{ratio} {seed} {end}");
+            let (zero, noise) = (contacts.offset - 0.4, contacts.deviation - 1.0);
+            assert!(zero.abs() < 0.15 && noise.abs() < 0.1, "{zero} {noise}");
+        }
+    }
+}
+
+#[test]
+fn rejects_noise_as_a_contact() {
+    // 100 recordings of 6000 samples: five standard deviations are not reached.
+    for seed in 0..100 {
+        let contacts = contacts_of(0.0, seed);
+        assert!(
+            matches!(contacts, Err(Error::NoContact { .. })),
+            "{seed} {contacts:?}"
+        );
+    }
 }
 
 #[test]
