@@ -13,7 +13,8 @@ pub enum Finding {
     },
     /// A parameter ended on its bound.
     #[error(
-        "{parameter} ended on its {side} bound {bound} {unit}: the data ask for a value beyond it, or say nothing about it"
+        "{parameter} ended on its {side} bound {}: the data ask for a value beyond it, or say nothing about it",
+        Shown(*bound, unit)
     )]
     AtBound {
         /// Name of the parameter.
@@ -26,7 +27,7 @@ pub enum Finding {
         unit: String,
     },
     /// A nuisance was left out of the free parameters.
-    #[error("{quantity} was held at {value} {unit}: {reason}")]
+    #[error("{quantity} was held at {}: {reason}", Shown(*value, unit))]
     Held {
         /// What was held.
         quantity: &'static str,
@@ -83,7 +84,7 @@ pub enum Finding {
         noise: f64,
     },
     /// The uncertainty of the mass widens the intervals.
-    #[error("the intervals include the uncertainty of the mass, {mass} ± {sd} kg")]
+    #[error("the intervals include the uncertainty of the mass, {} ± {}", Shown(*mass, ""), Shown(*sd, "kg"))]
     UncertainMass {
         /// Mass; kg.
         mass: f64,
@@ -125,5 +126,71 @@ impl Finding {
             Self::MissingQuantity { .. } => "missing-quantity",
             Self::NominalRestitution { .. } => "nominal-restitution",
         }
+    }
+}
+
+/// A number of four significant digits with its unit, if it has one.
+struct Shown<'a>(f64, &'a str);
+
+impl std::fmt::Display for Shown<'_> {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        let Self(value, unit) = *self;
+        let magnitude = value.abs().log10().floor();
+        if value == 0.0 {
+            f.write_str("0")?;
+        } else if (-4.0..5.0).contains(&magnitude) {
+            let decimals = (3.0 - magnitude).max(0.0) as usize;
+            let text = format!("{value:.decimals$}");
+            match text.contains('.') {
+                true => f.write_str(text.trim_end_matches('0').trim_end_matches('.'))?,
+                false => f.write_str(&text)?,
+            }
+        } else {
+            write!(f, "{value:.3e}")?;
+        }
+        match unit {
+            "" | "1" => Ok(()),
+            unit => write!(f, " {unit}"),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn closed_form_four_digits_and_no_unit_of_one() {
+        let at_bound = Finding::AtBound {
+            parameter: "p".to_owned(),
+            side: "upper",
+            bound: 6.0,
+            unit: "1".to_owned(),
+        };
+        assert_eq!(
+            at_bound.to_string(),
+            "p ended on its upper bound 6: the data ask for a value beyond it, or say nothing about it"
+        );
+        let uncertain = Finding::UncertainMass {
+            mass: 0.517_517_338_604_740_6,
+            sd: 0.004_415_280_502_853_594,
+        };
+        assert_eq!(
+            uncertain.to_string(),
+            "the intervals include the uncertainty of the mass, 0.5175 ± 0.004415 kg"
+        );
+        let cases = [
+            (0.0, "0"),
+            (-12.345_678, "-12.35"),
+            (394_931.0, "3.949e5"),
+            (39_493.1, "39493"),
+            (1e-9, "1.000e-9"),
+            (0.000_123_456, "0.0001235"),
+            (100.0, "100"),
+        ];
+        for (value, text) in cases {
+            assert_eq!(Shown(value, "").to_string(), text);
+        }
+        assert_eq!(Shown(0.388, "m/s").to_string(), "0.388 m/s");
     }
 }

@@ -102,6 +102,9 @@ pub struct ChannelPlan {
     pub scale: f64,
     /// What the column shows at zero; unit of the column.
     pub offset: f64,
+    /// Taken off the recorded times: filters, and averages that are stamped with
+    /// the end of their interval, show an event late; s.
+    pub delay: f64,
 }
 
 /// What is fitted.

@@ -131,6 +131,8 @@ pub struct ChannelFile {
     pub sign: Option<Spanned<i64>>,
     /// Column of times of this channel alone.
     pub time: Option<Spanned<String>>,
+    /// By how much the channel shows an event later than the clock says.
+    pub delay: Option<Spanned<QuantityText>>,
 }
 
 /// `[encoder]`

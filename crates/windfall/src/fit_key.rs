@@ -37,8 +37,8 @@ pub fn impact_key(
             };
             let (quantity, column) = (plan.quantity, filled(&plan.column));
             format!(
-                "{quantity:?} {column:?} {time:?} {:?} {:?}",
-                plan.scale, plan.offset
+                "{quantity:?} {column:?} {time:?} {:?} {:?} {:?}",
+                plan.scale, plan.offset, plan.delay
             )
         })
         .collect();

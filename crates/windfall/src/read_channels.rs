@@ -149,6 +149,7 @@ fn channel_plan(
         time: file.time.as_ref().map(|time| time.get_ref().clone()),
         scale: scale * sign(source, kind, file)?,
         offset,
+        delay: delay(source, kind, file)?,
     })
 }
 
@@ -308,6 +309,18 @@ fn offset_value(
         example: "offset = \"0.02 V\"",
     };
     Ok(optional_quantity(source, file.offset.as_ref(), &needed)?.unwrap_or(0.0))
+}
+
+/// By how much the channel is late; s.
+fn delay(source: &TomlSource, kind: &Kind, file: &ChannelFile) -> Result<f64, Error> {
+    let needed = Needed {
+        table: kind.table,
+        key: "delay",
+        meaning: "by how much this channel shows an event later than the others",
+        unit: "s",
+        example: "delay = \"10 ms\"",
+    };
+    Ok(optional_quantity(source, file.delay.as_ref(), &needed)?.unwrap_or(0.0))
 }
 
 fn sign(source: &TomlSource, kind: &Kind, file: &ChannelFile) -> Result<f64, Error> {

@@ -132,7 +132,7 @@ fn channel_of(
     }
     let times = match (times, &files.time) {
         (Some((name, times)), _) => listed_times(files, source, cells, name, times, path)?,
-        (None, TimePlan::Rate(rate)) => counted_times(cells, *rate),
+        (None, TimePlan::Rate(rate)) => counted_times(cells, *rate, plan.delay),
         // A plan without a rate has a column of times.
         (None, TimePlan::Column(_)) => Times::Listed(Vec::new()),
     };
@@ -156,7 +156,7 @@ fn listed_times(
     for (row, (cell, time)) in cells.iter().zip(times).enumerate() {
         match (cell, time) {
             (None, _) => {}
-            (Some(_), Some(time)) => listed.push(time * files.time_scale),
+            (Some(_), Some(time)) => listed.push(time * files.time_scale - source.plan.delay),
             (Some(_), None) => {
                 return Err(Error::SampleWithoutTime {
                     place: Place {
@@ -174,13 +174,13 @@ fn listed_times(
 }
 
 /// Times of rows at a fixed rate; rows without a sample leave a gap.
-fn counted_times(cells: &[Option<f64>], rate: f64) -> Times {
+fn counted_times(cells: &[Option<f64>], rate: f64, delay: f64) -> Times {
     if cells.iter().all(Option::is_some) {
         return Times::Uniform {
-            start: 0.0,
+            start: -delay,
             interval: 1.0 / rate,
         };
     }
     let rows = cells.iter().enumerate().filter(|(_, cell)| cell.is_some());
-    Times::Listed(rows.map(|(row, _)| row as f64 / rate).collect())
+    Times::Listed(rows.map(|(row, _)| row as f64 / rate - delay).collect())
 }

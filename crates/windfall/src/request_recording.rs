@@ -248,6 +248,7 @@ fn channel_plan(text: &str) -> Result<ChannelPlan, Error> {
         time: None,
         scale,
         offset: 0.0,
+        delay: 0.0,
     })
 }
 
