@@ -19,8 +19,8 @@ pub enum SimulateEvent {
     Impact(SimulateImpactArguments),
     /// A pendulum strikes: motion, or a campaign of recordings
     Pendulum(Box<SimulatePendulumArguments>),
-    /// A body on a line strikes: motion
-    Carriage(SimulateCarriageArguments),
+    /// A body on a line strikes: motion, or a campaign of recordings
+    Carriage(Box<SimulateCarriageArguments>),
 }
 
 /// When a simulated contact is over.
@@ -69,7 +69,10 @@ pub struct SimulateImpactArguments {
       motion of one impact at 200 kHz
   windfall simulate pendulum --law 'kuwabara-kono(k=753599, c=1524)' \\
       --recordings DIR --specimens 30 --spread k=133165 --spread c=263 --seed 7
-      a campaign with specimens drawn from a normal distribution")]
+      a campaign with specimens drawn from a normal distribution
+  windfall simulate pendulum --law 'kuwabara-kono(k=753599, c=1524)' --recordings DIR \\
+      --encoder counts --counts-per-revolution 20000 --rate '50 kHz' --bits 12 --range '5 V'
+      a coarser instrument: decoded counts of 0.018°, force through a 12-bit converter of ±5 V")]
 pub struct SimulatePendulumArguments {
     /// Force law with its parameters
     #[arg(long, required_unless_present = "example")]
@@ -107,9 +110,24 @@ pub struct SimulatePendulumArguments {
     /// Sampling rate
     #[arg(long, default_value = "200 kHz")]
     pub rate: String,
+    /// What the encoder writes into the recordings: phases A and B, or decoded counts
+    #[arg(long, default_value = "phases", value_parser = ["phases", "counts"])]
+    pub encoder: String,
+    /// Resolution of the encoder after x4 decoding
+    #[arg(long, default_value_t = 360_000.0, value_name = "NUMBER")]
+    pub counts_per_revolution: f64,
+    /// Sensitivity of the force sensor
+    #[arg(long, default_value = "11 mV/N")]
+    pub sensitivity: String,
     /// Standard deviation of the force noise of the recordings
     #[arg(long, default_value = "1 N")]
     pub noise: String,
+    /// Resolution of the analogue-to-digital converter; no rounding if left out
+    #[arg(long, value_name = "NUMBER")]
+    pub bits: Option<u32>,
+    /// Largest voltage of the converter, of either sign; beyond it the force is clipped
+    #[arg(long, default_value = "10 V")]
+    pub range: String,
     /// When the contact is over
     #[arg(long, value_enum, default_value_t)]
     pub end: End,
@@ -125,7 +143,12 @@ pub struct SimulatePendulumArguments {
 #[derive(Debug, Args)]
 #[command(after_help = "Example:
   windfall simulate carriage --law 'hunt-crossley(k=753599, lambda=678239)' --mass '0.5 kg' \\
-      --velocity '0.4 m/s' --driving-acceleration '0.3 m/s^2' --rate '10 kHz' --format csv")]
+      --velocity '0.4 m/s' --driving-acceleration '0.3 m/s^2' --rate '10 kHz' --format csv
+      motion of one impact
+  windfall simulate carriage --law 'kelvin-voigt(k=2000, c=3)' --mass '0.5 kg' --velocity '0.4 m/s' \\
+      --recordings DIR --specimens 5 --sensor 'force: rate=1 kHz, noise=0.1 N' \\
+      --sensor 'position: rate=100 Hz, noise=0.05 mm, bits=12, range=10 V' --unweighed
+      a campaign of recordings, each sensor at its own rate; the mass is left to be found")]
 pub struct SimulateCarriageArguments {
     /// Force law with its parameters
     #[arg(long)]
@@ -137,11 +160,38 @@ pub struct SimulateCarriageArguments {
     #[arg(long)]
     pub velocity: String,
     /// Acceleration towards the fruit
-    #[arg(long, default_value = "0 m/s^2")]
+    #[arg(long, default_value = "0 m/s^2", allow_hyphen_values = true)]
     pub driving_acceleration: String,
-    /// Sampling rate of the motion
+    /// Sampling rate of the motion; recordings have the rates of their sensors
     #[arg(long, default_value = "200 kHz")]
     pub rate: String,
+    /// Write a campaign of recordings into this directory
+    #[arg(long, value_name = "DIR", value_hint = ValueHint::DirPath)]
+    pub recordings: Option<PathBuf>,
+    /// A sensor of the recordings: force, position, velocity or acceleration, then after a colon
+    /// any of rate, noise, sensitivity, offset, bits, range; or an encoder, count or phases, with
+    /// length and rate; repeated. Force and position at 10 kHz if left out
+    #[arg(
+        long = "sensor",
+        value_name = "NAME[: KEY=VALUE, …]",
+        requires = "recordings"
+    )]
+    pub sensors: Vec<String>,
+    /// Leave the mass out of the campaign, so that fit finds it from impulse
+    #[arg(long, requires = "recordings")]
+    pub unweighed: bool,
+    /// Number of specimens of the campaign
+    #[arg(long, default_value_t = 20)]
+    pub specimens: usize,
+    /// Impacts on each specimen
+    #[arg(long, default_value_t = 1)]
+    pub repeats: usize,
+    /// Standard deviation of a parameter between specimens, such as k=133165
+    #[arg(long, value_name = "NAME=SD")]
+    pub spread: Vec<String>,
+    /// Seed of specimens and noise
+    #[arg(long, default_value_t = 1)]
+    pub seed: u64,
     /// When the contact is over
     #[arg(long, value_enum, default_value_t)]
     pub end: End,

@@ -7,13 +7,19 @@ use crate::args_simulate::{
 };
 use crate::show::{write_json, write_result};
 use std::path::Path;
-use windfall::request_simulate::{
-    CarriageRequest, PendulumRequest, RecordingsRequest, simulate_carriage,
-    simulate_carriage_motion, simulate_pendulum_motion, simulate_pendulum_recordings,
+use windfall::request_event::{
+    CarriageRequest, PendulumRequest, carriage_event, impact_of_event, motion_of_event,
+    pendulum_event,
 };
+use windfall::request_instrument::{
+    PendulumInstrument, instrument_of_carriage, instrument_of_pendulum,
+};
+use windfall::request_recordings::{RecordingsRequest, simulate_recordings};
+use windfall::simulate_campaign::Weighed;
 use windfall::simulate_example::write_example;
-use windfall::workflow_simulate::{
-    SimulatedMotion, csv_of_motion, csv_of_simulation, json_of_motion, text_of_simulation,
+use windfall::workflow_simulate::SimulatedMotion;
+use windfall::write_simulation::{
+    csv_of_motion, csv_of_simulation, json_of_motion, text_of_simulation,
 };
 
 /// Simulates one event.
@@ -33,13 +39,14 @@ fn end_text(end: End) -> String {
 }
 
 fn impact(arguments: &SimulateImpactArguments) -> anyhow::Result<()> {
-    let impact = simulate_carriage(&CarriageRequest {
+    let event = carriage_event(&CarriageRequest {
         law: arguments.law.clone(),
         mass: arguments.mass.clone(),
         velocity: arguments.velocity.clone(),
         driving_acceleration: arguments.driving_acceleration.clone(),
         end: end_text(arguments.end),
     })?;
+    let impact = impact_of_event(&event)?;
     match arguments.format {
         Format::Json => write_json(&impact),
         Format::Csv => write_result(&csv_of_simulation(&impact)?),
@@ -48,17 +55,33 @@ fn impact(arguments: &SimulateImpactArguments) -> anyhow::Result<()> {
 }
 
 fn carriage(arguments: &SimulateCarriageArguments) -> anyhow::Result<()> {
-    let request = CarriageRequest {
+    let event = carriage_event(&CarriageRequest {
         law: arguments.law.clone(),
         mass: arguments.mass.clone(),
         velocity: arguments.velocity.clone(),
         driving_acceleration: arguments.driving_acceleration.clone(),
         end: end_text(arguments.end),
+    })?;
+    let Some(directory) = &arguments.recordings else {
+        return show_motion(&motion_of_event(&event, &arguments.rate)?, arguments.format);
     };
-    show_motion(
-        &simulate_carriage_motion(&request, &arguments.rate)?,
-        arguments.format,
-    )
+    let mut sensors = arguments.sensors.clone();
+    if sensors.is_empty() {
+        sensors = ["force", "position"].map(str::to_owned).to_vec();
+    }
+    let instrument = instrument_of_carriage(&sensors)?;
+    let request = RecordingsRequest {
+        spread: arguments.spread.clone(),
+        specimens: arguments.specimens,
+        repeats: arguments.repeats,
+        weighed: match arguments.unweighed {
+            true => Weighed::FromImpulse,
+            false => Weighed::Given,
+        },
+        seed: arguments.seed,
+    };
+    let count = simulate_recordings(&event, instrument, &request, directory)?;
+    written(directory, count, arguments.format)
 }
 
 fn pendulum(arguments: &SimulatePendulumArguments) -> anyhow::Result<()> {
@@ -66,7 +89,7 @@ fn pendulum(arguments: &SimulatePendulumArguments) -> anyhow::Result<()> {
         let recordings = write_example(directory, arguments.seed)?;
         return written(directory, recordings, arguments.format);
     }
-    let request = PendulumRequest {
+    let event = pendulum_event(&PendulumRequest {
         law: arguments.law.clone().unwrap_or_default(),
         inertia: arguments.inertia.clone(),
         arm: arguments.arm.clone(),
@@ -74,20 +97,28 @@ fn pendulum(arguments: &SimulatePendulumArguments) -> anyhow::Result<()> {
         centre_of_mass: arguments.centre_of_mass.clone(),
         velocity: arguments.velocity.clone(),
         end: end_text(arguments.end),
-    };
+    })?;
     let Some(directory) = &arguments.recordings else {
-        let motion = simulate_pendulum_motion(&request, &arguments.rate)?;
-        return show_motion(&motion, arguments.format);
+        return show_motion(&motion_of_event(&event, &arguments.rate)?, arguments.format);
     };
-    let recordings = RecordingsRequest {
+    let instrument = PendulumInstrument {
         rate: arguments.rate.clone(),
+        encoder: arguments.encoder.clone(),
+        counts_per_revolution: arguments.counts_per_revolution,
+        sensitivity: arguments.sensitivity.clone(),
         noise: arguments.noise.clone(),
+        bits: arguments.bits,
+        range: arguments.range.clone(),
+    };
+    let request = RecordingsRequest {
         spread: arguments.spread.clone(),
         specimens: arguments.specimens,
         repeats: arguments.repeats,
+        weighed: Weighed::Given,
         seed: arguments.seed,
     };
-    let count = simulate_pendulum_recordings(&request, &recordings, directory)?;
+    let instrument = instrument_of_pendulum(&instrument, &event)?;
+    let count = simulate_recordings(&event, instrument, &request, directory)?;
     written(directory, count, arguments.format)
 }
 

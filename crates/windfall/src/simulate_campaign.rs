@@ -4,23 +4,24 @@
 use crate::error::Error;
 use crate::workflow_new::{create_directory, write_file};
 use crate::write_csv::csv_text;
-use std::fmt::Write;
+use crate::write_simulated::{SimulatedFile, campaign_text, recording_text};
 use std::path::{Path, PathBuf};
 use windfall_contact::expression::LawExpression;
 use windfall_contact::law::EndRule;
 use windfall_contact::law_kind::Law;
-use windfall_identify::rig::{Pendulum, Rig};
+use windfall_identify::rig::Rig;
 use windfall_identify::simulate::{simulate_rig, trajectory};
 use windfall_signal::instrument::{Instrument, Trajectory, record};
-use windfall_signal::kinematics::Encoder;
 use windfall_signal::noise_gaussian::{NoiseSource, noise_source, normal, uniform};
-use windfall_signal::recording::Quantity;
 
 /// Recorded before first touch and after separation; s.
 const LEAD: f64 = 3e-3;
 
-/// Digits of a voltage in the file; V.
-const VOLT_DECIMALS: usize = 6;
+/// Samples of the slowest channel before first touch and after separation.
+const LEAD_SAMPLES: f64 = 20.0;
+
+/// Points of the motion in a contact, at least: sensors are sampled from it.
+const MOTION_SAMPLES: f64 = 200.0;
 
 /// Stream of the seed that specimens are drawn from; the instrument uses others.
 const SPECIMEN_STREAM: u64 = 100;
@@ -43,6 +44,16 @@ pub struct Batch {
     pub repeats: usize,
 }
 
+/// Whether campaign.toml gives the mass of a carriage.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Weighed {
+    /// It does.
+    #[default]
+    Given,
+    /// It says "from impulse".
+    FromImpulse,
+}
+
 /// What is common to all recordings.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SimulatedCampaign {
@@ -51,7 +62,9 @@ pub struct SimulatedCampaign {
     /// Label that marks all results as simulated.
     pub label: String,
     /// The rig.
-    pub rig: Pendulum,
+    pub rig: Rig,
+    /// Whether the campaign knows the mass.
+    pub weighed: Weighed,
     /// Impact velocity; m/s.
     pub velocity: f64,
     /// End of contact.
@@ -97,7 +110,7 @@ pub fn write_simulated_campaign(
                 };
                 let file = format!("{impact}.csv");
                 let seed = seed_of(campaign.seed, specimen_number, repeat as u64);
-                let text = recording_text(campaign, &law, &mut source, seed)?;
+                let text = recording(campaign, &law, &mut source, seed)?;
                 write_file(&raw.join(&file), text.as_bytes())?;
                 tables.impacts.push(vec![impact.clone(), id.clone(), file]);
                 tables.truth.push(vec![
@@ -110,7 +123,15 @@ pub fn write_simulated_campaign(
         }
     }
     write_tables(directory, &tables)?;
-    let toml = campaign_text(campaign, batches);
+    let toml = campaign_text(&SimulatedFile {
+        title: &campaign.title,
+        label: &campaign.label,
+        rig: &campaign.rig,
+        mass_given: campaign.weighed == Weighed::Given,
+        instrument: &campaign.instrument,
+        law: batches.first().map(|batch| batch.law.kind()),
+        end: campaign.end,
+    });
     write_file(&directory.join("campaign.toml"), toml.as_bytes())?;
     Ok(recordings)
 }
@@ -173,25 +194,30 @@ fn drawn(batch: &Batch, source: &mut NoiseSource) -> Result<Law, Error> {
     })
 }
 
-/// One recording as CSV: phases and volts at the sampling rate, no times.
-fn recording_text(
+/// One recording as the instrument would have written it.
+fn recording(
     campaign: &SimulatedCampaign,
     law: &Law,
     source: &mut NoiseSource,
     seed: u64,
 ) -> Result<String, Error> {
-    let rig = Rig::Pendulum(campaign.rig);
+    let rig = &campaign.rig;
     let failed = |source| Error::Identify {
         subject: LawExpression::from(*law).to_string(),
         source: Box::new(source),
     };
-    let summary = simulate_rig(law, &rig, campaign.velocity, campaign.end).map_err(failed)?;
+    let summary = simulate_rig(law, rig, campaign.velocity, campaign.end).map_err(failed)?;
+    let duration = summary.contact_duration;
+    let rates = sampling_rates(&campaign.instrument);
+    let fastest = rates.iter().copied().fold(0.0, f64::max);
+    let slowest = rates.iter().copied().fold(f64::INFINITY, f64::min);
+    let lead = LEAD.max(LEAD_SAMPLES / slowest);
     // The clock of the instrument knows nothing of the first touch.
-    let rate = sampling_rate(&campaign.instrument);
-    let start = -LEAD - uniform(source) / rate;
-    let count = ((summary.contact_duration + 2.0 * LEAD) * rate).ceil() as usize;
+    let start = -lead - uniform(source) / slowest;
+    let rate = fastest.max(MOTION_SAMPLES / duration);
+    let count = ((duration + 2.0 * lead) * rate).ceil() as usize;
     let times: Vec<f64> = (0..count).map(|i| start + i as f64 / rate).collect();
-    let motion = trajectory(law, &rig, campaign.velocity, &times, campaign.end).map_err(failed)?;
+    let motion = trajectory(law, rig, campaign.velocity, &times, campaign.end).map_err(failed)?;
     let motion = Trajectory {
         times: motion.times,
         displacement: motion.displacement,
@@ -203,115 +229,18 @@ fn recording_text(
         path: PathBuf::from("the simulated recording"),
         source: Box::new(source),
     })?;
-    let rows = channels
-        .iter()
-        .map(|channel| channel.samples.len())
-        .min()
-        .unwrap_or(0);
-    let names: Vec<&str> = channels
-        .iter()
-        .map(|channel| column_name(channel.quantity))
-        .collect();
-    let mut text = names.join(",") + "\n";
-    for row in 0..rows {
-        for (index, channel) in channels.iter().enumerate() {
-            let separator = if index == 0 { "" } else { "," };
-            let value = channel.samples[row];
-            let _ = match channel.quantity {
-                Quantity::Force => write!(text, "{separator}{value:.VOLT_DECIMALS$}"),
-                _ => write!(text, "{separator}{value}"),
-            };
-        }
-        text.push('\n');
-    }
-    Ok(text)
+    Ok(recording_text(&channels))
 }
 
-fn sampling_rate(instrument: &Instrument) -> f64 {
-    instrument
-        .force
-        .map_or(200e3, |sensor| sensor.sampling_rate)
-}
-
-fn column_name(quantity: Quantity) -> &'static str {
-    match quantity {
-        Quantity::PhaseA => "phase_a_V",
-        Quantity::PhaseB => "phase_b_V",
-        Quantity::EncoderCount => "count",
-        Quantity::Force => "force_V",
-        Quantity::Displacement => "displacement_V",
-        Quantity::Rate => "rate_V",
-        Quantity::Acceleration => "acceleration_V",
-        Quantity::Angle => "angle_V",
-    }
-}
-
-fn campaign_text(campaign: &SimulatedCampaign, batches: &[Batch]) -> String {
-    let rig = &campaign.rig;
-    let law = batches
-        .first()
-        .map_or("kuwabara-kono", |batch| batch.law.kind().name());
-    let counts = match campaign.instrument.encoder.map(|sensor| sensor.encoder) {
-        Some(Encoder::Rotary {
-            counts_per_revolution,
-        }) => counts_per_revolution,
-        _ => 0.0,
-    };
-    let sensitivity = campaign
-        .instrument
-        .force
-        .map_or(0.0, |sensor| sensor.sensitivity);
-    format!(
-        r#"# Simulated by windfall: no fruit was hurt. The parameters that were drawn are in truth.csv.
-format = 1
-
-[campaign]
-title = "{title}"
-simulated = "{label}"
-
-[rig]
-kind = "pendulum"
-inertia = "{inertia} kg m^2"
-arm = "{arm} m"
-mass = "{mass} kg"
-centre_of_mass = "{centre} m"
-gravity = "{gravity} m/s^2"
-
-[files]
-directory = "raw"
-rate = "{rate} Hz"
-
-[channels.force]
-column = "force_V"
-sensitivity = "{sensitivity} V/N"
-
-[channels.phase_a]
-column = "phase_a_V"
-[channels.phase_b]
-column = "phase_b_V"
-
-[encoder]
-counts_per_revolution = {counts:.1}
-
-[contact]
-threshold = "1 N"                     # that of the 2003 pendulum study
-
-[fit]
-laws = ["{law}"]
-quantities = ["displacement", "force"]
-end = "{end}"
-
-[summary]
-group = "variety"
-"#,
-        title = campaign.title,
-        label = campaign.label,
-        inertia = rig.inertia,
-        arm = rig.arm,
-        mass = rig.mass,
-        centre = rig.centre_of_mass,
-        gravity = rig.gravity,
-        rate = sampling_rate(&campaign.instrument),
-        end = crate::workflow_simulate::end_name(campaign.end),
-    )
+/// Sampling rates of the sensors that an instrument has; Hz.
+fn sampling_rates(instrument: &Instrument) -> Vec<f64> {
+    let sensors = [
+        instrument.force,
+        instrument.displacement,
+        instrument.rate,
+        instrument.acceleration,
+    ];
+    let encoder = instrument.encoder.map(|sensor| sensor.sampling_rate);
+    let sensors = sensors.iter().flatten().map(|sensor| sensor.sampling_rate);
+    encoder.into_iter().chain(sensors).collect()
 }

@@ -2,11 +2,11 @@
 
 use crate::error::Error;
 use crate::read_rig::STANDARD_GRAVITY;
-use crate::simulate_campaign::{Batch, SimulatedCampaign, write_simulated_campaign};
+use crate::simulate_campaign::{Batch, SimulatedCampaign, Weighed, write_simulated_campaign};
 use std::path::Path;
 use windfall_contact::law::EndRule;
 use windfall_contact::law_kind::LawKind;
-use windfall_identify::rig::Pendulum;
+use windfall_identify::rig::{Pendulum, Rig};
 use windfall_signal::instrument::pendulum_instrument;
 
 /// Impacts of each material.
@@ -46,7 +46,8 @@ pub fn write_example(directory: &Path, seed: u64) -> Result<usize, Error> {
         label: "published means and spreads of k and c (2003 pendulum study); \
                 inertia, mass, centre of mass and impact velocity of the rig are inferred"
             .to_owned(),
-        rig: EXAMPLE_RIG,
+        rig: Rig::Pendulum(EXAMPLE_RIG),
+        weighed: Weighed::Given,
         velocity: EXAMPLE_VELOCITY,
         end: EndRule::ForceZero,
         instrument: pendulum_instrument(),

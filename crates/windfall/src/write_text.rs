@@ -34,8 +34,12 @@ pub fn text_of_campaign(outcome: &CampaignOutcome) -> String {
         text += &law_text(outcome, law);
     }
     if let Some(first) = laws.first() {
-        text +=
-            "\nRead off the signals (from the fit where they do not show it), mean ± SD in %:\n";
+        text += match outcome.impacts.len() {
+            1 => "\nRead off the signals (from the fit where they do not show it):\n",
+            _ => {
+                "\nRead off the signals (from the fit where they do not show it), mean ± SD in %:\n"
+            }
+        };
         text += &derived_tables(&groups_of(outcome, first));
     }
     if laws.len() > 1 {

@@ -2,7 +2,7 @@
 //! the raw signals of its instrument (encoder phases and volts at 200 kHz).
 
 // Each test file uses a part of this.
-#![allow(dead_code)]
+#![allow(dead_code, clippy::unwrap_used)]
 
 use windfall_contact::expression::parse_law;
 use windfall_contact::law::EndRule;

@@ -1,0 +1,115 @@
+//! One simulated event as it is asked for: texts with units → SI.
+
+use crate::error::Error;
+use crate::option_value::{chosen, positive, quantity};
+use crate::read_fit::ENDS;
+use crate::read_rig::STANDARD_GRAVITY;
+use crate::workflow_simulate::{
+    SimulatedImpact, SimulatedMotion, complete_law, simulate_motion, simulate_one,
+};
+use windfall_contact::law::EndRule;
+use windfall_contact::law_kind::Law;
+use windfall_identify::rig::{Carriage, Pendulum, Rig};
+
+/// One impact, whatever the rig; SI.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Event {
+    /// The law with all its parameters.
+    pub law: Law,
+    /// The rig.
+    pub rig: Rig,
+    /// Velocity at first touch; m/s.
+    pub velocity: f64,
+    /// End of contact.
+    pub end: EndRule,
+}
+
+/// A free body, or one on a line, strikes once.
+#[derive(Clone, Debug)]
+pub struct CarriageRequest {
+    /// Law expression with all parameters.
+    pub law: String,
+    /// Mass, with unit.
+    pub mass: String,
+    /// Impact velocity, with unit.
+    pub velocity: String,
+    /// Acceleration towards the fruit, with unit.
+    pub driving_acceleration: String,
+    /// "force-zero" or "gap-zero".
+    pub end: String,
+}
+
+/// A pendulum strikes once.
+#[derive(Clone, Debug)]
+pub struct PendulumRequest {
+    /// Law expression with all parameters.
+    pub law: String,
+    /// Moment of inertia about the pivot, with unit.
+    pub inertia: String,
+    /// Pivot to point of contact, with unit.
+    pub arm: String,
+    /// Mass of arm and impactor, with unit.
+    pub mass: String,
+    /// Pivot to centre of mass, with unit.
+    pub centre_of_mass: String,
+    /// Impact velocity, with unit.
+    pub velocity: String,
+    /// "force-zero" or "gap-zero".
+    pub end: String,
+}
+
+/// Reads the request for an impact of a body on a line.
+///
+/// # Errors
+/// An option cannot be read.
+pub fn carriage_event(request: &CarriageRequest) -> Result<Event, Error> {
+    let driving = &request.driving_acceleration;
+    Ok(Event {
+        law: complete_law(&request.law)?,
+        rig: Rig::Carriage(Carriage {
+            mass: positive("--mass", &request.mass, "kg")?,
+            mass_sd: 0.0,
+            driving_acceleration: quantity("--driving-acceleration", driving, "m/s^2")?,
+        }),
+        velocity: positive("--velocity", &request.velocity, "m/s")?,
+        end: chosen("--end", &request.end, &ENDS)?,
+    })
+}
+
+/// Reads the request for an impact of a pendulum.
+///
+/// # Errors
+/// An option cannot be read.
+pub fn pendulum_event(request: &PendulumRequest) -> Result<Event, Error> {
+    Ok(Event {
+        law: complete_law(&request.law)?,
+        rig: Rig::Pendulum(Pendulum {
+            inertia: positive("--inertia", &request.inertia, "kg m^2")?,
+            arm: positive("--arm", &request.arm, "m")?,
+            mass: positive("--mass", &request.mass, "kg")?,
+            centre_of_mass: quantity("--centre-of-mass", &request.centre_of_mass, "m")?,
+            gravity: STANDARD_GRAVITY,
+        }),
+        velocity: positive("--velocity", &request.velocity, "m/s")?,
+        end: chosen("--end", &request.end, &ENDS)?,
+    })
+}
+
+/// Simulates one impact.
+///
+/// # Errors
+/// It cannot be simulated.
+pub fn impact_of_event(event: &Event) -> Result<SimulatedImpact, Error> {
+    simulate_one(&event.law, &event.rig, event.velocity, event.end)
+}
+
+/// Simulates one impact with its motion.
+///
+/// * `rate`: samples per second, with unit
+///
+/// # Errors
+/// The rate cannot be read, or the impact cannot be simulated.
+pub fn motion_of_event(event: &Event, rate: &str) -> Result<SimulatedMotion, Error> {
+    let rate = positive("--rate", rate, "Hz")?;
+    simulate_motion(&event.law, &event.rig, event.velocity, rate, event.end)
+}
