@@ -83,7 +83,7 @@ pub enum Finding {
         noise: f64,
     },
     /// The uncertainty of the mass widens the intervals.
-    #[error("the intervals include the uncertainty of the mass, {mass} ± {sd} kg")]
+    #[error("the intervals include the uncertainty of the mass, {mass:.4e} ± {sd:.1e} kg")]
     UncertainMass {
         /// Mass; kg.
         mass: f64,
