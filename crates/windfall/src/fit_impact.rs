@@ -98,11 +98,14 @@ fn fit_group(
         .collect()
 }
 
-/// The usual question about a law, and the parameters that are freed by name.
+/// The usual question about a law: exponents that are left out have their usual
+/// values and are held, and the parameters named in `free` are estimated.
 fn law_problem(law: &LawExpression, free: &[String]) -> LawProblem {
     let mut problem = LawProblem::from_expression(law);
+    problem.values = law.values_or_defaults();
     let parameters = law.kind.describe().parameters;
     for (parameter, is_free) in parameters.iter().zip(&mut problem.free) {
+        *is_free &= parameter.default.is_none();
         *is_free |= free.iter().any(|name| name == parameter.name);
     }
     problem

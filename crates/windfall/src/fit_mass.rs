@@ -6,6 +6,7 @@ use crate::extract_recording::extract_recording;
 use crate::outcome::{FindingOutcome, MassOutcome};
 use rayon::prelude::*;
 use windfall_identify::rig::{Carriage, Rig};
+use windfall_signal::impact::Measured;
 use windfall_signal::mass::{Uncertain, mass_from_impulse, mean_mass};
 
 /// The rig, and what is to be said about its mass.
@@ -69,10 +70,19 @@ fn known(rig: Rig, sd: f64) -> RigFound {
 }
 
 fn from_impulse(campaign: &Campaign, driving: Uncertain) -> Result<RigFound, Error> {
-    let masses: Vec<Result<Uncertain, String>> = campaign
+    let measured: Vec<Result<Measured, String>> = campaign
         .impacts
         .par_iter()
-        .map(|entry| mass_of(campaign, entry, driving).map_err(|error| error.to_string()))
+        .map(|entry| measured_of(campaign, entry).map_err(|error| error.to_string()))
+        .collect();
+    let masses: Vec<Result<Uncertain, String>> = measured
+        .iter()
+        .zip(&campaign.impacts)
+        .map(|(measured, entry)| {
+            let measured = measured.as_ref().map_err(Clone::clone)?;
+            let mass = mass_of(measured, driving.value);
+            mass.map_err(|source| at_recording(campaign, entry, source).to_string())
+        })
         .collect();
     let found: Vec<Uncertain> = masses.iter().flatten().copied().collect();
     let Some(mass) = mean_mass(&found) else {
@@ -82,6 +92,19 @@ fn from_impulse(campaign: &Campaign, driving: Uncertain) -> Result<RigFound, Err
             impacts: campaign.impacts.len(),
             first,
         });
+    };
+    // All impacts share the error of the driving acceleration: it does not
+    // shrink with their number.
+    let faster = driving.value + driving.sd;
+    let shifted: Vec<Uncertain> = measured
+        .iter()
+        .flatten()
+        .filter_map(|measured| mass_of(measured, faster).ok())
+        .collect();
+    let shift = mean_mass(&shifted).map_or(0.0, |shifted| shifted.value - mass.value);
+    let mass = Uncertain {
+        value: mass.value,
+        sd: mass.sd.hypot(shift),
     };
     let findings = campaign
         .impacts
@@ -113,14 +136,26 @@ fn from_impulse(campaign: &Campaign, driving: Uncertain) -> Result<RigFound, Err
     })
 }
 
-fn mass_of(
+fn measured_of(campaign: &Campaign, entry: &ImpactEntry) -> Result<Measured, Error> {
+    extract_recording(campaign, entry, None).map(|(impact, _)| impact.measured)
+}
+
+/// Mass from one impact under a driving acceleration that is taken as exact.
+fn mass_of(measured: &Measured, driving: f64) -> Result<Uncertain, windfall_signal::error::Error> {
+    let driving = Uncertain {
+        value: driving,
+        sd: 0.0,
+    };
+    mass_from_impulse(measured, driving)
+}
+
+fn at_recording(
     campaign: &Campaign,
     entry: &ImpactEntry,
-    driving: Uncertain,
-) -> Result<Uncertain, Error> {
-    let (impact, _) = extract_recording(campaign, entry, None)?;
-    mass_from_impulse(&impact.measured, driving).map_err(|source| Error::Signal {
+    source: windfall_signal::error::Error,
+) -> Error {
+    Error::Signal {
         path: crate::read_recording::recording_path(&campaign.files, entry),
         source: Box::new(source),
-    })
+    }
 }
