@@ -89,6 +89,32 @@ pub fn mean_mass(masses: &[Uncertain]) -> Option<Uncertain> {
     })
 }
 
+/// One mass from several impacts: the mean of [`mass_from_impulse`] with the
+/// scatter that is each impact's own, and the uncertainty of the driving
+/// acceleration, which all share, added to the mean.
+///
+/// Impacts that do not show the mass are left out; `None` if none does.
+#[must_use]
+pub fn mass_from_impulses(impacts: &[Measured], driving: Uncertain) -> Option<Uncertain> {
+    let mean = |acceleration: f64| {
+        let exact = Uncertain {
+            value: acceleration,
+            sd: 0.0,
+        };
+        let masses: Vec<Uncertain> = impacts
+            .iter()
+            .filter_map(|measured| mass_from_impulse(measured, exact).ok())
+            .collect();
+        mean_mass(&masses)
+    };
+    let mass = mean(driving.value)?;
+    let shifted = mean(driving.value + driving.sd)?;
+    Some(Uncertain {
+        value: mass.value,
+        sd: mass.sd.hypot(shifted.value - mass.value),
+    })
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -134,6 +160,21 @@ mod tests {
         let one = |value| Uncertain { value, sd: 0.01 };
         let mean = mean_mass(&[one(0.4), one(0.6)]).unwrap();
         assert!((mean.value - 0.5).abs() < 1e-12 && (mean.sd - 0.1).abs() < 1e-12);
+    }
+
+    #[test]
+    fn closed_form_what_impacts_share_does_not_average_out() {
+        // 100 equal impacts: the 1 % of J becomes 0.1 %, the driving
+        // acceleration stays: 0.9/(1.7 + 0.25 · 0.44) − 0.9/(1.7 + 0.25 · 0.4).
+        let driving = Uncertain {
+            value: 0.4,
+            sd: 0.04,
+        };
+        let mass = mass_from_impulses(&[measured(); 100], driving).unwrap();
+        let shared: f64 = 0.9 / 1.81 - 0.5;
+        assert!((mass.value - 0.5).abs() < 1e-12);
+        assert!((mass.sd - shared.hypot(0.0005)).abs() < 1e-12, "{mass:?}");
+        assert_eq!(mass_from_impulses(&[], driving), None);
     }
 
     #[test]

@@ -7,7 +7,7 @@ use crate::outcome::{FindingOutcome, MassOutcome};
 use rayon::prelude::*;
 use windfall_identify::rig::{Carriage, Rig};
 use windfall_signal::impact::Measured;
-use windfall_signal::mass::{Uncertain, mass_from_impulse, mean_mass};
+use windfall_signal::mass::{Uncertain, mass_from_impulse, mass_from_impulses};
 
 /// The rig, and what is to be said about its mass.
 #[derive(Clone, Debug)]
@@ -73,45 +73,26 @@ fn from_impulse(campaign: &Campaign, driving: Uncertain) -> Result<RigFound, Err
     let measured: Vec<Result<Measured, String>> = campaign
         .impacts
         .par_iter()
-        .map(|entry| measured_of(campaign, entry).map_err(|error| error.to_string()))
+        .map(|entry| measured(campaign, entry, driving).map_err(|error| error.to_string()))
         .collect();
-    let masses: Vec<Result<Uncertain, String>> = measured
-        .iter()
-        .zip(&campaign.impacts)
-        .map(|(measured, entry)| {
-            let measured = measured.as_ref().map_err(Clone::clone)?;
-            let mass = mass_of(measured, driving.value);
-            mass.map_err(|source| at_recording(campaign, entry, source).to_string())
-        })
-        .collect();
-    let found: Vec<Uncertain> = masses.iter().flatten().copied().collect();
-    let Some(mass) = mean_mass(&found) else {
-        let first = masses.into_iter().find_map(Result::err).unwrap_or_default();
+    let found: Vec<Measured> = measured.iter().flatten().copied().collect();
+    let Some(mass) = mass_from_impulses(&found, driving) else {
+        let first = measured
+            .into_iter()
+            .find_map(Result::err)
+            .unwrap_or_default();
         return Err(Error::MassUnknown {
             path: campaign.directory.clone(),
             impacts: campaign.impacts.len(),
             first,
         });
     };
-    // All impacts share the error of the driving acceleration: it does not
-    // shrink with their number.
-    let faster = driving.value + driving.sd;
-    let shifted: Vec<Uncertain> = measured
-        .iter()
-        .flatten()
-        .filter_map(|measured| mass_of(measured, faster).ok())
-        .collect();
-    let shift = mean_mass(&shifted).map_or(0.0, |shifted| shifted.value - mass.value);
-    let mass = Uncertain {
-        value: mass.value,
-        sd: mass.sd.hypot(shift),
-    };
     let findings = campaign
         .impacts
         .iter()
-        .zip(&masses)
-        .filter_map(|(entry, mass)| {
-            let problem = mass.as_ref().err()?;
+        .zip(&measured)
+        .filter_map(|(entry, measured)| {
+            let problem = measured.as_ref().err()?;
             let message = format!("{} took no part in finding the mass: {problem}", entry.id);
             Some(FindingOutcome {
                 code: "no-mass".to_owned(),
@@ -136,26 +117,17 @@ fn from_impulse(campaign: &Campaign, driving: Uncertain) -> Result<RigFound, Err
     })
 }
 
-fn measured_of(campaign: &Campaign, entry: &ImpactEntry) -> Result<Measured, Error> {
-    extract_recording(campaign, entry, None).map(|(impact, _)| impact.measured)
-}
-
-/// Mass from one impact under a driving acceleration that is taken as exact.
-fn mass_of(measured: &Measured, driving: f64) -> Result<Uncertain, windfall_signal::error::Error> {
-    let driving = Uncertain {
-        value: driving,
-        sd: 0.0,
-    };
-    mass_from_impulse(measured, driving)
-}
-
-fn at_recording(
+/// What an impact that shows the mass measured.
+fn measured(
     campaign: &Campaign,
     entry: &ImpactEntry,
-    source: windfall_signal::error::Error,
-) -> Error {
-    Error::Signal {
-        path: crate::read_recording::recording_path(&campaign.files, entry),
-        source: Box::new(source),
-    }
+    driving: Uncertain,
+) -> Result<Measured, Error> {
+    let (impact, _) = extract_recording(campaign, entry, None)?;
+    mass_from_impulse(&impact.measured, driving)
+        .map(|_| impact.measured)
+        .map_err(|source| Error::Signal {
+            path: crate::read_recording::recording_path(&campaign.files, entry),
+            source: Box::new(source),
+        })
 }
