@@ -102,10 +102,8 @@ fn fit_group(
 /// values and are held, and the parameters named in `free` are estimated.
 fn law_problem(law: &LawExpression, free: &[String]) -> LawProblem {
     let mut problem = LawProblem::from_expression(law);
-    problem.values = law.values_or_defaults();
     let parameters = law.kind.describe().parameters;
     for (parameter, is_free) in parameters.iter().zip(&mut problem.free) {
-        *is_free &= parameter.default.is_none();
         *is_free |= free.iter().any(|name| name == parameter.name);
     }
     problem

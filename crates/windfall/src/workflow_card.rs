@@ -95,7 +95,7 @@ pub fn text_of_laws(laws: &[LawCardText]) -> String {
         let _ = writeln!(text, "  source:      {}", law.source);
         let header = ["parameter", "unit", "bounds", "typical", "meaning"].map(str::to_owned);
         let rows = law.parameters.iter().map(|p| {
-            let upper = p.upper.map_or_else(|| "∞".to_owned(), |upper| short(upper));
+            let upper = p.upper.map_or_else(|| "∞".to_owned(), short);
             let bounds = format!("{} … {upper}", short(p.lower));
             let usual = p
                 .default

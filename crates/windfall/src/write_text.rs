@@ -40,6 +40,7 @@ pub fn text_of_campaign(outcome: &CampaignOutcome) -> String {
             }
         };
         text += &derived_tables(&groups_of(outcome, first));
+        text += "Duration and displacement count from the force threshold; the fitted law's: --format json.\n";
     }
     if laws.len() > 1 {
         text += "\nThe laws compared by residual over noise; 1 is a law that describes the signal to its noise:\n";
