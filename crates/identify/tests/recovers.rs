@@ -54,17 +54,28 @@ fn recovers_rubber_with_each_cost_function() {
 }
 
 /// Holding the onset (and the zero of displacement) at the 1 N threshold, as
-/// the study did, biases c by 3-4 % with displacement, rate and force.
+/// the study did, biases c by 3-4 % whenever displacement leads, and more when
+/// the force does; the intervals do not know.
 #[test]
 fn recovers_with_bias_when_the_onset_is_held_at_the_threshold() {
-    let options = FitOptions {
-        onset: Treatment::Fixed,
-        displacement_offset: Treatment::Fixed,
-        ..FitOptions::default()
-    };
-    let [k, c] = recover(&impacts(60), &options);
-    println!("k {k:.4?}\nc {c:.4?}");
-    assert!(c.bias > 0.025 && c.bias < 0.05, "{c:?}");
-    assert!(c.standard_errors > 5.0 && c.coverage < 0.6, "{c:?}");
-    assert!(k.bias > 0.025 && k.standard_errors > 5.0, "{k:?}");
+    let impacts = impacts(60);
+    for quantities in COST_FUNCTIONS {
+        let options = FitOptions {
+            quantities: Quantities::of(quantities),
+            onset: Treatment::Fixed,
+            displacement_offset: Treatment::Fixed,
+            ..FitOptions::default()
+        };
+        let [k, c] = recover(&impacts, &options);
+        println!("held {:?} k {k:.4?} c {c:.4?}", options.quantities.names());
+        assert!(c.bias > 0.02 && c.bias < 0.06, "{quantities:?} {c:?}");
+        assert!(c.standard_errors > 5.0, "{quantities:?} {c:?}");
+        if quantities == [X, V, F] {
+            assert!(
+                c.bias > 0.025 && c.bias < 0.045 && c.coverage < 0.6,
+                "{c:?}"
+            );
+            assert!(k.bias > 0.025 && k.standard_errors > 5.0, "{k:?}");
+        }
+    }
 }

@@ -34,7 +34,7 @@ pub enum Command {
     /// Show what recordings hold and what looks wrong
     Inspect(InspectArguments),
     /// Fit force laws to the impacts of a campaign
-    Fit(FitArguments),
+    Fit(Box<FitArguments>),
     /// Simulate one event from a force law
     Simulate(SimulateArguments),
     /// Show force laws

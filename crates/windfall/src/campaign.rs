@@ -83,6 +83,8 @@ pub enum TimePlan {
     Column(String),
     /// A sampling rate; Hz.
     Rate(f64),
+    /// Every channel has a column of times of its own.
+    OfChannels,
 }
 
 /// One channel: value = scale · (cell − offset).

@@ -98,7 +98,8 @@ fn fit_group(
         .collect()
 }
 
-/// The usual question about a law, and the parameters that are freed by name.
+/// The usual question about a law: exponents that are left out have their usual
+/// values and are held, and the parameters named in `free` are estimated.
 fn law_problem(law: &LawExpression, free: &[String]) -> LawProblem {
     let mut problem = LawProblem::from_expression(law);
     let parameters = law.kind.describe().parameters;

@@ -34,6 +34,7 @@ pub fn impact_key(
                 (Some(own), _) => filled(own),
                 (None, TimePlan::Column(shared)) => filled(shared),
                 (None, TimePlan::Rate(rate)) => format!("{rate:?} Hz"),
+                (None, TimePlan::OfChannels) => String::new(),
             };
             let (quantity, column) = (plan.quantity, filled(&plan.column));
             format!(

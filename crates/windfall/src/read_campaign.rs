@@ -96,11 +96,15 @@ fn file_plan(
     file: &CampaignFile,
 ) -> Result<FilePlan, Error> {
     let files = &file.files;
+    let channels = channel_plans(source, file.channels.as_ref())?;
     Ok(FilePlan {
         directory: recordings_directory(source, directory, files)?,
-        time: time_plan(source, files)?,
+        time: match channels.iter().all(|channel| channel.time.is_some()) {
+            true => TimePlan::OfChannels,
+            false => time_plan(source, files)?,
+        },
         time_scale: time_scale(source, files)?,
-        channels: channel_plans(source, file.channels.as_ref())?,
+        channels,
     })
 }
 

@@ -79,7 +79,7 @@ fn source_of<'a>(
     let time = match (&plan.time, &files.time) {
         (Some(own), _) => Some(fill(own)?),
         (None, TimePlan::Column(shared)) => Some(fill(shared)?),
-        (None, TimePlan::Rate(_)) => None,
+        (None, TimePlan::Rate(_) | TimePlan::OfChannels) => None,
     };
     Ok(Source {
         plan,
@@ -134,7 +134,7 @@ fn channel_of(
         (Some((name, times)), _) => listed_times(files, source, cells, name, times, path)?,
         (None, TimePlan::Rate(rate)) => counted_times(cells, *rate, plan.delay),
         // A plan without a rate has a column of times.
-        (None, TimePlan::Column(_)) => Times::Listed(Vec::new()),
+        (None, TimePlan::Column(_) | TimePlan::OfChannels) => Times::Listed(Vec::new()),
     };
     Ok(Channel {
         name: source.column.clone(),

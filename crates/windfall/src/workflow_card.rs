@@ -62,13 +62,16 @@ pub fn law_cards(name: Option<&str>) -> Result<Vec<LawCardText>, Error> {
         .collect())
 }
 
+/// Bounds from here on only keep the arithmetic finite.
+const NO_BOUND: f64 = 1e20;
+
 fn card_of(law: &LawDescription) -> LawCardText {
     let parameter = |p: &windfall_contact::parameter::ParameterDescription| ParameterText {
         name: p.name,
         meaning: p.meaning,
         unit: p.unit,
         lower: p.lower,
-        upper: p.upper.is_finite().then_some(p.upper),
+        upper: (p.upper < NO_BOUND).then_some(p.upper),
         typical: p.typical,
         default: p.default,
     };
@@ -92,11 +95,12 @@ pub fn text_of_laws(laws: &[LawCardText]) -> String {
         let _ = writeln!(text, "  source:      {}", law.source);
         let header = ["parameter", "unit", "bounds", "typical", "meaning"].map(str::to_owned);
         let rows = law.parameters.iter().map(|p| {
-            let upper = p
-                .upper
-                .map_or_else(|| "∞".to_owned(), |upper| upper.to_string());
+            let upper = p.upper.map_or_else(|| "∞".to_owned(), short);
             let bounds = format!("{} … {upper}", short(p.lower));
-            [p.name, p.unit, &bounds, &short(p.typical), p.meaning]
+            let usual = p
+                .default
+                .map_or_else(|| short(p.typical), |d| format!("{} held", short(d)));
+            [p.name, p.unit, &bounds, &usual, p.meaning]
                 .map(str::to_owned)
                 .to_vec()
         });

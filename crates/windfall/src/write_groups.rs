@@ -189,8 +189,7 @@ pub fn law_table(outcome: &CampaignOutcome, laws: &[&str]) -> String {
     let mut header = ["law", "group", "estimated", "impacts", "converged"]
         .map(str::to_owned)
         .to_vec();
-    let ratio = |name: &&str| format!("{name} residual/noise");
-    header.extend(quantities.iter().map(ratio));
+    header.extend(quantities.iter().map(|name| (*name).to_owned()));
     let all: Vec<&ImpactOutcome> = outcome.impacts.iter().collect();
     let groups = group_names(&all);
     let pairs = laws

@@ -13,9 +13,8 @@ use std::fmt::Write;
 const LISTED_IMPACTS: usize = 40;
 
 /// Quantities in the table of impacts: name, heading, factor from SI.
-const OF_IMPACTS: [(&str, &str, f64); 4] = [
+const OF_IMPACTS: [(&str, &str, f64); 3] = [
     ("impact_velocity", "velocity (m/s)", 1.0),
-    ("peak_force", "peak force (N)", 1.0),
     ("restitution", "restitution", 1.0),
     ("absorbed_energy", "absorbed (mJ)", 1e3),
 ];
@@ -41,9 +40,10 @@ pub fn text_of_campaign(outcome: &CampaignOutcome) -> String {
             }
         };
         text += &derived_tables(&groups_of(outcome, first));
+        text += "Duration and displacement count from the force threshold; the fitted law's: --format json.\n";
     }
     if laws.len() > 1 {
-        text += "\nThe laws compared; 1 is a law that describes the signal to its noise:\n";
+        text += "\nThe laws compared by residual over noise; 1 is a law that describes the signal to its noise:\n";
         let _ = writeln!(text, "{}", law_table(outcome, &laws));
     }
     text + &findings_text(outcome)
@@ -59,7 +59,7 @@ fn law_text(outcome: &CampaignOutcome, law: &str) -> String {
         let _ = writeln!(text, "{}", impact_table(&impacts));
     }
     if impacts.len() > 1 {
-        text += "Mean ± SD over the impacts (SD in % of the mean):\n";
+        text += "\nMean ± SD over the impacts (SD in % of the mean):\n";
         let table = parameter_table(&groups_of(outcome, law), &impacts);
         let _ = writeln!(text, "{table}");
     }
