@@ -68,6 +68,11 @@ pub enum Error {
         /// Name of the parameter.
         parameter: &'static str,
     },
+    /// A velocity that was never measured cannot be held.
+    #[error(
+        "the velocity at first touch is to be held, but the recording does not show the motion before contact; give the velocity, or let it be estimated"
+    )]
+    UnknownVelocity,
     /// No starting point lets the model be evaluated.
     #[error(
         "no starting point for {law} gives an impact that can be integrated; give starting values in the law expression"

@@ -10,6 +10,7 @@ use crate::problem::{FitOptions, IMPACT_VELOCITY, LawProblem, Treatment, Weighti
 use crate::regression::{RegressionEstimate, regress};
 use crate::rig::Rig;
 use crate::samples::{QUANTITIES, Quantity, SampleGroup};
+use crate::simulate::check_positive;
 use crate::solve::{LARGEST_FREE, Limits, Solution, solve};
 use crate::starting_values::{Features, starting_values};
 use windfall_contact::law_kind::LawKind;
@@ -60,10 +61,14 @@ pub(crate) fn plan<'a>(
         });
     }
     let (groups, mut findings) = sample_groups(impact, options)?;
-    let features = Features::of(impact, rig.effective_mass());
+    let mut features = Features::of(impact, rig.effective_mass());
+    if let Some(velocity) = options.known_velocity {
+        check_positive("the velocity at first touch", velocity)?;
+        features.velocity = velocity;
+    }
     let start = starting_values(problem.kind, &features, &problem.values);
     let regression = regression_of(impact, problem, &start);
-    let free = free_parameters(impact, problem, options, &features, &start, &mut findings);
+    let free = free_parameters(impact, problem, options, &features, &start, &mut findings)?;
     let samples = groups.iter().map(sample_count).sum();
     if samples <= free.len() || free.len() > LARGEST_FREE {
         return Err(Error::TooFewSamples {
@@ -201,7 +206,7 @@ fn free_parameters(
     features: &Features,
     start: &[f64],
     findings: &mut Vec<Finding>,
-) -> Vec<FreeParameter> {
+) -> Result<Vec<FreeParameter>, Error> {
     let description = problem.kind.describe();
     let mut free: Vec<FreeParameter> = problem
         .free_positions()
@@ -228,7 +233,7 @@ fn free_parameters(
             }
         })
         .collect();
-    let nuisances = nuisances(impact, options, features, findings);
+    let nuisances = nuisances(impact, options, features, findings)?;
     if !nuisances.is_empty() {
         let names: Vec<_> = nuisances
             .iter()
@@ -239,7 +244,7 @@ fn free_parameters(
         });
     }
     free.extend(nuisances);
-    free
+    Ok(free)
 }
 
 /// Name and unit of a nuisance.
@@ -258,7 +263,7 @@ fn nuisances(
     options: &FitOptions,
     features: &Features,
     findings: &mut Vec<Finding>,
-) -> Vec<FreeParameter> {
+) -> Result<Vec<FreeParameter>, Error> {
     let has = |q: Quantity| options.quantities.holds(q) && series(impact, q).is_some();
     let moves = has(Quantity::Displacement) || has(Quantity::Rate);
     let mut free = Vec::new();
@@ -269,7 +274,7 @@ fn nuisances(
         lower: features.velocity / VELOCITY_FACTOR,
         upper: features.velocity * VELOCITY_FACTOR,
     };
-    let measured = impact.measured.impact_velocity.is_some();
+    let measured = impact.measured.impact_velocity.is_some() || options.known_velocity.is_some();
     let held = |quantity, value, unit, reason| Finding::Held {
         quantity,
         value,
@@ -285,6 +290,7 @@ fn nuisances(
             "m/s",
             "the quantities in the cost say little about it, and the motion before contact was measured",
         )),
+        Treatment::Fixed if !measured => return Err(Error::UnknownVelocity),
         Treatment::Fixed => findings.push(held(
             "initial_velocity",
             features.velocity,
@@ -314,7 +320,7 @@ fn nuisances(
             Treatment::Fixed => findings.push(held("displacement_offset", 0.0, "m", "as asked")),
         }
     }
-    free
+    Ok(free)
 }
 
 impl Plan<'_> {

@@ -121,6 +121,9 @@ pub struct FitOptions {
     pub weighting: Weighting,
     /// Velocity at first touch.
     pub initial_velocity: Treatment,
+    /// Velocity at first touch where it is known otherwise, in place of the one
+    /// read off the signals; m/s.
+    pub known_velocity: Option<f64>,
     /// Time of first touch.
     pub onset: Treatment,
     /// Zero of the displacement.
@@ -143,6 +146,7 @@ impl Default for FitOptions {
             quantities: Quantities::default(),
             weighting: Weighting::default(),
             initial_velocity: Treatment::default(),
+            known_velocity: None,
             onset: Treatment::default(),
             displacement_offset: Treatment::default(),
             end: EndRule::default(),

@@ -138,7 +138,7 @@ pub fn trajectory(
     sample(AnyLaw(*law), rig, velocity, times, end)
 }
 
-fn check_positive(name: &'static str, value: f64) -> Result<(), Error> {
+pub(crate) fn check_positive(name: &'static str, value: f64) -> Result<(), Error> {
     if value.is_finite() && value > 0.0 {
         Ok(())
     } else {

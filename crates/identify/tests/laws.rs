@@ -5,7 +5,7 @@ use windfall_contact::expression::parse_law;
 use windfall_contact::law::EndRule;
 use windfall_contact::law_kind::LawKind;
 use windfall_identify::fit::fit_impact;
-use windfall_identify::problem::{FitOptions, LawProblem};
+use windfall_identify::problem::{FitOptions, LawProblem, Treatment, Weighting};
 use windfall_identify::rig::{Carriage, Rig};
 use windfall_identify::simulate::{simulate_rig, trajectory};
 use windfall_signal::impact::{Impact, Measured, Series};
@@ -190,6 +190,76 @@ fn closed_form_uncertain_mass() {
         assert!(
             (unsure.sd / expected - 1.0).abs() < 1e-3,
             "{sure:?} {unsure:?}"
+        );
+    }
+}
+
+/// Without noise the law comes out to the accuracy of the integration, with
+/// either weights, although the onset is free and the force starts like √t.
+#[test]
+fn recovers_exactly_without_noise() {
+    let times: Vec<f64> = (-150..900).map(|i| f64::from(i) * 1e-5 + 3e-6).collect();
+    let law = parse_law("kuwabara-kono(k=753599, c=1524)").unwrap();
+    let law = law.complete().unwrap();
+    let motion = trajectory(&law, &rig(), VELOCITY, &times, EndRule::ForceZero).unwrap();
+    let series = |values: &[f64], noise: f64| Series {
+        times: times.clone(),
+        values: values.to_vec(),
+        noise,
+        zero_sd: 0.0,
+    };
+    let exact = Impact {
+        displacement: Some(series(&motion.displacement, 1e-6)),
+        rate: Some(series(&motion.rate, 1e-3)),
+        force: Some(series(&motion.force, 0.1)),
+        ..impact("kuwabara-kono(k=753599, c=1524)", 1)
+    };
+    let problem = LawProblem::from_expression(&parse_law("kuwabara-kono").unwrap());
+    for weighting in [Weighting::InverseVariance, Weighting::InverseMean] {
+        let options = FitOptions {
+            weighting,
+            ..FitOptions::default()
+        };
+        let fit = fit_impact(&exact, &rig(), &problem, &options).unwrap();
+        println!(
+            "{weighting:?} {} evaluations {:?}",
+            fit.evaluations, fit.parameters
+        );
+        assert!(
+            fit.converged && fit.evaluations < 60,
+            "{weighting:?} {fit:?}"
+        );
+        for (estimate, truth) in fit.parameters.iter().zip([753_599.0, 1524.0]) {
+            assert!(
+                (estimate.value / truth - 1.0).abs() < 1e-6,
+                "{weighting:?} {estimate:?}"
+            );
+        }
+    }
+}
+
+/// A velocity can be given; one that was never measured is not held silently.
+#[test]
+fn rejects_holding_a_velocity_that_was_not_measured() {
+    let mut impact = impact("kuwabara-kono(k=753599, c=1524)", 3);
+    impact.measured.impact_velocity = None;
+    let problem = LawProblem::from_expression(&parse_law("kuwabara-kono").unwrap());
+    let mut options = FitOptions {
+        initial_velocity: Treatment::Fixed,
+        ..FitOptions::default()
+    };
+    let error = fit_impact(&impact, &rig(), &problem, &options).unwrap_err();
+    assert_eq!(
+        error.to_string(),
+        "the velocity at first touch is to be held, but the recording does not show the motion before contact; give the velocity, or let it be estimated"
+    );
+    options.known_velocity = Some(VELOCITY);
+    let fit = fit_impact(&impact, &rig(), &problem, &options).unwrap();
+    assert!(fit.converged && fit.velocity == VELOCITY);
+    for (estimate, truth) in fit.parameters.iter().zip([753_599.0, 1524.0]) {
+        assert!(
+            (estimate.value - truth).abs() < 5.0 * estimate.sd,
+            "{estimate:?}"
         );
     }
 }

@@ -45,8 +45,8 @@ pub struct FitArguments {
     /// Time of first touch: fixed where the force passes its threshold, free, or as the data can tell
     #[arg(long, value_parser = ["auto", "free", "fixed"], value_name = "HOW")]
     pub onset: Option<String>,
-    /// Velocity at first touch
-    #[arg(long, value_parser = ["auto", "free", "fixed"], value_name = "HOW")]
+    /// Velocity at first touch: auto, free, fixed (as measured), or held at a value ("0.35 m/s")
+    #[arg(long, value_name = "HOW")]
     pub initial_velocity: Option<String>,
     /// Zero of the displacement
     #[arg(long, value_parser = ["auto", "free", "fixed"], value_name = "HOW")]

@@ -10,6 +10,7 @@ use windfall_contact::expression::{LawExpression, parse_law};
 use windfall_contact::law::EndRule;
 use windfall_identify::problem::{FitOptions, Quantities, Treatment, Weighting};
 use windfall_identify::samples::Quantity;
+use windfall_numerics::unit::parse_as;
 
 const TABLE: &str = "[fit]";
 
@@ -52,7 +53,11 @@ pub fn fit_plan(source: &TomlSource, file: &FitFile) -> Result<FitPlan, Error> {
     let treatment = |value: Option<&Spanned<String>>, key| {
         Ok(choice(source, value, (TABLE, key), &TREATMENTS)?.unwrap_or(Treatment::Auto))
     };
-    options.initial_velocity = treatment(file.initial_velocity.as_ref(), "initial_velocity")?;
+    let velocity = file.initial_velocity.as_ref();
+    match velocity.and_then(|value| known_velocity(value.get_ref())) {
+        Some(known) => hold_velocity(&mut options, known),
+        None => options.initial_velocity = treatment(velocity, "initial_velocity")?,
+    }
     options.onset = treatment(file.onset.as_ref(), "onset")?;
     options.displacement_offset =
         treatment(file.displacement_offset.as_ref(), "displacement_offset")?;
@@ -61,6 +66,20 @@ pub fn fit_plan(source: &TomlSource, file: &FitFile) -> Result<FitPlan, Error> {
         free,
         options,
     })
+}
+
+/// A velocity given in place of a treatment: "0.35 m/s". Its unit tells it from
+/// a word.
+#[must_use]
+pub fn known_velocity(text: &str) -> Option<f64> {
+    let value = parse_as(text, "m/s").ok()?;
+    (value.is_finite() && value > 0.0).then_some(value)
+}
+
+/// Holds the velocity at first touch at a given value; m/s.
+pub fn hold_velocity(options: &mut FitOptions, velocity: f64) {
+    options.initial_velocity = Treatment::Fixed;
+    options.known_velocity = Some(velocity);
 }
 
 /// Quantities of a cost function by their names.

@@ -3,7 +3,9 @@
 use crate::campaign::Campaign;
 use crate::error::Error;
 use crate::option_value::{chosen, unusable};
-use crate::read_fit::{ENDS, TREATMENTS, WEIGHTS, quantities_named, unknown_parameter};
+use crate::read_fit::{
+    ENDS, TREATMENTS, WEIGHTS, hold_velocity, known_velocity, quantities_named, unknown_parameter,
+};
 use crate::toml_source::suggestion;
 use windfall_contact::expression::{LawExpression, parse_law};
 use windfall_identify::problem::FitOptions;
@@ -20,7 +22,8 @@ pub struct FitRequest {
     pub quantities: Vec<String>,
     /// Weights in place of the campaign's: a word of [`WEIGHTS`].
     pub weights: Option<String>,
-    /// Treatment of the velocity at first touch: a word of [`TREATMENTS`].
+    /// Treatment of the velocity at first touch: a word of [`TREATMENTS`], or the
+    /// velocity to hold it at.
     pub initial_velocity: Option<String>,
     /// Treatment of the time of first touch.
     pub onset: Option<String>,
@@ -114,12 +117,16 @@ fn apply_options(options: &mut FitOptions, request: &FitRequest) -> Result<(), E
     if let Some(word) = &request.end {
         options.end = chosen("--end", word, &ENDS)?;
     }
+    if let Some(text) = &request.initial_velocity {
+        match known_velocity(text) {
+            Some(known) => hold_velocity(options, known),
+            None => {
+                options.known_velocity = None;
+                options.initial_velocity = chosen("--initial-velocity", text, &TREATMENTS)?;
+            }
+        }
+    }
     let treatments = [
-        (
-            "--initial-velocity",
-            &request.initial_velocity,
-            &mut options.initial_velocity,
-        ),
         ("--onset", &request.onset, &mut options.onset),
         (
             "--displacement-offset",
