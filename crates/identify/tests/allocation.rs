@@ -1,5 +1,7 @@
 //! A fit allocates for the impact, never per sample, step or evaluation.
 
+#![allow(clippy::unwrap_used, clippy::print_stdout)]
+
 mod rubber;
 
 use rubber::{impact, rig};

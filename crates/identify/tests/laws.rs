@@ -1,6 +1,8 @@
 //! Each law of the registry: simulated, sampled with noise, fitted from its own
 //! starting values, and found again.
 
+#![allow(clippy::unwrap_used, clippy::print_stdout)]
+
 use windfall_contact::expression::parse_law;
 use windfall_contact::law::EndRule;
 use windfall_contact::law_kind::LawKind;

@@ -1,5 +1,7 @@
 //! Known parameters recovered from simulated raw recordings.
 
+#![allow(clippy::unwrap_used, clippy::print_stdout)]
+
 mod rubber;
 
 use rubber::{impact, recover};

@@ -4,6 +4,8 @@
 //! The data are read from the folder in `WINDFALL_PEERS` (default: the shared
 //! folder beside the checkout); where it is not there, the tests say so.
 
+#![allow(clippy::unwrap_used, clippy::print_stdout)]
+
 use std::path::PathBuf;
 use windfall_contact::law::EndRule;
 use windfall_contact::law_kuwabara_kono::KuwabaraKono;
