@@ -5,7 +5,7 @@ use crate::deceleration::deceleration;
 use crate::error::{Error, Times};
 use crate::finding::Finding;
 use crate::impact::{Impact, Measured, Series};
-use crate::kinematics::Motion;
+use crate::kinematics::{Motion, smoothing_window};
 use crate::measure::{
     Side, Surroundings, Velocity, free_velocity, impulse, largest_displacement, with_energies,
 };
@@ -14,6 +14,7 @@ use crate::options::{ExtractOptions, RateMethod, check_options};
 use crate::orient::{
     leave_out_glitches, mean_between, offset_sd, orient, oriented_displacement, oriented_force,
 };
+use crate::polynomial::local_polynomial;
 use crate::rate::derived_rate;
 use crate::recording::Recording;
 use crate::track::{Geometry, Track, Tracks, mean_interval, missing, tracks};
@@ -21,6 +22,10 @@ use crate::trigger::{Baseline, Contacts, Signal, Threshold, TriggerOptions, find
 
 /// Fewer samples in contact than this are reported.
 const FEW_SAMPLES: usize = 8;
+/// Noise below this part of the largest force leaves its peak alone; 1.
+const CLEAN_PEAK: f64 = 0.01;
+/// Order of the local polynomial that a noisy peak is read from.
+const PEAK_ORDER: usize = 2;
 
 /// Cuts one impact out of a recording.
 ///
@@ -291,7 +296,7 @@ fn measure(
         peak_force: signals
             .force
             .as_ref()
-            .and_then(|track| largest_within(track, place)),
+            .and_then(|track| peak_force(track, place)),
         max_displacement: signals
             .displacement
             .as_ref()
@@ -329,10 +334,21 @@ fn velocity(
     from(&signals.displacement, Motion::Displacement).or_else(|| from(&signals.rate, Motion::Rate))
 }
 
-fn largest_within(track: &Track, place: &Surroundings) -> Option<f64> {
+/// Largest force of the contact. The largest of many noisy samples lies above
+/// the peak by some deviations of their noise; where that matters, the peak is
+/// that of a local quadratic over a tenth of the contact.
+fn peak_force(track: &Track, place: &Surroundings) -> Option<f64> {
     let first = track.times.partition_point(|&t| t < place.onset);
     let last = track.times.partition_point(|&t| t <= place.end);
-    track.values[first..last].iter().copied().reduce(f64::max)
+    let (times, values) = (&track.times[first..last], &track.values[first..last]);
+    let largest = values.iter().copied().reduce(f64::max)?;
+    if track.noise <= CLEAN_PEAK * largest {
+        return Some(largest);
+    }
+    let window = smoothing_window(place.duration(), mean_interval(times));
+    let smooth = local_polynomial(times, values, window, PEAK_ORDER, 0);
+    let smooth = smooth.and_then(|values| values.into_iter().reduce(f64::max));
+    smooth.or(Some(largest))
 }
 
 fn few_samples(track: &Track, place: &Surroundings) -> Option<Finding> {

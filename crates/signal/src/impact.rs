@@ -28,7 +28,7 @@ pub struct Measured {
     pub restitution: Option<f64>,
     /// Time between the crossings of the force threshold; s.
     pub contact_duration: Option<f64>,
-    /// Largest force; N.
+    /// Largest force, of the smoothed signal where its noise would raise it; N.
     pub peak_force: Option<f64>,
     /// Largest displacement after first contact; m.
     pub max_displacement: Option<f64>,
