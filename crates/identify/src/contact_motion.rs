@@ -29,8 +29,6 @@ pub struct Seeds<const N: usize, const W: usize> {
     pub parameters: [Lanes<W>; N],
     /// Of the velocity at first touch.
     pub velocity: Lanes<W>,
-    /// Of 1/m.
-    pub inverse_mass: Lanes<W>,
 }
 
 impl<const N: usize, const W: usize> Seeds<N, W> {
@@ -38,7 +36,6 @@ impl<const N: usize, const W: usize> Seeds<N, W> {
     pub const NONE: Self = Self {
         parameters: [Lanes::ZERO; N],
         velocity: Lanes::ZERO,
-        inverse_mass: Lanes::ZERO,
     };
 }
 
@@ -162,12 +159,9 @@ impl<L: ContactLaw<N>, const N: usize, const W: usize> System<2, W> for Phase<'_
         for (by, seed) in force.by_parameter.iter().zip(&event.seeds.parameters) {
             direct += *seed * *by;
         }
-        // ∂x''/∂(1/m) at constant force is by_force·F / (1/m).
-        let by_mass = a.by_force * force.force / event.motion.inverse_mass;
         let mut rate = x * (a.by_displacement + a.by_force * force.by_displacement)
             + v * (a.by_rate + a.by_force * force.by_rate)
-            + direct * a.by_force
-            + event.seeds.inverse_mass * by_mass;
+            + direct * a.by_force;
         rate.0[0] = a.value;
         [v * stretch, rate * stretch]
     }

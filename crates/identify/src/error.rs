@@ -60,14 +60,6 @@ pub enum Error {
         /// Name of the law.
         law: &'static str,
     },
-    /// A parameter is neither given nor free.
-    #[error("{law} needs a value for {parameter}: give it in the law expression or free it")]
-    MissingParameter {
-        /// Name of the law.
-        law: &'static str,
-        /// Name of the parameter.
-        parameter: &'static str,
-    },
     /// A velocity that was never measured cannot be held.
     #[error(
         "the velocity at first touch is to be held, but the recording does not show the motion before contact; give the velocity, or let it be estimated"

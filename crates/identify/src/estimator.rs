@@ -22,8 +22,6 @@ pub enum Target {
     Law(usize),
     /// Velocity at first touch.
     InitialVelocity,
-    /// Mass of the impactor.
-    Mass,
     /// Time of first touch.
     Onset,
     /// Constant added to the model's displacement.
@@ -33,7 +31,7 @@ pub enum Target {
 impl Target {
     /// Whether the motion must carry a sensitivity for it.
     pub(crate) fn needs_lane(self) -> bool {
-        matches!(self, Self::Law(_) | Self::InitialVelocity | Self::Mass)
+        matches!(self, Self::Law(_) | Self::InitialVelocity)
     }
 }
 
@@ -110,7 +108,6 @@ impl<const N: usize> Values<N> {
         match target {
             Target::Law(i) => self.law[i],
             Target::InitialVelocity => self.velocity,
-            Target::Mass => 1.0 / self.inverse_mass,
             Target::Onset => self.onset,
             Target::DisplacementOffset => self.offset,
         }
@@ -120,7 +117,6 @@ impl<const N: usize> Values<N> {
         match target {
             Target::Law(i) => self.law[i] = value,
             Target::InitialVelocity => self.velocity = value,
-            Target::Mass => self.inverse_mass = 1.0 / value,
             Target::Onset => self.onset = value,
             Target::DisplacementOffset => self.offset = value,
         }
@@ -228,10 +224,6 @@ impl<'a, L: FreeLaw<N>, const N: usize, const W: usize, const P: usize> Estimato
                     if let Some(tied) = self.setting.tied_velocity {
                         seeds.parameters[tied] += Lanes::unit(lane, slope);
                     }
-                }
-                Target::Mass => {
-                    let by_mass = -values.inverse_mass * values.inverse_mass;
-                    seeds.inverse_mass += Lanes::unit(lane, slope * by_mass);
                 }
                 Target::Onset => columns.onset[c] = slope,
                 Target::DisplacementOffset => columns.offset[c] = slope,

@@ -91,6 +91,14 @@ pub enum Finding {
         /// Its standard uncertainty; kg.
         sd: f64,
     },
+    /// The uncertainty of the mass could not be carried over.
+    #[error("the uncertainty of the mass, {} ± {}, is not in the intervals: with another mass the fit failed; they are too narrow", Shown(*mass, ""), Shown(*sd, "kg"))]
+    MassLeftOut {
+        /// Mass; kg.
+        mass: f64,
+        /// Its standard uncertainty; kg.
+        sd: f64,
+    },
     /// A wanted quantity is missing.
     #[error("{quantity} is not in the recording and took no part in the fit")]
     MissingQuantity {
@@ -123,6 +131,7 @@ impl Finding {
             Self::StructuredResiduals { .. } => "structured-residuals",
             Self::Misfit { .. } => "misfit",
             Self::UncertainMass { .. } => "uncertain-mass",
+            Self::MassLeftOut { .. } => "mass-left-out",
             Self::MissingQuantity { .. } => "missing-quantity",
             Self::NominalRestitution { .. } => "nominal-restitution",
         }

@@ -23,7 +23,7 @@ pub use crate::fit_types::{Estimate, Fit, QuantityFit};
 ///
 /// # Errors
 /// [`Error::NoQuantities`], [`Error::TooFewSamples`], [`Error::NothingToFit`],
-/// [`Error::MissingParameter`], [`Error::NoStart`], [`Error::BadInput`]. A fit
+/// [`Error::NoStart`], [`Error::UnknownVelocity`], [`Error::BadInput`]. A fit
 /// that does not converge or ends on a bound is returned with findings.
 ///
 /// # Source
@@ -50,15 +50,18 @@ pub fn fit_impact(
 /// one standard deviation lower and higher.
 fn widen_for_mass(fit: &mut Fit, plan: &Plan, mass: f64, sd: f64) {
     let at = vec![fit.law.parameters()];
-    let low = plan.solve_with_mass((mass - sd).max(0.1 * mass), &at);
-    let high = plan.solve_with_mass(mass + sd, &at);
+    // A mass that is hardly known is varied by no more than half of itself.
+    let step = sd.min(0.5 * mass);
+    let low = plan.solve_with_mass(mass - step, &at);
+    let high = plan.solve_with_mass(mass + step, &at);
     let (Ok(low), Ok(high)) = (low, high) else {
+        fit.findings.push(Finding::MassLeftOut { mass, sd });
         return;
     };
     let quantile = plan.quantile(fit.samples);
     let estimates = fit.parameters.iter_mut().chain(&mut fit.nuisances);
     for (i, estimate) in estimates.enumerate() {
-        let by_mass = 0.5 * (high.free[i] - low.free[i]);
+        let by_mass = 0.5 * (high.free[i] - low.free[i]) * sd / step;
         estimate.sd = estimate.sd.hypot(by_mass);
         estimate.low = estimate.value - quantile * estimate.sd;
         estimate.high = estimate.value + quantile * estimate.sd;

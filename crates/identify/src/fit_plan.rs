@@ -11,7 +11,7 @@ use crate::regression::{RegressionEstimate, regress};
 use crate::rig::Rig;
 use crate::samples::{QUANTITIES, Quantity, SampleGroup};
 use crate::simulate::check_positive;
-use crate::solve::{LARGEST_FREE, Limits, Solution, solve};
+use crate::solve::{Limits, Solution, solve};
 use crate::starting_values::{Features, starting_values};
 use windfall_contact::law_kind::LawKind;
 use windfall_numerics::ode_step::Tolerance;
@@ -70,7 +70,7 @@ pub(crate) fn plan<'a>(
     let regression = regression_of(impact, problem, &start);
     let free = free_parameters(impact, problem, options, &features, &start, &mut findings)?;
     let samples = groups.iter().map(sample_count).sum();
-    if samples <= free.len() || free.len() > LARGEST_FREE {
+    if samples <= free.len() {
         return Err(Error::TooFewSamples {
             samples,
             parameters: free.len(),
@@ -252,7 +252,6 @@ pub(crate) fn nuisance_name(target: Target) -> (&'static str, &'static str) {
     match target {
         Target::Onset => ("onset", "s"),
         Target::DisplacementOffset => ("displacement_offset", "m"),
-        Target::Mass => ("mass", "kg"),
         Target::InitialVelocity | Target::Law(_) => ("initial_velocity", "m/s"),
     }
 }

@@ -399,10 +399,8 @@ where
         jacobian[1][c] = dv;
         jacobian[2][c] = df;
         if accelerated {
-            let seed = event.seeds.inverse_mass.0[lane] / event.motion.inverse_mass;
-            let by_mass = motion.by_force * force * seed;
             jacobian[3][c] =
-                motion.by_displacement * dx + motion.by_rate * dv + motion.by_force * df + by_mass;
+                motion.by_displacement * dx + motion.by_rate * dv + motion.by_force * df;
         }
     }
     PackModel {

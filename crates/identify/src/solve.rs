@@ -17,6 +17,9 @@ const LONGEST_STEP: (f64, f64) = (2.0, 0.5);
 const ROUGHNESS: f64 = 0.01;
 /// Free parameters that one fit can have.
 pub(crate) const LARGEST_FREE: usize = 8;
+/// Velocity, onset and displacement offset.
+const NUISANCES: usize = 3;
+const _: () = assert!(LARGEST_PARAMETERS + NUISANCES <= LARGEST_FREE);
 
 /// What the minimiser found, without the law's type.
 #[derive(Clone, Debug)]
