@@ -108,14 +108,15 @@ impl Plan<'_> {
 
     fn regression_estimates(&self, law: &Law) -> Vec<Estimate> {
         let described = self.problem.kind.describe().parameters;
+        let quantile = self.quantile(self.groups.iter().map(sample_count).sum());
         self.regression
             .iter()
             .map(|r| Estimate {
                 name: described[r.position].name.to_owned(),
                 value: r.value,
                 sd: r.standard_error,
-                low: r.value - 2.0 * r.standard_error,
-                high: r.value + 2.0 * r.standard_error,
+                low: r.value - quantile * r.standard_error,
+                high: r.value + quantile * r.standard_error,
                 unit: law.unit_of(r.position),
             })
             .collect()

@@ -64,7 +64,6 @@ pub(crate) struct Limits {
 
 /// Solves from each start in turn until one converges inside the bounds, and
 /// returns the best; `None` when the model cannot be evaluated at any.
-///
 pub(crate) fn solve(
     law: &Law,
     setting: &Setting,
@@ -227,7 +226,9 @@ where
         velocity: values.velocity,
         onset: values.onset,
         offset: values.offset,
-        cost: equations.cost,
+        // Of the samples as they were taken in the end, not of the averages that
+        // the covariance is made with.
+        cost: minimum.equations.cost,
         evaluations: evaluations + 1,
         stop: minimum.stop,
         at_bound: minimum.at_bound[..count].to_vec(),
