@@ -20,9 +20,11 @@ pub const ARROWS: &[(&str, &[&str])] = &[
         ],
     ),
     ("windfall-scene", &["windfall-contact", "windfall-numerics"]),
+    ("windfall-formats", &[]),
     (
         "windfall",
         &[
+            "windfall-formats",
             "windfall-scene",
             "windfall-identify",
             "windfall-contact",

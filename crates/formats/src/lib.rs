@@ -1,0 +1,20 @@
+//! Files of instruments → channels of numbers, as the instrument wrote them.
+//!
+//! [`open::open`] finds out the format of a file and returns a
+//! [`reader::Reader`]; its [`contents::Contents`] names the channels with unit,
+//! length and time base without reading their samples, and
+//! [`reader::Reader::read`] hands over the samples in blocks, so that a file of
+//! any size is looked through in bounded memory.
+//!
+//! One file `read_*` for each format. Values are those of the file after the
+//! scaling that the file itself prescribes; what they mean on a rig, in which
+//! unit, is said in a campaign and is not known here. Sizes and offsets that a
+//! file declares are checked against its length before anything is allocated.
+
+pub mod contents;
+pub mod error;
+pub mod open;
+pub mod reader;
+pub mod source;
+
+pub use error::Error;

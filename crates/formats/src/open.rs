@@ -1,0 +1,68 @@
+//! Which reader a file needs, by its first bytes; its name decides only where
+//! these leave a choice.
+
+use crate::contents::Format;
+use crate::error::Error;
+use crate::reader::Reader;
+use crate::source::Source;
+use std::path::Path;
+
+/// Bytes from which the format is told.
+const HEAD: u64 = 4096;
+
+/// How a file is to be read where it does not say so itself.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct OpenOptions {
+    /// The format; `None`: found out.
+    pub format: Option<Format>,
+}
+
+/// Opens a file with the reader that its format needs.
+///
+/// # Errors
+/// The file cannot be read, is of no known format, or breaks the rules of its own.
+pub fn open(path: &Path, options: &OpenOptions) -> Result<Box<dyn Reader>, Error> {
+    open_source(Source::open(path)?, options)
+}
+
+/// Opens bytes with the reader that their format needs.
+///
+/// # Errors
+/// As [`open`].
+pub fn open_source(source: Source, options: &OpenOptions) -> Result<Box<dyn Reader>, Error> {
+    let format = match options.format {
+        Some(format) => format,
+        None => tell_format(&source)?,
+    };
+    match format {
+        // One line for each reader.
+        other => Err(Error::UnknownFormat {
+            path: source.path().to_path_buf(),
+            found: format!("this is a {other} file"),
+            advice: "export the recording as CSV".to_owned(),
+        }),
+    }
+}
+
+/// The format of a file, by its first bytes.
+///
+/// # Errors
+/// It cannot be read, is empty, or is a known format that windfall does not read.
+pub fn tell_format(source: &Source) -> Result<Format, Error> {
+    let head = source.head(HEAD)?;
+    if head.is_empty() {
+        return Err(Error::Empty {
+            path: source.path().to_path_buf(),
+            expected: "a recording",
+        });
+    }
+    if head.starts_with(b"TDSm") || head.starts_with(b"TDSh") {
+        return Ok(Format::Tdms);
+    }
+    if let Some(tag) = head.get(..4)
+        && [b"RIFF", b"RIFX", b"RF64"].iter().any(|t| *t == tag)
+    {
+        return Ok(Format::Wav);
+    }
+    Ok(Format::Text)
+}

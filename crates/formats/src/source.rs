@@ -1,0 +1,188 @@
+//! The bytes of a file, read at any place.
+
+use crate::error::{Error, Place};
+use std::fs::File;
+use std::path::{Path, PathBuf};
+
+/// The bytes of a file.
+///
+/// Reading moves no position, so that threads can share it.
+#[derive(Debug)]
+pub struct Source {
+    path: PathBuf,
+    length: u64,
+    bytes: Bytes,
+}
+
+#[derive(Debug)]
+enum Bytes {
+    File(File),
+    Memory(Vec<u8>),
+}
+
+impl Source {
+    /// Opens a file.
+    ///
+    /// # Errors
+    /// It is not there, is no regular file, or cannot be opened.
+    pub fn open(path: &Path) -> Result<Self, Error> {
+        let access = |source: std::io::Error| match source.kind() {
+            std::io::ErrorKind::NotFound => Error::Absent {
+                path: path.to_path_buf(),
+            },
+            _ => Error::Access {
+                path: path.to_path_buf(),
+                source,
+            },
+        };
+        let file = File::open(path).map_err(access)?;
+        let metadata = file.metadata().map_err(access)?;
+        if metadata.is_dir() {
+            return Err(Error::UnknownFormat {
+                path: path.to_path_buf(),
+                found: "this is a directory".to_owned(),
+                advice: "name a file in it".to_owned(),
+            });
+        }
+        Ok(Self {
+            path: path.to_path_buf(),
+            length: metadata.len(),
+            bytes: Bytes::File(file),
+        })
+    }
+
+    /// Bytes in memory, with a name for messages.
+    #[must_use]
+    pub fn from_bytes(name: &str, bytes: Vec<u8>) -> Self {
+        Self {
+            path: PathBuf::from(name),
+            length: bytes.len() as u64,
+            bytes: Bytes::Memory(bytes),
+        }
+    }
+
+    /// The file, for messages.
+    #[must_use]
+    pub fn path(&self) -> &Path {
+        &self.path
+    }
+
+    /// Number of bytes.
+    #[must_use]
+    pub fn length(&self) -> u64 {
+        self.length
+    }
+
+    /// Fills `buffer` with the bytes from `offset` on.
+    ///
+    /// # Errors
+    /// [`Error::Truncated`] where the file has too few; [`Error::Access`].
+    pub fn read_at(&self, offset: u64, buffer: &mut [u8]) -> Result<(), Error> {
+        let left = self.length.saturating_sub(offset);
+        let needed = buffer.len() as u64;
+        if needed > left {
+            return Err(self.truncated(offset, "what stands here", needed));
+        }
+        match &self.bytes {
+            Bytes::Memory(bytes) => {
+                let start = offset as usize;
+                buffer.copy_from_slice(&bytes[start..start + buffer.len()]);
+                Ok(())
+            }
+            Bytes::File(file) => read_exact_at(file, offset, buffer).map_err(|source| {
+                // The file has become shorter since it was opened.
+                if source.kind() == std::io::ErrorKind::UnexpectedEof {
+                    return self.truncated(offset, "what stands here", needed);
+                }
+                Error::Access {
+                    path: self.path.clone(),
+                    source,
+                }
+            }),
+        }
+    }
+
+    /// `count` bytes from `offset` on; nothing is allocated before it is known
+    /// that the file has them.
+    ///
+    /// # Errors
+    /// As [`Source::read_at`].
+    pub fn bytes_at(&self, offset: u64, count: u64) -> Result<Vec<u8>, Error> {
+        if count > self.length.saturating_sub(offset) {
+            return Err(self.truncated(offset, "what stands here", count));
+        }
+        let mut buffer = vec![0; count as usize];
+        self.read_at(offset, &mut buffer)?;
+        Ok(buffer)
+    }
+
+    /// The first bytes, `count` or as many as there are.
+    ///
+    /// # Errors
+    /// [`Error::Access`].
+    pub fn head(&self, count: u64) -> Result<Vec<u8>, Error> {
+        self.bytes_at(0, count.min(self.length))
+    }
+
+    /// The error that `what`, at `offset`, needs more bytes than there are.
+    #[must_use]
+    pub fn truncated(&self, offset: u64, what: &str, needed: u64) -> Error {
+        Error::Truncated {
+            path: self.path.clone(),
+            place: Place::Byte(offset),
+            what: what.to_owned(),
+            needed,
+            left: self.length.saturating_sub(offset),
+        }
+    }
+}
+
+#[cfg(unix)]
+fn read_exact_at(file: &File, offset: u64, buffer: &mut [u8]) -> std::io::Result<()> {
+    std::os::unix::fs::FileExt::read_exact_at(file, buffer, offset)
+}
+
+#[cfg(windows)]
+fn read_exact_at(file: &File, offset: u64, buffer: &mut [u8]) -> std::io::Result<()> {
+    use std::os::windows::fs::FileExt;
+    let mut done = 0;
+    while done < buffer.len() {
+        match file.seek_read(&mut buffer[done..], offset + done as u64)? {
+            0 => return Err(std::io::ErrorKind::UnexpectedEof.into()),
+            n => done += n,
+        }
+    }
+    Ok(())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn closed_form_bytes_of_a_file_and_of_memory() {
+        let dir = tempfile::tempdir().unwrap();
+        let path = dir.path().join("a.bin");
+        std::fs::write(&path, b"0123456789").unwrap();
+        for source in [
+            Source::open(&path).unwrap(),
+            Source::from_bytes("a.bin", b"0123456789".to_vec()),
+        ] {
+            assert_eq!(source.length(), 10);
+            assert_eq!(source.bytes_at(3, 4).unwrap(), b"3456");
+            assert_eq!(source.head(99).unwrap(), b"0123456789");
+        }
+    }
+
+    #[test]
+    fn rejects_bytes_beyond_the_end_before_allocating() {
+        let source = Source::from_bytes("a.bin", vec![0; 10]);
+        let error = source.bytes_at(4, u64::MAX).unwrap_err();
+        assert_eq!(
+            error.to_string(),
+            "a.bin, at byte 4: the file ends too early: what stands here needs \
+             18446744073709551615 bytes, 6 are left; it was cut off while it was written or copied"
+        );
+        assert!(source.bytes_at(u64::MAX, 1).is_err());
+    }
+}
