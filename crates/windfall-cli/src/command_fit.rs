@@ -5,12 +5,13 @@ use crate::args_format::Format;
 use crate::show::{message, write_json, write_result};
 use indicatif::{ProgressBar, ProgressStyle};
 use std::io::IsTerminal;
+use windfall::any_outcome::AnyOutcome;
 use windfall::error::Error;
 use windfall::request_fit::{FitRequest, Reuse};
 use windfall::request_recording::RecordingRequest;
-use windfall::workflow_fit::{fit_campaign, fit_recording};
-use windfall::write_csv::csv_of_campaign;
-use windfall::write_text::text_of_campaign;
+use windfall::workflow_fit::fit_recording;
+use windfall::workflow_fit_any::fit_any;
+use windfall::write_any::{csv_of_any, text_of_any};
 
 /// Fits a campaign and shows the result.
 pub fn run(arguments: &FitArguments) -> anyhow::Result<()> {
@@ -22,35 +23,36 @@ pub fn run(arguments: &FitArguments) -> anyhow::Result<()> {
     };
     let path = &arguments.directory;
     let outcome = match recording_request(&arguments.recording) {
-        Some(recording) => fit_recording(path, &recording, &request, &progress),
-        None => fit_campaign(path, &request, &progress),
+        Some(recording) => fit_recording(path, &recording, &request, &progress)
+            .map(|outcome| AnyOutcome::Impacts(Box::new(outcome))),
+        None => fit_any(path, &request, &progress),
     };
     bar.finish_and_clear();
     let outcome = outcome?;
     match arguments.format {
         Format::Json => write_json(&outcome)?,
-        Format::Csv => write_result(&csv_of_campaign(&outcome)?)?,
-        Format::Text => write_result(&text_of_campaign(&outcome))?,
+        Format::Csv => write_result(&csv_of_any(&outcome)?)?,
+        Format::Text => write_result(&text_of_any(&outcome))?,
     }
     // The text shows failures itself, beside the results.
     let told = if arguments.format == Format::Text {
         &[][..]
     } else {
-        &outcome.failed
+        outcome.failed()
     };
     for failure in told {
         message(&format!("not fitted: {}: {}", failure.id, failure.message));
     }
-    if outcome.impacts.is_empty() {
+    if outcome.results() == 0 {
         let path = arguments.directory.clone();
         return Err(Error::NothingFitted {
             path,
-            failures: outcome.failed.len(),
+            failures: outcome.failed().len(),
         }
         .into());
     }
     if arguments.recording.rig.is_none() {
-        message(&status_line(&outcome.status));
+        message(&status_line(outcome.status()));
     }
     Ok(())
 }

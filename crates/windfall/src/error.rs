@@ -24,6 +24,14 @@ impl std::fmt::Display for Place {
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum Error {
+    /// A result that cannot be put into words of JSON.
+    #[error("the result on \"{item}\" cannot be kept: {detail}")]
+    ResultUnwritable {
+        /// Id in impacts.csv.
+        item: String,
+        /// What the writer said.
+        detail: String,
+    },
     /// A file that was named is not there.
     #[error("{path}: there is no such file; {advice}", path = path.display())]
     FileAbsent {

@@ -2,11 +2,11 @@
 
 use crate::campaign::{Campaign, ImpactEntry, TimePlan};
 use crate::error::Error;
-use crate::provenance::{VERSION, digest_file, digest_text};
-use crate::read_campaign::{CAMPAIGN_FILE, fill_placeholders};
+use crate::provenance::{VERSION, digest_text};
+use crate::read_campaign::CAMPAIGN_FILE;
+use crate::read_files::fill_placeholders;
+use crate::recording_digests::{Digests, campaign_text, file_digests};
 use serde_json::json;
-use std::collections::BTreeMap;
-use std::path::PathBuf;
 use windfall_contact::expression::LawExpression;
 use windfall_identify::rig::Rig;
 
@@ -78,27 +78,10 @@ pub fn impact_key(
 /// A file of the campaign can no longer be read.
 pub fn input_digests(
     campaign: &Campaign,
-    recordings: &BTreeMap<PathBuf, Result<String, String>>,
+    recordings: &Digests,
 ) -> Result<(Vec<(String, String)>, String), Error> {
-    let mut inputs = Vec::new();
-    for name in [CAMPAIGN_FILE, "specimens.csv", "impacts.csv"] {
-        let path = campaign.directory.join(name);
-        if path.exists() {
-            inputs.push((name.to_owned(), digest_file(&path)?));
-        }
-    }
-    for (path, digest) in recordings {
-        if let Ok(digest) = digest {
-            let name = path.strip_prefix(&campaign.directory).unwrap_or(path);
-            inputs.push((name.display().to_string(), digest.clone()));
-        }
-    }
-    let path = campaign.directory.join(CAMPAIGN_FILE);
-    let text = std::fs::read_to_string(&path).map_err(|source| Error::FileAccess {
-        path,
-        action: "read",
-        source,
-    })?;
+    let inputs = file_digests(&campaign.directory, recordings)?;
+    let text = campaign_text(&campaign.directory)?;
     let options = json!({
         CAMPAIGN_FILE: text,
         "laws": campaign.fit.laws.iter().map(ToString::to_string).collect::<Vec<_>>(),

@@ -2,8 +2,8 @@
 
 use crate::campaign::{ChannelPlan, FilePlan, ImpactEntry, TimePlan};
 use crate::error::{Error, Place};
-use crate::read_campaign::fill_placeholders;
 use crate::read_csv::read_numbers;
+use crate::read_files::fill_placeholders;
 use std::path::{Path, PathBuf};
 use windfall_signal::recording::{Channel, Recording, Times};
 

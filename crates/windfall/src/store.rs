@@ -7,18 +7,10 @@
 
 use crate::error::Error;
 use crate::outcome::{FailureOutcome, ImpactOutcome};
-use rusqlite::{Connection, ErrorCode, OpenFlags, OptionalExtension, Transaction, params};
+use crate::store_documents::{DocumentRecord, document_keys, insert_document};
+use crate::store_file::{PATIENCE, create_schema, open_existing, store_error};
+use rusqlite::{Connection, OptionalExtension, Transaction, params};
 use std::path::Path;
-use std::time::Duration;
-
-/// Marks a database as ours: "wfal" in ASCII.
-const APPLICATION_ID: i64 = 0x7766_616c;
-
-/// Version of the schema that this windfall writes.
-const STORE_VERSION: i64 = 1;
-
-/// How long to wait for another windfall that is writing.
-const PATIENCE: Duration = Duration::from_secs(20);
 
 /// One run, as it goes into the store.
 #[derive(Clone, Debug)]
@@ -35,6 +27,8 @@ pub struct RunRecord {
     pub inputs: Vec<(String, String)>,
     /// Keys and results, in the order of the campaign.
     pub results: Vec<(String, ImpactOutcome)>,
+    /// Results of campaigns that fit no impacts, in the order of the campaign.
+    pub documents: Vec<DocumentRecord>,
     /// What could not be fitted.
     pub failures: Vec<FailureOutcome>,
 }
@@ -44,7 +38,7 @@ pub struct RunRecord {
 pub struct RunIdentity {
     /// When it was done; UTC.
     pub time: String,
-    /// Keys of its results, in order.
+    /// Keys of its results and documents, in order.
     pub keys: Vec<String>,
     /// What it could not fit.
     pub failures: Vec<FailureOutcome>,
@@ -134,87 +128,6 @@ pub fn write_run(path: &Path, run: &RunRecord) -> Result<(), Error> {
     transaction.commit().map_err(failed)
 }
 
-/// Opens the store if it exists, after making sure that it is ours.
-fn open_existing(path: &Path) -> Result<Option<Connection>, Error> {
-    if !path.exists() {
-        return Ok(None);
-    }
-    let failed = |source| store_error(path, "open", source);
-    // Writable, because a journal left by a killed windfall is rolled back here.
-    let flags = OpenFlags::SQLITE_OPEN_READ_WRITE | OpenFlags::SQLITE_OPEN_NO_MUTEX;
-    let connection = Connection::open_with_flags(path, flags).map_err(failed)?;
-    connection.busy_timeout(PATIENCE).map_err(failed)?;
-    let integer = |name| {
-        connection
-            .pragma_query_value(None, name, |row| row.get::<_, i64>(0))
-            .map_err(failed)
-    };
-    let (application_id, version) = (integer("application_id")?, integer("user_version")?);
-    let tables: i64 = connection
-        .query_row("SELECT COUNT(*) FROM sqlite_master", [], |row| row.get(0))
-        .map_err(failed)?;
-    // A file of no bytes or without tables is what a kill before the first
-    // commit leaves behind.
-    if tables == 0 && application_id == 0 {
-        return Ok(None);
-    }
-    let path = path.to_path_buf();
-    if application_id != APPLICATION_ID {
-        return Err(Error::StoreForeign {
-            path,
-            application_id,
-        });
-    }
-    if version > STORE_VERSION {
-        return Err(Error::StoreNewer {
-            path,
-            found: version,
-            known: STORE_VERSION,
-        });
-    }
-    check_integrity(&connection, &path)?;
-    Ok(Some(connection))
-}
-
-fn check_integrity(connection: &Connection, path: &Path) -> Result<(), Error> {
-    let verdict: String = connection
-        .pragma_query_value(None, "quick_check", |row| row.get(0))
-        .map_err(|source| store_error(path, "open", source))?;
-    if verdict == "ok" {
-        return Ok(());
-    }
-    let detail = verdict.lines().next().unwrap_or_default().to_owned();
-    Err(Error::StoreDamaged {
-        path: path.to_path_buf(),
-        detail,
-    })
-}
-
-fn store_error(path: &Path, action: &'static str, source: rusqlite::Error) -> Error {
-    let path = path.to_path_buf();
-    match source.sqlite_error_code() {
-        Some(ErrorCode::NotADatabase | ErrorCode::DatabaseCorrupt) => Error::StoreDamaged {
-            path,
-            detail: source.to_string(),
-        },
-        _ => Error::Store {
-            path,
-            action,
-            source,
-        },
-    }
-}
-
-fn create_schema(transaction: &Transaction) -> rusqlite::Result<()> {
-    let version: i64 = transaction.pragma_query_value(None, "user_version", |row| row.get(0))?;
-    if version == 0 {
-        transaction.execute_batch(include_str!("store_schema.sql"))?;
-        transaction.pragma_update(None, "application_id", APPLICATION_ID)?;
-        transaction.pragma_update(None, "user_version", STORE_VERSION)?;
-    }
-    Ok(())
-}
-
 fn insert_run(transaction: &Transaction, run: &RunRecord) -> rusqlite::Result<()> {
     transaction.execute(
         "INSERT INTO runs (time, windfall, options, seed) VALUES (?1, ?2, ?3, ?4)",
@@ -233,6 +146,9 @@ fn insert_run(transaction: &Transaction, run: &RunRecord) -> rusqlite::Result<()
             "INSERT INTO run_results (run, position, key) VALUES (?1, ?2, ?3)",
             params![id, position as i64, key],
         )?;
+    }
+    for (position, document) in run.documents.iter().enumerate() {
+        insert_document(transaction, id, position, document)?;
     }
     for (position, failure) in run.failures.iter().enumerate() {
         transaction.execute(
@@ -324,9 +240,10 @@ fn read_latest(connection: &Connection) -> rusqlite::Result<Option<RunIdentity>>
     };
     let mut query =
         connection.prepare("SELECT key FROM run_results WHERE run = ?1 ORDER BY position")?;
-    let keys = query
+    let mut keys: Vec<String> = query
         .query_map([id], |row| row.get(0))?
         .collect::<Result<_, _>>()?;
+    keys.extend(document_keys(connection, id)?);
     let mut query = connection.prepare(
         "SELECT impact, specimen, file, law, message FROM failures WHERE run = ?1 ORDER BY position",
     )?;
@@ -405,6 +322,7 @@ mod tests {
                 .iter()
                 .map(|id| (format!("key-{id}"), outcome(id)))
                 .collect(),
+            documents: Vec::new(),
             failures: Vec::new(),
         }
     }
@@ -512,7 +430,7 @@ mod tests {
             .unwrap();
         check(
             "newer",
-            "these results were written by a newer windfall (store version 99, this one knows 1)",
+            "these results were written by a newer windfall (store version 99, this one knows 2)",
         );
 
         let cut = dir.path().join("cut");

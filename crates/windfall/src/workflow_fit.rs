@@ -5,17 +5,18 @@ use crate::error::Error;
 use crate::fit_impact::{FitTask, fit_tasks};
 use crate::fit_key::{impact_key, input_digests};
 use crate::fit_mass::{RigFound, find_rig};
+use crate::on_threads::on_threads;
 use crate::outcome::{CampaignOutcome, FailureOutcome, ImpactOutcome, StatusOutcome};
 use crate::provenance::{VERSION, time_now};
 use crate::read_campaign::{CAMPAIGN_FILE, read_campaign};
 use crate::read_recording::recording_path;
+use crate::recording_digests::{Digests, recording_digests};
 use crate::request_fit::{FitRequest, Reuse, apply_request};
 use crate::request_recording::{RecordingRequest, campaign_of_file};
 use crate::store::{RunRecord, find_results, latest_run, write_run};
 use crate::summary::{summarise, summarise_groups};
-use rayon::prelude::*;
 use std::collections::BTreeMap;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 /// Name of the store in a campaign directory.
 pub const STORE_FILE: &str = "results.sqlite";
@@ -44,7 +45,7 @@ pub fn fit_campaign(
         false => read_campaign(directory)?,
     };
     apply_request(&mut campaign, request)?;
-    on_threads(request, || fit(&campaign, request, progress))
+    on_threads(request.threads, || fit(&campaign, request, progress))
 }
 
 /// Fits the impact in one recording that belongs to no campaign; what it needs
@@ -61,7 +62,7 @@ pub fn fit_recording(
 ) -> Result<CampaignOutcome, Error> {
     let mut campaign = campaign_of_file(file, recording)?;
     apply_request(&mut campaign, request)?;
-    on_threads(request, || {
+    on_threads(request.threads, || {
         let rig = find_rig(&campaign)?;
         let task = |law| FitTask {
             impact: 0,
@@ -74,19 +75,6 @@ pub fn fit_recording(
         let results = fit_tasks(&campaign, &rig, &tasks, &stored, progress);
         Ok(assemble(&campaign, &rig, &tasks, results, &stored).shown)
     })
-}
-
-fn on_threads<T: Send>(
-    request: &FitRequest,
-    work: impl FnOnce() -> Result<T, Error> + Send,
-) -> Result<T, Error> {
-    let threads = request.threads.unwrap_or(0);
-    let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build();
-    let pool = pool.map_err(|error| Error::OptionInvalid {
-        option: format!("--threads {threads}"),
-        problem: error.to_string(),
-    })?;
-    pool.install(work)
 }
 
 /// The campaign around a recording, with the impacts of that recording only.
@@ -130,7 +118,7 @@ fn fit(
     progress: Progress,
 ) -> Result<CampaignOutcome, Error> {
     let store = campaign.directory.join(STORE_FILE);
-    let digests = recording_digests(campaign);
+    let digests = recording_digests(&campaign.directory, &campaign.files, &campaign.impacts);
     let rig = find_rig(campaign)?;
 
     // What each law on each impact depends on, and what the store knows of it.
@@ -157,54 +145,7 @@ fn fit(
     Ok(outcome.shown)
 }
 
-/// SHA-256 of each recording once; a message where it cannot be read.
-fn recording_digests(campaign: &Campaign) -> BTreeMap<PathBuf, Result<String, String>> {
-    let mut first: BTreeMap<PathBuf, &ImpactEntry> = BTreeMap::new();
-    for impact in &campaign.impacts {
-        first
-            .entry(recording_path(&campaign.files, impact))
-            .or_insert(impact);
-    }
-    let paths: Vec<(PathBuf, &ImpactEntry)> = first.into_iter().collect();
-    let digests: Vec<Result<String, String>> = paths
-        .par_iter()
-        .map(|(path, impact)| {
-            crate::provenance::digest_file(path).map_err(|error| match error {
-                Error::FileAccess { source, .. }
-                    if source.kind() == std::io::ErrorKind::NotFound =>
-                {
-                    absent(campaign, impact, path)
-                }
-                other => other.to_string(),
-            })
-        })
-        .collect();
-    paths
-        .into_iter()
-        .map(|(path, _)| path)
-        .zip(digests)
-        .collect()
-}
-
-fn absent(campaign: &Campaign, impact: &ImpactEntry, path: &Path) -> String {
-    let list = campaign.directory.join("impacts.csv");
-    let advice = format!(
-        "{}, line {} names it. Put the file there, correct the name, or remove the line",
-        list.display(),
-        impact.line
-    );
-    Error::FileAbsent {
-        path: path.to_path_buf(),
-        advice,
-    }
-    .to_string()
-}
-
-fn tasks(
-    campaign: &Campaign,
-    digests: &BTreeMap<PathBuf, Result<String, String>>,
-    rig: &RigFound,
-) -> Vec<FitTask> {
+fn tasks(campaign: &Campaign, digests: &Digests, rig: &RigFound) -> Vec<FitTask> {
     let mut tasks = Vec::new();
     for (index, entry) in campaign.impacts.iter().enumerate() {
         let digest = &digests[&recording_path(&campaign.files, entry)];
@@ -301,7 +242,7 @@ fn group_of(campaign: &Campaign, entry: &ImpactEntry) -> Option<String> {
 fn keep(
     campaign: &Campaign,
     store: &Path,
-    digests: &BTreeMap<PathBuf, Result<String, String>>,
+    digests: &Digests,
     outcome: &mut Assembled,
 ) -> Result<(), Error> {
     // A run of nothing but failures is told, not kept.
@@ -329,6 +270,7 @@ fn keep(
             seed: None,
             inputs,
             results: results.collect(),
+            documents: Vec::new(),
             failures: outcome.shown.failed.clone(),
         },
     )

@@ -1,0 +1,24 @@
+//! What `fit` shows, whatever the campaign measures.
+
+use crate::any_outcome::AnyOutcome;
+use crate::error::Error;
+use crate::write_csv::csv_of_campaign;
+use crate::write_text::text_of_campaign;
+
+/// Tables for people.
+#[must_use]
+pub fn text_of_any(outcome: &AnyOutcome) -> String {
+    match outcome {
+        AnyOutcome::Impacts(outcome) => text_of_campaign(outcome),
+    }
+}
+
+/// One line per result, for other programs.
+///
+/// # Errors
+/// The table cannot be written.
+pub fn csv_of_any(outcome: &AnyOutcome) -> Result<String, Error> {
+    match outcome {
+        AnyOutcome::Impacts(outcome) => csv_of_campaign(outcome),
+    }
+}
