@@ -3,6 +3,7 @@
 use crate::args::InspectArguments;
 use crate::args_format::Format;
 use crate::show::{message, write_json, write_result};
+use windfall::request_open::OpenRequest;
 use windfall::workflow_inspect::inspect_recording;
 use windfall::write_inspection::{csv_of_inspections, text_of_inspection};
 
@@ -11,7 +12,7 @@ pub fn run(arguments: &InspectArguments) -> anyhow::Result<()> {
     let mut inspections = Vec::new();
     let mut first_failure = None;
     for file in &arguments.files {
-        match inspect_recording(file) {
+        match inspect_recording(file, &OpenRequest::default()) {
             Ok(inspection) => inspections.push(inspection),
             Err(error) => {
                 // The first failure is the command's own and is shown at the end.

@@ -2,6 +2,7 @@
 
 use std::path::PathBuf;
 use windfall_contact::expression::LawExpression;
+use windfall_formats::open::OpenOptions;
 use windfall_identify::problem::FitOptions;
 use windfall_identify::rig::Pendulum;
 use windfall_signal::ExtractOptions;
@@ -68,6 +69,8 @@ pub enum MassPlan {
 pub struct FilePlan {
     /// Directory of the recordings.
     pub directory: PathBuf,
+    /// How files are read that do not say it themselves.
+    pub open: OpenOptions,
     /// How samples are timed where a channel does not say otherwise.
     pub time: TimePlan,
     /// Seconds per unit of the time columns.
@@ -85,6 +88,8 @@ pub enum TimePlan {
     Rate(f64),
     /// Every channel has a column of times of its own.
     OfChannels,
+    /// The file itself says when samples were taken.
+    OfFile,
 }
 
 /// One channel: value = scale · (cell − offset).

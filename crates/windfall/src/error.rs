@@ -32,6 +32,36 @@ pub enum Error {
         /// What the writer said.
         detail: String,
     },
+    /// A recording that cannot be read.
+    #[error("{0}")]
+    Format(windfall_formats::Error),
+    /// Nothing says when samples were taken.
+    #[error(
+        "{path}: nothing says when the samples of \"{column}\" were taken; give the column of \
+         times or the sampling rate in campaign.toml: [files] time = \"time_s\"   or   \
+         rate = \"200 kHz\"", path = path.display()
+    )]
+    TimesUnknown {
+        /// The file.
+        path: PathBuf,
+        /// The channel.
+        column: String,
+    },
+    /// A sample of a binary file that is no number.
+    #[error(
+        "{path}: \"{column}\" is {value} at sample {sample}; choose a range of time without it \
+         (from_s and to_s in impacts.csv), or mend the recording", path = path.display()
+    )]
+    SampleNotFinite {
+        /// The file.
+        path: PathBuf,
+        /// The channel.
+        column: String,
+        /// Number of the sample, from 0.
+        sample: usize,
+        /// What stands there.
+        value: f64,
+    },
     /// A file that was named is not there.
     #[error("{path}: there is no such file; {advice}", path = path.display())]
     FileAbsent {

@@ -127,6 +127,7 @@ fn key_of<T>(evaluation: &Evaluation<T>, entry: &ImpactEntry, digest: &str) -> S
         "recording": digest,
         "item": [entry.id, entry.specimen, entry.file],
         "range": format!("{:?} {:?}", entry.from, entry.to),
+        "open": format!("{:?}", campaign.files.open),
         "time": format!("{time} {:?}", campaign.files.time_scale),
         "channels": channels,
         "depends_on": (evaluation.depends_on)(entry),

@@ -34,7 +34,7 @@ pub fn impact_key(
                 (Some(own), _) => filled(own),
                 (None, TimePlan::Column(shared)) => filled(shared),
                 (None, TimePlan::Rate(rate)) => format!("{rate:?} Hz"),
-                (None, TimePlan::OfChannels) => String::new(),
+                (None, TimePlan::OfChannels | TimePlan::OfFile) => String::new(),
             };
             let (quantity, column) = (plan.quantity, filled(&plan.column));
             format!(
@@ -61,6 +61,7 @@ pub fn impact_key(
         "impact": [entry.id, entry.specimen, entry.file],
         "range": format!("{:?} {:?}", entry.from, entry.to),
         "rig": format!("{rig:?}"),
+        "open": format!("{:?}", campaign.files.open),
         "time_scale": format!("{:?}", campaign.files.time_scale),
         "channels": channels,
         "contact": format!("{:?}", campaign.contact),

@@ -8,6 +8,7 @@ use crate::toml_source::{Needed, TomlSource, invalid, missing, place_at};
 use crate::toml_source::{optional_quantity, suggestion};
 use std::path::{Path, PathBuf};
 use toml::Spanned;
+use windfall_formats::open::OpenOptions;
 use windfall_numerics::unit::parse_unit;
 
 /// Whether this windfall knows the shape of the file.
@@ -49,6 +50,7 @@ pub fn file_plan(
 ) -> Result<FilePlan, Error> {
     Ok(FilePlan {
         directory: recordings_directory(source, directory, files)?,
+        open: OpenOptions::default(),
         time: match channels.iter().all(|channel| channel.time.is_some()) {
             true => TimePlan::OfChannels,
             false => time_plan(source, files)?,
@@ -97,16 +99,12 @@ fn with_variables(source: &TomlSource, text: &Spanned<String>) -> Result<String,
 }
 
 fn time_plan(source: &TomlSource, files: &FilesFile) -> Result<TimePlan, Error> {
-    let needed = Needed {
-        table: "[files]",
-        key: "time",
-        meaning: "name of the column of times, or a sampling `rate` where there is none",
-        unit: "Hz",
-        example: "time = \"time_s\"   or   rate = \"200 kHz\"",
-    };
     let rate_key = Needed {
+        table: "[files]",
         key: "rate",
-        ..needed
+        meaning: "sampling rate, where neither the file nor a column tells the times",
+        unit: "Hz",
+        example: "rate = \"200 kHz\"",
     };
     match (
         &files.time,
@@ -114,7 +112,7 @@ fn time_plan(source: &TomlSource, files: &FilesFile) -> Result<TimePlan, Error> 
     ) {
         (Some(column), None) => Ok(TimePlan::Column(column.get_ref().clone())),
         (None, Some(rate)) if rate > 0.0 => Ok(TimePlan::Rate(rate)),
-        (None, None) => Err(missing(source, &(0..0), &needed, needed.table.to_owned())),
+        (None, None) => Ok(TimePlan::OfFile),
         (time, _) => {
             let rate = files
                 .rate

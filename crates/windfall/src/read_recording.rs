@@ -1,10 +1,14 @@
-//! One impact's recording: columns of a CSV file → channels in SI units.
+//! One impact's recording: channels of a file → channels in SI units.
 
 use crate::campaign::{ChannelPlan, FilePlan, ImpactEntry, TimePlan};
+use crate::column_role::seconds_per_unit;
 use crate::error::{Error, Place};
-use crate::read_csv::read_numbers;
 use crate::read_files::fill_placeholders;
+use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
+use windfall_formats::contents::{Contents, Format, TimeBase};
+use windfall_formats::open::open;
+use windfall_numerics::nearest_name::nearest_names;
 use windfall_signal::recording::{Channel, Recording, Times};
 
 /// Where the recording of an impact is.
@@ -13,39 +17,43 @@ pub fn recording_path(files: &FilePlan, impact: &ImpactEntry) -> PathBuf {
     files.directory.join(&impact.file)
 }
 
-/// Reads the recording of an impact in one pass over its file.
+/// Reads the recording of an impact: the channels of the campaign out of a file
+/// of any format.
 ///
-/// A blank cell means that its channel has no sample in that row.
+/// A blank cell means that its channel has no sample in that row; so do NaN at
+/// the end of a channel of another format, which programs write to fill up
+/// channels of different lengths.
 ///
 /// # Errors
-/// The file or one of the columns is not there, a cell is no finite number, a
-/// sample has no time.
+/// The file cannot be read, one of the channels is not in it, a sample is not
+/// finite or has no time, or nothing says when samples were taken.
 pub fn read_recording(files: &FilePlan, impact: &ImpactEntry) -> Result<Recording, Error> {
     let path = recording_path(files, impact);
+    let mut reader = open(&path, &files.open).map_err(Error::Format)?;
+    let contents = reader.contents().clone();
     let sources = files
         .channels
         .iter()
-        .map(|plan| source_of(files, plan, impact, &path))
+        .map(|plan| source_of(files, plan, impact, &path, &contents))
         .collect::<Result<Vec<_>, _>>()?;
-    let (columns, asked_by) = columns_of(&sources);
-    let numbers = read_numbers(&path, &columns, &asked_by)?.columns;
-    let column = |name: &str| {
-        let index = columns
-            .iter()
-            .position(|known| known == name)
-            .unwrap_or_default();
-        numbers[index].as_slice()
+
+    // Every channel once, also where two sources share their times.
+    let used = sources.iter().flat_map(|source| {
+        let time = match source.clock {
+            Clock::Channel { index, .. } => Some(index),
+            Clock::Uniform { .. } => None,
+        };
+        [Some(source.index), time].into_iter().flatten()
+    });
+    let wanted: Vec<usize> = used.collect::<BTreeSet<_>>().into_iter().collect();
+    let columns = reader.read_whole(&wanted).map_err(Error::Format)?;
+    let column = |index: usize| match wanted.binary_search(&index) {
+        Ok(place) => columns[place].as_slice(),
+        Err(_) => &[],
     };
     let channels = sources
         .iter()
-        .map(|source| {
-            let samples = column(&source.column);
-            let times = source
-                .time
-                .as_ref()
-                .map(|name| (name.as_str(), column(name)));
-            channel_of(files, source, samples, times, &path)
-        })
+        .map(|source| channel_of(source, column, &contents, &path))
         .collect::<Result<Vec<_>, _>>()?;
     Ok(Recording {
         name: impact.file.clone(),
@@ -53,11 +61,18 @@ pub fn read_recording(files: &FilePlan, impact: &ImpactEntry) -> Result<Recordin
     })
 }
 
-/// A channel with the names of its columns in this file.
+/// A channel of the campaign and where it is in this file.
 struct Source<'a> {
     plan: &'a ChannelPlan,
-    column: String,
-    time: Option<String>,
+    index: usize,
+    clock: Clock,
+}
+
+/// When the rows of a channel were.
+#[derive(Clone, Copy)]
+enum Clock {
+    Uniform { start: f64, interval: f64 },
+    Channel { index: usize, scale: f64 },
 }
 
 fn source_of<'a>(
@@ -65,6 +80,7 @@ fn source_of<'a>(
     plan: &'a ChannelPlan,
     impact: &ImpactEntry,
     path: &Path,
+    contents: &Contents,
 ) -> Result<Source<'a>, Error> {
     let fill = |text: &str| {
         fill_placeholders(text, &impact.cells).map_err(|name| Error::PlaceholderUnknown {
@@ -76,111 +92,155 @@ fn source_of<'a>(
             name,
         })
     };
-    let time = match (&plan.time, &files.time) {
-        (Some(own), _) => Some(fill(own)?),
-        (None, TimePlan::Column(shared)) => Some(fill(shared)?),
-        (None, TimePlan::Rate(_) | TimePlan::OfChannels) => None,
+    let find = |text: &str| index_of(contents, &fill(text)?, plan, path);
+    let index = find(&plan.column)?;
+    let named = match (&plan.time, &files.time) {
+        (Some(own), _) => Some(own),
+        (None, TimePlan::Column(shared)) => Some(shared),
+        (None, _) => None,
     };
-    Ok(Source {
-        plan,
-        column: fill(&plan.column)?,
-        time,
+    let clock = match (named, &files.time) {
+        (Some(name), _) => Clock::Channel {
+            index: find(name)?,
+            scale: files.time_scale,
+        },
+        (None, TimePlan::Rate(rate)) => Clock::Uniform {
+            start: 0.0,
+            interval: 1.0 / rate,
+        },
+        (None, _) => clock_in_file(contents, index, path)?,
+    };
+    Ok(Source { plan, index, clock })
+}
+
+/// The times that the file itself gives for a channel.
+fn clock_in_file(contents: &Contents, index: usize, path: &Path) -> Result<Clock, Error> {
+    match contents.channels[index].time {
+        TimeBase::Uniform { start, interval } => Ok(Clock::Uniform { start, interval }),
+        TimeBase::Channel(at) => Ok(Clock::Channel {
+            index: at,
+            scale: seconds_per_unit(&contents.channels[at]),
+        }),
+        TimeBase::Unknown => Err(Error::TimesUnknown {
+            path: path.to_path_buf(),
+            column: contents.channels[index].name.clone(),
+        }),
+    }
+}
+
+fn index_of(
+    contents: &Contents,
+    column: &str,
+    plan: &ChannelPlan,
+    path: &Path,
+) -> Result<usize, Error> {
+    let names = || {
+        contents
+            .channels
+            .iter()
+            .map(|channel| channel.name.as_str())
+    };
+    // The last part of "group/channel" does where it is the only one.
+    let found = names().position(|name| name == column).or_else(|| {
+        let tail = |name: &str| name.rsplit('/').next() == Some(column);
+        let mut same = names().enumerate().filter(|(_, name)| tail(name));
+        let first = same.next();
+        first.filter(|_| same.next().is_none()).map(|(at, _)| at)
+    });
+    found.ok_or_else(|| Error::ColumnMissing {
+        path: path.to_path_buf(),
+        column: column.to_owned(),
+        asked_by: match plan.line {
+            0 => format!(" (asked for as {})", plan.table),
+            line => format!(" (campaign.toml, line {line}, {})", plan.table),
+        },
+        nearest: nearest_names(column, names())
+            .into_iter()
+            .map(str::to_owned)
+            .collect(),
+        columns: contents.channels.len(),
     })
 }
 
-/// Each column once, with who asks for it.
-fn columns_of(sources: &[Source]) -> (Vec<String>, Vec<String>) {
-    let mut columns: Vec<String> = Vec::new();
-    let mut asked_by = Vec::new();
-    for source in sources {
-        for name in [Some(&source.column), source.time.as_ref()]
-            .into_iter()
-            .flatten()
-        {
-            if !columns.contains(name) {
-                columns.push(name.clone());
-                asked_by.push(match source.plan.line {
-                    0 => format!(" (asked for as {})", source.plan.table),
-                    line => format!(" (campaign.toml, line {line}, {})", source.plan.table),
-                });
-            }
-        }
-    }
-    (columns, asked_by)
-}
-
-fn channel_of(
-    files: &FilePlan,
+fn channel_of<'a>(
     source: &Source,
-    cells: &[Option<f64>],
-    times: Option<(&str, &[Option<f64>])>,
+    column: impl Fn(usize) -> &'a [f64],
+    contents: &Contents,
     path: &Path,
 ) -> Result<Channel, Error> {
     let plan = source.plan;
-    let calibrated = |cell: f64| plan.scale * (cell - plan.offset);
-    let samples: Vec<f64> = cells
-        .iter()
-        .flatten()
-        .map(|cell| calibrated(*cell))
-        .collect();
-    if samples.is_empty() {
-        let column = source.column.clone();
+    let name = &contents.channels[source.index].name;
+    let cells = without_filling(column(source.index));
+    if cells.iter().all(|cell| cell.is_nan()) {
         return Err(Error::ColumnBlank {
             path: path.to_path_buf(),
-            column,
+            column: name.clone(),
         });
     }
-    let times = match (times, &files.time) {
-        (Some((name, times)), _) => listed_times(files, source, cells, name, times, path)?,
-        (None, TimePlan::Rate(rate)) => counted_times(cells, *rate, plan.delay),
-        // A plan without a rate has a column of times.
-        (None, TimePlan::Column(_) | TimePlan::OfChannels) => Times::Listed(Vec::new()),
-    };
-    Ok(Channel {
-        name: source.column.clone(),
-        quantity: plan.quantity,
-        times,
-        samples,
-    })
-}
-
-fn listed_times(
-    files: &FilePlan,
-    source: &Source,
-    cells: &[Option<f64>],
-    name: &str,
-    times: &[Option<f64>],
-    path: &Path,
-) -> Result<Times, Error> {
-    let mut listed = Vec::with_capacity(cells.len());
-    for (row, (cell, time)) in cells.iter().zip(times).enumerate() {
-        match (cell, time) {
-            (None, _) => {}
-            (Some(_), Some(time)) => listed.push(time * files.time_scale - source.plan.delay),
-            (Some(_), None) => {
-                return Err(Error::SampleWithoutTime {
+    check_finite(cells, contents, source.index, path)?;
+    let present = || cells.iter().enumerate().filter(|(_, cell)| !cell.is_nan());
+    let times = match source.clock {
+        Clock::Channel { index, scale } => {
+            let times = column(index);
+            let listed = present().map(|(row, _)| match times.get(row) {
+                Some(time) if !time.is_nan() => Ok(time * scale - plan.delay),
+                _ => Err(Error::SampleWithoutTime {
                     place: Place {
                         file: path.to_path_buf(),
                         line: 0,
                     },
                     sample: row,
-                    column: source.column.clone(),
-                    time: name.to_owned(),
-                });
+                    column: name.clone(),
+                    time: contents.channels[index].name.clone(),
+                }),
+            });
+            Times::Listed(listed.collect::<Result<_, _>>()?)
+        }
+        Clock::Uniform { start, interval } => {
+            let start = start - plan.delay;
+            match cells.iter().any(|cell| cell.is_nan()) {
+                // Rows without a sample leave a gap.
+                true => {
+                    let times = present().map(|(row, _)| start + row as f64 * interval);
+                    Times::Listed(times.collect())
+                }
+                false => Times::Uniform { start, interval },
             }
         }
-    }
-    Ok(Times::Listed(listed))
+    };
+    Ok(Channel {
+        name: name.clone(),
+        quantity: plan.quantity,
+        times,
+        samples: present()
+            .map(|(_, cell)| plan.scale * (cell - plan.offset))
+            .collect(),
+    })
 }
 
-/// Times of rows at a fixed rate; rows without a sample leave a gap.
-fn counted_times(cells: &[Option<f64>], rate: f64, delay: f64) -> Times {
-    if cells.iter().all(Option::is_some) {
-        return Times::Uniform {
-            start: -delay,
-            interval: 1.0 / rate,
-        };
+/// The samples up to the last that is a number.
+fn without_filling(cells: &[f64]) -> &[f64] {
+    let last = cells.iter().rposition(|cell| !cell.is_nan());
+    &cells[..last.map_or(0, |last| last + 1)]
+}
+
+/// In a text file a blank cell is no sample; in another NaN and infinity are
+/// samples that nobody can use.
+fn check_finite(
+    cells: &[f64],
+    contents: &Contents,
+    index: usize,
+    path: &Path,
+) -> Result<(), Error> {
+    let blank = matches!(contents.format, Format::Text | Format::Lvm);
+    let bad = |cell: &f64| cell.is_infinite() || (cell.is_nan() && !blank);
+    match cells.iter().position(bad) {
+        None => Ok(()),
+        Some(sample) => Err(Error::SampleNotFinite {
+            path: path.to_path_buf(),
+            column: contents.channels[index].name.clone(),
+            sample,
+            value: cells[sample],
+        }),
     }
-    let rows = cells.iter().enumerate().filter(|(_, cell)| cell.is_some());
-    Times::Listed(rows.map(|(row, _)| row as f64 / rate - delay).collect())
 }

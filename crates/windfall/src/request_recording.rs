@@ -9,6 +9,7 @@ use crate::read_channels::{KINDS, Kind};
 use crate::read_rig::{FROM_IMPULSE, STANDARD_GRAVITY};
 use crate::toml_source::suggestion;
 use std::path::Path;
+use windfall_formats::open::OpenOptions;
 use windfall_identify::problem::FitOptions;
 use windfall_identify::rig::Pendulum;
 use windfall_numerics::unit::parse_as;
@@ -68,6 +69,7 @@ pub fn campaign_of_file(file: &Path, request: &RecordingRequest) -> Result<Campa
     };
     let files = FilePlan {
         directory: directory.clone(),
+        open: OpenOptions::default(),
         time,
         time_scale,
         channels: channels.collect::<Result<_, _>>()?,
@@ -210,10 +212,10 @@ fn time_plan(request: &RecordingRequest) -> Result<(TimePlan, f64), Error> {
             let rate = positive("--sampling-rate", rate, "Hz")?;
             Ok((TimePlan::Rate(rate), 1.0))
         }
-        _ => Err(unusable(
+        (None, None) => Ok((TimePlan::OfFile, 1.0)),
+        (Some(_), Some(_)) => Err(unusable(
             "--time",
-            "give the column of times (--time t, --time t:ms), or --sampling-rate '200 kHz' \
-             where there is none",
+            "the sampling rate is given too; keep one of the two",
         )),
     }
 }

@@ -7,11 +7,22 @@ use crate::write_csv::csv_text;
 use crate::write_table::table_text;
 use std::fmt::Write;
 
+/// Most properties of a file that the text shows.
+const SHOWN_PROPERTIES: usize = 12;
+
 /// An inspection as text: a table of columns, then what looks wrong.
 #[must_use]
 pub fn text_of_inspection(inspection: &Inspection) -> String {
     let header = [
-        "column", "unit", "could be", "samples", "rate", "length", "smallest", "largest",
+        "channel",
+        "unit",
+        "could be",
+        "samples",
+        "rate (Hz)",
+        "length (s)",
+        "smallest",
+        "largest",
+        "stored as",
     ];
     let number = |value: Option<f64>| value.map_or_else(|| "-".to_owned(), plain);
     let rows = inspection.columns.iter().map(|column| {
@@ -24,16 +35,20 @@ pub fn text_of_inspection(inspection: &Inspection) -> String {
             number(column.length),
             number(column.smallest),
             number(column.largest),
+            column.stored_as.clone(),
         ]
     });
-    let table = table_text(&header.map(str::to_owned), rows, &[0, 1, 2]);
-    let mut text = format!("{}: {} rows\n\n{table}\n", inspection.file, inspection.rows);
-    if inspection
-        .columns
-        .iter()
-        .any(|column| column.rate.is_some())
-    {
-        text += "(rate in samples per unit of the time column to the left, length in that unit)\n";
+    let table = table_text(&header.map(str::to_owned), rows, &[0, 1, 2, 8]);
+    let mut text = format!(
+        "{}: {}, {} rows\n\n{table}\n",
+        inspection.file, inspection.format, inspection.rows
+    );
+    for (name, value) in inspection.properties.0.iter().take(SHOWN_PROPERTIES) {
+        let _ = writeln!(text, "{name}: {value}");
+    }
+    if inspection.properties.0.len() > SHOWN_PROPERTIES {
+        let more = inspection.properties.0.len() - SHOWN_PROPERTIES;
+        let _ = writeln!(text, "and {more} more properties (--format json shows all)");
     }
     if inspection.findings.is_empty() {
         text += "nothing looks wrong\n";
@@ -50,16 +65,8 @@ pub fn text_of_inspection(inspection: &Inspection) -> String {
 /// None in practice: the text is written to memory.
 pub fn csv_of_inspections(inspections: &[Inspection]) -> Result<String, Error> {
     let header = [
-        "file",
-        "column",
-        "unit",
-        "could_be",
-        "samples",
-        "rate_per_time_unit",
-        "length",
-        "smallest",
-        "largest",
-        "findings",
+        "file", "column", "unit", "could_be", "samples", "rate_Hz", "length_s", "smallest",
+        "largest", "findings",
     ];
     let number = |value: Option<f64>| value.map_or_else(String::new, |value| value.to_string());
     let row = |inspection: &Inspection, column: &ColumnInspection| {

@@ -1,0 +1,124 @@
+//! What the name of a channel says: its unit, and what it seems to be.
+
+use windfall_formats::contents::ChannelContents;
+use windfall_numerics::unit::parse_unit;
+
+/// The unit in "Force (N)", "force_N", "Force [N]" or "Force in N".
+#[must_use]
+pub fn unit_of(name: &str) -> Option<String> {
+    let bracketed = [('(', ')'), ('[', ']')]
+        .into_iter()
+        .find_map(|(open, close)| {
+            let (_, rest) = name.rsplit_once(open)?;
+            rest.split_once(close)
+                .map(|(unit, _)| unit.trim().to_owned())
+        });
+    let last = || {
+        let (_, last) = name.rsplit_once(['_', ' '])?;
+        Some(last.trim().to_owned())
+    };
+    bracketed
+        .or_else(last)
+        .filter(|unit| !unit.is_empty() && parse_unit(unit).is_ok())
+}
+
+/// Parts of names and what they usually stand for.
+const ROLES: [(&str, &str); 16] = [
+    ("time", "time"),
+    ("phase_a", "phase_a"),
+    ("phase a", "phase_a"),
+    ("phase_b", "phase_b"),
+    ("phase b", "phase_b"),
+    ("force", "force"),
+    ("load", "force"),
+    ("velocity", "velocity"),
+    ("speed", "velocity"),
+    ("accel", "acceleration"),
+    ("angle", "angle"),
+    ("count", "count"),
+    ("encoder", "count"),
+    ("position", "position"),
+    ("displacement", "position"),
+    ("zeit", "time"),
+];
+
+/// What a channel seems to be: "time", or the channel of a campaign that it
+/// could feed.
+#[must_use]
+pub fn role_of(name: &str) -> Option<&'static str> {
+    let lower = name.to_lowercase();
+    if matches!(lower.as_str(), "t" | "t_s" | "t (s)" | "t_ms" | "t [s]") {
+        return Some("time");
+    }
+    // "Run 1: Time (s)": what follows the last colon counts.
+    let part = lower.rsplit(':').next().unwrap_or(&lower);
+    ROLES
+        .iter()
+        .find(|(word, _)| part.contains(word))
+        .map(|(_, role)| *role)
+}
+
+/// What a unit alone says of a channel.
+#[must_use]
+pub fn role_of_unit(unit: &str) -> Option<&'static str> {
+    let same = |known: &str| match (parse_unit(unit), parse_unit(known)) {
+        (Ok(unit), Ok(known)) => unit.dimension.matches(&known.dimension),
+        _ => false,
+    };
+    [
+        ("N", "force"),
+        ("m/s^2", "acceleration"),
+        ("m/s", "velocity"),
+        ("m", "position"),
+        ("rad", "angle"),
+    ]
+    .into_iter()
+    .find_map(|(known, role)| same(known).then_some(role))
+}
+
+/// The unit of a channel: from the file, else from its name.
+#[must_use]
+pub fn unit_in(channel: &ChannelContents) -> Option<String> {
+    channel.unit.clone().or_else(|| unit_of(&channel.name))
+}
+
+/// Seconds per unit of a channel of times; 1 where its unit is not known.
+#[must_use]
+pub fn seconds_per_unit(channel: &ChannelContents) -> f64 {
+    let unit = unit_in(channel).and_then(|unit| parse_unit(&unit).ok());
+    let second = parse_unit("s").ok();
+    match (unit, second) {
+        (Some(unit), Some(second)) if unit.dimension.matches(&second.dimension) => {
+            unit.si_from(1.0)
+        }
+        _ => 1.0,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn closed_form_units_and_roles_from_names() {
+        for (name, unit, role) in [
+            ("Run 1: Force (N)", Some("N"), Some("force")),
+            ("Run 1: Time (s)", Some("s"), Some("time")),
+            ("Acceleration (m/s²)", Some("m/s²"), Some("acceleration")),
+            ("phase_a_V", Some("V"), Some("phase_a")),
+            ("position_mm", Some("mm"), Some("position")),
+            ("remarks", None, None),
+        ] {
+            assert_eq!(unit_of(name).as_deref(), unit, "{name}");
+            assert_eq!(role_of(name), role, "{name}");
+        }
+    }
+
+    #[test]
+    fn closed_form_roles_from_units() {
+        assert_eq!(role_of_unit("kN"), Some("force"));
+        assert_eq!(role_of_unit("mm"), Some("position"));
+        assert_eq!(role_of_unit("V"), None);
+        assert_eq!(role_of_unit("Volts of old"), None);
+    }
+}

@@ -1,0 +1,134 @@
+//! The outline of a channel of any length, for plots.
+
+/// Most buckets.
+const MOST: usize = 4096;
+
+/// Smallest and largest sample of a stretch of rows.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Bucket {
+    /// First row with a sample.
+    pub row: u64,
+    /// First sample.
+    pub first: f64,
+    /// Last sample.
+    pub last: f64,
+    /// Smallest sample.
+    pub smallest: f64,
+    /// Largest sample.
+    pub largest: f64,
+}
+
+/// The outline of a channel: every extreme is kept, however long it is.
+///
+/// A channel of up to 4096 rows is kept sample by sample. What comes out does
+/// not depend on how the samples are cut into blocks.
+#[derive(Clone, Debug)]
+pub struct Envelope {
+    rows_per_bucket: u64,
+    rows: u64,
+    // One per stretch of rows; `None` where no row has a sample.
+    buckets: Vec<Option<Bucket>>,
+}
+
+impl Default for Envelope {
+    fn default() -> Self {
+        Self {
+            rows_per_bucket: 1,
+            rows: 0,
+            buckets: Vec::new(),
+        }
+    }
+}
+
+impl Envelope {
+    /// Takes the next samples; NaN where there is none.
+    pub fn take(&mut self, samples: &[f64]) {
+        for &value in samples {
+            let mut place = (self.rows / self.rows_per_bucket) as usize;
+            if place == MOST {
+                self.halve();
+                place = (self.rows / self.rows_per_bucket) as usize;
+            }
+            if place == self.buckets.len() {
+                self.buckets.push(None);
+            }
+            if value.is_finite() {
+                let single = Bucket {
+                    row: self.rows,
+                    first: value,
+                    last: value,
+                    smallest: value,
+                    largest: value,
+                };
+                self.buckets[place] = joined(self.buckets[place], Some(single));
+            }
+            self.rows += 1;
+        }
+    }
+
+    fn halve(&mut self) {
+        let pairs = self.buckets.chunks(2);
+        self.buckets = pairs
+            .map(|pair| joined(pair[0], pair.get(1).copied().flatten()))
+            .collect();
+        self.rows_per_bucket *= 2;
+    }
+
+    /// The stretches that have samples, in order.
+    pub fn buckets(&self) -> impl Iterator<Item = Bucket> + '_ {
+        self.buckets.iter().flatten().copied()
+    }
+
+    /// Rows in a stretch.
+    #[must_use]
+    pub fn rows_per_bucket(&self) -> u64 {
+        self.rows_per_bucket
+    }
+}
+
+fn joined(a: Option<Bucket>, b: Option<Bucket>) -> Option<Bucket> {
+    let (Some(first), Some(second)) = (a, b) else {
+        return a.or(b);
+    };
+    Some(Bucket {
+        row: first.row,
+        first: first.first,
+        last: second.last,
+        smallest: first.smallest.min(second.smallest),
+        largest: first.largest.max(second.largest),
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn conserves_extremes_for_any_blocks() {
+        let mut values: Vec<f64> = (0..50_000).map(|i| (0.01 * f64::from(i)).sin()).collect();
+        values[31_234] = 17.0;
+        values[7] = f64::NAN;
+        let outline = |block: usize| {
+            let mut envelope = Envelope::default();
+            values.chunks(block).for_each(|block| envelope.take(block));
+            envelope
+        };
+        let whole = outline(values.len());
+        let buckets: Vec<Bucket> = whole.buckets().collect();
+        assert!(buckets.len() <= MOST && buckets.len() >= MOST / 2);
+        assert!(buckets.iter().any(|b| b.largest == 17.0));
+        assert_eq!(buckets[0].row, 0);
+        for block in [1, 999] {
+            assert!(outline(block).buckets().eq(buckets.iter().copied()));
+        }
+    }
+
+    #[test]
+    fn closed_form_short_channels_are_kept_sample_by_sample() {
+        let mut envelope = Envelope::default();
+        envelope.take(&[1.0, f64::NAN, 3.0]);
+        let rows: Vec<(u64, f64)> = envelope.buckets().map(|b| (b.row, b.first)).collect();
+        assert_eq!(rows, [(0, 1.0), (2, 3.0)]);
+        assert_eq!(envelope.rows_per_bucket(), 1);
+    }
+}

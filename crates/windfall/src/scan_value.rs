@@ -1,0 +1,287 @@
+//! One channel looked through in bounded memory: extremes, clipping, spikes.
+
+use crate::scan_decimated::Decimated;
+use std::cmp::Ordering;
+use std::collections::BinaryHeap;
+
+/// Successive samples at an extreme value that look like clipping.
+pub const CLIPPED_RUN: u64 = 4;
+
+/// Distinct values up to which a channel is a logic level, never clipped.
+const LOGIC_LEVELS: usize = 3;
+
+/// Fewest samples among which a spike can be told.
+const LEAST_FOR_SPIKES: u64 = 50;
+
+/// Part of the steps between samples that counts as usual.
+const USUAL_STEPS: f64 = 0.99;
+
+/// A spike has two large steps: those of two spikes are never usual.
+const STEPS_OF_SPIKES: usize = 5;
+
+/// A spike stands out by this many times the usual step.
+const SPIKE: f64 = 10.0;
+
+/// Most samples that are remembered as standing out.
+const MOST_SPIKES: usize = 4096;
+
+/// What one pass over a channel has found so far. Samples without a value are
+/// passed over.
+#[derive(Clone, Debug, Default)]
+pub struct ValueScan {
+    rows: u64,
+    samples: u64,
+    infinite: u64,
+    first: Option<u64>,
+    last: Option<u64>,
+    smallest: Option<f64>,
+    largest: Option<f64>,
+    run: u64,
+    run_at_smallest: u64,
+    run_at_largest: u64,
+    levels: Vec<f64>,
+    // Counts of distances 1, 2, … between rows with a sample.
+    gaps: Vec<u64>,
+    before: [Option<f64>; 2],
+    steps: Decimated,
+    spikes: BinaryHeap<StandingOut>,
+    forgotten: bool,
+}
+
+/// Longest usual distance between rows with a sample.
+const LONGEST_GAP: usize = 64;
+
+/// A sample outside the span of its neighbours.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct StandingOut {
+    /// By how much; unit of the channel.
+    pub by: f64,
+    /// Number of the sample, from 0, blanks not counted.
+    pub sample: u64,
+    /// The sample before, the sample, the sample after.
+    pub values: [f64; 3],
+}
+
+impl Eq for StandingOut {}
+
+impl PartialOrd for StandingOut {
+    fn partial_cmp(&self, other: &Self) -> Option<Ordering> {
+        Some(self.cmp(other))
+    }
+}
+
+/// The one that stands out least is the greatest: it is forgotten first.
+impl Ord for StandingOut {
+    fn cmp(&self, other: &Self) -> Ordering {
+        let by = other.by.total_cmp(&self.by);
+        by.then(self.sample.cmp(&other.sample))
+    }
+}
+
+/// Spikes of a channel.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Spikes {
+    /// Number; at least this many where `more`.
+    pub count: usize,
+    /// The first of them.
+    pub first: StandingOut,
+    /// Whether there may be more.
+    pub more: bool,
+}
+
+impl ValueScan {
+    /// Takes the next samples; NaN where there is none.
+    pub fn take(&mut self, samples: &[f64]) {
+        for &value in samples {
+            let row = self.rows;
+            self.rows += 1;
+            if value.is_nan() {
+                continue;
+            }
+            if value.is_infinite() {
+                self.infinite += 1;
+                continue;
+            }
+            self.sample(row, value);
+        }
+    }
+
+    fn sample(&mut self, row: u64, value: f64) {
+        if let Some(last) = self.last {
+            let gap = (row - last).min(LONGEST_GAP as u64) as usize;
+            self.gaps.resize(LONGEST_GAP, 0);
+            self.gaps[gap - 1] += 1;
+        }
+        self.first.get_or_insert(row);
+        self.last = Some(row);
+        if self.levels.len() <= LOGIC_LEVELS && !self.levels.contains(&value) {
+            self.levels.push(value);
+        }
+        self.extremes(value);
+        if let [Some(middle), before] = self.before {
+            self.steps.push((value - middle).abs());
+            if let Some(before) = before {
+                self.stands_out([before, middle, value]);
+            }
+        }
+        self.before = [Some(value), self.before[0]];
+        self.samples += 1;
+    }
+
+    fn extremes(&mut self, value: f64) {
+        self.run = match self.before[0] == Some(value) {
+            true => self.run + 1,
+            false => 1,
+        };
+        if self.smallest.is_none_or(|smallest| value < smallest) {
+            (self.smallest, self.run_at_smallest) = (Some(value), 0);
+        }
+        if self.largest.is_none_or(|largest| value > largest) {
+            (self.largest, self.run_at_largest) = (Some(value), 0);
+        }
+        if self.smallest == Some(value) {
+            self.run_at_smallest = self.run_at_smallest.max(self.run);
+        }
+        if self.largest == Some(value) {
+            self.run_at_largest = self.run_at_largest.max(self.run);
+        }
+    }
+
+    fn stands_out(&mut self, values: [f64; 3]) {
+        let (low, high) = (values[0].min(values[2]), values[0].max(values[2]));
+        let by = (values[1] - high).max(low - values[1]);
+        if by <= 0.0 {
+            return;
+        }
+        let sample = self.samples - 1;
+        self.spikes.push(StandingOut { by, sample, values });
+        if self.spikes.len() > MOST_SPIKES {
+            self.spikes.pop();
+            self.forgotten = true;
+        }
+    }
+
+    /// Rows, with and without a sample.
+    #[must_use]
+    pub fn rows(&self) -> u64 {
+        self.rows
+    }
+
+    /// Rows with a finite sample.
+    #[must_use]
+    pub fn samples(&self) -> u64 {
+        self.samples
+    }
+
+    /// Samples that are infinite.
+    #[must_use]
+    pub fn infinite(&self) -> u64 {
+        self.infinite
+    }
+
+    /// Smallest sample.
+    #[must_use]
+    pub fn smallest(&self) -> Option<f64> {
+        self.smallest
+    }
+
+    /// Largest sample.
+    #[must_use]
+    pub fn largest(&self) -> Option<f64> {
+        self.largest
+    }
+
+    /// First and last row with a sample.
+    #[must_use]
+    pub fn span(&self) -> Option<(u64, u64)> {
+        self.first.zip(self.last)
+    }
+
+    /// Usual number of rows from one sample to the next: the median.
+    #[must_use]
+    pub fn usual_gap(&self) -> Option<u64> {
+        let total: u64 = self.gaps.iter().sum();
+        let mut counted = 0;
+        let median = self.gaps.iter().position(|count| {
+            counted += count;
+            2 * counted >= total && total > 0
+        })?;
+        Some(median as u64 + 1)
+    }
+
+    /// An extreme value at which the channel stands, and for how many samples.
+    #[must_use]
+    pub fn clipped(&self) -> Option<(f64, u64)> {
+        if self.levels.len() <= LOGIC_LEVELS {
+            return None;
+        }
+        let low = (self.smallest?, self.run_at_smallest);
+        let high = (self.largest?, self.run_at_largest);
+        [low, high].into_iter().find(|(_, run)| *run >= CLIPPED_RUN)
+    }
+
+    /// Samples far from both neighbours, against what the channel usually does.
+    #[must_use]
+    pub fn spikes(&self) -> Option<Spikes> {
+        if self.samples < LEAST_FOR_SPIKES {
+            return None;
+        }
+        let usual = self.steps.quantile(USUAL_STEPS, STEPS_OF_SPIKES)?;
+        let out = |spike: &&StandingOut| usual > 0.0 && spike.by > SPIKE * usual;
+        let first = self.spikes.iter().filter(out).min_by_key(|s| s.sample)?;
+        let count = self.spikes.iter().filter(out).count();
+        Some(Spikes {
+            count,
+            first: *first,
+            more: self.forgotten && count == MOST_SPIKES,
+        })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn scan(values: &[f64], block: usize) -> ValueScan {
+        let mut scan = ValueScan::default();
+        values.chunks(block).for_each(|block| scan.take(block));
+        scan
+    }
+
+    #[test]
+    fn recovers_a_glitch_put_into_a_sine() {
+        let smooth: Vec<f64> = (0..200).map(|i| (0.1 * f64::from(i)).sin()).collect();
+        assert_eq!(scan(&smooth, 7).spikes(), None);
+        let mut glitched = smooth;
+        glitched[77] = 6.0;
+        for block in [1, 3, 200] {
+            let found = scan(&glitched, block).spikes().unwrap();
+            assert_eq!(
+                (found.count, found.first.sample, found.more),
+                (1, 77, false)
+            );
+            assert_eq!(found.first.values[1], 6.0);
+        }
+    }
+
+    #[test]
+    fn closed_form_runs_at_the_extremes() {
+        let values = [1.0, 1.0, 1.0, 1.0, 2.0, 3.0, 9.0, 9.0, 9.0, 0.5, 9.0];
+        assert_eq!(scan(&values, 4).clipped(), None);
+        let values = [1.0, 2.0, 3.0, 9.0, f64::NAN, 9.0, 9.0, 9.0, 0.5];
+        assert_eq!(scan(&values, 2).clipped(), Some((9.0, 4)));
+        // Two levels are logic, not clipping.
+        let values = [0.0, 0.0, 0.0, 0.0, 5.0, 5.0, 5.0, 5.0];
+        assert_eq!(scan(&values, 3).clipped(), None);
+    }
+
+    #[test]
+    fn closed_form_gaps_and_span() {
+        let blank = f64::NAN;
+        let values = [blank, 1.0, blank, 2.0, blank, 3.0, 4.0, f64::INFINITY];
+        let scan = scan(&values, 3);
+        assert_eq!((scan.rows(), scan.samples(), scan.infinite()), (8, 4, 1));
+        assert_eq!((scan.span(), scan.usual_gap()), (Some((1, 6)), Some(2)));
+        assert_eq!((scan.smallest(), scan.largest()), (Some(1.0), Some(4.0)));
+    }
+}
