@@ -71,11 +71,27 @@ pub enum NewKind {
 
 /// `windfall inspect`
 #[derive(Debug, Args)]
-#[command(after_help = "Example:\n  windfall inspect raw/*.csv")]
+#[command(after_help = "Examples:
+  windfall inspect raw/*.tdms
+  windfall inspect impact.lvm --plot impact.svg
+      a figure of all channels, with its data in impact.csv beside it
+  windfall inspect tap.wav --channel 'channel 1' --format json
+
+Formats: text (CSV and relatives), LVM, TDMS, MAT (4 to 7.3), HDF5, WAV, UFF58 and 58b, sigrok; \
+found out from the first bytes of the file.")]
 pub struct InspectArguments {
-    /// Recordings (CSV with a header)
+    /// Recordings of any format
     #[arg(required = true, value_hint = ValueHint::FilePath)]
     pub files: Vec<PathBuf>,
+    /// Show only this channel; may be repeated
+    #[arg(long = "channel", value_name = "NAME")]
+    pub channels: Vec<String>,
+    /// Write a figure of the channels (SVG) and its data (CSV, same name); one recording only
+    #[arg(long, value_name = "FILE.svg", value_hint = ValueHint::FilePath)]
+    pub plot: Option<PathBuf>,
+    /// Read the files as this format, whatever their first bytes say
+    #[arg(long, value_name = "FORMAT")]
+    pub file_format: Option<String>,
     /// How the result is shown
     #[arg(long, value_enum, default_value_t)]
     pub format: Format,

@@ -4,15 +4,24 @@ use crate::args::InspectArguments;
 use crate::args_format::Format;
 use crate::show::{message, write_json, write_result};
 use windfall::request_open::OpenRequest;
-use windfall::workflow_inspect::inspect_recording;
+use windfall::workflow_inspect::{InspectRequest, inspect_recording, write_figure};
 use windfall::write_inspection::{csv_of_inspections, text_of_inspection};
+
+/// Width of a terminal that does not say.
+const COLUMNS: usize = 80;
 
 /// Looks through every file; one that cannot be read does not stop the others.
 pub fn run(arguments: &InspectArguments) -> anyhow::Result<()> {
+    let request = InspectRequest {
+        open: OpenRequest {
+            format: arguments.file_format.clone(),
+        },
+        channels: arguments.channels.clone(),
+    };
     let mut inspections = Vec::new();
     let mut first_failure = None;
     for file in &arguments.files {
-        match inspect_recording(file, &OpenRequest::default()) {
+        match inspect_recording(file, &request) {
             Ok(inspection) => inspections.push(inspection),
             Err(error) => {
                 // The first failure is the command's own and is shown at the end.
@@ -22,12 +31,17 @@ pub fn run(arguments: &InspectArguments) -> anyhow::Result<()> {
             }
         }
     }
+    if let Some(path) = &arguments.plot {
+        for written in write_figure(path, &inspections)? {
+            message(&format!("written: {}", written.display()));
+        }
+    }
     match arguments.format {
         Format::Json => write_json(&serde_json::json!({ "files": inspections }))?,
         Format::Csv => write_result(&csv_of_inspections(&inspections)?)?,
         Format::Text => {
-            let texts: Vec<String> = inspections.iter().map(text_of_inspection).collect();
-            write_result(&texts.join("\n"))?;
+            let texts = inspections.iter().map(|i| text_of_inspection(i, COLUMNS));
+            write_result(&texts.collect::<Vec<_>>().join("\n"))?;
         }
     }
     first_failure.map_or(Ok(()), |error| Err(error.into()))

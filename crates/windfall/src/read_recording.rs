@@ -3,12 +3,12 @@
 use crate::campaign::{ChannelPlan, FilePlan, ImpactEntry, TimePlan};
 use crate::column_role::seconds_per_unit;
 use crate::error::{Error, Place};
+use crate::find_channel::find_channel;
 use crate::read_files::fill_placeholders;
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 use windfall_formats::contents::{Contents, Format, TimeBase};
 use windfall_formats::open::open;
-use windfall_numerics::nearest_name::nearest_names;
 use windfall_signal::recording::{Channel, Recording, Times};
 
 /// Where the recording of an impact is.
@@ -92,7 +92,11 @@ fn source_of<'a>(
             name,
         })
     };
-    let find = |text: &str| index_of(contents, &fill(text)?, plan, path);
+    let asked_by = match plan.line {
+        0 => format!(" (asked for as {})", plan.table),
+        line => format!(" (campaign.toml, line {line}, {})", plan.table),
+    };
+    let find = |text: &str| find_channel(contents, &fill(text)?, path, &asked_by);
     let index = find(&plan.column)?;
     let named = match (&plan.time, &files.time) {
         (Some(own), _) => Some(own),
@@ -126,40 +130,6 @@ fn clock_in_file(contents: &Contents, index: usize, path: &Path) -> Result<Clock
             column: contents.channels[index].name.clone(),
         }),
     }
-}
-
-fn index_of(
-    contents: &Contents,
-    column: &str,
-    plan: &ChannelPlan,
-    path: &Path,
-) -> Result<usize, Error> {
-    let names = || {
-        contents
-            .channels
-            .iter()
-            .map(|channel| channel.name.as_str())
-    };
-    // The last part of "group/channel" does where it is the only one.
-    let found = names().position(|name| name == column).or_else(|| {
-        let tail = |name: &str| name.rsplit('/').next() == Some(column);
-        let mut same = names().enumerate().filter(|(_, name)| tail(name));
-        let first = same.next();
-        first.filter(|_| same.next().is_none()).map(|(at, _)| at)
-    });
-    found.ok_or_else(|| Error::ColumnMissing {
-        path: path.to_path_buf(),
-        column: column.to_owned(),
-        asked_by: match plan.line {
-            0 => format!(" (asked for as {})", plan.table),
-            line => format!(" (campaign.toml, line {line}, {})", plan.table),
-        },
-        nearest: nearest_names(column, names())
-            .into_iter()
-            .map(str::to_owned)
-            .collect(),
-        columns: contents.channels.len(),
-    })
 }
 
 fn channel_of<'a>(

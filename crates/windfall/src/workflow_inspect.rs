@@ -6,13 +6,15 @@ use crate::column_role::{role_of, role_of_unit, seconds_per_unit, unit_in};
 use crate::curve::{Curve, CurvePoint};
 use crate::envelope::Envelope;
 use crate::error::Error;
+use crate::figure_recording::{csv_of_curves, svg_of_curves};
+use crate::find_channel::find_channel;
 use crate::named::Named;
 use crate::outcome::FindingOutcome;
 use crate::request_open::{OpenRequest, open_options};
 use crate::scan_time::TimeScan;
 use crate::scan_value::ValueScan;
 use serde::Serialize;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use windfall_formats::contents::{ChannelContents, Contents, TimeBase};
 use windfall_formats::open::open;
 use windfall_formats::reader::Sink;
@@ -66,15 +68,25 @@ pub struct ColumnInspection {
     pub start: Option<f64>,
 }
 
+/// What `inspect` is asked for.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct InspectRequest {
+    /// How the file is read.
+    pub open: OpenRequest,
+    /// Names of the channels to show; none shows all.
+    pub channels: Vec<String>,
+}
+
 /// Looks through a recording.
 ///
 /// Times without a unit are taken as seconds.
 ///
 /// # Errors
 /// The file cannot be read, or breaks the rules of its format.
-pub fn inspect_recording(path: &Path, request: &OpenRequest) -> Result<Inspection, Error> {
-    let mut reader = open(path, &open_options(request)?).map_err(Error::Format)?;
+pub fn inspect_recording(path: &Path, request: &InspectRequest) -> Result<Inspection, Error> {
+    let mut reader = open(path, &open_options(&request.open)?).map_err(Error::Format)?;
     let contents = reader.contents().clone();
+    let shown = shown_channels(&contents, &request.channels, path)?;
     let all: Vec<usize> = (0..contents.channels.len()).collect();
     let mut scans = Scans::of(&contents);
     reader.read(&all, &mut scans).map_err(Error::Format)?;
@@ -87,7 +99,8 @@ pub fn inspect_recording(path: &Path, request: &OpenRequest) -> Result<Inspectio
 
     let mut columns = Vec::new();
     let mut curves = Vec::new();
-    for (index, channel) in contents.channels.iter().enumerate() {
+    for index in shown {
+        let channel = &contents.channels[index];
         let scan = &scans.channels[index];
         let clock = clock_of(&contents, &scans, index);
         let inspected = column_inspection(channel, scan, &clock);
@@ -121,6 +134,59 @@ pub fn inspect_recording(path: &Path, request: &OpenRequest) -> Result<Inspectio
         findings,
         curves,
     })
+}
+
+fn shown_channels(
+    contents: &Contents,
+    wanted: &[String],
+    path: &Path,
+) -> Result<Vec<usize>, Error> {
+    if wanted.is_empty() {
+        return Ok((0..contents.channels.len()).collect());
+    }
+    let find = |name: &String| find_channel(contents, name, path, " (asked for with --channel)");
+    wanted.iter().map(find).collect()
+}
+
+/// Writes a figure of a recording as SVG, and its data as CSV beside it; returns
+/// the two files.
+///
+/// # Errors
+/// There is not exactly one recording, its name does not end in ".svg", or a
+/// file cannot be written.
+pub fn write_figure(path: &Path, inspections: &[Inspection]) -> Result<[PathBuf; 2], Error> {
+    let unusable = |problem: &str| Error::OptionInvalid {
+        option: format!("--plot {}", path.display()),
+        problem: problem.to_owned(),
+    };
+    let [inspection] = inspections else {
+        return Err(unusable(
+            "a figure shows one recording; name one that can be read",
+        ));
+    };
+    if path.extension().is_none_or(|extension| extension != "svg") {
+        return Err(unusable(
+            "figures are written as SVG; give a name that ends in \".svg\"",
+        ));
+    }
+    let data = path.with_extension("csv");
+    if data == Path::new(&inspection.file) {
+        return Err(unusable(
+            "its data would replace the recording; give another name",
+        ));
+    }
+    let name = Path::new(&inspection.file).file_name();
+    let title = name.map_or_else(String::new, |name| name.to_string_lossy().into_owned());
+    let written = |path: &Path, text: String| {
+        std::fs::write(path, text).map_err(|source| Error::FileAccess {
+            path: path.to_path_buf(),
+            action: "write",
+            source,
+        })
+    };
+    written(path, svg_of_curves(&title, &inspection.curves))?;
+    written(&data, csv_of_curves(&inspection.curves)?)?;
+    Ok([path.to_path_buf(), data])
 }
 
 fn finding(code: &str, message: String) -> FindingOutcome {
@@ -335,7 +401,7 @@ mod tests {
         let dir = tempfile::tempdir().unwrap();
         let path = dir.path().join("r.csv");
         std::fs::write(&path, "time_s,force_N,position_mm\n0,1,5\n0.5,9,\n1,9,6\n1.5,9,\n2,9,7\n2.5,x,\n3,3,8\n3.5,4,\n").unwrap();
-        let found = inspect_recording(&path, &OpenRequest::default()).unwrap();
+        let found = inspect_recording(&path, &InspectRequest::default()).unwrap();
         assert_eq!(
             (
                 found.rows,

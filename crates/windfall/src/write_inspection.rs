@@ -5,14 +5,23 @@ use crate::text_number::plain;
 use crate::workflow_inspect::{ColumnInspection, Inspection};
 use crate::write_csv::csv_text;
 use crate::write_table::table_text;
+use crate::write_terminal_plot::terminal_plot;
 use std::fmt::Write;
 
 /// Most properties of a file that the text shows.
 const SHOWN_PROPERTIES: usize = 12;
 
-/// An inspection as text: a table of columns, then what looks wrong.
+/// Most channels that the text plots.
+const PLOTTED: usize = 6;
+
+/// Height of a plot; lines.
+const PLOT_ROWS: usize = 6;
+
+/// An inspection as text: a table of channels, small plots, what looks wrong.
+///
+/// * `columns`: width of the terminal; characters
 #[must_use]
-pub fn text_of_inspection(inspection: &Inspection) -> String {
+pub fn text_of_inspection(inspection: &Inspection, columns: usize) -> String {
     let header = [
         "channel",
         "unit",
@@ -49,6 +58,13 @@ pub fn text_of_inspection(inspection: &Inspection) -> String {
     if inspection.properties.0.len() > SHOWN_PROPERTIES {
         let more = inspection.properties.0.len() - SHOWN_PROPERTIES;
         let _ = writeln!(text, "and {more} more properties (--format json shows all)");
+    }
+    for curve in inspection.curves.iter().take(PLOTTED) {
+        let _ = writeln!(text, "\n{}", terminal_plot(curve, columns, PLOT_ROWS));
+    }
+    if inspection.curves.len() > PLOTTED {
+        let more = inspection.curves.len() - PLOTTED;
+        let _ = writeln!(text, "({more} more channels; --channel NAME plots one)\n");
     }
     if inspection.findings.is_empty() {
         text += "nothing looks wrong\n";

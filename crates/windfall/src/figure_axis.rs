@@ -1,0 +1,143 @@
+//! Axes of figures: round ticks and their labels.
+
+/// Powers of ten beyond which an axis carries a factor in its title.
+const PLAIN_POWERS: std::ops::RangeInclusive<i32> = -2..=4;
+
+/// One axis: its range, ticks, and the factor that its labels leave out.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Axis {
+    /// Lower end; unit of the data.
+    pub low: f64,
+    /// Upper end, above `low`.
+    pub high: f64,
+    /// Ticks within the range, rising.
+    pub ticks: Vec<f64>,
+    /// Labels of the ticks, divided by 10^`power`.
+    pub labels: Vec<String>,
+    /// Power of ten that the labels leave out; 0 for none.
+    pub power: i32,
+}
+
+/// An axis over data from `low` to `high` with about `count` round ticks.
+///
+/// Ticks are 1, 2 or 5 times a power of ten apart. Data of one value gets a
+/// range around it.
+#[must_use]
+pub fn axis(low: f64, high: f64, count: usize) -> Axis {
+    let (low, high) = widened(low, high);
+    let step = round_step((high - low) / count.max(1) as f64);
+    let first = (low / step).ceil() as i64;
+    let last = (high / step).floor() as i64;
+    let ticks: Vec<f64> = (first..=last).map(|i| i as f64 * step).collect();
+    let largest = low.abs().max(high.abs());
+    let magnitude = largest.log10().floor() as i32;
+    let power = match PLAIN_POWERS.contains(&magnitude) {
+        true => 0,
+        false => magnitude,
+    };
+    let decimals = (power - step.log10().floor() as i32).max(0) as usize;
+    let labels = ticks
+        .iter()
+        .map(|tick| label(tick / 10_f64.powi(power), decimals))
+        .collect();
+    Axis {
+        low,
+        high,
+        ticks,
+        labels,
+        power,
+    }
+}
+
+/// A number for an axis, with a true minus sign and no negative zero.
+fn label(value: f64, decimals: usize) -> String {
+    let text = format!("{value:.decimals$}");
+    match text.strip_prefix('-') {
+        Some(rest) if rest.chars().all(|c| c == '0' || c == '.') => rest.to_owned(),
+        Some(rest) => format!("\u{2212}{rest}"),
+        None => text,
+    }
+}
+
+/// " (unit)", " (10⁻³ unit)", or nothing.
+#[must_use]
+pub fn unit_label(unit: &str, power: i32) -> String {
+    let factor = match power {
+        0 => String::new(),
+        power => format!("10{}", superscript(power)),
+    };
+    match (unit, factor.as_str()) {
+        ("", "") => String::new(),
+        ("", factor) => format!(" ({factor})"),
+        (unit, "") => format!(" ({unit})"),
+        (unit, factor) => format!(" ({factor} {unit})"),
+    }
+}
+
+fn superscript(power: i32) -> String {
+    const DIGITS: [char; 10] = ['⁰', '¹', '²', '³', '⁴', '⁵', '⁶', '⁷', '⁸', '⁹'];
+    power
+        .to_string()
+        .chars()
+        .filter_map(|c| match c {
+            '-' => Some('⁻'),
+            digit => DIGITS.get(digit.to_digit(10)? as usize).copied(),
+        })
+        .collect()
+}
+
+fn widened(low: f64, high: f64) -> (f64, f64) {
+    if high > low {
+        return (low, high);
+    }
+    let half = match low.abs() {
+        0.0 => 1.0,
+        size => 0.1 * size,
+    };
+    (low - half, low + half)
+}
+
+/// The smallest of 1, 2, 5 times a power of ten that is not below `least`.
+fn round_step(least: f64) -> f64 {
+    let power = 10_f64.powf(least.log10().floor());
+    let steps = [1.0, 2.0, 5.0];
+    let found = steps
+        .into_iter()
+        .find(|s| s * power >= least * (1.0 - 1e-9));
+    found.unwrap_or(10.0) * power
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn closed_form_round_ticks() {
+        let found = axis(-0.31, 1.05, 5);
+        assert_eq!(found.labels, ["0.0", "0.5", "1.0"]);
+        let found = axis(-3.0, 12.0, 4);
+        assert_eq!(found.labels, ["0", "5", "10"]);
+        let found = axis(0.0, 4.2e-6, 4);
+        assert_eq!((found.power, found.labels[1].as_str()), (-6, "2"));
+        let found = axis(-8.0, 8.0, 4);
+        assert_eq!(found.labels, ["\u{2212}5", "0", "5"]);
+        let found = axis(5.0, 5.0, 4);
+        assert!(found.low < 5.0 && found.high > 5.0 && !found.ticks.is_empty());
+        assert_eq!(unit_label("N", -6), " (10⁻⁶ N)");
+    }
+
+    #[test]
+    fn closed_form_ticks_lie_within_the_range() {
+        for (low, high) in [(0.0, 1.0), (1e9, 1.0001e9), (-1e-12, 1e-12), (377.1, 377.2)] {
+            let found = axis(low, high, 5);
+            assert!(
+                found.ticks.iter().all(|t| (low..=high).contains(t)),
+                "{low}"
+            );
+            assert!((2..=7).contains(&found.ticks.len()), "{found:?}");
+            let mut labels = found.labels.clone();
+            labels.dedup();
+            assert_eq!(labels.len(), found.labels.len(), "{found:?}");
+        }
+    }
+}
