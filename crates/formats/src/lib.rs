@@ -14,7 +14,16 @@
 pub mod contents;
 pub mod error;
 pub mod open;
+pub mod read_lvm;
+pub mod read_text;
 pub mod reader;
 pub mod source;
+pub mod text_date;
+pub mod text_dialect;
+pub mod text_encoding;
+pub mod text_lines;
+pub mod text_number;
+pub mod text_rows;
+pub mod text_table;
 
 pub use error::Error;

@@ -3,8 +3,11 @@
 
 use crate::contents::Format;
 use crate::error::Error;
+use crate::read_lvm::LvmReader;
+use crate::read_text::TextReader;
 use crate::reader::Reader;
 use crate::source::Source;
+use crate::text_dialect::TextOptions;
 use std::path::Path;
 
 /// Bytes from which the format is told.
@@ -15,6 +18,8 @@ const HEAD: u64 = 4096;
 pub struct OpenOptions {
     /// The format; `None`: found out.
     pub format: Option<Format>,
+    /// How tables in text are written.
+    pub text: TextOptions,
 }
 
 /// Opens a file with the reader that its format needs.
@@ -35,7 +40,8 @@ pub fn open_source(source: Source, options: &OpenOptions) -> Result<Box<dyn Read
         None => tell_format(&source)?,
     };
     match format {
-        // One line for each reader.
+        Format::Text => Ok(Box::new(TextReader::open(source, &options.text)?)),
+        Format::Lvm => Ok(Box::new(LvmReader::open(source)?)),
         other => Err(Error::UnknownFormat {
             path: source.path().to_path_buf(),
             found: format!("this is a {other} file"),
@@ -63,6 +69,9 @@ pub fn tell_format(source: &Source) -> Result<Format, Error> {
         && [b"RIFF", b"RIFX", b"RF64"].iter().any(|t| *t == tag)
     {
         return Ok(Format::Wav);
+    }
+    if head.starts_with(b"LabVIEW Measurement") {
+        return Ok(Format::Lvm);
     }
     Ok(Format::Text)
 }

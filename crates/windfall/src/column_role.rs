@@ -19,11 +19,11 @@ pub fn unit_of(name: &str) -> Option<String> {
     };
     bracketed
         .or_else(last)
-        .filter(|unit| !unit.is_empty() && parse_unit(unit).is_ok())
+        .filter(|unit| unit.starts_with(|c: char| !c.is_ascii_digit()) && parse_unit(unit).is_ok())
 }
 
 /// Parts of names and what they usually stand for.
-const ROLES: [(&str, &str); 16] = [
+const ROLES: [(&str, &str); 17] = [
     ("time", "time"),
     ("phase_a", "phase_a"),
     ("phase a", "phase_a"),
@@ -38,6 +38,7 @@ const ROLES: [(&str, &str); 16] = [
     ("count", "count"),
     ("encoder", "count"),
     ("position", "position"),
+    ("pos", "position"),
     ("displacement", "position"),
     ("zeit", "time"),
 ];
@@ -108,6 +109,7 @@ mod tests {
             ("phase_a_V", Some("V"), Some("phase_a")),
             ("position_mm", Some("mm"), Some("position")),
             ("remarks", None, None),
+            ("column_1", None, None),
         ] {
             assert_eq!(unit_of(name).as_deref(), unit, "{name}");
             assert_eq!(role_of(name), role, "{name}");

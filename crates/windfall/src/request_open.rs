@@ -4,6 +4,7 @@ use crate::error::Error;
 use crate::option_value::chosen;
 use windfall_formats::contents::Format;
 use windfall_formats::open::OpenOptions;
+use windfall_formats::text_dialect::TextOptions;
 
 /// Formats by name.
 pub const FORMATS: [(&str, Format); 8] = [
@@ -34,5 +35,6 @@ pub fn open_options(request: &OpenRequest) -> Result<OpenOptions, Error> {
         format: format
             .map(|text| chosen("--file-format", text, &FORMATS))
             .transpose()?,
+        text: TextOptions::default(),
     })
 }

@@ -1,0 +1,649 @@
+//! The dialect of a table in text, found out from its first lines.
+
+use crate::contents::Note;
+use crate::text_date::{Moment, moment};
+use crate::text_number::{Cell, Marks, bare, cell, leading_number, without_groups};
+use crate::text_rows::{ColumnKind, Separator};
+
+/// What a user says of a text file; what is left out is found out.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct TextOptions {
+    /// What stands between cells.
+    pub separator: Option<Separator>,
+    /// Decimal mark: '.' or ','.
+    pub decimal: Option<char>,
+    /// Mark between groups of three digits.
+    pub thousands: Option<char>,
+    /// How characters are written.
+    pub encoding: Option<crate::text_encoding::Encoding>,
+    /// Line with the names of the columns, counted from 1; 0: there is none.
+    pub header_line: Option<u64>,
+    /// Beginning of lines that are passed over.
+    pub comment: Option<String>,
+}
+
+/// Beginnings of lines that are usually comments.
+const COMMENTS: [&str; 3] = ["#", "%", "//"];
+
+/// Separators that are tried, the likeliest first.
+const SEPARATORS: [Separator; 5] = [
+    Separator::Mark(b'\t'),
+    Separator::Mark(b';'),
+    Separator::Mark(b','),
+    Separator::Mark(b'|'),
+    Separator::Blanks,
+];
+
+/// Marks between groups of three digits that are tried.
+const THOUSANDS: [char; 5] = ['.', ',', '\'', ' ', '\u{a0}'];
+
+/// Most names that a header can have above a table without one.
+const MOST_HEADER_ROWS: usize = 2;
+
+/// Columns and how they are written.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Dialect {
+    /// What stands between cells.
+    pub separator: Separator,
+    /// Marks in numbers.
+    pub marks: Marks,
+    /// Beginnings of lines that are passed over.
+    pub comments: Vec<String>,
+    /// Names of the columns, as they stand there; blank where there is none.
+    pub names: Vec<String>,
+    /// Units from a row of units.
+    pub units: Vec<Option<String>>,
+    /// What each column holds.
+    pub kinds: Vec<ColumnKind>,
+    /// Position of the first row among the lines looked at.
+    pub first_row: usize,
+    /// Whether there are no names and the first column rises evenly, other than
+    /// by one: it is then most likely the time.
+    pub rising_first: bool,
+    /// Lines above the header: name and value.
+    pub preamble: Vec<(String, String)>,
+    /// What a user must know.
+    pub notes: Vec<Note>,
+}
+
+/// What a cell looks like under some marks.
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Look {
+    Blank,
+    Number,
+    Moment(Moment),
+    Text,
+}
+
+fn look(text: &str, marks: Marks) -> Look {
+    match cell(text, marks) {
+        Cell::Blank => Look::Blank,
+        Cell::Number(_) => Look::Number,
+        Cell::Other => moment(bare(text)).map_or(Look::Text, Look::Moment),
+    }
+}
+
+/// Cells of a line.
+#[must_use]
+pub fn cells(line: &str, separator: Separator) -> Vec<&str> {
+    match separator {
+        Separator::Blanks => line.split_whitespace().collect(),
+        Separator::Mark(mark) => {
+            let mark = char::from(mark);
+            let mut cells = Vec::new();
+            let (mut start, mut quoted) = (0, false);
+            for (at, c) in line.char_indices() {
+                quoted ^= c == '"';
+                if c == mark && !quoted {
+                    cells.push(&line[start..at]);
+                    start = at + c.len_utf8();
+                }
+            }
+            cells.push(&line[start..]);
+            cells
+        }
+    }
+}
+
+/// Finds out the dialect from the first lines of a file.
+///
+/// Returns `None` where no line holds a number between separators, and the
+/// position of a line that shows it.
+///
+/// # Errors
+/// The position of a line that is no row of a table of numbers.
+pub fn find_dialect(lines: &[&str], options: &TextOptions) -> Result<Dialect, usize> {
+    let comments = comment_marks(lines, options);
+    let data: Vec<usize> = (0..lines.len())
+        .filter(|&at| !lines[at].trim().is_empty() && !is_comment(lines[at], &comments))
+        .collect();
+    let nothing = || data.first().copied().unwrap_or(0);
+    let candidate = best_candidate(lines, &data, options).ok_or_else(nothing)?;
+    let Candidate {
+        separator,
+        mut marks,
+        count,
+        ..
+    } = candidate;
+    marks.thousands = options
+        .thousands
+        .or_else(|| thousands(lines, &data, &candidate));
+
+    let rows: Vec<usize> = data
+        .iter()
+        .copied()
+        .filter(|&at| row(lines[at], separator, count).is_some())
+        .collect();
+    let kinds = column_kinds(lines, &rows, separator, count, marks);
+    let numeric = |at: usize| {
+        row(lines[at], separator, count).is_some_and(|cells| is_row(&cells, &kinds, marks))
+    };
+    let first_row = match options.header_line {
+        // Below the header that the user names; a row of units is no number.
+        Some(line) => rows
+            .iter()
+            .copied()
+            .find(|&at| at as u64 >= line && numeric(at)),
+        None => rows.iter().copied().find(|&at| numeric(at)),
+    };
+    let first_row = first_row.ok_or_else(nothing)?;
+    let mut dialect = Dialect {
+        separator,
+        marks,
+        comments,
+        names: vec![String::new(); count],
+        units: vec![None; count],
+        kinds: first_moments(lines, first_row, separator, count, marks, kinds),
+        first_row,
+        rising_first: false,
+        preamble: Vec::new(),
+        notes: Vec::new(),
+    };
+    name_columns(&mut dialect, lines, &data, options);
+    let unnamed = dialect.names.iter().all(String::is_empty);
+    dialect.rising_first = unnamed && count > 1 && rises_evenly(lines, &rows, &dialect);
+    if candidate.ambiguous && options.decimal.is_none() {
+        let (mark, other) = match marks.decimal {
+            b',' => ("comma", "\",\" as a mark of thousands"),
+            _ => ("point", "\".\" as a mark of thousands"),
+        };
+        dialect.notes.push(Note::Assumed {
+            what: format!(
+                "the decimal mark is taken to be a {mark}; if the file has {other}, say so with \
+                 the settings decimal and thousands"
+            ),
+        });
+    }
+    Ok(dialect)
+}
+
+/// Whether the first column rises by the same step from row to row, as printed
+/// times do, and is not a count of rows.
+fn rises_evenly(lines: &[&str], rows: &[usize], dialect: &Dialect) -> bool {
+    let number = |at: usize| {
+        let cells = row(lines[at], dialect.separator, dialect.names.len())?;
+        match cell(cells[0], dialect.marks) {
+            Cell::Number(value) => Some(value),
+            _ => None,
+        }
+    };
+    let values: Option<Vec<f64>> = rows.iter().map(|&at| number(at)).collect();
+    let Some(values) = values.filter(|values| values.len() > 2) else {
+        return false;
+    };
+    let step = (values[values.len() - 1] - values[0]) / (values.len() - 1) as f64;
+    let even = |pair: &[f64]| ((pair[1] - pair[0]) - step).abs() < 0.2 * step;
+    step > 0.0 && step != 1.0 && values.windows(2).all(even)
+}
+
+fn comment_marks(lines: &[&str], options: &TextOptions) -> Vec<String> {
+    if let Some(mark) = &options.comment {
+        return vec![mark.clone()];
+    }
+    let used = |mark: &&str| {
+        lines
+            .iter()
+            .any(|line| line.trim_start().starts_with(*mark))
+    };
+    COMMENTS
+        .iter()
+        .copied()
+        .filter(|mark| used(mark))
+        .map(str::to_owned)
+        .collect()
+}
+
+fn is_comment(line: &str, comments: &[String]) -> bool {
+    comments
+        .iter()
+        .any(|mark| line.trim_start().starts_with(mark.as_str()))
+}
+
+/// The cells of a line that has as many as the table has columns, or one blank
+/// cell more.
+fn row(line: &str, separator: Separator, count: usize) -> Option<Vec<&str>> {
+    let mut cells = cells(line, separator);
+    if cells.len() == count + 1 && cells[count].trim().is_empty() {
+        cells.pop();
+    }
+    (cells.len() == count).then_some(cells)
+}
+
+fn is_row(cells: &[&str], kinds: &[ColumnKind], marks: Marks) -> bool {
+    let mut numbers = 0;
+    for (cell, kind) in cells.iter().zip(kinds) {
+        match (kind, look(cell, marks)) {
+            (ColumnKind::Text, _) | (_, Look::Blank) => {}
+            (_, Look::Text) => return false,
+            _ => numbers += 1,
+        }
+    }
+    numbers > 0
+}
+
+/// A separator and a decimal mark, and how well they explain the lines.
+#[derive(Clone, Copy, Debug)]
+struct Candidate {
+    separator: Separator,
+    marks: Marks,
+    count: usize,
+    score: f64,
+    /// Whether the other decimal mark would do as well.
+    ambiguous: bool,
+}
+
+fn best_candidate(lines: &[&str], data: &[usize], options: &TextOptions) -> Option<Candidate> {
+    let separators = SEPARATORS
+        .into_iter()
+        .filter(|separator| options.separator.is_none_or(|wanted| wanted == *separator))
+        .chain(options.separator.filter(|s| !SEPARATORS.contains(s)));
+    let mut best: Option<Candidate> = None;
+    for separator in separators {
+        for decimal in [b'.', b','] {
+            let other = options.decimal.is_some_and(|d| d != char::from(decimal));
+            if other || separator == Separator::Mark(decimal) {
+                continue;
+            }
+            let Some(found) = candidate(lines, data, separator, decimal) else {
+                continue;
+            };
+            match &mut best {
+                // Numbers of three digits behind a mark read either way: where
+                // lists are separated by semicolons, commas are decimal marks.
+                Some(best) if found.score == best.score && found.separator == best.separator => {
+                    let grouped = data.iter().any(|&at| lines[at].contains([',', '.']));
+                    best.ambiguous = grouped && has_marks(lines, data, separator);
+                }
+                Some(best) if found.score <= best.score => {}
+                best => *best = Some(found),
+            }
+        }
+    }
+    let mut best = best?;
+    if best.ambiguous && best.separator == Separator::Mark(b';') {
+        best.marks.decimal = b',';
+    }
+    (best.score > 0.0).then_some(best)
+}
+
+/// Whether a cell holds a comma or a point at all.
+fn has_marks(lines: &[&str], data: &[usize], separator: Separator) -> bool {
+    let either = |text: &str| {
+        let number = |decimal| {
+            let marks = Marks {
+                decimal,
+                thousands: None,
+            };
+            grouped_look(text, marks, separator) == Look::Number
+        };
+        text.contains([',', '.']) && number(b'.') && number(b',')
+    };
+    data.iter()
+        .any(|&at| cells(lines[at], separator).iter().any(|c| either(c)))
+}
+
+fn candidate(
+    lines: &[&str],
+    data: &[usize],
+    separator: Separator,
+    decimal: u8,
+) -> Option<Candidate> {
+    let count = usual_count(lines, data, separator, decimal)?;
+    let marks = Marks {
+        decimal,
+        thousands: None,
+    };
+    let (mut numbers, mut texts, mut first) = (0.0_f64, 0.0_f64, None);
+    for &at in data {
+        let Some(cells) = row(lines[at], separator, count) else {
+            continue;
+        };
+        let (mut here, mut other) = (0.0, 0.0);
+        for cell in cells {
+            match grouped_look(cell, marks, separator) {
+                Look::Blank => {}
+                Look::Text => other += 1.0,
+                Look::Number | Look::Moment(_) => here += 1.0,
+            }
+        }
+        if here > other {
+            first.get_or_insert(at);
+        }
+        numbers += here;
+        texts += other;
+    }
+    let first = first?;
+    // A header with another number of names speaks against the separator.
+    let above = data.iter().rev().find(|&&at| at < first);
+    let fits = above.is_none_or(|&at| row(lines[at], separator, count).is_some());
+    let share = numbers / (numbers + texts);
+    Some(Candidate {
+        separator,
+        marks,
+        count,
+        score: numbers * share.powi(3) * if fits { 1.0 } else { 0.3 },
+        ambiguous: false,
+    })
+}
+
+/// As [`look`], but numbers with any marks of thousands count as numbers.
+fn grouped_look(text: &str, marks: Marks, separator: Separator) -> Look {
+    let plain = look(text, marks);
+    if plain != Look::Text {
+        return plain;
+    }
+    let decimal = char::from(marks.decimal);
+    let usable = |mark: char| {
+        mark != decimal
+            && separator != Separator::Mark(mark as u8)
+            && !(mark == ' ' && separator == Separator::Blanks)
+    };
+    let grouped = THOUSANDS
+        .into_iter()
+        .filter(|mark| usable(*mark))
+        .any(|mark| {
+            let marks = Marks {
+                thousands: Some(mark),
+                ..marks
+            };
+            matches!(cell(text, marks), Cell::Number(_))
+        });
+    if grouped { Look::Number } else { Look::Text }
+}
+
+/// The number of cells that most lines with a number have.
+fn usual_count(lines: &[&str], data: &[usize], separator: Separator, decimal: u8) -> Option<usize> {
+    let mut counts: Vec<usize> = data
+        .iter()
+        .filter_map(|&at| {
+            let mut cells = cells(lines[at], separator);
+            let number = |cell: &&str| leading_number(bare(cell).as_bytes(), decimal).is_some();
+            if !cells.iter().any(number) {
+                return None;
+            }
+            // A mark at the end of the line is no cell.
+            if cells.len() > 1
+                && cells[cells.len() - 1].trim().is_empty()
+                && separator != Separator::Blanks
+            {
+                let blank_ends = cells
+                    .iter()
+                    .rev()
+                    .take_while(|c| c.trim().is_empty())
+                    .count();
+                if blank_ends == 1 && !ends_belong(lines, data, separator, cells.len()) {
+                    cells.pop();
+                }
+            }
+            Some(cells.len())
+        })
+        .collect();
+    counts.sort_unstable();
+    let most = counts
+        .chunk_by(|a, b| a == b)
+        .max_by_key(|chunk| chunk.len())?;
+    most.first().copied()
+}
+
+/// Whether the last of `count` cells holds something in any line: then a blank
+/// one is a blank cell, and not the mark behind the last one.
+fn ends_belong(lines: &[&str], data: &[usize], separator: Separator, count: usize) -> bool {
+    data.iter().any(|&at| {
+        let cells = cells(lines[at], separator);
+        cells.len() == count && !cells[count - 1].trim().is_empty()
+    })
+}
+
+/// The mark of thousands, if cells have one.
+fn thousands(lines: &[&str], data: &[usize], candidate: &Candidate) -> Option<char> {
+    let decimal = char::from(candidate.marks.decimal);
+    let usable =
+        |mark: &char| *mark != decimal && candidate.separator != Separator::Mark(*mark as u8);
+    THOUSANDS.into_iter().filter(usable).find(|&mark| {
+        data.iter().any(|&at| {
+            let row = row(lines[at], candidate.separator, candidate.count);
+            row.is_some_and(|cells| {
+                cells.iter().any(|cell| {
+                    matches!(look(cell, candidate.marks), Look::Text)
+                        && without_groups(bare(cell), mark, decimal).is_some()
+                })
+            })
+        })
+    })
+}
+
+/// Numbers, moments or text, by what most cells hold.
+fn column_kinds(
+    lines: &[&str],
+    rows: &[usize],
+    separator: Separator,
+    count: usize,
+    marks: Marks,
+) -> Vec<ColumnKind> {
+    let mut tallies = vec![[0_usize; 3]; count];
+    let mut starts = vec![None; count];
+    for &at in rows {
+        for (column, cell) in row(lines[at], separator, count)
+            .unwrap_or_default()
+            .iter()
+            .enumerate()
+        {
+            match look(cell, marks) {
+                Look::Blank => {}
+                Look::Number => tallies[column][0] += 1,
+                Look::Moment(moment) => {
+                    starts[column].get_or_insert(moment);
+                    tallies[column][1] += 1;
+                }
+                Look::Text => tallies[column][2] += 1,
+            }
+        }
+    }
+    tallies
+        .iter()
+        .zip(starts)
+        .map(|([numbers, moments, texts], start)| match start {
+            Some(start) if moments > numbers && moments >= texts => ColumnKind::Moments(start),
+            // Names of one or two header rows are not yet a column of text.
+            _ if *texts > MOST_HEADER_ROWS && texts > numbers => ColumnKind::Text,
+            _ if *texts > 0 && *numbers == 0 && rows.len() > texts + 1 => ColumnKind::Numbers,
+            _ if *numbers == 0 && *texts > 1 => ColumnKind::Text,
+            _ => ColumnKind::Numbers,
+        })
+        .collect()
+}
+
+/// Moments count from the first row.
+fn first_moments(
+    lines: &[&str],
+    first_row: usize,
+    separator: Separator,
+    count: usize,
+    marks: Marks,
+    kinds: Vec<ColumnKind>,
+) -> Vec<ColumnKind> {
+    let cells = row(lines[first_row], separator, count).unwrap_or_default();
+    let start = |column: usize| match look(cells.get(column)?, marks) {
+        Look::Moment(moment) => Some(ColumnKind::Moments(moment)),
+        _ => None,
+    };
+    kinds
+        .into_iter()
+        .enumerate()
+        .map(|(column, kind)| match kind {
+            ColumnKind::Moments(_) => start(column).unwrap_or(kind),
+            kind => kind,
+        })
+        .collect()
+}
+
+/// Names and units from the lines above the first row.
+fn name_columns(dialect: &mut Dialect, lines: &[&str], data: &[usize], options: &TextOptions) {
+    let count = dialect.names.len();
+    let clean = |cells: Vec<&str>| cells.iter().map(|c| bare(c).to_owned()).collect::<Vec<_>>();
+    let fitting = |at: usize| row(lines[at], dialect.separator, count).map(clean);
+    let above: Vec<usize> = data
+        .iter()
+        .copied()
+        .filter(|&at| at < dialect.first_row)
+        .collect();
+    let mut header = match options.header_line {
+        Some(0) => Vec::new(),
+        Some(line) => above
+            .iter()
+            .copied()
+            .filter(|&at| at as u64 + 1 >= line)
+            .collect(),
+        None => above.clone(),
+    };
+    if options.header_line.is_some() {
+        header.truncate(MOST_HEADER_ROWS);
+    }
+    let mut used = above.len();
+    // The last line above the rows is the header, or a row of units below it.
+    match header.last().and_then(|&at| fitting(at)) {
+        Some(last) => {
+            used -= 1;
+            let before = header
+                .len()
+                .checked_sub(2)
+                .and_then(|at| fitting(header[at]));
+            match before {
+                Some(names) if is_unit_row(&last) && filled(&names) => {
+                    dialect.units = last
+                        .into_iter()
+                        .map(|u| Some(bare_unit(&u)).filter(|u| !u.is_empty()))
+                        .collect();
+                    dialect.names = names;
+                    used -= 1;
+                }
+                // Two full rows and nothing above them: names and remarks.
+                Some(names) if header.len() == 2 && filled(&names) && filled(&last) => {
+                    dialect.notes.push(Note::Odd {
+                        what: format!(
+                            "there are two rows above the numbers; the names are taken from the first, \
+                             the second says: {}",
+                            last.join(", ")
+                        ),
+                    });
+                    dialect.names = names;
+                    used -= 1;
+                }
+                _ => dialect.names = last,
+            }
+        }
+        None => {
+            let more = header.iter().find_map(|&at| more_names(lines[at], dialect));
+            if let Some(names) = commented_header(lines, dialect, count) {
+                dialect.names = names;
+            } else if let Some(names) = more {
+                dialect.notes.push(Note::Odd {
+                    what: format!(
+                        "there are {} names above {count} columns; they are taken in order, and \
+                         \"{}\" has no column",
+                        names.len(),
+                        names[count..].join("\", \"")
+                    ),
+                });
+                dialect.names = names[..count].to_vec();
+            }
+        }
+    }
+    let preamble = above[..used].iter().filter_map(|&at| {
+        let cells = clean(cells(lines[at], dialect.separator));
+        let (name, values) = cells.split_first()?;
+        let value = values
+            .iter()
+            .filter(|v| !v.is_empty())
+            .cloned()
+            .collect::<Vec<_>>()
+            .join(" ");
+        (!name.is_empty()).then(|| (name.clone(), value))
+    });
+    dialect.preamble = preamble.collect();
+}
+
+/// Names in a line that has more cells than the table has columns, all filled.
+fn more_names(line: &str, dialect: &Dialect) -> Option<Vec<String>> {
+    let names: Vec<String> = cells(line, dialect.separator)
+        .iter()
+        .map(|c| bare(c).to_owned())
+        .collect();
+    let count = dialect.names.len();
+    let names_only = names.iter().all(|name| !name.is_empty());
+    (count > 1
+        && names.len() > count
+        && names.len() <= count + 2
+        && names_only
+        && dialect.separator != Separator::Blanks)
+        .then_some(names)
+}
+
+fn filled(cells: &[String]) -> bool {
+    2 * cells.iter().filter(|cell| !cell.is_empty()).count() > cells.len()
+}
+
+/// Names in the comment right above the first row: "# time(s), force(N)".
+fn commented_header(lines: &[&str], dialect: &Dialect, count: usize) -> Option<Vec<String>> {
+    let above = lines[..dialect.first_row]
+        .iter()
+        .rev()
+        .find(|line| !line.trim().is_empty())?;
+    let mark = dialect
+        .comments
+        .iter()
+        .find(|mark| above.trim_start().starts_with(mark.as_str()))?;
+    let text = above.trim_start()[mark.len()..].trim_start_matches(['#', '%', '/', ' ']);
+    let by_marks = |marks: &[char]| {
+        let names = text.split(marks).map(|name| bare(name).to_owned());
+        names.filter(|name| !name.is_empty()).collect::<Vec<_>>()
+    };
+    [&[',', ';', '\t'][..], &[' ', ',', ';', '\t'][..]]
+        .into_iter()
+        .map(by_marks)
+        .find(|names| names.len() == count)
+}
+
+/// Whether a row holds units: "(s)", "[mm]", "N".
+fn is_unit_row(cells: &[String]) -> bool {
+    let known = |cell: &String| {
+        let unit = bare_unit(cell);
+        unit.len() < cell.len() || UNITS.contains(&unit.as_str())
+    };
+    let filled: Vec<&String> = cells.iter().filter(|cell| !cell.is_empty()).collect();
+    !filled.is_empty() && 2 * filled.iter().filter(|cell| known(cell)).count() > filled.len()
+}
+
+/// Units that stand in rows of units without brackets.
+const UNITS: [&str; 40] = [
+    "s", "ms", "us", "µs", "min", "h", "sec", "N", "mN", "kN", "g", "kg", "m", "mm", "cm", "um",
+    "µm", "m/s", "mm/s", "mm/min", "m/s^2", "m/s²", "m/s2", "V", "mV", "A", "mA", "Pa", "kPa",
+    "MPa", "bar", "rad", "deg", "°", "°C", "C", "K", "%", "Hz", "-",
+];
+
+fn bare_unit(cell: &str) -> String {
+    let inner = [('(', ')'), ('[', ']'), ('<', '>')]
+        .into_iter()
+        .find_map(|(open, close)| cell.strip_prefix(open)?.strip_suffix(close));
+    inner.unwrap_or(cell).trim().to_owned()
+}

@@ -1,0 +1,332 @@
+//! Lines of cells → columns of numbers.
+
+use crate::text_date::{Moment, moment};
+use crate::text_encoding::Encoding;
+use crate::text_number::{Cell, Marks, bare, cell, leading_number};
+
+/// What stands between cells.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Separator {
+    /// One character.
+    Mark(u8),
+    /// Blanks and tabs, any number of them.
+    Blanks,
+}
+
+/// What a column holds.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum ColumnKind {
+    /// Numbers.
+    Numbers,
+    /// Moments, which become seconds since this one.
+    Moments(Moment),
+    /// Text, which is not read.
+    Text,
+}
+
+/// How lines are read.
+#[derive(Clone, Debug, PartialEq)]
+pub struct RowPlan {
+    /// What stands between cells.
+    pub separator: Separator,
+    /// Marks in numbers.
+    pub marks: Marks,
+    /// How characters are written.
+    pub encoding: Encoding,
+    /// The character that ends a line.
+    pub newline: u8,
+    /// Beginnings of lines that are passed over.
+    pub comments: Vec<String>,
+    /// What each column holds.
+    pub columns: Vec<ColumnKind>,
+    /// Whether a line may lack its last cells.
+    pub short_rows: bool,
+}
+
+/// What a stretch of lines holds.
+#[derive(Debug, Default)]
+pub struct Rows {
+    /// Samples of the columns that are wanted; NaN where a cell is blank.
+    pub columns: Vec<Vec<f64>>,
+    /// Lines, also those that are no rows.
+    pub lines: u64,
+    /// Cells that are no numbers, in order.
+    pub faults: Vec<Fault>,
+    /// A line with the wrong number of cells; nothing behind it is read.
+    pub ragged: Option<Ragged>,
+}
+
+/// A cell that is no number.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Fault {
+    /// Line in the stretch, from 0.
+    pub line: u64,
+    /// Column of the file.
+    pub column: usize,
+    /// What stands there.
+    pub text: String,
+}
+
+/// A line with the wrong number of cells.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Ragged {
+    /// Line in the stretch, from 0.
+    pub line: u64,
+    /// Cells in it.
+    pub found: usize,
+    /// Whether it is the last line and lacks its end.
+    pub last: bool,
+}
+
+/// Reads the lines of a stretch.
+///
+/// * `places`: for each column of the file, its position among those wanted
+#[must_use]
+pub fn read_rows(bytes: &[u8], plan: &RowPlan, places: &[Option<usize>]) -> Rows {
+    let wanted = places.iter().flatten().count();
+    // Most numbers take ten characters or so; growing costs little.
+    let guess = bytes.len() / (10 * places.len().max(1));
+    let mut rows = Rows {
+        columns: (0..wanted).map(|_| Vec::with_capacity(guess)).collect(),
+        ..Rows::default()
+    };
+    let (mut at, mut read) = (0, 0);
+    while at < bytes.len() {
+        let end = memchr::memchr(plan.newline, &bytes[at..]).map_or(bytes.len(), |n| at + n);
+        let mut line = &bytes[at..end];
+        if line.last() == Some(&b'\r') {
+            line = &line[..line.len() - 1];
+        }
+        if !passed_over(line, plan) {
+            let found = match plan.separator {
+                Separator::Mark(mark) => marked_row(line, mark, plan, places, &mut rows),
+                Separator::Blanks => blank_row(line, plan, places, &mut rows),
+            };
+            if found != plan.columns.len() {
+                rows.ragged = Some(Ragged {
+                    line: rows.lines,
+                    found,
+                    last: end == bytes.len(),
+                });
+                break;
+            }
+            read += 1;
+        }
+        rows.lines += 1;
+        at = end + 1;
+    }
+    // What a ragged line has given is taken back.
+    rows.columns
+        .iter_mut()
+        .for_each(|column| column.truncate(read));
+    if let Some(ragged) = rows.ragged {
+        rows.faults.retain(|fault| fault.line < ragged.line);
+    }
+    rows
+}
+
+/// Whether a line is blank or a comment.
+fn passed_over(line: &[u8], plan: &RowPlan) -> bool {
+    let Some(first) = line.iter().position(|byte| !byte.is_ascii_whitespace()) else {
+        // A line of nothing but tabs is a row of blank cells.
+        return !(plan.separator == Separator::Mark(b'\t') && line.contains(&b'\t'));
+    };
+    let comments = &plan.comments;
+    comments
+        .iter()
+        .any(|mark| line[first..].starts_with(mark.as_bytes()))
+}
+
+/// Reads a line with a mark between cells; the number of cells.
+fn marked_row(
+    line: &[u8],
+    mark: u8,
+    plan: &RowPlan,
+    places: &[Option<usize>],
+    rows: &mut Rows,
+) -> usize {
+    let mut at = 0;
+    let mut column = 0;
+    loop {
+        // One mark more at the end of each line is no cell.
+        if at == line.len() && column > 0 && column == plan.columns.len() {
+            return column;
+        }
+        let place = places.get(column).copied().flatten();
+        // The usual cell: a bare number up to the mark or the end of the line.
+        if let Some(place) = place
+            && plan.columns[column] == ColumnKind::Numbers
+        {
+            let start = at + blanks(&line[at..]);
+            if let Some((value, used)) = leading_number(&line[start..], plan.marks.decimal) {
+                let end = start + used;
+                if end == line.len() {
+                    rows.columns[place].push(value);
+                    return finish(column + 1, plan, places, rows);
+                }
+                if line[end] == mark {
+                    rows.columns[place].push(value);
+                    at = end + 1;
+                    column += 1;
+                    continue;
+                }
+            }
+        }
+        let end = cell_end(line, at, mark);
+        if let Some(place) = place {
+            slow_cell(&line[at..end], column, place, plan, rows);
+        }
+        column += 1;
+        if end == line.len() {
+            return finish(column, plan, places, rows);
+        }
+        at = end + 1;
+    }
+}
+
+fn blanks(bytes: &[u8]) -> usize {
+    bytes.iter().take_while(|byte| **byte == b' ').count()
+}
+
+/// End of the cell that begins at `at`: its mark, not counting marks in quotes.
+fn cell_end(line: &[u8], at: usize, mark: u8) -> usize {
+    let mut quoted = false;
+    for (offset, &byte) in line[at..].iter().enumerate() {
+        quoted ^= byte == b'"';
+        if byte == mark && !quoted {
+            return at + offset;
+        }
+    }
+    line.len()
+}
+
+/// Cells that a short line lacks.
+fn finish(found: usize, plan: &RowPlan, places: &[Option<usize>], rows: &mut Rows) -> usize {
+    if found >= plan.columns.len() || !plan.short_rows {
+        return found;
+    }
+    for place in places[found..].iter().flatten() {
+        rows.columns[*place].push(f64::NAN);
+    }
+    plan.columns.len()
+}
+
+/// Reads a line with blanks between cells; the number of cells.
+fn blank_row(line: &[u8], plan: &RowPlan, places: &[Option<usize>], rows: &mut Rows) -> usize {
+    let cells = line
+        .split(u8::is_ascii_whitespace)
+        .filter(|cell| !cell.is_empty());
+    let mut column = 0;
+    for cell in cells {
+        if let Some(place) = places.get(column).copied().flatten() {
+            let number = leading_number(cell, plan.marks.decimal);
+            match (plan.columns[column], number) {
+                (ColumnKind::Numbers, Some((value, used))) if used == cell.len() => {
+                    rows.columns[place].push(value);
+                }
+                _ => slow_cell(cell, column, place, plan, rows),
+            }
+        }
+        column += 1;
+    }
+    finish(column, plan, places, rows)
+}
+
+/// A cell with quotes, blanks, thousands marks, a moment, or nothing.
+fn slow_cell(bytes: &[u8], column: usize, place: usize, plan: &RowPlan, rows: &mut Rows) {
+    let text = match plan.encoding {
+        Encoding::Windows1252 => plan.encoding.decode(bytes),
+        // UTF-16 has become UTF-8 on the way.
+        _ => Encoding::Utf8.decode(bytes),
+    };
+    let found = match plan.columns[column] {
+        ColumnKind::Numbers => cell(&text, plan.marks),
+        ColumnKind::Moments(start) => match moment(bare(&text)) {
+            Some(moment) => Cell::Number(moment.since(start)),
+            None if bare(&text).is_empty() => Cell::Blank,
+            None => Cell::Other,
+        },
+        ColumnKind::Text => Cell::Blank,
+    };
+    rows.columns[place].push(match found {
+        Cell::Number(value) => value,
+        Cell::Blank | Cell::Other => f64::NAN,
+    });
+    if found == Cell::Other {
+        rows.faults.push(Fault {
+            line: rows.lines,
+            column,
+            text: bare(&text).to_owned(),
+        });
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn plan(separator: Separator, columns: usize) -> RowPlan {
+        RowPlan {
+            separator,
+            marks: Marks {
+                decimal: b'.',
+                thousands: None,
+            },
+            encoding: Encoding::Utf8,
+            newline: b'\n',
+            comments: vec!["#".to_owned()],
+            columns: vec![ColumnKind::Numbers; columns],
+            short_rows: false,
+        }
+    }
+
+    #[test]
+    fn closed_form_cells() {
+        let plan = plan(Separator::Mark(b','), 3);
+        let text = "1, 2.5 ,x\r\n# no\n\n,\"4\",5,\n7,8,9";
+        let rows = read_rows(text.as_bytes(), &plan, &[Some(1), None, Some(0)]);
+        assert!(rows.columns[0][0].is_nan() && rows.columns[1][1].is_nan());
+        assert_eq!(rows.columns[0][1..], [5.0, 9.0]);
+        assert_eq!((rows.columns[1][0], rows.columns[1][2]), (1.0, 7.0));
+        let fault = Fault {
+            line: 0,
+            column: 2,
+            text: "x".to_owned(),
+        };
+        assert_eq!(
+            (rows.faults, rows.lines, rows.ragged),
+            (vec![fault], 5, None)
+        );
+    }
+
+    #[test]
+    fn rejects_ragged_lines_and_keeps_what_was_before() {
+        let plan = plan(Separator::Mark(b','), 3);
+        for (text, found, last) in [
+            ("1,2,3\n4,5\n6,7,8\n", 2, false),
+            ("1,2,3\n4,5,6,7\n", 4, false),
+            ("1,2,3\n4", 1, true),
+        ] {
+            let rows = read_rows(text.as_bytes(), &plan, &[Some(0), Some(1), Some(2)]);
+            let ragged = Ragged {
+                line: 1,
+                found,
+                last,
+            };
+            assert_eq!(rows.ragged, Some(ragged), "{text}");
+            assert_eq!(rows.columns, [[1.0], [2.0], [3.0]], "{text}");
+        }
+    }
+
+    #[test]
+    fn closed_form_blanks_and_short_rows() {
+        let mut plan = plan(Separator::Blanks, 2);
+        let rows = read_rows(b" 1   2\n\t3\t4 \n", &plan, &[Some(0), Some(1)]);
+        assert_eq!(rows.columns, [[1.0, 3.0], [2.0, 4.0]]);
+        plan.separator = Separator::Mark(b'\t');
+        plan.short_rows = true;
+        let rows = read_rows(b"1\t2\n3\n", &plan, &[Some(0), Some(1)]);
+        assert_eq!(rows.columns[0], [1.0, 3.0]);
+        assert!(rows.columns[1][1].is_nan() && rows.ragged.is_none());
+    }
+}
