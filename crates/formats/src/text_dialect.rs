@@ -134,7 +134,12 @@ pub fn find_dialect(lines: &[&str], options: &TextOptions) -> Result<Dialect, us
         .copied()
         .filter(|&at| row(lines[at], separator, count).is_some())
         .collect();
-    let kinds = column_kinds(lines, &rows, separator, count, marks);
+    let below: Vec<usize> = rows
+        .iter()
+        .copied()
+        .filter(|&at| at >= candidate.first)
+        .collect();
+    let kinds = column_kinds(lines, &below, separator, count, marks);
     let numeric = |at: usize| {
         row(lines[at], separator, count).is_some_and(|cells| is_row(&cells, &kinds, marks))
     };
@@ -247,6 +252,8 @@ struct Candidate {
     separator: Separator,
     marks: Marks,
     count: usize,
+    /// First line that looks like a row of numbers.
+    first: usize,
     score: f64,
     /// Whether the other decimal mark would do as well.
     ambiguous: bool,
@@ -313,26 +320,22 @@ fn candidate(
         decimal,
         thousands: None,
     };
-    let (mut numbers, mut texts, mut first) = (0.0_f64, 0.0_f64, None);
-    for &at in data {
-        let Some(cells) = row(lines[at], separator, count) else {
-            continue;
-        };
-        let (mut here, mut other) = (0.0, 0.0);
-        for cell in cells {
-            match grouped_look(cell, marks, separator) {
-                Look::Blank => {}
-                Look::Text => other += 1.0,
-                Look::Number | Look::Moment(_) => here += 1.0,
-            }
-        }
-        if here > other {
-            first.get_or_insert(at);
-        }
-        numbers += here;
-        texts += other;
-    }
-    let first = first?;
+    let tallies: Vec<(usize, f64, f64)> = data
+        .iter()
+        .filter_map(|&at| {
+            let cells = row(lines[at], separator, count)?;
+            let (numbers, texts) = tally(&cells, marks, separator);
+            Some((at, numbers, texts))
+        })
+        .collect();
+    // Rows begin where numbers prevail; a table may be mostly text.
+    let first = tallies
+        .iter()
+        .find(|(_, numbers, texts)| numbers > texts)
+        .or_else(|| tallies.iter().find(|(_, numbers, _)| *numbers > 0.0))?
+        .0;
+    let below = tallies.iter().filter(|(at, ..)| *at >= first);
+    let (numbers, texts) = below.fold((0.0, 0.0), |sum, t| (sum.0 + t.1, sum.1 + t.2));
     // A header with another number of names speaks against the separator.
     let above = data.iter().rev().find(|&&at| at < first);
     let fits = above.is_none_or(|&at| row(lines[at], separator, count).is_some());
@@ -341,9 +344,23 @@ fn candidate(
         separator,
         marks,
         count,
+        first,
         score: numbers * share.powi(3) * if fits { 1.0 } else { 0.3 },
         ambiguous: false,
     })
+}
+
+/// Cells that are numbers or moments, and cells that are text.
+fn tally(cells: &[&str], marks: Marks, separator: Separator) -> (f64, f64) {
+    let (mut numbers, mut texts) = (0.0, 0.0);
+    for cell in cells {
+        match grouped_look(cell, marks, separator) {
+            Look::Blank => {}
+            Look::Text => texts += 1.0,
+            Look::Number | Look::Moment(_) => numbers += 1.0,
+        }
+    }
+    (numbers, texts)
 }
 
 /// As [`look`], but numbers with any marks of thousands count as numbers.
@@ -353,11 +370,7 @@ fn grouped_look(text: &str, marks: Marks, separator: Separator) -> Look {
         return plain;
     }
     let decimal = char::from(marks.decimal);
-    let usable = |mark: char| {
-        mark != decimal
-            && separator != Separator::Mark(mark as u8)
-            && !(mark == ' ' && separator == Separator::Blanks)
-    };
+    let usable = |mark: char| mark != decimal && !(mark == ' ' && separator == Separator::Blanks);
     let grouped = THOUSANDS
         .into_iter()
         .filter(|mark| usable(*mark))
@@ -417,8 +430,8 @@ fn ends_belong(lines: &[&str], data: &[usize], separator: Separator, count: usiz
 /// The mark of thousands, if cells have one.
 fn thousands(lines: &[&str], data: &[usize], candidate: &Candidate) -> Option<char> {
     let decimal = char::from(candidate.marks.decimal);
-    let usable =
-        |mark: &char| *mark != decimal && candidate.separator != Separator::Mark(*mark as u8);
+    // The separator itself may group digits within quotes.
+    let usable = |mark: &char| *mark != decimal;
     THOUSANDS.into_iter().filter(usable).find(|&mark| {
         data.iter().any(|&at| {
             let row = row(lines[at], candidate.separator, candidate.count);
@@ -464,10 +477,7 @@ fn column_kinds(
         .zip(starts)
         .map(|([numbers, moments, texts], start)| match start {
             Some(start) if moments > numbers && moments >= texts => ColumnKind::Moments(start),
-            // Names of one or two header rows are not yet a column of text.
-            _ if *texts > MOST_HEADER_ROWS && texts > numbers => ColumnKind::Text,
-            _ if *texts > 0 && *numbers == 0 && rows.len() > texts + 1 => ColumnKind::Numbers,
-            _ if *numbers == 0 && *texts > 1 => ColumnKind::Text,
+            _ if texts > numbers => ColumnKind::Text,
             _ => ColumnKind::Numbers,
         })
         .collect()

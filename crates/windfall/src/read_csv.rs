@@ -1,4 +1,4 @@
-//! CSV recordings and tables: a header, then numbers or text.
+//! Tables of text: specimens.csv and impacts.csv.
 //!
 //! The separator (comma, semicolon or tab) is found from the header; a byte
 //! order mark is passed over; names may be quoted and hold commas and units.
@@ -11,15 +11,6 @@ use windfall_numerics::nearest_name::nearest_names;
 
 /// Byte order mark of UTF-8.
 const MARK: &[u8] = b"\xef\xbb\xbf";
-
-/// Samples of the columns that were asked for, in that order.
-///
-/// A blank cell is `None`: the channel has no sample in that row.
-#[derive(Clone, Debug, PartialEq)]
-pub struct NumberColumns {
-    /// One vector per column asked for, one entry per row.
-    pub columns: Vec<Vec<Option<f64>>>,
-}
 
 /// A table of text, as specimens.csv and impacts.csv are.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -39,97 +30,6 @@ pub struct Row {
     pub line: usize,
     /// Cells, without surrounding blanks, one per column.
     pub cells: Vec<String>,
-}
-
-/// Names of the columns of a file.
-///
-/// # Errors
-/// The file cannot be read, is empty or not UTF-8, or repeats a name.
-pub fn read_header(path: &Path) -> Result<Vec<String>, Error> {
-    Ok(open(path)?.columns)
-}
-
-/// Reads the named columns of numbers in one pass over the file.
-///
-/// `asked_by[i]` says in messages who wants column `i`.
-///
-/// # Errors
-/// The file cannot be read, is empty, has no rows or is not UTF-8; a column is
-/// missing or named twice; a row is ragged; a cell is neither blank nor a
-/// finite number.
-pub fn read_numbers(
-    path: &Path,
-    wanted: &[String],
-    asked_by: &[String],
-) -> Result<NumberColumns, Error> {
-    let mut open = open(path)?;
-    let indices = wanted
-        .iter()
-        .zip(asked_by)
-        .map(|(column, by)| index_of(path, &open.columns, column, by))
-        .collect::<Result<Vec<_>, _>>()?;
-    let mut columns = vec![Vec::new(); wanted.len()];
-    let mut record = csv::StringRecord::new();
-    while next_row(&mut open, &mut record)? {
-        let place = Place {
-            file: path.to_path_buf(),
-            line: line_of(&record),
-        };
-        for ((&index, name), column) in indices.iter().zip(wanted).zip(&mut columns) {
-            column.push(number(&record[index], &place, name)?);
-        }
-    }
-    if columns.first().is_some_and(Vec::is_empty) {
-        return Err(Error::TableWithoutRows {
-            path: path.to_path_buf(),
-            row_is: "sample",
-        });
-    }
-    Ok(NumberColumns { columns })
-}
-
-/// Most faulty cells that [`read_loose_numbers`] describes.
-pub const DESCRIBED_FAULTS: usize = 10;
-
-/// Every column of a file as far as it is numbers.
-#[derive(Debug)]
-pub struct LooseNumbers {
-    /// One vector per column, one entry per row; blank and faulty are `None`.
-    pub columns: Vec<Vec<Option<f64>>>,
-    /// The first faulty cells.
-    pub faults: Vec<Error>,
-    /// How many more there are.
-    pub more_faults: usize,
-}
-
-/// Reads every column of a file and goes on after faulty cells.
-///
-/// # Errors
-/// The file cannot be read, is empty or not UTF-8; a row is ragged.
-pub fn read_loose_numbers(path: &Path) -> Result<LooseNumbers, Error> {
-    let mut open = open(path)?;
-    let mut loose = LooseNumbers {
-        columns: vec![Vec::new(); open.columns.len()],
-        faults: Vec::new(),
-        more_faults: 0,
-    };
-    let mut record = csv::StringRecord::new();
-    while next_row(&mut open, &mut record)? {
-        let place = Place {
-            file: path.to_path_buf(),
-            line: line_of(&record),
-        };
-        for ((cell, name), column) in record.iter().zip(&open.columns).zip(&mut loose.columns) {
-            let value = number(cell, &place, name);
-            column.push(value.as_ref().ok().copied().flatten());
-            match value {
-                Err(fault) if loose.faults.len() < DESCRIBED_FAULTS => loose.faults.push(fault),
-                Err(_) => loose.more_faults += 1,
-                Ok(_) => {}
-            }
-        }
-    }
-    Ok(loose)
 }
 
 /// Reads a whole table as text.
@@ -272,31 +172,6 @@ fn line_of(record: &csv::StringRecord) -> usize {
         .map_or(0, |position| position.line() as usize)
 }
 
-fn number(cell: &str, place: &Place, column: &str) -> Result<Option<f64>, Error> {
-    let text = cell.trim();
-    if text.is_empty() {
-        return Ok(None);
-    }
-    match text.parse::<f64>() {
-        Ok(value) if value.is_finite() => Ok(Some(value)),
-        Ok(_) => Err(Error::CellNotFinite {
-            place: place.clone(),
-            column: column.to_owned(),
-            text: text.to_owned(),
-        }),
-        Err(_) => Err(Error::CellNotNumber {
-            place: place.clone(),
-            column: column.to_owned(),
-            text: text.to_owned(),
-            hint: if text.replacen(',', ".", 1).parse::<f64>().is_ok() {
-                " (windfall reads a decimal point, not a decimal comma)"
-            } else {
-                ""
-            },
-        }),
-    }
-}
-
 fn index_of(path: &Path, columns: &[String], column: &str, by: &str) -> Result<usize, Error> {
     columns
         .iter()
@@ -351,98 +226,47 @@ fn csv_error(path: &Path, error: &csv::Error) -> Error {
 mod tests {
     use super::*;
 
-    fn file(text: &[u8]) -> (tempfile::TempDir, PathBuf) {
+    fn message(text: &[u8]) -> String {
         let dir = tempfile::tempdir().unwrap();
         let path = dir.path().join("r.csv");
         std::fs::write(&path, text).unwrap();
-        (dir, path)
-    }
-
-    fn numbers(text: &str, wanted: &[&str]) -> Result<Vec<Vec<Option<f64>>>, Error> {
-        let (_dir, path) = file(text.as_bytes());
-        let wanted: Vec<String> = wanted.iter().map(|w| (*w).to_owned()).collect();
-        let by = vec![String::new(); wanted.len()];
-        Ok(read_numbers(&path, &wanted, &by)?.columns)
-    }
-
-    fn message(text: &str, wanted: &[&str]) -> String {
-        let text = numbers(text, wanted).unwrap_err().to_string();
+        let text = read_table(&path).unwrap_err().to_string();
         text.split_once("r.csv").unwrap().1.to_owned()
     }
 
     #[test]
     fn closed_form_cells_of_three_separators() {
         for s in [',', ';', '\t'] {
-            let text = format!(
-                "\u{feff}\"Run 1: Time (s)\"{s}\"F, tip (N)\"\n0{s}1\n\n0.5{s}\n1e0{s}-2\n"
-            );
-            let columns = numbers(&text, &["F, tip (N)", "Run 1: Time (s)"]).unwrap();
-            assert_eq!(columns[0], [Some(1.0), None, Some(-2.0)]);
-            assert_eq!(columns[1], [Some(0.0), Some(0.5), Some(1.0)]);
+            let dir = tempfile::tempdir().unwrap();
+            let path = dir.path().join("r.csv");
+            std::fs::write(&path, format!("\u{feff}id{s}\"mass, wet\"\n\n a {s}1\n")).unwrap();
+            let table = read_table(&path).unwrap();
+            assert_eq!(table.columns, ["id", "mass, wet"]);
+            assert_eq!((table.rows[0].line, &table.rows[0].cells[0][..]), (3, "a"));
         }
     }
 
     #[test]
-    fn rejects_what_is_no_table_of_numbers() {
+    fn rejects_what_is_no_table() {
+        let empty = ": the file is empty; expected a header line with the names of the columns, \
+                     then one line per sample";
         for (text, expected) in [
+            (&b""[..], empty),
+            (b"\n\n", empty),
             (
-                "",
-                ": the file is empty; expected a header line with the names of the columns, then one line per sample",
-            ),
-            (
-                "\n\n",
-                ": the file is empty; expected a header line with the names of the columns, then one line per sample",
-            ),
-            (
-                "t,F\n",
-                ": the file has a header and no rows; expected one line per sample",
-            ),
-            (
-                "t,Force\n0,1\n",
-                ": there is no column \"F\"; the header has 2 columns",
-            ),
-            (
-                "t,F,F\n0,1,2\n",
+                b"t,F,F\n0,1,2\n",
                 ", line 1: the column \"F\" appears twice in the header; rename one of them, or map the channel to another column",
             ),
             (
-                "t,F\n0,1\n1,x2\n",
-                ", line 3, column \"F\": \"x2\" is not a number; leave the cell blank where there is no sample",
-            ),
-            (
-                "t;F\n0;1,5\n",
-                ", line 2, column \"F\": \"1,5\" is not a number (windfall reads a decimal point, not a decimal comma); leave the cell blank where there is no sample",
-            ),
-            (
-                "t,F\n0,NaN\n",
-                ", line 2, column \"F\": the value is NaN, which is not a finite number; leave the cell blank where there is no sample",
-            ),
-            (
-                "t,F\n0,1\n1,-inf\n",
-                ", line 3, column \"F\": the value is -inf, which is not a finite number; leave the cell blank where there is no sample",
-            ),
-            (
-                "t,F\n0,1\n1\n",
+                b"t,F\n0,1\n1\n",
                 ", line 3: the row has 1 cells where the header has 2; the file may be cut short, or use another separator in this line (it is read with commas)",
             ),
+            (
+                b"t,F\n0,1\n1,\xb5\n",
+                ", line 3: the text is not UTF-8; save the file as UTF-8 (in a spreadsheet: \"CSV UTF-8\")",
+            ),
         ] {
-            assert_eq!(message(text, &["F"]), expected, "{text:?}");
+            assert_eq!(message(text), expected);
         }
-    }
-
-    #[test]
-    fn rejects_text_that_is_not_utf8() {
-        let (_dir, path) = file(b"t,F\n0,1\n1,\xb5\n");
-        let error = read_table(&path).unwrap_err().to_string();
-        assert!(error.ends_with("line 3: the text is not UTF-8; save the file as UTF-8 (in a spreadsheet: \"CSV UTF-8\")"), "{error}");
-    }
-
-    #[test]
-    fn rejects_a_misspelt_column_with_the_nearest_names() {
-        let text = message("Time (s),Force (N),Position (m)\n0,1,2\n", &["force (n)"]);
-        assert_eq!(
-            text,
-            ": there is no column \"force (n)\"; nearest in the header: \"Force (N)\" (3 columns in all)"
-        );
     }
 }
