@@ -16,6 +16,7 @@ pub mod error;
 pub mod open;
 pub mod read_lvm;
 pub mod read_text;
+pub mod read_wav;
 pub mod reader;
 pub mod source;
 pub mod text_date;

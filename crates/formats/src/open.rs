@@ -5,6 +5,7 @@ use crate::contents::Format;
 use crate::error::Error;
 use crate::read_lvm::LvmReader;
 use crate::read_text::TextReader;
+use crate::read_wav::WavReader;
 use crate::reader::Reader;
 use crate::source::Source;
 use crate::text_dialect::TextOptions;
@@ -42,6 +43,7 @@ pub fn open_source(source: Source, options: &OpenOptions) -> Result<Box<dyn Read
     match format {
         Format::Text => Ok(Box::new(TextReader::open(source, &options.text)?)),
         Format::Lvm => Ok(Box::new(LvmReader::open(source)?)),
+        Format::Wav => Ok(Box::new(WavReader::open(source)?)),
         other => Err(Error::UnknownFormat {
             path: source.path().to_path_buf(),
             found: format!("this is a {other} file"),

@@ -219,9 +219,10 @@ fn find_segments(source: &Source, file: &FileHeader, marks: &[u64]) -> Result<Ve
         let from = before.max(mark.saturating_sub(LONGEST_HEADER));
         let bytes = source.bytes_at(from, mark.saturating_sub(from))?;
         // The header begins behind the last blank line.
-        let begin = from + header_begin(&bytes, file.separator) as u64;
+        let (blank, begin) = header_begin(&bytes, file.separator);
+        let begin = from + begin as u64;
         if let Some(last) = segments.last_mut() {
-            last.end = begin;
+            last.end = from + blank as u64;
         }
         let text = source.bytes_at(begin, mark - begin)?;
         let header = split_lines(&file.encoding.decode(&text), file.separator);
@@ -243,8 +244,8 @@ fn find_segments(source: &Source, file: &FileHeader, marks: &[u64]) -> Result<Ve
 }
 
 /// Where the header begins that ends with `bytes`: behind the last line that
-/// holds nothing but blanks and separators.
-fn header_begin(bytes: &[u8], separator: char) -> usize {
+/// holds nothing but blanks and separators; and where that line begins.
+fn header_begin(bytes: &[u8], separator: char) -> (usize, usize) {
     let blank = |line: &[u8]| {
         line.iter()
             .all(|b| b.is_ascii_whitespace() || *b == separator as u8)
@@ -254,11 +255,11 @@ fn header_begin(bytes: &[u8], separator: char) -> usize {
     while let Some(newline) = memchr::memrchr(b'\n', &bytes[..end]) {
         let line_begin = memchr::memrchr(b'\n', &bytes[..newline]).map_or(0, |at| at + 1);
         if blank(&bytes[line_begin..newline]) {
-            return newline + 1;
+            return (line_begin, newline + 1);
         }
         end = newline;
     }
-    0
+    (0, 0)
 }
 
 fn split_lines(text: &str, separator: char) -> Vec<Vec<String>> {
