@@ -4,6 +4,7 @@
 use crate::contents::Format;
 use crate::error::Error;
 use crate::read_lvm::LvmReader;
+use crate::read_tdms::TdmsReader;
 use crate::read_text::TextReader;
 use crate::read_wav::WavReader;
 use crate::reader::Reader;
@@ -44,6 +45,7 @@ pub fn open_source(source: Source, options: &OpenOptions) -> Result<Box<dyn Read
         Format::Text => Ok(Box::new(TextReader::open(source, &options.text)?)),
         Format::Lvm => Ok(Box::new(LvmReader::open(source)?)),
         Format::Wav => Ok(Box::new(WavReader::open(source)?)),
+        Format::Tdms => Ok(Box::new(TdmsReader::open(source)?)),
         other => Err(Error::UnknownFormat {
             path: source.path().to_path_buf(),
             found: format!("this is a {other} file"),

@@ -152,6 +152,12 @@ pub fn find_dialect(lines: &[&str], options: &TextOptions) -> Result<Dialect, us
         None => rows.iter().copied().find(|&at| numeric(at)),
     };
     let first_row = first_row.ok_or_else(nothing)?;
+    // Prose has numbers too, but its lines are no rows.
+    let below: Vec<usize> = data.iter().copied().filter(|&at| at >= first_row).collect();
+    let fitting = below.iter().filter(|&&at| numeric(at)).count();
+    if 2 * fitting < below.len() {
+        return Err(nothing());
+    }
     let mut dialect = Dialect {
         separator,
         marks,

@@ -1,0 +1,306 @@
+"""Reads recordings with other programs and compares every sample with windfall.
+
+Usage: check_formats.py DUMP_CHANNELS DATA SCRATCH
+
+DUMP_CHANNELS is the example of that name of the crate windfall-formats, DATA a
+folder of recordings, SCRATCH a folder for recordings made here. Names, lengths,
+times and all bits of all samples are compared, by a checksum that depends on the
+order. Exit status 1 if anything differs.
+"""
+
+import json
+import struct
+import subprocess
+import sys
+from pathlib import Path
+
+import h5py
+import numpy as np
+import lvm_read
+import nptdms
+import pandas as pd
+import pyuff
+import scipy.io
+import scipy.io.wavfile
+import soundfile
+
+
+def checksum(samples):
+    samples = np.ascontiguousarray(samples, dtype=np.float64)
+    bits = samples.view(np.uint64).copy()
+    bits[np.isnan(samples)] = 0x7FF8000000000000
+    factors = np.arange(len(samples), dtype=np.uint64) * np.uint64(2) + np.uint64(1)
+    with np.errstate(over="ignore"):
+        return f"{int((bits * factors).sum(dtype=np.uint64)):016x}"
+
+
+def channel(name, samples, interval=None):
+    return {"name": name, "length": len(samples), "checksum": checksum(samples), "interval": interval}
+
+
+def read_tdms(path):
+    channels = []
+    for group in nptdms.TdmsFile.read(path).groups():
+        for part in group.channels():
+            if part.dtype.kind in "iufb" and len(part) > 0:
+                interval = part.properties.get("wf_increment") or None
+                channels.append(channel(f"{group.name}/{part.name}", part[:], interval))
+    return channels
+
+
+def read_lvm(path):
+    data = lvm_read.read(str(path), read_from_pickle=False, dump_file=False)
+    segment = data[0]
+    columns = segment["data"]
+    if segment["Channel names"][-1] == "Comment" and columns.shape[1] == len(segment["Channel names"]):
+        columns = columns[:, :-1]
+    return [channel(None, columns[:, i]) for i in range(columns.shape[1])]
+
+
+def read_wav(path):
+    try:
+        samples, rate = soundfile.read(path, dtype="float64", always_2d=True)
+    except soundfile.LibsndfileError:
+        rate, samples = scipy.io.wavfile.read(path)
+        samples = np.atleast_2d(samples.T).T
+        kind = samples.dtype
+        samples = samples.astype(np.float64)
+        if kind == np.uint8:
+            samples = (samples - 128) / 128
+        elif kind.kind == "i":
+            samples /= 2.0 ** (8 * kind.itemsize - 1)
+    return [channel(f"channel {i + 1}", samples[:, i], 1 / rate) for i in range(samples.shape[1])]
+
+
+def read_text(path, **options):
+    table = pd.read_csv(path, **options)
+    return [channel(None, table[name].to_numpy(float)) for name in table.columns]
+
+
+def add_matrix(channels, name, values):
+    """As windfall names the columns of a variable."""
+    if values.dtype.kind == "c":
+        add_matrix(channels, f"{name} (real)", values.real)
+        add_matrix(channels, f"{name} (imaginary)", values.imag)
+        return
+    if values.dtype.kind not in "iufb" or values.size < 2:
+        return
+    if values.ndim == 1 or min(values.shape) == 1:
+        channels.append(channel(name, values.ravel()))
+        return
+    for i in range(values.shape[1]):
+        channels.append(channel(f"{name}/{i + 1}", values[:, i]))
+
+
+def read_mat(path):
+    channels = []
+
+    def walk(name, value):
+        if scipy.sparse.issparse(value):
+            return
+        if isinstance(value, np.ndarray) and value.dtype.names:
+            for field in value.dtype.names:
+                for i, element in enumerate(value.ravel(order="F")):
+                    place = field if value.size == 1 else f"{i + 1}/{field}"
+                    walk(f"{name}/{place}", element[field])
+        elif isinstance(value, np.ndarray) and value.dtype == object:
+            for i, element in enumerate(value.ravel(order="F")):
+                walk(f"{name}/{i + 1}", element)
+        elif isinstance(value, np.ndarray):
+            if value.ndim <= 2:
+                add_matrix(channels, name, value)
+
+    for name, value in scipy.io.loadmat(path).items():
+        if not name.startswith("__"):
+            walk(name, value)
+    return channels
+
+
+def read_uff(path):
+    channels = []
+    sets = pyuff.UFF(str(path)).read_sets()
+    for record in sets if isinstance(sets, list) else [sets]:
+        if record.get("type") != 58:
+            continue
+        data = np.asarray(record["data"])
+        interval = record.get("abscissa_inc") if record.get("abscissa_spacing") == 1 else None
+        if np.iscomplexobj(data):
+            channels += [channel(None, data.real, interval), channel(None, data.imag, interval)]
+        else:
+            channels.append(channel(None, data, interval))
+    return channels
+
+
+PEERS = {".tdms": read_tdms, ".lvm": read_lvm, ".wav": read_wav, ".mat": read_mat, ".uff": read_uff}
+
+TEXTS = {
+    "2mps_sphere_1_100gPR_20kHz.csv": {},
+    "2mps_sphere_1_40gDC_2kHz.csv": {},
+    "pad_4mm.csv": {},
+    "pad_4mm_v1.csv": {},
+    "pad_40mm.csv": {},
+    "bounce_train.csv": {},
+    "author_tau_Fpeak_table.csv": {},
+    "accel_1.csv": {"skiprows": 2, "header": None},
+    "Dragon Skin 20.csv": {"sep": ";", "skiprows": 17},
+    "Ecoflex 00-30.csv": {"sep": ";", "skiprows": 17},
+    "HM_b04_12in_00.lvm": {"sep": "\t", "header": None},
+    "HM_b04_12in_10.lvm": {"sep": "\t", "header": None},
+    "acc_base_a0.txt": {"sep": " ", "skiprows": 1, "header": None},
+    "acc_base_a1.txt": {"sep": " ", "skiprows": 1, "header": None},
+    "acc_pcb_a0.txt": {"sep": " ", "skiprows": 1, "header": None},
+    "acc_pcb_a1.txt": {"sep": " ", "skiprows": 1, "header": None},
+    "sleepstudy.csv": {},
+}
+
+
+def peer_of(path):
+    name = path.name
+    if name in TEXTS or name.startswith(("kiwi_", "mango_")):
+        return lambda p: read_text(p, float_precision="round_trip", **TEXTS.get(name, {}))
+    return PEERS.get(path.suffix.lower())
+
+
+# --- TDMS files that nobody ships: made by the specification ---------------------
+
+
+def tdms_text(text):
+    text = text.encode()
+    return struct.pack("<I", len(text)) + text
+
+
+def tdms_property(name, value):
+    if isinstance(value, str):
+        return tdms_text(name) + struct.pack("<I", 0x20) + tdms_text(value)
+    if isinstance(value, int):
+        return tdms_text(name) + struct.pack("<II", 7, value)
+    return tdms_text(name) + struct.pack("<Id", 10, value)
+
+
+def tdms_object(path, index, properties=()):
+    packed = b"".join(tdms_property(*p) for p in properties)
+    return tdms_text(path) + index + struct.pack("<I", len(properties)) + packed
+
+
+def tdms_segment(flags, objects, raw, unfinished=False):
+    metadata = struct.pack("<I", len(objects)) + b"".join(objects)
+    length = 0xFFFFFFFFFFFFFFFF if unfinished else len(metadata) + len(raw)
+    return b"TDSm" + struct.pack("<IIQQ", flags, 4713, length, len(metadata)) + metadata + raw
+
+
+NOTHING = struct.pack("<I", 0xFFFFFFFF)
+
+
+def tdms_values(code, count):
+    return struct.pack("<IIIQ", 20, code, 1, count)
+
+
+def make_tdms(folder):
+    random = np.random.default_rng(1)
+    a, b = random.normal(size=1000), random.integers(-30000, 30000, 1000).astype("<i2")
+    meta, new, data, woven, daqmx = 2, 4, 8, 32, 128
+    file, group = tdms_object("/", NOTHING), tdms_object("/'g'", NOTHING)
+    linear = [("NI_Number_Of_Scales", 1), ("NI_Scale[0]_Scale_Type", "Linear"),
+              ("NI_Scale[0]_Linear_Slope", 3.0517578125e-4), ("NI_Scale[0]_Linear_Y_Intercept", 0.1),
+              ("NI_Scale[0]_Linear_Input_Source", 0xFFFFFFFF)]
+    polynomial = [("NI_Number_Of_Scales", 2), ("NI_Scale[0]_Scale_Type", "Polynomial"),
+                  ("NI_Scale[0]_Polynomial_Coefficients_Size", 4),
+                  *[(f"NI_Scale[0]_Polynomial_Coefficients[{i}]", 0.3 / (i + 1) ** 8) for i in range(4)],
+                  ("NI_Scale[0]_Polynomial_Input_Source", 0xFFFFFFFF),
+                  ("NI_Scale[1]_Scale_Type", "Table"), ("NI_Scale[1]_Table_Input_Source", 0),
+                  ("NI_Scale[1]_Table_Pre_Scaled_Values_Size", 3), ("NI_Scale[1]_Table_Scaled_Values_Size", 3),
+                  *[(f"NI_Scale[1]_Table_Pre_Scaled_Values[{i}]", v) for i, v in enumerate((-2.5, 0.5, 40.0))],
+                  *[(f"NI_Scale[1]_Table_Scaled_Values[{i}]", v) for i, v in enumerate((-1.0, 0.25, 7.0))]]
+
+    def two(scale_a=(), scale_b=()):
+        return [file, group,
+                tdms_object("/'g'/'a'", tdms_values(10, 1000), [("wf_increment", 5e-6), *scale_a]),
+                tdms_object("/'g'/'it''s b'", tdms_values(2, 1000), [("unit_string", "N"), *scale_b])]
+
+    rows = np.zeros(1000, dtype=[("a", "<f8"), ("b", "<i2")])
+    rows["a"], rows["b"] = a, b
+    contiguous = a.astype("<f8").tobytes() + b.tobytes()
+    made = {
+        "interleaved.tdms": tdms_segment(meta | new | data | woven, two(), rows.tobytes()),
+        "chunks.tdms": tdms_segment(meta | new | data, two(scale_b=linear), contiguous * 3),
+        "repeated.tdms": tdms_segment(meta | new | data, two(), contiguous)
+        + tdms_segment(data, [], contiguous)[:28] + contiguous,
+        "scaled.tdms": tdms_segment(meta | new | data, two(polynomial, linear), contiguous),
+        "unfinished.tdms": tdms_segment(meta | new | data, two(), contiguous, unfinished=True)[:-777],
+        "unfinished_interleaved.tdms": tdms_segment(
+            meta | new | data | woven, two(), rows.tobytes() * 2, unfinished=True)[:-77],
+    }
+    # Segments without metadata repeat those before: the lead-in says 0 bytes of it.
+    lead = b"TDSm" + struct.pack("<IIQQ", data, 4713, len(contiguous), 0)
+    made["repeated.tdms"] = tdms_segment(meta | new | data, two(), contiguous) + (lead + contiguous) * 2
+
+    def scaler(kind, offset, number):
+        return struct.pack("<IIIII", kind, 0, offset, 0, number)
+
+    def daqmx_index(scalers, width):
+        return struct.pack("<IIIQI", 0x1269, 0xFFFFFFFF, 1, 500, len(scalers)) + b"".join(scalers) + struct.pack("<II", 1, width)
+
+    raw = np.zeros(500, dtype=[("x", "<i2"), ("y", "<i4"), ("z", "u1")])
+    raw["x"], raw["y"], raw["z"] = b[:500], random.integers(-2**30, 2**30, 500), random.integers(0, 255, 500)
+    daq_scale = [("NI_Number_Of_Scales", 2), ("NI_Scale[1]_Scale_Type", "Linear"),
+                 ("NI_Scale[1]_Linear_Slope", 2.5e-4), ("NI_Scale[1]_Linear_Y_Intercept", -0.2),
+                 ("NI_Scale[1]_Linear_Input_Source", 0)]
+    objects = [file, group,
+               tdms_object("/'g'/'x'", daqmx_index([scaler(3, 0, 0)], 7), daq_scale),
+               tdms_object("/'g'/'y'", daqmx_index([scaler(5, 2, 0)], 7), daq_scale)]
+    made["daqmx.tdms"] = tdms_segment(meta | new | data | daqmx, objects, raw.tobytes() * 3)
+    for name, content in made.items():
+        (folder / name).write_bytes(content)
+    values = {"i1": np.int8, "i2": np.int16, "i4": np.int32, "i8": np.int64, "u1": np.uint8, "u2": np.uint16,
+              "u4": np.uint32, "u8": np.uint64, "f4": np.float32, "f8": np.float64, "b": np.bool_}
+    with nptdms.TdmsWriter(folder / "all_types.tdms") as writer:
+        for part in range(5):
+            writer.write_segment([
+                nptdms.ChannelObject("types", name, (random.normal(size=100 + part) * 50).astype(kind))
+                for name, kind in values.items()])
+
+
+def compare(ours, theirs):
+    if len(ours) != len(theirs):
+        return f"{len(ours)} channels, the other program has {len(theirs)}"
+    for mine, other in zip(ours, theirs):
+        for key in ("name", "length", "checksum", "interval"):
+            if other[key] is not None and mine[key] != other[key]:
+                return f"{mine['name']}: {key} {mine[key]}, the other program has {other[key]}"
+    return None
+
+
+def main():
+    dump, data, scratch = sys.argv[1], Path(sys.argv[2]), Path(sys.argv[3])
+    scratch.mkdir(parents=True, exist_ok=True)
+    make_tdms(scratch)
+    files = sorted(p for folder in (data, scratch) for p in folder.rglob("*") if p.is_file())
+    lines = subprocess.run([dump, *map(str, files)], capture_output=True, text=True, check=True).stdout
+    differences = 0
+    for path, line in zip(files, lines.splitlines()):
+        found = json.loads(line)["found"]
+        name = path.relative_to(data if path.is_relative_to(data) else scratch)
+        peer = peer_of(path)
+        if "error" in found:
+            print(f"refused    {name}: {found['error'].split(': ', 1)[1][:110]}")
+            continue
+        if peer is None:
+            print(f"read       {name}: {len(found['channels'])} channels, no other program to compare with")
+            continue
+        try:
+            theirs = peer(path)
+        except Exception as problem:
+            print(f"read       {name}: {len(found['channels'])} channels; the other program fails: {str(problem)[:60]}")
+            continue
+        difference = compare(found["channels"], theirs)
+        if difference is None:
+            print(f"identical  {name}: {len(theirs)} channels")
+        else:
+            differences += 1
+            print(f"DIFFERENT  {name}: {difference}")
+    print(f"{len(files)} files, {differences} differ")
+    sys.exit(differences > 0)
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,677 @@
+//! LabVIEW TDMS files: segments, incremental metadata, contiguous, interleaved
+//! and DAQmx raw data, scales.
+//!
+//! # Source
+//! National Instruments, "TDMS file format internal structure".
+
+use crate::contents::{ChannelContents, Contents, Format, Note, TimeBase};
+use crate::error::{Error, Place};
+use crate::reader::{Reader, Sink};
+use crate::source::Source;
+use crate::tdms_layout::{Active, Flags, Group, Member, Region, chunk, cut};
+use crate::tdms_metadata::{Cursor, Index, ObjectEntry, Property, names_of, read_objects};
+use crate::tdms_scale::{Scales, scales_of};
+use crate::tdms_type::{ValueType, decode, timestamp};
+use rayon::prelude::*;
+use std::collections::BTreeMap;
+use std::sync::Arc;
+
+/// Bytes before the metadata of a segment.
+const LEAD_IN: u64 = 28;
+
+/// Longest metadata of a segment; bytes.
+const LONGEST_METADATA: u64 = 1 << 28;
+
+/// Bytes that are read and decoded at once: they stay in the processor's cache.
+const WINDOW: u64 = 1 << 18;
+
+/// A TDMS file.
+#[derive(Debug)]
+pub struct TdmsReader {
+    source: Source,
+    contents: Contents,
+    channels: Vec<Channel>,
+    groups: Vec<Group>,
+}
+
+/// A channel of numbers.
+#[derive(Debug)]
+struct Channel {
+    /// Position in the objects of the file.
+    object: usize,
+    scales: Scales,
+    /// Numbers of the raw values that its scales take.
+    inputs: Vec<u32>,
+    length: u64,
+    /// The second from which timestamps count.
+    zero: i64,
+}
+
+/// What is known of an object while segments are read.
+#[derive(Default)]
+struct Object {
+    path: String,
+    properties: BTreeMap<String, Property>,
+    index: Option<Index>,
+    length: u64,
+    types: Vec<ValueType>,
+    first: Option<(u64, bool)>,
+}
+
+/// The flags in the lead-in of a segment.
+struct LeadIn {
+    metadata: bool,
+    new_list: bool,
+    raw_data: bool,
+    flags: Flags,
+    metadata_length: u64,
+    /// Where the next segment begins; `None` for one that was not finished.
+    next: Option<u64>,
+}
+
+/// What has been found in the segments so far.
+#[derive(Default)]
+struct Found {
+    objects: Vec<Object>,
+    by_path: BTreeMap<String, usize>,
+    active: Vec<Active>,
+    groups: Vec<Group>,
+    notes: Vec<Note>,
+    segments: u64,
+    /// Chunk of the segment before, for one without new metadata.
+    last_chunk: Option<(Flags, Arc<Vec<Region>>, u64)>,
+}
+
+impl TdmsReader {
+    /// Reads the metadata of all segments.
+    ///
+    /// # Errors
+    /// The file cannot be read, is none of this format, or is damaged before its
+    /// last segment.
+    pub fn open(source: Source) -> Result<Self, Error> {
+        let mut found = Found::default();
+        let mut at = 0;
+        while at < source.length() {
+            if source.length() - at < LEAD_IN {
+                let left = source.length() - at;
+                let missing = format!("{left} bytes behind the last segment are no whole one");
+                found.notes.push(Note::CutOff { missing });
+                break;
+            }
+            let lead_in = read_lead_in(&source, at)?;
+            if !read_segment(&source, at, &lead_in, &mut found)? {
+                break;
+            }
+            found.segments += 1;
+            match lead_in.next {
+                Some(next) => at = next,
+                None => break,
+            }
+        }
+        let version = source.bytes_at(4, 8)?;
+        let version = match version[4..8] {
+            [a, 0, 0, b] => u32::from(a.max(b)),
+            [a, b, _, _] => u32::from_le_bytes([a, b, 0, 0]),
+            _ => 0,
+        };
+        let (contents, channels) = contents(&source, &found, version)?;
+        Ok(Self {
+            source,
+            contents,
+            channels,
+            groups: found.groups,
+        })
+    }
+}
+
+fn malformed(source: &Source, at: u64, problem: String) -> Error {
+    Error::Malformed {
+        path: source.path().to_path_buf(),
+        place: Place::Byte(at),
+        problem,
+        advice: "the file is damaged, or was written by a program that does not keep to the \
+                 format; export the recording again"
+            .to_owned(),
+    }
+}
+
+fn read_lead_in(source: &Source, at: u64) -> Result<LeadIn, Error> {
+    let bytes = source.bytes_at(at, LEAD_IN)?;
+    if &bytes[..4] != b"TDSm" {
+        let problem = match bytes[..4] == *b"TDSh" {
+            true => "this is an index file (.tdms_index); name the .tdms file beside it".to_owned(),
+            false => "expected a segment, which begins with \"TDSm\"".to_owned(),
+        };
+        return Err(malformed(source, at, problem));
+    }
+    let flags = u32::from_le_bytes(bytes[4..8].try_into().unwrap_or([0; 4]));
+    let flag = |bit: u32| flags & (1 << bit) != 0;
+    let big_endian = flag(6);
+    let offset = |from: usize| {
+        let bytes: [u8; 8] = bytes[from..from + 8].try_into().unwrap_or([0; 8]);
+        match big_endian {
+            true => u64::from_be_bytes(bytes),
+            false => u64::from_le_bytes(bytes),
+        }
+    };
+    let (length, metadata_length) = (offset(12), offset(20));
+    let next = at + LEAD_IN;
+    let next = next
+        .checked_add(length)
+        .filter(|next| *next <= source.length());
+    if next.is_some() && metadata_length > length {
+        let problem = format!(
+            "the raw data begin at {metadata_length}, behind the end of their segment at {length}"
+        );
+        return Err(malformed(source, at + 20, problem));
+    }
+    Ok(LeadIn {
+        metadata: flag(1),
+        new_list: flag(2),
+        raw_data: flag(3),
+        flags: Flags {
+            interleaved: flag(5),
+            big_endian,
+        },
+        metadata_length,
+        next,
+    })
+}
+
+/// Reads a segment; false where its metadata were cut off.
+fn read_segment(
+    source: &Source,
+    at: u64,
+    lead_in: &LeadIn,
+    found: &mut Found,
+) -> Result<bool, Error> {
+    let begin = at + LEAD_IN;
+    if lead_in.next.is_none() {
+        let missing = "its last segment was not finished; what is complete in it is read";
+        found.notes.push(Note::CutOff {
+            missing: missing.to_owned(),
+        });
+    }
+    if lead_in.metadata {
+        let left = source.length() - begin;
+        let length = lead_in.metadata_length.min(left);
+        if length > LONGEST_METADATA {
+            return Err(Error::TooLarge {
+                path: source.path().to_path_buf(),
+                place: Place::Byte(at),
+                what: "the metadata of a segment (bytes)".to_owned(),
+                declared: length,
+                possible: LONGEST_METADATA,
+            });
+        }
+        let bytes = source.bytes_at(begin, length)?;
+        let mut cursor = Cursor::new(&bytes, lead_in.flags.big_endian);
+        match read_objects(&mut cursor) {
+            Ok(objects) => update(source, begin, lead_in, objects, found)?,
+            Err(fault) if fault.ended && lead_in.metadata_length >= left => {
+                let missing = "the metadata of its last segment".to_owned();
+                found.notes.push(Note::CutOff { missing });
+                return Ok(false);
+            }
+            Err(fault) => return Err(malformed(source, begin + fault.at as u64, fault.problem)),
+        }
+    }
+    if lead_in.raw_data {
+        let data = begin.checked_add(lead_in.metadata_length);
+        let data = data.unwrap_or(source.length()).min(source.length());
+        let end = lead_in.next.unwrap_or(source.length());
+        add_data(source, data, end.saturating_sub(data), lead_in, found)?;
+    }
+    Ok(true)
+}
+
+/// Takes over the objects of a segment's metadata.
+fn update(
+    source: &Source,
+    at: u64,
+    lead_in: &LeadIn,
+    entries: Vec<ObjectEntry>,
+    found: &mut Found,
+) -> Result<(), Error> {
+    found.last_chunk = None;
+    if lead_in.new_list {
+        found.active.clear();
+    }
+    for entry in entries {
+        let known = found.by_path.get(&entry.path).copied();
+        let object = known.unwrap_or_else(|| {
+            found
+                .by_path
+                .insert(entry.path.clone(), found.objects.len());
+            found.objects.push(Object {
+                path: entry.path.clone(),
+                ..Object::default()
+            });
+            found.objects.len() - 1
+        });
+        found.objects[object].properties.extend(entry.properties);
+        let index = match entry.index {
+            Index::Same => match found.objects[object].index.clone() {
+                Some(index) => index,
+                None => {
+                    let problem = format!("{} refers to an index that was never given", entry.path);
+                    return Err(malformed(source, at, problem));
+                }
+            },
+            index => index,
+        };
+        match &index {
+            Index::Values { value, .. } => add_type(&mut found.objects[object], *value),
+            Index::Daqmx { scalers, .. } => {
+                scalers
+                    .iter()
+                    .for_each(|s| add_type(&mut found.objects[object], s.value));
+            }
+            Index::Nothing | Index::Same => {}
+        }
+        if index != Index::Nothing {
+            found.objects[object].index = Some(index.clone());
+        }
+        match found
+            .active
+            .iter_mut()
+            .find(|active| active.object == object)
+        {
+            Some(active) => active.index = index,
+            None => found.active.push(Active { object, index }),
+        }
+    }
+    Ok(())
+}
+
+fn add_type(object: &mut Object, value: ValueType) {
+    if !object.types.contains(&value) {
+        object.types.push(value);
+    }
+}
+
+/// Adds the chunks of a segment's raw data.
+fn add_data(
+    source: &Source,
+    at: u64,
+    length: u64,
+    lead_in: &LeadIn,
+    found: &mut Found,
+) -> Result<(), Error> {
+    let same = found
+        .last_chunk
+        .clone()
+        .filter(|(flags, ..)| *flags == lead_in.flags);
+    let (regions, size) = match same {
+        Some((_, regions, size)) => (regions, size),
+        None => {
+            let with_data: Vec<Active> = found
+                .active
+                .iter()
+                .filter(|active| active.index != Index::Nothing)
+                .cloned()
+                .collect();
+            let (regions, size) = chunk(&with_data, lead_in.flags).ok_or_else(|| {
+                let problem = "the channels of this segment cannot stand together: they differ \
+                               in length or in their raw buffers";
+                malformed(source, at, problem.to_owned())
+            })?;
+            let regions = Arc::new(regions);
+            found.last_chunk = Some((lead_in.flags, Arc::clone(&regions), size));
+            (regions, size)
+        }
+    };
+    if size == 0 || length == 0 {
+        return Ok(());
+    }
+    let chunks = length / size;
+    if chunks > 0 {
+        add_group(found, at, chunks, size, &regions);
+    }
+    let rest = length % size;
+    if rest > 0 {
+        let kept = Arc::new(cut(&regions, rest));
+        add_group(found, at + chunks * size, 1, rest, &kept);
+        if lead_in.next.is_some() && !lead_in.flags.interleaved {
+            found.notes.push(Note::Odd {
+                what: format!("the raw data at byte {at} are no whole number of chunks; what is complete in the last is read"),
+            });
+        }
+    }
+    Ok(())
+}
+
+fn add_group(found: &mut Found, offset: u64, chunks: u64, size: u64, regions: &Arc<Vec<Region>>) {
+    for region in regions.iter() {
+        let big_endian = region.members.first().is_some_and(|m| m.layout.big_endian);
+        let mut counted = None;
+        for member in &region.members {
+            let object = &mut found.objects[member.object];
+            let value_at = offset + region.offset + member.layout.offset as u64;
+            object.first.get_or_insert((value_at, big_endian));
+            // Several scalers of a channel are one sample.
+            if counted != Some(member.object) {
+                object.length = object
+                    .length
+                    .saturating_add(region.rows.saturating_mul(chunks));
+                counted = Some(member.object);
+            }
+        }
+    }
+    found.groups.push(Group {
+        offset,
+        chunks,
+        size,
+        regions: Arc::clone(regions),
+    });
+}
+
+fn contents(
+    source: &Source,
+    found: &Found,
+    version: u32,
+) -> Result<(Contents, Vec<Channel>), Error> {
+    let mut contents = Contents {
+        format: Format::Tdms,
+        variant: format!("version {version}, {} segments", found.segments),
+        channels: Vec::new(),
+        properties: Vec::new(),
+        notes: found.notes.clone(),
+    };
+    let mut channels = Vec::new();
+    for (position, object) in found.objects.iter().enumerate() {
+        let names = names_of(&object.path);
+        let prefix = if names.is_empty() {
+            String::new()
+        } else {
+            format!("{}: ", names.join("/"))
+        };
+        let texts = object.properties.iter().map(|(name, value)| {
+            let text = match value {
+                Property::Number(value) => value.to_string(),
+                Property::Text(text) => text.clone(),
+            };
+            (name.clone(), text)
+        });
+        if names.len() < 2 {
+            contents
+                .properties
+                .extend(texts.map(|(name, text)| (format!("{prefix}{name}"), text)));
+            continue;
+        }
+        let name = names.join("/");
+        match channel(source, found, position, &name)? {
+            Ok((channel, stored_as)) => {
+                contents.channels.push(ChannelContents {
+                    unit: object
+                        .properties
+                        .get("unit_string")
+                        .and_then(Property::text)
+                        .map(str::to_owned)
+                        .filter(|u| !u.is_empty()),
+                    length: Some(channel.length),
+                    time: time_base(&object.properties),
+                    stored_as,
+                    properties: texts.collect(),
+                    name,
+                });
+                channels.push(channel);
+            }
+            Err(why) => contents.notes.push(Note::LeftOut {
+                what: format!("channel \"{name}\""),
+                why,
+            }),
+        }
+    }
+    Ok((contents, channels))
+}
+
+fn time_base(properties: &BTreeMap<String, Property>) -> TimeBase {
+    let number = |name: &str| properties.get(name).and_then(Property::number);
+    match number("wf_increment").filter(|interval| *interval > 0.0 && interval.is_finite()) {
+        Some(interval) => TimeBase::Uniform {
+            start: number("wf_start_offset").unwrap_or(0.0),
+            interval,
+        },
+        None => TimeBase::Unknown,
+    }
+}
+
+/// A channel and how it is stored, or why it is left out.
+type Described = Result<(Channel, String), String>;
+
+fn channel(
+    source: &Source,
+    found: &Found,
+    position: usize,
+    name: &str,
+) -> Result<Described, Error> {
+    let object = &found.objects[position];
+    if object.length == 0 && object.types.is_empty() {
+        return Ok(Err("it has no samples".to_owned()));
+    }
+    if let Some(other) = object.types.iter().find(|value| !value.is_number()) {
+        return Ok(Err(format!("it holds values of type {}", other.name())));
+    }
+    // What a channel does not say itself, its group or the file may say.
+    let group = format!(
+        "/{}",
+        object
+            .path
+            .trim_start_matches('/')
+            .split("'/'")
+            .next()
+            .map_or(String::new(), |g| format!("{}'", g.trim_end_matches('\'')))
+    );
+    let paths = [object.path.as_str(), group.as_str(), "/"];
+    let scaled = paths.into_iter().find_map(|path| {
+        let object = &found.objects[*found.by_path.get(path)?];
+        object
+            .properties
+            .contains_key("NI_Number_Of_Scales")
+            .then_some(&object.properties)
+    });
+    let scales = match scaled.map_or(Ok(Scales::default()), scales_of) {
+        Ok(scales) => scales,
+        Err(why) => return Ok(Err(why)),
+    };
+    let zero = match (object.types.first(), object.first) {
+        (Some(ValueType::Timestamp), Some((at, big_endian))) => {
+            timestamp(&source.bytes_at(at, 16)?, big_endian).0
+        }
+        _ => 0,
+    };
+    let types: Vec<&str> = object.types.iter().map(|value| value.name()).collect();
+    let remark = if types.contains(&"timestamp") {
+        ", in seconds since the first whole one"
+    } else {
+        ""
+    };
+    let stored_as = format!("{}{remark}{}", types.join(" and "), scales.describe());
+    let channel = Channel {
+        object: position,
+        inputs: scales.raw_inputs(),
+        scales,
+        length: object.length,
+        zero,
+    };
+    check_buffers(found, &channel, name).map_or(Ok(Ok((channel, stored_as))), |why| Ok(Err(why)))
+}
+
+/// Why the raw values of a channel cannot be brought together, if so.
+fn check_buffers(found: &Found, channel: &Channel, _name: &str) -> Option<String> {
+    if channel.inputs.len() < 2 {
+        return None;
+    }
+    let mut last: Option<&Arc<Vec<Region>>> = None;
+    for group in &found.groups {
+        if last.is_some_and(|known| Arc::ptr_eq(known, &group.regions)) {
+            continue;
+        }
+        last = Some(&group.regions);
+        let holds = |region: &&Region| region.members.iter().any(|m| m.object == channel.object);
+        if group.regions.iter().filter(holds).count() > 1 {
+            return Some("its raw values lie in several raw buffers".to_owned());
+        }
+    }
+    None
+}
+
+/// Some rows of a region.
+struct Window<'a> {
+    offset: u64,
+    rows: u64,
+    region: &'a Region,
+}
+
+impl TdmsReader {
+    /// Calls `take` with the windows of all regions that hold one of the wanted
+    /// objects, in the order of the file.
+    fn windows<'a>(
+        &'a self,
+        places: &[Option<usize>],
+        mut take: impl FnMut(Window<'a>) -> Result<(), Error>,
+    ) -> Result<(), Error> {
+        let wanted = |member: &Member| places.get(member.object).copied().flatten().is_some();
+        for group in &self.groups {
+            let regions: Vec<&Region> = group
+                .regions
+                .iter()
+                .filter(|r| r.members.iter().any(wanted))
+                .collect();
+            for chunk in 0..if regions.is_empty() { 0 } else { group.chunks } {
+                for region in &regions {
+                    let begin = group.offset + chunk * group.size + region.offset;
+                    let at_once = (WINDOW / region.width).max(1);
+                    let mut row = 0;
+                    while row < region.rows {
+                        let rows = at_once.min(region.rows - row);
+                        let offset = begin + row * region.width;
+                        take(Window {
+                            offset,
+                            rows,
+                            region,
+                        })?;
+                        row += rows;
+                    }
+                }
+            }
+        }
+        Ok(())
+    }
+
+    /// Position among the wanted of each object of the file.
+    fn places(&self, wanted: &[usize]) -> Vec<Option<usize>> {
+        let last = self.channels.iter().map(|channel| channel.object).max();
+        let mut places = vec![None; last.map_or(0, |last| last + 1)];
+        for (position, channel) in wanted.iter().enumerate() {
+            places[self.channels[*channel].object] = Some(position);
+        }
+        places
+    }
+}
+
+/// Decodes and scales the values of a channel in a window.
+fn decode_channel(channel: &Channel, bytes: &[u8], region: &Region, out: &mut [f64]) {
+    let own = region
+        .members
+        .iter()
+        .filter(|member| member.object == channel.object);
+    let members: Vec<&Member> = own.collect();
+    if let [member] = members[..] {
+        decode(bytes, member.layout, channel.zero, out);
+        if channel.scales != Scales::default() {
+            let raw = out.to_vec();
+            channel.scales.apply(&[(member.id, &raw)], out);
+        }
+        return;
+    }
+    let raw: Vec<(u32, Vec<f64>)> = members
+        .iter()
+        .map(|member| {
+            let mut values = vec![0.0; out.len()];
+            decode(bytes, member.layout, channel.zero, &mut values);
+            (member.id, values)
+        })
+        .collect();
+    let raw: Vec<(u32, &[f64])> = raw
+        .iter()
+        .map(|(id, values)| (*id, values.as_slice()))
+        .collect();
+    channel.scales.apply(&raw, out);
+}
+
+/// Objects among the members of a region, each once, with their places.
+fn objects_of<'a>(
+    region: &'a Region,
+    places: &'a [Option<usize>],
+) -> impl Iterator<Item = usize> + 'a {
+    let mut seen: Vec<usize> = Vec::new();
+    region.members.iter().filter_map(move |member| {
+        let place = places.get(member.object).copied().flatten()?;
+        if seen.contains(&place) {
+            return None;
+        }
+        seen.push(place);
+        Some(place)
+    })
+}
+
+impl Reader for TdmsReader {
+    fn contents(&self) -> &Contents {
+        &self.contents
+    }
+
+    fn read(&mut self, wanted: &[usize], sink: &mut dyn Sink) -> Result<(), Error> {
+        let places = self.places(wanted);
+        let mut samples = Vec::new();
+        self.windows(&places, |window| {
+            let bytes = self
+                .source
+                .bytes_at(window.offset, window.rows * window.region.width)?;
+            for place in objects_of(window.region, &places) {
+                samples.clear();
+                samples.resize(window.rows as usize, 0.0);
+                let channel = &self.channels[wanted[place]];
+                decode_channel(channel, &bytes, window.region, &mut samples);
+                sink.take(place, &samples)?;
+            }
+            Ok(())
+        })
+    }
+
+    fn read_whole(&mut self, wanted: &[usize]) -> Result<Vec<Vec<f64>>, Error> {
+        let places = self.places(wanted);
+        let lengths = wanted
+            .iter()
+            .map(|channel| self.channels[*channel].length as usize);
+        let mut columns: Vec<Vec<f64>> = lengths.map(|length| vec![0.0; length]).collect();
+
+        // Each window with the parts of the columns that it fills.
+        let mut rest: Vec<&mut [f64]> = columns.iter_mut().map(Vec::as_mut_slice).collect();
+        let mut tasks = Vec::new();
+        self.windows(&places, |window| {
+            let parts: Vec<(usize, &mut [f64])> = objects_of(window.region, &places)
+                .map(|place| {
+                    let whole = std::mem::take(&mut rest[place]);
+                    let (part, after) = whole.split_at_mut((window.rows as usize).min(whole.len()));
+                    rest[place] = after;
+                    (place, part)
+                })
+                .collect();
+            tasks.push((window, parts));
+            Ok(())
+        })?;
+        tasks
+            .into_par_iter()
+            .try_for_each_init(Vec::new, |bytes, (window, parts)| {
+                bytes.resize((window.rows * window.region.width) as usize, 0);
+                self.source.read_at(window.offset, bytes)?;
+                for (place, part) in parts {
+                    decode_channel(&self.channels[wanted[place]], bytes, window.region, part);
+                }
+                Ok(())
+            })?;
+        Ok(columns)
+    }
+}
