@@ -88,6 +88,8 @@ def add_matrix(channels, name, values):
     if values.ndim == 1 or min(values.shape) == 1:
         channels.append(channel(name, values.ravel()))
         return
+    if values.shape[1] > 64 and values.shape[0] < values.shape[1]:
+        values = values.T
     for i in range(values.shape[1]):
         channels.append(channel(f"{name}/{i + 1}", values[:, i]))
 
@@ -111,7 +113,8 @@ def read_mat(path):
                 add_matrix(channels, name, value)
 
     for name, value in scipy.io.loadmat(path).items():
-        if not name.startswith("__"):
+        # "None" is how SciPy calls a variable without a name.
+        if not name.startswith("__") and name != "None":
             walk(name, value)
     return channels
 
@@ -123,7 +126,10 @@ def read_uff(path):
         if record.get("type") != 58:
             continue
         data = np.asarray(record["data"])
-        interval = record.get("abscissa_inc") if record.get("abscissa_spacing") == 1 else None
+        even = record.get("abscissa_spacing") == 1
+        interval = record.get("abscissa_inc") if even and record.get("abscissa_spec_data_type") == 17 else None
+        if not even:
+            channels.append(channel(None, np.asarray(record["x"])))
         if np.iscomplexobj(data):
             channels += [channel(None, data.real, interval), channel(None, data.imag, interval)]
         else:

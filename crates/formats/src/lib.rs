@@ -11,12 +11,17 @@
 //! unit, is said in a campaign and is not known here. Sizes and offsets that a
 //! file declares are checked against its length before anything is allocated.
 
+pub mod array_channels;
 pub mod contents;
 pub mod error;
+pub mod mat_element;
+pub mod mat_stream;
 pub mod open;
 pub mod read_lvm;
+pub mod read_mat;
 pub mod read_tdms;
 pub mod read_text;
+pub mod read_uff58;
 pub mod read_wav;
 pub mod reader;
 pub mod source;
@@ -33,3 +38,4 @@ pub mod text_rows;
 pub mod text_table;
 
 pub use error::Error;
+pub mod uff_lines;

@@ -3,9 +3,12 @@
 
 use crate::contents::Format;
 use crate::error::Error;
+use crate::mat_element::header4;
 use crate::read_lvm::LvmReader;
+use crate::read_mat::MatReader;
 use crate::read_tdms::TdmsReader;
 use crate::read_text::TextReader;
+use crate::read_uff58::UffReader;
 use crate::read_wav::WavReader;
 use crate::reader::Reader;
 use crate::source::Source;
@@ -14,6 +17,9 @@ use std::path::Path;
 
 /// Bytes from which the format is told.
 const HEAD: u64 = 4096;
+
+/// The first bytes of HDF5, at the beginning of a file or behind a block of user data.
+const HDF5: &[u8] = b"\x89HDF\r\n\x1a\n";
 
 /// How a file is to be read where it does not say so itself.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -46,6 +52,8 @@ pub fn open_source(source: Source, options: &OpenOptions) -> Result<Box<dyn Read
         Format::Lvm => Ok(Box::new(LvmReader::open(source)?)),
         Format::Wav => Ok(Box::new(WavReader::open(source)?)),
         Format::Tdms => Ok(Box::new(TdmsReader::open(source)?)),
+        Format::Mat => Ok(Box::new(MatReader::open(source)?)),
+        Format::Uff58 => Ok(Box::new(UffReader::open(source)?)),
         other => Err(Error::UnknownFormat {
             path: source.path().to_path_buf(),
             found: format!("this is a {other} file"),
@@ -74,8 +82,45 @@ pub fn tell_format(source: &Source) -> Result<Format, Error> {
     {
         return Ok(Format::Wav);
     }
+    let is_hdf5 = |at: usize| head.get(at..at + 8) == Some(HDF5);
+    if [0, 512, 1024, 2048].into_iter().any(is_hdf5) {
+        return Ok(Format::Hdf5);
+    }
+    let matlab5 = head.starts_with(b"MATLAB") && matches!(head.get(126..128), Some(b"IM" | b"MI"));
+    if matlab5 || is_matlab4(&head, source.length()) {
+        return Ok(Format::Mat);
+    }
+    if is_universal(&head) {
+        return Ok(Format::Uff58);
+    }
     if head.starts_with(b"LabVIEW Measurement") {
         return Ok(Format::Lvm);
     }
     Ok(Format::Text)
+}
+
+/// A variable of MATLAB version 4 has no signature: its header must make sense.
+fn is_matlab4(head: &[u8], length: u64) -> bool {
+    let Some(header) = header4(head) else {
+        return false;
+    };
+    let name = head.get(20..20 + header.name as usize).unwrap_or_default();
+    let letters = name.strip_suffix(b"\0").unwrap_or_default();
+    let bytes = header
+        .rows
+        .checked_mul(header.columns)
+        .and_then(|n| n.checked_mul(header.value.size()));
+    let is_name = |byte: &u8| byte.is_ascii_alphanumeric() || *byte == b'_';
+    !letters.is_empty() && letters.iter().all(is_name) && bytes.is_some_and(|bytes| bytes <= length)
+}
+
+/// A universal file begins with "    -1" and the number of a data set below.
+fn is_universal(head: &[u8]) -> bool {
+    let text = String::from_utf8_lossy(head);
+    let mut lines = text.lines().skip_while(|line| line.trim().is_empty());
+    let first = lines
+        .next()
+        .is_some_and(|line| line.trim() == "-1" && line.starts_with("   "));
+    let set = lines.next().map(str::trim_start).unwrap_or_default();
+    first && set.starts_with(|c: char| c.is_ascii_digit())
 }
