@@ -215,7 +215,9 @@ impl<'a> Elements<'a> {
         if given.is_none() && name.is_empty() {
             // MATLAB keeps the workspace of functions in such a variable.
             let what = "a variable without a name".to_owned();
-            found.left_out.push((what, "MATLAB keeps functions in it".to_owned()));
+            found
+                .left_out
+                .push((what, "MATLAB keeps functions in it".to_owned()));
             return Ok(());
         }
         let name = given.map_or(name, str::to_owned);

@@ -12,7 +12,7 @@ use crate::read_uff58::UffReader;
 use crate::read_wav::WavReader;
 use crate::reader::Reader;
 use crate::source::Source;
-use crate::text_dialect::TextOptions;
+use crate::text_options::TextOptions;
 use std::path::Path;
 
 /// Bytes from which the format is told.
