@@ -216,6 +216,13 @@ fn find_segments(source: &Source, file: &FileHeader, marks: &[u64]) -> Result<Ve
     let mut before = line_end(source, marks[0])?;
     let mut lines = count_lines(source, 0, before)?;
     for &mark in &marks[1..] {
+        if mark < before {
+            return Err(malformed(
+                source,
+                lines,
+                "two headers end in the same lines",
+            ));
+        }
         let from = before.max(mark.saturating_sub(LONGEST_HEADER));
         let bytes = source.bytes_at(from, mark.saturating_sub(from))?;
         // The header begins behind the last blank line.

@@ -12,10 +12,10 @@ use crate::text_rows::{ColumnKind, RowPlan, Separator};
 use crate::text_table::{Table, read_table, shortened};
 
 /// Bytes from which the dialect is found out.
-const HEAD: u64 = 1 << 18;
+const HEAD: u64 = 1 << 16;
 
 /// Most lines from which the dialect is found out.
-const LINES: usize = 2000;
+const LINES: usize = 300;
 
 /// A table of numbers in text.
 #[derive(Debug)]

@@ -7,6 +7,7 @@ use crate::text_header::name_columns;
 use crate::text_number::{Cell, Marks, bare, cell, leading_number, without_groups};
 use crate::text_options::{Dialect, TextOptions};
 use crate::text_rows::{ColumnKind, Separator};
+use std::collections::{BTreeMap, BTreeSet};
 
 /// Beginnings of lines that are usually comments.
 const COMMENTS: [&str; 3] = ["#", "%", "//"];
@@ -33,6 +34,15 @@ enum Look {
 }
 
 fn look(text: &str, marks: Marks) -> Look {
+    // Most text is told from its first character.
+    let start = |c: char| c.is_ascii_digit() || matches!(c, '+' | '-' | '.' | ',' | '\u{2212}');
+    let text = bare(text);
+    if text.is_empty() {
+        return Look::Blank;
+    }
+    if !text.starts_with(start) {
+        return Look::Text;
+    }
     match cell(text, marks) {
         Cell::Blank => Look::Blank,
         Cell::Number(_) => Look::Number,
@@ -297,7 +307,9 @@ fn tally(cells: &[&str], marks: Marks, separator: Separator) -> (f64, f64) {
 /// As [`look`], but numbers with any marks of thousands count as numbers.
 fn grouped_look(text: &str, marks: Marks, separator: Separator) -> Look {
     let plain = look(text, marks);
-    if plain != Look::Text {
+    if plain != Look::Text
+        || !bare(text).starts_with(|c: char| c.is_ascii_digit() || "+-".contains(c))
+    {
         return plain;
     }
     let decimal = char::from(marks.decimal);
@@ -317,45 +329,32 @@ fn grouped_look(text: &str, marks: Marks, separator: Separator) -> Look {
 
 /// The number of cells that most lines with a number have.
 fn usual_count(lines: &[&str], data: &[usize], separator: Separator, decimal: u8) -> Option<usize> {
-    let mut counts: Vec<usize> = data
+    let rows: Vec<Vec<&str>> = data.iter().map(|&at| cells(lines[at], separator)).collect();
+    let ends_blank = |row: &[&str]| row.last().is_some_and(|cell| cell.trim().is_empty());
+    // Numbers of cells of which the last holds something in any line: there a
+    // blank one is a cell, elsewhere only the mark behind the last cell.
+    let filled: BTreeSet<usize> = rows
         .iter()
-        .filter_map(|&at| {
-            let mut cells = cells(lines[at], separator);
-            let number = |cell: &&str| leading_number(bare(cell).as_bytes(), decimal).is_some();
-            if !cells.iter().any(number) {
-                return None;
-            }
-            // A mark at the end of the line is no cell.
-            if cells.len() > 1
-                && cells[cells.len() - 1].trim().is_empty()
-                && separator != Separator::Blanks
-            {
-                let blank_ends = cells
-                    .iter()
-                    .rev()
-                    .take_while(|c| c.trim().is_empty())
-                    .count();
-                if blank_ends == 1 && !ends_belong(lines, data, separator, cells.len()) {
-                    cells.pop();
-                }
-            }
-            Some(cells.len())
-        })
+        .filter(|row| !ends_blank(row))
+        .map(Vec::len)
         .collect();
-    counts.sort_unstable();
-    let most = counts
-        .chunk_by(|a, b| a == b)
-        .max_by_key(|chunk| chunk.len())?;
-    most.first().copied()
-}
-
-/// Whether the last of `count` cells holds something in any line: then a blank
-/// one is a blank cell, and not the mark behind the last one.
-fn ends_belong(lines: &[&str], data: &[usize], separator: Separator, count: usize) -> bool {
-    data.iter().any(|&at| {
-        let cells = cells(lines[at], separator);
-        cells.len() == count && !cells[count - 1].trim().is_empty()
-    })
+    let mut counts = BTreeMap::new();
+    for row in &rows {
+        let number = |cell: &&str| leading_number(bare(cell).as_bytes(), decimal).is_some();
+        if !row.iter().any(number) {
+            continue;
+        }
+        let one_blank = row.len() > 1 && ends_blank(row) && !ends_blank(&row[..row.len() - 1]);
+        let count = match one_blank && !filled.contains(&row.len()) {
+            true => row.len() - 1,
+            false => row.len(),
+        };
+        *counts.entry(count).or_insert(0_usize) += 1;
+    }
+    let (count, _) = counts
+        .into_iter()
+        .max_by_key(|(count, lines)| (*lines, *count))?;
+    Some(count)
 }
 
 /// The mark of thousands, if cells have one.

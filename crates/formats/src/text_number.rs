@@ -88,16 +88,22 @@ pub fn leading_number(bytes: &[u8], decimal: u8) -> Option<(f64, usize)> {
 /// the mantissa is meaningless.
 #[inline]
 fn digits(bytes: &[u8], mut at: usize, mantissa: &mut u64) -> usize {
-    // Eight at once.
+    // Up to eight at once: the digits are shifted up, so that zeros come before.
     while let Some(eight) = bytes.get(at..at + 8) {
         let word = u64::from_le_bytes(eight.try_into().unwrap_or([0; 8]));
-        if !all_digits(word) {
-            break;
+        let count = leading_digits(word);
+        if count == 0 {
+            return at;
         }
+        let shifted = word << (64 - 8 * count);
+        let power = INTEGER_POWERS[count as usize];
         *mantissa = mantissa
-            .wrapping_mul(100_000_000)
-            .wrapping_add(eight_digits(word));
-        at += 8;
+            .wrapping_mul(power)
+            .wrapping_add(eight_digits(shifted));
+        at += count as usize;
+        if count < 8 {
+            return at;
+        }
     }
     while let Some(digit) = bytes
         .get(at)
@@ -110,12 +116,28 @@ fn digits(bytes: &[u8], mut at: usize, mantissa: &mut u64) -> usize {
     at
 }
 
-/// Whether all eight bytes are digits.
+/// Powers of ten as integers.
+const INTEGER_POWERS: [u64; 9] = [
+    1,
+    10,
+    100,
+    1_000,
+    10_000,
+    100_000,
+    1_000_000,
+    10_000_000,
+    100_000_000,
+];
+
+/// How many of eight bytes, from the lowest on, are digits without a break.
 #[inline]
-fn all_digits(word: u64) -> bool {
+fn leading_digits(word: u64) -> u32 {
+    // A byte of 0x30 to 0x39 keeps its high half at 3 with and without 6 added.
     let high = word & 0xf0f0_f0f0_f0f0_f0f0;
-    let over = word.wrapping_add(0x0606_0606_0606_0606) & 0xf0f0_f0f0_f0f0_f0f0;
-    high == 0x3030_3030_3030_3030 && over == 0x3030_3030_3030_3030
+    let over = (word & 0x7f7f_7f7f_7f7f_7f7f).wrapping_add(0x0606_0606_0606_0606);
+    let other =
+        (high ^ 0x3030_3030_3030_3030) | ((over & 0xf0f0_f0f0_f0f0_f0f0) ^ 0x3030_3030_3030_3030);
+    other.trailing_zeros() / 8
 }
 
 /// The number that eight digits make, the first in the lowest byte.
@@ -154,8 +176,12 @@ fn exponent(bytes: &[u8], mut at: usize) -> Option<(i32, usize)> {
 }
 
 /// By the standard library; `None` if not finite.
-#[cold]
 fn slow_number(bytes: &[u8], decimal: u8) -> Option<f64> {
+    if decimal == b'.'
+        && let Some(value) = std::str::from_utf8(bytes).ok().and_then(|t| t.parse().ok())
+    {
+        return Some(value).filter(|value: &f64| value.is_finite());
+    }
     let text: String = bytes
         .iter()
         .map(|&byte| match byte {

@@ -92,6 +92,17 @@ pub fn read_rows(bytes: &[u8], plan: &RowPlan, places: &[Option<usize>]) -> Rows
     };
     let (mut at, mut read) = (0, 0);
     while at < bytes.len() {
+        if let Separator::Mark(mark) = plan.separator
+            && let Some(end) = bare_row(bytes, at, mark, plan, places, &mut rows.columns)
+        {
+            read += 1;
+            rows.lines += 1;
+            at = end;
+            continue;
+        }
+        rows.columns
+            .iter_mut()
+            .for_each(|column| column.truncate(read));
         let end = memchr::memchr(plan.newline, &bytes[at..]).map_or(bytes.len(), |n| at + n);
         let mut line = &bytes[at..end];
         if line.last() == Some(&b'\r') {
@@ -123,6 +134,63 @@ pub fn read_rows(bytes: &[u8], plan: &RowPlan, places: &[Option<usize>]) -> Rows
         rows.faults.retain(|fault| fault.line < ragged.line);
     }
     rows
+}
+
+/// Reads a line of bare numbers and blank cells, one for each column, in place;
+/// where the next line begins. `None` where something else stands in it: columns
+/// may then have got a number too many.
+#[inline]
+fn bare_row(
+    bytes: &[u8],
+    mut at: usize,
+    mark: u8,
+    plan: &RowPlan,
+    places: &[Option<usize>],
+    columns: &mut [Vec<f64>],
+) -> Option<usize> {
+    let last = places.len() - 1;
+    for (column, place) in places.iter().enumerate() {
+        let Some(place) = *place else {
+            // A cell that nobody wants.
+            let cell = &bytes[at..];
+            let end = cell.iter().position(|b| *b == mark || *b == plan.newline)?;
+            if cell[..end].contains(&b'"') {
+                return None;
+            }
+            at += end;
+            at = match (bytes[at] == mark, column == last) {
+                (true, false) => at + 1,
+                (false, true) => return Some(at + 1),
+                _ => return None,
+            };
+            continue;
+        };
+        if plan.columns[column] != ColumnKind::Numbers {
+            return None;
+        }
+        let value = match leading_number(&bytes[at..], plan.marks.decimal) {
+            Some((value, used)) => {
+                at += used;
+                value
+            }
+            // A blank cell, but not a blank line.
+            None if last > 0 && (column > 0 || bytes.get(at) == Some(&mark)) => f64::NAN,
+            None => return None,
+        };
+        let next = *bytes.get(at)?;
+        columns[place].push(value);
+        if column < last {
+            if next != mark {
+                return None;
+            }
+            at += 1;
+        } else if next == plan.newline {
+            return Some(at + 1);
+        } else if next == b'\r' && bytes.get(at + 1) == Some(&plan.newline) {
+            return Some(at + 2);
+        }
+    }
+    None
 }
 
 /// Whether a line is blank or a comment.
