@@ -9,7 +9,7 @@ use crate::text_encoding::{Encoding, tell_encoding};
 use crate::text_lines::Lines;
 use crate::text_options::{Dialect, TextOptions};
 use crate::text_rows::{ColumnKind, RowPlan, Separator};
-use crate::text_table::{Table, read_table, shortened};
+use crate::text_table::{CutOff, Table, read_table, read_whole_table, shortened};
 
 /// Bytes from which the dialect is found out.
 const HEAD: u64 = 1 << 16;
@@ -300,8 +300,26 @@ impl Reader for TextReader {
     fn read(&mut self, wanted: &[usize], sink: &mut dyn Sink) -> Result<(), Error> {
         let columns = wanted.iter().map(|&channel| self.columns[channel]);
         let wanted: Vec<(usize, usize)> = columns.zip(0..).collect();
-        let Some(cut) = read_table(&self.source, &self.table, &wanted, sink)? else {
-            return Ok(());
+        let cut = read_table(&self.source, &self.table, &wanted, sink)?;
+        self.note(cut);
+        Ok(())
+    }
+
+    fn read_whole(&mut self, wanted: &[usize]) -> Result<Vec<Vec<f64>>, Error> {
+        let wanted: Vec<usize> = wanted
+            .iter()
+            .map(|&channel| self.columns[channel])
+            .collect();
+        let (columns, cut) = read_whole_table(&self.source, &self.table, &wanted)?;
+        self.note(cut);
+        Ok(columns)
+    }
+}
+
+impl TextReader {
+    fn note(&mut self, cut: Option<CutOff>) {
+        let Some(cut) = cut else {
+            return;
         };
         let expected = self.table.plan.columns.len();
         let note = Note::CutOff {
@@ -313,6 +331,5 @@ impl Reader for TextReader {
         if !self.contents.notes.contains(&note) {
             self.contents.notes.push(note);
         }
-        Ok(())
     }
 }

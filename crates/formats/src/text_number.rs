@@ -177,10 +177,11 @@ fn exponent(bytes: &[u8], mut at: usize) -> Option<(i32, usize)> {
 
 /// By the standard library; `None` if not finite.
 fn slow_number(bytes: &[u8], decimal: u8) -> Option<f64> {
+    let finite = |value: f64| Some(value).filter(|value| value.is_finite());
     if decimal == b'.'
-        && let Some(value) = std::str::from_utf8(bytes).ok().and_then(|t| t.parse().ok())
+        && let Ok(value) = fast_float2::parse::<f64, _>(bytes)
     {
-        return Some(value).filter(|value: &f64| value.is_finite());
+        return finite(value);
     }
     let text: String = bytes
         .iter()
@@ -190,7 +191,7 @@ fn slow_number(bytes: &[u8], decimal: u8) -> Option<f64> {
             b => char::from(b),
         })
         .collect();
-    text.parse().ok().filter(|value: &f64| value.is_finite())
+    text.parse().ok().and_then(finite)
 }
 
 /// What stands in a cell, quotes and blanks around it allowed.

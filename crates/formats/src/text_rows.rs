@@ -43,11 +43,34 @@ pub struct RowPlan {
     pub short_rows: bool,
 }
 
-/// What a stretch of lines holds.
+/// Room for the samples of a column: one for each line is enough.
+#[derive(Debug)]
+pub struct Column<'a> {
+    room: &'a mut [f64],
+    length: usize,
+}
+
+impl<'a> Column<'a> {
+    /// An empty column with some room.
+    #[must_use]
+    pub fn new(room: &'a mut [f64]) -> Self {
+        Self { room, length: 0 }
+    }
+
+    #[inline]
+    fn push(&mut self, value: f64) {
+        if let Some(place) = self.room.get_mut(self.length) {
+            *place = value;
+            self.length += 1;
+        }
+    }
+}
+
+/// What a stretch of lines holds, besides the samples.
 #[derive(Debug, Default)]
 pub struct Rows {
-    /// Samples of the columns that are wanted; NaN where a cell is blank.
-    pub columns: Vec<Vec<f64>>,
+    /// Rows: samples in each column; NaN stands where a cell is blank.
+    pub rows: usize,
     /// Lines, also those that are no rows.
     pub lines: u64,
     /// Cells that are no numbers, in order.
@@ -78,31 +101,35 @@ pub struct Ragged {
     pub last: bool,
 }
 
+/// Lines in a stretch: as many rows at the most.
+#[must_use]
+pub fn count_lines(bytes: &[u8], plan: &RowPlan) -> usize {
+    let ends = memchr::memchr_iter(plan.newline, bytes).count();
+    ends + usize::from(bytes.last().is_some_and(|last| *last != plan.newline))
+}
+
 /// Reads the lines of a stretch.
 ///
-/// * `places`: for each column of the file, its position among those wanted
-#[must_use]
-pub fn read_rows(bytes: &[u8], plan: &RowPlan, places: &[Option<usize>]) -> Rows {
-    let wanted = places.iter().flatten().count();
-    // Most numbers take ten characters or so; growing costs little.
-    let guess = bytes.len() / (10 * places.len().max(1));
-    let mut rows = Rows {
-        columns: (0..wanted).map(|_| Vec::with_capacity(guess)).collect(),
-        ..Rows::default()
-    };
+/// * `places`: for each column of the file, its position in `columns`
+/// * `columns`: where samples go, with room for [`count_lines`] each
+pub fn read_rows(
+    bytes: &[u8],
+    plan: &RowPlan,
+    places: &[Option<usize>],
+    columns: &mut [Column],
+) -> Rows {
+    let mut rows = Rows::default();
     let (mut at, mut read) = (0, 0);
     while at < bytes.len() {
         if let Separator::Mark(mark) = plan.separator
-            && let Some(end) = bare_row(bytes, at, mark, plan, places, &mut rows.columns)
+            && let Some(end) = bare_row(bytes, at, mark, plan, places, columns)
         {
             read += 1;
             rows.lines += 1;
             at = end;
             continue;
         }
-        rows.columns
-            .iter_mut()
-            .for_each(|column| column.truncate(read));
+        columns.iter_mut().for_each(|column| column.length = read);
         let end = memchr::memchr(plan.newline, &bytes[at..]).map_or(bytes.len(), |n| at + n);
         let mut line = &bytes[at..end];
         if line.last() == Some(&b'\r') {
@@ -110,8 +137,8 @@ pub fn read_rows(bytes: &[u8], plan: &RowPlan, places: &[Option<usize>]) -> Rows
         }
         if !passed_over(line, plan) {
             let found = match plan.separator {
-                Separator::Mark(mark) => marked_row(line, mark, plan, places, &mut rows),
-                Separator::Blanks => blank_row(line, plan, places, &mut rows),
+                Separator::Mark(mark) => marked_row(line, mark, plan, places, columns, &mut rows),
+                Separator::Blanks => blank_row(line, plan, places, columns, &mut rows),
             };
             if found != plan.columns.len() {
                 rows.ragged = Some(Ragged {
@@ -126,10 +153,7 @@ pub fn read_rows(bytes: &[u8], plan: &RowPlan, places: &[Option<usize>]) -> Rows
         rows.lines += 1;
         at = end + 1;
     }
-    // What a ragged line has given is taken back.
-    rows.columns
-        .iter_mut()
-        .for_each(|column| column.truncate(read));
+    rows.rows = read;
     if let Some(ragged) = rows.ragged {
         rows.faults.retain(|fault| fault.line < ragged.line);
     }
@@ -146,7 +170,7 @@ fn bare_row(
     mark: u8,
     plan: &RowPlan,
     places: &[Option<usize>],
-    columns: &mut [Vec<f64>],
+    columns: &mut [Column],
 ) -> Option<usize> {
     let last = places.len() - 1;
     for (column, place) in places.iter().enumerate() {
@@ -211,6 +235,7 @@ fn marked_row(
     mark: u8,
     plan: &RowPlan,
     places: &[Option<usize>],
+    columns: &mut [Column],
     rows: &mut Rows,
 ) -> usize {
     let mut at = 0;
@@ -229,11 +254,11 @@ fn marked_row(
             if let Some((value, used)) = leading_number(&line[start..], plan.marks.decimal) {
                 let end = start + used;
                 if end == line.len() {
-                    rows.columns[place].push(value);
-                    return finish(column + 1, plan, places, rows);
+                    columns[place].push(value);
+                    return finish(column + 1, plan, places, columns);
                 }
                 if line[end] == mark {
-                    rows.columns[place].push(value);
+                    columns[place].push(value);
                     at = end + 1;
                     column += 1;
                     continue;
@@ -242,11 +267,11 @@ fn marked_row(
         }
         let end = cell_end(line, at, mark);
         if let Some(place) = place {
-            slow_cell(&line[at..end], column, place, plan, rows);
+            slow_cell(&line[at..end], column, &mut columns[place], plan, rows);
         }
         column += 1;
         if end == line.len() {
-            return finish(column, plan, places, rows);
+            return finish(column, plan, places, columns);
         }
         at = end + 1;
     }
@@ -269,18 +294,24 @@ fn cell_end(line: &[u8], at: usize, mark: u8) -> usize {
 }
 
 /// Cells that a short line lacks.
-fn finish(found: usize, plan: &RowPlan, places: &[Option<usize>], rows: &mut Rows) -> usize {
+fn finish(found: usize, plan: &RowPlan, places: &[Option<usize>], columns: &mut [Column]) -> usize {
     if found >= plan.columns.len() || !plan.short_rows {
         return found;
     }
     for place in places[found..].iter().flatten() {
-        rows.columns[*place].push(f64::NAN);
+        columns[*place].push(f64::NAN);
     }
     plan.columns.len()
 }
 
 /// Reads a line with blanks between cells; the number of cells.
-fn blank_row(line: &[u8], plan: &RowPlan, places: &[Option<usize>], rows: &mut Rows) -> usize {
+fn blank_row(
+    line: &[u8],
+    plan: &RowPlan,
+    places: &[Option<usize>],
+    columns: &mut [Column],
+    rows: &mut Rows,
+) -> usize {
     let cells = line
         .split(u8::is_ascii_whitespace)
         .filter(|cell| !cell.is_empty());
@@ -290,18 +321,18 @@ fn blank_row(line: &[u8], plan: &RowPlan, places: &[Option<usize>], rows: &mut R
             let number = leading_number(cell, plan.marks.decimal);
             match (plan.columns[column], number) {
                 (ColumnKind::Numbers, Some((value, used))) if used == cell.len() => {
-                    rows.columns[place].push(value);
+                    columns[place].push(value);
                 }
-                _ => slow_cell(cell, column, place, plan, rows),
+                _ => slow_cell(cell, column, &mut columns[place], plan, rows),
             }
         }
         column += 1;
     }
-    finish(column, plan, places, rows)
+    finish(column, plan, places, columns)
 }
 
 /// A cell with quotes, blanks, thousands marks, a moment, or nothing.
-fn slow_cell(bytes: &[u8], column: usize, place: usize, plan: &RowPlan, rows: &mut Rows) {
+fn slow_cell(bytes: &[u8], column: usize, out: &mut Column, plan: &RowPlan, rows: &mut Rows) {
     let text = match plan.encoding {
         Encoding::Windows1252 => plan.encoding.decode(bytes),
         // UTF-16 has become UTF-8 on the way.
@@ -316,7 +347,7 @@ fn slow_cell(bytes: &[u8], column: usize, place: usize, plan: &RowPlan, rows: &m
         },
         ColumnKind::Text => Cell::Blank,
     };
-    rows.columns[place].push(match found {
+    out.push(match found {
         Cell::Number(value) => value,
         Cell::Blank | Cell::Other => f64::NAN,
     });
@@ -348,14 +379,24 @@ mod tests {
         }
     }
 
+    fn read(text: &[u8], plan: &RowPlan, places: &[Option<usize>]) -> (Vec<Vec<f64>>, Rows) {
+        let lines = count_lines(text, plan);
+        let mut room = vec![vec![0.0; lines]; places.iter().flatten().count()];
+        let mut columns: Vec<Column> = room.iter_mut().map(|room| Column::new(room)).collect();
+        let rows = read_rows(text, plan, places, &mut columns);
+        room.iter_mut()
+            .for_each(|column| column.truncate(rows.rows));
+        (room, rows)
+    }
+
     #[test]
     fn closed_form_cells() {
         let plan = plan(Separator::Mark(b','), 3);
         let text = "1, 2.5 ,x\r\n# no\n\n,\"4\",5,\n7,8,9";
-        let rows = read_rows(text.as_bytes(), &plan, &[Some(1), None, Some(0)]);
-        assert!(rows.columns[0][0].is_nan() && rows.columns[1][1].is_nan());
-        assert_eq!(rows.columns[0][1..], [5.0, 9.0]);
-        assert_eq!((rows.columns[1][0], rows.columns[1][2]), (1.0, 7.0));
+        let (columns, rows) = read(text.as_bytes(), &plan, &[Some(1), None, Some(0)]);
+        assert!(columns[0][0].is_nan() && columns[1][1].is_nan());
+        assert_eq!(columns[0][1..], [5.0, 9.0]);
+        assert_eq!((columns[1][0], columns[1][2]), (1.0, 7.0));
         let fault = Fault {
             line: 0,
             column: 2,
@@ -375,26 +416,26 @@ mod tests {
             ("1,2,3\n4,5,6,7\n", 4, false),
             ("1,2,3\n4", 1, true),
         ] {
-            let rows = read_rows(text.as_bytes(), &plan, &[Some(0), Some(1), Some(2)]);
+            let (columns, rows) = read(text.as_bytes(), &plan, &[Some(0), Some(1), Some(2)]);
             let ragged = Ragged {
                 line: 1,
                 found,
                 last,
             };
             assert_eq!(rows.ragged, Some(ragged), "{text}");
-            assert_eq!(rows.columns, [[1.0], [2.0], [3.0]], "{text}");
+            assert_eq!(columns, [[1.0], [2.0], [3.0]], "{text}");
         }
     }
 
     #[test]
     fn closed_form_blanks_and_short_rows() {
         let mut plan = plan(Separator::Blanks, 2);
-        let rows = read_rows(b" 1   2\n\t3\t4 \n", &plan, &[Some(0), Some(1)]);
-        assert_eq!(rows.columns, [[1.0, 3.0], [2.0, 4.0]]);
+        let (columns, _) = read(b" 1   2\n\t3\t4 \n", &plan, &[Some(0), Some(1)]);
+        assert_eq!(columns, [[1.0, 3.0], [2.0, 4.0]]);
         plan.separator = Separator::Mark(b'\t');
         plan.short_rows = true;
-        let rows = read_rows(b"1\t2\n3\n", &plan, &[Some(0), Some(1)]);
-        assert_eq!(rows.columns[0], [1.0, 3.0]);
-        assert!(rows.columns[1][1].is_nan() && rows.ragged.is_none());
+        let (columns, rows) = read(b"1\t2\n3\n", &plan, &[Some(0), Some(1)]);
+        assert_eq!(columns[0], [1.0, 3.0]);
+        assert!(columns[1][1].is_nan() && rows.ragged.is_none());
     }
 }

@@ -4,7 +4,7 @@ use crate::error::{Error, Place};
 use crate::reader::Sink;
 use crate::source::Source;
 use crate::text_lines::{Lines, stretch, stretches};
-use crate::text_rows::{Fault, RowPlan, Rows, read_rows};
+use crate::text_rows::{Column, Fault, RowPlan, Rows, count_lines, read_rows};
 use rayon::prelude::*;
 
 /// Stretches read at once for each thread.
@@ -35,7 +35,7 @@ pub struct CutOff {
     pub found: usize,
 }
 
-/// Reads columns of a table.
+/// Reads columns of a table in blocks.
 ///
 /// * `wanted`: column of the file and position for the sink
 ///
@@ -50,54 +50,187 @@ pub fn read_table(
     wanted: &[(usize, usize)],
     sink: &mut dyn Sink,
 ) -> Result<Option<CutOff>, Error> {
-    let mut places = vec![None; table.plan.columns.len()];
-    for (place, (column, _)) in wanted.iter().enumerate() {
-        places[*column] = Some(place);
-    }
+    let places = places(table, wanted.iter().map(|(column, _)| *column));
     let count = stretches(&table.lines);
     let batch = (AHEAD * rayon::current_num_threads()) as u64;
-    let mut line = table.first_line;
-    let mut rows_before = 0_usize;
+    let mut course = Course::new(table);
     let mut start = 0;
     while start < count {
         let end = (start + batch).min(count);
-        let read: Vec<Result<Rows, Error>> = (start..end)
+        let read: Vec<Result<(Vec<Vec<f64>>, Rows), Error>> = (start..end)
             .into_par_iter()
             .map(|index| {
                 let bytes = stretch(source, &table.lines, index)?;
-                Ok(read_rows(&bytes, &table.plan, &places))
+                let mut room = vec![vec![0.0; count_lines(&bytes, &table.plan)]; wanted.len()];
+                let mut columns: Vec<Column> =
+                    room.iter_mut().map(|room| Column::new(room)).collect();
+                let rows = read_rows(&bytes, &table.plan, &places, &mut columns);
+                Ok((room, rows))
             })
             .collect();
-        for rows in read {
-            let rows = rows?;
-            for fault in &rows.faults {
-                sink.fault(fault_error(source, table, fault, line))?;
+        for read in read {
+            let (columns, rows) = read?;
+            course.faults(source, table, &rows, sink)?;
+            for (column, (_, position)) in columns.iter().zip(wanted) {
+                sink.take(*position, &column[..rows.rows])?;
             }
-            for (column, (_, position)) in rows.columns.iter().zip(wanted) {
-                sink.take(*position, column)?;
+            if let Some(cut) = course.advance(source, table, &rows)? {
+                return Ok(Some(cut));
             }
-            rows_before += rows.columns.first().map_or(0, Vec::len);
-            if let Some(ragged) = rows.ragged {
-                let line = line + ragged.line;
-                let expected = table.plan.columns.len();
-                if ragged.last && rows_before > 0 && ragged.found < expected {
-                    let found = ragged.found;
-                    return Ok(Some(CutOff { line, found }));
-                }
-                let found = ragged.found;
-                let problem =
-                    format!("expected {expected} cells, as in the lines before, and found {found}");
-                return Err(malformed(source, line, problem));
-            }
-            line += rows.lines;
         }
         start = end;
     }
-    if rows_before == 0 && !wanted.is_empty() {
-        let problem = "there are no rows of numbers".to_owned();
-        return Err(malformed(source, table.first_line, problem));
+    course.end(source, table, wanted.is_empty())
+}
+
+/// Reads columns of a table into memory, each stretch right into its place.
+///
+/// * `wanted`: columns of the file
+///
+/// # Errors
+/// As [`read_table`], with the first cell that is no number.
+pub fn read_whole_table(
+    source: &Source,
+    table: &Table,
+    wanted: &[usize],
+) -> Result<(Vec<Vec<f64>>, Option<CutOff>), Error> {
+    struct Strict;
+    impl Sink for Strict {
+        fn take(&mut self, _: usize, _: &[f64]) -> Result<(), Error> {
+            Ok(())
+        }
     }
-    Ok(None)
+    let places = places(table, wanted.iter().copied());
+    let count = stretches(&table.lines);
+    let lengths: Vec<usize> = (0..count)
+        .into_par_iter()
+        .map(|index| {
+            Ok(count_lines(
+                &stretch(source, &table.lines, index)?,
+                &table.plan,
+            ))
+        })
+        .collect::<Result<_, Error>>()?;
+    let mut columns = vec![vec![0.0; lengths.iter().sum()]; wanted.len()];
+
+    // The room of each stretch in every column.
+    let mut rest: Vec<&mut [f64]> = columns.iter_mut().map(Vec::as_mut_slice).collect();
+    let mut rooms: Vec<Vec<Column>> = Vec::new();
+    for length in &lengths {
+        let mut parts = Vec::new();
+        for whole in &mut rest {
+            let (part, after) = std::mem::take(whole).split_at_mut(*length);
+            *whole = after;
+            parts.push(Column::new(part));
+        }
+        rooms.push(parts);
+    }
+    let read: Vec<Rows> = rooms
+        .into_par_iter()
+        .enumerate()
+        .map(|(index, mut rooms)| {
+            let bytes = stretch(source, &table.lines, index as u64)?;
+            Ok(read_rows(&bytes, &table.plan, &places, &mut rooms))
+        })
+        .collect::<Result<_, Error>>()?;
+
+    // Blank lines and comments have left gaps.
+    let (mut from, mut to) = (0, 0);
+    let mut course = Course::new(table);
+    let mut cut = None;
+    for (rows, length) in read.iter().zip(&lengths) {
+        course.faults(source, table, rows, &mut Strict)?;
+        if from != to {
+            columns
+                .iter_mut()
+                .for_each(|column| column.copy_within(from..from + rows.rows, to));
+        }
+        from += length;
+        to += rows.rows;
+        cut = course.advance(source, table, rows)?;
+        if cut.is_some() {
+            break;
+        }
+    }
+    columns.iter_mut().for_each(|column| column.truncate(to));
+    if cut.is_none() {
+        course.end(source, table, wanted.is_empty())?;
+    }
+    Ok((columns, cut))
+}
+
+fn places(table: &Table, wanted: impl Iterator<Item = usize>) -> Vec<Option<usize>> {
+    let mut places = vec![None; table.plan.columns.len()];
+    for (place, column) in wanted.enumerate() {
+        places[column] = Some(place);
+    }
+    places
+}
+
+/// How far the reading of a table has come.
+struct Course {
+    line: u64,
+    rows: usize,
+}
+
+impl Course {
+    fn new(table: &Table) -> Self {
+        Self {
+            line: table.first_line,
+            rows: 0,
+        }
+    }
+
+    fn faults(
+        &self,
+        source: &Source,
+        table: &Table,
+        rows: &Rows,
+        sink: &mut dyn Sink,
+    ) -> Result<(), Error> {
+        let faults = rows.faults.iter();
+        faults
+            .map(|fault| fault_error(source, table, fault, self.line))
+            .try_for_each(|f| sink.fault(f))
+    }
+
+    /// Goes on behind a stretch; the last line where that was cut off.
+    fn advance(
+        &mut self,
+        source: &Source,
+        table: &Table,
+        rows: &Rows,
+    ) -> Result<Option<CutOff>, Error> {
+        self.rows += rows.rows;
+        let Some(ragged) = rows.ragged else {
+            self.line += rows.lines;
+            return Ok(None);
+        };
+        let (line, found) = (self.line + ragged.line, ragged.found);
+        let expected = table.plan.columns.len();
+        if ragged.last && self.rows > 0 && found < expected {
+            return Ok(Some(CutOff { line, found }));
+        }
+        let problem =
+            format!("expected {expected} cells, as in the lines before, and found {found}");
+        Err(malformed(source, line, problem))
+    }
+
+    fn end(
+        &self,
+        source: &Source,
+        table: &Table,
+        nothing_wanted: bool,
+    ) -> Result<Option<CutOff>, Error> {
+        match self.rows == 0 && !nothing_wanted {
+            true => Err(malformed(
+                source,
+                table.first_line,
+                "there are no rows of numbers".to_owned(),
+            )),
+            false => Ok(None),
+        }
+    }
 }
 
 fn malformed(source: &Source, line: u64, problem: String) -> Error {
