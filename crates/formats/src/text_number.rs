@@ -179,7 +179,8 @@ fn exponent(bytes: &[u8], mut at: usize) -> Option<(i32, usize)> {
 fn slow_number(bytes: &[u8], decimal: u8) -> Option<f64> {
     let finite = |value: f64| Some(value).filter(|value| value.is_finite());
     if decimal == b'.'
-        && let Ok(value) = fast_float2::parse::<f64, _>(bytes)
+        && let Ok(text) = std::str::from_utf8(bytes)
+        && let Ok(value) = text.parse()
     {
         return finite(value);
     }
