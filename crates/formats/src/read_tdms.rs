@@ -280,10 +280,7 @@ fn decode_channel(channel: &Channel, bytes: &[u8], region: &Region, out: &mut [f
     let members: Vec<&Member> = own.collect();
     if let [member] = members[..] {
         decode(bytes, member.layout, channel.zero, out);
-        if channel.scales != Scales::default() {
-            let raw = out.to_vec();
-            channel.scales.apply(&[(member.id, &raw)], out);
-        }
+        channel.scales.apply_in_place(out);
         return;
     }
     let raw: Vec<(u32, Vec<f64>)> = members

@@ -131,6 +131,23 @@ impl Scales {
         self.value(last, raw, out);
     }
 
+    /// Scales the raw values of a channel that takes only one number of them, in
+    /// their place.
+    pub fn apply_in_place(&self, values: &mut [f64]) {
+        let last = self.scales.last_key_value().map_or(RAW, |(last, _)| *last);
+        if self
+            .scales
+            .values()
+            .any(|scale| matches!(scale, Scale::Sum { .. }))
+        {
+            let raw = values.to_vec();
+            self.value(last, &[(RAW, &raw)], values);
+        } else {
+            // The raw values are where the innermost scale looks for them.
+            self.value(last, &[], values);
+        }
+    }
+
     fn value(&self, number: u32, raw: &[(u32, &[f64])], out: &mut [f64]) {
         let Some(scale) = self.scales.get(&number) else {
             let found = raw

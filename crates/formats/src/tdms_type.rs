@@ -153,13 +153,6 @@ pub fn decode(bytes: &[u8], layout: Layout, zero: i64, out: &mut [f64]) {
     macro_rules! numbers {
         ($type:ty) => {{
             const SIZE: usize = size_of::<$type>();
-            let read = |value: &[u8]| -> f64 {
-                let value: [u8; SIZE] = value.try_into().unwrap_or([0; SIZE]);
-                match layout.big_endian {
-                    true => <$type>::from_be_bytes(value) as f64,
-                    false => <$type>::from_le_bytes(value) as f64,
-                }
-            };
             // The usual case apart: the compiler then copies whole registers.
             if layout.stride == SIZE && !layout.big_endian {
                 let values = bytes[layout.offset..].chunks_exact(SIZE);
@@ -167,10 +160,17 @@ pub fn decode(bytes: &[u8], layout: Layout, zero: i64, out: &mut [f64]) {
                     let value: [u8; SIZE] = value.try_into().unwrap_or([0; SIZE]);
                     *out = <$type>::from_le_bytes(value) as f64;
                 }
+            } else if !layout.big_endian {
+                let rows = bytes[layout.offset..].chunks(layout.stride);
+                for (out, row) in out.iter_mut().zip(rows) {
+                    let value: [u8; SIZE] = row[..SIZE].try_into().unwrap_or([0; SIZE]);
+                    *out = <$type>::from_le_bytes(value) as f64;
+                }
             } else {
                 let rows = bytes[layout.offset..].chunks(layout.stride);
                 for (out, row) in out.iter_mut().zip(rows) {
-                    *out = read(&row[..SIZE]);
+                    let value: [u8; SIZE] = row[..SIZE].try_into().unwrap_or([0; SIZE]);
+                    *out = <$type>::from_be_bytes(value) as f64;
                 }
             }
         }};
