@@ -14,7 +14,13 @@ const COLUMNS: usize = 80;
 pub fn run(arguments: &InspectArguments) -> anyhow::Result<()> {
     let request = InspectRequest {
         open: OpenRequest {
-            format: arguments.file_format.clone(),
+            format: arguments.open.file_format.clone(),
+            separator: arguments.open.separator.clone(),
+            decimal: arguments.open.decimal.clone(),
+            thousands: arguments.open.thousands.clone(),
+            encoding: arguments.open.encoding.clone(),
+            header_line: arguments.open.header_line,
+            comment: arguments.open.comment.clone(),
         },
         channels: arguments.channels.clone(),
     };

@@ -89,6 +89,20 @@ pub struct FilesFile {
     pub time_unit: Option<Spanned<String>>,
     /// Sampling rate, where there is no column of times.
     pub rate: Option<Spanned<QuantityText>>,
+    /// Format of the recordings, whatever their first bytes say.
+    pub format: Option<Spanned<String>>,
+    /// Between the cells of a text.
+    pub separator: Option<Spanned<String>>,
+    /// Before decimals.
+    pub decimal: Option<Spanned<String>>,
+    /// Between groups of three digits.
+    pub thousands: Option<Spanned<String>>,
+    /// Encoding of a text.
+    pub encoding: Option<Spanned<String>>,
+    /// Line with the names of the columns, from 1; 0 if there is none.
+    pub header_line: Option<Spanned<u64>>,
+    /// Beginning of lines that are passed over.
+    pub comment: Option<Spanned<String>>,
 }
 
 /// `[channels.*]`

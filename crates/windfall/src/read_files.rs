@@ -4,11 +4,13 @@
 use crate::campaign::{ChannelPlan, FilePlan, ImpactEntry, Specimen, TimePlan};
 use crate::error::{Error, Place};
 use crate::file_campaign::{FORMAT, FilesFile};
-use crate::toml_source::{Needed, TomlSource, invalid, missing, place_at};
+use crate::request_open::{DECIMALS, ENCODINGS, FORMATS, SEPARATORS, THOUSANDS};
+use crate::toml_source::{Needed, TomlSource, choice, invalid, missing, place_at};
 use crate::toml_source::{optional_quantity, suggestion};
 use std::path::{Path, PathBuf};
 use toml::Spanned;
 use windfall_formats::open::OpenOptions;
+use windfall_formats::text_options::TextOptions;
 use windfall_numerics::unit::parse_unit;
 
 /// Whether this windfall knows the shape of the file.
@@ -50,7 +52,7 @@ pub fn file_plan(
 ) -> Result<FilePlan, Error> {
     Ok(FilePlan {
         directory: recordings_directory(source, directory, files)?,
-        open: OpenOptions::default(),
+        open: open_plan(source, files)?,
         time: match channels.iter().all(|channel| channel.time.is_some()) {
             true => TimePlan::OfChannels,
             false => time_plan(source, files)?,
@@ -58,6 +60,31 @@ pub fn file_plan(
         time_scale: time_scale(source, files)?,
         channels,
     })
+}
+
+/// How files are read that do not say it themselves.
+fn open_plan(source: &TomlSource, files: &FilesFile) -> Result<OpenOptions, Error> {
+    let text = TextOptions {
+        separator: named(source, files.separator.as_ref(), "separator", &SEPARATORS)?,
+        decimal: named(source, files.decimal.as_ref(), "decimal", &DECIMALS)?,
+        thousands: named(source, files.thousands.as_ref(), "thousands", &THOUSANDS)?,
+        encoding: named(source, files.encoding.as_ref(), "encoding", &ENCODINGS)?,
+        header_line: files.header_line.as_ref().map(|line| *line.get_ref()),
+        comment: files.comment.as_ref().map(|text| text.get_ref().clone()),
+    };
+    Ok(OpenOptions {
+        format: named(source, files.format.as_ref(), "format", &FORMATS)?,
+        text,
+    })
+}
+
+fn named<T: Copy>(
+    source: &TomlSource,
+    value: Option<&Spanned<String>>,
+    key: &'static str,
+    known: &[(&'static str, T)],
+) -> Result<Option<T>, Error> {
+    choice(source, value, ("[files]", key), known)
 }
 
 fn recordings_directory(
