@@ -21,6 +21,35 @@ const HEAD: u64 = 4096;
 /// The first bytes of HDF5, at the beginning of a file or behind a block of user data.
 const HDF5: &[u8] = b"\x89HDF\r\n\x1a\n";
 
+/// Files that people have beside their recordings: first bytes, what they are, what
+/// to do.
+const OTHERS: [(&[u8], &str, &str); 8] = [
+    (
+        b"\x1aE\xdf\xa3",
+        "an EBML file, such as an enDAQ recording (.ide)",
+        "export the channels as CSV or MAT with the program of the recorder",
+    ),
+    (
+        b"PK\x03\x04",
+        "a zip archive, such as a workbook (.xlsx) or a sigrok capture (.sr)",
+        "export the sheet or the capture as CSV, or unpack the archive",
+    ),
+    (b"\x1f\x8b", "a gzip archive", "unpack it (gunzip)"),
+    (
+        b"\xd0\xcf\x11\xe0",
+        "an old Office file (.xls)",
+        "save the sheet as CSV",
+    ),
+    (b"%PDF", "a PDF", "name the recording itself"),
+    (b"\x89PNG", "a picture", "name the recording itself"),
+    (b"\xff\xd8\xff", "a picture", "name the recording itself"),
+    (
+        b"SQLite format 3",
+        "a database",
+        "name the recording itself",
+    ),
+];
+
 /// How a file is to be read where it does not say so itself.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct OpenOptions {
@@ -72,6 +101,13 @@ pub fn tell_format(source: &Source) -> Result<Format, Error> {
         return Err(Error::Empty {
             path: source.path().to_path_buf(),
             expected: "a recording",
+        });
+    }
+    if let Some((_, what, advice)) = OTHERS.iter().find(|(magic, ..)| head.starts_with(magic)) {
+        return Err(Error::UnknownFormat {
+            path: source.path().to_path_buf(),
+            found: format!("this is {what}, which windfall does not read"),
+            advice: (*advice).to_owned(),
         });
     }
     if head.starts_with(b"TDSm") || head.starts_with(b"TDSh") {

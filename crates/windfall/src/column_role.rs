@@ -23,8 +23,9 @@ pub fn unit_of(name: &str) -> Option<String> {
 }
 
 /// Parts of names and what they usually stand for.
-const ROLES: [(&str, &str); 17] = [
+const ROLES: [(&str, &str); 18] = [
     ("time", "time"),
+    ("x_value", "time"),
     ("phase_a", "phase_a"),
     ("phase a", "phase_a"),
     ("phase_b", "phase_b"),

@@ -13,7 +13,7 @@ pub const MOST_PANELS: usize = 12;
 const WIDTH: f64 = 720.0;
 const LEFT: f64 = 64.0;
 const RIGHT: f64 = 20.0;
-const TOP: f64 = 34.0;
+const TOP: f64 = 52.0;
 const PANEL: f64 = 118.0;
 const GAP: f64 = 30.0;
 const BOTTOM: f64 = 46.0;
@@ -29,41 +29,68 @@ const COLOURS: [&str; 7] = [
     "#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e69f00", "#56b4e9", "#000000",
 ];
 
+/// A recording that begins later than this many times its length has its times
+/// counted from a round beginning.
+const FAR: f64 = 100.0;
+
 /// Up to this many points are drawn as dots as well.
 const DOTS: usize = 150;
 
 /// Draws the channels of a recording, at most [`MOST_PANELS`] of them.
+///
+/// Channels that overlap in time share an axis; others have their own.
 #[must_use]
 pub fn svg_of_curves(title: &str, curves: &[Curve]) -> String {
     let shown = &curves[..curves.len().min(MOST_PANELS)];
-    let height = TOP + shown.len().max(1) as f64 * (PANEL + GAP) - GAP + BOTTOM;
+    let groups: Vec<&[Curve]> = shown
+        .chunk_by(|a, b| a.timed == b.timed && overlap(a, b))
+        .collect();
+    let axes = groups.len().max(1) as f64;
+    let panels = shown.len().max(1) as f64;
+    let height = TOP + panels * (PANEL + GAP) - GAP + axes * BOTTOM;
     let mut drawing = Drawing::new(WIDTH, height);
-    drawing.text((LEFT, 18.0), Anchor::Start, 13.0, title);
+    drawing.text((LEFT, 20.0), Anchor::Start, 13.0, title);
     if shown.len() < curves.len() {
         let more = format!("{} of {} channels", shown.len(), curves.len());
-        drawing.text((WIDTH - RIGHT, 18.0), Anchor::End, 11.0, &more);
+        drawing.text((WIDTH - RIGHT, 20.0), Anchor::End, 11.0, &more);
     }
-    let time = TimeAxis::of(shown);
-    for (index, curve) in shown.iter().enumerate() {
-        let top = TOP + index as f64 * (PANEL + GAP);
-        let last = index + 1 == shown.len();
-        panel(
-            &mut drawing,
-            curve,
-            &time,
-            top,
-            COLOURS[index % COLOURS.len()],
-        );
-        if last {
-            time.labels(&mut drawing, top + PANEL);
+    let (mut top, mut index) = (TOP, 0);
+    for group in groups {
+        let time = TimeAxis::of(group);
+        for curve in group {
+            panel(
+                &mut drawing,
+                curve,
+                &time,
+                top,
+                COLOURS[index % COLOURS.len()],
+            );
+            top += PANEL + GAP;
+            index += 1;
         }
+        time.labels(&mut drawing, top - GAP);
+        top += BOTTOM;
     }
     drawing.svg()
+}
+
+/// Whether two channels were recorded at the same time, in part.
+fn overlap(a: &Curve, b: &Curve) -> bool {
+    match (range(a), range(b)) {
+        (Some(a), Some(b)) => a.0 <= b.1 && b.0 <= a.1,
+        _ => true,
+    }
+}
+
+fn range(curve: &Curve) -> Option<(f64, f64)> {
+    Some((curve.points.first()?.x, curve.points.last()?.x))
 }
 
 /// The shared axis of time, in a unit that suits its length.
 struct TimeAxis {
     axis: Axis,
+    /// Taken off times that are long beside the recording; s.
+    zero: f64,
     scale: f64,
     title: String,
 }
@@ -84,22 +111,37 @@ impl TimeAxis {
             span if span < 1.0 => (1e3, "ms"),
             _ => (1.0, "s"),
         };
-        let axis = axis(low * scale, high * scale, 8);
+        // Seconds since 1970, for example, would need ten digits at every tick.
+        let zero = match low.abs() > FAR * (high - low) && high > low {
+            true => low.floor(),
+            false => 0.0,
+        };
+        let axis = axis((low - zero) * scale, (high - zero) * scale, 8);
         let name = match timed {
             true => "time",
             false => "sample",
         };
-        let title = format!("{name}{}", unit_label(unit, axis.power));
-        Self { axis, scale, title }
+        let since = match zero {
+            0.0 => String::new(),
+            zero => format!(" since {zero} s"),
+        };
+        let title = format!("{name}{since}{}", unit_label(unit, axis.power));
+        Self {
+            axis,
+            zero,
+            scale,
+            title,
+        }
     }
 
     fn place(&self, x: f64) -> f64 {
-        let part = (x * self.scale - self.axis.low) / (self.axis.high - self.axis.low);
+        let part =
+            ((x - self.zero) * self.scale - self.axis.low) / (self.axis.high - self.axis.low);
         LEFT + part * (WIDTH - LEFT - RIGHT)
     }
 
     fn tick(&self, tick: f64) -> f64 {
-        self.place(tick / self.scale)
+        self.place(tick / self.scale + self.zero)
     }
 
     fn labels(&self, drawing: &mut Drawing, bottom: f64) {
