@@ -35,6 +35,9 @@ pub struct CutOff {
     pub found: usize,
 }
 
+/// Samples of the columns of a stretch, and what else was found in it.
+type Read = (Vec<Vec<f64>>, Rows);
+
 /// Reads columns of a table in blocks.
 ///
 /// * `wanted`: column of the file and position for the sink
@@ -57,7 +60,7 @@ pub fn read_table(
     let mut start = 0;
     while start < count {
         let end = (start + batch).min(count);
-        let read: Vec<Result<(Vec<Vec<f64>>, Rows), Error>> = (start..end)
+        let read: Vec<Result<Read, Error>> = (start..end)
             .into_par_iter()
             .map(|index| {
                 let bytes = stretch(source, &table.lines, index)?;
