@@ -11,10 +11,22 @@
 //! unit, is said in a campaign and is not known here. Sizes and offsets that a
 //! file declares are checked against its length before anything is allocated.
 
+mod array_channels;
+mod array_clock;
+mod array_pass;
+mod array_tree;
 pub mod contents;
 pub mod error;
+mod mat_element;
+mod mat_flow;
+mod mat_matrix;
+mod mat_number;
+mod mat_stored;
+mod mat_version4;
+mod mat_version5;
 pub mod open;
 pub mod read_lvm;
+pub mod read_mat;
 pub mod read_tdms;
 pub mod read_text;
 pub mod read_wav;

@@ -4,6 +4,7 @@
 use crate::contents::Format;
 use crate::error::Error;
 use crate::read_lvm::LvmReader;
+use crate::read_mat::{self, MatReader};
 use crate::read_tdms::TdmsReader;
 use crate::read_text::TextReader;
 use crate::read_wav::WavReader;
@@ -46,6 +47,7 @@ pub fn open_source(source: Source, options: &OpenOptions) -> Result<Box<dyn Read
         Format::Lvm => Ok(Box::new(LvmReader::open(source)?)),
         Format::Wav => Ok(Box::new(WavReader::open(source)?)),
         Format::Tdms => Ok(Box::new(TdmsReader::open(source)?)),
+        Format::Mat => Ok(Box::new(MatReader::open(source)?)),
         other => Err(Error::UnknownFormat {
             path: source.path().to_path_buf(),
             found: format!("this is a {other} file"),
@@ -76,6 +78,9 @@ pub fn tell_format(source: &Source) -> Result<Format, Error> {
     }
     if head.starts_with(b"LabVIEW Measurement") {
         return Ok(Format::Lvm);
+    }
+    if read_mat::begins(&head) {
+        return Ok(Format::Mat);
     }
     Ok(Format::Text)
 }

@@ -1,0 +1,119 @@
+//! MATLAB files of versions 4 to 7. Version 7.3 is HDF5: see `read_hdf5`.
+
+use crate::array_channels::list_channels;
+use crate::array_pass::Pass;
+use crate::array_tree::Series;
+use crate::contents::{Contents, Format};
+use crate::error::Error;
+use crate::mat_flow::{Flow, Region};
+use crate::mat_stored::Stored;
+use crate::reader::{Reader, Sink};
+use crate::source::Source;
+use crate::{mat_version4, mat_version5};
+
+/// Numbers that are read at once.
+const BLOCK: u64 = 1 << 16;
+
+/// A MATLAB file of version 4 to 7.
+#[derive(Debug)]
+pub struct MatReader {
+    source: Source,
+    contents: Contents,
+    series: Vec<Series>,
+    stored: Vec<Stored>,
+}
+
+/// Whether a file begins like a MATLAB file of version 4 to 7.
+pub(crate) fn begins(head: &[u8]) -> bool {
+    mat_version5::begins(head) || mat_version4::begins(head)
+}
+
+impl MatReader {
+    /// Lists what a file holds.
+    ///
+    /// # Errors
+    /// The file cannot be read, is none of MATLAB, or is damaged.
+    pub fn open(source: Source) -> Result<Self, Error> {
+        let mut properties = Vec::new();
+        let head = source.head(128)?;
+        let version_4 = !mat_version5::begins(&head) && mat_version4::begins(&head);
+        let (found, variant) = match version_4 {
+            true => (mat_version4::list(&source)?, "v4".to_owned()),
+            false => {
+                let header = mat_version5::read_header(&source)?;
+                let (found, compressed) = mat_version5::list(&source, &header)?;
+                properties.push(("description".to_owned(), header.description));
+                let version = if compressed { "v7" } else { "v5" };
+                (found, version.to_owned())
+            }
+        };
+        let big_endian = found.stored.first().is_some_and(|s| s.big_endian);
+        let variant = variant + if big_endian { ", big-endian" } else { "" };
+        let listing = list_channels(found.tree);
+        properties.extend(listing.properties);
+        Ok(Self {
+            source,
+            contents: Contents {
+                format: Format::Mat,
+                variant,
+                channels: listing.channels,
+                properties,
+                notes: listing.notes,
+            },
+            series: listing.series,
+            stored: found.stored,
+        })
+    }
+}
+
+impl Reader for MatReader {
+    fn contents(&self) -> &Contents {
+        &self.contents
+    }
+
+    fn read(&mut self, wanted: &[usize], sink: &mut dyn Sink) -> Result<(), Error> {
+        let mut arrays: Vec<usize> = wanted.iter().map(|&c| self.series[c].array).collect();
+        arrays.sort_unstable();
+        arrays.dedup();
+        let mut open: Option<(Region, Flow<'_>)> = None;
+        for array in arrays {
+            let stored = self.stored[array];
+            let series: Vec<(usize, Series)> = wanted
+                .iter()
+                .enumerate()
+                .map(|(position, &channel)| (position, self.series[channel]))
+                .filter(|(_, series)| series.array == array)
+                .collect();
+            // Arrays of one variable share a flow: they come in its order.
+            let flow = match open.take() {
+                Some((region, flow)) if region == stored.region => flow,
+                _ => Flow::new(&self.source, stored.region),
+            };
+            let (_, flow) = open.insert((stored.region, flow));
+            read_array(flow, stored, &mut Pass::new(series, sink))?;
+        }
+        Ok(())
+    }
+}
+
+fn read_array(flow: &mut Flow<'_>, stored: Stored, pass: &mut Pass<'_>) -> Result<(), Error> {
+    let size = stored.number.size();
+    let (mut at, end) = pass.range();
+    let mut numbers = Vec::new();
+    let mut bytes = Vec::new();
+    while at < end {
+        let count = (end - at).min(BLOCK);
+        bytes.resize((count * size) as usize, 0);
+        flow.read_at(stored.at + at * size, &mut bytes)?;
+        numbers.clear();
+        stored
+            .number
+            .decode(&bytes, stored.big_endian, &mut numbers);
+        pass.take(at, &numbers)?;
+        at += count;
+    }
+    if end == stored.count && stored.closes {
+        flow.finish()?;
+    }
+    Ok(())
+}
