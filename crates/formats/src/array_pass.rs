@@ -5,20 +5,24 @@ use crate::error::Error;
 use crate::reader::Sink;
 
 /// Hands parts of an array to the channels that want them.
-pub(crate) struct Pass<'a> {
+pub(crate) struct Pass {
     /// Position among the channels that are wanted, and where its samples are.
     wanted: Vec<(usize, Series)>,
     gathered: Vec<f64>,
-    sink: &'a mut dyn Sink,
 }
 
-impl<'a> Pass<'a> {
-    /// A pass for some channels of one array.
-    pub fn new(wanted: Vec<(usize, Series)>, sink: &'a mut dyn Sink) -> Self {
+impl Pass {
+    /// A pass for those of the wanted channels that are in an array.
+    pub fn new(array: usize, wanted: &[usize], series: &[Series]) -> Self {
+        let wanted = wanted
+            .iter()
+            .enumerate()
+            .map(|(position, &channel)| (position, series[channel]))
+            .filter(|(_, series)| series.array == array)
+            .collect();
         Self {
             wanted,
             gathered: Vec::new(),
-            sink,
         }
     }
 
@@ -33,7 +37,7 @@ impl<'a> Pass<'a> {
     ///
     /// # Errors
     /// What the sink returns.
-    pub fn take(&mut self, first: u64, elements: &[f64]) -> Result<(), Error> {
+    pub fn take(&mut self, first: u64, elements: &[f64], sink: &mut dyn Sink) -> Result<(), Error> {
         let end = first + elements.len() as u64;
         for (position, series) in &self.wanted {
             let (from, to) = (first.max(series.start), end.min(end_of(series)));
@@ -42,7 +46,7 @@ impl<'a> Pass<'a> {
             }
             if series.step == 1 {
                 let part = &elements[(from - first) as usize..(to - first) as usize];
-                self.sink.take(*position, part)?;
+                sink.take(*position, part)?;
                 continue;
             }
             let next = (from - series.start).div_ceil(series.step) * series.step + series.start;
@@ -53,7 +57,7 @@ impl<'a> Pass<'a> {
             self.gathered.clear();
             self.gathered
                 .extend(part.iter().step_by(series.step as usize));
-            self.sink.take(*position, &self.gathered)?;
+            sink.take(*position, &self.gathered)?;
         }
         Ok(())
     }
@@ -95,15 +99,11 @@ mod tests {
         };
         for block in 1..13 {
             let mut kept = Kept(vec![Vec::new(); 3]);
-            let wanted = vec![
-                (0, series(4, 1, 4)),
-                (1, series(3, 4, 3)),
-                (2, series(1, 4, 3)),
-            ];
-            let mut pass = Pass::new(wanted, &mut kept);
+            let all = [series(4, 1, 4), series(3, 4, 3), series(1, 4, 3)];
+            let mut pass = Pass::new(0, &[0, 1, 2], &all);
             assert_eq!(pass.range(), (1, 12));
             for (i, part) in elements.chunks(block).enumerate() {
-                pass.take((i * block) as u64, part).unwrap();
+                pass.take((i * block) as u64, part, &mut kept).unwrap();
             }
             assert_eq!(kept.0[0], [4.0, 5.0, 6.0, 7.0]);
             assert_eq!(kept.0[1], [3.0, 7.0, 11.0]);

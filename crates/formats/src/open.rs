@@ -3,6 +3,7 @@
 
 use crate::contents::Format;
 use crate::error::Error;
+use crate::read_hdf5::{self, Hdf5Reader};
 use crate::read_lvm::LvmReader;
 use crate::read_mat::{self, MatReader};
 use crate::read_tdms::TdmsReader;
@@ -47,6 +48,7 @@ pub fn open_source(source: Source, options: &OpenOptions) -> Result<Box<dyn Read
         Format::Lvm => Ok(Box::new(LvmReader::open(source)?)),
         Format::Wav => Ok(Box::new(WavReader::open(source)?)),
         Format::Tdms => Ok(Box::new(TdmsReader::open(source)?)),
+        Format::Hdf5 => Ok(Box::new(Hdf5Reader::open(source)?)),
         Format::Mat => Ok(Box::new(MatReader::open(source)?)),
         other => Err(Error::UnknownFormat {
             path: source.path().to_path_buf(),
@@ -78,6 +80,10 @@ pub fn tell_format(source: &Source) -> Result<Format, Error> {
     }
     if head.starts_with(b"LabVIEW Measurement") {
         return Ok(Format::Lvm);
+    }
+    // MATLAB 7.3 begins like both.
+    if read_hdf5::begins(&head) {
+        return Ok(Format::Hdf5);
     }
     if read_mat::begins(&head) {
         return Ok(Format::Mat);

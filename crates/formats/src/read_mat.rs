@@ -78,25 +78,25 @@ impl Reader for MatReader {
         let mut open: Option<(Region, Flow<'_>)> = None;
         for array in arrays {
             let stored = self.stored[array];
-            let series: Vec<(usize, Series)> = wanted
-                .iter()
-                .enumerate()
-                .map(|(position, &channel)| (position, self.series[channel]))
-                .filter(|(_, series)| series.array == array)
-                .collect();
             // Arrays of one variable share a flow: they come in its order.
             let flow = match open.take() {
                 Some((region, flow)) if region == stored.region => flow,
                 _ => Flow::new(&self.source, stored.region),
             };
             let (_, flow) = open.insert((stored.region, flow));
-            read_array(flow, stored, &mut Pass::new(series, sink))?;
+            let mut pass = Pass::new(array, wanted, &self.series);
+            read_array(flow, stored, &mut pass, sink)?;
         }
         Ok(())
     }
 }
 
-fn read_array(flow: &mut Flow<'_>, stored: Stored, pass: &mut Pass<'_>) -> Result<(), Error> {
+fn read_array(
+    flow: &mut Flow<'_>,
+    stored: Stored,
+    pass: &mut Pass,
+    sink: &mut dyn Sink,
+) -> Result<(), Error> {
     let size = stored.number.size();
     let (mut at, end) = pass.range();
     let mut numbers = Vec::new();
@@ -109,7 +109,7 @@ fn read_array(flow: &mut Flow<'_>, stored: Stored, pass: &mut Pass<'_>) -> Resul
         stored
             .number
             .decode(&bytes, stored.big_endian, &mut numbers);
-        pass.take(at, &numbers)?;
+        pass.take(at, &numbers, sink)?;
         at += count;
     }
     if end == stored.count && stored.closes {
