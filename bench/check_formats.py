@@ -83,11 +83,13 @@ def add_matrix(channels, name, values):
         add_matrix(channels, f"{name} (real)", values.real)
         add_matrix(channels, f"{name} (imaginary)", values.imag)
         return
-    if values.dtype.kind not in "iufb" or values.size < 2:
+    if values.dtype.kind not in "iufb" or values.size == 0:
         return
     if values.ndim == 1 or min(values.shape) == 1:
         channels.append(channel(name, values.ravel()))
         return
+    if values.shape[1] > 64 and values.shape[0] < values.shape[1]:
+        values = values.T
     for i in range(values.shape[1]):
         channels.append(channel(f"{name}/{i + 1}", values[:, i]))
 
@@ -99,8 +101,8 @@ def read_mat(path):
         if scipy.sparse.issparse(value):
             return
         if isinstance(value, np.ndarray) and value.dtype.names:
-            for field in value.dtype.names:
-                for i, element in enumerate(value.ravel(order="F")):
+            for i, element in enumerate(value.ravel(order="F")):
+                for field in value.dtype.names:
                     place = field if value.size == 1 else f"{i + 1}/{field}"
                     walk(f"{name}/{place}", element[field])
         elif isinstance(value, np.ndarray) and value.dtype == object:
@@ -111,9 +113,12 @@ def read_mat(path):
                 add_matrix(channels, name, value)
 
     for name, value in scipy.io.loadmat(path).items():
-        if not name.startswith("__"):
+        # "None" is how SciPy calls a variable without a name.
+        if not name.startswith("__") and name != "None":
             walk(name, value)
-    return channels
+    # Single numbers are properties, unless there is nothing else.
+    longer = [c for c in channels if c["length"] > 1]
+    return longer or channels
 
 
 def read_uff(path):
@@ -123,7 +128,10 @@ def read_uff(path):
         if record.get("type") != 58:
             continue
         data = np.asarray(record["data"])
-        interval = record.get("abscissa_inc") if record.get("abscissa_spacing") == 1 else None
+        even = record.get("abscissa_spacing") == 1
+        interval = record.get("abscissa_inc") if even and record.get("abscissa_spec_data_type") == 17 else None
+        if not even:
+            channels.append(channel(None, np.asarray(record["x"])))
         if np.iscomplexobj(data):
             channels += [channel(None, data.real, interval), channel(None, data.imag, interval)]
         else:

@@ -31,9 +31,12 @@ pub(crate) fn list_channels(mut tree: Tree) -> Listing {
         let name = format!("{}{}", array.path.join("/"), array.part);
         match count(&array.extents) {
             0 => tree.leave_out(&array.path, "it is empty"),
-            1 if !only_scalars => {
+            1 => {
                 if let Some(value) = array.value {
-                    listing.properties.push((name, value.to_string()));
+                    listing.properties.push((name.clone(), value.to_string()));
+                }
+                if only_scalars {
+                    add_channels(at, &array, &name, &mut tree, &mut listing);
                 }
             }
             _ => add_channels(at, &array, &name, &mut tree, &mut listing),
@@ -101,6 +104,33 @@ fn add_channels(at: usize, array: &Array, name: &str, tree: &mut Tree, listing: 
             properties: array.properties.clone(),
         });
     }
+    if samples == 0 && others.len() == 1 && rises_evenly(&array.beginning) {
+        first_is_time(name, many as usize, tree, listing);
+    }
+}
+
+/// The first of the last `many` channels times the others.
+fn first_is_time(name: &str, many: usize, tree: &mut Tree, listing: &mut Listing) {
+    let first = listing.channels.len() - many;
+    tree.notes.push(Note::Assumed {
+        what: format!(
+            "the first column of \"{name}\" rises evenly and is taken as the time in seconds"
+        ),
+    });
+    for channel in &mut listing.channels[first + 1..] {
+        channel.time = TimeBase::Channel(first);
+    }
+}
+
+/// Whether values rise by the same step, within a jitter; not by one: those are
+/// numbers of samples.
+fn rises_evenly(values: &[f64]) -> bool {
+    if values.len() < 3 {
+        return false;
+    }
+    let step = (values[values.len() - 1] - values[0]) / (values.len() - 1) as f64;
+    let even = |pair: &[f64]| ((pair[1] - pair[0]) - step).abs() < 0.2 * step;
+    step > 0.0 && step != 1.0 && values.windows(2).all(even)
 }
 
 /// Which extent is the samples.
@@ -212,6 +242,7 @@ mod tests {
             part: "",
             extents: first_fastest(lengths),
             stored_as: "64-bit float".to_owned(),
+            beginning: Vec::new(),
             value: (lengths.iter().product::<u64>() == 1).then_some(1000.0),
             unit: None,
             properties: Vec::new(),

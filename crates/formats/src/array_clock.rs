@@ -3,6 +3,7 @@
 
 use crate::array_tree::{Listing, Scalar, Tree, count};
 use crate::contents::{Note, TimeBase};
+use crate::read_text::is_time_name;
 use std::collections::BTreeMap;
 
 const TIMES: [&str; 10] = [
@@ -51,7 +52,7 @@ const STARTS: [&str; 3] = ["t0", "tstart", "wfstartoffset"];
 
 /// Whether a name is one by which times go.
 pub(crate) fn names_time(name: &str) -> bool {
-    TIMES.contains(&plain(name).as_str())
+    is_time_name(name) || TIMES.contains(&plain(name).as_str())
 }
 
 /// Lower case, without the marks between words.
@@ -79,7 +80,8 @@ pub(crate) fn time_bases(tree: &Tree, listing: &mut Listing) -> Vec<Note> {
     let mut assumed: Vec<(String, usize)> = Vec::new();
     for channel in 0..listing.channels.len() {
         let path = &tree.arrays[listing.series[channel].array].path;
-        if is_time(&clocks, path, channel) {
+        let known = listing.channels[channel].time != TimeBase::Unknown;
+        if known || is_time(&clocks, path, channel) {
             continue;
         }
         let nearest = (0..=path.len())
@@ -194,6 +196,7 @@ mod tests {
                 extents: first_fastest(&[length]),
                 stored_as: String::new(),
                 value,
+                beginning: Vec::new(),
                 unit: None,
                 properties: Vec::new(),
             });

@@ -17,6 +17,8 @@ pub(crate) struct Array {
     pub stored_as: String,
     /// Its value, if it is one number.
     pub value: Option<f64>,
+    /// Its first numbers along the first extent, if it has two.
+    pub beginning: Vec<f64>,
     /// The unit that the file gives.
     pub unit: Option<String>,
     /// Other things that the file says of it.
@@ -43,6 +45,9 @@ pub(crate) struct Scalar {
     /// The number.
     pub value: f64,
 }
+
+/// Numbers from which a column of times is told.
+pub(crate) const BEGINNING: u64 = 64;
 
 /// What was found in a file, in its order.
 #[derive(Clone, Debug, Default)]

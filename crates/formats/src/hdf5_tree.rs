@@ -359,6 +359,7 @@ impl Walk<'_> {
                 extents: extents.clone(),
                 stored_as: stored_as(dataset, part),
                 value: values.get(at).copied(),
+                beginning: Vec::new(),
                 unit: attributes.unit(),
                 properties: attributes
                     .shown()

@@ -1,6 +1,6 @@
 //! One variable of a MAT file of version 5: numbers, texts, structs and cells.
 
-use crate::array_tree::{Array, first_fastest};
+use crate::array_tree::{Array, BEGINNING, first_fastest};
 use crate::error::Error;
 use crate::mat_element::{Element, Elements, MATRIX};
 use crate::mat_flow::Region;
@@ -324,13 +324,8 @@ fn list_numbers(
             );
             return Err(elements.malformed(&problem));
         }
-        let mut value = None;
-        if matrix.count == 1 {
-            let bytes = elements.data(element, 8)?;
-            let mut numbers = Vec::new();
-            number.decode(&bytes, elements.big_endian, &mut numbers);
-            value = numbers.first().copied();
-        }
+        let first = first_column(elements, matrix, element, number)?;
+        let value = first.first().copied().filter(|_| matrix.count == 1);
         walk.found.stored.push(Stored {
             region,
             at: element.at,
@@ -345,11 +340,28 @@ fn list_numbers(
             extents: first_fastest(&matrix.extents),
             stored_as: stored_as(matrix, class, number, region),
             value,
+            beginning: first,
             unit: None,
             properties: Vec::new(),
         });
     }
     Ok(())
+}
+
+/// The beginning of the first column of a matrix, or a single number.
+fn first_column(
+    elements: &mut Elements<'_>,
+    matrix: &Matrix,
+    element: Element,
+    number: MatNumber,
+) -> Result<Vec<f64>, Error> {
+    let mut numbers = Vec::new();
+    if matrix.count == 1 || (matrix.extents.len() == 2 && matrix.extents[1] > 1) {
+        let most = matrix.extents[0].min(BEGINNING) * number.size();
+        let bytes = elements.data(element, most)?;
+        number.decode(&bytes, elements.big_endian, &mut numbers);
+    }
+    Ok(numbers)
 }
 
 fn stored_as(matrix: &Matrix, class: MatNumber, number: MatNumber, region: Region) -> String {

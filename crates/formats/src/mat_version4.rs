@@ -3,7 +3,7 @@
 //! # Source
 //! The MathWorks (2023), "MAT-File Format", chapter 2, "Level 4 MAT-Files".
 
-use crate::array_tree::{Array, first_fastest};
+use crate::array_tree::{Array, BEGINNING, first_fastest};
 use crate::contents::Note;
 use crate::error::{Error, Place};
 use crate::mat_flow::{ADVICE, Flow, Region};
@@ -170,10 +170,11 @@ fn add(
             at: i as u64 * stored.count * stored.number.size(),
             ..stored
         };
-        let value = match stored.count {
-            1 => read_some(source, stored, 1)?.first().copied(),
-            _ => None,
+        let first = match header.columns {
+            0 => Vec::new(),
+            _ => read_some(source, stored, BEGINNING.min(u64::from(header.rows)))?,
         };
+        let value = first.first().copied().filter(|_| stored.count == 1);
         found.stored.push(stored);
         found.tree.arrays.push(Array {
             path: path.clone(),
@@ -181,6 +182,11 @@ fn add(
             extents: first_fastest(&[u64::from(header.rows), u64::from(header.columns)]),
             stored_as: stored.number.name().to_owned(),
             value,
+            beginning: if header.columns > 1 {
+                first
+            } else {
+                Vec::new()
+            },
             unit: None,
             properties: Vec::new(),
         });

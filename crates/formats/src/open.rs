@@ -8,10 +8,11 @@ use crate::read_lvm::LvmReader;
 use crate::read_mat::{self, MatReader};
 use crate::read_tdms::TdmsReader;
 use crate::read_text::TextReader;
+use crate::read_uff58::UffReader;
 use crate::read_wav::WavReader;
 use crate::reader::Reader;
 use crate::source::Source;
-use crate::text_dialect::TextOptions;
+use crate::text_options::TextOptions;
 use std::path::Path;
 
 /// Bytes from which the format is told.
@@ -50,6 +51,7 @@ pub fn open_source(source: Source, options: &OpenOptions) -> Result<Box<dyn Read
         Format::Tdms => Ok(Box::new(TdmsReader::open(source)?)),
         Format::Hdf5 => Ok(Box::new(Hdf5Reader::open(source)?)),
         Format::Mat => Ok(Box::new(MatReader::open(source)?)),
+        Format::Uff58 => Ok(Box::new(UffReader::open(source)?)),
         other => Err(Error::UnknownFormat {
             path: source.path().to_path_buf(),
             found: format!("this is a {other} file"),
@@ -78,15 +80,29 @@ pub fn tell_format(source: &Source) -> Result<Format, Error> {
     {
         return Ok(Format::Wav);
     }
-    if head.starts_with(b"LabVIEW Measurement") {
-        return Ok(Format::Lvm);
-    }
-    // MATLAB 7.3 begins like both.
+    // Before MATLAB: its version 7.3 begins like both.
     if read_hdf5::begins(&head) {
         return Ok(Format::Hdf5);
     }
     if read_mat::begins(&head) {
         return Ok(Format::Mat);
     }
+    if is_universal(&head) {
+        return Ok(Format::Uff58);
+    }
+    if head.starts_with(b"LabVIEW Measurement") {
+        return Ok(Format::Lvm);
+    }
     Ok(Format::Text)
+}
+
+/// A universal file begins with "    -1" and the number of a data set below.
+fn is_universal(head: &[u8]) -> bool {
+    let text = String::from_utf8_lossy(head);
+    let mut lines = text.lines().skip_while(|line| line.trim().is_empty());
+    let first = lines
+        .next()
+        .is_some_and(|line| line.trim() == "-1" && line.starts_with("   "));
+    let set = lines.next().map(str::trim_start).unwrap_or_default();
+    first && set.starts_with(|c: char| c.is_ascii_digit())
 }

@@ -4,9 +4,10 @@ use crate::contents::{ChannelContents, Contents, Format, Note, TimeBase};
 use crate::error::Error;
 use crate::reader::{Reader, Sink};
 use crate::source::Source;
-use crate::text_dialect::{Dialect, TextOptions, find_dialect};
+use crate::text_dialect::find_dialect;
 use crate::text_encoding::{Encoding, tell_encoding};
 use crate::text_lines::Lines;
+use crate::text_options::{Dialect, TextOptions};
 use crate::text_rows::{ColumnKind, RowPlan, Separator};
 use crate::text_table::{Table, read_table, shortened};
 

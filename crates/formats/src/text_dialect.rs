@@ -1,26 +1,12 @@
 //! The dialect of a table in text, found out from its first lines.
 
 use crate::contents::Note;
+use crate::text_cells::{cells, row};
 use crate::text_date::{Moment, moment};
+use crate::text_header::name_columns;
 use crate::text_number::{Cell, Marks, bare, cell, leading_number, without_groups};
+use crate::text_options::{Dialect, TextOptions};
 use crate::text_rows::{ColumnKind, Separator};
-
-/// What a user says of a text file; what is left out is found out.
-#[derive(Clone, Debug, Default, PartialEq)]
-pub struct TextOptions {
-    /// What stands between cells.
-    pub separator: Option<Separator>,
-    /// Decimal mark: '.' or ','.
-    pub decimal: Option<char>,
-    /// Mark between groups of three digits.
-    pub thousands: Option<char>,
-    /// How characters are written.
-    pub encoding: Option<crate::text_encoding::Encoding>,
-    /// Line with the names of the columns, counted from 1; 0: there is none.
-    pub header_line: Option<u64>,
-    /// Beginning of lines that are passed over.
-    pub comment: Option<String>,
-}
 
 /// Beginnings of lines that are usually comments.
 const COMMENTS: [&str; 3] = ["#", "%", "//"];
@@ -37,35 +23,6 @@ const SEPARATORS: [Separator; 5] = [
 /// Marks between groups of three digits that are tried.
 const THOUSANDS: [char; 5] = ['.', ',', '\'', ' ', '\u{a0}'];
 
-/// Most names that a header can have above a table without one.
-const MOST_HEADER_ROWS: usize = 2;
-
-/// Columns and how they are written.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Dialect {
-    /// What stands between cells.
-    pub separator: Separator,
-    /// Marks in numbers.
-    pub marks: Marks,
-    /// Beginnings of lines that are passed over.
-    pub comments: Vec<String>,
-    /// Names of the columns, as they stand there; blank where there is none.
-    pub names: Vec<String>,
-    /// Units from a row of units.
-    pub units: Vec<Option<String>>,
-    /// What each column holds.
-    pub kinds: Vec<ColumnKind>,
-    /// Position of the first row among the lines looked at.
-    pub first_row: usize,
-    /// Whether there are no names and the first column rises evenly, other than
-    /// by one: it is then most likely the time.
-    pub rising_first: bool,
-    /// Lines above the header: name and value.
-    pub preamble: Vec<(String, String)>,
-    /// What a user must know.
-    pub notes: Vec<Note>,
-}
-
 /// What a cell looks like under some marks.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Look {
@@ -80,28 +37,6 @@ fn look(text: &str, marks: Marks) -> Look {
         Cell::Blank => Look::Blank,
         Cell::Number(_) => Look::Number,
         Cell::Other => moment(bare(text)).map_or(Look::Text, Look::Moment),
-    }
-}
-
-/// Cells of a line.
-#[must_use]
-pub fn cells(line: &str, separator: Separator) -> Vec<&str> {
-    match separator {
-        Separator::Blanks => line.split_whitespace().collect(),
-        Separator::Mark(mark) => {
-            let mark = char::from(mark);
-            let mut cells = Vec::new();
-            let (mut start, mut quoted) = (0, false);
-            for (at, c) in line.char_indices() {
-                quoted ^= c == '"';
-                if c == mark && !quoted {
-                    cells.push(&line[start..at]);
-                    start = at + c.len_utf8();
-                }
-            }
-            cells.push(&line[start..]);
-            cells
-        }
     }
 }
 
@@ -228,16 +163,6 @@ fn is_comment(line: &str, comments: &[String]) -> bool {
     comments
         .iter()
         .any(|mark| line.trim_start().starts_with(mark.as_str()))
-}
-
-/// The cells of a line that has as many as the table has columns, or one blank
-/// cell more.
-fn row(line: &str, separator: Separator, count: usize) -> Option<Vec<&str>> {
-    let mut cells = cells(line, separator);
-    if cells.len() == count + 1 && cells[count].trim().is_empty() {
-        cells.pop();
-    }
-    (cells.len() == count).then_some(cells)
 }
 
 fn is_row(cells: &[&str], kinds: &[ColumnKind], marks: Marks) -> bool {
@@ -511,155 +436,4 @@ fn first_moments(
             kind => kind,
         })
         .collect()
-}
-
-/// Names and units from the lines above the first row.
-fn name_columns(dialect: &mut Dialect, lines: &[&str], data: &[usize], options: &TextOptions) {
-    let count = dialect.names.len();
-    let clean = |cells: Vec<&str>| cells.iter().map(|c| bare(c).to_owned()).collect::<Vec<_>>();
-    let fitting = |at: usize| row(lines[at], dialect.separator, count).map(clean);
-    let above: Vec<usize> = data
-        .iter()
-        .copied()
-        .filter(|&at| at < dialect.first_row)
-        .collect();
-    let mut header = match options.header_line {
-        Some(0) => Vec::new(),
-        Some(line) => above
-            .iter()
-            .copied()
-            .filter(|&at| at as u64 + 1 >= line)
-            .collect(),
-        None => above.clone(),
-    };
-    if options.header_line.is_some() {
-        header.truncate(MOST_HEADER_ROWS);
-    }
-    let mut used = above.len();
-    // The last line above the rows is the header, or a row of units below it.
-    match header.last().and_then(|&at| fitting(at)) {
-        Some(last) => {
-            used -= 1;
-            let before = header
-                .len()
-                .checked_sub(2)
-                .and_then(|at| fitting(header[at]));
-            match before {
-                Some(names) if is_unit_row(&last) && filled(&names) => {
-                    dialect.units = last
-                        .into_iter()
-                        .map(|u| Some(bare_unit(&u)).filter(|u| !u.is_empty()))
-                        .collect();
-                    dialect.names = names;
-                    used -= 1;
-                }
-                // Two full rows and nothing above them: names and remarks.
-                Some(names) if header.len() == 2 && filled(&names) && filled(&last) => {
-                    dialect.notes.push(Note::Odd {
-                        what: format!(
-                            "there are two rows above the numbers; the names are taken from the first, \
-                             the second says: {}",
-                            last.join(", ")
-                        ),
-                    });
-                    dialect.names = names;
-                    used -= 1;
-                }
-                _ => dialect.names = last,
-            }
-        }
-        None => {
-            let more = header.iter().find_map(|&at| more_names(lines[at], dialect));
-            if let Some(names) = commented_header(lines, dialect, count) {
-                dialect.names = names;
-            } else if let Some(names) = more {
-                dialect.notes.push(Note::Odd {
-                    what: format!(
-                        "there are {} names above {count} columns; they are taken in order, and \
-                         \"{}\" has no column",
-                        names.len(),
-                        names[count..].join("\", \"")
-                    ),
-                });
-                dialect.names = names[..count].to_vec();
-            }
-        }
-    }
-    let preamble = above[..used].iter().filter_map(|&at| {
-        let cells = clean(cells(lines[at], dialect.separator));
-        let (name, values) = cells.split_first()?;
-        let value = values
-            .iter()
-            .filter(|v| !v.is_empty())
-            .cloned()
-            .collect::<Vec<_>>()
-            .join(" ");
-        (!name.is_empty()).then(|| (name.clone(), value))
-    });
-    dialect.preamble = preamble.collect();
-}
-
-/// Names in a line that has more cells than the table has columns, all filled.
-fn more_names(line: &str, dialect: &Dialect) -> Option<Vec<String>> {
-    let names: Vec<String> = cells(line, dialect.separator)
-        .iter()
-        .map(|c| bare(c).to_owned())
-        .collect();
-    let count = dialect.names.len();
-    let names_only = names.iter().all(|name| !name.is_empty());
-    (count > 1
-        && names.len() > count
-        && names.len() <= count + 2
-        && names_only
-        && dialect.separator != Separator::Blanks)
-        .then_some(names)
-}
-
-fn filled(cells: &[String]) -> bool {
-    2 * cells.iter().filter(|cell| !cell.is_empty()).count() > cells.len()
-}
-
-/// Names in the comment right above the first row: "# time(s), force(N)".
-fn commented_header(lines: &[&str], dialect: &Dialect, count: usize) -> Option<Vec<String>> {
-    let above = lines[..dialect.first_row]
-        .iter()
-        .rev()
-        .find(|line| !line.trim().is_empty())?;
-    let mark = dialect
-        .comments
-        .iter()
-        .find(|mark| above.trim_start().starts_with(mark.as_str()))?;
-    let text = above.trim_start()[mark.len()..].trim_start_matches(['#', '%', '/', ' ']);
-    let by_marks = |marks: &[char]| {
-        let names = text.split(marks).map(|name| bare(name).to_owned());
-        names.filter(|name| !name.is_empty()).collect::<Vec<_>>()
-    };
-    [&[',', ';', '\t'][..], &[' ', ',', ';', '\t'][..]]
-        .into_iter()
-        .map(by_marks)
-        .find(|names| names.len() == count)
-}
-
-/// Whether a row holds units: "(s)", "[mm]", "N".
-fn is_unit_row(cells: &[String]) -> bool {
-    let known = |cell: &String| {
-        let unit = bare_unit(cell);
-        unit.len() < cell.len() || UNITS.contains(&unit.as_str())
-    };
-    let filled: Vec<&String> = cells.iter().filter(|cell| !cell.is_empty()).collect();
-    !filled.is_empty() && 2 * filled.iter().filter(|cell| known(cell)).count() > filled.len()
-}
-
-/// Units that stand in rows of units without brackets.
-const UNITS: [&str; 40] = [
-    "s", "ms", "us", "µs", "min", "h", "sec", "N", "mN", "kN", "g", "kg", "m", "mm", "cm", "um",
-    "µm", "m/s", "mm/s", "mm/min", "m/s^2", "m/s²", "m/s2", "V", "mV", "A", "mA", "Pa", "kPa",
-    "MPa", "bar", "rad", "deg", "°", "°C", "C", "K", "%", "Hz", "-",
-];
-
-fn bare_unit(cell: &str) -> String {
-    let inner = [('(', ')'), ('[', ']'), ('<', '>')]
-        .into_iter()
-        .find_map(|(open, close)| cell.strip_prefix(open)?.strip_suffix(close));
-    inner.unwrap_or(cell).trim().to_owned()
 }

@@ -242,8 +242,15 @@ fn rejects_wrong_flags_of_a_recording_with_a_way_out() {
     let cases: [(&[&str], &str); 9] = [
         (&["--time", "t"], "--channel force=F:N"),
         (
-            &["--channel", "force=F:N"],
-            "--time: give the column of times",
+            &[
+                "--time",
+                "t",
+                "--sampling-rate",
+                "1 kHz",
+                "--channel",
+                "force=F:N",
+            ],
+            "cannot be used with",
         ),
         (
             &["--time", "t", "--channel", "force=F:mm"],

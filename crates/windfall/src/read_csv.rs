@@ -239,10 +239,10 @@ mod tests {
         for s in [',', ';', '\t'] {
             let dir = tempfile::tempdir().unwrap();
             let path = dir.path().join("r.csv");
-            std::fs::write(&path, format!("\u{feff}id{s}\"mass, wet\"\n\n a {s}1\n")).unwrap();
+            std::fs::write(&path, format!("\u{feff}id{s}\"mass, wet\"\n a {s}1\n")).unwrap();
             let table = read_table(&path).unwrap();
             assert_eq!(table.columns, ["id", "mass, wet"]);
-            assert_eq!((table.rows[0].line, &table.rows[0].cells[0][..]), (3, "a"));
+            assert_eq!((table.rows[0].line, &table.rows[0].cells[0][..]), (2, "a"));
         }
     }
 

@@ -4,7 +4,7 @@ use crate::error::Error;
 use crate::option_value::chosen;
 use windfall_formats::contents::Format;
 use windfall_formats::open::OpenOptions;
-use windfall_formats::text_dialect::TextOptions;
+use windfall_formats::text_options::TextOptions;
 
 /// Formats by name.
 pub const FORMATS: [(&str, Format); 8] = [

@@ -1,0 +1,199 @@
+//! MATLAB files, versions 4 to 7.
+
+#![allow(clippy::unwrap_used, clippy::print_stdout)]
+
+mod channels;
+
+use channels::{check_file, data, open_bytes, samples};
+use windfall_formats::contents::{Format, TimeBase};
+use windfall_formats::open::{OpenOptions, open};
+
+/// Checksums by SciPy 1.17 (`scipy.io.loadmat`).
+#[test]
+fn reference_real_files() {
+    let files: &[(&str, &[channels::Expected])] = &[
+        (
+            "daq_formats/mat/scipy_big_endian.mat",
+            &[
+                ("floats/1", 2, 0x0018_0000_0000_0000, None),
+                ("floats/2", 2, 0x0038_0000_0000_0000, None),
+            ],
+        ),
+        (
+            "daq_formats/mat/scipy_testdouble_4.2c_SOL2.mat",
+            &[("testdouble", 9, 0x0492_f25d_99b4_dd7d, None)],
+        ),
+        (
+            "daq_formats/mat/scipy_testdouble_6.5.1_GLNX86.mat",
+            &[("testdouble", 9, 0x0492_f25d_99b4_dd7d, None)],
+        ),
+        (
+            "daq_formats/mat/scipy_testdouble_7.4_GLNX86.mat",
+            &[("testdouble", 9, 0x0492_f25d_99b4_dd7d, None)],
+        ),
+        (
+            "daq_formats/mat/scipy_testmulti_7.4_GLNX86.mat",
+            &[
+                ("a/1", 3, 0x4018_0000_0000_0000, None),
+                ("a/2", 3, 0x4000_0000_0000_0000, None),
+                ("a/3", 3, 0x4008_0000_0000_0000, None),
+                ("a/4", 3, 0x4010_0000_0000_0000, None),
+                ("a/5", 3, 0x4014_0000_0000_0000, None),
+                ("theta", 9, 0x0492_f25d_99b4_dd7d, None),
+            ],
+        ),
+        (
+            "daq_formats/mat/scipy_testvec_4_GLNX86.mat",
+            &[
+                ("fit_params", 2, 0x004f_5268_ca62_4553, None),
+                ("xdot_filt", 2, 0xf671_50a2_0000_0000, None),
+            ],
+        ),
+        (
+            "impact/hrshm_ds1_1MSs/Unit105_Series1_1.mat",
+            &[
+                ("Unit105_Series1_1/1", 100000, 0xcfc7_41d4_cf07_d74d, None),
+                ("Unit105_Series1_1/2", 100000, 0x7a9c_59b8_c771_bf34, None),
+                ("Unit105_Series1_1/3", 100000, 0xab6f_c253_cf09_014d, None),
+                ("Unit105_Series1_1/4", 100000, 0xf502_fe43_e5f3_51eb, None),
+                ("Unit105_Series1_1/5", 100000, 0xf5f5_12e9_a242_0efc, None),
+                ("Unit105_Series1_1/6", 100000, 0xe6ed_2451_31b8_3801, None),
+                ("Unit105_Series1_1/7", 100000, 0x1eab_6d91_6864_1953, None),
+            ],
+        ),
+    ];
+    for (file, channels) in files {
+        check_file(file, Format::Mat, channels);
+    }
+}
+
+#[test]
+fn reference_nested_texts_and_numbers() {
+    let Some(folder) = data() else {
+        println!("left out: nested MAT files (WINDFALL_DATA is not set)");
+        return;
+    };
+    let file = folder.join("daq_formats/mat/scipy_teststructnest_7.4_GLNX86.mat");
+    let reader = open(&file, &OpenOptions::default()).unwrap();
+    let properties = &reader.contents().properties;
+    let has = |name: &str, value: &str| properties.contains(&(name.to_owned(), value.to_owned()));
+    assert!(has("teststructnest/one", "1"), "{properties:?}");
+    assert!(
+        has("teststructnest/two/three", "number 3"),
+        "{properties:?}"
+    );
+}
+
+/// An element of version 5: its tag, its data, and blanks up to eight bytes.
+fn element(code: u32, data: &[u8]) -> Vec<u8> {
+    let mut bytes = code.to_le_bytes().to_vec();
+    bytes.extend((data.len() as u32).to_le_bytes());
+    bytes.extend(data);
+    bytes.resize(bytes.len().next_multiple_of(8), 0);
+    bytes
+}
+
+fn array(class: u32, rows: i32, columns: i32, name: &str, rest: &[u8]) -> Vec<u8> {
+    let mut flags = class.to_le_bytes().to_vec();
+    flags.extend([0; 4]);
+    let size = [rows.to_le_bytes(), columns.to_le_bytes()].concat();
+    let parts = [
+        element(6, &flags),
+        element(5, &size),
+        element(1, name.as_bytes()),
+    ];
+    element(14, &[parts.concat(), rest.to_vec()].concat())
+}
+
+fn doubles(values: &[f64]) -> Vec<u8> {
+    let bytes: Vec<u8> = values.iter().flat_map(|v| v.to_le_bytes()).collect();
+    element(9, &bytes)
+}
+
+fn file(variables: &[Vec<u8>]) -> Vec<u8> {
+    let mut bytes = b"MATLAB 5.0 MAT-file".to_vec();
+    bytes.resize(124, b' ');
+    bytes.extend([0, 1, b'I', b'M']);
+    bytes.extend(variables.concat());
+    bytes
+}
+
+#[test]
+fn closed_form_times_of_vectors_and_matrices() {
+    let matrix = array(6, 3, 2, "m", &doubles(&[0.0, 0.5, 1.0, 7.0, 8.0, 9.0]));
+    let bytes = file(&[
+        array(6, 1, 3, "F", &doubles(&[1.0, 2.0, 3.0])),
+        array(6, 3, 1, "time", &doubles(&[0.0, 0.1, 0.2])),
+        matrix,
+        array(6, 1, 4, "x", &doubles(&[1.0, 2.0, 3.0, 4.0])),
+        array(6, 1, 1, "fs", &doubles(&[200.0])),
+    ]);
+    let mut reader = open_bytes("t.mat", bytes, Format::Mat).unwrap();
+    let contents = reader.contents().clone();
+    let times: Vec<(&str, TimeBase)> = contents
+        .channels
+        .iter()
+        .map(|c| (c.name.as_str(), c.time))
+        .collect();
+    let uniform = TimeBase::Uniform {
+        start: 0.0,
+        interval: 0.005,
+    };
+    let expected = [
+        ("F", TimeBase::Channel(1)),
+        ("time", TimeBase::Unknown),
+        ("m/1", TimeBase::Channel(1)),
+        ("m/2", TimeBase::Channel(2)),
+        ("x", uniform),
+    ];
+    assert_eq!(times, expected);
+    assert_eq!(samples(reader.as_mut())[3], [7.0, 8.0, 9.0]);
+}
+
+#[test]
+fn rejects_damaged_files_and_says_where() {
+    let good = file(&[array(6, 1, 3, "F", &doubles(&[1.0, 2.0, 3.0]))]);
+    let wrong_size = file(&[array(6, 1, 4, "F", &doubles(&[1.0, 2.0, 3.0]))]);
+    let no_order = {
+        let mut bytes = good.clone();
+        bytes[126] = b'X';
+        bytes
+    };
+    let deflated = file(&[element(15, &[1, 2, 3, 4, 5, 6, 7, 8])]);
+    for (bytes, expected) in [
+        (
+            wrong_size,
+            "at byte 128: in the variable that begins here: \"F\" has 4 elements and 24 bytes of double",
+        ),
+        (
+            no_order,
+            "at byte 124: expected version 256 and \"IM\" or \"MI\"",
+        ),
+        (
+            deflated,
+            "at byte 136: the compressed data that begin here are damaged",
+        ),
+    ] {
+        let message = open_bytes("t.mat", bytes, Format::Mat)
+            .map(|_| ())
+            .unwrap_err()
+            .to_string();
+        assert!(message.contains(expected), "{message}");
+    }
+    let two = file(&[
+        array(6, 1, 3, "F", &doubles(&[1.0, 2.0, 3.0])),
+        array(6, 1, 3, "G", &doubles(&[1.0, 2.0, 3.0])),
+    ]);
+    let mut cut = open_bytes("t.mat", two[..two.len() - 1].to_vec(), Format::Mat).unwrap();
+    let note = cut.contents().notes[0].to_string();
+    assert_eq!(
+        note,
+        "the file is cut off: a variable at byte 224 needs 80 bytes, 79 are left"
+    );
+    assert_eq!(samples(cut.as_mut()), [[1.0, 2.0, 3.0]]);
+    let message = open_bytes("t.mat", good[..good.len() - 1].to_vec(), Format::Mat)
+        .map(|_| ())
+        .unwrap_err()
+        .to_string();
+    assert!(message.contains("the file ends too early"), "{message}");
+}
