@@ -3,24 +3,20 @@
 use crate::array_channels::list_channels;
 use crate::array_pass::Pass;
 use crate::array_tree::Series;
-use crate::contents::{Contents, Format};
-use crate::error::{Error, Place};
-use crate::hdf5_blocks::{Stop, each_block};
-use crate::hdf5_number::{Number, Numbers};
-use crate::hdf5_storage::{error_of, open_file};
+use crate::contents::{Contents, Format, Note};
+use crate::error::Error;
+use crate::hdf5_blocks::each_block;
+use crate::hdf5_dataset::Dataset;
+use crate::hdf5_file::{self, Hdf5File};
+use crate::hdf5_number::{Number, decode};
 use crate::hdf5_tree::{Stored, list};
 use crate::reader::{Reader, Sink};
 use crate::source::Source;
-use hdf5_reader::Dataset;
-use std::sync::Arc;
-
-/// What an HDF5 file begins with, at byte 0 or behind what another program put
-/// before it: at 512, 1024, 2048 and so on.
-const SIGNATURE: &[u8] = b"\x89HDF\r\n\x1a\n";
 
 /// An HDF5 file.
+#[derive(Debug)]
 pub struct Hdf5Reader {
-    source: Arc<Source>,
+    file: Hdf5File,
     contents: Contents,
     series: Vec<Series>,
     stored: Vec<Stored>,
@@ -29,10 +25,7 @@ pub struct Hdf5Reader {
 
 /// Whether a file begins like an HDF5 file.
 pub(crate) fn begins(head: &[u8]) -> bool {
-    [0, 512, 1024, 2048].iter().any(|at| {
-        head.get(*at..)
-            .is_some_and(|rest| rest.starts_with(SIGNATURE))
-    })
+    hdf5_file::begins(head)
 }
 
 impl Hdf5Reader {
@@ -41,34 +34,31 @@ impl Hdf5Reader {
     /// # Errors
     /// The file cannot be read, is no HDF5 file, or its root is damaged.
     pub fn open(source: Source) -> Result<Self, Error> {
-        if source.length() == 0 {
-            return Err(Error::Empty {
-                path: source.path().to_path_buf(),
-                expected: "a recording",
+        let file = Hdf5File::open(source)?;
+        let mut found = list(&file)?;
+        let length = file.source.length();
+        if file.end > length {
+            found.tree.notes.push(Note::CutOff {
+                missing: format!("{} bytes were written, {length} are there", file.end),
             });
         }
-        let source = Arc::new(source);
-        let file = open_file(source.clone())?;
-        let root = file
-            .root_group()
-            .map_err(|fault| error_of(source.path(), Place::File, fault))?;
-        let found = list(&source, &root)?;
         let mut properties = Vec::new();
-        let head = source.head(116)?;
+        let head = file.source.head(116)?;
+        let by_matlab = found.by_matlab || head.starts_with(b"MATLAB");
         if head.starts_with(b"MATLAB") {
             let text = String::from_utf8_lossy(&head);
             let text = text.trim_matches(['\0', ' ']).to_owned();
             properties.push(("description".to_owned(), text));
         }
-        let variant = match found.by_matlab || head.starts_with(b"MATLAB") {
+        let variant = match by_matlab {
             true => "MATLAB v7.3".to_owned(),
-            false => format!("superblock {}", file.superblock().version),
+            false => format!("superblock {}", file.version),
         };
         let listing = list_channels(found.tree);
         properties.extend(found.properties);
         properties.extend(listing.properties);
         Ok(Self {
-            source,
+            file,
             contents: Contents {
                 format: Format::Hdf5,
                 variant,
@@ -83,58 +73,48 @@ impl Hdf5Reader {
     }
 
     /// Reads those channels that are in one dataset.
-    fn read_dataset(&self, at: usize, wanted: &[usize], sink: &mut dyn Sink) -> Result<(), Error> {
+    fn read_dataset(
+        &mut self,
+        at: usize,
+        wanted: &[usize],
+        sink: &mut dyn Sink,
+    ) -> Result<(), Error> {
         let mut arrays: Vec<usize> = wanted.iter().map(|&c| self.series[c].array).collect();
         arrays.sort_unstable();
         arrays.dedup();
         arrays.retain(|&array| self.stored[array].dataset == at);
-        let mut passes: Vec<(usize, Pass)> = arrays
+        let mut passes: Vec<(Number, Pass)> = arrays
             .iter()
-            .map(|&array| (array, Pass::new(array, wanted, &self.series)))
+            .map(|&array| {
+                (
+                    self.stored[array].number,
+                    Pass::new(array, wanted, &self.series),
+                )
+            })
             .collect();
         let ranges = passes.iter().map(|(_, pass)| pass.range());
         let range = ranges
             .reduce(|a, b| (a.0.min(b.0), a.1.max(b.1)))
             .unwrap_or((0, 0));
-        let dataset = &self.datasets[at];
-        let simple = arrays.first().is_some_and(|&a| self.stored[a].parts == 1);
+        let dataset = &mut self.datasets[at];
+        let element = dataset.datatype.size;
         let mut numbers = Vec::new();
-        let read = if simple && is_number(dataset) {
-            each_block(dataset, range, &mut |first, block: Vec<Number>| {
-                let numbers: Vec<f64> = block.into_iter().map(|n| n.0).collect();
-                let mut taken = passes.iter_mut();
-                taken.try_for_each(|(_, pass)| pass.take(first, &numbers, sink))
-            })
-        } else {
-            each_block(dataset, range, &mut |first, block: Vec<Numbers>| {
-                for (array, pass) in &mut passes {
-                    let part = self.stored[*array].part;
-                    numbers.clear();
-                    // All elements have as many numbers as their type.
-                    numbers.extend(block.iter().filter_map(|n| n.0.get(part)));
-                    pass.take(first, &numbers, sink)?;
-                }
-                Ok(())
-            })
-        };
-        read.map_err(|stop| match stop {
-            Stop::Asked(error) => error,
-            Stop::Fault(fault) => {
-                let name = |c: &&usize| self.stored[self.series[**c].array].dataset == at;
-                let channel = wanted.iter().find(name).copied().unwrap_or(0);
-                let name = self.contents.channels[channel].name.clone();
-                error_of(self.source.path(), Place::Object(name), fault)
+        let read = each_block(&self.file, dataset, range, &mut |first, bytes| {
+            for (number, pass) in &mut passes {
+                numbers.clear();
+                decode(bytes, element, *number, &mut numbers);
+                pass.take(first, &numbers, sink)?;
             }
+            Ok(())
+        });
+        dataset.forget();
+        read.map_err(|problem| {
+            let here = |c: &&usize| self.stored[self.series[**c].array].dataset == at;
+            let channel = wanted.iter().find(here).copied().unwrap_or(0);
+            self.file
+                .error(&self.contents.channels[channel].name, problem)
         })
     }
-}
-
-/// Whether the elements of a dataset are numbers, not compounds or arrays of them.
-fn is_number(dataset: &Dataset) -> bool {
-    !matches!(
-        dataset.dtype(),
-        hdf5_reader::Datatype::Compound { .. } | hdf5_reader::Datatype::Array { .. }
-    )
 }
 
 impl Reader for Hdf5Reader {
