@@ -83,7 +83,7 @@ def add_matrix(channels, name, values):
         add_matrix(channels, f"{name} (real)", values.real)
         add_matrix(channels, f"{name} (imaginary)", values.imag)
         return
-    if values.dtype.kind not in "iufb" or values.size < 2:
+    if values.dtype.kind not in "iufb" or values.size == 0:
         return
     if values.ndim == 1 or min(values.shape) == 1:
         channels.append(channel(name, values.ravel()))
@@ -101,8 +101,8 @@ def read_mat(path):
         if scipy.sparse.issparse(value):
             return
         if isinstance(value, np.ndarray) and value.dtype.names:
-            for field in value.dtype.names:
-                for i, element in enumerate(value.ravel(order="F")):
+            for i, element in enumerate(value.ravel(order="F")):
+                for field in value.dtype.names:
                     place = field if value.size == 1 else f"{i + 1}/{field}"
                     walk(f"{name}/{place}", element[field])
         elif isinstance(value, np.ndarray) and value.dtype == object:
@@ -116,7 +116,9 @@ def read_mat(path):
         # "None" is how SciPy calls a variable without a name.
         if not name.startswith("__") and name != "None":
             walk(name, value)
-    return channels
+    # Single numbers are properties, unless there is nothing else.
+    longer = [c for c in channels if c["length"] > 1]
+    return longer or channels
 
 
 def read_uff(path):

@@ -1,223 +1,129 @@
-//! Arrays of numbers with names → channels, with the times that go with them.
+//! Arrays of numbers in a tree → channels: the rules that MAT and HDF5 files share.
 
-use crate::contents::{ChannelContents, Contents, Note, TimeBase};
-use crate::error::Error;
-use crate::read_text::is_time_name;
-use crate::reader::Sink;
+use crate::array_clock::{names_time, time_bases};
+use crate::array_tree::{Array, Extent, Listing, Series, Tree, count};
+use crate::contents::{ChannelContents, Note, TimeBase};
+use std::collections::{BTreeMap, BTreeSet};
 
-/// Numbers from which a column of times is told.
-pub const BEGINNING: u64 = 64;
+/// Most channels that one array is taken apart into. What has more rows and
+/// columns than this is a picture or a matrix of a calculation.
+const MOST_SERIES: u64 = 4096;
 
-/// A matrix with more columns than this and fewer rows has its samples in rows.
-const MANY: u64 = 64;
+/// Most channels of a file.
+const MOST_CHANNELS: usize = 1 << 16;
 
-/// Most channels of one matrix.
-const MOST_CHANNELS: u64 = 4096;
+/// A second extent must be longer than this before it is taken as the samples.
+const LONG: u64 = 64;
 
-/// Names of sampling rates; in lower case.
-const RATES: [&str; 8] = [
-    "fs",
-    "f_s",
-    "rate",
-    "samplerate",
-    "sample_rate",
-    "samplingrate",
-    "sampling_rate",
-    "samplefrequency",
-];
+/// Most names that a note lists.
+const MOST_NAMES: usize = 6;
 
-/// Names of sampling intervals; in lower case.
-const INTERVALS: [&str; 6] = ["dt", "ts", "delta_t", "timestep", "interval", "increment"];
-
-/// A matrix of a file, stored column by column.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Array {
-    /// Its name; parts are joined by "/".
-    pub name: String,
-    /// Rows.
-    pub rows: u64,
-    /// Columns.
-    pub columns: u64,
-    /// How it is stored.
-    pub stored_as: String,
-    /// Its unit, where the file says it.
-    pub unit: Option<String>,
-    /// Its first numbers.
-    pub beginning: Vec<f64>,
-}
-
-/// Which part of which array each channel is.
-#[derive(Clone, Debug, Default, PartialEq)]
-pub struct ArrayChannels {
-    parts: Vec<(usize, Cut)>,
-}
-
-/// Every `step`-th number from `first` on, `count` of them.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-struct Cut {
-    first: u64,
-    step: u64,
-    count: u64,
-}
-
-/// A channel that is wanted, as a part of an array.
-#[derive(Clone, Copy, Debug)]
-pub struct Part {
-    position: usize,
-    cut: Cut,
-}
-
-impl ArrayChannels {
-    /// The wanted channels that are parts of an array.
-    #[must_use]
-    pub fn of_array(&self, array: usize, wanted: &[usize]) -> Vec<Part> {
-        let mut parts = Vec::new();
-        for (position, channel) in wanted.iter().enumerate() {
-            let (from, cut) = self.parts[*channel];
-            if from == array {
-                parts.push(Part { position, cut });
-            }
-        }
-        parts
-    }
-}
-
-impl Part {
-    /// Hands over what a block of an array's numbers holds of the channel.
-    ///
-    /// * `at`: position of the block's first number in the array
-    ///
-    /// # Errors
-    /// Those of the sink.
-    pub fn hand_over(&self, samples: &[f64], at: u64, sink: &mut dyn Sink) -> Result<(), Error> {
-        let Cut { first, step, count } = self.cut;
-        let end = at + samples.len() as u64;
-        // The first of the channel's numbers at or behind `at`.
-        let from = match at > first {
-            true => first + (at - first).div_ceil(step) * step,
-            false => first,
-        };
-        let last = first + (count - 1) * step;
-        let to = end.min(last + 1);
-        if from >= to {
-            return Ok(());
-        }
-        let slice = &samples[(from - at) as usize..(to - at) as usize];
-        match step {
-            1 => sink.take(self.position, slice),
-            step => {
-                let picked: Vec<f64> = slice.iter().step_by(step as usize).copied().collect();
-                sink.take(self.position, &picked)
-            }
-        }
-    }
-}
-
-/// Adds the channels of arrays to the contents.
+/// Channels of a file: a vector is one, the columns of a matrix are one each,
+/// single numbers and texts are properties.
 ///
-/// A vector is one channel; each column of a matrix is one, or each row where the
-/// matrix is wide. A vector named as a time, or a first column that rises evenly,
-/// times what stands beside it; so does a single number named as a rate.
-pub fn describe_arrays(
-    arrays: &[Array],
-    scalars: &[(String, f64)],
-    contents: &mut Contents,
-) -> ArrayChannels {
-    let mut channels = ArrayChannels::default();
-    for (index, array) in arrays.iter().enumerate() {
-        let (rows, columns) = (array.rows, array.columns);
-        if rows == 1 || columns == 1 {
-            let cut = Cut {
-                first: 0,
-                step: 1,
-                count: rows * columns,
-            };
-            add(
-                array,
-                array.name.clone(),
-                index,
-                cut,
-                contents,
-                &mut channels,
-            );
-            continue;
-        }
-        let wide = columns > MANY && rows < columns;
-        let (count, length) = if wide {
-            (rows, columns)
-        } else {
-            (columns, rows)
-        };
-        if count > MOST_CHANNELS {
-            contents.notes.push(Note::LeftOut {
-                what: format!("\"{}\"", array.name),
-                why: format!("it is a matrix of {rows} × {columns}, not channels"),
-            });
-            continue;
-        }
-        if wide {
-            contents.notes.push(Note::Assumed {
-                what: format!("the {rows} rows of \"{}\" are taken as channels, since it has {columns} columns", array.name),
-            });
-        }
-        let begin = contents.channels.len();
-        for place in 0..count {
-            let cut = match wide {
-                true => Cut {
-                    first: place,
-                    step: rows,
-                    count: length,
-                },
-                false => Cut {
-                    first: place * rows,
-                    step: 1,
-                    count: length,
-                },
-            };
-            add(
-                array,
-                format!("{}/{}", array.name, place + 1),
-                index,
-                cut,
-                contents,
-                &mut channels,
-            );
-        }
-        if !wide && rises_evenly(&array.beginning) {
-            contents.notes.push(Note::Assumed {
-                what: format!(
-                    "the first column of \"{}\" rises evenly and is taken as the time in seconds",
-                    array.name
-                ),
-            });
-            for channel in &mut contents.channels[begin + 1..] {
-                channel.time = TimeBase::Channel(begin);
+/// Of a matrix the first extent is the samples, unless another is longer than
+/// it and than 64.
+pub(crate) fn list_channels(mut tree: Tree) -> Listing {
+    let mut listing = Listing::default();
+    let only_scalars = tree.arrays.iter().all(|a| count(&a.extents) <= 1);
+    for at in 0..tree.arrays.len() {
+        let array = tree.arrays[at].clone();
+        let name = format!("{}{}", array.path.join("/"), array.part);
+        match count(&array.extents) {
+            0 => tree.leave_out(&array.path, "it is empty"),
+            1 => {
+                if let Some(value) = array.value {
+                    listing.properties.push((name.clone(), value.to_string()));
+                }
+                if only_scalars {
+                    add_channels(at, &array, &name, &mut tree, &mut listing);
+                }
             }
+            _ => add_channels(at, &array, &name, &mut tree, &mut listing),
         }
     }
-    add_times(scalars, contents);
-    channels
+    let mut names = Names::default();
+    for channel in &mut listing.channels {
+        names.make_unique(&mut channel.name);
+    }
+    listing
+        .properties
+        .extend(tree.texts.iter().map(|(p, t)| (p.join("/"), t.clone())));
+    add_units(&tree, &mut listing);
+    let mut time_notes = time_bases(&tree, &mut listing);
+    listing.notes.append(&mut tree.notes);
+    listing.notes.append(&mut time_notes);
+    listing
+        .notes
+        .extend(tree.left_out.into_iter().map(note_left_out));
+    listing
 }
 
-fn add(
-    array: &Array,
-    name: String,
-    index: usize,
-    cut: Cut,
-    contents: &mut Contents,
-    channels: &mut ArrayChannels,
-) {
-    contents.channels.push(ChannelContents {
-        name,
-        unit: array.unit.clone(),
-        length: Some(cut.count),
-        time: TimeBase::Unknown,
-        stored_as: array.stored_as.clone(),
-        properties: Vec::new(),
+fn add_channels(at: usize, array: &Array, name: &str, tree: &mut Tree, listing: &mut Listing) {
+    let wide: Vec<Extent> = array
+        .extents
+        .iter()
+        .filter(|e| e.length > 1)
+        .copied()
+        .collect();
+    let samples = sample_extent(&wide);
+    let others: Vec<Extent> = (0..wide.len())
+        .filter(|&i| i != samples)
+        .map(|i| wide[i])
+        .collect();
+    let many = count(&others);
+    if many > MOST_SERIES {
+        let why = "it would be more than 4096 channels; it is taken to be a picture or the like";
+        return tree.leave_out(&array.path, why);
+    }
+    if listing.channels.len() + many as usize > MOST_CHANNELS {
+        return tree.leave_out(&array.path, "the file already holds 65536 channels");
+    }
+    if samples != 0 {
+        tree.notes
+            .push(rows_are_channels(array, wide[samples].length));
+    }
+    let along = wide
+        .get(samples)
+        .copied()
+        .unwrap_or(Extent { length: 1, step: 1 });
+    for k in 0..many {
+        let (suffix, start) = place_of(k, &others);
+        listing.series.push(Series {
+            array: at,
+            start,
+            step: along.step,
+            length: along.length,
+        });
+        listing.channels.push(ChannelContents {
+            name: format!("{name}{suffix}"),
+            unit: array.unit.clone(),
+            length: Some(along.length),
+            time: TimeBase::Unknown,
+            stored_as: array.stored_as.clone(),
+            properties: array.properties.clone(),
+        });
+    }
+    if samples == 0 && others.len() == 1 && rises_evenly(&array.beginning) {
+        first_is_time(name, many as usize, tree, listing);
+    }
+}
+
+/// The first of the last `many` channels times the others.
+fn first_is_time(name: &str, many: usize, tree: &mut Tree, listing: &mut Listing) {
+    let first = listing.channels.len() - many;
+    tree.notes.push(Note::Assumed {
+        what: format!(
+            "the first column of \"{name}\" rises evenly and is taken as the time in seconds"
+        ),
     });
-    channels.parts.push((index, cut));
+    for channel in &mut listing.channels[first + 1..] {
+        channel.time = TimeBase::Channel(first);
+    }
 }
 
+/// Whether values rise by the same step, within a jitter; not by one: those are
+/// numbers of samples.
 fn rises_evenly(values: &[f64]) -> bool {
     if values.len() < 3 {
         return false;
@@ -227,111 +133,170 @@ fn rises_evenly(values: &[f64]) -> bool {
     step > 0.0 && step != 1.0 && values.windows(2).all(even)
 }
 
-/// The part of a name before the last "/", and the part behind it.
-fn parent(name: &str) -> (&str, &str) {
-    name.rsplit_once('/').unwrap_or(("", name))
+/// Which extent is the samples.
+fn sample_extent(wide: &[Extent]) -> usize {
+    let mut best = 0;
+    for (i, extent) in wide.iter().enumerate().skip(1) {
+        if extent.length > LONG && extent.length > wide[best].length {
+            best = i;
+        }
+    }
+    best
 }
 
-/// Times from vectors and single numbers beside the channels.
-fn add_times(scalars: &[(String, f64)], contents: &mut Contents) {
-    let times: Vec<(usize, String, Option<u64>)> = contents
-        .channels
-        .iter()
-        .enumerate()
-        .filter(|(_, channel)| is_time_name(parent(&channel.name).1))
-        .map(|(at, channel)| (at, parent(&channel.name).0.to_owned(), channel.length))
-        .collect();
-    let mut assumed = Vec::new();
-    for (at, channel) in contents.channels.iter_mut().enumerate() {
-        if channel.time != TimeBase::Unknown {
-            continue;
-        }
-        // Columns of a matrix stand one level deeper than what times it.
-        let above = parent(&channel.name).0;
-        let levels = [above, parent(above).0];
-        let found = times.iter().find(|(time, level, length)| {
-            *time != at && *length == channel.length && levels.contains(&level.as_str())
-        });
-        if let Some((time, ..)) = found {
-            channel.time = TimeBase::Channel(*time);
-            continue;
-        }
-        if times.iter().any(|(time, ..)| *time == at) {
-            continue;
-        }
-        let named = |names: &[&str]| {
-            scalars.iter().find(|(name, value)| {
-                let (level, last) = parent(name);
-                let fits = names.contains(&last.to_lowercase().as_str());
-                fits && *value > 0.0 && value.is_finite() && levels.contains(&level)
-            })
-        };
-        let interval = named(&RATES).map(|(name, rate)| (name, rate.recip()));
-        let interval = interval.or_else(|| named(&INTERVALS).map(|(name, dt)| (name, *dt)));
-        if let Some((name, interval)) = interval {
-            channel.time = TimeBase::Uniform {
-                start: 0.0,
-                interval,
-            };
-            let what = format!(
-                "\"{name}\" is taken as the sampling rate or interval (Hz, s) of what stands beside it"
-            );
-            if !assumed.contains(&what) {
-                assumed.push(what);
+/// Suffix of the name, and first element, of the `k`th series; the last of the
+/// other extents runs fastest.
+fn place_of(mut k: u64, others: &[Extent]) -> (String, u64) {
+    let mut suffix = String::new();
+    let mut start = 0_u64;
+    for extent in others.iter().rev() {
+        let index = k % extent.length;
+        k /= extent.length;
+        start += index * extent.step;
+        suffix = format!("/{}{suffix}", index + 1);
+    }
+    (suffix, start)
+}
+
+fn rows_are_channels(array: &Array, samples: u64) -> Note {
+    let shape: Vec<String> = array.extents.iter().map(|e| e.length.to_string()).collect();
+    Note::Assumed {
+        what: format!(
+            "\"{}\" is {}: the extent of {samples} is taken as the samples; transpose it before \
+             it is saved if that is wrong",
+            array.path.join("/"),
+            shape.join(" × "),
+        ),
+    }
+}
+
+/// Numbers those names that stood before.
+#[derive(Default)]
+struct Names {
+    taken: BTreeSet<String>,
+    times: BTreeMap<String, usize>,
+}
+
+impl Names {
+    fn make_unique(&mut self, name: &mut String) {
+        let times = self.times.entry(name.clone()).or_default();
+        let first = name.clone();
+        loop {
+            *times += 1;
+            if *times > 1 {
+                *name = format!("{first} ({times})");
+            }
+            if self.taken.insert(name.clone()) {
+                return;
             }
         }
     }
-    contents
-        .notes
-        .extend(assumed.into_iter().map(|what| Note::Assumed { what }));
+}
+
+/// A text "unit" beside a single array is its unit.
+fn add_units(tree: &Tree, listing: &mut Listing) {
+    for (path, text) in &tree.texts {
+        let Some((name, level)) = path.split_last() else {
+            continue;
+        };
+        if !["unit", "units"].contains(&name.to_lowercase().as_str()) || text.is_empty() {
+            continue;
+        }
+        let beside: Vec<usize> = (0..listing.series.len())
+            .filter(|&i| {
+                let path = &tree.arrays[listing.series[i].array].path;
+                path.split_last()
+                    .is_some_and(|(name, above)| above == level && !names_time(name))
+            })
+            .collect();
+        let same = |i: &&usize| listing.series[**i].array == listing.series[beside[0]].array;
+        if beside.iter().filter(same).count() == beside.len() {
+            for i in beside {
+                listing.channels[i].unit.get_or_insert_with(|| text.clone());
+            }
+        }
+    }
+}
+
+fn note_left_out((why, names): (String, Vec<String>)) -> Note {
+    let shown: Vec<String> = names
+        .iter()
+        .take(MOST_NAMES)
+        .map(|n| format!("\"{n}\""))
+        .collect();
+    let mut what = shown.join(", ");
+    if names.len() > MOST_NAMES {
+        what.push_str(&format!(" and {} more", names.len() - MOST_NAMES));
+    }
+    Note::LeftOut { what, why }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::array_tree::first_fastest;
 
-    struct Kept(Vec<Vec<f64>>);
-    impl Sink for Kept {
-        fn take(&mut self, at: usize, samples: &[f64]) -> Result<(), Error> {
-            self.0[at].extend(samples);
-            Ok(())
+    fn array(path: &str, lengths: &[u64]) -> Array {
+        Array {
+            path: path.split('/').map(str::to_owned).collect(),
+            part: "",
+            extents: first_fastest(lengths),
+            stored_as: "64-bit float".to_owned(),
+            beginning: Vec::new(),
+            value: (lengths.iter().product::<u64>() == 1).then_some(1000.0),
+            unit: None,
+            properties: Vec::new(),
         }
     }
 
+    fn names(arrays: Vec<Array>) -> (Vec<String>, Listing) {
+        let listing = list_channels(Tree {
+            arrays,
+            ..Tree::default()
+        });
+        let names = listing.channels.iter().map(|c| c.name.clone()).collect();
+        (names, listing)
+    }
+
     #[test]
-    fn closed_form_columns_and_rows_in_blocks_of_any_size() {
-        let numbers: Vec<f64> = (0..12).map(f64::from).collect();
-        let parts = [
-            Part {
-                position: 0,
-                cut: Cut {
-                    first: 4,
-                    step: 1,
-                    count: 4,
-                },
-            },
-            Part {
-                position: 1,
-                cut: Cut {
-                    first: 1,
-                    step: 3,
-                    count: 4,
-                },
-            },
-        ];
-        for block in 1..=12 {
-            let mut kept = Kept(vec![Vec::new(); 2]);
-            for (index, samples) in numbers.chunks(block).enumerate() {
-                for part in &parts {
-                    part.hand_over(samples, (index * block) as u64, &mut kept)
-                        .unwrap();
-                }
-            }
-            assert_eq!(
-                kept.0,
-                [[4.0, 5.0, 6.0, 7.0], [1.0, 4.0, 7.0, 10.0]],
-                "{block}"
-            );
-        }
+    fn closed_form_columns_rows_and_vectors() {
+        let (found, listing) = names(vec![array("a", &[3, 2]), array("b", &[2, 65])]);
+        assert_eq!(found, ["a/1", "a/2", "b/1", "b/2"]);
+        let of = |array, start, step, length| Series {
+            array,
+            start,
+            step,
+            length,
+        };
+        assert_eq!(
+            listing.series,
+            [
+                of(0, 0, 1, 3),
+                of(0, 3, 1, 3),
+                of(1, 0, 2, 65),
+                of(1, 1, 2, 65)
+            ]
+        );
+        assert_eq!(listing.notes.len(), 1);
+        let (found, _) = names(vec![
+            array("v", &[1, 1, 9]),
+            array("v", &[9]),
+            array("n", &[1, 1]),
+        ]);
+        assert_eq!(found, ["v", "v (2)"]);
+        let (found, listing) = names(vec![array("c", &[2, 3, 4])]);
+        assert_eq!(found.len(), 12);
+        assert_eq!((found[1].as_str(), listing.series[1].start), ("c/1/2", 6));
+        let (found, _) = names(vec![array("x", &[1, 1]), array("y", &[1, 1])]);
+        assert_eq!(found, ["x", "y"]);
+    }
+
+    #[test]
+    fn rejects_extents_that_cannot_be_counted() {
+        assert_eq!(count(&first_fastest(&[u64::MAX, 3])), u64::MAX);
+        assert_eq!(count(&first_fastest(&[u64::MAX, 3, 0])), 0);
+        let (found, listing) = names(vec![array("picture", &[5000, 5000])]);
+        assert!(found.is_empty());
+        assert_eq!(listing.notes[0].code(), "left-out");
     }
 }

@@ -11,12 +11,41 @@
 //! unit, is said in a campaign and is not known here. Sizes and offsets that a
 //! file declares are checked against its length before anything is allocated.
 
-pub mod array_channels;
+mod array_channels;
+mod array_clock;
+mod array_pass;
+mod array_tree;
 pub mod contents;
 pub mod error;
-pub mod mat_element;
-pub mod mat_stream;
+mod hdf5_attribute;
+mod hdf5_blocks;
+mod hdf5_btree1;
+mod hdf5_btree2;
+mod hdf5_checksum;
+mod hdf5_chunk_entry;
+mod hdf5_chunks;
+mod hdf5_cursor;
+mod hdf5_dataset;
+mod hdf5_extensible;
+mod hdf5_file;
+mod hdf5_filter;
+mod hdf5_group;
+mod hdf5_heap;
+mod hdf5_layout;
+mod hdf5_lzf;
+mod hdf5_number;
+mod hdf5_object;
+mod hdf5_tree;
+mod hdf5_type;
+mod mat_element;
+mod mat_flow;
+mod mat_matrix;
+mod mat_number;
+mod mat_stored;
+mod mat_version4;
+mod mat_version5;
 pub mod open;
+pub mod read_hdf5;
 pub mod read_lvm;
 pub mod read_mat;
 pub mod read_tdms;

@@ -3,9 +3,9 @@
 
 use crate::contents::Format;
 use crate::error::Error;
-use crate::mat_element::header4;
+use crate::read_hdf5::{self, Hdf5Reader};
 use crate::read_lvm::LvmReader;
-use crate::read_mat::MatReader;
+use crate::read_mat::{self, MatReader};
 use crate::read_tdms::TdmsReader;
 use crate::read_text::TextReader;
 use crate::read_uff58::UffReader;
@@ -17,9 +17,6 @@ use std::path::Path;
 
 /// Bytes from which the format is told.
 const HEAD: u64 = 4096;
-
-/// The first bytes of HDF5, at the beginning of a file or behind a block of user data.
-const HDF5: &[u8] = b"\x89HDF\r\n\x1a\n";
 
 /// Files that people have beside their recordings: first bytes, what they are, what
 /// to do.
@@ -81,6 +78,7 @@ pub fn open_source(source: Source, options: &OpenOptions) -> Result<Box<dyn Read
         Format::Lvm => Ok(Box::new(LvmReader::open(source)?)),
         Format::Wav => Ok(Box::new(WavReader::open(source)?)),
         Format::Tdms => Ok(Box::new(TdmsReader::open(source)?)),
+        Format::Hdf5 => Ok(Box::new(Hdf5Reader::open(source)?)),
         Format::Mat => Ok(Box::new(MatReader::open(source)?)),
         Format::Uff58 => Ok(Box::new(UffReader::open(source)?)),
         other => Err(Error::UnknownFormat {
@@ -118,12 +116,11 @@ pub fn tell_format(source: &Source) -> Result<Format, Error> {
     {
         return Ok(Format::Wav);
     }
-    let is_hdf5 = |at: usize| head.get(at..at + 8) == Some(HDF5);
-    if [0, 512, 1024, 2048].into_iter().any(is_hdf5) {
+    // Before MATLAB: its version 7.3 begins like both.
+    if read_hdf5::begins(&head) {
         return Ok(Format::Hdf5);
     }
-    let matlab5 = head.starts_with(b"MATLAB") && matches!(head.get(126..128), Some(b"IM" | b"MI"));
-    if matlab5 || is_matlab4(&head, source.length()) {
+    if read_mat::begins(&head) {
         return Ok(Format::Mat);
     }
     if is_universal(&head) {
@@ -133,21 +130,6 @@ pub fn tell_format(source: &Source) -> Result<Format, Error> {
         return Ok(Format::Lvm);
     }
     Ok(Format::Text)
-}
-
-/// A variable of MATLAB version 4 has no signature: its header must make sense.
-fn is_matlab4(head: &[u8], length: u64) -> bool {
-    let Some(header) = header4(head) else {
-        return false;
-    };
-    let name = head.get(20..20 + header.name as usize).unwrap_or_default();
-    let letters = name.strip_suffix(b"\0").unwrap_or_default();
-    let bytes = header
-        .rows
-        .checked_mul(header.columns)
-        .and_then(|n| n.checked_mul(header.value.size()));
-    let is_name = |byte: &u8| byte.is_ascii_alphanumeric() || *byte == b'_';
-    !letters.is_empty() && letters.iter().all(is_name) && bytes.is_some_and(|bytes| bytes <= length)
 }
 
 /// A universal file begins with "    -1" and the number of a data set below.

@@ -163,12 +163,15 @@ fn rejects_damaged_files_and_says_where() {
     for (bytes, expected) in [
         (
             wrong_size,
-            "at byte 128: \"F\" of size [1, 4] needs 4 values of 8 bytes and has 24 bytes",
+            "at byte 128: in the variable that begins here: \"F\" has 4 elements and 24 bytes of double",
         ),
-        (no_order, "at byte 126: expected \"IM\" or \"MI\""),
+        (
+            no_order,
+            "at byte 124: expected version 256 and \"IM\" or \"MI\"",
+        ),
         (
             deflated,
-            "at byte 128: the compressed variable ends too early or cannot be inflated",
+            "at byte 136: the compressed data that begin here are damaged",
         ),
     ] {
         let message = open_bytes("t.mat", bytes, Format::Mat)
@@ -177,10 +180,20 @@ fn rejects_damaged_files_and_says_where() {
             .to_string();
         assert!(message.contains(expected), "{message}");
     }
-    let cut = open_bytes("t.mat", good[..good.len() - 1].to_vec(), Format::Mat).unwrap();
+    let two = file(&[
+        array(6, 1, 3, "F", &doubles(&[1.0, 2.0, 3.0])),
+        array(6, 1, 3, "G", &doubles(&[1.0, 2.0, 3.0])),
+    ]);
+    let mut cut = open_bytes("t.mat", two[..two.len() - 1].to_vec(), Format::Mat).unwrap();
     let note = cut.contents().notes[0].to_string();
-    assert!(
-        note.contains("the variable at byte 128 needs 80 bytes, 79 are left"),
-        "{note}"
+    assert_eq!(
+        note,
+        "the file is cut off: a variable at byte 224 needs 80 bytes, 79 are left"
     );
+    assert_eq!(samples(cut.as_mut()), [[1.0, 2.0, 3.0]]);
+    let message = open_bytes("t.mat", good[..good.len() - 1].to_vec(), Format::Mat)
+        .map(|_| ())
+        .unwrap_err()
+        .to_string();
+    assert!(message.contains("the file ends too early"), "{message}");
 }

@@ -1,0 +1,178 @@
+//! Bytes of the structures of an HDF5 file, read one field after the other.
+
+use crate::error::Error;
+
+/// Why a part of an HDF5 file cannot be read.
+#[derive(Debug)]
+pub(crate) enum Problem {
+    /// The file breaks the rules of its format: where, and how.
+    Damaged { at: u64, what: String },
+    /// A part of the format that is not read.
+    Unsupported(String),
+    /// The bytes cannot be read.
+    Source(Error),
+}
+
+impl From<Error> for Problem {
+    fn from(error: Error) -> Self {
+        Self::Source(error)
+    }
+}
+
+/// Sizes of addresses and lengths in a file; bytes.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) struct Widths {
+    pub address: usize,
+    pub length: usize,
+}
+
+/// A place in bytes that begin at `start` in the file.
+#[derive(Clone, Debug)]
+pub(crate) struct Cursor<'a> {
+    bytes: &'a [u8],
+    place: usize,
+    start: u64,
+    widths: Widths,
+}
+
+impl<'a> Cursor<'a> {
+    pub fn new(bytes: &'a [u8], start: u64, widths: Widths) -> Self {
+        Self {
+            bytes,
+            place: 0,
+            start,
+            widths,
+        }
+    }
+
+    /// Sizes of addresses and lengths.
+    pub fn widths(&self) -> Widths {
+        self.widths
+    }
+
+    /// The byte of the file that comes next.
+    pub fn at(&self) -> u64 {
+        self.start + self.place as u64
+    }
+
+    /// Bytes before the cursor.
+    pub fn place(&self) -> usize {
+        self.place
+    }
+
+    /// Bytes that are left.
+    pub fn left(&self) -> usize {
+        self.bytes.len() - self.place
+    }
+
+    /// That the file is damaged here.
+    pub fn damaged(&self, what: &str) -> Problem {
+        Problem::Damaged {
+            at: self.at(),
+            what: what.to_owned(),
+        }
+    }
+
+    pub fn take(&mut self, count: usize) -> Result<&'a [u8], Problem> {
+        match self.bytes[self.place..].get(..count) {
+            Some(bytes) => {
+                self.place += count;
+                Ok(bytes)
+            }
+            None => Err(self.damaged("a structure ends before what it declares")),
+        }
+    }
+
+    /// All that is left.
+    pub fn rest(&mut self) -> &'a [u8] {
+        let rest = &self.bytes[self.place..];
+        self.place = self.bytes.len();
+        rest
+    }
+
+    pub fn skip(&mut self, count: usize) -> Result<(), Problem> {
+        self.take(count).map(|_| ())
+    }
+
+    /// Passes over what fills up to a multiple of eight bytes since `from`.
+    pub fn align(&mut self, from: usize) -> Result<(), Problem> {
+        let used = self.place - from;
+        self.skip(used.next_multiple_of(8) - used)
+    }
+
+    /// A whole number of up to eight bytes.
+    pub fn uint(&mut self, size: usize) -> Result<u64, Problem> {
+        let mut word = [0; 8];
+        let bytes = self.take(size)?;
+        match word.get_mut(..size) {
+            Some(low) => low.copy_from_slice(bytes),
+            None => return Err(self.damaged("a number is longer than eight bytes")),
+        }
+        Ok(u64::from_le_bytes(word))
+    }
+
+    pub fn u8(&mut self) -> Result<u8, Problem> {
+        Ok(self.take(1)?[0])
+    }
+
+    pub fn u16(&mut self) -> Result<u16, Problem> {
+        Ok(self.uint(2)? as u16)
+    }
+
+    pub fn u32(&mut self) -> Result<u32, Problem> {
+        Ok(self.uint(4)? as u32)
+    }
+
+    pub fn u64(&mut self) -> Result<u64, Problem> {
+        self.uint(8)
+    }
+
+    /// A length or count.
+    pub fn length(&mut self) -> Result<u64, Problem> {
+        self.uint(self.widths.length)
+    }
+
+    /// An address; `None` for the undefined one.
+    pub fn address(&mut self) -> Result<Option<u64>, Problem> {
+        let size = self.widths.address;
+        let address = self.uint(size)?;
+        let undefined = u64::MAX >> (64 - 8 * size);
+        Ok((address != undefined).then_some(address))
+    }
+
+    /// That the next bytes are a signature.
+    pub fn expect(&mut self, signature: &[u8; 4]) -> Result<(), Problem> {
+        let found = self.take(4)?;
+        if found == signature {
+            return Ok(());
+        }
+        let name = String::from_utf8_lossy(signature);
+        Err(Problem::Damaged {
+            at: self.at() - 4,
+            what: format!("expected a structure \"{name}\""),
+        })
+    }
+
+    /// That the next byte is one of some versions.
+    pub fn version(&mut self, of: &str, known: &[u8]) -> Result<u8, Problem> {
+        let version = self.u8()?;
+        match known.contains(&version) {
+            true => Ok(version),
+            false => Err(Problem::Unsupported(format!("version {version} of {of}"))),
+        }
+    }
+
+    /// A text that ends with a zero.
+    pub fn text(&mut self) -> Result<String, Problem> {
+        let end = self.bytes[self.place..].iter().position(|b| *b == 0);
+        let end = end.ok_or_else(|| self.damaged("a name has no end"))?;
+        let text = String::from_utf8_lossy(self.take(end)?).into_owned();
+        self.skip(1)?;
+        Ok(text)
+    }
+}
+
+/// Bytes that a count up to `most` needs.
+pub(crate) fn bytes_for(most: u64) -> usize {
+    (most.max(1).ilog2() / 8 + 1) as usize
+}
