@@ -12,6 +12,7 @@ import json
 import struct
 import subprocess
 import sys
+import zipfile
 from pathlib import Path
 
 import h5py
@@ -139,7 +140,19 @@ def read_uff(path):
     return channels
 
 
-PEERS = {".tdms": read_tdms, ".lvm": read_lvm, ".wav": read_wav, ".mat": read_mat, ".uff": read_uff}
+def read_sigrok(path):
+    archive = zipfile.ZipFile(path)
+    settings = dict(line.split("=", 1) for line in archive.read("metadata").decode().splitlines() if "=" in line)
+    parts = [n for n in archive.namelist() if n.startswith("logic-1-")]
+    raw = b"".join(archive.read(n) for n in sorted(parts, key=lambda n: int(n.rsplit("-", 1)[1])))
+    rows = np.frombuffer(raw, np.uint8).reshape(-1, int(settings["unitsize"]))
+    rate = {"MHz": 1e6, "kHz": 1e3}.get(settings.get("samplerate", " ").split(" ")[1])
+    interval = rate and 1 / (float(settings["samplerate"].split()[0]) * rate)
+    bits = [(int(k[5:]) - 1, v) for k, v in settings.items() if k.startswith("probe")]
+    return [channel(v, (rows[:, b // 8] >> (b % 8)) & 1, interval) for b, v in bits]
+
+
+PEERS = {".sr": read_sigrok, ".tdms": read_tdms, ".lvm": read_lvm, ".wav": read_wav, ".mat": read_mat, ".uff": read_uff}
 
 TEXTS = {
     "2mps_sphere_1_100gPR_20kHz.csv": {},

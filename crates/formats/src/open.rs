@@ -6,6 +6,7 @@ use crate::error::Error;
 use crate::read_hdf5::{self, Hdf5Reader};
 use crate::read_lvm::LvmReader;
 use crate::read_mat::{self, MatReader};
+use crate::read_sigrok::SigrokReader;
 use crate::read_tdms::TdmsReader;
 use crate::read_text::TextReader;
 use crate::read_uff58::UffReader;
@@ -20,16 +21,11 @@ const HEAD: u64 = 4096;
 
 /// Files that people have beside their recordings: first bytes, what they are, what
 /// to do.
-const OTHERS: [(&[u8], &str, &str); 8] = [
+const OTHERS: [(&[u8], &str, &str); 7] = [
     (
         b"\x1aE\xdf\xa3",
         "an EBML file, such as an enDAQ recording (.ide)",
         "export the channels as CSV or MAT with the program of the recorder",
-    ),
-    (
-        b"PK\x03\x04",
-        "a zip archive, such as a workbook (.xlsx) or a sigrok capture (.sr)",
-        "export the sheet or the capture as CSV, or unpack the archive",
     ),
     (b"\x1f\x8b", "a gzip archive", "unpack it (gunzip)"),
     (
@@ -81,11 +77,7 @@ pub fn open_source(source: Source, options: &OpenOptions) -> Result<Box<dyn Read
         Format::Hdf5 => Ok(Box::new(Hdf5Reader::open(source)?)),
         Format::Mat => Ok(Box::new(MatReader::open(source)?)),
         Format::Uff58 => Ok(Box::new(UffReader::open(source)?)),
-        other => Err(Error::UnknownFormat {
-            path: source.path().to_path_buf(),
-            found: format!("this is a {other} file"),
-            advice: "export the recording as CSV".to_owned(),
-        }),
+        Format::Sigrok => Ok(Box::new(SigrokReader::open(source)?)),
     }
 }
 
@@ -107,6 +99,9 @@ pub fn tell_format(source: &Source) -> Result<Format, Error> {
             found: format!("this is {what}, which windfall does not read"),
             advice: (*advice).to_owned(),
         });
+    }
+    if head.starts_with(b"PK\x03\x04") {
+        return Ok(Format::Sigrok);
     }
     if head.starts_with(b"TDSm") || head.starts_with(b"TDSh") {
         return Ok(Format::Tdms);

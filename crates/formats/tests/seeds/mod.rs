@@ -13,6 +13,7 @@ pub fn seeds() -> Vec<(&'static str, Format, Vec<u8>)> {
         ("wav", Format::Wav, wav()),
         ("uff58", Format::Uff58, uff(false)),
         ("uff58b", Format::Uff58, uff(true)),
+        ("sigrok", Format::Sigrok, sigrok()),
     ]
 }
 
@@ -203,4 +204,42 @@ fn uff(binary: bool) -> Vec<u8> {
         &data,
         b"\n    -1\n",
     ])
+}
+
+/// A zip archive of two entries that are stored as they are.
+fn sigrok() -> Vec<u8> {
+    let metadata: &[u8] = b"[device 1]\ncapturefile=logic-1\nsamplerate=1 MHz\n\
+        total probes=2\nprobe1=A\nprobe2=B\nunitsize=1\n";
+    let entries: [(&[u8], &[u8]); 2] = [(b"metadata", metadata), (b"logic-1-1", &[0, 1, 3, 2])];
+    let (mut bytes, mut directory) = (Vec::new(), Vec::new());
+    for (name, data) in entries {
+        let size = (data.len() as u32).to_le_bytes();
+        let name_length = (name.len() as u16).to_le_bytes();
+        let offset = (bytes.len() as u32).to_le_bytes();
+        bytes.extend(le(&[
+            b"PK\x03\x04",
+            &[0; 14],
+            &size,
+            &size,
+            &name_length,
+            &[0; 2],
+            name,
+            data,
+        ]));
+        let lengths = le(&[&name_length, &[0; 12]]);
+        directory.extend(le(&[
+            b"PK\x01\x02",
+            &[0; 16],
+            &size,
+            &size,
+            &lengths,
+            &offset,
+            name,
+        ]));
+    }
+    let place = le(&[
+        &(directory.len() as u32).to_le_bytes(),
+        &(bytes.len() as u32).to_le_bytes(),
+    ]);
+    le(&[&bytes, &directory, b"PK\x05\x06", &[0; 8], &place, &[0; 2]])
 }
