@@ -152,7 +152,51 @@ def read_sigrok(path):
     return [channel(v, (rows[:, b // 8] >> (b % 8)) & 1, interval) for b, v in bits]
 
 
-PEERS = {".sr": read_sigrok, ".tdms": read_tdms, ".lvm": read_lvm, ".wav": read_wav, ".mat": read_mat, ".uff": read_uff}
+def read_hdf5(path):
+    """Arrays of one dimension, and vectors of MATLAB; windfall has no others here."""
+    channels = []
+
+    def visit(name, item):
+        inner = name.startswith("#") or not isinstance(item, h5py.Dataset)
+        if not inner and item.dtype.kind == "O":
+            raise ValueError("it holds references, which are not followed here")
+        sparse = not inner and "MATLAB_sparse" in item.parent.attrs
+        if inner or sparse or item.dtype.kind not in "iuf" or item.size < 2:
+            return
+        if item.attrs.get("MATLAB_class", b"double") not in (b"char", b"string"):
+            channels.append(channel(name, item[()].ravel().astype(float)))
+
+    with h5py.File(path) as file:
+        file.visititems(visit)
+    return channels
+
+
+def make_hdf5(folder):
+    """Every layout of data sets and both generations of the format."""
+    random = np.random.default_rng(2)
+    for version in ("earliest", "latest"):
+        with h5py.File(folder / f"{version}.h5", "w", libver=version) as file:
+            values = random.normal(size=5000)
+            file["contiguous"] = values
+            file["group/inner/32 bit"] = values.astype("f4")
+            file["big endian"] = values.astype(">f8")
+            for kind in ("i1", "u2", ">i4", "u8"):
+                file[f"integers/{kind}"] = (values * 50).astype(kind)
+            chunked = {
+                "chunked": {"chunks": (700,)},
+                "gzip": {"chunks": (512,), "compression": "gzip", "shuffle": True, "fletcher32": True},
+                "lzf": {"chunks": (512,), "compression": "lzf"},
+                "growing": {"chunks": (256,), "maxshape": (None,)},
+                "one chunk": {"chunks": (5000,), "compression": "gzip"},
+            }
+            for name, options in chunked.items():
+                file.create_dataset(f"chunks/{name}", data=values, **options)
+            many = file.create_group("many")
+            for i in range(60):
+                many[f"channel {i:02}"] = values[: 10 + i]
+
+
+PEERS = {".h5": read_hdf5, ".sr": read_sigrok, ".tdms": read_tdms, ".lvm": read_lvm, ".wav": read_wav, ".mat": read_mat, ".uff": read_uff}
 
 TEXTS = {
     "2mps_sphere_1_100gPR_20kHz.csv": {},
@@ -179,6 +223,8 @@ def peer_of(path):
     name = path.name
     if name in TEXTS or name.startswith(("kiwi_", "mango_")):
         return lambda p: read_text(p, float_precision="round_trip", **TEXTS.get(name, {}))
+    if path.suffix == ".mat" and h5py.is_hdf5(path):
+        return read_hdf5
     return PEERS.get(path.suffix.lower())
 
 
@@ -295,6 +341,7 @@ def main():
     dump, data, scratch = sys.argv[1], Path(sys.argv[2]), Path(sys.argv[3])
     scratch.mkdir(parents=True, exist_ok=True)
     make_tdms(scratch)
+    make_hdf5(scratch)
     files = sorted(p for folder in (data, scratch) for p in folder.rglob("*") if p.is_file())
     lines = subprocess.run([dump, *map(str, files)], capture_output=True, text=True, check=True).stdout
     differences = 0

@@ -80,7 +80,7 @@ impl Source {
     pub fn read_at(&self, offset: u64, buffer: &mut [u8]) -> Result<(), Error> {
         let left = self.length.saturating_sub(offset);
         let needed = buffer.len() as u64;
-        if needed > left {
+        if needed > left || offset > self.length {
             return Err(self.truncated(offset, "what stands here", needed));
         }
         match &self.bytes {
@@ -184,5 +184,8 @@ mod tests {
              18446744073709551615 bytes, 6 are left; it was cut off while it was written or copied"
         );
         assert!(source.bytes_at(u64::MAX, 1).is_err());
+        // No bytes beyond the end: a crash that fuzzing found.
+        assert!(source.bytes_at(11, 0).is_err());
+        assert_eq!(source.bytes_at(10, 0).unwrap(), b"");
     }
 }
