@@ -285,7 +285,8 @@ fn list_text(
 fn by_rows(text: &str, matrix: &Matrix) -> String {
     let rows = matrix.extents[0];
     let characters: Vec<char> = text.chars().collect();
-    if rows <= 1 || characters.len() as u64 != matrix.count {
+    // A text of several rows and no columns holds nothing.
+    if rows <= 1 || characters.is_empty() || characters.len() as u64 != matrix.count {
         return text.to_owned();
     }
     let rows = rows as usize;
