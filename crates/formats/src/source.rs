@@ -80,6 +80,9 @@ impl Source {
     pub fn read_at(&self, offset: u64, buffer: &mut [u8]) -> Result<(), Error> {
         let left = self.length.saturating_sub(offset);
         let needed = buffer.len() as u64;
+        if needed == 0 {
+            return Ok(());
+        }
         if needed > left {
             return Err(self.truncated(offset, "what stands here", needed));
         }
@@ -184,5 +187,6 @@ mod tests {
              18446744073709551615 bytes, 6 are left; it was cut off while it was written or copied"
         );
         assert!(source.bytes_at(u64::MAX, 1).is_err());
+        assert!(source.bytes_at(99, 0).unwrap().is_empty());
     }
 }
