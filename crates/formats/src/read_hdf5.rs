@@ -35,8 +35,13 @@ impl Hdf5Reader {
     /// The file cannot be read, is no HDF5 file, or its root is damaged.
     pub fn open(source: Source) -> Result<Self, Error> {
         let file = Hdf5File::open(source)?;
-        let mut found = list(&file)?;
         let length = file.source.length();
+        let found = list(&file);
+        if found.is_err() && file.end > length {
+            let what = "the file as it was written";
+            return Err(file.source.truncated(0, what, file.end));
+        }
+        let mut found = found?;
         if file.end > length {
             found.tree.notes.push(Note::CutOff {
                 missing: format!("{} bytes were written, {length} are there", file.end),

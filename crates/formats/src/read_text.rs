@@ -10,6 +10,7 @@ use crate::text_lines::Lines;
 use crate::text_options::{Dialect, TextOptions};
 use crate::text_rows::{ColumnKind, RowPlan, Separator};
 use crate::text_table::{CutOff, Table, read_table, read_whole_table, shortened};
+use std::collections::{BTreeMap, BTreeSet};
 
 /// Bytes from which the dialect is found out.
 const HEAD: u64 = 1 << 16;
@@ -232,22 +233,34 @@ fn contents(dialect: &Dialect, encoding: Encoding) -> (Contents, Vec<usize>, Vec
 /// Names without repetitions; a column without a name has its number.
 fn unique_names(dialect: &Dialect, notes: &mut Vec<Note>) -> Vec<String> {
     let mut names: Vec<String> = Vec::new();
+    let mut taken = BTreeSet::new();
+    // How often a name has been given.
+    let mut given: BTreeMap<String, usize> = BTreeMap::new();
     for (column, name) in dialect.names.iter().enumerate() {
         let wanted = match name.as_str() {
             "" => format!("column_{}", column + 1),
             name => name.to_owned(),
         };
+        let number = given.entry(wanted.clone()).or_insert(0);
+        *number += 1;
         let mut unique = wanted.clone();
-        let mut number = 2;
-        while names.contains(&unique) {
+        while *number > 1 || taken.contains(&unique) {
+            *number = (*number).max(2);
             unique = format!("{wanted} ({number})");
-            number += 1;
+            if !taken.contains(&unique) {
+                break;
+            }
+            *number += 1;
         }
         if unique != wanted {
             notes.push(Note::Odd {
-                what: format!("the name \"{wanted}\" stands above several columns; column {} is called \"{unique}\"", column + 1),
+                what: format!(
+                    "the name \"{wanted}\" stands above several columns; column {} is called \"{unique}\"",
+                    column + 1
+                ),
             });
         }
+        taken.insert(unique.clone());
         names.push(unique);
     }
     names

@@ -34,7 +34,7 @@ pub enum Scale {
         /// Intercept.
         intercept: f64,
     },
-    /// Σ coefficients[i] · xⁱ.
+    /// `Σ coefficients[i] · xⁱ`.
     Polynomial {
         /// Number of the scale that it takes.
         input: u32,

@@ -101,17 +101,25 @@ pub struct Ragged {
     pub last: bool,
 }
 
-/// Lines in a stretch: as many rows at the most.
+/// The most rows that a stretch can hold: one for each line, and no more than
+/// its bytes allow, so that room for them is bounded whatever the file says.
 #[must_use]
-pub fn count_lines(bytes: &[u8], plan: &RowPlan) -> usize {
+pub fn most_rows(bytes: &[u8], plan: &RowPlan) -> usize {
     let ends = memchr::memchr_iter(plan.newline, bytes).count();
-    ends + usize::from(bytes.last().is_some_and(|last| *last != plan.newline))
+    let lines = ends + usize::from(bytes.last().is_some_and(|last| *last != plan.newline));
+    let shortest = match (plan.separator, plan.short_rows) {
+        // The separators and the end of the line.
+        (Separator::Mark(_), false) => plan.columns.len(),
+        (Separator::Blanks, false) => 2 * plan.columns.len(),
+        (_, true) => 1,
+    };
+    lines.min(bytes.len() / shortest.max(1) + 1)
 }
 
 /// Reads the lines of a stretch.
 ///
 /// * `places`: for each column of the file, its position in `columns`
-/// * `columns`: where samples go, with room for [`count_lines`] each
+/// * `columns`: where samples go, with room for [`most_rows`] each
 pub fn read_rows(
     bytes: &[u8],
     plan: &RowPlan,
@@ -173,6 +181,9 @@ fn bare_row(
     columns: &mut [Column],
 ) -> Option<usize> {
     let last = places.len() - 1;
+    if is_comment(&bytes[at..], plan) {
+        return None;
+    }
     for (column, place) in places.iter().enumerate() {
         let Some(place) = *place else {
             // A cell that nobody wants.
@@ -223,10 +234,18 @@ fn passed_over(line: &[u8], plan: &RowPlan) -> bool {
         // A line of nothing but tabs is a row of blank cells.
         return !(plan.separator == Separator::Mark(b'\t') && line.contains(&b'\t'));
     };
-    let comments = &plan.comments;
-    comments
-        .iter()
-        .any(|mark| line[first..].starts_with(mark.as_bytes()))
+    is_comment(&line[first..], plan)
+}
+
+/// Whether a comment begins here, behind blanks at the most.
+#[inline]
+fn is_comment(bytes: &[u8], plan: &RowPlan) -> bool {
+    let begins = |mark: &String| {
+        let first = bytes.iter().position(|byte| !matches!(byte, b' ' | b'\t'));
+        first.is_some_and(|first| bytes[first..].starts_with(mark.as_bytes()))
+    };
+    // Most files have none.
+    !plan.comments.is_empty() && plan.comments.iter().any(begins)
 }
 
 /// Reads a line with a mark between cells; the number of cells.
@@ -380,8 +399,8 @@ mod tests {
     }
 
     fn read(text: &[u8], plan: &RowPlan, places: &[Option<usize>]) -> (Vec<Vec<f64>>, Rows) {
-        let lines = count_lines(text, plan);
-        let mut room = vec![vec![0.0; lines]; places.iter().flatten().count()];
+        let most = most_rows(text, plan);
+        let mut room = vec![vec![0.0; most]; places.iter().flatten().count()];
         let mut columns: Vec<Column> = room.iter_mut().map(|room| Column::new(room)).collect();
         let rows = read_rows(text, plan, places, &mut columns);
         room.iter_mut()
@@ -406,6 +425,23 @@ mod tests {
             (rows.faults, rows.lines, rows.ragged),
             (vec![fault], 5, None)
         );
+    }
+
+    #[test]
+    fn closed_form_comments_are_no_rows_whatever_is_read() {
+        let plan = plan(Separator::Mark(b','), 2);
+        let text = b"1,2\n# 3,4\n #,5\n6,7\n";
+        for places in [[Some(0), Some(1)], [None, Some(0)], [Some(0), None]] {
+            assert_eq!(read(text, &plan, &places).1.rows, 2, "{places:?}");
+        }
+    }
+
+    #[test]
+    fn conserves_memory_whatever_the_lines() {
+        let plan = plan(Separator::Mark(b','), 1000);
+        // Blank lines are no rows: room for as many would be 8 GB.
+        assert!(most_rows(&vec![b'\n'; 1 << 20], &plan) <= 1050);
+        assert_eq!(most_rows(&vec![b','; 2000], &plan), 1);
     }
 
     #[test]

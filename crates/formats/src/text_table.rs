@@ -4,7 +4,7 @@ use crate::error::{Error, Place};
 use crate::reader::Sink;
 use crate::source::Source;
 use crate::text_lines::{Lines, stretch, stretches};
-use crate::text_rows::{Column, Fault, RowPlan, Rows, count_lines, read_rows};
+use crate::text_rows::{Column, Fault, RowPlan, Rows, most_rows, read_rows};
 use rayon::prelude::*;
 
 /// Stretches read at once for each thread.
@@ -64,7 +64,7 @@ pub fn read_table(
             .into_par_iter()
             .map(|index| {
                 let bytes = stretch(source, &table.lines, index)?;
-                let mut room = vec![vec![0.0; count_lines(&bytes, &table.plan)]; wanted.len()];
+                let mut room = vec![vec![0.0; most_rows(&bytes, &table.plan)]; wanted.len()];
                 let mut columns: Vec<Column> =
                     room.iter_mut().map(|room| Column::new(room)).collect();
                 let rows = read_rows(&bytes, &table.plan, &places, &mut columns);
@@ -108,7 +108,7 @@ pub fn read_whole_table(
     let lengths: Vec<usize> = (0..count)
         .into_par_iter()
         .map(|index| {
-            Ok(count_lines(
+            Ok(most_rows(
                 &stretch(source, &table.lines, index)?,
                 &table.plan,
             ))

@@ -67,6 +67,116 @@ fn reference_real_files() {
     }
 }
 
+/// Checksums by SciPy 1.17; single numbers, of which these files hold nothing else.
+#[test]
+fn reference_nested_real_files() {
+    let numbers = |names: &'static [(&'static str, f64)]| -> Vec<channels::Expected> {
+        let expected = |(name, value): &(&'static str, f64)| (*name, 1, value.to_bits(), None);
+        names.iter().map(expected).collect()
+    };
+    let files = [
+        (
+            "daq_formats/mat/scipy_testcellnest_7.1_GLNX86.mat",
+            numbers(&[
+                ("testcellnest/1", 1.0),
+                ("testcellnest/2/1", 2.0),
+                ("testcellnest/2/2", 3.0),
+                ("testcellnest/2/3/1", 4.0),
+                ("testcellnest/2/3/2", 5.0),
+            ]),
+        ),
+        (
+            "daq_formats/mat/pymatreader_struct_in_cell_v6.mat",
+            numbers(&[("x/test/1/int", 4.0), ("x/test/1/float", 3.2)]),
+        ),
+        (
+            "daq_formats/mat/pymatreader_struct_in_cell_v7.mat",
+            numbers(&[("x/test/1/int", 4.0), ("x/test/1/float", 3.2)]),
+        ),
+        ("daq_formats/mat/pymatreader_string_v7.mat", Vec::new()),
+    ];
+    for (file, channels) in files {
+        check_file(file, Format::Mat, &channels);
+    }
+}
+
+/// A file made by SciPy (`fixtures/make_fixtures.py`), plain and compressed.
+#[test]
+fn closed_form_structs_cells_and_arrays_of_any_class() {
+    let force: Vec<f64> = (0..40).map(|i| f64::from(i) * 0.25 - 3.0).collect();
+    for bytes in [
+        &include_bytes!("fixtures/plain.mat")[..],
+        &include_bytes!("fixtures/packed.mat")[..],
+    ] {
+        let mut reader = open_bytes("f.mat", bytes.to_vec(), Format::Mat).unwrap();
+        let contents = reader.contents().clone();
+        let all = samples(reader.as_mut());
+        let find = |name: &str| {
+            let at = contents.channels.iter().position(|c| c.name == name);
+            at.unwrap_or_else(|| panic!("{name} is not there"))
+        };
+        assert_eq!(all[find("F")], force);
+        assert_eq!(all[find("run/x")], [-2.0, -1.0, 0.0, 1.0, 2.0]);
+        let x = &contents.channels[find("run/x")];
+        assert_eq!(x.time, TimeBase::Channel(find("run/time")));
+        assert_eq!(x.unit.as_deref(), Some("mm"));
+        assert_eq!(contents.channels[find("run/time")].unit, None);
+        assert_eq!(all[find("cells/2")], [0.0, 1.0, 2.0, 3.0]);
+        assert_eq!(all[find("z (real)")], [0.0, 1.0, 2.0]);
+        assert_eq!(all[find("z (imaginary)")], [3.0, 4.0, 5.0]);
+        // Element (i, j, k) of the cube is 12 i + 4 j + k.
+        assert_eq!(all[find("cube/3/2")], [9.0, 21.0]);
+        assert_eq!(all[find("on")], [1.0, 0.0, 1.0]);
+        let uniform = TimeBase::Uniform {
+            start: 0.0,
+            interval: 0.0005,
+        };
+        assert_eq!(contents.channels[find("F")].time, uniform);
+        let label = ("label".to_owned(), "Kraft (µN)".to_owned());
+        assert!(contents.properties.contains(&label), "{contents:?}");
+        let notes: Vec<String> = contents.notes.iter().map(ToString::to_string).collect();
+        for expected in [
+            "\"sparse\" is left out: it is a sparse matrix; save full(…) of it",
+            "\"nothing\" is left out: it is empty",
+        ] {
+            assert!(notes.iter().any(|n| n == expected), "{notes:?}");
+        }
+        let backwards: Vec<usize> = (0..all.len()).rev().collect();
+        let mut found = reader.read_whole(&backwards).unwrap();
+        found.reverse();
+        assert_eq!(found, all);
+    }
+}
+
+#[test]
+fn rejects_a_wrong_checksum_of_compressed_data() {
+    let mut bytes = include_bytes!("fixtures/packed.mat").to_vec();
+    // The first variable: its tag stands at byte 128, its checksum ends it.
+    let length = u32::from_le_bytes([bytes[132], bytes[133], bytes[134], bytes[135]]) as usize;
+    bytes[136 + length - 1] ^= 1;
+    let mut reader = open_bytes("f.mat", bytes, Format::Mat).unwrap();
+    let message = reader.read_whole(&[0]).unwrap_err().to_string();
+    assert!(
+        message.contains("at byte 136: the compressed data"),
+        "{message}"
+    );
+}
+
+#[test]
+fn rejects_numbers_of_other_machines() {
+    let mut bytes = include_bytes!("fixtures/version4.mat").to_vec();
+    bytes[..4].copy_from_slice(&2000_u32.to_le_bytes());
+    let message = open_bytes("v.mat", bytes, Format::Mat)
+        .map(|_| ())
+        .unwrap_err()
+        .to_string();
+    assert_eq!(
+        message,
+        "v.mat, at byte 0: windfall does not read VAX D-float numbers; load the file in MATLAB \
+         and save it again"
+    );
+}
+
 #[test]
 fn reference_nested_texts_and_numbers() {
     let Some(folder) = data() else {

@@ -3,7 +3,7 @@
 use windfall_formats::contents::ChannelContents;
 use windfall_numerics::unit::parse_unit;
 
-/// The unit in "Force (N)", "force_N", "Force [N]" or "Force in N".
+/// The unit in "Force (N)", "force_N", `Force [N]` or "Force in N".
 #[must_use]
 pub fn unit_of(name: &str) -> Option<String> {
     let bracketed = [('(', ')'), ('[', ']')]
