@@ -154,8 +154,11 @@ fn rejects_a_wrong_checksum_of_compressed_data() {
     // The first variable: its tag stands at byte 128, its checksum ends it.
     let length = u32::from_le_bytes([bytes[132], bytes[133], bytes[134], bytes[135]]) as usize;
     bytes[136 + length - 1] ^= 1;
-    let mut reader = open_bytes("f.mat", bytes, Format::Mat).unwrap();
-    let message = reader.read_whole(&[0]).unwrap_err().to_string();
+    // A small variable is read to its end when the file is opened.
+    let message = open_bytes("f.mat", bytes, Format::Mat)
+        .and_then(|mut reader| reader.read_whole(&[0]))
+        .unwrap_err()
+        .to_string();
     assert!(
         message.contains("at byte 136: the compressed data"),
         "{message}"
