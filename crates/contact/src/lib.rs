@@ -21,10 +21,13 @@
 //! This crate knows no instrument, no rig and no file.
 
 pub mod any_law;
+pub mod apparent_modulus;
+pub mod curvature;
 pub mod damping_factor;
 pub mod effective;
 pub mod error;
 pub mod expression;
+pub mod hertz_elliptic;
 pub mod law;
 pub mod law_adams_impact;
 pub mod law_flores;
@@ -41,3 +44,4 @@ pub mod law_tsuji;
 pub mod law_walton_braun;
 pub mod parameter;
 pub mod restitution;
+pub mod transfer;

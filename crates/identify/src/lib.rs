@@ -4,6 +4,7 @@
 //!
 //! This crate opens no file and reads no clock.
 
+pub mod compression_fit;
 pub mod contact_motion;
 pub mod error;
 pub mod estimator;

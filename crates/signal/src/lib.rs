@@ -11,6 +11,7 @@
 //! This crate opens no file and knows no force law.
 
 pub mod clipping;
+pub mod compression;
 pub mod deceleration;
 pub mod error;
 pub mod extract;
@@ -29,6 +30,7 @@ pub mod polynomial;
 pub mod quadrature;
 mod rate;
 pub mod recording;
+pub mod straight_line;
 mod track;
 pub mod trigger;
 mod trigger_scale;

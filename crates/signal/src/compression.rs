@@ -1,0 +1,507 @@
+//! Slow compression of a fruit: from force and position to the loading curve,
+//! its yield and its stiffness.
+//!
+//! The curve is read forwards, once: what happens after the yield has no
+//! influence on anything before it.
+
+use crate::straight_line::{Slope, Window};
+
+/// What is told from a force-deformation curve.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct CompressionOptions {
+    /// Force above which the fruit is touched; N. From the noise when `None`.
+    pub touch_force: Option<f64>,
+    /// Stiffness of machine, load cell and pads in series with the fruit; N/m.
+    /// Infinite for a rigid machine.
+    pub machine_stiffness: f64,
+    /// Length over which the local stiffness is taken, as a part of the
+    /// deformation so far; 1.
+    pub window: f64,
+    /// The tissue has softened where the local stiffness has fallen to this
+    /// part of the largest before; 1.
+    pub softening: f64,
+    /// A fall of the force below this part of its largest value so far is a
+    /// rupture; 1.
+    pub rupture: f64,
+    /// Where the fitted range ends.
+    pub fit_to: FitRange,
+}
+
+/// Where the range of a curve that is fitted ends.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum FitRange {
+    /// At the largest local stiffness: from there on the curve bends down, and
+    /// no law of an elastic contact does.
+    LargestStiffness,
+    /// At this part of the bioyield force, or of the largest force where there
+    /// is no yield; 1.
+    PartOfYield(f64),
+    /// At this deformation after the first sample of the curve; m.
+    Deformation(f64),
+}
+
+impl Default for CompressionOptions {
+    fn default() -> Self {
+        Self {
+            touch_force: None,
+            machine_stiffness: f64::INFINITY,
+            window: 0.1,
+            softening: 0.5,
+            rupture: 0.7,
+            fit_to: FitRange::LargestStiffness,
+        }
+    }
+}
+
+/// A sample of a force-deformation curve.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct CurvePoint {
+    /// Position in the arrays of the curve.
+    pub index: usize,
+    /// Time in the recording; s.
+    pub time: f64,
+    /// Deformation since the first sample of the curve; m.
+    pub deformation: f64,
+    /// Force; N.
+    pub force: f64,
+}
+
+/// Why the loading ended.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum LoadingEnd {
+    /// The force no longer increased with deformation.
+    Bioyield,
+    /// The force fell suddenly.
+    Rupture,
+    /// The deformation decreased: unloading, or a controller that oscillates.
+    Reversal,
+    /// The recording ended.
+    RecordingEnd,
+}
+
+/// The loading curve of one fruit.
+#[derive(Clone, Debug, PartialEq)]
+pub struct CompressionCurve {
+    /// Sampling times; s.
+    pub times: Vec<f64>,
+    /// Deformation of the fruit since the first sample; m.
+    pub deformation: Vec<f64>,
+    /// Force; N.
+    pub force: Vec<f64>,
+    /// Whether force was there from the first sample on, so that the first
+    /// touch was not recorded.
+    pub began_in_contact: bool,
+    /// Standard deviation of a force sample's noise; N.
+    pub force_noise: f64,
+    /// Standard deviation of a position sample's noise; m.
+    pub position_noise: f64,
+    /// Last sample of the loading.
+    pub loading_end: CurvePoint,
+    /// Why it is the last.
+    pub ended_by: LoadingEnd,
+    /// The bioyield point: the first from which force does not increase with
+    /// deformation (ASAE S368).
+    pub bioyield: Option<CurvePoint>,
+    /// Where the local stiffness fell to a part of the largest before.
+    pub softening: Option<CurvePoint>,
+    /// The largest force before the force fell suddenly.
+    pub rupture: Option<CurvePoint>,
+    /// Largest local stiffness of the loading; N/m.
+    pub stiffness: Slope,
+    /// Last sample of the window with the largest stiffness.
+    pub stiffness_end: usize,
+    /// First sample of the fitted range: the force is there for certain.
+    pub fit_start: usize,
+    /// Last sample of the fitted range.
+    pub fit_end: usize,
+    /// Work done from the first sample to the end of the loading, by the
+    /// trapezoidal rule; J.
+    pub energy: f64,
+}
+
+/// What a curve cannot be made of.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum CompressionError {
+    /// Too few samples.
+    #[error("{samples} samples of force and position; at least {least} are needed")]
+    TooFewSamples {
+        /// Samples.
+        samples: usize,
+        /// Samples needed.
+        least: usize,
+    },
+    /// The force never rises.
+    #[error(
+        "the largest force is {largest:.4} N and the fruit counts as touched from {threshold:.4} N; \
+         if force is recorded as negative in compression, set sign = -1 in [channels.force]; or \
+         lower `touch_force` in [compression]"
+    )]
+    NoTouch {
+        /// Largest force; N.
+        largest: f64,
+        /// Force of touch; N.
+        threshold: f64,
+    },
+    /// Hardly any loading.
+    #[error(
+        "only {samples} samples lie between touch (at {time:.3} s) and the end of the loading; at \
+         least {least} are needed. Check the channels, or the time range in impacts.csv"
+    )]
+    NoLoading {
+        /// Samples of the loading.
+        samples: usize,
+        /// Time of touch; s.
+        time: f64,
+        /// Samples needed.
+        least: usize,
+    },
+    /// The position does not move.
+    #[error("the position does not change while the force rises; check its column")]
+    NoMotion,
+}
+
+/// Fewest samples of a recording, and of its loading.
+pub const LEAST_SAMPLES: usize = 16;
+
+/// Samples of the shortest window for a local stiffness.
+const SHORTEST_WINDOW: usize = 8;
+
+/// Force counts as present above so many times its noise.
+const TOUCH: f64 = 5.0;
+
+/// The fitted range begins at this part of the force at its end; 1.
+const CERTAIN: f64 = 0.02;
+
+/// A local stiffness is judged from a force of so many times its noise on.
+const JUDGED: f64 = 20.0;
+
+/// Judgements over the length of a window.
+const JUDGEMENTS: usize = 50;
+
+/// A decrease of the deformation by this part of it is a reversal; 1.
+const REVERSAL: f64 = 0.005;
+
+/// The loading curve of a recording.
+///
+/// * `times`, `position`, `force`: samples together; s, m, N. The force is
+///   positive in compression; the position may count either way.
+///
+/// # Numerics
+/// The local stiffness at a sample is the slope of the straight line through
+/// the samples behind it, over a part of the deformation so far. Every decision
+/// uses samples up to the one it is made at.
+///
+/// # Errors
+/// See [`CompressionError`].
+pub fn compression_curve(
+    times: &[f64],
+    position: &[f64],
+    force: &[f64],
+    options: &CompressionOptions,
+) -> Result<CompressionCurve, CompressionError> {
+    let samples = times.len().min(position.len()).min(force.len());
+    if samples < LEAST_SAMPLES {
+        let least = LEAST_SAMPLES;
+        return Err(CompressionError::TooFewSamples { samples, least });
+    }
+    let (start, began_in_contact) = touch(force, options)?;
+    let direction = direction(&position[start..], &force[start..])?;
+    let force = &force[start..samples];
+    let times = &times[start..samples];
+    let zero = position[start] + direction * -force[0] / options.machine_stiffness;
+    let deformation: Vec<f64> = position[start..samples]
+        .iter()
+        .zip(force)
+        .map(|(x, f)| direction * (x - zero) - f / options.machine_stiffness)
+        .collect();
+    let head = force.len().min(100);
+    let force_noise = second_difference_noise(&force[..head]);
+    let position_noise = second_difference_noise(&deformation[..head]);
+
+    let walk = follow(&deformation, force, (force_noise, position_noise), options);
+    let end = walk.end;
+    if end + 1 < LEAST_SAMPLES {
+        return Err(CompressionError::NoLoading {
+            samples: end + 1,
+            time: times[0],
+            least: LEAST_SAMPLES,
+        });
+    }
+    let point = |index: usize| CurvePoint {
+        index,
+        time: times[index],
+        deformation: deformation[index],
+        force: force[index],
+    };
+    let energy = (1..=end)
+        .map(|i| 0.5 * (force[i] + force[i - 1]) * (deformation[i] - deformation[i - 1]))
+        .sum();
+    let fit_end = match options.fit_to {
+        FitRange::LargestStiffness => walk.stiffness_end,
+        FitRange::PartOfYield(part) => first_from(force, end, part * force[end]),
+        FitRange::Deformation(most) => first_from(&deformation, end, most),
+    };
+    let certain = (TOUCH * force_noise).max(CERTAIN * force[fit_end]);
+    Ok(CompressionCurve {
+        fit_start: first_from(force, fit_end, certain),
+        began_in_contact,
+        force_noise,
+        position_noise,
+        loading_end: point(end),
+        ended_by: walk.ended_by,
+        bioyield: walk.bioyield.map(point),
+        softening: walk.softening.map(point),
+        rupture: rupture(force, options.rupture).map(point),
+        stiffness: walk.stiffness,
+        stiffness_end: walk.stiffness_end,
+        fit_end,
+        energy,
+        times: times.to_vec(),
+        force: force.to_vec(),
+        deformation,
+    })
+}
+
+/// First sample that reaches a value, `end` at the latest.
+fn first_from(values: &[f64], end: usize, value: f64) -> usize {
+    let found = values[..=end].iter().position(|v| *v >= value);
+    found.unwrap_or(end)
+}
+
+/// The first sample of the curve, and whether it is in contact already.
+fn touch(force: &[f64], options: &CompressionOptions) -> Result<(usize, bool), CompressionError> {
+    let noise = second_difference_noise(&force[..force.len().min(100)]);
+    let largest = force.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+    let threshold = options.touch_force.unwrap_or(TOUCH * noise).max(0.0);
+    let touched = |i: usize| force[i..].iter().take(5).all(|f| *f > threshold);
+    let first = (0..force.len()).find(|&i| touched(i));
+    match first {
+        Some(0) => Ok((0, true)),
+        // The sample before still belongs to the rise.
+        Some(first) => Ok((first - 1, false)),
+        None => Err(CompressionError::NoTouch { largest, threshold }),
+    }
+}
+
+/// 1 where the position increases while the force rises, −1 where it falls.
+fn direction(position: &[f64], force: &[f64]) -> Result<f64, CompressionError> {
+    let largest = force.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+    let quarter = force[0] + 0.25 * (largest - force[0]);
+    let reached = force.iter().position(|f| *f >= quarter).unwrap_or(0);
+    let travel = position[reached.max(1)] - position[0];
+    if travel == 0.0 || !travel.is_finite() {
+        return Err(CompressionError::NoMotion);
+    }
+    Ok(travel.signum())
+}
+
+/// Standard deviation of white noise on a smooth signal, from the median of the
+/// second differences; a few wild samples do not matter.
+fn second_difference_noise(values: &[f64]) -> f64 {
+    let mut differences: Vec<f64> = values
+        .windows(3)
+        .map(|w| (w[0] - 2.0 * w[1] + w[2]).abs())
+        .collect();
+    if differences.is_empty() {
+        return 0.0;
+    }
+    differences.sort_by(f64::total_cmp);
+    // Median of |x| of a normal variable: 0.6745 σ; variance of 1, −2, 1: 6.
+    differences[differences.len() / 2] / (0.6745 * 6.0_f64.sqrt())
+}
+
+/// What following the curve from touch gives.
+struct Walk {
+    end: usize,
+    ended_by: LoadingEnd,
+    bioyield: Option<usize>,
+    softening: Option<usize>,
+    stiffness: Slope,
+    stiffness_end: usize,
+}
+
+fn follow(
+    deformation: &[f64],
+    force: &[f64],
+    (force_noise, position_noise): (f64, f64),
+    options: &CompressionOptions,
+) -> Walk {
+    let mut walk = Walk {
+        end: force.len() - 1,
+        ended_by: LoadingEnd::RecordingEnd,
+        bioyield: None,
+        softening: None,
+        stiffness: Slope {
+            value: 0.0,
+            sd: 0.0,
+        },
+        stiffness_end: 0,
+    };
+    let mut window = Window::new(deformation, force);
+    // The samples of the largest deformation and force so far.
+    let (mut furthest, mut strongest) = (0, 0);
+    for i in 1..force.len() {
+        if deformation[i] > deformation[furthest] {
+            furthest = i;
+        }
+        if force[i] > force[strongest] {
+            strongest = i;
+        }
+        let back = deformation[furthest] - deformation[i];
+        if back > (5.0 * position_noise).max(REVERSAL * deformation[furthest]) {
+            (walk.end, walk.ended_by) = (furthest.min(strongest), LoadingEnd::Reversal);
+            break;
+        }
+        let judged = force[i.min(strongest)] - force[0] > JUDGED * force_noise;
+        if judged && force[i] < options.rupture * force[strongest] {
+            (walk.end, walk.ended_by) = (strongest, LoadingEnd::Rupture);
+            walk.bioyield = Some(strongest);
+            break;
+        }
+        let length = options.window * deformation[furthest];
+        window.advance(i, length, SHORTEST_WINDOW);
+        // Long windows need no judgement at every sample.
+        if !judged || !i.is_multiple_of(1 + window.count() / JUDGEMENTS) {
+            continue;
+        }
+        let Some(slope) = window.slope() else {
+            continue;
+        };
+        if slope.value > walk.stiffness.value && slope.value > 5.0 * slope.sd {
+            (walk.stiffness, walk.stiffness_end) = (slope, i);
+            // Only a softening after the largest stiffness is one.
+            walk.softening = None;
+        }
+        if walk.softening.is_none() && slope.value < options.softening * walk.stiffness.value {
+            walk.softening = Some(window.middle());
+        }
+        if walk.stiffness.value > 0.0 && slope.value <= 0.0 {
+            (walk.end, walk.ended_by) = (strongest, LoadingEnd::Bioyield);
+            walk.bioyield = Some(strongest);
+            break;
+        }
+    }
+    walk.softening = walk.softening.filter(|index| *index <= walk.end);
+    walk.stiffness_end = walk.stiffness_end.min(walk.end);
+    if walk.stiffness_end == 0 {
+        walk.stiffness_end = walk.end;
+    }
+    walk
+}
+
+/// The largest force before the first sudden fall.
+fn rupture(force: &[f64], part: f64) -> Option<usize> {
+    let mut strongest = 0;
+    for i in 1..force.len() {
+        if force[i] > force[strongest] {
+            strongest = i;
+        }
+        if force[i] < part * force[strongest] && force[strongest] > 2.0 * force[0].abs() {
+            return Some(strongest);
+        }
+    }
+    None
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A Hertzian curve with a sudden yield at `yield_at`, and what follows it.
+    fn recording(after: impl Fn(f64) -> f64) -> (Vec<f64>, Vec<f64>, Vec<f64>) {
+        let n = 600;
+        let times: Vec<f64> = (0..n).map(|i| f64::from(i) * 0.01).collect();
+        let deformation: Vec<f64> = times.iter().map(|t| 1e-3 * (t - 0.5)).collect();
+        let law = |d: f64| 2e5 * d.max(0.0).powf(1.5);
+        let force = deformation.iter().map(|&d| {
+            if d < 3e-3 {
+                law(d)
+            } else {
+                law(3e-3) + after(d - 3e-3)
+            }
+        });
+        let force = force.collect();
+        // The jaw position falls while closing.
+        let position = deformation.iter().map(|d| 0.04 - d).collect();
+        (times, position, force)
+    }
+
+    #[test]
+    fn closed_form_yield_of_a_hertzian_curve() {
+        let (times, position, force) = recording(|d| -2e3 * d);
+        let curve =
+            compression_curve(&times, &position, &force, &CompressionOptions::default()).unwrap();
+        let at = curve.bioyield.unwrap();
+        assert!(!curve.began_in_contact);
+        assert_eq!(curve.ended_by, LoadingEnd::Bioyield);
+        assert!((at.time - 3.5).abs() < 0.011, "{at:?}");
+        // Tangent stiffness 1.5 k √d at the middle of the last tenth.
+        let expected = 1.5 * 2e5 * (3e-3_f64 * 0.95).sqrt();
+        assert!((curve.stiffness.value / expected - 1.0).abs() < 0.01);
+        // ∫ k d^1.5 = 0.4 k d^2.5.
+        let energy = 0.4 * 2e5 * 3e-3_f64.powf(2.5);
+        assert!((curve.energy / energy - 1.0).abs() < 0.01);
+    }
+
+    #[test]
+    fn conserves_results_whatever_follows_the_yield() {
+        let options = CompressionOptions::default();
+        let of = |after: fn(f64) -> f64| {
+            let (times, position, force) = recording(after);
+            compression_curve(&times, &position, &force, &options).unwrap()
+        };
+        let quiet = of(|d| if d < 4e-4 { -2e3 * d } else { -0.8 });
+        let wild = of(|d| {
+            if d < 4e-4 {
+                -2e3 * d
+            } else {
+                40.0 * (d * 4e4).sin()
+            }
+        });
+        let numbers = |c: &CompressionCurve| {
+            let values = [
+                c.stiffness.value,
+                c.energy,
+                c.loading_end.force,
+                c.deformation[c.fit_end],
+            ];
+            (values.map(f64::to_bits), c.fit_end, c.softening)
+        };
+        assert_eq!(numbers(&quiet), numbers(&wild));
+        assert_eq!(quiet.bioyield, wild.bioyield);
+    }
+
+    #[test]
+    fn closed_form_machine_in_series() {
+        let (times, position, force) = recording(|d| -2e3 * d);
+        let rigid = CompressionOptions::default();
+        let curve = compression_curve(&times, &position, &force, &rigid).unwrap();
+        let machine = 1e4;
+        // What the jaw of a machine of that stiffness shows.
+        let shown: Vec<f64> = position
+            .iter()
+            .zip(&force)
+            .map(|(x, f)| x - f / machine)
+            .collect();
+        let soft = CompressionOptions {
+            machine_stiffness: machine,
+            ..rigid
+        };
+        let corrected = compression_curve(&times, &shown, &force, &soft).unwrap();
+        assert!((corrected.stiffness.value / curve.stiffness.value - 1.0).abs() < 1e-9);
+    }
+
+    #[test]
+    fn rejects_what_is_no_compression() {
+        let options = CompressionOptions::default();
+        let (times, position, force) = recording(|d| -2e3 * d);
+        let pulled: Vec<f64> = force.iter().map(|f| -f).collect();
+        let refused = compression_curve(&times, &position, &pulled, &options).unwrap_err();
+        assert!(refused.to_string().contains("sign = -1"), "{refused}");
+        let still = vec![0.0; times.len()];
+        let refused = compression_curve(&times, &still, &force, &options).unwrap_err();
+        assert_eq!(refused, CompressionError::NoMotion);
+        let few = compression_curve(&times[..5], &position[..5], &force[..5], &options);
+        assert!(few.unwrap_err().to_string().starts_with("5 samples"));
+    }
+}
