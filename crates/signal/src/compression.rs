@@ -14,9 +14,12 @@ pub struct CompressionOptions {
     /// Stiffness of machine, load cell and pads in series with the fruit; N/m.
     /// Infinite for a rigid machine.
     pub machine_stiffness: f64,
-    /// Length over which the local stiffness is taken, as a part of the
-    /// deformation so far; 1.
-    pub window: f64,
+    /// Length over which the force must not increase at a yield, as a part of
+    /// the deformation so far; 1.
+    pub yield_window: f64,
+    /// Rise of the force over which the local stiffness is taken, as a part of
+    /// the force; 1.
+    pub stiffness_window: f64,
     /// The tissue has softened where the local stiffness has fallen to this
     /// part of the largest before; 1.
     pub softening: f64,
@@ -45,7 +48,8 @@ impl Default for CompressionOptions {
         Self {
             touch_force: None,
             machine_stiffness: f64::INFINITY,
-            window: 0.1,
+            yield_window: 0.1,
+            stiffness_window: 0.3,
             softening: 0.5,
             rupture: 0.7,
             fit_to: FitRange::LargestStiffness,
@@ -172,7 +176,8 @@ const TOUCH: f64 = 5.0;
 /// The fitted range begins at this part of the force at its end; 1.
 const CERTAIN: f64 = 0.02;
 
-/// A local stiffness is judged from a force of so many times its noise on.
+/// A local stiffness is judged from a rise of the force by so many times its
+/// noise on, and by as much as there was at the first sample.
 const JUDGED: f64 = 20.0;
 
 /// Judgements over the length of a window.
@@ -188,8 +193,9 @@ const REVERSAL: f64 = 0.005;
 ///
 /// # Numerics
 /// The local stiffness at a sample is the slope of the straight line through
-/// the samples behind it, over a part of the deformation so far. Every decision
-/// uses samples up to the one it is made at.
+/// the samples behind it, over a part of the force; whether force increases at
+/// all is judged by the slope over a part of the deformation so far. Every
+/// decision uses samples up to the one it is made at.
 ///
 /// # Errors
 /// See [`CompressionError`].
@@ -338,6 +344,7 @@ fn follow(
         stiffness_end: 0,
     };
     let mut window = Window::new(deformation, force);
+    let mut recent = Window::new(deformation, force);
     // The samples of the largest deformation and force so far.
     let (mut furthest, mut strongest) = (0, 0);
     for i in 1..force.len() {
@@ -352,30 +359,31 @@ fn follow(
             (walk.end, walk.ended_by) = (furthest.min(strongest), LoadingEnd::Reversal);
             break;
         }
-        let judged = force[i.min(strongest)] - force[0] > JUDGED * force_noise;
+        // A preload hides how much of the deformation came before the first sample.
+        let judged = force[strongest] - force[0] > (JUDGED * force_noise).max(force[0]);
         if judged && force[i] < options.rupture * force[strongest] {
             (walk.end, walk.ended_by) = (strongest, LoadingEnd::Rupture);
             walk.bioyield = Some(strongest);
             break;
         }
-        let length = options.window * deformation[furthest];
-        window.advance(i, length, SHORTEST_WINDOW);
+        let length = options.yield_window * deformation[furthest];
+        recent.advance(i, SHORTEST_WINDOW, |first| {
+            deformation[i] - deformation[first] > length
+        });
+        let low = (1.0 - options.stiffness_window) * force[strongest];
+        window.advance(i, SHORTEST_WINDOW, |first| force[first] < low);
         // Long windows need no judgement at every sample.
-        if !judged || !i.is_multiple_of(1 + window.count() / JUDGEMENTS) {
+        if judged && i.is_multiple_of(1 + window.count() / JUDGEMENTS) {
+            judge_stiffness(&mut walk, &window, i);
+        }
+        if !judged || !i.is_multiple_of(1 + recent.count() / JUDGEMENTS) {
             continue;
         }
-        let Some(slope) = window.slope() else {
-            continue;
-        };
-        if slope.value > walk.stiffness.value && slope.value > 5.0 * slope.sd {
-            (walk.stiffness, walk.stiffness_end) = (slope, i);
-            // Only a softening after the largest stiffness is one.
-            walk.softening = None;
+        let slope = recent.slope().map_or(f64::INFINITY, |slope| slope.value);
+        if walk.softening.is_none() && slope < options.softening * walk.stiffness.value {
+            walk.softening = Some(recent.middle());
         }
-        if walk.softening.is_none() && slope.value < options.softening * walk.stiffness.value {
-            walk.softening = Some(window.middle());
-        }
-        if walk.stiffness.value > 0.0 && slope.value <= 0.0 {
+        if walk.stiffness.value > 0.0 && slope <= 0.0 {
             (walk.end, walk.ended_by) = (strongest, LoadingEnd::Bioyield);
             walk.bioyield = Some(strongest);
             break;
@@ -387,6 +395,18 @@ fn follow(
         walk.stiffness_end = walk.end;
     }
     walk
+}
+
+/// Takes the local stiffness at sample `i` into account.
+fn judge_stiffness(walk: &mut Walk, window: &Window, i: usize) {
+    let Some(slope) = window.slope() else {
+        return;
+    };
+    if slope.value > walk.stiffness.value && slope.value > 5.0 * slope.sd {
+        (walk.stiffness, walk.stiffness_end) = (slope, i);
+        // Only a softening after the largest stiffness is one.
+        walk.softening = None;
+    }
 }
 
 /// The largest force before the first sudden fall.
@@ -435,9 +455,10 @@ mod tests {
         assert!(!curve.began_in_contact);
         assert_eq!(curve.ended_by, LoadingEnd::Bioyield);
         assert!((at.time - 3.5).abs() < 0.011, "{at:?}");
-        // Tangent stiffness 1.5 k √d at the middle of the last tenth.
-        let expected = 1.5 * 2e5 * (3e-3_f64 * 0.95).sqrt();
-        assert!((curve.stiffness.value / expected - 1.0).abs() < 0.01);
+        // The chord over the last 30 % of the force, F/k = d^1.5.
+        let first = 3e-3 * 0.7_f64.powf(2.0 / 3.0);
+        let chord = 2e5 * (3e-3_f64.powf(1.5) - first.powf(1.5)) / (3e-3 - first);
+        assert!((curve.stiffness.value / chord - 1.0).abs() < 0.01);
         // ∫ k d^1.5 = 0.4 k d^2.5.
         let energy = 0.4 * 2e5 * 3e-3_f64.powf(2.5);
         assert!((curve.energy / energy - 1.0).abs() < 0.01);

@@ -30,11 +30,10 @@ impl<'a> Window<'a> {
         }
     }
 
-    /// Takes in the samples up to `last`, and leaves those behind that are more
-    /// than `length` below it, but keeps `least`.
-    pub fn advance(&mut self, last: usize, length: f64, least: usize) {
+    /// Takes in the samples up to `last`, and leaves those behind that are `far`
+    /// from it, but keeps `least`.
+    pub fn advance(&mut self, last: usize, least: usize, far: impl Fn(usize) -> bool) {
         self.end = last + 1;
-        let far = |first: usize| self.x[last] - self.x[first] > length;
         while self.end - self.first > least && far(self.first) {
             self.first += 1;
         }

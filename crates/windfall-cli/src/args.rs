@@ -67,6 +67,8 @@ pub enum NewKind {
     Pendulum,
     /// Body on a line: a cart on an incline, a drop hammer
     Carriage,
+    /// Slow compression in a testing machine or a gripper
+    Compression,
 }
 
 /// `windfall inspect`

@@ -10,6 +10,7 @@ pub fn run(arguments: &NewArguments) -> anyhow::Result<()> {
     let kind = match arguments.kind {
         NewKind::Pendulum => TemplateKind::Pendulum,
         NewKind::Carriage => TemplateKind::Carriage,
+        NewKind::Compression => TemplateKind::Compression,
     };
     let written = write_template(kind, &arguments.directory)?;
     let names: Vec<String> = written

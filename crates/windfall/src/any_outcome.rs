@@ -1,5 +1,6 @@
 //! What `fit` gives, whatever the campaign measures.
 
+use crate::measured::MeasuredOutcome;
 use crate::outcome::{CampaignOutcome, FailureOutcome, StatusOutcome};
 use serde::Serialize;
 
@@ -12,6 +13,8 @@ use serde::Serialize;
 pub enum AnyOutcome {
     /// Laws fitted to single impacts.
     Impacts(Box<CampaignOutcome>),
+    /// Values of recordings of another kind.
+    Measured(Box<MeasuredOutcome>),
 }
 
 impl AnyOutcome {
@@ -20,6 +23,7 @@ impl AnyOutcome {
     pub fn status(&self) -> &StatusOutcome {
         match self {
             Self::Impacts(outcome) => &outcome.status,
+            Self::Measured(outcome) => &outcome.status,
         }
     }
 
@@ -28,6 +32,7 @@ impl AnyOutcome {
     pub fn failed(&self) -> &[FailureOutcome] {
         match self {
             Self::Impacts(outcome) => &outcome.failed,
+            Self::Measured(outcome) => &outcome.failed,
         }
     }
 
@@ -36,6 +41,7 @@ impl AnyOutcome {
     pub fn results(&self) -> usize {
         match self {
             Self::Impacts(outcome) => outcome.impacts.len(),
+            Self::Measured(outcome) => outcome.impacts.len(),
         }
     }
 }

@@ -406,6 +406,62 @@ pub enum Error {
         /// What is wrong with it and what was expected.
         problem: String,
     },
+    /// A cell that should hold a quantity above zero.
+    #[error(
+        "{place}, column \"{column}\": \"{text}\" is not a number above zero; \
+         leave the cell blank where it is not known"
+    )]
+    CellNotPositive {
+        /// Where.
+        place: Place,
+        /// The column.
+        column: String,
+        /// What stands there.
+        text: String,
+    },
+    /// A campaign without a channel that its kind needs.
+    #[error(
+        "{item}: no channel holds {quantity}; map a column to it under [channels] in campaign.toml"
+    )]
+    ChannelNotMapped {
+        /// Id in impacts.csv.
+        item: String,
+        /// The quantity.
+        quantity: String,
+    },
+    /// No samples between from_s and to_s.
+    #[error(
+        "{item}: channel '{channel}' has no samples between {from} s and {to} s; correct from_s \
+         and to_s in impacts.csv (`windfall inspect` shows the times of a recording)"
+    )]
+    RangeEmpty {
+        /// Id in impacts.csv.
+        item: String,
+        /// The channel.
+        channel: String,
+        /// Begin of the range; s.
+        from: f64,
+        /// Its end; s.
+        to: f64,
+    },
+    /// A value that a result needs is not in the tables.
+    #[error("{item}: {missing}; add {advice}")]
+    ValueNotKnown {
+        /// Id in impacts.csv, or of the specimen.
+        item: String,
+        /// What is not known.
+        missing: String,
+        /// What would tell it.
+        advice: String,
+    },
+    /// A recording that could not be evaluated.
+    #[error("{path}: {source}", path = path.display())]
+    Evaluation {
+        /// The recording.
+        path: PathBuf,
+        /// What is wrong.
+        source: Box<dyn std::error::Error + Send + Sync>,
+    },
     /// The signals of a recording could not be used.
     #[error("{path}: {source}", path = path.display())]
     Signal {

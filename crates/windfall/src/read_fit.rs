@@ -38,8 +38,13 @@ pub const TREATMENTS: [(&str, Treatment); 3] = [
 /// # Errors
 /// No law is named, or a word is not known.
 pub fn fit_plan(source: &TomlSource, file: &FitFile) -> Result<FitPlan, Error> {
-    let laws = laws(source, file)?;
-    let free = free_names(source, file, &laws)?;
+    let keys = LawKeys {
+        law: file.law.as_ref(),
+        laws: file.laws.as_deref(),
+        free: file.free.as_deref(),
+    };
+    let laws = law_expressions(source, &keys)?;
+    let free = free_names(source, &keys, &laws)?;
     let mut options = FitOptions::default();
     if let Some(words) = &file.quantities {
         options.quantities = quantities(source, words)?;
@@ -142,8 +147,24 @@ fn quantities(source: &TomlSource, words: &[Spanned<String>]) -> Result<Quantiti
     })
 }
 
-fn laws(source: &TomlSource, file: &FitFile) -> Result<Vec<LawExpression>, Error> {
-    let texts: Vec<&Spanned<String>> = file.law.iter().chain(file.laws.iter().flatten()).collect();
+/// The keys of `[fit]` that name laws and parameters.
+#[derive(Clone, Copy)]
+pub struct LawKeys<'a> {
+    /// One law.
+    pub law: Option<&'a Spanned<String>>,
+    /// Several laws.
+    pub laws: Option<&'a [Spanned<String>]>,
+    /// Parameters that are estimated although they have a value.
+    pub free: Option<&'a [Spanned<String>]>,
+}
+
+/// The laws of a campaign.
+///
+/// # Errors
+/// None is named, one is not known, or one is named twice.
+pub fn law_expressions(source: &TomlSource, keys: &LawKeys) -> Result<Vec<LawExpression>, Error> {
+    let several = keys.laws.unwrap_or_default();
+    let texts: Vec<&Spanned<String>> = keys.law.into_iter().chain(several).collect();
     if texts.is_empty() {
         let needed = Needed {
             table: TABLE,
@@ -180,12 +201,16 @@ fn laws(source: &TomlSource, file: &FitFile) -> Result<Vec<LawExpression>, Error
     Ok(laws)
 }
 
-fn free_names(
+/// The parameters that a campaign frees by name.
+///
+/// # Errors
+/// A name is no parameter of any of the laws.
+pub fn free_names(
     source: &TomlSource,
-    file: &FitFile,
+    keys: &LawKeys,
     laws: &[LawExpression],
 ) -> Result<Vec<String>, Error> {
-    let words = file.free.as_deref().unwrap_or_default();
+    let words = keys.free.unwrap_or_default();
     let names: Vec<String> = words.iter().map(|word| word.get_ref().clone()).collect();
     match unknown_parameter(&names, laws) {
         None => Ok(names),

@@ -1,7 +1,9 @@
 //! `windfall fit` as it is asked for, on top of what the campaign says.
 
-use crate::campaign::Campaign;
+use crate::campaign::{Campaign, ImpactEntry, Specimen};
+use crate::campaign_kind::CampaignKind;
 use crate::error::Error;
+use crate::item_campaign::ItemCampaign;
 use crate::option_value::{chosen, unusable};
 use crate::read_fit::{
     ENDS, TREATMENTS, WEIGHTS, hold_velocity, known_velocity, quantities_named, unknown_parameter,
@@ -54,38 +56,82 @@ pub enum Reuse {
 /// # Errors
 /// An option cannot be used.
 pub fn apply_request(campaign: &mut Campaign, request: &FitRequest) -> Result<(), Error> {
-    apply_laws(campaign, request)?;
+    laws_and_free(&mut campaign.fit.laws, &mut campaign.fit.free, request)?;
     apply_options(&mut campaign.fit.options, request)?;
-    let Some(group) = &request.group else {
-        return Ok(());
-    };
-    let names = group_columns(campaign);
-    if !names.contains(&group.as_str()) {
-        let problem = format!(
-            "neither specimens.csv nor impacts.csv has this column{}; they have: {}",
-            suggestion(group, names.iter().copied()),
-            names.join(", ")
-        );
-        return Err(unusable(format!("--group {group}"), problem));
+    if let Some(group) = &request.group {
+        let names = columns(&campaign.specimens, &campaign.impacts);
+        campaign.group = Some(known_group(group, &names)?);
     }
-    campaign.group = Some(group.clone());
     Ok(())
 }
 
-fn apply_laws(campaign: &mut Campaign, request: &FitRequest) -> Result<(), Error> {
-    let plan = &mut campaign.fit;
+/// A group that one of the tables has.
+fn known_group(group: &str, names: &[&str]) -> Result<String, Error> {
+    if names.contains(&group) {
+        return Ok(group.to_owned());
+    }
+    let problem = format!(
+        "neither specimens.csv nor impacts.csv has this column{}; they have: {}",
+        suggestion(group, names.iter().copied()),
+        names.join(", ")
+    );
+    Err(unusable(format!("--group {group}"), problem))
+}
+
+/// Puts the laws and free parameters that are asked for in the place of others.
+///
+/// # Errors
+/// A law or a parameter is not known.
+pub fn laws_and_free(
+    laws: &mut Vec<LawExpression>,
+    free: &mut Vec<String>,
+    request: &FitRequest,
+) -> Result<(), Error> {
     if !request.laws.is_empty() {
-        plan.laws = laws_named(&request.laws)?;
+        *laws = laws_named(&request.laws)?;
         // The campaign's list may name parameters of laws that are not fitted now.
-        let laws = &plan.laws;
-        plan.free
-            .retain(|name| unknown_parameter(std::slice::from_ref(name), laws).is_none());
+        free.retain(|name| unknown_parameter(std::slice::from_ref(name), laws).is_none());
     }
     if !request.free.is_empty() {
-        if let Some((index, problem)) = unknown_parameter(&request.free, &plan.laws) {
+        if let Some((index, problem)) = unknown_parameter(&request.free, laws) {
             return Err(unusable(format!("--free {}", request.free[index]), problem));
         }
-        plan.free.clone_from(&request.free);
+        free.clone_from(&request.free);
+    }
+    Ok(())
+}
+
+/// Puts what is asked for in the place of what a campaign says that fits no
+/// impacts: only the group, and laws where it fits some ([`laws_and_free`]).
+///
+/// # Errors
+/// An option that only impacts have, or one that cannot be used.
+pub fn apply_request_to_items(
+    campaign: &mut ItemCampaign,
+    request: &FitRequest,
+) -> Result<(), Error> {
+    let kind = campaign.kind;
+    let fits_laws = kind == CampaignKind::Compression;
+    let laws = !(request.laws.is_empty() && request.free.is_empty());
+    let strangers = [
+        ("--law and --free", laws && !fits_laws),
+        ("--quantities", !request.quantities.is_empty()),
+        ("--weights", request.weights.is_some()),
+        ("--initial-velocity", request.initial_velocity.is_some()),
+        ("--onset", request.onset.is_some()),
+        (
+            "--displacement-offset",
+            request.displacement_offset.is_some(),
+        ),
+        ("--end", request.end.is_some()),
+    ];
+    if let Some((option, _)) = strangers.iter().find(|(_, given)| *given) {
+        let problem = format!("a campaign of kind \"{}\" has no such option", kind.name());
+        return Err(unusable((*option).to_owned(), problem));
+    }
+    if let Some(group) = &request.group {
+        let names = columns(&campaign.specimens, &campaign.entries);
+        campaign.group = Some(known_group(group, &names)?);
     }
     Ok(())
 }
@@ -142,9 +188,9 @@ fn apply_options(options: &mut FitOptions, request: &FitRequest) -> Result<(), E
     Ok(())
 }
 
-fn group_columns(campaign: &Campaign) -> Vec<&str> {
-    let specimen = campaign.specimens.first().map_or(&[][..], |s| &s.cells);
-    let impact = campaign.impacts.first().map_or(&[][..], |i| &i.cells);
-    let cells = specimen.iter().chain(impact);
+fn columns<'a>(specimens: &'a [Specimen], entries: &'a [ImpactEntry]) -> Vec<&'a str> {
+    let specimen = specimens.first().map_or(&[][..], |s| &s.cells);
+    let entry = entries.first().map_or(&[][..], |i| &i.cells);
+    let cells = specimen.iter().chain(entry);
     cells.map(|(name, _)| name.as_str()).collect()
 }

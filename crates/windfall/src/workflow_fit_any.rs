@@ -5,6 +5,7 @@ use crate::campaign_kind::{CampaignKind, campaign_kind};
 use crate::error::Error;
 use crate::evaluate::Progress;
 use crate::request_fit::FitRequest;
+use crate::workflow_compression::fit_compressions;
 use crate::workflow_fit::fit_campaign;
 use std::path::Path;
 
@@ -19,10 +20,8 @@ pub fn fit_any(path: &Path, request: &FitRequest, progress: Progress) -> Result<
         false => campaign_kind(path)?,
     };
     match kind {
-        CampaignKind::Impacts
-        | CampaignKind::Compression
-        | CampaignKind::Acoustic
-        | CampaignKind::Repeats => {
+        CampaignKind::Compression => fit_compressions(path, request, progress),
+        CampaignKind::Impacts | CampaignKind::Acoustic | CampaignKind::Repeats => {
             fit_campaign(path, request, progress).map(|o| AnyOutcome::Impacts(Box::new(o)))
         }
     }

@@ -10,6 +10,8 @@ pub enum TemplateKind {
     Pendulum,
     /// Body on a line with force sensor and position.
     Carriage,
+    /// Testing machine that compresses fruit slowly.
+    Compression,
 }
 
 /// Table of specimens of a template.
@@ -19,12 +21,25 @@ const SPECIMENS: &str = "id,variety,mass_g\nfruit-1,Golden,182\nfruit-2,Golden,1
 const IMPACTS: &str = "id,specimen,file,level\nfruit-1-a,fruit-1,fruit-1-a.csv,1\n\
                        fruit-1-b,fruit-1,fruit-1-b.csv,1\nfruit-2-a,fruit-2,fruit-2-a.csv,1\n";
 
+/// Specimens of slow compressions: radii where the plates touch.
+const COMPRESSED: &str = "id,variety,radius_mm,radius_2_mm\nfruit-1,Golden,38,36\n\
+                          fruit-2,Golden,37,37\n";
+
+/// The tables of specimens and of recordings of a rig.
+fn tables(kind: TemplateKind) -> (&'static str, &'static str) {
+    match kind {
+        TemplateKind::Pendulum | TemplateKind::Carriage => (SPECIMENS, IMPACTS),
+        TemplateKind::Compression => (COMPRESSED, IMPACTS),
+    }
+}
+
 /// The commented campaign.toml of a rig.
 #[must_use]
 pub fn template(kind: TemplateKind) -> &'static str {
     match kind {
         TemplateKind::Pendulum => include_str!("templates/pendulum.toml"),
         TemplateKind::Carriage => include_str!("templates/carriage.toml"),
+        TemplateKind::Compression => include_str!("templates/compression.toml"),
     }
 }
 
@@ -36,10 +51,11 @@ pub fn template(kind: TemplateKind) -> &'static str {
 /// There is something in the directory already, or it cannot be written.
 pub fn write_template(kind: TemplateKind, directory: &Path) -> Result<Vec<PathBuf>, Error> {
     create_directory(directory)?;
+    let (specimens, impacts) = tables(kind);
     let files = [
         ("campaign.toml", template(kind)),
-        ("specimens.csv", SPECIMENS),
-        ("impacts.csv", IMPACTS),
+        ("specimens.csv", specimens),
+        ("impacts.csv", impacts),
     ];
     let mut written = Vec::new();
     for (name, text) in files {

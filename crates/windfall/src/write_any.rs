@@ -3,6 +3,7 @@
 use crate::any_outcome::AnyOutcome;
 use crate::error::Error;
 use crate::write_csv::csv_of_campaign;
+use crate::write_measured::{csv_of_measured, text_of_measured};
 use crate::write_text::text_of_campaign;
 
 /// Tables for people.
@@ -10,6 +11,7 @@ use crate::write_text::text_of_campaign;
 pub fn text_of_any(outcome: &AnyOutcome) -> String {
     match outcome {
         AnyOutcome::Impacts(outcome) => text_of_campaign(outcome),
+        AnyOutcome::Measured(outcome) => text_of_measured(outcome),
     }
 }
 
@@ -20,5 +22,6 @@ pub fn text_of_any(outcome: &AnyOutcome) -> String {
 pub fn csv_of_any(outcome: &AnyOutcome) -> Result<String, Error> {
     match outcome {
         AnyOutcome::Impacts(outcome) => csv_of_campaign(outcome),
+        AnyOutcome::Measured(outcome) => csv_of_measured(outcome),
     }
 }

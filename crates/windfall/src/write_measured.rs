@@ -1,0 +1,315 @@
+//! Results of campaigns that fit no impacts, as text and as CSV.
+
+use crate::error::Error;
+use crate::measured::{
+    MeasuredItem, MeasuredOutcome, MeasuredValue, ShownValue, laws_of, spread_of, value_of,
+};
+use crate::outcome::{FailureOutcome, FindingOutcome};
+use crate::text_number::{spread_percent, value_and_sd};
+use crate::write_csv::csv_text;
+use crate::write_table::{page_tables, paragraph};
+use std::fmt::Write;
+
+/// Indentation of the second line of a finding; characters.
+const INDENT: usize = 4;
+
+/// Tables for people: recordings, specimens, the whole, findings.
+#[must_use]
+pub fn text_of_measured(outcome: &MeasuredOutcome) -> String {
+    let mut text = format!("{}\n", paragraph(&outcome.campaign, 2));
+    if let Some(label) = &outcome.simulated {
+        let label = format!("SIMULATED recordings: {label}");
+        let _ = writeln!(text, "{}", paragraph(&label, 2));
+    }
+    for law in laws_of(&outcome.impacts) {
+        let items = of_law(&outcome.impacts, law);
+        let _ = writeln!(
+            text,
+            "\n{law}: each recording (± standard deviation of the estimate)"
+        );
+        let _ = writeln!(text, "{}", items_table("recording", &items, &outcome.shown));
+        if items.len() > 1 {
+            let _ = writeln!(
+                text,
+                "\nMean ± SD over the recordings (SD in % of the mean):"
+            );
+            let _ = writeln!(text, "{}", groups_table(outcome, law));
+        }
+    }
+    let of_specimens = &outcome.shown_of_specimens;
+    for (what, items) in [
+        ("specimen", &outcome.specimens),
+        ("campaign", &outcome.whole),
+    ] {
+        for law in laws_of(items) {
+            let _ = writeln!(text, "\n{law}, for each {what}:");
+            let table = items_table(what, &of_law(items, law), of_specimens);
+            let _ = writeln!(text, "{table}");
+        }
+    }
+    text + &findings_text(outcome)
+}
+
+fn of_law<'a>(items: &'a [MeasuredItem], law: &str) -> Vec<&'a MeasuredItem> {
+    items.iter().filter(|item| item.law == law).collect()
+}
+
+/// A value with as many digits as its uncertainty lets it have, scaled.
+fn shown_value(value: &MeasuredValue, factor: f64) -> String {
+    value_and_sd(value.value * factor, value.sd.map(|sd| sd * factor))
+}
+
+fn items_table(what: &str, items: &[&MeasuredItem], shown: &[ShownValue]) -> String {
+    let present: Vec<&ShownValue> = shown
+        .iter()
+        .filter(|column| {
+            items
+                .iter()
+                .any(|item| value_of(item, column.name).is_some())
+        })
+        .collect();
+    let mut words: Vec<&str> = Vec::new();
+    for (name, _) in items.iter().flat_map(|item| &item.words.0) {
+        if !words.contains(&name.as_str()) {
+            words.push(name);
+        }
+    }
+    let named = what == "recording" && items.iter().any(|item| item.id != item.specimen);
+    let mut header = vec![what.to_owned()];
+    header.extend(named.then(|| "specimen".to_owned()));
+    header.extend(present.iter().map(|column| column.heading.to_owned()));
+    let mut left = vec![0];
+    left.extend(named.then_some(1));
+    left.extend(header.len()..header.len() + words.len());
+    header.extend(words.iter().map(|name| (*name).to_owned()));
+    let rows: Vec<Vec<String>> = items
+        .iter()
+        .map(|item| {
+            let mut row = vec![item.id.clone()];
+            row.extend(named.then(|| item.specimen.clone()));
+            row.extend(present.iter().map(|column| {
+                let value = value_of(item, column.name);
+                value.map_or_else(|| "-".to_owned(), |v| shown_value(v, column.factor))
+            }));
+            let word = |name: &&str| item.words.get(name).cloned().unwrap_or_default();
+            row.extend(words.iter().map(word));
+            row
+        })
+        .collect();
+    page_tables(&header, &rows, &left)
+}
+
+fn groups_table(outcome: &MeasuredOutcome, law: &str) -> String {
+    let mut groups: Vec<_> = outcome
+        .groups
+        .iter()
+        .filter(|g| g.law == law)
+        .cloned()
+        .collect();
+    if groups.len() > 1 {
+        groups.push(spread_of(&outcome.impacts, law, None));
+    }
+    let present: Vec<&ShownValue> = outcome
+        .shown
+        .iter()
+        .filter(|column| groups.iter().any(|g| g.values.get(column.name).is_some()))
+        .collect();
+    let mut header = vec!["group".to_owned(), "n".to_owned()];
+    header.extend(present.iter().map(|column| column.heading.to_owned()));
+    let rows: Vec<Vec<String>> = groups
+        .iter()
+        .map(|group| {
+            let name = group.group.clone().unwrap_or_else(|| "all".to_owned());
+            let mut row = vec![name, group.recordings.to_string()];
+            row.extend(present.iter().map(|column| {
+                group.values.get(column.name).map_or_else(
+                    || "-".to_owned(),
+                    |s| spread_percent(s.mean * column.factor, s.cv),
+                )
+            }));
+            row
+        })
+        .collect();
+    page_tables(&header, &rows, &[0])
+}
+
+/// Each kind of finding once, with how many share it, and what failed.
+fn findings_text(outcome: &MeasuredOutcome) -> String {
+    let mut lines: Vec<String> = Vec::new();
+    for finding in &outcome.findings {
+        lines.push(format!("  {}: {}", finding.code, finding.message));
+    }
+    let items = outcome
+        .impacts
+        .iter()
+        .chain(&outcome.specimens)
+        .chain(&outcome.whole);
+    let mut seen: Vec<(&FindingOutcome, &str, Vec<&str>)> = Vec::new();
+    for item in items {
+        for finding in &item.findings {
+            match seen
+                .iter_mut()
+                .find(|(first, _, _)| first.code == finding.code)
+            {
+                Some((_, _, ids)) if ids.contains(&item.id.as_str()) => {}
+                Some((_, _, ids)) => ids.push(&item.id),
+                None => seen.push((finding, &item.id, vec![&item.id])),
+            }
+        }
+    }
+    for (finding, first, ids) in &seen {
+        let more = match ids.len() {
+            1 => String::new(),
+            2..=6 => format!(" (also {})", ids[1..].join(", ")),
+            n => format!(" (and {} more of this kind)", n - 1),
+        };
+        lines.push(format!(
+            "  {}: {first}: {}{more}",
+            finding.code, finding.message
+        ));
+    }
+    let mut text = match lines.is_empty() {
+        true => String::new(),
+        false => "\nFindings:\n".to_owned(),
+    };
+    lines.extend(outcome.failed.iter().map(failure_line));
+    for line in lines {
+        text += &paragraph(&line, INDENT);
+        text.push('\n');
+    }
+    text
+}
+
+fn failure_line(failure: &FailureOutcome) -> String {
+    format!("not evaluated: {}: {}", failure.id, failure.message)
+}
+
+/// One row per recording and law; of specimens where there are results on them
+/// and `specimens` asks for it.
+///
+/// # Errors
+/// None in practice: the text is written to memory.
+pub fn csv_of_measured(outcome: &MeasuredOutcome) -> Result<String, Error> {
+    csv_of_items(&outcome.impacts, outcome.simulated.as_deref())
+}
+
+/// One row per item: its values with unit in the name of the column, where all
+/// have the same, and beside it otherwise.
+///
+/// # Errors
+/// None in practice: the text is written to memory.
+pub fn csv_of_items(items: &[MeasuredItem], simulated: Option<&str>) -> Result<String, Error> {
+    let columns = columns_of(items);
+    let mut header: Vec<String> = ["id", "specimen", "group", "file", "law"]
+        .map(str::to_owned)
+        .to_vec();
+    for column in &columns {
+        header.push(column.heading.clone());
+        header.extend(column.sd.then(|| format!("{}_sd", column.name)));
+        if column.interval {
+            header.extend(["_low", "_high"].map(|end| format!("{}{end}", column.name)));
+        }
+        header.extend(column.unit.then(|| format!("{}_unit", column.name)));
+    }
+    let words = word_names(items);
+    header.extend(words.iter().map(|word| (*word).to_owned()));
+    header.extend(["findings", "simulated"].map(str::to_owned));
+    let rows = items.iter().map(|item| {
+        let mut row = vec![
+            item.id.clone(),
+            item.specimen.clone(),
+            item.group.clone().unwrap_or_default(),
+            item.file.clone(),
+            item.law.clone(),
+        ];
+        for column in &columns {
+            let value = value_of(item, column.name);
+            row.push(number(value.map(|v| v.value)));
+            row.extend(column.sd.then(|| number(value.and_then(|v| v.sd))));
+            if column.interval {
+                row.push(number(value.and_then(|v| v.low)));
+                row.push(number(value.and_then(|v| v.high)));
+            }
+            let unit = || value.map_or_else(String::new, |v| v.unit.clone());
+            row.extend(column.unit.then(unit));
+        }
+        row.extend(
+            words
+                .iter()
+                .map(|word| item.words.get(word).cloned().unwrap_or_default()),
+        );
+        let codes: Vec<&str> = item.findings.iter().map(|f| f.code.as_str()).collect();
+        row.push(codes.join(" "));
+        row.push(simulated.unwrap_or_default().to_owned());
+        row
+    });
+    csv_text(&header, rows)
+}
+
+struct Column<'a> {
+    name: &'a str,
+    heading: String,
+    sd: bool,
+    interval: bool,
+    /// Whether the unit stands in a column of its own.
+    unit: bool,
+}
+
+fn columns_of(items: &[MeasuredItem]) -> Vec<Column<'_>> {
+    let mut names: Vec<&str> = Vec::new();
+    for item in items {
+        for (name, _) in item.parameters.0.iter().chain(&item.derived.0) {
+            if !names.contains(&name.as_str()) {
+                names.push(name);
+            }
+        }
+    }
+    names
+        .into_iter()
+        .map(|name| {
+            let values: Vec<&MeasuredValue> = items
+                .iter()
+                .filter_map(|item| value_of(item, name))
+                .collect();
+            // Parameters of laws have units that depend on the law.
+            let parameter = items.iter().any(|item| item.parameters.get(name).is_some());
+            let heading = match parameter {
+                true => name.to_owned(),
+                false => heading(name, &values[0].unit),
+            };
+            Column {
+                name,
+                heading,
+                sd: values.iter().any(|value| value.sd.is_some()),
+                interval: values.iter().any(|value| value.low.is_some()),
+                unit: parameter,
+            }
+        })
+        .collect()
+}
+
+/// "bioyield_force_N": the unit as it can stand in the name of a column.
+#[must_use]
+pub fn heading(name: &str, unit: &str) -> String {
+    match unit {
+        "1" | "" => name.to_owned(),
+        unit => format!(
+            "{name}_{}",
+            unit.replace(['/', ' '], "_").replace(['^', '(', ')'], "")
+        ),
+    }
+}
+
+fn word_names(items: &[MeasuredItem]) -> Vec<&str> {
+    let mut names: Vec<&str> = Vec::new();
+    for (name, _) in items.iter().flat_map(|item| &item.words.0) {
+        if !names.contains(&name.as_str()) {
+            names.push(name);
+        }
+    }
+    names
+}
+
+fn number(value: Option<f64>) -> String {
+    value.map_or_else(String::new, |value| value.to_string())
+}
