@@ -177,8 +177,11 @@ const TOUCH: f64 = 5.0;
 const CERTAIN: f64 = 0.02;
 
 /// A local stiffness is judged from a rise of the force by so many times its
-/// noise on, and by as much as there was at the first sample.
+/// noise on, and by [`PRELOADS`] of the force at the first sample.
 const JUDGED: f64 = 20.0;
+
+/// Preloads by which the force must have risen.
+const PRELOADS: f64 = 2.0;
 
 /// Judgements over the length of a window.
 const JUDGEMENTS: usize = 50;
@@ -360,7 +363,7 @@ fn follow(
             break;
         }
         // A preload hides how much of the deformation came before the first sample.
-        let judged = force[strongest] - force[0] > (JUDGED * force_noise).max(force[0]);
+        let judged = force[strongest] - force[0] > (JUDGED * force_noise).max(PRELOADS * force[0]);
         if judged && force[i] < options.rupture * force[strongest] {
             (walk.end, walk.ended_by) = (strongest, LoadingEnd::Rupture);
             walk.bioyield = Some(strongest);

@@ -60,6 +60,9 @@ pub struct FitArguments {
     /// Fit every impact again, even where nothing has changed
     #[arg(long)]
     pub refit: bool,
+    /// Write a figure of each recording (SVG) and its data (CSV) into this directory
+    #[arg(long, value_name = "DIR", value_hint = ValueHint::DirPath)]
+    pub figures: Option<PathBuf>,
     /// Number of threads; all cores if left out. It never changes a result
     #[arg(long, value_name = "N")]
     pub threads: Option<usize>,

@@ -72,6 +72,7 @@ fn fit_request(arguments: &FitArguments) -> FitRequest {
             true => Reuse::Nothing,
             false => Reuse::Unchanged,
         },
+        figures: arguments.figures.clone(),
         threads: arguments.threads,
     }
 }

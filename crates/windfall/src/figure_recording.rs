@@ -3,7 +3,7 @@
 use crate::curve::{Curve, CurvePoint};
 use crate::error::Error;
 use crate::figure_axis::{Axis, axis, unit_label};
-use crate::figure_svg::{Anchor, Drawing};
+use crate::figure_svg::{Anchor, COLOURS, Drawing};
 use crate::write_csv::csv_text;
 
 /// Most panels of a figure.
@@ -20,14 +20,6 @@ const BOTTOM: f64 = 46.0;
 
 const FRAME: &str = "#777";
 const GRID: &str = "#e4e4e4";
-
-/// Colours that colour-blind people tell apart.
-///
-/// # Source
-/// M. Okabe, K. Ito (2008), "Color Universal Design".
-const COLOURS: [&str; 7] = [
-    "#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e69f00", "#56b4e9", "#000000",
-];
 
 /// A recording that begins later than this many times its length has its times
 /// counted from a round beginning.

@@ -16,6 +16,14 @@ pub enum Anchor {
     End,
 }
 
+/// Colours that colour-blind people tell apart.
+///
+/// # Source
+/// M. Okabe, K. Ito (2008), "Color Universal Design".
+pub const COLOURS: [&str; 7] = [
+    "#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e69f00", "#56b4e9", "#000000",
+];
+
 /// A drawing of a given size; px, y downwards.
 #[derive(Clone, Debug)]
 pub struct Drawing {
@@ -78,6 +86,25 @@ impl Drawing {
             at.0,
             at.1,
             escaped(text)
+        );
+    }
+
+    /// A text turned to read upwards, about its middle.
+    pub fn turned_text(&mut self, at: (f64, f64), size: f64, text: &str) {
+        let (x, y) = at;
+        let _ = writeln!(
+            self.body,
+            r#"<text x="{x:.2}" y="{y:.2}" text-anchor="middle" font-size="{size}" transform="rotate(-90 {x:.2} {y:.2})">{}</text>"#,
+            escaped(text)
+        );
+    }
+
+    /// A circle that is not filled.
+    pub fn ring(&mut self, at: (f64, f64), radius: f64, colour: &str) {
+        let _ = writeln!(
+            self.body,
+            r#"<circle cx="{:.2}" cy="{:.2}" r="{radius}" fill="none" stroke="{colour}" stroke-width="1.3"/>"#,
+            at.0, at.1
         );
     }
 

@@ -9,6 +9,7 @@ use crate::read_fit::{
     ENDS, TREATMENTS, WEIGHTS, hold_velocity, known_velocity, quantities_named, unknown_parameter,
 };
 use crate::toml_source::suggestion;
+use std::path::PathBuf;
 use windfall_contact::expression::{LawExpression, parse_law};
 use windfall_identify::problem::FitOptions;
 
@@ -37,6 +38,8 @@ pub struct FitRequest {
     pub group: Option<String>,
     /// What becomes of results in the store.
     pub reuse: Reuse,
+    /// Directory for a figure of each recording, with its data as CSV.
+    pub figures: Option<PathBuf>,
     /// Number of threads; all cores when `None`. It never changes a result.
     pub threads: Option<usize>,
 }

@@ -7,6 +7,8 @@ use crate::evaluate::{Evaluation, Progress, evaluate};
 use crate::evaluate_compression::{
     evaluate_compression, fitted_part, loading_curve, parameters_of, radii_of_entry,
 };
+use crate::figure_compression::figure_of_compression;
+use crate::figure_files::write_figure;
 use crate::measured::{
     MeasuredItem, MeasuredItems, MeasuredOutcome, ShownValue, groups_of, laws_of, plain_value,
     spread_of,
@@ -70,6 +72,9 @@ pub fn fit_compressions(
             },
             progress,
         )?;
+        if let Some(figures) = &request.figures {
+            draw(campaign, figures)?;
+        }
         let items: Vec<MeasuredItem> = evaluated
             .items
             .into_iter()
@@ -93,6 +98,22 @@ pub fn fit_compressions(
             impacts: items,
         })))
     })
+}
+
+/// A figure of every recording that can be evaluated.
+fn draw(campaign: &CompressionCampaign, directory: &Path) -> Result<(), Error> {
+    for entry in &campaign.shared.entries {
+        let curve = read_recording(&campaign.shared.files, entry)
+            .and_then(|recording| loading_curve(campaign, entry, &recording));
+        // One that cannot be read is told among the recordings.
+        let Ok(curve) = curve else { continue };
+        let part = fitted_part(&curve);
+        let fit = |law| fit_compression(std::slice::from_ref(&part), law, &campaign.free).ok();
+        let fits: Vec<_> = campaign.laws.iter().filter_map(fit).collect();
+        let figure = figure_of_compression(&entry.id, &curve, &part, &fits);
+        write_figure(directory, &entry.id, &figure)?;
+    }
+    Ok(())
 }
 
 /// Everything besides the recording that a result depends on.

@@ -1,0 +1,311 @@
+//! Figures of one quantity against another: loops, loading curves, spectra.
+
+use crate::error::Error;
+use crate::figure_axis::{axis, unit_label};
+use crate::figure_svg::{Anchor, COLOURS, Drawing};
+use crate::write_csv::csv_text;
+
+/// Size of a panel and the room around it; px.
+const WIDTH: f64 = 640.0;
+const HEIGHT: f64 = 330.0;
+const LEFT: f64 = 74.0;
+const RIGHT: f64 = 22.0;
+const TOP: f64 = 64.0;
+const BOTTOM: f64 = 50.0;
+
+const FRAME: &str = "#777";
+const GRID: &str = "#e4e4e4";
+
+/// Height of a line of the legend, and width of a character in it; px.
+const LEGEND_LINE: f64 = 15.0;
+const CHARACTER: f64 = 6.4;
+
+/// More points than this are thinned to what the eye can tell.
+const MOST_POINTS: usize = 4000;
+
+/// How a series is drawn.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Style {
+    /// Dots.
+    Dots,
+    /// A line.
+    Line,
+    /// A thick line behind the others.
+    Broad,
+}
+
+/// Points that belong together.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Series {
+    /// What the legend says.
+    pub label: String,
+    /// How it is drawn.
+    pub style: Style,
+    /// The points, in the units of the axes.
+    pub points: Vec<(f64, f64)>,
+}
+
+/// A place that is named.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Mark {
+    /// What is there.
+    pub label: String,
+    /// Where, in the units of the axes.
+    pub at: (f64, f64),
+    /// On which side of the place the label stands.
+    pub side: Side,
+}
+
+/// Side of a place.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Side {
+    /// Above and to the left.
+    AboveLeft,
+    /// Below and to the right.
+    BelowRight,
+}
+
+/// One panel.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Panel {
+    /// Name of the horizontal axis.
+    pub x: String,
+    /// Its unit.
+    pub x_unit: String,
+    /// Name of the vertical axis.
+    pub y: String,
+    /// Its unit.
+    pub y_unit: String,
+    /// The series, drawn in their order.
+    pub series: Vec<Series>,
+    /// Named places.
+    pub marks: Vec<Mark>,
+}
+
+/// A figure of one or more panels, one below the other.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Figure {
+    /// Its title.
+    pub title: String,
+    /// The panels.
+    pub panels: Vec<Panel>,
+}
+
+/// Draws a figure.
+#[must_use]
+pub fn svg_of_figure(figure: &Figure) -> String {
+    let rows: Vec<f64> = figure.panels.iter().map(legend_height).collect();
+    let room = |legend: &f64| legend + HEIGHT + BOTTOM + 8.0;
+    let height = 34.0 + rows.iter().map(room).sum::<f64>();
+    let mut drawing = Drawing::new(WIDTH, height.max(TOP));
+    drawing.text((LEFT, 22.0), Anchor::Start, 13.0, &figure.title);
+    let mut top = 34.0;
+    for (panel, legend) in figure.panels.iter().zip(&rows) {
+        draw_panel(&mut drawing, panel, top + legend);
+        top += room(legend);
+    }
+    drawing.svg()
+}
+
+fn labelled(panel: &Panel) -> Vec<(usize, &Series)> {
+    let series = panel.series.iter().enumerate();
+    series
+        .filter(|(_, series)| !series.label.is_empty())
+        .collect()
+}
+
+/// Legend entries by their line and place in it.
+fn legend_places(panel: &Panel) -> Vec<(usize, f64)> {
+    let (mut line, mut x) = (0, LEFT);
+    labelled(panel)
+        .iter()
+        .map(|(_, series)| {
+            let width = 34.0 + CHARACTER * series.label.chars().count() as f64;
+            if x + width > WIDTH - RIGHT && x > LEFT {
+                (line, x) = (line + 1, LEFT);
+            }
+            let place = (line, x);
+            x += width;
+            place
+        })
+        .collect()
+}
+
+fn legend_height(panel: &Panel) -> f64 {
+    let lines = legend_places(panel).last().map_or(0, |(line, _)| line + 1);
+    12.0 + LEGEND_LINE * lines as f64
+}
+
+fn range(panel: &Panel, pick: impl Fn(&(f64, f64)) -> f64) -> (f64, f64) {
+    let points = panel.series.iter().flat_map(|series| &series.points);
+    let marks = panel.marks.iter().map(|mark| &mark.at);
+    let values = points
+        .chain(marks)
+        .map(pick)
+        .filter(|value| value.is_finite());
+    let (low, high) = values.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), value| {
+        (low.min(value), high.max(value))
+    });
+    match low <= high {
+        true => (low, high),
+        false => (0.0, 1.0),
+    }
+}
+
+fn draw_panel(drawing: &mut Drawing, panel: &Panel, top: f64) {
+    let (left, right, bottom) = (LEFT, WIDTH - RIGHT, top + HEIGHT);
+    let widened = |(low, high): (f64, f64), part: f64| {
+        (low - part * (high - low), high + part * (high - low))
+    };
+    let (low, high) = widened(range(panel, |p| p.0), 0.02);
+    let horizontal = axis(low, high, 8);
+    let (low, high) = widened(range(panel, |p| p.1), 0.05);
+    let vertical = axis(low, high, 6);
+    let place_x =
+        |x: f64| left + (right - left) * (x - horizontal.low) / (horizontal.high - horizontal.low);
+    let place_y = |y: f64| top + HEIGHT * (vertical.high - y) / (vertical.high - vertical.low);
+
+    for (tick, label) in horizontal.ticks.iter().zip(&horizontal.labels) {
+        let x = place_x(*tick);
+        drawing.rule((x, top), (x, bottom), GRID);
+        drawing.rule((x, bottom), (x, bottom + 4.0), FRAME);
+        drawing.text((x, bottom + 16.0), Anchor::Middle, 10.5, label);
+    }
+    for (tick, label) in vertical.ticks.iter().zip(&vertical.labels) {
+        let y = place_y(*tick);
+        drawing.rule((left, y), (right, y), GRID);
+        drawing.rule((left - 4.0, y), (left, y), FRAME);
+        drawing.text((left - 7.0, y + 3.6), Anchor::End, 10.5, label);
+    }
+    drawing.rule((left, top), (left, bottom), FRAME);
+    drawing.rule((left, bottom), (right, bottom), FRAME);
+    let title = format!("{}{}", panel.x, unit_label(&panel.x_unit, horizontal.power));
+    let middle = 0.5 * (left + right);
+    drawing.text((middle, bottom + 36.0), Anchor::Middle, 11.5, &title);
+    let title = format!("{}{}", panel.y, unit_label(&panel.y_unit, vertical.power));
+    drawing.turned_text((20.0, top + 0.5 * HEIGHT), 11.5, &title);
+
+    for (index, series) in panel.series.iter().enumerate() {
+        let points: Vec<(f64, f64)> = thinned(&series.points)
+            .filter(|(x, y)| x.is_finite() && y.is_finite())
+            .map(|(x, y)| (place_x(x), place_y(y)))
+            .collect();
+        draw_series(
+            drawing,
+            &points,
+            series.style,
+            COLOURS[index % COLOURS.len()],
+        );
+    }
+    for mark in &panel.marks {
+        let at = (place_x(mark.at.0), place_y(mark.at.1));
+        drawing.ring(at, 4.5, "#000");
+        let (x, y, anchor) = match mark.side {
+            Side::AboveLeft => (at.0 - 9.0, at.1 - 7.0, Anchor::End),
+            Side::BelowRight => (at.0 + 9.0, at.1 + 13.0, Anchor::Start),
+        };
+        // A label that would leave the panel stands on the other side.
+        let length = CHARACTER * mark.label.chars().count() as f64;
+        let (x, anchor) = match anchor {
+            Anchor::End if x - length < left => (at.0 + 9.0, Anchor::Start),
+            Anchor::Start if x + length > right => (at.0 - 9.0, Anchor::End),
+            anchor => (x, anchor),
+        };
+        drawing.text((x, y), anchor, 11.0, &mark.label);
+    }
+    let base = top - legend_height(panel) + 4.0;
+    for ((index, series), (line, x)) in labelled(panel).into_iter().zip(legend_places(panel)) {
+        let y = base + LEGEND_LINE * line as f64 + 4.0;
+        let colour = COLOURS[index % COLOURS.len()];
+        let sample = [(x, y), (x + 9.0, y), (x + 18.0, y)];
+        draw_series(drawing, &sample, series.style, colour);
+        drawing.text((x + 24.0, y + 3.8), Anchor::Start, 11.0, &series.label);
+    }
+}
+
+fn draw_series(drawing: &mut Drawing, points: &[(f64, f64)], style: Style, colour: &str) {
+    match style {
+        Style::Line => drawing.polyline(points, colour, 1.4),
+        Style::Broad => drawing.polyline(points, colour, 4.0),
+        Style::Dots => {
+            for point in points {
+                drawing.dot(*point, 1.7, colour);
+            }
+        }
+    }
+}
+
+/// Every point, or so many that the eye sees no difference.
+fn thinned(points: &[(f64, f64)]) -> impl Iterator<Item = (f64, f64)> {
+    let step = points.len().div_ceil(MOST_POINTS).max(1);
+    points.iter().step_by(step).copied()
+}
+
+/// What the figure shows, as CSV: one row per point.
+///
+/// # Errors
+/// None in practice: the text is written to memory.
+pub fn csv_of_figure(figure: &Figure) -> Result<String, Error> {
+    let header = ["panel", "series", "x", "x_unit", "y", "y_unit"];
+    let mut rows = Vec::new();
+    for (index, panel) in figure.panels.iter().enumerate() {
+        let row = |series: &str, (x, y): (f64, f64)| {
+            vec![
+                (index + 1).to_string(),
+                series.to_owned(),
+                x.to_string(),
+                panel.x_unit.clone(),
+                y.to_string(),
+                panel.y_unit.clone(),
+            ]
+        };
+        for series in &panel.series {
+            rows.extend(series.points.iter().map(|point| row(&series.label, *point)));
+        }
+        rows.extend(panel.marks.iter().map(|mark| row(&mark.label, mark.at)));
+    }
+    csv_text(&header.map(str::to_owned), rows)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn figure(points: Vec<(f64, f64)>) -> Figure {
+        Figure {
+            title: "a < b".to_owned(),
+            panels: vec![Panel {
+                x: "deformation".to_owned(),
+                x_unit: "mm".to_owned(),
+                y: "force".to_owned(),
+                y_unit: "N".to_owned(),
+                series: vec![Series {
+                    label: "measured".to_owned(),
+                    style: Style::Dots,
+                    points,
+                }],
+                marks: vec![Mark {
+                    label: "bioyield".to_owned(),
+                    at: (1.0, 2.0),
+                    side: Side::AboveLeft,
+                }],
+            }],
+        }
+    }
+
+    #[test]
+    fn conserves_every_point_in_the_drawing_and_the_table() {
+        let figure = figure(vec![(0.0, 0.0), (1.0, 2.0), (f64::NAN, 1.0), (2.0, 1.0)]);
+        let svg = svg_of_figure(&figure);
+        assert_eq!(svg.matches(r#"r="1.7""#).count(), 3 + 3);
+        assert!(svg.contains("bioyield") && svg.contains("a &lt; b") && svg.contains("force (N)"));
+        let table = csv_of_figure(&figure).unwrap();
+        assert_eq!(table.lines().count(), 1 + 4 + 1);
+        assert!(table.contains("1,measured,1,mm,2,N"));
+    }
+
+    #[test]
+    fn closed_form_no_points_no_panic() {
+        assert!(svg_of_figure(&figure(Vec::new())).ends_with("</svg>\n"));
+    }
+}
