@@ -4,7 +4,10 @@
 //! compressions of one fruit at several rates; every curve has a first touch of
 //! its own.
 
-use statrs::distribution::{ContinuousCDF, StudentsT};
+use crate::correlated_scores::{
+    add_product, add_scores, at_least, correlation_lag, inverse_of_free, quadratic, sandwich,
+    student,
+};
 use windfall_contact::any_law::{AnyLaw, LARGEST_PARAMETERS};
 use windfall_contact::expression::LawExpression;
 use windfall_contact::law::{ContactLaw, SMALLEST_DISPLACEMENT};
@@ -102,9 +105,6 @@ pub const COMPRESSION_LAWS: [LawKind; 4] = [
 
 /// Parameters at most, with one first touch.
 const SIZE: usize = LARGEST_PARAMETERS + 1;
-
-/// Probability that an interval holds the value.
-const CONFIDENCE: f64 = 0.95;
 
 /// Steps of the search for a first touch.
 const TOUCH_STEPS: usize = 60;
@@ -487,7 +487,11 @@ fn report(problem: &Problem, law: Law, stop: Stop) -> CompressionFit {
         touch_parts.push((following, spread[0][0] / (touch * touch)));
     }
     let scale = samples as f64 / freedom as f64;
-    let covariance = sandwich(&bread, &meat, &free, scale);
+    let variance = cost / freedom as f64;
+    let independent = inverse_of_free(&bread, &free);
+    let covariance = sandwich(&bread, &meat, &free, scale).zip(independent);
+    let covariance = covariance
+        .map(|(correlated, independent)| at_least(correlated, |i| variance * independent[i][i]));
     let quantile = student(freedom as f64 / longest);
     let estimate = |value: f64, variance: Option<f64>| {
         let sd = variance
@@ -522,86 +526,4 @@ fn report(problem: &Problem, law: Law, stop: Stop) -> CompressionFit {
         samples,
         converged: stop == Stop::Converged,
     }
-}
-
-fn add_product<const N: usize>(
-    sum: &mut [[f64; N]; N],
-    first: &[f64; N],
-    second: &[f64; N],
-    weight: f64,
-) {
-    for i in 0..N {
-        for j in 0..N {
-            sum[i][j] += weight * first[i] * second[j];
-        }
-    }
-}
-
-/// Newey and West's sum over lags, made symmetric.
-fn add_scores<const N: usize>(meat: &mut [[f64; N]; N], scores: &[[f64; N]], lag: usize) {
-    for (i, score) in scores.iter().enumerate() {
-        add_product(meat, score, score, 1.0);
-        for behind in 1..=lag.min(i) {
-            let weight = 1.0 - behind as f64 / (lag + 1) as f64;
-            add_product(meat, score, &scores[i - behind], weight);
-            add_product(meat, &scores[i - behind], score, weight);
-        }
-    }
-}
-
-/// Lags up to which the residuals are correlated: twice the first at which the
-/// autocorrelation is below a tenth.
-fn correlation_lag(residuals: &[f64]) -> usize {
-    let n = residuals.len();
-    let variance: f64 = residuals.iter().map(|r| r * r).sum();
-    let most = n / 4;
-    let below = (1..most).find(|&lag| {
-        let product: f64 = (lag..n).map(|i| residuals[i] * residuals[i - lag]).sum();
-        product < 0.1 * variance
-    });
-    (2 * below.unwrap_or(most)).min(most).max(1)
-}
-
-type Square = [[f64; LARGEST_PARAMETERS]; LARGEST_PARAMETERS];
-
-/// bread⁻¹ meat bread⁻¹ over the free parameters; `None` when singular.
-fn sandwich(bread: &Square, meat: &Square, free: &[usize], scale: f64) -> Option<Square> {
-    let mut filled = *bread;
-    for i in 0..LARGEST_PARAMETERS {
-        if !free.contains(&i) {
-            filled[i] = [0.0; LARGEST_PARAMETERS];
-            for row in &mut filled {
-                row[i] = 0.0;
-            }
-            filled[i][i] = 1.0;
-        }
-    }
-    let inverse = cholesky::inverse(&filled)?;
-    let mut out = [[0.0; LARGEST_PARAMETERS]; LARGEST_PARAMETERS];
-    for i in 0..LARGEST_PARAMETERS {
-        for j in 0..LARGEST_PARAMETERS {
-            for a in free {
-                for b in free {
-                    out[i][j] += scale * inverse[i][*a] * meat[*a][*b] * inverse[*b][j];
-                }
-            }
-        }
-    }
-    Some(out)
-}
-
-fn quadratic(matrix: &Square, vector: &[f64; LARGEST_PARAMETERS]) -> f64 {
-    let mut sum = 0.0;
-    for i in 0..LARGEST_PARAMETERS {
-        for j in 0..LARGEST_PARAMETERS {
-            sum += vector[i] * matrix[i][j] * vector[j];
-        }
-    }
-    sum
-}
-
-/// Two-sided quantile of Student's distribution.
-fn student(freedom: f64) -> f64 {
-    let student = StudentsT::new(0.0, 1.0, freedom.max(1.0));
-    student.map_or(f64::INFINITY, |t| t.inverse_cdf(0.5 + 0.5 * CONFIDENCE))
 }

@@ -26,8 +26,6 @@ pub struct CompressionOptions {
     /// A fall of the force below this part of its largest value so far is a
     /// rupture; 1.
     pub rupture: f64,
-    /// Where the fitted range ends.
-    pub fit_to: FitRange,
 }
 
 /// Where the range of a curve that is fitted ends.
@@ -52,7 +50,6 @@ impl Default for CompressionOptions {
             stiffness_window: 0.3,
             softening: 0.5,
             rupture: 0.7,
-            fit_to: FitRange::LargestStiffness,
         }
     }
 }
@@ -114,10 +111,6 @@ pub struct CompressionCurve {
     pub stiffness: Slope,
     /// Last sample of the window with the largest stiffness.
     pub stiffness_end: usize,
-    /// First sample of the fitted range: the force is there for certain.
-    pub fit_start: usize,
-    /// Last sample of the fitted range.
-    pub fit_end: usize,
     /// Work done from the first sample to the end of the loading, by the
     /// trapezoidal rule; J.
     pub energy: f64,
@@ -179,6 +172,10 @@ const CERTAIN: f64 = 0.02;
 /// A local stiffness is judged from a rise of the force by so many times its
 /// noise on, and by [`PRELOADS`] of the force at the first sample.
 const JUDGED: f64 = 20.0;
+
+/// Times the noise of force by which force would have risen at the largest
+/// stiffness where a yield is judged.
+const SEEN: f64 = 10.0;
 
 /// Preloads by which the force must have risen.
 const PRELOADS: f64 = 2.0;
@@ -245,14 +242,7 @@ pub fn compression_curve(
     let energy = (1..=end)
         .map(|i| 0.5 * (force[i] + force[i - 1]) * (deformation[i] - deformation[i - 1]))
         .sum();
-    let fit_end = match options.fit_to {
-        FitRange::LargestStiffness => walk.stiffness_end,
-        FitRange::PartOfYield(part) => first_from(force, end, part * force[end]),
-        FitRange::Deformation(most) => first_from(&deformation, end, most),
-    };
-    let certain = (TOUCH * force_noise).max(CERTAIN * force[fit_end]);
     Ok(CompressionCurve {
-        fit_start: first_from(force, fit_end, certain),
         began_in_contact,
         force_noise,
         position_noise,
@@ -263,12 +253,25 @@ pub fn compression_curve(
         rupture: rupture(force, options.rupture).map(point),
         stiffness: walk.stiffness,
         stiffness_end: walk.stiffness_end,
-        fit_end,
         energy,
         times: times.to_vec(),
         force: force.to_vec(),
         deformation,
     })
+}
+
+/// First and last sample of the range that laws are fitted to: from where the
+/// force is there for certain to where `range` says, not beyond the loading.
+#[must_use]
+pub fn fitted_range(curve: &CompressionCurve, range: FitRange) -> (usize, usize) {
+    let end = curve.loading_end.index;
+    let last = match range {
+        FitRange::LargestStiffness => curve.stiffness_end,
+        FitRange::PartOfYield(part) => first_from(&curve.force, end, part * curve.force[end]),
+        FitRange::Deformation(most) => first_from(&curve.deformation, end, most),
+    };
+    let certain = (TOUCH * curve.force_noise).max(CERTAIN * curve.force[last]);
+    (first_from(&curve.force, last, certain), last)
 }
 
 /// First sample that reaches a value, `end` at the latest.
@@ -382,6 +385,11 @@ fn follow(
         if !judged || !i.is_multiple_of(1 + recent.count() / JUDGEMENTS) {
             continue;
         }
+        // In a window where a rise would drown in noise nothing can be judged.
+        let usual = walk.stiffness.value * recent.length();
+        if usual < SEEN * force_noise {
+            continue;
+        }
         let slope = recent.slope().map_or(f64::INFINITY, |slope| slope.value);
         if walk.softening.is_none() && slope < options.softening * walk.stiffness.value {
             walk.softening = Some(recent.middle());
@@ -483,13 +491,12 @@ mod tests {
             }
         });
         let numbers = |c: &CompressionCurve| {
-            let values = [
-                c.stiffness.value,
-                c.energy,
-                c.loading_end.force,
-                c.deformation[c.fit_end],
+            let values = [c.stiffness.value, c.energy, c.loading_end.force];
+            let ranges = [
+                fitted_range(c, FitRange::LargestStiffness),
+                fitted_range(c, FitRange::PartOfYield(0.5)),
             ];
-            (values.map(f64::to_bits), c.fit_end, c.softening)
+            (values.map(f64::to_bits), ranges, c.softening)
         };
         assert_eq!(numbers(&quiet), numbers(&wild));
         assert_eq!(quiet.bioyield, wild.bioyield);

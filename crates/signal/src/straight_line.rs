@@ -45,6 +45,12 @@ impl<'a> Window<'a> {
         (self.first + self.end - 1) / 2
     }
 
+    /// What the samples span.
+    #[must_use]
+    pub fn length(&self) -> f64 {
+        self.x[self.end - 1] - self.x[self.first]
+    }
+
     /// Number of samples.
     #[must_use]
     pub fn count(&self) -> usize {

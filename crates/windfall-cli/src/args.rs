@@ -2,6 +2,7 @@
 
 use crate::args_fit::FitArguments;
 use crate::args_format::Format;
+use crate::args_geometry::{RadiusArguments, TransferArguments};
 use crate::args_simulate::SimulateArguments;
 use clap::{Args, Parser, Subcommand, ValueEnum, ValueHint};
 use std::path::PathBuf;
@@ -37,7 +38,9 @@ pub enum Command {
     Fit(Box<FitArguments>),
     /// Simulate one event from a force law
     Simulate(SimulateArguments),
-    /// Show force laws
+    /// Radius of curvature from a chord gauge or three diameters
+    Radius(RadiusArguments),
+    /// Show force laws, or take one to another geometry
     Card(CardArguments),
     /// Write shell completions to standard output
     Completions {
@@ -149,4 +152,6 @@ pub enum CardAction {
         #[arg(long, value_enum, default_value_t)]
         format: Format,
     },
+    /// Take a law from one geometry to another by R* and E*
+    Transfer(TransferArguments),
 }

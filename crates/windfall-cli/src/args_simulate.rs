@@ -21,6 +21,53 @@ pub enum SimulateEvent {
     Pendulum(Box<SimulatePendulumArguments>),
     /// A body on a line strikes: motion, or a campaign of recordings
     Carriage(Box<SimulateCarriageArguments>),
+    /// Slow compressions: a campaign of recordings
+    Compression(SimulateCompressionArguments),
+}
+
+/// `windfall simulate compression`
+#[derive(Debug, Args)]
+#[command(after_help = "Example:
+  windfall simulate compression my-campaign --law 'kuwabara-kono(k=300000, c=20000)' \\
+      --rate '1 mm/s' --rate '20 mm/s' --yield-force '30 N'
+  windfall fit my-campaign")]
+pub struct SimulateCompressionArguments {
+    /// Directory of the campaign to make; it must not exist or be empty
+    #[arg(value_hint = ValueHint::DirPath)]
+    pub directory: PathBuf,
+    /// Force law of the crosshead's travel, with its parameters
+    #[arg(long)]
+    pub law: String,
+    /// Rate of deformation; may be repeated: every fruit is compressed at each
+    #[arg(long = "rate", default_value = "1 mm/s")]
+    pub rates: Vec<String>,
+    /// Largest deformation
+    #[arg(long, default_value = "2 mm")]
+    pub deformation: String,
+    /// Radius of the fruit
+    #[arg(long, default_value = "38 mm")]
+    pub radius: String,
+    /// Plates that deform the fruit: 1 or 2
+    #[arg(long, default_value_t = 2)]
+    pub plates: u32,
+    /// Force at which the tissue yields; never if left out
+    #[arg(long)]
+    pub yield_force: Option<String>,
+    /// Number of fruit
+    #[arg(long, default_value_t = 3)]
+    pub fruit: usize,
+    /// Spread of stiffness and damping between fruit, as a part
+    #[arg(long, default_value_t = 0.0)]
+    pub spread: f64,
+    /// Standard deviation of the noise of force
+    #[arg(long, default_value = "0.02 N")]
+    pub force_noise: String,
+    /// Sampling rate
+    #[arg(long, default_value = "1 kHz")]
+    pub sampling_rate: String,
+    /// Seed of noise and spread
+    #[arg(long, default_value_t = 1)]
+    pub seed: u64,
 }
 
 /// When a simulated contact is over.

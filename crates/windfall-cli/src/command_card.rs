@@ -2,12 +2,16 @@
 
 use crate::args::{CardAction, CardArguments};
 use crate::args_format::Format;
+use crate::command_geometry::run_transfer;
 use crate::show::{write_json, write_result};
 use windfall::workflow_card::{csv_of_laws, law_cards, text_of_laws};
 
-/// Shows force laws.
+/// Shows force laws, or transfers one.
 pub fn run(arguments: &CardArguments) -> anyhow::Result<()> {
-    let CardAction::Show { law, format, .. } = &arguments.action;
+    let (law, format) = match &arguments.action {
+        CardAction::Show { law, format, .. } => (law, format),
+        CardAction::Transfer(arguments) => return run_transfer(arguments),
+    };
     let laws = law_cards(law.as_deref())?;
     match format {
         Format::Json => write_json(&serde_json::json!({ "laws": laws })),

@@ -2,8 +2,8 @@
 
 use crate::args_format::Format;
 use crate::args_simulate::{
-    End, SimulateArguments, SimulateCarriageArguments, SimulateEvent, SimulateImpactArguments,
-    SimulatePendulumArguments,
+    End, SimulateArguments, SimulateCarriageArguments, SimulateCompressionArguments, SimulateEvent,
+    SimulateImpactArguments, SimulatePendulumArguments,
 };
 use crate::show::{write_json, write_result};
 use std::path::Path;
@@ -16,6 +16,7 @@ use windfall::request_instrument::{
 };
 use windfall::request_recordings::{RecordingsRequest, simulate_recordings};
 use windfall::simulate_campaign::Weighed;
+use windfall::simulate_compression::{SimulateCompressionRequest, simulate_compression};
 use windfall::simulate_example::write_example;
 use windfall::workflow_simulate::SimulatedMotion;
 use windfall::write_simulation::{
@@ -28,6 +29,7 @@ pub fn run(arguments: &SimulateArguments) -> anyhow::Result<()> {
         SimulateEvent::Impact(arguments) => impact(arguments),
         SimulateEvent::Pendulum(arguments) => pendulum(arguments),
         SimulateEvent::Carriage(arguments) => carriage(arguments),
+        SimulateEvent::Compression(arguments) => compression(arguments),
     }
 }
 
@@ -36,6 +38,28 @@ fn end_text(end: End) -> String {
         End::ForceZero => "force-zero".to_owned(),
         End::GapZero => "gap-zero".to_owned(),
     }
+}
+
+fn compression(arguments: &SimulateCompressionArguments) -> anyhow::Result<()> {
+    let request = SimulateCompressionRequest {
+        law: arguments.law.clone(),
+        rates: arguments.rates.clone(),
+        deformation: arguments.deformation.clone(),
+        radius: arguments.radius.clone(),
+        plates: arguments.plates,
+        yield_force: arguments.yield_force.clone(),
+        fruit: arguments.fruit,
+        spread: arguments.spread,
+        force_noise: arguments.force_noise.clone(),
+        sampling_rate: arguments.sampling_rate.clone(),
+        seed: arguments.seed,
+    };
+    let written = simulate_compression(&arguments.directory, &request)?;
+    write_result(&format!(
+        "{} files in {directory}\n\nNext:\n  windfall fit {directory}\n",
+        written.len(),
+        directory = arguments.directory.display()
+    ))
 }
 
 fn impact(arguments: &SimulateImpactArguments) -> anyhow::Result<()> {

@@ -50,7 +50,7 @@ struct RigKindFile {
 /// There is no campaign.toml, or it is no TOML.
 pub fn campaign_kind(directory: &Path) -> Result<CampaignKind, Error> {
     let advice = "a campaign directory holds a campaign.toml; \
-                  `windfall new pendulum DIR` or `windfall new carriage DIR` writes a template";
+                  `windfall new pendulum DIR` writes a template (`windfall new --help` lists the kinds)";
     let source = read_source(&directory.join(CAMPAIGN_FILE), advice)?;
     let file: KindFile = parse_source(&source)?;
     let kind = file.rig.and_then(|rig| rig.kind).unwrap_or_default();

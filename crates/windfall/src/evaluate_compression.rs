@@ -11,11 +11,14 @@ use crate::read_recording::recording_path;
 use crate::recording_channel::channel_samples;
 use crate::text_number::plain;
 use windfall_contact::apparent_modulus::{PressedContact, PrincipalRadii, stiffness_per_modulus};
+use windfall_contact::expression::LawExpression;
 use windfall_contact::law_kind::LawKind;
 use windfall_identify::compression_fit::{
     CompressionEstimate, CompressionFit, LoadingCurve, fit_compression,
 };
-use windfall_signal::compression::{CompressionCurve, CurvePoint, LoadingEnd, compression_curve};
+use windfall_signal::compression::{
+    CompressionCurve, CurvePoint, FitRange, LoadingEnd, compression_curve, fitted_range,
+};
 use windfall_signal::kinematics::value_at;
 use windfall_signal::polynomial::local_polynomial;
 use windfall_signal::recording::{Quantity, Recording};
@@ -50,11 +53,26 @@ pub fn loading_curve(
     )
 }
 
-/// The part of a curve that laws are fitted to, with its rate, averaged to a
+/// The part of a curve that a law is fitted to, with its rate, averaged to a
 /// few thousand points.
+///
+/// Where the campaign does not say otherwise, a law without damping is fitted up
+/// to the largest stiffness; a damped one, whose force rises steepest at touch,
+/// up to half of the yield force.
 #[must_use]
-pub fn fitted_part(curve: &CompressionCurve) -> LoadingCurve {
-    let range = curve.fit_start..=curve.fit_end;
+pub fn fitted_part(
+    campaign: &CompressionCampaign,
+    curve: &CompressionCurve,
+    law: &LawExpression,
+) -> LoadingCurve {
+    let damping = law.kind.describe().index_of("c");
+    let undamped = damping.is_none_or(|index| law.values[index] == Some(0.0));
+    let range = campaign.fit_to.unwrap_or(match undamped {
+        true => FitRange::LargestStiffness,
+        false => FitRange::PartOfYield(0.5),
+    });
+    let (first, last) = fitted_range(curve, range);
+    let range = first..=last;
     let (times, deformation) = (
         &curve.times[range.clone()],
         &curve.deformation[range.clone()],
@@ -89,9 +107,9 @@ pub fn evaluate_compression(
     recording: &Recording,
 ) -> Result<MeasuredItems, Error> {
     let curve = loading_curve(campaign, entry, recording)?;
-    let part = fitted_part(&curve);
     let radii = radii_of_entry(campaign, entry)?;
     let items = campaign.laws.iter().map(|law| {
+        let part = fitted_part(campaign, &curve, law);
         let fit = fit_compression(std::slice::from_ref(&part), law, &campaign.free);
         let fit = fit.map_err(|source| Error::Evaluation {
             path: recording_path(&campaign.shared.files, entry),
@@ -141,7 +159,7 @@ fn item(
         group: group_of(&campaign.shared, entry),
         file: entry.file.clone(),
         law: fit.law.kind().name().to_owned(),
-        words: Named(vec![("loading ended by".to_owned(), ended.to_owned())]),
+        words: Named(vec![("loading_ended_by".to_owned(), ended.to_owned())]),
         parameters: parameters_of(fit),
         derived: Named(derived),
         findings: findings(curve, part, fit, radii),

@@ -7,14 +7,12 @@ use windfall_signal::compression::{CompressionCurve, CurvePoint};
 /// The loading curve with the fitted range, the laws over it and beyond, the
 /// yield and the softening.
 ///
-/// * `part`: what was fitted
-/// * `fits`: the laws
+/// * `fits`: the laws, each with the part of the curve that it was fitted to
 #[must_use]
 pub fn figure_of_compression(
     title: &str,
     curve: &CompressionCurve,
-    part: &LoadingCurve,
-    fits: &[CompressionFit],
+    fits: &[(LoadingCurve, CompressionFit)],
 ) -> Figure {
     let end = curve.loading_end.index;
     let points = |range: std::ops::Range<usize>| -> Vec<(f64, f64)> {
@@ -36,8 +34,17 @@ pub fn figure_of_compression(
         series("loading", Style::Dots, points(0..end + 1)),
         series("after it (not used)", Style::Dots, after.collect()),
     ];
-    let last = part.deformation[part.deformation.len() - 1];
-    for fit in fits {
+    let mut marks: Vec<Mark> = Vec::new();
+    for (part, fit) in fits {
+        let last = part.deformation[part.deformation.len() - 1];
+        let end = (1e3 * last, part.force[part.force.len() - 1]);
+        if marks.iter().all(|mark| mark.at != end) {
+            marks.push(Mark {
+                label: "end of the fitted range".to_owned(),
+                at: end,
+                side: Side::BelowRight,
+            });
+        }
         let touch = fit.touches[0].value;
         let force = |d: f64, rate: f64| (1e3 * d, fit.law.force(d - touch, rate, d - touch));
         let rate = part.rate[part.rate.len() - 1];
@@ -45,7 +52,9 @@ pub fn figure_of_compression(
         let mut line: Vec<(f64, f64)> = measured.map(|(d, v)| force(*d, *v)).collect();
         // Beyond the fitted range, to show where the fruit leaves the law.
         line.extend((1..=20).map(|i| force(last + 0.02 * f64::from(i) * (last - touch), rate)));
-        line.insert(0, (1e3 * touch, 0.0));
+        let first = part.deformation[0];
+        let before = (0..20).map(|i| touch + 0.05 * f64::from(i) * (first - touch));
+        line.splice(0..0, before.map(|d| force(d, part.rate[0])));
         line.retain(|(_, force)| *force <= 1.3 * curve.loading_end.force);
         all.push(series(
             &format!("{}, fitted up to the ring", fit.law.kind().name()),
@@ -58,11 +67,6 @@ pub fn figure_of_compression(
         at: (1e3 * point.deformation, point.force),
         side: Side::AboveLeft,
     };
-    let mut marks = vec![Mark {
-        label: "end of the fitted range".to_owned(),
-        at: (1e3 * last, part.force[part.force.len() - 1]),
-        side: Side::BelowRight,
-    }];
     marks.extend(curve.bioyield.iter().map(|point| mark("bioyield", point)));
     if curve.bioyield.is_none() {
         marks.extend(curve.softening.iter().map(|point| mark("softening", point)));

@@ -33,6 +33,8 @@ pub struct CompressionCampaign {
     pub indenter: PrincipalRadii,
     /// How curves are read.
     pub options: CompressionOptions,
+    /// Where the fitted range ends, where the campaign says so.
+    pub fit_to: Option<FitRange>,
     /// Laws, each fitted to every curve.
     pub laws: Vec<LawExpression>,
     /// Parameters that are estimated although they have a value.
@@ -65,6 +67,7 @@ pub fn read_compression(directory: &Path) -> Result<CompressionCampaign, Error> 
     };
     let kind = CampaignKind::Compression;
     Ok(CompressionCampaign {
+        fit_to: fit_range(&source, file.compression.fit_to.as_ref())?,
         options: options(&source, &file.compression, file.rig.get_ref())?,
         shared: read_item_campaign(&source, directory, kind, &shared, channels)?,
         plates,
@@ -199,17 +202,19 @@ fn options(
         )?,
         softening: part(file.softening.as_ref(), "softening", defaults.softening)?,
         rupture: part(file.rupture.as_ref(), "rupture", defaults.rupture)?,
-        fit_to: fit_range(source, file.fit_to.as_ref())?,
     })
 }
 
-fn fit_range(source: &TomlSource, value: Option<&Spanned<String>>) -> Result<FitRange, Error> {
+fn fit_range(
+    source: &TomlSource,
+    value: Option<&Spanned<String>>,
+) -> Result<Option<FitRange>, Error> {
     let Some(value) = value else {
-        return Ok(FitRange::LargestStiffness);
+        return Ok(None);
     };
     let text = value.get_ref().trim();
     if text == "largest-stiffness" {
-        return Ok(FitRange::LargestStiffness);
+        return Ok(Some(FitRange::LargestStiffness));
     }
     let part = text
         .strip_suffix('%')
@@ -218,10 +223,12 @@ fn fit_range(source: &TomlSource, value: Option<&Spanned<String>>) -> Result<Fit
         && part > 0.0
         && part <= 100.0
     {
-        return Ok(FitRange::PartOfYield(part / 100.0));
+        return Ok(Some(FitRange::PartOfYield(part / 100.0)));
     }
     match parse_as(text, "m") {
-        Ok(length) if length > 0.0 && !text.ends_with('%') => Ok(FitRange::Deformation(length)),
+        Ok(length) if length > 0.0 && !text.ends_with('%') => {
+            Ok(Some(FitRange::Deformation(length)))
+        }
         _ => {
             let problem = "expected \"largest-stiffness\", a part of the yield force such as \
                            \"50 %\", or a deformation such as \"0.5 mm\""

@@ -107,10 +107,13 @@ fn draw(campaign: &CompressionCampaign, directory: &Path) -> Result<(), Error> {
             .and_then(|recording| loading_curve(campaign, entry, &recording));
         // One that cannot be read is told among the recordings.
         let Ok(curve) = curve else { continue };
-        let part = fitted_part(&curve);
-        let fit = |law| fit_compression(std::slice::from_ref(&part), law, &campaign.free).ok();
+        let fit = |law| {
+            let part = fitted_part(campaign, &curve, law);
+            let fit = fit_compression(std::slice::from_ref(&part), law, &campaign.free).ok()?;
+            Some((part, fit))
+        };
         let fits: Vec<_> = campaign.laws.iter().filter_map(fit).collect();
-        let figure = figure_of_compression(&entry.id, &curve, &part, &fits);
+        let figure = figure_of_compression(&entry.id, &curve, &fits);
         write_figure(directory, &entry.id, &figure)?;
     }
     Ok(())
@@ -120,8 +123,9 @@ fn draw(campaign: &CompressionCampaign, directory: &Path) -> Result<(), Error> {
 fn depends_on(campaign: &CompressionCampaign, entry: &ImpactEntry) -> String {
     let laws: Vec<String> = campaign.laws.iter().map(|law| format!("{law:?}")).collect();
     format!(
-        "{:?} {} {} {:?} {laws:?} {:?} {:?} {:?}",
+        "{:?} {:?} {} {} {:?} {laws:?} {:?} {:?} {:?}",
         campaign.options,
+        campaign.fit_to,
         campaign.plates,
         campaign.poisson_ratio,
         campaign.indenter,
@@ -152,15 +156,16 @@ fn joint_fits(campaign: &CompressionCampaign) -> Result<Vec<MeasuredItem>, Error
             .iter()
             .filter_map(|entry| {
                 let recording = read_recording(&campaign.shared.files, entry).ok()?;
-                let curve = loading_curve(campaign, entry, &recording).ok()?;
-                Some(fitted_part(&curve))
+                loading_curve(campaign, entry, &recording).ok()
             })
             .collect();
         if curves.len() < 2 {
             continue;
         }
         for law in &campaign.laws {
-            let Ok(fit) = fit_compression(&curves, law, &campaign.free) else {
+            let parts = curves.iter().map(|curve| fitted_part(campaign, curve, law));
+            let parts: Vec<_> = parts.collect();
+            let Ok(fit) = fit_compression(&parts, law, &campaign.free) else {
                 continue;
             };
             let mut findings = Vec::new();

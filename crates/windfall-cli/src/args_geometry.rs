@@ -1,0 +1,62 @@
+//! `windfall radius` and `windfall card transfer`: what may be asked for.
+
+use crate::args_format::Format;
+use clap::Args;
+
+/// `windfall radius`
+#[derive(Debug, Args)]
+#[command(after_help = "Examples:
+  windfall radius --chord '20 mm' --sagitta '1.3 mm'
+  windfall radius --diameters '72 mm, 70 mm, 65 mm' --against '25 mm'
+
+The columns radius_mm, chord_mm and sagitta_mm, or diameter_1_mm to diameter_3_mm of \
+specimens.csv do the same for every fruit of a campaign.")]
+pub struct RadiusArguments {
+    /// Distance between the feet of a chord gauge
+    #[arg(long, value_name = "LENGTH")]
+    pub chord: Option<String>,
+    /// Height of the surface above the chord
+    #[arg(long, value_name = "LENGTH")]
+    pub sagitta: Option<String>,
+    /// Three diameters; the first along the axis that is struck or pressed
+    #[arg(long, value_name = "A, B, C")]
+    pub diameters: Option<String>,
+    /// Radius of the other body, or "plane": gives R*
+    #[arg(long, value_name = "LENGTH")]
+    pub against: Option<String>,
+    /// How the result is shown
+    #[arg(long, value_enum, default_value_t)]
+    pub format: Format,
+}
+
+/// `windfall card transfer`
+#[derive(Debug, Args)]
+#[command(after_help = "Examples:
+  from a compression between two plates to an impactor of 25 mm:
+  windfall card transfer --law 'kuwabara-kono(k=260000, c=500)' \\
+      --from '41.5 mm, plane' --from-plates 2 --to '41.5 mm, 25 mm'
+  from an impactor to fruit on fruit:
+  windfall card transfer --law 'hertz(k=753599)' --from '38 mm, 25 mm' --to '38 mm, 38 mm' --to-fruit")]
+pub struct TransferArguments {
+    /// The law with its parameters, as it was found
+    #[arg(long)]
+    pub law: String,
+    /// Where it was found: radius of the fruit, radius of the other body or "plane"
+    #[arg(long, value_name = "RADIUS, RADIUS")]
+    pub from: String,
+    /// Plates that deformed the fruit where it was found: 1 or 2
+    #[arg(long, default_value_t = 1, value_name = "N")]
+    pub from_plates: usize,
+    /// Where it is wanted: radius of the fruit, radius of the other body or "plane"
+    #[arg(long, value_name = "RADIUS, RADIUS")]
+    pub to: String,
+    /// Plates that deform the fruit where it is wanted: 1 or 2
+    #[arg(long, default_value_t = 1, value_name = "N")]
+    pub to_plates: usize,
+    /// Where it is wanted, the other body is a fruit of the same modulus
+    #[arg(long)]
+    pub to_fruit: bool,
+    /// How the result is shown
+    #[arg(long, value_enum, default_value_t)]
+    pub format: Format,
+}
