@@ -10,15 +10,20 @@
 //!
 //! This crate opens no file and knows no force law.
 
+pub mod accelerometer;
 pub mod clipping;
+mod compare;
 pub mod compression;
+pub mod conditioning;
 pub mod deceleration;
 pub mod edge_rate;
+pub mod energy_angles;
 pub mod error;
 pub mod extract;
 pub mod filter_butterworth;
 pub mod filter_zero_phase;
 pub mod finding;
+pub mod force_loop;
 pub mod impact;
 pub mod instrument;
 pub mod kinematics;
