@@ -46,18 +46,10 @@ pub struct Marks {
 #[inline]
 #[must_use]
 pub fn leading_number(bytes: &[u8], decimal: u8) -> Option<(f64, usize)> {
-    let mut at = 0;
-    let negative = match bytes.first() {
-        Some(b'-') => {
-            at = 1;
-            true
-        }
-        Some(b'+') => {
-            at = 1;
-            false
-        }
-        _ => false,
-    };
+    // Signs come at random: a branch on them would be guessed wrong half of the time.
+    let first = bytes.first().copied().unwrap_or(0);
+    let negative = first == b'-';
+    let mut at = usize::from(negative | (first == b'+'));
     let start = at;
     let mut mantissa = 0_u64;
     // The usual number has one digit before the mark, and many behind it.
@@ -94,7 +86,8 @@ pub fn leading_number(bytes: &[u8], decimal: u8) -> Option<(f64, usize)> {
         }
         .map_or_else(|| slow_number(&bytes[start..at], decimal), Some)?,
     };
-    Some((if negative { -size } else { size }, at))
+    let sign = u64::from(negative) << 63;
+    Some((f64::from_bits(size.to_bits() | sign), at))
 }
 
 /// Zeros before the first other digit, which fill no part of the mantissa;
