@@ -18,6 +18,7 @@ pub mod extract_recording;
 pub mod figure_axis;
 pub mod figure_compression;
 pub mod figure_files;
+pub mod figure_impact;
 pub mod figure_recording;
 pub mod figure_svg;
 pub mod figure_xy;

@@ -91,6 +91,33 @@ fn recovers_the_peak_with_all_that_campaign_toml_can_take_off() {
     assert!(derived(&clean, "hysteresis_energy").abs() < 0.01 * energy);
 }
 
+#[test]
+fn conserves_the_loop_in_the_figure() {
+    let dir = tempfile::tempdir().unwrap();
+    campaign(dir.path(), CARRIAGE, "", "baseline = \"drift\"");
+    let figures = dir.path().join("figures");
+    let request = FitRequest {
+        figures: Some(figures.clone()),
+        ..FitRequest::default()
+    };
+    fit_campaign(dir.path(), &request, &|_, _| {}).unwrap();
+    let svg = std::fs::read_to_string(figures.join("a.svg")).unwrap();
+    assert!(svg.contains("kelvin-voigt") && svg.ends_with("</svg>\n"));
+    // The third panel is the loop: F = 50 N/mm x, up and down.
+    let table = std::fs::read_to_string(figures.join("a.csv")).unwrap();
+    let loops = table
+        .lines()
+        .filter(|line| line.starts_with("3,kelvin-voigt,"));
+    let mut largest: f64 = 0.0;
+    for line in loops {
+        let cells: Vec<&str> = line.split(',').collect();
+        let (x, force): (f64, f64) = (cells[2].parse().unwrap(), cells[4].parse().unwrap());
+        largest = largest.max(force);
+        assert!(x < 0.05 || (force / (50.0 * x) - 1.0).abs() < 0.2, "{line}");
+    }
+    assert!((largest / 50.0 - 1.0).abs() < 0.06, "{largest}");
+}
+
 /// E = m g l (1 − cos θ) with m l = 0.05 kg m, and v = √(2 E r²/I).
 #[test]
 fn closed_form_energies_from_angles() {
