@@ -34,6 +34,7 @@ pub mod noise_gaussian;
 mod noise_track;
 pub mod options;
 mod orient;
+pub mod phase_bits;
 pub mod polynomial;
 pub mod quadrature;
 mod rate;
