@@ -2,6 +2,7 @@
 //! the velocities, an accelerometer beside force and displacement.
 
 use crate::accelerometer::{check_force, displacement_error, double_integral};
+use crate::filter_butterworth::Band;
 use crate::finding::Finding;
 use crate::force_loop::force_loop;
 use crate::impact::Measured;
@@ -71,14 +72,23 @@ pub(crate) fn compare(
     }
     if let (Some(displacement), Some(velocity)) = (&signals.displacement, measured.impact_velocity)
     {
-        // From onset on, with the velocity that the displacement shows there.
-        let first = acceleration.times.partition_point(|t| *t < place.onset);
-        let last = acceleration.times.partition_point(|t| *t <= place.end);
-        let (times, values) = (
-            &acceleration.times[first..last],
-            &acceleration.values[first..last],
-        );
-        let integrated = double_integral(times, values, velocity, None).ok();
+        let all = pair(acceleration);
+        let (times, integrated) = match options.conditioning.acceleration.map(|f| f.band) {
+            // A high-pass filter against drift needs the whole recording.
+            Some(Band::HighPass(cutoff)) => {
+                (all.0, double_integral(all.0, all.1, 0.0, Some(cutoff)).ok())
+            }
+            // From onset on, with the velocity that the displacement shows there.
+            _ => {
+                let first = all.0.partition_point(|t| *t < place.onset);
+                let last = all.0.partition_point(|t| *t <= place.end);
+                let times = &all.0[first..last];
+                (
+                    times,
+                    double_integral(times, &all.1[first..last], velocity, None).ok(),
+                )
+            }
+        };
         let error = integrated.and_then(|integrated| {
             displacement_error((times, &integrated), pair(displacement), window)
         });

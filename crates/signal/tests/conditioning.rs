@@ -112,6 +112,33 @@ fn conserves_energy_between_loop_and_velocities() {
     assert!(!has(&findings, "energy-mismatch") && !has(&findings, "accelerometer-disagrees"));
 }
 
+/// Against drift a high-pass filter helps, and costs: it takes away the free
+/// motion before contact, of which the displacement consists.
+#[test]
+fn closed_form_high_pass_integration_is_worse_without_drift_and_bounded_with_it() {
+    let error = |offset: f64, high_pass: bool| {
+        let mut recording = recording(true_force, true);
+        recording.channels[2]
+            .samples
+            .iter_mut()
+            .for_each(|a| *a += offset);
+        let mut options = options();
+        if high_pass {
+            options.conditioning.acceleration = Some(ChannelFilter {
+                band: Band::HighPass(20.0),
+                order: 2,
+            });
+        }
+        let (impact, _) = extract(&recording, &options);
+        impact.measured.integrated_displacement_error.unwrap()
+    };
+    // 40 m/s² over 7 ms: half of a t².
+    let drift = 0.5 * 40.0 * duration() * duration();
+    assert!((error(40.0, false) / drift - 1.0).abs() < 0.1);
+    assert!(error(0.0, true) > 1e-4);
+    assert!((error(40.0, true) / error(0.0, true) - 1.0).abs() < 0.2);
+}
+
 #[test]
 fn rejects_a_force_of_another_calibration() {
     let (impact, findings) = extract(&recording(|t| 1.2 * true_force(t), true), &options());
