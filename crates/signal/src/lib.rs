@@ -12,6 +12,7 @@
 
 pub mod clipping;
 pub mod compression;
+pub mod damped_mode;
 pub mod deceleration;
 pub mod error;
 pub mod extract;
@@ -30,7 +31,12 @@ pub mod polynomial;
 pub mod quadrature;
 mod rate;
 pub mod recording;
+pub mod resonance;
+pub mod spectrum;
+pub mod spectrum_peak;
 pub mod straight_line;
+pub mod tap;
+pub mod tap_finding;
 mod track;
 pub mod trigger;
 mod trigger_scale;
