@@ -10,6 +10,7 @@
 //!
 //! This crate opens no file and knows no force law.
 
+pub mod acoustic_stiffness;
 pub mod clipping;
 pub mod compression;
 pub mod damped_mode;
@@ -17,6 +18,7 @@ pub mod deceleration;
 pub mod error;
 pub mod extract;
 pub mod finding;
+pub mod first_mode;
 pub mod impact;
 pub mod instrument;
 pub mod kinematics;

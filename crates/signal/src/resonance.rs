@@ -139,7 +139,7 @@ pub fn resonances(
         };
         highest = f64::max(highest, power);
         let least = options.least_prominence * options.least_prominence * highest;
-        if power < least || over_noise < OVER_NOISE {
+        if power < least {
             break;
         }
         let mut starts: Vec<ModeStart> = found.iter().map(|(mode, _)| start_of(mode)).collect();
@@ -178,34 +178,37 @@ fn start_of(mode: &Mode) -> ModeStart {
     }
 }
 
-/// The highest peak in the band: start of a fit, power density, power over noise.
+/// The highest peak in the band that stands out of the noise (hum does not, as
+/// the quiet has it too): start of a fit, power density, power over noise.
 fn highest_peak(
     spectrum: &Spectrum,
     quiet: Option<&Spectrum>,
     options: &ResonanceOptions,
 ) -> Option<(ModeStart, f64, f64)> {
-    let (first, last) = (
-        spectrum.nearest(options.low),
-        spectrum.nearest(options.high),
-    );
-    let band = spectrum.power.get(first..=last)?;
-    let all = peaks(band).into_iter();
-    let peak = all.max_by(|a, b| a.height.total_cmp(&b.height))?;
-    let at = peak.index as f64 + parabolic_offset(band, peak.index);
-    let frequency = (first as f64 + at) * spectrum.step;
-    let noise = match quiet {
-        Some(quiet) => quiet.power[quiet.nearest(frequency)],
-        None => median(&spectrum.power) / std::f64::consts::LN_2,
-    };
-    let start = ModeStart {
-        frequency,
-        width: peak.width * spectrum.step,
-    };
-    Some((
-        start,
-        peak.height,
-        peak.height / noise.max(f64::MIN_POSITIVE),
-    ))
+    let first = spectrum.nearest(options.low);
+    let band = &spectrum.power[first..=spectrum.nearest(options.high).max(first)];
+    let everywhere = median(&spectrum.power) / std::f64::consts::LN_2;
+    let measured = peaks(band).into_iter().map(|peak| {
+        let at = peak.index as f64 + parabolic_offset(band, peak.index);
+        let frequency = (first as f64 + at) * spectrum.step;
+        let noise = quiet.map_or(everywhere, |quiet| {
+            // A line's place is known to a frequency of the quiet's spectrum.
+            let at = quiet.nearest(frequency);
+            let near = at.saturating_sub(1)..(at + 2).min(quiet.power.len());
+            quiet.power[near].iter().fold(0.0, |a: f64, b| a.max(*b))
+        });
+        let start = ModeStart {
+            frequency,
+            width: peak.width * spectrum.step,
+        };
+        (
+            start,
+            peak.height,
+            peak.height / noise.max(f64::MIN_POSITIVE),
+        )
+    });
+    let standing_out = measured.filter(|(_, _, over_noise)| *over_noise >= OVER_NOISE);
+    standing_out.max_by(|a, b| a.1.total_cmp(&b.1))
 }
 
 /// Whether the spectrum of the quiet has a line at a frequency.

@@ -101,3 +101,113 @@ fn recovers_the_frequency_of_a_tap_within_a_thousandth_at_20_db() {
         }
     }
 }
+
+#[test]
+fn recovers_a_split_mode_and_higher_modes() {
+    let modes = [
+        (780.0, 20.0, 1.0, 0.3),
+        (840.0, 22.0, 0.6, 1.9),
+        (1180.0, 25.0, 0.5, -0.7),
+    ];
+    let mut outside = 0;
+    for seed in 0..20 {
+        let (taps, found) = evaluate(&sound(&modes, 0.02, seed));
+        assert!((taps.taps[0].onset - ONSET).abs() < 1e-3);
+        assert_eq!(found.len(), 3, "{found:?}");
+        for (found, (f, q, ..)) in found.iter().zip(modes) {
+            let mode = found.mode;
+            assert!((mode.frequency / f - 1.0).abs() < 2e-3, "{mode:?}");
+            assert!((mode.quality / q - 1.0).abs() < 0.15, "{mode:?}");
+            outside += usize::from((mode.frequency - f).abs() > 1.96 * mode.frequency_sd);
+            assert!(!found.in_quiet);
+        }
+    }
+    // 3 of 60 are expected; 9 or more at 1 in 300.
+    assert!(outside < 9, "{outside} of 60 outside their intervals");
+}
+
+#[test]
+fn recovers_taps_in_their_order_with_bounds_that_leave_out_the_next() {
+    let mut channel = sound(&[(800.0, 20.0, 1.0, 0.3)], 0.005, 3);
+    let second = sound(&[(800.0, 20.0, 0.4, 1.3)], 0.005, 4);
+    channel.samples.extend(second.samples);
+    let taps = find_taps(&channel, &TapOptions::default()).unwrap();
+    let onsets: Vec<f64> = taps.taps.iter().map(|tap| tap.onset).collect();
+    assert_eq!(onsets.len(), 2);
+    assert!((onsets[0] - ONSET).abs() < 1e-3 && (onsets[1] - LENGTH - ONSET).abs() < 1e-3);
+    assert!(taps.findings.is_empty());
+    // A recording that was triggered by the tap.
+    let begin = ((ONSET + 1e-4) * RATE) as usize;
+    channel.samples.drain(..begin);
+    let taps = find_taps(&channel, &TapOptions::default()).unwrap();
+    let codes: Vec<&str> = taps.findings.iter().map(|finding| finding.code()).collect();
+    assert_eq!((taps.taps.len(), codes), (2, vec!["begins_in_tap"]));
+}
+
+#[test]
+fn recovers_a_beating_pair_as_one_tap() {
+    let channel = sound(
+        &[(600.0, 30.0, 1.0, 0.0), (640.0, 30.0, 1.0, 0.0)],
+        0.003,
+        5,
+    );
+    assert_eq!(
+        find_taps(&channel, &TapOptions::default())
+            .unwrap()
+            .taps
+            .len(),
+        1
+    );
+}
+
+#[test]
+fn recovers_nothing_from_noise_alone_and_from_hum() {
+    for seed in 0..10 {
+        let error = find_taps(&sound(&[], 1.0, seed), &TapOptions::default()).unwrap_err();
+        assert!(
+            error
+                .to_string()
+                .starts_with("no tap in channel 'channel 1'"),
+            "{error}"
+        );
+    }
+    for hum in [0.05, 0.3] {
+        let mut channel = sound(&[(800.0, 20.0, 1.0, 0.3)], 0.005, 3);
+        for (i, x) in channel.samples.iter_mut().enumerate() {
+            *x += hum * (TAU * 450.0 * i as f64 / RATE).sin();
+        }
+        let (_, found) = evaluate(&channel);
+        assert_eq!(found.len(), 1, "{found:?}");
+        assert!((found[0].mode.frequency - 800.0).abs() < 1.0);
+    }
+}
+
+#[test]
+fn rejects_channels_that_cannot_be_used() {
+    let options = TapOptions::default();
+    let good = sound(&[(800.0, 20.0, 1.0, 0.3)], 0.005, 3);
+    let message = |channel: &Channel, options: &TapOptions| {
+        find_taps(channel, options).unwrap_err().to_string()
+    };
+    let mut times: Vec<f64> = (0..good.samples.len()).map(|i| i as f64 / RATE).collect();
+    let mut gap = good.clone();
+    for time in times.iter_mut().skip(9000) {
+        *time += 0.01;
+    }
+    gap.times = Times::Listed(times);
+    assert!(
+        message(&gap, &options).contains("not evenly")
+            || message(&gap, &options).contains("even spacing")
+    );
+    let mut broken = good.clone();
+    broken.samples[77] = f64::NAN;
+    assert!(message(&broken, &options).contains("sample 77"));
+    let mut short = good.clone();
+    short.samples.truncate(50);
+    assert!(message(&short, &options).contains("50 samples"));
+    let wide = TapOptions {
+        high: 22_000.0,
+        ..options
+    };
+    assert!(message(&good, &wide).starts_with("band = 22000"));
+}
