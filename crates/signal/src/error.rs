@@ -172,6 +172,32 @@ pub enum Error {
         /// Why not.
         source: FilterError,
     },
+    /// Samples that are not evenly spaced, where they must be.
+    #[error(
+        "channel '{channel}': sample {sample} was taken at {time} s, where even spacing has {expected} s; spectra need evenly spaced samples without gaps: cut the recording (from_s and to_s in impacts.csv), or give the sampling rate in place of the times"
+    )]
+    UnevenSampling {
+        /// Name of the channel.
+        channel: String,
+        /// Index of the sample, from 0.
+        sample: usize,
+        /// Its time; s.
+        time: f64,
+        /// The time at even spacing; s.
+        expected: f64,
+    },
+    /// Nothing in a recording rises like a tap.
+    #[error(
+        "no tap in channel '{channel}': nowhere does the sound in the band rise {rise}-fold in energy within milliseconds (the largest value is {largest:.4}); look at it with `windfall inspect`, and check channel, band and gain"
+    )]
+    NoTap {
+        /// Name of the channel.
+        channel: String,
+        /// Largest value in the band.
+        largest: f64,
+        /// Rise of energy asked for; 1.
+        rise: f64,
+    },
     /// The mass cannot be found from this impact.
     #[error(
         "the mass cannot be found from impulse and change of velocity: {missing} is not known; give the mass instead"

@@ -19,6 +19,8 @@ pub enum Quantity {
     PhaseA,
     /// Phase B of an incremental encoder; V or logic level.
     PhaseB,
+    /// Sound of a microphone, or vibration, in any unit.
+    Sound,
 }
 
 impl std::fmt::Display for Quantity {
@@ -32,6 +34,7 @@ impl std::fmt::Display for Quantity {
             Self::EncoderCount => "encoder count",
             Self::PhaseA => "phase A",
             Self::PhaseB => "phase B",
+            Self::Sound => "sound",
         })
     }
 }

@@ -72,6 +72,8 @@ pub enum NewKind {
     Carriage,
     /// Slow compression in a testing machine or a gripper
     Compression,
+    /// Taps recorded by a microphone: acoustic firmness
+    Acoustic,
 }
 
 /// `windfall inspect`

@@ -23,6 +23,53 @@ pub enum SimulateEvent {
     Carriage(Box<SimulateCarriageArguments>),
     /// Slow compressions: a campaign of recordings
     Compression(SimulateCompressionArguments),
+    /// Taps on fruit: a campaign of sound recordings
+    Tap(SimulateTapArguments),
+}
+
+/// `windfall simulate tap`
+#[derive(Debug, Args)]
+#[command(after_help = "Example:
+  windfall simulate tap my-campaign --frequency '800 Hz' --quality 20
+  windfall fit my-campaign
+  windfall fit my-campaign --format csv")]
+pub struct SimulateTapArguments {
+    /// Directory of the campaign to make; it must not exist or be empty
+    #[arg(value_hint = ValueHint::DirPath)]
+    pub directory: PathBuf,
+    /// Frequency of the first mode
+    #[arg(long, default_value = "800 Hz")]
+    pub frequency: String,
+    /// Its quality: frequency over width of the peak
+    #[arg(long, default_value_t = 20.0)]
+    pub quality: f64,
+    /// Mass of a fruit
+    #[arg(long, default_value = "0.2 kg")]
+    pub mass: String,
+    /// Number of fruit
+    #[arg(long, default_value_t = 6)]
+    pub fruit: usize,
+    /// Taps in a recording; each fruit has a recording at each of two places
+    #[arg(long, default_value_t = 2)]
+    pub taps: usize,
+    /// Spread of frequency and mass between fruit, as a part
+    #[arg(long, default_value_t = 0.08)]
+    pub spread: f64,
+    /// Distance of the two frequencies of a split mode, as a part; 0 for spheres
+    #[arg(long, default_value_t = 0.0)]
+    pub split: f64,
+    /// Signal over noise, in power over the first 50 ms of a tap; dB
+    #[arg(long, default_value_t = 30.0, allow_hyphen_values = true)]
+    pub signal_to_noise: f64,
+    /// Format of the recordings: wav or csv
+    #[arg(long, default_value = "wav")]
+    pub file: String,
+    /// Sampling rate
+    #[arg(long, default_value = "44100 Hz")]
+    pub sampling_rate: String,
+    /// Seed of noise and spread
+    #[arg(long, default_value_t = 1)]
+    pub seed: u64,
 }
 
 /// `windfall simulate compression`

@@ -3,7 +3,7 @@
 use crate::args_format::Format;
 use crate::args_simulate::{
     End, SimulateArguments, SimulateCarriageArguments, SimulateCompressionArguments, SimulateEvent,
-    SimulateImpactArguments, SimulatePendulumArguments,
+    SimulateImpactArguments, SimulatePendulumArguments, SimulateTapArguments,
 };
 use crate::show::{write_json, write_result};
 use std::path::Path;
@@ -18,6 +18,7 @@ use windfall::request_recordings::{RecordingsRequest, simulate_recordings};
 use windfall::simulate_campaign::Weighed;
 use windfall::simulate_compression::{SimulateCompressionRequest, simulate_compression};
 use windfall::simulate_example::write_example;
+use windfall::simulate_taps::{SimulateTapsRequest, simulate_taps};
 use windfall::workflow_simulate::SimulatedMotion;
 use windfall::write_simulation::{
     csv_of_motion, csv_of_simulation, json_of_motion, text_of_simulation,
@@ -30,6 +31,7 @@ pub fn run(arguments: &SimulateArguments) -> anyhow::Result<()> {
         SimulateEvent::Pendulum(arguments) => pendulum(arguments),
         SimulateEvent::Carriage(arguments) => carriage(arguments),
         SimulateEvent::Compression(arguments) => compression(arguments),
+        SimulateEvent::Tap(arguments) => tap(arguments),
     }
 }
 
@@ -55,6 +57,28 @@ fn compression(arguments: &SimulateCompressionArguments) -> anyhow::Result<()> {
         seed: arguments.seed,
     };
     let written = simulate_compression(&arguments.directory, &request)?;
+    write_result(&format!(
+        "{} files in {directory}\n\nNext:\n  windfall fit {directory}\n",
+        written.len(),
+        directory = arguments.directory.display()
+    ))
+}
+
+fn tap(arguments: &SimulateTapArguments) -> anyhow::Result<()> {
+    let request = SimulateTapsRequest {
+        frequency: arguments.frequency.clone(),
+        quality: arguments.quality,
+        mass: arguments.mass.clone(),
+        fruit: arguments.fruit,
+        taps: arguments.taps,
+        spread: arguments.spread,
+        split: arguments.split,
+        signal_to_noise: arguments.signal_to_noise,
+        file: arguments.file.clone(),
+        sampling_rate: arguments.sampling_rate.clone(),
+        seed: arguments.seed,
+    };
+    let written = simulate_taps(&arguments.directory, &request)?;
     write_result(&format!(
         "{} files in {directory}\n\nNext:\n  windfall fit {directory}\n",
         written.len(),

@@ -124,7 +124,11 @@ pub fn channel_plans(
     Ok(plans)
 }
 
-fn channel_plan(
+/// The plan of one channel.
+///
+/// # Errors
+/// It names no column, or cannot be scaled to SI.
+pub fn channel_plan(
     source: &TomlSource,
     kind: &Kind,
     channel: &Spanned<ChannelFile>,

@@ -5,6 +5,7 @@ use crate::campaign_kind::{CampaignKind, campaign_kind};
 use crate::error::Error;
 use crate::evaluate::Progress;
 use crate::request_fit::FitRequest;
+use crate::workflow_acoustic::fit_taps;
 use crate::workflow_compression::fit_compressions;
 use crate::workflow_fit::fit_campaign;
 use std::path::Path;
@@ -21,7 +22,8 @@ pub fn fit_any(path: &Path, request: &FitRequest, progress: Progress) -> Result<
     };
     match kind {
         CampaignKind::Compression => fit_compressions(path, request, progress),
-        CampaignKind::Impacts | CampaignKind::Acoustic | CampaignKind::Repeats => {
+        CampaignKind::Acoustic => fit_taps(path, request, progress),
+        CampaignKind::Impacts | CampaignKind::Repeats => {
             fit_campaign(path, request, progress).map(|o| AnyOutcome::Impacts(Box::new(o)))
         }
     }

@@ -12,6 +12,8 @@ pub enum TemplateKind {
     Carriage,
     /// Testing machine that compresses fruit slowly.
     Compression,
+    /// Microphone that records taps.
+    Acoustic,
 }
 
 /// Table of specimens of a template.
@@ -25,11 +27,18 @@ const IMPACTS: &str = "id,specimen,file,level\nfruit-1-a,fruit-1,fruit-1-a.csv,1
 const COMPRESSED: &str = "id,variety,radius_mm,radius_2_mm\nfruit-1,Golden,38,36\n\
                           fruit-2,Golden,37,37\n";
 
+/// Recordings of taps: two places of each fruit.
+const TAPPED: &str = "id,specimen,file,orientation\nfruit-1-a,fruit-1,fruit-1-a.wav,stem up\n\
+                      fruit-1-b,fruit-1,fruit-1-b.wav,quarter turn\n\
+                      fruit-2-a,fruit-2,fruit-2-a.wav,stem up\n\
+                      fruit-2-b,fruit-2,fruit-2-b.wav,quarter turn\n";
+
 /// The tables of specimens and of recordings of a rig.
 fn tables(kind: TemplateKind) -> (&'static str, &'static str) {
     match kind {
         TemplateKind::Pendulum | TemplateKind::Carriage => (SPECIMENS, IMPACTS),
         TemplateKind::Compression => (COMPRESSED, IMPACTS),
+        TemplateKind::Acoustic => (SPECIMENS, TAPPED),
     }
 }
 
@@ -40,6 +49,7 @@ pub fn template(kind: TemplateKind) -> &'static str {
         TemplateKind::Pendulum => include_str!("templates/pendulum.toml"),
         TemplateKind::Carriage => include_str!("templates/carriage.toml"),
         TemplateKind::Compression => include_str!("templates/compression.toml"),
+        TemplateKind::Acoustic => include_str!("templates/acoustic.toml"),
     }
 }
 
