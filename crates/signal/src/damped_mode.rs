@@ -76,7 +76,7 @@ const DECAY_RANGE: f64 = 30.0;
 const MOST_ROUNDS: usize = 40;
 /// The rounds end when no frequency moves by more than this part of its error.
 const SETTLED: f64 = 1e-3;
-/// Modes closer than this many mean widths share their uncertainty.
+/// Modes closer than this many mean widths are fitted together, in pairs.
 const NEIGHBOURS: f64 = 3.0;
 
 /// Parameters of a mode: phase step and decay per sample, cosine and sine.
@@ -88,10 +88,10 @@ type Parameters = [f64; 4];
 /// Least squares in the frequency domain, where white noise is independent and
 /// alike at all frequencies. The model is the exact transform of a damped
 /// sinusoid cut off at the end of the samples, so that no window is needed and
-/// leakage biases nothing. Each mode is fitted in a band around it with the
-/// others subtracted, in rounds until nothing moves; standard errors are those
-/// of the modes alone, or of pairs where two are close, with the variance of
-/// the residuals in the band.
+/// leakage biases nothing. Each mode, or pair of close ones, is fitted in a band
+/// around it with the others subtracted, in rounds until nothing moves; standard
+/// errors are those of the mode or pair, with the variance of the residuals in
+/// the band.
 pub(crate) fn fit_modes(transformed: &Transformed, starts: &[ModeStart]) -> Vec<Mode> {
     let mut found: Vec<Parameters> = starts
         .iter()
@@ -107,64 +107,61 @@ pub(crate) fn fit_modes(transformed: &Transformed, starts: &[ModeStart]) -> Vec<
         .collect();
     let mut modes: Vec<Option<Mode>> = vec![None; starts.len()];
     for _ in 0..MOST_ROUNDS {
-        let mut settled = true;
-        for index in 0..starts.len() {
-            let band = band(transformed, &starts[index..=index]);
-            let rest = residual_values(transformed, &found, &[index], band);
-            let fit = fit_band::<4>(
-                transformed,
-                &rest,
-                band,
-                &found[index],
-                &starts[index..=index],
-            );
-            let mode = mode_of(&fit, 0, transformed.interval);
-            settled &= modes[index].is_some_and(|before| {
-                (mode.frequency - before.frequency).abs() <= SETTLED * mode.frequency_sd
-            });
-            found[index].copy_from_slice(&fit.parameters);
-            modes[index] = Some(mode);
+        let before = modes.clone();
+        let mut first = 0;
+        while first < starts.len() {
+            let pair = first + 1 < starts.len() && are_close(&starts[first], &starts[first + 1]);
+            match pair {
+                true => fit_block::<8>(transformed, starts, first, &mut found, &mut modes),
+                false => fit_block::<4>(transformed, starts, first, &mut found, &mut modes),
+            }
+            first += 1 + usize::from(pair);
         }
-        if settled {
+        let settled = |(now, before): (&Option<Mode>, &Option<Mode>)| match (now, before) {
+            (Some(now), Some(before)) => {
+                (now.frequency - before.frequency).abs() <= SETTLED * now.frequency_sd
+            }
+            _ => false,
+        };
+        if modes.iter().zip(&before).all(settled) {
             break;
         }
     }
-    let mut modes: Vec<Mode> = modes.into_iter().flatten().collect();
-    for index in 1..modes.len() {
-        pair_errors(transformed, starts, &found, index - 1, &mut modes);
-    }
-    modes
+    modes.into_iter().flatten().collect()
 }
 
-/// Standard errors of two modes that stand close, from a fit of both.
-fn pair_errors(
+fn are_close(a: &ModeStart, b: &ModeStart) -> bool {
+    (b.frequency - a.frequency).abs() <= NEIGHBOURS * 0.5 * (a.width + b.width)
+}
+
+/// Fits the P / 4 modes from `first` on, with the others subtracted.
+fn fit_block<const P: usize>(
     transformed: &Transformed,
     starts: &[ModeStart],
-    found: &[Parameters],
     first: usize,
-    modes: &mut [Mode],
+    found: &mut [Parameters],
+    modes: &mut [Option<Mode>],
 ) {
-    let (a, b) = (modes[first], modes[first + 1]);
-    let width = 0.5 * (a.frequency / a.quality + b.frequency / b.quality);
-    if (b.frequency - a.frequency).abs() > NEIGHBOURS * width {
-        return;
+    let range = first..first + P / 4;
+    let block = &starts[range.clone()];
+    let band = band(transformed, block);
+    let rest = residual_values(transformed, found, range.clone(), band);
+    let mut start = [0.0; P];
+    for (place, mode) in start.chunks_exact_mut(4).zip(&found[range.clone()]) {
+        place.copy_from_slice(mode);
     }
-    let pair = &starts[first..first + 2];
-    let band = band(transformed, pair);
-    let rest = residual_values(transformed, found, &[first, first + 1], band);
-    let mut start = [0.0; 8];
-    start[..4].copy_from_slice(&found[first]);
-    start[4..].copy_from_slice(&found[first + 1]);
-    let fit = fit_band::<8>(transformed, &rest, band, &start, pair);
-    modes[first] = mode_of(&fit, 0, transformed.interval);
-    modes[first + 1] = mode_of(&fit, 1, transformed.interval);
+    let fit = fit_band(transformed, &rest, band, &start, block);
+    for (number, index) in range.enumerate() {
+        found[index].copy_from_slice(&fit.parameters[4 * number..4 * number + 4]);
+        modes[index] = Some(mode_of(&fit, number, transformed.interval));
+    }
 }
 
 /// The transform in a band without the modes, but for some of them.
 fn residual_values(
     transformed: &Transformed,
     modes: &[Parameters],
-    kept: &[usize],
+    kept: std::ops::Range<usize>,
     band: (usize, usize),
 ) -> Vec<Complex<f64>> {
     let mut rest = transformed.values[band.0..=band.1].to_vec();

@@ -131,10 +131,13 @@ pub fn resonances(
     };
     let mut rest = centred.clone();
     let mut found: Vec<(Mode, f64)> = Vec::new();
+    let mut starts: Vec<ModeStart> = Vec::new();
+    let mut without: Vec<ModeStart> = Vec::new();
     let mut highest = 0.0;
-    while found.len() < options.most {
+    while found.len() < options.most && without.len() < options.most {
         let spectrum = tap_spectrum(&rest, interval)?;
-        let Some((start, power, over_noise)) = highest_peak(&spectrum, quiet, options) else {
+        let peak = highest_peak(&spectrum, quiet, &without, options);
+        let Some((start, power, over_noise)) = peak else {
             break;
         };
         highest = f64::max(highest, power);
@@ -142,13 +145,15 @@ pub fn resonances(
         if power < least {
             break;
         }
-        let mut starts: Vec<ModeStart> = found.iter().map(|(mode, _)| start_of(mode)).collect();
         let place = starts.partition_point(|other| other.frequency < start.frequency);
-        starts.insert(place, start);
-        let modes = fit_modes(&transformed, &starts);
-        if !modes[place].converged {
-            break;
+        let mut more = starts.clone();
+        more.insert(place, start);
+        let modes = fit_modes(&transformed, &more);
+        if !modes.iter().all(|mode| mode.converged) {
+            without.push(start);
+            continue;
         }
+        starts = more;
         rest.clone_from(&centred);
         for mode in &modes {
             let all = mode_samples(mode, interval, rest.len());
@@ -171,18 +176,13 @@ pub fn resonances(
     Ok(found.into_iter().map(resonance).collect())
 }
 
-fn start_of(mode: &Mode) -> ModeStart {
-    ModeStart {
-        frequency: mode.frequency,
-        width: mode.frequency / mode.quality,
-    }
-}
-
 /// The highest peak in the band that stands out of the noise (hum does not, as
-/// the quiet has it too): start of a fit, power density, power over noise.
+/// the quiet has it too) and is none of `without`: start of a fit, power density,
+/// power over noise.
 fn highest_peak(
     spectrum: &Spectrum,
     quiet: Option<&Spectrum>,
+    without: &[ModeStart],
     options: &ResonanceOptions,
 ) -> Option<(ModeStart, f64, f64)> {
     let first = spectrum.nearest(options.low);
@@ -207,7 +207,12 @@ fn highest_peak(
             peak.height / noise.max(f64::MIN_POSITIVE),
         )
     });
-    let standing_out = measured.filter(|(_, _, over_noise)| *over_noise >= OVER_NOISE);
+    let known = |start: &ModeStart| {
+        let near = |other: &ModeStart| (other.frequency - start.frequency).abs() < other.width;
+        without.iter().any(near)
+    };
+    let standing_out =
+        measured.filter(|(start, _, over_noise)| *over_noise >= OVER_NOISE && !known(start));
     standing_out.max_by(|a, b| a.1.total_cmp(&b.1))
 }
 

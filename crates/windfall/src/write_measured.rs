@@ -1,5 +1,6 @@
 //! Results of campaigns that fit no impacts, as text and as CSV.
 
+use crate::campaign_kind::CampaignKind;
 use crate::error::Error;
 use crate::measured::{
     MeasuredItem, MeasuredOutcome, MeasuredValue, ShownValue, laws_of, spread_of, value_of,
@@ -21,22 +22,25 @@ pub fn text_of_measured(outcome: &MeasuredOutcome) -> String {
         let label = format!("SIMULATED recordings: {label}");
         let _ = writeln!(text, "{}", paragraph(&label, 2));
     }
+    let of_specimens = &outcome.shown_of_specimens;
     for law in laws_of(&outcome.impacts) {
         let items = of_law(&outcome.impacts, law);
+        // A recording holds several taps; groups of fruit, not of taps, have a spread.
+        let (each, over, shown, spread) = match of_taps(outcome) {
+            true => ("tap", "fruit", of_specimens, &outcome.specimens),
+            false => ("recording", "recordings", &outcome.shown, &outcome.impacts),
+        };
         let _ = writeln!(
             text,
-            "\n{law}: each recording (± standard deviation of the estimate)"
+            "\n{law}: each {each} (± standard deviation of the estimate)"
         );
-        let _ = writeln!(text, "{}", items_table("recording", &items, &outcome.shown));
-        if items.len() > 1 {
-            let _ = writeln!(
-                text,
-                "\nMean ± SD over the recordings (SD in % of the mean):"
-            );
-            let _ = writeln!(text, "{}", groups_table(outcome, law));
+        let _ = writeln!(text, "{}", items_table(each, &items, &outcome.shown));
+        if of_law(spread, law).len() > 1 {
+            let _ = writeln!(text, "\nMean ± SD over the {over} (SD in % of the mean):");
+            let table = groups_table(outcome, law, (shown, spread));
+            let _ = writeln!(text, "{table}");
         }
     }
-    let of_specimens = &outcome.shown_of_specimens;
     for (what, items) in [
         ("specimen", &outcome.specimens),
         ("campaign", &outcome.whole),
@@ -74,7 +78,8 @@ fn items_table(what: &str, items: &[&MeasuredItem], shown: &[ShownValue]) -> Str
             words.push(name);
         }
     }
-    let named = what == "recording" && items.iter().any(|item| item.id != item.specimen);
+    let named =
+        ["recording", "tap"].contains(&what) && items.iter().any(|item| item.id != item.specimen);
     let mut header = vec![what.to_owned()];
     header.extend(named.then(|| "specimen".to_owned()));
     header.extend(present.iter().map(|column| column.heading.to_owned()));
@@ -99,7 +104,15 @@ fn items_table(what: &str, items: &[&MeasuredItem], shown: &[ShownValue]) -> Str
     page_tables(&header, &rows, &left)
 }
 
-fn groups_table(outcome: &MeasuredOutcome, law: &str) -> String {
+fn of_taps(outcome: &MeasuredOutcome) -> bool {
+    outcome.kind == CampaignKind::Acoustic.name()
+}
+
+fn groups_table(
+    outcome: &MeasuredOutcome,
+    law: &str,
+    (shown, items): (&[ShownValue], &[MeasuredItem]),
+) -> String {
     let mut groups: Vec<_> = outcome
         .groups
         .iter()
@@ -107,10 +120,9 @@ fn groups_table(outcome: &MeasuredOutcome, law: &str) -> String {
         .cloned()
         .collect();
     if groups.len() > 1 {
-        groups.push(spread_of(&outcome.impacts, law, None));
+        groups.push(spread_of(items, law, None));
     }
-    let present: Vec<&ShownValue> = outcome
-        .shown
+    let present: Vec<&ShownValue> = shown
         .iter()
         .filter(|column| groups.iter().any(|g| g.values.get(column.name).is_some()))
         .collect();
