@@ -72,6 +72,8 @@ pub enum NewKind {
     Carriage,
     /// Slow compression in a testing machine or a gripper
     Compression,
+    /// Drops repeated on one spot, for the critical impact energy
+    Repeats,
 }
 
 /// `windfall inspect`

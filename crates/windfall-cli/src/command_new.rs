@@ -11,6 +11,7 @@ pub fn run(arguments: &NewArguments) -> anyhow::Result<()> {
         NewKind::Pendulum => TemplateKind::Pendulum,
         NewKind::Carriage => TemplateKind::Carriage,
         NewKind::Compression => TemplateKind::Compression,
+        NewKind::Repeats => TemplateKind::Repeats,
     };
     let written = write_template(kind, &arguments.directory)?;
     let names: Vec<String> = written

@@ -3,7 +3,7 @@
 use crate::args_format::Format;
 use crate::args_simulate::{
     End, SimulateArguments, SimulateCarriageArguments, SimulateCompressionArguments, SimulateEvent,
-    SimulateImpactArguments, SimulatePendulumArguments,
+    SimulateImpactArguments, SimulatePendulumArguments, SimulateRepeatsArguments,
 };
 use crate::show::{write_json, write_result};
 use std::path::Path;
@@ -18,6 +18,7 @@ use windfall::request_recordings::{RecordingsRequest, simulate_recordings};
 use windfall::simulate_campaign::Weighed;
 use windfall::simulate_compression::{SimulateCompressionRequest, simulate_compression};
 use windfall::simulate_example::write_example;
+use windfall::simulate_repeats::{SimulateRepeatsRequest, simulate_repeats};
 use windfall::workflow_simulate::SimulatedMotion;
 use windfall::write_simulation::{
     csv_of_motion, csv_of_simulation, json_of_motion, text_of_simulation,
@@ -30,6 +31,7 @@ pub fn run(arguments: &SimulateArguments) -> anyhow::Result<()> {
         SimulateEvent::Pendulum(arguments) => pendulum(arguments),
         SimulateEvent::Carriage(arguments) => carriage(arguments),
         SimulateEvent::Compression(arguments) => compression(arguments),
+        SimulateEvent::Repeats(arguments) => repeats(arguments),
     }
 }
 
@@ -60,6 +62,23 @@ fn compression(arguments: &SimulateCompressionArguments) -> anyhow::Result<()> {
         written.len(),
         directory = arguments.directory.display()
     ))
+}
+
+fn repeats(arguments: &SimulateRepeatsArguments) -> anyhow::Result<()> {
+    let request = SimulateRepeatsRequest {
+        fruit: arguments.fruit,
+        energies: arguments.energies.clone(),
+        repeats: arguments.repeats,
+        critical_energy: arguments.critical_energy.clone(),
+        spread: arguments.spread,
+        mass: arguments.mass.clone(),
+        force_noise: arguments.force_noise.clone(),
+        velocity_scatter: arguments.velocity_scatter,
+        sampling_rate: arguments.sampling_rate.clone(),
+        seed: arguments.seed,
+    };
+    let recordings = simulate_repeats(&arguments.directory, &request)?;
+    written(&arguments.directory, recordings, arguments.format)
 }
 
 fn impact(arguments: &SimulateImpactArguments) -> anyhow::Result<()> {

@@ -12,6 +12,8 @@ pub enum TemplateKind {
     Carriage,
     /// Testing machine that compresses fruit slowly.
     Compression,
+    /// Drops repeated on one spot.
+    Repeats,
 }
 
 /// Table of specimens of a template.
@@ -25,11 +27,22 @@ const IMPACTS: &str = "id,specimen,file,level\nfruit-1-a,fruit-1,fruit-1-a.csv,1
 const COMPRESSED: &str = "id,variety,radius_mm,radius_2_mm\nfruit-1,Golden,38,36\n\
                           fruit-2,Golden,37,37\n";
 
+/// Specimens of repeated impacts, with the reference.
+const STRUCK: &str =
+    "id,role,variety\nball,reference,\nfruit-1,fruit,Golden\nfruit-2,fruit,Golden\n";
+
+/// Repeated impacts.
+const DROPS: &str = "id,specimen,file,spot,repeat,drop_height_m\n\
+                     ball-1,ball,ball-1.csv,1,1,0.05\nball-2,ball,ball-2.csv,1,2,0.05\n\
+                     fruit-1-a,fruit-1,fruit-1-a.csv,1,1,0.05\nfruit-1-b,fruit-1,fruit-1-b.csv,1,2,0.05\n\
+                     fruit-2-a,fruit-2,fruit-2-a.csv,1,1,0.05\nfruit-2-b,fruit-2,fruit-2-b.csv,1,2,0.05\n";
+
 /// The tables of specimens and of recordings of a rig.
 fn tables(kind: TemplateKind) -> (&'static str, &'static str) {
     match kind {
         TemplateKind::Pendulum | TemplateKind::Carriage => (SPECIMENS, IMPACTS),
         TemplateKind::Compression => (COMPRESSED, IMPACTS),
+        TemplateKind::Repeats => (STRUCK, DROPS),
     }
 }
 
@@ -40,6 +53,7 @@ pub fn template(kind: TemplateKind) -> &'static str {
         TemplateKind::Pendulum => include_str!("templates/pendulum.toml"),
         TemplateKind::Carriage => include_str!("templates/carriage.toml"),
         TemplateKind::Compression => include_str!("templates/compression.toml"),
+        TemplateKind::Repeats => include_str!("templates/repeats.toml"),
     }
 }
 
