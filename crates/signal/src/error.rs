@@ -198,6 +198,53 @@ pub enum Error {
         /// Rise of energy asked for; 1.
         rise: f64,
     },
+    /// A repeated impact that does not begin or end below the level at which
+    /// impacts are aligned.
+    #[error(
+        "no crossing of {level:.4} N in the {side} of the force (largest {largest:.4} N); record from before to after the contact, or align at another level"
+    )]
+    CrossingUnseen {
+        /// "rise" or "fall".
+        side: &'static str,
+        /// The level; N.
+        level: f64,
+        /// Largest force; N.
+        largest: f64,
+    },
+    /// A comparison over fruit with hardly any.
+    #[error("{fruit} fruit cannot be compared; at least {least} are needed")]
+    TooFewFruit {
+        /// Fruit there are.
+        fruit: usize,
+        /// Fruit needed.
+        least: usize,
+    },
+    /// Curves of one comparison that are not on the same instants.
+    #[error("a difference curve has {other} instants and another {first}; all need the same")]
+    CurvesUnequal {
+        /// Instants of the first curve.
+        first: usize,
+        /// Instants of the other.
+        other: usize,
+    },
+    /// Interval of a critical energy that is none.
+    #[error(
+        "critical energy of fruit {fruit}: between {low} J and {high} J; expected 0 ≤ low < high, energies in J"
+    )]
+    BadEnergyInterval {
+        /// Position of the fruit, from 0.
+        fruit: usize,
+        /// Largest energy without a change; J.
+        low: f64,
+        /// Least energy with a change; J.
+        high: f64,
+    },
+    /// No distribution of critical energies can be fitted.
+    #[error("critical impact energy: {problem}")]
+    EnergyUndetermined {
+        /// Why, and what to do.
+        problem: &'static str,
+    },
     /// The mass cannot be found from this impact.
     #[error(
         "the mass cannot be found from impulse and change of velocity: {missing} is not known; give the mass instead"

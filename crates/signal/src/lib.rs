@@ -6,7 +6,10 @@
 //! ([`impact::Impact`], with [`finding::Finding`]s about what is poor);
 //! [`mass::mass_from_impulse`] finds the mass of a carriage;
 //! [`instrument::record`] goes the other way and writes what an instrument
-//! would have written of a motion.
+//! would have written of a motion. Impacts repeated on one spot are aligned
+//! ([`repeat_align`]), compared over fruit ([`repeat_permutation`],
+//! [`repeat_equivalence`]) or fruit by fruit ([`repeat_criterion`]), and give
+//! the critical impact energy ([`repeat_threshold`], [`repeat_turnbull`]).
 //!
 //! This crate opens no file and knows no force law.
 
@@ -42,6 +45,14 @@ pub mod polynomial;
 pub mod quadrature;
 mod rate;
 pub mod recording;
+pub mod repeat_align;
+pub mod repeat_criterion;
+pub mod repeat_equivalence;
+pub mod repeat_interval;
+pub mod repeat_permutation;
+pub mod repeat_threshold;
+mod repeat_threshold_family;
+pub mod repeat_turnbull;
 pub mod resonance;
 pub mod smoothing_spline;
 pub mod spectrum;

@@ -74,6 +74,8 @@ pub enum NewKind {
     Compression,
     /// Taps recorded by a microphone: acoustic firmness
     Acoustic,
+    /// Drops repeated on one spot, for the critical impact energy
+    Repeats,
 }
 
 /// `windfall inspect`

@@ -25,6 +25,8 @@ pub enum SimulateEvent {
     Compression(SimulateCompressionArguments),
     /// Taps on fruit: a campaign of sound recordings
     Tap(SimulateTapArguments),
+    /// Drops repeated on one spot of fruit with a critical energy: a campaign of recordings
+    Repeats(SimulateRepeatsArguments),
 }
 
 /// `windfall simulate tap`
@@ -115,6 +117,50 @@ pub struct SimulateCompressionArguments {
     /// Seed of noise and spread
     #[arg(long, default_value_t = 1)]
     pub seed: u64,
+}
+
+/// `windfall simulate repeats`
+#[derive(Debug, Args)]
+#[command(after_help = "Example:
+  windfall simulate repeats my-campaign --fruit 12 --seed 1
+  windfall fit my-campaign")]
+pub struct SimulateRepeatsArguments {
+    /// Directory of the campaign to make; it must not exist or be empty
+    #[arg(value_hint = ValueHint::DirPath)]
+    pub directory: PathBuf,
+    /// Number of fruit; an elastic ball is added as reference
+    #[arg(long, default_value_t = 12)]
+    pub fruit: usize,
+    /// Impact energy; may be repeated
+    #[arg(long = "energy", default_values = ["0.04 J", "0.056 J", "0.08 J", "0.11 J", "0.16 J", "0.22 J", "0.31 J"])]
+    pub energies: Vec<String>,
+    /// Impacts on the spot at each energy
+    #[arg(long, default_value_t = 2)]
+    pub repeats: usize,
+    /// Median critical energy of the fruit
+    #[arg(long, default_value = "0.12 J")]
+    pub critical_energy: String,
+    /// Standard deviation of the logarithm of the critical energy between fruit
+    #[arg(long, default_value_t = 0.3)]
+    pub spread: f64,
+    /// Mass that falls
+    #[arg(long, default_value = "200 g")]
+    pub mass: String,
+    /// Standard deviation of the noise of force
+    #[arg(long, default_value = "0.3 N")]
+    pub force_noise: String,
+    /// Relative standard deviation of the impact velocity from drop to drop
+    #[arg(long, default_value_t = 0.003)]
+    pub velocity_scatter: f64,
+    /// Sampling rate
+    #[arg(long, default_value = "50 kHz")]
+    pub sampling_rate: String,
+    /// Seed of fruit and noise
+    #[arg(long, default_value_t = 1)]
+    pub seed: u64,
+    /// How the result is shown
+    #[arg(long, value_enum, default_value_t)]
+    pub format: Format,
 }
 
 /// When a simulated contact is over.

@@ -12,6 +12,7 @@ pub fn run(arguments: &NewArguments) -> anyhow::Result<()> {
         NewKind::Carriage => TemplateKind::Carriage,
         NewKind::Compression => TemplateKind::Compression,
         NewKind::Acoustic => TemplateKind::Acoustic,
+        NewKind::Repeats => TemplateKind::Repeats,
     };
     let written = write_template(kind, &arguments.directory)?;
     let names: Vec<String> = written

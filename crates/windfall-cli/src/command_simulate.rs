@@ -3,7 +3,8 @@
 use crate::args_format::Format;
 use crate::args_simulate::{
     End, SimulateArguments, SimulateCarriageArguments, SimulateCompressionArguments, SimulateEvent,
-    SimulateImpactArguments, SimulatePendulumArguments, SimulateTapArguments,
+    SimulateImpactArguments, SimulatePendulumArguments, SimulateRepeatsArguments,
+    SimulateTapArguments,
 };
 use crate::show::{write_json, write_result};
 use std::path::Path;
@@ -18,6 +19,7 @@ use windfall::request_recordings::{RecordingsRequest, simulate_recordings};
 use windfall::simulate_campaign::Weighed;
 use windfall::simulate_compression::{SimulateCompressionRequest, simulate_compression};
 use windfall::simulate_example::write_example;
+use windfall::simulate_repeats::{SimulateRepeatsRequest, simulate_repeats};
 use windfall::simulate_taps::{SimulateTapsRequest, simulate_taps};
 use windfall::workflow_simulate::SimulatedMotion;
 use windfall::write_simulation::{
@@ -32,6 +34,7 @@ pub fn run(arguments: &SimulateArguments) -> anyhow::Result<()> {
         SimulateEvent::Carriage(arguments) => carriage(arguments),
         SimulateEvent::Compression(arguments) => compression(arguments),
         SimulateEvent::Tap(arguments) => tap(arguments),
+        SimulateEvent::Repeats(arguments) => repeats(arguments),
     }
 }
 
@@ -84,6 +87,23 @@ fn tap(arguments: &SimulateTapArguments) -> anyhow::Result<()> {
         written.len(),
         directory = arguments.directory.display()
     ))
+}
+
+fn repeats(arguments: &SimulateRepeatsArguments) -> anyhow::Result<()> {
+    let request = SimulateRepeatsRequest {
+        fruit: arguments.fruit,
+        energies: arguments.energies.clone(),
+        repeats: arguments.repeats,
+        critical_energy: arguments.critical_energy.clone(),
+        spread: arguments.spread,
+        mass: arguments.mass.clone(),
+        force_noise: arguments.force_noise.clone(),
+        velocity_scatter: arguments.velocity_scatter,
+        sampling_rate: arguments.sampling_rate.clone(),
+        seed: arguments.seed,
+    };
+    let recordings = simulate_repeats(&arguments.directory, &request)?;
+    written(&arguments.directory, recordings, arguments.format)
 }
 
 fn impact(arguments: &SimulateImpactArguments) -> anyhow::Result<()> {

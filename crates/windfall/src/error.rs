@@ -419,6 +419,15 @@ pub enum Error {
         /// What stands there.
         text: String,
     },
+    /// An impact whose energy nothing says.
+    #[error(
+        "{place}: the impact energy is not known; give a column energy_J, or drop_height_m \
+         together with mass_kg or with `mass` in [rig]"
+    )]
+    EnergyUnknown {
+        /// Where.
+        place: Place,
+    },
     /// A campaign without a channel that its kind needs.
     #[error(
         "{item}: no channel holds {quantity}; map a column to it under [channels] in campaign.toml"

@@ -8,6 +8,7 @@ use crate::request_fit::FitRequest;
 use crate::workflow_acoustic::fit_taps;
 use crate::workflow_compression::fit_compressions;
 use crate::workflow_fit::fit_campaign;
+use crate::workflow_repeats::fit_repeats;
 use std::path::Path;
 
 /// Evaluates a campaign directory, or one recording of a campaign of impacts,
@@ -23,7 +24,8 @@ pub fn fit_any(path: &Path, request: &FitRequest, progress: Progress) -> Result<
     match kind {
         CampaignKind::Compression => fit_compressions(path, request, progress),
         CampaignKind::Acoustic => fit_taps(path, request, progress),
-        CampaignKind::Impacts | CampaignKind::Repeats => {
+        CampaignKind::Repeats => fit_repeats(path, request, progress),
+        CampaignKind::Impacts => {
             fit_campaign(path, request, progress).map(|o| AnyOutcome::Impacts(Box::new(o)))
         }
     }

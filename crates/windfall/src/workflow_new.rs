@@ -14,6 +14,8 @@ pub enum TemplateKind {
     Compression,
     /// Microphone that records taps.
     Acoustic,
+    /// Drops repeated on one spot.
+    Repeats,
 }
 
 /// Table of specimens of a template.
@@ -32,6 +34,15 @@ const TAPPED: &str = "id,specimen,file,orientation\nfruit-1-a,fruit-1,fruit-1-a.
                       fruit-1-b,fruit-1,fruit-1-b.wav,quarter turn\n\
                       fruit-2-a,fruit-2,fruit-2-a.wav,stem up\n\
                       fruit-2-b,fruit-2,fruit-2-b.wav,quarter turn\n";
+/// Specimens of repeated impacts, with the reference.
+const STRUCK: &str =
+    "id,role,variety\nball,reference,\nfruit-1,fruit,Golden\nfruit-2,fruit,Golden\n";
+
+/// Repeated impacts.
+const DROPS: &str = "id,specimen,file,spot,repeat,drop_height_m\n\
+                     ball-1,ball,ball-1.csv,1,1,0.05\nball-2,ball,ball-2.csv,1,2,0.05\n\
+                     fruit-1-a,fruit-1,fruit-1-a.csv,1,1,0.05\nfruit-1-b,fruit-1,fruit-1-b.csv,1,2,0.05\n\
+                     fruit-2-a,fruit-2,fruit-2-a.csv,1,1,0.05\nfruit-2-b,fruit-2,fruit-2-b.csv,1,2,0.05\n";
 
 /// The tables of specimens and of recordings of a rig.
 fn tables(kind: TemplateKind) -> (&'static str, &'static str) {
@@ -39,6 +50,7 @@ fn tables(kind: TemplateKind) -> (&'static str, &'static str) {
         TemplateKind::Pendulum | TemplateKind::Carriage => (SPECIMENS, IMPACTS),
         TemplateKind::Compression => (COMPRESSED, IMPACTS),
         TemplateKind::Acoustic => (SPECIMENS, TAPPED),
+        TemplateKind::Repeats => (STRUCK, DROPS),
     }
 }
 
@@ -50,6 +62,7 @@ pub fn template(kind: TemplateKind) -> &'static str {
         TemplateKind::Carriage => include_str!("templates/carriage.toml"),
         TemplateKind::Compression => include_str!("templates/compression.toml"),
         TemplateKind::Acoustic => include_str!("templates/acoustic.toml"),
+        TemplateKind::Repeats => include_str!("templates/repeats.toml"),
     }
 }
 
