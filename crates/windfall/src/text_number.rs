@@ -31,7 +31,8 @@ pub fn spread_text(mean: f64, sd: Option<f64>, cv: Option<f64>) -> String {
 #[must_use]
 pub fn spread_percent(mean: f64, cv: Option<f64>) -> String {
     match cv {
-        Some(cv) if cv.is_finite() && cv > 0.0 => {
+        // Less is the rounding of equal values.
+        Some(cv) if cv.is_finite() && cv > 1e-12 => {
             let by_sd = decimals_for(cv * mean.abs(), SD_DIGITS);
             let decimals = by_sd.min(decimals_for(mean.abs(), PLAIN_DIGITS));
             format!("{mean:.decimals$} ± {} %", percent(cv))

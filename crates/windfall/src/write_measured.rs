@@ -14,6 +14,9 @@ use std::fmt::Write;
 /// Indentation of the second line of a finding; characters.
 const INDENT: usize = 4;
 
+/// More results than this are shown as groups only.
+const LISTED: usize = 40;
+
 /// Tables for people: recordings, specimens, the whole, findings.
 #[must_use]
 pub fn text_of_measured(outcome: &MeasuredOutcome) -> String {
@@ -30,11 +33,18 @@ pub fn text_of_measured(outcome: &MeasuredOutcome) -> String {
             true => ("tap", "fruit", of_specimens, &outcome.specimens),
             false => ("recording", "recordings", &outcome.shown, &outcome.impacts),
         };
-        let _ = writeln!(
-            text,
-            "\n{law}: each {each} (± standard deviation of the estimate)"
-        );
-        let _ = writeln!(text, "{}", items_table(each, &items, &outcome.shown));
+        match items.len() {
+            n if n > LISTED => {
+                let _ = writeln!(text, "\n{law}: {n} results; each: --format csv or json.");
+            }
+            _ => {
+                let _ = writeln!(
+                    text,
+                    "\n{law}: each {each} (± standard deviation of the estimate)"
+                );
+                let _ = writeln!(text, "{}", items_table(each, &items, &outcome.shown));
+            }
+        }
         if of_law(spread, law).len() > 1 {
             let _ = writeln!(text, "\nMean ± SD over the {over} (SD in % of the mean):");
             let table = groups_table(outcome, law, (shown, spread));
