@@ -1,5 +1,6 @@
 //! What stops the extraction of an impact.
 
+use crate::filter_butterworth::FilterError;
 use crate::recording::Quantity;
 
 /// A recording, or an option, from which no impact can be extracted.
@@ -209,6 +210,14 @@ pub enum Error {
     EnergyUndetermined {
         /// Why, and what to do.
         problem: &'static str,
+    },
+    /// A channel that cannot be filtered as asked.
+    #[error("channel '{channel}' cannot be filtered: {source}")]
+    Filter {
+        /// Name of the channel.
+        channel: String,
+        /// Why not.
+        source: FilterError,
     },
     /// The mass cannot be found from this impact.
     #[error(

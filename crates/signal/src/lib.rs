@@ -13,12 +13,20 @@
 //!
 //! This crate opens no file and knows no force law.
 
+pub mod accelerometer;
 pub mod clipping;
+mod compare;
 pub mod compression;
+pub mod conditioning;
 pub mod deceleration;
+pub mod edge_rate;
+pub mod energy_angles;
 pub mod error;
 pub mod extract;
+pub mod filter_butterworth;
+pub mod filter_zero_phase;
 pub mod finding;
+pub mod force_loop;
 pub mod impact;
 pub mod instrument;
 pub mod kinematics;
@@ -29,6 +37,7 @@ pub mod noise_gaussian;
 mod noise_track;
 pub mod options;
 mod orient;
+pub mod phase_bits;
 pub mod polynomial;
 pub mod quadrature;
 mod rate;
@@ -41,6 +50,7 @@ pub mod repeat_permutation;
 pub mod repeat_threshold;
 mod repeat_threshold_family;
 pub mod repeat_turnbull;
+pub mod smoothing_spline;
 pub mod straight_line;
 mod track;
 pub mod trigger;

@@ -74,8 +74,8 @@ pub fn fit_repeats(
                     let cells = [column, "spot", "repeat"].map(|c| cell_of(campaign, entry, c));
                     let energy = energy_of(campaign, entry).ok();
                     format!(
-                        "{:?} {:?} {cells:?} {energy:?}",
-                        campaign.align, campaign.reference
+                        "{:?} {:?} {:?} {cells:?} {energy:?}",
+                        campaign.align, campaign.conditioning, campaign.reference
                     )
                 },
                 work: &|entry, recording| evaluate_impact(campaign, entry, recording),
