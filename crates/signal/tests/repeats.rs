@@ -2,6 +2,8 @@
 //!
 //! Reference values: `tests/scipy/repeats.py` with SciPy 1.17.1.
 
+#![allow(clippy::unwrap_used)]
+
 use windfall_signal::noise_gaussian::{NoiseSource, noise_source, normal};
 use windfall_signal::repeat_interval::EnergyInterval;
 use windfall_signal::repeat_permutation::{Differences, SignFlipOptions, sign_flip_test};

@@ -137,6 +137,9 @@ pub struct SimulateRepeatsArguments {
     /// Impacts on the spot at each energy
     #[arg(long, default_value_t = 2)]
     pub repeats: usize,
+    /// Where the impacts of the next energy fall: on the same spot, or on a fresh one
+    #[arg(long, default_value = "same", value_parser = ["same", "fresh"])]
+    pub spots: String,
     /// Median critical energy of the fruit
     #[arg(long, default_value = "0.12 J")]
     pub critical_energy: String,

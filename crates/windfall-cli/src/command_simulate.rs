@@ -19,7 +19,7 @@ use windfall::request_recordings::{RecordingsRequest, simulate_recordings};
 use windfall::simulate_campaign::Weighed;
 use windfall::simulate_compression::{SimulateCompressionRequest, simulate_compression};
 use windfall::simulate_example::write_example;
-use windfall::simulate_repeats::{SimulateRepeatsRequest, simulate_repeats};
+use windfall::simulate_repeats::{SimulateRepeatsRequest, Spots, simulate_repeats};
 use windfall::simulate_taps::{SimulateTapsRequest, simulate_taps};
 use windfall::workflow_simulate::SimulatedMotion;
 use windfall::write_simulation::{
@@ -94,6 +94,10 @@ fn repeats(arguments: &SimulateRepeatsArguments) -> anyhow::Result<()> {
         fruit: arguments.fruit,
         energies: arguments.energies.clone(),
         repeats: arguments.repeats,
+        spots: match arguments.spots.as_str() {
+            "fresh" => Spots::Fresh,
+            _ => Spots::Same,
+        },
         critical_energy: arguments.critical_energy.clone(),
         spread: arguments.spread,
         mass: arguments.mass.clone(),

@@ -77,6 +77,7 @@ pub fn compare_repeats(campaign: &RepeatsCampaign, pairs: &Pairs) -> Compared {
     let fruit = fruit_of(pairs);
     comparisons(campaign, pairs, &fruit, &mut compared);
     decisions(campaign, pairs, &fruit, &mut compared);
+    fruit_differ(&mut compared);
     thresholds(campaign, &mut compared);
     compared
 }
@@ -268,6 +269,37 @@ fn decisions(campaign: &RepeatsCampaign, pairs: &Pairs, fruit: &[String], compar
     }
 }
 
+/// Energies at which single fruit change and their mean does not.
+fn fruit_differ(compared: &mut Compared) {
+    let counts = compared.comparisons.iter().filter_map(|comparison| {
+        let of = |fruit: &FruitResult| {
+            let here = |(energy, order, decision): &(f64, usize, Decision)| {
+                *energy == comparison.energy
+                    && *order == comparison.order
+                    && decision.verdict == Verdict::Changed
+            };
+            fruit.decisions.iter().any(here)
+        };
+        let changed = compared.fruit.iter().filter(|fruit| of(fruit)).count();
+        (changed > 0 && comparison.verdict != Verdict::Changed).then(|| {
+            format!(
+                "{changed} of {} at {:.4} J",
+                comparison.curves.fruit, comparison.energy
+            )
+        })
+    });
+    let counts: Vec<String> = counts.collect();
+    if !counts.is_empty() {
+        let message = format!(
+            "single fruit changed by the repeatability of the reference ({}) where the test over \
+             fruit sees no change: it asks for the mean over fruit and is weak where only some \
+             change. The intervals of single fruit are the better answer there",
+            counts.join(", ")
+        );
+        finding(compared, "fruit-differ", message);
+    }
+}
+
 /// Critical energies of the fruit.
 fn thresholds(campaign: &RepeatsCampaign, compared: &mut Compared) {
     if compared.fruit.is_empty() {
@@ -295,7 +327,8 @@ fn thresholds(campaign: &RepeatsCampaign, compared: &mut Compared) {
         .collect();
     if !contrary.is_empty() {
         let message = format!(
-            "unchanged at an energy above the first change: {}; the first change is taken",
+            "unchanged at an energy above the first change: {}. A spot that has changed is not fresh \
+             and may stand more; the first change is taken",
             contrary.join(", ")
         );
         finding(compared, "change-then-none", message);

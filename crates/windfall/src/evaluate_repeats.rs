@@ -67,7 +67,10 @@ pub fn evaluate_impact(
     entry: &ImpactEntry,
     recording: &Recording,
 ) -> Result<RepeatImpact, Error> {
-    let mut options = ExtractOptions::default();
+    let mut options = ExtractOptions {
+        conditioning: campaign.conditioning,
+        ..ExtractOptions::default()
+    };
     if entry.from.is_some() || entry.to.is_some() {
         options.trigger.choice = ContactChoice::Within {
             from: entry.from.unwrap_or(f64::NEG_INFINITY),

@@ -79,17 +79,23 @@ pub fn figure_of_comparison(
         points(&comparison.curves.statistic),
     )];
     if let Some(critical) = compared.test.as_ref().and_then(|test| test.critical) {
-        for (label, level) in [
-            ("critical level over all instants and energies", critical),
-            ("", -critical),
-        ] {
-            let ends = [instants.first(), instants.last()].into_iter().flatten();
-            let line = ends.map(|instant| (*instant, level)).collect();
-            statistic.push(series(label, Style::Line, line));
-        }
+        let (from, to) = (instants.first(), instants.last());
+        let (from, to) = (from.copied().unwrap_or(0.0), to.copied().unwrap_or(0.0));
+        // One line around the band, so that both levels look alike.
+        let corners = [
+            (from, critical),
+            (to, critical),
+            (to, -critical),
+            (from, -critical),
+        ];
+        statistic.push(series(
+            "critical level over all instants and energies",
+            Style::Line,
+            corners.into_iter().chain([(from, critical)]).collect(),
+        ));
     }
     let panel = |y: &str, unit: &str, series: Vec<Series>| Panel {
-        x: "time since touch, in contact durations".to_owned(),
+        x: "time from the crossing, in contact durations".to_owned(),
         x_unit: String::new(),
         y: y.to_owned(),
         y_unit: unit.to_owned(),

@@ -8,6 +8,7 @@ use crate::file_repeats::{ComparisonFile, RepeatsFile};
 use crate::item_campaign::{ItemCampaign, SharedFile, read_item_campaign, specimen_of};
 use crate::read_campaign::CAMPAIGN_FILE;
 use crate::read_channels::channel_plans;
+use crate::read_conditioning::conditioning_plan;
 use crate::read_files::check_format;
 use crate::read_rig::STANDARD_GRAVITY;
 use crate::toml_source::{
@@ -15,6 +16,7 @@ use crate::toml_source::{
 };
 use std::path::Path;
 use toml::Spanned;
+use windfall_signal::conditioning::Conditioning;
 use windfall_signal::repeat_align::{AlignOptions, Alignment};
 use windfall_signal::repeat_permutation::SignFlipOptions;
 use windfall_signal::repeat_threshold::Family;
@@ -32,6 +34,8 @@ pub struct RepeatsCampaign {
     pub reference: (String, String),
     /// Change that does not matter.
     pub margin: Margin,
+    /// What is done to the channels before they are used.
+    pub conditioning: Conditioning,
     /// How two impacts are laid over each other.
     pub align: AlignOptions,
     /// How all fruit are tested together, with the level of all tests.
@@ -93,6 +97,7 @@ pub fn read_repeats(directory: &Path) -> Result<RepeatsCampaign, Error> {
             word(file.repeats.reference_column.as_ref(), "role"),
             word(file.repeats.reference_value.as_ref(), "reference"),
         ),
+        conditioning: conditioning_plan(&source, file.channels.as_ref())?,
         margin: margin(&source, &file.repeats)?,
         align: align(&source, &file.repeats)?,
         test: test(&source, &file.repeats)?,

@@ -28,8 +28,21 @@ const MODULUS_SPREAD: f64 = 0.15;
 /// collapses, which no elastic curve resembles; 1.
 const COLLAPSE: f64 = 0.3;
 
+/// Mark of the elastic ball.
+const REFERENCE: &str = "reference";
+
 /// Recorded before touch and after separation; s.
 const LEAD: f64 = 2e-3;
+
+/// Where the impacts of the next energy fall.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Spots {
+    /// On the same spot, as in consecutive height multiple impact tests.
+    #[default]
+    Same,
+    /// On a spot that has not been struck.
+    Fresh,
+}
 
 /// What is simulated; texts with units.
 #[derive(Clone, Debug)]
@@ -40,6 +53,8 @@ pub struct SimulateRepeatsRequest {
     pub energies: Vec<String>,
     /// Impacts on the spot at each energy.
     pub repeats: usize,
+    /// Where the impacts of the next energy fall.
+    pub spots: Spots,
     /// Median critical energy of the fruit.
     pub critical_energy: String,
     /// Standard deviation of its logarithm between fruit; 1.
@@ -98,7 +113,7 @@ pub fn simulate_repeats(
     create_directory(&raw)?;
     let mut bodies = vec![Body {
         id: "ball".to_owned(),
-        role: "reference",
+        role: REFERENCE,
         law: hertz(MODULUS)?,
         critical: f64::INFINITY,
         damaged: false,
@@ -116,8 +131,18 @@ pub fn simulate_repeats(
     let mut rows = Vec::new();
     for (number, body) in bodies.iter_mut().enumerate() {
         let mut source = noise_source(request.seed, 1000 + number as u64);
+        let untouched = body.law;
         for (level, energy) in plan.energies.iter().enumerate() {
-            for repeat in 1..=plan.repeats {
+            let spot = match request.spots {
+                Spots::Same => 1,
+                Spots::Fresh => {
+                    (body.law, body.damaged) = (untouched, false);
+                    level + 1
+                }
+            };
+            // One more on the reference: its scatter is what all is held against.
+            let extra = usize::from(body.role == REFERENCE);
+            for repeat in 1..=plan.repeats + extra {
                 let id = format!("{}-{}-{repeat}", body.id, level + 1);
                 let text = drop_on(body, *energy, &plan, &mut source)?;
                 write_file(&raw.join(format!("{id}.csv")), text.as_bytes())?;
@@ -126,7 +151,7 @@ pub fn simulate_repeats(
                     id.clone(),
                     body.id.clone(),
                     format!("{id}.csv"),
-                    "1".to_owned(),
+                    spot.to_string(),
                 ];
                 rows.push([&cells[..], &[height.to_string(), repeat.to_string()]].concat());
             }

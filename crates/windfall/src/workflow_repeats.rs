@@ -41,11 +41,15 @@ const SHOWN: [ShownValue; 4] = [
 ];
 
 /// What the tables of fruit and of the whole show.
-const SHOWN_OF_SPECIMENS: [ShownValue; 3] = [
+const SHOWN_OF_SPECIMENS: [ShownValue; 4] = [
+    shown("share", "share (%)", 100.0),
     shown("p", "p over fruit", 1.0),
     shown("critical_energy", "critical energy (J)", 1.0),
     shown("spread", "spread of ln energy", 1.0),
 ];
+
+/// Shares of fruit below this are none; 1.
+const LEAST_SHARE: f64 = 1e-6;
 
 /// Evaluates a campaign of repeated impacts and keeps the impacts in its store.
 ///
@@ -70,8 +74,8 @@ pub fn fit_repeats(
                     let cells = [column, "spot", "repeat"].map(|c| cell_of(campaign, entry, c));
                     let energy = energy_of(campaign, entry).ok();
                     format!(
-                        "{:?} {:?} {cells:?} {energy:?}",
-                        campaign.align, campaign.reference
+                        "{:?} {:?} {:?} {cells:?} {energy:?}",
+                        campaign.align, campaign.conditioning, campaign.reference
                     )
                 },
                 work: &|entry, recording| evaluate_impact(campaign, entry, recording),
@@ -257,17 +261,27 @@ fn critical(campaign: &RepeatsCampaign, compared: &Compared) -> Vec<MeasuredItem
         if median.high.is_finite() {
             derived.push(("median_high".to_owned(), plain_value(median.high, "J")));
         }
-        let shares: Vec<String> = compared
-            .masses
-            .iter()
-            .filter(|mass| mass.share > 1e-6)
-            .map(|m| format!("{}: {:.0} %", between(m.low, m.high), 100.0 * m.share))
-            .collect();
         found.derived = Named(derived);
-        found.words = Named(vec![
-            ("median".to_owned(), between(median.low, median.high)),
-            ("share of fruit".to_owned(), shares.join("; ")),
-        ]);
+        found.words = Named(vec![(
+            "median".to_owned(),
+            between(median.low, median.high),
+        )]);
+        items.push(found);
+    }
+    for mass in compared
+        .masses
+        .iter()
+        .filter(|mass| mass.share > LEAST_SHARE)
+    {
+        let mut found = item(
+            between(mass.low, mass.high),
+            "share of fruit by critical energy (Turnbull)",
+        );
+        let mut derived = vec![("share".to_owned(), plain_value(mass.share, "1"))];
+        derived.extend((mass.low > 0.0).then(|| ("from".to_owned(), plain_value(mass.low, "J"))));
+        let finite = mass.high.is_finite();
+        derived.extend(finite.then(|| ("to".to_owned(), plain_value(mass.high, "J"))));
+        found.derived = Named(derived);
         items.push(found);
     }
     let verdicts: Vec<(f64, Verdict)> = compared
