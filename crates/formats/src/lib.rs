@@ -68,6 +68,7 @@ pub mod text_header;
 pub mod text_lines;
 pub mod text_number;
 pub mod text_options;
+mod text_power;
 pub mod text_rows;
 pub mod text_table;
 

@@ -38,33 +38,50 @@ pub fn stretches(lines: &Lines) -> u64 {
 /// # Errors
 /// The file cannot be read, or a line is longer than 4 MiB.
 pub fn stretch(source: &Source, lines: &Lines, index: u64) -> Result<Vec<u8>, Error> {
+    let mut buffer = Vec::new();
+    Ok(stretch_in(source, lines, index, &mut buffer)?.to_vec())
+}
+
+/// As [`stretch`], in a buffer that may serve for many: fresh memory for each
+/// would cost as much time as the reading.
+///
+/// # Errors
+/// As [`stretch`].
+pub fn stretch_in<'a>(
+    source: &Source,
+    lines: &Lines,
+    index: u64,
+    buffer: &'a mut Vec<u8>,
+) -> Result<&'a [u8], Error> {
     let unit = lines.encoding.unit() as u64;
     let from = lines.start + index * STRETCH;
     let to = (from + STRETCH).min(lines.end);
     // One unit more at the front tells whether a line begins right there.
     let lead = if index == 0 { 0 } else { unit };
-    let mut bytes = source.bytes_at(from - lead, to - from + lead)?;
+    let first = (to - from + lead) as usize;
+    grow(buffer, first);
+    source.read_at(from - lead, &mut buffer[..first])?;
     let begin = match index {
         0 => Some(0),
-        _ => behind_newline(&bytes, lines, 0),
+        _ => behind_newline(&buffer[..first], lines, 0),
     };
     let Some(begin) = begin else {
         // All of it belongs to a line that began before.
-        return Ok(Vec::new());
+        return Ok(&[]);
     };
-    if begin as u64 == to - from + lead && to < lines.end {
-        return Ok(Vec::new());
+    if begin == first && to < lines.end {
+        return Ok(&[]);
     }
     // To the end of the last line that begins before `to`.
-    let last_unit = bytes.len().saturating_sub(unit as usize);
+    let last_unit = first.saturating_sub(unit as usize);
     let mut searched = last_unit.max(begin.saturating_sub(unit as usize));
-    let mut at = to;
+    let (mut at, mut filled) = (to, first);
     let end = loop {
-        if let Some(end) = behind_newline(&bytes, lines, searched) {
+        if let Some(end) = behind_newline(&buffer[..filled], lines, searched) {
             break end;
         }
         if at == lines.end {
-            break bytes.len();
+            break filled;
         }
         if at - to > LONGEST_LINE {
             return Err(Error::Malformed {
@@ -75,17 +92,28 @@ pub fn stretch(source: &Source, lines: &Lines, index: u64) -> Result<Vec<u8>, Er
                     .to_owned(),
             });
         }
-        searched = bytes.len();
+        searched = filled;
         let next = (at + FURTHER).min(lines.end);
-        bytes.extend(source.bytes_at(at, next - at)?);
-        at = next;
+        let more = filled + (next - at) as usize;
+        grow(buffer, more);
+        source.read_at(at, &mut buffer[filled..more])?;
+        (at, filled) = (next, more);
     };
-    bytes.truncate(end);
-    bytes.drain(..begin);
-    Ok(match unit {
-        1 => bytes,
-        _ => lines.encoding.decode(&bytes).into_owned().into_bytes(),
-    })
+    if unit == 1 {
+        return Ok(&buffer[begin..end]);
+    }
+    *buffer = lines
+        .encoding
+        .decode(&buffer[begin..end])
+        .into_owned()
+        .into_bytes();
+    Ok(buffer)
+}
+
+fn grow(buffer: &mut Vec<u8>, length: usize) {
+    if buffer.len() < length {
+        buffer.resize(length, 0);
+    }
 }
 
 /// Where the line behind the first newline at or after `from` begins.

@@ -1,5 +1,7 @@
 //! Numbers in text, correctly rounded, whatever marks decimals and thousands.
 
+use crate::text_power::nearest_double;
+
 /// Powers of ten that a double holds exactly.
 const EXACT_POWERS: [f64; 23] = [
     1e0, 1e1, 1e2, 1e3, 1e4, 1e5, 1e6, 1e7, 1e8, 1e9, 1e10, 1e11, 1e12, 1e13, 1e14, 1e15, 1e16,
@@ -44,21 +46,20 @@ pub struct Marks {
 #[inline]
 #[must_use]
 pub fn leading_number(bytes: &[u8], decimal: u8) -> Option<(f64, usize)> {
-    let mut at = 0;
-    let negative = match bytes.first() {
-        Some(b'-') => {
-            at = 1;
-            true
-        }
-        Some(b'+') => {
-            at = 1;
-            false
-        }
-        _ => false,
-    };
+    // Signs come at random: a branch on them would be guessed wrong half of the time.
+    let first = bytes.first().copied().unwrap_or(0);
+    let negative = first == b'-';
+    let mut at = usize::from(negative | (first == b'+'));
     let start = at;
     let mut mantissa = 0_u64;
-    at = digits(bytes, at, &mut mantissa);
+    // The usual number has one digit before the mark, and many behind it.
+    at = match bytes.get(at..at + 2) {
+        Some([digit @ b'0'..=b'9', mark]) if *mark == decimal => {
+            mantissa = u64::from(digit - b'0');
+            at + 1
+        }
+        _ => digits(bytes, at, &mut mantissa),
+    };
     let mut count = at - start;
     let mut power = 0_i32;
     if bytes.get(at) == Some(&decimal) {
@@ -79,9 +80,24 @@ pub fn leading_number(bytes: &[u8], decimal: u8) -> Option<(f64, usize)> {
     let size = match exact {
         true if power < 0 => mantissa as f64 / EXACT_POWERS[power.unsigned_abs() as usize],
         true => mantissa as f64 * EXACT_POWERS[power as usize],
-        false => slow_number(&bytes[start..at], decimal)?,
+        false => match count <= MOST_DIGITS + zeros_before(&bytes[start..at], decimal, count) {
+            true => nearest_double(mantissa, power),
+            false => None,
+        }
+        .map_or_else(|| slow_number(&bytes[start..at], decimal), Some)?,
     };
-    Some((if negative { -size } else { size }, at))
+    let sign = u64::from(negative) << 63;
+    Some((f64::from_bits(size.to_bits() | sign), at))
+}
+
+/// Zeros before the first other digit, which fill no part of the mantissa;
+/// looked for only where they matter.
+fn zeros_before(bytes: &[u8], decimal: u8, count: usize) -> usize {
+    if count <= MOST_DIGITS {
+        return 0;
+    }
+    let leading = bytes.iter().take_while(|b| **b == b'0' || **b == decimal);
+    leading.filter(|b| **b == b'0').count()
 }
 
 /// Adds the digits from `at` on to `mantissa`; where they end. Beyond 19 digits

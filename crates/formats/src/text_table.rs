@@ -3,7 +3,7 @@
 use crate::error::{Error, Place};
 use crate::reader::Sink;
 use crate::source::Source;
-use crate::text_lines::{Lines, stretch, stretches};
+use crate::text_lines::{Lines, stretch, stretch_in, stretches};
 use crate::text_rows::{Column, Fault, RowPlan, Rows, most_rows, read_rows};
 use rayon::prelude::*;
 
@@ -107,11 +107,9 @@ pub fn read_whole_table(
     let count = stretches(&table.lines);
     let lengths: Vec<usize> = (0..count)
         .into_par_iter()
-        .map(|index| {
-            Ok(most_rows(
-                &stretch(source, &table.lines, index)?,
-                &table.plan,
-            ))
+        .map_init(Vec::new, |buffer, index| {
+            let bytes = stretch_in(source, &table.lines, index, buffer)?;
+            Ok(most_rows(bytes, &table.plan))
         })
         .collect::<Result<_, Error>>()?;
     let mut columns = vec![vec![0.0; lengths.iter().sum()]; wanted.len()];
@@ -131,9 +129,9 @@ pub fn read_whole_table(
     let read: Vec<Rows> = rooms
         .into_par_iter()
         .enumerate()
-        .map(|(index, mut rooms)| {
-            let bytes = stretch(source, &table.lines, index as u64)?;
-            Ok(read_rows(&bytes, &table.plan, &places, &mut rooms))
+        .map_init(Vec::new, |buffer, (index, mut rooms)| {
+            let bytes = stretch_in(source, &table.lines, index as u64, buffer)?;
+            Ok(read_rows(bytes, &table.plan, &places, &mut rooms))
         })
         .collect::<Result<_, Error>>()?;
 

@@ -1,5 +1,6 @@
 //! What stops the extraction of an impact.
 
+use crate::filter_butterworth::FilterError;
 use crate::recording::Quantity;
 
 /// A recording, or an option, from which no impact can be extracted.
@@ -188,6 +189,14 @@ pub enum Error {
         largest: f64,
         /// Rise of energy asked for; 1.
         rise: f64,
+    },
+    /// A channel that cannot be filtered as asked.
+    #[error("channel '{channel}' cannot be filtered: {source}")]
+    Filter {
+        /// Name of the channel.
+        channel: String,
+        /// Why not.
+        source: FilterError,
     },
     /// The mass cannot be found from this impact.
     #[error(

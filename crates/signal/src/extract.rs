@@ -1,6 +1,8 @@
 //! Recording → Impact.
 
 use crate::clipping::clipping;
+use crate::compare::compare;
+use crate::conditioning::{add_tip_force, filter_tracks, remove_drift};
 use crate::deceleration::deceleration;
 use crate::error::{Error, Times};
 use crate::finding::Finding;
@@ -17,7 +19,7 @@ use crate::orient::{
 use crate::polynomial::local_polynomial;
 use crate::rate::derived_rate;
 use crate::recording::Recording;
-use crate::track::{Geometry, Track, Tracks, mean_interval, missing, tracks};
+use crate::track::{Geometry, Signals, Track, Tracks, mean_interval, missing, tracks};
 use crate::trigger::{Baseline, Contacts, Signal, Threshold, TriggerOptions, find_contacts};
 
 /// Fewer samples in contact than this are reported.
@@ -50,7 +52,17 @@ pub fn extract_impact(
         arm: options.arm,
         illegal: options.illegal,
     };
-    let tracks = tracks(recording, &geometry, &mut findings)?;
+    let mut tracks = tracks(recording, &geometry, &mut findings)?;
+    filter_tracks(&mut tracks, &options.conditioning, &mut findings)?;
+    if options.trigger.baseline == Baseline::Drift
+        && let Some(force) = &mut tracks.force
+    {
+        let found = find_contacts(
+            &signal(force, "N", &force.times, &force.values),
+            &options.trigger,
+        )?;
+        remove_drift(force, &found.windows, &mut findings);
+    }
 
     // The contact, and the free motion around it.
     let (contacts, from_motion) = contacts(recording, &tracks, options)?;
@@ -58,11 +70,17 @@ pub fn extract_impact(
 
     // Signs, zeros and noise; then what they say, and the rate to be fitted.
     let mut signals = oriented(tracks, &contacts, &place, options, &mut findings);
+    if let (Some(force), Some(tip)) = (&mut signals.force, options.conditioning.tip_mass) {
+        let masses = (tip, options.effective_mass);
+        let acceleration = signals.acceleration.as_ref();
+        add_tip_force(force, acceleration, &place, masses, &mut findings)?;
+    }
     let measured = measure(&signals, &contacts, &place, options);
+    let measured = compare(measured, &signals, &place, options, &mut findings);
     signals.rate = rate(&mut signals, options, &place, &mut findings);
 
     let cut = |track: Option<Track>| track.and_then(|track| series(&track, &place, options));
-    let removed = options.trigger.baseline == Baseline::Remove;
+    let removed = options.trigger.baseline != Baseline::Keep;
     let force = cut(signals.force).map(|series| Series {
         zero_sd: if removed { offset_sd(&contacts) } else { 0.0 },
         ..series
@@ -77,14 +95,6 @@ pub fn extract_impact(
         measured,
     };
     Ok((impact, findings))
-}
-
-/// Channels in the convention of an impact, with their noise.
-struct Signals {
-    displacement: Option<Track>,
-    rate: Option<Track>,
-    force: Option<Track>,
-    acceleration: Option<Track>,
 }
 
 fn oriented(
@@ -154,7 +164,10 @@ fn rate(
     let keep = match options.rate {
         RateMethod::Measured => true,
         RateMethod::Automatic => measured.is_some(),
-        RateMethod::CentralDifference | RateMethod::LocalPolynomial { .. } => false,
+        RateMethod::CentralDifference
+        | RateMethod::SmoothingSpline
+        | RateMethod::EdgeTimes
+        | RateMethod::LocalPolynomial { .. } => false,
     };
     if keep {
         return measured;

@@ -134,8 +134,7 @@ pub fn butterworth(band: Band, order: usize, rate: f64) -> Result<Vec<Section>, 
                 let zeros = [1.0, 0.0, -1.0];
                 match real {
                     true => sections.push(section(zeros, &pair)),
-                    false => sections
-                        .extend(pair.map(|pole| section(zeros, &[pole, pole.conj()]))),
+                    false => sections.extend(pair.map(|pole| section(zeros, &[pole, pole.conj()]))),
                 }
             }
         }

@@ -1,6 +1,7 @@
 //! What is poor in a recording, without stopping the extraction.
 
 use crate::error::{Rounded, Times};
+use crate::filter_butterworth::Band;
 use std::fmt;
 
 /// Something about the signals that a reader of the results must know.
@@ -110,6 +111,60 @@ pub enum Finding {
         /// Its value; unit of the channel.
         value: f64,
     },
+    /// A channel that has been filtered.
+    Filtered {
+        /// Name of the channel.
+        channel: String,
+        /// What the filter lets through.
+        band: Band,
+        /// Its order.
+        order: usize,
+        /// Range of the values after it over that before; 1.
+        kept: f64,
+    },
+    /// A drift of the force that has been taken off.
+    DriftRemoved {
+        /// Name of the channel.
+        channel: String,
+        /// The drift; N/s.
+        slope: f64,
+        /// Its standard deviation; N/s.
+        slope_sd: f64,
+    },
+    /// A drift that cannot be told.
+    DriftUnknown {
+        /// Name of the channel.
+        channel: String,
+        /// Samples before the first contact.
+        before: usize,
+        /// Samples after the last.
+        after: usize,
+    },
+    /// The force of the tip ahead of the sensor has been added.
+    TipMass {
+        /// Name of the channel.
+        channel: String,
+        /// Mass of the tip; kg.
+        mass: f64,
+        /// Whether the acceleration was measured.
+        measured: bool,
+        /// Largest force after it over that before; 1.
+        raised: f64,
+    },
+    /// Force and acceleration do not belong to one mass.
+    AccelerometerDisagrees {
+        /// Ratio of the impulses; 1.
+        impulse_ratio: f64,
+        /// Ratio of the largest values; 1.
+        peak_ratio: f64,
+    },
+    /// The loop of force over displacement and the velocities tell other energies.
+    EnergyMismatch {
+        /// Area of the loop; J.
+        area: f64,
+        /// Difference of the kinetic energies; J.
+        absorbed: f64,
+    },
     /// Few samples during contact.
     FewSamples {
         /// Name of the channel.
@@ -136,6 +191,12 @@ impl Finding {
             Self::WindowFromMotion { .. } => "window-from-motion",
             Self::NoiseAtFloor { .. } => "noise-at-floor",
             Self::Glitch { .. } => "glitch",
+            Self::Filtered { .. } => "filtered",
+            Self::DriftRemoved { .. } => "drift-removed",
+            Self::DriftUnknown { .. } => "drift-unknown",
+            Self::TipMass { .. } => "tip-mass",
+            Self::AccelerometerDisagrees { .. } => "accelerometer-disagrees",
+            Self::EnergyMismatch { .. } => "energy-mismatch",
             Self::FewSamples { .. } => "few-samples",
         }
     }
@@ -251,6 +312,77 @@ impl fmt::Display for Finding {
                 f,
                 "channel '{channel}': the sample at {} s ({value:.4e}) does not fit the free motion around it and is left out",
                 Rounded(*time),
+            ),
+            Self::Filtered {
+                channel,
+                band,
+                order,
+                kept,
+            } => {
+                let band = match band {
+                    Band::LowPass(cutoff) => {
+                        format!("low-pass filtered at {} Hz", Rounded(*cutoff))
+                    }
+                    Band::HighPass(cutoff) => {
+                        format!("high-pass filtered at {} Hz", Rounded(*cutoff))
+                    }
+                    Band::BandPass(low, high) => {
+                        format!(
+                            "band-pass filtered from {} Hz to {} Hz",
+                            Rounded(*low),
+                            Rounded(*high)
+                        )
+                    }
+                };
+                write!(
+                    f,
+                    "channel '{channel}' was {band} (Butterworth of order {order}, forwards and backwards, no delay); {:.1} % of its range is left, and neighbouring samples share their noise",
+                    100.0 * kept
+                )
+            }
+            Self::DriftRemoved {
+                channel,
+                slope,
+                slope_sd,
+            } => write!(
+                f,
+                "a drift of {slope:.4} ± {slope_sd:.4} N/s in channel '{channel}', from the quiet stretches before and after contact, has been subtracted"
+            ),
+            Self::DriftUnknown {
+                channel,
+                before,
+                after,
+            } => write!(
+                f,
+                "no drift of channel '{channel}' can be told from {before} samples before and {after} after contact; only the mean before it has been subtracted. Record longer"
+            ),
+            Self::TipMass {
+                channel,
+                mass,
+                measured,
+                raised,
+            } => {
+                let from = match measured {
+                    true => "the measured acceleration",
+                    false => "the rig's own motion (a rigid impactor)",
+                };
+                write!(
+                    f,
+                    "a tip of {} kg ahead of '{channel}': its inertia, from {from}, raises the largest force by {:.1} %",
+                    Rounded(*mass),
+                    100.0 * (raised - 1.0)
+                )
+            }
+            Self::AccelerometerDisagrees {
+                impulse_ratio,
+                peak_ratio,
+            } => write!(
+                f,
+                "force and mass times acceleration disagree: impulses as {impulse_ratio:.3} to 1, peaks as {peak_ratio:.3} to 1; check both calibrations, the mass, and that the accelerometer sits where the force acts"
+            ),
+            Self::EnergyMismatch { area, absorbed } => write!(
+                f,
+                "the loop of force over displacement holds {area:.4e} J and the velocities tell {absorbed:.4e} J absorbed; check the calibrations of force and displacement, the delay between them, and the mass"
             ),
             Self::FewSamples { channel, samples } => write!(
                 f,

@@ -40,6 +40,17 @@ pub struct Measured {
     pub absorbed_energy: Option<f64>,
     /// Integral of the force over the contact; N s.
     pub impulse: Option<f64>,
+    /// Work of the force up to the largest displacement; J.
+    pub loading_energy: Option<f64>,
+    /// Area of the loop of force over displacement; J.
+    pub hysteresis_energy: Option<f64>,
+    /// Impulse of the force over that of mass times acceleration; 1.
+    pub acceleration_impulse_ratio: Option<f64>,
+    /// Largest force over the largest mass times acceleration; 1.
+    pub acceleration_peak_ratio: Option<f64>,
+    /// Largest departure of the acceleration, integrated twice from just before
+    /// contact, from the measured displacement; m.
+    pub integrated_displacement_error: Option<f64>,
     /// Standard uncertainty of the impact velocity, from the scatter about the
     /// fitted line; m/s.
     pub impact_velocity_sd: Option<f64>,

@@ -10,15 +10,23 @@
 //!
 //! This crate opens no file and knows no force law.
 
+pub mod accelerometer;
 pub mod acoustic_stiffness;
 pub mod clipping;
+mod compare;
 pub mod compression;
+pub mod conditioning;
 pub mod damped_mode;
 pub mod deceleration;
+pub mod edge_rate;
+pub mod energy_angles;
 pub mod error;
 pub mod extract;
+pub mod filter_butterworth;
+pub mod filter_zero_phase;
 pub mod finding;
 pub mod first_mode;
+pub mod force_loop;
 pub mod impact;
 pub mod instrument;
 pub mod kinematics;
@@ -29,11 +37,13 @@ pub mod noise_gaussian;
 mod noise_track;
 pub mod options;
 mod orient;
+pub mod phase_bits;
 pub mod polynomial;
 pub mod quadrature;
 mod rate;
 pub mod recording;
 pub mod resonance;
+pub mod smoothing_spline;
 pub mod spectrum;
 pub mod spectrum_peak;
 pub mod straight_line;

@@ -1,5 +1,6 @@
 //! How an impact is cut out of a recording.
 
+use crate::conditioning::Conditioning;
 use crate::error::Error;
 use crate::kinematics::Encoder;
 use crate::quadrature::IllegalTransition;
@@ -16,6 +17,12 @@ pub enum RateMethod {
     Measured,
     /// The central difference of the displacement, even if a channel was measured.
     CentralDifference,
+    /// The derivative of a smoothing spline of the displacement, its penalty
+    /// found by cross-validation; of a counted displacement through its edges.
+    SmoothingSpline,
+    /// Length of a count over the time between its edges, for counted
+    /// displacements.
+    EdgeTimes,
     /// The derivative of local polynomials (Savitzky-Golay) of the displacement.
     /// Smooth, for display; neighbouring samples share their noise.
     LocalPolynomial {
@@ -47,6 +54,8 @@ pub struct ExtractOptions {
     pub arm: Option<f64>,
     /// How the series of the displacement rate is made.
     pub rate: RateMethod,
+    /// Filters, and the tip ahead of the force sensor.
+    pub conditioning: Conditioning,
     /// Mass that the contact feels, for the energies; kg.
     pub effective_mass: Option<f64>,
     /// Acceleration of the free impactor, positive into the fruit; m/s².
@@ -65,6 +74,7 @@ impl Default for ExtractOptions {
             illegal: IllegalTransition::default(),
             arm: None,
             rate: RateMethod::default(),
+            conditioning: Conditioning::default(),
             effective_mass: None,
             driving_acceleration: 0.0,
         }

@@ -1,9 +1,11 @@
 //! Displacement rate from displacement.
 
+use crate::edge_rate::{edge_rate, edges};
 use crate::kinematics::{central_difference, rate_quantum, smoothing_window};
 use crate::measure::Surroundings;
 use crate::options::RateMethod;
 use crate::polynomial::{evenly_spaced, local_polynomial};
+use crate::smoothing_spline::smoothing_spline_gcv;
 use crate::track::{Track, mean_interval};
 
 /// The rate of a displacement by the method asked for; `None` if that is the
@@ -17,6 +19,8 @@ pub(crate) fn derived_rate(
         RateMethod::Measured => None,
         RateMethod::Automatic if !evenly_spaced(&displacement.times) => None,
         RateMethod::Automatic | RateMethod::CentralDifference => central_rate(displacement),
+        RateMethod::SmoothingSpline => spline_rate(displacement, place),
+        RateMethod::EdgeTimes => edge_track(displacement),
         RateMethod::LocalPolynomial { order, window } => {
             polynomial_rate(displacement, order, window, place)
         }
@@ -48,6 +52,60 @@ fn polynomial_rate(
         name: format!("rate of {}", track.name),
         times: track.times.clone(),
         values: local_polynomial(&track.times, &track.values, window, order, 1)?,
+        quantum: None,
+        noise: 0.0,
+    })
+}
+
+/// Most knots of a spline; more samples are averaged in blocks.
+const MOST_KNOTS: usize = 4000;
+
+/// Samples per count from which a counted displacement is taken at its edges:
+/// below, its steps are hardly correlated.
+const SAMPLES_PER_COUNT: usize = 3;
+
+/// Derivative of a smoothing spline around the contact; through the edges where
+/// the displacement is counted and changes seldom.
+fn spline_rate(track: &Track, place: &Surroundings) -> Option<Track> {
+    let around = place.duration();
+    let first = track.times.partition_point(|t| *t < place.onset - around);
+    let last = track.times.partition_point(|t| *t <= place.end + around);
+    let (times, values) = (&track.times[first..last], &track.values[first..last]);
+    let edges = edges(times, values, false);
+    let counted =
+        track.quantum.is_some() && times.len() > SAMPLES_PER_COUNT * edges.times.len().max(1);
+    let (times, values) = match counted {
+        true => (edges.times, edges.values),
+        false => {
+            let block = times.len().div_ceil(MOST_KNOTS).max(1);
+            let mean = |values: &[f64]| -> Vec<f64> {
+                let blocks = values.chunks(block);
+                blocks
+                    .map(|b| b.iter().sum::<f64>() / b.len() as f64)
+                    .collect()
+            };
+            (mean(times), mean(values))
+        }
+    };
+    let spline = smoothing_spline_gcv(&times, &values)?;
+    Some(Track {
+        name: format!("rate of {}", track.name),
+        times,
+        values: spline.rates,
+        quantum: None,
+        noise: 0.0,
+    })
+}
+
+/// Rate between the edges of a counted displacement.
+fn edge_track(track: &Track) -> Option<Track> {
+    let quantum = track.quantum?;
+    let end = *track.times.last()?;
+    let rate = edge_rate(&edges(&track.times, &track.values, false), quantum, end);
+    (rate.times.len() >= 3).then(|| Track {
+        name: format!("rate of {}", track.name),
+        times: rate.times,
+        values: rate.values,
         quantum: None,
         noise: 0.0,
     })

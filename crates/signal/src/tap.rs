@@ -156,7 +156,7 @@ fn even_interval(channel: &Channel) -> Result<f64, Error> {
         .iter()
         .enumerate()
         .map(jitter)
-        .position(|jitter| !(jitter <= UNEVEN))
+        .position(|jitter| jitter.is_nan() || jitter > UNEVEN)
     {
         None => Ok(interval),
         Some(sample) => Err(Error::UnevenSampling {
@@ -194,7 +194,7 @@ fn check(channel: &Channel, interval: f64, options: &TapOptions) -> Result<(), E
             "an upper end below 45 % of the sampling rate; narrow the band, or sample faster";
         return bad("band", options.high, expected);
     }
-    if !(options.rise > 1.0) {
+    if options.rise.is_nan() || options.rise <= 1.0 {
         return bad("rise", options.rise, "a number above 1");
     }
     let least = ((options.shortest + options.hit) / interval).ceil() as usize;

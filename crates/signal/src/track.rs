@@ -34,6 +34,14 @@ pub(crate) struct Tracks {
     pub acceleration: Option<Track>,
 }
 
+/// Channels in the convention of an impact, with their noise.
+pub(crate) struct Signals {
+    pub displacement: Option<Track>,
+    pub rate: Option<Track>,
+    pub force: Option<Track>,
+    pub acceleration: Option<Track>,
+}
+
 /// How positions are made of encoder and angle channels.
 pub(crate) struct Geometry {
     pub encoder: Option<Encoder>,

@@ -66,6 +66,9 @@ pub enum Baseline {
     /// The mean before the first contact is subtracted.
     #[default]
     Remove,
+    /// A straight line through the force before the first and after the last
+    /// contact is subtracted.
+    Drift,
     /// The force is used as recorded.
     Keep,
 }
@@ -233,7 +236,7 @@ pub fn find_contacts(signal: &Signal, options: &TriggerOptions) -> Result<Contac
     // A first guess of zero and sign.
     let (pilot, zero_from_end) = pilot_level(signal.values);
     let centre = match options.baseline {
-        Baseline::Remove => pilot,
+        Baseline::Remove | Baseline::Drift => pilot,
         Baseline::Keep => 0.0,
     };
     let sample_noise = white_noise(signal.values);
@@ -277,7 +280,7 @@ pub fn find_contacts(signal: &Signal, options: &TriggerOptions) -> Result<Contac
         contacts.deviation = deviation;
         contacts.baseline_samples = before;
         contacts.offset = match options.baseline {
-            Baseline::Remove => mean,
+            Baseline::Remove | Baseline::Drift => mean,
             Baseline::Keep => 0.0,
         };
         let raised: Vec<f64> = signal

@@ -1,5 +1,7 @@
 //! The rules by which a resonance is accepted as the first spheroidal mode.
 
+#![allow(clippy::unwrap_used, clippy::print_stdout)]
+
 use windfall_signal::damped_mode::Mode;
 use windfall_signal::first_mode::{
     Confidence, Decision, FirstModeOptions, Rejection, TapModes, first_mode, persistent,

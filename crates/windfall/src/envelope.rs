@@ -44,25 +44,28 @@ impl Envelope {
     /// Takes the next samples; NaN where there is none.
     pub fn take(&mut self, samples: &[f64]) {
         for &value in samples {
-            let mut place = (self.rows / self.rows_per_bucket) as usize;
-            if place == MOST {
-                self.halve();
-                place = (self.rows / self.rows_per_bucket) as usize;
-            }
-            if place == self.buckets.len() {
-                self.buckets.push(None);
-            }
-            if value.is_finite() {
-                let single = Bucket {
-                    row: self.rows,
-                    first: value,
-                    last: value,
-                    smallest: value,
-                    largest: value,
-                };
-                self.buckets[place] = joined(self.buckets[place], Some(single));
-            }
+            let row = self.rows;
             self.rows += 1;
+            // Blank rows take no room: a channel of few samples beside long ones
+            // is kept sample by sample.
+            if !value.is_finite() {
+                continue;
+            }
+            while row / self.rows_per_bucket >= MOST as u64 {
+                self.halve();
+            }
+            let place = (row / self.rows_per_bucket) as usize;
+            if place >= self.buckets.len() {
+                self.buckets.resize(place + 1, None);
+            }
+            let single = Bucket {
+                row,
+                first: value,
+                last: value,
+                smallest: value,
+                largest: value,
+            };
+            self.buckets[place] = joined(self.buckets[place], Some(single));
         }
     }
 
@@ -129,6 +132,9 @@ mod tests {
         envelope.take(&[1.0, f64::NAN, 3.0]);
         let rows: Vec<(u64, f64)> = envelope.buckets().map(|b| (b.row, b.first)).collect();
         assert_eq!(rows, [(0, 1.0), (2, 3.0)]);
+        assert_eq!(envelope.rows_per_bucket(), 1);
+        envelope.take(&vec![f64::NAN; 3 * MOST]);
+        assert_eq!(envelope.buckets().count(), 2);
         assert_eq!(envelope.rows_per_bucket(), 1);
     }
 }

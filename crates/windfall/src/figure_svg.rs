@@ -64,6 +64,18 @@ impl Drawing {
         );
     }
 
+    /// A dashed line through points.
+    pub fn dashed(&mut self, points: &[(f64, f64)], colour: &str, width: f64) {
+        self.body += r#"<polyline points=""#;
+        for (x, y) in points {
+            let _ = write!(self.body, "{x:.2},{y:.2} ");
+        }
+        let _ = writeln!(
+            self.body,
+            r#"" fill="none" stroke-dasharray="5 3" stroke="{colour}" stroke-width="{width}" stroke-linejoin="round"/>"#
+        );
+    }
+
     /// A dot.
     pub fn dot(&mut self, at: (f64, f64), radius: f64, colour: &str) {
         let _ = writeln!(

@@ -20,6 +20,9 @@ const GRID: &str = "#e4e4e4";
 const LEGEND_LINE: f64 = 15.0;
 const CHARACTER: f64 = 6.4;
 
+/// Fewer points than this are drawn larger.
+const FEW_POINTS: usize = 150;
+
 /// More points than this are thinned to what the eye can tell.
 const MOST_POINTS: usize = 4000;
 
@@ -185,17 +188,16 @@ fn draw_panel(drawing: &mut Drawing, panel: &Panel, top: f64) {
     let title = format!("{}{}", panel.y, unit_label(&panel.y_unit, vertical.power));
     drawing.turned_text((20.0, top + 0.5 * HEIGHT), 11.5, &title);
 
-    for (index, series) in panel.series.iter().enumerate() {
-        let points: Vec<(f64, f64)> = thinned(&series.points)
-            .filter(|(x, y)| x.is_finite() && y.is_finite())
-            .map(|(x, y)| (place_x(x), place_y(y)))
-            .collect();
-        draw_series(
-            drawing,
-            &points,
-            series.style,
-            COLOURS[index % COLOURS.len()],
-        );
+    // Dots last: lines would hide them.
+    for dots in [false, true] {
+        let series = panel.series.iter().enumerate();
+        for (index, series) in series.filter(|(_, s)| (s.style == Style::Dots) == dots) {
+            let points: Vec<(f64, f64)> = thinned(&series.points)
+                .filter(|(x, y)| x.is_finite() && y.is_finite())
+                .map(|(x, y)| (place_x(x), place_y(y)))
+                .collect();
+            draw_series(drawing, &points, series.style, index);
+        }
     }
     for mark in &panel.marks {
         let at = (place_x(mark.at.0), place_y(mark.at.1));
@@ -216,20 +218,24 @@ fn draw_panel(drawing: &mut Drawing, panel: &Panel, top: f64) {
     let base = top - legend_height(panel) + 4.0;
     for ((index, series), (line, x)) in labelled(panel).into_iter().zip(legend_places(panel)) {
         let y = base + LEGEND_LINE * line as f64 + 4.0;
-        let colour = COLOURS[index % COLOURS.len()];
         let sample = [(x, y), (x + 9.0, y), (x + 18.0, y)];
-        draw_series(drawing, &sample, series.style, colour);
+        draw_series(drawing, &sample, series.style, index);
         drawing.text((x + 24.0, y + 3.8), Anchor::Start, 11.0, &series.label);
     }
 }
 
-fn draw_series(drawing: &mut Drawing, points: &[(f64, f64)], style: Style, colour: &str) {
+/// * `index`: position of the series, which has its colour; when colours repeat,
+///   lines are dashed
+fn draw_series(drawing: &mut Drawing, points: &[(f64, f64)], style: Style, index: usize) {
+    let colour = COLOURS[index % COLOURS.len()];
     match style {
+        Style::Line if index >= COLOURS.len() => drawing.dashed(points, colour, 1.4),
         Style::Line => drawing.polyline(points, colour, 1.4),
         Style::Broad => drawing.polyline(points, colour, 4.0),
         Style::Dots => {
+            let radius = if points.len() < FEW_POINTS { 2.3 } else { 1.5 };
             for point in points {
-                drawing.dot(*point, 1.7, colour);
+                drawing.dot(*point, radius, colour);
             }
         }
     }
@@ -297,7 +303,7 @@ mod tests {
     fn conserves_every_point_in_the_drawing_and_the_table() {
         let figure = figure(vec![(0.0, 0.0), (1.0, 2.0), (f64::NAN, 1.0), (2.0, 1.0)]);
         let svg = svg_of_figure(&figure);
-        assert_eq!(svg.matches(r#"r="1.7""#).count(), 3 + 3);
+        assert_eq!(svg.matches(r#"r="2.3""#).count(), 3 + 3);
         assert!(svg.contains("bioyield") && svg.contains("a &lt; b") && svg.contains("force (N)"));
         let table = csv_of_figure(&figure).unwrap();
         assert_eq!(table.lines().count(), 1 + 4 + 1);

@@ -147,6 +147,14 @@ pub struct ChannelFile {
     pub time: Option<Spanned<String>>,
     /// By how much the channel shows an event later than the clock says.
     pub delay: Option<Spanned<QuantityText>>,
+    /// Cut-off of a zero-phase low-pass filter.
+    pub low_pass: Option<Spanned<QuantityText>>,
+    /// Cut-off of a zero-phase high-pass filter.
+    pub high_pass: Option<Spanned<QuantityText>>,
+    /// Order of the filters.
+    pub filter_order: Option<Spanned<i64>>,
+    /// Mass between force sensor and fruit.
+    pub tip_mass: Option<Spanned<QuantityText>>,
 }
 
 /// `[encoder]`
@@ -165,8 +173,15 @@ pub struct EncoderFile {
 pub struct ContactFile {
     /// Force threshold, or "auto".
     pub threshold: Option<Spanned<QuantityText>>,
-    /// Whether the mean force before contact is removed: "remove" or "keep".
+    /// What is taken off the force: its mean before contact ("remove"), a
+    /// straight line through what is before and after ("drift"), nothing ("keep").
     pub baseline: Option<Spanned<String>>,
+    /// Part of the threshold below which a contact is over.
+    pub release: Option<Spanned<f64>>,
+    /// Contacts closer than this are one.
+    pub minimum_gap: Option<Spanned<QuantityText>>,
+    /// How the displacement rate is made.
+    pub rate: Option<Spanned<String>>,
     /// Which of several contacts is used: "first" or "strongest".
     pub contact: Option<Spanned<String>>,
     /// What is kept before the contact, as a part of its duration.

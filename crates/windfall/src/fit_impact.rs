@@ -6,6 +6,7 @@ use crate::extract_recording::extract_recording;
 use crate::fit_mass::RigFound;
 use crate::fit_outcome::impact_outcome;
 use crate::outcome::{FailureOutcome, ImpactOutcome};
+use crate::pendulum_angles::add_angles;
 use rayon::prelude::*;
 use std::collections::BTreeMap;
 use std::sync::atomic::{AtomicUsize, Ordering};
@@ -85,14 +86,15 @@ fn fit_group(
                 let problem = law_problem(law, &campaign.fit.free);
                 fit_impact(&impact, &rig.rig, &problem, &campaign.fit.options)
                     .map(|fit| impact_outcome(entry, &impact, &findings, &fit, &problem, &rig.rig))
-                    .map_err(|source| {
-                        let subject = law.kind.name().to_owned();
-                        let error = Error::Identify {
-                            subject,
-                            source: Box::new(source),
-                        };
-                        failure(entry, Some(law.kind.name()), error.to_string())
+                    .map_err(|source| Error::Identify {
+                        subject: law.kind.name().to_owned(),
+                        source: Box::new(source),
                     })
+                    .and_then(|mut outcome| {
+                        add_angles(campaign, entry, &mut outcome)?;
+                        Ok(outcome)
+                    })
+                    .map_err(|error| failure(entry, Some(law.kind.name()), error.to_string()))
             }
         })
         .collect()

@@ -2,6 +2,7 @@
 
 use crate::campaign::{Campaign, ImpactEntry, TimePlan};
 use crate::error::Error;
+use crate::pendulum_angles::angles_of_entry;
 use crate::provenance::{VERSION, digest_text};
 use crate::read_campaign::CAMPAIGN_FILE;
 use crate::read_files::fill_placeholders;
@@ -65,6 +66,7 @@ pub fn impact_key(
         "time_scale": format!("{:?}", campaign.files.time_scale),
         "channels": channels,
         "contact": format!("{:?}", campaign.contact),
+        "angles": format!("{:?}", angles_of_entry(campaign, entry).ok()),
         "law": format!("{:?}", law),
         "free": free,
         "fit": format!("{:?}", campaign.fit.options),

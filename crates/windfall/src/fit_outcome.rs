@@ -184,6 +184,25 @@ fn derived_values(
         values.push((name.clone(), measured.or(*fitted)));
         sources.push((name.clone(), source.to_owned()));
     }
+    // What only channels tell, where they do.
+    for (name, value) in [
+        ("loading_energy", measured.loading_energy),
+        ("hysteresis_energy", measured.hysteresis_energy),
+        (
+            "acceleration_impulse_ratio",
+            measured.acceleration_impulse_ratio,
+        ),
+        ("acceleration_peak_ratio", measured.acceleration_peak_ratio),
+        (
+            "integrated_displacement_error",
+            measured.integrated_displacement_error,
+        ),
+    ] {
+        if let Some(value) = value.filter(|value| value.is_finite()) {
+            values.push((name.to_owned(), Some(value)));
+            sources.push((name.to_owned(), "signal".to_owned()));
+        }
+    }
     (Named(values), Named(sources))
 }
 

@@ -7,6 +7,7 @@ use crate::file_compression::{CompressionFile, CompressionRigFile, YieldFile};
 use crate::item_campaign::{ItemCampaign, SharedFile, read_item_campaign};
 use crate::read_campaign::CAMPAIGN_FILE;
 use crate::read_channels::channel_plans;
+use crate::read_conditioning::refuse_conditioning;
 use crate::read_files::check_format;
 use crate::read_fit::{LawKeys, free_names, law_expressions};
 use crate::toml_source::{
@@ -59,6 +60,15 @@ pub fn read_compression(directory: &Path) -> Result<CompressionCampaign, Error> 
     };
     let laws = law_expressions(&source, &keys)?;
     let free = free_names(&source, &keys, &laws)?;
+    if let Some(channels) = file.channels.as_ref().map(Spanned::get_ref) {
+        let why = "slow compressions are not filtered";
+        for (table, channel) in [
+            ("[channels.force]", &channels.force),
+            ("[channels.position]", &channels.position),
+        ] {
+            refuse_conditioning(&source, table, channel.as_ref(), why)?;
+        }
+    }
     let channels = channel_plans(&source, file.channels.as_ref())?;
     let shared = SharedFile {
         campaign: &file.campaign,

@@ -4,6 +4,7 @@ use crate::campaign::RigPlan;
 use crate::error::Error;
 use crate::file_campaign::{CampaignFile, QuantityText};
 use crate::read_channels::encoder_plan;
+use crate::read_conditioning::{conditioning_plan, rate_plan};
 use crate::toml_source::{Needed, TomlSource, choice, invalid, optional_quantity};
 use toml::Spanned;
 use windfall_signal::ExtractOptions;
@@ -27,7 +28,11 @@ pub fn contact_plan(
     let contact = &file.contact;
     let mut options = ExtractOptions::default();
     options.trigger.threshold = threshold(source, contact.threshold.as_ref())?;
-    let baselines = [("remove", Baseline::Remove), ("keep", Baseline::Keep)];
+    let baselines = [
+        ("remove", Baseline::Remove),
+        ("drift", Baseline::Drift),
+        ("keep", Baseline::Keep),
+    ];
     if let Some(baseline) = choice(
         source,
         contact.baseline.as_ref(),
@@ -54,6 +59,12 @@ pub fn contact_plan(
     if let Some(margin) = &contact.margin_after {
         options.margin_after = checked_margin(source, margin, "margin_after")?;
     }
+    if let Some(release) = &contact.release {
+        options.trigger.release = checked_release(source, release)?;
+    }
+    options.trigger.minimum_gap = minimum_gap(source, contact.minimum_gap.as_ref())?;
+    options.rate = rate_plan(source, contact.rate.as_ref())?;
+    options.conditioning = conditioning_plan(source, file.channels.as_ref())?;
     options.encoder = encoder_plan(source, file)?;
     match rig {
         RigPlan::Pendulum(pendulum) => options.arm = Some(pendulum.arm),
@@ -95,6 +106,50 @@ fn threshold(
                 problem,
             ))
         }
+    }
+}
+
+fn checked_release(source: &TomlSource, release: &Spanned<f64>) -> Result<f64, Error> {
+    let value = *release.get_ref();
+    if value > 0.0 && value <= 1.0 {
+        return Ok(value);
+    }
+    let problem = "expected a part of the threshold above 0, at most 1, such as 0.5".to_owned();
+    let key = (TABLE, "release");
+    Err(invalid(
+        source,
+        &release.span(),
+        key,
+        &value.to_string(),
+        problem,
+    ))
+}
+
+fn minimum_gap(
+    source: &TomlSource,
+    value: Option<&Spanned<QuantityText>>,
+) -> Result<Option<f64>, Error> {
+    let needed = Needed {
+        table: TABLE,
+        key: "minimum_gap",
+        meaning: "contacts closer than this are one",
+        unit: "s",
+        example: "minimum_gap = \"1 ms\"",
+    };
+    let gap = optional_quantity(source, value, &needed)?;
+    match (value, gap) {
+        (Some(value), Some(gap)) if gap < 0.0 => {
+            let problem = "must not be below zero".to_owned();
+            let key = (TABLE, needed.key);
+            Err(invalid(
+                source,
+                &value.span(),
+                key,
+                &value.get_ref().0,
+                problem,
+            ))
+        }
+        _ => Ok(gap),
     }
 }
 

@@ -2,6 +2,9 @@
 
 use crate::campaign::{Campaign, ImpactEntry};
 use crate::error::Error;
+use crate::extract_recording::extract_recording;
+use crate::figure_files::write_figure;
+use crate::figure_impact::figure_of_impact;
 use crate::fit_impact::{FitTask, fit_tasks};
 use crate::fit_key::{impact_key, input_digests};
 use crate::fit_mass::{RigFound, find_rig};
@@ -15,6 +18,7 @@ use crate::request_fit::{FitRequest, Reuse, apply_request};
 use crate::request_recording::{RecordingRequest, campaign_of_file};
 use crate::store::{RunRecord, find_results, latest_run, write_run};
 use crate::summary::{summarise, summarise_groups};
+use rayon::prelude::*;
 use std::collections::BTreeMap;
 use std::path::Path;
 
@@ -73,7 +77,11 @@ pub fn fit_recording(
         let tasks: Vec<FitTask> = (0..campaign.fit.laws.len()).map(task).collect();
         let stored = BTreeMap::new();
         let results = fit_tasks(&campaign, &rig, &tasks, &stored, progress);
-        Ok(assemble(&campaign, &rig, &tasks, results, &stored).shown)
+        let outcome = assemble(&campaign, &rig, &tasks, results, &stored).shown;
+        if let Some(directory) = &request.figures {
+            draw(&campaign, &rig, &outcome, directory)?;
+        }
+        Ok(outcome)
     })
 }
 
@@ -142,7 +150,34 @@ fn fit(
     let results = fit_tasks(campaign, &rig, &tasks, &stored, progress);
     let mut outcome = assemble(campaign, &rig, &tasks, results, &stored);
     keep(campaign, &store, &digests, &mut outcome)?;
+    if let Some(directory) = &request.figures {
+        draw(campaign, &rig, &outcome.shown, directory)?;
+    }
     Ok(outcome.shown)
+}
+
+/// A figure of every impact that was fitted.
+fn draw(
+    campaign: &Campaign,
+    rig: &RigFound,
+    outcome: &CampaignOutcome,
+    directory: &Path,
+) -> Result<(), Error> {
+    let end = campaign.fit.options.end;
+    campaign.impacts.par_iter().try_for_each(|entry| {
+        let own = outcome
+            .impacts
+            .iter()
+            .filter(|impact| impact.id == entry.id);
+        let own: Vec<&ImpactOutcome> = own.collect();
+        if own.is_empty() {
+            return Ok(());
+        }
+        let mass = Some(rig.rig.effective_mass());
+        let (impact, _) = extract_recording(campaign, entry, mass)?;
+        let figure = figure_of_impact(&entry.id, &impact, &own, &rig.rig, end);
+        write_figure(directory, &entry.id, &figure).map(|_| ())
+    })
 }
 
 fn tasks(campaign: &Campaign, digests: &Digests, rig: &RigFound) -> Vec<FitTask> {

@@ -5,7 +5,7 @@ use crate::outcome::{CampaignOutcome, ImpactOutcome};
 use std::path::Path;
 
 /// Columns of derived quantities: name, column.
-const DERIVED: [(&str, &str); 10] = [
+const DERIVED: [(&str, &str); 12] = [
     ("impact_velocity", "impact_velocity_m_s"),
     ("rebound_velocity", "rebound_velocity_m_s"),
     ("restitution", "restitution"),
@@ -16,6 +16,8 @@ const DERIVED: [(&str, &str); 10] = [
     ("elastic_energy", "elastic_energy_J"),
     ("absorbed_energy", "absorbed_energy_J"),
     ("impulse", "impulse_N_s"),
+    ("loading_energy", "loading_energy_J"),
+    ("hysteresis_energy", "hysteresis_energy_J"),
 ];
 
 /// The table of impacts.
