@@ -156,7 +156,7 @@ fn even_interval(channel: &Channel) -> Result<f64, Error> {
         .iter()
         .enumerate()
         .map(jitter)
-        .position(|jitter| jitter > UNEVEN || jitter.is_nan())
+        .position(|jitter| jitter.is_nan() || jitter > UNEVEN)
     {
         None => Ok(interval),
         Some(sample) => Err(Error::UnevenSampling {

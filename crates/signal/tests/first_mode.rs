@@ -1,6 +1,6 @@
 //! The rules by which a resonance is accepted as the first spheroidal mode.
 
-#![allow(clippy::unwrap_used)]
+#![allow(clippy::unwrap_used, clippy::print_stdout)]
 
 use windfall_signal::damped_mode::Mode;
 use windfall_signal::first_mode::{

@@ -1,6 +1,6 @@
 //! Spectra and peaks against scipy 1.17.1; `spectra/reference.py` makes the values.
 
-#![allow(clippy::unwrap_used)]
+#![allow(clippy::unwrap_used, clippy::print_stdout)]
 
 use windfall_signal::spectrum::{Offset, Scaling, SpectrumOptions, Window, periodogram, welch};
 use windfall_signal::spectrum_peak::peaks;

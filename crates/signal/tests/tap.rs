@@ -1,6 +1,6 @@
 //! Taps with known resonances in noise.
 
-#![allow(clippy::unwrap_used)]
+#![allow(clippy::unwrap_used, clippy::print_stdout)]
 
 use std::f64::consts::{PI, TAU};
 use windfall_signal::noise_gaussian::{noise_source, normal, uniform};
