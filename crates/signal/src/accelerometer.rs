@@ -4,6 +4,8 @@
 use crate::filter_butterworth::{Band, FilterError, butterworth};
 use crate::filter_zero_phase::filter_zero_phase;
 use crate::kinematics::value_at;
+use crate::mass::Uncertain;
+use crate::measure::Surroundings;
 
 /// Order of the high-pass filters of a double integration.
 const ORDER: usize = 2;
@@ -17,12 +19,38 @@ pub struct ForceCheck {
     pub peak_ratio: f64,
 }
 
+/// Part of the contact's duration before onset that is left out of the zero; 1.
+const GUARD: f64 = 0.05;
+
+/// Samples before contact from which a zero is known.
+const LEAST_ZERO: usize = 5;
+
+/// What an accelerometer shows in free motion before contact: its mean and the
+/// standard uncertainty of that; m/s². A constant acceleration of the motion is in
+/// it. `None` with fewer than 5 samples.
+#[must_use]
+pub fn free_acceleration(times: &[f64], values: &[f64], place: &Surroundings) -> Option<Uncertain> {
+    let last = times.partition_point(|&t| t <= place.onset - GUARD * place.duration());
+    let first = times.partition_point(|&t| t <= place.from);
+    let free = values.get(first..last)?;
+    if free.len() < LEAST_ZERO {
+        return None;
+    }
+    let n = free.len() as f64;
+    let mean = free.iter().sum::<f64>() / n;
+    let squares: f64 = free.iter().map(|a| (a - mean).powi(2)).sum();
+    Some(Uncertain {
+        value: mean,
+        sd: (squares / (n - 1.0) / n).sqrt(),
+    })
+}
+
 /// Compares a force with the acceleration of the mass that it slows down.
 ///
 /// * `force`, `acceleration`: times and samples; acceleration positive into the
 ///   fruit, so negative in contact
 /// * `mass`: effective mass at the contact; kg
-/// * `driving`: acceleration without contact; m/s²
+/// * `free`: what the accelerometer shows without contact; m/s²
 ///
 /// `None` where the acceleration does not cover the contact or has no impulse.
 #[must_use]
@@ -31,7 +59,7 @@ pub fn check_force(
     acceleration: (&[f64], &[f64]),
     (onset, end): (f64, f64),
     mass: f64,
-    driving: f64,
+    free: f64,
 ) -> Option<ForceCheck> {
     let covers = |times: &[f64]| {
         times.first().is_some_and(|t| *t <= onset) && times.last().is_some_and(|t| *t >= end)
@@ -39,11 +67,7 @@ pub fn check_force(
     if !covers(force.0) || !covers(acceleration.0) {
         return None;
     }
-    let inertial: Vec<f64> = acceleration
-        .1
-        .iter()
-        .map(|a| mass * (driving - a))
-        .collect();
+    let inertial: Vec<f64> = acceleration.1.iter().map(|a| mass * (free - a)).collect();
     let (of_force, of_acceleration) = (
         integral(force.0, force.1, onset, end),
         integral(acceleration.0, &inertial, onset, end),

@@ -1,17 +1,21 @@
 //! What channels say of one another: the loop of force over displacement beside
 //! the velocities, an accelerometer beside force and displacement.
 
-use crate::accelerometer::{check_force, displacement_error, double_integral};
+use crate::accelerometer::{check_force, displacement_error, double_integral, free_acceleration};
 use crate::filter_butterworth::Band;
 use crate::finding::Finding;
 use crate::force_loop::force_loop;
 use crate::impact::Measured;
+use crate::mass::Uncertain;
 use crate::measure::Surroundings;
 use crate::options::ExtractOptions;
-use crate::track::{Signals, Track};
+use crate::track::{Signals, Track, mean_interval};
 
 /// Disagreement of force and acceleration that is told; 1.
 const DISAGREES: f64 = 0.05;
+
+/// … and only if it is this many of its standard uncertainties; 1.
+const SIGNIFICANT: f64 = 3.0;
 
 /// Disagreement of energies that is told, as a part of the impact energy; 1.
 const MISMATCH: f64 = 0.1;
@@ -55,19 +59,28 @@ pub(crate) fn compare(
         return measured;
     };
     if let (Some(force), Some(mass)) = (&signals.force, options.effective_mass) {
-        let driving = options.driving_acceleration;
-        let check = check_force(pair(force), pair(acceleration), window, mass, driving);
-        measured.acceleration_impulse_ratio = check.map(|check| check.impulse_ratio);
-        measured.acceleration_peak_ratio = check.map(|check| check.peak_ratio);
-        if let Some(check) = check
-            && [check.impulse_ratio, check.peak_ratio]
-                .iter()
-                .any(|ratio| (ratio - 1.0).abs() > DISAGREES)
-        {
-            findings.push(Finding::AccelerometerDisagrees {
-                impulse_ratio: check.impulse_ratio,
-                peak_ratio: check.peak_ratio,
-            });
+        let free = free_acceleration(&acceleration.times, &acceleration.values, place);
+        let free = free.unwrap_or(Uncertain {
+            value: options.driving_acceleration,
+            sd: 0.0,
+        });
+        let (force, motion) = (pair(force), pair(acceleration));
+        if let Some(check) = check_force(force, motion, window, mass, free.value) {
+            let sd = ratio_deviations(&measured, signals, place, free.sd, mass);
+            let sd = (sd.0 * check.impulse_ratio, sd.1 * check.peak_ratio);
+            measured.acceleration_impulse_ratio = Some(check.impulse_ratio);
+            measured.acceleration_peak_ratio = Some(check.peak_ratio);
+            measured.acceleration_impulse_ratio_sd = Some(sd.0);
+            measured.acceleration_peak_ratio_sd = Some(sd.1);
+            let apart = |ratio: f64, sd: f64| (ratio - 1.0).abs() > DISAGREES.max(SIGNIFICANT * sd);
+            if apart(check.impulse_ratio, sd.0) || apart(check.peak_ratio, sd.1) {
+                findings.push(Finding::AccelerometerDisagrees {
+                    impulse_ratio: check.impulse_ratio,
+                    impulse_ratio_sd: sd.0,
+                    peak_ratio: check.peak_ratio,
+                    peak_ratio_sd: sd.1,
+                });
+            }
         }
     }
     if let (Some(displacement), Some(velocity)) = (&signals.displacement, measured.impact_velocity)
@@ -93,8 +106,37 @@ pub(crate) fn compare(
             displacement_error((times, &integrated), pair(displacement), window)
         });
         measured.integrated_displacement_error = error.map(|error| error.largest);
+        measured.integrated_displacement_rms = error.map(|error| error.rms);
+        measured.integrated_displacement_drift = error.map(|error| error.drift);
     }
     measured
+}
+
+/// Relative standard uncertainties of the ratios of impulses and of peaks, from the
+/// noise of both sensors and their zeros; 1. Not from the calibrations.
+///
+/// White noise σ leaves σ √(h T) in an impulse, a zero that is off by u leaves u T.
+fn ratio_deviations(
+    measured: &Measured,
+    signals: &Signals,
+    place: &Surroundings,
+    free_sd: f64,
+    mass: f64,
+) -> (f64, f64) {
+    let (Some(force), Some(acceleration)) = (&signals.force, &signals.acceleration) else {
+        return (0.0, 0.0);
+    };
+    let duration = place.duration();
+    let interval = mean_interval(&acceleration.times);
+    let inertial = mass * acceleration.noise;
+    let impulse = (inertial * (interval * duration).sqrt()).hypot(mass * free_sd * duration);
+    let of_impulse = measured.impulse_sd.unwrap_or(0.0).hypot(impulse);
+    let of_peak = force.noise.hypot(inertial).hypot(mass * free_sd);
+    let relative = |sd: f64, value: Option<f64>| value.map_or(0.0, |value| (sd / value).abs());
+    (
+        relative(of_impulse, measured.impulse),
+        relative(of_peak, measured.peak_force),
+    )
 }
 
 fn pair(track: &Track) -> (&[f64], &[f64]) {

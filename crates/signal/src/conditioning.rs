@@ -1,12 +1,14 @@
 //! What is done to channels before anything is read off them: filters, drift,
 //! and the mass of the tip ahead of a force sensor.
 
+use crate::accelerometer::free_acceleration;
 use crate::error::Error;
 use crate::filter_butterworth::{Band, FilterError, butterworth};
 use crate::filter_zero_phase::filter_zero_phase;
 use crate::finding::Finding;
 use crate::kinematics::value_at;
 use crate::measure::Surroundings;
+use crate::noise::median;
 use crate::polynomial::{evenly_spaced, fit_polynomial};
 use crate::track::{Track, Tracks, mean_interval};
 use crate::trigger::ContactWindow;
@@ -40,6 +42,9 @@ pub struct Conditioning {
 
 /// A drift is fitted where this many samples lie on either side.
 const LEAST_QUIET: usize = 5;
+
+/// Part of the recording at either end from which a drift is first guessed; 1.
+const PILOT_SHARE: f64 = 0.05;
 
 /// Part of a contact's duration that is kept away from when a drift is fitted; 1.
 const DRIFT_GUARD: f64 = 0.25;
@@ -98,6 +103,26 @@ fn filter_track(
     Ok(())
 }
 
+/// A force less the line through the medians of its first and last samples: good
+/// enough to find contacts by, and to be replaced by [`remove_drift`]. `None`
+/// with too few samples.
+pub(crate) fn less_pilot_line(track: &Track) -> Option<Vec<f64>> {
+    let n = track.times.len();
+    let part = ((PILOT_SHARE * n as f64) as usize).max(LEAST_QUIET);
+    if n < 2 * part {
+        return None;
+    }
+    let (first, last) = (0..part, n - part..n);
+    let middle = |range: &std::ops::Range<usize>| {
+        0.5 * (track.times[range.start] + track.times[range.end - 1])
+    };
+    let (from, to) = (middle(&first), middle(&last));
+    let (low, high) = (median(&track.values[first])?, median(&track.values[last])?);
+    let slope = (high - low) / (to - from);
+    let pairs = track.times.iter().zip(&track.values);
+    Some(pairs.map(|(t, v)| v - low - slope * (t - from)).collect())
+}
+
 /// Takes a straight line through the quiet stretches before and after all
 /// contacts off a force.
 pub(crate) fn remove_drift(
@@ -140,9 +165,12 @@ pub(crate) fn remove_drift(
 /// Adds what accelerates the tip to the force of the sensor behind it:
 ///
 /// ```text
-/// F = F_s − m_tip x''           with a measured acceleration
+/// F = F_s − m_tip (x'' − x₀'')  with a measured acceleration
 /// F = F_s m_eff/(m_eff − m_tip) from the rig's own motion, m_eff x'' = −F
 /// ```
+///
+/// x₀'' is what the accelerometer shows in free motion, where the zero of the
+/// force was taken.
 pub(crate) fn add_tip_force(
     force: &mut Track,
     acceleration: Option<&Track>,
@@ -158,9 +186,12 @@ pub(crate) fn add_tip_force(
     });
     match (measured, effective_mass) {
         (Some(acceleration), _) => {
+            let (times, values) = (&acceleration.times, &acceleration.values);
+            let free = free_acceleration(times, values, place).map_or(0.0, |free| free.value);
             for (time, value) in force.times.iter().zip(&mut force.values) {
-                *value -= tip * value_at(&acceleration.times, &acceleration.values, *time);
+                *value -= tip * (value_at(times, values, *time) - free);
             }
+            force.noise = force.noise.hypot(tip * acceleration.noise);
         }
         (None, Some(mass)) if mass > tip => {
             let factor = mass / (mass - tip);

@@ -1,5 +1,15 @@
 //! Displacement rate from the times at which an encoder's count changes.
 
+/// What the time beside a count means.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum CountTimes {
+    /// The count was looked at then: it changed since the sample before.
+    #[default]
+    Sampled,
+    /// The count changed then.
+    Events,
+}
+
 /// Where a count changed: the displacement there is known exactly, the time to
 /// half a sampling interval.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -25,37 +35,48 @@ pub struct EdgeRate {
 /// The edges of a counted displacement.
 ///
 /// Sampled counts change between two samples: the edge is put midway. Where each
-/// time is that of an event (`events`), the count changed at the time itself.
+/// time is that of an event, the count changed at the time itself.
 ///
 /// A step of several counts within one interval is one edge, at its middle.
 #[must_use]
-pub fn edges(times: &[f64], values: &[f64], events: bool) -> Edges {
+pub fn edges(times: &[f64], values: &[f64], count_times: CountTimes) -> Edges {
     let mut edges = Edges::default();
     for i in 1..times.len().min(values.len()) {
         if values[i] == values[i - 1] {
             continue;
         }
-        edges.times.push(match events {
-            true => times[i],
-            false => 0.5 * (times[i - 1] + times[i]),
+        edges.times.push(match count_times {
+            CountTimes::Events => times[i],
+            CountTimes::Sampled => 0.5 * (times[i - 1] + times[i]),
         });
         edges.values.push(0.5 * (values[i - 1] + values[i]));
     }
     edges
 }
 
-/// Rate between successive edges, v = Δx/(t_i − t_{i−1}), at the middle of each
-/// pair. At a reversal the same edge is passed twice, and the rate is zero.
+/// Rate between edges, v = Δx/(t_j − t_i), at the middle of each pair. At a
+/// reversal the same edge is passed twice, and the rate is zero.
 ///
+/// * `window`: j is the first edge at least this long after i; s. 0: the next one.
+///   The times of two edges are each known to a sampling interval; over a longer
+///   time that matters less.
 /// * `quantum`: length of a count; m
 /// * `end`: when the recording ended; s
 #[must_use]
-pub fn edge_rate(edges: &Edges, quantum: f64, end: f64) -> EdgeRate {
-    let pairs = edges.times.windows(2).zip(edges.values.windows(2));
-    let (times, values) = pairs
-        .filter(|(t, _)| t[1] > t[0])
-        .map(|(t, x)| (0.5 * (t[0] + t[1]), (x[1] - x[0]) / (t[1] - t[0])))
-        .unzip();
+pub fn edge_rate(edges: &Edges, window: f64, quantum: f64, end: f64) -> EdgeRate {
+    let (mut times, mut values) = (Vec::new(), Vec::new());
+    let mut j = 0;
+    for (i, (&from, &first)) in edges.times.iter().zip(&edges.values).enumerate() {
+        j = j.max(i + 1);
+        while j < edges.times.len() && (edges.times[j] - from < window || edges.times[j] <= from) {
+            j += 1;
+        }
+        let Some((&to, &second)) = edges.times.get(j).zip(edges.values.get(j)) else {
+            break;
+        };
+        times.push(0.5 * (from + to));
+        values.push((second - first) / (to - from));
+    }
     let last = edges.times.last().copied();
     EdgeRate {
         times,
@@ -76,9 +97,9 @@ mod tests {
         let triangle = |i: i32| f64::from(if i <= 505 { i } else { 1010 - i }) * 0.1;
         let times: Vec<f64> = (0..1011).map(|i| f64::from(i) * 1e-3).collect();
         let counts: Vec<f64> = (0..1011).map(|i| (triangle(i) + 1e-9).floor()).collect();
-        let edges = edges(&times, &counts, false);
+        let edges = edges(&times, &counts, CountTimes::Sampled);
         assert_eq!(edges.times.len(), 100);
-        let rate = edge_rate(&edges, 1.0, 1.01);
+        let rate = edge_rate(&edges, 0.0, 1.0, 1.01);
         // 100 counts a second up, zero at the reversal, down.
         for (time, value) in rate.times.iter().zip(&rate.values) {
             let expected = match time {
@@ -93,7 +114,7 @@ mod tests {
 
     #[test]
     fn closed_form_events_are_edges_themselves() {
-        let edges = edges(&[0.0, 0.5, 0.7], &[3.0, 4.0, 5.0], true);
+        let edges = edges(&[0.0, 0.5, 0.7], &[3.0, 4.0, 5.0], CountTimes::Events);
         assert_eq!(
             (edges.times, edges.values),
             (vec![0.5, 0.7], vec![3.5, 4.5])

@@ -2,7 +2,7 @@
 
 use crate::clipping::clipping;
 use crate::compare::compare;
-use crate::conditioning::{add_tip_force, filter_tracks, remove_drift};
+use crate::conditioning::{add_tip_force, filter_tracks, less_pilot_line, remove_drift};
 use crate::deceleration::deceleration;
 use crate::error::{Error, Times};
 use crate::finding::Finding;
@@ -20,7 +20,9 @@ use crate::polynomial::local_polynomial;
 use crate::rate::derived_rate;
 use crate::recording::Recording;
 use crate::track::{Geometry, Signals, Track, Tracks, mean_interval, missing, tracks};
-use crate::trigger::{Baseline, Contacts, Signal, Threshold, TriggerOptions, find_contacts};
+use crate::trigger::{
+    Baseline, ContactWindow, Contacts, Signal, Threshold, TriggerOptions, find_contacts,
+};
 
 /// Fewer samples in contact than this are reported.
 const FEW_SAMPLES: usize = 8;
@@ -57,11 +59,8 @@ pub fn extract_impact(
     if options.trigger.baseline == Baseline::Drift
         && let Some(force) = &mut tracks.force
     {
-        let found = find_contacts(
-            &signal(force, "N", &force.times, &force.values),
-            &options.trigger,
-        )?;
-        remove_drift(force, &found.windows, &mut findings);
+        let windows = drifting_windows(force, &options.trigger)?;
+        remove_drift(force, &windows, &mut findings);
     }
 
     // The contact, and the free motion around it.
@@ -172,7 +171,7 @@ fn rate(
     if keep {
         return measured;
     }
-    let mut track = derived_rate(signals.displacement.as_ref()?, options.rate, place)?;
+    let mut track = derived_rate(signals.displacement.as_ref()?, options, place)?;
     track.noise = noise_of(&track, place, findings);
     Some(track)
 }
@@ -227,6 +226,23 @@ fn contacts(
         &trigger,
     )?;
     Ok((contacts, Some(window_finding(track, found.resolution))))
+}
+
+/// Contacts of a force whose zero drifts: after a first line is taken off, unless
+/// the recording seems to begin or end in contact then.
+fn drifting_windows(force: &Track, trigger: &TriggerOptions) -> Result<Vec<ContactWindow>, Error> {
+    let whole = |contacts: &Contacts| {
+        let ends = contacts.windows.first().zip(contacts.windows.last());
+        ends.is_some_and(|(first, last)| first.onset_seen && last.end_seen)
+    };
+    if let Some(level) = less_pilot_line(force)
+        && let Ok(found) = find_contacts(&signal(force, "N", &force.times, &level), trigger)
+        && whole(&found)
+    {
+        return Ok(found.windows);
+    }
+    let signal = signal(force, "N", &force.times, &force.values);
+    find_contacts(&signal, trigger).map(|found| found.windows)
 }
 
 fn signal<'a>(
@@ -376,8 +392,10 @@ fn few_samples(track: &Track, place: &Surroundings) -> Option<Finding> {
 /// The samples around the contact; `None` if there is none.
 fn series(track: &Track, place: &Surroundings, options: &ExtractOptions) -> Option<Series> {
     let times = &track.times;
-    let from = place.onset - options.margin_before * place.duration();
-    let until = place.end + options.margin_after * place.duration();
+    let before = options.margin_before * place.duration();
+    let after = options.margin_after * place.duration();
+    let from = place.onset - before.max(options.pre_trigger);
+    let until = place.end + after.max(options.post_trigger);
     let onset = times.partition_point(|&t| t < place.onset);
     let end = times.partition_point(|&t| t <= place.end);
     let first = times

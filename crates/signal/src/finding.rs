@@ -155,8 +155,12 @@ pub enum Finding {
     AccelerometerDisagrees {
         /// Ratio of the impulses; 1.
         impulse_ratio: f64,
+        /// Its standard uncertainty, from noise and zeros; 1.
+        impulse_ratio_sd: f64,
         /// Ratio of the largest values; 1.
         peak_ratio: f64,
+        /// Its standard uncertainty, likewise; 1.
+        peak_ratio_sd: f64,
     },
     /// The loop of force over displacement and the velocities tell other energies.
     EnergyMismatch {
@@ -375,10 +379,12 @@ impl fmt::Display for Finding {
             }
             Self::AccelerometerDisagrees {
                 impulse_ratio,
+                impulse_ratio_sd,
                 peak_ratio,
+                peak_ratio_sd,
             } => write!(
                 f,
-                "force and mass times acceleration disagree: impulses as {impulse_ratio:.3} to 1, peaks as {peak_ratio:.3} to 1; check both calibrations, the mass, and that the accelerometer sits where the force acts"
+                "force and mass times acceleration disagree: impulses as {impulse_ratio:.3} ± {impulse_ratio_sd:.3} to 1, peaks as {peak_ratio:.3} ± {peak_ratio_sd:.3} to 1; check both calibrations, the mass, and that the accelerometer sits where the force acts"
             ),
             Self::EnergyMismatch { area, absorbed } => write!(
                 f,

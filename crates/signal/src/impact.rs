@@ -51,6 +51,14 @@ pub struct Measured {
     /// Largest departure of the acceleration, integrated twice from just before
     /// contact, from the measured displacement; m.
     pub integrated_displacement_error: Option<f64>,
+    /// Root mean square of that departure over the contact; m.
+    pub integrated_displacement_rms: Option<f64>,
+    /// That departure at the end of the contact; m.
+    pub integrated_displacement_drift: Option<f64>,
+    /// Standard uncertainty of the ratio of the impulses, from noise and zeros; 1.
+    pub acceleration_impulse_ratio_sd: Option<f64>,
+    /// Standard uncertainty of the ratio of the peaks, from noise and zeros; 1.
+    pub acceleration_peak_ratio_sd: Option<f64>,
     /// Standard uncertainty of the impact velocity, from the scatter about the
     /// fitted line; m/s.
     pub impact_velocity_sd: Option<f64>,

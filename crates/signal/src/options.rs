@@ -1,6 +1,7 @@
 //! How an impact is cut out of a recording.
 
 use crate::conditioning::Conditioning;
+use crate::edge_rate::CountTimes;
 use crate::error::Error;
 use crate::kinematics::Encoder;
 use crate::quadrature::IllegalTransition;
@@ -21,7 +22,7 @@ pub enum RateMethod {
     /// found by cross-validation; of a counted displacement through its edges.
     SmoothingSpline,
     /// Length of a count over the time between its edges, for counted
-    /// displacements.
+    /// displacements; over longer times by [`ExtractOptions::edge_window`].
     EdgeTimes,
     /// The derivative of local polynomials (Savitzky-Golay) of the displacement.
     /// Smooth, for display; neighbouring samples share their noise.
@@ -54,6 +55,15 @@ pub struct ExtractOptions {
     pub arm: Option<f64>,
     /// How the series of the displacement rate is made.
     pub rate: RateMethod,
+    /// Least time between the two edges of a rate; s. 0: neighbours. Only for
+    /// [`RateMethod::EdgeTimes`].
+    pub edge_window: f64,
+    /// What the times beside counts mean.
+    pub count_times: CountTimes,
+    /// Kept before onset at least, where the recording has it; s.
+    pub pre_trigger: f64,
+    /// Kept after the end at least, likewise; s.
+    pub post_trigger: f64,
     /// Filters, and the tip ahead of the force sensor.
     pub conditioning: Conditioning,
     /// Mass that the contact feels, for the energies; kg.
@@ -74,6 +84,10 @@ impl Default for ExtractOptions {
             illegal: IllegalTransition::default(),
             arm: None,
             rate: RateMethod::default(),
+            edge_window: 0.0,
+            count_times: CountTimes::default(),
+            pre_trigger: 0.0,
+            post_trigger: 0.0,
             conditioning: Conditioning::default(),
             effective_mass: None,
             driving_acceleration: 0.0,
@@ -99,6 +113,15 @@ pub(crate) fn check_options(options: &ExtractOptions) -> Result<(), Error> {
                 margin,
                 "a part of the contact's duration, 0 or more",
             );
+        }
+    }
+    for (option, time) in [
+        ("window of the rate's edges", options.edge_window),
+        ("pre-trigger", options.pre_trigger),
+        ("post-trigger", options.post_trigger),
+    ] {
+        if !(time >= 0.0 && time.is_finite()) {
+            return bad(option, time, "a time of 0 s or more");
         }
     }
     if let Some(mass) = options.effective_mass

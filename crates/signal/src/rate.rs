@@ -1,9 +1,9 @@
 //! Displacement rate from displacement.
 
-use crate::edge_rate::{edge_rate, edges};
+use crate::edge_rate::{CountTimes, edge_rate, edges};
 use crate::kinematics::{central_difference, rate_quantum, smoothing_window};
 use crate::measure::Surroundings;
-use crate::options::RateMethod;
+use crate::options::{ExtractOptions, RateMethod};
 use crate::polynomial::{evenly_spaced, local_polynomial};
 use crate::smoothing_spline::smoothing_spline_gcv;
 use crate::track::{Track, mean_interval};
@@ -12,15 +12,15 @@ use crate::track::{Track, mean_interval};
 /// measured channel, or if there are too few samples.
 pub(crate) fn derived_rate(
     displacement: &Track,
-    method: RateMethod,
+    options: &ExtractOptions,
     place: &Surroundings,
 ) -> Option<Track> {
-    match method {
+    match options.rate {
         RateMethod::Measured => None,
         RateMethod::Automatic if !evenly_spaced(&displacement.times) => None,
         RateMethod::Automatic | RateMethod::CentralDifference => central_rate(displacement),
-        RateMethod::SmoothingSpline => spline_rate(displacement, place),
-        RateMethod::EdgeTimes => edge_track(displacement),
+        RateMethod::SmoothingSpline => spline_rate(displacement, options.count_times, place),
+        RateMethod::EdgeTimes => edge_track(displacement, options),
         RateMethod::LocalPolynomial { order, window } => {
             polynomial_rate(displacement, order, window, place)
         }
@@ -66,12 +66,12 @@ const SAMPLES_PER_COUNT: usize = 3;
 
 /// Derivative of a smoothing spline around the contact; through the edges where
 /// the displacement is counted and changes seldom.
-fn spline_rate(track: &Track, place: &Surroundings) -> Option<Track> {
+fn spline_rate(track: &Track, count_times: CountTimes, place: &Surroundings) -> Option<Track> {
     let around = place.duration();
     let first = track.times.partition_point(|t| *t < place.onset - around);
     let last = track.times.partition_point(|t| *t <= place.end + around);
     let (times, values) = (&track.times[first..last], &track.values[first..last]);
-    let edges = edges(times, values, false);
+    let edges = edges(times, values, count_times);
     let counted =
         track.quantum.is_some() && times.len() > SAMPLES_PER_COUNT * edges.times.len().max(1);
     let (times, values) = match counted {
@@ -98,10 +98,11 @@ fn spline_rate(track: &Track, place: &Surroundings) -> Option<Track> {
 }
 
 /// Rate between the edges of a counted displacement.
-fn edge_track(track: &Track) -> Option<Track> {
+fn edge_track(track: &Track, options: &ExtractOptions) -> Option<Track> {
     let quantum = track.quantum?;
     let end = *track.times.last()?;
-    let rate = edge_rate(&edges(&track.times, &track.values, false), quantum, end);
+    let found = edges(&track.times, &track.values, options.count_times);
+    let rate = edge_rate(&found, options.edge_window, quantum, end);
     (rate.times.len() >= 3).then(|| Track {
         name: format!("rate of {}", track.name),
         times: rate.times,

@@ -259,3 +259,115 @@ fn closed_form_errors_of_the_rates() {
     assert!(spline < 0.05 * central, "{spline}");
     assert!(polynomial < 0.05 * central, "{polynomial}");
 }
+
+fn with_acceleration(change: impl Fn(usize, f64) -> f64) -> Recording {
+    let mut recording = recording(true_force, true);
+    let samples = recording.channels[2].samples.iter_mut().enumerate();
+    samples.for_each(|(i, a)| *a = change(i, *a));
+    recording
+}
+
+/// An accelerometer that shows 40 m/s² at rest says the same of a tip and of the
+/// force as one that shows 0.
+#[test]
+fn conserves_tip_and_check_under_an_offset_of_the_accelerometer() {
+    let tip = 0.012;
+    let mut offset = with_acceleration(|_, a| a + 40.0);
+    let (impact, findings) = extract(&offset, &options());
+    assert!((impact.measured.acceleration_impulse_ratio.unwrap() - 1.0).abs() < 1e-9);
+    assert!((impact.measured.acceleration_peak_ratio.unwrap() - 1.0).abs() < 1e-9);
+    assert!(!has(&findings, "accelerometer-disagrees"));
+    let force = &mut offset.channels[1].samples;
+    force.iter_mut().for_each(|f| *f *= 1.0 - tip / MASS);
+    let mut options = options();
+    options.conditioning.tip_mass = Some(tip);
+    let (impact, _) = extract(&offset, &options);
+    let force = impact.force.unwrap();
+    for (time, value) in force.times.iter().zip(&force.values) {
+        assert!((value - true_force(*time)).abs() < 1e-9, "{time}: {value}");
+    }
+}
+
+/// White noise of the accelerometer: the ratio of the impulses scatters as its
+/// stated uncertainty says, 40 recordings within a third.
+#[test]
+fn recovers_the_ratio_of_impulses_within_its_uncertainty() {
+    let mut squares = 0.0;
+    for seed in 0..40 {
+        let mut noise = noise_source(seed, 0);
+        let values: Vec<f64> = (0..5000).map(|_| 8.0 * normal(&mut noise)).collect();
+        let (impact, _) = extract(&with_acceleration(|i, a| a + values[i]), &options());
+        let measured = impact.measured;
+        let sd = measured.acceleration_impulse_ratio_sd.unwrap();
+        assert!(sd > 1e-4 && sd < 1e-2, "{sd}");
+        squares += ((measured.acceleration_impulse_ratio.unwrap() - 1.0) / sd).powi(2);
+        assert!(measured.acceleration_peak_ratio_sd.unwrap() > 0.0);
+    }
+    let scatter = (squares / 40.0).sqrt();
+    assert!((0.67..1.5).contains(&scatter), "{scatter}");
+}
+
+/// A zero that wanders by four peaks over the recording, either way.
+#[test]
+fn recovers_the_force_under_a_drift_larger_than_itself() {
+    let largest = (0..2000)
+        .map(|i| true_force(f64::from(i) * INTERVAL))
+        .fold(0.0, f64::max);
+    let mut options = options();
+    options.trigger.threshold = Threshold::Fixed(8.0);
+    options.trigger.baseline = Baseline::Drift;
+    for slope in [-80.0, 80.0] {
+        let drifting = |t: f64| true_force(t) + slope * largest * t;
+        let (impact, findings) = extract(&recording(drifting, false), &options);
+        assert!((impact.measured.peak_force.unwrap() - largest).abs() < 1e-6);
+        assert!(has(&findings, "drift-removed"));
+    }
+}
+
+#[test]
+fn closed_form_what_is_kept_before_and_after() {
+    let mut options = options();
+    options.pre_trigger = 0.012;
+    options.post_trigger = 0.009;
+    let (impact, _) = extract(&recording(true_force, false), &options);
+    let times = impact.force.unwrap().times;
+    let before = impact.onset - times[0];
+    let after = times[times.len() - 1] - impact.end;
+    assert!((before - 0.012).abs() < 2.0 * INTERVAL, "{before}");
+    assert!((after - 0.009).abs() < 2.0 * INTERVAL, "{after}");
+}
+
+/// Over a twentieth of the contact the rounding of edges to samples hardly matters.
+#[test]
+fn converges_edge_times_with_their_window() {
+    let quantum = 8.8e-6;
+    let mut counted = recording(true_force, false);
+    let position = &mut counted.channels[0];
+    position.quantity = Quantity::EncoderCount;
+    let samples = position.samples.iter_mut();
+    samples.for_each(|x| *x = (*x / quantum).floor());
+    let error = |window: f64| {
+        let options = ExtractOptions {
+            encoder: Some(windfall_signal::kinematics::Encoder::Linear {
+                count_length: quantum,
+            }),
+            rate: RateMethod::EdgeTimes,
+            edge_window: window,
+            ..options()
+        };
+        let (impact, _) = extract(&counted, &options);
+        let rate = impact.rate.unwrap();
+        let inside = |t: f64| t > impact.onset + 2e-4 && t < impact.end - 2e-4;
+        let squares: Vec<f64> = rate
+            .times
+            .iter()
+            .zip(&rate.values)
+            .filter(|(t, _)| inside(**t))
+            .map(|(t, v)| (v - motion(*t).1).powi(2))
+            .collect();
+        (squares.iter().sum::<f64>() / squares.len() as f64).sqrt()
+    };
+    let (neighbours, twentieth) = (error(0.0), error(duration() / 20.0));
+    assert!(neighbours > 0.02, "{neighbours}");
+    assert!(twentieth < neighbours / 10.0, "{neighbours} {twentieth}");
+}

@@ -165,6 +165,8 @@ pub struct EncoderFile {
     pub counts_per_revolution: Option<Spanned<f64>>,
     /// Displacement per count, for a wheel or a linear scale.
     pub count_length: Option<Spanned<QuantityText>>,
+    /// What the times beside decoded counts mean: "sampled" or "events".
+    pub times: Option<Spanned<String>>,
 }
 
 /// `[contact]`
@@ -182,6 +184,12 @@ pub struct ContactFile {
     pub minimum_gap: Option<Spanned<QuantityText>>,
     /// How the displacement rate is made.
     pub rate: Option<Spanned<String>>,
+    /// Least time between the two edges of a rate from edge times.
+    pub rate_window: Option<Spanned<QuantityText>>,
+    /// What is kept before the contact at least.
+    pub pre_trigger: Option<Spanned<QuantityText>>,
+    /// What is kept after the contact at least.
+    pub post_trigger: Option<Spanned<QuantityText>>,
     /// Which of several contacts is used: "first" or "strongest".
     pub contact: Option<Spanned<String>>,
     /// What is kept before the contact, as a part of its duration.

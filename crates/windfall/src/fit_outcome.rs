@@ -197,6 +197,14 @@ fn derived_values(
             "integrated_displacement_error",
             measured.integrated_displacement_error,
         ),
+        (
+            "integrated_displacement_rms",
+            measured.integrated_displacement_rms,
+        ),
+        (
+            "integrated_displacement_drift",
+            measured.integrated_displacement_drift,
+        ),
     ] {
         if let Some(value) = value.filter(|value| value.is_finite()) {
             values.push((name.to_owned(), Some(value)));
@@ -211,6 +219,14 @@ fn derived_uncertainties(measured: &Measured) -> Named<f64> {
         ("impact_velocity", measured.impact_velocity_sd),
         ("rebound_velocity", measured.rebound_velocity_sd),
         ("impulse", measured.impulse_sd),
+        (
+            "acceleration_impulse_ratio",
+            measured.acceleration_impulse_ratio_sd,
+        ),
+        (
+            "acceleration_peak_ratio",
+            measured.acceleration_peak_ratio_sd,
+        ),
     ];
     let known = values
         .into_iter()

@@ -2,13 +2,15 @@
 
 use crate::campaign::RigPlan;
 use crate::error::Error;
-use crate::file_campaign::{CampaignFile, QuantityText};
+use crate::file_campaign::{CampaignFile, ContactFile, QuantityText};
 use crate::read_channels::encoder_plan;
 use crate::read_conditioning::{conditioning_plan, rate_plan};
 use crate::toml_source::{Needed, TomlSource, choice, invalid, optional_quantity};
 use toml::Spanned;
 use windfall_signal::ExtractOptions;
+use windfall_signal::edge_rate::CountTimes;
 use windfall_signal::kinematics::Encoder;
+use windfall_signal::options::RateMethod;
 use windfall_signal::trigger::{Baseline, ContactChoice, Threshold};
 
 const TABLE: &str = "[contact]";
@@ -62,8 +64,21 @@ pub fn contact_plan(
     if let Some(release) = &contact.release {
         options.trigger.release = checked_release(source, release)?;
     }
-    options.trigger.minimum_gap = minimum_gap(source, contact.minimum_gap.as_ref())?;
+    let time = |value: &Option<Spanned<QuantityText>>, key, about| {
+        span_of_time(source, value.as_ref(), key, about)
+    };
+    let gap = (
+        "contacts closer than this are one",
+        "minimum_gap = \"1 ms\"",
+    );
+    options.trigger.minimum_gap = time(&contact.minimum_gap, "minimum_gap", gap)?;
+    let before = ("what is kept before contact", "pre_trigger = \"2 ms\"");
+    options.pre_trigger = time(&contact.pre_trigger, "pre_trigger", before)?.unwrap_or(0.0);
+    let after = ("what is kept after contact", "post_trigger = \"2 ms\"");
+    options.post_trigger = time(&contact.post_trigger, "post_trigger", after)?.unwrap_or(0.0);
     options.rate = rate_plan(source, contact.rate.as_ref())?;
+    options.edge_window = edge_window(source, contact, options.rate)?;
+    options.count_times = count_times(source, file)?;
     options.conditioning = conditioning_plan(source, file.channels.as_ref())?;
     options.encoder = encoder_plan(source, file)?;
     match rig {
@@ -125,32 +140,67 @@ fn checked_release(source: &TomlSource, release: &Spanned<f64>) -> Result<f64, E
     ))
 }
 
-fn minimum_gap(
+/// A time of `[contact]` that may be left out, not below zero; s.
+fn span_of_time(
     source: &TomlSource,
     value: Option<&Spanned<QuantityText>>,
+    key: &'static str,
+    (meaning, example): (&'static str, &'static str),
 ) -> Result<Option<f64>, Error> {
     let needed = Needed {
         table: TABLE,
-        key: "minimum_gap",
-        meaning: "contacts closer than this are one",
+        key,
+        meaning,
         unit: "s",
-        example: "minimum_gap = \"1 ms\"",
+        example,
     };
-    let gap = optional_quantity(source, value, &needed)?;
-    match (value, gap) {
-        (Some(value), Some(gap)) if gap < 0.0 => {
+    let time = optional_quantity(source, value, &needed)?;
+    match (value, time) {
+        (Some(value), Some(time)) if time < 0.0 => {
             let problem = "must not be below zero".to_owned();
-            let key = (TABLE, needed.key);
-            Err(invalid(
-                source,
-                &value.span(),
-                key,
-                &value.get_ref().0,
-                problem,
-            ))
+            let text = &value.get_ref().0;
+            Err(invalid(source, &value.span(), (TABLE, key), text, problem))
         }
-        _ => Ok(gap),
+        _ => Ok(time),
     }
+}
+
+/// How far the edges of a rate from edge times lie apart at least; s.
+fn edge_window(
+    source: &TomlSource,
+    contact: &ContactFile,
+    method: RateMethod,
+) -> Result<f64, Error> {
+    let about = (
+        "least time between the two edges of a rate",
+        "rate_window = \"0.3 ms\"",
+    );
+    let value = contact.rate_window.as_ref();
+    let window = span_of_time(source, value, "rate_window", about)?;
+    match (value, window) {
+        (Some(value), Some(_)) if method != RateMethod::EdgeTimes => {
+            let problem =
+                "belongs to rate = \"edge-times\"; remove the line or set that".to_owned();
+            let key = (TABLE, "rate_window");
+            let text = &value.get_ref().0;
+            Err(invalid(source, &value.span(), key, text, problem))
+        }
+        (_, window) => Ok(window.unwrap_or(0.0)),
+    }
+}
+
+/// What the times beside counts mean.
+fn count_times(source: &TomlSource, file: &CampaignFile) -> Result<CountTimes, Error> {
+    let words = [
+        ("sampled", CountTimes::Sampled),
+        ("events", CountTimes::Events),
+    ];
+    let times = file
+        .encoder
+        .as_ref()
+        .and_then(|encoder| encoder.get_ref().times.as_ref());
+    let chosen = choice(source, times, ("[encoder]", "times"), &words)?;
+    Ok(chosen.unwrap_or_default())
 }
 
 fn checked_margin(

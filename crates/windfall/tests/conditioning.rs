@@ -165,6 +165,14 @@ fn rejects_what_cannot_be_done() {
         ("", "rate = \"edge-time\"", "did you mean \"edge-times\""),
         ("", "release = 1.5", "part of the threshold"),
         ("", "minimum_gap = \"-1 ms\"", "below zero"),
+        ("", "pre_trigger = \"-1 ms\"", "below zero"),
+        ("", "post_trigger = \"3 mm\"", "post_trigger"),
+        ("", "rate_window = \"0.3 ms\"", "belongs to rate"),
+        (
+            "",
+            "rate = \"edge-times\"\nrate_window = \"-1 s\"",
+            "below zero",
+        ),
         ("", "baseline = \"line\"", "\"drift\""),
     ] {
         let message = fit(CARRIAGE, channels, contact).unwrap_err();
