@@ -7,7 +7,9 @@
 
 use std::path::PathBuf;
 use std::process::Command;
-use windfall_signal::quadrature::{IllegalTransition, decode_quadrature};
+use windfall_signal::quadrature::{
+    IllegalTransition, counts_at_samples, decode_bytes, decode_quadrature,
+};
 
 fn capture() -> Option<Vec<u8>> {
     let data = std::env::var_os("WINDFALL_DATA").map_or_else(
@@ -47,6 +49,10 @@ fn reference_rotary_ramp() {
         (decoded.transitions, decoded.illegal, decoded.glitch_pairs),
         (12_732, 0, 0)
     );
+    // The bytes of the capture as they are.
+    let direct = decode_bytes(&bytes, 0, 1, IllegalTransition::AddNothing);
+    assert_eq!(direct.edges.len(), 12_732);
+    assert!(counts_at_samples(&direct) == decoded.counts);
     // Every 60th sample: too slow for the fastest part, and this shows.
     let slow = |phase: &[f64]| phase.iter().copied().step_by(60).collect::<Vec<_>>();
     let (a, b) = (slow(&a), slow(&b));
