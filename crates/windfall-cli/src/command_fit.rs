@@ -117,7 +117,7 @@ fn progress_bar() -> ProgressBar {
     if !std::io::stderr().is_terminal() {
         return ProgressBar::hidden();
     }
-    let style = ProgressStyle::with_template("{bar:40} {pos}/{len} impacts, {eta} left");
+    let style = ProgressStyle::with_template("{bar:40} {pos}/{len} recordings, {eta} left");
     let bar = ProgressBar::new(0);
     match style {
         Ok(style) => bar.with_style(style),

@@ -56,7 +56,7 @@ pub fn figure_of_taps(
             x: "frequency".to_owned(),
             x_unit: "Hz".to_owned(),
             y: format!("amplitude of tap {}", number + 1),
-            y_unit: "1".to_owned(),
+            y_unit: String::new(),
             marks: accepted.into_iter().map(mark).collect(),
             series: vec![
                 Series {
