@@ -1,6 +1,6 @@
 """Times the reading of recordings by windfall and by other programs, in turns.
 
-Usage: compare_read.py READ_SPEED FOLDER ROUNDS
+Usage: compare_read.py READ_SPEED FOLDER ROUNDS PYTHON_WITH_PANDAS_2
 """
 
 import gc
@@ -79,23 +79,44 @@ def read_tdms(path):
     return [channel[:] for group in nptdms.TdmsFile.read(path).groups() for channel in group.channels()]
 
 
-PEERS = {
-    ".tdms": {"npTDMS": read_tdms},
-    ".csv": {"pandas": pd.read_csv, "polars": polars.read_csv},
-}
-
-
-def timed(work, path):
-    gc.collect()
-    start = time.perf_counter()
-    kept = work(path)
-    seconds = time.perf_counter() - start
-    del kept
+def timed(work):
+    def seconds(path):
+        gc.collect()
+        start = time.perf_counter()
+        kept = work(path)
+        seconds = time.perf_counter() - start
+        del kept
+        return seconds
     return seconds
 
 
+def timed_elsewhere(*command):
+    """Seconds that a program tells which times itself."""
+    def seconds(path):
+        return float(subprocess.run([*command, path, "1"], capture_output=True, text=True, check=True).stdout)
+    return seconds
+
+
+PANDAS = """
+import sys, time
+import pandas
+start = time.perf_counter()
+kept = pandas.read_csv(sys.argv[1], engine="c")
+print(time.perf_counter() - start)
+"""
+
+
 def main():
-    program, folder, rounds = sys.argv[1], Path(sys.argv[2]), int(sys.argv[3])
+    program, folder, rounds, older = sys.argv[1], Path(sys.argv[2]), int(sys.argv[3]), sys.argv[4]
+    windfall = timed_elsewhere(program)
+    peers = {
+        ".tdms": {"npTDMS": timed(read_tdms)},
+        ".csv": {
+            f"pandas {pd.__version__}": timed(lambda path: pd.read_csv(path, engine="c")),
+            "pandas 2.2.3": timed_elsewhere(older, "-c", PANDAS),
+            "polars": timed(polars.read_csv),
+        },
+    }
     if not folder.exists():
         made = folder.with_suffix(".part")
         made.mkdir(parents=True, exist_ok=True)
@@ -104,12 +125,12 @@ def main():
         made.rename(folder)
     print(f"{'file':34} {'MB':>4} {'windfall s':>11}   others: median s (times windfall)")
     for path in sorted(folder.iterdir()):
-        ours, theirs = [], {name: [] for name in PEERS[path.suffix]}
+        ours, theirs = [], {name: [] for name in peers[path.suffix]}
         path.read_bytes()
         for _ in range(rounds):
-            ours.append(float(subprocess.run([program, path, "1"], capture_output=True, text=True, check=True).stdout))
-            for name, work in PEERS[path.suffix].items():
-                theirs[name].append(timed(work, path))
+            ours.append(windfall(path))
+            for name, read in peers[path.suffix].items():
+                theirs[name].append(read(path))
         parts = [f"{name} {median(t):.3f} ({median(a / b for a, b in zip(t, ours)):.1f})" for name, t in theirs.items()]
         print(f"{path.name:34} {path.stat().st_size / 1e6:4.0f} {median(ours):11.3f}   {', '.join(parts)}")
 

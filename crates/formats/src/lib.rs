@@ -54,6 +54,7 @@ pub mod read_text;
 pub mod read_uff58;
 pub mod read_wav;
 pub mod reader;
+mod room;
 pub mod source;
 pub mod tdms_layout;
 pub mod tdms_metadata;

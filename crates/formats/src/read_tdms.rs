@@ -7,6 +7,7 @@
 use crate::contents::{ChannelContents, Contents, Format, Note, TimeBase};
 use crate::error::Error;
 use crate::reader::{Reader, Sink};
+use crate::room::zeros;
 use crate::source::Source;
 use crate::tdms_layout::{Group, Member, Region};
 use crate::tdms_metadata::{Property, names_of};
@@ -342,7 +343,7 @@ impl Reader for TdmsReader {
         let lengths = wanted
             .iter()
             .map(|channel| self.channels[*channel].length as usize);
-        let mut columns: Vec<Vec<f64>> = lengths.map(|length| vec![0.0; length]).collect();
+        let mut columns: Vec<Vec<f64>> = lengths.map(zeros).collect();
 
         // Each window with the parts of the columns that it fills.
         let mut rest: Vec<&mut [f64]> = columns.iter_mut().map(Vec::as_mut_slice).collect();

@@ -2,6 +2,7 @@
 
 use crate::error::{Error, Place};
 use crate::reader::Sink;
+use crate::room::zeros;
 use crate::source::Source;
 use crate::text_lines::{Lines, stretch, stretch_in, stretches};
 use crate::text_rows::{Column, Fault, RowPlan, Rows, most_rows, read_rows};
@@ -112,7 +113,8 @@ pub fn read_whole_table(
             Ok(most_rows(bytes, &table.plan))
         })
         .collect::<Result<_, Error>>()?;
-    let mut columns = vec![vec![0.0; lengths.iter().sum()]; wanted.len()];
+    let most = lengths.iter().sum();
+    let mut columns: Vec<Vec<f64>> = wanted.iter().map(|_| zeros(most)).collect();
 
     // The room of each stretch in every column.
     let mut rest: Vec<&mut [f64]> = columns.iter_mut().map(Vec::as_mut_slice).collect();
