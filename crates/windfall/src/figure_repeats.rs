@@ -79,19 +79,11 @@ pub fn figure_of_comparison(
         points(&comparison.curves.statistic),
     )];
     if let Some(critical) = compared.test.as_ref().and_then(|test| test.critical) {
-        let (from, to) = (instants.first(), instants.last());
-        let (from, to) = (from.copied().unwrap_or(0.0), to.copied().unwrap_or(0.0));
-        // One line around the band, so that both levels look alike.
-        let corners = [
-            (from, critical),
-            (to, critical),
-            (to, -critical),
-            (from, -critical),
-        ];
+        let from = instants.first().copied().unwrap_or(0.0);
         statistic.push(series(
             "critical level over all instants and energies",
-            Style::Line,
-            corners.into_iter().chain([(from, critical)]).collect(),
+            Style::Level,
+            vec![(from, critical), (from, -critical)],
         ));
     }
     let panel = |y: &str, unit: &str, series: Vec<Series>| Panel {

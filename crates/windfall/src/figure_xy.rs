@@ -35,6 +35,8 @@ pub enum Style {
     Line,
     /// A thick line behind the others.
     Broad,
+    /// A broken line across the panel at the height of each point.
+    Level,
 }
 
 /// Points that belong together.
@@ -196,7 +198,12 @@ fn draw_panel(drawing: &mut Drawing, panel: &Panel, top: f64) {
                 .filter(|(x, y)| x.is_finite() && y.is_finite())
                 .map(|(x, y)| (place_x(x), place_y(y)))
                 .collect();
-            draw_series(drawing, &points, series.style, index);
+            match series.style {
+                Style::Level => points.iter().for_each(|(_, y)| {
+                    draw_series(drawing, &[(left, *y), (right, *y)], Style::Level, index);
+                }),
+                style => draw_series(drawing, &points, style, index),
+            }
         }
     }
     for mark in &panel.marks {
@@ -229,6 +236,7 @@ fn draw_panel(drawing: &mut Drawing, panel: &Panel, top: f64) {
 fn draw_series(drawing: &mut Drawing, points: &[(f64, f64)], style: Style, index: usize) {
     let colour = COLOURS[index % COLOURS.len()];
     match style {
+        Style::Level => drawing.dashed(points, colour, 1.4),
         Style::Line if index >= COLOURS.len() => drawing.dashed(points, colour, 1.4),
         Style::Line => drawing.polyline(points, colour, 1.4),
         Style::Broad => drawing.polyline(points, colour, 4.0),
