@@ -1,0 +1,8 @@
+#![cfg_attr(not(test), warn(clippy::disallowed_methods, clippy::disallowed_types))]
+//! Designs of experiments, linear models, response surfaces and mixed models.
+//!
+//! A [`table::Table`] holds what was measured, columns of numbers or of
+//! categories. This crate opens no file and knows no fruit.
+
+pub mod error;
+pub mod table;
