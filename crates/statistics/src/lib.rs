@@ -4,5 +4,9 @@
 //! A [`table::Table`] holds what was measured, columns of numbers or of
 //! categories. This crate opens no file and knows no fruit.
 
+pub mod contrast;
 pub mod error;
+pub mod expression;
+pub mod formula;
+pub mod formula_syntax;
 pub mod table;
