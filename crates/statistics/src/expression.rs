@@ -5,8 +5,10 @@ use crate::formula_syntax::{Argument, Kind, Node, Operator, spelling};
 use crate::table::Table;
 use windfall_numerics::double_double::DoubleDouble;
 
+type Function = (&'static str, fn(f64) -> f64);
+
 /// Functions of one number.
-const FUNCTIONS: [(&str, fn(f64) -> f64); 9] = [
+const FUNCTIONS: [Function; 9] = [
     ("log", f64::ln),
     ("log2", f64::log2),
     ("log10", f64::log10),

@@ -4,9 +4,13 @@
 //! A [`table::Table`] holds what was measured, columns of numbers or of
 //! categories. This crate opens no file and knows no fruit.
 
+pub mod anova;
 pub mod contrast;
 pub mod error;
 pub mod expression;
 pub mod formula;
 pub mod formula_syntax;
+pub mod linear_model;
+pub mod model_frame;
+pub mod reduced;
 pub mod table;
