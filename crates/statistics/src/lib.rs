@@ -6,6 +6,8 @@
 
 pub mod anova;
 pub mod contrast;
+pub mod cross_validation;
+pub mod diagnostics;
 pub mod error;
 pub mod expression;
 pub mod formula;
@@ -13,4 +15,6 @@ pub mod formula_syntax;
 pub mod linear_model;
 pub mod model_frame;
 pub mod reduced;
+pub mod selection;
 pub mod table;
+pub mod term_order;

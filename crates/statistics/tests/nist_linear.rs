@@ -124,8 +124,11 @@ fn reference_wampler() {
     }
 }
 
-/// Rows of numbers and the certified parameters of a file of the collection.
-fn read(name: &str) -> Option<(Vec<Vec<f64>>, Vec<(f64, f64)>)> {
+/// Rows of numbers, and certified estimates with their standard errors.
+type Collected = (Vec<Vec<f64>>, Vec<(f64, f64)>);
+
+/// What a file of the collection holds.
+fn read(name: &str) -> Option<Collected> {
     let folder = std::env::var_os("WINDFALL_DATA").map_or_else(
         || PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("../../../shared/data"),
         PathBuf::from,
