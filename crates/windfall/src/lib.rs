@@ -52,6 +52,7 @@ pub mod read_compression;
 pub mod read_conditioning;
 pub mod read_contact;
 pub mod read_csv;
+pub mod read_data;
 pub mod read_files;
 pub mod read_fit;
 pub mod read_recording;
