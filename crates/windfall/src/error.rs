@@ -37,7 +37,7 @@ pub enum Error {
     Format(windfall_formats::Error),
     /// A design or a model that cannot be.
     #[error("{0}")]
-    Statistics(#[from] windfall_statistics::error::Error),
+    Statistics(windfall_statistics::error::Error),
     /// Nothing says when samples were taken.
     #[error(
         "{path}: nothing says when the samples of \"{column}\" were taken; give the column of \
