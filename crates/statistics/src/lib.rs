@@ -7,6 +7,7 @@
 pub mod anova;
 pub mod contrast;
 pub mod cross_validation;
+pub mod desirability;
 pub mod diagnostics;
 pub mod error;
 pub mod expression;
@@ -16,5 +17,8 @@ pub mod linear_model;
 pub mod model_frame;
 pub mod reduced;
 pub mod selection;
+pub mod surface;
+pub mod surface_coding;
+pub mod surface_terms;
 pub mod table;
 pub mod term_order;
