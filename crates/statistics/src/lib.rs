@@ -4,5 +4,13 @@
 //! A [`table::Table`] holds what was measured, columns of numbers or of
 //! categories. This crate opens no file and knows no fruit.
 
+pub mod design;
+pub mod design_blocks;
+pub mod design_composite;
+pub mod design_error;
+pub mod design_factorial;
+pub mod design_finding;
+pub mod design_random;
+pub mod design_word;
 pub mod error;
 pub mod table;
