@@ -12,6 +12,9 @@ use crate::design_word::Fraction;
 /// a digit should not fill the memory.
 pub const MOST_RUNS: usize = 1_000_000;
 
+/// Most factors of any design.
+pub const MOST_FACTORS: usize = 256;
+
 /// Stream of the seed that the run order is drawn from.
 const ORDER_STREAM: u64 = 1;
 
@@ -267,7 +270,8 @@ pub fn randomised(mut design: Design, seed: u64) -> Design {
 /// differ.
 ///
 /// # Errors
-/// [`DesignError::FactorCount`], [`DesignError::FactorRepeated`].
+/// [`DesignError::FactorCount`], [`DesignError::FactorsTooMany`],
+/// [`DesignError::FactorRepeated`].
 pub fn check_factors(
     kind: &'static str,
     factors: &[Factor],
@@ -279,6 +283,10 @@ pub fn check_factors(
             expected: format!("at least {least}"),
             found: factors.len(),
         });
+    }
+    if factors.len() > MOST_FACTORS {
+        let (most, found) = (MOST_FACTORS, factors.len());
+        return Err(DesignError::FactorsTooMany { kind, most, found });
     }
     let repeated = |i: &usize| factors[..*i].iter().any(|f| f.name == factors[*i].name);
     match (1..factors.len()).find(repeated) {

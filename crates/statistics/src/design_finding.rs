@@ -25,6 +25,13 @@ pub enum DesignFinding {
         /// Runs asked for.
         runs: usize,
     },
+    /// Distances between points were not improved.
+    SpreadNotImproved {
+        /// Runs asked for.
+        runs: usize,
+        /// Most that are improved.
+        most: usize,
+    },
     /// Printed settings differ from the exact levels.
     SettingsRounded {
         /// The factor.
@@ -50,6 +57,7 @@ impl DesignFinding {
             Self::BlocksNotOrthogonal { .. } => "blocks-not-orthogonal",
             Self::NoReplicates => "no-replicates",
             Self::NotPowerOfTwo { .. } => "not-power-of-two",
+            Self::SpreadNotImproved { .. } => "spread-not-improved",
             Self::SettingsRounded { .. } => "settings-rounded",
             Self::SettingsMerged { .. } => "settings-merged",
         }
@@ -79,6 +87,10 @@ impl fmt::Display for DesignFinding {
                 "{runs} runs are no power of two: Sobol points are evenly balanced only in {} or {}",
                 runs.next_power_of_two() / 2,
                 runs.next_power_of_two()
+            ),
+            Self::SpreadNotImproved { runs, most } => write!(
+                f,
+                "distances between points are not improved beyond {most} runs, and {runs} are asked for"
             ),
             Self::SettingsRounded { factor, coded } => write!(
                 f,

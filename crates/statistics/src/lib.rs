@@ -6,11 +6,17 @@
 
 pub mod design;
 pub mod design_blocks;
+pub mod design_box_behnken;
+pub mod design_catalogue;
 pub mod design_composite;
 pub mod design_error;
 pub mod design_factorial;
 pub mod design_finding;
+pub mod design_latin;
+pub mod design_plackett_burman;
 pub mod design_random;
+pub mod design_sobol;
+mod design_sobol_table;
 pub mod design_word;
 pub mod error;
 pub mod table;

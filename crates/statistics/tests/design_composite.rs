@@ -1,5 +1,7 @@
 //! Central composite designs against published axial distances and designs.
 
+#![allow(clippy::unwrap_used)]
+
 use nalgebra::DMatrix;
 use windfall_statistics::design::{Design, Factor, Point, randomised};
 use windfall_statistics::design_composite::{Alpha, CompositeOptions, Ends, central_composite};
