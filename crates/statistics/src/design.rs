@@ -260,7 +260,10 @@ pub fn randomised(mut design: Design, seed: u64) -> Design {
         .runs
         .sort_by_key(|run| (run.block, run.standard_order));
     for block in design.runs.chunk_by_mut(|a, b| a.block == b.block) {
-        shuffle(&mut generator, block);
+        // What has been run has its order.
+        if block.iter().any(|run| run.point != Point::Existing) {
+            shuffle(&mut generator, block);
+        }
     }
     design.order_seed = Some(seed);
     design

@@ -226,4 +226,21 @@ pub enum DesignError {
         /// Factors.
         expected: usize,
     },
+    /// No candidates, or too many.
+    #[error("{found} candidates are given; expected 1 to {most}")]
+    CandidateCount {
+        /// Candidates given.
+        found: usize,
+        /// The bound.
+        most: usize,
+    },
+    /// A model without a value at a point.
+    #[error(
+        "the model has no finite value at the coded point {point:?}; models of designs are in \
+         coded units, −1 to 1: a logarithm or root of a factor is taken before its range is given"
+    )]
+    ModelUndefined {
+        /// The point.
+        point: Vec<f64>,
+    },
 }
