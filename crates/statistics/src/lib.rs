@@ -4,6 +4,9 @@
 //! A [`table::Table`] holds what was measured, columns of numbers or of
 //! categories. This crate opens no file and knows no fruit.
 
+pub mod anova;
+pub mod contrast;
+pub mod cross_validation;
 pub mod design;
 pub mod design_blocks;
 pub mod design_box_behnken;
@@ -22,5 +25,14 @@ pub mod design_random;
 pub mod design_sobol;
 mod design_sobol_table;
 pub mod design_word;
+pub mod diagnostics;
 pub mod error;
+pub mod expression;
+pub mod formula;
+pub mod formula_syntax;
+pub mod linear_model;
+pub mod model_frame;
+pub mod reduced;
+pub mod selection;
 pub mod table;
+pub mod term_order;

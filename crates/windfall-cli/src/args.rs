@@ -3,6 +3,7 @@
 use crate::args_fit::FitArguments;
 use crate::args_format::Format;
 use crate::args_geometry::{RadiusArguments, TransferArguments};
+use crate::args_regress::RegressArguments;
 use crate::args_simulate::SimulateArguments;
 use clap::{Args, Parser, Subcommand, ValueEnum, ValueHint};
 use std::path::PathBuf;
@@ -38,6 +39,8 @@ pub enum Command {
     Fit(Box<FitArguments>),
     /// Simulate one event from a force law
     Simulate(SimulateArguments),
+    /// Fit a linear model to a table
+    Regress(Box<RegressArguments>),
     /// Radius of curvature from a chord gauge or three diameters
     Radius(RadiusArguments),
     /// Show force laws, or take one to another geometry
