@@ -1,5 +1,6 @@
 //! Response surfaces: polynomials of coded factors.
 
+use crate::anova::{LackOfFit, lack_of_fit};
 use crate::error::Error;
 use crate::linear_model::{LinearFit, Prediction, fit_reduced, predict};
 use crate::model_frame::{ModelFrame, TermColumns};
@@ -184,6 +185,19 @@ impl Surface {
         let degrees = self.terms.monomials.iter().map(|m| m.iter().sum::<u32>());
         degrees.max().unwrap_or(0)
     }
+}
+
+/// Splits the residuals of a surface into lack of fit and pure error of runs with
+/// equal settings; `None` where no run is repeated.
+#[must_use]
+pub fn surface_lack_of_fit(surface: &Surface, coded: &[Vec<f64>], y: &[f64]) -> Option<LackOfFit> {
+    let settings = DMatrix::from_fn(y.len(), coded.len(), |row, factor| coded[factor][row]);
+    lack_of_fit(
+        &settings,
+        y,
+        surface.fit.residual_ss,
+        surface.fit.residual_df,
+    )
 }
 
 /// Where a quadratic surface is flat, and how it curves there (Box & Draper 2007,

@@ -9,6 +9,7 @@ mod args_format;
 mod args_geometry;
 mod args_regress;
 mod args_simulate;
+mod args_surface;
 mod command_card;
 mod command_fit;
 mod command_geometry;
@@ -16,6 +17,7 @@ mod command_inspect;
 mod command_new;
 mod command_regress;
 mod command_simulate;
+mod command_surface;
 mod show;
 
 use args::{Arguments, Command};
@@ -29,6 +31,7 @@ fn main() -> ExitCode {
         Command::Fit(arguments) => command_fit::run(&arguments),
         Command::Simulate(arguments) => command_simulate::run(&arguments),
         Command::Regress(arguments) => command_regress::run(&arguments),
+        Command::Surface(arguments) => command_surface::run(&arguments),
         Command::Radius(arguments) => command_geometry::run_radius(&arguments),
         Command::Card(arguments) => command_card::run(&arguments),
         Command::Completions { shell } => {
