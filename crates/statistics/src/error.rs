@@ -25,6 +25,19 @@ pub enum Error {
         /// What stands there.
         text: String,
     },
+    /// A column of numbers with text among them.
+    #[error(
+        "column {name:?} holds numbers but for {text:?} in row {row}: mend that cell, leave it \
+         blank, or write C({name}) if the column names categories"
+    )]
+    NumbersWithText {
+        /// The column.
+        name: String,
+        /// Row, from 1.
+        row: usize,
+        /// What stands there.
+        text: String,
+    },
     /// A formula cannot be read.
     #[error("{problem}\n  {formula}\n  {}^", " ".repeat(*column))]
     FormulaSyntax {
