@@ -5,4 +5,18 @@
 //! categories. This crate opens no file and knows no fruit.
 
 pub mod error;
+mod mixed_basis;
+mod mixed_blocks;
+mod mixed_boundary;
+pub mod mixed_effects;
+mod mixed_envelope;
+pub mod mixed_error;
+mod mixed_evaluate;
+pub mod mixed_finding;
+pub mod mixed_fit;
+mod mixed_minimise;
+pub mod mixed_model;
+mod mixed_slope;
+pub mod mixed_term;
+mod mixed_theta;
 pub mod table;
