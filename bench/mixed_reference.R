@@ -104,8 +104,8 @@ linked <- {
 # balanced split plot: orchards as blocks, storage on whole plots, drop height within
 split <- {
   t <- expand.grid(height = c("low", "middle", "high"), storage = c("cold", "warm"), orchard = 1:6)
-  o <- 4 * normal(6)
-  w <- matrix(3 * normal(12), 6)
+  o <- 12 * normal(6)
+  w <- matrix(5 * normal(12), 6)
   t$y <- 50 + o[t$orchard] + w[cbind(t$orchard, as.integer(t$storage))] +
     5 * (t$height == "high") - 2 * (t$storage == "warm") + 2 * normal(nrow(t))
   t$orchard <- sprintf("o%d", t$orchard)
@@ -142,6 +142,7 @@ polished <- function(formula, data, reml) {
     conv = 0, message = NULL), parsed$reTrms, fr = parsed$fr), theta = theta)
 }
 
+strict <- lmerControl(optimizer = "bobyqa", optCtrl = list(rhoend = 1e-9, maxfun = 1e5))
 one <- function(table, formula, reml = TRUE, profile = FALSE, kr = FALSE, f = NULL) {
   data <- get(table)
   formula <- as.formula(formula)
@@ -177,7 +178,7 @@ one <- function(table, formula, reml = TRUE, profile = FALSE, kr = FALSE, f = NU
     effect_sds = lapply(effects, function(e) {
       v <- attr(e, "postVar")
       if (is.list(v)) unname(sapply(v, function(x) sqrt(x[1, 1, ])))
-      else t(apply(v, 3, function(x) sqrt(diag(as.matrix(x))))) |> unname()
+      else t(matrix(apply(v, 3, function(x) sqrt(diag(as.matrix(x)))), nrow = dim(v)[1]))
     }),
     fitted_first = unname(fitted(model)[1:5])
   )
@@ -205,8 +206,7 @@ one <- function(table, formula, reml = TRUE, profile = FALSE, kr = FALSE, f = NU
     })
   }
   if (profile) {
-    interval <- confint(profile(model, which = "theta_", delta = 0.05, maxpts = 400,
-      devtol = 1e-6), level = 0.95)
+    interval <- confint(profile(lme4::lmer(formula, data, REML = FALSE, control = strict), which = "theta_", delta = 0.1), level = 0.95)
     out$profile <- unname(interval)
     out$profile_names <- rownames(interval)
   }

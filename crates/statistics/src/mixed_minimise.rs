@@ -41,6 +41,14 @@ pub(crate) fn minimise(objective: &dyn Fn(&[f64]) -> Sloped, start: Vec<f64>) ->
     let n = start.len();
     let (mut value, mut gradient) = objective(&start)?;
     let mut point = start;
+    if n == 0 {
+        return Some(Minimum {
+            point,
+            value,
+            evaluations: 1,
+            converged: true,
+        });
+    }
     let mut inverse = DMatrix::identity(n, n) / dot(&gradient, &gradient).sqrt().max(1e-8) * 0.5;
     let mut evaluations = 1;
     let mut fresh = true;
