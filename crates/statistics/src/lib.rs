@@ -14,6 +14,8 @@ pub mod mixed_error;
 mod mixed_evaluate;
 pub mod mixed_finding;
 pub mod mixed_fit;
+pub mod mixed_inference;
+pub mod mixed_kenward_roger;
 mod mixed_minimise;
 pub mod mixed_model;
 mod mixed_slope;

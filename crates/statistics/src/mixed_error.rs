@@ -105,6 +105,29 @@ pub enum MixedError {
         "the criterion of the mixed model is not finite at the start; scale the columns to sizes near 1"
     )]
     NoCriterion,
+    /// Kenward and Roger's method with plain maximum likelihood.
+    #[error(
+        "Kenward and Roger's method needs a fit by restricted maximum likelihood; fit with REML"
+    )]
+    NeedsRestricted,
+    /// Too many random effects for dense matrices.
+    #[error(
+        "{effects} random effects of several grouping factors are too many for Kenward and Roger's method (at most {most}); use Satterthwaite's, which is near it with so many groups"
+    )]
+    ManyCrossedEffects {
+        /// Random effects.
+        effects: usize,
+        /// How many are handled.
+        most: usize,
+    },
+    /// Variances that the data cannot tell apart.
+    #[error(
+        "the variances of the model cannot be told apart, and Kenward and Roger's method needs the covariance of all; use Satterthwaite's or a simpler random part"
+    )]
+    SingularInformation,
+    /// A test of nothing.
+    #[error("the contrast is zero: it tests nothing; give at least one weight that differs from 0")]
+    EmptyContrast,
 }
 
 fn made_of(on: &[String]) -> String {

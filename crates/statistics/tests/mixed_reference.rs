@@ -4,6 +4,12 @@ mod mixed_cases;
 
 use mixed_cases::{assert_near, fitted_case, numbers, reference, rows};
 use windfall_statistics::mixed_finding::MixedFinding;
+use windfall_statistics::mixed_inference::{
+    coefficient_tests, f_test, picking_contrast, variance_uncertainty,
+};
+use windfall_statistics::mixed_kenward_roger::{
+    kenward_roger, kenward_roger_f, kenward_roger_tests,
+};
 
 #[test]
 fn reference_estimates_of_lme4() {
@@ -74,4 +80,95 @@ fn reference_random_effects_of_lme4() {
             }
         }
     }
+}
+
+#[test]
+fn reference_satterthwaite_of_lmer_test() {
+    for case in reference()["cases"].as_array().unwrap() {
+        let fit = fitted_case(case);
+        let uncertainty = variance_uncertainty(&fit).unwrap();
+        let tests = coefficient_tests(&fit, &uncertainty, 0.95);
+        let name = format!("{} {}", case["formula"], case["method"]);
+        type Column = fn(&windfall_statistics::mixed_inference::CoefficientTest) -> f64;
+        let columns: [(&str, Column, f64); 4] = [
+            ("se", |t| t.se, 1e-7),
+            ("df", |t| t.df, 1e-5),
+            ("t", |t| t.t, 1e-7),
+            ("p", |t| t.p, 1e-5),
+        ];
+        for (key, of, tolerance) in columns {
+            let found: Vec<f64> = tests.iter().map(of).collect();
+            assert_near(
+                &format!("{name}, {key}"),
+                &found,
+                &numbers(&case[key]),
+                tolerance,
+            );
+        }
+    }
+}
+
+#[test]
+fn reference_type_three_tests_of_lmer_test() {
+    for case in reference()["cases"].as_array().unwrap() {
+        let fit = fitted_case(case);
+        let uncertainty = variance_uncertainty(&fit).unwrap();
+        let Some(tests) = case["f_tests"].as_array() else {
+            continue;
+        };
+        let mut first = 1;
+        for test in tests {
+            let count = test["numerator"].as_u64().unwrap() as usize;
+            let picked: Vec<usize> = (first..first + count).collect();
+            first += count;
+            let contrast = picking_contrast(fit.coefficients.len(), &picked);
+            let found = f_test(&fit, &uncertainty, &contrast).unwrap();
+            let name = format!("{}, {}", case["formula"], test["term"]);
+            assert_eq!(found.numerator, count, "{name}");
+            assert_near(&name, &[found.f], &numbers(&test["f"]), 1e-7);
+            assert_near(
+                &name,
+                &[found.denominator],
+                &numbers(&test["denominator"]),
+                1e-5,
+            );
+            assert_near(&name, &[found.p], &numbers(&test["p"]), 1e-5);
+        }
+    }
+}
+
+#[test]
+fn reference_kenward_roger_of_pbkrtest() {
+    let mut compared = 0;
+    for case in reference()["cases"].as_array().unwrap() {
+        if case["kr_df"].is_null() {
+            continue;
+        }
+        let fit = fitted_case(case);
+        let name = format!("{}, Kenward-Roger", case["formula"]);
+        let adjusted = kenward_roger(&fit).unwrap();
+        let expected = rows(&case["kr_covariance"]).concat();
+        assert_near(&name, adjusted.covariance.as_slice(), &expected, 1e-6);
+        let tests = kenward_roger_tests(&fit, &adjusted, 0.95);
+        let df: Vec<f64> = tests.iter().map(|t| t.df).collect();
+        assert_near(&name, &df, &numbers(&case["kr_df"]), 1e-6);
+        for test in case["kr_f"].as_array().unwrap() {
+            let picked: Vec<usize> = numbers(&test["columns"])
+                .iter()
+                .map(|k| *k as usize - 1)
+                .collect();
+            let contrast = picking_contrast(fit.coefficients.len(), &picked);
+            let found = kenward_roger_f(&fit, &adjusted, &contrast).unwrap();
+            assert_near(&name, &[found.f], &numbers(&test["f"]), 1e-6);
+            assert_near(
+                &name,
+                &[found.denominator],
+                &numbers(&test["denominator"]),
+                1e-6,
+            );
+            assert_near(&name, &[found.p], &numbers(&test["p"]), 1e-5);
+            compared += 1;
+        }
+    }
+    assert!(compared >= 10, "{compared}");
 }
