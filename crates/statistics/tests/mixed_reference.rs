@@ -10,6 +10,7 @@ use windfall_statistics::mixed_inference::{
 use windfall_statistics::mixed_kenward_roger::{
     kenward_roger, kenward_roger_f, kenward_roger_tests,
 };
+use windfall_statistics::mixed_profile::profile_variances;
 
 #[test]
 fn reference_estimates_of_lme4() {
@@ -171,4 +172,24 @@ fn reference_kenward_roger_of_pbkrtest() {
         }
     }
     assert!(compared >= 10, "{compared}");
+}
+
+#[test]
+fn reference_profile_intervals_of_lme4() {
+    let mut compared = 0;
+    for case in reference()["cases"].as_array().unwrap() {
+        if case["profile"].is_null() {
+            continue;
+        }
+        let fit = fitted_case(case);
+        let profiles = profile_variances(&fit, 0.95).unwrap();
+        assert_eq!(profiles.findings, []);
+        for (found, expected) in profiles.intervals.iter().zip(rows(&case["profile"])) {
+            let name = format!("{}, {}", case["formula"], found.name);
+            println!("{name} {} {} {expected:?}", found.low, found.high);
+            assert_near(&name, &[found.low, found.high], &expected, 1e-3);
+            compared += 1;
+        }
+    }
+    assert!(compared >= 15, "{compared}");
 }
