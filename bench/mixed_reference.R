@@ -142,6 +142,14 @@ polished <- function(formula, data, reml) {
     conv = 0, message = NULL), parsed$reTrms, fr = parsed$fr), theta = theta)
 }
 
+# R² of Nakagawa and Schielzeth, with slopes as in Johnson
+shares <- function(model) {
+  fixed <- var(drop(model.matrix(model) %*% fixef(model)))
+  lambda <- getME(model, "Lambda")
+  z <- getME(model, "Z")
+  random <- sum((z %*% lambda)^2) * sigma(model)^2 / nrow(z)
+  c(fixed, fixed + random) / (fixed + random + sigma(model)^2)
+}
 strict <- lmerControl(optimizer = "bobyqa", optCtrl = list(rhoend = 1e-9, maxfun = 1e5))
 one <- function(table, formula, reml = TRUE, profile = FALSE, kr = FALSE, f = NULL) {
   data <- get(table)
@@ -180,6 +188,7 @@ one <- function(table, formula, reml = TRUE, profile = FALSE, kr = FALSE, f = NU
       if (is.list(v)) unname(sapply(v, function(x) sqrt(x[1, 1, ])))
       else t(matrix(apply(v, 3, function(x) sqrt(diag(as.matrix(x)))), nrow = dim(v)[1]))
     }),
+    r2 = shares(model),
     fitted_first = unname(fitted(model)[1:5])
   )
   out$default_df <- unname(coef(summary(fit))[, "df"])

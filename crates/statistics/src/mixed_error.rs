@@ -125,6 +125,12 @@ pub enum MixedError {
         "the variances of the model cannot be told apart, and Kenward and Roger's method needs the covariance of all; use Satterthwaite's or a simpler random part"
     )]
     SingularInformation,
+    /// Two models that no likelihood ratio compares.
+    #[error("the two models cannot be compared by likelihood ratio: {reason}")]
+    NotComparable {
+        /// Why.
+        reason: &'static str,
+    },
     /// A test of nothing.
     #[error("the contrast is zero: it tests nothing; give at least one weight that differs from 0")]
     EmptyContrast,

@@ -2,8 +2,9 @@
 
 mod mixed_cases;
 
-use mixed_cases::{assert_near, fitted_case, numbers, reference, rows};
+use mixed_cases::{assert_near, fitted, fitted_case, numbers, reference, rows};
 use windfall_statistics::mixed_finding::MixedFinding;
+use windfall_statistics::mixed_fit::MixedMethod;
 use windfall_statistics::mixed_inference::{
     coefficient_tests, f_test, picking_contrast, variance_uncertainty,
 };
@@ -11,6 +12,7 @@ use windfall_statistics::mixed_kenward_roger::{
     kenward_roger, kenward_roger_f, kenward_roger_tests,
 };
 use windfall_statistics::mixed_profile::profile_variances;
+use windfall_statistics::mixed_summary::{likelihood_ratio, variance_shares};
 
 #[test]
 fn reference_estimates_of_lme4() {
@@ -186,10 +188,42 @@ fn reference_profile_intervals_of_lme4() {
         assert_eq!(profiles.findings, []);
         for (found, expected) in profiles.intervals.iter().zip(rows(&case["profile"])) {
             let name = format!("{}, {}", case["formula"], found.name);
-            println!("{name} {} {} {expected:?}", found.low, found.high);
-            assert_near(&name, &[found.low, found.high], &expected, 1e-3);
+            assert_near(&name, &[found.low, found.high], &expected, 1e-6);
             compared += 1;
         }
     }
     assert!(compared >= 15, "{compared}");
+}
+
+#[test]
+fn reference_likelihood_ratio_of_lme4() {
+    let fit = |formula| fitted("apple", formula, MixedMethod::MaximumLikelihood);
+    let small = fit("k ~ velocity + (1 | fruit)");
+    let large = fit("k ~ velocity + radius + (1 | fruit)");
+    let found = likelihood_ratio(&small, &large).unwrap();
+    let expected = &reference()["comparison"];
+    assert_eq!(found.df, 1);
+    assert_near(
+        "chi-square",
+        &[found.chi_square],
+        &numbers(&expected["chi_square"]),
+        1e-6,
+    );
+    assert_near("p", &[found.p], &numbers(&expected["p"]), 1e-6);
+    assert_eq!(found.findings, []);
+    likelihood_ratio(&large, &small).unwrap_err();
+}
+
+#[test]
+fn reference_shares_of_variance_from_the_estimates_of_lme4() {
+    for case in reference()["cases"].as_array().unwrap() {
+        let shares = variance_shares(&fitted_case(case));
+        let found = [shares.r2_marginal, shares.r2_conditional];
+        assert_near(
+            &case["formula"].to_string(),
+            &found,
+            &numbers(&case["r2"]),
+            1e-6,
+        );
+    }
 }

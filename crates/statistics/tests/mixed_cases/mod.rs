@@ -1,5 +1,5 @@
 //! Tables, models and reference numbers of `bench/mixed_reference.R`.
-#![allow(dead_code)]
+#![allow(dead_code, clippy::unwrap_used)]
 
 use nalgebra::DMatrix;
 use serde_json::Value;
