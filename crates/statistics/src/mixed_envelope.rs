@@ -50,7 +50,8 @@ impl Envelope {
 
     /// Entries of row i from column `from` up to, and without, column `to`.
     fn part<'a>(&self, values: &'a [f64], i: usize, from: usize, to: usize) -> &'a [f64] {
-        &values[self.place(i, from)..self.place(i, to)]
+        let start = self.place(i, from);
+        &values[start..start + to - from]
     }
 
     /// The Cholesky factor in place; `None` where a pivot is not positive.
@@ -129,6 +130,55 @@ impl Envelope {
         product
     }
 
+    /// Takes `vector` `vector`' from the rows and columns `at`, ascending.
+    pub(crate) fn subtract_square(&self, values: &mut [f64], at: &[usize], vector: &[f64]) {
+        let together = contiguous(at);
+        for (a, (i, x)) in at.iter().zip(vector).enumerate() {
+            if together {
+                let from = self.place(*i, at[0]);
+                let row = &mut values[from..=from + a];
+                row.iter_mut()
+                    .zip(vector)
+                    .for_each(|(sum, y)| *sum -= x * y);
+            } else {
+                for (j, y) in at[..=a].iter().zip(vector) {
+                    values[self.place(*i, *j)] -= x * y;
+                }
+            }
+        }
+    }
+
+    /// The symmetric part in rows and columns `at`, ascending, times a vector.
+    pub(crate) fn multiply_part(
+        &self,
+        values: &[f64],
+        at: &[usize],
+        vector: &[f64],
+        product: &mut Vec<f64>,
+    ) {
+        product.clear();
+        product.resize(at.len(), 0.0);
+        let together = contiguous(at);
+        for (a, (i, x)) in at.iter().zip(vector).enumerate() {
+            let (before, rest) = product.split_at_mut(a);
+            if together {
+                let row = self.part(values, *i, at[0], *i + 1);
+                rest[0] += dot(row, &vector[..=a]);
+                before
+                    .iter_mut()
+                    .zip(row)
+                    .for_each(|(sum, value)| *sum += value * x);
+            } else {
+                for (b, j) in at[..a].iter().enumerate() {
+                    let value = values[self.place(*i, *j)];
+                    rest[0] += value * vector[b];
+                    before[b] += value * x;
+                }
+                rest[0] += values[self.place(*i, *i)] * x;
+            }
+        }
+    }
+
     /// The entries of (L Lᵀ)⁻¹ inside the envelope, by the recursion of Takahashi,
     /// Fagan and Chin (1973), last column first.
     pub(crate) fn inverse(&self, factor: &[f64]) -> Vec<f64> {
@@ -161,6 +211,11 @@ impl Envelope {
         }
         inverse
     }
+}
+
+/// Whether numbers follow each other without a gap.
+fn contiguous(at: &[usize]) -> bool {
+    matches!((at.first(), at.last()), (Some(first), Some(last)) if last - first + 1 == at.len())
 }
 
 #[cfg(test)]
@@ -206,6 +261,23 @@ mod tests {
         }
         let determinant = dense.determinant().ln();
         assert!((envelope.log_determinant(&factor) - determinant).abs() < 1e-13);
+    }
+
+    #[test]
+    fn closed_form_parts_with_and_without_gaps() {
+        let envelope = Envelope::of_first(vec![0, 0, 0, 1]);
+        let values = [2.0, 3.0, 5.0, 7.0, 11.0, 13.0, 17.0, 19.0, 23.0];
+        let mut product = Vec::new();
+        envelope.multiply_part(&values, &[0, 2], &[1.0, 10.0], &mut product);
+        assert_eq!(product, [72.0, 137.0]);
+        envelope.multiply_part(&values, &[1, 2, 3], &[1.0, 10.0, 100.0], &mut product);
+        assert_eq!(product, [1815.0, 2041.0, 2507.0]);
+        let mut gap = values;
+        envelope.subtract_square(&mut gap, &[0, 2], &[1.0, 2.0]);
+        assert_eq!(gap, [1.0, 3.0, 5.0, 5.0, 11.0, 9.0, 17.0, 19.0, 23.0]);
+        let mut together = values;
+        envelope.subtract_square(&mut together, &[1, 2], &[1.0, 2.0]);
+        assert_eq!(together, [2.0, 3.0, 4.0, 7.0, 9.0, 9.0, 17.0, 19.0, 23.0]);
     }
 
     #[test]

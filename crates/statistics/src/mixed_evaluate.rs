@@ -217,10 +217,8 @@ fn subtract_leaf(
     let envelope = &model.trunk.envelope;
     for row in cross.chunks_exact(met.len() + m) {
         let (in_trunk, in_fixed) = row.split_at(met.len());
-        for (a, (i, value)) in met.iter().zip(in_trunk).enumerate() {
-            for (j, other) in met[..=a].iter().zip(in_trunk) {
-                trunk[envelope.place(*i, *j)] -= value * other;
-            }
+        envelope.subtract_square(trunk, met, in_trunk);
+        for (i, value) in met.iter().zip(in_trunk) {
             let sums = &mut trunk_fixed[i * m..(i + 1) * m];
             sums.iter_mut()
                 .zip(in_fixed)

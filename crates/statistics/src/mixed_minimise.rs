@@ -1,7 +1,7 @@
 //! Minimum of a smooth function with known gradient.
 
 use crate::mixed_basis::dot;
-use nalgebra::{DMatrix, DVector};
+use nalgebra::{DMatrix, DVector, Dyn, SymmetricEigen};
 
 /// Steps of the quasi-Newton search at most.
 const MOST_STEPS: usize = 500;
@@ -12,6 +12,10 @@ const DECREASE: f64 = 1e-13;
 
 /// Steps of Newton's method at the end, at most.
 const MOST_POLISHES: usize = 8;
+
+/// Newton's steps end when one can lower the value by no more than this share of it:
+/// the point is then good to about 1e-11.
+const SETTLED: f64 = 1e-24;
 
 /// Eigenvalues of the second derivative below this share of the largest are flat
 /// directions.
@@ -151,7 +155,8 @@ fn update(inverse: &mut DMatrix<f64>, change: &DVector<f64>, turn: &DVector<f64>
     *inverse += scale * change * change.transpose() - &cross - cross.transpose();
 }
 
-/// Newton's method as long as the gradient shrinks.
+/// Newton's method, with the second derivative where it begins, as long as the
+/// gradient shrinks.
 fn polish(
     objective: &dyn Fn(&[f64]) -> Sloped,
     mut point: Vec<f64>,
@@ -160,30 +165,29 @@ fn polish(
     mut evaluations: usize,
 ) -> Minimum {
     let mut converged = false;
-    for _ in 0..MOST_POLISHES {
-        let only_gradient = |x: &[f64]| objective(x).map(|(_, gradient)| gradient);
-        let Some(second) = second_derivative(&only_gradient, &point) else {
-            break;
-        };
-        evaluations += 4 * point.len();
-        let slope = DVector::from_column_slice(&gradient);
-        let step = newton_step(second, &slope);
-        let promised = -step.dot(&slope);
-        converged = promised.abs() <= 1e-9 * (1.0 + value.abs());
-        if promised.abs() <= 1e-26 * (1.0 + value.abs()) {
-            break;
+    let only_gradient = |x: &[f64]| objective(x).map(|(_, gradient)| gradient);
+    evaluations += 4 * point.len();
+    if let Some(second) = second_derivative(&only_gradient, &point) {
+        let eigen = second.symmetric_eigen();
+        for _ in 0..MOST_POLISHES {
+            let slope = DVector::from_column_slice(&gradient);
+            let step = newton_step(&eigen, &slope);
+            let promised = -step.dot(&slope);
+            converged = promised.abs() <= 1e-9 * (1.0 + value.abs());
+            if promised.abs() <= SETTLED * (1.0 + value.abs()) {
+                break;
+            }
+            let moved: Vec<f64> = point.iter().zip(step.iter()).map(|(x, d)| x + d).collect();
+            evaluations += 1;
+            let Some((found, turned)) = objective(&moved) else {
+                break;
+            };
+            let lower = found <= value + 1e-12 * (1.0 + value.abs());
+            if !lower || dot(&turned, &turned) >= dot(&gradient, &gradient) {
+                break;
+            }
+            (point, value, gradient) = (moved, found, turned);
         }
-        let moved: Vec<f64> = point.iter().zip(step.iter()).map(|(x, d)| x + d).collect();
-        evaluations += 1;
-        let Some((found, turned)) = objective(&moved) else {
-            break;
-        };
-        let length = |g: &[f64]| dot(g, g).sqrt();
-        let lower = found <= value + 1e-12 * (1.0 + value.abs());
-        if !lower || length(&turned) >= length(&gradient) {
-            break;
-        }
-        (point, value, gradient) = (moved, found, turned);
     }
     Minimum {
         point,
@@ -195,8 +199,7 @@ fn polish(
 
 /// Newton's step in the directions that are not flat; downhill where curved
 /// down.
-fn newton_step(second: DMatrix<f64>, slope: &DVector<f64>) -> DVector<f64> {
-    let eigen = second.symmetric_eigen();
+fn newton_step(eigen: &SymmetricEigen<f64, Dyn>, slope: &DVector<f64>) -> DVector<f64> {
     let largest = eigen.eigenvalues.amax();
     let mut step = DVector::zeros(slope.len());
     for (value, vector) in eigen

@@ -12,6 +12,7 @@
 //! They follow from ∂V = Z (∂Λ Λ' + Λ ∂Λ') Z' and, for the squares, from their
 //! being a minimum.
 
+use crate::mixed_basis::dot;
 use crate::mixed_evaluate::{LeafScratch, State, between_blocks, eliminate, solve_upper};
 use crate::mixed_model::MixedModel;
 use nalgebra::DMatrix;
@@ -85,7 +86,7 @@ fn leaf_projection(
     let envelope = &model.trunk.envelope;
     let mut projection = vec![0.0; leaf.groups * q * m];
     let mut scratch = LeafScratch::default();
-    let mut left = Vec::new();
+    let (mut left, mut product) = (Vec::new(), Vec::new());
     for group in 0..leaf.groups {
         // the same operations as in `evaluate`, which found them to be finite
         if eliminate(leaf, &state.blocks[0], group, &mut scratch).is_none() {
@@ -132,15 +133,11 @@ fn leaf_projection(
             continue;
         }
         solve_upper(&scratch.factor, q, &mut scratch.cross, wide);
-        for (a, i) in met.iter().enumerate() {
-            for (b, j) in met.iter().enumerate() {
-                let d = envelope.symmetric(&trunk.scaled, *i, *j);
-                for row in 0..q {
-                    let k = scratch.cross[row * wide + a] * d;
-                    for column in 0..q {
-                        trace[(row, column)] -= k * left[column * wide + b];
-                    }
-                }
+        for column in 0..q {
+            let e = &left[column * wide..column * wide + met.len()];
+            envelope.multiply_part(&trunk.scaled, met, e, &mut product);
+            for row in 0..q {
+                trace[(row, column)] -= dot(&scratch.cross[row * wide..][..met.len()], &product);
             }
         }
     }
