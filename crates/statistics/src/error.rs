@@ -1,5 +1,6 @@
 //! What can go wrong.
 
+use crate::mixed_error::MixedError;
 use thiserror::Error;
 
 /// Errors of designs and models.
@@ -102,6 +103,9 @@ pub enum Error {
         /// Why it cannot be.
         problem: String,
     },
+    /// A mixed model cannot be fitted or used.
+    #[error(transparent)]
+    Mixed(#[from] MixedError),
 }
 
 fn nearest(suggestion: Option<&str>) -> String {
