@@ -53,6 +53,7 @@ pub mod mixed_summary;
 pub mod mixed_term;
 mod mixed_theta;
 pub mod model_frame;
+pub mod random_terms;
 pub mod reduced;
 pub mod selection;
 pub mod surface;

@@ -250,8 +250,16 @@ pub fn csv_of_regress(outcome: &RegressOutcome) -> Result<String, Error> {
         });
         return csv_text(&header, rows);
     }
+    csv_of_terms(&outcome.terms)
+}
+
+/// Estimates as CSV.
+///
+/// # Errors
+/// None in practice: the text is written to memory.
+pub fn csv_of_terms(terms: &[TermOutcome]) -> Result<String, Error> {
     let header = strings(&["term", "estimate", "se", "t", "df", "p", "low", "high"]);
-    let rows = outcome.terms.iter().map(|term| {
+    let rows = terms.iter().map(|term| {
         let numbers = [
             term.estimate,
             term.se,
