@@ -67,7 +67,6 @@ pub fn latin_hypercube(
             most: MOST_IMPROVED,
         });
     }
-    design.findings.push(DesignFinding::NoReplicates);
     Ok(design)
 }
 

@@ -126,7 +126,7 @@ pub struct PlackettBurmanArguments {
 #[derive(Debug, Args)]
 #[command(after_help = "Example, the drop study of 2023:
   windfall design ccd --factor 'k=0.3..1 N/mm^1.91' --factor 'e=1.5..3' \\
-      --factor 'c=1e-4..6e-4 N s/mm' --levels axial --centre 1 --decimals k=2 --decimals e=1")]
+      --factor 'c=1e-4..6e-4 N s/mm' --levels axial --centre 1 --decimals k=2 --decimals e=2")]
 pub struct CompositeArguments {
     /// What all designs take
     #[command(flatten)]

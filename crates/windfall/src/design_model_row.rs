@@ -6,6 +6,7 @@ use windfall_statistics::contrast::Contrast;
 use windfall_statistics::design::{Factor, evenly};
 use windfall_statistics::design_model::{DesignModel, model_row, model_terms};
 use windfall_statistics::design_word::letter;
+use windfall_statistics::error::Error as StatisticsError;
 use windfall_statistics::formula::formula;
 use windfall_statistics::model_frame::{ModelFrame, model_rows, prediction_rows};
 use windfall_statistics::table::{Categories, Cells, Column, Table};
@@ -35,7 +36,16 @@ pub fn row_model(text: &str, factors: &[Factor]) -> Result<RowModel, Error> {
         _ => {}
     }
     let option = || format!("--model '{text}'");
-    let wrong = |error: windfall_statistics::error::Error| unusable(option(), error.to_string());
+    let wrong = |error: StatisticsError| match error {
+        StatisticsError::NotFinite { .. } => unusable(
+            option(),
+            format!(
+                "{error}; factors of a design's model are coded, −1 to 1: for the logarithm of a \
+                 factor give its range as that of the logarithm"
+            ),
+        ),
+        error => unusable(option(), error.to_string()),
+    };
     let names: Vec<String> = factors.iter().map(|factor| factor.name.clone()).collect();
     let parsed = formula(text, &names).map_err(wrong)?;
     if parsed.response.is_some() || !parsed.random.is_empty() {

@@ -15,6 +15,9 @@ use windfall_statistics::design_model::DesignModel;
 use windfall_statistics::design_optimal::{Candidates, OptimalOptions, optimal};
 use windfall_statistics::table::Cells;
 
+/// Steps of a half-range that coded values of settings are rounded to.
+const CODED_STEPS: f64 = 1e13;
+
 /// Levels that are tried for a formula, fewest first.
 const LEVELS_OF_FORMULAS: std::ops::RangeInclusive<usize> = 2..=5;
 
@@ -136,7 +139,7 @@ fn points_of(path: &Path, data: &Data, factors: &[Factor]) -> Result<Vec<Vec<f64
         columns.push(match &column.cells {
             Cells::Numbers(values) if factor.categories.is_empty() => match exact {
                 true => values.clone(),
-                false => values.iter().map(|value| factor.coded(*value)).collect(),
+                false => values.iter().map(|value| recoded(factor, *value)).collect(),
             },
             cells => categories_of(path, data, factor, cells)?,
         });
@@ -152,6 +155,12 @@ fn points_of(path: &Path, data: &Data, factors: &[Factor]) -> Result<Vec<Vec<f64
         Some(row) => Err(blank(path, data, row)),
         None => Ok(points),
     }
+}
+
+/// A coded value without the rounding that the subtraction leaves, so that the
+/// ends of a range are −1 and 1.
+fn recoded(factor: &Factor, setting: f64) -> f64 {
+    (factor.coded(setting) * CODED_STEPS).round() / CODED_STEPS
 }
 
 /// Coded values of a column of categories.

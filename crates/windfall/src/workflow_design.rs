@@ -6,7 +6,7 @@ use crate::design_optimal_runs::optimal_design;
 use crate::design_request::{DesignKind, DesignRequest, Order};
 use crate::error::Error;
 use crate::option_value::{chosen, unusable};
-use windfall_statistics::design::{Design, Factor, evenly, randomised};
+use windfall_statistics::design::{Design, Factor, Point, Run, evenly, randomised};
 use windfall_statistics::design_box_behnken::{BoxBehnkenOptions, box_behnken};
 use windfall_statistics::design_catalogue::catalogued;
 use windfall_statistics::design_composite::{Alpha, CompositeOptions, Ends, central_composite};
@@ -14,7 +14,7 @@ use windfall_statistics::design_error::DesignError;
 use windfall_statistics::design_factorial::{FactorialOptions, full_factorial, two_level};
 use windfall_statistics::design_finding::DesignFinding;
 use windfall_statistics::design_latin::latin_hypercube;
-use windfall_statistics::design_model::{DesignModel, model_terms, region_points};
+use windfall_statistics::design_model::{DesignModel, region_points};
 use windfall_statistics::design_plackett_burman::plackett_burman;
 use windfall_statistics::design_quality::{DesignQuality, design_quality};
 use windfall_statistics::design_sobol::sobol;
@@ -73,7 +73,7 @@ pub fn make_design(request: &DesignRequest) -> Result<DesignOutcome, Error> {
     let (model, terms, quality) = match asked {
         Some((name, model)) => {
             let quality = quality_of(&design, &model);
-            (name, terms_of(&model, &design.factors), quality)
+            (name, names_of(&design, &model), quality)
         }
         None => largest_model(&design),
     };
@@ -352,21 +352,59 @@ fn largest_model(design: &Design) -> (String, Vec<String>, Option<DesignQuality>
     });
     match found {
         Some((model, quality)) => {
-            let terms = model_terms(&design.factors, model);
+            let terms = names_of(design, &RowModel::Named(model));
             (model.name().to_owned(), terms, Some(quality))
         }
         None => ("none".to_owned(), Vec::new(), None),
     }
 }
 
+/// Figures for a model, with an effect for each block but the last.
+///
+/// Runs that were made before an augmentation count as one block with the new
+/// ones: that is the model they were chosen for.
 fn quality_of(design: &Design, model: &RowModel) -> Option<DesignQuality> {
-    let terms = terms_of(model, &design.factors).len();
+    let blocks = block_effects(design);
+    let terms = terms_of(model, &design.factors).len() + blocks;
     if terms > MOST_TERMS || design.runs.len() < terms || design.runs.len() * terms > MOST_NUMBERS {
         return None;
     }
     let row = |coded: &[f64]| row_at(model, &design.factors, coded);
-    let rows: Vec<Vec<f64>> = design.runs.iter().map(|run| row(&run.coded)).collect();
+    let in_block = |run: &Run| {
+        let mut row = row(&run.coded);
+        let effect = |block: usize| match run.block {
+            own if own == block => 1.0,
+            own if own == blocks + 1 => -1.0,
+            _ => 0.0,
+        };
+        row.extend((1..=blocks).map(effect));
+        row
+    };
+    let rows: Vec<Vec<f64>> = design.runs.iter().map(in_block).collect();
     let region = region_points(&design.factors).into_iter();
-    let region: Vec<(f64, Vec<f64>)> = region.map(|(weight, x)| (weight, row(&x))).collect();
+    let region: Vec<(f64, Vec<f64>)> = region
+        .map(|(weight, x)| {
+            let mut row = row(&x);
+            row.resize(terms, 0.0);
+            (weight, row)
+        })
+        .collect();
     design_quality(&rows, &region)
+}
+
+/// Columns for differences between blocks.
+fn block_effects(design: &Design) -> usize {
+    let augmented = design.runs.iter().any(|run| run.point == Point::Existing);
+    if augmented {
+        0
+    } else {
+        design.blocks().saturating_sub(1)
+    }
+}
+
+/// Names of the columns of a model, with those of the blocks.
+fn names_of(design: &Design, model: &RowModel) -> Vec<String> {
+    let mut names = terms_of(model, &design.factors);
+    names.extend((1..=block_effects(design)).map(|block| format!("block {block}")));
+    names
 }

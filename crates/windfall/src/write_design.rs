@@ -57,7 +57,7 @@ fn factor_table(factors: &[Factor]) -> String {
     let header = texts([
         "",
         "factor",
-        "unit",
+        "unit or categories",
         "centre",
         "half-range",
         "at −1",
@@ -66,13 +66,12 @@ fn factor_table(factors: &[Factor]) -> String {
     let rows = factors.iter().enumerate().map(|(place, factor)| {
         let name = factor.name.clone();
         if !factor.categories.is_empty() {
-            let mut row = vec![letter(place).to_string(), name];
-            row.extend(texts(["", "", ""]));
-            let last = factor.categories.len() - 1;
-            row.extend([
-                factor.categories[0].clone(),
-                factor.categories[last].clone(),
-            ]);
+            let mut row = vec![
+                letter(place).to_string(),
+                name,
+                factor.categories.join(" | "),
+            ];
+            row.resize(7, String::new());
             return row;
         }
         vec![
@@ -169,13 +168,19 @@ fn quality_text(quality: &DesignQuality, outcome: &DesignOutcome) -> String {
         plain(quality.max_variance)
     );
     if let (Some(first), Some(last)) = (pairs.first(), pairs.last()) {
-        text += &format!(
-            "standard errors/σ   of coded coefficients: from {} ({}) to {} ({})\n",
-            plain(first.1),
-            first.0,
-            plain(last.1),
-            last.0
-        );
+        text += &match plain(first.1) == plain(last.1) {
+            true => format!(
+                "standard errors/σ   of coded coefficients: all {}\n",
+                plain(first.1)
+            ),
+            false => format!(
+                "standard errors/σ   of coded coefficients: from {} ({}) to {} ({})\n",
+                plain(first.1),
+                first.0,
+                plain(last.1),
+                last.0
+            ),
+        };
     }
     text
 }
