@@ -51,9 +51,17 @@ pub struct Anova {
 #[must_use]
 pub fn anova(frame: &ModelFrame, reduced: &Reduced, terms: &[usize], kind: AnovaType) -> Anova {
     let base: Vec<usize> = if frame.intercept { vec![0] } else { Vec::new() };
+    // What is aliased in the whole model is in none: else every column that it
+    // depends on would explain nothing after it.
+    let every = terms
+        .iter()
+        .flat_map(|term| frame.terms[*term].columns.clone());
+    let every: Vec<usize> = base.iter().copied().chain(every).collect();
+    let estimated_columns = reduced.solve(&every).columns;
     let columns_of = |chosen: &dyn Fn(usize) -> bool| {
         let chosen = terms.iter().filter(|term| chosen(**term));
         let columns = chosen.flat_map(|term| frame.terms[*term].columns.clone());
+        let columns = columns.filter(|column| estimated_columns.contains(column));
         let columns: Vec<usize> = base.iter().copied().chain(columns).collect();
         let solved = reduced.solve(&columns);
         (solved.residual.value().max(0.0), solved.columns.len())

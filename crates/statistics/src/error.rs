@@ -1,5 +1,6 @@
 //! What can go wrong.
 
+use crate::mixed_error::MixedError;
 use thiserror::Error;
 
 /// Errors of designs and models.
@@ -18,6 +19,19 @@ pub enum Error {
     /// A column of categories where numbers are needed.
     #[error("column {name:?} holds text (row {row}: {text:?}), and numbers are needed")]
     NotNumbers {
+        /// The column.
+        name: String,
+        /// Row, from 1.
+        row: usize,
+        /// What stands there.
+        text: String,
+    },
+    /// A column of numbers with text among them.
+    #[error(
+        "column {name:?} holds numbers but for {text:?} in row {row}: mend that cell, leave it \
+         blank, or write C({name}) if the column names categories"
+    )]
+    NumbersWithText {
         /// The column.
         name: String,
         /// Row, from 1.
@@ -89,6 +103,9 @@ pub enum Error {
         /// Why it cannot be.
         problem: String,
     },
+    /// A mixed model cannot be fitted or used.
+    #[error(transparent)]
+    Mixed(#[from] MixedError),
 }
 
 fn nearest(suggestion: Option<&str>) -> String {

@@ -209,7 +209,10 @@ fn encoding(atom: &Atom, table: &Table, contrast: Contrast) -> Result<Encoding, 
     let name = atom.name.clone();
     match &atom.node.kind {
         Kind::Name(column) => match &table.column(column)?.cells {
-            Cells::Categories(categories) => Ok(category(name, column, categories, contrast, None)),
+            Cells::Categories(categories) => {
+                check_mostly_text(column, categories)?;
+                Ok(category(name, column, categories, contrast, None))
+            }
             Cells::Numbers(_) => Ok(Encoding::Numbers {
                 name,
                 node: atom.node.clone(),
@@ -241,6 +244,23 @@ fn encoding(atom: &Atom, table: &Table, contrast: Contrast) -> Result<Encoding, 
         _ => Ok(Encoding::Numbers {
             name,
             node: atom.node.clone(),
+        }),
+    }
+}
+
+/// Numbers with a slip among them are no categories.
+fn check_mostly_text(column: &str, categories: &Categories) -> Result<(), Error> {
+    let is_number = |code: &usize| categories.levels[*code].parse::<f64>().is_ok();
+    let codes = categories.codes.iter().enumerate();
+    let given: Vec<(usize, usize)> = codes.filter_map(|(row, c)| c.map(|c| (row, c))).collect();
+    let numbers = given.iter().filter(|(_, code)| is_number(code)).count();
+    let slip = given.iter().find(|(_, code)| !is_number(code));
+    match slip.filter(|_| 2 * numbers >= given.len()) {
+        None => Ok(()),
+        Some((row, code)) => Err(Error::NumbersWithText {
+            name: column.to_owned(),
+            row: row + 1,
+            text: categories.levels[*code].clone(),
         }),
     }
 }
