@@ -4,6 +4,7 @@
 //! Exit status: 0 success, 1 the work failed, 2 the request was wrong.
 
 mod args;
+mod args_design;
 mod args_fit;
 mod args_format;
 mod args_geometry;
@@ -11,6 +12,7 @@ mod args_regress;
 mod args_simulate;
 mod args_surface;
 mod command_card;
+mod command_design;
 mod command_fit;
 mod command_geometry;
 mod command_inspect;
@@ -28,6 +30,7 @@ fn main() -> ExitCode {
     let outcome = match Arguments::parse().command {
         Command::New(arguments) => command_new::run(&arguments),
         Command::Inspect(arguments) => command_inspect::run(&arguments),
+        Command::Design(arguments) => command_design::run(&arguments),
         Command::Fit(arguments) => command_fit::run(&arguments),
         Command::Simulate(arguments) => command_simulate::run(&arguments),
         Command::Regress(arguments) => command_regress::run(&arguments),
