@@ -132,7 +132,7 @@ fn upper_quantile_on_line(probability: f64, upper: impl Fn(f64) -> f64) -> f64 {
 ///
 /// The probability is compared in logarithms, in which a tail is close to a
 /// straight line over any number of decades.
-fn upper_quantile_positive(probability: f64, upper: impl Fn(f64) -> f64) -> f64 {
+pub(crate) fn upper_quantile_positive(probability: f64, upper: impl Fn(f64) -> f64) -> f64 {
     if probability.is_nan() || !(0.0..=1.0).contains(&probability) {
         return f64::NAN;
     }

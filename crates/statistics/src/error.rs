@@ -51,6 +51,16 @@ pub enum Error {
         /// The value.
         value: f64,
     },
+    /// A value that is zero or below.
+    #[error("{what}: value {place} is {value}, and all have to be above zero")]
+    NotPositive {
+        /// Which values.
+        what: String,
+        /// Place, from 1.
+        place: usize,
+        /// The value.
+        value: f64,
+    },
     /// Two lists that belong together have different lengths.
     #[error("{what}: {first} values against {second}; each needs its partner")]
     LengthsDiffer {
