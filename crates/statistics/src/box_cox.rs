@@ -2,9 +2,9 @@
 //! of equal variance.
 
 use crate::distribution_tail::chi_squared_upper_quantile;
-use crate::error::Error;
 use crate::orthonormal::{dot, orthonormal_basis, take_out};
 use crate::sample::{check_probability, check_sample};
+use crate::sample_error::SampleError;
 use nalgebra::DMatrix;
 
 /// Where to look for the power.
@@ -61,9 +61,9 @@ pub fn box_cox(
     response: &[f64],
     design: &DMatrix<f64>,
     options: &BoxCoxOptions,
-) -> Result<BoxCox, Error> {
+) -> Result<BoxCox, SampleError> {
     if design.nrows() != response.len() {
-        return Err(Error::LengthsDiffer {
+        return Err(SampleError::LengthsDiffer {
             what: "responses and rows of the design".to_owned(),
             first: response.len(),
             second: design.nrows(),
@@ -88,11 +88,11 @@ pub fn box_cox_profile(
     response: &[f64],
     options: &BoxCoxOptions,
     residual_squares: impl Fn(&[f64]) -> f64,
-) -> Result<BoxCox, Error> {
+) -> Result<BoxCox, SampleError> {
     check_probability("the confidence", options.confidence)?;
     check_sample("the response", response, 2)?;
     if let Some(place) = response.iter().position(|y| *y <= 0.0) {
-        return Err(Error::NotPositive {
+        return Err(SampleError::NotPositive {
             what: "a response with powers of it".to_owned(),
             place: place + 1,
             value: response[place],
@@ -115,7 +115,7 @@ pub fn box_cox_profile(
         .map(|lambda| (lambda, likelihood(lambda)))
         .collect();
     if let Some((lambda, _)) = profile.iter().find(|(_, l)| !l.is_finite()) {
-        return Err(Error::OutOfRange {
+        return Err(SampleError::OutOfRange {
             quantity: "the power at which the residuals vanish or overflow",
             value: *lambda,
             expected: "residuals above zero",

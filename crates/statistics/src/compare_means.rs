@@ -2,8 +2,8 @@
 
 use crate::accurate_sum::{mean, variance};
 use crate::distribution_tail::{t_two_sided, t_upper_quantile};
-use crate::error::Error;
 use crate::sample::{check_pairs, check_probability, check_sample};
+use crate::sample_error::SampleError;
 
 /// A difference of means with its t test.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -39,7 +39,7 @@ pub fn one_sample(
     values: &[f64],
     reference: f64,
     confidence: f64,
-) -> Result<MeanDifference, Error> {
+) -> Result<MeanDifference, SampleError> {
     check_sample("the sample", values, 2)?;
     check_probability("the confidence", confidence)?;
     let n = values.len() as f64;
@@ -66,9 +66,13 @@ pub fn one_sample(
 /// let found = paired(&[3.0, 5.0, 4.0], &[1.0, 4.0, 3.0], 0.95)?;
 /// assert!((found.difference - 4.0 / 3.0).abs() < 1e-15);
 /// assert!((found.t - 4.0).abs() < 1e-14); // 4/3 against √(1/3)/√3 = 1/3
-/// # Ok::<(), windfall_statistics::error::Error>(())
+/// # Ok::<(), windfall_statistics::sample_error::SampleError>(())
 /// ```
-pub fn paired(first: &[f64], second: &[f64], confidence: f64) -> Result<MeanDifference, Error> {
+pub fn paired(
+    first: &[f64],
+    second: &[f64],
+    confidence: f64,
+) -> Result<MeanDifference, SampleError> {
     check_pairs("the pairs", first, second, 2)?;
     let differences: Vec<f64> = first.iter().zip(second).map(|(a, b)| a - b).collect();
     one_sample(&differences, 0.0, confidence)
@@ -79,7 +83,11 @@ pub fn paired(first: &[f64], second: &[f64], confidence: f64) -> Result<MeanDiff
 /// # Errors
 /// Missing values, fewer than two in a sample, no spread, or a confidence
 /// outside (0, 1).
-pub fn pooled(first: &[f64], second: &[f64], confidence: f64) -> Result<MeanDifference, Error> {
+pub fn pooled(
+    first: &[f64],
+    second: &[f64],
+    confidence: f64,
+) -> Result<MeanDifference, SampleError> {
     let [one, two] = check_two(first, second, confidence)?;
     let df = one.n + two.n - 2.0;
     let common = ((one.n - 1.0) * one.variance + (two.n - 1.0) * two.variance) / df;
@@ -100,7 +108,11 @@ pub fn pooled(first: &[f64], second: &[f64], confidence: f64) -> Result<MeanDiff
 /// # Source
 /// Welch (1947), The generalization of Student's problem when several different
 /// population variances are involved, Biometrika 34.
-pub fn welch(first: &[f64], second: &[f64], confidence: f64) -> Result<MeanDifference, Error> {
+pub fn welch(
+    first: &[f64],
+    second: &[f64],
+    confidence: f64,
+) -> Result<MeanDifference, SampleError> {
     let [one, two] = check_two(first, second, confidence)?;
     let (a, b) = (one.variance / one.n, two.variance / two.n);
     let squared_error = a + b;
@@ -117,7 +129,7 @@ struct Moments {
     variance: f64,
 }
 
-fn check_two(first: &[f64], second: &[f64], confidence: f64) -> Result<[Moments; 2], Error> {
+fn check_two(first: &[f64], second: &[f64], confidence: f64) -> Result<[Moments; 2], SampleError> {
     check_sample("the first sample", first, 2)?;
     check_sample("the second sample", second, 2)?;
     check_probability("the confidence", confidence)?;
@@ -138,14 +150,14 @@ fn difference_of(
     difference: f64,
     spread: Spread,
     confidence: f64,
-) -> Result<MeanDifference, Error> {
+) -> Result<MeanDifference, SampleError> {
     let Spread {
         squared_error,
         df,
         unit,
     } = spread;
     if squared_error <= 0.0 {
-        return Err(Error::NoSpread {
+        return Err(SampleError::NoSpread {
             what: "the samples compared".to_owned(),
         });
     }

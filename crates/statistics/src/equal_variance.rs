@@ -2,10 +2,10 @@
 
 use crate::accurate_sum::{mean, variance};
 use crate::distribution_tail::chi_squared_upper;
-use crate::error::Error;
 use crate::one_way_anova::{FTest, one_way_anova};
 use crate::quantile::median;
 use crate::sample::check_groups;
+use crate::sample_error::SampleError;
 
 /// A χ² statistic and its probability.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -25,7 +25,7 @@ pub struct ChiSquaredTest {
 ///
 /// # Source
 /// Levene (1960), Robust tests for equality of variances.
-pub fn levene<G: AsRef<[f64]>>(groups: &[G]) -> Result<FTest, Error> {
+pub fn levene<G: AsRef<[f64]>>(groups: &[G]) -> Result<FTest, SampleError> {
     of_distances(groups, |values| mean(values).rounded())
 }
 
@@ -38,14 +38,14 @@ pub fn levene<G: AsRef<[f64]>>(groups: &[G]) -> Result<FTest, Error> {
 /// # Source
 /// Brown and Forsythe (1974), Robust tests for the equality of variances, JASA
 /// 69.
-pub fn brown_forsythe<G: AsRef<[f64]>>(groups: &[G]) -> Result<FTest, Error> {
+pub fn brown_forsythe<G: AsRef<[f64]>>(groups: &[G]) -> Result<FTest, SampleError> {
     of_distances(groups, median)
 }
 
 fn of_distances<G: AsRef<[f64]>>(
     groups: &[G],
     centre_of: impl Fn(&[f64]) -> f64,
-) -> Result<FTest, Error> {
+) -> Result<FTest, SampleError> {
     check_groups(groups, 1)?;
     let distances: Vec<Vec<f64>> = groups
         .iter()
@@ -55,7 +55,7 @@ fn of_distances<G: AsRef<[f64]>>(
         })
         .collect();
     let found = one_way_anova(&distances).map_err(|error| match error {
-        Error::NoSpread { .. } => Error::NoSpread {
+        SampleError::NoSpread { .. } => SampleError::NoSpread {
             what: "the distances of the values from the centres of their groups".to_owned(),
         },
         other => other,
@@ -77,7 +77,7 @@ fn of_distances<G: AsRef<[f64]>>(
 /// # Source
 /// Bartlett (1937), Properties of sufficiency and statistical tests,
 /// Proc. R. Soc. A 160.
-pub fn bartlett<G: AsRef<[f64]>>(groups: &[G]) -> Result<ChiSquaredTest, Error> {
+pub fn bartlett<G: AsRef<[f64]>>(groups: &[G]) -> Result<ChiSquaredTest, SampleError> {
     check_groups(groups, 2)?;
     let mut pooled = 0.0;
     let mut logarithms = 0.0;
@@ -87,7 +87,7 @@ pub fn bartlett<G: AsRef<[f64]>>(groups: &[G]) -> Result<ChiSquaredTest, Error> 
         let df = values.len() as f64 - 1.0;
         let variance = variance(values);
         if variance <= 0.0 {
-            return Err(Error::NoSpread {
+            return Err(SampleError::NoSpread {
                 what: format!("group {}", place + 1),
             });
         }

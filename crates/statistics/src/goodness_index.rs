@@ -1,8 +1,8 @@
 //! How far predictions lie from what was measured.
 
 use crate::accurate_sum::{mean, squares_about};
-use crate::error::Error;
 use crate::sample::check_pairs;
+use crate::sample_error::SampleError;
 
 /// What has to be said beside the two χ² of [`GoodnessIndex`].
 pub const CHI_SQUARED_CAVEAT: &str = "the chi-square here is an index of distance and not a test: \
@@ -51,13 +51,13 @@ pub struct GoodnessIndex {
 /// assert_eq!(found.chi_squared, Some(0.25));
 /// assert_eq!(found.reduced_chi_squared, Some(0.5));
 /// assert_eq!(found.r_squared, Some(0.5));
-/// # Ok::<(), windfall_statistics::error::Error>(())
+/// # Ok::<(), windfall_statistics::sample_error::SampleError>(())
 /// ```
 pub fn goodness_index(
     measured: &[f64],
     predicted: &[f64],
     parameters: usize,
-) -> Result<GoodnessIndex, Error> {
+) -> Result<GoodnessIndex, SampleError> {
     check_pairs("measured and predicted", measured, predicted, 1)?;
     let n = measured.len() as f64;
     let pairs = || measured.iter().zip(predicted);

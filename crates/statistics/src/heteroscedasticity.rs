@@ -2,9 +2,9 @@
 
 use crate::distribution_tail::chi_squared_upper;
 use crate::equal_variance::ChiSquaredTest;
-use crate::error::Error;
 use crate::orthonormal::{dot, orthonormal_basis, take_out};
 use crate::sample::check_sample;
+use crate::sample_error::SampleError;
 use nalgebra::DMatrix;
 
 /// The Breusch-Pagan test, for normal residuals.
@@ -22,7 +22,7 @@ use nalgebra::DMatrix;
 pub fn breusch_pagan(
     residuals: &[f64],
     regressors: &DMatrix<f64>,
-) -> Result<ChiSquaredTest, Error> {
+) -> Result<ChiSquaredTest, SampleError> {
     let explained = explain_squares(residuals, regressors)?;
     let n = residuals.len() as f64;
     let variance = dot(residuals, residuals) / n;
@@ -41,7 +41,10 @@ pub fn breusch_pagan(
 /// # Source
 /// Koenker (1981), A note on studentizing a test for heteroscedasticity,
 /// J. Econom. 17.
-pub fn koenker(residuals: &[f64], regressors: &DMatrix<f64>) -> Result<ChiSquaredTest, Error> {
+pub fn koenker(
+    residuals: &[f64],
+    regressors: &DMatrix<f64>,
+) -> Result<ChiSquaredTest, SampleError> {
     let explained = explain_squares(residuals, regressors)?;
     let n = residuals.len() as f64;
     Ok(test_of(
@@ -59,7 +62,7 @@ pub fn koenker(residuals: &[f64], regressors: &DMatrix<f64>) -> Result<ChiSquare
 /// # Source
 /// White (1980), A heteroskedasticity-consistent covariance matrix estimator and
 /// a direct test for heteroskedasticity, Econometrica 48.
-pub fn white(residuals: &[f64], regressors: &DMatrix<f64>) -> Result<ChiSquaredTest, Error> {
+pub fn white(residuals: &[f64], regressors: &DMatrix<f64>) -> Result<ChiSquaredTest, SampleError> {
     let p = regressors.ncols();
     let mut columns: Vec<_> = (0..p).map(|j| regressors.column(j).into_owned()).collect();
     for i in 0..p {
@@ -79,10 +82,10 @@ struct Explained {
 }
 
 /// Regression of the squared residuals on an intercept and the regressors.
-fn explain_squares(residuals: &[f64], regressors: &DMatrix<f64>) -> Result<Explained, Error> {
+fn explain_squares(residuals: &[f64], regressors: &DMatrix<f64>) -> Result<Explained, SampleError> {
     check_sample("the residuals", residuals, 3)?;
     if regressors.nrows() != residuals.len() {
-        return Err(Error::LengthsDiffer {
+        return Err(SampleError::LengthsDiffer {
             what: "residuals and rows of the regressors".to_owned(),
             first: residuals.len(),
             second: regressors.nrows(),
@@ -95,12 +98,12 @@ fn explain_squares(residuals: &[f64], regressors: &DMatrix<f64>) -> Result<Expla
     let total = dot(&rest, &rest);
     let basis = orthonormal_basis(&regressors.clone().insert_column(0, 1.0));
     if basis.len() < 2 {
-        return Err(Error::NoSpread {
+        return Err(SampleError::NoSpread {
             what: "the regressors".to_owned(),
         });
     }
     if basis.len() >= residuals.len() {
-        return Err(Error::TooFewValues {
+        return Err(SampleError::TooFewValues {
             what: "the residuals, against that many regressors".to_owned(),
             found: residuals.len(),
             needed: basis.len() + 1,
@@ -108,7 +111,7 @@ fn explain_squares(residuals: &[f64], regressors: &DMatrix<f64>) -> Result<Expla
     }
     take_out(&basis, &mut rest);
     if total <= 0.0 {
-        return Err(Error::NoSpread {
+        return Err(SampleError::NoSpread {
             what: "the squared residuals".to_owned(),
         });
     }

@@ -2,8 +2,8 @@
 
 use crate::accurate_sum::{mean, squares_about, standard_deviation};
 use crate::distribution_tail::{chi_squared_upper, normal_lower, normal_quantile, normal_upper};
-use crate::error::Error;
 use crate::sample::check_sample;
+use crate::sample_error::SampleError;
 
 /// A test of normality.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -25,10 +25,10 @@ pub const SHAPIRO_WILK_LARGEST: usize = 5000;
 /// # Source
 /// Royston (1995), Remark AS R94: a remark on algorithm AS 181, the W-test for
 /// normality, Appl. Stat. 44.
-pub fn shapiro_wilk(values: &[f64]) -> Result<NormalityTest, Error> {
+pub fn shapiro_wilk(values: &[f64]) -> Result<NormalityTest, SampleError> {
     check_sample("the sample", values, 3)?;
     if values.len() > SHAPIRO_WILK_LARGEST {
-        return Err(Error::OutOfRange {
+        return Err(SampleError::OutOfRange {
             quantity: "the number of values of the Shapiro-Wilk test",
             value: values.len() as f64,
             expected: "3 to 5000",
@@ -127,7 +127,7 @@ fn polynomial(coefficients: &[f64], x: f64) -> f64 {
 /// # Source
 /// Stephens (1986), in D'Agostino and Stephens, Goodness-of-fit techniques,
 /// table 4.9.
-pub fn anderson_darling(values: &[f64]) -> Result<NormalityTest, Error> {
+pub fn anderson_darling(values: &[f64]) -> Result<NormalityTest, SampleError> {
     check_sample("the sample", values, 8)?;
     let deviation = standard_deviation(values);
     if deviation <= 0.0 {
@@ -170,7 +170,7 @@ fn stephens_p(a: f64) -> f64 {
 /// # Source
 /// Jarque and Bera (1987), A test for normality of observations and regression
 /// residuals, Int. Stat. Rev. 55.
-pub fn jarque_bera(values: &[f64]) -> Result<NormalityTest, Error> {
+pub fn jarque_bera(values: &[f64]) -> Result<NormalityTest, SampleError> {
     check_sample("the sample", values, 4)?;
     let centre = mean(values).rounded();
     let n = values.len() as f64;
@@ -191,8 +191,8 @@ pub fn jarque_bera(values: &[f64]) -> Result<NormalityTest, Error> {
     })
 }
 
-fn no_spread() -> Error {
-    Error::NoSpread {
+fn no_spread() -> SampleError {
+    SampleError::NoSpread {
         what: "the sample".to_owned(),
     }
 }

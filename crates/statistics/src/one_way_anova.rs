@@ -4,8 +4,8 @@
 use crate::accurate_sum::{mean, squares_about, sum, variance};
 use crate::distribution_tail::f_upper;
 use crate::double_double::DoubleDouble;
-use crate::error::Error;
 use crate::sample::check_groups;
+use crate::sample_error::SampleError;
 
 /// One-way analysis of variance.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -53,13 +53,13 @@ pub struct FTest {
 /// Means and squares are summed in twice the precision of `f64`, and values
 /// that share leading digits are read as the decimals they were written as:
 /// data with thirteen digits in common keep the rest.
-pub fn one_way_anova<G: AsRef<[f64]>>(groups: &[G]) -> Result<OneWayAnova, Error> {
+pub fn one_way_anova<G: AsRef<[f64]>>(groups: &[G]) -> Result<OneWayAnova, SampleError> {
     check_groups(groups, 1)?;
     let count: usize = groups.iter().map(|group| group.as_ref().len()).sum();
     let within_df = (count - groups.len()) as f64;
     let between_df = (groups.len() - 1) as f64;
     if within_df == 0.0 {
-        return Err(Error::TooFewValues {
+        return Err(SampleError::TooFewValues {
             what: "groups of one value each".to_owned(),
             found: count,
             needed: count + 1,
@@ -81,7 +81,7 @@ pub fn one_way_anova<G: AsRef<[f64]>>(groups: &[G]) -> Result<OneWayAnova, Error
     }
     let (between, within) = (between.rounded(), within.rounded());
     if within <= 0.0 {
-        return Err(Error::NoSpread {
+        return Err(SampleError::NoSpread {
             what: "the values within each group".to_owned(),
         });
     }
@@ -109,13 +109,13 @@ pub fn one_way_anova<G: AsRef<[f64]>>(groups: &[G]) -> Result<OneWayAnova, Error
 /// # Source
 /// Welch (1951), On the comparison of several mean values: an alternative
 /// approach, Biometrika 38.
-pub fn welch_anova<G: AsRef<[f64]>>(groups: &[G]) -> Result<FTest, Error> {
+pub fn welch_anova<G: AsRef<[f64]>>(groups: &[G]) -> Result<FTest, SampleError> {
     check_groups(groups, 2)?;
     let mut weights = Vec::with_capacity(groups.len());
     for (place, values) in groups.iter().map(AsRef::as_ref).enumerate() {
         let variance = variance(values);
         if variance <= 0.0 {
-            return Err(Error::NoSpread {
+            return Err(SampleError::NoSpread {
                 what: format!("group {}", place + 1),
             });
         }

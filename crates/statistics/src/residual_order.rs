@@ -2,9 +2,9 @@
 //! regressor when they are sorted by it.
 
 use crate::distribution_tail::{beta_lower, normal_upper};
-use crate::error::Error;
 use crate::orthonormal::{dot, orthonormal_basis, take_out};
 use crate::sample::check_sample;
+use crate::sample_error::SampleError;
 use nalgebra::{DMatrix, DVector};
 use std::f64::consts::PI;
 
@@ -44,10 +44,13 @@ pub const EXACT_UP_TO: usize = 200;
 /// Durbin and Watson (1951), Testing for serial correlation in least squares
 /// regression II, Biometrika 38; Imhof (1961), Computing the distribution of
 /// quadratic forms in normal variables, Biometrika 48.
-pub fn durbin_watson(residuals: &[f64], design: &DMatrix<f64>) -> Result<DurbinWatson, Error> {
+pub fn durbin_watson(
+    residuals: &[f64],
+    design: &DMatrix<f64>,
+) -> Result<DurbinWatson, SampleError> {
     check_sample("the residuals", residuals, 3)?;
     if design.nrows() != residuals.len() {
-        return Err(Error::LengthsDiffer {
+        return Err(SampleError::LengthsDiffer {
             what: "residuals and rows of the design".to_owned(),
             first: residuals.len(),
             second: design.nrows(),
@@ -56,7 +59,7 @@ pub fn durbin_watson(residuals: &[f64], design: &DMatrix<f64>) -> Result<DurbinW
     let basis = orthonormal_basis(design);
     let df = residuals.len() as f64 - basis.len() as f64;
     if df < 3.0 {
-        return Err(Error::TooFewValues {
+        return Err(SampleError::TooFewValues {
             what: "the residuals".to_owned(),
             found: residuals.len(),
             needed: basis.len() + 3,
@@ -64,7 +67,7 @@ pub fn durbin_watson(residuals: &[f64], design: &DMatrix<f64>) -> Result<DurbinW
     }
     let squares = dot(residuals, residuals);
     if squares <= 0.0 {
-        return Err(Error::NoSpread {
+        return Err(SampleError::NoSpread {
             what: "the residuals".to_owned(),
         });
     }
@@ -182,7 +185,7 @@ pub struct RunsTest {
 /// # Source
 /// Wald and Wolfowitz (1940), On a test whether two samples are from the same
 /// population, Ann. Math. Stat. 11.
-pub fn runs_test(residuals: &[f64]) -> Result<RunsTest, Error> {
+pub fn runs_test(residuals: &[f64]) -> Result<RunsTest, SampleError> {
     check_sample("the residuals", residuals, 4)?;
     let signs: Vec<bool> = residuals
         .iter()
@@ -192,7 +195,7 @@ pub fn runs_test(residuals: &[f64]) -> Result<RunsTest, Error> {
     let above = signs.iter().filter(|sign| **sign).count();
     let below = signs.len() - above;
     if above.min(below) < 2 {
-        return Err(Error::TooFewValues {
+        return Err(SampleError::TooFewValues {
             what: "residuals on either side of zero".to_owned(),
             found: above.min(below),
             needed: 2,

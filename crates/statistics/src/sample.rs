@@ -1,21 +1,21 @@
 //! Checks that samples have to pass before anything is computed from them.
 
-use crate::error::Error;
+use crate::sample_error::SampleError;
 
 /// Values that are all finite, and enough of them.
 ///
 /// # Errors
-/// [`Error::NotFinite`] with the first place; [`Error::TooFewValues`].
-pub fn check_sample(what: &str, values: &[f64], needed: usize) -> Result<(), Error> {
+/// [`SampleError::NotFinite`] with the first place; [`SampleError::TooFewValues`].
+pub fn check_sample(what: &str, values: &[f64], needed: usize) -> Result<(), SampleError> {
     if let Some(place) = values.iter().position(|value| !value.is_finite()) {
-        return Err(Error::NotFinite {
+        return Err(SampleError::NotFinite {
             what: what.to_owned(),
             place: place + 1,
             value: values[place],
         });
     }
     if values.len() < needed {
-        return Err(Error::TooFewValues {
+        return Err(SampleError::TooFewValues {
             what: what.to_owned(),
             found: values.len(),
             needed,
@@ -27,10 +27,15 @@ pub fn check_sample(what: &str, values: &[f64], needed: usize) -> Result<(), Err
 /// Two samples of one length, finite.
 ///
 /// # Errors
-/// [`Error::LengthsDiffer`], and those of [`check_sample`].
-pub fn check_pairs(what: &str, first: &[f64], second: &[f64], needed: usize) -> Result<(), Error> {
+/// [`SampleError::LengthsDiffer`], and those of [`check_sample`].
+pub fn check_pairs(
+    what: &str,
+    first: &[f64],
+    second: &[f64],
+    needed: usize,
+) -> Result<(), SampleError> {
     if first.len() != second.len() {
-        return Err(Error::LengthsDiffer {
+        return Err(SampleError::LengthsDiffer {
             what: what.to_owned(),
             first: first.len(),
             second: second.len(),
@@ -44,10 +49,10 @@ pub fn check_pairs(what: &str, first: &[f64], second: &[f64], needed: usize) -> 
 ///
 /// # Errors
 /// Those of [`check_sample`], with the group's number, from 1;
-/// [`Error::TooFewValues`] for fewer than two groups.
-pub fn check_groups<G: AsRef<[f64]>>(groups: &[G], needed: usize) -> Result<(), Error> {
+/// [`SampleError::TooFewValues`] for fewer than two groups.
+pub fn check_groups<G: AsRef<[f64]>>(groups: &[G], needed: usize) -> Result<(), SampleError> {
     if groups.len() < 2 {
-        return Err(Error::TooFewGroups {
+        return Err(SampleError::TooFewGroups {
             found: groups.len(),
         });
     }
@@ -60,11 +65,11 @@ pub fn check_groups<G: AsRef<[f64]>>(groups: &[G], needed: usize) -> Result<(), 
 /// A probability strictly between zero and one.
 ///
 /// # Errors
-/// [`Error::OutOfRange`].
-pub fn check_probability(quantity: &'static str, value: f64) -> Result<(), Error> {
+/// [`SampleError::OutOfRange`].
+pub fn check_probability(quantity: &'static str, value: f64) -> Result<(), SampleError> {
     match value > 0.0 && value < 1.0 {
         true => Ok(()),
-        false => Err(Error::OutOfRange {
+        false => Err(SampleError::OutOfRange {
             quantity,
             value,
             expected: "a number between 0 and 1",
@@ -78,7 +83,7 @@ mod tests {
 
     #[test]
     fn rejects_missing_values_short_samples_and_odd_partners() {
-        let of = |result: Result<(), Error>| result.unwrap_err().to_string();
+        let of = |result: Result<(), SampleError>| result.unwrap_err().to_string();
         assert_eq!(
             of(check_sample("k", &[1.0, f64::NAN], 2)),
             "k: value 2 is NaN; leave out missing values first"

@@ -2,9 +2,9 @@
 //! significant difference, and Games and Howell's for unequal variances.
 
 use crate::accurate_sum::{mean, variance};
-use crate::error::Error;
 use crate::one_way_anova::one_way_anova;
 use crate::sample::{check_groups, check_probability};
+use crate::sample_error::SampleError;
 use crate::studentized_range::{studentized_range_upper, studentized_range_upper_quantile};
 use std::f64::consts::SQRT_2;
 
@@ -44,7 +44,7 @@ pub struct PairDifference {
 pub fn tukey_kramer<G: AsRef<[f64]>>(
     groups: &[G],
     confidence: f64,
-) -> Result<Vec<PairDifference>, Error> {
+) -> Result<Vec<PairDifference>, SampleError> {
     check_probability("the confidence", confidence)?;
     let anova = one_way_anova(groups)?;
     let noise = anova.within / anova.within_df;
@@ -72,7 +72,7 @@ pub fn tukey_kramer<G: AsRef<[f64]>>(
 pub fn games_howell<G: AsRef<[f64]>>(
     groups: &[G],
     confidence: f64,
-) -> Result<Vec<PairDifference>, Error> {
+) -> Result<Vec<PairDifference>, SampleError> {
     check_groups(groups, 2)?;
     check_probability("the confidence", confidence)?;
     let parts: Vec<(f64, f64)> = groups
@@ -81,7 +81,7 @@ pub fn games_howell<G: AsRef<[f64]>>(
         .map(|values| (variance(values) / values.len() as f64, values.len() as f64))
         .collect();
     if parts.iter().filter(|part| part.0 <= 0.0).count() > 1 {
-        return Err(Error::NoSpread {
+        return Err(SampleError::NoSpread {
             what: "two or more of the groups".to_owned(),
         });
     }

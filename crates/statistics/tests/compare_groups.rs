@@ -126,7 +126,7 @@ fn reference_equal_variance() {
 fn rejects_what_cannot_be_compared() {
     let of = |result: Result<MeanDifference, _>| match result {
         Ok(found) => panic!("{found:?}"),
-        Err(error) => windfall_statistics::error::Error::to_string(&error),
+        Err(error) => windfall_statistics::sample_error::SampleError::to_string(&error),
     };
     assert_eq!(
         of(paired(&A, &D, 0.95)),

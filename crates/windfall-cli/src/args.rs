@@ -3,7 +3,9 @@
 use crate::args_fit::FitArguments;
 use crate::args_format::Format;
 use crate::args_geometry::{RadiusArguments, TransferArguments};
+use crate::args_regress::RegressArguments;
 use crate::args_simulate::SimulateArguments;
+use crate::args_surface::SurfaceArguments;
 use clap::{Args, Parser, Subcommand, ValueEnum, ValueHint};
 use std::path::PathBuf;
 
@@ -38,6 +40,10 @@ pub enum Command {
     Fit(Box<FitArguments>),
     /// Simulate one event from a force law
     Simulate(SimulateArguments),
+    /// Fit a linear model to a table
+    Regress(Box<RegressArguments>),
+    /// Fit response surfaces to a table of runs, and find the best settings
+    Surface(Box<SurfaceArguments>),
     /// Radius of curvature from a chord gauge or three diameters
     Radius(RadiusArguments),
     /// Show force laws, or take one to another geometry

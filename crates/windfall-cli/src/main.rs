@@ -7,13 +7,17 @@ mod args;
 mod args_fit;
 mod args_format;
 mod args_geometry;
+mod args_regress;
 mod args_simulate;
+mod args_surface;
 mod command_card;
 mod command_fit;
 mod command_geometry;
 mod command_inspect;
 mod command_new;
+mod command_regress;
 mod command_simulate;
+mod command_surface;
 mod show;
 
 use args::{Arguments, Command};
@@ -26,6 +30,8 @@ fn main() -> ExitCode {
         Command::Inspect(arguments) => command_inspect::run(&arguments),
         Command::Fit(arguments) => command_fit::run(&arguments),
         Command::Simulate(arguments) => command_simulate::run(&arguments),
+        Command::Regress(arguments) => command_regress::run(&arguments),
+        Command::Surface(arguments) => command_surface::run(&arguments),
         Command::Radius(arguments) => command_geometry::run_radius(&arguments),
         Command::Card(arguments) => command_card::run(&arguments),
         Command::Completions { shell } => {
