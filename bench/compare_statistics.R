@@ -21,7 +21,7 @@ write_table <- function(name, table) {
 }
 
 ask <- function(path, ...) {
-  output <- system2(windfall, c("regress", path, ..., "--format", "json"), stdout = TRUE)
+  output <- system2(windfall, c("regress", shQuote(path), ..., "--format", "json"), stdout = TRUE)
   fromJSON(paste(output, collapse = "\n"))
 }
 
@@ -80,7 +80,7 @@ check_linear <- function(group, path, formula, table, arguments = character()) {
   }
   new <- table[seq_len(5), , drop = FALSE]
   path_new <- write_table(paste0(group, " new"), new)
-  answer <- ask(shQuote(path), "--formula", shQuote(paste(deparse(formula, width.cutoff = 500), collapse = "")), "--folds 0 --predict", shQuote(path_new))
+  answer <- ask(path, "--formula", shQuote(paste(deparse(formula, width.cutoff = 500), collapse = "")), "--folds 0 --predict", shQuote(path_new))
   mean_interval <- predict(fit, new, interval = "confidence")
   interval <- predict(fit, new, interval = "prediction")
   compare(group, "prediction", c(answer$predictions$predicted, answer$predictions$mean_low, answer$predictions$high),
