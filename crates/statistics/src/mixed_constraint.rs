@@ -7,7 +7,7 @@
 use crate::mixed_boundary::Criterion;
 use crate::mixed_evaluate::evaluate;
 use crate::mixed_fit::{MixedFit, MixedMethod};
-use crate::mixed_minimise::{Sloped, minimise};
+use crate::mixed_minimise::{Sloped, descend};
 use crate::mixed_slope::slopes;
 use crate::mixed_theta::{Entry, blocks_of, place_of, relative_covariance, semidefinite_root};
 use nalgebra::DMatrix;
@@ -144,7 +144,7 @@ impl<'a> Constrained<'a> {
             start.extend(&held.start);
         }
         let objective = |point: &[f64]| self.deviance(value, point);
-        minimise(&objective, start).map(|found| found.value)
+        descend(&objective, start).map(|(found, _)| found.value)
     }
 
     /// -2 log likelihood and its gradient by log σ, other entries, held term's entries.

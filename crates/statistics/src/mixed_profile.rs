@@ -10,7 +10,7 @@ use windfall_numerics::root::bracketed_root;
 
 /// Width of the bracket around the end of an interval, as a share of its distance
 /// from zero or from the estimate.
-const END_TOLERANCE: f64 = 1e-8;
+const END_TOLERANCE: f64 = 1e-7;
 
 /// Doublings of the distance from the estimate before an upper end is given up.
 const MOST_DOUBLINGS: usize = 40;
