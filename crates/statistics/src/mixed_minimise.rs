@@ -21,6 +21,13 @@ const SETTLED: f64 = 1e-24;
 /// directions.
 pub(crate) const FLAT: f64 = 1e-9;
 
+/// Curvature of a deviance below which it says nothing about a coordinate: its
+/// standard deviation is then hundreds of times the coordinate's size.
+const LEVEL: f64 = 1e-5;
+
+/// Coordinates are taken to be at least of this size.
+const LEAST_SIZE: f64 = 0.05;
+
 /// Value and gradient; `None` where there is none.
 pub(crate) type Sloped = Option<(f64, Vec<f64>)>;
 
@@ -35,6 +42,9 @@ pub(crate) struct Minimum {
     pub evaluations: usize,
     /// Whether the gradient vanishes there to rounding.
     pub converged: bool,
+    /// Directions in which the function is level, coordinates taken in shares of their
+    /// size.
+    pub flat: usize,
 }
 
 /// A point with its value and gradient.
@@ -60,6 +70,7 @@ pub(crate) fn minimise(objective: &dyn Fn(&[f64]) -> Sloped, start: Vec<f64>) ->
             value: found.value,
             evaluations,
             converged: true,
+            flat: 0,
         });
     }
     Some(polish(objective, found, evaluations))
@@ -187,9 +198,10 @@ fn polish(objective: &dyn Fn(&[f64]) -> Sloped, start: Step, evaluations: usize)
         mut gradient,
     } = start;
     let mut evaluations = evaluations + 4 * point.len();
-    let mut converged = false;
+    let (mut converged, mut flat) = (false, 0);
     let only_gradient = |x: &[f64]| objective(x).map(|(_, gradient)| gradient);
     if let Some(second) = second_derivative(&only_gradient, &point) {
+        flat = flat_directions(&second, &point);
         let eigen = second.symmetric_eigen();
         for _ in 0..MOST_POLISHES {
             let slope = DVector::from_column_slice(&gradient);
@@ -216,7 +228,17 @@ fn polish(objective: &dyn Fn(&[f64]) -> Sloped, start: Step, evaluations: usize)
         value,
         evaluations,
         converged,
+        flat,
     }
+}
+
+/// Number of directions without curvature, coordinates taken in shares of their size.
+fn flat_directions(second: &DMatrix<f64>, point: &[f64]) -> usize {
+    let size = |i: usize| point[i].abs().max(LEAST_SIZE);
+    let n = point.len();
+    let scaled = DMatrix::from_fn(n, n, |i, j| second[(i, j)] * size(i) * size(j));
+    let eigenvalues = scaled.symmetric_eigenvalues();
+    eigenvalues.iter().filter(|value| **value < LEVEL).count()
 }
 
 /// Newton's step in the directions that are not flat; downhill where curved
@@ -261,7 +283,7 @@ pub(crate) fn differences(
     let coordinates = 0..point.len();
     coordinates
         .map(|i| {
-            let step = 1e-3 * point[i].abs().max(0.05);
+            let step = 1e-3 * point[i].abs().max(LEAST_SIZE);
             let at = |by: f64| {
                 let mut moved = point.to_vec();
                 moved[i] += by * step;

@@ -447,11 +447,41 @@ fn rejects_what_cannot_be_fitted_and_says_why() {
     assert!(message.contains("is a multiple of"), "{message}");
     let message = refused(|y, x, _| *y = x.column(1).iter().map(|v| 3.0 * v + 1.0).collect());
     assert!(
-        message.contains("reproduce the response exactly"),
+        message.contains("the fixed effects reproduce the response"),
         "{message}"
     );
     let message = refused(|y, _, _| {
         y.pop();
     });
     assert!(message.contains("99 are needed"), "{message}");
+}
+
+#[test]
+fn rejects_variances_that_fixed_effects_take_up() {
+    let data = one_way();
+    let x = DMatrix::from_fn(data.y.len(), GROUPS, |row, k| {
+        f64::from(u8::from(data.group[row] == k))
+    });
+    let term = random_intercept("fruit", &data.group, &names(GROUPS));
+    let options = MixedOptions::default();
+    let fit = fit_mixed(&data.y, &x, &names(GROUPS), &[term], &options).unwrap();
+    assert!(
+        fit.findings
+            .iter()
+            .any(|finding| finding.code() == "flat_criterion")
+    );
+}
+
+#[test]
+fn rejects_groups_that_leave_no_residual() {
+    let group = one_way().group;
+    let y: Vec<f64> = group.iter().map(|g| (*g as f64).sin()).collect();
+    let term = random_intercept("fruit", &group, &names(GROUPS));
+    let options = MixedOptions::default();
+    let error = fit_mixed(&y, &intercept(&y), &names(1), &[term], &options).unwrap_err();
+    let message = error.to_string();
+    assert!(
+        message.starts_with("fixed and random effects reproduce the response"),
+        "{message}"
+    );
 }
