@@ -271,6 +271,12 @@ pub(crate) fn between_blocks(
             .blocks
             .partition_point(|block| block.offset < first);
         for right in &model.trunk.blocks[start..=index] {
+            if left.width == 1 && right.width == 1 {
+                let place = envelope.place(left.offset, right.offset);
+                let scale = by_factor[left.factor][(0, 0)] * by_factor[right.factor][(0, 0)];
+                product[place] = matrix[place] * scale;
+                continue;
+            }
             let part = DMatrix::from_fn(left.width, right.width, |a, b| {
                 envelope.symmetric(matrix, left.offset + a, right.offset + b)
             });

@@ -197,7 +197,7 @@ fn polish(objective: &dyn Fn(&[f64]) -> Sloped, start: Step, evaluations: usize)
         mut value,
         mut gradient,
     } = start;
-    let mut evaluations = evaluations + 4 * point.len();
+    let mut evaluations = evaluations + 2 * point.len();
     let (mut converged, mut flat) = (false, 0);
     let only_gradient = |x: &[f64]| objective(x).map(|(_, gradient)| gradient);
     if let Some(second) = second_derivative(&only_gradient, &point) {
@@ -258,17 +258,27 @@ fn newton_step(eigen: &SymmetricEigen<f64, Dyn>, slope: &DVector<f64>) -> DVecto
     step
 }
 
-/// Second derivative by central differences of fourth order of the gradient,
-/// made symmetric.
-pub(crate) fn second_derivative(
+/// Second derivative by central differences of the gradient, made symmetric; good
+/// enough to step by.
+fn second_derivative(
     gradient: &dyn Fn(&[f64]) -> Option<Vec<f64>>,
     point: &[f64],
 ) -> Option<DMatrix<f64>> {
-    let rows = differences(gradient, point)?;
     let n = point.len();
-    Some(DMatrix::from_fn(n, n, |i, j| {
-        f64::midpoint(rows[i][j], rows[j][i])
-    }))
+    let mut rows = DMatrix::zeros(n, n);
+    for i in 0..n {
+        let step = 1e-4 * point[i].abs().max(LEAST_SIZE);
+        let at = |by: f64| {
+            let mut moved = point.to_vec();
+            moved[i] += by;
+            gradient(&moved)
+        };
+        let (above, below) = (at(step)?, at(-step)?);
+        for j in 0..n {
+            rows[(i, j)] = (above[j] - below[j]) / (2.0 * step);
+        }
+    }
+    Some((&rows + rows.transpose()) * 0.5)
 }
 
 /// Derivative of each output by each coordinate, by central differences of fourth
