@@ -184,7 +184,7 @@ fn reference_profile_intervals_of_lme4() {
             continue;
         }
         let fit = fitted_case(case);
-        let profiles = profile_variances(&fit, 0.95).unwrap();
+        let profiles = profile_variances(&fit, MixedMethod::MaximumLikelihood, 0.95).unwrap();
         assert_eq!(profiles.findings, []);
         for (found, expected) in profiles.intervals.iter().zip(rows(&case["profile"])) {
             let name = format!("{}, {}", case["formula"], found.name);
