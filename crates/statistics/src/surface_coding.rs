@@ -54,6 +54,8 @@ pub enum Recognised {
     },
     /// Given.
     Given,
+    /// Told by the design the table comes from.
+    Design,
 }
 
 /// Different values in increasing order.

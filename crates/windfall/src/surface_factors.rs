@@ -1,19 +1,33 @@
 //! Coding of a table's factors, and where it came from.
 
+use crate::design_factor::CODED;
+use crate::design_file::read_coding;
 use crate::error::Error;
 use crate::option_value::unusable;
 use crate::outcome::FindingOutcome;
 use crate::read_data::Data;
 use crate::regress_findings::finding;
 use crate::text_number::plain;
+use std::path::Path;
 use windfall_statistics::surface_coding::{
     CodedFactors, FactorCoding, Recognised, code_by_levels, code_with,
 };
 
-/// Factors that a design's file names.
-#[must_use]
-pub fn factors_of_design(_data: &Data) -> Vec<String> {
-    Vec::new()
+/// Codings that the file of a design tells; none for other tables.
+///
+/// # Errors
+/// A line of the header that cannot be read.
+pub fn codings_of_design(path: &Path, data: &Data) -> Result<Vec<FactorCoding>, Error> {
+    let factors = read_coding(path, &data.comments)?.unwrap_or_default();
+    let numbers = factors
+        .into_iter()
+        .filter(|factor| factor.categories.is_empty());
+    let codings = numbers.map(|factor| FactorCoding {
+        name: factor.name,
+        centre: factor.centre,
+        half: factor.half,
+    });
+    Ok(codings.collect())
 }
 
 /// Codes the factors: by given ranges, by what the file says of the design, else
@@ -25,6 +39,7 @@ pub fn coded_factors(
     data: &Data,
     factors: &[String],
     ranges: &[String],
+    design: &[FactorCoding],
 ) -> Result<CodedFactors, Error> {
     let mut columns: Vec<(String, &[f64])> = Vec::new();
     for name in factors {
@@ -37,7 +52,12 @@ pub fn coded_factors(
         }
         columns.push((name.clone(), values));
     }
-    let mut coded = code_by_levels(&columns);
+    let known = |name: &String| design.iter().find(|coding| coding.name == *name);
+    let known: Option<Vec<FactorCoding>> = factors.iter().map(|f| known(f).cloned()).collect();
+    let mut coded = match known {
+        Some(codings) => coded_by_design(data, codings, &columns),
+        None => code_by_levels(&columns),
+    };
     if !ranges.is_empty() {
         let mut codings = coded.factors;
         for text in ranges {
@@ -49,6 +69,26 @@ pub fn coded_factors(
         coded = code_with(codings, &columns, Recognised::Given);
     }
     Ok(coded)
+}
+
+/// Takes the exact coded settings where the file has them: actual ones may be
+/// rounded to what can be set.
+fn coded_by_design(
+    data: &Data,
+    codings: Vec<FactorCoding>,
+    columns: &[(String, &[f64])],
+) -> CodedFactors {
+    let mut coded = code_with(codings, columns, Recognised::Design);
+    for (factor, values) in coded.factors.iter().zip(&mut coded.values) {
+        let exact = data.table.numbers(&format!("{}{CODED}", factor.name));
+        let exact = exact
+            .ok()
+            .filter(|exact| exact.iter().all(|v| v.is_finite()));
+        if let Some(exact) = exact {
+            values.copy_from_slice(exact);
+        }
+    }
+    coded
 }
 
 /// `k=0.44..0.86`
@@ -80,6 +120,7 @@ fn range(text: &str, factors: &[String]) -> Result<FactorCoding, Error> {
 pub fn coding_text(coded: &CodedFactors) -> String {
     match &coded.recognised {
         Recognised::Given => "given".to_owned(),
+        Recognised::Design => "told by the design's file".to_owned(),
         Recognised::Ranges => "coded -1 and 1 are the lowest and highest values".to_owned(),
         Recognised::CentralComposite { alpha, .. } => format!(
             "central composite design, axial points at ±{}",
