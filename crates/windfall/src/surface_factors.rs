@@ -1,33 +1,20 @@
 //! Coding of a table's factors, and where it came from.
 
-use crate::design_factor::CODED;
-use crate::design_file::read_coding;
+use crate::design_coding::{coding_of_design, number_factors};
 use crate::error::Error;
 use crate::option_value::unusable;
 use crate::outcome::FindingOutcome;
 use crate::read_data::Data;
-use crate::regress_findings::finding;
+use crate::regress_findings::{finding, lines_text};
 use crate::text_number::plain;
-use std::path::Path;
 use windfall_statistics::surface_coding::{
     CodedFactors, FactorCoding, Recognised, code_by_levels, code_with,
 };
 
-/// Codings that the file of a design tells; none for other tables.
-///
-/// # Errors
-/// A line of the header that cannot be read.
-pub fn codings_of_design(path: &Path, data: &Data) -> Result<Vec<FactorCoding>, Error> {
-    let factors = read_coding(path, &data.comments)?.unwrap_or_default();
-    let numbers = factors
-        .into_iter()
-        .filter(|factor| factor.categories.is_empty());
-    let codings = numbers.map(|factor| FactorCoding {
-        name: factor.name,
-        centre: factor.centre,
-        half: factor.half,
-    });
-    Ok(codings.collect())
+/// Factors that a design's file names.
+#[must_use]
+pub fn factors_of_design(data: &Data) -> Vec<String> {
+    number_factors(data)
 }
 
 /// Codes the factors: by given ranges, by what the file says of the design, else
@@ -39,7 +26,6 @@ pub fn coded_factors(
     data: &Data,
     factors: &[String],
     ranges: &[String],
-    design: &[FactorCoding],
 ) -> Result<CodedFactors, Error> {
     let mut columns: Vec<(String, &[f64])> = Vec::new();
     for name in factors {
@@ -52,12 +38,8 @@ pub fn coded_factors(
         }
         columns.push((name.clone(), values));
     }
-    let known = |name: &String| design.iter().find(|coding| coding.name == *name);
-    let known: Option<Vec<FactorCoding>> = factors.iter().map(|f| known(f).cloned()).collect();
-    let mut coded = match known {
-        Some(codings) => coded_by_design(data, codings, &columns),
-        None => code_by_levels(&columns),
-    };
+    let planned = coding_of_design(data, &columns)?;
+    let mut coded = planned.unwrap_or_else(|| code_by_levels(&columns));
     if !ranges.is_empty() {
         let mut codings = coded.factors;
         for text in ranges {
@@ -69,26 +51,6 @@ pub fn coded_factors(
         coded = code_with(codings, &columns, Recognised::Given);
     }
     Ok(coded)
-}
-
-/// Takes the exact coded settings where the file has them: actual ones may be
-/// rounded to what can be set.
-fn coded_by_design(
-    data: &Data,
-    codings: Vec<FactorCoding>,
-    columns: &[(String, &[f64])],
-) -> CodedFactors {
-    let mut coded = code_with(codings, columns, Recognised::Design);
-    for (factor, values) in coded.factors.iter().zip(&mut coded.values) {
-        let exact = data.table.numbers(&format!("{}{CODED}", factor.name));
-        let exact = exact
-            .ok()
-            .filter(|exact| exact.iter().all(|v| v.is_finite()));
-        if let Some(exact) = exact {
-            values.copy_from_slice(exact);
-        }
-    }
-    coded
 }
 
 /// `k=0.44..0.86`
@@ -120,7 +82,7 @@ fn range(text: &str, factors: &[String]) -> Result<FactorCoding, Error> {
 pub fn coding_text(coded: &CodedFactors) -> String {
     match &coded.recognised {
         Recognised::Given => "given".to_owned(),
-        Recognised::Design => "told by the design's file".to_owned(),
+        Recognised::Design { .. } => "that of the design, from its header".to_owned(),
         Recognised::Ranges => "coded -1 and 1 are the lowest and highest values".to_owned(),
         Recognised::CentralComposite { alpha, .. } => format!(
             "central composite design, axial points at ±{}",
@@ -149,6 +111,29 @@ pub fn coding_findings(coded: &CodedFactors) -> Vec<FindingOutcome> {
                 ),
             )]
         }
+        Recognised::Design { rounded, changed } => design_findings(rounded, changed),
         _ => Vec::new(),
     }
+}
+
+fn design_findings(
+    rounded: &[(String, f64)],
+    changed: &[(String, Vec<usize>)],
+) -> Vec<FindingOutcome> {
+    let rounded = rounded.iter().map(|(name, off)| {
+        let message = format!(
+            "the settings of {name} are rounded, by up to {} coded units: the exact levels of the \
+             design are taken; --range {name}=LOW..HIGH takes the settings as they are",
+            plain(*off)
+        );
+        finding("rounded-levels", message)
+    });
+    let changed = changed.iter().map(|(name, lines)| {
+        let message = format!(
+            "{name} is not the planned level in {}: what was set is taken",
+            lines_text(lines)
+        );
+        finding("changed-settings", message)
+    });
+    rounded.chain(changed).collect()
 }

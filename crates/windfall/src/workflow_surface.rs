@@ -7,7 +7,7 @@ use crate::option_value::unusable;
 use crate::outcome::FindingOutcome;
 use crate::read_data::{Data, read_data};
 use crate::regress_findings::{aliased_findings, fit_findings, left_out_finding};
-use crate::surface_factors::{coded_factors, coding_findings, coding_text, codings_of_design};
+use crate::surface_factors::{coded_factors, coding_findings, coding_text};
 use crate::surface_goal::goal;
 use crate::surface_outcome::{
     ActualTerm, CanonicalOutcome, FactorOutcome, RidgeOutcome, SurfaceModel, SurfaceOutcome,
@@ -23,7 +23,7 @@ use windfall_statistics::formula_syntax::parse;
 use windfall_statistics::surface::{
     Shape, Surface, canonical, fit_surface, ridge, surface_lack_of_fit,
 };
-use windfall_statistics::surface_coding::{CodedFactors, FactorCoding};
+use windfall_statistics::surface_coding::CodedFactors;
 use windfall_statistics::surface_terms::{is_hierarchical, letter, monomial_name, surface_terms};
 
 pub use windfall_statistics::anova::AnovaType;
@@ -67,10 +67,9 @@ pub fn surface(request: &SurfaceRequest) -> Result<SurfaceOutcome, Error> {
         return Err(unusable("--confidence", problem));
     }
     let mut data = read_data(&request.table)?;
-    let design = codings_of_design(&request.table, &data)?;
-    let factors = factor_names(request, &design)?;
+    let factors = factor_names(request, &data)?;
     let mut findings = keep_complete(request, &factors, &mut data)?;
-    let coded = coded_factors(&data, &factors, &request.ranges, &design)?;
+    let coded = coded_factors(&data, &factors, &request.ranges)?;
     findings.extend(coding_findings(&coded));
     let mut surfaces = Vec::new();
     let mut models = Vec::new();
@@ -128,13 +127,13 @@ pub fn surface(request: &SurfaceRequest) -> Result<SurfaceOutcome, Error> {
     })
 }
 
-fn factor_names(request: &SurfaceRequest, design: &[FactorCoding]) -> Result<Vec<String>, Error> {
+fn factor_names(request: &SurfaceRequest, data: &Data) -> Result<Vec<String>, Error> {
     if request.responses.is_empty() {
         return Err(unusable("--response", "give at least one response"));
     }
     let mut factors = request.factors.clone();
     if factors.is_empty() {
-        factors = design.iter().map(|factor| factor.name.clone()).collect();
+        factors = crate::surface_factors::factors_of_design(data);
     }
     if factors.is_empty() {
         let problem =
