@@ -8,6 +8,7 @@
 mod box_quadratic;
 pub mod cholesky;
 mod dimension;
+pub mod double_double;
 pub mod least_squares;
 pub mod nearest_name;
 pub mod ode_step;

@@ -118,8 +118,15 @@ impl Table {
         match &self.column(name)?.cells {
             Cells::Numbers(numbers) => Ok(numbers),
             Cells::Categories(categories) => {
-                let row = categories.codes.iter().position(Option::is_some);
-                let row = row.unwrap_or_default();
+                let text = |code: &Option<usize>| code.map(|code| &categories.levels[code]);
+                let is_text = |code: &Option<usize>| {
+                    text(code).is_some_and(|level| level.parse::<f64>().is_err())
+                };
+                let row = categories
+                    .codes
+                    .iter()
+                    .position(is_text)
+                    .unwrap_or_default();
                 let code = categories.codes.get(row).copied().flatten();
                 Err(Error::NotNumbers {
                     name: name.to_owned(),

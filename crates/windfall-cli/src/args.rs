@@ -1,9 +1,12 @@
 //! The command line: what may be written, and its help.
 
+use crate::args_design::DesignArguments;
 use crate::args_fit::FitArguments;
 use crate::args_format::Format;
 use crate::args_geometry::{RadiusArguments, TransferArguments};
+use crate::args_regress::RegressArguments;
 use crate::args_simulate::SimulateArguments;
+use crate::args_surface::SurfaceArguments;
 use clap::{Args, Parser, Subcommand, ValueEnum, ValueHint};
 use std::path::PathBuf;
 
@@ -20,6 +23,7 @@ use std::path::PathBuf;
   windfall inspect my-campaign/raw/*.csv  see what the recordings hold
   windfall fit my-campaign                recordings → parameters, table, results.sqlite
   windfall simulate impact --law 'kuwabara-kono(k=753599, c=1524)' --mass '0.2 kg' --velocity '0.5 m/s'
+  windfall design ccd --factor 'k=0.3..1' --factor 'e=1.5..3' --out design.csv
   windfall card show --laws               the force laws")]
 pub struct Arguments {
     /// What to do.
@@ -36,8 +40,14 @@ pub enum Command {
     Inspect(InspectArguments),
     /// Fit force laws to the impacts of a campaign
     Fit(Box<FitArguments>),
+    /// Make a design of experiments
+    Design(Box<DesignArguments>),
     /// Simulate one event from a force law
     Simulate(SimulateArguments),
+    /// Fit a linear model to a table
+    Regress(Box<RegressArguments>),
+    /// Fit response surfaces to a table of runs, and find the best settings
+    Surface(Box<SurfaceArguments>),
     /// Radius of curvature from a chord gauge or three diameters
     Radius(RadiusArguments),
     /// Show force laws, or take one to another geometry
@@ -144,14 +154,28 @@ pub struct CardArguments {
 /// Actions on law cards.
 #[derive(Debug, Subcommand)]
 pub enum CardAction {
-    /// Show the force laws: formula, parameters, units, source
+    /// Show the force laws, or published values: parameters, units, source
+    #[command(after_help = "Examples:
+  windfall card show --laws
+  windfall card show --library --fruit apple
+  windfall card show --library jonagold-2003
+  windfall card show --library golden-delicious-regression --at 'V=0.34 m/s, R=50 mm, t=6 ms'")]
     Show {
         /// List all laws
-        #[arg(long, required_unless_present = "law")]
+        #[arg(long, required_unless_present_any = ["law", "library"])]
         laws: bool,
         /// Show one law, with all its parameters
         #[arg(long, value_name = "LAW", conflicts_with = "laws")]
         law: Option<String>,
+        /// Published values and models, or the entry of this name, with source and cautions
+        #[arg(long, value_name = "NAME", num_args = 0..=1, conflicts_with_all = ["laws", "law"])]
+        library: Option<Option<String>>,
+        /// Of the library, only this fruit or variety
+        #[arg(long, value_name = "FRUIT", requires = "library", conflicts_with_all = ["laws", "law"])]
+        fruit: Option<String>,
+        /// Evaluate regressions of the library: NAME=VALUE with units, separated by commas
+        #[arg(long, value_name = "VALUES", requires = "library", conflicts_with_all = ["laws", "law"])]
+        at: Option<String>,
         /// How the result is shown
         #[arg(long, value_enum, default_value_t)]
         format: Format,

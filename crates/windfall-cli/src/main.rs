@@ -4,16 +4,22 @@
 //! Exit status: 0 success, 1 the work failed, 2 the request was wrong.
 
 mod args;
+mod args_design;
 mod args_fit;
 mod args_format;
 mod args_geometry;
+mod args_regress;
 mod args_simulate;
+mod args_surface;
 mod command_card;
+mod command_design;
 mod command_fit;
 mod command_geometry;
 mod command_inspect;
 mod command_new;
+mod command_regress;
 mod command_simulate;
+mod command_surface;
 mod show;
 
 use args::{Arguments, Command};
@@ -24,8 +30,11 @@ fn main() -> ExitCode {
     let outcome = match Arguments::parse().command {
         Command::New(arguments) => command_new::run(&arguments),
         Command::Inspect(arguments) => command_inspect::run(&arguments),
+        Command::Design(arguments) => command_design::run(&arguments),
         Command::Fit(arguments) => command_fit::run(&arguments),
         Command::Simulate(arguments) => command_simulate::run(&arguments),
+        Command::Regress(arguments) => command_regress::run(&arguments),
+        Command::Surface(arguments) => command_surface::run(&arguments),
         Command::Radius(arguments) => command_geometry::run_radius(&arguments),
         Command::Card(arguments) => command_card::run(&arguments),
         Command::Completions { shell } => {

@@ -35,6 +35,9 @@ pub enum Error {
     /// A recording that cannot be read.
     #[error("{0}")]
     Format(windfall_formats::Error),
+    /// A design or a model that cannot be.
+    #[error("{0}")]
+    Statistics(windfall_statistics::error::Error),
     /// Nothing says when samples were taken.
     #[error(
         "{path}: nothing says when the samples of \"{column}\" were taken; give the column of \

@@ -276,7 +276,8 @@ fn first_mode_options(
             return Err(invalid(source, &value.span(), key, &text, problem));
         }
     };
-    let part = |value, key, default: f64| Ok(part(source, value, key)?.unwrap_or(default));
+    let part =
+        |value, key, default: f64| Ok::<f64, Error>(part(source, value, key)?.unwrap_or(default));
     Ok(FirstModeOptions {
         least_quality: quality,
         agreement: part(file.agreement.as_ref(), "agreement", defaults.agreement)?,

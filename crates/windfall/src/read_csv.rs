@@ -44,7 +44,7 @@ pub fn read_table(path: &Path) -> Result<Table, Error> {
     while next_row(&mut open, &mut record)? {
         let cells = record.iter().map(|cell| cell.trim().to_owned()).collect();
         rows.push(Row {
-            line: line_of(&record),
+            line: line_of(&open, &record),
             cells,
         });
     }
@@ -64,14 +64,23 @@ pub fn column_index(table: &Table, column: &str) -> Result<usize, Error> {
 }
 
 /// A file whose header has been read.
-struct Open {
+pub(crate) struct Open {
     path: PathBuf,
-    columns: Vec<String>,
-    separator: &'static str,
+    /// Names of the columns.
+    pub(crate) columns: Vec<String>,
+    /// Lines before the header that begin with `#`, without it.
+    pub(crate) comments: Vec<String>,
+    /// Name of the separator.
+    pub(crate) separator: &'static str,
+    before: usize,
     reader: csv::Reader<Box<dyn Read>>,
 }
 
-fn open(path: &Path) -> Result<Open, Error> {
+/// Opens a table and reads its header.
+///
+/// # Errors
+/// As [`read_table`].
+pub(crate) fn open(path: &Path) -> Result<Open, Error> {
     let file = File::open(path).map_err(|source| access(path, source))?;
     let mut reader = BufReader::with_capacity(1 << 16, file);
     let start = reader.fill_buf().map_err(|source| access(path, source))?;
@@ -79,8 +88,12 @@ fn open(path: &Path) -> Result<Open, Error> {
         reader.consume(MARK.len());
     }
     // The header is read to its end, however long, before anything is decided.
-    let mut header = Vec::new();
-    while header.iter().all(u8::is_ascii_whitespace) {
+    let (mut header, mut comments, mut before) = (Vec::new(), Vec::new(), 0);
+    while header.iter().all(u8::is_ascii_whitespace) || header.starts_with(b"#") {
+        if let Some(comment) = header.strip_prefix(b"#") {
+            comments.push(String::from_utf8_lossy(comment).trim().to_owned());
+        }
+        before += usize::from(!header.is_empty());
         header.clear();
         let read = reader
             .read_until(b'\n', &mut header)
@@ -115,7 +128,9 @@ fn open(path: &Path) -> Result<Open, Error> {
     Ok(Open {
         path: path.to_path_buf(),
         columns,
+        comments,
         separator,
+        before,
         reader,
     })
 }
@@ -140,7 +155,7 @@ fn separator_of(header: &[u8]) -> (u8, &'static str) {
 }
 
 /// Reads the next row that is not blank; false at the end of the file.
-fn next_row(open: &mut Open, record: &mut csv::StringRecord) -> Result<bool, Error> {
+pub(crate) fn next_row(open: &mut Open, record: &mut csv::StringRecord) -> Result<bool, Error> {
     while open
         .reader
         .read_record(record)
@@ -156,7 +171,7 @@ fn next_row(open: &mut Open, record: &mut csv::StringRecord) -> Result<bool, Err
         return Err(Error::RowRagged {
             place: Place {
                 file: open.path.clone(),
-                line: line_of(record),
+                line: line_of(open, record),
             },
             expected: open.columns.len(),
             found: record.len(),
@@ -166,10 +181,10 @@ fn next_row(open: &mut Open, record: &mut csv::StringRecord) -> Result<bool, Err
     Ok(false)
 }
 
-fn line_of(record: &csv::StringRecord) -> usize {
-    record
-        .position()
-        .map_or(0, |position| position.line() as usize)
+/// Line of a row in the file, from 1.
+pub(crate) fn line_of(open: &Open, record: &csv::StringRecord) -> usize {
+    let line = record.position().map_or(0, |position| position.line());
+    open.before + line as usize
 }
 
 fn index_of(path: &Path, columns: &[String], column: &str, by: &str) -> Result<usize, Error> {
