@@ -1,6 +1,7 @@
 //! What can go wrong.
 
 use crate::mixed_error::MixedError;
+use crate::sample_error::SampleError;
 use thiserror::Error;
 
 /// Errors of designs and models.
@@ -106,6 +107,9 @@ pub enum Error {
     /// A mixed model cannot be fitted or used.
     #[error(transparent)]
     Mixed(#[from] MixedError),
+    /// A sample cannot be described, compared or tested.
+    #[error(transparent)]
+    Sample(#[from] SampleError),
 }
 
 fn nearest(suggestion: Option<&str>) -> String {

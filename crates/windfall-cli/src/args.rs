@@ -154,14 +154,28 @@ pub struct CardArguments {
 /// Actions on law cards.
 #[derive(Debug, Subcommand)]
 pub enum CardAction {
-    /// Show the force laws: formula, parameters, units, source
+    /// Show the force laws, or published values: parameters, units, source
+    #[command(after_help = "Examples:
+  windfall card show --laws
+  windfall card show --library --fruit apple
+  windfall card show --library jonagold-2003
+  windfall card show --library golden-delicious-regression --at 'V=0.34 m/s, R=50 mm, t=6 ms'")]
     Show {
         /// List all laws
-        #[arg(long, required_unless_present = "law")]
+        #[arg(long, required_unless_present_any = ["law", "library"])]
         laws: bool,
         /// Show one law, with all its parameters
         #[arg(long, value_name = "LAW", conflicts_with = "laws")]
         law: Option<String>,
+        /// Published values and models, or the entry of this name, with source and cautions
+        #[arg(long, value_name = "NAME", num_args = 0..=1, conflicts_with_all = ["laws", "law"])]
+        library: Option<Option<String>>,
+        /// Of the library, only this fruit or variety
+        #[arg(long, value_name = "FRUIT", requires = "library", conflicts_with_all = ["laws", "law"])]
+        fruit: Option<String>,
+        /// Evaluate regressions of the library: NAME=VALUE with units, separated by commas
+        #[arg(long, value_name = "VALUES", requires = "library", conflicts_with_all = ["laws", "law"])]
+        at: Option<String>,
         /// How the result is shown
         #[arg(long, value_enum, default_value_t)]
         format: Format,

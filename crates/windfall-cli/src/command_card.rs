@@ -5,17 +5,43 @@ use crate::args_format::Format;
 use crate::command_geometry::run_transfer;
 use crate::show::{write_json, write_result};
 use windfall::workflow_card::{csv_of_laws, law_cards, text_of_laws};
+use windfall::workflow_library::{LibraryRequest, show_library};
+use windfall::write_library::{csv_of_library, text_of_library};
 
-/// Shows force laws, or transfers one.
+/// Shows force laws or published values, or transfers a law.
 pub fn run(arguments: &CardArguments) -> anyhow::Result<()> {
     let (law, format) = match &arguments.action {
-        CardAction::Show { law, format, .. } => (law, format),
         CardAction::Transfer(arguments) => return run_transfer(arguments),
+        CardAction::Show {
+            library: Some(name),
+            fruit,
+            at,
+            format,
+            ..
+        } => {
+            let request = LibraryRequest {
+                name: name.clone(),
+                fruit: fruit.clone(),
+                at: at.clone(),
+            };
+            return run_library(&request, *format);
+        }
+        CardAction::Show { law, format, .. } => (law, format),
     };
     let laws = law_cards(law.as_deref())?;
     match format {
         Format::Json => write_json(&serde_json::json!({ "laws": laws })),
         Format::Csv => write_result(&csv_of_laws(&laws)?),
         Format::Text => write_result(&text_of_laws(&laws)),
+    }
+}
+
+/// Shows published values and models.
+fn run_library(request: &LibraryRequest, format: Format) -> anyhow::Result<()> {
+    let outcome = show_library(request)?;
+    match format {
+        Format::Json => write_json(&outcome),
+        Format::Csv => write_result(&csv_of_library(&outcome)?),
+        Format::Text => write_result(&text_of_library(&outcome)),
     }
 }

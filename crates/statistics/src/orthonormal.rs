@@ -1,0 +1,49 @@
+//! An orthonormal basis of the columns of a matrix, and what a regression on
+//! them leaves.
+
+use nalgebra::DMatrix;
+
+/// Columns below this part of their length after projection are taken as sums
+/// of those before.
+const RANK_TOLERANCE: f64 = 1e-10;
+
+/// An orthonormal basis of the span of columns; fewer than the columns where
+/// some are sums of others.
+///
+/// # Numerics
+/// Gram-Schmidt, each column twice, which is orthogonal to rounding (Giraud,
+/// Langou and Rozložník 2005).
+#[must_use]
+pub fn orthonormal_basis(columns: &DMatrix<f64>) -> Vec<Vec<f64>> {
+    let mut basis: Vec<Vec<f64>> = Vec::with_capacity(columns.ncols());
+    for column in columns.column_iter() {
+        let mut rest: Vec<f64> = column.iter().copied().collect();
+        let length = dot(&rest, &rest).sqrt();
+        for _ in 0..2 {
+            take_out(&basis, &mut rest);
+        }
+        let left = dot(&rest, &rest).sqrt();
+        if left > RANK_TOLERANCE * length {
+            rest.iter_mut().for_each(|value| *value /= left);
+            basis.push(rest);
+        }
+    }
+    basis
+}
+
+/// Takes what the basis explains out of values: what is left are the residuals
+/// of a regression.
+pub fn take_out(basis: &[Vec<f64>], values: &mut [f64]) {
+    for vector in basis {
+        let share = dot(vector, values);
+        for (value, part) in values.iter_mut().zip(vector) {
+            *value -= share * part;
+        }
+    }
+}
+
+/// Scalar product.
+#[must_use]
+pub fn dot(a: &[f64], b: &[f64]) -> f64 {
+    a.iter().zip(b).map(|(a, b)| a * b).sum()
+}

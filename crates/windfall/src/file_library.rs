@@ -1,0 +1,120 @@
+//! What stands in the library of published values (`data/library.toml`).
+
+use serde::Deserialize;
+
+/// The file.
+#[derive(Clone, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct LibraryFile {
+    /// Version of its form.
+    pub format: i64,
+    /// What was read.
+    pub source: Vec<SourceFile>,
+    /// What was found there.
+    pub entry: Vec<EntryFile>,
+}
+
+/// A publication.
+#[derive(Clone, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct SourceFile {
+    /// Name within the file.
+    pub key: String,
+    /// Authors, year, title, journal.
+    pub citation: String,
+    /// Digital object identifier.
+    pub doi: Option<String>,
+}
+
+/// Values or models that belong together.
+#[derive(Clone, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct EntryFile {
+    /// Name to ask for it.
+    pub name: String,
+    /// What was struck, dropped or pressed.
+    pub body: String,
+    /// Its variety or kind.
+    pub variety: Option<String>,
+    /// What it met.
+    pub counterpart: Option<String>,
+    /// How it was measured.
+    pub conditions: Option<String>,
+    /// Key of the publication.
+    pub source: String,
+    /// Table or section.
+    pub r#where: String,
+    /// "full text" or "abstract".
+    pub seen: String,
+    /// What to beware of.
+    pub cautions: Vec<String>,
+    /// A law expression; for models the law whose parameters they give.
+    pub law: Option<String>,
+    /// Values.
+    #[serde(default)]
+    pub value: Vec<ValueFile>,
+    /// Variables of the models.
+    #[serde(default)]
+    pub variable: Vec<VariableFile>,
+    /// Models.
+    #[serde(default)]
+    pub model: Vec<ModelFile>,
+}
+
+/// One value.
+#[derive(Clone, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct ValueFile {
+    /// What it is.
+    pub quantity: String,
+    /// Number with unit.
+    pub value: String,
+    /// Standard deviation with unit.
+    pub deviation: Option<String>,
+    /// Standard deviation in percent of the value.
+    pub variation: Option<String>,
+    /// Conditions of this value, where they differ from the entry's.
+    pub conditions: Option<String>,
+    /// Place of this value, where it differs from the entry's.
+    pub r#where: Option<String>,
+}
+
+/// A variable of a regression.
+#[derive(Clone, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct VariableFile {
+    /// Its symbol.
+    pub name: String,
+    /// What it is.
+    pub meaning: String,
+    /// SI unit.
+    pub unit: String,
+    /// Smallest value measured; SI.
+    pub seen_from: f64,
+    /// Largest; SI.
+    pub seen_to: f64,
+}
+
+/// A regression: a sum of terms.
+#[derive(Clone, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct ModelFile {
+    /// What it gives.
+    pub quantity: String,
+    /// SI unit of that.
+    pub unit: String,
+    /// Coefficient of determination, as printed.
+    pub r_squared: f64,
+    /// Its terms.
+    pub terms: Vec<TermFile>,
+}
+
+/// A coefficient and the variables it multiplies.
+#[derive(Clone, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct TermFile {
+    /// The coefficient; SI.
+    pub coefficient: f64,
+    /// Symbols of the variables; none for the constant.
+    pub of: Vec<String>,
+}
