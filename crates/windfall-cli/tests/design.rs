@@ -362,3 +362,75 @@ fn rejects_wrong_requests_with_status_2_and_a_way_out() {
         assert!(said.contains(expected), "{arguments:?}: {said}");
     }
 }
+
+/// k, e, C as printed in table 3 of the drop study (Kang et al. 2023), and the
+/// first peak force in N.
+const FORCES: [([f64; 3], f64); 15] = [
+    ([1.0, 2.25, 3.5e-4], 14.9),
+    ([0.44, 1.8, 2e-4], 9.4),
+    ([0.65, 2.25, 6e-4], 11.8),
+    ([0.86, 1.8, 5e-4], 11.2),
+    ([0.44, 2.7, 5e-4], 13.6),
+    ([0.65, 2.25, 1e-4], 13.6),
+    ([0.44, 1.8, 5e-4], 7.6),
+    ([0.3, 2.25, 3.5e-4], 9.7),
+    ([0.86, 2.7, 2e-4], 18.3),
+    ([0.86, 2.7, 5e-4], 15.1),
+    ([0.65, 2.25, 3.5e-4], 13.1),
+    ([0.44, 2.7, 2e-4], 14.3),
+    ([0.65, 1.5, 3.5e-4], 8.4),
+    ([0.65, 3.0, 3.5e-4], 17.7),
+    ([0.86, 1.8, 2e-4], 12.4),
+];
+
+/// From `windfall design` to `windfall surface` with nothing said in between:
+/// printed settings are those of the paper, and the surface is that of the exact
+/// coding (windfall reference data, papers.json: sums of squares of table 4 and
+/// R²), which rounded levels miss by 3e-3.
+#[test]
+fn reference_design_carries_its_coding_to_the_surface() {
+    let mut arguments = DROP_STUDY.to_vec();
+    arguments.extend([
+        "--decimals",
+        "k=2",
+        "--decimals",
+        "e=2",
+        "--decimals",
+        "c=5",
+    ]);
+    let csv = text(&arguments);
+    let run = |line: &str| {
+        let cells: Vec<&str> = line.split(',').collect();
+        let number = |place: usize| cells[place].parse::<f64>();
+        let (Ok(k), Ok(e), Ok(c)) = (number(4), number(5), number(6)) else {
+            return format!("{line},force_N\n");
+        };
+        let force = FORCES.iter().find(|(settings, _)| *settings == [k, e, c]);
+        format!("{line},{}\n", force.unwrap().1)
+    };
+    let lines = csv.lines().map(|line| match line.starts_with('#') {
+        true => format!("{line}\n"),
+        false => run(line),
+    });
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("drop.csv");
+    std::fs::write(&path, lines.collect::<String>()).unwrap();
+    let mut command = Command::cargo_bin("windfall").unwrap();
+    command.args(["surface", path.to_str().unwrap(), "--response", "force_N"]);
+    command.args(["--model", "linear", "--format", "json"]);
+    let output = command.output().unwrap();
+    assert!(
+        output.status.success(),
+        "{}",
+        String::from_utf8_lossy(&output.stderr)
+    );
+    let found: serde_json::Value = serde_json::from_slice(&output.stdout).unwrap();
+    let found = found.get("responses").map_or(&found, |all| &all[0]);
+    let terms = found["terms"].as_array().unwrap();
+    for (symbol, ss) in [("A", 31.81753801), ("B", 96.70195738), ("C", 7.216144801)] {
+        let term = terms.iter().find(|term| term["term"] == symbol).unwrap();
+        let own = term["ss"].as_f64().unwrap();
+        assert!((own / ss - 1.0).abs() < 1e-8, "{symbol}: {own} {ss}");
+    }
+    assert!((found["r2"].as_f64().unwrap() / 0.97780976 - 1.0).abs() < 1e-8);
+}

@@ -16,7 +16,8 @@
 //! settings, and one per number with its exact coded values (`k_coded`).
 
 use crate::design_factor::{CODED, fifteen_digits};
-use crate::error::{Error, Place};
+use crate::error::Error;
+use crate::option_value::unusable;
 use crate::write_csv::csv_text;
 use std::io::Write;
 use std::path::Path;
@@ -158,26 +159,24 @@ fn unseparated(line: &str) -> String {
 /// # Errors
 /// A line of a factor that cannot be read: it says the coding, and another
 /// coding would be wrong without a sign of it.
-pub fn read_coding(path: &Path, comments: &[String]) -> Result<Option<Vec<Factor>>, Error> {
+pub fn read_coding(comments: &[String]) -> Result<Option<Vec<Factor>>, Error> {
     let mut factors = Vec::new();
     for (index, comment) in comments.iter().enumerate() {
         // What spreadsheets add: quotes, and separators of cells that are blank.
         let line = comment.trim().trim_matches('"').trim_start_matches('#');
-        let line = line.trim_end_matches([',', ';', '\t', '"', ' ']).trim();
+        let line = line
+            .trim_end_matches([',', ';', '\t', '"', ' '])
+            .trim_start();
         let Some(rest) = line.strip_prefix(FACTOR) else {
             continue;
         };
-        let factor = parse_coding(rest).ok_or_else(|| Error::ValueInvalid {
-            place: Place {
-                file: path.to_path_buf(),
-                line: index + 1,
-            },
-            key: "the header".to_owned(),
-            text: line.to_owned(),
-            problem: "expected the coding as windfall design writes it, such as \
-                      \"factor A: k = 0.65 + 0.35 A [N/mm]\"; restore the line, or take the \
-                      header away and give the factors by hand"
-                .to_owned(),
+        let factor = parse_coding(rest).ok_or_else(|| {
+            unusable(
+                format!("line {} of the design's header, \"{line}\"", index + 1),
+                "expected the coding as windfall design writes it, such as \
+                 \"factor A: k = 0.65 + 0.35 A [N/mm]\"; restore the line, or take the header \
+                 away and give the factors by hand",
+            )
         })?;
         factors.push(factor);
     }
@@ -255,7 +254,7 @@ mod tests {
         let path = folder.path().join("design.csv");
         let data = read_data(&path).unwrap();
         assert_eq!(
-            read_coding(&path, &data.comments).unwrap(),
+            read_coding(&data.comments).unwrap(),
             Some(design.factors.clone())
         );
         for (place, name) in ["k_coded", "e_coded", "c_coded"].iter().enumerate() {
@@ -288,7 +287,7 @@ mod tests {
             let path = folder.path().join("design.csv");
             let data = read_data(&path).unwrap();
             assert_eq!(
-                read_coding(&path, &data.comments).unwrap(),
+                read_coding(&data.comments).unwrap(),
                 Some(design.factors.clone())
             );
         }
@@ -308,10 +307,7 @@ mod tests {
             .filter(|l| l.starts_with('#'))
             .map(str::to_owned)
             .collect();
-        assert_eq!(
-            read_coding(Path::new("x"), &comments).unwrap(),
-            Some(factors)
-        );
+        assert_eq!(read_coding(&comments).unwrap(), Some(factors));
         assert!(
             text.contains("\n1,1,1,factorial,Golden Delicious,-2.5,-1\n"),
             "{text}"
@@ -320,8 +316,7 @@ mod tests {
 
     #[test]
     fn rejects_a_damaged_coding() {
-        let path = Path::new("design.csv");
-        assert_eq!(read_coding(path, &["anything".to_owned()]).unwrap(), None);
+        assert_eq!(read_coding(&["anything".to_owned()]).unwrap(), None);
         for line in [
             "factor A: k = 0.65 + A",
             "factor A: k = 0.65 + -0.35 A",
@@ -330,9 +325,11 @@ mod tests {
             "factor A: k = 0.65 + 0.35 A to few decimals",
             "factor A: k",
         ] {
-            let error = read_coding(path, &["windfall".to_owned(), line.to_owned()]).unwrap_err();
+            let error = read_coding(&["windfall".to_owned(), line.to_owned()]).unwrap_err();
             assert!(
-                error.to_string().starts_with("design.csv, line 2: "),
+                error
+                    .to_string()
+                    .starts_with("line 2 of the design's header"),
                 "{error}"
             );
         }

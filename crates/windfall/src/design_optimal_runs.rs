@@ -101,8 +101,8 @@ fn levels_of(given: &[DesignFactor], count: usize) -> Vec<Vec<f64>> {
 fn factors_of_header<'a>(
     tables: impl Iterator<Item = &'a (&'a Path, Data)>,
 ) -> Result<Vec<DesignFactor>, Error> {
-    for (path, data) in tables {
-        if let Some(factors) = read_coding(path, &data.comments)? {
+    for (_, data) in tables {
+        if let Some(factors) = read_coding(&data.comments)? {
             let given = factors.into_iter().map(|factor| DesignFactor {
                 levels: (!factor.categories.is_empty()).then(|| factor.ends()),
                 factor,
@@ -118,7 +118,7 @@ fn factors_of_header<'a>(
 /// Coded points of a table: from the exact coded columns where its header has
 /// the same coding, else from the settings.
 fn points_of(path: &Path, data: &Data, factors: &[Factor]) -> Result<Vec<Vec<f64>>, Error> {
-    let header = read_coding(path, &data.comments)?.unwrap_or_default();
+    let header = read_coding(&data.comments)?.unwrap_or_default();
     let mut columns = Vec::new();
     for factor in factors {
         let coded_name = format!("{}{CODED}", factor.name);

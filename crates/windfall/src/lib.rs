@@ -12,6 +12,7 @@ pub mod cell_quantity;
 pub mod column_role;
 pub mod compare_repeats;
 pub mod curve;
+pub mod design_coding;
 pub mod design_document;
 pub mod design_factor;
 pub mod design_file;
