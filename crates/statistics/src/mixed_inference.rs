@@ -1,5 +1,6 @@
 //! Tests of fixed effects with Satterthwaite's degrees of freedom.
 
+use crate::distribution_tail;
 use crate::mixed_boundary::Criterion;
 use crate::mixed_error::MixedError;
 use crate::mixed_evaluate::{State, evaluate};
@@ -8,7 +9,6 @@ use crate::mixed_fit::{MixedFit, MixedMethod};
 use crate::mixed_minimise::{FLAT, differences};
 use crate::mixed_theta::{blocks_of, entries_from};
 use nalgebra::{DMatrix, DVector};
-use statrs::distribution::{ContinuousCDF, FisherSnedecor, StudentsT};
 
 /// Eigenvalues of a contrast's covariance below this share of the largest count as
 /// zero: the contrast's rows follow from each other.
@@ -359,15 +359,15 @@ pub fn picking_contrast(coefficients: usize, picked: &[usize]) -> DMatrix<f64> {
 
 /// p of |t|; NaN where the degrees of freedom are none.
 pub(crate) fn t_two_sided(t: f64, df: f64) -> f64 {
-    StudentsT::new(0.0, 1.0, df).map_or(f64::NAN, |d| 2.0 * d.cdf(-t.abs()))
+    distribution_tail::t_two_sided(t, df)
 }
 
 /// Quantile of Student's t.
 pub(crate) fn t_quantile(probability: f64, df: f64) -> f64 {
-    StudentsT::new(0.0, 1.0, df).map_or(f64::NAN, |d| d.inverse_cdf(probability))
+    -distribution_tail::t_upper_quantile(probability, df)
 }
 
 /// p of F.
 pub(crate) fn f_above(f: f64, numerator: f64, denominator: f64) -> f64 {
-    FisherSnedecor::new(numerator, denominator).map_or(f64::NAN, |d| d.sf(f))
+    distribution_tail::f_upper(f, numerator, denominator)
 }

@@ -1,11 +1,11 @@
 //! Profile likelihood intervals of standard deviations and correlations.
 
+use crate::distribution_tail::normal_quantile;
 use crate::mixed_constraint::{Constrained, VarianceParameter};
 use crate::mixed_error::MixedError;
 use crate::mixed_finding::MixedFinding;
 use crate::mixed_fit::{MixedFit, MixedMethod, MixedOptions, fit_mixed_model};
 use rayon::prelude::*;
-use statrs::distribution::{ContinuousCDF, Normal};
 use windfall_numerics::root::bracketed_root;
 
 /// Width of the bracket around the end of an interval, as a share of its distance
@@ -62,8 +62,7 @@ pub fn profile_variances(fit: &MixedFit, confidence: f64) -> Result<Profiles, Mi
             &plain
         }
     };
-    let normal = Normal::standard();
-    let z = normal.inverse_cdf(f64::midpoint(1.0, confidence));
+    let z = normal_quantile(f64::midpoint(1.0, confidence));
     let parameters = parameters_of(fit);
     let found: Vec<(ProfileInterval, Vec<MixedFinding>)> = parameters
         .into_par_iter()

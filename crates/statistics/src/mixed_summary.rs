@@ -1,10 +1,10 @@
 //! Shares of variance, and the comparison of two models.
 
+use crate::distribution_tail::chi_squared_upper;
 use crate::mixed_error::MixedError;
 use crate::mixed_finding::MixedFinding;
 use crate::mixed_fit::{MixedFit, MixedMethod};
 use nalgebra::DVector;
-use statrs::distribution::{ChiSquared, ContinuousCDF};
 
 /// Responses of two fits that differ by more than this share are not the same.
 const SAME_RESPONSE: f64 = 1e-9;
@@ -115,7 +115,7 @@ pub fn likelihood_ratio(small: &MixedFit, large: &MixedFit) -> Result<Likelihood
     }
     let df = large.parameters - small.parameters;
     let chi_square = (small.criterion - large.criterion).max(0.0);
-    let p = ChiSquared::new(df as f64).map_or(f64::NAN, |d| d.sf(chi_square));
+    let p = chi_squared_upper(chi_square, df as f64);
     let findings = if small.theta.len() == large.theta.len() {
         Vec::new()
     } else {

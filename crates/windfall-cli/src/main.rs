@@ -4,6 +4,7 @@
 //! Exit status: 0 success, 1 the work failed, 2 the request was wrong.
 
 mod args;
+mod args_compare;
 mod args_fit;
 mod args_format;
 mod args_geometry;
@@ -11,6 +12,7 @@ mod args_regress;
 mod args_simulate;
 mod args_surface;
 mod command_card;
+mod command_compare;
 mod command_fit;
 mod command_geometry;
 mod command_inspect;
@@ -30,6 +32,8 @@ fn main() -> ExitCode {
         Command::Inspect(arguments) => command_inspect::run(&arguments),
         Command::Fit(arguments) => command_fit::run(&arguments),
         Command::Simulate(arguments) => command_simulate::run(&arguments),
+        Command::Summary(arguments) => command_compare::run_summary(&arguments),
+        Command::Compare(arguments) => command_compare::run_compare(&arguments),
         Command::Regress(arguments) => command_regress::run(&arguments),
         Command::Surface(arguments) => command_surface::run(&arguments),
         Command::Radius(arguments) => command_geometry::run_radius(&arguments),
