@@ -37,10 +37,15 @@ pub fn normal_upper_quantile(probability: f64) -> f64 {
     upper_quantile_on_line(probability, normal_upper)
 }
 
+/// Above zero, and a number.
+fn has_freedom(df: f64) -> bool {
+    df > 0.0
+}
+
 /// P(|T| > |t|) of Student's t: the two-sided p-value.
 #[must_use]
 pub fn t_two_sided(t: f64, df: f64) -> f64 {
-    if t.is_nan() || df.is_nan() {
+    if t.is_nan() || !has_freedom(df) {
         return f64::NAN;
     }
     if df.is_infinite() {
@@ -70,7 +75,7 @@ pub fn t_upper_quantile(probability: f64, df: f64) -> f64 {
 /// P(F > f) of Fisher's F.
 #[must_use]
 pub fn f_upper(f: f64, df_above: f64, df_below: f64) -> f64 {
-    if f.is_nan() {
+    if f.is_nan() || !has_freedom(df_above) || !has_freedom(df_below) {
         return f64::NAN;
     }
     if f <= 0.0 {
@@ -96,7 +101,10 @@ pub fn f_upper_quantile(probability: f64, df_above: f64, df_below: f64) -> f64 {
 /// P(X > x) of χ².
 #[must_use]
 pub fn chi_squared_upper(x: f64, df: f64) -> f64 {
-    upper_gamma(0.5 * df, 0.5 * x)
+    match has_freedom(df) {
+        true => upper_gamma(0.5 * df, 0.5 * x),
+        false => f64::NAN,
+    }
 }
 
 /// The x with P(X > x) = `probability` of χ².
@@ -114,7 +122,7 @@ pub fn beta_lower(x: f64, a: f64, b: f64) -> f64 {
 
 /// Quantile of a symmetric distribution on the line.
 fn upper_quantile_on_line(probability: f64, upper: impl Fn(f64) -> f64) -> f64 {
-    if probability.is_nan() || !(0.0..=1.0).contains(&probability) {
+    if !(0.0..=1.0).contains(&probability) || upper(1.0).is_nan() {
         return f64::NAN;
     }
     if probability > 0.5 {
@@ -133,7 +141,7 @@ fn upper_quantile_on_line(probability: f64, upper: impl Fn(f64) -> f64) -> f64 {
 /// The probability is compared in logarithms, in which a tail is close to a
 /// straight line over any number of decades.
 pub(crate) fn upper_quantile_positive(probability: f64, upper: impl Fn(f64) -> f64) -> f64 {
-    if probability.is_nan() || !(0.0..=1.0).contains(&probability) {
+    if !(0.0..=1.0).contains(&probability) || upper(1.0).is_nan() {
         return f64::NAN;
     }
     if probability == 0.0 {
@@ -305,6 +313,8 @@ mod tests {
         assert_eq!(f_upper(0.0, 2.0, 3.0), 1.0);
         assert_eq!(normal_quantile(0.5), 0.0);
         assert!(t_two_sided(f64::NAN, 7.0).is_nan());
+        assert!(t_two_sided(1.0, 0.0).is_nan() && f_upper(1.0, 2.0, 0.0).is_nan());
+        assert!(t_upper_quantile(0.1, 0.0).is_nan() && t_upper_quantile(1.1, 3.0).is_nan());
         // one degree of freedom: t of 1/4 is tan(π/4)
         assert!((t_upper_quantile(0.25, 1.0) - 1.0).abs() < 1e-14);
     }

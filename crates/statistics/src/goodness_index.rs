@@ -6,7 +6,8 @@ use crate::sample_error::SampleError;
 
 /// What has to be said beside the two χ² of [`GoodnessIndex`].
 pub const CHI_SQUARED_CAVEAT: &str = "the chi-square here is an index of distance and not a test: \
-     it grows with the unit of the values (a thousandfold from N to mN) and has no p-value";
+     it has no p-value and grows with the unit of the values (from N to mN a thousandfold, reduced \
+     a millionfold)";
 
 /// Distances between predicted and measured values.
 #[derive(Clone, Copy, Debug, PartialEq)]

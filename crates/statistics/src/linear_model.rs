@@ -1,11 +1,11 @@
 //! Linear models: estimates with their errors, and how good they are.
 
+use crate::distribution_tail::{f_upper, t_two_sided, t_upper_quantile};
 use crate::error::Error;
 use crate::model_frame::ModelFrame;
 use crate::reduced::{Aliased, Reduced, Solved, reduce};
 use nalgebra::DMatrix;
 use rayon::prelude::*;
-use statrs::distribution::{ContinuousCDF, FisherSnedecor, StudentsT};
 use windfall_numerics::double_double::DoubleDouble;
 
 /// A fitted linear model.
@@ -253,27 +253,19 @@ fn leverages(x: &DMatrix<f64>, solved: &Solved, rows: std::ops::Range<usize>) ->
 /// Two-sided probability of Student's t; NaN without degrees of freedom.
 #[must_use]
 pub fn student_two_sided(t: f64, df: f64) -> f64 {
-    match StudentsT::new(0.0, 1.0, df) {
-        Ok(student) if t.is_finite() => 2.0 * student.sf(t.abs()),
-        Ok(_) if t.is_infinite() => 0.0,
-        _ => f64::NAN,
-    }
+    t_two_sided(t, df)
 }
 
 /// Quantile of Student's t; NaN without degrees of freedom.
 #[must_use]
 pub fn student_quantile(probability: f64, df: f64) -> f64 {
-    StudentsT::new(0.0, 1.0, df).map_or(f64::NAN, |student| student.inverse_cdf(probability))
+    -t_upper_quantile(probability, df)
 }
 
 /// Probability of F or more; NaN without degrees of freedom.
 #[must_use]
 pub fn fisher_upper(f: f64, df: f64, residual_df: f64) -> f64 {
-    match FisherSnedecor::new(df, residual_df) {
-        Ok(fisher) if f.is_finite() => fisher.sf(f),
-        Ok(_) if f.is_infinite() => 0.0,
-        _ => f64::NAN,
-    }
+    f_upper(f, df, residual_df)
 }
 
 /// How well a model describes what it was fitted to, and what it was not.

@@ -1,5 +1,6 @@
 //! The command line: what may be written, and its help.
 
+use crate::args_compare::{CompareArguments, SummaryArguments};
 use crate::args_design::DesignArguments;
 use crate::args_fit::FitArguments;
 use crate::args_format::Format;
@@ -44,6 +45,10 @@ pub enum Command {
     Design(Box<DesignArguments>),
     /// Simulate one event from a force law
     Simulate(SimulateArguments),
+    /// Describe the values of a table group by group: mean, SD, CV, interval, quartiles
+    Summary(SummaryArguments),
+    /// Compare groups of a table, or predictions with what was measured
+    Compare(Box<CompareArguments>),
     /// Fit a linear model to a table
     Regress(Box<RegressArguments>),
     /// Fit response surfaces to a table of runs, and find the best settings

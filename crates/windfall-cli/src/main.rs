@@ -4,6 +4,7 @@
 //! Exit status: 0 success, 1 the work failed, 2 the request was wrong.
 
 mod args;
+mod args_compare;
 mod args_design;
 mod args_fit;
 mod args_format;
@@ -12,6 +13,7 @@ mod args_regress;
 mod args_simulate;
 mod args_surface;
 mod command_card;
+mod command_compare;
 mod command_design;
 mod command_fit;
 mod command_geometry;
@@ -33,6 +35,8 @@ fn main() -> ExitCode {
         Command::Design(arguments) => command_design::run(&arguments),
         Command::Fit(arguments) => command_fit::run(&arguments),
         Command::Simulate(arguments) => command_simulate::run(&arguments),
+        Command::Summary(arguments) => command_compare::run_summary(&arguments),
+        Command::Compare(arguments) => command_compare::run_compare(&arguments),
         Command::Regress(arguments) => command_regress::run(&arguments),
         Command::Surface(arguments) => command_surface::run(&arguments),
         Command::Radius(arguments) => command_geometry::run_radius(&arguments),

@@ -10,6 +10,7 @@ use crate::option_value::unusable;
 use crate::outcome::FindingOutcome;
 use crate::read_data::{Data, read_data};
 use crate::regress_findings::{aliased_findings, fit_findings, left_out_finding};
+use crate::regress_residuals::{ResidualOutcome, residual_findings, residual_tests};
 use crate::request_regress::{AnovaType, Contrast, Criterion, Direction, RegressRequest};
 use crate::workflow_mixed::{MixedOutcome, regress_mixed};
 use serde::Serialize;
@@ -89,6 +90,8 @@ pub struct RegressOutcome {
     pub steps: Vec<StepOutcome>,
     /// How the model predicts rows it was not fitted to.
     pub cross_validation: Option<CrossValidationOutcome>,
+    /// Tests of the residuals.
+    pub residuals: ResidualOutcome,
     /// Rows with their influence.
     pub influence: Vec<RowOutcome>,
     /// Predictions.
@@ -237,6 +240,8 @@ fn outcome(
     let mut findings = left_out_finding(&rows.left_out, &data.lines);
     findings.extend(aliased_findings(&rows.frame, &fit.aliased));
     findings.extend(fit_findings(fit, &influence, &vif, &lines, &steps));
+    let residuals = residual_tests(rows, fit);
+    findings.extend(residual_findings(&residuals));
     Ok(RegressOutcome {
         formula: formula_of(formula, rows, selection),
         response: formula.response.as_ref().map(spelling).unwrap_or_default(),
@@ -271,6 +276,7 @@ fn outcome(
             rms: found.rms,
             r2: found.r2,
         }),
+        residuals,
         influence: rows_of(&influence, &rows.y, &lines),
         predictions: predictions(request, rows, fit)?,
         findings,
