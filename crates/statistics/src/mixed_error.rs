@@ -104,7 +104,7 @@ pub enum MixedError {
     },
     /// A model whose criterion is not finite where it starts.
     #[error(
-        "the criterion of the mixed model is not finite at the start; scale the columns to sizes near 1"
+        "the criterion of the mixed model is not finite at the start; scale the response and the columns to sizes near 1"
     )]
     NoCriterion,
     /// Kenward and Roger's method with plain maximum likelihood.

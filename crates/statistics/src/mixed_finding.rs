@@ -25,11 +25,6 @@ pub enum MixedFinding {
     },
     /// A likelihood ratio test of a variance against zero.
     VarianceOnEdge,
-    /// Models with different fixed effects compared by restricted likelihood.
-    KenwardRogerUnavailable {
-        /// Why.
-        reason: String,
-    },
     /// A limit of a profile interval was not reached.
     ProfileOpen {
         /// The parameter.
@@ -48,7 +43,6 @@ impl MixedFinding {
             Self::NoConvergence { .. } => "no_convergence",
             Self::FlatCriterion { .. } => "flat_criterion",
             Self::VarianceOnEdge => "variance_on_edge",
-            Self::KenwardRogerUnavailable { .. } => "kenward_roger_unavailable",
             Self::ProfileOpen { .. } => "profile_open",
         }
     }
@@ -78,9 +72,6 @@ impl fmt::Display for MixedFinding {
                 "the models differ in random terms: a variance of zero lies on the edge of what \
                  it can be, and the p-value of chi-square is too large (about twice for one variance)"
             ),
-            Self::KenwardRogerUnavailable { reason } => {
-                write!(f, "Kenward-Roger is not available: {reason}")
-            }
             Self::ProfileOpen { parameter, side } => write!(
                 f,
                 "the {side} end of the profile interval of {parameter} was not reached; the \

@@ -10,6 +10,9 @@ const MOST_STEPS: usize = 500;
 /// of it.
 const DECREASE: f64 = 1e-13;
 
+/// Steps in a row that do not lower the value before the search ends.
+const MOST_IDLE: usize = 4;
+
 /// Steps of Newton's method at the end, at most.
 const MOST_POLISHES: usize = 8;
 
@@ -93,7 +96,7 @@ pub(crate) fn descend(
     let first = 0.5 / dot(&at.gradient, &at.gradient).sqrt().max(1e-8);
     let mut inverse = DMatrix::identity(n, n) * first;
     let mut evaluations = 1;
-    let mut fresh = true;
+    let (mut fresh, mut idle) = (true, 0);
     for _ in 0..MOST_STEPS {
         let slope = DVector::from_column_slice(&at.gradient);
         let mut direction = -(&inverse * &slope);
@@ -122,7 +125,13 @@ pub(crate) fn descend(
         }
         fresh = false;
         update(&mut inverse, &change, &turn);
+        // steps that change no digit of the value lead nowhere
+        let lower = step.value < at.value - f64::EPSILON * at.value.abs();
+        idle = if lower { 0 } else { idle + 1 };
         at = step;
+        if idle == MOST_IDLE {
+            break;
+        }
     }
     Some((at, evaluations))
 }
