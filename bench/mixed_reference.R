@@ -43,17 +43,17 @@ growth <- {
   t$subject <- sprintf("s%02d", t$subject)
   write_table("growth", t)
 }
-# 20 fruit at four velocities, 10 fruit at two, 10 fruit at one
+# the apple study's design: 20 fruit at four velocities, 10 at a fifth, 10 at a sixth
 apple <- {
   t <- rbind(
-    expand.grid(velocity = c(0.3, 0.5, 0.7, 0.9), fruit = 1:20),
-    expand.grid(velocity = c(0.4, 0.8), fruit = 21:30),
-    expand.grid(velocity = 0.6, fruit = 31:40)
+    expand.grid(velocity = c(0.1, 0.2, 0.27, 0.34), fruit = 1:20),
+    expand.grid(velocity = 0.5, fruit = 21:30),
+    expand.grid(velocity = 0.7, fruit = 31:40)
   )
   radius <- 35 + 4 * uniform(40)
   own <- 60 * normal(40)
   t$radius <- radius[t$fruit]
-  t$k <- 300 + 250 * t$velocity + 8 * (t$radius - 37) + own[t$fruit] + 35 * normal(nrow(t))
+  t$k <- 900 - 350 * t$velocity + 8 * (t$radius - 37) + own[t$fruit] + 35 * normal(nrow(t))
   t$fruit <- sprintf("f%02d", t$fruit)
   write_table("apple", t)
 }

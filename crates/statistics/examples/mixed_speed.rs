@@ -38,7 +38,11 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         "{alone} {with_tests} {} {} {sds:?}",
         fit.criterion, fit.residual_sd
     );
-    println!("{} evaluations, df {}", fit.evaluations, tests[1].df);
+    let findings: Vec<&str> = fit.findings.iter().map(|finding| finding.code()).collect();
+    println!(
+        "{} evaluations, df {}, {findings:?}",
+        fit.evaluations, tests[1].df
+    );
     Ok(())
 }
 

@@ -5,7 +5,8 @@
 //! numbers, and values that share digits are read as the decimals they were
 //! written as, so that what the table holds is what the result holds.
 
-use crate::double_double::{DoubleDouble, as_written};
+use crate::as_written::as_written;
+use windfall_numerics::double_double::DoubleDouble;
 
 /// Sum of values.
 #[must_use]
@@ -34,7 +35,7 @@ fn reading_of(values: &[f64]) -> fn(f64) -> DoubleDouble {
 /// Mean of values; NaN where there are none.
 #[must_use]
 pub fn mean(values: &[f64]) -> DoubleDouble {
-    sum(values).divided_by(values.len() as f64)
+    sum(values) / DoubleDouble::from(values.len() as f64)
 }
 
 /// Sum of squared deviations from a centre, Σ (y - centre)².
@@ -54,9 +55,7 @@ pub fn variance(values: &[f64]) -> f64 {
     if values.len() < 2 {
         return f64::NAN;
     }
-    squares_about(values, mean(values))
-        .divided_by((values.len() - 1) as f64)
-        .rounded()
+    (squares_about(values, mean(values)) / DoubleDouble::from((values.len() - 1) as f64)).value()
 }
 
 /// Standard deviation with n - 1 below; NaN for fewer than two values.
@@ -77,7 +76,7 @@ pub fn lag_one_autocorrelation(values: &[f64]) -> f64 {
         .fold(DoubleDouble::default(), |sum, pair| {
             sum + deviation(pair[0]) * deviation(pair[1])
         });
-    products.rounded() / squares_about(values, centre).rounded()
+    products.value() / squares_about(values, centre).value()
 }
 
 #[cfg(test)]
@@ -87,8 +86,8 @@ mod tests {
     #[test]
     fn closed_form_a_small_number_beside_a_large_one() {
         let values = [1e16, 1.0, -1e16, 1.0];
-        assert_eq!(sum(&values).rounded(), 2.0);
-        assert_eq!(mean(&values).rounded(), 0.5);
+        assert_eq!(sum(&values).value(), 2.0);
+        assert_eq!(mean(&values).value(), 0.5);
     }
 
     #[test]

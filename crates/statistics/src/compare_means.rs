@@ -44,7 +44,7 @@ pub fn one_sample(
     check_probability("the confidence", confidence)?;
     let n = values.len() as f64;
     let variance = variance(values);
-    let difference = (mean(values) - reference.into()).rounded();
+    let difference = (mean(values) - reference.into()).value();
     let spread = Spread {
         squared_error: variance / n,
         df: n - 1.0,
@@ -96,7 +96,7 @@ pub fn pooled(
         df,
         unit: common.sqrt(),
     };
-    difference_of((mean(first) - mean(second)).rounded(), spread, confidence)
+    difference_of((mean(first) - mean(second)).value(), spread, confidence)
 }
 
 /// Two samples with variances of their own (Welch), the safer choice where
@@ -121,7 +121,7 @@ pub fn welch(
         df: squared_error * squared_error / (a * a / (one.n - 1.0) + b * b / (two.n - 1.0)),
         unit: (0.5 * (one.variance + two.variance)).sqrt(),
     };
-    difference_of((mean(first) - mean(second)).rounded(), spread, confidence)
+    difference_of((mean(first) - mean(second)).value(), spread, confidence)
 }
 
 struct Moments {

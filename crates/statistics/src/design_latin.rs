@@ -54,7 +54,7 @@ pub fn latin_hypercube(
         true => spread_cells(&mut generator, factors.len(), runs),
         false => drawn(&mut generator, factors.len(), runs),
     };
-    let level = |cell: i32| f64::from(2 * cell + 1) / runs as f64 - 1.0;
+    let level = |cell: i32| (f64::from(2 * cell + 1) - runs as f64) / runs as f64;
     let points = (0..runs).map(|run| {
         let coded = cells.iter().map(|column| level(column[run])).collect();
         (Point::Space, coded)
@@ -67,7 +67,6 @@ pub fn latin_hypercube(
             most: MOST_IMPROVED,
         });
     }
-    design.findings.push(DesignFinding::NoReplicates);
     Ok(design)
 }
 

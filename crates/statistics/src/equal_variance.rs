@@ -26,7 +26,7 @@ pub struct ChiSquaredTest {
 /// # Source
 /// Levene (1960), Robust tests for equality of variances.
 pub fn levene<G: AsRef<[f64]>>(groups: &[G]) -> Result<FTest, SampleError> {
-    of_distances(groups, |values| mean(values).rounded())
+    of_distances(groups, |values| mean(values).value())
 }
 
 /// The Brown-Forsythe test: analysis of variance of the distances from the group

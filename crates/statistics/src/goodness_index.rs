@@ -63,12 +63,12 @@ pub fn goodness_index(
     let n = measured.len() as f64;
     let pairs = || measured.iter().zip(predicted);
     let misses: Vec<f64> = pairs().map(|(o, p)| p - o).collect();
-    let squares = squares_about(&misses, 0.0.into()).rounded();
+    let squares = squares_about(&misses, 0.0.into()).value();
     let (centre, middle) = (mean(measured), mean(predicted));
-    let total = squares_about(measured, centre).rounded();
-    let spread = squares_about(predicted, middle).rounded();
+    let total = squares_about(measured, centre).value();
+    let spread = squares_about(predicted, middle).value();
     let product: f64 = pairs()
-        .map(|(o, p)| (o - centre.rounded()) * (p - middle.rounded()))
+        .map(|(o, p)| (o - centre.value()) * (p - middle.value()))
         .sum();
     let absolute = |(o, p): (&f64, &f64)| (o - p).abs();
     Ok(GoodnessIndex {
@@ -80,7 +80,7 @@ pub fn goodness_index(
         reduced_chi_squared: (measured.len() > parameters)
             .then(|| squares / (measured.len() - parameters) as f64),
         root_mean_square: (squares / n).sqrt(),
-        bias: mean(&misses).rounded(),
+        bias: mean(&misses).value(),
         mean_absolute: pairs().map(absolute).sum::<f64>() / n,
         mean_absolute_relative: measured
             .iter()

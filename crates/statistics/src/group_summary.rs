@@ -149,7 +149,7 @@ pub fn summarize(group: &Group, confidence: f64) -> Result<GroupSummary, Error> 
     check_probability("the confidence", confidence)?;
     let values = &group.values;
     let n = values.len();
-    let mean = mean(values).rounded();
+    let mean = mean(values).value();
     let deviation = standard_deviation(values);
     let error = deviation / (n as f64).sqrt();
     let reach = match n {

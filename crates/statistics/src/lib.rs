@@ -6,6 +6,7 @@
 
 pub mod accurate_sum;
 pub mod anova;
+pub mod as_written;
 pub mod box_cox;
 pub mod compact_letters;
 pub mod compare_means;
@@ -32,7 +33,6 @@ pub mod design_word;
 pub mod desirability;
 pub mod diagnostics;
 pub mod distribution_tail;
-pub mod double_double;
 pub mod equal_variance;
 pub mod error;
 pub mod expression;
@@ -71,6 +71,7 @@ pub mod normality;
 pub mod one_way_anova;
 mod orthonormal;
 pub mod quantile;
+pub mod random_terms;
 pub mod reduced;
 pub mod residual_order;
 pub mod sample;

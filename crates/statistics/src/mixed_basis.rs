@@ -72,22 +72,19 @@ fn dependent(j: usize, r: &DMatrix<f64>, columns: &[&[f64]]) -> Dependent {
     Dependent { column: j, on }
 }
 
-/// Sum of products, in four running sums that the compiler keeps in a register.
+/// Sum of products, in eight running sums that the compiler keeps in registers.
 pub(crate) fn dot(a: &[f64], b: &[f64]) -> f64 {
-    let mut sums = [0.0; 4];
-    let (a4, b4) = (a.chunks_exact(4), b.chunks_exact(4));
-    let tail: f64 = a4
-        .remainder()
-        .iter()
-        .zip(b4.remainder())
-        .map(|(x, y)| x * y)
-        .sum();
-    for (x, y) in a4.zip(b4) {
-        for lane in 0..4 {
+    let mut sums = [0.0; 8];
+    let (a8, b8) = (a.chunks_exact(8), b.chunks_exact(8));
+    let rest = a8.remainder().iter().zip(b8.remainder());
+    let rest: f64 = rest.map(|(x, y)| x * y).sum();
+    for (x, y) in a8.zip(b8) {
+        for lane in 0..8 {
             sums[lane] += x[lane] * y[lane];
         }
     }
-    (sums[0] + sums[1]) + (sums[2] + sums[3]) + tail
+    let halves = [0, 1, 2, 3].map(|lane| sums[lane] + sums[lane + 4]);
+    (halves[0] + halves[1]) + (halves[2] + halves[3]) + rest
 }
 
 /// Length of a column, without overflow of squares for ordinary data.

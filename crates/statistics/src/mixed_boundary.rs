@@ -80,6 +80,8 @@ pub(crate) struct Estimate {
     pub evaluations: usize,
     /// Whether its gradient vanishes.
     pub converged: bool,
+    /// Directions in which it is level.
+    pub flat: usize,
 }
 
 /// Minimises the criterion. Entries may have any sign, which leaves it smooth where
@@ -157,6 +159,7 @@ fn to_edge(
         value: found.value,
         evaluations: found.evaluations,
         converged: found.converged,
+        flat: found.flat,
     };
     for place in (0..entries.len()).rev() {
         let entry = entries[place];
@@ -181,6 +184,7 @@ fn to_edge(
             best.theta = with_signs(entries, other.point);
             best.value = other.value;
             best.converged = other.converged;
+            best.flat = other.flat;
             best.at_zero = at_zero;
         }
     }

@@ -4,9 +4,10 @@
 //! the first rows of a triangle: a standard deviation is the first row's only entry,
 //! a correlation the direction of the second row. What remains is free.
 
+use crate::mixed_boundary::Criterion;
 use crate::mixed_evaluate::evaluate;
-use crate::mixed_fit::MixedFit;
-use crate::mixed_minimise::{Sloped, minimise};
+use crate::mixed_fit::{MixedFit, MixedMethod};
+use crate::mixed_minimise::{Sloped, descend};
 use crate::mixed_slope::slopes;
 use crate::mixed_theta::{Entry, blocks_of, place_of, relative_covariance, semidefinite_root};
 use nalgebra::DMatrix;
@@ -143,7 +144,7 @@ impl<'a> Constrained<'a> {
             start.extend(&held.start);
         }
         let objective = |point: &[f64]| self.deviance(value, point);
-        minimise(&objective, start).map(|found| found.value)
+        descend(&objective, start).map(|(found, _)| found.value)
     }
 
     /// -2 log likelihood and its gradient by log σ, other entries, held term's entries.
@@ -152,15 +153,23 @@ impl<'a> Constrained<'a> {
         let point = self.point(value, free);
         let state = evaluate(model, &point.blocks)?;
         let variance = (2.0 * point.log_sigma).exp();
-        let n = model.rows() as f64;
-        let deviance = state.log_v + n * (TAU * variance).ln() + state.squares / variance;
+        let criterion = Criterion::of_model(model, self.fit.method == MixedMethod::Reml);
+        let n = criterion.denominator;
+        let mut deviance = state.log_v + n * (TAU * variance).ln() + state.squares / variance;
         let (slopes, _) = slopes(model, &state);
-        let by_block: Vec<DMatrix<f64>> = slopes
+        let mut by_block: Vec<DMatrix<f64>> = slopes
             .log_v
             .iter()
             .zip(&slopes.squares)
             .map(|(log_v, squares)| log_v + squares / variance)
             .collect();
+        if criterion.restricted {
+            deviance += state.log_fixed + criterion.log_basis;
+            by_block
+                .iter_mut()
+                .zip(&slopes.log_fixed)
+                .for_each(|(sum, slope)| *sum += slope);
+        }
         let mut gradient = vec![2.0 * n - 2.0 * state.squares / variance];
         gradient.extend(
             self.others

@@ -184,30 +184,19 @@ impl Envelope {
     pub(crate) fn inverse(&self, factor: &[f64]) -> Vec<f64> {
         let rows = self.rows();
         let mut inverse = vec![0.0; self.entries()];
-        let mut below = Vec::with_capacity(rows);
-        let mut sums = vec![0.0; rows];
+        let mut below: Vec<usize> = Vec::with_capacity(rows);
+        let (mut column, mut sums) = (Vec::with_capacity(rows), Vec::new());
         for j in (0..rows).rev() {
             below.clear();
             below.extend((j + 1..rows).filter(|i| self.first[*i] <= j));
+            column.clear();
+            column.extend(below.iter().map(|i| factor[self.place(*i, j)]));
             let pivot = factor[self.place(j, j)];
-            for (place, i) in below.iter().enumerate() {
-                let l_i = factor[self.place(*i, j)];
-                let mut sum = inverse[self.place(*i, *i)] * l_i;
-                for k in &below[..place] {
-                    let z = inverse[self.place(*i, *k)];
-                    sum += z * factor[self.place(*k, j)];
-                    sums[*k] += z * l_i;
-                }
-                sums[*i] += sum;
+            self.multiply_part(&inverse, &below, &column, &mut sums);
+            for (i, sum) in below.iter().zip(&sums) {
+                inverse[self.place(*i, j)] = -sum / pivot;
             }
-            let mut diagonal = 1.0 / pivot;
-            for i in &below {
-                let z = -sums[*i] / pivot;
-                inverse[self.place(*i, j)] = z;
-                diagonal -= factor[self.place(*i, j)] * z;
-                sums[*i] = 0.0;
-            }
-            inverse[self.place(j, j)] = diagonal / pivot;
+            inverse[self.place(j, j)] = (1.0 / pivot + dot(&column, &sums) / pivot) / pivot;
         }
         inverse
     }

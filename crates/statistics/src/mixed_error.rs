@@ -92,12 +92,14 @@ pub enum MixedError {
         /// Rows.
         rows: usize,
     },
-    /// The fixed effects leave no residual.
+    /// Nothing is left to be residual.
     #[error(
-        "the fixed effects reproduce the response exactly (residual {residual:.1e} of its spread); there is no variance to share out"
+        "{what} reproduce the response to {residual:.1e} of its spread: there is no residual variance to compare with; check that the response is measured, not computed"
     )]
     NoResidual {
-        /// Residual length by length of the response.
+        /// Which effects do.
+        what: &'static str,
+        /// Length of the residual by that of the response, or of what fixed effects leave.
         residual: f64,
     },
     /// A model whose criterion is not finite where it starts.

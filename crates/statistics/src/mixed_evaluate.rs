@@ -10,6 +10,9 @@ use crate::mixed_blocks::{Leaf, TrunkBlock};
 use crate::mixed_model::MixedModel;
 use nalgebra::{DMatrix, DVector};
 
+/// Penalised squares below this share of the ordinary ones are rounding.
+const LEAST_SQUARES: f64 = 1e-15;
+
 /// What the factorisation at one Λ gives.
 #[derive(Clone, Debug)]
 pub(crate) struct State {
@@ -90,7 +93,8 @@ pub(crate) fn evaluate(model: &MixedModel, blocks: &[DMatrix<f64>]) -> Option<St
     let shift = cholesky.solve(&right);
     let squares = fixed[p * m + p] - right.dot(&shift);
     let log_fixed = 2.0 * cholesky.l_dirty().diagonal().map(f64::ln).sum();
-    let valid = squares > 0.0 && (log_v + log_fixed + squares).is_finite();
+    let least = LEAST_SQUARES * model.fixed[p * m + p];
+    let valid = squares > least && (log_v + log_fixed + squares).is_finite();
     valid.then(|| State {
         blocks: blocks.to_vec(),
         log_v,
@@ -267,6 +271,12 @@ pub(crate) fn between_blocks(
             .blocks
             .partition_point(|block| block.offset < first);
         for right in &model.trunk.blocks[start..=index] {
+            if left.width == 1 && right.width == 1 {
+                let place = envelope.place(left.offset, right.offset);
+                let scale = by_factor[left.factor][(0, 0)] * by_factor[right.factor][(0, 0)];
+                product[place] = matrix[place] * scale;
+                continue;
+            }
             let part = DMatrix::from_fn(left.width, right.width, |a, b| {
                 envelope.symmetric(matrix, left.offset + a, right.offset + b)
             });

@@ -69,8 +69,9 @@ impl fmt::Display for MixedFinding {
             ),
             Self::FlatCriterion { directions } => write!(
                 f,
-                "the criterion does not change in {directions} direction(s) of the variance \
-                 parameters; degrees of freedom leave them out"
+                "the likelihood does not depend on {directions} direction(s) of the variance \
+                 parameters, and the variances along them are arbitrary; the fixed effects may \
+                 take up all differences between groups, or nothing is left for the residual"
             ),
             Self::VarianceOnEdge => write!(
                 f,

@@ -132,6 +132,7 @@ pub fn fit_mixed(
 pub fn fit_mixed_model(model: MixedModel, options: &MixedOptions) -> Result<MixedFit, MixedError> {
     let criterion = Criterion::of_model(&model, options.method == MixedMethod::Reml);
     let (estimate, state) = estimate(&model, &criterion).ok_or(MixedError::NoCriterion)?;
+    check_residual(&model, &state)?;
     let (_, projections) = slopes(&model, &state);
 
     let (n, p) = (model.rows() as f64, model.coefficients() as f64);
@@ -174,6 +175,21 @@ pub fn fit_mixed_model(model: MixedModel, options: &MixedOptions) -> Result<Mixe
         estimate,
         state,
         projections,
+    })
+}
+
+/// An error where random effects leave nothing to the residual.
+fn check_residual(model: &MixedModel, state: &State) -> Result<(), MixedError> {
+    /// Share of the spread below which a residual is rounding.
+    const NO_RESIDUAL: f64 = 1e-6;
+    let ordinary = model.fixed.last().copied().unwrap_or_default();
+    let residual = (state.squares / ordinary).sqrt();
+    if residual > NO_RESIDUAL {
+        return Ok(());
+    }
+    Err(MixedError::NoResidual {
+        what: "fixed and random effects",
+        residual,
     })
 }
 
@@ -236,6 +252,11 @@ fn findings_of(model: &MixedModel, state: &State, estimate: &Estimate) -> Vec<Mi
     if !estimate.converged {
         findings.push(MixedFinding::NoConvergence {
             evaluations: estimate.evaluations,
+        });
+    }
+    if estimate.flat > 0 {
+        findings.push(MixedFinding::FlatCriterion {
+            directions: estimate.flat,
         });
     }
     for (term, given) in model.terms.iter().enumerate() {

@@ -21,6 +21,13 @@ const SETTLED: f64 = 1e-24;
 /// directions.
 pub(crate) const FLAT: f64 = 1e-9;
 
+/// Curvature of a deviance below which it says nothing about a coordinate: its
+/// standard deviation is then hundreds of times the coordinate's size.
+const LEVEL: f64 = 1e-5;
+
+/// Coordinates are taken to be at least of this size.
+const LEAST_SIZE: f64 = 0.05;
+
 /// Value and gradient; `None` where there is none.
 pub(crate) type Sloped = Option<(f64, Vec<f64>)>;
 
@@ -35,29 +42,60 @@ pub(crate) struct Minimum {
     pub evaluations: usize,
     /// Whether the gradient vanishes there to rounding.
     pub converged: bool,
+    /// Directions in which the function is level, coordinates taken in shares of their
+    /// size.
+    pub flat: usize,
 }
 
-/// Quasi-Newton steps (BFGS with a weak Wolfe search by bisection, Lewis and
-/// Overton 2013), then Newton steps with the second derivative by differences.
+/// A point with its value and gradient.
+#[derive(Clone, Debug)]
+pub(crate) struct Step {
+    /// The point.
+    pub point: Vec<f64>,
+    /// The value there.
+    pub value: f64,
+    /// The gradient there.
+    pub gradient: Vec<f64>,
+}
+
+/// Minimum good to rounding: `descend`, then Newton steps with the second derivative
+/// by differences.
 ///
 /// `None` if the function has no value at the start.
 pub(crate) fn minimise(objective: &dyn Fn(&[f64]) -> Sloped, start: Vec<f64>) -> Option<Minimum> {
-    let n = start.len();
-    let (mut value, mut gradient) = objective(&start)?;
-    let mut point = start;
-    if n == 0 {
+    let (found, evaluations) = descend(objective, start)?;
+    if found.point.is_empty() {
         return Some(Minimum {
-            point,
-            value,
-            evaluations: 1,
+            point: found.point,
+            value: found.value,
+            evaluations,
             converged: true,
+            flat: 0,
         });
     }
-    let mut inverse = DMatrix::identity(n, n) / dot(&gradient, &gradient).sqrt().max(1e-8) * 0.5;
+    Some(polish(objective, found, evaluations))
+}
+
+/// Quasi-Newton steps: BFGS with a weak Wolfe search by bisection (Lewis and Overton
+/// 2013), until a step can lower the value by no more than its rounding. Also gives
+/// the number of evaluations.
+pub(crate) fn descend(
+    objective: &dyn Fn(&[f64]) -> Sloped,
+    start: Vec<f64>,
+) -> Option<(Step, usize)> {
+    let n = start.len();
+    let (value, gradient) = objective(&start)?;
+    let mut at = Step {
+        point: start,
+        value,
+        gradient,
+    };
+    let first = 0.5 / dot(&at.gradient, &at.gradient).sqrt().max(1e-8);
+    let mut inverse = DMatrix::identity(n, n) * first;
     let mut evaluations = 1;
     let mut fresh = true;
     for _ in 0..MOST_STEPS {
-        let slope = DVector::from_column_slice(&gradient);
+        let slope = DVector::from_column_slice(&at.gradient);
         let mut direction = -(&inverse * &slope);
         let mut descent = direction.dot(&slope);
         if descent >= 0.0 {
@@ -65,57 +103,53 @@ pub(crate) fn minimise(objective: &dyn Fn(&[f64]) -> Sloped, start: Vec<f64>) ->
             descent = -slope.norm_squared();
             inverse = DMatrix::identity(n, n);
         }
-        if !fresh && -descent <= DECREASE * (1.0 + value.abs()) {
+        if !fresh && -descent <= DECREASE * (1.0 + at.value.abs()) {
             break;
         }
         let Some(step) = search(
             objective,
-            &point,
-            value,
-            descent,
+            &at,
             direction.as_slice(),
+            descent,
             &mut evaluations,
         ) else {
             break;
         };
-        let change = DVector::from_iterator(n, step.point.iter().zip(&point).map(|(a, b)| a - b));
-        let turn =
-            DVector::from_iterator(n, step.gradient.iter().zip(&gradient).map(|(a, b)| a - b));
+        let change = difference(&step.point, &at.point);
+        let turn = difference(&step.gradient, &at.gradient);
         if fresh && turn.dot(&change) > 0.0 {
             inverse = DMatrix::identity(n, n) * (turn.dot(&change) / turn.norm_squared());
         }
         fresh = false;
         update(&mut inverse, &change, &turn);
-        (point, value, gradient) = (step.point, step.value, step.gradient);
+        at = step;
     }
-    Some(polish(objective, point, value, gradient, evaluations))
+    Some((at, evaluations))
 }
 
-struct Step {
-    point: Vec<f64>,
-    value: f64,
-    gradient: Vec<f64>,
+fn difference(a: &[f64], b: &[f64]) -> DVector<f64> {
+    DVector::from_iterator(a.len(), a.iter().zip(b).map(|(a, b)| a - b))
 }
 
 /// A step that lowers the value enough and flattens the slope enough.
 fn search(
     objective: &dyn Fn(&[f64]) -> Sloped,
-    point: &[f64],
-    value: f64,
-    descent: f64,
+    at: &Step,
     direction: &[f64],
+    descent: f64,
     evaluations: &mut usize,
 ) -> Option<Step> {
     let (mut low, mut high, mut length) = (0.0, f64::INFINITY, 1.0);
     let mut best: Option<Step> = None;
     for _ in 0..60 {
-        let moved: Vec<f64> = point
+        let moved: Vec<f64> = at
+            .point
             .iter()
             .zip(direction)
             .map(|(x, d)| x + length * d)
             .collect();
         *evaluations += 1;
-        let lower = |(found, _): &(f64, Vec<f64>)| *found <= value + 1e-4 * length * descent;
+        let lower = |(found, _): &(f64, Vec<f64>)| *found <= at.value + 1e-4 * length * descent;
         match objective(&moved).filter(lower) {
             None => high = length,
             Some((found, gradient)) => {
@@ -157,17 +191,17 @@ fn update(inverse: &mut DMatrix<f64>, change: &DVector<f64>, turn: &DVector<f64>
 
 /// Newton's method, with the second derivative where it begins, as long as the
 /// gradient shrinks.
-fn polish(
-    objective: &dyn Fn(&[f64]) -> Sloped,
-    mut point: Vec<f64>,
-    mut value: f64,
-    mut gradient: Vec<f64>,
-    mut evaluations: usize,
-) -> Minimum {
-    let mut converged = false;
+fn polish(objective: &dyn Fn(&[f64]) -> Sloped, start: Step, evaluations: usize) -> Minimum {
+    let Step {
+        mut point,
+        mut value,
+        mut gradient,
+    } = start;
+    let mut evaluations = evaluations + 2 * point.len();
+    let (mut converged, mut flat) = (false, 0);
     let only_gradient = |x: &[f64]| objective(x).map(|(_, gradient)| gradient);
-    evaluations += 4 * point.len();
     if let Some(second) = second_derivative(&only_gradient, &point) {
+        flat = flat_directions(&second, &point);
         let eigen = second.symmetric_eigen();
         for _ in 0..MOST_POLISHES {
             let slope = DVector::from_column_slice(&gradient);
@@ -194,7 +228,17 @@ fn polish(
         value,
         evaluations,
         converged,
+        flat,
     }
+}
+
+/// Number of directions without curvature, coordinates taken in shares of their size.
+fn flat_directions(second: &DMatrix<f64>, point: &[f64]) -> usize {
+    let size = |i: usize| point[i].abs().max(LEAST_SIZE);
+    let n = point.len();
+    let scaled = DMatrix::from_fn(n, n, |i, j| second[(i, j)] * size(i) * size(j));
+    let eigenvalues = scaled.symmetric_eigenvalues();
+    eigenvalues.iter().filter(|value| **value < LEVEL).count()
 }
 
 /// Newton's step in the directions that are not flat; downhill where curved
@@ -214,17 +258,27 @@ fn newton_step(eigen: &SymmetricEigen<f64, Dyn>, slope: &DVector<f64>) -> DVecto
     step
 }
 
-/// Second derivative by central differences of fourth order of the gradient,
-/// made symmetric.
-pub(crate) fn second_derivative(
+/// Second derivative by central differences of the gradient, made symmetric; good
+/// enough to step by.
+fn second_derivative(
     gradient: &dyn Fn(&[f64]) -> Option<Vec<f64>>,
     point: &[f64],
 ) -> Option<DMatrix<f64>> {
-    let rows = differences(gradient, point)?;
     let n = point.len();
-    Some(DMatrix::from_fn(n, n, |i, j| {
-        f64::midpoint(rows[i][j], rows[j][i])
-    }))
+    let mut rows = DMatrix::zeros(n, n);
+    for i in 0..n {
+        let step = 1e-4 * point[i].abs().max(LEAST_SIZE);
+        let at = |by: f64| {
+            let mut moved = point.to_vec();
+            moved[i] += by;
+            gradient(&moved)
+        };
+        let (above, below) = (at(step)?, at(-step)?);
+        for j in 0..n {
+            rows[(i, j)] = (above[j] - below[j]) / (2.0 * step);
+        }
+    }
+    Some((&rows + rows.transpose()) * 0.5)
 }
 
 /// Derivative of each output by each coordinate, by central differences of fourth
@@ -239,7 +293,7 @@ pub(crate) fn differences(
     let coordinates = 0..point.len();
     coordinates
         .map(|i| {
-            let step = 1e-3 * point[i].abs().max(0.05);
+            let step = 1e-3 * point[i].abs().max(LEAST_SIZE);
             let at = |by: f64| {
                 let mut moved = point.to_vec();
                 moved[i] += by * step;

@@ -162,7 +162,10 @@ fn ordinary_residual(y: &[f64], basis: &Basis) -> Result<(DVector<f64>, Vec<f64>
     }
     let left = norm(&residual) / norm(y).max(f64::MIN_POSITIVE);
     if left <= NO_RESIDUAL {
-        return Err(MixedError::NoResidual { residual: left });
+        return Err(MixedError::NoResidual {
+            what: "the fixed effects",
+            residual: left,
+        });
     }
     Ok((ordinary, residual))
 }

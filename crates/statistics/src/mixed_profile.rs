@@ -10,7 +10,7 @@ use windfall_numerics::root::bracketed_root;
 
 /// Width of the bracket around the end of an interval, as a share of its distance
 /// from zero or from the estimate.
-const END_TOLERANCE: f64 = 1e-8;
+const END_TOLERANCE: f64 = 1e-7;
 
 /// Doublings of the distance from the estimate before an upper end is given up.
 const MOST_DOUBLINGS: usize = 40;
@@ -22,7 +22,7 @@ pub struct ProfileInterval {
     pub parameter: VarianceParameter,
     /// A name to print, as `sd of day, subject`.
     pub name: String,
-    /// Estimate of maximum likelihood, around which the interval is.
+    /// Estimate of the profiled likelihood, around which the interval is.
     pub estimate: f64,
     /// Lower end; 0 (or -1) where the likelihood does not fall far enough.
     pub low: f64,
@@ -42,25 +42,31 @@ pub struct Profiles {
 /// Profile intervals of all standard deviations and correlations.
 ///
 /// The interval holds the values at which -2 log likelihood, minimised over all
-/// other parameters, is at most χ²₁(confidence) above its minimum. As in lme4 the
-/// likelihood is the plain one, also for a fit by restricted likelihood, whose
-/// estimates may therefore lie off centre.
+/// other parameters, is at most χ²₁(confidence) above its minimum.
+///
+/// `likelihood` need not be that of the fit. lme4 profiles the plain likelihood, also
+/// of fits by restricted likelihood. The restricted one puts the interval around
+/// REML's estimates and holds the truth nearer to its stated rate where fixed effects
+/// take up a good part of the groups.
 ///
 /// # Errors
-/// [`MixedError::NoCriterion`] if the model cannot be fitted by maximum likelihood.
+/// [`MixedError::NoCriterion`] if the model cannot be fitted by this likelihood.
 ///
 /// # Source
 /// Bates et al. (2015), J. Stat. Softw. 67(1), sec. 5.1; each end is found as a root
 /// instead of by interpolation.
-pub fn profile_variances(fit: &MixedFit, confidence: f64) -> Result<Profiles, MixedError> {
-    let plain;
-    let fit = match fit.method {
-        MixedMethod::MaximumLikelihood => fit,
-        MixedMethod::Reml => {
-            let method = MixedMethod::MaximumLikelihood;
-            plain = fit_mixed_model(fit.model.clone(), &MixedOptions { method })?;
-            &plain
-        }
+pub fn profile_variances(
+    fit: &MixedFit,
+    likelihood: MixedMethod,
+    confidence: f64,
+) -> Result<Profiles, MixedError> {
+    let refitted;
+    let fit = if fit.method == likelihood {
+        fit
+    } else {
+        let options = MixedOptions { method: likelihood };
+        refitted = fit_mixed_model(fit.model.clone(), &options)?;
+        &refitted
     };
     let z = normal_quantile(f64::midpoint(1.0, confidence));
     let parameters = parameters_of(fit);

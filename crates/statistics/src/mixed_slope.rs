@@ -157,6 +157,15 @@ fn trunk_traces(
         let first = envelope.first[left.offset];
         let start = blocks.partition_point(|block| block.offset < first);
         for right in &blocks[start..=index] {
+            if left.width == 1 && right.width == 1 {
+                let place = envelope.place(left.offset, right.offset);
+                let sum = trunk.plain[place] * state.trunk[place];
+                traces[left.factor][(0, 0)] += sum * state.blocks[right.factor][(0, 0)];
+                if right.offset < left.offset {
+                    traces[right.factor][(0, 0)] += sum * state.blocks[left.factor][(0, 0)];
+                }
+                continue;
+            }
             let part = |values: &[f64]| {
                 DMatrix::from_fn(left.width, right.width, |a, b| {
                     envelope.symmetric(values, left.offset + a, right.offset + b)

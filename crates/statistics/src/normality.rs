@@ -36,7 +36,7 @@ pub fn shapiro_wilk(values: &[f64]) -> Result<NormalityTest, SampleError> {
     }
     let mut sorted = values.to_vec();
     sorted.sort_by(f64::total_cmp);
-    let total = squares_about(&sorted, mean(&sorted)).rounded();
+    let total = squares_about(&sorted, mean(&sorted)).value();
     if total <= 0.0 {
         return Err(no_spread());
     }
@@ -133,7 +133,7 @@ pub fn anderson_darling(values: &[f64]) -> Result<NormalityTest, SampleError> {
     if deviation <= 0.0 {
         return Err(no_spread());
     }
-    let centre = mean(values).rounded();
+    let centre = mean(values).value();
     let mut scores: Vec<f64> = values.iter().map(|y| (y - centre) / deviation).collect();
     scores.sort_by(f64::total_cmp);
     let n = scores.len() as f64;
@@ -172,7 +172,7 @@ fn stephens_p(a: f64) -> f64 {
 /// residuals, Int. Stat. Rev. 55.
 pub fn jarque_bera(values: &[f64]) -> Result<NormalityTest, SampleError> {
     check_sample("the sample", values, 4)?;
-    let centre = mean(values).rounded();
+    let centre = mean(values).value();
     let n = values.len() as f64;
     let moment = |power: i32| {
         let powers = values.iter().map(|y| (y - centre).powi(power));

@@ -3,9 +3,9 @@
 
 use crate::accurate_sum::{mean, squares_about, sum, variance};
 use crate::distribution_tail::f_upper;
-use crate::double_double::DoubleDouble;
 use crate::sample::check_groups;
 use crate::sample_error::SampleError;
+use windfall_numerics::double_double::DoubleDouble;
 
 /// One-way analysis of variance.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -65,21 +65,18 @@ pub fn one_way_anova<G: AsRef<[f64]>>(groups: &[G]) -> Result<OneWayAnova, Sampl
             needed: count + 1,
         });
     }
-    let grand = groups
-        .iter()
-        .fold(DoubleDouble::default(), |all, group| {
-            all + sum(group.as_ref())
-        })
-        .divided_by(count as f64);
+    let grand = groups.iter().fold(DoubleDouble::default(), |all, group| {
+        all + sum(group.as_ref())
+    }) / DoubleDouble::from(count as f64);
     let mut between = DoubleDouble::default();
     let mut within = DoubleDouble::default();
     for values in groups.iter().map(AsRef::as_ref) {
         let centre = mean(values);
         let apart = centre - grand;
-        between = between + apart * apart * (values.len() as f64).into();
-        within = within + squares_about(values, centre);
+        between += apart * apart * (values.len() as f64).into();
+        within += squares_about(values, centre);
     }
-    let (between, within) = (between.rounded(), within.rounded());
+    let (between, within) = (between.value(), within.value());
     if within <= 0.0 {
         return Err(SampleError::NoSpread {
             what: "the values within each group".to_owned(),
@@ -121,7 +118,7 @@ pub fn welch_anova<G: AsRef<[f64]>>(groups: &[G]) -> Result<FTest, SampleError> 
         }
         weights.push(values.len() as f64 / variance);
     }
-    let means: Vec<f64> = groups.iter().map(|g| mean(g.as_ref()).rounded()).collect();
+    let means: Vec<f64> = groups.iter().map(|g| mean(g.as_ref()).value()).collect();
     let total: f64 = weights.iter().sum();
     let weighted: f64 = weights.iter().zip(&means).map(|(w, m)| w * m).sum();
     let centre = weighted / total;

@@ -52,6 +52,14 @@ pub enum Recognised {
         /// difference from the exact ones in coded units.
         rounded: Vec<(String, f64)>,
     },
+    /// The coding stands in the header of the design.
+    Design {
+        /// Factors of which the settings are rounded, with the largest difference
+        /// from the exact levels in coded units.
+        rounded: Vec<(String, f64)>,
+        /// Factors with settings that are not the planned levels, and the lines.
+        changed: Vec<(String, Vec<usize>)>,
+    },
     /// Given.
     Given,
 }

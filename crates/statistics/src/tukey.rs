@@ -111,7 +111,7 @@ fn all_pairs<G: AsRef<[f64]>>(
     for first in 0..groups.len() {
         for second in first + 1..groups.len() {
             let means = [second, first].map(|place| mean(groups[place].as_ref()));
-            let difference = (means[0] - means[1]).rounded();
+            let difference = (means[0] - means[1]).value();
             let scale = scale_of(first, second);
             let q = difference.abs() / scale.standard_error * SQRT_2;
             let reach = scale.critical * scale.standard_error / SQRT_2;

@@ -107,6 +107,28 @@ fn closed_form_balanced_one_way() {
 }
 
 #[test]
+fn closed_form_restricted_profile_of_the_residual_of_a_balanced_one_way() {
+    // the restricted likelihood splits into between and within: what is within rises
+    // by f (x - 1 - ln x) with x = MSW / σ², and what is between is free to follow
+    let data = one_way();
+    let fit = fit_one_way(&data);
+    let found = profile_variances(&fit, MixedMethod::Reml, 0.95).unwrap();
+    let residual = &found.intervals[1];
+    let f = (GROUPS * (EACH - 1)) as f64;
+    for end in [residual.low, residual.high] {
+        let x = data.within / (end * end);
+        // χ² of one degree of freedom at 0.95, from tables
+        assert_near(
+            "rise",
+            &[f * (x - 1.0 - x.ln())],
+            &[3.841_458_820_694_124],
+            1e-6,
+        );
+    }
+    assert!(residual.low < fit.residual_sd && fit.residual_sd < residual.high);
+}
+
+#[test]
 fn closed_form_predictions_of_a_balanced_one_way() {
     let data = one_way();
     let fit = fit_one_way(&data);
@@ -281,7 +303,7 @@ fn closed_form_no_variance_between_groups_leaves_ordinary_least_squares() {
         1e-12,
     );
     assert!(fit.effects[0].values.iter().all(|value| value[0] == 0.0));
-    let profiles = profile_variances(&fit, 0.95).unwrap();
+    let profiles = profile_variances(&fit, MixedMethod::Reml, 0.95).unwrap();
     assert_eq!(profiles.intervals[0].low, 0.0);
     assert!(profiles.intervals[0].high > 0.1);
 }
@@ -366,7 +388,7 @@ fn repeats_profile_for_any_number_of_threads() {
             .num_threads(threads)
             .build()
             .unwrap();
-        pool.install(|| profile_variances(&fit, 0.95).unwrap())
+        pool.install(|| profile_variances(&fit, MixedMethod::Reml, 0.95).unwrap())
     });
     assert_eq!(runs[0], runs[1]);
     assert_eq!(runs[0], runs[2]);
@@ -403,7 +425,7 @@ fn rejects_what_cannot_be_fitted_and_says_why() {
         terms[0].group_names = names(y.len());
     });
     assert!(
-        message.contains("110 random effects for 110 rows"),
+        message.contains("100 random effects for 100 rows"),
         "{message}"
     );
     let message = refused(|_, _, terms| terms[0].group.fill(0));
@@ -425,11 +447,41 @@ fn rejects_what_cannot_be_fitted_and_says_why() {
     assert!(message.contains("is a multiple of"), "{message}");
     let message = refused(|y, x, _| *y = x.column(1).iter().map(|v| 3.0 * v + 1.0).collect());
     assert!(
-        message.contains("reproduce the response exactly"),
+        message.contains("the fixed effects reproduce the response"),
         "{message}"
     );
     let message = refused(|y, _, _| {
         y.pop();
     });
-    assert!(message.contains("109 are needed"), "{message}");
+    assert!(message.contains("99 are needed"), "{message}");
+}
+
+#[test]
+fn rejects_variances_that_fixed_effects_take_up() {
+    let data = one_way();
+    let x = DMatrix::from_fn(data.y.len(), GROUPS, |row, k| {
+        f64::from(u8::from(data.group[row] == k))
+    });
+    let term = random_intercept("fruit", &data.group, &names(GROUPS));
+    let options = MixedOptions::default();
+    let fit = fit_mixed(&data.y, &x, &names(GROUPS), &[term], &options).unwrap();
+    assert!(
+        fit.findings
+            .iter()
+            .any(|finding| finding.code() == "flat_criterion")
+    );
+}
+
+#[test]
+fn rejects_groups_that_leave_no_residual() {
+    let group = one_way().group;
+    let y: Vec<f64> = group.iter().map(|g| (*g as f64).sin()).collect();
+    let term = random_intercept("fruit", &group, &names(GROUPS));
+    let options = MixedOptions::default();
+    let error = fit_mixed(&y, &intercept(&y), &names(1), &[term], &options).unwrap_err();
+    let message = error.to_string();
+    assert!(
+        message.starts_with("fixed and random effects reproduce the response"),
+        "{message}"
+    );
 }

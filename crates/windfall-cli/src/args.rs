@@ -1,6 +1,7 @@
 //! The command line: what may be written, and its help.
 
 use crate::args_compare::{CompareArguments, SummaryArguments};
+use crate::args_design::DesignArguments;
 use crate::args_fit::FitArguments;
 use crate::args_format::Format;
 use crate::args_geometry::{RadiusArguments, TransferArguments};
@@ -23,6 +24,7 @@ use std::path::PathBuf;
   windfall inspect my-campaign/raw/*.csv  see what the recordings hold
   windfall fit my-campaign                recordings → parameters, table, results.sqlite
   windfall simulate impact --law 'kuwabara-kono(k=753599, c=1524)' --mass '0.2 kg' --velocity '0.5 m/s'
+  windfall design ccd --factor 'k=0.3..1' --factor 'e=1.5..3' --out design.csv
   windfall card show --laws               the force laws")]
 pub struct Arguments {
     /// What to do.
@@ -39,6 +41,8 @@ pub enum Command {
     Inspect(InspectArguments),
     /// Fit force laws to the impacts of a campaign
     Fit(Box<FitArguments>),
+    /// Make a design of experiments
+    Design(Box<DesignArguments>),
     /// Simulate one event from a force law
     Simulate(SimulateArguments),
     /// Describe the values of a table group by group: mean, SD, CV, interval, quartiles

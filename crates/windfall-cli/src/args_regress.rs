@@ -9,6 +9,7 @@ use std::path::PathBuf;
 #[command(after_help = "Examples:
   windfall regress impacts.csv --response k --terms 'V + R + t + V:R'
   windfall regress impacts.csv --formula 'log(k) ~ V*R + t + V^2' --anova 3
+  windfall regress impacts.csv --response k --terms 'V*R + t' --random specimen
   windfall regress impacts.csv --response k --terms '(V + R + t + S)^2' --select backward --p-remove 0.05
 
 Terms: a + b (both), a:b (their product), a*b (both and the product), (a + b + c)^2 (all and
@@ -28,6 +29,16 @@ pub struct RegressArguments {
     /// Both at once: 'response ~ terms'
     #[arg(long, conflicts_with_all = ["response", "terms"])]
     pub formula: Option<String>,
+    /// What varies between groups: 'specimen' (its mean), '1 + V | specimen' (its mean and its
+    /// slope), 'variety/fruit' (fruit within variety); makes the model a mixed one; may be repeated
+    #[arg(long = "random", value_name = "GROUPS")]
+    pub random: Vec<String>,
+    /// What is maximised where there are random effects
+    #[arg(long, value_enum, default_value_t)]
+    pub likelihood: Likelihood,
+    /// How degrees of freedom are found where there are random effects
+    #[arg(long, value_enum, default_value_t, value_name = "METHOD")]
+    pub df: Freedom,
     /// Select terms
     #[arg(long, value_enum, value_name = "HOW")]
     pub select: Option<Select>,
@@ -68,6 +79,26 @@ pub struct RegressArguments {
     /// How the result is shown
     #[arg(long, value_enum, default_value_t)]
     pub format: Format,
+}
+
+/// What is maximised.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum)]
+pub enum Likelihood {
+    /// Restricted likelihood: variances without bias from the fixed effects
+    #[default]
+    Reml,
+    /// Plain likelihood: for comparing models with different fixed effects
+    Ml,
+}
+
+/// How degrees of freedom are found.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum)]
+pub enum Freedom {
+    /// Satterthwaite's
+    #[default]
+    Satterthwaite,
+    /// Kenward and Roger's, with their standard errors
+    KenwardRoger,
 }
 
 /// How terms are selected.

@@ -1,11 +1,14 @@
 //! `windfall regress`
 
 use crate::args_format::Format;
-use crate::args_regress::{Contrasts, RegressArguments, Select, SelectBy};
+use crate::args_regress::{Contrasts, Freedom, Likelihood, RegressArguments, Select, SelectBy};
 use crate::show::{write_json, write_result};
-use windfall::workflow_regress::{
-    AnovaType, Contrast, Criterion, Direction, ModelText, RegressRequest, SelectionOptions, regress,
+use windfall::request_regress::{
+    AnovaType, Contrast, Criterion, Direction, FreedomMethod, MixedChoice, ModelText,
+    RegressRequest, SelectionOptions,
 };
+use windfall::workflow_regress::{AnyRegressOutcome, regress};
+use windfall::write_mixed::{csv_of_mixed, text_of_mixed};
 use windfall::write_regress::{csv_of_regress, text_of_regress};
 
 /// A linear model of a table.
@@ -13,6 +16,14 @@ pub fn run(arguments: &RegressArguments) -> anyhow::Result<()> {
     let outcome = regress(&RegressRequest {
         table: arguments.table.clone(),
         model: model_of(arguments),
+        random: arguments.random.clone(),
+        mixed: MixedChoice {
+            maximum_likelihood: arguments.likelihood == Likelihood::Ml,
+            freedom: match arguments.df {
+                Freedom::Satterthwaite => FreedomMethod::Satterthwaite,
+                Freedom::KenwardRoger => FreedomMethod::KenwardRoger,
+            },
+        },
         contrast: match arguments.contrasts {
             Contrasts::Treatment => Contrast::Treatment,
             Contrasts::Sum => Contrast::Sum,
@@ -31,10 +42,12 @@ pub fn run(arguments: &RegressArguments) -> anyhow::Result<()> {
         seed: arguments.seed,
         predict: arguments.predict.clone(),
     })?;
-    match arguments.format {
-        Format::Json => write_json(&outcome),
-        Format::Csv => write_result(&csv_of_regress(&outcome)?),
-        Format::Text => write_result(&text_of_regress(&outcome)),
+    match (arguments.format, &outcome) {
+        (Format::Json, _) => write_json(&outcome),
+        (Format::Csv, AnyRegressOutcome::Linear(own)) => write_result(&csv_of_regress(own)?),
+        (Format::Csv, AnyRegressOutcome::Mixed(own)) => write_result(&csv_of_mixed(own)?),
+        (Format::Text, AnyRegressOutcome::Linear(own)) => write_result(&text_of_regress(own)),
+        (Format::Text, AnyRegressOutcome::Mixed(own)) => write_result(&text_of_mixed(own)),
     }
 }
 

@@ -5,6 +5,7 @@
 
 mod args;
 mod args_compare;
+mod args_design;
 mod args_fit;
 mod args_format;
 mod args_geometry;
@@ -13,6 +14,7 @@ mod args_simulate;
 mod args_surface;
 mod command_card;
 mod command_compare;
+mod command_design;
 mod command_fit;
 mod command_geometry;
 mod command_inspect;
@@ -30,6 +32,7 @@ fn main() -> ExitCode {
     let outcome = match Arguments::parse().command {
         Command::New(arguments) => command_new::run(&arguments),
         Command::Inspect(arguments) => command_inspect::run(&arguments),
+        Command::Design(arguments) => command_design::run(&arguments),
         Command::Fit(arguments) => command_fit::run(&arguments),
         Command::Simulate(arguments) => command_simulate::run(&arguments),
         Command::Summary(arguments) => command_compare::run_summary(&arguments),

@@ -67,8 +67,8 @@ pub(crate) fn left_out_finding(
 }
 
 /// Columns that depend on others.
-pub(crate) fn aliased_findings(frame: &ModelFrame, fit: &LinearFit) -> Vec<FindingOutcome> {
-    let found = fit.aliased.iter().map(|aliased| {
+pub(crate) fn aliased_findings(frame: &ModelFrame, aliased: &[Aliased]) -> Vec<FindingOutcome> {
+    let found = aliased.iter().map(|aliased| {
         finding(
             "aliased",
             format!(

@@ -1,10 +1,11 @@
 //! Coding of a table's factors, and where it came from.
 
+use crate::design_coding::{coding_of_design, number_factors};
 use crate::error::Error;
 use crate::option_value::unusable;
 use crate::outcome::FindingOutcome;
 use crate::read_data::Data;
-use crate::regress_findings::finding;
+use crate::regress_findings::{finding, lines_text};
 use crate::text_number::plain;
 use windfall_statistics::surface_coding::{
     CodedFactors, FactorCoding, Recognised, code_by_levels, code_with,
@@ -12,8 +13,8 @@ use windfall_statistics::surface_coding::{
 
 /// Factors that a design's file names.
 #[must_use]
-pub fn factors_of_design(_data: &Data) -> Vec<String> {
-    Vec::new()
+pub fn factors_of_design(data: &Data) -> Vec<String> {
+    number_factors(data)
 }
 
 /// Codes the factors: by given ranges, by what the file says of the design, else
@@ -37,7 +38,8 @@ pub fn coded_factors(
         }
         columns.push((name.clone(), values));
     }
-    let mut coded = code_by_levels(&columns);
+    let planned = coding_of_design(data, &columns)?;
+    let mut coded = planned.unwrap_or_else(|| code_by_levels(&columns));
     if !ranges.is_empty() {
         let mut codings = coded.factors;
         for text in ranges {
@@ -80,6 +82,7 @@ fn range(text: &str, factors: &[String]) -> Result<FactorCoding, Error> {
 pub fn coding_text(coded: &CodedFactors) -> String {
     match &coded.recognised {
         Recognised::Given => "given".to_owned(),
+        Recognised::Design { .. } => "that of the design, from its header".to_owned(),
         Recognised::Ranges => "coded -1 and 1 are the lowest and highest values".to_owned(),
         Recognised::CentralComposite { alpha, .. } => format!(
             "central composite design, axial points at ±{}",
@@ -108,6 +111,29 @@ pub fn coding_findings(coded: &CodedFactors) -> Vec<FindingOutcome> {
                 ),
             )]
         }
+        Recognised::Design { rounded, changed } => design_findings(rounded, changed),
         _ => Vec::new(),
     }
+}
+
+fn design_findings(
+    rounded: &[(String, f64)],
+    changed: &[(String, Vec<usize>)],
+) -> Vec<FindingOutcome> {
+    let rounded = rounded.iter().map(|(name, off)| {
+        let message = format!(
+            "the settings of {name} are rounded, by up to {} coded units: the exact levels of the \
+             design are taken; --range {name}=LOW..HIGH takes the settings as they are",
+            plain(*off)
+        );
+        finding("rounded-levels", message)
+    });
+    let changed = changed.iter().map(|(name, lines)| {
+        let message = format!(
+            "{name} is not the planned level in {}: what was set is taken",
+            lines_text(lines)
+        );
+        finding("changed-settings", message)
+    });
+    rounded.chain(changed).collect()
 }

@@ -114,7 +114,7 @@ fn unpaired_outcome(
     let residuals: Vec<f64> = values
         .iter()
         .flat_map(|group| {
-            let centre = mean(group).rounded();
+            let centre = mean(group).value();
             group.iter().map(move |value| value - centre)
         })
         .collect();
@@ -231,7 +231,7 @@ fn specimen_means(
             .chunk_by(|a, b| a.0 == b.0)
             .map(|chunk| {
                 let values: Vec<f64> = chunk.iter().map(|(_, value)| *value).collect();
-                (chunk[0].0.clone(), mean(&values).rounded())
+                (chunk[0].0.clone(), mean(&values).value())
             })
             .collect()
     };
@@ -395,7 +395,7 @@ fn letters_of(
     pairs: &[PairOutcome],
     confidence: f64,
 ) -> Vec<String> {
-    let means: Vec<f64> = groups.iter().map(|g| mean(&g.values).rounded()).collect();
+    let means: Vec<f64> = groups.iter().map(|g| mean(&g.values).value()).collect();
     let place = |name: &String| names.iter().position(|other| other == name);
     let differ: Vec<(usize, usize)> = pairs
         .iter()

@@ -10,8 +10,10 @@ use crate::option_value::unusable;
 use crate::outcome::FindingOutcome;
 use crate::read_data::{Data, read_data};
 use crate::regress_findings::{aliased_findings, fit_findings, left_out_finding};
+use crate::regress_residuals::{ResidualOutcome, residual_findings, residual_tests};
+use crate::request_regress::{AnovaType, Contrast, Criterion, Direction, RegressRequest};
+use crate::workflow_mixed::{MixedOutcome, regress_mixed};
 use serde::Serialize;
-use std::path::PathBuf;
 use windfall_statistics::anova::{anova, lack_of_fit};
 use windfall_statistics::cross_validation::cross_validate;
 use windfall_statistics::diagnostics::{inflation, influence, robust_coefficients};
@@ -21,65 +23,6 @@ use windfall_statistics::linear_model::{LinearFit, fit_reduced, predict};
 use windfall_statistics::model_frame::{ModelRows, model_rows, prediction_rows};
 use windfall_statistics::reduced::{Reduced, reduce};
 use windfall_statistics::selection::{Selection, select};
-
-pub use windfall_statistics::anova::AnovaType;
-pub use windfall_statistics::contrast::Contrast;
-pub use windfall_statistics::selection::{Criterion, Direction, SelectionOptions};
-
-/// What `windfall regress` is asked.
-#[derive(Clone, Debug)]
-pub struct RegressRequest {
-    /// The table.
-    pub table: PathBuf,
-    /// What is modelled, and by what.
-    pub model: ModelText,
-    /// Contrasts of categories.
-    pub contrast: Contrast,
-    /// Models that terms are tested between.
-    pub anova: AnovaType,
-    /// How terms are selected, if they are.
-    pub selection: Option<SelectionOptions>,
-    /// Level of intervals.
-    pub confidence: f64,
-    /// Whether standard errors hold for unequal variances.
-    pub robust: bool,
-    /// Parts for cross-validation; none if zero.
-    pub folds: usize,
-    /// Seed of the division into parts.
-    pub seed: u64,
-    /// A table to predict.
-    pub predict: Option<PathBuf>,
-}
-
-/// A model as it is written.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub enum ModelText {
-    /// `response ~ terms`.
-    Formula(String),
-    /// The two apart.
-    Parts {
-        /// A column, or a function of one.
-        response: String,
-        /// What it is modelled by.
-        terms: String,
-    },
-}
-
-impl ModelText {
-    /// `response ~ terms`; the name of a column is taken as it is.
-    ///
-    /// * `columns`: names of the columns
-    #[must_use]
-    pub fn formula(&self, columns: &[String]) -> String {
-        match self {
-            Self::Formula(text) => text.clone(),
-            Self::Parts { response, terms } if columns.contains(response) => {
-                format!("`{response}` ~ {terms}")
-            }
-            Self::Parts { response, terms } => format!("{response} ~ {terms}"),
-        }
-    }
-}
 
 /// A step of a selection.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -147,6 +90,8 @@ pub struct RegressOutcome {
     pub steps: Vec<StepOutcome>,
     /// How the model predicts rows it was not fitted to.
     pub cross_validation: Option<CrossValidationOutcome>,
+    /// Tests of the residuals.
+    pub residuals: ResidualOutcome,
     /// Rows with their influence.
     pub influence: Vec<RowOutcome>,
     /// Predictions.
@@ -155,22 +100,56 @@ pub struct RegressOutcome {
     pub findings: Vec<FindingOutcome>,
 }
 
-/// Fits a linear model to a table.
+/// A model without random effects, or with them.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+#[serde(untagged)]
+pub enum AnyRegressOutcome {
+    /// Without.
+    Linear(Box<RegressOutcome>),
+    /// With.
+    Mixed(Box<MixedOutcome>),
+}
+
+/// Fits a linear model to a table, with random effects where there are any.
 ///
 /// # Errors
 /// The table or the formula cannot be read; too few rows; a response of one value.
-pub fn regress(request: &RegressRequest) -> Result<RegressOutcome, Error> {
+pub fn regress(request: &RegressRequest) -> Result<AnyRegressOutcome, Error> {
     check(request)?;
     let data = read_data(&request.table)?;
     let names: Vec<String> = data.table.columns.iter().map(|c| c.name.clone()).collect();
-    let text = request.model.formula(&names);
+    let mut text = request.model.formula(&names);
+    for random in &request.random {
+        text += &match random.contains('|') {
+            true => format!(" + ({random})"),
+            false if names.contains(random) => format!(" + (1 | `{random}`)"),
+            false => format!(" + (1 | {random})"),
+        };
+    }
     let formula = formula(&text, &names).map_err(Error::Statistics)?;
     if formula.response.is_none() {
         let problem = "the response is missing: write 'response ~ terms'";
         return Err(unusable("--formula", problem));
     }
+    match formula.random.is_empty() {
+        true => {
+            let outcome = regress_linear(request, &data, &formula)?;
+            Ok(AnyRegressOutcome::Linear(Box::new(outcome)))
+        }
+        false => {
+            let outcome = regress_mixed(request, &data, &formula, &text)?;
+            Ok(AnyRegressOutcome::Mixed(Box::new(outcome)))
+        }
+    }
+}
+
+fn regress_linear(
+    request: &RegressRequest,
+    data: &Data,
+    formula: &Formula,
+) -> Result<RegressOutcome, Error> {
     let rows =
-        model_rows(&formula, &data.table, request.contrast, &[]).map_err(Error::Statistics)?;
+        model_rows(formula, &data.table, request.contrast, &[]).map_err(Error::Statistics)?;
     let reduced = reduce(&rows.x, &rows.y);
     let every: Vec<usize> = (0..rows.frame.terms.len()).collect();
     let selection = match &request.selection {
@@ -190,7 +169,7 @@ pub fn regress(request: &RegressRequest) -> Result<RegressOutcome, Error> {
         request.confidence,
     )
     .map_err(Error::Statistics)?;
-    outcome(request, &data, &formula, &rows, &reduced, &selection, &fit)
+    outcome(request, data, formula, &rows, &reduced, &selection, &fit)
 }
 
 fn check(request: &RegressRequest) -> Result<(), Error> {
@@ -259,8 +238,10 @@ fn outcome(
         })
         .flatten();
     let mut findings = left_out_finding(&rows.left_out, &data.lines);
-    findings.extend(aliased_findings(&rows.frame, fit));
+    findings.extend(aliased_findings(&rows.frame, &fit.aliased));
     findings.extend(fit_findings(fit, &influence, &vif, &lines, &steps));
+    let residuals = residual_tests(rows, fit);
+    findings.extend(residual_findings(&residuals));
     Ok(RegressOutcome {
         formula: formula_of(formula, rows, selection),
         response: formula.response.as_ref().map(spelling).unwrap_or_default(),
@@ -295,6 +276,7 @@ fn outcome(
             rms: found.rms,
             r2: found.r2,
         }),
+        residuals,
         influence: rows_of(&influence, &rows.y, &lines),
         predictions: predictions(request, rows, fit)?,
         findings,

@@ -260,7 +260,7 @@ fn model_of(
     let mean = y.iter().sum::<f64>() / y.len() as f64;
     let quality = fit.quality(y);
     let names: Vec<String> = surface.factors.iter().map(|f| f.name.clone()).collect();
-    let mut findings = aliased_findings(&surface.frame, fit);
+    let mut findings = aliased_findings(&surface.frame, &fit.aliased);
     findings.extend(fit_findings(fit, &influence, &vif, &data.lines, &[]));
     if !is_hierarchical(&surface.terms.monomials) {
         findings.push(crate::regress_findings::finding(

@@ -3,38 +3,11 @@
 use crate::error::Error;
 use crate::model_outcome::{AnovaOutcome, TermOutcome};
 use crate::outcome::FindingOutcome;
-use crate::text_number::plain;
+use crate::regress_residuals::residuals_text;
+use crate::text_statistic::{freedom, number, probability};
 use crate::workflow_regress::RegressOutcome;
 use crate::write_csv::csv_text;
 use crate::write_table::{page_tables, paragraph};
-
-/// A probability as people read it.
-#[must_use]
-pub fn probability(p: f64) -> String {
-    match p {
-        p if p.is_nan() => "-".to_owned(),
-        p if p < 1e-4 => format!("{p:.1e}"),
-        p => format!("{p:.4}"),
-    }
-}
-
-/// A number, or a dash where there is none.
-#[must_use]
-pub fn number(value: f64) -> String {
-    match value.is_finite() {
-        true => plain(value),
-        false => "-".to_owned(),
-    }
-}
-
-/// Degrees of freedom: whole where they are.
-#[must_use]
-pub fn freedom(df: f64) -> String {
-    match df.fract() == 0.0 {
-        true => df.to_string(),
-        false => plain(df),
-    }
-}
 
 fn strings(words: &[&str]) -> Vec<String> {
     words.iter().map(|word| (*word).to_owned()).collect()
@@ -174,6 +147,7 @@ pub fn text_of_regress(outcome: &RegressOutcome) -> String {
         );
         text += &(paragraph(&line, 2) + "\n");
     }
+    text += &residuals_text(&outcome.residuals);
     if !outcome.predictions.is_empty() {
         text += &format!("\n{}\n", predictions_text(outcome));
     }
@@ -250,8 +224,16 @@ pub fn csv_of_regress(outcome: &RegressOutcome) -> Result<String, Error> {
         });
         return csv_text(&header, rows);
     }
+    csv_of_terms(&outcome.terms)
+}
+
+/// Estimates as CSV.
+///
+/// # Errors
+/// None in practice: the text is written to memory.
+pub fn csv_of_terms(terms: &[TermOutcome]) -> Result<String, Error> {
     let header = strings(&["term", "estimate", "se", "t", "df", "p", "low", "high"]);
-    let rows = outcome.terms.iter().map(|term| {
+    let rows = terms.iter().map(|term| {
         let numbers = [
             term.estimate,
             term.se,

@@ -1,0 +1,176 @@
+# Runs R and windfall on the same tables and prints the largest relative difference
+# of every quantity; stops with an error where one is beyond its limit.
+#
+# Usage: Rscript compare_statistics.R WINDFALL FOLDER
+
+suppressMessages({
+  library(car); library(MASS); library(lme4); library(lmerTest); library(pbkrtest); library(jsonlite)
+})
+arguments <- commandArgs(trailingOnly = TRUE)
+windfall <- arguments[1]
+folder <- arguments[2]
+dir.create(folder, showWarnings = FALSE, recursive = TRUE)
+worst <- list()
+
+write_table <- function(name, table) {
+  path <- file.path(folder, paste0(name, ".csv"))
+  numbers <- vapply(table, is.numeric, TRUE)
+  table[numbers] <- lapply(table[numbers], function(x) sprintf("%.17g", x))
+  write.csv(table, path, row.names = FALSE, quote = FALSE)
+  path
+}
+
+ask <- function(path, ...) {
+  output <- system2(windfall, c("regress", shQuote(path), ..., "--format", "json"), stdout = TRUE)
+  fromJSON(paste(output, collapse = "\n"))
+}
+
+# Probabilities are compared where they are not vanishing.
+compare <- function(group, what, found, expected, limit) {
+  stopifnot(length(found) == length(expected))
+  scale <- pmax(abs(expected), 1e-12 * max(abs(expected), na.rm = TRUE))
+  difference <- max(abs(found - expected) / scale, na.rm = TRUE)
+  stopifnot(!any(is.na(found) != is.na(expected)))
+  key <- paste(group, what, sep = ": ")
+  worst[[key]] <<- c(difference, limit)
+}
+
+# R's names of columns, as windfall writes them, are not needed: the order is the same.
+check_linear <- function(group, path, formula, table, arguments = character()) {
+  fit <- lm(formula, table)
+  found <- ask(path, "--formula", shQuote(paste(deparse(formula, width.cutoff = 500), collapse = "")), "--folds 0", arguments)
+  own <- summary(fit)
+  limit <- 1e-8
+  compare(group, "estimate", found$terms$estimate, unname(own$coefficients[, 1]), limit)
+  compare(group, "standard error", found$terms$se, unname(own$coefficients[, 2]), limit)
+  compare(group, "t", found$terms$t, unname(own$coefficients[, 3]), limit)
+  compare(group, "p", found$terms$p, unname(own$coefficients[, 4]), limit)
+  interval <- confint(fit)
+  compare(group, "interval", c(found$terms$low, found$terms$high), unname(c(interval)), limit)
+  compare(group, "R2 and adjusted", c(found$r2, found$r2_adjusted), c(own$r.squared, own$adj.r.squared), limit)
+  h <- hatvalues(fit)
+  press <- sum((resid(fit) / (1 - h))^2)
+  compare(group, "PRESS", found$press, press, limit)
+  compare(group, "AIC, BIC, log-likelihood", c(found$aic, found$bic, found$log_likelihood), c(AIC(fit), BIC(fit), as.numeric(logLik(fit))), limit)
+  compare(group, "leverage", found$influence$leverage, unname(h), limit)
+  compare(group, "standardised residual", found$influence$standardised, unname(rstandard(fit)), limit)
+  compare(group, "studentised residual", found$influence$studentised, unname(rstudent(fit)), limit)
+  compare(group, "Cook", found$influence$cook, unname(cooks.distance(fit)), limit)
+  compare(group, "DFFITS", found$influence$dffits, unname(dffits(fit)), limit)
+  factors <- vif(fit)
+  compare(group, "VIF", found$vif$factor, unname(if (is.matrix(factors)) factors[, 1] else factors), limit)
+  robust <- ask(path, "--formula", shQuote(paste(deparse(formula, width.cutoff = 500), collapse = "")), "--folds 0 --robust")
+  compare(group, "HC3", robust$terms$se, unname(sqrt(diag(hccm(fit, type = "hc3")))), limit)
+  for (type in 1:3) {
+    coded <- if (type == 3) list(contrasts = c("contr.sum", "contr.poly")) else list()
+    expected <- if (type == 1) anova(fit) else if (type == 2) Anova(fit, type = 2) else {
+      old <- options(contrasts = c("contr.sum", "contr.poly"))
+      summed <- lm(formula, table)
+      result <- Anova(summed, type = 3)
+      options(old)
+      result[-1, ]
+    }
+    answer <- ask(path, "--formula", shQuote(paste(deparse(formula, width.cutoff = 500), collapse = "")), "--folds 0", paste("--anova", type))
+    rows <- seq_len(nrow(expected) - 1)
+    ss <- expected[["Sum Sq"]]
+    f <- if (type == 1) expected[["F value"]] else expected[["F value"]]
+    compare(group, paste("ANOVA", type, "SS"), c(answer$anova$ss, answer$residual$ss), ss, limit)
+    compare(group, paste("ANOVA", type, "F"), answer$anova$f, f[rows], limit)
+    compare(group, paste("ANOVA", type, "p"), answer$anova$p, expected[["Pr(>F)"]][rows], limit)
+  }
+  new <- table[seq_len(5), , drop = FALSE]
+  path_new <- write_table(paste0(group, " new"), new)
+  answer <- ask(path, "--formula", shQuote(paste(deparse(formula, width.cutoff = 500), collapse = "")), "--folds 0 --predict", shQuote(path_new))
+  mean_interval <- predict(fit, new, interval = "confidence")
+  interval <- predict(fit, new, interval = "prediction")
+  compare(group, "prediction", c(answer$predictions$predicted, answer$predictions$mean_low, answer$predictions$high),
+    unname(c(mean_interval[, 1], mean_interval[, 2], interval[, 3])), limit)
+}
+
+set.seed(7)
+velocity <- rep(c(0.1, 0.3, 0.5, 0.7), 25)
+apple <- data.frame(
+  V = velocity + runif(100, -0.02, 0.02), R = runif(100, 0.03, 0.07),
+  t = 0.008 - 0.004 * velocity + rnorm(100, 0, 2e-4), S = rnorm(100, 24, 3)
+)
+apple$k <- 7e5 - 3.3e5 * apple$V + 2.9e5 * apple$R + 3.4e7 * apple$t + rnorm(100, 0, 1.2e4)
+path <- write_table("apple", apple)
+check_linear("apple", path, k ~ V * R + t + S, apple)
+check_linear("apple log", path, log(k) ~ poly(V, 2) + R + I(t^2) + sqrt(S), apple)
+
+fruit <- data.frame(
+  variety = sample(c("Gala", "Fuji", "Golden"), 70, TRUE, c(0.5, 0.3, 0.2)),
+  ripe = sample(c("no", "yes"), 70, TRUE), mass = rnorm(70, 0.18, 0.02)
+)
+fruit$firmness <- 60 - 8 * (fruit$ripe == "yes") + 4 * (fruit$variety == "Fuji") + 90 * fruit$mass + rnorm(70, 0, 3)
+path <- write_table("fruit", fruit)
+check_linear("fruit", path, firmness ~ variety * ripe + mass, fruit)
+
+# Backward by BIC, in the order of R's step(), which keeps hierarchy.
+path <- file.path(folder, "apple.csv")
+fit <- lm(k ~ (V + R + t + S)^2, apple)
+steps <- step(fit, direction = "backward", k = log(100), trace = 0)
+answer <- ask(path, "--response k --terms", shQuote("(V + R + t + S)^2"), "--select backward --criterion bic --hierarchy --folds 0")
+removed <- sub("^- ", "", as.character(steps$anova$Step[-1]))
+stopifnot(identical(answer$removed$term, removed))
+compare("selection", "estimates after backward BIC", answer$terms$estimate, unname(coef(steps)), 1e-8)
+
+# Mixed models: days of 18 subjects, and fruit struck at four velocities.
+days <- expand.grid(day = 0:9, subject = sprintf("s%02d", 1:18))
+subject <- as.integer(days$subject)
+days$y <- 250 + rnorm(18, 0, 25)[subject] + (10 + rnorm(18, 0, 6)[subject]) * days$day + rnorm(180, 0, 25)
+impacts <- expand.grid(V = c(0.1, 0.3, 0.5, 0.7), specimen = sprintf("a%02d", 1:20))
+more <- data.frame(V = rep(c(0.1, 0.7), each = 10), specimen = sprintf("b%02d", 1:20))
+impacts <- rbind(impacts, more)
+place <- as.integer(factor(impacts$specimen))
+impacts$R <- runif(40, 0.03, 0.07)[place]
+impacts$variety <- c("Red", "Golden")[1 + place %% 2]
+impacts$k <- 1e6 - 3e5 * impacts$V + 3e5 * impacts$R + 2e4 * (impacts$variety == "Red") + rnorm(40, 0, 6e4)[place] + rnorm(100, 0, 3e4)
+
+check_mixed <- function(group, table, formula, maximum = FALSE) {
+  path <- write_table(group, table)
+  control <- lmerControl(optimizer = "bobyqa", optCtrl = list(rhobeg = 0.2, rhoend = 1e-10, maxfun = 1e5), calc.derivs = FALSE)
+  fit <- lmerTest::lmer(formula, table, REML = !maximum, control = control)
+  text <- shQuote(paste(deparse(formula, width.cutoff = 500), collapse = ""))
+  likelihood <- if (maximum) "--likelihood ml" else "--likelihood reml"
+  found <- ask(path, "--formula", text, likelihood)
+  own <- coef(summary(fit))
+  limit <- 1e-5
+  compare(group, "estimate", found$terms$estimate, unname(own[, "Estimate"]), limit)
+  compare(group, "standard error", found$terms$se, unname(own[, "Std. Error"]), limit)
+  compare(group, "Satterthwaite df", found$terms$df, unname(own[, "df"]), limit)
+  compare(group, "criterion", c(found$criterion, found$aic, found$bic), c(-2 * as.numeric(logLik(fit)), AIC(fit), BIC(fit)), limit)
+  variances <- as.data.frame(VarCorr(fit))
+  correlations <- !is.na(variances$var2)
+  compare(group, "standard deviations", found$variances$value[found$variances$kind == "sd"], variances$sdcor[!correlations], limit)
+  if (any(correlations)) compare(group, "correlations", found$variances$value[found$variances$kind == "correlation"], variances$sdcor[correlations], limit)
+  tests <- anova(fit, type = 3)
+  compare(group, "F", found$anova$f, tests[["F value"]], limit)
+  compare(group, "p of F", found$anova$p, tests[["Pr(>F)"]], limit)
+  effects <- as.data.frame(ranef(fit, condVar = TRUE))
+  effects <- effects[order(match(effects$grp, unique(found$effects$group)), effects$term), ]
+  mine <- found$effects[order(match(found$effects$group, unique(found$effects$group)), factor(found$effects$of, levels = levels(effects$term))), ]
+  compare(group, "effects of groups", mine$value, effects$condval, 1e-4)
+  compare(group, "their deviations", mine$sd, effects$condsd, limit)
+  if (!maximum) {
+    answer <- ask(path, "--formula", text, "--df kenward-roger")
+    adjusted <- coef(summary(fit, ddf = "Kenward-Roger"))
+    compare(group, "Kenward-Roger se", answer$terms$se, unname(adjusted[, "Std. Error"]), limit)
+    compare(group, "Kenward-Roger df", answer$terms$df, unname(adjusted[, "df"]), limit)
+  }
+  profile <- suppressMessages(suppressWarnings(confint(fit, method = "profile", oldNames = FALSE, parm = "theta_", devtol = 1e-9)))
+  order <- c(grep("^sd", rownames(profile)), grep("^sigma", rownames(profile)))
+  sds <- found$variances[found$variances$kind == "sd", ]
+  compare(group, "profile intervals", c(sds$low, sds$high), unname(c(profile[order, ])), 1e-3)
+}
+check_mixed("days", days, y ~ day + (1 + day | subject))
+check_mixed("impacts", impacts, k ~ V * variety + R + (1 | specimen))
+check_mixed("impacts by ML", impacts, k ~ V + R + (1 | specimen), TRUE)
+
+values <- do.call(rbind, worst)
+colnames(values) <- c("difference", "limit")
+cat(sprintf("%-52s %10s %8s\n", "", "largest", "limit"))
+for (key in rownames(values)) cat(sprintf("%-52s %10.1e %8.0e%s\n", key, values[key, 1], values[key, 2], if (values[key, 1] > values[key, 2]) "  BEYOND" else ""))
+beyond <- sum(values[, 1] > values[, 2])
+cat(sprintf("%d quantities, %d beyond their limit; R %s, lme4 %s\n", nrow(values), beyond, getRversion(), packageVersion("lme4")))
+quit(status = if (beyond > 0) 1 else 0)

@@ -1,0 +1,67 @@
+//! What `windfall regress` is asked.
+
+use std::path::PathBuf;
+
+pub use crate::mixed_choice::{FreedomMethod, MixedChoice};
+pub use windfall_statistics::anova::AnovaType;
+pub use windfall_statistics::contrast::Contrast;
+pub use windfall_statistics::selection::{Criterion, Direction, SelectionOptions};
+
+/// What `windfall regress` is asked.
+#[derive(Clone, Debug)]
+pub struct RegressRequest {
+    /// The table.
+    pub table: PathBuf,
+    /// What is modelled, and by what.
+    pub model: ModelText,
+    /// What varies between groups: `specimen`, `1 + V | specimen`.
+    pub random: Vec<String>,
+    /// How a model with random effects is fitted.
+    pub mixed: MixedChoice,
+    /// Contrasts of categories.
+    pub contrast: Contrast,
+    /// Models that terms are tested between.
+    pub anova: AnovaType,
+    /// How terms are selected, if they are.
+    pub selection: Option<SelectionOptions>,
+    /// Level of intervals.
+    pub confidence: f64,
+    /// Whether standard errors hold for unequal variances.
+    pub robust: bool,
+    /// Parts for cross-validation; none if zero.
+    pub folds: usize,
+    /// Seed of the division into parts.
+    pub seed: u64,
+    /// A table to predict.
+    pub predict: Option<PathBuf>,
+}
+
+/// A model as it is written.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum ModelText {
+    /// `response ~ terms`.
+    Formula(String),
+    /// The two apart.
+    Parts {
+        /// A column, or a function of one.
+        response: String,
+        /// What it is modelled by.
+        terms: String,
+    },
+}
+
+impl ModelText {
+    /// `response ~ terms`; the name of a column is taken as it is.
+    ///
+    /// * `columns`: names of the columns
+    #[must_use]
+    pub fn formula(&self, columns: &[String]) -> String {
+        match self {
+            Self::Formula(text) => text.clone(),
+            Self::Parts { response, terms } if columns.contains(response) => {
+                format!("`{response}` ~ {terms}")
+            }
+            Self::Parts { response, terms } => format!("{response} ~ {terms}"),
+        }
+    }
+}
