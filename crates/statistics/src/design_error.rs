@@ -205,6 +205,17 @@ pub enum DesignError {
         /// Factors given.
         found: usize,
     },
+    /// A model too large for the exchange.
+    #[error(
+        "the model has {terms} terms, more than {most}: an optimal design of it would take very long; \
+         leave out terms, or take a composite design"
+    )]
+    TermsTooMany {
+        /// Terms of the model.
+        terms: usize,
+        /// The bound.
+        most: usize,
+    },
     /// Candidates that cannot tell the terms of the model apart.
     #[error(
         "no {runs} runs of these candidates can estimate all {terms} terms of the model; \

@@ -146,8 +146,18 @@ pub fn roman(resolution: usize) -> String {
 }
 
 fn check_size(points: f64, options: &FactorialOptions) -> Result<(), DesignError> {
-    let centres = options.centre as f64 * options.blocks as f64;
-    check_runs(points * options.replicates.max(1) as f64 + centres)
+    let blocks = options.blocks;
+    if blocks == 0 || options.replicates == 0 {
+        let what = "a factorial design, with one block and one replicate,".to_owned();
+        let least = points as usize;
+        return Err(DesignError::RunsTooFew {
+            runs: 0,
+            least,
+            what,
+        });
+    }
+    let centres = options.centre as f64 * blocks as f64;
+    check_runs(points * options.replicates as f64 + centres)
 }
 
 /// Replicates, blocks and centre points.
@@ -165,14 +175,14 @@ fn lay_out(
         Some(fraction) if options.blocks > 1 => block_words(fraction, options.blocks, 1)?,
         _ => Vec::new(),
     };
-    let replicates = options.replicates.max(1);
+    let replicates = options.replicates;
     let repeated = (0..replicates).flat_map(|_| points.iter().cloned());
     let points = repeated.map(|coded| (Point::Factorial, coded)).collect();
     let mut design = design_of(kind, factors, points);
     for run in &mut design.runs {
         run.block = block_of(&words, &run.coded);
     }
-    for block in 1..=options.blocks.max(1) {
+    for block in 1..=options.blocks {
         add_centres(&mut design, block, options.centre);
     }
     number_by_block(&mut design);

@@ -150,6 +150,36 @@ pub fn region_points(factors: &[Factor]) -> Vec<(f64, Vec<f64>)> {
     points
 }
 
+/// Ends and middles of all factors, or their ends alone, where the variance of
+/// prediction is largest; none where even those are more than 20 000 points.
+#[must_use]
+pub fn extreme_points(factors: &[Factor]) -> Vec<Vec<f64>> {
+    let levels = |middle: bool| -> Vec<Vec<f64>> {
+        let of = |factor: &Factor| match factor.categories.is_empty() && middle {
+            true => vec![-1.0, 0.0, 1.0],
+            false => factor.ends(),
+        };
+        factors.iter().map(of).collect()
+    };
+    let fits = |levels: &Vec<Vec<f64>>| {
+        let size: f64 = levels.iter().map(|levels| levels.len() as f64).product();
+        size <= MOST_POINTS as f64
+    };
+    let Some(levels) = [levels(true), levels(false)].into_iter().find(fits) else {
+        return Vec::new();
+    };
+    levels.iter().fold(vec![Vec::new()], |points, levels| {
+        let longer = points.iter().flat_map(|point: &Vec<f64>| {
+            levels.iter().map(move |level| {
+                let mut longer = point.clone();
+                longer.push(*level);
+                longer
+            })
+        });
+        longer.collect()
+    })
+}
+
 /// Weights and coded values of one factor.
 fn factor_points(factor: &Factor, count: usize) -> Vec<(f64, f64)> {
     if !factor.categories.is_empty() {

@@ -18,6 +18,9 @@ pub const MOST_CANDIDATES: usize = 100_000;
 /// which ends in fewer poor optima than one coordinate after the other.
 const LISTED_GRID: usize = 500;
 
+/// Most terms of a model: with more, one start takes many minutes.
+pub const MOST_TERMS: usize = 250;
+
 /// Multiplications that the starts may take, and passes over the runs that one
 /// start is reckoned to take.
 const WORK: f64 = 1e9;
@@ -39,8 +42,8 @@ pub struct OptimalOptions {
     pub runs: usize,
     /// What is made good.
     pub criterion: Criterion,
-    /// Random starts; `None` for as many as the size lets finish in seconds,
-    /// 10 to 1000.
+    /// Random starts; `None` for as many as the size lets finish in seconds, 2
+    /// to 1000.
     pub starts: Option<usize>,
     /// Their seed.
     pub seed: u64,
@@ -81,6 +84,10 @@ pub fn optimal(
     check_runs((existing.len() + options.runs) as f64)?;
     let region = region_of(&factors, candidates, row)?;
     let terms = region.first().map_or(0, |(_, row)| row.len());
+    if terms > MOST_TERMS {
+        let most = MOST_TERMS;
+        return Err(DesignError::TermsTooMany { terms, most });
+    }
     if options.runs + existing.len() < terms || options.runs == 0 {
         return Err(DesignError::RunsTooFew {
             runs: options.runs + existing.len(),
@@ -198,8 +205,11 @@ fn best_points(
 fn affordable_starts(problem: &Exchange) -> usize {
     let alternatives: usize = problem.choices.iter().sum();
     let terms = problem.moments.nrows();
-    let start = PASSES * (problem.runs * alternatives) as f64 * (terms * terms) as f64;
-    ((WORK / start) as usize).clamp(10, 1000)
+    // Every replacement inverts X'X anew.
+    let replacements = problem.choices.len() * terms;
+    let step = ((alternatives + replacements) * terms * terms) as f64;
+    let start = PASSES * problem.runs as f64 * step;
+    ((WORK / start) as usize).clamp(2, 1000)
 }
 
 /// All points of a grid, if they are few.

@@ -133,6 +133,12 @@ pub enum MixedError {
         /// Why.
         reason: &'static str,
     },
+    /// A confidence outside of (0, 1).
+    #[error("a confidence of {confidence} is none; give a share between 0 and 1, as 0.95")]
+    WrongConfidence {
+        /// What was asked for.
+        confidence: f64,
+    },
     /// A test of nothing.
     #[error("the contrast is zero: it tests nothing; give at least one weight that differs from 0")]
     EmptyContrast,

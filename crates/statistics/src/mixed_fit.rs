@@ -115,6 +115,24 @@ pub struct MixedFit {
 /// # Source
 /// Bates, Mächler, Bolker and Walker (2015), Fitting linear mixed-effects models
 /// using lme4, J. Stat. Softw. 67(1), doi 10.18637/jss.v067.i01, eqs. 30-43.
+///
+/// # Example
+/// Three fruit with two impacts each: the mean square within fruit is 2, that between
+/// is 32, so that the variance between fruit is (32 - 2) / 2 = 15.
+/// ```
+/// use nalgebra::DMatrix;
+/// use windfall_statistics::mixed_fit::{MixedOptions, fit_mixed};
+/// use windfall_statistics::mixed_term::random_intercept;
+///
+/// let names = ["a", "b", "c"].map(str::to_owned);
+/// let fruit = random_intercept("fruit", &[0, 0, 1, 1, 2, 2], &names);
+/// let y = [1.0, 3.0, 5.0, 7.0, 9.0, 11.0];
+/// let x = DMatrix::from_element(6, 1, 1.0);
+/// let fit = fit_mixed(&y, &x, &["mean".to_owned()], &[fruit], &MixedOptions::default())?;
+/// assert!((fit.variances[0].covariance[(0, 0)] - 15.0).abs() < 1e-9);
+/// assert!((fit.residual_sd.powi(2) - 2.0).abs() < 1e-9);
+/// # Ok::<(), windfall_statistics::mixed_error::MixedError>(())
+/// ```
 pub fn fit_mixed(
     y: &[f64],
     x: &DMatrix<f64>,

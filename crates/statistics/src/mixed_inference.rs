@@ -1,12 +1,13 @@
 //! Tests of fixed effects with Satterthwaite's degrees of freedom.
 
-use crate::distribution_tail;
+use crate::distribution_tail::{f_upper, t_two_sided, t_upper_quantile};
 use crate::mixed_boundary::Criterion;
 use crate::mixed_error::MixedError;
 use crate::mixed_evaluate::{State, evaluate};
 use crate::mixed_finding::MixedFinding;
 use crate::mixed_fit::{MixedFit, MixedMethod};
 use crate::mixed_minimise::{FLAT, differences};
+use crate::mixed_term::{check_finite, check_length};
 use crate::mixed_theta::{blocks_of, entries_from};
 use nalgebra::{DMatrix, DVector};
 
@@ -114,6 +115,9 @@ pub fn variance_uncertainty(fit: &MixedFit) -> Result<VarianceUncertainty, Mixed
         .map(|row| DMatrix::from_column_slice(p, p, &row[k..]) * (sigma * sigma))
         .collect();
     slopes.push(&fit.covariance * (2.0 / sigma));
+    if second.iter().any(|value| !value.is_finite()) {
+        return Err(MixedError::NoCriterion);
+    }
     let (covariance, flat) = covariance_from(second);
     let mut findings = Vec::new();
     if flat > 0 {
@@ -250,7 +254,8 @@ pub fn combination_test(
     confidence: f64,
 ) -> Result<CoefficientTest, MixedError> {
     let what = format!("weights of {name}");
-    crate::mixed_term::check_length(&what, weights.len(), fit.model.coefficients())?;
+    check_length(&what, weights.len(), fit.model.coefficients())?;
+    check_finite(&what, weights)?;
     let weights = DVector::from_column_slice(weights);
     let df = contrast_df(uncertainty, &fit.covariance, &weights);
     Ok(test_of(
@@ -275,7 +280,7 @@ pub(crate) fn test_of(
     let estimate = weights.dot(&DVector::from_column_slice(&fit.coefficients));
     let se = (weights.transpose() * covariance * weights)[(0, 0)].sqrt();
     let t = estimate / se;
-    let half = t_quantile(f64::midpoint(1.0, confidence), df) * se;
+    let half = half_width(confidence, df) * se;
     CoefficientTest {
         name: name.to_owned(),
         estimate,
@@ -304,7 +309,8 @@ pub fn f_test(
     contrast: &DMatrix<f64>,
 ) -> Result<FTest, MixedError> {
     let p = fit.model.coefficients();
-    crate::mixed_term::check_length("columns of the contrast", contrast.ncols(), p)?;
+    check_length("columns of the contrast", contrast.ncols(), p)?;
+    check_contrast(contrast)?;
     let covariance = contrast * &fit.covariance * contrast.transpose();
     let eigen = covariance.symmetric_eigen();
     let largest = eigen.eigenvalues.amax();
@@ -332,8 +338,19 @@ pub fn f_test(
         f,
         numerator: dfs.len(),
         denominator,
-        p: f_above(f, dfs.len() as f64, denominator),
+        p: f_upper(f, dfs.len() as f64, denominator),
     })
+}
+
+/// A contrast of finite weights in at least one row.
+pub(crate) fn check_contrast(contrast: &DMatrix<f64>) -> Result<(), MixedError> {
+    if contrast.nrows() == 0 {
+        return Err(MixedError::EmptyContrast);
+    }
+    for column in contrast.column_iter() {
+        check_finite("contrast", column.as_slice())?;
+    }
+    Ok(())
 }
 
 /// Degrees of freedom of the mean of squared independent t's, from the mean of F.
@@ -357,17 +374,12 @@ pub fn picking_contrast(coefficients: usize, picked: &[usize]) -> DMatrix<f64> {
     })
 }
 
-/// p of |t|; NaN where the degrees of freedom are none.
-pub(crate) fn t_two_sided(t: f64, df: f64) -> f64 {
-    distribution_tail::t_two_sided(t, df)
-}
-
-/// Quantile of Student's t.
-pub(crate) fn t_quantile(probability: f64, df: f64) -> f64 {
-    -distribution_tail::t_upper_quantile(probability, df)
-}
-
-/// p of F.
-pub(crate) fn f_above(f: f64, numerator: f64, denominator: f64) -> f64 {
-    distribution_tail::f_upper(f, numerator, denominator)
+/// Half width of an interval of this confidence in standard errors; NaN where the
+/// confidence is none.
+pub(crate) fn half_width(confidence: f64, df: f64) -> f64 {
+    if confidence > 0.0 && confidence < 1.0 {
+        t_upper_quantile((1.0 - confidence) / 2.0, df)
+    } else {
+        f64::NAN
+    }
 }

@@ -12,10 +12,11 @@
 //! X'V⁻³X = X'V⁻²X - (Z'V⁻²X)'D B
 //! ```
 
+use crate::distribution_tail::f_upper;
 use crate::mixed_error::MixedError;
 use crate::mixed_fit::{MixedFit, MixedMethod};
-use crate::mixed_inference::{CoefficientTest, FTest, f_above, test_of};
-use crate::mixed_theta::{Entry, place_of};
+use crate::mixed_inference::{CoefficientTest, FTest, check_contrast, test_of};
+use crate::mixed_theta::Entry;
 use nalgebra::{DMatrix, DVector};
 
 /// Random effects of crossed factors at most: their matrices are dense, and this
@@ -149,7 +150,6 @@ fn sums_of(fit: &MixedFit) -> Result<Sums, MixedError> {
     let model = &fit.model;
     let p = model.coefficients();
     let parameters = &fit.estimate.entries;
-    let parameters: Vec<Entry> = covariance_entries(fit, parameters);
     let count = parameters.len() + 1;
     let phi_inverse = fit
         .state
@@ -171,7 +171,7 @@ fn sums_of(fit: &MixedFit) -> Result<Sums, MixedError> {
     sums.crossed[last][last] = phi_inverse;
     if model.factors.len() == 1 {
         for group in 0..model.leaf.groups {
-            add_piece(fit, &parameters, &group_piece(fit, group), &mut sums)?;
+            add_piece(fit, parameters, &group_piece(fit, group), &mut sums)?;
         }
     } else {
         let effects = model.leaf.groups * model.leaf.width + model.trunk.envelope.rows();
@@ -181,7 +181,7 @@ fn sums_of(fit: &MixedFit) -> Result<Sums, MixedError> {
                 most: MOST_CROSSED_EFFECTS,
             });
         }
-        add_piece(fit, &parameters, &whole_piece(fit), &mut sums)?;
+        add_piece(fit, parameters, &whole_piece(fit), &mut sums)?;
     }
     for r in 0..count {
         for s in 0..r {
@@ -189,15 +189,6 @@ fn sums_of(fit: &MixedFit) -> Result<Sums, MixedError> {
         }
     }
     Ok(sums)
-}
-
-/// Free entries of the covariances: those of the factors, whatever is at zero.
-fn covariance_entries(fit: &MixedFit, entries: &[Entry]) -> Vec<Entry> {
-    let inside = |entry: &&Entry| {
-        let (_, place) = place_of(&fit.model, entry.term);
-        entry.row < place.offset + place.width
-    };
-    entries.iter().filter(inside).copied().collect()
 }
 
 /// One group of the only factor.
@@ -369,6 +360,7 @@ pub fn kenward_roger_f(
 ) -> Result<FTest, MixedError> {
     let p = fit.model.coefficients();
     crate::mixed_term::check_length("columns of the contrast", contrast.ncols(), p)?;
+    check_contrast(contrast)?;
     let q = contrast.nrows();
     let value = contrast * DVector::from_column_slice(&fit.coefficients);
     let covariance = contrast * &adjusted.covariance * contrast.transpose();
@@ -380,7 +372,7 @@ pub fn kenward_roger_f(
         f,
         numerator: q,
         denominator: df,
-        p: f_above(f, q as f64, df),
+        p: f_upper(f, q as f64, df),
     })
 }
 

@@ -278,7 +278,9 @@ fn second_derivative(
             rows[(i, j)] = (above[j] - below[j]) / (2.0 * step);
         }
     }
-    Some((&rows + rows.transpose()) * 0.5)
+    rows.iter()
+        .all(|value| value.is_finite())
+        .then(|| (&rows + rows.transpose()) * 0.5)
 }
 
 /// Derivative of each output by each coordinate, by central differences of fourth

@@ -4,7 +4,7 @@ use crate::mixed_basis::dot;
 use crate::mixed_error::MixedError;
 use crate::mixed_evaluate::{LeafScratch, State, eliminate, evaluate, solve_lower};
 use crate::mixed_fit::MixedFit;
-use crate::mixed_inference::{VarianceUncertainty, degrees_of_freedom, t_quantile};
+use crate::mixed_inference::{VarianceUncertainty, degrees_of_freedom, half_width};
 use crate::mixed_minimise::differences;
 use crate::mixed_model::MixedModel;
 use crate::mixed_slope::{Projections, slopes};
@@ -90,7 +90,6 @@ pub fn predict_mixed(
     let changes = differences(&at, &fit.estimate.theta).ok_or(MixedError::NoCriterion)?;
 
     let sigma = fit.residual_sd;
-    let upper = f64::midpoint(1.0, confidence);
     let predictions = prepared.iter().enumerate().map(|(row, prepared)| {
         let (population, value) = expected(fit, rows, row, prepared);
         let half = |relative: f64| {
@@ -101,7 +100,11 @@ pub fn predict_mixed(
             slope.push(2.0 * sigma * relative);
             let variance = relative * sigma * sigma;
             let df = degrees_of_freedom(uncertainty, variance, &DVector::from_vec(slope));
-            (variance.sqrt(), df, t_quantile(upper, df) * variance.sqrt())
+            (
+                variance.sqrt(),
+                df,
+                half_width(confidence, df) * variance.sqrt(),
+            )
         };
         let (se, df, mean) = half(variances[row]);
         let (_, _, single) = half(variances[row] + 1.0);

@@ -1,6 +1,6 @@
 //! Profile likelihood intervals of standard deviations and correlations.
 
-use crate::distribution_tail::normal_quantile;
+use crate::distribution_tail::normal_upper_quantile;
 use crate::mixed_constraint::{Constrained, VarianceParameter};
 use crate::mixed_error::MixedError;
 use crate::mixed_finding::MixedFinding;
@@ -50,7 +50,8 @@ pub struct Profiles {
 /// take up a good part of the groups.
 ///
 /// # Errors
-/// [`MixedError::NoCriterion`] if the model cannot be fitted by this likelihood.
+/// [`MixedError::NoCriterion`] if the model cannot be fitted by this likelihood;
+/// [`MixedError::WrongConfidence`] unless 0 < confidence < 1.
 ///
 /// # Source
 /// Bates et al. (2015), J. Stat. Softw. 67(1), sec. 5.1; each end is found as a root
@@ -60,6 +61,9 @@ pub fn profile_variances(
     likelihood: MixedMethod,
     confidence: f64,
 ) -> Result<Profiles, MixedError> {
+    if !(confidence > 0.0 && confidence < 1.0) {
+        return Err(MixedError::WrongConfidence { confidence });
+    }
     let refitted;
     let fit = if fit.method == likelihood {
         fit
@@ -68,7 +72,7 @@ pub fn profile_variances(
         refitted = fit_mixed_model(fit.model.clone(), &options)?;
         &refitted
     };
-    let z = normal_quantile(f64::midpoint(1.0, confidence));
+    let z = normal_upper_quantile((1.0 - confidence) / 2.0);
     let parameters = parameters_of(fit);
     let found: Vec<(ProfileInterval, Vec<MixedFinding>)> = parameters
         .into_par_iter()

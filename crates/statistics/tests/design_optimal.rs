@@ -5,7 +5,7 @@
 use windfall_statistics::design::{Design, Factor, Point, evenly};
 use windfall_statistics::design_error::DesignError;
 use windfall_statistics::design_exchange::Criterion;
-use windfall_statistics::design_model::{DesignModel, model_row, region_points};
+use windfall_statistics::design_model::{DesignModel, extreme_points, model_row, region_points};
 use windfall_statistics::design_optimal::{Candidates, OptimalOptions, optimal};
 use windfall_statistics::design_quality::{DesignQuality, design_quality};
 
@@ -293,4 +293,29 @@ fn rejects_what_has_no_optimum() {
     )
     .unwrap_err();
     assert!(matches!(error, DesignError::ModelUndefined { .. }));
+}
+
+/// Figures of the 2^2 factorial for main effects: variance (1 + x² + y²)/4, 3/4 at
+/// the corners and 5/12 on average; and the same from lists with corners.
+#[test]
+fn closed_form_variance_of_a_factorial() {
+    let two = factors(2);
+    let row = |x: &[f64]| model_row(&two, DesignModel::Linear, x);
+    let corners = extreme_points(&two)
+        .into_iter()
+        .filter(|x| x.iter().all(|v| *v != 0.0));
+    let rows: Vec<Vec<f64>> = corners.map(|x| row(&x)).collect();
+    assert_eq!(rows.len(), 4);
+    let region = region_points(&two).into_iter();
+    let region = region.chain(extreme_points(&two).into_iter().map(|x| (0.0, x)));
+    let region: Vec<_> = region.map(|(weight, x)| (weight, row(&x))).collect();
+    let found = design_quality(&rows[..], &region).unwrap();
+    assert!((found.mean_variance - 5.0 / 12.0).abs() < 1e-14);
+    assert!((found.max_variance - 0.75).abs() < 1e-14);
+    assert!(
+        found
+            .variances
+            .iter()
+            .all(|variance| (variance - 0.25).abs() < 1e-14)
+    );
 }

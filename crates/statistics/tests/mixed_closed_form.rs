@@ -8,7 +8,8 @@ use mixed_cases::{assert_near, case, fitted};
 use nalgebra::{DMatrix, DVector};
 use windfall_statistics::mixed_error::MixedError;
 use windfall_statistics::mixed_fit::{MixedFit, MixedMethod, MixedOptions, fit_mixed};
-use windfall_statistics::mixed_inference::{coefficient_tests, variance_uncertainty};
+use windfall_statistics::mixed_inference::{coefficient_tests, f_test, variance_uncertainty};
+use windfall_statistics::mixed_kenward_roger::{kenward_roger, kenward_roger_f};
 use windfall_statistics::mixed_predict::{NewRows, NewTerm, predict_mixed};
 use windfall_statistics::mixed_profile::profile_variances;
 use windfall_statistics::mixed_term::{RandomTerm, random_intercept};
@@ -483,5 +484,61 @@ fn rejects_groups_that_leave_no_residual() {
     assert!(
         message.starts_with("fixed and random effects reproduce the response"),
         "{message}"
+    );
+}
+
+#[test]
+fn closed_form_two_terms_of_one_group_are_one_term_without_correlation() {
+    let formula = "y ~ day + (1 + day || subject)";
+    let given = case("growth", formula);
+    let one = fitted("growth", formula, MixedMethod::Reml);
+    let part = |k: usize| RandomTerm {
+        columns: vec![given.terms[0].columns[k].clone()],
+        column_names: vec![given.terms[0].column_names[k].clone()],
+        ..given.terms[0].clone()
+    };
+    let terms = [part(0), part(1)];
+    let options = MixedOptions::default();
+    let two = fit_mixed(&given.y, &given.x, &given.names, &terms, &options).unwrap();
+    assert_near("criterion", &[two.criterion], &[one.criterion], 1e-12);
+    assert_near("theta", &two.theta, &one.theta, 1e-9);
+    assert_near(
+        "effect",
+        &two.effects[1].values[3],
+        &one.effects[0].values[3][1..],
+        1e-8,
+    );
+}
+
+#[test]
+fn rejects_tests_of_nothing() {
+    let fit = fitted(
+        "growth",
+        "y ~ day + (1 + day || subject)",
+        MixedMethod::Reml,
+    );
+    let uncertainty = variance_uncertainty(&fit).unwrap();
+    let adjusted = kenward_roger(&fit).unwrap();
+    for contrast in [DMatrix::zeros(0, 2), DMatrix::zeros(1, 2)] {
+        let expected = MixedError::EmptyContrast;
+        assert_eq!(f_test(&fit, &uncertainty, &contrast).unwrap_err(), expected);
+        assert_eq!(
+            kenward_roger_f(&fit, &adjusted, &contrast).unwrap_err(),
+            expected
+        );
+    }
+    let nan = DMatrix::from_element(1, 2, f64::NAN);
+    f_test(&fit, &uncertainty, &nan).unwrap_err();
+    kenward_roger_f(&fit, &adjusted, &DMatrix::zeros(1, 3)).unwrap_err();
+    profile_variances(&fit, MixedMethod::Reml, 1.5).unwrap_err();
+    assert!(coefficient_tests(&fit, &uncertainty, 1.0)[0].low.is_nan());
+    let plain = fitted(
+        "growth",
+        "y ~ day + (1 + day || subject)",
+        MixedMethod::MaximumLikelihood,
+    );
+    assert_eq!(
+        kenward_roger(&plain).unwrap_err(),
+        MixedError::NeedsRestricted
     );
 }

@@ -14,7 +14,7 @@ use windfall_statistics::design_error::DesignError;
 use windfall_statistics::design_factorial::{FactorialOptions, full_factorial, two_level};
 use windfall_statistics::design_finding::DesignFinding;
 use windfall_statistics::design_latin::latin_hypercube;
-use windfall_statistics::design_model::{DesignModel, region_points};
+use windfall_statistics::design_model::{DesignModel, extreme_points, region_points};
 use windfall_statistics::design_plackett_burman::plackett_burman;
 use windfall_statistics::design_quality::{DesignQuality, design_quality};
 use windfall_statistics::design_sobol::sobol;
@@ -381,7 +381,11 @@ fn quality_of(design: &Design, model: &RowModel) -> Option<DesignQuality> {
         row
     };
     let rows: Vec<Vec<f64>> = design.runs.iter().map(in_block).collect();
-    let region = region_points(&design.factors).into_iter();
+    // Extreme points have no weight in the mean, but may be the largest.
+    let extreme = extreme_points(&design.factors)
+        .into_iter()
+        .map(|x| (0.0, x));
+    let region = region_points(&design.factors).into_iter().chain(extreme);
     let region: Vec<(f64, Vec<f64>)> = region
         .map(|(weight, x)| {
             let mut row = row(&x);
