@@ -1,8 +1,8 @@
 //! What a reader of a linear model must know.
 
+use crate::model_outcome::StepOutcome;
 use crate::outcome::FindingOutcome;
 use crate::text_number::plain;
-use crate::workflow_regress::StepOutcome;
 use windfall_statistics::diagnostics::{Inflation, RowInfluence};
 use windfall_statistics::linear_model::LinearFit;
 use windfall_statistics::model_frame::ModelFrame;

@@ -3,8 +3,8 @@
 use crate::error::Error;
 use crate::model_outcome::{
     AnovaOutcome, InflationOutcome, LackOfFitOutcome, PredictionOutcome, QualityOutcome,
-    RowOutcome, SumOfSquares, TermOutcome, WholeModel, anova_of, inflation_of, lack_of,
-    predictions_of, roman, rows_of, terms_of, whole_of,
+    RowOutcome, StepOutcome, SumOfSquares, TermOutcome, WholeModel, anova_of, inflation_of,
+    lack_of, predictions_of, roman, rows_of, terms_of, whole_of,
 };
 use crate::option_value::unusable;
 use crate::outcome::FindingOutcome;
@@ -23,23 +23,6 @@ use windfall_statistics::linear_model::{LinearFit, fit_reduced, predict};
 use windfall_statistics::model_frame::{ModelRows, model_rows, prediction_rows};
 use windfall_statistics::reduced::{Reduced, reduce};
 use windfall_statistics::selection::{Selection, select};
-
-/// A step of a selection.
-#[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct StepOutcome {
-    /// The term.
-    pub term: String,
-    /// "removed" or "entered".
-    pub action: &'static str,
-    /// F of the term.
-    pub f: f64,
-    /// Its probability.
-    pub p: f64,
-    /// The criterion after the step, where one decides.
-    pub criterion: Option<f64>,
-    /// R² after the step.
-    pub r2: f64,
-}
 
 /// Quality of predictions of rows left out in parts.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
