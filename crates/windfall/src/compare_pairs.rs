@@ -3,8 +3,10 @@
 use crate::compare_outcome::PairOutcome;
 use crate::error::Error;
 use crate::group_outcome::statistics_error;
+use crate::option_value::unusable;
 use windfall_statistics::compare_means::{MeanDifference, paired, pooled, welch};
 use windfall_statistics::multiple_comparison::{bonferroni, holm};
+use windfall_statistics::sample_error::SampleError;
 use windfall_statistics::tukey::{PairDifference, games_howell, tukey_kramer};
 
 /// How groups are compared in pairs.
@@ -69,13 +71,19 @@ pub(crate) fn compare_pairs(
         PairMethod::Holm => {
             let level = adjusted_confidence(groups.len(), confidence);
             let found = by_places(groups.len(), |a, b| {
-                let found = welch(&groups[b], &groups[a], level).map_err(statistics_error)?;
+                let found = welch(&groups[b], &groups[a], level);
+                let found = found.map_err(|error| of_pair(&names[a], &names[b], &error))?;
                 Ok(of_means([&names[a], &names[b]], &found, None))
             })?;
             let words = "Welch's t tests, p by Holm, intervals by Bonferroni";
             Ok((adjusted(found), words))
         }
     }
+}
+
+/// The error of one pair, with its names.
+fn of_pair(first: &str, second: &str, error: &SampleError) -> Error {
+    unusable(format!("{first} against {second}"), error.to_string())
 }
 
 /// Confidence of each interval so that all hold together (Bonferroni).
@@ -130,7 +138,8 @@ pub(crate) fn compare_paired(
     let level = adjusted_confidence(specimens.len(), confidence);
     let found = by_places(specimens.len(), |a, b| {
         let (first, second) = shared(&specimens[a], &specimens[b]);
-        let found = paired(&second, &first, level).map_err(statistics_error)?;
+        let found = paired(&second, &first, level);
+        let found = found.map_err(|error| of_pair(&names[a], &names[b], &error))?;
         Ok(of_means([&names[a], &names[b]], &found, Some(first.len())))
     })?;
     Ok(adjusted(found))

@@ -5,6 +5,23 @@ use windfall_statistics::anova::{Anova, AnovaType, LackOfFit};
 use windfall_statistics::diagnostics::{Inflation, RowInfluence};
 use windfall_statistics::linear_model::{Coefficient, LinearFit, Prediction, Quality};
 
+/// A step of a selection.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct StepOutcome {
+    /// The term.
+    pub term: String,
+    /// "removed" or "entered".
+    pub action: &'static str,
+    /// F of the term.
+    pub f: f64,
+    /// Its probability.
+    pub p: f64,
+    /// The criterion after the step, where one decides.
+    pub criterion: Option<f64>,
+    /// R² after the step.
+    pub r2: f64,
+}
+
 /// An estimate.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct TermOutcome {
