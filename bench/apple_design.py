@@ -2,15 +2,18 @@
 
     python3 bench/apple_design.py data 1 > apples.csv      # one data set, of seed 1
     python3 bench/apple_design.py coverage --windfall target/release/windfall
+    python3 bench/apple_design.py selection --windfall target/release/windfall
 
 The design (Barikloo and Ahmadi 2013): 20 fruit struck on one spot at 0.1, 0.2, 0.27 and
 0.34 m/s, 10 others once at 0.5 m/s, 10 others once at 0.7 m/s; 40 fruit, 100 impacts.
 The means are that study's regression for Golden Delicious; each fruit adds a number of its
 own, each impact another. Acoustic stiffness S has no effect.
 
-`coverage` fits the model without and with the fruit to 200 data sets, for several shares of
-the fruit in the variance, and counts the 95 % intervals that hold the true value. It needs
-nothing but Python 3.8 and windfall. See docs/apple_study.md.
+`coverage` fits the model without and with the fruit to 1000 data sets, for several shares of
+the fruit in the variance, and counts the 95 % intervals that hold the true value.
+`selection` does the study's backward elimination on them, and counts what is left.
+They need nothing but Python 3.8 and windfall, and take a minute or two. See
+docs/apple_study.md.
 """
 
 import argparse
@@ -40,12 +43,12 @@ def fruit_velocities():
     return [[0.1, 0.2, 0.27, 0.34]] * 20 + [[0.5]] * 10 + [[0.7]] * 10
 
 
-def data_set(seed, share):
+def data_set(seed, share, fruit_count=40):
     """Rows of one data set; `share` is that of the fruit in the variance about the means."""
     draw = random.Random(seed)
     normal = lambda: NormalDist().inv_cdf(draw.random() or 0.5)
     rows = []
-    for fruit, velocities in enumerate(fruit_velocities(), start=1):
+    for fruit, velocities in enumerate(fruit_velocities()[:fruit_count], start=1):
         radius = round(draw.uniform(0.031, 0.070), 5)  # range in the study
         acoustic = round(draw.uniform(20.0, 28.0), 3)  # 10⁴ kg^(2/3)/s²
         own = share**0.5 * SCATTER * normal()
@@ -76,7 +79,7 @@ def regress(windfall, table, *options):
     return [terms[product if name == "V:R" else name] for name in NAMES]
 
 
-def coverage(windfall, sets, shares):
+def coverage(windfall, sets, shares, fruit_count):
     models = {"plain": [], "mixed": ["--random", "fruit"]}
     print("share  model  term   se/sd  mean df  coverage  p < 0.05")
     with tempfile.TemporaryDirectory() as folder:
@@ -85,12 +88,42 @@ def coverage(windfall, sets, shares):
             fits = {model: [] for model in models}
             for seed in range(1, sets + 1):
                 with open(table, "w", encoding="utf-8") as stream:
-                    write(data_set(seed, share), stream)
+                    write(data_set(seed, share, fruit_count), stream)
                 for model, options in models.items():
                     fits[model].append(regress(windfall, table, *options))
             for at, name in enumerate(NAMES):
                 for model in models:
                     print_line(share, model, name, TRUE[at], [fit[at] for fit in fits[model]])
+
+
+def selection(windfall, sets, shares):
+    """What backward elimination leaves of all terms and their pairs."""
+    rules = {"no hierarchy": [], "hierarchy": ["--hierarchy"]}
+    print("share  rule          a term with S  V gone  terms (mean)")
+    with tempfile.TemporaryDirectory() as folder:
+        table = os.path.join(folder, "apples.csv")
+        for share in shares:
+            left = {rule: [] for rule in rules}
+            for seed in range(1, sets + 1):
+                with open(table, "w", encoding="utf-8") as stream:
+                    write(data_set(seed, share), stream)
+                for rule, options in rules.items():
+                    left[rule].append(eliminate(windfall, table, *options))
+            for rule, terms in left.items():
+                of_no_effect = mean(float(any("S" in term for term in kept)) for kept in terms)
+                gone = mean(float("V" not in kept) for kept in terms)
+                count = mean(len(kept) - 1 for kept in terms)
+                row = f"{share:5.2f}  {rule:12}  {of_no_effect:13.3f}  {gone:7.3f}  {count:12.2f}"
+                print(row, flush=True)
+
+
+def eliminate(windfall, table, *options):
+    """Names of the terms that are left, the intercept among them."""
+    command = [windfall, "regress", table, "--response", "k", "--terms", "(V + R + t + S)^2"]
+    command += ["--select", "backward", "--p-remove", "0.05", "--folds", "0"]
+    command += ["--format", "json", *options]
+    answer = subprocess.run(command, check=True, capture_output=True, text=True)
+    return [row["term"] for row in json.loads(answer.stdout)["terms"]]
 
 
 def print_line(share, model, name, true, fits):
@@ -111,14 +144,19 @@ def main():
     data.add_argument("seed", type=int)
     data.add_argument("--share", type=float, default=0.64)
     cover = tasks.add_parser("coverage", help="fit two models to many data sets")
-    cover.add_argument("--windfall", default="windfall")
-    cover.add_argument("--sets", type=int, default=200)
-    cover.add_argument("--shares", type=float, nargs="+", default=[0.0, 0.3, 0.64, 0.9])
+    cover.add_argument("--fruit", type=int, default=40, help="20: those struck four times alone")
+    select = tasks.add_parser("selection", help="backward elimination of many data sets")
+    for task in (cover, select):
+        task.add_argument("--windfall", default="windfall")
+        task.add_argument("--sets", type=int, default=1000)
+        task.add_argument("--shares", type=float, nargs="+", default=[0.0, 0.3, 0.64, 0.9])
     chosen = parser.parse_args()
     if chosen.task == "data":
         write(data_set(chosen.seed, chosen.share), sys.stdout)
+    elif chosen.task == "selection":
+        selection(chosen.windfall, chosen.sets, chosen.shares)
     else:
-        coverage(chosen.windfall, chosen.sets, chosen.shares)
+        coverage(chosen.windfall, chosen.sets, chosen.shares, chosen.fruit)
 
 
 if __name__ == "__main__":
