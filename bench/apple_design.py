@@ -54,7 +54,7 @@ def data_set(seed, share, fruit_count=40):
         own = share**0.5 * SCATTER * normal()
         slower = 1.0 + 0.05 * normal()
         for velocity in velocities:
-            # Hertz: contacts shorten with V^(1/5); 4 to 9 ms as in the study.
+            # Hertz: contacts shorten with V^(1/5); 5 to 9 ms, in the study 4 to 8.
             time = round(0.005 * velocity**-0.2 * slower * (1.0 + 0.03 * normal()), 7)
             expected = INTERCEPT + BY_V * velocity + BY_R * radius
             expected += BY_T * time + BY_VR * velocity * radius
