@@ -46,7 +46,10 @@ def fruit_velocities():
 def data_set(seed, share, fruit_count=40):
     """Rows of one data set; `share` is that of the fruit in the variance about the means."""
     draw = random.Random(seed)
-    normal = lambda: NormalDist().inv_cdf(draw.random() or 0.5)
+
+    def normal():
+        return NormalDist().inv_cdf(draw.random() or 0.5)
+
     rows = []
     for fruit, velocities in enumerate(fruit_velocities()[:fruit_count], start=1):
         radius = round(draw.uniform(0.031, 0.070), 5)  # range in the study
