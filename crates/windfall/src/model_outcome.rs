@@ -100,23 +100,6 @@ pub struct InflationOutcome {
     pub factor: f64,
 }
 
-/// A step of a selection.
-#[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct StepOutcome {
-    /// The term.
-    pub term: String,
-    /// "removed" or "entered".
-    pub action: &'static str,
-    /// F of the term.
-    pub f: f64,
-    /// Its probability.
-    pub p: f64,
-    /// The criterion after the step, where one decides.
-    pub criterion: Option<f64>,
-    /// R² after the step.
-    pub r2: f64,
-}
-
 /// What a row does to the fit.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct RowOutcome {
