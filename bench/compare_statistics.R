@@ -158,12 +158,17 @@ check_mixed <- function(group, table, formula, maximum = FALSE) {
     compare(group, "Kenward-Roger se", answer$terms$se, unname(adjusted[, "Std. Error"]), limit)
     compare(group, "Kenward-Roger df", answer$terms$df, unname(adjusted[, "df"]), limit)
   }
-  profile <- suppressMessages(suppressWarnings(confint(fit, method = "profile", oldNames = FALSE, parm = "theta_", devtol = 1e-9)))
-  order <- c(grep("^sd", rownames(profile)), grep("^sigma", rownames(profile)))
-  sds <- found$variances[found$variances$kind == "sd", ]
-  compare(group, "profile intervals", c(sds$low, sds$high), unname(c(profile[order, ])), 1e-3)
+  # R profiles the plain likelihood, windfall that of the fit: they agree on fits by
+  # maximum likelihood.
+  if (maximum) {
+    profile <- suppressMessages(suppressWarnings(confint(fit, method = "profile", oldNames = FALSE, parm = "theta_", devtol = 1e-9)))
+    order <- c(grep("^sd", rownames(profile)), grep("^sigma", rownames(profile)))
+    sds <- found$variances[found$variances$kind == "sd", ]
+    compare(group, "profile intervals", c(sds$low, sds$high), unname(c(profile[order, ])), 1e-3)
+  }
 }
 check_mixed("days", days, y ~ day + (1 + day | subject))
+check_mixed("days by ML", days, y ~ day + (1 + day | subject), TRUE)
 check_mixed("impacts", impacts, k ~ V * variety + R + (1 | specimen))
 check_mixed("impacts by ML", impacts, k ~ V + R + (1 | specimen), TRUE)
 

@@ -327,8 +327,7 @@ fn variances(
     confidence: f64,
 ) -> Result<(Vec<VarianceOutcome>, Vec<FindingOutcome>), Error> {
     use windfall_statistics::mixed_constraint::VarianceParameter;
-    let profiles =
-        profile_variances(fit, MixedMethod::MaximumLikelihood, confidence).map_err(mixed)?;
+    let profiles = profile_variances(fit, fit.method, confidence).map_err(mixed)?;
     let shown = profiles.intervals.iter().map(|interval| {
         let (group, kind, of, value) = match &interval.parameter {
             VarianceParameter::Sd { term, column } => {

@@ -59,7 +59,7 @@ pub fn text_of_mixed(outcome: &MixedOutcome) -> String {
         ]
     });
     text += &page_tables(&header, &rows.collect::<Vec<_>>(), &[0]);
-    text += "\n\nStandard deviations and correlations, with intervals by the profile of the plain likelihood:\n";
+    text += "\n\nStandard deviations and correlations, with profile intervals of the same likelihood:\n";
     let header = strings(&["between", "", "of", "value", "from", "to"]);
     let rows = outcome.variances.iter().map(|row| {
         vec![
