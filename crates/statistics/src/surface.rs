@@ -242,7 +242,8 @@ pub fn canonical(surface: &Surface) -> Option<Canonical> {
     let (slopes, curvature) = quadratic_form(surface)?;
     let eigen = curvature.clone().symmetric_eigen();
     let largest = eigen.eigenvalues.amax();
-    if largest == 0.0 {
+    // Rounding alone is no curvature.
+    if largest <= 1e-12 * slopes.amax() || largest == 0.0 {
         return None;
     }
     let mut order: Vec<usize> = (0..slopes.len()).collect();
