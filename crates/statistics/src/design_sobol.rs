@@ -14,7 +14,7 @@ const BITS: usize = 30;
 /// [−1, 1). They are not scrambled: the first ones stay when more are added.
 ///
 /// # Errors
-/// No factor or more than [`DIMENSIONS`], categories, no run or too many.
+/// No factor or more than `DIMENSIONS`, categories, no run or too many.
 pub fn sobol(factors: Vec<Factor>, runs: usize) -> Result<Design, DesignError> {
     check_factors("Sobol", &factors, 1)?;
     check_numbers("Sobol", &factors)?;
@@ -44,7 +44,7 @@ pub fn sobol(factors: Vec<Factor>, runs: usize) -> Result<Design, DesignError> {
 
 /// The first points of the sequence in [0, 1), in the order of the Gray code.
 ///
-/// Dimensions beyond [`DIMENSIONS`] are left out.
+/// Dimensions beyond `DIMENSIONS` are left out.
 ///
 /// # Source
 /// Sobol (1967), USSR Computational Mathematics and Mathematical Physics 7,
