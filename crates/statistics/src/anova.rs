@@ -143,7 +143,7 @@ pub fn lack_of_fit(
         settings
             .row(row)
             .iter()
-            .map(|v| v.to_bits())
+            .map(|v| (v + 0.0).to_bits())
             .collect::<Vec<_>>()
     };
     let keys: Vec<Vec<u64>> = (0..y.len()).map(key).collect();

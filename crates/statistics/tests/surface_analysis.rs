@@ -3,6 +3,7 @@
 
 #![allow(clippy::unwrap_used)]
 
+use windfall_statistics::anova::lack_of_fit;
 use windfall_statistics::contrast::Contrast;
 use windfall_statistics::cross_validation::cross_validate;
 use windfall_statistics::desirability::{Goal, Wanted, desirability, overall};
@@ -161,6 +162,18 @@ fn rows() -> ModelRows {
     };
     let formula = formula("y ~ (a + b + c)^2", &[]).unwrap();
     model_rows(&formula, &table, Contrast::Treatment, &[]).unwrap()
+}
+
+/// Three runs at one setting of which one is written -0: variance of 1, 2, 3 about 2.
+#[test]
+fn closed_form_pure_error_of_repeated_settings() {
+    let settings = nalgebra::DMatrix::from_row_slice(5, 1, &[0.0, -0.0, 0.0, 1.0, 2.0]);
+    let found = lack_of_fit(&settings, &[1.0, 2.0, 3.0, 9.0, 5.0], 30.0, 3).unwrap();
+    assert_eq!((found.pure_ss, found.pure_df), (2.0, 2));
+    assert_eq!(
+        (found.lack.ss, found.lack.df, found.lack.f),
+        (28.0, 1, 28.0)
+    );
 }
 
 /// With as many parts as rows, cross-validation is PRESS.
