@@ -26,7 +26,7 @@ use windfall_statistics::model_frame::{
     ModelRows, chosen_rows, complete_rows, model_rows, prediction_rows,
 };
 use windfall_statistics::random_terms::{FramedTerm, new_terms, random_terms};
-use windfall_statistics::reduced::reduce;
+use windfall_statistics::reduced::{Aliased, reduce};
 
 /// A standard deviation between groups, or the correlation of two effects.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -144,6 +144,7 @@ pub struct MixedTest {
 
 struct Fitted {
     rows: ModelRows,
+    aliased: Vec<Aliased>,
     columns: Vec<usize>,
     terms: Vec<FramedTerm>,
     fit: MixedFit,
@@ -166,6 +167,11 @@ pub fn regress_mixed(
                        --likelihood ml by their criteria";
         return Err(crate::option_value::unusable("--select", problem));
     }
+    if request.robust {
+        let problem = "there are no HC3 errors of mixed models: the random effects are what makes \
+                       their errors right";
+        return Err(crate::option_value::unusable("--robust", problem));
+    }
     let (kept, left_out) = complete_rows(formula, &data.table, &[]).map_err(Error::Statistics)?;
     let table = chosen_rows(&data.table, &kept);
     let chosen = Data {
@@ -173,24 +179,24 @@ pub fn regress_mixed(
         comments: Vec::new(),
         lines: kept.iter().map(|row| data.lines[*row]).collect(),
     };
-    let fitted = fit(request, &chosen, formula, request.contrast)?;
-    let uncertainty = variance_uncertainty(&fitted.fit).map_err(mixed)?;
-    let adjusted = match request.mixed.freedom {
-        FreedomMethod::Satterthwaite => None,
-        FreedomMethod::KenwardRoger => Some(kenward_roger(&fitted.fit).map_err(mixed)?),
+    let inference = infer(request, &chosen, formula, request.contrast)?;
+    let summed = match inference.fitted.rows.frame.has_categories() {
+        true => Some(infer(request, &chosen, formula, Contrast::Sum)?),
+        false => None,
     };
+    let anova = term_tests(summed.as_ref().unwrap_or(&inference))?;
+    let Inference {
+        fitted,
+        uncertainty,
+        adjusted,
+    } = inference;
     let tests = match &adjusted {
         None => coefficient_tests(&fitted.fit, &uncertainty, request.confidence),
         Some(adjusted) => kenward_roger_tests(&fitted.fit, adjusted, request.confidence),
     };
     let (variances, profile_findings) = variances(&fitted.fit, request.confidence)?;
     let mut findings = left_out_finding(&left_out, &data.lines);
-    findings.extend(aliased_findings(
-        &fitted.rows.frame,
-        &reduce(&fitted.rows.x, &fitted.rows.y)
-            .solve(&(0..fitted.rows.x.ncols()).collect::<Vec<_>>())
-            .aliased,
-    ));
+    findings.extend(aliased_findings(&fitted.rows.frame, &fitted.aliased));
     let own = fitted.fit.findings.iter().chain(&uncertainty.findings);
     let own = own.map(|f| finding(f.code(), f.to_string()));
     findings.extend(own.chain(profile_findings));
@@ -215,7 +221,7 @@ pub fn regress_mixed(
             .map(|t| (t.term.name.clone(), t.term.groups))
             .collect(),
         terms: tests.iter().map(term_outcome).collect(),
-        anova: term_tests(request, &chosen, formula)?,
+        anova,
         variances,
         r2: shares.r2_marginal,
         r2_adjusted: None,
@@ -246,7 +252,8 @@ fn fit(
     let rows = model_rows(formula, &data.table, contrast, &[]).map_err(Error::Statistics)?;
     let terms = random_terms(formula, &data.table, contrast).map_err(Error::Statistics)?;
     let every: Vec<usize> = (0..rows.x.ncols()).collect();
-    let columns = reduce(&rows.x, &rows.y).solve(&every).columns;
+    let solved = reduce(&rows.x, &rows.y).solve(&every);
+    let (columns, aliased) = (solved.columns, solved.aliased);
     let names: Vec<String> = columns
         .iter()
         .map(|c| rows.frame.names[*c].clone())
@@ -262,6 +269,7 @@ fn fit(
     let fit = fit_mixed(&rows.y, &x, &names, &numbers, &options).map_err(mixed)?;
     Ok(Fitted {
         rows,
+        aliased,
         columns,
         terms,
         fit,
@@ -281,18 +289,39 @@ fn term_outcome(test: &CoefficientTest) -> TermOutcome {
     }
 }
 
-/// F tests of the terms after all others; categories by contrasts that sum to zero.
-fn term_tests(
+/// A fit with what its tests need.
+struct Inference {
+    fitted: Fitted,
+    uncertainty: VarianceUncertainty,
+    adjusted: Option<KenwardRoger>,
+}
+
+fn infer(
     request: &RegressRequest,
     data: &Data,
     formula: &Formula,
-) -> Result<Vec<MixedTest>, Error> {
-    let fitted = fit(request, data, formula, Contrast::Sum)?;
-    let uncertainty = variance_uncertainty(&fitted.fit).map_err(mixed)?;
-    let adjusted: Option<KenwardRoger> = match request.mixed.freedom {
-        FreedomMethod::Satterthwaite => None,
-        FreedomMethod::KenwardRoger => Some(kenward_roger(&fitted.fit).map_err(mixed)?),
-    };
+    contrast: Contrast,
+) -> Result<Inference, Error> {
+    let fitted = fit(request, data, formula, contrast)?;
+    Ok(Inference {
+        uncertainty: variance_uncertainty(&fitted.fit).map_err(mixed)?,
+        adjusted: match request.mixed.freedom {
+            FreedomMethod::Satterthwaite => None,
+            FreedomMethod::KenwardRoger => Some(kenward_roger(&fitted.fit).map_err(mixed)?),
+        },
+        fitted,
+    })
+}
+
+/// F tests of the terms after all others.
+///
+/// * `inference`: with contrasts of categories that sum to zero
+fn term_tests(inference: &Inference) -> Result<Vec<MixedTest>, Error> {
+    let Inference {
+        fitted,
+        uncertainty,
+        adjusted,
+    } = inference;
     let count = fitted.columns.len();
     let mut tests = Vec::new();
     for term in &fitted.rows.frame.terms {
@@ -303,8 +332,8 @@ fn term_tests(
             continue;
         }
         let contrast = picking_contrast(count, &picked);
-        let test: FTest = match &adjusted {
-            None => f_test(&fitted.fit, &uncertainty, &contrast).map_err(mixed)?,
+        let test: FTest = match adjusted {
+            None => f_test(&fitted.fit, uncertainty, &contrast).map_err(mixed)?,
             Some(adjusted) => kenward_roger_f(&fitted.fit, adjusted, &contrast).map_err(mixed)?,
         };
         tests.push(MixedTest {
