@@ -2,7 +2,7 @@
 //!
 //! The p-values of what remains are optimistic: they take no account of the
 //! choice (Harrell, Regression Modeling Strategies, 2nd ed., §4.3). Cross-validation
-//! with the selection inside, [`crate::cross_validation`], tells what it costs.
+//! with the selection inside tells what it costs.
 
 use crate::linear_model::{fisher_upper, log_likelihood, small_sample};
 use crate::model_frame::ModelFrame;

@@ -55,7 +55,7 @@ pub struct RegressArguments {
     #[arg(long, requires = "select")]
     pub hierarchy: bool,
     /// Type of the analysis of variance: 1 in order, 2 after all that do not contain the term,
-    /// 3 after all others (categories by sum contrasts)
+    /// 3 after all others (categories by sum contrasts); with random effects always 3
     #[arg(long, default_value_t = 2, value_name = "TYPE", value_parser = clap::value_parser!(u8).range(1..=3))]
     pub anova: u8,
     /// Contrasts of categories
@@ -64,7 +64,7 @@ pub struct RegressArguments {
     /// Standard errors that hold for unequal variances (HC3)
     #[arg(long)]
     pub robust: bool,
-    /// Parts for cross-validation; 0 for none
+    /// Parts for cross-validation, without random effects; 0 for none
     #[arg(long, default_value_t = 10, value_name = "PARTS")]
     pub folds: usize,
     /// Seed of the division into parts

@@ -279,6 +279,9 @@ fn rejects_bad_input_with_its_place() {
         assert_eq!(code, status, "{terms}: {text}");
         assert!(text.contains(expected), "{terms}: {text}");
     }
+    let both = ["--terms", "a", "--random", "text", "--robust"];
+    let output = run(&[&["regress", &table, "--response", "y"][..], &both].concat());
+    assert!(String::from_utf8_lossy(&output.stderr).contains("no HC3 errors of mixed models"));
     let caret = run(&["regress", &table, "--formula", "y ~ a + * b"]);
     let text = String::from_utf8_lossy(&caret.stderr).into_owned();
     assert!(text.contains("y ~ a + * b\n          ^"), "{text}");

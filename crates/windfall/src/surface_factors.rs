@@ -1,6 +1,6 @@
 //! Coding of a table's factors, and where it came from.
 
-use crate::design_coding::{coding_of_design, number_factors};
+use crate::design_coding::coding_of_design;
 use crate::error::Error;
 use crate::option_value::unusable;
 use crate::outcome::FindingOutcome;
@@ -10,12 +10,6 @@ use crate::text_number::plain;
 use windfall_statistics::surface_coding::{
     CodedFactors, FactorCoding, Recognised, code_by_levels, code_with,
 };
-
-/// Factors that a design's file names.
-#[must_use]
-pub fn factors_of_design(data: &Data) -> Vec<String> {
-    number_factors(data)
-}
 
 /// Codes the factors: by given ranges, by what the file says of the design, else
 /// by their levels.

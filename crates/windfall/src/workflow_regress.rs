@@ -9,7 +9,7 @@ use crate::model_outcome::{
 use crate::option_value::unusable;
 use crate::outcome::FindingOutcome;
 use crate::read_data::{Data, read_data};
-use crate::regress_findings::{aliased_findings, fit_findings, left_out_finding};
+use crate::regress_findings::{aliased_findings, finding, fit_findings, left_out_finding};
 use crate::regress_residuals::{ResidualOutcome, residual_findings, residual_tests};
 use crate::request_regress::{AnovaType, Contrast, Criterion, Direction, RegressRequest};
 use crate::workflow_mixed::{MixedOutcome, regress_mixed};
@@ -223,6 +223,14 @@ fn outcome(
     let mut findings = left_out_finding(&rows.left_out, &data.lines);
     findings.extend(aliased_findings(&rows.frame, &fit.aliased));
     findings.extend(fit_findings(fit, &influence, &vif, &lines, &steps));
+    if request.folds > 0 && validation.is_none() {
+        findings.push(finding(
+            "no-cross-validation",
+            "a part without some rows leaves a coefficient without an estimate: rows cannot be \
+             predicted from the others"
+                .to_owned(),
+        ));
+    }
     let residuals = residual_tests(rows, fit);
     findings.extend(residual_findings(&residuals));
     Ok(RegressOutcome {

@@ -1,6 +1,7 @@
 //! `windfall surface`: a table of runs → response surfaces, their analysis and
 //! the settings that are best for all responses.
 
+use crate::design_coding::number_factors;
 use crate::error::Error;
 use crate::model_outcome::{SumOfSquares, lack_of, roman, rows_of, whole_of};
 use crate::option_value::unusable;
@@ -133,7 +134,7 @@ fn factor_names(request: &SurfaceRequest, data: &Data) -> Result<Vec<String>, Er
     }
     let mut factors = request.factors.clone();
     if factors.is_empty() {
-        factors = crate::surface_factors::factors_of_design(data);
+        factors = number_factors(data);
     }
     if factors.is_empty() {
         let problem =

@@ -180,6 +180,10 @@ fn predictions_text(outcome: &RegressOutcome) -> String {
         "observation from",
         "to ",
     ]);
+    page_tables(&header, &prediction_rows(outcome, &number), &[])
+}
+
+fn prediction_rows(outcome: &RegressOutcome, write: &dyn Fn(f64) -> String) -> Vec<Vec<String>> {
     let rows = outcome.predictions.iter().map(|row| {
         let numbers = [
             row.predicted,
@@ -189,10 +193,10 @@ fn predictions_text(outcome: &RegressOutcome) -> String {
             row.low,
             row.high,
         ];
-        let cells = numbers.iter().map(|value| number(*value));
+        let cells = numbers.into_iter().map(write);
         std::iter::once(row.line.to_string()).chain(cells).collect()
     });
-    page_tables(&header, &rows.collect::<Vec<_>>(), &[])
+    rows.collect()
 }
 
 /// A model as CSV: estimates, or predictions where they were asked for.
@@ -210,18 +214,7 @@ pub fn csv_of_regress(outcome: &RegressOutcome) -> Result<String, Error> {
             "low",
             "high",
         ]);
-        let rows = outcome.predictions.iter().map(|row| {
-            let numbers = [
-                row.predicted,
-                row.se,
-                row.mean_low,
-                row.mean_high,
-                row.low,
-                row.high,
-            ];
-            let cells = numbers.iter().map(f64::to_string);
-            std::iter::once(row.line.to_string()).chain(cells).collect()
-        });
+        let rows = prediction_rows(outcome, &|value| value.to_string());
         return csv_text(&header, rows);
     }
     csv_of_terms(&outcome.terms)
