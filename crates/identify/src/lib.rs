@@ -7,6 +7,7 @@
 pub mod compression_fit;
 pub mod contact_motion;
 mod correlated_scores;
+pub mod drop_rig;
 pub mod error;
 pub mod estimator;
 pub mod finding;
