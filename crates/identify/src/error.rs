@@ -68,6 +68,14 @@ pub enum Error {
         /// Most that can be free.
         most: usize,
     },
+    /// Parameters that the recordings cannot tell apart.
+    #[error(
+        "the recordings cannot tell the free parameters of {law} (and of the rig) apart: hold one of them, give what is known of the plate's mass, or add drops from another height"
+    )]
+    Unidentified {
+        /// Name of the law.
+        law: &'static str,
+    },
     /// A velocity that was never measured cannot be held.
     #[error(
         "the velocity at first touch is to be held, but the recording does not show the motion before contact; give the velocity, or let it be estimated"

@@ -4,6 +4,7 @@
 //!
 //! This crate opens no file and reads no clock.
 
+mod arrow_system;
 pub mod compression_fit;
 pub mod contact_motion;
 mod correlated_scores;
@@ -16,6 +17,11 @@ pub mod drop_rig;
 pub mod drop_sensitivity;
 pub mod drop_simulate;
 pub mod drop_tally;
+pub mod drop_waveform;
+pub mod drop_waveform_fit;
+mod drop_waveform_parameters;
+mod drop_waveform_record;
+mod drop_waveform_report;
 mod dual;
 pub mod error;
 pub mod estimator;
