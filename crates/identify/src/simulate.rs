@@ -11,7 +11,7 @@ use windfall_numerics::ode_step::Tolerance;
 use windfall_numerics::root::bracketed_root;
 
 /// Relative accuracy of simulations; the reference tables ask for 1e-8.
-const ACCURACY: f64 = 1e-12;
+pub(crate) const ACCURACY: f64 = 1e-12;
 /// Points per piece of the motion among which a maximum is looked for.
 const SEARCH_POINTS: usize = 16;
 /// A peak is located to this fraction of a piece.
@@ -21,7 +21,7 @@ const FIRST_DURATION: f64 = 0.02;
 const LARGEST_DOUBLINGS: usize = 10;
 /// Gauss-Legendre nodes and weights on [−1, 1], for the impulse (Abramowitz and
 /// Stegun 1964, table 25.4).
-const GAUSS_NODES: [f64; 8] = [
+pub(crate) const GAUSS_NODES: [f64; 8] = [
     -0.960_289_856_497_536_2,
     -0.796_666_477_413_626_7,
     -0.525_532_409_916_329,
@@ -31,7 +31,7 @@ const GAUSS_NODES: [f64; 8] = [
     0.796_666_477_413_626_7,
     0.960_289_856_497_536_2,
 ];
-const GAUSS_WEIGHTS: [f64; 8] = [
+pub(crate) const GAUSS_WEIGHTS: [f64; 8] = [
     0.101_228_536_290_376_26,
     0.222_381_034_453_374_48,
     0.313_706_645_877_887_3,
@@ -290,7 +290,7 @@ fn sigma_of(segment: &Segment<1>, time: f64) -> f64 {
 }
 
 /// Where in `[0, end]` a function with the derivative `slope` is highest.
-fn highest(end: f64, value: impl Fn(f64) -> f64, slope: impl Fn(f64) -> f64) -> f64 {
+pub(crate) fn highest(end: f64, value: impl Fn(f64) -> f64, slope: impl Fn(f64) -> f64) -> f64 {
     let point = |i: usize| end * i as f64 / SEARCH_POINTS as f64;
     let best = (0..=SEARCH_POINTS)
         .map(|i| (i, value(point(i))))
