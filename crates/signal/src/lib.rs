@@ -15,6 +15,13 @@
 
 pub mod accelerometer;
 pub mod acoustic_stiffness;
+pub mod bounce;
+pub mod bounce_contact;
+pub mod bounce_finding;
+pub mod bounce_measure;
+pub mod bounce_segment;
+pub mod bounce_static;
+pub mod bounce_train;
 pub mod clipping;
 mod compare;
 pub mod compression;
@@ -54,6 +61,8 @@ pub mod repeat_threshold;
 mod repeat_threshold_family;
 pub mod repeat_turnbull;
 pub mod resonance;
+pub mod ringing;
+pub mod ringing_search;
 pub mod smoothing_spline;
 pub mod spectrum;
 pub mod spectrum_peak;
