@@ -11,7 +11,7 @@ use windfall_numerics::ode_step::Tolerance;
 use windfall_numerics::root::bracketed_root;
 
 /// Relative accuracy of simulations; the reference tables ask for 1e-8.
-const ACCURACY: f64 = 1e-12;
+pub(crate) const ACCURACY: f64 = 1e-12;
 /// Points per piece of the motion among which a maximum is looked for.
 const SEARCH_POINTS: usize = 16;
 /// A peak is located to this fraction of a piece.
@@ -290,7 +290,7 @@ fn sigma_of(segment: &Segment<1>, time: f64) -> f64 {
 }
 
 /// Where in `[0, end]` a function with the derivative `slope` is highest.
-fn highest(end: f64, value: impl Fn(f64) -> f64, slope: impl Fn(f64) -> f64) -> f64 {
+pub(crate) fn highest(end: f64, value: impl Fn(f64) -> f64, slope: impl Fn(f64) -> f64) -> f64 {
     let point = |i: usize| end * i as f64 / SEARCH_POINTS as f64;
     let best = (0..=SEARCH_POINTS)
         .map(|i| (i, value(point(i))))
