@@ -14,6 +14,7 @@ mod eccentric_contact;
 mod eccentric_flight;
 mod eccentric_follow;
 pub mod eccentric_impact;
+mod eccentric_motion;
 pub mod eccentric_shape;
 pub mod eccentric_simulate;
 mod eccentric_tally;
