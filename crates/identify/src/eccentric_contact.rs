@@ -307,7 +307,10 @@ fn levels(phase: &Phase, state: &State) -> impl Iterator<Item = (Stop, f64)> {
     let grip = match phase.grip {
         Grip::Frictionless => None,
         _ if phase.parted => None,
-        Grip::Sticking => Some((Stop::Grip, largest - forces.holding.abs())),
+        Grip::Sticking => Some((
+            Stop::Grip,
+            largest - forces.holding.abs() + phase.weakest_hold(),
+        )),
         Grip::Sliding(direction) => {
             Some((Stop::Grip, direction * forces.sliding + phase.slowest_slide))
         }

@@ -2,7 +2,9 @@
 //! form, and the time of the next contact.
 
 use crate::drop_rig::Plate;
+use crate::dual::fixed;
 use crate::eccentric_body::{Planar, State};
+use crate::plate_ringing::Ringing;
 
 /// Steps of the search for the next contact before it is given up. A hundred
 /// are usual.
@@ -13,18 +15,37 @@ const SMALLEST_STEP: f64 = 4.0 * f64::EPSILON;
 /// Motion without contact from `start`, at time zero.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Flight<'a> {
-    pub planar: &'a Planar,
-    pub start: State,
+    planar: &'a Planar,
+    start: State,
+    ringing: Option<Ringing<1>>,
 }
 
-impl Flight<'_> {
+fn ringing_from(plate: &Plate, state: &State) -> Ringing<1> {
+    let decay = 0.5 * plate.damping / plate.mass;
+    Ringing {
+        displacement: fixed(state.plate),
+        velocity: fixed(state.plate_velocity),
+        decay: fixed(decay),
+        frequency_squared: fixed(plate.stiffness / plate.mass - decay * decay),
+    }
+}
+
+impl<'a> Flight<'a> {
+    pub fn new(planar: &'a Planar, start: State) -> Self {
+        let plate = planar.plate.as_ref();
+        Self {
+            planar,
+            start,
+            ringing: plate.map(|plate| ringing_from(plate, &start)),
+        }
+    }
+
     /// State `time` after the start.
     pub fn at(&self, time: f64) -> State {
         let (from, gravity) = (&self.start, self.planar.gravity);
-        let [plate, plate_velocity] = match &self.planar.plate {
-            Some(plate) => vibration(plate, [from.plate, from.plate_velocity], time),
-            None => [from.plate, from.plate_velocity],
-        };
+        let still = (from.plate, from.plate_velocity);
+        let ringing = self.ringing.as_ref();
+        let (plate, plate_velocity) = ringing.map_or(still, |plate| plate.values_at(time));
         let rotation = from.rotation + from.spin * time;
         // As changes since the start, so that small gaps are not differences
         // of large heights.
@@ -95,41 +116,6 @@ fn safe_step(gap: f64, opening: f64, bound: f64) -> f64 {
     }
 }
 
-/// Free vibration of the plate: position and velocity `time` after `from`.
-///
-/// ```text
-/// z = e^(−bt) (z₀ C + (w₀ + b z₀) S),  w = e^(−bt) (w₀ C − (b w₀ + ω₀² z₀) S)
-/// b = c/2m, ω₀² = k/m, C = cos ωt, S = (sin ωt)/ω,  ω² = ω₀² − b²
-/// ```
-///
-/// with the hyperbolic functions when ω² is negative.
-fn vibration(plate: &Plate, [z, w]: [f64; 2], time: f64) -> [f64; 2] {
-    if z == 0.0 && w == 0.0 {
-        return [0.0, 0.0];
-    }
-    let b = 0.5 * plate.damping / plate.mass;
-    let squared = plate.stiffness / plate.mass;
-    let difference = squared - b * b;
-    // e^(−bt) C and e^(−bt) S.
-    let (c, s) = if difference > 0.0 {
-        let omega = difference.sqrt();
-        let decay = (-b * time).exp();
-        let (sine, cosine) = (omega * time).sin_cos();
-        (decay * cosine, decay * sine / omega)
-    } else {
-        let rate = (-difference).sqrt();
-        let decay = ((rate - b) * time).exp();
-        let fast = (-2.0 * rate * time).exp_m1();
-        let s = if rate * time > 0.0 {
-            -0.5 * decay * fast / rate
-        } else {
-            decay * time
-        };
-        (decay * (1.0 + 0.5 * fast), s)
-    };
-    [z * c + (w + b * z) * s, w * c - (b * w + squared * z) * s]
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -151,32 +137,6 @@ mod tests {
         tilt: 0.4,
     };
 
-    /// The vibration obeys m z″ + c z′ + k z = 0 (central differences of the
-    /// velocity, the velocity against differences of the position) and starts
-    /// at its start, below, at and above critical damping.
-    #[test]
-    fn closed_form_plate_obeys_its_equation() {
-        for damping in [0.0, 20.0, 200.0, 200.0 + 1e-9, 900.0] {
-            let plate = Plate {
-                mass: 0.1,
-                stiffness: 1e5,
-                damping,
-            };
-            let start = [1e-4, -0.2];
-            assert_eq!(vibration(&plate, start, 0.0), start);
-            for time in [0.0005, 0.002, 0.011] {
-                let h = 1e-7;
-                let [low, middle, high] =
-                    [-h, 0.0, h].map(|step| vibration(&plate, start, time + step));
-                let velocity = (high[0] - low[0]) / (2.0 * h);
-                let acceleration = (high[1] - low[1]) / (2.0 * h);
-                let force = plate.mass * acceleration + damping * middle[1] + 1e5 * middle[0];
-                assert!((velocity - middle[1]).abs() < 1e-6, "{damping} {time}");
-                assert!(force.abs() < 1e-4, "{damping} {time} {force}");
-            }
-        }
-    }
-
     /// A ball that rises with v over a rigid plate is back after 2 v/g.
     #[test]
     fn closed_form_flight_of_a_ball() {
@@ -192,10 +152,7 @@ mod tests {
                 spin: 50.0,
                 ..State::default()
             };
-            let flight = Flight {
-                planar: &planar,
-                start,
-            };
+            let flight = Flight::new(&planar, start);
             let (time, state) = flight.next_contact().unwrap();
             let expected = 2.0 * velocity / 9.80665;
             assert!((time / expected - 1.0).abs() < 1e-12, "{time} {expected}");
@@ -225,10 +182,7 @@ mod tests {
                 // Opening at the start, as after a contact.
                 let lowest = planar.lowest_point(&start);
                 start.velocity_y += (planar.rate(&start, &lowest) + 0.1).max(0.0);
-                let flight = Flight {
-                    planar: &planar,
-                    start,
-                };
+                let flight = Flight::new(&planar, start);
                 let (time, state) = flight.next_contact().unwrap();
                 assert!(flight.at(time).displacement.abs() < 1e-15);
                 assert_eq!(state.displacement, 0.0);

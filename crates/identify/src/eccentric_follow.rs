@@ -45,10 +45,7 @@ pub(crate) fn follow_eccentric(
     let planar = &event.planar;
     let (mut time, mut state) = (0.0, event.release);
     for impact in 0..=impacts {
-        let flight = Flight {
-            planar,
-            start: state,
-        };
+        let flight = Flight::new(planar, state);
         let Some((duration, touch)) = flight.next_contact() else {
             return Ok(true);
         };

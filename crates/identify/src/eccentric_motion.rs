@@ -18,6 +18,10 @@ use windfall_contact::law::{ContactForce, ContactLaw, EndRule, SMALLEST_DISPLACE
 use windfall_numerics::ode_step::System;
 use windfall_numerics::real::Lanes;
 
+/// Part of the body's weight that a force keeping the surfaces from sliding may
+/// lack to its limit: rounding.
+const WEAKEST_HOLD: f64 = 1e-12;
+
 /// State and quadratures of the integration.
 pub(crate) const SIZE: usize = 12;
 
@@ -183,6 +187,11 @@ impl Phase<'_> {
         })
     }
 
+    /// A holding force below this is lost in rounding; N.
+    pub fn weakest_hold(&self) -> f64 {
+        WEAKEST_HOLD * self.planar.mass * self.planar.gravity
+    }
+
     /// Whether the surfaces stick where they do not slide, or how they begin
     /// to slide.
     pub fn grip_at(&self, state: &State, forces: &Forces) -> Grip {
@@ -203,7 +212,7 @@ impl Phase<'_> {
             let share = 1.0 / self.planar.mass + lowest.depth * lever;
             (lowest.slope * lever / share, friction)
         };
-        if holding.abs() <= largest {
+        if holding.abs() <= largest + self.weakest_hold() {
             Grip::Sticking
         } else {
             Grip::Sliding(-holding.signum())

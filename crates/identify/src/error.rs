@@ -96,6 +96,14 @@ pub enum Error {
         /// Name of the law.
         law: &'static str,
     },
+    /// More free quantities than are carried at once.
+    #[error("{asked} quantities are free, but at most {most} can be: hold some of them")]
+    TooManyFree {
+        /// Quantities asked for.
+        asked: usize,
+        /// Most that can be free.
+        most: usize,
+    },
     /// A velocity that was never measured cannot be held.
     #[error(
         "the velocity at first touch is to be held, but the recording does not show the motion before contact; give the velocity, or let it be estimated"

@@ -21,7 +21,7 @@ const FIRST_DURATION: f64 = 0.02;
 const LARGEST_DOUBLINGS: usize = 10;
 /// Gauss-Legendre nodes and weights on [−1, 1], for the impulse (Abramowitz and
 /// Stegun 1964, table 25.4).
-const GAUSS_NODES: [f64; 8] = [
+pub(crate) const GAUSS_NODES: [f64; 8] = [
     -0.960_289_856_497_536_2,
     -0.796_666_477_413_626_7,
     -0.525_532_409_916_329,
@@ -31,7 +31,7 @@ const GAUSS_NODES: [f64; 8] = [
     0.796_666_477_413_626_7,
     0.960_289_856_497_536_2,
 ];
-const GAUSS_WEIGHTS: [f64; 8] = [
+pub(crate) const GAUSS_WEIGHTS: [f64; 8] = [
     0.101_228_536_290_376_26,
     0.222_381_034_453_374_48,
     0.313_706_645_877_887_3,

@@ -91,6 +91,8 @@ pub enum NewKind {
     Acoustic,
     /// Drops repeated on one spot, for the critical impact energy
     Repeats,
+    /// Fruit fall on a plate over a load cell and bounce
+    Drop,
 }
 
 /// `windfall inspect`

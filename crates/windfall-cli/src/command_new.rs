@@ -13,6 +13,7 @@ pub fn run(arguments: &NewArguments) -> anyhow::Result<()> {
         NewKind::Compression => TemplateKind::Compression,
         NewKind::Acoustic => TemplateKind::Acoustic,
         NewKind::Repeats => TemplateKind::Repeats,
+        NewKind::Drop => TemplateKind::Drop,
     };
     let written = write_template(kind, &arguments.directory)?;
     let names: Vec<String> = written

@@ -23,7 +23,14 @@ fn json(arguments: &[&str]) -> serde_json::Value {
 #[test]
 fn template_of_every_kind() {
     let folder = tempfile::tempdir().unwrap();
-    for kind in ["pendulum", "carriage", "compression", "acoustic", "repeats"] {
+    for kind in [
+        "pendulum",
+        "carriage",
+        "compression",
+        "acoustic",
+        "repeats",
+        "drop",
+    ] {
         let campaign = folder.path().join(kind);
         windfall(&["new", kind, campaign.to_str().unwrap()]);
         let settings = std::fs::read_to_string(campaign.join("campaign.toml")).unwrap();

@@ -130,6 +130,8 @@ pub struct FitPlan {
 pub struct Specimen {
     /// Its id.
     pub id: String,
+    /// Line in specimens.csv.
+    pub line: usize,
     /// All columns: name and cell.
     pub cells: Vec<(String, String)>,
 }

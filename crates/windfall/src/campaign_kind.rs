@@ -18,6 +18,8 @@ pub enum CampaignKind {
     Acoustic,
     /// Impacts repeated on one spot, for the critical impact energy.
     Repeats,
+    /// Fruit that fall on a plate and bounce.
+    Drop,
 }
 
 impl CampaignKind {
@@ -29,6 +31,7 @@ impl CampaignKind {
             Self::Compression => "compression",
             Self::Acoustic => "acoustic",
             Self::Repeats => "repeats",
+            Self::Drop => "drop",
         }
     }
 }
@@ -58,6 +61,7 @@ pub fn campaign_kind(directory: &Path) -> Result<CampaignKind, Error> {
         CampaignKind::Compression,
         CampaignKind::Acoustic,
         CampaignKind::Repeats,
+        CampaignKind::Drop,
     ];
     let known = others.into_iter().find(|other| other.name() == kind);
     Ok(known.unwrap_or(CampaignKind::Impacts))

@@ -431,6 +431,25 @@ pub enum Error {
         /// Where.
         place: Place,
     },
+    /// A drop without its mass or its height.
+    #[error(
+        "{place}: the {quantity} of \"{item}\" is not known: column \"{column}\" is {found}; \
+         fill it in, or give one value for all drops in campaign.toml: [rig] {example}"
+    )]
+    DropUnknown {
+        /// Row of impacts.csv.
+        place: Place,
+        /// Id in impacts.csv.
+        item: String,
+        /// "mass" or "drop height".
+        quantity: &'static str,
+        /// The column that would tell it, with its tables.
+        column: &'static str,
+        /// "blank" or "not there".
+        found: &'static str,
+        /// A line that would do.
+        example: &'static str,
+    },
     /// A campaign without a channel that its kind needs.
     #[error(
         "{item}: no channel holds {quantity}; map a column to it under [channels] in campaign.toml"

@@ -22,6 +22,7 @@ pub fn read_specimens(path: &Path) -> Result<Vec<Specimen>, Error> {
         .iter()
         .map(|row| Specimen {
             id: row.cells[id].clone(),
+            line: row.line,
             cells: named_cells(&table, row),
         })
         .collect())
@@ -154,6 +155,7 @@ mod tests {
             .iter()
             .map(|id| Specimen {
                 id: (*id).to_owned(),
+                line: 0,
                 cells: Vec::new(),
             })
             .collect();

@@ -25,7 +25,7 @@ pub fn fit_any(path: &Path, request: &FitRequest, progress: Progress) -> Result<
         CampaignKind::Compression => fit_compressions(path, request, progress),
         CampaignKind::Acoustic => fit_taps(path, request, progress),
         CampaignKind::Repeats => fit_repeats(path, request, progress),
-        CampaignKind::Impacts => {
+        CampaignKind::Impacts | CampaignKind::Drop => {
             fit_campaign(path, request, progress).map(|o| AnyOutcome::Impacts(Box::new(o)))
         }
     }

@@ -16,6 +16,8 @@ pub enum TemplateKind {
     Acoustic,
     /// Drops repeated on one spot.
     Repeats,
+    /// Fruit that fall on a plate over a load cell.
+    Drop,
 }
 
 /// Table of specimens of a template.
@@ -44,6 +46,14 @@ const DROPS: &str = "id,specimen,file,spot,repeat,drop_height_m\n\
                      fruit-1-a,fruit-1,fruit-1-a.csv,1,1,0.05\nfruit-1-b,fruit-1,fruit-1-b.csv,1,2,0.05\n\
                      fruit-2-a,fruit-2,fruit-2-a.csv,1,1,0.05\nfruit-2-b,fruit-2,fruit-2-b.csv,1,2,0.05\n";
 
+/// Fruit that are dropped.
+const FRUIT: &str = "id,variety,mass_g\nfruit-1,Nongda 4,4.82\nfruit-2,Nongda 4,4.76\n";
+
+/// Drops from several heights, of a fresh fruit each.
+const HEIGHTS: &str = "id,specimen,file,drop_height_mm\n\
+                       c-100-1,fruit-1,c-100-1.csv,100\n\
+                       c-500-1,fruit-2,c-500-1.csv,500\n";
+
 /// The tables of specimens and of recordings of a rig.
 fn tables(kind: TemplateKind) -> (&'static str, &'static str) {
     match kind {
@@ -51,6 +61,7 @@ fn tables(kind: TemplateKind) -> (&'static str, &'static str) {
         TemplateKind::Compression => (COMPRESSED, IMPACTS),
         TemplateKind::Acoustic => (SPECIMENS, TAPPED),
         TemplateKind::Repeats => (STRUCK, DROPS),
+        TemplateKind::Drop => (FRUIT, HEIGHTS),
     }
 }
 
@@ -63,6 +74,7 @@ pub fn template(kind: TemplateKind) -> &'static str {
         TemplateKind::Compression => include_str!("templates/compression.toml"),
         TemplateKind::Acoustic => include_str!("templates/acoustic.toml"),
         TemplateKind::Repeats => include_str!("templates/repeats.toml"),
+        TemplateKind::Drop => include_str!("templates/drop.toml"),
     }
 }
 
