@@ -2,7 +2,7 @@
 //! ([`crate::eccentric_motion`]).
 
 use crate::eccentric_body::{Planar, State};
-use crate::eccentric_motion::{Grip, Phase, SIZE, Touching};
+use crate::eccentric_motion::{Forces, Grip, Phase, SIZE, Touching};
 use crate::error::Error;
 use crate::simulate::ACCURACY;
 use windfall_contact::any_law::AnyLaw;
@@ -18,8 +18,8 @@ const FIRST_STEP: f64 = 1e-4;
 const SEARCH_PIECES: usize = 8;
 /// Event times are located to this fraction of a step.
 const EVENT_TOLERANCE: f64 = 1e-14;
-/// Where events within the very first step are looked for from.
-const EARLIEST_EVENT: f64 = 1e-3;
+/// Where a contact that ends within its very first step is looked for from.
+const EARLIEST_END: f64 = 1e-3;
 /// Sliding slower than this part of the impact velocity is a sign lost in
 /// rounding.
 const SLIDING_TOLERANCE: f64 = 1e-12;
@@ -180,9 +180,31 @@ fn first_phase<'a>(planar: &'a Planar, law: AnyLaw, end: EndRule, state: &State)
         parted: false,
         grip: Grip::Frictionless,
         slowest_slide: SLIDING_TOLERANCE * approach.abs(),
+        slack: 0.0,
     };
-    phase.grip = phase.grip_at(state, &phase.forces(state));
+    let forces = phase.forces(state);
+    let grip = phase.grip_at(state, &forces);
+    take_grip(&mut phase, grip, &forces);
     phase
+}
+
+/// Changes the grip. Its limit is moved out of the way where rounding has put
+/// the state beyond it: an event that has just happened does not happen again.
+fn take_grip(phase: &mut Phase, grip: Grip, forces: &Forces) {
+    phase.grip = grip;
+    phase.slack = 0.0;
+    phase.slack = 2.0 * f64::max(0.0, -grip_level(phase, forces).unwrap_or(0.0));
+}
+
+/// How far sliding or sticking is from its limit: m/s or N; positive within.
+fn grip_level(phase: &Phase, forces: &Forces) -> Option<f64> {
+    let largest = phase.planar.friction * forces.normal.max(0.0);
+    let level = match phase.grip {
+        Grip::Frictionless => return None,
+        Grip::Sticking => largest - forces.holding.abs() + phase.weakest_hold(),
+        Grip::Sliding(direction) => direction * forces.sliding + phase.slowest_slide,
+    };
+    Some(level + phase.slack)
 }
 
 fn tolerance(phase: &Phase, state: &State) -> Tolerance<SIZE> {
@@ -216,7 +238,9 @@ fn enter(phase: &mut Phase, stop: Stop, state: &State) {
         Stop::ForceEnd => phase.parted = true,
         Stop::ForceStart => {
             phase.parted = false;
-            phase.grip = phase.grip_at(state, &phase.forces(state));
+            let forces = phase.forces(state);
+            let grip = phase.grip_at(state, &forces);
+            take_grip(phase, grip, &forces);
         }
         Stop::Peak => {
             // Unloading starts; or reloading past the old maximum is virgin
@@ -231,14 +255,16 @@ fn enter(phase: &mut Phase, stop: Stop, state: &State) {
         Stop::Kink => phase.beyond_kink = !phase.beyond_kink,
         Stop::Grip => {
             // The old grip ended at its limit: what would hold now decides.
-            let mut forces = phase.forces(state);
+            let forces = phase.forces(state);
+            let mut slow = forces;
             if matches!(phase.grip, Grip::Sliding(_)) {
-                forces.sliding = 0.0;
+                slow.sliding = 0.0;
             }
-            phase.grip = match (phase.grip, phase.grip_at(state, &forces)) {
+            let grip = match (phase.grip, phase.grip_at(state, &slow)) {
                 (Grip::Sticking, Grip::Sticking) => Grip::Sliding(-forces.holding.signum()),
                 (_, grip) => grip,
             };
+            take_grip(phase, grip, &forces);
         }
         Stop::Gap => {}
     }
@@ -246,12 +272,7 @@ fn enter(phase: &mut Phase, stop: Stop, state: &State) {
 
 /// The first event within a step, with its fraction of the step.
 fn first_stop(piece: &Piece) -> Option<(Stop, f64)> {
-    // In the very first step the state starts at zero displacement and force.
-    let mut from = if piece.step.start == 0.0 {
-        EARLIEST_EVENT
-    } else {
-        0.0
-    };
+    let mut from = 0.0;
     for i in 1..=SEARCH_PIECES {
         let to = i as f64 / SEARCH_PIECES as f64;
         let mut first: Option<(Stop, f64)> = None;
@@ -259,7 +280,14 @@ fn first_stop(piece: &Piece) -> Option<(Stop, f64)> {
             if level > 0.0 {
                 continue;
             }
-            let sigma = bracketed_root(from, to, EVENT_TOLERANCE, |sigma| {
+            // In the very first step displacement and force start at zero.
+            let ends = matches!(stop, Stop::ForceEnd | Stop::Gap);
+            let low = if ends && piece.step.start == 0.0 {
+                f64::max(from, EARLIEST_END)
+            } else {
+                from
+            };
+            let sigma = bracketed_root(low, to, EVENT_TOLERANCE, |sigma| {
                 level_of(&piece.phase, &piece.at(sigma).state, stop)
             });
             if first.is_none_or(|(_, earliest)| sigma < earliest) {
@@ -303,17 +331,9 @@ fn levels(phase: &Phase, state: &State) -> impl Iterator<Item = (Stop, f64)> {
     let kink = phase.law.kink();
     let side = if phase.beyond_kink { 1.0 } else { -1.0 };
     let kink = kink.is_finite().then_some((Stop::Kink, side * (d - kink)));
-    let largest = phase.planar.friction * forces.normal.max(0.0);
-    let grip = match phase.grip {
-        Grip::Frictionless => None,
-        _ if phase.parted => None,
-        Grip::Sticking => Some((
-            Stop::Grip,
-            largest - forces.holding.abs() + phase.weakest_hold(),
-        )),
-        Grip::Sliding(direction) => {
-            Some((Stop::Grip, direction * forces.sliding + phase.slowest_slide))
-        }
+    let grip = match phase.parted {
+        true => None,
+        false => grip_level(phase, &forces).map(|level| (Stop::Grip, level)),
     };
     [force, gap, peak, kink, grip].into_iter().flatten()
 }

@@ -103,6 +103,8 @@ pub(crate) struct Phase<'a> {
     pub parted: bool,
     pub grip: Grip,
     pub slowest_slide: f64,
+    /// Tolerance of the present grip beyond its limit; m/s or N.
+    pub slack: f64,
 }
 
 /// Forces and accelerations at one state.
