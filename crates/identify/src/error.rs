@@ -13,6 +13,42 @@ pub enum Error {
         /// Its value; SI.
         value: f64,
     },
+    /// A quantity may be zero, but not negative.
+    #[error("{name} is {value}, but it must be zero or a positive number")]
+    Negative {
+        /// Which quantity.
+        name: &'static str,
+        /// Its value; SI.
+        value: f64,
+    },
+    /// An angle or velocity is no number.
+    #[error("{name} is {value}, but it must be a finite number")]
+    NotFinite {
+        /// Which quantity.
+        name: &'static str,
+        /// Its value; SI.
+        value: f64,
+    },
+    /// The centre of mass lies outside the disc.
+    #[error(
+        "the centre of mass is {offset} m from the centre of a disc of radius {radius} m: the offset must be smaller than the radius"
+    )]
+    OffsetOutsideDisc {
+        /// Distance asked for; m.
+        offset: f64,
+        /// Radius; m.
+        radius: f64,
+    },
+    /// A solid sphere cannot have its centre of mass so far out.
+    #[error(
+        "a solid sphere of radius {radius} m has no moment of inertia left (2/5 m R² − m ε²) when its centre of mass is {offset} m from its centre; give the moment of inertia, or an offset below 0.63 R"
+    )]
+    NoMomentOfInertia {
+        /// Distance asked for; m.
+        offset: f64,
+        /// Radius; m.
+        radius: f64,
+    },
     /// Sampling times must ascend.
     #[error("time {time} s at index {index} comes after {before} s: times must ascend")]
     UnorderedTimes {
