@@ -14,7 +14,7 @@ use windfall_contact::law_kind::Law;
 pub struct FeatureFitOptions {
     /// Steps at most.
     pub steps: usize,
-    /// Relative change of the cost at convergence.
+    /// Relative change of the cost that is not worth a step.
     pub tolerance: f64,
     /// Whether profile intervals are made.
     pub profile: bool,
@@ -26,7 +26,7 @@ impl Default for FeatureFitOptions {
     fn default() -> Self {
         Self {
             steps: 200,
-            tolerance: 1e-12,
+            tolerance: 1e-10,
             profile: false,
             confidence: 0.95,
         }
@@ -144,6 +144,14 @@ pub fn fit_features(
     Ok(fit)
 }
 
+/// How much smaller the cost would be after a step if residuals were linear.
+fn promised(linearised: &Linearised, step: &DVector<f64>) -> f64 {
+    let free = linearised.by_law.ncols();
+    let moved = &linearised.by_law * step.rows(0, free)
+        + &linearised.by_nuisance * step.rows(free, step.len() - free);
+    linearised.residuals.norm_squared() - (&linearised.residuals + moved).norm_squared()
+}
+
 struct Search<'a> {
     problem: &'a FeatureProblem,
     coordinates: &'a LawCoordinates,
@@ -175,6 +183,11 @@ impl Search<'_> {
         let (mut damping, mut evaluations, mut converged) = (1e-3, 1, false);
         for _ in 0..self.options.steps {
             let step = self.step(&linearised, &at, held, damping);
+            // What the linear model still promises is nothing: no need to try it.
+            if promised(&linearised, &step) <= self.options.tolerance * cost.max(1e-9) {
+                converged = true;
+                break;
+            }
             let free = at.len();
             let mut moved: Vec<f64> = (0..free).map(|i| at[i] + step[i]).collect();
             self.clamp(&mut moved);
@@ -190,14 +203,9 @@ impl Search<'_> {
             let small = step.amax() < 1e-9;
             match better {
                 Some((new, found)) => {
-                    let gain = cost - new;
                     (at, shifts, linearised) = (moved, tried, found);
                     damping = (damping * 0.1).max(1e-14);
                     cost = new;
-                    if gain <= self.options.tolerance * cost.max(1e-12) || cost < 1e-18 {
-                        converged = true;
-                        break;
-                    }
                 }
                 None if small || damping > 1e12 => {
                     converged = small;

@@ -490,7 +490,8 @@ fn recovers_the_expected_uncertainty_in_simulated_campaigns() {
     for place in 0..3 {
         let spread = (squares[place] / f64::from(replicates)).sqrt();
         println!("{place}: expected {} seen {spread}", best.sds[place]);
-        assert!((spread / best.sds[place] - 1.0).abs() < 0.15);
+        // First order: with 31 % in k the true spread is somewhat larger.
+        assert!((spread / best.sds[place] - 1.0).abs() < 0.2);
     }
 }
 
