@@ -59,6 +59,18 @@ pub enum Error {
         /// The time before it; s.
         before: f64,
     },
+    /// A simulated drop does not show a feature.
+    #[error(
+        "the drop from {height} m does not show {feature}: the fruit lies on the plate after {impacts} impacts. With less damping it would bounce on; leave the feature out if the real fruit rests there too"
+    )]
+    FeatureMissing {
+        /// The feature.
+        feature: String,
+        /// Drop height; m.
+        height: f64,
+        /// Impacts until rest.
+        impacts: usize,
+    },
     /// The bodies stay together.
     #[error(
         "the bodies are still in contact after {duration} s: the damping or the driving acceleration holds them together; check the law's parameters"
