@@ -141,9 +141,9 @@ fn main() {
     let mut arguments = std::env::args().skip(1);
     let replicates: u64 = arguments.next().and_then(|a| a.parse().ok()).unwrap_or(20);
     let impacts: usize = arguments.next().and_then(|a| a.parse().ok()).unwrap_or(2);
-    let mut covered = vec![0u64; 5];
+    let mut covered = [0u64; 5];
     let mut errors = vec![Vec::new(); 5];
-    let mut sds = vec![0.0; 5];
+    let mut sds = [0.0; 5];
     let mut names = Vec::new();
     let (mut time, mut failed, mut by_records) = (0.0, 0, 0);
     for seed in 1..=replicates {
