@@ -13,6 +13,42 @@ pub enum Error {
         /// Its value; SI.
         value: f64,
     },
+    /// A quantity may be zero, but not negative.
+    #[error("{name} is {value}, but it must be zero or a positive number")]
+    Negative {
+        /// Which quantity.
+        name: &'static str,
+        /// Its value; SI.
+        value: f64,
+    },
+    /// An angle or velocity is no number.
+    #[error("{name} is {value}, but it must be a finite number")]
+    NotFinite {
+        /// Which quantity.
+        name: &'static str,
+        /// Its value; SI.
+        value: f64,
+    },
+    /// The centre of mass lies outside the disc.
+    #[error(
+        "the centre of mass is {offset} m from the centre of a disc of radius {radius} m: the offset must be smaller than the radius"
+    )]
+    OffsetOutsideDisc {
+        /// Distance asked for; m.
+        offset: f64,
+        /// Radius; m.
+        radius: f64,
+    },
+    /// A solid sphere cannot have its centre of mass so far out.
+    #[error(
+        "a solid sphere of radius {radius} m has no moment of inertia left (2/5 m R² − m ε²) when its centre of mass is {offset} m from its centre; give the moment of inertia, or an offset below 0.63 R"
+    )]
+    NoMomentOfInertia {
+        /// Distance asked for; m.
+        offset: f64,
+        /// Radius; m.
+        radius: f64,
+    },
     /// Sampling times must ascend.
     #[error("time {time} s at index {index} comes after {before} s: times must ascend")]
     UnorderedTimes {
@@ -22,6 +58,18 @@ pub enum Error {
         time: f64,
         /// The time before it; s.
         before: f64,
+    },
+    /// A simulated drop does not show a feature.
+    #[error(
+        "the drop from {height} m does not show {feature}: the fruit lies on the plate after {impacts} impacts. With less damping it would bounce on; leave the feature out if the real fruit rests there too"
+    )]
+    FeatureMissing {
+        /// The feature.
+        feature: String,
+        /// Drop height; m.
+        height: f64,
+        /// Impacts until rest.
+        impacts: usize,
     },
     /// The bodies stay together.
     #[error(
@@ -67,6 +115,14 @@ pub enum Error {
         asked: usize,
         /// Most that can be free.
         most: usize,
+    },
+    /// Parameters that the recordings cannot tell apart.
+    #[error(
+        "the recordings cannot tell the free parameters of {law} (and of the rig) apart: hold one of them, give what is known of the plate's mass, or add drops from another height"
+    )]
+    Unidentified {
+        /// Name of the law.
+        law: &'static str,
     },
     /// A velocity that was never measured cannot be held.
     #[error(

@@ -1,7 +1,9 @@
 //! `windfall simulate`: what may be asked for.
 
+use crate::args_end::End;
 use crate::args_format::Format;
-use clap::{Args, Subcommand, ValueEnum, ValueHint};
+use crate::args_simulate_drop::SimulateDropArguments;
+use clap::{Args, Subcommand, ValueHint};
 use std::path::PathBuf;
 
 /// `windfall simulate`
@@ -27,6 +29,8 @@ pub enum SimulateEvent {
     Tap(SimulateTapArguments),
     /// Drops repeated on one spot of fruit with a critical energy: a campaign of recordings
     Repeats(SimulateRepeatsArguments),
+    /// A fruit falls on a plate and bounces: impacts, motion, or a campaign of recordings
+    Drop(Box<SimulateDropArguments>),
 }
 
 /// `windfall simulate tap`
@@ -164,16 +168,6 @@ pub struct SimulateRepeatsArguments {
     /// How the result is shown
     #[arg(long, value_enum, default_value_t)]
     pub format: Format,
-}
-
-/// When a simulated contact is over.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum)]
-pub enum End {
-    /// When the law's force returns to zero: no adhesion
-    #[default]
-    ForceZero,
-    /// When the displacement is back at zero
-    GapZero,
 }
 
 /// `windfall simulate impact`

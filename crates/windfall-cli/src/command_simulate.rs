@@ -1,13 +1,13 @@
 //! `windfall simulate`
 
+use crate::args_end::end_text;
 use crate::args_format::Format;
 use crate::args_simulate::{
-    End, SimulateArguments, SimulateCarriageArguments, SimulateCompressionArguments, SimulateEvent,
+    SimulateArguments, SimulateCarriageArguments, SimulateCompressionArguments, SimulateEvent,
     SimulateImpactArguments, SimulatePendulumArguments, SimulateRepeatsArguments,
     SimulateTapArguments,
 };
-use crate::show::{write_json, write_result};
-use std::path::Path;
+use crate::show::{write_json, write_result, written};
 use windfall::request_event::{
     CarriageRequest, PendulumRequest, carriage_event, impact_of_event, motion_of_event,
     pendulum_event,
@@ -35,13 +35,7 @@ pub fn run(arguments: &SimulateArguments) -> anyhow::Result<()> {
         SimulateEvent::Compression(arguments) => compression(arguments),
         SimulateEvent::Tap(arguments) => tap(arguments),
         SimulateEvent::Repeats(arguments) => repeats(arguments),
-    }
-}
-
-fn end_text(end: End) -> String {
-    match end {
-        End::ForceZero => "force-zero".to_owned(),
-        End::GapZero => "gap-zero".to_owned(),
+        SimulateEvent::Drop(arguments) => crate::command_simulate_drop::run(arguments),
     }
 }
 
@@ -192,21 +186,6 @@ fn pendulum(arguments: &SimulatePendulumArguments) -> anyhow::Result<()> {
     let instrument = instrument_of_pendulum(&instrument, &event)?;
     let count = simulate_recordings(&event, instrument, &request, directory)?;
     written(directory, count, arguments.format)
-}
-
-fn written(directory: &Path, recordings: usize, format: Format) -> anyhow::Result<()> {
-    let directory = directory.display();
-    match format {
-        Format::Json => write_json(&serde_json::json!({
-            "directory": directory.to_string(), "recordings": recordings, "simulated": true
-        })),
-        Format::Csv => write_result(&format!(
-            "directory,recordings\n\"{directory}\",{recordings}\n"
-        )),
-        Format::Text => write_result(&format!(
-            "{recordings} simulated recordings in {directory}\n\nNext:\n  windfall fit {directory}\n"
-        )),
-    }
 }
 
 fn show_motion(motion: &SimulatedMotion, format: Format) -> anyhow::Result<()> {

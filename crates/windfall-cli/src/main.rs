@@ -6,11 +6,13 @@
 mod args;
 mod args_compare;
 mod args_design;
+mod args_end;
 mod args_fit;
 mod args_format;
 mod args_geometry;
 mod args_regress;
 mod args_simulate;
+mod args_simulate_drop;
 mod args_surface;
 mod command_card;
 mod command_compare;
@@ -21,6 +23,7 @@ mod command_inspect;
 mod command_new;
 mod command_regress;
 mod command_simulate;
+mod command_simulate_drop;
 mod command_surface;
 mod show;
 

@@ -1,6 +1,8 @@
 //! Where text goes: results to standard output, messages to standard error.
 
+use crate::args_format::Format;
 use std::io::{ErrorKind, Write};
+use std::path::Path;
 
 /// Writes a result. A reader that has heard enough (`| head`) is no error.
 pub fn write_result(text: &str) -> anyhow::Result<()> {
@@ -19,4 +21,20 @@ pub fn write_json<T: serde::Serialize>(value: &T) -> anyhow::Result<()> {
 /// Writes a line to standard error; when that is closed there is no one to tell.
 pub fn message(text: &str) {
     let _ = writeln!(std::io::stderr(), "{text}");
+}
+
+/// Says what a simulation has written.
+pub fn written(directory: &Path, recordings: usize, format: Format) -> anyhow::Result<()> {
+    let directory = directory.display();
+    match format {
+        Format::Json => write_json(&serde_json::json!({
+            "directory": directory.to_string(), "recordings": recordings, "simulated": true
+        })),
+        Format::Csv => write_result(&format!(
+            "directory,recordings\n\"{directory}\",{recordings}\n"
+        )),
+        Format::Text => write_result(&format!(
+            "{recordings} simulated recordings in {directory}\n\nNext:\n  windfall fit {directory}\n"
+        )),
+    }
 }

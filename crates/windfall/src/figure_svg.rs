@@ -76,6 +76,17 @@ impl Drawing {
         );
     }
 
+    /// A tinted rectangle.
+    ///
+    /// * `size`: width and height; px
+    pub fn tint(&mut self, at: (f64, f64), size: (f64, f64), colour: &str) {
+        let _ = writeln!(
+            self.body,
+            r#"<rect x="{:.2}" y="{:.2}" width="{:.2}" height="{:.2}" fill="{colour}" fill-opacity="0.16"/>"#,
+            at.0, at.1, size.0, size.1
+        );
+    }
+
     /// A dot.
     pub fn dot(&mut self, at: (f64, f64), radius: f64, colour: &str) {
         let _ = writeln!(

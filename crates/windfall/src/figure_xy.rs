@@ -16,6 +16,9 @@ const BOTTOM: f64 = 50.0;
 const FRAME: &str = "#777";
 const GRID: &str = "#e4e4e4";
 
+/// A tint narrower than this could not be seen; px.
+const LEAST_TINT: f64 = 2.0;
+
 /// Height of a line of the legend, and width of a character in it; px.
 const LEGEND_LINE: f64 = 15.0;
 const CHARACTER: f64 = 6.4;
@@ -37,6 +40,13 @@ pub enum Style {
     Broad,
     /// A broken line across the panel at the height of each point.
     Level,
+    /// A broken line.
+    Dashed,
+    /// A thin upright line through the panel at the place of each point.
+    Upright,
+    /// A tint from top to bottom of the panel between the first and the second
+    /// point, the third and the fourth, and so on.
+    Shade,
 }
 
 /// Points that belong together.
@@ -190,17 +200,30 @@ fn draw_panel(drawing: &mut Drawing, panel: &Panel, top: f64) {
     let title = format!("{}{}", panel.y, unit_label(&panel.y_unit, vertical.power));
     drawing.turned_text((20.0, top + 0.5 * HEIGHT), 11.5, &title);
 
-    // Dots last: lines would hide them.
-    for dots in [false, true] {
+    // Tints first, dots last: lines would hide them.
+    let layer = |style: Style| match style {
+        Style::Shade => 0,
+        Style::Dots => 2,
+        _ => 1,
+    };
+    for drawn in 0..=2 {
         let series = panel.series.iter().enumerate();
-        for (index, series) in series.filter(|(_, s)| (s.style == Style::Dots) == dots) {
-            let points: Vec<(f64, f64)> = thinned(&series.points)
+        for (index, series) in series.filter(|(_, s)| layer(s.style) == drawn) {
+            let points: Vec<(f64, f64)> = thinned(series)
                 .filter(|(x, y)| x.is_finite() && y.is_finite())
                 .map(|(x, y)| (place_x(x), place_y(y)))
                 .collect();
             match series.style {
                 Style::Level => points.iter().for_each(|(_, y)| {
                     draw_series(drawing, &[(left, *y), (right, *y)], Style::Level, index);
+                }),
+                Style::Upright => points.iter().for_each(|(x, _)| {
+                    draw_series(drawing, &[(*x, top), (*x, bottom)], Style::Upright, index);
+                }),
+                Style::Shade => points.chunks_exact(2).for_each(|ends| {
+                    let width = (ends[1].0 - ends[0].0).max(LEAST_TINT);
+                    let colour = COLOURS[index % COLOURS.len()];
+                    drawing.tint((ends[0].0, top), (width, HEIGHT), colour);
                 }),
                 style => draw_series(drawing, &points, style, index),
             }
@@ -225,7 +248,11 @@ fn draw_panel(drawing: &mut Drawing, panel: &Panel, top: f64) {
     let base = top - legend_height(panel) + 4.0;
     for ((index, series), (line, x)) in labelled(panel).into_iter().zip(legend_places(panel)) {
         let y = base + LEGEND_LINE * line as f64 + 4.0;
-        let sample = [(x, y), (x + 9.0, y), (x + 18.0, y)];
+        let sample = match series.style {
+            Style::Upright => [(x + 9.0, y - 5.0), (x + 9.0, y), (x + 9.0, y + 5.0)],
+            Style::Shade => [(x, y - 5.0), (x + 18.0, y + 5.0), (x, y)],
+            _ => [(x, y), (x + 9.0, y), (x + 18.0, y)],
+        };
         draw_series(drawing, &sample, series.style, index);
         drawing.text((x + 24.0, y + 3.8), Anchor::Start, 11.0, &series.label);
     }
@@ -236,7 +263,12 @@ fn draw_panel(drawing: &mut Drawing, panel: &Panel, top: f64) {
 fn draw_series(drawing: &mut Drawing, points: &[(f64, f64)], style: Style, index: usize) {
     let colour = COLOURS[index % COLOURS.len()];
     match style {
-        Style::Level => drawing.dashed(points, colour, 1.4),
+        Style::Level | Style::Dashed => drawing.dashed(points, colour, 1.4),
+        Style::Upright => drawing.polyline(points, colour, 0.8),
+        Style::Shade => {
+            let [from, to] = [points[0], points[1]];
+            drawing.tint(from, (to.0 - from.0, to.1 - from.1), colour);
+        }
         Style::Line if index >= COLOURS.len() => drawing.dashed(points, colour, 1.4),
         Style::Line => drawing.polyline(points, colour, 1.4),
         Style::Broad => drawing.polyline(points, colour, 4.0),
@@ -249,10 +281,29 @@ fn draw_series(drawing: &mut Drawing, points: &[(f64, f64)], style: Style, index
     }
 }
 
-/// Every point, or so many that the eye sees no difference.
-fn thinned(points: &[(f64, f64)]) -> impl Iterator<Item = (f64, f64)> {
+/// Every point, or so many that the eye sees no difference: of a line the lowest
+/// and the highest of each stretch, so that no peak is lost.
+fn thinned(series: &Series) -> Box<dyn Iterator<Item = (f64, f64)> + '_> {
+    let points = &series.points;
     let step = points.len().div_ceil(MOST_POINTS).max(1);
-    points.iter().step_by(step).copied()
+    match series.style {
+        Style::Line if step > 1 => Box::new(points.chunks(2 * step).flat_map(extremes)),
+        _ => Box::new(points.iter().step_by(step).copied()),
+    }
+}
+
+/// Lowest and highest point of a stretch, in the order in which they come.
+fn extremes(stretch: &[(f64, f64)]) -> [(f64, f64); 2] {
+    let (mut low, mut high) = (0, 0);
+    for (index, (_, y)) in stretch.iter().enumerate() {
+        if *y < stretch[low].1 {
+            low = index;
+        }
+        if *y > stretch[high].1 {
+            high = index;
+        }
+    }
+    [stretch[low.min(high)], stretch[low.max(high)]]
 }
 
 /// What the figure shows, as CSV: one row per point.
@@ -316,6 +367,39 @@ mod tests {
         let table = csv_of_figure(&figure).unwrap();
         assert_eq!(table.lines().count(), 1 + 4 + 1);
         assert!(table.contains("1,measured,1,mm,2,N"));
+    }
+
+    /// A peak of one sample among many is drawn: at the top of the panel.
+    #[test]
+    fn conserves_a_peak_of_one_sample() {
+        let mut points: Vec<(f64, f64)> = (0..20_000).map(|i| (f64::from(i), 0.0)).collect();
+        points[12_345].1 = 9.0;
+        let series = Series {
+            label: String::new(),
+            style: Style::Line,
+            points,
+        };
+        let drawn: Vec<(f64, f64)> = thinned(&series).collect();
+        assert!(drawn.len() <= MOST_POINTS && drawn.contains(&(12_345.0, 9.0)));
+        assert!(drawn.windows(2).all(|pair| pair[0].0 <= pair[1].0));
+    }
+
+    #[test]
+    fn closed_form_tints_and_uprights_are_drawn_behind() {
+        let mut figure = figure(vec![(0.0, 0.0), (4.0, 2.0)]);
+        for style in [Style::Upright, Style::Shade] {
+            figure.panels[0].series.push(Series {
+                label: format!("{style:?}"),
+                style,
+                points: vec![(1.0, 0.0), (2.0, 0.0)],
+            });
+        }
+        let svg = svg_of_figure(&figure);
+        let (tint, dot) = (
+            svg.find("fill-opacity").unwrap(),
+            svg.find("circle").unwrap(),
+        );
+        assert!(tint < dot && svg.contains("Upright"), "{svg}");
     }
 
     #[test]

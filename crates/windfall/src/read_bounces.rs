@@ -5,21 +5,15 @@ use crate::file_campaign::QuantityText;
 use crate::file_drop::BouncesFile;
 use crate::toml_source::{Needed, TomlSource, invalid, optional_quantity};
 use toml::Spanned;
+use windfall_signal::bounce_train::{BounceOptions, StaticLevel};
 
 /// How bounces are told from noise and from the ringing of the plate.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct BouncePlan {
-    /// Force above which a bounce begins; from the noise where there is none. N.
-    pub threshold: Option<f64>,
-    /// Part of the threshold below which it is over; 1.
-    pub release: Option<f64>,
-    /// Least time from the end of one bounce to the next; s.
-    pub minimum_gap: Option<f64>,
-    /// Least impulse of a bounce, as a part of m v; 1.
-    pub least_impulse: Option<f64>,
-    /// Force at rest; from before the first bounce where there is none. N.
-    pub static_level: Option<f64>,
-    /// Cycles over which the logarithmic decrement is taken.
+    /// How bounces are found.
+    pub options: BounceOptions,
+    /// Cycles over which the logarithmic decrement is taken; as many as rise
+    /// above the noise where there is none.
     pub ringing_cycles: Option<usize>,
 }
 
@@ -28,11 +22,20 @@ const TABLE: &str = "[bounces]";
 /// Most cycles of a logarithmic decrement.
 const MOST_CYCLES: u32 = 100;
 
+/// Largest threshold; standard deviations of the noise.
+const LARGEST_THRESHOLD: f64 = 1e4;
+
+const STATIC_LEVELS: [(&str, StaticLevel); 2] = [
+    ("before-first", StaticLevel::BeforeFirst),
+    ("follow", StaticLevel::Follow),
+];
+
 /// How the bounces of a campaign are found.
 ///
 /// # Errors
 /// A value cannot be used.
 pub fn bounce_plan(source: &TomlSource, file: &BouncesFile) -> Result<BouncePlan, Error> {
+    let defaults = BounceOptions::default();
     let needed = |key, meaning, unit, example| Needed {
         table: TABLE,
         key,
@@ -40,37 +43,64 @@ pub fn bounce_plan(source: &TomlSource, file: &BouncesFile) -> Result<BouncePlan
         unit,
         example,
     };
-    let threshold = needed(
-        "threshold",
-        "force above which a bounce begins",
-        "N",
-        "threshold = \"0.3 N\"   or   threshold = \"auto\"",
-    );
     let gap = needed(
-        "minimum_gap",
-        "least time from the end of one bounce to the next",
+        "smallest_gap",
+        "contacts closer than this are one",
         "s",
-        "minimum_gap = \"20 ms\"",
+        "smallest_gap = \"1 ms\"",
     );
-    let level = needed(
-        "static_level",
-        "force at rest",
-        "N",
-        "static_level = \"1.96 N\"   or   static_level = \"before\"",
+    let impulse = needed(
+        "smallest_impulse",
+        "bounces with less impulse are none",
+        "N s",
+        "smallest_impulse = \"0.5 mN s\"",
     );
-    let given =
-        |value: &Option<Spanned<QuantityText>>, word: &str| -> Option<Spanned<QuantityText>> {
-            value.clone().filter(|text| text.get_ref().0 != word)
-        };
-    let at_rest = given(&file.static_level, "before");
+    let between =
+        |value: &Option<Spanned<f64>>, key, range| number(source, value.as_ref(), key, range);
+    let on = between(&file.on, "on", (0.0, LARGEST_THRESHOLD))?.unwrap_or(defaults.on);
+    let off = between(&file.off, "off", (0.0, on))?;
     Ok(BouncePlan {
-        threshold: positive(source, given(&file.threshold, "auto").as_ref(), &threshold)?,
-        release: part(source, file.release.as_ref(), "release")?,
-        minimum_gap: positive(source, file.minimum_gap.as_ref(), &gap)?,
-        least_impulse: part(source, file.least_impulse.as_ref(), "least_impulse")?,
-        static_level: optional_quantity(source, at_rest.as_ref(), &level)?,
+        options: BounceOptions {
+            static_level: static_level(source, file.static_level.as_ref())?,
+            on,
+            // Half of a threshold that is lower than the usual lower one.
+            off: off.unwrap_or(defaults.off.min(0.5 * on)),
+            least_share: between(&file.least_share, "least_share", (0.0, 1.0))?
+                .unwrap_or(defaults.least_share),
+            smallest_gap: positive(source, file.smallest_gap.as_ref(), &gap)?,
+            smallest_impulse: positive(source, file.smallest_impulse.as_ref(), &impulse)?,
+            ..defaults
+        },
         ringing_cycles: cycles(source, file.ringing_cycles.as_ref())?,
     })
+}
+
+fn static_level(
+    source: &TomlSource,
+    value: Option<&Spanned<QuantityText>>,
+) -> Result<StaticLevel, Error> {
+    let Some(text) = value else {
+        return Ok(StaticLevel::default());
+    };
+    let word = STATIC_LEVELS
+        .iter()
+        .find(|(name, _)| *name == text.get_ref().0);
+    if let Some((_, level)) = word {
+        return Ok(*level);
+    }
+    let needed = Needed {
+        table: TABLE,
+        key: "static_level",
+        meaning: "force of the plate at rest",
+        unit: "N",
+        example: "static_level = \"1.96 N\"   or   \"before-first\"   or   \"follow\"",
+    };
+    let level = optional_quantity(source, value, &needed).map_err(|_| {
+        let problem = format!("expected a force or a word: {}", needed.example);
+        let (at, key) = (text.span(), (TABLE, needed.key));
+        invalid(source, &at, key, &text.get_ref().0, problem)
+    })?;
+    Ok(level.map_or(StaticLevel::default(), StaticLevel::Given))
 }
 
 /// A quantity above zero that may be left out; SI.
@@ -93,14 +123,15 @@ pub fn positive(
     }
 }
 
-fn part(
+fn number(
     source: &TomlSource,
     value: Option<&Spanned<f64>>,
     key: &'static str,
+    (low, high): (f64, f64),
 ) -> Result<Option<f64>, Error> {
     match value {
-        Some(value) if !(*value.get_ref() > 0.0 && *value.get_ref() <= 1.0) => {
-            let problem = "expected a part above 0 and up to 1".to_owned();
+        Some(value) if !(*value.get_ref() > low && *value.get_ref() < high) => {
+            let problem = format!("expected a number between {low} and {high}");
             let text = value.get_ref().to_string();
             Err(invalid(source, &value.span(), (TABLE, key), &text, problem))
         }

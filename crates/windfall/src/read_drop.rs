@@ -20,8 +20,8 @@ use crate::toml_source::{
 };
 use std::path::Path;
 use toml::Spanned;
-use windfall_signal::acoustic_stiffness::Uncertain;
 use windfall_signal::conditioning::Conditioning;
+use windfall_signal::mass::Uncertain;
 
 /// A campaign of fruit that fall on a plate.
 #[derive(Clone, Debug)]

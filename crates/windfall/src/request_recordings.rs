@@ -63,7 +63,10 @@ pub fn simulate_recordings(
 }
 
 /// "k=133165" and "c=\"263 N s/m^1.5\"" → one standard deviation per parameter.
-fn spread(law: &Law, texts: &[String]) -> Result<Vec<f64>, Error> {
+///
+/// # Errors
+/// A name is no parameter of the law, or a value no quantity of its unit.
+pub fn spread(law: &Law, texts: &[String]) -> Result<Vec<f64>, Error> {
     let description = law.kind().describe();
     let mut spread = vec![0.0; description.parameters.len()];
     for text in texts {

@@ -156,7 +156,8 @@ fn write_tables(directory: &Path, tables: &Tables) -> Result<(), Error> {
 }
 
 /// A seed per impact (splitmix64 of Steele, Lea and Flood 2014, chained).
-fn seed_of(seed: u64, specimen: u64, repeat: u64) -> u64 {
+#[must_use]
+pub fn seed_of(seed: u64, specimen: u64, repeat: u64) -> u64 {
     [specimen, repeat].into_iter().fold(seed, |state, part| {
         let mut z = state.wrapping_add(part.wrapping_add(1).wrapping_mul(0x9e37_79b9_7f4a_7c15));
         z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
@@ -166,7 +167,10 @@ fn seed_of(seed: u64, specimen: u64, repeat: u64) -> u64 {
 }
 
 /// The law of one specimen: normal parameters within the law's bounds.
-fn drawn(batch: &Batch, source: &mut NoiseSource) -> Result<Law, Error> {
+///
+/// # Errors
+/// No draw is within the bounds.
+pub fn drawn(batch: &Batch, source: &mut NoiseSource) -> Result<Law, Error> {
     let (kind, means) = (batch.law.kind(), batch.law.parameters());
     for _ in 0..MOST_DRAWS {
         let values: Vec<f64> = means

@@ -56,7 +56,8 @@ pub fn text_of_simulation(impact: &SimulatedImpact) -> String {
 const ROUNDING: f64 = 1e-15;
 
 /// Six significant digits.
-fn six_digits(value: f64) -> String {
+#[must_use]
+pub fn six_digits(value: f64) -> String {
     let size = value.abs();
     if size < ROUNDING {
         return "0".to_owned();
