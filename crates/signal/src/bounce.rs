@@ -5,6 +5,7 @@ use crate::bounce_finding::BounceFinding;
 use crate::bounce_measure::{
     Onset, Signals, alone, end, first_peak, impulse, largest_peak, movement, onset,
 };
+use crate::bounce_quality::{LevelSeen, quality};
 use crate::bounce_segment::{Hysteresis, Segment, envelope, segments};
 use crate::bounce_static::{
     Before, LEAST_SAMPLES, QuietBlock, before_contact, followed_level, moves, quiet_blocks,
@@ -19,7 +20,7 @@ use crate::mass::Uncertain;
 use crate::recording::Channel;
 use crate::ringing::{Ringing, decay_rate};
 use crate::ringing_search::find_ringing;
-use crate::trigger::Orientation;
+use crate::trigger::{Orientation, Threshold};
 use crate::validate::checked_times;
 
 /// Fewest samples of a recording.
@@ -39,10 +40,10 @@ const SMOOTHING_AIM: f64 = 0.01;
 const LEVEL_WIDTHS: usize = 4;
 /// Rounds of finding contacts and ringing by each other.
 const ROUNDS: usize = 2;
-/// Fewest samples of a contact that is not slowly sampled.
-const LEAST_CONTACT: f64 = 10.0;
 /// The impulse is taken over at most this many periods after the contact.
 const MOST_CYCLES: usize = 5;
+/// An onset is visible above this many standard deviations of the noise; 1.
+const VISIBLE: f64 = 6.0;
 /// Ringing is over when the force scatters by this many times the noise; 1.
 const DECAYED: f64 = 1.5;
 
@@ -118,12 +119,17 @@ pub fn find_bounces(channel: &Channel, options: &BounceOptions) -> Result<Bounce
         contact_force: &found.contact.values,
         noise: levelled.before.noise,
         level_sd,
-        visible: options.on * levelled.before.noise,
+        visible: VISIBLE * levelled.before.noise,
         blur: found.smoothing,
         plate,
     };
     let bounces = measured(&signals, &found.segments, &rings, channel, &mut findings);
-    findings.extend(findings_of(&signals, &levelled, &bounces, options));
+    let level = LevelSeen {
+        samples_before: levelled.before.samples,
+        quiet: &levelled.quiet,
+        followed: options.static_level == StaticLevel::Follow,
+    };
+    findings.extend(quality(&signals, &level, &bounces));
     let intervals = intervals(&bounces);
     let smoothing = found.smoothing as f64 * signals.interval;
     Ok(BounceTrain {
@@ -170,12 +176,16 @@ fn check(channel: &Channel, options: &BounceOptions) -> Result<(), Error> {
             expected,
         })
     };
-    if !(options.off > 0.0 && options.off < options.on && options.on.is_finite()) {
-        return bad(
-            "on",
-            options.on,
-            "a number above `off`, which is above 0 (standard deviations of the noise)",
-        );
+    let level = match options.threshold {
+        Threshold::Fixed(force) => force,
+        Threshold::Automatic { deviations, .. } => deviations,
+    };
+    if !(level > 0.0 && level.is_finite()) {
+        return bad("threshold", level, "a number above 0");
+    }
+    if !(options.release > 0.0 && options.release <= 1.0) {
+        let expected = "a part of the threshold, above 0 and up to 1";
+        return bad("release", options.release, expected);
     }
     if let PlateRinging::Known {
         period,
@@ -294,17 +304,24 @@ fn contacts(
     };
     let largest = |contact: &ContactForce| contact.values.iter().fold(0.0, |a: f64, v| a.max(*v));
     let mut contact = smoothed(smoothing);
-    while options.on * noise * contact.noise_gain > SMOOTHING_AIM * largest(&contact)
+    while VISIBLE * noise * contact.noise_gain > SMOOTHING_AIM * largest(&contact)
         && smoothing + 2 <= odd(SMOOTHING.1 * scale)
     {
         smoothing += 2;
         contact = smoothed(smoothing);
     }
     let own = noise * contact.noise_gain;
-    let share = options.least_share * largest(&contact);
+    let on = match options.threshold {
+        Threshold::Fixed(force) => force,
+        Threshold::Automatic {
+            deviations,
+            least,
+            share,
+        } => (deviations * own).max(least).max(share * largest(&contact)),
+    };
     let hysteresis = Hysteresis {
-        on: (options.on * own).max(share),
-        off: (options.off * own).max(0.5 * share),
+        on,
+        off: options.release * on,
         leaves: if plate.is_some() { LEAVES } else { 0.0 },
     };
     let decay = sampled.map_or(1.0, |(period, ratio)| decay_rate(period, ratio));
@@ -456,124 +473,4 @@ fn intervals(bounces: &[Bounce]) -> Vec<Uncertain> {
                 .hypot(pair[1].onset_shape - pair[0].onset_shape),
         })
         .collect()
-}
-
-fn findings_of(
-    signals: &Signals,
-    levelled: &Levelled,
-    bounces: &[Bounce],
-    options: &BounceOptions,
-) -> Vec<BounceFinding> {
-    let mut found = Vec::new();
-    let n = signals.times.len();
-    let Some((first, last)) = bounces.first().zip(bounces.last()) else {
-        return found;
-    };
-    if bounces.len() == 1 {
-        found.push(BounceFinding::NotValid);
-    }
-    if levelled.before.samples < LEAST_SAMPLES || first.samples.0 == 0 {
-        found.push(BounceFinding::BeginsInContact {
-            samples: first.samples.0.min(levelled.before.samples),
-        });
-    }
-    if last.samples.1 >= n || !last.complete {
-        found.push(BounceFinding::EndsInContact {
-            onset: last.onset.value,
-        });
-    }
-    found.extend(ringing_findings(signals, bounces));
-    for (k, bounce) in bounces.iter().enumerate() {
-        let duration = bounce.end.value - bounce.onset.value;
-        let samples = duration / signals.interval;
-        if bounce.complete && samples < LEAST_CONTACT {
-            found.push(BounceFinding::SlowSampling {
-                bounce: k + 1,
-                samples: samples as usize,
-                needed: 2.0 * LEAST_CONTACT / duration,
-            });
-        }
-    }
-    if options.static_level != StaticLevel::Follow {
-        found.extend(drift(signals, levelled, bounces));
-    }
-    found
-}
-
-fn ringing_findings(signals: &Signals, bounces: &[Bounce]) -> Vec<BounceFinding> {
-    let mut found = Vec::new();
-    let Some((period, _)) = signals.plate else {
-        return found;
-    };
-    let cycle = ((period / signals.interval) as usize).max(3);
-    let margin = 2 * signals.blur + 2;
-    for (k, bounce) in bounces.iter().enumerate().skip(1) {
-        let until = bounce.samples.0.saturating_sub(margin);
-        let amplitude = 2f64.sqrt() * movement(signals, until, cycle);
-        if amplitude > 4.0 * signals.noise && amplitude > 0.01 * bounce.peak {
-            found.push(BounceFinding::StillRinging {
-                bounce: k + 1,
-                onset: bounce.onset.value,
-                amplitude,
-                peak: bounce.peak,
-            });
-        }
-    }
-    if let Some(last) = bounces.last() {
-        let left = 2f64.sqrt() * movement(signals, signals.times.len(), cycle) / signals.noise;
-        if last.complete && !last.decayed && left > 4.0 {
-            found.push(BounceFinding::EndsInRinging {
-                onset: last.onset.value,
-                amplitude: left,
-            });
-        }
-    }
-    let worst = bounces
-        .iter()
-        .filter_map(|b| b.ringing)
-        .max_by(|a, b| a.misfit.total_cmp(&b.misfit));
-    if let Some(worst) = worst.filter(|ringing| ringing.misfit > 3.0) {
-        found.push(BounceFinding::RingingNotOneMode {
-            misfit: worst.misfit,
-            from: worst.from,
-        });
-    }
-    found
-}
-
-/// The largest difference between the quiet level before the first bounce and
-/// that of a later flight, if it matters.
-fn drift(signals: &Signals, levelled: &Levelled, bounces: &[Bounce]) -> Option<BounceFinding> {
-    let level = |from: usize, to: usize| {
-        let inside: Vec<&QuietBlock> = levelled
-            .quiet
-            .iter()
-            .filter(|b| b.middle > from as f64 && b.middle < to as f64)
-            .collect();
-        let count = inside.len() as f64;
-        let samples: usize = inside.iter().map(|b| b.samples).sum();
-        let centre = inside.iter().map(|b| b.middle).sum::<f64>() / count;
-        let mean = inside.iter().map(|b| b.mean).sum::<f64>() / count;
-        (!inside.is_empty()).then(|| (signals.times[centre as usize], mean, samples as f64))
-    };
-    let mut previous = 0;
-    let mut levels = Vec::new();
-    for bounce in bounces {
-        levels.extend(level(previous, bounce.samples.0));
-        previous = bounce.samples.1;
-    }
-    // After the last bounce the impactor rests on the plate, which is no drift;
-    // unless it is the only stretch there is.
-    let (&(from, first, before), later) = levels.split_first()?;
-    let largest = bounces.iter().fold(0.0, |a: f64, b| a.max(b.peak));
-    let least = (0.5 * signals.noise).max(0.002 * largest);
-    later
-        .iter()
-        .map(|(to, mean, samples)| {
-            let sd = signals.noise * (1.0 / before + 1.0 / samples).sqrt();
-            (*to, mean - first, sd)
-        })
-        .filter(|(_, change, sd)| change.abs() > least && change.abs() > 4.0 * sd)
-        .max_by(|a, b| a.1.abs().total_cmp(&b.1.abs()))
-        .map(|(to, change, _)| BounceFinding::StaticLevelDrifts { change, from, to })
 }

@@ -106,7 +106,7 @@ impl fmt::Display for BounceFinding {
         match self {
             Self::NoBounce { largest, threshold } => write!(
                 f,
-                "no bounce: the force departs by {largest:.4} N at most from its static level, and a contact begins above {threshold:.4} N; check channel and volts per newton, lower [bounces] on, or leave the recording out"
+                "no bounce: the force departs by {largest:.4} N at most from its static level, and a contact begins above {threshold:.4} N; check channel and volts per newton, lower [bounces] threshold, or leave the recording out"
             ),
             Self::NotValid => write!(
                 f,

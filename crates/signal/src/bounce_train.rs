@@ -3,7 +3,7 @@
 use crate::bounce_finding::BounceFinding;
 use crate::mass::Uncertain;
 use crate::ringing::Ringing;
-use crate::trigger::Orientation;
+use crate::trigger::{Orientation, Threshold};
 
 /// What the force of bounces is measured from.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -26,12 +26,10 @@ pub struct BounceOptions {
     pub static_level: StaticLevel,
     /// What is done about a force that is negative in contact.
     pub orientation: Orientation,
-    /// A contact begins above this many standard deviations of the noise; 1.
-    pub on: f64,
-    /// … and is over below this many; less than `on`; 1.
-    pub off: f64,
-    /// A contact begins above this part of the largest force, at least; 1.
-    pub least_share: f64,
+    /// Above what contact force a contact begins.
+    pub threshold: Threshold,
+    /// It is over below this part of the threshold; 1.
+    pub release: f64,
     /// Contacts closer than this are one; s. `None`: a tenth of the longest.
     pub smallest_gap: Option<f64>,
     /// Bounces with less impulse are none; N s. `None`: six times its standard
@@ -63,9 +61,12 @@ impl Default for BounceOptions {
         Self {
             static_level: StaticLevel::default(),
             orientation: Orientation::default(),
-            on: 6.0,
-            off: 3.0,
-            least_share: 0.005,
+            threshold: Threshold::Automatic {
+                deviations: 6.0,
+                least: 0.0,
+                share: 0.005,
+            },
+            release: 0.5,
             smallest_gap: None,
             smallest_impulse: None,
             plate: PlateRinging::default(),

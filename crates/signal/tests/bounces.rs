@@ -310,11 +310,10 @@ fn rejects_options_and_channels_that_make_no_sense() {
     let good = channel(&contacts, None, &RECORD);
     let with = |options: BounceOptions| find_bounces(&good, &options).unwrap_err().to_string();
     let message = with(BounceOptions {
-        on: 2.0,
-        off: 3.0,
+        release: 2.0,
         ..BounceOptions::default()
     });
-    assert!(message.contains("above `off`"), "{message}");
+    assert!(message.contains("part of the threshold"), "{message}");
     let plate = PlateRinging::Known {
         period: -1.0,
         damping_ratio: 0.1,
