@@ -146,6 +146,7 @@ pub mod write_drop_simulation;
 pub mod write_findings;
 pub mod write_groups;
 pub mod write_inspection;
+pub mod write_law_card;
 pub mod write_library;
 pub mod write_measured;
 pub mod write_mixed;
