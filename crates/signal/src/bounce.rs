@@ -101,7 +101,7 @@ pub fn find_bounces(channel: &Channel, options: &BounceOptions) -> Result<Bounce
     if found.segments.is_empty() {
         findings.push(BounceFinding::NoBounce {
             largest: levelled.before.largest,
-            threshold: found.threshold,
+            threshold: found.thresholds.0,
         });
     }
     if !found.segments.is_empty()
@@ -138,6 +138,7 @@ pub fn find_bounces(channel: &Channel, options: &BounceOptions) -> Result<Bounce
         contact_force: found.contact.values,
         times,
         smoothing,
+        thresholds: found.thresholds,
         static_level: levelled.level,
         noise: levelled.before.noise,
         ringing,
@@ -279,7 +280,7 @@ fn first_ringing(times: &[f64], levelled: &Levelled) -> Option<(f64, f64)> {
 struct Contacts {
     contact: ContactForce,
     smoothing: usize,
-    threshold: f64,
+    thresholds: (f64, f64),
     segments: Vec<Segment>,
 }
 
@@ -336,7 +337,7 @@ fn contacts(
     Contacts {
         contact,
         smoothing,
-        threshold: hysteresis.on,
+        thresholds: (hysteresis.on, hysteresis.off),
         segments,
     }
 }

@@ -126,6 +126,8 @@ pub struct BounceTrain {
     pub contact_force: Vec<f64>,
     /// Length of the moving mean, taken twice, in `contact_force`; s.
     pub smoothing: f64,
+    /// `contact_force` above which a contact begins, and below which it is over; N.
+    pub thresholds: (f64, f64),
     /// Static level before the first contact, in the channel's own sign; N.
     pub static_level: Uncertain,
     /// Standard deviation of the noise of a sample of `force`; N.

@@ -73,16 +73,14 @@ pub struct DropRigFile {
 #[derive(Debug, Default, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct BouncesFile {
-    /// Standard deviations of the noise above which a contact begins.
-    pub on: Option<Spanned<f64>>,
-    /// Standard deviations of the noise below which it is over.
-    pub off: Option<Spanned<f64>>,
-    /// A contact begins above this part of the largest force, at least.
-    pub least_share: Option<Spanned<f64>>,
+    /// Force above which a contact begins, or "auto".
+    pub threshold: Option<Spanned<QuantityText>>,
+    /// Part of the threshold below which it is over.
+    pub release: Option<Spanned<f64>>,
     /// Contacts closer than this are one.
-    pub smallest_gap: Option<Spanned<QuantityText>>,
-    /// Bounces with less impulse are none.
-    pub smallest_impulse: Option<Spanned<QuantityText>>,
+    pub minimum_gap: Option<Spanned<QuantityText>>,
+    /// Least impulse of a bounce, as a part of m v of the drop.
+    pub least_impulse: Option<Spanned<f64>>,
     /// "before-first", "follow", or the force of the plate at rest.
     pub static_level: Option<Spanned<QuantityText>>,
     /// Cycles over which the logarithmic decrement is taken.

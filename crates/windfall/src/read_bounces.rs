@@ -6,24 +6,28 @@ use crate::file_drop::BouncesFile;
 use crate::toml_source::{Needed, TomlSource, invalid, optional_quantity};
 use toml::Spanned;
 use windfall_signal::bounce_train::{BounceOptions, StaticLevel};
+use windfall_signal::trigger::Threshold;
 
 /// How bounces are told from noise and from the ringing of the plate.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct BouncePlan {
     /// How bounces are found.
     pub options: BounceOptions,
-    /// Cycles over which the logarithmic decrement is taken; as many as rise
-    /// above the noise where there is none.
+    /// Least impulse of a bounce, as a part of m v of the drop; from the noise
+    /// where there is none. 1.
+    pub least_impulse: Option<f64>,
+    /// Cycles over which the logarithmic decrement is taken; the number with the
+    /// smallest uncertainty where there is none.
     pub ringing_cycles: Option<usize>,
 }
 
 const TABLE: &str = "[bounces]";
 
+/// Asks for a threshold from the noise.
+const AUTO: &str = "auto";
+
 /// Most cycles of a logarithmic decrement.
 const MOST_CYCLES: u32 = 100;
-
-/// Largest threshold; standard deviations of the noise.
-const LARGEST_THRESHOLD: f64 = 1e4;
 
 const STATIC_LEVELS: [(&str, StaticLevel); 2] = [
     ("before-first", StaticLevel::BeforeFirst),
@@ -43,34 +47,30 @@ pub fn bounce_plan(source: &TomlSource, file: &BouncesFile) -> Result<BouncePlan
         unit,
         example,
     };
+    let threshold = needed(
+        "threshold",
+        "contact force above which a contact begins",
+        "N",
+        "threshold = \"0.3 N\"   or   threshold = \"auto\"",
+    );
     let gap = needed(
-        "smallest_gap",
+        "minimum_gap",
         "contacts closer than this are one",
         "s",
-        "smallest_gap = \"1 ms\"",
+        "minimum_gap = \"1 ms\"",
     );
-    let impulse = needed(
-        "smallest_impulse",
-        "bounces with less impulse are none",
-        "N s",
-        "smallest_impulse = \"0.5 mN s\"",
-    );
-    let between =
-        |value: &Option<Spanned<f64>>, key, range| number(source, value.as_ref(), key, range);
-    let on = between(&file.on, "on", (0.0, LARGEST_THRESHOLD))?.unwrap_or(defaults.on);
-    let off = between(&file.off, "off", (0.0, on))?;
+    let given = file.threshold.as_ref();
+    let given = given.filter(|text| text.get_ref().0 != AUTO);
+    let force = positive(source, given, &threshold)?;
     Ok(BouncePlan {
         options: BounceOptions {
             static_level: static_level(source, file.static_level.as_ref())?,
-            on,
-            // Half of a threshold that is lower than the usual lower one.
-            off: off.unwrap_or(defaults.off.min(0.5 * on)),
-            least_share: between(&file.least_share, "least_share", (0.0, 1.0))?
-                .unwrap_or(defaults.least_share),
-            smallest_gap: positive(source, file.smallest_gap.as_ref(), &gap)?,
-            smallest_impulse: positive(source, file.smallest_impulse.as_ref(), &impulse)?,
+            threshold: force.map_or(defaults.threshold, Threshold::Fixed),
+            release: part(source, file.release.as_ref(), "release")?.unwrap_or(defaults.release),
+            smallest_gap: positive(source, file.minimum_gap.as_ref(), &gap)?,
             ..defaults
         },
+        least_impulse: part(source, file.least_impulse.as_ref(), "least_impulse")?,
         ringing_cycles: cycles(source, file.ringing_cycles.as_ref())?,
     })
 }
@@ -123,15 +123,14 @@ pub fn positive(
     }
 }
 
-fn number(
+fn part(
     source: &TomlSource,
     value: Option<&Spanned<f64>>,
     key: &'static str,
-    (low, high): (f64, f64),
 ) -> Result<Option<f64>, Error> {
     match value {
-        Some(value) if !(*value.get_ref() > low && *value.get_ref() < high) => {
-            let problem = format!("expected a number between {low} and {high}");
+        Some(value) if !(*value.get_ref() > 0.0 && *value.get_ref() < 1.0) => {
+            let problem = "expected a part above 0 and below 1".to_owned();
             let text = value.get_ref().to_string();
             Err(invalid(source, &value.span(), (TABLE, key), &text, problem))
         }

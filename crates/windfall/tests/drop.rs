@@ -226,6 +226,8 @@ fn rejects_what_cannot_be_calibrated() {
         message.contains("[bounces] static_level") && message.contains("follow"),
         "{message}"
     );
-    let message = settings("off = 3 ", "off = 7 ");
-    assert!(message.contains("between 0 and 6"), "{message}");
+    let message = settings("# release = 0.5 ", "release = 1.5 ");
+    assert!(message.contains("above 0 and below 1"), "{message}");
+    let message = settings("threshold = \"auto\" ", "threshold = \"3 V\" ");
+    assert!(message.contains("[bounces] threshold"), "{message}");
 }
