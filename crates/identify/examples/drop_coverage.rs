@@ -18,7 +18,7 @@ use windfall_identify::drop_waveform::{
     DropRecord, Knowledge, WaveformFit, WaveformPlate, WaveformProblem, WaveformRig,
 };
 use windfall_identify::drop_waveform_fit::calibrate_waveform;
-use windfall_signal::acoustic_stiffness::Uncertain;
+use windfall_signal::mass::Uncertain;
 use windfall_signal::noise_gaussian::{noise_source, normal, uniform};
 
 const GRAVITY: f64 = 9.80665;
@@ -141,9 +141,9 @@ fn main() {
     let mut arguments = std::env::args().skip(1);
     let replicates: u64 = arguments.next().and_then(|a| a.parse().ok()).unwrap_or(20);
     let impacts: usize = arguments.next().and_then(|a| a.parse().ok()).unwrap_or(2);
-    let mut covered = vec![0u64; 5];
+    let mut covered = [0u64; 5];
     let mut errors = vec![Vec::new(); 5];
-    let mut sds = vec![0.0; 5];
+    let mut sds = [0.0; 5];
     let mut names = Vec::new();
     let (mut time, mut failed, mut by_records) = (0.0, 0, 0);
     for seed in 1..=replicates {

@@ -11,7 +11,7 @@ use windfall_identify::drop_waveform::{
     DropRecord, Knowledge, WaveformFit, WaveformPlate, WaveformProblem, WaveformRig,
 };
 use windfall_identify::drop_waveform_fit::calibrate_waveform;
-use windfall_signal::acoustic_stiffness::Uncertain;
+use windfall_signal::mass::Uncertain;
 use windfall_signal::noise_gaussian::{noise_source, normal};
 
 const GRAVITY: f64 = 9.80665;

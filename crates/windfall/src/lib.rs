@@ -6,6 +6,8 @@
 
 pub mod acoustic_document;
 pub mod any_outcome;
+pub mod calibrate_waveform;
+pub mod calibrate_waveform_outcome;
 pub mod campaign;
 pub mod campaign_kind;
 pub mod cell_quantity;
@@ -52,6 +54,7 @@ pub mod fit_mass;
 pub mod fit_outcome;
 pub mod group_outcome;
 pub mod item_campaign;
+pub mod law_card;
 pub mod library;
 pub mod measured;
 mod mixed_choice;
@@ -143,6 +146,7 @@ pub mod write_drop_simulation;
 pub mod write_findings;
 pub mod write_groups;
 pub mod write_inspection;
+pub mod write_law_card;
 pub mod write_library;
 pub mod write_measured;
 pub mod write_mixed;
