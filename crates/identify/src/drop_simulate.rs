@@ -77,7 +77,8 @@ pub struct DropTrajectory {
     pub contact_force: Vec<f64>,
     /// Force on the plate's support about its static load; N.
     pub support_force: Vec<f64>,
-    /// Height of the fruit's lowest point over the static plate; m.
+    /// Height of the fruit: of its centre of mass over where that is when the
+    /// fruit touches the static plate; m.
     pub height: Vec<f64>,
     /// Velocity of the fruit, up positive; m/s.
     pub velocity: Vec<f64>,
@@ -245,6 +246,7 @@ pub fn drop_trajectory(
         rig: &duals,
         fall,
         next: 0,
+        touch: (0.0, 0.0, 0.0),
         out: DropTrajectory {
             times: times.to_vec(),
             contact_force: zeros.clone(),
@@ -270,6 +272,8 @@ struct Reader<'a, L, const N: usize> {
     fall: f64,
     /// First time that has not been read.
     next: usize,
+    /// Time, height and velocity of the present impact's first touch.
+    touch: (f64, f64, f64),
     out: DropTrajectory,
 }
 
@@ -309,16 +313,26 @@ impl<L: ContactLaw<N>, const N: usize> Reader<'_, L, N> {
 }
 
 impl<L: ContactLaw<N>, const N: usize> DropSink<1> for Reader<'_, L, N> {
-    fn touch(&mut self, _touch: &Touch<1>) {}
+    fn touch(&mut self, touch: &Touch<1>) {
+        self.touch = (touch.time.0[0], touch.height.0[0], touch.velocity.0[0]);
+    }
 
     fn contact(&mut self, piece: &ContactPiece<1>) {
         let (event, rig) = (self.event, self.rig);
+        let (touched, level, speed) = self.touch;
         let start = piece.start.0[0];
         self.read(start, start + piece.to, |time| {
             let seen = contact_at(event, rig, piece, sigma_at(piece, time));
-            let height = seen.plate.0[0] - seen.displacement.0[0];
-            let velocity = seen.plate_velocity.0[0] - seen.rate.0[0];
-            (seen, height, velocity)
+            // From the point of contact to the centre of mass: it is moved by
+            // the part f of what the force does to that point.
+            let (factor, gravity) = (rig.factor.0[0], rig.gravity.0[0]);
+            let since = start + time - touched;
+            let falling = level + (speed - 0.5 * gravity * since) * since;
+            let point = seen.plate.0[0] - seen.displacement.0[0];
+            let rate = seen.plate_velocity.0[0] - seen.rate.0[0];
+            let fallen = speed - gravity * since;
+            let height = falling + factor * (point - falling);
+            (seen, height, fallen + factor * (rate - fallen))
         });
     }
 

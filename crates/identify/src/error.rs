@@ -59,6 +59,18 @@ pub enum Error {
         /// The time before it; s.
         before: f64,
     },
+    /// A simulated drop does not show a feature.
+    #[error(
+        "the drop from {height} m does not show {feature}: the fruit lies on the plate after {impacts} impacts. With less damping it would bounce on; leave the feature out if the real fruit rests there too"
+    )]
+    FeatureMissing {
+        /// The feature.
+        feature: String,
+        /// Drop height; m.
+        height: f64,
+        /// Impacts until rest.
+        impacts: usize,
+    },
     /// The bodies stay together.
     #[error(
         "the bodies are still in contact after {duration} s: the damping or the driving acceleration holds them together; check the law's parameters"
@@ -103,6 +115,14 @@ pub enum Error {
         asked: usize,
         /// Most that can be free.
         most: usize,
+    },
+    /// Parameters that the recordings cannot tell apart.
+    #[error(
+        "the recordings cannot tell the free parameters of {law} (and of the rig) apart: hold one of them, give what is known of the plate's mass, or add drops from another height"
+    )]
+    Unidentified {
+        /// Name of the law.
+        law: &'static str,
     },
     /// A velocity that was never measured cannot be held.
     #[error(

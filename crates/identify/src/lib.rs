@@ -4,18 +4,32 @@
 //!
 //! This crate opens no file and reads no clock.
 
+mod arrow_system;
 pub mod compression_fit;
 pub mod contact_motion;
 mod correlated_scores;
 pub mod drop_contact;
+pub mod drop_coordinates;
 pub mod drop_event;
+pub mod drop_experiment;
+pub mod drop_family;
+pub mod drop_feature_fit;
+pub mod drop_feature_problem;
 pub mod drop_flight;
 pub mod drop_follow;
+pub mod drop_information;
+pub mod drop_measured;
 pub mod drop_observe;
 pub mod drop_rig;
 pub mod drop_sensitivity;
 pub mod drop_simulate;
+pub mod drop_start;
 pub mod drop_tally;
+pub mod drop_waveform;
+pub mod drop_waveform_fit;
+mod drop_waveform_parameters;
+mod drop_waveform_record;
+mod drop_waveform_report;
 mod dual;
 pub mod eccentric_body;
 mod eccentric_contact;

@@ -73,15 +73,15 @@ pub struct DropRigFile {
 #[derive(Debug, Default, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct BouncesFile {
-    /// Force above which a bounce begins, or "auto".
+    /// Force above which a contact begins, or "auto".
     pub threshold: Option<Spanned<QuantityText>>,
     /// Part of the threshold below which it is over.
     pub release: Option<Spanned<f64>>,
-    /// Least time from the end of one bounce to the next.
+    /// Contacts closer than this are one.
     pub minimum_gap: Option<Spanned<QuantityText>>,
-    /// Least impulse of a bounce, as a part of m v.
+    /// Least impulse of a bounce, as a part of m v of the drop.
     pub least_impulse: Option<Spanned<f64>>,
-    /// "before", or what the force channel shows of the plate at rest.
+    /// "before-first", "follow", or the force of the plate at rest.
     pub static_level: Option<Spanned<QuantityText>>,
     /// Cycles over which the logarithmic decrement is taken.
     pub ringing_cycles: Option<Spanned<u32>>,

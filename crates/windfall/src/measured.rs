@@ -135,6 +135,9 @@ pub struct MeasuredOutcome {
     pub status: StatusOutcome,
     /// One entry per recording and law.
     pub impacts: Vec<MeasuredItem>,
+    /// Parts of recordings: the bounces of a drop.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub parts: Vec<MeasuredItem>,
     /// What could not be evaluated.
     pub failed: Vec<FailureOutcome>,
     /// Results on whole specimens, from all their recordings.
@@ -150,6 +153,9 @@ pub struct MeasuredOutcome {
     /// What the tables of recordings show.
     #[serde(skip)]
     pub shown: Vec<ShownValue>,
+    /// What the table of parts shows.
+    #[serde(skip)]
+    pub shown_of_parts: Vec<ShownValue>,
     /// What the tables of specimens and of the whole show.
     #[serde(skip)]
     pub shown_of_specimens: Vec<ShownValue>,

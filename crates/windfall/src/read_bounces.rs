@@ -5,34 +5,41 @@ use crate::file_campaign::QuantityText;
 use crate::file_drop::BouncesFile;
 use crate::toml_source::{Needed, TomlSource, invalid, optional_quantity};
 use toml::Spanned;
+use windfall_signal::bounce_train::{BounceOptions, StaticLevel};
+use windfall_signal::trigger::Threshold;
 
 /// How bounces are told from noise and from the ringing of the plate.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct BouncePlan {
-    /// Force above which a bounce begins; from the noise where there is none. N.
-    pub threshold: Option<f64>,
-    /// Part of the threshold below which it is over; 1.
-    pub release: Option<f64>,
-    /// Least time from the end of one bounce to the next; s.
-    pub minimum_gap: Option<f64>,
-    /// Least impulse of a bounce, as a part of m v; 1.
+    /// How bounces are found.
+    pub options: BounceOptions,
+    /// Least impulse of a bounce, as a part of m v of the drop; from the noise
+    /// where there is none. 1.
     pub least_impulse: Option<f64>,
-    /// Force at rest; from before the first bounce where there is none. N.
-    pub static_level: Option<f64>,
-    /// Cycles over which the logarithmic decrement is taken.
+    /// Cycles over which the logarithmic decrement is taken; the number with the
+    /// smallest uncertainty where there is none.
     pub ringing_cycles: Option<usize>,
 }
 
 const TABLE: &str = "[bounces]";
 
+/// Asks for a threshold from the noise.
+const AUTO: &str = "auto";
+
 /// Most cycles of a logarithmic decrement.
 const MOST_CYCLES: u32 = 100;
+
+const STATIC_LEVELS: [(&str, StaticLevel); 2] = [
+    ("before-first", StaticLevel::BeforeFirst),
+    ("follow", StaticLevel::Follow),
+];
 
 /// How the bounces of a campaign are found.
 ///
 /// # Errors
 /// A value cannot be used.
 pub fn bounce_plan(source: &TomlSource, file: &BouncesFile) -> Result<BouncePlan, Error> {
+    let defaults = BounceOptions::default();
     let needed = |key, meaning, unit, example| Needed {
         table: TABLE,
         key,
@@ -42,35 +49,58 @@ pub fn bounce_plan(source: &TomlSource, file: &BouncesFile) -> Result<BouncePlan
     };
     let threshold = needed(
         "threshold",
-        "force above which a bounce begins",
+        "contact force above which a contact begins",
         "N",
         "threshold = \"0.3 N\"   or   threshold = \"auto\"",
     );
     let gap = needed(
         "minimum_gap",
-        "least time from the end of one bounce to the next",
+        "contacts closer than this are one",
         "s",
-        "minimum_gap = \"20 ms\"",
+        "minimum_gap = \"1 ms\"",
     );
-    let level = needed(
-        "static_level",
-        "force at rest",
-        "N",
-        "static_level = \"1.96 N\"   or   static_level = \"before\"",
-    );
-    let given =
-        |value: &Option<Spanned<QuantityText>>, word: &str| -> Option<Spanned<QuantityText>> {
-            value.clone().filter(|text| text.get_ref().0 != word)
-        };
-    let at_rest = given(&file.static_level, "before");
+    let given = file.threshold.as_ref();
+    let given = given.filter(|text| text.get_ref().0 != AUTO);
+    let force = positive(source, given, &threshold)?;
     Ok(BouncePlan {
-        threshold: positive(source, given(&file.threshold, "auto").as_ref(), &threshold)?,
-        release: part(source, file.release.as_ref(), "release")?,
-        minimum_gap: positive(source, file.minimum_gap.as_ref(), &gap)?,
+        options: BounceOptions {
+            static_level: static_level(source, file.static_level.as_ref())?,
+            threshold: force.map_or(defaults.threshold, Threshold::Fixed),
+            release: part(source, file.release.as_ref(), "release")?.unwrap_or(defaults.release),
+            smallest_gap: positive(source, file.minimum_gap.as_ref(), &gap)?,
+            ..defaults
+        },
         least_impulse: part(source, file.least_impulse.as_ref(), "least_impulse")?,
-        static_level: optional_quantity(source, at_rest.as_ref(), &level)?,
         ringing_cycles: cycles(source, file.ringing_cycles.as_ref())?,
     })
+}
+
+fn static_level(
+    source: &TomlSource,
+    value: Option<&Spanned<QuantityText>>,
+) -> Result<StaticLevel, Error> {
+    let Some(text) = value else {
+        return Ok(StaticLevel::default());
+    };
+    let word = STATIC_LEVELS
+        .iter()
+        .find(|(name, _)| *name == text.get_ref().0);
+    if let Some((_, level)) = word {
+        return Ok(*level);
+    }
+    let needed = Needed {
+        table: TABLE,
+        key: "static_level",
+        meaning: "force of the plate at rest",
+        unit: "N",
+        example: "static_level = \"1.96 N\"   or   \"before-first\"   or   \"follow\"",
+    };
+    let level = optional_quantity(source, value, &needed).map_err(|_| {
+        let problem = format!("expected a force or a word: {}", needed.example);
+        let (at, key) = (text.span(), (TABLE, needed.key));
+        invalid(source, &at, key, &text.get_ref().0, problem)
+    })?;
+    Ok(level.map_or(StaticLevel::default(), StaticLevel::Given))
 }
 
 /// A quantity above zero that may be left out; SI.
@@ -99,8 +129,8 @@ fn part(
     key: &'static str,
 ) -> Result<Option<f64>, Error> {
     match value {
-        Some(value) if !(*value.get_ref() > 0.0 && *value.get_ref() <= 1.0) => {
-            let problem = "expected a part above 0 and up to 1".to_owned();
+        Some(value) if !(*value.get_ref() > 0.0 && *value.get_ref() < 1.0) => {
+            let problem = "expected a part above 0 and below 1".to_owned();
             let text = value.get_ref().to_string();
             Err(invalid(source, &value.span(), (TABLE, key), &text, problem))
         }

@@ -4,14 +4,14 @@ use crate::campaign::ImpactEntry;
 use crate::campaign_kind::CampaignKind;
 use crate::cell_quantity::cell_quantity;
 use crate::error::{Error, Place};
-use crate::file_campaign::QuantityText;
+use crate::file_campaign::{ChannelsFile, QuantityText};
 use crate::file_drop::{DropFile, DropRigFile};
 use crate::item_campaign::{ItemCampaign, SharedFile, read_item_campaign, specimen_of};
 use crate::read_bounces::{BouncePlan, bounce_plan, positive};
 use crate::read_calibrate::{CalibrateSettings, Target, calibrate_settings};
 use crate::read_campaign::CAMPAIGN_FILE;
 use crate::read_channels::channel_plans;
-use crate::read_conditioning::conditioning_plan;
+use crate::read_conditioning::refuse_conditioning;
 use crate::read_files::check_format;
 use crate::read_rig::STANDARD_GRAVITY;
 use crate::toml_source::{
@@ -20,7 +20,6 @@ use crate::toml_source::{
 };
 use std::path::Path;
 use toml::Spanned;
-use windfall_signal::conditioning::Conditioning;
 use windfall_signal::mass::Uncertain;
 
 /// A campaign of fruit that fall on a plate.
@@ -32,8 +31,6 @@ pub struct DropCampaign {
     pub rig: DropRigPlan,
     /// How bounces are found.
     pub bounces: BouncePlan,
-    /// What is done to the channels before they are used.
-    pub conditioning: Conditioning,
     /// The law and how it is calibrated.
     pub calibrate: CalibrateSettings,
 }
@@ -95,6 +92,7 @@ pub fn read_drop(directory: &Path) -> Result<DropCampaign, Error> {
     let file: DropFile = parse_source(&source)?;
     check_format(&source, file.format.as_ref())?;
     let channels = channel_plans(&source, file.channels.as_ref())?;
+    refuse_filters(&source, file.channels.as_ref())?;
     let shared = SharedFile {
         campaign: &file.campaign,
         files: &file.files,
@@ -104,7 +102,6 @@ pub fn read_drop(directory: &Path) -> Result<DropCampaign, Error> {
     let campaign = DropCampaign {
         rig: rig_plan(&source, &file.rig)?,
         bounces: bounce_plan(&source, &file.bounces)?,
-        conditioning: conditioning_plan(&source, file.channels.as_ref())?,
         calibrate: calibrate_settings(&source, &file.fit, &file.calibrate)?,
         shared: read_item_campaign(&source, directory, kind, &shared, channels)?,
     };
@@ -113,6 +110,26 @@ pub fn read_drop(directory: &Path) -> Result<DropCampaign, Error> {
     }
     check_target(&source, &file, &campaign)?;
     Ok(campaign)
+}
+
+/// A filter would take the ringing for noise, or smear one impact into the next.
+fn refuse_filters(
+    source: &TomlSource,
+    channels: Option<&Spanned<ChannelsFile>>,
+) -> Result<(), Error> {
+    let Some(channels) = channels.map(Spanned::get_ref) else {
+        return Ok(());
+    };
+    let why = "bounces and ringing are taken from the channel as it was recorded";
+    for (table, channel) in [
+        ("[channels.force]", &channels.force),
+        ("[channels.position]", &channels.position),
+        ("[channels.velocity]", &channels.velocity),
+        ("[channels.acceleration]", &channels.acceleration),
+    ] {
+        refuse_conditioning(source, table, channel.as_ref(), why)?;
+    }
+    Ok(())
 }
 
 /// Mass and height of a drop.

@@ -79,6 +79,8 @@ pub fn fit_taps(
             draw(campaign, &entries, &results.specimens, figures)?;
         }
         Ok(AnyOutcome::Measured(Box::new(MeasuredOutcome {
+            parts: Vec::new(),
+            shown_of_parts: Vec::new(),
             windfall: VERSION.to_owned(),
             campaign: campaign.shared.title.clone(),
             kind: campaign.shared.kind.name().to_owned(),

@@ -82,6 +82,8 @@ pub fn fit_compressions(
             .collect();
         let first_law = laws_of(&items).first().map_or("", |law| *law).to_owned();
         Ok(AnyOutcome::Measured(Box::new(MeasuredOutcome {
+            parts: Vec::new(),
+            shown_of_parts: Vec::new(),
             windfall: VERSION.to_owned(),
             campaign: campaign.shared.title.clone(),
             kind: campaign.shared.kind.name().to_owned(),

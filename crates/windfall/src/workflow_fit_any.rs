@@ -7,6 +7,7 @@ use crate::evaluate::Progress;
 use crate::request_fit::FitRequest;
 use crate::workflow_acoustic::fit_taps;
 use crate::workflow_compression::fit_compressions;
+use crate::workflow_drop::fit_drops;
 use crate::workflow_fit::fit_campaign;
 use crate::workflow_repeats::fit_repeats;
 use std::path::Path;
@@ -25,7 +26,8 @@ pub fn fit_any(path: &Path, request: &FitRequest, progress: Progress) -> Result<
         CampaignKind::Compression => fit_compressions(path, request, progress),
         CampaignKind::Acoustic => fit_taps(path, request, progress),
         CampaignKind::Repeats => fit_repeats(path, request, progress),
-        CampaignKind::Impacts | CampaignKind::Drop => {
+        CampaignKind::Drop => fit_drops(path, request, progress),
+        CampaignKind::Impacts => {
             fit_campaign(path, request, progress).map(|o| AnyOutcome::Impacts(Box::new(o)))
         }
     }

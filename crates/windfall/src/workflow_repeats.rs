@@ -108,6 +108,8 @@ pub fn fit_repeats(
         let mut whole: Vec<MeasuredItem> = compared.comparisons.iter().map(over_fruit).collect();
         whole.extend(critical(campaign, &compared));
         Ok(AnyOutcome::Measured(Box::new(MeasuredOutcome {
+            parts: Vec::new(),
+            shown_of_parts: Vec::new(),
             windfall: VERSION.to_owned(),
             campaign: campaign.shared.title.clone(),
             kind: campaign.shared.kind.name().to_owned(),

@@ -51,14 +51,22 @@ pub fn text_of_measured(outcome: &MeasuredOutcome) -> String {
             let _ = writeln!(text, "{table}");
         }
     }
-    for (what, items) in [
-        ("specimen", &outcome.specimens),
-        ("campaign", &outcome.whole),
+    for (what, items, shown) in [
+        ("part", &outcome.parts, &outcome.shown_of_parts),
+        ("specimen", &outcome.specimens, of_specimens),
+        ("campaign", &outcome.whole, of_specimens),
     ] {
         for law in laws_of(items) {
-            let _ = writeln!(text, "\n{law}, for each {what}:");
-            let table = items_table(what, &of_law(items, law), of_specimens);
-            let _ = writeln!(text, "{table}");
+            let items = of_law(items, law);
+            match items.len() {
+                n if n > LISTED && what == "part" => {
+                    let _ = writeln!(text, "\n{law}: {n} results; each: --format json.");
+                }
+                _ => {
+                    let _ = writeln!(text, "\n{law}, for each {what}:");
+                    let _ = writeln!(text, "{}", items_table(what, &items, shown));
+                }
+            }
         }
     }
     text + &findings_text(outcome)
@@ -164,6 +172,7 @@ fn findings_text(outcome: &MeasuredOutcome) -> String {
     let items = outcome
         .impacts
         .iter()
+        .chain(&outcome.parts)
         .chain(&outcome.specimens)
         .chain(&outcome.whole);
     let mut seen: Vec<(&FindingOutcome, &str, Vec<&str>)> = Vec::new();

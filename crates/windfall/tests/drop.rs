@@ -218,6 +218,16 @@ fn rejects_what_cannot_be_calibrated() {
     assert!(message.contains("from -1 to 0.5"), "{message}");
     let message = settings("# ways = [\"waveform\", ", "ways = [\"waveforms\", ");
     assert!(message.contains("did you mean \"waveform\"?"), "{message}");
+    let message = settings(
+        "static_level = \"before-first\" ",
+        "static_level = \"3 V\" ",
+    );
+    assert!(
+        message.contains("[bounces] static_level") && message.contains("follow"),
+        "{message}"
+    );
+    let message = settings("# release = 0.5 ", "release = 1.5 ");
+    assert!(message.contains("above 0 and below 1"), "{message}");
     let message = settings("threshold = \"auto\" ", "threshold = \"3 V\" ");
     assert!(message.contains("[bounces] threshold"), "{message}");
 }

@@ -1,0 +1,61 @@
+//! A law card as text for people.
+
+use crate::law_card::LawCard;
+use crate::text_statistic::number;
+use crate::write_table::table_text;
+use std::fmt::Write;
+
+/// A card as a table with what must be known beside it.
+#[must_use]
+pub fn text_of_card(card: &LawCard) -> String {
+    let mut text = format!("{}\n\n{}\ncontact ends at {}\n\n", card.title, card.expression, card.end);
+    let header = ["parameter", "value", "standard uncertainty", "95 % interval", "unit"];
+    let rows = card.parameters.iter().map(|(name, parameter)| {
+        vec![
+            name.clone(),
+            number(parameter.value),
+            parameter.sd.map_or_else(|| "held".to_owned(), number),
+            parameter.interval.map_or_else(String::new, |[low, high]| {
+                format!("{} to {}", number(low), number(high))
+            }),
+            parameter.unit.clone(),
+        ]
+    });
+    text.push_str(&table_text(&header.map(str::to_owned), rows, &[0, 4]));
+    text.push_str("\n\n");
+    let range = &card.range;
+    let between = |[low, high]: [f64; 2]| format!("{} to {}", number(low), number(high));
+    let mut line = |name: &str, value: String| {
+        // Writing to a string cannot fail.
+        let _ = writeln!(text, "{name}: {value}");
+    };
+    line("seen at impact velocities of", between(range.impact_velocity) + " m/s");
+    line("peak contact forces", between(range.peak_force) + " N");
+    line("displacements", between(range.displacement) + " m");
+    line("masses", between(range.mass) + " kg");
+    let bodies = &card.bodies;
+    line(
+        "bodies",
+        format!(
+            "{} against {}, effective mass factor {}, {} fruit, {} recordings",
+            bodies.impactor,
+            bodies.target,
+            bodies.effective_mass_factor,
+            bodies.specimens,
+            bodies.recordings
+        ),
+    );
+    if let Some(covariance) = &card.covariance {
+        line("uncertainty is that of", covariance.of_what.clone());
+    }
+    let origin = &card.origin;
+    let made = format!("{}, {}, windfall {}, {}", origin.campaign, origin.method, origin.windfall, origin.date);
+    line("origin", made);
+    if let Some(label) = &origin.simulated {
+        line("simulated", label.clone());
+    }
+    for caution in &card.cautions {
+        line("caution", caution.clone());
+    }
+    text
+}
