@@ -4,6 +4,7 @@
 //! Exit status: 0 success, 1 the work failed, 2 the request was wrong.
 
 mod args;
+mod args_calibrate;
 mod args_compare;
 mod args_design;
 mod args_end;
@@ -15,6 +16,7 @@ mod args_simulate;
 mod args_simulate_drop;
 mod args_simulate_eccentric;
 mod args_surface;
+mod command_calibrate;
 mod command_card;
 mod command_compare;
 mod command_design;
@@ -39,6 +41,7 @@ fn main() -> ExitCode {
         Command::Inspect(arguments) => command_inspect::run(&arguments),
         Command::Design(arguments) => command_design::run(&arguments),
         Command::Fit(arguments) => command_fit::run(&arguments),
+        Command::Calibrate(arguments) => command_calibrate::run(&arguments),
         Command::Simulate(arguments) => command_simulate::run(&arguments),
         Command::Summary(arguments) => command_compare::run_summary(&arguments),
         Command::Compare(arguments) => command_compare::run_compare(&arguments),
