@@ -6,6 +6,7 @@
 
 pub mod acoustic_document;
 pub mod any_outcome;
+pub mod calibrate_card;
 pub mod calibrate_design;
 pub mod calibrate_drops;
 pub mod calibrate_features;
@@ -16,6 +17,7 @@ pub mod calibrate_store;
 pub mod calibrate_tables;
 pub mod calibrate_target;
 pub mod calibrate_waveform;
+pub mod calibrate_waveform_drops;
 pub mod calibrate_waveform_outcome;
 pub mod campaign;
 pub mod campaign_kind;
@@ -154,6 +156,7 @@ pub mod write_acoustic;
 pub mod write_any;
 pub mod write_calibrate;
 pub mod write_calibrate_tables;
+pub mod write_calibrate_waveform;
 pub mod write_compare;
 pub mod write_csv;
 pub mod write_design;

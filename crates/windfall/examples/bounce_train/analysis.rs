@@ -67,7 +67,13 @@ pub fn evaluate(file: &Path) -> Result<Vec<Run>, String> {
             .unzip())
     };
     RUNS.into_iter()
-        .map(|name| run(name, column(name, "Force (N)")?, column(name, "Position (m)")?))
+        .map(|name| {
+            run(
+                name,
+                column(name, "Force (N)")?,
+                column(name, "Position (m)")?,
+            )
+        })
         .collect()
 }
 
@@ -129,7 +135,9 @@ fn run(
 /// √ of the way back over the way there, along the track, as if nothing rubbed.
 fn by_heights(times: &[f64], positions: &[f64], contacts: &[(f64, f64)]) -> Vec<Restitution> {
     let touch = |time: f64| {
-        let i = times.partition_point(|t| *t < time).clamp(1, times.len() - 1);
+        let i = times
+            .partition_point(|t| *t < time)
+            .clamp(1, times.len() - 1);
         let share = (time - times[i - 1]) / (times[i] - times[i - 1]);
         positions[i - 1] + share * (positions[i] - positions[i - 1])
     };
@@ -137,10 +145,15 @@ fn by_heights(times: &[f64], positions: &[f64], contacts: &[(f64, f64)]) -> Vec<
         .iter()
         .enumerate()
         .map(|(k, contact)| {
-            let before = k.checked_sub(1).map_or(f64::NEG_INFINITY, |k| contacts[k].1);
+            let before = k
+                .checked_sub(1)
+                .map_or(f64::NEG_INFINITY, |k| contacts[k].1);
             let from = times.partition_point(|t| *t < before);
             let to = times.partition_point(|t| *t < contact.0);
-            let far = positions[from..to].iter().copied().fold(f64::INFINITY, f64::min);
+            let far = positions[from..to]
+                .iter()
+                .copied()
+                .fold(f64::INFINITY, f64::min);
             Uncertain {
                 value: touch(contact.0) - far,
                 sd: 2f64.sqrt() * POSITION_NOISE + 0.002,
@@ -183,8 +196,7 @@ pub fn masses(run: &Run) -> Vec<(f64, f64)> {
         .map(|motion| {
             let bounce = &run.train.bounces[motion.bounce];
             let duration = bounce.end.value - bounce.onset.value;
-            let change =
-                motion.before.value - motion.after.value + DRIVING.value * duration;
+            let change = motion.before.value - motion.after.value + DRIVING.value * duration;
             (motion.before.value, bounce.impulse.value / change)
         })
         .collect()
@@ -209,7 +221,9 @@ pub fn calibrate(runs: &[Run], law: &str, least_speed: f64) -> Result<WaveformFi
         }
     }
     let law = kind.from_values(&values).ok_or("no such law")?;
-    let free = (0..names.len()).filter(|i| !matches!(names[*i], "p" | "d")).collect();
+    let free = (0..names.len())
+        .filter(|i| !matches!(names[*i], "p" | "d"))
+        .collect();
     let records: Vec<DropRecord> = runs
         .iter()
         .flat_map(|run| run.motions.iter().map(move |motion| (run, motion)))
