@@ -69,7 +69,9 @@ pub fn contact_motions(
         .filter_map(|bounce| {
             let (onset, end) = contacts[bounce];
             let length = |from: f64, to: f64| options.longest.min(options.part * (to - from));
-            let before = bounce.checked_sub(1).map_or(f64::NEG_INFINITY, |b| contacts[b].1);
+            let before = bounce
+                .checked_sub(1)
+                .map_or(f64::NEG_INFINITY, |b| contacts[b].1);
             let next = contacts.get(bounce + 1).map_or(f64::INFINITY, |c| c.0);
             let clear = options.clearance;
             let approach = (

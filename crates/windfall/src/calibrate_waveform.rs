@@ -160,9 +160,8 @@ fn plate_of(plan: &PlatePlan, start: windfall_identify::drop_rig::Plate) -> Wave
 /// A drop as the fit takes it, or why it cannot be taken.
 fn record_of(campaign: &DropCampaign, drop: &RecordedDrop) -> Result<DropRecord, String> {
     let train = &drop.train;
-    let whole = |bounce: &&windfall_signal::bounce_train::Bounce| {
-        bounce.complete && !bounce.clipped
-    };
+    let whole =
+        |bounce: &&windfall_signal::bounce_train::Bounce| bounce.complete && !bounce.clipped;
     let usable: Vec<_> = train.bounces.iter().take_while(whole).collect();
     let used = usable.len().min(campaign.calibrate.bounces);
     if used == 0 {
@@ -180,9 +179,7 @@ fn record_of(campaign: &DropCampaign, drop: &RecordedDrop) -> Result<DropRecord,
     let windows = (0..used).map(|i| {
         let bounce = &train.bounces[i];
         let heard = match decay {
-            Some(decay) => {
-                (bounce.peak.abs() / (SILENCE * train.noise)).ln().max(0.0) / decay
-            }
+            Some(decay) => (bounce.peak.abs() / (SILENCE * train.noise)).ln().max(0.0) / decay,
             None => AFTER * (bounce.end.value - bounce.onset.value),
         };
         let next = train.bounces.get(i + 1);
@@ -193,7 +190,10 @@ fn record_of(campaign: &DropCampaign, drop: &RecordedDrop) -> Result<DropRecord,
     let speed = (2.0 * campaign.rig.gravity * drop.height.value).sqrt();
     Ok(DropRecord {
         windows: windows.collect(),
-        onsets: train.bounces[..used].iter().map(|b| b.onset.value).collect(),
+        onsets: train.bounces[..used]
+            .iter()
+            .map(|b| b.onset.value)
+            .collect(),
         times: train.times.clone(),
         force: train.force.clone(),
         noise: train.noise,
@@ -220,7 +220,12 @@ fn parameters(fit: &WaveformFit) -> Vec<WaveformParameter> {
         WaveformParameter {
             name: name.clone(),
             value: measured(estimate, &units(name, place)),
-            sd_of_noise: fit.sd_of_noise[i] * if fit.logarithmic[i] { estimate.value } else { 1.0 },
+            sd_of_noise: fit.sd_of_noise[i]
+                * if fit.logarithmic[i] {
+                    estimate.value
+                } else {
+                    1.0
+                },
             per_millimetre: per_millimetre(fit, i),
         }
     })
@@ -232,9 +237,10 @@ fn per_millimetre(fit: &WaveformFit, index: usize) -> Option<MeasuredValue> {
     let description = fit.law.kind().describe();
     let place = description.index_of(&fit.names[index])?;
     let unit = description.parameters[place].unit;
-    let exponent = description.parameters.iter().position(|parameter| {
-        unit == format!("N/m^{}", parameter.name)
-    })?;
+    let exponent = description
+        .parameters
+        .iter()
+        .position(|parameter| unit == format!("N/m^{}", parameter.name))?;
     let name = description.parameters[exponent].name;
     let value = fit.law.parameters()[exponent];
     let scale = 1e-3f64.ln();
@@ -356,8 +362,20 @@ fn of_drops(
         let speed = (2.0 * campaign.rig.gravity * drop.height.value).sqrt();
         let speed_sd = 0.5 * speed * drop.height.sd / drop.height.value;
         for (what, unit, known, sd, found) in [
-            ("velocity at first touch", "m/s", speed, speed_sd, record.velocity.value),
-            ("mass", "kg", drop.mass.value, drop.mass.sd, record.mass.value),
+            (
+                "velocity at first touch",
+                "m/s",
+                speed,
+                speed_sd,
+                record.velocity.value,
+            ),
+            (
+                "mass",
+                "kg",
+                drop.mass.value,
+                drop.mass.sd,
+                record.mass.value,
+            ),
         ] {
             if sd > 0.0 && (found - known).abs() > DISAGREE * sd {
                 findings.push(finding(
@@ -366,7 +384,11 @@ fn of_drops(
                         "{}: its {what} is {known:.4} {unit} ± {sd:.4} as measured, but {found:.4} \
                          {unit} by its waveform: volts per newton, {} or the law is wrong",
                         drop.id,
-                        if unit == "kg" { "the mass" } else { "the height" }
+                        if unit == "kg" {
+                            "the mass"
+                        } else {
+                            "the height"
+                        }
                     ),
                 ));
             }

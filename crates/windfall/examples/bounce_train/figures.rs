@@ -67,7 +67,7 @@ pub fn restitution_figure(runs: &[Run], fits: &Fits) -> Figure {
         let points = runs
             .iter()
             .flat_map(|run| &run.restitutions)
-            .filter(|r| r.method == method)
+            .filter(|r| r.method == method && r.impact_speed.value > LEAST_SPEED)
             .map(|r| (r.impact_speed.value, r.restitution.value));
         series(&method.to_string(), Style::Dots, points.collect())
     };
@@ -80,8 +80,8 @@ pub fn restitution_figure(runs: &[Run], fits: &Fits) -> Figure {
     .map(by)
     .into();
     for (law, fit) in fits {
-        let points = (2..=14).filter_map(|i| {
-            let speed = 0.05 * f64::from(i);
+        let points = (4..=30).filter_map(|i| {
+            let speed = 0.02 * f64::from(i);
             let height = speed * speed / (2.0 * RIG.gravity);
             let summary = simulate_drop(&fit.law, &RIG, height, 1, EndRule::default()).ok()?;
             Some((speed, summary.impacts.first()?.restitution))
@@ -102,11 +102,14 @@ pub fn waveform_figure(runs: &[Run], fits: &Fits) -> Figure {
         let mut dots = Vec::new();
         let mut lines = Vec::new();
         for run in runs {
-            let usable = run.motions.iter().filter(|m| {
-                m.before.value > LEAST_SPEED && run.train.bounces[m.bounce].complete
-            });
+            let usable = run
+                .motions
+                .iter()
+                .filter(|m| m.before.value > LEAST_SPEED && run.train.bounces[m.bounce].complete);
             for motion in usable {
-                let Some(record) = records.next() else { continue };
+                let Some(record) = records.next() else {
+                    continue;
+                };
                 if run.name != "Run 3" {
                     continue;
                 }
@@ -126,7 +129,9 @@ pub fn waveform_figure(runs: &[Run], fits: &Fits) -> Figure {
                 let height = speed * speed / (2.0 * RIG.gravity);
                 let fall = speed / RIG.gravity;
                 let times: Vec<f64> = (0..=160).map(|i| fall + 0.002 * f64::from(i)).collect();
-                if let Ok(path) = drop_trajectory(&fit.law, &RIG, height, &times, EndRule::default()) {
+                if let Ok(path) =
+                    drop_trajectory(&fit.law, &RIG, height, &times, EndRule::default())
+                {
                     let points = times.iter().map(|t| t - fall).zip(path.contact_force);
                     lines.push(points.collect::<Vec<_>>());
                 }
@@ -141,7 +146,10 @@ pub fn waveform_figure(runs: &[Run], fits: &Fits) -> Figure {
         panels.push(panel(("time from onset", "s"), ("force", "N"), all));
     }
     Figure {
-        title: format!("All bounces of Run 3; force {} ms after position", DELAY * 1e3),
+        title: format!(
+            "All bounces of Run 3; force {} ms after position",
+            DELAY * 1e3
+        ),
         panels,
     }
 }

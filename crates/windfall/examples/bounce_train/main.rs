@@ -20,9 +20,26 @@ fn main() -> Result<(), String> {
     for run in &runs {
         show(run);
     }
+    let all: Vec<&Run> = runs.iter().collect();
     let mut fits = Vec::new();
-    for law in ["kelvin-voigt", "hertz", "kuwabara-kono", "power-law", "hunt-crossley"] {
-        match calibrate(&runs, law, LEAST_SPEED) {
+    for run in &runs {
+        for law in ["kelvin-voigt", "power-law"] {
+            let fit = calibrate(&[run], law, LEAST_SPEED)?;
+            let estimates = fit.names.iter().zip(&fit.estimates);
+            let texts: Vec<String> = estimates
+                .map(|(name, e)| format!("{name} {:.3} ± {:.3}", e.value, e.sd))
+                .collect();
+            println!("{} {law}: {texts:?} misfit {:.1}", run.name, fit.misfit);
+        }
+    }
+    for law in [
+        "kelvin-voigt",
+        "hertz",
+        "kuwabara-kono",
+        "power-law",
+        "hunt-crossley",
+    ] {
+        match calibrate(&all, law, LEAST_SPEED) {
             Ok(fit) => {
                 let estimates = fit.names.iter().zip(&fit.estimates);
                 let texts: Vec<String> = estimates
@@ -54,23 +71,40 @@ fn main() -> Result<(), String> {
 }
 
 fn show(run: &Run) {
-    println!("\n{}: noise {:.4} N, level {:.4} N", run.name, run.train.noise, run.train.static_level.value);
+    println!(
+        "\n{}: noise {:.4} N, level {:.4} N",
+        run.name, run.train.noise, run.train.static_level.value
+    );
     for (k, bounce) in run.train.bounces.iter().enumerate() {
         println!(
             "  {} onset {:.3} ± {:.3}({:.3}) T {:.3} ± {:.3} peak {:.3} J {:.4} ± {:.4} complete {}",
-            k + 1, bounce.onset.value, bounce.onset.sd, bounce.onset_shape,
-            bounce.end.value - bounce.onset.value, bounce.end.sd, bounce.peak,
-            bounce.impulse.value, bounce.impulse.sd, bounce.complete
+            k + 1,
+            bounce.onset.value,
+            bounce.onset.sd,
+            bounce.onset_shape,
+            bounce.end.value - bounce.onset.value,
+            bounce.end.sd,
+            bounce.peak,
+            bounce.impulse.value,
+            bounce.impulse.sd,
+            bounce.complete
         );
         for motion in run.motions.iter().filter(|m| m.bounce == k) {
             println!(
                 "    v {:.4} ± {:.4} → {:.4} ± {:.4}; a {:?} {:?}",
-                motion.before.value, motion.before.sd, motion.after.value, motion.after.sd,
-                motion.acceleration_before.map(|a| (a.value, a.sd)), motion.acceleration_after.map(|a| (a.value, a.sd))
+                motion.before.value,
+                motion.before.sd,
+                motion.after.value,
+                motion.after.sd,
+                motion.acceleration_before.map(|a| (a.value, a.sd)),
+                motion.acceleration_after.map(|a| (a.value, a.sd))
             );
         }
         for r in run.restitutions.iter().filter(|r| r.bounce == k) {
-            println!("    e {:.4} ± {:.4} by {}", r.restitution.value, r.restitution.sd, r.method);
+            println!(
+                "    e {:.4} ± {:.4} by {}",
+                r.restitution.value, r.restitution.sd, r.method
+            );
         }
     }
     println!("  masses {:?}", masses(run));
