@@ -1,5 +1,6 @@
 //! The command line: what may be written, and its help.
 
+use crate::args_calibrate::CalibrateArguments;
 use crate::args_compare::{CompareArguments, SummaryArguments};
 use crate::args_design::DesignArguments;
 use crate::args_fit::FitArguments;
@@ -41,6 +42,8 @@ pub enum Command {
     Inspect(InspectArguments),
     /// Fit force laws to the impacts of a campaign
     Fit(Box<FitArguments>),
+    /// Calibrate a contact law to dropped fruit: by features, and by design and surface
+    Calibrate(CalibrateArguments),
     /// Make a design of experiments
     Design(Box<DesignArguments>),
     /// Simulate one event from a force law

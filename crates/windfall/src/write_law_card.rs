@@ -8,8 +8,17 @@ use std::fmt::Write;
 /// A card as a table with what must be known beside it.
 #[must_use]
 pub fn text_of_card(card: &LawCard) -> String {
-    let mut text = format!("{}\n\n{}\ncontact ends at {}\n\n", card.title, card.expression, card.end);
-    let header = ["parameter", "value", "standard uncertainty", "95 % interval", "unit"];
+    let mut text = format!(
+        "{}\n\n{}\ncontact ends at {}\n\n",
+        card.title, card.expression, card.end
+    );
+    let header = [
+        "parameter",
+        "value",
+        "standard uncertainty",
+        "95 % interval",
+        "unit",
+    ];
     let rows = card.parameters.iter().map(|(name, parameter)| {
         vec![
             name.clone(),
@@ -29,7 +38,10 @@ pub fn text_of_card(card: &LawCard) -> String {
         // Writing to a string cannot fail.
         let _ = writeln!(text, "{name}: {value}");
     };
-    line("seen at impact velocities of", between(range.impact_velocity) + " m/s");
+    line(
+        "seen at impact velocities of",
+        between(range.impact_velocity) + " m/s",
+    );
     line("peak contact forces", between(range.peak_force) + " N");
     line("displacements", between(range.displacement) + " m");
     line("masses", between(range.mass) + " kg");
@@ -49,7 +61,10 @@ pub fn text_of_card(card: &LawCard) -> String {
         line("uncertainty is that of", covariance.of_what.clone());
     }
     let origin = &card.origin;
-    let made = format!("{}, {}, windfall {}, {}", origin.campaign, origin.method, origin.windfall, origin.date);
+    let made = format!(
+        "{}, {}, windfall {}, {}",
+        origin.campaign, origin.method, origin.windfall, origin.date
+    );
     line("origin", made);
     if let Some(label) = &origin.simulated {
         line("simulated", label.clone());
