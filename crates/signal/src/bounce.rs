@@ -42,6 +42,9 @@ const LEVEL_WIDTHS: usize = 4;
 const ROUNDS: usize = 2;
 /// The impulse is taken over at most this many periods after the contact.
 const MOST_CYCLES: usize = 5;
+/// Bounces with less than this part of the largest impulse are the swinging of
+/// a mount that cannot be told to be its ringing; 1.
+const LEAST_IMPULSE: f64 = 0.02;
 /// An onset is visible above this many standard deviations of the noise; 1.
 const VISIBLE: f64 = 6.0;
 /// Ringing is over when the force scatters by this many times the noise; 1.
@@ -330,9 +333,11 @@ fn contacts(
     let gap = options.smallest_gap.map(|gap| gap / step);
     let mut segments = segments(&contact.values, &ringing, &hysteresis, gap);
     let area = |s: &Segment| contact.values[s.0..s.1].iter().sum::<f64>() * step;
+    let most = segments.iter().map(area).fold(0.0, f64::max);
     segments.retain(|s| {
         let chance = 6.0 * own * step * ((s.1 - s.0) as f64 * smoothing as f64).sqrt();
-        area(s) >= options.smallest_impulse.unwrap_or(chance)
+        let least = chance.max(LEAST_IMPULSE * most);
+        area(s) >= options.smallest_impulse.unwrap_or(least)
     });
     Contacts {
         contact,

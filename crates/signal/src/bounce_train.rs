@@ -33,7 +33,7 @@ pub struct BounceOptions {
     /// Contacts closer than this are one; s. `None`: a tenth of the longest.
     pub smallest_gap: Option<f64>,
     /// Bounces with less impulse are none; N s. `None`: six times its standard
-    /// deviation from noise.
+    /// deviation from noise, and a fiftieth of the largest.
     pub smallest_impulse: Option<f64>,
     /// Ringing of the plate is looked for and taken out.
     pub plate: PlateRinging,

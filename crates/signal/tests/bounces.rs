@@ -229,6 +229,27 @@ fn rejects_a_clipped_peak() {
 }
 
 #[test]
+fn rejects_the_swing_of_a_mount_as_a_bounce() {
+    // Two cycles of an overshoot, too few to be known as ringing.
+    let mut contacts = fruit(2);
+    for (delay, peak) in [(8e-3, 0.15), (13e-3, 0.07)] {
+        contacts.push(Contact {
+            onset: contacts[0].onset + delay,
+            peak,
+            duration: 2e-3,
+        });
+    }
+    let train = find(&contacts, None, &RECORD);
+    assert_eq!(train.bounces.len(), 2);
+    let all = BounceOptions {
+        smallest_impulse: Some(0.0),
+        ..BounceOptions::default()
+    };
+    let train = find_bounces(&channel(&contacts, None, &RECORD), &all).unwrap();
+    assert_eq!(train.bounces.len(), 4);
+}
+
+#[test]
 fn rejects_one_impact_as_not_valid() {
     let train = find(&fruit(1), Some(&PLATE), &RECORD);
     assert_eq!((train.bounces.len(), codes(&train)), (1, vec!["not_valid"]));

@@ -67,7 +67,7 @@ pub fn restitution_figure(runs: &[Run], fits: &Fits) -> Figure {
         let points = runs
             .iter()
             .flat_map(|run| &run.restitutions)
-            .filter(|r| r.method == method)
+            .filter(|r| r.method == method && r.impact_speed.value > LEAST_SPEED)
             .map(|r| (r.impact_speed.value, r.restitution.value));
         series(&method.to_string(), Style::Dots, points.collect())
     };
@@ -80,8 +80,8 @@ pub fn restitution_figure(runs: &[Run], fits: &Fits) -> Figure {
     .map(by)
     .into();
     for (law, fit) in fits {
-        let points = (2..=14).filter_map(|i| {
-            let speed = 0.05 * f64::from(i);
+        let points = (4..=30).filter_map(|i| {
+            let speed = 0.02 * f64::from(i);
             let height = speed * speed / (2.0 * RIG.gravity);
             let summary = simulate_drop(&fit.law, &RIG, height, 1, EndRule::default()).ok()?;
             Some((speed, summary.impacts.first()?.restitution))
