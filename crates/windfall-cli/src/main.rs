@@ -4,6 +4,7 @@
 //! Exit status: 0 success, 1 the work failed, 2 the request was wrong.
 
 mod args;
+mod args_calibrate;
 mod args_compare;
 mod args_design;
 mod args_end;
@@ -13,7 +14,9 @@ mod args_geometry;
 mod args_regress;
 mod args_simulate;
 mod args_simulate_drop;
+mod args_simulate_eccentric;
 mod args_surface;
+mod command_calibrate;
 mod command_card;
 mod command_compare;
 mod command_design;
@@ -24,6 +27,7 @@ mod command_new;
 mod command_regress;
 mod command_simulate;
 mod command_simulate_drop;
+mod command_simulate_eccentric;
 mod command_surface;
 mod show;
 
@@ -37,6 +41,7 @@ fn main() -> ExitCode {
         Command::Inspect(arguments) => command_inspect::run(&arguments),
         Command::Design(arguments) => command_design::run(&arguments),
         Command::Fit(arguments) => command_fit::run(&arguments),
+        Command::Calibrate(arguments) => command_calibrate::run(&arguments),
         Command::Simulate(arguments) => command_simulate::run(&arguments),
         Command::Summary(arguments) => command_compare::run_summary(&arguments),
         Command::Compare(arguments) => command_compare::run_compare(&arguments),

@@ -1,7 +1,9 @@
 //! A law card as text for people.
 
+use crate::error::Error;
 use crate::law_card::LawCard;
 use crate::text_statistic::number;
+use crate::write_csv::csv_text;
 use crate::write_table::table_text;
 use std::fmt::Write;
 
@@ -73,4 +75,24 @@ pub fn text_of_card(card: &LawCard) -> String {
         line("caution", caution.clone());
     }
     text
+}
+
+/// The parameters of a card as CSV.
+///
+/// # Errors
+/// None in practice: the text is written to memory.
+pub fn csv_of_card(card: &LawCard) -> Result<String, Error> {
+    let header = ["parameter", "value", "sd", "low", "high", "unit"];
+    let text = |value: Option<f64>| value.map_or_else(String::new, |value| value.to_string());
+    let rows = card.parameters.iter().map(|(name, parameter)| {
+        vec![
+            name.clone(),
+            parameter.value.to_string(),
+            text(parameter.sd),
+            text(parameter.interval.map(|[low, _]| low)),
+            text(parameter.interval.map(|[_, high]| high)),
+            parameter.unit.clone(),
+        ]
+    });
+    csv_text(&header.map(str::to_owned), rows)
 }

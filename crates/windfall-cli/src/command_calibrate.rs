@@ -1,0 +1,48 @@
+//! `windfall calibrate`
+
+use crate::args_calibrate::CalibrateArguments;
+use crate::args_format::Format;
+use crate::command_fit::progress_bar;
+use crate::show::{message, write_json, write_result};
+use windfall::read_calibrate::WAYS;
+use windfall::workflow_calibrate::{CalibrateRequest, calibrate};
+use windfall::write_calibrate::{csv_of_calibration, text_of_calibration};
+
+/// Calibrates the law of a drop campaign.
+pub fn run(arguments: &CalibrateArguments) -> anyhow::Result<()> {
+    let way = |word: &String| {
+        WAYS.iter()
+            .find(|(name, _)| name == word)
+            .map(|(_, way)| *way)
+    };
+    let bar = progress_bar();
+    let progress = |done: usize, all: usize| {
+        bar.set_length(all as u64);
+        bar.set_position(done as u64);
+    };
+    let outcome = calibrate(
+        &arguments.directory,
+        &CalibrateRequest {
+            ways: arguments.ways.iter().filter_map(way).collect(),
+            figures: arguments.figures.clone(),
+            tables: arguments.tables.clone(),
+            card: arguments.card.clone(),
+            profile: arguments.profile,
+            threads: arguments.threads,
+        },
+        &progress,
+    )?;
+    bar.finish_and_clear();
+    match arguments.format {
+        Format::Json => write_json(&outcome)?,
+        Format::Csv => write_result(&csv_of_calibration(&outcome)?)?,
+        Format::Text => write_result(&text_of_calibration(&outcome))?,
+    }
+    // The text shows failures itself.
+    if arguments.format != Format::Text {
+        for failure in &outcome.failed {
+            message(&format!("not used: {}: {}", failure.id, failure.message));
+        }
+    }
+    Ok(())
+}
