@@ -47,6 +47,9 @@ const MOST_CYCLES: usize = 5;
 const LEAST_IMPULSE: f64 = 0.02;
 /// An onset is visible above this many standard deviations of the noise; 1.
 const VISIBLE: f64 = 6.0;
+/// Part of an onset's uncertainty of shape that the next onset does not share: a
+/// weaker impact is seen at another part of its rise; 1.
+const OWN_SHAPE: f64 = 0.4;
 /// Ringing is over when the force scatters by this many times the noise; 1.
 const DECAYED: f64 = 1.5;
 
@@ -476,7 +479,8 @@ fn intervals(bounces: &[Bounce]) -> Vec<Uncertain> {
                 .onset
                 .sd
                 .hypot(pair[1].onset.sd)
-                .hypot(pair[1].onset_shape - pair[0].onset_shape),
+                .hypot(pair[1].onset_shape - pair[0].onset_shape)
+                .hypot(OWN_SHAPE * pair[0].onset_shape.max(pair[1].onset_shape)),
         })
         .collect()
 }

@@ -1,5 +1,6 @@
 //! Onset, end, peaks and impulse of one contact.
 
+use crate::bounce_rise::time_before;
 use crate::bounce_segment::Segment;
 use crate::mass::Uncertain;
 use crate::polynomial::fit_polynomial;
@@ -58,10 +59,6 @@ pub struct Peak {
 /// Exponents between which contact forces begin, F ∝ t^p: Kuwabara-Kono 1/2,
 /// Hertz 3/2, ADAMS IMPACT up to 2 and above.
 const RISE: (f64, f64) = (0.5, 2.0);
-/// Integrations between contact force and support force behind a plate.
-const BEHIND_PLATE: f64 = 2.0;
-/// A plate is inert for this part of its period; 1.
-const INERT: f64 = 0.25;
 /// Second level of the rise over the first; 1.
 const LEVELS: f64 = 8.0;
 /// … and at most this part of the first peak; 1.
@@ -170,8 +167,8 @@ fn refined(times: &[f64], force: &[f64], top: usize, noise: f64) -> Peak {
 /// ```
 ///
 /// with q in the middle of what contact laws do, and the rest of their range in
-/// `shape`. Behind a plate the support force is the contact force integrated
-/// twice, as long as the plate is inert.
+/// `shape`. Behind a plate the support force is what the plate makes of it
+/// ([`time_before`]).
 ///
 /// * `peak`: sample of the first peak
 #[must_use]
@@ -199,12 +196,8 @@ pub fn onset(signals: &Signals, alone: &Alone, peak: usize) -> Onset {
         };
     };
     let rise = high_time - low_time;
-    let inert = signals
-        .plate
-        .is_some_and(|(period, _)| rise < INERT * period);
-    let more = if inert { BEHIND_PLATE } else { 0.0 };
-    let back = |q: f64| rise / ((high / low).powf(1.0 / q) - 1.0);
-    let (short, long) = (back(RISE.0 + more), back(RISE.1 + more));
+    let back = |q: f64| time_before(rise, high / low, q, signals.plate);
+    let (short, long) = (back(RISE.0), back(RISE.1));
     // Between samples a line is drawn; in a rise of few samples it is a guess.
     let drawn = if last - first < 2 { 0.3 } else { 0.1 } * signals.interval;
     let coarse = if last - first < 2 { 1.0 } else { f64::INFINITY };

@@ -20,6 +20,7 @@ pub mod bounce_contact;
 pub mod bounce_finding;
 pub mod bounce_measure;
 pub mod bounce_quality;
+pub mod bounce_rise;
 pub mod bounce_segment;
 pub mod bounce_static;
 pub mod bounce_train;

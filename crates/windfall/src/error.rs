@@ -20,6 +20,19 @@ impl std::fmt::Display for Place {
     }
 }
 
+/// A quantity that every drop must have.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct DropQuantity {
+    /// "mass" or "drop height".
+    pub name: &'static str,
+    /// The column that would tell it, with its tables.
+    pub column: &'static str,
+    /// Begin of the names of such columns.
+    pub prefix: &'static str,
+    /// A line of `[rig]` that would do.
+    pub example: &'static str,
+}
+
 /// What can go wrong between a file and a result.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
@@ -433,22 +446,19 @@ pub enum Error {
     },
     /// A drop without its mass or its height.
     #[error(
-        "{place}: the {quantity} of \"{item}\" is not known: column \"{column}\" is {found}; \
-         fill it in, or give one value for all drops in campaign.toml: [rig] {example}"
+        "{place}: the {} of \"{item}\" is not known: column \"{}\" is {found}; \
+         fill it in, or give one value for all drops in campaign.toml: [rig] {}",
+        needed.name, needed.column, needed.example
     )]
     DropUnknown {
         /// Row of impacts.csv.
         place: Place,
         /// Id in impacts.csv.
         item: String,
-        /// "mass" or "drop height".
-        quantity: &'static str,
-        /// The column that would tell it, with its tables.
-        column: &'static str,
+        /// What is not known.
+        needed: &'static DropQuantity,
         /// "blank" or "not there".
         found: &'static str,
-        /// A line that would do.
-        example: &'static str,
     },
     /// A campaign without a channel that its kind needs.
     #[error(

@@ -3,7 +3,7 @@
 use crate::campaign::ImpactEntry;
 use crate::campaign_kind::CampaignKind;
 use crate::cell_quantity::cell_quantity;
-use crate::error::{Error, Place};
+use crate::error::{DropQuantity, Error, Place};
 use crate::file_campaign::{ChannelsFile, QuantityText};
 use crate::file_drop::{DropFile, DropRigFile};
 use crate::item_campaign::{ItemCampaign, SharedFile, read_item_campaign, specimen_of};
@@ -80,6 +80,21 @@ pub struct Drop {
 }
 
 const TABLE: &str = "[rig]";
+
+const MASS: DropQuantity = DropQuantity {
+    name: "mass",
+    column: "mass_g of specimens.csv or impacts.csv",
+    prefix: "mass",
+    example: "mass = \"4.8 g\"",
+};
+
+const HEIGHT: DropQuantity = DropQuantity {
+    name: "drop height",
+    column: "drop_height_mm of impacts.csv",
+    prefix: "drop_height",
+    example: "height = \"500 mm\"",
+};
+
 const ADVICE: &str = "`windfall new drop DIR` writes a template";
 
 /// Reads a campaign directory of drops.
@@ -158,30 +173,23 @@ pub fn drop_of(campaign: &DropCampaign, entry: &ImpactEntry) -> Result<Drop, Err
         value,
         sd: rig.mass_sd,
     });
-    let unknown = |quantity, column, example, name| {
+    let unknown = |needed: &'static DropQuantity| {
         let rows = of_specimen.iter().chain([&of_entry]);
         let mut columns = rows.flat_map(|(_, cells)| cells.iter().map(|(column, _)| column));
         Error::DropUnknown {
             place: of_entry.0.clone(),
             item: entry.id.clone(),
-            quantity,
-            column,
-            found: match columns.any(|column: &String| column.starts_with(name)) {
+            needed,
+            found: match columns.any(|column: &String| column.starts_with(needed.prefix)) {
                 true => "blank or in no unit of it",
                 false => "not there",
             },
-            example,
         }
     };
-    let mass = mass.or(given).ok_or_else(|| {
-        let column = "mass_g of specimens.csv or impacts.csv";
-        unknown("mass", column, "mass = \"4.8 g\"", "mass")
-    })?;
+    let mass = mass.or(given).ok_or_else(|| unknown(&MASS))?;
     let usual = (rig.height, rig.height_sd);
-    let height = measured(&of_entry, "drop_height", "m", usual)?.ok_or_else(|| {
-        let column = "drop_height_mm of impacts.csv";
-        unknown("drop height", column, "height = \"500 mm\"", "drop_height")
-    })?;
+    let height = measured(&of_entry, "drop_height", "m", usual)?;
+    let height = height.ok_or_else(|| unknown(&HEIGHT))?;
     Ok(Drop { mass, height })
 }
 
