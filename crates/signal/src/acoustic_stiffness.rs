@@ -2,7 +2,7 @@
 //! mode.
 
 /// A value with its standard uncertainty.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Uncertain {
     /// Value.
     pub value: f64,

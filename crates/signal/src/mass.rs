@@ -3,14 +3,7 @@
 use crate::error::Error;
 use crate::impact::Measured;
 
-/// A value with its standard uncertainty.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Uncertain {
-    /// Best estimate.
-    pub value: f64,
-    /// Standard uncertainty.
-    pub sd: f64,
-}
+pub use crate::acoustic_stiffness::Uncertain;
 
 /// Mass of a carriage under a constant driving acceleration:
 ///

@@ -1,6 +1,7 @@
 //! Coefficient of restitution from the impactor's own position: velocities just
 //! before and just after each contact.
 
+use crate::bounce_train::Bounce;
 use crate::mass::Uncertain;
 use crate::polynomial::fit_polynomial;
 use crate::restitution::{Restitution, RestitutionMethod};
@@ -10,6 +11,9 @@ use crate::restitution::{Restitution, RestitutionMethod};
 pub struct MotionOptions {
     /// Longest stretch of free flight that is fitted; s.
     pub longest: f64,
+    /// Longest part of a flight between two contacts that is fitted on either
+    /// side; 1. A half where friction turns round with the motion.
+    pub part: f64,
     /// Left out at both ends of a contact; s.
     pub clearance: f64,
     /// Least standard deviation of a position: what the fit of a few counted
@@ -21,6 +25,7 @@ impl Default for MotionOptions {
     fn default() -> Self {
         Self {
             longest: 0.5,
+            part: 0.5,
             clearance: 0.0,
             least_noise: 0.0,
         }
@@ -63,19 +68,17 @@ pub fn contact_motions(
     (0..contacts.len())
         .filter_map(|bounce| {
             let (onset, end) = contacts[bounce];
-            let earliest = match bounce.checked_sub(1) {
-                Some(before) => contacts[before].1 + options.clearance,
-                None => f64::NEG_INFINITY,
-            };
-            let latest = match contacts.get(bounce + 1) {
-                Some(next) => next.0 - options.clearance,
-                None => f64::INFINITY,
-            };
+            let length = |from: f64, to: f64| options.longest.min(options.part * (to - from));
+            let before = bounce
+                .checked_sub(1)
+                .map_or(f64::NEG_INFINITY, |b| contacts[b].1);
+            let next = contacts.get(bounce + 1).map_or(f64::INFINITY, |c| c.0);
+            let clear = options.clearance;
             let approach = (
-                earliest.max(onset - options.longest),
-                onset - options.clearance,
+                (onset - length(before, onset)).max(before + clear),
+                onset - clear,
             );
-            let rebound = (end + options.clearance, latest.min(end + options.longest));
+            let rebound = (end + clear, (end + length(end, next)).min(next - clear));
             let (before, acceleration_before) =
                 velocity(times, positions, approach, onset, options)?;
             let (after, acceleration_after) = velocity(times, positions, rebound, end, options)?;
@@ -113,6 +116,49 @@ fn velocity(
         sd: noise * fit.noise_gains[derivative],
     };
     Some((of(1), (order == 2).then(|| of(2))))
+}
+
+/// Restitution from impulse and the measured speed of approach, under an
+/// acceleration a that drives the impactor into the contact:
+///
+/// ```text
+/// J = m v (1 + e) + m a T   ⟹   e = (J/m − a T)/v − 1
+/// ```
+///
+/// * `mass`: kg; `driving`: a; m/s²
+#[must_use]
+pub fn restitution_from_impulse_and_motion(
+    bounces: &[Bounce],
+    motions: &[ContactMotion],
+    mass: Uncertain,
+    driving: Uncertain,
+) -> Vec<Restitution> {
+    motions
+        .iter()
+        .filter_map(|motion| {
+            let here = bounces
+                .get(motion.bounce)
+                .filter(|b| b.complete && !b.clipped)?;
+            let speed = motion.before.value.abs();
+            let duration = here.end.value - here.onset.value;
+            let per_mass = here.impulse.value / mass.value;
+            let ratio = (per_mass - driving.value * duration) / speed;
+            let relative = (here.impulse.sd / here.impulse.value).hypot(mass.sd / mass.value);
+            let of_change = (per_mass * relative).hypot(driving.sd * duration) / speed;
+            Some(Restitution {
+                bounce: motion.bounce,
+                method: RestitutionMethod::Impulse,
+                impact_speed: Uncertain {
+                    value: speed,
+                    sd: motion.before.sd,
+                },
+                restitution: Uncertain {
+                    value: ratio - 1.0,
+                    sd: of_change.hypot(ratio * motion.before.sd / speed),
+                },
+            })
+        })
+        .collect()
 }
 
 /// Restitution by velocities, e = −v_after/v_before.

@@ -18,7 +18,9 @@ Examples:
   windfall calibrate my-drops
   windfall calibrate my-drops --way features --format json
   windfall calibrate my-drops --way design --tables tables --figures figures
-      central composite design, surfaces, desirability optimum, verification"
+      central composite design, surfaces, desirability optimum, verification
+  windfall calibrate my-drops --way waveform --card law.toml
+      the law with its uncertainty in one file: `windfall card show --file law.toml`"
 )]
 pub struct CalibrateArguments {
     /// The campaign directory
@@ -33,6 +35,9 @@ pub struct CalibrateArguments {
     /// Write all tables as CSV and text into this directory
     #[arg(long, value_name = "DIR", value_hint = ValueHint::DirPath)]
     pub tables: Option<PathBuf>,
+    /// Write the calibrated law as a law card
+    #[arg(long, value_name = "FILE", value_hint = ValueHint::FilePath)]
+    pub card: Option<PathBuf>,
     /// Intervals from the profile of the sum of squares, which takes longer, in place of ±1.96 sd
     #[arg(long)]
     pub profile: bool,

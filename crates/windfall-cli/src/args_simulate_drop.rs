@@ -2,6 +2,7 @@
 
 use crate::args_end::End;
 use crate::args_format::Format;
+use crate::args_simulate_eccentric::EccentricArguments;
 use clap::{Args, ValueHint};
 use std::path::PathBuf;
 
@@ -16,6 +17,9 @@ use std::path::PathBuf;
   windfall simulate drop --law 'hertz(k=170000)' --mass '4.8 g' --height '500 mm' \\
       --sampling-rate '100 kHz' --format csv
       the motion on a rigid plate
+  windfall simulate drop --law 'hertz(k=170000)' --mass '4.8 g' --height '500 mm' \\
+      --offset '3.8 mm' --radius '10 mm' --friction 0.3
+      a ball whose centre of mass is beside its centre: it turns
   windfall simulate drop my-campaign --law 'adams-impact(…)' --mass '4.8 g' --height '100 mm' \\
       --height '300 mm' --height '500 mm' --plate-mass '0.2 kg' --plate-stiffness '645.8 N/mm' \\
       --plate-damping '0.05247 N s/mm'
@@ -58,6 +62,9 @@ pub struct SimulateDropArguments {
     /// campaign, 1.5 s if left out
     #[arg(long)]
     pub duration: Option<String>,
+    /// A body that turns
+    #[command(flatten)]
+    pub eccentric: EccentricArguments,
     /// Recordings of a campaign
     #[command(flatten)]
     pub recordings: DropRecordingsArguments,

@@ -26,6 +26,7 @@ pub fn run(arguments: &CalibrateArguments) -> anyhow::Result<()> {
             ways: arguments.ways.iter().filter_map(way).collect(),
             figures: arguments.figures.clone(),
             tables: arguments.tables.clone(),
+            card: arguments.card.clone(),
             profile: arguments.profile,
             threads: arguments.threads,
         },

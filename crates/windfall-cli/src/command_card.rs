@@ -4,8 +4,10 @@ use crate::args::{CardAction, CardArguments};
 use crate::args_format::Format;
 use crate::command_geometry::run_transfer;
 use crate::show::{write_json, write_result};
+use windfall::law_card::read_card;
 use windfall::workflow_card::{csv_of_laws, law_cards, text_of_laws};
 use windfall::workflow_library::{LibraryRequest, show_library};
+use windfall::write_law_card::{csv_of_card, text_of_card};
 use windfall::write_library::{csv_of_library, text_of_library};
 
 /// Shows force laws or published values, or transfers a law.
@@ -25,6 +27,18 @@ pub fn run(arguments: &CardArguments) -> anyhow::Result<()> {
                 at: at.clone(),
             };
             return run_library(&request, *format);
+        }
+        CardAction::Show {
+            file: Some(file),
+            format,
+            ..
+        } => {
+            let card = read_card(file)?;
+            return match format {
+                Format::Json => write_json(&card),
+                Format::Csv => write_result(&csv_of_card(&card)?),
+                Format::Text => write_result(&text_of_card(&card)),
+            };
         }
         CardAction::Show { law, format, .. } => (law, format),
     };

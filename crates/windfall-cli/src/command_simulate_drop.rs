@@ -3,6 +3,7 @@
 use crate::args_end::end_text;
 use crate::args_format::Format;
 use crate::args_simulate_drop::SimulateDropArguments;
+use crate::command_simulate_eccentric;
 use crate::show::{write_json, write_result, written};
 use std::path::Path;
 use windfall::request_drop::{DropPlan, DropRequest, drop_plan};
@@ -29,6 +30,9 @@ pub fn run(arguments: &SimulateDropArguments) -> anyhow::Result<()> {
         gravity: arguments.gravity.clone(),
         end: end_text(arguments.end),
     })?;
+    if command_simulate_eccentric::is_asked(&arguments.eccentric) {
+        return command_simulate_eccentric::run(&plan, arguments);
+    }
     match (&arguments.directory, &arguments.sampling_rate) {
         (Some(directory), _) => recordings(directory, &plan, arguments),
         (None, Some(rate)) => motion(&plan, arguments, rate),

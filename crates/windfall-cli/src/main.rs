@@ -14,6 +14,7 @@ mod args_geometry;
 mod args_regress;
 mod args_simulate;
 mod args_simulate_drop;
+mod args_simulate_eccentric;
 mod args_surface;
 mod command_calibrate;
 mod command_card;
@@ -26,6 +27,7 @@ mod command_new;
 mod command_regress;
 mod command_simulate;
 mod command_simulate_drop;
+mod command_simulate_eccentric;
 mod command_surface;
 mod show;
 

@@ -119,6 +119,33 @@ fn repeats_from_simulation_to_figures() {
     assert_eq!(verdicts, ["unchanged", "changed"]);
 }
 
+/// Drops: bounces, and stiffness and damping of the plate from its ringing.
+#[test]
+fn drops_from_simulation_to_figures() {
+    let folder = tempfile::tempdir().unwrap();
+    let law = "adams-impact(k=\"0.868 N/mm^1.91\", e=1.91, c=\"5.56e-4 N s/mm\", d=\"0.001 mm\")";
+    let fruit = ["drop", "--law", law, "--mass", "4.8 g"];
+    let heights = ["--height", "300 mm", "--height", "500 mm", "--drops", "2"];
+    let plate = ["--plate-mass", "0.2 kg", "--plate-stiffness", "645.8 N/mm"];
+    let damping = ["--plate-damping", "0.05247 N s/mm"];
+    let arguments = [&fruit[..], &heights, &plate, &damping].concat();
+    let results = simulated(folder.path(), &arguments);
+    assert_eq!(results.len(), 4);
+    for result in &results {
+        assert_eq!(result["law"], "drop");
+        let e = value(result, "/derived/restitution/value");
+        let sd = value(result, "/derived/restitution/sd");
+        assert!((0.7..0.8).contains(&e) && sd < 0.01, "{e} ± {sd}");
+    }
+    let campaign = folder.path().join("campaign");
+    let fitted = json(&["fit", campaign.to_str().unwrap(), "--format", "json"]);
+    let whole = fitted["whole"].as_array().unwrap();
+    let plate = whole.iter().find(|item| item["law"] == "plate").unwrap();
+    let stiffness = value(plate, "/derived/plate_stiffness/value");
+    assert!((stiffness / 645_800.0 - 1.0).abs() < 2e-3, "{stiffness}");
+    assert!(fitted["parts"].as_array().unwrap().len() >= 4 * 2);
+}
+
 /// Hertz: 1/R* of a sphere of 31.5 mm mean radius against one of 25 mm; a plane
 /// against 25 mm takes k by √(R*'/R*) = 0.613, as for an apple of 41.5 mm.
 #[test]

@@ -1,5 +1,6 @@
 //! What `windfall calibrate` gives; numbers are SI unless a unit stands with them.
 
+use crate::calibrate_waveform_outcome::WaveformOutcome;
 use crate::measured::MeasuredValue;
 use crate::model_outcome::AnovaOutcome;
 use crate::named::Named;
@@ -27,6 +28,8 @@ pub struct CalibrateOutcome {
     pub target: TargetOutcome,
     /// Where the search starts.
     pub start: StartOutcome,
+    /// Least squares of the waveforms of all drops.
+    pub waveform: Option<WaveformOutcome>,
     /// Least squares of the features of all drops.
     pub features: Option<FeaturesOutcome>,
     /// All laws that have the target's first peak and interval.

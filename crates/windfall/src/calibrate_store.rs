@@ -53,6 +53,14 @@ pub fn keep_calibration(campaign: &DropCampaign, outcome: &CalibrateOutcome) -> 
 
 fn values_of(outcome: &CalibrateOutcome) -> Vec<StoredValue> {
     let mut values = Vec::new();
+    for parameter in outcome.waveform.iter().flat_map(|w| &w.parameters) {
+        values.push(StoredValue {
+            name: format!("waveform {}", parameter.name),
+            value: parameter.value.value,
+            sd: parameter.value.sd,
+            unit: parameter.value.unit.clone(),
+        });
+    }
     for parameter in outcome.features.iter().flat_map(|f| &f.parameters) {
         values.push(StoredValue {
             name: format!("features {}", parameter.name),

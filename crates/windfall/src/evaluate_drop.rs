@@ -7,7 +7,7 @@ use crate::item_campaign::group_of;
 use crate::measured::{MeasuredItem, MeasuredItems, MeasuredValue, plain_value, value_with_sd};
 use crate::named::Named;
 use crate::outcome::FindingOutcome;
-use crate::read_drop::{DropCampaign, PlatePlan, drop_of};
+use crate::read_drop::{Drop, DropCampaign, PlatePlan, drop_of};
 use crate::read_recording::recording_path;
 use crate::recording_channel::channel_samples;
 use crate::store_documents::StoredValue;
@@ -253,7 +253,7 @@ pub fn evaluate_drop(
     let ringing = train.ringing.filter(|ringing| ringing.bounces > 0);
     let mut measured = MeasuredDrop {
         parts: Vec::new(),
-        item: blank_item(campaign, entry),
+        item: blank_item(campaign, entry, &drop),
         mass: drop.mass.into(),
         height: drop.height.into(),
         intervals: train.intervals.iter().map(|i| (*i).into()).collect(),
@@ -278,6 +278,8 @@ pub fn evaluate_drop(
             .map(|finding| outcome(finding.code(), finding)),
     );
     measured.item.derived = Named(drop_values(&measured));
+    let bounces = measured.bounces.len().to_string();
+    measured.item.words = Named(vec![("bounces".to_owned(), bounces)]);
     measured.parts = bounce_items(&measured);
     measured.item.findings = findings;
     Ok(measured)
@@ -290,11 +292,13 @@ fn outcome(code: &str, finding: &dyn std::fmt::Display) -> FindingOutcome {
     }
 }
 
-fn blank_item(campaign: &DropCampaign, entry: &ImpactEntry) -> MeasuredItem {
+fn blank_item(campaign: &DropCampaign, entry: &ImpactEntry, drop: &Drop) -> MeasuredItem {
+    let height = height_text(drop.height.value);
     MeasuredItem {
         id: entry.id.clone(),
         specimen: entry.specimen.clone(),
-        group: group_of(&campaign.shared, entry),
+        // A mean over heights would mean nothing.
+        group: group_of(&campaign.shared, entry).or(Some(height)),
         file: entry.file.clone(),
         law: DROP.to_owned(),
         words: Named(Vec::new()),
@@ -386,6 +390,26 @@ fn drop_values(drop: &MeasuredDrop) -> Vec<(String, MeasuredValue)> {
     values
 }
 
+/// Speed after an impact, v₁ = e v₀. It is e that contains the uncertainty of
+/// v₀, not v₁, which was measured.
+fn rebound(e: Known, speed: Known) -> Known {
+    let of_speed = e.value * speed.sd / speed.value;
+    Known {
+        value: e.value * speed.value,
+        sd: speed.value * (e.sd * e.sd - of_speed * of_speed).max(0.0).sqrt(),
+    }
+}
+
+/// Energy that an impact takes, m (v₀² − v₁²)/2.
+fn absorbed(mass: Known, before: Known, after: Known) -> Known {
+    let per_mass = 0.5 * (before.value.powi(2) - after.value.powi(2));
+    let of_speeds = (before.value * before.sd).hypot(after.value * after.sd);
+    Known {
+        value: mass.value * per_mass,
+        sd: (mass.value * of_speeds).hypot(per_mass * mass.sd),
+    }
+}
+
 /// Values of one bounce. `restitution` is that by time: by flight and drop
 /// height of the first, by flights of later ones; by velocities where there is
 /// none by time.
@@ -417,12 +441,9 @@ fn bounce_values(bounce: &MeasuredBounce, mass: Known) -> Vec<(String, MeasuredV
     if let Some(best) = best {
         let (e, speed) = (best.restitution, best.impact_velocity);
         push("restitution", kept(e, "1"));
-        push(
-            "rebound_velocity",
-            plain_value(e.value * speed.value, "m/s"),
-        );
-        let absorbed = 0.5 * mass.value * speed.value.powi(2) * (1.0 - e.value * e.value);
-        push("absorbed_energy", plain_value(absorbed, "J"));
+        let rebound = rebound(e, speed);
+        push("rebound_velocity", kept(rebound, "m/s"));
+        push("absorbed_energy", kept(absorbed(mass, speed, rebound), "J"));
     }
     for one in &bounce.restitutions {
         let name = format!("restitution_by_{}", one.method);
@@ -434,6 +455,13 @@ fn bounce_values(bounce: &MeasuredBounce, mass: Known) -> Vec<(String, MeasuredV
     push("impulse", kept(bounce.impulse, "N s"));
     values.retain(|(_, value): &(String, MeasuredValue)| value.value.is_finite());
     values
+}
+
+/// A drop height for people: "500 mm".
+#[must_use]
+pub fn height_text(height: f64) -> String {
+    let text = format!("{:.3}", 1e3 * height);
+    format!("{} mm", text.trim_end_matches('0').trim_end_matches('.'))
 }
 
 /// "peak_force", "peak_force_2", "peak_force_3".
@@ -499,6 +527,7 @@ fn bounce_items(drop: &MeasuredDrop) -> Vec<MeasuredItem> {
         MeasuredItem {
             id: format!("{}, bounce {}", drop.item.id, number + 1),
             law: BOUNCE.to_owned(),
+            words: Named(Vec::new()),
             derived: Named(values.collect()),
             ..drop.item.clone()
         }

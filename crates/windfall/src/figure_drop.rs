@@ -3,6 +3,7 @@
 
 use crate::figure_xy::{Figure, Mark, Panel, Series, Side, Style};
 use crate::read_drop::Drop;
+use crate::text_number::plain;
 use windfall_signal::bounce_train::{Bounce, BounceTrain};
 use windfall_signal::ringing::{Ringing, amplitude_at, ringing_at};
 
@@ -32,9 +33,9 @@ pub fn figure_of_drop(id: &str, drop: &Drop, train: &BounceTrain) -> Figure {
     panels.extend(train.bounces.first().map(|bounce| first(train, bounce)));
     Figure {
         title: format!(
-            "{id}: {:.4} g from {:.4} mm, {bounces}",
-            1e3 * drop.mass.value,
-            1e3 * drop.height.value
+            "{id}: {} g from {} mm, {bounces}",
+            plain(1e3 * drop.mass.value),
+            plain(1e3 * drop.height.value)
         ),
         panels,
     }
@@ -147,14 +148,16 @@ fn first(train: &BounceTrain, bounce: &Bounce) -> Panel {
         zero - BEFORE * contact,
         (bounce.end.value + shown).min(next),
     );
+    let contact = &contacts(train, zero)[..2];
     let mut all = vec![
         series(
             "support force",
             Style::Dots,
             points(train, &train.force, zero, range),
         ),
+        series("contact", Style::Shade, contact.to_vec()),
         series(
-            "contact force that it tells of, smoothed",
+            "contact force behind it, smoothed",
             Style::Line,
             points(train, &train.contact_force, zero, range),
         ),
@@ -162,8 +165,6 @@ fn first(train: &BounceTrain, bounce: &Bounce) -> Panel {
     if let Some(ringing) = &bounce.ringing {
         all.extend(ringing_series(ringing, zero, range.1));
     }
-    let first = &contacts(train, zero)[..2];
-    all.push(series("contact", Style::Shade, first.to_vec()));
     panel("time from the first touch", "force", all, Vec::new())
 }
 
@@ -179,8 +180,10 @@ fn ringing_series(ringing: &Ringing, zero: f64, to: f64) -> Vec<Series> {
             .map(|t| (1e3 * (t - zero), value(*t)))
             .collect()
     };
-    let upper = curve(&|time| amplitude_at(ringing, time));
+    // Out along the upper envelope and back along the lower: one series.
+    let mut envelope = curve(&|time| amplitude_at(ringing, time));
     let lower = curve(&|time| -amplitude_at(ringing, time));
+    envelope.extend(lower.into_iter().rev());
     let label = format!(
         "ringing: period {:.3} ms, damping ratio {:.4}",
         1e3 * ringing.period.value,
@@ -192,7 +195,6 @@ fn ringing_series(ringing: &Ringing, zero: f64, to: f64) -> Vec<Series> {
             Style::Line,
             curve(&|time| ringing_at(ringing, time)),
         ),
-        series("its envelope", Style::Dashed, upper),
-        series("", Style::Dashed, lower),
+        series("its envelope", Style::Dashed, envelope),
     ]
 }

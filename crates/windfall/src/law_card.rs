@@ -133,6 +133,19 @@ pub fn card_text(card: &LawCard) -> Result<String, Error> {
         })
 }
 
+/// Writes a law card; an older file of that name is replaced.
+///
+/// # Errors
+/// The file cannot be written.
+pub fn write_card(path: &Path, card: &LawCard) -> Result<(), Error> {
+    let text = card_text(card)?;
+    std::fs::write(path, text).map_err(|source| Error::FileAccess {
+        path: path.to_path_buf(),
+        action: "write",
+        source,
+    })
+}
+
 /// Reads a law card.
 ///
 /// # Errors

@@ -1,7 +1,7 @@
 //! The plate of a drop rig from the ringing of all drops.
 
 use crate::error::Error;
-use crate::evaluate_drop::{Known, MeasuredDrop};
+use crate::evaluate_drop::{Known, MeasuredDrop, height_text};
 use crate::measured::{MeasuredItem, MeasuredValue, plain_value, value_with_sd};
 use crate::named::Named;
 use crate::outcome::FindingOutcome;
@@ -242,9 +242,7 @@ fn by_height(drops: &[MeasuredDrop]) -> Vec<MeasuredItem> {
     let mut items: Vec<MeasuredItem> = heights
         .iter()
         .map(|height| {
-            let mut row = item(&format!("{:.6} mm", 1e3 * height), BY_HEIGHT);
-            row.id = format!("{} mm", trimmed(1e3 * height));
-            row.specimen.clone_from(&row.id);
+            let mut row = item(&height_text(*height), BY_HEIGHT);
             for (name, unit, table) in &tables {
                 if let Some(of) = table.rows.iter().find(|row| row.height == *height) {
                     row.derived
@@ -269,12 +267,7 @@ fn by_height(drops: &[MeasuredDrop]) -> Vec<MeasuredItem> {
     items
 }
 
-fn trimmed(value: f64) -> String {
-    let text = format!("{value:.3}");
-    text.trim_end_matches('0').trim_end_matches('.').to_owned()
-}
-
-/// A mean, its standard error, and the standard deviation of one drop.
+/// A mean and the standard deviation of one drop.
 fn mean_and_sd(name: &str, unit: &str, mean: f64, sd: Option<f64>) -> Vec<(String, MeasuredValue)> {
     let mut values = vec![(name.to_owned(), plain_value(mean, unit))];
     values.extend(sd.map(|sd| (format!("{name}_spread"), plain_value(sd, unit))));
@@ -283,11 +276,5 @@ fn mean_and_sd(name: &str, unit: &str, mean: f64, sd: Option<f64>) -> Vec<(Strin
 
 fn set_count(row: &mut MeasuredItem, count: usize) {
     row.file = format!("{count} drops");
-    match row.derived.0.iter_mut().find(|(name, _)| name == "drops") {
-        Some((_, value)) => value.value = value.value.max(count as f64),
-        None => row
-            .derived
-            .0
-            .insert(0, ("drops".to_owned(), plain_value(count as f64, "1"))),
-    }
+    row.words = Named(vec![("drops".to_owned(), count.to_string())]);
 }

@@ -1,6 +1,7 @@
 //! `windfall calibrate DIR`: features of drops → a law, what it leaves open, what
 //! closes that.
 
+use crate::calibrate_card::card_of_calibration;
 use crate::calibrate_design::{DesignSetting, calibrate_by_design};
 use crate::calibrate_drops::{calibrate_rig, drop_data, recorded_features, written_features};
 use crate::calibrate_features::{family_line, features_outcome, fit, telling_heights};
@@ -12,10 +13,13 @@ use crate::calibrate_target::{
     CalibrateRig, DropData, TargetCondition, drop_outcomes, heights_of, plate_outcome, problem_of,
     target_condition,
 };
+use crate::calibrate_waveform::waveform_outcome;
+use crate::calibrate_waveform_drops::recorded_drops;
 use crate::error::Error;
 use crate::evaluate::{Evaluated, Progress};
 use crate::evaluate_drop::MeasuredDrop;
 use crate::figure_calibrate::write_calibrate_figures;
+use crate::law_card::write_card;
 use crate::outcome::{FailureOutcome, FindingOutcome, StatusOutcome};
 use crate::plate_ringing::{PlateEstimate, plate_of};
 use crate::provenance::VERSION;
@@ -37,6 +41,8 @@ pub struct CalibrateRequest {
     pub figures: Option<PathBuf>,
     /// Where the tables of the study go, if anywhere.
     pub tables: Option<PathBuf>,
+    /// Where the law card goes, if anywhere.
+    pub card: Option<PathBuf>,
     /// Whether intervals are those of the profile, which takes longer, in place of
     /// ±1.96 standard uncertainties.
     pub profile: bool,
@@ -68,11 +74,14 @@ pub fn calibrate(
 ) -> Result<CalibrateOutcome, Error> {
     let campaign = read_drop(directory)?;
     crate::on_threads::on_threads(request.threads, || {
-        let (drops, plate, failed) = feature_drops(&campaign, progress)?;
-        let outcome = calibrated(&campaign, request, drops, plate.as_ref(), failed)?;
+        let seen = feature_drops(&campaign, progress)?;
+        let outcome = calibrated(&campaign, request, seen)?;
         keep_calibration(&campaign, &outcome)?;
         if let Some(figures) = &request.figures {
             write_calibrate_figures(figures, &outcome)?;
+        }
+        if let Some(path) = &request.card {
+            write_card(path, &card_of_calibration(&campaign, &outcome)?)?;
         }
         if let Some(tables) = &request.tables {
             write_calibrate_tables(tables, &outcome)?;
@@ -81,12 +90,21 @@ pub fn calibrate(
     })
 }
 
-/// Drops with their features, the plate, and drops that show nothing.
-type FeatureDrops = (Vec<DropData>, Option<PlateEstimate>, Vec<FailureOutcome>);
+/// What the drops of a campaign show.
+struct Seen {
+    /// Drops with their features.
+    drops: Vec<DropData>,
+    /// The plate.
+    plate: Option<PlateEstimate>,
+    /// Drops that show nothing.
+    failed: Vec<FailureOutcome>,
+    /// Whether features come from recordings.
+    recorded: bool,
+}
 
 /// Features of every drop: those that stand in impacts.csv, and otherwise those of
 /// its recording.
-fn feature_drops(campaign: &DropCampaign, progress: Progress) -> Result<FeatureDrops, Error> {
+fn feature_drops(campaign: &DropCampaign, progress: Progress) -> Result<Seen, Error> {
     let entries = &campaign.shared.entries;
     let written: Vec<_> = entries
         .iter()
@@ -129,16 +147,25 @@ fn feature_drops(campaign: &DropCampaign, progress: Progress) -> Result<FeatureD
         }
     }
     let measured: Vec<MeasuredDrop> = recorded.items.into_iter().map(|(_, drop)| drop).collect();
-    Ok((drops, plate_of(campaign, &measured)?, failed))
+    Ok(Seen {
+        drops,
+        plate: plate_of(campaign, &measured)?,
+        failed,
+        recorded: !measured.is_empty(),
+    })
 }
 
 fn calibrated(
     campaign: &DropCampaign,
     request: &CalibrateRequest,
-    drops: Vec<DropData>,
-    plate: Option<&PlateEstimate>,
-    failed: Vec<FailureOutcome>,
+    seen: Seen,
 ) -> Result<CalibrateOutcome, Error> {
+    let Seen {
+        drops,
+        plate,
+        failed,
+        recorded,
+    } = seen;
     let Some(own) = &campaign.calibrate.law else {
         return Err(Error::ValueNotKnown {
             item: campaign.shared.title.clone(),
@@ -146,14 +173,14 @@ fn calibrated(
             advice: "in campaign.toml: [fit] law = 'adams-impact(d=\"0.001 mm\")'".to_owned(),
         });
     };
-    let rig = calibrate_rig(campaign, plate);
+    let rig = calibrate_rig(campaign, plate.as_ref());
     let (target, mut findings) = target_condition(&campaign.calibrate, &drops)?;
     let speed = rig.rig.impact_velocity(target.height.value);
     let energy = 0.5 * target.mass.value * rig.rig.effective_mass_factor * speed * speed;
     let law = free_law(own, &campaign.calibrate, energy)?;
     let work = Work {
         problem: problem_of(&rig, &drops, own.end),
-        ways: ways(campaign, request, &law, &mut findings),
+        ways: ways(campaign, request, (&law, recorded), &mut findings),
         campaign,
         own,
         law,
@@ -171,6 +198,7 @@ fn calibrated(
         drops: drop_outcomes(&work.drops),
         target: work.target.outcome.clone(),
         start: work.law.outcome.clone(),
+        waveform: None,
         features: None,
         family: None,
         closing: Vec::new(),
@@ -204,6 +232,17 @@ fn by_features(
 ) -> Result<(), Error> {
     let end = work.own.end;
     let fitted = fit(&work.law, &work.problem, &work.target, request.profile)?;
+    if work.ways.contains(&Way::Waveform) {
+        // Features that tell all parameters give the better start.
+        let told = fitted.converged && fitted.information.rank == work.law.count();
+        let start = if told { &fitted.law } else { &work.law.start };
+        let drops = recorded_drops(work.campaign)?;
+        let law = (start, &work.own.free[..]);
+        let rig = &work.rig.rig;
+        let (waveform, found) = waveform_outcome(work.campaign, law, end, rig, &drops)?;
+        outcome.waveform = Some(waveform);
+        outcome.findings.extend(of_way("waveform", found));
+    }
     if work.ways.contains(&Way::Features) {
         let (features, found) = features_outcome(&work.law, &work.drops, &work.problem, &fitted);
         outcome.features = Some(features);
@@ -229,7 +268,7 @@ fn by_features(
 fn ways(
     campaign: &DropCampaign,
     request: &CalibrateRequest,
-    law: &FreeLaw,
+    (law, recorded): (&FreeLaw, bool),
     findings: &mut Vec<FindingOutcome>,
 ) -> Vec<Way> {
     let asked = match request.ways.is_empty() {
@@ -239,7 +278,10 @@ fn ways(
     if !asked.is_empty() {
         return asked.clone();
     }
-    let mut ways = vec![Way::Features];
+    let mut ways = match recorded {
+        true => vec![Way::Waveform, Way::Features],
+        false => vec![Way::Features],
+    };
     let unranged: Vec<String> = law
         .names()
         .into_iter()

@@ -26,10 +26,9 @@ const fn shown(name: &'static str, heading: &'static str, factor: f64) -> ShownV
 }
 
 /// What the table of drops shows.
-const SHOWN: [ShownValue; 8] = [
+const SHOWN: [ShownValue; 7] = [
     shown("drop_height", "height (mm)", 1e3),
     shown("mass", "mass (g)", 1e3),
-    shown("bounces", "bounces", 1.0),
     shown("peak_force", "peak (N)", 1.0),
     shown("peak_force_2", "2nd peak (N)", 1.0),
     shown("interval", "interval (ms)", 1e3),
@@ -48,8 +47,7 @@ const SHOWN_OF_BOUNCES: [ShownValue; 6] = [
 ];
 
 /// What the tables of the plate show.
-const SHOWN_OF_PLATE: [ShownValue; 11] = [
-    shown("drops", "drops", 1.0),
+const SHOWN_OF_PLATE: [ShownValue; 10] = [
     shown("damping_ratio_by_decrement", "damping ratio by peaks", 1.0),
     shown("damping_ratio_by_decrement_spread", "SD", 1.0),
     shown("damping_ratio", "damping ratio by fit", 1.0),

@@ -143,41 +143,47 @@ pub fn simulate_drop_motion(
     duration: Option<&str>,
 ) -> Result<SimulatedDropMotion, Error> {
     let drop = simulate_one_drop(plan, impacts)?;
+    let times = motion_times(rate, duration, drop.impacts.last())?;
+    let trajectory = drop_trajectory(&plan.law, &plan.rig, drop.height, &times, plan.end)
+        .map_err(|source| failed(&plan.law, source))?;
+    Ok(SimulatedDropMotion { drop, trajectory })
+}
+
+/// Times of a motion: up to `duration`, or to a little after the last impact.
+pub(crate) fn motion_times(
+    rate: &str,
+    duration: Option<&str>,
+    last: Option<&SimulatedBounce>,
+) -> Result<Vec<f64>, Error> {
     let rate = positive("--sampling-rate", rate, "Hz")?;
     let duration = match duration {
         Some(text) => positive("--duration", text, "s")?,
-        None => last_separation(&drop),
+        None => last.map_or(0.0, last_separation),
     };
     let samples = (duration * rate).ceil();
     if samples > MOST_SAMPLES {
         let problem = format!("{samples} samples; expected a motion of up to {MOST_SAMPLES}");
         return Err(unusable("--sampling-rate, --duration", problem));
     }
-    let times: Vec<f64> = (0..=samples as usize).map(|i| i as f64 / rate).collect();
-    let trajectory = drop_trajectory(&plan.law, &plan.rig, drop.height, &times, plan.end)
-        .map_err(|source| failed(&plan.law, source))?;
-    Ok(SimulatedDropMotion { drop, trajectory })
+    Ok((0..=samples as usize).map(|i| i as f64 / rate).collect())
 }
 
 /// A little after the last separation, or after the last peak of a fruit that
 /// stays; s.
-fn last_separation(drop: &SimulatedDrop) -> f64 {
-    let Some(last) = drop.impacts.last() else {
-        return 0.0;
-    };
+fn last_separation(last: &SimulatedBounce) -> f64 {
     let peak = last.time_of_peak_contact_force;
     let end = last.separation_time.unwrap_or(peak);
     end + MARGIN * (end - last.onset_time)
 }
 
-fn failed(law: &Law, source: windfall_identify::error::Error) -> Error {
+pub(crate) fn failed(law: &Law, source: windfall_identify::error::Error) -> Error {
     Error::Identify {
         subject: LawExpression::from(*law).to_string(),
         source: Box::new(source),
     }
 }
 
-fn plate_outcome(plate: Plate) -> PlateOutcome {
+pub(crate) fn plate_outcome(plate: Plate) -> PlateOutcome {
     PlateOutcome {
         mass: plate.mass,
         stiffness: plate.stiffness,
@@ -185,7 +191,7 @@ fn plate_outcome(plate: Plate) -> PlateOutcome {
     }
 }
 
-fn bounce(impact: &DropImpact) -> SimulatedBounce {
+pub(crate) fn bounce(impact: &DropImpact) -> SimulatedBounce {
     let known = |value: f64| value.is_finite().then_some(value);
     SimulatedBounce {
         onset_time: impact.onset_time,

@@ -5,6 +5,7 @@ use crate::calibrate_tables::{closing_table, design_tables, line_table, next_tab
 use crate::error::Error;
 use crate::text_number::{plain, value_and_sd};
 use crate::write_calibrate_tables::text_of_table;
+use crate::write_calibrate_waveform::{shown_value, text_of_waveform};
 use crate::write_csv::csv_text;
 use crate::write_regress::findings_list;
 use crate::write_table::{page_tables, paragraph};
@@ -33,6 +34,9 @@ pub fn text_of_calibration(outcome: &CalibrateOutcome) -> String {
         let _ = writeln!(text, "Hertz's stiffness: {} N/mm^1.5", plain(millimetres));
     }
     let _ = writeln!(text, "{}", target_text(&outcome.target));
+    if let Some(waveform) = &outcome.waveform {
+        text += &text_of_waveform(waveform);
+    }
     if let Some(features) = &outcome.features {
         text += &features_text(features);
     }
@@ -159,6 +163,22 @@ pub fn csv_of_calibration(outcome: &CalibrateOutcome) -> Result<String, Error> {
     ];
     let number = |value: Option<f64>| value.map_or_else(String::new, |value| value.to_string());
     let mut rows = Vec::new();
+    for parameter in outcome.waveform.iter().flat_map(|w| &w.parameters) {
+        let (value, shown) = (&parameter.value, shown_value(parameter));
+        rows.push(vec![
+            "waveform".to_owned(),
+            parameter.name.clone(),
+            value.value.to_string(),
+            number(value.sd),
+            value.unit.clone(),
+            shown.value.to_string(),
+            number(shown.sd),
+            number(shown.low),
+            number(shown.high),
+            shown.unit.clone(),
+            true.to_string(),
+        ]);
+    }
     for parameter in outcome.features.iter().flat_map(|f| &f.parameters) {
         let written = &parameter.written;
         rows.push(vec![

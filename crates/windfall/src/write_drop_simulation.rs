@@ -2,16 +2,18 @@
 
 use crate::error::Error;
 use crate::named::Named;
-use crate::workflow_simulate_drop::{SimulatedBounce, SimulatedDrop, SimulatedDropMotion};
+use crate::workflow_simulate_drop::{
+    PlateOutcome, SimulatedBounce, SimulatedDrop, SimulatedDropMotion,
+};
 use crate::write_csv::csv_text;
 use crate::write_simulation::six_digits;
 use crate::write_table::table_text;
 
 /// A value of an impact: name, value, unit.
-type Row = (&'static str, Option<f64>, &'static str);
+pub(crate) type Row = (&'static str, Option<f64>, &'static str);
 
-fn rows(impact: &SimulatedBounce) -> [Row; 15] {
-    [
+pub(crate) fn rows(impact: &SimulatedBounce) -> Vec<Row> {
+    vec![
         ("onset_time", Some(impact.onset_time), "s"),
         ("impact_velocity", Some(impact.impact_velocity), "m/s"),
         ("peak_contact_force", Some(impact.peak_contact_force), "N"),
@@ -45,7 +47,30 @@ fn rows(impact: &SimulatedBounce) -> [Row; 15] {
 /// A simulated drop as text: a column for each impact.
 #[must_use]
 pub fn text_of_drop(drop: &SimulatedDrop) -> String {
-    let plate = match &drop.plate {
+    let plate = plate_text(drop.plate.as_ref());
+    let columns: Vec<Vec<Row>> = drop.impacts.iter().map(rows).collect();
+    let factor = match drop.effective_mass_factor {
+        1.0 => String::new(),
+        factor => format!(", of which the contact feels {factor}"),
+    };
+    let rest = match drop.at_rest {
+        true => "\nThe fruit then stays on the plate.\n",
+        false => "",
+    };
+    format!(
+        "simulated: {}, contact ends at {}\nfruit {} kg{factor}, from {} m under {} m/s^2; {plate}\n\n{}\n{rest}",
+        drop.law,
+        drop.end,
+        given(drop.mass),
+        given(drop.height),
+        given(drop.gravity),
+        impact_table(&columns, &drop.intervals)
+    )
+}
+
+/// "plate 0.2 kg on 645800 N/m and 52.47 N s/m".
+pub(crate) fn plate_text(plate: Option<&PlateOutcome>) -> String {
+    match plate {
         None => "rigid plate".to_owned(),
         Some(plate) => format!(
             "plate {} kg on {} N/m and {} N s/m",
@@ -53,15 +78,14 @@ pub fn text_of_drop(drop: &SimulatedDrop) -> String {
             given(plate.stiffness),
             given(plate.damping)
         ),
-    };
-    let factor = match drop.effective_mass_factor {
-        1.0 => String::new(),
-        factor => format!(", of which the contact feels {factor}"),
-    };
+    }
+}
+
+/// Impacts as a table with a column for each.
+pub(crate) fn impact_table(columns: &[Vec<Row>], intervals: &[f64]) -> String {
     let mut header = vec!["quantity".to_owned()];
-    header.extend((1..=drop.impacts.len()).map(|number| format!("impact {number}")));
+    header.extend((1..=columns.len()).map(|number| format!("impact {number}")));
     header.push("unit".to_owned());
-    let columns: Vec<[Row; 15]> = drop.impacts.iter().map(rows).collect();
     let shown = |value: Option<f64>| value.map_or_else(|| "-".to_owned(), six_digits);
     let line = |name: &str, values: Vec<Option<f64>>, unit: &str| {
         let mut line = vec![name.replace('_', " ")];
@@ -74,26 +98,14 @@ pub fn text_of_drop(drop: &SimulatedDrop) -> String {
         let values = columns.iter().map(|column| column[index].1).collect();
         lines.push(line(name, values, unit));
     }
-    let mut intervals: Vec<Option<f64>> = drop.intervals.iter().copied().map(Some).collect();
-    intervals.resize(drop.impacts.len(), None);
+    let mut intervals: Vec<Option<f64>> = intervals.iter().copied().map(Some).collect();
+    intervals.resize(columns.len(), None);
     lines.push(line("interval to the next onset", intervals, "s"));
-    let rest = match drop.at_rest {
-        true => "\nThe fruit then stays on the plate.\n",
-        false => "",
-    };
-    format!(
-        "simulated: {}, contact ends at {}\nfruit {} kg{factor}, from {} m under {} m/s^2; {plate}\n\n{}\n{rest}",
-        drop.law,
-        drop.end,
-        given(drop.mass),
-        given(drop.height),
-        given(drop.gravity),
-        table_text(&header, lines, &[0, header.len() - 1])
-    )
+    table_text(&header, lines, &[0, header.len() - 1])
 }
 
 /// A value as it was given: six digits without zeros at the end.
-fn given(value: f64) -> String {
+pub(crate) fn given(value: f64) -> String {
     let text = six_digits(value);
     match text.contains('.') && !text.contains('e') {
         true => text.trim_end_matches('0').trim_end_matches('.').to_owned(),
@@ -102,7 +114,7 @@ fn given(value: f64) -> String {
 }
 
 /// "peak_force_N"; no unit for a pure number.
-fn column(name: &str, unit: &str) -> String {
+pub(crate) fn column(name: &str, unit: &str) -> String {
     match unit {
         "1" => name.to_owned(),
         unit => format!("{name}_{}", unit.replace(['/', ' '], "_")),
@@ -114,8 +126,13 @@ fn column(name: &str, unit: &str) -> String {
 /// # Errors
 /// None in practice: the text is written to memory.
 pub fn csv_of_drop(drop: &SimulatedDrop) -> Result<String, Error> {
+    let columns: Vec<Vec<Row>> = drop.impacts.iter().map(rows).collect();
+    impact_csv(&columns, &drop.intervals)
+}
+
+/// Impacts as CSV with a row for each.
+pub(crate) fn impact_csv(columns: &[Vec<Row>], intervals: &[f64]) -> Result<String, Error> {
     let number = |value: Option<f64>| value.map_or_else(String::new, |value| value.to_string());
-    let columns: Vec<[Row; 15]> = drop.impacts.iter().map(rows).collect();
     let mut header = vec!["impact".to_owned()];
     let names = columns.first().into_iter().flatten();
     header.extend(names.map(|(name, _, unit)| column(name, unit)));
@@ -123,7 +140,7 @@ pub fn csv_of_drop(drop: &SimulatedDrop) -> Result<String, Error> {
     let lines = columns.iter().enumerate().map(|(index, values)| {
         let mut line = vec![(index + 1).to_string()];
         line.extend(values.iter().map(|(_, value, _)| number(*value)));
-        line.push(number(drop.intervals.get(index).copied()));
+        line.push(number(intervals.get(index).copied()));
         line
     });
     csv_text(&header, lines)

@@ -1,15 +1,26 @@
 //! A law card as text for people.
 
+use crate::error::Error;
 use crate::law_card::LawCard;
 use crate::text_statistic::number;
+use crate::write_csv::csv_text;
 use crate::write_table::table_text;
 use std::fmt::Write;
 
 /// A card as a table with what must be known beside it.
 #[must_use]
 pub fn text_of_card(card: &LawCard) -> String {
-    let mut text = format!("{}\n\n{}\ncontact ends at {}\n\n", card.title, card.expression, card.end);
-    let header = ["parameter", "value", "standard uncertainty", "95 % interval", "unit"];
+    let mut text = format!(
+        "{}\n\n{}\ncontact ends at {}\n\n",
+        card.title, card.expression, card.end
+    );
+    let header = [
+        "parameter",
+        "value",
+        "standard uncertainty",
+        "95 % interval",
+        "unit",
+    ];
     let rows = card.parameters.iter().map(|(name, parameter)| {
         vec![
             name.clone(),
@@ -29,7 +40,10 @@ pub fn text_of_card(card: &LawCard) -> String {
         // Writing to a string cannot fail.
         let _ = writeln!(text, "{name}: {value}");
     };
-    line("seen at impact velocities of", between(range.impact_velocity) + " m/s");
+    line(
+        "seen at impact velocities of",
+        between(range.impact_velocity) + " m/s",
+    );
     line("peak contact forces", between(range.peak_force) + " N");
     line("displacements", between(range.displacement) + " m");
     line("masses", between(range.mass) + " kg");
@@ -49,7 +63,10 @@ pub fn text_of_card(card: &LawCard) -> String {
         line("uncertainty is that of", covariance.of_what.clone());
     }
     let origin = &card.origin;
-    let made = format!("{}, {}, windfall {}, {}", origin.campaign, origin.method, origin.windfall, origin.date);
+    let made = format!(
+        "{}, {}, windfall {}, {}",
+        origin.campaign, origin.method, origin.windfall, origin.date
+    );
     line("origin", made);
     if let Some(label) = &origin.simulated {
         line("simulated", label.clone());
@@ -58,4 +75,24 @@ pub fn text_of_card(card: &LawCard) -> String {
         line("caution", caution.clone());
     }
     text
+}
+
+/// The parameters of a card as CSV.
+///
+/// # Errors
+/// None in practice: the text is written to memory.
+pub fn csv_of_card(card: &LawCard) -> Result<String, Error> {
+    let header = ["parameter", "value", "sd", "low", "high", "unit"];
+    let text = |value: Option<f64>| value.map_or_else(String::new, |value| value.to_string());
+    let rows = card.parameters.iter().map(|(name, parameter)| {
+        vec![
+            name.clone(),
+            parameter.value.to_string(),
+            text(parameter.sd),
+            text(parameter.interval.map(|[low, _]| low)),
+            text(parameter.interval.map(|[_, high]| high)),
+            parameter.unit.clone(),
+        ]
+    });
+    csv_text(&header.map(str::to_owned), rows)
 }

@@ -3,10 +3,17 @@
 #![allow(clippy::unwrap_used)]
 
 use std::path::{Path, PathBuf};
+use windfall::any_outcome::AnyOutcome;
 use windfall::error::Error;
+use windfall::measured::{MeasuredItem, MeasuredOutcome, value_of};
 use windfall::read_calibrate::{RangeUnit, Target};
 use windfall::read_drop::{DropCampaign, PlatePlan, drop_of, read_drop};
+use windfall::request_drop::{DropRequest, drop_plan};
+use windfall::request_fit::FitRequest;
+use windfall::simulate_drops::{SimulateDropsRequest, simulate_drops};
+use windfall::workflow_fit_any::fit_any;
 use windfall::workflow_new::{TemplateKind, write_template};
+use windfall::write_any::text_of_any;
 
 fn template(folder: &Path) -> PathBuf {
     let directory = folder.join("campaign");
@@ -230,4 +237,255 @@ fn rejects_what_cannot_be_calibrated() {
     assert!(message.contains("above 0 and below 1"), "{message}");
     let message = settings("threshold = \"auto\" ", "threshold = \"3 V\" ");
     assert!(message.contains("[bounces] threshold"), "{message}");
+}
+
+/// Rig and law of Kang et al. (2023): Table 6 and eqs. (5) and (6).
+fn study(heights: &[&str]) -> DropRequest {
+    DropRequest {
+        law: "adams-impact(k=\"0.868 N/mm^1.91\", e=1.91, c=\"5.56e-4 N s/mm\", d=\"0.001 mm\")"
+            .to_owned(),
+        mass: "4.8 g".to_owned(),
+        heights: heights.iter().map(|height| (*height).to_owned()).collect(),
+        plate_mass: Some("0.2 kg".to_owned()),
+        plate_stiffness: Some("645.8 N/mm".to_owned()),
+        plate_damping: Some("52.47 N s/m".to_owned()),
+        effective_mass_factor: 1.0,
+        gravity: "9.80665 m/s^2".to_owned(),
+        end: "force-zero".to_owned(),
+    }
+}
+
+fn bench(drops: usize) -> SimulateDropsRequest {
+    SimulateDropsRequest {
+        drops,
+        mass_spread: 0.06,
+        mass_sd: "0.02 g".to_owned(),
+        height_sd: "1 mm".to_owned(),
+        spread: Vec::new(),
+        hold: Vec::new(),
+        sensitivity: "0.1 V/N".to_owned(),
+        noise: "0.03 N".to_owned(),
+        bits: 12,
+        range: "5 V".to_owned(),
+        lowest: None,
+        sampling_rate: "10 kHz".to_owned(),
+        duration: "1.5 s".to_owned(),
+        seed: 1,
+    }
+}
+
+fn simulated(folder: &Path, drop: &DropRequest, bench: &SimulateDropsRequest) -> PathBuf {
+    let directory = folder.join("campaign");
+    simulate_drops(&directory, &drop_plan(drop).unwrap(), bench).unwrap();
+    directory
+}
+
+fn fitted(directory: &Path) -> MeasuredOutcome {
+    match fit_any(directory, &FitRequest::default(), &|_, _| {}).unwrap() {
+        AnyOutcome::Measured(outcome) => *outcome,
+        AnyOutcome::Impacts(_) => panic!("not a campaign of drops"),
+    }
+}
+
+fn value(item: &MeasuredItem, name: &str) -> (f64, f64) {
+    let found = value_of(item, name).unwrap_or_else(|| panic!("{} has no {name}", item.id));
+    (found.value, found.sd.unwrap_or(0.0))
+}
+
+/// A column of truth.csv whose cells are lists.
+fn truth(directory: &Path, column: &str) -> Vec<Vec<f64>> {
+    let text = std::fs::read_to_string(directory.join("truth.csv")).unwrap();
+    let mut reader = csv::Reader::from_reader(text.as_bytes());
+    let index = reader
+        .headers()
+        .unwrap()
+        .iter()
+        .position(|name| name == column)
+        .unwrap();
+    let numbers = |cell: &str| {
+        cell.split(' ')
+            .map(|number| number.parse().unwrap())
+            .collect()
+    };
+    reader
+        .records()
+        .map(|row| numbers(&row.unwrap()[index]))
+        .collect()
+}
+
+/// Volts of 12 bits with noise, unknown release, fruit that differ, heights
+/// that are set to a millimetre: intervals, restitutions and the plate come back.
+#[test]
+fn recovers_bounces_restitution_and_plate() {
+    let folder = tempfile::tempdir().unwrap();
+    let directory = simulated(folder.path(), &study(&["200 mm", "500 mm"]), &bench(3));
+    let outcome = fitted(&directory);
+    assert_eq!((outcome.impacts.len(), outcome.failed.len()), (6, 0));
+    let onsets = truth(&directory, "onset_times_s");
+    let restitutions = truth(&directory, "restitutions");
+    let peaks = truth(&directory, "peak_support_forces_N");
+    for (drop, item) in outcome.impacts.iter().enumerate() {
+        for (bounce, end) in ["", "_2"].iter().enumerate() {
+            let (interval, sd) = value(item, &format!("interval{end}"));
+            let exact = onsets[drop][bounce + 1] - onsets[drop][bounce];
+            assert!(
+                (interval - exact).abs() < 4.0 * sd && sd < 2e-4,
+                "{}: {interval} ± {sd}, {exact}",
+                item.id
+            );
+            let (peak, sd) = value(item, &format!("peak_force{end}"));
+            assert!(
+                (peak - peaks[drop][bounce]).abs() < 5.0 * sd,
+                "{}: {peak} ± {sd}",
+                item.id
+            );
+            for method in ["restitution", "restitution_by_impulse"] {
+                let (e, sd) = value(item, &format!("{method}{end}"));
+                let exact = restitutions[drop][bounce];
+                assert!(
+                    (e - exact).abs() < 4.0 * sd && sd < 0.02,
+                    "{}: {method}{end} {e} ± {sd}, {exact}",
+                    item.id
+                );
+            }
+        }
+        assert_eq!(
+            item.derived.get("bounces").unwrap().value,
+            if drop < 3 { 8.0 } else { 3.0 }
+        );
+    }
+    let plate = outcome
+        .whole
+        .iter()
+        .find(|item| item.id == "from the ringing")
+        .unwrap();
+    for (name, exact, material) in [
+        ("plate_stiffness", 645_800.0, 0.002),
+        ("plate_damping", 52.47, 0.01),
+        ("natural_frequency", (645_800.0_f64 / 0.2).sqrt(), 0.001),
+    ] {
+        let (found, sd) = value(plate, name);
+        assert!((found - exact).abs() < 4.0 * sd, "{name}: {found} ± {sd}");
+        assert!((found / exact - 1.0).abs() < material, "{name}: {found}");
+    }
+    let rows: Vec<&str> = outcome.whole.iter().map(|item| item.id.as_str()).collect();
+    assert_eq!(rows, ["200 mm", "500 mm", "all drops", "from the ringing"]);
+    // Every bounce is a part with its own impact speed.
+    assert_eq!(outcome.parts.len(), 3 * 8 + 3 * 3);
+    let (first, second) = (
+        value(&outcome.parts[0], "impact_velocity").0,
+        value(&outcome.parts[1], "impact_velocity").0,
+    );
+    assert!((first - (2.0 * 9.80665 * 0.2_f64).sqrt()).abs() < 1e-12 && second < first);
+    // Nothing has changed: all from the store, and the same.
+    let again = fitted(&directory);
+    assert!(again.status.up_to_date);
+    assert_eq!(
+        (again.impacts, again.parts),
+        (outcome.impacts, outcome.parts)
+    );
+}
+
+/// A cart or a stiff anvil: no ringing is looked for.
+#[test]
+fn recovers_bounces_on_a_rigid_plate() {
+    let folder = tempfile::tempdir().unwrap();
+    let rigid = DropRequest {
+        plate_mass: None,
+        plate_stiffness: None,
+        plate_damping: None,
+        ..study(&["300 mm"])
+    };
+    let directory = simulated(folder.path(), &rigid, &bench(1));
+    let outcome = fitted(&directory);
+    let exact = truth(&directory, "restitutions")[0][0];
+    let (e, sd) = value(&outcome.impacts[0], "restitution");
+    assert!((e - exact).abs() < 4.0 * sd, "{e} ± {sd}, {exact}");
+    assert!(outcome.whole.is_empty());
+}
+
+#[test]
+fn repeats_the_same_recordings_for_the_same_seed() {
+    let folder = tempfile::tempdir().unwrap();
+    let recording = |name: &str, seed| {
+        let directory = folder.path().join(name);
+        let bench = SimulateDropsRequest { seed, ..bench(1) };
+        simulate_drops(&directory, &drop_plan(&study(&["500 mm"])).unwrap(), &bench).unwrap();
+        std::fs::read(directory.join("raw/drop-500-1.csv")).unwrap()
+    };
+    let first = recording("first", 7);
+    assert_eq!(first, recording("second", 7));
+    assert_ne!(first, recording("third", 8));
+}
+
+/// What is poor in a recording is said in the text that a person reads.
+#[test]
+fn rejects_poor_recordings_in_words() {
+    let check = |code: &str,
+                 words: &str,
+                 drop: &DropRequest,
+                 bench: &SimulateDropsRequest,
+                 spoil: &dyn Fn(&Path)| {
+        let folder = tempfile::tempdir().unwrap();
+        let directory = simulated(folder.path(), drop, bench);
+        spoil(&directory);
+        let outcome = fitted(&directory);
+        let text = text_of_any(&AnyOutcome::Measured(Box::new(outcome)));
+        let line = text.split_whitespace().collect::<Vec<_>>().join(" ");
+        assert!(
+            line.contains(&format!("{code}: ")) && line.contains(words),
+            "{code}:\n{text}"
+        );
+    };
+    let (drop, usual) = (study(&["500 mm"]), bench(1));
+    let with = |change: &dyn Fn(&mut SimulateDropsRequest)| {
+        let mut bench = usual.clone();
+        change(&mut bench);
+        bench
+    };
+    let none: &dyn Fn(&Path) = &|_| {};
+    let clipped = with(&|bench| bench.range = "1 V".to_owned());
+    check("bounce_clipped", "larger range", &drop, &clipped, none);
+    let short = with(&|bench| bench.duration = "0.7 s".to_owned());
+    check("not_valid", "one impact on the plate", &drop, &short, none);
+    let slow = with(&|bench| bench.sampling_rate = "1500 Hz".to_owned());
+    check("slow_sampling", "samples in contact", &drop, &slow, none);
+    let soft = DropRequest {
+        plate_damping: Some("4 N s/m".to_owned()),
+        ..study(&["20 mm"])
+    };
+    check("still_ringing", "still rings", &soft, &usual, none);
+    // Half the volts per newton: every impulse is double of what m v (1 + e) is.
+    check(
+        "force_scale",
+        "volts per newton",
+        &drop,
+        &usual,
+        &|directory| {
+            edit(
+                directory,
+                "campaign.toml",
+                "sensitivity = \"0.1 V/N\"",
+                "sensitivity = \"0.05 V/N\"",
+            );
+        },
+    );
+    // A transmitter that warms up: 30 mV in the recording, 0.3 N.
+    check(
+        "static_level_drifts",
+        "follow",
+        &drop,
+        &usual,
+        &|directory| {
+            let path = directory.join("raw/drop-500-1.csv");
+            let text = std::fs::read_to_string(&path).unwrap();
+            let mut lines = text.lines();
+            let mut drifting = lines.next().unwrap().to_owned() + "\n";
+            for (i, line) in lines.enumerate() {
+                let volts: f64 = line.parse().unwrap();
+                drifting += &format!("{}\n", volts + 2e-6 * i as f64);
+            }
+            std::fs::write(&path, drifting).unwrap();
+        },
+    );
 }
