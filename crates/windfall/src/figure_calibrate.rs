@@ -157,16 +157,15 @@ pub fn figure_of_design(outcome: &CalibrateOutcome, design: &DesignWayOutcome) -
                 series(&name, Style::Line, points.collect())
             })
             .collect();
-        for (factor, own) in design.factors.iter().enumerate() {
-            // Runs on the axis of this factor, where the curve should pass.
-            let on_axis = design.runs.iter().filter(|run| {
+        // Runs on the axis of a factor, where its curve should pass.
+        let on_axis = (0..design.factors.len()).flat_map(|factor| {
+            let own = design.runs.iter().filter(move |run| {
                 let mut others = run.coded.iter().enumerate().filter(|(i, _)| *i != factor);
                 others.all(|(_, x)| x.abs() < 1e-9)
             });
-            let points = on_axis.map(|run| (run.coded[factor], scale * run.responses[place]));
-            let label = format!("simulated, {}", own.letter);
-            all.push(series(&label, Style::Dots, points.collect()));
-        }
+            own.map(move |run| (run.coded[factor], scale * run.responses[place]))
+        });
+        all.push(series("simulated", Style::Dots, on_axis.collect()));
         let target = outcome.target.features.get(&surface.response);
         if let Some(target) = target {
             let level = vec![(0.0, scale * target.value)];
