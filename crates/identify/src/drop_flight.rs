@@ -32,6 +32,7 @@ pub struct FlightPiece<const W: usize> {
 
 impl<const W: usize> FlightPiece<W> {
     /// Height (m) and velocity (m/s) of the fruit at a time since the start (s).
+    #[inline(always)]
     #[must_use]
     pub fn fruit(&self, time: f64) -> (Lanes<W>, Lanes<W>) {
         let height = self.height + self.velocity * time + self.gravity * (-0.5 * time * time);

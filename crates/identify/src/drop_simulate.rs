@@ -12,7 +12,7 @@ use crate::simulate::{ACCURACY, check_positive};
 use windfall_contact::any_law::{AnyLaw, LARGEST_PARAMETERS};
 use windfall_contact::law::{ContactLaw, EndRule};
 use windfall_contact::law_kind::Law;
-use windfall_numerics::ode_step::Tolerance;
+use windfall_numerics::ode_step::{StepError, Tolerance};
 
 /// Impacts of a drop whose motion is read; a fruit rests long before.
 const MOST_IMPACTS: usize = 100_000;
@@ -126,14 +126,29 @@ pub(crate) fn tally_drop<const W: usize>(
     event: &DropEvent<AnyLaw, LARGEST_PARAMETERS, W>,
     impacts: usize,
 ) -> Result<(Vec<ImpactTally<W>>, DropEnding), Error> {
-    let rig = rig_duals(event);
-    let mut tally = Tally {
-        event,
-        rig: &rig,
-        impacts: Vec::new(),
-    };
-    let ending = follow_drop(event, impacts, f64::INFINITY, &mut tally)?;
-    Ok((tally.impacts, ending))
+    Ok(pulp::Arch::new().dispatch(TallyPass { event, impacts })?)
+}
+
+/// A drop, compiled for the processor's vector instructions.
+struct TallyPass<'a, const W: usize> {
+    event: &'a DropEvent<AnyLaw, LARGEST_PARAMETERS, W>,
+    impacts: usize,
+}
+
+impl<const W: usize> pulp::WithSimd for TallyPass<'_, W> {
+    type Output = Result<(Vec<ImpactTally<W>>, DropEnding), StepError>;
+
+    #[inline(always)]
+    fn with_simd<S: pulp::Simd>(self, _simd: S) -> Self::Output {
+        let rig = rig_duals(self.event);
+        let mut tally = Tally {
+            event: self.event,
+            rig: &rig,
+            impacts: Vec::new(),
+        };
+        let ending = follow_drop(self.event, self.impacts, f64::INFINITY, &mut tally)?;
+        Ok((tally.impacts, ending))
+    }
 }
 
 /// A fruit falls from rest on the plate of `rig` and bounces.

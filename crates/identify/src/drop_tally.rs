@@ -73,6 +73,7 @@ impl<L: ContactLaw<N>, const N: usize, const W: usize> DropSink<W> for Tally<'_,
         });
     }
 
+    #[inline(always)]
     fn contact(&mut self, piece: &ContactPiece<W>) {
         let Some(found) = self.impacts.last_mut() else {
             return;
@@ -107,6 +108,7 @@ impl<L: ContactLaw<N>, const N: usize, const W: usize> DropSink<W> for Tally<'_,
         }
     }
 
+    #[inline(always)]
     fn flight(&mut self, piece: &FlightPiece<W>) {
         let (Some(found), Some(plate)) = (self.impacts.last_mut(), &piece.plate) else {
             return;

@@ -290,6 +290,7 @@ fn sigma_of(segment: &Segment<1>, time: f64) -> f64 {
 }
 
 /// Where in `[0, end]` a function with the derivative `slope` is highest.
+#[inline(always)]
 pub(crate) fn highest(end: f64, value: impl Fn(f64) -> f64, slope: impl Fn(f64) -> f64) -> f64 {
     let point = |i: usize| end * i as f64 / SEARCH_POINTS as f64;
     let best = (0..=SEARCH_POINTS)
