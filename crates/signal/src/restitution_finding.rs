@@ -126,7 +126,7 @@ impl fmt::Display for RestitutionFinding {
                 before,
             } => write!(
                 f,
-                "restitution of bounce {bounce} is {value:.3} after {before:.3} of the harder impact before: contacts lose less at lower speed, so this rebound was slanted or took up spin, and the values by time and impulse are those of the vertical velocity only"
+                "restitution of bounce {bounce} is {value:.3} after {before:.3} of the harder impact before: more than any usual law loses from one bounce to the next, so this rebound was probably slanted or took up spin, and its values by time and impulse are those of the vertical velocity only"
             ),
         }
     }

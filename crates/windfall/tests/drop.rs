@@ -4,7 +4,6 @@
 
 use std::path::{Path, PathBuf};
 use windfall::any_outcome::AnyOutcome;
-use windfall::error::Error;
 use windfall::measured::{MeasuredItem, MeasuredOutcome, value_of};
 use windfall::read_calibrate::{RangeUnit, Target};
 use windfall::read_drop::{DropCampaign, PlatePlan, drop_of, read_drop};
@@ -30,16 +29,16 @@ fn edit(directory: &Path, file: &str, from: &str, to: &str) {
 }
 
 /// Reads the template with one change.
-fn changed(file: &str, from: &str, to: &str) -> Result<DropCampaign, Error> {
+fn changed(file: &str, from: &str, to: &str) -> Result<DropCampaign, String> {
     let folder = tempfile::tempdir().unwrap();
     let directory = template(folder.path());
     edit(&directory, file, from, to);
-    read_drop(&directory)
+    read_drop(&directory).map_err(|error| error.to_string())
 }
 
 /// Message of the template with one change, from the name of the file on.
 fn refused(file: &str, from: &str, to: &str) -> String {
-    let message = changed(file, from, to).unwrap_err().to_string();
+    let message = changed(file, from, to).unwrap_err();
     let at = message.find("/campaign/").map_or(0, |at| at + 10);
     message[at..].to_owned()
 }

@@ -27,7 +27,7 @@ pub const RUNS: [&str; 5] = ["Latest", "Run 1", "Run 2", "Run 3", "Run 4"];
 /// Mass of the cart, from the impulses of ten other recordings with the same
 /// cart (docs/foam_pads.md); kg. Its uncertainty is the 3 % stated there.
 pub const MASS: Uncertain = Uncertain {
-    value: 0.5236,
+    value: 523.6e-3,
     sd: 0.016,
 };
 /// Acceleration into the pad during contact. In flight it is 0.11 m/s² down and
