@@ -59,6 +59,8 @@ pub trait DropSink<const W: usize> {
     fn flight(&mut self, piece: &FlightPiece<W>);
     /// The fruit has left the plate.
     fn departure(&mut self, departure: &Departure<W>);
+    /// It touches the plate again after the last impact that was asked for.
+    fn beyond(&mut self, _touch: &Touch<W>) {}
 }
 
 /// How a drop that was followed ended.
@@ -146,6 +148,7 @@ pub fn follow_drop<L: ContactLaw<N>, const N: usize, const W: usize>(
             plate_velocity,
         };
     }
+    sink.beyond(&touch);
     Ok(DropEnding::Complete)
 }
 

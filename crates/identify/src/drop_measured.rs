@@ -60,7 +60,11 @@ impl DropFeature {
         match self.kind {
             FeatureKind::PeakSupportForce => impact.map(|i| i.peak_support_force),
             FeatureKind::PeakContactForce => impact.map(|i| i.peak_contact_force),
-            FeatureKind::Interval => summary.intervals.get(self.impact).copied(),
+            FeatureKind::Interval => {
+                let next = summary.impacts.get(self.impact + 1);
+                let next = next.map(|i| i.onset_time).or(summary.next_onset)?;
+                impact.map(|i| next - i.onset_time)
+            }
             FeatureKind::ContactDuration => impact.map(|i| i.force_end_time - i.onset_time),
         }
     }
@@ -69,10 +73,7 @@ impl DropFeature {
 /// Impacts that must be simulated for some features.
 #[must_use]
 pub fn impacts_of_features(features: &[DropFeature]) -> usize {
-    let needed = features.iter().map(|feature| match feature.kind {
-        FeatureKind::Interval => feature.impact + 2,
-        _ => feature.impact + 1,
-    });
+    let needed = features.iter().map(|feature| feature.impact + 1);
     needed.max().unwrap_or(0)
 }
 
@@ -164,11 +165,7 @@ pub struct FeatureSensitivity {
     pub by_rig: Vec<[f64; RigQuantity::ALL.len()]>,
 }
 
-/// Relative step of differences: a simulation is good to 1e-11.
-const STEP: f64 = 3e-5;
-
-/// Values of features with their derivatives: exact ones, and of contact durations
-/// central differences.
+/// Values of features with their exact derivatives.
 ///
 /// * `wanted`: positions of the law's parameters that derivatives are wanted for;
 ///   the others get zero
@@ -195,17 +192,13 @@ pub fn feature_sensitivity(
         by_rig: vec![[0.0; RigQuantity::ALL.len()]; features.len()],
     };
     let exact = drop_features(law, rig, height, impacts_of_features(features), end, &asked)?;
-    let mut inexact = Vec::new();
     for (row, feature) in features.iter().enumerate() {
         let of_impact = exact.impacts.get(feature.impact);
         let own = match feature.kind {
             FeatureKind::PeakSupportForce => of_impact.map(|i| &i.peak_support_force),
             FeatureKind::PeakContactForce => of_impact.map(|i| &i.peak_contact_force),
             FeatureKind::Interval => exact.intervals.get(feature.impact),
-            FeatureKind::ContactDuration => {
-                inexact.push(row);
-                continue;
-            }
+            FeatureKind::ContactDuration => of_impact.and_then(|i| i.contact_duration.as_ref()),
         };
         let own = own.ok_or_else(|| Error::FeatureMissing {
             feature: feature.name(),
@@ -215,20 +208,6 @@ pub fn feature_sensitivity(
         found.values[row] = own.value;
         for (quantity, slope) in free.iter().zip(&own.by) {
             found.put(row, *quantity, *slope);
-        }
-    }
-    if !inexact.is_empty() {
-        let asked: Vec<DropFeature> = inexact.iter().map(|row| features[*row]).collect();
-        let event =
-            |law: &Law, rig: &DropRig, height| feature_values(law, rig, height, &asked, end);
-        for (row, value) in inexact.iter().zip(event(law, rig, height)?) {
-            found.values[*row] = value;
-        }
-        for quantity in free {
-            let slopes = difference(quantity, (law, rig, height), &event)?;
-            for (row, slope) in inexact.iter().zip(slopes) {
-                found.put(*row, quantity, slope);
-            }
         }
     }
     Ok(found)
@@ -265,35 +244,4 @@ impl FeatureSensitivity {
             }
         }
     }
-}
-
-/// What is simulated of a law, a rig and a height.
-type Event<'a> = dyn Fn(&Law, &DropRig, f64) -> Result<Vec<f64>, Error> + 'a;
-
-/// Central differences by one quantity.
-fn difference(
-    quantity: Quantity,
-    (law, rig, height): (&Law, &DropRig, f64),
-    event: &Event,
-) -> Result<Vec<f64>, Error> {
-    let value = match quantity {
-        Quantity::Law(position) => law.parameters()[position],
-        Quantity::Rig(quantity) => quantity.get(rig, height).unwrap_or_default(),
-    };
-    let at = |value: f64| match quantity {
-        Quantity::Law(position) => {
-            let mut moved = law.parameters();
-            moved[position] = value;
-            event(&law.kind().with_parameters(&moved)?, rig, height)
-        }
-        Quantity::Rig(quantity) => {
-            let (mut rig, mut height) = (*rig, height);
-            quantity.put(&mut rig, &mut height, value);
-            event(law, &rig, height)
-        }
-    };
-    let step = STEP * value.abs().max(1e-12);
-    let (up, down) = (at(value + step)?, at(value - step)?);
-    let pairs = up.iter().zip(&down);
-    Ok(pairs.map(|(up, down)| (up - down) / (2.0 * step)).collect())
 }

@@ -55,6 +55,9 @@ pub struct ImpactFeatures {
     pub peak_support_force: Differentiated,
     /// Largest indentation; m.
     pub max_displacement: Differentiated,
+    /// From first touch until the force is back at zero; s. `None` where the
+    /// fruit stays.
+    pub contact_duration: Option<Differentiated>,
     /// The gap opens; s. `None` where the fruit stays.
     pub separation_time: Option<Differentiated>,
     /// Velocity of the fruit then, up positive; m/s.
@@ -66,7 +69,7 @@ pub struct ImpactFeatures {
 pub struct DropFeatures {
     /// In order of time; fewer than asked for where the fruit comes to rest.
     pub impacts: Vec<ImpactFeatures>,
-    /// From onset to onset; s.
+    /// From onset to onset, the last to the first touch after `impacts`; s.
     pub intervals: Vec<Differentiated>,
 }
 
@@ -142,7 +145,7 @@ fn features<const W: usize>(
     let velocity = rig.impact_velocity(height);
     let scaled: Vec<(DropQuantity, f64)> = free.iter().map(|q| (*q, 1.0)).collect();
     let event = drop_event::<W>(law, rig, velocity, end, seeds_of(&scaled, rig, velocity));
-    let (found, _) = tally_drop(&event, impacts)?;
+    let found = tally_drop(&event, impacts)?;
     // Release to first touch, v/g.
     let mut fall = event.seeds.velocity * (1.0 / rig.gravity)
         + event.seeds.gravity * (-velocity / (rig.gravity * rig.gravity));
@@ -151,20 +154,25 @@ fn features<const W: usize>(
         value: lanes.0[0],
         by: lanes.0[1..=free.len()].to_vec(),
     };
-    let intervals = found
-        .windows(2)
-        .map(|pair| plain(pair[1].touch.time - pair[0].touch.time));
+    let touches = found.impacts.iter().map(|one| one.touch.time);
+    let touches: Vec<Lanes<W>> = touches
+        .chain(found.beyond.map(|touch| touch.time))
+        .collect();
+    let intervals = touches.windows(2).map(|pair| plain(pair[1] - pair[0]));
     let one = |tally: &ImpactTally<W>| ImpactFeatures {
         onset_time: plain(fall + tally.touch.time),
         peak_contact_force: plain(tally.contact_force.value),
         peak_support_force: plain(tally.support_force.value),
         max_displacement: plain(tally.displacement.value),
+        contact_duration: tally
+            .departure
+            .map(|left| plain(left.force_end - tally.touch.time)),
         separation_time: tally.departure.map(|left| plain(fall + left.time)),
         separation_velocity: tally.departure.map(|left| plain(left.velocity)),
     };
     Ok(DropFeatures {
         intervals: intervals.collect(),
-        impacts: found.iter().map(one).collect(),
+        impacts: found.impacts.iter().map(one).collect(),
     })
 }
 
@@ -192,6 +200,8 @@ mod tests {
     fn row(law: &Law, rig: &DropRig, height: f64, end: EndRule) -> Vec<f64> {
         let found = simulate_drop(law, rig, height, 3, end).unwrap();
         let mut row = found.intervals.clone();
+        let last = found.impacts.last().unwrap();
+        row.push(found.next_onset.unwrap() - last.onset_time);
         for impact in &found.impacts {
             row.extend([
                 impact.onset_time,
@@ -200,6 +210,7 @@ mod tests {
                 impact.max_displacement,
                 impact.separation_time,
                 impact.separation_velocity,
+                impact.force_end_time - impact.onset_time,
             ]);
         }
         row
@@ -298,6 +309,7 @@ mod tests {
                         impact.max_displacement,
                         impact.separation_time.unwrap(),
                         impact.separation_velocity.unwrap(),
+                        impact.contact_duration.unwrap(),
                     ]);
                 }
                 for (column, &quantity) in free.iter().enumerate() {

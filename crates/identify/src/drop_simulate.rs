@@ -6,7 +6,7 @@ use crate::drop_flight::FlightPiece;
 use crate::drop_follow::{Departure, DropEnding, DropSink, Touch, follow_drop};
 use crate::drop_observe::{Observed, contact_at, flight_at, sigma_at};
 use crate::drop_rig::DropRig;
-use crate::drop_tally::{ImpactTally, Tally};
+use crate::drop_tally::{DropTally, ImpactTally, Tally};
 use crate::error::Error;
 use crate::simulate::{ACCURACY, check_positive};
 use windfall_contact::any_law::{AnyLaw, LARGEST_PARAMETERS};
@@ -62,6 +62,8 @@ pub struct DropSummary {
     pub impacts: Vec<DropImpact>,
     /// From onset to onset; s.
     pub intervals: Vec<f64>,
+    /// First touch after the last of `impacts`; `None` where the fruit stays; s.
+    pub next_onset: Option<f64>,
     /// The fruit stays on the plate in or after the last of `impacts`: there
     /// may be fewer than were asked for. The separation of an impact without
     /// one is not a number.
@@ -125,7 +127,7 @@ pub(crate) fn drop_event<const W: usize>(
 pub(crate) fn tally_drop<const W: usize>(
     event: &DropEvent<AnyLaw, LARGEST_PARAMETERS, W>,
     impacts: usize,
-) -> Result<(Vec<ImpactTally<W>>, DropEnding), Error> {
+) -> Result<DropTally<W>, Error> {
     Ok(pulp::Arch::new().dispatch(TallyPass { event, impacts })?)
 }
 
@@ -136,7 +138,7 @@ struct TallyPass<'a, const W: usize> {
 }
 
 impl<const W: usize> pulp::WithSimd for TallyPass<'_, W> {
-    type Output = Result<(Vec<ImpactTally<W>>, DropEnding), StepError>;
+    type Output = Result<DropTally<W>, StepError>;
 
     #[inline(always)]
     fn with_simd<S: pulp::Simd>(self, _simd: S) -> Self::Output {
@@ -145,9 +147,14 @@ impl<const W: usize> pulp::WithSimd for TallyPass<'_, W> {
             event: self.event,
             rig: &rig,
             impacts: Vec::new(),
+            beyond: None,
         };
         let ending = follow_drop(self.event, self.impacts, f64::INFINITY, &mut tally)?;
-        Ok((tally.impacts, ending))
+        Ok(DropTally {
+            impacts: tally.impacts,
+            beyond: tally.beyond,
+            ending,
+        })
     }
 }
 
@@ -174,16 +181,21 @@ pub fn simulate_drop(
     check_positive("height", height)?;
     let velocity = rig.impact_velocity(height);
     let event = drop_event::<1>(law, rig, velocity, end, DropSeeds::NONE);
-    let (found, ending) = tally_drop(&event, impacts)?;
+    let found = tally_drop(&event, impacts)?;
     let fall = velocity / rig.gravity;
-    let impacts: Vec<DropImpact> = found.iter().map(|one| impact_of(one, rig, fall)).collect();
+    let impacts: Vec<DropImpact> = found
+        .impacts
+        .iter()
+        .map(|one| impact_of(one, rig, fall))
+        .collect();
     let intervals = impacts
         .windows(2)
         .map(|pair| pair[1].onset_time - pair[0].onset_time);
     Ok(DropSummary {
         intervals: intervals.collect(),
         impacts,
-        at_rest: ending == DropEnding::AtRest,
+        next_onset: found.beyond.map(|touch| fall + touch.time.0[0]),
+        at_rest: found.ending == DropEnding::AtRest,
     })
 }
 

@@ -3,7 +3,7 @@
 use crate::drop_contact::ContactPiece;
 use crate::drop_event::{DropEvent, RigDuals};
 use crate::drop_flight::FlightPiece;
-use crate::drop_follow::{Departure, DropSink, Touch};
+use crate::drop_follow::{Departure, DropEnding, DropSink, Touch};
 use crate::drop_observe::{Observed, contact_at, flight_at, sigma_at};
 use crate::dual::fixed;
 use crate::simulate::{GAUSS_NODES, GAUSS_WEIGHTS, highest};
@@ -41,11 +41,24 @@ pub struct ImpactTally<const W: usize> {
 type Value<const W: usize> = fn(&Observed<W>) -> Lanes<W>;
 type Slope<const W: usize> = fn(&Observed<W>) -> f64;
 
+/// Impacts of a drop, and what comes after them.
+#[derive(Clone, Debug)]
+pub struct DropTally<const W: usize> {
+    /// In order of time.
+    pub impacts: Vec<ImpactTally<W>>,
+    /// First touch after the last of them, where there is one.
+    pub beyond: Option<Touch<W>>,
+    /// How the drop ended.
+    pub ending: DropEnding,
+}
+
 /// Collects the impacts of a drop.
 pub(crate) struct Tally<'a, L, const N: usize, const W: usize> {
     pub event: &'a DropEvent<L, N, W>,
     pub rig: &'a RigDuals<W>,
     pub impacts: Vec<ImpactTally<W>>,
+    /// First touch after the last of them.
+    pub beyond: Option<Touch<W>>,
 }
 
 fn none_yet<const W: usize>() -> Peak<W> {
@@ -130,5 +143,9 @@ impl<L: ContactLaw<N>, const N: usize, const W: usize> DropSink<W> for Tally<'_,
         if let Some(found) = self.impacts.last_mut() {
             found.departure = Some(*departure);
         }
+    }
+
+    fn beyond(&mut self, touch: &Touch<W>) {
+        self.beyond = Some(*touch);
     }
 }

@@ -29,7 +29,7 @@ pub struct CalibrateArguments {
     /// Ways to calibrate in place of the campaign's; may be repeated
     #[arg(long = "way", value_parser = ["waveform", "features", "design"], value_name = "WAY")]
     pub ways: Vec<String>,
-    /// Write the family of equally good laws and the surfaces as figures into this directory
+    /// Write the fitted waveforms, the family of equally good laws and the surfaces as figures into this directory
     #[arg(long, value_name = "DIR", value_hint = ValueHint::DirPath)]
     pub figures: Option<PathBuf>,
     /// Write all tables as CSV and text into this directory

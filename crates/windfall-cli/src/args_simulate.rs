@@ -177,7 +177,7 @@ pub struct SimulateRepeatsArguments {
   windfall simulate impact --law 'adams-impact(k=\"0.868 N/mm^1.91\", e=1.91, c=\"5.56e-4 N s/mm\", d=\"0.001 mm\")' \\
       --mass '4.8 g' --velocity '3.13 m/s' --format json")]
 pub struct SimulateImpactArguments {
-    /// Force law with its parameters
+    /// Force law with its parameters, or a law card (FILE.toml)
     #[arg(long)]
     pub law: String,
     /// Effective mass, such as "0.2 kg"
@@ -211,7 +211,7 @@ pub struct SimulateImpactArguments {
       --encoder counts --counts-per-revolution 20000 --rate '50 kHz' --bits 12 --range '5 V'
       a coarser instrument: decoded counts of 0.018°, force through a 12-bit converter of ±5 V")]
 pub struct SimulatePendulumArguments {
-    /// Force law with its parameters
+    /// Force law with its parameters, or a law card (FILE.toml)
     #[arg(long, required_unless_present = "example")]
     pub law: Option<String>,
     /// Write the example campaign into this directory
@@ -287,7 +287,7 @@ pub struct SimulatePendulumArguments {
       --sensor 'position: rate=100 Hz, noise=0.05 mm, bits=12, range=10 V' --unweighed
       a campaign of recordings, each sensor at its own rate; the mass is left to be found")]
 pub struct SimulateCarriageArguments {
-    /// Force law with its parameters
+    /// Force law with its parameters, or a law card (FILE.toml)
     #[arg(long)]
     pub law: String,
     /// Mass of the body

@@ -30,7 +30,7 @@ pub struct SimulateDropArguments {
     /// one drop is simulated and shown
     #[arg(value_name = "DIR", value_hint = ValueHint::DirPath)]
     pub directory: Option<PathBuf>,
-    /// Force law with its parameters
+    /// Force law with its parameters, or a law card (FILE.toml)
     #[arg(long)]
     pub law: String,
     /// Mass of the fruit, such as "4.8 g"

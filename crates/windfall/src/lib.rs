@@ -52,6 +52,7 @@ pub mod figure_impact;
 pub mod figure_recording;
 pub mod figure_repeats;
 pub mod figure_svg;
+pub mod figure_waveform;
 pub mod figure_xy;
 pub mod file_acoustic;
 pub mod file_campaign;

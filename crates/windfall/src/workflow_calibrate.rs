@@ -19,6 +19,7 @@ use crate::error::Error;
 use crate::evaluate::{Evaluated, Progress};
 use crate::evaluate_drop::MeasuredDrop;
 use crate::figure_calibrate::write_calibrate_figures;
+use crate::figure_waveform::write_waveform_figures;
 use crate::law_card::write_card;
 use crate::outcome::{FailureOutcome, FindingOutcome, StatusOutcome};
 use crate::plate_ringing::{PlateEstimate, plate_of};
@@ -240,6 +241,10 @@ fn by_features(
         let law = (start, &work.own.free[..]);
         let rig = &work.rig.rig;
         let (waveform, found) = waveform_outcome(work.campaign, law, end, rig, &drops)?;
+        if let Some(figures) = &request.figures {
+            let impacts = work.campaign.calibrate.bounces;
+            write_waveform_figures(figures, &waveform, (rig, end, impacts), &drops)?;
+        }
         outcome.waveform = Some(waveform);
         outcome.findings.extend(of_way("waveform", found));
     }

@@ -1,7 +1,9 @@
 //! `windfall simulate`: one event from a force law.
 
 use crate::error::Error;
+use crate::law_card::{law_of_card, read_card};
 use serde::Serialize;
+use std::path::Path;
 use windfall_contact::expression::LawExpression;
 use windfall_contact::expression::parse_law;
 use windfall_contact::law::EndRule;
@@ -12,6 +14,9 @@ use windfall_identify::simulate::{ImpactSummary, Trajectory, simulate_rig, traje
 
 /// What is kept of the motion before and after contact, as a part of its duration.
 const MARGIN: f64 = 0.25;
+
+/// Ending of a law card's name.
+const CARD_ENDING: &str = ".toml";
 
 /// One simulated impact: the keys of the JSON that scripts rely on; SI.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -58,11 +63,16 @@ pub struct SimulatedMotion {
     pub trajectory: Trajectory,
 }
 
-/// A force law with all its parameters from an expression.
+/// A force law with all its parameters: from an expression, or from a law card
+/// (a text that ends with ".toml" is the path of one).
 ///
 /// # Errors
-/// The expression cannot be read or lacks a parameter.
+/// The expression cannot be read or lacks a parameter; the card cannot be used.
 pub fn complete_law(text: &str) -> Result<Law, Error> {
+    if text.ends_with(CARD_ENDING) {
+        let path = Path::new(text);
+        return law_of_card(&read_card(path)?, path);
+    }
     let law = parse_law(text).and_then(|expression| expression.complete());
     law.map_err(|error| Error::OptionInvalid {
         option: format!("--law {text}"),
