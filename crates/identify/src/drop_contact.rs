@@ -72,6 +72,34 @@ pub struct ContactPiece<const W: usize> {
     pub peak_lanes: Lanes<W>,
 }
 
+impl<const W: usize> ContactPiece<W> {
+    /// The piece without derivatives.
+    #[inline(always)]
+    pub(crate) fn values(&self) -> ContactPiece<1> {
+        ContactPiece {
+            step: Step {
+                start: self.step.start,
+                width: self.step.width,
+                from: self.step.from.map(value),
+                to: self.step.to.map(value),
+                terms: self.step.terms.map(|term| term.map(value)),
+            },
+            power: self.power,
+            start: value(self.start),
+            from: self.from,
+            to: self.to,
+            peak: self.peak,
+            peak_lanes: Lanes::ZERO,
+        }
+    }
+}
+
+/// Lane 0 alone.
+#[inline(always)]
+fn value<const W: usize>(lanes: Lanes<W>) -> Lanes<1> {
+    Lanes([lanes.0[0]])
+}
+
 /// Why the integration of a contact stopped.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum ContactStop {
@@ -176,7 +204,8 @@ impl<L: ContactLaw<N>, const N: usize, const W: usize> System<4, W> for Phase<'_
             memory.peak,
             memory.peak_lanes,
         );
-        self.motion(state, force).map(|rate| rate * stretch)
+        let [d, rate, x, u] = self.motion(state, force);
+        [d * stretch, rate * stretch, x * stretch, u * stretch]
     }
 }
 

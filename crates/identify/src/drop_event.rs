@@ -60,6 +60,20 @@ pub struct DropEvent<L, const N: usize, const W: usize> {
     pub tolerance: Tolerance<4>,
 }
 
+impl<L: Copy, const N: usize, const W: usize> DropEvent<L, N, W> {
+    /// The event without derivatives.
+    pub(crate) fn values(&self) -> DropEvent<L, N, 1> {
+        DropEvent {
+            law: self.law,
+            rig: self.rig,
+            velocity: self.velocity,
+            end: self.end,
+            seeds: DropSeeds::NONE,
+            tolerance: self.tolerance,
+        }
+    }
+}
+
 /// The rig's quantities with their derivatives.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct RigDuals<const W: usize> {

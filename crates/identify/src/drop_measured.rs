@@ -2,8 +2,8 @@
 //! simulated one has to say about each, with derivatives.
 
 use crate::drop_rig::DropRig;
-use crate::drop_sensitivity::{DropQuantity, drop_features};
-use crate::drop_simulate::{DropSummary, simulate_drop};
+use crate::drop_sensitivity::{DropQuantity, FEATURE_ACCURACY, drop_features};
+use crate::drop_simulate::{DropSummary, simulate_drop_within};
 use crate::error::Error;
 use windfall_contact::law::EndRule;
 use windfall_contact::law_kind::Law;
@@ -89,7 +89,8 @@ pub fn feature_values(
     features: &[DropFeature],
     end: EndRule,
 ) -> Result<Vec<f64>, Error> {
-    let summary = simulate_drop(law, rig, height, impacts_of_features(features), end)?;
+    let impacts = impacts_of_features(features);
+    let summary = simulate_drop_within(FEATURE_ACCURACY, law, rig, height, impacts, end)?;
     let values = features.iter().map(|feature| {
         feature.of(&summary).ok_or_else(|| Error::FeatureMissing {
             feature: feature.name(),

@@ -11,6 +11,10 @@ use windfall_contact::law::EndRule;
 use windfall_contact::law_kind::Law;
 use windfall_numerics::real::Lanes;
 
+/// Relative accuracy of the integration for features: far below what any bench
+/// measures.
+pub(crate) const FEATURE_ACCURACY: f64 = 1e-10;
+
 /// Quantities that a drop is differentiated by, at most at once.
 pub const MOST_FREE: usize = 11;
 
@@ -144,7 +148,8 @@ fn features<const W: usize>(
     check_positive("height", height)?;
     let velocity = rig.impact_velocity(height);
     let scaled: Vec<(DropQuantity, f64)> = free.iter().map(|q| (*q, 1.0)).collect();
-    let event = drop_event::<W>(law, rig, velocity, end, seeds_of(&scaled, rig, velocity));
+    let seeds = seeds_of(&scaled, rig, velocity);
+    let event = drop_event::<W>(law, rig, velocity, end, (seeds, FEATURE_ACCURACY));
     let found = tally_drop(&event, impacts)?;
     // Release to first touch, v/g.
     let mut fall = event.seeds.velocity * (1.0 / rig.gravity)

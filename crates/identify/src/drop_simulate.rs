@@ -108,7 +108,7 @@ pub(crate) fn drop_event<const W: usize>(
     rig: &DropRig,
     velocity: f64,
     end: EndRule,
-    seeds: DropSeeds<LARGEST_PARAMETERS, W>,
+    (seeds, accuracy): (DropSeeds<LARGEST_PARAMETERS, W>, f64),
 ) -> DropEvent<AnyLaw, LARGEST_PARAMETERS, W> {
     DropEvent {
         law: AnyLaw(*law),
@@ -116,7 +116,7 @@ pub(crate) fn drop_event<const W: usize>(
         velocity,
         end,
         seeds,
-        tolerance: tolerance(ACCURACY, velocity),
+        tolerance: tolerance(accuracy, velocity),
     }
 }
 
@@ -143,9 +143,12 @@ impl<const W: usize> pulp::WithSimd for TallyPass<'_, W> {
     #[inline(always)]
     fn with_simd<S: pulp::Simd>(self, _simd: S) -> Self::Output {
         let rig = rig_duals(self.event);
+        let plain = self.event.values();
+        let plain_rig = rig_duals(&plain);
         let mut tally = Tally {
             event: self.event,
             rig: &rig,
+            values: (&plain, &plain_rig),
             impacts: Vec::new(),
             beyond: None,
         };
@@ -177,10 +180,22 @@ pub fn simulate_drop(
     impacts: usize,
     end: EndRule,
 ) -> Result<DropSummary, Error> {
+    simulate_drop_within(ACCURACY, law, rig, height, impacts, end)
+}
+
+/// [`simulate_drop`] to a relative accuracy of the integration.
+pub(crate) fn simulate_drop_within(
+    accuracy: f64,
+    law: &Law,
+    rig: &DropRig,
+    height: f64,
+    impacts: usize,
+    end: EndRule,
+) -> Result<DropSummary, Error> {
     rig.check()?;
     check_positive("height", height)?;
     let velocity = rig.impact_velocity(height);
-    let event = drop_event::<1>(law, rig, velocity, end, DropSeeds::NONE);
+    let event = drop_event::<1>(law, rig, velocity, end, (DropSeeds::NONE, accuracy));
     let found = tally_drop(&event, impacts)?;
     let fall = velocity / rig.gravity;
     let impacts: Vec<DropImpact> = found
@@ -265,7 +280,7 @@ pub fn drop_trajectory(
     }
     let velocity = rig.impact_velocity(height);
     let fall = velocity / rig.gravity;
-    let event = drop_event::<1>(law, rig, velocity, end, DropSeeds::NONE);
+    let event = drop_event::<1>(law, rig, velocity, end, (DropSeeds::NONE, ACCURACY));
     let duals = rig_duals(&event);
     let zeros = vec![0.0; times.len()];
     let mut reader = Reader {

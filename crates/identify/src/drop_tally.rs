@@ -37,9 +37,9 @@ pub struct ImpactTally<const W: usize> {
     pub departure: Option<Departure<W>>,
 }
 
-/// A quantity of what is seen, and its rate.
-type Value<const W: usize> = fn(&Observed<W>) -> Lanes<W>;
-type Slope<const W: usize> = fn(&Observed<W>) -> f64;
+/// A quantity of what is seen: its value, and with derivatives.
+type Value = fn(&Observed<1>) -> f64;
+type Full<const W: usize> = fn(&Observed<W>) -> Lanes<W>;
 
 /// Impacts of a drop, and what comes after them.
 #[derive(Clone, Debug)]
@@ -56,6 +56,8 @@ pub struct DropTally<const W: usize> {
 pub(crate) struct Tally<'a, L, const N: usize, const W: usize> {
     pub event: &'a DropEvent<L, N, W>,
     pub rig: &'a RigDuals<W>,
+    /// The same without derivatives: maxima are looked for with these.
+    pub values: (&'a DropEvent<L, N, 1>, &'a RigDuals<1>),
     pub impacts: Vec<ImpactTally<W>>,
     /// First touch after the last of them.
     pub beyond: Option<Touch<W>>,
@@ -92,24 +94,39 @@ impl<L: ContactLaw<N>, const N: usize, const W: usize> DropSink<W> for Tally<'_,
             return;
         };
         let end = sigma_at(piece, piece.to).min(1.0);
-        let seen = |sigma: f64| contact_at(self.event, self.rig, piece, sigma);
+        let plain = piece.values();
+        let seen = |sigma: f64| contact_at(self.values.0, self.values.1, &plain, sigma);
         let start = piece.start.0[0];
-        let peak = |peak: &mut Peak<W>, value: Value<W>, slope: Slope<W>| {
-            let at = highest(end, |s| value(&seen(s)).0[0], |s| slope(&seen(s)));
-            let at = seen(at);
-            raise(peak, value(&at), start + at.time);
+        let full = |sigma: f64| contact_at(self.event, self.rig, piece, sigma);
+        let peak = |peak: &mut Peak<W>, of: Value, slope: Value, value: Full<W>| {
+            let at = highest(end, |s| of(&seen(s)), |s| slope(&seen(s)));
+            if of(&seen(at)) > peak.value.0[0] {
+                let at = full(at);
+                raise(peak, value(&at), start + at.time);
+            }
         };
         peak(
             &mut found.contact_force,
-            |o| o.contact_force,
+            |o| o.contact_force.0[0],
             |o| o.contact_rate,
+            |o| o.contact_force,
         );
+        if self.rig.ringing.is_some() {
+            peak(
+                &mut found.support_force,
+                |o| o.support_force.0[0],
+                |o| o.support_rate,
+                |o| o.support_force,
+            );
+        } else {
+            found.support_force = found.contact_force;
+        }
         peak(
-            &mut found.support_force,
-            |o| o.support_force,
-            |o| o.support_rate,
+            &mut found.displacement,
+            |o| o.displacement.0[0],
+            |o| o.rate.0[0],
+            |o| o.displacement,
         );
-        peak(&mut found.displacement, |o| o.displacement, |o| o.rate.0[0]);
         // ∫ F dt = ∫ F q s^(q−1) ds
         let (power, width) = (f64::from(piece.power), piece.step.width);
         for (node, weight) in GAUSS_NODES.iter().zip(GAUSS_WEIGHTS) {

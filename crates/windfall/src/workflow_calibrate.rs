@@ -11,7 +11,7 @@ use crate::calibrate_outcome::CalibrateOutcome;
 use crate::calibrate_store::keep_calibration;
 use crate::calibrate_target::{
     CalibrateRig, DropData, TargetCondition, drop_outcomes, heights_of, plate_outcome, problem_of,
-    target_condition,
+    same_height, target_condition,
 };
 use crate::calibrate_waveform::waveform_outcome;
 use crate::calibrate_waveform_drops::recorded_drops;
@@ -232,7 +232,13 @@ fn by_features(
     outcome: &mut CalibrateOutcome,
 ) -> Result<(), Error> {
     let end = work.own.end;
-    let fitted = fit(&work.law, &work.problem, &work.target, request.profile)?;
+    // Where features only give a start, one drop of each height is enough.
+    let few = match work.ways.contains(&Way::Features) {
+        true => None,
+        false => Some(problem_of(&work.rig, &one_of_each_height(&work.drops), end)),
+    };
+    let problem = few.as_ref().unwrap_or(&work.problem);
+    let fitted = fit(&work.law, problem, &work.target, request.profile)?;
     if work.ways.contains(&Way::Waveform) {
         // Features that tell all parameters give the better start.
         let told = fitted.converged && fitted.information.rank == work.law.count();
@@ -267,6 +273,18 @@ fn by_features(
     outcome.closing = closing(&setting, &fitted.at)?;
     outcome.next = Some(next_experiment(&setting, &fitted.at)?);
     Ok(())
+}
+
+/// The first drop of each height.
+fn one_of_each_height(drops: &[DropData]) -> Vec<DropData> {
+    let mut chosen: Vec<DropData> = Vec::new();
+    for drop in drops {
+        let height = drop.height.value;
+        if !chosen.iter().any(|c| same_height(c.height.value, height)) {
+            chosen.push(drop.clone());
+        }
+    }
+    chosen
 }
 
 /// The ways that are asked for, or all that apply.
