@@ -5,7 +5,7 @@
 //! its derivatives by the free parameters in the lanes. Time runs as t = s^q
 //! from first touch, as in [`crate::contact_motion`].
 
-use crate::contact_motion::scaled_time;
+use crate::contact_motion::{earlier, scaled_time, time_of};
 use crate::drop_event::{DropEvent, RigDuals};
 use crate::dual::{derivatives, instant, product};
 use windfall_contact::law::{ContactForce, ContactLaw, EndRule, SMALLEST_DISPLACEMENT};
@@ -124,15 +124,6 @@ pub(crate) struct ContactEnd<const W: usize> {
     pub stop: ContactStop,
     /// What the law remembers.
     pub memory: Memory<W>,
-}
-
-#[inline(always)]
-pub(crate) fn time_of(s: f64, power: u32) -> f64 {
-    match power {
-        1 => s,
-        2 => s * s,
-        _ => (s * s) * (s * s),
-    }
 }
 
 struct Phase<'a, L, const N: usize, const W: usize> {
@@ -371,13 +362,6 @@ fn first_stop<L: ContactLaw<N>, const N: usize, const W: usize>(
     match end_of_contact(phase, done) {
         Some((sigma, end)) => earlier(stop, (Stop::End(end), sigma)),
         None => stop,
-    }
-}
-
-fn earlier(first: Option<(Stop, f64)>, second: (Stop, f64)) -> Option<(Stop, f64)> {
-    match first {
-        Some(found) if found.1 <= second.1 => Some(found),
-        _ => Some(second),
     }
 }
 

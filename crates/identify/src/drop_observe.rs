@@ -1,7 +1,7 @@
 //! What a drop rig would show at an instant: contact force and support force.
 
-use crate::contact_motion::scaled_time;
-use crate::drop_contact::{ContactPiece, force_dual, time_of};
+use crate::contact_motion::{scaled_time, time_of};
+use crate::drop_contact::{ContactPiece, force_dual};
 use crate::drop_event::{DropEvent, RigDuals};
 use crate::drop_flight::FlightPiece;
 use crate::dual::{fixed, product};

@@ -47,8 +47,7 @@ impl DropRig {
             positive.push(("plate mass", plate.mass));
             positive.push(("plate stiffness", plate.stiffness));
             // Zero damping is a plate that rings for ever: allowed.
-            positive.push(("plate damping", plate.damping.max(f64::MIN_POSITIVE)));
-            if plate.damping.is_nan() || plate.damping < 0.0 {
+            if !(plate.damping.is_finite() && plate.damping >= 0.0) {
                 let (name, value) = ("plate damping", plate.damping);
                 return Err(Error::BadInput { name, value });
             }

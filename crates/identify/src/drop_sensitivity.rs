@@ -79,16 +79,14 @@ pub struct DropFeatures {
 
 /// Seeds with a one in the lane of each free quantity, for derivatives by the
 /// quantities themselves.
-///
-/// * `scale`: derivatives are by the quantity over this
 pub(crate) fn seeds_of<const W: usize>(
-    free: &[(DropQuantity, f64)],
+    free: &[DropQuantity],
     rig: &DropRig,
     velocity: f64,
 ) -> DropSeeds<LARGEST_PARAMETERS, W> {
     let mut seeds = DropSeeds::NONE;
-    for (i, &(quantity, scale)) in free.iter().enumerate() {
-        let one = |slope: f64| Lanes::unit(i + 1, slope * scale);
+    for (i, &quantity) in free.iter().enumerate() {
+        let one = |slope: f64| Lanes::unit(i + 1, slope);
         match quantity {
             DropQuantity::Law(parameter) => seeds.parameters[parameter] += one(1.0),
             DropQuantity::Height => seeds.velocity += one(rig.gravity / velocity),
@@ -147,8 +145,7 @@ fn features<const W: usize>(
     rig.check()?;
     check_positive("height", height)?;
     let velocity = rig.impact_velocity(height);
-    let scaled: Vec<(DropQuantity, f64)> = free.iter().map(|q| (*q, 1.0)).collect();
-    let seeds = seeds_of(&scaled, rig, velocity);
+    let seeds = seeds_of(free, rig, velocity);
     let event = drop_event::<W>(law, rig, velocity, end, (seeds, FEATURE_ACCURACY));
     let found = tally_drop(&event, impacts)?;
     // Release to first touch, v/g.
