@@ -18,8 +18,8 @@ use windfall_identify::drop_waveform::{
     DropRecord, Knowledge, WaveformFit, WaveformPlate, WaveformProblem, WaveformRig,
 };
 use windfall_identify::drop_waveform_fit::calibrate_waveform;
-use windfall_signal::mass::Uncertain;
 use windfall_signal::noise_gaussian::{noise_source, normal, uniform};
+use windfall_signal::uncertain::Uncertain;
 
 const GRAVITY: f64 = 9.80665;
 const HEIGHTS: [f64; 5] = [0.1, 0.2, 0.3, 0.4, 0.5];

@@ -2,11 +2,12 @@
 
 use crate::drop_coordinates::LawCoordinates;
 use crate::drop_feature_problem::{
-    FeatureProblem, KnownValue, MeasuredDrop, MeasuredFeature, linearise, nuisances,
+    FeatureProblem, MeasuredDrop, MeasuredFeature, linearise, nuisances,
 };
 use crate::drop_information::{Information, information};
 use crate::drop_measured::DropFeature;
 use crate::error::Error;
+use windfall_signal::uncertain::Uncertain;
 
 /// Drops that could be made.
 #[derive(Clone, Debug, PartialEq)]
@@ -27,7 +28,7 @@ pub enum Choice {
     /// One that is there already, with its error.
     Same(usize),
     /// A new one.
-    New(KnownValue),
+    New(Uncertain),
 }
 
 /// What a candidate would bring.
@@ -88,7 +89,7 @@ fn informed(
 #[must_use]
 pub fn with_candidate(problem: &FeatureProblem, candidate: &Candidate) -> FeatureProblem {
     let mut further = problem.clone();
-    let place = |list: &mut Vec<KnownValue>, choice: Choice| match choice {
+    let place = |list: &mut Vec<Uncertain>, choice: Choice| match choice {
         Choice::Same(index) => index,
         Choice::New(known) => {
             list.push(known);

@@ -7,15 +7,7 @@ use crate::drop_rig::DropRig;
 use crate::error::Error;
 use nalgebra::{DMatrix, DVector};
 use windfall_contact::law::EndRule;
-
-/// A value with its standard uncertainty; zero where it is exact.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct KnownValue {
-    /// Value; SI.
-    pub value: f64,
-    /// Standard uncertainty; SI.
-    pub sd: f64,
-}
+use windfall_signal::uncertain::Uncertain;
 
 /// A feature as it was measured.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -72,9 +64,9 @@ pub struct FeatureProblem {
     /// How well it is known.
     pub rig_sd: RigUncertainty,
     /// Masses of the fruit; kg.
-    pub fruits: Vec<KnownValue>,
+    pub fruits: Vec<Uncertain>,
     /// Drop heights; m.
-    pub heights: Vec<KnownValue>,
+    pub heights: Vec<Uncertain>,
     /// The drops.
     pub drops: Vec<MeasuredDrop>,
     /// What else is known of the law.
@@ -91,7 +83,7 @@ pub struct Nuisance {
     /// Which fruit or height; 0 for the rig.
     pub index: usize,
     /// What is known.
-    pub known: KnownValue,
+    pub known: Uncertain,
 }
 
 /// Quantities that are known with error.
@@ -112,7 +104,7 @@ pub fn nuisances(problem: &FeatureProblem) -> Vec<Nuisance> {
         }
     }
     let (rig, sd) = (&problem.rig, &problem.rig_sd);
-    let of_rig = |value, sd| KnownValue { value, sd };
+    let of_rig = |value, sd| Uncertain { value, sd };
     let factor = of_rig(rig.effective_mass_factor, sd.effective_mass_factor);
     found.push((RigQuantity::EffectiveMassFactor, 0, factor));
     if let Some(plate) = &rig.plate {

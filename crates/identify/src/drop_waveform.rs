@@ -3,7 +3,7 @@
 use crate::drop_rig::DropRig;
 use windfall_contact::law::EndRule;
 use windfall_contact::law_kind::Law;
-use windfall_signal::mass::Uncertain;
+use windfall_signal::uncertain::Uncertain;
 
 /// What is known of a quantity beforehand.
 #[derive(Clone, Copy, Debug, PartialEq)]

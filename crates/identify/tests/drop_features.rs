@@ -14,13 +14,14 @@ use windfall_identify::drop_experiment::{Candidate, Choice, expected, ranked, wi
 use windfall_identify::drop_family::{FamilyOptions, family_point, trace_family};
 use windfall_identify::drop_feature_fit::{FeatureFitOptions, fit_features};
 use windfall_identify::drop_feature_problem::{
-    CoordinatePrior, FeatureProblem, KnownValue, MeasuredDrop, MeasuredFeature, RigUncertainty,
-    linearise, nuisances,
+    CoordinatePrior, FeatureProblem, MeasuredDrop, MeasuredFeature, RigUncertainty, linearise,
+    nuisances,
 };
 use windfall_identify::drop_information::information;
 use windfall_identify::drop_measured::{DropFeature, FeatureKind, feature_values};
 use windfall_identify::drop_rig::{DropRig, Plate};
 use windfall_identify::drop_start::coarse_starts;
+use windfall_signal::uncertain::Uncertain;
 
 const PEAK: DropFeature = DropFeature {
     kind: FeatureKind::PeakSupportForce,
@@ -66,8 +67,8 @@ fn coordinates() -> LawCoordinates {
     law_coordinates(&truth(), &[0, 1, 2], 1e-3).unwrap()
 }
 
-fn exact(value: f64) -> KnownValue {
-    KnownValue { value, sd: 0.0 }
+fn exact(value: f64) -> Uncertain {
+    Uncertain { value, sd: 0.0 }
 }
 
 /// One drop of one fruit from each height, features as the truth has them.
@@ -293,7 +294,7 @@ fn normal(random: &mut ChaCha8Rng) -> f64 {
 /// masses and heights by which they came about.
 fn drawn(problem: &FeatureProblem, random: &mut ChaCha8Rng) -> FeatureProblem {
     let mut noisy = problem.clone();
-    let mut real = |known: &KnownValue| known.value + known.sd * normal(random);
+    let mut real = |known: &Uncertain| known.value + known.sd * normal(random);
     let masses: Vec<f64> = problem.fruits.iter().map(&mut real).collect();
     let heights: Vec<f64> = problem.heights.iter().map(&mut real).collect();
     for drop in &mut noisy.drops {
@@ -437,14 +438,14 @@ fn recovers_the_expected_uncertainty_in_simulated_campaigns() {
     let at = coordinates.start();
     let candidate = |height: f64, mass: Choice| Candidate {
         mass,
-        height: Choice::New(KnownValue {
+        height: Choice::New(Uncertain {
             value: height,
             sd: 1e-3,
         }),
         features: sds.to_vec(),
         drops: 5,
     };
-    let heavy = Choice::New(KnownValue {
+    let heavy = Choice::New(Uncertain {
         value: 8e-3,
         sd: 0.05e-3,
     });

@@ -11,8 +11,8 @@ use windfall_identify::drop_waveform::{
     DropRecord, Knowledge, WaveformFit, WaveformPlate, WaveformProblem, WaveformRig,
 };
 use windfall_identify::drop_waveform_fit::calibrate_waveform;
-use windfall_signal::mass::Uncertain;
 use windfall_signal::noise_gaussian::{noise_source, normal};
+use windfall_signal::uncertain::Uncertain;
 
 const GRAVITY: f64 = 9.80665;
 const RATE: f64 = 10_000.0;

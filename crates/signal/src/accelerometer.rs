@@ -4,8 +4,8 @@
 use crate::filter_butterworth::{Band, FilterError, butterworth};
 use crate::filter_zero_phase::filter_zero_phase;
 use crate::kinematics::value_at;
-use crate::mass::Uncertain;
 use crate::measure::Surroundings;
+use crate::uncertain::Uncertain;
 
 /// Order of the high-pass filters of a double integration.
 const ORDER: usize = 2;

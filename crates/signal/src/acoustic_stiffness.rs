@@ -1,14 +1,7 @@
 //! Stiffness of a fruit from its mass and the frequency of its first spheroidal
 //! mode.
 
-/// A value with its standard uncertainty.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Uncertain {
-    /// Value.
-    pub value: f64,
-    /// Standard uncertainty.
-    pub sd: f64,
-}
+use crate::uncertain::Uncertain;
 
 /// 10⁶ Hz² g^(2/3), the unit of most papers, per Hz² kg^(2/3).
 pub const MEGAHERTZ_GRAM: f64 = 1e-4;

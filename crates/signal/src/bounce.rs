@@ -16,11 +16,11 @@ use crate::bounce_train::{
 use crate::clipping::clipping;
 use crate::error::Error;
 use crate::finding::Finding;
-use crate::mass::Uncertain;
 use crate::recording::Channel;
 use crate::ringing::{Ringing, decay_rate};
 use crate::ringing_search::find_ringing;
 use crate::trigger::{Orientation, Threshold};
+use crate::uncertain::Uncertain;
 use crate::validate::checked_times;
 
 /// Fewest samples of a recording.

@@ -2,9 +2,9 @@
 
 use crate::bounce_rise::time_before;
 use crate::bounce_segment::Segment;
-use crate::mass::Uncertain;
 use crate::polynomial::fit_polynomial;
 use crate::ringing::{Ringing, amplitude_at, ringing_at};
+use crate::uncertain::Uncertain;
 use std::f64::consts::TAU;
 
 /// The signals that bounces are measured in, and what is known of them.

@@ -1,8 +1,8 @@
 //! The level that a force has while nothing touches.
 
-use crate::mass::Uncertain;
 use crate::noise::{baseline, combined_noise, median, quantum};
 use crate::trigger_scale::white_noise;
+use crate::uncertain::Uncertain;
 
 /// Part of the recording of which the level is first guessed; 1.
 const PILOT_SHARE: f64 = 0.01;

@@ -1,9 +1,9 @@
 //! A train of bounces: what is looked for, and what was found.
 
 use crate::bounce_finding::BounceFinding;
-use crate::mass::Uncertain;
 use crate::ringing::Ringing;
 use crate::trigger::{Orientation, Threshold};
+use crate::uncertain::Uncertain;
 
 /// What the force of bounces is measured from.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]

@@ -6,10 +6,10 @@ use crate::filter_butterworth::Band;
 use crate::finding::Finding;
 use crate::force_loop::force_loop;
 use crate::impact::Measured;
-use crate::mass::Uncertain;
 use crate::measure::Surroundings;
 use crate::options::ExtractOptions;
 use crate::track::{Signals, Track, mean_interval};
+use crate::uncertain::Uncertain;
 
 /// Disagreement of force and acceleration that is told; 1.
 const DISAGREES: f64 = 0.05;

@@ -1,8 +1,9 @@
 //! Which of the resonances in the taps of one fruit is its first spheroidal
 //! mode, 0S2.
 
-use crate::acoustic_stiffness::{Uncertain, mean_of_differing};
+use crate::acoustic_stiffness::mean_of_differing;
 use crate::resonance::Resonance;
+use crate::uncertain::Uncertain;
 
 /// Rules by which the first spheroidal mode is accepted.
 #[derive(Clone, Copy, Debug, PartialEq)]

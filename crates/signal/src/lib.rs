@@ -80,6 +80,7 @@ pub mod tap_finding;
 mod track;
 pub mod trigger;
 mod trigger_scale;
+pub mod uncertain;
 pub mod validate;
 
 pub use error::Error;

@@ -3,7 +3,7 @@
 use crate::error::Error;
 use crate::impact::Measured;
 
-pub use crate::acoustic_stiffness::Uncertain;
+use crate::uncertain::Uncertain;
 
 /// Mass of a carriage under a constant driving acceleration:
 ///

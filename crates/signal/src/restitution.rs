@@ -2,7 +2,7 @@
 //! and by measured velocities, each with its standard uncertainty.
 
 use crate::bounce_train::Bounce;
-use crate::mass::Uncertain;
+use crate::uncertain::Uncertain;
 
 /// How a restitution was found.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -1,9 +1,10 @@
 //! Whether the restitutions of a drop agree, and what it means if they do not.
 
 use crate::bounce_train::Bounce;
-use crate::mass::{Uncertain, mean_mass};
+use crate::mass::mean_mass;
 use crate::restitution::{DropConditions, Restitution, RestitutionMethod};
 use crate::restitution_finding::RestitutionFinding;
+use crate::uncertain::Uncertain;
 
 /// Differences beyond this many standard uncertainties are reported; 1.
 const SIGNIFICANT: f64 = 3.0;

@@ -1,7 +1,7 @@
 //! What is wrong with restitutions that do not agree.
 
-use crate::mass::Uncertain;
 use crate::restitution::RestitutionMethod;
+use crate::uncertain::Uncertain;
 use std::fmt;
 
 /// Something about the restitutions of a drop that a reader must know.

@@ -2,9 +2,9 @@
 //! before and just after each contact.
 
 use crate::bounce_train::Bounce;
-use crate::mass::Uncertain;
 use crate::polynomial::fit_polynomial;
 use crate::restitution::{Restitution, RestitutionMethod};
+use crate::uncertain::Uncertain;
 
 /// How velocities are taken.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -2,8 +2,8 @@
 //! by a damped cosine fitted to the force.
 
 use crate::damped_mode::{ModeStart, Transformed, fit_modes, mode_samples};
-use crate::mass::Uncertain;
 use crate::spectrum::transform;
+use crate::uncertain::Uncertain;
 use std::f64::consts::{PI, TAU};
 
 /// Free ringing of a plate:

@@ -1,8 +1,8 @@
 //! Logarithmic decrement: damping ratio and damped period from the peaks of a
 //! free ringing, as it is done by hand.
 
-use crate::mass::Uncertain;
 use crate::polynomial::fit_polynomial;
+use crate::uncertain::Uncertain;
 use std::f64::consts::PI;
 
 /// A positive peak of the ringing.

@@ -1,7 +1,7 @@
 //! Stiffness and damping of a plate from how it rings, and the table of damping
 //! ratios over drop heights.
 
-use crate::mass::Uncertain;
+use crate::uncertain::Uncertain;
 use std::f64::consts::TAU;
 
 /// A plate on spring and damper.

@@ -11,13 +11,14 @@ use windfall_signal::instrument::{
     calibrated, pendulum_instrument, record,
 };
 use windfall_signal::kinematics::{Encoder, count_length};
-use windfall_signal::mass::{Uncertain, mass_from_impulse};
+use windfall_signal::mass::mass_from_impulse;
 use windfall_signal::noise_gaussian::{noise_source, normal};
 use windfall_signal::options::RateMethod;
 use windfall_signal::recording::Recording;
 use windfall_signal::trigger::{
     ContactChoice, Contacts, Orientation, Signal, Threshold, TriggerOptions, find_contacts,
 };
+use windfall_signal::uncertain::Uncertain;
 use windfall_signal::{Error, ExtractOptions, Finding, extract_impact};
 
 /// A mass that meets a spring and a damper in parallel at time 0 and leaves

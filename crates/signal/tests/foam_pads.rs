@@ -6,8 +6,9 @@
 #![allow(clippy::unwrap_used, clippy::print_stdout)]
 
 use std::path::PathBuf;
-use windfall_signal::mass::{Uncertain, mass_from_impulse};
+use windfall_signal::mass::mass_from_impulse;
 use windfall_signal::recording::{Channel, Quantity, Recording, Times};
+use windfall_signal::uncertain::Uncertain;
 use windfall_signal::{ExtractOptions, Finding, extract_impact};
 
 fn pads() -> Option<PathBuf> {

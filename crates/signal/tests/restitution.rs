@@ -8,12 +8,12 @@ mod plate;
 use plate::{PLATE, Plate, RECORD, Record, bounces, channel};
 use windfall_signal::bounce::find_bounces;
 use windfall_signal::bounce_train::{BounceOptions, BounceTrain};
-use windfall_signal::mass::Uncertain;
 use windfall_signal::restitution::{
     DropConditions, Restitution, RestitutionMethod, restitution_from_impulse, restitution_from_time,
 };
 use windfall_signal::restitution_check::check_restitutions;
 use windfall_signal::restitution_finding::RestitutionFinding;
+use windfall_signal::uncertain::Uncertain;
 
 const E: f64 = 0.6;
 

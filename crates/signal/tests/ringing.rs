@@ -8,9 +8,9 @@ mod plate;
 use plate::{PLATE, RECORD, Record, bounces, channel};
 use windfall_signal::bounce::find_bounces;
 use windfall_signal::bounce_train::{BounceOptions, BounceTrain};
-use windfall_signal::mass::Uncertain;
 use windfall_signal::ringing_peaks::{Decrement, FreeRinging, logarithmic_decrement};
 use windfall_signal::ringing_plate::plate_dynamics;
+use windfall_signal::uncertain::Uncertain;
 
 fn train(height: f64, seed: u64) -> BounceTrain {
     let contacts = bounces(4.8e-3, height, 0.6, 3.7e-3, 1);

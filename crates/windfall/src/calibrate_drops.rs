@@ -8,10 +8,10 @@ use crate::error::Error;
 use crate::evaluate_drop::{Known, MeasuredDrop};
 use crate::plate_ringing::PlateEstimate;
 use crate::read_drop::{DropCampaign, drop_of};
-use windfall_identify::drop_feature_problem::{KnownValue, MeasuredFeature, RigUncertainty};
+use windfall_identify::drop_feature_problem::{MeasuredFeature, RigUncertainty};
 use windfall_identify::drop_measured::{DropFeature, FeatureKind};
 use windfall_identify::drop_rig::{DropRig, Plate};
-use windfall_signal::mass::Uncertain;
+use windfall_signal::uncertain::Uncertain;
 
 /// Columns of impacts.csv that hold features, counted from 1: "peak_force_1_N".
 const COLUMNS: [(&str, FeatureKind); 3] = [
@@ -19,15 +19,6 @@ const COLUMNS: [(&str, FeatureKind); 3] = [
     ("interval", FeatureKind::Interval),
     ("contact_duration", FeatureKind::ContactDuration),
 ];
-
-/// A value with its uncertainty.
-#[must_use]
-pub fn known(value: Uncertain) -> KnownValue {
-    KnownValue {
-        value: value.value,
-        sd: value.sd,
-    }
-}
 
 /// Features in the columns of an entry, of as many impacts as are used; none where
 /// there are no such columns.
@@ -75,8 +66,8 @@ pub fn drop_data(
     Ok(DropData {
         id: entry.id.clone(),
         specimen: entry.specimen.clone(),
-        mass: known(drop.mass),
-        height: known(drop.height),
+        mass: drop.mass,
+        height: drop.height,
         features,
     })
 }

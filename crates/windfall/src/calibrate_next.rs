@@ -12,10 +12,11 @@ use crate::text_number::plain;
 use windfall_contact::law::EndRule;
 use windfall_identify::drop_experiment::{Candidate, Choice, expected, ranked};
 use windfall_identify::drop_feature_problem::{
-    CoordinatePrior, FeatureProblem, KnownValue, linearise, nuisances,
+    CoordinatePrior, FeatureProblem, linearise, nuisances,
 };
 use windfall_identify::drop_information::{Information, information};
 use windfall_identify::drop_measured::{DropFeature, FeatureKind};
+use windfall_signal::uncertain::Uncertain;
 
 /// How well Hertz's contact with a modulus from elsewhere is believed to tell a
 /// stiffness: moduli of fruit vary by a third.
@@ -106,7 +107,7 @@ pub fn closing(setting: &NextSetting, at: &[f64]) -> Result<Vec<ClosingOutcome>,
             continue;
         }
         let mut problem = one.clone();
-        problem.heights.push(KnownValue {
+        problem.heights.push(Uncertain {
             value: other,
             sd: height.sd,
         });
@@ -198,7 +199,7 @@ fn candidates(setting: &NextSetting) -> Vec<(Candidate, f64, f64)> {
         .or(fruit)
         .map_or(0, |place| setting.problem.drops[place].fruit);
     let known = setting.problem.fruits[own];
-    let scaled = |times: f64| KnownValue {
+    let scaled = |times: f64| Uncertain {
         value: times * known.value,
         sd: known.sd,
     };
@@ -214,7 +215,7 @@ fn candidates(setting: &NextSetting) -> Vec<(Candidate, f64, f64)> {
             for impacts in [2, 3] {
                 let candidate = Candidate {
                     mass: choice,
-                    height: Choice::New(KnownValue {
+                    height: Choice::New(Uncertain {
                         value: height,
                         sd: target.height.sd,
                     }),

@@ -11,10 +11,11 @@ use crate::regress_findings::finding;
 use crate::text_number::plain;
 use windfall_contact::law::EndRule;
 use windfall_identify::drop_feature_problem::{
-    FeatureProblem, KnownValue, MeasuredDrop, MeasuredFeature, RigUncertainty,
+    FeatureProblem, MeasuredDrop, MeasuredFeature, RigUncertainty,
 };
 use windfall_identify::drop_measured::{DropFeature, FeatureKind};
 use windfall_identify::drop_rig::DropRig;
+use windfall_signal::uncertain::Uncertain;
 
 /// The first peak of the force in the support.
 pub(crate) const PEAK: DropFeature = DropFeature {
@@ -36,9 +37,9 @@ pub struct DropData {
     /// The fruit.
     pub specimen: String,
     /// Mass of the fruit; kg.
-    pub mass: KnownValue,
+    pub mass: Uncertain,
     /// Drop height; m.
-    pub height: KnownValue,
+    pub height: Uncertain,
     /// Features.
     pub features: Vec<MeasuredFeature>,
 }
@@ -56,9 +57,9 @@ pub struct CalibrateRig {
 #[derive(Clone, Debug, PartialEq)]
 pub struct TargetCondition {
     /// Mass of the fruit; kg.
-    pub mass: KnownValue,
+    pub mass: Uncertain,
     /// Drop height; m.
-    pub height: KnownValue,
+    pub height: Uncertain,
     /// First peak and interval: means with their uncertainty.
     pub features: Vec<MeasuredFeature>,
     /// For people.
@@ -158,10 +159,10 @@ pub fn target_condition(
 }
 
 /// Mean of values whose errors are shared.
-fn mean_known(values: impl Iterator<Item = KnownValue>) -> KnownValue {
-    let all: Vec<KnownValue> = values.collect();
+fn mean_known(values: impl Iterator<Item = Uncertain>) -> Uncertain {
+    let all: Vec<Uncertain> = values.collect();
     let count = all.len().max(1) as f64;
-    KnownValue {
+    Uncertain {
         value: all.iter().map(|known| known.value).sum::<f64>() / count,
         sd: all.iter().map(|known| known.sd).fold(0.0, f64::max),
     }
@@ -253,8 +254,8 @@ pub fn plate_outcome(rig: &CalibrateRig) -> Named<MeasuredValue> {
 /// its mass, drops from one height that of its setting.
 #[must_use]
 pub fn problem_of(rig: &CalibrateRig, drops: &[DropData], end: EndRule) -> FeatureProblem {
-    let mut fruits: Vec<(&str, KnownValue)> = Vec::new();
-    let mut heights: Vec<KnownValue> = Vec::new();
+    let mut fruits: Vec<(&str, Uncertain)> = Vec::new();
+    let mut heights: Vec<Uncertain> = Vec::new();
     let mut measured = Vec::new();
     for drop in drops {
         let known = fruits
@@ -264,7 +265,7 @@ pub fn problem_of(rig: &CalibrateRig, drops: &[DropData], end: EndRule) -> Featu
             fruits.push((&drop.specimen, drop.mass));
             fruits.len() - 1
         });
-        let same = |other: &KnownValue| {
+        let same = |other: &Uncertain| {
             same_height(other.value, drop.height.value) && other.sd == drop.height.sd
         };
         let height = heights.iter().position(same).unwrap_or_else(|| {

@@ -19,7 +19,7 @@ use windfall_identify::drop_waveform::{
 };
 use windfall_identify::drop_waveform_fit::calibrate_waveform;
 use windfall_signal::bounce_train::BounceTrain;
-use windfall_signal::mass::Uncertain;
+use windfall_signal::uncertain::Uncertain;
 
 /// Samples are used from this much before the first visible force, which the
 /// plate delays; s.

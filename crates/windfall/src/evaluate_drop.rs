@@ -15,7 +15,6 @@ use serde::{Deserialize, Deserializer, Serialize};
 use std::f64::consts::TAU;
 use windfall_signal::bounce::find_bounces;
 use windfall_signal::bounce_train::{Bounce, BounceOptions, BounceTrain, PlateRinging};
-use windfall_signal::mass::Uncertain;
 use windfall_signal::recording::{Channel, Quantity, Recording, Times};
 use windfall_signal::restitution::{
     DropConditions, Restitution, RestitutionMethod, impact_speed, restitution_from_impulse,
@@ -26,6 +25,7 @@ use windfall_signal::restitution_motion::{
     MotionOptions, contact_motions, restitution_from_motion,
 };
 use windfall_signal::ringing_peaks::{FreeRinging, logarithmic_decrement};
+use windfall_signal::uncertain::Uncertain;
 
 /// Names of the methods in tables.
 pub const DROP: &str = "drop";

@@ -7,7 +7,8 @@ use crate::outcome::{FindingOutcome, MassOutcome};
 use rayon::prelude::*;
 use windfall_identify::rig::{Carriage, Rig};
 use windfall_signal::impact::Measured;
-use windfall_signal::mass::{Uncertain, mass_from_impulse, mass_from_impulses};
+use windfall_signal::mass::{mass_from_impulse, mass_from_impulses};
+use windfall_signal::uncertain::Uncertain;
 
 /// The rig, and what is to be said about its mass.
 #[derive(Clone, Debug)]

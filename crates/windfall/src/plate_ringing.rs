@@ -7,8 +7,8 @@ use crate::named::Named;
 use crate::outcome::FindingOutcome;
 use crate::read_drop::{DropCampaign, PlatePlan};
 use windfall_identify::drop_rig::Plate;
-use windfall_signal::mass::Uncertain;
 use windfall_signal::ringing_plate::{HeightTable, PlateDynamics, height_table, plate_dynamics};
+use windfall_signal::uncertain::Uncertain;
 
 /// Method of the table over heights.
 const BY_HEIGHT: &str = "ringing of the plate by drop height";

@@ -20,7 +20,7 @@ use crate::toml_source::{
 };
 use std::path::Path;
 use toml::Spanned;
-use windfall_signal::mass::Uncertain;
+use windfall_signal::uncertain::Uncertain;
 
 /// A campaign of fruit that fall on a plate.
 #[derive(Clone, Debug)]

@@ -9,12 +9,11 @@ use crate::named::Named;
 use crate::outcome::FindingOutcome;
 use crate::read_acoustic::{AcousticCampaign, Common, density_of};
 use crate::text_number::plain;
-use windfall_signal::acoustic_stiffness::{
-    Uncertain, acoustic_stiffness, acoustic_stiffness_with_density,
-};
+use windfall_signal::acoustic_stiffness::{acoustic_stiffness, acoustic_stiffness_with_density};
 use windfall_signal::first_mode::{
     Decision, Persistent, Rejection, TapModes, first_mode, persistent, shared_frequencies,
 };
+use windfall_signal::uncertain::Uncertain;
 
 /// Name of the method, where other campaigns have that of a law.
 pub const METHOD: &str = "first spheroidal mode";

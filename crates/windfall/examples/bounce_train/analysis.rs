@@ -12,7 +12,6 @@ use windfall_identify::drop_waveform::{
 use windfall_identify::drop_waveform_fit::calibrate_waveform;
 use windfall_signal::bounce::find_bounces;
 use windfall_signal::bounce_train::{BounceOptions, BounceTrain, PlateRinging, StaticLevel};
-use windfall_signal::mass::Uncertain;
 use windfall_signal::recording::{Channel, Quantity, Times};
 use windfall_signal::restitution::{
     Restitution, RestitutionMethod, flight, restitution_from_heights,
@@ -21,6 +20,7 @@ use windfall_signal::restitution_motion::{
     ContactMotion, MotionOptions, contact_motions, restitution_from_impulse_and_motion,
     restitution_from_motion,
 };
+use windfall_signal::uncertain::Uncertain;
 
 /// Names of the runs in the file.
 pub const RUNS: [&str; 5] = ["Latest", "Run 1", "Run 2", "Run 3", "Run 4"];
