@@ -6,6 +6,7 @@ use crate::model::{Columns, Model};
 use crate::motion::Acceleration;
 use crate::onset_average::{OnsetAverage, OnsetCorrection};
 use crate::samples::{PACK, QUANTITIES, Quantity, SampleGroup};
+use crate::whitening::{Row, Whitening, ZeroSums, unit_shift};
 use windfall_contact::law::{ContactForce, ContactLaw, EndRule, SMALLEST_DISPLACEMENT};
 use windfall_numerics::least_squares::NormalEquations;
 use windfall_numerics::ode_step::{DENSE_COEFFICIENTS, StepError, dense_at};
@@ -78,9 +79,12 @@ where
             rows,
             end: after,
             sums: Sums::ZERO,
+            noise: Noise::NONE,
         };
         follow(&model.event, before.min(0.0), after, &mut reading)?;
-        Ok(reading.sums.total())
+        let mut equations = reading.sums.total();
+        reading.noise.complete(groups, &mut equations);
+        Ok(equations)
     }
 }
 
@@ -91,6 +95,51 @@ struct Reading<'a, L, const N: usize, const W: usize, const P: usize> {
     rows: Option<&'a mut Rows>,
     end: f64,
     sums: Sums<P>,
+    noise: Noise<P>,
+}
+
+/// What noise other than white keeps between pieces of the motion; each quantity
+/// is in one group.
+struct Noise<const P: usize> {
+    whitening: [Whitening<P>; QUANTITIES],
+    zeros: [ZeroSums<P>; QUANTITIES],
+    /// Rows that found their predecessor in a later piece.
+    joints: NormalEquations<P>,
+}
+
+impl<const P: usize> Noise<P> {
+    const NONE: Self = Self {
+        whitening: [Whitening::NONE; QUANTITIES],
+        zeros: [ZeroSums::ZERO; QUANTITIES],
+        joints: NormalEquations::ZERO,
+    };
+
+    /// Adds the rows without a predecessor and takes the zeros out.
+    fn complete(&mut self, groups: &[SampleGroup], equations: &mut NormalEquations<P>) {
+        for q in 0..QUANTITIES {
+            let Some(group) = groups.iter().find(|g| !g.values[q].is_empty()) else {
+                continue;
+            };
+            if let Some(row) = self.whitening[q].first() {
+                let weight = group.weights[q];
+                self.joints.add(weight, row.residual, &row.jacobian);
+                self.zeros[q].add_row(weight, 1.0, &row);
+            }
+        }
+        equations.cost += self.joints.cost;
+        for i in 0..P {
+            equations.gradient[i] += self.joints.gradient[i];
+            for j in 0..P {
+                equations.normal[i][j] += self.joints.normal[i][j];
+            }
+        }
+        for q in 0..QUANTITIES {
+            let of = groups.iter().find(|g| g.zero_sd[q] > 0.0);
+            if let Some(group) = of {
+                self.zeros[q].eliminate(group.zero_sd[q], equations);
+            }
+        }
+    }
 }
 
 impl<L, const N: usize, const W: usize, const P: usize> Sink<W> for Reading<'_, L, N, W, P>
@@ -108,7 +157,7 @@ where
                 group,
                 self.end,
                 average.as_ref().map(|a| a as &dyn OnsetCorrection<P>),
-                &mut self.sums,
+                (&mut self.sums, &mut self.noise),
                 rows,
             );
         }
@@ -141,7 +190,7 @@ where
                 group,
                 self.end,
                 average.as_ref().map(|a| a as &dyn OnsetCorrection<P>),
-                &mut self.sums,
+                (&mut self.sums, &mut self.noise),
                 rows,
             );
         }
@@ -174,7 +223,7 @@ fn read_flight<const W: usize, const P: usize>(
     group: &SampleGroup,
     end: f64,
     average: Option<&dyn OnsetCorrection<P>>,
-    sums: &mut Sums<P>,
+    sums: (&mut Sums<P>, &mut Noise<P>),
     rows: Option<(&mut Rows, usize)>,
 ) {
     read_segment(model, segment, group, end, average, sums, rows);
@@ -264,7 +313,7 @@ fn read_segment<L, const N: usize, const W: usize, const P: usize>(
     group: &SampleGroup,
     end: f64,
     average: Option<&dyn OnsetCorrection<P>>,
-    sums: &mut Sums<P>,
+    (sums, noise): (&mut Sums<P>, &mut Noise<P>),
     mut rows: Option<(&mut Rows, usize)>,
 ) where
     L: ContactLaw<N>,
@@ -279,6 +328,10 @@ fn read_segment<L, const N: usize, const W: usize, const P: usize>(
         || model.columns.onset.iter().any(|onset| *onset != 0.0);
     // A copy that the compiler can keep in registers.
     let mut running = *sums;
+    let mut openings = [None; QUANTITIES];
+    for q in 0..QUANTITIES {
+        noise.whitening[q].begin(first);
+    }
     let mut at = first;
     while at < last {
         let count = PACK.min(last - at);
@@ -297,16 +350,48 @@ fn read_segment<L, const N: usize, const W: usize, const P: usize>(
             if group.weights[q] == 0.0 && group.values[q].is_empty() {
                 continue;
             }
-            let residual = pack.values[q] - load(&group.values[q], at);
-            let weight = masked(group.weights[q], count);
-            running.add(weight, residual, &pack.jacobian[q]);
+            let mut residual = pack.values[q] - load(&group.values[q], at);
             if let Some((rows, index)) = rows.as_mut() {
-                store_rows(rows, *index, q, count, residual, &pack.jacobian[q]);
+                let place = (at, count, group.len);
+                store_rows(rows, *index, q, place, residual, &pack.jacobian[q]);
+            }
+            let mut weight = masked(group.weights[q], count);
+            if !group.relative[q].is_empty() {
+                weight = weight * load(&group.relative[q], at);
+            }
+            let persistence = group.persistence[q];
+            if persistence != 0.0 {
+                let opening = Row {
+                    residual: residual.0[0],
+                    jacobian: pack.jacobian[q].map(|column| column.0[0]),
+                };
+                let whitening = &mut noise.whitening[q];
+                let jacobian = &mut pack.jacobian[q];
+                if whitening.whiten(persistence, &mut residual, jacobian, count) {
+                    openings[q] = Some(opening);
+                    weight.0[0] = 0.0;
+                }
+            }
+            running.add(weight, residual, &pack.jacobian[q]);
+            if group.zero_sd[q] > 0.0 {
+                let shift = unit_shift(persistence);
+                noise.zeros[q].add(weight, shift, residual, &pack.jacobian[q]);
             }
         }
         at += PACK;
     }
     *sums = running;
+    for q in 0..QUANTITIES {
+        let persistence = group.persistence[q];
+        if persistence == 0.0 || group.values[q].is_empty() {
+            continue;
+        }
+        if let Some(row) = noise.whitening[q].end(first, last, openings[q], persistence) {
+            let weight = group.weights[q];
+            noise.joints.add(weight, row.residual, &row.jacobian);
+            noise.zeros[q].add_row(weight, unit_shift(persistence), &row);
+        }
+    }
 }
 
 #[inline(always)]
@@ -438,7 +523,7 @@ fn store_rows<const P: usize>(
     rows: &mut Rows,
     group: usize,
     quantity: usize,
-    count: usize,
+    (at, count, len): (usize, usize, usize),
     residual: Pack,
     jacobian: &[Pack; P],
 ) {
@@ -446,10 +531,15 @@ fn store_rows<const P: usize>(
         rows.residuals.push(Default::default());
         rows.jacobian.push(Default::default());
     }
+    // By their index: pieces of the motion do not come in the order of time.
+    let residuals = &mut rows.residuals[group][quantity];
+    residuals.resize(len, 0.0);
+    residuals[at..at + count].copy_from_slice(&residual.0[..count]);
+    let derivatives = &mut rows.jacobian[group][quantity];
+    derivatives.resize(len * P, 0.0);
     for lane in 0..count {
-        rows.residuals[group][quantity].push(residual.0[lane]);
-        for column in jacobian {
-            rows.jacobian[group][quantity].push(column.0[lane]);
+        for (c, column) in jacobian.iter().enumerate() {
+            derivatives[(at + lane) * P + c] = column.0[lane];
         }
     }
 }
