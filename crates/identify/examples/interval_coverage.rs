@@ -12,23 +12,17 @@
 
 #![allow(clippy::print_stdout, clippy::unwrap_used)]
 
+#[path = "shared/pendulum.rs"]
+mod pendulum;
+
+use pendulum::{Bench, bench, on_threads, recorded, rig};
 use windfall_contact::expression::parse_law;
-use windfall_contact::law::EndRule;
 use windfall_contact::law_kind::LawKind;
 use windfall_identify::fit::{Fit, fit_impact};
 use windfall_identify::interval::{IntervalDetail, IntervalMethod, IntervalOptions};
 use windfall_identify::problem::{FitOptions, LawProblem, NoiseModel, Prior};
-use windfall_identify::rig::{Pendulum, Rig};
-use windfall_identify::simulate::trajectory;
-use windfall_signal::extract::extract_impact;
 use windfall_signal::impact::Impact;
-use windfall_signal::instrument::{
-    Instrument, Trajectory, calibrated, pendulum_instrument, record,
-};
-use windfall_signal::kinematics::Encoder;
 use windfall_signal::noise_gaussian::{noise_source, normal, uniform};
-use windfall_signal::options::ExtractOptions;
-use windfall_signal::trigger::{Threshold, TriggerOptions};
 use windfall_statistics::distribution_tail::chi_squared_upper;
 
 /// Median law: the rubber half-ball of the 2003 pendulum study.
@@ -42,55 +36,21 @@ const RANKED: usize = 250;
 /// Bins of the histogram of ranks.
 const BINS: usize = 20;
 
-/// An instrument with its name.
-struct Bench {
-    name: &'static str,
-    instrument: Instrument,
-    encoder: Encoder,
-    arm: f64,
-}
-
-fn benches() -> Vec<Bench> {
-    let mut fine = pendulum_instrument();
-    let mut coarse = pendulum_instrument();
-    if let Some(force) = &mut fine.force {
-        force.persistence = 0.8;
-    }
-    if let (Some(force), Some(encoder)) = (&mut coarse.force, &mut coarse.encoder) {
-        force.noise = 0.3;
-        force.persistence = 0.9;
-        encoder.encoder = Encoder::Rotary {
-            counts_per_revolution: 20_000.0,
-        };
-    }
-    vec![
-        Bench {
-            name: "360,000 counts a revolution, force noise 1 N, persistence 0.8",
-            instrument: fine,
-            encoder: Encoder::Rotary {
-                counts_per_revolution: 360_000.0,
-            },
-            arm: 0.505,
-        },
-        Bench {
-            name: "20,000 counts a revolution, force noise 0.3 N, persistence 0.9",
-            instrument: coarse,
-            encoder: Encoder::Rotary {
-                counts_per_revolution: 20_000.0,
-            },
-            arm: 0.505,
-        },
+fn benches() -> [Bench; 2] {
+    [
+        bench(
+            "360,000 counts a revolution, force noise 1 N, persistence 0.8",
+            360_000.0,
+            1.0,
+            0.8,
+        ),
+        bench(
+            "20,000 counts a revolution, force noise 0.3 N, persistence 0.9",
+            20_000.0,
+            0.3,
+            0.9,
+        ),
     ]
-}
-
-fn rig() -> Rig {
-    Rig::Pendulum(Pendulum {
-        inertia: 0.014_35,
-        arm: 0.505,
-        mass: 0.08,
-        centre_of_mass: 0.35,
-        gravity: 9.806_65,
-    })
 }
 
 /// One recorded impact with the law that made it.
@@ -99,37 +59,15 @@ struct Made {
     truth: [f64; 2],
 }
 
-fn made(bench: &Bench, seed: u64) -> Made {
+fn made(bench: &Bench, seed: u64) -> Option<Made> {
     let mut source = noise_source(seed, 1000);
     let truth = [0, 1].map(|i| MEDIAN[i] * (SPREAD[i] * normal(&mut source)).exp());
     let velocity = VELOCITIES.0 + (VELOCITIES.1 - VELOCITIES.0) * uniform(&mut source);
-    let start = -3e-3 - 5e-6 * uniform(&mut source);
-    let times: Vec<f64> = (0..3400).map(|i| start + 5e-6 * f64::from(i)).collect();
-    let law = LawKind::KuwabaraKono.with_parameters(&truth).unwrap();
-    let motion = trajectory(&law, &rig(), velocity, &times, EndRule::ForceZero).unwrap();
-    let motion = Trajectory {
-        times: motion.times,
-        displacement: motion.displacement,
-        rate: motion.rate,
-        force: motion.force,
-        acceleration: motion.acceleration,
-    };
-    let raw = record(&motion, &bench.instrument, seed).unwrap();
-    let recording = calibrated("simulated", &raw, &bench.instrument);
-    let options = ExtractOptions {
-        trigger: TriggerOptions {
-            threshold: Threshold::Fixed(1.0),
-            ..TriggerOptions::default()
-        },
-        encoder: Some(bench.encoder),
-        arm: Some(bench.arm),
-        effective_mass: Some(rig().effective_mass()),
-        ..ExtractOptions::default()
-    };
-    Made {
-        impact: extract_impact(&recording, &options).unwrap().0,
+    let law = LawKind::KuwabaraKono.with_parameters(&truth).ok()?;
+    Some(Made {
+        impact: recorded(bench, &law, velocity, seed)?,
         truth,
-    }
+    })
 }
 
 fn fit(made: &Made, method: IntervalMethod, noise: NoiseModel, seed: u64) -> Option<Fit> {
@@ -194,28 +132,11 @@ fn campaigns(
     method: IntervalMethod,
     noise: NoiseModel,
 ) -> Vec<Option<Told>> {
-    let mut out: Vec<(u64, Option<Told>)> = std::thread::scope(|scope| {
-        let workers: Vec<_> = (0..threads)
-            .map(|worker| {
-                scope.spawn(move || {
-                    (worker..count)
-                        .step_by(threads as usize)
-                        .map(|seed| {
-                            let made = made(bench, seed + 1);
-                            let fit = fit(&made, method, noise, seed);
-                            (seed, fit.map(|fit| told(&made, &fit)))
-                        })
-                        .collect::<Vec<_>>()
-                })
-            })
-            .collect();
-        workers
-            .into_iter()
-            .flat_map(|worker| worker.join().unwrap())
-            .collect()
-    });
-    out.sort_by_key(|(seed, _)| *seed);
-    out.into_iter().map(|(_, told)| told).collect()
+    on_threads(count, threads, |seed| {
+        let made = made(bench, seed + 1)?;
+        let fit = fit(&made, method, noise, seed)?;
+        Some(told(&made, &fit))
+    })
 }
 
 fn mean(values: impl Iterator<Item = f64>) -> f64 {

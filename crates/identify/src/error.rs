@@ -5,6 +5,16 @@ use windfall_numerics::ode_step::StepError;
 /// Errors of this crate.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum Error {
+    /// No two laws could be fitted to the same impacts.
+    #[error(
+        "no impact could be fitted by two of the {laws} laws, out of {impacts} impacts: there is nothing to compare"
+    )]
+    NothingToCompare {
+        /// Laws.
+        laws: usize,
+        /// Impacts.
+        impacts: usize,
+    },
     /// A quantity of the rig or the impact has no physical value.
     #[error("{name} is {value}, but it must be a positive number")]
     BadInput {

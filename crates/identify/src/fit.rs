@@ -5,6 +5,7 @@ use crate::finding::Finding;
 use crate::fit_plan::{Plan, plan};
 use crate::problem::{FitOptions, LawProblem};
 use crate::rig::Rig;
+use crate::solve::Solution;
 use windfall_signal::impact::Impact;
 
 pub use crate::fit_types::{Estimate, Fit, QuantityFit};
@@ -44,6 +45,51 @@ pub fn fit_impact(
         widen_for_mass(&mut fit, &plan, carriage.mass, carriage.mass_sd);
     }
     Ok(fit)
+}
+
+/// Fits several laws to one impact with one noise for all, that of the law that
+/// describes it best: their costs are then −2 ln of likelihoods that can be
+/// compared, up to a common constant.
+///
+/// # Errors
+/// As [`fit_impact`], law by law.
+pub fn fit_laws(
+    impact: &Impact,
+    rig: &Rig,
+    problems: &[LawProblem],
+    options: &FitOptions,
+) -> Vec<Result<Fit, Error>> {
+    let mut first: Vec<Result<(Plan, Solution), Error>> = problems
+        .iter()
+        .map(|problem| {
+            rig.check()?;
+            let plan = plan(impact, rig, problem, options)?;
+            let solution = plan.solve_once(rig)?;
+            Ok((plan, solution))
+        })
+        .collect();
+    let solved = first.iter().flatten();
+    let best = solved.min_by(|a, b| a.1.cost.total_cmp(&b.1.cost));
+    let noise = match best.map(|(plan, solution)| plan.noise_after(solution, rig)) {
+        Some(Ok(noise)) => noise,
+        _ => {
+            return first
+                .into_iter()
+                .map(|f| f.and_then(|(p, s)| p.report(&s, rig)))
+                .collect();
+        }
+    };
+    first
+        .iter_mut()
+        .map(|first| match first {
+            Ok((plan, solution)) => {
+                plan.noise = noise.clone();
+                let solution = plan.solve_again(solution, rig)?;
+                plan.report(&solution, rig)
+            }
+            Err(error) => Err(error.clone()),
+        })
+        .collect()
 }
 
 /// Adds the uncertainty of the mass to the intervals, by fitting with the mass

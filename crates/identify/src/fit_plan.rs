@@ -278,31 +278,55 @@ impl Plan<'_> {
     /// Solves from the planned starts; then once more with the noise that the
     /// residuals show.
     pub(crate) fn solve(&mut self, rig: &Rig) -> Result<Solution, Error> {
+        let first = self.solve_once(rig)?;
+        if !self.modelled() && self.intervals_wanted().is_none() {
+            return Ok(first);
+        }
+        self.noise = self.noise_after(&first, rig)?;
+        self.solve_again(&first, rig)
+    }
+
+    /// Solves from the planned starts with the noise as it is planned.
+    pub(crate) fn solve_once(&self, rig: &Rig) -> Result<Solution, Error> {
         let mass = rig.effective_mass();
-        let features = self.features.velocity;
+        let velocity = self.features.velocity;
         let starts = self
             .starts
             .iter()
-            .map(|law| (law.clone(), [features, mass, 0.0, 0.0]));
-        let starts: Vec<_> = starts.collect();
-        let first = self.solve_from(&starts, None)?;
-        if self.options.weighting != Weighting::InverseVariance
-            || self.options.noise != NoiseModel::Automatic
-        {
-            return match self.intervals_wanted() {
-                None => Ok(first),
-                wanted => self.solve_from(&starts, wanted),
-            };
+            .map(|law| (law.clone(), [velocity, mass, 0.0, 0.0]));
+        self.solve_from(&starts.collect::<Vec<_>>(), None)
+    }
+
+    /// The noise that the residuals of `first` show, where it is modelled.
+    pub(crate) fn noise_after(&self, first: &Solution, rig: &Rig) -> Result<NoisePlan, Error> {
+        if !self.modelled() {
+            return Ok(self.noise.clone());
         }
-        let speeds = self.speeds_at_edges(&first, rig)?;
-        self.noise = self
+        let speeds = self.speeds_at_edges(first, rig)?;
+        let count = self.free.len();
+        Ok(self
             .noise
-            .recalibrated(self.impact, &first.rows, &speeds, self.free.len());
-        let spent = first.evaluations;
-        let start = (first.law, [first.velocity, mass, first.onset, first.offset]);
+            .recalibrated(self.impact, &first.rows, &speeds, count))
+    }
+
+    /// Solves once more from a solution, with the intervals that are wanted.
+    pub(crate) fn solve_again(&self, first: &Solution, rig: &Rig) -> Result<Solution, Error> {
+        let motion = [
+            first.velocity,
+            rig.effective_mass(),
+            first.onset,
+            first.offset,
+        ];
+        let start = (first.law.clone(), motion);
         let mut second = self.solve_from(&[start], self.intervals_wanted())?;
-        second.evaluations += spent;
+        second.evaluations += first.evaluations;
         Ok(second)
+    }
+
+    /// Whether weights are those of the noise that the recording shows.
+    fn modelled(&self) -> bool {
+        self.options.weighting == Weighting::InverseVariance
+            && self.options.noise == NoiseModel::Automatic
     }
 
     fn speeds_at_edges(&self, solution: &Solution, rig: &Rig) -> Result<Vec<f64>, Error> {
@@ -389,6 +413,10 @@ impl Plan<'_> {
             cost_tolerance: self.options.cost_tolerance,
             max_evaluations: self.options.max_evaluations,
             samples: self.noise.groups.iter().map(sample_count).sum(),
+            offsets: Quantity::ALL.map(|q| match self.modelled() {
+                true => 0.0,
+                false => series(self.impact, q).map_or(0.0, |s| s.zero_sd),
+            }),
             intervals,
         };
         let law = self.problem.kind.with_parameters(&starts[0].0)?;

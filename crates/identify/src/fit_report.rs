@@ -168,12 +168,22 @@ impl Plan<'_> {
                     noise: self.noise_of(quantity),
                     persistence: group.persistence(quantity),
                     rms_residual: (square / residuals.len().max(1) as f64).sqrt(),
+                    standardised: self.standardised_rms(g, quantity, residuals),
                     runs: runs_test(&standardised(group, quantity, residuals)),
                 });
             }
         }
         out.sort_by_key(|q| q.quantity);
         out
+    }
+
+    /// Root mean square of residuals by the noise that the recording shows.
+    fn standardised_rms(&self, group: usize, quantity: Quantity, residuals: &[f64]) -> f64 {
+        let group = &self.noise.groups[group];
+        let z = standardised(group, quantity, residuals);
+        let square = z.iter().map(|z| z * z).sum::<f64>() / z.len().max(1) as f64;
+        let noise = self.noise_of(quantity);
+        (square / (group.weight(quantity) * noise * noise)).sqrt()
     }
 
     /// Noise of a sample as the recording shows it.

@@ -41,6 +41,9 @@ pub struct QuantityFit {
     pub persistence: f64,
     /// Root mean square residual; SI.
     pub rms_residual: f64,
+    /// Root mean square of the residuals made independent, over their standard
+    /// deviation by the recording's noise alone; 1.
+    pub standardised: f64,
     /// Runs test of the residuals, where there are enough.
     pub runs: Option<RunsTest>,
 }

@@ -49,6 +49,8 @@ mod fit_plan;
 mod fit_report;
 mod fit_types;
 pub mod interval;
+mod law_prediction;
+pub mod law_ranking;
 pub mod model;
 pub mod motion;
 mod noise_edges;

@@ -8,7 +8,7 @@ use crate::model::Sampling;
 use crate::posterior::{PosteriorPlan, posterior_intervals};
 use crate::profile::profile_intervals;
 use crate::residual::Rows;
-use crate::samples::SampleGroup;
+use crate::samples::{QUANTITIES, SampleGroup};
 use crate::uncertainty::covariance;
 use windfall_contact::any_law::{AnyLaw, LARGEST_PARAMETERS};
 use windfall_contact::law_kind::Law;
@@ -65,6 +65,9 @@ pub(crate) struct Limits {
     pub max_evaluations: usize,
     /// Samples of all quantities.
     pub samples: usize,
+    /// Standard uncertainty of each quantity's zero that the weights do not know;
+    /// SI.
+    pub offsets: [f64; QUANTITIES],
     /// Intervals wanted; `None` while the noise is still being found.
     pub intervals: Option<IntervalPlan>,
 }
@@ -165,6 +168,7 @@ where
         &minimum,
         setting.groups,
         free,
+        limits,
         evaluations,
     )?;
     if let Some(plan) = &limits.intervals
@@ -291,6 +295,7 @@ fn complete<L, const N: usize, const W: usize, const P: usize>(
     minimum: &Minimum<P>,
     groups: &[SampleGroup],
     free: &[FreeParameter],
+    limits: &Limits,
     evaluations: usize,
 ) -> Option<Solution>
 where
@@ -301,11 +306,12 @@ where
     let at: Vec<f64> = free.iter().map(|p| values.get(p.target)).collect();
     let slope = |i: usize| free[i].coordinate.slope(at[i]);
     let count = free.len();
-    let covariance = covariance(&equations, &rows, groups, count).map_or(vec![], |c| {
-        (0..count)
-            .map(|i| (0..count).map(|j| c[i][j] * slope(i) * slope(j)).collect())
-            .collect()
-    });
+    let covariance =
+        covariance(&equations, &rows, groups, &limits.offsets, count).map_or(vec![], |c| {
+            (0..count)
+                .map(|i| (0..count).map(|j| c[i][j] * slope(i) * slope(j)).collect())
+                .collect()
+        });
     Some(Solution {
         law: values.law[..law_count].to_vec(),
         free: at,

@@ -2,7 +2,7 @@
 //! whether they are random.
 
 use crate::residual::Rows;
-use crate::samples::{Quantity, SampleGroup};
+use crate::samples::{QUANTITIES, Quantity, SampleGroup};
 use crate::whitening::unit_shift;
 use windfall_numerics::cholesky;
 use windfall_numerics::least_squares::NormalEquations;
@@ -36,6 +36,8 @@ const SMALLEST_INFLATION: f64 = 1.0;
 ///
 /// * `equations`: N at the optimum, zeros taken out
 /// * `rows`: residuals and Jacobian of each sample
+/// * `offsets`: standard uncertainty of each quantity's zero, as far as the
+///   weights do not know it; SI. It adds u² g gᵀ to M, g = Σ w J.
 /// * `parameters`: number of free parameters
 ///
 /// Returns C, or `None` when N is singular.
@@ -52,6 +54,7 @@ pub fn covariance<const P: usize>(
     equations: &NormalEquations<P>,
     rows: &Rows,
     groups: &[SampleGroup],
+    offsets: &[f64; QUANTITIES],
     parameters: usize,
 ) -> Option<[[f64; P]; P]> {
     let mut normal = equations.normal;
@@ -72,7 +75,8 @@ pub fn covariance<const P: usize>(
             }
             let z = standardised(group, quantity, residuals);
             let variance = freedom * mean_square(&z) * inflation(&z);
-            add_meat(&mut meat, group, quantity, &rows.jacobian[g][q], variance);
+            let jacobian = &rows.jacobian[g][q];
+            add_meat(&mut meat, group, quantity, jacobian, variance, offsets[q]);
         }
     }
     Some(sandwich(&bread, &meat, parameters))
@@ -174,6 +178,7 @@ fn add_meat<const P: usize>(
     quantity: Quantity,
     jacobian: &[f64],
     variance: f64,
+    offset: f64,
 ) {
     let weight = group.weight(quantity);
     let persistence = group.persistence(quantity);
@@ -197,6 +202,11 @@ fn add_meat<const P: usize>(
             for q in 0..P {
                 meat[p][q] += weight * variance * white[p] * white[q];
             }
+        }
+    }
+    for p in 0..P {
+        for q in 0..P {
+            meat[p][q] += offset * offset * total[p] * total[q];
         }
     }
     let sd = group.zero_sd(quantity);
@@ -298,7 +308,7 @@ mod tests {
         for r in &residuals {
             equations.add(3.0, *r, &[1.0]);
         }
-        let found = covariance(&equations, &rows, &[group], 1).unwrap()[0][0];
+        let found = covariance(&equations, &rows, &[group], &[0.0; 4], 1).unwrap()[0][0];
         let expected = 1.0 / (1.0 - phi * phi) / n as f64 * (1.0 + phi) / (1.0 - phi);
         assert!((found / expected - 1.0).abs() < 0.1, "{found} {expected}");
         // Moving average x_i − x_(i−2): every correlation cancels but the ends'.

@@ -21,6 +21,8 @@ Examples:
       one recording of a campaign
   windfall fit my-campaign --quantities displacement,rate,force --weights inverse-mean
       the cost function and the weights of the 2003 pendulum study
+  windfall fit my-campaign --intervals profile
+      intervals that follow the likelihood, in place of estimate ± t × deviation
   windfall fit impact.csv --rig pendulum --inertia '0.01435 kg m^2' --arm '0.505 m' \\
       --mass '0.11 kg' --centre-of-mass '0.3 m' --time t --channel force=F:N \\
       --channel position=x:mm --law kuwabara-kono
@@ -42,6 +44,21 @@ pub struct FitArguments {
     /// Weights of the cost function: by each channel's noise, or 1/mean as in the 2003 study
     #[arg(long, value_parser = ["inverse-variance", "inverse-mean"], value_name = "WEIGHTS")]
     pub weights: Option<String>,
+    /// Noise of the channels: as the recording shows it, or white sample by sample
+    #[arg(long, value_parser = ["automatic", "white"], value_name = "NOISE")]
+    pub noise: Option<String>,
+    /// How the 95 % intervals are made
+    #[arg(long, value_parser = ["asymptotic", "profile", "bootstrap", "posterior"], value_name = "HOW")]
+    pub intervals: Option<String>,
+    /// Resampled recordings of each impact for --intervals bootstrap (1000)
+    #[arg(long, value_name = "N")]
+    pub replicates: Option<usize>,
+    /// Draws of each of four chains for --intervals posterior (1000)
+    #[arg(long, value_name = "N")]
+    pub draws: Option<usize>,
+    /// Seed of bootstrap and posterior (1)
+    #[arg(long, value_name = "N")]
+    pub seed: Option<u64>,
     /// Time of first touch: fixed where the force passes its threshold, free, or as the data can tell
     #[arg(long, value_parser = ["auto", "free", "fixed"], value_name = "HOW")]
     pub onset: Option<String>,

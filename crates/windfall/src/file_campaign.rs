@@ -212,6 +212,18 @@ pub struct FitFile {
     pub quantities: Option<Vec<Spanned<String>>>,
     /// "inverse-variance" or "inverse-mean".
     pub weights: Option<Spanned<String>>,
+    /// "automatic" or "white".
+    pub noise: Option<Spanned<String>>,
+    /// "asymptotic", "profile", "bootstrap" or "posterior".
+    pub intervals: Option<Spanned<String>>,
+    /// Resampled recordings of a bootstrap.
+    pub replicates: Option<Spanned<u64>>,
+    /// Draws of each chain of a posterior.
+    pub draws: Option<Spanned<u64>>,
+    /// Chains of a posterior.
+    pub chains: Option<Spanned<u64>>,
+    /// Seed of bootstrap and posterior.
+    pub seed: Option<Spanned<u64>>,
     /// "auto", "free" or "fixed".
     pub initial_velocity: Option<Spanned<String>>,
     /// "auto", "free" or "fixed".

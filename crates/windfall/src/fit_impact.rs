@@ -84,7 +84,10 @@ fn fit_group(
             None => {
                 let law = &campaign.fit.laws[task.law];
                 let problem = law_problem(law, &campaign.fit.free);
-                fit_impact(&impact, &rig.rig, &problem, &campaign.fit.options)
+                let mut options = campaign.fit.options;
+                // Each impact its own chance, whatever the others are.
+                options.intervals.seed = seed_of_name(options.intervals.seed, &entry.id);
+                fit_impact(&impact, &rig.rig, &problem, &options)
                     .map(|fit| impact_outcome(entry, &impact, &findings, &fit, &problem, &rig.rig))
                     .map_err(|source| Error::Identify {
                         subject: law.kind.name().to_owned(),
@@ -100,9 +103,17 @@ fn fit_group(
         .collect()
 }
 
+/// A seed for each name (Fowler, Noll and Vo's hash, 1a).
+fn seed_of_name(seed: u64, name: &str) -> u64 {
+    name.bytes()
+        .fold(seed ^ 0xcbf2_9ce4_8422_2325, |state, byte| {
+            (state ^ u64::from(byte)).wrapping_mul(0x0100_0000_01b3)
+        })
+}
+
 /// The usual question about a law: exponents that are left out have their usual
 /// values and are held, and the parameters named in `free` are estimated.
-fn law_problem(law: &LawExpression, free: &[String]) -> LawProblem {
+pub(crate) fn law_problem(law: &LawExpression, free: &[String]) -> LawProblem {
     let mut problem = LawProblem::from_expression(law);
     let parameters = law.kind.describe().parameters;
     for (parameter, is_free) in parameters.iter().zip(&mut problem.free) {
@@ -111,7 +122,7 @@ fn law_problem(law: &LawExpression, free: &[String]) -> LawProblem {
     problem
 }
 
-fn failure(entry: &ImpactEntry, law: Option<&str>, message: String) -> FailureOutcome {
+pub(crate) fn failure(entry: &ImpactEntry, law: Option<&str>, message: String) -> FailureOutcome {
     FailureOutcome {
         id: entry.id.clone(),
         specimen: entry.specimen.clone(),

@@ -1,6 +1,7 @@
 //! A fit as it is saved and shown.
 
 use crate::campaign::ImpactEntry;
+use crate::interval_outcome::interval_outcome;
 use crate::named::Named;
 use crate::outcome::{EstimateOutcome, FindingOutcome, ImpactOutcome};
 use windfall_contact::restitution::nominal_restitution;
@@ -53,6 +54,7 @@ pub fn impact_outcome(
         derived_sd: derived_uncertainties(&impact.measured),
         derived_from,
         fitted,
+        intervals: interval_outcome(fit),
         findings: findings(signal_findings, fit),
     }
 }
@@ -125,6 +127,7 @@ fn residuals(fit: &Fit) -> Named<crate::outcome::ResidualOutcome> {
         samples: q.samples,
         weight: q.weight,
         noise: q.noise,
+        persistence: q.persistence,
         rms: q.rms_residual,
         runs_z: q.runs.map(|runs| runs.z).filter(|z| z.is_finite()),
     };

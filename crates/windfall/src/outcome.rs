@@ -3,6 +3,7 @@
 //! The names of the fields are the keys of the JSON that scripts rely on.
 //! All numbers are SI.
 
+use crate::interval_outcome::IntervalOutcome;
 use crate::named::Named;
 use serde::{Deserialize, Serialize};
 
@@ -33,6 +34,10 @@ pub struct ResidualOutcome {
     pub weight: f64,
     /// Noise of a sample, from the recording itself.
     pub noise: f64,
+    /// Correlation of the noise of successive samples that the fit reckoned
+    /// with; 1.
+    #[serde(default)]
+    pub persistence: f64,
     /// Root mean square residual.
     pub rms: f64,
     /// Runs test: standardised number of runs; far below 0 when the residuals
@@ -94,6 +99,9 @@ pub struct ImpactOutcome {
     /// what the law delivers. A law that takes a restitution as a parameter has
     /// it here too, as `nominal_restitution`.
     pub fitted: Named<Option<f64>>,
+    /// How the intervals came about.
+    #[serde(default)]
+    pub intervals: IntervalOutcome,
     /// What a reader must know.
     pub findings: Vec<FindingOutcome>,
 }

@@ -8,7 +8,8 @@ use crate::toml_source::{Needed, TomlSource, choice, invalid, missing};
 use toml::Spanned;
 use windfall_contact::expression::{LawExpression, parse_law};
 use windfall_contact::law::EndRule;
-use windfall_identify::problem::{FitOptions, Quantities, Treatment, Weighting};
+use windfall_identify::interval::{IntervalMethod, IntervalOptions};
+use windfall_identify::problem::{FitOptions, NoiseModel, Quantities, Treatment, Weighting};
 use windfall_identify::samples::Quantity;
 use windfall_numerics::unit::parse_as;
 
@@ -18,6 +19,20 @@ const TABLE: &str = "[fit]";
 pub const WEIGHTS: [(&str, Weighting); 2] = [
     ("inverse-variance", Weighting::InverseVariance),
     ("inverse-mean", Weighting::InverseMean),
+];
+
+/// Words for what is taken for the noise of the channels.
+pub const NOISES: [(&str, NoiseModel); 2] = [
+    ("automatic", NoiseModel::Automatic),
+    ("white", NoiseModel::White),
+];
+
+/// Words for how intervals are made.
+pub const INTERVALS: [(&str, IntervalMethod); 4] = [
+    ("asymptotic", IntervalMethod::Asymptotic),
+    ("profile", IntervalMethod::Profile),
+    ("bootstrap", IntervalMethod::Bootstrap),
+    ("posterior", IntervalMethod::Posterior),
 ];
 
 /// Words for the end of contact.
@@ -52,6 +67,10 @@ pub fn fit_plan(source: &TomlSource, file: &FitFile) -> Result<FitPlan, Error> {
     if let Some(weights) = choice(source, file.weights.as_ref(), (TABLE, "weights"), &WEIGHTS)? {
         options.weighting = weights;
     }
+    if let Some(noise) = choice(source, file.noise.as_ref(), (TABLE, "noise"), &NOISES)? {
+        options.noise = noise;
+    }
+    interval_options(source, file, &mut options.intervals)?;
     if let Some(end) = choice(source, file.end.as_ref(), (TABLE, "end"), &ENDS)? {
         options.end = end;
     }
@@ -71,6 +90,58 @@ pub fn fit_plan(source: &TomlSource, file: &FitFile) -> Result<FitPlan, Error> {
         free,
         options,
     })
+}
+
+/// Fewest resampled recordings, draws and chains that an interval can be read
+/// from.
+pub const LEAST_WORK: [(&str, usize); 3] = [("replicates", 100), ("draws", 100), ("chains", 2)];
+
+/// Whether there is enough work for an interval; what was expected, if not.
+///
+/// # Errors
+/// What was expected.
+pub fn enough_work(name: &str, value: usize) -> Result<usize, String> {
+    let least = LEAST_WORK.iter().find(|(known, _)| *known == name);
+    match least {
+        Some((_, least)) if value < *least => Err(format!(
+            "{value} are too few to read an interval from; give at least {least}"
+        )),
+        _ => Ok(value),
+    }
+}
+
+fn interval_options(
+    source: &TomlSource,
+    file: &FitFile,
+    options: &mut IntervalOptions,
+) -> Result<(), Error> {
+    let place = (TABLE, "intervals");
+    if let Some(method) = choice(source, file.intervals.as_ref(), place, &INTERVALS)? {
+        options.method = method;
+    }
+    let numbers = [
+        ("replicates", &file.replicates, &mut options.replicates),
+        ("draws", &file.draws, &mut options.draws),
+        ("chains", &file.chains, &mut options.chains),
+    ];
+    for (key, given, place) in numbers {
+        if let Some(value) = given {
+            let number = usize::try_from(*value.get_ref()).unwrap_or(usize::MAX);
+            *place = enough_work(key, number).map_err(|problem| {
+                invalid(
+                    source,
+                    &value.span(),
+                    (TABLE, key),
+                    &number.to_string(),
+                    problem,
+                )
+            })?;
+        }
+    }
+    if let Some(seed) = &file.seed {
+        options.seed = *seed.get_ref();
+    }
+    Ok(())
 }
 
 /// A velocity given in place of a treatment: "0.35 m/s". Its unit tells it from

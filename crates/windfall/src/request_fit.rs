@@ -6,7 +6,8 @@ use crate::error::Error;
 use crate::item_campaign::ItemCampaign;
 use crate::option_value::{chosen, unusable};
 use crate::read_fit::{
-    ENDS, TREATMENTS, WEIGHTS, hold_velocity, known_velocity, quantities_named, unknown_parameter,
+    ENDS, INTERVALS, NOISES, TREATMENTS, WEIGHTS, enough_work, hold_velocity, known_velocity,
+    quantities_named, unknown_parameter,
 };
 use crate::toml_source::suggestion;
 use std::path::PathBuf;
@@ -25,6 +26,16 @@ pub struct FitRequest {
     pub quantities: Vec<String>,
     /// Weights in place of the campaign's: a word of [`WEIGHTS`].
     pub weights: Option<String>,
+    /// What is taken for the channels' noise: a word of [`NOISES`].
+    pub noise: Option<String>,
+    /// How intervals are made: a word of [`INTERVALS`].
+    pub intervals: Option<String>,
+    /// Resampled recordings of a bootstrap.
+    pub replicates: Option<usize>,
+    /// Draws of each chain of a posterior.
+    pub draws: Option<usize>,
+    /// Seed of bootstrap and posterior.
+    pub seed: Option<u64>,
     /// Treatment of the velocity at first touch: a word of [`TREATMENTS`], or the
     /// velocity to hold it at.
     pub initial_velocity: Option<String>,
@@ -120,6 +131,8 @@ pub fn apply_request_to_items(
         ("--law and --free", laws && !fits_laws),
         ("--quantities", !request.quantities.is_empty()),
         ("--weights", request.weights.is_some()),
+        ("--noise", request.noise.is_some()),
+        ("--intervals", request.intervals.is_some()),
         ("--initial-velocity", request.initial_velocity.is_some()),
         ("--onset", request.onset.is_some()),
         (
@@ -162,6 +175,29 @@ fn apply_options(options: &mut FitOptions, request: &FitRequest) -> Result<(), E
     }
     if let Some(word) = &request.weights {
         options.weighting = chosen("--weights", word, &WEIGHTS)?;
+    }
+    if let Some(word) = &request.noise {
+        options.noise = chosen("--noise", word, &NOISES)?;
+    }
+    if let Some(word) = &request.intervals {
+        options.intervals.method = chosen("--intervals", word, &INTERVALS)?;
+    }
+    let numbers = [
+        (
+            "replicates",
+            request.replicates,
+            &mut options.intervals.replicates,
+        ),
+        ("draws", request.draws, &mut options.intervals.draws),
+    ];
+    for (name, given, place) in numbers {
+        if let Some(value) = given {
+            *place = enough_work(name, value)
+                .map_err(|problem| unusable(format!("--{name} {value}"), problem))?;
+        }
+    }
+    if let Some(seed) = request.seed {
+        options.intervals.seed = seed;
     }
     if let Some(word) = &request.end {
         options.end = chosen("--end", word, &ENDS)?;

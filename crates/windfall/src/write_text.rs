@@ -57,6 +57,7 @@ fn law_text(outcome: &CampaignOutcome, law: &str) -> String {
     if impacts.len() <= LISTED_IMPACTS {
         text += "Each impact (± standard deviation of the estimate):\n";
         let _ = writeln!(text, "{}", impact_table(&impacts));
+        text += &interval_table(&impacts);
     }
     if impacts.len() > 1 {
         text += "\nMean ± SD over the impacts (SD in % of the mean):\n";
@@ -129,6 +130,68 @@ fn impact_table(impacts: &[&ImpactOutcome]) -> String {
     }
     rows.iter_mut().for_each(|row| row.truncate(header.len()));
     page_tables(&header, &rows, &left)
+}
+
+/// Intervals that are more than ± a multiple of the deviation.
+fn interval_table(impacts: &[&ImpactOutcome]) -> String {
+    let followed = impacts
+        .iter()
+        .find(|impact| !matches!(impact.intervals.method.as_str(), "" | "asymptotic"));
+    let Some(first) = followed else {
+        return String::new();
+    };
+    let title = match first.intervals.method.as_str() {
+        "profile" => "95 % intervals by profile likelihood".to_owned(),
+        "bootstrap" => format!(
+            "95 % intervals by bootstrap of residual blocks, {} recordings of each impact",
+            first.intervals.replicates.unwrap_or(0)
+        ),
+        _ => format!(
+            "95 % intervals of the posterior, {} draws of {} chains",
+            first.intervals.draws.unwrap_or(0),
+            first.intervals.chains.unwrap_or(0)
+        ),
+    };
+    let mut header = vec!["impact".to_owned()];
+    header.extend(parameter_headings(impacts));
+    let sampled = impacts
+        .iter()
+        .any(|impact| !impact.intervals.mixing.0.is_empty());
+    if sampled {
+        header.extend(["largest R-hat", "fewest draws", "divergences"].map(str::to_owned));
+    }
+    let rows: Vec<Vec<String>> = impacts
+        .iter()
+        .map(|impact| {
+            let mut row = vec![impact.id.clone()];
+            row.extend(
+                impact
+                    .parameters
+                    .0
+                    .iter()
+                    .map(|(_, e)| match (e.low, e.high) {
+                        (Some(low), Some(high)) => format!("{} to {}", plain(low), plain(high)),
+                        _ => "held".to_owned(),
+                    }),
+            );
+            if sampled {
+                row.extend(mixing_cells(impact));
+            }
+            row
+        })
+        .collect();
+    format!("\n{title}:\n{}\n", page_tables(&header, &rows, &[0]))
+}
+
+fn mixing_cells(impact: &ImpactOutcome) -> [String; 3] {
+    let mixing = || impact.intervals.mixing.0.iter().map(|(_, m)| m);
+    let r_hat = mixing().map(|m| m.r_hat.unwrap_or(f64::INFINITY));
+    let draws = mixing().map(|m| m.bulk_draws.min(m.tail_draws));
+    [
+        format!("{:.3}", r_hat.fold(1.0, f64::max)),
+        format!("{:.0}", draws.fold(f64::INFINITY, f64::min)),
+        impact.intervals.divergences.unwrap_or(0).to_string(),
+    ]
 }
 
 /// Codes of an impact's findings that not all share, each once.

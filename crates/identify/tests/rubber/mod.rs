@@ -12,7 +12,9 @@ use windfall_identify::rig::{Pendulum, Rig};
 use windfall_identify::simulate::trajectory;
 use windfall_signal::extract::extract_impact;
 use windfall_signal::impact::Impact;
-use windfall_signal::instrument::{Trajectory, calibrated, pendulum_instrument, record};
+use windfall_signal::instrument::{
+    Instrument, Trajectory, calibrated, pendulum_instrument, record,
+};
 use windfall_signal::kinematics::Encoder;
 use windfall_signal::options::ExtractOptions;
 use windfall_signal::trigger::{Threshold, TriggerOptions};
@@ -37,6 +39,11 @@ pub fn rig() -> Rig {
 
 /// One impact, extracted from its recording with a threshold of 1 N.
 pub fn impact(seed: u64) -> Impact {
+    impact_of(&pendulum_instrument(), seed)
+}
+
+/// One impact as another instrument records it.
+pub fn impact_of(instrument: &Instrument, seed: u64) -> Impact {
     let law = parse_law(&format!("kuwabara-kono(k={K}, c={C})")).unwrap();
     let times: Vec<f64> = (0..2400).map(|i| -3e-3 + 5e-6 * f64::from(i)).collect();
     let law = law.complete().unwrap();
@@ -48,9 +55,8 @@ pub fn impact(seed: u64) -> Impact {
         force: motion.force,
         acceleration: motion.acceleration,
     };
-    let instrument = pendulum_instrument();
-    let raw = record(&motion, &instrument, seed).unwrap();
-    let recording = calibrated("simulated", &raw, &instrument);
+    let raw = record(&motion, instrument, seed).unwrap();
+    let recording = calibrated("simulated", &raw, instrument);
     let options = ExtractOptions {
         trigger: TriggerOptions {
             threshold: Threshold::Fixed(1.0),

@@ -1,0 +1,39 @@
+//! `windfall laws`
+
+use crate::args_format::Format;
+use crate::args_laws::LawsArguments;
+use crate::command_fit::progress_bar;
+use crate::show::{message, write_json, write_result};
+use windfall::request_fit::FitRequest;
+use windfall::workflow_laws::rank_campaign;
+use windfall::write_laws::{csv_of_laws, text_of_laws};
+
+/// Ranks laws over a campaign and shows the table.
+pub fn run(arguments: &LawsArguments) -> anyhow::Result<()> {
+    let bar = progress_bar();
+    let progress = |done: usize, all: usize| {
+        bar.set_length(all as u64);
+        bar.set_position(done as u64);
+    };
+    let request = FitRequest {
+        laws: arguments.laws.clone(),
+        free: arguments.free.clone(),
+        quantities: arguments.quantities.clone(),
+        threads: arguments.threads,
+        ..FitRequest::default()
+    };
+    let outcome = rank_campaign(&arguments.directory, &request, &progress)?;
+    bar.finish_and_clear();
+    match arguments.format {
+        Format::Json => write_json(&outcome)?,
+        Format::Csv => write_result(&csv_of_laws(&outcome)?)?,
+        Format::Text => write_result(&text_of_laws(&outcome))?,
+    }
+    // The text shows them itself.
+    if arguments.format != Format::Text {
+        for failure in &outcome.failed {
+            message(&format!("not used: {}: {}", failure.id, failure.message));
+        }
+    }
+    Ok(())
+}
