@@ -141,8 +141,11 @@ fn channels<const P: usize>(
             let mut pool = standardised(group, quantity, residuals);
             let n = pool.len();
             let mean = pool.iter().sum::<f64>() / n as f64;
-            pool.iter_mut()
-                .for_each(|z| *z = (*z - mean) * freedom.sqrt());
+            // The weights are those of the residuals with what correlation they
+            // have left: blocks must not spread less than that.
+            let square = pool.iter().map(|z| (z - mean).powi(2)).sum::<f64>() / n as f64;
+            let scale = (1.0 / square.max(f64::MIN_POSITIVE)).max(freedom).sqrt();
+            pool.iter_mut().for_each(|z| *z = (*z - mean) * scale);
             out.push(Channel {
                 group: g,
                 quantity,

@@ -6,7 +6,6 @@ use crate::finding::Finding;
 use crate::fit_plan::{Plan, nuisance_name, sample_count};
 use crate::fit_types::{Estimate, Fit, QuantityFit};
 use crate::interval::{IntervalDetail, IntervalMethod};
-use crate::noise_plan::series;
 use crate::rig::Rig;
 use crate::samples::Quantity;
 use crate::simulate::simulate_rig;
@@ -165,7 +164,7 @@ impl Plan<'_> {
                     quantity,
                     samples: residuals.len(),
                     weight: group.weight(quantity),
-                    noise: self.noise_of(quantity),
+                    noise: self.noise.noise[quantity as usize],
                     persistence: group.persistence(quantity),
                     rms_residual: (square / residuals.len().max(1) as f64).sqrt(),
                     standardised: self.standardised_rms(g, quantity, residuals),
@@ -182,16 +181,8 @@ impl Plan<'_> {
         let group = &self.noise.groups[group];
         let z = standardised(group, quantity, residuals);
         let square = z.iter().map(|z| z * z).sum::<f64>() / z.len().max(1) as f64;
-        let noise = self.noise_of(quantity);
+        let noise = self.noise.noise[quantity as usize];
         (square / (group.weight(quantity) * noise * noise)).sqrt()
-    }
-
-    /// Noise of a sample as the recording shows it.
-    fn noise_of(&self, quantity: Quantity) -> f64 {
-        match &self.noise.edges {
-            Some(edges) if quantity == Quantity::Displacement => edges.typical_deviation(),
-            _ => series(self.impact, quantity).map_or(f64::NAN, |s| s.noise),
-        }
     }
 
     fn remarks(&self, solution: &Solution, fit: &Fit) -> Vec<Finding> {

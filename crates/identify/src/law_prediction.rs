@@ -15,7 +15,7 @@ pub(crate) struct Example<'a> {
 }
 
 /// Root mean square over the impacts of what is foretold less what is measured,
-/// relative to the peak, and its standard error; `None` when nothing can be
+/// relative to the peak and without the sensor's noise, and its standard error; `None` when nothing can be
 /// foretold.
 ///
 /// For each velocity level, the law's parameters are the median of those fitted
@@ -94,7 +94,10 @@ fn foretold(
         square += (model + offset - series.values[i]).powi(2);
         peak = peak.max(*model);
     }
-    let rms = (square / inside.len().max(1) as f64).sqrt();
+    let noise = series.noise * series.noise;
+    let rms = (square / inside.len().max(1) as f64 - noise)
+        .max(0.0)
+        .sqrt();
     (peak > 0.0 && rms.is_finite()).then(|| rms / peak)
 }
 

@@ -53,6 +53,7 @@ mod law_prediction;
 pub mod law_ranking;
 pub mod model;
 pub mod motion;
+mod noise_blocks;
 mod noise_edges;
 mod noise_plan;
 mod onset_average;

@@ -9,7 +9,7 @@ use windfall_signal::edge_rate::{CountTimes, edges};
 use windfall_signal::impact::Series;
 
 /// Fewest edges that replace the samples.
-const LEAST_EDGES: usize = 6;
+const LEAST_EDGES: usize = 4;
 /// More edges than this part of the samples, and several counts pass between
 /// samples: then each sample is rounded by itself; 1.
 const MOST_EDGES: f64 = 0.5;

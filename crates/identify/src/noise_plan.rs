@@ -2,6 +2,7 @@
 //! then from what a first fit leaves.
 
 use crate::finding::Finding;
+use crate::noise_blocks::{block_length, mean_noise, means, samples_between};
 use crate::noise_edges::{EdgeSamples, edge_samples};
 use crate::problem::{FitOptions, NoiseModel, Weighting};
 use crate::residual::Rows;
@@ -22,6 +23,9 @@ pub(crate) struct NoisePlan {
     pub groups: Vec<SampleGroup>,
     /// The displacement's edges, where these took the place of its samples.
     pub edges: Option<EdgeSamples>,
+    /// Noise of what is fitted (a sample, a mean of a block, an edge) by the
+    /// recording alone; SI.
+    pub noise: [f64; QUANTITIES],
 }
 
 /// A quantity of an impact, if it was measured.
@@ -58,6 +62,7 @@ pub(crate) fn noise_plan(
     let mut plan = NoisePlan {
         groups: Vec::new(),
         edges: None,
+        noise: [f64::NAN; QUANTITIES],
     };
     if modelled
         && let Some((_, displacement)) = used.iter().find(|(q, _)| *q == Quantity::Displacement)
@@ -69,12 +74,13 @@ pub(crate) fn noise_plan(
             quantum: edges.quantum,
         });
         let variances = edges.variances(&edges.speeds, 0.0);
+        plan.noise[Quantity::Displacement as usize] = edges.typical_deviation();
         plan.groups
             .push(edge_group(&edges, &variances, impact.onset));
         plan.edges = Some(edges);
     }
-    plan.groups
-        .extend(grouped(impact, &used, options, modelled));
+    let rest = grouped(impact, &used, options, modelled, &mut plan.noise);
+    plan.groups.extend(rest);
     plan
 }
 
@@ -88,23 +94,37 @@ fn edge_group(edges: &EdgeSamples, variances: &[f64], onset: f64) -> SampleGroup
     SampleGroup::new(&times, values).with_relative_weights(Quantity::Displacement, &relative)
 }
 
+/// Groups of the series that share their times; a series of persistent noise in
+/// blocks of its own.
 fn grouped(
     impact: &Impact,
     used: &[(Quantity, &Series)],
     options: &FitOptions,
     modelled: bool,
+    noise: &mut [f64; QUANTITIES],
 ) -> Vec<SampleGroup> {
     let mut groups = Vec::new();
     let mut done = [false; QUANTITIES];
-    for (i, &(_, first)) in used.iter().enumerate() {
-        if done[i] {
+    for &(quantity, series) in used.iter().filter(|_| modelled) {
+        let persistence = series.persistence.unwrap_or(0.0);
+        let length = length_of_blocks(impact, series, persistence);
+        if length > 1 {
+            let (ratio, rest) = mean_noise(persistence, length);
+            noise[quantity as usize] = series.noise * ratio.sqrt();
+            groups.push(block_group(impact, quantity, series, length, rest, noise));
+            done[quantity as usize] = true;
+        }
+    }
+    for (i, &(quantity, first)) in used.iter().enumerate() {
+        if done[quantity as usize] {
             continue;
         }
         let mut values: [Option<(&[f64], f64)>; QUANTITIES] = [None; QUANTITIES];
         let mut held = Vec::new();
-        for (j, &(quantity, other)) in used.iter().enumerate().skip(i) {
-            if !done[j] && other.times == first.times {
-                done[j] = true;
+        for &(quantity, other) in &used[i..] {
+            if !done[quantity as usize] && other.times == first.times {
+                done[quantity as usize] = true;
+                noise[quantity as usize] = other.noise;
                 let weight = weight_of(impact, other, options.weighting);
                 values[quantity as usize] = Some((&other.values, weight));
                 held.push((quantity, other));
@@ -120,6 +140,34 @@ fn grouped(
         groups.push(group);
     }
     groups
+}
+
+fn length_of_blocks(impact: &Impact, series: &Series, persistence: f64) -> usize {
+    let inside = samples_between(series, impact.onset, impact.end);
+    block_length(persistence, inside)
+}
+
+/// One series in blocks, with the noise of their means.
+fn block_group(
+    impact: &Impact,
+    quantity: Quantity,
+    series: &Series,
+    length: usize,
+    persistence: f64,
+    noise: &[f64; QUANTITIES],
+) -> SampleGroup {
+    let times: Vec<f64> = means(&series.times, length)
+        .iter()
+        .map(|t| t - impact.onset)
+        .collect();
+    let samples = means(&series.values, length);
+    let mut values = [None; QUANTITIES];
+    let weight = noise[quantity as usize].powi(-2);
+    values[quantity as usize] = Some((samples.as_slice(), weight));
+    SampleGroup::new(&times, values)
+        .with_persistence(quantity, persistence)
+        .with_zero_sd(quantity, series.zero_sd)
+        .of_means()
 }
 
 fn weight_of(impact: &Impact, series: &Series, weighting: Weighting) -> f64 {
@@ -150,13 +198,14 @@ impl NoisePlan {
         parameters: usize,
     ) -> Self {
         let mut plan = self.clone();
+        plan.groups.clear();
         let total: usize = rows.residuals.iter().flatten().map(Vec::len).sum();
         // Degrees of freedom that the parameters used up, shared by all channels.
         let freedom = total as f64 / total.saturating_sub(parameters).max(1) as f64;
-        for (g, group) in plan.groups.iter_mut().enumerate() {
+        for (group, residuals) in self.groups.iter().zip(&rows.residuals) {
+            let mut group = group.clone();
             for quantity in Quantity::ALL {
-                let q = quantity as usize;
-                let residuals = &rows.residuals[g][q];
+                let residuals = &residuals[quantity as usize];
                 if residuals.is_empty() {
                     continue;
                 }
@@ -165,22 +214,66 @@ impl NoisePlan {
                 {
                     let jitter = edges.jitter(residuals, speeds, parameters);
                     let variances = edges.variances(speeds, jitter);
-                    *group = edge_group(edges, &variances, impact.onset);
+                    group = edge_group(edges, &variances, impact.onset);
+                } else if let Some(blocks) = self.coloured(impact, quantity, &group, residuals) {
+                    let (own, noise, residuals) = blocks;
+                    plan.noise[quantity as usize] = noise;
+                    plan.groups
+                        .push(rescaled(own, quantity, &residuals, freedom));
+                    group = group.without(quantity);
+                } else {
+                    group = rescaled(group, quantity, residuals, freedom);
                 }
-                let unknown = series(impact, quantity)
-                    .is_some_and(|s| s.persistence.is_none() && !s.derived)
-                    && !(quantity == Quantity::Displacement && self.edges.is_some());
-                let square = residuals.iter().map(|r| r * r).sum::<f64>() / residuals.len() as f64;
-                let random = square * group.weights[q] > LEAST_VARIANCE_RATIO;
-                if unknown && random {
-                    group.persistence[q] = persistence(residuals).unwrap_or(0.0);
-                }
-                let z = standardised(group, quantity, residuals);
-                let variance = freedom * z.iter().map(|z| z * z).sum::<f64>() / z.len() as f64;
-                let ratio = (variance * inflation(&z)).max(LEAST_VARIANCE_RATIO);
-                group.weights[q] /= ratio;
+            }
+            if Quantity::ALL.iter().any(|q| group.holds(*q)) {
+                plan.groups.push(group);
             }
         }
         plan
     }
+
+    /// Blocks of a quantity whose recording did not tell its persistence, where
+    /// the residuals show one; with the noise of a block by the recording, and the
+    /// residuals of the blocks.
+    fn coloured(
+        &self,
+        impact: &Impact,
+        quantity: Quantity,
+        group: &SampleGroup,
+        residuals: &[f64],
+    ) -> Option<(SampleGroup, f64, Vec<f64>)> {
+        let series = series(impact, quantity)?;
+        if series.persistence.is_some() || series.derived {
+            return None;
+        }
+        let square = residuals.iter().map(|r| r * r).sum::<f64>() / residuals.len() as f64;
+        if square * group.weight(quantity) < LEAST_VARIANCE_RATIO {
+            return None;
+        }
+        let persistence = persistence(residuals)?;
+        let length = length_of_blocks(impact, series, persistence);
+        if length == 1 {
+            return None;
+        }
+        let (ratio, rest) = mean_noise(persistence, length);
+        let mut noise = self.noise;
+        noise[quantity as usize] = series.noise * ratio.sqrt();
+        let group = block_group(impact, quantity, series, length, rest, &noise);
+        Some((group, noise[quantity as usize], means(residuals, length)))
+    }
+}
+
+/// A group with the variance that the residuals show for `quantity`, what is left
+/// of their correlation included.
+fn rescaled(
+    mut group: SampleGroup,
+    quantity: Quantity,
+    residuals: &[f64],
+    freedom: f64,
+) -> SampleGroup {
+    let z = standardised(&group, quantity, residuals);
+    let variance = freedom * z.iter().map(|z| z * z).sum::<f64>() / z.len() as f64;
+    let ratio = (variance * inflation(&z)).max(LEAST_VARIANCE_RATIO);
+    group.weights[quantity as usize] /= ratio;
+    group
 }

@@ -57,6 +57,8 @@ pub struct SampleGroup {
     pub(crate) persistence: [f64; QUANTITIES],
     /// Standard uncertainty of the zero that all samples of a quantity share; SI.
     pub(crate) zero_sd: [f64; QUANTITIES],
+    /// Whether samples are means over the interval between them.
+    pub(crate) means: bool,
 }
 
 impl SampleGroup {
@@ -78,6 +80,7 @@ impl SampleGroup {
             relative: Default::default(),
             persistence: [0.0; QUANTITIES],
             zero_sd: [0.0; QUANTITIES],
+            means: false,
         }
     }
 
@@ -106,6 +109,22 @@ impl SampleGroup {
     #[must_use]
     pub fn with_zero_sd(mut self, quantity: Quantity, sd: f64) -> Self {
         self.zero_sd[quantity as usize] = sd;
+        self
+    }
+
+    /// The same samples, which are means over the interval between them.
+    #[must_use]
+    pub fn of_means(mut self) -> Self {
+        self.means = true;
+        self
+    }
+
+    /// The same samples without those of `quantity`.
+    pub(crate) fn without(mut self, quantity: Quantity) -> Self {
+        let q = quantity as usize;
+        self.values[q].clear();
+        self.weights[q] = 0.0;
+        (self.persistence[q], self.zero_sd[q]) = (0.0, 0.0);
         self
     }
 

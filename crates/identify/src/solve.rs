@@ -2,7 +2,7 @@
 //! knows the law's concrete type.
 
 use crate::bootstrap::{BootstrapPlan, bootstrap_intervals};
-use crate::estimator::{Coordinate, Estimator, FreeLaw, FreeParameter, Setting, Values};
+use crate::estimator::{Coordinate, Estimator, FreeLaw, FreeParameter, Setting, Target, Values};
 use crate::interval::{FreeIntervals, IntervalMethod, IntervalOptions};
 use crate::model::Sampling;
 use crate::posterior::{PosteriorPlan, posterior_intervals};
@@ -20,6 +20,12 @@ const LONGEST_STEP: (f64, f64) = (2.0, 0.5);
 /// Gain, in units of the residual variance, that may be lost to the kinks that
 /// samples leave at separation: a tenth of a standard deviation.
 const ROUGHNESS: f64 = 0.01;
+/// How far another minimum is looked for; blocks of samples.
+const ONSET_SHIFT: f64 = 1.5;
+/// How often it is looked for on either side.
+const MOST_SHIFTS: usize = 4;
+/// A minimum is another one if it is lower by this; units of χ².
+const LOWER_BY: f64 = 1e-3;
 /// Free parameters that one fit can have.
 pub(crate) const LARGEST_FREE: usize = 8;
 /// Velocity, onset and displacement offset.
@@ -159,6 +165,8 @@ where
         }
     }
     let (estimator, minimum) = best?;
+    let (minimum, spent) = over_onsets(&estimator, minimum, free, &options(free, limits));
+    evaluations += spent;
     let smooth = minimum;
     let (minimum, spent) = polished(&estimator, minimum, &options(free, limits));
     evaluations += spent;
@@ -244,6 +252,43 @@ where
     }
 }
 
+/// The lowest of the minima that lie a block of samples before or after: where
+/// noise is persistent the cost is wavy in the onset.
+fn over_onsets<L, const N: usize, const W: usize, const P: usize>(
+    estimator: &Estimator<L, N, W, P>,
+    minimum: Minimum<P>,
+    free: &[FreeParameter],
+    options: &Options<P>,
+) -> (Minimum<P>, usize)
+where
+    L: FreeLaw<N>,
+{
+    let blocks = estimator.groups().iter().filter(|group| group.means);
+    let interval = blocks.map(SampleGroup::interval).fold(0.0, f64::max);
+    let onset = free.iter().position(|p| p.target == Target::Onset);
+    let (Some(onset), true) = (onset, interval > 0.0) else {
+        return (minimum, 0);
+    };
+    let Coordinate::Linear(scale) = free[onset].coordinate else {
+        return (minimum, 0);
+    };
+    let (mut best, mut spent) = (minimum, 0);
+    for side in [-1.0, 1.0] {
+        for _ in 0..MOST_SHIFTS {
+            let mut start = best.parameters;
+            start[onset] += side * ONSET_SHIFT * interval / scale;
+            let other = estimator.clone().minimise_from(&start, options);
+            spent += other.evaluations;
+            let usable = matches!(other.stop, Stop::Converged | Stop::Stuck);
+            if !(usable && other.equations.cost < best.equations.cost - LOWER_BY) {
+                break;
+            }
+            best = other;
+        }
+    }
+    (best, spent)
+}
+
 /// The minimum for instantaneous samples nearest to that for averaged ones: the
 /// averaging only made the way there smooth. Where a cusp is in the way, or where
 /// averages describe the samples better, the smooth minimum stays.
@@ -255,7 +300,8 @@ fn polished<L, const N: usize, const W: usize, const P: usize>(
 where
     L: FreeLaw<N>,
 {
-    if minimum.stop != Stop::Converged || !estimator.averages() {
+    let means = estimator.groups().iter().any(|group| group.means);
+    if minimum.stop != Stop::Converged || !estimator.averages() || means {
         return (minimum, 0);
     }
     let exact = estimator

@@ -82,6 +82,9 @@ pub struct EncoderSensor {
     pub phase: InitialPhase,
     /// Voltages of logic low and high; V.
     pub levels: (f64, f64),
+    /// Standard deviation of where a line is from where it should be, drawn with
+    /// the seed; counts.
+    pub line_error: f64,
     /// Standard deviation of white Gaussian noise on the phases; V.
     pub noise: f64,
     /// Samples per second; Hz.
@@ -118,6 +121,7 @@ pub fn pendulum_instrument() -> Instrument {
             output: EncoderOutput::Phases,
             phase: InitialPhase::Random,
             levels: (0.0, 5.0),
+            line_error: 0.0,
             noise: 0.0,
             sampling_rate,
         }),
@@ -320,7 +324,10 @@ fn encoder_channels(
         InitialPhase::Random => 4.0 * uniform(&mut noise_source(seed, 0)),
     };
     let counts = exact_counts(&x, sensor)?;
-    let counts: Vec<f64> = counts.iter().map(|count| (count + phase).floor()).collect();
+    let counts: Vec<f64> = counts
+        .iter()
+        .map(|count| counted(count + phase, sensor.line_error, seed))
+        .collect();
 
     let channel = |quantity, unit, samples| RawChannel {
         quantity,
@@ -361,6 +368,28 @@ fn encoder_channels(
         ),
     ])
 }
+
+/// The count at a position in counts, with each line where its error puts it.
+fn counted(position: f64, line_error: f64, seed: u64) -> f64 {
+    let count = position.floor();
+    if line_error <= 0.0 {
+        return count;
+    }
+    let error = |line: f64| {
+        let stream = LINE_STREAM.wrapping_add(line as i64 as u64);
+        line_error * normal(&mut noise_source(seed, stream))
+    };
+    if position < count + error(count) {
+        count - 1.0
+    } else if position >= count + 1.0 + error(count + 1.0) {
+        count + 1.0
+    } else {
+        count
+    }
+}
+
+/// Streams of the seed for the errors of the lines, apart from those of noise.
+const LINE_STREAM: u64 = 1 << 40;
 
 /// Counts without rounding, zero at zero displacement.
 fn exact_counts(x: &[f64], sensor: &EncoderSensor) -> Result<Vec<f64>, Error> {

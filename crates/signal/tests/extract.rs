@@ -337,12 +337,14 @@ fn recovers_from_counts_with_any_initial_phase() {
         let mut instrument = pendulum_instrument();
         let encoder = instrument.encoder.unwrap();
         instrument.encoder = Some(EncoderSensor {
+            line_error: 0.0,
             phase: InitialPhase::Given(phase),
             output: EncoderOutput::Counts,
             ..encoder
         });
         let counts = recording(&trajectory, &instrument, 1);
         instrument.encoder = Some(EncoderSensor {
+            line_error: 0.0,
             phase: InitialPhase::Given(phase),
             noise: 0.2,
             ..encoder
