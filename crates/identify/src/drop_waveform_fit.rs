@@ -45,7 +45,11 @@ pub fn calibrate_waveform(problem: &WaveformProblem) -> Result<WaveformFit, Erro
     // Shared, velocity and mass, after the value.
     match parameters.shared.len() + 3 {
         0..=FEW => solve::<FEW>(problem, &parameters),
-        _ => solve::<MANY>(problem, &parameters),
+        ..=MANY => solve::<MANY>(problem, &parameters),
+        _ => Err(Error::TooManyFree {
+            asked: parameters.shared.len(),
+            most: MANY - 3,
+        }),
     }
 }
 
