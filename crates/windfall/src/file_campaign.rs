@@ -3,6 +3,7 @@
 //! Every value keeps its place in the text, so that a message can name the line.
 //! `campaign` turns it into what the program works with.
 
+use crate::file_laws::LawsFile;
 use serde::Deserialize;
 use serde::de::{Deserializer, Visitor};
 use toml::Spanned;
@@ -38,6 +39,9 @@ pub struct CampaignFile {
     /// What is fitted.
     #[serde(default)]
     pub fit: FitFile,
+    /// The user's own laws.
+    #[serde(default)]
+    pub laws: LawsFile,
     /// How results are grouped.
     #[serde(default)]
     pub summary: SummaryFile,

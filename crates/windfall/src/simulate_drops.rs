@@ -9,6 +9,7 @@ use crate::simulate_campaign::{Batch, drawn, seed_of};
 use crate::workflow_new::{create_directory, write_file};
 use crate::workflow_simulate::end_name;
 use crate::write_csv::csv_text;
+use crate::write_laws::law_table;
 use crate::write_simulated::recording_text;
 use std::path::{Path, PathBuf};
 use windfall_contact::expression::LawExpression;
@@ -380,7 +381,7 @@ end = "{end}"
 
 [calibrate]
 bounces = 2
-"#,
+{own}"#,
         seed = bench.seed,
         gravity = plan.rig.gravity,
         mass_sd = bench.mass_sd,
@@ -390,5 +391,9 @@ bounces = 2
         sensitivity = sensor.sensitivity,
         free = free.join(", "),
         end = end_name(plan.end),
+        own = match law_table(plan.law.kind()) {
+            table if table.is_empty() => table,
+            table => format!("\n{table}"),
+        },
     )
 }
