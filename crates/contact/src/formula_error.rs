@@ -151,7 +151,7 @@ pub enum FormulaError {
         /// What to do, from ": " on; may be empty.
         hint: String,
         /// Where.
-        place: FormulaPlace,
+        place: Box<FormulaPlace>,
     },
     /// A start or default outside the bounds.
     #[error(
@@ -191,7 +191,7 @@ pub enum FormulaError {
         /// Why.
         reason: &'static str,
         /// Where.
-        place: FormulaPlace,
+        place: Box<FormulaPlace>,
     },
     /// The force, or a derivative, has no value within the working range.
     #[error("`{term}` {reason} at x = {displacement} m, v = {rate} m/s{place}, with {values}")]
@@ -207,7 +207,7 @@ pub enum FormulaError {
         /// Values of the parameters, as text.
         values: String,
         /// Where.
-        place: FormulaPlace,
+        place: Box<FormulaPlace>,
     },
     /// The force pulls while loading.
     #[error(

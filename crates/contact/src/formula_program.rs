@@ -389,10 +389,11 @@ impl<'a> Lowering<'a> {
     /// Roots and products for powers that are quarters, else by logarithm.
     fn power(&mut self, a: Id, b: Id) -> Place {
         let base = self.value(a);
-        if let Some(exponent) = self.graph.value(b) {
-            if (4.0 * exponent).fract() == 0.0 && exponent.abs() <= 8.0 {
-                return self.quarters(base, (4.0 * exponent) as i32);
-            }
+        if let Some(exponent) = self.graph.value(b)
+            && (4.0 * exponent).fract() == 0.0
+            && exponent.abs() <= 8.0
+        {
+            return self.quarters(base, (4.0 * exponent) as i32);
         }
         match self.place(b) {
             Place::Constant(slot) => self.step(Operation::Power, &[base, Place::Constant(slot)]),

@@ -105,7 +105,7 @@ impl Units<'_> {
             found: unit_text(found),
             expected,
             hint,
-            place: FormulaPlace::new(self.formula, term.span.start),
+            place: Box::new(FormulaPlace::new(self.formula, term.span.start)),
         }
     }
 

@@ -85,7 +85,7 @@ fn touch(looked: &Looked, findings: &mut Vec<UserLawFinding>) -> Result<(), Form
         return Err(FormulaError::UndefinedAtTouch {
             term: looked.formula[term.span.clone()].into(),
             reason,
-            place: FormulaPlace::new(looked.formula, term.span.start),
+            place: Box::new(FormulaPlace::new(looked.formula, term.span.start)),
         });
     }
     let force = looked.force(SMALLEST_DISPLACEMENT, 0.0);
@@ -147,7 +147,7 @@ fn undefined_at(looked: &Looked, displacement: f64, rate: f64) -> FormulaError {
         displacement,
         rate,
         values: looked.values_text(),
-        place: FormulaPlace::new(looked.formula, term.span.start),
+        place: Box::new(FormulaPlace::new(looked.formula, term.span.start)),
     }
 }
 

@@ -187,7 +187,11 @@ fn user_guess(user: UserKind, f: &Features, given: &[Option<f64>]) -> Vec<(&'sta
     let mut values: Vec<f64> = (0..parameters.len())
         .map(|i| given[i].or(starts[i]).unwrap_or(parameters[i].typical))
         .collect();
-    let open = |i: &&usize| given[**i].is_none() && starts[**i].is_none_or(|start| start == 0.0);
+    // A default is kept: it is held, or where the user wants to begin.
+    let open = |i: &&usize| {
+        let unknown = given[**i].is_none() && parameters[**i].default.is_none();
+        unknown && starts[**i].is_none_or(|start| start == 0.0)
+    };
     let slope = |values: &[f64], i: usize, d: f64, v: f64| {
         let law = kind.from_values(values);
         law.map_or(0.0, |law| AnyLaw(law).evaluate(d, v, 0.0).by_parameter[i])

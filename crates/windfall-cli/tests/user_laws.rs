@@ -328,7 +328,7 @@ fn conserves_a_law_there_and_back_between_geometries() {
     windfall(&returned);
     assert!((k(&back) / k(&here) - 1.0).abs() < 1e-9);
     let text = windfall(&["card", "show", "--file", &wall]);
-    for expected in ["assumed: Hertz's contact", "R* = 0.038 m", "equal strain"] {
+    for expected in ["assumed: Hertz's contact", "R* = 0.03800 m", "equal strain"] {
         assert!(text.contains(expected), "{expected}: {text}");
     }
     let soft = refused(&[

@@ -119,20 +119,44 @@ fn less_within(
     within: &[Vec<f64>],
     share: f64,
 ) -> (Option<Vec<Vec<f64>>>, &'static str) {
+    // A variance is not negative: what does not differ between fruit has none.
+    let differs: Vec<bool> = (0..scatter.len())
+        .map(|i| scatter[i][i] > share * within[i][i])
+        .collect();
+    let all = differs.iter().all(|differs| *differs);
     for part in PARTS {
         let mut left = scatter.to_vec();
         add(&mut left, within, -part * share);
-        if part == 0.0 || is_covariance(&left) {
-            let method = match part {
-                1.0 => "two stages: covariance of the fruit's means, less that within fruit",
+        keep(&mut left, &differs, 0.0);
+        let mut tried = left.clone();
+        keep(&mut tried, &differs, 1.0);
+        if part == 0.0 || is_covariance(&tried) {
+            let method = match (part == 1.0, all) {
+                (true, true) => {
+                    "two stages: covariance of the fruit's means, less that within fruit"
+                }
+                (true, false) => {
+                    "two stages; a parameter that scatters no more between fruit than within has the variance 0"
+                }
                 _ => {
-                    "two stages; the scatter between fruit is hardly more than that within: the covariance between fruit is an upper estimate"
+                    "two stages; parameters scatter hardly more between fruit than within: the covariance between fruit is an upper estimate"
                 }
             };
             return (Some(left), method);
         }
     }
     (Some(scatter.to_vec()), "two stages")
+}
+
+/// Empties rows and columns of what does not differ, but for its diagonal.
+fn keep(matrix: &mut [Vec<f64>], differs: &[bool], diagonal: f64) {
+    for (i, row) in matrix.iter_mut().enumerate() {
+        for (j, cell) in row.iter_mut().enumerate() {
+            if !(differs[i] && differs[j]) {
+                *cell = if i == j { diagonal } else { 0.0 };
+            }
+        }
+    }
 }
 
 /// Whether a symmetric matrix is positive definite.
@@ -216,9 +240,9 @@ mod tests {
         let plain = of(vec![vec![vec![1.0]], vec![vec![3.0]]]);
         assert_eq!(plain.between.unwrap()[0][0], 2.0);
         assert!(plain.within.is_none());
-        // Nothing but scatter within: an upper estimate, never negative.
+        // Nothing but scatter within: no variance, never a negative one.
         let same = of(vec![vec![vec![1.0], vec![5.0]], vec![vec![2.0], vec![4.1]]]);
-        assert!(same.between.unwrap()[0][0] >= 0.0);
-        assert!(same.method.contains("upper estimate"));
+        assert_eq!(same.between.unwrap()[0][0], 0.0);
+        assert!(same.method.contains("has the variance 0"));
     }
 }

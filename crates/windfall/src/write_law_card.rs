@@ -116,6 +116,9 @@ fn between_text(population: &CardPopulation) -> String {
     for i in places {
         for j in 0..i {
             let correlation = matrix[i][j] / (sd(i) * sd(j));
+            if !correlation.is_finite() {
+                continue;
+            }
             text += &format!(
                 "; correlation of {} and {} {correlation:.2}",
                 population.of[j], population.of[i]
