@@ -3,7 +3,7 @@
 use crate::read_channels::{KINDS, Kind};
 use crate::read_rig::FROM_IMPULSE;
 use crate::workflow_simulate::end_name;
-use crate::write_laws::law_table;
+use crate::write_user_laws::law_table;
 use std::fmt::Write;
 use windfall_contact::law::EndRule;
 use windfall_contact::law_kind::LawKind;
