@@ -360,7 +360,7 @@ fn conserves_a_law_there_and_back_between_geometries() {
     assert!(codes(&findings).contains(&"outside-card-range"));
     let text = windfall(&fast);
     assert!(
-        text.contains("an impact velocity of 2 m/s is higher than the law's card has seen"),
+        text.contains("an impact velocity of 2.000 m/s is higher than the law's card has seen"),
         "{text}"
     );
     assert!(text.contains("by a factor of 5"), "{text}");

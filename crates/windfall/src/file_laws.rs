@@ -1,6 +1,6 @@
 //! `[laws.NAME]`: laws of the user as they stand on disk.
 
-use crate::file_campaign::QuantityText;
+use crate::file_quantity::QuantityText;
 use serde::Deserialize;
 use std::collections::BTreeMap;
 use toml::Spanned;

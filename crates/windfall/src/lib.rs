@@ -60,6 +60,7 @@ pub mod file_compression;
 pub mod file_drop;
 pub mod file_laws;
 pub mod file_library;
+pub mod file_quantity;
 pub mod file_repeats;
 pub mod find_channel;
 pub mod fit_card;

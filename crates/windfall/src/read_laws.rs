@@ -1,8 +1,8 @@
 //! Laws of the user: `[laws.NAME]` of a campaign.toml or a file of laws.
 
 use crate::error::Error;
-use crate::file_campaign::QuantityText;
 use crate::file_laws::{LawFile, LawParameterFile, LawsFile, OnlyLaws};
+use crate::file_quantity::QuantityText;
 use crate::option_value::unusable;
 use crate::toml_source::{TomlSource, invalid, parse_source, read_source};
 use std::path::Path;
