@@ -5,8 +5,7 @@ use crate::law_kind::Law;
 use crate::with_law;
 use windfall_numerics::real::Real;
 
-/// Parameters of the law that has most.
-pub const LARGEST_PARAMETERS: usize = 4;
+pub use crate::any_law_size::LARGEST_PARAMETERS;
 
 /// Any law of the registry as one type; derivatives by parameters that it does
 /// not have are zero.

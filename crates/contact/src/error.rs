@@ -1,5 +1,6 @@
 //! What can be wrong with a law or its expression.
 
+use crate::formula_error::FormulaError;
 use crate::parameter::number_text;
 use std::fmt;
 use windfall_numerics::unit::UnitError;
@@ -156,6 +157,14 @@ pub enum Error {
         /// Where in the expression.
         place: Place,
     },
+    /// A law of the user that cannot be used.
+    #[error("law \"{law}\": {problem}")]
+    UserLaw {
+        /// Its name.
+        law: String,
+        /// What is wrong.
+        problem: Box<FormulaError>,
+    },
     /// A coefficient of restitution that no impact can have.
     #[error("a coefficient of restitution is above 0 and at most 1, not {value}")]
     ImpossibleRestitution {
@@ -180,6 +189,7 @@ impl Error {
             Self::ParameterCount { .. }
             | Self::MissingParameters { .. }
             | Self::SofterUnloading { .. }
+            | Self::UserLaw { .. }
             | Self::ImpossibleRestitution { .. } => None,
         }
     }

@@ -120,9 +120,18 @@ impl fmt::Display for LawExpression {
 /// # Ok::<(), windfall_contact::error::Error>(())
 /// ```
 pub fn parse_law(text: &str) -> Result<LawExpression, Error> {
+    parse_law_among(text, &[])
+}
+
+/// Reads a law expression of a built-in law or one of `user`.
+///
+/// # Errors
+/// As [`parse_law`].
+pub fn parse_law_among(text: &str, user: &[LawKind]) -> Result<LawExpression, Error> {
     let mut cursor = Cursor { text, at: 0 };
     let (name, offset) = cursor.name("the name of a law")?;
-    let kind = LawKind::from_name(name).map_err(|error| placed(error, cursor.place(offset)))?;
+    let kind = LawKind::from_name_among(name, user)
+        .map_err(|error| placed(error, cursor.place(offset)))?;
     let arguments = cursor.arguments()?;
     let texts = assigned(kind, &arguments, &cursor)?;
     let values = read_values(kind, &texts, &cursor)?;

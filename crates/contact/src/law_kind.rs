@@ -2,6 +2,7 @@
 
 use crate::error::Error;
 use crate::law::ContactLaw;
+use crate::law_user::{UserKind, UserLaw};
 use crate::parameter::LawDescription;
 use windfall_numerics::nearest_name::nearest_names;
 
@@ -15,16 +16,20 @@ macro_rules! registry {
         #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
         pub enum LawKind {
             $(#[doc = concat!("[`", stringify!($variant), "`].")] $variant,)*
+            /// One that the user defined ([`define_law`](crate::define_law)).
+            User(UserKind),
         }
 
         /// A force law with its parameters.
         #[derive(Clone, Copy, Debug, PartialEq)]
         pub enum Law {
             $(#[doc = concat!("[`", stringify!($variant), "`].")] $variant($variant),)*
+            /// One that the user defined.
+            User(UserLaw),
         }
 
         impl LawKind {
-            /// Every law, in the order in which they are listed to people.
+            /// Every built-in law, in the order in which they are listed to people.
             pub const ALL: [Self; $count] = [$(Self::$variant),*];
 
             /// Formula, parameters, behaviour at first touch and source.
@@ -32,6 +37,7 @@ macro_rules! registry {
             pub fn describe(self) -> &'static LawDescription {
                 match self {
                     $(Self::$variant => &crate::$module::DESCRIPTION,)*
+                    Self::User(kind) => kind.description(),
                 }
             }
 
@@ -41,6 +47,7 @@ macro_rules! registry {
             pub fn from_values(self, values: &[f64]) -> Option<Law> {
                 Some(match self {
                     $(Self::$variant => Law::$variant($variant::from(<[f64; _]>::try_from(values).ok()?)),)*
+                    Self::User(kind) => Law::User(UserLaw::new(kind, values)?),
                 })
             }
         }
@@ -51,6 +58,7 @@ macro_rules! registry {
             pub fn kind(&self) -> LawKind {
                 match self {
                     $(Self::$variant(_) => LawKind::$variant,)*
+                    Self::User(law) => LawKind::User(law.kind()),
                 }
             }
 
@@ -62,6 +70,7 @@ macro_rules! registry {
             pub fn parameters(&self) -> Vec<f64> {
                 match *self {
                     $(Self::$variant(law) => <[f64; _]>::from(law).to_vec(),)*
+                    Self::User(law) => law.parameters().to_vec(),
                 }
             }
         }
@@ -115,6 +124,7 @@ macro_rules! with_law {
             $crate::law_kind::Law::AdamsImpact($concrete) => $body,
             $crate::law_kind::Law::WaltonBraun($concrete) => $body,
             $crate::law_kind::Law::Thornton($concrete) => $body,
+            $crate::law_kind::Law::User($concrete) => $body,
         }
     };
 }
@@ -131,10 +141,19 @@ impl LawKind {
     /// # Errors
     /// [`Error::UnknownLaw`] with the laws of similar name.
     pub fn from_name(name: &str) -> Result<Self, Error> {
+        Self::from_name_among(name, &[])
+    }
+
+    /// The law of a name, among the built-in ones and those of the user.
+    ///
+    /// # Errors
+    /// [`Error::UnknownLaw`] with the laws of similar name.
+    pub fn from_name_among(name: &str, user: &[Self]) -> Result<Self, Error> {
         let folded = name.trim().to_lowercase().replace('_', "-");
-        let named = Self::ALL.into_iter().find(|kind| kind.name() == folded);
+        let all = || Self::ALL.into_iter().chain(user.iter().copied());
+        let named = all().find(|kind| kind.name() == folded);
         named.ok_or_else(|| {
-            let known: Vec<_> = Self::ALL.into_iter().map(Self::name).collect();
+            let known: Vec<_> = all().map(Self::name).collect();
             Error::UnknownLaw {
                 name: name.trim().into(),
                 nearest: nearest_names(&folded, known.iter().copied()),

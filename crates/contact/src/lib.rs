@@ -21,12 +21,21 @@
 //! This crate knows no instrument, no rig and no file.
 
 pub mod any_law;
+mod any_law_size;
 pub mod apparent_modulus;
 pub mod curvature;
 pub mod damping_factor;
+pub mod define_law;
 pub mod effective;
 pub mod error;
 pub mod expression;
+pub mod force_table;
+pub mod formula_error;
+mod formula_graph;
+mod formula_program;
+mod formula_syntax;
+mod formula_unit;
+mod formula_value;
 pub mod hertz_elliptic;
 pub mod law;
 pub mod law_adams_impact;
@@ -41,7 +50,10 @@ pub mod law_lankarani_nikravesh;
 pub mod law_power;
 pub mod law_thornton;
 pub mod law_tsuji;
+pub mod law_user;
 pub mod law_walton_braun;
 pub mod parameter;
 pub mod restitution;
 pub mod transfer;
+mod user_law_check;
+pub mod user_law_finding;

@@ -47,7 +47,11 @@ pub fn closed_form_restitution(law: &Law, mass: f64, velocity: f64) -> Option<f6
         }
         Law::WaltonBraun(law) => Some((law.k1 / law.k2).sqrt().min(1.0)),
         Law::Thornton(law) => Some(thornton_restitution(law, mass, velocity)),
-        Law::KuwabaraKono(_) | Law::PowerLaw(_) | Law::Tsuji(_) | Law::AdamsImpact(_) => None,
+        Law::KuwabaraKono(_)
+        | Law::PowerLaw(_)
+        | Law::Tsuji(_)
+        | Law::AdamsImpact(_)
+        | Law::User(_) => None,
     }
 }
 

@@ -4,7 +4,7 @@
 use windfall_numerics::cholesky::{inverse, solve};
 
 /// Parameters that all records share, at most.
-pub(crate) const SHARED: usize = 8;
+pub(crate) const SHARED: usize = 10;
 /// Parameters of one record.
 pub(crate) const OWN: usize = 4;
 /// Both.

@@ -44,8 +44,12 @@ pub fn calibrate_waveform(problem: &WaveformProblem) -> Result<WaveformFit, Erro
     let parameters = plan(problem, reference(problem)?)?;
     // Shared, velocity and mass, after the value.
     match parameters.shared.len() + 3 {
-        0..=FEW => solve::<FEW>(problem, &parameters),
-        _ => solve::<MANY>(problem, &parameters),
+        lanes if lanes <= FEW => solve::<FEW>(problem, &parameters),
+        lanes if lanes <= MANY => solve::<MANY>(problem, &parameters),
+        _ => Err(Error::TooManyFree {
+            asked: parameters.shared.len(),
+            most: MANY - 3,
+        }),
     }
 }
 

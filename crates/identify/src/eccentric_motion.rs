@@ -13,7 +13,7 @@
 //! ([`ContactLaw::START_POWER`]).
 
 use crate::eccentric_body::{Planar, State};
-use windfall_contact::any_law::AnyLaw;
+use windfall_contact::any_law::{AnyLaw, LARGEST_PARAMETERS};
 use windfall_contact::law::{ContactForce, ContactLaw, EndRule, SMALLEST_DISPLACEMENT};
 use windfall_numerics::ode_step::System;
 use windfall_numerics::real::Lanes;
@@ -132,7 +132,7 @@ pub(crate) struct Forces {
 }
 
 impl Phase<'_> {
-    pub fn law_at(&self, displacement: f64, rate: f64) -> ContactForce<f64, 4> {
+    pub fn law_at(&self, displacement: f64, rate: f64) -> ContactForce<f64, LARGEST_PARAMETERS> {
         let d = displacement.max(SMALLEST_DISPLACEMENT);
         self.law.evaluate(d, rate, self.peak)
     }

@@ -9,6 +9,7 @@ use crate::samples::SampleGroup;
 use windfall_contact::any_law::{AnyLaw, LARGEST_PARAMETERS};
 use windfall_contact::law::{ContactLaw, EndRule};
 use windfall_contact::law_kuwabara_kono::KuwabaraKono;
+use windfall_contact::law_user::UserLaw;
 use windfall_numerics::least_squares::{
     Bounds, LeastSquares, Minimum, NormalEquations, Options, minimise,
 };
@@ -141,6 +142,13 @@ impl FreeLaw<LARGEST_PARAMETERS> for AnyLaw {
         let kind = self.0.kind();
         let count = kind.describe().parameters.len();
         Self(kind.from_values(&values[..count]).unwrap_or(self.0))
+    }
+}
+
+impl FreeLaw<LARGEST_PARAMETERS> for UserLaw {
+    fn with_values(&self, values: [f64; LARGEST_PARAMETERS]) -> Self {
+        let count = self.parameters().len();
+        Self::new(self.kind(), &values[..count]).unwrap_or(*self)
     }
 }
 

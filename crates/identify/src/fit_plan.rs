@@ -132,7 +132,7 @@ fn starts(
     out.push(start.clone());
     let mut scales = problem
         .free_positions()
-        .filter(|&i| is_scale(problem.kind, i));
+        .filter(|&i| is_scale(problem.kind, i, start[i]));
     let (first, second) = (scales.next(), scales.next());
     for (stiffness, damping) in OTHER_STARTS {
         let mut other = start.clone();
@@ -147,8 +147,19 @@ fn starts(
 }
 
 /// Whether a parameter is a positive scale, to be moved on a logarithmic axis.
-fn is_scale(kind: LawKind, position: usize) -> bool {
-    kind.describe().parameters[position].unit != "1"
+fn is_scale(kind: LawKind, position: usize, start: f64) -> bool {
+    let parameter = &kind.describe().parameters[position];
+    parameter.unit != "1" && parameter.lower >= 0.0 && start > 0.0
+}
+
+/// Size of a parameter that is moved on a linear axis: exponents and the like
+/// are of the order of one, others of that of their start.
+fn linear_scale(kind: LawKind, position: usize, start: f64) -> f64 {
+    match kind.describe().parameters[position].unit {
+        "1" => 1.0,
+        _ if start != 0.0 => start.abs(),
+        _ => 1.0,
+    }
 }
 
 fn free_parameters(
@@ -164,13 +175,13 @@ fn free_parameters(
         .free_positions()
         .map(|i| {
             let parameter = &description.parameters[i];
-            let scale = is_scale(problem.kind, i);
+            let scale = is_scale(problem.kind, i, start[i]);
             FreeParameter {
                 target: Target::Law(i),
                 coordinate: if scale {
                     Coordinate::Logarithm
                 } else {
-                    Coordinate::Linear(1.0)
+                    Coordinate::Linear(linear_scale(problem.kind, i, start[i]))
                 },
                 lower: if scale {
                     parameter.lower.max(start[i] / SEARCH_FACTOR)

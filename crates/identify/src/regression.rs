@@ -4,6 +4,7 @@
 use windfall_contact::any_law::AnyLaw;
 use windfall_contact::law::ContactLaw;
 use windfall_contact::law_kind::{Law, LawKind};
+use windfall_contact::law_user::UserKind;
 use windfall_numerics::cholesky;
 use windfall_numerics::least_squares::NormalEquations;
 use windfall_signal::impact::{Impact, Series};
@@ -25,7 +26,11 @@ pub struct RegressionEstimate {
 }
 
 /// Parameters that the force is linear in, by position.
-fn linear_positions(kind: LawKind) -> Vec<usize> {
+fn linear_positions(law: &Law) -> Vec<usize> {
+    let kind = law.kind();
+    if let LawKind::User(user) = kind {
+        return terms_of_user(law, user);
+    }
     let linear = |name: &str| match kind {
         LawKind::Hertz | LawKind::KelvinVoigt | LawKind::KuwabaraKono => true,
         LawKind::PowerLaw | LawKind::AdamsImpact => name == "k" || name == "c",
@@ -37,6 +42,25 @@ fn linear_positions(kind: LawKind) -> Vec<usize> {
         .filter(|(_, p)| linear(p.name))
         .map(|(i, _)| i)
         .collect()
+}
+
+/// State at which the terms of a user's law are added up.
+const STATE: (f64, f64) = (1e-3, 0.3);
+
+/// Parameters of a user's law whose terms are the whole force; otherwise none.
+fn terms_of_user(law: &Law, user: UserKind) -> Vec<usize> {
+    let positions = [user.linear_at_rest(), user.linear_in_rate()].concat();
+    let at = AnyLaw(*law).evaluate(STATE.0, STATE.1, 0.0);
+    let values = law.parameters();
+    let sum: f64 = positions
+        .iter()
+        .map(|&i| values[i] * at.by_parameter[i])
+        .sum();
+    let whole = (sum - at.force).abs() <= 1e-9 * at.force.abs();
+    match whole && positions.len() <= TERMS {
+        true => positions,
+        false => Vec::new(),
+    }
 }
 
 /// Force regressed on the terms of `law` over the contact:
@@ -56,7 +80,7 @@ fn linear_positions(kind: LawKind) -> Vec<usize> {
 /// Eq. (9) of the 2003 pendulum study.
 #[must_use]
 pub fn regress(impact: &Impact, law: &Law) -> Option<Vec<RegressionEstimate>> {
-    let positions = linear_positions(law.kind());
+    let positions = linear_positions(law);
     if positions.is_empty() {
         return None;
     }

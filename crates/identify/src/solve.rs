@@ -27,7 +27,7 @@ const MOST_SHIFTS: usize = 4;
 /// A minimum is another one if it is lower by this; units of χ².
 const LOWER_BY: f64 = 1e-3;
 /// Free parameters that one fit can have.
-pub(crate) const LARGEST_FREE: usize = 8;
+pub(crate) const LARGEST_FREE: usize = 9;
 /// Velocity, onset and displacement offset.
 const NUISANCES: usize = 3;
 const _: () = assert!(LARGEST_PARAMETERS + NUISANCES <= LARGEST_FREE);
@@ -99,7 +99,8 @@ pub(crate) fn solve(
     limits: &Limits,
 ) -> Option<Solution> {
     // The narrowest arrays that hold the free parameters; the field's usual
-    // law is compiled for itself, the others share their code.
+    // law and those of the user are compiled for themselves, the others share
+    // their code.
     let count = starts.first()?.0.len();
     let lanes = free.iter().filter(|p| p.target.needs_lane()).count();
     match (law, free.len(), lanes) {
@@ -109,6 +110,14 @@ pub(crate) fn solve(
         (Law::KuwabaraKono(law), ..=5, ..=3) => {
             best_of::<_, 2, 4, 5>(*law, setting, free, &values(starts), count, limits)
         }
+        (Law::User(law), ..=5, ..=3) => best_of::<_, LARGEST_PARAMETERS, 4, 5>(
+            *law,
+            setting,
+            free,
+            &values(starts),
+            count,
+            limits,
+        ),
         (law, _, _) => best_of::<_, LARGEST_PARAMETERS, 8, LARGEST_FREE>(
             AnyLaw(*law),
             setting,

@@ -2,7 +2,10 @@
 //! duration and the restitution of the impact in order of magnitude.
 
 use std::f64::consts::PI;
+use windfall_contact::any_law::AnyLaw;
+use windfall_contact::law::ContactLaw;
 use windfall_contact::law_kind::LawKind;
+use windfall_contact::law_user::UserKind;
 use windfall_contact::restitution::{damping_for_restitution, kuwabara_kono_pade};
 use windfall_signal::impact::Impact;
 
@@ -150,6 +153,7 @@ pub(crate) fn starting_values(kind: LawKind, f: &Features, given: &[Option<f64>]
                 ("yield_pressure", pressure),
             ]
         }
+        LawKind::User(user) => user_guess(user, f, given),
     };
     parameters
         .iter()
@@ -169,6 +173,54 @@ pub(crate) fn starting_values(kind: LawKind, f: &Features, given: &[Option<f64>]
                 .clamp(parameter.lower, parameter.upper)
         })
         .collect()
+}
+
+/// Instants at which the work of a user's damping is added up.
+const INSTANTS: usize = 64;
+
+/// Starts of a user's law: its own, and otherwise scales of the force that give
+/// the impact's peak, and scales of the damping that lose its energy.
+fn user_guess(user: UserKind, f: &Features, given: &[Option<f64>]) -> Vec<(&'static str, f64)> {
+    let kind = LawKind::User(user);
+    let parameters = kind.describe().parameters;
+    let starts = user.starts();
+    let mut values: Vec<f64> = (0..parameters.len())
+        .map(|i| given[i].or(starts[i]).unwrap_or(parameters[i].typical))
+        .collect();
+    // A default is kept: it is held, or where the user wants to begin.
+    let open = |i: &&usize| {
+        let unknown = given[**i].is_none() && parameters[**i].default.is_none();
+        unknown && starts[**i].is_none_or(|start| start == 0.0)
+    };
+    let slope = |values: &[f64], i: usize, d: f64, v: f64| {
+        let law = kind.from_values(values);
+        law.map_or(0.0, |law| AnyLaw(law).evaluate(d, v, 0.0).by_parameter[i])
+    };
+    let scaled = |i: usize, value: f64| match value.is_finite() && value > 0.0 {
+        true => value.clamp(parameters[i].lower, parameters[i].upper),
+        false => parameters[i].typical,
+    };
+    let rest: Vec<usize> = user.linear_at_rest().iter().filter(open).copied().collect();
+    for &i in &rest {
+        let share = 0.9 * f.force / rest.len() as f64;
+        values[i] = scaled(i, share / slope(&values, i, f.displacement, 0.0));
+    }
+    let rate: Vec<usize> = user.linear_in_rate().iter().filter(open).copied().collect();
+    for &i in &rate {
+        // ∮ ∂F/∂p dx over a half-sine of the displacement.
+        let step = f.duration / INSTANTS as f64;
+        let work: f64 = (0..INSTANTS)
+            .map(|n| {
+                let phase = PI * (n as f64 + 0.5) / INSTANTS as f64;
+                let d = f.displacement * phase.sin();
+                let v = f.displacement * PI / f.duration * phase.cos();
+                slope(&values, i, d, v) * v * step
+            })
+            .sum();
+        values[i] = scaled(i, f.loss() / (rate.len() as f64 * work));
+    }
+    let names = parameters.iter().map(|parameter| parameter.name);
+    names.zip(values).collect()
 }
 
 /// The group B = (c/m)(m/k)^(3/5) v^(1/5) of a Kuwabara-Kono impact of this

@@ -38,6 +38,8 @@ pub trait Real:
     fn min(self, other: Self) -> Self;
     /// `positive` in the lanes where `self > 0`, `otherwise` in the others.
     fn select(self, positive: Self, otherwise: Self) -> Self;
+    /// A function of one number applied to each lane.
+    fn map(self, function: impl Fn(f64) -> f64) -> Self;
 }
 
 impl Real for f64 {
@@ -73,6 +75,10 @@ impl Real for f64 {
     fn select(self, positive: Self, otherwise: Self) -> Self {
         if self > 0.0 { positive } else { otherwise }
     }
+    #[inline(always)]
+    fn map(self, function: impl Fn(f64) -> f64) -> Self {
+        function(self)
+    }
 }
 
 /// `W` numbers side by side.
@@ -86,15 +92,6 @@ pub struct Lanes<const W: usize>(pub [f64; W]);
 impl<const W: usize> Lanes<W> {
     /// Zero in every lane.
     pub const ZERO: Self = Self([0.0; W]);
-
-    #[inline(always)]
-    fn map(self, f: impl Fn(f64) -> f64) -> Self {
-        let mut out = [0.0; W];
-        for i in 0..W {
-            out[i] = f(self.0[i]);
-        }
-        Self(out)
-    }
 
     #[inline(always)]
     fn zip(self, other: Self, f: impl Fn(f64, f64) -> f64) -> Self {
@@ -221,6 +218,14 @@ impl<const W: usize> Real for Lanes<W> {
             } else {
                 otherwise.0[i]
             };
+        }
+        Self(out)
+    }
+    #[inline(always)]
+    fn map(self, function: impl Fn(f64) -> f64) -> Self {
+        let mut out = [0.0; W];
+        for i in 0..W {
+            out[i] = function(self.0[i]);
         }
         Self(out)
     }

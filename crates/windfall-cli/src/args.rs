@@ -170,16 +170,17 @@ pub enum CardAction {
     /// Show the force laws, or published values: parameters, units, source
     #[command(after_help = "Examples:
   windfall card show --laws
+  windfall card show --laws my-campaign/campaign.toml
   windfall card show --file law.toml
   windfall card show --library --fruit apple
   windfall card show --library jonagold-2003
   windfall card show --library golden-delicious-regression --at 'V=0.34 m/s, R=50 mm, t=6 ms'")]
     Show {
-        /// List all laws
-        #[arg(long, required_unless_present_any = ["law", "library", "file"])]
-        laws: bool,
+        /// List all laws, or the own laws of a file ([laws.NAME] tables, as in campaign.toml)
+        #[arg(long, value_name = "FILE", num_args = 0..=1, value_hint = ValueHint::FilePath, required_unless_present_any = ["law", "library", "file"])]
+        laws: Option<Option<PathBuf>>,
         /// Show one law, with all its parameters
-        #[arg(long, value_name = "LAW", conflicts_with = "laws")]
+        #[arg(long, value_name = "LAW")]
         law: Option<String>,
         /// Show a law card: a calibrated law with its uncertainty, range and origin
         #[arg(long, value_name = "FILE", value_hint = ValueHint::FilePath, conflicts_with_all = ["laws", "law", "library"])]

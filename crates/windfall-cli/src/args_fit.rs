@@ -17,6 +17,8 @@ Examples:
   windfall fit my-campaign
   windfall fit my-campaign --law hertz --law kuwabara-kono --format json
   windfall fit my-campaign --law 'power-law' --free n
+  windfall fit my-campaign --law kuwabara-kono --card law.toml
+      the median fruit as a law card: `windfall simulate impact --law law.toml …`
   windfall fit my-campaign/raw/apple-7.csv
       one recording of a campaign
   windfall fit my-campaign --quantities displacement,rate,force --weights inverse-mean
@@ -35,6 +37,9 @@ pub struct FitArguments {
     /// Law to fit in place of those of the campaign; may be repeated
     #[arg(long = "law", value_name = "LAW")]
     pub laws: Vec<String>,
+    /// File of own laws ([laws.NAME] tables) that --law can name, besides those of the campaign
+    #[arg(long = "laws", value_name = "FILE", value_hint = ValueHint::FilePath)]
+    pub laws_file: Option<PathBuf>,
     /// Parameter to estimate although it has a value, such as an exponent; may be repeated
     #[arg(long, value_name = "NAME")]
     pub free: Vec<String>,
@@ -80,6 +85,9 @@ pub struct FitArguments {
     /// Write a figure of each recording (SVG) and its data (CSV) into this directory
     #[arg(long, value_name = "DIR", value_hint = ValueHint::DirPath)]
     pub figures: Option<PathBuf>,
+    /// Write the law as a law card: the median fruit, how fruit differ, and in what it was seen
+    #[arg(long, value_name = "FILE", value_hint = ValueHint::FilePath, conflicts_with = "rig")]
+    pub card: Option<PathBuf>,
     /// Number of threads; all cores if left out. It never changes a result
     #[arg(long, value_name = "N")]
     pub threads: Option<usize>,

@@ -91,6 +91,9 @@ pub struct SimulateCompressionArguments {
     /// Force law of the crosshead's travel, with its parameters
     #[arg(long)]
     pub law: String,
+    /// File of own laws ([laws.NAME] tables, as in campaign.toml) that --law can name
+    #[arg(long, value_name = "FILE", value_hint = ValueHint::FilePath)]
+    pub laws: Option<PathBuf>,
     /// Rate of deformation; may be repeated: every fruit is compressed at each
     #[arg(long = "rate", default_value = "1 mm/s")]
     pub rates: Vec<String>,
@@ -180,6 +183,9 @@ pub struct SimulateImpactArguments {
     /// Force law with its parameters, or a law card (FILE.toml)
     #[arg(long)]
     pub law: String,
+    /// File of own laws ([laws.NAME] tables, as in campaign.toml) that --law can name
+    #[arg(long, value_name = "FILE", value_hint = ValueHint::FilePath)]
+    pub laws: Option<PathBuf>,
     /// Effective mass, such as "0.2 kg"
     #[arg(long)]
     pub mass: String,
@@ -214,6 +220,9 @@ pub struct SimulatePendulumArguments {
     /// Force law with its parameters, or a law card (FILE.toml)
     #[arg(long, required_unless_present = "example")]
     pub law: Option<String>,
+    /// File of own laws ([laws.NAME] tables, as in campaign.toml) that --law can name
+    #[arg(long, value_name = "FILE", value_hint = ValueHint::FilePath)]
+    pub laws: Option<PathBuf>,
     /// Write the example campaign into this directory
     #[arg(long, value_name = "DIR", conflicts_with_all = ["law", "recordings"], value_hint = ValueHint::DirPath)]
     pub example: Option<PathBuf>,
@@ -290,6 +299,9 @@ pub struct SimulateCarriageArguments {
     /// Force law with its parameters, or a law card (FILE.toml)
     #[arg(long)]
     pub law: String,
+    /// File of own laws ([laws.NAME] tables, as in campaign.toml) that --law can name
+    #[arg(long, value_name = "FILE", value_hint = ValueHint::FilePath)]
+    pub laws: Option<PathBuf>,
     /// Mass of the body
     #[arg(long)]
     pub mass: String,

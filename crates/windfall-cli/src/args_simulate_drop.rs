@@ -33,6 +33,9 @@ pub struct SimulateDropArguments {
     /// Force law with its parameters, or a law card (FILE.toml)
     #[arg(long)]
     pub law: String,
+    /// File of own laws ([laws.NAME] tables, as in campaign.toml) that --law can name
+    #[arg(long, value_name = "FILE", value_hint = ValueHint::FilePath)]
+    pub laws: Option<PathBuf>,
     /// Mass of the fruit, such as "4.8 g"
     #[arg(long)]
     pub mass: String,

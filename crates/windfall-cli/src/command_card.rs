@@ -4,7 +4,7 @@ use crate::args::{CardAction, CardArguments};
 use crate::args_format::Format;
 use crate::command_geometry::run_transfer;
 use crate::show::{write_json, write_result};
-use windfall::law_card::read_card;
+use windfall::read_card::read_card;
 use windfall::workflow_card::{csv_of_laws, law_cards, text_of_laws};
 use windfall::workflow_library::{LibraryRequest, show_library};
 use windfall::write_law_card::{csv_of_card, text_of_card};
@@ -12,7 +12,7 @@ use windfall::write_library::{csv_of_library, text_of_library};
 
 /// Shows force laws or published values, or transfers a law.
 pub fn run(arguments: &CardArguments) -> anyhow::Result<()> {
-    let (law, format) = match &arguments.action {
+    let (laws, law, format) = match &arguments.action {
         CardAction::Transfer(arguments) => return run_transfer(arguments),
         CardAction::Show {
             library: Some(name),
@@ -40,9 +40,11 @@ pub fn run(arguments: &CardArguments) -> anyhow::Result<()> {
                 Format::Text => write_result(&text_of_card(&card)),
             };
         }
-        CardAction::Show { law, format, .. } => (law, format),
+        CardAction::Show {
+            laws, law, format, ..
+        } => (laws, law, format),
     };
-    let laws = law_cards(law.as_deref())?;
+    let laws = law_cards(law.as_deref(), laws.as_ref().and_then(Option::as_deref))?;
     match format {
         Format::Json => write_json(&serde_json::json!({ "laws": laws })),
         Format::Csv => write_result(&csv_of_laws(&laws)?),

@@ -60,6 +60,7 @@ pub fn run(arguments: &FitArguments) -> anyhow::Result<()> {
 fn fit_request(arguments: &FitArguments) -> FitRequest {
     FitRequest {
         laws: arguments.laws.clone(),
+        laws_file: arguments.laws_file.clone(),
         free: arguments.free.clone(),
         quantities: arguments.quantities.clone(),
         weights: arguments.weights.clone(),
@@ -78,6 +79,7 @@ fn fit_request(arguments: &FitArguments) -> FitRequest {
             false => Reuse::Unchanged,
         },
         figures: arguments.figures.clone(),
+        card: arguments.card.clone(),
         threads: arguments.threads,
     }
 }

@@ -3,9 +3,8 @@
 use crate::args_format::Format;
 use crate::args_geometry::{RadiusArguments, TransferArguments};
 use crate::show::{write_json, write_result};
-use windfall::workflow_geometry::{
-    RadiusRequest, TransferRequest, radius, text_of_radius, text_of_transfer, transfer_law,
-};
+use windfall::workflow_geometry::{RadiusRequest, radius, text_of_radius};
+use windfall::workflow_transfer::{TransferRequest, text_of_transfer, transfer_law};
 
 /// Radii of curvature.
 pub fn run_radius(arguments: &RadiusArguments) -> anyhow::Result<()> {
@@ -34,11 +33,17 @@ pub fn run_radius(arguments: &RadiusArguments) -> anyhow::Result<()> {
 pub fn run_transfer(arguments: &TransferArguments) -> anyhow::Result<()> {
     let outcome = transfer_law(&TransferRequest {
         law: arguments.law.clone(),
+        file: arguments.file.clone(),
         from: arguments.from.clone(),
         from_plates: arguments.from_plates,
+        from_other: arguments.from_other.clone(),
         to: arguments.to.clone(),
         to_plates: arguments.to_plates,
-        to_fruit: arguments.to_fruit,
+        to_other: match arguments.to_fruit {
+            true => Some("fruit".to_owned()),
+            false => arguments.to_other.clone(),
+        },
+        card: arguments.card.clone(),
     })?;
     match arguments.format {
         Format::Json => write_json(&outcome),

@@ -42,6 +42,7 @@ pub fn run(arguments: &SimulateArguments) -> anyhow::Result<()> {
 fn compression(arguments: &SimulateCompressionArguments) -> anyhow::Result<()> {
     let request = SimulateCompressionRequest {
         law: arguments.law.clone(),
+        laws: arguments.laws.clone(),
         rates: arguments.rates.clone(),
         deformation: arguments.deformation.clone(),
         radius: arguments.radius.clone(),
@@ -107,6 +108,7 @@ fn repeats(arguments: &SimulateRepeatsArguments) -> anyhow::Result<()> {
 fn impact(arguments: &SimulateImpactArguments) -> anyhow::Result<()> {
     let event = carriage_event(&CarriageRequest {
         law: arguments.law.clone(),
+        laws: arguments.laws.clone(),
         mass: arguments.mass.clone(),
         velocity: arguments.velocity.clone(),
         driving_acceleration: arguments.driving_acceleration.clone(),
@@ -123,6 +125,7 @@ fn impact(arguments: &SimulateImpactArguments) -> anyhow::Result<()> {
 fn carriage(arguments: &SimulateCarriageArguments) -> anyhow::Result<()> {
     let event = carriage_event(&CarriageRequest {
         law: arguments.law.clone(),
+        laws: arguments.laws.clone(),
         mass: arguments.mass.clone(),
         velocity: arguments.velocity.clone(),
         driving_acceleration: arguments.driving_acceleration.clone(),
@@ -157,6 +160,7 @@ fn pendulum(arguments: &SimulatePendulumArguments) -> anyhow::Result<()> {
     }
     let event = pendulum_event(&PendulumRequest {
         law: arguments.law.clone().unwrap_or_default(),
+        laws: arguments.laws.clone(),
         inertia: arguments.inertia.clone(),
         arm: arguments.arm.clone(),
         mass: arguments.mass.clone(),

@@ -21,6 +21,7 @@ const DURATION: &str = "1.5 s";
 pub fn run(arguments: &SimulateDropArguments) -> anyhow::Result<()> {
     let plan = drop_plan(&DropRequest {
         law: arguments.law.clone(),
+        laws: arguments.laws.clone(),
         mass: arguments.mass.clone(),
         heights: arguments.heights.clone(),
         plate_mass: arguments.plate.plate_mass.clone(),

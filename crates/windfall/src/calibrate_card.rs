@@ -6,9 +6,11 @@ use crate::error::Error;
 use crate::law_card::{
     CARD_FORMAT, CardBodies, CardCovariance, CardOrigin, CardParameter, CardRange, LawCard,
 };
+use crate::law_use::complete_law_among;
 use crate::provenance::{VERSION, digest_file, time_now};
+use crate::read_card::card_definition;
 use crate::read_drop::{DropCampaign, PlatePlan};
-use crate::workflow_simulate::{complete_law, end_name};
+use crate::workflow_simulate::end_name;
 use std::collections::BTreeMap;
 use windfall_contact::law::EndRule;
 use windfall_contact::law_kind::Law;
@@ -58,7 +60,7 @@ pub fn card_of_calibration(
             });
         }
     };
-    let law = complete_law(&found.expression)?;
+    let law = complete_law_among(&found.expression, &campaign.calibrate.user)?;
     let end = campaign
         .calibrate
         .law
@@ -107,6 +109,9 @@ pub fn card_of_calibration(
             windfall: VERSION.to_owned(),
             date: time_now(),
         },
+        contact: None,
+        population: None,
+        definition: card_definition(law.kind()),
     })
 }
 

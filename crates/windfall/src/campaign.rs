@@ -2,6 +2,7 @@
 
 use std::path::PathBuf;
 use windfall_contact::expression::LawExpression;
+use windfall_contact::law_kind::LawKind;
 use windfall_formats::open::OpenOptions;
 use windfall_identify::problem::FitOptions;
 use windfall_identify::rig::Pendulum;
@@ -121,6 +122,8 @@ pub struct FitPlan {
     pub laws: Vec<LawExpression>,
     /// Names of parameters that are estimated although they have a value.
     pub free: Vec<String>,
+    /// The user's own laws, by which laws can be named.
+    pub user: Vec<LawKind>,
     /// Cost function and treatment of the nuisance parameters.
     pub options: FitOptions,
 }

@@ -16,17 +16,17 @@ const POINTS: usize = 400;
 /// The channels of an impact with the laws that were fitted to it.
 ///
 /// * `outcomes`: results of all laws on this impact
+/// * `used`: rig, end of contact, and the user's own laws
 #[must_use]
 pub fn figure_of_impact(
     title: &str,
     impact: &Impact,
     outcomes: &[&ImpactOutcome],
-    rig: &Rig,
-    end: EndRule,
+    used: (&Rig, EndRule, &[LawKind]),
 ) -> Figure {
     let laws: Vec<FittedMotion> = outcomes
         .iter()
-        .filter_map(|outcome| fitted_motion(impact, outcome, rig, end))
+        .filter_map(|outcome| fitted_motion(impact, outcome, used))
         .collect();
     let mut panels = Vec::new();
     if let Some(force) = &impact.force {
@@ -77,10 +77,9 @@ struct FittedMotion {
 fn fitted_motion(
     impact: &Impact,
     outcome: &ImpactOutcome,
-    rig: &Rig,
-    end: EndRule,
+    (rig, end, user): (&Rig, EndRule, &[LawKind]),
 ) -> Option<FittedMotion> {
-    let kind = LawKind::from_name(&outcome.law).ok()?;
+    let kind = LawKind::from_name_among(&outcome.law, user).ok()?;
     let values: Vec<f64> = outcome.parameters.0.iter().map(|(_, e)| e.value).collect();
     let law: Law = kind.with_parameters(&values).ok()?;
     let nuisance = |name: &str| outcome.nuisances.get(name).map(|estimate| estimate.value);

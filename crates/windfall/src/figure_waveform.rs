@@ -5,10 +5,11 @@ use crate::calibrate_waveform_outcome::{WaveformDropOutcome, WaveformOutcome};
 use crate::error::Error;
 use crate::figure_files::write_figure;
 use crate::figure_xy::{Figure, Panel, Series, Style};
+use crate::law_use::complete_law_among;
 use crate::text_number::plain;
-use crate::workflow_simulate::complete_law;
 use std::path::Path;
 use windfall_contact::law::EndRule;
+use windfall_contact::law_kind::{Law, LawKind};
 use windfall_identify::drop_rig::DropRig;
 use windfall_identify::drop_simulate::drop_trajectory;
 
@@ -19,6 +20,7 @@ const AFTER: f64 = 25e-3;
 /// Writes a figure for each drop of a calibration on waveforms.
 ///
 /// * `rig`: with the plate where the calibration has not estimated it
+/// * `user`: the user's own laws
 ///
 /// # Errors
 /// A drop cannot be simulated with the law, or a file cannot be written.
@@ -27,7 +29,9 @@ pub fn write_waveform_figures(
     outcome: &WaveformOutcome,
     (rig, end, impacts): (&DropRig, EndRule, usize),
     drops: &[RecordedDrop],
+    user: &[LawKind],
 ) -> Result<(), Error> {
+    let law = complete_law_among(&outcome.law, user)?;
     let mut rig = *rig;
     if let Some(plate) = &mut rig.plate {
         for parameter in &outcome.parameters {
@@ -42,7 +46,7 @@ pub fn write_waveform_figures(
     }
     for fitted in &outcome.drops {
         if let Some(drop) = drops.iter().find(|drop| drop.id == fitted.id) {
-            let figure = figure(&outcome.law, (rig, end, impacts), fitted, drop)?;
+            let figure = figure(&law, (rig, end, impacts), fitted, drop)?;
             write_figure(directory, &format!("waveform-{}", fitted.id), &figure)?;
         }
     }
@@ -50,7 +54,7 @@ pub fn write_waveform_figures(
 }
 
 fn figure(
-    law: &str,
+    law: &Law,
     (mut rig, end, impacts): (DropRig, EndRule, usize),
     fitted: &WaveformDropOutcome,
     drop: &RecordedDrop,
@@ -76,11 +80,9 @@ fn figure(
             .map(|(time, _)| time - onset + fall)
             .collect();
         let model =
-            drop_trajectory(&complete_law(law)?, &rig, height, &times, end).map_err(|source| {
-                Error::Identify {
-                    subject: fitted.id.clone(),
-                    source: Box::new(source),
-                }
+            drop_trajectory(law, &rig, height, &times, end).map_err(|source| Error::Identify {
+                subject: fitted.id.clone(),
+                source: Box::new(source),
             })?;
         let level = fitted.level.value;
         let zero = bounce.onset.value;

@@ -3,16 +3,13 @@
 //! Every value keeps its place in the text, so that a message can name the line.
 //! `campaign` turns it into what the program works with.
 
+use crate::file_laws::LawsFile;
+pub use crate::file_quantity::QuantityText;
 use serde::Deserialize;
-use serde::de::{Deserializer, Visitor};
 use toml::Spanned;
 
 /// The version that this module reads.
 pub const FORMAT: i64 = 1;
-
-/// A physical quantity: text with a unit, or a bare number in SI units.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub struct QuantityText(pub String);
 
 /// The whole file.
 #[derive(Debug, Deserialize)]
@@ -38,6 +35,9 @@ pub struct CampaignFile {
     /// What is fitted.
     #[serde(default)]
     pub fit: FitFile,
+    /// The user's own laws.
+    #[serde(default)]
+    pub laws: LawsFile,
     /// How results are grouped.
     #[serde(default)]
     pub summary: SummaryFile,
@@ -240,26 +240,4 @@ pub struct FitFile {
 pub struct SummaryFile {
     /// Column of specimens.csv or impacts.csv.
     pub group: Option<Spanned<String>>,
-}
-
-impl<'de> Deserialize<'de> for QuantityText {
-    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
-        struct Text;
-        impl Visitor<'_> for Text {
-            type Value = QuantityText;
-            fn expecting(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-                f.write_str("a quantity with its unit in quotes, such as \"0.505 m\"")
-            }
-            fn visit_str<E>(self, text: &str) -> Result<QuantityText, E> {
-                Ok(QuantityText(text.to_owned()))
-            }
-            fn visit_f64<E>(self, value: f64) -> Result<QuantityText, E> {
-                Ok(QuantityText(value.to_string()))
-            }
-            fn visit_i64<E>(self, value: i64) -> Result<QuantityText, E> {
-                Ok(QuantityText(value.to_string()))
-            }
-        }
-        deserializer.deserialize_any(Text)
-    }
 }

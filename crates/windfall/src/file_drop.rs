@@ -1,6 +1,7 @@
 //! campaign.toml of a drop rig as it stands on disk, version 1.
 
 use crate::file_campaign::{ChannelsFile, FilesFile, QuantityText, SummaryFile, TitleFile};
+use crate::file_laws::LawsFile;
 use serde::Deserialize;
 use std::collections::BTreeMap;
 use toml::Spanned;
@@ -30,6 +31,9 @@ pub struct DropFile {
     /// How it is calibrated.
     #[serde(default)]
     pub calibrate: CalibrateFile,
+    /// The user's own laws.
+    #[serde(default)]
+    pub laws: LawsFile,
     /// How results are grouped.
     #[serde(default)]
     pub summary: SummaryFile,

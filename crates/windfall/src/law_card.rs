@@ -1,14 +1,11 @@
 //! A law card: a fitted law in one file, with what is needed to use it elsewhere.
+//! `read_card` and `write_card` are in [`crate::read_card`].
 
-use crate::error::Error;
-use crate::toml_source::{parse_source, read_source};
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
-use std::path::Path;
-use windfall_contact::law_kind::{Law, LawKind};
 
-/// Version of the shape of a law card.
-pub const CARD_FORMAT: i64 = 1;
+/// Version of the shape of a law card; older ones are read too.
+pub const CARD_FORMAT: i64 = 2;
 
 /// A law card; SI throughout.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -37,6 +34,107 @@ pub struct LawCard {
     pub bodies: CardBodies,
     /// Where it comes from.
     pub origin: CardOrigin,
+    /// R* and E* of its contact, where they are known.
+    pub contact: Option<CardContact>,
+    /// How fruit differ.
+    pub population: Option<CardPopulation>,
+    /// The law itself, where it is the user's own.
+    pub definition: Option<CardDefinition>,
+}
+
+/// The contact that a card's law belongs to; SI.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct CardContact {
+    /// R*, of 1/R* = 1/R1 + 1/R2 (of Hertz's general contact where curvatures
+    /// differ); m.
+    pub effective_radius: f64,
+    /// E*, of 1/E* = (1 − ν1²)/E1 + (1 − ν2²)/E2; Pa.
+    pub effective_modulus: f64,
+    /// What touches what.
+    pub bodies: String,
+}
+
+/// How the parameters of a law differ from fruit to fruit.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct CardPopulation {
+    /// Of what: "ln k", "n".
+    pub of: Vec<String>,
+    /// Median of each parameter; SI.
+    pub median: Vec<f64>,
+    /// Covariance between fruit; rows.
+    pub between_fruit: Vec<Vec<f64>>,
+    /// Covariance between the impacts of one fruit; rows.
+    pub within_fruit: Option<Vec<Vec<f64>>>,
+    /// Fruit.
+    pub fruit: usize,
+    /// Impacts on them.
+    pub impacts: usize,
+    /// How it was estimated.
+    pub method: String,
+    /// Effects of covariates.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub covariates: Vec<CardCovariate>,
+}
+
+/// Effect of a covariate on a parameter.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct CardCovariate {
+    /// The covariate, such as "impact_velocity".
+    pub name: String,
+    /// Its unit.
+    pub unit: String,
+    /// On what: "ln k".
+    pub on: String,
+    /// Value of the covariate at which the median holds.
+    pub centre: f64,
+    /// Change of what it is on per unit of the covariate.
+    pub effect: f64,
+    /// Standard uncertainty of the effect.
+    pub sd: Option<f64>,
+}
+
+/// A user's law on a card.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct CardDefinition {
+    /// Formula of the force in x (m) and v (m/s); N.
+    pub force: Option<String>,
+    /// Displacements of a table; m.
+    #[serde(rename = "displacement_m")]
+    pub displacement: Option<Vec<f64>>,
+    /// Its forces; N.
+    #[serde(rename = "force_N")]
+    pub table_force: Option<Vec<f64>>,
+    /// Its damping; N s/m.
+    #[serde(rename = "damping_N_s_m")]
+    pub damping: Option<Vec<f64>>,
+    /// Parameters of the formula, in their order.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub parameters: Vec<CardDefinedParameter>,
+}
+
+/// A parameter of a user's law on a card; SI.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct CardDefinedParameter {
+    /// Name.
+    pub name: String,
+    /// SI unit.
+    pub unit: String,
+    /// What it is.
+    #[serde(default, skip_serializing_if = "String::is_empty")]
+    pub meaning: String,
+    /// Smallest value.
+    pub lower: Option<f64>,
+    /// Largest value.
+    pub upper: Option<f64>,
+    /// Where a fit begins.
+    pub start: Option<f64>,
+    /// Value where none is given.
+    pub default: Option<f64>,
 }
 
 /// A parameter of a card.
@@ -113,81 +211,4 @@ pub struct CardOrigin {
     pub windfall: String,
     /// Date, UTC.
     pub date: String,
-}
-
-/// A law card as text.
-///
-/// # Errors
-/// None in practice: every value has a form in TOML.
-pub fn card_text(card: &LawCard) -> Result<String, Error> {
-    toml::to_string(card)
-        .map(|text| {
-            format!(
-                "# A force law with its uncertainty, range and origin; numbers are SI.\n\
-                 # `windfall card show FILE` shows it; commands take the file after --law.\n{text}"
-            )
-        })
-        .map_err(|error| Error::ResultUnwritable {
-            item: "law card".to_owned(),
-            detail: error.to_string(),
-        })
-}
-
-/// Writes a law card; an older file of that name is replaced.
-///
-/// # Errors
-/// The file cannot be written.
-pub fn write_card(path: &Path, card: &LawCard) -> Result<(), Error> {
-    let text = card_text(card)?;
-    std::fs::write(path, text).map_err(|source| Error::FileAccess {
-        path: path.to_path_buf(),
-        action: "write",
-        source,
-    })
-}
-
-/// Reads a law card.
-///
-/// # Errors
-/// It is no card, or of another version, or its law refuses the values.
-pub fn read_card(path: &Path) -> Result<LawCard, Error> {
-    let advice = "a law card is written by `windfall calibrate DIR --card FILE`";
-    let source = read_source(path, advice)?;
-    let card: LawCard = parse_source(&source)?;
-    if card.format != CARD_FORMAT {
-        return Err(unusable(
-            path,
-            format!(
-                "it has format {}, this windfall reads {CARD_FORMAT}",
-                card.format
-            ),
-        ));
-    }
-    law_of_card(&card, path)?;
-    Ok(card)
-}
-
-/// The law of a card.
-///
-/// # Errors
-/// A parameter is missing, or out of bounds.
-pub fn law_of_card(card: &LawCard, path: &Path) -> Result<Law, Error> {
-    let kind = LawKind::from_name(&card.law).map_err(|error| unusable(path, error.to_string()))?;
-    let values = kind.describe().parameters.iter().map(|parameter| {
-        let found = card.parameters.get(parameter.name);
-        found.map(|found| found.value).ok_or_else(|| {
-            let name = parameter.name;
-            unusable(path, format!("it has no [parameters.{name}]"))
-        })
-    });
-    let values = values.collect::<Result<Vec<f64>, Error>>()?;
-    kind.with_parameters(&values)
-        .map_err(|error| unusable(path, error.to_string()))
-}
-
-fn unusable(path: &Path, problem: String) -> Error {
-    Error::OptionInvalid {
-        option: path.display().to_string(),
-        problem: format!("not a usable law card: {problem}"),
-    }
 }

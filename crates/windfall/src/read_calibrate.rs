@@ -7,8 +7,9 @@ use crate::read_bounces::positive;
 use crate::read_fit::{ENDS, LawKeys, free_names, law_expressions};
 use crate::toml_source::{Needed, TomlSource, choice, invalid, missing, suggestion};
 use toml::Spanned;
-use windfall_contact::expression::{LawExpression, parse_law};
+use windfall_contact::expression::{LawExpression, parse_law_among};
 use windfall_contact::law::EndRule;
+use windfall_contact::law_kind::LawKind;
 use windfall_numerics::unit::{parse_as, parse_unit};
 
 /// The law that is calibrated.
@@ -121,6 +122,8 @@ impl ParameterRange {
 pub struct CalibrateSettings {
     /// The law; `None` where the campaign only looks at bounces.
     pub law: Option<DropLaw>,
+    /// The user's own laws, by which laws can be named.
+    pub user: Vec<LawKind>,
     /// The ways; all that apply where there is none.
     pub ways: Vec<Way>,
     /// Start values of the free parameters.
@@ -152,18 +155,21 @@ const TABLE: &str = "[calibrate]";
 
 /// How a campaign is calibrated.
 ///
+/// * `user`: the user's own laws
+///
 /// # Errors
 /// A value cannot be used, or belongs to another law.
 pub fn calibrate_settings(
     source: &TomlSource,
     fit: &DropFitFile,
     file: &CalibrateFile,
+    user: Vec<LawKind>,
 ) -> Result<CalibrateSettings, Error> {
-    let law = drop_law(source, fit)?;
+    let law = drop_law(source, fit, &user)?;
     let hertz = file.hertz.as_ref();
     Ok(CalibrateSettings {
         ways: ways(source, file)?,
-        start: start(source, file, law.as_ref())?,
+        start: start(source, file, law.as_ref(), &user)?,
         hertz: hertz
             .map(|hertz| hertz_contact(source, hertz))
             .transpose()?,
@@ -173,10 +179,15 @@ pub fn calibrate_settings(
         ranges: ranges(source, file, law.as_ref())?,
         seed: file.seed.unwrap_or(1),
         law,
+        user,
     })
 }
 
-fn drop_law(source: &TomlSource, file: &DropFitFile) -> Result<Option<DropLaw>, Error> {
+fn drop_law(
+    source: &TomlSource,
+    file: &DropFitFile,
+    user: &[LawKind],
+) -> Result<Option<DropLaw>, Error> {
     let end = choice(source, file.end.as_ref(), ("[fit]", "end"), &ENDS)?;
     let keys = LawKeys {
         law: file.law.as_ref(),
@@ -191,7 +202,7 @@ fn drop_law(source: &TomlSource, file: &DropFitFile) -> Result<Option<DropLaw>, 
         let key = ("[fit]", "free");
         return Err(invalid(source, &free.span(), key, free.get_ref(), problem));
     }
-    let laws = law_expressions(source, &keys)?;
+    let laws = law_expressions(source, &keys, user)?;
     let names = free_names(source, &keys, &laws)?;
     Ok(laws.into_iter().next().map(|law| DropLaw {
         free: free_positions(&law, &names),
@@ -224,6 +235,7 @@ fn start(
     source: &TomlSource,
     file: &CalibrateFile,
     law: Option<&DropLaw>,
+    user: &[LawKind],
 ) -> Result<Option<LawExpression>, Error> {
     let Some(text) = &file.start else {
         return Ok(None);
@@ -237,7 +249,7 @@ fn start(
             problem,
         )
     };
-    let start = parse_law(text.get_ref()).map_err(|error| wrong(error.to_string()))?;
+    let start = parse_law_among(text.get_ref(), user).map_err(|error| wrong(error.to_string()))?;
     match law {
         Some(law) if law.law.kind != start.kind => Err(wrong(format!(
             "expected values of the law in [fit], {}",

@@ -7,6 +7,7 @@ use crate::read_channels::channel_plans;
 use crate::read_contact::contact_plan;
 use crate::read_files::{check_format, check_group, check_placeholders, file_plan};
 use crate::read_fit::fit_plan;
+use crate::read_laws::user_laws;
 use crate::read_rig::rig_plan;
 use crate::read_tables::{read_impacts, read_specimens};
 use crate::toml_source::{parse_source, read_source};
@@ -33,7 +34,8 @@ pub fn read_campaign(directory: &Path) -> Result<Campaign, Error> {
     let channels = channel_plans(&source, file.channels.as_ref())?;
     let files = file_plan(&source, directory, &file.files, channels)?;
     let contact = contact_plan(&source, &file, &rig)?;
-    let fit = fit_plan(&source, &file.fit)?;
+    let user = user_laws(&source, &file.laws, directory)?;
+    let fit = fit_plan(&source, &file.fit, user)?;
 
     let specimens_file = directory.join("specimens.csv");
     let specimens = if specimens_file.exists() {

@@ -58,7 +58,7 @@ pub fn read_compression(directory: &Path) -> Result<CompressionCampaign, Error> 
         laws: file.fit.laws.as_deref(),
         free: file.fit.free.as_deref(),
     };
-    let laws = law_expressions(&source, &keys)?;
+    let laws = law_expressions(&source, &keys, &[])?;
     let free = free_names(&source, &keys, &laws)?;
     if let Some(channels) = file.channels.as_ref().map(Spanned::get_ref) {
         let why = "slow compressions are not filtered";

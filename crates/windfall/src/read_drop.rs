@@ -13,6 +13,7 @@ use crate::read_campaign::CAMPAIGN_FILE;
 use crate::read_channels::channel_plans;
 use crate::read_conditioning::refuse_conditioning;
 use crate::read_files::check_format;
+use crate::read_laws::user_laws;
 use crate::read_rig::STANDARD_GRAVITY;
 use crate::toml_source::{
     Needed, TomlSource, choice, invalid, missing, optional_quantity, parse_source, read_source,
@@ -117,7 +118,12 @@ pub fn read_drop(directory: &Path) -> Result<DropCampaign, Error> {
     let campaign = DropCampaign {
         rig: rig_plan(&source, &file.rig)?,
         bounces: bounce_plan(&source, &file.bounces)?,
-        calibrate: calibrate_settings(&source, &file.fit, &file.calibrate)?,
+        calibrate: calibrate_settings(
+            &source,
+            &file.fit,
+            &file.calibrate,
+            user_laws(&source, &file.laws, directory)?,
+        )?,
         shared: read_item_campaign(&source, directory, kind, &shared, channels)?,
     };
     for entry in &campaign.shared.entries {

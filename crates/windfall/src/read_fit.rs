@@ -6,8 +6,9 @@ use crate::file_campaign::FitFile;
 use crate::toml_source::suggestion;
 use crate::toml_source::{Needed, TomlSource, choice, invalid, missing};
 use toml::Spanned;
-use windfall_contact::expression::{LawExpression, parse_law};
+use windfall_contact::expression::{LawExpression, parse_law_among};
 use windfall_contact::law::EndRule;
+use windfall_contact::law_kind::LawKind;
 use windfall_identify::interval::{IntervalMethod, IntervalOptions};
 use windfall_identify::problem::{FitOptions, NoiseModel, Quantities, Treatment, Weighting};
 use windfall_identify::samples::Quantity;
@@ -50,15 +51,17 @@ pub const TREATMENTS: [(&str, Treatment); 3] = [
 
 /// What a campaign fits.
 ///
+/// * `user`: the user's own laws
+///
 /// # Errors
 /// No law is named, or a word is not known.
-pub fn fit_plan(source: &TomlSource, file: &FitFile) -> Result<FitPlan, Error> {
+pub fn fit_plan(source: &TomlSource, file: &FitFile, user: Vec<LawKind>) -> Result<FitPlan, Error> {
     let keys = LawKeys {
         law: file.law.as_ref(),
         laws: file.laws.as_deref(),
         free: file.free.as_deref(),
     };
-    let laws = law_expressions(source, &keys)?;
+    let laws = law_expressions(source, &keys, &user)?;
     let free = free_names(source, &keys, &laws)?;
     let mut options = FitOptions::default();
     if let Some(words) = &file.quantities {
@@ -88,6 +91,7 @@ pub fn fit_plan(source: &TomlSource, file: &FitFile) -> Result<FitPlan, Error> {
     Ok(FitPlan {
         laws,
         free,
+        user,
         options,
     })
 }
@@ -229,11 +233,15 @@ pub struct LawKeys<'a> {
     pub free: Option<&'a [Spanned<String>]>,
 }
 
-/// The laws of a campaign.
+/// The laws of a campaign: built-in ones and those of `user`.
 ///
 /// # Errors
 /// None is named, one is not known, or one is named twice.
-pub fn law_expressions(source: &TomlSource, keys: &LawKeys) -> Result<Vec<LawExpression>, Error> {
+pub fn law_expressions(
+    source: &TomlSource,
+    keys: &LawKeys,
+    user: &[LawKind],
+) -> Result<Vec<LawExpression>, Error> {
     let several = keys.laws.unwrap_or_default();
     let texts: Vec<&Spanned<String>> = keys.law.into_iter().chain(several).collect();
     if texts.is_empty() {
@@ -248,7 +256,7 @@ pub fn law_expressions(source: &TomlSource, keys: &LawKeys) -> Result<Vec<LawExp
     }
     let mut laws: Vec<LawExpression> = Vec::new();
     for text in texts {
-        let law = parse_law(text.get_ref()).map_err(|error| {
+        let law = parse_law_among(text.get_ref(), user).map_err(|error| {
             invalid(
                 source,
                 &text.span(),

@@ -1,9 +1,11 @@
 //! One simulated drop as it is asked for: texts with units → SI.
 
 use crate::error::Error;
+use crate::law_card::CardRange;
+use crate::law_use::chosen_law;
 use crate::option_value::{at_least_zero, chosen, positive, unusable};
 use crate::read_fit::ENDS;
-use crate::workflow_simulate::complete_law;
+use std::path::PathBuf;
 use windfall_contact::law::EndRule;
 use windfall_contact::law_kind::Law;
 use windfall_identify::drop_rig::{DropRig, Plate};
@@ -11,8 +13,10 @@ use windfall_identify::drop_rig::{DropRig, Plate};
 /// A fruit that falls on a plate; texts with units.
 #[derive(Clone, Debug)]
 pub struct DropRequest {
-    /// Law expression with all parameters.
+    /// Law expression with all parameters, or a law card.
     pub law: String,
+    /// A file of the user's own laws.
+    pub laws: Option<PathBuf>,
     /// Mass of the fruit.
     pub mass: String,
     /// Drop heights: one for an event, several for a campaign.
@@ -36,6 +40,8 @@ pub struct DropRequest {
 pub struct DropPlan {
     /// The law with all its parameters.
     pub law: Law,
+    /// In what it was seen, where it comes from a card.
+    pub range: Option<CardRange>,
     /// Fruit and plate.
     pub rig: DropRig,
     /// Drop heights, at least one; m.
@@ -60,8 +66,10 @@ pub fn drop_plan(request: &DropRequest) -> Result<DropPlan, Error> {
         let problem = "expected a number above 0 and up to 1, which is a central impact";
         return Err(unusable("--effective-mass-factor", problem));
     }
+    let asked = chosen_law(&request.law, request.laws.as_deref())?;
     Ok(DropPlan {
-        law: complete_law(&request.law)?,
+        law: asked.law,
+        range: asked.range,
         rig: DropRig {
             mass: positive("--mass", &request.mass, "kg")?,
             effective_mass_factor: factor,

@@ -1,12 +1,13 @@
 //! One simulated event as it is asked for: texts with units → SI.
 
 use crate::error::Error;
+use crate::law_card::CardRange;
+use crate::law_use::chosen_law;
 use crate::option_value::{chosen, positive, quantity};
 use crate::read_fit::ENDS;
 use crate::read_rig::STANDARD_GRAVITY;
-use crate::workflow_simulate::{
-    SimulatedImpact, SimulatedMotion, complete_law, simulate_motion, simulate_one,
-};
+use crate::workflow_simulate::{SimulatedImpact, SimulatedMotion, simulate_motion, simulate_one};
+use std::path::PathBuf;
 use windfall_contact::law::EndRule;
 use windfall_contact::law_kind::Law;
 use windfall_identify::rig::{Carriage, Pendulum, Rig};
@@ -16,6 +17,8 @@ use windfall_identify::rig::{Carriage, Pendulum, Rig};
 pub struct Event {
     /// The law with all its parameters.
     pub law: Law,
+    /// In what it was seen, where it comes from a card.
+    pub range: Option<CardRange>,
     /// The rig.
     pub rig: Rig,
     /// Velocity at first touch; m/s.
@@ -27,8 +30,10 @@ pub struct Event {
 /// A free body, or one on a line, strikes once.
 #[derive(Clone, Debug)]
 pub struct CarriageRequest {
-    /// Law expression with all parameters.
+    /// Law expression with all parameters, or a law card.
     pub law: String,
+    /// A file of the user's own laws.
+    pub laws: Option<PathBuf>,
     /// Mass, with unit.
     pub mass: String,
     /// Impact velocity, with unit.
@@ -42,8 +47,10 @@ pub struct CarriageRequest {
 /// A pendulum strikes once.
 #[derive(Clone, Debug)]
 pub struct PendulumRequest {
-    /// Law expression with all parameters.
+    /// Law expression with all parameters, or a law card.
     pub law: String,
+    /// A file of the user's own laws.
+    pub laws: Option<PathBuf>,
     /// Moment of inertia about the pivot, with unit.
     pub inertia: String,
     /// Pivot to point of contact, with unit.
@@ -64,8 +71,10 @@ pub struct PendulumRequest {
 /// An option cannot be read.
 pub fn carriage_event(request: &CarriageRequest) -> Result<Event, Error> {
     let driving = &request.driving_acceleration;
+    let asked = chosen_law(&request.law, request.laws.as_deref())?;
     Ok(Event {
-        law: complete_law(&request.law)?,
+        law: asked.law,
+        range: asked.range,
         rig: Rig::Carriage(Carriage {
             mass: positive("--mass", &request.mass, "kg")?,
             mass_sd: 0.0,
@@ -81,8 +90,10 @@ pub fn carriage_event(request: &CarriageRequest) -> Result<Event, Error> {
 /// # Errors
 /// An option cannot be read.
 pub fn pendulum_event(request: &PendulumRequest) -> Result<Event, Error> {
+    let asked = chosen_law(&request.law, request.laws.as_deref())?;
     Ok(Event {
-        law: complete_law(&request.law)?,
+        law: asked.law,
+        range: asked.range,
         rig: Rig::Pendulum(Pendulum {
             inertia: positive("--inertia", &request.inertia, "kg m^2")?,
             arm: positive("--arm", &request.arm, "m")?,
@@ -100,7 +111,13 @@ pub fn pendulum_event(request: &PendulumRequest) -> Result<Event, Error> {
 /// # Errors
 /// It cannot be simulated.
 pub fn impact_of_event(event: &Event) -> Result<SimulatedImpact, Error> {
-    simulate_one(&event.law, &event.rig, event.velocity, event.end)
+    simulate_one(
+        &event.law,
+        &event.rig,
+        event.velocity,
+        event.end,
+        event.range.as_ref(),
+    )
 }
 
 /// Simulates one impact with its motion.
@@ -111,5 +128,11 @@ pub fn impact_of_event(event: &Event) -> Result<SimulatedImpact, Error> {
 /// The rate cannot be read, or the impact cannot be simulated.
 pub fn motion_of_event(event: &Event, rate: &str) -> Result<SimulatedMotion, Error> {
     let rate = positive("--rate", rate, "Hz")?;
-    simulate_motion(&event.law, &event.rig, event.velocity, rate, event.end)
+    simulate_motion(
+        &event.law,
+        &event.rig,
+        event.velocity,
+        (rate, event.end),
+        event.range.as_ref(),
+    )
 }

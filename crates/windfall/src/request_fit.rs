@@ -9,9 +9,11 @@ use crate::read_fit::{
     ENDS, INTERVALS, NOISES, TREATMENTS, WEIGHTS, enough_work, hold_velocity, known_velocity,
     quantities_named, unknown_parameter,
 };
+use crate::read_laws::laws_of_option;
 use crate::toml_source::suggestion;
 use std::path::PathBuf;
-use windfall_contact::expression::{LawExpression, parse_law};
+use windfall_contact::expression::{LawExpression, parse_law_among};
+use windfall_contact::law_kind::LawKind;
 use windfall_identify::problem::FitOptions;
 
 /// What `fit` is asked for beyond what the campaign says.
@@ -19,6 +21,8 @@ use windfall_identify::problem::FitOptions;
 pub struct FitRequest {
     /// Laws in place of those of the campaign; none keeps them.
     pub laws: Vec<String>,
+    /// A file of the user's own laws, besides those of the campaign.
+    pub laws_file: Option<PathBuf>,
     /// Parameters to estimate although they have a value; none keeps those of
     /// the campaign.
     pub free: Vec<String>,
@@ -51,6 +55,8 @@ pub struct FitRequest {
     pub reuse: Reuse,
     /// Directory for a figure of each recording, with its data as CSV.
     pub figures: Option<PathBuf>,
+    /// Where the law is written as a law card.
+    pub card: Option<PathBuf>,
     /// Number of threads; all cores when `None`. It never changes a result.
     pub threads: Option<usize>,
 }
@@ -70,13 +76,28 @@ pub enum Reuse {
 /// # Errors
 /// An option cannot be used.
 pub fn apply_request(campaign: &mut Campaign, request: &FitRequest) -> Result<(), Error> {
-    laws_and_free(&mut campaign.fit.laws, &mut campaign.fit.free, request)?;
+    campaign.fit.user = merged(&campaign.fit.user, request)?;
+    let fit = &mut campaign.fit;
+    laws_and_free(&mut fit.laws, &mut fit.free, &fit.user, request)?;
     apply_options(&mut campaign.fit.options, request)?;
     if let Some(group) = &request.group {
         let names = columns(&campaign.specimens, &campaign.impacts);
         campaign.group = Some(known_group(group, &names)?);
     }
     Ok(())
+}
+
+/// The laws of the campaign and of the file that is asked for; of the same name,
+/// that of the file.
+fn merged(campaign: &[LawKind], request: &FitRequest) -> Result<Vec<LawKind>, Error> {
+    let mut laws = laws_of_option(request.laws_file.as_deref())?;
+    let asked = laws.len();
+    for kind in campaign {
+        if laws[..asked].iter().all(|law| law.name() != kind.name()) {
+            laws.push(*kind);
+        }
+    }
+    Ok(laws)
 }
 
 /// A group that one of the tables has.
@@ -99,10 +120,11 @@ fn known_group(group: &str, names: &[&str]) -> Result<String, Error> {
 pub fn laws_and_free(
     laws: &mut Vec<LawExpression>,
     free: &mut Vec<String>,
+    user: &[LawKind],
     request: &FitRequest,
 ) -> Result<(), Error> {
     if !request.laws.is_empty() {
-        *laws = laws_named(&request.laws)?;
+        *laws = laws_named(&request.laws, user)?;
         // The campaign's list may name parameters of laws that are not fitted now.
         free.retain(|name| unknown_parameter(std::slice::from_ref(name), laws).is_none());
     }
@@ -129,6 +151,8 @@ pub fn apply_request_to_items(
     let laws = !(request.laws.is_empty() && request.free.is_empty());
     let strangers = [
         ("--law and --free", laws && !fits_laws),
+        ("--laws", request.laws_file.is_some()),
+        ("--card", request.card.is_some()),
         ("--quantities", !request.quantities.is_empty()),
         ("--weights", request.weights.is_some()),
         ("--noise", request.noise.is_some()),
@@ -152,11 +176,12 @@ pub fn apply_request_to_items(
     Ok(())
 }
 
-fn laws_named(texts: &[String]) -> Result<Vec<LawExpression>, Error> {
+fn laws_named(texts: &[String], user: &[LawKind]) -> Result<Vec<LawExpression>, Error> {
     let mut laws: Vec<LawExpression> = Vec::new();
     for text in texts {
         let option = || format!("--law {text}");
-        let law = parse_law(text).map_err(|error| unusable(option(), error.to_string()))?;
+        let law =
+            parse_law_among(text, user).map_err(|error| unusable(option(), error.to_string()))?;
         // Results are told apart by the name of the law.
         if laws.iter().any(|known| known.kind == law.kind) {
             let problem = "this law is named twice; each law can be fitted once";

@@ -87,6 +87,7 @@ pub fn campaign_of_file(file: &Path, request: &RecordingRequest) -> Result<Campa
         files,
         fit: FitPlan {
             laws: Vec::new(),
+            user: Vec::new(),
             free: Vec::new(),
             options: FitOptions::default(),
         },

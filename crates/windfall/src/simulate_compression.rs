@@ -2,19 +2,22 @@
 //! law, to try the program and to check it.
 
 use crate::error::Error;
+use crate::law_use::chosen_law;
 use crate::option_value::{at_least_zero, positive, unusable};
 use crate::workflow_new::{create_directory, write_file};
 use crate::write_csv::csv_text;
 use std::path::{Path, PathBuf};
-use windfall_contact::expression::parse_law;
 use windfall_contact::law_kind::Law;
 use windfall_signal::noise_gaussian::{noise_source, normal};
 
 /// What is simulated; texts with units.
 #[derive(Clone, Debug)]
 pub struct SimulateCompressionRequest {
-    /// Law with all its parameters, for the whole travel of the crosshead.
+    /// Law with all its parameters, for the whole travel of the crosshead, or a
+    /// law card.
     pub law: String,
+    /// A file of the user's own laws.
+    pub laws: Option<PathBuf>,
     /// Rates of deformation; every fruit is compressed at each.
     pub rates: Vec<String>,
     /// Largest deformation.
@@ -110,9 +113,7 @@ pub fn simulate_compression(
 }
 
 fn plan(request: &SimulateCompressionRequest) -> Result<Plan, Error> {
-    let law = parse_law(&request.law)
-        .and_then(|law| law.complete())
-        .map_err(|error| unusable(format!("--law {}", request.law), error.to_string()))?;
+    let law = chosen_law(&request.law, request.laws.as_deref())?.law;
     let rates = request
         .rates
         .iter()

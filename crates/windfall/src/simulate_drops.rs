@@ -10,6 +10,7 @@ use crate::workflow_new::{create_directory, write_file};
 use crate::workflow_simulate::end_name;
 use crate::write_csv::csv_text;
 use crate::write_simulated::recording_text;
+use crate::write_user_laws::law_table;
 use std::path::{Path, PathBuf};
 use windfall_contact::expression::LawExpression;
 use windfall_contact::law_kind::Law;
@@ -381,7 +382,7 @@ end = "{end}"
 
 [calibrate]
 bounces = 2
-"#,
+{own}"#,
         seed = bench.seed,
         gravity = plan.rig.gravity,
         mass_sd = bench.mass_sd,
@@ -391,5 +392,9 @@ bounces = 2
         sensitivity = sensor.sensitivity,
         free = free.join(", "),
         end = end_name(plan.end),
+        own = match law_table(plan.law.kind()) {
+            table if table.is_empty() => table,
+            table => format!("\n{table}"),
+        },
     )
 }

@@ -20,11 +20,11 @@ use crate::evaluate::{Evaluated, Progress};
 use crate::evaluate_drop::MeasuredDrop;
 use crate::figure_calibrate::write_calibrate_figures;
 use crate::figure_waveform::write_waveform_figures;
-use crate::law_card::write_card;
 use crate::outcome::{FailureOutcome, FindingOutcome, StatusOutcome};
 use crate::plate_ringing::{PlateEstimate, plate_of};
 use crate::provenance::VERSION;
 use crate::read_calibrate::{DropLaw, Way};
+use crate::read_card::write_card;
 use crate::read_drop::{DropCampaign, read_drop};
 use crate::regress_findings::finding;
 use crate::request_fit::Reuse;
@@ -249,7 +249,13 @@ fn by_features(
         let (waveform, found) = waveform_outcome(work.campaign, law, end, rig, &drops)?;
         if let Some(figures) = &request.figures {
             let impacts = work.campaign.calibrate.bounces;
-            write_waveform_figures(figures, &waveform, (rig, end, impacts), &drops)?;
+            write_waveform_figures(
+                figures,
+                &waveform,
+                (rig, end, impacts),
+                &drops,
+                &work.campaign.calibrate.user,
+            )?;
         }
         outcome.waveform = Some(waveform);
         outcome.findings.extend(of_way("waveform", found));

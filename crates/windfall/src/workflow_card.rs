@@ -1,12 +1,13 @@
 //! `windfall card show`: what the force laws say about themselves.
 
 use crate::error::Error;
+use crate::read_laws::laws_of_option;
 use crate::write_csv::csv_text;
 use crate::write_table::table_text;
 use serde::Serialize;
 use std::fmt::Write;
+use std::path::Path;
 use windfall_contact::law_kind::LawKind;
-use windfall_contact::parameter::LawDescription;
 
 /// A force law, as JSON shows it.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -21,6 +22,9 @@ pub struct LawCardText {
     pub source: &'static str,
     /// Parameters.
     pub parameters: Vec<ParameterText>,
+    /// What the user of an own law should know.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub findings: Vec<String>,
 }
 
 /// A parameter of a force law, as JSON shows it.
@@ -42,30 +46,32 @@ pub struct ParameterText {
     pub default: Option<f64>,
 }
 
-/// All laws, or the one that is named.
+/// All laws, or the one that is named; with a file of laws, those of it, or the
+/// one that is named among it and the built-in ones.
 ///
 /// # Errors
 /// There is no law of that name; names the nearest ones.
-pub fn law_cards(name: Option<&str>) -> Result<Vec<LawCardText>, Error> {
-    let kinds = match name {
-        None => LawKind::ALL.to_vec(),
-        Some(name) => vec![
-            LawKind::from_name(name).map_err(|error| Error::OptionInvalid {
-                option: format!("--law {name}"),
-                problem: error.to_string(),
-            })?,
-        ],
-    };
-    Ok(kinds
-        .into_iter()
-        .map(|kind| card_of(kind.describe()))
-        .collect())
+pub fn law_cards(name: Option<&str>, laws: Option<&Path>) -> Result<Vec<LawCardText>, Error> {
+    let own = laws_of_option(laws)?;
+    let kinds =
+        match name {
+            None if laws.is_some() => own,
+            None => LawKind::ALL.to_vec(),
+            Some(name) => vec![LawKind::from_name_among(name, &own).map_err(|error| {
+                Error::OptionInvalid {
+                    option: format!("--law {name}"),
+                    problem: error.to_string(),
+                }
+            })?],
+        };
+    Ok(kinds.into_iter().map(card_of).collect())
 }
 
 /// Bounds from here on only keep the arithmetic finite.
 const NO_BOUND: f64 = 1e20;
 
-fn card_of(law: &LawDescription) -> LawCardText {
+fn card_of(kind: LawKind) -> LawCardText {
+    let law = kind.describe();
     let parameter = |p: &windfall_contact::parameter::ParameterDescription| ParameterText {
         name: p.name,
         meaning: p.meaning,
@@ -81,6 +87,10 @@ fn card_of(law: &LawDescription) -> LawCardText {
         first_touch: law.first_touch,
         source: law.source,
         parameters: law.parameters.iter().map(parameter).collect(),
+        findings: match kind {
+            LawKind::User(user) => user.findings().iter().map(ToString::to_string).collect(),
+            _ => Vec::new(),
+        },
     }
 }
 
@@ -106,6 +116,9 @@ pub fn text_of_laws(laws: &[LawCardText]) -> String {
         });
         for line in table_text(&header, rows, &[0, 1, 4]).lines() {
             let _ = writeln!(text, "  {line}");
+        }
+        for finding in &law.findings {
+            let _ = writeln!(text, "  finding: {finding}");
         }
         text.push('\n');
     }

@@ -59,7 +59,7 @@ pub fn fit_compressions(
 ) -> Result<AnyOutcome, Error> {
     let mut campaign = read_compression(directory)?;
     apply_request_to_items(&mut campaign.shared, request)?;
-    laws_and_free(&mut campaign.laws, &mut campaign.free, request)?;
+    laws_and_free(&mut campaign.laws, &mut campaign.free, &[], request)?;
     on_threads(request.threads, || {
         let campaign = &campaign;
         let evaluated = evaluate::<MeasuredItems>(

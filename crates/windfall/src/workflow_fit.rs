@@ -5,13 +5,18 @@ use crate::error::Error;
 use crate::extract_recording::extract_recording;
 use crate::figure_files::write_figure;
 use crate::figure_impact::figure_of_impact;
+use crate::fit_card::card_of_fit;
 use crate::fit_impact::{FitTask, fit_tasks};
 use crate::fit_key::{impact_key, input_digests};
 use crate::fit_mass::{RigFound, find_rig};
+use crate::law_use::{LawUse, findings_of_use};
 use crate::on_threads::on_threads;
-use crate::outcome::{CampaignOutcome, FailureOutcome, ImpactOutcome, StatusOutcome};
+use crate::outcome::{
+    CampaignOutcome, FailureOutcome, FindingOutcome, ImpactOutcome, StatusOutcome,
+};
 use crate::provenance::{VERSION, time_now};
 use crate::read_campaign::{CAMPAIGN_FILE, read_campaign};
+use crate::read_card::write_card;
 use crate::read_recording::recording_path;
 use crate::recording_digests::{Digests, recording_digests};
 use crate::request_fit::{FitRequest, Reuse, apply_request};
@@ -21,6 +26,7 @@ use crate::summary::{summarise, summarise_groups};
 use rayon::prelude::*;
 use std::collections::BTreeMap;
 use std::path::Path;
+use windfall_contact::expression::typical;
 
 /// Name of the store in a campaign directory.
 pub const STORE_FILE: &str = "results.sqlite";
@@ -153,6 +159,9 @@ fn fit(
     if let Some(directory) = &request.figures {
         draw(campaign, &rig, &outcome.shown, directory)?;
     }
+    if let Some(path) = &request.card {
+        write_card(path, &card_of_fit(campaign, &outcome.shown)?)?;
+    }
     Ok(outcome.shown)
 }
 
@@ -175,7 +184,12 @@ fn draw(
         }
         let mass = Some(rig.rig.effective_mass());
         let (impact, _) = extract_recording(campaign, entry, mass)?;
-        let figure = figure_of_impact(&entry.id, &impact, &own, &rig.rig, end);
+        let figure = figure_of_impact(
+            &entry.id,
+            &impact,
+            &own,
+            (&rig.rig, end, &campaign.fit.user),
+        );
         write_figure(directory, &entry.id, &figure).map(|_| ())
     })
 }
@@ -245,6 +259,8 @@ fn assemble(
     let mut summary = all.parameters;
     summary.0.extend(all.derived.0);
     let groups = summarise_groups(&impacts);
+    let mut findings = rig.findings.clone();
+    findings.extend(law_findings(campaign, &impacts));
     let shown = CampaignOutcome {
         windfall: VERSION.to_owned(),
         campaign: campaign.title.clone(),
@@ -255,9 +271,38 @@ fn assemble(
         failed,
         summary,
         groups,
-        findings: rig.findings.clone(),
+        findings,
     };
     Assembled { shown, keys }
+}
+
+/// Remarks on the laws as they were used.
+fn law_findings(campaign: &Campaign, impacts: &[ImpactOutcome]) -> Vec<FindingOutcome> {
+    let mut findings: Vec<FindingOutcome> = Vec::new();
+    for law in &campaign.fit.laws {
+        let Ok(typical) = typical(law.kind).complete() else {
+            continue;
+        };
+        let known = |impact: &ImpactOutcome, name: &str| {
+            let found = impact.fitted.get(name).copied().flatten();
+            found.unwrap_or(f64::NAN)
+        };
+        let used: Vec<LawUse> = impacts
+            .iter()
+            .filter(|impact| impact.law == law.kind.name())
+            .map(|impact| LawUse {
+                impact_velocity: known(impact, "impact_velocity"),
+                peak_force: known(impact, "peak_force"),
+                displacement: known(impact, "max_displacement"),
+                mass: f64::NAN,
+            })
+            .collect();
+        for mut finding in findings_of_use(&typical, None, &used) {
+            finding.message = format!("{}: {}", law.kind.name(), finding.message);
+            findings.push(finding);
+        }
+    }
+    findings
 }
 
 fn group_of(campaign: &Campaign, entry: &ImpactEntry) -> Option<String> {

@@ -1,14 +1,11 @@
-//! `windfall radius` and `windfall card transfer`: radii of curvature, and laws
-//! taken from one geometry to another.
+//! `windfall radius`: radii of curvature.
 
 use crate::error::Error;
 use crate::option_value::{positive, unusable};
 use crate::text_number::plain;
 use serde::Serialize;
-use windfall_contact::apparent_modulus::{PressedContact, PrincipalRadii};
+use windfall_contact::apparent_modulus::PrincipalRadii;
 use windfall_contact::curvature::{mean_radius, radii_of_ellipsoid, radius_from_chord};
-use windfall_contact::expression::parse_law;
-use windfall_contact::transfer::{Geometry, transfer};
 
 /// What `windfall radius` is asked; texts with units.
 #[derive(Clone, Debug, Default)]
@@ -98,104 +95,6 @@ pub fn text_of_radius(outcome: &RadiusOutcome) -> String {
     };
     if let Some(effective) = outcome.effective_radius {
         text += &format!("R*                   {}\n", mm(effective));
-    }
-    text
-}
-
-/// What `windfall card transfer` is asked; texts with units.
-#[derive(Clone, Debug)]
-pub struct TransferRequest {
-    /// The law with its parameters.
-    pub law: String,
-    /// Radii in the geometry where it was found: "41.5 mm, plane".
-    pub from: String,
-    /// Plates that deformed the fruit there.
-    pub from_plates: usize,
-    /// Radii in the geometry where it is wanted: "41.5 mm, 25 mm".
-    pub to: String,
-    /// Plates that deform the fruit there.
-    pub to_plates: usize,
-    /// Whether both bodies are fruit where it is wanted.
-    pub to_fruit: bool,
-}
-
-/// A law in another geometry.
-#[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct TransferOutcome {
-    /// The law there, as an expression.
-    pub law: String,
-    /// k there over k here.
-    pub stiffness_ratio: f64,
-    /// What is assumed.
-    pub assumptions: Vec<String>,
-}
-
-/// A law in another geometry.
-///
-/// # Errors
-/// A text cannot be used, or the law cannot be transferred.
-pub fn transfer_law(request: &TransferRequest) -> Result<TransferOutcome, Error> {
-    let law = parse_law(&request.law)
-        .and_then(|law| law.complete())
-        .map_err(|error| unusable(format!("--law {}", request.law), error.to_string()))?;
-    let from = geometry("--from", &request.from, request.from_plates, 1.0)?;
-    let relative = if request.to_fruit { 0.5 } else { 1.0 };
-    let to = geometry("--to", &request.to, request.to_plates, relative)?;
-    let there = transfer(law, &from, &to)
-        .map_err(|error| unusable(format!("--law {}", request.law), error.to_string()))?;
-    let values = there.law.parameters();
-    let named = there.law.kind().describe().parameters.iter().zip(&values);
-    let named: Vec<String> = named
-        .map(|(p, value)| format!("{}={value}", p.name))
-        .collect();
-    let mut assumptions = vec![
-        "Hertz's contact: k goes as E*√R*, and deformations of contacts in series add".to_owned(),
-        "plates and impactor are rigid beside the fruit".to_owned(),
-        "the damping of the material, c/k, is the same; rates of deformation are not".to_owned(),
-    ];
-    if request.to_fruit {
-        assumptions
-            .push("both bodies are fruit of one modulus: E* is half of a fruit's".to_owned());
-    }
-    Ok(TransferOutcome {
-        law: format!("{}({})", there.law.kind().name(), named.join(", ")),
-        stiffness_ratio: there.stiffness_ratio,
-        assumptions,
-    })
-}
-
-/// "41.5 mm, plane" with one or two contacts of that kind.
-fn geometry(option: &str, text: &str, plates: usize, relative: f64) -> Result<Geometry, Error> {
-    let parts: Vec<&str> = text.split(',').map(str::trim).collect();
-    let [fruit, other] = parts[..] else {
-        let problem = "expected the radius of the fruit and that of the other body, such as \
-                       \"41.5 mm, 25 mm\" or \"41.5 mm, plane\"";
-        return Err(unusable(format!("{option} {text}"), problem));
-    };
-    if !(1..=2).contains(&plates) {
-        return Err(unusable(format!("{option}-plates"), "expected 1 or 2"));
-    }
-    let fruit = PrincipalRadii::sphere(positive(option, fruit, "m")?);
-    let indenter = match other {
-        "plane" => PrincipalRadii::PLANE,
-        other => PrincipalRadii::sphere(positive(option, other, "m")?),
-    };
-    Ok(Geometry {
-        contacts: vec![PressedContact { fruit, indenter }; plates],
-        relative_modulus: relative,
-    })
-}
-
-/// A transferred law for people.
-#[must_use]
-pub fn text_of_transfer(outcome: &TransferOutcome) -> String {
-    let mut text = format!(
-        "{}\n\n{} times the stiffness of the geometry it was found in, assuming that\n",
-        outcome.law,
-        plain(outcome.stiffness_ratio)
-    );
-    for assumption in &outcome.assumptions {
-        text += &format!("  - {assumption}\n");
     }
     text
 }

@@ -1,11 +1,11 @@
 //! `windfall simulate`: one event from a force law.
 
 use crate::error::Error;
-use crate::law_card::{law_of_card, read_card};
+use crate::law_card::CardRange;
+use crate::law_use::{LawUse, findings_of_use};
+use crate::outcome::FindingOutcome;
 use serde::Serialize;
-use std::path::Path;
 use windfall_contact::expression::LawExpression;
-use windfall_contact::expression::parse_law;
 use windfall_contact::law::EndRule;
 use windfall_contact::law_kind::Law;
 use windfall_contact::restitution::nominal_restitution;
@@ -14,9 +14,6 @@ use windfall_identify::simulate::{ImpactSummary, Trajectory, simulate_rig, traje
 
 /// What is kept of the motion before and after contact, as a part of its duration.
 const MARGIN: f64 = 0.25;
-
-/// Ending of a law card's name.
-const CARD_ENDING: &str = ".toml";
 
 /// One simulated impact: the keys of the JSON that scripts rely on; SI.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -52,6 +49,8 @@ pub struct SimulatedImpact {
     pub absorbed_energy: f64,
     /// Integral of the force over the contact.
     pub impulse: f64,
+    /// What a reader must know of the law and its use.
+    pub findings: Vec<FindingOutcome>,
 }
 
 /// A simulated motion with its summary.
@@ -63,24 +62,9 @@ pub struct SimulatedMotion {
     pub trajectory: Trajectory,
 }
 
-/// A force law with all its parameters: from an expression, or from a law card
-/// (a text that ends with ".toml" is the path of one).
-///
-/// # Errors
-/// The expression cannot be read or lacks a parameter; the card cannot be used.
-pub fn complete_law(text: &str) -> Result<Law, Error> {
-    if text.ends_with(CARD_ENDING) {
-        let path = Path::new(text);
-        return law_of_card(&read_card(path)?, path);
-    }
-    let law = parse_law(text).and_then(|expression| expression.complete());
-    law.map_err(|error| Error::OptionInvalid {
-        option: format!("--law {text}"),
-        problem: error.to_string(),
-    })
-}
-
 /// Simulates one impact of a rig.
+///
+/// * `range`: in what the law was seen, where that is known
 ///
 /// # Errors
 /// The rig or the velocity has no physical value, or the bodies do not part.
@@ -89,9 +73,18 @@ pub fn simulate_one(
     rig: &Rig,
     velocity: f64,
     end: EndRule,
+    range: Option<&CardRange>,
 ) -> Result<SimulatedImpact, Error> {
     let summary = simulate_rig(law, rig, velocity, end).map_err(|source| failed(law, source))?;
-    Ok(simulated(law, rig, velocity, end, &summary))
+    let mut impact = simulated(law, rig, velocity, end, &summary);
+    let used = LawUse {
+        impact_velocity: velocity,
+        peak_force: impact.peak_force,
+        displacement: impact.max_displacement,
+        mass: impact.effective_mass,
+    };
+    impact.findings = findings_of_use(law, range, &[used]);
+    Ok(impact)
 }
 
 /// Simulates one impact of a rig with its motion, sampled at a rate, from a
@@ -105,10 +98,10 @@ pub fn simulate_motion(
     law: &Law,
     rig: &Rig,
     velocity: f64,
-    rate: f64,
-    end: EndRule,
+    (rate, end): (f64, EndRule),
+    range: Option<&CardRange>,
 ) -> Result<SimulatedMotion, Error> {
-    let impact = simulate_one(law, rig, velocity, end)?;
+    let impact = simulate_one(law, rig, velocity, end, range)?;
     let margin = (MARGIN * impact.contact_duration * rate).ceil();
     let last = ((1.0 + MARGIN) * impact.contact_duration * rate).ceil();
     let times: Vec<f64> = (0..=(margin + last) as usize)
@@ -149,6 +142,7 @@ fn simulated(
         nominal_restitution: nominal_restitution(law),
         absorbed_energy: summary.absorbed_energy,
         impulse: summary.impulse,
+        findings: Vec::new(),
     }
 }
 

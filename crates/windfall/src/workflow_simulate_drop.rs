@@ -1,7 +1,9 @@
 //! `windfall simulate drop`: a fruit falls on a plate and bounces.
 
 use crate::error::Error;
+use crate::law_use::{LawUse, findings_of_use};
 use crate::option_value::{positive, unusable};
+use crate::outcome::FindingOutcome;
 use crate::request_drop::{DropPlan, one_height};
 use crate::workflow_simulate::end_name;
 use serde::Serialize;
@@ -88,6 +90,8 @@ pub struct SimulatedDrop {
     pub intervals: Vec<f64>,
     /// Whether the fruit comes to rest on the plate before the next impact.
     pub at_rest: bool,
+    /// What a reader must know of the law and its use.
+    pub findings: Vec<FindingOutcome>,
 }
 
 /// A simulated drop and its motion.
@@ -114,7 +118,18 @@ pub fn simulate_one_drop(plan: &DropPlan, impacts: usize) -> Result<SimulatedDro
     let rig = &plan.rig;
     let summary = simulate_drop(&plan.law, rig, height, impacts, plan.end)
         .map_err(|source| failed(&plan.law, source))?;
+    let used: Vec<LawUse> = summary
+        .impacts
+        .iter()
+        .map(|impact| LawUse {
+            impact_velocity: impact.impact_velocity,
+            peak_force: impact.peak_contact_force,
+            displacement: impact.max_displacement,
+            mass: rig.mass,
+        })
+        .collect();
     Ok(SimulatedDrop {
+        findings: findings_of_use(&plan.law, plan.range.as_ref(), &used),
         law: LawExpression::from(plan.law).to_string(),
         mass: rig.mass,
         effective_mass_factor: rig.effective_mass_factor,

@@ -6,7 +6,7 @@ use crate::workflow_simulate_drop::{
     PlateOutcome, SimulatedBounce, SimulatedDrop, SimulatedDropMotion,
 };
 use crate::write_csv::csv_text;
-use crate::write_simulation::six_digits;
+use crate::write_simulation::{findings_text, six_digits};
 use crate::write_table::table_text;
 
 /// A value of an impact: name, value, unit.
@@ -58,13 +58,14 @@ pub fn text_of_drop(drop: &SimulatedDrop) -> String {
         false => "",
     };
     format!(
-        "simulated: {}, contact ends at {}\nfruit {} kg{factor}, from {} m under {} m/s^2; {plate}\n\n{}\n{rest}",
+        "simulated: {}, contact ends at {}\nfruit {} kg{factor}, from {} m under {} m/s^2; {plate}\n\n{}\n{rest}{}",
         drop.law,
         drop.end,
         given(drop.mass),
         given(drop.height),
         given(drop.gravity),
-        impact_table(&columns, &drop.intervals)
+        impact_table(&columns, &drop.intervals),
+        findings_text(&drop.findings)
     )
 }
 

@@ -1,7 +1,7 @@
 //! A law card as text for people.
 
 use crate::error::Error;
-use crate::law_card::LawCard;
+use crate::law_card::{CardCovariate, CardPopulation, LawCard};
 use crate::text_statistic::number;
 use crate::write_csv::csv_text;
 use crate::write_table::table_text;
@@ -62,6 +62,26 @@ pub fn text_of_card(card: &LawCard) -> String {
     if let Some(covariance) = &card.covariance {
         line("uncertainty is that of", covariance.of_what.clone());
     }
+    if let Some(contact) = &card.contact {
+        let (radius, modulus) = (
+            number(contact.effective_radius),
+            number(contact.effective_modulus),
+        );
+        line(
+            "contact",
+            format!("{}: R* = {radius} m, E* = {modulus} Pa", contact.bodies),
+        );
+    }
+    if let Some(population) = &card.population {
+        line("between fruit", between_text(population));
+        line("estimated by", population.method.clone());
+        for effect in &population.covariates {
+            line("effect", effect_text(effect));
+        }
+    }
+    if let Some(formula) = card.definition.as_ref().and_then(|d| d.force.as_ref()) {
+        line("formula", formula.trim().to_owned());
+    }
     let origin = &card.origin;
     let made = format!(
         "{}, {}, windfall {}, {}",
@@ -75,6 +95,53 @@ pub fn text_of_card(card: &LawCard) -> String {
         line("caution", caution.clone());
     }
     text
+}
+
+/// "sd of ln k 0.18, of ln c 0.24 over 40 fruit and 240 impacts; correlation of
+/// ln k and ln c 0.31".
+fn between_text(population: &CardPopulation) -> String {
+    let matrix = &population.between_fruit;
+    let sd = |i: usize| matrix[i][i].max(0.0).sqrt();
+    let places = 0..population.of.len().min(matrix.len());
+    let sds: Vec<String> = places
+        .clone()
+        .map(|i| format!("of {} {}", population.of[i], number(sd(i))))
+        .collect();
+    let mut text = format!(
+        "sd {} over {} fruit and {} impacts",
+        sds.join(", "),
+        population.fruit,
+        population.impacts
+    );
+    for i in places {
+        for j in 0..i {
+            let correlation = matrix[i][j] / (sd(i) * sd(j));
+            if !correlation.is_finite() {
+                continue;
+            }
+            text += &format!(
+                "; correlation of {} and {} {correlation:.2}",
+                population.of[j], population.of[i]
+            );
+        }
+    }
+    text
+}
+
+/// "ln k rises by 0.4 ± 0.1 per m/s of impact_velocity, from 0.35 m/s".
+fn effect_text(effect: &CardCovariate) -> String {
+    let sd = effect
+        .sd
+        .map_or_else(String::new, |sd| format!(" ± {}", number(sd)));
+    format!(
+        "{} changes by {}{sd} per {} of {}; the median is at {} {}",
+        effect.on,
+        number(effect.effect),
+        effect.unit,
+        effect.name,
+        number(effect.centre),
+        effect.unit
+    )
 }
 
 /// The parameters of a card as CSV.

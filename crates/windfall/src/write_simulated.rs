@@ -3,6 +3,7 @@
 use crate::read_channels::{KINDS, Kind};
 use crate::read_rig::FROM_IMPULSE;
 use crate::workflow_simulate::end_name;
+use crate::write_user_laws::law_table;
 use std::fmt::Write;
 use windfall_contact::law::EndRule;
 use windfall_contact::law_kind::LawKind;
@@ -112,6 +113,7 @@ fn time_column(quantity: Quantity) -> String {
 #[must_use]
 pub fn campaign_text(file: &SimulatedFile) -> String {
     let instrument = file.instrument;
+    let law = file.law.unwrap_or(LawKind::KuwabaraKono);
     let rates = rates(instrument);
     let timed = intervals_differ(rates.iter().map(|rate| 1.0 / rate));
     let times = match (timed, rates.first()) {
@@ -150,12 +152,16 @@ end = "{end}"
 
 [summary]
 group = "variety"
-"#,
+{own}"#,
         title = file.title,
         label = file.label,
         rig = rig_text(file.rig, file.mass_given),
         channels = channels_text(instrument, timed),
-        law = file.law.unwrap_or(LawKind::KuwabaraKono).name(),
+        law = law.name(),
+        own = match law_table(law) {
+            table if table.is_empty() => table,
+            table => format!("\n{table}"),
+        },
         quantities = quantities.join(", "),
         end = end_name(file.end),
     )

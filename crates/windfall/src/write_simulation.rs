@@ -2,6 +2,7 @@
 
 use crate::error::Error;
 use crate::named::Named;
+use crate::outcome::FindingOutcome;
 use crate::workflow_simulate::{SimulatedImpact, SimulatedMotion};
 use crate::write_csv::csv_text;
 use crate::write_table::table_text;
@@ -45,11 +46,25 @@ pub fn text_of_simulation(impact: &SimulatedImpact) -> String {
         vec![name, six_digits(value), unit.to_owned()]
     });
     format!(
-        "simulated: {}, contact ends at {}\n\n{}\n",
+        "simulated: {}, contact ends at {}\n\n{}\n{}",
         impact.law,
         impact.end,
-        table_text(&header, lines, &[0, 2])
+        table_text(&header, lines, &[0, 2]),
+        findings_text(&impact.findings)
     )
+}
+
+/// A line for each finding, after an empty one; nothing without findings.
+#[must_use]
+pub fn findings_text(findings: &[FindingOutcome]) -> String {
+    let lines = findings
+        .iter()
+        .map(|finding| format!("\n{}: {}", finding.code, finding.message));
+    let text: String = lines.collect();
+    match text.is_empty() {
+        true => text,
+        false => text + "\n",
+    }
 }
 
 /// Below this a number of a table is rounding of zero; SI.

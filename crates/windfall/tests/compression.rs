@@ -18,6 +18,7 @@ fn fit(directory: &Path, request: &FitRequest) -> MeasuredOutcome {
 
 fn request() -> SimulateCompressionRequest {
     SimulateCompressionRequest {
+        laws: None,
         law: "kuwabara-kono(k=300000, c=20000)".to_owned(),
         rates: ["1 mm/s", "20 mm/s"].map(str::to_owned).to_vec(),
         deformation: "2 mm".to_owned(),

@@ -241,6 +241,7 @@ fn rejects_what_cannot_be_calibrated() {
 /// Rig and law of Kang et al. (2023): Table 6 and eqs. (5) and (6).
 fn study(heights: &[&str]) -> DropRequest {
     DropRequest {
+        laws: None,
         law: "adams-impact(k=\"0.868 N/mm^1.91\", e=1.91, c=\"5.56e-4 N s/mm\", d=\"0.001 mm\")"
             .to_owned(),
         mass: "4.8 g".to_owned(),
