@@ -137,6 +137,33 @@ pub enum Error {
         /// Name of the law.
         law: &'static str,
     },
+    /// Too few fruit or impacts for a population.
+    #[error(
+        "{impacts} impacts of {fruits} fruit are no population: it takes at least 2 fruit (numbered from 0 without gaps) and {needed} impacts for so many covariates"
+    )]
+    FewMembers {
+        /// Fruit with impacts.
+        fruits: usize,
+        /// Impacts.
+        impacts: usize,
+        /// Impacts needed.
+        needed: usize,
+    },
+    /// More parameters than a population can have.
+    #[error(
+        "a population can have 1 to {most} free parameters of the law, not {asked}: hold some of them"
+    )]
+    ManyParameters {
+        /// Free parameters of the law.
+        asked: usize,
+        /// Most that can vary.
+        most: usize,
+    },
+    /// The likelihood of a population is nowhere defined.
+    #[error(
+        "the likelihood of the population cannot be computed: an impact's likelihood does not determine all parameters of the law; leave out the impacts whose fit found parameters inseparable, or hold a parameter"
+    )]
+    NoPopulation,
     /// The law refuses the values.
     #[error(transparent)]
     Law(#[from] windfall_contact::error::Error),
