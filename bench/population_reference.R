@@ -110,11 +110,11 @@ for (points in c(1, 25)) {
 sink()
 
 ## Logistic growth of trees (nlme's Orange: Draper and Smith 1998, exercise 24.N),
-## log asymptote, log midpoint and log scale; asymptote and midpoint vary.
+## log asymptote, log midpoint and log scale; all three vary.
 sink(file.path(out, "growth.txt"))
 Orange$tree <- as.integer(as.character(Orange$Tree))
 fit <- nlme(circumference ~ exp(a) / (1 + exp((exp(m) - age) / exp(s))), data = Orange,
-            fixed = a + m + s ~ 1, random = pdDiag(a + m ~ 1), groups = ~tree,
+            fixed = a + m + s ~ 1, random = pdDiag(a + m + s ~ 1), groups = ~tree,
             start = c(a = log(190), m = log(720), s = log(350)), method = "ML",
             control = nlmeControl(sigma = 8, tolerance = 1e-6, pnlsTol = 1e-6, maxIter = 500,
                                   pnlsMaxIter = 100, msMaxIter = 1000, msTol = 1e-12))

@@ -48,11 +48,24 @@ pub struct Expansion {
 /// likelihood cannot be computed.
 pub type Expand<'a> = dyn Fn(&[Vec<f64>]) -> Vec<Option<Expansion>> + 'a;
 
+/// Approximation of the integral over the impacts' own parameters.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
+pub enum Approximation {
+    /// Laplace's.
+    #[default]
+    Laplace,
+    /// First-order conditional estimation (Lindstrom and Bates): without the
+    /// change of the expansions' determinants with the mode.
+    FirstOrder,
+}
+
 /// How a population is estimated.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PopulationOptions {
     /// Likelihood of the variances.
     pub likelihood: Likelihood,
+    /// Approximation of the likelihood.
+    pub approximation: Approximation,
     /// Covariance between fruit.
     pub between: Structure,
     /// Covariance of the impacts of one fruit.
@@ -67,6 +80,7 @@ impl Default for PopulationOptions {
     fn default() -> Self {
         Self {
             likelihood: Likelihood::default(),
+            approximation: Approximation::default(),
             between: Structure::default(),
             within: Structure::default(),
             confidence: 0.95,

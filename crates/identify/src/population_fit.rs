@@ -1,7 +1,9 @@
 //! Nonlinear mixed effects: the impacts of many fruit → the population.
 
 use crate::error::Error;
-use crate::population::{Expand, Expansion, PopulationData, PopulationFit, PopulationOptions};
+use crate::population::{
+    Approximation, Expand, Expansion, PopulationData, PopulationFit, PopulationOptions,
+};
 use crate::population_design::{Design, design};
 use crate::population_linear::{LinearProblem, Mode};
 use crate::population_optimum::{Optimum, optimise};
@@ -18,6 +20,9 @@ pub const LARGEST_POPULATION: usize = 4;
 const REACH: f64 = 5.0;
 /// Smallest standard deviation at the start, in units of the overall one.
 const LEAST: f64 = 1e-3;
+/// Smallest variance of a mode, as a share of the impact's own, over which the
+/// change of its expansion is looked at.
+const SHORTEST: f64 = 1e-4;
 
 /// Estimates the population of which `data` are members.
 ///
@@ -111,7 +116,9 @@ fn fit<const Q: usize>(
     state.not_quadratic = looker.level() - fitted_level;
     let first_order = state.optimum.clone();
     let unshifted = state.problem.clone();
-    second_order(&mut state, &looker).ok_or_else(none)?;
+    if options.approximation == Approximation::Laplace {
+        second_order(&mut state, &looker).ok_or_else(none)?;
+    }
     state.shift_from_first_order = shift(&first_order, &state.optimum);
     state.shift_from_fits = shift(&fits, &state.optimum);
     Ok(report(data, &state, &unshifted, options))
@@ -305,7 +312,10 @@ fn iterate<const Q: usize>(
 fn second_order<const Q: usize>(state: &mut State<Q>, looker: &Looker<Q>) -> Option<()> {
     let mut slopes = vec![SVector::<f64, Q>::zeros(); state.modes.len()];
     for k in 0..Q {
-        let step = |i: usize| state.modes[i].covariance[(k, k)].max(0.0).sqrt();
+        let step = |i: usize| {
+            let (own, noise) = (&state.modes[i].covariance, &state.problem.noise[i]);
+            own[(k, k)].max(SHORTEST * noise[(k, k)]).sqrt()
+        };
         let shifted = |side: f64| -> Vec<SVector<f64, Q>> {
             let modes = state.modes.iter().enumerate();
             modes
@@ -318,9 +328,7 @@ fn second_order<const Q: usize>(state: &mut State<Q>, looker: &Looker<Q>) -> Opt
         };
         let (up, down) = (looker.look(&shifted(1.0)), looker.look(&shifted(-1.0)));
         for (i, slope) in slopes.iter_mut().enumerate() {
-            if let (Some(up), Some(down)) = (&up[i], &down[i])
-                && step(i) > 0.0
-            {
+            if let (Some(up), Some(down)) = (&up[i], &down[i]) {
                 let change = (up.curvature - down.curvature) / (up.at[k] - down.at[k]);
                 slope[k] = -0.5 * (state.modes[i].covariance * change).trace();
             }
