@@ -2,6 +2,20 @@
 
 use windfall_numerics::ode_step::StepError;
 
+/// Why an impact cannot be a member of a population.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
+pub enum Unusable {
+    /// The fit did not converge.
+    #[error("its fit did not converge")]
+    NoConvergence,
+    /// A parameter ended on its bound.
+    #[error("a parameter of its fit ended on a bound")]
+    AtBound,
+    /// The covariance is singular.
+    #[error("its fit cannot tell the free parameters apart")]
+    Singular,
+}
+
 /// Errors of this crate.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum Error {
@@ -159,6 +173,9 @@ pub enum Error {
         /// Most that can vary.
         most: usize,
     },
+    /// An impact cannot be a member of a population.
+    #[error("the impact cannot be a member of a population: {0}")]
+    NotAMember(Unusable),
     /// The likelihood of a population is nowhere defined.
     #[error(
         "the likelihood of the population cannot be computed: an impact's likelihood does not determine all parameters of the law; leave out the impacts whose fit found parameters inseparable, or hold a parameter"

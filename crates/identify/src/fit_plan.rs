@@ -327,22 +327,16 @@ impl Plan<'_> {
         self.solve_with_mass(rig.effective_mass(), &self.starts)
     }
 
-    pub(crate) fn solve_with_mass(
-        &self,
-        mass: f64,
-        starts: &[Vec<f64>],
-    ) -> Result<Solution, Error> {
+    /// What the minimiser holds constant.
+    pub(crate) fn setting(&self) -> Setting<'_> {
         let description = self.problem.kind.describe();
-        let no_start = Error::NoStart {
-            law: description.name,
-        };
         let tied_velocity = description
             .parameters
             .iter()
             .position(|p| p.name == IMPACT_VELOCITY)
             .filter(|&i| self.problem.values[i].is_none() && !self.problem.free[i]);
         let accuracy = self.options.accuracy;
-        let setting = Setting {
+        Setting {
             motion: self.motion,
             groups: &self.groups,
             end: self.options.end,
@@ -359,7 +353,19 @@ impl Plan<'_> {
             } else {
                 Sampling::Instantaneous
             },
+        }
+    }
+
+    pub(crate) fn solve_with_mass(
+        &self,
+        mass: f64,
+        starts: &[Vec<f64>],
+    ) -> Result<Solution, Error> {
+        let description = self.problem.kind.describe();
+        let no_start = Error::NoStart {
+            law: description.name,
         };
+        let setting = self.setting();
         let limits = Limits {
             cost_tolerance: self.options.cost_tolerance,
             max_evaluations: self.options.max_evaluations,
