@@ -19,6 +19,8 @@ use windfall_numerics::least_squares::{LeastSquares, NormalEquations, Stop};
 use windfall_numerics::ode_step::Tolerance;
 use windfall_signal::impact::Impact;
 
+/// Standard errors around a fit in which it counts as a normal observation.
+pub const NORMAL_REACH: f64 = 2.0;
 /// Evaluations in which the nuisances follow the law's parameters.
 const MOST: usize = 30;
 /// Gain of the cost, in the units of a log-likelihood, below which the nuisances
@@ -185,6 +187,31 @@ impl ImpactLikelihood {
         let row = |i: usize| curvature.row(i).iter().copied().collect();
         Some(Expansion {
             value: -0.5 * (equations.cost - self.lowest),
+            gradient: gradient.as_slice().to_vec(),
+            curvature: (0..law).map(row).collect(),
+        })
+    }
+
+    /// As [`expand`](Self::expand), but where φ is within `reach` standard errors
+    /// of the fit, the impact is the normal observation that its fit and
+    /// covariance say it is.
+    ///
+    /// Samples that the onset passes leave kinks in the likelihood, which shift
+    /// what it says by some tenths of a standard error from one point to the
+    /// next (docs/onset.md); near the fit the fit knows better.
+    #[must_use]
+    pub fn expand_beyond(&self, reach: f64, at: &[f64]) -> Option<Expansion> {
+        let law = self.law_count;
+        let way = DVector::from_fn(law, |i, _| at[i] - self.estimate[i]);
+        let precision = self.covariance.clone().cholesky()?.inverse();
+        let gradient = -&precision * &way;
+        let square = -gradient.dot(&way);
+        if square > reach * reach {
+            return self.expand(at);
+        }
+        let row = |i: usize| precision.row(i).iter().copied().collect();
+        Some(Expansion {
+            value: -0.5 * square,
             gradient: gradient.as_slice().to_vec(),
             curvature: (0..law).map(row).collect(),
         })

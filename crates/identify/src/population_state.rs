@@ -5,9 +5,9 @@ use crate::population_finding::PopulationFinding;
 use crate::population_linear::{LinearProblem, Mode};
 use crate::population_optimum::Optimum;
 
-/// Change of every mode at which the iterations stop; standard errors of the
-/// impact.
-pub(crate) const SETTLED: f64 = 1e-3;
+/// Change of the estimates, in their standard errors, below which they have
+/// settled.
+pub(crate) const SETTLED: f64 = 0.05;
 
 /// Everything that the iterations change.
 pub(crate) struct State<const Q: usize> {
