@@ -338,18 +338,18 @@ fn second_order<const Q: usize>(state: &mut State<Q>, looker: &Looker<Q>) -> Opt
             }
         }
     }
+    let mut problem = state.problem.clone();
     for (i, slope) in slopes.iter().enumerate() {
-        state.problem.observed[i] += state.problem.noise[i] * slope;
+        // A shift of more than a standard error is beyond the approximation.
+        let length = slope.dot(&(problem.noise[i] * slope)).sqrt();
+        if length.is_finite() {
+            problem.observed[i] += problem.noise[i] * slope / length.max(1.0);
+        }
     }
-    state.optimum = optimise(
-        &state.problem,
-        state.optimum.variances,
-        &state.optimum.minimum.at,
-    )?;
-    let optimum = &state.optimum;
-    state.modes = state
-        .problem
-        .modes(&optimum.root, &optimum.within, &optimum.value.effects)?;
+    let optimum = optimise(&problem, state.optimum.variances, &state.optimum.minimum.at)?;
+    state.modes = problem.modes(&optimum.root, &optimum.within, &optimum.value.effects)?;
+    state.problem = problem;
+    state.optimum = optimum;
     Some(())
 }
 

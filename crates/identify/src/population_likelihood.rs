@@ -152,6 +152,12 @@ impl ImpactLikelihood {
         (0..self.law_count).map(row).collect()
     }
 
+    /// Velocity at first touch of the fit; m/s.
+    #[must_use]
+    pub fn velocity(&self) -> f64 {
+        self.base.1[0]
+    }
+
     /// Finds the smooth minimum and the adjustment there.
     fn anchor(&mut self) -> Option<()> {
         let (at, equations) = self.settle(self.smooth.clone(), 0)?;

@@ -102,7 +102,7 @@ fn fit_group(
 
 /// The usual question about a law: exponents that are left out have their usual
 /// values and are held, and the parameters named in `free` are estimated.
-fn law_problem(law: &LawExpression, free: &[String]) -> LawProblem {
+pub(crate) fn law_problem(law: &LawExpression, free: &[String]) -> LawProblem {
     let mut problem = LawProblem::from_expression(law);
     let parameters = law.kind.describe().parameters;
     for (parameter, is_free) in parameters.iter().zip(&mut problem.free) {
