@@ -158,7 +158,8 @@ fn campaign(case: Case, seed: u64) -> (Vec<ImpactLikelihood>, PopulationData, us
             let found = impact(&law, velocity, case, &mut source).and_then(|impact| {
                 let likelihood =
                     impact_likelihood(&impact, &rig(), &problem, &FitOptions::default());
-                Some((likelihood.ok()?, impact.measured.impact_velocity?))
+                let measured = impact.measured.impact_velocity.filter(|v| *v > 0.0)?;
+                Some((likelihood.ok()?, measured))
             });
             match found {
                 Some((likelihood, measured)) => {
@@ -275,28 +276,14 @@ struct Replicate {
 }
 
 fn replicate(case: Case, seed: u64, reach: f64) -> Replicate {
-    let t0 = std::time::Instant::now();
     let (likelihoods, data, lost) = campaign(case, seed);
-    let t1 = t0.elapsed().as_secs_f64();
     let starts: Vec<Vec<f64>> = likelihoods.iter().map(ImpactLikelihood::estimate).collect();
     let expand = |points: &[Vec<f64>]| {
         let own = likelihoods.iter().zip(points);
         own.map(|(likelihood, at)| likelihood.expand_beyond(reach, at))
             .collect()
     };
-    let fit = fit_population(&data, &starts, &expand, &PopulationOptions::default());
-    if fit.is_err() {
-        for l in &likelihoods {
-            eprintln!("{:?} {:?}", l.estimate(), l.covariance());
-        }
-    }
-    let fit = fit.unwrap();
-    eprintln!(
-        "T {} {} {lost} {t1} {}",
-        seed,
-        starts.len(),
-        t0.elapsed().as_secs_f64() - t1
-    );
+    let fit = fit_population(&data, &starts, &expand, &PopulationOptions::default()).unwrap();
     let stages = two_stage(&data, &starts, 0.95).unwrap();
     let noise: f64 = likelihoods
         .iter()

@@ -163,6 +163,18 @@ pub enum Error {
         /// Impacts needed.
         needed: usize,
     },
+    /// A covariate is no number.
+    #[error(
+        "the covariate {covariate} is {value} at impact {impact} (from 0), which is no finite number; leave the impact out"
+    )]
+    BadCovariate {
+        /// Its name.
+        covariate: String,
+        /// Position of the impact.
+        impact: usize,
+        /// Its value there.
+        value: f64,
+    },
     /// More parameters than a population can have.
     #[error(
         "a population can have 1 to {most} free parameters of the law, not {asked}: hold some of them"

@@ -43,7 +43,8 @@ const SHORTEST: f64 = 1e-4;
 /// determinants use Gauss-Newton second derivatives.
 ///
 /// # Errors
-/// [`Error::FewMembers`], [`Error::ManyParameters`], [`Error::NoPopulation`].
+/// [`Error::FewMembers`], [`Error::ManyParameters`], [`Error::BadCovariate`],
+/// [`Error::NoPopulation`].
 ///
 /// # Source
 /// Lindstrom and Bates (1990), Biometrics 46:673; Wolfinger (1993), Biometrika
@@ -74,6 +75,7 @@ fn fit<const Q: usize>(
     options: &PopulationOptions,
 ) -> Result<PopulationFit, Error> {
     let none = || Error::NoPopulation;
+    check_covariates(data)?;
     let fruits = data.fruit.iter().max().map_or(0, |most| most + 1);
     let mut order: Vec<usize> = (0..data.fruit.len()).collect();
     order.sort_by_key(|&i| data.fruit[i]);
@@ -125,6 +127,20 @@ fn fit<const Q: usize>(
     state.shift_from_first_order = shift(&first_order, &state.optimum);
     state.shift_from_fits = shift(&fits, &state.optimum);
     Ok(report(data, &state, &unshifted, options))
+}
+
+fn check_covariates(data: &PopulationData) -> Result<(), Error> {
+    for covariate in &data.covariates {
+        let mut values = covariate.values.iter().enumerate();
+        if let Some((impact, value)) = values.find(|(_, value)| !value.is_finite()) {
+            return Err(Error::BadCovariate {
+                covariate: covariate.name.clone(),
+                impact,
+                value: *value,
+            });
+        }
+    }
+    Ok(())
 }
 
 /// Asks for expansions and keeps the last good one of each impact.

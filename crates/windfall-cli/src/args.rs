@@ -6,6 +6,7 @@ use crate::args_design::DesignArguments;
 use crate::args_fit::FitArguments;
 use crate::args_format::Format;
 use crate::args_geometry::{RadiusArguments, TransferArguments};
+use crate::args_population::PopulationArguments;
 use crate::args_regress::RegressArguments;
 use crate::args_simulate::SimulateArguments;
 use crate::args_surface::SurfaceArguments;
@@ -42,6 +43,8 @@ pub enum Command {
     Inspect(InspectArguments),
     /// Fit force laws to the impacts of a campaign
     Fit(Box<FitArguments>),
+    /// Estimate how the law varies between fruit and with covariates
+    Population(PopulationArguments),
     /// Calibrate a contact law to dropped fruit: by features, and by design and surface
     Calibrate(CalibrateArguments),
     /// Make a design of experiments

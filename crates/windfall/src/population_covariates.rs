@@ -70,7 +70,7 @@ pub fn find_covariates(
                 let column = asked.column;
                 left_out.push((
                     i,
-                    format!("the covariate {column} is blank (impacts.csv, line {line}, or its specimen's line in specimens.csv)"),
+                    format!("the covariate {column} has no value (impacts.csv, line {line}, or its specimen's line in specimens.csv)"),
                 ));
             }
             None => kept.push(i),
@@ -143,7 +143,8 @@ fn cells(
         .collect();
     let known = texts.iter().any(Option::is_some);
     if !known && asked.column == IMPACT_VELOCITY {
-        let values = velocities.iter().map(|v| Some(logarithm(*v)));
+        let values = velocities.iter().map(|v| logarithm(*v));
+        let values = values.map(|value| value.is_finite().then_some(value));
         return Ok(Cells::Numbers(values.collect()));
     }
     if !known {
