@@ -2,6 +2,20 @@
 
 use windfall_numerics::ode_step::StepError;
 
+/// Why an impact cannot be a member of a population.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
+pub enum Unusable {
+    /// The fit did not converge.
+    #[error("its fit did not converge")]
+    NoConvergence,
+    /// A parameter ended on its bound.
+    #[error("a parameter of its fit ended on a bound")]
+    AtBound,
+    /// The covariance is singular.
+    #[error("its fit cannot tell the free parameters apart")]
+    Singular,
+}
+
 /// Errors of this crate.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum Error {
@@ -147,6 +161,48 @@ pub enum Error {
         /// Name of the law.
         law: &'static str,
     },
+    /// Too few fruit or impacts for a population.
+    #[error(
+        "{impacts} impacts of {fruits} fruit are no population: it takes at least 2 fruit (numbered from 0 without gaps) and {needed} impacts for so many covariates"
+    )]
+    FewMembers {
+        /// Fruit with impacts.
+        fruits: usize,
+        /// Impacts.
+        impacts: usize,
+        /// Impacts needed.
+        needed: usize,
+    },
+    /// A covariate is no number.
+    #[error(
+        "the covariate {covariate} is {value} at impact {impact} (from 0), which is no finite number; leave the impact out"
+    )]
+    BadCovariate {
+        /// Its name.
+        covariate: String,
+        /// Position of the impact.
+        impact: usize,
+        /// Its value there.
+        value: f64,
+    },
+    /// More parameters than a population can have.
+    #[error(
+        "a population can have 1 to {most} free parameters of the law, not {asked}: hold some of them"
+    )]
+    ManyParameters {
+        /// Free parameters of the law.
+        asked: usize,
+        /// Most that can vary.
+        most: usize,
+    },
+    /// An impact cannot be a member of a population.
+    #[error("the impact cannot be a member of a population: {0}")]
+    NotAMember(Unusable),
+    /// The likelihood of a population is nowhere defined.
+    #[error(
+        "the likelihood of the population cannot be computed: an impact's likelihood does not determine all parameters of the law; leave out the impacts whose fit found parameters inseparable, or hold a parameter"
+    )]
+    NoPopulation,
     /// The law refuses the values.
     #[error(transparent)]
     Law(#[from] windfall_contact::error::Error),

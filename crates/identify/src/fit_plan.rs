@@ -387,22 +387,16 @@ impl Plan<'_> {
         Some((parameter.coordinate.of(prior.centre), spread))
     }
 
-    fn solve_from(
-        &self,
-        starts: &[(Vec<f64>, [f64; 4])],
-        intervals: Option<IntervalPlan>,
-    ) -> Result<Solution, Error> {
+    /// What the minimiser holds constant.
+    pub(crate) fn setting(&self) -> Setting<'_> {
         let description = self.problem.kind.describe();
-        let no_start = Error::NoStart {
-            law: description.name,
-        };
         let tied_velocity = description
             .parameters
             .iter()
             .position(|p| p.name == IMPACT_VELOCITY)
             .filter(|&i| self.problem.values[i].is_none() && !self.problem.free[i]);
         let accuracy = self.options.accuracy;
-        let setting = Setting {
+        Setting {
             motion: self.motion,
             groups: &self.noise.groups,
             end: self.options.end,
@@ -419,7 +413,19 @@ impl Plan<'_> {
             } else {
                 Sampling::Instantaneous
             },
+        }
+    }
+
+    fn solve_from(
+        &self,
+        starts: &[(Vec<f64>, [f64; 4])],
+        intervals: Option<IntervalPlan>,
+    ) -> Result<Solution, Error> {
+        let description = self.problem.kind.describe();
+        let no_start = Error::NoStart {
+            law: description.name,
         };
+        let setting = self.setting();
         let limits = Limits {
             cost_tolerance: self.options.cost_tolerance,
             max_evaluations: self.options.max_evaluations,

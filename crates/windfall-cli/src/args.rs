@@ -7,6 +7,7 @@ use crate::args_fit::FitArguments;
 use crate::args_format::Format;
 use crate::args_geometry::{RadiusArguments, TransferArguments};
 use crate::args_laws::LawsArguments;
+use crate::args_population::PopulationArguments;
 use crate::args_regress::RegressArguments;
 use crate::args_simulate::SimulateArguments;
 use crate::args_surface::SurfaceArguments;
@@ -45,6 +46,8 @@ pub enum Command {
     Fit(Box<FitArguments>),
     /// Compare force laws: which one the impacts of a campaign obey, and how sure that is
     Laws(LawsArguments),
+    /// Estimate how the law varies between fruit and with covariates
+    Population(PopulationArguments),
     /// Calibrate a contact law to dropped fruit: by features, and by design and surface
     Calibrate(CalibrateArguments),
     /// Make a design of experiments

@@ -12,6 +12,7 @@ mod args_fit;
 mod args_format;
 mod args_geometry;
 mod args_laws;
+mod args_population;
 mod args_regress;
 mod args_simulate;
 mod args_simulate_drop;
@@ -26,6 +27,7 @@ mod command_geometry;
 mod command_inspect;
 mod command_laws;
 mod command_new;
+mod command_population;
 mod command_regress;
 mod command_simulate;
 mod command_simulate_drop;
@@ -44,6 +46,7 @@ fn main() -> ExitCode {
         Command::Design(arguments) => command_design::run(&arguments),
         Command::Fit(arguments) => command_fit::run(&arguments),
         Command::Laws(arguments) => command_laws::run(&arguments),
+        Command::Population(arguments) => command_population::run(&arguments),
         Command::Calibrate(arguments) => command_calibrate::run(&arguments),
         Command::Simulate(arguments) => command_simulate::run(&arguments),
         Command::Summary(arguments) => command_compare::run_summary(&arguments),

@@ -29,6 +29,8 @@ pub struct Campaign {
     pub fit: FitPlan,
     /// Column of specimens.csv or impacts.csv by which results are grouped.
     pub group: Option<String>,
+    /// Covariates of the population: columns, or their logarithms.
+    pub covariates: Vec<String>,
     /// Specimens, in the order of specimens.csv; none where there is no such file.
     pub specimens: Vec<Specimen>,
     /// Impacts, in the order of impacts.csv.

@@ -41,6 +41,18 @@ pub struct CampaignFile {
     /// How results are grouped.
     #[serde(default)]
     pub summary: SummaryFile,
+    /// How fruit differ.
+    #[serde(default)]
+    pub population: PopulationFile,
+}
+
+/// `[population]`
+#[derive(Debug, Default, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct PopulationFile {
+    /// Columns of impacts.csv or specimens.csv, or `log(column)`.
+    #[serde(default)]
+    pub covariates: Vec<String>,
 }
 
 /// `[campaign]`

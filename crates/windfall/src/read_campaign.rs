@@ -60,6 +60,7 @@ pub fn read_campaign(directory: &Path) -> Result<Campaign, Error> {
             .group
             .as_ref()
             .map(|group| group.get_ref().clone()),
+        covariates: file.population.covariates,
         specimens: specimens.unwrap_or_default(),
         impacts,
     };

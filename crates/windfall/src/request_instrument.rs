@@ -183,6 +183,7 @@ fn linear_encoder(settings: &mut Settings, output: EncoderOutput) -> Result<Enco
         return Err(unusable(settings.option.clone(), problem));
     };
     Ok(EncoderSensor {
+        line_error: 0.0,
         encoder: Encoder::Linear {
             count_length: positive(&settings.option, length, "m")?,
         },

@@ -92,6 +92,7 @@ pub fn campaign_of_file(file: &Path, request: &RecordingRequest) -> Result<Campa
             options: FitOptions::default(),
         },
         group: None,
+        covariates: Vec::new(),
         specimens: Vec::new(),
         impacts: vec![ImpactEntry {
             id: name(file.file_stem()),

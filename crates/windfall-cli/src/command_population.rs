@@ -1,0 +1,40 @@
+//! `windfall population`
+
+use crate::args_format::Format;
+use crate::args_population::PopulationArguments;
+use crate::command_fit::progress_bar;
+use crate::show::{message, write_json, write_result};
+use windfall::request_fit::FitRequest;
+use windfall::workflow_population::{PopulationRequest, population};
+use windfall::write_population::{csv_of_population, text_of_population};
+
+/// Estimates a population and shows it.
+pub fn run(arguments: &PopulationArguments) -> anyhow::Result<()> {
+    let request = PopulationRequest {
+        directory: arguments.directory.clone(),
+        fit: FitRequest {
+            laws: arguments.law.iter().cloned().collect(),
+            free: arguments.free.clone(),
+            threads: arguments.threads,
+            ..FitRequest::default()
+        },
+        covariates: arguments.covariates.clone(),
+    };
+    let bar = progress_bar();
+    let progress = |done: usize, all: usize| {
+        bar.set_length(all as u64);
+        bar.set_position(done as u64);
+    };
+    let outcome = population(&request, &progress);
+    bar.finish_and_clear();
+    let outcome = outcome?;
+    match arguments.format {
+        Format::Json => write_json(&outcome)?,
+        Format::Csv => write_result(&csv_of_population(&outcome)?)?,
+        Format::Text => return write_result(&text_of_population(&outcome)),
+    }
+    for failure in &outcome.failed {
+        message(&format!("left out: {}: {}", failure.id, failure.message));
+    }
+    Ok(())
+}

@@ -1,0 +1,294 @@
+//! `windfall population`: how the law's parameters vary between fruit and with
+//! covariates.
+
+use crate::campaign::{Campaign, ImpactEntry};
+use crate::error::Error;
+use crate::extract_recording::extract_recording;
+use crate::fit_impact::law_problem;
+use crate::fit_mass::{RigFound, find_rig};
+use crate::on_threads::on_threads;
+use crate::outcome::{FailureOutcome, FindingOutcome};
+use crate::population_covariates::find_covariates;
+use crate::population_outcome::{
+    FruitOutcome, PopulationOutcome, Varying, correlations_of, effects_of, parameters_of,
+    population_of, two_stage_outcome,
+};
+use crate::provenance::VERSION;
+use crate::read_campaign::read_campaign;
+use crate::request_fit::{FitRequest, apply_request};
+use crate::workflow_fit::Progress;
+use rayon::prelude::*;
+use std::path::PathBuf;
+use std::sync::atomic::{AtomicUsize, Ordering};
+use windfall_contact::expression::LawExpression;
+use windfall_identify::population::{Covariate, PopulationData, PopulationFit, PopulationOptions};
+use windfall_identify::population_fit::fit_population;
+use windfall_identify::population_likelihood::{ImpactLikelihood, NORMAL_REACH, impact_likelihood};
+use windfall_identify::population_two_stage::two_stage;
+use windfall_identify::problem::LawProblem;
+
+/// What `population` is asked for.
+#[derive(Clone, Debug, Default)]
+pub struct PopulationRequest {
+    /// The campaign directory.
+    pub directory: PathBuf,
+    /// Law and fit options beyond what the campaign says, and threads.
+    pub fit: FitRequest,
+    /// Covariates in place of those of the campaign; none keeps them.
+    pub covariates: Vec<String>,
+}
+
+/// An impact that takes part.
+struct Member<'a> {
+    entry: &'a ImpactEntry,
+    likelihood: ImpactLikelihood,
+    velocity: f64,
+}
+
+/// Estimates the population of a campaign's fruit with the campaign's first law.
+///
+/// Impacts whose fit says too little, or whose covariates are blank, are left
+/// out and named in the outcome. The result has the same bits for any number of
+/// threads.
+///
+/// # Errors
+/// The campaign or the request is wrong, or too few impacts are left.
+pub fn population(
+    request: &PopulationRequest,
+    progress: Progress,
+) -> Result<PopulationOutcome, Error> {
+    let mut campaign = read_campaign(&request.directory)?;
+    apply_request(&mut campaign, &request.fit)?;
+    if !request.covariates.is_empty() {
+        campaign.covariates.clone_from(&request.covariates);
+    }
+    on_threads(request.fit.threads, || estimate(&campaign, progress))
+}
+
+fn estimate(campaign: &Campaign, progress: Progress) -> Result<PopulationOutcome, Error> {
+    let rig = find_rig(campaign)?;
+    let law = &campaign.fit.laws[0];
+    let problem = law_problem(law, &campaign.fit.free);
+    let (members, mut failed) = members(campaign, &rig, &problem, progress);
+    if members.is_empty() {
+        return Err(Error::NothingFitted {
+            path: campaign.directory.clone(),
+            failures: failed.len(),
+        });
+    }
+    let entries: Vec<&ImpactEntry> = members.iter().map(|member| member.entry).collect();
+    let velocities: Vec<f64> = members.iter().map(|member| member.velocity).collect();
+    let found = find_covariates(campaign, &entries, &velocities, &campaign.covariates)?;
+    for (i, reason) in &found.left_out {
+        failed.push(failure(entries[*i], reason.clone()));
+    }
+    let members: Vec<&Member> = found.kept.iter().map(|&i| &members[i]).collect();
+    let varying = varying(law, &problem);
+    let (data, specimens) = data(&members, &varying, found.covariates);
+    let starts: Vec<Vec<f64>> = members.iter().map(|m| m.likelihood.estimate()).collect();
+    let expand = |points: &[Vec<f64>]| {
+        let own = members.par_iter().zip(points);
+        own.map(|(member, at)| member.likelihood.expand_beyond(NORMAL_REACH, at))
+            .collect()
+    };
+    let options = PopulationOptions {
+        confidence: campaign.fit.options.confidence,
+        ..PopulationOptions::default()
+    };
+    let subject = |source| Error::Identify {
+        subject: format!("population of {}", law.kind.name()),
+        source: Box::new(source),
+    };
+    let fit = fit_population(&data, &starts, &expand, &options).map_err(subject)?;
+    let stages = two_stage(&data, &starts, options.confidence).map_err(subject)?;
+    let method = "REML, Laplace";
+    Ok(PopulationOutcome {
+        windfall: VERSION.to_owned(),
+        campaign: campaign.title.clone(),
+        simulated: campaign.simulated.clone(),
+        law: law.kind.name().to_owned(),
+        method: method.to_owned(),
+        fruits: fit.fruit.len(),
+        impacts: members.len(),
+        parameters: parameters_of(&fit, &varying),
+        correlations: correlations_of(&fit),
+        effects: effects_of(&fit.effects, &fit.covariates),
+        two_stage: two_stage_outcome(&stages, &varying, &fit.covariates),
+        log_likelihood: fit.log_likelihood,
+        shift_from_fits: fit.shift_from_fits,
+        shift_from_first_order: fit.shift_from_first_order,
+        converged: fit.converged,
+        fruit: fruit(&fit, &data, &specimens, &varying),
+        population: population_of(&fit, &varying, method),
+        findings: findings(campaign, &rig, &fit, &specimens),
+        failed,
+    })
+}
+
+/// The likelihoods of all impacts that have one, and why the others have none.
+fn members<'a>(
+    campaign: &'a Campaign,
+    rig: &RigFound,
+    problem: &LawProblem,
+    progress: Progress,
+) -> (Vec<Member<'a>>, Vec<FailureOutcome>) {
+    let done = AtomicUsize::new(0);
+    let all = campaign.impacts.len();
+    progress(0, all);
+    let found: Vec<Result<Member, FailureOutcome>> = campaign
+        .impacts
+        .par_iter()
+        .map(|entry| {
+            let member = member(campaign, rig, problem, entry);
+            progress(done.fetch_add(1, Ordering::Relaxed) + 1, all);
+            member.map_err(|error| failure(entry, error.to_string()))
+        })
+        .collect();
+    let (mut members, mut failed) = (Vec::new(), Vec::new());
+    for result in found {
+        match result {
+            Ok(member) => members.push(member),
+            Err(failure) => failed.push(failure),
+        }
+    }
+    (members, failed)
+}
+
+fn member<'a>(
+    campaign: &Campaign,
+    rig: &RigFound,
+    problem: &LawProblem,
+    entry: &'a ImpactEntry,
+) -> Result<Member<'a>, Error> {
+    let (impact, _) = extract_recording(campaign, entry, Some(rig.rig.effective_mass()))?;
+    let options = &campaign.fit.options;
+    let likelihood = impact_likelihood(&impact, &rig.rig, problem, options);
+    let likelihood = likelihood.map_err(|source| Error::Identify {
+        subject: problem.kind.name().to_owned(),
+        source: Box::new(source),
+    })?;
+    Ok(Member {
+        entry,
+        velocity: impact
+            .measured
+            .impact_velocity
+            .unwrap_or(likelihood.velocity()),
+        likelihood,
+    })
+}
+
+fn failure(entry: &ImpactEntry, message: String) -> FailureOutcome {
+    FailureOutcome {
+        id: entry.id.clone(),
+        specimen: entry.specimen.clone(),
+        file: entry.file.clone(),
+        law: None,
+        message,
+    }
+}
+
+fn varying(law: &LawExpression, problem: &LawProblem) -> Vec<Varying> {
+    let parameters = law.kind.describe().parameters;
+    let own = problem.free_positions().map(|i| Varying {
+        name: parameters[i].name.to_owned(),
+        unit: unit_of(problem, i),
+        logarithmic: parameters[i].unit != "1",
+    });
+    own.collect()
+}
+
+/// Unit of a parameter, with the exponent that the law has.
+fn unit_of(problem: &LawProblem, position: usize) -> String {
+    let parameters = problem.kind.describe().parameters;
+    let values = parameters.iter().zip(&problem.values);
+    let values: Vec<f64> = values
+        .map(|(p, v)| v.or(p.default).unwrap_or(1.0))
+        .collect();
+    match problem.kind.with_parameters(&values) {
+        Ok(law) => law.unit_of(position),
+        Err(_) => parameters[position].unit.to_owned(),
+    }
+}
+
+/// The data, and the specimens in the order of their numbers.
+fn data(
+    members: &[&Member],
+    varying: &[Varying],
+    covariates: Vec<Covariate>,
+) -> (PopulationData, Vec<String>) {
+    let mut specimens: Vec<String> = Vec::new();
+    let fruit = members.iter().map(|member| {
+        let specimen = &member.entry.specimen;
+        match specimens.iter().position(|known| known == specimen) {
+            Some(index) => index,
+            None => {
+                specimens.push(specimen.clone());
+                specimens.len() - 1
+            }
+        }
+    });
+    let fruit = fruit.collect();
+    let data = PopulationData {
+        parameters: varying.iter().map(|v| v.name.clone()).collect(),
+        fruit,
+        covariates,
+    };
+    (data, specimens)
+}
+
+fn fruit(
+    fit: &PopulationFit,
+    data: &PopulationData,
+    specimens: &[String],
+    varying: &[Varying],
+) -> Vec<FruitOutcome> {
+    let own = specimens.iter().zip(&fit.fruit).enumerate();
+    own.map(|(i, (specimen, phi))| FruitOutcome {
+        specimen: specimen.clone(),
+        impacts: data.fruit.iter().filter(|fruit| **fruit == i).count(),
+        parameters: varying
+            .iter()
+            .zip(phi)
+            .map(|(v, phi)| v.value(*phi))
+            .collect(),
+    })
+    .collect()
+}
+
+fn findings(
+    campaign: &Campaign,
+    rig: &RigFound,
+    fit: &PopulationFit,
+    specimens: &[String],
+) -> Vec<FindingOutcome> {
+    let mut out = rig.findings.clone();
+    let mut lost: Vec<&str> = campaign
+        .impacts
+        .iter()
+        .map(|i| i.specimen.as_str())
+        .collect();
+    lost.sort_unstable();
+    lost.dedup();
+    lost.retain(|id| !specimens.iter().any(|known| known == id));
+    if !lost.is_empty() {
+        out.push(FindingOutcome {
+            code: "fruit-left-out".to_owned(),
+            message: format!("no usable impact: {}", lost.join(", ")),
+        });
+    }
+    if campaign.fit.laws.len() > 1 {
+        out.push(FindingOutcome {
+            code: "first-law".to_owned(),
+            message: format!(
+                "the campaign fits {} laws; the population is that of the first, {} (choose with --law)",
+                campaign.fit.laws.len(),
+                campaign.fit.laws[0].kind.name()
+            ),
+        });
+    }
+    out.extend(fit.findings.iter().map(|finding| FindingOutcome {
+        code: finding.code().to_owned(),
+        message: finding.to_string(),
+    }));
+    out
+}
