@@ -1,12 +1,12 @@
 //! Residuals of an impact and their derivatives, summed into the normal
 //! equations in one pass over the samples, several samples at a time.
 
-use crate::contact_motion::{ImpactEvent, Seeds, Segment, Sink, follow, scaled_time};
+use crate::contact_motion::{Segment, Sink, follow};
 use crate::model::{Columns, Model};
 use crate::motion::Acceleration;
 use crate::onset_average::{OnsetAverage, OnsetCorrection};
 use crate::samples::{PACK, QUANTITIES, Quantity, SampleGroup};
-use windfall_contact::law::{ContactForce, ContactLaw, EndRule, SMALLEST_DISPLACEMENT};
+use windfall_contact::law::{ContactLaw, EndRule, SMALLEST_DISPLACEMENT};
 use windfall_numerics::least_squares::NormalEquations;
 use windfall_numerics::ode_step::{DENSE_COEFFICIENTS, StepError, dense_at};
 use windfall_numerics::real::{Lanes, Real};
@@ -77,6 +77,7 @@ where
             groups,
             rows,
             end: after,
+            block: Block::ZERO,
             sums: Sums::ZERO,
         };
         follow(&model.event, before.min(0.0), after, &mut reading)?;
@@ -90,7 +91,15 @@ struct Reading<'a, L, const N: usize, const W: usize, const P: usize> {
     groups: &'a [SampleGroup],
     rows: Option<&'a mut Rows>,
     end: f64,
+    block: Block<N, P>,
     sums: Sums<P>,
+}
+
+/// Whether the bodies touch during a piece of the motion.
+#[derive(Clone, Copy, PartialEq)]
+enum Piece {
+    Contact,
+    Flight,
 }
 
 impl<L, const N: usize, const W: usize, const P: usize> Sink<W> for Reading<'_, L, N, W, P>
@@ -99,85 +108,71 @@ where
 {
     #[inline(always)]
     fn contact(&mut self, segment: &Segment<W>) {
-        for (index, group) in self.groups.iter().enumerate() {
-            let rows = self.rows.as_deref_mut().map(|rows| (rows, index));
-            let average = OnsetAverage::new(self.model, group);
-            read_segment(
-                self.model,
-                segment,
-                group,
-                self.end,
-                average.as_ref().map(|a| a as &dyn OnsetCorrection<P>),
-                &mut self.sums,
-                rows,
-            );
-        }
+        self.read(segment, Piece::Contact);
     }
 
     #[inline(always)]
     fn flight(&mut self, segment: &Segment<W>) {
-        let event = &self.model.event;
-        let model = Model {
-            event: ImpactEvent {
-                law: NoContact,
-                motion: event.motion,
-                velocity: event.velocity,
-                end: event.end,
-                seeds: Seeds::NONE,
-                tolerance: event.tolerance,
-            },
-            onset: self.model.onset,
-            offset: self.model.offset,
-            columns: self.model.columns,
-            sampling: self.model.sampling,
-        };
-        for (index, group) in self.groups.iter().enumerate() {
-            let rows = self.rows.as_deref_mut().map(|rows| (rows, index));
-            // Only the flight before touches the onset.
-            let average = OnsetAverage::new(self.model, group).filter(|_| segment.to <= 0.0);
-            read_flight(
-                &model,
-                segment,
+        self.read(segment, Piece::Flight);
+    }
+}
+
+impl<L, const N: usize, const W: usize, const P: usize> Reading<'_, L, N, W, P>
+where
+    L: ContactLaw<N>,
+{
+    #[inline(never)]
+    fn read(&mut self, segment: &Segment<W>, piece: Piece) {
+        pulp::Arch::new().dispatch(ReadPiece {
+            reading: self,
+            segment,
+            piece,
+        });
+    }
+}
+
+/// The samples of one piece; a function of its own, and of several short loops,
+/// because the compiler finds the vectors in short loops only.
+struct ReadPiece<'a, 'b, L, const N: usize, const W: usize, const P: usize> {
+    reading: &'a mut Reading<'b, L, N, W, P>,
+    segment: &'a Segment<W>,
+    piece: Piece,
+}
+
+impl<L, const N: usize, const W: usize, const P: usize> pulp::WithSimd
+    for ReadPiece<'_, '_, L, N, W, P>
+where
+    L: ContactLaw<N>,
+{
+    type Output = ();
+
+    #[inline(always)]
+    fn with_simd<S: pulp::Simd>(self, _simd: S) {
+        let Reading {
+            model,
+            groups,
+            rows,
+            end,
+            block,
+            sums,
+        } = self.reading;
+        for (index, group) in groups.iter().enumerate() {
+            let rows = rows.as_deref_mut().map(|rows| (rows, index));
+            // Only contact and the flight before touch the onset.
+            let average = OnsetAverage::new(model, group)
+                .filter(|_| self.piece == Piece::Contact || self.segment.to <= 0.0);
+            read_segment(
+                model,
+                (self.segment, self.piece),
                 group,
-                self.end,
+                *end,
                 average.as_ref().map(|a| a as &dyn OnsetCorrection<P>),
-                &mut self.sums,
+                block,
+                sums,
                 rows,
             );
         }
     }
-}
-
-/// No force: the samples of a flight, the same for every law and so compiled
-/// once.
-#[derive(Clone, Copy)]
-struct NoContact;
-
-impl ContactLaw<0> for NoContact {
-    #[inline(always)]
-    fn evaluate<R: Real>(&self, _d: R, _v: R, _peak: R) -> ContactForce<R, 0> {
-        let zero = R::splat(0.0);
-        ContactForce {
-            force: zero,
-            by_displacement: zero,
-            by_rate: zero,
-            by_parameter: [],
-            by_peak: zero,
-        }
-    }
-}
-
-#[inline(never)]
-fn read_flight<const W: usize, const P: usize>(
-    model: &Model<NoContact, 0, W, P>,
-    segment: &Segment<W>,
-    group: &SampleGroup,
-    end: f64,
-    average: Option<&dyn OnsetCorrection<P>>,
-    sums: &mut Sums<P>,
-    rows: Option<(&mut Rows, usize)>,
-) {
-    read_segment(model, segment, group, end, average, sums, rows);
 }
 
 /// Running sums, one lane per sample of a pack.
@@ -224,87 +219,347 @@ impl<const P: usize> Sums<P> {
     }
 }
 
-/// A segment's dense output, gathered for packs of samples.
-struct Reader<const P: usize> {
-    start: f64,
-    inverse_width: f64,
-    displacement: [f64; DENSE_COEFFICIENTS],
-    rate: [f64; DENSE_COEFFICIENTS],
-    columns: [[[f64; DENSE_COEFFICIENTS]; 2]; P],
+/// Packs of one block: each formula runs over all of them before the next does.
+const BLOCK: usize = 8;
+
+type PerPack = [Pack; BLOCK];
+
+/// Model of a block of samples and what it is made of.
+struct Block<const N: usize, const P: usize> {
+    sigma: PerPack,
+    rest: PerPack,
+    displacement: PerPack,
+    force: ForceBlock<N>,
+    motion: [Acceleration<Pack>; BLOCK],
+    /// Model of each quantity.
+    values: [PerPack; QUANTITIES],
+    /// Its derivatives by the columns.
+    jacobian: [[PerPack; P]; QUANTITIES],
 }
 
-#[inline(always)]
-fn reader<const W: usize, const P: usize>(segment: &Segment<W>, columns: &Columns<P>) -> Reader<P> {
-    let step = &segment.step;
-    let mut out = Reader {
-        start: step.start,
-        inverse_width: 1.0 / step.width,
-        displacement: step.lane(0, 0),
-        rate: step.lane(1, 0),
-        columns: [[[0.0; DENSE_COEFFICIENTS]; 2]; P],
-    };
-    for (column, lane) in out.columns.iter_mut().zip(columns.lanes) {
-        if lane > 0 {
-            *column = [step.lane(0, lane), step.lane(1, lane)];
+/// Derivatives of the contact force, zero without contact.
+struct ForceBlock<const N: usize> {
+    by_displacement: PerPack,
+    by_rate: PerPack,
+    by_parameter: [PerPack; N],
+    by_peak: PerPack,
+}
+
+impl<const N: usize, const P: usize> Block<N, P> {
+    const ZERO: Self = {
+        let zero = [Pack::ZERO; BLOCK];
+        let still = Acceleration {
+            value: Pack::ZERO,
+            by_displacement: Pack::ZERO,
+            by_rate: Pack::ZERO,
+            by_force: Pack::ZERO,
+        };
+        Self {
+            sigma: zero,
+            rest: zero,
+            displacement: zero,
+            force: ForceBlock {
+                by_displacement: zero,
+                by_rate: zero,
+                by_parameter: [zero; N],
+                by_peak: zero,
+            },
+            motion: [still; BLOCK],
+            values: [zero; QUANTITIES],
+            jacobian: [[zero; P]; QUANTITIES],
         }
-    }
-    out
+    };
 }
 
-/// Model of one pack of samples: values and derivatives by quantity.
-struct PackModel<const P: usize> {
-    values: [Pack; QUANTITIES],
-    jacobian: [[Pack; P]; QUANTITIES],
-}
-
+#[allow(clippy::too_many_arguments)]
 #[inline(always)]
 fn read_segment<L, const N: usize, const W: usize, const P: usize>(
     model: &Model<L, N, W, P>,
-    segment: &Segment<W>,
+    (segment, piece): (&Segment<W>, Piece),
     group: &SampleGroup,
     end: f64,
     average: Option<&dyn OnsetCorrection<P>>,
+    block: &mut Block<N, P>,
     sums: &mut Sums<P>,
     mut rows: Option<(&mut Rows, usize)>,
 ) where
     L: ContactLaw<N>,
 {
     let (first, last) = group.range(model.onset, segment.from, segment.to, end);
-    if first >= last {
-        return;
-    }
-    let reader = reader(segment, &model.columns);
     // The acceleration matters to a recorded one and to the onset's column.
     let accelerated = group.holds(Quantity::Acceleration)
         || model.columns.onset.iter().any(|onset| *onset != 0.0);
-    // A copy that the compiler can keep in registers.
-    let mut running = *sums;
     let mut at = first;
     while at < last {
-        let count = PACK.min(last - at);
-        let times = load(&group.times, at) + -model.onset;
-        // Lanes past the range read the range's end; their weight is zero.
-        let times = times
-            .max(Pack::splat(segment.from))
-            .min(Pack::splat(segment.to));
-        let mut pack = pack_model(model, segment, &reader, times, accelerated);
-        if let Some(average) = average
-            && times.0[0] < average.until()
-        {
-            correct_onset(&mut pack, &times, average, model.event.motion.inverse_mass);
+        let packs = (last - at).div_ceil(PACK).min(BLOCK);
+        place(block, model.onset, segment, &group.times[at..], packs);
+        read_motion(block, &model.columns, segment, packs);
+        if piece == Piece::Contact {
+            read_force(block, model, segment, packs);
+        } else {
+            block.values[Quantity::Force as usize] = [Pack::ZERO; BLOCK];
+        }
+        if accelerated {
+            accelerate(block, model, packs);
+        }
+        read_columns(block, model, (segment, piece), accelerated, packs);
+        if let Some(average) = average {
+            correct_onset(block, model, &group.times[at..], packs, average);
         }
         for q in 0..QUANTITIES {
             if group.weights[q] == 0.0 && group.values[q].is_empty() {
                 continue;
             }
-            let residual = pack.values[q] - load(&group.values[q], at);
-            let weight = masked(group.weights[q], count);
-            running.add(weight, residual, &pack.jacobian[q]);
+            let measured = &group.values[q][at..];
+            sum_up(block, q, measured, group.weights[q], last - at, sums);
             if let Some((rows, index)) = rows.as_mut() {
-                store_rows(rows, *index, q, count, residual, &pack.jacobian[q]);
+                store_rows(
+                    rows,
+                    *index,
+                    q,
+                    measured,
+                    (last - at).min(packs * PACK),
+                    block,
+                );
             }
         }
-        at += PACK;
+        at += packs * PACK;
+    }
+}
+
+/// Where the samples are in the step: σ and 1 − σ.
+#[inline(always)]
+fn place<const N: usize, const W: usize, const P: usize>(
+    block: &mut Block<N, P>,
+    onset: f64,
+    segment: &Segment<W>,
+    times: &[f64],
+    packs: usize,
+) {
+    let sigma = &mut block.sigma[..packs];
+    for (i, sigma) in sigma.iter_mut().enumerate() {
+        // Lanes past the range read the range's end; their weight is zero.
+        *sigma = (load(times, i * PACK) + -onset)
+            .max(Pack::splat(segment.from))
+            .min(Pack::splat(segment.to));
+    }
+    let mut power = segment.power;
+    while power > 1 {
+        for sigma in sigma.iter_mut() {
+            *sigma = sigma.sqrt();
+        }
+        power /= 2;
+    }
+    let (start, inverse_width) = (segment.step.start, 1.0 / segment.step.width);
+    for (sigma, rest) in sigma.iter_mut().zip(&mut block.rest) {
+        *sigma = (*sigma + -start) * inverse_width;
+        *rest = -*sigma + 1.0;
+    }
+}
+
+/// Dense output of one lane for all packs.
+#[inline(always)]
+fn dense(
+    coefficients: [f64; DENSE_COEFFICIENTS],
+    sigma: &PerPack,
+    rest: &PerPack,
+    out: &mut PerPack,
+    packs: usize,
+) {
+    for i in 0..packs.min(BLOCK) {
+        out[i] = dense_at(&coefficients, sigma[i], rest[i]);
+    }
+}
+
+/// Displacement and rate, and their derivatives by the columns of the motion.
+#[inline(always)]
+fn read_motion<const N: usize, const W: usize, const P: usize>(
+    block: &mut Block<N, P>,
+    columns: &Columns<P>,
+    segment: &Segment<W>,
+    packs: usize,
+) {
+    let step = &segment.step;
+    let (sigma, rest) = (&block.sigma, &block.rest);
+    dense(step.lane(0, 0), sigma, rest, &mut block.displacement, packs);
+    dense(step.lane(1, 0), sigma, rest, &mut block.values[1], packs);
+    for (c, &lane) in columns.lanes.iter().enumerate() {
+        for component in 0..2 {
+            let out = &mut block.jacobian[component][c];
+            if lane > 0 {
+                dense(step.lane(component, lane), sigma, rest, out, packs);
+            } else {
+                *out = [Pack::ZERO; BLOCK];
+            }
+        }
+    }
+}
+
+/// The force, which is repulsive or nothing and nothing without contact, and
+/// its derivatives.
+#[inline(always)]
+fn read_force<L, const N: usize, const W: usize, const P: usize>(
+    block: &mut Block<N, P>,
+    model: &Model<L, N, W, P>,
+    segment: &Segment<W>,
+    packs: usize,
+) where
+    L: ContactLaw<N>,
+{
+    let event = &model.event;
+    let (one, zero) = (Pack::splat(1.0), Pack::ZERO);
+    for i in 0..packs.min(BLOCK) {
+        let (x, v) = (block.displacement[i], block.values[1][i]);
+        let d = x.max(Pack::splat(SMALLEST_DISPLACEMENT));
+        let law = event.law.evaluate(d, v, Pack::splat(segment.peak));
+        // Factors instead of choices: the compiler turns choices into branches.
+        let touching = x.select(one, zero);
+        let on = match event.end {
+            EndRule::ForceZero => touching * law.force.select(one, zero),
+            EndRule::GapZero => touching,
+        };
+        block.values[2][i] = law.force * on;
+        let force = &mut block.force;
+        force.by_displacement[i] = law.by_displacement * on;
+        force.by_rate[i] = law.by_rate * on;
+        for (out, by) in force.by_parameter.iter_mut().zip(law.by_parameter) {
+            out[i] = by * on;
+        }
+        force.by_peak[i] = law.by_peak * on;
+    }
+}
+
+/// Acceleration and its derivatives.
+#[inline(always)]
+fn accelerate<L, const N: usize, const W: usize, const P: usize>(
+    block: &mut Block<N, P>,
+    model: &Model<L, N, W, P>,
+    packs: usize,
+) {
+    for i in 0..packs.min(BLOCK) {
+        let (x, v) = (block.displacement[i], block.values[1][i]);
+        let motion = model.event.motion.acceleration(x, v, block.values[2][i]);
+        block.values[3][i] = motion.value;
+        block.motion[i] = motion;
+    }
+}
+
+/// The columns of the Jacobian, from those of displacement and rate.
+#[inline(always)]
+fn read_columns<L, const N: usize, const W: usize, const P: usize>(
+    block: &mut Block<N, P>,
+    model: &Model<L, N, W, P>,
+    (segment, piece): (&Segment<W>, Piece),
+    accelerated: bool,
+    packs: usize,
+) where
+    L: ContactLaw<N>,
+{
+    let packs = packs.min(BLOCK);
+    let Block {
+        displacement,
+        force,
+        motion,
+        values,
+        jacobian: [dx, dv, df, da],
+        ..
+    } = block;
+    for c in 0..P {
+        let (dx, dv, df) = (&mut dx[c], &mut dv[c], &mut df[c]);
+        let onset = model.columns.onset[c];
+        if onset != 0.0 {
+            for i in 0..packs {
+                dx[i] += values[1][i] * -onset;
+                dv[i] += motion[i].value * -onset;
+            }
+        }
+        if piece == Piece::Contact {
+            for i in 0..packs {
+                df[i] = force.by_displacement[i] * dx[i] + force.by_rate[i] * dv[i];
+            }
+            add_direct(df, force, model, segment, c, packs);
+        } else {
+            *df = [Pack::ZERO; BLOCK];
+        }
+        if accelerated {
+            let da = &mut da[c];
+            for i in 0..packs {
+                let m = &motion[i];
+                da[i] = m.by_displacement * dx[i] + m.by_rate * dv[i] + m.by_force * df[i];
+            }
+        }
+        let offset = model.columns.offset[c];
+        if offset != 0.0 {
+            for i in 0..packs {
+                dx[i] = dx[i] + offset;
+            }
+        }
+    }
+    for i in 0..packs {
+        values[0][i] = displacement[i] + model.offset;
+    }
+}
+
+/// The direct part of column `c` of the force: through the law's parameters.
+#[inline(always)]
+fn add_direct<L, const N: usize, const W: usize, const P: usize>(
+    df: &mut PerPack,
+    force: &ForceBlock<N>,
+    model: &Model<L, N, W, P>,
+    segment: &Segment<W>,
+    c: usize,
+    packs: usize,
+) where
+    L: ContactLaw<N>,
+{
+    let event = &model.event;
+    let lane = model.columns.lanes[c];
+    if lane == 0 {
+        return;
+    }
+    let mut add = |by: &PerPack, factor: f64| {
+        if factor != 0.0 {
+            for i in 0..packs {
+                df[i] += by[i] * factor;
+            }
+        }
+    };
+    for i in 0..N {
+        add(&force.by_parameter[i], event.seeds.parameters[i].0[lane]);
+    }
+    if event.law.history() {
+        add(&force.by_peak, segment.peak_lanes.0[lane]);
+    }
+}
+
+/// Adds the rows of quantity `q`; `left` samples are left in the range.
+#[inline(always)]
+fn sum_up<const N: usize, const P: usize>(
+    block: &Block<N, P>,
+    q: usize,
+    measured: &[f64],
+    weight: f64,
+    left: usize,
+    sums: &mut Sums<P>,
+) {
+    // A copy that the compiler can keep in registers.
+    let mut running = *sums;
+    let row = |i: usize| {
+        let residual = block.values[q][i] - load(measured, i * PACK);
+        let mut jacobian = [Pack::ZERO; P];
+        for (column, from) in jacobian.iter_mut().zip(&block.jacobian[q]) {
+            *column = from[i];
+        }
+        (residual, jacobian)
+    };
+    let full = (left / PACK).min(BLOCK);
+    for i in 0..full {
+        let (residual, jacobian) = row(i);
+        running.add(Pack::splat(weight), residual, &jacobian);
+    }
+    if full < BLOCK && left > full * PACK {
+        let (residual, jacobian) = row(full);
+        running.add(masked(weight, left - full * PACK), residual, &jacobian);
     }
     *sums = running;
 }
@@ -328,128 +583,56 @@ fn masked(weight: f64, count: usize) -> Pack {
     Lanes(out)
 }
 
-#[inline(always)]
-fn pack_model<L, const N: usize, const W: usize, const P: usize>(
-    model: &Model<L, N, W, P>,
-    segment: &Segment<W>,
-    reader: &Reader<P>,
-    times: Pack,
-    accelerated: bool,
-) -> PackModel<P>
-where
-    L: ContactLaw<N>,
-{
-    let event = &model.event;
-    let sigma = (scaled_time(times, segment.power) + -reader.start) * reader.inverse_width;
-    let rest = -sigma + 1.0;
-    let x = dense_at(&reader.displacement, sigma, rest);
-    let v = dense_at(&reader.rate, sigma, rest);
-
-    // The force is repulsive or nothing, and nothing without contact.
-    let zero = Pack::ZERO;
-    let touching = x.select(Pack::splat(1.0), zero);
-    let law = event.law.evaluate(
-        x.max(Pack::splat(SMALLEST_DISPLACEMENT)),
-        v,
-        Pack::splat(segment.peak),
-    );
-    let on = match event.end {
-        EndRule::ForceZero => law.force.select(touching, zero),
-        EndRule::GapZero => touching,
-    };
-    let force = on.select(law.force, zero);
-    let by_displacement = on.select(law.by_displacement, zero);
-    let by_rate = on.select(law.by_rate, zero);
-    let motion: Acceleration<Pack> = if accelerated {
-        event.motion.acceleration(x, v, force)
-    } else {
-        Acceleration {
-            value: zero,
-            by_displacement: zero,
-            by_rate: zero,
-            by_force: zero,
-        }
-    };
-
-    let mut jacobian = [[Pack::ZERO; P]; QUANTITIES];
-    for c in 0..P {
-        let (mut dx, mut dv) = (zero, zero);
-        let lane = model.columns.lanes[c];
-        let mut direct = zero;
-        if lane > 0 {
-            let [column_x, column_v] = &reader.columns[c];
-            dx = dense_at(column_x, sigma, rest);
-            dv = dense_at(column_v, sigma, rest);
-            for i in 0..N {
-                let seed = event.seeds.parameters[i].0[lane];
-                if seed != 0.0 {
-                    direct += law.by_parameter[i] * seed;
-                }
-            }
-            if event.law.history() {
-                direct += law.by_peak * segment.peak_lanes.0[lane];
-            }
-        }
-        if model.columns.onset[c] != 0.0 {
-            dx += v * -model.columns.onset[c];
-            dv += motion.value * -model.columns.onset[c];
-        }
-        let df = by_displacement * dx + by_rate * dv + on.select(direct, zero);
-        jacobian[0][c] = dx + model.columns.offset[c];
-        jacobian[1][c] = dv;
-        jacobian[2][c] = df;
-        if accelerated {
-            jacobian[3][c] =
-                motion.by_displacement * dx + motion.by_rate * dv + motion.by_force * df;
-        }
-    }
-    PackModel {
-        values: [x + model.offset, v, force, motion.value],
-        jacobian,
-    }
-}
-
-/// Replaces the force at an instant by its mean, in the lanes near first touch.
+/// Replaces the force at an instant by its mean, in the samples near first touch.
 #[cold]
 #[inline(never)]
-fn correct_onset<const P: usize>(
-    pack: &mut PackModel<P>,
-    times: &Pack,
+fn correct_onset<L, const N: usize, const W: usize, const P: usize>(
+    block: &mut Block<N, P>,
+    model: &Model<L, N, W, P>,
+    times: &[f64],
+    packs: usize,
     average: &dyn OnsetCorrection<P>,
-    inverse_mass: f64,
 ) {
     let (force, acceleration) = (Quantity::Force as usize, Quantity::Acceleration as usize);
-    for lane in 0..PACK {
-        let Some((change, by_column)) = average.at(times.0[lane]) else {
+    let inverse_mass = model.event.motion.inverse_mass;
+    for (sample, time) in times[..packs * PACK].iter().enumerate() {
+        let time = time - model.onset;
+        if time >= average.until() {
+            break;
+        }
+        let Some((change, by_column)) = average.at(time) else {
             continue;
         };
-        pack.values[force].0[lane] += change;
-        pack.values[acceleration].0[lane] -= change * inverse_mass;
+        let (pack, lane) = (sample / PACK, sample % PACK);
+        block.values[force][pack].0[lane] += change;
+        block.values[acceleration][pack].0[lane] -= change * inverse_mass;
         for c in 0..P {
-            pack.jacobian[force][c].0[lane] += by_column[c];
-            pack.jacobian[acceleration][c].0[lane] -= by_column[c] * inverse_mass;
+            block.jacobian[force][c][pack].0[lane] += by_column[c];
+            block.jacobian[acceleration][c][pack].0[lane] -= by_column[c] * inverse_mass;
         }
     }
 }
 
 #[cold]
 #[inline(never)]
-fn store_rows<const P: usize>(
+fn store_rows<const N: usize, const P: usize>(
     rows: &mut Rows,
     group: usize,
     quantity: usize,
+    measured: &[f64],
     count: usize,
-    residual: Pack,
-    jacobian: &[Pack; P],
+    block: &Block<N, P>,
 ) {
     while rows.residuals.len() <= group {
         rows.residuals.push(Default::default());
         rows.jacobian.push(Default::default());
     }
-    for lane in 0..count {
-        rows.residuals[group][quantity].push(residual.0[lane]);
-        for column in jacobian {
-            rows.jacobian[group][quantity].push(column.0[lane]);
+    for sample in 0..count {
+        let (pack, lane) = (sample / PACK, sample % PACK);
+        let model = block.values[quantity][pack].0[lane];
+        rows.residuals[group][quantity].push(model - measured[sample]);
+        for column in &block.jacobian[quantity] {
+            rows.jacobian[group][quantity].push(column[pack].0[lane]);
         }
     }
 }

@@ -188,7 +188,8 @@ pub fn step<const D: usize, const W: usize>(
         }
         let to = stages(system, s, &from, width, &mut k, 1..=STAGES);
         let error = error_norm(&k, &from, &to, width, tolerance);
-        let factor = SAFETY * error.powf(-0.125);
+        // The error's eighth root.
+        let factor = SAFETY / error.sqrt().sqrt().sqrt();
         if error <= 1.0 {
             let terms = dense_terms(system, s, &from, &to, width, &mut k);
             let growth = if rejected { 1.0 } else { GROWTH };
