@@ -44,6 +44,28 @@ where
         model,
         groups,
         rows,
+        stride: 1,
+    })
+}
+
+/// [`evaluate`] with a share of the samples, for the way to the minimum: every
+/// `stride`-th pack of them, the same ones wherever the pieces of the motion end.
+///
+/// # Errors
+/// [`StepError`] when the motion cannot be integrated.
+pub(crate) fn evaluate_some<L, const N: usize, const W: usize, const P: usize>(
+    model: &Model<L, N, W, P>,
+    groups: &[SampleGroup],
+    stride: usize,
+) -> Result<NormalEquations<P>, StepError>
+where
+    L: ContactLaw<N>,
+{
+    pulp::Arch::new().dispatch(Pass {
+        model,
+        groups,
+        rows: None,
+        stride,
     })
 }
 
@@ -52,6 +74,7 @@ struct Pass<'a, L, const N: usize, const W: usize, const P: usize> {
     model: &'a Model<L, N, W, P>,
     groups: &'a [SampleGroup],
     rows: Option<&'a mut Rows>,
+    stride: usize,
 }
 
 impl<L, const N: usize, const W: usize, const P: usize> pulp::WithSimd for Pass<'_, L, N, W, P>
@@ -66,6 +89,7 @@ where
             model,
             groups,
             rows,
+            stride,
         } = self;
         let first = groups.iter().filter_map(|g| g.times().first()).copied();
         let last = groups.iter().filter_map(|g| g.times().last()).copied();
@@ -77,6 +101,7 @@ where
             groups,
             rows,
             end: after,
+            stride,
             block: Block::ZERO,
             sums: Sums::ZERO,
         };
@@ -91,6 +116,7 @@ struct Reading<'a, L, const N: usize, const W: usize, const P: usize> {
     groups: &'a [SampleGroup],
     rows: Option<&'a mut Rows>,
     end: f64,
+    stride: usize,
     block: Block<N, P>,
     sums: Sums<P>,
 }
@@ -153,6 +179,7 @@ where
             groups,
             rows,
             end,
+            stride,
             block,
             sums,
         } = self.reading;
@@ -164,7 +191,7 @@ where
             read_segment(
                 model,
                 (self.segment, self.piece),
-                group,
+                (group, *stride),
                 *end,
                 average.as_ref().map(|a| a as &dyn OnsetCorrection<P>),
                 block,
@@ -219,13 +246,19 @@ impl<const P: usize> Sums<P> {
     }
 }
 
-/// Packs of one block: each formula runs over all of them before the next does.
+/// Packs of one block: each formula runs over all of them before the next does,
+/// always over the whole block, as a loop without a count costs less than what
+/// it evaluates in vain.
 const BLOCK: usize = 8;
 
 type PerPack = [Pack; BLOCK];
 
 /// Model of a block of samples and what it is made of.
 struct Block<const N: usize, const P: usize> {
+    /// Index of the first sample of each pack.
+    starts: [usize; BLOCK],
+    /// Samples of each pack: [`PACK`] but where the range begins or ends.
+    counts: [usize; BLOCK],
     sigma: PerPack,
     rest: PerPack,
     displacement: PerPack,
@@ -255,6 +288,8 @@ impl<const N: usize, const P: usize> Block<N, P> {
             by_force: Pack::ZERO,
         };
         Self {
+            starts: [0; BLOCK],
+            counts: [0; BLOCK],
             sigma: zero,
             rest: zero,
             displacement: zero,
@@ -276,7 +311,7 @@ impl<const N: usize, const P: usize> Block<N, P> {
 fn read_segment<L, const N: usize, const W: usize, const P: usize>(
     model: &Model<L, N, W, P>,
     (segment, piece): (&Segment<W>, Piece),
-    group: &SampleGroup,
+    (group, stride): (&SampleGroup, usize),
     end: f64,
     average: Option<&dyn OnsetCorrection<P>>,
     block: &mut Block<N, P>,
@@ -289,42 +324,72 @@ fn read_segment<L, const N: usize, const W: usize, const P: usize>(
     // The acceleration matters to a recorded one and to the onset's column.
     let accelerated = group.holds(Quantity::Acceleration)
         || model.columns.onset.iter().any(|onset| *onset != 0.0);
-    let mut at = first;
+    let mut at = first_sample(first, stride);
     while at < last {
-        let packs = (last - at).div_ceil(PACK).min(BLOCK);
-        place(block, model.onset, segment, &group.times[at..], packs);
-        read_motion(block, &model.columns, segment, packs);
+        at = next_packs(block, at, last, stride);
+        place(block, model.onset, segment, &group.times);
+        read_motion(block, &model.columns, segment);
         if piece == Piece::Contact {
-            read_force(block, model, segment, packs);
+            read_force(block, model, segment);
         } else {
             block.values[Quantity::Force as usize] = [Pack::ZERO; BLOCK];
         }
         if accelerated {
-            accelerate(block, model, packs);
+            accelerate(block, model);
         }
-        read_columns(block, model, (segment, piece), accelerated, packs);
+        read_columns(block, model, (segment, piece), accelerated);
         if let Some(average) = average {
-            correct_onset(block, model, &group.times[at..], packs, average);
+            correct_onset(block, model, &group.times, average);
         }
         for q in 0..QUANTITIES {
             if group.weights[q] == 0.0 && group.values[q].is_empty() {
                 continue;
             }
-            let measured = &group.values[q][at..];
-            sum_up(block, q, measured, group.weights[q], last - at, sums);
+            sum_up(block, q, &group.values[q], group.weights[q], sums);
             if let Some((rows, index)) = rows.as_mut() {
-                store_rows(
-                    rows,
-                    *index,
-                    q,
-                    measured,
-                    (last - at).min(packs * PACK),
-                    block,
-                );
+                store_rows(rows, *index, q, &group.values[q], block);
             }
         }
-        at += packs * PACK;
     }
+}
+
+/// The first sample from `at` on that belongs to the share.
+#[inline(always)]
+fn first_sample(at: usize, stride: usize) -> usize {
+    if (at / PACK).is_multiple_of(stride) {
+        at
+    } else {
+        at.next_multiple_of(stride * PACK)
+    }
+}
+
+/// The packs of the next block from sample `at` on, and where the block after it
+/// begins.
+#[inline(always)]
+fn next_packs<const N: usize, const P: usize>(
+    block: &mut Block<N, P>,
+    at: usize,
+    last: usize,
+    stride: usize,
+) -> usize {
+    let mut at = at;
+    for i in 0..BLOCK {
+        let mut end = at + PACK;
+        if stride > 1 {
+            at = first_sample(at, stride);
+            end = (at / PACK + 1) * PACK;
+        }
+        if at >= last {
+            // What is left of the block repeats its first pack, without weight.
+            block.starts.copy_within(0..1, i);
+            block.counts[i] = 0;
+            continue;
+        }
+        block.starts[i] = at;
+        block.counts[i] = end.min(last) - at;
+        at = end;
+    }
+    at
 }
 
 /// Where the samples are in the step: σ and 1 − σ.
@@ -334,12 +399,11 @@ fn place<const N: usize, const W: usize, const P: usize>(
     onset: f64,
     segment: &Segment<W>,
     times: &[f64],
-    packs: usize,
 ) {
-    let sigma = &mut block.sigma[..packs];
+    let sigma = &mut block.sigma;
     for (i, sigma) in sigma.iter_mut().enumerate() {
         // Lanes past the range read the range's end; their weight is zero.
-        *sigma = (load(times, i * PACK) + -onset)
+        *sigma = (load(times, block.starts[i]) + -onset)
             .max(Pack::splat(segment.from))
             .min(Pack::splat(segment.to));
     }
@@ -364,9 +428,8 @@ fn dense(
     sigma: &PerPack,
     rest: &PerPack,
     out: &mut PerPack,
-    packs: usize,
 ) {
-    for i in 0..packs.min(BLOCK) {
+    for i in 0..BLOCK {
         out[i] = dense_at(&coefficients, sigma[i], rest[i]);
     }
 }
@@ -377,17 +440,16 @@ fn read_motion<const N: usize, const W: usize, const P: usize>(
     block: &mut Block<N, P>,
     columns: &Columns<P>,
     segment: &Segment<W>,
-    packs: usize,
 ) {
     let step = &segment.step;
     let (sigma, rest) = (&block.sigma, &block.rest);
-    dense(step.lane(0, 0), sigma, rest, &mut block.displacement, packs);
-    dense(step.lane(1, 0), sigma, rest, &mut block.values[1], packs);
+    dense(step.lane(0, 0), sigma, rest, &mut block.displacement);
+    dense(step.lane(1, 0), sigma, rest, &mut block.values[1]);
     for (c, &lane) in columns.lanes.iter().enumerate() {
         for component in 0..2 {
             let out = &mut block.jacobian[component][c];
             if lane > 0 {
-                dense(step.lane(component, lane), sigma, rest, out, packs);
+                dense(step.lane(component, lane), sigma, rest, out);
             } else {
                 *out = [Pack::ZERO; BLOCK];
             }
@@ -402,13 +464,12 @@ fn read_force<L, const N: usize, const W: usize, const P: usize>(
     block: &mut Block<N, P>,
     model: &Model<L, N, W, P>,
     segment: &Segment<W>,
-    packs: usize,
 ) where
     L: ContactLaw<N>,
 {
     let event = &model.event;
     let (one, zero) = (Pack::splat(1.0), Pack::ZERO);
-    for i in 0..packs.min(BLOCK) {
+    for i in 0..BLOCK {
         let (x, v) = (block.displacement[i], block.values[1][i]);
         let d = x.max(Pack::splat(SMALLEST_DISPLACEMENT));
         let law = event.law.evaluate(d, v, Pack::splat(segment.peak));
@@ -434,9 +495,8 @@ fn read_force<L, const N: usize, const W: usize, const P: usize>(
 fn accelerate<L, const N: usize, const W: usize, const P: usize>(
     block: &mut Block<N, P>,
     model: &Model<L, N, W, P>,
-    packs: usize,
 ) {
-    for i in 0..packs.min(BLOCK) {
+    for i in 0..BLOCK {
         let (x, v) = (block.displacement[i], block.values[1][i]);
         let motion = model.event.motion.acceleration(x, v, block.values[2][i]);
         block.values[3][i] = motion.value;
@@ -451,11 +511,9 @@ fn read_columns<L, const N: usize, const W: usize, const P: usize>(
     model: &Model<L, N, W, P>,
     (segment, piece): (&Segment<W>, Piece),
     accelerated: bool,
-    packs: usize,
 ) where
     L: ContactLaw<N>,
 {
-    let packs = packs.min(BLOCK);
     let Block {
         displacement,
         force,
@@ -468,34 +526,34 @@ fn read_columns<L, const N: usize, const W: usize, const P: usize>(
         let (dx, dv, df) = (&mut dx[c], &mut dv[c], &mut df[c]);
         let onset = model.columns.onset[c];
         if onset != 0.0 {
-            for i in 0..packs {
+            for i in 0..BLOCK {
                 dx[i] += values[1][i] * -onset;
                 dv[i] += motion[i].value * -onset;
             }
         }
         if piece == Piece::Contact {
-            for i in 0..packs {
+            for i in 0..BLOCK {
                 df[i] = force.by_displacement[i] * dx[i] + force.by_rate[i] * dv[i];
             }
-            add_direct(df, force, model, segment, c, packs);
+            add_direct(df, force, model, segment, c);
         } else {
             *df = [Pack::ZERO; BLOCK];
         }
         if accelerated {
             let da = &mut da[c];
-            for i in 0..packs {
+            for i in 0..BLOCK {
                 let m = &motion[i];
                 da[i] = m.by_displacement * dx[i] + m.by_rate * dv[i] + m.by_force * df[i];
             }
         }
         let offset = model.columns.offset[c];
         if offset != 0.0 {
-            for i in 0..packs {
+            for i in 0..BLOCK {
                 dx[i] = dx[i] + offset;
             }
         }
     }
-    for i in 0..packs {
+    for i in 0..BLOCK {
         values[0][i] = displacement[i] + model.offset;
     }
 }
@@ -508,7 +566,6 @@ fn add_direct<L, const N: usize, const W: usize, const P: usize>(
     model: &Model<L, N, W, P>,
     segment: &Segment<W>,
     c: usize,
-    packs: usize,
 ) where
     L: ContactLaw<N>,
 {
@@ -519,7 +576,7 @@ fn add_direct<L, const N: usize, const W: usize, const P: usize>(
     }
     let mut add = |by: &PerPack, factor: f64| {
         if factor != 0.0 {
-            for i in 0..packs {
+            for i in 0..BLOCK {
                 df[i] += by[i] * factor;
             }
         }
@@ -532,34 +589,24 @@ fn add_direct<L, const N: usize, const W: usize, const P: usize>(
     }
 }
 
-/// Adds the rows of quantity `q`; `left` samples are left in the range.
+/// Adds the rows of quantity `q`.
 #[inline(always)]
 fn sum_up<const N: usize, const P: usize>(
     block: &Block<N, P>,
     q: usize,
     measured: &[f64],
     weight: f64,
-    left: usize,
     sums: &mut Sums<P>,
 ) {
     // A copy that the compiler can keep in registers.
     let mut running = *sums;
-    let row = |i: usize| {
-        let residual = block.values[q][i] - load(measured, i * PACK);
+    for i in 0..BLOCK {
+        let residual = block.values[q][i] - load(measured, block.starts[i]);
         let mut jacobian = [Pack::ZERO; P];
         for (column, from) in jacobian.iter_mut().zip(&block.jacobian[q]) {
             *column = from[i];
         }
-        (residual, jacobian)
-    };
-    let full = (left / PACK).min(BLOCK);
-    for i in 0..full {
-        let (residual, jacobian) = row(i);
-        running.add(Pack::splat(weight), residual, &jacobian);
-    }
-    if full < BLOCK && left > full * PACK {
-        let (residual, jacobian) = row(full);
-        running.add(masked(weight, left - full * PACK), residual, &jacobian);
+        running.add(masked(weight, block.counts[i]), residual, &jacobian);
     }
     *sums = running;
 }
@@ -590,20 +637,20 @@ fn correct_onset<L, const N: usize, const W: usize, const P: usize>(
     block: &mut Block<N, P>,
     model: &Model<L, N, W, P>,
     times: &[f64],
-    packs: usize,
     average: &dyn OnsetCorrection<P>,
 ) {
     let (force, acceleration) = (Quantity::Force as usize, Quantity::Acceleration as usize);
     let inverse_mass = model.event.motion.inverse_mass;
-    for (sample, time) in times[..packs * PACK].iter().enumerate() {
-        let time = time - model.onset;
+    let starts = block.starts;
+    let samples = (0..BLOCK).flat_map(|pack| (0..PACK).map(move |lane| (pack, lane)));
+    for (pack, lane) in samples {
+        let time = times[starts[pack] + lane] - model.onset;
         if time >= average.until() {
             break;
         }
         let Some((change, by_column)) = average.at(time) else {
             continue;
         };
-        let (pack, lane) = (sample / PACK, sample % PACK);
         block.values[force][pack].0[lane] += change;
         block.values[acceleration][pack].0[lane] -= change * inverse_mass;
         for c in 0..P {
@@ -620,17 +667,18 @@ fn store_rows<const N: usize, const P: usize>(
     group: usize,
     quantity: usize,
     measured: &[f64],
-    count: usize,
     block: &Block<N, P>,
 ) {
     while rows.residuals.len() <= group {
         rows.residuals.push(Default::default());
         rows.jacobian.push(Default::default());
     }
-    for sample in 0..count {
-        let (pack, lane) = (sample / PACK, sample % PACK);
+    let counts = block.counts;
+    let samples = (0..BLOCK).flat_map(|pack| (0..counts[pack]).map(move |lane| (pack, lane)));
+    for (pack, lane) in samples {
         let model = block.values[quantity][pack].0[lane];
-        rows.residuals[group][quantity].push(model - measured[sample]);
+        let measured = measured[block.starts[pack] + lane];
+        rows.residuals[group][quantity].push(model - measured);
         for column in &block.jacobian[quantity] {
             rows.jacobian[group][quantity].push(column[pack].0[lane]);
         }

@@ -41,6 +41,17 @@ pub struct Tolerance<const D: usize> {
     pub absolute: [f64; D],
 }
 
+impl<const D: usize> Tolerance<D> {
+    /// The same tolerance, `factor` times as large.
+    #[must_use]
+    pub fn loosened(&self, factor: f64) -> Self {
+        Self {
+            relative: self.relative * factor,
+            absolute: self.absolute.map(|a| a * factor),
+        }
+    }
+}
+
 /// An accepted step: the solution over `[start, start + width]`.
 ///
 /// ```text
