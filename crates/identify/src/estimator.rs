@@ -195,6 +195,44 @@ impl<'a, L: FreeLaw<N>, const N: usize, const W: usize, const P: usize> Estimato
         }
     }
 
+    /// The free parameters.
+    #[must_use]
+    pub fn free(&self) -> &'a [FreeParameter] {
+        self.free
+    }
+
+    /// The samples.
+    #[must_use]
+    pub fn groups(&self) -> &'a [SampleGroup] {
+        self.setting.groups
+    }
+
+    /// The same problem with other samples.
+    #[must_use]
+    pub fn with_groups<'b>(&'b self, groups: &'b [SampleGroup]) -> Estimator<'b, L, N, W, P> {
+        Estimator {
+            setting: Setting {
+                groups,
+                ..self.setting
+            },
+            free: self.free,
+            base: self.base,
+            law: self.law,
+        }
+    }
+
+    /// Bounds of the coordinates.
+    #[must_use]
+    pub fn bounds(&self) -> Bounds<P> {
+        let mut bounds = Bounds::NONE;
+        for (i, parameter) in self.free.iter().enumerate() {
+            let coordinate = parameter.coordinate;
+            bounds.lower[i] = coordinate.of(parameter.lower);
+            bounds.upper[i] = coordinate.of(parameter.upper);
+        }
+        bounds
+    }
+
     /// Values of everything at coordinates `u`.
     #[must_use]
     pub fn values(&self, u: &[f64; P]) -> Values<N> {
@@ -312,16 +350,6 @@ impl<'a, L: FreeLaw<N>, const N: usize, const W: usize, const P: usize> Estimato
         let found = minimise(&mut approach, start, &self.bounds(), &options);
         let inside = found.at_bound.iter().all(|side| *side == 0);
         (found.stop == Stop::Converged && inside).then_some(found)
-    }
-
-    fn bounds(&self) -> Bounds<P> {
-        let mut bounds = Bounds::NONE;
-        for (i, parameter) in self.free.iter().enumerate() {
-            let coordinate = parameter.coordinate;
-            bounds.lower[i] = coordinate.of(parameter.lower);
-            bounds.upper[i] = coordinate.of(parameter.upper);
-        }
-        bounds
     }
 
     /// Minimum of the cost from coordinates `start`.

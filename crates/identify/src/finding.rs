@@ -99,6 +99,67 @@ pub enum Finding {
         /// Its standard uncertainty; kg.
         sd: f64,
     },
+    /// A counted displacement was taken at the changes of its count.
+    #[error("displacement is counted in steps of {}: it took part with the {edges} instants at which its count changes", Shown(*quantum, "m"))]
+    CountedDisplacement {
+        /// Changes of the count.
+        edges: usize,
+        /// Length of a count; m.
+        quantum: f64,
+    },
+    /// A rate that was computed from the displacement says nothing beside it.
+    #[error("rate was computed from the displacement and took no part of its own")]
+    ComputedRate,
+    /// A profile has no end on one side.
+    #[error(
+        "the {side} end of the interval of {parameter} is open: the data do not exclude any value on that side that was looked at"
+    )]
+    OpenInterval {
+        /// Name of the parameter.
+        parameter: String,
+        /// "lower" or "upper".
+        side: &'static str,
+    },
+    /// Replicates of a bootstrap could not be fitted.
+    #[error(
+        "{failed} of {replicates} resampled recordings could not be fitted and are left out: the intervals may be too narrow"
+    )]
+    FailedReplicates {
+        /// How many.
+        failed: usize,
+        /// Of how many.
+        replicates: usize,
+    },
+    /// The sampler broke down in places.
+    #[error(
+        "the sampler diverged at {divergences} of {draws} draws: the posterior has corners that it does not reach; do not rely on its intervals, compare with --intervals profile"
+    )]
+    Divergences {
+        /// How often.
+        divergences: usize,
+        /// Draws of all chains.
+        draws: usize,
+    },
+    /// The chains of a posterior do not agree.
+    #[error(
+        "the chains for {parameter} do not agree (R-hat {r_hat:.3}, {draws:.0} independent draws; 1.01 and 400 are asked for): more draws are needed, or the data do not tell it"
+    )]
+    NotMixed {
+        /// Name of the parameter.
+        parameter: String,
+        /// Spread of all chains over that within chains; 1.
+        r_hat: f64,
+        /// Independent draws.
+        draws: f64,
+    },
+    /// The wanted intervals could not be made.
+    #[error(
+        "{method} intervals could not be made (no convergence, or parameters that cannot be told apart): those shown are estimate ± t standard deviations"
+    )]
+    IntervalsAsymptotic {
+        /// The method.
+        method: &'static str,
+    },
     /// A wanted quantity is missing.
     #[error("{quantity} is not in the recording and took no part in the fit")]
     MissingQuantity {
@@ -132,6 +193,13 @@ impl Finding {
             Self::Misfit { .. } => "misfit",
             Self::UncertainMass { .. } => "uncertain-mass",
             Self::MassLeftOut { .. } => "mass-left-out",
+            Self::CountedDisplacement { .. } => "counted-displacement",
+            Self::ComputedRate => "computed-rate",
+            Self::OpenInterval { .. } => "open-interval",
+            Self::FailedReplicates { .. } => "failed-replicates",
+            Self::Divergences { .. } => "divergences",
+            Self::NotMixed { .. } => "not-mixed",
+            Self::IntervalsAsymptotic { .. } => "intervals-asymptotic",
             Self::MissingQuantity { .. } => "missing-quantity",
             Self::NominalRestitution { .. } => "nominal-restitution",
         }

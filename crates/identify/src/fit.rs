@@ -35,7 +35,7 @@ pub fn fit_impact(
     options: &FitOptions,
 ) -> Result<Fit, Error> {
     rig.check()?;
-    let plan = plan(impact, rig, problem, options)?;
+    let mut plan = plan(impact, rig, problem, options)?;
     let solution = plan.solve(rig)?;
     let mut fit = plan.report(&solution, rig)?;
     if let Rig::Carriage(carriage) = rig

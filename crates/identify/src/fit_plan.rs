@@ -4,18 +4,20 @@
 use crate::error::Error;
 use crate::estimator::{Coordinate, FreeParameter, Setting, Target};
 use crate::finding::Finding;
+use crate::interval::IntervalMethod;
 use crate::model::Sampling;
 use crate::motion::Motion;
-use crate::problem::{FitOptions, IMPACT_VELOCITY, LawProblem, Treatment, Weighting};
+use crate::noise_plan::{NoisePlan, noise_plan, series};
+use crate::problem::{FitOptions, IMPACT_VELOCITY, LawProblem, NoiseModel, Treatment, Weighting};
 use crate::regression::{RegressionEstimate, regress};
 use crate::rig::Rig;
-use crate::samples::{QUANTITIES, Quantity, SampleGroup};
-use crate::simulate::check_positive;
-use crate::solve::{Limits, Solution, solve};
+use crate::samples::{Quantity, SampleGroup};
+use crate::simulate::{check_positive, trajectory};
+use crate::solve::{IntervalPlan, Limits, Solution, solve};
 use crate::starting_values::{Features, starting_values};
 use windfall_contact::law_kind::LawKind;
 use windfall_numerics::ode_step::Tolerance;
-use windfall_signal::impact::{Impact, Series};
+use windfall_signal::impact::Impact;
 
 /// Range searched for a scale parameter, as factors of its start.
 const SEARCH_FACTOR: f64 = 1e5;
@@ -29,23 +31,13 @@ pub(crate) struct Plan<'a> {
     pub(crate) impact: &'a Impact,
     pub(crate) problem: &'a LawProblem,
     pub(crate) options: &'a FitOptions,
-    pub(crate) groups: Vec<SampleGroup>,
+    pub(crate) noise: NoisePlan,
     pub(crate) free: Vec<FreeParameter>,
     pub(crate) starts: Vec<Vec<f64>>,
     pub(crate) features: Features,
     pub(crate) regression: Vec<RegressionEstimate>,
     pub(crate) motion: Motion,
     pub(crate) findings: Vec<Finding>,
-}
-
-pub(crate) fn series(impact: &Impact, quantity: Quantity) -> Option<&Series> {
-    let found = match quantity {
-        Quantity::Displacement => &impact.displacement,
-        Quantity::Rate => &impact.rate,
-        Quantity::Force => &impact.force,
-        Quantity::Acceleration => &impact.acceleration,
-    };
-    found.as_ref().filter(|s| !s.times.is_empty())
 }
 
 pub(crate) fn plan<'a>(
@@ -60,7 +52,7 @@ pub(crate) fn plan<'a>(
             law: description.name,
         });
     }
-    let (groups, mut findings) = sample_groups(impact, options)?;
+    let (noise, mut findings) = samples(impact, options)?;
     let mut features = Features::of(impact, rig.effective_mass());
     if let Some(velocity) = options.known_velocity {
         check_positive("the velocity at first touch", velocity)?;
@@ -69,7 +61,7 @@ pub(crate) fn plan<'a>(
     let start = starting_values(problem.kind, &features, &problem.values);
     let regression = regression_of(impact, problem, &start);
     let free = free_parameters(impact, problem, options, &features, &start, &mut findings)?;
-    let samples = groups.iter().map(sample_count).sum();
+    let samples = noise.groups.iter().map(sample_count).sum();
     if samples <= free.len() {
         return Err(Error::TooFewSamples {
             samples,
@@ -80,7 +72,7 @@ pub(crate) fn plan<'a>(
         impact,
         problem,
         options,
-        groups,
+        noise,
         free,
         starts: starts(problem, start, &regression),
         features,
@@ -95,26 +87,15 @@ pub(crate) fn sample_count(group: &SampleGroup) -> usize {
     quantities * group.times().len()
 }
 
-/// Groups the series that share their times, each with its weight. Times count
-/// from the threshold's onset.
-fn sample_groups(
-    impact: &Impact,
-    options: &FitOptions,
-) -> Result<(Vec<SampleGroup>, Vec<Finding>), Error> {
+/// Samples with their noise, and findings for what is missing.
+fn samples(impact: &Impact, options: &FitOptions) -> Result<(NoisePlan, Vec<Finding>), Error> {
     let mut findings = Vec::new();
-    let mut used: Vec<(Quantity, &Series)> = Vec::new();
-    for quantity in Quantity::ALL {
-        if !options.quantities.holds(quantity) {
-            continue;
-        }
-        match series(impact, quantity) {
-            Some(found) => used.push((quantity, found)),
-            None => findings.push(Finding::MissingQuantity {
-                quantity: quantity.name(),
-            }),
-        }
-    }
-    if used.is_empty() {
+    let missing = Quantity::ALL
+        .into_iter()
+        .filter(|q| options.quantities.holds(*q) && series(impact, *q).is_none());
+    findings.extend(missing.map(|q| Finding::MissingQuantity { quantity: q.name() }));
+    let plan = noise_plan(impact, options, &mut findings);
+    if plan.groups.is_empty() {
         let present = Quantity::ALL
             .into_iter()
             .filter(|q| series(impact, *q).is_some());
@@ -124,36 +105,7 @@ fn sample_groups(
             present: present.join(", "),
         });
     }
-    let mut groups = Vec::new();
-    let mut grouped = [false; QUANTITIES];
-    for (i, &(_, first)) in used.iter().enumerate() {
-        if grouped[i] {
-            continue;
-        }
-        let mut values: [Option<(&[f64], f64)>; QUANTITIES] = [None; QUANTITIES];
-        for (j, &(quantity, other)) in used.iter().enumerate().skip(i) {
-            if !grouped[j] && other.times == first.times {
-                grouped[j] = true;
-                let weight = weight_of(impact, other, options.weighting);
-                values[quantity as usize] = Some((&other.values, weight));
-            }
-        }
-        let times: Vec<f64> = first.times.iter().map(|t| t - impact.onset).collect();
-        groups.push(SampleGroup::new(&times, values));
-    }
-    Ok((groups, findings))
-}
-
-fn weight_of(impact: &Impact, series: &Series, weighting: Weighting) -> f64 {
-    match weighting {
-        Weighting::InverseVariance => 1.0 / (series.noise * series.noise),
-        Weighting::InverseMean => {
-            let inside = series.times.iter().zip(&series.values);
-            let inside = inside.filter(|(t, _)| **t >= impact.onset && **t <= impact.end);
-            let (sum, count) = inside.fold((0.0, 0), |(sum, n), (_, v)| (sum + v.abs(), n + 1));
-            f64::from(count) / f64::max(sum, f64::MIN_POSITIVE)
-        }
-    }
+    Ok((plan, findings))
 }
 
 fn regression_of(impact: &Impact, problem: &LawProblem, start: &[f64]) -> Vec<RegressionEstimate> {
@@ -323,14 +275,87 @@ fn nuisances(
 }
 
 impl Plan<'_> {
-    pub(crate) fn solve(&self, rig: &Rig) -> Result<Solution, Error> {
-        self.solve_with_mass(rig.effective_mass(), &self.starts)
+    /// Solves from the planned starts; then once more with the noise that the
+    /// residuals show.
+    pub(crate) fn solve(&mut self, rig: &Rig) -> Result<Solution, Error> {
+        let mass = rig.effective_mass();
+        let features = self.features.velocity;
+        let starts = self
+            .starts
+            .iter()
+            .map(|law| (law.clone(), [features, mass, 0.0, 0.0]));
+        let starts: Vec<_> = starts.collect();
+        let first = self.solve_from(&starts, None)?;
+        if self.options.weighting != Weighting::InverseVariance
+            || self.options.noise != NoiseModel::Automatic
+        {
+            return match self.intervals_wanted() {
+                None => Ok(first),
+                wanted => self.solve_from(&starts, wanted),
+            };
+        }
+        let speeds = self.speeds_at_edges(&first, rig)?;
+        self.noise = self
+            .noise
+            .recalibrated(self.impact, &first.rows, &speeds, self.free.len());
+        let spent = first.evaluations;
+        let start = (first.law, [first.velocity, mass, first.onset, first.offset]);
+        let mut second = self.solve_from(&[start], self.intervals_wanted())?;
+        second.evaluations += spent;
+        Ok(second)
+    }
+
+    fn speeds_at_edges(&self, solution: &Solution, rig: &Rig) -> Result<Vec<f64>, Error> {
+        let Some(edges) = &self.noise.edges else {
+            return Ok(Vec::new());
+        };
+        let law = self.problem.kind.with_parameters(&solution.law)?;
+        let onset = self.impact.onset + solution.onset;
+        let times: Vec<f64> = edges.times.iter().map(|t| t - onset).collect();
+        let motion = trajectory(&law, rig, solution.velocity, &times, self.options.end)?;
+        Ok(motion.rate.iter().map(|rate| rate.abs()).collect())
     }
 
     pub(crate) fn solve_with_mass(
         &self,
         mass: f64,
         starts: &[Vec<f64>],
+    ) -> Result<Solution, Error> {
+        let velocity = self.features.velocity;
+        let starts = starts
+            .iter()
+            .map(|law| (law.clone(), [velocity, mass, 0.0, 0.0]));
+        self.solve_from(&starts.collect::<Vec<_>>(), None)
+    }
+
+    fn intervals_wanted(&self) -> Option<IntervalPlan> {
+        let options = self.options.intervals;
+        let samples = self.noise.groups.iter().map(sample_count).sum();
+        (options.method != IntervalMethod::Asymptotic).then(|| IntervalPlan {
+            options,
+            confidence: self.options.confidence,
+            quantile: self.quantile(samples),
+            priors: self.free.iter().map(|p| self.prior(p)).collect(),
+        })
+    }
+
+    /// A parameter's prior in its coordinate.
+    fn prior(&self, parameter: &FreeParameter) -> Option<(f64, f64)> {
+        let Target::Law(i) = parameter.target else {
+            return None;
+        };
+        let prior = self.problem.priors.get(i).copied().flatten()?;
+        let spread = match parameter.coordinate {
+            Coordinate::Logarithm => prior.spread,
+            Coordinate::Linear(scale) => prior.spread / scale,
+        };
+        Some((parameter.coordinate.of(prior.centre), spread))
+    }
+
+    fn solve_from(
+        &self,
+        starts: &[(Vec<f64>, [f64; 4])],
+        intervals: Option<IntervalPlan>,
     ) -> Result<Solution, Error> {
         let description = self.problem.kind.describe();
         let no_start = Error::NoStart {
@@ -344,7 +369,7 @@ impl Plan<'_> {
         let accuracy = self.options.accuracy;
         let setting = Setting {
             motion: self.motion,
-            groups: &self.groups,
+            groups: &self.noise.groups,
             end: self.options.end,
             tolerance: Tolerance {
                 relative: accuracy,
@@ -363,14 +388,10 @@ impl Plan<'_> {
         let limits = Limits {
             cost_tolerance: self.options.cost_tolerance,
             max_evaluations: self.options.max_evaluations,
-            samples: self.groups.iter().map(sample_count).sum(),
-            offsets: Quantity::ALL.map(|q| series(self.impact, q).map_or(0.0, |s| s.zero_sd)),
+            samples: self.noise.groups.iter().map(sample_count).sum(),
+            intervals,
         };
-        let starts: Vec<(Vec<f64>, [f64; 4])> = starts
-            .iter()
-            .map(|law| (law.clone(), [self.features.velocity, mass, 0.0, 0.0]))
-            .collect();
         let law = self.problem.kind.with_parameters(&starts[0].0)?;
-        solve(&law, &setting, &self.free, &starts, &limits).ok_or(no_start)
+        solve(&law, &setting, &self.free, starts, &limits).ok_or(no_start)
     }
 }

@@ -3,13 +3,15 @@
 use crate::error::Error;
 use crate::estimator::Target;
 use crate::finding::Finding;
-use crate::fit_plan::{Plan, nuisance_name, sample_count, series};
+use crate::fit_plan::{Plan, nuisance_name, sample_count};
 use crate::fit_types::{Estimate, Fit, QuantityFit};
+use crate::interval::{IntervalDetail, IntervalMethod};
+use crate::noise_plan::series;
 use crate::rig::Rig;
 use crate::samples::Quantity;
 use crate::simulate::simulate_rig;
 use crate::solve::Solution;
-use crate::uncertainty::runs_test;
+use crate::uncertainty::{runs_test, standardised};
 use statrs::distribution::{ContinuousCDF, StudentsT};
 use windfall_contact::law_kind::Law;
 use windfall_contact::restitution::nominal_restitution;
@@ -30,7 +32,7 @@ const MISFIT_RATIO: f64 = 2.0;
 impl Plan<'_> {
     pub(crate) fn report(&self, solution: &Solution, rig: &Rig) -> Result<Fit, Error> {
         let law = self.problem.kind.with_parameters(&solution.law)?;
-        let samples: usize = self.groups.iter().map(sample_count).sum();
+        let samples: usize = self.noise.groups.iter().map(sample_count).sum();
         let estimates = self.estimates(solution, &law, samples);
         let law_count = self.problem.free_positions().count();
         let simulated = simulate_rig(&law, rig, solution.velocity, self.options.end)?;
@@ -50,6 +52,7 @@ impl Plan<'_> {
             velocity: solution.velocity,
             onset: self.impact.onset + solution.onset,
             offset: solution.offset,
+            intervals: self.interval_detail(solution),
             findings: self.findings.clone(),
         };
         let remarks = self.remarks(solution, &fit);
@@ -90,25 +93,55 @@ impl Plan<'_> {
                     .get(i)
                     .map_or(f64::INFINITY, |row| row[i].max(0.0).sqrt());
                 // The onset is told on the recording's clock.
-                let value = match parameter.target {
-                    Target::Onset => self.impact.onset + solution.free[i],
-                    _ => solution.free[i],
+                let clock = match parameter.target {
+                    Target::Onset => self.impact.onset,
+                    _ => 0.0,
                 };
-                Estimate {
+                let value = clock + solution.free[i];
+                let mut estimate = Estimate {
                     name,
                     value,
                     sd,
                     low: value - quantile * sd,
                     high: value + quantile * sd,
                     unit,
+                };
+                if let Some(intervals) = &solution.intervals {
+                    estimate.low = clock + intervals.low[i];
+                    estimate.high = clock + intervals.high[i];
+                    if let Some(sds) = &intervals.sd {
+                        estimate.sd = sds[i];
+                    }
                 }
+                estimate
             })
             .collect()
     }
 
+    /// The detail of the intervals, with onsets on the recording's clock.
+    fn interval_detail(&self, solution: &Solution) -> IntervalDetail {
+        let Some(intervals) = &solution.intervals else {
+            return IntervalDetail::Asymptotic;
+        };
+        let mut detail = intervals.detail.clone();
+        let Some(onset) = self.free.iter().position(|p| p.target == Target::Onset) else {
+            return detail;
+        };
+        let values = match &mut detail {
+            IntervalDetail::Asymptotic => return detail,
+            IntervalDetail::Profile(curves) => &mut curves[onset].values,
+            IntervalDetail::Bootstrap(found) => &mut found.estimates[onset],
+            IntervalDetail::Posterior(found) => &mut found.draws[onset],
+        };
+        values
+            .iter_mut()
+            .for_each(|value| *value += self.impact.onset);
+        detail
+    }
+
     fn regression_estimates(&self, law: &Law) -> Vec<Estimate> {
         let described = self.problem.kind.describe().parameters;
-        let quantile = self.quantile(self.groups.iter().map(sample_count).sum());
+        let quantile = self.quantile(self.noise.groups.iter().map(sample_count).sum());
         self.regression
             .iter()
             .map(|r| Estimate {
@@ -124,7 +157,7 @@ impl Plan<'_> {
 
     fn quantity_fits(&self, solution: &Solution) -> Vec<QuantityFit> {
         let mut out = Vec::new();
-        for (g, group) in self.groups.iter().enumerate() {
+        for (g, group) in self.noise.groups.iter().enumerate() {
             for quantity in Quantity::ALL.into_iter().filter(|q| group.holds(*q)) {
                 let residuals = &solution.rows.residuals[g][quantity as usize];
                 let square: f64 = residuals.iter().map(|r| r * r).sum();
@@ -132,14 +165,23 @@ impl Plan<'_> {
                     quantity,
                     samples: residuals.len(),
                     weight: group.weight(quantity),
-                    noise: series(self.impact, quantity).map_or(f64::NAN, |s| s.noise),
+                    noise: self.noise_of(quantity),
+                    persistence: group.persistence(quantity),
                     rms_residual: (square / residuals.len().max(1) as f64).sqrt(),
-                    runs: runs_test(residuals),
+                    runs: runs_test(&standardised(group, quantity, residuals)),
                 });
             }
         }
         out.sort_by_key(|q| q.quantity);
         out
+    }
+
+    /// Noise of a sample as the recording shows it.
+    fn noise_of(&self, quantity: Quantity) -> f64 {
+        match &self.noise.edges {
+            Some(edges) if quantity == Quantity::Displacement => edges.typical_deviation(),
+            _ => series(self.impact, quantity).map_or(f64::NAN, |s| s.noise),
+        }
     }
 
     fn remarks(&self, solution: &Solution, fit: &Fit) -> Vec<Finding> {
@@ -166,6 +208,13 @@ impl Plan<'_> {
                     self.free[i].upper
                 },
                 unit: estimates[i].unit.clone(),
+            });
+        }
+        out.extend(interval_remarks(&fit.intervals, &estimates));
+        let wanted = self.options.intervals.method;
+        if wanted != IntervalMethod::Asymptotic && fit.intervals == IntervalDetail::Asymptotic {
+            out.push(Finding::IntervalsAsymptotic {
+                method: wanted.name(),
             });
         }
         if solution.covariance.is_empty() {
@@ -198,6 +247,58 @@ impl Plan<'_> {
         }
         out
     }
+}
+
+/// R-hat above which, and independent draws below which, a posterior is not
+/// used (Vehtari et al. 2021).
+const MIXED: (f64, f64) = (1.01, 400.0);
+/// Share of failed replicates that is reported; 1.
+const FAILED_SHARE: f64 = 0.02;
+
+fn interval_remarks(detail: &IntervalDetail, estimates: &[&Estimate]) -> Vec<Finding> {
+    let name = |i: usize| estimates[i].name.clone();
+    let mut out = Vec::new();
+    match detail {
+        IntervalDetail::Asymptotic => {}
+        IntervalDetail::Profile(curves) => {
+            for (i, curve) in curves.iter().enumerate() {
+                let sides = [(curve.open_below, "lower"), (curve.open_above, "upper")];
+                for (_, side) in sides.into_iter().filter(|(open, _)| *open) {
+                    out.push(Finding::OpenInterval {
+                        parameter: name(i),
+                        side,
+                    });
+                }
+            }
+        }
+        IntervalDetail::Bootstrap(found) => {
+            if found.failed as f64 > FAILED_SHARE * found.replicates as f64 {
+                out.push(Finding::FailedReplicates {
+                    failed: found.failed,
+                    replicates: found.replicates,
+                });
+            }
+        }
+        IntervalDetail::Posterior(found) => {
+            if found.divergences > 0 {
+                out.push(Finding::Divergences {
+                    divergences: found.divergences,
+                    draws: found.draws.first().map_or(0, Vec::len),
+                });
+            }
+            for (i, mixing) in found.mixing.iter().enumerate() {
+                let fewest = mixing.bulk_draws.min(mixing.tail_draws);
+                if mixing.r_hat > MIXED.0 || fewest < MIXED.1 {
+                    out.push(Finding::NotMixed {
+                        parameter: name(i),
+                        r_hat: mixing.r_hat,
+                        draws: fewest,
+                    });
+                }
+            }
+        }
+    }
+    out
 }
 
 fn quantity_remarks(found: &QuantityFit) -> Vec<Finding> {

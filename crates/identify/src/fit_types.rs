@@ -1,6 +1,7 @@
 //! What a fit returns.
 
 use crate::finding::Finding;
+use crate::interval::IntervalDetail;
 use crate::samples::Quantity;
 use crate::simulate::ImpactSummary;
 use crate::uncertainty::RunsTest;
@@ -35,6 +36,9 @@ pub struct QuantityFit {
     pub weight: f64,
     /// Noise of a sample, from the recording itself; SI.
     pub noise: f64,
+    /// Correlation of the noise of successive samples that the fit reckoned
+    /// with; 1.
+    pub persistence: f64,
     /// Root mean square residual; SI.
     pub rms_residual: f64,
     /// Runs test of the residuals, where there are enough.
@@ -75,6 +79,8 @@ pub struct Fit {
     pub onset: f64,
     /// Displacement offset; m.
     pub offset: f64,
+    /// How the intervals came about.
+    pub intervals: IntervalDetail,
     /// What a reader should know.
     pub findings: Vec<Finding>,
 }

@@ -5,6 +5,7 @@
 //! This crate opens no file and reads no clock.
 
 mod arrow_system;
+mod bootstrap;
 pub mod compression_fit;
 pub mod contact_motion;
 mod correlated_scores;
@@ -47,16 +48,24 @@ pub mod fit;
 mod fit_plan;
 mod fit_report;
 mod fit_types;
+pub mod interval;
 pub mod model;
 pub mod motion;
+mod noise_edges;
+mod noise_plan;
 mod onset_average;
 pub mod plate_ringing;
+mod posterior;
 pub mod problem;
+mod profile;
 pub mod regression;
 pub mod residual;
+mod residual_block;
+mod residual_noise;
 pub mod rig;
 pub mod samples;
 pub mod simulate;
 mod solve;
 mod starting_values;
 pub mod uncertainty;
+mod whitening;

@@ -1,6 +1,7 @@
 //! What to fit and how: the law with its free parameters, the quantities, the
 //! weights and the treatment of what is not of interest.
 
+use crate::interval::IntervalOptions;
 use crate::samples::{QUANTITIES, Quantity};
 use windfall_contact::expression::LawExpression;
 use windfall_contact::law::EndRule;
@@ -15,6 +16,19 @@ pub struct LawProblem {
     pub values: Vec<Option<f64>>,
     /// Which parameters are estimated.
     pub free: Vec<bool>,
+    /// What is known of them beforehand; only posteriors use it. `None` says
+    /// nothing.
+    pub priors: Vec<Option<Prior>>,
+}
+
+/// What is known of a parameter before the data.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Prior {
+    /// Median; SI.
+    pub centre: f64,
+    /// Standard deviation: of the logarithm for a scale such as k or c, of the
+    /// value for an exponent or another parameter without a unit.
+    pub spread: f64,
 }
 
 impl LawProblem {
@@ -25,7 +39,7 @@ impl LawProblem {
     #[must_use]
     pub fn from_expression(expression: &LawExpression) -> Self {
         let description = expression.kind.describe();
-        let free = description
+        let free: Vec<bool> = description
             .parameters
             .iter()
             .zip(&expression.values)
@@ -37,6 +51,7 @@ impl LawProblem {
         Self {
             kind: expression.kind,
             values: expression.values.clone(),
+            priors: vec![None; free.len()],
             free,
         }
     }
@@ -66,6 +81,18 @@ pub enum Weighting {
     /// 1/⟨|q|⟩ over the contact, as in the 2003 pendulum study. It leaves
     /// squares of different units in one sum; for comparison.
     InverseMean,
+}
+
+/// What is taken for the noise of each channel when weights are 1/σ².
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
+pub enum NoiseModel {
+    /// What the recording and the residuals show: white or persistent from
+    /// sample to sample, a zero that all samples share, a displacement that is
+    /// counted and known where its count changes.
+    #[default]
+    Automatic,
+    /// White, sample by sample; for comparison.
+    White,
 }
 
 /// What is done about a quantity that is not of interest in itself.
@@ -119,6 +146,8 @@ pub struct FitOptions {
     pub quantities: Quantities,
     /// Their weights.
     pub weighting: Weighting,
+    /// Their noise.
+    pub noise: NoiseModel,
     /// Velocity at first touch.
     pub initial_velocity: Treatment,
     /// Velocity at first touch where it is known otherwise, in place of the one
@@ -138,6 +167,8 @@ pub struct FitOptions {
     pub max_evaluations: usize,
     /// Coverage of the intervals; 1.
     pub confidence: f64,
+    /// How the intervals are made.
+    pub intervals: IntervalOptions,
 }
 
 impl Default for FitOptions {
@@ -145,6 +176,7 @@ impl Default for FitOptions {
         Self {
             quantities: Quantities::default(),
             weighting: Weighting::default(),
+            noise: NoiseModel::default(),
             initial_velocity: Treatment::default(),
             known_velocity: None,
             onset: Treatment::default(),
@@ -154,6 +186,7 @@ impl Default for FitOptions {
             cost_tolerance: 1e-10,
             max_evaluations: 200,
             confidence: 0.95,
+            intervals: IntervalOptions::default(),
         }
     }
 }

@@ -50,6 +50,13 @@ pub struct SampleGroup {
     pub(crate) values: [Vec<f64>; QUANTITIES],
     /// Weight of each quantity in the cost; zero when there are none.
     pub(crate) weights: [f64; QUANTITIES],
+    /// Weight of each sample relative to that of its quantity, padded; empty
+    /// where all are 1.
+    pub(crate) relative: [Vec<f64>; QUANTITIES],
+    /// Correlation of the noise of successive samples of each quantity; 1.
+    pub(crate) persistence: [f64; QUANTITIES],
+    /// Standard uncertainty of the zero that all samples of a quantity share; SI.
+    pub(crate) zero_sd: [f64; QUANTITIES],
 }
 
 impl SampleGroup {
@@ -68,7 +75,64 @@ impl SampleGroup {
             times: padded(times),
             values: values.map(|v| v.map_or_else(Vec::new, |(samples, _)| padded(samples))),
             weights: values.map(|v| v.map_or(0.0, |(_, weight)| weight)),
+            relative: Default::default(),
+            persistence: [0.0; QUANTITIES],
+            zero_sd: [0.0; QUANTITIES],
         }
+    }
+
+    /// The same samples, those of `quantity` with noise whose variance is
+    /// 1/(weight × relative weight), sample by sample.
+    #[must_use]
+    pub fn with_relative_weights(mut self, quantity: Quantity, weights: &[f64]) -> Self {
+        debug_assert_eq!(weights.len(), self.len);
+        let mut padded = weights.to_vec();
+        padded.resize(self.len + PACK, 0.0);
+        self.relative[quantity as usize] = padded;
+        self
+    }
+
+    /// The same samples, those of `quantity` with noise that is a first-order
+    /// autoregression of variance 1/weight and this correlation of successive
+    /// samples, −1 < φ < 1.
+    #[must_use]
+    pub fn with_persistence(mut self, quantity: Quantity, persistence: f64) -> Self {
+        self.persistence[quantity as usize] = persistence;
+        self
+    }
+
+    /// The same samples, those of `quantity` with an unknown zero in common that
+    /// is normal with this standard deviation; SI.
+    #[must_use]
+    pub fn with_zero_sd(mut self, quantity: Quantity, sd: f64) -> Self {
+        self.zero_sd[quantity as usize] = sd;
+        self
+    }
+
+    /// Correlation of the noise of successive samples; 1.
+    #[must_use]
+    pub fn persistence(&self, quantity: Quantity) -> f64 {
+        self.persistence[quantity as usize]
+    }
+
+    /// Standard uncertainty of a quantity's zero; SI.
+    #[must_use]
+    pub fn zero_sd(&self, quantity: Quantity) -> f64 {
+        self.zero_sd[quantity as usize]
+    }
+
+    /// Weight of sample `index` relative to that of its quantity.
+    #[must_use]
+    pub fn relative_weight(&self, quantity: Quantity, index: usize) -> f64 {
+        let relative = &self.relative[quantity as usize];
+        relative.get(index).copied().unwrap_or(1.0)
+    }
+
+    /// Samples of `quantity`; empty where it was not measured.
+    #[must_use]
+    pub fn values(&self, quantity: Quantity) -> &[f64] {
+        let values = &self.values[quantity as usize];
+        &values[..self.len.min(values.len())]
     }
 
     /// Sampling times; s.
@@ -96,6 +160,11 @@ impl SampleGroup {
     #[must_use]
     pub fn weight(&self, quantity: Quantity) -> f64 {
         self.weights[quantity as usize]
+    }
+
+    /// Whether the noise of quantity `q` is independent from sample to sample.
+    pub(crate) fn is_white(&self, q: usize) -> bool {
+        self.persistence[q] == 0.0 && self.zero_sd[q] == 0.0
     }
 
     /// Indices of the samples with `from ≤ time − onset < to`; the last ones

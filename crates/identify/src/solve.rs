@@ -1,13 +1,18 @@
 //! From free parameters to estimates with covariance: the part of a fit that
 //! knows the law's concrete type.
 
+use crate::bootstrap::{BootstrapPlan, bootstrap_intervals};
 use crate::estimator::{Coordinate, Estimator, FreeLaw, FreeParameter, Setting, Values};
+use crate::interval::{FreeIntervals, IntervalMethod, IntervalOptions};
 use crate::model::Sampling;
+use crate::posterior::{PosteriorPlan, posterior_intervals};
+use crate::profile::profile_intervals;
 use crate::residual::Rows;
-use crate::samples::{QUANTITIES, SampleGroup};
+use crate::samples::SampleGroup;
 use crate::uncertainty::covariance;
 use windfall_contact::any_law::{AnyLaw, LARGEST_PARAMETERS};
 use windfall_contact::law_kind::Law;
+use windfall_numerics::cholesky;
 use windfall_numerics::least_squares::{Minimum, Options, Stop};
 
 /// Longest step of a logarithmic and of a linear coordinate.
@@ -47,10 +52,12 @@ pub(crate) struct Solution {
     pub at_bound: Vec<i8>,
     /// Residuals and derivatives.
     pub rows: Rows,
+    /// Intervals that are more than estimate ± deviation, where asked for.
+    pub intervals: Option<FreeIntervals>,
 }
 
 /// Limits of the minimiser and of what is known.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Debug)]
 pub(crate) struct Limits {
     /// Relative change of the cost at convergence.
     pub cost_tolerance: f64,
@@ -58,8 +65,19 @@ pub(crate) struct Limits {
     pub max_evaluations: usize,
     /// Samples of all quantities.
     pub samples: usize,
-    /// Standard uncertainty of each quantity's zero; SI.
-    pub offsets: [f64; QUANTITIES],
+    /// Intervals wanted; `None` while the noise is still being found.
+    pub intervals: Option<IntervalPlan>,
+}
+
+/// What intervals are made with.
+#[derive(Clone, Debug)]
+pub(crate) struct IntervalPlan {
+    pub options: IntervalOptions,
+    pub confidence: f64,
+    /// Student's quantile of the confidence.
+    pub quantile: f64,
+    /// Normal priors of the free parameters' coordinates: mean, deviation.
+    pub priors: Vec<Option<(f64, f64)>>,
 }
 
 /// Solves from each start in turn until one converges inside the bounds, and
@@ -138,17 +156,88 @@ where
         }
     }
     let (estimator, minimum) = best?;
+    let smooth = minimum;
     let (minimum, spent) = polished(&estimator, minimum, &options(free, limits));
     evaluations += spent;
-    complete(
+    let mut solution = complete(
         law_count,
         &estimator,
         &minimum,
         setting.groups,
         free,
-        limits,
         evaluations,
-    )
+    )?;
+    if let Some(plan) = &limits.intervals
+        && minimum.stop == Stop::Converged
+    {
+        solution.intervals = intervals(&estimator, &smooth, plan, &options(free, limits));
+    }
+    Some(solution)
+}
+
+/// Intervals around the smooth minimum, which follows the data without the cusps
+/// of instantaneous samples.
+fn intervals<L, const N: usize, const W: usize, const P: usize>(
+    estimator: &Estimator<L, N, W, P>,
+    minimum: &Minimum<P>,
+    plan: &IntervalPlan,
+    options: &Options<P>,
+) -> Option<FreeIntervals>
+where
+    L: FreeLaw<N>,
+{
+    let count = estimator.free().len();
+    if plan.options.method == IntervalMethod::Asymptotic {
+        return None;
+    }
+    let (equations, rows) = estimator.rows(&minimum.parameters)?;
+    let minimum = Minimum {
+        equations,
+        ..*minimum
+    };
+    let mut normal = equations.normal;
+    for i in count..P {
+        normal[i][i] = 1.0;
+    }
+    let covariance = cholesky::inverse(&normal)?;
+    let IntervalOptions {
+        replicates,
+        draws,
+        chains,
+        seed,
+        ..
+    } = plan.options;
+    let confidence = plan.confidence;
+    let priors = plan.priors.clone();
+    match plan.options.method {
+        IntervalMethod::Asymptotic => None,
+        IntervalMethod::Profile => Some(profile_intervals(
+            estimator,
+            &minimum,
+            &covariance,
+            plan.quantile,
+            options,
+        )),
+        IntervalMethod::Bootstrap => {
+            let plan = BootstrapPlan {
+                replicates,
+                seed,
+                confidence,
+            };
+            bootstrap_intervals(estimator, &minimum, &rows, &plan, options)
+        }
+        IntervalMethod::Posterior => {
+            let plan = PosteriorPlan {
+                chains,
+                draws,
+                seed,
+                confidence,
+                priors: &priors,
+            };
+            let factor = cholesky::lower(&covariance)?;
+            posterior_intervals(estimator, &minimum, &factor, &plan)
+        }
+    }
 }
 
 /// The minimum for instantaneous samples nearest to that for averaged ones: the
@@ -202,7 +291,6 @@ fn complete<L, const N: usize, const W: usize, const P: usize>(
     minimum: &Minimum<P>,
     groups: &[SampleGroup],
     free: &[FreeParameter],
-    limits: &Limits,
     evaluations: usize,
 ) -> Option<Solution>
 where
@@ -213,12 +301,11 @@ where
     let at: Vec<f64> = free.iter().map(|p| values.get(p.target)).collect();
     let slope = |i: usize| free[i].coordinate.slope(at[i]);
     let count = free.len();
-    let covariance =
-        covariance(&equations, &rows, groups, &limits.offsets, count).map_or(vec![], |c| {
-            (0..count)
-                .map(|i| (0..count).map(|j| c[i][j] * slope(i) * slope(j)).collect())
-                .collect()
-        });
+    let covariance = covariance(&equations, &rows, groups, count).map_or(vec![], |c| {
+        (0..count)
+            .map(|i| (0..count).map(|j| c[i][j] * slope(i) * slope(j)).collect())
+            .collect()
+    });
     Some(Solution {
         law: values.law[..law_count].to_vec(),
         free: at,
@@ -233,5 +320,6 @@ where
         stop: minimum.stop,
         at_bound: minimum.at_bound[..count].to_vec(),
         rows,
+        intervals: None,
     })
 }

@@ -2,7 +2,8 @@
 //! whether they are random.
 
 use crate::residual::Rows;
-use crate::samples::{QUANTITIES, Quantity, SampleGroup};
+use crate::samples::{Quantity, SampleGroup};
+use crate::whitening::unit_shift;
 use windfall_numerics::cholesky;
 use windfall_numerics::least_squares::NormalEquations;
 
@@ -21,21 +22,20 @@ const SIGNIFICANT: f64 = 2.0;
 const SMALLEST_INFLATION: f64 = 1.0;
 
 /// Covariance of weighted least-squares estimates whose weights need not be
-/// the inverse variances, whose residuals may be correlated in time, and whose
-/// channels may share an error of all their samples:
+/// the inverse variances, whose residuals may be correlated in time beyond what
+/// the weights know, and whose channels may share an error of all their samples:
 ///
 /// ```text
 /// C = N⁻¹ M N⁻¹,   N = Σ w J Jᵀ
-/// M = Σ_q [ λ_q s_q² Σ w_q² J Jᵀ + u_q² g_q g_qᵀ ],   g_q = Σ w_q J
+/// M = Σ_q [ λ_q s_q² Σ w J Jᵀ ]  less what the channels' zeros leave unsaid
 /// ```
 ///
-/// s² is the variance of a channel's residuals, λ its inflation by their
-/// correlation ([`inflation`]), u the standard uncertainty of the channel's
-/// zero.
+/// with rows that are whitened as the group's persistence says and weighted as
+/// its weights say. s² is the mean square of a channel's residuals so
+/// standardised, λ its inflation by what correlation is left ([`inflation`]).
 ///
-/// * `equations`: N at the optimum
+/// * `equations`: N at the optimum, zeros taken out
 /// * `rows`: residuals and Jacobian of each sample
-/// * `offsets`: u of each quantity; SI
 /// * `parameters`: number of free parameters
 ///
 /// Returns C, or `None` when N is singular.
@@ -52,7 +52,6 @@ pub fn covariance<const P: usize>(
     equations: &NormalEquations<P>,
     rows: &Rows,
     groups: &[SampleGroup],
-    offsets: &[f64; QUANTITIES],
     parameters: usize,
 ) -> Option<[[f64; P]; P]> {
     let mut normal = equations.normal;
@@ -71,13 +70,31 @@ pub fn covariance<const P: usize>(
             if residuals.is_empty() {
                 continue;
             }
-            let weight = group.weight(quantity);
-            let variance = freedom * mean_square(residuals) * inflation(residuals);
-            let jacobian = &rows.jacobian[g][q];
-            add_meat(&mut meat, jacobian, weight, variance, offsets[q]);
+            let z = standardised(group, quantity, residuals);
+            let variance = freedom * mean_square(&z) * inflation(&z);
+            add_meat(&mut meat, group, quantity, &rows.jacobian[g][q], variance);
         }
     }
     Some(sandwich(&bread, &meat, parameters))
+}
+
+/// Residuals over their standard deviation, made independent as the group's
+/// persistence says: of variance 1 if the weights are right.
+#[must_use]
+pub fn standardised(group: &SampleGroup, quantity: Quantity, residuals: &[f64]) -> Vec<f64> {
+    let weight = group.weight(quantity);
+    let persistence = group.persistence(quantity);
+    let scale = 1.0 / (1.0 - persistence * persistence).sqrt();
+    (0..residuals.len())
+        .map(|i| {
+            let white = match i {
+                0 => residuals[0],
+                _ if persistence == 0.0 => residuals[i],
+                _ => (residuals[i] - persistence * residuals[i - 1]) * scale,
+            };
+            white * (weight * group.relative_weight(quantity, i)).sqrt()
+        })
+        .collect()
 }
 
 fn sandwich<const P: usize>(
@@ -149,26 +166,46 @@ pub fn inflation(residuals: &[f64]) -> f64 {
     sum.max(SMALLEST_INFLATION)
 }
 
-/// Adds `variance` Σ w² J Jᵀ + u² g gᵀ of one channel.
+/// Adds `variance` Σ w J Jᵀ of one channel, whitened, less what its zero leaves
+/// unsaid.
 fn add_meat<const P: usize>(
     meat: &mut [[f64; P]; P],
+    group: &SampleGroup,
+    quantity: Quantity,
     jacobian: &[f64],
-    weight: f64,
     variance: f64,
-    offset: f64,
 ) {
-    let mut total = [0.0; P];
-    for row in jacobian.chunks_exact(P) {
+    let weight = group.weight(quantity);
+    let persistence = group.persistence(quantity);
+    let scale = 1.0 / (1.0 - persistence * persistence).sqrt();
+    let shift = unit_shift(persistence);
+    let (mut total, mut square) = ([0.0; P], 0.0);
+    let mut before = [0.0; P];
+    for (i, row) in jacobian.chunks_exact(P).enumerate() {
+        let row: [f64; P] = std::array::from_fn(|p| row[p]);
+        let weight = weight * group.relative_weight(quantity, i);
+        let (white, shift) = if i == 0 || persistence == 0.0 {
+            (row, 1.0)
+        } else {
+            let white = std::array::from_fn(|p| (row[p] - persistence * before[p]) * scale);
+            (white, shift)
+        };
+        before = row;
+        square += weight * shift * shift;
         for p in 0..P {
-            total[p] += weight * row[p];
+            total[p] += weight * shift * white[p];
             for q in 0..P {
-                meat[p][q] += weight * weight * variance * row[p] * row[q];
+                meat[p][q] += weight * variance * white[p] * white[q];
             }
         }
     }
-    for p in 0..P {
-        for q in 0..P {
-            meat[p][q] += offset * offset * total[p] * total[q];
+    let sd = group.zero_sd(quantity);
+    if sd > 0.0 {
+        let pivot = variance / (square + 1.0 / (sd * sd));
+        for p in 0..P {
+            for q in 0..P {
+                meat[p][q] -= pivot * total[p] * total[q];
+            }
         }
     }
 }
@@ -261,7 +298,7 @@ mod tests {
         for r in &residuals {
             equations.add(3.0, *r, &[1.0]);
         }
-        let found = covariance(&equations, &rows, &[group], &[0.0; 4], 1).unwrap()[0][0];
+        let found = covariance(&equations, &rows, &[group], 1).unwrap()[0][0];
         let expected = 1.0 / (1.0 - phi * phi) / n as f64 * (1.0 + phi) / (1.0 - phi);
         assert!((found / expected - 1.0).abs() < 0.1, "{found} {expected}");
         // Moving average x_i − x_(i−2): every correlation cancels but the ends'.

@@ -97,7 +97,7 @@ fn impact(law: &str, seed: u64) -> Impact {
             .map(|v| v + noise * normal(&mut source))
             .collect(),
         noise,
-        zero_sd: 0.0,
+        ..Series::default()
     };
     Impact {
         displacement: Some(series(&motion.displacement, 1e-6)),
@@ -208,7 +208,7 @@ fn recovers_exactly_without_noise() {
         times: times.clone(),
         values: values.to_vec(),
         noise,
-        zero_sd: 0.0,
+        ..Series::default()
     };
     let exact = Impact {
         displacement: Some(series(&motion.displacement, 1e-6)),

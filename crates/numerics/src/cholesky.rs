@@ -31,6 +31,18 @@ fn factor<const P: usize>(matrix: &[[f64; P]; P]) -> Option<([[f64; P]; P], [f64
     Some((lower, scale))
 }
 
+/// Lower factor L of A = L Lᵀ; `None` when A is not positive definite.
+#[must_use]
+pub fn lower<const P: usize>(matrix: &[[f64; P]; P]) -> Option<[[f64; P]; P]> {
+    let (mut lower, scale) = factor(matrix)?;
+    for i in 0..P {
+        for j in 0..=i {
+            lower[i][j] *= scale[i];
+        }
+    }
+    Some(lower)
+}
+
 /// Solution of A x = b; `None` when A is not positive definite.
 ///
 /// # Example

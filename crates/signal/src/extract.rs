@@ -11,7 +11,7 @@ use crate::kinematics::{Motion, smoothing_window};
 use crate::measure::{
     Side, Surroundings, Velocity, free_velocity, impulse, largest_displacement, with_energies,
 };
-use crate::noise_track::{force_noise, noise_of};
+use crate::noise_track::{baseline_persistence, force_noise, noise_of};
 use crate::options::{ExtractOptions, RateMethod, check_options};
 use crate::orient::{
     leave_out_glitches, mean_between, offset_sd, orient, oriented_displacement, oriented_force,
@@ -76,17 +76,25 @@ pub fn extract_impact(
     }
     let measured = measure(&signals, &contacts, &place, options);
     let measured = compare(measured, &signals, &place, options, &mut findings);
+    let measured_rate = signals.rate.is_some();
     signals.rate = rate(&mut signals, options, &place, &mut findings);
 
     let cut = |track: Option<Track>| track.and_then(|track| series(&track, &place, options));
     let removed = options.trigger.baseline != Baseline::Keep;
     let force = cut(signals.force).map(|series| Series {
-        zero_sd: if removed { offset_sd(&contacts) } else { 0.0 },
+        zero_sd: if removed {
+            offset_sd(&contacts, series.persistence)
+        } else {
+            0.0
+        },
         ..series
     });
     let impact = Impact {
         displacement: cut(signals.displacement),
-        rate: cut(signals.rate),
+        rate: cut(signals.rate).map(|series| Series {
+            derived: !keeps_measured(options, measured_rate),
+            ..series
+        }),
         force,
         acceleration: cut(signals.acceleration),
         onset: place.onset,
@@ -115,6 +123,7 @@ fn oriented(
         ));
         let mut track = oriented_force(track, contacts, options, findings);
         track.noise = force_noise(&track, contacts, place, findings);
+        track.persistence = baseline_persistence(&track, contacts);
         track
     });
     let displacement = tracks.position.map(|position| {
@@ -160,20 +169,24 @@ fn rate(
     findings: &mut Vec<Finding>,
 ) -> Option<Track> {
     let measured = signals.rate.take();
-    let keep = match options.rate {
-        RateMethod::Measured => true,
-        RateMethod::Automatic => measured.is_some(),
-        RateMethod::CentralDifference
-        | RateMethod::SmoothingSpline
-        | RateMethod::EdgeTimes
-        | RateMethod::LocalPolynomial { .. } => false,
-    };
-    if keep {
+    if keeps_measured(options, measured.is_some()) {
         return measured;
     }
     let mut track = derived_rate(signals.displacement.as_ref()?, options, place)?;
     track.noise = noise_of(&track, place, findings);
     Some(track)
+}
+
+/// Whether the rate to be fitted is the measured one.
+fn keeps_measured(options: &ExtractOptions, measured: bool) -> bool {
+    match options.rate {
+        RateMethod::Measured => true,
+        RateMethod::Automatic => measured,
+        RateMethod::CentralDifference
+        | RateMethod::SmoothingSpline
+        | RateMethod::EdgeTimes
+        | RateMethod::LocalPolynomial { .. } => false,
+    }
 }
 
 /// Contacts from the force, else from the deceleration, with its resolution.
@@ -314,7 +327,7 @@ fn measure(
     let after = velocity(signals, place, Side::After, options).filter(|_| end_seen);
     let rebound = after.map(|v| -v.value);
     let impulse = signals.force.as_ref().filter(|_| whole).and_then(|track| {
-        let zero_sd = offset_sd(contacts);
+        let zero_sd = offset_sd(contacts, track.persistence);
         impulse(&track.times, &track.values, track.noise, zero_sd, place)
     });
     let measured = Measured {
@@ -411,5 +424,8 @@ fn series(track: &Track, place: &Surroundings, options: &ExtractOptions) -> Opti
         values: track.values[first..last].to_vec(),
         noise: track.noise,
         zero_sd: 0.0,
+        persistence: track.persistence,
+        quantum: track.quantum,
+        derived: false,
     })
 }

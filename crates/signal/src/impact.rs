@@ -1,7 +1,7 @@
 //! One impact cut out of a recording: what identification fits.
 
 /// Samples of one quantity around the contact.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct Series {
     /// Sampling times on the clock of the recording, strictly increasing; s.
     pub times: Vec<f64>,
@@ -14,6 +14,14 @@ pub struct Series {
     /// Standard uncertainty of the zero, shared by all samples: that of the
     /// baseline that has been subtracted from a force, 0 where nothing was; SI.
     pub zero_sd: f64,
+    /// Correlation φ of the noise of successive samples, seen before contact; 1.
+    /// `None` where the recording does not tell it.
+    pub persistence: Option<f64>,
+    /// Step of the samples, where they are quantised; SI.
+    pub quantum: Option<f64>,
+    /// Whether it was computed from another series, so that it says nothing of
+    /// its own.
+    pub derived: bool,
 }
 
 /// What can be read off the signals without a law. `None` where the channels

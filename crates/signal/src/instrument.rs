@@ -38,8 +38,11 @@ pub struct Sensor {
     pub sensitivity: f64,
     /// Voltage at zero; V.
     pub offset: f64,
-    /// Standard deviation of white Gaussian noise; SI unit of the quantity.
+    /// Standard deviation of Gaussian noise; SI unit of the quantity.
     pub noise: f64,
+    /// Correlation φ of the noise of successive samples, a first-order
+    /// autoregression: 0 for white noise; −1 < φ < 1.
+    pub persistence: f64,
     /// Samples per second; Hz.
     pub sampling_rate: f64,
     /// Converter that rounds and clips the voltage, if any.
@@ -122,6 +125,7 @@ pub fn pendulum_instrument() -> Instrument {
             sensitivity: 11e-3,
             offset: 0.0,
             noise: 1.0,
+            persistence: 0.0,
             sampling_rate,
             converter: None,
         }),
@@ -408,10 +412,18 @@ fn sensor_channel(
         _ => linear(trajectory, &trajectory.force, &at),
     };
     let step = sensor.converter.map(converter_step).transpose()?;
+    if !(sensor.persistence.abs() < 1.0) {
+        return Err(Error::BadOption {
+            option: "persistence",
+            value: sensor.persistence,
+            expected: "a correlation between -1 and 1",
+        });
+    }
+    let mut noise = coloured(sensor, source);
     let samples = values
         .iter()
         .map(|&value| {
-            let volts = noisy(value, sensor.noise, source) * sensor.sensitivity + sensor.offset;
+            let volts = (value + noise()) * sensor.sensitivity + sensor.offset;
             match (sensor.converter, step) {
                 (Some(converter), Some(step)) => converted(volts, converter, step),
                 _ => volts,
@@ -425,6 +437,26 @@ fn sensor_channel(
         interval: 1.0 / sensor.sampling_rate,
         samples,
     })
+}
+
+/// Noise of successive samples.
+fn coloured(sensor: &Sensor, source: &mut NoiseSource) -> impl FnMut() -> f64 {
+    let Sensor {
+        noise, persistence, ..
+    } = *sensor;
+    let innovation = noise * (1.0 - persistence * persistence).sqrt();
+    let mut last = None;
+    move || {
+        if noise <= 0.0 {
+            return 0.0;
+        }
+        let next = match last {
+            None => noise * normal(source),
+            Some(last) => persistence * last + innovation * normal(source),
+        };
+        last = Some(next);
+        next
+    }
 }
 
 /// Volts of one step of the converter.

@@ -45,6 +45,7 @@ pub mod kinematics;
 pub mod mass;
 pub mod measure;
 pub mod noise;
+pub mod noise_colour;
 pub mod noise_gaussian;
 mod noise_track;
 pub mod options;

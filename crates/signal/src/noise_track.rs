@@ -3,6 +3,7 @@
 use crate::finding::Finding;
 use crate::measure::Surroundings;
 use crate::noise::{Noise, NoiseSource, combined_noise, scatter_about_polynomial};
+use crate::noise_colour::persistence;
 use crate::track::Track;
 use crate::trigger::Contacts;
 
@@ -44,6 +45,16 @@ pub(crate) fn force_noise(
     let first = track.times.partition_point(|&t| t < place.onset);
     let last = track.times.partition_point(|&t| t <= place.end);
     stated(track, Some(contacts.deviation), &(first..last), findings)
+}
+
+/// Correlation of the noise of a force before contact. Noise that is mostly
+/// rounding does not tell it.
+pub(crate) fn baseline_persistence(track: &Track, contacts: &Contacts) -> Option<f64> {
+    let rounding = track.quantum.map_or(0.0, |q| q / 12f64.sqrt());
+    let before = contacts.baseline_samples.min(track.values.len());
+    (contacts.deviation > 2.0 * rounding)
+        .then(|| persistence(&track.values[..before]))
+        .flatten()
 }
 
 fn stated(

@@ -3,6 +3,8 @@
 use crate::finding::Finding;
 use crate::kinematics::{Motion, displacement_from_angles, value_at};
 use crate::measure::{Side, Surroundings, glitch};
+use crate::noise_colour::mean_inflation;
+use crate::noise_track::baseline_persistence;
 use crate::options::ExtractOptions;
 use crate::track::{Position, Track};
 use crate::trigger::{Contacts, Orientation};
@@ -33,15 +35,18 @@ pub(crate) fn oriented_force(
         findings.push(Finding::OffsetRemoved {
             channel: track.name.clone(),
             offset: contacts.offset,
-            offset_sd: offset_sd(contacts),
+            offset_sd: offset_sd(contacts, baseline_persistence(&track, contacts)),
         });
     }
     orient(&mut track, contacts.reversed, options, findings);
     track
 }
 
-pub(crate) fn offset_sd(contacts: &Contacts) -> f64 {
-    contacts.deviation / (contacts.baseline_samples.max(1) as f64).sqrt()
+/// Standard uncertainty of the mean before contact, whose samples may be
+/// correlated.
+pub(crate) fn offset_sd(contacts: &Contacts, persistence: Option<f64>) -> f64 {
+    let inflation = mean_inflation(persistence.unwrap_or(0.0)).max(1.0);
+    contacts.deviation * (inflation / contacts.baseline_samples.max(1) as f64).sqrt()
 }
 
 pub(crate) fn orient(

@@ -37,6 +37,7 @@ fn central_rate(track: &Track) -> Option<Track> {
             .quantum
             .map(|q| rate_quantum(q, mean_interval(&track.times))),
         noise: 0.0,
+        persistence: None,
     })
 }
 
@@ -54,6 +55,7 @@ fn polynomial_rate(
         values: local_polynomial(&track.times, &track.values, window, order, 1)?,
         quantum: None,
         noise: 0.0,
+        persistence: None,
     })
 }
 
@@ -94,6 +96,7 @@ fn spline_rate(track: &Track, count_times: CountTimes, place: &Surroundings) -> 
         values: spline.rates,
         quantum: None,
         noise: 0.0,
+        persistence: None,
     })
 }
 
@@ -109,5 +112,6 @@ fn edge_track(track: &Track, options: &ExtractOptions) -> Option<Track> {
         values: rate.values,
         quantum: None,
         noise: 0.0,
+        persistence: None,
     })
 }

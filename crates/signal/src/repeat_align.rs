@@ -389,7 +389,7 @@ mod tests {
             times,
             values,
             noise: 0.0,
-            zero_sd: 0.0,
+            ..Series::default()
         }
     }
 

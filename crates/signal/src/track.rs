@@ -17,6 +17,8 @@ pub(crate) struct Track {
     pub quantum: Option<f64>,
     /// Standard deviation of the noise of one sample; 0 until it is found.
     pub noise: f64,
+    /// Correlation of the noise of successive samples, where it is known; 1.
+    pub persistence: Option<f64>,
 }
 
 /// Position of the impactor: its values are a length, or the angle of an arm.
@@ -98,6 +100,7 @@ fn plain_track(channel: &Channel, findings: &mut Vec<Finding>) -> Result<Track, 
         values: channel.samples.clone(),
         quantum: quantum(&channel.samples),
         noise: 0.0,
+        persistence: None,
     })
 }
 
@@ -183,6 +186,7 @@ fn decoded_track(
         values: decoded.counts.iter().map(|&count| count as f64).collect(),
         quantum: Some(1.0),
         noise: 0.0,
+        persistence: None,
     })
 }
 

@@ -205,6 +205,7 @@ fn recovers_the_noise_that_was_put_in() {
     );
     // A sensor of displacement, of rate and of acceleration in place of the encoder.
     let sensor = |noise| Sensor {
+        persistence: 0.0,
         sensitivity: 2.0,
         offset: 0.1,
         noise,
@@ -264,6 +265,7 @@ fn recovers_rates_from_displacement() {
 #[test]
 fn recovers_a_cart_at_100_and_25_hertz() {
     let slow = |sensitivity, noise, sampling_rate, bits, range: f64| Sensor {
+        persistence: 0.0,
         sensitivity,
         offset: 0.0,
         noise,
@@ -277,6 +279,7 @@ fn recovers_a_cart_at_100_and_25_hertz() {
     let instrument = Instrument {
         // Force in steps of 0.03 N, compression negative, position in 0.17 mm.
         force: Some(Sensor {
+            persistence: 0.0,
             offset: 0.05,
             ..slow(-1.0, 0.018, 100.0, 12, 62.0)
         }),

@@ -8,6 +8,7 @@ pub mod accurate_sum;
 pub mod anova;
 pub mod as_written;
 pub mod box_cox;
+pub mod chain_diagnostics;
 pub mod compact_letters;
 pub mod compare_means;
 pub mod contrast;

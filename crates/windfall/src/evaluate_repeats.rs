@@ -54,7 +54,7 @@ pub fn series_of(impact: &RepeatImpact) -> Series {
         times: impact.times.clone(),
         values: impact.force.clone(),
         noise: impact.noise,
-        zero_sd: 0.0,
+        ..Series::default()
     }
 }
 

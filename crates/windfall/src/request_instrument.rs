@@ -219,6 +219,7 @@ fn add_sensor(
         _ => &mut instrument.acceleration,
     };
     *place = Some(Sensor {
+        persistence: 0.0,
         sensitivity: take_positive(
             settings,
             "sensitivity",

@@ -204,6 +204,7 @@ fn sensor(plan: &DropPlan, request: &SimulateDropsRequest) -> Result<Sensor, Err
         .plate
         .map_or(0.0, |plate| plate.mass * plan.rig.gravity);
     Ok(Sensor {
+        persistence: 0.0,
         sensitivity,
         offset: weight * sensitivity,
         noise: at_least_zero("--noise", &request.noise, "N")?,

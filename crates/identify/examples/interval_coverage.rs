@@ -1,0 +1,322 @@
+//! How often intervals hold the truth, from simulated raw recordings:
+//!
+//! ```text
+//! cargo run --release -p windfall-identify --example interval_coverage -- CAMPAIGNS THREADS
+//! ```
+//!
+//! Each campaign is one impact on its own fruit, recorded as an instrument writes
+//! it (encoder phases, volts with coloured noise, a clock that knows nothing of
+//! the impact), cut out with a threshold of 1 N, and fitted with velocity, onset
+//! and zero of the displacement free. Prints a Markdown table for each
+//! instrument, and the ranks of the truth among draws of the posterior.
+
+#![allow(clippy::print_stdout, clippy::unwrap_used)]
+
+use windfall_contact::expression::parse_law;
+use windfall_contact::law::EndRule;
+use windfall_contact::law_kind::LawKind;
+use windfall_identify::fit::{Fit, fit_impact};
+use windfall_identify::interval::{IntervalDetail, IntervalMethod, IntervalOptions};
+use windfall_identify::problem::{FitOptions, LawProblem, NoiseModel, Prior};
+use windfall_identify::rig::{Pendulum, Rig};
+use windfall_identify::simulate::trajectory;
+use windfall_signal::extract::extract_impact;
+use windfall_signal::impact::Impact;
+use windfall_signal::instrument::{
+    Instrument, Trajectory, calibrated, pendulum_instrument, record,
+};
+use windfall_signal::kinematics::Encoder;
+use windfall_signal::noise_gaussian::{noise_source, normal, uniform};
+use windfall_signal::options::ExtractOptions;
+use windfall_signal::trigger::{Threshold, TriggerOptions};
+use windfall_statistics::distribution_tail::chi_squared_upper;
+
+/// Median law: the rubber half-ball of the 2003 pendulum study.
+const MEDIAN: [f64; 2] = [394_931.0, 681.0];
+/// Spread between fruit of ln k and ln c.
+const SPREAD: [f64; 2] = [0.2, 0.3];
+/// Impact velocities; m/s.
+const VELOCITIES: (f64, f64) = (0.2, 0.5);
+/// Draws of the posterior that are ranked: every fourth of a thousand.
+const RANKED: usize = 250;
+/// Bins of the histogram of ranks.
+const BINS: usize = 20;
+
+/// An instrument with its name.
+struct Bench {
+    name: &'static str,
+    instrument: Instrument,
+    encoder: Encoder,
+    arm: f64,
+}
+
+fn benches() -> Vec<Bench> {
+    let mut fine = pendulum_instrument();
+    let mut coarse = pendulum_instrument();
+    if let Some(force) = &mut fine.force {
+        force.persistence = 0.8;
+    }
+    if let (Some(force), Some(encoder)) = (&mut coarse.force, &mut coarse.encoder) {
+        force.noise = 0.3;
+        force.persistence = 0.9;
+        encoder.encoder = Encoder::Rotary {
+            counts_per_revolution: 20_000.0,
+        };
+    }
+    vec![
+        Bench {
+            name: "360,000 counts a revolution, force noise 1 N, persistence 0.8",
+            instrument: fine,
+            encoder: Encoder::Rotary {
+                counts_per_revolution: 360_000.0,
+            },
+            arm: 0.505,
+        },
+        Bench {
+            name: "20,000 counts a revolution, force noise 0.3 N, persistence 0.9",
+            instrument: coarse,
+            encoder: Encoder::Rotary {
+                counts_per_revolution: 20_000.0,
+            },
+            arm: 0.505,
+        },
+    ]
+}
+
+fn rig() -> Rig {
+    Rig::Pendulum(Pendulum {
+        inertia: 0.014_35,
+        arm: 0.505,
+        mass: 0.08,
+        centre_of_mass: 0.35,
+        gravity: 9.806_65,
+    })
+}
+
+/// One recorded impact with the law that made it.
+struct Made {
+    impact: Impact,
+    truth: [f64; 2],
+}
+
+fn made(bench: &Bench, seed: u64) -> Made {
+    let mut source = noise_source(seed, 1000);
+    let truth = [0, 1].map(|i| MEDIAN[i] * (SPREAD[i] * normal(&mut source)).exp());
+    let velocity = VELOCITIES.0 + (VELOCITIES.1 - VELOCITIES.0) * uniform(&mut source);
+    let start = -3e-3 - 5e-6 * uniform(&mut source);
+    let times: Vec<f64> = (0..3400).map(|i| start + 5e-6 * f64::from(i)).collect();
+    let law = LawKind::KuwabaraKono.with_parameters(&truth).unwrap();
+    let motion = trajectory(&law, &rig(), velocity, &times, EndRule::ForceZero).unwrap();
+    let motion = Trajectory {
+        times: motion.times,
+        displacement: motion.displacement,
+        rate: motion.rate,
+        force: motion.force,
+        acceleration: motion.acceleration,
+    };
+    let raw = record(&motion, &bench.instrument, seed).unwrap();
+    let recording = calibrated("simulated", &raw, &bench.instrument);
+    let options = ExtractOptions {
+        trigger: TriggerOptions {
+            threshold: Threshold::Fixed(1.0),
+            ..TriggerOptions::default()
+        },
+        encoder: Some(bench.encoder),
+        arm: Some(bench.arm),
+        effective_mass: Some(rig().effective_mass()),
+        ..ExtractOptions::default()
+    };
+    Made {
+        impact: extract_impact(&recording, &options).unwrap().0,
+        truth,
+    }
+}
+
+fn fit(made: &Made, method: IntervalMethod, noise: NoiseModel, seed: u64) -> Option<Fit> {
+    let mut problem = LawProblem::from_expression(&parse_law("kuwabara-kono").unwrap());
+    if method == IntervalMethod::Posterior {
+        problem.priors = [0, 1]
+            .map(|i| {
+                Some(Prior {
+                    centre: MEDIAN[i],
+                    spread: SPREAD[i],
+                })
+            })
+            .to_vec();
+    }
+    let options = FitOptions {
+        noise,
+        intervals: IntervalOptions {
+            method,
+            seed,
+            draws: 250,
+            ..IntervalOptions::default()
+        },
+        ..FitOptions::default()
+    };
+    let fit = fit_impact(&made.impact, &rig(), &problem, &options).ok()?;
+    fit.converged.then_some(fit)
+}
+
+/// What one campaign says about k and c.
+#[derive(Clone, Copy)]
+struct Told {
+    error: [f64; 2],
+    sd: [f64; 2],
+    covered: [bool; 2],
+    above: [bool; 2],
+    rank: [usize; 2],
+}
+
+fn told(made: &Made, fit: &Fit) -> Told {
+    let of = |i: usize| &fit.parameters[i];
+    let rank = |i: usize| match &fit.intervals {
+        IntervalDetail::Posterior(found) => {
+            let step = found.draws[i].len() / RANKED;
+            let thinned = found.draws[i].iter().step_by(step).take(RANKED);
+            thinned.filter(|d| **d < made.truth[i]).count()
+        }
+        _ => 0,
+    };
+    Told {
+        error: [0, 1].map(|i| (of(i).value / made.truth[i]).ln()),
+        sd: [0, 1].map(|i| of(i).sd / of(i).value),
+        covered: [0, 1].map(|i| of(i).low <= made.truth[i] && made.truth[i] <= of(i).high),
+        above: [0, 1].map(|i| made.truth[i] > of(i).high),
+        rank: [0, 1].map(rank),
+    }
+}
+
+fn campaigns(
+    bench: &Bench,
+    count: u64,
+    threads: u64,
+    method: IntervalMethod,
+    noise: NoiseModel,
+) -> Vec<Option<Told>> {
+    let mut out: Vec<(u64, Option<Told>)> = std::thread::scope(|scope| {
+        let workers: Vec<_> = (0..threads)
+            .map(|worker| {
+                scope.spawn(move || {
+                    (worker..count)
+                        .step_by(threads as usize)
+                        .map(|seed| {
+                            let made = made(bench, seed + 1);
+                            let fit = fit(&made, method, noise, seed);
+                            (seed, fit.map(|fit| told(&made, &fit)))
+                        })
+                        .collect::<Vec<_>>()
+                })
+            })
+            .collect();
+        workers
+            .into_iter()
+            .flat_map(|worker| worker.join().unwrap())
+            .collect()
+    });
+    out.sort_by_key(|(seed, _)| *seed);
+    out.into_iter().map(|(_, told)| told).collect()
+}
+
+fn mean(values: impl Iterator<Item = f64>) -> f64 {
+    let (sum, n) = values.fold((0.0, 0), |(s, n), v| (s + v, n + 1));
+    sum / f64::from(n)
+}
+
+fn row(name: &str, all: &[Option<Told>]) {
+    let good: Vec<Told> = all.iter().flatten().copied().collect();
+    let n = good.len() as f64;
+    print!("| {name} |");
+    for i in [0, 1] {
+        let bias = mean(good.iter().map(|t| t.error[i]));
+        let spread = mean(good.iter().map(|t| (t.error[i] - bias).powi(2))).sqrt();
+        let covered = mean(good.iter().map(|t| f64::from(u8::from(t.covered[i]))));
+        let above = mean(good.iter().map(|t| f64::from(u8::from(t.above[i]))));
+        print!(
+            " {:+.3} % ({:+.1} se) | {:.3} % | {:.3} % | {:.1} % | {:.1}/{:.1} % |",
+            100.0 * bias,
+            bias / (spread / n.sqrt()),
+            100.0 * spread,
+            100.0 * mean(good.iter().map(|t| t.sd[i])),
+            100.0 * covered,
+            100.0 * (1.0 - covered - above),
+            100.0 * above,
+        );
+    }
+    println!(" {} |", all.len() - good.len());
+}
+
+fn ranks(all: &[Option<Told>]) {
+    for (i, name) in ["k", "c"].iter().enumerate() {
+        let mut bins = [0usize; BINS];
+        let good: Vec<&Told> = all.iter().flatten().collect();
+        for told in &good {
+            bins[(told.rank[i] * BINS / (RANKED + 1)).min(BINS - 1)] += 1;
+        }
+        let expected = good.len() as f64 / BINS as f64;
+        let square: f64 = bins
+            .iter()
+            .map(|b| (*b as f64 - expected).powi(2) / expected)
+            .sum();
+        let p = chi_squared_upper(square, (BINS - 1) as f64);
+        println!(
+            "ranks of {name}: {bins:?}, chi-square {square:.1} on {}, p = {p:.3}",
+            BINS - 1
+        );
+    }
+}
+
+fn main() {
+    let mut arguments = std::env::args().skip(1);
+    let count: u64 = arguments.next().map_or(200, |a| a.parse().unwrap());
+    let threads: u64 = arguments.next().map_or(1, |a| a.parse().unwrap());
+    let only = arguments.next();
+    let methods = [
+        (
+            "asymptotic",
+            IntervalMethod::Asymptotic,
+            NoiseModel::Automatic,
+        ),
+        ("profile", IntervalMethod::Profile, NoiseModel::Automatic),
+        (
+            "bootstrap",
+            IntervalMethod::Bootstrap,
+            NoiseModel::Automatic,
+        ),
+        (
+            "posterior",
+            IntervalMethod::Posterior,
+            NoiseModel::Automatic,
+        ),
+        (
+            "asymptotic, noise taken for white",
+            IntervalMethod::Asymptotic,
+            NoiseModel::White,
+        ),
+    ];
+    for bench in benches() {
+        println!("\n{count} campaigns: {}\n", bench.name);
+        println!(
+            "| intervals | k: bias | spread | told | cover | missed below/above | c: bias | spread | told | cover | missed below/above | no fit |"
+        );
+        println!("|---|---|---|---|---|---|---|---|---|---|---|---|");
+        let mut posterior = Vec::new();
+        for (name, method, noise) in methods {
+            if only
+                .as_ref()
+                .is_some_and(|only| !only.split(',').any(|o| name.starts_with(o)))
+            {
+                continue;
+            }
+            let all = campaigns(&bench, count, threads, method, noise);
+            row(name, &all);
+            if method == IntervalMethod::Posterior {
+                posterior = all;
+            }
+        }
+        println!();
+        if !posterior.is_empty() {
+            ranks(&posterior);
+        }
+    }
+}
