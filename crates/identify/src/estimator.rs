@@ -16,13 +16,13 @@ use windfall_numerics::ode_step::Tolerance;
 use windfall_numerics::real::Lanes;
 
 /// Samples that show the way to the minimum, and the largest stride among them.
-const APPROACH_SAMPLES: usize = 256;
+const APPROACH_SAMPLES: usize = 128;
 const LARGEST_STRIDE: usize = 8;
 /// How much coarser the integration may be on the way.
-const APPROACH_LOOSENESS: f64 = 1e3;
+const APPROACH_LOOSENESS: f64 = 1e4;
 /// The way ends when the next step gains less than this fraction of the cost: by
 /// then all samples pull harder.
-const APPROACH_GAIN: f64 = 1e-3;
+const APPROACH_GAIN: f64 = 2e-2;
 
 /// Something that a fit can estimate.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -325,7 +325,7 @@ impl<'a, L: FreeLaw<N>, const N: usize, const W: usize, const P: usize> Estimato
         };
         let mut minimum = self.minimise_from(&near.parameters, options);
         let mut spent = near.evaluations;
-        if minimum.stop != Stop::Converged {
+        if matches!(minimum.stop, Stop::BadStart | Stop::EvaluationLimit) {
             spent += minimum.evaluations;
             minimum = self.minimise_from(&start, options);
         }
@@ -333,11 +333,13 @@ impl<'a, L: FreeLaw<N>, const N: usize, const W: usize, const P: usize> Estimato
         minimum
     }
 
-    /// A point near the minimum, if a share of the samples leads to one.
+    /// A point near the minimum, if a share of the samples leads to one. A free
+    /// onset has many minima, one beside each sample: there all samples decide.
     fn approach(&self, start: &[f64; P], options: &Options<P>) -> Option<Minimum<P>> {
         let samples = self.setting.groups.iter().map(|g| g.times().len()).max()?;
         let stride = (samples / APPROACH_SAMPLES).min(LARGEST_STRIDE);
-        if stride < 2 {
+        let onset = self.free.iter().any(|p| p.target == Target::Onset);
+        if stride < 2 || onset {
             return None;
         }
         let mut estimator = self.clone();
