@@ -68,7 +68,8 @@ impl ContactLaw<2> for KuwabaraKono {
         let root = d.sqrt();
         ContactForce {
             force: root * (d * self.k + v * self.c),
-            by_displacement: root * (1.5 * self.k) + (v / root) * (0.5 * self.c),
+            // The quotient by d and not by its root: it need not wait for it.
+            by_displacement: root * ((v / d) * (0.5 * self.c) + 1.5 * self.k),
             by_rate: root * self.c,
             by_parameter: [d * root, root * v],
             by_peak: R::splat(0.0),

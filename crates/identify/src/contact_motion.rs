@@ -259,7 +259,29 @@ fn flight_step<const W: usize>(
     limit: f64,
     tolerance: &Tolerance<2>,
 ) -> Result<Step<2, W>, StepError> {
-    step(flight, position, limit, tolerance)
+    pulp::Arch::new().dispatch(FlightStep {
+        flight,
+        position,
+        limit,
+        tolerance,
+    })
+}
+
+/// [`flight_step`], compiled for the machine's vector instructions.
+struct FlightStep<'a, const W: usize> {
+    flight: &'a Flight,
+    position: &'a mut Position<2, W>,
+    limit: f64,
+    tolerance: &'a Tolerance<2>,
+}
+
+impl<const W: usize> pulp::WithSimd for FlightStep<'_, W> {
+    type Output = Result<Step<2, W>, StepError>;
+
+    #[inline(always)]
+    fn with_simd<S: pulp::Simd>(self, _simd: S) -> Self::Output {
+        step(self.flight, self.position, self.limit, self.tolerance)
+    }
 }
 
 fn too_long<const W: usize>(position: &Position<2, W>) -> StepError {

@@ -4,17 +4,26 @@
 use crate::contact_motion::{ImpactEvent, Seeds};
 use crate::model::{Columns, Model, Sampling};
 use crate::motion::Motion;
-use crate::residual::{Rows, evaluate};
+use crate::residual::{Rows, evaluate, evaluate_some};
 use crate::samples::SampleGroup;
 use windfall_contact::any_law::{AnyLaw, LARGEST_PARAMETERS};
 use windfall_contact::law::{ContactLaw, EndRule};
 use windfall_contact::law_kuwabara_kono::KuwabaraKono;
 use windfall_contact::law_user::UserLaw;
 use windfall_numerics::least_squares::{
-    Bounds, LeastSquares, Minimum, NormalEquations, Options, minimise,
+    Bounds, LeastSquares, Minimum, NormalEquations, Options, Stop, minimise,
 };
 use windfall_numerics::ode_step::Tolerance;
 use windfall_numerics::real::Lanes;
+
+/// Samples that show the way to the minimum, and the largest stride among them.
+const APPROACH_SAMPLES: usize = 128;
+const LARGEST_STRIDE: usize = 8;
+/// How much coarser the integration may be on the way.
+const APPROACH_LOOSENESS: f64 = 1e4;
+/// The way ends when the next step gains less than this fraction of the cost: by
+/// then all samples pull harder.
+const APPROACH_GAIN: f64 = 2e-2;
 
 /// Something that a fit can estimate.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -310,12 +319,47 @@ impl<'a, L: FreeLaw<N>, const N: usize, const W: usize, const P: usize> Estimato
     }
 
     /// Minimum of the cost from the values in `base`.
+    ///
+    /// The way there is found with a share of the samples and a coarser
+    /// integration, the minimum with all of them; where that fails, all is done
+    /// with all of them.
     pub fn minimise(&mut self, options: &Options<P>) -> Minimum<P> {
         let mut start = [0.0; P];
         for (u, parameter) in start.iter_mut().zip(self.free) {
             *u = parameter.coordinate.of(self.base.get(parameter.target));
         }
-        self.minimise_from(&start, options)
+        let Some(near) = self.approach(&start, options) else {
+            return self.minimise_from(&start, options);
+        };
+        let mut minimum = self.minimise_from(&near.parameters, options);
+        let mut spent = near.evaluations;
+        if matches!(minimum.stop, Stop::BadStart | Stop::EvaluationLimit) {
+            spent += minimum.evaluations;
+            minimum = self.minimise_from(&start, options);
+        }
+        minimum.evaluations += spent;
+        minimum
+    }
+
+    /// A point near the minimum, if a share of the samples leads to one. A free
+    /// onset has many minima, one beside each sample: there all samples decide.
+    fn approach(&self, start: &[f64; P], options: &Options<P>) -> Option<Minimum<P>> {
+        let samples = self.setting.groups.iter().map(|g| g.times().len()).max()?;
+        let stride = (samples / APPROACH_SAMPLES).min(LARGEST_STRIDE);
+        let onset = self.free.iter().any(|p| p.target == Target::Onset);
+        if stride < 2 || onset {
+            return None;
+        }
+        let mut estimator = self.clone();
+        estimator.setting.tolerance = self.setting.tolerance.loosened(APPROACH_LOOSENESS);
+        let options = Options {
+            cost_tolerance: options.cost_tolerance.max(APPROACH_GAIN),
+            ..*options
+        };
+        let mut approach = Approach { estimator, stride };
+        let found = minimise(&mut approach, start, &self.bounds(), &options);
+        let inside = found.at_bound.iter().all(|side| *side == 0);
+        (found.stop == Stop::Converged && inside).then_some(found)
     }
 
     /// Minimum of the cost from coordinates `start`.
@@ -338,5 +382,20 @@ impl<L: FreeLaw<N>, const N: usize, const W: usize, const P: usize> LeastSquares
 {
     fn evaluate(&mut self, u: &[f64; P]) -> Option<NormalEquations<P>> {
         evaluate(&self.model(u), self.setting.groups, None).ok()
+    }
+}
+
+/// The problem with a share of the samples.
+struct Approach<'a, L, const N: usize, const W: usize, const P: usize> {
+    estimator: Estimator<'a, L, N, W, P>,
+    stride: usize,
+}
+
+impl<L: FreeLaw<N>, const N: usize, const W: usize, const P: usize> LeastSquares<P>
+    for Approach<'_, L, N, W, P>
+{
+    fn evaluate(&mut self, u: &[f64; P]) -> Option<NormalEquations<P>> {
+        let model = self.estimator.model(u);
+        evaluate_some(&model, self.estimator.setting.groups, self.stride).ok()
     }
 }

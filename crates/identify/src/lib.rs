@@ -76,6 +76,8 @@ pub mod problem;
 mod profile;
 pub mod regression;
 pub mod residual;
+mod residual_block;
+mod residual_noise;
 pub mod rig;
 pub mod samples;
 pub mod simulate;

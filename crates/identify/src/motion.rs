@@ -82,7 +82,7 @@ impl Motion {
         Acceleration {
             value: force * by_force - x * cosine * self.restoring - centripetal + self.driving,
             by_displacement: force * x_curvature * (2.0 * self.inverse_mass)
-                - (cosine - u / cosine) * self.restoring
+                - (rest - u) * inverse_rest * cosine * self.restoring
                 - v * turning * (u * inverse_rest * 2.0 + 1.0),
             by_rate: -(x * turning * 2.0),
             by_force,

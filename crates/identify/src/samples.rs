@@ -181,6 +181,11 @@ impl SampleGroup {
         self.weights[quantity as usize]
     }
 
+    /// Whether the noise of quantity `q` is independent from sample to sample.
+    pub(crate) fn is_white(&self, q: usize) -> bool {
+        self.persistence[q] == 0.0 && self.zero_sd[q] == 0.0
+    }
+
     /// Indices of the samples with `from ≤ time − onset < to`; the last ones
     /// included when `to` is the end of the motion.
     pub(crate) fn range(
@@ -190,12 +195,31 @@ impl SampleGroup {
         segment_to: f64,
         end: f64,
     ) -> (usize, usize) {
-        let first = self.times().partition_point(|t| t - onset < segment_from);
+        let first = self.first_from(onset, segment_from);
         let last = if segment_to >= end {
             self.len
         } else {
-            self.times().partition_point(|t| t - onset < segment_to)
+            self.first_from(onset, segment_to)
         };
         (first, last)
+    }
+
+    /// Index of the first sample with `time − onset ≥ from`: guessed from an even
+    /// spacing, and searched for where that is wrong.
+    fn first_from(&self, onset: f64, from: f64) -> usize {
+        let times = self.times();
+        let before = |i: usize| times[i] - onset < from;
+        let [start, ..] = times else { return 0 };
+        let guess = ((from + onset - start) / self.interval()).ceil();
+        // A guess that is no number becomes 0.
+        let guess = (guess.max(0.0) as usize).min(times.len());
+        for at in [guess, guess.saturating_sub(1), guess + 1] {
+            let above = at == 0 || (at <= times.len() && before(at - 1));
+            let below = at >= times.len() || !before(at);
+            if above && below && at <= times.len() {
+                return at;
+            }
+        }
+        times.partition_point(|t| t - onset < from)
     }
 }
