@@ -146,7 +146,9 @@ fn measure<const P: usize>(
         .collect();
     seconds.sort_by(f64::total_cmp);
     let begin = processor_seconds();
-    seeds.iter().for_each(|group| drop(once(group)));
+    for group in seeds {
+        std::hint::black_box(once(group));
+    }
     let rate = seeds.len() as f64 / (processor_seconds() - begin);
     let (values, evaluations) = fit::<P>(group, 2e5, 300.0);
     let deviation = |values: &Values<2>| {

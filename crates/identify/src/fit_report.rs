@@ -165,7 +165,7 @@ impl Plan<'_> {
                     samples: residuals.len(),
                     weight: group.weight(quantity),
                     noise: self.noise.noise[quantity as usize],
-                    persistence: group.persistence(quantity),
+                    persistence: self.noise.persistence[quantity as usize],
                     rms_residual: (square / residuals.len().max(1) as f64).sqrt(),
                     standardised: self.standardised_rms(g, quantity, residuals),
                     runs: runs_test(&standardised(group, quantity, residuals)),

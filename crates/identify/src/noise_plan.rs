@@ -16,6 +16,9 @@ use windfall_signal::noise_colour::persistence;
 /// those of a simulation without noise are not random; 1.
 const LEAST_VARIANCE_RATIO: f64 = 0.25;
 
+/// Fewer edges do not tell their own variance.
+const TELLING_EDGES: usize = 50;
+
 /// Samples of an impact in groups, with what their noise is known to be.
 #[derive(Clone, Debug)]
 pub(crate) struct NoisePlan {
@@ -26,6 +29,8 @@ pub(crate) struct NoisePlan {
     /// Noise of what is fitted (a sample, a mean of a block, an edge) by the
     /// recording alone; SI.
     pub noise: [f64; QUANTITIES],
+    /// Correlation of the noise of successive samples as they were recorded; 1.
+    pub persistence: [f64; QUANTITIES],
 }
 
 /// A quantity of an impact, if it was measured.
@@ -63,7 +68,11 @@ pub(crate) fn noise_plan(
         groups: Vec::new(),
         edges: None,
         noise: [f64::NAN; QUANTITIES],
+        persistence: [0.0; QUANTITIES],
     };
+    for (quantity, series) in used.iter().filter(|_| modelled) {
+        plan.persistence[*quantity as usize] = series.persistence.unwrap_or(0.0);
+    }
     if modelled
         && let Some((_, displacement)) = used.iter().find(|(q, _)| *q == Quantity::Displacement)
         && let Some(edges) = edge_samples(displacement)
@@ -182,6 +191,14 @@ fn weight_of(impact: &Impact, series: &Series, weighting: Weighting) -> f64 {
     }
 }
 
+/// A quantity found to have persistent noise.
+struct Coloured {
+    /// Its blocks, their noise by the recording, their residuals.
+    group: (SampleGroup, f64, Vec<f64>),
+    /// Correlation of the noise of successive samples.
+    persistence: f64,
+}
+
 impl NoisePlan {
     /// The same samples with the noise that a fit's residuals show: the variance
     /// of each channel, the correlation where the recording did not tell it, and
@@ -215,9 +232,13 @@ impl NoisePlan {
                     let jitter = edges.jitter(residuals, speeds, parameters);
                     let variances = edges.variances(speeds, jitter);
                     group = edge_group(edges, &variances, impact.onset);
+                    if residuals.len() >= TELLING_EDGES {
+                        group = rescaled(group, quantity, residuals, freedom);
+                    }
                 } else if let Some(blocks) = self.coloured(impact, quantity, &group, residuals) {
-                    let (own, noise, residuals) = blocks;
+                    let (own, noise, residuals) = blocks.group;
                     plan.noise[quantity as usize] = noise;
+                    plan.persistence[quantity as usize] = blocks.persistence;
                     plan.groups
                         .push(rescaled(own, quantity, &residuals, freedom));
                     group = group.without(quantity);
@@ -241,7 +262,7 @@ impl NoisePlan {
         quantity: Quantity,
         group: &SampleGroup,
         residuals: &[f64],
-    ) -> Option<(SampleGroup, f64, Vec<f64>)> {
+    ) -> Option<Coloured> {
         let series = series(impact, quantity)?;
         if series.persistence.is_some() || series.derived {
             return None;
@@ -259,7 +280,10 @@ impl NoisePlan {
         let mut noise = self.noise;
         noise[quantity as usize] = series.noise * ratio.sqrt();
         let group = block_group(impact, quantity, series, length, rest, &noise);
-        Some((group, noise[quantity as usize], means(residuals, length)))
+        Some(Coloured {
+            group: (group, noise[quantity as usize], means(residuals, length)),
+            persistence,
+        })
     }
 }
 
