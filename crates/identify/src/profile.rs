@@ -161,7 +161,7 @@ impl<L: FreeLaw<N>, const N: usize, const W: usize, const P: usize> Search<'_, '
         (bounds.lower[self.index], bounds.upper[self.index]) = (value, value);
         let held = minimise_within(self.estimator, &start, &bounds, self.options);
         let usable = matches!(held.stop, Stop::Converged | Stop::Stuck);
-        usable.then(|| held.equations.cost - self.minimum.equations.cost)
+        usable.then_some(held.equations.cost - self.minimum.equations.cost)
     }
 }
 

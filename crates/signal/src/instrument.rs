@@ -441,7 +441,7 @@ fn sensor_channel(
         _ => linear(trajectory, &trajectory.force, &at),
     };
     let step = sensor.converter.map(converter_step).transpose()?;
-    if !(sensor.persistence.abs() < 1.0) {
+    if sensor.persistence.is_nan() || sensor.persistence.abs() >= 1.0 {
         return Err(Error::BadOption {
             option: "persistence",
             value: sensor.persistence,

@@ -17,6 +17,7 @@ use std::collections::BTreeMap;
 use std::path::Path;
 use std::sync::atomic::{AtomicUsize, Ordering};
 use windfall_contact::expression::parse_law;
+use windfall_identify::error::Error as IdentifyError;
 use windfall_identify::law_ranking::{
     ImpactFit, LawEvidence, LawRanking, LeveledImpact, Verdict, fits_of_impact, rank_laws,
     velocity_levels,
@@ -239,16 +240,17 @@ fn set_levels(
     }
 }
 
+/// Ranks the laws over some of the impacts.
+type Compare<'a> =
+    dyn Fn(&[LeveledImpact], &[Vec<ImpactFit>]) -> Result<LawRanking, IdentifyError> + 'a;
+
 /// For how many specimens each law of the ranking is first.
 fn firsts(
     impacts: &[LeveledImpact],
     fits: &[Vec<ImpactFit>],
     entries: &[&ImpactEntry],
     ranking: &LawRanking,
-    compare: &dyn Fn(
-        &[LeveledImpact],
-        &[Vec<ImpactFit>],
-    ) -> Result<LawRanking, windfall_identify::error::Error>,
+    compare: &Compare,
 ) -> Vec<usize> {
     let mut by_specimen: BTreeMap<&str, Vec<usize>> = BTreeMap::new();
     for (i, entry) in entries.iter().enumerate() {
