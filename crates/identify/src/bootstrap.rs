@@ -5,7 +5,7 @@ use crate::estimator::{Estimator, FreeLaw};
 use crate::interval::{Bootstrap, FreeIntervals, IntervalDetail, deviation, quantile};
 use crate::residual::Rows;
 use crate::samples::{Quantity, SampleGroup};
-use crate::uncertainty::standardised;
+use crate::uncertainty::{inflation, standardised};
 use crate::whitening::unit_shift;
 use windfall_numerics::cholesky;
 use windfall_numerics::least_squares::{Minimum, Options, Stop};
@@ -44,9 +44,8 @@ struct Channel<const P: usize> {
 /// Intervals from refits of resampled recordings: bias-corrected percentiles.
 ///
 /// # Numerics
-/// Residuals are made independent by each channel's noise model, drawn in blocks
-/// of n^⅓ (so that correlation that the model does not know survives), and
-/// coloured again; the channel's zero is drawn anew. The first Gauss-Newton step
+/// Residuals are made independent by each channel's noise model, drawn one by one
+/// or, where they are still correlated, in blocks of n^⅓, and coloured again; the channel's zero is drawn anew. The first Gauss-Newton step
 /// of a refit needs no evaluation, since all that it needs is known at the
 /// estimate; one or two evaluations follow. Nothing is allocated per replicate
 /// but its result. Replicate i has stream i of the seed.
@@ -160,7 +159,7 @@ fn channels<const P: usize>(
                             .recip()
                     })
                     .collect(),
-                block: ((n as f64).cbrt().round() as usize).clamp(1, n),
+                block: block_of(&pool),
                 zero: ([0.0; P], 0.0),
                 pool,
             });
@@ -181,6 +180,16 @@ fn channels<const P: usize>(
         channel.zero = (sum, square);
     }
     out
+}
+
+/// Length of a block: n^⅓ where residuals are correlated beyond what the noise
+/// model knows, else one. A fit takes slow parts out of its residuals, so that
+/// blocks without need spread less than the noise.
+fn block_of(pool: &[f64]) -> usize {
+    match inflation(pool) > 1.0 {
+        true => (pool.len() as f64).cbrt().round().max(1.0) as usize,
+        false => 1,
+    }
 }
 
 /// √w times the whitened derivatives of each sample.

@@ -110,6 +110,22 @@ pub enum Finding {
     /// A rate that was computed from the displacement says nothing beside it.
     #[error("rate was computed from the displacement and took no part of its own")]
     ComputedRate,
+    /// A parameter is hard to tell from another.
+    #[error(
+        "{quantities} alone hardly separate {parameter} from {partner}: {parameter} would be known {factor:.0} times better if {partner} were known; told least of all is {direction} together"
+    )]
+    WeakDirection {
+        /// A parameter of the law.
+        parameter: String,
+        /// What it trades with.
+        partner: String,
+        /// Standard deviation over that with the partner known; 1.
+        factor: f64,
+        /// Quantities in the fit.
+        quantities: String,
+        /// The weakest direction, in words.
+        direction: String,
+    },
     /// A profile has no end on one side.
     #[error(
         "the {side} end of the interval of {parameter} is open: the data do not exclude any value on that side that was looked at"
@@ -195,6 +211,7 @@ impl Finding {
             Self::MassLeftOut { .. } => "mass-left-out",
             Self::CountedDisplacement { .. } => "counted-displacement",
             Self::ComputedRate => "computed-rate",
+            Self::WeakDirection { .. } => "weak-direction",
             Self::OpenInterval { .. } => "open-interval",
             Self::FailedReplicates { .. } => "failed-replicates",
             Self::Divergences { .. } => "divergences",

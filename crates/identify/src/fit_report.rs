@@ -1,10 +1,11 @@
 //! From the minimiser's solution to estimates with intervals and findings.
 
 use crate::error::Error;
-use crate::estimator::Target;
+use crate::estimator::{Coordinate, Target};
 use crate::finding::Finding;
 use crate::fit_plan::{Plan, nuisance_name, sample_count};
 use crate::fit_types::{Estimate, Fit, QuantityFit};
+use crate::identifiability::{directions, in_words, trade};
 use crate::interval::{IntervalDetail, IntervalMethod};
 use crate::rig::Rig;
 use crate::samples::Quantity;
@@ -20,6 +21,9 @@ use windfall_numerics::least_squares::Stop;
 /// nuisance, are reported as inseparable. A stiffness always moves with the
 /// onset; that alone is no news.
 const HIGH_CORRELATION: (f64, f64) = (0.98, 0.999);
+/// A parameter that would be known this many times better if another one were is
+/// reported; 1.
+const MUCH_BETTER: f64 = 5.0;
 /// Runs-test score below which residuals are called structured.
 const STRUCTURED_Z: f64 = -5.0;
 /// Structure in residuals no larger than this times the noise is the noise's
@@ -51,6 +55,7 @@ impl Plan<'_> {
             velocity: solution.velocity,
             onset: self.impact.onset + solution.onset,
             offset: solution.offset,
+            directions: directions(&solution.covariance),
             intervals: self.interval_detail(solution),
             findings: self.findings.clone(),
         };
@@ -185,6 +190,33 @@ impl Plan<'_> {
         (square / (group.weight(quantity) * noise * noise)).sqrt()
     }
 
+    /// A law's parameter that would be known much better if another one were.
+    fn weak_direction(&self, solution: &Solution, fit: &Fit) -> Option<Finding> {
+        let weakest = fit.directions.first()?;
+        let trades = (0..fit.parameters.len()).filter_map(|i| trade(&solution.covariance, i));
+        let worst = trades.max_by(|a, b| a.factor.total_cmp(&b.factor))?;
+        if worst.factor < MUCH_BETTER {
+            return None;
+        }
+        let estimates: Vec<&Estimate> = fit.parameters.iter().chain(&fit.nuisances).collect();
+        let described: Vec<(&str, f64, &str, bool)> = estimates
+            .iter()
+            .zip(&self.free)
+            .map(|(e, free)| {
+                let relative = free.coordinate == Coordinate::Logarithm;
+                (e.name.as_str(), e.value, e.unit.as_str(), relative)
+            })
+            .collect();
+        let quantities = fit.quantities.iter().map(|q| q.quantity.name());
+        Some(Finding::WeakDirection {
+            parameter: estimates[worst.parameter].name.clone(),
+            partner: estimates[worst.partner].name.clone(),
+            factor: worst.factor,
+            quantities: quantities.collect::<Vec<_>>().join(" and "),
+            direction: in_words(weakest, &solution.covariance, &described),
+        })
+    }
+
     fn remarks(&self, solution: &Solution, fit: &Fit) -> Vec<Finding> {
         let mut out = Vec::new();
         if !fit.converged {
@@ -239,6 +271,7 @@ impl Plan<'_> {
                 }
             }
         }
+        out.extend(self.weak_direction(solution, fit));
         out.extend(fit.quantities.iter().flat_map(quantity_remarks));
         if let Some(nominal) = nominal_restitution(&fit.law) {
             out.push(Finding::NominalRestitution {

@@ -1,6 +1,7 @@
 //! What a fit returns.
 
 use crate::finding::Finding;
+use crate::identifiability::Direction;
 use crate::interval::IntervalDetail;
 use crate::samples::Quantity;
 use crate::simulate::ImpactSummary;
@@ -82,6 +83,9 @@ pub struct Fit {
     pub onset: f64,
     /// Displacement offset; m.
     pub offset: f64,
+    /// Combinations of parameters and nuisances, in their order, from what the
+    /// data tell least to what they tell best; empty where they cannot be told.
+    pub directions: Vec<Direction>,
     /// How the intervals came about.
     pub intervals: IntervalDetail,
     /// What a reader should know.

@@ -48,6 +48,7 @@ pub mod fit;
 mod fit_plan;
 mod fit_report;
 mod fit_types;
+pub mod identifiability;
 pub mod interval;
 mod law_prediction;
 pub mod law_ranking;

@@ -54,6 +54,7 @@ pub fn impact_outcome(
         derived_sd: derived_uncertainties(&impact.measured),
         derived_from,
         fitted,
+        directions: directions(fit),
         intervals: interval_outcome(fit),
         findings: findings(signal_findings, fit),
     }
@@ -101,6 +102,18 @@ fn parameters(fit: &Fit, problem: &LawProblem) -> Named<EstimateOutcome> {
         (description.name.to_owned(), outcome)
     });
     Named(outcome.collect())
+}
+
+/// Each direction by the names of the estimates.
+fn directions(fit: &Fit) -> Vec<Named<f64>> {
+    let names = || {
+        fit.parameters
+            .iter()
+            .chain(&fit.nuisances)
+            .map(|e| e.name.clone())
+    };
+    let of = |change: &[f64]| Named(names().zip(change.iter().copied()).collect());
+    fit.directions.iter().map(|d| of(&d.change)).collect()
 }
 
 /// "k, c" → correlation, of all pairs of estimates.

@@ -99,6 +99,10 @@ pub struct ImpactOutcome {
     /// what the law delivers. A law that takes a restitution as a parameter has
     /// it here too, as `nominal_restitution`.
     pub fitted: Named<Option<f64>>,
+    /// Combinations of parameters, from what the data tell least to what they tell
+    /// best: the change of each that changes −2 ln of the likelihood by 1.
+    #[serde(default)]
+    pub directions: Vec<Named<f64>>,
     /// How the intervals came about.
     #[serde(default)]
     pub intervals: IntervalOutcome,

@@ -304,6 +304,7 @@ mod tests {
             derived_sd: Named(Vec::new()),
             derived_from: Named(vec![("restitution".to_owned(), "signal".to_owned())]),
             fitted: Named(Vec::new()),
+            directions: Vec::new(),
             intervals: crate::interval_outcome::IntervalOutcome::default(),
             findings: vec![FindingOutcome {
                 code: "x".to_owned(),
