@@ -15,12 +15,12 @@ const LARGEST: f64 = 0.995;
 /// than fifty samples, or all are equal.
 ///
 /// # Numerics
-/// First autocorrelation, corrected for the bias that its mean being estimated
-/// leaves, (1 + 3 φ)/n.
+/// First autocorrelation (a sum of n − 1 products over one of n squares),
+/// corrected for its bias, (1 + 4 φ)/n.
 ///
 /// # Source
-/// Kendall (1954), Note on bias in the estimation of autocorrelation,
-/// Biometrika 41:403.
+/// Marriott and Pope (1954), Bias in the estimation of autocorrelations,
+/// Biometrika 41:390, with the missing product counted.
 #[must_use]
 pub fn persistence(values: &[f64]) -> Option<f64> {
     let n = values.len();
@@ -37,7 +37,7 @@ pub fn persistence(values: &[f64]) -> Option<f64> {
     if first.abs() < SIGNIFICANT / (n as f64).sqrt() {
         return Some(0.0);
     }
-    Some((first + (1.0 + 3.0 * first) / n as f64).clamp(-LARGEST, LARGEST))
+    Some((first + (1.0 + 4.0 * first) / n as f64).clamp(-LARGEST, LARGEST))
 }
 
 /// By how much noise of persistence `persistence` widens the variance of a mean

@@ -4,6 +4,10 @@
 
 use crate::distribution_tail::normal_quantile;
 
+/// A variance within chains below this part of that of all is rounding: chains
+/// that stand still; 1.
+const STILL: f64 = 1e-20;
+
 /// Levels whose estimates tell how well the ends of an interval are known; 1.
 const TAILS: [f64; 2] = [0.05, 0.95];
 
@@ -132,10 +136,12 @@ fn variances(chains: &[Vec<f64>]) -> (f64, f64) {
 
 fn r_hat(chains: &[Vec<f64>]) -> f64 {
     let (within, all) = variances(chains);
-    match (within > 0.0, all > 0.0) {
-        (true, _) => (all / within).sqrt(),
-        (false, true) => f64::INFINITY,
-        (false, false) => 1.0,
+    if all <= 0.0 {
+        1.0
+    } else if within <= STILL * all {
+        f64::INFINITY
+    } else {
+        (all / within).sqrt()
     }
 }
 

@@ -36,6 +36,9 @@ pub struct PopulationArguments {
     /// Parameter to estimate although it has a value, such as an exponent; may be repeated
     #[arg(long, value_name = "NAME")]
     pub free: Vec<String>,
+    /// Write the population as a law card (TOML, or JSON where the name ends with .json)
+    #[arg(long, value_name = "FILE", value_hint = ValueHint::FilePath)]
+    pub card: Option<PathBuf>,
     /// Number of threads; all cores if left out. It never changes a result
     #[arg(long, value_name = "N")]
     pub threads: Option<usize>,

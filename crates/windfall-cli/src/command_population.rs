@@ -4,6 +4,8 @@ use crate::args_format::Format;
 use crate::args_population::PopulationArguments;
 use crate::command_fit::progress_bar;
 use crate::show::{message, write_json, write_result};
+use windfall::population_card::card_of_population;
+use windfall::read_card::write_card;
 use windfall::request_fit::FitRequest;
 use windfall::workflow_population::{PopulationRequest, population};
 use windfall::write_population::{csv_of_population, text_of_population};
@@ -19,6 +21,7 @@ pub fn run(arguments: &PopulationArguments) -> anyhow::Result<()> {
             ..FitRequest::default()
         },
         covariates: arguments.covariates.clone(),
+        card: arguments.card.clone(),
     };
     let bar = progress_bar();
     let progress = |done: usize, all: usize| {
@@ -28,6 +31,9 @@ pub fn run(arguments: &PopulationArguments) -> anyhow::Result<()> {
     let outcome = population(&request, &progress);
     bar.finish_and_clear();
     let outcome = outcome?;
+    if let Some(path) = &request.card {
+        write_card(path, &card_of_population(&request, &outcome, &|_, _| {})?)?;
+    }
     match arguments.format {
         Format::Json => write_json(&outcome)?,
         Format::Csv => write_result(&csv_of_population(&outcome)?)?,

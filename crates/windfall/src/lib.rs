@@ -84,6 +84,7 @@ pub mod option_value;
 pub mod outcome;
 pub mod pendulum_angles;
 pub mod plate_ringing;
+pub mod population_card;
 pub mod population_covariates;
 pub mod population_outcome;
 pub mod provenance;

@@ -36,6 +36,8 @@ pub struct PopulationRequest {
     pub fit: FitRequest,
     /// Covariates in place of those of the campaign; none keeps them.
     pub covariates: Vec<String>,
+    /// Where a law card of the population is written.
+    pub card: Option<PathBuf>,
 }
 
 /// An impact that takes part.
