@@ -24,6 +24,8 @@ const HIGH_CORRELATION: (f64, f64) = (0.98, 0.999);
 /// A parameter that would be known this many times better if another one were is
 /// reported; 1.
 const MUCH_BETTER: f64 = 5.0;
+/// A scale known to this part of itself is well known; 1.
+const WELL_KNOWN: f64 = 0.03;
 /// Runs-test score below which residuals are called structured.
 const STRUCTURED_Z: f64 = -5.0;
 /// Structure in residuals no larger than this times the noise is the noise's
@@ -193,7 +195,15 @@ impl Plan<'_> {
     /// A law's parameter that would be known much better if another one were.
     fn weak_direction(&self, solution: &Solution, fit: &Fit) -> Option<Finding> {
         let weakest = fit.directions.first()?;
-        let trades = (0..fit.parameters.len()).filter_map(|i| trade(&solution.covariance, i));
+        // What is well known needs no better knowledge.
+        let poor = |i: &usize| {
+            let estimate = &fit.parameters[*i];
+            let relative = self.free[*i].coordinate == Coordinate::Logarithm;
+            !relative || estimate.sd > WELL_KNOWN * estimate.value.abs()
+        };
+        let trades = (0..fit.parameters.len())
+            .filter(poor)
+            .filter_map(|i| trade(&solution.covariance, i));
         let worst = trades.max_by(|a, b| a.factor.total_cmp(&b.factor))?;
         if worst.factor < MUCH_BETTER {
             return None;
