@@ -16,7 +16,7 @@ macro_rules! registry {
         #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
         pub enum LawKind {
             $(#[doc = concat!("[`", stringify!($variant), "`].")] $variant,)*
-            /// One that the user defined ([`define_law`](crate::define_law)).
+            /// One that the user defined, as a formula or a table.
             User(UserKind),
         }
 

@@ -5,7 +5,7 @@ use crate::estimator::{Estimator, FreeLaw};
 use crate::interval::{Bootstrap, FreeIntervals, IntervalDetail, deviation, quantile};
 use crate::residual::Rows;
 use crate::samples::{Quantity, SampleGroup};
-use crate::uncertainty::{inflation, standardised};
+use crate::uncertainty::{inflation, standardised, whitened_derivatives, whitened_zero};
 use crate::whitening::unit_shift;
 use windfall_numerics::cholesky;
 use windfall_numerics::least_squares::{Minimum, Options, Stop};
@@ -45,8 +45,9 @@ struct Channel<const P: usize> {
 ///
 /// # Numerics
 /// Residuals are made independent by each channel's noise model, drawn one by one
-/// or, where they are still correlated, in blocks of n^⅓, and coloured again; the channel's zero is drawn anew. The first Gauss-Newton step
-/// of a refit needs no evaluation, since all that it needs is known at the
+/// or, where they are still correlated, in blocks of n^⅓, and coloured again; the
+/// channel's zero is drawn anew. The first Gauss-Newton step of a refit needs no
+/// evaluation, since all that it needs is known at the
 /// estimate; one or two evaluations follow. Nothing is allocated per replicate
 /// but its result. Replicate i has stream i of the seed.
 ///
@@ -148,7 +149,11 @@ fn channels<const P: usize>(
             out.push(Channel {
                 group: g,
                 quantity,
-                gradient: gradients(group, quantity, &rows.jacobian[g][quantity as usize]),
+                gradient: whitened_derivatives(
+                    group,
+                    quantity,
+                    &rows.jacobian[g][quantity as usize],
+                ),
                 fitted: (0..n)
                     .map(|i| group.values(quantity)[i] + residuals[i])
                     .collect(),
@@ -167,11 +172,9 @@ fn channels<const P: usize>(
     }
     for channel in &mut out {
         let group = &groups[channel.group];
-        let shift = unit_shift(group.persistence(channel.quantity));
         let (mut sum, mut square) = ([0.0; P], 0.0);
-        for (i, row) in channel.gradient.iter().enumerate() {
-            // The zero's own row: √w times what it shifts.
-            let own = if i == 0 { 1.0 } else { shift } / channel.scale[i];
+        let own = whitened_zero(group, channel.quantity);
+        for (row, own) in channel.gradient.iter().zip(own) {
             square += own * own;
             for p in 0..P {
                 sum[p] += own * row[p];
@@ -190,30 +193,6 @@ fn block_of(pool: &[f64]) -> usize {
         true => (pool.len() as f64).cbrt().round().max(1.0) as usize,
         false => 1,
     }
-}
-
-/// √w times the whitened derivatives of each sample.
-fn gradients<const P: usize>(
-    group: &SampleGroup,
-    quantity: Quantity,
-    jacobian: &[f64],
-) -> Vec<[f64; P]> {
-    let persistence = group.persistence(quantity);
-    let scale = 1.0 / (1.0 - persistence * persistence).sqrt();
-    let mut before = [0.0; P];
-    let rows = jacobian.chunks_exact(P).enumerate();
-    rows.map(|(i, row)| {
-        let row: [f64; P] = std::array::from_fn(|p| row[p]);
-        let root = (group.weight(quantity) * group.relative_weight(quantity, i)).sqrt();
-        let white = std::array::from_fn(|p| match i {
-            0 => row[p] * root,
-            _ if persistence == 0.0 => row[p] * root,
-            _ => (row[p] - persistence * before[p]) * scale * root,
-        });
-        before = row;
-        white
-    })
-    .collect()
 }
 
 /// Writes a new recording into `groups`; returns half the gradient of its cost

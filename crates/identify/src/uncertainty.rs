@@ -101,6 +101,45 @@ pub fn standardised(group: &SampleGroup, quantity: Quantity, residuals: &[f64]) 
         .collect()
 }
 
+/// √w times the derivatives of each sample, made independent like
+/// [`standardised`] residuals.
+///
+/// * `jacobian`: P derivatives per sample
+#[must_use]
+pub fn whitened_derivatives<const P: usize>(
+    group: &SampleGroup,
+    quantity: Quantity,
+    jacobian: &[f64],
+) -> Vec<[f64; P]> {
+    let persistence = group.persistence(quantity);
+    let scale = 1.0 / (1.0 - persistence * persistence).sqrt();
+    let mut before = [0.0; P];
+    let rows = jacobian.chunks_exact(P).enumerate();
+    rows.map(|(i, row)| {
+        let row: [f64; P] = std::array::from_fn(|p| row[p]);
+        let root = (group.weight(quantity) * group.relative_weight(quantity, i)).sqrt();
+        let white = std::array::from_fn(|p| match i {
+            _ if i == 0 || persistence == 0.0 => row[p] * root,
+            _ => (row[p] - persistence * before[p]) * scale * root,
+        });
+        before = row;
+        white
+    })
+    .collect()
+}
+
+/// √w times what a zero of 1 shifts each sample by, made independent.
+pub(crate) fn whitened_zero(
+    group: &SampleGroup,
+    quantity: Quantity,
+) -> impl Iterator<Item = f64> + '_ {
+    let shift = unit_shift(group.persistence(quantity));
+    (0..group.times().len()).map(move |i| {
+        let root = (group.weight(quantity) * group.relative_weight(quantity, i)).sqrt();
+        if i == 0 { root } else { shift * root }
+    })
+}
+
 fn sandwich<const P: usize>(
     bread: &[[f64; P]; P],
     meat: &[[f64; P]; P],
@@ -180,27 +219,14 @@ fn add_meat<const P: usize>(
     variance: f64,
     offset: f64,
 ) {
-    let weight = group.weight(quantity);
-    let persistence = group.persistence(quantity);
-    let scale = 1.0 / (1.0 - persistence * persistence).sqrt();
-    let shift = unit_shift(persistence);
     let (mut total, mut square) = ([0.0; P], 0.0);
-    let mut before = [0.0; P];
-    for (i, row) in jacobian.chunks_exact(P).enumerate() {
-        let row: [f64; P] = std::array::from_fn(|p| row[p]);
-        let weight = weight * group.relative_weight(quantity, i);
-        let (white, shift) = if i == 0 || persistence == 0.0 {
-            (row, 1.0)
-        } else {
-            let white = std::array::from_fn(|p| (row[p] - persistence * before[p]) * scale);
-            (white, shift)
-        };
-        before = row;
-        square += weight * shift * shift;
+    let rows = whitened_derivatives::<P>(group, quantity, jacobian);
+    for (row, own) in rows.iter().zip(whitened_zero(group, quantity)) {
+        square += own * own;
         for p in 0..P {
-            total[p] += weight * shift * white[p];
+            total[p] += own * row[p];
             for q in 0..P {
-                meat[p][q] += weight * variance * white[p] * white[q];
+                meat[p][q] += variance * row[p] * row[q];
             }
         }
     }

@@ -1,5 +1,5 @@
 //! A law card: a fitted law in one file, with what is needed to use it elsewhere.
-//! `read_card` and `write_card` are in [`crate::read_card`].
+//! Its file is read and written by the module `read_card`.
 
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
