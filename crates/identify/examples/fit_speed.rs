@@ -23,6 +23,8 @@ const ARM: f64 = 0.505;
 const FITS: usize = 2001;
 /// Gain per residual that may be lost to a kink.
 const ROUGHNESS: f64 = 0.01;
+/// Part of the tolerated gain that a foreseen end may leave.
+const FORESIGHT: f64 = 0.01;
 
 fn numbers(path: &str) -> Vec<Vec<f64>> {
     let text = std::fs::read_to_string(path).expect("readable file");
@@ -119,6 +121,7 @@ fn fit<const P: usize>(group: &SampleGroup, k: f64, c: f64) -> (Values<2>, usize
         largest_step: [2.0; P],
         // As fits of campaigns stop at the kinks that samples leave at separation.
         roughness: ROUGHNESS / (3 * group.times().len()) as f64,
+        foresight: FORESIGHT,
         ..Options::default()
     });
     (estimator.values(&minimum.parameters), minimum.evaluations)
