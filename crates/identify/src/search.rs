@@ -43,12 +43,11 @@ impl<const P: usize> Search<P> {
             Some(stride) => {
                 let coarse = Options {
                     cost_tolerance: options.cost_tolerance.max(APPROACH_GAIN),
-                    foresight: 0.0,
-                    ..*options
+                    ..seen(options)
                 };
                 (Stage::Approach(stride), coarse)
             }
-            None => (Stage::Alone, *options),
+            None => (Stage::Alone, seen(options)),
         };
         let mut search = Self {
             stage,
@@ -94,6 +93,12 @@ impl<const P: usize> Search<P> {
                 Stage::Approach(_) if found.stop == Stop::Converged && inside => {
                     self.stage = Stage::Near;
                     self.spent = found.evaluations;
+                    // The first damped step would hide how well the steps converge,
+                    // which a foreseen end is judged by.
+                    if self.options.foresight > 0.0 {
+                        self.descent = Descent::resumed(&self.descent, &self.bounds, &self.options);
+                        continue;
+                    }
                     found.parameters
                 }
                 Stage::Approach(_) => {
@@ -107,7 +112,20 @@ impl<const P: usize> Search<P> {
                 }
                 Stage::Near | Stage::Alone => return,
             };
-            self.descent = Descent::new(&from, &self.bounds, &self.options);
+            let options = match self.stage {
+                Stage::Near => self.options,
+                Stage::Approach(_) | Stage::Alone => seen(&self.options),
+            };
+            self.descent = Descent::new(&from, &self.bounds, &options);
         }
+    }
+}
+
+/// The options of a stage whose end is never foreseen: the cost is not smooth (an
+/// onset is free), or the way was not smooth.
+fn seen<const P: usize>(options: &Options<P>) -> Options<P> {
+    Options {
+        foresight: 0.0,
+        ..*options
     }
 }

@@ -246,6 +246,15 @@ impl<const P: usize> Descent<P> {
         }
     }
 
+    /// A minimisation from where `other` stopped, of a cost of the same shape (more
+    /// samples of the same model): the damping is what it was there.
+    #[must_use]
+    pub fn resumed(other: &Self, bounds: &Bounds<P>, options: &Options<P>) -> Self {
+        let mut resumed = Self::new(&other.here.parameters, bounds, options);
+        resumed.damping.relative = other.damping.relative;
+        resumed
+    }
+
     /// Where the problem is to be evaluated next; `None` when the end is reached.
     #[must_use]
     pub fn propose(&self) -> Option<[f64; P]> {
