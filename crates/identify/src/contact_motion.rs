@@ -13,9 +13,9 @@ use windfall_numerics::real::{Lanes, Real};
 use windfall_numerics::root::bracketed_root;
 
 /// Steps before an integration is given up: an impact takes about ten.
-const LARGEST_STEPS: usize = 20_000;
+pub(crate) const LARGEST_STEPS: usize = 20_000;
 /// First step, as a fraction of the range to integrate.
-const FIRST_STEP: f64 = 0.1;
+pub(crate) const FIRST_STEP: f64 = 0.1;
 /// Event times are located to this fraction of a step.
 const EVENT_TOLERANCE: f64 = 1e-14;
 /// Where a contact that ends within its very first step is looked for from.
@@ -188,9 +188,7 @@ pub fn follow<L: ContactLaw<N>, const N: usize, const W: usize>(
     after: f64,
     sink: &mut impl Sink<W>,
 ) -> Result<Option<Separation>, StepError> {
-    let mut velocity = event.seeds.velocity;
-    velocity.0[0] = event.velocity;
-    let touch = [Lanes::ZERO, velocity];
+    let touch = touch_state(event);
     if before < 0.0 {
         fly(event, touch, 0.0, before, sink)?;
     }
@@ -218,6 +216,35 @@ pub fn follow<L: ContactLaw<N>, const N: usize, const W: usize>(
             Ok(Some(separation))
         }
     }
+}
+
+/// Displacement and rate at first touch.
+#[inline(always)]
+pub(crate) fn touch_state<L, const N: usize, const W: usize>(
+    event: &ImpactEvent<L, N, W>,
+) -> [Lanes<W>; 2] {
+    let mut velocity = event.seeds.velocity;
+    velocity.0[0] = event.velocity;
+    [Lanes::ZERO, velocity]
+}
+
+/// Where in a step of contact the contact ends, if it does: fraction of the step
+/// and the state with which the flight begins. For laws without history.
+#[inline(always)]
+pub(crate) fn separation<L: ContactLaw<N>, const N: usize, const W: usize>(
+    event: &ImpactEvent<L, N, W>,
+    done: &Step<2, W>,
+) -> Option<(f64, [Lanes<W>; 2])> {
+    let phase = Phase {
+        event,
+        power: event.law.start_power(),
+        peak: 0.0,
+        peak_lanes: Lanes::ZERO,
+    };
+    let sigma = end_of_contact(&phase, done)?;
+    let mut state = done.at(sigma);
+    carry_jump(&phase, &mut state);
+    Some((sigma, state))
 }
 
 /// Flight without contact from `from` to `to`, in either direction.

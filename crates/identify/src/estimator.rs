@@ -6,12 +6,13 @@ use crate::model::{Columns, Model, Sampling};
 use crate::motion::Motion;
 use crate::residual::{Rows, evaluate, evaluate_some};
 use crate::samples::SampleGroup;
+use crate::search::Search;
 use windfall_contact::any_law::{AnyLaw, LARGEST_PARAMETERS};
 use windfall_contact::law::{ContactLaw, EndRule};
 use windfall_contact::law_kuwabara_kono::KuwabaraKono;
 use windfall_contact::law_user::UserLaw;
 use windfall_numerics::least_squares::{
-    Bounds, LeastSquares, Minimum, NormalEquations, Options, Stop, minimise,
+    Bounds, LeastSquares, Minimum, NormalEquations, Options, minimise,
 };
 use windfall_numerics::ode_step::Tolerance;
 use windfall_numerics::real::Lanes;
@@ -21,9 +22,6 @@ const APPROACH_SAMPLES: usize = 128;
 const LARGEST_STRIDE: usize = 8;
 /// How much coarser the integration may be on the way.
 const APPROACH_LOOSENESS: f64 = 1e4;
-/// The way ends when the next step gains less than this fraction of the cost: by
-/// then all samples pull harder.
-const APPROACH_GAIN: f64 = 2e-2;
 
 /// Something that a fit can estimate.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -209,6 +207,11 @@ impl<'a, L: FreeLaw<N>, const N: usize, const W: usize, const P: usize> Estimato
         self.free
     }
 
+    /// The law, whose parameters do not matter.
+    pub(crate) fn law(&self) -> L {
+        self.law
+    }
+
     /// The samples.
     #[must_use]
     pub fn groups(&self) -> &'a [SampleGroup] {
@@ -324,42 +327,49 @@ impl<'a, L: FreeLaw<N>, const N: usize, const W: usize, const P: usize> Estimato
     /// integration, the minimum with all of them; where that fails, all is done
     /// with all of them.
     pub fn minimise(&mut self, options: &Options<P>) -> Minimum<P> {
+        let mut search = self.search(options);
+        while let Some((u, stride)) = search.propose() {
+            search.take(self.evaluate_share(&u, stride));
+        }
+        search.minimum()
+    }
+
+    /// The search that [`minimise`](Self::minimise) makes.
+    pub(crate) fn search(&self, options: &Options<P>) -> Search<P> {
         let mut start = [0.0; P];
         for (u, parameter) in start.iter_mut().zip(self.free) {
             *u = parameter.coordinate.of(self.base.get(parameter.target));
         }
-        let Some(near) = self.approach(&start, options) else {
-            return self.minimise_from(&start, options);
-        };
-        let mut minimum = self.minimise_from(&near.parameters, options);
-        let mut spent = near.evaluations;
-        if matches!(minimum.stop, Stop::BadStart | Stop::EvaluationLimit) {
-            spent += minimum.evaluations;
-            minimum = self.minimise_from(&start, options);
-        }
-        minimum.evaluations += spent;
-        minimum
+        Search::new(&start, &self.bounds(), options, self.share())
     }
 
-    /// A point near the minimum, if a share of the samples leads to one. A free
-    /// onset has many minima, one beside each sample: there all samples decide.
-    fn approach(&self, start: &[f64; P], options: &Options<P>) -> Option<Minimum<P>> {
+    /// Of how many packs of samples one shows the way, if so few do. A free onset
+    /// has many minima, one beside each sample: there all samples decide.
+    fn share(&self) -> Option<usize> {
         let samples = self.setting.groups.iter().map(|g| g.times().len()).max()?;
         let stride = (samples / APPROACH_SAMPLES).min(LARGEST_STRIDE);
         let onset = self.free.iter().any(|p| p.target == Target::Onset);
-        if stride < 2 || onset {
-            return None;
+        (stride >= 2 && !onset).then_some(stride)
+    }
+
+    /// The model at coordinates `u`, integrated as its share of samples deserves.
+    #[inline(always)]
+    pub(crate) fn model_for(&self, u: &[f64; P], stride: usize) -> Model<L, N, W, P> {
+        let mut model = self.model(u);
+        if stride > 1 {
+            model.event.tolerance = self.setting.tolerance.loosened(APPROACH_LOOSENESS);
         }
-        let mut estimator = self.clone();
-        estimator.setting.tolerance = self.setting.tolerance.loosened(APPROACH_LOOSENESS);
-        let options = Options {
-            cost_tolerance: options.cost_tolerance.max(APPROACH_GAIN),
-            ..*options
-        };
-        let mut approach = Approach { estimator, stride };
-        let found = minimise(&mut approach, start, &self.bounds(), &options);
-        let inside = found.at_bound.iter().all(|side| *side == 0);
-        (found.stop == Stop::Converged && inside).then_some(found)
+        model
+    }
+
+    /// Normal equations at coordinates `u` of one in `stride` packs of samples.
+    pub(crate) fn evaluate_share(&self, u: &[f64; P], stride: usize) -> Option<NormalEquations<P>> {
+        let model = self.model_for(u, stride);
+        let groups = self.setting.groups;
+        match stride {
+            1 => evaluate(&model, groups, None).ok(),
+            _ => evaluate_some(&model, groups, stride).ok(),
+        }
     }
 
     /// Minimum of the cost from coordinates `start`.
@@ -382,20 +392,5 @@ impl<L: FreeLaw<N>, const N: usize, const W: usize, const P: usize> LeastSquares
 {
     fn evaluate(&mut self, u: &[f64; P]) -> Option<NormalEquations<P>> {
         evaluate(&self.model(u), self.setting.groups, None).ok()
-    }
-}
-
-/// The problem with a share of the samples.
-struct Approach<'a, L, const N: usize, const W: usize, const P: usize> {
-    estimator: Estimator<'a, L, N, W, P>,
-    stride: usize,
-}
-
-impl<L: FreeLaw<N>, const N: usize, const W: usize, const P: usize> LeastSquares<P>
-    for Approach<'_, L, N, W, P>
-{
-    fn evaluate(&mut self, u: &[f64; P]) -> Option<NormalEquations<P>> {
-        let model = self.estimator.model(u);
-        evaluate_some(&model, self.estimator.setting.groups, self.stride).ok()
     }
 }

@@ -5,6 +5,9 @@
 //! This crate opens no file and reads no clock.
 
 mod arrow_system;
+pub mod batch_fit;
+pub mod batch_law;
+mod batch_motion;
 mod bootstrap;
 pub mod compression_fit;
 pub mod contact_motion;
@@ -81,6 +84,7 @@ mod residual_block;
 mod residual_noise;
 pub mod rig;
 pub mod samples;
+mod search;
 pub mod simulate;
 mod solve;
 mod starting_values;

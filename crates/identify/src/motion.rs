@@ -70,23 +70,39 @@ impl Motion {
         v: R,
         force: R,
     ) -> Acceleration<R> {
-        let u = x * x * self.curvature;
-        let rest = -u + 1.0;
-        let cosine = rest.sqrt();
-        let inverse_rest = R::splat(1.0) / rest;
-        let by_force = rest * -self.inverse_mass;
-        // Centripetal part: x v²/(r² − x²).
-        let turning = v * inverse_rest * self.curvature;
-        let centripetal = x * v * turning;
-        let x_curvature = x * self.curvature;
-        Acceleration {
-            value: force * by_force - x * cosine * self.restoring - centripetal + self.driving,
-            by_displacement: force * x_curvature * (2.0 * self.inverse_mass)
-                - (rest - u) * inverse_rest * cosine * self.restoring
-                - v * turning * (u * inverse_rest * 2.0 + 1.0),
-            by_rate: -(x * turning * 2.0),
-            by_force,
-        }
+        let constants = [
+            self.driving,
+            self.restoring,
+            self.curvature,
+            self.inverse_mass,
+        ];
+        acceleration_with(constants.map(R::splat), [x, v, force])
+    }
+}
+
+/// [`Motion::acceleration`] with constants of their own in each lane: driving,
+/// restoring, curvature, inverse mass; at displacement, rate and force.
+#[inline(always)]
+pub(crate) fn acceleration_with<R: windfall_numerics::real::Real>(
+    [driving, restoring, curvature, inverse_mass]: [R; 4],
+    [x, v, force]: [R; 3],
+) -> Acceleration<R> {
+    let u = x * x * curvature;
+    let rest = -u + 1.0;
+    let cosine = rest.sqrt();
+    let inverse_rest = R::splat(1.0) / rest;
+    let by_force = rest * -inverse_mass;
+    // Centripetal part: x v²/(r² − x²).
+    let turning = v * inverse_rest * curvature;
+    let centripetal = x * v * turning;
+    let x_curvature = x * curvature;
+    Acceleration {
+        value: force * by_force - x * cosine * restoring - centripetal + driving,
+        by_displacement: force * x_curvature * (inverse_mass * 2.0)
+            - (rest - u) * inverse_rest * cosine * restoring
+            - v * turning * (u * inverse_rest * 2.0 + 1.0),
+        by_rate: -(x * turning * 2.0),
+        by_force,
     }
 }
 

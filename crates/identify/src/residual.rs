@@ -91,28 +91,80 @@ where
             rows,
             stride,
         } = self;
-        let first = groups.iter().filter_map(|g| g.times().first()).copied();
-        let last = groups.iter().filter_map(|g| g.times().last()).copied();
-        let before = first.fold(f64::INFINITY, f64::min) - model.onset;
-        let after = last.fold(f64::NEG_INFINITY, f64::max) - model.onset;
-
+        let (before, after) = span(model, groups);
+        let (mut block, mut tally) = (Block::ZERO, Tally::EMPTY);
         let mut reading = Reading {
             model,
             groups,
             rows,
             end: after,
             stride,
-            block: Block::ZERO,
-            sums: Sums::ZERO,
-            noise: Noise::NONE,
+            block: &mut block,
+            tally: &mut tally,
         };
-        follow(&model.event, before.min(0.0), after, &mut reading)?;
-        let mut equations = reading.sums.total();
-        if stride == 1 {
-            reading.noise.complete(groups, &mut equations);
-        }
-        Ok(equations)
+        follow(&model.event, before, after, &mut reading)?;
+        Ok(tally.total(groups, stride))
     }
+}
+
+/// First (at most 0) and last time of the samples, from first touch; s.
+#[inline(always)]
+pub(crate) fn span<L, const N: usize, const W: usize, const P: usize>(
+    model: &Model<L, N, W, P>,
+    groups: &[SampleGroup],
+) -> (f64, f64) {
+    let first = groups.iter().filter_map(|g| g.times().first()).copied();
+    let last = groups.iter().filter_map(|g| g.times().last()).copied();
+    let before = first.fold(f64::INFINITY, f64::min) - model.onset;
+    let after = last.fold(f64::NEG_INFINITY, f64::max) - model.onset;
+    (before.min(0.0), after)
+}
+
+/// What a pass over the samples has summed up so far.
+pub(crate) struct Tally<const P: usize> {
+    sums: Sums<P>,
+    noise: Noise<P>,
+}
+
+impl<const P: usize> Tally<P> {
+    pub(crate) const EMPTY: Self = Self {
+        sums: Sums::ZERO,
+        noise: Noise::NONE,
+    };
+
+    /// The normal equations, after the last piece.
+    #[inline(always)]
+    pub(crate) fn total(&mut self, groups: &[SampleGroup], stride: usize) -> NormalEquations<P> {
+        let mut equations = self.sums.total();
+        if stride == 1 {
+            self.noise.complete(groups, &mut equations);
+        }
+        equations
+    }
+}
+
+/// Adds the samples of one piece of a motion to `tally`: what [`evaluate`] does
+/// with each piece, for motions that are integrated elsewhere. `end` is the last
+/// time of [`span`]; `block` is room to work in.
+pub(crate) fn read_piece<L, const N: usize, const W: usize, const P: usize>(
+    model: &Model<L, N, W, P>,
+    (groups, stride, end): (&[SampleGroup], usize, f64),
+    (segment, piece): (&Segment<W>, Piece),
+    block: &mut Block<N, P>,
+    tally: &mut Tally<P>,
+) where
+    L: ContactLaw<N>,
+{
+    let mut reading = Reading {
+        model,
+        groups,
+        rows: None,
+        end,
+        stride,
+        block,
+        tally,
+    };
+    reading.read(segment, piece);
 }
 
 /// Reads the samples of each piece of the motion.
@@ -122,9 +174,8 @@ struct Reading<'a, L, const N: usize, const W: usize, const P: usize> {
     rows: Option<&'a mut Rows>,
     end: f64,
     stride: usize,
-    block: Block<N, P>,
-    sums: Sums<P>,
-    noise: Noise<P>,
+    block: &'a mut Block<N, P>,
+    tally: &'a mut Tally<P>,
 }
 
 impl<L, const N: usize, const W: usize, const P: usize> Sink<W> for Reading<'_, L, N, W, P>
@@ -180,8 +231,7 @@ where
             end,
             stride,
             block,
-            sums,
-            noise,
+            tally,
         } = self.reading;
         for (index, group) in groups.iter().enumerate() {
             let rows = rows.as_deref_mut().map(|rows| (rows, index));
@@ -195,7 +245,7 @@ where
                 *end,
                 average.as_ref().map(|a| a as &dyn OnsetCorrection<P>),
                 block,
-                (sums, noise),
+                (&mut tally.sums, &mut tally.noise),
                 rows,
             );
         }

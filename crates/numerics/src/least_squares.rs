@@ -80,6 +80,11 @@ pub struct Options<const P: usize> {
     /// left to gain: for models that are not quite smooth (a sample that an
     /// event passes), where nothing more can be had. 0: never.
     pub roughness: f64,
+    /// Also stop when the step to come is foreseen to leave less than this part of
+    /// what `cost_tolerance` allows, each step leaving at most the same share as the
+    /// one before; that step is still taken. Saves an evaluation that would only
+    /// confirm. 0: never.
+    pub foresight: f64,
     /// Longest step of each parameter.
     pub largest_step: [f64; P],
     /// Evaluations before giving up.
@@ -92,6 +97,7 @@ impl<const P: usize> Default for Options<P> {
             cost_tolerance: 1e-10,
             step_tolerance: 1e-12,
             roughness: 0.0,
+            foresight: 0.0,
             largest_step: [f64::INFINITY; P],
             max_evaluations: 200,
         }
@@ -150,7 +156,23 @@ const ROUNDING: f64 = 4.0 * f64::EPSILON;
 /// steps of an integrator; there the gradients decide.
 const NOISE: f64 = 1e-8;
 
-/// Minimises a sum of squares from `start` within `bounds`.
+/// Minimises a sum of squares from `start` within `bounds`: a [`Descent`] that is
+/// given what it asks for.
+pub fn minimise<const P: usize>(
+    problem: &mut impl LeastSquares<P>,
+    start: &[f64; P],
+    bounds: &Bounds<P>,
+    options: &Options<P>,
+) -> Minimum<P> {
+    let mut descent = Descent::new(start, bounds, options);
+    while let Some(parameters) = descent.propose() {
+        descent.take(problem.evaluate(&parameters));
+    }
+    descent.minimum()
+}
+
+/// A minimisation that asks for evaluations one by one, so that those of several
+/// problems can be made side by side.
 ///
 /// # Numerics
 /// Levenberg-Marquardt. The damping is scaled by the largest recent diagonal of
@@ -166,33 +188,199 @@ const NOISE: f64 = 1e-8;
 /// (1999), IMM-REP-1999-05, for the damping; Bates and Watts (1981),
 /// Technometrics 23:179, for the stopping rule (the residual's part in the
 /// tangent plane).
-pub fn minimise<const P: usize>(
-    problem: &mut impl LeastSquares<P>,
-    start: &[f64; P],
-    bounds: &Bounds<P>,
-    options: &Options<P>,
-) -> Minimum<P> {
-    let mut minimum = Minimum {
-        parameters: *start,
-        equations: NormalEquations::ZERO,
-        evaluations: 0,
-        stop: Stop::BadStart,
-        at_bound: [0; P],
-    };
-    let legal = (0..P).all(|i| !start[i].is_nan() && bounds.lower[i] <= bounds.upper[i]);
-    if legal {
-        minimum.parameters = clip(start, bounds);
-        minimum.evaluations = 1;
-        if let Some(equations) = problem.evaluate(&minimum.parameters).filter(finite) {
-            minimum.equations = equations;
-            descend(problem, &mut minimum, bounds, options);
+///
+/// # Example
+/// ```
+/// use windfall_numerics::least_squares::{Bounds, Descent, NormalEquations, Options};
+/// // (b − 3)² + 1
+/// let mut descent = Descent::new(&[0.0], &Bounds::NONE, &Options::default());
+/// while let Some([b]) = descent.propose() {
+///     let mut equations = NormalEquations::ZERO;
+///     equations.add(1.0, b - 3.0, &[1.0]);
+///     equations.add(1.0, 1.0, &[0.0]);
+///     descent.take(Some(equations));
+/// }
+/// assert!((descent.minimum().parameters[0] - 3.0).abs() < 1e-9);
+/// ```
+#[derive(Clone, Copy, Debug)]
+pub struct Descent<const P: usize> {
+    bounds: Bounds<P>,
+    options: Options<P>,
+    here: Point<P>,
+    damping: Damping<P>,
+    asked: Option<Asked<P>>,
+    evaluations: usize,
+    stop: Stop,
+}
+
+/// An evaluation that is asked for.
+#[derive(Clone, Copy, Debug)]
+enum Asked<const P: usize> {
+    Start,
+    Step { to: [f64; P], gain: f64 },
+}
+
+impl<const P: usize> Descent<P> {
+    /// A minimisation from `start` within `bounds`.
+    #[must_use]
+    pub fn new(start: &[f64; P], bounds: &Bounds<P>, options: &Options<P>) -> Self {
+        let legal = (0..P).all(|i| !start[i].is_nan() && bounds.lower[i] <= bounds.upper[i]);
+        let parameters = if legal { clip(start, bounds) } else { *start };
+        Self {
+            bounds: *bounds,
+            options: *options,
+            here: Point {
+                parameters,
+                equations: NormalEquations::ZERO,
+                full: [0.0; P],
+                left: f64::INFINITY,
+            },
+            damping: Damping {
+                relative: FIRST_DAMPING,
+                growth: 2.0,
+                scaling: [0.0; P],
+            },
+            asked: legal.then_some(Asked::Start),
+            evaluations: usize::from(legal),
+            stop: Stop::BadStart,
         }
     }
-    minimum
+
+    /// A minimisation from where `other` stopped, of a cost of the same shape (more
+    /// samples of the same model): the damping is what it was there.
+    #[must_use]
+    pub fn resumed(other: &Self, bounds: &Bounds<P>, options: &Options<P>) -> Self {
+        let mut resumed = Self::new(&other.here.parameters, bounds, options);
+        resumed.damping.relative = other.damping.relative;
+        resumed
+    }
+
+    /// Where the problem is to be evaluated next; `None` when the end is reached.
+    #[must_use]
+    pub fn propose(&self) -> Option<[f64; P]> {
+        self.asked.map(|asked| match asked {
+            Asked::Start => self.here.parameters,
+            Asked::Step { to, .. } => to,
+        })
+    }
+
+    /// Takes the normal equations at the parameters last proposed, or `None` where
+    /// the model cannot be evaluated; without a proposal, does nothing.
+    pub fn take(&mut self, found: Option<NormalEquations<P>>) {
+        let found = found.filter(finite);
+        match (self.asked.take(), found) {
+            (Some(Asked::Start), Some(equations)) => {
+                let start = point(self.here.parameters, equations, &self.bounds);
+                self.arrive(start, f64::INFINITY);
+            }
+            (Some(Asked::Step { to, gain }), found) => {
+                let next = found.map(|found| point(to, found, &self.bounds));
+                match next.filter(|next| accepted(&self.here, next)) {
+                    Some(next) => {
+                        self.damping.follow(&self.here, &next, gain);
+                        self.arrive(next, self.here.left);
+                    }
+                    None => match self.failed(gain) {
+                        Some(stop) => self.stop = stop,
+                        None => self.search(),
+                    },
+                }
+            }
+            _ => {}
+        }
+    }
+
+    /// Where the minimisation stopped, or stands.
+    #[must_use]
+    pub fn minimum(&self) -> Minimum<P> {
+        let parameters = self.here.parameters;
+        let at_bound = |i: usize| {
+            i8::from(parameters[i] >= self.bounds.upper[i])
+                - i8::from(parameters[i] <= self.bounds.lower[i])
+        };
+        Minimum {
+            parameters,
+            equations: self.here.equations,
+            evaluations: self.evaluations,
+            stop: self.stop,
+            at_bound: match self.stop {
+                Stop::BadStart => [0; P],
+                _ => std::array::from_fn(at_bound),
+            },
+        }
+    }
+
+    /// Goes on from `here`; before its step `left_before` was left to gain.
+    fn arrive(&mut self, here: Point<P>, left_before: f64) {
+        self.here = here;
+        let options = &self.options;
+        for i in 0..P {
+            let scaling = &mut self.damping.scaling[i];
+            *scaling = (SCALING_MEMORY * *scaling).max(here.equations.normal[i][i]);
+        }
+        let done = here.left <= negligible(&here, options)
+            || short(&here.full, options)
+            || foreseen(&here, left_before, options);
+        if done {
+            let last = shortened(&here.full, options);
+            self.here.parameters = moved(&here.parameters, &last, &self.bounds);
+            self.stop = Stop::Converged;
+        } else {
+            self.search();
+        }
+    }
+
+    /// Asks for the next step, damped more and more until there is one, or stops.
+    fn search(&mut self) {
+        while self.damping.relative <= LARGEST_DAMPING {
+            if self.evaluations >= self.options.max_evaluations {
+                self.stop = Stop::EvaluationLimit;
+                return;
+            }
+            let here = &self.here;
+            let added = self.damping.scaling.map(|s| s * self.damping.relative);
+            match bounded_step(&here.equations, &here.parameters, &self.bounds, &added) {
+                None => self.damping.grow(),
+                Some(step) => {
+                    let step = shortened(&step, &self.options);
+                    let (gain, _) = predicted_gain(&here.equations, &step);
+                    let to = moved(&here.parameters, &step, &self.bounds);
+                    if to == here.parameters {
+                        self.stop = Stop::Stuck;
+                        return;
+                    }
+                    // A step without gain is rounding of a nearly singular matrix.
+                    if gain > 0.0 {
+                        self.evaluations += 1;
+                        self.asked = Some(Asked::Step { to, gain });
+                        return;
+                    }
+                    if let Some(stop) = self.failed(gain) {
+                        self.stop = stop;
+                        return;
+                    }
+                }
+            }
+        }
+        self.stop = Stop::Stuck;
+    }
+
+    /// After a step that did not lower the cost: the end, or more damping.
+    fn failed(&mut self, gain: f64) -> Option<Stop> {
+        if self.here.left <= self.options.roughness * self.here.equations.cost {
+            return Some(Stop::Converged);
+        }
+        // Shorter steps would gain less than what counts.
+        if gain > 0.0 && gain <= negligible(&self.here, &self.options) {
+            return Some(Stop::Stuck);
+        }
+        self.damping.grow();
+        None
+    }
 }
 
 /// Parameters with their normal equations, and what is left to gain there.
-#[derive(Clone, Copy)]
+#[derive(Clone, Copy, Debug)]
 struct Point<const P: usize> {
     parameters: [f64; P],
     equations: NormalEquations<P>,
@@ -203,93 +391,11 @@ struct Point<const P: usize> {
 }
 
 /// Damping of the next step, and how it grows when a step fails.
+#[derive(Clone, Copy, Debug)]
 struct Damping<const P: usize> {
     relative: f64,
     growth: f64,
     scaling: [f64; P],
-}
-
-/// Moves `minimum` from its evaluated parameters to where it stops.
-fn descend<const P: usize>(
-    problem: &mut impl LeastSquares<P>,
-    minimum: &mut Minimum<P>,
-    bounds: &Bounds<P>,
-    options: &Options<P>,
-) {
-    let mut here = point(minimum.parameters, minimum.equations, bounds);
-    let mut damping = Damping {
-        relative: FIRST_DAMPING,
-        growth: 2.0,
-        scaling: [0.0; P],
-    };
-    minimum.stop = loop {
-        for i in 0..P {
-            damping.scaling[i] =
-                (SCALING_MEMORY * damping.scaling[i]).max(here.equations.normal[i][i]);
-        }
-        if here.left <= negligible(&here, options) || short(&here.full, options) {
-            let last = shortened(&here.full, options);
-            here.parameters = moved(&here.parameters, &last, bounds);
-            break Stop::Converged;
-        }
-        let spent = &mut minimum.evaluations;
-        match next_point(problem, &here, &mut damping, spent, bounds, options) {
-            Ok(next) => here = next,
-            Err(stop) => break stop,
-        }
-    };
-    (minimum.parameters, minimum.equations) = (here.parameters, here.equations);
-    minimum.at_bound = std::array::from_fn(|i| {
-        let at = minimum.parameters[i];
-        i8::from(at >= bounds.upper[i]) - i8::from(at <= bounds.lower[i])
-    });
-}
-
-/// The first point that a step, damped more and more, leads down to.
-fn next_point<const P: usize>(
-    problem: &mut impl LeastSquares<P>,
-    here: &Point<P>,
-    damping: &mut Damping<P>,
-    evaluations: &mut usize,
-    bounds: &Bounds<P>,
-    options: &Options<P>,
-) -> Result<Point<P>, Stop> {
-    while damping.relative <= LARGEST_DAMPING {
-        if *evaluations >= options.max_evaluations {
-            return Err(Stop::EvaluationLimit);
-        }
-        let added = damping.scaling.map(|scale| scale * damping.relative);
-        if let Some(step) = bounded_step(&here.equations, &here.parameters, bounds, &added) {
-            let step = shortened(&step, options);
-            let (gain, _) = predicted_gain(&here.equations, &step);
-            let candidate = moved(&here.parameters, &step, bounds);
-            if candidate == here.parameters {
-                return Err(Stop::Stuck);
-            }
-            // A step without gain is rounding of a nearly singular matrix.
-            let found = (gain > 0.0).then(|| {
-                *evaluations += 1;
-                problem.evaluate(&candidate).filter(finite)
-            });
-            let found = found.flatten();
-            if let Some(next) = found.map(|found| point(candidate, found, bounds))
-                && accepted(here, &next)
-            {
-                damping.follow(here, &next, gain);
-                return Ok(next);
-            }
-            if here.left <= options.roughness * here.equations.cost {
-                return Err(Stop::Converged);
-            }
-            // Shorter steps would gain less than what counts.
-            if gain > 0.0 && gain <= negligible(here, options) {
-                return Err(Stop::Stuck);
-            }
-        }
-        damping.relative *= damping.growth;
-        damping.growth *= 2.0;
-    }
-    Err(Stop::Stuck)
 }
 
 impl<const P: usize> Damping<P> {
@@ -301,6 +407,12 @@ impl<const P: usize> Damping<P> {
         let shrink = (1.0 - (2.0 * ratio - 1.0).powi(3)).clamp(0.05, 2.0);
         self.relative = (self.relative * shrink).max(SMALLEST_DAMPING);
         self.growth = 2.0;
+    }
+
+    /// More damping, and still more after that.
+    fn grow(&mut self) {
+        self.relative *= self.growth;
+        self.growth *= 2.0;
     }
 }
 
@@ -314,6 +426,13 @@ fn accepted<const P: usize>(from: &Point<P>, to: &Point<P>) -> bool {
 fn noise<const P: usize>(at: &Point<P>) -> f64 {
     let rounding = rounding_gain(at);
     NOISE * at.equations.cost + 2.0 * (at.equations.cost * rounding).sqrt() + rounding
+}
+
+/// Whether the full step is sure to end at the minimum: the errors of successive
+/// Gauss-Newton steps shrink at least by the same factor near it.
+fn foreseen<const P: usize>(at: &Point<P>, left_before: f64, options: &Options<P>) -> bool {
+    let after = at.left * (at.left / left_before);
+    left_before.is_finite() && after <= options.foresight * negligible(at, options)
 }
 
 /// Gain that is not worth an evaluation.

@@ -160,6 +160,58 @@ impl<const D: usize, const W: usize> Position<D, W> {
     }
 }
 
+/// Control of one step's width over its attempts.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct StepControl {
+    attempts: usize,
+    rejected: bool,
+}
+
+impl StepControl {
+    pub(crate) const NEW: Self = Self {
+        attempts: 0,
+        rejected: false,
+    };
+    pub(crate) const SAFETY: f64 = SAFETY;
+    pub(crate) const SENSITIVITY: f64 = SENSITIVITY_LOOSENESS;
+
+    /// Before an attempt from `s`: cuts `width` at `limit` and says whether it was;
+    /// `None` when the step must be given up.
+    #[inline(always)]
+    pub(crate) fn prepare(&mut self, s: f64, limit: f64, width: &mut f64) -> Option<bool> {
+        // End exactly on the limit, without a last sliver of a step.
+        let remaining = limit - s;
+        let last = (*width * 1.01).abs() >= remaining.abs();
+        if last {
+            *width = remaining;
+        }
+        let too_small = width.abs() <= SMALLEST_STEP * s.abs() && !last;
+        self.attempts += 1;
+        (self.attempts <= LARGEST_ATTEMPTS && !too_small).then_some(last)
+    }
+
+    /// Width of the next step after one of `width` was accepted.
+    #[inline(always)]
+    pub(crate) fn accept(&mut self, width: f64, factor: f64) -> f64 {
+        let growth = if self.rejected { 1.0 } else { GROWTH };
+        *self = Self::NEW;
+        width * factor.clamp(SHRINK, growth)
+    }
+
+    /// Width of the next attempt after one of `width` was rejected.
+    #[inline(always)]
+    pub(crate) fn reject(&mut self, width: f64, error: f64, factor: f64) -> f64 {
+        self.rejected = true;
+        // A state that left the numbers gives a NaN error: shrink hard.
+        width
+            * if error.is_finite() {
+                factor.clamp(SHRINK, 1.0)
+            } else {
+                0.1
+            }
+    }
+}
+
 /// Makes one accepted step that does not pass `limit`, and moves `position` to
 /// its end.
 ///
@@ -185,29 +237,18 @@ pub fn step<const D: usize, const W: usize>(
     k[0] = position.derivative;
     let (s, from) = (position.s, position.state);
     let mut width = position.width;
-    let mut rejected = false;
-
-    for _ in 0..LARGEST_ATTEMPTS {
-        // End exactly on the limit, without a last sliver of a step.
-        let remaining = limit - s;
-        let last = (width * 1.01).abs() >= remaining.abs();
-        if last {
-            width = remaining;
-        }
-        if width.abs() <= SMALLEST_STEP * s.abs() && !last {
-            break;
-        }
+    let mut control = StepControl::NEW;
+    while let Some(last) = control.prepare(s, limit, &mut width) {
         let to = stages(system, s, &from, width, &mut k, 1..=STAGES);
         let error = error_norm(&k, &from, &to, width, tolerance);
         // The error's eighth root.
         let factor = SAFETY / error.sqrt().sqrt().sqrt();
         if error <= 1.0 {
             let terms = dense_terms(system, s, &from, &to, width, &mut k);
-            let growth = if rejected { 1.0 } else { GROWTH };
             position.s = if last { limit } else { s + width };
             position.state = to;
             position.derivative = k[STAGES];
-            position.width = width * factor.clamp(SHRINK, growth);
+            position.width = control.accept(width, factor);
             return Ok(Step {
                 start: s,
                 width,
@@ -216,13 +257,7 @@ pub fn step<const D: usize, const W: usize>(
                 terms,
             });
         }
-        // A state that left the numbers gives a NaN error: shrink hard.
-        width *= if error.is_finite() {
-            factor.clamp(SHRINK, 1.0)
-        } else {
-            0.1
-        };
-        rejected = true;
+        width = control.reject(width, error, factor);
     }
     Err(StepError { s, width })
 }

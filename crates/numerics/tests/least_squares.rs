@@ -57,6 +57,47 @@ fn line(b: &[f64; 2]) -> NormalEquations<2> {
     equations(&points.map(|(x, y)| (b[0] + b[1] * x - y, [1.0, x])))
 }
 
+/// y = a exp(b x) with a = 2, b = −1, off by turns by 0.001: the optimum is where
+/// the gradient is zero, whatever the way to it.
+fn decay(b: &[f64; 2]) -> NormalEquations<2> {
+    let residuals: Vec<(f64, [f64; 2])> = (0..20)
+        .map(|i| {
+            let x = 0.1 * f64::from(i);
+            let noise = if i % 2 == 0 { 0.001 } else { -0.001 };
+            let e = (b[1] * x).exp();
+            (b[0] * e - 2.0 * (-x).exp() - noise, [e, b[0] * x * e])
+        })
+        .collect();
+    equations(&residuals)
+}
+
+/// A foreseen end saves the evaluation that would confirm it, and leaves no more
+/// to gain than the tolerance.
+#[test]
+fn converges_with_foresight_in_fewer_evaluations() {
+    let with = |foresight: f64| {
+        let options = Options {
+            cost_tolerance: 1e-8,
+            foresight,
+            ..Options::default()
+        };
+        minimise_from([1.9, -0.9], &Bounds::NONE, &options, |b| Some(decay(b)))
+    };
+    let (seen, foreseen) = (with(0.0), with(0.01));
+    assert_eq!(
+        (seen.stop, foreseen.stop),
+        (Stop::Converged, Stop::Converged)
+    );
+    assert!(foreseen.evaluations < seen.evaluations);
+    let at = decay(&foreseen.parameters);
+    let inverse = cholesky::inverse(&at.normal).unwrap();
+    let [g, h] = at.gradient;
+    let left =
+        g * (inverse[0][0] * g + inverse[0][1] * h) + h * (inverse[1][0] * g + inverse[1][1] * h);
+    assert!(left <= 1e-8 * at.cost, "{left:e}");
+    assert_near(foreseen.parameters, seen.parameters, 1e-6);
+}
+
 /// Rosenbrock (1960): 10 (x2 − x1²), 1 − x1.
 fn rosenbrock(b: &[f64; 2]) -> NormalEquations<2> {
     equations(&[
