@@ -133,6 +133,7 @@ fn problem<'a, const W: usize, const P: usize>(
     };
     BatchProblem {
         estimator: Estimator::new(KuwabaraKono { k, c }, setting, &free[..P], base),
+        from: None,
         options: Options {
             largest_step: [2.0; P],
             // As fits of campaigns stop at the kinks that samples leave at separation.

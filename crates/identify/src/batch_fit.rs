@@ -4,7 +4,7 @@
 //! The impacts are integrated in lock-step and a lane whose integration is over
 //! takes its next evaluation, or the next impact, at once. The samples of an
 //! impact are read by the same pass as in a single fit. Every fit ends at the
-//! bits of [`Estimator::minimise`], whatever the others are.
+//! bits of a single one, whatever the others are.
 
 use crate::batch_law::{BatchLaw, IMPACTS};
 use crate::batch_motion::{Impacts, Next, Way, attempt_all};
@@ -19,14 +19,17 @@ use windfall_numerics::ode_lockstep::{Lockstep, Outcome};
 /// One impact to fit.
 #[derive(Clone)]
 pub struct BatchProblem<'a, L, const N: usize, const W: usize, const P: usize> {
-    /// Samples, free parameters and where they start.
+    /// Samples, free parameters and, where `from` is `None`, where they start.
     pub estimator: Estimator<'a, L, N, W, P>,
+    /// Coordinates to start from when they are near the minimum: all samples count
+    /// at once, as in [`Estimator::minimise_from`].
+    pub from: Option<[f64; P]>,
     /// When to stop.
     pub options: Options<P>,
 }
 
-/// Minimises the cost of each problem from the values that its estimator starts
-/// with, as [`Estimator::minimise`] does; `minima` takes the results, in the order
+/// Minimises the cost of each problem, as [`Estimator::minimise`] does or, with
+/// [`BatchProblem::from`], [`Estimator::minimise_from`]; `minima` takes the results, in the order
 /// of the problems, as many as there are of both.
 ///
 /// # Numerics
@@ -103,7 +106,10 @@ impl<L: BatchLaw<N>, const N: usize, const W: usize, const P: usize> Batch<L, N,
                 *slot = Some(Slot {
                     problem,
                     minimum,
-                    search: problem.estimator.search(&problem.options),
+                    search: match &problem.from {
+                        Some(from) => problem.estimator.search_from(from, &problem.options),
+                        None => problem.estimator.search(&problem.options),
+                    },
                     run: None,
                 });
                 continue;

@@ -222,6 +222,7 @@ impl Way {
 
     /// The piece of the motion that a step, which ended at `position`, is, and what
     /// follows it.
+    #[inline(always)]
     pub(crate) fn took<L: BatchLaw<N>, const N: usize, const W: usize>(
         &mut self,
         event: &ImpactEvent<L, N, W>,
@@ -239,6 +240,7 @@ impl Way {
         (segment, piece, next)
     }
 
+    #[inline(always)]
     fn flew<L: BatchLaw<N>, const N: usize, const W: usize>(
         &mut self,
         event: &ImpactEvent<L, N, W>,
@@ -261,6 +263,7 @@ impl Way {
         (segment, Piece::Flight, next)
     }
 
+    #[inline(always)]
     fn touched<L: BatchLaw<N>, const N: usize, const W: usize>(
         &mut self,
         event: &ImpactEvent<L, N, W>,
@@ -296,6 +299,7 @@ impl Way {
 }
 
 /// A leg of flight, in either direction.
+#[inline(always)]
 fn flight<L, const N: usize, const W: usize>(
     event: &ImpactEvent<L, N, W>,
     state: [Lanes<W>; 2],
@@ -314,6 +318,7 @@ fn flight<L, const N: usize, const W: usize>(
     }
 }
 
+#[inline(always)]
 fn segment<const W: usize>(step: Step<2, W>, power: u32, from: f64, to: f64) -> Segment<W> {
     Segment {
         step,

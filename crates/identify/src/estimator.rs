@@ -343,6 +343,11 @@ impl<'a, L: FreeLaw<N>, const N: usize, const W: usize, const P: usize> Estimato
         Search::new(&start, &self.bounds(), options, self.share())
     }
 
+    /// The search that [`minimise_from`](Self::minimise_from) makes.
+    pub(crate) fn search_from(&self, start: &[f64; P], options: &Options<P>) -> Search<P> {
+        Search::near(start, &self.bounds(), options)
+    }
+
     /// Of how many packs of samples one shows the way, if so few do. A free onset
     /// has many minima, one beside each sample: there all samples decide.
     fn share(&self) -> Option<usize> {

@@ -351,6 +351,15 @@ fn first_sample(at: usize, stride: usize) -> usize {
     }
 }
 
+/// 1 in the first 0, 1, … lanes.
+const COUNTED: [Pack; PACK + 1] = [
+    Lanes([0.0; PACK]),
+    Lanes([1.0, 0.0, 0.0, 0.0]),
+    Lanes([1.0, 1.0, 0.0, 0.0]),
+    Lanes([1.0, 1.0, 1.0, 0.0]),
+    Lanes([1.0; PACK]),
+];
+
 /// The packs of the next block from sample `at` on, and where the block after it
 /// begins.
 #[inline(always)]
@@ -371,10 +380,12 @@ fn next_packs<const N: usize, const P: usize>(
             // What is left of the block repeats its first pack, without weight.
             block.starts.copy_within(0..1, i);
             block.counts[i] = 0;
+            block.counted[i] = COUNTED[0];
             continue;
         }
         block.starts[i] = at;
         block.counts[i] = end.min(last) - at;
+        block.counted[i] = COUNTED[block.counts[i]];
         at = end;
     }
     at
@@ -468,24 +479,12 @@ fn weights<const N: usize, const P: usize>(
     block: &Block<N, P>,
     i: usize,
 ) -> Pack {
-    let weight = masked(group.weights[q], block.counts[i]);
+    let weight = block.counted[i] * group.weights[q];
     if group.relative[q].is_empty() {
         weight
     } else {
         weight * load(&group.relative[q], block.starts[i])
     }
-}
-
-/// `weight` in the first `count` lanes.
-#[inline(always)]
-fn masked(weight: f64, count: usize) -> Pack {
-    let mut out = [weight; PACK];
-    if count < PACK {
-        for lane in &mut out[count..] {
-            *lane = 0.0;
-        }
-    }
-    Lanes(out)
 }
 
 #[cold]

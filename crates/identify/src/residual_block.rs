@@ -33,6 +33,8 @@ pub(crate) struct Block<const N: usize, const P: usize> {
     pub starts: [usize; BLOCK],
     /// Samples of each pack: [`PACK`] but where the range begins or ends.
     pub counts: [usize; BLOCK],
+    /// 1 in the lanes of each pack that hold a sample, 0 in the others.
+    pub counted: PerPack,
     sigma: PerPack,
     rest: PerPack,
     displacement: PerPack,
@@ -64,6 +66,7 @@ impl<const N: usize, const P: usize> Block<N, P> {
         Self {
             starts: [0; BLOCK],
             counts: [0; BLOCK],
+            counted: zero,
             sigma: zero,
             rest: zero,
             displacement: zero,

@@ -188,6 +188,7 @@ impl SampleGroup {
 
     /// Indices of the samples with `from ≤ time − onset < to`; the last ones
     /// included when `to` is the end of the motion.
+    #[inline(always)]
     pub(crate) fn range(
         &self,
         onset: f64,
@@ -206,6 +207,7 @@ impl SampleGroup {
 
     /// Index of the first sample with `time − onset ≥ from`: guessed from an even
     /// spacing, and searched for where that is wrong.
+    #[inline(always)]
     fn first_from(&self, onset: f64, from: f64) -> usize {
         let times = self.times();
         let before = |i: usize| times[i] - onset < from;

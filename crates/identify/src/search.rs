@@ -61,6 +61,18 @@ impl<const P: usize> Search<P> {
         search
     }
 
+    /// A search from `start`, which is near the minimum, with all samples.
+    pub(crate) fn near(start: &[f64; P], bounds: &Bounds<P>, options: &Options<P>) -> Self {
+        Self {
+            stage: Stage::Alone,
+            descent: Descent::new(start, bounds, options),
+            start: *start,
+            bounds: *bounds,
+            options: *options,
+            spent: 0,
+        }
+    }
+
     /// Where to evaluate next, and of how many packs of samples one; `None` at the
     /// end.
     pub(crate) fn propose(&self) -> Option<([f64; P], usize)> {

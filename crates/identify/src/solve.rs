@@ -1,6 +1,7 @@
 //! From free parameters to estimates with covariance: the part of a fit that
 //! knows the law's concrete type.
 
+use crate::batch_law::BatchLaw;
 use crate::bootstrap::{BootstrapPlan, bootstrap_intervals};
 use crate::estimator::{Coordinate, Estimator, FreeLaw, FreeParameter, Setting, Target, Values};
 use crate::interval::{FreeIntervals, IntervalMethod, IntervalOptions};
@@ -153,7 +154,7 @@ fn best_of<L, const N: usize, const W: usize, const P: usize>(
     limits: &Limits,
 ) -> Option<Solution>
 where
-    L: FreeLaw<N>,
+    L: BatchLaw<N>,
 {
     let mut best: Option<(Estimator<L, N, W, P>, Minimum<P>)> = None;
     let mut evaluations = 0;
@@ -205,7 +206,7 @@ fn intervals<L, const N: usize, const W: usize, const P: usize>(
     options: &Options<P>,
 ) -> Option<FreeIntervals>
 where
-    L: FreeLaw<N>,
+    L: BatchLaw<N>,
 {
     let count = estimator.free().len();
     if plan.options.method == IntervalMethod::Asymptotic {

@@ -16,7 +16,7 @@ use windfall_identify::model::Sampling;
 use windfall_identify::motion::Motion;
 use windfall_identify::rig::{Carriage, Pendulum, Rig};
 use windfall_identify::samples::SampleGroup;
-use windfall_numerics::least_squares::{Bounds, Minimum, NormalEquations, Options, Stop};
+use windfall_numerics::least_squares::{Minimum, NormalEquations, Options, Stop};
 use windfall_numerics::ode_step::Tolerance;
 
 /// Standard deviations of displacement, rate and force: a pendulum's.
@@ -207,6 +207,7 @@ fn compare<L: BatchLaw<N>, const N: usize, const W: usize, const P: usize>(
         .zip(&groups)
         .map(|(case, groups)| BatchProblem {
             estimator: Estimator::new(law, case.setting(groups), &free[..P], case.values(start)),
+            from: None,
             options: options(),
         })
         .collect();
@@ -216,6 +217,23 @@ fn compare<L: BatchLaw<N>, const N: usize, const W: usize, const P: usize>(
     for (i, problem) in problems.iter().enumerate() {
         let alone = problem.estimator.clone().minimise(&problem.options);
         assert_eq!(together[i], alone, "impact {i}");
+    }
+    // From coordinates near the minima, as replicates of a bootstrap start.
+    let near: Vec<_> = problems
+        .iter()
+        .zip(&together)
+        .map(|(problem, minimum)| BatchProblem {
+            from: Some(minimum.parameters.map(|u| u + 0.01)),
+            ..problem.clone()
+        })
+        .collect();
+    let mut found = nothing(problems.len());
+    minimise_batch(&near, &mut found);
+    for (i, problem) in near.iter().enumerate() {
+        let from = problem.from.unwrap();
+        let mut alone = problem.estimator.clone();
+        let alone = alone.minimise_from(&from, &problem.options);
+        assert_eq!(found[i], alone, "impact {i}");
     }
     // In another order, and fewer of them.
     let backwards: Vec<_> = problems.iter().rev().cloned().collect();
