@@ -9,6 +9,7 @@ use crate::model::Sampling;
 use crate::posterior::{PosteriorPlan, posterior_intervals};
 use crate::profile::profile_intervals;
 use crate::residual::Rows;
+use crate::sampler::Drawing;
 use crate::samples::{QUANTITIES, SampleGroup};
 use crate::uncertainty::covariance;
 use windfall_contact::any_law::{AnyLaw, LARGEST_PARAMETERS};
@@ -250,9 +251,11 @@ where
         }
         IntervalMethod::Posterior => {
             let plan = PosteriorPlan {
-                chains,
-                draws,
-                seed,
+                drawing: Drawing {
+                    chains,
+                    draws,
+                    seed,
+                },
                 confidence,
                 priors: &priors,
             };
