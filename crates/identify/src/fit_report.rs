@@ -292,10 +292,6 @@ impl Plan<'_> {
         out
     }
 }
-
-/// R-hat above which, and independent draws below which, a posterior is not
-/// used (Vehtari et al. 2021).
-const MIXED: (f64, f64) = (1.01, 400.0);
 /// Share of failed replicates that is reported; 1.
 const FAILED_SHARE: f64 = 0.02;
 
@@ -331,12 +327,11 @@ fn interval_remarks(detail: &IntervalDetail, estimates: &[&Estimate]) -> Vec<Fin
                 });
             }
             for (i, mixing) in found.mixing.iter().enumerate() {
-                let fewest = mixing.bulk_draws.min(mixing.tail_draws);
-                if mixing.r_hat > MIXED.0 || fewest < MIXED.1 {
+                if !mixing.suffices() {
                     out.push(Finding::NotMixed {
                         parameter: name(i),
                         r_hat: mixing.r_hat,
-                        draws: fewest,
+                        draws: mixing.independent_draws(),
                     });
                 }
             }

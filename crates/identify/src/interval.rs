@@ -131,6 +131,26 @@ pub struct Mixing {
     pub tail_draws: f64,
 }
 
+/// Largest R-hat and fewest independent draws of chains that say something.
+const MIXED: (f64, f64) = (1.01, 400.0);
+
+impl Mixing {
+    /// The fewer of both independent draws.
+    #[must_use]
+    pub fn independent_draws(&self) -> f64 {
+        self.bulk_draws.min(self.tail_draws)
+    }
+
+    /// Whether the chains agree and are long enough.
+    ///
+    /// # Source
+    /// Vehtari et al. (2021), Bayesian Anal. 16:667.
+    #[must_use]
+    pub fn suffices(&self) -> bool {
+        self.r_hat <= MIXED.0 && self.independent_draws() >= MIXED.1
+    }
+}
+
 /// Intervals of the free parameters in their order, in the minimiser's
 /// coordinates turned to SI.
 #[derive(Clone, Debug, PartialEq)]

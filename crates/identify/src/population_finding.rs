@@ -91,6 +91,28 @@ pub enum PopulationFinding {
         /// Largest difference; standard errors.
         shift: f64,
     },
+    /// The sampler of the posterior broke down in places.
+    #[error(
+        "the sampler diverged at {divergences} of {draws} draws of the posterior: it has corners that the draws do not reach"
+    )]
+    Diverged {
+        /// How often.
+        divergences: usize,
+        /// Draws of all chains.
+        draws: usize,
+    },
+    /// The chains of the posterior do not agree.
+    #[error(
+        "the chains of the posterior do not agree for {quantities} of its numbers (largest R-hat {r_hat:.3}, fewest independent draws {draws:.0}; 1.01 and 400 are asked for): ask for more --draws"
+    )]
+    NotMixed {
+        /// Numbers concerned.
+        quantities: usize,
+        /// Largest spread of all chains over that within chains; 1.
+        r_hat: f64,
+        /// Fewest independent draws.
+        draws: f64,
+    },
 }
 
 impl PopulationFinding {
@@ -108,6 +130,8 @@ impl PopulationFinding {
             Self::NoConvergence { .. } => "no-convergence",
             Self::NoMaximum => "no-maximum",
             Self::NotNormal { .. } => "not-normal",
+            Self::Diverged { .. } => "divergences",
+            Self::NotMixed { .. } => "not-mixed",
         }
     }
 }

@@ -6,12 +6,13 @@ use crate::interval::{Mixing, quantile};
 use crate::population::{
     Expand, PopulationData, PopulationFit, PopulationOptions, Structure, Variation,
 };
+use crate::population_finding::PopulationFinding;
 use crate::posterior::mixing;
 use crate::sampler::{Drawing, LogDensity, draw_chains};
 use nalgebra::{DMatrix, DVector};
 
-/// Smallest standard deviation at the start, as a share of what varies least.
-const LEAST: f64 = 0.05;
+/// Smallest standard deviation at the start, in units of the noise below it.
+const LEAST: f64 = 0.3;
 
 /// How much is drawn.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -63,6 +64,29 @@ pub struct PopulationPosterior {
 }
 
 impl PopulationPosterior {
+    /// What a reader should know besides its numbers.
+    #[must_use]
+    pub fn findings(&self) -> Vec<PopulationFinding> {
+        let mut out = Vec::new();
+        if self.divergences > 0 {
+            out.push(PopulationFinding::Diverged {
+                divergences: self.divergences,
+                draws: self.drawing.chains * self.drawing.draws,
+            });
+        }
+        let all = self.ranges().map(|range| range.mixing);
+        let poor: Vec<Mixing> = all.filter(|mixing| !mixing.suffices()).collect();
+        if !poor.is_empty() {
+            let draws = poor.iter().map(Mixing::independent_draws);
+            out.push(PopulationFinding::NotMixed {
+                quantities: poor.len(),
+                r_hat: poor.iter().map(|mixing| mixing.r_hat).fold(1.0, f64::max),
+                draws: draws.fold(f64::INFINITY, f64::min),
+            });
+        }
+        out
+    }
+
     /// Every quantity.
     pub fn ranges(&self) -> impl Iterator<Item = &PosteriorRange> {
         let levels = [&self.between, &self.within];
@@ -151,6 +175,10 @@ pub fn population_posterior(
 struct Level {
     size: usize,
     full: bool,
+    /// Whether the members differ by more than their noise. Then they are drawn
+    /// themselves, else their deviations in units of L: either way the coordinates
+    /// hardly depend on each other.
+    told: bool,
     /// Standard deviations of the fit.
     scale: Vec<f64>,
     /// L of the fit.
@@ -160,17 +188,23 @@ struct Level {
 }
 
 impl Level {
-    fn new(variation: &Variation, structure: Structure, members: usize) -> Option<Self> {
+    /// `noise`: variances of what tells the members apart.
+    fn new(
+        variation: &Variation,
+        structure: Structure,
+        members: usize,
+        noise: &DVector<f64>,
+    ) -> Option<Self> {
         let size = variation.sds.len();
-        let largest = variation.sds.iter().map(|s| s.value).fold(0.0, f64::max);
-        if structure == Structure::Zero || largest == 0.0 {
+        if structure == Structure::Zero {
             return None;
         }
-        let scale: Vec<f64> = variation
-            .sds
-            .iter()
-            .map(|s| s.value.max(LEAST * largest))
+        let sds = variation.sds.iter().zip(noise);
+        let scale: Vec<f64> = sds
+            .clone()
+            .map(|(sd, noise)| sd.value.max(LEAST * noise.sqrt()))
             .collect();
+        let told = sds.into_iter().all(|(sd, noise)| sd.value > noise.sqrt());
         // Where the fit ends at a bound its matrix is singular: less correlated,
         // it is a place to start from.
         let covariance = DMatrix::from_fn(size, size, |i, j| match i == j {
@@ -180,6 +214,7 @@ impl Level {
         Some(Self {
             size,
             full: structure == Structure::Full,
+            told,
             centre: covariance.cholesky()?.l(),
             scale,
             members: members as f64,
@@ -260,44 +295,80 @@ impl Level {
     }
 }
 
-/// Log-density of deviations `r` of which each is N(0, L Lᵀ), with what its
+/// Log-density of deviations of which each is N(0, L Lᵀ), with what its
 /// derivatives are made of.
 struct Normal<'a> {
+    told: bool,
     root: &'a DMatrix<f64>,
     by_root: DMatrix<f64>,
     density: f64,
 }
 
 impl<'a> Normal<'a> {
-    fn new(root: &'a DMatrix<f64>) -> Self {
+    fn new(level: &Level, root: &'a DMatrix<f64>) -> Self {
         Self {
+            told: level.told,
             root,
             by_root: DMatrix::zeros(root.nrows(), root.ncols()),
             density: 0.0,
         }
     }
 
-    /// Adds one deviation; returns S⁻¹ r, minus the gradient by it.
-    fn add(&mut self, mut r: DVector<f64>) -> Option<DVector<f64>> {
-        if !self.root.solve_lower_triangular_mut(&mut r) {
+    /// A member at its coordinates: around `centre` in `unit`, or around what is
+    /// expected of it in units of L.
+    fn member(
+        &self,
+        (centre, unit): (&[f64], &DMatrix<f64>),
+        expected: &DVector<f64>,
+        z: &[f64],
+    ) -> DVector<f64> {
+        let z = DVector::from_column_slice(z);
+        match self.told {
+            true => DVector::from_column_slice(centre) + unit * z,
+            false => expected + self.root * z,
+        }
+    }
+
+    /// Adds one member: `deviation` from what is expected of it, its coordinates
+    /// `z` in `unit`, and what pulls at it, `slope`. Writes the gradient by the
+    /// coordinates and returns that by what is expected.
+    fn add(
+        &mut self,
+        deviation: DVector<f64>,
+        slope: DVector<f64>,
+        (unit, z): (&DMatrix<f64>, &[f64]),
+        gradient: &mut [f64],
+    ) -> Option<DVector<f64>> {
+        if !self.told {
+            let z = DVector::from_column_slice(z);
+            self.density -= 0.5 * z.dot(&z);
+            self.by_root += &slope * z.transpose();
+            let own = self.root.tr_mul(&slope) - z;
+            gradient.copy_from_slice(own.as_slice());
+            return Some(slope);
+        }
+        let mut white = deviation;
+        if !self.root.solve_lower_triangular_mut(&mut white) {
             return None;
         }
-        let mut pull = r.clone();
+        let mut pull = white.clone();
         if !self.root.tr_solve_lower_triangular_mut(&mut pull) {
             return None;
         }
-        self.density -= 0.5 * r.dot(&r);
-        self.by_root += &pull * r.transpose();
-        for i in 0..r.len() {
+        self.density -= 0.5 * white.dot(&white);
+        self.by_root += &pull * white.transpose();
+        for i in 0..white.len() {
             self.density -= self.root[(i, i)].ln();
             self.by_root[(i, i)] -= 1.0 / self.root[(i, i)];
         }
+        let own = unit.tr_mul(&(slope - &pull));
+        gradient.copy_from_slice(own.as_slice());
         Some(pull)
     }
 }
 
 /// The whole model: coordinates are those of the effects, of the covariance
-/// matrices, of each fruit and of each impact, in units of their uncertainty.
+/// matrices, of each fruit and of each impact.
 struct Hierarchy<'a, 'b> {
     fit: &'a PopulationFit,
     expand: &'a Expand<'b>,
@@ -326,43 +397,39 @@ impl<'a, 'b> Hierarchy<'a, 'b> {
         for &fruit in &data.fruit {
             impacts[fruit] += 1;
         }
-        let between = Level::new(&fit.between, options.between, fruits)?;
-        let single = impacts.iter().all(|&n| n == 1);
-        let within = match single {
+        let information = curvatures(&expand(&fit.impacts), size)?;
+        let noise: Option<Vec<_>> = information
+            .iter()
+            .map(|h| h.clone().try_inverse())
+            .collect();
+        let noise = noise?;
+        let mean = noise.iter().sum::<DMatrix<f64>>().diagonal() / noise.len() as f64;
+        let within = match impacts.iter().all(|&n| n == 1) {
             true => None,
             false => {
-                let spare = data.fruit.len() - fruits;
-                Some(Level::new(&fit.within, options.within, spare.max(1))?)
+                let spare = (data.fruit.len() - fruits).max(1);
+                Some(Level::new(&fit.within, options.within, spare, &mean)?)
             }
         };
-        let inverse = |level: &Level| {
-            let root = &level.centre;
-            (root * root.transpose()).try_inverse()
-        };
-        let between_inverse = inverse(&between)?;
-        let within_inverse = match &within {
-            Some(level) => inverse(level)?,
+        let spread = match &within {
+            Some(level) => &level.centre * level.centre.transpose(),
             None => DMatrix::zeros(size, size),
         };
-        let noise = curvatures(&expand(&fit.impacts), size)?;
+        let each = data.fruit.len() as f64 / fruits as f64;
+        let own = (mean + spread.diagonal()) / each;
+        let between = Level::new(&fit.between, options.between, fruits, &own)?;
         let unit = |information: DMatrix<f64>| Some(information.try_inverse()?.cholesky()?.l());
-        let mut known = vec![between_inverse; fruits];
+        let between_information = (&between.centre * between.centre.transpose()).try_inverse()?;
+        let mut known = vec![between_information; fruits];
         for (&fruit, noise) in data.fruit.iter().zip(&noise) {
             // What an impact tells of its fruit.
-            known[fruit] += match &within {
-                Some(level) => {
-                    let root = &level.centre;
-                    let spread = root * root.transpose() + noise.clone().try_inverse()?;
-                    spread.try_inverse()?
-                }
-                None => noise.clone(),
-            };
+            known[fruit] += (&spread + noise).try_inverse()?;
         }
         let impact_unit: Option<Vec<_>> = match within {
-            Some(_) => noise
-                .into_iter()
-                .map(|n| unit(n + &within_inverse))
-                .collect(),
+            Some(_) => {
+                let rest = spread.try_inverse()?;
+                information.into_iter().map(|h| unit(h + &rest)).collect()
+            }
             None => Some(Vec::new()),
         };
         let covariates = fit.covariates.iter().map(|(name, centre)| {
@@ -418,11 +485,6 @@ impl<'a, 'b> Hierarchy<'a, 'b> {
         out
     }
 
-    /// `centre` moved by the coordinates in `unit`.
-    fn placed(&self, centre: &[f64], unit: &DMatrix<f64>, z: &[f64]) -> DVector<f64> {
-        DVector::from_column_slice(centre) + unit * DVector::from_column_slice(z)
-    }
-
     /// Effects of the covariates at impact `impact`, on each parameter.
     fn along(&self, z: &[f64], impact: usize) -> DVector<f64> {
         let stride = self.covariates.len() + 1;
@@ -458,40 +520,46 @@ impl LogDensity for Hierarchy<'_, '_> {
         let stride = self.covariates.len() + 1;
         let impact_from = self.fruit_from + q * self.fruit_unit.len();
         let (between_root, within_root) = self.roots(z);
+        let mut between = Normal::new(&self.between, &between_root);
+        let within_level = self.within.as_ref().zip(within_root.as_ref());
+        let mut within = within_level.map(|(level, root)| Normal::new(level, root));
+        let fruit_at = |i: usize| self.fruit_from + q * i..self.fruit_from + q * (i + 1);
+        let impact_at = |j: usize| impact_from + q * j..impact_from + q * (j + 1);
+
+        let median = DVector::from_fn(q, |a, _| self.effect(z, a * stride));
         let fruits: Vec<DVector<f64>> = (0..self.fruit_unit.len())
             .map(|i| {
-                let own = &z[self.fruit_from + q * i..][..q];
-                self.placed(&self.fit.fruit[i], &self.fruit_unit[i], own)
+                let place = (&self.fit.fruit[i][..], &self.fruit_unit[i]);
+                between.member(place, &median, &z[fruit_at(i)])
             })
             .collect();
-        let expected = |j: usize| &fruits[self.fruit[j]] + self.along(z, j);
-        let points: Vec<DVector<f64>> = (0..self.fruit.len())
-            .map(|j| match self.impact_unit.get(j) {
-                Some(unit) => {
-                    let own = &z[impact_from + q * j..][..q];
-                    self.placed(&self.fit.impacts[j], unit, own)
+        let expected: Vec<DVector<f64>> = (0..self.fruit.len())
+            .map(|j| &fruits[self.fruit[j]] + self.along(z, j))
+            .collect();
+        let points: Vec<Vec<f64>> = (0..self.fruit.len())
+            .map(|j| match &within {
+                Some(normal) => {
+                    let place = (&self.fit.impacts[j][..], &self.impact_unit[j]);
+                    normal.member(place, &expected[j], &z[impact_at(j)])
                 }
-                None => expected(j),
+                None => expected[j].clone(),
             })
+            .map(|point| point.as_slice().to_vec())
             .collect();
-        let at: Vec<Vec<f64>> = points.iter().map(|p| p.as_slice().to_vec()).collect();
-        let likelihoods = (self.expand)(&at);
+        let likelihoods = (self.expand)(&points);
 
         gradient.fill(0.0);
         let mut density = 0.0;
         let mut by_fruit = vec![DVector::zeros(q); fruits.len()];
-        let mut within = within_root.as_ref().map(Normal::new);
         for (j, likelihood) in likelihoods.iter().enumerate() {
             let likelihood = likelihood.as_ref()?;
             density += likelihood.value;
             let slope = DVector::from_column_slice(&likelihood.gradient);
-            // What pulls at the impact's expected parameters.
             let pull = match &mut within {
                 Some(normal) => {
-                    let pull = normal.add(&points[j] - expected(j))?;
-                    let own = self.impact_unit[j].tr_mul(&(slope - &pull));
-                    gradient[impact_from + q * j..][..q].copy_from_slice(own.as_slice());
-                    pull
+                    let deviation = DVector::from_column_slice(&points[j]) - &expected[j];
+                    let own = (&self.impact_unit[j], &z[impact_at(j)]);
+                    normal.add(deviation, slope, own, &mut gradient[impact_at(j)])?
                 }
                 None => slope,
             };
@@ -502,15 +570,12 @@ impl LogDensity for Hierarchy<'_, '_> {
             }
             by_fruit[self.fruit[j]] += pull;
         }
-        let mut between = Normal::new(&between_root);
-        for (i, fruit) in fruits.iter().enumerate() {
-            let median = DVector::from_fn(q, |a, _| self.effect(z, a * stride));
-            let pull = between.add(fruit - median)?;
+        for (i, (fruit, slope)) in fruits.iter().zip(by_fruit).enumerate() {
+            let own = (&self.fruit_unit[i], &z[fruit_at(i)]);
+            let pull = between.add(fruit - &median, slope, own, &mut gradient[fruit_at(i)])?;
             for a in 0..q {
                 gradient[a * stride] += pull[a];
             }
-            let own = self.fruit_unit[i].tr_mul(&(&by_fruit[i] - &pull));
-            gradient[self.fruit_from + q * i..][..q].copy_from_slice(own.as_slice());
         }
         for (gradient, effect) in gradient.iter_mut().zip(&self.fit.effects) {
             *gradient *= effect.se;

@@ -72,18 +72,26 @@ fn near(what: &str, found: &PosteriorRange, [median, low, high]: [f64; 3]) {
     assert!((found.high - high).abs() < 1.5 * tolerance, "{what}");
 }
 
-/// One parameter, as many impacts of each fruit: the likelihood of both standard
-/// deviations is that of two sums of squares.
+/// Levels that vary by more than the noise, and by less or not at all.
 #[test]
 fn converges_to_the_integral_of_two_levels() {
+    for spread in [[0.15, 0.05], [0.15, 0.0], [0.01, 0.01]] {
+        println!("{spread:?}");
+        two_levels(spread);
+    }
+}
+
+/// One parameter, as many impacts of each fruit: the likelihood of both standard
+/// deviations is that of two sums of squares.
+fn two_levels(spread: [f64; 2]) {
     let (fruits, each, noise) = (10, 4, 0.02_f64.powi(2));
     let mut source = noise_source(3, 0);
     let (mut z, mut fruit) = (Vec::new(), Vec::new());
     for i in 0..fruits {
-        let own = 12.0 + 0.15 * normal(&mut source);
+        let own = 12.0 + spread[0] * normal(&mut source);
         for _ in 0..each {
-            let spread = (0.05_f64.powi(2) + noise).sqrt();
-            z.push(vec![own + spread * normal(&mut source)]);
+            let within = (spread[1].powi(2) + noise).sqrt();
+            z.push(vec![own + within * normal(&mut source)]);
             fruit.push(i);
         }
     }
@@ -105,9 +113,10 @@ fn converges_to_the_integral_of_two_levels() {
         .flat_map(|(own, mean)| own.iter().map(move |z| (z[0] - mean).powi(2)))
         .sum();
     let (mut sd_between, mut sd_within) = (Vec::new(), Vec::new());
-    for i in 0..600 {
+    for i in 0..800 {
         for j in 0..300 {
-            let (b, w) = (1e-3 * (f64::from(i) + 0.5), 4e-4 * (f64::from(j) + 0.5));
+            let b = spread[0] * 6e-3 * (f64::from(i) + 0.5);
+            let w = 4e-4 * (f64::from(j) + 0.5);
             let inner = w * w + noise;
             let outer = inner + each as f64 * b * b;
             let log = -0.5 * ((fruits - 1) as f64 * outer.ln() + between / outer)
@@ -126,6 +135,7 @@ fn converges_to_the_integral_of_two_levels() {
     // The estimate lies where the posterior does.
     let effect = &posterior.effects[0];
     assert!((effect.median - fit.effects[0].value).abs() < 0.1 * fit.effects[0].se);
+    assert!(posterior.divergences < 30);
 }
 
 /// Two parameters, one impact of each fruit: standard deviations and correlation

@@ -21,6 +21,7 @@ Exit status: 0 when the population was estimated, 1 when the impacts do not allo
 Examples:
   windfall population my-campaign
   windfall population my-campaign --covariate 'log(impact_velocity)' --covariate variety
+  windfall population my-campaign --posterior
   windfall population my-campaign --law hunt-crossley --format json"
 )]
 pub struct PopulationArguments {
@@ -36,6 +37,15 @@ pub struct PopulationArguments {
     /// Parameter to estimate although it has a value, such as an exponent; may be repeated
     #[arg(long, value_name = "NAME")]
     pub free: Vec<String>,
+    /// Draw the posterior beside the estimate, as a check; minutes for large campaigns
+    #[arg(long)]
+    pub posterior: bool,
+    /// Draws of each of four chains for --posterior (1000)
+    #[arg(long, value_name = "N")]
+    pub draws: Option<usize>,
+    /// Seed of the posterior's draws (1)
+    #[arg(long, value_name = "N")]
+    pub seed: Option<u64>,
     /// Write the population as a law card (TOML, or JSON where the name ends with .json)
     #[arg(long, value_name = "FILE", value_hint = ValueHint::FilePath)]
     pub card: Option<PathBuf>,

@@ -18,9 +18,12 @@ pub fn run(arguments: &PopulationArguments) -> anyhow::Result<()> {
             laws: arguments.law.iter().cloned().collect(),
             free: arguments.free.clone(),
             threads: arguments.threads,
+            draws: arguments.draws,
+            seed: arguments.seed,
             ..FitRequest::default()
         },
         covariates: arguments.covariates.clone(),
+        posterior: arguments.posterior,
         card: arguments.card.clone(),
     };
     let bar = progress_bar();

@@ -9,7 +9,6 @@ use crate::read_campaign::read_campaign;
 use crate::request_fit::apply_request;
 use crate::workflow_fit::{Progress, fit_campaign};
 use crate::workflow_population::PopulationRequest;
-use std::collections::BTreeMap;
 use windfall_contact::expression::LawExpression;
 
 /// The card of a population: the range in which the law was seen is that of the
@@ -53,7 +52,7 @@ pub fn card_of_population(
             advice: "look at the impacts one by one: `windfall fit DIR`".to_owned(),
         })?;
     card.expression = LawExpression::from(law).to_string();
-    card.covariance = median_covariance(&outcome.population, &card.parameters);
+    card.covariance = Some(median_covariance(&outcome.population));
     card.cautions = outcome.findings.iter().map(|f| f.message.clone()).collect();
     card.bodies.specimens = outcome.fruits;
     card.bodies.recordings = outcome.impacts;
@@ -73,25 +72,13 @@ fn card_parameter(parameter: &PopulationParameter) -> CardParameter {
     }
 }
 
-/// Variances of the medians; their covariances are not known here, so that a
-/// single parameter only has a matrix.
-fn median_covariance(
-    population: &Population,
-    parameters: &BTreeMap<String, CardParameter>,
-) -> Option<CardCovariance> {
-    let [name] = &population.parameters[..] else {
-        return None;
-    };
-    let parameter = parameters.get(name)?;
-    let relative = parameter.sd? / parameter.value;
-    Some(CardCovariance {
+/// Covariance of the medians on the scale of the deviations.
+fn median_covariance(population: &Population) -> CardCovariance {
+    CardCovariance {
         of: labels(population),
-        matrix: vec![vec![match population.logarithmic[0] {
-            true => relative * relative,
-            false => parameter.sd? * parameter.sd?,
-        }]],
+        matrix: population.median_covariance.clone(),
         of_what: "the median fruit".to_owned(),
-    })
+    }
 }
 
 fn labels(population: &Population) -> Vec<String> {

@@ -3,6 +3,7 @@
 use crate::outcome::{FailureOutcome, FindingOutcome};
 use serde::{Deserialize, Serialize};
 use windfall_identify::population::{FixedEffect, PopulationFit, Spread, Variation};
+use windfall_identify::population_posterior::{PopulationPosterior, PosteriorRange};
 use windfall_identify::population_two_stage::TwoStage;
 
 /// A number with its interval, where there is one.
@@ -82,6 +83,36 @@ pub struct TwoStageOutcome {
     pub effects: Vec<PopulationEffect>,
 }
 
+/// The posterior, drawn beside the estimate.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct PopulationPosteriorOutcome {
+    /// Medians of the parameters over fruit: median of the draws, interval between
+    /// their quantiles; SI.
+    pub medians: Vec<RangeOutcome>,
+    /// Standard deviations between fruit, in the order of the parameters.
+    pub between: Vec<RangeOutcome>,
+    /// Those of the impacts of one fruit; empty where each has one impact.
+    pub within: Vec<RangeOutcome>,
+    /// Correlations between fruit, in the order of the pairs.
+    pub between_correlations: Vec<RangeOutcome>,
+    /// Those of the impacts of one fruit.
+    pub within_correlations: Vec<RangeOutcome>,
+    /// Effects of covariates, in the order of the estimated ones.
+    pub effects: Vec<RangeOutcome>,
+    /// Chains.
+    pub chains: usize,
+    /// Draws of each.
+    pub draws: usize,
+    /// Their seed.
+    pub seed: u64,
+    /// Largest spread of all chains over that within chains.
+    pub largest_r_hat: f64,
+    /// Fewest independent draws.
+    pub fewest_draws: f64,
+    /// Draws at which the sampler diverged.
+    pub divergences: usize,
+}
+
 /// The population in numbers alone, as a law card carries it.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Population {
@@ -91,6 +122,8 @@ pub struct Population {
     pub logarithmic: Vec<bool>,
     /// Median fruit at the centre of all covariates; SI.
     pub median: Vec<f64>,
+    /// Covariance of the medians' estimates, on the scale of the deviations.
+    pub median_covariance: Vec<Vec<f64>>,
     /// Covariance between fruit, on the scale of the deviations.
     pub between: Vec<Vec<f64>>,
     /// Covariance of the impacts of one fruit.
@@ -143,6 +176,9 @@ pub struct PopulationOutcome {
     pub effects: Vec<PopulationEffect>,
     /// The usual way beside it.
     pub two_stage: TwoStageOutcome,
+    /// The posterior, where it was asked for.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub posterior: Option<PopulationPosteriorOutcome>,
     /// Log-likelihood.
     pub log_likelihood: f64,
     /// Largest difference to a single linearisation at the fits; standard errors.
@@ -296,6 +332,46 @@ pub fn two_stage_outcome(
     }
 }
 
+/// The posterior on the scales of people.
+#[must_use]
+pub fn posterior_outcome(
+    posterior: &PopulationPosterior,
+    fit: &PopulationFit,
+    varying: &[Varying],
+) -> PopulationPosteriorOutcome {
+    let plain = |range: &PosteriorRange| RangeOutcome {
+        value: range.median,
+        low: finite(range.low),
+        high: finite(range.high),
+    };
+    let all = |ranges: &[PosteriorRange]| ranges.iter().map(plain).collect::<Vec<_>>();
+    let effects = fit.effects.iter().zip(&posterior.effects);
+    let medians = effects
+        .clone()
+        .filter(|(effect, _)| effect.covariate.is_none());
+    let rest = effects.filter(|(effect, _)| effect.covariate.is_some());
+    let mixing = || posterior.ranges().map(|range| range.mixing);
+    PopulationPosteriorOutcome {
+        medians: medians
+            .zip(varying)
+            .map(|((_, range), parameter)| parameter.range(range.median, (range.low, range.high)))
+            .collect(),
+        between: all(&posterior.between.sds),
+        within: all(&posterior.within.sds),
+        between_correlations: all(&posterior.between.correlations),
+        within_correlations: all(&posterior.within.correlations),
+        effects: rest.map(|(_, range)| plain(range)).collect(),
+        chains: posterior.drawing.chains,
+        draws: posterior.drawing.draws,
+        seed: posterior.drawing.seed,
+        largest_r_hat: mixing().map(|m| m.r_hat).fold(1.0, f64::max),
+        fewest_draws: mixing()
+            .map(|m| m.independent_draws())
+            .fold(f64::INFINITY, f64::min),
+        divergences: posterior.divergences,
+    }
+}
+
 /// The population in numbers alone.
 #[must_use]
 pub fn population_of(fit: &PopulationFit, varying: &[Varying], method: &str) -> Population {
@@ -321,6 +397,7 @@ pub fn population_of(fit: &PopulationFit, varying: &[Varying], method: &str) -> 
             .zip(&medians)
             .map(|(v, e)| v.value(e.value))
             .collect(),
+        median_covariance: medians_covariance(fit),
         between: fit.between.covariance.clone(),
         within: fit.within.covariance.clone(),
         covariates: covariates.collect(),
@@ -328,4 +405,20 @@ pub fn population_of(fit: &PopulationFit, varying: &[Varying], method: &str) -> 
         impacts: fit.impacts.len(),
         method: method.to_owned(),
     }
+}
+
+/// Rows and columns of the effects' covariance that are those of the medians.
+fn medians_covariance(fit: &PopulationFit) -> Vec<Vec<f64>> {
+    let effects = fit.effects.iter().enumerate();
+    let medians: Vec<usize> = effects
+        .filter(|(_, effect)| effect.covariate.is_none())
+        .map(|(at, _)| at)
+        .collect();
+    let row = |i: &usize| {
+        medians
+            .iter()
+            .map(|&j| fit.effects_covariance[*i][j])
+            .collect()
+    };
+    medians.iter().map(row).collect()
 }

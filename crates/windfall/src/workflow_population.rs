@@ -11,7 +11,7 @@ use crate::outcome::{FailureOutcome, FindingOutcome};
 use crate::population_covariates::find_covariates;
 use crate::population_outcome::{
     FruitOutcome, PopulationOutcome, Varying, correlations_of, effects_of, parameters_of,
-    population_of, two_stage_outcome,
+    population_of, posterior_outcome, two_stage_outcome,
 };
 use crate::provenance::VERSION;
 use crate::read_campaign::read_campaign;
@@ -21,9 +21,12 @@ use rayon::prelude::*;
 use std::path::PathBuf;
 use std::sync::atomic::{AtomicUsize, Ordering};
 use windfall_contact::expression::LawExpression;
+use windfall_identify::interval::IntervalOptions;
 use windfall_identify::population::{Covariate, PopulationData, PopulationFit, PopulationOptions};
+use windfall_identify::population_finding::PopulationFinding;
 use windfall_identify::population_fit::fit_population;
 use windfall_identify::population_likelihood::{ImpactLikelihood, NORMAL_REACH, impact_likelihood};
+use windfall_identify::population_posterior::{PopulationDrawing, population_posterior};
 use windfall_identify::population_two_stage::two_stage;
 use windfall_identify::problem::LawProblem;
 
@@ -36,6 +39,9 @@ pub struct PopulationRequest {
     pub fit: FitRequest,
     /// Covariates in place of those of the campaign; none keeps them.
     pub covariates: Vec<String>,
+    /// Whether the posterior is drawn beside the estimate: chains, draws and seed
+    /// as of the campaign's intervals.
+    pub posterior: bool,
     /// Where a law card of the population is written.
     pub card: Option<PathBuf>,
 }
@@ -64,10 +70,16 @@ pub fn population(
     if !request.covariates.is_empty() {
         campaign.covariates.clone_from(&request.covariates);
     }
-    on_threads(request.fit.threads, || estimate(&campaign, progress))
+    on_threads(request.fit.threads, || {
+        estimate(&campaign, request.posterior, progress)
+    })
 }
 
-fn estimate(campaign: &Campaign, progress: Progress) -> Result<PopulationOutcome, Error> {
+fn estimate(
+    campaign: &Campaign,
+    posterior: bool,
+    progress: Progress,
+) -> Result<PopulationOutcome, Error> {
     let rig = find_rig(campaign)?;
     let law = &campaign.fit.laws[0];
     let problem = law_problem(law, &campaign.fit.free);
@@ -103,6 +115,27 @@ fn estimate(campaign: &Campaign, progress: Progress) -> Result<PopulationOutcome
     };
     let fit = fit_population(&data, &starts, &expand, &options).map_err(subject)?;
     let stages = two_stage(&data, &starts, options.confidence).map_err(subject)?;
+    let posterior = match posterior {
+        false => None,
+        true => {
+            let IntervalOptions {
+                chains,
+                draws,
+                seed,
+                ..
+            } = campaign.fit.options.intervals;
+            let drawing = PopulationDrawing {
+                chains,
+                draws,
+                seed,
+            };
+            let found = population_posterior(&data, &fit, &expand, &options, &drawing);
+            Some(found.map_err(subject)?)
+        }
+    };
+    let mut findings = findings(campaign, &rig, &fit, &specimens);
+    let remarks = posterior.iter().flat_map(|posterior| posterior.findings());
+    findings.extend(remarks.map(|finding| population_finding(&finding)));
     let method = "REML, Laplace";
     Ok(PopulationOutcome {
         windfall: VERSION.to_owned(),
@@ -122,7 +155,8 @@ fn estimate(campaign: &Campaign, progress: Progress) -> Result<PopulationOutcome
         converged: fit.converged,
         fruit: fruit(&fit, &data, &specimens, &varying),
         population: population_of(&fit, &varying, method),
-        findings: findings(campaign, &rig, &fit, &specimens),
+        posterior: posterior.map(|found| posterior_outcome(&found, &fit, &varying)),
+        findings,
         failed,
     })
 }
@@ -288,9 +322,13 @@ fn findings(
             ),
         });
     }
-    out.extend(fit.findings.iter().map(|finding| FindingOutcome {
+    out.extend(fit.findings.iter().map(population_finding));
+    out
+}
+
+fn population_finding(finding: &PopulationFinding) -> FindingOutcome {
+    FindingOutcome {
         code: finding.code().to_owned(),
         message: finding.to_string(),
-    }));
-    out
+    }
 }

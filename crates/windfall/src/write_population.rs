@@ -1,7 +1,9 @@
 //! A population as text and CSV.
 
 use crate::error::Error;
-use crate::population_outcome::{PopulationEffect, PopulationOutcome, RangeOutcome};
+use crate::population_outcome::{
+    PopulationEffect, PopulationOutcome, PopulationPosteriorOutcome, RangeOutcome,
+};
 use crate::text_number::plain;
 use crate::text_statistic::{number, probability};
 use crate::write_csv::csv_text;
@@ -46,6 +48,17 @@ pub fn text_of_population(outcome: &PopulationOutcome) -> String {
         text += "\n\nEffects of covariates, per unit (on ln of the parameter; exponents as they are):\n";
         text += &effect_table(&outcome.effects, &outcome.two_stage.effects);
     }
+    if let Some(posterior) = &outcome.posterior {
+        text += &format!(
+            "\n\nPosterior, {} chains of {} draws (largest R-hat {:.3}, fewest independent draws {:.0}, {} divergences):\n",
+            posterior.chains,
+            posterior.draws,
+            posterior.largest_r_hat,
+            posterior.fewest_draws,
+            posterior.divergences
+        );
+        text += &posterior_table(outcome, posterior);
+    }
     text += "\n\n";
     let note = "Intervals: t of effects and medians (Satterthwaite), profile likelihood of standard \
                 deviations and correlations. Two-stage: each impact fitted, averaged per fruit; \
@@ -88,6 +101,109 @@ fn spread_table(outcome: &PopulationOutcome) -> String {
         row(name, &parameter.within, None, factor);
     }
     page_tables(&header, &rows, &[0])
+}
+
+/// The posterior beside the estimate.
+fn posterior_table(outcome: &PopulationOutcome, posterior: &PopulationPosteriorOutcome) -> String {
+    let header = strings(&["", "estimate", "from", "to", "posterior", "from", "to"]);
+    let rows = posterior_rows(outcome, posterior).into_iter();
+    let rows = rows.map(|row| {
+        let mut line = vec![row.label];
+        line.extend(cells(&row.estimate, row.factor));
+        line.extend(cells(&row.posterior, row.factor));
+        line
+    });
+    page_tables(&header, &rows.collect::<Vec<_>>(), &[0])
+}
+
+struct PosteriorRow {
+    label: String,
+    quantity: &'static str,
+    of: String,
+    covariate: String,
+    factor: f64,
+    estimate: RangeOutcome,
+    posterior: RangeOutcome,
+}
+
+fn posterior_rows(
+    outcome: &PopulationOutcome,
+    posterior: &PopulationPosteriorOutcome,
+) -> Vec<PosteriorRow> {
+    let mut rows = Vec::new();
+    for (i, parameter) in outcome.parameters.iter().enumerate() {
+        let (factor, unit) = match parameter.scale.as_str() {
+            "logarithm" => (100.0, " (%)"),
+            _ => (1.0, ""),
+        };
+        let name = &parameter.name;
+        let mut row = |label, quantity, factor, estimate: &RangeOutcome, drawn: &[RangeOutcome]| {
+            if let Some(posterior) = drawn.get(i) {
+                rows.push(PosteriorRow {
+                    label,
+                    quantity,
+                    of: name.clone(),
+                    covariate: String::new(),
+                    factor,
+                    estimate: *estimate,
+                    posterior: *posterior,
+                });
+            }
+        };
+        let label = format!("median {name}");
+        row(label, "median", 1.0, &parameter.median, &posterior.medians);
+        let label = format!("SD of {name} between fruit{unit}");
+        let own = &posterior.between;
+        row(label, "sd_between", factor, &parameter.between, own);
+        let label = format!("SD of {name} within fruit{unit}");
+        let own = &posterior.within;
+        row(label, "sd_within", factor, &parameter.within, own);
+    }
+    for (i, pair) in outcome.correlations.iter().enumerate() {
+        let levels = [
+            (
+                "between",
+                "correlation_between",
+                &pair.between,
+                &posterior.between_correlations,
+            ),
+            (
+                "within",
+                "correlation_within",
+                &pair.within,
+                &posterior.within_correlations,
+            ),
+        ];
+        for (level, quantity, estimate, drawn) in levels {
+            if let Some(posterior) = drawn.get(i) {
+                rows.push(PosteriorRow {
+                    label: format!("{}, {} {level} fruit", pair.first, pair.second),
+                    quantity,
+                    of: format!("{} {}", pair.first, pair.second),
+                    covariate: String::new(),
+                    factor: 1.0,
+                    estimate: *estimate,
+                    posterior: *posterior,
+                });
+            }
+        }
+    }
+    for (effect, posterior) in outcome.effects.iter().zip(&posterior.effects) {
+        rows.push(PosteriorRow {
+            label: format!("effect of {} on {}", effect.covariate, effect.parameter),
+            quantity: "effect",
+            of: effect.parameter.clone(),
+            covariate: effect.covariate.clone(),
+            factor: 1.0,
+            estimate: RangeOutcome {
+                value: effect.effect,
+                low: Some(effect.low),
+                high: Some(effect.high),
+            },
+            posterior: *posterior,
+        });
+    }
+    rows
 }
 
 fn correlation_table(outcome: &PopulationOutcome) -> String {
@@ -213,6 +329,13 @@ pub fn csv_of_population(outcome: &PopulationOutcome) -> Result<String, Error> {
                 effect.low.to_string(),
                 effect.high.to_string(),
             ]);
+        }
+    }
+    if let Some(posterior) = &outcome.posterior {
+        for found in posterior_rows(outcome, posterior) {
+            let mut line = row("posterior", found.quantity, &found.of, &found.posterior);
+            line[3] = found.covariate;
+            rows.push(line);
         }
     }
     csv_text(&header, rows)

@@ -67,7 +67,7 @@ fn run(directory: &Path, covariates: &[&str], threads: usize) -> PopulationOutco
             ..FitRequest::default()
         },
         covariates: covariates.iter().map(|c| (*c).to_owned()).collect(),
-        card: None,
+        ..PopulationRequest::default()
     };
     population(&request, &|_, _| {}).unwrap()
 }
