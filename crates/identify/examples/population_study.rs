@@ -1,38 +1,38 @@
 //! How well a population is estimated from raw recordings: replicates of a
-//! campaign with known truth, nonlinear mixed effects beside the two-stage way.
+//! campaign with known truth, nonlinear mixed effects beside the two-stage way or
+//! beside the posterior.
 //!
 //! `population_study [fine|coarse] [REPLICATES] [THREADS] [REACH]` prints a
 //! Markdown table. REACH: standard errors around a fit in which it counts as a
 //! normal observation (2).
+//!
+//! `population_study posterior [REPLICATES] [THREADS]` draws the posterior of each
+//! replicate and compares.
 //!
 //! `fine`: encoder of 360,000 counts per revolution, force noise of 1 N.
 //! `coarse`: encoder of 20,000 counts, force noise of 4 N, half of the impacts.
 
 #![allow(clippy::print_stdout, clippy::print_stderr, clippy::unwrap_used)]
 
-use rand::{Rng, SeedableRng};
-use rand_chacha::ChaCha12Rng;
-use std::sync::atomic::{AtomicUsize, Ordering};
+#[path = "shared/pendulum.rs"]
+mod pendulum;
+
+use pendulum::{Bench, bench, on_threads, recorded, rig};
 use windfall_contact::expression::parse_law;
-use windfall_contact::law::EndRule;
-use windfall_contact::law_kind::{Law, LawKind};
+use windfall_contact::law_kind::LawKind;
 use windfall_identify::population::{
     Covariate, FixedEffect, PopulationData, PopulationFit, PopulationOptions, Spread,
 };
 use windfall_identify::population_fit::fit_population;
-use windfall_identify::population_likelihood::{ImpactLikelihood, NORMAL_REACH, impact_likelihood};
+use windfall_identify::population_likelihood::{
+    DRAWN_REACH, ImpactLikelihood, NORMAL_REACH, impact_likelihood,
+};
+use windfall_identify::population_posterior::{
+    PopulationDrawing, PosteriorRange, population_posterior,
+};
 use windfall_identify::population_two_stage::{TwoStage, two_stage};
 use windfall_identify::problem::{FitOptions, LawProblem};
-use windfall_identify::rig::{Pendulum, Rig};
-use windfall_identify::simulate::trajectory;
-use windfall_signal::extract::extract_impact;
-use windfall_signal::impact::Impact;
-use windfall_signal::instrument::{
-    Instrument, Trajectory, calibrated, pendulum_instrument, record,
-};
-use windfall_signal::kinematics::Encoder;
-use windfall_signal::options::ExtractOptions;
-use windfall_signal::trigger::{Threshold, TriggerOptions};
+use windfall_signal::noise_gaussian::{NoiseSource, noise_source, normal, uniform};
 
 const FRUIT: usize = 40;
 const VELOCITIES: [f64; 6] = [0.15, 0.20, 0.27, 0.36, 0.48, 0.60];
@@ -45,106 +45,35 @@ const BETWEEN: [f64; 2] = [0.15, 0.20];
 const CORRELATION: f64 = 0.4;
 const WITHIN: f64 = 0.05;
 
-/// What the recordings are made with.
-#[derive(Clone, Copy)]
-struct Case {
-    counts: f64,
-    force_noise: f64,
-    /// Share of the impacts that are kept.
-    kept: f64,
-}
-
-fn case(name: &str) -> Case {
+/// What the recordings are made with, and the share of the impacts that are kept.
+fn case(name: &str) -> (Bench, f64) {
     match name {
-        "coarse" => Case {
-            counts: 20_000.0,
-            force_noise: 4.0,
-            kept: 0.5,
-        },
-        _ => Case {
-            counts: 360_000.0,
-            force_noise: 1.0,
-            kept: 0.7,
-        },
+        "coarse" => (
+            bench("coarse", 20_000.0, 4.0, 0.0).with_found_threshold(),
+            0.5,
+        ),
+        _ => (bench("fine", 360_000.0, 1.0, 0.0), 0.7),
     }
-}
-
-fn rig() -> Rig {
-    Rig::Pendulum(Pendulum {
-        inertia: 0.014_35,
-        arm: 0.505,
-        mass: 0.08,
-        centre_of_mass: 0.35,
-        gravity: 9.806_65,
-    })
-}
-
-fn instrument(case: Case) -> (Instrument, Encoder) {
-    let encoder = Encoder::Rotary {
-        counts_per_revolution: case.counts,
-    };
-    let mut out = pendulum_instrument();
-    if let Some(sensor) = out.encoder.as_mut() {
-        sensor.encoder = encoder;
-    }
-    if let Some(sensor) = out.force.as_mut() {
-        sensor.noise = case.force_noise;
-    }
-    (out, encoder)
-}
-
-/// Standard normal (Box and Muller 1958).
-fn normal(source: &mut ChaCha12Rng) -> f64 {
-    let (u, v): (f64, f64) = (source.random(), source.random());
-    (-2.0 * (1.0 - u).ln()).sqrt() * (std::f64::consts::TAU * v).cos()
-}
-
-/// One impact from its raw signals; `None` where none is found in them.
-fn impact(law: &Law, velocity: f64, case: Case, source: &mut ChaCha12Rng) -> Option<Impact> {
-    let start = -3e-3 - 5e-6 * source.random::<f64>();
-    let times: Vec<f64> = (0..2800).map(|i| start + 5e-6 * f64::from(i)).collect();
-    let motion = trajectory(law, &rig(), velocity, &times, EndRule::ForceZero).ok()?;
-    let motion = Trajectory {
-        times: motion.times,
-        displacement: motion.displacement,
-        rate: motion.rate,
-        force: motion.force,
-        acceleration: motion.acceleration,
-    };
-    let (instrument, encoder) = instrument(case);
-    let raw = record(&motion, &instrument, source.random()).ok()?;
-    let recording = calibrated("simulated", &raw, &instrument);
-    let options = ExtractOptions {
-        trigger: TriggerOptions {
-            threshold: match case.force_noise > 1.0 {
-                true => Threshold::default(),
-                false => Threshold::Fixed(1.0),
-            },
-            ..TriggerOptions::default()
-        },
-        encoder: Some(encoder),
-        arm: Some(0.505),
-        effective_mass: Some(rig().effective_mass()),
-        ..ExtractOptions::default()
-    };
-    Some(extract_impact(&recording, &options).ok()?.0)
 }
 
 /// One campaign: likelihoods with fruit and measured velocities.
-fn campaign(case: Case, seed: u64) -> (Vec<ImpactLikelihood>, PopulationData, usize) {
-    let mut source = ChaCha12Rng::seed_from_u64(seed);
+fn campaign(
+    (bench, kept): &(Bench, f64),
+    seed: u64,
+) -> (Vec<ImpactLikelihood>, PopulationData, usize) {
+    let mut source: NoiseSource = noise_source(seed, 0);
     let problem = LawProblem::from_expression(&parse_law("kuwabara-kono").unwrap());
     let (mut likelihoods, mut fruits, mut velocities) = (Vec::new(), Vec::new(), Vec::new());
     let mut lost = 0;
-    for _ in 0..FRUIT {
+    for specimen in 0..FRUIT {
         let (a, b) = (normal(&mut source), normal(&mut source));
         let other = CORRELATION * a + (1.0 - CORRELATION * CORRELATION).sqrt() * b;
         let own = [BETWEEN[0] * a, BETWEEN[1] * other];
         let fruit = fruits.last().map_or(0, |last| last + 1);
-        for velocity in VELOCITIES {
-            let kept = source.random::<f64>() < case.kept;
+        for (at, velocity) in VELOCITIES.into_iter().enumerate() {
+            let missing = uniform(&mut source) >= *kept;
             let deviation = [normal(&mut source), normal(&mut source)];
-            if !kept {
+            if missing {
                 continue;
             }
             let along = (velocity / REFERENCE_VELOCITY).ln();
@@ -155,7 +84,9 @@ fn campaign(case: Case, seed: u64) -> (Vec<ImpactLikelihood>, PopulationData, us
                 })
                 .collect();
             let law = LawKind::KuwabaraKono.with_parameters(&values).unwrap();
-            let found = impact(&law, velocity, case, &mut source).and_then(|impact| {
+            let number = (specimen * VELOCITIES.len() + at) as u64;
+            let impact = recorded(bench, &law, velocity, 1_000 * seed + number);
+            let found = impact.and_then(|impact| {
                 let likelihood =
                     impact_likelihood(&impact, &rig(), &problem, &FitOptions::default());
                 let measured = impact.measured.impact_velocity.filter(|v| *v > 0.0)?;
@@ -275,7 +206,7 @@ struct Replicate {
     iterations: usize,
 }
 
-fn replicate(case: Case, seed: u64, reach: f64) -> Replicate {
+fn replicate(case: &(Bench, f64), seed: u64, reach: f64) -> Replicate {
     let (likelihoods, data, lost) = campaign(case, seed);
     let starts: Vec<Vec<f64>> = likelihoods.iter().map(ImpactLikelihood::estimate).collect();
     let expand = |points: &[Vec<f64>]| {
@@ -353,34 +284,110 @@ fn table(replicates: &[Replicate]) {
     }
 }
 
+/// A number as the estimate and as the posterior tell it.
+struct Pair {
+    value: f64,
+    interval: (f64, f64),
+    posterior: PosteriorRange,
+}
+
+/// Posterior of one replicate, its numbers in the order of [`NAMES`]; divergences,
+/// and whether all chains agree.
+fn posterior(case: &(Bench, f64), seed: u64) -> (Vec<Pair>, usize, bool) {
+    let (likelihoods, data, _) = campaign(case, seed);
+    let starts: Vec<Vec<f64>> = likelihoods.iter().map(ImpactLikelihood::estimate).collect();
+    let expand_beyond = |reach: f64, points: &[Vec<f64>]| {
+        let own = likelihoods.iter().zip(points);
+        own.map(|(likelihood, at)| likelihood.expand_beyond(reach, at))
+            .collect()
+    };
+    let expand = |points: &[Vec<f64>]| expand_beyond(NORMAL_REACH, points);
+    let options = PopulationOptions::default();
+    let fit = fit_population(&data, &starts, &expand, &options).unwrap();
+    let expand = |points: &[Vec<f64>]| expand_beyond(DRAWN_REACH, points);
+    let drawing = PopulationDrawing {
+        chains: 4,
+        draws: 500,
+        seed,
+    };
+    let found = population_posterior(&data, &fit, &expand, &options, &drawing, &|_, _| {}).unwrap();
+    let mut pairs = Vec::new();
+    for at in [0, 2, 1, 3] {
+        let effect = &fit.effects[at];
+        pairs.push(Pair {
+            value: effect.value,
+            interval: (effect.low, effect.high),
+            posterior: found.effects[at],
+        });
+    }
+    for (level, drawn) in [(&fit.between, &found.between), (&fit.within, &found.within)] {
+        let spreads = level.sds.iter().chain(&level.correlations);
+        for (spread, posterior) in spreads.zip(drawn.sds.iter().chain(&drawn.correlations)) {
+            pairs.push(Pair {
+                value: spread.value,
+                interval: spread.interval.unwrap(),
+                posterior: *posterior,
+            });
+        }
+    }
+    let mixed = found.ranges().all(|range| range.mixing.suffices());
+    (pairs, found.divergences, mixed)
+}
+
+/// Where the posterior is and how wide, against the estimate's interval.
+fn compare_posteriors(case: &(Bench, f64), count: u64, threads: u64) {
+    let begin = std::time::Instant::now();
+    let replicates = on_threads(count, threads, |i| posterior(case, 1000 + i));
+    println!(
+        "| quantity | posterior median less estimate, standard errors | largest | width of the posterior's interval over that of the estimate | smallest | largest |"
+    );
+    println!("|---|---|---|---|---|---|");
+    for (i, name) in NAMES[..10].iter().enumerate() {
+        let pairs = replicates.iter().map(|(pairs, ..)| &pairs[i]);
+        let width = |p: &Pair| p.interval.1 - p.interval.0;
+        let shifts: Vec<f64> = pairs
+            .clone()
+            .map(|p| (p.posterior.median - p.value) / (width(p) / (2.0 * 1.96)))
+            .collect();
+        let widths: Vec<f64> = pairs
+            .map(|p| (p.posterior.high - p.posterior.low) / width(p))
+            .collect();
+        let mean = |all: &[f64]| all.iter().sum::<f64>() / all.len() as f64;
+        let far = shifts
+            .iter()
+            .copied()
+            .fold(0.0, |a: f64, s| match s.abs() > a.abs() {
+                true => s,
+                false => a,
+            });
+        println!(
+            "| {name} | {:+.2} | {far:+.2} | {:.2} | {:.2} | {:.2} |",
+            mean(&shifts),
+            mean(&widths),
+            widths.iter().copied().fold(f64::INFINITY, f64::min),
+            widths.iter().copied().fold(0.0, f64::max),
+        );
+    }
+    println!(
+        "\n{count} replicates, 4 chains of 500 draws; {} divergences, {} of them with all R-hat below 1.01 and 400 independent draws; {:.0} s",
+        replicates.iter().map(|r| r.1).sum::<usize>(),
+        replicates.iter().filter(|r| r.2).count(),
+        begin.elapsed().as_secs_f64(),
+    );
+}
+
 fn main() {
     let arguments: Vec<String> = std::env::args().skip(1).collect();
     let argument = |i: usize| arguments.get(i).map(String::as_str);
     let case = case(argument(0).unwrap_or("fine"));
-    let count: usize = argument(1).map_or(200, |text| text.parse().unwrap());
-    let threads: usize = argument(2).map_or(2, |text| text.parse().unwrap());
+    let count: u64 = argument(1).map_or(200, |text| text.parse().unwrap());
+    let threads: u64 = argument(2).map_or(2, |text| text.parse().unwrap());
+    if argument(0) == Some("posterior") {
+        return compare_posteriors(&case, count, threads);
+    }
     let reach: f64 = argument(3).map_or(NORMAL_REACH, |text| text.parse().unwrap());
     let begin = std::time::Instant::now();
-    let next = AtomicUsize::new(0);
-    let mut replicates: Vec<(usize, Replicate)> = std::thread::scope(|scope| {
-        let worker = || {
-            let mut own = Vec::new();
-            loop {
-                let i = next.fetch_add(1, Ordering::Relaxed);
-                if i >= count {
-                    return own;
-                }
-                own.push((i, replicate(case, 1000 + i as u64, reach)));
-            }
-        };
-        let workers: Vec<_> = (0..threads).map(|_| scope.spawn(worker)).collect();
-        let results = workers
-            .into_iter()
-            .flat_map(|worker| worker.join().unwrap());
-        results.collect()
-    });
-    replicates.sort_by_key(|(i, _)| *i);
-    let replicates: Vec<Replicate> = replicates.into_iter().map(|(_, r)| r).collect();
+    let replicates = on_threads(count, threads, |i| replicate(&case, 1000 + i, reach));
     table(&replicates);
     let n = replicates.len() as f64;
     let mean = |f: &dyn Fn(&Replicate) -> f64| replicates.iter().map(f).sum::<f64>() / n;

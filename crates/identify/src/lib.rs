@@ -66,6 +66,7 @@ pub mod population;
 mod population_design;
 pub mod population_finding;
 pub mod population_fit;
+mod population_level;
 pub mod population_likelihood;
 mod population_linear;
 mod population_newton;

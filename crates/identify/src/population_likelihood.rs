@@ -21,6 +21,9 @@ use windfall_signal::impact::Impact;
 
 /// Standard errors around a fit in which it counts as a normal observation.
 pub const NORMAL_REACH: f64 = 2.0;
+/// The same while a posterior is drawn: draws of one impact in a hundred lie
+/// beyond, and what lies there takes most of the time.
+pub const DRAWN_REACH: f64 = 3.0;
 /// Evaluations in which the nuisances follow the law's parameters.
 const MOST: usize = 30;
 /// Gain of the cost, in the units of a log-likelihood, below which the nuisances

@@ -3,16 +3,13 @@
 
 use crate::error::Error;
 use crate::interval::{Mixing, quantile};
-use crate::population::{
-    Expand, PopulationData, PopulationFit, PopulationOptions, Structure, Variation,
-};
+use crate::population::{Expand, Expansion, PopulationData, PopulationFit, PopulationOptions};
 use crate::population_finding::PopulationFinding;
+use crate::population_level::{Level, Normal};
 use crate::posterior::mixing;
 use crate::sampler::{Drawing, LogDensity, draw_chains};
 use nalgebra::{DMatrix, DVector};
-
-/// Smallest standard deviation at the start, in units of the noise below it.
-const LEAST: f64 = 0.3;
+use std::cell::RefCell;
 
 /// How much is drawn.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -61,6 +58,9 @@ pub struct PopulationPosterior {
     pub drawing: PopulationDrawing,
     /// Draws at which the sampler diverged.
     pub divergences: usize,
+    /// Impacts whose likelihood could not be computed somewhere and was that of its
+    /// expansion at the impact's most probable parameters there.
+    pub not_followed: usize,
 }
 
 impl PopulationPosterior {
@@ -68,6 +68,11 @@ impl PopulationPosterior {
     #[must_use]
     pub fn findings(&self) -> Vec<PopulationFinding> {
         let mut out = Vec::new();
+        if self.not_followed > 0 {
+            out.push(PopulationFinding::NotFollowed {
+                impacts: self.not_followed,
+            });
+        }
         if self.divergences > 0 {
             out.push(PopulationFinding::Diverged {
                 divergences: self.divergences,
@@ -106,7 +111,8 @@ impl PopulationPosterior {
 /// Priors: flat in the fixed effects and in the standard deviations, uniform in
 /// the correlation matrices.
 ///
-/// * `expand`: as for the fit; value and gradient are used
+/// * `expand`: as for the fit
+/// * `progress`: told the draws made and all of them
 ///
 /// # Errors
 /// [`Error::NoPopulation`] where fruit are told not to vary, or where no chain can
@@ -121,8 +127,10 @@ pub fn population_posterior(
     expand: &Expand,
     options: &PopulationOptions,
     drawing: &PopulationDrawing,
+    progress: &dyn Fn(usize, usize),
 ) -> Result<PopulationPosterior, Error> {
-    let hierarchy = Hierarchy::new(data, fit, expand, options).ok_or(Error::NoPopulation)?;
+    let model = (expand, progress);
+    let hierarchy = Hierarchy::new(data, fit, model, options).ok_or(Error::NoPopulation)?;
     let mut drawn = vec![Vec::new(); hierarchy.quantities()];
     let plan = Drawing {
         chains: drawing.chains,
@@ -167,204 +175,8 @@ pub fn population_posterior(
         within: variation(hierarchy.within.as_ref()),
         drawing: *drawing,
         divergences,
+        not_followed: hierarchy.lost.borrow().iter().filter(|lost| **lost).count(),
     })
-}
-
-/// One covariance matrix S = L Lᵀ. Coordinates: ln L_ii, then L_ij in units of
-/// the i-th standard deviation of the fit, row by row.
-struct Level {
-    size: usize,
-    full: bool,
-    /// Whether the members differ by more than their noise. Then they are drawn
-    /// themselves, else their deviations in units of L: either way the coordinates
-    /// hardly depend on each other.
-    told: bool,
-    /// Standard deviations of the fit.
-    scale: Vec<f64>,
-    /// L of the fit.
-    centre: DMatrix<f64>,
-    /// Members, whose number tells how well deviations are known.
-    members: f64,
-}
-
-impl Level {
-    /// `noise`: variances of what tells the members apart.
-    fn new(
-        variation: &Variation,
-        structure: Structure,
-        members: usize,
-        noise: &DVector<f64>,
-    ) -> Option<Self> {
-        let size = variation.sds.len();
-        if structure == Structure::Zero {
-            return None;
-        }
-        let sds = variation.sds.iter().zip(noise);
-        let scale: Vec<f64> = sds
-            .clone()
-            .map(|(sd, noise)| sd.value.max(LEAST * noise.sqrt()))
-            .collect();
-        let told = sds.into_iter().all(|(sd, noise)| sd.value > noise.sqrt());
-        // Where the fit ends at a bound its matrix is singular: less correlated,
-        // it is a place to start from.
-        let covariance = DMatrix::from_fn(size, size, |i, j| match i == j {
-            true => scale[i] * scale[i],
-            false => 0.9 * variation.covariance[i][j],
-        });
-        Some(Self {
-            size,
-            full: structure == Structure::Full,
-            told,
-            centre: covariance.cholesky()?.l(),
-            scale,
-            members: members as f64,
-        })
-    }
-
-    fn pairs(&self) -> usize {
-        match self.full {
-            true => self.size * (self.size - 1) / 2,
-            false => 0,
-        }
-    }
-
-    fn count(&self) -> usize {
-        self.size + self.pairs()
-    }
-
-    /// Positions below the diagonal.
-    fn below(&self) -> impl Iterator<Item = (usize, usize)> {
-        let rows = if self.full { self.size } else { 0 };
-        (0..rows).flat_map(|i| (0..i).map(move |j| (i, j)))
-    }
-
-    fn root(&self, z: &[f64]) -> DMatrix<f64> {
-        let mut out = DMatrix::zeros(self.size, self.size);
-        for i in 0..self.size {
-            out[(i, i)] = self.centre[(i, i)] * (z[i] / (2.0 * self.members).sqrt()).exp();
-        }
-        for ((i, j), z) in self.below().zip(&z[self.size..]) {
-            out[(i, j)] = self.centre[(i, j)] + self.scale[i] * z / self.members.sqrt();
-        }
-        out
-    }
-
-    /// Logarithm of the prior's density in the coordinates, and the gradient of
-    /// that and of `by_root` by them.
-    fn prior(&self, root: &DMatrix<f64>, by_root: &DMatrix<f64>, gradient: &mut [f64]) -> f64 {
-        let mut by_root = by_root.clone();
-        let mut density = 0.0;
-        for i in 0..self.size {
-            // dS = 2^Q Π L_ii^(Q−i) dL (i from 0), and flat standard deviations
-            // with uniform correlations are Π σ_i^(−Q) dS.
-            let rank = if self.full { self.size as f64 } else { 1.0 };
-            let power = if self.full {
-                (self.size - i) as f64
-            } else {
-                1.0
-            };
-            let row = root.row(i);
-            let variance = row.dot(&row);
-            density -= 0.5 * rank * variance.ln();
-            for j in 0..=i {
-                by_root[(i, j)] -= rank * row[j] / variance;
-            }
-            // One more for dL_ii = L_ii d ln L_ii.
-            density += (power + 1.0) * root[(i, i)].ln();
-            by_root[(i, i)] += (power + 1.0) / root[(i, i)];
-        }
-        for i in 0..self.size {
-            gradient[i] = by_root[(i, i)] * root[(i, i)] / (2.0 * self.members).sqrt();
-        }
-        for (k, (i, j)) in self.below().enumerate() {
-            gradient[self.size + k] = by_root[(i, j)] * self.scale[i] / self.members.sqrt();
-        }
-        density
-    }
-
-    /// Standard deviations and correlations.
-    fn told(&self, root: &DMatrix<f64>) -> Vec<f64> {
-        let covariance = root * root.transpose();
-        let sd = |i: usize| covariance[(i, i)].sqrt();
-        let mut out: Vec<f64> = (0..self.size).map(sd).collect();
-        if self.full {
-            let pairs = (0..self.size).flat_map(|k| (k + 1..self.size).map(move |l| (k, l)));
-            out.extend(pairs.map(|(k, l)| covariance[(k, l)] / (sd(k) * sd(l))));
-        }
-        out
-    }
-}
-
-/// Log-density of deviations of which each is N(0, L Lᵀ), with what its
-/// derivatives are made of.
-struct Normal<'a> {
-    told: bool,
-    root: &'a DMatrix<f64>,
-    by_root: DMatrix<f64>,
-    density: f64,
-}
-
-impl<'a> Normal<'a> {
-    fn new(level: &Level, root: &'a DMatrix<f64>) -> Self {
-        Self {
-            told: level.told,
-            root,
-            by_root: DMatrix::zeros(root.nrows(), root.ncols()),
-            density: 0.0,
-        }
-    }
-
-    /// A member at its coordinates: around `centre` in `unit`, or around what is
-    /// expected of it in units of L.
-    fn member(
-        &self,
-        (centre, unit): (&[f64], &DMatrix<f64>),
-        expected: &DVector<f64>,
-        z: &[f64],
-    ) -> DVector<f64> {
-        let z = DVector::from_column_slice(z);
-        match self.told {
-            true => DVector::from_column_slice(centre) + unit * z,
-            false => expected + self.root * z,
-        }
-    }
-
-    /// Adds one member: `deviation` from what is expected of it, its coordinates
-    /// `z` in `unit`, and what pulls at it, `slope`. Writes the gradient by the
-    /// coordinates and returns that by what is expected.
-    fn add(
-        &mut self,
-        deviation: DVector<f64>,
-        slope: DVector<f64>,
-        (unit, z): (&DMatrix<f64>, &[f64]),
-        gradient: &mut [f64],
-    ) -> Option<DVector<f64>> {
-        if !self.told {
-            let z = DVector::from_column_slice(z);
-            self.density -= 0.5 * z.dot(&z);
-            self.by_root += &slope * z.transpose();
-            let own = self.root.tr_mul(&slope) - z;
-            gradient.copy_from_slice(own.as_slice());
-            return Some(slope);
-        }
-        let mut white = deviation;
-        if !self.root.solve_lower_triangular_mut(&mut white) {
-            return None;
-        }
-        let mut pull = white.clone();
-        if !self.root.tr_solve_lower_triangular_mut(&mut pull) {
-            return None;
-        }
-        self.density -= 0.5 * white.dot(&white);
-        self.by_root += &pull * white.transpose();
-        for i in 0..white.len() {
-            self.density -= self.root[(i, i)].ln();
-            self.by_root[(i, i)] -= 1.0 / self.root[(i, i)];
-        }
-        let own = unit.tr_mul(&(slope - &pull));
-        gradient.copy_from_slice(own.as_slice());
-        Some(pull)
-    }
 }
 
 /// The whole model: coordinates are those of the effects, of the covariance
@@ -372,6 +184,11 @@ impl<'a> Normal<'a> {
 struct Hierarchy<'a, 'b> {
     fit: &'a PopulationFit,
     expand: &'a Expand<'b>,
+    progress: &'a dyn Fn(usize, usize),
+    /// Expansions at the impacts' most probable parameters.
+    known: Vec<Expansion>,
+    /// Whether an impact's likelihood could not be computed somewhere.
+    lost: RefCell<Vec<bool>>,
     fruit: &'a [usize],
     /// Covariates of each impact less their centres.
     covariates: Vec<Vec<f64>>,
@@ -388,7 +205,7 @@ impl<'a, 'b> Hierarchy<'a, 'b> {
     fn new(
         data: &'a PopulationData,
         fit: &'a PopulationFit,
-        expand: &'a Expand<'b>,
+        (expand, progress): (&'a Expand<'b>, &'a dyn Fn(usize, usize)),
         options: &PopulationOptions,
     ) -> Option<Self> {
         let size = fit.parameters.len();
@@ -397,7 +214,11 @@ impl<'a, 'b> Hierarchy<'a, 'b> {
         for &fruit in &data.fruit {
             impacts[fruit] += 1;
         }
-        let information = curvatures(&expand(&fit.impacts), size)?;
+        let known: Option<Vec<Expansion>> = expand(&fit.impacts).into_iter().collect();
+        let known = known?;
+        let curvature =
+            |known: &Expansion| DMatrix::from_fn(size, size, |a, b| known.curvature[a][b]);
+        let information: Vec<DMatrix<f64>> = known.iter().map(curvature).collect();
         let noise: Option<Vec<_>> = information
             .iter()
             .map(|h| h.clone().try_inverse())
@@ -420,10 +241,10 @@ impl<'a, 'b> Hierarchy<'a, 'b> {
         let between = Level::new(&fit.between, options.between, fruits, &own)?;
         let unit = |information: DMatrix<f64>| Some(information.try_inverse()?.cholesky()?.l());
         let between_information = (&between.centre * between.centre.transpose()).try_inverse()?;
-        let mut known = vec![between_information; fruits];
+        let mut told = vec![between_information; fruits];
         for (&fruit, noise) in data.fruit.iter().zip(&noise) {
             // What an impact tells of its fruit.
-            known[fruit] += (&spread + noise).try_inverse()?;
+            told[fruit] += (&spread + noise).try_inverse()?;
         }
         let impact_unit: Option<Vec<_>> = match within {
             Some(_) => {
@@ -440,9 +261,12 @@ impl<'a, 'b> Hierarchy<'a, 'b> {
         Some(Self {
             fit,
             expand,
+            progress,
+            lost: RefCell::new(vec![false; known.len()]),
+            known,
             fruit: &data.fruit,
             covariates: covariates.collect::<Option<Vec<Vec<f64>>>>()?,
-            fruit_unit: known.into_iter().map(unit).collect::<Option<_>>()?,
+            fruit_unit: told.into_iter().map(unit).collect::<Option<_>>()?,
             impact_unit: impact_unit?,
             fruit_from: fit.effects.len() + matrices,
             between,
@@ -496,22 +320,29 @@ impl<'a, 'b> Hierarchy<'a, 'b> {
     }
 }
 
-/// Negative second derivatives of each impact's log-likelihood.
-fn curvatures(
-    found: &[Option<crate::population::Expansion>],
-    size: usize,
-) -> Option<Vec<DMatrix<f64>>> {
-    let own = found.iter().map(|expansion| {
-        let curvature = &expansion.as_ref()?.curvature;
-        Some(DMatrix::from_fn(size, size, |a, b| curvature[a][b]))
-    });
-    own.collect()
+/// Log-likelihood and gradient at `to` by its expansion at `from`.
+fn expanded(known: &Expansion, from: &[f64], to: &[f64]) -> (f64, DVector<f64>) {
+    let way = DVector::from_iterator(to.len(), to.iter().zip(from).map(|(to, from)| to - from));
+    let first = DVector::from_column_slice(&known.gradient);
+    let bent = DVector::from_iterator(
+        way.len(),
+        known
+            .curvature
+            .iter()
+            .map(|row| row.iter().zip(&way).map(|(h, w)| h * w).sum::<f64>()),
+    );
+    let value = known.value + first.dot(&way) - 0.5 * bent.dot(&way);
+    (value, first - bent)
 }
 
 impl LogDensity for Hierarchy<'_, '_> {
     fn size(&self) -> usize {
         let members = self.fruit_unit.len() + self.impact_unit.len();
         self.fruit_from + members * self.parameters()
+    }
+
+    fn drawn(&self, done: usize, all: usize) {
+        (self.progress)(done, all);
     }
 
     fn evaluate(&self, z: &[f64], gradient: &mut [f64]) -> Option<f64> {
@@ -552,9 +383,14 @@ impl LogDensity for Hierarchy<'_, '_> {
         let mut density = 0.0;
         let mut by_fruit = vec![DVector::zeros(q); fruits.len()];
         for (j, likelihood) in likelihoods.iter().enumerate() {
-            let likelihood = likelihood.as_ref()?;
-            density += likelihood.value;
-            let slope = DVector::from_column_slice(&likelihood.gradient);
+            let (value, slope) = match likelihood {
+                Some(found) => (found.value, DVector::from_column_slice(&found.gradient)),
+                None => {
+                    self.lost.borrow_mut()[j] = true;
+                    expanded(&self.known[j], &self.fit.impacts[j], &points[j])
+                }
+            };
+            density += value;
             let pull = match &mut within {
                 Some(normal) => {
                     let deviation = DVector::from_column_slice(&points[j]) - &expected[j];

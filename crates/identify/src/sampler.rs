@@ -19,6 +19,9 @@ pub(crate) trait LogDensity {
     /// Log-density at `z`, up to a constant, and its gradient; `None` where there
     /// is none.
     fn evaluate(&self, z: &[f64], gradient: &mut [f64]) -> Option<f64>;
+
+    /// Told after each of `all` draws, those for tuning among them.
+    fn drawn(&self, _done: usize, _all: usize) {}
 }
 
 /// How much is drawn.
@@ -63,8 +66,10 @@ pub(crate) fn draw_chains(
             .set_position(&start(chain))
             .or_else(|_| sampler.set_position(&vec![0.0; density.size()]))
             .ok()?;
-        for step in 0..tuning + drawing.draws {
+        let each = tuning + drawing.draws;
+        for step in 0..each {
             let (z, progress) = sampler.draw().ok()?;
+            density.drawn(chain * each + step + 1, drawing.chains * each);
             if step >= tuning {
                 divergences += usize::from(progress.diverging);
                 keep(&z);

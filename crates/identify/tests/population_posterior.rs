@@ -41,7 +41,8 @@ fn both(data: &PopulationData, z: &[Vec<f64>], noise: f64) -> (PopulationFit, Po
     let expand = |points: &[Vec<f64>]| expansions(z, noise, points);
     let options = PopulationOptions::default();
     let fit = fit_population(data, z, &expand, &options).unwrap();
-    let posterior = population_posterior(data, &fit, &expand, &options, &DRAWING).unwrap();
+    let posterior =
+        population_posterior(data, &fit, &expand, &options, &DRAWING, &|_, _| {}).unwrap();
     for range in posterior.ranges() {
         assert!(range.mixing.r_hat < 1.02, "{range:?}");
         assert!(range.mixing.tail_draws > 300.0, "{range:?}");
@@ -236,6 +237,6 @@ fn repeats_effects_and_rejects_none() {
         between: Structure::Zero,
         ..PopulationOptions::default()
     };
-    let refused = population_posterior(&data, &fit, &expand, &options, &DRAWING);
+    let refused = population_posterior(&data, &fit, &expand, &options, &DRAWING, &|_, _| {});
     assert!(matches!(refused, Err(Error::NoPopulation)));
 }

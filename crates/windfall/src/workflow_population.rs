@@ -25,7 +25,9 @@ use windfall_identify::interval::IntervalOptions;
 use windfall_identify::population::{Covariate, PopulationData, PopulationFit, PopulationOptions};
 use windfall_identify::population_finding::PopulationFinding;
 use windfall_identify::population_fit::fit_population;
-use windfall_identify::population_likelihood::{ImpactLikelihood, NORMAL_REACH, impact_likelihood};
+use windfall_identify::population_likelihood::{
+    DRAWN_REACH, ImpactLikelihood, NORMAL_REACH, impact_likelihood,
+};
 use windfall_identify::population_posterior::{PopulationDrawing, population_posterior};
 use windfall_identify::population_two_stage::two_stage;
 use windfall_identify::problem::LawProblem;
@@ -100,11 +102,12 @@ fn estimate(
     let varying = varying(law, &problem);
     let (data, specimens) = data(&members, &varying, found.covariates);
     let starts: Vec<Vec<f64>> = members.iter().map(|m| m.likelihood.estimate()).collect();
-    let expand = |points: &[Vec<f64>]| {
+    let expand_beyond = |reach: f64, points: &[Vec<f64>]| {
         let own = members.par_iter().zip(points);
-        own.map(|(member, at)| member.likelihood.expand_beyond(NORMAL_REACH, at))
+        own.map(|(member, at)| member.likelihood.expand_beyond(reach, at))
             .collect()
     };
+    let expand = |points: &[Vec<f64>]| expand_beyond(NORMAL_REACH, points);
     let options = PopulationOptions {
         confidence: campaign.fit.options.confidence,
         ..PopulationOptions::default()
@@ -129,7 +132,8 @@ fn estimate(
                 draws,
                 seed,
             };
-            let found = population_posterior(&data, &fit, &expand, &options, &drawing);
+            let expand = |points: &[Vec<f64>]| expand_beyond(DRAWN_REACH, points);
+            let found = population_posterior(&data, &fit, &expand, &options, &drawing, progress);
             Some(found.map_err(subject)?)
         }
     };

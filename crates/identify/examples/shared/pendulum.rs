@@ -31,6 +31,16 @@ pub struct Bench {
     pub name: &'static str,
     instrument: Instrument,
     encoder: Encoder,
+    threshold: Threshold,
+}
+
+impl Bench {
+    /// The same with the threshold that the recordings themselves suggest, in place
+    /// of 1 N.
+    pub fn with_found_threshold(mut self) -> Self {
+        self.threshold = Threshold::default();
+        self
+    }
 }
 
 /// The study's encoder with another resolution, its force sensor with another
@@ -58,6 +68,7 @@ pub fn bench(
         name,
         instrument,
         encoder,
+        threshold: Threshold::Fixed(1.0),
     }
 }
 
@@ -72,8 +83,7 @@ pub fn rig() -> Rig {
     })
 }
 
-/// One impact as it is cut out of its raw recording with a threshold of 1 N;
-/// `None` where it cannot be.
+/// One impact as it is cut out of its raw recording; `None` where it cannot be.
 pub fn recorded(bench: &Bench, law: &Law, velocity: f64, seed: u64) -> Option<Impact> {
     // The clock of the instrument knows nothing of the impact.
     let start = -SPAN.0 - INTERVAL * uniform(&mut noise_source(seed, 1001));
@@ -91,7 +101,7 @@ pub fn recorded(bench: &Bench, law: &Law, velocity: f64, seed: u64) -> Option<Im
     let recording = calibrated("simulated", &raw, &bench.instrument);
     let options = ExtractOptions {
         trigger: TriggerOptions {
-            threshold: Threshold::Fixed(1.0),
+            threshold: bench.threshold,
             ..TriggerOptions::default()
         },
         encoder: Some(bench.encoder),
