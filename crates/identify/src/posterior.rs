@@ -98,7 +98,7 @@ where
     };
     let Drawing { chains, draws, .. } = plan.drawing;
     let start = |chain: usize| {
-        let sign = if chain % 2 == 0 { 1.0 } else { -1.0 };
+        let sign = if chain.is_multiple_of(2) { 1.0 } else { -1.0 };
         let at = |i: usize| match i % chains.max(1) == chain / 2 {
             true => sign * START_SPREAD,
             false => 0.0,
