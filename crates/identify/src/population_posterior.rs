@@ -9,7 +9,7 @@ use crate::population_level::{Level, Normal};
 use crate::posterior::mixing;
 use crate::sampler::{Drawing, LogDensity, draw_chains};
 use nalgebra::{DMatrix, DVector};
-use std::cell::RefCell;
+use std::cell::{Cell, RefCell};
 
 /// How much is drawn.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -58,8 +58,9 @@ pub struct PopulationPosterior {
     pub drawing: PopulationDrawing,
     /// Draws at which the sampler diverged.
     pub divergences: usize,
-    /// Impacts whose likelihood could not be computed somewhere and was that of its
-    /// expansion at the impact's most probable parameters there.
+    /// Impacts whose likelihood could often not be computed (the sampler's wildest
+    /// tries do not count) and was that of its expansion at the impact's most
+    /// probable parameters there.
     pub not_followed: usize,
 }
 
@@ -175,7 +176,7 @@ pub fn population_posterior(
         within: variation(hierarchy.within.as_ref()),
         drawing: *drawing,
         divergences,
-        not_followed: hierarchy.lost.borrow().iter().filter(|lost| **lost).count(),
+        not_followed: hierarchy.often_lost(),
     })
 }
 
@@ -187,8 +188,9 @@ struct Hierarchy<'a, 'b> {
     progress: &'a dyn Fn(usize, usize),
     /// Expansions at the impacts' most probable parameters.
     known: Vec<Expansion>,
-    /// Whether an impact's likelihood could not be computed somewhere.
-    lost: RefCell<Vec<bool>>,
+    /// How often an impact's likelihood could not be computed.
+    lost: RefCell<Vec<usize>>,
+    evaluations: Cell<usize>,
     fruit: &'a [usize],
     /// Covariates of each impact less their centres.
     covariates: Vec<Vec<f64>>,
@@ -262,7 +264,8 @@ impl<'a, 'b> Hierarchy<'a, 'b> {
             fit,
             expand,
             progress,
-            lost: RefCell::new(vec![false; known.len()]),
+            lost: RefCell::new(vec![0; known.len()]),
+            evaluations: Cell::new(0),
             known,
             fruit: &data.fruit,
             covariates: covariates.collect::<Option<Vec<Vec<f64>>>>()?,
@@ -272,6 +275,17 @@ impl<'a, 'b> Hierarchy<'a, 'b> {
             between,
             within,
         })
+    }
+
+    /// Impacts whose likelihood could not be computed in more than a hundredth of
+    /// the evaluations.
+    fn often_lost(&self) -> usize {
+        let rare = self.evaluations.get() / 100;
+        self.lost
+            .borrow()
+            .iter()
+            .filter(|lost| **lost > rare)
+            .count()
     }
 
     fn parameters(&self) -> usize {
@@ -378,6 +392,7 @@ impl LogDensity for Hierarchy<'_, '_> {
             .map(|point| point.as_slice().to_vec())
             .collect();
         let likelihoods = (self.expand)(&points);
+        self.evaluations.set(self.evaluations.get() + 1);
 
         gradient.fill(0.0);
         let mut density = 0.0;
@@ -386,7 +401,7 @@ impl LogDensity for Hierarchy<'_, '_> {
             let (value, slope) = match likelihood {
                 Some(found) => (found.value, DVector::from_column_slice(&found.gradient)),
                 None => {
-                    self.lost.borrow_mut()[j] = true;
+                    self.lost.borrow_mut()[j] += 1;
                     expanded(&self.known[j], &self.fit.impacts[j], &points[j])
                 }
             };

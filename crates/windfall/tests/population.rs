@@ -120,6 +120,7 @@ fn recovers_the_fruit_that_were_drawn() {
 
     // The same bits on two threads.
     assert_eq!(outcome, run(&directory, &[], 2));
+    check_posterior(&directory, &outcome);
     let csv = csv_of_population(&outcome).unwrap();
     assert!(csv.contains("mixed,sd_between,k,,"), "{csv}");
 
@@ -163,4 +164,43 @@ fn recovers_the_fruit_that_were_drawn() {
         assert!(error.to_string().contains(expected), "{error}");
         assert!(error.is_request());
     }
+}
+
+/// The posterior of the same campaign: around the estimate, its intervals as wide;
+/// drawn again, the same.
+fn check_posterior(directory: &Path, estimate: &PopulationOutcome) {
+    let drawn = |threads: usize| {
+        let request = PopulationRequest {
+            directory: directory.to_path_buf(),
+            fit: FitRequest {
+                threads: Some(threads),
+                draws: Some(400),
+                ..FitRequest::default()
+            },
+            posterior: true,
+            ..PopulationRequest::default()
+        };
+        population(&request, &|_, _| {}).unwrap()
+    };
+    let outcome = drawn(2);
+    let posterior = outcome.posterior.as_ref().unwrap();
+    println!("{}", text_of_population(&outcome));
+    for (i, parameter) in estimate.parameters.iter().enumerate() {
+        let (median, drawn) = (&parameter.median, &posterior.medians[i]);
+        let width = median.high.unwrap() - median.low.unwrap();
+        assert!(
+            (drawn.value - median.value).abs() < 0.1 * width,
+            "{drawn:?}"
+        );
+        let ratio = (drawn.high.unwrap() - drawn.low.unwrap()) / width;
+        assert!((0.85..1.35).contains(&ratio), "{ratio}");
+        let (spread, drawn) = (&parameter.between, &posterior.between[i]);
+        assert!(spread.low.unwrap() < drawn.value && drawn.value < spread.high.unwrap());
+    }
+    assert!(
+        csv_of_population(&outcome)
+            .unwrap()
+            .contains("posterior,sd_between,k,,")
+    );
+    assert_eq!(drawn(1).posterior.as_ref(), Some(posterior));
 }
