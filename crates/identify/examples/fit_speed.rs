@@ -17,7 +17,7 @@ use windfall_identify::model::Sampling;
 use windfall_identify::motion::Motion;
 use windfall_identify::rig::{Pendulum, Rig};
 use windfall_identify::samples::SampleGroup;
-use windfall_numerics::least_squares::{Minimum, NormalEquations, Options, Stop};
+use windfall_numerics::least_squares::{Minimum, Options};
 use windfall_numerics::ode_step::Tolerance;
 
 const ARM: f64 = 0.505;
@@ -159,14 +159,7 @@ fn fit<const P: usize>(group: &SampleGroup, k: f64, c: f64) -> (Values<2>, usize
 /// of some rounds; and how many end elsewhere than single fits do.
 fn measure_batch<const W: usize, const P: usize>(seeds: &[SampleGroup]) -> (f64, usize) {
     let free = free();
-    let nothing = Minimum {
-        parameters: [f64::NAN; P],
-        equations: NormalEquations::ZERO,
-        evaluations: 0,
-        stop: Stop::BadStart,
-        at_bound: [0; P],
-    };
-    let mut minima = vec![nothing; BATCH];
+    let mut minima = vec![Minimum::NONE; BATCH];
     let mut shortest = f64::INFINITY;
     for _ in 0..BATCH_ROUNDS {
         let begin = processor_seconds();

@@ -16,7 +16,7 @@ use windfall_identify::model::Sampling;
 use windfall_identify::motion::Motion;
 use windfall_identify::rig::{Carriage, Pendulum, Rig};
 use windfall_identify::samples::SampleGroup;
-use windfall_numerics::least_squares::{Minimum, NormalEquations, Options, Stop};
+use windfall_numerics::least_squares::{Minimum, Options, Stop};
 use windfall_numerics::ode_step::Tolerance;
 
 /// Standard deviations of displacement, rate and force: a pendulum's.
@@ -177,17 +177,6 @@ fn options<const P: usize>() -> Options<P> {
     }
 }
 
-fn nothing<const P: usize>(count: usize) -> Vec<Minimum<P>> {
-    let nothing = Minimum {
-        parameters: [f64::NAN; P],
-        equations: NormalEquations::ZERO,
-        evaluations: 0,
-        stop: Stop::BadStart,
-        at_bound: [0; P],
-    };
-    vec![nothing; count]
-}
-
 /// Fits of the cases, together and one by one, with the first `P` of the free
 /// parameters; all fits together are those one by one.
 fn compare<L: BatchLaw<N>, const N: usize, const W: usize, const P: usize>(
@@ -211,7 +200,7 @@ fn compare<L: BatchLaw<N>, const N: usize, const W: usize, const P: usize>(
             options: options(),
         })
         .collect();
-    let mut together = nothing(problems.len());
+    let mut together = vec![Minimum::NONE; problems.len()];
     let allocated = allocation_counter::measure(|| minimise_batch(&problems, &mut together));
     assert_eq!(allocated.count_total, 0);
     for (i, problem) in problems.iter().enumerate() {
@@ -227,7 +216,7 @@ fn compare<L: BatchLaw<N>, const N: usize, const W: usize, const P: usize>(
             ..problem.clone()
         })
         .collect();
-    let mut found = nothing(problems.len());
+    let mut found = vec![Minimum::NONE; problems.len()];
     minimise_batch(&near, &mut found);
     for (i, problem) in near.iter().enumerate() {
         let from = problem.from.unwrap();
@@ -237,11 +226,11 @@ fn compare<L: BatchLaw<N>, const N: usize, const W: usize, const P: usize>(
     }
     // In another order, and fewer of them.
     let backwards: Vec<_> = problems.iter().rev().cloned().collect();
-    let mut found = nothing(problems.len());
+    let mut found = vec![Minimum::NONE; problems.len()];
     minimise_batch(&backwards, &mut found);
     found.reverse();
     assert_eq!(found, together);
-    let mut few = nothing(3);
+    let mut few = vec![Minimum::NONE; 3];
     minimise_batch(&problems[5..], &mut few);
     assert_eq!(few, together[5..8]);
     together
@@ -312,7 +301,7 @@ fn repeats_single_fits_of_any_law() {
 #[test]
 fn rejects_nothing_of_an_empty_batch() {
     let none: [BatchProblem<KuwabaraKono, 2, 3, 2>; 0] = [];
-    let mut places = nothing(1);
+    let mut places = vec![Minimum::NONE; 1];
     minimise_batch(&none, &mut places);
     assert_eq!(places[0].evaluations, 0);
 }

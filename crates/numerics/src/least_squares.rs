@@ -139,6 +139,17 @@ pub struct Minimum<const P: usize> {
     pub at_bound: [i8; P],
 }
 
+impl<const P: usize> Minimum<P> {
+    /// A place for a result.
+    pub const NONE: Self = Self {
+        parameters: [f64::NAN; P],
+        equations: NormalEquations::ZERO,
+        evaluations: 0,
+        stop: Stop::BadStart,
+        at_bound: [0; P],
+    };
+}
+
 /// Damping to begin with, relative to the diagonal.
 const FIRST_DAMPING: f64 = 1e-3;
 /// Part of the scaling that each step keeps. With 0 parameters run away (NIST
