@@ -12,7 +12,9 @@ use std::time::Instant;
 use windfall_contact::law::EndRule;
 use windfall_contact::law_kuwabara_kono::KuwabaraKono;
 use windfall_identify::batch_fit::{BatchProblem, minimise_batch};
-use windfall_identify::estimator::{Coordinate, Estimator, FreeParameter, Setting, Target, Values};
+use windfall_identify::estimator::{
+    Coordinate, Estimator, FORESIGHT, FreeParameter, Setting, Target, Values,
+};
 use windfall_identify::model::Sampling;
 use windfall_identify::motion::Motion;
 use windfall_identify::rig::{Pendulum, Rig};
@@ -27,9 +29,6 @@ const BATCH: usize = 1000;
 const BATCH_ROUNDS: usize = 5;
 /// Gain per residual that may be lost to a kink.
 const ROUGHNESS: f64 = 0.01;
-/// What a foreseen end may leave, in units of the tolerated gain, if the steps did
-/// not converge faster than the last one; they do, nearly quadratically.
-const FORESIGHT: f64 = 10.0;
 
 fn numbers(path: &str) -> Vec<Vec<f64>> {
     let text = std::fs::read_to_string(path).expect("readable file");

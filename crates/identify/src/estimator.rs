@@ -6,7 +6,8 @@ use crate::model::{Columns, Model, Sampling};
 use crate::motion::Motion;
 use crate::residual::{Rows, evaluate, evaluate_some};
 use crate::samples::SampleGroup;
-use crate::search::Search;
+pub use crate::search::FORESIGHT;
+use crate::search::{Search, seen};
 use windfall_contact::any_law::{AnyLaw, LARGEST_PARAMETERS};
 use windfall_contact::law::{ContactLaw, EndRule};
 use windfall_contact::law_kuwabara_kono::KuwabaraKono;
@@ -377,10 +378,10 @@ impl<'a, L: FreeLaw<N>, const N: usize, const W: usize, const P: usize> Estimato
         }
     }
 
-    /// Minimum of the cost from coordinates `start`.
+    /// Minimum of the cost from coordinates `start`, whose end is never foreseen.
     pub fn minimise_from(&mut self, start: &[f64; P], options: &Options<P>) -> Minimum<P> {
         let bounds = self.bounds();
-        minimise(self, start, &bounds, options)
+        minimise(self, start, &bounds, &seen(options))
     }
 
     /// Residuals and derivatives of each sample at coordinates `u`.

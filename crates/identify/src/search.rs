@@ -7,6 +7,11 @@ use windfall_numerics::least_squares::{Bounds, Descent, Minimum, NormalEquations
 /// then all samples pull harder.
 const APPROACH_GAIN: f64 = 2e-2;
 
+/// What the foreseen end of a fit may leave to gain, in units of the tolerated
+/// gain, if its steps did not converge faster than the last one; they do, nearly
+/// quadratically.
+pub const FORESIGHT: f64 = 100.0;
+
 /// What is being minimised.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Stage {
@@ -61,11 +66,12 @@ impl<const P: usize> Search<P> {
         search
     }
 
-    /// A search from `start`, which is near the minimum, with all samples.
+    /// A search from `start`, which is near the minimum, with all samples; its end
+    /// is never foreseen.
     pub(crate) fn near(start: &[f64; P], bounds: &Bounds<P>, options: &Options<P>) -> Self {
         Self {
             stage: Stage::Alone,
-            descent: Descent::new(start, bounds, options),
+            descent: Descent::new(start, bounds, &seen(options)),
             start: *start,
             bounds: *bounds,
             options: *options,
@@ -135,7 +141,7 @@ impl<const P: usize> Search<P> {
 
 /// The options of a stage whose end is never foreseen: the cost is not smooth (an
 /// onset is free), or the way was not smooth.
-fn seen<const P: usize>(options: &Options<P>) -> Options<P> {
+pub(crate) fn seen<const P: usize>(options: &Options<P>) -> Options<P> {
     Options {
         foresight: 0.0,
         ..*options

@@ -3,7 +3,9 @@
 
 use crate::batch_law::BatchLaw;
 use crate::bootstrap::{BootstrapPlan, bootstrap_intervals};
-use crate::estimator::{Coordinate, Estimator, FreeLaw, FreeParameter, Setting, Target, Values};
+use crate::estimator::{
+    Coordinate, Estimator, FORESIGHT, FreeLaw, FreeParameter, Setting, Target, Values,
+};
 use crate::interval::{FreeIntervals, IntervalMethod, IntervalOptions};
 use crate::model::Sampling;
 use crate::posterior::{PosteriorPlan, posterior_intervals};
@@ -344,6 +346,7 @@ fn options<const P: usize>(free: &[FreeParameter], limits: &Limits) -> Options<P
         max_evaluations: limits.max_evaluations,
         roughness: ROUGHNESS / limits.samples as f64,
         largest_step,
+        foresight: FORESIGHT,
         ..Options::default()
     }
 }
