@@ -65,7 +65,7 @@ fn main() -> ExitCode {
     match outcome {
         Ok(()) => ExitCode::SUCCESS,
         Err(error) => {
-            show::message(&format!("error: {error:#}"));
+            show::message(&format!("error: {}", show::with_causes(&error)));
             ExitCode::from(status_of(&error))
         }
     }

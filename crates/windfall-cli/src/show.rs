@@ -23,6 +23,17 @@ pub fn message(text: &str) {
     let _ = writeln!(std::io::stderr(), "{text}");
 }
 
+/// An error with its causes, each told once: many say their cause themselves.
+pub fn with_causes(error: &anyhow::Error) -> String {
+    let mut text = error.to_string();
+    for cause in error.chain().skip(1).map(ToString::to_string) {
+        if !text.contains(&cause) {
+            text += &format!(": {cause}");
+        }
+    }
+    text
+}
+
 /// Says what a simulation has written.
 pub fn written(directory: &Path, recordings: usize, format: Format) -> anyhow::Result<()> {
     let directory = directory.display();
@@ -36,5 +47,23 @@ pub fn written(directory: &Path, recordings: usize, format: Format) -> anyhow::R
         Format::Text => write_result(&format!(
             "{recordings} simulated recordings in {directory}\n\nNext:\n  windfall fit {directory}\n"
         )),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn repeats_no_cause() {
+        let cause = anyhow::anyhow!("the file ends early");
+        let silent = cause.context("reading impacts.csv");
+        assert_eq!(
+            with_causes(&silent),
+            "reading impacts.csv: the file ends early"
+        );
+        let cause = anyhow::anyhow!("the file ends early");
+        let telling = cause.context("impacts.csv: the file ends early");
+        assert_eq!(with_causes(&telling), "impacts.csv: the file ends early");
     }
 }
