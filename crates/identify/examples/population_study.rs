@@ -20,6 +20,7 @@ mod pendulum;
 use pendulum::{Bench, bench, on_threads, recorded, rig};
 use windfall_contact::expression::parse_law;
 use windfall_contact::law_kind::LawKind;
+use windfall_identify::interval::Drawing;
 use windfall_identify::population::{
     Covariate, FixedEffect, PopulationData, PopulationFit, PopulationOptions, Spread,
 };
@@ -27,9 +28,7 @@ use windfall_identify::population_fit::fit_population;
 use windfall_identify::population_likelihood::{
     DRAWN_REACH, ImpactLikelihood, NORMAL_REACH, impact_likelihood,
 };
-use windfall_identify::population_posterior::{
-    PopulationDrawing, PosteriorRange, population_posterior,
-};
+use windfall_identify::population_posterior::{PosteriorRange, population_posterior};
 use windfall_identify::population_two_stage::{TwoStage, two_stage};
 use windfall_identify::problem::{FitOptions, LawProblem};
 use windfall_signal::noise_gaussian::{NoiseSource, noise_source, normal, uniform};
@@ -305,7 +304,7 @@ fn posterior(case: &(Bench, f64), seed: u64) -> (Vec<Pair>, usize, bool) {
     let options = PopulationOptions::default();
     let fit = fit_population(&data, &starts, &expand, &options).unwrap();
     let expand = |points: &[Vec<f64>]| expand_beyond(DRAWN_REACH, points);
-    let drawing = PopulationDrawing {
+    let drawing = Drawing {
         chains: 4,
         draws: 500,
         seed,

@@ -29,8 +29,8 @@ pub struct BatchProblem<'a, L, const N: usize, const W: usize, const P: usize> {
 }
 
 /// Minimises the cost of each problem, as [`Estimator::minimise`] does or, with
-/// [`BatchProblem::from`], [`Estimator::minimise_from`]; `minima` takes the results, in the order
-/// of the problems, as many as there are of both.
+/// [`BatchProblem::from`], [`Estimator::minimise_from`]; `minima` takes the
+/// results, in the order of the problems, as many as there are of both.
 ///
 /// # Numerics
 /// [`IMPACTS`] impacts at a time. Laws with history or with a kink are integrated

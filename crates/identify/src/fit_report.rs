@@ -292,6 +292,7 @@ impl Plan<'_> {
         out
     }
 }
+
 /// Share of failed replicates that is reported; 1.
 const FAILED_SHARE: f64 = 0.02;
 

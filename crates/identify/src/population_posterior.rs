@@ -2,25 +2,14 @@
 //! what [`fit_population`](crate::population_fit::fit_population) approximates.
 
 use crate::error::Error;
-use crate::interval::{Mixing, quantile};
+use crate::interval::{Drawing, Mixing, quantile};
 use crate::population::{Expand, Expansion, PopulationData, PopulationFit, PopulationOptions};
 use crate::population_finding::PopulationFinding;
 use crate::population_level::{Level, Normal};
 use crate::posterior::mixing;
-use crate::sampler::{Drawing, LogDensity, draw_chains};
+use crate::sampler::{LogDensity, draw_chains};
 use nalgebra::{DMatrix, DVector};
 use std::cell::{Cell, RefCell};
-
-/// How much is drawn.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct PopulationDrawing {
-    /// Chains.
-    pub chains: usize,
-    /// Kept draws of each.
-    pub draws: usize,
-    /// Seed of all of them.
-    pub seed: u64,
-}
 
 /// A quantity as its draws tell it.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -55,7 +44,7 @@ pub struct PopulationPosterior {
     /// Of the impacts of one fruit.
     pub within: PosteriorVariation,
     /// What was drawn.
-    pub drawing: PopulationDrawing,
+    pub drawing: Drawing,
     /// Draws at which the sampler diverged.
     pub divergences: usize,
     /// Impacts whose likelihood could often not be computed (the sampler's wildest
@@ -116,7 +105,7 @@ impl PopulationPosterior {
 /// * `progress`: told the draws made and all of them
 ///
 /// # Errors
-/// [`Error::NoPopulation`] where fruit are told not to vary, or where no chain can
+/// [`Error::NoPopulation`] where a level is told not to vary, or where no chain can
 /// be started.
 ///
 /// # Source
@@ -127,17 +116,12 @@ pub fn population_posterior(
     fit: &PopulationFit,
     expand: &Expand,
     options: &PopulationOptions,
-    drawing: &PopulationDrawing,
+    drawing: &Drawing,
     progress: &dyn Fn(usize, usize),
 ) -> Result<PopulationPosterior, Error> {
     let model = (expand, progress);
     let hierarchy = Hierarchy::new(data, fit, model, options).ok_or(Error::NoPopulation)?;
     let mut drawn = vec![Vec::new(); hierarchy.quantities()];
-    let plan = Drawing {
-        chains: drawing.chains,
-        draws: drawing.draws,
-        seed: drawing.seed,
-    };
     // The chains start around the estimate, some of its uncertainty away.
     let start = |chain: usize| {
         let sign = if chain.is_multiple_of(2) { 1.0 } else { -1.0 };
@@ -147,7 +131,7 @@ pub fn population_posterior(
         };
         (0..hierarchy.size()).map(at).collect()
     };
-    let divergences = draw_chains(&hierarchy, &plan, start, |z| {
+    let divergences = draw_chains(&hierarchy, drawing, start, |z| {
         for (all, value) in drawn.iter_mut().zip(hierarchy.told(z)) {
             all.push(value);
         }

@@ -1,9 +1,11 @@
 //! Posterior distribution of one impact's parameters, by the no-U-turn sampler.
 
 use crate::estimator::{Estimator, FreeLaw};
-use crate::interval::{FreeIntervals, IntervalDetail, Mixing, Posterior, deviation, quantile};
+use crate::interval::{
+    Drawing, FreeIntervals, IntervalDetail, Mixing, Posterior, deviation, quantile,
+};
 use crate::residual::evaluate;
-use crate::sampler::{Drawing, LogDensity, draw_chains};
+use crate::sampler::{LogDensity, draw_chains};
 use windfall_numerics::least_squares::Minimum;
 use windfall_statistics::chain_diagnostics::chain_diagnostics;
 

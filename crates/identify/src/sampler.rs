@@ -1,6 +1,7 @@
 //! Draws from a distribution by the no-U-turn sampler, from its log-density and
 //! gradient.
 
+use crate::interval::Drawing;
 use nuts_rs::rand::SeedableRng;
 use nuts_rs::rand::rngs::StdRng;
 use nuts_rs::{
@@ -8,7 +9,7 @@ use nuts_rs::{
 };
 use std::collections::HashMap;
 
-/// Draws for tuning, at most.
+/// Draws before the kept ones that tune a chain: as many as are kept, at most these.
 const MOST_TUNING: usize = 500;
 
 /// A density in coordinates in which it is near a standard normal one.
@@ -22,16 +23,6 @@ pub(crate) trait LogDensity {
 
     /// Told after each of `all` draws, those for tuning among them.
     fn drawn(&self, _done: usize, _all: usize) {}
-}
-
-/// How much is drawn.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct Drawing {
-    pub chains: usize,
-    /// Kept draws of each chain; as many before them tune it, at most
-    /// [`MOST_TUNING`].
-    pub draws: usize,
-    pub seed: u64,
 }
 
 /// Runs the chains, chain c from `start(c)` or else from zero. `keep` takes each

@@ -6,12 +6,11 @@ use crate::bootstrap::{BootstrapPlan, bootstrap_intervals};
 use crate::estimator::{
     Coordinate, Estimator, FORESIGHT, FreeLaw, FreeParameter, Setting, Target, Values,
 };
-use crate::interval::{FreeIntervals, IntervalMethod, IntervalOptions};
+use crate::interval::{Drawing, FreeIntervals, IntervalMethod, IntervalOptions};
 use crate::model::Sampling;
 use crate::posterior::{PosteriorPlan, posterior_intervals};
 use crate::profile::profile_intervals;
 use crate::residual::Rows;
-use crate::sampler::Drawing;
 use crate::samples::{QUANTITIES, SampleGroup};
 use crate::uncertainty::covariance;
 use windfall_contact::any_law::{AnyLaw, LARGEST_PARAMETERS};

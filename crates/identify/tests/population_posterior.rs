@@ -3,16 +3,17 @@
 #![allow(clippy::unwrap_used, clippy::print_stdout)]
 
 use windfall_identify::error::Error;
+use windfall_identify::interval::Drawing;
 use windfall_identify::population::{
     Covariate, Expansion, PopulationData, PopulationFit, PopulationOptions, Structure,
 };
 use windfall_identify::population_fit::fit_population;
 use windfall_identify::population_posterior::{
-    PopulationDrawing, PopulationPosterior, PosteriorRange, population_posterior,
+    PopulationPosterior, PosteriorRange, population_posterior,
 };
 use windfall_signal::noise_gaussian::{noise_source, normal};
 
-const DRAWING: PopulationDrawing = PopulationDrawing {
+const DRAWING: Drawing = Drawing {
     chains: 4,
     draws: 1500,
     seed: 1,

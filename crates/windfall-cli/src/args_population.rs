@@ -41,10 +41,10 @@ pub struct PopulationArguments {
     #[arg(long)]
     pub posterior: bool,
     /// Draws of each of four chains for --posterior (1000)
-    #[arg(long, value_name = "N")]
+    #[arg(long, value_name = "N", requires = "posterior")]
     pub draws: Option<usize>,
     /// Seed of the posterior's draws (1)
-    #[arg(long, value_name = "N")]
+    #[arg(long, value_name = "N", requires = "posterior")]
     pub seed: Option<u64>,
     /// Write the population as a law card (TOML, or JSON where the name ends with .json)
     #[arg(long, value_name = "FILE", value_hint = ValueHint::FilePath)]

@@ -21,14 +21,14 @@ use rayon::prelude::*;
 use std::path::PathBuf;
 use std::sync::atomic::{AtomicUsize, Ordering};
 use windfall_contact::expression::LawExpression;
-use windfall_identify::interval::IntervalOptions;
+use windfall_identify::interval::{Drawing, IntervalOptions};
 use windfall_identify::population::{Covariate, PopulationData, PopulationFit, PopulationOptions};
 use windfall_identify::population_finding::PopulationFinding;
 use windfall_identify::population_fit::fit_population;
 use windfall_identify::population_likelihood::{
     DRAWN_REACH, ImpactLikelihood, NORMAL_REACH, impact_likelihood,
 };
-use windfall_identify::population_posterior::{PopulationDrawing, population_posterior};
+use windfall_identify::population_posterior::population_posterior;
 use windfall_identify::population_two_stage::two_stage;
 use windfall_identify::problem::LawProblem;
 
@@ -127,7 +127,7 @@ fn estimate(
                 seed,
                 ..
             } = campaign.fit.options.intervals;
-            let drawing = PopulationDrawing {
+            let drawing = Drawing {
                 chains,
                 draws,
                 seed,

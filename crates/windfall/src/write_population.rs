@@ -2,7 +2,8 @@
 
 use crate::error::Error;
 use crate::population_outcome::{
-    PopulationEffect, PopulationOutcome, PopulationPosteriorOutcome, RangeOutcome,
+    PopulationEffect, PopulationOutcome, PopulationParameter, PopulationPosteriorOutcome,
+    RangeOutcome,
 };
 use crate::text_number::plain;
 use crate::text_statistic::{number, probability};
@@ -72,14 +73,19 @@ pub fn text_of_population(outcome: &PopulationOutcome) -> String {
     text
 }
 
+/// Factor and unit that deviations of a parameter are shown with.
+fn deviations_shown(parameter: &PopulationParameter) -> (f64, &'static str) {
+    match parameter.scale.as_str() {
+        "logarithm" => (100.0, " (%)"),
+        _ => (1.0, ""),
+    }
+}
+
 fn spread_table(outcome: &PopulationOutcome) -> String {
     let header = strings(&["", "estimate", "from", "to", "two-stage", "from", "to"]);
     let mut rows = Vec::new();
     for (i, parameter) in outcome.parameters.iter().enumerate() {
-        let (factor, unit) = match parameter.scale.as_str() {
-            "logarithm" => (100.0, " (%)"),
-            _ => (1.0, ""),
-        };
+        let (factor, unit) = deviations_shown(parameter);
         let median = match parameter.unit.as_str() {
             "1" => format!("median {}", parameter.name),
             unit => format!("median {} ({unit})", parameter.name),
@@ -132,10 +138,7 @@ fn posterior_rows(
 ) -> Vec<PosteriorRow> {
     let mut rows = Vec::new();
     for (i, parameter) in outcome.parameters.iter().enumerate() {
-        let (factor, unit) = match parameter.scale.as_str() {
-            "logarithm" => (100.0, " (%)"),
-            _ => (1.0, ""),
-        };
+        let (factor, unit) = deviations_shown(parameter);
         let name = &parameter.name;
         let mut row = |label, quantity, factor, estimate: &RangeOutcome, drawn: &[RangeOutcome]| {
             if let Some(posterior) = drawn.get(i) {
