@@ -30,7 +30,7 @@ impl ContactLaw<LARGEST_PARAMETERS> for AnyLaw {
 
     #[inline(always)]
     fn evaluate<R: Real>(&self, d: R, v: R, peak: R) -> ContactForce<R, LARGEST_PARAMETERS> {
-        evaluate(&self.0, d, v, peak)
+        evaluate(&self.0, d.plain(), v.plain(), peak.plain()).with_plain(d)
     }
 }
 
@@ -42,7 +42,7 @@ fn evaluate<R: Real>(law: &Law, d: R, v: R, peak: R) -> ContactForce<R, LARGEST_
 fn widened<R: Real, const N: usize>(
     force: ContactForce<R, N>,
 ) -> ContactForce<R, LARGEST_PARAMETERS> {
-    let mut by_parameter = [R::splat(0.0); LARGEST_PARAMETERS];
+    let mut by_parameter = [force.force.constant(0.0); LARGEST_PARAMETERS];
     by_parameter[..N].copy_from_slice(&force.by_parameter);
     ContactForce {
         force: force.force,

@@ -73,6 +73,6 @@ pub(crate) fn damped_power<R: Real>(
             elastic * v * factor.by_restitution,
             elastic * v * factor.by_impact_velocity,
         ],
-        by_peak: R::splat(0.0),
+        by_peak: d.constant(0.0),
     }
 }

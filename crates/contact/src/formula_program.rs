@@ -82,7 +82,7 @@ impl Program {
     ) -> [R; OUT] {
         match self.few {
             true => self.run::<R, OUT, FEW_REGISTERS>(constants, x, v),
-            false => self.run_long(constants, x, v),
+            false => x.with_each_plain(self.run_long(constants, x.plain(), v.plain())),
         }
     }
 
@@ -103,7 +103,7 @@ impl Program {
         x: R,
         v: R,
     ) -> [R; OUT] {
-        let mut registers = [R::splat(0.0); SIZE];
+        let mut registers = [x.constant(0.0); SIZE];
         registers[DISPLACEMENT as usize] = x;
         registers[RATE as usize] = v;
         for instruction in &self.instructions {
@@ -118,32 +118,32 @@ impl Program {
             let at = |operand: u8| registers[operand as usize & (SIZE - 1)];
             let constant = |operand: u8| constants[operand as usize % CONSTANTS];
             let value = match operation {
-                Operation::Constant => R::splat(constant(a)),
-                Operation::Literal => R::splat(self.literals[a as usize]),
+                Operation::Constant => x.constant(constant(a)),
+                Operation::Literal => x.constant(self.literals[a as usize]),
                 Operation::Sum => at(a) + at(b),
                 Operation::Shifted => at(a) + constant(b),
                 Operation::Difference => at(a) - at(b),
                 Operation::Lowered => at(a) + -constant(b),
-                Operation::Complement => R::splat(constant(a)) - at(b),
+                Operation::Complement => x.constant(constant(a)) - at(b),
                 Operation::Product => at(a) * at(b),
                 Operation::Scaled => at(a) * constant(b),
                 Operation::Quotient => at(a) / at(b),
-                Operation::Over => R::splat(constant(a)) / at(b),
-                Operation::Reciprocal => R::splat(1.0) / at(a),
+                Operation::Over => x.constant(constant(a)) / at(b),
+                Operation::Reciprocal => x.constant(1.0) / at(a),
                 Operation::Negative => -at(a),
                 Operation::Root => at(a).sqrt(),
                 Operation::Power => at(a).powf(constant(b)),
-                Operation::PowerOf => power_of(at(a), at(b)),
-                Operation::Call(function) => call(function, at(a)),
+                Operation::PowerOf => x.with_plain(power_of(at(a).plain(), at(b).plain())),
+                Operation::Call(function) => x.with_plain(call(function, at(a).plain())),
                 Operation::Choice => at(c).select(at(a), at(b)),
             };
             registers[target as usize & (SIZE - 1)] = value;
         }
-        let mut out = [R::splat(0.0); OUT];
+        let mut out = [x.constant(0.0); OUT];
         for (out, &operand) in out.iter_mut().zip(&self.outputs) {
             *out = match operand < FIRST_CONSTANT {
                 true => registers[operand as usize & (SIZE - 1)],
-                false => R::splat(constants[(operand - FIRST_CONSTANT) as usize % CONSTANTS]),
+                false => x.constant(constants[(operand - FIRST_CONSTANT) as usize % CONSTANTS]),
             };
         }
         out

@@ -20,6 +20,36 @@ pub struct ContactForce<R, const N: usize> {
     pub by_peak: R,
 }
 
+impl<R: Real, const N: usize> ContactForce<R, N> {
+    /// Force and derivatives times `factor`.
+    #[inline(always)]
+    #[must_use]
+    pub fn scaled(mut self, factor: R) -> Self {
+        for by in &mut self.by_parameter {
+            *by = *by * factor;
+        }
+        Self {
+            force: self.force * factor,
+            by_displacement: self.by_displacement * factor,
+            by_rate: self.by_rate * factor,
+            by_peak: self.by_peak * factor,
+            ..self
+        }
+    }
+
+    /// The same as numbers like `like`.
+    #[inline(always)]
+    pub fn with_plain<S: Real<Plain = R>>(self, like: S) -> ContactForce<S, N> {
+        ContactForce {
+            force: like.with_plain(self.force),
+            by_displacement: like.with_plain(self.by_displacement),
+            by_rate: like.with_plain(self.by_rate),
+            by_parameter: like.with_each_plain(self.by_parameter),
+            by_peak: like.with_plain(self.by_peak),
+        }
+    }
+}
+
 /// A normal contact-force law F(d, v; p).
 ///
 /// * `displacement`: d, indentation, positive in contact; m

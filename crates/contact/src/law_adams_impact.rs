@@ -92,7 +92,7 @@ impl ContactLaw<4> for AdamsImpact {
     fn evaluate<R: Real>(&self, x: R, v: R, _peak: R) -> ContactForce<R, 4> {
         let power = x.powf(self.e);
         // Share of the depth d, and the cubic step with its derivative.
-        let w = (x * (1.0 / self.d)).min(R::splat(1.0));
+        let w = (x * (1.0 / self.d)).min(x.constant(1.0));
         let step = w * w * (w * -2.0 + 3.0);
         let step_by_w = w * (-w + 1.0) * 6.0;
         let viscous = v * self.c;
@@ -106,7 +106,7 @@ impl ContactLaw<4> for AdamsImpact {
                 step * v,
                 step_by_w * w * viscous * (-1.0 / self.d),
             ],
-            by_peak: R::splat(0.0),
+            by_peak: x.constant(0.0),
         }
     }
 

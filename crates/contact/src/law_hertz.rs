@@ -54,9 +54,9 @@ impl ContactLaw<1> for Hertz {
         ContactForce {
             force: d * root * self.k,
             by_displacement: root * (1.5 * self.k),
-            by_rate: R::splat(0.0),
+            by_rate: d.constant(0.0),
             by_parameter: [d * root],
-            by_peak: R::splat(0.0),
+            by_peak: d.constant(0.0),
         }
     }
 }

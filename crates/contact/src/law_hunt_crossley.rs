@@ -85,7 +85,7 @@ impl ContactLaw<3> for HuntCrossley {
             by_displacement: force / d * self.n,
             by_rate: power * self.lambda,
             by_parameter: [power, power * v, force * d.ln()],
-            by_peak: R::splat(0.0),
+            by_peak: d.constant(0.0),
         }
     }
 }

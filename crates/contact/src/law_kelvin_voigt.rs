@@ -70,10 +70,10 @@ impl ContactLaw<2> for KelvinVoigt {
     fn evaluate<R: Real>(&self, d: R, v: R, _peak: R) -> ContactForce<R, 2> {
         ContactForce {
             force: d * self.k + v * self.c,
-            by_displacement: R::splat(self.k),
-            by_rate: R::splat(self.c),
+            by_displacement: d.constant(self.k),
+            by_rate: d.constant(self.c),
             by_parameter: [d, v],
-            by_peak: R::splat(0.0),
+            by_peak: d.constant(0.0),
         }
     }
 }

@@ -72,7 +72,7 @@ impl ContactLaw<2> for KuwabaraKono {
             by_displacement: root * ((v / d) * (0.5 * self.c) + 1.5 * self.k),
             by_rate: root * self.c,
             by_parameter: [d * root, root * v],
-            by_peak: R::splat(0.0),
+            by_peak: d.constant(0.0),
         }
     }
 }

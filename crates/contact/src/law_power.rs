@@ -104,7 +104,7 @@ impl ContactLaw<4> for PowerLaw {
                 viscous,
                 viscous * log * self.c,
             ],
-            by_peak: R::splat(0.0),
+            by_peak: d.constant(0.0),
         }
     }
 }

@@ -112,7 +112,7 @@ impl Thornton {
             by_parameter: [
                 force * (1.0 / self.modulus),
                 force * (0.5 / self.radius),
-                R::splat(0.0),
+                d.constant(0.0),
             ],
         }
     }
@@ -126,9 +126,9 @@ impl Thornton {
         let slope = PI * pressure * radius;
         Branch {
             force: (d + -at_yield) * slope + force,
-            by_displacement: R::splat(slope),
+            by_displacement: d.constant(slope),
             by_parameter: [
-                R::splat(2.0 / self.modulus * (slope * at_yield - force)),
+                d.constant(2.0 / self.modulus * (slope * at_yield - force)),
                 (d + -2.0 * at_yield) * (PI * pressure) + 2.0 * force / radius,
                 (d + -3.0 * at_yield) * (PI * radius) + 3.0 * force / pressure,
             ],
@@ -205,13 +205,13 @@ impl ContactLaw<3> for Thornton {
 
     #[inline(always)]
     fn evaluate<R: Real>(&self, d: R, _v: R, peak: R) -> ContactForce<R, 3> {
-        let zero = R::splat(0.0);
+        let zero = d.constant(0.0);
         let at_yield = self.yield_displacement();
         let loading = choose(d + -at_yield, self.plastic(d), self.elastic(d));
 
         // A peak before yield leaves nothing behind: unloading is Hertz again.
         let beyond_yield = peak + -at_yield;
-        let (recovery, by_peak) = self.recovery(d, peak.max(R::splat(at_yield)));
+        let (recovery, by_peak) = self.recovery(d, peak.max(d.constant(at_yield)));
         let unloading = choose(beyond_yield, recovery, self.elastic(d));
 
         let below = peak - d;

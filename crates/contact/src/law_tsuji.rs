@@ -111,7 +111,7 @@ impl ContactLaw<3> for Tsuji {
                 viscous * (ratio_by_restitution * scale),
                 viscous * (0.5 * ratio * scale / self.mass),
             ],
-            by_peak: R::splat(0.0),
+            by_peak: d.constant(0.0),
         }
     }
 }

@@ -266,17 +266,20 @@ impl ContactLaw<LARGEST_PARAMETERS> for UserLaw {
         match &self.kind.0.body {
             Body::Formula(body) => {
                 let out: [R; OUTPUTS] = body.main.evaluate(&self.constants, d, v);
-                let mut by_parameter = [R::splat(0.0); LARGEST_PARAMETERS];
+                let mut by_parameter = [d.constant(0.0); LARGEST_PARAMETERS];
                 by_parameter.copy_from_slice(&out[3..]);
                 ContactForce {
                     force: out[0],
                     by_displacement: out[1],
                     by_rate: out[2],
                     by_parameter,
-                    by_peak: R::splat(0.0),
+                    by_peak: d.constant(0.0),
                 }
             }
-            Body::Table { force, damping } => tabulated(&self.constants, force, damping, d, v),
+            Body::Table { force, damping } => {
+                let plain = tabulated(&self.constants, force, damping, d.plain(), v.plain());
+                plain.with_plain(d)
+            }
         }
     }
 }
@@ -290,7 +293,7 @@ fn tabulated<R: Real>(
     v: R,
 ) -> ContactForce<R, LARGEST_PARAMETERS> {
     let [scale, damping_scale] = [constants[0], constants[1]];
-    let zero = R::splat(0.0);
+    let zero = d.constant(0.0);
     let elastic = d.map(|d| force.evaluate(d).0);
     let slope = d.map(|d| force.evaluate(d).1);
     let mut by_parameter = [zero; LARGEST_PARAMETERS];

@@ -69,7 +69,7 @@ impl ContactLaw<2> for WaltonBraun {
 
     #[inline(always)]
     fn evaluate<R: Real>(&self, d: R, _v: R, peak: R) -> ContactForce<R, 2> {
-        let zero = R::splat(0.0);
+        let zero = d.constant(0.0);
         let steeper = self.k2 > self.k1;
         let unloading = if steeper { self.k2 } else { self.k1 };
         let (by_k1, by_k2) = if steeper { (peak, d - peak) } else { (d, zero) };
@@ -77,10 +77,10 @@ impl ContactLaw<2> for WaltonBraun {
         let below = peak - d;
         ContactForce {
             force: below.select(peak * self.k1 - below * unloading, d * self.k1),
-            by_displacement: below.select(R::splat(unloading), R::splat(self.k1)),
+            by_displacement: below.select(d.constant(unloading), d.constant(self.k1)),
             by_rate: zero,
             by_parameter: [below.select(by_k1, d), below.select(by_k2, zero)],
-            by_peak: below.select(R::splat(self.k1 - unloading), zero),
+            by_peak: below.select(d.constant(self.k1 - unloading), zero),
         }
     }
 }

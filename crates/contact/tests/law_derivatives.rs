@@ -219,5 +219,5 @@ fn closed_form_lanes_do_not_mix() {
 }
 
 fn forces<const N: usize, R: Real>(law: &impl ContactLaw<N>, d: R, v: R) -> R {
-    law.evaluate(d, v, R::splat(0.0)).force
+    law.evaluate(d, v, d.constant(0.0)).force
 }

@@ -9,7 +9,7 @@ use windfall_contact::law::{ContactForce, ContactLaw};
 use windfall_contact::law_kind::{Law, LawKind};
 use windfall_contact::law_user::{UserForce, UserLaw, UserLawDefinition, UserParameter};
 use windfall_contact::with_law;
-use windfall_numerics::real::{Lanes, Real};
+use windfall_numerics::real::Lanes;
 
 /// `name unit start [default]`
 fn parameter(text: &str) -> UserParameter {

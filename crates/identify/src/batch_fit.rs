@@ -11,7 +11,6 @@ use crate::batch_motion::{Impacts, Next, Way, attempt_all};
 use crate::estimator::Estimator;
 use crate::model::Model;
 use crate::residual::{Tally, read_piece, span};
-use crate::residual_block::Block;
 use crate::search::Search;
 use windfall_numerics::least_squares::{Minimum, NormalEquations, Options};
 use windfall_numerics::ode_lockstep::{Lockstep, Outcome};
@@ -48,7 +47,6 @@ pub fn minimise_batch<L, const N: usize, const W: usize, const P: usize>(
     let mut batch = Batch {
         impacts: Impacts::new(first.estimator.law()),
         lockstep: Lockstep::IDLE,
-        block: Block::ZERO,
     };
     let mut slots: [Option<Slot<L, N, W, P>>; IMPACTS] = [const { None }; IMPACTS];
     for (lane, slot) in slots.iter_mut().enumerate() {
@@ -65,10 +63,9 @@ pub fn minimise_batch<L, const N: usize, const W: usize, const P: usize>(
 }
 
 /// What all lanes share.
-struct Batch<L: BatchLaw<N>, const N: usize, const W: usize, const P: usize> {
+struct Batch<L: BatchLaw<N>, const N: usize, const W: usize> {
     impacts: Impacts<L, N, W>,
     lockstep: Lockstep<2, W, IMPACTS>,
-    block: Block<N, P>,
 }
 
 /// The impact of one lane.
@@ -88,10 +85,10 @@ struct Run<L, const N: usize, const W: usize, const P: usize> {
     tally: Tally<P>,
 }
 
-impl<L: BatchLaw<N>, const N: usize, const W: usize, const P: usize> Batch<L, N, W, P> {
+impl<L: BatchLaw<N>, const N: usize, const W: usize> Batch<L, N, W> {
     /// Gives `lane` something to integrate: the next evaluation of its impact, or
     /// the first of the next impact that waits.
-    fn feed<'p, 'a: 'p>(
+    fn feed<'p, 'a: 'p, const P: usize>(
         &mut self,
         lane: usize,
         slot: &mut Option<Slot<'p, 'a, L, N, W, P>>,
@@ -126,7 +123,7 @@ impl<L: BatchLaw<N>, const N: usize, const W: usize, const P: usize> Batch<L, N,
     }
 
     /// Begins an evaluation in `lane`; `false` when it was done at once.
-    fn begin(
+    fn begin<const P: usize>(
         &mut self,
         lane: usize,
         fit: &mut Slot<L, N, W, P>,
@@ -155,7 +152,7 @@ impl<L: BatchLaw<N>, const N: usize, const W: usize, const P: usize> Batch<L, N,
     }
 
     /// Reads what `lane` did in the last attempt; whether its evaluation is over.
-    fn step(&mut self, lane: usize, slot: &mut Option<Slot<L, N, W, P>>) -> bool {
+    fn step<const P: usize>(&mut self, lane: usize, slot: &mut Option<Slot<L, N, W, P>>) -> bool {
         let Some(fit) = slot else { return false };
         let found = match self.lockstep.outcome(lane) {
             Outcome::Idle | Outcome::Rejected => return false,
@@ -170,7 +167,7 @@ impl<L: BatchLaw<N>, const N: usize, const W: usize, const P: usize> Batch<L, N,
     }
 
     /// Reads the samples of the step that `lane` made.
-    fn read(&mut self, lane: usize, fit: &mut Slot<L, N, W, P>) -> Progress<P> {
+    fn read<const P: usize>(&mut self, lane: usize, fit: &mut Slot<L, N, W, P>) -> Progress<P> {
         let Some(run) = &mut fit.run else {
             return Progress::Done(None);
         };
@@ -179,7 +176,7 @@ impl<L: BatchLaw<N>, const N: usize, const W: usize, const P: usize> Batch<L, N,
         let groups = fit.problem.estimator.groups();
         let share = (groups, run.stride, run.end);
         let piece = (&segment, piece);
-        read_piece(&run.model, share, piece, &mut self.block, &mut run.tally);
+        read_piece(&run.model, share, piece, &mut run.tally);
         match next {
             Next::Step => Progress::Going,
             Next::Leg(leg) => {

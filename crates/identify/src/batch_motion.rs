@@ -9,7 +9,7 @@ use crate::contact_motion::{
     FIRST_STEP, ImpactEvent, LARGEST_STEPS, Segment, scaled_time, separation, time_of, touch_state,
 };
 use crate::motion::acceleration_with;
-use crate::residual_block::Piece;
+use crate::residual_pack::Piece;
 use windfall_contact::law::SMALLEST_DISPLACEMENT;
 use windfall_numerics::ode_lockstep::{
     Beginning, Lockstep, LockstepState, LockstepSystem, attempt,

@@ -76,7 +76,11 @@ impl Motion {
             self.curvature,
             self.inverse_mass,
         ];
-        acceleration_with(constants.map(R::splat), [x, v, force])
+        let mut alike = [x; 4];
+        for i in 0..4 {
+            alike[i] = x.constant(constants[i]);
+        }
+        acceleration_with(alike, [x, v, force])
     }
 }
 
@@ -90,7 +94,7 @@ pub(crate) fn acceleration_with<R: windfall_numerics::real::Real>(
     let u = x * x * curvature;
     let rest = -u + 1.0;
     let cosine = rest.sqrt();
-    let inverse_rest = R::splat(1.0) / rest;
+    let inverse_rest = x.constant(1.0) / rest;
     let by_force = rest * -inverse_mass;
     // Centripetal part: x v²/(r² − x²).
     let turning = v * inverse_rest * curvature;

@@ -4,13 +4,14 @@
 use crate::contact_motion::{Segment, Sink, follow};
 use crate::model::Model;
 use crate::onset_average::{OnsetAverage, OnsetCorrection};
-use crate::residual_block::{BLOCK, Block, Pack, Piece, fill, load};
 use crate::residual_noise::Noise;
+use crate::residual_pack::{Pack, PackModel, Piece, PieceModel, load};
 use crate::samples::{PACK, QUANTITIES, Quantity, SampleGroup};
 use windfall_contact::law::ContactLaw;
 use windfall_numerics::least_squares::NormalEquations;
 use windfall_numerics::ode_step::StepError;
 use windfall_numerics::real::{Lanes, Real};
+use windfall_numerics::real_vector::{FourLanes, with_four_lanes};
 
 /// Residuals and derivatives of every sample, unweighted, for diagnostics.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -92,14 +93,13 @@ where
             stride,
         } = self;
         let (before, after) = span(model, groups);
-        let (mut block, mut tally) = (Block::ZERO, Tally::EMPTY);
+        let mut tally = Tally::EMPTY;
         let mut reading = Reading {
             model,
             groups,
             rows,
             end: after,
             stride,
-            block: &mut block,
             tally: &mut tally,
         };
         follow(&model.event, before, after, &mut reading)?;
@@ -122,7 +122,7 @@ pub(crate) fn span<L, const N: usize, const W: usize, const P: usize>(
 
 /// What a pass over the samples has summed up so far.
 pub(crate) struct Tally<const P: usize> {
-    sums: Sums<P>,
+    sums: Sums<Pack, P>,
     noise: Noise<P>,
 }
 
@@ -145,12 +145,11 @@ impl<const P: usize> Tally<P> {
 
 /// Adds the samples of one piece of a motion to `tally`: what [`evaluate`] does
 /// with each piece, for motions that are integrated elsewhere. `end` is the last
-/// time of [`span`]; `block` is room to work in.
+/// time of [`span`].
 pub(crate) fn read_piece<L, const N: usize, const W: usize, const P: usize>(
     model: &Model<L, N, W, P>,
     (groups, stride, end): (&[SampleGroup], usize, f64),
     (segment, piece): (&Segment<W>, Piece),
-    block: &mut Block<N, P>,
     tally: &mut Tally<P>,
 ) where
     L: ContactLaw<N>,
@@ -161,7 +160,6 @@ pub(crate) fn read_piece<L, const N: usize, const W: usize, const P: usize>(
         rows: None,
         end,
         stride,
-        block,
         tally,
     };
     reading.read(segment, piece);
@@ -174,7 +172,6 @@ struct Reading<'a, L, const N: usize, const W: usize, const P: usize> {
     rows: Option<&'a mut Rows>,
     end: f64,
     stride: usize,
-    block: &'a mut Block<N, P>,
     tally: &'a mut Tally<P>,
 }
 
@@ -199,7 +196,7 @@ where
 {
     #[inline(never)]
     fn read(&mut self, segment: &Segment<W>, piece: Piece) {
-        pulp::Arch::new().dispatch(ReadPiece {
+        with_four_lanes(ReadPiece {
             reading: self,
             segment,
             piece,
@@ -207,79 +204,64 @@ where
     }
 }
 
-/// The samples of one piece; a function of its own, and of several short loops,
-/// because the compiler finds the vectors in short loops only.
+/// The samples of one piece.
 struct ReadPiece<'a, 'b, L, const N: usize, const W: usize, const P: usize> {
     reading: &'a mut Reading<'b, L, N, W, P>,
     segment: &'a Segment<W>,
     piece: Piece,
 }
 
-impl<L, const N: usize, const W: usize, const P: usize> pulp::WithSimd
-    for ReadPiece<'_, '_, L, N, W, P>
+impl<L, const N: usize, const W: usize, const P: usize> FourLanes for ReadPiece<'_, '_, L, N, W, P>
 where
     L: ContactLaw<N>,
 {
     type Output = ();
 
     #[inline(always)]
-    fn with_simd<S: pulp::Simd>(self, _simd: S) {
+    fn run<R: Real<Plain = Pack>>(self, zero: R) {
         let Reading {
             model,
             groups,
             rows,
             end,
             stride,
-            block,
             tally,
         } = self.reading;
         for (index, group) in groups.iter().enumerate() {
-            let rows = rows.as_deref_mut().map(|rows| (rows, index));
+            let range = group.range(model.onset, self.segment.from, self.segment.to, *end);
+            if range.0 >= range.1 {
+                continue;
+            }
+            let mut rows = rows.as_deref_mut().map(|rows| (rows, index));
             // Only contact and the flight before touch the onset.
             let average = OnsetAverage::new(model, group)
                 .filter(|_| self.piece == Piece::Contact || self.segment.to <= 0.0);
-            read_segment(
-                model,
-                (self.segment, self.piece),
-                (group, *stride),
-                *end,
-                average.as_ref().map(|a| a as &dyn OnsetCorrection<P>),
-                block,
-                (&mut tally.sums, &mut tally.noise),
-                rows,
-            );
+            let share = Share {
+                group,
+                range,
+                stride: *stride,
+                average: average.as_ref().map(|a| a as &dyn OnsetCorrection<P>),
+            };
+            share.read((model, self.segment, self.piece), zero, tally, &mut rows);
         }
     }
 }
 
 /// Running sums, one lane per sample of a pack.
 #[derive(Clone, Copy)]
-struct Sums<const P: usize> {
-    cost: Pack,
-    gradient: [Pack; P],
-    normal: [[Pack; P]; P],
+struct Sums<R, const P: usize> {
+    cost: R,
+    gradient: [R; P],
+    normal: [[R; P]; P],
 }
 
-impl<const P: usize> Sums<P> {
+impl<const P: usize> Sums<Pack, P> {
     const ZERO: Self = Self {
         cost: Pack::ZERO,
         gradient: [Pack::ZERO; P],
         normal: [[Pack::ZERO; P]; P],
     };
 
-    #[inline(always)]
-    fn add(&mut self, weight: Pack, residual: Pack, jacobian: &[Pack; P]) {
-        self.cost = (weight * residual).mul_add(residual, self.cost);
-        for i in 0..P {
-            let weighted = weight * jacobian[i];
-            self.gradient[i] = weighted.mul_add(residual, self.gradient[i]);
-            for j in 0..=i {
-                self.normal[i][j] = weighted.mul_add(jacobian[j], self.normal[i][j]);
-            }
-        }
-    }
-
-    #[inline(always)]
     fn total(&self) -> NormalEquations<P> {
         let mut normal = [[0.0; P]; P];
         for i in 0..P {
@@ -296,49 +278,205 @@ impl<const P: usize> Sums<P> {
     }
 }
 
-#[allow(clippy::too_many_arguments)]
-#[inline(always)]
-fn read_segment<L, const N: usize, const W: usize, const P: usize>(
-    model: &Model<L, N, W, P>,
-    (segment, piece): (&Segment<W>, Piece),
-    (group, stride): (&SampleGroup, usize),
-    end: f64,
-    average: Option<&dyn OnsetCorrection<P>>,
-    block: &mut Block<N, P>,
-    (sums, noise): (&mut Sums<P>, &mut Noise<P>),
-    mut rows: Option<(&mut Rows, usize)>,
-) where
-    L: ContactLaw<N>,
-{
-    let (first, last) = group.range(model.onset, segment.from, segment.to, end);
-    // The acceleration matters to a recorded one and to the onset's column.
-    let accelerated = group.holds(Quantity::Acceleration)
-        || model.columns.onset.iter().any(|onset| *onset != 0.0);
-    if stride == 1 && first < last {
-        noise.begin(first);
+impl<R: Real, const P: usize> Sums<R, P> {
+    /// The sums so far, as numbers like `zero`.
+    #[inline(always)]
+    fn with_plain(sums: &Sums<R::Plain, P>, zero: R) -> Self {
+        let mut normal = [[zero; P]; P];
+        for i in 0..P {
+            normal[i] = zero.with_each_plain(sums.normal[i]);
+        }
+        Self {
+            cost: zero.with_plain(sums.cost),
+            gradient: zero.with_each_plain(sums.gradient),
+            normal,
+        }
     }
-    let mut at = first_sample(first, stride);
-    while at < last {
-        at = next_packs(block, at, last, stride);
-        let piece = (segment, piece);
-        fill(block, model, piece, &group.times, accelerated, average);
-        for q in 0..QUANTITIES {
-            if group.weights[q] == 0.0 && group.values[q].is_empty() {
-                continue;
-            }
-            if stride > 1 || group.is_white(q) {
-                sum_up(block, q, group, sums);
-            } else {
-                sum_up_noisy(block, q, group, (sums, noise));
-            }
-            if let Some((rows, index)) = rows.as_mut() {
-                store_rows(rows, *index, q, group, block);
+
+    #[inline(always)]
+    fn plain(&self) -> Sums<R::Plain, P> {
+        let zero = self.cost;
+        let mut normal = [[zero.plain(); P]; P];
+        for i in 0..P {
+            normal[i] = zero.each_plain(self.normal[i]);
+        }
+        Sums {
+            cost: zero.plain(),
+            gradient: zero.each_plain(self.gradient),
+            normal,
+        }
+    }
+
+    #[inline(always)]
+    fn add(&mut self, weight: R, residual: R, jacobian: &[R; P]) {
+        self.cost = (weight * residual).mul_add(residual, self.cost);
+        for i in 0..P {
+            let weighted = weight * jacobian[i];
+            self.gradient[i] = weighted.mul_add(residual, self.gradient[i]);
+            for j in 0..=i {
+                self.normal[i][j] = weighted.mul_add(jacobian[j], self.normal[i][j]);
             }
         }
     }
-    if stride == 1 && first < last {
-        noise.end(group, first, last);
+}
+
+/// The samples of one group that one piece of the motion reads.
+struct Share<'a, const P: usize> {
+    group: &'a SampleGroup,
+    /// Indices of the first and behind the last.
+    range: (usize, usize),
+    stride: usize,
+    average: Option<&'a dyn OnsetCorrection<P>>,
+}
+
+/// The samples of one pack.
+#[derive(Clone, Copy)]
+struct PackAt<R> {
+    /// Index of the first.
+    at: usize,
+    /// How many there are: [`PACK`] but where the range begins or ends.
+    count: usize,
+    /// 1 in the lanes that hold a sample, 0 in the others.
+    counted: R,
+}
+
+impl<const P: usize> Share<'_, P> {
+    #[inline(always)]
+    fn read<L, R, const N: usize, const W: usize>(
+        &self,
+        (model, segment, piece): (&Model<L, N, W, P>, &Segment<W>, Piece),
+        zero: R,
+        tally: &mut Tally<P>,
+        rows: &mut Option<(&mut Rows, usize)>,
+    ) where
+        L: ContactLaw<N>,
+        R: Real<Plain = Pack>,
+    {
+        let (group, stride) = (self.group, self.stride);
+        // The acceleration matters to a recorded one and to the onset's column.
+        let accelerated = group.holds(Quantity::Acceleration)
+            || model.columns.onset.iter().any(|onset| *onset != 0.0);
+        let of_piece = PieceModel::new(model, segment, accelerated);
+        if stride == 1 {
+            tally.noise.begin(self.range.0);
+        }
+        let simple = (stride > 1 || (0..QUANTITIES).all(|q| group.is_white(q)))
+            && group.relative.iter().all(Vec::is_empty)
+            && self.average.is_none()
+            && rows.is_none();
+        match (simple, piece) {
+            (true, Piece::Contact) => {
+                self.read_packs::<L, R, N, W, true, true>(&of_piece, zero, tally, rows)
+            }
+            (true, Piece::Flight) => {
+                self.read_packs::<L, R, N, W, true, false>(&of_piece, zero, tally, rows)
+            }
+            (false, Piece::Contact) => {
+                self.read_packs::<L, R, N, W, false, true>(&of_piece, zero, tally, rows)
+            }
+            (false, Piece::Flight) => {
+                self.read_packs::<L, R, N, W, false, false>(&of_piece, zero, tally, rows)
+            }
+        }
+        if stride == 1 {
+            tally.noise.end(group, self.range.0, self.range.1);
+        }
     }
+
+    /// `SIMPLE` samples have white noise of one variance, are taken at their
+    /// instant, and nothing but sums is wanted.
+    #[inline(always)]
+    fn read_packs<L, R, const N: usize, const W: usize, const SIMPLE: bool, const CONTACT: bool>(
+        &self,
+        piece: &PieceModel<L, N, W, P>,
+        zero: R,
+        tally: &mut Tally<P>,
+        rows: &mut Option<(&mut Rows, usize)>,
+    ) where
+        L: ContactLaw<N>,
+        R: Real<Plain = Pack>,
+    {
+        let (group, stride) = (self.group, self.stride);
+        let (first, last) = self.range;
+        let mut sums = Sums::with_plain(&tally.sums, zero);
+        let mut at = first_sample(first, stride);
+        let mut times = load(&group.times, at.min(group.len));
+        let mut place = piece.place(zero.with_plain(times));
+        while at < last {
+            let (end, next) = if stride > 1 {
+                let pack = at / PACK;
+                ((pack + 1) * PACK, (pack + stride) * PACK)
+            } else {
+                (at + PACK, at + PACK)
+            };
+            let count = end.min(last) - at;
+            // The roots of the next pack run beside what follows from this one.
+            let next_times = load(&group.times, next.min(group.len));
+            let next_place = piece.place(zero.with_plain(next_times));
+            let mut found = piece.at::<R, CONTACT>(place);
+            if let (false, Some(average)) = (SIMPLE, self.average) {
+                piece.correct_onset(&mut found, times, average);
+            }
+            let pack = PackAt {
+                at,
+                count,
+                counted: zero.with_plain(COUNTED[count]),
+            };
+            // Written out: an index known to the compiler keeps the model in registers.
+            self.add::<R, 0, SIMPLE>(&found, pack, &mut sums, &mut tally.noise);
+            self.add::<R, 1, SIMPLE>(&found, pack, &mut sums, &mut tally.noise);
+            self.add::<R, 2, SIMPLE>(&found, pack, &mut sums, &mut tally.noise);
+            self.add::<R, 3, SIMPLE>(&found, pack, &mut sums, &mut tally.noise);
+            if let (false, Some((rows, index))) = (SIMPLE, rows.as_mut()) {
+                store_rows(rows, *index, group, (at, count), &found.plain());
+            }
+            (at, times, place) = (next, next_times, next_place);
+        }
+        tally.sums = sums.plain();
+    }
+
+    /// Adds the rows of quantity `Q` of a pack.
+    #[inline(always)]
+    fn add<R: Real<Plain = Pack>, const Q: usize, const SIMPLE: bool>(
+        &self,
+        found: &PackModel<R, P>,
+        pack: PackAt<R>,
+        sums: &mut Sums<R, P>,
+        noise: &mut Noise<P>,
+    ) {
+        let group = self.group;
+        if group.values[Q].is_empty() {
+            return;
+        }
+        let zero = pack.counted;
+        let mut weight = pack.counted * group.weights[Q];
+        if !SIMPLE && !group.relative[Q].is_empty() {
+            weight = weight * zero.with_plain(load(&group.relative[Q], pack.at));
+        }
+        let mut residual = found.values[Q] - zero.with_plain(load(&group.values[Q], pack.at));
+        let mut jacobian = found.jacobian[Q];
+        if !SIMPLE && self.stride == 1 && !group.is_white(Q) {
+            let mut row = (weight.plain(), residual.plain(), zero.each_plain(jacobian));
+            whiten(noise, Q, group, &mut row, pack.count);
+            weight = zero.with_plain(row.0);
+            residual = zero.with_plain(row.1);
+            jacobian = zero.with_each_plain(row.2);
+        }
+        sums.add(weight, residual, &jacobian);
+    }
+}
+
+/// Makes a pack of rows (weights, residuals, derivatives) of quantity `q`, whose
+/// noise persists or has a zero in common, independent of those before.
+#[inline(never)]
+fn whiten<const P: usize>(
+    noise: &mut Noise<P>,
+    q: usize,
+    group: &SampleGroup,
+    (weight, residual, jacobian): &mut (Pack, Pack, [Pack; P]),
+    count: usize,
+) {
+    noise.whiten(q, group, weight, residual, jacobian, count);
 }
 
 /// The first sample from `at` on that belongs to the share.
@@ -360,158 +498,31 @@ const COUNTED: [Pack; PACK + 1] = [
     Lanes([1.0; PACK]),
 ];
 
-/// The packs of the next block from sample `at` on, and where the block after it
-/// begins.
-#[inline(always)]
-fn next_packs<const N: usize, const P: usize>(
-    block: &mut Block<N, P>,
-    at: usize,
-    last: usize,
-    stride: usize,
-) -> usize {
-    let mut at = at;
-    for i in 0..BLOCK {
-        let mut end = at + PACK;
-        if stride > 1 {
-            at = first_sample(at, stride);
-            end = (at / PACK + 1) * PACK;
-        }
-        if at >= last {
-            // What is left of the block repeats its first pack, without weight.
-            block.starts.copy_within(0..1, i);
-            block.counts[i] = 0;
-            block.counted[i] = COUNTED[0];
-            continue;
-        }
-        block.starts[i] = at;
-        block.counts[i] = end.min(last) - at;
-        block.counted[i] = COUNTED[block.counts[i]];
-        at = end;
-    }
-    at
-}
-
-/// Adds the rows of quantity `q`, whose noise is white.
-#[inline(always)]
-fn sum_up<const N: usize, const P: usize>(
-    block: &Block<N, P>,
-    q: usize,
-    group: &SampleGroup,
-    sums: &mut Sums<P>,
-) {
-    // A copy that the compiler can keep in registers.
-    let mut running = *sums;
-    for i in 0..BLOCK {
-        let (residual, jacobian) = block_row(block, q, group, i);
-        running.add(weights(group, q, block, i), residual, &jacobian);
-    }
-    *sums = running;
-}
-
-/// Adds the rows of quantity `q`, whose noise persists or has a zero in common.
-#[inline(never)]
-fn sum_up_noisy<const N: usize, const P: usize>(
-    block: &Block<N, P>,
-    q: usize,
-    group: &SampleGroup,
-    (sums, noise): (&mut Sums<P>, &mut Noise<P>),
-) {
-    pulp::Arch::new().dispatch(Noisy {
-        block,
-        q,
-        group,
-        sums,
-        noise,
-    });
-}
-
-/// [`sum_up_noisy`], compiled for the machine's vector instructions.
-struct Noisy<'a, const N: usize, const P: usize> {
-    block: &'a Block<N, P>,
-    q: usize,
-    group: &'a SampleGroup,
-    sums: &'a mut Sums<P>,
-    noise: &'a mut Noise<P>,
-}
-
-impl<const N: usize, const P: usize> pulp::WithSimd for Noisy<'_, N, P> {
-    type Output = ();
-
-    #[inline(always)]
-    fn with_simd<S: pulp::Simd>(self, _simd: S) {
-        let Self {
-            block, q, group, ..
-        } = self;
-        let mut running = *self.sums;
-        for i in (0..BLOCK).filter(|&i| block.counts[i] > 0) {
-            let (mut residual, mut jacobian) = block_row(block, q, group, i);
-            let mut weight = weights(group, q, block, i);
-            let count = block.counts[i];
-            self.noise
-                .whiten(q, group, &mut weight, &mut residual, &mut jacobian, count);
-            running.add(weight, residual, &jacobian);
-        }
-        *self.sums = running;
-    }
-}
-
-/// Residuals and derivatives of one pack.
-#[inline(always)]
-fn block_row<const N: usize, const P: usize>(
-    block: &Block<N, P>,
-    q: usize,
-    group: &SampleGroup,
-    i: usize,
-) -> (Pack, [Pack; P]) {
-    let residual = block.values[q][i] - load(&group.values[q], block.starts[i]);
-    let mut jacobian = [Pack::ZERO; P];
-    for (column, from) in jacobian.iter_mut().zip(&block.jacobian[q]) {
-        *column = from[i];
-    }
-    (residual, jacobian)
-}
-
-/// Weights of one pack.
-#[inline(always)]
-fn weights<const N: usize, const P: usize>(
-    group: &SampleGroup,
-    q: usize,
-    block: &Block<N, P>,
-    i: usize,
-) -> Pack {
-    let weight = block.counted[i] * group.weights[q];
-    if group.relative[q].is_empty() {
-        weight
-    } else {
-        weight * load(&group.relative[q], block.starts[i])
-    }
-}
-
 #[cold]
 #[inline(never)]
-fn store_rows<const N: usize, const P: usize>(
+fn store_rows<const P: usize>(
     rows: &mut Rows,
     index: usize,
-    q: usize,
     group: &SampleGroup,
-    block: &Block<N, P>,
+    (at, count): (usize, usize),
+    found: &PackModel<Pack, P>,
 ) {
     while rows.residuals.len() <= index {
         rows.residuals.push(Default::default());
         rows.jacobian.push(Default::default());
     }
-    // By their index: pieces of the motion do not come in the order of time.
-    let residuals = &mut rows.residuals[index][q];
-    residuals.resize(group.len, 0.0);
-    let derivatives = &mut rows.jacobian[index][q];
-    derivatives.resize(group.len * P, 0.0);
-    let counts = block.counts;
-    let samples = (0..BLOCK).flat_map(|pack| (0..counts[pack]).map(move |lane| (pack, lane)));
-    for (pack, lane) in samples {
-        let at = block.starts[pack] + lane;
-        residuals[at] = block.values[q][pack].0[lane] - group.values[q][at];
-        for (c, column) in block.jacobian[q].iter().enumerate() {
-            derivatives[at * P + c] = column[pack].0[lane];
+    for q in (0..QUANTITIES).filter(|&q| !group.values[q].is_empty()) {
+        // By their index: pieces of the motion do not come in the order of time.
+        let residuals = &mut rows.residuals[index][q];
+        residuals.resize(group.len, 0.0);
+        let derivatives = &mut rows.jacobian[index][q];
+        derivatives.resize(group.len * P, 0.0);
+        for lane in 0..count {
+            let at = at + lane;
+            residuals[at] = found.values[q].0[lane] - group.values[q][at];
+            for (c, column) in found.jacobian[q].iter().enumerate() {
+                derivatives[at * P + c] = column.0[lane];
+            }
         }
     }
 }

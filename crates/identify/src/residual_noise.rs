@@ -1,6 +1,6 @@
 //! What noise other than white keeps between pieces of the motion.
 
-use crate::residual_block::Pack;
+use crate::residual_pack::Pack;
 use crate::samples::{QUANTITIES, SampleGroup};
 use crate::whitening::{Row, Whitening, ZeroSums, unit_shift};
 use windfall_numerics::least_squares::NormalEquations;

@@ -106,13 +106,13 @@ impl<const D: usize, const W: usize> Step<D, W> {
 #[inline(always)]
 pub fn dense_at<R: Real>(coefficients: &[f64; DENSE_COEFFICIENTS], sigma: R, rest: R) -> R {
     let [y, r1, r2, r3, r4, r5, r6, r7] = *coefficients;
-    let sum = sigma.mul_add(R::splat(r7), R::splat(r6));
-    let sum = rest.mul_add(sum, R::splat(r5));
-    let sum = sigma.mul_add(sum, R::splat(r4));
-    let sum = rest.mul_add(sum, R::splat(r3));
-    let sum = sigma.mul_add(sum, R::splat(r2));
-    let sum = rest.mul_add(sum, R::splat(r1));
-    sigma.mul_add(sum, R::splat(y))
+    let sum = sigma.mul_add(sigma.constant(r7), sigma.constant(r6));
+    let sum = rest.mul_add(sum, sigma.constant(r5));
+    let sum = sigma.mul_add(sum, sigma.constant(r4));
+    let sum = rest.mul_add(sum, sigma.constant(r3));
+    let sum = sigma.mul_add(sum, sigma.constant(r2));
+    let sum = rest.mul_add(sum, sigma.constant(r1));
+    sigma.mul_add(sum, sigma.constant(y))
 }
 
 /// Where an integration stands between steps.

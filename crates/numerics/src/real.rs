@@ -1,5 +1,5 @@
 //! Numbers that a formula can be evaluated for: one `f64`, or several side by
-//! side in [`Lanes`].
+//! side in [`Lanes`] or [`Vector`](crate::real_vector::Vector).
 //!
 //! A force law is written once over [`Real`]. The integrator evaluates it for a
 //! single state, the residual kernel for a handful of samples at a time.
@@ -22,8 +22,35 @@ pub trait Real:
     + Mul<f64, Output = Self>
     + Add<f64, Output = Self>
 {
-    /// The same value in every lane.
-    fn splat(value: f64) -> Self;
+    /// The same numbers without what ties them to a processor's instructions: for
+    /// functions that are compiled once for every processor.
+    type Plain: Real;
+
+    /// `value` in every lane of a number like this one.
+    fn constant(self, value: f64) -> Self;
+    /// See [`Real::Plain`].
+    fn plain(self) -> Self::Plain;
+    /// `plain` as a number like this one.
+    fn with_plain(self, plain: Self::Plain) -> Self;
+    /// [`Real::with_plain`] of each. (A closure in `array::map` would not be compiled
+    /// for the processor's instructions.)
+    #[inline(always)]
+    fn with_each_plain<const K: usize>(self, plain: [Self::Plain; K]) -> [Self; K] {
+        let mut out = [self; K];
+        for i in 0..K {
+            out[i] = self.with_plain(plain[i]);
+        }
+        out
+    }
+    /// [`Real::plain`] of each.
+    #[inline(always)]
+    fn each_plain<const K: usize>(self, numbers: [Self; K]) -> [Self::Plain; K] {
+        let mut out = [self.plain(); K];
+        for i in 0..K {
+            out[i] = numbers[i].plain();
+        }
+        out
+    }
     /// self · factor + summand, rounded once.
     fn mul_add(self, factor: Self, summand: Self) -> Self;
     /// Square root of each lane.
@@ -43,9 +70,19 @@ pub trait Real:
 }
 
 impl Real for f64 {
+    type Plain = Self;
+
     #[inline(always)]
-    fn splat(value: f64) -> Self {
+    fn constant(self, value: f64) -> Self {
         value
+    }
+    #[inline(always)]
+    fn plain(self) -> Self {
+        self
+    }
+    #[inline(always)]
+    fn with_plain(self, plain: Self) -> Self {
+        plain
     }
     #[inline(always)]
     fn mul_add(self, factor: Self, summand: Self) -> Self {
@@ -100,6 +137,12 @@ impl<const W: usize> Lanes<W> {
             out[i] = f(self.0[i], other.0[i]);
         }
         Self(out)
+    }
+
+    /// The same value in every lane.
+    #[inline(always)]
+    pub const fn splat(value: f64) -> Self {
+        Self([value; W])
     }
 
     /// A number in lane `lane`, zero in the others.
@@ -177,9 +220,19 @@ impl<const W: usize> Add<f64> for Lanes<W> {
 }
 
 impl<const W: usize> Real for Lanes<W> {
+    type Plain = Self;
+
     #[inline(always)]
-    fn splat(value: f64) -> Self {
-        Self([value; W])
+    fn constant(self, value: f64) -> Self {
+        Self::splat(value)
+    }
+    #[inline(always)]
+    fn plain(self) -> Self {
+        self
+    }
+    #[inline(always)]
+    fn with_plain(self, plain: Self) -> Self {
+        plain
     }
     #[inline(always)]
     fn mul_add(self, factor: Self, summand: Self) -> Self {
