@@ -6,7 +6,7 @@
 
 use crate::batch_law::{BatchLaw, IMPACTS, PackedLaw, PerImpact};
 use crate::contact_motion::{
-    FIRST_STEP, ImpactEvent, LARGEST_STEPS, Segment, scaled_time, separation, time_of, touch_state,
+    ImpactEvent, LARGEST_STEPS, Segment, first_width, scaled_time, separation, time_of, touch_state,
 };
 use crate::motion::acceleration_with;
 use crate::residual_pack::Piece;
@@ -213,7 +213,7 @@ impl Way {
             beginning: Beginning {
                 s: 0.0,
                 state: touch_state(event),
-                width: limit * FIRST_STEP,
+                width: first_width(limit, &event.tolerance),
                 limit,
                 tolerance: event.tolerance,
             },

@@ -14,8 +14,11 @@ use windfall_numerics::root::bracketed_root;
 
 /// Steps before an integration is given up: an impact takes about ten.
 pub(crate) const LARGEST_STEPS: usize = 20_000;
-/// First step, as a fraction of the range to integrate.
-pub(crate) const FIRST_STEP: f64 = 0.1;
+/// First step, as a fraction of the range to integrate, at a relative tolerance of
+/// [`FIRST_TOLERANCE`]; the steps of a method of order 8 grow with the eighth root
+/// of the tolerance.
+const FIRST_STEP: f64 = 0.1;
+const FIRST_TOLERANCE: f64 = 1e-8;
 /// Event times are located to this fraction of a step.
 const EVENT_TOLERANCE: f64 = 1e-14;
 /// Where a contact that ends within its very first step is looked for from.
@@ -218,6 +221,13 @@ pub fn follow<L: ContactLaw<N>, const N: usize, const W: usize>(
     }
 }
 
+/// Width of the first step of a contact that is followed to `limit`.
+#[inline(always)]
+pub(crate) fn first_width(limit: f64, tolerance: &Tolerance<2>) -> f64 {
+    let looseness = (tolerance.relative / FIRST_TOLERANCE).sqrt().sqrt().sqrt();
+    limit * (FIRST_STEP * looseness).min(1.0)
+}
+
 /// Displacement and rate at first touch.
 #[inline(always)]
 pub(crate) fn touch_state<L, const N: usize, const W: usize>(
@@ -339,7 +349,12 @@ fn touching<L: ContactLaw<N>, const N: usize, const W: usize>(
     let kink = phase.event.law.kink();
     let mut beyond_kink = false;
     let mut loading = true;
-    let mut position = Position::new(phase, 0.0, state, limit * FIRST_STEP);
+    let mut position = Position::new(
+        phase,
+        0.0,
+        state,
+        first_width(limit, &phase.event.tolerance),
+    );
     for _ in 0..LARGEST_STEPS {
         let done = step(phase, &mut position, limit, &phase.event.tolerance)?;
         let stop = first_stop(phase, &done, loading, kink, beyond_kink);

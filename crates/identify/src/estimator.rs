@@ -19,8 +19,8 @@ use windfall_numerics::ode_step::Tolerance;
 use windfall_numerics::real::Lanes;
 
 /// Samples that show the way to the minimum, and the largest stride among them.
-const APPROACH_SAMPLES: usize = 128;
-const LARGEST_STRIDE: usize = 8;
+const APPROACH_SAMPLES: usize = 64;
+const LARGEST_STRIDE: usize = 16;
 /// How much coarser the integration may be on the way.
 const APPROACH_LOOSENESS: f64 = 1e4;
 
