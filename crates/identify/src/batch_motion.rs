@@ -11,10 +11,10 @@ use crate::contact_motion::{
 use crate::motion::acceleration_with;
 use crate::residual_pack::Piece;
 use windfall_contact::law::SMALLEST_DISPLACEMENT;
+use windfall_numerics::ode_dense::DenseStep;
 use windfall_numerics::ode_lockstep::{
     Beginning, Lockstep, LockstepState, LockstepSystem, attempt,
 };
-use windfall_numerics::ode_step::Step;
 use windfall_numerics::real::{Lanes, Real};
 
 /// Right-hand side of several impacts, each in flight or in contact.
@@ -226,7 +226,7 @@ impl Way {
     pub(crate) fn took<L: BatchLaw<N>, const N: usize, const W: usize>(
         &mut self,
         event: &ImpactEvent<L, N, W>,
-        done: Step<2, W>,
+        done: DenseStep<2, W>,
         position: f64,
     ) -> (Segment<W>, Piece, Next<W>) {
         self.steps += 1;
@@ -244,7 +244,7 @@ impl Way {
     fn flew<L: BatchLaw<N>, const N: usize, const W: usize>(
         &mut self,
         event: &ImpactEvent<L, N, W>,
-        done: Step<2, W>,
+        done: DenseStep<2, W>,
         position: f64,
     ) -> (Segment<W>, Piece, Next<W>) {
         let end = done.start + done.width;
@@ -267,7 +267,7 @@ impl Way {
     fn touched<L: BatchLaw<N>, const N: usize, const W: usize>(
         &mut self,
         event: &ImpactEvent<L, N, W>,
-        done: Step<2, W>,
+        done: DenseStep<2, W>,
         position: f64,
     ) -> (Segment<W>, Piece, Next<W>) {
         let power = event.law.start_power();
@@ -319,7 +319,7 @@ fn flight<L, const N: usize, const W: usize>(
 }
 
 #[inline(always)]
-fn segment<const W: usize>(step: Step<2, W>, power: u32, from: f64, to: f64) -> Segment<W> {
+fn segment<const W: usize>(step: DenseStep<2, W>, power: u32, from: f64, to: f64) -> Segment<W> {
     Segment {
         step,
         power,

@@ -8,6 +8,7 @@
 
 use crate::motion::Motion;
 use windfall_contact::law::{ContactForce, ContactLaw, EndRule, SMALLEST_DISPLACEMENT};
+use windfall_numerics::ode_dense::DenseStep;
 use windfall_numerics::ode_step::{Position, Step, StepError, System, Tolerance, step};
 use windfall_numerics::real::{Lanes, Real};
 use windfall_numerics::root::bracketed_root;
@@ -63,7 +64,7 @@ pub struct ImpactEvent<L, const N: usize, const W: usize> {
 #[derive(Clone, Copy, Debug)]
 pub struct Segment<const W: usize> {
     /// Dense output in s.
-    pub step: Step<2, W>,
+    pub step: DenseStep<2, W>,
     /// q of t = s^q.
     pub power: u32,
     /// First time of validity; s.
@@ -243,7 +244,7 @@ pub(crate) fn touch_state<L, const N: usize, const W: usize>(
 #[inline(always)]
 pub(crate) fn separation<L: ContactLaw<N>, const N: usize, const W: usize>(
     event: &ImpactEvent<L, N, W>,
-    done: &Step<2, W>,
+    done: &DenseStep<2, W>,
 ) -> Option<(f64, [Lanes<W>; 2])> {
     let phase = Phase {
         event,
@@ -272,6 +273,7 @@ fn fly<L, const N: usize, const W: usize>(
     let mut position = Position::new(&flight, from, state, to - from);
     for _ in 0..LARGEST_STEPS {
         let done = flight_step(&flight, &mut position, to, &event.tolerance)?;
+        let done = DenseStep::from(&done);
         let end = done.start + done.width;
         sink.flight(&Segment {
             step: done,
@@ -357,11 +359,9 @@ fn touching<L: ContactLaw<N>, const N: usize, const W: usize>(
     );
     for _ in 0..LARGEST_STEPS {
         let done = step(phase, &mut position, limit, &phase.event.tolerance)?;
+        let done = DenseStep::from(&done);
         let stop = first_stop(phase, &done, loading, kink, beyond_kink);
-        let (to, at) = match stop {
-            None => (position.s, done.to),
-            Some((_, sigma)) => (done.start + sigma * done.width, done.at(sigma)),
-        };
+        let to = stop.map_or(position.s, |(_, sigma)| done.start + sigma * done.width);
         sink.contact(&Segment {
             step: done,
             power,
@@ -376,8 +376,9 @@ fn touching<L: ContactLaw<N>, const N: usize, const W: usize>(
             peak_lanes: phase.peak_lanes,
         });
         match stop {
-            Some((Stop::End, _)) => return Ok(Some((time_of(to, power), at))),
-            Some((kind, _)) => {
+            Some((Stop::End, sigma)) => return Ok(Some((time_of(to, power), done.at(sigma)))),
+            Some((kind, sigma)) => {
+                let at = done.at(sigma);
                 if kind == Stop::Peak {
                     // Unloading starts from here; or a reloading past the old
                     // maximum is virgin loading again.
@@ -400,12 +401,12 @@ fn touching<L: ContactLaw<N>, const N: usize, const W: usize>(
 #[inline(always)]
 fn first_stop<L: ContactLaw<N>, const N: usize, const W: usize>(
     phase: &Phase<L, N, W>,
-    done: &Step<2, W>,
+    done: &DenseStep<2, W>,
     loading: bool,
     kink: f64,
     beyond_kink: bool,
 ) -> Option<(Stop, f64)> {
-    let (x, v) = (done.to[0].0[0], done.to[1].0[0]);
+    let [x, v] = done.to;
     let mut stop = None;
     if phase.event.law.history() {
         let turned = if loading {
@@ -446,9 +447,9 @@ pub(crate) fn earlier<E: Copy>(first: Option<(E, f64)>, second: (E, f64)) -> Opt
 #[inline(always)]
 fn end_of_contact<L: ContactLaw<N>, const N: usize, const W: usize>(
     phase: &Phase<L, N, W>,
-    done: &Step<2, W>,
+    done: &DenseStep<2, W>,
 ) -> Option<f64> {
-    let (x, v) = (done.to[0].0[0], done.to[1].0[0]);
+    let [x, v] = done.to;
     // In the very first step the state starts at zero displacement and force.
     let lowest = if done.start == 0.0 { EARLIEST_END } else { 0.0 };
     let opened = x <= 0.0;
@@ -477,15 +478,15 @@ fn end_of_contact<L: ContactLaw<N>, const N: usize, const W: usize>(
 /// Root in `[low, high]` of a function of (x, v) that is positive before.
 #[inline(always)]
 fn locate<const W: usize>(
-    done: &Step<2, W>,
+    done: &DenseStep<2, W>,
     low: f64,
     high: f64,
     function: impl Fn([f64; 2]) -> f64,
 ) -> f64 {
-    let (x, v) = (done.lane(0, 0), done.lane(1, 0));
+    let [x, v] = [0, 1].map(|component| &done.coefficients[component][0]);
     bracketed_root(low, high, EVENT_TOLERANCE, |sigma| {
         let dense = windfall_numerics::ode_step::dense_at::<f64>;
-        function([dense(&x, sigma, 1.0 - sigma), dense(&v, sigma, 1.0 - sigma)])
+        function([dense(x, sigma, 1.0 - sigma), dense(v, sigma, 1.0 - sigma)])
     })
 }
 

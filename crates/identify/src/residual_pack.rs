@@ -26,6 +26,9 @@ pub(crate) struct PackModel<R, const P: usize> {
     pub jacobian: [[R; P]; QUANTITIES],
 }
 
+/// Dense output of what does not move.
+const STILL: [f64; DENSE_COEFFICIENTS] = [0.0; DENSE_COEFFICIENTS];
+
 /// What the packs of one piece of the motion have in common.
 pub(crate) struct PieceModel<'a, L, const N: usize, const W: usize, const P: usize> {
     model: &'a Model<L, N, W, P>,
@@ -33,9 +36,9 @@ pub(crate) struct PieceModel<'a, L, const N: usize, const W: usize, const P: usi
     accelerated: bool,
     inverse_width: f64,
     /// Dense output of displacement and rate.
-    state: [[f64; DENSE_COEFFICIENTS]; 2],
+    state: [&'a [f64; DENSE_COEFFICIENTS]; 2],
     /// That of their derivatives by each column; zero where it is no lane's.
-    columns: [[[f64; DENSE_COEFFICIENTS]; 2]; P],
+    columns: [[&'a [f64; DENSE_COEFFICIENTS]; 2]; P],
     /// Derivatives of the law's parameters by each column, and which are not zero.
     parameters: [[f64; N]; P],
     moving: [[bool; N]; P],
@@ -55,11 +58,12 @@ where
         accelerated: bool,
     ) -> Self {
         let step = &segment.step;
-        let mut columns = [[[0.0; DENSE_COEFFICIENTS]; 2]; P];
+        let [x, v] = &step.coefficients;
+        let mut columns = [[&STILL; 2]; P];
         let (mut parameters, mut moving) = ([[0.0; N]; P], [[false; N]; P]);
         for (c, &lane) in model.columns.lanes.iter().enumerate() {
             if lane > 0 {
-                columns[c] = [step.lane(0, lane), step.lane(1, lane)];
+                columns[c] = [&x[lane], &v[lane]];
                 for (i, seed) in model.event.seeds.parameters.iter().enumerate() {
                     parameters[c][i] = seed.0[lane];
                     moving[c][i] = seed.0[lane] != 0.0;
@@ -71,7 +75,7 @@ where
             segment,
             accelerated,
             inverse_width: 1.0 / step.width,
-            state: [step.lane(0, 0), step.lane(1, 0)],
+            state: [&x[0], &v[0]],
             columns,
             parameters,
             moving,
@@ -90,12 +94,12 @@ where
     ) -> PackModel<R, P> {
         let zero = sigma.constant(0.0);
         let columns = &self.model.columns;
-        let x = dense_at(&self.state[0], sigma, rest);
-        let v = dense_at(&self.state[1], sigma, rest);
+        let x = dense_at(self.state[0], sigma, rest);
+        let v = dense_at(self.state[1], sigma, rest);
         let mut jacobian = [[zero; P]; QUANTITIES];
         for c in 0..P {
-            jacobian[0][c] = dense_at(&self.columns[c][0], sigma, rest);
-            jacobian[1][c] = dense_at(&self.columns[c][1], sigma, rest);
+            jacobian[0][c] = dense_at(self.columns[c][0], sigma, rest);
+            jacobian[1][c] = dense_at(self.columns[c][1], sigma, rest);
         }
         let force = if CONTACT {
             self.force(x, v)

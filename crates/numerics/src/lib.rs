@@ -11,6 +11,7 @@ mod dimension;
 pub mod double_double;
 pub mod least_squares;
 pub mod nearest_name;
+pub mod ode_dense;
 pub mod ode_lockstep;
 pub mod ode_step;
 pub mod ode_tableau;

@@ -7,7 +7,8 @@
 //! through the very operations of [`step`](crate::ode_step::step), in the same
 //! order, so it ends at the same bits, whatever its neighbours do.
 
-use crate::ode_step::{Step, StepControl, Tolerance};
+use crate::ode_dense::DenseStep;
+use crate::ode_step::{DENSE_COEFFICIENTS, StepControl, Tolerance};
 use crate::ode_tableau::{A, C, D as DENSE, DENSE_TERMS, E3, E5, Row, STAGES, STAGES_WITH_DENSE};
 use crate::real::{Lanes, Real};
 
@@ -153,26 +154,23 @@ impl<const D: usize, const W: usize, const B: usize> Lockstep<D, W, B> {
     /// The step that `lane` made in the last attempt, if it was accepted.
     #[inline(always)]
     #[must_use]
-    pub fn step(&self, lane: usize) -> Step<D, W> {
-        let pick = |state: &LockstepState<D, W, B>| {
-            let mut out = [Lanes::ZERO; D];
-            for d in 0..D {
-                for w in 0..W {
-                    out[d].0[w] = state[d][w].0[lane];
+    pub fn step(&self, lane: usize) -> DenseStep<D, W> {
+        let mut coefficients = [[[0.0; DENSE_COEFFICIENTS]; W]; D];
+        let mut to = [0.0; D];
+        for d in 0..D {
+            for w in 0..W {
+                coefficients[d][w][0] = self.from[d][w].0[lane];
+                for term in 0..DENSE_TERMS {
+                    coefficients[d][w][1 + term] = self.terms[term][d][w].0[lane];
                 }
             }
-            out
-        };
-        let mut terms = [[Lanes::ZERO; D]; DENSE_TERMS];
-        for (term, from) in terms.iter_mut().zip(&self.terms) {
-            *term = pick(from);
+            to[d] = self.to[d][0].0[lane];
         }
-        Step {
+        DenseStep {
             start: self.start.0[lane],
             width: self.done.0[lane],
-            from: pick(&self.from),
-            to: pick(&self.to),
-            terms,
+            to,
+            coefficients,
         }
     }
 }
@@ -394,6 +392,7 @@ mod tests {
         let mut way = Way::new();
         while at.s != beginning.limit {
             let done = step(&system, &mut at, beginning.limit, &beginning.tolerance)?;
+            let done = DenseStep::from(&done);
             way.push((done.start, done.width, done.at(0.3)));
         }
         Ok(way)
