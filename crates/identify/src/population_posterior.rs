@@ -122,12 +122,13 @@ pub fn population_posterior(
     let model = (expand, progress);
     let hierarchy = Hierarchy::new(data, fit, model, options).ok_or(Error::NoPopulation)?;
     let mut drawn = vec![Vec::new(); hierarchy.quantities()];
-    // The chains start around the estimate, some of its uncertainty away.
+    // The chains start around the estimate, some of its uncertainty away; the sampler
+    // refuses a start where a slope is exactly zero, as at the estimate some may be.
     let start = |chain: usize| {
         let sign = if chain.is_multiple_of(2) { 1.0 } else { -1.0 };
         let at = |i: usize| match i < hierarchy.fruit_from && i % 3 == chain / 2 % 3 {
             true => sign,
-            false => 0.0,
+            false => 0.1 * sign,
         };
         (0..hierarchy.size()).map(at).collect()
     };

@@ -11,6 +11,8 @@ use std::collections::HashMap;
 
 /// Draws before the kept ones that tune a chain: as many as are kept, at most these.
 const MOST_TUNING: usize = 500;
+/// Coordinates of a start near the middle.
+const NEAR_ZERO: f64 = 1e-3;
 
 /// A density in coordinates in which it is near a standard normal one.
 pub(crate) trait LogDensity {
@@ -25,7 +27,8 @@ pub(crate) trait LogDensity {
     fn drawn(&self, _done: usize, _all: usize) {}
 }
 
-/// Runs the chains, chain c from `start(c)` or else from zero. `keep` takes each
+/// Runs the chains, chain c from `start(c)` or else from close to zero (at zero itself
+/// a slope may be exactly zero, which the sampler refuses). `keep` takes each
 /// draw, chain by chain. Returns how many diverged; `None` where a chain cannot be
 /// started.
 ///
@@ -55,7 +58,7 @@ pub(crate) fn draw_chains(
             .ok()?;
         sampler
             .set_position(&start(chain))
-            .or_else(|_| sampler.set_position(&vec![0.0; density.size()]))
+            .or_else(|_| sampler.set_position(&vec![NEAR_ZERO; density.size()]))
             .ok()?;
         let each = tuning + drawing.draws;
         for step in 0..each {

@@ -1,7 +1,7 @@
 //! Four numbers in one vector register, where the processor has such registers.
 //!
 //! [`Lanes`] leave it to the compiler to find the vectors, which it does in short
-//! loops only; a [`Vector`] stays one through formulas of any length. Every
+//! loops only; here numbers stay in vectors through formulas of any length. Every
 //! operation gives the bits that [`Lanes`] give.
 
 use crate::real::{Lanes, Real};
