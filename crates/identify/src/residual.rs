@@ -236,13 +236,19 @@ where
             // Only contact and the flight before touch the onset.
             let average = OnsetAverage::new(model, group)
                 .filter(|_| self.piece == Piece::Contact || self.segment.to <= 0.0);
+            // The acceleration matters to a recorded one and to the onset's column.
+            let accelerated = group.holds(Quantity::Acceleration)
+                || model.columns.onset.iter().any(|onset| *onset != 0.0);
             let share = Share {
+                zero,
+                piece: PieceModel::new(model, self.segment, accelerated),
+                contact: self.piece == Piece::Contact,
                 group,
                 range,
                 stride: *stride,
                 average: average.as_ref().map(|a| a as &dyn OnsetCorrection<P>),
             };
-            share.read((model, self.segment, self.piece), zero, tally, &mut rows);
+            share.read(tally, &mut rows);
         }
     }
 }
@@ -321,7 +327,12 @@ impl<R: Real, const P: usize> Sums<R, P> {
 }
 
 /// The samples of one group that one piece of the motion reads.
-struct Share<'a, const P: usize> {
+struct Share<'a, L, R, const N: usize, const W: usize, const P: usize> {
+    /// A number of the kind to calculate with.
+    zero: R,
+    piece: PieceModel<'a, L, N, W, P>,
+    /// Whether the bodies touch during the piece.
+    contact: bool,
     group: &'a SampleGroup,
     /// Indices of the first and behind the last.
     range: (usize, usize),
@@ -340,23 +351,14 @@ struct PackAt<R> {
     counted: R,
 }
 
-impl<const P: usize> Share<'_, P> {
+impl<L, R, const N: usize, const W: usize, const P: usize> Share<'_, L, R, N, W, P>
+where
+    L: ContactLaw<N>,
+    R: Real<Plain = Pack>,
+{
     #[inline(always)]
-    fn read<L, R, const N: usize, const W: usize>(
-        &self,
-        (model, segment, piece): (&Model<L, N, W, P>, &Segment<W>, Piece),
-        zero: R,
-        tally: &mut Tally<P>,
-        rows: &mut Option<(&mut Rows, usize)>,
-    ) where
-        L: ContactLaw<N>,
-        R: Real<Plain = Pack>,
-    {
+    fn read(&self, tally: &mut Tally<P>, rows: &mut Option<(&mut Rows, usize)>) {
         let (group, stride) = (self.group, self.stride);
-        // The acceleration matters to a recorded one and to the onset's column.
-        let accelerated = group.holds(Quantity::Acceleration)
-            || model.columns.onset.iter().any(|onset| *onset != 0.0);
-        let of_piece = PieceModel::new(model, segment, accelerated);
         if stride == 1 {
             tally.noise.begin(self.range.0);
         }
@@ -364,19 +366,11 @@ impl<const P: usize> Share<'_, P> {
             && group.relative.iter().all(Vec::is_empty)
             && self.average.is_none()
             && rows.is_none();
-        match (simple, piece) {
-            (true, Piece::Contact) => {
-                self.read_packs::<L, R, N, W, true, true>(&of_piece, zero, tally, rows)
-            }
-            (true, Piece::Flight) => {
-                self.read_packs::<L, R, N, W, true, false>(&of_piece, zero, tally, rows)
-            }
-            (false, Piece::Contact) => {
-                self.read_packs::<L, R, N, W, false, true>(&of_piece, zero, tally, rows)
-            }
-            (false, Piece::Flight) => {
-                self.read_packs::<L, R, N, W, false, false>(&of_piece, zero, tally, rows)
-            }
+        match (simple, self.contact) {
+            (true, true) => self.read_packs::<true, true>(tally, rows),
+            (true, false) => self.read_packs::<true, false>(tally, rows),
+            (false, true) => self.read_packs::<false, true>(tally, rows),
+            (false, false) => self.read_packs::<false, false>(tally, rows),
         }
         if stride == 1 {
             tally.noise.end(group, self.range.0, self.range.1);
@@ -384,18 +378,14 @@ impl<const P: usize> Share<'_, P> {
     }
 
     /// `SIMPLE` samples have white noise of one variance, are taken at their
-    /// instant, and nothing but sums is wanted.
+    /// instant, and nothing but sums is wanted; `CONTACT` as [`Share::contact`].
     #[inline(always)]
-    fn read_packs<L, R, const N: usize, const W: usize, const SIMPLE: bool, const CONTACT: bool>(
+    fn read_packs<const SIMPLE: bool, const CONTACT: bool>(
         &self,
-        piece: &PieceModel<L, N, W, P>,
-        zero: R,
         tally: &mut Tally<P>,
         rows: &mut Option<(&mut Rows, usize)>,
-    ) where
-        L: ContactLaw<N>,
-        R: Real<Plain = Pack>,
-    {
+    ) {
+        let (zero, piece) = (self.zero, &self.piece);
         let (group, stride) = (self.group, self.stride);
         let (first, last) = self.range;
         let mut sums = Sums::with_plain(&tally.sums, zero);
@@ -423,10 +413,10 @@ impl<const P: usize> Share<'_, P> {
                 counted: zero.with_plain(COUNTED[count]),
             };
             // Written out: an index known to the compiler keeps the model in registers.
-            self.add::<R, 0, SIMPLE>(&found, pack, &mut sums, &mut tally.noise);
-            self.add::<R, 1, SIMPLE>(&found, pack, &mut sums, &mut tally.noise);
-            self.add::<R, 2, SIMPLE>(&found, pack, &mut sums, &mut tally.noise);
-            self.add::<R, 3, SIMPLE>(&found, pack, &mut sums, &mut tally.noise);
+            self.add::<0, SIMPLE>(&found, pack, &mut sums, &mut tally.noise);
+            self.add::<1, SIMPLE>(&found, pack, &mut sums, &mut tally.noise);
+            self.add::<2, SIMPLE>(&found, pack, &mut sums, &mut tally.noise);
+            self.add::<3, SIMPLE>(&found, pack, &mut sums, &mut tally.noise);
             if let (false, Some((rows, index))) = (SIMPLE, rows.as_mut()) {
                 store_rows(rows, *index, group, (at, count), &found.plain());
             }
@@ -437,7 +427,7 @@ impl<const P: usize> Share<'_, P> {
 
     /// Adds the rows of quantity `Q` of a pack.
     #[inline(always)]
-    fn add<R: Real<Plain = Pack>, const Q: usize, const SIMPLE: bool>(
+    fn add<const Q: usize, const SIMPLE: bool>(
         &self,
         found: &PackModel<R, P>,
         pack: PackAt<R>,
@@ -457,26 +447,13 @@ impl<const P: usize> Share<'_, P> {
         let mut jacobian = found.jacobian[Q];
         if !SIMPLE && self.stride == 1 && !group.is_white(Q) {
             let mut row = (weight.plain(), residual.plain(), zero.each_plain(jacobian));
-            whiten(noise, Q, group, &mut row, pack.count);
+            noise.whiten((Q, group), &mut row, pack.count);
             weight = zero.with_plain(row.0);
             residual = zero.with_plain(row.1);
             jacobian = zero.with_each_plain(row.2);
         }
         sums.add(weight, residual, &jacobian);
     }
-}
-
-/// Makes a pack of rows (weights, residuals, derivatives) of quantity `q`, whose
-/// noise persists or has a zero in common, independent of those before.
-#[inline(never)]
-fn whiten<const P: usize>(
-    noise: &mut Noise<P>,
-    q: usize,
-    group: &SampleGroup,
-    (weight, residual, jacobian): &mut (Pack, Pack, [Pack; P]),
-    count: usize,
-) {
-    noise.whiten(q, group, weight, residual, jacobian, count);
 }
 
 /// The first sample from `at` on that belongs to the share.

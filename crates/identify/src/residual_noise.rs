@@ -2,8 +2,10 @@
 
 use crate::residual_pack::Pack;
 use crate::samples::{QUANTITIES, SampleGroup};
-use crate::whitening::{Row, Whitening, ZeroSums, unit_shift};
+use crate::whitening::{Row, Whitening, ZeroSums, row, unit_shift};
 use windfall_numerics::least_squares::NormalEquations;
+use windfall_numerics::real::Real;
+use windfall_numerics::real_vector::{FourLanes, with_four_lanes};
 
 /// State of every quantity's noise; each quantity is in one group.
 pub(crate) struct Noise<const P: usize> {
@@ -31,32 +33,25 @@ impl<const P: usize> Noise<P> {
         }
     }
 
-    /// Makes a pack of rows independent of those before, and adds them to the
-    /// sums that tell the zero.
-    #[inline(always)]
+    /// Makes a pack of `count` rows (weights, residuals, derivatives) of quantity `q`
+    /// of `group` independent of those before, and adds them to the sums that tell
+    /// the zero.
+    ///
+    /// Compiled by itself: in the loop over packs it would be there for every law.
+    #[inline(never)]
     pub(crate) fn whiten(
         &mut self,
-        q: usize,
-        group: &SampleGroup,
-        weight: &mut Pack,
-        residual: &mut Pack,
-        jacobian: &mut [Pack; P],
+        (q, group): (usize, &SampleGroup),
+        rows: &mut (Pack, Pack, [Pack; P]),
         count: usize,
     ) {
-        let persistence = group.persistence[q];
-        if persistence != 0.0 {
-            let opening = Row {
-                residual: residual.0[0],
-                jacobian: jacobian.map(|column| column.0[0]),
-            };
-            if self.whitening[q].whiten(persistence, residual, jacobian, count) {
-                self.openings[q] = Some(opening);
-                weight.0[0] = 0.0;
-            }
-        }
-        if group.zero_sd[q] > 0.0 {
-            self.zeros[q].add(*weight, unit_shift(persistence), *residual, jacobian);
-        }
+        with_four_lanes(WhitenPack {
+            noise: self,
+            q,
+            group,
+            rows,
+            count,
+        });
     }
 
     /// Ends a piece of `group` with indices `first..last`.
@@ -100,5 +95,40 @@ impl<const P: usize> Noise<P> {
                 self.zeros[q].eliminate(group.zero_sd[q], equations);
             }
         }
+    }
+}
+
+/// [`Noise::whiten`].
+struct WhitenPack<'a, const P: usize> {
+    noise: &'a mut Noise<P>,
+    q: usize,
+    group: &'a SampleGroup,
+    rows: &'a mut (Pack, Pack, [Pack; P]),
+    count: usize,
+}
+
+impl<const P: usize> FourLanes for WhitenPack<'_, P> {
+    type Output = ();
+
+    #[inline(always)]
+    fn run<R: Real<Plain = Pack>>(self, zero: R) {
+        let (noise, q) = (self.noise, self.q);
+        let mut residual = zero.with_plain(self.rows.1);
+        let mut jacobian = zero.with_each_plain(self.rows.2);
+        let persistence = self.group.persistence[q];
+        if persistence != 0.0 {
+            let opening = row(residual, &jacobian, 0);
+            let whitening = &mut noise.whitening[q];
+            if whitening.whiten(persistence, &mut residual, &mut jacobian, self.count) {
+                noise.openings[q] = Some(opening);
+                self.rows.0.0[0] = 0.0;
+            }
+        }
+        if self.group.zero_sd[q] > 0.0 {
+            let weight = zero.with_plain(self.rows.0);
+            noise.zeros[q].add(weight, unit_shift(persistence), residual, &jacobian);
+        }
+        self.rows.1 = residual.plain();
+        self.rows.2 = zero.each_plain(jacobian);
     }
 }

@@ -53,30 +53,22 @@ impl<const P: usize> Whitening<P> {
         };
     }
 
-    /// Whitens a pack of `count` rows, the first of index `at`. Returns whether
-    /// its first row has to wait for its predecessor; the weight of that row
-    /// must then be taken out.
+    /// Whitens a pack of `count` rows. Returns whether its first row has to wait for
+    /// its predecessor; the weight of that row must then be taken out.
     #[inline(always)]
-    pub(crate) fn whiten(
+    pub(crate) fn whiten<R: Real<Plain = Pack>>(
         &mut self,
         persistence: f64,
-        residual: &mut Pack,
-        jacobian: &mut [Pack; P],
+        residual: &mut R,
+        jacobian: &mut [R; P],
         count: usize,
     ) -> bool {
         let scale = 1.0 / (1.0 - persistence * persistence).sqrt();
-        let first = Row {
-            residual: residual.0[0],
-            jacobian: jacobian.map(|column| column.0[0]),
-        };
-        let last = Row {
-            residual: residual.0[count - 1],
-            jacobian: jacobian.map(|column| column.0[count - 1]),
-        };
-        let before = self.previous.unwrap_or(first);
-        *residual = (*residual + shifted(residual, before.residual) * -persistence) * scale;
+        let before = self.previous.unwrap_or_else(|| row(*residual, jacobian, 0));
+        let last = row(*residual, jacobian, count - 1);
+        *residual = whitened(*residual, before.residual, persistence, scale);
         for (column, before) in jacobian.iter_mut().zip(before.jacobian) {
-            *column = (*column + shifted(column, before) * -persistence) * scale;
+            *column = whitened(*column, before, persistence, scale);
         }
         let waits = self.previous.is_none();
         self.previous = Some(last);
@@ -98,7 +90,7 @@ impl<const P: usize> Whitening<P> {
             if let Some((index, row)) = self.pending
                 && index == last
             {
-                found = Some(whitened(&row, &closing, persistence));
+                found = Some(whitened_row(&row, &closing, persistence));
             }
             self.pending = Some((first, opening));
         }
@@ -114,13 +106,32 @@ impl<const P: usize> Whitening<P> {
     }
 }
 
-fn shifted(values: &Pack, before: f64) -> Pack {
-    let mut out = [before; PACK];
-    out[1..].copy_from_slice(&values.0[..PACK - 1]);
-    Lanes(out)
+/// Row of one lane of a pack.
+#[inline(always)]
+pub(crate) fn row<R: Real<Plain = Pack>, const P: usize>(
+    residual: R,
+    jacobian: &[R; P],
+    lane: usize,
+) -> Row<P> {
+    let mut row = Row {
+        residual: residual.plain().0[lane],
+        jacobian: [0.0; P],
+    };
+    for (to, column) in row.jacobian.iter_mut().zip(jacobian) {
+        *to = column.plain().0[lane];
+    }
+    row
 }
 
-fn whitened<const P: usize>(row: &Row<P>, before: &Row<P>, persistence: f64) -> Row<P> {
+/// Each lane without what persists of the one before; `before` is before the first.
+#[inline(always)]
+fn whitened<R: Real<Plain = Pack>>(values: R, before: f64, persistence: f64, scale: f64) -> R {
+    let Lanes([a, b, c, _]) = values.plain();
+    let earlier = values.with_plain(Lanes([before, a, b, c]));
+    (values + earlier * -persistence) * scale
+}
+
+fn whitened_row<const P: usize>(row: &Row<P>, before: &Row<P>, persistence: f64) -> Row<P> {
     let scale = 1.0 / (1.0 - persistence * persistence).sqrt();
     let of = |value: f64, before: f64| (value - persistence * before) * scale;
     Row {
@@ -151,13 +162,20 @@ impl<const P: usize> ZeroSums<P> {
 
     /// Adds a pack; `shift` is what a zero of 1 does to each residual.
     #[inline(always)]
-    pub(crate) fn add(&mut self, weight: Pack, shift: f64, residual: Pack, jacobian: &[Pack; P]) {
+    pub(crate) fn add<R: Real<Plain = Pack>>(
+        &mut self,
+        weight: R,
+        shift: f64,
+        residual: R,
+        jacobian: &[R; P],
+    ) {
         let weighted = weight * shift;
-        self.residual = weighted.mul_add(residual, self.residual);
+        let add = weighted.mul_add(residual, weight.with_plain(self.residual));
+        self.residual = add.plain();
         for (sum, column) in self.jacobian.iter_mut().zip(jacobian) {
-            *sum = weighted.mul_add(*column, *sum);
+            *sum = weighted.mul_add(*column, weight.with_plain(*sum)).plain();
         }
-        self.square += weighted * shift;
+        self.square = (weight.with_plain(self.square) + weighted * shift).plain();
     }
 
     /// Adds one row.

@@ -69,20 +69,28 @@ pub trait Real:
     fn map(self, function: impl Fn(f64) -> f64) -> Self;
 }
 
+/// What [`Real`] asks of numbers that are tied to no instructions.
+macro_rules! plain_already {
+    () => {
+        type Plain = Self;
+
+        #[inline(always)]
+        fn plain(self) -> Self {
+            self
+        }
+        #[inline(always)]
+        fn with_plain(self, plain: Self) -> Self {
+            plain
+        }
+    };
+}
+
 impl Real for f64 {
-    type Plain = Self;
+    plain_already!();
 
     #[inline(always)]
     fn constant(self, value: f64) -> Self {
         value
-    }
-    #[inline(always)]
-    fn plain(self) -> Self {
-        self
-    }
-    #[inline(always)]
-    fn with_plain(self, plain: Self) -> Self {
-        plain
     }
     #[inline(always)]
     fn mul_add(self, factor: Self, summand: Self) -> Self {
@@ -220,19 +228,11 @@ impl<const W: usize> Add<f64> for Lanes<W> {
 }
 
 impl<const W: usize> Real for Lanes<W> {
-    type Plain = Self;
+    plain_already!();
 
     #[inline(always)]
     fn constant(self, value: f64) -> Self {
         Self::splat(value)
-    }
-    #[inline(always)]
-    fn plain(self) -> Self {
-        self
-    }
-    #[inline(always)]
-    fn with_plain(self, plain: Self) -> Self {
-        plain
     }
     #[inline(always)]
     fn mul_add(self, factor: Self, summand: Self) -> Self {
