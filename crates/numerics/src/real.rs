@@ -1,5 +1,5 @@
 //! Numbers that a formula can be evaluated for: one `f64`, or several side by
-//! side in [`Lanes`] or in a vector register ([`real_vector`](crate::real_vector)).
+//! side in [`Lanes`] or in a vector register (module `real_vector`).
 //!
 //! A force law is written once over [`Real`]. The integrator evaluates it for a
 //! single state, the residual kernel for a handful of samples at a time.

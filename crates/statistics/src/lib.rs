@@ -78,6 +78,7 @@ pub mod residual_order;
 pub mod sample;
 pub mod sample_error;
 pub mod selection;
+pub mod straight_line;
 pub mod studentized_range;
 pub mod surface;
 pub mod surface_coding;

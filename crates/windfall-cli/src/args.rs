@@ -9,6 +9,7 @@ use crate::args_geometry::{RadiusArguments, TransferArguments};
 use crate::args_laws::LawsArguments;
 use crate::args_population::PopulationArguments;
 use crate::args_regress::RegressArguments;
+use crate::args_report::ReportArguments;
 use crate::args_simulate::SimulateArguments;
 use crate::args_surface::SurfaceArguments;
 use clap::{Args, Parser, Subcommand, ValueEnum, ValueHint};
@@ -26,6 +27,7 @@ use std::path::PathBuf;
   windfall new pendulum my-campaign       write a commented template
   windfall inspect my-campaign/raw/*.csv  see what the recordings hold
   windfall fit my-campaign                recordings → parameters, table, results.sqlite
+  windfall report my-campaign             figures and a page with all of it
   windfall simulate impact --law 'kuwabara-kono(k=753599, c=1524)' --mass '0.2 kg' --velocity '0.5 m/s'
   windfall design ccd --factor 'k=0.3..1' --factor 'e=1.5..3' --out design.csv
   windfall card show --laws               the force laws")]
@@ -48,6 +50,8 @@ pub enum Command {
     Laws(LawsArguments),
     /// Estimate how the law varies between fruit and with covariates
     Population(PopulationArguments),
+    /// Write figures, tables and a page on a campaign: methods, results, findings, origin
+    Report(Box<ReportArguments>),
     /// Calibrate a contact law to dropped fruit: by features, and by design and surface
     Calibrate(CalibrateArguments),
     /// Make a design of experiments
@@ -121,8 +125,8 @@ pub struct InspectArguments {
     /// Show only this channel; may be repeated
     #[arg(long = "channel", value_name = "NAME")]
     pub channels: Vec<String>,
-    /// Write a figure of the channels (SVG) and its data (CSV, same name); one recording only
-    #[arg(long, value_name = "FILE.svg", value_hint = ValueHint::FilePath)]
+    /// Write a figure of the channels (SVG or PNG, by its ending) and its data (CSV, same name); one recording only
+    #[arg(long, value_name = "FILE.svg|FILE.png", value_hint = ValueHint::FilePath)]
     pub plot: Option<PathBuf>,
     /// How files are read that do not say it themselves
     #[command(flatten)]

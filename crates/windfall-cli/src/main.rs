@@ -14,6 +14,7 @@ mod args_geometry;
 mod args_laws;
 mod args_population;
 mod args_regress;
+mod args_report;
 mod args_simulate;
 mod args_simulate_drop;
 mod args_simulate_eccentric;
@@ -29,6 +30,7 @@ mod command_laws;
 mod command_new;
 mod command_population;
 mod command_regress;
+mod command_report;
 mod command_simulate;
 mod command_simulate_drop;
 mod command_simulate_eccentric;
@@ -47,6 +49,7 @@ fn main() -> ExitCode {
         Command::Fit(arguments) => command_fit::run(&arguments),
         Command::Laws(arguments) => command_laws::run(&arguments),
         Command::Population(arguments) => command_population::run(&arguments),
+        Command::Report(arguments) => command_report::run(&arguments),
         Command::Calibrate(arguments) => command_calibrate::run(&arguments),
         Command::Simulate(arguments) => command_simulate::run(&arguments),
         Command::Summary(arguments) => command_compare::run_summary(&arguments),

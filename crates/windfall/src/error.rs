@@ -37,6 +37,12 @@ pub struct DropQuantity {
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum Error {
+    /// A figure that cannot be drawn as dots.
+    #[error("the figure cannot be drawn as PNG: {detail}; its SVG and CSV are complete")]
+    FigureUndrawable {
+        /// What the renderer said.
+        detail: String,
+    },
     /// A result that cannot be put into words of JSON.
     #[error("the result on \"{item}\" cannot be kept: {detail}")]
     ResultUnwritable {

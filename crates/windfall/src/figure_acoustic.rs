@@ -62,11 +62,13 @@ pub fn figure_of_taps(
                 Series {
                     label: "measured".to_owned(),
                     style: Style::Broad,
+                    colour: None,
                     points: scaled(measured),
                 },
                 Series {
                     label: "fitted modes".to_owned(),
                     style: Style::Line,
+                    colour: None,
                     points: fitted,
                 },
             ],

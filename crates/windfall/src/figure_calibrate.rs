@@ -25,6 +25,7 @@ fn series(label: &str, style: Style, points: Vec<(f64, f64)>) -> Series {
     Series {
         label: label.to_owned(),
         style,
+        colour: None,
         points,
     }
 }

@@ -28,6 +28,7 @@ pub fn figure_of_compression(
     let series = |label: &str, style: Style, points: Vec<(f64, f64)>| Series {
         label: label.to_owned(),
         style,
+        colour: None,
         points,
     };
     let mut all = vec![

@@ -1,7 +1,9 @@
 //! Figures of a campaign as files: NAME.svg, and NAME.csv with what it shows.
 
 use crate::error::Error;
+use crate::figure_theme::LIGHT;
 use crate::figure_xy::{Figure, csv_of_figure, svg_of_figure};
+use crate::write_file::write_whole;
 use std::path::{Path, PathBuf};
 
 /// Writes a figure and its data into a directory, which is made where it is
@@ -12,23 +14,23 @@ use std::path::{Path, PathBuf};
 /// # Errors
 /// The directory or a file cannot be written.
 pub fn write_figure(directory: &Path, name: &str, figure: &Figure) -> Result<PathBuf, Error> {
-    let failed = |path: &Path| {
-        let path = path.to_path_buf();
-        move |source| Error::FileAccess {
-            path,
-            action: "write",
-            source,
-        }
-    };
-    std::fs::create_dir_all(directory).map_err(failed(directory))?;
-    let kept = |c: char| c.is_alphanumeric() || "-_.".contains(c);
-    let name: String = name
-        .chars()
-        .map(|c| if kept(c) { c } else { '_' })
-        .collect();
+    std::fs::create_dir_all(directory).map_err(|source| Error::FileAccess {
+        path: directory.to_path_buf(),
+        action: "write",
+        source,
+    })?;
+    let name = file_name(name);
     let picture = directory.join(format!("{name}.svg"));
-    std::fs::write(&picture, svg_of_figure(figure)).map_err(failed(&picture))?;
+    write_whole(&picture, svg_of_figure(figure, &LIGHT).as_bytes())?;
     let table = directory.join(format!("{name}.csv"));
-    std::fs::write(&table, csv_of_figure(figure)?).map_err(failed(&table))?;
+    write_whole(&table, csv_of_figure(figure)?.as_bytes())?;
     Ok(picture)
+}
+
+/// A name for a file: what file names cannot hold becomes "_".
+#[must_use]
+pub fn file_name(name: &str) -> String {
+    let kept = |c: char| c.is_alphanumeric() || "-_.".contains(c);
+    let filled = name.chars().map(|c| if kept(c) { c } else { '_' });
+    filled.collect()
 }

@@ -6,9 +6,16 @@ use crate::outcome::ImpactOutcome;
 use windfall_contact::law::EndRule;
 use windfall_contact::law_kind::{Law, LawKind};
 use windfall_identify::rig::Rig;
-use windfall_identify::simulate::trajectory;
+use windfall_identify::simulate::{Trajectory, trajectory};
 use windfall_signal::impact::{Impact, Series as Samples};
 use windfall_signal::kinematics::value_at;
+
+/// Time over which differences of the displacement are shown as its rate, as a part
+/// of the contact's duration; 1.
+const RATE_SPAN: f64 = 0.05;
+
+/// Colour of the contact window, which no law has before the fourth.
+pub(crate) const WINDOW: usize = 4;
 
 /// Points of a law's line.
 const POINTS: usize = 400;
@@ -30,9 +37,14 @@ pub fn figure_of_impact(
         .collect();
     let mut panels = Vec::new();
     if let Some(force) = &impact.force {
-        panels.push(over_time(impact, "force", ("N", 1.0), force, &laws, |m| {
-            &m.force
-        }));
+        panels.push(over_time(
+            impact,
+            "contact force",
+            ("N", 1.0),
+            force,
+            &laws,
+            |m| &m.force,
+        ));
     }
     if let Some(displacement) = &impact.displacement {
         let unit = ("mm", 1e3);
@@ -44,6 +56,18 @@ pub fn figure_of_impact(
             &laws,
             |m| &m.displacement,
         ));
+    }
+    if let (Some((label, rate)), true) = (shown_rate(impact), !panels.is_empty()) {
+        let mut panel = over_time(
+            impact,
+            "displacement rate",
+            ("m/s", 1.0),
+            &rate,
+            &laws,
+            |m| &m.rate,
+        );
+        panel.series[1].label = label;
+        panels.push(panel);
     }
     if let (Some(force), Some(displacement)) = (&impact.force, &impact.displacement) {
         panels.push(force_loop(impact, force, displacement, &laws));
@@ -66,37 +90,74 @@ pub fn figure_of_impact(
     }
 }
 
+/// A fitted law ready to be followed.
+pub(crate) struct FittedImpact<'a> {
+    law: Law,
+    rig: &'a Rig,
+    end: EndRule,
+    velocity: f64,
+    onset: f64,
+    offset: f64,
+}
+
+impl<'a> FittedImpact<'a> {
+    /// `None` where the outcome does not hold all that the motion depends on.
+    pub(crate) fn of(
+        impact: &Impact,
+        outcome: &ImpactOutcome,
+        (rig, end, user): (&'a Rig, EndRule, &[LawKind]),
+    ) -> Option<Self> {
+        let kind = LawKind::from_name_among(&outcome.law, user).ok()?;
+        let values: Vec<f64> = outcome.parameters.0.iter().map(|(_, e)| e.value).collect();
+        let nuisance = |name: &str| outcome.nuisances.get(name).map(|estimate| estimate.value);
+        Some(Self {
+            law: kind.with_parameters(&values).ok()?,
+            rig,
+            end,
+            velocity: outcome.fitted.get("impact_velocity").copied().flatten()?,
+            onset: nuisance("onset").unwrap_or(impact.onset),
+            offset: nuisance("displacement_offset").unwrap_or(0.0),
+        })
+    }
+}
+
+/// The motion of a fitted impact at times on the clock of the recording, with the
+/// displacement as the recording counts it; `None` where it cannot be followed.
+pub(crate) fn motion_at(fitted: &FittedImpact, times: &[f64]) -> Option<Trajectory> {
+    let since: Vec<f64> = times.iter().map(|t| t - fitted.onset).collect();
+    let FittedImpact {
+        law,
+        rig,
+        end,
+        velocity,
+        ..
+    } = fitted;
+    let mut motion = trajectory(law, rig, *velocity, &since, *end).ok()?;
+    motion.times = times.to_vec();
+    for displacement in &mut motion.displacement {
+        *displacement += fitted.offset;
+    }
+    Some(motion)
+}
+
 /// The motion under a fitted law on the clock of the recording.
 struct FittedMotion {
     law: String,
-    times: Vec<f64>,
-    force: Vec<f64>,
-    displacement: Vec<f64>,
+    motion: Trajectory,
 }
 
 fn fitted_motion(
     impact: &Impact,
     outcome: &ImpactOutcome,
-    (rig, end, user): (&Rig, EndRule, &[LawKind]),
+    used: (&Rig, EndRule, &[LawKind]),
 ) -> Option<FittedMotion> {
-    let kind = LawKind::from_name_among(&outcome.law, user).ok()?;
-    let values: Vec<f64> = outcome.parameters.0.iter().map(|(_, e)| e.value).collect();
-    let law: Law = kind.with_parameters(&values).ok()?;
-    let nuisance = |name: &str| outcome.nuisances.get(name).map(|estimate| estimate.value);
-    let velocity = outcome.fitted.get("impact_velocity").copied().flatten()?;
-    let onset = nuisance("onset").unwrap_or(impact.onset);
-    let offset = nuisance("displacement_offset").unwrap_or(0.0);
+    let fitted = FittedImpact::of(impact, outcome, used)?;
     let (from, to) = range(impact)?;
     let step = (to - from) / (POINTS - 1) as f64;
-    let times: Vec<f64> = (0..POINTS)
-        .map(|i| from - onset + i as f64 * step)
-        .collect();
-    let motion = trajectory(&law, rig, velocity, &times, end).ok()?;
+    let times: Vec<f64> = (0..POINTS).map(|i| from + i as f64 * step).collect();
     Some(FittedMotion {
         law: outcome.law.clone(),
-        times: times.iter().map(|t| t + onset).collect(),
-        force: motion.force,
-        displacement: motion.displacement.iter().map(|x| x + offset).collect(),
+        motion: motion_at(&fitted, &times)?,
     })
 }
 
@@ -114,29 +175,72 @@ fn range(impact: &Impact) -> Option<(f64, f64)> {
     ends.reduce(|a, b| (a.0.min(b.0), a.1.max(b.1)))
 }
 
+/// The displacement rate as people can read it, with how it came about. Differences
+/// between neighbouring counts of an encoder are nothing or a whole count: those over
+/// a longer time are shown.
+fn shown_rate(impact: &Impact) -> Option<(String, Samples)> {
+    if let Some(rate) = impact.rate.as_ref().filter(|rate| !rate.derived) {
+        return Some(("measured".to_owned(), rate.clone()));
+    }
+    let displacement = impact.displacement.as_ref()?;
+    let (times, values) = (&displacement.times, &displacement.values);
+    let step = (times.last()? - times.first()?) / (times.len() - 1).max(1) as f64;
+    let span = RATE_SPAN * (impact.end - impact.onset);
+    let half = (0.5 * span / step).round().max(1.0) as usize;
+    let mut rate = Samples::default();
+    for i in half..times.len().saturating_sub(half) {
+        let (from, to) = (i - half, i + half);
+        rate.times.push(times[i]);
+        rate.values
+            .push((values[to] - values[from]) / (times[to] - times[from]));
+    }
+    let span = 2e3 * half as f64 * step;
+    let label = format!("differences of the displacement over {span:.2} ms");
+    (!rate.times.is_empty()).then_some((label, rate))
+}
+
 fn over_time(
     impact: &Impact,
     name: &str,
     (unit, scale): (&str, f64),
     measured: &Samples,
     laws: &[FittedMotion],
-    pick: impl Fn(&FittedMotion) -> &Vec<f64>,
+    pick: impl Fn(&Trajectory) -> &Vec<f64>,
 ) -> Panel {
     let point = |(t, value): (&f64, &f64)| (1e3 * (t - impact.onset), scale * value);
-    let mut series = vec![Series {
-        label: "measured".to_owned(),
-        style: Style::Dots,
-        points: measured
-            .times
-            .iter()
-            .zip(&measured.values)
-            .map(point)
-            .collect(),
-    }];
-    series.extend(laws.iter().map(|motion| Series {
-        label: motion.law.clone(),
-        style: Style::Line,
-        points: motion.times.iter().zip(pick(motion)).map(point).collect(),
+    let window = [impact.onset, impact.end].map(|t| (1e3 * (t - impact.onset), 0.0));
+    let mut series = vec![
+        Series {
+            label: "contact (force threshold)".to_owned(),
+            style: Style::Shade,
+            colour: Some(WINDOW),
+            points: window.to_vec(),
+        },
+        Series {
+            label: "measured".to_owned(),
+            style: Style::Dots,
+            colour: Some(0),
+            points: measured
+                .times
+                .iter()
+                .zip(&measured.values)
+                .map(point)
+                .collect(),
+        },
+    ];
+    series.extend(laws.iter().enumerate().map(|(index, motion)| {
+        Series {
+            label: motion.law.clone(),
+            style: Style::Line,
+            colour: Some(1 + index),
+            points: motion
+                .motion
+                .times
+                .iter()
+                .zip(pick(&motion.motion))
+                .map(point)
+                .collect(),
+        }
     }));
     Panel {
         x: "time since the force threshold".to_owned(),
@@ -170,16 +274,23 @@ fn force_loop(
     let mut series = vec![Series {
         label: "measured".to_owned(),
         style: Style::Dots,
+        colour: None,
         points: points.collect(),
     }];
-    series.extend(laws.iter().map(|motion| {
-        let pairs = motion.displacement.iter().zip(&motion.force);
-        let inside = motion.times.iter().zip(pairs);
+    series.extend(laws.iter().enumerate().map(|(index, motion)| {
+        let Trajectory {
+            times,
+            displacement,
+            force,
+            ..
+        } = &motion.motion;
+        let inside = times.iter().zip(displacement.iter().zip(force));
         let inside =
             inside.filter(|(t, _)| (impact.onset - guard..=impact.end + guard).contains(t));
         Series {
             label: motion.law.clone(),
             style: Style::Line,
+            colour: Some(1 + index),
             points: inside.map(|(_, (x, f))| (1e3 * x, *f)).collect(),
         }
     }));

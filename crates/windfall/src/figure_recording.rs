@@ -3,7 +3,8 @@
 use crate::curve::{Curve, CurvePoint};
 use crate::error::Error;
 use crate::figure_axis::{Axis, axis, unit_label};
-use crate::figure_svg::{Anchor, COLOURS, Drawing};
+use crate::figure_svg::{Anchor, Drawing, Ink};
+use crate::figure_theme::Theme;
 use crate::write_csv::csv_text;
 
 /// Most panels of a figure.
@@ -18,9 +19,6 @@ const PANEL: f64 = 118.0;
 const GAP: f64 = 30.0;
 const BOTTOM: f64 = 46.0;
 
-const FRAME: &str = "#777";
-const GRID: &str = "#e4e4e4";
-
 /// A recording that begins later than this many times its length has its times
 /// counted from a round beginning.
 const FAR: f64 = 100.0;
@@ -32,7 +30,7 @@ const DOTS: usize = 150;
 ///
 /// Channels that overlap in time share an axis; others have their own.
 #[must_use]
-pub fn svg_of_curves(title: &str, curves: &[Curve]) -> String {
+pub fn svg_of_curves(title: &str, curves: &[Curve], theme: &Theme) -> String {
     let shown = &curves[..curves.len().min(MOST_PANELS)];
     let groups: Vec<&[Curve]> = shown
         .chunk_by(|a, b| a.timed == b.timed && overlap(a, b))
@@ -50,20 +48,14 @@ pub fn svg_of_curves(title: &str, curves: &[Curve]) -> String {
     for group in groups {
         let time = TimeAxis::of(group);
         for curve in group {
-            panel(
-                &mut drawing,
-                curve,
-                &time,
-                top,
-                COLOURS[index % COLOURS.len()],
-            );
+            panel(&mut drawing, curve, &time, top, Ink::Series(index));
             top += PANEL + GAP;
             index += 1;
         }
         time.labels(&mut drawing, top - GAP);
         top += BOTTOM;
     }
-    drawing.svg()
+    drawing.svg(theme)
 }
 
 /// Whether two channels were recorded at the same time, in part.
@@ -150,7 +142,7 @@ impl TimeAxis {
     }
 }
 
-fn panel(drawing: &mut Drawing, curve: &Curve, time: &TimeAxis, top: f64, colour: &str) {
+fn panel(drawing: &mut Drawing, curve: &Curve, time: &TimeAxis, top: f64, ink: Ink) {
     let low = curve
         .points
         .iter()
@@ -172,17 +164,17 @@ fn panel(drawing: &mut Drawing, curve: &Curve, time: &TimeAxis, top: f64, colour
 
     for tick in &time.axis.ticks {
         let x = time.tick(*tick);
-        drawing.rule((x, top), (x, top + PANEL), GRID);
-        drawing.rule((x, top + PANEL), (x, top + PANEL + 4.0), FRAME);
+        drawing.rule((x, top), (x, top + PANEL), Ink::Grid);
+        drawing.rule((x, top + PANEL), (x, top + PANEL + 4.0), Ink::Frame);
     }
     for (tick, label) in values.ticks.iter().zip(&values.labels) {
         let y = place(*tick);
-        drawing.rule((left, y), (right, y), GRID);
-        drawing.rule((left - 4.0, y), (left, y), FRAME);
+        drawing.rule((left, y), (right, y), Ink::Grid);
+        drawing.rule((left - 4.0, y), (left, y), Ink::Frame);
         drawing.text((left - 7.0, y + 3.6), Anchor::End, 10.5, label);
     }
-    drawing.rule((left, top), (left, top + PANEL), FRAME);
-    drawing.rule((left, top + PANEL), (right, top + PANEL), FRAME);
+    drawing.rule((left, top), (left, top + PANEL), Ink::Frame);
+    drawing.rule((left, top + PANEL), (right, top + PANEL), Ink::Frame);
     // A unit that the name already says is not said again.
     let unit = curve.unit.as_deref().unwrap_or("");
     let said =
@@ -196,10 +188,10 @@ fn panel(drawing: &mut Drawing, curve: &Curve, time: &TimeAxis, top: f64, colour
     );
 
     let line = outline(&curve.points, |x| time.place(x), place);
-    drawing.polyline(&line, colour, 1.1);
+    drawing.polyline(&line, ink, 1.1);
     if curve.points.len() <= DOTS {
         for point in &curve.points {
-            drawing.dot((time.place(point.x), place(point.first)), 1.9, colour);
+            drawing.dot((time.place(point.x), place(point.first)), 1.9, ink);
         }
     }
 }
@@ -263,6 +255,7 @@ pub fn csv_of_curves(curves: &[Curve]) -> Result<String, Error> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::figure_theme::LIGHT;
 
     fn point(x: f64, y: f64) -> CurvePoint {
         CurvePoint {
@@ -295,13 +288,13 @@ mod tests {
 
     #[test]
     fn closed_form_no_channels_no_panic() {
-        assert!(svg_of_curves("nothing", &[]).ends_with("</svg>\n"));
+        assert!(svg_of_curves("nothing", &[], &LIGHT).ends_with("</svg>\n"));
         let empty = Curve {
             name: "x".to_owned(),
             unit: None,
             timed: false,
             points: Vec::new(),
         };
-        assert!(svg_of_curves("empty", &[empty]).contains("sample"));
+        assert!(svg_of_curves("empty", &[empty], &LIGHT).contains("sample"));
     }
 }

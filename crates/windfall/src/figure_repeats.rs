@@ -46,6 +46,7 @@ pub fn figure_of_comparison(
     let series = |label: &str, style: Style, points: Vec<(f64, f64)>| Series {
         label: label.to_owned(),
         style,
+        colour: None,
         points,
     };
     let (first, second) = (comparison.order + 1, comparison.order + 2);

@@ -1,5 +1,6 @@
 //! A small writer of SVG: what the figures of windfall are drawn with.
 
+use crate::figure_theme::{SERIES, Theme};
 use std::fmt::Write;
 
 /// Fonts of figures, as journals ask for them.
@@ -16,13 +17,45 @@ pub enum Anchor {
     End,
 }
 
-/// Colours that colour-blind people tell apart.
-///
-/// # Source
-/// M. Okabe, K. Ito (2008), "Color Universal Design".
-pub const COLOURS: [&str; 7] = [
-    "#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e69f00", "#56b4e9", "#000000",
-];
+/// What something is drawn with; the [`Theme`] says which colour that is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Ink {
+    /// Axes and ticks.
+    Frame,
+    /// Lines behind the data.
+    Grid,
+    /// Text, and rings around named places.
+    Text,
+    /// Series of this number; the colours repeat after [`SERIES`].
+    Series(usize),
+}
+
+/// First of the characters that stand for colours until the theme is known. Text
+/// cannot hold them: they are for private use, and [`escaped`] blanks them.
+const FIRST_INK: u32 = 0xE000;
+
+/// Colours besides those of series.
+const PLAIN_INKS: usize = 3;
+
+impl Ink {
+    /// The character that stands for it.
+    fn mark(self) -> char {
+        let index = match self {
+            Self::Frame => 0,
+            Self::Grid => 1,
+            Self::Text => 2,
+            Self::Series(series) => PLAIN_INKS + series % SERIES,
+        };
+        char::from_u32(FIRST_INK + index as u32).unwrap_or(' ')
+    }
+}
+
+/// Colour that a character stands for, if it stands for one.
+fn colour_of(mark: char, theme: &Theme) -> Option<&'static str> {
+    let index = (mark as u32).checked_sub(FIRST_INK)? as usize;
+    let plain = [theme.frame, theme.grid, theme.text];
+    plain.iter().chain(&theme.series).nth(index).copied()
+}
 
 /// A drawing of a given size; px, y downwards.
 #[derive(Clone, Debug)]
@@ -33,7 +66,7 @@ pub struct Drawing {
 }
 
 impl Drawing {
-    /// An empty drawing on white.
+    /// An empty drawing.
     #[must_use]
     pub fn new(width: f64, height: f64) -> Self {
         Self {
@@ -44,54 +77,59 @@ impl Drawing {
     }
 
     /// A straight line of the colour of frames and ticks.
-    pub fn rule(&mut self, from: (f64, f64), to: (f64, f64), colour: &str) {
+    pub fn rule(&mut self, from: (f64, f64), to: (f64, f64), ink: Ink) {
+        let ink = ink.mark();
         let _ = writeln!(
             self.body,
-            r#"<line x1="{:.2}" y1="{:.2}" x2="{:.2}" y2="{:.2}" stroke="{colour}" stroke-width="0.8"/>"#,
+            r#"<line x1="{:.2}" y1="{:.2}" x2="{:.2}" y2="{:.2}" stroke="{ink}" stroke-width="0.8"/>"#,
             from.0, from.1, to.0, to.1
         );
     }
 
     /// A line through points.
-    pub fn polyline(&mut self, points: &[(f64, f64)], colour: &str, width: f64) {
+    pub fn polyline(&mut self, points: &[(f64, f64)], ink: Ink, width: f64) {
+        let ink = ink.mark();
         self.body += r#"<polyline points=""#;
         for (x, y) in points {
             let _ = write!(self.body, "{x:.2},{y:.2} ");
         }
         let _ = writeln!(
             self.body,
-            r#"" fill="none" stroke="{colour}" stroke-width="{width}" stroke-linejoin="round"/>"#
+            r#"" fill="none" stroke="{ink}" stroke-width="{width}" stroke-linejoin="round"/>"#
         );
     }
 
     /// A dashed line through points.
-    pub fn dashed(&mut self, points: &[(f64, f64)], colour: &str, width: f64) {
+    pub fn dashed(&mut self, points: &[(f64, f64)], ink: Ink, width: f64) {
+        let ink = ink.mark();
         self.body += r#"<polyline points=""#;
         for (x, y) in points {
             let _ = write!(self.body, "{x:.2},{y:.2} ");
         }
         let _ = writeln!(
             self.body,
-            r#"" fill="none" stroke-dasharray="5 3" stroke="{colour}" stroke-width="{width}" stroke-linejoin="round"/>"#
+            r#"" fill="none" stroke-dasharray="5 3" stroke="{ink}" stroke-width="{width}" stroke-linejoin="round"/>"#
         );
     }
 
     /// A tinted rectangle.
     ///
     /// * `size`: width and height; px
-    pub fn tint(&mut self, at: (f64, f64), size: (f64, f64), colour: &str) {
+    pub fn tint(&mut self, at: (f64, f64), size: (f64, f64), ink: Ink) {
+        let ink = ink.mark();
         let _ = writeln!(
             self.body,
-            r#"<rect x="{:.2}" y="{:.2}" width="{:.2}" height="{:.2}" fill="{colour}" fill-opacity="0.16"/>"#,
+            r#"<rect x="{:.2}" y="{:.2}" width="{:.2}" height="{:.2}" fill="{ink}" fill-opacity="0.16"/>"#,
             at.0, at.1, size.0, size.1
         );
     }
 
     /// A dot.
-    pub fn dot(&mut self, at: (f64, f64), radius: f64, colour: &str) {
+    pub fn dot(&mut self, at: (f64, f64), radius: f64, ink: Ink) {
+        let ink = ink.mark();
         let _ = writeln!(
             self.body,
-            r#"<circle cx="{:.2}" cy="{:.2}" r="{radius}" fill="{colour}"/>"#,
+            r#"<circle cx="{:.2}" cy="{:.2}" r="{radius}" fill="{ink}"/>"#,
             at.0, at.1
         );
     }
@@ -108,7 +146,7 @@ impl Drawing {
             r#"<text x="{:.2}" y="{:.2}" text-anchor="{anchor}" font-size="{size}">{}</text>"#,
             at.0,
             at.1,
-            escaped(text)
+            set_text(text, size)
         );
     }
 
@@ -118,35 +156,66 @@ impl Drawing {
         let _ = writeln!(
             self.body,
             r#"<text x="{x:.2}" y="{y:.2}" text-anchor="middle" font-size="{size}" transform="rotate(-90 {x:.2} {y:.2})">{}</text>"#,
-            escaped(text)
+            set_text(text, size)
         );
     }
 
     /// A circle that is not filled.
-    pub fn ring(&mut self, at: (f64, f64), radius: f64, colour: &str) {
+    pub fn ring(&mut self, at: (f64, f64), radius: f64, ink: Ink) {
+        let ink = ink.mark();
         let _ = writeln!(
             self.body,
-            r#"<circle cx="{:.2}" cy="{:.2}" r="{radius}" fill="none" stroke="{colour}" stroke-width="1.3"/>"#,
+            r#"<circle cx="{:.2}" cy="{:.2}" r="{radius}" fill="none" stroke="{ink}" stroke-width="1.3"/>"#,
             at.0, at.1
         );
     }
 
+    /// A tinted shape with corners at points.
+    pub fn tinted_shape(&mut self, points: &[(f64, f64)], ink: Ink) {
+        let ink = ink.mark();
+        self.body += r#"<polygon points=""#;
+        for (x, y) in points {
+            let _ = write!(self.body, "{x:.2},{y:.2} ");
+        }
+        let _ = writeln!(self.body, r#"" fill="{ink}" fill-opacity="0.16"/>"#);
+    }
+
     /// The whole as an SVG file.
     #[must_use]
-    pub fn svg(&self) -> String {
-        let (width, height) = (self.width, self.height);
+    pub fn svg(&self, theme: &Theme) -> String {
         format!(
-            "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n\
-             <svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{width}\" height=\"{height}\" \
-             viewBox=\"0 0 {width} {height}\" font-family=\"{FONTS}\" fill=\"#222\">\n\
-             <rect width=\"100%\" height=\"100%\" fill=\"#fff\"/>\n{}</svg>\n",
-            self.body
+            "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n{}",
+            self.element(theme, "")
         )
+    }
+
+    /// The whole as an element of a page, described by `label` for those who do not
+    /// see it; "" for a picture that is described elsewhere.
+    #[must_use]
+    pub fn element(&self, theme: &Theme, label: &str) -> String {
+        let (width, height) = (self.width, self.height);
+        let described = match label {
+            "" => String::new(),
+            label => format!(r#" role="img" aria-label="{}""#, escaped(label)),
+        };
+        let mut svg = format!(
+            "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{width}\" height=\"{height}\" \
+             viewBox=\"0 0 {width} {height}\" font-family=\"{FONTS}\" fill=\"{}\"{described}>\n\
+             <rect width=\"100%\" height=\"100%\" fill=\"{}\"/>\n",
+            theme.text, theme.background
+        );
+        for c in self.body.chars() {
+            match colour_of(c, theme) {
+                Some(colour) => svg += colour,
+                None => svg.push(c),
+            }
+        }
+        svg + "</svg>\n"
     }
 }
 
 /// Text as it stands in XML; control characters, which XML cannot hold, become
-/// blanks.
+/// blanks, and so do those that stand for colours.
 fn escaped(text: &str) -> String {
     let mut whole = String::with_capacity(text.len());
     for c in text.chars() {
@@ -154,6 +223,8 @@ fn escaped(text: &str) -> String {
             '&' => whole += "&amp;",
             '<' => whole += "&lt;",
             '>' => whole += "&gt;",
+            '"' => whole += "&quot;",
+            '\u{E000}'..='\u{F8FF}' => whole.push(' '),
             c if c.is_control() => whole.push(' '),
             c => whole.push(c),
         }
@@ -161,14 +232,106 @@ fn escaped(text: &str) -> String {
     whole
 }
 
+/// Characters above the line with those that they are raised from. Few fonts have
+/// all of them, and of different heights.
+const RAISED: [(char, char); 11] = [
+    ('⁰', '0'),
+    ('¹', '1'),
+    ('²', '2'),
+    ('³', '3'),
+    ('⁴', '4'),
+    ('⁵', '5'),
+    ('⁶', '6'),
+    ('⁷', '7'),
+    ('⁸', '8'),
+    ('⁹', '9'),
+    ('⁻', '\u{2212}'),
+];
+
+/// Text in parts, each with whether it is raised: raised characters, and numbers
+/// behind a "^".
+fn parts(text: &str) -> Vec<(String, bool)> {
+    let mut parts: Vec<(String, bool)> = Vec::new();
+    let mut push = |c: char, raised: bool| match parts.last_mut() {
+        Some((part, of)) if *of == raised => part.push(c),
+        _ => parts.push((c.to_string(), raised)),
+    };
+    let mut exponent = false;
+    let mut characters = text.chars().peekable();
+    while let Some(c) = characters.next() {
+        let number = |c: &char| c.is_ascii_digit() || ".-".contains(*c);
+        if c == '^' && characters.peek().is_some_and(number) {
+            exponent = true;
+            continue;
+        }
+        exponent &= number(&c);
+        let raised = RAISED.iter().find(|(from, _)| *from == c);
+        match (raised, exponent) {
+            (Some((_, to)), _) => push(*to, true),
+            (None, true) => push(if c == '-' { '\u{2212}' } else { c }, true),
+            (None, false) => push(c, false),
+        }
+    }
+    parts
+}
+
+/// [`escaped`] text whose raised parts are set as such at font size `size`.
+fn set_text(text: &str, size: f64) -> String {
+    let rise = 0.36 * size;
+    let (mut whole, mut above) = (String::new(), false);
+    for (part, raised) in parts(text) {
+        let part = escaped(&part);
+        let _ = match (raised, above) {
+            (true, _) => write!(
+                whole,
+                r#"<tspan dy="{:.2}" font-size="{:.2}">{part}</tspan>"#,
+                -rise,
+                0.72 * size
+            ),
+            // Back to the line.
+            (false, true) => write!(whole, r#"<tspan dy="{rise:.2}">{part}</tspan>"#),
+            (false, false) => write!(whole, "{part}"),
+        };
+        above = raised;
+    }
+    whole
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::figure_theme::{DARK, LIGHT};
 
     #[test]
     fn closed_form_text_is_escaped() {
         let mut drawing = Drawing::new(10.0, 10.0);
         drawing.text((1.0, 2.0), Anchor::End, 9.0, "F < 3 & \u{1}g");
-        assert!(drawing.svg().contains(">F &lt; 3 &amp;  g</text>"));
+        let svg = drawing.svg(&LIGHT);
+        assert!(svg.contains(">F &lt; 3 &amp;  g</text>"));
+    }
+
+    #[test]
+    fn closed_form_inks_get_the_colours_of_the_theme_and_text_keeps_none() {
+        let mut drawing = Drawing::new(10.0, 10.0);
+        drawing.rule((0.0, 0.0), (1.0, 1.0), Ink::Series(SERIES + 1));
+        drawing.text((1.0, 2.0), Anchor::End, 9.0, "\u{E000}a");
+        for theme in [&LIGHT, &DARK] {
+            let svg = drawing.svg(theme);
+            let stroke = format!(r#"stroke="{}""#, theme.series[1]);
+            assert!(svg.contains(&stroke) && svg.contains("> a</text>"), "{svg}");
+            assert!(!svg.contains('\u{E000}'));
+        }
+    }
+
+    #[test]
+    fn closed_form_powers_are_raised_and_what_follows_is_not() {
+        assert_eq!(
+            set_text("10⁻³ m/s²", 10.0),
+            "10<tspan dy=\"-3.60\" font-size=\"7.20\">\u{2212}3</tspan>\
+             <tspan dy=\"3.60\"> m/s</tspan><tspan dy=\"-3.60\" font-size=\"7.20\">2</tspan>"
+        );
+        let found = parts("k (N/m^1.5) f^ 2");
+        let words: Vec<&str> = found.iter().map(|(part, _)| part.as_str()).collect();
+        assert_eq!(words, ["k (N/m", "1.5", ") f^ 2"]);
     }
 }

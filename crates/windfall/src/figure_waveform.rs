@@ -91,6 +91,7 @@ fn figure(
         let line = |label: &str, style, points: Vec<(f64, f64)>| Series {
             label: label.to_owned(),
             style,
+            colour: None,
             points,
         };
         let support = |i: usize| level + model.support_force[i];

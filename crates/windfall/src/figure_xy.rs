@@ -2,7 +2,8 @@
 
 use crate::error::Error;
 use crate::figure_axis::{axis, unit_label};
-use crate::figure_svg::{Anchor, COLOURS, Drawing};
+use crate::figure_svg::{Anchor, Drawing, Ink};
+use crate::figure_theme::{SERIES, Theme};
 use crate::write_csv::csv_text;
 
 /// Size of a panel and the room around it; px.
@@ -12,9 +13,6 @@ const LEFT: f64 = 74.0;
 const RIGHT: f64 = 22.0;
 const TOP: f64 = 64.0;
 const BOTTOM: f64 = 50.0;
-
-const FRAME: &str = "#777";
-const GRID: &str = "#e4e4e4";
 
 /// A tint narrower than this could not be seen; px.
 const LEAST_TINT: f64 = 2.0;
@@ -47,6 +45,14 @@ pub enum Style {
     /// A tint from top to bottom of the panel between the first and the second
     /// point, the third and the fourth, and so on.
     Shade,
+    /// A tinted shape with corners at the points: a band, or the area within an
+    /// ellipse.
+    Band,
+    /// A thin upright line from the first to the second point, from the third to
+    /// the fourth, and so on: intervals.
+    Bars,
+    /// As [`Style::Bars`], level.
+    LevelBars,
 }
 
 /// Points that belong together.
@@ -56,6 +62,8 @@ pub struct Series {
     pub label: String,
     /// How it is drawn.
     pub style: Style,
+    /// Which colour it has; that of its place among the series where it is `None`.
+    pub colour: Option<usize>,
     /// The points, in the units of the axes.
     pub points: Vec<(f64, f64)>,
 }
@@ -106,9 +114,19 @@ pub struct Figure {
     pub panels: Vec<Panel>,
 }
 
-/// Draws a figure.
+/// Draws a figure as an SVG file.
 #[must_use]
-pub fn svg_of_figure(figure: &Figure) -> String {
+pub fn svg_of_figure(figure: &Figure, theme: &Theme) -> String {
+    drawn(figure).svg(theme)
+}
+
+/// Draws a figure as an element of a page; its title describes it.
+#[must_use]
+pub fn element_of_figure(figure: &Figure, theme: &Theme) -> String {
+    drawn(figure).element(theme, &figure.title)
+}
+
+fn drawn(figure: &Figure) -> Drawing {
     let rows: Vec<f64> = figure.panels.iter().map(legend_height).collect();
     let room = |legend: &f64| legend + HEIGHT + BOTTOM + 8.0;
     let height = 34.0 + rows.iter().map(room).sum::<f64>();
@@ -119,7 +137,7 @@ pub fn svg_of_figure(figure: &Figure) -> String {
         draw_panel(&mut drawing, panel, top + legend);
         top += room(legend);
     }
-    drawing.svg()
+    drawing
 }
 
 fn labelled(panel: &Panel) -> Vec<(usize, &Series)> {
@@ -182,33 +200,35 @@ fn draw_panel(drawing: &mut Drawing, panel: &Panel, top: f64) {
 
     for (tick, label) in horizontal.ticks.iter().zip(&horizontal.labels) {
         let x = place_x(*tick);
-        drawing.rule((x, top), (x, bottom), GRID);
-        drawing.rule((x, bottom), (x, bottom + 4.0), FRAME);
+        drawing.rule((x, top), (x, bottom), Ink::Grid);
+        drawing.rule((x, bottom), (x, bottom + 4.0), Ink::Frame);
         drawing.text((x, bottom + 16.0), Anchor::Middle, 10.5, label);
     }
     for (tick, label) in vertical.ticks.iter().zip(&vertical.labels) {
         let y = place_y(*tick);
-        drawing.rule((left, y), (right, y), GRID);
-        drawing.rule((left - 4.0, y), (left, y), FRAME);
+        drawing.rule((left, y), (right, y), Ink::Grid);
+        drawing.rule((left - 4.0, y), (left, y), Ink::Frame);
         drawing.text((left - 7.0, y + 3.6), Anchor::End, 10.5, label);
     }
-    drawing.rule((left, top), (left, bottom), FRAME);
-    drawing.rule((left, bottom), (right, bottom), FRAME);
+    drawing.rule((left, top), (left, bottom), Ink::Frame);
+    drawing.rule((left, bottom), (right, bottom), Ink::Frame);
     let title = format!("{}{}", panel.x, unit_label(&panel.x_unit, horizontal.power));
     let middle = 0.5 * (left + right);
     drawing.text((middle, bottom + 36.0), Anchor::Middle, 11.5, &title);
     let title = format!("{}{}", panel.y, unit_label(&panel.y_unit, vertical.power));
     drawing.turned_text((20.0, top + 0.5 * HEIGHT), 11.5, &title);
 
-    // Tints first, dots last: lines would hide them.
-    let layer = |style: Style| match style {
-        Style::Shade => 0,
-        Style::Dots => 2,
-        _ => 1,
+    // Tints first; lines over a cloud of dots, a few dots over lines.
+    let layer = |series: &Series| match series.style {
+        Style::Shade | Style::Band => 0,
+        Style::Dots if series.points.len() >= FEW_POINTS => 1,
+        Style::Dots => 3,
+        _ => 2,
     };
-    for drawn in 0..=2 {
+    for drawn in 0..=3 {
         let series = panel.series.iter().enumerate();
-        for (index, series) in series.filter(|(_, s)| layer(s.style) == drawn) {
+        for (index, series) in series.filter(|(_, s)| layer(s) == drawn) {
+            let index = series.colour.unwrap_or(index);
             let points: Vec<(f64, f64)> = thinned(series)
                 .filter(|(x, y)| x.is_finite() && y.is_finite())
                 .map(|(x, y)| (place_x(x), place_y(y)))
@@ -222,8 +242,7 @@ fn draw_panel(drawing: &mut Drawing, panel: &Panel, top: f64) {
                 }),
                 Style::Shade => points.chunks_exact(2).for_each(|ends| {
                     let width = (ends[1].0 - ends[0].0).max(LEAST_TINT);
-                    let colour = COLOURS[index % COLOURS.len()];
-                    drawing.tint((ends[0].0, top), (width, HEIGHT), colour);
+                    drawing.tint((ends[0].0, top), (width, HEIGHT), Ink::Series(index));
                 }),
                 style => draw_series(drawing, &points, style, index),
             }
@@ -231,7 +250,7 @@ fn draw_panel(drawing: &mut Drawing, panel: &Panel, top: f64) {
     }
     for mark in &panel.marks {
         let at = (place_x(mark.at.0), place_y(mark.at.1));
-        drawing.ring(at, 4.5, "#000");
+        drawing.ring(at, 4.5, Ink::Text);
         let (x, y, anchor) = match mark.side {
             Side::AboveLeft => (at.0 - 9.0, at.1 - 7.0, Anchor::End),
             Side::BelowRight => (at.0 + 9.0, at.1 + 13.0, Anchor::Start),
@@ -247,10 +266,13 @@ fn draw_panel(drawing: &mut Drawing, panel: &Panel, top: f64) {
     }
     let base = top - legend_height(panel) + 4.0;
     for ((index, series), (line, x)) in labelled(panel).into_iter().zip(legend_places(panel)) {
+        let index = series.colour.unwrap_or(index);
         let y = base + LEGEND_LINE * line as f64 + 4.0;
         let sample = match series.style {
             Style::Upright => [(x + 9.0, y - 5.0), (x + 9.0, y), (x + 9.0, y + 5.0)],
             Style::Shade => [(x, y - 5.0), (x + 18.0, y + 5.0), (x, y)],
+            Style::Band => [(x, y - 5.0), (x + 18.0, y - 5.0), (x + 18.0, y + 5.0)],
+            Style::Bars => [(x + 9.0, y - 6.0), (x + 9.0, y + 6.0), (x, y)],
             _ => [(x, y), (x + 9.0, y), (x + 18.0, y)],
         };
         draw_series(drawing, &sample, series.style, index);
@@ -261,21 +283,27 @@ fn draw_panel(drawing: &mut Drawing, panel: &Panel, top: f64) {
 /// * `index`: position of the series, which has its colour; when colours repeat,
 ///   lines are dashed
 fn draw_series(drawing: &mut Drawing, points: &[(f64, f64)], style: Style, index: usize) {
-    let colour = COLOURS[index % COLOURS.len()];
+    let ink = Ink::Series(index);
     match style {
-        Style::Level | Style::Dashed => drawing.dashed(points, colour, 1.4),
-        Style::Upright => drawing.polyline(points, colour, 0.8),
+        Style::Level | Style::Dashed => drawing.dashed(points, ink, 1.4),
+        Style::Upright => drawing.polyline(points, ink, 0.8),
         Style::Shade => {
             let [from, to] = [points[0], points[1]];
-            drawing.tint(from, (to.0 - from.0, to.1 - from.1), colour);
+            drawing.tint(from, (to.0 - from.0, to.1 - from.1), ink);
         }
-        Style::Line if index >= COLOURS.len() => drawing.dashed(points, colour, 1.4),
-        Style::Line => drawing.polyline(points, colour, 1.4),
-        Style::Broad => drawing.polyline(points, colour, 4.0),
+        Style::Line if index >= SERIES => drawing.dashed(points, ink, 1.4),
+        Style::Line => drawing.polyline(points, ink, 1.4),
+        Style::Broad => drawing.polyline(points, ink, 4.0),
+        Style::Band => drawing.tinted_shape(points, ink),
+        Style::Bars | Style::LevelBars => {
+            for ends in points.chunks_exact(2) {
+                drawing.polyline(ends, ink, 0.8);
+            }
+        }
         Style::Dots => {
             let radius = if points.len() < FEW_POINTS { 2.3 } else { 1.5 };
             for point in points {
-                drawing.dot(*point, radius, colour);
+                drawing.dot(*point, radius, ink);
             }
         }
     }
@@ -335,6 +363,7 @@ pub fn csv_of_figure(figure: &Figure) -> Result<String, Error> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::figure_theme::LIGHT;
 
     fn figure(points: Vec<(f64, f64)>) -> Figure {
         Figure {
@@ -347,6 +376,7 @@ mod tests {
                 series: vec![Series {
                     label: "measured".to_owned(),
                     style: Style::Dots,
+                    colour: None,
                     points,
                 }],
                 marks: vec![Mark {
@@ -361,7 +391,7 @@ mod tests {
     #[test]
     fn conserves_every_point_in_the_drawing_and_the_table() {
         let figure = figure(vec![(0.0, 0.0), (1.0, 2.0), (f64::NAN, 1.0), (2.0, 1.0)]);
-        let svg = svg_of_figure(&figure);
+        let svg = svg_of_figure(&figure, &LIGHT);
         assert_eq!(svg.matches(r#"r="2.3""#).count(), 3 + 3);
         assert!(svg.contains("bioyield") && svg.contains("a &lt; b") && svg.contains("force (N)"));
         let table = csv_of_figure(&figure).unwrap();
@@ -377,6 +407,7 @@ mod tests {
         let series = Series {
             label: String::new(),
             style: Style::Line,
+            colour: None,
             points,
         };
         let drawn: Vec<(f64, f64)> = thinned(&series).collect();
@@ -391,10 +422,11 @@ mod tests {
             figure.panels[0].series.push(Series {
                 label: format!("{style:?}"),
                 style,
+                colour: None,
                 points: vec![(1.0, 0.0), (2.0, 0.0)],
             });
         }
-        let svg = svg_of_figure(&figure);
+        let svg = svg_of_figure(&figure, &LIGHT);
         let (tint, dot) = (
             svg.find("fill-opacity").unwrap(),
             svg.find("circle").unwrap(),
@@ -404,6 +436,6 @@ mod tests {
 
     #[test]
     fn closed_form_no_points_no_panic() {
-        assert!(svg_of_figure(&figure(Vec::new())).ends_with("</svg>\n"));
+        assert!(svg_of_figure(&figure(Vec::new()), &LIGHT).ends_with("</svg>\n"));
     }
 }

@@ -6,13 +6,16 @@ use crate::column_role::{role_of, role_of_unit, seconds_per_unit, unit_in};
 use crate::curve::{Curve, CurvePoint};
 use crate::envelope::Envelope;
 use crate::error::Error;
+use crate::figure_png::{PRINT, png_of_svg};
 use crate::figure_recording::{csv_of_curves, svg_of_curves};
+use crate::figure_theme::LIGHT;
 use crate::find_channel::find_channel;
 use crate::named::Named;
 use crate::outcome::FindingOutcome;
 use crate::request_open::{OpenRequest, open_options};
 use crate::scan_time::TimeScan;
 use crate::scan_value::ValueScan;
+use crate::write_file::write_whole;
 use serde::Serialize;
 use std::path::{Path, PathBuf};
 use windfall_formats::contents::{ChannelContents, Contents, TimeBase};
@@ -148,12 +151,12 @@ fn shown_channels(
     wanted.iter().map(find).collect()
 }
 
-/// Writes a figure of a recording as SVG, and its data as CSV beside it; returns
-/// the two files.
+/// Writes a figure of a recording as SVG or PNG, by the ending of its name, and its
+/// data as CSV beside it; returns the two files.
 ///
 /// # Errors
-/// There is not exactly one recording, its name does not end in ".svg", or a
-/// file cannot be written.
+/// There is not exactly one recording, its name ends neither in ".svg" nor in ".png",
+/// or a file cannot be written.
 pub fn write_figure(path: &Path, inspections: &[Inspection]) -> Result<[PathBuf; 2], Error> {
     let unusable = |problem: &str| Error::OptionInvalid {
         option: format!("--plot {}", path.display()),
@@ -164,11 +167,15 @@ pub fn write_figure(path: &Path, inspections: &[Inspection]) -> Result<[PathBuf;
             "a figure shows one recording; name one that can be read",
         ));
     };
-    if path.extension().is_none_or(|extension| extension != "svg") {
-        return Err(unusable(
-            "figures are written as SVG; give a name that ends in \".svg\"",
-        ));
-    }
+    let dots = match path.extension().and_then(|extension| extension.to_str()) {
+        Some("svg") => false,
+        Some("png") => true,
+        _ => {
+            return Err(unusable(
+                "figures are written as SVG or PNG; give a name that ends in \".svg\" or \".png\"",
+            ));
+        }
+    };
     let data = path.with_extension("csv");
     if data == Path::new(&inspection.file) {
         return Err(unusable(
@@ -177,15 +184,13 @@ pub fn write_figure(path: &Path, inspections: &[Inspection]) -> Result<[PathBuf;
     }
     let name = Path::new(&inspection.file).file_name();
     let title = name.map_or_else(String::new, |name| name.to_string_lossy().into_owned());
-    let written = |path: &Path, text: String| {
-        std::fs::write(path, text).map_err(|source| Error::FileAccess {
-            path: path.to_path_buf(),
-            action: "write",
-            source,
-        })
+    let svg = svg_of_curves(&title, &inspection.curves, &LIGHT);
+    let picture = match dots {
+        true => png_of_svg(&svg, PRINT)?,
+        false => svg.into_bytes(),
     };
-    written(path, svg_of_curves(&title, &inspection.curves))?;
-    written(&data, csv_of_curves(&inspection.curves)?)?;
+    write_whole(path, &picture)?;
+    write_whole(&data, csv_of_curves(&inspection.curves)?.as_bytes())?;
     Ok([path.to_path_buf(), data])
 }
 

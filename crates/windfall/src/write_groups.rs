@@ -4,7 +4,7 @@ use crate::named::Named;
 use crate::outcome::{CampaignOutcome, GroupOutcome, ImpactOutcome, SpreadOutcome};
 use crate::summary::spread;
 use crate::text_number::{plain, spread_percent, spread_text};
-use crate::write_table::{page_tables, paragraph};
+use crate::write_table::{Cells, page_tables, paragraph};
 
 /// A derived quantity in a table: name, heading, unit, factor from SI.
 type Column = (&'static str, &'static str, &'static str, f64);
@@ -51,6 +51,13 @@ pub fn heading_of(impacts: &[&ImpactOutcome], name: &str) -> String {
 /// Parameters per group, as Table 2 of the 2003 pendulum study.
 #[must_use]
 pub fn parameter_table(groups: &[&GroupOutcome], impacts: &[&ImpactOutcome]) -> String {
+    let cells = parameter_cells(groups, impacts);
+    page_tables(&cells.header, &cells.rows, &[0])
+}
+
+/// The cells of [`parameter_table`].
+#[must_use]
+pub fn parameter_cells(groups: &[&GroupOutcome], impacts: &[&ImpactOutcome]) -> Cells {
     let mut header = ["group", "impacts", "specimens"]
         .map(str::to_owned)
         .to_vec();
@@ -68,7 +75,21 @@ pub fn parameter_table(groups: &[&GroupOutcome], impacts: &[&ImpactOutcome]) -> 
         }));
         row
     });
-    page_tables(&header, &rows.collect::<Vec<_>>(), &[0])
+    let rows = rows.collect();
+    Cells { header, rows }
+}
+
+/// Velocities, peaks and energies per group, all of them.
+#[must_use]
+pub fn derived_cells(groups: &[&GroupOutcome]) -> [Cells; 2] {
+    [&SIGNALS, &ENERGIES].map(|columns| {
+        let columns: Vec<&Column> = columns.iter().collect();
+        let mut header = vec!["group".to_owned(), "n".to_owned()];
+        header.extend(columns.iter().map(|column| heading(column)));
+        let rows = groups.iter().map(|group| derived_row(group, &columns));
+        let rows = rows.collect();
+        Cells { header, rows }
+    })
 }
 
 /// Velocities, peaks and energies per group, as Table 3 of the same study. They
@@ -180,6 +201,13 @@ pub fn restitution_table(impacts: &[&ImpactOutcome]) -> String {
 /// quantity, root mean square over impacts.
 #[must_use]
 pub fn law_table(outcome: &CampaignOutcome, laws: &[&str]) -> String {
+    let cells = law_cells(outcome, laws);
+    page_tables(&cells.header, &cells.rows, &[0, 1])
+}
+
+/// The cells of [`law_table`].
+#[must_use]
+pub fn law_cells(outcome: &CampaignOutcome, laws: &[&str]) -> Cells {
     let mut quantities: Vec<&str> = Vec::new();
     for (name, _) in outcome.impacts.iter().flat_map(|i| &i.residuals.0) {
         if !quantities.contains(&name.as_str()) {
@@ -208,7 +236,8 @@ pub fn law_table(outcome: &CampaignOutcome, laws: &[&str]) -> String {
         row.extend(misfits);
         row
     });
-    page_tables(&header, &rows.collect::<Vec<_>>(), &[0, 1])
+    let rows = rows.collect();
+    Cells { header, rows }
 }
 
 fn group_names<'a>(impacts: &[&'a ImpactOutcome]) -> Vec<Option<&'a str>> {

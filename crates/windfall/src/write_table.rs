@@ -8,6 +8,15 @@ pub const PAGE: usize = 100;
 /// What a column takes beside its text; characters.
 const GAP: usize = 3;
 
+/// A table as words, for a terminal or a page.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct Cells {
+    /// Heading of each column.
+    pub header: Vec<String>,
+    /// Rows, each with a cell for every column.
+    pub rows: Vec<Vec<String>>,
+}
+
 /// An aligned table; columns not in `left` are set flush right.
 #[must_use]
 pub fn table_text(

@@ -72,7 +72,8 @@ fn law_text(outcome: &CampaignOutcome, law: &str) -> String {
     text
 }
 
-fn mass_line(outcome: &CampaignOutcome) -> String {
+/// The effective mass and where it comes from.
+pub(crate) fn mass_line(outcome: &CampaignOutcome) -> String {
     let mass = &outcome.effective_mass;
     let value = value_and_sd(mass.value, Some(mass.sd));
     let known = format!("Effective mass {value} kg");
@@ -83,7 +84,8 @@ fn mass_line(outcome: &CampaignOutcome) -> String {
     }
 }
 
-fn laws_of(outcome: &CampaignOutcome) -> Vec<&str> {
+/// Laws in order of first appearance.
+pub(crate) fn laws_of(outcome: &CampaignOutcome) -> Vec<&str> {
     let mut laws: Vec<&str> = Vec::new();
     for impact in &outcome.impacts {
         if !laws.contains(&impact.law.as_str()) {

@@ -9,6 +9,7 @@ mod figures;
 
 use analysis::{LEAST_SPEED, Run, calibrate, evaluate, masses};
 use figures::{restitution_figure, train_figure, waveform_figure};
+use windfall::figure_theme::LIGHT;
 use windfall::figure_xy::svg_of_figure;
 
 fn main() -> Result<(), String> {
@@ -65,7 +66,7 @@ fn main() -> Result<(), String> {
     ];
     for (name, figure) in figures {
         let path = std::path::Path::new(out).join(format!("bounce_{name}.svg"));
-        std::fs::write(&path, svg_of_figure(&figure)).map_err(|e| e.to_string())?;
+        std::fs::write(&path, svg_of_figure(&figure, &LIGHT)).map_err(|e| e.to_string())?;
     }
     Ok(())
 }

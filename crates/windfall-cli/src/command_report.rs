@@ -1,0 +1,52 @@
+//! `windfall report`
+
+use crate::args_format::Format;
+use crate::args_report::{ReportArguments, Theme};
+use crate::command_fit::progress_bar;
+use crate::show::{write_json, write_result};
+use windfall::request_fit::FitRequest;
+use windfall::workflow_report::{FigureTheme, ReportRequest, report_campaign};
+
+/// Writes the report of a campaign and says which files it is.
+pub fn run(arguments: &ReportArguments) -> anyhow::Result<()> {
+    let bar = progress_bar();
+    let progress = |done: usize, all: usize| {
+        bar.set_length(all as u64);
+        bar.set_position(done as u64);
+    };
+    let request = ReportRequest {
+        fit: FitRequest {
+            laws: arguments.laws.clone(),
+            free: arguments.free.clone(),
+            intervals: arguments.intervals.clone(),
+            group: arguments.group.clone(),
+            threads: arguments.threads,
+            ..FitRequest::default()
+        },
+        out: arguments.out.clone(),
+        theme: match arguments.theme {
+            Theme::Light => FigureTheme::Light,
+            Theme::Dark => FigureTheme::Dark,
+        },
+    };
+    let outcome = report_campaign(&arguments.directory, &request, &progress);
+    bar.finish_and_clear();
+    let outcome = outcome?;
+    let lines = outcome.files.iter().map(|f| format!("{}\n", f.display()));
+    match arguments.format {
+        Format::Json => write_json(&outcome),
+        Format::Csv => write_result(&("file\n".to_owned() + &lines.collect::<String>())),
+        Format::Text => {
+            let failed = match outcome.failed {
+                0 => String::new(),
+                n => format!("; {n} could not be fitted, the page says why"),
+            };
+            write_result(&format!(
+                "{}: {} results, {} files{failed}\n",
+                outcome.page.display(),
+                outcome.impacts,
+                outcome.files.len()
+            ))
+        }
+    }
+}

@@ -1,0 +1,237 @@
+//! What was done to the recordings, in the words of a methods section.
+
+use crate::campaign::{Campaign, MassPlan, RigPlan};
+use crate::outcome::CampaignOutcome;
+use crate::text_number::plain;
+use windfall_contact::law::EndRule;
+use windfall_identify::interval::IntervalMethod;
+use windfall_identify::problem::{FitOptions, NoiseModel, Weighting};
+use windfall_signal::conditioning::ChannelFilter;
+use windfall_signal::filter_butterworth::Band;
+use windfall_signal::options::RateMethod;
+use windfall_signal::trigger::{Baseline, Orientation, Threshold};
+
+/// Paragraphs that say exactly how the results came about.
+#[must_use]
+pub fn methods(campaign: &Campaign, outcome: &CampaignOutcome) -> Vec<String> {
+    let mut paragraphs = vec![rig(campaign, outcome), signals(campaign)];
+    paragraphs.extend(laws(campaign));
+    paragraphs.push(cost(&campaign.fit.options));
+    paragraphs.push(nuisances(&campaign.fit.options, outcome));
+    paragraphs.push(intervals(&campaign.fit.options));
+    paragraphs
+}
+
+fn rig(campaign: &Campaign, outcome: &CampaignOutcome) -> String {
+    let mass = plain(outcome.effective_mass.value);
+    match campaign.rig {
+        RigPlan::Pendulum(rig) => format!(
+            "Specimens were struck by a pendulum with a moment of inertia of {} kg m² about its \
+             pivot, {} m from pivot to contact, a mass of {} kg and its centre of mass {} m from \
+             the pivot (effective mass at the contact {mass} kg; acceleration of gravity {} m/s²).",
+            rig.inertia, rig.arm, rig.mass, rig.centre_of_mass, rig.gravity
+        ),
+        RigPlan::Carriage {
+            mass: plan,
+            driving_acceleration,
+            ..
+        } => {
+            let known = match plan {
+                MassPlan::Given { .. } => "as given".to_owned(),
+                MassPlan::FromImpulse => format!(
+                    "found from impulse and change of velocity of {} impacts, standard \
+                     uncertainty {} kg",
+                    outcome.effective_mass.impacts,
+                    plain(outcome.effective_mass.sd)
+                ),
+            };
+            format!(
+                "Specimens were struck by a body on a line with a mass of {mass} kg ({known}) and \
+                 an acceleration of {} m/s² towards the specimen without contact.",
+                driving_acceleration
+            )
+        }
+    }
+}
+
+fn signals(campaign: &Campaign) -> String {
+    let contact = &campaign.contact;
+    let trigger = &contact.trigger;
+    let threshold = match trigger.threshold {
+        Threshold::Fixed(force) => format!("exceeded {} N", force),
+        Threshold::Automatic {
+            deviations,
+            least,
+            share,
+        } => format!(
+            "exceeded the largest of {} standard deviations of its noise before contact, {} N \
+             and {} of its peak",
+            deviations, least, share
+        ),
+    };
+    let baseline = match trigger.baseline {
+        Baseline::Remove => "The mean force before contact was subtracted.",
+        Baseline::Drift => {
+            "A straight line through the force before and after contact was subtracted."
+        }
+        Baseline::Keep => "The force was taken as recorded, without a correction of its zero.",
+    };
+    let sign = match contact.orientation {
+        Orientation::Correct => {
+            " Channels recorded with the opposite sign were turned (the findings say which)."
+        }
+        Orientation::AsRecorded => "",
+    };
+    let rate = match contact.rate {
+        RateMethod::Automatic => {
+            "measured where there was a channel for it, else the central difference of the displacement where that was sampled evenly"
+        }
+        RateMethod::Measured => "measured",
+        RateMethod::CentralDifference => "the central difference of the displacement",
+        RateMethod::SmoothingSpline => {
+            "the derivative of a smoothing spline of the displacement, its penalty by cross-validation"
+        }
+        RateMethod::EdgeTimes => "the length of a count over the time between its edges",
+        RateMethod::LocalPolynomial { .. } => {
+            "the derivative of local polynomials (Savitzky-Golay) of the displacement"
+        }
+    };
+    let filters = [
+        ("force", contact.conditioning.force),
+        ("position", contact.conditioning.position),
+        ("displacement rate", contact.conditioning.rate),
+        ("acceleration", contact.conditioning.acceleration),
+    ];
+    let filters: Vec<String> = filters
+        .iter()
+        .filter_map(|(name, filter)| filter.map(|f| format!("{name} {}", filter_text(&f))))
+        .collect();
+    let filters = match filters.is_empty() {
+        true => "No channel was filtered.".to_owned(),
+        false => format!(
+            "Filters (Butterworth, forwards and backwards): {}.",
+            filters.join("; ")
+        ),
+    };
+    let tip = contact
+        .conditioning
+        .tip_mass
+        .map_or_else(String::new, |mass| {
+            format!(" The inertia of {mass} kg ahead of the force sensor was added to the force.",)
+        });
+    format!(
+        "Contact was taken to last while the force {threshold}; {} and {} of its duration were \
+         kept before and after it. {baseline}{sign} The displacement rate was {rate}. {filters}{tip}",
+        contact.margin_before, contact.margin_after
+    )
+}
+
+fn filter_text(filter: &ChannelFilter) -> String {
+    let band = match filter.band {
+        Band::LowPass(cutoff) => format!("low-pass {} Hz", cutoff),
+        Band::HighPass(cutoff) => format!("high-pass {} Hz", cutoff),
+        Band::BandPass(low, high) => format!("band-pass {} to {} Hz", low, high),
+    };
+    format!("{band}, order {}", filter.order)
+}
+
+fn laws(campaign: &Campaign) -> Vec<String> {
+    let free = &campaign.fit.free;
+    let of = |law: &windfall_contact::expression::LawExpression| {
+        let about = law.kind.describe();
+        let also: Vec<&str> = free
+            .iter()
+            .map(String::as_str)
+            .filter(|name| about.parameters.iter().any(|p| p.name == *name))
+            .collect();
+        let also = match also.is_empty() {
+            true => String::new(),
+            false => format!(" Estimated too: {}.", listed(&also)),
+        };
+        format!("Law {law}: {} ({}).{also}", about.formula, about.source)
+    };
+    campaign.fit.laws.iter().map(of).collect()
+}
+
+fn cost(options: &FitOptions) -> String {
+    let quantities = listed(&options.quantities.names());
+    let weights = match options.weighting {
+        Weighting::InverseVariance => "weighted by the inverse of the variance of its noise",
+        Weighting::InverseMean => {
+            "weighted by the inverse of its mean absolute value, as in the 2003 pendulum study"
+        }
+    };
+    let noise = match options.noise {
+        NoiseModel::Automatic => {
+            "The noise of each channel (its variance, the correlation of successive samples, the \
+             steps of an encoder, the uncertainty of the zero) was taken from the recording."
+        }
+        NoiseModel::White => "Samples were taken as independent of each other.",
+    };
+    let end = match options.end {
+        EndRule::ForceZero => "when the force returned to zero",
+        EndRule::GapZero => "when the displacement returned to zero",
+    };
+    format!(
+        "Parameters were estimated by least squares (Levenberg-Marquardt with exact derivatives) \
+         over {quantities}, each {weights}. {noise} The motion under the law was integrated by an \
+         explicit Runge-Kutta pair of order 8 (Dormand and Prince) to a relative accuracy of {:e}; \
+         contact ended {end}.",
+        options.accuracy
+    )
+}
+
+fn nuisances(options: &FitOptions, outcome: &CampaignOutcome) -> String {
+    let all = outcome.impacts.len();
+    let estimated = |name: &str| {
+        let found = outcome.impacts.iter().filter_map(|i| i.nuisances.get(name));
+        match found.filter(|estimate| !estimate.held).count() {
+            0 => "held as read off the signals".to_owned(),
+            n if n == all => "estimated too".to_owned(),
+            n => format!("estimated too in {n} of {all} fits, where the data can tell it"),
+        }
+    };
+    let velocity = match options.known_velocity {
+        Some(velocity) => format!("held at {velocity} m/s"),
+        None => estimated("initial_velocity"),
+    };
+    format!(
+        "The velocity at first touch was {velocity}; the time of first touch was {}; the zero of \
+         the displacement was {}.",
+        estimated("onset"),
+        estimated("displacement_offset")
+    )
+}
+
+/// "a, b and c".
+fn listed(names: &[&str]) -> String {
+    match names {
+        [] => String::new(),
+        [one] => (*one).to_owned(),
+        [first @ .., last] => format!("{} and {last}", first.join(", ")),
+    }
+}
+
+fn intervals(options: &FitOptions) -> String {
+    let percent = 100.0 * options.confidence;
+    let asked = &options.intervals;
+    let how = match asked.method {
+        IntervalMethod::Asymptotic => {
+            "the estimate ± Student's t times its standard deviation, from the curvature of the cost at its minimum".to_owned()
+        }
+        IntervalMethod::Profile => "by profile likelihood".to_owned(),
+        IntervalMethod::Bootstrap => format!(
+            "by a bootstrap of residual blocks (bias-corrected percentiles of {} replicates of \
+             each impact, seed {})",
+            asked.replicates, asked.seed
+        ),
+        IntervalMethod::Posterior => format!(
+            "quantiles of the posterior (no-U-turn sampler, {} chains of {} draws, flat priors on \
+             the logarithms, seed {})",
+            asked.chains, asked.draws, asked.seed
+        ),
+    };
+    format!(
+        "Intervals of {percent} % are {how}. Means are given ± the standard deviation between impacts (n − 1)."
+    )
+}
