@@ -103,11 +103,11 @@ fn conserves_the_loop_in_the_figure() {
     fit_campaign(dir.path(), &request, &|_, _| {}).unwrap();
     let svg = std::fs::read_to_string(figures.join("a.svg")).unwrap();
     assert!(svg.contains("kelvin-voigt") && svg.ends_with("</svg>\n"));
-    // The third panel is the loop: F = 50 N/mm x, up and down.
+    // The fourth panel is the loop: F = 50 N/mm x, up and down.
     let table = std::fs::read_to_string(figures.join("a.csv")).unwrap();
     let loops = table
         .lines()
-        .filter(|line| line.starts_with("3,kelvin-voigt,"));
+        .filter(|line| line.starts_with("4,kelvin-voigt,"));
     let points: Vec<(f64, f64)> = loops
         .map(|line| {
             let cells: Vec<&str> = line.split(',').collect();
