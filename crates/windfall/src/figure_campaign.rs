@@ -34,14 +34,14 @@ pub struct NamedFigure {
     pub figure: Figure,
 }
 
-/// Groups in order of first appearance; one without a name where there are none.
+/// Groups in order of first appearance; one of "impacts" where there are none.
 #[must_use]
 pub fn groups_of_impacts<'a>(
     impacts: &[&'a ImpactOutcome],
 ) -> Vec<(String, Vec<&'a ImpactOutcome>)> {
     let mut groups: Vec<(String, Vec<&ImpactOutcome>)> = Vec::new();
     for impact in impacts {
-        let name = impact.group.clone().unwrap_or_default();
+        let name = impact.group.clone().unwrap_or_else(|| "impacts".to_owned());
         match groups.iter_mut().find(|(known, _)| *known == name) {
             Some((_, members)) => members.push(impact),
             None => groups.push((name, vec![impact])),
@@ -134,11 +134,7 @@ fn pair_panel(
             });
         }
         series.push(Series {
-            label: if group.is_empty() {
-                "impacts".to_owned()
-            } else {
-                group
-            },
+            label: group,
             style: Style::Dots,
             colour,
             points,
@@ -237,11 +233,7 @@ fn prediction_panel(
     let mut series = Vec::new();
     for (index, (group, members)) in groups_of_impacts(impacts).into_iter().enumerate() {
         series.push(Series {
-            label: if group.is_empty() {
-                "impacts".to_owned()
-            } else {
-                group
-            },
+            label: group,
             style: Style::Dots,
             colour: Some(index),
             points: members.iter().filter_map(pair).collect(),

@@ -169,8 +169,7 @@ fn panel(
             series.push(drawn("", Style::Line, line));
         }
         series.push(drawn("", Style::Bars, bars));
-        let label = if group.is_empty() { "impacts" } else { &group };
-        series.push(drawn(label, Style::Dots, points));
+        series.push(drawn(&group, Style::Dots, points));
     }
     Panel {
         x: covariate.name.clone(),

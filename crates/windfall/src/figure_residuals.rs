@@ -19,7 +19,8 @@ const FEWEST: usize = 20;
 /// Normal deviate of a 95 % interval.
 const NORMAL_95: f64 = 1.96;
 
-/// Residuals of each quantity of the cost function, and their autocorrelation; `None` where the motion of the law cannot be followed.
+/// Residuals of each quantity of the cost function, and their autocorrelation; `None`
+/// where the motion of the law cannot be followed.
 ///
 /// * `used`: rig, end of contact, and the user's own laws
 #[must_use]

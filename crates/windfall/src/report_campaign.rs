@@ -12,13 +12,13 @@ use crate::figure_impact::figure_of_impact;
 use crate::figure_profiles::figure_of_profiles;
 use crate::figure_residuals::figure_of_residuals;
 use crate::fit_mass::RigFound;
-use crate::outcome::{CampaignOutcome, FindingOutcome, ImpactOutcome};
+use crate::outcome::{CampaignOutcome, ImpactOutcome};
 use crate::report_methods::methods;
 use crate::report_page::{CaptionedTable, Section};
 use crate::text_number::{plain, value_and_sd};
 use crate::write_groups::{derived_cells, groups_of, heading_of, law_cells, parameter_cells};
 use crate::write_table::Cells;
-use crate::write_text::{laws_of, mass_line};
+use crate::write_text::{laws_of, mass_line, own_codes, shared_codes};
 
 /// Quantities in the table of impacts: name, heading, factor from SI.
 const OF_IMPACTS: [(&str, &str, f64); 4] = [
@@ -115,6 +115,7 @@ fn every_impact(outcome: &CampaignOutcome) -> Section {
 
 fn impact_cells(impacts: &[&ImpactOutcome]) -> Cells {
     let names = estimated_parameters(impacts);
+    let shared = shared_codes(impacts);
     let mut header = ["impact", "specimen", "group"].map(str::to_owned).to_vec();
     for (name, _) in &names {
         header.push(heading_of(impacts, name));
@@ -140,9 +141,7 @@ fn impact_cells(impacts: &[&ImpactOutcome]) -> Cells {
             let value = impact.derived.get(name).copied().flatten();
             value.map_or_else(|| "-".to_owned(), |value| plain(factor * value))
         }));
-        let mut codes: Vec<&str> = impact.findings.iter().map(|f| f.code.as_str()).collect();
-        codes.dedup();
-        row.push(codes.join(", "));
+        row.push(own_codes(impact, &shared));
         row
     };
     Cells {
@@ -217,8 +216,8 @@ fn examples(
             figure_of_residuals(&title, &impact, shown, used).map(|figure| NamedFigure {
                 name: file_name(&format!("impact-{id}-residuals")),
                 caption: format!(
-                    "Impact {id}: what {first} leaves of the signals, over the noise of a sample, \
-                     and how it goes together from sample to sample."
+                    "Impact {id}: what {first} leaves of the signals, beside the noise of a \
+                     sample, and how it goes together from sample to sample."
                 ),
                 figure,
             }),
@@ -242,41 +241,4 @@ fn examples(
             )],
         )
     })
-}
-
-/// Findings of the whole, then each kind of those of impacts once.
-#[must_use]
-pub fn findings_of_campaign(outcome: &CampaignOutcome) -> Vec<FindingOutcome> {
-    let mut findings = outcome.findings.clone();
-    let mut seen: Vec<(&FindingOutcome, &str, usize)> = Vec::new();
-    for impact in &outcome.impacts {
-        let mut codes: Vec<&str> = Vec::new();
-        for finding in &impact.findings {
-            if codes.contains(&finding.code.as_str()) {
-                continue;
-            }
-            codes.push(&finding.code);
-            match seen
-                .iter_mut()
-                .find(|(known, ..)| known.code == finding.code)
-            {
-                Some((.., count)) => *count += 1,
-                None => seen.push((finding, &impact.id, 1)),
-            }
-        }
-    }
-    findings.extend(seen.into_iter().map(|(finding, id, count)| {
-        let more = match count {
-            1 => String::new(),
-            n => format!(
-                " (and {} more of this kind; the table of impacts says which)",
-                n - 1
-            ),
-        };
-        FindingOutcome {
-            code: finding.code.clone(),
-            message: format!("{id}: {}{more}", finding.message),
-        }
-    }));
-    findings
 }

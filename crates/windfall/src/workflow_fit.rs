@@ -50,12 +50,29 @@ pub fn fit_campaign(
     request: &FitRequest,
     progress: Progress,
 ) -> Result<CampaignOutcome, Error> {
+    fitted_campaign(directory, request, progress).map(|fitted| fitted.outcome)
+}
+
+/// A fitted campaign with what its results rest on.
+pub(crate) struct FittedCampaign {
+    pub campaign: Campaign,
+    pub rig: RigFound,
+    pub digests: Digests,
+    pub outcome: CampaignOutcome,
+}
+
+/// [`fit_campaign`], for those who go on with its parts.
+pub(crate) fn fitted_campaign(
+    directory: &Path,
+    request: &FitRequest,
+    progress: Progress,
+) -> Result<FittedCampaign, Error> {
     let mut campaign = match directory.is_file() {
         true => campaign_of_recording(directory)?,
         false => read_campaign(directory)?,
     };
     apply_request(&mut campaign, request)?;
-    on_threads(request.threads, || fit(&campaign, request, progress))
+    on_threads(request.threads, || fit(campaign, request, progress))
 }
 
 /// Fits the impact in one recording that belongs to no campaign; what it needs
@@ -127,16 +144,16 @@ fn campaign_of_recording(file: &Path) -> Result<Campaign, Error> {
 }
 
 fn fit(
-    campaign: &Campaign,
+    campaign: Campaign,
     request: &FitRequest,
     progress: Progress,
-) -> Result<CampaignOutcome, Error> {
+) -> Result<FittedCampaign, Error> {
     let store = campaign.directory.join(STORE_FILE);
     let digests = recording_digests(&campaign.directory, &campaign.files, &campaign.impacts);
-    let rig = find_rig(campaign)?;
+    let rig = find_rig(&campaign)?;
 
     // What each law on each impact depends on, and what the store knows of it.
-    let tasks: Vec<FitTask> = tasks(campaign, &digests, &rig);
+    let tasks: Vec<FitTask> = tasks(&campaign, &digests, &rig);
     let keys: Vec<String> = tasks.iter().filter_map(|task| task.key.clone()).collect();
     let stored = match request.reuse {
         Reuse::Unchanged => find_results(&store, &keys)?,
@@ -153,16 +170,21 @@ fn fit(
         .filter_map(|(key, found)| Some((key, found?)))
         .collect();
 
-    let results = fit_tasks(campaign, &rig, &tasks, &stored, progress);
-    let mut outcome = assemble(campaign, &rig, &tasks, results, &stored);
-    keep(campaign, &store, &digests, &mut outcome)?;
+    let results = fit_tasks(&campaign, &rig, &tasks, &stored, progress);
+    let mut outcome = assemble(&campaign, &rig, &tasks, results, &stored);
+    keep(&campaign, &store, &digests, &mut outcome)?;
     if let Some(directory) = &request.figures {
-        draw(campaign, &rig, &outcome.shown, directory)?;
+        draw(&campaign, &rig, &outcome.shown, directory)?;
     }
     if let Some(path) = &request.card {
-        write_card(path, &card_of_fit(campaign, &outcome.shown)?)?;
+        write_card(path, &card_of_fit(&campaign, &outcome.shown)?)?;
     }
-    Ok(outcome.shown)
+    Ok(FittedCampaign {
+        campaign,
+        rig,
+        digests,
+        outcome: outcome.shown,
+    })
 }
 
 /// A figure of every impact that was fitted.

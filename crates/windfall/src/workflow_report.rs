@@ -10,19 +10,16 @@ use crate::figure_png::{PRINT, png_of_svg};
 use crate::figure_theme::{DARK, LIGHT, Theme};
 use crate::figure_xy::{csv_of_figure, svg_of_figure};
 use crate::fit_key::input_digests;
-use crate::fit_mass::find_rig;
 use crate::on_threads::on_threads;
-use crate::outcome::CampaignOutcome;
 use crate::provenance::{VERSION, time_now};
-use crate::read_campaign::read_campaign;
-use crate::recording_digests::recording_digests;
-use crate::report_campaign::{findings_of_campaign, sections_of_campaign};
+use crate::report_campaign::sections_of_campaign;
 use crate::report_page::{CaptionedTable, Report, Section, html_of_report};
-use crate::request_fit::{FitRequest, apply_request};
-use crate::workflow_fit::fit_campaign;
+use crate::request_fit::FitRequest;
+use crate::workflow_fit::{FittedCampaign, fitted_campaign};
 use crate::write_any::csv_of_any;
 use crate::write_csv::csv_text;
 use crate::write_file::write_whole;
+use crate::write_findings::findings_once;
 use crate::write_table::Cells;
 use rayon::prelude::*;
 use serde::Serialize;
@@ -96,26 +93,24 @@ pub fn report_campaign(
                 .to_owned(),
         });
     }
-    let outcome = fit_campaign(directory, &request.fit, progress)?;
-    if outcome.impacts.is_empty() {
+    let fitted = fitted_campaign(directory, &request.fit, progress)?;
+    if fitted.outcome.impacts.is_empty() {
         return Err(Error::NothingFitted {
             path: directory.to_path_buf(),
-            failures: outcome.failed.len(),
+            failures: fitted.outcome.failed.len(),
         });
     }
-    on_threads(request.fit.threads, || write(directory, request, outcome))
+    on_threads(request.fit.threads, || write(request, fitted))
 }
 
-fn write(
-    directory: &Path,
-    request: &ReportRequest,
-    outcome: CampaignOutcome,
-) -> Result<ReportOutcome, Error> {
-    let mut campaign = read_campaign(directory)?;
-    apply_request(&mut campaign, &request.fit)?;
-    let rig = find_rig(&campaign)?;
+fn write(request: &ReportRequest, fitted: FittedCampaign) -> Result<ReportOutcome, Error> {
+    let FittedCampaign {
+        campaign,
+        rig,
+        digests,
+        outcome,
+    } = fitted;
     let mut sections = sections_of_campaign(&campaign, &rig, &outcome)?;
-    let digests = recording_digests(&campaign.directory, &campaign.files, &campaign.impacts);
     let (inputs, options) = input_digests(&campaign, &digests)?;
     let inputs = shown_names(&campaign, inputs);
     sections.push(origin(&inputs, &options));
@@ -130,7 +125,7 @@ fn write(
             outcome.failed.len()
         ),
         simulated: outcome.simulated.clone(),
-        findings: findings_of_campaign(&outcome),
+        findings: findings_once(&outcome),
         failed: outcome.failed.clone(),
         sections,
     };

@@ -1,36 +1,17 @@
 //! Findings and failures as text: each kind once, with how many share it.
 
-use crate::outcome::CampaignOutcome;
+use crate::outcome::{CampaignOutcome, FindingOutcome};
 use crate::write_table::paragraph;
 
 /// Indentation of the second line of a finding; characters.
 const INDENT: usize = 4;
 
-/// One kind of finding over the impacts.
-struct Kind<'a> {
-    code: &'a str,
-    first: &'a str,
-    message: &'a str,
-    impacts: usize,
-}
-
 /// What a reader of the results must know, and what was left out.
 #[must_use]
 pub fn findings_text(outcome: &CampaignOutcome) -> String {
     let mut lines: Vec<String> = Vec::new();
-    for finding in &outcome.findings {
+    for finding in findings_once(outcome) {
         lines.push(format!("  {}: {}", finding.code, finding.message));
-    }
-    for kind in kinds(outcome) {
-        let more = match kind.impacts {
-            1 => String::new(),
-            n if n == outcome.impacts.len() => " (all have one of this kind)".to_owned(),
-            n => format!(" (and {} more of this kind)", n - 1),
-        };
-        lines.push(format!(
-            "  {}: {}: {}{more}",
-            kind.code, kind.first, kind.message
-        ));
     }
     let mut text = String::new();
     if !lines.is_empty() {
@@ -46,9 +27,29 @@ pub fn findings_text(outcome: &CampaignOutcome) -> String {
     text
 }
 
-/// Codes in order of first appearance.
-fn kinds(outcome: &CampaignOutcome) -> Vec<Kind<'_>> {
-    let mut seen: Vec<Kind> = Vec::new();
+/// Findings of the whole, then each kind of those of impacts once, with the first
+/// impact that has it and how many share it.
+#[must_use]
+pub fn findings_once(outcome: &CampaignOutcome) -> Vec<FindingOutcome> {
+    let mut findings = outcome.findings.clone();
+    findings.extend(kinds(outcome).into_iter().map(|(finding, first, impacts)| {
+        let more = match impacts {
+            1 => String::new(),
+            n if n == outcome.impacts.len() => " (all have one of this kind)".to_owned(),
+            n => format!(" (and {} more of this kind)", n - 1),
+        };
+        FindingOutcome {
+            code: finding.code.clone(),
+            message: format!("{first}: {}{more}", finding.message),
+        }
+    }));
+    findings
+}
+
+/// The first finding of each kind with its impact and the number of impacts that have
+/// one, in order of first appearance.
+fn kinds(outcome: &CampaignOutcome) -> Vec<(&FindingOutcome, &str, usize)> {
+    let mut seen: Vec<(&FindingOutcome, &str, usize)> = Vec::new();
     for impact in &outcome.impacts {
         let mut codes: Vec<&str> = Vec::new();
         for finding in &impact.findings {
@@ -56,14 +57,12 @@ fn kinds(outcome: &CampaignOutcome) -> Vec<Kind<'_>> {
                 continue;
             }
             codes.push(&finding.code);
-            match seen.iter_mut().find(|kind| kind.code == finding.code) {
-                Some(kind) => kind.impacts += 1,
-                None => seen.push(Kind {
-                    code: &finding.code,
-                    first: &impact.id,
-                    message: &finding.message,
-                    impacts: 1,
-                }),
+            match seen
+                .iter_mut()
+                .find(|(known, ..)| known.code == finding.code)
+            {
+                Some((.., impacts)) => *impacts += 1,
+                None => seen.push((finding, &impact.id, 1)),
             }
         }
     }

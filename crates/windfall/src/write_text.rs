@@ -197,7 +197,7 @@ fn mixing_cells(impact: &ImpactOutcome) -> [String; 3] {
 }
 
 /// Codes of an impact's findings that not all share, each once.
-fn own_codes(impact: &ImpactOutcome, shared: &[&str]) -> String {
+pub(crate) fn own_codes(impact: &ImpactOutcome, shared: &[&str]) -> String {
     let mut codes: Vec<&str> = Vec::new();
     for code in impact.findings.iter().map(|finding| finding.code.as_str()) {
         if !shared.contains(&code) && !codes.contains(&code) {
@@ -209,7 +209,7 @@ fn own_codes(impact: &ImpactOutcome, shared: &[&str]) -> String {
 
 /// Codes of findings that every impact has: said once below the tables, they
 /// tell nothing in a row.
-fn shared_codes<'a>(impacts: &[&'a ImpactOutcome]) -> Vec<&'a str> {
+pub(crate) fn shared_codes<'a>(impacts: &[&'a ImpactOutcome]) -> Vec<&'a str> {
     let Some((first, rest)) = impacts.split_first() else {
         return Vec::new();
     };
