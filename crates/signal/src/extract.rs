@@ -21,7 +21,7 @@ use crate::rate::derived_rate;
 use crate::recording::Recording;
 use crate::track::{Geometry, Signals, Track, Tracks, mean_interval, missing, tracks};
 use crate::trigger::{
-    Baseline, ContactWindow, Contacts, Signal, Threshold, TriggerOptions, find_contacts,
+    Baseline, ContactChoice, ContactWindow, Contacts, Signal, Threshold, TriggerOptions, find_contacts,
 };
 
 /// Fewer samples in contact than this are reported.
@@ -419,6 +419,13 @@ fn series(track: &Track, place: &Surroundings, options: &ExtractOptions) -> Opti
         .partition_point(|&t| t <= until)
         .max(end + options.margin_samples)
         .min(times.partition_point(|&t| t < place.until));
+    let (first, last) = match options.trigger.choice {
+        ContactChoice::Within { from, to } => (
+            first.max(times.partition_point(|&t| t < from)),
+            last.min(times.partition_point(|&t| t <= to)),
+        ),
+        ContactChoice::First | ContactChoice::Strongest => (first, last),
+    };
     (first < last).then(|| Series {
         times: times[first..last].to_vec(),
         values: track.values[first..last].to_vec(),

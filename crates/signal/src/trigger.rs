@@ -91,7 +91,7 @@ pub enum ContactChoice {
     First,
     /// The one with the largest force.
     Strongest,
-    /// The first that begins in a range of time.
+    /// The first that begins in a range of time; of its samples those in the range.
     Within {
         /// Begin of the range; s.
         from: f64,

@@ -2,7 +2,7 @@
 
 use crate::args_calibrate::CalibrateArguments;
 use crate::args_format::Format;
-use crate::command_fit::progress_bar;
+use crate::command_fit::{moving, progress_bar};
 use crate::show::{message, write_json, write_result};
 use windfall::read_calibrate::WAYS;
 use windfall::workflow_calibrate::{CalibrateRequest, calibrate};
@@ -16,10 +16,7 @@ pub fn run(arguments: &CalibrateArguments) -> anyhow::Result<()> {
             .map(|(_, way)| *way)
     };
     let bar = progress_bar();
-    let progress = |done: usize, all: usize| {
-        bar.set_length(all as u64);
-        bar.set_position(done as u64);
-    };
+    let progress = moving(&bar);
     let outcome = calibrate(
         &arguments.directory,
         &CalibrateRequest {

@@ -5,6 +5,7 @@ use crate::args_format::Format;
 use crate::show::{message, write_json, write_result};
 use indicatif::{ProgressBar, ProgressStyle};
 use std::io::IsTerminal;
+use std::ops::ControlFlow;
 use windfall::any_outcome::AnyOutcome;
 use windfall::error::Error;
 use windfall::request_fit::{FitRequest, Reuse};
@@ -17,10 +18,7 @@ use windfall::write_any::{csv_of_any, text_of_any};
 pub fn run(arguments: &FitArguments) -> anyhow::Result<()> {
     let request = fit_request(arguments);
     let bar = progress_bar();
-    let progress = |done: usize, all: usize| {
-        bar.set_length(all as u64);
-        bar.set_position(done as u64);
-    };
+    let progress = moving(&bar);
     let path = &arguments.directory;
     let outcome = match recording_request(&arguments.recording) {
         Some(recording) => fit_recording(path, &recording, &request, &progress)
@@ -129,5 +127,14 @@ pub(crate) fn progress_bar() -> ProgressBar {
     match style {
         Ok(style) => bar.with_style(style),
         Err(_) => bar,
+    }
+}
+
+/// Moves the bar as the work goes on; who wants it to stop interrupts the program.
+pub(crate) fn moving(bar: &ProgressBar) -> impl Fn(usize, usize) -> ControlFlow<()> + Sync {
+    |done, all| {
+        bar.set_length(all as u64);
+        bar.set_position(done as u64);
+        ControlFlow::Continue(())
     }
 }

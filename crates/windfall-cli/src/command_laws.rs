@@ -2,7 +2,7 @@
 
 use crate::args_format::Format;
 use crate::args_laws::LawsArguments;
-use crate::command_fit::progress_bar;
+use crate::command_fit::{moving, progress_bar};
 use crate::show::{message, write_json, write_result};
 use windfall::request_fit::FitRequest;
 use windfall::workflow_laws::rank_campaign;
@@ -11,10 +11,7 @@ use windfall::write_laws::{csv_of_laws, text_of_laws};
 /// Ranks laws over a campaign and shows the table.
 pub fn run(arguments: &LawsArguments) -> anyhow::Result<()> {
     let bar = progress_bar();
-    let progress = |done: usize, all: usize| {
-        bar.set_length(all as u64);
-        bar.set_position(done as u64);
-    };
+    let progress = moving(&bar);
     let request = FitRequest {
         laws: arguments.laws.clone(),
         free: arguments.free.clone(),

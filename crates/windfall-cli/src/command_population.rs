@@ -2,7 +2,7 @@
 
 use crate::args_format::Format;
 use crate::args_population::PopulationArguments;
-use crate::command_fit::progress_bar;
+use crate::command_fit::{moving, progress_bar};
 use crate::show::{message, write_json, write_result};
 use windfall::population_card::card_of_population;
 use windfall::read_card::write_card;
@@ -27,15 +27,12 @@ pub fn run(arguments: &PopulationArguments) -> anyhow::Result<()> {
         card: arguments.card.clone(),
     };
     let bar = progress_bar();
-    let progress = |done: usize, all: usize| {
-        bar.set_length(all as u64);
-        bar.set_position(done as u64);
-    };
+    let progress = moving(&bar);
     let outcome = population(&request, &progress);
     bar.finish_and_clear();
     let outcome = outcome?;
     if let Some(path) = &request.card {
-        write_card(path, &card_of_population(&request, &outcome, &|_, _| {})?)?;
+        write_card(path, &card_of_population(&request, &outcome, &windfall::progress::quiet)?)?;
     }
     match arguments.format {
         Format::Json => write_json(&outcome)?,

@@ -2,7 +2,7 @@
 
 use crate::args_format::Format;
 use crate::args_report::{ReportArguments, Theme};
-use crate::command_fit::progress_bar;
+use crate::command_fit::{moving, progress_bar};
 use crate::show::{write_json, write_result};
 use windfall::request_fit::FitRequest;
 use windfall::workflow_report::{FigureTheme, ReportRequest, report_campaign};
@@ -10,10 +10,7 @@ use windfall::workflow_report::{FigureTheme, ReportRequest, report_campaign};
 /// Writes the report of a campaign and says which files it is.
 pub fn run(arguments: &ReportArguments) -> anyhow::Result<()> {
     let bar = progress_bar();
-    let progress = |done: usize, all: usize| {
-        bar.set_length(all as u64);
-        bar.set_position(done as u64);
-    };
+    let progress = moving(&bar);
     let request = ReportRequest {
         fit: FitRequest {
             laws: arguments.laws.clone(),

@@ -37,6 +37,32 @@ pub struct DropQuantity {
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum Error {
+    /// Somebody stopped the work.
+    #[error("stopped before it was done; nothing of it was kept")]
+    Cancelled,
+    /// A change that would leave no campaign that can be read.
+    #[error("nothing was written: {problem}")]
+    ChangeRefused {
+        /// What would be wrong.
+        problem: String,
+    },
+    /// No campaign of that name.
+    #[error("there is no campaign \"{id}\" here")]
+    CampaignUnknown {
+        /// The name.
+        id: String,
+    },
+    /// Somebody else has changed the campaign meanwhile.
+    #[error("the files of the campaign have changed since they were read; nothing was written. Read them again and repeat the change")]
+    ChangedMeanwhile,
+    /// A name that would lead out of a directory, or that some system cannot have.
+    #[error("the name \"{name}\" {problem}")]
+    NameRefused {
+        /// The name.
+        name: String,
+        /// What is wrong with it.
+        problem: String,
+    },
     /// A figure that cannot be drawn as dots.
     #[error("the figure cannot be drawn as PNG: {detail}; its SVG and CSV are complete")]
     FigureUndrawable {
@@ -535,6 +561,7 @@ impl Error {
         !matches!(
             self,
             Self::FileAccess { .. }
+                | Self::Cancelled
                 | Self::NothingFitted { .. }
                 | Self::MassUnknown { .. }
                 | Self::StoreDamaged { .. }

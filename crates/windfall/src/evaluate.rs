@@ -5,23 +5,19 @@ use crate::campaign::{ImpactEntry, TimePlan};
 use crate::error::Error;
 use crate::item_campaign::ItemCampaign;
 use crate::outcome::{FailureOutcome, StatusOutcome};
+use crate::progress::{Progress, for_each};
 use crate::provenance::{VERSION, digest_text, time_now};
 use crate::read_files::fill_placeholders;
 use crate::read_recording::{read_recording, recording_path};
 use crate::recording_digests::{Digests, campaign_text, file_digests, recording_digests};
-use crate::request_fit::Reuse;
+use crate::request_fit::{PENDING, Reuse};
 use crate::store::{RunRecord, latest_run, write_run};
 use crate::store_documents::{DocumentRecord, StoredValue, find_documents};
-use rayon::prelude::*;
 use serde::Serialize;
 use serde::de::DeserializeOwned;
 use serde_json::json;
 use std::path::Path;
-use std::sync::atomic::{AtomicUsize, Ordering};
 use windfall_signal::recording::Recording;
-
-/// Called with the number of items done and of all items.
-pub type Progress<'a> = &'a (dyn Fn(usize, usize) + Sync);
 
 /// Result on one recording.
 pub trait Document: Clone + Send + Sync + Serialize + DeserializeOwned {
@@ -62,7 +58,7 @@ pub struct Evaluation<'a, T> {
 /// number of threads.
 ///
 /// # Errors
-/// The store cannot be used.
+/// The store cannot be used, or `progress` stopped the work.
 pub fn evaluate<T: Document>(
     evaluation: &Evaluation<T>,
     progress: Progress,
@@ -79,26 +75,17 @@ pub fn evaluate<T: Document>(
         .collect();
     let stored = stored_results(evaluation, &keys)?;
 
-    let done = AtomicUsize::new(0);
-    let all = campaign.entries.len();
-    progress(0, all);
-    let results: Vec<Result<T, String>> = campaign
-        .entries
-        .par_iter()
-        .zip(&keys)
-        .zip(&stored)
-        .map(|((entry, key), stored)| {
-            let result = match (key, stored) {
-                (Err(problem), _) => Err(problem.clone()),
-                (Ok(_), Some(known)) => Ok(known.clone()),
-                (Ok(_), None) => read_recording(&campaign.files, entry)
-                    .and_then(|recording| (evaluation.work)(entry, &recording))
-                    .map_err(|error| error.to_string()),
-            };
-            progress(done.fetch_add(1, Ordering::Relaxed) + 1, all);
-            result
-        })
-        .collect();
+    let results = for_each(progress, campaign.entries.len(), |item| {
+        let entry = &campaign.entries[item];
+        match (&keys[item], &stored[item]) {
+            (Err(problem), _) => Err(problem.clone()),
+            (Ok(_), Some(known)) => Ok(known.clone()),
+            (Ok(_), None) if evaluation.reuse == Reuse::Only => Err(PENDING.to_owned()),
+            (Ok(_), None) => read_recording(&campaign.files, entry)
+                .and_then(|recording| (evaluation.work)(entry, &recording))
+                .map_err(|error| error.to_string()),
+        }
+    })?;
 
     let (evaluated, records) = collect(campaign, keys, &stored, results)?;
     keep(evaluation, &digests, evaluated, records)
@@ -220,7 +207,7 @@ fn keep<T>(
     records: Vec<DocumentRecord>,
 ) -> Result<Evaluated<T>, Error> {
     // A run of nothing but failures is told, not kept.
-    if records.is_empty() {
+    if records.is_empty() || evaluation.reuse == Reuse::Only {
         return Ok(evaluated);
     }
     let keys: Vec<&String> = records.iter().map(|record| &record.key).collect();

@@ -4,6 +4,7 @@ use crate::campaign::{Campaign, ImpactEntry};
 use crate::error::Error;
 use crate::read_recording::{read_recording, recording_path};
 use windfall_signal::impact::Impact;
+use windfall_signal::recording::Recording;
 use windfall_signal::trigger::ContactChoice;
 use windfall_signal::{Finding, extract_impact};
 
@@ -19,6 +20,19 @@ pub fn extract_recording(
     effective_mass: Option<f64>,
 ) -> Result<(Impact, Vec<Finding>), Error> {
     let recording = read_recording(&campaign.files, entry)?;
+    extract_entry(campaign, entry, &recording, effective_mass)
+}
+
+/// [`extract_recording`] from a recording that has been read.
+///
+/// # Errors
+/// The recording shows no impact.
+pub fn extract_entry(
+    campaign: &Campaign,
+    entry: &ImpactEntry,
+    recording: &Recording,
+    effective_mass: Option<f64>,
+) -> Result<(Impact, Vec<Finding>), Error> {
     let mut options = campaign.contact;
     options.effective_mass = effective_mass;
     if entry.from.is_some() || entry.to.is_some() {
@@ -27,7 +41,7 @@ pub fn extract_recording(
             to: entry.to.unwrap_or(f64::INFINITY),
         };
     }
-    extract_impact(&recording, &options).map_err(|source| Error::Signal {
+    extract_impact(recording, &options).map_err(|source| Error::Signal {
         path: recording_path(&campaign.files, entry),
         source: Box::new(source),
     })

@@ -151,14 +151,24 @@ fn fitted_motion(
     outcome: &ImpactOutcome,
     used: (&Rig, EndRule, &[LawKind]),
 ) -> Option<FittedMotion> {
+    Some(FittedMotion {
+        law: outcome.law.clone(),
+        motion: line_of_law(impact, outcome, used)?,
+    })
+}
+
+/// The motion under a fitted law at even times over all that is shown of an impact;
+/// `None` where it cannot be followed.
+pub(crate) fn line_of_law(
+    impact: &Impact,
+    outcome: &ImpactOutcome,
+    used: (&Rig, EndRule, &[LawKind]),
+) -> Option<Trajectory> {
     let fitted = FittedImpact::of(impact, outcome, used)?;
     let (from, to) = range(impact)?;
     let step = (to - from) / (POINTS - 1) as f64;
     let times: Vec<f64> = (0..POINTS).map(|i| from + i as f64 * step).collect();
-    Some(FittedMotion {
-        law: outcome.law.clone(),
-        motion: motion_at(&fitted, &times)?,
-    })
+    motion_at(&fitted, &times)
 }
 
 fn range(impact: &Impact) -> Option<(f64, f64)> {

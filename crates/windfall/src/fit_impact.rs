@@ -7,12 +7,14 @@ use crate::fit_mass::RigFound;
 use crate::fit_outcome::impact_outcome;
 use crate::outcome::{FailureOutcome, ImpactOutcome};
 use crate::pendulum_angles::add_angles;
-use rayon::prelude::*;
+use crate::progress::{Progress, for_each};
 use std::collections::BTreeMap;
-use std::sync::atomic::{AtomicUsize, Ordering};
 use windfall_contact::expression::LawExpression;
 use windfall_identify::fit::fit_impact;
 use windfall_identify::problem::LawProblem;
+use windfall_identify::rig::Rig;
+use windfall_signal::Finding;
+use windfall_signal::impact::Impact;
 
 /// One law on one impact.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -24,7 +26,7 @@ pub struct FitTask {
     /// Digest of everything that the result depends on; `None` when the
     /// recording cannot be read.
     pub key: Option<String>,
-    /// Why the recording cannot be read.
+    /// Why there is nothing to fit: the recording cannot be read.
     pub problem: Option<String>,
 }
 
@@ -32,25 +34,21 @@ pub struct FitTask {
 ///
 /// Tasks whose key is in `stored` are answered from there. `progress` is called
 /// with the impacts done and all impacts, from any thread.
+///
+/// # Errors
+/// `progress` stopped the work.
 pub fn fit_tasks(
     campaign: &Campaign,
     rig: &RigFound,
     tasks: &[FitTask],
     stored: &BTreeMap<String, ImpactOutcome>,
-    progress: &(dyn Fn(usize, usize) + Sync),
-) -> Vec<Result<ImpactOutcome, FailureOutcome>> {
+    progress: Progress,
+) -> Result<Vec<Result<ImpactOutcome, FailureOutcome>>, Error> {
     let groups: Vec<&[FitTask]> = tasks.chunk_by(|a, b| a.impact == b.impact).collect();
-    let done = AtomicUsize::new(0);
-    progress(0, groups.len());
-    let results: Vec<Vec<Result<ImpactOutcome, FailureOutcome>>> = groups
-        .par_iter()
-        .map(|group| {
-            let results = fit_group(campaign, rig, group, stored);
-            progress(done.fetch_add(1, Ordering::Relaxed) + 1, groups.len());
-            results
-        })
-        .collect();
-    results.into_iter().flatten().collect()
+    let results = for_each(progress, groups.len(), |group| {
+        fit_group(campaign, rig, groups[group], stored)
+    })?;
+    Ok(results.into_iter().flatten().collect())
 }
 
 /// The laws on one impact; its recording is read only if one of them is new.
@@ -61,13 +59,16 @@ fn fit_group(
     stored: &BTreeMap<String, ImpactOutcome>,
 ) -> Vec<Result<ImpactOutcome, FailureOutcome>> {
     let entry = &campaign.impacts[group[0].impact];
-    let find = |task: &FitTask| task.key.as_ref().and_then(|key| stored.get(key));
-    if let Some(problem) = &group[0].problem {
-        let failure = failure(entry, None, problem.clone());
-        return group.iter().map(|_| Err(failure.clone())).collect();
-    }
-    if group.iter().all(|task| find(task).is_some()) {
-        return group.iter().filter_map(find).cloned().map(Ok).collect();
+    let settled = |task: &FitTask| match &task.problem {
+        Some(problem) => Some(Err(failure(entry, None, problem.clone()))),
+        None => {
+            let known = task.key.as_ref().and_then(|key| stored.get(key));
+            known.cloned().map(Ok)
+        }
+    };
+    let known: Vec<_> = group.iter().map(settled).collect();
+    if known.iter().all(Option::is_some) {
+        return known.into_iter().flatten().collect();
     }
     let extracted = match extract_recording(campaign, entry, Some(rig.rig.effective_mass())) {
         Ok(extracted) => extracted,
@@ -79,28 +80,38 @@ fn fit_group(
     let (impact, findings) = extracted;
     group
         .iter()
-        .map(|task| match find(task) {
-            Some(known) => Ok(known.clone()),
-            None => {
+        .zip(known)
+        .map(|(task, known)| {
+            known.unwrap_or_else(|| {
                 let law = &campaign.fit.laws[task.law];
-                let problem = law_problem(law, &campaign.fit.free);
-                let mut options = campaign.fit.options;
-                // Each impact its own chance, whatever the others are.
-                options.intervals.seed = seed_of_name(options.intervals.seed, &entry.id);
-                fit_impact(&impact, &rig.rig, &problem, &options)
-                    .map(|fit| impact_outcome(entry, &impact, &findings, &fit, &problem, &rig.rig))
-                    .map_err(|source| Error::Identify {
-                        subject: law.kind.name().to_owned(),
-                        source: Box::new(source),
-                    })
-                    .and_then(|mut outcome| {
-                        add_angles(campaign, entry, &mut outcome)?;
-                        Ok(outcome)
-                    })
+                fit_law((campaign, &rig.rig), entry, (&impact, &findings), law)
                     .map_err(|error| failure(entry, Some(law.kind.name()), error.to_string()))
-            }
+            })
         })
         .collect()
+}
+
+/// One law on one impact that has been cut out, with the options of its campaign.
+///
+/// # Errors
+/// The law cannot be fitted to it.
+pub(crate) fn fit_law(
+    (campaign, rig): (&Campaign, &Rig),
+    entry: &ImpactEntry,
+    (impact, findings): (&Impact, &[Finding]),
+    law: &LawExpression,
+) -> Result<ImpactOutcome, Error> {
+    let problem = law_problem(law, &campaign.fit.free);
+    let mut options = campaign.fit.options;
+    // Each impact its own chance, whatever the others are.
+    options.intervals.seed = seed_of_name(options.intervals.seed, &entry.id);
+    let fit = fit_impact(impact, rig, &problem, &options).map_err(|source| Error::Identify {
+        subject: law.kind.name().to_owned(),
+        source: Box::new(source),
+    })?;
+    let mut outcome = impact_outcome(entry, impact, findings, &fit, &problem, rig);
+    add_angles(campaign, entry, &mut outcome)?;
+    Ok(outcome)
 }
 
 /// A seed for each name (Fowler, Noll and Vo's hash, 1a).

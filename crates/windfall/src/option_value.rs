@@ -61,3 +61,9 @@ pub fn chosen<T: Copy>(option: &str, word: &str, choices: &[(&str, T)]) -> Resul
         )
     })
 }
+/// The word for a value; empty for one that has no word.
+#[must_use]
+pub fn word_of<T: Copy + PartialEq>(choices: &[(&str, T)], value: T) -> String {
+    let found = choices.iter().find(|(_, known)| *known == value);
+    found.map_or_else(String::new, |(word, _)| (*word).to_owned())
+}

@@ -7,7 +7,8 @@ use crate::law_card::{CardCovariance, CardCovariate, CardParameter, CardPopulati
 use crate::population_outcome::{Population, PopulationOutcome, PopulationParameter};
 use crate::read_campaign::read_campaign;
 use crate::request_fit::apply_request;
-use crate::workflow_fit::{Progress, fit_campaign};
+use crate::progress::Progress;
+use crate::workflow_fit::fit_campaign;
 use crate::workflow_population::PopulationRequest;
 use windfall_contact::expression::LawExpression;
 

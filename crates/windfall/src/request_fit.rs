@@ -61,6 +61,9 @@ pub struct FitRequest {
     pub threads: Option<usize>,
 }
 
+/// Why an impact has no result where nothing is fitted ([`Reuse::Only`]).
+pub const PENDING: &str = "not fitted yet, or changed since";
+
 /// What becomes of results in the store.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Reuse {
@@ -69,6 +72,9 @@ pub enum Reuse {
     Unchanged,
     /// Every impact is fitted again.
     Nothing,
+    /// Nothing is fitted or written: what is not in the store is told as a failure with
+    /// the message [`PENDING`].
+    Only,
 }
 
 /// Puts what is asked for in the place of what the campaign says.

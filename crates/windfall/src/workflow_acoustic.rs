@@ -2,7 +2,8 @@
 
 use crate::any_outcome::AnyOutcome;
 use crate::error::Error;
-use crate::evaluate::{Evaluation, Progress, evaluate};
+use crate::evaluate::{Evaluation, evaluate};
+use crate::progress::Progress;
 use crate::evaluate_acoustic::{evaluate_taps, taps_of_entry};
 use crate::figure_acoustic::figure_of_taps;
 use crate::figure_files::write_figure;

@@ -16,7 +16,8 @@ use crate::calibrate_target::{
 use crate::calibrate_waveform::waveform_outcome;
 use crate::calibrate_waveform_drops::recorded_drops;
 use crate::error::Error;
-use crate::evaluate::{Evaluated, Progress};
+use crate::evaluate::Evaluated;
+use crate::progress::Progress;
 use crate::evaluate_drop::MeasuredDrop;
 use crate::figure_calibrate::write_calibrate_figures;
 use crate::figure_waveform::write_waveform_figures;

@@ -3,7 +3,8 @@
 use crate::any_outcome::AnyOutcome;
 use crate::campaign::ImpactEntry;
 use crate::error::Error;
-use crate::evaluate::{Evaluation, Progress, evaluate};
+use crate::evaluate::{Evaluation, evaluate};
+use crate::progress::Progress;
 use crate::evaluate_compression::{
     evaluate_compression, fitted_part, loading_curve, parameters_of, radii_of_entry,
 };

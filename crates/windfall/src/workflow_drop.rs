@@ -2,7 +2,8 @@
 
 use crate::any_outcome::AnyOutcome;
 use crate::error::Error;
-use crate::evaluate::{Evaluated, Evaluation, Progress, evaluate};
+use crate::evaluate::{Evaluated, Evaluation, evaluate};
+use crate::progress::Progress;
 use crate::evaluate_drop::{MeasuredDrop, bounce_options, bounce_train, evaluate_drop};
 use crate::figure_drop::figure_of_drop;
 use crate::figure_files::write_figure;

@@ -14,12 +14,13 @@ use crate::on_threads::on_threads;
 use crate::outcome::{
     CampaignOutcome, FailureOutcome, FindingOutcome, ImpactOutcome, StatusOutcome,
 };
+use crate::progress::Progress;
 use crate::provenance::{VERSION, time_now};
 use crate::read_campaign::{CAMPAIGN_FILE, read_campaign};
 use crate::read_card::write_card;
 use crate::read_recording::recording_path;
 use crate::recording_digests::{Digests, recording_digests};
-use crate::request_fit::{FitRequest, Reuse, apply_request};
+use crate::request_fit::{FitRequest, PENDING, Reuse, apply_request};
 use crate::request_recording::{RecordingRequest, campaign_of_file};
 use crate::store::{RunRecord, find_results, latest_run, write_run};
 use crate::summary::{summarise, summarise_groups};
@@ -30,9 +31,6 @@ use windfall_contact::expression::typical;
 
 /// Name of the store in a campaign directory.
 pub const STORE_FILE: &str = "results.sqlite";
-
-/// Called with the number of impacts done and of all impacts.
-pub type Progress<'a> = &'a (dyn Fn(usize, usize) + Sync);
 
 /// Fits the impacts of a campaign and keeps the results in its store.
 ///
@@ -99,7 +97,7 @@ pub fn fit_recording(
         };
         let tasks: Vec<FitTask> = (0..campaign.fit.laws.len()).map(task).collect();
         let stored = BTreeMap::new();
-        let results = fit_tasks(&campaign, &rig, &tasks, &stored, progress);
+        let results = fit_tasks(&campaign, &rig, &tasks, &stored, progress)?;
         let outcome = assemble(&campaign, &rig, &tasks, results, &stored).shown;
         if let Some(directory) = &request.figures {
             draw(&campaign, &rig, &outcome, directory)?;
@@ -153,10 +151,10 @@ fn fit(
     let rig = find_rig(&campaign)?;
 
     // What each law on each impact depends on, and what the store knows of it.
-    let tasks: Vec<FitTask> = tasks(&campaign, &digests, &rig);
+    let mut tasks: Vec<FitTask> = tasks(&campaign, &digests, &rig);
     let keys: Vec<String> = tasks.iter().filter_map(|task| task.key.clone()).collect();
     let stored = match request.reuse {
-        Reuse::Unchanged => find_results(&store, &keys)?,
+        Reuse::Unchanged | Reuse::Only => find_results(&store, &keys)?,
         Reuse::Nothing => {
             // A store that could not be written is found out before the work.
             latest_run(&store)?;
@@ -170,9 +168,19 @@ fn fit(
         .filter_map(|(key, found)| Some((key, found?)))
         .collect();
 
-    let results = fit_tasks(&campaign, &rig, &tasks, &stored, progress);
+    if request.reuse == Reuse::Only {
+        for task in &mut tasks {
+            let known = task.key.as_ref().is_some_and(|key| stored.contains_key(key));
+            if !known && task.problem.is_none() {
+                task.problem = Some(PENDING.to_owned());
+            }
+        }
+    }
+    let results = fit_tasks(&campaign, &rig, &tasks, &stored, progress)?;
     let mut outcome = assemble(&campaign, &rig, &tasks, results, &stored);
-    keep(&campaign, &store, &digests, &mut outcome)?;
+    if request.reuse != Reuse::Only {
+        keep(&campaign, &store, &digests, &mut outcome)?;
+    }
     if let Some(directory) = &request.figures {
         draw(&campaign, &rig, &outcome.shown, directory)?;
     }

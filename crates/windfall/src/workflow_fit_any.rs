@@ -3,7 +3,7 @@
 use crate::any_outcome::AnyOutcome;
 use crate::campaign_kind::{CampaignKind, campaign_kind};
 use crate::error::Error;
-use crate::evaluate::Progress;
+use crate::progress::Progress;
 use crate::request_fit::FitRequest;
 use crate::workflow_acoustic::fit_taps;
 use crate::workflow_compression::fit_compressions;

@@ -7,15 +7,13 @@ use crate::fit_impact::{failure, law_problem};
 use crate::fit_mass::{RigFound, find_rig};
 use crate::on_threads::on_threads;
 use crate::outcome::{FailureOutcome, FindingOutcome};
+use crate::progress::{Progress, for_each};
 use crate::provenance::VERSION;
 use crate::read_campaign::read_campaign;
 use crate::request_fit::{FitRequest, apply_request};
-use crate::workflow_fit::Progress;
-use rayon::prelude::*;
 use serde::Serialize;
 use std::collections::BTreeMap;
 use std::path::Path;
-use std::sync::atomic::{AtomicUsize, Ordering};
 use windfall_contact::expression::parse_law;
 use windfall_identify::error::Error as IdentifyError;
 use windfall_identify::law_ranking::{
@@ -133,17 +131,9 @@ fn rank(campaign: &Campaign, progress: Progress) -> Result<LawsOutcome, Error> {
         .iter()
         .map(|law| law_problem(law, &campaign.fit.free))
         .collect();
-    let done = AtomicUsize::new(0);
-    let all = campaign.impacts.len();
-    let results: Vec<Fitted> = campaign
-        .impacts
-        .par_iter()
-        .map(|entry| {
-            let result = fits(campaign, entry, &rig, &problems);
-            progress(done.fetch_add(1, Ordering::Relaxed) + 1, all);
-            result
-        })
-        .collect();
+    let results = for_each(progress, campaign.impacts.len(), |item| {
+        fits(campaign, &campaign.impacts[item], &rig, &problems)
+    })?;
     let (mut impacts, mut fitted, mut entries, mut failed) = (vec![], vec![], vec![], vec![]);
     for (entry, result) in campaign.impacts.iter().zip(results) {
         match result {

@@ -13,13 +13,13 @@ use crate::population_outcome::{
     FruitOutcome, PopulationOutcome, Varying, correlations_of, effects_of, parameters_of,
     population_of, posterior_outcome, two_stage_outcome,
 };
+use crate::progress::{Progress, for_each};
 use crate::provenance::VERSION;
 use crate::read_campaign::read_campaign;
 use crate::request_fit::{FitRequest, apply_request};
-use crate::workflow_fit::Progress;
 use rayon::prelude::*;
+use std::cell::Cell;
 use std::path::PathBuf;
-use std::sync::atomic::{AtomicUsize, Ordering};
 use windfall_contact::expression::LawExpression;
 use windfall_identify::interval::{Drawing, IntervalOptions};
 use windfall_identify::population::{Covariate, PopulationData, PopulationFit, PopulationOptions};
@@ -85,7 +85,7 @@ fn estimate(
     let rig = find_rig(campaign)?;
     let law = &campaign.fit.laws[0];
     let problem = law_problem(law, &campaign.fit.free);
-    let (members, mut failed) = members(campaign, &rig, &problem, progress);
+    let (members, mut failed) = members(campaign, &rig, &problem, progress)?;
     if members.is_empty() {
         return Err(Error::NothingFitted {
             path: campaign.directory.clone(),
@@ -133,7 +133,13 @@ fn estimate(
                 seed,
             };
             let expand = |points: &[Vec<f64>]| expand_beyond(DRAWN_REACH, points);
-            let found = population_posterior(&data, &fit, &expand, &options, &drawing, progress);
+            // The sampler does not stop halfway: what it gave is then not used.
+            let stopped = Cell::new(false);
+            let tell = |done, all| stopped.set(progress(done, all).is_break());
+            let found = population_posterior(&data, &fit, &expand, &options, &drawing, &tell);
+            if stopped.get() {
+                return Err(Error::Cancelled);
+            }
             Some(found.map_err(subject)?)
         }
     };
@@ -171,19 +177,11 @@ fn members<'a>(
     rig: &RigFound,
     problem: &LawProblem,
     progress: Progress,
-) -> (Vec<Member<'a>>, Vec<FailureOutcome>) {
-    let done = AtomicUsize::new(0);
-    let all = campaign.impacts.len();
-    progress(0, all);
-    let found: Vec<Result<Member, FailureOutcome>> = campaign
-        .impacts
-        .par_iter()
-        .map(|entry| {
-            let member = member(campaign, rig, problem, entry);
-            progress(done.fetch_add(1, Ordering::Relaxed) + 1, all);
-            member.map_err(|error| failure(entry, error.to_string()))
-        })
-        .collect();
+) -> Result<(Vec<Member<'a>>, Vec<FailureOutcome>), Error> {
+    let found = for_each(progress, campaign.impacts.len(), |item| {
+        let entry = &campaign.impacts[item];
+        member(campaign, rig, problem, entry).map_err(|error| failure(entry, error.to_string()))
+    })?;
     let (mut members, mut failed) = (Vec::new(), Vec::new());
     for result in found {
         match result {
@@ -191,7 +189,7 @@ fn members<'a>(
             Err(failure) => failed.push(failure),
         }
     }
-    (members, failed)
+    Ok((members, failed))
 }
 
 fn member<'a>(

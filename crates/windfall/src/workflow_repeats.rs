@@ -3,7 +3,8 @@
 use crate::any_outcome::AnyOutcome;
 use crate::compare_repeats::{Compared, Comparison, FruitResult, compare_repeats};
 use crate::error::Error;
-use crate::evaluate::{Evaluation, Progress, evaluate};
+use crate::evaluate::{Evaluation, evaluate};
+use crate::progress::Progress;
 use crate::evaluate_repeats::{RepeatImpact, evaluate_impact};
 use crate::figure_files::write_figure;
 use crate::figure_repeats::figure_of_comparison;

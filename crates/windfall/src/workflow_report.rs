@@ -4,7 +4,7 @@ use crate::any_outcome::AnyOutcome;
 use crate::campaign::Campaign;
 use crate::campaign_kind::{CampaignKind, campaign_kind};
 use crate::error::Error;
-use crate::evaluate::Progress;
+use crate::progress::Progress;
 use crate::figure_campaign::NamedFigure;
 use crate::figure_png::{PRINT, png_of_svg};
 use crate::figure_theme::{DARK, LIGHT, Theme};

@@ -27,7 +27,7 @@ fn request() -> SimulateTapsRequest {
 }
 
 fn fit(directory: &Path, request: &FitRequest) -> MeasuredOutcome {
-    match fit_any(directory, request, &|_, _| {}).unwrap() {
+    match fit_any(directory, request, &windfall::progress::quiet).unwrap() {
         AnyOutcome::Measured(outcome) => *outcome,
         AnyOutcome::Impacts(_) => panic!("no taps"),
     }
@@ -213,7 +213,7 @@ fn rejects_settings_that_make_no_sense() {
     let good = std::fs::read_to_string(&toml).unwrap();
     let message = |more: &str| {
         std::fs::write(&toml, format!("{good}\n{more}\n")).unwrap();
-        match fit_any(&campaign, &FitRequest::default(), &|_, _| {}) {
+        match fit_any(&campaign, &FitRequest::default(), &windfall::progress::quiet) {
             Ok(outcome) => outcome.failed()[0].message.clone(),
             Err(error) => error.to_string(),
         }
@@ -234,7 +234,7 @@ fn rejects_settings_that_make_no_sense() {
     }
     let text = good.replace("[channels.sound]\ncolumn = \"channel 1\"", "");
     std::fs::write(&toml, text).unwrap();
-    let error = fit_any(&campaign, &FitRequest::default(), &|_, _| {}).unwrap_err();
+    let error = fit_any(&campaign, &FitRequest::default(), &windfall::progress::quiet).unwrap_err();
     assert!(
         error.to_string().contains("[channels] needs `sound`"),
         "{error}"
@@ -244,7 +244,7 @@ fn rejects_settings_that_make_no_sense() {
         laws: vec!["hertz".to_owned()],
         ..FitRequest::default()
     };
-    let error = fit_any(&campaign, &law, &|_, _| {}).unwrap_err();
+    let error = fit_any(&campaign, &law, &windfall::progress::quiet).unwrap_err();
     assert!(error.to_string().contains("acoustic"), "{error}");
     // A recording that is cut short is one failure, not the end.
     let wav = campaign.join("raw/fruit-1-1.wav");

@@ -90,7 +90,7 @@ fn calibrated(calibrate_lines: &str, impacts: &str) -> CalibrateOutcome {
         figures: Some(directory.path().join("figures")),
         ..CalibrateRequest::default()
     };
-    let outcome = calibrate(directory.path(), &request, &|_, _| {}).unwrap();
+    let outcome = calibrate(directory.path(), &request, &windfall::progress::quiet).unwrap();
     for name in [
         "table_3_design.csv",
         "table_6_optimum.txt",
@@ -266,7 +266,7 @@ fn rejects_what_cannot_be_calibrated() {
             ways,
             ..CalibrateRequest::default()
         };
-        calibrate(directory.path(), &request, &|_, _| {})
+        calibrate(directory.path(), &request, &windfall::progress::quiet)
             .unwrap_err()
             .to_string()
     };
@@ -284,7 +284,7 @@ fn rejects_what_cannot_be_calibrated() {
         ways: vec![Way::Design],
         ..CalibrateRequest::default()
     };
-    let error = calibrate(directory.path(), &request, &|_, _| {}).unwrap_err();
+    let error = calibrate(directory.path(), &request, &windfall::progress::quiet).unwrap_err();
     assert!(
         error.to_string().contains("parameter k has no range"),
         "{error}"

@@ -10,7 +10,7 @@ use windfall::simulate_compression::{SimulateCompressionRequest, simulate_compre
 use windfall::workflow_fit_any::fit_any;
 
 fn fit(directory: &Path, request: &FitRequest) -> MeasuredOutcome {
-    match fit_any(directory, request, &|_, _| {}).unwrap() {
+    match fit_any(directory, request, &windfall::progress::quiet).unwrap() {
         AnyOutcome::Measured(outcome) => *outcome,
         AnyOutcome::Impacts(_) => panic!("no compressions"),
     }
@@ -184,7 +184,7 @@ fn rejects_options_that_only_impacts_have() {
             "neither specimens.csv",
         ),
     ] {
-        let message = match fit_any(&campaign, &request, &|_, _| {}) {
+        let message = match fit_any(&campaign, &request, &windfall::progress::quiet) {
             Err(error) => error.to_string(),
             Ok(outcome) => outcome.failed()[0].message.clone(),
         };

@@ -53,7 +53,7 @@ const CARRIAGE: &str = "kind = \"carriage\"\nmass = \"0.2 kg\"\ndriving_accelera
 fn fit(rig: &str, channels: &str, contact: &str) -> Result<ImpactOutcome, String> {
     let dir = tempfile::tempdir().unwrap();
     campaign(dir.path(), rig, channels, contact);
-    let outcome = fit_campaign(dir.path(), &FitRequest::default(), &|_, _| {});
+    let outcome = fit_campaign(dir.path(), &FitRequest::default(), &windfall::progress::quiet);
     let mut outcome = outcome.map_err(|error| error.to_string())?;
     match outcome.failed.first() {
         Some(failure) => Err(failure.message.clone()),
@@ -100,7 +100,7 @@ fn conserves_the_loop_in_the_figure() {
         figures: Some(figures.clone()),
         ..FitRequest::default()
     };
-    fit_campaign(dir.path(), &request, &|_, _| {}).unwrap();
+    fit_campaign(dir.path(), &request, &windfall::progress::quiet).unwrap();
     let svg = std::fs::read_to_string(figures.join("a.svg")).unwrap();
     assert!(svg.contains("kelvin-voigt") && svg.ends_with("</svg>\n"));
     // The fourth panel is the loop: F = 50 N/mm x, up and down.

@@ -281,7 +281,7 @@ fn simulated(folder: &Path, drop: &DropRequest, bench: &SimulateDropsRequest) ->
 }
 
 fn fitted(directory: &Path) -> MeasuredOutcome {
-    match fit_any(directory, &FitRequest::default(), &|_, _| {}).unwrap() {
+    match fit_any(directory, &FitRequest::default(), &windfall::progress::quiet).unwrap() {
         AnyOutcome::Measured(outcome) => *outcome,
         AnyOutcome::Impacts(_) => panic!("not a campaign of drops"),
     }

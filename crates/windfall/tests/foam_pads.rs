@@ -45,7 +45,7 @@ fn recovers_cart_and_pads_from_real_recordings() {
         laws: vec!["kelvin-voigt".to_owned(), "hertz".to_owned()],
         ..FitRequest::default()
     };
-    let outcome = fit_campaign(scratch.path(), &request, &|_, _| {}).unwrap();
+    let outcome = fit_campaign(scratch.path(), &request, &windfall::progress::quiet).unwrap();
     assert!(outcome.failed.is_empty(), "{:?}", outcome.failed);
     assert_eq!((outcome.impacts.len(), outcome.groups.len()), (20, 4));
 

@@ -31,7 +31,7 @@ fn fit(file: &str, bytes: &[u8], files: &str) -> CampaignOutcome {
         campaign.replace("time = \"time_s\"", files),
     )
     .unwrap();
-    let outcome = fit_campaign(folder, &FitRequest::default(), &|_, _| {}).unwrap();
+    let outcome = fit_campaign(folder, &FitRequest::default(), &windfall::progress::quiet).unwrap();
     assert!(outcome.failed.is_empty(), "{file}: {:?}", outcome.failed);
     outcome
 }

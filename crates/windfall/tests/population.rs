@@ -69,7 +69,7 @@ fn run(directory: &Path, covariates: &[&str], threads: usize) -> PopulationOutco
         covariates: covariates.iter().map(|c| (*c).to_owned()).collect(),
         ..PopulationRequest::default()
     };
-    population(&request, &|_, _| {}).unwrap()
+    population(&request, &windfall::progress::quiet).unwrap()
 }
 
 /// Laws of the specimens as they were drawn.
@@ -160,7 +160,7 @@ fn recovers_the_fruit_that_were_drawn() {
             covariates: vec![covariate.to_owned()],
             ..PopulationRequest::default()
         };
-        let error = population(&request, &|_, _| {}).unwrap_err();
+        let error = population(&request, &windfall::progress::quiet).unwrap_err();
         assert!(error.to_string().contains(expected), "{error}");
         assert!(error.is_request());
     }
@@ -180,7 +180,7 @@ fn check_posterior(directory: &Path, estimate: &PopulationOutcome) {
             posterior: true,
             ..PopulationRequest::default()
         };
-        population(&request, &|_, _| {}).unwrap()
+        population(&request, &windfall::progress::quiet).unwrap()
     };
     let outcome = drawn(2);
     let posterior = outcome.posterior.as_ref().unwrap();

@@ -1,0 +1,205 @@
+//! Files named by somebody else, kept inside one directory.
+
+use crate::error::Error;
+use std::fs::File;
+use std::io::Write;
+use std::path::{Path, PathBuf};
+
+/// Longest name of a file that is taken; bytes. Half of what file systems take, so
+/// that it can be written beside its place first.
+const LONGEST: usize = 120;
+
+/// Characters that some file system, shell or table gives a meaning.
+const REFUSED: [char; 11] = ['/', '\\', ':', '*', '?', '"', '<', '>', '|', ',', '\0'];
+
+/// A path below a directory, of parts that are plain names.
+///
+/// * `name`: parts joined by "/"; no part may be empty, ".", "..", begin with a dot,
+///   or hold a character that some system gives a meaning
+///
+/// The path need not exist; what exists of it may be no symbolic link, so that
+/// nothing outside of the directory is reached.
+///
+/// # Errors
+/// The name is refused, or the path goes through a symbolic link.
+pub fn path_inside(directory: &Path, name: &str) -> Result<PathBuf, Error> {
+    let mut path = directory.to_path_buf();
+    for part in name.split('/') {
+        path.push(plain_name(part, name)?);
+        let linked = std::fs::symlink_metadata(&path).is_ok_and(|found| found.is_symlink());
+        if linked {
+            let problem = "goes through a symbolic link; put the file itself there";
+            return Err(refused(name, problem));
+        }
+    }
+    Ok(path)
+}
+
+/// A part of a path that is a name and nothing else.
+fn plain_name<'a>(part: &'a str, whole: &str) -> Result<&'a str, Error> {
+    let problem = match part {
+        "" => "has an empty part",
+        _ if part.starts_with('.') => "has a part that begins with a dot",
+        _ if part.len() > LONGEST => "has a part of more than 120 bytes",
+        _ if part.contains(REFUSED) || part.chars().any(char::is_control) => {
+            "holds a character that names cannot have here (\\ : * ? \" < > | , or a control \
+             character)"
+        }
+        _ if part.ends_with([' ', '.']) => "has a part that ends with a blank or a dot",
+        _ => return Ok(part),
+    };
+    Err(refused(whole, problem))
+}
+
+fn refused(name: &str, problem: &str) -> Error {
+    Error::NameRefused {
+        name: name.to_owned(),
+        problem: problem.to_owned(),
+    }
+}
+
+/// A file that comes in pieces: it takes its name when the last has come, and leaves
+/// nothing behind when it does not.
+pub struct Arriving {
+    path: PathBuf,
+    partial: PathBuf,
+    file: Option<File>,
+}
+
+impl Arriving {
+    /// Makes room for a new file.
+    ///
+    /// # Errors
+    /// The name is refused or taken, or the directory cannot be written.
+    pub fn begin(directory: &Path, name: &str) -> Result<Self, Error> {
+        let path = path_inside(directory, name)?;
+        if path.exists() {
+            return Err(Error::AlreadyThere { path });
+        }
+        let folder = path.parent().unwrap_or(directory);
+        std::fs::create_dir_all(folder).map_err(|source| failed(folder, "create", source))?;
+        let own = format!(".{}.{}.partial", std::process::id(), unique());
+        let partial = folder.join(own);
+        let file = File::create_new(&partial).map_err(|source| failed(&path, "write", source))?;
+        Ok(Self {
+            path,
+            partial,
+            file: Some(file),
+        })
+    }
+
+    /// Takes the next piece.
+    ///
+    /// # Errors
+    /// It cannot be written: a full disk, above all.
+    pub fn take(&mut self, piece: &[u8]) -> Result<(), Error> {
+        let Some(file) = &mut self.file else {
+            return Ok(());
+        };
+        file.write_all(piece)
+            .map_err(|source| failed(&self.path, "write", source))
+    }
+
+    /// Gives the file its name; where it is.
+    ///
+    /// # Errors
+    /// Another file has got the name meanwhile, or it cannot be written.
+    pub fn end(mut self) -> Result<PathBuf, Error> {
+        let Some(file) = self.file.take() else {
+            return Ok(self.path.clone());
+        };
+        let error = |source| failed(&self.path, "write", source);
+        file.sync_all().map_err(error)?;
+        drop(file);
+        // A hard link does not replace, where renaming would.
+        match std::fs::hard_link(&self.partial, &self.path) {
+            Ok(()) => Ok(self.path.clone()),
+            Err(source) if source.kind() == std::io::ErrorKind::AlreadyExists => {
+                Err(Error::AlreadyThere {
+                    path: self.path.clone(),
+                })
+            }
+            // Some file systems have no hard links.
+            Err(_) => std::fs::rename(&self.partial, &self.path)
+                .map(|()| self.path.clone())
+                .map_err(error),
+        }
+    }
+}
+
+impl Drop for Arriving {
+    fn drop(&mut self) {
+        self.file = None;
+        let _ = std::fs::remove_file(&self.partial);
+    }
+}
+
+/// A number that no other call in this program has given.
+fn unique() -> usize {
+    use std::sync::atomic::{AtomicUsize, Ordering};
+    static NEXT: AtomicUsize = AtomicUsize::new(0);
+    NEXT.fetch_add(1, Ordering::Relaxed)
+}
+
+fn failed(path: &Path, action: &'static str, source: std::io::Error) -> Error {
+    Error::FileAccess {
+        path: path.to_path_buf(),
+        action,
+        source,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn rejects_every_way_out_of_the_directory() {
+        let directory = tempfile::tempdir().unwrap();
+        let inside = directory.path().join("inside");
+        std::fs::create_dir(&inside).unwrap();
+        std::fs::write(directory.path().join("secret"), "s").unwrap();
+        for name in [
+            "../secret", "..", ".", "", "/etc/passwd", "a/../../secret", "a//b", "a\\..\\b",
+            "C:x", ".hidden", "a/", "a\0b", "a\nb", "dot.", "blank ", "*",
+        ] {
+            let error = path_inside(&inside, name).unwrap_err();
+            assert!(matches!(error, Error::NameRefused { .. }), "{name}: {error}");
+        }
+        let long = "x".repeat(LONGEST + 1);
+        assert!(path_inside(&inside, &long).is_err());
+        assert_eq!(
+            path_inside(&inside, "räw/a b (1).csv").unwrap(),
+            inside.join("räw/a b (1).csv")
+        );
+    }
+
+    #[cfg(unix)]
+    #[test]
+    fn rejects_symbolic_links() {
+        let directory = tempfile::tempdir().unwrap();
+        std::os::unix::fs::symlink("/etc", directory.path().join("link")).unwrap();
+        let error = path_inside(directory.path(), "link/passwd").unwrap_err();
+        assert!(error.to_string().contains("symbolic link"), "{error}");
+    }
+
+    #[test]
+    fn a_file_is_there_whole_or_not_at_all_and_replaces_none() {
+        let directory = tempfile::tempdir().unwrap();
+        let mut half = Arriving::begin(directory.path(), "raw/a.csv").unwrap();
+        half.take(b"half").unwrap();
+        drop(half);
+        let raw = directory.path().join("raw");
+        assert_eq!(std::fs::read_dir(&raw).unwrap().count(), 0);
+
+        let mut first = Arriving::begin(directory.path(), "raw/a.csv").unwrap();
+        let mut second = Arriving::begin(directory.path(), "raw/a.csv").unwrap();
+        first.take(b"first").unwrap();
+        second.take(b"second").unwrap();
+        first.end().unwrap();
+        assert!(matches!(second.end(), Err(Error::AlreadyThere { .. })));
+        assert_eq!(std::fs::read(raw.join("a.csv")).unwrap(), b"first");
+        assert_eq!(std::fs::read_dir(&raw).unwrap().count(), 1);
+        assert!(Arriving::begin(directory.path(), "raw/a.csv").is_err());
+    }
+}

@@ -1,0 +1,334 @@
+//! Changes of a campaign's files on behalf of somebody who sees them: comments and
+//! layout stay, the campaign that results is checked before it takes the place of the
+//! one before, and a change on the ground of an older version is refused.
+
+use crate::campaign_view::{
+    CAMPAIGN_FILES, CampaignView, campaign_version, check_campaign, view_campaign,
+};
+use crate::edit_table::{add_rows, set_cells};
+use crate::error::Error;
+use crate::read_campaign::CAMPAIGN_FILE;
+use crate::read_channels::KINDS;
+use crate::recording_digests::campaign_text;
+use crate::write_file::write_whole;
+use std::collections::BTreeMap;
+use std::path::Path;
+use std::sync::{Mutex, PoisonError};
+use toml_edit::{Array, DocumentMut, Item, Table, value};
+use windfall_numerics::unit::parse_unit;
+
+/// One change at a time, so that of two on the ground of one version the second is
+/// refused.
+static CHANGING: Mutex<()> = Mutex::new(());
+
+/// What is changed.
+#[derive(Clone, Debug)]
+pub enum Change {
+    /// The whole campaign.toml.
+    Text(String),
+    /// The part of the recording that an impact uses; s.
+    Window {
+        /// Id of the impact.
+        impact: String,
+        /// Its begin; none where it has no bound.
+        from: Option<f64>,
+        /// Its end.
+        to: Option<f64>,
+    },
+    /// Keys of `[fit]`, and the column to group by.
+    Options(OptionsChange),
+    /// Where the channels are in the files.
+    Channels(ChannelsChange),
+    /// Further impacts.
+    Impacts(Vec<NewImpact>),
+}
+
+/// Keys of `[fit]` and of `[summary]` that change; what is `None` stays.
+#[derive(Clone, Debug, Default)]
+pub struct OptionsChange {
+    /// Lists: laws, free, quantities.
+    pub lists: BTreeMap<String, Vec<String>>,
+    /// Words: weights, noise, intervals, onset …
+    pub words: BTreeMap<String, String>,
+    /// Column to group by; an empty name for none.
+    pub group: Option<String>,
+}
+
+/// Where the channels are.
+#[derive(Clone, Debug, Default)]
+pub struct ChannelsChange {
+    /// Quantity, column, and the unit of the column or the sensitivity of its sensor.
+    pub channels: Vec<(String, String, String)>,
+    /// Column of times.
+    pub time: Option<String>,
+    /// Sampling rate.
+    pub rate: Option<String>,
+}
+
+/// A row of impacts.csv.
+#[derive(Clone, Debug, Default)]
+pub struct NewImpact {
+    /// Id.
+    pub id: String,
+    /// Specimen; it is added to specimens.csv if it is not there.
+    pub specimen: String,
+    /// Recording, below the directory of recordings.
+    pub file: String,
+    /// Other columns.
+    pub cells: BTreeMap<String, String>,
+}
+
+/// Changes a campaign that is of that version, and shows what it is then.
+///
+/// # Errors
+/// [`Error::ChangedMeanwhile`]; the change makes no campaign that can be read; a file
+/// cannot be written. Then all is as it was.
+pub fn change_campaign(
+    directory: &Path,
+    version: &str,
+    change: &Change,
+) -> Result<CampaignView, Error> {
+    let _one = CHANGING.lock().unwrap_or_else(PoisonError::into_inner);
+    if campaign_version(directory)? != version {
+        return Err(Error::ChangedMeanwhile);
+    }
+    let files = changed_files(directory, change)?;
+    check_changed(directory, &files)?;
+    for (name, text) in &files {
+        write_whole(&directory.join(name), text.as_bytes())?;
+    }
+    view_campaign(directory)
+}
+
+/// Names and texts of the files that a change writes.
+fn changed_files(
+    directory: &Path,
+    change: &Change,
+) -> Result<Vec<(&'static str, String)>, Error> {
+    let impacts = directory.join("impacts.csv");
+    match change {
+        Change::Text(text) => Ok(vec![(CAMPAIGN_FILE, text.clone())]),
+        Change::Window { impact, from, to } => {
+            let cell = |time: &Option<f64>| time.map_or_else(String::new, |time| time.to_string());
+            let cells = [("from_s", cell(from)), ("to_s", cell(to))];
+            Ok(vec![("impacts.csv", set_cells(&impacts, impact, &cells)?)])
+        }
+        Change::Options(options) => {
+            let mut document = document(directory)?;
+            change_options(&mut document, options);
+            Ok(vec![(CAMPAIGN_FILE, document.to_string())])
+        }
+        Change::Channels(channels) => {
+            let mut document = document(directory)?;
+            change_channels(&mut document, channels)?;
+            Ok(vec![(CAMPAIGN_FILE, document.to_string())])
+        }
+        Change::Impacts(rows) => new_impacts(directory, rows),
+    }
+}
+
+fn document(directory: &Path) -> Result<DocumentMut, Error> {
+    let text = campaign_text(directory)?;
+    text.parse().map_err(|error: toml_edit::TomlError| {
+        let line = error.span().map_or(0, |span| {
+            1 + text[..span.start].bytes().filter(|b| *b == b'\n').count()
+        });
+        Error::CampaignSyntax {
+            place: crate::error::Place {
+                file: directory.join(CAMPAIGN_FILE),
+                line,
+            },
+            message: error.message().to_owned(),
+        }
+    })
+}
+
+/// The table of that name, made where it is not there.
+fn table<'a>(document: &'a mut DocumentMut, name: &str) -> &'a mut Table {
+    let item = document.entry(name).or_insert_with(|| Item::Table(Table::new()));
+    // A key that is no table is replaced: the check of the whole says what was wrong.
+    if !item.is_table() {
+        *item = Item::Table(Table::new());
+    }
+    match item {
+        Item::Table(table) => table,
+        _ => unreachable!("it has just been made one"),
+    }
+}
+
+/// Sets a key and keeps the remark behind it.
+fn set(table: &mut Table, key: &str, new: Item) {
+    match (table.get_mut(key), new) {
+        (Some(Item::Value(old)), Item::Value(mut new)) => {
+            *new.decor_mut() = old.decor().clone();
+            *old = new;
+        }
+        (_, new) => {
+            table.insert(key, new);
+        }
+    }
+}
+
+fn change_options(document: &mut DocumentMut, options: &OptionsChange) {
+    let fit = table(document, "fit");
+    for (key, texts) in &options.lists {
+        let list: Array = texts.iter().map(String::as_str).collect();
+        set(fit, key, value(list));
+        if key == "laws" {
+            fit.remove("law");
+        }
+    }
+    for (key, word) in &options.words {
+        set(fit, key, value(word.as_str()));
+    }
+    match options.group.as_deref() {
+        None => {}
+        Some("") => {
+            table(document, "summary").remove("group");
+        }
+        Some(group) => set(table(document, "summary"), "group", value(group)),
+    }
+}
+
+fn change_channels(document: &mut DocumentMut, change: &ChannelsChange) -> Result<(), Error> {
+    let known = |name: &str| KINDS.iter().any(|kind| kind.name() == name);
+    if let Some((quantity, ..)) = change.channels.iter().find(|(name, ..)| !known(name)) {
+        let names: Vec<&str> = KINDS.iter().map(|kind| kind.name()).collect();
+        return Err(Error::OptionInvalid {
+            option: format!("channel {quantity}"),
+            problem: format!("expected one of {}", names.join(", ")),
+        });
+    }
+    let channels = table(document, "channels");
+    channels.set_implicit(true);
+    for kind in &KINDS {
+        let wanted = change.channels.iter().find(|(name, ..)| name == kind.name());
+        let Some((_, column, unit)) = wanted else {
+            channels.remove(kind.name());
+            continue;
+        };
+        if !channels.get(kind.name()).is_some_and(Item::is_table) {
+            channels.insert(kind.name(), Item::Table(Table::new()));
+        }
+        if let Some(Item::Table(channel)) = channels.get_mut(kind.name()) {
+            set(channel, "column", value(column.as_str()));
+            set_unit(channel, kind.unit, unit);
+        }
+    }
+    let files = table(document, "files");
+    for (key, text) in [("time", &change.time), ("rate", &change.rate)] {
+        match text {
+            Some(text) => set(files, key, value(text.as_str())),
+            None => {
+                files.remove(key);
+            }
+        }
+    }
+    if change.time.is_none() {
+        files.remove("time_unit");
+    }
+    Ok(())
+}
+
+/// A unit of the quantity itself is the unit of the column, another one the
+/// sensitivity of a sensor.
+fn set_unit(channel: &mut Table, quantity: &str, unit: &str) {
+    for key in ["unit", "sensitivity"] {
+        if unit.is_empty() || quantity.is_empty() {
+            channel.remove(key);
+        }
+    }
+    if unit.is_empty() || quantity.is_empty() {
+        return;
+    }
+    let same = match (parse_unit(unit), parse_unit(quantity)) {
+        (Ok(own), Ok(si)) => own.dimension.matches(&si.dimension),
+        _ => false,
+    };
+    // "11 mV/N" is no unit by itself: a number stands before it.
+    let (used, other) = match same {
+        true => ("unit", "sensitivity"),
+        false => ("sensitivity", "unit"),
+    };
+    channel.remove(other);
+    set(channel, used, value(unit));
+    if used == "unit" {
+        // What only a sensor's volts have.
+        channel.remove("gain");
+        channel.remove("offset");
+    }
+}
+
+fn new_impacts(
+    directory: &Path,
+    rows: &[NewImpact],
+) -> Result<Vec<(&'static str, String)>, Error> {
+    let table = rows.iter().map(|row| {
+        let own = [("id", &row.id), ("specimen", &row.specimen), ("file", &row.file)];
+        let own = own.map(|(name, cell)| (name.to_owned(), cell.clone()));
+        own.into_iter().chain(row.cells.clone()).collect()
+    });
+    let table: Vec<BTreeMap<String, String>> = table.collect();
+    let impacts = add_rows(&directory.join("impacts.csv"), &table)?;
+    let mut files = vec![("impacts.csv", impacts)];
+    let specimens = directory.join("specimens.csv");
+    if specimens.exists() {
+        let known = crate::read_tables::read_specimens(&specimens)?;
+        let mut new: Vec<BTreeMap<String, String>> = Vec::new();
+        for row in rows {
+            let cells = BTreeMap::from([("id".to_owned(), row.specimen.clone())]);
+            if known.iter().all(|s| s.id != row.specimen) && !new.contains(&cells) {
+                new.push(cells);
+            }
+        }
+        if !new.is_empty() {
+            files.push(("specimens.csv", add_rows(&specimens, &new)?));
+        }
+    }
+    Ok(files)
+}
+
+/// Reads the campaign as it will be, beside the one that is there.
+fn check_changed(directory: &Path, files: &[(&'static str, String)]) -> Result<(), Error> {
+    let scratch = tempfile::Builder::new()
+        .prefix("windfall-")
+        .tempdir()
+        .map_err(|source| Error::FileAccess {
+            path: std::env::temp_dir(),
+            action: "write",
+            source,
+        })?;
+    let failed = |path: &Path| {
+        let path = path.to_path_buf();
+        move |source| Error::FileAccess {
+            path,
+            action: "check",
+            source,
+        }
+    };
+    for (name, text) in files {
+        let path = scratch.path().join(name);
+        std::fs::write(&path, text).map_err(failed(&path))?;
+    }
+    // The rest as it is: laws may be tables in files of their own.
+    for entry in std::fs::read_dir(directory).map_err(failed(directory))? {
+        let entry = entry.map_err(failed(directory))?;
+        let name = entry.file_name();
+        let place = scratch.path().join(&name);
+        let own = CAMPAIGN_FILES.iter().any(|known| name == *known);
+        let plain = entry.file_type().is_ok_and(|kind| kind.is_file());
+        if !place.exists() && (own || plain && small(&entry)) {
+            std::fs::copy(entry.path(), &place).map_err(failed(&place))?;
+        }
+    }
+    check_campaign(scratch.path()).map_err(|error| Error::ChangeRefused {
+        problem: error
+            .to_string()
+            .replace(&format!("{}/", scratch.path().display()), ""),
+    })
+}
+
+/// Whether a file may be a table of a law.
+fn small(entry: &std::fs::DirEntry) -> bool {
+    entry.metadata().is_ok_and(|data| data.len() < 1 << 20)
+}
