@@ -21,7 +21,8 @@ use crate::rate::derived_rate;
 use crate::recording::Recording;
 use crate::track::{Geometry, Signals, Track, Tracks, mean_interval, missing, tracks};
 use crate::trigger::{
-    Baseline, ContactChoice, ContactWindow, Contacts, Signal, Threshold, TriggerOptions, find_contacts,
+    Baseline, ContactChoice, ContactWindow, Contacts, Signal, Threshold, TriggerOptions,
+    find_contacts,
 };
 
 /// Fewer samples in contact than this are reported.

@@ -10,6 +10,7 @@ use crate::args_laws::LawsArguments;
 use crate::args_population::PopulationArguments;
 use crate::args_regress::RegressArguments;
 use crate::args_report::ReportArguments;
+use crate::args_serve::ServeArguments;
 use crate::args_simulate::SimulateArguments;
 use crate::args_surface::SurfaceArguments;
 use clap::{Args, Parser, Subcommand, ValueEnum, ValueHint};
@@ -28,6 +29,7 @@ use std::path::PathBuf;
   windfall inspect my-campaign/raw/*.csv  see what the recordings hold
   windfall fit my-campaign                recordings → parameters, table, results.sqlite
   windfall report my-campaign             figures and a page with all of it
+  windfall serve my-campaign              all of it in the browser
   windfall simulate impact --law 'kuwabara-kono(k=753599, c=1524)' --mass '0.2 kg' --velocity '0.5 m/s'
   windfall design ccd --factor 'k=0.3..1' --factor 'e=1.5..3' --out design.csv
   windfall card show --laws               the force laws")]
@@ -52,6 +54,8 @@ pub enum Command {
     Population(PopulationArguments),
     /// Write figures, tables and a page on a campaign: methods, results, findings, origin
     Report(Box<ReportArguments>),
+    /// Work on campaigns in the browser: a server on this machine, for this machine
+    Serve(ServeArguments),
     /// Calibrate a contact law to dropped fruit: by features, and by design and surface
     Calibrate(CalibrateArguments),
     /// Make a design of experiments

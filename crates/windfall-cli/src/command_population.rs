@@ -32,7 +32,10 @@ pub fn run(arguments: &PopulationArguments) -> anyhow::Result<()> {
     bar.finish_and_clear();
     let outcome = outcome?;
     if let Some(path) = &request.card {
-        write_card(path, &card_of_population(&request, &outcome, &windfall::progress::quiet)?)?;
+        write_card(
+            path,
+            &card_of_population(&request, &outcome, &windfall::progress::quiet)?,
+        )?;
     }
     match arguments.format {
         Format::Json => write_json(&outcome)?,

@@ -15,6 +15,7 @@ mod args_laws;
 mod args_population;
 mod args_regress;
 mod args_report;
+mod args_serve;
 mod args_simulate;
 mod args_simulate_drop;
 mod args_simulate_eccentric;
@@ -31,6 +32,7 @@ mod command_new;
 mod command_population;
 mod command_regress;
 mod command_report;
+mod command_serve;
 mod command_simulate;
 mod command_simulate_drop;
 mod command_simulate_eccentric;
@@ -50,6 +52,7 @@ fn main() -> ExitCode {
         Command::Laws(arguments) => command_laws::run(&arguments),
         Command::Population(arguments) => command_population::run(&arguments),
         Command::Report(arguments) => command_report::run(&arguments),
+        Command::Serve(arguments) => command_serve::run(&arguments),
         Command::Calibrate(arguments) => command_calibrate::run(&arguments),
         Command::Simulate(arguments) => command_simulate::run(&arguments),
         Command::Summary(arguments) => command_compare::run_summary(&arguments),

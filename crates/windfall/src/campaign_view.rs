@@ -1,7 +1,7 @@
 //! A campaign as it is shown to somebody who works on it: what its files say, whatever
 //! it measures.
 
-use crate::campaign::{Campaign, ImpactEntry, Specimen};
+use crate::campaign::{Campaign, FilePlan, ImpactEntry, Specimen};
 use crate::campaign_kind::{CampaignKind, campaign_kind};
 use crate::equal_command::command;
 use crate::error::Error;
@@ -15,9 +15,11 @@ use crate::read_drop::read_drop;
 use crate::read_fit::{ENDS, INTERVALS, NOISES, TREATMENTS, WEIGHTS};
 use crate::read_repeats::read_repeats;
 use crate::recording_digests::campaign_text;
+use crate::workflow_fit::STORE_FILE;
 use crate::workflow_report::REPORT_DIRECTORY;
 use serde::Serialize;
 use std::path::{Path, PathBuf};
+use std::time::SystemTime;
 use windfall_identify::problem::FitOptions;
 
 /// Directory of tables for regressions and surfaces in a campaign directory.
@@ -133,6 +135,17 @@ pub fn check_campaign(directory: &Path) -> Result<(), Error> {
     read_any(directory).map(|_| ())
 }
 
+/// Where the recordings of a campaign are, and how its files are read.
+///
+/// # Errors
+/// The campaign cannot be read.
+pub fn file_plan_of(directory: &Path) -> Result<FilePlan, Error> {
+    read_any(directory).map(|(_, campaign)| match campaign {
+        AnyCampaign::Impacts(campaign) => campaign.files,
+        AnyCampaign::Items(campaign) => campaign.files,
+    })
+}
+
 /// What the files of a campaign say.
 ///
 /// # Errors
@@ -207,6 +220,27 @@ pub fn campaign_version(directory: &Path) -> Result<String, Error> {
     Ok(digest_text(&all)[..16].to_owned())
 }
 
+/// What changes when the files of a campaign or its store do.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct CampaignStamp {
+    /// Digest of the files of the campaign.
+    pub version: String,
+    /// Size and time of change of its store.
+    pub store: Option<(u64, Option<SystemTime>)>,
+}
+
+/// What changes when the files of a campaign or its store do.
+///
+/// # Errors
+/// A file of the campaign cannot be read.
+pub fn campaign_stamp(directory: &Path) -> Result<CampaignStamp, Error> {
+    let store = std::fs::metadata(directory.join(STORE_FILE));
+    Ok(CampaignStamp {
+        version: campaign_version(directory)?,
+        store: store.ok().map(|data| (data.len(), data.modified().ok())),
+    })
+}
+
 /// The last part of the path of a directory.
 #[must_use]
 pub fn name_of(directory: &Path) -> String {
@@ -236,7 +270,12 @@ fn laws_written(tables: &toml::Table) -> Vec<String> {
 fn options_of(campaign: &Campaign) -> FitOptionsView {
     let options: &FitOptions = &campaign.fit.options;
     FitOptionsView {
-        quantities: options.quantities.names().into_iter().map(str::to_owned).collect(),
+        quantities: options
+            .quantities
+            .names()
+            .into_iter()
+            .map(str::to_owned)
+            .collect(),
         weights: word_of(&WEIGHTS, options.weighting),
         noise: word_of(&NOISES, options.noise),
         intervals: word_of(&INTERVALS, options.intervals.method),

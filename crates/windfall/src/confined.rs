@@ -58,6 +58,21 @@ fn refused(name: &str, problem: &str) -> Error {
     }
 }
 
+/// The content of a file below a directory.
+///
+/// # Errors
+/// The name is refused, or the file cannot be read.
+pub fn read_inside(directory: &Path, name: &str) -> Result<Vec<u8>, Error> {
+    let path = path_inside(directory, name)?;
+    std::fs::read(&path).map_err(|source| failed(&path, "read", source))
+}
+
+/// Removes a file that has just arrived and cannot be used.
+pub fn discard(path: &Path) {
+    // What cannot be removed stays as a file that nothing names.
+    let _ = std::fs::remove_file(path);
+}
+
 /// A file that comes in pieces: it takes its name when the last has come, and leaves
 /// nothing behind when it does not.
 pub struct Arriving {
@@ -160,11 +175,28 @@ mod tests {
         std::fs::create_dir(&inside).unwrap();
         std::fs::write(directory.path().join("secret"), "s").unwrap();
         for name in [
-            "../secret", "..", ".", "", "/etc/passwd", "a/../../secret", "a//b", "a\\..\\b",
-            "C:x", ".hidden", "a/", "a\0b", "a\nb", "dot.", "blank ", "*",
+            "../secret",
+            "..",
+            ".",
+            "",
+            "/etc/passwd",
+            "a/../../secret",
+            "a//b",
+            "a\\..\\b",
+            "C:x",
+            ".hidden",
+            "a/",
+            "a\0b",
+            "a\nb",
+            "dot.",
+            "blank ",
+            "*",
         ] {
             let error = path_inside(&inside, name).unwrap_err();
-            assert!(matches!(error, Error::NameRefused { .. }), "{name}: {error}");
+            assert!(
+                matches!(error, Error::NameRefused { .. }),
+                "{name}: {error}"
+            );
         }
         let long = "x".repeat(LONGEST + 1);
         assert!(path_inside(&inside, &long).is_err());

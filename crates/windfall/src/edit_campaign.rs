@@ -3,16 +3,18 @@
 //! one before, and a change on the ground of an older version is refused.
 
 use crate::campaign_view::{
-    CAMPAIGN_FILES, CampaignView, campaign_version, check_campaign, view_campaign,
+    CAMPAIGN_FILES, CampaignView, campaign_version, check_campaign, file_plan_of, view_campaign,
 };
+use crate::confined::path_inside;
 use crate::edit_table::{add_rows, set_cells};
 use crate::error::Error;
 use crate::read_campaign::CAMPAIGN_FILE;
 use crate::read_channels::KINDS;
 use crate::recording_digests::campaign_text;
+use crate::workspace::recordings_inside;
 use crate::write_file::write_whole;
 use std::collections::BTreeMap;
-use std::path::Path;
+use std::path::{Component, Path};
 use std::sync::{Mutex, PoisonError};
 use toml_edit::{Array, DocumentMut, Item, Table, value};
 use windfall_numerics::unit::parse_unit;
@@ -101,10 +103,7 @@ pub fn change_campaign(
 }
 
 /// Names and texts of the files that a change writes.
-fn changed_files(
-    directory: &Path,
-    change: &Change,
-) -> Result<Vec<(&'static str, String)>, Error> {
+fn changed_files(directory: &Path, change: &Change) -> Result<Vec<(&'static str, String)>, Error> {
     let impacts = directory.join("impacts.csv");
     match change {
         Change::Text(text) => Ok(vec![(CAMPAIGN_FILE, text.clone())]),
@@ -145,7 +144,9 @@ fn document(directory: &Path) -> Result<DocumentMut, Error> {
 
 /// The table of that name, made where it is not there.
 fn table<'a>(document: &'a mut DocumentMut, name: &str) -> &'a mut Table {
-    let item = document.entry(name).or_insert_with(|| Item::Table(Table::new()));
+    let item = document
+        .entry(name)
+        .or_insert_with(|| Item::Table(Table::new()));
     // A key that is no table is replaced: the check of the whole says what was wrong.
     if !item.is_table() {
         *item = Item::Table(Table::new());
@@ -202,7 +203,10 @@ fn change_channels(document: &mut DocumentMut, change: &ChannelsChange) -> Resul
     let channels = table(document, "channels");
     channels.set_implicit(true);
     for kind in &KINDS {
-        let wanted = change.channels.iter().find(|(name, ..)| name == kind.name());
+        let wanted = change
+            .channels
+            .iter()
+            .find(|(name, ..)| name == kind.name());
         let Some((_, column, unit)) = wanted else {
             channels.remove(kind.name());
             continue;
@@ -259,12 +263,17 @@ fn set_unit(channel: &mut Table, quantity: &str, unit: &str) {
     }
 }
 
-fn new_impacts(
-    directory: &Path,
-    rows: &[NewImpact],
-) -> Result<Vec<(&'static str, String)>, Error> {
+fn new_impacts(directory: &Path, rows: &[NewImpact]) -> Result<Vec<(&'static str, String)>, Error> {
+    let recordings = recordings_inside(directory)?.directory;
+    for row in rows {
+        path_inside(&recordings, &row.file)?;
+    }
     let table = rows.iter().map(|row| {
-        let own = [("id", &row.id), ("specimen", &row.specimen), ("file", &row.file)];
+        let own = [
+            ("id", &row.id),
+            ("specimen", &row.specimen),
+            ("file", &row.file),
+        ];
         let own = own.map(|(name, cell)| (name.to_owned(), cell.clone()));
         own.into_iter().chain(row.cells.clone()).collect()
     });
@@ -325,7 +334,24 @@ fn check_changed(directory: &Path, files: &[(&'static str, String)]) -> Result<(
         problem: error
             .to_string()
             .replace(&format!("{}/", scratch.path().display()), ""),
-    })
+    })?;
+    stays_inside(directory, scratch.path())
+}
+
+/// Whoever may change a campaign may not make it read files elsewhere; one that does so
+/// already may go on.
+fn stays_inside(directory: &Path, changed: &Path) -> Result<(), Error> {
+    let new = file_plan_of(changed)?.directory;
+    let plain = |path: &Path| path.components().all(|c| c != Component::ParentDir);
+    let same = file_plan_of(directory).is_ok_and(|old| old.directory == new);
+    match same || (plain(&new) && new.starts_with(changed)) {
+        true => Ok(()),
+        false => Err(Error::ChangeRefused {
+            problem: "[files] directory must lie in the directory of the campaign; another one \
+                      can be given with an editor"
+                .to_owned(),
+        }),
+    }
 }
 
 /// Whether a file may be a table of a law.

@@ -16,10 +16,7 @@ pub fn set_cells(path: &Path, id: &str, cells: &[(&str, String)]) -> Result<Stri
     let table = read_table(path)?;
     let ids = column_index(&table, "id")?;
     let Some(row) = table.rows.iter().position(|row| row.cells[ids] == id) else {
-        return Err(Error::OptionInvalid {
-            option: format!("impact {id}"),
-            problem: "impacts.csv has no impact of this id".to_owned(),
-        });
+        return Err(Error::ImpactUnknown { id: id.to_owned() });
     };
     // A column that would be blank in every row is not added.
     let present = |name: &str| text.columns.iter().any(|column| column == name);
@@ -112,10 +109,12 @@ impl Text {
         for row in &self.rows {
             writer.write_record(row).map_err(unwritable)?;
         }
-        let bytes = writer.into_inner().map_err(|error| Error::ResultUnwritable {
-            item: "table".to_owned(),
-            detail: error.to_string(),
-        })?;
+        let bytes = writer
+            .into_inner()
+            .map_err(|error| Error::ResultUnwritable {
+                item: "table".to_owned(),
+                detail: error.to_string(),
+            })?;
         Ok(String::from_utf8_lossy(&bytes).into_owned())
     }
 }
@@ -134,7 +133,11 @@ mod tests {
     #[test]
     fn closed_form_cells_of_one_row_change_and_columns_are_added() {
         let (_kept, path) = file("# drops of May\nid;specimen;file\na;s;\"r;1.csv\"\nb;s;r2.csv\n");
-        let set = set_cells(&path, "b", &[("from_s", "0.25".to_owned()), ("to_s", String::new())]);
+        let set = set_cells(
+            &path,
+            "b",
+            &[("from_s", "0.25".to_owned()), ("to_s", String::new())],
+        );
         assert_eq!(
             set.unwrap(),
             "# drops of May\nid;specimen;file;from_s\na;s;\"r;1.csv\";\nb;s;r2.csv;0.25\n"
@@ -145,7 +148,12 @@ mod tests {
     #[test]
     fn closed_form_rows_are_added() {
         let (_kept, path) = file("id,specimen,file\na,s,r.csv\n");
-        let row = [("id", "b"), ("specimen", "s"), ("file", "q.csv"), ("level", "2")];
+        let row = [
+            ("id", "b"),
+            ("specimen", "s"),
+            ("file", "q.csv"),
+            ("level", "2"),
+        ];
         let row = row.map(|(name, cell)| (name.to_owned(), cell.to_owned()));
         let added = add_rows(&path, &[BTreeMap::from(row)]).unwrap();
         assert_eq!(added, "id,specimen,file,level\na,s,r.csv,\nb,s,q.csv,2\n");

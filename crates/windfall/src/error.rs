@@ -46,6 +46,17 @@ pub enum Error {
         /// What would be wrong.
         problem: String,
     },
+    /// The recordings of a campaign lie outside of its directory.
+    #[error(
+        "the recordings of this campaign lie outside of its directory ([files] directory in campaign.toml); they can be fitted, but not listed, shown or added to here"
+    )]
+    RecordingsElsewhere,
+    /// No impact of that id.
+    #[error("impacts.csv has no impact \"{id}\"")]
+    ImpactUnknown {
+        /// The id.
+        id: String,
+    },
     /// No campaign of that name.
     #[error("there is no campaign \"{id}\" here")]
     CampaignUnknown {
@@ -53,7 +64,9 @@ pub enum Error {
         id: String,
     },
     /// Somebody else has changed the campaign meanwhile.
-    #[error("the files of the campaign have changed since they were read; nothing was written. Read them again and repeat the change")]
+    #[error(
+        "the files of the campaign have changed since they were read; nothing was written. Read them again and repeat the change"
+    )]
     ChangedMeanwhile,
     /// A name that would lead out of a directory, or that some system cannot have.
     #[error("the name \"{name}\" {problem}")]

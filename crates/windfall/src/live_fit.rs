@@ -11,10 +11,10 @@ use crate::fit_mass::{RigFound, find_rig};
 use crate::named::Named;
 use crate::outcome::{FindingOutcome, ImpactOutcome};
 use crate::read_campaign::read_campaign;
-use crate::read_recording::read_recording;
+use crate::read_recording::{read_recording, recording_path};
 use crate::request_fit::{FitRequest, apply_request};
 use serde::Serialize;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::time::Instant;
 use windfall_identify::simulate::Trajectory;
 use windfall_signal::impact::{Impact, Series};
@@ -130,18 +130,26 @@ impl LiveCampaign {
         Ok(Self { campaign, rig })
     }
 
+    fn entry(&self, id: &str) -> Result<&ImpactEntry, Error> {
+        let entry = self.campaign.impacts.iter().find(|entry| entry.id == id);
+        entry.ok_or_else(|| Error::ImpactUnknown { id: id.to_owned() })
+    }
+
+    /// Where the recording of one of its impacts is.
+    ///
+    /// # Errors
+    /// There is no such impact.
+    pub fn recording(&self, id: &str) -> Result<PathBuf, Error> {
+        let entry = self.entry(id)?;
+        Ok(recording_path(&self.campaign.files, entry))
+    }
+
     /// Reads the recording of one of its impacts.
     ///
     /// # Errors
     /// There is no such impact, or its recording cannot be read.
     pub fn impact(&self, id: &str) -> Result<LiveImpact, Error> {
-        let entry = self.campaign.impacts.iter().find(|entry| entry.id == id);
-        let Some(entry) = entry.cloned() else {
-            return Err(Error::OptionInvalid {
-                option: format!("impact {id}"),
-                problem: "impacts.csv has no impact of this id".to_owned(),
-            });
-        };
+        let entry = self.entry(id)?.clone();
         let recording = read_recording(&self.campaign.files, &entry)?;
         let mut specimens = self.campaign.specimens.clone();
         specimens.retain(|specimen| specimen.id == entry.specimen);
@@ -265,7 +273,9 @@ fn equal_command(
     request: &FitRequest,
 ) -> String {
     let folder = campaign.files.directory.strip_prefix(&campaign.directory);
-    let path = folder.unwrap_or(&campaign.files.directory).join(&entry.file);
+    let path = folder
+        .unwrap_or(&campaign.files.directory)
+        .join(&entry.file);
     let path = Path::new(shown).join(path).display().to_string();
     command_of_fit(&["fit", &path], request)
 }

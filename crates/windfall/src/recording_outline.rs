@@ -4,13 +4,14 @@
 //! Extremes of stretches of doubling length are kept beside the samples, so that any
 //! part of 10⁷ samples is outlined by reading a few thousand numbers.
 
+use crate::campaign::{FilePlan, TimePlan};
 use crate::column_role::{seconds_per_unit, unit_in};
 use crate::error::Error;
 use crate::find_channel::find_channel;
 use serde::Serialize;
 use std::path::Path;
 use windfall_formats::contents::{Contents, TimeBase};
-use windfall_formats::open::{OpenOptions, open};
+use windfall_formats::open::open;
 
 /// Samples below the first level of stretches.
 const FIRST: usize = 16;
@@ -70,12 +71,15 @@ pub struct Outline {
 impl OutlinedChannel {
     /// Reads a channel of a recording, as the file has it.
     ///
+    /// * `plan`: how the file is read, and its times where it does not tell them
+    ///
     /// # Errors
     /// The file cannot be read, has no such channel, or times that go back.
-    pub fn read(path: &Path, options: &OpenOptions, channel: &str) -> Result<Self, Error> {
-        let mut reader = open(path, options).map_err(Error::Format)?;
-        let contents = reader.contents().clone();
+    pub fn read(path: &Path, plan: &FilePlan, channel: &str) -> Result<Self, Error> {
+        let mut reader = open(path, &plan.open).map_err(Error::Format)?;
+        let mut contents = reader.contents().clone();
         let index = find_channel(&contents, channel, path, "")?;
+        tell_times(&mut contents, index, plan);
         let times = match contents.channels[index].time {
             TimeBase::Channel(at) => Some(at),
             TimeBase::Unknown | TimeBase::Uniform { .. } => None,
@@ -133,7 +137,9 @@ impl OutlinedChannel {
     pub fn outline(&self, from: Option<f64>, to: Option<f64>, points: usize) -> Outline {
         let count = self.samples.len();
         let first = from.map_or(0, |from| self.before(|time| time < from));
-        let last = to.map_or(count, |to| self.before(|time| time <= to)).max(first);
+        let last = to
+            .map_or(count, |to| self.before(|time| time <= to))
+            .max(first);
         // One sample beyond each end, so that lines reach the edges.
         let (first, last) = (first.saturating_sub(1), (last + 1).min(count));
         let shown = last - first;
@@ -214,6 +220,23 @@ impl OutlinedChannel {
     }
 }
 
+/// Where the file does not say when samples were taken, the campaign may.
+fn tell_times(contents: &mut Contents, index: usize, plan: &FilePlan) {
+    if contents.channels[index].time != TimeBase::Unknown {
+        return;
+    }
+    let named = |name: &String| contents.channels.iter().position(|c| c.name == *name);
+    let told = match &plan.time {
+        TimePlan::Rate(rate) => Some(TimeBase::Uniform {
+            start: 0.0,
+            interval: 1.0 / rate,
+        }),
+        TimePlan::Column(name) => named(name).map(TimeBase::Channel),
+        TimePlan::OfChannels | TimePlan::OfFile => None,
+    };
+    contents.channels[index].time = told.unwrap_or(TimeBase::Unknown);
+}
+
 /// Times in seconds where they increase; numbers of samples where they do not, as
 /// `inspect` says of the file.
 fn increasing(mut times: Vec<f64>, samples: usize, scale: f64) -> Clock {
@@ -277,7 +300,14 @@ mod tests {
     #[test]
     fn closed_form_extremes_of_any_part_are_those_of_its_samples() {
         let channel = channel(signal(5_000));
-        for (first, last) in [(0, 5_000), (1, 4_999), (15, 33), (16, 32), (4_990, 5_000), (7, 8)] {
+        for (first, last) in [
+            (0, 5_000),
+            (1, 4_999),
+            (15, 33),
+            (16, 32),
+            (4_990, 5_000),
+            (7, 8),
+        ] {
             let part = &channel.samples[first..last];
             let low = part.iter().copied().fold(f64::INFINITY, f64::min);
             let high = part.iter().copied().fold(f64::NEG_INFINITY, f64::max);

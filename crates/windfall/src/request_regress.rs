@@ -36,6 +36,43 @@ pub struct RegressRequest {
     pub predict: Option<PathBuf>,
 }
 
+impl RegressRequest {
+    /// What is usual beside table and model.
+    #[must_use]
+    pub fn usual(table: PathBuf, model: ModelText) -> Self {
+        Self {
+            table,
+            model,
+            random: Vec::new(),
+            mixed: MixedChoice {
+                maximum_likelihood: false,
+                freedom: FreedomMethod::Satterthwaite,
+            },
+            contrast: Contrast::Treatment,
+            anova: AnovaType::Hierarchical,
+            selection: None,
+            confidence: 0.95,
+            robust: false,
+            folds: 10,
+            seed: 1,
+            predict: None,
+        }
+    }
+
+    /// The usual selection: terms are removed while their probability is above 0.1.
+    #[must_use]
+    pub fn usual_selection() -> SelectionOptions {
+        SelectionOptions {
+            direction: Direction::Backward,
+            criterion: Criterion::Probability {
+                enter: 0.05,
+                remove: 0.1,
+            },
+            hierarchy: false,
+        }
+    }
+}
+
 /// A model as it is written.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum ModelText {

@@ -3,13 +3,13 @@
 use crate::any_outcome::AnyOutcome;
 use crate::error::Error;
 use crate::evaluate::{Evaluation, evaluate};
-use crate::progress::Progress;
 use crate::evaluate_acoustic::{evaluate_taps, taps_of_entry};
 use crate::figure_acoustic::figure_of_taps;
 use crate::figure_files::write_figure;
 use crate::item_campaign::group_of;
 use crate::measured::{MeasuredItem, MeasuredOutcome, ShownValue, groups_of, spread_of};
 use crate::on_threads::on_threads;
+use crate::progress::Progress;
 use crate::provenance::VERSION;
 use crate::read_acoustic::{AcousticCampaign, read_acoustic};
 use crate::read_recording::read_recording;

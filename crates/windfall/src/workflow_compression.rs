@@ -4,7 +4,6 @@ use crate::any_outcome::AnyOutcome;
 use crate::campaign::ImpactEntry;
 use crate::error::Error;
 use crate::evaluate::{Evaluation, evaluate};
-use crate::progress::Progress;
 use crate::evaluate_compression::{
     evaluate_compression, fitted_part, loading_curve, parameters_of, radii_of_entry,
 };
@@ -17,6 +16,7 @@ use crate::measured::{
 use crate::named::Named;
 use crate::on_threads::on_threads;
 use crate::outcome::FindingOutcome;
+use crate::progress::Progress;
 use crate::provenance::VERSION;
 use crate::read_compression::{CompressionCampaign, read_compression};
 use crate::read_recording::read_recording;

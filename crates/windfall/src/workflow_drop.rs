@@ -3,7 +3,6 @@
 use crate::any_outcome::AnyOutcome;
 use crate::error::Error;
 use crate::evaluate::{Evaluated, Evaluation, evaluate};
-use crate::progress::Progress;
 use crate::evaluate_drop::{MeasuredDrop, bounce_options, bounce_train, evaluate_drop};
 use crate::figure_drop::figure_of_drop;
 use crate::figure_files::write_figure;
@@ -11,6 +10,7 @@ use crate::item_campaign::group_of;
 use crate::measured::{MeasuredItem, MeasuredOutcome, ShownValue, groups_of, spread_of};
 use crate::on_threads::on_threads;
 use crate::plate_ringing::plate_items;
+use crate::progress::Progress;
 use crate::provenance::VERSION;
 use crate::read_drop::{DropCampaign, drop_of, read_drop};
 use crate::read_recording::read_recording;

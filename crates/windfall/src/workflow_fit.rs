@@ -170,7 +170,10 @@ fn fit(
 
     if request.reuse == Reuse::Only {
         for task in &mut tasks {
-            let known = task.key.as_ref().is_some_and(|key| stored.contains_key(key));
+            let known = task
+                .key
+                .as_ref()
+                .is_some_and(|key| stored.contains_key(key));
             if !known && task.problem.is_none() {
                 task.problem = Some(PENDING.to_owned());
             }

@@ -19,7 +19,7 @@ use crate::write_file::write_whole;
 use serde::Serialize;
 use std::path::{Path, PathBuf};
 use windfall_formats::contents::{ChannelContents, Contents, TimeBase};
-use windfall_formats::open::open;
+use windfall_formats::open::{OpenOptions, open};
 use windfall_formats::reader::Sink;
 
 /// Most faulty cells that are described.
@@ -87,9 +87,21 @@ pub struct InspectRequest {
 /// # Errors
 /// The file cannot be read, or breaks the rules of its format.
 pub fn inspect_recording(path: &Path, request: &InspectRequest) -> Result<Inspection, Error> {
-    let mut reader = open(path, &open_options(&request.open)?).map_err(Error::Format)?;
+    inspect_opened(path, &open_options(&request.open)?, &request.channels)
+}
+
+/// [`inspect_recording`] of a file that is read as its campaign says.
+///
+/// # Errors
+/// As [`inspect_recording`].
+pub fn inspect_opened(
+    path: &Path,
+    options: &OpenOptions,
+    channels: &[String],
+) -> Result<Inspection, Error> {
+    let mut reader = open(path, options).map_err(Error::Format)?;
     let contents = reader.contents().clone();
-    let shown = shown_channels(&contents, &request.channels, path)?;
+    let shown = shown_channels(&contents, channels, path)?;
     let all: Vec<usize> = (0..contents.channels.len()).collect();
     let mut scans = Scans::of(&contents);
     reader.read(&all, &mut scans).map_err(Error::Format)?;

@@ -4,7 +4,6 @@ use crate::any_outcome::AnyOutcome;
 use crate::compare_repeats::{Compared, Comparison, FruitResult, compare_repeats};
 use crate::error::Error;
 use crate::evaluate::{Evaluation, evaluate};
-use crate::progress::Progress;
 use crate::evaluate_repeats::{RepeatImpact, evaluate_impact};
 use crate::figure_files::write_figure;
 use crate::figure_repeats::figure_of_comparison;
@@ -14,6 +13,7 @@ use crate::measured::{
 use crate::named::Named;
 use crate::on_threads::on_threads;
 use crate::outcome::{FindingOutcome, StatusOutcome};
+use crate::progress::Progress;
 use crate::provenance::VERSION;
 use crate::read_repeats::{RepeatsCampaign, cell_of, energy_of, read_repeats};
 use crate::repeat_pairs::pairs_of;

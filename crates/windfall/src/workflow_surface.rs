@@ -58,6 +58,27 @@ pub struct SurfaceRequest {
     pub grid_points: usize,
 }
 
+impl SurfaceRequest {
+    /// What is usual beside table and responses.
+    #[must_use]
+    pub fn usual(table: PathBuf, responses: Vec<(String, String)>) -> Self {
+        Self {
+            table,
+            responses,
+            factors: Vec::new(),
+            ranges: Vec::new(),
+            anova: AnovaType::Partial,
+            confidence: 0.95,
+            goals: Vec::new(),
+            hold: Vec::new(),
+            along: None,
+            members: 15,
+            grid: None,
+            grid_points: 41,
+        }
+    }
+}
+
 /// Fits response surfaces.
 ///
 /// # Errors

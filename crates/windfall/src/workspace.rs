@@ -2,7 +2,8 @@
 //! state.
 
 use crate::any_outcome::AnyOutcome;
-use crate::campaign_view::{name_of, names_in, view_campaign};
+use crate::campaign::FilePlan;
+use crate::campaign_view::{CAMPAIGN_FILES, file_plan_of, name_of, names_in, view_campaign};
 use crate::confined::path_inside;
 use crate::error::Error;
 use crate::progress::quiet;
@@ -134,7 +135,9 @@ impl Workspace {
         let above = self.root.parent().map(|p| p.display().to_string());
         let text = match self.single {
             true => text.replace(&root, &self.name()),
-            false => text.replace(&format!("{root}/"), "").replace(&root, &self.name()),
+            false => text
+                .replace(&format!("{root}/"), "")
+                .replace(&root, &self.name()),
         };
         match above.filter(|above| above.len() > 1) {
             Some(above) => text.replace(&format!("{above}/"), ""),
@@ -250,17 +253,37 @@ pub struct RecordingEntry {
     pub impacts: Vec<String>,
 }
 
-/// Name of the directory of recordings of a campaign, below it.
-pub const RAW_DIRECTORY: &str = "raw";
-
-/// The recordings in a campaign's directory `raw`, with one level of directories in it.
+/// How the recordings of a campaign are read, where they lie in its directory.
 ///
 /// # Errors
-/// The campaign cannot be read, or the directory.
+/// The campaign cannot be read, or its recordings lie elsewhere.
+pub fn recordings_inside(directory: &Path) -> Result<FilePlan, Error> {
+    let plan = file_plan_of(directory)?;
+    // One that is still to be made lies where its name says.
+    let place = plan.directory.canonicalize();
+    let inside = match (&place, directory.canonicalize()) {
+        (Ok(place), Ok(own)) => place.starts_with(own),
+        _ => !plan.directory.exists() && plan.directory.starts_with(directory),
+    };
+    match inside {
+        true => Ok(plan),
+        false => Err(Error::RecordingsElsewhere),
+    }
+}
+
+/// The recordings of a campaign, with one level of directories.
+///
+/// # Errors
+/// The campaign cannot be read, or its recordings lie elsewhere.
 pub fn recordings_of(directory: &Path) -> Result<Vec<RecordingEntry>, Error> {
     let view = view_campaign(directory)?;
-    let raw = directory.join(RAW_DIRECTORY);
+    let raw = recordings_inside(directory)?.directory;
     let mut names = names_in(&raw)?;
+    // Where recordings lie beside them, the files of the campaign are none.
+    if raw.as_path() == directory {
+        let own = |name: &String| CAMPAIGN_FILES.contains(&name.as_str()) || name == STORE_FILE;
+        names.retain(|name| !own(name));
+    }
     for folder in folders_in(&raw) {
         let below = names_in(&raw.join(&folder))?;
         names.extend(below.into_iter().map(|name| format!("{folder}/{name}")));

@@ -213,7 +213,11 @@ fn rejects_settings_that_make_no_sense() {
     let good = std::fs::read_to_string(&toml).unwrap();
     let message = |more: &str| {
         std::fs::write(&toml, format!("{good}\n{more}\n")).unwrap();
-        match fit_any(&campaign, &FitRequest::default(), &windfall::progress::quiet) {
+        match fit_any(
+            &campaign,
+            &FitRequest::default(),
+            &windfall::progress::quiet,
+        ) {
             Ok(outcome) => outcome.failed()[0].message.clone(),
             Err(error) => error.to_string(),
         }
@@ -234,7 +238,12 @@ fn rejects_settings_that_make_no_sense() {
     }
     let text = good.replace("[channels.sound]\ncolumn = \"channel 1\"", "");
     std::fs::write(&toml, text).unwrap();
-    let error = fit_any(&campaign, &FitRequest::default(), &windfall::progress::quiet).unwrap_err();
+    let error = fit_any(
+        &campaign,
+        &FitRequest::default(),
+        &windfall::progress::quiet,
+    )
+    .unwrap_err();
     assert!(
         error.to_string().contains("[channels] needs `sound`"),
         "{error}"

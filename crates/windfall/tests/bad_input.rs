@@ -28,7 +28,12 @@ fn copied(from: &Path, to: &Path) {
 }
 
 fn fit(directory: &Path) -> Result<CampaignOutcome, String> {
-    fit_campaign(directory, &FitRequest::default(), &windfall::progress::quiet).map_err(|error| error.to_string())
+    fit_campaign(
+        directory,
+        &FitRequest::default(),
+        &windfall::progress::quiet,
+    )
+    .map_err(|error| error.to_string())
 }
 
 fn check(name: &str) -> Result<(), String> {

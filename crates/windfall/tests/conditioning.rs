@@ -53,7 +53,11 @@ const CARRIAGE: &str = "kind = \"carriage\"\nmass = \"0.2 kg\"\ndriving_accelera
 fn fit(rig: &str, channels: &str, contact: &str) -> Result<ImpactOutcome, String> {
     let dir = tempfile::tempdir().unwrap();
     campaign(dir.path(), rig, channels, contact);
-    let outcome = fit_campaign(dir.path(), &FitRequest::default(), &windfall::progress::quiet);
+    let outcome = fit_campaign(
+        dir.path(),
+        &FitRequest::default(),
+        &windfall::progress::quiet,
+    );
     let mut outcome = outcome.map_err(|error| error.to_string())?;
     match outcome.failed.first() {
         Some(failure) => Err(failure.message.clone()),

@@ -281,7 +281,13 @@ fn simulated(folder: &Path, drop: &DropRequest, bench: &SimulateDropsRequest) ->
 }
 
 fn fitted(directory: &Path) -> MeasuredOutcome {
-    match fit_any(directory, &FitRequest::default(), &windfall::progress::quiet).unwrap() {
+    match fit_any(
+        directory,
+        &FitRequest::default(),
+        &windfall::progress::quiet,
+    )
+    .unwrap()
+    {
         AnyOutcome::Measured(outcome) => *outcome,
         AnyOutcome::Impacts(_) => panic!("not a campaign of drops"),
     }

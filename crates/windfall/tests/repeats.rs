@@ -28,7 +28,13 @@ fn request(seed: u64, spots: Spots) -> SimulateRepeatsRequest {
 }
 
 fn fit(directory: &Path) -> MeasuredOutcome {
-    match fit_any(directory, &FitRequest::default(), &windfall::progress::quiet).unwrap() {
+    match fit_any(
+        directory,
+        &FitRequest::default(),
+        &windfall::progress::quiet,
+    )
+    .unwrap()
+    {
         AnyOutcome::Measured(outcome) => *outcome,
         AnyOutcome::Impacts(_) => panic!("no repeats"),
     }
@@ -166,14 +172,24 @@ fn rejects_impacts_without_an_energy() {
     let toml = campaign.join("campaign.toml");
     let text = std::fs::read_to_string(&toml).unwrap();
     std::fs::write(&toml, text.replace("mass = ", "# mass = ")).unwrap();
-    let error = fit_any(&campaign, &FitRequest::default(), &windfall::progress::quiet).unwrap_err();
+    let error = fit_any(
+        &campaign,
+        &FitRequest::default(),
+        &windfall::progress::quiet,
+    )
+    .unwrap_err();
     let message = error.to_string();
     assert!(
         message.contains("line 2") && message.contains("drop_height_m"),
         "{message}"
     );
     std::fs::write(&toml, text.replace("level = 0.05", "level = 5")).unwrap();
-    let error = fit_any(&campaign, &FitRequest::default(), &windfall::progress::quiet).unwrap_err();
+    let error = fit_any(
+        &campaign,
+        &FitRequest::default(),
+        &windfall::progress::quiet,
+    )
+    .unwrap_err();
     assert!(error.to_string().contains("[repeats] level"), "{error}");
 }
 

@@ -1,0 +1,77 @@
+//! Files to be saved or read: law cards, and what a report consists of.
+
+use crate::app::App;
+use crate::given::Asked;
+use crate::guard::REPORT_POLICY;
+use crate::problem::Problem;
+use axum::extract::{Path, State};
+use axum::http::header;
+use axum::response::{IntoResponse, Response};
+use serde::Deserialize;
+use utoipa::IntoParams;
+use windfall::confined::read_inside;
+use windfall::stored_card::stored_card;
+use windfall::workflow_report::REPORT_DIRECTORY;
+
+/// The law of a card.
+#[derive(Debug, Deserialize, IntoParams)]
+pub(crate) struct CardAsked {
+    /// Name of the law; of no account for a campaign of drops.
+    #[serde(default)]
+    law: String,
+}
+
+/// The law card of a campaign, to be saved.
+#[utoipa::path(
+    get, path = "/api/campaigns/{id}/card", params(("id" = String, Path), CardAsked),
+    responses(
+        (status = 200, body = String, content_type = "application/toml"),
+        (status = 400, body = Problem), (status = 404, body = Problem), (status = 422, body = Problem),
+    )
+)]
+pub(crate) async fn card(
+    State(app): State<App>,
+    Path(id): Path<String>,
+    Asked(asked): Asked<CardAsked>,
+) -> Result<Response, Problem> {
+    let text = app.on_campaign(id, move |_, directory| stored_card(directory, &asked.law));
+    let headers = [
+        (header::CONTENT_TYPE, "application/toml; charset=utf-8"),
+        (
+            header::CONTENT_DISPOSITION,
+            "attachment; filename=\"law.toml\"",
+        ),
+    ];
+    Ok((headers, text.await?).into_response())
+}
+
+/// A file of the report of a campaign.
+#[utoipa::path(
+    get, path = "/api/campaigns/{id}/report/{file}",
+    params(("id" = String, Path), ("file" = String, Path)),
+    responses(
+        (status = 200, body = Vec<u8>, content_type = "text/html"),
+        (status = 400, body = Problem), (status = 404, body = Problem),
+    )
+)]
+pub(crate) async fn report(
+    State(app): State<App>,
+    Path((id, file)): Path<(String, String)>,
+) -> Result<Response, Problem> {
+    let kind = match file.rsplit('.').next() {
+        Some("html") => "text/html; charset=utf-8",
+        Some("svg") => "image/svg+xml",
+        Some("png") => "image/png",
+        Some("csv") => "text/csv; charset=utf-8",
+        Some("json") => "application/json",
+        _ => "text/plain; charset=utf-8",
+    };
+    let bytes = app.on_campaign(id, move |_, directory| {
+        read_inside(&directory.join(REPORT_DIRECTORY), &file)
+    });
+    let headers = [
+        (header::CONTENT_TYPE, kind),
+        (header::CONTENT_SECURITY_POLICY, REPORT_POLICY),
+    ];
+    Ok((headers, bytes.await?).into_response())
+}

@@ -1,0 +1,102 @@
+//! What all requests share.
+
+use crate::job::Jobs;
+use crate::problem::Problem;
+use axum::Json;
+use serde::Serialize;
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+use tokio::sync::Semaphore;
+use windfall::error::Error;
+use windfall::live_cache::LiveCache;
+use windfall::workspace::Workspace;
+
+/// Pieces of work that are done at once; further ones wait.
+const AT_ONCE: usize = 8;
+
+/// An answer in JSON, or what went wrong.
+pub(crate) type Answer<T> = Result<Json<T>, Problem>;
+
+/// What all requests share.
+pub(crate) struct Shared {
+    /// The directory that is served.
+    pub workspace: Workspace,
+    /// Recordings in memory.
+    pub cache: LiveCache,
+    /// Long work.
+    pub jobs: Jobs,
+    /// Most bytes of an upload.
+    pub upload_limit: u64,
+    permits: Semaphore,
+}
+
+/// A handle on it.
+#[derive(Clone)]
+pub(crate) struct App(Arc<Shared>);
+
+impl std::ops::Deref for App {
+    type Target = Shared;
+    fn deref(&self) -> &Shared {
+        &self.0
+    }
+}
+
+impl App {
+    pub(crate) fn new(workspace: Workspace, upload_limit: u64) -> Self {
+        Self(Arc::new(Shared {
+            workspace,
+            cache: LiveCache::default(),
+            jobs: Jobs::default(),
+            upload_limit,
+            permits: Semaphore::new(AT_ONCE),
+        }))
+    }
+
+    /// An error as it is told here: without paths of the machine.
+    pub(crate) fn problem(&self, error: &Error) -> Problem {
+        Problem::of(error, self.told(error))
+    }
+
+    /// The text of an error without paths of the machine.
+    pub(crate) fn told(&self, error: &Error) -> String {
+        self.workspace.without_path(&error.to_string())
+    }
+
+    /// Does work that takes time or reads files beside the answering of requests.
+    pub(crate) async fn work<T: Send + 'static>(
+        &self,
+        work: impl FnOnce(&Shared) -> Result<T, Error> + Send + 'static,
+    ) -> Result<T, Problem> {
+        let _permit = self.permits.acquire().await;
+        let app = self.clone();
+        match tokio::task::spawn_blocking(move || work(&app)).await {
+            Ok(result) => result.map_err(|error| self.problem(&error)),
+            Err(_) => Err(Problem::internal(
+                "windfall failed at this request; the terminal in which it runs says more. \
+                 Nothing was changed",
+            )),
+        }
+    }
+
+    /// [`App::work`] on a campaign, with its directory.
+    pub(crate) async fn on_campaign<T: Send + 'static>(
+        &self,
+        id: String,
+        work: impl FnOnce(&Shared, &Path) -> Result<T, Error> + Send + 'static,
+    ) -> Result<T, Problem> {
+        self.work(move |app| {
+            let directory: PathBuf = app.workspace.campaign(&id)?;
+            work(app, &directory)
+        })
+        .await
+    }
+
+    /// [`App::on_campaign`] whose result is the answer.
+    pub(crate) async fn answer<T: Serialize + Send + 'static>(
+        &self,
+        id: String,
+        work: impl FnOnce(&Shared, &Path) -> Result<T, Error> + Send + 'static,
+    ) -> Answer<T> {
+        self.on_campaign(id, work).await.map(Json)
+    }
+}

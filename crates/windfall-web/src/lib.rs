@@ -1,0 +1,23 @@
+//! The local web application of windfall: an HTTP interface over the workflows of the
+//! crate `windfall`, and the page that uses it.
+//!
+//! What is done in the page is done to the files of a campaign, so that the command line
+//! sees it; the page is built from `page/` and lies ready in `assets/`.
+
+mod about;
+mod api_campaigns;
+mod api_changes;
+mod api_events;
+mod api_files;
+mod api_jobs;
+mod api_live;
+mod api_recordings;
+mod api_tables;
+mod app;
+mod asset;
+mod given;
+mod guard;
+mod job;
+mod openapi;
+mod problem;
+pub mod serve;

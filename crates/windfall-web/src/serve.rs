@@ -1,0 +1,229 @@
+//! Starting and stopping the server.
+
+use crate::app::App;
+use crate::guard::{Guard, guarded};
+use crate::problem::Problem;
+use crate::{
+    about, api_campaigns, api_changes, api_events, api_files, api_jobs, api_live, api_recordings,
+    api_tables, asset, openapi,
+};
+use axum::Router;
+use axum::extract::DefaultBodyLimit;
+use axum::http::StatusCode;
+use axum::middleware::from_fn_with_state;
+use axum::routing::{get, post, put};
+use std::net::{IpAddr, Ipv4Addr, SocketAddr, TcpListener};
+use std::path::PathBuf;
+use std::sync::Arc;
+use std::time::Duration;
+use windfall::workspace::Workspace;
+
+/// Most bytes of a body that is no upload.
+const MOST_BODY: usize = 4 << 20;
+
+/// Time that running requests get when the server stops.
+const GRACE: Duration = Duration::from_secs(2);
+
+/// Port that is tried first where none is asked for.
+const USUAL_PORT: u16 = 8417;
+
+/// How the server is started.
+#[derive(Clone, Debug)]
+pub struct ServeRequest {
+    /// A campaign directory, or a directory with campaigns in it.
+    pub directory: PathBuf,
+    /// Where it listens; loopback unless others are to reach it.
+    pub host: IpAddr,
+    /// Its port; 8417 or a free one if `None`.
+    pub port: Option<u16>,
+    /// Most bytes of an upload.
+    pub upload_limit: u64,
+}
+
+/// Why a server cannot be started.
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum ServeError {
+    /// The directory cannot be served.
+    #[error(transparent)]
+    Directory(#[from] windfall::error::Error),
+    /// The address cannot be listened at.
+    #[error("cannot listen at {address}: {source}; choose another --port or --host")]
+    Listen {
+        /// The address.
+        address: SocketAddr,
+        /// What the system says.
+        source: std::io::Error,
+    },
+    /// The system gives no randomness for a token, or no threads.
+    #[error("cannot start: {0}")]
+    System(String),
+}
+
+/// A server that listens, and answers once it runs.
+pub struct Server {
+    app: App,
+    guard: Arc<Guard>,
+    listener: TcpListener,
+}
+
+impl Server {
+    /// Opens the directory and listens.
+    ///
+    /// # Errors
+    /// As [`ServeError`] says.
+    pub fn open(request: &ServeRequest) -> Result<Self, ServeError> {
+        let workspace = Workspace::open(&request.directory)?;
+        let listener = listener(request)?;
+        let failed = |error: std::io::Error| ServeError::System(error.to_string());
+        let address = listener.local_addr().map_err(failed)?;
+        listener.set_nonblocking(true).map_err(failed)?;
+        let token = match address.ip().is_loopback() {
+            true => None,
+            false => Some(token()?),
+        };
+        Ok(Self {
+            app: App::new(workspace, request.upload_limit),
+            guard: Arc::new(Guard { address, token }),
+            listener,
+        })
+    }
+
+    /// The address to be opened, with its token where one is needed.
+    #[must_use]
+    pub fn address(&self) -> String {
+        let mut at = self.guard.address;
+        // All addresses of the machine: this one opens it here.
+        if at.ip().is_unspecified() {
+            at.set_ip(IpAddr::V4(Ipv4Addr::LOCALHOST));
+        }
+        match &self.guard.token {
+            Some(token) => format!("http://{at}/?token={token}"),
+            None => format!("http://{at}/"),
+        }
+    }
+
+    /// Answers until the program is interrupted; running work is then stopped, and
+    /// nothing half-written remains.
+    ///
+    /// # Errors
+    /// The system gives no threads, or takes the address away.
+    pub fn run(self) -> Result<(), ServeError> {
+        let failed = |error: std::io::Error| ServeError::System(error.to_string());
+        let runtime = tokio::runtime::Builder::new_multi_thread()
+            .enable_all()
+            .build()
+            .map_err(failed)?;
+        let app = self.app.clone();
+        let routes = routes(self.app, self.guard);
+        let served = runtime.block_on(async {
+            let listener = tokio::net::TcpListener::from_std(self.listener)?;
+            let server = axum::serve(listener, routes);
+            tokio::select! {
+                served = async { server.await } => served,
+                () = interrupted() => Ok(()),
+            }
+        });
+        app.jobs.cancel_all();
+        runtime.shutdown_timeout(GRACE);
+        served.map_err(failed)
+    }
+}
+
+fn listener(request: &ServeRequest) -> Result<TcpListener, ServeError> {
+    let bind = |port| {
+        let address = SocketAddr::new(request.host, port);
+        TcpListener::bind(address).map_err(|source| ServeError::Listen { address, source })
+    };
+    match request.port {
+        Some(port) => bind(port),
+        None => bind(USUAL_PORT).or_else(|_| bind(0)),
+    }
+}
+
+/// 128 random bits in hexadecimal.
+fn token() -> Result<String, ServeError> {
+    let mut bytes = [0; 16];
+    getrandom::fill(&mut bytes).map_err(|error| ServeError::System(error.to_string()))?;
+    Ok(bytes.iter().map(|byte| format!("{byte:02x}")).collect())
+}
+
+/// Ends when somebody interrupts the program, or the system asks it to end.
+async fn interrupted() {
+    #[cfg(unix)]
+    {
+        use tokio::signal::unix::{SignalKind, signal};
+        if let Ok(mut asked) = signal(SignalKind::terminate()) {
+            tokio::select! {
+                _ = tokio::signal::ctrl_c() => {}
+                _ = asked.recv() => {}
+            }
+            return;
+        }
+    }
+    let _ = tokio::signal::ctrl_c().await;
+}
+
+fn routes(app: App, guard: Arc<Guard>) -> Router {
+    let campaign = Router::new()
+        .route("/", get(api_campaigns::campaign))
+        .route("/results", get(api_campaigns::results))
+        .route("/events", get(api_events::campaign_events))
+        .route("/recordings", get(api_recordings::recordings))
+        .route("/recording", get(api_recordings::recording))
+        .route("/outline", get(api_recordings::outline))
+        .route(
+            "/raw",
+            put(api_recordings::upload_recording).layer(DefaultBodyLimit::disable()),
+        )
+        .route(
+            "/table",
+            get(api_tables::table)
+                .put(api_recordings::upload_table)
+                .layer(DefaultBodyLimit::disable()),
+        )
+        .route("/refit", post(api_live::refit))
+        .route("/text", put(api_changes::text))
+        .route("/window", put(api_changes::window))
+        .route("/options", put(api_changes::options))
+        .route("/channels", put(api_changes::channels))
+        .route("/impacts", post(api_changes::impacts))
+        .route("/jobs", post(api_jobs::start))
+        .route("/regress", post(api_tables::regression))
+        .route("/surface", post(api_tables::surfaces))
+        .route("/card", get(api_files::card))
+        .route("/report/{*file}", get(api_files::report));
+    Router::new()
+        .route("/api/about", get(about::about))
+        .route("/api/openapi.json", get(openapi::openapi))
+        .route(
+            "/api/campaigns",
+            get(api_campaigns::campaigns).post(api_campaigns::create),
+        )
+        .nest("/api/campaigns/{id}", campaign)
+        .route("/api/jobs", get(api_jobs::jobs))
+        .route(
+            "/api/jobs/{job}",
+            get(api_jobs::job).delete(api_jobs::cancel),
+        )
+        .route("/api/jobs/{job}/events", get(api_events::job_events))
+        .route("/api/{*unknown}", get(unknown))
+        .method_not_allowed_fallback(not_allowed)
+        .fallback(get(asset::asset))
+        .layer(DefaultBodyLimit::max(MOST_BODY))
+        .layer(from_fn_with_state(guard, guarded))
+        .with_state(app)
+}
+
+async fn unknown() -> Problem {
+    Problem::new(
+        StatusCode::NOT_FOUND,
+        "absent",
+        "there is nothing at this address",
+    )
+}
+
+async fn not_allowed() -> Problem {
+    let detail = "this address does not know the method";
+    Problem::new(StatusCode::METHOD_NOT_ALLOWED, "method", detail)
+}
