@@ -37,31 +37,12 @@ function routeOf(hash: string): Route {
 }
 
 class Router {
-  route = $state<Route>(routeOf(location.hash));
-  /** Asked before the address changes; unsaved work may refuse. */
-  #guards = new Set<() => string | null>();
-  #left = location.hash;
+  route = $state.raw<Route>(routeOf(location.hash));
 
   constructor() {
     window.addEventListener("hashchange", () => {
-      if (location.hash === this.#left) return;
-      const loss = [...this.#guards].map((guard) => guard()).find((words) => words !== null);
-      if (loss && !window.confirm(loss)) {
-        history.replaceState(null, "", this.#left || "#/");
-        return;
-      }
-      this.#left = location.hash;
       this.route = routeOf(location.hash);
     });
-    window.addEventListener("beforeunload", (event) => {
-      if ([...this.#guards].some((guard) => guard() !== null)) event.preventDefault();
-    });
-  }
-
-  /** `guard` tells what would be lost by leaving, or null; the result ends it. */
-  guard(guard: () => string | null): () => void {
-    this.#guards.add(guard);
-    return () => this.#guards.delete(guard);
   }
 }
 
