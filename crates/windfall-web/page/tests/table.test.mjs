@@ -23,7 +23,7 @@ test("results are joined with what the tables say of impact and specimen", () =>
   assert.equal(first.cells.get("specimens.csv mass_g"), null);
   assert.equal(second.cells.get("specimens.csv mass_g"), 201.5);
   assert.equal(second.cells.get("impacts.csv level"), "low");
-  assert.deepEqual(first.intervals.get("k"), [4, 6]);
+  assert.deepEqual(first.spreads.get("k"), { sd: 0.5, interval: [4, 6] });
   assert.equal(first.cells.get("rebound_velocity"), null);
   const units = Object.fromEntries(made.columns.map((c) => [c.key, c.unit]));
   assert.equal(units["k"], "N/m^1.5");
@@ -77,7 +77,7 @@ test("mean and standard deviation with n − 1; none of nothing", () => {
 test("CSV has units, intervals, quotes, and no formulas for spreadsheets", () => {
   const columns = ["id", "k", "note"].map((key) => made.columns.find((c) => c.key === key) ?? { key, label: key, unit: "", numbers: false, from: "result" });
   const row = { ...made.rows[1], cells: new Map(made.rows[1].cells).set("note", '=1+"a", b') };
-  assert.equal(table.csvOf(columns, [row]), 'id,k (N/m^1.5),k low,k high,note\r\ni2,7,6,8,"\'=1+""a"", b"\r\n');
+  assert.equal(table.csvOf(columns, [row]), 'id,k (N/m^1.5),k sd,k low,k high,note\r\ni2,7,0.5,6,8,"\'=1+""a"", b"\r\n');
 });
 
 test("only whole numbers of text are numbers", () => {

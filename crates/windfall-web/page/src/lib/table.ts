@@ -26,8 +26,15 @@ export interface Row {
   group: string;
   law: string;
   cells: Map<string, Cell>;
-  /** 95 % intervals of the cells that have one. */
-  intervals: Map<string, [number, number]>;
+  /** Of the cells that have them. */
+  spreads: Map<string, Spread>;
+}
+
+export interface Spread {
+  /** Standard deviation. */
+  sd: number | null;
+  /** 95 % interval. */
+  interval: [number, number] | null;
 }
 
 export interface ResultTable {
@@ -40,6 +47,7 @@ export interface ResultTable {
 /** Value of a result, however its kind of campaign writes it. */
 interface Value {
   value: number | null;
+  sd?: number | null;
   low?: number | null;
   high?: number | null;
   unit?: string;
@@ -85,7 +93,7 @@ export function resultTable(campaign: CampaignView, results: ResultsView | null)
         ["group", item.group ?? ""],
         ["law", item.law ?? ""],
       ]),
-      intervals: new Map(),
+      spreads: new Map(),
     };
     for (const set of [item.parameters, item.derived, item.values]) {
       for (const [name, given] of Object.entries(set ?? {})) {
@@ -94,8 +102,9 @@ export function resultTable(campaign: CampaignView, results: ResultsView | null)
         const unit = found.unit ?? meaning?.unit ?? "";
         note(name, meaning?.label ?? labelOf(name), unit === "1" ? "" : unit, "result", true);
         row.cells.set(name, finite(found.value));
-        const [low, high] = [finite(found.low), finite(found.high)];
-        if (low !== null && high !== null) row.intervals.set(name, [low, high]);
+        const [sd, low, high] = [finite(found.sd), finite(found.low), finite(found.high)];
+        const interval: Spread["interval"] = low !== null && high !== null ? [low, high] : null;
+        if (sd !== null || interval) row.spreads.set(name, { sd, interval });
       }
     }
     for (const [name, text] of Object.entries(item.words ?? {})) {
@@ -216,22 +225,22 @@ export function described(rows: Row[], key: string): Described {
   return { n, mean, sd: Math.sqrt(squares / (n - 1)) };
 }
 
-/** Rows as CSV with all digits; units stand in the header, intervals beside values. */
+/** Rows as CSV with all digits; units stand in the header, uncertainties beside values. */
 export function csvOf(columns: Column[], rows: Row[]): string {
   const parts = columns.map((column) => ({
     column,
-    interval: rows.some((row) => row.intervals.has(column.key)),
+    spread: rows.some((row) => row.spreads.has(column.key)),
   }));
-  const header = parts.flatMap(({ column, interval }) => {
+  const header = parts.flatMap(({ column, spread }) => {
     const name = column.from === "result" ? column.key : column.label;
     const heading = column.unit === "" ? name : `${name} (${column.unit})`;
-    return interval ? [heading, `${name} low`, `${name} high`] : [heading];
+    return spread ? [heading, `${name} sd`, `${name} low`, `${name} high`] : [heading];
   });
   const lines = rows.map((row) =>
-    parts.flatMap(({ column, interval }) => {
+    parts.flatMap(({ column, spread }) => {
       const cell = row.cells.get(column.key) ?? "";
-      const ends = row.intervals.get(column.key) ?? ["", ""];
-      return interval ? [cell, ...ends] : [cell];
+      const own = row.spreads.get(column.key);
+      return spread ? [cell, own?.sd ?? "", ...(own?.interval ?? ["", ""])] : [cell];
     }),
   );
   return [header, ...lines].map((line) => line.map(quoted).join(",")).join("\r\n") + "\r\n";
