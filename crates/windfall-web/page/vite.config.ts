@@ -10,13 +10,12 @@ export default defineConfig({
   build: {
     outDir: "../assets",
     emptyOutDir: true,
-    // Names stay, so that a change of the page is a change of three files; the server
-    // tells browsers by ETag what they may keep.
+    // Names change with their content: the server lets browsers keep these files for good.
     rollupOptions: {
       output: {
-        entryFileNames: "page.js",
-        chunkFileNames: "page-[name].js",
-        assetFileNames: "page[extname]",
+        entryFileNames: "page-[hash].js",
+        chunkFileNames: "page-[hash].js",
+        assetFileNames: "page-[hash][extname]",
       },
     },
     // Data addresses would be needless exceptions in the content security policy.

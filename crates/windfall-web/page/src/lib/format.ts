@@ -36,6 +36,7 @@ function plain(value: number, decimals: number): string {
 export function number(value: number | null | undefined, digits = 4): string {
   if (value === null || value === undefined || Number.isNaN(value)) return "–";
   if (!Number.isFinite(value)) return value > 0 ? "∞" : `${MINUS}∞`;
+  if (value === 0) return "0";
   const exponent = exponentOf(Number(value.toPrecision(digits)));
   if (exponent < -4 || exponent > 7) {
     const mantissa = value / 10 ** exponent;
@@ -43,6 +44,9 @@ export function number(value: number | null | undefined, digits = 4): string {
   }
   return plain(rounded(value, digits - 1 - exponent), digits - 1 - exponent);
 }
+
+/** A whole number. */
+export const integer = (value: number) => plain(value, 0);
 
 const rounded = (value: number, decimals: number) =>
   decimals >= 0 ? value : Math.round(value / 10 ** -decimals) * 10 ** -decimals;

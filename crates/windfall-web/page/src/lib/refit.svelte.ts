@@ -13,22 +13,24 @@ export class Refitter {
   busy = $state(false);
   /** Whether measured series and residuals belong to the fit that is shown. */
   complete = $state(false);
-  #waiting: { id: string; request: RefitRequest; at: number | null } | null = null;
+  #waiting: { id: string; request: RefitRequest; laws: string[]; at: number | null } | null = null;
 
-  /** `at`: time stamp of the event that asked, to measure how long it takes to see it. */
-  ask(id: string, request: RefitRequest, at: number | null = null): void {
-    this.#waiting = { id, request, at };
+  /** `laws`: the expressions that are fitted, also where the request leaves them to the
+   *  campaign; `at`: time stamp of the event that asked, to measure how long it takes to
+   *  see the answer. */
+  ask(id: string, request: RefitRequest, laws: string[], at: number | null = null): void {
+    this.#waiting = { id, request, laws, at };
     if (!this.busy) void this.#work();
   }
 
   async #work(): Promise<void> {
     this.busy = true;
     while (this.#waiting) {
-      const { id, request, at } = this.#waiting;
+      const { id, request, laws, at } = this.#waiting;
       this.#waiting = null;
       try {
         const answer = await api.refit(id, request);
-        this.#show(answer, request.series);
+        this.#show(answer, laws, request.series);
         if (at !== null) afterPaint(() => performance.measure("refit", { start: at }));
       } catch (error) {
         this.problem = wordsOf(error);
@@ -37,8 +39,11 @@ export class Refitter {
     this.busy = false;
   }
 
-  #show(answer: RefitView, series: boolean): void {
+  #show(fitted: RefitView, laws: string[], series: boolean): void {
     const before = this.view;
+    // Two of one law with different values have the same name, and are told apart as written.
+    const named = fitted.laws.map((law, index) => ({ ...law, law: laws[index] ?? law.law }));
+    const answer = { ...fitted, laws: named };
     this.problem = null;
     this.complete = series;
     // The measured series are those of the impact, whatever part of it is used.
