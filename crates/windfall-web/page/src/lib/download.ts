@@ -1,0 +1,18 @@
+import { Failed, type Problem } from "../api";
+
+/** Saves what an address gives under a name; a failure is thrown, not saved. */
+export async function download(address: string, name: string): Promise<void> {
+  const response = await fetch(address).catch(() => {
+    throw new Error("windfall does not answer; is `windfall serve` still running?");
+  });
+  if (!response.ok) {
+    const problem = (await response.json().catch(() => null)) as Problem | null;
+    throw problem ? new Failed(problem) : new Error(`the server answered ${response.status}`);
+  }
+  const link = document.createElement("a");
+  link.href = URL.createObjectURL(await response.blob());
+  link.download = name;
+  link.click();
+  // Firefox reads the address only after the click was handled.
+  setTimeout(() => URL.revokeObjectURL(link.href), 10_000);
+}

@@ -1,0 +1,65 @@
+import { api, type RefitRequest, type RefitView } from "../api";
+import { wordsOf } from "./state.svelte";
+
+/**
+ * Fits of one impact as the user changes what is fitted. One request is under way at a
+ * time; of those asked for meanwhile the newest is sent next, so that what is drawn is
+ * never older than one fit.
+ */
+export class Refitter {
+  view = $state.raw<RefitView | null>(null);
+  /** Why the newest request failed. */
+  problem = $state<string | null>(null);
+  busy = $state(false);
+  /** Whether measured series and residuals belong to the fit that is shown. */
+  complete = $state(false);
+  #waiting: { id: string; request: RefitRequest; laws: string[]; at: number | null } | null = null;
+
+  /** `laws`: the expressions that are fitted, also where the request leaves them to the
+   *  campaign; `at`: time stamp of the event that asked, to measure how long it takes to
+   *  see the answer. */
+  ask(id: string, request: RefitRequest, laws: string[], at: number | null = null): void {
+    this.#waiting = { id, request, laws, at };
+    if (!this.busy) void this.#work();
+  }
+
+  async #work(): Promise<void> {
+    this.busy = true;
+    while (this.#waiting) {
+      const { id, request, laws, at } = this.#waiting;
+      this.#waiting = null;
+      try {
+        const answer = await api.refit(id, request);
+        this.#show(answer, laws, request.series);
+        if (at !== null) afterPaint(() => performance.measure("refit", { start: at }));
+      } catch (error) {
+        this.problem = wordsOf(error);
+      }
+    }
+    this.busy = false;
+  }
+
+  #show(fitted: RefitView, laws: string[], series: boolean): void {
+    const before = this.view;
+    // Two of one law with different values have the same name, and are told apart as written.
+    const named = fitted.laws.map((law, index) => ({ ...law, law: laws[index] ?? law.law }));
+    const answer = { ...fitted, laws: named };
+    this.problem = null;
+    this.complete = series;
+    // The measured series are those of the impact, whatever part of it is used.
+    this.view =
+      series || before?.impact !== answer.impact ? answer : { ...answer, measured: before.measured };
+  }
+}
+
+/** Calls back once the frame that is being made has been painted. */
+function afterPaint(work: () => void): void {
+  requestAnimationFrame(() => {
+    const channel = new MessageChannel();
+    channel.port1.onmessage = () => {
+      channel.port1.close();
+      work();
+    };
+    channel.port2.postMessage(null);
+  });
+}

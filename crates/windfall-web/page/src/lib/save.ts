@@ -1,0 +1,33 @@
+import { Failed, type CampaignView } from "../api";
+import { notices, type OpenCampaign } from "./state.svelte";
+
+/**
+ * Saves a part of a campaign's files. If they changed since they were read, they are
+ * read again and the user is told; what the user entered stays where it is.
+ * Answers whether it was saved.
+ */
+export async function save(
+  campaign: OpenCampaign,
+  work: (version: string) => Promise<CampaignView>,
+  done: string,
+): Promise<boolean> {
+  const version = campaign.view?.version;
+  if (version === undefined) return false;
+  try {
+    campaign.changed(await work(version));
+    notices.done(done);
+    return true;
+  } catch (error) {
+    if (error instanceof Failed && error.problem.status === 412) {
+      await campaign.load();
+      notices.error(
+        new Error(
+          "the campaign's files were changed meanwhile, so nothing was saved. They have been read again, and your entries are still here: look at them and save once more.",
+        ),
+      );
+    } else {
+      notices.error(error);
+    }
+    return false;
+  }
+}

@@ -1,0 +1,189 @@
+/**
+ * What several parts of the page share: notices, jobs, and the campaign that is open.
+ *
+ * A view asks `openCampaign(id)` for its campaign and reads `view` and `results`, which
+ * are loaded anew whenever the files change on disk, by whomever.
+ */
+
+import {
+  Failed,
+  api,
+  follow,
+  watch,
+  type About,
+  type CampaignView,
+  type Job,
+  type JobRequest,
+  type ResultsView,
+} from "../api";
+
+export interface Notice {
+  key: number;
+  kind: "error" | "done";
+  text: string;
+}
+
+/** What to tell the user about a failure, or null where there is nothing to tell. */
+export function wordsOf(error: unknown): string | null {
+  if (error instanceof Failed) return error.problem.detail;
+  if (error instanceof DOMException && error.name === "AbortError") return null;
+  return error instanceof Error ? error.message : String(error);
+}
+
+class Notices {
+  list = $state<Notice[]>([]);
+  #next = 0;
+
+  error(error: unknown): void {
+    const text = wordsOf(error);
+    if (text !== null) this.#add("error", text);
+  }
+
+  done(text: string): void {
+    const key = this.#add("done", text);
+    setTimeout(() => this.drop(key), 6000);
+  }
+
+  drop(key: number): void {
+    this.list = this.list.filter((notice) => notice.key !== key);
+  }
+
+  #add(kind: Notice["kind"], text: string): number {
+    // The same words once: a server that is gone would fill the page with them.
+    const same = this.list.find((notice) => notice.kind === kind && notice.text === text);
+    if (same) return same.key;
+    const key = this.#next++;
+    this.list = [...this.list, { key, kind, text }];
+    return key;
+  }
+}
+
+export const notices = new Notices();
+
+/** Runs `work`; a failure is shown to the user, and the answer is then null. */
+export async function attempt<T>(work: () => Promise<T>): Promise<T | null> {
+  try {
+    return await work();
+  } catch (error) {
+    notices.error(error);
+    return null;
+  }
+}
+
+class Jobs {
+  /** Those that run, and those that ended while the page was open. */
+  list = $state<Job[]>([]);
+  running = $derived(this.list.filter((job) => job.state === "running"));
+
+  /** Starts a job and follows it; answers it once it has ended, however it ended. */
+  async run(campaign: string, request: JobRequest): Promise<Job> {
+    const job = await api.start(campaign, request);
+    return this.#follow(job);
+  }
+
+  async cancel(job: string): Promise<void> {
+    const ended = await attempt(() => api.cancel(job));
+    if (ended) this.#put(ended);
+  }
+
+  /** Takes up jobs that were started by another window or before a reload. */
+  async adopt(): Promise<void> {
+    for (const job of await api.jobs()) {
+      if (job.state === "running" && !this.list.some((known) => known.job === job.job)) {
+        void this.#follow(job).catch((error: unknown) => notices.error(error));
+      }
+    }
+  }
+
+  async #follow(job: Job): Promise<Job> {
+    this.#put(job);
+    try {
+      const ended = await follow(job.job, (progress) => this.#put(progress));
+      this.#put(ended);
+      if (ended.state === "failed") notices.error(new Error(ended.problem ?? "the work failed"));
+      if (ended.state === "cancelled") notices.done("Cancelled; what was finished is kept.");
+      return ended;
+    } catch (error) {
+      this.list = this.list.filter((known) => known.job !== job.job);
+      throw error;
+    }
+  }
+
+  #put(job: Job): void {
+    const index = this.list.findIndex((known) => known.job === job.job);
+    // A cancelled job may still tell of progress that it made before.
+    if (index >= 0 && this.list[index]!.state !== "running" && job.state === "running") return;
+    this.list = index < 0 ? [...this.list, job] : this.list.with(index, job);
+  }
+}
+
+export const jobs = new Jobs();
+
+/** One campaign as the server last told it. */
+export class OpenCampaign {
+  view = $state.raw<CampaignView | null>(null);
+  results = $state.raw<ResultsView | null>(null);
+  /** Why it could not be read. */
+  problem = $state<string | null>(null);
+  /** Grows whenever the files or results changed, for what a view loads by itself. */
+  changes = $state(0);
+  readonly #end: () => void;
+
+  constructor(readonly id: string) {
+    void this.load();
+    this.#end = watch(id, () => void this.load());
+  }
+
+  async load(): Promise<void> {
+    try {
+      const [view, results] = await Promise.all([api.campaign(this.id), api.results(this.id)]);
+      this.view = view;
+      this.results = results;
+      this.problem = null;
+      this.changes += 1;
+    } catch (error) {
+      // What is shown stays: a file may be half written at this moment.
+      if (this.view === null) this.problem = wordsOf(error);
+      else notices.error(error);
+    }
+  }
+
+  /** Takes what a change through the page answered. */
+  changed(view: CampaignView): void {
+    this.view = view;
+    void this.load();
+  }
+
+  close(): void {
+    this.#end();
+  }
+}
+
+let open: OpenCampaign | null = null;
+
+/** The campaign of this address; one is open at a time. */
+export function openCampaign(id: string): OpenCampaign {
+  if (open?.id !== id) {
+    open?.close();
+    open = new OpenCampaign(id);
+  }
+  return open;
+}
+
+class Program {
+  about = $state.raw<About | null>(null);
+  problem = $state<string | null>(null);
+
+  async load(): Promise<void> {
+    try {
+      this.about = await api.about();
+      this.problem = null;
+      await jobs.adopt();
+    } catch (error) {
+      this.problem = wordsOf(error);
+    }
+  }
+}
+
+/** The program that answers: version, limits, kinds, laws. */
+export const program = new Program();

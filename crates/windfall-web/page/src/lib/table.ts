@@ -1,0 +1,255 @@
+/** The table of all results of a campaign: joined with what specimens.csv and
+ *  impacts.csv say, sorted, filtered, described, written as CSV. Pure. */
+
+import type { CampaignView, ResultsView, TableView } from "../api";
+import { DERIVED, words } from "./names";
+
+export type Cell = number | string | null;
+
+export interface Column {
+  /** Unlike that of any other column. */
+  key: string;
+  label: string;
+  /** SI; "" where there is none, or where it differs from row to row. */
+  unit: string;
+  /** Whether it holds numbers. */
+  numbers: boolean;
+  /** Where it came from: what was found, or one of the tables. */
+  from: "result" | "specimens.csv" | "impacts.csv";
+}
+
+export interface Row {
+  /** Unlike that of any other row. */
+  key: string;
+  /** The impact, or the recording. */
+  id: string;
+  group: string;
+  law: string;
+  cells: Map<string, Cell>;
+  /** Of the cells that have them. */
+  spreads: Map<string, Spread>;
+}
+
+export interface Spread {
+  /** Standard deviation. */
+  sd: number | null;
+  /** 95 % interval. */
+  interval: [number, number] | null;
+}
+
+export interface ResultTable {
+  columns: Column[];
+  rows: Row[];
+  groups: string[];
+  laws: string[];
+}
+
+/** Value of a result, however its kind of campaign writes it. */
+interface Value {
+  value: number | null;
+  sd?: number | null;
+  low?: number | null;
+  high?: number | null;
+  unit?: string;
+}
+
+/** An impact's outcome, or the document of another kind of recording. */
+interface Item {
+  id: string;
+  specimen?: string;
+  group?: string | null;
+  law?: string;
+  parameters?: Record<string, Value | number | null>;
+  derived?: Record<string, Value | number | null>;
+  values?: Record<string, Value | number | null>;
+  words?: Record<string, string>;
+  converged?: boolean;
+  findings?: { code: string }[];
+}
+
+/** Joins the results with the tables of the campaign. */
+export function resultTable(campaign: CampaignView, results: ResultsView | null): ResultTable {
+  const items = (results?.outcome?.impacts ?? []) as unknown as Item[];
+  const columns = new Map<string, Column>();
+  const note = (key: string, label: string, unit: string, from: Column["from"], numbers: boolean) => {
+    const known = columns.get(key);
+    if (!known) columns.set(key, { key, label, unit, numbers, from });
+    else if (known.unit !== unit) known.unit = "";
+  };
+  for (const [key, label] of [["id", "Id"], ["specimen", "Specimen"], ["group", "Group"], ["law", "Law"]] as const) {
+    note(key, label, "", "result", false);
+  }
+  const specimens = joined(campaign.specimens, "specimens.csv");
+  const impacts = joined(campaign.impacts, "impacts.csv");
+  const rows = items.map((item, place) => {
+    const row: Row = {
+      key: `${place} ${item.id}`,
+      id: item.id,
+      group: item.group ?? "",
+      law: item.law ?? "",
+      cells: new Map<string, Cell>([
+        ["id", item.id],
+        ["specimen", item.specimen ?? ""],
+        ["group", item.group ?? ""],
+        ["law", item.law ?? ""],
+      ]),
+      spreads: new Map(),
+    };
+    for (const set of [item.parameters, item.derived, item.values]) {
+      for (const [name, given] of Object.entries(set ?? {})) {
+        const found: Value = given !== null && typeof given === "object" ? given : { value: given };
+        const meaning = DERIVED[name];
+        const unit = found.unit ?? meaning?.unit ?? "";
+        note(name, meaning?.label ?? labelOf(name), unit === "1" ? "" : unit, "result", true);
+        row.cells.set(name, finite(found.value));
+        const [sd, low, high] = [finite(found.sd), finite(found.low), finite(found.high)];
+        const interval: Spread["interval"] = low !== null && high !== null ? [low, high] : null;
+        if (sd !== null || interval) row.spreads.set(name, { sd, interval });
+      }
+    }
+    for (const [name, text] of Object.entries(item.words ?? {})) {
+      if (row.cells.has(name)) continue;
+      note(name, words(name), "", "result", false);
+      row.cells.set(name, text);
+    }
+    note("findings", "Findings", "", "result", false);
+    row.cells.set("findings", (item.findings ?? []).map((finding) => finding.code).join(", "));
+    specimens.put(row, item.specimen ?? "");
+    impacts.put(row, item.id);
+    return row;
+  });
+  for (const column of [...specimens.columns, ...impacts.columns]) columns.set(column.key, column);
+  return {
+    columns: [...columns.values()],
+    rows,
+    groups: distinct(rows.map((row) => row.group)),
+    laws: distinct(rows.map((row) => row.law)),
+  };
+}
+
+const finite = (value: number | null | undefined) =>
+  value === null || value === undefined || !Number.isFinite(value) ? null : value;
+
+/** Symbols stay as they are; longer names become words. */
+const labelOf = (name: string) => (name.length <= 3 ? name : words(name));
+
+const distinct = (values: string[]) => [...new Set(values)].filter((value) => value !== "");
+
+/** Columns of a table of the campaign beside its ids. */
+function joined(table: TableView, from: "specimens.csv" | "impacts.csv") {
+  const id = table.columns.indexOf("id");
+  const rows = new Map(table.rows.map((row) => [row[id] ?? "", row]));
+  const columns = table.columns.flatMap((name, place): (Column & { place: number })[] => {
+    if (["id", "specimen", "file"].includes(name)) return [];
+    const cells = table.rows.map((row) => row[place] ?? "").filter((cell) => cell !== "");
+    const numbers = cells.length > 0 && cells.every((cell) => numberOf(cell) !== null);
+    return [{ key: `${from} ${name}`, label: name, unit: "", numbers, from, place }];
+  });
+  return {
+    columns: columns.map(({ place: _, ...column }) => column),
+    put(row: Row, key: string): void {
+      const found = rows.get(key);
+      for (const column of columns) {
+        const cell = found?.[column.place] ?? "";
+        row.cells.set(column.key, cell === "" ? null : column.numbers ? numberOf(cell) : cell);
+      }
+    },
+  };
+}
+
+/** The number that a cell is, all of it. */
+export function numberOf(cell: string): number | null {
+  const text = cell.trim();
+  return /^[+-]?(\d+\.?\d*|\.\d+)(e[+-]?\d+)?$/i.test(text) ? Number(text) : null;
+}
+
+export interface Filter {
+  /** Every word must occur in some cell of the row. */
+  text: string;
+  /** Chosen groups; empty: all. */
+  groups: string[];
+  laws: string[];
+  /** Ends of numeric columns; `null`: open. */
+  ranges: Record<string, { low: number | null; high: number | null }>;
+}
+
+export const noFilter = (): Filter => ({ text: "", groups: [], laws: [], ranges: {} });
+
+/** Rows that a filter lets through, in their order. */
+export function filtered(rows: Row[], filter: Filter): Row[] {
+  const wanted = filter.text.toLowerCase().split(/\s+/).filter(Boolean);
+  const ranges = Object.entries(filter.ranges).filter(([, { low, high }]) => low !== null || high !== null);
+  return rows.filter((row) => {
+    if (filter.groups.length > 0 && !filter.groups.includes(row.group)) return false;
+    if (filter.laws.length > 0 && !filter.laws.includes(row.law)) return false;
+    for (const [key, { low, high }] of ranges) {
+      const cell = row.cells.get(key);
+      if (typeof cell !== "number") return false;
+      if ((low !== null && cell < low) || (high !== null && cell > high)) return false;
+    }
+    if (wanted.length === 0) return true;
+    const text = [...row.cells.values()].filter((cell) => typeof cell === "string").join("\n").toLowerCase();
+    return wanted.every((word) => text.includes(word));
+  });
+}
+
+const collator = new Intl.Collator("en", { numeric: true, sensitivity: "base" });
+
+/** Rows by a column; those without a value last, equal ones in their order. */
+export function sorted(rows: Row[], key: string, descending: boolean): Row[] {
+  const sign = descending ? -1 : 1;
+  const empty = (cell: Cell | undefined) => cell === null || cell === undefined || cell === "";
+  return [...rows].sort((one, other) => {
+    const [a, b] = [one.cells.get(key), other.cells.get(key)];
+    if (empty(a) || empty(b)) return Number(empty(a)) - Number(empty(b));
+    if (typeof a === "number" && typeof b === "number") return sign * (a - b);
+    return sign * collator.compare(String(a), String(b));
+  });
+}
+
+export interface Described {
+  n: number;
+  mean: number | null;
+  /** Standard deviation, n − 1; of one value there is none. */
+  sd: number | null;
+}
+
+/** Count, mean and standard deviation of a column. */
+export function described(rows: Row[], key: string): Described {
+  const values = rows.map((row) => row.cells.get(key)).filter((cell) => typeof cell === "number");
+  const n = values.length;
+  if (n === 0) return { n, mean: null, sd: null };
+  const mean = values.reduce((sum, value) => sum + value, 0) / n;
+  if (n === 1) return { n, mean, sd: null };
+  const squares = values.reduce((sum, value) => sum + (value - mean) ** 2, 0);
+  return { n, mean, sd: Math.sqrt(squares / (n - 1)) };
+}
+
+/** Rows as CSV with all digits; units stand in the header, uncertainties beside values. */
+export function csvOf(columns: Column[], rows: Row[]): string {
+  const parts = columns.map((column) => ({
+    column,
+    spread: rows.some((row) => row.spreads.has(column.key)),
+  }));
+  const header = parts.flatMap(({ column, spread }) => {
+    const name = column.from === "result" ? column.key : column.label;
+    const heading = column.unit === "" ? name : `${name} (${column.unit})`;
+    return spread ? [heading, `${name} sd`, `${name} low`, `${name} high`] : [heading];
+  });
+  const lines = rows.map((row) =>
+    parts.flatMap(({ column, spread }) => {
+      const cell = row.cells.get(column.key) ?? "";
+      const own = row.spreads.get(column.key);
+      return spread ? [cell, own?.sd ?? "", ...(own?.interval ?? ["", ""])] : [cell];
+    }),
+  );
+  return [header, ...lines].map((line) => line.map(quoted).join(",")).join("\r\n") + "\r\n";
+}
+
+/** Text that a spreadsheet would take for a formula is kept from being one. */
+function quoted(cell: Cell): string {
+  if (cell === null) return "";
+  if (typeof cell === "number") return String(cell);
+  const text = /^[=+\-@\t\r]/.test(cell) && numberOf(cell) === null ? `'${cell}` : cell;
+  return /[",\r\n]/.test(text) ? `"${text.replaceAll('"', '""')}"` : text;
+}
