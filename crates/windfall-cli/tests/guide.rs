@@ -293,9 +293,12 @@ fn codes(source: &str) -> BTreeSet<String> {
         let arms = body.split("=>").skip(1);
         found.extend(arms.filter_map(|arm| quoted(arm.trim_start().trim_start_matches('{'))));
     }
-    for call in ["finding(", "tell(", "finding(compared,", "code:"] {
-        let calls = source.split(call).skip(1);
-        found.extend(calls.filter_map(quoted));
+    for call in ["finding(", "tell(", "code:"] {
+        for given in source.split(call).skip(1) {
+            // Some calls have the outcome that the finding goes into first.
+            let given = given.trim_start();
+            found.extend(quoted(given.strip_prefix("compared,").unwrap_or(given)));
+        }
     }
     let is_code = |text: &&str| {
         text.chars()
@@ -388,7 +391,7 @@ fn reference_every_key_of_a_campaign_is_explained() {
         let keys = keys(&source);
         assert!(keys.len() >= 8, "{file}: {keys:?}");
         for key in keys {
-            let places = [format!("`{key}`"), format!("[{key}]"), format!(".{key}]")];
+            let places = [format!("`{key}`"), format!("[{key}]"), format!("[{key}.")];
             assert!(
                 places.iter().any(|place| page.text.contains(place)),
                 "campaign.md does not explain {key} of {file}"
