@@ -60,7 +60,7 @@ fn figure_of_motion(law: &str, motion: &SimulatedMotion) -> Figure {
         series,
         marks: Vec::new(),
     };
-    let (loading, unloading) = loop_of(motion);
+    let [loading, unloading] = loop_of(motion);
     let path = &motion.trajectory;
     let times = path.times.iter().map(|time| 1e3 * time);
     Figure {
@@ -72,7 +72,10 @@ fn figure_of_motion(law: &str, motion: &SimulatedMotion) -> Figure {
             panel(
                 "displacement",
                 "mm",
-                vec![series("in", 0, loading), series("out", 1, unloading)],
+                vec![
+                    series("loading", 0, loading),
+                    series("unloading", 1, unloading),
+                ],
             ),
             panel(
                 "time from first touch",
@@ -84,7 +87,7 @@ fn figure_of_motion(law: &str, motion: &SimulatedMotion) -> Figure {
 }
 
 /// Force over displacement in mm, to the largest displacement and back.
-fn loop_of(motion: &SimulatedMotion) -> (Vec<(f64, f64)>, Vec<(f64, f64)>) {
+fn loop_of(motion: &SimulatedMotion) -> [Vec<(f64, f64)>; 2] {
     let (impact, path) = (&motion.impact, &motion.trajectory);
     let points = |from: f64, to: f64| -> Vec<(f64, f64)> {
         let inside = (0..path.times.len()).filter(|i| (from..to).contains(&path.times[*i]));
@@ -99,13 +102,44 @@ fn loop_of(motion: &SimulatedMotion) -> (Vec<(f64, f64)>, Vec<(f64, f64)>) {
     let mut unloading: Vec<(f64, f64)> = loading.last().copied().into_iter().collect();
     unloading.extend(points(turn, impact.contact_duration));
     unloading.push((1e3 * impact.final_displacement, 0.0));
-    (loading, unloading)
+    [loading, unloading]
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
     use crate::request_event::{CarriageRequest, carriage_event};
+
+    fn event(law: &str) -> Event {
+        carriage_event(&CarriageRequest {
+            law: law.to_owned(),
+            laws: None,
+            mass: "0.2 kg".to_owned(),
+            velocity: "0.5 m/s".to_owned(),
+            driving_acceleration: "0 m/s^2".to_owned(),
+            end: "force-zero".to_owned(),
+        })
+        .unwrap()
+    }
+
+    /// A table of the user's own, such as the points of a law, is not replaced;
+    /// the data of an earlier figure are.
+    #[test]
+    fn rejects_data_in_the_place_of_another_table() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("curve.svg");
+        let table = folder.path().join("curve.csv");
+        std::fs::write(&table, "displacement_m,force_N\n0,0\n").unwrap();
+        let law = event("hertz(k=753599)");
+        let refused = write_impact_figure(&path, &law).unwrap_err().to_string();
+        assert!(refused.contains("its data would replace"), "{refused}");
+        assert!(!path.exists());
+        std::fs::remove_file(&table).unwrap();
+        write_impact_figure(&path, &law).unwrap();
+        let first = std::fs::read(&table).unwrap();
+        write_impact_figure(&path, &event("hertz(k=400000)")).unwrap();
+        assert_ne!(std::fs::read(&table).unwrap(), first);
+    }
 
     /// The area within the loop is the energy that the contact has absorbed, and
     /// the area under the force over time its impulse.
@@ -116,15 +150,7 @@ mod tests {
             "kelvin-voigt(k=30000, c=40)",
             "walton-braun(k1=40000, k2=111000)",
         ] {
-            let event = carriage_event(&CarriageRequest {
-                law: law.to_owned(),
-                laws: None,
-                mass: "0.2 kg".to_owned(),
-                velocity: "0.5 m/s".to_owned(),
-                driving_acceleration: "0 m/s^2".to_owned(),
-                end: "force-zero".to_owned(),
-            })
-            .unwrap();
+            let event = event(law);
             let motion = motion_of_figure(&event).unwrap();
             let figure = figure_of_motion("x", &motion);
             let area = |points: &[(f64, f64)]| -> f64 {
