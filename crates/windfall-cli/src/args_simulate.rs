@@ -177,6 +177,7 @@ pub struct SimulateRepeatsArguments {
 #[derive(Debug, Args)]
 #[command(after_help = "Example:
   windfall simulate impact --law 'kuwabara-kono(k=753599, c=1524)' --mass '0.2 kg' --velocity '0.5 m/s'
+  windfall simulate impact --law 'hertz(k=753599)' --mass '0.2 kg' --velocity '0.5 m/s' --plot hertz.svg
   windfall simulate impact --law 'adams-impact(k=\"0.868 N/mm^1.91\", e=1.91, c=\"5.56e-4 N s/mm\", d=\"0.001 mm\")' \\
       --mass '4.8 g' --velocity '3.13 m/s' --format json")]
 pub struct SimulateImpactArguments {
@@ -198,6 +199,10 @@ pub struct SimulateImpactArguments {
     /// When the contact is over
     #[arg(long, value_enum, default_value_t)]
     pub end: End,
+    /// Write a figure of the impact, loop and force over time (SVG or PNG, by its ending), and its
+    /// data (CSV, same name)
+    #[arg(long, value_name = "FILE.svg|FILE.png", value_hint = ValueHint::FilePath)]
+    pub plot: Option<PathBuf>,
     /// How the result is shown
     #[arg(long, value_enum, default_value_t)]
     pub format: Format,

@@ -7,7 +7,8 @@ use crate::args_simulate::{
     SimulateImpactArguments, SimulatePendulumArguments, SimulateRepeatsArguments,
     SimulateTapArguments,
 };
-use crate::show::{write_json, write_result, written};
+use crate::show::{message, write_json, write_result, written};
+use windfall::figure_simulation::write_impact_figure;
 use windfall::request_event::{
     CarriageRequest, PendulumRequest, carriage_event, impact_of_event, motion_of_event,
     pendulum_event,
@@ -115,6 +116,11 @@ fn impact(arguments: &SimulateImpactArguments) -> anyhow::Result<()> {
         end: end_text(arguments.end),
     })?;
     let impact = impact_of_event(&event)?;
+    if let Some(path) = &arguments.plot {
+        for written in write_impact_figure(path, &event)? {
+            message(&format!("written: {}", written.display()));
+        }
+    }
     match arguments.format {
         Format::Json => write_json(&impact),
         Format::Csv => write_result(&csv_of_simulation(&impact)?),

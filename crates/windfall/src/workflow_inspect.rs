@@ -6,7 +6,7 @@ use crate::column_role::{role_of, role_of_unit, seconds_per_unit, unit_in};
 use crate::curve::{Curve, CurvePoint};
 use crate::envelope::Envelope;
 use crate::error::Error;
-use crate::figure_png::{PRINT, png_of_svg};
+use crate::figure_plot::write_plot;
 use crate::figure_recording::{csv_of_curves, svg_of_curves};
 use crate::figure_theme::LIGHT;
 use crate::find_channel::find_channel;
@@ -15,7 +15,6 @@ use crate::outcome::FindingOutcome;
 use crate::request_open::{OpenRequest, open_options};
 use crate::scan_time::TimeScan;
 use crate::scan_value::ValueScan;
-use crate::write_file::write_whole;
 use serde::Serialize;
 use std::path::{Path, PathBuf};
 use windfall_formats::contents::{ChannelContents, Contents, TimeBase};
@@ -179,31 +178,12 @@ pub fn write_figure(path: &Path, inspections: &[Inspection]) -> Result<[PathBuf;
             "a figure shows one recording; name one that can be read",
         ));
     };
-    let dots = match path.extension().and_then(|extension| extension.to_str()) {
-        Some("svg") => false,
-        Some("png") => true,
-        _ => {
-            return Err(unusable(
-                "figures are written as SVG or PNG; give a name that ends in \".svg\" or \".png\"",
-            ));
-        }
-    };
-    let data = path.with_extension("csv");
-    if data == Path::new(&inspection.file) {
-        return Err(unusable(
-            "its data would replace the recording; give another name",
-        ));
-    }
     let name = Path::new(&inspection.file).file_name();
     let title = name.map_or_else(String::new, |name| name.to_string_lossy().into_owned());
     let svg = svg_of_curves(&title, &inspection.curves, &LIGHT);
-    let picture = match dots {
-        true => png_of_svg(&svg, PRINT)?,
-        false => svg.into_bytes(),
-    };
-    write_whole(path, &picture)?;
-    write_whole(&data, csv_of_curves(&inspection.curves)?.as_bytes())?;
-    Ok([path.to_path_buf(), data])
+    let data = csv_of_curves(&inspection.curves)?;
+    let input = Path::new(&inspection.file);
+    write_plot(path, svg, &data, &[(input, "the recording")])
 }
 
 fn finding(code: &str, message: String) -> FindingOutcome {

@@ -107,9 +107,24 @@ pub fn simulate_motion(
     let times: Vec<f64> = (0..=(margin + last) as usize)
         .map(|i| (i as f64 - margin) / rate)
         .collect();
-    let trajectory =
-        trajectory(law, rig, velocity, &times, end).map_err(|source| failed(law, source))?;
+    let trajectory = motion_at(law, rig, velocity, end, &times)?;
     Ok(SimulatedMotion { impact, trajectory })
+}
+
+/// The motion of one impact of a rig at given times.
+///
+/// * `times`: from first touch, ascending; s
+///
+/// # Errors
+/// As [`simulate_one`].
+pub fn motion_at(
+    law: &Law,
+    rig: &Rig,
+    velocity: f64,
+    end: EndRule,
+    times: &[f64],
+) -> Result<Trajectory, Error> {
+    trajectory(law, rig, velocity, times, end).map_err(|source| failed(law, source))
 }
 
 fn failed(law: &Law, source: windfall_identify::error::Error) -> Error {
