@@ -18,6 +18,8 @@ export interface About {
   version: string;
   /** Name of the directory that is served. */
   directory: string;
+  /** Whether campaigns can be made in it; it may be a campaign itself. */
+  creates: boolean;
   /** Bytes that an upload may have. */
   upload_limit: number;
   /** Kinds of campaigns that can be made. */
@@ -523,9 +525,16 @@ export function follow(job: string, progress: (job: Job) => void): Promise<Job> 
   });
 }
 
-/** Calls back whenever the files of a campaign change; the result ends it. */
-export function watch(id: string, changed: (version: string) => void): () => void {
+/** Calls back whenever the files of a campaign change, and when the connection is lost
+ *  or there again; the result ends it. */
+export function watch(
+  id: string,
+  changed: (version: string) => void,
+  connected: (there: boolean) => void,
+): () => void {
   const events = new EventSource(`${at(id)}/events`);
+  events.onopen = () => connected(true);
+  events.onerror = () => connected(false);
   events.addEventListener("changed", (event) => {
     changed((JSON.parse(event.data) as { version: string }).version);
   });

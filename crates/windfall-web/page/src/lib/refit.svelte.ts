@@ -46,9 +46,20 @@ export class Refitter {
     const answer = { ...fitted, laws: named };
     this.problem = null;
     this.complete = series;
-    // The measured series are those of the impact, whatever part of it is used.
-    this.view =
-      series || before?.impact !== answer.impact ? answer : { ...answer, measured: before.measured };
+    if (series || before?.impact !== answer.impact) {
+      this.view = answer;
+      return;
+    }
+    // The measured series are those of the impact, whatever part of it is used; the
+    // residuals stay until those of the last fit are there.
+    this.view = {
+      ...answer,
+      measured: before.measured,
+      laws: answer.laws.map((law, index) => ({
+        ...law,
+        residuals: before.laws[index]?.law === law.law ? before.laws[index].residuals : {},
+      })),
+    };
   }
 }
 

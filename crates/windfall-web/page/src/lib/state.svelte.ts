@@ -101,7 +101,7 @@ class Jobs {
       const ended = await follow(job.job, (progress) => this.#put(progress));
       this.#put(ended);
       if (ended.state === "failed") notices.error(new Error(ended.problem ?? "the work failed"));
-      if (ended.state === "cancelled") notices.done("Cancelled; what was finished is kept.");
+      if (ended.state === "cancelled") notices.done("The work was cancelled; nothing half-done was kept.");
       return ended;
     } catch (error) {
       this.list = this.list.filter((known) => known.job !== job.job);
@@ -127,11 +127,21 @@ export class OpenCampaign {
   problem = $state<string | null>(null);
   /** Grows whenever the files or results changed, for what a view loads by itself. */
   changes = $state(0);
+  /** Whether the server answers no more; the browser goes on trying. */
+  lost = $state(false);
   readonly #end: () => void;
 
   constructor(readonly id: string) {
     void this.load();
-    this.#end = watch(id, () => void this.load());
+    this.#end = watch(
+      id,
+      () => void this.load(),
+      (there) => {
+        // What changed while nobody told is read once somebody does again.
+        if (there && this.lost) void this.load();
+        this.lost = !there;
+      },
+    );
   }
 
   async load(): Promise<void> {

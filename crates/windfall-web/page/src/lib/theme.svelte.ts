@@ -47,11 +47,20 @@ class Theme {
 
 export const theme = new Theme();
 
+/** Colours that were asked for, by theme and variable: asking takes a while, and plots
+ *  that follow the pointer ask often. */
+const colours = new Map<string, string>();
+
 /** Colour of a variable of app.css, for a canvas. Depends on the theme when asked
  *  for within an effect. */
 export function colour(variable: string): string {
-  void theme.shown;
-  return getComputedStyle(document.documentElement).getPropertyValue(variable).trim();
+  const key = `${theme.shown} ${variable}`;
+  let known = colours.get(key);
+  if (known === undefined) {
+    known = getComputedStyle(document.documentElement).getPropertyValue(variable).trim();
+    colours.set(key, known);
+  }
+  return known;
 }
 
 /** Colour of a series; they repeat after seven. */

@@ -1,0 +1,106 @@
+/** Numbers, differences and options as the page writes them. */
+
+import assert from "node:assert/strict";
+import { test } from "node:test";
+import { runnerImport } from "vite";
+
+const load = async (path) => (await runnerImport(path, { configFile: false, logLevel: "error" })).module;
+const { bytes, integer, interval, number, percent, plusMinus, quantity, quantityPlusMinus, unitText } =
+  await load("./src/lib/format.ts");
+const { changes, difference } = await load("./src/lib/diff.ts");
+const { changesOf, draftOf, heldParameters } = await load("./src/lib/options.ts");
+
+/** With plain spaces and minus, so that the expectations can be read. */
+const plain = (text) => text.replace(/[\u202f\u00a0]/g, " ").replaceAll("\u2212", "-");
+
+test("numbers have the digits that were asked for", () => {
+  for (const [value, digits, words] of [
+    [0, 4, "0"],
+    [1234.5678, 4, "1235"],
+    [12345.678, 3, "12 300"],
+    [0.00123456, 4, "0.001235"],
+    [9.99996, 4, "10.00"],
+    [-0.5, 2, "-0.50"],
+    [1.5e-9, 2, "1.5·10⁻⁹"],
+    [3.2e12, 2, "3.2·10¹²"],
+    [NaN, 4, "–"],
+    [null, 4, "–"],
+    [Infinity, 4, "∞"],
+  ]) {
+    assert.equal(plain(number(value, digits)), words);
+  }
+  assert.equal(plain(integer(10_000_000)), "10 000 000");
+});
+
+test("a deviation has two digits, and its value goes as far", () => {
+  for (const [value, sd, words] of [
+    [809333.57, 1863.4, "809 300 ± 1900"],
+    [1525.6559, 2.587, "1525.7 ± 2.6"],
+    [0.38802610, 0.00017742, "0.38803 ± 0.00018"],
+    [0.5, 0.0999, "0.50 ± 0.10"],
+    [-8.5408e-7, 6.1519e-7, "(-8.5 ± 6.2)·10⁻⁷"],
+    [3, null, "3.0000"],
+    [NaN, 1, "–"],
+  ]) {
+    assert.equal(plain(plusMinus(value, sd)), words);
+  }
+  const of = { value: 809333.57, sd: 1863, low: 805677.87, high: 812989.27, unit: "N/m^1.5", held: false };
+  assert.equal(plain(interval(of)), "805 680 … 812 990");
+  assert.equal(interval({ ...of, held: true }), "–");
+});
+
+test("quantities have prefix and unit", () => {
+  assert.equal(plain(quantity(0.004160883, "s")), "4.161 ms");
+  assert.equal(plain(quantity(0.38802, "m/s")), "0.3880 m/s");
+  assert.equal(plain(quantity(200_000, "Hz", 3)), "200 kHz");
+  assert.equal(plain(quantityPlusMinus(0.0030035, 1.7e-6, "s")), "3.0035 ± 0.0017 ms");
+  assert.equal(plain(percent(0.356)), "36 %");
+  assert.equal(plain(bytes(34_000)), "34.0 kB");
+  assert.equal(unitText("m/s^2"), "m/s²");
+  assert.equal(unitText("N/m^1.5"), "N/m^1.5");
+});
+
+test("a difference turns one text into the other, with no more changes than needed", () => {
+  const before = "a\nb\nc\nd";
+  const after = "a\nc\nx\nd";
+  const lines = difference(before, after);
+  const side = (without) => lines.filter((line) => line.sign !== without).map((line) => line.text).join("\n");
+  assert.equal(side("+"), before);
+  assert.equal(side("-"), after);
+  assert.equal(lines.filter((line) => line.sign !== " ").length, 2);
+  const long = difference(Array.from({ length: 40 }, (_, n) => n).join("\n"), "new\n" + Array.from({ length: 40 }, (_, n) => n).join("\n"));
+  assert.deepEqual(changes(long).map((line) => line?.text ?? null), ["new", "0", "1", null]);
+});
+
+test("only options that differ from the campaign are asked for", () => {
+  const view = {
+    laws: ["kuwabara-kono"],
+    options: {
+      quantities: ["displacement", "force"],
+      weights: "inverse-variance",
+      noise: "automatic",
+      intervals: "asymptotic",
+      onset: "auto",
+      initial_velocity: "auto",
+      displacement_offset: "auto",
+      end: "force-zero",
+      free: [],
+    },
+  };
+  const draft = draftOf(view);
+  assert.deepEqual(changesOf(draft, view), {});
+  draft.laws.push("hertz");
+  draft.weights = "inverse-mean";
+  assert.deepEqual(changesOf(draft, view), { laws: ["kuwabara-kono", "hertz"], weights: "inverse-mean" });
+  assert.deepEqual(view.laws, ["kuwabara-kono"]);
+});
+
+test("parameters with a value are those that can be freed", () => {
+  const laws = [
+    { name: "power-law", parameters: [{ name: "k", default: null }, { name: "n", default: 1.5 }] },
+    { name: "hertz", parameters: [{ name: "k", default: null }] },
+  ];
+  assert.deepEqual(heldParameters(["power-law"], laws), ["n"]);
+  assert.deepEqual(heldParameters(["hertz(k=3)"], laws), ["k"]);
+  assert.deepEqual(heldParameters(["hertz"], laws), []);
+});
