@@ -30,8 +30,18 @@ fn bench(specimens: &str) -> (tempfile::TempDir, std::path::PathBuf) {
     let campaign = folder.path().join("bench");
     let path = campaign.display().to_string();
     let arguments = [
-        "simulate", "pendulum", "--law", LAW, "--recordings", &path, "--specimens", specimens,
-        "--repeats", "2", "--spread", "k=60000",
+        "simulate",
+        "pendulum",
+        "--law",
+        LAW,
+        "--recordings",
+        &path,
+        "--specimens",
+        specimens,
+        "--repeats",
+        "2",
+        "--spread",
+        "k=60000",
     ];
     windfall(&arguments).success();
     (folder, campaign)
@@ -48,7 +58,9 @@ fn version(running: &Running) -> String {
 fn ids(running: &Running) -> Vec<String> {
     let view = running.get("/api/campaigns/bench").json();
     let rows = view["impacts"]["rows"].as_array().unwrap().clone();
-    rows.iter().map(|row| row[0].as_str().unwrap().to_owned()).collect()
+    rows.iter()
+        .map(|row| row[0].as_str().unwrap().to_owned())
+        .collect()
 }
 
 #[test]
@@ -58,8 +70,15 @@ fn serves_a_page_that_may_load_nothing_from_elsewhere_and_describes_itself() {
     let page = running.get("/");
     assert_eq!(page.status, 200);
     let policy = page.header("content-security-policy").unwrap();
-    assert!(policy.starts_with("default-src 'none'; script-src 'self'"), "{policy}");
-    assert!(page.text().contains("<script type=\"module\""), "{}", page.text());
+    assert!(
+        policy.starts_with("default-src 'none'; script-src 'self'"),
+        "{policy}"
+    );
+    assert!(
+        page.text().contains("<script type=\"module\""),
+        "{}",
+        page.text()
+    );
     assert_eq!(running.get("/nothing.js").status, 404);
 
     // Every address that is described is there, for every method that is described.
@@ -78,9 +97,15 @@ fn serves_a_page_that_may_load_nothing_from_elsewhere_and_describes_itself() {
             let answer = running.page(&method.to_uppercase(), &real, Some("x"), &json!({}));
             let text = answer.text();
             assert_ne!(answer.status, 405, "{method} {path}: {text}");
-            assert!(!text.contains("there is nothing at this address"), "{method} {path}");
+            assert!(
+                !text.contains("there is nothing at this address"),
+                "{method} {path}"
+            );
             let known = methods[method]["responses"].as_object().unwrap();
-            assert!(known.contains_key(&answer.status.to_string()), "{method} {path}: {text}");
+            assert!(
+                known.contains_key(&answer.status.to_string()),
+                "{method} {path}: {text}"
+            );
         }
     }
 }
@@ -108,15 +133,28 @@ fn asks_for_a_token_where_others_can_reach_it() {
     // The first line that it prints has the token; without it nobody is answered.
     assert_eq!(running.get("/api/campaigns").status, 401);
     assert_eq!(running.get("/").status, 401);
-    assert_eq!(running.get("/?token=0123456789abcdef0123456789abcdef").status, 401);
+    assert_eq!(
+        running
+            .get("/?token=0123456789abcdef0123456789abcdef")
+            .status,
+        401
+    );
 }
 
 #[test]
 fn rejects_every_way_out_of_the_directory() {
     let (folder, campaign) = bench("1");
-    std::fs::write(folder.path().join("secret.csv"), "time_s,force_N\n0,7777\n1,8\n").unwrap();
+    std::fs::write(
+        folder.path().join("secret.csv"),
+        "time_s,force_N\n0,7777\n1,8\n",
+    )
+    .unwrap();
     let outside = tempfile::tempdir().unwrap();
-    std::fs::write(outside.path().join("secret.csv"), "time_s,force_N\n0,7777\n1,8\n").unwrap();
+    std::fs::write(
+        outside.path().join("secret.csv"),
+        "time_s,force_N\n0,7777\n1,8\n",
+    )
+    .unwrap();
     #[cfg(unix)]
     {
         let link = |name: &str| std::os::unix::fs::symlink(outside.path(), campaign.join(name));
@@ -127,9 +165,20 @@ fn rejects_every_way_out_of_the_directory() {
     }
     let running = serve(folder.path(), &[]);
     let ways = [
-        "../secret.csv", "../../secret.csv", "..%2Fsecret.csv", "%2e%2e/secret.csv",
-        "..%5Csecret.csv", "link/secret.csv", "tables/secret.csv", "/etc/passwd", "%2Fetc%2Fpasswd",
-        "raw/../../secret.csv", "....//secret.csv", "secret.csv%00.csv", "secret.csv", ".",
+        "../secret.csv",
+        "../../secret.csv",
+        "..%2Fsecret.csv",
+        "%2e%2e/secret.csv",
+        "..%5Csecret.csv",
+        "link/secret.csv",
+        "tables/secret.csv",
+        "/etc/passwd",
+        "%2Fetc%2Fpasswd",
+        "raw/../../secret.csv",
+        "....//secret.csv",
+        "secret.csv%00.csv",
+        "secret.csv",
+        ".",
     ];
     for way in ways {
         for path in [
@@ -141,30 +190,51 @@ fn rejects_every_way_out_of_the_directory() {
             format!("/{way}"),
         ] {
             let answer = running.get(&path);
-            assert!((400..500).contains(&answer.status), "{path}: {}", answer.text());
+            assert!(
+                (400..500).contains(&answer.status),
+                "{path}: {}",
+                answer.text()
+            );
             assert!(!answer.text().contains("7777"), "{path}");
             assert!(!answer.text().contains("root:"), "{path}");
         }
         for kind in ["raw", "table"] {
             let path = format!("/api/campaigns/bench/{kind}?file=../{way}");
             let answer = running.upload(&path, b"a,b\n1,2\n");
-            assert!((400..500).contains(&answer.status), "{path}: {}", answer.text());
+            assert!(
+                (400..500).contains(&answer.status),
+                "{path}: {}",
+                answer.text()
+            );
         }
         let version = version(&running);
-        let row = json!({"impacts": [{"id": "n", "specimen": "s", "file": way.replace("%2F", "/")}]});
+        let row =
+            json!({"impacts": [{"id": "n", "specimen": "s", "file": way.replace("%2F", "/")}]});
         if way != "secret.csv" && !way.contains('%') && way != "tables/secret.csv" {
             let path = "/api/campaigns/bench/impacts";
             let answer = running.page("POST", path, Some(&version), &row);
-            assert!((400..500).contains(&answer.status), "{way}: {}", answer.text());
+            assert!(
+                (400..500).contains(&answer.status),
+                "{way}: {}",
+                answer.text()
+            );
         }
     }
     let text = std::fs::read_to_string(campaign.join("campaign.toml")).unwrap();
     let moved = text.replace("directory = \"raw\"", "directory = \"/etc\"");
     assert_ne!(moved, text);
     let body = json!({ "text": moved });
-    let answer = running.page("PUT", "/api/campaigns/bench/text", Some(&version(&running)), &body);
+    let answer = running.page(
+        "PUT",
+        "/api/campaigns/bench/text",
+        Some(&version(&running)),
+        &body,
+    );
     assert_eq!(answer.status, 422, "{}", answer.text());
-    assert_eq!(std::fs::read_to_string(campaign.join("campaign.toml")).unwrap(), text);
+    assert_eq!(
+        std::fs::read_to_string(campaign.join("campaign.toml")).unwrap(),
+        text
+    );
     assert_eq!(std::fs::read_dir(outside.path()).unwrap().count(), 1);
     assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), 3);
 }
@@ -172,25 +242,51 @@ fn rejects_every_way_out_of_the_directory() {
 #[test]
 fn tells_no_path_of_the_machine() {
     let (folder, campaign) = bench("1");
-    std::fs::remove_file(std::fs::read_dir(campaign.join("raw")).unwrap().next().unwrap().unwrap().path()).unwrap();
+    std::fs::remove_file(
+        std::fs::read_dir(campaign.join("raw"))
+            .unwrap()
+            .next()
+            .unwrap()
+            .unwrap()
+            .path(),
+    )
+    .unwrap();
     std::fs::create_dir(folder.path().join("broken")).unwrap();
     std::fs::write(folder.path().join("broken/campaign.toml"), "format = [\n").unwrap();
     let running = serve(folder.path(), &[]);
     let machine = folder.path().canonicalize().unwrap().display().to_string();
     let mut said = String::new();
-    for path in ["/api/about", "/api/campaigns", "/api/campaigns/bench", "/api/campaigns/broken"] {
+    for path in [
+        "/api/about",
+        "/api/campaigns",
+        "/api/campaigns/bench",
+        "/api/campaigns/broken",
+    ] {
         said += &running.get(path).text();
     }
     for impact in ids(&running) {
         let body = json!({"impact": impact, "laws": ["hertz"]});
-        said += &running.page("POST", "/api/campaigns/bench/refit", None, &body).text();
+        said += &running
+            .page("POST", "/api/campaigns/bench/refit", None, &body)
+            .text();
     }
     said += &running.work("bench", &json!({"work": "fit"})).to_string();
-    said += &running.work("bench", &json!({"work": "report"})).to_string();
+    said += &running
+        .work("bench", &json!({"work": "report"}))
+        .to_string();
     said += &running.get("/api/campaigns/bench/results").text();
-    said += &running.get("/api/campaigns/bench/report/report.html").text();
-    assert!(said.contains("There is no such file") || said.contains("no such file"), "{said}");
-    assert!(!said.contains(&machine), "{}", &said[said.find(&machine).unwrap()..][..200]);
+    said += &running
+        .get("/api/campaigns/bench/report/report.html")
+        .text();
+    assert!(
+        said.contains("There is no such file") || said.contains("no such file"),
+        "{said}"
+    );
+    assert!(
+        !said.contains(&machine),
+        "{}",
+        &said[said.find(&machine).unwrap()..][..200]
+    );
 }
 
 /// The numbers of a live fit are those that the command gives, to the last digit, for
@@ -214,7 +310,9 @@ fn repeats_fits_of_the_command_for_fifty_clients_at_once() {
             let view = answer.json();
             assert_eq!(view["impact"], *impact);
             let mut all = expected["impacts"].as_array().unwrap().iter();
-            let known = all.find(|known| known["id"] == *impact && known["law"] == law).unwrap();
+            let known = all
+                .find(|known| known["id"] == *impact && known["law"] == law)
+                .unwrap();
             let found = &view["laws"][0]["outcome"];
             assert_eq!(found["parameters"], known["parameters"]);
             assert_eq!(found["derived"], known["derived"]);
@@ -222,8 +320,12 @@ fn repeats_fits_of_the_command_for_fifty_clients_at_once() {
     };
     std::thread::scope(|scope| {
         let one = &one;
-        let clients: Vec<_> = (0..50).map(|client| scope.spawn(move || one(client))).collect();
-        clients.into_iter().for_each(|client| client.join().unwrap());
+        let clients: Vec<_> = (0..50)
+            .map(|client| scope.spawn(move || one(client)))
+            .collect();
+        clients
+            .into_iter()
+            .for_each(|client| client.join().unwrap());
     });
 }
 
@@ -232,45 +334,87 @@ fn work_in_the_page_is_in_the_files_that_the_command_reads() {
     let (folder, campaign) = bench("3");
     let running = serve(folder.path(), &[]);
     let before = running.get("/api/campaigns/bench/results").json();
-    assert_eq!((&before["outcome"], &before["pending"]), (&Value::Null, &json!(6)));
+    assert_eq!(
+        (&before["outcome"], &before["pending"]),
+        (&Value::Null, &json!(6))
+    );
 
     let job = running.work("bench", &json!({"work": "fit"}));
     assert_eq!(job["state"], "done", "{job}");
     assert_eq!((&job["done"], &job["all"]), (&json!(6), &json!(6)));
     assert_eq!(job["command"], "windfall fit bench");
     let status = &fitted(&campaign, &[])["status"];
-    assert_eq!((&status["stored"], &status["up_to_date"]), (&json!(6), &json!(true)));
+    assert_eq!(
+        (&status["stored"], &status["up_to_date"]),
+        (&json!(6), &json!(true))
+    );
     let table = std::fs::read_to_string(campaign.join("tables/results.csv")).unwrap();
     assert_eq!(table.lines().count(), 7);
 
     // A window moved in the page: the command fits that impact anew, with the same result.
     let id = &ids(&running)[0];
-    let whole = running.page("POST", "/api/campaigns/bench/refit", None, &json!({"impact": id})).json();
-    let to = whole["end"].as_f64().unwrap() - 0.3 * (whole["end"].as_f64().unwrap() - whole["onset"].as_f64().unwrap());
+    let whole = running
+        .page(
+            "POST",
+            "/api/campaigns/bench/refit",
+            None,
+            &json!({"impact": id}),
+        )
+        .json();
+    let to = whole["end"].as_f64().unwrap()
+        - 0.3 * (whole["end"].as_f64().unwrap() - whole["onset"].as_f64().unwrap());
     let asked = json!({"impact": id, "to": to});
-    let live = running.page("POST", "/api/campaigns/bench/refit", None, &asked).json();
+    let live = running
+        .page("POST", "/api/campaigns/bench/refit", None, &asked)
+        .json();
     let found = &live["laws"][0]["outcome"];
     assert!(found["samples"].as_u64() < whole["laws"][0]["outcome"]["samples"].as_u64());
     let window = json!({"impact": id, "from": null, "to": to});
-    let saved = running.page("PUT", "/api/campaigns/bench/window", Some(&version(&running)), &window);
+    let saved = running.page(
+        "PUT",
+        "/api/campaigns/bench/window",
+        Some(&version(&running)),
+        &window,
+    );
     assert_eq!(saved.status, 200, "{}", saved.text());
     let pending = running.get("/api/campaigns/bench/results").json();
     assert_eq!(pending["pending"], 1);
     let again = fitted(&campaign, &[]);
-    assert_eq!((&again["status"]["stored"], &again["status"]["fitted"]), (&json!(5), &json!(1)));
+    assert_eq!(
+        (&again["status"]["stored"], &again["status"]["fitted"]),
+        (&json!(5), &json!(1))
+    );
     assert_eq!(again["impacts"][0]["parameters"], found["parameters"]);
 
     // Options set in the page, and remarks kept.
     let options = json!({"laws": ["hunt-crossley"], "weights": "inverse-mean"});
-    let set = running.page("PUT", "/api/campaigns/bench/options", Some(&version(&running)), &options);
-    assert_eq!(set.json()["laws"], json!(["hunt-crossley"]), "{}", set.text());
+    let set = running.page(
+        "PUT",
+        "/api/campaigns/bench/options",
+        Some(&version(&running)),
+        &options,
+    );
+    assert_eq!(
+        set.json()["laws"],
+        json!(["hunt-crossley"]),
+        "{}",
+        set.text()
+    );
     assert_eq!(fitted(&campaign, &[])["impacts"][0]["law"], "hunt-crossley");
 
     let card = running.get("/api/campaigns/bench/card?law=hunt-crossley");
-    assert!(card.text().contains("law = \"hunt-crossley\""), "{}", card.text());
+    assert!(
+        card.text().contains("law = \"hunt-crossley\""),
+        "{}",
+        card.text()
+    );
     let model = json!({"table": "tables/results.csv", "response": "k", "terms": "impact_velocity_m_per_s", "random": []});
     let model = running.page("POST", "/api/campaigns/bench/regress", None, &model);
-    assert!(model.status == 200 || model.text().contains("impact_velocity"), "{}", model.text());
+    assert!(
+        model.status == 200 || model.text().contains("impact_velocity"),
+        "{}",
+        model.text()
+    );
 }
 
 #[test]
@@ -287,22 +431,53 @@ fn a_change_on_the_ground_of_an_older_version_changes_nothing() {
     let text = std::fs::read_to_string(campaign.join("campaign.toml")).unwrap();
     // A second tab, which has not seen the first change.
     let second = put("options", &version, &json!({"end": "force-zero"}));
-    assert_eq!((second.status, &second.json()["code"]), (412, &json!("changed-meanwhile")));
+    assert_eq!(
+        (second.status, &second.json()["code"]),
+        (412, &json!("changed-meanwhile"))
+    );
     // A change by an editor.
     std::fs::write(campaign.join("campaign.toml"), format!("{text}# edited\n")).unwrap();
-    let third = put("options", first.json()["version"].as_str().unwrap(), &json!({"end": "force-zero"}));
+    let third = put(
+        "options",
+        first.json()["version"].as_str().unwrap(),
+        &json!({"end": "force-zero"}),
+    );
     assert_eq!(third.status, 412);
-    assert!(std::fs::read_to_string(campaign.join("campaign.toml")).unwrap().ends_with("# edited\n"));
+    assert!(
+        std::fs::read_to_string(campaign.join("campaign.toml"))
+            .unwrap()
+            .ends_with("# edited\n")
+    );
     // A campaign that could not be read is not written.
-    let now = running.get("/api/campaigns/bench").json()["version"].as_str().unwrap().to_owned();
-    let wrong = put("text", &now, &json!({"text": "format = 1\n[rig]\nkind = \"pendulum\"\nfoo = 1\n"}));
+    let now = running.get("/api/campaigns/bench").json()["version"]
+        .as_str()
+        .unwrap()
+        .to_owned();
+    let wrong = put(
+        "text",
+        &now,
+        &json!({"text": "format = 1\n[rig]\nkind = \"pendulum\"\nfoo = 1\n"}),
+    );
     assert_eq!(wrong.status, 422, "{}", wrong.text());
-    assert!(wrong.text().contains("campaign.toml, line 4"), "{}", wrong.text());
+    assert!(
+        wrong.text().contains("campaign.toml, line 4"),
+        "{}",
+        wrong.text()
+    );
     let wrong = put("options", &now, &json!({"laws": ["hertzz"]}));
     assert_eq!(wrong.status, 422);
     assert!(wrong.text().contains("hertz"), "{}", wrong.text());
-    assert!(std::fs::read_to_string(campaign.join("campaign.toml")).unwrap().ends_with("# edited\n"));
-    let missing = running.page("PUT", "/api/campaigns/bench/text", None, &json!({"text": ""}));
+    assert!(
+        std::fs::read_to_string(campaign.join("campaign.toml"))
+            .unwrap()
+            .ends_with("# edited\n")
+    );
+    let missing = running.page(
+        "PUT",
+        "/api/campaigns/bench/text",
+        None,
+        &json!({"text": ""}),
+    );
     assert_eq!(missing.status, 428);
 }
 
@@ -313,12 +488,16 @@ fn a_file_arrives_whole_or_not_at_all() {
     let raw = campaign.join("raw");
     let names = || {
         let entries = std::fs::read_dir(&raw).unwrap();
-        let mut names: Vec<_> = entries.map(|e| e.unwrap().file_name().into_string().unwrap()).collect();
+        let mut names: Vec<_> = entries
+            .map(|e| e.unwrap().file_name().into_string().unwrap())
+            .collect();
         names.sort();
         names
     };
     let before = names();
-    let put = |file: &str, bytes: &[u8]| running.upload(&format!("/api/campaigns/bench/raw?file={file}"), bytes);
+    let put = |file: &str, bytes: &[u8]| {
+        running.upload(&format!("/api/campaigns/bench/raw?file={file}"), bytes)
+    };
     break_off(&running, "/api/campaigns/bench/raw?file=half.csv");
     assert_eq!(put("large.csv", &vec![b'1'; 1_500_000]).status, 413);
     assert_eq!(put("empty.csv", b"").status, 400);
@@ -342,7 +521,9 @@ fn a_file_arrives_whole_or_not_at_all() {
     expected.sort();
     assert_eq!(names(), expected);
 
-    let outline = running.get("/api/campaigns/bench/outline?file=new%20one.csv&channel=force_N").json();
+    let outline = running
+        .get("/api/campaigns/bench/outline?file=new%20one.csv&channel=force_N")
+        .json();
     assert_eq!(outline["low"], json!([0.1, 2.5, 0.2]));
     assert_eq!(outline["time"], json!([0.0, 0.1, 0.2]));
 }
@@ -351,21 +532,42 @@ fn a_file_arrives_whole_or_not_at_all() {
 fn work_can_be_stopped_and_a_killed_server_leaves_the_results_of_before() {
     let (folder, campaign) = bench("20");
     let mut running = serve(folder.path(), &[]);
-    let begun = running.page("POST", "/api/campaigns/bench/jobs", None, &json!({"work": "fit", "intervals": "bootstrap"}));
+    let begun = running.page(
+        "POST",
+        "/api/campaigns/bench/jobs",
+        None,
+        &json!({"work": "fit", "intervals": "bootstrap"}),
+    );
     assert_eq!(begun.status, 202, "{}", begun.text());
     let job = begun.json()["job"].as_str().unwrap().to_owned();
-    let again = running.page("POST", "/api/campaigns/bench/jobs", None, &json!({"work": "fit"}));
+    let again = running.page(
+        "POST",
+        "/api/campaigns/bench/jobs",
+        None,
+        &json!({"work": "fit"}),
+    );
     assert_eq!((again.status, &again.json()["code"]), (409, &json!("busy")));
     running.page("DELETE", &format!("/api/jobs/{job}"), None, &json!({}));
     let events = running.get(&format!("/api/jobs/{job}/events")).text();
     assert!(events.contains("\"state\":\"cancelled\""), "{events}");
-    assert_eq!(running.get("/api/campaigns/bench/results").json()["outcome"], Value::Null);
+    assert_eq!(
+        running.get("/api/campaigns/bench/results").json()["outcome"],
+        Value::Null
+    );
 
     let done = running.work("bench", &json!({"work": "fit"}));
     assert_eq!(done["state"], "done");
-    running.page("POST", "/api/campaigns/bench/jobs", None, &json!({"work": "fit", "intervals": "bootstrap"}));
+    running.page(
+        "POST",
+        "/api/campaigns/bench/jobs",
+        None,
+        &json!({"work": "fit", "intervals": "bootstrap"}),
+    );
     std::thread::sleep(Duration::from_millis(200));
     running.kill();
     let status = &fitted(&campaign, &[])["status"];
-    assert_eq!((&status["stored"], &status["fitted"]), (&json!(40), &json!(0)));
+    assert_eq!(
+        (&status["stored"], &status["fitted"]),
+        (&json!(40), &json!(0))
+    );
 }

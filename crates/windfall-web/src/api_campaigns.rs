@@ -80,7 +80,7 @@ fn template_kind(word: &str) -> Option<TemplateKind> {
 
 /// What the files of a campaign say; its version is the ETag.
 #[utoipa::path(
-    get, path = "/api/campaigns/{id}", params(("id" = String, Path)),
+    get, path = "/api/campaigns/{id}", params(("id" = String, Path, example = "bench")),
     responses((status = 200, body = Object), (status = 404, body = Problem), (status = 422, body = Problem))
 )]
 pub(crate) async fn campaign(
@@ -102,7 +102,7 @@ pub(crate) fn with_version(view: CampaignView) -> (HeaderMap, Json<CampaignView>
 
 /// What the store holds of the campaign as it is now; nothing is fitted.
 #[utoipa::path(
-    get, path = "/api/campaigns/{id}/results", params(("id" = String, Path)),
+    get, path = "/api/campaigns/{id}/results", params(("id" = String, Path, example = "bench")),
     responses((status = 200, body = Object), (status = 404, body = Problem), (status = 422, body = Problem))
 )]
 pub(crate) async fn results(

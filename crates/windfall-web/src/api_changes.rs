@@ -111,7 +111,7 @@ async fn changed(
 /// Replaces campaign.toml.
 #[utoipa::path(
     put, path = "/api/campaigns/{id}/text", request_body = TextGiven,
-    params(("id" = String, Path), ("If-Match" = String, Header)),
+    params(("id" = String, Path, example = "bench"), ("If-Match" = String, Header, example = "*")),
     responses(
         (status = 200, body = Object), (status = 400, body = Problem), (status = 404, body = Problem),
         (status = 412, body = Problem), (status = 415, body = Problem), (status = 422, body = Problem),
@@ -130,7 +130,7 @@ pub(crate) async fn text(
 /// Sets from_s and to_s of an impact.
 #[utoipa::path(
     put, path = "/api/campaigns/{id}/window", request_body = WindowGiven,
-    params(("id" = String, Path), ("If-Match" = String, Header)),
+    params(("id" = String, Path, example = "bench"), ("If-Match" = String, Header, example = "*")),
     responses(
         (status = 200, body = Object), (status = 400, body = Problem), (status = 404, body = Problem),
         (status = 412, body = Problem), (status = 415, body = Problem), (status = 422, body = Problem),
@@ -158,7 +158,7 @@ pub(crate) async fn window(
 /// Sets options of the fit.
 #[utoipa::path(
     put, path = "/api/campaigns/{id}/options", request_body = OptionsGiven,
-    params(("id" = String, Path), ("If-Match" = String, Header)),
+    params(("id" = String, Path, example = "bench"), ("If-Match" = String, Header, example = "*")),
     responses(
         (status = 200, body = Object), (status = 400, body = Problem), (status = 404, body = Problem),
         (status = 412, body = Problem), (status = 415, body = Problem), (status = 422, body = Problem),
@@ -203,7 +203,7 @@ fn present<T, const N: usize>(pairs: [(&str, Option<T>); N]) -> BTreeMap<String,
 /// Says where the channels are.
 #[utoipa::path(
     put, path = "/api/campaigns/{id}/channels", request_body = ChannelsGiven,
-    params(("id" = String, Path), ("If-Match" = String, Header)),
+    params(("id" = String, Path, example = "bench"), ("If-Match" = String, Header, example = "*")),
     responses(
         (status = 200, body = Object), (status = 400, body = Problem), (status = 404, body = Problem),
         (status = 412, body = Problem), (status = 415, body = Problem), (status = 422, body = Problem),
@@ -228,7 +228,7 @@ pub(crate) async fn channels(
 /// Adds impacts, and specimens that are new.
 #[utoipa::path(
     post, path = "/api/campaigns/{id}/impacts", request_body = ImpactsGiven,
-    params(("id" = String, Path), ("If-Match" = String, Header)),
+    params(("id" = String, Path, example = "bench"), ("If-Match" = String, Header, example = "*")),
     responses(
         (status = 200, body = Object), (status = 400, body = Problem), (status = 403, body = Problem),
         (status = 404, body = Problem), (status = 412, body = Problem), (status = 415, body = Problem),

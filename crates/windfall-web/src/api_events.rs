@@ -49,7 +49,7 @@ pub(crate) async fn job_events(
 
 /// Tells when the files of a campaign or its store change on disk.
 #[utoipa::path(
-    get, path = "/api/campaigns/{id}/events", params(("id" = String, Path)),
+    get, path = "/api/campaigns/{id}/events", params(("id" = String, Path, example = "bench")),
     responses(
         (status = 200, body = String, content_type = "text/event-stream"),
         (status = 404, body = Problem),

@@ -23,7 +23,7 @@ pub(crate) struct CardAsked {
 
 /// The law card of a campaign, to be saved.
 #[utoipa::path(
-    get, path = "/api/campaigns/{id}/card", params(("id" = String, Path), CardAsked),
+    get, path = "/api/campaigns/{id}/card", params(("id" = String, Path, example = "bench"), CardAsked),
     responses(
         (status = 200, body = String, content_type = "application/toml"),
         (status = 400, body = Problem), (status = 404, body = Problem), (status = 422, body = Problem),
@@ -48,7 +48,7 @@ pub(crate) async fn card(
 /// A file of the report of a campaign.
 #[utoipa::path(
     get, path = "/api/campaigns/{id}/report/{file}",
-    params(("id" = String, Path), ("file" = String, Path)),
+    params(("id" = String, Path, example = "bench"), ("file" = String, Path)),
     responses(
         (status = 200, body = Vec<u8>, content_type = "text/html"),
         (status = 400, body = Problem), (status = 404, body = Problem),

@@ -9,7 +9,7 @@ use axum::extract::{Path, State};
 use axum::http::StatusCode;
 use axum::response::{IntoResponse, Response};
 use serde::{Deserialize, Serialize};
-use serde_json::Value;
+use serde_json::value::{RawValue, to_raw_value};
 use std::path::PathBuf;
 use std::sync::Arc;
 use utoipa::ToSchema;
@@ -93,7 +93,7 @@ impl JobGiven {
     }
 
     /// Does the work; what the equal command gives in JSON.
-    fn run(&self, directory: PathBuf, job: &Job) -> Result<Value, Error> {
+    fn run(&self, directory: PathBuf, job: &Job) -> Result<Box<RawValue>, Error> {
         let progress = |done: usize, all: usize| job.progress(done, all);
         match self.work {
             Work::Fit => {
@@ -130,7 +130,7 @@ impl JobGiven {
                     let own = path.strip_prefix(&directory).unwrap_or(path);
                     own.display().to_string()
                 };
-                Ok(serde_json::json!({
+                json(&serde_json::json!({
                     "page": inside(&outcome.page),
                     "files": outcome.files.iter().map(inside).collect::<Vec<_>>(),
                     "impacts": outcome.impacts,
@@ -141,8 +141,9 @@ impl JobGiven {
     }
 }
 
-fn json(outcome: &impl Serialize) -> Result<Value, Error> {
-    serde_json::to_value(outcome).map_err(|error| Error::ResultUnwritable {
+/// JSON as the command writes it, with names in its order.
+fn json(outcome: &impl Serialize) -> Result<Box<RawValue>, Error> {
+    to_raw_value(outcome).map_err(|error| Error::ResultUnwritable {
         item: "result".to_owned(),
         detail: error.to_string(),
     })
@@ -150,7 +151,7 @@ fn json(outcome: &impl Serialize) -> Result<Value, Error> {
 
 /// Begins work on a campaign.
 #[utoipa::path(
-    post, path = "/api/campaigns/{id}/jobs", params(("id" = String, Path)), request_body = JobGiven,
+    post, path = "/api/campaigns/{id}/jobs", params(("id" = String, Path, example = "bench")), request_body = JobGiven,
     responses(
         (status = 202, body = JobView), (status = 400, body = Problem), (status = 404, body = Problem),
         (status = 409, body = Problem), (status = 415, body = Problem), (status = 422, body = Problem),

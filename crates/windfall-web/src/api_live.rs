@@ -15,6 +15,7 @@ use windfall::request_fit::FitRequest;
 #[serde(default, deny_unknown_fields)]
 pub(crate) struct Refit {
     /// Id of the impact.
+    #[schema(example = "specimen-01-01")]
     impact: String,
     /// Begin of the part of the recording that is used; s.
     from: Option<f64>,
@@ -46,7 +47,7 @@ pub(crate) struct Refit {
 
 /// Fits one impact now; nothing is kept.
 #[utoipa::path(
-    post, path = "/api/campaigns/{id}/refit", params(("id" = String, Path)), request_body = Refit,
+    post, path = "/api/campaigns/{id}/refit", params(("id" = String, Path, example = "bench")), request_body = Refit,
     responses(
         (status = 200, body = Object), (status = 400, body = Problem), (status = 404, body = Problem),
         (status = 415, body = Problem), (status = 422, body = Problem),

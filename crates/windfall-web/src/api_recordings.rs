@@ -29,6 +29,7 @@ const MOST_POINTS: usize = 20_000;
 #[derive(Debug, Deserialize, IntoParams)]
 pub(crate) struct FileAsked {
     /// Its name below the directory of its kind.
+    #[param(example = "specimen-01-01.csv")]
     pub file: String,
 }
 
@@ -36,8 +37,10 @@ pub(crate) struct FileAsked {
 #[derive(Debug, Deserialize, IntoParams)]
 pub(crate) struct OutlineAsked {
     /// The recording.
+    #[param(example = "specimen-01-01.csv")]
     file: String,
     /// The channel.
+    #[param(example = "force_V")]
     channel: String,
     /// Begin; s, or number of a sample where no times are known.
     from: Option<f64>,
@@ -63,7 +66,7 @@ pub(crate) struct Uploaded {
 
 /// The recordings of a campaign.
 #[utoipa::path(
-    get, path = "/api/campaigns/{id}/recordings", params(("id" = String, Path)),
+    get, path = "/api/campaigns/{id}/recordings", params(("id" = String, Path, example = "bench")),
     responses(
         (status = 200, body = Vec<Object>), (status = 403, body = Problem),
         (status = 404, body = Problem), (status = 422, body = Problem),
@@ -79,7 +82,7 @@ pub(crate) async fn recordings(
 
 /// What a recording holds, as `windfall inspect` says it.
 #[utoipa::path(
-    get, path = "/api/campaigns/{id}/recording", params(("id" = String, Path), FileAsked),
+    get, path = "/api/campaigns/{id}/recording", params(("id" = String, Path, example = "bench"), FileAsked),
     responses(
         (status = 200, body = Object), (status = 400, body = Problem), (status = 403, body = Problem),
         (status = 404, body = Problem), (status = 422, body = Problem),
@@ -103,7 +106,7 @@ fn inspected(directory: &std::path::Path, file: &str) -> Result<Inspection, Erro
 
 /// A part of a channel at the resolution of a screen.
 #[utoipa::path(
-    get, path = "/api/campaigns/{id}/outline", params(("id" = String, Path), OutlineAsked),
+    get, path = "/api/campaigns/{id}/outline", params(("id" = String, Path, example = "bench"), OutlineAsked),
     responses(
         (status = 200, body = Object), (status = 400, body = Problem), (status = 403, body = Problem),
         (status = 404, body = Problem), (status = 422, body = Problem),
@@ -125,7 +128,7 @@ pub(crate) async fn outline(
 
 /// Takes a recording into the campaign; it replaces none.
 #[utoipa::path(
-    put, path = "/api/campaigns/{id}/raw", params(("id" = String, Path), FileAsked),
+    put, path = "/api/campaigns/{id}/raw", params(("id" = String, Path, example = "bench"), FileAsked),
     request_body(content = Vec<u8>, content_type = "application/octet-stream"),
     responses(
         (status = 201, body = Uploaded), (status = 400, body = Problem), (status = 403, body = Problem),
@@ -160,7 +163,7 @@ pub(crate) async fn upload_recording(
 
 /// Takes a table for regressions and surfaces into the campaign; it replaces none.
 #[utoipa::path(
-    put, path = "/api/campaigns/{id}/table", params(("id" = String, Path), FileAsked),
+    put, path = "/api/campaigns/{id}/table", params(("id" = String, Path, example = "bench"), FileAsked),
     request_body(content = Vec<u8>, content_type = "application/octet-stream"),
     responses(
         (status = 201, body = Uploaded), (status = 400, body = Problem), (status = 404, body = Problem),

@@ -128,7 +128,7 @@ fn table_inside(directory: &FilePath, name: &str) -> Result<PathBuf, Error> {
 
 /// A table of the campaign, cell by cell.
 #[utoipa::path(
-    get, path = "/api/campaigns/{id}/table", params(("id" = String, Path), FileAsked),
+    get, path = "/api/campaigns/{id}/table", params(("id" = String, Path, example = "bench"), FileAsked),
     responses(
         (status = 200, body = Object), (status = 400, body = Problem),
         (status = 404, body = Problem), (status = 422, body = Problem),
@@ -160,7 +160,7 @@ pub(crate) async fn table(
 
 /// A linear model, as `windfall regress` gives it.
 #[utoipa::path(
-    post, path = "/api/campaigns/{id}/regress", params(("id" = String, Path)),
+    post, path = "/api/campaigns/{id}/regress", params(("id" = String, Path, example = "bench")),
     request_body = RegressGiven,
     responses(
         (status = 200, body = Object), (status = 400, body = Problem), (status = 404, body = Problem),
@@ -204,7 +204,7 @@ pub(crate) async fn regression(
 
 /// Response surfaces, as `windfall surface` gives them.
 #[utoipa::path(
-    post, path = "/api/campaigns/{id}/surface", params(("id" = String, Path)),
+    post, path = "/api/campaigns/{id}/surface", params(("id" = String, Path, example = "bench")),
     request_body = SurfaceGiven,
     responses(
         (status = 200, body = Object), (status = 400, body = Problem), (status = 404, body = Problem),

@@ -40,7 +40,7 @@ impl<S: Send + Sync, T: DeserializeOwned> FromRequestParts<S> for Asked<T> {
     }
 }
 
-/// The version of a campaign that a change rests on.
+/// The version of a campaign that a change rests on; "*" for whatever it is now.
 pub(crate) struct Version(pub String);
 
 impl<S: Send + Sync> FromRequestParts<S> for Version {

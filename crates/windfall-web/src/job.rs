@@ -1,7 +1,7 @@
 //! Long work beside the requests: its progress is told, and it can be stopped.
 
 use serde::{Serialize, Serializer};
-use serde_json::Value;
+use serde_json::value::RawValue;
 use std::collections::VecDeque;
 use std::ops::ControlFlow;
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
@@ -41,14 +41,14 @@ pub(crate) struct JobView {
     /// What the equal command would give in JSON, once it is done.
     #[schema(value_type = Object)]
     #[serde(serialize_with = "shared")]
-    pub result: Option<Arc<Value>>,
+    pub result: Option<Arc<RawValue>>,
     /// Why it failed.
     pub problem: Option<String>,
     /// The equal command.
     pub command: String,
 }
 
-fn shared<S: Serializer>(value: &Option<Arc<Value>>, serializer: S) -> Result<S::Ok, S::Error> {
+fn shared<S: Serializer>(value: &Option<Arc<RawValue>>, serializer: S) -> Result<S::Ok, S::Error> {
     value.as_deref().serialize(serializer)
 }
 
@@ -87,11 +87,15 @@ impl Job {
     }
 
     /// Takes note of its end.
-    pub(crate) fn end(&self, result: Result<Value, Error>, told: impl Fn(&Error) -> String) {
+    pub(crate) fn end(
+        &self,
+        result: Result<Box<RawValue>, Error>,
+        told: impl Fn(&Error) -> String,
+    ) {
         self.view.send_modify(|view| match result {
-            Ok(value) => {
+            Ok(json) => {
                 view.state = JobState::Done;
-                view.result = Some(Arc::new(value));
+                view.result = Some(Arc::from(json));
             }
             Err(Error::Cancelled) => {
                 view.state = JobState::Cancelled;

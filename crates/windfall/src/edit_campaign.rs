@@ -82,6 +82,8 @@ pub struct NewImpact {
 
 /// Changes a campaign that is of that version, and shows what it is then.
 ///
+/// * `version`: as [`campaign_version`] gives it; "*" for whatever it is now
+///
 /// # Errors
 /// [`Error::ChangedMeanwhile`]; the change makes no campaign that can be read; a file
 /// cannot be written. Then all is as it was.
@@ -91,7 +93,7 @@ pub fn change_campaign(
     change: &Change,
 ) -> Result<CampaignView, Error> {
     let _one = CHANGING.lock().unwrap_or_else(PoisonError::into_inner);
-    if campaign_version(directory)? != version {
+    if version != "*" && campaign_version(directory)? != version {
         return Err(Error::ChangedMeanwhile);
     }
     let files = changed_files(directory, change)?;

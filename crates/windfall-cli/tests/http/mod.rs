@@ -83,7 +83,10 @@ impl Running {
         let all = [("Content-Length", &*body.len().to_string())];
         let host = self.address.to_string();
         let own = [("Host", host.as_str())];
-        let named = |name: &str| head.iter().any(|(known, _)| known.eq_ignore_ascii_case(name));
+        let named = |name: &str| {
+            head.iter()
+                .any(|(known, _)| known.eq_ignore_ascii_case(name))
+        };
         let usual = own.iter().filter(|(name, _)| !named(name));
         for (name, value) in all.iter().chain(usual).chain(head) {
             text += &format!("{name}: {value}\r\n");
@@ -126,7 +129,12 @@ impl Running {
 
     /// Begins work and waits for its end.
     pub fn work(&self, campaign: &str, body: &Value) -> Value {
-        let begun = self.page("POST", &format!("/api/campaigns/{campaign}/jobs"), None, body);
+        let begun = self.page(
+            "POST",
+            &format!("/api/campaigns/{campaign}/jobs"),
+            None,
+            body,
+        );
         assert_eq!(begun.status, 202, "{}", begun.text());
         let job = begun.json()["job"].as_str().unwrap().to_owned();
         // The stream of events ends with the work.
