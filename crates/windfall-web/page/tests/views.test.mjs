@@ -254,6 +254,7 @@ test("impacts on one specimen are not independent: a random effect", async () =>
   await page.getByRole("textbox", { name: /^Formula/ }).fill("k");
   await page.getByRole("textbox", { name: /^Formula/ }).press("Enter");
   await page.getByRole("region", { name: "Analysis of variance" }).waitFor();
+  await page.getByRole("group", { name: "Main effects" }).getByRole("button", { name: "✓ k", exact: true }).waitFor();
   await page.getByLabel(/^Varies between/).selectOption("specimen");
   await page.getByRole("table", { name: /^Variation/ }).getByRole("row", { name: /^specimen/ }).waitFor();
   await page.getByRole("heading", { name: /^Effects of the groups/ }).waitFor();
