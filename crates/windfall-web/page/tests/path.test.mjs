@@ -235,6 +235,7 @@ test("an impact is refitted with other laws and options", async () => {
 
 test("the window is dragged, and the fit is drawn anew within 50 ms", async (context) => {
   const handle = page.getByRole("slider", { name: /end$/ }).first();
+  await handle.scrollIntoViewIfNeeded();
   const box = await handle.boundingBox();
   const plot = await page.getByRole("img", { name: /^force_V from/ }).boundingBox();
   const y = box.y + box.height / 2;
