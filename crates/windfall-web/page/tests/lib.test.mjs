@@ -5,7 +5,7 @@ import { test } from "node:test";
 import { runnerImport } from "vite";
 
 const load = async (path) => (await runnerImport(path, { configFile: false, logLevel: "error" })).module;
-const { bytes, integer, interval, number, percent, plusMinus, quantity, quantityPlusMinus, unitText } =
+const { bytes, estimate, integer, interval, number, percent, plusMinus, quantity, quantityPlusMinus, unitText } =
   await load("./src/lib/format.ts");
 const { changes, difference } = await load("./src/lib/diff.ts");
 const { changesOf, draftOf, heldParameters } = await load("./src/lib/options.ts");
@@ -47,6 +47,9 @@ test("a deviation has two digits, and its value goes as far", () => {
   const of = { value: 809333.57, sd: 1863, low: 805677.87, high: 812989.27, unit: "N/m^1.5", held: false };
   assert.equal(plain(interval(of)), "805 680 … 812 990");
   assert.equal(interval({ ...of, held: true }), "–");
+  for (const [value, words] of [[0.5, "0.5"], [1.5, "1.5"], [1e-6, "1·10⁻⁶"], [753599, "753 599"]]) {
+    assert.equal(plain(estimate({ ...of, value, unit: "1", held: true })), `${words} (held)`);
+  }
 });
 
 test("quantities have prefix and unit", () => {
@@ -58,6 +61,7 @@ test("quantities have prefix and unit", () => {
   assert.equal(plain(bytes(34_000)), "34.0 kB");
   assert.equal(unitText("m/s^2"), "m/s²");
   assert.equal(unitText("N/m^1.5"), "N/m^1.5");
+  assert.equal(unitText("N/m^1.508292561"), "N/m^1.508");
 });
 
 test("a difference turns one text into the other, with no more changes than needed", () => {

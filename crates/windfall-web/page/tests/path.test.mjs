@@ -184,11 +184,18 @@ test("a new campaign: a file is imported, its channels mapped, an impact added a
   await page.getByRole("link", { name: "Channels and impacts …" }).first().click();
 
   await title(/stoss-1\.csv/);
-  await page.getByLabel("What Zeit is").selectOption("time");
-  await page.getByLabel("What Kraft is").selectOption("force");
-  await page.getByLabel("What Weg is").selectOption("position");
-  assert.equal(await page.getByLabel("Unit of Kraft").inputValue(), "N");
-  assert.equal(await page.getByLabel("Unit of Weg").inputValue(), "mm");
+  for (const [column, quantity] of Object.entries({
+    "Zeit [ms]": "time",
+    "Kraft [N]": "force",
+    "Weg [mm]": "position",
+  })) {
+    assert.equal(await page.getByLabel(`What ${column} is`).inputValue(), quantity);
+  }
+  assert.equal(await page.getByLabel("Unit of Kraft [N]").inputValue(), "N");
+  // What was guessed can be corrected.
+  await page.getByLabel("What Weg [mm] is").selectOption("velocity");
+  await page.getByLabel("What Weg [mm] is").selectOption("position");
+  await page.getByLabel("Unit of Weg [mm]").fill("1 mm");
   await inspect("import");
   await page.getByRole("button", { name: "Write the channels into campaign.toml" }).click();
   await page.getByText("The channels were written").waitFor();
@@ -206,7 +213,7 @@ test("an impact is refitted with other laws and options", async () => {
   await visit(page, "#/c/apples/impact/specimen-02");
   await title("Impact specimen-02");
   await page.getByRole("region", { name: "Parameters of kuwabara-kono" }).waitFor();
-  await page.getByRole("checkbox", { name: "power-law" }).check();
+  await page.getByRole("checkbox", { name: "power-law", exact: true }).check();
   await page.getByRole("region", { name: "Parameters of power-law" }).waitFor();
   await page.getByText("More options").click();
   await page.getByRole("checkbox", { name: "n", exact: true }).check();
@@ -216,17 +223,19 @@ test("an impact is refitted with other laws and options", async () => {
     .waitFor();
   await page.getByLabel("A law with values").fill("power-law(n=1.2)");
   await page.getByRole("button", { name: "Add law" }).click();
+  assert.equal(await page.getByRole("checkbox", { name: "power-law", exact: true }).isChecked(), false);
   await page.getByRole("region", { name: "Parameters of power-law(n=1.2)" }).waitFor();
   await page.getByLabel("Weights").selectOption("inverse-mean");
   await page.getByLabel("The same on the command line").getByText("inverse-mean").waitFor();
   await inspect("impact-laws");
   await page.getByRole("button", { name: "Undo" }).last().click();
-  await page.getByRole("region", { name: "Parameters of power-law" }).waitFor({ state: "detached" });
+  await page.getByRole("region", { name: /Parameters of power-law/ }).waitFor({ state: "detached" });
   await inspect("impact");
 });
 
 test("the window is dragged, and the fit is drawn anew within 50 ms", async (context) => {
   const handle = page.getByRole("slider", { name: /end$/ }).first();
+  await handle.scrollIntoViewIfNeeded();
   const box = await handle.boundingBox();
   const plot = await page.getByRole("img", { name: /^force_V from/ }).boundingBox();
   const y = box.y + box.height / 2;

@@ -176,9 +176,17 @@ test("Enter opens the impact of a row", async () => {
   await page.waitForURL(/#\/c\/apples\/impact\/./);
 });
 
-test("laws are compared, and the population estimated", async () => {
+test("a comparison that is cancelled leaves nothing, and can be made again", async () => {
   await visit(page, "#/c/apples/laws");
   await title("Which law");
+  await button("Compare").click();
+  await page.locator("main").getByRole("button", { name: "Cancel" }).click();
+  await page.getByText("Cancelled").first().waitFor();
+  assert.equal(await page.getByRole("region", { name: "Ranking of laws" }).count(), 0);
+  await button("Compare").waitFor();
+});
+
+test("laws are compared, and the population estimated", async () => {
   for (const law of ["hertz", "kuwabara-kono"]) await page.getByRole("checkbox", { name: law, exact: true }).check();
   await button("Compare").click();
   await page.getByRole("heading", { level: 2, name: "kuwabara-kono Sure" }).waitFor({ timeout: 60_000 });
@@ -246,6 +254,7 @@ test("impacts on one specimen are not independent: a random effect", async () =>
   await page.getByRole("textbox", { name: /^Formula/ }).fill("k");
   await page.getByRole("textbox", { name: /^Formula/ }).press("Enter");
   await page.getByRole("region", { name: "Analysis of variance" }).waitFor();
+  await page.getByRole("group", { name: "Main effects" }).getByRole("button", { name: "✓ k", exact: true }).waitFor();
   await page.getByLabel(/^Varies between/).selectOption("specimen");
   await page.getByRole("table", { name: /^Variation/ }).getByRole("row", { name: /^specimen/ }).waitFor();
   await page.getByRole("heading", { name: /^Effects of the groups/ }).waitFor();
@@ -264,6 +273,8 @@ test("surfaces: the optimum is a line, and sliders turn through it", async () =>
     await own.getByRole("textbox", { name: "Target" }).fill(target);
     await own.getByRole("textbox", { name: "Target" }).press("Enter");
   }
+  // The answer to the second goal, not that to the first alone.
+  await page.getByRole("row", { name: /^interval_ms, foretold 300\.0/ }).waitFor();
   await page.getByText("The optimum is one of many.").waitFor();
   const contour = page.getByRole("img", { name: /^Contours of force_N/ });
   await contour.waitFor();

@@ -67,9 +67,15 @@ export function plusMinus(value: number | null | undefined, sd: number | null | 
 
 /** `value ± sd unit` of an estimate; a held one says so. */
 export function estimate(of: Estimate): string {
-  const words = of.held ? `${number(of.value, 6)} (held)` : plusMinus(of.value, of.sd);
+  // A held value was written by somebody, and not with more digits than it needs.
+  const words = of.held ? `${held(of.value)} (held)` : plusMinus(of.value, of.sd);
   return withUnit(words, of.unit);
 }
+
+const held = (value: number) => {
+  const same = (digits: number) => Number(value.toPrecision(digits)) === Number(value.toPrecision(6));
+  return number(value, [1, 2, 3, 4, 5].find(same) ?? 6);
+};
 
 /** The 95 % interval of an estimate. */
 export function interval(of: Estimate): string {
@@ -90,9 +96,11 @@ export const percent = (part: number | null | undefined, digits = 2) =>
 export const withUnit = (words: string, unit: string) =>
   words === "–" || unit === "" || unit === "1" ? words : `${words}${THIN}${unitText(unit)}`;
 
-/** Units with raised whole exponents; others stay as they are typed, `m^1.5`. */
+/** Units with raised whole exponents; others stay as they are typed, `m^1.5`, and an
+ *  estimated one has as many digits as one reads. */
 export function unitText(unit: string): string {
-  return unit.replace(/\^(-?\d+)(?![\d.])/g, (_, exponent: string) => superscript(Number(exponent)));
+  const short = unit.replace(/\^(-?\d+\.\d{4,})/g, (_, exponent: string) => `^${Number(Number(exponent).toPrecision(4))}`);
+  return short.replace(/\^(-?\d+)(?![\d.])/g, (_, exponent: string) => superscript(Number(exponent)));
 }
 
 const PREFIXES: [number, string][] = [

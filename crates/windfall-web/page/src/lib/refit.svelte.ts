@@ -41,7 +41,7 @@ export class Refitter {
 
   #show(fitted: RefitView, laws: string[], series: boolean): void {
     const before = this.view;
-    // Two of one law with different values have the same name, and are told apart as written.
+    // With the values that it was given, as it was asked for.
     const named = fitted.laws.map((law, index) => ({ ...law, law: laws[index] ?? law.law }));
     const answer = { ...fitted, laws: named };
     this.problem = null;
