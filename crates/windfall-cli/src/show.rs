@@ -3,6 +3,7 @@
 use crate::args_format::Format;
 use std::io::{ErrorKind, Write};
 use std::path::Path;
+use windfall::error::Error;
 
 /// Writes a result. A reader that has heard enough (`| head`) is no error.
 pub fn write_result(text: &str) -> anyhow::Result<()> {
@@ -66,4 +67,15 @@ mod tests {
         let telling = cause.context("impacts.csv: the file ends early");
         assert_eq!(with_causes(&telling), "impacts.csv: the file ends early");
     }
+}
+
+/// Where nothing could be fitted, says of each recording why, before the error itself
+/// is shown.
+pub fn tell_failures(error: Error) -> Error {
+    if let Error::NothingFitted { failures, .. } = &error {
+        for failure in failures {
+            message(&format!("not fitted: {}: {}", failure.id, failure.message));
+        }
+    }
+    error
 }

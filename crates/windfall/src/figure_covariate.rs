@@ -1,8 +1,8 @@
 //! Parameters against what the tables say of impacts and specimens.
 
 use crate::campaign::Campaign;
-use crate::figure_campaign::{NamedFigure, estimated_parameters, groups_of_impacts};
-use crate::figure_files::file_name;
+use crate::figure_campaign::{estimated_parameters, groups_of_impacts};
+use crate::figure_files::{NamedFigure, file_name};
 use crate::figure_xy::{Figure, Panel, Series, Style};
 use crate::outcome::ImpactOutcome;
 use windfall_statistics::straight_line::{fit_straight_line, line_at};

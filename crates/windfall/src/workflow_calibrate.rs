@@ -19,6 +19,7 @@ use crate::error::Error;
 use crate::evaluate::{Evaluated, Progress};
 use crate::evaluate_drop::MeasuredDrop;
 use crate::figure_calibrate::write_calibrate_figures;
+use crate::figure_files::FigureFolder;
 use crate::figure_waveform::write_waveform_figures;
 use crate::outcome::{FailureOutcome, FindingOutcome, StatusOutcome};
 use crate::plate_ringing::{PlateEstimate, plate_of};
@@ -39,7 +40,7 @@ pub struct CalibrateRequest {
     /// Ways in place of the campaign's.
     pub ways: Vec<Way>,
     /// Where figures go, if anywhere.
-    pub figures: Option<PathBuf>,
+    pub figures: Option<FigureFolder>,
     /// Where the tables of the study go, if anywhere.
     pub tables: Option<PathBuf>,
     /// Where the law card goes, if anywhere.

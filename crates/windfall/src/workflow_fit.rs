@@ -3,7 +3,7 @@
 use crate::campaign::{Campaign, ImpactEntry};
 use crate::error::Error;
 use crate::extract_recording::extract_recording;
-use crate::figure_files::write_figure;
+use crate::figure_files::{FigureFolder, write_figure};
 use crate::figure_impact::figure_of_impact;
 use crate::fit_card::card_of_fit;
 use crate::fit_impact::{FitTask, fit_tasks};
@@ -101,8 +101,8 @@ pub fn fit_recording(
         let stored = BTreeMap::new();
         let results = fit_tasks(&campaign, &rig, &tasks, &stored, progress);
         let outcome = assemble(&campaign, &rig, &tasks, results, &stored).shown;
-        if let Some(directory) = &request.figures {
-            draw(&campaign, &rig, &outcome, directory)?;
+        if let Some(folder) = &request.figures {
+            draw(&campaign, &rig, &outcome, folder)?;
         }
         Ok(outcome)
     })
@@ -173,8 +173,8 @@ fn fit(
     let results = fit_tasks(&campaign, &rig, &tasks, &stored, progress);
     let mut outcome = assemble(&campaign, &rig, &tasks, results, &stored);
     keep(&campaign, &store, &digests, &mut outcome)?;
-    if let Some(directory) = &request.figures {
-        draw(&campaign, &rig, &outcome.shown, directory)?;
+    if let Some(folder) = &request.figures {
+        draw(&campaign, &rig, &outcome.shown, folder)?;
     }
     if let Some(path) = &request.card {
         write_card(path, &card_of_fit(&campaign, &outcome.shown)?)?;
@@ -192,7 +192,7 @@ fn draw(
     campaign: &Campaign,
     rig: &RigFound,
     outcome: &CampaignOutcome,
-    directory: &Path,
+    folder: &FigureFolder,
 ) -> Result<(), Error> {
     let end = campaign.fit.options.end;
     campaign.impacts.par_iter().try_for_each(|entry| {
@@ -212,7 +212,7 @@ fn draw(
             &own,
             (&rig.rig, end, &campaign.fit.user),
         );
-        write_figure(directory, &entry.id, &figure).map(|_| ())
+        write_figure(folder, &entry.id, &figure).map(|_| ())
     })
 }
 
