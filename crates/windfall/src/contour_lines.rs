@@ -77,10 +77,10 @@ fn chained(field: &Field, level: f64) -> Vec<Contour> {
             let mut sides = vec![start];
             let mut at = start;
             while let Some(next) = links.get_mut(&at).and_then(Vec::pop) {
-                if let Some(back) = links.get_mut(&next) {
-                    if let Some(place) = back.iter().position(|side| *side == at) {
-                        back.remove(place);
-                    }
+                if let Some(back) = links.get_mut(&next)
+                    && let Some(place) = back.iter().position(|side| *side == at)
+                {
+                    back.remove(place);
                 }
                 sides.push(next);
                 at = next;

@@ -14,7 +14,7 @@ const WIDTH: f64 = 244.0;
 const LEFT: f64 = 134.0;
 const BETWEEN: f64 = 26.0;
 const RIGHT: f64 = 20.0;
-const TOP: f64 = 54.0;
+const TOP: f64 = 62.0;
 const BELOW: f64 = 52.0;
 
 /// Height of a law; px.
@@ -121,6 +121,9 @@ fn drawing_of(outcome: &LawsOutcome) -> Drawing {
     let mut drawing = Drawing::new(width, TOP + height + BELOW);
     let title = format!("{} laws on {} impacts", laws.len(), outcome.impacts);
     drawing.text((24.0, 22.0), Anchor::Start, 13.0, &title);
+    drawing.dashed(&[(24.0, 43.0), (42.0, 43.0)], Ink::Text, 1.0);
+    let legend = "ΔAICc of 10: a law beyond it has next to no support";
+    drawing.text((48.0, 46.8), Anchor::Start, 11.0, legend);
     let within = |place: f64| Rectangle {
         left: LEFT + place * (WIDTH + BETWEEN),
         top: TOP,

@@ -9,27 +9,23 @@ use std::f64::consts::TAU;
 /// Points of a density.
 const POINTS: usize = 161;
 
-/// Parameters beyond this many have no panel of pairs.
-const MOST_PAIRED: usize = 4;
+/// Parameters of a law that are shown.
+const MOST_SHOWN: usize = 4;
 
-/// Densities of the parameters with their intervals, and the draws of each pair of law
-/// parameters with the ellipse that estimate and standard deviation stand for; `None`
+/// Densities of the parameters of the law with their intervals, and the draws of each pair
+/// of them with the ellipse that estimate and standard deviation stand for; `None`
 /// where the intervals were not drawn.
 #[must_use]
 pub fn figure_of_posterior(title: &str, outcome: &ImpactOutcome) -> Option<Figure> {
     let drawn = &outcome.intervals.drawn.0;
-    let mut panels: Vec<Panel> = drawn
-        .iter()
-        .filter_map(|(name, draws)| {
-            let known = outcome.parameters.get(name);
-            let estimate = known.or_else(|| outcome.nuisances.get(name))?;
-            marginal(name, estimate, draws)
-        })
-        .collect();
     let paired: Vec<&(String, Vec<f64>)> = drawn
         .iter()
         .filter(|(name, _)| outcome.parameters.get(name).is_some())
-        .take(MOST_PAIRED)
+        .take(MOST_SHOWN)
+        .collect();
+    let mut panels: Vec<Panel> = paired
+        .iter()
+        .filter_map(|(name, draws)| marginal(name, outcome.parameters.get(name)?, draws))
         .collect();
     for (place, x) in paired.iter().enumerate() {
         for y in &paired[place + 1..] {
@@ -60,7 +56,6 @@ fn series(label: &str, style: Style, colour: usize, points: Vec<(f64, f64)>) -> 
 
 fn marginal(name: &str, estimate: &EstimateOutcome, draws: &[f64]) -> Option<Panel> {
     let line = density(draws)?;
-    let highest = line.iter().map(|point| point.1).fold(0.0, f64::max);
     // Of the area under the curve, what the interval holds.
     let within = match (estimate.low, estimate.high) {
         (Some(low), Some(high)) => {
@@ -90,13 +85,6 @@ fn marginal(name: &str, estimate: &EstimateOutcome, draws: &[f64]) -> Option<Pan
             normal,
         ));
     }
-    // The least and the greatest place draw the axis from nothing.
-    all.push(series(
-        "",
-        Style::Bars,
-        0,
-        vec![(estimate.value, 0.0), (estimate.value, highest)],
-    ));
     let unit = unit_of(Some(estimate));
     Some(Panel {
         x: name.to_owned(),

@@ -57,7 +57,8 @@ pub fn contour_paintings(
         Ok(Painting {
             name: file_name(&format!("contour-{}", own.name)),
             caption: format!(
-                "{} over pairs of factors, the others at {}.",
+                "{} over pairs of factors, the others at {}. Along the line of settings that are \
+                 as desirable the other factors change too.",
                 own.title,
                 reference_words(fitted)
             ),
@@ -219,6 +220,11 @@ fn draw_legend(drawing: &mut Drawing, places: &PairPlaces) {
     }
     if places.family.len() > 1 {
         drawing.polyline(&[(x, y), (x + 18.0, y)], BEST, 2.2);
-        drawing.text((x + 24.0, y + 3.8), Anchor::Start, 11.0, "as desirable");
+        drawing.text(
+            (x + 24.0, y + 3.8),
+            Anchor::Start,
+            11.0,
+            "as desirable (the others change too)",
+        );
     }
 }

@@ -1,5 +1,6 @@
 //! Which terms of a response surface matter: Pareto and half-normal plot of their t.
 
+use crate::column_title::column_title;
 use crate::error::Error;
 use crate::figure_axis::axis;
 use crate::figure_files::{Painting, file_name};
@@ -129,7 +130,7 @@ fn drawing_of(model: &SurfaceModel, effects: &Effects, scores: &[f64], level: f6
     let height = (effects.terms.len() as f64 * BAR + 8.0).max(LEAST_HEIGHT);
     let width = LEFT + WIDTH + BETWEEN + WIDTH + RIGHT;
     let mut drawing = Drawing::new(width, TOP + height + BELOW);
-    let title = format!("Effects on {}", model.response);
+    let title = format!("Effects on {}", column_title(&model.response).0);
     drawing.text((24.0, 22.0), Anchor::Start, 13.0, &title);
     let mut x = 24.0;
     for (ink, label) in [(Ink::Series(0), "raises"), (Ink::Series(1), "lowers")] {

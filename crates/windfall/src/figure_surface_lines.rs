@@ -88,8 +88,10 @@ pub fn figure_of_desirability(fitted: &FittedSurfaces) -> Option<NamedFigure> {
         let reference = (own.actual(fitted.reference[factor]), 0.0);
         series.push(drawn("reference", Style::Upright, 6, vec![reference]));
         // The axis of a share reaches from nothing to all.
-        let ends = x.first().map_or(Vec::new(), |x| vec![(*x, 0.0), (*x, 1.0)]);
-        series.push(drawn("", Style::Bars, 6, ends));
+        if let Some(x) = x.first() {
+            let end = |y: f64| drawn("", Style::Bars, 6, vec![(*x, y)]);
+            series.extend([end(0.0), end(1.0)]);
+        }
         let (x, x_unit) = factor_title(fitted, factor);
         Panel {
             x,
@@ -186,7 +188,7 @@ fn figure_of_model(model: &SurfaceModel, confidence: f64) -> NamedFigure {
                   normal scores."
             .to_owned(),
         figure: Figure {
-            title: format!("{}: model and runs", model.response),
+            title: format!("{name}: model and runs"),
             panels,
         },
     }

@@ -26,7 +26,7 @@ const TALL: f64 = 1.25;
 
 /// Size of a panel, and px per half width of the floor.
 const WIDTH: f64 = 400.0;
-const HEIGHT: f64 = 372.0;
+const HEIGHT: f64 = 342.0;
 const SCALE: f64 = 112.0;
 
 /// Panels side by side, and room for the title; px.

@@ -6,7 +6,6 @@ use crate::read_compression::CompressionCampaign;
 use crate::read_drop::{DropCampaign, PlatePlan};
 use crate::read_repeats::{Margin, RepeatsCampaign};
 use crate::report_methods::{filters_text, laws_text, threshold_text};
-use crate::text_number::plain;
 use windfall_signal::bounce_train::StaticLevel;
 use windfall_signal::compression::FitRange;
 use windfall_signal::repeat_align::Alignment;
@@ -14,6 +13,11 @@ use windfall_signal::repeat_align::Alignment;
 /// Intervals of whatever was measured once per recording.
 const SPREAD: &str = "Values are given ± their standard uncertainty; means ± the standard deviation between \
      recordings or fruit (n − 1).";
+
+/// A setting as it was given, without what binary numbers add to it.
+fn plain(value: f64) -> String {
+    format!("{}", (value * 1e9).round() / 1e9)
+}
 
 fn percent(part: f64) -> String {
     format!("{} %", plain(100.0 * part))

@@ -26,10 +26,10 @@ pub struct ReportedItems {
 /// Recordings for a report: of those with a result the middle one of each group, then
 /// some spread evenly over the table.
 #[must_use]
-pub fn shown_entries<'a>(
-    campaign: &'a ItemCampaign,
+pub fn shown_entries(
+    campaign: &ItemCampaign,
     evaluated: impl Fn(&ImpactEntry) -> bool,
-) -> Vec<&'a ImpactEntry> {
+) -> Vec<&ImpactEntry> {
     let entries: Vec<&ImpactEntry> = campaign.entries.iter().filter(|e| evaluated(e)).collect();
     let mut groups: Vec<(Option<String>, Vec<usize>)> = Vec::new();
     for (place, entry) in entries.iter().enumerate() {
