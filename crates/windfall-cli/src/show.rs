@@ -51,6 +51,17 @@ pub fn written(directory: &Path, recordings: usize, format: Format) -> anyhow::R
     }
 }
 
+/// Where nothing could be fitted, says of each recording why, before the error itself
+/// is shown.
+pub fn tell_failures(error: Error) -> Error {
+    if let Error::NothingFitted { failures, .. } = &error {
+        for failure in failures {
+            message(&format!("not fitted: {}: {}", failure.id, failure.message));
+        }
+    }
+    error
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -67,15 +78,4 @@ mod tests {
         let telling = cause.context("impacts.csv: the file ends early");
         assert_eq!(with_causes(&telling), "impacts.csv: the file ends early");
     }
-}
-
-/// Where nothing could be fitted, says of each recording why, before the error itself
-/// is shown.
-pub fn tell_failures(error: Error) -> Error {
-    if let Error::NothingFitted { failures, .. } = &error {
-        for failure in failures {
-            message(&format!("not fitted: {}: {}", failure.id, failure.message));
-        }
-    }
-    error
 }

@@ -5,8 +5,8 @@ use crate::figure_frame::Rectangle;
 use crate::figure_svg::{Anchor, Drawing, Ink};
 use crate::figure_theme::SCALE;
 
-/// About as many levels.
-const LEVELS: usize = 8;
+/// Most levels but for one at an end: with them every band has a colour of its own.
+const LEVELS: usize = 10;
 
 /// Round levels with the colours of the bands between them.
 #[derive(Clone, Debug, PartialEq)]
@@ -87,10 +87,10 @@ mod tests {
     #[test]
     fn closed_form_bands_between_levels_use_the_whole_scale() {
         let heights = Heights::between(0.0, 1.0);
-        assert_eq!(heights.axis.ticks.len(), 6);
+        assert_eq!(heights.axis.ticks.len(), SCALE - 1);
         assert_eq!(heights.ink_of(-1.0), Ink::Scale(0));
         assert_eq!(heights.ink_of(1.0), Ink::Scale(SCALE - 1));
-        assert_eq!(heights.ink_of(0.5), heights.ink(3));
+        assert_eq!(heights.ink_of(0.55), heights.ink(6));
         assert_eq!(Heights::of([f64::NAN].iter()), heights);
     }
 }
