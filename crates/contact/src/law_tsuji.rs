@@ -32,7 +32,7 @@ pub const DESCRIPTION: LawDescription = LawDescription {
     name: "tsuji",
     formula: "F = k d^1.5 + alpha sqrt(m k) d^0.25 v, alpha = -sqrt(5) ln e/sqrt((ln e)^2 + pi^2)",
     first_touch: "the force is zero and its slope in d infinite",
-    source: "Tsuji, Tanaka and Ishida (1992), Powder Technol. 71, 239; alpha in closed form: the restitution is e exactly where contact ends with the gap (see EndRule::GapZero)",
+    source: "Tsuji, Tanaka and Ishida (1992), Powder Technol. 71, 239; alpha in closed form: the restitution is e exactly where contact ends with the gap (gap-zero)",
     parameters: &[
         ParameterDescription {
             name: "k",

@@ -4,6 +4,7 @@
 //! their likelihoods can be compared; then each law is asked to foretell the
 //! impacts of a velocity that it has not seen.
 
+use crate::correlated_scores::student;
 use crate::error::Error;
 use crate::fit::{Fit, fit_laws};
 use crate::law_prediction::{Example, prediction_error};
@@ -50,6 +51,14 @@ pub struct LawEvidence {
     /// Akaike's criterion with its correction for small samples, relative to the
     /// best law.
     pub aicc: f64,
+    /// Lower end of the 95 % interval of `aicc`, from its spread over the impacts by
+    /// Student's t; `None` for the best law, and with fewer than three impacts.
+    pub aicc_low: Option<f64>,
+    /// Its upper end.
+    pub aicc_high: Option<f64>,
+    /// Akaike's criterion on each impact, relative to the best law on that impact, in
+    /// the order of [`LawRanking::compared`].
+    pub aicc_of_impacts: Vec<f64>,
     /// Schwarz's criterion, relative to the best law.
     pub bic: f64,
     /// Share of campaigns of resampled impacts in which it has the least AICc; 1.
@@ -74,6 +83,8 @@ pub struct LawRanking {
     pub laws: Vec<LawEvidence>,
     /// Impacts on which all laws are compared.
     pub impacts: usize,
+    /// Their places among those given.
+    pub compared: Vec<usize>,
     /// Velocity levels among them.
     pub levels: usize,
     /// What it means.
@@ -187,6 +198,9 @@ pub fn rank_laws(
             parameters: own.iter().map(|fit| free_count(fit)).sum(),
             cost: own.iter().map(|fit| fit.cost).sum(),
             aicc: criteria[place].iter().sum(),
+            aicc_low: None,
+            aicc_high: None,
+            aicc_of_impacts: criteria[place].clone(),
             bic: own.iter().map(|fit| schwarz(fit)).sum(),
             first_share: shares[place],
             prediction: foretold.map(|f| f.0),
@@ -201,14 +215,25 @@ pub fn rank_laws(
         laws[0].aicc,
         laws.iter().map(|l| l.bic).fold(f64::INFINITY, f64::min),
     );
-    for law in &mut laws {
+    let best = laws[0].aicc_of_impacts.clone();
+    for (place, law) in laws.iter_mut().enumerate() {
         law.aicc -= aicc;
         law.bic -= bic;
+        if let (Some((low, high)), true) = (interval(&law.aicc_of_impacts, &best), place > 0) {
+            (law.aicc_low, law.aicc_high) = (Some(low), Some(high));
+        }
+    }
+    for impact in 0..common.len() {
+        let own = laws.iter().map(|law| law.aicc_of_impacts[impact]);
+        let least = own.fold(f64::INFINITY, f64::min);
+        laws.iter_mut()
+            .for_each(|law| law.aicc_of_impacts[impact] -= least);
     }
     let verdict = verdict(&laws);
     Ok(LawRanking {
         laws,
         impacts: common.len(),
+        compared: common,
         levels: distinct.len(),
         verdict,
     })
@@ -244,6 +269,21 @@ pub fn velocity_levels(velocities: &[f64], gap: f64) -> Vec<usize> {
         levels[pair[1]] = level;
     }
     levels
+}
+
+/// 95 % interval of the sum of differences over impacts like these, taken as
+/// independent: n (mean ± t s/√n).
+fn interval(own: &[f64], best: &[f64]) -> Option<(f64, f64)> {
+    let n = own.len() as f64;
+    if own.len() < 3 {
+        return None;
+    }
+    let differences: Vec<f64> = own.iter().zip(best).map(|(a, b)| a - b).collect();
+    let mean = differences.iter().sum::<f64>() / n;
+    let squares = differences.iter().map(|d| (d - mean) * (d - mean));
+    let sd = (squares.sum::<f64>() / (n - 1.0)).sqrt();
+    let reach = student(n - 1.0) * sd * n.sqrt();
+    Some((n * mean - reach, n * mean + reach))
 }
 
 fn free_count(fit: &Fit) -> usize {
@@ -315,5 +355,20 @@ fn verdict(laws: &[LawEvidence]) -> Verdict {
             law: first.kind,
             to_noise: first.residual_ratio <= NOISE_RATIO,
         },
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Differences 1, 2, 3: sum 6, s = 1, t(0.975; 2) = 4.302653 (table), so that the
+    /// interval is 6 ± 4.302653 √3.
+    #[test]
+    fn reference_interval_of_a_sum_of_differences() {
+        let (low, high) = interval(&[11.0, 22.0, 33.0], &[10.0, 20.0, 30.0]).unwrap();
+        let reach = 4.302_653 * 3.0_f64.sqrt();
+        assert!((low - (6.0 - reach)).abs() < 1e-5 && (high - (6.0 + reach)).abs() < 1e-5);
+        assert!(interval(&[1.0, 2.0], &[0.0, 0.0]).is_none());
     }
 }

@@ -1,5 +1,6 @@
 //! `windfall calibrate`: what may be asked for.
 
+use crate::args_figures::FigureArguments;
 use crate::args_format::Format;
 use clap::{Args, ValueHint};
 use std::path::PathBuf;
@@ -29,9 +30,9 @@ pub struct CalibrateArguments {
     /// Ways to calibrate in place of the campaign's; may be repeated
     #[arg(long = "way", value_parser = ["waveform", "features", "design"], value_name = "WAY")]
     pub ways: Vec<String>,
-    /// Write the fitted waveforms, the family of equally good laws and the surfaces as figures into this directory
-    #[arg(long, value_name = "DIR", value_hint = ValueHint::DirPath)]
-    pub figures: Option<PathBuf>,
+    /// The fitted waveforms, the family of equally good laws and the surfaces
+    #[command(flatten)]
+    pub drawn: FigureArguments,
     /// Write all tables as CSV and text into this directory
     #[arg(long, value_name = "DIR", value_hint = ValueHint::DirPath)]
     pub tables: Option<PathBuf>,

@@ -1,5 +1,6 @@
 //! `windfall fit`: what may be asked for.
 
+use crate::args_figures::FigureArguments;
 use crate::args_format::Format;
 use clap::{Args, ValueHint};
 use std::path::PathBuf;
@@ -82,9 +83,9 @@ pub struct FitArguments {
     /// Fit every impact again, even where nothing has changed
     #[arg(long)]
     pub refit: bool,
-    /// Write a figure of each recording (SVG) and its data (CSV) into this directory
-    #[arg(long, value_name = "DIR", value_hint = ValueHint::DirPath)]
-    pub figures: Option<PathBuf>,
+    /// A figure of each recording
+    #[command(flatten)]
+    pub drawn: FigureArguments,
     /// Write the law as a law card: the median fruit, how fruit differ, and in what it was seen
     #[arg(long, value_name = "FILE", value_hint = ValueHint::FilePath, conflicts_with = "rig")]
     pub card: Option<PathBuf>,

@@ -1,5 +1,6 @@
 //! `windfall laws`: what may be asked for.
 
+use crate::args_figures::FigureArguments;
 use crate::args_format::Format;
 use clap::{Args, ValueHint};
 use std::path::PathBuf;
@@ -9,12 +10,13 @@ use std::path::PathBuf;
 #[command(
     after_help = "Fits each law to each impact, all with the same noise, and ranks them by AICc, by BIC, \
 and by how well parameters found at some velocities foretell the others. Velocity levels are those \
-of the column `level` of impacts.csv, or groups of like velocities. Nothing is written.
+of the column `level` of impacts.csv, or groups of like velocities. Nothing is written but figures.
 
 Examples:
   windfall laws my-campaign
   windfall laws my-campaign --law kuwabara-kono --law hunt-crossley --law 'power-law(n=1.5)' --free p
-  windfall laws my-campaign --format csv"
+  windfall laws my-campaign --format csv
+  windfall laws my-campaign --figures figures"
 )]
 pub struct LawsArguments {
     /// The campaign directory
@@ -29,6 +31,9 @@ pub struct LawsArguments {
     /// Quantities in the cost function in place of the campaign's
     #[arg(long, value_delimiter = ',', value_name = "NAME,…")]
     pub quantities: Vec<String>,
+    /// The comparison, and one impact with the best fit of each law
+    #[command(flatten)]
+    pub drawn: FigureArguments,
     /// Threads; all cores if left out
     #[arg(long, value_name = "N")]
     pub threads: Option<usize>,

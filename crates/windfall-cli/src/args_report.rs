@@ -1,7 +1,8 @@
 //! `windfall report`: what may be asked for.
 
+use crate::args_figures::Theme;
 use crate::args_format::Format;
-use clap::{Args, ValueEnum, ValueHint};
+use clap::{Args, ValueHint};
 use std::path::PathBuf;
 
 /// `windfall report`
@@ -45,13 +46,4 @@ pub struct ReportArguments {
     /// How the list of written files is shown
     #[arg(long, value_enum, default_value_t)]
     pub format: Format,
-}
-
-/// Colours of figures.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-pub enum Theme {
-    /// For paper
-    Light,
-    /// For dark screens and slides
-    Dark,
 }

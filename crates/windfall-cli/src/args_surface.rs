@@ -1,5 +1,6 @@
 //! `windfall surface`: what may be asked for.
 
+use crate::args_figures::FigureArguments;
 use crate::args_format::Format;
 use clap::{Args, ValueHint};
 use std::path::PathBuf;
@@ -14,6 +15,7 @@ use std::path::PathBuf;
       --goal 'force_N = target 11.3' --goal 'interval_ms = target 299' --hold k=0.868
   windfall surface runs.csv --response force_N --factor k --factor e --model quadratic \\
       --grid k,e --grid-points 41 --format csv > surface.csv
+  windfall surface runs.csv --response force_N --factor k --factor e --figures figures
 
 Models: linear, 2fi, quadratic, cubic, or terms: A, B, C … stand for the factors in the order
 given, AB for a product, B^2 for a square; names work too (k + e + k:e + e^2). Terms are
@@ -62,6 +64,9 @@ pub struct SurfaceArguments {
     /// Points of the grid along each factor
     #[arg(long, default_value_t = 41, value_name = "N")]
     pub grid_points: usize,
+    /// Contours, surfaces, effects, perturbation, desirability, and model against runs
+    #[command(flatten)]
+    pub drawn: FigureArguments,
     /// How the result is shown
     #[arg(long, value_enum, default_value_t)]
     pub format: Format,

@@ -21,7 +21,7 @@ pub fn run(arguments: &CalibrateArguments) -> anyhow::Result<()> {
         &arguments.directory,
         &CalibrateRequest {
             ways: arguments.ways.iter().filter_map(way).collect(),
-            figures: arguments.figures.clone(),
+            figures: arguments.drawn.folder(),
             tables: arguments.tables.clone(),
             card: arguments.card.clone(),
             profile: arguments.profile,

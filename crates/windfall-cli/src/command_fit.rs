@@ -45,7 +45,7 @@ pub fn run(arguments: &FitArguments) -> anyhow::Result<()> {
         let path = arguments.directory.clone();
         return Err(Error::NothingFitted {
             path,
-            failures: outcome.failed().len(),
+            failures: outcome.failed().to_vec(),
         }
         .into());
     }
@@ -76,7 +76,7 @@ fn fit_request(arguments: &FitArguments) -> FitRequest {
             true => Reuse::Nothing,
             false => Reuse::Unchanged,
         },
-        figures: arguments.figures.clone(),
+        figures: arguments.drawn.folder(),
         card: arguments.card.clone(),
         threads: arguments.threads,
     }

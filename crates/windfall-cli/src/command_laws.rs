@@ -16,6 +16,7 @@ pub fn run(arguments: &LawsArguments) -> anyhow::Result<()> {
         laws: arguments.laws.clone(),
         free: arguments.free.clone(),
         quantities: arguments.quantities.clone(),
+        figures: arguments.drawn.folder(),
         threads: arguments.threads,
         ..FitRequest::default()
     };

@@ -3,7 +3,7 @@
 use crate::args_format::Format;
 use crate::args_population::PopulationArguments;
 use crate::command_fit::{moving, progress_bar};
-use crate::show::{message, write_json, write_result};
+use crate::show::{message, tell_failures, write_json, write_result};
 use windfall::population_card::card_of_population;
 use windfall::read_card::write_card;
 use windfall::request_fit::FitRequest;
@@ -30,7 +30,7 @@ pub fn run(arguments: &PopulationArguments) -> anyhow::Result<()> {
     let progress = moving(&bar);
     let outcome = population(&request, &progress);
     bar.finish_and_clear();
-    let outcome = outcome?;
+    let outcome = outcome.map_err(tell_failures)?;
     if let Some(path) = &request.card {
         write_card(
             path,

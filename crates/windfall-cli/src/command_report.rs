@@ -1,11 +1,11 @@
 //! `windfall report`
 
 use crate::args_format::Format;
-use crate::args_report::{ReportArguments, Theme};
+use crate::args_report::ReportArguments;
 use crate::command_fit::{moving, progress_bar};
-use crate::show::{write_json, write_result};
+use crate::show::{tell_failures, write_json, write_result};
 use windfall::request_fit::FitRequest;
-use windfall::workflow_report::{FigureTheme, ReportRequest, report_campaign};
+use windfall::workflow_report::{ReportRequest, report_campaign};
 
 /// Writes the report of a campaign and says which files it is.
 pub fn run(arguments: &ReportArguments) -> anyhow::Result<()> {
@@ -21,14 +21,11 @@ pub fn run(arguments: &ReportArguments) -> anyhow::Result<()> {
             ..FitRequest::default()
         },
         out: arguments.out.clone(),
-        theme: match arguments.theme {
-            Theme::Light => FigureTheme::Light,
-            Theme::Dark => FigureTheme::Dark,
-        },
+        theme: arguments.theme.into(),
     };
     let outcome = report_campaign(&arguments.directory, &request, &progress);
     bar.finish_and_clear();
-    let outcome = outcome?;
+    let outcome = outcome.map_err(tell_failures)?;
     let lines = outcome.files.iter().map(|f| format!("{}\n", f.display()));
     match arguments.format {
         Format::Json => write_json(&outcome),

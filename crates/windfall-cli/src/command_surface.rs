@@ -39,6 +39,7 @@ pub fn run(arguments: &SurfaceArguments) -> anyhow::Result<()> {
         members: usize::from(arguments.members),
         grid: arguments.grid.clone(),
         grid_points: arguments.grid_points,
+        figures: arguments.drawn.folder(),
     })?;
     match arguments.format {
         Format::Json => write_json(&outcome),

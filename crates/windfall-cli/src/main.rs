@@ -8,6 +8,7 @@ mod args_calibrate;
 mod args_compare;
 mod args_design;
 mod args_end;
+mod args_figures;
 mod args_fit;
 mod args_format;
 mod args_geometry;

@@ -3,6 +3,7 @@
 use crate::args_format::Format;
 use std::io::{ErrorKind, Write};
 use std::path::Path;
+use windfall::error::Error;
 
 /// Writes a result. A reader that has heard enough (`| head`) is no error.
 pub fn write_result(text: &str) -> anyhow::Result<()> {
@@ -48,6 +49,17 @@ pub fn written(directory: &Path, recordings: usize, format: Format) -> anyhow::R
             "{recordings} simulated recordings in {directory}\n\nNext:\n  windfall fit {directory}\n"
         )),
     }
+}
+
+/// Where nothing could be fitted, says of each recording why, before the error itself
+/// is shown.
+pub fn tell_failures(error: Error) -> Error {
+    if let Error::NothingFitted { failures, .. } = &error {
+        for failure in failures {
+            message(&format!("not fitted: {}: {}", failure.id, failure.message));
+        }
+    }
+    error
 }
 
 #[cfg(test)]

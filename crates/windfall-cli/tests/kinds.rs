@@ -57,7 +57,7 @@ fn simulated(folder: &Path, simulate: &[&str]) -> Vec<serde_json::Value> {
     windfall(&["fit", campaign, "--figures", figures.to_str().unwrap()]);
     let drawn = std::fs::read_dir(&figures).unwrap();
     let drawn: Vec<_> = drawn.map(|entry| entry.unwrap().path()).collect();
-    for kind in ["svg", "csv"] {
+    for kind in ["svg", "png", "csv"] {
         let found = drawn.iter().any(|path| path.extension().unwrap() == kind);
         assert!(found, "no {kind} among {drawn:?}");
     }

@@ -88,6 +88,10 @@ pub struct CampaignView {
     pub rig: Vec<(String, String)>,
     /// Channels.
     pub channels: Vec<ChannelView>,
+    /// Column of times that `[files]` names.
+    pub time: Option<String>,
+    /// Sampling rate that `[files]` gives.
+    pub rate: Option<String>,
     /// Laws as expressions.
     pub laws: Vec<String>,
     /// Options of the fit, where single impacts are fitted.
@@ -173,6 +177,8 @@ pub fn view_campaign(directory: &Path) -> Result<CampaignView, Error> {
         simulated: simulated.clone(),
         rig: lines_of(&tables, "rig"),
         channels: channels_of(&tables),
+        time: files_key(&tables, "time"),
+        rate: files_key(&tables, "rate"),
         laws: match &campaign {
             AnyCampaign::Impacts(campaign) => laws_of(campaign),
             AnyCampaign::Items(_) => laws_written(&tables),
@@ -310,6 +316,10 @@ fn lines_of(tables: &toml::Table, name: &str) -> Vec<(String, String)> {
     lines
         .map(|(key, value)| (key.clone(), text_of(value)))
         .collect()
+}
+
+fn files_key(tables: &toml::Table, key: &str) -> Option<String> {
+    tables.get("files")?.get(key).map(text_of)
 }
 
 fn text_of(value: &toml::Value) -> String {

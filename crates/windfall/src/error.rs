@@ -1,5 +1,6 @@
 //! What can go wrong with files and campaigns, said so that it can be mended.
 
+use crate::outcome::FailureOutcome;
 use std::path::PathBuf;
 
 /// A line in a file.
@@ -393,12 +394,12 @@ pub enum Error {
         path: PathBuf,
     },
     /// Not one impact of a campaign could be fitted.
-    #[error("{path}: nothing could be fitted; {failures} messages above say why", path = path.display())]
+    #[error("{path}: nothing could be fitted{}", why_nothing(failures), path = path.display())]
     NothingFitted {
         /// The campaign directory.
         path: PathBuf,
-        /// How many failures there were.
-        failures: usize,
+        /// What could not be fitted, and why.
+        failures: Vec<FailureOutcome>,
     },
     /// No impact shows the mass of the carriage.
     #[error(
@@ -584,6 +585,15 @@ impl Error {
                 | Self::Signal { .. }
                 | Self::Identify { .. }
         )
+    }
+}
+
+/// What stands above the message that nothing could be fitted.
+fn why_nothing(failures: &[FailureOutcome]) -> String {
+    match failures.len() {
+        0 => ": the campaign has no recordings".to_owned(),
+        1 => "; the message above says why".to_owned(),
+        n => format!("; the {n} messages above say why"),
     }
 }
 

@@ -3,6 +3,9 @@
 /// Powers of ten beyond which an axis carries a factor in its title.
 const PLAIN_POWERS: std::ops::RangeInclusive<i32> = -2..=4;
 
+/// Rounding of an end, as a part of the distance of ticks; 1.
+const ROUNDING: f64 = 1e-9;
+
 /// One axis: its range, ticks, and the factor that its labels leave out.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Axis {
@@ -26,8 +29,9 @@ pub struct Axis {
 pub fn axis(low: f64, high: f64, count: usize) -> Axis {
     let (low, high) = widened(low, high);
     let step = round_step((high - low) / count.max(1) as f64);
-    let first = (low / step).ceil() as i64;
-    let last = (high / step).floor() as i64;
+    // An end that is round but for rounding has its tick.
+    let first = (low / step - ROUNDING).ceil() as i64;
+    let last = (high / step + ROUNDING).floor() as i64;
     let ticks: Vec<f64> = (first..=last).map(|i| i as f64 * step).collect();
     let largest = low.abs().max(high.abs());
     let magnitude = largest.log10().floor() as i32;

@@ -3,20 +3,22 @@
 
 use crate::calibrate_outcome::{CalibrateOutcome, DesignWayOutcome, FamilyLine};
 use crate::error::Error;
-use crate::figure_files::write_figure;
+use crate::figure_files::{FigureFolder, write_figure};
 use crate::figure_xy::{Figure, Mark, Panel, Series, Side, Style};
-use std::path::Path;
 
 /// Writes the figures of a calibration into a directory.
 ///
 /// # Errors
 /// The directory or a file cannot be written.
-pub fn write_calibrate_figures(directory: &Path, outcome: &CalibrateOutcome) -> Result<(), Error> {
+pub fn write_calibrate_figures(
+    folder: &FigureFolder,
+    outcome: &CalibrateOutcome,
+) -> Result<(), Error> {
     if let Some(family) = outcome.family.as_ref().filter(|f| f.members.len() > 1) {
-        write_figure(directory, "family", &figure_of_family(outcome, family))?;
+        write_figure(folder, "family", &figure_of_family(outcome, family))?;
     }
     if let Some(design) = &outcome.design {
-        write_figure(directory, "design", &figure_of_design(outcome, design))?;
+        write_figure(folder, "design", &figure_of_design(outcome, design))?;
     }
     Ok(())
 }

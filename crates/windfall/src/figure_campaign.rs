@@ -1,6 +1,7 @@
 //! A fitted campaign as figures: parameters against each other, and what the law
 //! foretells against what the signals show.
 
+use crate::figure_files::NamedFigure;
 use crate::figure_xy::{Figure, Panel, Series, Style};
 use crate::outcome::ImpactOutcome;
 use std::f64::consts::TAU;
@@ -22,17 +23,6 @@ const FORETOLD: [(&str, &str, &str, f64); 4] = [
     ("absorbed_energy", "absorbed energy", "mJ", 1e3),
     ("rebound_velocity", "rebound velocity", "m/s", 1.0),
 ];
-
-/// A figure and the name of its files.
-#[derive(Clone, Debug, PartialEq)]
-pub struct NamedFigure {
-    /// Name of its files, without an ending, as [`file_name`](crate::figure_files::file_name) makes them.
-    pub name: String,
-    /// What stands below it.
-    pub caption: String,
-    /// The figure.
-    pub figure: Figure,
-}
 
 /// Groups in order of first appearance; one of "impacts" where there are none.
 #[must_use]
@@ -151,7 +141,7 @@ fn pair_panel(
 }
 
 /// The 95 % ellipse of the estimates of one impact.
-fn own_ellipse(impact: &ImpactOutcome, x: &str, y: &str) -> Option<Vec<(f64, f64)>> {
+pub(crate) fn own_ellipse(impact: &ImpactOutcome, x: &str, y: &str) -> Option<Vec<(f64, f64)>> {
     let (of_x, of_y) = (impact.parameters.get(x)?, impact.parameters.get(y)?);
     let correlation = impact.correlations.get(&format!("{x}, {y}"))?;
     let (sd_x, sd_y) = (of_x.sd?, of_y.sd?);

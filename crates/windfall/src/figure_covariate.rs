@@ -1,8 +1,9 @@
 //! Parameters against what the tables say of impacts and specimens.
 
 use crate::campaign::Campaign;
-use crate::figure_campaign::{NamedFigure, estimated_parameters, groups_of_impacts};
-use crate::figure_files::file_name;
+use crate::column_title::column_title;
+use crate::figure_campaign::{estimated_parameters, groups_of_impacts};
+use crate::figure_files::{NamedFigure, file_name};
 use crate::figure_xy::{Figure, Panel, Series, Style};
 use crate::outcome::ImpactOutcome;
 use windfall_statistics::straight_line::{fit_straight_line, line_at};
@@ -171,9 +172,13 @@ fn panel(
         series.push(drawn("", Style::Bars, bars));
         series.push(drawn(&group, Style::Dots, points));
     }
+    let (x, x_unit) = match covariate.unit.as_str() {
+        "" => column_title(&covariate.name),
+        unit => (covariate.name.clone(), unit.to_owned()),
+    };
     Panel {
-        x: covariate.name.clone(),
-        x_unit: covariate.unit.clone(),
+        x,
+        x_unit,
         y: name,
         y_unit: unit,
         series,

@@ -188,7 +188,7 @@ fn range(impact: &Impact) -> Option<(f64, f64)> {
 /// The displacement rate as people can read it, with how it came about. Differences
 /// between neighbouring counts of an encoder are nothing or a whole count: those over
 /// a longer time are shown.
-fn shown_rate(impact: &Impact) -> Option<(String, Samples)> {
+pub(crate) fn shown_rate(impact: &Impact) -> Option<(String, Samples)> {
     if let Some(rate) = impact.rate.as_ref().filter(|rate| !rate.derived) {
         return Some(("measured".to_owned(), rate.clone()));
     }

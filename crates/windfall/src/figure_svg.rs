@@ -1,6 +1,6 @@
 //! A small writer of SVG: what the figures of windfall are drawn with.
 
-use crate::figure_theme::{SERIES, Theme};
+use crate::figure_theme::{SCALE, SERIES, Theme};
 use std::fmt::Write;
 
 /// Fonts of figures, as journals ask for them.
@@ -26,8 +26,12 @@ pub enum Ink {
     Grid,
     /// Text, and rings around named places.
     Text,
+    /// The colour behind everything.
+    Background,
     /// Series of this number; the colours repeat after [`SERIES`].
     Series(usize),
+    /// This step of the scale from low to high; steps beyond it are its ends.
+    Scale(usize),
 }
 
 /// First of the characters that stand for colours until the theme is known. Text
@@ -35,7 +39,7 @@ pub enum Ink {
 const FIRST_INK: u32 = 0xE000;
 
 /// Colours besides those of series.
-const PLAIN_INKS: usize = 3;
+const PLAIN_INKS: usize = 4;
 
 impl Ink {
     /// The character that stands for it.
@@ -44,7 +48,9 @@ impl Ink {
             Self::Frame => 0,
             Self::Grid => 1,
             Self::Text => 2,
+            Self::Background => 3,
             Self::Series(series) => PLAIN_INKS + series % SERIES,
+            Self::Scale(step) => PLAIN_INKS + SERIES + step.min(SCALE - 1),
         };
         char::from_u32(FIRST_INK + index as u32).unwrap_or(' ')
     }
@@ -53,8 +59,9 @@ impl Ink {
 /// Colour that a character stands for, if it stands for one.
 fn colour_of(mark: char, theme: &Theme) -> Option<&'static str> {
     let index = (mark as u32).checked_sub(FIRST_INK)? as usize;
-    let plain = [theme.frame, theme.grid, theme.text];
-    plain.iter().chain(&theme.series).nth(index).copied()
+    let plain = [theme.frame, theme.grid, theme.text, theme.background];
+    let inks = plain.iter().chain(&theme.series).chain(&theme.scale);
+    inks.copied().nth(index)
 }
 
 /// A drawing of a given size; px, y downwards.
@@ -178,6 +185,62 @@ impl Drawing {
             let _ = write!(self.body, "{x:.2},{y:.2} ");
         }
         let _ = writeln!(self.body, r#"" fill="{ink}" fill-opacity="0.16"/>"#);
+    }
+
+    /// A filled area that closed lines enclose: what lies within an odd number of
+    /// them.
+    pub fn area(&mut self, loops: &[Vec<(f64, f64)>], ink: Ink) {
+        let ink = ink.mark();
+        self.body += r#"<path d=""#;
+        for points in loops {
+            for (index, (x, y)) in points.iter().enumerate() {
+                let command = if index == 0 { 'M' } else { 'L' };
+                let _ = write!(self.body, "{command}{x:.1} {y:.1}");
+            }
+            self.body.push('Z');
+        }
+        let _ = writeln!(self.body, r#"" fill="{ink}" fill-rule="evenodd"/>"#);
+    }
+
+    /// A filled shape with corners at points, within a thin line.
+    pub fn facet(&mut self, points: &[(f64, f64)], fill: Ink, edge: Ink) {
+        let (fill, edge) = (fill.mark(), edge.mark());
+        self.body += r#"<polygon points=""#;
+        for (x, y) in points {
+            let _ = write!(self.body, "{x:.1},{y:.1} ");
+        }
+        let _ = writeln!(
+            self.body,
+            r#"" fill="{fill}" stroke="{edge}" stroke-width="0.5" stroke-linejoin="round"/>"#
+        );
+    }
+
+    /// A filled circle within a line of the background's colour, which sets it off
+    /// from what is below it.
+    pub fn spot(&mut self, at: (f64, f64), radius: f64, ink: Ink) {
+        let (ink, around) = (ink.mark(), Ink::Background.mark());
+        let _ = writeln!(
+            self.body,
+            r#"<circle cx="{:.2}" cy="{:.2}" r="{radius}" fill="{ink}" stroke="{around}" stroke-width="1.2"/>"#,
+            at.0, at.1
+        );
+    }
+
+    /// [`text`](Self::text) with a rim of another colour, to be read over lines.
+    pub fn text_over(
+        &mut self,
+        at: (f64, f64),
+        (anchor, size): (Anchor, f64),
+        text: &str,
+        rim: Ink,
+    ) {
+        let rim = rim.mark();
+        let _ = write!(
+            self.body,
+            r#"<g stroke="{rim}" stroke-width="3" stroke-linejoin="round" paint-order="stroke">"#
+        );
+        self.text(at, anchor, size, text);
+        self.body += "</g>\n";
     }
 
     /// The whole as an SVG file.

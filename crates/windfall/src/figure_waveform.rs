@@ -3,11 +3,10 @@
 use crate::calibrate_waveform::RecordedDrop;
 use crate::calibrate_waveform_outcome::{WaveformDropOutcome, WaveformOutcome};
 use crate::error::Error;
-use crate::figure_files::write_figure;
+use crate::figure_files::{FigureFolder, write_figure};
 use crate::figure_xy::{Figure, Panel, Series, Style};
 use crate::law_use::complete_law_among;
 use crate::text_number::plain;
-use std::path::Path;
 use windfall_contact::law::EndRule;
 use windfall_contact::law_kind::{Law, LawKind};
 use windfall_identify::drop_rig::DropRig;
@@ -25,7 +24,7 @@ const AFTER: f64 = 25e-3;
 /// # Errors
 /// A drop cannot be simulated with the law, or a file cannot be written.
 pub fn write_waveform_figures(
-    directory: &Path,
+    folder: &FigureFolder,
     outcome: &WaveformOutcome,
     (rig, end, impacts): (&DropRig, EndRule, usize),
     drops: &[RecordedDrop],
@@ -47,7 +46,7 @@ pub fn write_waveform_figures(
     for fitted in &outcome.drops {
         if let Some(drop) = drops.iter().find(|drop| drop.id == fitted.id) {
             let figure = figure(&law, (rig, end, impacts), fitted, drop)?;
-            write_figure(directory, &format!("waveform-{}", fitted.id), &figure)?;
+            write_figure(folder, &format!("waveform-{}", fitted.id), &figure)?;
         }
     }
     Ok(())

@@ -1,7 +1,8 @@
 //! Figures of one quantity against another: loops, loading curves, spectra.
 
 use crate::error::Error;
-use crate::figure_axis::{axis, unit_label};
+use crate::figure_axis::axis;
+use crate::figure_frame::{Frame, Rectangle};
 use crate::figure_svg::{Anchor, Drawing, Ink};
 use crate::figure_theme::{SERIES, Theme};
 use crate::write_csv::csv_text;
@@ -117,16 +118,18 @@ pub struct Figure {
 /// Draws a figure as an SVG file.
 #[must_use]
 pub fn svg_of_figure(figure: &Figure, theme: &Theme) -> String {
-    drawn(figure).svg(theme)
+    drawing_of_figure(figure).svg(theme)
 }
 
 /// Draws a figure as an element of a page; its title describes it.
 #[must_use]
 pub fn element_of_figure(figure: &Figure, theme: &Theme) -> String {
-    drawn(figure).element(theme, &figure.title)
+    drawing_of_figure(figure).element(theme, &figure.title)
 }
 
-fn drawn(figure: &Figure) -> Drawing {
+/// Draws a figure, whose colours a theme names later.
+#[must_use]
+pub fn drawing_of_figure(figure: &Figure) -> Drawing {
     let rows: Vec<f64> = figure.panels.iter().map(legend_height).collect();
     let room = |legend: &f64| legend + HEIGHT + BOTTOM + 8.0;
     let height = 34.0 + rows.iter().map(room).sum::<f64>();
@@ -194,29 +197,19 @@ fn draw_panel(drawing: &mut Drawing, panel: &Panel, top: f64) {
     let horizontal = axis(low, high, 8);
     let (low, high) = widened(range(panel, |p| p.1), 0.05);
     let vertical = axis(low, high, 6);
-    let place_x =
-        |x: f64| left + (right - left) * (x - horizontal.low) / (horizontal.high - horizontal.low);
-    let place_y = |y: f64| top + HEIGHT * (vertical.high - y) / (vertical.high - vertical.low);
-
-    for (tick, label) in horizontal.ticks.iter().zip(&horizontal.labels) {
-        let x = place_x(*tick);
-        drawing.rule((x, top), (x, bottom), Ink::Grid);
-        drawing.rule((x, bottom), (x, bottom + 4.0), Ink::Frame);
-        drawing.text((x, bottom + 16.0), Anchor::Middle, 10.5, label);
-    }
-    for (tick, label) in vertical.ticks.iter().zip(&vertical.labels) {
-        let y = place_y(*tick);
-        drawing.rule((left, y), (right, y), Ink::Grid);
-        drawing.rule((left - 4.0, y), (left, y), Ink::Frame);
-        drawing.text((left - 7.0, y + 3.6), Anchor::End, 10.5, label);
-    }
-    drawing.rule((left, top), (left, bottom), Ink::Frame);
-    drawing.rule((left, bottom), (right, bottom), Ink::Frame);
-    let title = format!("{}{}", panel.x, unit_label(&panel.x_unit, horizontal.power));
-    let middle = 0.5 * (left + right);
-    drawing.text((middle, bottom + 36.0), Anchor::Middle, 11.5, &title);
-    let title = format!("{}{}", panel.y, unit_label(&panel.y_unit, vertical.power));
-    drawing.turned_text((20.0, top + 0.5 * HEIGHT), 11.5, &title);
+    let frame = Frame {
+        within: Rectangle {
+            left,
+            top,
+            width: right - left,
+            height: HEIGHT,
+        },
+        across: horizontal,
+        up: vertical,
+    };
+    frame.draw_grid(drawing);
+    let (x, y) = ((&*panel.x, &*panel.x_unit), (&*panel.y, &*panel.y_unit));
+    frame.draw_axes(drawing, x, y, LEFT - 20.0);
 
     // Tints first; lines over a cloud of dots, a few dots over lines.
     let layer = |series: &Series| match series.style {
@@ -231,7 +224,7 @@ fn draw_panel(drawing: &mut Drawing, panel: &Panel, top: f64) {
             let index = series.colour.unwrap_or(index);
             let points: Vec<(f64, f64)> = thinned(series)
                 .filter(|(x, y)| x.is_finite() && y.is_finite())
-                .map(|(x, y)| (place_x(x), place_y(y)))
+                .map(|point| frame.place(point))
                 .collect();
             match series.style {
                 Style::Level => points.iter().for_each(|(_, y)| {
@@ -249,7 +242,7 @@ fn draw_panel(drawing: &mut Drawing, panel: &Panel, top: f64) {
         }
     }
     for mark in &panel.marks {
-        let at = (place_x(mark.at.0), place_y(mark.at.1));
+        let at = frame.place(mark.at);
         drawing.ring(at, 4.5, Ink::Text);
         let (x, y, anchor) = match mark.side {
             Side::AboveLeft => (at.0 - 9.0, at.1 - 7.0, Anchor::End),

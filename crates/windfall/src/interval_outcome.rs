@@ -5,6 +5,9 @@ use serde::{Deserialize, Serialize};
 use windfall_identify::fit::Fit;
 use windfall_identify::interval::{IntervalDetail, ProfileCurve};
 
+/// Draws of a posterior that are kept, to be looked at.
+const KEPT: usize = 500;
+
 /// How the intervals of a fit came about.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct IntervalOutcome {
@@ -28,6 +31,9 @@ pub struct IntervalOutcome {
     /// How well the chains of each parameter agree.
     #[serde(default = "nothing", skip_serializing_if = "is_empty")]
     pub mixing: Named<MixingOutcome>,
+    /// Some draws of each parameter, evenly spaced among all; SI.
+    #[serde(default = "nothing", skip_serializing_if = "is_empty")]
+    pub drawn: Named<Vec<f64>>,
     /// Profile of each parameter.
     #[serde(default = "nothing", skip_serializing_if = "is_empty")]
     pub profiles: Named<ProfileOutcome>,
@@ -99,11 +105,22 @@ pub fn interval_outcome(fit: &Fit) -> IntervalOutcome {
                 chains: Some(found.chains),
                 draws: Some(found.draws.first().map_or(0, Vec::len)),
                 divergences: Some(found.divergences),
+                drawn: Named(
+                    names()
+                        .zip(found.draws.iter().map(|d| thinned(d)))
+                        .collect(),
+                ),
                 mixing: Named(names().zip(mixing).collect()),
                 ..method("posterior")
             }
         }
     }
+}
+
+/// Draws evenly spaced among all, so that every chain has its share.
+fn thinned(draws: &[f64]) -> Vec<f64> {
+    let step = draws.len().div_ceil(KEPT).max(1);
+    draws.iter().step_by(step).copied().collect()
 }
 
 fn profile(curve: &ProfileCurve) -> ProfileOutcome {

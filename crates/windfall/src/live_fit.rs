@@ -5,7 +5,7 @@ use crate::campaign::{Campaign, ImpactEntry};
 use crate::equal_command::command_of_fit;
 use crate::error::Error;
 use crate::extract_recording::extract_entry;
-use crate::figure_impact::{FittedImpact, line_of_law, motion_at};
+use crate::figure_impact::{FittedImpact, line_of_law, motion_at, shown_rate};
 use crate::fit_impact::fit_law;
 use crate::fit_mass::{RigFound, find_rig};
 use crate::named::Named;
@@ -299,14 +299,19 @@ fn named_series(impact: &Impact) -> [(&'static str, Option<&Series>); 4] {
 }
 
 fn measured(impact: &Impact) -> Named<ShownSamples> {
-    let present = named_series(impact)
-        .into_iter()
-        .filter_map(|(name, series)| Some((name.to_owned(), series?)));
-    Named(
-        present
-            .map(|(name, series)| (name, shown_samples(&series.times, &series.values)))
-            .collect(),
-    )
+    let mut shown = Vec::new();
+    for (name, series) in named_series(impact) {
+        if let (Some(series), true) = (series, name != "rate") {
+            let samples = shown_samples(&series.times, &series.values);
+            shown.push((name.to_owned(), samples));
+        }
+    }
+    // Differences of neighbouring counts would be nothing or a whole count.
+    if let Some((_, rate)) = shown_rate(impact) {
+        let samples = shown_samples(&rate.times, &rate.values);
+        shown.push(("rate".to_owned(), samples));
+    }
+    Named(shown)
 }
 
 /// Every n-th sample, so that few enough are left.

@@ -4,11 +4,12 @@ use crate::campaign::Campaign;
 use crate::error::Error;
 use crate::extract_recording::extract_recording;
 use crate::figure_campaign::{
-    NamedFigure, estimated_parameters, figure_of_pairs, figure_of_predictions, groups_of_impacts,
+    estimated_parameters, figure_of_pairs, figure_of_predictions, groups_of_impacts,
 };
 use crate::figure_covariate::{covariates_of, figure_of_covariate};
-use crate::figure_files::file_name;
+use crate::figure_files::{NamedFigure, file_name};
 use crate::figure_impact::figure_of_impact;
+use crate::figure_posterior::figure_of_posterior;
 use crate::figure_profiles::figure_of_profiles;
 use crate::figure_residuals::figure_of_residuals;
 use crate::fit_mass::RigFound;
@@ -227,6 +228,14 @@ fn examples(
             caption: format!(
                 "Impact {id}: profile of the likelihood, maximal over all other parameters. Where it \
                  leaves the broken parabola, estimate ± standard deviation does not tell all."
+            ),
+            figure,
+        }));
+        figures.extend(figure_of_posterior(&title, shown).map(|figure| NamedFigure {
+            name: file_name(&format!("impact-{id}-posterior")),
+            caption: format!(
+                "Impact {id}: how probable each value of a parameter is after the recording, with \
+                 the 95 % interval, and draws of the parameters of the law against each other."
             ),
             figure,
         }));

@@ -3,10 +3,11 @@
 use crate::campaign::{Campaign, MassPlan, RigPlan};
 use crate::outcome::CampaignOutcome;
 use crate::text_number::plain;
+use windfall_contact::expression::LawExpression;
 use windfall_contact::law::EndRule;
 use windfall_identify::interval::IntervalMethod;
 use windfall_identify::problem::{FitOptions, NoiseModel, Weighting};
-use windfall_signal::conditioning::ChannelFilter;
+use windfall_signal::conditioning::{ChannelFilter, Conditioning};
 use windfall_signal::filter_butterworth::Band;
 use windfall_signal::options::RateMethod;
 use windfall_signal::trigger::{Baseline, Orientation, Threshold};
@@ -15,7 +16,7 @@ use windfall_signal::trigger::{Baseline, Orientation, Threshold};
 #[must_use]
 pub fn methods(campaign: &Campaign, outcome: &CampaignOutcome) -> Vec<String> {
     let mut paragraphs = vec![rig(campaign, outcome), signals(campaign)];
-    paragraphs.extend(laws(campaign));
+    paragraphs.extend(laws_text(&campaign.fit.laws, &campaign.fit.free));
     paragraphs.push(cost(&campaign.fit.options));
     paragraphs.push(nuisances(&campaign.fit.options, outcome));
     paragraphs.push(intervals(&campaign.fit.options));
@@ -57,18 +58,7 @@ fn rig(campaign: &Campaign, outcome: &CampaignOutcome) -> String {
 fn signals(campaign: &Campaign) -> String {
     let contact = &campaign.contact;
     let trigger = &contact.trigger;
-    let threshold = match trigger.threshold {
-        Threshold::Fixed(force) => format!("exceeded {} N", force),
-        Threshold::Automatic {
-            deviations,
-            least,
-            share,
-        } => format!(
-            "exceeded the largest of {} standard deviations of its noise before contact, {} N \
-             and {} of its peak",
-            deviations, least, share
-        ),
-    };
+    let threshold = threshold_text(&trigger.threshold);
     let baseline = match trigger.baseline {
         Baseline::Remove => "The mean force before contact was subtracted.",
         Baseline::Drift => {
@@ -96,23 +86,7 @@ fn signals(campaign: &Campaign) -> String {
             "the derivative of local polynomials (Savitzky-Golay) of the displacement"
         }
     };
-    let filters = [
-        ("force", contact.conditioning.force),
-        ("position", contact.conditioning.position),
-        ("displacement rate", contact.conditioning.rate),
-        ("acceleration", contact.conditioning.acceleration),
-    ];
-    let filters: Vec<String> = filters
-        .iter()
-        .filter_map(|(name, filter)| filter.map(|f| format!("{name} {}", filter_text(&f))))
-        .collect();
-    let filters = match filters.is_empty() {
-        true => "No channel was filtered.".to_owned(),
-        false => format!(
-            "Filters (Butterworth, forwards and backwards): {}.",
-            filters.join("; ")
-        ),
-    };
+    let filters = filters_text(&contact.conditioning);
     let tip = contact
         .conditioning
         .tip_mass
@@ -126,6 +100,43 @@ fn signals(campaign: &Campaign) -> String {
     )
 }
 
+/// "exceeded 1 N".
+pub(crate) fn threshold_text(threshold: &Threshold) -> String {
+    match *threshold {
+        Threshold::Fixed(force) => format!("exceeded {} N", force),
+        Threshold::Automatic {
+            deviations,
+            least,
+            share,
+        } => format!(
+            "exceeded the largest of {} standard deviations of its noise before contact, {} N \
+             and {} of its peak",
+            deviations, least, share
+        ),
+    }
+}
+
+/// Which channels were filtered, and how.
+pub(crate) fn filters_text(conditioning: &Conditioning) -> String {
+    let filters = [
+        ("force", conditioning.force),
+        ("position", conditioning.position),
+        ("displacement rate", conditioning.rate),
+        ("acceleration", conditioning.acceleration),
+    ];
+    let filters: Vec<String> = filters
+        .iter()
+        .filter_map(|(name, filter)| filter.map(|f| format!("{name} {}", filter_text(&f))))
+        .collect();
+    match filters.is_empty() {
+        true => "No channel was filtered.".to_owned(),
+        false => format!(
+            "Filters (Butterworth, forwards and backwards): {}.",
+            filters.join("; ")
+        ),
+    }
+}
+
 fn filter_text(filter: &ChannelFilter) -> String {
     let band = match filter.band {
         Band::LowPass(cutoff) => format!("low-pass {} Hz", cutoff),
@@ -135,9 +146,9 @@ fn filter_text(filter: &ChannelFilter) -> String {
     format!("{band}, order {}", filter.order)
 }
 
-fn laws(campaign: &Campaign) -> Vec<String> {
-    let free = &campaign.fit.free;
-    let of = |law: &windfall_contact::expression::LawExpression| {
+/// A sentence on each law.
+pub(crate) fn laws_text(laws: &[LawExpression], free: &[String]) -> Vec<String> {
+    let of = |law: &LawExpression| {
         let about = law.kind.describe();
         let also: Vec<&str> = free
             .iter()
@@ -150,7 +161,7 @@ fn laws(campaign: &Campaign) -> Vec<String> {
         };
         format!("Law {law}: {} ({}).{also}", about.formula, about.source)
     };
-    campaign.fit.laws.iter().map(of).collect()
+    laws.iter().map(of).collect()
 }
 
 fn cost(options: &FitOptions) -> String {

@@ -1,6 +1,6 @@
 //! A report as one HTML page that needs nothing else: no file, no network.
 
-use crate::figure_campaign::NamedFigure;
+use crate::figure_files::NamedFigure;
 use crate::figure_theme::{DARK, LIGHT, PAGE, declarations};
 use crate::figure_xy::element_of_figure;
 use crate::outcome::{FailureOutcome, FindingOutcome};

@@ -3,6 +3,7 @@
 use crate::campaign::{Campaign, ImpactEntry, Specimen};
 use crate::campaign_kind::CampaignKind;
 use crate::error::Error;
+use crate::figure_files::FigureFolder;
 use crate::item_campaign::ItemCampaign;
 use crate::option_value::{chosen, unusable};
 use crate::read_fit::{
@@ -53,8 +54,8 @@ pub struct FitRequest {
     pub group: Option<String>,
     /// What becomes of results in the store.
     pub reuse: Reuse,
-    /// Directory for a figure of each recording, with its data as CSV.
-    pub figures: Option<PathBuf>,
+    /// Where a figure of each recording goes, with its data as CSV.
+    pub figures: Option<FigureFolder>,
     /// Where the law is written as a law card.
     pub card: Option<PathBuf>,
     /// Number of threads; all cores when `None`. It never changes a result.

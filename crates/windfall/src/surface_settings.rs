@@ -168,7 +168,10 @@ fn region(request: &SettingsRequest, coded: &CodedFactors) -> Result<Region, Err
 }
 
 /// Held factors with their coded values.
-fn held(request: &SettingsRequest, coded: &CodedFactors) -> Result<Vec<(usize, f64)>, Error> {
+pub(crate) fn held(
+    request: &SettingsRequest,
+    coded: &CodedFactors,
+) -> Result<Vec<(usize, f64)>, Error> {
     let parsed = request.hold.iter().map(|text| {
         let expected = || unusable(format!("--hold {text}"), "expected FACTOR=VALUE");
         let (name, value) = text.split_once('=').ok_or_else(expected)?;

@@ -1,11 +1,12 @@
 //! `windfall fit DIR` for a campaign of taps.
 
 use crate::any_outcome::AnyOutcome;
+use crate::campaign::ImpactEntry;
 use crate::error::Error;
 use crate::evaluate::{Evaluation, evaluate};
 use crate::evaluate_acoustic::{evaluate_taps, taps_of_entry};
 use crate::figure_acoustic::figure_of_taps;
-use crate::figure_files::write_figure;
+use crate::figure_files::{FigureFolder, NamedFigure, file_name, write_figure};
 use crate::item_campaign::group_of;
 use crate::measured::{MeasuredItem, MeasuredOutcome, ShownValue, groups_of, spread_of};
 use crate::on_threads::on_threads;
@@ -13,6 +14,8 @@ use crate::progress::Progress;
 use crate::provenance::VERSION;
 use crate::read_acoustic::{AcousticCampaign, read_acoustic};
 use crate::read_recording::read_recording;
+use crate::report_methods_items::methods_of_taps;
+use crate::reported_items::{ReportedItems, shown_entries, shown_words};
 use crate::request_fit::{FitRequest, apply_request_to_items};
 use crate::specimen_acoustic::{METHOD, TapsOfEntry, acoustic_results};
 use crate::workflow_fit::STORE_FILE;
@@ -52,52 +55,96 @@ pub fn fit_taps(
     request: &FitRequest,
     progress: Progress,
 ) -> Result<AnyOutcome, Error> {
+    let campaign = campaign_of(directory, request)?;
+    on_threads(request.threads, || {
+        evaluated(&campaign, request, progress, |entries, outcome| {
+            if let Some(figures) = &request.figures {
+                draw(&campaign, entries, &outcome.specimens, figures)?;
+            }
+            Ok(AnyOutcome::Measured(Box::new(outcome)))
+        })
+    })
+}
+
+/// [`fit_taps`], with what a report says and shows of it.
+pub(crate) fn reported_taps(
+    directory: &Path,
+    request: &FitRequest,
+    progress: Progress,
+) -> Result<ReportedItems, Error> {
+    let campaign = campaign_of(directory, request)?;
+    on_threads(request.threads, || {
+        evaluated(&campaign, request, progress, |entries, outcome| {
+            let of = |entry: &ImpactEntry| entries.iter().find(|e| e.entry.id == entry.id);
+            let shown = shown_entries(&campaign.shared, |entry| of(entry).is_some());
+            let figures = shown
+                .iter()
+                .filter_map(|entry| of(entry))
+                .map(|own| figure_of_entry(&campaign, own, &outcome.specimens))
+                .collect::<Result<_, Error>>()?;
+            Ok(ReportedItems {
+                figures,
+                shown: shown_words(&campaign.shared, shown.len()),
+                methods: methods_of_taps(&campaign),
+                campaign: campaign.shared.clone(),
+                outcome,
+            })
+        })
+    })
+}
+
+fn campaign_of(directory: &Path, request: &FitRequest) -> Result<AcousticCampaign, Error> {
     let mut campaign = read_acoustic(directory)?;
     apply_request_to_items(&mut campaign.shared, request)?;
-    on_threads(request.threads, || {
-        let campaign = &campaign;
-        let evaluated = evaluate(
-            &Evaluation {
-                campaign: &campaign.shared,
-                store: &campaign.shared.directory.join(STORE_FILE),
-                reuse: request.reuse,
-                depends_on: &|_| format!("{:?} {:?}", campaign.taps, campaign.resonances),
-                work: &|entry, recording| evaluate_taps(campaign, entry, recording),
-            },
-            progress,
-        )?;
-        let entries = evaluated.items.into_iter().map(|(position, taps)| {
-            let entry = &campaign.shared.entries[position];
-            TapsOfEntry {
-                entry,
-                group: group_of(&campaign.shared, entry),
-                taps,
-            }
-        });
-        let entries: Vec<TapsOfEntry> = entries.collect();
-        let results = acoustic_results(campaign, &entries)?;
-        if let Some(figures) = &request.figures {
-            draw(campaign, &entries, &results.specimens, figures)?;
+    Ok(campaign)
+}
+
+/// Evaluates the taps, and goes on with those of each recording and the results.
+fn evaluated<T>(
+    campaign: &AcousticCampaign,
+    request: &FitRequest,
+    progress: Progress,
+    go_on: impl FnOnce(&[TapsOfEntry], MeasuredOutcome) -> Result<T, Error>,
+) -> Result<T, Error> {
+    let evaluated = evaluate(
+        &Evaluation {
+            campaign: &campaign.shared,
+            store: &campaign.shared.directory.join(STORE_FILE),
+            reuse: request.reuse,
+            depends_on: &|_| format!("{:?} {:?}", campaign.taps, campaign.resonances),
+            work: &|entry, recording| evaluate_taps(campaign, entry, recording),
+        },
+        progress,
+    )?;
+    let entries = evaluated.items.into_iter().map(|(position, taps)| {
+        let entry = &campaign.shared.entries[position];
+        TapsOfEntry {
+            entry,
+            group: group_of(&campaign.shared, entry),
+            taps,
         }
-        Ok(AnyOutcome::Measured(Box::new(MeasuredOutcome {
-            parts: Vec::new(),
-            shown_of_parts: Vec::new(),
-            windfall: VERSION.to_owned(),
-            campaign: campaign.shared.title.clone(),
-            kind: campaign.shared.kind.name().to_owned(),
-            simulated: campaign.shared.simulated.clone(),
-            status: evaluated.status,
-            failed: evaluated.failed,
-            whole: Vec::new(),
-            summary: spread_of(&results.specimens, METHOD, None).values,
-            groups: groups_of(&results.specimens),
-            findings: Vec::new(),
-            shown: SHOWN.to_vec(),
-            shown_of_specimens: SHOWN_OF_SPECIMENS.to_vec(),
-            impacts: results.taps,
-            specimens: results.specimens,
-        })))
-    })
+    });
+    let entries: Vec<TapsOfEntry> = entries.collect();
+    let results = acoustic_results(campaign, &entries)?;
+    let outcome = MeasuredOutcome {
+        parts: Vec::new(),
+        shown_of_parts: Vec::new(),
+        windfall: VERSION.to_owned(),
+        campaign: campaign.shared.title.clone(),
+        kind: campaign.shared.kind.name().to_owned(),
+        simulated: campaign.shared.simulated.clone(),
+        status: evaluated.status,
+        failed: evaluated.failed,
+        whole: Vec::new(),
+        summary: spread_of(&results.specimens, METHOD, None).values,
+        groups: groups_of(&results.specimens),
+        findings: Vec::new(),
+        shown: SHOWN.to_vec(),
+        shown_of_specimens: SHOWN_OF_SPECIMENS.to_vec(),
+        impacts: results.taps,
+        specimens: results.specimens,
+    };
+    go_on(&entries, outcome)
 }
 
 /// A figure of every recording that could be evaluated.
@@ -105,28 +152,46 @@ fn draw(
     campaign: &AcousticCampaign,
     entries: &[TapsOfEntry],
     specimens: &[MeasuredItem],
-    directory: &Path,
+    folder: &FigureFolder,
 ) -> Result<(), Error> {
     for evaluated in entries {
-        let entry = evaluated.entry;
-        let specimen = specimens.iter().find(|item| item.id == entry.specimen);
-        let recording = read_recording(&campaign.shared.files, entry)?;
-        let (channel, taps) = taps_of_entry(campaign, entry, &recording)?;
-        let sounds: Vec<&[f64]> = taps
-            .taps
-            .iter()
-            .map(|tap| &channel.samples[tap.ringing.clone()])
-            .collect();
-        let band = (campaign.taps.low, campaign.taps.high);
-        let accepted = specimen.and_then(|item| item.derived.get("acoustic_frequency"));
-        let figure = figure_of_taps(
-            &entry.id,
-            &sounds,
-            taps.interval,
-            band,
-            (&evaluated.taps, accepted.map(|value| value.value)),
-        );
-        write_figure(directory, &entry.id, &figure)?;
+        let named = figure_of_entry(campaign, evaluated, specimens)?;
+        write_figure(folder, &named.name, &named.figure)?;
     }
     Ok(())
+}
+
+/// The figure of a recording.
+fn figure_of_entry(
+    campaign: &AcousticCampaign,
+    evaluated: &TapsOfEntry,
+    specimens: &[MeasuredItem],
+) -> Result<NamedFigure, Error> {
+    let entry = evaluated.entry;
+    let specimen = specimens.iter().find(|item| item.id == entry.specimen);
+    let recording = read_recording(&campaign.shared.files, entry)?;
+    let (channel, taps) = taps_of_entry(campaign, entry, &recording)?;
+    let sounds: Vec<&[f64]> = taps
+        .taps
+        .iter()
+        .map(|tap| &channel.samples[tap.ringing.clone()])
+        .collect();
+    let band = (campaign.taps.low, campaign.taps.high);
+    let accepted = specimen.and_then(|item| item.derived.get("acoustic_frequency"));
+    let figure = figure_of_taps(
+        &entry.id,
+        &sounds,
+        taps.interval,
+        band,
+        (&evaluated.taps, accepted.map(|value| value.value)),
+    );
+    Ok(NamedFigure {
+        name: file_name(&entry.id),
+        caption: format!(
+            "{}: spectrum of each tap with its resonances, and the one taken for the first \
+             spheroidal mode of the fruit.",
+            entry.id
+        ),
+        figure,
+    })
 }

@@ -19,6 +19,7 @@ use crate::error::Error;
 use crate::evaluate::Evaluated;
 use crate::evaluate_drop::MeasuredDrop;
 use crate::figure_calibrate::write_calibrate_figures;
+use crate::figure_files::FigureFolder;
 use crate::figure_waveform::write_waveform_figures;
 use crate::outcome::{FailureOutcome, FindingOutcome, StatusOutcome};
 use crate::plate_ringing::{PlateEstimate, plate_of};
@@ -31,6 +32,7 @@ use crate::regress_findings::finding;
 use crate::request_fit::Reuse;
 use crate::workflow_drop::measured_drops;
 use crate::write_calibrate_tables::write_calibrate_tables;
+use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
 use windfall_identify::drop_feature_problem::FeatureProblem;
 
@@ -40,7 +42,7 @@ pub struct CalibrateRequest {
     /// Ways in place of the campaign's.
     pub ways: Vec<Way>,
     /// Where figures go, if anywhere.
-    pub figures: Option<PathBuf>,
+    pub figures: Option<FigureFolder>,
     /// Where the tables of the study go, if anywhere.
     pub tables: Option<PathBuf>,
     /// Where the law card goes, if anywhere.
@@ -77,7 +79,7 @@ pub fn calibrate(
     let campaign = read_drop(directory)?;
     crate::on_threads::on_threads(request.threads, || {
         let seen = feature_drops(&campaign, progress)?;
-        let outcome = calibrated(&campaign, request, seen)?;
+        let outcome = calibrated(&campaign, request, seen, progress)?;
         keep_calibration(&campaign, &outcome)?;
         if let Some(figures) = &request.figures {
             write_calibrate_figures(figures, &outcome)?;
@@ -161,6 +163,7 @@ fn calibrated(
     campaign: &DropCampaign,
     request: &CalibrateRequest,
     seen: Seen,
+    progress: Progress,
 ) -> Result<CalibrateOutcome, Error> {
     let Seen {
         drops,
@@ -209,7 +212,8 @@ fn calibrated(
         failed,
         findings,
     };
-    by_features(&work, request, &mut outcome)?;
+    by_features(&work, request, &mut outcome, progress)?;
+    still_wanted(&work, progress)?;
     if work.ways.contains(&Way::Design) {
         let setting = DesignSetting {
             law: &work.law,
@@ -226,11 +230,20 @@ fn calibrated(
     Ok(outcome)
 }
 
+/// Between two pieces of work that are done in one go.
+fn still_wanted(work: &Work, progress: Progress) -> Result<(), Error> {
+    match progress(work.drops.len(), work.drops.len()) {
+        ControlFlow::Continue(()) => Ok(()),
+        ControlFlow::Break(()) => Err(Error::Cancelled),
+    }
+}
+
 /// Features, the line that the target leaves, what closes it and what to do next.
 fn by_features(
     work: &Work,
     request: &CalibrateRequest,
     outcome: &mut CalibrateOutcome,
+    progress: Progress,
 ) -> Result<(), Error> {
     let end = work.own.end;
     // Where features only give a start, one drop of each height is enough.
@@ -244,7 +257,9 @@ fn by_features(
         // Features that tell all parameters give the better start.
         let told = fitted.converged && fitted.information.rank == work.law.count();
         let start = if told { &fitted.law } else { &work.law.start };
+        still_wanted(work, progress)?;
         let drops = recorded_drops(work.campaign)?;
+        still_wanted(work, progress)?;
         let law = (start, &work.own.free[..]);
         let rig = &work.rig.rig;
         let (waveform, found) = waveform_outcome(work.campaign, law, end, rig, &drops)?;
@@ -261,6 +276,7 @@ fn by_features(
         outcome.waveform = Some(waveform);
         outcome.findings.extend(of_way("waveform", found));
     }
+    still_wanted(work, progress)?;
     if work.ways.contains(&Way::Features) {
         let (features, found) = features_outcome(&work.law, &work.drops, &work.problem, &fitted);
         outcome.features = Some(features);

@@ -8,7 +8,7 @@ use crate::evaluate_compression::{
     evaluate_compression, fitted_part, loading_curve, parameters_of, radii_of_entry,
 };
 use crate::figure_compression::figure_of_compression;
-use crate::figure_files::write_figure;
+use crate::figure_files::{FigureFolder, NamedFigure, file_name, write_figure};
 use crate::measured::{
     MeasuredItem, MeasuredItems, MeasuredOutcome, ShownValue, groups_of, laws_of, plain_value,
     spread_of,
@@ -20,6 +20,8 @@ use crate::progress::Progress;
 use crate::provenance::VERSION;
 use crate::read_compression::{CompressionCampaign, read_compression};
 use crate::read_recording::read_recording;
+use crate::report_methods_items::methods_of_compression;
+use crate::reported_items::{ReportedItems, shown_entries, shown_words};
 use crate::request_fit::{FitRequest, apply_request_to_items, laws_and_free};
 use crate::workflow_fit::STORE_FILE;
 use std::path::Path;
@@ -58,68 +60,117 @@ pub fn fit_compressions(
     request: &FitRequest,
     progress: Progress,
 ) -> Result<AnyOutcome, Error> {
+    let campaign = campaign_of(directory, request)?;
+    on_threads(request.threads, || {
+        let outcome = evaluated(&campaign, request, progress)?;
+        if let Some(figures) = &request.figures {
+            draw(&campaign, figures)?;
+        }
+        Ok(AnyOutcome::Measured(Box::new(outcome)))
+    })
+}
+
+/// [`fit_compressions`], with what a report says and shows of it.
+pub(crate) fn reported_compressions(
+    directory: &Path,
+    request: &FitRequest,
+    progress: Progress,
+) -> Result<ReportedItems, Error> {
+    let campaign = campaign_of(directory, request)?;
+    on_threads(request.threads, || {
+        let outcome = evaluated(&campaign, request, progress)?;
+        let known = |entry: &ImpactEntry| outcome.impacts.iter().any(|item| item.id == entry.id);
+        let shown = shown_entries(&campaign.shared, known);
+        let figures = shown.iter().filter_map(|e| figure_of_entry(&campaign, e));
+        Ok(ReportedItems {
+            figures: figures.collect(),
+            shown: shown_words(&campaign.shared, shown.len()),
+            methods: methods_of_compression(&campaign),
+            outcome,
+            campaign: campaign.shared,
+        })
+    })
+}
+
+fn campaign_of(directory: &Path, request: &FitRequest) -> Result<CompressionCampaign, Error> {
     let mut campaign = read_compression(directory)?;
     apply_request_to_items(&mut campaign.shared, request)?;
     laws_and_free(&mut campaign.laws, &mut campaign.free, &[], request)?;
-    on_threads(request.threads, || {
-        let campaign = &campaign;
-        let evaluated = evaluate::<MeasuredItems>(
-            &Evaluation {
-                campaign: &campaign.shared,
-                store: &campaign.shared.directory.join(STORE_FILE),
-                reuse: request.reuse,
-                depends_on: &|entry| depends_on(campaign, entry),
-                work: &|entry, recording| evaluate_compression(campaign, entry, recording),
-            },
-            progress,
-        )?;
-        if let Some(figures) = &request.figures {
-            draw(campaign, figures)?;
-        }
-        let items: Vec<MeasuredItem> = evaluated
-            .items
-            .into_iter()
-            .flat_map(|(_, items)| items.items)
-            .collect();
-        let first_law = laws_of(&items).first().map_or("", |law| *law).to_owned();
-        Ok(AnyOutcome::Measured(Box::new(MeasuredOutcome {
-            parts: Vec::new(),
-            shown_of_parts: Vec::new(),
-            windfall: VERSION.to_owned(),
-            campaign: campaign.shared.title.clone(),
-            kind: campaign.shared.kind.name().to_owned(),
-            simulated: campaign.shared.simulated.clone(),
-            status: evaluated.status,
-            failed: evaluated.failed,
-            specimens: joint_fits(campaign)?,
-            whole: Vec::new(),
-            summary: spread_of(&items, &first_law, None).values,
-            groups: groups_of(&items),
-            findings: Vec::new(),
-            shown: SHOWN.to_vec(),
-            shown_of_specimens: SHOWN[..3].to_vec(),
-            impacts: items,
-        })))
+    Ok(campaign)
+}
+
+fn evaluated(
+    campaign: &CompressionCampaign,
+    request: &FitRequest,
+    progress: Progress,
+) -> Result<MeasuredOutcome, Error> {
+    let evaluated = evaluate::<MeasuredItems>(
+        &Evaluation {
+            campaign: &campaign.shared,
+            store: &campaign.shared.directory.join(STORE_FILE),
+            reuse: request.reuse,
+            depends_on: &|entry| depends_on(campaign, entry),
+            work: &|entry, recording| evaluate_compression(campaign, entry, recording),
+        },
+        progress,
+    )?;
+    let items: Vec<MeasuredItem> = evaluated
+        .items
+        .into_iter()
+        .flat_map(|(_, items)| items.items)
+        .collect();
+    let first_law = laws_of(&items).first().map_or("", |law| *law).to_owned();
+    Ok(MeasuredOutcome {
+        parts: Vec::new(),
+        shown_of_parts: Vec::new(),
+        windfall: VERSION.to_owned(),
+        campaign: campaign.shared.title.clone(),
+        kind: campaign.shared.kind.name().to_owned(),
+        simulated: campaign.shared.simulated.clone(),
+        status: evaluated.status,
+        failed: evaluated.failed,
+        specimens: joint_fits(campaign)?,
+        whole: Vec::new(),
+        summary: spread_of(&items, &first_law, None).values,
+        groups: groups_of(&items),
+        findings: Vec::new(),
+        shown: SHOWN.to_vec(),
+        shown_of_specimens: SHOWN[..3].to_vec(),
+        impacts: items,
     })
 }
 
 /// A figure of every recording that can be evaluated.
-fn draw(campaign: &CompressionCampaign, directory: &Path) -> Result<(), Error> {
+fn draw(campaign: &CompressionCampaign, folder: &FigureFolder) -> Result<(), Error> {
     for entry in &campaign.shared.entries {
-        let curve = read_recording(&campaign.shared.files, entry)
-            .and_then(|recording| loading_curve(campaign, entry, &recording));
-        // One that cannot be read is told among the recordings.
-        let Ok(curve) = curve else { continue };
-        let fit = |law| {
-            let part = fitted_part(campaign, &curve, law);
-            let fit = fit_compression(std::slice::from_ref(&part), law, &campaign.free).ok()?;
-            Some((part, fit))
-        };
-        let fits: Vec<_> = campaign.laws.iter().filter_map(fit).collect();
-        let figure = figure_of_compression(&entry.id, &curve, &fits);
-        write_figure(directory, &entry.id, &figure)?;
+        if let Some(named) = figure_of_entry(campaign, entry) {
+            write_figure(folder, &named.name, &named.figure)?;
+        }
     }
     Ok(())
+}
+
+/// The figure of a recording; `None` of one that cannot be read, which is told among
+/// the recordings.
+fn figure_of_entry(campaign: &CompressionCampaign, entry: &ImpactEntry) -> Option<NamedFigure> {
+    let curve = read_recording(&campaign.shared.files, entry)
+        .and_then(|recording| loading_curve(campaign, entry, &recording))
+        .ok()?;
+    let fit = |law| {
+        let part = fitted_part(campaign, &curve, law);
+        let fit = fit_compression(std::slice::from_ref(&part), law, &campaign.free).ok()?;
+        Some((part, fit))
+    };
+    let fits: Vec<_> = campaign.laws.iter().filter_map(fit).collect();
+    Some(NamedFigure {
+        name: file_name(&entry.id),
+        caption: format!(
+            "{}: loading curve with bioyield and softening where it shows them, and the fitted \
+             laws over the part that they were fitted to.",
+            entry.id
+        ),
+        figure: figure_of_compression(&entry.id, &curve, &fits),
+    })
 }
 
 /// Everything besides the recording that a result depends on.

@@ -1,11 +1,12 @@
 //! `windfall fit DIR` for a campaign of drops.
 
 use crate::any_outcome::AnyOutcome;
+use crate::campaign::ImpactEntry;
 use crate::error::Error;
 use crate::evaluate::{Evaluated, Evaluation, evaluate};
 use crate::evaluate_drop::{MeasuredDrop, bounce_options, bounce_train, evaluate_drop};
 use crate::figure_drop::figure_of_drop;
-use crate::figure_files::write_figure;
+use crate::figure_files::{FigureFolder, NamedFigure, file_name, write_figure};
 use crate::item_campaign::group_of;
 use crate::measured::{MeasuredItem, MeasuredOutcome, ShownValue, groups_of, spread_of};
 use crate::on_threads::on_threads;
@@ -14,6 +15,8 @@ use crate::progress::Progress;
 use crate::provenance::VERSION;
 use crate::read_drop::{DropCampaign, drop_of, read_drop};
 use crate::read_recording::read_recording;
+use crate::report_methods_items::methods_of_drops;
+use crate::reported_items::{ReportedItems, shown_entries, shown_words};
 use crate::request_fit::{FitRequest, Reuse, apply_request_to_items};
 use crate::workflow_fit::STORE_FILE;
 use std::path::Path;
@@ -100,51 +103,97 @@ pub fn fit_drops(
     request: &FitRequest,
     progress: Progress,
 ) -> Result<AnyOutcome, Error> {
-    let mut campaign = read_drop(directory)?;
-    apply_request_to_items(&mut campaign.shared, request)?;
+    let campaign = campaign_of(directory, request)?;
     on_threads(request.threads, || {
-        let evaluated = measured_drops(&campaign, request.reuse, progress)?;
+        let outcome = evaluated(&campaign, request, progress)?;
         if let Some(figures) = &request.figures {
             draw(&campaign, figures)?;
         }
-        let drops: Vec<MeasuredDrop> = evaluated.items.into_iter().map(|(_, drop)| drop).collect();
-        let items: Vec<MeasuredItem> = drops.iter().map(|drop| drop.item.clone()).collect();
-        let law = items.first().map_or("", |item| &item.law);
-        Ok(AnyOutcome::Measured(Box::new(MeasuredOutcome {
-            windfall: VERSION.to_owned(),
-            campaign: campaign.shared.title.clone(),
-            kind: campaign.shared.kind.name().to_owned(),
-            simulated: campaign.shared.simulated.clone(),
-            status: evaluated.status,
-            parts: drops.iter().flat_map(|drop| drop.parts.clone()).collect(),
-            failed: evaluated.failed,
-            specimens: Vec::new(),
-            whole: plate_items(&campaign, &drops),
-            summary: spread_of(&items, law, None).values,
-            groups: groups_of(&items),
-            findings: Vec::new(),
-            shown: SHOWN.to_vec(),
-            shown_of_parts: SHOWN_OF_BOUNCES.to_vec(),
-            shown_of_specimens: SHOWN_OF_PLATE.to_vec(),
-            impacts: items,
-        })))
+        Ok(AnyOutcome::Measured(Box::new(outcome)))
+    })
+}
+
+/// [`fit_drops`], with what a report says and shows of it.
+pub(crate) fn reported_drops(
+    directory: &Path,
+    request: &FitRequest,
+    progress: Progress,
+) -> Result<ReportedItems, Error> {
+    let campaign = campaign_of(directory, request)?;
+    on_threads(request.threads, || {
+        let outcome = evaluated(&campaign, request, progress)?;
+        let known = |entry: &ImpactEntry| outcome.impacts.iter().any(|item| item.id == entry.id);
+        let shown = shown_entries(&campaign.shared, known);
+        let figures = shown.iter().filter_map(|e| figure_of_entry(&campaign, e));
+        Ok(ReportedItems {
+            figures: figures.collect(),
+            shown: shown_words(&campaign.shared, shown.len()),
+            methods: methods_of_drops(&campaign),
+            outcome,
+            campaign: campaign.shared,
+        })
+    })
+}
+
+fn campaign_of(directory: &Path, request: &FitRequest) -> Result<DropCampaign, Error> {
+    let mut campaign = read_drop(directory)?;
+    apply_request_to_items(&mut campaign.shared, request)?;
+    Ok(campaign)
+}
+
+fn evaluated(
+    campaign: &DropCampaign,
+    request: &FitRequest,
+    progress: Progress,
+) -> Result<MeasuredOutcome, Error> {
+    let evaluated = measured_drops(campaign, request.reuse, progress)?;
+    let drops: Vec<MeasuredDrop> = evaluated.items.into_iter().map(|(_, drop)| drop).collect();
+    let items: Vec<MeasuredItem> = drops.iter().map(|drop| drop.item.clone()).collect();
+    let law = items.first().map_or("", |item| &item.law);
+    Ok(MeasuredOutcome {
+        windfall: VERSION.to_owned(),
+        campaign: campaign.shared.title.clone(),
+        kind: campaign.shared.kind.name().to_owned(),
+        simulated: campaign.shared.simulated.clone(),
+        status: evaluated.status,
+        parts: drops.iter().flat_map(|drop| drop.parts.clone()).collect(),
+        failed: evaluated.failed,
+        specimens: Vec::new(),
+        whole: plate_items(campaign, &drops),
+        summary: spread_of(&items, law, None).values,
+        groups: groups_of(&items),
+        findings: Vec::new(),
+        shown: SHOWN.to_vec(),
+        shown_of_parts: SHOWN_OF_BOUNCES.to_vec(),
+        shown_of_specimens: SHOWN_OF_PLATE.to_vec(),
+        impacts: items,
     })
 }
 
 /// A figure of every recording that can be evaluated.
-fn draw(campaign: &DropCampaign, directory: &Path) -> Result<(), Error> {
+fn draw(campaign: &DropCampaign, folder: &FigureFolder) -> Result<(), Error> {
     for entry in &campaign.shared.entries {
-        let train = read_recording(&campaign.shared.files, entry)
-            .and_then(|recording| bounce_train(campaign, entry, &recording));
-        // One that cannot be read is told among the recordings.
-        let (Ok(train), Ok(drop)) = (train, drop_of(campaign, entry)) else {
-            continue;
-        };
-        write_figure(
-            directory,
-            &entry.id,
-            &figure_of_drop(&entry.id, &drop, &train),
-        )?;
+        if let Some(named) = figure_of_entry(campaign, entry) {
+            write_figure(folder, &named.name, &named.figure)?;
+        }
     }
     Ok(())
+}
+
+/// The figure of a recording; `None` of one that cannot be read, which is told among
+/// the recordings.
+fn figure_of_entry(campaign: &DropCampaign, entry: &ImpactEntry) -> Option<NamedFigure> {
+    let train = read_recording(&campaign.shared.files, entry)
+        .and_then(|recording| bounce_train(campaign, entry, &recording))
+        .ok()?;
+    let drop = drop_of(campaign, entry).ok()?;
+    Some(NamedFigure {
+        name: file_name(&entry.id),
+        caption: format!(
+            "{}: force on the plate with the contacts that were found, and the ringing of the \
+             plate between them.",
+            entry.id
+        ),
+        figure: figure_of_drop(&entry.id, &drop, &train),
+    })
 }

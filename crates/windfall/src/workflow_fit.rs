@@ -3,7 +3,7 @@
 use crate::campaign::{Campaign, ImpactEntry};
 use crate::error::Error;
 use crate::extract_recording::extract_recording;
-use crate::figure_files::write_figure;
+use crate::figure_files::{FigureFolder, write_figure};
 use crate::figure_impact::figure_of_impact;
 use crate::fit_card::card_of_fit;
 use crate::fit_impact::{FitTask, fit_tasks};
@@ -99,8 +99,8 @@ pub fn fit_recording(
         let stored = BTreeMap::new();
         let results = fit_tasks(&campaign, &rig, &tasks, &stored, progress)?;
         let outcome = assemble(&campaign, &rig, &tasks, results, &stored).shown;
-        if let Some(directory) = &request.figures {
-            draw(&campaign, &rig, &outcome, directory)?;
+        if let Some(folder) = &request.figures {
+            draw(&campaign, &rig, &outcome, folder)?;
         }
         Ok(outcome)
     })
@@ -184,8 +184,8 @@ fn fit(
     if request.reuse != Reuse::Only {
         keep(&campaign, &store, &digests, &mut outcome)?;
     }
-    if let Some(directory) = &request.figures {
-        draw(&campaign, &rig, &outcome.shown, directory)?;
+    if let Some(folder) = &request.figures {
+        draw(&campaign, &rig, &outcome.shown, folder)?;
     }
     if let Some(path) = &request.card {
         write_card(path, &card_of_fit(&campaign, &outcome.shown)?)?;
@@ -203,7 +203,7 @@ fn draw(
     campaign: &Campaign,
     rig: &RigFound,
     outcome: &CampaignOutcome,
-    directory: &Path,
+    folder: &FigureFolder,
 ) -> Result<(), Error> {
     let end = campaign.fit.options.end;
     campaign.impacts.par_iter().try_for_each(|entry| {
@@ -223,7 +223,7 @@ fn draw(
             &own,
             (&rig.rig, end, &campaign.fit.user),
         );
-        write_figure(directory, &entry.id, &figure).map(|_| ())
+        write_figure(folder, &entry.id, &figure).map(|_| ())
     })
 }
 

@@ -3,15 +3,19 @@
 use crate::campaign::{Campaign, ImpactEntry};
 use crate::error::Error;
 use crate::extract_recording::extract_recording;
+use crate::figure_files::{FigureFolder, file_name, write_figure, write_paintings};
+use crate::figure_impact::figure_of_impact;
+use crate::figure_laws::laws_painting;
 use crate::fit_impact::{failure, law_problem};
 use crate::fit_mass::{RigFound, find_rig};
+use crate::fit_outcome::impact_outcome;
+use crate::laws_outcome::{ImpactEvidenceOutcome, LawEvidenceOutcome, LawsOutcome};
 use crate::on_threads::on_threads;
-use crate::outcome::{FailureOutcome, FindingOutcome};
+use crate::outcome::{FailureOutcome, FindingOutcome, ImpactOutcome};
 use crate::progress::{Progress, for_each};
 use crate::provenance::VERSION;
 use crate::read_campaign::read_campaign;
 use crate::request_fit::{FitRequest, apply_request};
-use serde::Serialize;
 use std::collections::BTreeMap;
 use std::path::Path;
 use windfall_contact::expression::parse_law;
@@ -36,60 +40,6 @@ const LEVEL_COLUMN: &str = "level";
 /// Velocities that differ by more than this part belong to different levels,
 /// where no column says so; 1.
 const LEVEL_GAP: f64 = 0.08;
-
-/// What `windfall laws` gives.
-#[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct LawsOutcome {
-    /// Version of windfall.
-    pub windfall: String,
-    /// Title of the campaign.
-    pub campaign: String,
-    /// Label of simulated recordings.
-    pub simulated: Option<String>,
-    /// Impacts on which all laws are compared.
-    pub impacts: usize,
-    /// Velocity levels among them.
-    pub levels: usize,
-    /// One word: "sure", "undecided" or "divided".
-    pub verdict: &'static str,
-    /// What the verdict means, in a sentence.
-    pub meaning: String,
-    /// Laws, the best first.
-    pub laws: Vec<LawEvidenceOutcome>,
-    /// How many specimens each law is first for, in the order of `laws`.
-    pub specimens_first: Vec<usize>,
-    /// Recordings that took no part.
-    pub failed: Vec<FailureOutcome>,
-    /// What a reader must know.
-    pub findings: Vec<FindingOutcome>,
-}
-
-/// Evidence for one law.
-#[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct LawEvidenceOutcome {
-    /// The law.
-    pub law: String,
-    /// Impacts that it could not be fitted to.
-    pub failed: usize,
-    /// Free parameters of an impact.
-    pub parameters_per_impact: f64,
-    /// −2 ln likelihood relative to the best law.
-    pub cost: f64,
-    /// AICc relative to the best law.
-    pub aicc: f64,
-    /// BIC relative to the best law.
-    pub bic: f64,
-    /// Share of resampled campaigns in which it is first.
-    pub first_share: f64,
-    /// Error of forces foretold for unseen velocities, over the peak.
-    pub prediction: Option<f64>,
-    /// Its standard error.
-    pub prediction_sd: Option<f64>,
-    /// Largest residual over noise of a channel, mean over impacts.
-    pub residual_ratio: f64,
-    /// Runs-test score of the worst channel, mean over impacts.
-    pub runs_z: f64,
-}
 
 /// Ranks laws over the impacts of a campaign: those of the request, those of the
 /// campaign if it names at least two, else [`COMPARED`].
@@ -117,13 +67,19 @@ pub fn rank_campaign(
             .filter_map(|name| parse_law(name).ok())
             .collect();
     }
-    on_threads(request.threads, || rank(&campaign, progress))
+    on_threads(request.threads, || {
+        rank(&campaign, request.figures.as_ref(), progress)
+    })
 }
 
 /// What one recording gives: the impact, its fits, or why there are none.
 type Fitted = Result<(windfall_signal::impact::Impact, Vec<ImpactFit>), FailureOutcome>;
 
-fn rank(campaign: &Campaign, progress: Progress) -> Result<LawsOutcome, Error> {
+fn rank(
+    campaign: &Campaign,
+    figures: Option<&FigureFolder>,
+    progress: Progress,
+) -> Result<LawsOutcome, Error> {
     let rig = find_rig(campaign)?;
     let problems: Vec<LawProblem> = campaign
         .fit
@@ -155,13 +111,64 @@ fn rank(campaign: &Campaign, progress: Progress) -> Result<LawsOutcome, Error> {
         source: Box::new(source),
     })?;
     let specimens_first = firsts(&impacts, &fitted, &entries, &ranking, &compare);
-    Ok(outcome(
-        campaign,
-        ranking,
-        specimens_first,
-        failed,
-        findings,
-    ))
+    let ids: Vec<String> = ranking
+        .compared
+        .iter()
+        .map(|place| entries[*place].id.clone())
+        .collect();
+    let shown = middle_impact(&ranking.compared, &fitted);
+    let outcome = outcome(campaign, ranking, &ids, specimens_first, failed, findings);
+    if let Some(folder) = figures {
+        write_paintings(folder, &[laws_painting(&outcome)?])?;
+        if let Some(place) = shown {
+            draw_impact(campaign, &rig, entries[place], &problems, &outcome, folder)?;
+        }
+    }
+    Ok(outcome)
+}
+
+/// Of the impacts that are compared the one with the middle velocity.
+fn middle_impact(compared: &[usize], fits: &[Vec<ImpactFit>]) -> Option<usize> {
+    let velocity = |place: usize| {
+        let fit = fits[place].iter().find_map(|fit| fit.fit.as_ref());
+        fit.map_or(f64::NAN, |fit| fit.velocity)
+    };
+    let mut order = compared.to_vec();
+    order.sort_by(|a, b| velocity(*a).total_cmp(&velocity(*b)));
+    order.get(order.len() / 2).copied()
+}
+
+/// One impact with the best fit of each law over its signals, the best law first.
+fn draw_impact(
+    campaign: &Campaign,
+    rig: &RigFound,
+    entry: &ImpactEntry,
+    problems: &[LawProblem],
+    outcome: &LawsOutcome,
+    folder: &FigureFolder,
+) -> Result<(), Error> {
+    let mass = Some(rig.rig.effective_mass());
+    let (impact, findings) = extract_recording(campaign, entry, mass)?;
+    let fits = fits_of_impact(&impact, &rig.rig, problems, &campaign.fit.options);
+    let ranked = outcome.laws.iter().filter_map(|law| {
+        let place = problems.iter().position(|p| p.kind.name() == law.law)?;
+        let fit = fits[place].fit.as_ref()?;
+        Some(impact_outcome(
+            entry,
+            &impact,
+            &findings,
+            fit,
+            &problems[place],
+            &rig.rig,
+        ))
+    });
+    let ranked: Vec<ImpactOutcome> = ranked.collect();
+    let own: Vec<&ImpactOutcome> = ranked.iter().collect();
+    let used = (&rig.rig, campaign.fit.options.end, &campaign.fit.user[..]);
+    let title = format!("{}: every law at its best", entry.id);
+    let figure = figure_of_impact(&title, &impact, &own, used);
+    let name = file_name(&format!("laws-impact-{}", entry.id));
+    write_figure(folder, &name, &figure).map(|_| ())
 }
 
 fn fits(
@@ -261,6 +268,7 @@ fn firsts(
 fn outcome(
     campaign: &Campaign,
     ranking: LawRanking,
+    ids: &[String],
     specimens_first: Vec<usize>,
     failed: Vec<FailureOutcome>,
     findings: Vec<FindingOutcome>,
@@ -278,7 +286,7 @@ fn outcome(
         laws: ranking
             .laws
             .iter()
-            .map(|law| evidence(law, least))
+            .map(|law| evidence(law, ids, least))
             .collect(),
         specimens_first,
         failed,
@@ -286,13 +294,23 @@ fn outcome(
     }
 }
 
-fn evidence(law: &LawEvidence, least: f64) -> LawEvidenceOutcome {
+fn evidence(law: &LawEvidence, ids: &[String], least: f64) -> LawEvidenceOutcome {
     LawEvidenceOutcome {
         law: law.kind.name().to_owned(),
         failed: law.failed,
         parameters_per_impact: law.parameters as f64 / law.impacts.max(1) as f64,
         cost: law.cost - least,
         aicc: law.aicc,
+        aicc_low: law.aicc_low,
+        aicc_high: law.aicc_high,
+        impacts: ids
+            .iter()
+            .zip(&law.aicc_of_impacts)
+            .map(|(id, aicc)| ImpactEvidenceOutcome {
+                id: id.clone(),
+                aicc: *aicc,
+            })
+            .collect(),
         bic: law.bic,
         first_share: law.first_share,
         prediction: law.prediction,

@@ -89,7 +89,7 @@ fn estimate(
     if members.is_empty() {
         return Err(Error::NothingFitted {
             path: campaign.directory.clone(),
-            failures: failed.len(),
+            failures: failed,
         });
     }
     let entries: Vec<&ImpactEntry> = members.iter().map(|member| member.entry).collect();

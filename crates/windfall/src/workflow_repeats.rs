@@ -5,7 +5,7 @@ use crate::compare_repeats::{Compared, Comparison, FruitResult, compare_repeats}
 use crate::error::Error;
 use crate::evaluate::{Evaluation, evaluate};
 use crate::evaluate_repeats::{RepeatImpact, evaluate_impact};
-use crate::figure_files::write_figure;
+use crate::figure_files::{NamedFigure, file_name, write_figures};
 use crate::figure_repeats::figure_of_comparison;
 use crate::measured::{
     MeasuredItem, MeasuredOutcome, MeasuredValue, ShownValue, groups_of, plain_value,
@@ -17,6 +17,8 @@ use crate::progress::Progress;
 use crate::provenance::VERSION;
 use crate::read_repeats::{RepeatsCampaign, cell_of, energy_of, read_repeats};
 use crate::repeat_pairs::pairs_of;
+use crate::report_methods_items::methods_of_repeats;
+use crate::reported_items::ReportedItems;
 use crate::request_fit::{FitRequest, apply_request_to_items};
 use crate::workflow_fit::STORE_FILE;
 use std::path::Path;
@@ -61,75 +63,117 @@ pub fn fit_repeats(
     request: &FitRequest,
     progress: Progress,
 ) -> Result<AnyOutcome, Error> {
+    let campaign = campaign_of(directory, request)?;
+    on_threads(request.threads, || {
+        let (outcome, figures) = evaluated(&campaign, request, progress)?;
+        if let Some(folder) = &request.figures {
+            write_figures(folder, &figures.iter().collect::<Vec<_>>())?;
+        }
+        Ok(AnyOutcome::Measured(Box::new(outcome)))
+    })
+}
+
+/// [`fit_repeats`], with what a report says and shows of it.
+pub(crate) fn reported_repeats(
+    directory: &Path,
+    request: &FitRequest,
+    progress: Progress,
+) -> Result<ReportedItems, Error> {
+    let campaign = campaign_of(directory, request)?;
+    on_threads(request.threads, || {
+        let (outcome, figures) = evaluated(&campaign, request, progress)?;
+        Ok(ReportedItems {
+            figures,
+            shown: "Every energy, over all fruit.".to_owned(),
+            methods: methods_of_repeats(&campaign),
+            outcome,
+            campaign: campaign.shared,
+        })
+    })
+}
+
+fn campaign_of(directory: &Path, request: &FitRequest) -> Result<RepeatsCampaign, Error> {
     let mut campaign = read_repeats(directory)?;
     apply_request_to_items(&mut campaign.shared, request)?;
-    on_threads(request.threads, || {
-        let campaign = &campaign;
-        let evaluated = evaluate::<RepeatImpact>(
-            &Evaluation {
-                campaign: &campaign.shared,
-                store: &campaign.shared.directory.join(STORE_FILE),
-                reuse: request.reuse,
-                depends_on: &|entry| {
-                    let (column, _) = &campaign.reference;
-                    let cells = [column, "spot", "repeat"].map(|c| cell_of(campaign, entry, c));
-                    let energy = energy_of(campaign, entry).ok();
-                    format!(
-                        "{:?} {:?} {:?} {cells:?} {energy:?}",
-                        campaign.align, campaign.conditioning, campaign.reference
-                    )
-                },
-                work: &|entry, recording| evaluate_impact(campaign, entry, recording),
+    Ok(campaign)
+}
+
+/// The results, and a figure of each comparison.
+fn evaluated(
+    campaign: &RepeatsCampaign,
+    request: &FitRequest,
+    progress: Progress,
+) -> Result<(MeasuredOutcome, Vec<NamedFigure>), Error> {
+    let evaluated = evaluate::<RepeatImpact>(
+        &Evaluation {
+            campaign: &campaign.shared,
+            store: &campaign.shared.directory.join(STORE_FILE),
+            reuse: request.reuse,
+            depends_on: &|entry| {
+                let (column, _) = &campaign.reference;
+                let cells = [column, "spot", "repeat"].map(|c| cell_of(campaign, entry, c));
+                let energy = energy_of(campaign, entry).ok();
+                format!(
+                    "{:?} {:?} {:?} {cells:?} {energy:?}",
+                    campaign.align, campaign.conditioning, campaign.reference
+                )
             },
-            progress,
-        )?;
-        let impacts: Vec<RepeatImpact> =
-            evaluated.items.into_iter().map(|(_, item)| item).collect();
-        let pairs = pairs_of(&impacts, &campaign.align);
-        let compared = compare_repeats(campaign, &pairs);
-        if let Some(figures) = &request.figures {
-            for (index, comparison) in compared.comparisons.iter().enumerate() {
-                let name = name_of(comparison.energy, comparison.order);
-                let figure = figure_of_comparison(&name, &pairs, &compared, index);
-                write_figure(figures, &name, &figure)?;
-            }
+            work: &|entry, recording| evaluate_impact(campaign, entry, recording),
+        },
+        progress,
+    )?;
+    let impacts: Vec<RepeatImpact> = evaluated.items.into_iter().map(|(_, item)| item).collect();
+    let pairs = pairs_of(&impacts, &campaign.align);
+    let compared = compare_repeats(campaign, &pairs);
+    let figures = compared.comparisons.iter().enumerate();
+    let figures = figures.map(|(index, comparison)| {
+        let name = name_of(comparison.energy, comparison.order);
+        NamedFigure {
+            caption: format!(
+                "{name}: mean curves of both impacts, their differences as parts of the first \
+                 peak, and the test statistic with its critical level."
+            ),
+            figure: figure_of_comparison(&name, &pairs, &compared, index),
+            name: file_name(&name),
         }
-        let items: Vec<MeasuredItem> = impacts.into_iter().map(|impact| impact.item).collect();
-        let mut findings = compared.findings.clone();
-        if !pairs.alone.is_empty() {
-            findings.push(FindingOutcome {
-                code: "impact-alone".to_owned(),
-                message: format!(
-                    "no second impact on the same spot at the same energy: {}",
-                    pairs.alone.join(", ")
-                ),
-            });
-        }
-        let failed: Vec<_> = evaluated.failed.into_iter().chain(pairs.failed).collect();
-        let mut whole: Vec<MeasuredItem> = compared.comparisons.iter().map(over_fruit).collect();
-        whole.extend(critical(campaign, &compared));
-        Ok(AnyOutcome::Measured(Box::new(MeasuredOutcome {
-            parts: Vec::new(),
-            shown_of_parts: Vec::new(),
-            windfall: VERSION.to_owned(),
-            campaign: campaign.shared.title.clone(),
-            kind: campaign.shared.kind.name().to_owned(),
-            simulated: campaign.shared.simulated.clone(),
-            status: StatusOutcome {
-                failed: failed.len(),
-                ..evaluated.status
-            },
-            failed,
-            specimens: compared.fruit.iter().map(on_fruit).collect(),
-            whole,
-            summary: Named(Vec::new()),
-            groups: groups_of(&items),
-            findings,
-            shown: SHOWN.to_vec(),
-            shown_of_specimens: SHOWN_OF_SPECIMENS.to_vec(),
-            impacts: items,
-        })))
-    })
+    });
+    let figures: Vec<NamedFigure> = figures.collect();
+    let items: Vec<MeasuredItem> = impacts.into_iter().map(|impact| impact.item).collect();
+    let mut findings = compared.findings.clone();
+    if !pairs.alone.is_empty() {
+        findings.push(FindingOutcome {
+            code: "impact-alone".to_owned(),
+            message: format!(
+                "no second impact on the same spot at the same energy: {}",
+                pairs.alone.join(", ")
+            ),
+        });
+    }
+    let failed: Vec<_> = evaluated.failed.into_iter().chain(pairs.failed).collect();
+    let mut whole: Vec<MeasuredItem> = compared.comparisons.iter().map(over_fruit).collect();
+    whole.extend(critical(campaign, &compared));
+    let outcome = MeasuredOutcome {
+        parts: Vec::new(),
+        shown_of_parts: Vec::new(),
+        windfall: VERSION.to_owned(),
+        campaign: campaign.shared.title.clone(),
+        kind: campaign.shared.kind.name().to_owned(),
+        simulated: campaign.shared.simulated.clone(),
+        status: StatusOutcome {
+            failed: failed.len(),
+            ..evaluated.status
+        },
+        failed,
+        specimens: compared.fruit.iter().map(on_fruit).collect(),
+        whole,
+        summary: Named(Vec::new()),
+        groups: groups_of(&items),
+        findings,
+        shown: SHOWN.to_vec(),
+        shown_of_specimens: SHOWN_OF_SPECIMENS.to_vec(),
+        impacts: items,
+    };
+    Ok((outcome, figures))
 }
 
 /// "0.1200 J, impacts 1 and 2".

@@ -1,51 +1,39 @@
 //! `windfall report`: figures, tables and a page that says what was done.
 
 use crate::any_outcome::AnyOutcome;
-use crate::campaign::Campaign;
+use crate::campaign::FilePlan;
 use crate::campaign_kind::{CampaignKind, campaign_kind};
 use crate::error::Error;
-use crate::figure_campaign::NamedFigure;
-use crate::figure_png::{PRINT, png_of_svg};
-use crate::figure_theme::{DARK, LIGHT, Theme};
-use crate::figure_xy::{csv_of_figure, svg_of_figure};
+use crate::figure_files::{FigureFolder, NamedFigure, write_figures};
+use crate::figure_theme::FigureTheme;
 use crate::fit_key::input_digests;
 use crate::on_threads::on_threads;
 use crate::progress::Progress;
 use crate::provenance::{VERSION, time_now};
+use crate::read_campaign::CAMPAIGN_FILE;
+use crate::recording_digests::{campaign_text, file_digests, recording_digests};
 use crate::report_campaign::sections_of_campaign;
+use crate::report_items::sections_of_items;
 use crate::report_page::{CaptionedTable, Report, Section, html_of_report};
+use crate::reported_items::ReportedItems;
 use crate::request_fit::FitRequest;
+use crate::workflow_acoustic::reported_taps;
+use crate::workflow_compression::reported_compressions;
+use crate::workflow_drop::reported_drops;
 use crate::workflow_fit::{FittedCampaign, fitted_campaign};
+use crate::workflow_repeats::reported_repeats;
 use crate::write_any::csv_of_any;
 use crate::write_csv::csv_text;
 use crate::write_file::write_whole;
 use crate::write_findings::findings_once;
+use crate::write_measured::findings_of_measured;
 use crate::write_table::Cells;
-use rayon::prelude::*;
 use serde::Serialize;
+use serde_json::json;
 use std::path::{Path, PathBuf};
 
 /// Directory of the report in a campaign directory.
 pub const REPORT_DIRECTORY: &str = "report";
-
-/// Colours of the files of figures.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum FigureTheme {
-    /// For paper.
-    #[default]
-    Light,
-    /// For dark screens and slides.
-    Dark,
-}
-
-impl FigureTheme {
-    fn colours(self) -> &'static Theme {
-        match self {
-            Self::Light => &LIGHT,
-            Self::Dark => &DARK,
-        }
-    }
-}
 
 /// What is asked of a report.
 #[derive(Clone, Debug, Default)]
@@ -71,90 +59,143 @@ pub struct ReportOutcome {
     pub failed: usize,
 }
 
-/// Fits a campaign, as far as its results are not in its store, and writes figures,
+/// Evaluates a campaign of any kind, as far as its results are not in its store, and writes figures,
 /// tables and a page that holds all of it.
 ///
 /// Each file is written whole or not at all; files of other names are left alone.
 ///
 /// # Errors
-/// The campaign or the request is wrong, it measures no impacts, nothing could be
-/// fitted, or a file cannot be written.
+/// The campaign or the request is wrong, nothing could be fitted (the error says why
+/// of each recording), or a file cannot be written.
 pub fn report_campaign(
     directory: &Path,
     request: &ReportRequest,
     progress: Progress,
 ) -> Result<ReportOutcome, Error> {
-    let kind = campaign_kind(directory)?;
-    if kind != CampaignKind::Impacts {
-        return Err(Error::OptionInvalid {
-            option: directory.display().to_string(),
-            problem: "reports are of campaigns of single impacts (pendulum, carriage); \
-                      `windfall fit --figures` draws this one"
-                .to_owned(),
-        });
-    }
-    let fitted = fitted_campaign(directory, &request.fit, progress)?;
-    if fitted.outcome.impacts.is_empty() {
-        return Err(Error::NothingFitted {
-            path: directory.to_path_buf(),
-            failures: fitted.outcome.failed.len(),
-        });
-    }
-    on_threads(request.fit.threads, || write(request, fitted))
+    let fit = &request.fit;
+    let items = match campaign_kind(directory)? {
+        CampaignKind::Impacts => {
+            let fitted = fitted_campaign(directory, fit, progress)?;
+            return on_threads(fit.threads, || report_impacts(request, fitted));
+        }
+        CampaignKind::Compression => reported_compressions(directory, fit, progress)?,
+        CampaignKind::Acoustic => reported_taps(directory, fit, progress)?,
+        CampaignKind::Repeats => reported_repeats(directory, fit, progress)?,
+        CampaignKind::Drop => reported_drops(directory, fit, progress)?,
+    };
+    on_threads(fit.threads, || report_items(request, items))
 }
 
-fn write(request: &ReportRequest, fitted: FittedCampaign) -> Result<ReportOutcome, Error> {
+fn report_impacts(request: &ReportRequest, fitted: FittedCampaign) -> Result<ReportOutcome, Error> {
     let FittedCampaign {
         campaign,
         rig,
         digests,
         outcome,
     } = fitted;
-    let mut sections = sections_of_campaign(&campaign, &rig, &outcome)?;
+    let sections = match outcome.impacts.is_empty() {
+        true => Vec::new(),
+        false => sections_of_campaign(&campaign, &rig, &outcome)?,
+    };
     let (inputs, options) = input_digests(&campaign, &digests)?;
-    let inputs = shown_names(&campaign, inputs);
-    sections.push(origin(&inputs, &options));
-    sections.push(citation());
+    let source = Source {
+        directory: &campaign.directory,
+        recordings: campaign.impacts.len(),
+        inputs: shown_names(&campaign.files, inputs),
+        options,
+    };
     let report = Report {
         title: outcome.campaign.clone(),
-        made: format!(
-            "Made by windfall {VERSION} on {}; {} results of {} impacts, {} failures",
-            time_now(),
-            outcome.impacts.len(),
-            campaign.impacts.len(),
-            outcome.failed.len()
-        ),
+        made: String::new(),
         simulated: outcome.simulated.clone(),
         findings: findings_once(&outcome),
         failed: outcome.failed.clone(),
         sections,
     };
+    write(
+        request,
+        &source,
+        report,
+        &AnyOutcome::Impacts(Box::new(outcome)),
+    )
+}
+
+fn report_items(request: &ReportRequest, reported: ReportedItems) -> Result<ReportOutcome, Error> {
+    let (campaign, outcome) = (&reported.campaign, &reported.outcome);
+    let directory = &campaign.directory;
+    let digests = recording_digests(directory, &campaign.files, &campaign.entries);
+    let options = json!({ CAMPAIGN_FILE: campaign_text(directory)? }).to_string();
+    let source = Source {
+        directory,
+        recordings: campaign.entries.len(),
+        inputs: shown_names(&campaign.files, file_digests(directory, &digests)?),
+        options,
+    };
+    let report = Report {
+        title: outcome.campaign.clone(),
+        made: String::new(),
+        simulated: outcome.simulated.clone(),
+        findings: findings_of_measured(outcome),
+        failed: outcome.failed.clone(),
+        sections: sections_of_items(&reported),
+    };
+    let any = AnyOutcome::Measured(Box::new(outcome.clone()));
+    write(request, &source, report, &any)
+}
+
+/// Where the results of a report come from.
+struct Source<'a> {
+    /// The campaign directory.
+    directory: &'a Path,
+    /// Recordings in the table.
+    recordings: usize,
+    /// Files that were read with their SHA-256.
+    inputs: Vec<(String, String)>,
+    /// Options as JSON.
+    options: String,
+}
+
+/// Writes a report with all its files: what only says where it comes from is added here.
+fn write(
+    request: &ReportRequest,
+    source: &Source,
+    mut report: Report,
+    outcome: &AnyOutcome,
+) -> Result<ReportOutcome, Error> {
+    let (results, failed) = (outcome.results(), outcome.failed().len());
+    if results == 0 {
+        return Err(Error::NothingFitted {
+            path: source.directory.to_path_buf(),
+            failures: outcome.failed().to_vec(),
+        });
+    }
+    report.made = format!(
+        "Made by windfall {VERSION} on {}; {results} results of {} recordings, {failed} failures",
+        time_now(),
+        source.recordings
+    );
+    report
+        .sections
+        .push(origin(&source.inputs, &source.options));
+    report.sections.push(citation());
 
     let out = request.out.clone();
-    let out = out.unwrap_or_else(|| campaign.directory.join(REPORT_DIRECTORY));
-    let figures = out.join("figures");
-    std::fs::create_dir_all(&figures).map_err(|source| Error::FileAccess {
-        path: figures.clone(),
-        action: "create",
-        source,
-    })?;
+    let out = out.unwrap_or_else(|| source.directory.join(REPORT_DIRECTORY));
     let drawn: Vec<&NamedFigure> = report.sections.iter().flat_map(|s| &s.figures).collect();
-    let written: Result<Vec<Vec<PathBuf>>, Error> = drawn
-        .par_iter()
-        .map(|figure| write_named(&figures, figure, request.theme))
-        .collect();
-    let mut files: Vec<PathBuf> = written?.into_iter().flatten().collect();
-    let (impacts, failed) = (outcome.impacts.len(), outcome.failed.len());
-    let json = serde_json::to_string_pretty(&outcome).map_err(|error| Error::ResultUnwritable {
-        item: outcome.campaign.clone(),
+    let folder = FigureFolder {
+        directory: out.join("figures"),
+        theme: request.theme,
+    };
+    let mut files = write_figures(&folder, &drawn)?;
+    let json = serde_json::to_string_pretty(outcome).map_err(|error| Error::ResultUnwritable {
+        item: report.title.clone(),
         detail: error.to_string(),
     })?;
-    let any = AnyOutcome::Impacts(Box::new(outcome));
     let page = out.join("report.html");
     let others = [
-        ("impacts.csv", csv_of_any(&any)?),
+        ("impacts.csv", csv_of_any(outcome)?),
         ("results.json", json + "\n"),
-        ("inputs.csv", csv_of_inputs(&inputs)?),
+        ("inputs.csv", csv_of_inputs(&source.inputs)?),
         ("windfall.bib", bibtex()),
         ("CITATION.cff", citation_file()),
         // Last: whoever sees the page finds all that it names.
@@ -168,7 +209,7 @@ fn write(request: &ReportRequest, fitted: FittedCampaign) -> Result<ReportOutcom
     Ok(ReportOutcome {
         page,
         files,
-        impacts,
+        impacts: results,
         failed,
     })
 }
@@ -176,37 +217,16 @@ fn write(request: &ReportRequest, fitted: FittedCampaign) -> Result<ReportOutcom
 /// Recordings outside the campaign directory by their names within the directory of
 /// recordings: a report is given away, and where files lie on a machine is not its
 /// reader's business.
-fn shown_names(campaign: &Campaign, inputs: Vec<(String, String)>) -> Vec<(String, String)> {
+fn shown_names(files: &FilePlan, inputs: Vec<(String, String)>) -> Vec<(String, String)> {
     let shown = |name: String| {
         let path = Path::new(&name);
-        let within = path.strip_prefix(&campaign.files.directory);
+        let within = path.strip_prefix(&files.directory);
         within.map_or(name.clone(), |within| within.display().to_string())
     };
     let named = inputs
         .into_iter()
         .map(|(name, digest)| (shown(name), digest));
     named.collect()
-}
-
-/// A figure as SVG, PNG and the data that it shows.
-fn write_named(
-    directory: &Path,
-    named: &NamedFigure,
-    theme: FigureTheme,
-) -> Result<Vec<PathBuf>, Error> {
-    let svg = svg_of_figure(&named.figure, theme.colours());
-    let contents = [
-        ("csv", csv_of_figure(&named.figure)?.into_bytes()),
-        ("png", png_of_svg(&svg, PRINT)?),
-        ("svg", svg.into_bytes()),
-    ];
-    let mut files = Vec::new();
-    for (ending, contents) in contents {
-        let path = directory.join(format!("{}.{ending}", named.name));
-        write_whole(&path, &contents)?;
-        files.push(path);
-    }
-    Ok(files)
 }
 
 /// Where the results come from.

@@ -3,18 +3,26 @@
 
 use crate::design_coding::number_factors;
 use crate::error::Error;
+use crate::figure_files::{FigureFolder, NamedFigure, write_figures, write_paintings};
+use crate::figure_surface_contour::contour_paintings;
+use crate::figure_surface_effects::effects_painting;
+use crate::figure_surface_lines::{
+    figure_of_desirability, figure_of_perturbation, figures_of_models,
+};
+use crate::figure_surface_view::view_paintings;
 use crate::model_outcome::{SumOfSquares, lack_of, roman, rows_of, whole_of};
 use crate::option_value::unusable;
 use crate::outcome::FindingOutcome;
 use crate::read_data::{Data, read_data};
 use crate::regress_findings::{aliased_findings, fit_findings, left_out_finding};
 use crate::surface_factors::{coded_factors, coding_findings, coding_text};
+use crate::surface_fitted::{FittedSurfaces, ResponseSurface};
 use crate::surface_goal::goal;
 use crate::surface_outcome::{
     ActualTerm, CanonicalOutcome, FactorOutcome, RidgeOutcome, SurfaceModel, SurfaceOutcome,
     SurfaceTerm,
 };
-use crate::surface_settings::{SettingsRequest, grid_of, settings};
+use crate::surface_settings::{SettingsRequest, grid_of, held, settings};
 use std::path::PathBuf;
 use windfall_statistics::anova::{Anova, anova};
 use windfall_statistics::desirability::Goal;
@@ -56,6 +64,8 @@ pub struct SurfaceRequest {
     pub grid: Option<String>,
     /// Points of the grid along each.
     pub grid_points: usize,
+    /// Where figures go, if anywhere.
+    pub figures: Option<FigureFolder>,
 }
 
 impl SurfaceRequest {
@@ -75,15 +85,31 @@ impl SurfaceRequest {
             members: 15,
             grid: None,
             grid_points: 41,
+            figures: None,
         }
     }
 }
 
-/// Fits response surfaces.
+/// Fits response surfaces, and draws them where figures are asked for.
+///
+/// # Errors
+/// The table, a model or an option cannot be used, or a figure cannot be written.
+pub fn surface(request: &SurfaceRequest) -> Result<SurfaceOutcome, Error> {
+    let (outcome, fitted) = fitted_surfaces(request)?;
+    if let Some(folder) = &request.figures {
+        draw(folder, request.confidence, &outcome, &fitted)?;
+    }
+    Ok(outcome)
+}
+
+/// [`surface`] without figures, with the surfaces themselves: for those who look at
+/// them at settings of their own (`surface_fitted`).
 ///
 /// # Errors
 /// The table, a model or an option cannot be used.
-pub fn surface(request: &SurfaceRequest) -> Result<SurfaceOutcome, Error> {
+pub fn fitted_surfaces(
+    request: &SurfaceRequest,
+) -> Result<(SurfaceOutcome, FittedSurfaces), Error> {
     if !(request.confidence > 0.0 && request.confidence < 1.0) {
         let problem = format!("{} is not between 0 and 1", request.confidence);
         return Err(unusable("--confidence", problem));
@@ -137,7 +163,7 @@ pub fn surface(request: &SurfaceRequest) -> Result<SurfaceOutcome, Error> {
         )?),
         None => None,
     };
-    Ok(SurfaceOutcome {
+    let outcome = SurfaceOutcome {
         factors: factor_outcomes(&factors, &coded, &data)?,
         coding: coding_text(&coded),
         first: models[0].clone(),
@@ -146,7 +172,49 @@ pub fn surface(request: &SurfaceRequest) -> Result<SurfaceOutcome, Error> {
         family,
         findings,
         grid,
-    })
+    };
+    let best = outcome.optimum.as_ref().filter(|o| o.desirability > 0.0);
+    let at_optimum = best.is_some();
+    let mut reference = vec![0.0; coded.factors.len()];
+    for (place, value) in held(&asked, &coded)? {
+        reference[place] = value;
+    }
+    if let Some(best) = best {
+        reference.clone_from(&best.coded);
+    }
+    let named = request.responses.iter().zip(surfaces).zip(&asked.goals);
+    let responses = named.map(|(((name, _), surface), goal)| ResponseSurface {
+        name: name.clone(),
+        surface,
+        goal: *goal,
+    });
+    let fitted = FittedSurfaces {
+        responses: responses.collect(),
+        coded,
+        reference,
+        at_optimum,
+    };
+    Ok((outcome, fitted))
+}
+
+/// Every figure of the surfaces.
+fn draw(
+    folder: &FigureFolder,
+    confidence: f64,
+    outcome: &SurfaceOutcome,
+    fitted: &FittedSurfaces,
+) -> Result<(), Error> {
+    let mut paintings = contour_paintings(fitted, outcome)?;
+    paintings.extend(view_paintings(fitted, outcome)?);
+    for model in &outcome.responses {
+        paintings.extend(effects_painting(model, confidence)?);
+    }
+    write_paintings(folder, &paintings)?;
+    let mut figures = vec![figure_of_perturbation(fitted)];
+    figures.extend(figure_of_desirability(fitted));
+    figures.extend(figures_of_models(outcome, confidence));
+    let figures: Vec<&NamedFigure> = figures.iter().collect();
+    write_figures(folder, &figures).map(|_| ())
 }
 
 fn factor_names(request: &SurfaceRequest, data: &Data) -> Result<Vec<String>, Error> {

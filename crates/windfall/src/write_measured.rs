@@ -8,7 +8,7 @@ use crate::measured::{
 use crate::outcome::{FailureOutcome, FindingOutcome};
 use crate::text_number::{spread_percent, value_and_sd};
 use crate::write_csv::csv_text;
-use crate::write_table::{page_tables, paragraph};
+use crate::write_table::{Cells, page_tables, paragraph};
 use std::fmt::Write;
 
 /// Indentation of the second line of a finding; characters.
@@ -72,7 +72,9 @@ pub fn text_of_measured(outcome: &MeasuredOutcome) -> String {
     text + &findings_text(outcome)
 }
 
-fn of_law<'a>(items: &'a [MeasuredItem], law: &str) -> Vec<&'a MeasuredItem> {
+/// Items of a law or method.
+#[must_use]
+pub fn of_law<'a>(items: &'a [MeasuredItem], law: &str) -> Vec<&'a MeasuredItem> {
     items.iter().filter(|item| item.law == law).collect()
 }
 
@@ -82,6 +84,36 @@ fn shown_value(value: &MeasuredValue, factor: f64) -> String {
 }
 
 fn items_table(what: &str, items: &[&MeasuredItem], shown: &[ShownValue]) -> String {
+    let cells = items_cells(what, items, shown);
+    // Words stand last: they have no place among the headings of values.
+    let words = words_of(items).len();
+    let mut left = vec![0];
+    left.extend(is_named(what, items).then_some(1));
+    left.extend(cells.header.len() - words..cells.header.len());
+    page_tables(&cells.header, &cells.rows, &left)
+}
+
+/// Names of the words that items have.
+fn words_of<'a>(items: &[&'a MeasuredItem]) -> Vec<&'a str> {
+    let mut words: Vec<&str> = Vec::new();
+    for (name, _) in items.iter().flat_map(|item| &item.words.0) {
+        if !words.contains(&name.as_str()) {
+            words.push(name);
+        }
+    }
+    words
+}
+
+/// Whether items have a name beside that of their specimen.
+fn is_named(what: &str, items: &[&MeasuredItem]) -> bool {
+    ["recording", "tap"].contains(&what) && items.iter().any(|item| item.id != item.specimen)
+}
+
+/// Items with the values that are shown and their words, row by row.
+///
+/// * `what`: "recording", "tap", "part", "specimen" or "campaign"
+#[must_use]
+pub fn items_cells(what: &str, items: &[&MeasuredItem], shown: &[ShownValue]) -> Cells {
     let present: Vec<&ShownValue> = shown
         .iter()
         .filter(|column| {
@@ -90,20 +122,10 @@ fn items_table(what: &str, items: &[&MeasuredItem], shown: &[ShownValue]) -> Str
                 .any(|item| value_of(item, column.name).is_some())
         })
         .collect();
-    let mut words: Vec<&str> = Vec::new();
-    for (name, _) in items.iter().flat_map(|item| &item.words.0) {
-        if !words.contains(&name.as_str()) {
-            words.push(name);
-        }
-    }
-    let named =
-        ["recording", "tap"].contains(&what) && items.iter().any(|item| item.id != item.specimen);
+    let (words, named) = (words_of(items), is_named(what, items));
     let mut header = vec![what.to_owned()];
     header.extend(named.then(|| "specimen".to_owned()));
     header.extend(present.iter().map(|column| column.heading.to_owned()));
-    let mut left = vec![0];
-    left.extend(named.then_some(1));
-    left.extend(header.len()..header.len() + words.len());
     header.extend(words.iter().map(|name| (*name).to_owned()));
     let rows: Vec<Vec<String>> = items
         .iter()
@@ -119,18 +141,30 @@ fn items_table(what: &str, items: &[&MeasuredItem], shown: &[ShownValue]) -> Str
             row
         })
         .collect();
-    page_tables(&header, &rows, &left)
+    Cells { header, rows }
 }
 
-fn of_taps(outcome: &MeasuredOutcome) -> bool {
+/// Whether a recording holds several taps, so that groups of fruit have a spread.
+pub(crate) fn of_taps(outcome: &MeasuredOutcome) -> bool {
     outcome.kind == CampaignKind::Acoustic.name()
 }
 
 fn groups_table(
     outcome: &MeasuredOutcome,
     law: &str,
-    (shown, items): (&[ShownValue], &[MeasuredItem]),
+    of: (&[ShownValue], &[MeasuredItem]),
 ) -> String {
+    let cells = groups_cells(outcome, law, of);
+    page_tables(&cells.header, &cells.rows, &[0])
+}
+
+/// Mean and spread of the values that are shown, for each group and for all.
+#[must_use]
+pub fn groups_cells(
+    outcome: &MeasuredOutcome,
+    law: &str,
+    (shown, items): (&[ShownValue], &[MeasuredItem]),
+) -> Cells {
     let mut groups: Vec<_> = outcome
         .groups
         .iter()
@@ -160,15 +194,29 @@ fn groups_table(
             row
         })
         .collect();
-    page_tables(&header, &rows, &[0])
+    Cells { header, rows }
 }
 
 /// Each kind of finding once, with how many share it, and what failed.
 fn findings_text(outcome: &MeasuredOutcome) -> String {
-    let mut lines: Vec<String> = Vec::new();
-    for finding in &outcome.findings {
-        lines.push(format!("  {}: {}", finding.code, finding.message));
+    let found = findings_of_measured(outcome);
+    let mut text = match found.is_empty() {
+        true => String::new(),
+        false => "\nFindings:\n".to_owned(),
+    };
+    let found = found.iter().map(|f| format!("  {}: {}", f.code, f.message));
+    for line in found.chain(outcome.failed.iter().map(failure_line)) {
+        text += &paragraph(&line, INDENT);
+        text.push('\n');
     }
+    text
+}
+
+/// Findings of the whole, then each kind of those of its items once, with the first
+/// item that has it and how many share it.
+#[must_use]
+pub fn findings_of_measured(outcome: &MeasuredOutcome) -> Vec<FindingOutcome> {
+    let mut found = outcome.findings.clone();
     let items = outcome
         .impacts
         .iter()
@@ -194,21 +242,12 @@ fn findings_text(outcome: &MeasuredOutcome) -> String {
             2..=6 => format!(" (also {})", ids[1..].join(", ")),
             n => format!(" (and {} more of this kind)", n - 1),
         };
-        lines.push(format!(
-            "  {}: {first}: {}{more}",
-            finding.code, finding.message
-        ));
+        found.push(FindingOutcome {
+            code: finding.code.clone(),
+            message: format!("{first}: {}{more}", finding.message),
+        });
     }
-    let mut text = match lines.is_empty() {
-        true => String::new(),
-        false => "\nFindings:\n".to_owned(),
-    };
-    lines.extend(outcome.failed.iter().map(failure_line));
-    for line in lines {
-        text += &paragraph(&line, INDENT);
-        text.push('\n');
-    }
-    text
+    found
 }
 
 fn failure_line(failure: &FailureOutcome) -> String {

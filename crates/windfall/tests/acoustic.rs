@@ -169,7 +169,7 @@ fn pinned_columns_for_specimens_csv_and_figures() {
     let outcome = fit(
         &campaign,
         &FitRequest {
-            figures: Some(figures.clone()),
+            figures: Some(windfall::figure_files::FigureFolder::of(&figures)),
             ..FitRequest::default()
         },
     );

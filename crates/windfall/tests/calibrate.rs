@@ -87,7 +87,9 @@ fn calibrated(calibrate_lines: &str, impacts: &str) -> CalibrateOutcome {
     write(directory.path(), calibrate_lines, impacts);
     let request = CalibrateRequest {
         tables: Some(directory.path().join("tables")),
-        figures: Some(directory.path().join("figures")),
+        figures: Some(windfall::figure_files::FigureFolder::of(
+            &directory.path().join("figures"),
+        )),
         ..CalibrateRequest::default()
     };
     let outcome = calibrate(directory.path(), &request, &windfall::progress::quiet).unwrap();

@@ -124,7 +124,7 @@ fn reference_kiwi_and_mango() {
     let figures = dir.path().join("figures");
     let request = FitRequest {
         laws: vec!["hertz".to_owned()],
-        figures: Some(figures.clone()),
+        figures: Some(windfall::figure_files::FigureFolder::of(&figures)),
         ..FitRequest::default()
     };
     let outcome = fit(dir.path(), &request);

@@ -101,7 +101,7 @@ fn conserves_the_loop_in_the_figure() {
     campaign(dir.path(), CARRIAGE, "", "baseline = \"drift\"");
     let figures = dir.path().join("figures");
     let request = FitRequest {
-        figures: Some(figures.clone()),
+        figures: Some(windfall::figure_files::FigureFolder::of(&figures)),
         ..FitRequest::default()
     };
     fit_campaign(dir.path(), &request, &windfall::progress::quiet).unwrap();

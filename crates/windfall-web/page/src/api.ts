@@ -68,6 +68,9 @@ export interface CampaignView {
   /** Lines such as ["inertia", "0.01435 kg m²"]. */
   rig: [string, string][];
   channels: ChannelView[];
+  /** Column of times and sampling rate of [files]. */
+  time: string | null;
+  rate: string | null;
   /** Law expressions. */
   laws: string[];
   options: FitOptionsView | null;
