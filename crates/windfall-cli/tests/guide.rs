@@ -17,7 +17,7 @@ use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 
 /// Pages that need no command: an introduction and tables to look things up in.
-const WITHOUT_COMMANDS: [&str; 2] = ["introduction.md", "engines.md"];
+const WITHOUT_COMMANDS: [&str; 3] = ["introduction.md", "engines.md", "browser.md"];
 
 /// Follows the pages that a test is for, and demands that each has a command.
 fn follow_all(chosen: impl Fn(&str) -> bool) {

@@ -1,7 +1,6 @@
 //! What the page must know before it shows a campaign.
 
 use crate::app::{Answer, App};
-use axum::Json;
 use axum::extract::State;
 use serde::Serialize;
 use windfall::provenance::VERSION;
@@ -50,14 +49,14 @@ struct ParameterAbout {
 #[utoipa::path(get, path = "/api/about", responses((status = 200, body = Object)))]
 pub(crate) async fn about(State(app): State<App>) -> Answer<About> {
     let laws = app.work(|_| law_cards(None, None)).await?;
-    Ok(Json(About {
+    app.tell(&About {
         version: VERSION,
         directory: app.workspace.name(),
         creates: !app.workspace.is_campaign(),
         upload_limit: app.upload_limit,
         kinds: KINDS,
         laws: laws.iter().map(law_about).collect(),
-    }))
+    })
 }
 
 fn law_about(law: &LawCardText) -> LawAbout {

@@ -27,13 +27,8 @@ pub(crate) struct NewCampaign {
 /// All campaigns of the directory.
 #[utoipa::path(get, path = "/api/campaigns", responses((status = 200, body = Vec<Object>)))]
 pub(crate) async fn campaigns(State(app): State<App>) -> Answer<Vec<CampaignEntry>> {
-    let told = app.clone();
     let entries = app.work(|app| app.workspace.campaigns()).await?;
-    let entries = entries.into_iter().map(|mut entry| {
-        entry.problem = entry.problem.map(|text| told.workspace.without_path(&text));
-        entry
-    });
-    Ok(Json(entries.collect()))
+    app.tell(&entries)
 }
 
 /// Makes a campaign from a template, as `windfall new` does.

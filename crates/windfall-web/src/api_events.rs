@@ -1,7 +1,7 @@
 //! What happens, as it happens (server-sent events).
 
 use crate::api_jobs::found;
-use crate::app::App;
+use crate::app::{App, Told};
 use crate::job::JobState;
 use crate::problem::Problem;
 use axum::extract::{Path, State};
@@ -9,7 +9,7 @@ use axum::response::Sse;
 use axum::response::sse::{Event, KeepAlive};
 use std::convert::Infallible;
 use std::time::Duration;
-use tokio_stream::wrappers::{IntervalStream, WatchStream};
+use tokio_stream::wrappers::{IntervalStream, ReceiverStream};
 use tokio_stream::{Stream, StreamExt};
 use windfall::campaign_view::campaign_stamp;
 
@@ -33,17 +33,28 @@ pub(crate) async fn job_events(
     State(app): State<App>,
     Path(job): Path<String>,
 ) -> Result<Events<impl Stream<Item = Result<Event, Infallible>>>, Problem> {
-    let views = WatchStream::new(found(&app, &job)?.watch()).throttle(TICK);
-    let mut ended = false;
-    let events = views.map_while(move |view| {
-        // Nothing follows the end; the stream is closed after it.
-        if std::mem::replace(&mut ended, view.state != JobState::Running) {
-            return None;
+    let mut views = found(&app, &job)?.watch();
+    let (send, events) = tokio::sync::mpsc::channel(1);
+    tokio::spawn(async move {
+        loop {
+            let view = views.borrow_and_update().clone();
+            let ended = view.state != JobState::Running;
+            let name = if ended { "end" } else { "progress" };
+            let text = app
+                .tell(&view)
+                .map_or_else(|problem| problem.detail, Told::into_json);
+            let event = Ok(Event::default().event(name).data(text));
+            // Nothing follows the end: the stream is closed.
+            if send.send(event).await.is_err() || ended {
+                return;
+            }
+            tokio::time::sleep(TICK).await;
+            if views.changed().await.is_err() {
+                return;
+            }
         }
-        let name = if ended { "end" } else { "progress" };
-        let text = serde_json::to_string(&view).unwrap_or_default();
-        Some(Ok(Event::default().event(name).data(text)))
     });
+    let events = ReceiverStream::new(events);
     Ok(Sse::new(events).keep_alive(KeepAlive::default()))
 }
 

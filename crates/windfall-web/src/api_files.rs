@@ -66,8 +66,13 @@ pub(crate) async fn report(
         Some("json") => "application/json",
         _ => "text/plain; charset=utf-8",
     };
-    let bytes = app.on_campaign(id, move |_, directory| {
-        read_inside(&directory.join(REPORT_DIRECTORY), &file)
+    let bytes = app.on_campaign(id, move |app, directory| {
+        let bytes = read_inside(directory, &format!("{REPORT_DIRECTORY}/{file}"))?;
+        Ok(match String::from_utf8(bytes) {
+            Ok(text) => app.workspace.without_path(&text).into_bytes(),
+            // A picture.
+            Err(bytes) => bytes.into_bytes(),
+        })
     });
     let headers = [
         (header::CONTENT_TYPE, kind),

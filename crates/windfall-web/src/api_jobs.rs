@@ -198,8 +198,8 @@ fn work(app: &App, given: &JobGiven, directory: PathBuf, job: &Arc<Job>) {
 
 /// All work since the server was started.
 #[utoipa::path(get, path = "/api/jobs", responses((status = 200, body = Vec<JobView>)))]
-pub(crate) async fn jobs(State(app): State<App>) -> Json<Vec<JobView>> {
-    Json(app.jobs.list())
+pub(crate) async fn jobs(State(app): State<App>) -> Answer<Vec<JobView>> {
+    app.tell(&app.jobs.list())
 }
 
 /// A piece of work, with its result once it is done.
@@ -208,7 +208,7 @@ pub(crate) async fn jobs(State(app): State<App>) -> Json<Vec<JobView>> {
     responses((status = 200, body = JobView), (status = 404, body = Problem))
 )]
 pub(crate) async fn job(State(app): State<App>, Path(job): Path<String>) -> Answer<JobView> {
-    Ok(Json(found(&app, &job)?.view()))
+    app.tell(&found(&app, &job)?.view())
 }
 
 /// Stops work: what it was doing is not kept.
@@ -219,7 +219,7 @@ pub(crate) async fn job(State(app): State<App>, Path(job): Path<String>) -> Answ
 pub(crate) async fn cancel(State(app): State<App>, Path(job): Path<String>) -> Answer<JobView> {
     let job = found(&app, &job)?;
     job.cancel();
-    Ok(Json(job.view()))
+    app.tell(&job.view())
 }
 
 /// A job by its name.

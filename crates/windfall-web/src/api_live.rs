@@ -79,7 +79,7 @@ pub(crate) async fn refit(
                 quantities: asked.quantities,
                 weights: asked.weights,
                 noise: asked.noise,
-                intervals: asked.intervals.or_else(|| Some("asymptotic".to_owned())),
+                intervals: asked.intervals,
                 onset: asked.onset,
                 initial_velocity: asked.initial_velocity,
                 displacement_offset: asked.displacement_offset,

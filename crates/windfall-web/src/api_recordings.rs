@@ -182,9 +182,9 @@ pub(crate) async fn upload_table(
         ));
     }
     let own = id.clone();
-    let folder = app.on_campaign(id, |_, directory| Ok(directory.join(TABLES_DIRECTORY)));
-    let (path, bytes) = arrive(&app, folder.await?, asked.file.clone(), body).await?;
+    let folder = app.on_campaign(id, |_, directory| Ok(directory.to_path_buf()));
     let file = format!("{TABLES_DIRECTORY}/{}", asked.file);
+    let (path, bytes) = arrive(&app, folder.await?, file.clone(), body).await?;
     let uploaded = app.on_campaign(own, move |_, _| {
         read_table(&path).inspect_err(|_| discard(&path))?;
         Ok(Uploaded {

@@ -2,8 +2,10 @@
 
 use crate::job::Jobs;
 use crate::problem::Problem;
-use axum::Json;
+use axum::http::header;
+use axum::response::{IntoResponse, Response};
 use serde::Serialize;
+use std::marker::PhantomData;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use tokio::sync::Semaphore;
@@ -15,7 +17,26 @@ use windfall::workspace::Workspace;
 const AT_ONCE: usize = 8;
 
 /// An answer in JSON, or what went wrong.
-pub(crate) type Answer<T> = Result<Json<T>, Problem>;
+pub(crate) type Answer<T> = Result<Told<T>, Problem>;
+
+/// A value as it is told here: in JSON, without paths of the machine.
+pub(crate) struct Told<T> {
+    json: String,
+    of: PhantomData<T>,
+}
+
+impl<T> Told<T> {
+    /// The text of it.
+    pub(crate) fn into_json(self) -> String {
+        self.json
+    }
+}
+
+impl<T> IntoResponse for Told<T> {
+    fn into_response(self) -> Response {
+        ([(header::CONTENT_TYPE, "application/json")], self.json).into_response()
+    }
+}
 
 /// What all requests share.
 pub(crate) struct Shared {
@@ -38,6 +59,17 @@ impl std::ops::Deref for App {
     type Target = Shared;
     fn deref(&self) -> &Shared {
         &self.0
+    }
+}
+
+impl Shared {
+    /// A value as it is told here.
+    pub(crate) fn tell<T: Serialize>(&self, value: &T) -> Answer<T> {
+        let json = serde_json::to_string(value).map_err(|e| Problem::internal(e.to_string()))?;
+        Ok(Told {
+            json: self.workspace.without_path(&json),
+            of: PhantomData,
+        })
     }
 }
 
@@ -97,6 +129,9 @@ impl App {
         id: String,
         work: impl FnOnce(&Shared, &Path) -> Result<T, Error> + Send + 'static,
     ) -> Answer<T> {
-        self.on_campaign(id, work).await.map(Json)
+        self.on_campaign(id, move |app, directory| {
+            work(app, directory).map(|value| app.tell(&value))
+        })
+        .await?
     }
 }

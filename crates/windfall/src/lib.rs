@@ -43,6 +43,7 @@ pub mod edit_table;
 pub mod envelope;
 pub mod equal_command;
 pub mod error;
+pub mod error_place;
 pub mod evaluate;
 pub mod evaluate_acoustic;
 pub mod evaluate_compression;

@@ -16,6 +16,7 @@ use crate::request_fit::{FitRequest, apply_request};
 use serde::Serialize;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
+use windfall_identify::interval::IntervalMethod;
 use windfall_identify::simulate::Trajectory;
 use windfall_signal::impact::{Impact, Series};
 use windfall_signal::recording::Recording;
@@ -174,7 +175,7 @@ impl LiveImpact {
         channels.map(|channel| 16 * channel.samples.len()).sum()
     }
 
-    /// Fits the impact as asked.
+    /// Fits the impact as asked; intervals that would take long are asymptotic.
     ///
     /// * `shown`: name of the campaign directory in the equal command
     ///
@@ -185,6 +186,14 @@ impl LiveImpact {
         let begin = Instant::now();
         let mut campaign = self.campaign.clone();
         apply_request(&mut campaign, &request.fit)?;
+        // What resamples or draws takes long, and is for the whole campaign.
+        let method = &mut campaign.fit.options.intervals.method;
+        if matches!(
+            method,
+            IntervalMethod::Bootstrap | IntervalMethod::Posterior
+        ) {
+            *method = IntervalMethod::Asymptotic;
+        }
         let mut entry = campaign.impacts[0].clone();
         entry.from = request.from.or(entry.from);
         entry.to = request.to.or(entry.to);

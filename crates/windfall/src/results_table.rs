@@ -3,6 +3,7 @@
 
 use crate::any_outcome::AnyOutcome;
 use crate::campaign_view::{CampaignView, TABLES_DIRECTORY, TableView, view_campaign};
+use crate::confined::path_inside;
 use crate::error::Error;
 use crate::write_any::csv_of_any;
 use crate::write_csv::csv_text;
@@ -21,13 +22,14 @@ pub const RESULTS_TABLE: &str = "tables/results.csv";
 pub fn write_results_table(directory: &Path, outcome: &AnyOutcome) -> Result<(), Error> {
     let view = view_campaign(directory)?;
     let text = joined_table(&view, &csv_of_any(outcome)?)?;
+    let path = path_inside(directory, RESULTS_TABLE)?;
     let folder = directory.join(TABLES_DIRECTORY);
     std::fs::create_dir_all(&folder).map_err(|source| Error::FileAccess {
         path: folder.clone(),
         action: "create",
         source,
     })?;
-    write_whole(&directory.join(RESULTS_TABLE), text.as_bytes())
+    write_whole(&path, text.as_bytes())
 }
 
 /// Results in CSV with further columns, where they have no column of the same name.
