@@ -435,6 +435,17 @@ fn recovers_two_contacts_and_chooses() {
     let (chosen, _) = extract_impact(&recording, &options).unwrap();
     assert!((chosen.onset - 40e-3).abs() < 1e-4);
     assert!((chosen.measured.impact_velocity.unwrap() - 0.194).abs() < 1e-3);
+    // Samples outside of the range take no part; what the contact shows of itself stays.
+    let middle = 0.5 * (chosen.onset + chosen.end);
+    options.trigger.choice = ContactChoice::Within {
+        from: 0.02,
+        to: middle,
+    };
+    let (cut, _) = extract_impact(&recording, &options).unwrap();
+    assert_eq!((cut.onset, cut.end), (chosen.onset, chosen.end));
+    let (force, whole) = (cut.force.unwrap(), chosen.force.unwrap());
+    assert!(force.times.last().unwrap() <= &middle);
+    assert_eq!(force.values, whole.values[..force.values.len()]);
     options.trigger.choice = ContactChoice::Strongest;
     assert_eq!(
         extract_impact(&recording, &options).unwrap().0.onset,

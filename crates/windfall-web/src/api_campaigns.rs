@@ -35,9 +35,9 @@ pub(crate) async fn campaigns(State(app): State<App>) -> Answer<Vec<CampaignEntr
 #[utoipa::path(
     post, path = "/api/campaigns", request_body = NewCampaign,
     responses(
-        (status = 201, body = Object), (status = 400, body = Problem),
-        (status = 409, body = Problem), (status = 415, body = Problem),
-        (status = 422, body = Problem),
+        (status = 201, body = Object), (status = 400, body = Problem, content_type = "application/problem+json"),
+        (status = 409, body = Problem, content_type = "application/problem+json"), (status = 415, body = Problem, content_type = "application/problem+json"),
+        (status = 422, body = Problem, content_type = "application/problem+json"),
     )
 )]
 pub(crate) async fn create(
@@ -76,7 +76,7 @@ fn template_kind(word: &str) -> Option<TemplateKind> {
 /// What the files of a campaign say; its version is the ETag.
 #[utoipa::path(
     get, path = "/api/campaigns/{id}", params(("id" = String, Path, example = "bench")),
-    responses((status = 200, body = Object), (status = 404, body = Problem), (status = 422, body = Problem))
+    responses((status = 200, body = Object), (status = 404, body = Problem, content_type = "application/problem+json"), (status = 422, body = Problem, content_type = "application/problem+json"))
 )]
 pub(crate) async fn campaign(
     State(app): State<App>,
@@ -98,7 +98,7 @@ pub(crate) fn with_version(view: CampaignView) -> (HeaderMap, Json<CampaignView>
 /// What the store holds of the campaign as it is now; nothing is fitted.
 #[utoipa::path(
     get, path = "/api/campaigns/{id}/results", params(("id" = String, Path, example = "bench")),
-    responses((status = 200, body = Object), (status = 404, body = Problem), (status = 422, body = Problem))
+    responses((status = 200, body = Object), (status = 404, body = Problem, content_type = "application/problem+json"), (status = 422, body = Problem, content_type = "application/problem+json"))
 )]
 pub(crate) async fn results(
     State(app): State<App>,

@@ -113,9 +113,9 @@ async fn changed(
     put, path = "/api/campaigns/{id}/text", request_body = TextGiven,
     params(("id" = String, Path, example = "bench"), ("If-Match" = String, Header, example = "*")),
     responses(
-        (status = 200, body = Object), (status = 400, body = Problem), (status = 404, body = Problem),
-        (status = 412, body = Problem), (status = 415, body = Problem), (status = 422, body = Problem),
-        (status = 428, body = Problem),
+        (status = 200, body = Object), (status = 400, body = Problem, content_type = "application/problem+json"), (status = 404, body = Problem, content_type = "application/problem+json"),
+        (status = 412, body = Problem, content_type = "application/problem+json"), (status = 415, body = Problem, content_type = "application/problem+json"), (status = 422, body = Problem, content_type = "application/problem+json"),
+        (status = 428, body = Problem, content_type = "application/problem+json"),
     )
 )]
 pub(crate) async fn text(
@@ -132,9 +132,9 @@ pub(crate) async fn text(
     put, path = "/api/campaigns/{id}/window", request_body = WindowGiven,
     params(("id" = String, Path, example = "bench"), ("If-Match" = String, Header, example = "*")),
     responses(
-        (status = 200, body = Object), (status = 400, body = Problem), (status = 404, body = Problem),
-        (status = 412, body = Problem), (status = 415, body = Problem), (status = 422, body = Problem),
-        (status = 428, body = Problem),
+        (status = 200, body = Object), (status = 400, body = Problem, content_type = "application/problem+json"), (status = 404, body = Problem, content_type = "application/problem+json"),
+        (status = 412, body = Problem, content_type = "application/problem+json"), (status = 415, body = Problem, content_type = "application/problem+json"), (status = 422, body = Problem, content_type = "application/problem+json"),
+        (status = 428, body = Problem, content_type = "application/problem+json"),
     )
 )]
 pub(crate) async fn window(
@@ -160,9 +160,9 @@ pub(crate) async fn window(
     put, path = "/api/campaigns/{id}/options", request_body = OptionsGiven,
     params(("id" = String, Path, example = "bench"), ("If-Match" = String, Header, example = "*")),
     responses(
-        (status = 200, body = Object), (status = 400, body = Problem), (status = 404, body = Problem),
-        (status = 412, body = Problem), (status = 415, body = Problem), (status = 422, body = Problem),
-        (status = 428, body = Problem),
+        (status = 200, body = Object), (status = 400, body = Problem, content_type = "application/problem+json"), (status = 404, body = Problem, content_type = "application/problem+json"),
+        (status = 412, body = Problem, content_type = "application/problem+json"), (status = 415, body = Problem, content_type = "application/problem+json"), (status = 422, body = Problem, content_type = "application/problem+json"),
+        (status = 428, body = Problem, content_type = "application/problem+json"),
     )
 )]
 pub(crate) async fn options(
@@ -205,9 +205,9 @@ fn present<T, const N: usize>(pairs: [(&str, Option<T>); N]) -> BTreeMap<String,
     put, path = "/api/campaigns/{id}/channels", request_body = ChannelsGiven,
     params(("id" = String, Path, example = "bench"), ("If-Match" = String, Header, example = "*")),
     responses(
-        (status = 200, body = Object), (status = 400, body = Problem), (status = 404, body = Problem),
-        (status = 412, body = Problem), (status = 415, body = Problem), (status = 422, body = Problem),
-        (status = 428, body = Problem),
+        (status = 200, body = Object), (status = 400, body = Problem, content_type = "application/problem+json"), (status = 404, body = Problem, content_type = "application/problem+json"),
+        (status = 412, body = Problem, content_type = "application/problem+json"), (status = 415, body = Problem, content_type = "application/problem+json"), (status = 422, body = Problem, content_type = "application/problem+json"),
+        (status = 428, body = Problem, content_type = "application/problem+json"),
     )
 )]
 pub(crate) async fn channels(
@@ -230,9 +230,9 @@ pub(crate) async fn channels(
     post, path = "/api/campaigns/{id}/impacts", request_body = ImpactsGiven,
     params(("id" = String, Path, example = "bench"), ("If-Match" = String, Header, example = "*")),
     responses(
-        (status = 200, body = Object), (status = 400, body = Problem), (status = 403, body = Problem),
-        (status = 404, body = Problem), (status = 412, body = Problem), (status = 415, body = Problem),
-        (status = 422, body = Problem), (status = 428, body = Problem),
+        (status = 200, body = Object), (status = 400, body = Problem, content_type = "application/problem+json"), (status = 403, body = Problem, content_type = "application/problem+json"),
+        (status = 404, body = Problem, content_type = "application/problem+json"), (status = 412, body = Problem, content_type = "application/problem+json"), (status = 415, body = Problem, content_type = "application/problem+json"),
+        (status = 422, body = Problem, content_type = "application/problem+json"), (status = 428, body = Problem, content_type = "application/problem+json"),
     )
 )]
 pub(crate) async fn impacts(

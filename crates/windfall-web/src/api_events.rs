@@ -25,8 +25,8 @@ type Events<S> = Sse<axum::response::sse::KeepAliveStream<S>>;
 #[utoipa::path(
     get, path = "/api/jobs/{job}/events", params(("job" = String, Path)),
     responses(
-        (status = 200, body = String, content_type = "text/event-stream"),
-        (status = 404, body = Problem),
+        (status = 200, body = Object, content_type = "text/event-stream"),
+        (status = 404, body = Problem, content_type = "application/problem+json"),
     )
 )]
 pub(crate) async fn job_events(
@@ -62,8 +62,8 @@ pub(crate) async fn job_events(
 #[utoipa::path(
     get, path = "/api/campaigns/{id}/events", params(("id" = String, Path, example = "bench")),
     responses(
-        (status = 200, body = String, content_type = "text/event-stream"),
-        (status = 404, body = Problem),
+        (status = 200, body = Object, content_type = "text/event-stream"),
+        (status = 404, body = Problem, content_type = "application/problem+json"),
     )
 )]
 pub(crate) async fn campaign_events(

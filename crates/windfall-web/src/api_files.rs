@@ -26,7 +26,7 @@ pub(crate) struct CardAsked {
     get, path = "/api/campaigns/{id}/card", params(("id" = String, Path, example = "bench"), CardAsked),
     responses(
         (status = 200, body = String, content_type = "application/toml"),
-        (status = 400, body = Problem), (status = 404, body = Problem), (status = 422, body = Problem),
+        (status = 400, body = Problem, content_type = "application/problem+json"), (status = 404, body = Problem, content_type = "application/problem+json"), (status = 422, body = Problem, content_type = "application/problem+json"),
     )
 )]
 pub(crate) async fn card(
@@ -51,7 +51,7 @@ pub(crate) async fn card(
     params(("id" = String, Path, example = "bench"), ("file" = String, Path)),
     responses(
         (status = 200, body = Vec<u8>, content_type = "text/html"),
-        (status = 400, body = Problem), (status = 404, body = Problem),
+        (status = 400, body = Problem, content_type = "application/problem+json"), (status = 404, body = Problem, content_type = "application/problem+json"),
     )
 )]
 pub(crate) async fn report(

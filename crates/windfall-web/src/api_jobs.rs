@@ -153,8 +153,8 @@ fn json(outcome: &impl Serialize) -> Result<Box<RawValue>, Error> {
 #[utoipa::path(
     post, path = "/api/campaigns/{id}/jobs", params(("id" = String, Path, example = "bench")), request_body = JobGiven,
     responses(
-        (status = 202, body = JobView), (status = 400, body = Problem), (status = 404, body = Problem),
-        (status = 409, body = Problem), (status = 415, body = Problem), (status = 422, body = Problem),
+        (status = 202, body = JobView), (status = 400, body = Problem, content_type = "application/problem+json"), (status = 404, body = Problem, content_type = "application/problem+json"),
+        (status = 409, body = Problem, content_type = "application/problem+json"), (status = 415, body = Problem, content_type = "application/problem+json"), (status = 422, body = Problem, content_type = "application/problem+json"),
     )
 )]
 pub(crate) async fn start(
@@ -205,7 +205,7 @@ pub(crate) async fn jobs(State(app): State<App>) -> Answer<Vec<JobView>> {
 /// A piece of work, with its result once it is done.
 #[utoipa::path(
     get, path = "/api/jobs/{job}", params(("job" = String, Path)),
-    responses((status = 200, body = JobView), (status = 404, body = Problem))
+    responses((status = 200, body = JobView), (status = 404, body = Problem, content_type = "application/problem+json"))
 )]
 pub(crate) async fn job(State(app): State<App>, Path(job): Path<String>) -> Answer<JobView> {
     app.tell(&found(&app, &job)?.view())
@@ -214,7 +214,7 @@ pub(crate) async fn job(State(app): State<App>, Path(job): Path<String>) -> Answ
 /// Stops work: what it was doing is not kept.
 #[utoipa::path(
     delete, path = "/api/jobs/{job}", params(("job" = String, Path)),
-    responses((status = 200, body = JobView), (status = 404, body = Problem))
+    responses((status = 200, body = JobView), (status = 404, body = Problem, content_type = "application/problem+json"))
 )]
 pub(crate) async fn cancel(State(app): State<App>, Path(job): Path<String>) -> Answer<JobView> {
     let job = found(&app, &job)?;

@@ -60,7 +60,7 @@ pub(crate) struct Uploaded {
     /// Its digest.
     sha256: String,
     /// What `inspect` says of it; nothing for a table.
-    #[schema(value_type = Object)]
+    #[schema(value_type = Option<Object>)]
     recording: Option<Inspection>,
 }
 
@@ -68,8 +68,8 @@ pub(crate) struct Uploaded {
 #[utoipa::path(
     get, path = "/api/campaigns/{id}/recordings", params(("id" = String, Path, example = "bench")),
     responses(
-        (status = 200, body = Vec<Object>), (status = 403, body = Problem),
-        (status = 404, body = Problem), (status = 422, body = Problem),
+        (status = 200, body = Vec<Object>), (status = 403, body = Problem, content_type = "application/problem+json"),
+        (status = 404, body = Problem, content_type = "application/problem+json"), (status = 422, body = Problem, content_type = "application/problem+json"),
     )
 )]
 pub(crate) async fn recordings(
@@ -84,8 +84,8 @@ pub(crate) async fn recordings(
 #[utoipa::path(
     get, path = "/api/campaigns/{id}/recording", params(("id" = String, Path, example = "bench"), FileAsked),
     responses(
-        (status = 200, body = Object), (status = 400, body = Problem), (status = 403, body = Problem),
-        (status = 404, body = Problem), (status = 422, body = Problem),
+        (status = 200, body = Object), (status = 400, body = Problem, content_type = "application/problem+json"), (status = 403, body = Problem, content_type = "application/problem+json"),
+        (status = 404, body = Problem, content_type = "application/problem+json"), (status = 422, body = Problem, content_type = "application/problem+json"),
     )
 )]
 pub(crate) async fn recording(
@@ -108,8 +108,8 @@ fn inspected(directory: &std::path::Path, file: &str) -> Result<Inspection, Erro
 #[utoipa::path(
     get, path = "/api/campaigns/{id}/outline", params(("id" = String, Path, example = "bench"), OutlineAsked),
     responses(
-        (status = 200, body = Object), (status = 400, body = Problem), (status = 403, body = Problem),
-        (status = 404, body = Problem), (status = 422, body = Problem),
+        (status = 200, body = Object), (status = 400, body = Problem, content_type = "application/problem+json"), (status = 403, body = Problem, content_type = "application/problem+json"),
+        (status = 404, body = Problem, content_type = "application/problem+json"), (status = 422, body = Problem, content_type = "application/problem+json"),
     )
 )]
 pub(crate) async fn outline(
@@ -131,9 +131,9 @@ pub(crate) async fn outline(
     put, path = "/api/campaigns/{id}/raw", params(("id" = String, Path, example = "bench"), FileAsked),
     request_body(content = Vec<u8>, content_type = "application/octet-stream"),
     responses(
-        (status = 201, body = Uploaded), (status = 400, body = Problem), (status = 403, body = Problem),
-        (status = 404, body = Problem), (status = 409, body = Problem), (status = 413, body = Problem),
-        (status = 422, body = Problem),
+        (status = 201, body = Uploaded), (status = 400, body = Problem, content_type = "application/problem+json"), (status = 403, body = Problem, content_type = "application/problem+json"),
+        (status = 404, body = Problem, content_type = "application/problem+json"), (status = 409, body = Problem, content_type = "application/problem+json"), (status = 413, body = Problem, content_type = "application/problem+json"),
+        (status = 422, body = Problem, content_type = "application/problem+json"),
     )
 )]
 pub(crate) async fn upload_recording(
@@ -166,8 +166,8 @@ pub(crate) async fn upload_recording(
     put, path = "/api/campaigns/{id}/table", params(("id" = String, Path, example = "bench"), FileAsked),
     request_body(content = Vec<u8>, content_type = "application/octet-stream"),
     responses(
-        (status = 201, body = Uploaded), (status = 400, body = Problem), (status = 404, body = Problem),
-        (status = 409, body = Problem), (status = 413, body = Problem), (status = 422, body = Problem),
+        (status = 201, body = Uploaded), (status = 400, body = Problem, content_type = "application/problem+json"), (status = 404, body = Problem, content_type = "application/problem+json"),
+        (status = 409, body = Problem, content_type = "application/problem+json"), (status = 413, body = Problem, content_type = "application/problem+json"), (status = 422, body = Problem, content_type = "application/problem+json"),
     )
 )]
 pub(crate) async fn upload_table(

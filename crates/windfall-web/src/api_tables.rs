@@ -130,8 +130,8 @@ fn table_inside(directory: &FilePath, name: &str) -> Result<PathBuf, Error> {
 #[utoipa::path(
     get, path = "/api/campaigns/{id}/table", params(("id" = String, Path, example = "bench"), FileAsked),
     responses(
-        (status = 200, body = Object), (status = 400, body = Problem),
-        (status = 404, body = Problem), (status = 422, body = Problem),
+        (status = 200, body = Object), (status = 400, body = Problem, content_type = "application/problem+json"),
+        (status = 404, body = Problem, content_type = "application/problem+json"), (status = 422, body = Problem, content_type = "application/problem+json"),
     )
 )]
 pub(crate) async fn table(
@@ -163,8 +163,8 @@ pub(crate) async fn table(
     post, path = "/api/campaigns/{id}/regress", params(("id" = String, Path, example = "bench")),
     request_body = RegressGiven,
     responses(
-        (status = 200, body = Object), (status = 400, body = Problem), (status = 404, body = Problem),
-        (status = 415, body = Problem), (status = 422, body = Problem),
+        (status = 200, body = Object), (status = 400, body = Problem, content_type = "application/problem+json"), (status = 404, body = Problem, content_type = "application/problem+json"),
+        (status = 415, body = Problem, content_type = "application/problem+json"), (status = 422, body = Problem, content_type = "application/problem+json"),
     )
 )]
 pub(crate) async fn regression(
@@ -207,8 +207,8 @@ pub(crate) async fn regression(
     post, path = "/api/campaigns/{id}/surface", params(("id" = String, Path, example = "bench")),
     request_body = SurfaceGiven,
     responses(
-        (status = 200, body = Object), (status = 400, body = Problem), (status = 404, body = Problem),
-        (status = 415, body = Problem), (status = 422, body = Problem),
+        (status = 200, body = Object), (status = 400, body = Problem, content_type = "application/problem+json"), (status = 404, body = Problem, content_type = "application/problem+json"),
+        (status = 415, body = Problem, content_type = "application/problem+json"), (status = 422, body = Problem, content_type = "application/problem+json"),
     )
 )]
 pub(crate) async fn surfaces(

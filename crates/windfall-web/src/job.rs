@@ -39,7 +39,7 @@ pub(crate) struct JobView {
     /// Of how many.
     pub all: usize,
     /// What the equal command would give in JSON, once it is done.
-    #[schema(value_type = Object)]
+    #[schema(value_type = Option<Object>)]
     #[serde(serialize_with = "shared")]
     pub result: Option<Arc<RawValue>>,
     /// Why it failed.

@@ -115,7 +115,7 @@ pub struct CampaignView {
 /// A campaign of any kind.
 enum AnyCampaign {
     Impacts(Box<Campaign>),
-    Items(ItemCampaign),
+    Items(Box<ItemCampaign>),
 }
 
 /// Reads a campaign of any kind.
@@ -123,10 +123,12 @@ fn read_any(directory: &Path) -> Result<(CampaignKind, AnyCampaign), Error> {
     let kind = campaign_kind(directory)?;
     let campaign = match kind {
         CampaignKind::Impacts => AnyCampaign::Impacts(Box::new(read_campaign(directory)?)),
-        CampaignKind::Compression => AnyCampaign::Items(read_compression(directory)?.shared),
-        CampaignKind::Acoustic => AnyCampaign::Items(read_acoustic(directory)?.shared),
-        CampaignKind::Repeats => AnyCampaign::Items(read_repeats(directory)?.shared),
-        CampaignKind::Drop => AnyCampaign::Items(read_drop(directory)?.shared),
+        CampaignKind::Compression => {
+            AnyCampaign::Items(Box::new(read_compression(directory)?.shared))
+        }
+        CampaignKind::Acoustic => AnyCampaign::Items(Box::new(read_acoustic(directory)?.shared)),
+        CampaignKind::Repeats => AnyCampaign::Items(Box::new(read_repeats(directory)?.shared)),
+        CampaignKind::Drop => AnyCampaign::Items(Box::new(read_drop(directory)?.shared)),
     };
     Ok((kind, campaign))
 }

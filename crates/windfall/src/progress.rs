@@ -10,7 +10,6 @@ use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 pub type Progress<'a> = &'a (dyn Fn(usize, usize) -> ControlFlow<()> + Sync);
 
 /// Goes on, and tells nobody.
-#[must_use]
 pub fn quiet(_done: usize, _all: usize) -> ControlFlow<()> {
     ControlFlow::Continue(())
 }

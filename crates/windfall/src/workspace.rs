@@ -101,8 +101,12 @@ impl Workspace {
     pub fn campaign(&self, id: &str) -> Result<PathBuf, Error> {
         let directory = match self.single {
             true if id == self.name() => self.root.clone(),
-            true => self.root.join("\u{0}"),
-            false => self.place(id)?,
+            true => return Err(Error::CampaignUnknown { id: id.to_owned() }),
+            // A name that is refused is that of no campaign.
+            false => match self.place(id) {
+                Ok(place) => place,
+                Err(_) => return Err(Error::CampaignUnknown { id: id.to_owned() }),
+            },
         };
         match directory.join(CAMPAIGN_FILE).is_file() {
             true => Ok(directory),
