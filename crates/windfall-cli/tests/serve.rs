@@ -571,3 +571,75 @@ fn work_can_be_stopped_and_a_killed_server_leaves_the_results_of_before() {
         (&json!(40), &json!(0))
     );
 }
+
+/// What the page does for somebody who begins with a file and nothing else.
+#[test]
+fn a_campaign_made_in_the_page_has_what_was_put_in_and_no_examples() {
+    let (folder, campaign) = bench("1");
+    let recording = std::fs::read(campaign.join("raw/specimen-01-01.csv")).unwrap();
+    let running = serve(folder.path(), &[]);
+    let made = running.page(
+        "POST",
+        "/api/campaigns",
+        None,
+        &json!({"id": "mine", "kind": "pendulum"}),
+    );
+    assert_eq!(made.status, 201, "{}", made.text());
+    let arrived = running.upload("/api/campaigns/mine/raw?file=first.csv", &recording);
+    assert_eq!(arrived.status, 201, "{}", arrived.text());
+    let channels = json!({
+        "channels": [
+            {"quantity": "force", "column": "force_V", "unit": "11 mV/N"},
+            {"quantity": "phase_a", "column": "phase_a_V", "unit": ""},
+            {"quantity": "phase_b", "column": "phase_b_V", "unit": ""},
+        ],
+        "time": null, "rate": "200 kHz",
+    });
+    let mapped = running.page("PUT", "/api/campaigns/mine/channels", Some("*"), &channels);
+    assert_eq!(mapped.status, 200, "{}", mapped.text());
+    // Remarks of the template stay where nothing was changed.
+    assert!(
+        mapped.json()["text"]
+            .as_str()
+            .unwrap()
+            .contains("# pivot to point of contact")
+    );
+    let row = json!({"id": "a", "specimen": "apple", "file": "first.csv", "cells": {"level": "2"}});
+    let added = running.page(
+        "POST",
+        "/api/campaigns/mine/impacts",
+        Some("*"),
+        &json!({"impacts": [row]}),
+    );
+    assert_eq!(added.status, 200, "{}", added.text());
+    assert_eq!(
+        added.json()["impacts"]["rows"],
+        json!([["a", "apple", "first.csv", "2"]])
+    );
+    let row = json!({"id": "b", "specimen": "apple", "file": "first.csv"});
+    let added = running.page(
+        "POST",
+        "/api/campaigns/mine/impacts",
+        Some("*"),
+        &json!({"impacts": [row]}),
+    );
+    assert_eq!(added.json()["impacts"]["rows"].as_array().unwrap().len(), 2);
+    assert_eq!(
+        added.json()["specimens"]["rows"].as_array().unwrap().len(),
+        1
+    );
+    let mine = fitted(&folder.path().join("mine"), &[]);
+    let bench = fitted(&campaign, &[]);
+    assert_eq!(mine["failed"], json!([]));
+    let k = |outcome: &Value| {
+        outcome["impacts"][0]["parameters"]["k"]["value"]
+            .as_f64()
+            .unwrap()
+    };
+    assert!(
+        (k(&mine) / k(&bench) - 1.0).abs() < 1e-9,
+        "{} {}",
+        k(&mine),
+        k(&bench)
+    );
+}

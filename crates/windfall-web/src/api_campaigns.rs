@@ -2,6 +2,7 @@
 
 use crate::about::KINDS;
 use crate::app::{Answer, App};
+use crate::described::{QuestionProblems, RequestProblems};
 use crate::given::Given;
 use crate::problem::Problem;
 use axum::Json;
@@ -34,12 +35,7 @@ pub(crate) async fn campaigns(State(app): State<App>) -> Answer<Vec<CampaignEntr
 /// Makes a campaign from a template, as `windfall new` does.
 #[utoipa::path(
     post, path = "/api/campaigns", request_body = NewCampaign,
-    responses(
-        (status = 201, body = Object), (status = 400, body = Problem, content_type = "application/problem+json"),
-        (status = 409, body = Problem, content_type = "application/problem+json"), (status = 415, body = Problem, content_type = "application/problem+json"),
-        (status = 422, body = Problem, content_type = "application/problem+json"),
-    )
-)]
+    responses((status = 201, body = Object), RequestProblems))]
 pub(crate) async fn create(
     State(app): State<App>,
     Given(new): Given<NewCampaign>,
@@ -76,8 +72,7 @@ fn template_kind(word: &str) -> Option<TemplateKind> {
 /// What the files of a campaign say; its version is the ETag.
 #[utoipa::path(
     get, path = "/api/campaigns/{id}", params(("id" = String, Path, example = "bench")),
-    responses((status = 200, body = Object), (status = 404, body = Problem, content_type = "application/problem+json"), (status = 422, body = Problem, content_type = "application/problem+json"))
-)]
+    responses((status = 200, body = Object), QuestionProblems))]
 pub(crate) async fn campaign(
     State(app): State<App>,
     Path(id): Path<String>,
@@ -98,8 +93,7 @@ pub(crate) fn with_version(view: CampaignView) -> (HeaderMap, Json<CampaignView>
 /// What the store holds of the campaign as it is now; nothing is fitted.
 #[utoipa::path(
     get, path = "/api/campaigns/{id}/results", params(("id" = String, Path, example = "bench")),
-    responses((status = 200, body = Object), (status = 404, body = Problem, content_type = "application/problem+json"), (status = 422, body = Problem, content_type = "application/problem+json"))
-)]
+    responses((status = 200, body = Object), QuestionProblems))]
 pub(crate) async fn results(
     State(app): State<App>,
     Path(id): Path<String>,

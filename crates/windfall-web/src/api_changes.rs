@@ -2,6 +2,7 @@
 
 use crate::api_campaigns::with_version;
 use crate::app::App;
+use crate::described::ChangeProblems;
 use crate::given::{Given, Version};
 use crate::problem::Problem;
 use axum::extract::{Path, State};
@@ -112,12 +113,7 @@ async fn changed(
 #[utoipa::path(
     put, path = "/api/campaigns/{id}/text", request_body = TextGiven,
     params(("id" = String, Path, example = "bench"), ("If-Match" = String, Header, example = "*")),
-    responses(
-        (status = 200, body = Object), (status = 400, body = Problem, content_type = "application/problem+json"), (status = 404, body = Problem, content_type = "application/problem+json"),
-        (status = 412, body = Problem, content_type = "application/problem+json"), (status = 415, body = Problem, content_type = "application/problem+json"), (status = 422, body = Problem, content_type = "application/problem+json"),
-        (status = 428, body = Problem, content_type = "application/problem+json"),
-    )
-)]
+    responses((status = 200, body = Object), ChangeProblems))]
 pub(crate) async fn text(
     State(app): State<App>,
     Path(id): Path<String>,
@@ -131,12 +127,7 @@ pub(crate) async fn text(
 #[utoipa::path(
     put, path = "/api/campaigns/{id}/window", request_body = WindowGiven,
     params(("id" = String, Path, example = "bench"), ("If-Match" = String, Header, example = "*")),
-    responses(
-        (status = 200, body = Object), (status = 400, body = Problem, content_type = "application/problem+json"), (status = 404, body = Problem, content_type = "application/problem+json"),
-        (status = 412, body = Problem, content_type = "application/problem+json"), (status = 415, body = Problem, content_type = "application/problem+json"), (status = 422, body = Problem, content_type = "application/problem+json"),
-        (status = 428, body = Problem, content_type = "application/problem+json"),
-    )
-)]
+    responses((status = 200, body = Object), ChangeProblems))]
 pub(crate) async fn window(
     State(app): State<App>,
     Path(id): Path<String>,
@@ -159,12 +150,7 @@ pub(crate) async fn window(
 #[utoipa::path(
     put, path = "/api/campaigns/{id}/options", request_body = OptionsGiven,
     params(("id" = String, Path, example = "bench"), ("If-Match" = String, Header, example = "*")),
-    responses(
-        (status = 200, body = Object), (status = 400, body = Problem, content_type = "application/problem+json"), (status = 404, body = Problem, content_type = "application/problem+json"),
-        (status = 412, body = Problem, content_type = "application/problem+json"), (status = 415, body = Problem, content_type = "application/problem+json"), (status = 422, body = Problem, content_type = "application/problem+json"),
-        (status = 428, body = Problem, content_type = "application/problem+json"),
-    )
-)]
+    responses((status = 200, body = Object), ChangeProblems))]
 pub(crate) async fn options(
     State(app): State<App>,
     Path(id): Path<String>,
@@ -204,12 +190,7 @@ fn present<T, const N: usize>(pairs: [(&str, Option<T>); N]) -> BTreeMap<String,
 #[utoipa::path(
     put, path = "/api/campaigns/{id}/channels", request_body = ChannelsGiven,
     params(("id" = String, Path, example = "bench"), ("If-Match" = String, Header, example = "*")),
-    responses(
-        (status = 200, body = Object), (status = 400, body = Problem, content_type = "application/problem+json"), (status = 404, body = Problem, content_type = "application/problem+json"),
-        (status = 412, body = Problem, content_type = "application/problem+json"), (status = 415, body = Problem, content_type = "application/problem+json"), (status = 422, body = Problem, content_type = "application/problem+json"),
-        (status = 428, body = Problem, content_type = "application/problem+json"),
-    )
-)]
+    responses((status = 200, body = Object), ChangeProblems))]
 pub(crate) async fn channels(
     State(app): State<App>,
     Path(id): Path<String>,
@@ -229,12 +210,7 @@ pub(crate) async fn channels(
 #[utoipa::path(
     post, path = "/api/campaigns/{id}/impacts", request_body = ImpactsGiven,
     params(("id" = String, Path, example = "bench"), ("If-Match" = String, Header, example = "*")),
-    responses(
-        (status = 200, body = Object), (status = 400, body = Problem, content_type = "application/problem+json"), (status = 403, body = Problem, content_type = "application/problem+json"),
-        (status = 404, body = Problem, content_type = "application/problem+json"), (status = 412, body = Problem, content_type = "application/problem+json"), (status = 415, body = Problem, content_type = "application/problem+json"),
-        (status = 422, body = Problem, content_type = "application/problem+json"), (status = 428, body = Problem, content_type = "application/problem+json"),
-    )
-)]
+    responses((status = 200, body = Object), ChangeProblems))]
 pub(crate) async fn impacts(
     State(app): State<App>,
     Path(id): Path<String>,

@@ -1,6 +1,7 @@
 //! Files to be saved or read: law cards, and what a report consists of.
 
 use crate::app::App;
+use crate::described::QuestionProblems;
 use crate::given::Asked;
 use crate::guard::REPORT_POLICY;
 use crate::problem::Problem;
@@ -24,11 +25,7 @@ pub(crate) struct CardAsked {
 /// The law card of a campaign, to be saved.
 #[utoipa::path(
     get, path = "/api/campaigns/{id}/card", params(("id" = String, Path, example = "bench"), CardAsked),
-    responses(
-        (status = 200, body = String, content_type = "application/toml"),
-        (status = 400, body = Problem, content_type = "application/problem+json"), (status = 404, body = Problem, content_type = "application/problem+json"), (status = 422, body = Problem, content_type = "application/problem+json"),
-    )
-)]
+    responses((status = 200, body = String, content_type = "application/toml"), QuestionProblems))]
 pub(crate) async fn card(
     State(app): State<App>,
     Path(id): Path<String>,
@@ -49,11 +46,7 @@ pub(crate) async fn card(
 #[utoipa::path(
     get, path = "/api/campaigns/{id}/report/{file}",
     params(("id" = String, Path, example = "bench"), ("file" = String, Path)),
-    responses(
-        (status = 200, body = Vec<u8>, content_type = "text/html"),
-        (status = 400, body = Problem, content_type = "application/problem+json"), (status = 404, body = Problem, content_type = "application/problem+json"),
-    )
-)]
+    responses((status = 200, body = Vec<u8>, content_type = "text/html"), QuestionProblems))]
 pub(crate) async fn report(
     State(app): State<App>,
     Path((id, file)): Path<(String, String)>,

@@ -1,6 +1,7 @@
 //! Long work: fits, comparisons of laws, populations, calibrations, reports.
 
 use crate::app::{Answer, App};
+use crate::described::RequestProblems;
 use crate::given::Given;
 use crate::job::{Job, JobView};
 use crate::problem::Problem;
@@ -152,11 +153,7 @@ fn json(outcome: &impl Serialize) -> Result<Box<RawValue>, Error> {
 /// Begins work on a campaign.
 #[utoipa::path(
     post, path = "/api/campaigns/{id}/jobs", params(("id" = String, Path, example = "bench")), request_body = JobGiven,
-    responses(
-        (status = 202, body = JobView), (status = 400, body = Problem, content_type = "application/problem+json"), (status = 404, body = Problem, content_type = "application/problem+json"),
-        (status = 409, body = Problem, content_type = "application/problem+json"), (status = 415, body = Problem, content_type = "application/problem+json"), (status = 422, body = Problem, content_type = "application/problem+json"),
-    )
-)]
+    responses((status = 202, body = JobView), RequestProblems))]
 pub(crate) async fn start(
     State(app): State<App>,
     Path(id): Path<String>,

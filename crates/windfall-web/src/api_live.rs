@@ -1,6 +1,7 @@
 //! One impact, fitted while somebody moves its window and tries laws.
 
 use crate::app::{Answer, App};
+use crate::described::RequestProblems;
 use crate::given::Given;
 use crate::problem::Problem;
 use axum::extract::{Path, State};
@@ -48,11 +49,7 @@ pub(crate) struct Refit {
 /// Fits one impact now; nothing is kept.
 #[utoipa::path(
     post, path = "/api/campaigns/{id}/refit", params(("id" = String, Path, example = "bench")), request_body = Refit,
-    responses(
-        (status = 200, body = Object), (status = 400, body = Problem, content_type = "application/problem+json"), (status = 404, body = Problem, content_type = "application/problem+json"),
-        (status = 415, body = Problem, content_type = "application/problem+json"), (status = 422, body = Problem, content_type = "application/problem+json"),
-    )
-)]
+    responses((status = 200, body = Object), RequestProblems))]
 pub(crate) async fn refit(
     State(app): State<App>,
     Path(id): Path<String>,

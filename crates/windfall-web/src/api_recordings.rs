@@ -1,6 +1,7 @@
 //! Recordings: which there are, what they hold, their outlines; and new ones.
 
 use crate::app::{Answer, App};
+use crate::described::{QuestionProblems, UploadProblems};
 use crate::given::Asked;
 use crate::problem::Problem;
 use axum::Json;
@@ -67,11 +68,7 @@ pub(crate) struct Uploaded {
 /// The recordings of a campaign.
 #[utoipa::path(
     get, path = "/api/campaigns/{id}/recordings", params(("id" = String, Path, example = "bench")),
-    responses(
-        (status = 200, body = Vec<Object>), (status = 403, body = Problem, content_type = "application/problem+json"),
-        (status = 404, body = Problem, content_type = "application/problem+json"), (status = 422, body = Problem, content_type = "application/problem+json"),
-    )
-)]
+    responses((status = 200, body = Vec<Object>), QuestionProblems))]
 pub(crate) async fn recordings(
     State(app): State<App>,
     Path(id): Path<String>,
@@ -83,11 +80,7 @@ pub(crate) async fn recordings(
 /// What a recording holds, as `windfall inspect` says it.
 #[utoipa::path(
     get, path = "/api/campaigns/{id}/recording", params(("id" = String, Path, example = "bench"), FileAsked),
-    responses(
-        (status = 200, body = Object), (status = 400, body = Problem, content_type = "application/problem+json"), (status = 403, body = Problem, content_type = "application/problem+json"),
-        (status = 404, body = Problem, content_type = "application/problem+json"), (status = 422, body = Problem, content_type = "application/problem+json"),
-    )
-)]
+    responses((status = 200, body = Object), QuestionProblems))]
 pub(crate) async fn recording(
     State(app): State<App>,
     Path(id): Path<String>,
@@ -107,11 +100,7 @@ fn inspected(directory: &std::path::Path, file: &str) -> Result<Inspection, Erro
 /// A part of a channel at the resolution of a screen.
 #[utoipa::path(
     get, path = "/api/campaigns/{id}/outline", params(("id" = String, Path, example = "bench"), OutlineAsked),
-    responses(
-        (status = 200, body = Object), (status = 400, body = Problem, content_type = "application/problem+json"), (status = 403, body = Problem, content_type = "application/problem+json"),
-        (status = 404, body = Problem, content_type = "application/problem+json"), (status = 422, body = Problem, content_type = "application/problem+json"),
-    )
-)]
+    responses((status = 200, body = Object), QuestionProblems))]
 pub(crate) async fn outline(
     State(app): State<App>,
     Path(id): Path<String>,
@@ -130,12 +119,7 @@ pub(crate) async fn outline(
 #[utoipa::path(
     put, path = "/api/campaigns/{id}/raw", params(("id" = String, Path, example = "bench"), FileAsked),
     request_body(content = Vec<u8>, content_type = "application/octet-stream"),
-    responses(
-        (status = 201, body = Uploaded), (status = 400, body = Problem, content_type = "application/problem+json"), (status = 403, body = Problem, content_type = "application/problem+json"),
-        (status = 404, body = Problem, content_type = "application/problem+json"), (status = 409, body = Problem, content_type = "application/problem+json"), (status = 413, body = Problem, content_type = "application/problem+json"),
-        (status = 422, body = Problem, content_type = "application/problem+json"),
-    )
-)]
+    responses((status = 201, body = Uploaded), UploadProblems))]
 pub(crate) async fn upload_recording(
     State(app): State<App>,
     Path(id): Path<String>,
@@ -165,11 +149,7 @@ pub(crate) async fn upload_recording(
 #[utoipa::path(
     put, path = "/api/campaigns/{id}/table", params(("id" = String, Path, example = "bench"), FileAsked),
     request_body(content = Vec<u8>, content_type = "application/octet-stream"),
-    responses(
-        (status = 201, body = Uploaded), (status = 400, body = Problem, content_type = "application/problem+json"), (status = 404, body = Problem, content_type = "application/problem+json"),
-        (status = 409, body = Problem, content_type = "application/problem+json"), (status = 413, body = Problem, content_type = "application/problem+json"), (status = 422, body = Problem, content_type = "application/problem+json"),
-    )
-)]
+    responses((status = 201, body = Uploaded), UploadProblems))]
 pub(crate) async fn upload_table(
     State(app): State<App>,
     Path(id): Path<String>,

@@ -2,6 +2,7 @@
 
 use crate::api_recordings::FileAsked;
 use crate::app::{Answer, App, Shared};
+use crate::described::{QuestionProblems, RequestProblems};
 use crate::given::{Asked, Given};
 use crate::problem::Problem;
 use axum::extract::{Path, State};
@@ -129,11 +130,7 @@ fn table_inside(directory: &FilePath, name: &str) -> Result<PathBuf, Error> {
 /// A table of the campaign, cell by cell.
 #[utoipa::path(
     get, path = "/api/campaigns/{id}/table", params(("id" = String, Path, example = "bench"), FileAsked),
-    responses(
-        (status = 200, body = Object), (status = 400, body = Problem, content_type = "application/problem+json"),
-        (status = 404, body = Problem, content_type = "application/problem+json"), (status = 422, body = Problem, content_type = "application/problem+json"),
-    )
-)]
+    responses((status = 200, body = Object), QuestionProblems))]
 pub(crate) async fn table(
     State(app): State<App>,
     Path(id): Path<String>,
@@ -162,11 +159,7 @@ pub(crate) async fn table(
 #[utoipa::path(
     post, path = "/api/campaigns/{id}/regress", params(("id" = String, Path, example = "bench")),
     request_body = RegressGiven,
-    responses(
-        (status = 200, body = Object), (status = 400, body = Problem, content_type = "application/problem+json"), (status = 404, body = Problem, content_type = "application/problem+json"),
-        (status = 415, body = Problem, content_type = "application/problem+json"), (status = 422, body = Problem, content_type = "application/problem+json"),
-    )
-)]
+    responses((status = 200, body = Object), RequestProblems))]
 pub(crate) async fn regression(
     State(app): State<App>,
     Path(id): Path<String>,
@@ -206,11 +199,7 @@ pub(crate) async fn regression(
 #[utoipa::path(
     post, path = "/api/campaigns/{id}/surface", params(("id" = String, Path, example = "bench")),
     request_body = SurfaceGiven,
-    responses(
-        (status = 200, body = Object), (status = 400, body = Problem, content_type = "application/problem+json"), (status = 404, body = Problem, content_type = "application/problem+json"),
-        (status = 415, body = Problem, content_type = "application/problem+json"), (status = 422, body = Problem, content_type = "application/problem+json"),
-    )
-)]
+    responses((status = 200, body = Object), RequestProblems))]
 pub(crate) async fn surfaces(
     State(app): State<App>,
     Path(id): Path<String>,

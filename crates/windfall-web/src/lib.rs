@@ -15,6 +15,7 @@ mod api_recordings;
 mod api_tables;
 mod app;
 mod asset;
+mod described;
 mod given;
 mod guard;
 mod job;

@@ -5,11 +5,13 @@
 use crate::campaign_view::{
     CAMPAIGN_FILES, CampaignView, campaign_version, check_campaign, file_plan_of, view_campaign,
 };
+use crate::column_role::unit_of;
 use crate::confined::path_inside;
-use crate::edit_table::{add_rows, set_cells};
+use crate::edit_table::{add_rows, is_template_file, set_cells};
 use crate::error::Error;
 use crate::read_campaign::CAMPAIGN_FILE;
 use crate::read_channels::KINDS;
+use crate::read_tables::read_specimens;
 use crate::recording_digests::campaign_text;
 use crate::workspace::recordings_inside;
 use crate::write_file::write_whole;
@@ -222,6 +224,16 @@ fn change_channels(document: &mut DocumentMut, change: &ChannelsChange) -> Resul
         }
     }
     let files = table(document, "files");
+    let before = files.get("time").and_then(Item::as_str);
+    if before != change.time.as_deref() {
+        // The unit of another column is the one in its name, as for every channel.
+        match change.time.as_deref().and_then(unit_of) {
+            Some(unit) => set(files, "time_unit", value(unit)),
+            None => {
+                files.remove("time_unit");
+            }
+        }
+    }
     for (key, text) in [("time", &change.time), ("rate", &change.rate)] {
         match text {
             Some(text) => set(files, key, value(text.as_str())),
@@ -229,9 +241,6 @@ fn change_channels(document: &mut DocumentMut, change: &ChannelsChange) -> Resul
                 files.remove(key);
             }
         }
-    }
-    if change.time.is_none() {
-        files.remove("time_unit");
     }
     Ok(())
 }
@@ -284,7 +293,10 @@ fn new_impacts(directory: &Path, rows: &[NewImpact]) -> Result<Vec<(&'static str
     let mut files = vec![("impacts.csv", impacts)];
     let specimens = directory.join("specimens.csv");
     if specimens.exists() {
-        let known = crate::read_tables::read_specimens(&specimens)?;
+        let known = match is_template_file(&specimens) {
+            true => Vec::new(),
+            false => read_specimens(&specimens)?,
+        };
         let mut new: Vec<BTreeMap<String, String>> = Vec::new();
         for row in rows {
             let cells = BTreeMap::from([("id".to_owned(), row.specimen.clone())]);
@@ -359,4 +371,43 @@ fn stays_inside(directory: &Path, changed: &Path) -> Result<(), Error> {
 /// Whether a file may be a table of a law.
 fn small(entry: &std::fs::DirEntry) -> bool {
     entry.metadata().is_ok_and(|data| data.len() < 1 << 20)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::workflow_new::{TemplateKind, write_template};
+
+    #[test]
+    fn a_column_of_times_brings_its_unit_and_remarks_stay() {
+        let folder = tempfile::tempdir().unwrap();
+        let directory = folder.path().join("campaign");
+        write_template(TemplateKind::Carriage, &directory).unwrap();
+        let channel = |quantity: &str, column: &str, unit: &str| {
+            (quantity.to_owned(), column.to_owned(), unit.to_owned())
+        };
+        let channels = |time: &str| {
+            Change::Channels(ChannelsChange {
+                channels: vec![
+                    channel("force", "Kraft [N]", "N"),
+                    channel("position", "Weg [mm]", "mm"),
+                ],
+                time: Some(time.to_owned()),
+                rate: None,
+            })
+        };
+        let view = change_campaign(&directory, "*", &channels("Zeit [ms]")).unwrap();
+        assert_eq!((view.time.as_deref(), view.rate), (Some("Zeit [ms]"), None));
+        assert!(view.text.contains("time_unit = \"ms\""), "{}", view.text);
+        assert!(
+            view.text.contains("# Each channel names its column"),
+            "{}",
+            view.text
+        );
+        // Said once more it stays; another column has another unit.
+        let view = change_campaign(&directory, &view.version, &channels("Zeit [ms]")).unwrap();
+        assert!(view.text.contains("time_unit = \"ms\""));
+        let view = change_campaign(&directory, &view.version, &channels("t")).unwrap();
+        assert!(!view.text.contains("\ntime_unit"), "{}", view.text);
+    }
 }

@@ -2,6 +2,7 @@
 
 use crate::error::Error;
 use crate::read_csv::{column_index, read_table};
+use crate::workflow_new::is_template_table;
 use std::collections::BTreeMap;
 use std::path::Path;
 
@@ -32,12 +33,16 @@ pub fn set_cells(path: &Path, id: &str, cells: &[(&str, String)]) -> Result<Stri
     text.write()
 }
 
-/// The text of a table with further rows; columns that it lacks are added.
+/// The text of a table with further rows; columns that it lacks are added. The examples
+/// of a template that nobody has touched give way to them.
 ///
 /// # Errors
 /// The table cannot be read.
 pub fn add_rows(path: &Path, rows: &[BTreeMap<String, String>]) -> Result<String, Error> {
     let mut text = Text::read(path)?;
+    if is_template_file(path) {
+        text.rows.clear();
+    }
     for row in rows {
         let places: Vec<(usize, &String)> = row
             .iter()
@@ -50,6 +55,12 @@ pub fn add_rows(path: &Path, rows: &[BTreeMap<String, String>]) -> Result<String
         text.rows.push(cells);
     }
     text.write()
+}
+
+/// Whether a file is a table of a template that nobody has touched.
+#[must_use]
+pub fn is_template_file(path: &Path) -> bool {
+    std::fs::read_to_string(path).is_ok_and(|text| is_template_table(&text))
 }
 
 /// A table with what stands before its header.

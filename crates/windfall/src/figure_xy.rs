@@ -22,6 +22,9 @@ const LEAST_TINT: f64 = 2.0;
 const LEGEND_LINE: f64 = 15.0;
 const CHARACTER: f64 = 6.4;
 
+/// Least distance of the lines of two labels that stand above each other; px.
+const LINE: f64 = 12.0;
+
 /// Fewer points than this are drawn larger.
 const FEW_POINTS: usize = 150;
 
@@ -241,6 +244,8 @@ fn draw_panel(drawing: &mut Drawing, panel: &Panel, top: f64) {
             }
         }
     }
+    // Where labels would cover each other, the first is shown; the data have all.
+    let mut taken: Vec<(f64, f64, f64)> = Vec::new();
     for mark in &panel.marks {
         let at = frame.place(mark.at);
         drawing.ring(at, 4.5, Ink::Text);
@@ -255,7 +260,16 @@ fn draw_panel(drawing: &mut Drawing, panel: &Panel, top: f64) {
             Anchor::Start if x + length > right => (at.0 - 9.0, Anchor::End),
             anchor => (x, anchor),
         };
-        drawing.text((x, y), anchor, 11.0, &mark.label);
+        let (from, to) = match anchor {
+            Anchor::End => (x - length, x),
+            _ => (x, x + length),
+        };
+        let covers =
+            |(a, b, level): &(f64, f64, f64)| *a < to && from < *b && (level - y).abs() < LINE;
+        if !taken.iter().any(covers) {
+            drawing.text((x, y), anchor, 11.0, &mark.label);
+            taken.push((from, to, y));
+        }
     }
     let base = top - legend_height(panel) + 4.0;
     for ((index, series), (line, x)) in labelled(panel).into_iter().zip(legend_places(panel)) {

@@ -57,6 +57,27 @@ pub fn shown_entries(
     chosen.into_iter().map(|place| entries[place]).collect()
 }
 
+/// A report with figures of some recordings.
+///
+/// * `figure`: of one recording, where it can be drawn
+#[must_use]
+pub fn reported_items(
+    campaign: &ItemCampaign,
+    outcome: MeasuredOutcome,
+    methods: Vec<String>,
+    figure: impl Fn(&ImpactEntry) -> Option<NamedFigure>,
+) -> ReportedItems {
+    let known = |entry: &ImpactEntry| outcome.impacts.iter().any(|item| item.id == entry.id);
+    let shown = shown_entries(campaign, known);
+    ReportedItems {
+        figures: shown.iter().filter_map(|entry| figure(entry)).collect(),
+        shown: shown_words(campaign, shown.len()),
+        campaign: campaign.clone(),
+        methods,
+        outcome,
+    }
+}
+
 /// Says which recordings of a campaign are shown.
 #[must_use]
 pub fn shown_words(campaign: &ItemCampaign, shown: usize) -> String {

@@ -21,7 +21,7 @@ use crate::provenance::VERSION;
 use crate::read_compression::{CompressionCampaign, read_compression};
 use crate::read_recording::read_recording;
 use crate::report_methods_items::methods_of_compression;
-use crate::reported_items::{ReportedItems, shown_entries, shown_words};
+use crate::reported_items::{ReportedItems, reported_items};
 use crate::request_fit::{FitRequest, apply_request_to_items, laws_and_free};
 use crate::workflow_fit::STORE_FILE;
 use std::path::Path;
@@ -79,16 +79,9 @@ pub(crate) fn reported_compressions(
     let campaign = campaign_of(directory, request)?;
     on_threads(request.threads, || {
         let outcome = evaluated(&campaign, request, progress)?;
-        let known = |entry: &ImpactEntry| outcome.impacts.iter().any(|item| item.id == entry.id);
-        let shown = shown_entries(&campaign.shared, known);
-        let figures = shown.iter().filter_map(|e| figure_of_entry(&campaign, e));
-        Ok(ReportedItems {
-            figures: figures.collect(),
-            shown: shown_words(&campaign.shared, shown.len()),
-            methods: methods_of_compression(&campaign),
-            outcome,
-            campaign: campaign.shared,
-        })
+        let methods = methods_of_compression(&campaign);
+        let figure = |entry: &ImpactEntry| figure_of_entry(&campaign, entry);
+        Ok(reported_items(&campaign.shared, outcome, methods, figure))
     })
 }
 

@@ -54,6 +54,15 @@ const HEIGHTS: &str = "id,specimen,file,drop_height_mm\n\
                        c-100-1,fruit-1,c-100-1.csv,100\n\
                        c-500-1,fruit-2,c-500-1.csv,500\n";
 
+/// Whether a table is one of a template that nobody has touched.
+#[must_use]
+pub fn is_template_table(text: &str) -> bool {
+    [
+        SPECIMENS, IMPACTS, COMPRESSED, TAPPED, STRUCK, DROPS, FRUIT, HEIGHTS,
+    ]
+    .contains(&text)
+}
+
 /// The tables of specimens and of recordings of a rig.
 fn tables(kind: TemplateKind) -> (&'static str, &'static str) {
     match kind {
