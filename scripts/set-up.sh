@@ -92,7 +92,7 @@ need_cargo() {
 # the machine's own is older. Users of windfall need none.
 need_node() {
     node_wanted=20.19.0
-    PATH=$1/node_modules/node/bin:$PATH
+    PATH=$1/node_modules/.bin:$PATH
     export PATH
     node_found=$(node --version 2>/dev/null | sed 's/^v//')
     if [ -n "$node_found" ] && at_least "$node_found" "$node_wanted" && have npm; then
@@ -100,8 +100,9 @@ need_node() {
     fi
     say "set-up: the page needs Node $node_wanted or newer; found ${node_found:-none}"
     have npm || apt_install npm
-    # The registry has Node itself as a package.
-    npm install --prefix "$1" --no-save --no-audit --no-fund --loglevel=error node@22 >/dev/null ||
+    # The registry has Node itself as a package. With its own npm: that of Debian finds
+    # its parts with Debian's Node alone.
+    npm install --prefix "$1" --no-save --no-audit --no-fund --loglevel=error node@22 npm@10 >/dev/null ||
         fail "npm could not install Node; install Node $node_wanted or newer and run again"
     node_found=$(node --version | sed 's/^v//')
     at_least "$node_found" "$node_wanted" || fail "needs Node $node_wanted, but node is $node_found"
