@@ -1,7 +1,7 @@
 //! Tables of a campaign, regressions and response surfaces over them.
 
 use crate::api_recordings::FileAsked;
-use crate::app::{Answer, App, Shared};
+use crate::app::{Answer, App};
 use crate::described::{QuestionProblems, RequestProblems};
 use crate::given::{Asked, Given};
 use crate::problem::Problem;
@@ -208,14 +208,11 @@ pub(crate) async fn surfaces(
     if given.responses.is_empty() {
         return Err(Problem::request("name at least one response"));
     }
-    app.answer(id, move |app, directory| {
-        fitted_surface(app, directory, given)
-    })
-    .await
+    app.answer(id, move |_, directory| fitted_surface(directory, given))
+        .await
 }
 
 fn fitted_surface(
-    _: &Shared,
     directory: &FilePath,
     given: SurfaceGiven,
 ) -> Result<WithCommand<SurfaceOutcome>, Error> {

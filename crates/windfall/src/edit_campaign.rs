@@ -118,7 +118,7 @@ fn changed_files(directory: &Path, change: &Change) -> Result<Vec<(&'static str,
         }
         Change::Options(options) => {
             let mut document = document(directory)?;
-            change_options(&mut document, options);
+            change_options(&mut document, options)?;
             Ok(vec![(CAMPAIGN_FILE, document.to_string())])
         }
         Change::Channels(channels) => {
@@ -147,18 +147,21 @@ fn document(directory: &Path) -> Result<DocumentMut, Error> {
 }
 
 /// The table of that name, made where it is not there.
-fn table<'a>(document: &'a mut DocumentMut, name: &str) -> &'a mut Table {
+///
+/// # Errors
+/// Something else stands there.
+fn table<'a>(document: &'a mut Table, name: &str) -> Result<&'a mut Table, Error> {
     let item = document
         .entry(name)
         .or_insert_with(|| Item::Table(Table::new()));
-    // A key that is no table is replaced: the check of the whole says what was wrong.
-    if !item.is_table() {
-        *item = Item::Table(Table::new());
+    // A table within one line has keys like any other.
+    if item.is_inline_table() {
+        let inline = std::mem::take(item).into_table();
+        *item = inline.map_or_else(|other| other, Item::Table);
     }
-    match item {
-        Item::Table(table) => table,
-        _ => unreachable!("it has just been made one"),
-    }
+    item.as_table_mut().ok_or_else(|| Error::ChangeRefused {
+        problem: format!("{name} in campaign.toml is no table"),
+    })
 }
 
 /// Sets a key and keeps the remark behind it.
@@ -174,8 +177,8 @@ fn set(table: &mut Table, key: &str, new: Item) {
     }
 }
 
-fn change_options(document: &mut DocumentMut, options: &OptionsChange) {
-    let fit = table(document, "fit");
+fn change_options(document: &mut DocumentMut, options: &OptionsChange) -> Result<(), Error> {
+    let fit = table(document, "fit")?;
     for (key, texts) in &options.lists {
         let list: Array = texts.iter().map(String::as_str).collect();
         set(fit, key, value(list));
@@ -189,10 +192,11 @@ fn change_options(document: &mut DocumentMut, options: &OptionsChange) {
     match options.group.as_deref() {
         None => {}
         Some("") => {
-            table(document, "summary").remove("group");
+            table(document, "summary")?.remove("group");
         }
-        Some(group) => set(table(document, "summary"), "group", value(group)),
+        Some(group) => set(table(document, "summary")?, "group", value(group)),
     }
+    Ok(())
 }
 
 fn change_channels(document: &mut DocumentMut, change: &ChannelsChange) -> Result<(), Error> {
@@ -204,7 +208,7 @@ fn change_channels(document: &mut DocumentMut, change: &ChannelsChange) -> Resul
             problem: format!("expected one of {}", names.join(", ")),
         });
     }
-    let channels = table(document, "channels");
+    let channels = table(document, "channels")?;
     channels.set_implicit(true);
     for kind in &KINDS {
         let wanted = change
@@ -215,15 +219,11 @@ fn change_channels(document: &mut DocumentMut, change: &ChannelsChange) -> Resul
             channels.remove(kind.name());
             continue;
         };
-        if !channels.get(kind.name()).is_some_and(Item::is_table) {
-            channels.insert(kind.name(), Item::Table(Table::new()));
-        }
-        if let Some(Item::Table(channel)) = channels.get_mut(kind.name()) {
-            set(channel, "column", value(column.as_str()));
-            set_unit(channel, kind.unit, unit);
-        }
+        let channel = table(channels, kind.name())?;
+        set(channel, "column", value(column.as_str()));
+        set_unit(channel, kind.unit, unit);
     }
-    let files = table(document, "files");
+    let files = table(document, "files")?;
     let before = files.get("time").and_then(Item::as_str);
     if before != change.time.as_deref() {
         // The unit of another column is the one in its name, as for every channel.
@@ -409,5 +409,34 @@ mod tests {
         assert!(view.text.contains("time_unit = \"ms\""));
         let view = change_campaign(&directory, &view.version, &channels("t")).unwrap();
         assert!(!view.text.contains("\ntime_unit"), "{}", view.text);
+    }
+
+    #[test]
+    fn tables_within_a_line_keep_their_other_keys() {
+        let folder = tempfile::tempdir().unwrap();
+        let directory = folder.path().join("campaign");
+        write_template(TemplateKind::Carriage, &directory).unwrap();
+        let path = directory.join(CAMPAIGN_FILE);
+        let text = std::fs::read_to_string(&path).unwrap();
+        let begin = text.find("[fit]").unwrap();
+        let text = format!(
+            "summary = {{ group = \"variety\" }}\nfit = {{ laws = [\"hertz\"], noise = \"white\" }}\n{}",
+            &text[..begin]
+        );
+        std::fs::write(&path, text).unwrap();
+        let change = OptionsChange {
+            words: BTreeMap::from([("end".to_owned(), "gap-zero".to_owned())]),
+            ..OptionsChange::default()
+        };
+        let view = change_campaign(&directory, "*", &Change::Options(change)).unwrap();
+        let options = view.options.unwrap();
+        assert_eq!(
+            (view.laws.as_slice(), view.group.as_deref()),
+            (&["hertz".to_owned()][..], Some("variety"))
+        );
+        assert_eq!(
+            (options.noise.as_str(), options.end.as_str()),
+            ("white", "gap-zero")
+        );
     }
 }

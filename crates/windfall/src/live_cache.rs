@@ -28,7 +28,7 @@ impl<T> Default for Kept<T> {
 
 impl<T> Kept<T> {
     /// What is kept under a key, or is made for it. Two who ask at once may both make
-    /// it; they get the same.
+    /// it; one of them is kept.
     fn get(
         &self,
         key: &str,
@@ -48,6 +48,8 @@ impl<T> Kept<T> {
         let value = Arc::new(make()?);
         let size = bytes(&value);
         let mut entries = lock();
+        // Somebody else may have made it meanwhile.
+        entries.retain(|(known, ..)| known != key);
         entries.insert(0, (key.to_owned(), value.clone(), size));
         let mut held = 0;
         entries.retain(|(_, _, size)| {
