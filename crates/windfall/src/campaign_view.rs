@@ -44,7 +44,8 @@ pub struct ChannelView {
     pub quantity: String,
     /// Column in the files.
     pub column: String,
-    /// Its unit, or the sensitivity of its sensor.
+    /// Its unit, what one unit of it stands for ("-1 N"), or the sensitivity of its
+    /// sensor; with the channel's sign.
     pub unit: String,
 }
 
@@ -337,15 +338,30 @@ fn channels_of(tables: &toml::Table) -> Vec<ChannelView> {
     channels
         .map(|(quantity, channel)| {
             let key = |name: &str| channel.get(name).map(text_of);
+            let unit = key("sensitivity")
+                .or_else(|| key("unit"))
+                .unwrap_or_default();
+            let sign = channel.get("sign").and_then(toml::Value::as_integer);
             ChannelView {
                 quantity: quantity.clone(),
                 column: key("column").unwrap_or_default(),
-                unit: key("sensitivity")
-                    .or_else(|| key("unit"))
-                    .unwrap_or_default(),
+                unit: signed_unit(&unit, sign),
             }
         })
         .collect()
+}
+
+/// A unit or sensitivity with the sign of its channel: "N" turned round is "-1 N".
+pub(crate) fn signed_unit(unit: &str, sign: Option<i64>) -> String {
+    let number = unit.starts_with(|c: char| c.is_ascii_digit() || c == '.');
+    match sign == Some(-1) && !unit.is_empty() {
+        true if number => format!("-{unit}"),
+        true => match unit.strip_prefix(['-', '−']) {
+            Some(positive) => positive.to_owned(),
+            None => format!("-1 {unit}"),
+        },
+        false => unit.to_owned(),
+    }
 }
 
 /// Names of the CSV files that regressions and surfaces can use.

@@ -3,23 +3,24 @@
 //! one before, and a change on the ground of an older version is refused.
 
 use crate::campaign_view::{
-    CAMPAIGN_FILES, CampaignView, campaign_version, check_campaign, file_plan_of, view_campaign,
+    CAMPAIGN_FILES, CampaignView, campaign_version, check_campaign, file_plan_of, signed_unit,
+    view_campaign,
 };
 use crate::column_role::unit_of;
 use crate::confined::path_inside;
-use crate::edit_table::{add_rows, is_template_file, set_cells};
+use crate::edit_table::{add_rows, set_cells};
 use crate::error::Error;
 use crate::read_campaign::CAMPAIGN_FILE;
-use crate::read_channels::KINDS;
+use crate::read_channels::{KINDS, parse_scale};
 use crate::read_tables::read_specimens;
 use crate::recording_digests::campaign_text;
+use crate::workflow_new::is_template_file;
 use crate::workspace::recordings_inside;
 use crate::write_file::write_whole;
 use std::collections::BTreeMap;
 use std::path::{Component, Path};
 use std::sync::{Mutex, PoisonError};
 use toml_edit::{Array, DocumentMut, Item, Table, value};
-use windfall_numerics::unit::parse_unit;
 
 /// One change at a time, so that of two on the ground of one version the second is
 /// refused.
@@ -246,24 +247,28 @@ fn change_channels(document: &mut DocumentMut, change: &ChannelsChange) -> Resul
 }
 
 /// A unit of the quantity itself is the unit of the column, another one the
-/// sensitivity of a sensor.
+/// sensitivity of a sensor. The sign is in it.
 fn set_unit(channel: &mut Table, quantity: &str, unit: &str) {
-    for key in ["unit", "sensitivity"] {
-        if unit.is_empty() || quantity.is_empty() {
+    let own = |key: &str| channel.get(key).and_then(Item::as_str);
+    let before = own("sensitivity")
+        .or_else(|| own("unit"))
+        .unwrap_or_default();
+    let sign = channel.get("sign").and_then(Item::as_integer);
+    if !unit.is_empty() && unit == signed_unit(before, sign) {
+        return;
+    }
+    for key in ["unit", "sensitivity", "sign"] {
+        if unit.is_empty() || quantity.is_empty() || key == "sign" {
             channel.remove(key);
         }
     }
     if unit.is_empty() || quantity.is_empty() {
         return;
     }
-    let same = match (parse_unit(unit), parse_unit(quantity)) {
-        (Ok(own), Ok(si)) => own.dimension.matches(&si.dimension),
-        _ => false,
-    };
-    // "11 mV/N" is no unit by itself: a number stands before it.
-    let (used, other) = match same {
-        true => ("unit", "sensitivity"),
-        false => ("sensitivity", "unit"),
+    // "11 mV/N" is a sensitivity, "-1 N" what one unit of the column stands for.
+    let (used, other) = match parse_scale(unit, quantity) {
+        Ok(_) => ("unit", "sensitivity"),
+        Err(_) => ("sensitivity", "unit"),
     };
     channel.remove(other);
     set(channel, used, value(unit));
@@ -409,6 +414,51 @@ mod tests {
         assert!(view.text.contains("time_unit = \"ms\""));
         let view = change_campaign(&directory, &view.version, &channels("t")).unwrap();
         assert!(!view.text.contains("\ntime_unit"), "{}", view.text);
+    }
+
+    #[test]
+    fn what_one_unit_of_a_column_stands_for_may_be_negative() {
+        let folder = tempfile::tempdir().unwrap();
+        let directory = folder.path().join("campaign");
+        write_template(TemplateKind::Carriage, &directory).unwrap();
+        let path = directory.join(CAMPAIGN_FILE);
+        let change = |force: &str| {
+            let channel = |quantity: &str, unit: &str| {
+                (quantity.to_owned(), quantity.to_owned(), unit.to_owned())
+            };
+            let change = ChannelsChange {
+                channels: vec![channel("force", force), channel("position", "0.17 mm")],
+                time: Some("t".to_owned()),
+                rate: None,
+            };
+            let view = change_campaign(&directory, "*", &Change::Channels(change)).unwrap();
+            let force = view.channels.iter().find(|own| own.quantity == "force");
+            (force.unwrap().unit.clone(), view.text)
+        };
+        let (unit, text) = change("-1 N");
+        assert_eq!(unit, "-1 N");
+        assert!(
+            text.contains("unit = \"-1 N\"") && text.contains("unit = \"0.17 mm\""),
+            "{text}"
+        );
+        // A sign of its own is part of it, and stays where nothing is changed.
+        std::fs::write(
+            &path,
+            text.replace("unit = \"-1 N\"", "unit = \"N\"\nsign = -1"),
+        )
+        .unwrap();
+        let (unit, text) = change("-1 N");
+        assert_eq!(unit, "-1 N");
+        assert!(text.contains("\nsign = -1"), "{text}");
+        let (unit, text) = change("-11 mV/N");
+        assert_eq!(unit, "-11 mV/N");
+        assert!(
+            !text.contains("\nsign") && text.contains("sensitivity = \"-11 mV/N\""),
+            "{text}"
+        );
+        let (unit, text) = change("N");
+        assert_eq!(unit, "N");
+        assert!(!text.contains("\nsensitivity = "), "{text}");
     }
 
     #[test]

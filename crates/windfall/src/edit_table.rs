@@ -2,7 +2,7 @@
 
 use crate::error::Error;
 use crate::read_csv::{column_index, read_table};
-use crate::workflow_new::is_template_table;
+use crate::workflow_new::is_template_file;
 use std::collections::BTreeMap;
 use std::path::Path;
 
@@ -55,12 +55,6 @@ pub fn add_rows(path: &Path, rows: &[BTreeMap<String, String>]) -> Result<String
         text.rows.push(cells);
     }
     text.write()
-}
-
-/// Whether a file is a table of a template that nobody has touched.
-#[must_use]
-pub fn is_template_file(path: &Path) -> bool {
-    std::fs::read_to_string(path).is_ok_and(|text| is_template_table(&text))
 }
 
 /// A table with what stands before its header.

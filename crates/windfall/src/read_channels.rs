@@ -294,8 +294,24 @@ fn column_unit(
             problem,
         )
     };
-    parse_unit(unit.get_ref()).map_err(|error| wrong(error.to_string()))?;
-    parse_as(&format!("1 {}", unit.get_ref()), expected).map_err(|error| wrong(error.to_string()))
+    let scale = parse_scale(unit.get_ref(), expected).map_err(|error| wrong(error.to_string()))?;
+    match scale.is_normal() {
+        true => Ok(scale),
+        false => Err(wrong("it scales the column to nothing".to_owned())),
+    }
+}
+
+/// SI units per unit of a column, from a unit ("mm") or what one unit of the column
+/// stands for ("-1 N", "0.17 mm").
+///
+/// # Errors
+/// What is wrong with the text, or that its dimension is not that of `expected`.
+pub fn parse_scale(text: &str, expected: &str) -> Result<f64, UnitError> {
+    if text.starts_with(|c: char| c.is_ascii_digit() || "+-.−".contains(c)) {
+        return parse_as(text, expected);
+    }
+    parse_unit(text)?;
+    parse_as(&format!("1 {text}"), expected)
 }
 
 /// The column's zero in SI.

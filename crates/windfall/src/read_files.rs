@@ -7,6 +7,7 @@ use crate::file_campaign::{FORMAT, FilesFile};
 use crate::request_open::{DECIMALS, ENCODINGS, FORMATS, SEPARATORS, THOUSANDS};
 use crate::toml_source::{Needed, TomlSource, choice, invalid, missing, place_at};
 use crate::toml_source::{optional_quantity, suggestion};
+use crate::workflow_new::is_template_file;
 use std::path::{Path, PathBuf};
 use toml::Spanned;
 use windfall_formats::open::OpenOptions;
@@ -211,7 +212,8 @@ pub fn check_group(
     ))
 }
 
-/// Whether every `{name}` in the columns of a campaign is a column of impacts.csv.
+/// Whether every `{name}` in the columns of a campaign is a column of impacts.csv; one
+/// that still holds the examples of a template is yet to be written.
 ///
 /// # Errors
 /// One is not.
@@ -223,6 +225,9 @@ pub fn check_placeholders(
     let Some(first) = entries.first() else {
         return Ok(());
     };
+    if is_template_file(&source.path.with_file_name("impacts.csv")) {
+        return Ok(());
+    }
     for channel in &files.channels {
         for text in [Some(&channel.column), channel.time.as_ref()]
             .into_iter()

@@ -5,14 +5,13 @@ use crate::campaign::{
 };
 use crate::error::Error;
 use crate::option_value::{at_least_zero, chosen, positive, quantity, unusable};
-use crate::read_channels::{KINDS, Kind};
+use crate::read_channels::{KINDS, Kind, parse_scale};
 use crate::read_rig::{FROM_IMPULSE, STANDARD_GRAVITY};
 use crate::toml_source::suggestion;
 use std::path::Path;
 use windfall_formats::open::OpenOptions;
 use windfall_identify::problem::FitOptions;
 use windfall_identify::rig::Pendulum;
-use windfall_numerics::unit::parse_as;
 use windfall_signal::ExtractOptions;
 use windfall_signal::kinematics::Encoder;
 use windfall_signal::trigger::Threshold;
@@ -259,15 +258,9 @@ fn channel_plan(text: &str) -> Result<ChannelPlan, Error> {
 /// SI units per unit of the column, from a unit ("mm"), what one unit of the
 /// column stands for ("-1 N"), or a sensitivity ("11 mV/N").
 fn scale_of(kind: &Kind, unit: &str) -> Result<f64, String> {
-    let number = unit.starts_with(|c: char| c.is_ascii_digit() || "+-.".contains(c));
-    let one = if number {
-        unit.to_owned()
-    } else {
-        format!("1 {unit}")
-    };
-    let scale = match parse_as(&one, kind.unit) {
+    let scale = match parse_scale(unit, kind.unit) {
         Ok(scale) => scale,
-        Err(error) => match parse_as(&one, &kind.sensitivity_unit()) {
+        Err(error) => match parse_scale(unit, &kind.sensitivity_unit()) {
             Ok(sensitivity) => 1.0 / sensitivity,
             Err(_) => {
                 return Err(format!(

@@ -54,13 +54,13 @@ const HEIGHTS: &str = "id,specimen,file,drop_height_mm\n\
                        c-100-1,fruit-1,c-100-1.csv,100\n\
                        c-500-1,fruit-2,c-500-1.csv,500\n";
 
-/// Whether a table is one of a template that nobody has touched.
+/// Whether a file is a table of a template that nobody has touched.
 #[must_use]
-pub fn is_template_table(text: &str) -> bool {
-    [
+pub fn is_template_file(path: &Path) -> bool {
+    let tables = [
         SPECIMENS, IMPACTS, COMPRESSED, TAPPED, STRUCK, DROPS, FRUIT, HEIGHTS,
-    ]
-    .contains(&text)
+    ];
+    std::fs::read_to_string(path).is_ok_and(|text| tables.contains(&text.as_str()))
 }
 
 /// The tables of specimens and of recordings of a rig.

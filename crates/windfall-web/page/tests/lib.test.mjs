@@ -7,6 +7,7 @@ import { runnerImport } from "vite";
 const load = async (path) => (await runnerImport(path, { configFile: false, logLevel: "error" })).module;
 const { bytes, estimate, integer, interval, number, percent, plusMinus, quantity, quantityPlusMinus, unitText } =
   await load("./src/lib/format.ts");
+const { namesColumn, placeholders } = await load("./src/lib/placeholders.ts");
 const { changes, difference } = await load("./src/lib/diff.ts");
 const { changesOf, draftOf, heldParameters } = await load("./src/lib/options.ts");
 
@@ -107,4 +108,14 @@ test("parameters with a value are those that can be freed", () => {
   assert.deepEqual(heldParameters(["power-law"], laws), ["n"]);
   assert.deepEqual(heldParameters(["hertz(k=3)"], laws), ["k"]);
   assert.deepEqual(heldParameters(["hertz"], laws), []);
+});
+
+test("names of columns may hold what impacts.csv fills in", () => {
+  assert.deepEqual(placeholders("{run}: Force (N) {level}"), ["run", "level"]);
+  assert.deepEqual(placeholders("Force (N)"), []);
+  assert.ok(namesColumn("{run}: Force (N)", "Run 1: Force (N)"));
+  assert.ok(!namesColumn("{run}: Force (N)", ": Force (N)"));
+  assert.ok(!namesColumn("{run}: Force (N)", "Run 1: Force _N_"));
+  assert.ok(namesColumn("a[1].b\\{x}", "a[1].b\\7"));
+  assert.ok(!namesColumn("", "Force"));
 });
