@@ -1,0 +1,94 @@
+//! A bin that is filled with apples: particle-steps per second of processor time.
+//!
+//!     cargo run --release -p windfall-scene --example bin_fill -- INITIAL STEPS THREADS
+//!
+//! INITIAL: a text of `id x y z vx vy vz radius` in each line (SI); the bin is as wide as
+//! the round of its lattice of 84 mm, see `bench/compare-scene`.
+
+use std::collections::BTreeMap;
+use windfall_contact::expression::parse_law;
+use windfall_scene::interaction::{Interaction, mindlin_ratio};
+use windfall_scene::scene::{Fruit, Scene};
+use windfall_scene::simulation::Simulation;
+use windfall_scene::wall::{Motion, Shape, Wall};
+
+fn main() -> Result<(), Box<dyn std::error::Error>> {
+    let arguments: Vec<String> = std::env::args().collect();
+    let [_, initial, steps, threads] = &arguments[..] else {
+        return Err("bin_fill INITIAL STEPS THREADS".into());
+    };
+    let steps: u64 = steps.parse()?;
+    rayon::ThreadPoolBuilder::new()
+        .num_threads(threads.parse()?)
+        .build_global()?;
+    let law = parse_law("kuwabara-kono(k=753599, c=1524)")?.complete()?;
+    let contact = |effective_radius| Interaction {
+        effective_radius: Some(effective_radius),
+        friction: 0.3,
+        tangential_ratio: mindlin_ratio(0.3),
+        tangential_damping: 1.0,
+        ..Interaction::frictionless(law)
+    };
+    let mut scene = Scene {
+        materials: vec!["apple".into(), "bin".into()],
+        interactions: BTreeMap::from([((0, 0), contact(0.01875)), ((0, 1), contact(0.0375))]),
+        gravity: [0.0, 0.0, -9.81],
+        time_step: 2e-5,
+        ..Scene::default()
+    };
+    for line in std::fs::read_to_string(initial)?.lines() {
+        if line.starts_with('#') {
+            continue;
+        }
+        let n: Result<Vec<f64>, _> = line.split_whitespace().map(str::parse).collect();
+        let [_, x, y, z, u, v, w, radius] = n?[..] else {
+            return Err(format!("not eight numbers: {line}").into());
+        };
+        let mut fruit = Fruit::sphere(0, radius, 840.0, [x, y, z]);
+        fruit.velocity = [u, v, w];
+        scene.fruit.push(fruit);
+    }
+    let count = scene.fruit.len();
+    let side = (count as f64).cbrt().round().max(4.0) * 0.084;
+    for (point, normal) in [
+        ([0.0; 3], [0.0, 0.0, 1.0]),
+        ([0.0; 3], [1.0, 0.0, 0.0]),
+        ([0.0; 3], [0.0, 1.0, 0.0]),
+        ([side, 0.0, 0.0], [-1.0, 0.0, 0.0]),
+        ([0.0, side, 0.0], [0.0, -1.0, 0.0]),
+    ] {
+        scene.walls.push(Wall {
+            name: "bin".into(),
+            material: 1,
+            shape: Shape::Plane { point, normal },
+            motion: Motion::default(),
+        });
+    }
+    let mut simulation = Simulation::new(scene)?;
+    let mut events = 0;
+    for part in 0..10 {
+        let (wall, used) = (std::time::Instant::now(), processor_time());
+        for _ in 0..steps / 10 {
+            simulation.step()?;
+        }
+        events += simulation.take_events().len();
+        let work = count as f64 * (steps / 10) as f64;
+        let spent = processor_time() - used;
+        println!(
+            "{part} contacts/fruit {:.3} events {events} rebuilds {} M particle-steps: {:.2} per cpu s, {:.2} per s",
+            2.0 * simulation.pair_contacts() as f64 / count as f64,
+            simulation.rebuilds(),
+            1e-6 * work / spent,
+            1e-6 * work / wall.elapsed().as_secs_f64(),
+        );
+    }
+    let height: f64 = simulation.fruit().iter().map(|own| own.place[2]).sum();
+    println!("FINAL mean height {:.4} m", height / count as f64);
+    Ok(())
+}
+
+/// Of this process; s.
+fn processor_time() -> f64 {
+    let now = rustix::time::clock_gettime(rustix::time::ClockId::ProcessCPUTime);
+    now.tv_sec as f64 + 1e-9 * now.tv_nsec as f64
+}

@@ -1,0 +1,63 @@
+//! The account of a scene's energy.
+
+/// Energies of contacts that are over, and of what came and left; J.
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct Account {
+    pub normal: f64,
+    pub friction: f64,
+    pub drag: f64,
+    pub walls: f64,
+    pub brought: f64,
+}
+
+/// Energies of a scene; J.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Energy {
+    /// Of translation.
+    pub kinetic: f64,
+    /// Of rotation.
+    pub rotational: f64,
+    /// In gravity, against the origin.
+    pub potential: f64,
+    /// Put into normal contacts that last: stored or lost so far.
+    pub in_contacts: f64,
+    /// Put into friction and rolling of contacts that last.
+    pub in_friction: f64,
+    /// Lost in normal contacts that are over.
+    pub lost_in_contacts: f64,
+    /// Lost by friction and rolling of contacts that are over.
+    pub lost_by_friction: f64,
+    /// Lost by drag.
+    pub lost_by_drag: f64,
+    /// Done by moving walls.
+    pub done_by_walls: f64,
+    /// Of fruit that came less that of fruit that left.
+    pub brought: f64,
+}
+
+impl Energy {
+    /// What the account lacks: zero but for the errors of the time step; J.
+    #[must_use]
+    pub fn closure(&self) -> f64 {
+        self.kinetic
+            + self.rotational
+            + self.potential
+            + self.in_contacts
+            + self.in_friction
+            + self.lost_in_contacts
+            + self.lost_by_friction
+            + self.lost_by_drag
+            - self.done_by_walls
+            - self.brought
+    }
+
+    /// What was lost or is held in contacts, by all mechanisms; J.
+    #[must_use]
+    pub fn lost(&self) -> f64 {
+        self.in_contacts
+            + self.in_friction
+            + self.lost_in_contacts
+            + self.lost_by_friction
+            + self.lost_by_drag
+    }
+}

@@ -1,0 +1,84 @@
+//! What can be wrong with a scene, or go wrong in it.
+
+use crate::vector::Vector;
+
+/// What is wrong.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum Error {
+    /// A parameter of a law left its bounds.
+    #[error("{0}")]
+    Law(#[from] windfall_contact::error::Error),
+    /// A number of the scene cannot be.
+    #[error("{what} is {value}: {problem}")]
+    Value {
+        /// Of what.
+        what: &'static str,
+        /// The number.
+        value: f64,
+        /// What is wrong with it.
+        problem: &'static str,
+    },
+    /// Two materials meet, and nothing says what then happens.
+    #[error("nothing says what {first} and {second} do to each other")]
+    InteractionMissing {
+        /// One material.
+        first: String,
+        /// The other.
+        second: String,
+    },
+    /// A body overlaps another so much that the law means nothing.
+    #[error(
+        "at {time:.6} s fruit {fruit} overlaps {partner} by {overlap:.3e} m, {share:.0} % of its \
+         radius: take a shorter time step, or a stiffer law"
+    )]
+    Overlap {
+        /// When; s.
+        time: f64,
+        /// Number of the fruit.
+        fruit: u32,
+        /// What it overlaps.
+        partner: String,
+        /// By how much; m.
+        overlap: f64,
+        /// Of its radius; %.
+        share: f64,
+    },
+    /// A fruit moves so far in a step that contacts are missed.
+    #[error(
+        "at {time:.6} s fruit {fruit} moves at {speed:.3e} m/s, {share:.0} % of its radius in one \
+         step: take a shorter time step"
+    )]
+    Speed {
+        /// When; s.
+        time: f64,
+        /// Number of the fruit.
+        fruit: u32,
+        /// Its speed; m/s.
+        speed: f64,
+        /// Way in one step over radius; %.
+        share: f64,
+    },
+    /// A place or a velocity is no number.
+    #[error("at {time:.6} s the place or velocity of fruit {fruit} is no number any more")]
+    NotFinite {
+        /// When; s.
+        time: f64,
+        /// Number of the fruit.
+        fruit: u32,
+    },
+    /// A fruit is released where another one or a wall is.
+    #[error(
+        "fruit {fruit} is released at {place:?} m, where it overlaps {partner} by {overlap:.3e} m"
+    )]
+    Occupied {
+        /// Number of the fruit.
+        fruit: u32,
+        /// Where; m.
+        place: Vector,
+        /// What it overlaps.
+        partner: String,
+        /// By how much; m.
+        overlap: f64,
+    },
+}

@@ -1,0 +1,28 @@
+#![cfg_attr(not(test), warn(clippy::disallowed_methods, clippy::disallowed_types))]
+//! Many fruit at once: spheres that fall, roll and strike each other and walls, under the
+//! very force law that was fitted.
+//!
+//! A [`Scene`](scene::Scene) says what is there; a [`Simulation`](simulation::Simulation)
+//! takes it from step to step and hands out each contact as an
+//! [`Event`](event::Event) when it ends.
+//!
+//! This crate knows no instrument and no file, and reads no clock.
+
+pub mod energy;
+pub mod error;
+pub mod event;
+mod gather;
+pub mod interaction;
+mod neighbours;
+mod pair_contacts;
+mod pair_forces;
+pub mod population;
+mod react;
+mod relist;
+pub mod scene;
+pub mod simulation;
+pub mod time_step;
+mod traffic;
+pub mod vector;
+pub mod wall;
+mod wall_contacts;

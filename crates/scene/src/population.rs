@@ -1,0 +1,265 @@
+//! Fruit as they are drawn from a population, and when and where they come.
+
+use crate::error::Error;
+use crate::interaction::Draws;
+use crate::scene::Fruit;
+use crate::vector::Vector;
+use rand::{Rng, SeedableRng};
+use rand_chacha::ChaCha8Rng;
+
+/// A kind of fruit.
+#[derive(Clone, Debug, PartialEq)]
+pub struct FruitKind {
+    /// Material, by its number in the scene.
+    pub material: usize,
+    /// How many.
+    pub count: usize,
+    /// Mean radius; m.
+    pub radius: f64,
+    /// Standard deviation of the radius between fruit; m. Draws beyond three of them are
+    /// drawn anew.
+    pub radius_sd: f64,
+    /// Density; kg/m³.
+    pub density: f64,
+    /// How they come.
+    pub source: Source,
+}
+
+/// How fruit come into a scene.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Source {
+    /// All at the beginning, on a loose lattice in a box, from below.
+    Lattice {
+        /// Lowest corner; m.
+        low: Vector,
+        /// Highest corner; m.
+        high: Vector,
+        /// Velocity; m/s.
+        velocity: Vector,
+    },
+    /// One after the other at random places of a box, at a rate.
+    Pour {
+        /// Lowest corner; m.
+        low: Vector,
+        /// Highest corner; m.
+        high: Vector,
+        /// Velocity; m/s.
+        velocity: Vector,
+        /// Fruit per second; 1/s.
+        rate: f64,
+        /// When the first comes; s.
+        from: f64,
+    },
+    /// One after the other from one place.
+    Drop {
+        /// From where; m.
+        place: Vector,
+        /// Velocity; m/s.
+        velocity: Vector,
+        /// Time from one to the next; s.
+        interval: f64,
+        /// When the first comes; s.
+        from: f64,
+    },
+    /// From a tree: at rest, at random places of a box, at random times.
+    Tree {
+        /// Lowest corner; m.
+        low: Vector,
+        /// Highest corner; m.
+        high: Vector,
+        /// Over which time they come off; s.
+        over: f64,
+    },
+}
+
+/// Draws beyond so many standard deviations are drawn anew.
+const FARTHEST: f64 = 3.0;
+/// Pitch of the lattice over the largest diameter; 1.
+const PITCH: f64 = 1.03;
+/// Largest displacement from the place of the lattice, over the mean radius; 1.
+const JITTER: f64 = 0.02;
+
+/// All fruit of all kinds; the same for the same seed, whatever else the scene holds.
+///
+/// # Errors
+/// A lattice has no room for its fruit; a box is smaller than a fruit.
+pub fn drawn(kinds: &[FruitKind], seed: u64) -> Result<Vec<Fruit>, Error> {
+    let mut fruit = Vec::new();
+    for (number, kind) in kinds.iter().enumerate() {
+        let mut generator = ChaCha8Rng::seed_from_u64(seed);
+        // Each kind has its own numbers.
+        generator.set_stream(number as u64);
+        fruit.extend(drawn_of(kind, &mut generator)?);
+    }
+    Ok(fruit)
+}
+
+fn drawn_of(kind: &FruitKind, generator: &mut ChaCha8Rng) -> Result<Vec<Fruit>, Error> {
+    let largest = kind.radius + FARTHEST * kind.radius_sd;
+    let lattice = match kind.source {
+        Source::Lattice { low, high, .. } => lattice(low, high, largest, kind.count)?,
+        _ => Vec::new(),
+    };
+    let mut all = Vec::with_capacity(kind.count);
+    for number in 0..kind.count {
+        let mut deviation = normal(generator);
+        while deviation.abs() > FARTHEST {
+            deviation = normal(generator);
+        }
+        let mut draws = Draws::default();
+        draws.iter_mut().for_each(|own| *own = normal(generator));
+        let radius = kind.radius + kind.radius_sd * deviation;
+        let mut fruit = Fruit::sphere(kind.material, radius, kind.density, [0.0; 3]);
+        fruit.draws = draws;
+        match kind.source {
+            Source::Lattice { velocity, .. } => {
+                let jitter = JITTER * kind.radius;
+                fruit.place =
+                    lattice[number].map(|own| own + jitter * (generator.random::<f64>() - 0.5));
+                fruit.velocity = velocity;
+            }
+            Source::Pour {
+                low,
+                high,
+                velocity,
+                rate,
+                from,
+            } => {
+                fruit.time = from + number as f64 / rate;
+                fruit.place = somewhere(low, high, radius, generator)?;
+                fruit.velocity = velocity;
+            }
+            Source::Drop {
+                place,
+                velocity,
+                interval,
+                from,
+            } => {
+                fruit.time = from + number as f64 * interval;
+                (fruit.place, fruit.velocity) = (place, velocity);
+            }
+            Source::Tree { low, high, over } => {
+                fruit.time = over * generator.random::<f64>();
+                fruit.place = somewhere(low, high, radius, generator)?;
+            }
+        }
+        all.push(fruit);
+    }
+    Ok(all)
+}
+
+/// A standard normal number, by Box and Muller (1958).
+fn normal(generator: &mut ChaCha8Rng) -> f64 {
+    let (a, b): (f64, f64) = (generator.random(), generator.random());
+    (-2.0 * (1.0 - a).ln()).sqrt() * (2.0 * std::f64::consts::PI * b).cos()
+}
+
+/// A random place of a box for a fruit that is to be wholly inside.
+fn somewhere(
+    low: Vector,
+    high: Vector,
+    radius: f64,
+    generator: &mut ChaCha8Rng,
+) -> Result<Vector, Error> {
+    let mut place = [0.0; 3];
+    for axis in 0..3 {
+        let (from, to) = (low[axis] + radius, high[axis] - radius);
+        if from > to {
+            return Err(Error::Value {
+                what: "an edge of the box of a source",
+                value: high[axis] - low[axis],
+                problem: "a fruit must fit into it",
+            });
+        }
+        place[axis] = from + (to - from) * generator.random::<f64>();
+    }
+    Ok(place)
+}
+
+/// Places of a lattice in a box, from below.
+fn lattice(low: Vector, high: Vector, radius: f64, count: usize) -> Result<Vec<Vector>, Error> {
+    let pitch = 2.0 * PITCH * radius;
+    let number = [0, 1, 2].map(|axis| ((high[axis] - low[axis]) / pitch).floor().max(0.0));
+    let room = number[0] * number[1] * number[2];
+    if room < count as f64 {
+        return Err(Error::Value {
+            what: "the number of fruit on a lattice",
+            value: count as f64,
+            problem: "they do not fit into its box: make the box larger, or pour them",
+        });
+    }
+    let [nx, ny, _] = number.map(|own| own as usize);
+    let place = |n: usize| {
+        let at = [n % nx, n / nx % ny, n / (nx * ny)];
+        [0, 1, 2].map(|axis| low[axis] + pitch * (at[axis] as f64 + 0.5))
+    };
+    Ok((0..count).map(place).collect())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn kind(count: usize, source: Source) -> FruitKind {
+        FruitKind {
+            material: 0,
+            count,
+            radius: 0.04,
+            radius_sd: 0.002,
+            density: 840.0,
+            source,
+        }
+    }
+
+    #[test]
+    fn fruit_are_as_the_population_says() {
+        let pour = Source::Pour {
+            low: [0.0; 3],
+            high: [1.0, 1.0, 0.1],
+            velocity: [0.0, 0.0, -1.0],
+            rate: 50.0,
+            from: 1.0,
+        };
+        let fruit = drawn(&[kind(20_000, pour)], 3).unwrap();
+        let n = fruit.len() as f64;
+        let mean = fruit.iter().map(|own| own.radius).sum::<f64>() / n;
+        let square = fruit
+            .iter()
+            .map(|own| (own.radius - mean).powi(2))
+            .sum::<f64>()
+            / n;
+        // Five standard errors; cutting at three deviations takes 1.3 % off the spread.
+        assert!((mean - 0.04).abs() < 5.0 * 0.002 / n.sqrt(), "{mean}");
+        assert!(
+            (square.sqrt() / 0.002 / 0.9866 - 1.0).abs() < 0.025,
+            "{square}"
+        );
+        assert_eq!(fruit[50].time, 2.0);
+        assert!(
+            fruit
+                .iter()
+                .all(|own| own.place[2] >= own.radius && own.place[2] <= 0.1 - own.radius)
+        );
+        // Kinds do not disturb each other.
+        let both = drawn(&[kind(20_000, pour), kind(10, pour)], 3).unwrap();
+        assert_eq!(both[..20_000], fruit[..]);
+        assert_ne!(both[20_000].draws, fruit[0].draws);
+    }
+
+    #[test]
+    fn rejects_boxes_without_room() {
+        let lattice = Source::Lattice {
+            low: [0.0; 3],
+            high: [0.5; 3],
+            velocity: [0.0; 3],
+        };
+        assert_eq!(drawn(&[kind(125, lattice)], 1).unwrap().len(), 125);
+        assert!(drawn(&[kind(217, lattice)], 1).is_err());
+        let tree = Source::Tree {
+            low: [0.0; 3],
+            high: [0.5, 0.5, 0.05],
+            over: 1.0,
+        };
+        assert!(drawn(&[kind(1, tree)], 1).is_err());
+    }
+}

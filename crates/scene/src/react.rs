@@ -1,0 +1,307 @@
+//! The force of one contact: the normal law, friction with memory, rolling friction.
+//! For one contact or for several side by side: numbers are any [`Real`].
+
+use crate::interaction::Interaction;
+use windfall_contact::law::ContactLaw;
+use windfall_numerics::real::Real;
+
+/// A vector of numbers of any kind.
+pub(crate) type Of<R> = [R; 3];
+
+#[inline(always)]
+pub(crate) fn dot<R: Real>(a: Of<R>, b: Of<R>) -> R {
+    a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
+}
+
+#[inline(always)]
+pub(crate) fn cross<R: Real>(a: Of<R>, b: Of<R>) -> Of<R> {
+    [
+        a[1] * b[2] - a[2] * b[1],
+        a[2] * b[0] - a[0] * b[2],
+        a[0] * b[1] - a[1] * b[0],
+    ]
+}
+
+#[inline(always)]
+fn add<R: Real>(a: Of<R>, b: Of<R>) -> Of<R> {
+    [a[0] + b[0], a[1] + b[1], a[2] + b[2]]
+}
+
+#[inline(always)]
+fn times<R: Real>(a: Of<R>, by: R) -> Of<R> {
+    [a[0] * by, a[1] * by, a[2] * by]
+}
+
+#[inline(always)]
+fn less<R: Real>(a: Of<R>, b: Of<R>, by: R) -> Of<R> {
+    [a[0] - b[0] * by, a[1] - b[1] * by, a[2] - b[2] * by]
+}
+
+/// Two bodies where they touch.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Touch<R> {
+    /// From the first body to the second; length 1.
+    pub normal: Of<R>,
+    /// How far the undeformed surfaces overlap, d; m.
+    pub displacement: R,
+    /// Velocity of the first body's surface relative to the second's, half a step ago; m/s.
+    pub velocity: Of<R>,
+    /// Angular velocity of the first relative to the second, half a step ago; rad/s.
+    pub spin: Of<R>,
+    /// R*; m.
+    pub radius: R,
+}
+
+/// What a contact remembers from step to step; of numbers or of several side by side.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Memory<R> {
+    /// Elastic part of the tangential force on the first body; N.
+    pub elastic: [R; 3],
+    /// Tangential force on the first body; N.
+    pub tangential: [R; 3],
+    /// Tangential stiffness; N/m.
+    pub stiffness: R,
+    /// Normal force; N.
+    pub normal: R,
+    /// Rate of the displacement half a step ago; m/s.
+    pub rate: R,
+    /// Largest displacement; m.
+    pub peak: R,
+    /// Largest normal force; N.
+    pub peak_force: R,
+    /// Work of the bodies on the normal contact; J.
+    pub work: R,
+    /// Work of the bodies on friction and rolling; J.
+    pub friction_work: R,
+    /// Last moment of a force; s.
+    pub pushed: R,
+}
+
+/// The memory of one contact.
+pub type History = Memory<f64>;
+
+impl History {
+    /// A contact that begins with a rate of its displacement.
+    pub(crate) fn at(time: f64, rate: f64) -> Self {
+        Self {
+            pushed: time,
+            rate,
+            ..Self::default()
+        }
+    }
+
+    /// The same contact seen from the second body.
+    pub(crate) fn swapped(self) -> Self {
+        Self {
+            elastic: self.elastic.map(|own| -own),
+            tangential: self.tangential.map(|own| -own),
+            ..self
+        }
+    }
+}
+
+/// What a contact does to the first body; the second has the opposite.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Reaction<R> {
+    /// Force; N.
+    pub force: Of<R>,
+    /// Moment besides that of the force; N m.
+    pub rolling: Of<R>,
+}
+
+/// The normal force of a contact, as friction needs it.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Normal<R> {
+    /// Before it is clamped to be repulsive; N.
+    pub force: R,
+    /// ∂F/∂v; N s/m.
+    pub damping: R,
+    /// ∂F/∂d of the contact at rest; N/m.
+    pub stiffness: R,
+}
+
+/// Where the normal force of contacts comes from.
+pub(crate) trait NormalLaw<R> {
+    /// * `displacement`, `rate`, `peak`: see [`ContactLaw`]
+    fn normal(&self, displacement: R, rate: R, peak: R) -> Normal<R>;
+}
+
+/// The law of one contact.
+pub(crate) struct Single<'a, L, const N: usize>(pub &'a L);
+
+impl<R: Real, L: ContactLaw<N>, const N: usize> NormalLaw<R> for Single<'_, L, N> {
+    #[inline(always)]
+    fn normal(&self, displacement: R, rate: R, peak: R) -> Normal<R> {
+        normal_of(self.0, displacement, rate, peak)
+    }
+}
+
+/// The normal force of one law.
+#[inline(always)]
+pub(crate) fn normal_of<R: Real, L: ContactLaw<N>, const N: usize>(
+    law: &L,
+    displacement: R,
+    rate: R,
+    peak: R,
+) -> Normal<R> {
+    let moving = law.evaluate(displacement, rate, peak);
+    let at_rest = law.evaluate(displacement, displacement.constant(0.0), peak);
+    Normal {
+        force: moving.force,
+        damping: moving.by_rate,
+        stiffness: at_rest.by_displacement,
+    }
+}
+
+/// Time of a step, in all numbers side by side the same.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Clock {
+    /// Now; s.
+    pub time: f64,
+    /// Time step; s.
+    pub step: f64,
+}
+
+/// Force of a contact, one step on.
+///
+/// The normal force is the law's, at the end of the step: its rate is taken on from the
+/// last two half steps, so that damping has the integrator's second order. It never pulls.
+/// The tangential force follows Mindlin's no-slip contact by increments, k_t = ratio ·
+/// ∂F/∂d; while the contact unloads it shrinks with the stiffness, so that no energy comes
+/// of it; Coulomb's limit caps it. Rolling is resisted by a spring that yields at
+/// μ_r R* F, with the stiffness k_t R*².
+///
+/// * `rolling`: the moment against rolling on the first body a step ago, where there is one
+///
+/// # Source
+/// Mindlin (1949), J. Appl. Mech. 16, 259; Thornton, Cummins and Cleary (2013), Powder
+/// Technol. 233, 30 (unloading); Ai et al. (2011), Powder Technol. 206, 269 (rolling, model C).
+#[inline(always)]
+pub(crate) fn react<R: Real, L: NormalLaw<R>>(
+    law: &L,
+    surface: &Interaction,
+    touch: &Touch<R>,
+    clock: Clock,
+    memory: &mut Memory<R>,
+    rolling: Option<&mut Of<R>>,
+) -> Reaction<R> {
+    let &Touch {
+        normal,
+        displacement,
+        velocity,
+        ..
+    } = touch;
+    let zero = displacement.constant(0.0);
+    let now = displacement.constant(clock.time);
+    let rate = dot(velocity, normal);
+    let found = law.normal(displacement, rate * 1.5 - memory.rate * 0.5, memory.peak);
+    let force = found.force.max(zero);
+    // Where the force ended within the step.
+    let since = found.force / (found.force - memory.normal);
+    let ended = memory
+        .normal
+        .select(now - since * clock.step, memory.pushed);
+    memory.pushed = force.select(now, ended);
+    memory.work = memory.work + (memory.normal + force) * rate * (0.5 * clock.step);
+    memory.rate = rate;
+    memory.normal = force;
+    memory.peak = memory.peak.max(displacement);
+    memory.peak_force = memory.peak_force.max(force);
+    let mut reaction = Reaction {
+        force: times(normal, -force),
+        rolling: [zero; 3],
+    };
+    if surface.friction > 0.0 {
+        let slip = less(velocity, normal, rate);
+        let found = Normal {
+            force: force * surface.friction,
+            damping: found.damping.max(zero) * surface.tangential_damping,
+            stiffness: found.stiffness.max(zero) * surface.tangential_ratio,
+        };
+        reaction.force = add(reaction.force, slide(normal, slip, found, clock, memory));
+        if let Some(moment) = rolling {
+            let limit = touch.radius * force * surface.rolling;
+            reaction.rolling = roll(touch, limit, clock, memory, moment);
+        }
+    }
+    reaction
+}
+
+/// The tangential force one step on; the elastic part of it is remembered.
+///
+/// * `tangential`: its largest size, its damping and its stiffness
+#[inline(always)]
+fn slide<R: Real>(
+    normal: Of<R>,
+    slip: Of<R>,
+    tangential: Normal<R>,
+    clock: Clock,
+    memory: &mut Memory<R>,
+) -> Of<R> {
+    let Normal {
+        force: limit,
+        damping,
+        stiffness,
+    } = tangential;
+    let one = limit.constant(1.0);
+    let before = into_plane(memory.elastic, normal);
+    let unloads = memory.stiffness - stiffness;
+    let shrunk = unloads.select(stiffness / memory.stiffness, one);
+    memory.stiffness = stiffness;
+    let elastic = less(times(before, shrunk), slip, stiffness * clock.step);
+    let sticking = less(elastic, slip, damping);
+    let square = dot(sticking, sticking);
+    let beyond = square - limit * limit;
+    let capped = beyond.select(limit / square.sqrt(), one);
+    let whole = times(sticking, capped);
+    let mut next = elastic;
+    for axis in 0..3 {
+        next[axis] = beyond.select(whole[axis] + slip[axis] * damping, elastic[axis]);
+    }
+    memory.elastic = next;
+    let both = add(memory.tangential, whole);
+    memory.friction_work = memory.friction_work - dot(both, slip) * (0.5 * clock.step);
+    memory.tangential = whole;
+    whole
+}
+
+/// The moment against rolling, one step on.
+#[inline(always)]
+fn roll<R: Real>(
+    touch: &Touch<R>,
+    limit: R,
+    clock: Clock,
+    memory: &mut Memory<R>,
+    own: &mut Of<R>,
+) -> Of<R> {
+    let stiffness = memory.stiffness * touch.radius * touch.radius;
+    let rolling = less(touch.spin, touch.normal, dot(touch.spin, touch.normal));
+    let before = into_plane(*own, touch.normal);
+    let moment = less(before, rolling, stiffness * clock.step);
+    let square = dot(moment, moment);
+    let beyond = square - limit * limit;
+    let capped = beyond.select(limit / square.sqrt(), limit.constant(1.0));
+    let moment = times(moment, capped);
+    let both = add(before, moment);
+    memory.friction_work = memory.friction_work - dot(both, rolling) * (0.5 * clock.step);
+    *own = moment;
+    moment
+}
+
+/// A vector turned with the plane of contact: its length is kept to second order.
+#[inline(always)]
+fn into_plane<R: Real>(a: Of<R>, normal: Of<R>) -> Of<R> {
+    let out = dot(a, normal);
+    let inside = less(a, normal, out);
+    let square = dot(inside, inside);
+    let lost = square.select(out * out / square, out.constant(0.0));
+    times(inside, lost * 0.5 + 1.0)
+}
+
+/// Velocity of a body's surface where it touches, relative to another's.
+///
+/// * `arms`: spins times their distances to the contact, added: l₁ω₁ + l₂ω₂; m/s
+#[inline(always)]
+pub(crate) fn surface_velocity<R: Real>(relative: Of<R>, arms: Of<R>, normal: Of<R>) -> Of<R> {
+    add(relative, cross(arms, normal))
+}

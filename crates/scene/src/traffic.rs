@@ -1,0 +1,185 @@
+//! Fruit that come into a scene and leave it.
+
+use crate::error::Error;
+use crate::event::{Event, Partner};
+use crate::neighbours::NONE;
+use crate::scene::{Fruit, Sink};
+use crate::simulation::{Leaving, Simulation};
+use crate::vector::{dot, length, plus_scaled, subtract};
+
+/// Overlap over the radius that fruit may have at the beginning; 1.
+const ROOM: f64 = 0.01;
+
+impl Simulation {
+    pub(crate) fn due(&self) -> bool {
+        let next = self.scene.fruit.get(self.released);
+        next.is_some_and(|fruit| fruit.time <= self.time())
+    }
+
+    /// Lets in fruit whose time has come.
+    pub(crate) fn release(&mut self) -> Result<(), Error> {
+        let (step, gravity) = (self.scene.time_step, self.scene.gravity);
+        let mut came = false;
+        while self.due() {
+            let fruit = &self.scene.fruit[self.released];
+            let number = self.released as u32;
+            if let Some((partner, overlap)) = self.in_the_way(fruit) {
+                if self.steps == 0 {
+                    return Err(Error::Occupied {
+                        fruit: number,
+                        place: fruit.place,
+                        partner,
+                        overlap,
+                    });
+                }
+                // It waits until there is room.
+                break;
+            }
+            let [x, y, z] = fruit.place;
+            let [u, v, w] = plus_scaled(fruit.velocity, gravity, -0.5 * step);
+            let [a, b, c] = fruit.spin;
+            let (mass, inertia) = (1.0 / fruit.mass, 1.0 / fruit.inertia());
+            self.account.brought += 0.5 * fruit.mass * dot(fruit.velocity, fruit.velocity)
+                + 0.5 * fruit.inertia() * dot(fruit.spin, fruit.spin)
+                - fruit.mass * dot(gravity, fruit.place);
+            self.bodies.place.push([x, y, z, fruit.radius]);
+            self.bodies.motion.push([u, v, w, mass, a, b, c, inertia]);
+            self.bodies.turn.push(Fruit::ORIENTATION);
+            self.bodies.fruit.push(number);
+            self.bodies.material.push(fruit.material as u32);
+            self.bodies.walls.push(Vec::new());
+            self.released += 1;
+            came = true;
+        }
+        if came {
+            self.rebuild();
+        }
+        Ok(())
+    }
+
+    /// Whether the fruit of the beginning have room.
+    pub(crate) fn check_room(&self) -> Result<(), Error> {
+        let places = &self.bodies.place;
+        for (&first, &second) in self.table.first.iter().zip(&self.table.second) {
+            let (a, b) = (places[first as usize], places[second as usize]);
+            let between = length(subtract([a[0], a[1], a[2]], [b[0], b[1], b[2]]));
+            let overlap = a[3] + b[3] - between;
+            if overlap > ROOM * a[3].min(b[3]) {
+                return Err(Error::Occupied {
+                    fruit: self.bodies.fruit[first as usize],
+                    place: [a[0], a[1], a[2]],
+                    partner: format!("fruit {}", self.bodies.fruit[second as usize]),
+                    overlap,
+                });
+            }
+        }
+        Ok(())
+    }
+
+    /// What stands where a fruit is to be released.
+    fn in_the_way(&self, fruit: &Fruit) -> Option<(String, f64)> {
+        // At the beginning all fruit are there at once: looking at each pair would take long.
+        let before = if self.steps == 0 {
+            0
+        } else {
+            self.bodies.len()
+        };
+        for body in 0..before {
+            let [x, y, z, radius] = self.bodies.place[body];
+            let gap = length(subtract([x, y, z], fruit.place)) - radius - fruit.radius;
+            if gap < 0.0 {
+                return Some((format!("fruit {}", self.bodies.fruit[body]), -gap));
+            }
+        }
+        None
+    }
+
+    /// Takes out fruit that are in a sink.
+    pub(crate) fn sink(&mut self) {
+        let time = self.time();
+        let gravity = self.scene.gravity;
+        let mut keep = Vec::with_capacity(self.bodies.len());
+        for body in 0..self.bodies.len() {
+            let [x, y, z, _] = self.bodies.place[body];
+            let inside = |sink: &Sink| {
+                let inside =
+                    |axis: usize, at: f64| (sink.low[axis]..=sink.high[axis]).contains(&at);
+                inside(0, x) && inside(1, y) && inside(2, z)
+            };
+            let Some(sink) = self.scene.sinks.iter().position(inside) else {
+                keep.push(body);
+                continue;
+            };
+            let fruit = self.bodies.fruit[body];
+            let own = &self.scene.fruit[fruit as usize];
+            let m = &self.bodies.motion[body];
+            let velocity = plus_scaled([m[0], m[1], m[2]], gravity, 0.5 * self.scene.time_step);
+            self.account.brought -= 0.5 * own.mass * dot(velocity, velocity)
+                + 0.5 * own.inertia() * dot([m[4], m[5], m[6]], [m[4], m[5], m[6]])
+                - own.mass * dot(gravity, [x, y, z]);
+            self.taken.push(Leaving { fruit, time, sink });
+        }
+        if keep.len() < self.bodies.len() {
+            self.end_contacts_without(&keep);
+            self.rebuild();
+        }
+    }
+
+    /// Ends contacts of bodies that are not kept, and leaves only those that are.
+    fn end_contacts_without(&mut self, keep: &[usize]) {
+        let mut place = vec![NONE; self.bodies.len()];
+        for (new, &old) in keep.iter().enumerate() {
+            place[old] = new as u32;
+        }
+        let mut left = vec![true; self.released];
+        for &body in keep {
+            left[self.bodies.fruit[body] as usize] = false;
+        }
+        let mut ended = Vec::new();
+        for event in self.lasting() {
+            let gone = |fruit: u32| left[fruit as usize];
+            let other = match event.partner {
+                Partner::Fruit(other) => gone(other),
+                Partner::Wall(_) => false,
+            };
+            if gone(event.fruit) || other {
+                ended.push(Event {
+                    lasting: false,
+                    ..event
+                });
+            }
+        }
+        for event in ended {
+            self.account.normal += event.absorbed_energy;
+            self.account.friction += event.friction_energy;
+            self.events.push(event);
+        }
+        let mut table = std::mem::take(&mut self.table);
+        let old: Vec<(u32, u32)> = table
+            .first
+            .iter()
+            .copied()
+            .zip(table.second.iter().copied())
+            .collect();
+        // Contacts of what is gone are dropped with their entries.
+        table.first = old.iter().map(|pair| place[pair.0 as usize]).collect();
+        table.second = old.iter().map(|pair| place[pair.1 as usize]).collect();
+        self.table = table;
+        let bodies = &mut self.bodies;
+        let kept = |old: usize| place[old] != NONE;
+        retain(&mut bodies.place, kept);
+        retain(&mut bodies.motion, kept);
+        retain(&mut bodies.turn, kept);
+        retain(&mut bodies.fruit, kept);
+        retain(&mut bodies.material, kept);
+        retain(&mut bodies.walls, kept);
+    }
+}
+
+fn retain<T>(from: &mut Vec<T>, keep: impl Fn(usize) -> bool) {
+    let mut place = 0;
+    from.retain(|_| {
+        place += 1;
+        keep(place - 1)
+    });
+}

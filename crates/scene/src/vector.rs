@@ -1,0 +1,146 @@
+//! Vectors of three numbers.
+
+/// A vector in space.
+pub type Vector = [f64; 3];
+
+/// Sum.
+#[inline(always)]
+#[must_use]
+pub fn add(a: Vector, b: Vector) -> Vector {
+    [a[0] + b[0], a[1] + b[1], a[2] + b[2]]
+}
+
+/// Difference.
+#[inline(always)]
+#[must_use]
+pub fn subtract(a: Vector, b: Vector) -> Vector {
+    [a[0] - b[0], a[1] - b[1], a[2] - b[2]]
+}
+
+/// Vector times number.
+#[inline(always)]
+#[must_use]
+pub fn scaled(a: Vector, by: f64) -> Vector {
+    [a[0] * by, a[1] * by, a[2] * by]
+}
+
+/// a + b times `by`.
+#[inline(always)]
+#[must_use]
+pub fn plus_scaled(a: Vector, b: Vector, by: f64) -> Vector {
+    [a[0] + b[0] * by, a[1] + b[1] * by, a[2] + b[2] * by]
+}
+
+/// Scalar product.
+#[inline(always)]
+#[must_use]
+pub fn dot(a: Vector, b: Vector) -> f64 {
+    a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
+}
+
+/// Vector product.
+#[inline(always)]
+#[must_use]
+pub fn cross(a: Vector, b: Vector) -> Vector {
+    [
+        a[1] * b[2] - a[2] * b[1],
+        a[2] * b[0] - a[0] * b[2],
+        a[0] * b[1] - a[1] * b[0],
+    ]
+}
+
+/// Length.
+#[inline(always)]
+#[must_use]
+pub fn length(a: Vector) -> f64 {
+    dot(a, a).sqrt()
+}
+
+/// The vector of length 1 in its direction; `None` for one of no length.
+#[must_use]
+pub fn unit(a: Vector) -> Option<Vector> {
+    let size = length(a);
+    (size > 0.0 && size.is_finite()).then(|| scaled(a, 1.0 / size))
+}
+
+/// A rotation as a quaternion of length 1: w, x, y, z.
+pub type Rotation = [f64; 4];
+
+/// No rotation.
+pub const UNTURNED: Rotation = [1.0, 0.0, 0.0, 0.0];
+
+/// The vector turned by the rotation.
+#[inline(always)]
+#[must_use]
+pub fn turned(q: Rotation, a: Vector) -> Vector {
+    let axis = [q[1], q[2], q[3]];
+    let twice = scaled(cross(axis, a), 2.0);
+    add(plus_scaled(a, twice, q[0]), cross(axis, twice))
+}
+
+/// The vector turned back by the rotation.
+#[inline(always)]
+#[must_use]
+pub fn turned_back(q: Rotation, a: Vector) -> Vector {
+    turned([q[0], -q[1], -q[2], -q[3]], a)
+}
+
+/// The rotation followed by a turn with `spin` (rad/s) over a time; of length 1 again.
+#[inline(always)]
+#[must_use]
+pub fn turned_on(q: Rotation, spin: Vector, time: f64) -> Rotation {
+    let half = scaled(spin, 0.5 * time);
+    // Of the exponential of the half angle to third order: turns within a step are small.
+    let square = dot(half, half);
+    let (c, s) = (1.0 - square * (0.5 - square / 24.0), 1.0 - square / 6.0);
+    let [x, y, z] = scaled(half, s);
+    let next = [
+        c * q[0] - x * q[1] - y * q[2] - z * q[3],
+        c * q[1] + x * q[0] + y * q[3] - z * q[2],
+        c * q[2] + y * q[0] + z * q[1] - x * q[3],
+        c * q[3] + z * q[0] + x * q[2] - y * q[1],
+    ];
+    // One step of Newton's method to length 1.
+    let size = next.iter().map(|each| each * each).sum::<f64>();
+    let correction = 1.5 - 0.5 * size;
+    next.map(|each| each * correction)
+}
+
+/// The turn about an axis of length 1 by an angle; rad.
+#[must_use]
+pub fn turn_about(axis: Vector, angle: f64) -> Rotation {
+    let (s, c) = (0.5 * angle).sin_cos();
+    [c, axis[0] * s, axis[1] * s, axis[2] * s]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn closed_form_a_quarter_turn() {
+        let quarter = turn_about([0.0, 0.0, 1.0], std::f64::consts::FRAC_PI_2);
+        let there = turned(quarter, [1.0, 2.0, 3.0]);
+        for (found, wanted) in there.into_iter().zip([-2.0, 1.0, 3.0]) {
+            assert!((found - wanted).abs() < 1e-15);
+        }
+        let back = turned_back(quarter, there);
+        for (found, wanted) in back.into_iter().zip([1.0, 2.0, 3.0]) {
+            assert!((found - wanted).abs() < 1e-15);
+        }
+    }
+
+    #[test]
+    fn closed_form_small_turns_add_up_to_a_large_one() {
+        // 1 rad about an oblique axis in 1000 steps.
+        let axis = unit([1.0, -2.0, 0.5]).unwrap();
+        let mut q = UNTURNED;
+        for _ in 0..1000 {
+            q = turned_on(q, axis, 1e-3);
+        }
+        let whole = turn_about(axis, 1.0);
+        for (found, wanted) in q.into_iter().zip(whole) {
+            assert!((found - wanted).abs() < 1e-10, "{q:?} {whole:?}");
+        }
+    }
+}
