@@ -5,6 +5,8 @@
 //! INITIAL: a text of `id x y z vx vy vz radius` in each line (SI); the bin is as wide as
 //! the round of its lattice of 84 mm, see `bench/compare-scene`.
 
+#![allow(clippy::print_stdout)]
+
 use std::collections::BTreeMap;
 use windfall_contact::expression::parse_law;
 use windfall_scene::interaction::{Interaction, mindlin_ratio};

@@ -1,9 +1,9 @@
 //! Forces on each body added up, and where they take it.
 
+use crate::contact::{Moment, Outcome};
 use crate::error::Error;
 use crate::interaction::Interaction;
 use crate::neighbours::{NONE, PairTable, SECOND};
-use crate::pair_contacts::{Moment, Outcome};
 use crate::pair_forces::{PairForce, moment_on};
 use crate::scene::Scene;
 use crate::vector::{Rotation, Vector, add, dot, length, plus_scaled, scaled, subtract, turned_on};

@@ -1,32 +1,18 @@
 //! Contacts of two fruit, compiled once for each law.
 
+use crate::contact::{Moment, Outcome, Parcel, encounter, event_of_pair, parted, too_deep};
 use crate::error::Error;
-use crate::event::{Encounter, Event, Partner};
+use crate::event::Encounter;
 use crate::interaction::Interaction;
 use crate::neighbours::{Bodies, NONE};
 use crate::pair_forces::{Batch, Hot, PairForce};
-use crate::react::{Clock, History, dot, surface_velocity};
-use crate::scene::Fruit;
+use crate::react::{History, dot, surface_velocity};
 use crate::vector::{Vector, length, plus_scaled, scaled, subtract, turned_back};
 use windfall_contact::effective::effective_radius;
 use windfall_contact::law::ContactLaw;
 use windfall_contact::law_kind as laws;
 use windfall_contact::law_kind::Law;
 use windfall_numerics::real_vector::with_four_lanes;
-
-/// What every contact of a step needs to know.
-#[derive(Clone, Copy)]
-pub(crate) struct Moment<'a> {
-    pub fruit: &'a [Fruit],
-    pub clock: Clock,
-}
-
-/// What a block of contacts brings about besides forces.
-#[derive(Debug, Default)]
-pub(crate) struct Outcome {
-    pub events: Vec<Event>,
-    pub problem: Option<Error>,
-}
 
 /// The entries of one block and one interaction.
 pub(crate) struct Part<'a> {
@@ -37,17 +23,6 @@ pub(crate) struct Part<'a> {
     pub out: &'a mut [PairForce],
     /// Moment against rolling on the first body; N m. Empty where nothing resists it.
     pub rolling: &'a mut [Vector],
-}
-
-/// A contact that is carried into a new list.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct Parcel {
-    /// What radii multiply the median's force by; 1.
-    pub scale: f64,
-    pub history: History,
-    /// Moment against rolling on the first body; N m.
-    pub rolling: Vector,
-    pub encounter: Encounter,
 }
 
 /// Contacts of one block and one interaction.
@@ -225,20 +200,6 @@ impl<L: ContactLaw<N> + Variant, const N: usize> PairContacts for Contacts<L, N>
     }
 }
 
-/// Why a contact with so much overlap means nothing.
-pub(crate) fn too_deep(time: f64, fruit: u32, partner: String, overlap: f64, radius: f64) -> Error {
-    match overlap.is_finite() {
-        true => Error::Overlap {
-            time,
-            fruit,
-            partner,
-            overlap,
-            share: 100.0 * overlap / radius,
-        },
-        false => Error::NotFinite { time, fruit },
-    }
-}
-
 impl<L: ContactLaw<N> + Variant, const N: usize> Contacts<L, N> {
     fn parcel(&self, contact: usize) -> Parcel {
         Parcel {
@@ -356,84 +317,4 @@ impl<L: ContactLaw<N> + Variant, const N: usize> Contacts<L, N> {
 fn overlap(bodies: &Bodies, i: usize, j: usize) -> f64 {
     let (a, b) = (&bodies.place[i], &bodies.place[j]);
     a[3] + b[3] - length([b[0] - a[0], b[1] - a[1], b[2] - a[2]])
-}
-
-/// How a contact begins; place and spots are the caller's.
-pub(crate) fn encounter(
-    normal: Vector,
-    displacement: f64,
-    velocity: Vector,
-    clock: Clock,
-) -> Encounter {
-    let rate = dot(velocity, normal);
-    let slip = subtract(velocity, scaled(normal, rate));
-    // First touch lies within the step.
-    let since = match rate > 0.0 {
-        true => (displacement / rate).min(clock.step),
-        false => 0.0,
-    };
-    Encounter {
-        time: clock.time - since,
-        place: [0.0; 3],
-        spot: [0.0; 3],
-        other_spot: [0.0; 3],
-        normal_speed: rate,
-        tangential_speed: length(slip),
-    }
-}
-
-/// A contact with its last step: bodies part with a force that is there to the end.
-pub(crate) fn parted(mut parcel: Parcel, gap: f64, clock: Clock) -> Parcel {
-    let history = &mut parcel.history;
-    if history.normal > 0.0 {
-        history.work += 0.5 * history.normal * history.rate * clock.step;
-        let since = match history.rate < 0.0 {
-            true => (gap / -history.rate).min(clock.step),
-            false => 0.0,
-        };
-        history.pushed = clock.time - since;
-    }
-    parcel
-}
-
-/// The event of two fruit; the lower number first.
-pub(crate) fn event_of_pair(parcel: Parcel, (first, second): (u32, u32), lasting: bool) -> Event {
-    let swap = second < first;
-    let encounter = match swap {
-        true => parcel.encounter.swapped(),
-        false => parcel.encounter,
-    };
-    let partner = Partner::Fruit(first.max(second));
-    event(
-        &parcel.history,
-        &encounter,
-        first.min(second),
-        partner,
-        lasting,
-    )
-}
-
-pub(crate) fn event(
-    history: &History,
-    encounter: &Encounter,
-    fruit: u32,
-    partner: Partner,
-    lasting: bool,
-) -> Event {
-    Event {
-        fruit,
-        partner,
-        time: encounter.time,
-        duration: history.pushed - encounter.time,
-        lasting,
-        place: encounter.place,
-        spot: encounter.spot,
-        other_spot: encounter.other_spot,
-        normal_speed: encounter.normal_speed,
-        tangential_speed: encounter.tangential_speed,
-        peak_force: history.peak_force,
-        largest_displacement: history.peak,
-        absorbed_energy: history.work,
-        friction_energy: history.friction_work,
-    }
 }

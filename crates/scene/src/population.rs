@@ -128,6 +128,7 @@ fn drawn_of(kind: &FruitKind, generator: &mut ChaCha8Rng) -> Result<Vec<Fruit>, 
                 fruit.time = from + number as f64 / rate;
                 fruit.place = somewhere(low, high, radius, generator)?;
                 fruit.velocity = velocity;
+                fruit.elsewhere = Some([low.map(|own| own + radius), high.map(|own| own - radius)]);
             }
             Source::Drop {
                 place,

@@ -1,7 +1,8 @@
 //! The list of neighbours made anew, and what goes over into it.
 
+use crate::contact::Parcel;
 use crate::neighbours::{BLOCK, NONE, PairTable, sort_into_cells};
-use crate::pair_contacts::{Parcel, pair_contacts};
+use crate::pair_contacts::pair_contacts;
 use crate::pair_forces::PairForce;
 use crate::simulation::Simulation;
 use crate::vector::scaled;

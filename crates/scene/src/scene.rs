@@ -46,6 +46,8 @@ pub struct Fruit {
     pub velocity: Vector,
     /// Angular velocity; rad/s.
     pub spin: Vector,
+    /// Lowest and highest place at which it may come in as well, where its own is taken; m.
+    pub elsewhere: Option<[Vector; 2]>,
 }
 
 /// A box in which fruit leave the scene.
@@ -81,6 +83,7 @@ impl Fruit {
             place,
             velocity: [0.0; 3],
             spin: [0.0; 3],
+            elsewhere: None,
         }
     }
 

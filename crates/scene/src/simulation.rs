@@ -1,12 +1,13 @@
 //! A scene from step to step.
 
+use crate::contact::{Moment, Outcome, event, event_of_pair};
 use crate::energy::{Account, Energy};
 use crate::error::Error;
 use crate::event::{Event, Partner};
 use crate::gather::{Gather, Sums};
 use crate::interaction::Interaction;
 use crate::neighbours::{BLOCK, Bodies, PairTable};
-use crate::pair_contacts::{Moment, Outcome, PairContacts, Part, event, event_of_pair};
+use crate::pair_contacts::{PairContacts, Part};
 use crate::pair_forces::PairForce;
 use crate::react::Clock;
 use crate::scene::Scene;

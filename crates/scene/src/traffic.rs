@@ -5,10 +5,22 @@ use crate::event::{Event, Partner};
 use crate::neighbours::NONE;
 use crate::scene::{Fruit, Sink};
 use crate::simulation::{Leaving, Simulation};
-use crate::vector::{dot, length, plus_scaled, subtract};
+use crate::vector::{Vector, dot, length, plus_scaled, subtract};
 
 /// Overlap over the radius that fruit may have at the beginning; 1.
 const ROOM: f64 = 0.01;
+
+/// Places that are tried for a fruit in a step.
+const ATTEMPTS: u64 = 8;
+
+/// Multiples of these, without their whole parts, are spread evenly over a cube: powers of
+/// the inverse of the root of x⁴ = x + 1, by Roberts (2018), "The unreasonable effectiveness
+/// of quasirandom sequences".
+const SPREAD_OUT: [f64; 3] = [
+    0.819_172_513_396_164_4,
+    0.671_043_606_703_789_3,
+    0.549_700_477_901_970_3,
+];
 
 impl Simulation {
     pub(crate) fn due(&self) -> bool {
@@ -21,9 +33,9 @@ impl Simulation {
         let (step, gravity) = (self.scene.time_step, self.scene.gravity);
         let mut came = false;
         while self.due() {
-            let fruit = &self.scene.fruit[self.released];
             let number = self.released as u32;
-            if let Some((partner, overlap)) = self.in_the_way(fruit) {
+            if let Some((partner, overlap)) = self.in_the_way(&self.scene.fruit[self.released]) {
+                let fruit = &self.scene.fruit[self.released];
                 if self.steps == 0 {
                     return Err(Error::Occupied {
                         fruit: number,
@@ -32,9 +44,13 @@ impl Simulation {
                         overlap,
                     });
                 }
-                // It waits until there is room.
-                break;
+                let Some(place) = self.another_place(fruit) else {
+                    // It waits until there is room.
+                    break;
+                };
+                self.scene.fruit[self.released].place = place;
             }
+            let fruit = &self.scene.fruit[self.released];
             let [x, y, z] = fruit.place;
             let [u, v, w] = plus_scaled(fruit.velocity, gravity, -0.5 * step);
             let [a, b, c] = fruit.spin;
@@ -74,6 +90,24 @@ impl Simulation {
             }
         }
         Ok(())
+    }
+
+    /// A place where nothing is, among some that are spread over where a fruit may come in;
+    /// other ones in each step.
+    fn another_place(&self, fruit: &Fruit) -> Option<Vector> {
+        let [low, high] = fruit.elsewhere?;
+        let mut own = fruit.clone();
+        for attempt in 0..ATTEMPTS {
+            let number = (self.steps % 65_536 * ATTEMPTS + attempt) as f64;
+            for axis in 0..3 {
+                let share = (number * SPREAD_OUT[axis]).fract();
+                own.place[axis] = low[axis] + (high[axis] - low[axis]) * share;
+            }
+            if self.in_the_way(&own).is_none() {
+                return Some(own.place);
+            }
+        }
+        None
     }
 
     /// What stands where a fruit is to be released.

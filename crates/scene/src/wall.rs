@@ -230,7 +230,9 @@ impl Shape {
 }
 
 impl Plate {
-    pub(crate) fn corners(&self) -> [Vector; 4] {
+    /// Its corners; m.
+    #[must_use]
+    pub fn corners(&self) -> [Vector; 4] {
         let [a, b] = self.edges;
         let corner = self.corner;
         [

@@ -1,11 +1,9 @@
 //! Contacts of a fruit with walls.
 
+use crate::contact::{Moment, Outcome, Parcel, encounter, event, parted, too_deep};
 use crate::error::Error;
 use crate::event::{Encounter, Partner};
 use crate::interaction::Interaction;
-use crate::pair_contacts::{
-    LARGEST_OVERLAP, Moment, Outcome, Parcel, encounter, event, parted, too_deep,
-};
 use crate::react::{History, Single, Touch, cross, dot, react, surface_velocity};
 use crate::vector::{Rotation, Vector, add, length, plus_scaled, scaled, subtract, turned_back};
 use crate::wall::{Closest, Facet, Placed, Wall};
@@ -168,7 +166,7 @@ pub(crate) fn push<'a>(
         let moment = scaled(cross(closest.normal, reaction.force), arm);
         pushed.moment = add(add(pushed.moment, moment), reaction.rolling);
         // Also where the distance is no number.
-        let shallow = displacement <= LARGEST_OVERLAP * radius;
+        let shallow = displacement <= DEEPEST * radius;
         if !shallow {
             outcome.problem.get_or_insert_with(|| {
                 too_deep(
@@ -233,6 +231,10 @@ fn find_hits(
 fn same_place(a: &Closest, b: &Closest, radius: f64) -> bool {
     length(subtract(a.point, b.point)) < COINCIDENT * radius && dot(a.normal, b.normal) > 0.999
 }
+
+/// Overlap over the radius above which a contact with a wall means nothing: a soft wall
+/// may give way, but not beyond the centre of a fruit; 1.
+const DEEPEST: f64 = 0.9;
 
 /// Points closer than this part of the radius are one.
 const COINCIDENT: f64 = 1e-6;

@@ -10,6 +10,7 @@ use crate::args_laws::LawsArguments;
 use crate::args_population::PopulationArguments;
 use crate::args_regress::RegressArguments;
 use crate::args_report::ReportArguments;
+use crate::args_scene::SceneCommand;
 use crate::args_serve::ServeArguments;
 use crate::args_simulate::SimulateArguments;
 use crate::args_surface::SurfaceArguments;
@@ -31,6 +32,7 @@ use std::path::PathBuf;
   windfall report my-campaign             figures and a page with all of it
   windfall serve my-campaign              all of it in the browser
   windfall simulate impact --law 'kuwabara-kono(k=753599, c=1524)' --mass '0.2 kg' --velocity '0.5 m/s'
+  windfall new scene my-scene; windfall scene run my-scene/scene.toml
   windfall design ccd --factor 'k=0.3..1' --factor 'e=1.5..3' --out design.csv
   windfall card show --laws               the force laws")]
 pub struct Arguments {
@@ -42,7 +44,7 @@ pub struct Arguments {
 /// The commands.
 #[derive(Debug, Subcommand)]
 pub enum Command {
-    /// Write a commented template of a campaign
+    /// Write a commented template of a campaign or a scene
     New(NewArguments),
     /// Show what recordings hold and what looks wrong
     Inspect(InspectArguments),
@@ -62,6 +64,9 @@ pub enum Command {
     Design(Box<DesignArguments>),
     /// Simulate one event from a force law
     Simulate(SimulateArguments),
+    /// Simulate many fruit in a machine: which contacts each fruit suffers
+    #[command(subcommand)]
+    Scene(SceneCommand),
     /// Describe the values of a table group by group: mean, SD, CV, interval, quartiles
     Summary(SummaryArguments),
     /// Compare groups of a table, or predictions with what was measured
@@ -110,6 +115,8 @@ pub enum NewKind {
     Repeats,
     /// Fruit fall on a plate over a load cell and bounce
     Drop,
+    /// Not a campaign but a scene: many fruit and a machine, simulated
+    Scene,
 }
 
 /// `windfall inspect`

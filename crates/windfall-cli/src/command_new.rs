@@ -3,19 +3,36 @@
 use crate::args::{NewArguments, NewKind};
 use crate::args_format::Format;
 use crate::show::{write_json, write_result};
-use windfall::workflow_new::{TemplateKind, write_template};
+use windfall::workflow_new::{TemplateKind, write_scene_template, write_template};
 
 /// Writes a template and names the files.
 pub fn run(arguments: &NewArguments) -> anyhow::Result<()> {
+    let directory = &arguments.directory;
     let kind = match arguments.kind {
-        NewKind::Pendulum => TemplateKind::Pendulum,
-        NewKind::Carriage => TemplateKind::Carriage,
-        NewKind::Compression => TemplateKind::Compression,
-        NewKind::Acoustic => TemplateKind::Acoustic,
-        NewKind::Repeats => TemplateKind::Repeats,
-        NewKind::Drop => TemplateKind::Drop,
+        NewKind::Pendulum => Some(TemplateKind::Pendulum),
+        NewKind::Carriage => Some(TemplateKind::Carriage),
+        NewKind::Compression => Some(TemplateKind::Compression),
+        NewKind::Acoustic => Some(TemplateKind::Acoustic),
+        NewKind::Repeats => Some(TemplateKind::Repeats),
+        NewKind::Drop => Some(TemplateKind::Drop),
+        NewKind::Scene => None,
     };
-    let written = write_template(kind, &arguments.directory)?;
+    let (written, next) = match kind {
+        Some(kind) => (
+            write_template(kind, directory)?,
+            format!(
+                "put the recordings into raw/, edit the files, then\n  windfall fit {}",
+                directory.display()
+            ),
+        ),
+        None => (
+            write_scene_template(directory)?,
+            format!(
+                "edit the file, then\n  windfall scene run {}",
+                directory.join("scene.toml").display()
+            ),
+        ),
+    };
     let names: Vec<String> = written
         .iter()
         .map(|path| path.display().to_string())
@@ -23,10 +40,6 @@ pub fn run(arguments: &NewArguments) -> anyhow::Result<()> {
     match arguments.format {
         Format::Json => write_json(&serde_json::json!({ "written": names })),
         Format::Csv => write_result(&format!("written\n{}\n", names.join("\n"))),
-        Format::Text => write_result(&format!(
-            "{}\n\nNext: put the recordings into raw/, edit the files, then\n  windfall fit {}\n",
-            names.join("\n"),
-            arguments.directory.display()
-        )),
+        Format::Text => write_result(&format!("{}\n\nNext: {next}\n", names.join("\n"))),
     }
 }

@@ -16,6 +16,7 @@ mod args_laws;
 mod args_population;
 mod args_regress;
 mod args_report;
+mod args_scene;
 mod args_serve;
 mod args_simulate;
 mod args_simulate_drop;
@@ -33,6 +34,7 @@ mod command_new;
 mod command_population;
 mod command_regress;
 mod command_report;
+mod command_scene;
 mod command_serve;
 mod command_simulate;
 mod command_simulate_drop;
@@ -55,6 +57,7 @@ fn main() -> ExitCode {
         Command::Report(arguments) => command_report::run(&arguments),
         Command::Serve(arguments) => command_serve::run(&arguments),
         Command::Calibrate(arguments) => command_calibrate::run(&arguments),
+        Command::Scene(command) => command_scene::run(&command),
         Command::Simulate(arguments) => command_simulate::run(&arguments),
         Command::Summary(arguments) => command_compare::run_summary(&arguments),
         Command::Compare(arguments) => command_compare::run_compare(&arguments),

@@ -12,6 +12,17 @@ pub enum Error {
     /// Somebody stopped the work.
     #[error("stopped before it was done; nothing of it was kept")]
     Cancelled,
+    /// A scene that cannot be.
+    #[error("{place}: {problem}")]
+    SceneRefused {
+        /// Where its file says so.
+        place: Place,
+        /// What is wrong.
+        problem: String,
+    },
+    /// A scene whose result would mean nothing from there on.
+    #[error("the scene was stopped: {0}")]
+    SceneStopped(Box<windfall_scene::error::Error>),
     /// A change that would leave no campaign that can be read.
     #[error("nothing was written: {problem}")]
     ChangeRefused {
@@ -547,6 +558,7 @@ impl Error {
             self,
             Self::FileAccess { .. }
                 | Self::Cancelled
+                | Self::SceneStopped(_)
                 | Self::NothingFitted { .. }
                 | Self::MassUnknown { .. }
                 | Self::StoreDamaged { .. }

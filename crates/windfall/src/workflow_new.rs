@@ -1,4 +1,4 @@
-//! `windfall new KIND DIR`: a commented template of a campaign.
+//! `windfall new KIND DIR`: a commented template of a campaign or a scene.
 
 use crate::error::Error;
 use std::path::{Path, PathBuf};
@@ -111,6 +111,17 @@ pub fn write_template(kind: TemplateKind, directory: &Path) -> Result<Vec<PathBu
     std::fs::create_dir(&raw).map_err(|source| create_error(&raw, source))?;
     written.push(raw);
     Ok(written)
+}
+
+/// Writes the template of a scene into a directory that does not exist yet, or is empty.
+///
+/// # Errors
+/// There is something in the directory already, or it cannot be written.
+pub fn write_scene_template(directory: &Path) -> Result<Vec<PathBuf>, Error> {
+    create_directory(directory)?;
+    let path = directory.join("scene.toml");
+    write_file(&path, include_str!("templates/scene.toml").as_bytes())?;
+    Ok(vec![path])
 }
 
 /// Creates a directory that is to be filled; one that holds files is refused.

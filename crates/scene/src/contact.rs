@@ -1,0 +1,126 @@
+//! One contact from its beginning to its event, whatever it is with.
+
+use crate::error::Error;
+use crate::event::{Encounter, Event, Partner};
+use crate::react::{Clock, History, dot};
+use crate::scene::Fruit;
+use crate::vector::{Vector, length, scaled, subtract};
+
+/// What every contact of a step needs to know.
+#[derive(Clone, Copy)]
+pub(crate) struct Moment<'a> {
+    pub fruit: &'a [Fruit],
+    pub clock: Clock,
+}
+
+/// What a block of contacts brings about besides forces.
+#[derive(Debug, Default)]
+pub(crate) struct Outcome {
+    pub events: Vec<Event>,
+    pub problem: Option<Error>,
+}
+
+/// A contact that is carried into a new list.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Parcel {
+    /// What radii multiply the median's force by; 1.
+    pub scale: f64,
+    pub history: History,
+    /// Moment against rolling on the first body; N m.
+    pub rolling: Vector,
+    pub encounter: Encounter,
+}
+
+/// Why a contact with so much overlap means nothing.
+pub(crate) fn too_deep(time: f64, fruit: u32, partner: String, overlap: f64, radius: f64) -> Error {
+    match overlap.is_finite() {
+        true => Error::Overlap {
+            time,
+            fruit,
+            partner,
+            overlap,
+            share: 100.0 * overlap / radius,
+        },
+        false => Error::NotFinite { time, fruit },
+    }
+}
+
+/// How a contact begins; place and spots are the caller's.
+pub(crate) fn encounter(
+    normal: Vector,
+    displacement: f64,
+    velocity: Vector,
+    clock: Clock,
+) -> Encounter {
+    let rate = dot(velocity, normal);
+    let slip = subtract(velocity, scaled(normal, rate));
+    // First touch lies within the step.
+    let since = match rate > 0.0 {
+        true => (displacement / rate).min(clock.step),
+        false => 0.0,
+    };
+    Encounter {
+        time: clock.time - since,
+        place: [0.0; 3],
+        spot: [0.0; 3],
+        other_spot: [0.0; 3],
+        normal_speed: rate,
+        tangential_speed: length(slip),
+    }
+}
+
+/// A contact with its last step: bodies part with a force that is there to the end.
+pub(crate) fn parted(mut parcel: Parcel, gap: f64, clock: Clock) -> Parcel {
+    let history = &mut parcel.history;
+    if history.normal > 0.0 {
+        history.work += 0.5 * history.normal * history.rate * clock.step;
+        let since = match history.rate < 0.0 {
+            true => (gap / -history.rate).min(clock.step),
+            false => 0.0,
+        };
+        history.pushed = clock.time - since;
+    }
+    parcel
+}
+
+/// The event of two fruit; the lower number first.
+pub(crate) fn event_of_pair(parcel: Parcel, (first, second): (u32, u32), lasting: bool) -> Event {
+    let swap = second < first;
+    let encounter = match swap {
+        true => parcel.encounter.swapped(),
+        false => parcel.encounter,
+    };
+    let partner = Partner::Fruit(first.max(second));
+    event(
+        &parcel.history,
+        &encounter,
+        first.min(second),
+        partner,
+        lasting,
+    )
+}
+
+pub(crate) fn event(
+    history: &History,
+    encounter: &Encounter,
+    fruit: u32,
+    partner: Partner,
+    lasting: bool,
+) -> Event {
+    Event {
+        fruit,
+        partner,
+        time: encounter.time,
+        duration: history.pushed - encounter.time,
+        lasting,
+        place: encounter.place,
+        spot: encounter.spot,
+        other_spot: encounter.other_spot,
+        normal_speed: encounter.normal_speed,
+        tangential_speed: encounter.tangential_speed,
+        peak_force: history.peak_force,
+        largest_displacement: history.peak,
+        absorbed_energy: history.work,
+        friction_energy: history.friction_work,
+    }
+}

@@ -1,0 +1,357 @@
+//! scene.toml → a scene.
+
+use crate::error::Error;
+use crate::file_scene::{AirFile, ContactFile, GravityFile, SceneFile};
+use crate::law_card::LawCard;
+use crate::law_use::complete_law_among;
+use crate::read_card::{law_of_card, read_card};
+use crate::read_files::check_format;
+use crate::read_rig::STANDARD_GRAVITY;
+use crate::read_scene_fruit::fruit_of;
+use crate::read_scene_walls::wall_of;
+use crate::scene_card::spread_of_card;
+use crate::scene_key::{material, needed};
+use crate::toml_source::{
+    TomlSource, invalid, missing, optional_quantity, parse_source, place_at, read_source,
+};
+use std::collections::BTreeMap;
+use std::path::Path;
+use toml::Spanned;
+use windfall_scene::interaction::{Interaction, mindlin_ratio};
+use windfall_scene::population::drawn;
+use windfall_scene::scene::{Air, Scene, Sink};
+use windfall_scene::vector::{Vector, scaled};
+use windfall_scene::wall::Wall;
+
+/// A scene as its file says, ready to run but for an automatic time step.
+#[derive(Clone, Debug)]
+pub struct ScenePlan {
+    /// Title.
+    pub title: String,
+    /// The scene; its time step is 0 where it is automatic.
+    pub scene: Scene,
+    /// Names of the kinds of fruit, and how many of each.
+    pub kinds: Vec<(String, usize)>,
+    /// Law cards by the pair of materials, where laws come from cards.
+    pub cards: BTreeMap<(usize, usize), LawCard>,
+    /// Error that an automatic time step may make; 1.
+    pub time_step_error: f64,
+    /// When it ends; s.
+    pub end: f64,
+    /// Contacts with a smaller peak force are counted, not written; N.
+    pub least_peak_force: f64,
+}
+
+/// Reads a scene and draws its fruit.
+///
+/// # Errors
+/// The file cannot be read, says something that cannot be, or lacks what is needed; the
+/// message names file, line and key.
+pub fn read_scene(path: &Path) -> Result<ScenePlan, Error> {
+    let source = read_source(path, "`windfall new scene DIR` writes a template")?;
+    let file: SceneFile = parse_source(&source)?;
+    check_format(&source, file.format.as_ref())?;
+    let materials = materials(&source, &file)?;
+    let mut cards = BTreeMap::new();
+    let mut interactions = BTreeMap::new();
+    for contact in &file.contacts {
+        let (pair, interaction, card) = contact_of(&source, contact, &materials)?;
+        if interactions.insert(pair, interaction).is_some() {
+            let problem = "these two materials stand in more than one [[contacts]]".to_owned();
+            let names = format!("{}, {}", materials[pair.0], materials[pair.1]);
+            let at = contact.span();
+            return Err(invalid(
+                &source,
+                &at,
+                ("[[contacts]]", "between"),
+                &names,
+                problem,
+            ));
+        }
+        cards.extend(card.map(|card| (pair, card)));
+    }
+    let mut kinds = Vec::new();
+    let mut names = Vec::new();
+    for fruit in &file.fruit {
+        let (name, kind) = fruit_of(&source, fruit, &materials)?;
+        names.push((name, kind.count));
+        kinds.push(kind);
+    }
+    if kinds.is_empty() {
+        let fruit = needed(
+            "the file",
+            "[[fruit]]",
+            "which fruit come, and how",
+            "",
+            "[[fruit]]",
+        );
+        return Err(missing(&source, &(0..0), &fruit, fruit.table.to_owned()));
+    }
+    let walls = file.walls.iter();
+    let walls = walls.map(|wall| wall_of(&source, wall, &materials));
+    let walls: Vec<Wall> = walls.collect::<Result<_, _>>()?;
+    let seed = file.scene.seed.unwrap_or(1);
+    let fruit = drawn(&kinds, seed).map_err(|problem| scene_error(&source, &file, &problem))?;
+    let time = |value, key, meaning, example| {
+        optional_quantity(
+            &source,
+            value,
+            &needed("[scene]", key, meaning, "s", example),
+        )
+    };
+    let automatic = |step: &&Spanned<_>| {
+        let step: &Spanned<crate::file_quantity::QuantityText> = step;
+        step.get_ref().0.trim() == "auto"
+    };
+    let step = file
+        .scene
+        .time_step
+        .as_ref()
+        .filter(|step| !automatic(step));
+    let step = time(step, "time_step", "time step", "time_step = \"20 us\"")?.unwrap_or(0.0);
+    let end = time(
+        file.scene.end.as_ref(),
+        "end",
+        "when the scene ends",
+        "end = \"3 s\"",
+    )?;
+    let Some(end) = end.filter(|end| *end > 0.0 && end.is_finite()) else {
+        let key = needed(
+            "[scene]",
+            "end",
+            "when the scene ends, above zero",
+            "s",
+            "end = \"3 s\"",
+        );
+        return Err(missing(&source, &(0..0), &key, key.table.to_owned()));
+    };
+    let share = needed(
+        "[scene]",
+        "time_step_error",
+        "error",
+        "1",
+        "time_step_error = \"0.2 %\"",
+    );
+    let error = optional_quantity(&source, file.scene.time_step_error.as_ref(), &share)?;
+    let force = needed(
+        "[events]",
+        "least_peak_force",
+        "force",
+        "N",
+        "least_peak_force = \"1 N\"",
+    );
+    let least = optional_quantity(&source, file.events.least_peak_force.as_ref(), &force)?;
+    let scene = Scene {
+        materials,
+        interactions,
+        walls,
+        fruit,
+        sinks: sinks(&file),
+        gravity: gravity(&source, file.scene.gravity.as_ref())?,
+        air: file
+            .air
+            .as_ref()
+            .map(|air| air_of(&source, air))
+            .transpose()?,
+        time_step: step,
+    };
+    // An automatic step is found later.
+    let checked = Scene {
+        time_step: if step == 0.0 { 1.0 } else { step },
+        ..scene.clone()
+    };
+    checked
+        .check()
+        .map_err(|problem| scene_error(&source, &file, &problem))?;
+    Ok(ScenePlan {
+        title: file
+            .scene
+            .title
+            .clone()
+            .unwrap_or_else(|| path.display().to_string()),
+        scene,
+        kinds: names,
+        cards,
+        time_step_error: error.unwrap_or(DEFAULT_ERROR),
+        end,
+        least_peak_force: least.unwrap_or(0.0),
+    })
+}
+
+/// Error that an automatic time step may make where the file does not say; 1.
+const DEFAULT_ERROR: f64 = 2e-3;
+
+/// What is wrong with the scene as a whole, told of the file.
+fn scene_error(
+    source: &TomlSource,
+    file: &SceneFile,
+    problem: &windfall_scene::error::Error,
+) -> Error {
+    Error::SceneRefused {
+        place: place_at(source, &file.materials.span()),
+        problem: problem.to_string(),
+    }
+}
+
+fn materials(source: &TomlSource, file: &SceneFile) -> Result<Vec<String>, Error> {
+    let mut names: Vec<String> = Vec::new();
+    for name in file.materials.get_ref() {
+        if names.contains(name.get_ref()) {
+            let problem = "this name stands there twice".to_owned();
+            let at = name.span();
+            return Err(invalid(
+                source,
+                &at,
+                ("the file", "materials"),
+                name.get_ref(),
+                problem,
+            ));
+        }
+        names.push(name.get_ref().clone());
+    }
+    Ok(names)
+}
+
+type Found = ((usize, usize), Interaction, Option<LawCard>);
+
+fn contact_of(
+    source: &TomlSource,
+    contact: &Spanned<ContactFile>,
+    materials: &[String],
+) -> Result<Found, Error> {
+    const TABLE: &str = "[[contacts]]";
+    let (file, at) = (contact.get_ref(), contact.span());
+    let Some(between) = &file.between else {
+        let key = needed(
+            TABLE,
+            "between",
+            "the two materials",
+            "",
+            "between = [\"apple\", \"steel\"]",
+        );
+        return Err(missing(source, &at, &key, TABLE.to_owned()));
+    };
+    let [a, b] = between.get_ref();
+    let own = |name| material(source, &between.span(), (TABLE, "between"), name, materials);
+    let (a, b) = (own(a)?, own(b)?);
+    let radius = needed(
+        TABLE,
+        "effective_radius",
+        "R*",
+        "m",
+        "effective_radius = \"37.5 mm\"",
+    );
+    let mut seen = optional_quantity(source, file.effective_radius.as_ref(), &radius)?;
+    let mut card = None;
+    let mut spread = None;
+    let law = match (&file.card, &file.law) {
+        (Some(name), None) => {
+            let path = source.path.with_file_name(name.get_ref());
+            let own = read_card(&path)?;
+            let law = law_of_card(&own, &path)?;
+            seen = seen.or(own.contact.as_ref().map(|contact| contact.effective_radius));
+            spread = spread_of_card(&own, &law, &path)?;
+            card = Some(own);
+            law
+        }
+        (None, Some(law)) => complete_law_among(law.get_ref(), &[]).map_err(|error| {
+            invalid(
+                source,
+                &law.span(),
+                (TABLE, "law"),
+                law.get_ref(),
+                error.to_string(),
+            )
+        })?,
+        _ => {
+            let example = "card = \"apple.toml\"   or   law = \"kuwabara-kono(k=753599, c=1524)\"";
+            let key = needed(TABLE, "card", "a law card, or a law", "", example);
+            return Err(missing(source, &at, &key, TABLE.to_owned()));
+        }
+    };
+    let number = |value: &Option<Spanned<f64>>| value.as_ref().map(|own| *own.get_ref());
+    let ratio = match (number(&file.tangential_ratio), number(&file.poisson)) {
+        (Some(ratio), None) => ratio,
+        (None, Some(poisson)) => mindlin_ratio(poisson),
+        (None, None) => mindlin_ratio(DEFAULT_POISSON),
+        (Some(_), Some(poisson)) => {
+            let problem = "poisson and tangential_ratio say the same: leave one out".to_owned();
+            return Err(invalid(
+                source,
+                &at,
+                (TABLE, "poisson"),
+                &poisson.to_string(),
+                problem,
+            ));
+        }
+    };
+    let interaction = Interaction {
+        law,
+        effective_radius: seen,
+        spread,
+        friction: number(&file.friction).unwrap_or(0.0),
+        tangential_ratio: ratio,
+        tangential_damping: number(&file.tangential_damping).unwrap_or(1.0),
+        rolling: number(&file.rolling).unwrap_or(0.0),
+    };
+    Ok(((a.min(b), a.max(b)), interaction, card))
+}
+
+/// Poisson's ratio where none is given; 1.
+const DEFAULT_POISSON: f64 = 0.3;
+
+fn sinks(file: &SceneFile) -> Vec<Sink> {
+    let sink = |(number, sink): (usize, &Spanned<crate::file_scene::SinkFile>)| {
+        let own = sink.get_ref();
+        Sink {
+            name: own
+                .name
+                .clone()
+                .unwrap_or_else(|| format!("sink {}", number + 1)),
+            low: own.low,
+            high: own.high,
+        }
+    };
+    file.sinks.iter().enumerate().map(sink).collect()
+}
+
+fn gravity(source: &TomlSource, file: Option<&Spanned<GravityFile>>) -> Result<Vector, Error> {
+    let Some(file) = file else {
+        return Ok([0.0, 0.0, -STANDARD_GRAVITY]);
+    };
+    match file.get_ref() {
+        GravityFile::Vector(own) => Ok(*own),
+        GravityFile::Down(text) => {
+            let key = needed(
+                "[scene]",
+                "gravity",
+                "gravity",
+                "m/s^2",
+                "gravity = \"9.81 m/s^2\"",
+            );
+            let text = Spanned::new(file.span(), text.clone());
+            let size = optional_quantity(source, Some(&text), &key)?.unwrap_or(0.0);
+            Ok(scaled([0.0, 0.0, -1.0], size))
+        }
+    }
+}
+
+fn air_of(source: &TomlSource, air: &Spanned<AirFile>) -> Result<Air, Error> {
+    let density = needed(
+        "[air]",
+        "density",
+        "density of the air",
+        "kg/m^3",
+        "density = \"1.2 kg/m^3\"",
+    );
+    let density = optional_quantity(source, air.get_ref().density.as_ref(), &density)?;
+    let drag = air
+        .get_ref()
+        .drag_coefficient
+        .as_ref()
+        .map(|own| *own.get_ref());
+    Ok(Air {
+        density: density.unwrap_or(1.2),
+        drag_coefficient: drag.unwrap_or(0.47),
+    })
+}

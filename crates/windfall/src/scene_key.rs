@@ -1,0 +1,41 @@
+//! What readers of scene.toml share.
+
+use crate::error::Error;
+use crate::toml_source::{Needed, TomlSource, invalid, suggestion};
+use std::ops::Range;
+
+/// A value that must stand in a table.
+#[must_use]
+pub const fn needed(
+    table: &'static str,
+    key: &'static str,
+    meaning: &'static str,
+    unit: &'static str,
+    example: &'static str,
+) -> Needed {
+    Needed {
+        table,
+        key,
+        meaning,
+        unit,
+        example,
+    }
+}
+
+/// The number of a material.
+///
+/// # Errors
+/// There is none of that name.
+pub fn material(
+    source: &TomlSource,
+    span: &Range<usize>,
+    (table, key): (&str, &str),
+    name: &str,
+    materials: &[String],
+) -> Result<usize, Error> {
+    materials.iter().position(|own| own == name).ok_or_else(|| {
+        let near = suggestion(name, materials.iter().map(String::as_str));
+        let problem = format!("there is no such material in `materials`{near}");
+        invalid(source, span, (table, key), name, problem)
+    })
+}

@@ -1,0 +1,281 @@
+//! Contacts and fruit of a scene as tables.
+
+use crate::error::Error;
+use crate::read_scene::ScenePlan;
+use crate::scene_outcome::{FRUIT, SceneOutcome, Tally};
+use crate::text_statistic::number;
+use crate::write_csv::csv_text;
+use crate::write_table::page_tables;
+use std::fs::File;
+use std::io::{BufWriter, Write};
+use std::path::{Path, PathBuf};
+use windfall_scene::event::{Event, Partner};
+use windfall_scene::scene::Scene;
+use windfall_scene::simulation::FruitState;
+
+/// Columns of events.csv.
+const EVENT_COLUMNS: &str = "fruit,partner,partner_fruit,time_s,duration_s,lasting,x_m,y_m,z_m,\
+spot_x,spot_y,spot_z,partner_spot_x,partner_spot_y,partner_spot_z,normal_speed_m_s,\
+tangential_speed_m_s,peak_force_N,largest_displacement_m,absorbed_energy_J,friction_energy_J";
+
+/// A table of contacts that grows with the scene; it has its name when it is whole.
+pub struct EventFile {
+    path: PathBuf,
+    partial: PathBuf,
+    file: BufWriter<File>,
+    walls: Vec<String>,
+    least: f64,
+    written: u64,
+}
+
+impl EventFile {
+    /// A table without rows.
+    ///
+    /// * `least`: contacts with a smaller peak force are left out; N
+    ///
+    /// # Errors
+    /// It cannot be written.
+    pub fn create(path: &Path, scene: &Scene, least: f64) -> Result<Self, Error> {
+        let partial = path.with_extension(format!("csv.{}.partial", std::process::id()));
+        let failed = |source| access(path, source);
+        let mut file = BufWriter::new(File::create(&partial).map_err(failed)?);
+        writeln!(file, "{EVENT_COLUMNS}").map_err(failed)?;
+        Ok(Self {
+            path: path.to_path_buf(),
+            partial,
+            file,
+            walls: scene.walls.iter().map(|wall| quoted(&wall.name)).collect(),
+            least,
+            written: 0,
+        })
+    }
+
+    /// One contact more.
+    ///
+    /// # Errors
+    /// It cannot be written, such as where the disk is full.
+    pub fn write(&mut self, event: &Event) -> Result<(), Error> {
+        if event.peak_force < self.least {
+            return Ok(());
+        }
+        self.written += 1;
+        let (partner, number) = match event.partner {
+            Partner::Fruit(other) => (FRUIT, (other + 1).to_string()),
+            Partner::Wall(wall) => (self.walls[wall as usize].as_str(), String::new()),
+        };
+        let ([x, y, z], [a, b, c], [d, e, f]) = (event.place, event.spot, event.other_spot);
+        writeln!(
+            self.file,
+            "{},{partner},{number},{},{},{},{x},{y},{z},{a},{b},{c},{d},{e},{f},{},{},{},{},{},{}",
+            event.fruit + 1,
+            event.time,
+            event.duration,
+            event.lasting,
+            event.normal_speed,
+            event.tangential_speed,
+            event.peak_force,
+            event.largest_displacement,
+            event.absorbed_energy,
+            event.friction_energy,
+        )
+        .map_err(|source| access(&self.path, source))
+    }
+
+    /// Gives the table its name; the number of its rows.
+    ///
+    /// # Errors
+    /// It cannot be written.
+    pub fn finish(mut self) -> Result<u64, Error> {
+        let done = self
+            .file
+            .flush()
+            .and_then(|()| self.file.get_ref().sync_all());
+        done.and_then(|()| std::fs::rename(&self.partial, &self.path))
+            .map_err(|source| access(&self.path, source))?;
+        Ok(self.written)
+    }
+}
+
+/// What was not finished leaves nothing behind.
+impl Drop for EventFile {
+    fn drop(&mut self) {
+        let _ = std::fs::remove_file(&self.partial);
+    }
+}
+
+fn access(path: &Path, source: std::io::Error) -> Error {
+    Error::FileAccess {
+        path: path.to_path_buf(),
+        action: "write",
+        source,
+    }
+}
+
+/// A name as a cell.
+fn quoted(name: &str) -> String {
+    match name.contains([',', '"', '\n', '\r']) {
+        true => format!("\"{}\"", name.replace('"', "\"\"")),
+        false => name.to_owned(),
+    }
+}
+
+/// One row per fruit: what it is, what it went through, where it is.
+///
+/// # Errors
+/// None in practice: the text is written to memory.
+pub fn fruit_table(
+    plan: &ScenePlan,
+    tally: &Tally,
+    states: &[FruitState],
+) -> Result<String, Error> {
+    let header = [
+        "fruit",
+        "material",
+        "diameter_m",
+        "mass_kg",
+        "released_s",
+        "left_s",
+        "sink",
+        "x_m",
+        "y_m",
+        "z_m",
+        "contacts",
+        "largest_peak_force_N",
+        "partner_of_it",
+        "time_of_it_s",
+        "impact_speed_of_it_m_s",
+        "largest_absorbed_energy_J",
+        "absorbed_energy_J",
+    ];
+    let scene = &plan.scene;
+    let mut states = states.iter().peekable();
+    let rows = scene
+        .fruit
+        .iter()
+        .zip(&tally.fruit)
+        .enumerate()
+        .map(|(number, (fruit, own))| {
+            let state = states.next_if(|state| state.fruit as usize == number);
+            let place = state.map_or([const { String::new() }; 3], |state| {
+                state.place.map(|at| at.to_string())
+            });
+            let hardest = own.hardest.as_ref();
+            let partner = hardest.map_or(String::new(), |event| match event.partner {
+                Partner::Fruit(_) => FRUIT.to_owned(),
+                Partner::Wall(wall) => scene.walls[wall as usize].name.clone(),
+            });
+            let of = |number: Option<f64>| number.map_or(String::new(), |own| own.to_string());
+            let [x, y, z] = place;
+            vec![
+                (number + 1).to_string(),
+                scene.materials[fruit.material].clone(),
+                (2.0 * fruit.radius).to_string(),
+                fruit.mass.to_string(),
+                fruit.time.to_string(),
+                of(own.left.map(|left| left.time)),
+                own.left
+                    .map_or(String::new(), |left| scene.sinks[left.sink].name.clone()),
+                x,
+                y,
+                z,
+                own.contacts.to_string(),
+                of(hardest.map(|event| event.peak_force)),
+                partner,
+                of(hardest.map(|event| event.time)),
+                of(hardest.map(|event| event.normal_speed)),
+                own.absorbed[0].to_string(),
+                own.absorbed[1].to_string(),
+            ]
+        });
+    let rows: Vec<Vec<String>> = rows.collect();
+    csv_text(&header.map(str::to_owned), rows)
+}
+
+/// What came of a scene, for a terminal.
+#[must_use]
+pub fn text_of_scene(outcome: &SceneOutcome) -> String {
+    let step = &outcome.step;
+    let mut text = format!(
+        "{}\n\n{} fruit over {} s in {} steps of {} µs: peak forces of {} and {} at {} m/s err by \
+         {} %, absorbed energies by {} % of the impact energy.\n{} contacts, {} of them written; \
+         {} fruit left. The energy account closes to {} % of what was lost.\n\n",
+        outcome.title,
+        outcome.fruit,
+        outcome.end,
+        outcome.steps,
+        number(1e6 * step.time_step),
+        step.between[0],
+        step.between[1],
+        number(step.speed),
+        number(100.0 * step.peak_force_error),
+        number(100.0 * step.energy_error),
+        outcome.contacts,
+        outcome.written,
+        outcome.left,
+        number(100.0 * outcome.energy_closure.abs()),
+    );
+    let header = [
+        "touched",
+        "contacts",
+        "fruit",
+        "peak force (N)",
+        "95 %",
+        "largest",
+        "impact speed (m/s)",
+        "95 %",
+        "largest",
+        "absorbed (mJ)",
+        "95 %",
+        "largest",
+    ];
+    let rows = outcome.partners.iter().map(|own| {
+        let mut row = vec![
+            own.name.clone(),
+            own.contacts.to_string(),
+            own.fruit.to_string(),
+        ];
+        row.extend(own.peak_force.map(number));
+        row.extend(own.impact_speed.map(number));
+        row.extend(own.absorbed_energy.map(|value| number(1e3 * value)));
+        row
+    });
+    let rows: Vec<Vec<String>> = rows.collect();
+    text += &page_tables(&header.map(str::to_owned), &rows, &[0]);
+    for finding in &outcome.findings {
+        text += &format!("\n{}: {}\n", finding.code, finding.message);
+    }
+    text += "\n\nWritten: ";
+    let files: Vec<String> = outcome
+        .files
+        .iter()
+        .map(|file| file.display().to_string())
+        .collect();
+    text + &files.join(", ") + "\n"
+}
+
+/// Contacts by what was touched, as CSV.
+///
+/// # Errors
+/// None in practice: the text is written to memory.
+pub fn csv_of_scene(outcome: &SceneOutcome) -> Result<String, Error> {
+    let levels = ["median", "p95", "max"];
+    let mut header = ["touched", "contacts", "fruit"].map(str::to_owned).to_vec();
+    for (name, unit) in [
+        ("peak_force", "N"),
+        ("impact_speed", "m_s"),
+        ("absorbed_energy", "J"),
+    ] {
+        header.extend(levels.map(|level| format!("{name}_{level}_{unit}")));
+    }
+    let rows = outcome.partners.iter().map(|own| {
+        let mut row = vec![
+            own.name.clone(),
+            own.contacts.to_string(),
+            own.fruit.to_string(),
+        ];
+        let numbers = [own.peak_force, own.impact_speed, own.absorbed_energy];
+        row.extend(numbers.as_flattened().iter().map(f64::to_string));
+        row
+    });
+    csv_text(&header, rows)
+}
