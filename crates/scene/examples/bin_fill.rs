@@ -20,9 +20,9 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         return Err("bin_fill INITIAL STEPS THREADS".into());
     };
     let steps: u64 = steps.parse()?;
-    rayon::ThreadPoolBuilder::new()
+    let pool = rayon::ThreadPoolBuilder::new()
         .num_threads(threads.parse()?)
-        .build_global()?;
+        .build()?;
     let law = parse_law("kuwabara-kono(k=753599, c=1524)")?.complete()?;
     let contact = |effective_radius| Interaction {
         effective_radius: Some(effective_radius),
@@ -70,9 +70,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let mut events = 0;
     for part in 0..10 {
         let (wall, used) = (std::time::Instant::now(), processor_time());
-        for _ in 0..steps / 10 {
-            simulation.step()?;
-        }
+        pool.install(|| (0..steps / 10).try_for_each(|_| simulation.step()))?;
         events += simulation.take_events().len();
         let work = count as f64 * (steps / 10) as f64;
         let spent = processor_time() - used;

@@ -3,7 +3,7 @@
 use crate::contact::{Moment, Outcome};
 use crate::error::Error;
 use crate::interaction::Interaction;
-use crate::neighbours::{NONE, PairTable, SECOND};
+use crate::neighbours::{NONE, PairTable};
 use crate::pair_forces::{PairForce, moment_on};
 use crate::scene::Scene;
 use crate::vector::{Rotation, Vector, add, dot, length, plus_scaled, scaled, subtract, turned_on};
@@ -27,6 +27,7 @@ pub(crate) struct Sums {
 /// What is known when forces on bodies are added up.
 pub(crate) struct Gather<'a> {
     pub table: &'a PairTable,
+    pub loads: &'a [[f64; 8]],
     pub forces: &'a [PairForce],
     pub rolling: &'a [Vector],
     pub scene: &'a Scene,
@@ -128,21 +129,22 @@ impl Gather<'_> {
         (outcome, sums)
     }
 
-    /// Force and moment of all pairs on a body, in the order of the list.
+    /// Force and moment of all pairs on a body: those of its block, then those of others in
+    /// the order of the list.
     #[inline(always)]
     fn of_pairs(&self, body: usize, radius: f64) -> (Vector, Vector) {
-        let (mut force, mut moment) = ([0.0; 3], [0.0; 3]);
-        for &entry in self.table.of(body) {
-            let (own, second) = ((entry & !SECOND) as usize, entry & SECOND != 0);
-            if self.table.slot[own] == NONE {
+        let own = &self.loads[body];
+        let (mut force, mut moment) = ([own[0], own[1], own[2]], [own[4], own[5], own[6]]);
+        for &entry in self.table.incoming(body) {
+            let entry = entry as usize;
+            if self.table.slot[entry] == NONE {
                 continue;
             }
-            let out = &self.forces[own];
-            let sign = if second { -1.0 } else { 1.0 };
-            force = plus_scaled(force, out.force, sign);
+            let out = &self.forces[entry];
+            force = subtract(force, out.force);
             moment = moment_on(out, radius, moment);
-            if let Some(rolling) = self.rolling.get(own) {
-                moment = plus_scaled(moment, *rolling, sign);
+            if let Some(rolling) = self.rolling.get(entry) {
+                moment = subtract(moment, *rolling);
             }
         }
         (force, moment)

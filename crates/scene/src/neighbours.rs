@@ -45,14 +45,15 @@ impl Bodies {
     }
 }
 
-/// Bodies whose pairs one task works through.
-pub(crate) const BLOCK: usize = 128;
+/// Cells along an edge of a tile. Bodies of a tile stand together, so that most pairs are of
+/// one block.
+const TILE: usize = 8;
+
+/// Fewest bodies of a block, but for the last.
+const BLOCK: usize = 192;
 
 /// No contact.
 pub(crate) const NONE: u32 = u32::MAX;
-
-/// Marks an entry seen from its second body.
-pub(crate) const SECOND: u32 = 1 << 31;
 
 /// Pairs that may touch, ordered by blocks of first bodies, within a block by interaction.
 #[derive(Clone, Debug, Default)]
@@ -63,10 +64,14 @@ pub(crate) struct PairTable {
     pub slot: Vec<u32>,
     /// What each block holds: interactions and their entries.
     pub blocks: Vec<Vec<(usize, Range<usize>)>>,
-    /// Entries of each body, those in which it is second marked by [`SECOND`].
-    pub adjacent: Vec<u32>,
-    /// Where those of each body begin.
-    pub adjacent_start: Vec<u32>,
+    /// Bodies of each block.
+    pub bounds: Vec<Range<usize>>,
+    /// Where the entries of each first body begin, in an order of their own.
+    own_start: Vec<u32>,
+    own: Vec<u32>,
+    /// Entries of other blocks in which each body is second, and where those of each begin.
+    incoming: Vec<u32>,
+    incoming_start: Vec<u32>,
 }
 
 /// Sorts bodies into cells and reorders them by cell; answers for each new place the old.
@@ -139,35 +144,65 @@ impl Cells {
         }
     }
 
+    fn tiles(&self) -> [usize; 3] {
+        self.number.map(|own| own.div_ceil(TILE))
+    }
+
     fn count(&self) -> usize {
-        self.number.iter().product()
+        self.tiles().iter().product::<usize>() * TILE * TILE * TILE
+    }
+
+    /// Coordinates of the cell of a place.
+    fn coordinates(&self, place: &[f64; 4]) -> [usize; 3] {
+        [0, 1, 2].map(|axis| {
+            let cell = ((place[axis] - self.low[axis]) / self.size) as usize;
+            cell.min(self.number[axis] - 1)
+        })
+    }
+
+    /// Number of a cell: tile by tile.
+    fn number_of(&self, [i, j, k]: [usize; 3]) -> usize {
+        let [tx, ty, _] = self.tiles();
+        let tile = ((k / TILE) * ty + j / TILE) * tx + i / TILE;
+        ((tile * TILE + k % TILE) * TILE + j % TILE) * TILE + i % TILE
     }
 
     fn of(&self, place: &[f64; 4]) -> u32 {
-        let [i, j, k] = [0, 1, 2].map(|axis| {
-            let cell = ((place[axis] - self.low[axis]) / self.size) as usize;
-            cell.min(self.number[axis] - 1)
-        });
-        ((k * self.number[1] + j) * self.number[0] + i) as u32
+        self.number_of(self.coordinates(place)) as u32
     }
 
-    /// Calls `with` for every body of the cells around a place, in their order, that
-    /// stands behind `body`.
+    /// Calls `with` for every body of the cells around a place that stands behind `body`.
     fn later_neighbours(&self, body: usize, place: &[f64; 4], mut with: impl FnMut(usize)) {
-        let cell = self.of(place) as usize;
-        let [nx, ny, nz] = self.number;
-        let (i, j, k) = (cell % nx, cell / nx % ny, cell / (nx * ny));
-        // Cells with a lower number hold earlier bodies.
-        for kk in k..(k + 2).min(nz) {
-            for jj in j.saturating_sub(1)..(j + 2).min(ny) {
-                let row = (kk * ny + jj) * nx;
-                let (from, to) = (row + i.saturating_sub(1), row + (i + 1).min(nx - 1));
-                let range = self.start[from] as usize..self.start[to + 1] as usize;
-                for other in range.start.max(body + 1)..range.end {
-                    with(other);
+        let at = self.coordinates(place);
+        let range = |axis: usize| at[axis].saturating_sub(1)..(at[axis] + 2).min(self.number[axis]);
+        for k in range(2) {
+            for j in range(1) {
+                for i in range(0) {
+                    let cell = self.number_of([i, j, k]);
+                    let (from, to) = (self.start[cell] as usize, self.start[cell + 1] as usize);
+                    for other in from.max(body + 1)..to {
+                        with(other);
+                    }
                 }
             }
         }
+    }
+
+    /// Bodies in blocks of whole tiles.
+    fn blocks(&self, count: usize) -> Vec<Range<usize>> {
+        let mut blocks = Vec::new();
+        let mut from = 0;
+        for tile in 1..=self.count() / (TILE * TILE * TILE) {
+            let to = self.start[tile * TILE * TILE * TILE] as usize;
+            if to - from >= BLOCK {
+                blocks.push(from..to);
+                from = to;
+            }
+        }
+        if from < count {
+            blocks.push(from..count);
+        }
+        blocks
     }
 }
 
@@ -183,11 +218,12 @@ impl PairTable {
         interaction: impl Fn(u32, u32) -> usize + Sync,
     ) -> Self {
         let count = bodies.len();
-        let blocks: Vec<Vec<Vec<(u32, u32)>>> = (0..count.div_ceil(BLOCK))
-            .into_par_iter()
+        let bounds = cells.blocks(count);
+        let blocks: Vec<Vec<Vec<(u32, u32)>>> = bounds
+            .par_iter()
             .map(|block| {
                 let mut own = vec![Vec::new(); interactions];
-                for first in block * BLOCK..((block + 1) * BLOCK).min(count) {
+                for first in block.clone() {
                     let a = &bodies.place[first];
                     cells.later_neighbours(first, a, |second| {
                         let b = &bodies.place[second];
@@ -218,42 +254,70 @@ impl PairTable {
             table.blocks.push(parts);
         }
         table.slot = vec![NONE; table.first.len()];
+        table.bounds = bounds;
         table.adjoin(count);
         table
     }
 
-    fn adjoin(&mut self, count: usize) {
-        let mut start = vec![0_u32; count + 1];
-        for &body in self.first.iter().chain(&self.second) {
-            start[body as usize + 1] += 1;
-        }
-        for body in 0..count {
-            start[body + 1] += start[body];
-        }
-        let mut next = start.clone();
-        self.adjacent = vec![0; 2 * self.first.len()];
-        for entry in 0..self.first.len() {
-            for (body, mark) in [(self.first[entry], 0), (self.second[entry], SECOND)] {
-                let place = &mut next[body as usize];
-                self.adjacent[*place as usize] = entry as u32 | mark;
-                *place += 1;
-            }
-        }
-        self.adjacent_start = start;
+    /// The block of a body.
+    pub(crate) fn block_of(&self, body: usize) -> usize {
+        self.bounds.partition_point(|block| block.end <= body)
     }
 
-    /// The entries of a body.
+    fn adjoin(&mut self, count: usize) {
+        let all = 0..self.first.len() as u32;
+        let first = &self.first;
+        (self.own_start, self.own) = listed(count, all.clone(), |entry| first[entry as usize]);
+        let mut block = vec![0_u32; count];
+        for (number, bodies) in self.bounds.iter().enumerate() {
+            block[bodies.clone()].fill(number as u32);
+        }
+        let (first, second) = (&self.first, &self.second);
+        let foreign = all.filter(|&entry| {
+            block[first[entry as usize] as usize] != block[second[entry as usize] as usize]
+        });
+        let foreign: Vec<u32> = foreign.collect();
+        let found = listed(count, foreign.into_iter(), |entry| second[entry as usize]);
+        (self.incoming_start, self.incoming) = found;
+    }
+
+    /// Entries of other blocks in which a body is second.
     #[inline(always)]
-    pub(crate) fn of(&self, body: usize) -> &[u32] {
-        &self.adjacent[self.adjacent_start[body] as usize..self.adjacent_start[body + 1] as usize]
+    pub(crate) fn incoming(&self, body: usize) -> &[u32] {
+        &self.incoming[self.incoming_start[body] as usize..self.incoming_start[body + 1] as usize]
     }
 
     /// The entry of two bodies.
     pub(crate) fn find(&self, first: u32, second: u32) -> Option<usize> {
-        let entries = self.of(first as usize).iter();
-        let entries = entries.map(|entry| (entry & !SECOND) as usize);
-        entries
-            .into_iter()
-            .find(|&entry| self.first[entry] == first && self.second[entry] == second)
+        let range = first as usize..first as usize + 2;
+        let [from, to] = self.own_start[range] else {
+            return None;
+        };
+        let entries = self.own[from as usize..to as usize].iter();
+        let mut entries = entries.map(|&entry| entry as usize);
+        entries.find(|&entry| self.second[entry] == second)
     }
+}
+
+/// Entries in the order of what they belong to, and where those of each begin.
+fn listed(
+    count: usize,
+    entries: impl Iterator<Item = u32> + Clone,
+    of: impl Fn(u32) -> u32,
+) -> (Vec<u32>, Vec<u32>) {
+    let mut start = vec![0_u32; count + 1];
+    for entry in entries.clone() {
+        start[of(entry) as usize + 1] += 1;
+    }
+    for body in 0..count {
+        start[body + 1] += start[body];
+    }
+    let mut next = start.clone();
+    let mut list = vec![0; start[count] as usize];
+    for entry in entries {
+        let place = &mut next[of(entry) as usize];
+        list[*place as usize] = entry;
+        *place += 1;
+    }
+    (start, list)
 }

@@ -20,6 +20,9 @@ pub(crate) struct Part<'a> {
     pub first: &'a [u32],
     pub second: &'a [u32],
     pub slot: &'a mut [u32],
+    /// Force and moment of pairs on the bodies of the block, and the first of them.
+    pub loads: &'a mut [[f64; 8]],
+    pub base: usize,
     pub out: &'a mut [PairForce],
     /// Moment against rolling on the first body; N m. Empty where nothing resists it.
     pub rolling: &'a mut [Vector],
@@ -128,6 +131,8 @@ impl<L: ContactLaw<N> + Variant, const N: usize> PairContacts for Contacts<L, N>
             first,
             second,
             slot,
+            loads,
+            base,
             out,
             rolling,
         } = part;
@@ -159,6 +164,8 @@ impl<L: ContactLaw<N> + Variant, const N: usize> PairContacts for Contacts<L, N>
             first,
             second,
             slot,
+            loads,
+            base,
             out,
             rolling_out: rolling,
             touching: &self.touching,

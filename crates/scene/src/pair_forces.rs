@@ -42,6 +42,11 @@ pub(crate) struct Batch<'a, L, const N: usize> {
     pub second: &'a [u32],
     /// The contact of each entry.
     pub slot: &'a [u32],
+    /// Force (N) and moment (N m) of pairs on the bodies of the block, 0 to 2 and 4 to 6.
+    pub loads: &'a mut [[f64; 8]],
+    /// The first body of the block.
+    pub base: usize,
+    /// What second bodies of other blocks are to get.
     pub out: &'a mut [PairForce],
     pub rolling_out: &'a mut [Vector],
     /// Entries that touch.
@@ -98,15 +103,8 @@ impl<L: ContactLaw<N>, const N: usize> FourLanes for Batch<'_, L, N> {
                 }
             };
             store(batch.hot, own, count, &memory);
-            let twist = cross(touch.normal, reaction.force);
-            give(
-                &mut batch,
-                entries,
-                count,
-                (reaction.force, twist, touch.displacement),
-            );
+            let (kept, given) = (plain(moment), plain(reaction.rolling));
             if rolls {
-                let (kept, given) = (plain(moment), plain(reaction.rolling));
                 for lane in 0..count {
                     for axis in 0..3 {
                         batch.rolling[own[lane]][axis] = kept[axis][lane];
@@ -114,6 +112,9 @@ impl<L: ContactLaw<N>, const N: usize> FourLanes for Batch<'_, L, N> {
                     }
                 }
             }
+            let twist = cross(touch.normal, reaction.force);
+            let load = (reaction.force, twist, touch.displacement);
+            give(&mut batch, entries, count, load, given);
             start += count;
         }
         let Lanes(deepest) = deepest.plain();
@@ -337,15 +338,36 @@ fn give<R: Real<Plain = Lanes<LANES>>, L, const N: usize>(
     entries: [usize; LANES],
     count: usize,
     (force, twist, displacement): (Of<R>, Of<R>, R),
+    rolling: [[f64; LANES]; 3],
 ) {
     let (force, twist) = (plain(force), plain(twist));
     let Lanes(short) = (displacement * 0.5).plain();
     for lane in 0..count {
-        batch.out[entries[lane]] = PairForce {
-            force: [force[0][lane], force[1][lane], force[2][lane]],
-            twist: [twist[0][lane], twist[1][lane], twist[2][lane]],
-            short: short[lane],
-        };
+        let entry = entries[lane];
+        let (i, j) = (batch.first[entry] as usize, batch.second[entry] as usize);
+        let force = [force[0][lane], force[1][lane], force[2][lane]];
+        let twist = [twist[0][lane], twist[1][lane], twist[2][lane]];
+        let rolling = [rolling[0][lane], rolling[1][lane], rolling[2][lane]];
+        let arm = batch.bodies.place[i][3] - short[lane];
+        let load = &mut batch.loads[i - batch.base];
+        for axis in 0..3 {
+            load[axis] += force[axis];
+            load[4 + axis] += twist[axis] * arm + rolling[axis];
+        }
+        // Second bodies stand behind.
+        if let Some(load) = batch.loads.get_mut(j - batch.base) {
+            let arm = batch.bodies.place[j][3] - short[lane];
+            for axis in 0..3 {
+                load[axis] -= force[axis];
+                load[4 + axis] += twist[axis] * arm - rolling[axis];
+            }
+        } else {
+            batch.out[entry] = PairForce {
+                force,
+                twist,
+                short: short[lane],
+            };
+        }
     }
 }
 

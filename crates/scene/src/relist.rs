@@ -1,7 +1,7 @@
 //! The list of neighbours made anew, and what goes over into it.
 
 use crate::contact::Parcel;
-use crate::neighbours::{BLOCK, NONE, PairTable, sort_into_cells};
+use crate::neighbours::{NONE, PairTable, sort_into_cells};
 use crate::pair_contacts::pair_contacts;
 use crate::pair_forces::PairForce;
 use crate::simulation::Simulation;
@@ -56,7 +56,7 @@ impl Simulation {
         // In the order of the list, in which they are worked through.
         carried.sort_unstable_by_key(|(entry, ..)| *entry);
         for (entry, law, parcel) in carried {
-            let block = self.table.first[entry] as usize / BLOCK;
+            let block = self.table.block_of(self.table.first[entry] as usize);
             let parts = &self.table.blocks[block];
             if let Some(part) = parts.iter().position(|(_, range)| range.contains(&entry)) {
                 let own = (entry - parts[part].1.start) as u32;
@@ -64,6 +64,7 @@ impl Simulation {
             }
         }
         self.forces = vec![PairForce::default(); self.table.first.len()];
+        self.loads = vec![[0.0; 8]; self.bodies.len()];
         let rolls = self.surfaces.iter().any(|own| own.rolling > 0.0);
         self.rolling = vec![[0.0; 3]; if rolls { self.table.first.len() } else { 0 }];
         self.listed = self

@@ -6,7 +6,7 @@ use crate::error::Error;
 use crate::event::{Event, Partner};
 use crate::gather::{Gather, Sums};
 use crate::interaction::Interaction;
-use crate::neighbours::{BLOCK, Bodies, PairTable};
+use crate::neighbours::{Bodies, PairTable};
 use crate::pair_contacts::{PairContacts, Part};
 use crate::pair_forces::PairForce;
 use crate::react::Clock;
@@ -28,6 +28,8 @@ pub struct Simulation {
     /// Contacts of each block, in the order of its parts.
     pub(crate) contacts: Vec<Vec<Box<dyn PairContacts>>>,
     pub(crate) forces: Vec<PairForce>,
+    /// Force and moment of the pairs of its block on each body.
+    pub(crate) loads: Vec<[f64; 8]>,
     pub(crate) rolling: Vec<Vector>,
     pub(crate) walls: WallState,
     /// Parts of walls near each body, and where those of each begin.
@@ -79,7 +81,7 @@ pub struct FruitState {
 const SKIN: f64 = 0.16;
 
 /// So few blocks are done sooner by one thread than given to several.
-const FEW_BLOCKS: usize = 4;
+const FEW_BLOCKS: usize = 2;
 
 /// Steps between looks at sinks.
 const SINK_STEPS: u64 = 32;
@@ -123,6 +125,7 @@ impl Simulation {
             table: PairTable::default(),
             contacts: Vec::new(),
             forces: Vec::new(),
+            loads: Vec::new(),
             rolling: Vec::new(),
             near: Vec::new(),
             near_start: vec![0],
@@ -294,29 +297,42 @@ impl Simulation {
         let (mut slot, mut out) = (&mut table.slot[..], &mut self.forces[..]);
         let mut rolling = &mut self.rolling[..];
         let rolls = !rolling.is_empty();
+        let mut loads = &mut self.loads[..];
         let mut tasks = Vec::with_capacity(table.blocks.len());
-        for (parts, contacts) in table.blocks.iter().zip(&mut self.contacts) {
+        let blocks = table.blocks.iter().zip(&table.bounds);
+        for ((parts, bounds), contacts) in blocks.zip(&mut self.contacts) {
             let mut own = Vec::with_capacity(parts.len());
             for (interaction, range) in parts {
                 let length = range.len();
-                let part = Part {
-                    bodies,
-                    first: take(&mut first, length),
-                    second: take(&mut second, length),
-                    slot: take_mut(&mut slot, length),
-                    out: take_mut(&mut out, length),
-                    rolling: take_mut(&mut rolling, if rolls { length } else { 0 }),
-                };
-                own.push((*interaction, part));
+                let entries = (
+                    take(&mut first, length),
+                    take(&mut second, length),
+                    take_mut(&mut slot, length),
+                    take_mut(&mut out, length),
+                    take_mut(&mut rolling, if rolls { length } else { 0 }),
+                );
+                own.push((*interaction, entries));
             }
-            tasks.push((own, contacts));
+            let loads = take_mut(&mut loads, bounds.len());
+            tasks.push((own, bounds.start, loads, contacts));
         }
         let surfaces = &self.surfaces;
-        let work = |(parts, contacts): (Vec<_>, &mut Vec<Box<dyn PairContacts>>)| {
+        let work = |(parts, base, loads, contacts): BlockTask| {
             let mut outcome = Outcome::default();
-            for ((interaction, part), contacts) in parts.into_iter().zip(contacts) {
-                let surface: &Interaction = &surfaces[interaction];
-                contacts.advance(part, surface, &now, &mut outcome);
+            loads.fill([0.0; 8]);
+            for ((interaction, entries), contacts) in parts.into_iter().zip(contacts) {
+                let (first, second, slot, out, rolling) = entries;
+                let part = Part {
+                    bodies,
+                    first,
+                    second,
+                    slot,
+                    loads: &mut *loads,
+                    base,
+                    out,
+                    rolling,
+                };
+                contacts.advance(part, &surfaces[interaction], &now, &mut outcome);
             }
             outcome
         };
@@ -348,6 +364,7 @@ impl Simulation {
         };
         let gather = Gather {
             table: &self.table,
+            loads: &self.loads,
             forces: &self.forces,
             rolling: &self.rolling,
             scene: &self.scene,
@@ -359,17 +376,26 @@ impl Simulation {
             listed: &self.listed,
             with_energy,
         };
-        let places = self.bodies.place.chunks_mut(BLOCK);
-        let motions = self.bodies.motion.chunks_mut(BLOCK);
-        let turns = self.bodies.turn.chunks_mut(BLOCK);
-        let walls = self.bodies.walls.chunks_mut(BLOCK);
-        let blocks: Vec<_> = places
-            .zip(motions)
-            .zip(turns.zip(walls))
-            .enumerate()
+        let (mut places, mut motions) = (&mut self.bodies.place[..], &mut self.bodies.motion[..]);
+        let (mut turns, mut contacts) = (&mut self.bodies.turn[..], &mut self.bodies.walls[..]);
+        let bounds = self.table.bounds.iter();
+        let blocks: Vec<_> = bounds
+            .map(|own| {
+                let length = own.len();
+                let place = take_mut(&mut places, length);
+                let motion = take_mut(&mut motions, length);
+                let turn = take_mut(&mut turns, length);
+                (
+                    own.start,
+                    place,
+                    motion,
+                    turn,
+                    take_mut(&mut contacts, length),
+                )
+            })
             .collect();
-        let work = |(block, ((place, motion), (turn, walls)))| {
-            gather.block(block * BLOCK, place, motion, turn, walls, &now)
+        let work = |(start, place, motion, turn, walls)| {
+            gather.block(start, place, motion, turn, walls, &now)
         };
         let found: Vec<(Outcome, Sums)> = match blocks.len() < FEW_BLOCKS {
             true => blocks.into_iter().map(work).collect(),
@@ -418,6 +444,25 @@ impl Simulation {
         energy.brought = self.account.brought;
     }
 }
+
+/// Entries of a block and interaction: first and second bodies, contacts, forces, moments
+/// against rolling.
+type Entries<'a> = (
+    &'a [u32],
+    &'a [u32],
+    &'a mut [u32],
+    &'a mut [PairForce],
+    &'a mut [Vector],
+);
+
+/// What is to be done of a block: its entries by interaction, its first body, what its bodies
+/// get, and its contacts.
+type BlockTask<'a> = (
+    Vec<(usize, Entries<'a>)>,
+    usize,
+    &'a mut [[f64; 8]],
+    &'a mut Vec<Box<dyn PairContacts>>,
+);
 
 /// Takes the first elements off a slice.
 fn take<'a, T>(from: &mut &'a [T], length: usize) -> &'a [T] {
