@@ -8,6 +8,7 @@
 //!
 //! This crate knows no instrument and no file, and reads no clock.
 
+pub mod bruise;
 mod contact;
 pub mod energy;
 pub mod error;

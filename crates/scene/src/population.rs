@@ -150,7 +150,7 @@ fn drawn_of(kind: &FruitKind, generator: &mut ChaCha8Rng) -> Result<Vec<Fruit>, 
 }
 
 /// A standard normal number, by Box and Muller (1958).
-fn normal(generator: &mut ChaCha8Rng) -> f64 {
+pub(crate) fn normal(generator: &mut ChaCha8Rng) -> f64 {
     let (a, b): (f64, f64) = (generator.random(), generator.random());
     (-2.0 * (1.0 - a).ln()).sqrt() * (2.0 * std::f64::consts::PI * b).cos()
 }

@@ -224,3 +224,120 @@ fn rejects_files_that_are_not_there() {
     )];
     assert!(refused(&changes).contains("foam.toml"));
 }
+
+/// `[bruise]` of the template, in use.
+fn with_bruises(directory: &Path) {
+    let path = directory.join("s/scene.toml");
+    let text = std::fs::read_to_string(&path).unwrap();
+    let at = text.find("# [bruise]").unwrap();
+    let bruise: Vec<&str> = text[at..]
+        .lines()
+        .map(|line| line.trim_start_matches("# "))
+        .collect();
+    std::fs::write(path, format!("{}{}\n", &text[..at], bruise.join("\n"))).unwrap();
+}
+
+#[test]
+fn bruises_follow_from_the_contacts() {
+    let folder = tempfile::tempdir().unwrap();
+    // One fruit falls once on the conveyor, which stands still.
+    scene(
+        folder.path(),
+        &[
+            (
+                "pour = { low = [-0.58, 0.02, 0.42], high = [-0.38, 0.48, 0.52], rate = \"50 Hz\" }",
+                "drop = { place = [-0.3, 0.25, 0.6] }",
+            ),
+            ("count = 100", "count = 1"),
+            ("belt = [0.5, 0, 0]", ""),
+            ("end = \"4 s\"", "end = \"0.3 s\""),
+        ],
+    );
+    with_bruises(folder.path());
+    let run = || {
+        let arguments = ["scene", "run", "s/scene.toml", "--format", "json"];
+        let (done, json, problem) = windfall(&arguments, folder.path());
+        assert!(done, "{problem}");
+        let json: serde_json::Value = serde_json::from_str(&json).unwrap();
+        let read = |name: &str| {
+            std::fs::read_to_string(folder.path().join("s/scene.run").join(name)).unwrap()
+        };
+        (json, read("events.csv"), read("fruit.csv"))
+    };
+    let (json, events, fruit) = run();
+    let cell = |text: &str, line: usize, name: &str| -> f64 {
+        let place = text
+            .lines()
+            .next()
+            .unwrap()
+            .split(',')
+            .position(|own| own == name)
+            .unwrap();
+        text.lines()
+            .nth(line)
+            .unwrap()
+            .split(',')
+            .nth(place)
+            .unwrap()
+            .parse()
+            .unwrap()
+    };
+    let energy = cell(&events, 1, "absorbed_energy_J");
+    let volume = 3000.0 * (energy - 0.05);
+    assert!(volume > 500.0, "{volume}");
+    assert!((cell(&fruit, 1, "largest_bruise_mm3") / volume - 1.0).abs() < 1e-12);
+    // All of one fruit: by Jeffreys that is not certain.
+    let limits = json["bruise"]["limits"].as_array().unwrap();
+    for limit in limits {
+        assert_eq!(limit["share"], 1.0);
+        let low = limit["interval"][0].as_f64().unwrap();
+        assert!((0.05..0.9).contains(&low), "{low}");
+    }
+    assert_eq!(json["bruise"]["places"][0]["name"], "conveyor");
+    let (done, text, _) = windfall(&["scene", "run", "s/scene.toml"], folder.path());
+    assert!(
+        done && text.contains("bruised by") && text.contains("largest bruise above"),
+        "{text}"
+    );
+
+    // Where the steel takes a part of the energy the bruise is smaller.
+    let path = folder.path().join("s/scene.toml");
+    let text = std::fs::read_to_string(&path).unwrap();
+    let steel = "effective_radius = \"37.5 mm\"";
+    std::fs::write(
+        &path,
+        text.replace(steel, &format!("{steel}\nfruit_share = 0.7")),
+    )
+    .unwrap();
+    let volume = 3000.0 * (0.7 * energy - 0.05);
+    assert!((cell(&run().2, 1, "largest_bruise_mm3") / volume - 1.0).abs() < 1e-12);
+
+    for (old, new, words) in [
+        ("fruit_share = 0.7", "fruit_share = 1.7", "between 0 and 1"),
+        ("threshold = \"50 mJ\"", "threshold = \"50 N\"", "50 N"),
+        ("susceptibility = \"3000 mm^3/J\"\n", "", "susceptibility"),
+        (
+            "predictor = \"absorbed energy\"",
+            "predictor = \"energy\"",
+            "peak force",
+        ),
+        (
+            "limits = [\"100 mm^3\", \"500 mm^3\"]",
+            "limits = []",
+            "limits",
+        ),
+        (
+            "threshold_sd = \"10 mJ\"",
+            "threshold_sd = \"-10 mJ\"",
+            "at or above zero",
+        ),
+    ] {
+        let path = folder.path().join("s/scene.toml");
+        let text = std::fs::read_to_string(&path).unwrap();
+        assert!(text.contains(old), "{old}");
+        std::fs::write(&path, text.replace(old, new)).unwrap();
+        let (done, _, problem) = windfall(&["scene", "run", "s/scene.toml"], folder.path());
+        assert!(!done && problem.contains(words), "{new}: {problem}");
+        std::fs::write(&path, text).unwrap();
+    }
+}

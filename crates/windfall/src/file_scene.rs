@@ -32,6 +32,8 @@ pub struct SceneFile {
     /// What is recorded.
     #[serde(default)]
     pub events: EventsFile,
+    /// How contacts bruise.
+    pub bruise: Option<Spanned<BruiseFile>>,
 }
 
 /// `[scene]`
@@ -84,6 +86,8 @@ pub struct ContactFile {
     pub tangential_damping: Option<Spanned<f64>>,
     /// Coefficient of rolling friction.
     pub rolling: Option<Spanned<f64>>,
+    /// Part of the absorbed energy that a fruit takes.
+    pub fruit_share: Option<Spanned<f64>>,
 }
 
 /// `[[fruit]]`
@@ -291,4 +295,25 @@ pub struct AirFile {
 pub struct EventsFile {
     /// Contacts with a smaller peak force are counted, not written.
     pub least_peak_force: Option<Spanned<QuantityText>>,
+}
+
+/// `[bruise]`
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct BruiseFile {
+    /// "absorbed energy" or "peak force".
+    pub predictor: Option<Spanned<String>>,
+    /// Below this nothing bruises.
+    pub threshold: Option<Spanned<QuantityText>>,
+    /// Its standard uncertainty.
+    pub threshold_sd: Option<Spanned<QuantityText>>,
+    /// Volume per unit of the predictor above the threshold.
+    pub susceptibility: Option<Spanned<QuantityText>>,
+    /// Its standard uncertainty.
+    pub susceptibility_sd: Option<Spanned<QuantityText>>,
+    /// "largest" or "sum".
+    pub same_spot: Option<Spanned<String>>,
+    /// Volumes of the largest bruise above which a fruit counts as bruised.
+    #[serde(default)]
+    pub limits: Vec<Spanned<QuantityText>>,
 }

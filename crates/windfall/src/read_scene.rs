@@ -7,6 +7,7 @@ use crate::law_use::complete_law_among;
 use crate::read_card::{law_of_card, read_card};
 use crate::read_files::check_format;
 use crate::read_rig::STANDARD_GRAVITY;
+use crate::read_scene_bruise::{BruisePlan, bruise_of};
 use crate::read_scene_fruit::fruit_of;
 use crate::read_scene_walls::wall_of;
 use crate::scene_card::spread_of_card;
@@ -34,12 +35,17 @@ pub struct ScenePlan {
     pub kinds: Vec<(String, usize)>,
     /// Law cards by the pair of materials, where laws come from cards.
     pub cards: BTreeMap<(usize, usize), LawCard>,
+    /// Part of the absorbed energy that a fruit takes, by the pair of materials, where the
+    /// file says so; 1.
+    pub fruit_shares: BTreeMap<(usize, usize), f64>,
     /// Error that an automatic time step may make; 1.
     pub time_step_error: f64,
     /// When it ends; s.
     pub end: f64,
     /// Contacts with a smaller peak force are counted, not written; N.
     pub least_peak_force: f64,
+    /// How contacts bruise, where the file says so.
+    pub bruise: Option<BruisePlan>,
 }
 
 /// Reads a scene and draws its fruit.
@@ -52,7 +58,7 @@ pub fn read_scene(path: &Path) -> Result<ScenePlan, Error> {
     let file: SceneFile = parse_source(&source)?;
     check_format(&source, file.format.as_ref())?;
     let materials = materials(&source, &file)?;
-    let mut cards = BTreeMap::new();
+    let (mut cards, mut fruit_shares) = (BTreeMap::new(), BTreeMap::new());
     let mut interactions = BTreeMap::new();
     for contact in &file.contacts {
         let (pair, interaction, card) = contact_of(&source, contact, &materials)?;
@@ -69,6 +75,21 @@ pub fn read_scene(path: &Path) -> Result<ScenePlan, Error> {
             ));
         }
         cards.extend(card.map(|card| (pair, card)));
+        if let Some(share) = &contact.get_ref().fruit_share {
+            let value = *share.get_ref();
+            if !(0.0..=1.0).contains(&value) {
+                let problem = "a share lies between 0 and 1".to_owned();
+                let key = ("[[contacts]]", "fruit_share");
+                return Err(invalid(
+                    &source,
+                    &share.span(),
+                    key,
+                    &value.to_string(),
+                    problem,
+                ));
+            }
+            fruit_shares.insert(pair, value);
+        }
     }
     let mut kinds = Vec::new();
     let mut names = Vec::new();
@@ -141,6 +162,10 @@ pub fn read_scene(path: &Path) -> Result<ScenePlan, Error> {
         "least_peak_force = \"1 N\"",
     );
     let least = optional_quantity(&source, file.events.least_peak_force.as_ref(), &force)?;
+    let bruise = file
+        .bruise
+        .as_ref()
+        .map(|bruise| bruise_of(&source, bruise));
     let scene = Scene {
         materials,
         interactions,
@@ -172,9 +197,11 @@ pub fn read_scene(path: &Path) -> Result<ScenePlan, Error> {
         scene,
         kinds: names,
         cards,
+        fruit_shares,
         time_step_error: error.unwrap_or(DEFAULT_ERROR),
         end,
         least_peak_force: least.unwrap_or(0.0),
+        bruise: bruise.transpose()?,
     })
 }
 

@@ -1,8 +1,11 @@
-//! What readers of scene.toml share.
+//! What readers of scene.toml and writers of what came of it share.
 
 use crate::error::Error;
 use crate::toml_source::{Needed, TomlSource, invalid, suggestion};
 use std::ops::Range;
+
+/// What contacts of fruit with fruit are called.
+pub const FRUIT: &str = "fruit";
 
 /// A value that must stand in a table.
 #[must_use]

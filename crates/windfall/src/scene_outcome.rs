@@ -2,6 +2,8 @@
 
 use crate::outcome::FindingOutcome;
 use crate::read_scene::ScenePlan;
+use crate::scene_bruise::BruiseOutcome;
+use crate::scene_key::FRUIT;
 use serde::Serialize;
 use std::collections::BTreeMap;
 use std::path::PathBuf;
@@ -33,6 +35,8 @@ pub struct SceneOutcome {
     pub written: u64,
     /// Contacts by what was touched.
     pub partners: Vec<PartnerOutcome>,
+    /// How many fruit are bruised, and where; where the scene says what bruises.
+    pub bruise: Option<BruiseOutcome>,
     /// Energies at the end.
     pub energy: EnergyOutcome,
     /// What the energy account lacks, over what was lost in contacts; 1.
@@ -238,9 +242,6 @@ impl PartnerOutcome {
         .collect()
     }
 }
-
-/// Contacts of fruit with fruit, for people.
-pub const FRUIT: &str = "fruit";
 
 /// Laws used faster than they were seen, and fruit that found no room.
 #[must_use]

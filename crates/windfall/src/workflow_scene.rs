@@ -4,10 +4,12 @@ use crate::error::Error;
 use crate::on_threads::on_threads;
 use crate::progress::Progress;
 use crate::read_scene::{ScenePlan, read_scene};
+use crate::scene_bruise::Blows;
 use crate::scene_outcome::{PartnerOutcome, SceneOutcome, StepOutcome, Tally, findings_of_range};
 use crate::write_file::write_whole;
 use crate::write_scene::{EventFile, fruit_table};
 use std::path::{Path, PathBuf};
+use windfall_scene::event::Event;
 use windfall_scene::scene::Scene;
 use windfall_scene::simulation::Simulation;
 use windfall_scene::time_step::Impact;
@@ -63,14 +65,24 @@ fn run(
     let all = (plan.end / plan.scene.time_step).ceil() as u64;
     let mut file = EventFile::create(&out.join("events.csv"), &plan.scene, plan.least_peak_force)?;
     let mut tally = Tally::new(&plan.scene);
+    let mut blows = plan
+        .bruise
+        .as_ref()
+        .map(|bruise| Blows::new(bruise, &plan.scene, &plan.fruit_shares));
+    let mut count = |event: &Event, tally: &mut Tally, file: &mut EventFile| {
+        tally.count(event);
+        if let Some(blows) = &mut blows {
+            blows.count(event);
+        }
+        file.write(event)
+    };
     let first = simulation.step_with_energy().map_err(stopped)?;
     while simulation.steps() < all {
         for _ in 0..CHUNK.min(all - simulation.steps()) {
             simulation.step().map_err(stopped)?;
         }
         for event in simulation.take_events() {
-            tally.count(&event);
-            file.write(&event)?;
+            count(&event, &mut tally, &mut file)?;
         }
         for leaving in simulation.take_leavings() {
             tally.leave(&leaving);
@@ -81,13 +93,15 @@ fn run(
     }
     let last = simulation.step_with_energy().map_err(stopped)?;
     for event in simulation.lasting() {
-        tally.count(&event);
-        file.write(&event)?;
+        count(&event, &mut tally, &mut file)?;
     }
     let written = file.finish()?;
     let fruit = out.join("fruit.csv");
     let states = simulation.fruit();
-    write_whole(&fruit, fruit_table(&plan, &tally, &states)?.as_bytes())?;
+    let bruised = plan.bruise.as_ref().zip(blows.as_ref());
+    let bruises = bruised.map(|(bruise, blows)| blows.bruises(bruise));
+    let table = fruit_table(&plan, &tally, &states, bruises.as_deref())?;
+    write_whole(&fruit, table.as_bytes())?;
     let outcome = SceneOutcome {
         title: plan.title.clone(),
         end: plan.end,
@@ -102,6 +116,7 @@ fn run(
         contacts: tally.contacts,
         written,
         partners: PartnerOutcome::of(&plan.scene, &tally),
+        bruise: bruised.map(|(bruise, blows)| blows.outcome(bruise, &plan.scene)),
         energy: (&last).into(),
         energy_closure: (last.closure() - first.closure())
             / last.lost().abs().max(f64::MIN_POSITIVE),

@@ -2,13 +2,16 @@
 
 use crate::error::Error;
 use crate::read_scene::ScenePlan;
-use crate::scene_outcome::{FRUIT, SceneOutcome, Tally};
+use crate::scene_bruise::BruiseOutcome;
+use crate::scene_key::FRUIT;
+use crate::scene_outcome::{SceneOutcome, Tally};
 use crate::text_statistic::number;
 use crate::write_csv::csv_text;
 use crate::write_table::page_tables;
 use std::fs::File;
 use std::io::{BufWriter, Write};
 use std::path::{Path, PathBuf};
+use windfall_scene::bruise::Bruise;
 use windfall_scene::event::{Event, Partner};
 use windfall_scene::scene::Scene;
 use windfall_scene::simulation::FruitState;
@@ -127,6 +130,7 @@ pub fn fruit_table(
     plan: &ScenePlan,
     tally: &Tally,
     states: &[FruitState],
+    bruises: Option<&[Vec<Bruise>]>,
 ) -> Result<String, Error> {
     let header = [
         "fruit",
@@ -146,6 +150,8 @@ pub fn fruit_table(
         "impact_speed_of_it_m_s",
         "largest_absorbed_energy_J",
         "absorbed_energy_J",
+        "bruises",
+        "largest_bruise_mm3",
     ];
     let scene = &plan.scene;
     let mut states = states.iter().peekable();
@@ -159,6 +165,9 @@ pub fn fruit_table(
             let place = state.map_or([const { String::new() }; 3], |state| {
                 state.place.map(|at| at.to_string())
             });
+            let bruised = bruises.map(|all| &all[number]);
+            let of_bruises =
+                |what: &dyn Fn(&Vec<Bruise>) -> String| bruised.map_or(String::new(), what);
             let hardest = own.hardest.as_ref();
             let partner = hardest.map_or(String::new(), |event| match event.partner {
                 Partner::Fruit(_) => FRUIT.to_owned(),
@@ -185,6 +194,11 @@ pub fn fruit_table(
                 of(hardest.map(|event| event.normal_speed)),
                 own.absorbed[0].to_string(),
                 own.absorbed[1].to_string(),
+                of_bruises(&|own| own.len().to_string()),
+                of_bruises(&|own| {
+                    let volumes = own.iter().map(|bruise| 1e9 * bruise.volume);
+                    volumes.fold(0.0, f64::max).to_string()
+                }),
             ]
         });
     let rows: Vec<Vec<String>> = rows.collect();
@@ -241,6 +255,9 @@ pub fn text_of_scene(outcome: &SceneOutcome) -> String {
     });
     let rows: Vec<Vec<String>> = rows.collect();
     text += &page_tables(&header.map(str::to_owned), &rows, &[0]);
+    if let Some(bruise) = &outcome.bruise {
+        text += &text_of_bruises(bruise);
+    }
     for finding in &outcome.findings {
         text += &format!("\n{}: {}\n", finding.code, finding.message);
     }
@@ -251,6 +268,38 @@ pub fn text_of_scene(outcome: &SceneOutcome) -> String {
         .map(|file| file.display().to_string())
         .collect();
     text + &files.join(", ") + "\n"
+}
+
+/// Who is bruised, and by what.
+fn text_of_bruises(bruise: &BruiseOutcome) -> String {
+    let header = ["largest bruise above (mm³)", "fruit (%)", "95 % interval"];
+    let rows = bruise.limits.iter().map(|own| {
+        let [low, high] = own.interval.map(|end| number(100.0 * end));
+        vec![
+            number(1e9 * own.limit),
+            number(100.0 * own.share),
+            format!("{low} … {high}"),
+        ]
+    });
+    let rows: Vec<Vec<String>> = rows.collect();
+    let limits = page_tables(&header.map(str::to_owned), &rows, &[]);
+    let header = [
+        "bruised by",
+        "bruises",
+        "the largest of so many fruit",
+        "largest (mm³)",
+    ];
+    let rows = bruise.places.iter().map(|own| {
+        vec![
+            own.name.clone(),
+            own.bruises.to_string(),
+            own.fruit.to_string(),
+            number(1e9 * own.largest),
+        ]
+    });
+    let rows: Vec<Vec<String>> = rows.collect();
+    let places = page_tables(&header.map(str::to_owned), &rows, &[0]);
+    format!("\n\n{limits}\n\n{places}\n")
 }
 
 /// Contacts by what was touched, as CSV.
