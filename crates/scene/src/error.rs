@@ -29,8 +29,9 @@ pub enum Error {
     },
     /// A body overlaps another so much that the law means nothing.
     #[error(
-        "at {time:.6} s fruit {fruit} overlaps {partner} by {overlap:.3e} m, {share:.0} % of its \
-         radius: take a shorter time step, or a stiffer law"
+        "at {time:.6} s {} overlaps {partner} by {overlap:.3e} m, {share:.0} % of its radius: take \
+         a shorter time step, or a stiffer law",
+        fruit_name(*.fruit)
     )]
     Overlap {
         /// When; s.
@@ -46,8 +47,9 @@ pub enum Error {
     },
     /// A fruit moves so far in a step that contacts are missed.
     #[error(
-        "at {time:.6} s fruit {fruit} moves at {speed:.3e} m/s, {share:.0} % of its radius in one \
-         step: take a shorter time step"
+        "at {time:.6} s {} moves at {speed:.3e} m/s, {share:.0} % of its radius in one step: take a \
+         shorter time step",
+        fruit_name(*.fruit)
     )]
     Speed {
         /// When; s.
@@ -60,7 +62,7 @@ pub enum Error {
         share: f64,
     },
     /// A place or a velocity is no number.
-    #[error("at {time:.6} s the place or velocity of fruit {fruit} is no number any more")]
+    #[error("at {time:.6} s the place or velocity of {} is no number any more", fruit_name(*.fruit))]
     NotFinite {
         /// When; s.
         time: f64,
@@ -69,7 +71,8 @@ pub enum Error {
     },
     /// A fruit is released where another one or a wall is.
     #[error(
-        "fruit {fruit} is released at {place:?} m, where it overlaps {partner} by {overlap:.3e} m"
+        "{} is released at {place:?} m, where it overlaps {partner} by {overlap:.3e} m",
+        fruit_name(*.fruit)
     )]
     Occupied {
         /// Number of the fruit.
@@ -81,4 +84,9 @@ pub enum Error {
         /// By how much; m.
         overlap: f64,
     },
+}
+
+/// A fruit as people count, from 1, as the tables of a scene do.
+pub(crate) fn fruit_name(fruit: u32) -> String {
+    format!("fruit {}", fruit + 1)
 }

@@ -289,10 +289,10 @@ impl PairTable {
 
     /// The entry of two bodies.
     pub(crate) fn find(&self, first: u32, second: u32) -> Option<usize> {
-        let range = first as usize..first as usize + 2;
-        let [from, to] = self.own_start[range] else {
-            return None;
-        };
+        let (from, to) = (
+            self.own_start[first as usize],
+            self.own_start[first as usize + 1],
+        );
         let entries = self.own[from as usize..to as usize].iter();
         let mut entries = entries.map(|&entry| entry as usize);
         entries.find(|&entry| self.second[entry] == second)

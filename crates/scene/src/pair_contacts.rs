@@ -1,7 +1,7 @@
 //! Contacts of two fruit, compiled once for each law.
 
 use crate::contact::{Moment, Outcome, Parcel, encounter, event_of_pair, parted, too_deep};
-use crate::error::Error;
+use crate::error::{Error, fruit_name};
 use crate::event::Encounter;
 use crate::interaction::Interaction;
 use crate::neighbours::{Bodies, NONE};
@@ -285,7 +285,7 @@ impl<L: ContactLaw<N> + Variant, const N: usize> Contacts<L, N> {
         let all = self.touching.iter().map(|&entry| share(entry));
         let (share, i, j, radius) =
             all.fold((0.0, 0, 0, 1.0), |a, b| if b.0 > a.0 { b } else { a });
-        let partner = format!("fruit {}", bodies.fruit[j]);
+        let partner = fruit_name(bodies.fruit[j]);
         too_deep(
             now.clock.time,
             bodies.fruit[i],

@@ -1,6 +1,6 @@
 //! Fruit that come into a scene and leave it.
 
-use crate::error::Error;
+use crate::error::{Error, fruit_name};
 use crate::event::{Event, Partner};
 use crate::neighbours::NONE;
 use crate::scene::{Fruit, Sink};
@@ -34,17 +34,8 @@ impl Simulation {
         let mut came = false;
         while self.due() {
             let number = self.released as u32;
-            if let Some((partner, overlap)) = self.in_the_way(&self.scene.fruit[self.released]) {
-                let fruit = &self.scene.fruit[self.released];
-                if self.steps == 0 {
-                    return Err(Error::Occupied {
-                        fruit: number,
-                        place: fruit.place,
-                        partner,
-                        overlap,
-                    });
-                }
-                let Some(place) = self.another_place(fruit) else {
+            if self.in_the_way(&self.scene.fruit[self.released]) {
+                let Some(place) = self.another_place(&self.scene.fruit[self.released]) else {
                     // It waits until there is room.
                     break;
                 };
@@ -84,7 +75,7 @@ impl Simulation {
                 return Err(Error::Occupied {
                     fruit: self.bodies.fruit[first as usize],
                     place: [a[0], a[1], a[2]],
-                    partner: format!("fruit {}", self.bodies.fruit[second as usize]),
+                    partner: fruit_name(self.bodies.fruit[second as usize]),
                     overlap,
                 });
             }
@@ -103,29 +94,20 @@ impl Simulation {
                 let share = (number * SPREAD_OUT[axis]).fract();
                 own.place[axis] = low[axis] + (high[axis] - low[axis]) * share;
             }
-            if self.in_the_way(&own).is_none() {
+            if !self.in_the_way(&own) {
                 return Some(own.place);
             }
         }
         None
     }
 
-    /// What stands where a fruit is to be released.
-    fn in_the_way(&self, fruit: &Fruit) -> Option<(String, f64)> {
-        // At the beginning all fruit are there at once: looking at each pair would take long.
-        let before = if self.steps == 0 {
-            0
-        } else {
-            self.bodies.len()
+    /// Whether a fruit stands where one is to be released. Those of the beginning are there
+    /// at once, and are looked at together.
+    fn in_the_way(&self, fruit: &Fruit) -> bool {
+        let overlaps = |&[x, y, z, radius]: &[f64; 4]| {
+            length(subtract([x, y, z], fruit.place)) < radius + fruit.radius
         };
-        for body in 0..before {
-            let [x, y, z, radius] = self.bodies.place[body];
-            let gap = length(subtract([x, y, z], fruit.place)) - radius - fruit.radius;
-            if gap < 0.0 {
-                return Some((format!("fruit {}", self.bodies.fruit[body]), -gap));
-            }
-        }
-        None
+        self.steps > 0 && self.bodies.place.iter().any(overlaps)
     }
 
     /// Takes out fruit that are in a sink.

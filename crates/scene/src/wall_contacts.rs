@@ -28,6 +28,8 @@ pub(crate) struct WallContact {
 /// The walls of a scene in parts, where they are now.
 #[derive(Clone, Debug)]
 pub(crate) struct WallState {
+    /// Names of the walls.
+    names: Vec<String>,
     /// Every part of every wall, with the wall's number.
     pub facets: Vec<(u32, Facet)>,
     /// Where moving walls are, and where they were half a step ago.
@@ -52,6 +54,7 @@ impl WallState {
             (runs && wall.motion.stays()).then(|| wall.motion.at(0.0))
         };
         Self {
+            names: walls.iter().map(|wall| wall.name.clone()).collect(),
             facets,
             placed: vec![None; walls.len()],
             belts: walls.iter().map(belt).collect(),
@@ -172,7 +175,7 @@ pub(crate) fn push<'a>(
                 too_deep(
                     now.clock.time,
                     body.fruit,
-                    format!("wall {wall}"),
+                    format!("\"{}\"", walls.names[*wall as usize]),
                     displacement,
                     radius,
                 )
@@ -215,12 +218,13 @@ fn find_hits(
             let flat = before.inside && height < COINCIDENT * radius;
             same_wall && (flat || length(off) < COINCIDENT * radius)
         });
-        if closest.inside
-            && !hits[..kept]
+        let doubled = match closest.inside {
+            true => hits[..kept]
                 .iter()
-                .any(|(_, before)| same_place(before, &closest, radius))
-            || !closest.inside && !covered
-        {
+                .any(|(_, before)| same_place(before, &closest, radius)),
+            false => covered,
+        };
+        if !doubled {
             hits[kept] = (facet, closest);
             kept += 1;
         }

@@ -58,39 +58,7 @@ pub fn read_scene(path: &Path) -> Result<ScenePlan, Error> {
     let file: SceneFile = parse_source(&source)?;
     check_format(&source, file.format.as_ref())?;
     let materials = materials(&source, &file)?;
-    let (mut cards, mut fruit_shares) = (BTreeMap::new(), BTreeMap::new());
-    let mut interactions = BTreeMap::new();
-    for contact in &file.contacts {
-        let (pair, interaction, card) = contact_of(&source, contact, &materials)?;
-        if interactions.insert(pair, interaction).is_some() {
-            let problem = "these two materials stand in more than one [[contacts]]".to_owned();
-            let names = format!("{}, {}", materials[pair.0], materials[pair.1]);
-            let at = contact.span();
-            return Err(invalid(
-                &source,
-                &at,
-                ("[[contacts]]", "between"),
-                &names,
-                problem,
-            ));
-        }
-        cards.extend(card.map(|card| (pair, card)));
-        if let Some(share) = &contact.get_ref().fruit_share {
-            let value = *share.get_ref();
-            if !(0.0..=1.0).contains(&value) {
-                let problem = "a share lies between 0 and 1".to_owned();
-                let key = ("[[contacts]]", "fruit_share");
-                return Err(invalid(
-                    &source,
-                    &share.span(),
-                    key,
-                    &value.to_string(),
-                    problem,
-                ));
-            }
-            fruit_shares.insert(pair, value);
-        }
-    }
+    let contacts = contacts(&source, &file, &materials)?;
     let mut kinds = Vec::new();
     let mut names = Vec::new();
     for fruit in &file.fruit {
@@ -113,9 +81,111 @@ pub fn read_scene(path: &Path) -> Result<ScenePlan, Error> {
     let walls: Vec<Wall> = walls.collect::<Result<_, _>>()?;
     let seed = file.scene.seed.unwrap_or(1);
     let fruit = drawn(&kinds, seed).map_err(|problem| scene_error(&source, &file, &problem))?;
+    let timing = timing(&source, &file)?;
+    let bruise = file
+        .bruise
+        .as_ref()
+        .map(|bruise| bruise_of(&source, bruise));
+    let scene = Scene {
+        materials,
+        interactions: contacts.interactions,
+        walls,
+        fruit,
+        sinks: sinks(&file),
+        gravity: gravity(&source, file.scene.gravity.as_ref())?,
+        air: file
+            .air
+            .as_ref()
+            .map(|air| air_of(&source, air))
+            .transpose()?,
+        time_step: timing.step,
+    };
+    // An automatic step is found later.
+    let checked = Scene {
+        time_step: if timing.step == 0.0 { 1.0 } else { timing.step },
+        ..scene.clone()
+    };
+    checked
+        .check()
+        .map_err(|problem| scene_error(&source, &file, &problem))?;
+    Ok(ScenePlan {
+        title: file
+            .scene
+            .title
+            .clone()
+            .unwrap_or_else(|| path.display().to_string()),
+        scene,
+        kinds: names,
+        cards: contacts.cards,
+        fruit_shares: contacts.fruit_shares,
+        time_step_error: timing.error,
+        end: timing.end,
+        least_peak_force: timing.least_peak_force,
+        bruise: bruise.transpose()?,
+    })
+}
+
+/// What `[[contacts]]` say, by the pair of materials.
+#[derive(Default)]
+struct Contacts {
+    interactions: BTreeMap<(usize, usize), Interaction>,
+    cards: BTreeMap<(usize, usize), LawCard>,
+    fruit_shares: BTreeMap<(usize, usize), f64>,
+}
+
+fn contacts(
+    source: &TomlSource,
+    file: &SceneFile,
+    materials: &[String],
+) -> Result<Contacts, Error> {
+    let mut all = Contacts::default();
+    for contact in &file.contacts {
+        let (pair, interaction, card) = contact_of(source, contact, materials)?;
+        if all.interactions.insert(pair, interaction).is_some() {
+            let problem = "these two materials stand in more than one [[contacts]]".to_owned();
+            let names = format!("{}, {}", materials[pair.0], materials[pair.1]);
+            let at = contact.span();
+            return Err(invalid(
+                source,
+                &at,
+                ("[[contacts]]", "between"),
+                &names,
+                problem,
+            ));
+        }
+        all.cards.extend(card.map(|card| (pair, card)));
+        if let Some(share) = &contact.get_ref().fruit_share {
+            let value = *share.get_ref();
+            if !(0.0..=1.0).contains(&value) {
+                let problem = "a share lies between 0 and 1".to_owned();
+                let key = ("[[contacts]]", "fruit_share");
+                return Err(invalid(
+                    source,
+                    &share.span(),
+                    key,
+                    &value.to_string(),
+                    problem,
+                ));
+            }
+            all.fruit_shares.insert(pair, value);
+        }
+    }
+    Ok(all)
+}
+
+/// When a scene ends, its step, and what is written.
+struct Timing {
+    /// 0 where it is automatic; s.
+    step: f64,
+    error: f64,
+    end: f64,
+    least_peak_force: f64,
+}
+
+fn timing(source: &TomlSource, file: &SceneFile) -> Result<Timing, Error> {
     let time = |value, key, meaning, example| {
         optional_quantity(
-            &source,
+            source,
             value,
             &needed("[scene]", key, meaning, "s", example),
         )
@@ -144,7 +214,7 @@ pub fn read_scene(path: &Path) -> Result<ScenePlan, Error> {
             "s",
             "end = \"3 s\"",
         );
-        return Err(missing(&source, &(0..0), &key, key.table.to_owned()));
+        return Err(missing(source, &(0..0), &key, key.table.to_owned()));
     };
     let share = needed(
         "[scene]",
@@ -153,7 +223,7 @@ pub fn read_scene(path: &Path) -> Result<ScenePlan, Error> {
         "1",
         "time_step_error = \"0.2 %\"",
     );
-    let error = optional_quantity(&source, file.scene.time_step_error.as_ref(), &share)?;
+    let error = optional_quantity(source, file.scene.time_step_error.as_ref(), &share)?;
     let force = needed(
         "[events]",
         "least_peak_force",
@@ -161,47 +231,12 @@ pub fn read_scene(path: &Path) -> Result<ScenePlan, Error> {
         "N",
         "least_peak_force = \"1 N\"",
     );
-    let least = optional_quantity(&source, file.events.least_peak_force.as_ref(), &force)?;
-    let bruise = file
-        .bruise
-        .as_ref()
-        .map(|bruise| bruise_of(&source, bruise));
-    let scene = Scene {
-        materials,
-        interactions,
-        walls,
-        fruit,
-        sinks: sinks(&file),
-        gravity: gravity(&source, file.scene.gravity.as_ref())?,
-        air: file
-            .air
-            .as_ref()
-            .map(|air| air_of(&source, air))
-            .transpose()?,
-        time_step: step,
-    };
-    // An automatic step is found later.
-    let checked = Scene {
-        time_step: if step == 0.0 { 1.0 } else { step },
-        ..scene.clone()
-    };
-    checked
-        .check()
-        .map_err(|problem| scene_error(&source, &file, &problem))?;
-    Ok(ScenePlan {
-        title: file
-            .scene
-            .title
-            .clone()
-            .unwrap_or_else(|| path.display().to_string()),
-        scene,
-        kinds: names,
-        cards,
-        fruit_shares,
-        time_step_error: error.unwrap_or(DEFAULT_ERROR),
+    let least = optional_quantity(source, file.events.least_peak_force.as_ref(), &force)?;
+    Ok(Timing {
+        step,
+        error: error.unwrap_or(DEFAULT_ERROR),
         end,
         least_peak_force: least.unwrap_or(0.0),
-        bruise: bruise.transpose()?,
     })
 }
 
