@@ -18,7 +18,32 @@ pub trait FourLanes {
     ///
     /// To be `#[inline(always)]`, and all that it calls in its loops too: what is
     /// compiled by itself is not compiled for the vector instructions.
-    fn run<R: Real<Plain = Lanes<LANES>>>(self, zero: R) -> Self::Output;
+    fn run<R: FourNumbers>(self, zero: R) -> Self::Output;
+}
+
+/// Numbers of [`LANES`] lanes, which go over into rows and back.
+pub trait FourNumbers: Real<Plain = Lanes<LANES>> {
+    /// The columns of four rows: number n holds the n-th of each row.
+    fn columns(self, rows: [Lanes<LANES>; LANES]) -> [Self; LANES];
+    /// The rows of four columns.
+    fn rows(columns: [Self; LANES]) -> [Lanes<LANES>; LANES];
+}
+
+impl FourNumbers for Lanes<LANES> {
+    #[inline(always)]
+    fn columns(self, rows: [Self; LANES]) -> [Self; LANES] {
+        let mut columns = [self; LANES];
+        for (n, column) in columns.iter_mut().enumerate() {
+            for (lane, row) in rows.iter().enumerate() {
+                column.0[lane] = row.0[n];
+            }
+        }
+        columns
+    }
+    #[inline(always)]
+    fn rows(columns: [Self; LANES]) -> [Self; LANES] {
+        columns[0].columns(columns)
+    }
 }
 
 /// Does `work` on vector registers where the processor has them (AVX2 and FMA), on
@@ -34,7 +59,7 @@ pub fn with_four_lanes<F: FourLanes>(work: F) -> F::Output {
 
 #[cfg(target_arch = "x86_64")]
 mod avx2 {
-    use super::{FourLanes, LANES};
+    use super::{FourLanes, FourNumbers, LANES};
     use crate::real::{Lanes, Real};
     use pulp::x86::V3;
     use pulp::{Simd, f64x4};
@@ -112,6 +137,51 @@ mod avx2 {
         }
     }
 
+    impl FourNumbers for Vector {
+        #[inline(always)]
+        fn columns(self, rows: [Lanes<LANES>; LANES]) -> [Self; LANES] {
+            let avx = self.simd.avx;
+            let [a, b, c, d] = [
+                pulp::cast(rows[0].0),
+                pulp::cast(rows[1].0),
+                pulp::cast(rows[2].0),
+                pulp::cast(rows[3].0),
+            ];
+            let (even_ab, odd_ab) = (avx._mm256_unpacklo_pd(a, b), avx._mm256_unpackhi_pd(a, b));
+            let (even_cd, odd_cd) = (avx._mm256_unpacklo_pd(c, d), avx._mm256_unpackhi_pd(c, d));
+            [
+                self.with(pulp::cast(
+                    avx._mm256_permute2f128_pd::<0x20>(even_ab, even_cd),
+                )),
+                self.with(pulp::cast(
+                    avx._mm256_permute2f128_pd::<0x20>(odd_ab, odd_cd),
+                )),
+                self.with(pulp::cast(
+                    avx._mm256_permute2f128_pd::<0x31>(even_ab, even_cd),
+                )),
+                self.with(pulp::cast(
+                    avx._mm256_permute2f128_pd::<0x31>(odd_ab, odd_cd),
+                )),
+            ]
+        }
+        #[inline(always)]
+        fn rows(columns: [Self; LANES]) -> [Lanes<LANES>; LANES] {
+            let plain = [
+                columns[0].plain(),
+                columns[1].plain(),
+                columns[2].plain(),
+                columns[3].plain(),
+            ];
+            let rows = columns[0].columns(plain);
+            [
+                rows[0].plain(),
+                rows[1].plain(),
+                rows[2].plain(),
+                rows[3].plain(),
+            ]
+        }
+    }
+
     impl Real for Vector {
         type Plain = Lanes<LANES>;
 
@@ -121,12 +191,11 @@ mod avx2 {
         }
         #[inline(always)]
         fn plain(self) -> Lanes<LANES> {
-            let f64x4(a, b, c, d) = self.lanes;
-            Lanes([a, b, c, d])
+            Lanes(pulp::cast(self.lanes))
         }
         #[inline(always)]
-        fn with_plain(self, Lanes([a, b, c, d]): Lanes<LANES>) -> Self {
-            self.with(f64x4(a, b, c, d))
+        fn with_plain(self, Lanes(lanes): Lanes<LANES>) -> Self {
+            self.with(pulp::cast(lanes))
         }
         #[inline(always)]
         fn mul_add(self, factor: Self, summand: Self) -> Self {
@@ -185,7 +254,7 @@ mod tests {
         type Output = Vec<[u64; LANES]>;
 
         #[inline(always)]
-        fn run<R: Real<Plain = Lanes<LANES>>>(self, zero: R) -> Self::Output {
+        fn run<R: FourNumbers>(self, zero: R) -> Self::Output {
             let (a, b) = (zero.with_plain(self.a), zero.with_plain(self.b));
             let c = zero.constant(0.3);
             let out = [
@@ -205,7 +274,11 @@ mod tests {
                 a.select(b, c),
                 a.map(|a| a.sin() + 1.0),
             ];
-            out.map(|value| value.plain().0.map(f64::to_bits)).to_vec()
+            let columns = zero.columns([self.a, self.b, self.b, c.plain()]);
+            let rows = R::rows([a, b, a, c]);
+            let numbers = out.into_iter().chain(columns).map(|value| value.plain());
+            let numbers = numbers.chain(rows);
+            numbers.map(|value| value.0.map(f64::to_bits)).collect()
         }
     }
 

@@ -3,11 +3,16 @@
 use crate::contact::{Moment, Outcome};
 use crate::error::Error;
 use crate::interaction::Interaction;
-use crate::neighbours::{NONE, PairTable};
-use crate::pair_forces::{PairForce, moment_on};
+use crate::law_column::Four;
+use crate::neighbours::PairTable;
+use crate::react::dot as dot_of;
 use crate::scene::Scene;
-use crate::vector::{Rotation, Vector, add, dot, length, plus_scaled, scaled, subtract, turned_on};
-use crate::wall_contacts::{Body, WallContact, WallState, push};
+use crate::store::Load;
+use crate::vector::{Rotation, Vector, add, dot, length, scaled, turned_on};
+use crate::wall_contacts::{Around, Body, NearPart, WallState, aim};
+use crate::wall_forces::WallContacts;
+use windfall_numerics::real::Lanes;
+use windfall_numerics::real_vector::{FourLanes, FourNumbers, LANES, with_four_lanes};
 
 /// Way in one step over the radius above which contacts are missed; 1.
 const LONGEST_WAY: f64 = 0.2;
@@ -27,126 +32,249 @@ pub(crate) struct Sums {
 /// What is known when forces on bodies are added up.
 pub(crate) struct Gather<'a> {
     pub table: &'a PairTable,
-    pub loads: &'a [[f64; 8]],
-    pub forces: &'a [PairForce],
-    pub rolling: &'a [Vector],
+    /// Loads of pairs on second bodies of other blocks.
+    pub out: &'a [Load],
     pub scene: &'a Scene,
     pub surfaces: &'a [Interaction],
     pub numbers: &'a [usize],
     pub walls: &'a WallState,
-    pub near: (&'a [u32], &'a [u32]),
+    /// Where the parts of walls near each body begin.
+    pub near_start: &'a [u32],
     /// Numbers and materials of the bodies.
     pub bodies: (&'a [u32], &'a [u32]),
-    pub listed: &'a [Vector],
+    pub listed: &'a [Four],
     pub with_energy: bool,
 }
 
+/// What there is of the bodies of a block.
+pub(crate) struct BlockBodies<'a> {
+    pub start: usize,
+    pub place: &'a mut [[f64; 4]],
+    pub motion: &'a mut [[f64; 8]],
+    pub turn: &'a mut [Rotation],
+    /// What pairs of the block do to each.
+    pub loads: &'a mut [Load],
+    /// Parts of walls near them, by body.
+    pub near: &'a mut [NearPart],
+    pub wall_contacts: &'a mut [WallContacts],
+}
+
 impl Gather<'_> {
-    pub(crate) fn block(
-        &self,
-        start: usize,
-        place: &mut [[f64; 4]],
-        motion: &mut [[f64; 8]],
-        turn: &mut [Rotation],
-        walls: &mut [Vec<WallContact>],
-        now: &Moment,
-    ) -> (Outcome, Sums) {
+    pub(crate) fn block(&self, mut block: BlockBodies, now: &Moment) -> (Outcome, Sums) {
         let mut outcome = Outcome::default();
         let mut sums = Sums::default();
-        let mut hits = Vec::new();
-        let materials = self.scene.materials.len();
-        let step = now.clock.step;
-        for own in 0..place.len() {
-            let body = start + own;
-            let [x, y, z, radius] = place[own];
-            let m = &mut motion[own];
-            let (mut force, mut moment) = self.of_pairs(body, radius);
-            let material = self.bodies.1[body] as usize;
-            let near = &self.near.0[self.near.1[body] as usize..self.near.1[body + 1] as usize];
-            if !near.is_empty() || !walls[own].is_empty() {
-                let surface = |wall: u32| {
-                    let other = self.scene.walls[wall as usize].material;
-                    &self.surfaces[self.numbers[material * materials + other]]
-                };
-                let body = Body {
-                    fruit: self.bodies.0[body],
-                    centre: [x, y, z],
-                    radius,
-                    velocity: [m[0], m[1], m[2]],
-                    spin: [m[4], m[5], m[6]],
-                    turn: turn[own],
-                };
-                let (contacts, near) = (&mut walls[own], (self.walls, near));
-                let pushed = push(contacts, &body, near, surface, now, &mut hits, &mut outcome);
-                force = add(force, pushed.force);
-                moment = add(moment, pushed.moment);
-                sums.walls += pushed.work;
+        self.aim_at_walls(&mut block, now, &mut outcome);
+        for (own, surface) in block.wall_contacts.iter_mut().zip(self.surfaces) {
+            sums.walls += own.advance(block.loads, surface, now.clock);
+        }
+        for (own, load) in block.loads.iter_mut().enumerate() {
+            for &number in self.table.incoming(block.start + own) {
+                let out = &self.out[number as usize];
+                for at in 0..8 {
+                    load[at] += out[at];
+                }
             }
-            if let Some(air) = self.scene.air {
+        }
+        let step = now.clock.step;
+        if let Some(air) = self.scene.air {
+            for own in 0..block.loads.len() {
+                let (m, radius) = (&block.motion[own], block.place[own][3]);
                 let velocity = [m[0], m[1], m[2]];
                 let area = std::f64::consts::PI * radius * radius;
                 let drag = 0.5 * air.density * air.drag_coefficient * area * length(velocity);
-                force = plus_scaled(force, velocity, -drag);
+                for axis in 0..3 {
+                    block.loads[own][axis] -= drag * velocity[axis];
+                }
                 sums.drag += drag * dot(velocity, velocity) * step;
             }
-            let acceleration = plus_scaled(self.scene.gravity, force, m[3]);
-            let angular = scaled(moment, m[7]);
-            if self.with_energy {
-                let velocity = plus_scaled([m[0], m[1], m[2]], acceleration, 0.5 * step);
-                let spin = plus_scaled([m[4], m[5], m[6]], angular, 0.5 * step);
-                sums.kinetic += 0.5 * dot(velocity, velocity) / m[3];
-                sums.rotational += 0.5 * dot(spin, spin) / m[7];
-                sums.potential -= dot(self.scene.gravity, [x, y, z]) / m[3];
-            }
-            for axis in 0..3 {
-                m[axis] += step * acceleration[axis];
-                m[4 + axis] += step * angular[axis];
-                place[own][axis] += step * m[axis];
-            }
-            turn[own] = turned_on(turn[own], [m[4], m[5], m[6]], step);
-            let [x, y, z, _] = place[own];
-            let way = subtract([x, y, z], self.listed[body]);
-            let square = dot(way, way);
-            sums.moved = sums.moved.max(square);
-            let speed = dot([m[0], m[1], m[2]], [m[0], m[1], m[2]]);
-            let limit = LONGEST_WAY * radius;
-            let short = speed * step * step <= limit * limit;
-            if !short {
-                let fruit = self.bodies.0[body];
-                let (time, speed) = (now.clock.time, speed.sqrt());
-                let share = 100.0 * speed * step / radius;
-                outcome.problem.get_or_insert(match speed.is_finite() {
-                    true => Error::Speed {
-                        time,
-                        fruit,
-                        speed,
-                        share,
-                    },
-                    false => Error::NotFinite { time, fruit },
-                });
-            }
+        }
+        if self.with_energy {
+            self.energies(&block, step, &mut sums);
+        }
+        let bodies = block.place.len();
+        let furthest = with_four_lanes(Move {
+            place: &mut *block.place,
+            motion: &mut *block.motion,
+            turn: &mut *block.turn,
+            loads: block.loads,
+            listed: &self.listed[block.start..block.start + bodies],
+            gravity: self.scene.gravity,
+            step,
+        });
+        sums.moved = furthest.way;
+        // Also what is no number.
+        let short = furthest.share <= LONGEST_WAY * LONGEST_WAY;
+        if !short {
+            outcome
+                .problem
+                .get_or_insert_with(|| self.too_fast(&block, now));
         }
         (outcome, sums)
     }
 
-    /// Force and moment of all pairs on a body: those of its block, then those of others in
-    /// the order of the list.
-    #[inline(always)]
-    fn of_pairs(&self, body: usize, radius: f64) -> (Vector, Vector) {
-        let own = &self.loads[body];
-        let (mut force, mut moment) = ([own[0], own[1], own[2]], [own[4], own[5], own[6]]);
-        for &entry in self.table.incoming(body) {
-            let entry = entry as usize;
-            if self.table.slot[entry] == NONE {
+    /// Where bodies of the block touch walls.
+    fn aim_at_walls(&self, block: &mut BlockBodies, now: &Moment, outcome: &mut Outcome) {
+        let mut hits = Vec::new();
+        let materials = self.scene.materials.len();
+        let start = self.near_start[block.start] as usize;
+        for own in 0..block.place.len() {
+            let body = block.start + own;
+            let near = [body, body + 1].map(|own| self.near_start[own] as usize - start);
+            if near[0] == near[1] {
                 continue;
             }
-            let out = &self.forces[entry];
-            force = subtract(force, out.force);
-            moment = moment_on(out, radius, moment);
-            if let Some(rolling) = self.rolling.get(entry) {
-                moment = subtract(moment, *rolling);
+            let material = self.bodies.1[body] as usize;
+            let ([x, y, z, radius], m) = (block.place[own], &block.motion[own]);
+            let around = Around {
+                walls: self.walls,
+                near: near[0]..near[1],
+                surface: |wall: u32| {
+                    let other = self.scene.walls[wall as usize].material;
+                    let number = self.numbers[material * materials + other];
+                    (number, &self.surfaces[number])
+                },
+                now,
+            };
+            let body = Body {
+                fruit: self.bodies.0[body],
+                centre: [x, y, z],
+                radius,
+                velocity: [m[0], m[1], m[2]],
+                spin: [m[4], m[5], m[6]],
+                turn: block.turn[own],
+            };
+            let stores = &mut *block.wall_contacts;
+            let near = &mut *block.near;
+            aim(near, own as u32, &body, &around, stores, &mut hits, outcome);
+        }
+    }
+
+    /// Energies at the time of the places.
+    fn energies(&self, block: &BlockBodies, step: f64, sums: &mut Sums) {
+        for (own, load) in block.loads.iter().enumerate() {
+            let (m, [x, y, z, _]) = (&block.motion[own], block.place[own]);
+            let half = |axis: usize, by: f64| m[axis] + 0.5 * step * load[axis] * by;
+            let gravity = scaled(self.scene.gravity, 0.5 * step);
+            let velocity = add([0, 1, 2].map(|axis| half(axis, m[3])), gravity);
+            let spin = [4, 5, 6].map(|axis| half(axis, m[7]));
+            sums.kinetic += 0.5 * dot(velocity, velocity) / m[3];
+            sums.rotational += 0.5 * dot(spin, spin) / m[7];
+            sums.potential -= dot(self.scene.gravity, [x, y, z]) / m[3];
+        }
+    }
+
+    /// The first body that moves too far in a step.
+    #[cold]
+    fn too_fast(&self, block: &BlockBodies, now: &Moment) -> Error {
+        let (time, step) = (now.clock.time, now.clock.step);
+        let mut problem = Error::NotFinite {
+            time,
+            fruit: self.bodies.0[block.start],
+        };
+        for (own, m) in block.motion.iter().enumerate() {
+            let (fruit, radius) = (self.bodies.0[block.start + own], block.place[own][3]);
+            let speed = length([m[0], m[1], m[2]]);
+            if !speed.is_finite() {
+                return Error::NotFinite { time, fruit };
+            }
+            if speed * step > LONGEST_WAY * radius {
+                let share = 100.0 * speed * step / radius;
+                problem = Error::Speed {
+                    time,
+                    fruit,
+                    speed,
+                    share,
+                };
+                break;
             }
         }
-        (force, moment)
+        problem
+    }
+}
+
+/// Bodies one step on, by what acts on them.
+struct Move<'a> {
+    place: &'a mut [[f64; 4]],
+    motion: &'a mut [[f64; 8]],
+    turn: &'a mut [Rotation],
+    loads: &'a [Load],
+    listed: &'a [Four],
+    gravity: Vector,
+    step: f64,
+}
+
+/// Of all bodies that moved.
+struct Furthest {
+    /// Square of the largest way since the list was made; m².
+    way: f64,
+    /// Square of the largest way in the step over the radius; 1. No number where a body has
+    /// none.
+    share: f64,
+}
+
+impl FourLanes for Move<'_> {
+    type Output = Furthest;
+
+    #[inline(always)]
+    fn run<R: FourNumbers>(self, zero: R) -> Furthest {
+        let step = self.step;
+        let gravity = zero.constant(step);
+        let gravity = [
+            gravity * self.gravity[0],
+            gravity * self.gravity[1],
+            gravity * self.gravity[2],
+        ];
+        let (mut way, mut share, mut all) = (zero, zero, zero);
+        let count = self.place.len();
+        for start in (0..count).step_by(LANES) {
+            let lanes = LANES.min(count - start);
+            // The last few are filled up with the last of them.
+            let mut rows = [[Lanes::ZERO; LANES]; 7];
+            for lane in 0..LANES {
+                let own = start + lane.min(lanes - 1);
+                let (m, load) = (&self.motion[own], &self.loads[own]);
+                rows[0][lane] = Lanes(self.place[own]);
+                rows[1][lane] = Lanes([m[0], m[1], m[2], m[3]]);
+                rows[2][lane] = Lanes([m[4], m[5], m[6], m[7]]);
+                rows[3][lane] = Lanes([load[0], load[1], load[2], load[3]]);
+                rows[4][lane] = Lanes([load[4], load[5], load[6], load[7]]);
+                rows[5][lane] = Lanes(self.turn[own]);
+                rows[6][lane] = self.listed[own];
+            }
+            let [mut place, mut velocity] = [zero.columns(rows[0]), zero.columns(rows[1])];
+            let [mut spin, force] = [zero.columns(rows[2]), zero.columns(rows[3])];
+            let [moment, listed] = [zero.columns(rows[4]), zero.columns(rows[6])];
+            let mut from = [zero; 3];
+            for axis in 0..3 {
+                velocity[axis] =
+                    velocity[axis] + force[axis] * (velocity[3] * step) + gravity[axis];
+                spin[axis] = spin[axis] + moment[axis] * (spin[3] * step);
+                place[axis] = place[axis] + velocity[axis] * step;
+                from[axis] = place[axis] - listed[axis];
+            }
+            let turn = turned_on(zero.columns(rows[5]), [spin[0], spin[1], spin[2]], step);
+            way = way.max(dot_of(from, from));
+            let velocities = [velocity[0], velocity[1], velocity[2]];
+            let own = dot_of(velocities, velocities) * (step * step) / (place[3] * place[3]);
+            share = share.max(own);
+            // A largest one does not show what is no number.
+            all = all + own;
+            let [places, velocities] = [R::rows(place), R::rows(velocity)];
+            let [spins, turns] = [R::rows(spin), R::rows(turn)];
+            for lane in 0..lanes {
+                let own = start + lane;
+                self.place[own] = places[lane].0;
+                self.motion[own][..LANES].copy_from_slice(&velocities[lane].0);
+                self.motion[own][LANES..].copy_from_slice(&spins[lane].0);
+                self.turn[own] = turns[lane].0;
+            }
+        }
+        let (Lanes(way), Lanes(share), Lanes(all)) = (way.plain(), share.plain(), all.plain());
+        let finite = all.iter().all(|own| own.is_finite());
+        let share = share.into_iter().fold(0.0, f64::max);
+        Furthest {
+            way: way.into_iter().fold(0.0, f64::max),
+            share: if finite { share } else { f64::NAN },
+        }
     }
 }

@@ -1,7 +1,8 @@
 //! Which fruit may touch before the list is made anew: cells, and pairs within a skin.
 
+use crate::store::NONE;
 use crate::vector::{Rotation, Vector};
-use crate::wall_contacts::WallContact;
+use crate::wall_contacts::Lifted;
 use rayon::prelude::*;
 use std::ops::Range;
 
@@ -18,8 +19,8 @@ pub(crate) struct Bodies {
     pub fruit: Vec<u32>,
     /// Its material.
     pub material: Vec<u32>,
-    /// Contacts with walls.
-    pub walls: Vec<Vec<WallContact>>,
+    /// Contacts with walls, while the list is made anew.
+    pub lifted: Vec<Vec<Lifted>>,
 }
 
 impl Bodies {
@@ -37,8 +38,8 @@ impl Bodies {
         self.turn = picked(&self.turn, order);
         self.fruit = picked(&self.fruit, order);
         self.material = picked(&self.material, order);
-        let mut old = std::mem::take(&mut self.walls);
-        self.walls = order
+        let mut old = std::mem::take(&mut self.lifted);
+        self.lifted = order
             .iter()
             .map(|&place| std::mem::take(&mut old[place as usize]))
             .collect();
@@ -52,16 +53,11 @@ const TILE: usize = 8;
 /// Fewest bodies of a block, but for the last.
 const BLOCK: usize = 192;
 
-/// No contact.
-pub(crate) const NONE: u32 = u32::MAX;
-
 /// Pairs that may touch, ordered by blocks of first bodies, within a block by interaction.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct PairTable {
     pub first: Vec<u32>,
     pub second: Vec<u32>,
-    /// The contact of each pair in its block's contacts of that interaction, or [`NONE`].
-    pub slot: Vec<u32>,
     /// What each block holds: interactions and their entries.
     pub blocks: Vec<Vec<(usize, Range<usize>)>>,
     /// Bodies of each block.
@@ -69,7 +65,11 @@ pub(crate) struct PairTable {
     /// Where the entries of each first body begin, in an order of their own.
     own_start: Vec<u32>,
     own: Vec<u32>,
-    /// Entries of other blocks in which each body is second, and where those of each begin.
+    /// For each entry its number among those of two blocks, or [`NONE`].
+    pub out: Vec<u32>,
+    /// How many of them each block of first bodies has.
+    pub outs: Vec<usize>,
+    /// The ones in which each body is second, and where those of each begin.
     incoming: Vec<u32>,
     incoming_start: Vec<u32>,
 }
@@ -253,7 +253,6 @@ impl PairTable {
             }
             table.blocks.push(parts);
         }
-        table.slot = vec![NONE; table.first.len()];
         table.bounds = bounds;
         table.adjoin(count);
         table
@@ -272,16 +271,24 @@ impl PairTable {
         for (number, bodies) in self.bounds.iter().enumerate() {
             block[bodies.clone()].fill(number as u32);
         }
-        let (first, second) = (&self.first, &self.second);
-        let foreign = all.filter(|&entry| {
-            block[first[entry as usize] as usize] != block[second[entry as usize] as usize]
-        });
-        let foreign: Vec<u32> = foreign.collect();
-        let found = listed(count, foreign.into_iter(), |entry| second[entry as usize]);
-        (self.incoming_start, self.incoming) = found;
+        let mut foreign = Vec::new();
+        self.out = vec![NONE; self.first.len()];
+        self.outs = vec![0; self.bounds.len()];
+        for entry in all {
+            let pair = [self.first[entry as usize], self.second[entry as usize]];
+            let [one, other] = pair.map(|body| block[body as usize]);
+            if one != other {
+                self.out[entry as usize] = foreign.len() as u32;
+                self.outs[one as usize] += 1;
+                foreign.push(pair[1]);
+            }
+        }
+        let numbers = 0..foreign.len() as u32;
+        (self.incoming_start, self.incoming) =
+            listed(count, numbers, |number| foreign[number as usize]);
     }
 
-    /// Entries of other blocks in which a body is second.
+    /// Entries of other blocks in which a body is second, by their number.
     #[inline(always)]
     pub(crate) fn incoming(&self, body: usize) -> &[u32] {
         &self.incoming[self.incoming_start[body] as usize..self.incoming_start[body + 1] as usize]

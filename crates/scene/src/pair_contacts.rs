@@ -2,15 +2,13 @@
 
 use crate::contact::{Moment, Outcome, Parcel, encounter, event_of_pair, parted, too_deep};
 use crate::error::{Error, fruit_name};
-use crate::event::Encounter;
 use crate::interaction::Interaction;
-use crate::neighbours::{Bodies, NONE};
-use crate::pair_forces::{Batch, Hot, PairForce};
+use crate::neighbours::Bodies;
+use crate::pair_forces::Batch;
 use crate::react::{History, dot, surface_velocity};
-use crate::vector::{Vector, length, plus_scaled, scaled, subtract, turned_back};
+use crate::store::{Load, NONE, Store};
+use crate::vector::{length, plus_scaled, scaled, subtract, turned_back};
 use windfall_contact::effective::effective_radius;
-use windfall_contact::law::ContactLaw;
-use windfall_contact::law_kind as laws;
 use windfall_contact::law_kind::Law;
 use windfall_numerics::real_vector::with_four_lanes;
 
@@ -19,233 +17,183 @@ pub(crate) struct Part<'a> {
     pub bodies: &'a Bodies,
     pub first: &'a [u32],
     pub second: &'a [u32],
-    pub slot: &'a mut [u32],
-    /// Force and moment of pairs on the bodies of the block, and the first of them.
-    pub loads: &'a mut [[f64; 8]],
+    /// Where each has what it does to a second body of another block.
+    pub out: &'a [u32],
+    /// Loads of pairs on the bodies of the block, and the first of them.
+    pub loads: &'a mut [Load],
     pub base: usize,
-    pub out: &'a mut [PairForce],
-    /// Moment against rolling on the first body; N m. Empty where nothing resists it.
-    pub rolling: &'a mut [Vector],
+    /// Loads on second bodies of other blocks, and the number of the first; zero where nothing
+    /// touches.
+    pub outs: &'a mut [Load],
+    pub out_base: u32,
+    /// Largest way of a body since the list was made; m.
+    pub moved: f64,
 }
 
 /// Contacts of one block and one interaction.
-pub(crate) trait PairContacts: Send + Sync {
-    /// Forces of all entries, one step on.
-    fn advance(&mut self, part: Part, surface: &Interaction, now: &Moment, outcome: &mut Outcome);
-    /// Number of contacts.
-    fn count(&self) -> usize;
-    /// Takes over a contact; its number.
-    fn adopt(&mut self, entry: u32, law: &Law, parcel: Parcel) -> u32;
-    /// The entry, law and memory of a contact.
-    fn at(&self, contact: usize) -> (u32, Law, Parcel);
-}
-
-/// New contacts under the law of an interaction.
-pub(crate) fn pair_contacts(law: &Law) -> Box<dyn PairContacts> {
-    macro_rules! of {
-        ($($variant:ident)*) => {
-            match law {
-                $(Law::$variant(_) => Box::new(Contacts::<laws::$variant, _>::default()),)*
-                Law::User(_) => Box::new(Contacts::<windfall_contact::law_user::UserLaw, _>::default()),
-            }
-        };
-    }
-    of! {
-        Hertz KelvinVoigt KuwabaraKono PowerLaw HuntCrossley LankaraniNikravesh Flores
-        HerbertMcWhannell Tsuji AdamsImpact WaltonBraun Thornton
-    }
-}
-
-/// A law that is one of the registry's variants.
-trait Variant: Copy {
-    fn of(law: &Law) -> Option<Self>;
-    fn law(self) -> Law;
-}
-
-macro_rules! variants {
-    ($($variant:ident: $type:ty,)*) => {
-        $(impl Variant for $type {
-            fn of(law: &Law) -> Option<Self> {
-                match law {
-                    Law::$variant(own) => Some(*own),
-                    _ => None,
-                }
-            }
-
-            fn law(self) -> Law {
-                Law::$variant(self)
-            }
-        })*
-    };
-}
-
-variants! {
-    Hertz: laws::Hertz,
-    KelvinVoigt: laws::KelvinVoigt,
-    KuwabaraKono: laws::KuwabaraKono,
-    PowerLaw: laws::PowerLaw,
-    HuntCrossley: laws::HuntCrossley,
-    LankaraniNikravesh: laws::LankaraniNikravesh,
-    Flores: laws::Flores,
-    HerbertMcWhannell: laws::HerbertMcWhannell,
-    Tsuji: laws::Tsuji,
-    AdamsImpact: laws::AdamsImpact,
-    WaltonBraun: laws::WaltonBraun,
-    Thornton: laws::Thornton,
-    User: windfall_contact::law_user::UserLaw,
-}
-
-/// Contacts under one law; what is needed in every step stands apart from the rest.
-struct Contacts<L, const N: usize> {
-    hot: Vec<Hot<L>>,
-    /// Moments against rolling; N m.
-    rolling: Vec<Vector>,
-    encounters: Vec<Encounter>,
+pub(crate) struct PairContacts {
+    store: Store,
     entries: Vec<u32>,
-    /// Entries that overlap in the present step.
-    touching: Vec<u32>,
-    /// Entries that do so no more.
+    pairs: Vec<[u32; 2]>,
+    /// Entries without a contact that may soon touch.
+    awake: Vec<u32>,
+    /// Those that cannot before bodies have moved by half their gap; the widest first.
+    asleep: Vec<(f64, u32)>,
+    /// Contacts that end in the present step.
     parting: Vec<u32>,
-}
-
-impl<L, const N: usize> Default for Contacts<L, N> {
-    fn default() -> Self {
-        Self {
-            hot: Vec::new(),
-            rolling: Vec::new(),
-            encounters: Vec::new(),
-            entries: Vec::new(),
-            touching: Vec::new(),
-            parting: Vec::new(),
-        }
-    }
 }
 
 /// Overlap over the smaller radius above which a law of two spheres means nothing.
 pub(crate) const LARGEST_OVERLAP: f64 = 0.3;
 
-impl<L: ContactLaw<N> + Variant, const N: usize> PairContacts for Contacts<L, N> {
-    fn advance(&mut self, part: Part, surface: &Interaction, now: &Moment, outcome: &mut Outcome) {
+impl PairContacts {
+    /// No contacts yet under the law of an interaction.
+    pub(crate) fn new(law: &Law) -> Self {
+        Self {
+            store: Store::new(law),
+            entries: Vec::new(),
+            pairs: Vec::new(),
+            awake: Vec::new(),
+            asleep: Vec::new(),
+            parting: Vec::new(),
+        }
+    }
+
+    /// Forces of all entries, one step on.
+    pub(crate) fn advance(
+        &mut self,
+        part: Part,
+        surface: &Interaction,
+        now: &Moment,
+        outcome: &mut Outcome,
+    ) {
         let Part {
             bodies,
             first,
             second,
-            slot,
+            out,
             loads,
             base,
-            out,
-            rolling,
+            outs,
+            out_base,
+            moved,
         } = part;
-        self.sort_out(first, second, slot, bodies);
-        for place in 0..self.parting.len() {
-            let entry = self.parting[place] as usize;
-            let (i, j) = (first[entry] as usize, second[entry] as usize);
-            let gap = -overlap(bodies, i, j);
-            let fruit = (bodies.fruit[i], bodies.fruit[j]);
-            self.finish(entry, slot, fruit, gap, now, outcome);
+        self.wake(moved);
+        if let Err(problem) = self.begin_all(first, second, bodies, (surface, now)) {
+            outcome.problem.get_or_insert(problem);
+            return;
         }
-        for place in 0..self.touching.len() {
-            let entry = self.touching[place] as usize;
-            if slot[entry] == NONE {
-                let pair = (first[entry] as usize, second[entry] as usize);
-                match self.begin(entry, pair, bodies, (surface, now)) {
-                    Ok(own) => slot[entry] = own,
-                    Err(problem) => {
-                        outcome.problem.get_or_insert(problem);
-                        return;
-                    }
-                }
-            }
-        }
-        let multiples = surface.spread.is_none();
-        let deepest = with_four_lanes(Batch::<L, N> {
-            median: if multiples { L::of(&surface.law) } else { None },
+        let mut parting = std::mem::take(&mut self.parting);
+        let deepest = with_four_lanes(Batch {
             bodies,
-            first,
-            second,
-            slot,
+            store: &mut self.store,
+            pairs: &self.pairs,
+            out: (&self.entries, out),
             loads,
             base,
-            out,
-            rolling_out: rolling,
-            touching: &self.touching,
-            hot: &mut self.hot,
-            rolling: &mut self.rolling,
+            outs: &mut *outs,
+            out_base,
+            parting: &mut parting,
             surface,
             clock: now.clock,
         });
         if deepest > LARGEST_OVERLAP {
             outcome
                 .problem
-                .get_or_insert_with(|| self.deepest(first, second, bodies, now));
+                .get_or_insert_with(|| self.deepest(bodies, now));
         }
-    }
-
-    fn count(&self) -> usize {
-        self.hot.len()
-    }
-
-    fn adopt(&mut self, entry: u32, law: &Law, parcel: Parcel) -> u32 {
-        // The law of an interaction keeps its kind.
-        if let Some(law) = L::of(law) {
-            let (scale, history) = (parcel.scale, parcel.history);
-            self.hot.push(Hot {
-                law,
-                scale,
-                history,
-            });
-            self.rolling.push(parcel.rolling);
-            self.encounters.push(parcel.encounter);
-            self.entries.push(entry);
-        }
-        (self.hot.len() - 1) as u32
-    }
-
-    fn at(&self, contact: usize) -> (u32, Law, Parcel) {
-        let law = self.hot[contact].law.law();
-        (self.entries[contact], law, self.parcel(contact))
-    }
-}
-
-impl<L: ContactLaw<N> + Variant, const N: usize> Contacts<L, N> {
-    fn parcel(&self, contact: usize) -> Parcel {
-        Parcel {
-            scale: self.hot[contact].scale,
-            history: self.hot[contact].history,
-            rolling: self.rolling[contact],
-            encounter: self.encounters[contact],
-        }
-    }
-
-    /// Which entries touch, and which did and do no more. Without a branch on what follows
-    /// no pattern; not less is also what is no number.
-    fn sort_out(&mut self, first: &[u32], second: &[u32], slot: &[u32], bodies: &Bodies) {
-        self.touching.resize(first.len(), 0);
-        self.parting.clear();
-        let mut count = 0;
-        for entry in 0..first.len() {
-            let a = &bodies.place[first[entry] as usize];
-            let b = &bodies.place[second[entry] as usize];
-            let between = [b[0] - a[0], b[1] - a[1], b[2] - a[2]];
-            let reach = a[3] + b[3];
-            let apart = dot(between, between) >= reach * reach;
-            self.touching[count] = entry as u32;
-            count += usize::from(!apart);
-            if apart && slot[entry] != NONE {
-                self.parting.push(entry as u32);
+        for contact in parting.drain(..) {
+            let entry = self.finish(contact as usize, bodies, now, outcome);
+            let number = out[entry as usize];
+            if number != NONE {
+                outs[(number - out_base) as usize] = [0.0; 8];
             }
         }
-        self.touching.truncate(count);
+        self.parting = parting;
+    }
+
+    /// Number of contacts.
+    pub(crate) fn count(&self) -> usize {
+        self.store.len()
+    }
+
+    /// Takes over the contact of an entry of a new list; entries come in rising order.
+    pub(crate) fn adopt(&mut self, entry: u32, pair: [u32; 2], law: &Law, parcel: Parcel) {
+        if self.store.adopt(law, parcel).is_some() {
+            self.entries.push(entry);
+            self.pairs.push(pair);
+        }
+    }
+
+    /// Every other entry of a new list waits until it may touch.
+    pub(crate) fn wait(&mut self, first: &[u32], second: &[u32], bodies: &Bodies) {
+        let mut known = self.entries.iter().copied().peekable();
+        for (entry, (&i, &j)) in first.iter().zip(second).enumerate() {
+            let entry = entry as u32;
+            if known.next_if_eq(&entry).is_none() {
+                self.asleep
+                    .push((-overlap(bodies, i as usize, j as usize), entry));
+            }
+        }
+        let widest_first = |a: &(f64, u32), b: &(f64, u32)| (b.0, b.1).partial_cmp(&(a.0, a.1));
+        self.asleep
+            .sort_unstable_by(|a, b| widest_first(a, b).unwrap_or(std::cmp::Ordering::Equal));
+    }
+
+    /// The entry, law and memory of a contact.
+    pub(crate) fn at(&self, contact: usize) -> (u32, Law, Parcel) {
+        let (law, parcel) = self.store.at(contact);
+        (self.entries[contact], law, parcel)
+    }
+    /// Entries whose bodies may have come together since the list was made.
+    fn wake(&mut self, moved: f64) {
+        // With room for what is rounded.
+        let reach = 2.0 * moved * (1.0 + 1e-9);
+        while let Some(&(gap, entry)) = self.asleep.last() {
+            let sleeps = gap > reach;
+            if sleeps {
+                break;
+            }
+            self.asleep.pop();
+            self.awake.push(entry);
+        }
+    }
+
+    /// Contacts of entries that touch now.
+    fn begin_all(
+        &mut self,
+        first: &[u32],
+        second: &[u32],
+        bodies: &Bodies,
+        work: (&Interaction, &Moment),
+    ) -> Result<(), Error> {
+        let mut place = 0;
+        while let Some(&entry) = self.awake.get(place) {
+            let pair = [first[entry as usize], second[entry as usize]];
+            let [a, b] = pair.map(|body| &bodies.place[body as usize]);
+            let between = [b[0] - a[0], b[1] - a[1], b[2] - a[2]];
+            let reach = a[3] + b[3];
+            let apart = dot(between, between) >= reach * reach
+                || overlap(bodies, pair[0] as usize, pair[1] as usize) <= 0.0;
+            if apart {
+                place += 1;
+            } else {
+                self.begin(entry, pair, bodies, work)?;
+                self.awake.swap_remove(place);
+            }
+        }
+        Ok(())
     }
 
     #[cold]
     fn begin(
         &mut self,
-        entry: usize,
-        (i, j): (usize, usize),
+        entry: u32,
+        pair: [u32; 2],
         bodies: &Bodies,
         (surface, now): (&Interaction, &Moment),
-    ) -> Result<u32, Error> {
+    ) -> Result<(), Error> {
+        let [i, j] = pair.map(|body| body as usize);
         let draws = |body: usize| &now.fruit[bodies.fruit[body] as usize].draws;
         let centre = |body: usize| [0, 1, 2].map(|axis| bodies.place[body][axis]);
         let (a, b) = (bodies.place[i][3], bodies.place[j][3]);
@@ -268,21 +216,19 @@ impl<L: ContactLaw<N> + Variant, const N: usize> Contacts<L, N> {
             encounter,
         };
         let law = surface.law_of(radius, draws(i), Some(draws(j)))?;
-        Ok(self.adopt(entry as u32, &law, parcel))
+        self.adopt(entry, pair, &law, parcel);
+        Ok(())
     }
 
     /// The pair that overlaps too much.
     #[cold]
-    fn deepest(&self, first: &[u32], second: &[u32], bodies: &Bodies, now: &Moment) -> Error {
-        let share = |entry: u32| {
-            let (i, j) = (
-                first[entry as usize] as usize,
-                second[entry as usize] as usize,
-            );
+    fn deepest(&self, bodies: &Bodies, now: &Moment) -> Error {
+        let share = |pair: &[u32; 2]| {
+            let [i, j] = pair.map(|body| body as usize);
             let radius = bodies.place[i][3].min(bodies.place[j][3]);
             (overlap(bodies, i, j) / radius, i, j, radius)
         };
-        let all = self.touching.iter().map(|&entry| share(entry));
+        let all = self.pairs.iter().map(share);
         let (share, i, j, radius) =
             all.fold((0.0, 0, 0, 1.0), |a, b| if b.0 > a.0 { b } else { a });
         let partner = fruit_name(bodies.fruit[j]);
@@ -295,28 +241,25 @@ impl<L: ContactLaw<N> + Variant, const N: usize> Contacts<L, N> {
         )
     }
 
-    /// A contact whose bodies part.
+    /// A contact whose bodies part; its entry.
     #[cold]
     fn finish(
         &mut self,
-        entry: usize,
-        slot: &mut [u32],
-        fruit: (u32, u32),
-        gap: f64,
+        contact: usize,
+        bodies: &Bodies,
         now: &Moment,
         outcome: &mut Outcome,
-    ) {
-        let own = slot[entry] as usize;
-        let parted = parted(self.parcel(own), gap, now.clock);
+    ) -> u32 {
+        let [i, j] = self.pairs[contact].map(|body| body as usize);
+        let gap = -overlap(bodies, i, j);
+        let parted = parted(self.store.parcel(contact), gap, now.clock);
+        let fruit = (bodies.fruit[i], bodies.fruit[j]);
         outcome.events.push(event_of_pair(parted, fruit, false));
-        slot[entry] = NONE;
-        self.hot.swap_remove(own);
-        self.rolling.swap_remove(own);
-        self.encounters.swap_remove(own);
-        self.entries.swap_remove(own);
-        if let Some(&moved) = self.entries.get(own) {
-            slot[moved as usize] = own as u32;
-        }
+        self.store.remove(contact);
+        self.pairs.swap_remove(contact);
+        let entry = self.entries.swap_remove(contact);
+        self.awake.push(entry);
+        entry
     }
 }
 

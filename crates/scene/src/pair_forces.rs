@@ -1,214 +1,191 @@
 //! Forces of pairs that touch, four at a time.
 
 use crate::interaction::Interaction;
+use crate::law_column::Four;
 use crate::neighbours::Bodies;
-use crate::react::{
-    Clock, History, Memory, Normal, NormalLaw, Of, Touch, cross, dot, normal_of, react,
-    surface_velocity,
-};
-use crate::vector::{Vector, add, scaled};
-use windfall_contact::law::ContactLaw;
-use windfall_numerics::real::{Lanes, Real};
-use windfall_numerics::real_vector::{FourLanes, LANES};
+use crate::react::{Clock, Normal, Touch, dot, surface_velocity};
+use crate::store::{CHUNK, Load, Store, add_load, loads};
+use windfall_numerics::real::Lanes;
+use windfall_numerics::real_vector::{FourLanes, FourNumbers, LANES};
 
-/// Force of a pair on its first body; the second has the opposite.
-#[derive(Clone, Copy, Debug, Default)]
-#[repr(align(64))]
-pub(crate) struct PairForce {
-    /// N.
-    pub force: Vector,
-    /// Normal × force: the moment is this times the distance to the contact; N.
-    pub twist: Vector,
-    /// Half the overlap: what the distance to the contact lacks of the radius; m.
-    pub short: f64,
-}
-
-/// What every step needs of a contact.
-#[derive(Clone, Copy)]
-pub(crate) struct Hot<L> {
-    /// The law of this pair.
-    pub law: L,
-    /// What radii multiply the median's force by; 1.
-    pub scale: f64,
-    pub history: History,
-}
-
-/// Pairs of one block and one interaction, of which some touch.
-pub(crate) struct Batch<'a, L, const N: usize> {
-    /// The median's law, where the pairs have multiples of it.
-    pub median: Option<L>,
+/// Contacts of one block and one interaction.
+pub(crate) struct Batch<'a> {
     pub bodies: &'a Bodies,
-    pub first: &'a [u32],
-    pub second: &'a [u32],
-    /// The contact of each entry.
-    pub slot: &'a [u32],
-    /// Force (N) and moment (N m) of pairs on the bodies of the block, 0 to 2 and 4 to 6.
-    pub loads: &'a mut [[f64; 8]],
+    pub store: &'a mut Store,
+    /// The bodies of each contact.
+    pub pairs: &'a [[u32; 2]],
+    /// The entry of each contact, and the number of each entry of two blocks.
+    pub out: (&'a [u32], &'a [u32]),
+    /// Loads of pairs on the bodies of the block.
+    pub loads: &'a mut [Load],
     /// The first body of the block.
     pub base: usize,
-    /// What second bodies of other blocks are to get.
-    pub out: &'a mut [PairForce],
-    pub rolling_out: &'a mut [Vector],
-    /// Entries that touch.
-    pub touching: &'a [u32],
-    pub hot: &'a mut [Hot<L>],
-    pub rolling: &'a mut [Vector],
+    /// Loads on second bodies of other blocks, and the number of the first.
+    pub outs: &'a mut [Load],
+    pub out_base: u32,
+    /// Contacts whose bodies do not touch any more: for the caller, in falling order.
+    pub parting: &'a mut Vec<u32>,
     pub surface: &'a Interaction,
     pub clock: Clock,
 }
 
-impl<L: ContactLaw<N>, const N: usize> FourLanes for Batch<'_, L, N> {
+impl FourLanes for Batch<'_> {
     /// The largest overlap over the smaller radius; 1.
     type Output = f64;
 
     #[inline(always)]
-    fn run<R: Real<Plain = Lanes<LANES>>>(self, zero: R) -> f64 {
+    fn run<R: FourNumbers>(self, zero: R) -> f64 {
         let mut batch = self;
-        let median = batch.median;
         let mut deepest = zero;
-        let rolls = !batch.rolling_out.is_empty();
-        let touching = batch.touching;
-        let mut start = 0;
-        while start < touching.len() {
-            // The last few are filled up with the last of them.
-            let count = LANES.min(touching.len() - start);
-            let mut entries = [touching[start + count - 1] as usize; LANES];
-            for lane in 0..count {
-                entries[lane] = touching[start + lane] as usize;
+        let mut meetings = [Meeting::all(zero); CHUNK];
+        let mut given = [[Lanes::ZERO; 3]; CHUNK];
+        let mut found = [Normal::all(Lanes::ZERO); CHUNK];
+        let groups = batch.pairs.len().div_ceil(LANES);
+        for first in (0..groups).step_by(CHUNK) {
+            let count = CHUNK.min(groups - first);
+            for own in 0..count {
+                let meeting = meet(batch.bodies, batch.pairs_of(first + own), zero);
+                let touch = &meeting.touch;
+                deepest = deepest.max(touch.displacement / meeting.smaller);
+                given[own] = batch.store.given(first + own, touch, zero);
+                meetings[own] = meeting;
             }
-            let mut own = [0; LANES];
-            for lane in 0..LANES {
-                own[lane] = batch.slot[entries[lane]] as usize;
+            let (given, found) = (&given[..count], &mut found[..count]);
+            batch.store.normal(batch.surface, first, given, found);
+            for own in 0..count {
+                batch.push(first + own, &meetings[own], &found[own], zero);
             }
-            let (touch, smaller) = touch(&batch, entries, zero);
-            deepest = deepest.max(touch.displacement / smaller);
-            let mut memory = load(batch.hot, own, zero);
-            let mut moment = match rolls {
-                true => load_vectors(batch.rolling, own, zero),
-                false => [zero; 3],
-            };
-            let rolling = if rolls { Some(&mut moment) } else { None };
-            let (surface, clock) = (batch.surface, batch.clock);
-            let reaction = match &median {
-                Some(law) => {
-                    let scale = |lane: usize| batch.hot[own[lane]].scale;
-                    let scale = zero.with_plain(Lanes([scale(0), scale(1), scale(2), scale(3)]));
-                    let law = Scaled::<L, R, N> { law, scale };
-                    react(&law, surface, &touch, clock, &mut memory, rolling)
-                }
-                None => {
-                    let law = |lane: usize| batch.hot[own[lane]].law;
-                    let law = Each::<L, N>([law(0), law(1), law(2), law(3)]);
-                    react(&law, surface, &touch, clock, &mut memory, rolling)
-                }
-            };
-            store(batch.hot, own, count, &memory);
-            let (kept, given) = (plain(moment), plain(reaction.rolling));
-            if rolls {
-                for lane in 0..count {
-                    for axis in 0..3 {
-                        batch.rolling[own[lane]][axis] = kept[axis][lane];
-                        batch.rolling_out[entries[lane]][axis] = given[axis][lane];
-                    }
-                }
-            }
-            let twist = cross(touch.normal, reaction.force);
-            let load = (reaction.force, twist, touch.displacement);
-            give(&mut batch, entries, count, load, given);
-            start += count;
         }
+        batch.parting.reverse();
         let Lanes(deepest) = deepest.plain();
         deepest.into_iter().fold(0.0, f64::max)
     }
 }
 
-/// The median's law times a factor of each pair.
-struct Scaled<'a, L, R, const N: usize> {
-    law: &'a L,
-    scale: R,
-}
-
-impl<R: Real, L: ContactLaw<N>, const N: usize> NormalLaw<R> for Scaled<'_, L, R, N> {
+impl Batch<'_> {
+    /// The bodies of a group of contacts; the last group is filled up with its last.
     #[inline(always)]
-    fn normal(&self, displacement: R, rate: R, peak: R) -> Normal<R> {
-        let own = normal_of(self.law, displacement, rate, peak);
-        Normal {
-            force: own.force * self.scale,
-            damping: own.damping * self.scale,
-            stiffness: own.stiffness * self.scale,
+    fn pairs_of(&self, group: usize) -> [[u32; 2]; LANES] {
+        let start = group * LANES;
+        let last = self.pairs.len() - 1;
+        [
+            self.pairs[start],
+            self.pairs[(start + 1).min(last)],
+            self.pairs[(start + 2).min(last)],
+            self.pairs[(start + 3).min(last)],
+        ]
+    }
+
+    /// Forces of a group, to those whom they push.
+    #[inline(always)]
+    fn push<R: FourNumbers>(
+        &mut self,
+        group: usize,
+        meeting: &Meeting<R>,
+        found: &Normal<Four>,
+        zero: R,
+    ) {
+        let start = group * LANES;
+        let count = LANES.min(self.pairs.len() - start);
+        let touch = &meeting.touch;
+        let Lanes(overlap) = touch.displacement.plain();
+        let parted = [
+            overlap[0] <= 0.0,
+            overlap[1] <= 0.0,
+            overlap[2] <= 0.0,
+            overlap[3] <= 0.0,
+        ];
+        let together = parted == [false; LANES];
+        let before = (!together).then(|| self.store.before(group));
+        let work = (self.surface, self.clock);
+        let reaction = self.store.react(group, touch, found, work, zero);
+        let near = loads(touch.normal, &reaction, meeting.near, 1.0, zero);
+        let far = loads(touch.normal, &reaction, meeting.far, -1.0, zero);
+        if let Some(before) = before {
+            self.store.restore(group, parted, &before);
+            for lane in (0..count).filter(|lane| parted[*lane]) {
+                self.parting.push((start + lane) as u32);
+            }
+        }
+        for lane in 0..count {
+            if !together && parted[lane] {
+                continue;
+            }
+            let [first, second] = self.pairs[start + lane];
+            let (first, second) = (first as usize - self.base, second as usize - self.base);
+            add_load(&mut self.loads[first], &near.0[lane], &near.1[lane]);
+            // Second bodies stand behind.
+            match self.loads.get_mut(second) {
+                Some(load) => add_load(load, &far.0[lane], &far.1[lane]),
+                None => {
+                    let number = self.out.1[self.out.0[start + lane] as usize];
+                    let out = &mut self.outs[(number - self.out_base) as usize];
+                    put(out, &far.0[lane], &far.1[lane]);
+                }
+            }
         }
     }
 }
 
-/// A law of its own for each of four pairs.
-struct Each<L, const N: usize>([L; LANES]);
+#[inline(always)]
+fn put(to: &mut Load, force: &Four, moment: &Four) {
+    to[..LANES].copy_from_slice(&force.0);
+    to[LANES..].copy_from_slice(&moment.0);
+}
 
-impl<R: Real<Plain = Lanes<LANES>>, L: ContactLaw<N>, const N: usize> NormalLaw<R> for Each<L, N> {
-    #[inline(always)]
-    fn normal(&self, displacement: R, rate: R, peak: R) -> Normal<R> {
-        let (Lanes(d), Lanes(v), Lanes(p)) = (displacement.plain(), rate.plain(), peak.plain());
-        let (mut force, mut damping, mut stiffness) = ([0.0; LANES], [0.0; LANES], [0.0; LANES]);
-        for lane in 0..LANES {
-            let own = normal_of(&self.0[lane], d[lane], v[lane], p[lane]);
-            (force[lane], damping[lane], stiffness[lane]) = (own.force, own.damping, own.stiffness);
-        }
-        Normal {
-            force: rate.with_plain(Lanes(force)),
-            damping: rate.with_plain(Lanes(damping)),
-            stiffness: rate.with_plain(Lanes(stiffness)),
+/// Where four pairs touch.
+#[derive(Clone, Copy)]
+struct Meeting<R> {
+    touch: Touch<R>,
+    /// From the centre of the first body, and of the second, to the contact; m.
+    near: R,
+    far: R,
+    /// The smaller radius; m.
+    smaller: R,
+}
+
+impl<R: FourNumbers> Meeting<R> {
+    fn all(zero: R) -> Self {
+        Self {
+            touch: Touch::all(zero),
+            near: zero,
+            far: zero,
+            smaller: zero,
         }
     }
 }
 
-/// Column `at` of four rows.
+/// Half a row.
 #[inline(always)]
-fn column<R: Real<Plain = Lanes<LANES>>, const W: usize>(
-    rows: [&[f64; W]; LANES],
-    at: usize,
-    zero: R,
-) -> R {
-    zero.with_plain(Lanes([rows[0][at], rows[1][at], rows[2][at], rows[3][at]]))
+fn half(row: &Load, at: usize) -> Four {
+    Lanes([row[at], row[at + 1], row[at + 2], row[at + 3]])
 }
 
-/// Where four pairs touch, and the smaller radius of each.
 #[inline(always)]
-fn touch<R: Real<Plain = Lanes<LANES>>, L, const N: usize>(
-    batch: &Batch<L, N>,
-    entries: [usize; LANES],
-    zero: R,
-) -> (Touch<R>, R) {
-    let (places, motions) = (&batch.bodies.place[..], &batch.bodies.motion[..]);
-    let mut i = [0; LANES];
-    let mut j = [0; LANES];
+fn meet<R: FourNumbers>(bodies: &Bodies, pairs: [[u32; 2]; LANES], zero: R) -> Meeting<R> {
+    let (places, motions) = (&bodies.place[..], &bodies.motion[..]);
+    let i = [pairs[0][0], pairs[1][0], pairs[2][0], pairs[3][0]];
+    let j = [pairs[0][1], pairs[1][1], pairs[2][1], pairs[3][1]];
+    let mut rows = [[Lanes::ZERO; LANES]; 6];
     for lane in 0..LANES {
-        i[lane] = batch.first[entries[lane]] as usize;
-        j[lane] = batch.second[entries[lane]] as usize;
+        let (a, b) = (i[lane] as usize, j[lane] as usize);
+        rows[0][lane] = Lanes(places[a]);
+        rows[1][lane] = Lanes(places[b]);
+        let (u, w) = (&motions[a], &motions[b]);
+        rows[2][lane] = half(u, 0);
+        rows[3][lane] = half(w, 0);
+        rows[4][lane] = half(u, 4);
+        rows[5][lane] = half(w, 4);
     }
-    let a = [&places[i[0]], &places[i[1]], &places[i[2]], &places[i[3]]];
-    let b = [&places[j[0]], &places[j[1]], &places[j[2]], &places[j[3]]];
-    let u = [
-        &motions[i[0]],
-        &motions[i[1]],
-        &motions[i[2]],
-        &motions[i[3]],
-    ];
-    let w = [
-        &motions[j[0]],
-        &motions[j[1]],
-        &motions[j[2]],
-        &motions[j[3]],
-    ];
-    let between = [
-        column(b, 0, zero) - column(a, 0, zero),
-        column(b, 1, zero) - column(a, 1, zero),
-        column(b, 2, zero) - column(a, 2, zero),
-    ];
-    let (left, right) = (column(a, 3, zero), column(b, 3, zero));
+    let [a, b] = [zero.columns(rows[0]), zero.columns(rows[1])];
+    let [u, w] = [zero.columns(rows[2]), zero.columns(rows[3])];
+    let [p, q] = [zero.columns(rows[4]), zero.columns(rows[5])];
+    let between = [b[0] - a[0], b[1] - a[1], b[2] - a[2]];
+    let (left, right) = (a[3], b[3]);
     let reach = left + right;
     let distance = dot(between, between).sqrt();
     let displacement = reach - distance;
-    let one = zero.constant(1.0);
-    let inverse = one / distance;
+    let inverse = zero.constant(1.0) / distance;
     let normal = [
         between[0] * inverse,
         between[1] * inverse,
@@ -216,163 +193,22 @@ fn touch<R: Real<Plain = Lanes<LANES>>, L, const N: usize>(
     ];
     let half = displacement * 0.5;
     let (near, far) = (left - half, right - half);
-    let (p, q) = (
-        [column(u, 4, zero), column(u, 5, zero), column(u, 6, zero)],
-        [column(w, 4, zero), column(w, 5, zero), column(w, 6, zero)],
-    );
-    let relative = [
-        column(u, 0, zero) - column(w, 0, zero),
-        column(u, 1, zero) - column(w, 1, zero),
-        column(u, 2, zero) - column(w, 2, zero),
-    ];
+    let relative = [u[0] - w[0], u[1] - w[1], u[2] - w[2]];
     let arms = [
         near * p[0] + far * q[0],
         near * p[1] + far * q[1],
         near * p[2] + far * q[2],
     ];
-    let touch = Touch {
-        normal,
-        displacement,
-        velocity: surface_velocity(relative, arms, normal),
-        spin: [p[0] - q[0], p[1] - q[1], p[2] - q[2]],
-        radius: left * right / reach,
-    };
-    (touch, left.min(right))
-}
-
-#[inline(always)]
-fn load<R: Real<Plain = Lanes<LANES>>, L>(
-    hot: &[Hot<L>],
-    own: [usize; LANES],
-    zero: R,
-) -> Memory<R> {
-    let [a, b, c, d] = [
-        &hot[own[0]].history,
-        &hot[own[1]].history,
-        &hot[own[2]].history,
-        &hot[own[3]].history,
-    ];
-    macro_rules! side_by_side {
-        ($($field:tt)+) => {
-            zero.with_plain(Lanes([a.$($field)+, b.$($field)+, c.$($field)+, d.$($field)+]))
-        };
+    Meeting {
+        touch: Touch {
+            normal,
+            displacement,
+            velocity: surface_velocity(relative, arms, normal),
+            spin: [p[0] - q[0], p[1] - q[1], p[2] - q[2]],
+            radius: left * right / reach,
+        },
+        near,
+        far,
+        smaller: left.min(right),
     }
-    Memory {
-        elastic: [
-            side_by_side!(elastic[0]),
-            side_by_side!(elastic[1]),
-            side_by_side!(elastic[2]),
-        ],
-        tangential: [
-            side_by_side!(tangential[0]),
-            side_by_side!(tangential[1]),
-            side_by_side!(tangential[2]),
-        ],
-        stiffness: side_by_side!(stiffness),
-        normal: side_by_side!(normal),
-        rate: side_by_side!(rate),
-        peak: side_by_side!(peak),
-        peak_force: side_by_side!(peak_force),
-        work: side_by_side!(work),
-        friction_work: side_by_side!(friction_work),
-        pushed: side_by_side!(pushed),
-    }
-}
-
-#[inline(always)]
-fn load_vectors<R: Real<Plain = Lanes<LANES>>>(
-    from: &[Vector],
-    own: [usize; LANES],
-    zero: R,
-) -> Of<R> {
-    let rows = [&from[own[0]], &from[own[1]], &from[own[2]], &from[own[3]]];
-    [
-        column(rows, 0, zero),
-        column(rows, 1, zero),
-        column(rows, 2, zero),
-    ]
-}
-
-#[inline(always)]
-fn plain<R: Real<Plain = Lanes<LANES>>>(a: Of<R>) -> [[f64; LANES]; 3] {
-    let (Lanes(x), Lanes(y), Lanes(z)) = (a[0].plain(), a[1].plain(), a[2].plain());
-    [x, y, z]
-}
-
-#[inline(always)]
-fn store<R: Real<Plain = Lanes<LANES>>, L>(
-    hot: &mut [Hot<L>],
-    own: [usize; LANES],
-    count: usize,
-    memory: &Memory<R>,
-) {
-    let (elastic, tangential) = (plain(memory.elastic), plain(memory.tangential));
-    let (Lanes(stiffness), Lanes(normal)) = (memory.stiffness.plain(), memory.normal.plain());
-    let (Lanes(rate), Lanes(peak)) = (memory.rate.plain(), memory.peak.plain());
-    let (Lanes(peak_force), Lanes(work)) = (memory.peak_force.plain(), memory.work.plain());
-    let Lanes(friction_work) = memory.friction_work.plain();
-    let Lanes(pushed) = memory.pushed.plain();
-    for lane in 0..count {
-        hot[own[lane]].history = Memory {
-            elastic: [elastic[0][lane], elastic[1][lane], elastic[2][lane]],
-            tangential: [
-                tangential[0][lane],
-                tangential[1][lane],
-                tangential[2][lane],
-            ],
-            stiffness: stiffness[lane],
-            normal: normal[lane],
-            rate: rate[lane],
-            peak: peak[lane],
-            peak_force: peak_force[lane],
-            work: work[lane],
-            friction_work: friction_work[lane],
-            pushed: pushed[lane],
-        };
-    }
-}
-
-#[inline(always)]
-fn give<R: Real<Plain = Lanes<LANES>>, L, const N: usize>(
-    batch: &mut Batch<L, N>,
-    entries: [usize; LANES],
-    count: usize,
-    (force, twist, displacement): (Of<R>, Of<R>, R),
-    rolling: [[f64; LANES]; 3],
-) {
-    let (force, twist) = (plain(force), plain(twist));
-    let Lanes(short) = (displacement * 0.5).plain();
-    for lane in 0..count {
-        let entry = entries[lane];
-        let (i, j) = (batch.first[entry] as usize, batch.second[entry] as usize);
-        let force = [force[0][lane], force[1][lane], force[2][lane]];
-        let twist = [twist[0][lane], twist[1][lane], twist[2][lane]];
-        let rolling = [rolling[0][lane], rolling[1][lane], rolling[2][lane]];
-        let arm = batch.bodies.place[i][3] - short[lane];
-        let load = &mut batch.loads[i - batch.base];
-        for axis in 0..3 {
-            load[axis] += force[axis];
-            load[4 + axis] += twist[axis] * arm + rolling[axis];
-        }
-        // Second bodies stand behind.
-        if let Some(load) = batch.loads.get_mut(j - batch.base) {
-            let arm = batch.bodies.place[j][3] - short[lane];
-            for axis in 0..3 {
-                load[axis] -= force[axis];
-                load[4 + axis] += twist[axis] * arm - rolling[axis];
-            }
-        } else {
-            batch.out[entry] = PairForce {
-                force,
-                twist,
-                short: short[lane],
-            };
-        }
-    }
-}
-
-/// Moment of a pair's force on one of its bodies, without that against rolling; N m.
-#[inline(always)]
-pub(crate) fn moment_on(out: &PairForce, radius: f64, so_far: Vector) -> Vector {
-    add(so_far, scaled(out.twist, radius - out.short))
 }

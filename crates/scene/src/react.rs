@@ -3,7 +3,7 @@
 
 use crate::interaction::Interaction;
 use windfall_contact::law::ContactLaw;
-use windfall_numerics::real::Real;
+use windfall_numerics::real::{Lanes, Real};
 
 /// A vector of numbers of any kind.
 pub(crate) type Of<R> = [R; 3];
@@ -52,6 +52,20 @@ pub(crate) struct Touch<R> {
     pub radius: R,
 }
 
+impl<R: Copy> Touch<R> {
+    /// The same number everywhere.
+    #[inline(always)]
+    pub(crate) fn all(number: R) -> Self {
+        Self {
+            normal: [number; 3],
+            displacement: number,
+            velocity: [number; 3],
+            spin: [number; 3],
+            radius: number,
+        }
+    }
+}
+
 /// What a contact remembers from step to step; of numbers or of several side by side.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Memory<R> {
@@ -75,6 +89,106 @@ pub struct Memory<R> {
     pub friction_work: R,
     /// Last moment of a force; s.
     pub pushed: R,
+}
+
+/// A memory of which each field comes of the same field of another.
+macro_rules! memory {
+    ($own:expr, $vector:ident, $number:ident) => {
+        Memory {
+            elastic: $vector!($own.elastic),
+            tangential: $vector!($own.tangential),
+            stiffness: $number!($own.stiffness),
+            normal: $number!($own.normal),
+            rate: $number!($own.rate),
+            peak: $number!($own.peak),
+            peak_force: $number!($own.peak_force),
+            work: $number!($own.work),
+            friction_work: $number!($own.friction_work),
+            pushed: $number!($own.pushed),
+        }
+    };
+}
+
+impl<R: Real> Memory<R> {
+    /// As numbers without a processor's instructions.
+    #[inline(always)]
+    pub(crate) fn plain(self) -> Memory<R::Plain> {
+        macro_rules! vector {
+            ($own:expr) => {
+                [$own[0].plain(), $own[1].plain(), $own[2].plain()]
+            };
+        }
+        macro_rules! number {
+            ($own:expr) => {
+                $own.plain()
+            };
+        }
+        memory!(self, vector, number)
+    }
+}
+
+impl<const W: usize> Memory<Lanes<W>> {
+    /// Nothing remembered.
+    pub(crate) const ZERO: Self = {
+        macro_rules! vector {
+            ($own:expr) => {
+                [Lanes::ZERO; 3]
+            };
+        }
+        macro_rules! number {
+            ($own:expr) => {
+                Lanes::ZERO
+            };
+        }
+        memory!((), vector, number)
+    };
+
+    /// As numbers like `like`.
+    #[inline(always)]
+    pub(crate) fn with_plain<R: Real<Plain = Lanes<W>>>(self, like: R) -> Memory<R> {
+        macro_rules! vector {
+            ($own:expr) => {
+                like.with_each_plain($own)
+            };
+        }
+        macro_rules! number {
+            ($own:expr) => {
+                like.with_plain($own)
+            };
+        }
+        memory!(self, vector, number)
+    }
+
+    /// One of several side by side.
+    pub(crate) fn lane(&self, lane: usize) -> History {
+        macro_rules! vector {
+            ($own:expr) => {
+                $own.map(|own| own.0[lane])
+            };
+        }
+        macro_rules! number {
+            ($own:expr) => {
+                $own.0[lane]
+            };
+        }
+        memory!(self, vector, number)
+    }
+
+    /// Puts one among several.
+    pub(crate) fn put_lane(&mut self, lane: usize, history: &History) {
+        let mut all = *self;
+        macro_rules! put {
+            ($($field:ident)*) => {
+                $(all.$field.0[lane] = history.$field;)*
+            };
+        }
+        put!(stiffness normal rate peak peak_force work friction_work pushed);
+        for axis in 0..3 {
+            all.elastic[axis].0[lane] = history.elastic[axis];
+            all.tangential[axis].0[lane] = history.tangential[axis];
+        }
+        *self = all;
+    }
 }
 
 /// The memory of one contact.
@@ -120,19 +234,15 @@ pub(crate) struct Normal<R> {
     pub stiffness: R,
 }
 
-/// Where the normal force of contacts comes from.
-pub(crate) trait NormalLaw<R> {
-    /// * `displacement`, `rate`, `peak`: see [`ContactLaw`]
-    fn normal(&self, displacement: R, rate: R, peak: R) -> Normal<R>;
-}
-
-/// The law of one contact.
-pub(crate) struct Single<'a, L, const N: usize>(pub &'a L);
-
-impl<R: Real, L: ContactLaw<N>, const N: usize> NormalLaw<R> for Single<'_, L, N> {
+impl<R: Copy> Normal<R> {
+    /// The same number everywhere.
     #[inline(always)]
-    fn normal(&self, displacement: R, rate: R, peak: R) -> Normal<R> {
-        normal_of(self.0, displacement, rate, peak)
+    pub(crate) fn all(number: R) -> Self {
+        Self {
+            force: number,
+            damping: number,
+            stiffness: number,
+        }
     }
 }
 
@@ -162,23 +272,34 @@ pub(crate) struct Clock {
     pub step: f64,
 }
 
+/// Displacement, its rate and the largest so far, for which the law is asked: the rate at the
+/// end of the step is taken on from the last two half steps, so that damping has the
+/// integrator's second order.
+///
+/// * `rate`, `peak`: as the contact remembers them
+#[inline(always)]
+pub(crate) fn given<R: Real>(touch: &Touch<R>, rate: R, peak: R) -> Of<R> {
+    let now = dot(touch.velocity, touch.normal);
+    [touch.displacement, now * 1.5 - rate * 0.5, peak]
+}
+
 /// Force of a contact, one step on.
 ///
-/// The normal force is the law's, at the end of the step: its rate is taken on from the
-/// last two half steps, so that damping has the integrator's second order. It never pulls.
+/// The normal force is the law's; it never pulls.
 /// The tangential force follows Mindlin's no-slip contact by increments, k_t = ratio ·
 /// ∂F/∂d; while the contact unloads it shrinks with the stiffness, so that no energy comes
 /// of it; Coulomb's limit caps it. Rolling is resisted by a spring that yields at
 /// μ_r R* F, with the stiffness k_t R*².
 ///
+/// * `found`: what the law says of [`given`]
 /// * `rolling`: the moment against rolling on the first body a step ago, where there is one
 ///
 /// # Source
 /// Mindlin (1949), J. Appl. Mech. 16, 259; Thornton, Cummins and Cleary (2013), Powder
 /// Technol. 233, 30 (unloading); Ai et al. (2011), Powder Technol. 206, 269 (rolling, model C).
 #[inline(always)]
-pub(crate) fn react<R: Real, L: NormalLaw<R>>(
-    law: &L,
+pub(crate) fn react<R: Real>(
+    found: Normal<R>,
     surface: &Interaction,
     touch: &Touch<R>,
     clock: Clock,
@@ -194,7 +315,6 @@ pub(crate) fn react<R: Real, L: NormalLaw<R>>(
     let zero = displacement.constant(0.0);
     let now = displacement.constant(clock.time);
     let rate = dot(velocity, normal);
-    let found = law.normal(displacement, rate * 1.5 - memory.rate * 0.5, memory.peak);
     let force = found.force.max(zero);
     // Where the force ended within the step.
     let since = found.force / (found.force - memory.normal);

@@ -1,19 +1,23 @@
 //! The list of neighbours made anew, and what goes over into it.
 
 use crate::contact::Parcel;
-use crate::neighbours::{NONE, PairTable, sort_into_cells};
-use crate::pair_contacts::pair_contacts;
-use crate::pair_forces::PairForce;
+use crate::neighbours::{PairTable, sort_into_cells};
+use crate::pair_contacts::PairContacts;
 use crate::simulation::Simulation;
+use crate::store::NONE;
 use crate::vector::scaled;
 use crate::wall::Facet;
+use crate::wall_contacts::{Lifted, NearPart};
+use crate::wall_forces::WallContacts;
 use rayon::prelude::*;
 use windfall_contact::law_kind::Law;
+use windfall_numerics::real::Lanes;
 
 impl Simulation {
     /// A new list of neighbours; contacts go over into it.
     pub(crate) fn rebuild(&mut self) {
         self.rebuilds += 1;
+        self.lift();
         let (cells, order) = sort_into_cells(&mut self.bodies, self.skin);
         let mut place = vec![NONE; order.len()];
         for (new, &old) in order.iter().enumerate() {
@@ -37,7 +41,7 @@ impl Simulation {
             .map(|parts| {
                 let parts = parts.iter();
                 parts
-                    .map(|(own, _)| pair_contacts(&self.surfaces[*own].law))
+                    .map(|(own, _)| PairContacts::new(&self.surfaces[*own].law))
                     .collect()
             })
             .collect();
@@ -56,25 +60,26 @@ impl Simulation {
         // In the order of the list, in which they are worked through.
         carried.sort_unstable_by_key(|(entry, ..)| *entry);
         for (entry, law, parcel) in carried {
-            let block = self.table.block_of(self.table.first[entry] as usize);
+            let pair = [self.table.first[entry], self.table.second[entry]];
+            let block = self.table.block_of(pair[0] as usize);
             let parts = &self.table.blocks[block];
             if let Some(part) = parts.iter().position(|(_, range)| range.contains(&entry)) {
                 let own = (entry - parts[part].1.start) as u32;
-                self.table.slot[entry] = self.contacts[block][part].adopt(own, &law, parcel);
+                self.contacts[block][part].adopt(own, pair, &law, parcel);
             }
         }
-        self.forces = vec![PairForce::default(); self.table.first.len()];
+        for (parts, contacts) in self.table.blocks.iter().zip(&mut self.contacts) {
+            for ((_, range), contacts) in parts.iter().zip(contacts) {
+                let (first, second) = (&self.table.first, &self.table.second);
+                contacts.wait(&first[range.clone()], &second[range.clone()], &self.bodies);
+            }
+        }
+        self.out = vec![[0.0; 8]; self.table.outs.iter().sum()];
         self.loads = vec![[0.0; 8]; self.bodies.len()];
-        let rolls = self.surfaces.iter().any(|own| own.rolling > 0.0);
-        self.rolling = vec![[0.0; 3]; if rolls { self.table.first.len() } else { 0 }];
-        self.listed = self
-            .bodies
-            .place
-            .iter()
-            .map(|own| [own[0], own[1], own[2]])
-            .collect();
+        self.listed = self.bodies.place.iter().map(|own| Lanes(*own)).collect();
         (self.moved, self.wall_way) = (0.0, 0.0);
         self.find_near();
+        self.settle_walls();
     }
 
     /// A contact of the old list as one of the new.
@@ -99,16 +104,97 @@ impl Simulation {
             .map(|entry| (entry, law, parcel))
     }
 
+    /// Takes contacts with walls out of their stores.
+    pub(crate) fn lift(&mut self) {
+        let mut lifted = Vec::new();
+        for (body, part, stores) in self.touched_parts() {
+            let store = &stores[self.interaction_with(body, part.facet)];
+            let (law, parcel, force) = store.at(part.slot);
+            let own = Lifted {
+                facet: part.facet,
+                law,
+                parcel,
+                meeting: store.meeting(part.slot),
+                force,
+            };
+            lifted.push((body, own));
+        }
+        self.near.clear();
+        self.near_start = vec![0; self.bodies.len() + 1];
+        for (body, own) in lifted {
+            self.bodies.lifted[body].push(own);
+        }
+    }
+
+    /// Number of the interaction of a body and a part of a wall.
+    fn interaction_with(&self, body: usize, facet: u32) -> usize {
+        let wall = self.walls.facets[facet as usize].0 as usize;
+        let material = self.bodies.material[body] as usize;
+        self.numbers[material * self.scene.materials.len() + self.scene.walls[wall].material]
+    }
+
+    /// Parts of walls that bodies touch, with the stores of the contacts.
+    fn touched_parts(&self) -> impl Iterator<Item = (usize, NearPart, &[WallContacts])> + '_ {
+        let bodies = self.near_start.windows(2).enumerate();
+        bodies.flat_map(move |(body, range)| {
+            let own = &self.near[range[0] as usize..range[1] as usize];
+            let touched = own.iter().filter(|part| part.slot != NONE);
+            touched.map(move |part| {
+                let block = self.table.block_of(body);
+                (body, *part, &self.wall_contacts[block][..])
+            })
+        })
+    }
+
+    /// Bodies that touch walls, which, and what the contacts remember.
+    pub(crate) fn touched_walls(&self) -> impl Iterator<Item = (usize, u32, Parcel)> + '_ {
+        self.touched_parts().map(|(body, part, stores)| {
+            let store = &stores[self.interaction_with(body, part.facet)];
+            let wall = self.walls.facets[part.facet as usize].0;
+            (body, wall, store.at(part.slot).1)
+        })
+    }
+
+    /// Puts contacts with walls into stores of the new blocks.
+    fn settle_walls(&mut self) {
+        let surfaces = &self.surfaces;
+        let stores = || {
+            surfaces
+                .iter()
+                .map(|own| WallContacts::new(&own.law))
+                .collect()
+        };
+        self.wall_contacts = self.table.bounds.iter().map(|_| stores()).collect();
+        for (block, bounds) in self.table.bounds.iter().enumerate() {
+            let first = self.near_start[bounds.start];
+            for body in bounds.clone() {
+                for own in std::mem::take(&mut self.bodies.lifted[body]) {
+                    let range = self.near_start[body] as usize..self.near_start[body + 1] as usize;
+                    let known = self.near[range.clone()]
+                        .iter()
+                        .position(|part| part.facet == own.facet);
+                    if let Some(place) = known {
+                        let place = range.start + place;
+                        let interaction = self.interaction_with(body, own.facet);
+                        let store = &mut self.wall_contacts[block][interaction];
+                        let holder = [(body - bounds.start) as u32, place as u32 - first];
+                        let slot = store.adopt(holder, &own.law, own.parcel, own.force);
+                        store.aim(slot, own.meeting);
+                        self.near[place].slot = slot;
+                    }
+                }
+            }
+        }
+    }
+
     /// Parts of walls near each body.
     pub(crate) fn find_near(&mut self) {
         let step = self.scene.time_step;
         self.walls.move_to(&self.scene.walls, self.time(), step);
         let (walls, skin) = (&self.walls, self.skin);
-        let near: Vec<Vec<u32>> = self
-            .bodies
-            .place
-            .par_iter()
-            .map(|&[x, y, z, radius]| {
+        let places = self.bodies.place.par_iter().zip(&self.bodies.lifted);
+        let near: Vec<Vec<u32>> = places
+            .map(|(&[x, y, z, radius], lifted)| {
                 let facets = 0..walls.facets.len() as u32;
                 let reach = radius + 0.5 * skin;
                 facets
@@ -118,6 +204,7 @@ impl Simulation {
                         let endless = matches!(part, Facet::Plane { .. });
                         endless && walls.placed[*wall as usize].is_some()
                             || walls.closest(facet, [x, y, z]).distance < reach
+                            || lifted.iter().any(|own| own.facet == facet)
                     })
                     .collect()
             })
@@ -125,7 +212,9 @@ impl Simulation {
         self.near_start = vec![0];
         self.near = Vec::new();
         for own in near {
-            self.near.extend(own);
+            let slot = NONE;
+            let parts = own.into_iter().map(|facet| NearPart { facet, slot });
+            self.near.extend(parts);
             self.near_start.push(self.near.len() as u32);
         }
     }

@@ -4,15 +4,17 @@ use crate::contact::{Moment, Outcome, event, event_of_pair};
 use crate::energy::{Account, Energy};
 use crate::error::Error;
 use crate::event::{Event, Partner};
-use crate::gather::{Gather, Sums};
+use crate::gather::{BlockBodies, Gather, Sums};
 use crate::interaction::Interaction;
+use crate::law_column::Four;
 use crate::neighbours::{Bodies, PairTable};
 use crate::pair_contacts::{PairContacts, Part};
-use crate::pair_forces::PairForce;
 use crate::react::Clock;
 use crate::scene::Scene;
+use crate::store::Load;
 use crate::vector::{Rotation, Vector};
-use crate::wall_contacts::WallState;
+use crate::wall_contacts::{NearPart, WallState};
+use crate::wall_forces::WallContacts;
 use rayon::prelude::*;
 
 /// A scene that runs.
@@ -26,17 +28,19 @@ pub struct Simulation {
     pub(crate) bodies: Bodies,
     pub(crate) table: PairTable,
     /// Contacts of each block, in the order of its parts.
-    pub(crate) contacts: Vec<Vec<Box<dyn PairContacts>>>,
-    pub(crate) forces: Vec<PairForce>,
-    /// Force and moment of the pairs of its block on each body.
-    pub(crate) loads: Vec<[f64; 8]>,
-    pub(crate) rolling: Vec<Vector>,
+    pub(crate) contacts: Vec<Vec<PairContacts>>,
+    /// Of pairs of two blocks on the second body.
+    pub(crate) out: Vec<Load>,
+    /// Of the pairs of its block on each body, and in the end all.
+    pub(crate) loads: Vec<Load>,
     pub(crate) walls: WallState,
+    /// Contacts of the bodies of each block with walls, by interaction.
+    pub(crate) wall_contacts: Vec<Vec<WallContacts>>,
     /// Parts of walls near each body, and where those of each begin.
-    pub(crate) near: Vec<u32>,
+    pub(crate) near: Vec<NearPart>,
     pub(crate) near_start: Vec<u32>,
     /// Places when the list was made; m.
-    pub(crate) listed: Vec<Vector>,
+    pub(crate) listed: Vec<Four>,
     /// Largest way since then, of bodies and of walls; m.
     pub(crate) moved: f64,
     pub(crate) wall_way: f64,
@@ -124,9 +128,9 @@ impl Simulation {
             bodies: Bodies::default(),
             table: PairTable::default(),
             contacts: Vec::new(),
-            forces: Vec::new(),
+            out: Vec::new(),
             loads: Vec::new(),
-            rolling: Vec::new(),
+            wall_contacts: Vec::new(),
             near: Vec::new(),
             near_start: vec![0],
             listed: Vec::new(),
@@ -234,13 +238,16 @@ impl Simulation {
                 }
             }
         }
-        for (body, own) in self.bodies.walls.iter().enumerate() {
-            for contact in own {
-                let partner = Partner::Wall(contact.wall);
-                let fruit = self.bodies.fruit[body];
-                let (history, encounter) = (&contact.history, &contact.encounter);
-                events.push(event(history, encounter, fruit, partner, true));
-            }
+        for (body, wall, parcel) in self.touched_walls() {
+            let fruit = self.bodies.fruit[body];
+            let partner = Partner::Wall(wall);
+            events.push(event(
+                &parcel.history,
+                &parcel.encounter,
+                fruit,
+                partner,
+                true,
+            ));
         }
         events.sort_by_key(|event| (event.fruit, event.partner));
         events
@@ -292,45 +299,46 @@ impl Simulation {
                 step: self.scene.time_step,
             },
         };
-        let table = &mut self.table;
+        let table = &self.table;
         let (mut first, mut second) = (&table.first[..], &table.second[..]);
-        let (mut slot, mut out) = (&mut table.slot[..], &mut self.forces[..]);
-        let mut rolling = &mut self.rolling[..];
-        let rolls = !rolling.is_empty();
+        let mut out = &table.out[..];
         let mut loads = &mut self.loads[..];
         let mut tasks = Vec::with_capacity(table.blocks.len());
         let blocks = table.blocks.iter().zip(&table.bounds);
-        for ((parts, bounds), contacts) in blocks.zip(&mut self.contacts) {
+        let mut outs = &mut self.out[..];
+        let mut out_base = 0;
+        for (((parts, bounds), contacts), count) in blocks.zip(&mut self.contacts).zip(&table.outs)
+        {
             let mut own = Vec::with_capacity(parts.len());
             for (interaction, range) in parts {
                 let length = range.len();
                 let entries = (
                     take(&mut first, length),
                     take(&mut second, length),
-                    take_mut(&mut slot, length),
-                    take_mut(&mut out, length),
-                    take_mut(&mut rolling, if rolls { length } else { 0 }),
+                    take(&mut out, length),
                 );
                 own.push((*interaction, entries));
             }
             let loads = take_mut(&mut loads, bounds.len());
-            tasks.push((own, bounds.start, loads, contacts));
+            let outs = (out_base, take_mut(&mut outs, *count));
+            out_base += *count as u32;
+            tasks.push((own, (bounds.start, loads), outs, contacts));
         }
-        let surfaces = &self.surfaces;
-        let work = |(parts, base, loads, contacts): BlockTask| {
+        let (surfaces, moved) = (&self.surfaces, self.moved);
+        let work = |(parts, (base, loads), (out_base, outs), contacts): BlockTask| {
             let mut outcome = Outcome::default();
             loads.fill([0.0; 8]);
-            for ((interaction, entries), contacts) in parts.into_iter().zip(contacts) {
-                let (first, second, slot, out, rolling) = entries;
+            for ((interaction, (first, second, out)), contacts) in parts.into_iter().zip(contacts) {
                 let part = Part {
                     bodies,
                     first,
                     second,
-                    slot,
+                    out,
                     loads: &mut *loads,
                     base,
-                    out,
-                    rolling,
+                    outs: &mut *outs,
+                    out_base,
+                    moved,
                 };
                 contacts.advance(part, &surfaces[interaction], &now, &mut outcome);
             }
@@ -364,39 +372,33 @@ impl Simulation {
         };
         let gather = Gather {
             table: &self.table,
-            loads: &self.loads,
-            forces: &self.forces,
-            rolling: &self.rolling,
+            out: &self.out,
             scene: &self.scene,
             surfaces: &self.surfaces,
             numbers: &self.numbers,
             walls: &self.walls,
-            near: (&self.near, &self.near_start),
+            near_start: &self.near_start,
             bodies: (&self.bodies.fruit, &self.bodies.material),
             listed: &self.listed,
             with_energy,
         };
         let (mut places, mut motions) = (&mut self.bodies.place[..], &mut self.bodies.motion[..]);
-        let (mut turns, mut contacts) = (&mut self.bodies.turn[..], &mut self.bodies.walls[..]);
-        let bounds = self.table.bounds.iter();
-        let blocks: Vec<_> = bounds
-            .map(|own| {
-                let length = own.len();
-                let place = take_mut(&mut places, length);
-                let motion = take_mut(&mut motions, length);
-                let turn = take_mut(&mut turns, length);
-                (
-                    own.start,
-                    place,
-                    motion,
-                    turn,
-                    take_mut(&mut contacts, length),
-                )
+        let (mut turns, mut near) = (&mut self.bodies.turn[..], &mut self.near[..]);
+        let starts = &self.near_start;
+        let mut loads = &mut self.loads[..];
+        let bounds = self.table.bounds.iter().zip(&mut self.wall_contacts);
+        let blocks: Vec<BlockBodies> = bounds
+            .map(|(own, wall_contacts)| BlockBodies {
+                start: own.start,
+                place: take_mut(&mut places, own.len()),
+                motion: take_mut(&mut motions, own.len()),
+                turn: take_mut(&mut turns, own.len()),
+                loads: take_mut(&mut loads, own.len()),
+                near: take_mut(&mut near, (starts[own.end] - starts[own.start]) as usize),
+                wall_contacts,
             })
             .collect();
-        let work = |(start, place, motion, turn, walls)| {
-            gather.block(start, place, motion, turn, walls, &now)
-        };
+        let work = |block| gather.block(block, &now);
         let found: Vec<(Outcome, Sums)> = match blocks.len() < FEW_BLOCKS {
             true => blocks.into_iter().map(work).collect(),
             false => blocks.into_par_iter().map(work).collect(),
@@ -433,9 +435,9 @@ impl Simulation {
                 energy.in_friction += parcel.history.friction_work;
             }
         }
-        for contact in self.bodies.walls.iter().flatten() {
-            energy.in_contacts += contact.history.work;
-            energy.in_friction += contact.history.friction_work;
+        for (_, _, parcel) in self.touched_walls() {
+            energy.in_contacts += parcel.history.work;
+            energy.in_friction += parcel.history.friction_work;
         }
         energy.lost_in_contacts = self.account.normal;
         energy.lost_by_friction = self.account.friction;
@@ -445,23 +447,16 @@ impl Simulation {
     }
 }
 
-/// Entries of a block and interaction: first and second bodies, contacts, forces, moments
-/// against rolling.
-type Entries<'a> = (
-    &'a [u32],
-    &'a [u32],
-    &'a mut [u32],
-    &'a mut [PairForce],
-    &'a mut [Vector],
-);
+/// Entries of a block and interaction: first and second bodies, numbers of those of two blocks.
+type Entries<'a> = (&'a [u32], &'a [u32], &'a [u32]);
 
-/// What is to be done of a block: its entries by interaction, its first body, what its bodies
-/// get, and its contacts.
+/// What is to be done of a block: its entries by interaction, its first body and what its bodies
+/// get, the first of its entries of two blocks and what second bodies get, and its contacts.
 type BlockTask<'a> = (
     Vec<(usize, Entries<'a>)>,
-    usize,
-    &'a mut [[f64; 8]],
-    &'a mut Vec<Box<dyn PairContacts>>,
+    (usize, &'a mut [Load]),
+    (u32, &'a mut [Load]),
+    &'a mut Vec<PairContacts>,
 );
 
 /// Takes the first elements off a slice.

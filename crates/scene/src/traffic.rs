@@ -2,9 +2,9 @@
 
 use crate::error::{Error, fruit_name};
 use crate::event::{Event, Partner};
-use crate::neighbours::NONE;
 use crate::scene::{Fruit, Sink};
 use crate::simulation::{Leaving, Simulation};
+use crate::store::NONE;
 use crate::vector::{Vector, dot, length, plus_scaled, subtract};
 
 /// Overlap over the radius that fruit may have at the beginning; 1.
@@ -54,7 +54,7 @@ impl Simulation {
             self.bodies.turn.push(Fruit::ORIENTATION);
             self.bodies.fruit.push(number);
             self.bodies.material.push(fruit.material as u32);
-            self.bodies.walls.push(Vec::new());
+            self.bodies.lifted.push(Vec::new());
             self.released += 1;
             came = true;
         }
@@ -170,6 +170,7 @@ impl Simulation {
             self.account.friction += event.friction_energy;
             self.events.push(event);
         }
+        self.lift();
         let mut table = std::mem::take(&mut self.table);
         let old: Vec<(u32, u32)> = table
             .first
@@ -188,7 +189,7 @@ impl Simulation {
         retain(&mut bodies.turn, kept);
         retain(&mut bodies.fruit, kept);
         retain(&mut bodies.material, kept);
-        retain(&mut bodies.walls, kept);
+        retain(&mut bodies.lifted, kept);
     }
 }
 

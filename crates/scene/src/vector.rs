@@ -1,5 +1,7 @@
 //! Vectors of three numbers.
 
+use windfall_numerics::real::Real;
+
 /// A vector in space.
 pub type Vector = [f64; 3];
 
@@ -85,15 +87,21 @@ pub fn turned_back(q: Rotation, a: Vector) -> Vector {
     turned([q[0], -q[1], -q[2], -q[3]], a)
 }
 
-/// The rotation followed by a turn with `spin` (rad/s) over a time; of length 1 again.
+/// The rotation followed by a turn with `spin` (rad/s) over a time; of length 1 again. For
+/// one rotation or several side by side.
 #[inline(always)]
 #[must_use]
-pub fn turned_on(q: Rotation, spin: Vector, time: f64) -> Rotation {
-    let half = scaled(spin, 0.5 * time);
+pub fn turned_on<R: Real>(q: [R; 4], spin: [R; 3], time: f64) -> [R; 4] {
+    let half = [
+        spin[0] * (0.5 * time),
+        spin[1] * (0.5 * time),
+        spin[2] * (0.5 * time),
+    ];
     // Of the exponential of the half angle to third order: turns within a step are small.
-    let square = dot(half, half);
-    let (c, s) = (1.0 - square * (0.5 - square / 24.0), 1.0 - square / 6.0);
-    let [x, y, z] = scaled(half, s);
+    let square = half[0] * half[0] + half[1] * half[1] + half[2] * half[2];
+    let c = square * (square * (1.0 / 24.0) + -0.5) + 1.0;
+    let s = square * (-1.0 / 6.0) + 1.0;
+    let [x, y, z] = [half[0] * s, half[1] * s, half[2] * s];
     let next = [
         c * q[0] - x * q[1] - y * q[2] - z * q[3],
         c * q[1] + x * q[0] + y * q[3] - z * q[2],
@@ -101,9 +109,14 @@ pub fn turned_on(q: Rotation, spin: Vector, time: f64) -> Rotation {
         c * q[3] + z * q[0] + x * q[2] - y * q[1],
     ];
     // One step of Newton's method to length 1.
-    let size = next.iter().map(|each| each * each).sum::<f64>();
-    let correction = 1.5 - 0.5 * size;
-    next.map(|each| each * correction)
+    let size = next[0] * next[0] + next[1] * next[1] + next[2] * next[2] + next[3] * next[3];
+    let correction = size * -0.5 + 1.5;
+    [
+        next[0] * correction,
+        next[1] * correction,
+        next[2] * correction,
+        next[3] * correction,
+    ]
 }
 
 /// The turn about an axis of length 1 by an angle; rad.

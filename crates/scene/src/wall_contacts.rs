@@ -2,27 +2,34 @@
 
 use crate::contact::{Moment, Outcome, Parcel, encounter, event, parted, too_deep};
 use crate::error::Error;
-use crate::event::{Encounter, Partner};
+use crate::event::Partner;
 use crate::interaction::Interaction;
-use crate::react::{History, Single, Touch, cross, dot, react, surface_velocity};
-use crate::vector::{Rotation, Vector, add, length, plus_scaled, scaled, subtract, turned_back};
+use crate::react::{History, Touch, dot, surface_velocity};
+use crate::store::NONE;
+use crate::vector::{Rotation, Vector, length, plus_scaled, scaled, subtract, turned_back};
 use crate::wall::{Closest, Facet, Placed, Wall};
+use crate::wall_forces::{WallContacts, WallMeeting};
+use std::ops::Range;
 use windfall_contact::law_kind::Law;
-use windfall_contact::with_law;
 
-/// A contact with a wall.
-#[derive(Clone, Debug)]
-pub(crate) struct WallContact {
-    pub wall: u32,
+/// A part of a wall that a body may touch.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct NearPart {
+    pub facet: u32,
+    /// Number of the contact in its store, or [`NONE`].
+    pub slot: u32,
+}
+
+/// A contact with a wall while the list is made anew.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Lifted {
     pub facet: u32,
     pub law: Law,
-    pub normal: Vector,
+    pub parcel: Parcel,
+    /// How they met last.
+    pub meeting: WallMeeting,
     /// Force on the fruit a step ago; N.
     pub force: Vector,
-    pub history: History,
-    /// Moment against rolling on the fruit; N m.
-    pub rolling: Vector,
-    pub encounter: Encounter,
 }
 
 /// The walls of a scene in parts, where they are now.
@@ -97,40 +104,42 @@ pub(crate) struct Body {
     pub turn: Rotation,
 }
 
-/// What walls do to a fruit in a step.
-#[derive(Clone, Copy, Debug, Default)]
-pub(crate) struct Pushed {
-    /// N.
-    pub force: Vector,
-    /// N m.
-    pub moment: Vector,
-    /// Work that moving walls did; J.
-    pub work: f64,
+/// What a fruit's contacts with walls need of the rest of the scene.
+pub(crate) struct Around<'a, S> {
+    pub walls: &'a WallState,
+    /// Which of the parts near bodies of the block are near this one.
+    pub near: Range<usize>,
+    /// Number of the interaction with a wall, and the interaction.
+    pub surface: S,
+    pub now: &'a Moment<'a>,
 }
 
-/// Forces of walls on a body, one step on.
+/// Finds where a fruit touches walls, begins and ends contacts, and puts into their stores
+/// where each touches now.
 ///
-/// * `near`: parts of walls that it may touch
-/// * `hits`: room for those that it does
-pub(crate) fn push<'a>(
-    own: &mut Vec<WallContact>,
+/// * `near`: parts of walls near the bodies of the block
+/// * `owner`: the fruit among these
+/// * `hits`: room for what it touches
+pub(crate) fn aim<'a>(
+    near: &mut [NearPart],
+    owner: u32,
     body: &Body,
-    (walls, near): (&WallState, &[u32]),
-    surface: impl Fn(u32) -> &'a Interaction,
-    now: &Moment,
+    around: &Around<impl Fn(u32) -> (usize, &'a Interaction)>,
+    stores: &mut [WallContacts],
     hits: &mut Vec<(u32, Closest)>,
     outcome: &mut Outcome,
-) -> Pushed {
+) {
+    let (walls, now) = (around.walls, around.now);
     let &Body { centre, radius, .. } = body;
-    find_hits(walls, near, centre, radius, hits);
-    let mut pushed = Pushed::default();
-    if hits.is_empty() && own.is_empty() {
-        return pushed;
+    find_hits(walls, &near[around.near.clone()], centre, radius, hits);
+    let own = around.near.clone();
+    if hits.is_empty() && near[own].iter().all(|part| part.slot == NONE) {
+        return;
     }
-    follow(own, walls, hits, now, body, outcome);
+    follow(near, around, hits, body, stores, outcome);
     for &(facet, closest) in hits.iter() {
         let (wall, part) = &walls.facets[facet as usize];
-        let surface = surface(*wall);
+        let (interaction, surface) = (around.surface)(*wall);
         let displacement = radius - closest.distance;
         let arm = closest.distance;
         let wall_velocity = walls.velocity(*wall, closest.point, closest.normal);
@@ -142,32 +151,27 @@ pub(crate) fn push<'a>(
             spin: body.spin,
             radius: effective_radius(part, radius, centre),
         };
-        let known = own.iter().position(|contact| contact.facet == facet);
-        let place = match known {
-            Some(place) => place,
-            None => match begin((*wall, facet), surface, &touch, closest.point, now, body) {
-                Ok(contact) => {
-                    own.push(contact);
-                    own.len() - 1
+        let Some(place) = around
+            .near
+            .clone()
+            .find(|place| near[*place].facet == facet)
+        else {
+            continue;
+        };
+        if near[place].slot == NONE {
+            match begin(surface, &touch, closest.point, now, body) {
+                Ok((law, parcel)) => {
+                    let holder = [owner, place as u32];
+                    near[place].slot = stores[interaction].adopt(holder, &law, parcel, [0.0; 3]);
                 }
                 Err(problem) => {
                     outcome.problem.get_or_insert(problem);
                     continue;
                 }
-            },
-        };
-        let contact = &mut own[place];
-        contact.normal = closest.normal;
-        let rolling = (surface.rolling > 0.0).then_some(&mut contact.rolling);
-        let reaction = with_law!(&contact.law, law => {
-            react(&Single(law), surface, &touch, now.clock, &mut contact.history, rolling)
-        });
-        let mean = scaled(add(contact.force, reaction.force), 0.5);
-        pushed.work += dot(mean, wall_velocity) * now.clock.step;
-        contact.force = reaction.force;
-        pushed.force = add(pushed.force, reaction.force);
-        let moment = scaled(cross(closest.normal, reaction.force), arm);
-        pushed.moment = add(add(pushed.moment, moment), reaction.rolling);
+            }
+        }
+        let meeting = WallMeeting::new(&touch, arm, wall_velocity);
+        stores[interaction].aim(near[place].slot, meeting);
         // Also where the distance is no number.
         let shallow = displacement <= DEEPEST * radius;
         if !shallow {
@@ -182,19 +186,18 @@ pub(crate) fn push<'a>(
             });
         }
     }
-    pushed
 }
 
 /// Parts of walls that overlap a fruit. An edge counts only where no face beside it does.
 fn find_hits(
     walls: &WallState,
-    near: &[u32],
+    near: &[NearPart],
     centre: Vector,
     radius: f64,
     hits: &mut Vec<(u32, Closest)>,
 ) {
     hits.clear();
-    for &facet in near {
+    for &NearPart { facet, .. } in near {
         let closest = walls.closest(facet, centre);
         let apart = closest.distance >= radius;
         if !apart {
@@ -248,73 +251,70 @@ const COINCIDENT: f64 = 1e-6;
 const SAME_CONTACT: f64 = 0.9;
 
 /// Ends contacts that are over, and hands on those that go over to another part of a wall.
-fn follow(
-    own: &mut Vec<WallContact>,
-    walls: &WallState,
+fn follow<'a>(
+    near: &mut [NearPart],
+    around: &Around<impl Fn(u32) -> (usize, &'a Interaction)>,
     hits: &[(u32, Closest)],
-    now: &Moment,
     body: &Body,
+    stores: &mut [WallContacts],
     outcome: &mut Outcome,
 ) {
-    let mut place = 0;
-    while place < own.len() {
-        let contact = &own[place];
-        if hits.iter().any(|(facet, _)| *facet == contact.facet) {
-            place += 1;
+    let walls = around.walls;
+    for place in around.near.clone() {
+        let NearPart { facet, slot } = near[place];
+        if slot == NONE || hits.iter().any(|(hit, _)| *hit == facet) {
             continue;
         }
-        let next = hits.iter().find(|(facet, closest)| {
-            walls.facets[*facet as usize].0 == contact.wall
-                && dot(closest.normal, contact.normal) > SAME_CONTACT
-                && own.iter().all(|other| other.facet != *facet)
+        let wall = walls.facets[facet as usize].0;
+        let interaction = (around.surface)(wall).0;
+        let normal = stores[interaction].meeting(slot).normal();
+        let next = hits.iter().find_map(|(hit, closest)| {
+            let goes_on =
+                walls.facets[*hit as usize].0 == wall && dot(closest.normal, normal) > SAME_CONTACT;
+            let mut others = around.near.clone();
+            let other = others.find(|other| near[*other].facet == *hit)?;
+            (goes_on && near[other].slot == NONE).then_some(other)
         });
-        if let Some((facet, _)) = next {
-            own[place].facet = *facet;
-            place += 1;
+        near[place].slot = NONE;
+        if let Some(next) = next {
+            near[next].slot = slot;
+            stores[interaction].hold(slot, next as u32);
             continue;
         }
-        let contact = own.remove(place);
-        let gap = walls.closest(contact.facet, body.centre).distance - body.radius;
-        let parcel = Parcel {
-            scale: 1.0,
-            history: contact.history,
-            rolling: contact.rolling,
-            encounter: contact.encounter,
-        };
-        let parcel = parted(parcel, gap.max(0.0), now.clock);
-        let partner = Partner::Wall(contact.wall);
+        let (_, parcel, _) = stores[interaction].at(slot);
+        if let Some(moved) = stores[interaction].remove(slot) {
+            near[moved as usize].slot = slot;
+        }
+        let gap = walls.closest(facet, body.centre).distance - body.radius;
+        let parcel = parted(parcel, gap.max(0.0), around.now.clock);
         outcome.events.push(event(
             &parcel.history,
             &parcel.encounter,
             body.fruit,
-            partner,
+            Partner::Wall(wall),
             false,
         ));
     }
 }
 
 fn begin(
-    (wall, facet): (u32, u32),
     surface: &Interaction,
     touch: &Touch<f64>,
     point: Vector,
     now: &Moment,
     body: &Body,
-) -> Result<WallContact, Error> {
+) -> Result<(Law, Parcel), Error> {
     let draws = &now.fruit[body.fruit as usize].draws;
     let mut encounter = encounter(touch.normal, touch.displacement, touch.velocity, now.clock);
     encounter.place = point;
     encounter.spot = turned_back(body.turn, touch.normal);
-    Ok(WallContact {
-        wall,
-        facet,
-        law: surface.law_of(touch.radius, draws, None)?,
-        normal: touch.normal,
-        force: [0.0; 3],
+    let parcel = Parcel {
+        scale: surface.scale(touch.radius),
         history: History::at(now.clock.time, encounter.normal_speed),
         rolling: [0.0; 3],
         encounter,
-    })
+    };
+    Ok((surface.law_of(touch.radius, draws, None)?, parcel))
 }
 
 /// R* of a fruit on a part of a wall; m. Edges count as flat.

@@ -1,0 +1,227 @@
+//! What contacts remember, four side by side.
+
+use crate::contact::Parcel;
+use crate::event::Encounter;
+use crate::interaction::Interaction;
+use crate::law_column::{Four, Given, LawColumn, law_column};
+use crate::react::{Clock, History, Memory, Normal, Of, Reaction, Touch, cross, given, react};
+use crate::vector::Vector;
+use windfall_contact::law_kind::Law;
+use windfall_numerics::real::Lanes;
+use windfall_numerics::real_vector::{FourNumbers, LANES};
+
+/// No contact, body or entry.
+pub(crate) const NONE: u32 = u32::MAX;
+
+/// Force (N) and moment (N m) on a body: 0 to 2 and 4 to 6.
+pub(crate) type Load = [f64; 8];
+
+/// Groups of four that are worked through at a time.
+pub(crate) const CHUNK: usize = 8;
+
+/// What every step needs of four contacts.
+#[derive(Clone, Copy)]
+struct Quad {
+    history: Memory<Four>,
+    /// What radii multiply the median's force by; 1.
+    scale: Four,
+}
+
+/// Contacts under one law; what is needed in every step stands apart from the rest.
+pub(crate) struct Store {
+    quads: Vec<Quad>,
+    /// Moments against rolling on the first bodies; N m.
+    rolling: Vec<Of<Four>>,
+    laws: Box<dyn LawColumn>,
+    encounters: Vec<Encounter>,
+}
+
+impl Store {
+    /// No contacts yet under the law of an interaction.
+    pub(crate) fn new(law: &Law) -> Self {
+        Self {
+            quads: Vec::new(),
+            rolling: Vec::new(),
+            laws: law_column(law),
+            encounters: Vec::new(),
+        }
+    }
+
+    pub(crate) fn len(&self) -> usize {
+        self.encounters.len()
+    }
+
+    /// Takes over a contact; its number. The law of an interaction keeps its kind.
+    pub(crate) fn adopt(&mut self, law: &Law, parcel: Parcel) -> Option<u32> {
+        if !self.laws.push(law) {
+            return None;
+        }
+        let own = self.len();
+        if own.is_multiple_of(LANES) {
+            self.quads.push(Quad {
+                history: Memory::ZERO,
+                scale: Lanes::ZERO,
+            });
+            self.rolling.push([Lanes::ZERO; 3]);
+        }
+        self.encounters.push(parcel.encounter);
+        self.put(own, &parcel.history, parcel.rolling, parcel.scale);
+        Some(own as u32)
+    }
+
+    /// Law and memory of a contact.
+    pub(crate) fn at(&self, contact: usize) -> (Law, Parcel) {
+        (self.laws.at(contact), self.parcel(contact))
+    }
+
+    pub(crate) fn parcel(&self, contact: usize) -> Parcel {
+        let (quad, lane) = (&self.quads[contact / LANES], contact % LANES);
+        Parcel {
+            scale: quad.scale.0[lane],
+            history: quad.history.lane(lane),
+            rolling: self.rolling[contact / LANES].map(|axis| axis.0[lane]),
+            encounter: self.encounters[contact],
+        }
+    }
+
+    /// Takes out a contact; the last one takes its number.
+    pub(crate) fn remove(&mut self, contact: usize) {
+        let last = self.len() - 1;
+        let moved = self.parcel(last);
+        self.put(contact, &moved.history, moved.rolling, moved.scale);
+        self.laws.swap_remove(contact);
+        self.encounters.swap_remove(contact);
+        if last.is_multiple_of(LANES) {
+            self.quads.pop();
+            self.rolling.pop();
+        }
+    }
+
+    fn put(&mut self, contact: usize, history: &History, rolling: Vector, scale: f64) {
+        let (quad, lane) = (&mut self.quads[contact / LANES], contact % LANES);
+        quad.history.put_lane(lane, history);
+        for (own, value) in self.rolling[contact / LANES].iter_mut().zip(rolling) {
+            own.0[lane] = value;
+        }
+        quad.scale.0[lane] = scale;
+    }
+
+    /// What a group of four is before a step.
+    pub(crate) fn before(&self, group: usize) -> Before {
+        Before {
+            quad: self.quads[group],
+            rolling: self.rolling[group],
+        }
+    }
+
+    /// Puts back what contacts of a group were before a step.
+    pub(crate) fn restore(&mut self, group: usize, lanes: [bool; LANES], before: &Before) {
+        for (lane, back) in lanes.into_iter().enumerate() {
+            if back {
+                let history = before.quad.history.lane(lane);
+                self.quads[group].history.put_lane(lane, &history);
+                for axis in 0..3 {
+                    self.rolling[group][axis].0[lane] = before.rolling[axis].0[lane];
+                }
+            }
+        }
+    }
+
+    /// What the law is asked for a group of four.
+    #[inline(always)]
+    pub(crate) fn given<R: FourNumbers>(&self, group: usize, touch: &Touch<R>, zero: R) -> Given {
+        let history = &self.quads[group].history;
+        let (rate, peak) = (zero.with_plain(history.rate), zero.with_plain(history.peak));
+        zero.each_plain(given(touch, rate, peak))
+    }
+
+    /// What the laws of some groups say.
+    pub(crate) fn normal(
+        &self,
+        surface: &Interaction,
+        first: usize,
+        given: &[Given],
+        found: &mut [Normal<Four>],
+    ) {
+        let median = surface.spread.is_none().then_some(&surface.law);
+        self.laws.normal(median, first, given, found);
+    }
+
+    /// Forces of a group of four, one step on.
+    ///
+    /// * `found`: what the law says
+    #[inline(always)]
+    pub(crate) fn react<R: FourNumbers>(
+        &mut self,
+        group: usize,
+        touch: &Touch<R>,
+        found: &Normal<Four>,
+        (surface, clock): (&Interaction, Clock),
+        zero: R,
+    ) -> Reaction<R> {
+        let quad = &mut self.quads[group];
+        let mut memory = quad.history.with_plain(zero);
+        // The laws of fruit that differ have the factor within.
+        let scale = match surface.spread {
+            None => zero.with_plain(quad.scale),
+            Some(_) => zero.constant(1.0),
+        };
+        let found = Normal {
+            force: zero.with_plain(found.force) * scale,
+            damping: zero.with_plain(found.damping) * scale,
+            stiffness: zero.with_plain(found.stiffness) * scale,
+        };
+        let rolls = surface.rolling > 0.0;
+        let mut moment = match rolls {
+            true => zero.with_each_plain(self.rolling[group]),
+            false => [zero; 3],
+        };
+        let rolling = if rolls { Some(&mut moment) } else { None };
+        let reaction = react(found, surface, touch, clock, &mut memory, rolling);
+        quad.history = memory.plain();
+        if rolls {
+            self.rolling[group] = zero.each_plain(moment);
+        }
+        reaction
+    }
+}
+
+/// What a group of contacts was.
+pub(crate) struct Before {
+    quad: Quad,
+    rolling: Of<Four>,
+}
+
+/// Forces and moments of four contacts as rows: on the first body, or on the second.
+///
+/// * `arm`: from the body's centre to the contact; m
+/// * `sign`: of the force on it
+#[inline(always)]
+pub(crate) fn loads<R: FourNumbers>(
+    normal: Of<R>,
+    reaction: &Reaction<R>,
+    arm: R,
+    sign: f64,
+    zero: R,
+) -> ([Four; LANES], [Four; LANES]) {
+    let (force, twist) = (reaction.force, cross(normal, reaction.force));
+    let rolling = reaction.rolling;
+    (
+        R::rows([force[0] * sign, force[1] * sign, force[2] * sign, zero]),
+        R::rows([
+            twist[0] * arm + rolling[0] * sign,
+            twist[1] * arm + rolling[1] * sign,
+            twist[2] * arm + rolling[2] * sign,
+            zero,
+        ]),
+    )
+}
+
+/// Adds a row of forces and one of moments.
+#[inline(always)]
+pub(crate) fn add_load(to: &mut Load, force: &Four, moment: &Four) {
+    for axis in 0..LANES {
+        to[axis] += force.0[axis];
+        to[LANES + axis] += moment.0[axis];
+    }
+}
