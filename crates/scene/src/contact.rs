@@ -4,7 +4,7 @@ use crate::error::Error;
 use crate::event::{Encounter, Event, Partner};
 use crate::react::{Clock, History, dot};
 use crate::scene::Fruit;
-use crate::vector::{Vector, length, scaled, subtract};
+use crate::vector::{Rotation, Vector, length, plus_scaled, scaled, subtract, turned_back, unit};
 
 /// What every contact of a step needs to know.
 #[derive(Clone, Copy)]
@@ -67,6 +67,16 @@ pub(crate) fn encounter(
         normal_speed: rate,
         tangential_speed: length(slip),
     }
+}
+
+/// Where on its fruit a body is touched: a direction from the fruit's centre that turns with it.
+///
+/// * `offset`: of the body from the centre of its clump, if it belongs to one; m
+/// * `normal`: from the body's centre to where it is touched; length 1
+pub(crate) fn spot(turn: Rotation, offset: Option<Vector>, radius: f64, normal: Vector) -> Vector {
+    let inward = turned_back(turn, normal);
+    let from_centre = offset.and_then(|offset| unit(plus_scaled(offset, inward, radius)));
+    from_centre.unwrap_or(inward)
 }
 
 /// A contact with its last step: bodies part with a force that is there to the end.

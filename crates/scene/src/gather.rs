@@ -7,7 +7,7 @@ use crate::law_column::Four;
 use crate::neighbours::PairTable;
 use crate::react::dot as dot_of;
 use crate::scene::Scene;
-use crate::store::Load;
+use crate::store::{Load, NONE};
 use crate::vector::{Rotation, Vector, add, dot, length, scaled, turned_on};
 use crate::wall_contacts::{Around, Body, NearPart, WallState, aim};
 use crate::wall_forces::WallContacts;
@@ -16,6 +16,9 @@ use windfall_numerics::real_vector::{FourLanes, FourNumbers, LANES, with_four_la
 
 /// Way in one step over the radius above which contacts are missed; 1.
 const LONGEST_WAY: f64 = 0.2;
+
+/// Inverse mass (and inertia) of a sphere that moves with its clump.
+pub(crate) const PART_OF_CLUMP: f64 = 0.0;
 
 /// Sums over a block.
 #[derive(Clone, Copy, Debug, Default)]
@@ -42,6 +45,8 @@ pub(crate) struct Gather<'a> {
     pub near_start: &'a [u32],
     /// Numbers and materials of the bodies.
     pub bodies: (&'a [u32], &'a [u32]),
+    /// Where each is in its clump, if there are clumps: see [`Bodies`](crate::neighbours::Bodies).
+    pub clumps: (&'a [u32], &'a [Vector]),
     pub listed: &'a [Four],
     pub with_energy: bool,
 }
@@ -78,6 +83,9 @@ impl Gather<'_> {
         let step = now.clock.step;
         if let Some(air) = self.scene.air {
             for own in 0..block.loads.len() {
+                if block.motion[own][3] == PART_OF_CLUMP {
+                    continue;
+                }
                 let (m, radius) = (&block.motion[own], block.place[own][3]);
                 let velocity = [m[0], m[1], m[2]];
                 let area = std::f64::consts::PI * radius * radius;
@@ -142,6 +150,7 @@ impl Gather<'_> {
                 velocity: [m[0], m[1], m[2]],
                 spin: [m[4], m[5], m[6]],
                 turn: block.turn[own],
+                offset: (self.clumps.0[body] != NONE).then(|| self.clumps.1[body]),
             };
             let stores = &mut *block.wall_contacts;
             let near = &mut *block.near;
@@ -153,6 +162,9 @@ impl Gather<'_> {
     fn energies(&self, block: &BlockBodies, step: f64, sums: &mut Sums) {
         for (own, load) in block.loads.iter().enumerate() {
             let (m, [x, y, z, _]) = (&block.motion[own], block.place[own]);
+            if m[3] == PART_OF_CLUMP {
+                continue;
+            }
             let half = |axis: usize, by: f64| m[axis] + 0.5 * step * load[axis] * by;
             let gravity = scaled(self.scene.gravity, 0.5 * step);
             let velocity = add([0, 1, 2].map(|axis| half(axis, m[3])), gravity);

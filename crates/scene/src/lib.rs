@@ -9,6 +9,9 @@
 //! This crate knows no instrument and no file, and reads no clock.
 
 pub mod bruise;
+pub mod clump;
+mod clump_contacts;
+mod clump_motion;
 mod contact;
 pub mod energy;
 pub mod error;

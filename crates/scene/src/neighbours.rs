@@ -19,6 +19,12 @@ pub(crate) struct Bodies {
     pub fruit: Vec<u32>,
     /// Its material.
     pub material: Vec<u32>,
+    /// The clump that a sphere belongs to, by its number among the clumps, or [`NONE`].
+    pub clump: Vec<u32>,
+    /// Its number in its clump.
+    pub sphere: Vec<u32>,
+    /// Where in its clump: from the centre, in the clump's own axes; m.
+    pub offset: Vec<Vector>,
     /// Contacts with walls, while the list is made anew.
     pub lifted: Vec<Vec<Lifted>>,
 }
@@ -26,6 +32,11 @@ pub(crate) struct Bodies {
 impl Bodies {
     pub(crate) fn len(&self) -> usize {
         self.place.len()
+    }
+
+    /// Where in its clump a body is, if it belongs to one; m.
+    pub(crate) fn offset_of(&self, body: usize) -> Option<Vector> {
+        (self.clump[body] != NONE).then(|| self.offset[body])
     }
 
     /// In another order: body `order[n]` becomes body n.
@@ -38,6 +49,9 @@ impl Bodies {
         self.turn = picked(&self.turn, order);
         self.fruit = picked(&self.fruit, order);
         self.material = picked(&self.material, order);
+        self.clump = picked(&self.clump, order);
+        self.sphere = picked(&self.sphere, order);
+        self.offset = picked(&self.offset, order);
         let mut old = std::mem::take(&mut self.lifted);
         self.lifted = order
             .iter()
@@ -53,6 +67,9 @@ const TILE: usize = 8;
 /// Fewest bodies of a block, but for the last.
 const BLOCK: usize = 192;
 
+/// Pairs of first bodies of a block by interaction, and those of clumps.
+type BlockPairs = (Vec<Vec<(u32, u32)>>, Vec<[u32; 2]>);
+
 /// Pairs that may touch, ordered by blocks of first bodies, within a block by interaction.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct PairTable {
@@ -65,6 +82,8 @@ pub(crate) struct PairTable {
     /// Where the entries of each first body begin, in an order of their own.
     own_start: Vec<u32>,
     own: Vec<u32>,
+    /// Pairs of which one belongs to a clump: these are no entries.
+    pub of_clumps: Vec<[u32; 2]>,
     /// For each entry its number among those of two blocks, or [`NONE`].
     pub out: Vec<u32>,
     /// How many of them each block of first bodies has.
@@ -219,10 +238,11 @@ impl PairTable {
     ) -> Self {
         let count = bodies.len();
         let bounds = cells.blocks(count);
-        let blocks: Vec<Vec<Vec<(u32, u32)>>> = bounds
+        let blocks: Vec<BlockPairs> = bounds
             .par_iter()
             .map(|block| {
                 let mut own = vec![Vec::new(); interactions];
+                let mut of_clumps = Vec::new();
                 for first in block.clone() {
                     let a = &bodies.place[first];
                     cells.later_neighbours(first, a, |second| {
@@ -230,16 +250,24 @@ impl PairTable {
                         let reach = a[3] + b[3] + skin;
                         let (x, y, z) = (b[0] - a[0], b[1] - a[1], b[2] - a[2]);
                         if x * x + y * y + z * z < reach * reach {
+                            let clumps = (bodies.clump[first], bodies.clump[second]);
+                            if clumps != (NONE, NONE) {
+                                if clumps.0 != clumps.1 {
+                                    of_clumps.push([first as u32, second as u32]);
+                                }
+                                return;
+                            }
                             let pair = (bodies.material[first], bodies.material[second]);
                             own[interaction(pair.0, pair.1)].push((first as u32, second as u32));
                         }
                     });
                 }
-                own
+                (own, of_clumps)
             })
             .collect();
         let mut table = Self::default();
-        for block in blocks {
+        for (block, of_clumps) in blocks {
+            table.of_clumps.extend(of_clumps);
             let mut parts = Vec::new();
             for (interaction, pairs) in block.into_iter().enumerate() {
                 let start = table.first.len();

@@ -1,13 +1,13 @@
 //! Contacts of two fruit, compiled once for each law.
 
-use crate::contact::{Moment, Outcome, Parcel, encounter, event_of_pair, parted, too_deep};
+use crate::contact::{Moment, Outcome, Parcel, encounter, event_of_pair, parted, spot, too_deep};
 use crate::error::{Error, fruit_name};
 use crate::interaction::Interaction;
 use crate::neighbours::Bodies;
 use crate::pair_forces::Batch;
 use crate::react::{History, dot, surface_velocity};
 use crate::store::{Load, NONE, Store};
-use crate::vector::{length, plus_scaled, scaled, subtract, turned_back};
+use crate::vector::{length, plus_scaled, scaled, subtract};
 use windfall_contact::effective::effective_radius;
 use windfall_contact::law_kind::Law;
 use windfall_numerics::real_vector::with_four_lanes;
@@ -207,8 +207,12 @@ impl PairContacts {
         let velocity = surface_velocity(relative, arms, normal);
         let mut encounter = encounter(normal, displacement, velocity, now.clock);
         encounter.place = plus_scaled(centre(i), normal, a - 0.5 * displacement);
-        encounter.spot = turned_back(bodies.turn[i], normal);
-        encounter.other_spot = turned_back(bodies.turn[j], scaled(normal, -1.0));
+        let spot = |body: usize, normal| {
+            let radius = bodies.place[body][3];
+            spot(bodies.turn[body], bodies.offset_of(body), radius, normal)
+        };
+        encounter.spot = spot(i, normal);
+        encounter.other_spot = spot(j, scaled(normal, -1.0));
         let parcel = Parcel {
             scale: surface.scale(radius),
             history: History::at(now.clock.time, dot(velocity, normal)),

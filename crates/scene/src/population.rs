@@ -1,5 +1,6 @@
 //! Fruit as they are drawn from a population, and when and where they come.
 
+use crate::clump::Clump;
 use crate::error::Error;
 use crate::interaction::Draws;
 use crate::scene::Fruit;
@@ -19,10 +20,21 @@ pub struct FruitKind {
     /// Standard deviation of the radius between fruit; m. Draws beyond three of them are
     /// drawn anew.
     pub radius_sd: f64,
+    /// Of ovate fruit how they differ from spheres; the radius is that across the axis.
+    pub ovate: Option<Ovate>,
     /// Density; kg/m³.
     pub density: f64,
     /// How they come.
     pub source: Source,
+}
+
+/// Fruit that are longer than thick: clumps of spheres along the axis of a spheroid.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Ovate {
+    /// Length over diameter, above 1.
+    pub ratio: f64,
+    /// Number of spheres.
+    pub spheres: usize,
 }
 
 /// How fruit come into a scene.
@@ -95,7 +107,8 @@ pub fn drawn(kinds: &[FruitKind], seed: u64) -> Result<Vec<Fruit>, Error> {
 }
 
 fn drawn_of(kind: &FruitKind, generator: &mut ChaCha8Rng) -> Result<Vec<Fruit>, Error> {
-    let largest = kind.radius + FARTHEST * kind.radius_sd;
+    let ratio = kind.ovate.map_or(1.0, |own| own.ratio);
+    let largest = ratio * (kind.radius + FARTHEST * kind.radius_sd);
     let lattice = match kind.source {
         Source::Lattice { low, high, .. } => lattice(low, high, largest, kind.count)?,
         _ => Vec::new(),
@@ -108,8 +121,12 @@ fn drawn_of(kind: &FruitKind, generator: &mut ChaCha8Rng) -> Result<Vec<Fruit>, 
         }
         let mut draws = Draws::default();
         draws.iter_mut().for_each(|own| *own = normal(generator));
-        let radius = kind.radius + kind.radius_sd * deviation;
-        let mut fruit = Fruit::sphere(kind.material, radius, kind.density, [0.0; 3]);
+        let across = kind.radius + kind.radius_sd * deviation;
+        let mut fruit = match kind.ovate {
+            None => Fruit::sphere(kind.material, across, kind.density, [0.0; 3]),
+            Some(own) => ovate(kind, own, across, generator)?,
+        };
+        let radius = fruit.radius;
         fruit.draws = draws;
         match kind.source {
             Source::Lattice { velocity, .. } => {
@@ -147,6 +164,35 @@ fn drawn_of(kind: &FruitKind, generator: &mut ChaCha8Rng) -> Result<Vec<Fruit>, 
         all.push(fruit);
     }
     Ok(all)
+}
+
+/// An ovate fruit that points anywhere.
+fn ovate(
+    kind: &FruitKind,
+    own: Ovate,
+    across: f64,
+    generator: &mut ChaCha8Rng,
+) -> Result<Fruit, Error> {
+    let ball = Fruit::sphere(kind.material, across, kind.density, [0.0; 3]);
+    let (mass, length) = (own.ratio * ball.mass, 2.0 * own.ratio * across);
+    let clump = Clump::spheroid(length, 2.0 * across, mass, own.spheres);
+    let mut clump = clump.ok_or(Error::Value {
+        what: "the length of a fruit over its diameter",
+        value: own.ratio,
+        problem: "it must be above one, and the clump of two spheres or more",
+    })?;
+    // Four normal numbers point anywhere in their space (Muller, 1959).
+    let turn = [0; 4].map(|_| normal(generator));
+    let size = turn.iter().map(|own| own * own).sum::<f64>().sqrt();
+    if size > 0.0 {
+        clump.turn = turn.map(|own| own / size);
+    }
+    Ok(Fruit {
+        radius: 0.5 * length,
+        mass,
+        clump: Some(clump),
+        ..ball
+    })
 }
 
 /// A standard normal number, by Box and Muller (1958).
@@ -207,6 +253,7 @@ mod tests {
             count,
             radius: 0.04,
             radius_sd: 0.002,
+            ovate: None,
             density: 840.0,
             source,
         }
@@ -245,6 +292,45 @@ mod tests {
         let both = drawn(&[kind(20_000, pour), kind(10, pour)], 3).unwrap();
         assert_eq!(both[..20_000], fruit[..]);
         assert_ne!(both[20_000].draws, fruit[0].draws);
+    }
+
+    #[test]
+    fn ovate_fruit_point_anywhere() {
+        let drop = Source::Drop {
+            place: [0.0; 3],
+            velocity: [0.0; 3],
+            interval: 1.0,
+            from: 0.0,
+        };
+        let ovate = Ovate {
+            ratio: 1.5,
+            spheres: 7,
+        };
+        let kind = FruitKind {
+            ovate: Some(ovate),
+            ..kind(20_000, drop)
+        };
+        let fruit = drawn(&[kind], 3).unwrap();
+        let axes = fruit.iter().map(|own| {
+            let clump = own.clump.as_ref().unwrap();
+            crate::vector::turned(clump.turn, [1.0, 0.0, 0.0])
+        });
+        let axes: Vec<Vector> = axes.collect();
+        // Cosines of a direction anywhere are even over -1 to 1: mean 0, square 1/3; five
+        // standard errors.
+        for axis in 0..3 {
+            let mean = axes.iter().map(|own| own[axis]).sum::<f64>() / 20_000.0;
+            let square = axes.iter().map(|own| own[axis].powi(2)).sum::<f64>() / 20_000.0;
+            assert!(mean.abs() < 5.0 * (1.0 / 60_000.0_f64).sqrt(), "{mean}");
+            let error = (4.0 / 45.0 / 20_000.0_f64).sqrt();
+            assert!((square - 1.0 / 3.0).abs() < 5.0 * error, "{square}");
+        }
+        let first = &fruit[0];
+        let [a, b, c] = first.clump.as_ref().unwrap().semi_axes(first.mass);
+        assert!((a - first.radius).abs() < 1e-12 && (a / b - 1.5).abs() < 1e-12);
+        assert!((b - c).abs() < 1e-12);
+        let mass = 840.0 * 4.0 / 3.0 * std::f64::consts::PI * a * b * c;
+        assert!((first.mass / mass - 1.0).abs() < 1e-12);
     }
 
     #[test]

@@ -19,6 +19,7 @@ impl Simulation {
         self.rebuilds += 1;
         self.lift();
         let (cells, order) = sort_into_cells(&mut self.bodies, self.skin);
+        self.find_spheres();
         let mut place = vec![NONE; order.len()];
         for (new, &old) in order.iter().enumerate() {
             place[old as usize] = new as u32;
@@ -80,6 +81,18 @@ impl Simulation {
         (self.moved, self.wall_way) = (0.0, 0.0);
         self.find_near();
         self.settle_walls();
+    }
+
+    /// Which bodies the spheres of each clump are now, in the order of its shape.
+    fn find_spheres(&mut self) {
+        if self.clumps.is_empty() {
+            return;
+        }
+        for body in 0..self.bodies.len() {
+            if let Some(own) = self.clumps.get_mut(self.bodies.clump[body] as usize) {
+                own.bodies[self.bodies.sphere[body] as usize] = body as u32;
+            }
+        }
     }
 
     /// A contact of the old list as one of the new.
@@ -211,11 +224,17 @@ impl Simulation {
             .collect();
         self.near_start = vec![0];
         self.near = Vec::new();
-        for own in near {
+        let mut of_clumps = Vec::new();
+        for (body, own) in near.into_iter().enumerate() {
             let slot = NONE;
             let parts = own.into_iter().map(|facet| NearPart { facet, slot });
-            self.near.extend(parts);
+            match self.bodies.clump[body] {
+                NONE => self.near.extend(parts),
+                _ => of_clumps.push((body as u32, parts.collect())),
+            }
             self.near_start.push(self.near.len() as u32);
         }
+        let pairs = &self.table.of_clumps;
+        self.clump_contacts.relist(&self.bodies, pairs, of_clumps);
     }
 }

@@ -1,5 +1,6 @@
 //! What a scene is, before it runs.
 
+use crate::clump::Clump;
 use crate::error::Error;
 use crate::interaction::{Draws, Interaction};
 use crate::vector::{UNTURNED, Vector};
@@ -27,13 +28,15 @@ pub struct Scene {
     pub time_step: f64,
 }
 
-/// One fruit: a sphere.
+/// One fruit: a sphere, or a clump of spheres.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Fruit {
     /// Material, by its number.
     pub material: usize,
-    /// Radius; m.
+    /// Radius, of a clump that of a sphere around it; m.
     pub radius: f64,
+    /// Of which spheres it is, unless it is one.
+    pub clump: Option<Clump>,
     /// Mass; kg.
     pub mass: f64,
     /// How it differs from the median of its kind.
@@ -77,6 +80,7 @@ impl Fruit {
         Self {
             material,
             radius,
+            clump: None,
             mass: density * 4.0 / 3.0 * std::f64::consts::PI * radius.powi(3),
             draws: Draws::default(),
             time: 0.0,
@@ -91,6 +95,38 @@ impl Fruit {
     #[must_use]
     pub fn inertia(&self) -> f64 {
         0.4 * self.mass * self.radius * self.radius
+    }
+
+    /// Largest diameter across its axis; m.
+    #[must_use]
+    pub fn diameter(&self) -> f64 {
+        let across = self.clump.as_ref().map(|own| own.semi_axes(self.mass)[1]);
+        2.0 * across.unwrap_or(self.radius)
+    }
+
+    /// Length along its axis, of a sphere the diameter; m.
+    #[must_use]
+    pub fn length(&self) -> f64 {
+        let along = self.clump.as_ref().map(|own| own.semi_axes(self.mass)[0]);
+        2.0 * along.unwrap_or(self.radius)
+    }
+
+    /// Radius of the sphere with the same volume; m.
+    #[must_use]
+    pub fn mean_radius(&self) -> f64 {
+        let axes = self.clump.as_ref().map(|own| own.semi_axes(self.mass));
+        axes.map_or(self.radius, |[a, b, c]| (a * b * c).cbrt())
+    }
+
+    /// The least mass that a contact of the fruit feels: of a clump that is struck at its end
+    /// it turns away; kg.
+    #[must_use]
+    pub fn least_felt_mass(&self) -> f64 {
+        self.clump.as_ref().map_or(self.mass, |own| {
+            // An end lies off the axes of the largest moment.
+            let moment = own.moments.iter().copied().fold(0.0, f64::max);
+            1.0 / (1.0 / self.mass + self.radius * self.radius / moment)
+        })
     }
 
     pub(crate) const ORIENTATION: [f64; 4] = UNTURNED;
@@ -129,6 +165,15 @@ impl Scene {
         for fruit in &self.fruit {
             positive("the radius of a fruit", fruit.radius)?;
             positive("the mass of a fruit", fruit.mass)?;
+            for own in fruit.clump.iter() {
+                for &(_, radius) in &own.spheres {
+                    positive("the radius of a sphere of a clump", radius)?;
+                }
+                for moment in own.moments {
+                    positive("a moment of inertia of a clump", moment)?;
+                }
+                positive("the number of spheres of a clump", own.spheres.len() as f64)?;
+            }
         }
         let kinds: std::collections::BTreeSet<usize> =
             self.fruit.iter().map(|fruit| fruit.material).collect();

@@ -1,5 +1,7 @@
 //! A scene from step to step.
 
+use crate::clump_contacts::{self, ClumpContacts};
+use crate::clump_motion::{Around, ClumpState};
 use crate::contact::{Moment, Outcome, event, event_of_pair};
 use crate::energy::{Account, Energy};
 use crate::error::Error;
@@ -11,7 +13,7 @@ use crate::neighbours::{Bodies, PairTable};
 use crate::pair_contacts::{PairContacts, Part};
 use crate::react::Clock;
 use crate::scene::Scene;
-use crate::store::Load;
+use crate::store::{Load, NONE};
 use crate::vector::{Rotation, Vector};
 use crate::wall_contacts::{NearPart, WallState};
 use crate::wall_forces::WallContacts;
@@ -26,6 +28,9 @@ pub struct Simulation {
     pub(crate) surfaces: Vec<Interaction>,
     pub(crate) numbers: Vec<usize>,
     pub(crate) bodies: Bodies,
+    /// Fruit that are several of the bodies.
+    pub(crate) clumps: Vec<ClumpState>,
+    pub(crate) clump_contacts: ClumpContacts,
     pub(crate) table: PairTable,
     /// Contacts of each block, in the order of its parts.
     pub(crate) contacts: Vec<Vec<PairContacts>>,
@@ -126,6 +131,8 @@ impl Simulation {
             walls: WallState::new(&scene.walls),
             scene,
             bodies: Bodies::default(),
+            clumps: Vec::new(),
+            clump_contacts: ClumpContacts::default(),
             table: PairTable::default(),
             contacts: Vec::new(),
             out: Vec::new(),
@@ -177,7 +184,7 @@ impl Simulation {
     /// Fruit in the scene now.
     #[must_use]
     pub fn count(&self) -> usize {
-        self.bodies.len()
+        self.clumps.len() + self.bodies.clump.iter().filter(|own| **own == NONE).count()
     }
 
     /// Fruit that are still to come.
@@ -189,7 +196,8 @@ impl Simulation {
     /// Contacts of two fruit now.
     #[must_use]
     pub fn pair_contacts(&self) -> usize {
-        self.contacts.iter().flatten().map(|own| own.count()).sum()
+        let spheres: usize = self.contacts.iter().flatten().map(|own| own.count()).sum();
+        spheres + self.clump_contacts.pair_count()
     }
 
     /// Every fruit in the scene, by number.
@@ -205,7 +213,15 @@ impl Simulation {
                 turn: self.bodies.turn[body],
             }
         };
-        let mut all: Vec<FruitState> = (0..self.bodies.len()).map(state).collect();
+        let spheres = (0..self.bodies.len()).filter(|body| self.bodies.clump[*body] == NONE);
+        let mut all: Vec<FruitState> = spheres.map(state).collect();
+        all.extend(self.clumps.iter().map(|own| FruitState {
+            fruit: own.fruit,
+            place: own.place,
+            velocity: own.velocity,
+            spin: own.spin,
+            turn: own.turn,
+        }));
         all.sort_by_key(|own| own.fruit);
         all
     }
@@ -249,6 +265,10 @@ impl Simulation {
                 true,
             ));
         }
+        for (fruit, partner, parcel) in self.clump_contacts.all() {
+            let (history, encounter) = (&parcel.history, &parcel.encounter);
+            events.push(event(history, encounter, fruit, partner, true));
+        }
         events.sort_by_key(|event| (event.fruit, event.partner));
         events
     }
@@ -283,6 +303,7 @@ impl Simulation {
         }
         self.walls.move_to(&self.scene.walls, time, step);
         self.push_pairs(time)?;
+        self.push_clump_contacts(time)?;
         let energy = self.push_bodies(time, with_energy)?;
         self.wall_way += self.wall_speed * step;
         self.steps += 1;
@@ -348,17 +369,7 @@ impl Simulation {
             true => tasks.into_iter().map(work).collect(),
             false => tasks.into_par_iter().map(work).collect(),
         };
-        for outcome in outcomes {
-            if let Some(problem) = outcome.problem {
-                return Err(problem);
-            }
-            for event in outcome.events {
-                self.account.normal += event.absorbed_energy;
-                self.account.friction += event.friction_energy;
-                self.events.push(event);
-            }
-        }
-        Ok(())
+        outcomes.into_iter().try_for_each(|own| self.end(own))
     }
 
     /// Forces on all bodies, and where they take them.
@@ -379,6 +390,7 @@ impl Simulation {
             walls: &self.walls,
             near_start: &self.near_start,
             bodies: (&self.bodies.fruit, &self.bodies.material),
+            clumps: (&self.bodies.clump, &self.bodies.offset),
             listed: &self.listed,
             with_energy,
         };
@@ -406,14 +418,7 @@ impl Simulation {
         let mut energy = Energy::default();
         self.moved = 0.0;
         for (outcome, sums) in found {
-            if let Some(problem) = outcome.problem {
-                return Err(problem);
-            }
-            for event in outcome.events {
-                self.account.normal += event.absorbed_energy;
-                self.account.friction += event.friction_energy;
-                self.events.push(event);
-            }
+            self.end(outcome)?;
             self.moved = self.moved.max(sums.moved.sqrt());
             self.account.drag += sums.drag;
             self.account.walls += sums.walls;
@@ -421,10 +426,75 @@ impl Simulation {
             energy.rotational += sums.rotational;
             energy.potential += sums.potential;
         }
+        let sums = self.push_clumps();
+        self.moved = self.moved.max(sums.moved.sqrt());
+        self.account.drag += sums.drag;
         if with_energy {
+            energy.kinetic += sums.kinetic;
+            energy.rotational += sums.rotational;
+            energy.potential += sums.potential;
             self.complete(&mut energy);
         }
         Ok(energy)
+    }
+
+    /// Forces of all contacts of clumps.
+    fn push_clump_contacts(&mut self, time: f64) -> Result<(), Error> {
+        if self.clump_contacts.is_empty() {
+            return Ok(());
+        }
+        let step = self.scene.time_step;
+        let now = Moment {
+            fruit: &self.scene.fruit,
+            clock: Clock { time, step },
+        };
+        let (surfaces, numbers) = (&self.surfaces, &self.numbers);
+        let materials = self.scene.materials.len();
+        let wall_materials = self.scene.walls.iter().map(|wall| wall.material as u32);
+        let wall_materials: Vec<u32> = wall_materials.collect();
+        let around = clump_contacts::Around {
+            bodies: &self.bodies,
+            walls: &self.walls,
+            now: &now,
+            surface: |a: u32, b: u32| &surfaces[numbers[a as usize * materials + b as usize]],
+            wall_materials: &wall_materials,
+        };
+        let mut outcome = Outcome::default();
+        let work = self
+            .clump_contacts
+            .advance(&around, &mut self.loads, &mut outcome);
+        self.account.walls += work;
+        self.end(outcome)
+    }
+
+    /// Takes in what contacts brought about.
+    fn end(&mut self, outcome: Outcome) -> Result<(), Error> {
+        if let Some(problem) = outcome.problem {
+            return Err(problem);
+        }
+        for event in outcome.events {
+            self.account.normal += event.absorbed_energy;
+            self.account.friction += event.friction_energy;
+            self.events.push(event);
+        }
+        Ok(())
+    }
+
+    /// Clumps one step on, and their spheres with them.
+    fn push_clumps(&mut self) -> Sums {
+        let mut sums = Sums::default();
+        let around = Around {
+            fruit: &self.scene.fruit,
+            gravity: self.scene.gravity,
+            air: self.scene.air,
+            step: self.scene.time_step,
+            listed: &self.listed,
+            loads: &self.loads,
+        };
+        for clump in &mut self.clumps {
+            clump.go(&around, &mut self.bodies, &mut sums);
+        }
+        sums
     }
 
     fn complete(&self, energy: &mut Energy) {
@@ -436,6 +506,10 @@ impl Simulation {
             }
         }
         for (_, _, parcel) in self.touched_walls() {
+            energy.in_contacts += parcel.history.work;
+            energy.in_friction += parcel.history.friction_work;
+        }
+        for (_, _, parcel) in self.clump_contacts.all() {
             energy.in_contacts += parcel.history.work;
             energy.in_friction += parcel.history.friction_work;
         }

@@ -1,11 +1,13 @@
 //! Fruit that come into a scene and leave it.
 
+use crate::clump_motion::ClumpState;
 use crate::error::{Error, fruit_name};
 use crate::event::{Event, Partner};
+use crate::gather::PART_OF_CLUMP;
 use crate::scene::{Fruit, Sink};
 use crate::simulation::{Leaving, Simulation};
 use crate::store::NONE;
-use crate::vector::{Vector, dot, length, plus_scaled, subtract};
+use crate::vector::{Vector, add, dot, length, plus_scaled, subtract};
 
 /// Overlap over the radius that fruit may have at the beginning; 1.
 const ROOM: f64 = 0.01;
@@ -42,19 +44,19 @@ impl Simulation {
                 self.scene.fruit[self.released].place = place;
             }
             let fruit = &self.scene.fruit[self.released];
-            let [x, y, z] = fruit.place;
-            let [u, v, w] = plus_scaled(fruit.velocity, gravity, -0.5 * step);
-            let [a, b, c] = fruit.spin;
-            let (mass, inertia) = (1.0 / fruit.mass, 1.0 / fruit.inertia());
             self.account.brought += 0.5 * fruit.mass * dot(fruit.velocity, fruit.velocity)
-                + 0.5 * fruit.inertia() * dot(fruit.spin, fruit.spin)
                 - fruit.mass * dot(gravity, fruit.place);
-            self.bodies.place.push([x, y, z, fruit.radius]);
-            self.bodies.motion.push([u, v, w, mass, a, b, c, inertia]);
-            self.bodies.turn.push(Fruit::ORIENTATION);
-            self.bodies.fruit.push(number);
-            self.bodies.material.push(fruit.material as u32);
-            self.bodies.lifted.push(Vec::new());
+            let velocity = plus_scaled(fruit.velocity, gravity, -0.5 * step);
+            self.account.brought += match &fruit.clump {
+                None => 0.5 * fruit.inertia() * dot(fruit.spin, fruit.spin),
+                Some(own) => {
+                    let clump = ClumpState::new(number, fruit, own, velocity);
+                    let energy = clump.rotational();
+                    self.clumps.push(clump);
+                    energy
+                }
+            };
+            self.let_in(self.released, velocity);
             self.released += 1;
             came = true;
         }
@@ -62,6 +64,46 @@ impl Simulation {
             self.rebuild();
         }
         Ok(())
+    }
+
+    /// The spheres of a fruit among the bodies.
+    fn let_in(&mut self, number: usize, velocity: Vector) {
+        let fruit = &self.scene.fruit[number];
+        let sphere = ([0.0; 3], fruit.radius);
+        let (spheres, inverse, clump) = match &fruit.clump {
+            None => (
+                std::slice::from_ref(&sphere),
+                [1.0 / fruit.mass, 1.0 / fruit.inertia()],
+                NONE,
+            ),
+            Some(own) => {
+                let clump = self.clumps.len() - 1;
+                self.clumps[clump].bodies = vec![0; own.spheres.len()];
+                (&own.spheres[..], [PART_OF_CLUMP; 2], clump as u32)
+            }
+        };
+        for (own, &(offset, radius)) in spheres.iter().enumerate() {
+            let (mut place, mut velocity, mut turn) = (fruit.place, velocity, Fruit::ORIENTATION);
+            if let Some(clump) = self.clumps.get(clump as usize) {
+                let arm = clump.arm(offset);
+                place = add(place, arm);
+                velocity = clump.velocity_at(arm);
+                turn = clump.turn;
+            }
+            let ([x, y, z], [u, v, w], [a, b, c]) = (place, velocity, fruit.spin);
+            let bodies = &mut self.bodies;
+            bodies.place.push([x, y, z, radius]);
+            bodies
+                .motion
+                .push([u, v, w, inverse[0], a, b, c, inverse[1]]);
+            bodies.turn.push(turn);
+            bodies.fruit.push(number as u32);
+            bodies.material.push(fruit.material as u32);
+            bodies.clump.push(clump);
+            bodies.sphere.push(own as u32);
+            bodies.offset.push(offset);
+            bodies.lifted.push(Vec::new());
+        }
     }
 
     /// Whether the fruit of the beginning have room.
@@ -114,26 +156,47 @@ impl Simulation {
     pub(crate) fn sink(&mut self) {
         let time = self.time();
         let gravity = self.scene.gravity;
-        let mut keep = Vec::with_capacity(self.bodies.len());
-        for body in 0..self.bodies.len() {
-            let [x, y, z, _] = self.bodies.place[body];
-            let inside = |sink: &Sink| {
+        let sink_of = |[x, y, z]: Vector| {
+            self.scene.sinks.iter().position(|sink: &Sink| {
                 let inside =
                     |axis: usize, at: f64| (sink.low[axis]..=sink.high[axis]).contains(&at);
                 inside(0, x) && inside(1, y) && inside(2, z)
-            };
-            let Some(sink) = self.scene.sinks.iter().position(inside) else {
+            })
+        };
+        let mut keep = Vec::with_capacity(self.bodies.len());
+        let mut gone = Vec::new();
+        for body in 0..self.bodies.len() {
+            let clump = self.clumps.get(self.bodies.clump[body] as usize);
+            let [x, y, z, _] = self.bodies.place[body];
+            let place = clump.map_or([x, y, z], |own| own.place);
+            let Some(sink) = sink_of(place) else {
                 keep.push(body);
                 continue;
             };
+            // Of several spheres the first one tells of the fruit.
+            if self.bodies.sphere[body] > 0 {
+                continue;
+            }
             let fruit = self.bodies.fruit[body];
             let own = &self.scene.fruit[fruit as usize];
             let m = &self.bodies.motion[body];
-            let velocity = plus_scaled([m[0], m[1], m[2]], gravity, 0.5 * self.scene.time_step);
-            self.account.brought -= 0.5 * own.mass * dot(velocity, velocity)
-                + 0.5 * own.inertia() * dot([m[4], m[5], m[6]], [m[4], m[5], m[6]])
-                - own.mass * dot(gravity, [x, y, z]);
-            self.taken.push(Leaving { fruit, time, sink });
+            let (velocity, rotational) = match clump {
+                Some(clump) => (clump.velocity, clump.rotational()),
+                None => {
+                    let spin = [m[4], m[5], m[6]];
+                    ([m[0], m[1], m[2]], 0.5 * own.inertia() * dot(spin, spin))
+                }
+            };
+            let velocity = plus_scaled(velocity, gravity, 0.5 * self.scene.time_step);
+            let moving = 0.5 * own.mass * dot(velocity, velocity) + rotational;
+            gone.push((
+                moving - own.mass * dot(gravity, place),
+                Leaving { fruit, time, sink },
+            ));
+        }
+        for (energy, leaving) in gone {
+            self.account.brought -= energy;
+            self.taken.push(leaving);
         }
         if keep.len() < self.bodies.len() {
             self.end_contacts_without(&keep);
@@ -190,6 +253,31 @@ impl Simulation {
         retain(&mut bodies.fruit, kept);
         retain(&mut bodies.material, kept);
         retain(&mut bodies.lifted, kept);
+        retain(&mut bodies.clump, kept);
+        retain(&mut bodies.sphere, kept);
+        retain(&mut bodies.offset, kept);
+        self.drop_clumps();
+    }
+}
+
+impl Simulation {
+    /// Leaves only the clumps whose spheres are still there.
+    fn drop_clumps(&mut self) {
+        let mut number = vec![NONE; self.clumps.len()];
+        for &clump in &self.bodies.clump {
+            if clump != NONE {
+                number[clump as usize] = 0;
+            }
+        }
+        let left = number.iter_mut().filter(|own| **own != NONE);
+        for (next, own) in left.enumerate() {
+            *own = next as u32;
+        }
+        let kept = |clump: usize| number[clump] != NONE;
+        retain(&mut self.clumps, kept);
+        for clump in self.bodies.clump.iter_mut().filter(|own| **own != NONE) {
+            *clump = number[*clump as usize];
+        }
     }
 }
 

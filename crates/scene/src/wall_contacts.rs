@@ -1,12 +1,12 @@
 //! Contacts of a fruit with walls.
 
-use crate::contact::{Moment, Outcome, Parcel, encounter, event, parted, too_deep};
+use crate::contact::{Moment, Outcome, Parcel, encounter, event, parted, spot, too_deep};
 use crate::error::Error;
 use crate::event::Partner;
 use crate::interaction::Interaction;
 use crate::react::{History, Touch, dot, surface_velocity};
 use crate::store::NONE;
-use crate::vector::{Rotation, Vector, length, plus_scaled, scaled, subtract, turned_back};
+use crate::vector::{Rotation, Vector, length, plus_scaled, scaled, subtract};
 use crate::wall::{Closest, Facet, Placed, Wall};
 use crate::wall_forces::{WallContacts, WallMeeting};
 use std::ops::Range;
@@ -76,13 +76,18 @@ impl WallState {
         }
     }
 
+    /// The name of a wall as messages have it.
+    pub(crate) fn name_of(&self, wall: u32) -> String {
+        format!("\"{}\"", self.names[wall as usize])
+    }
+
     pub(crate) fn closest(&self, facet: u32, place: Vector) -> Closest {
         let (wall, facet) = &self.facets[facet as usize];
         let placed = self.placed[*wall as usize].as_ref();
         facet.closest(placed.map(|(now, _)| now), place)
     }
 
-    fn velocity(&self, wall: u32, place: Vector, normal: Vector) -> Vector {
+    pub(crate) fn velocity(&self, wall: u32, place: Vector, normal: Vector) -> Vector {
         match (&self.placed[wall as usize], &self.belts[wall as usize]) {
             (Some((_, before)), _) => before.velocity_at(place, normal),
             (None, Some(belt)) => belt.velocity_at(place, normal),
@@ -102,6 +107,8 @@ pub(crate) struct Body {
     /// Half a step ago; rad/s.
     pub spin: Vector,
     pub turn: Rotation,
+    /// Where in its clump, if it belongs to one; m.
+    pub offset: Option<Vector>,
 }
 
 /// What a fruit's contacts with walls need of the rest of the scene.
@@ -179,7 +186,7 @@ pub(crate) fn aim<'a>(
                 too_deep(
                     now.clock.time,
                     body.fruit,
-                    format!("\"{}\"", walls.names[*wall as usize]),
+                    walls.name_of(*wall),
                     displacement,
                     radius,
                 )
@@ -189,7 +196,7 @@ pub(crate) fn aim<'a>(
 }
 
 /// Parts of walls that overlap a fruit. An edge counts only where no face beside it does.
-fn find_hits(
+pub(crate) fn find_hits(
     walls: &WallState,
     near: &[NearPart],
     centre: Vector,
@@ -241,14 +248,14 @@ fn same_place(a: &Closest, b: &Closest, radius: f64) -> bool {
 
 /// Overlap over the radius above which a contact with a wall means nothing: a soft wall
 /// may give way, but not beyond the centre of a fruit; 1.
-const DEEPEST: f64 = 0.9;
+pub(crate) const DEEPEST: f64 = 0.9;
 
 /// Points closer than this part of the radius are one.
 const COINCIDENT: f64 = 1e-6;
 
 /// A fruit that rolls from one part of a wall on to the next keeps its contact: this is the
 /// least cosine between the normals.
-const SAME_CONTACT: f64 = 0.9;
+pub(crate) const SAME_CONTACT: f64 = 0.9;
 
 /// Ends contacts that are over, and hands on those that go over to another part of a wall.
 fn follow<'a>(
@@ -307,7 +314,7 @@ fn begin(
     let draws = &now.fruit[body.fruit as usize].draws;
     let mut encounter = encounter(touch.normal, touch.displacement, touch.velocity, now.clock);
     encounter.place = point;
-    encounter.spot = turned_back(body.turn, touch.normal);
+    encounter.spot = spot(body.turn, body.offset, body.radius, touch.normal);
     let parcel = Parcel {
         scale: surface.scale(touch.radius),
         history: History::at(now.clock.time, encounter.normal_speed),
@@ -318,7 +325,7 @@ fn begin(
 }
 
 /// R* of a fruit on a part of a wall; m. Edges count as flat.
-fn effective_radius(facet: &Facet, radius: f64, centre: Vector) -> f64 {
+pub(crate) fn effective_radius(facet: &Facet, radius: f64, centre: Vector) -> f64 {
     let Facet::Cylinder {
         start,
         along,

@@ -341,3 +341,38 @@ fn bruises_follow_from_the_contacts() {
         std::fs::write(&path, text).unwrap();
     }
 }
+
+#[test]
+fn ovate_fruit_run_and_short_ones_are_refused() {
+    let folder = tempfile::tempdir().unwrap();
+    let ovate = "diameter = \"75 mm\"\nlength = \"95 mm\"\nspheres = 7";
+    let changes = [
+        ("diameter = \"75 mm\"", ovate),
+        ("count = 100", "count = 12"),
+        ("end = \"4 s\"", "end = \"1 s\""),
+    ];
+    scene(folder.path(), &changes);
+    let (done, json, problem) = windfall(
+        &["scene", "run", "s/scene.toml", "--format", "json"],
+        folder.path(),
+    );
+    assert!(done, "{problem}");
+    let json: serde_json::Value = serde_json::from_str(&json).unwrap();
+    assert!(json["contacts"].as_u64().unwrap() > 10);
+    assert!(
+        json["energy_closure"].as_f64().unwrap().abs() < 1e-3,
+        "{json}"
+    );
+    for (length, says) in [
+        ("length = \"70 mm\"", "an ovate fruit is longer than thick"),
+        ("length = \"95 mm\"\nspheres = 1", "2 to 99 spheres"),
+        ("spheres = 5", "give its length too"),
+    ] {
+        let with = format!("diameter = \"75 mm\"\n{length}");
+        let problem = refused(&[("diameter = \"75 mm\"", &with)]);
+        assert!(
+            problem.contains(says) && problem.contains("line"),
+            "{problem}"
+        );
+    }
+}

@@ -102,7 +102,11 @@ pub struct FruitFile {
     pub count: Option<Spanned<usize>>,
     /// Mean diameter.
     pub diameter: Option<Spanned<QuantityText>>,
-    /// Its standard deviation between fruit.
+    /// Mean length, of ovate fruit.
+    pub length: Option<Spanned<QuantityText>>,
+    /// Number of spheres that make up an ovate fruit.
+    pub spheres: Option<Spanned<usize>>,
+    /// Standard deviation of the diameter between fruit.
     pub diameter_sd: Option<Spanned<QuantityText>>,
     /// Density.
     pub density: Option<Spanned<QuantityText>>,

@@ -6,7 +6,7 @@ use crate::scene_key::{material, needed};
 use crate::toml_source::{TomlSource, invalid, missing, needed_quantity, optional_quantity};
 use std::ops::Range;
 use toml::Spanned;
-use windfall_scene::population::{FruitKind, Source};
+use windfall_scene::population::{FruitKind, Ovate, Source};
 
 /// A kind of fruit, and its name.
 ///
@@ -65,12 +65,14 @@ pub fn fruit_of(
         let text = format!("{diameter} m, {sd} m, {density} kg/m^3");
         return Err(invalid(source, &at, (TABLE, "diameter"), &text, problem));
     }
+    let ovate = ovate_of(source, file, diameter)?;
     let way = source_of(source, file, &at)?;
     let kind = FruitKind {
         material: own,
         count: *count.get_ref(),
         radius: 0.5 * diameter,
         radius_sd: 0.5 * sd,
+        ovate,
         density,
         source: way,
     };
@@ -80,6 +82,66 @@ pub fn fruit_of(
         .map_or(&materials[own], |name| name.get_ref());
     Ok((name.clone(), kind))
 }
+
+/// Spheres that make up an ovate fruit, where the file does not say how many: a fruit of
+/// 100 mm by 60 mm then lacks 0.9 mm of its spheroid at most.
+const SPHERES: usize = 9;
+
+/// How fruit of a kind are longer than thick, if they are.
+fn ovate_of(source: &TomlSource, file: &FruitFile, diameter: f64) -> Result<Option<Ovate>, Error> {
+    const TABLE: &str = "[[fruit]]";
+    let Some(given) = file.length.as_ref() else {
+        if let Some(spheres) = &file.spheres {
+            let problem = "it says of how many spheres an ovate fruit is: give its length too";
+            let text = spheres.get_ref().to_string();
+            let key = (TABLE, "spheres");
+            return Err(invalid(
+                source,
+                &spheres.span(),
+                key,
+                &text,
+                problem.to_owned(),
+            ));
+        }
+        return Ok(None);
+    };
+    let key = needed(TABLE, "length", "mean length", "m", "length = \"90 mm\"");
+    let length = optional_quantity(source, Some(given), &key)?.unwrap_or(diameter);
+    let ratio = length / diameter;
+    let long = ratio > 1.0 && ratio <= LONGEST;
+    if !long {
+        let problem = format!(
+            "an ovate fruit is longer than thick ({diameter} m), and at most {LONGEST} times; \
+             for a round one leave the length out (flat ones cannot be made of spheres along an \
+             axis)"
+        );
+        let text = format!("{length} m");
+        return Err(invalid(
+            source,
+            &given.span(),
+            (TABLE, "length"),
+            &text,
+            problem,
+        ));
+    }
+    let spheres = file.spheres.as_ref();
+    let count = spheres.map_or(SPHERES, |own| *own.get_ref());
+    if let Some(spheres) = spheres.filter(|_| !(2..=MOST_SPHERES).contains(&count)) {
+        let problem = format!("an ovate fruit is of 2 to {MOST_SPHERES} spheres");
+        let (at, key) = (spheres.span(), (TABLE, "spheres"));
+        return Err(invalid(source, &at, key, &count.to_string(), problem));
+    }
+    Ok(Some(Ovate {
+        ratio,
+        spheres: count,
+    }))
+}
+
+/// Length over diameter at most.
+const LONGEST: f64 = 10.0;
+
+/// Spheres of a fruit at most.
+const MOST_SPHERES: usize = 99;
 
 /// How fruit of a kind come.
 fn source_of(source: &TomlSource, file: &FruitFile, at: &Range<usize>) -> Result<Source, Error> {

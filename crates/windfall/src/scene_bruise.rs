@@ -6,7 +6,7 @@ use serde::Serialize;
 use std::collections::BTreeMap;
 use windfall_scene::bruise::{Blow, Bruise};
 use windfall_scene::event::{Event, Partner};
-use windfall_scene::scene::Scene;
+use windfall_scene::scene::{Fruit, Scene};
 
 /// Contacts that may bruise, of each fruit, as they come.
 #[derive(Clone, Debug)]
@@ -74,7 +74,7 @@ impl Blows {
         kept.model.threshold = (plan.model.threshold - REACH * plan.model.threshold_sd).max(0.0);
         Self {
             plan: kept,
-            radii: scene.fruit.iter().map(|fruit| fruit.radius).collect(),
+            radii: scene.fruit.iter().map(Fruit::mean_radius).collect(),
             materials: scene.fruit.iter().map(|fruit| fruit.material).collect(),
             wall_materials: scene.walls.iter().map(|wall| wall.material).collect(),
             shares: shares.clone(),

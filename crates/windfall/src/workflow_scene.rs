@@ -147,11 +147,18 @@ fn time_step(plan: &mut ScenePlan) -> Result<StepOutcome, Error> {
                 .fruit
                 .iter()
                 .filter(|fruit| fruit.material == material);
-            own.min_by(|x, y| x.mass.total_cmp(&y.mass))
+            own.min_by(|x, y| x.least_felt_mass().total_cmp(&y.least_felt_mass()))
         };
         // Of two fruit half the mass and half the radius move.
         let Some((fruit, share)) = (match (smallest(a), smallest(b)) {
-            (Some(x), Some(y)) => Some((if x.mass < y.mass { x } else { y }, 0.5)),
+            (Some(x), Some(y)) => Some((
+                if x.least_felt_mass() < y.least_felt_mass() {
+                    x
+                } else {
+                    y
+                },
+                0.5,
+            )),
             (own, None) | (None, own) => own.map(|own| (own, 1.0)),
         }) else {
             continue;
@@ -159,7 +166,7 @@ fn time_step(plan: &mut ScenePlan) -> Result<StepOutcome, Error> {
         let impact = Impact {
             interaction,
             radius: share * fruit.radius,
-            mass: share * fruit.mass,
+            mass: share * fruit.least_felt_mass(),
             speed,
         };
         let (step, error) = match given > 0.0 {

@@ -178,7 +178,7 @@ pub fn fruit_table(
             vec![
                 (number + 1).to_string(),
                 scene.materials[fruit.material].clone(),
-                (2.0 * fruit.radius).to_string(),
+                fruit.diameter().to_string(),
                 fruit.mass.to_string(),
                 fruit.time.to_string(),
                 of(own.left.map(|left| left.time)),
