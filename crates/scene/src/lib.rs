@@ -23,6 +23,7 @@ mod neighbours;
 mod pair_contacts;
 mod pair_forces;
 pub mod population;
+pub mod reach;
 mod react;
 mod relist;
 pub mod room;

@@ -304,11 +304,20 @@ mod tests {
     #[test]
     fn binary_and_text_hold_the_same() {
         let wanted = TWO.map(|own| own.map(|corner| corner.map(f64::from)));
-        assert_eq!(triangles_of(&binary(b"made by hand", &TWO)).unwrap(), wanted);
+        assert_eq!(
+            triangles_of(&binary(b"made by hand", &TWO)).unwrap(),
+            wanted
+        );
         // Some programs begin binary files like text.
-        assert_eq!(triangles_of(&binary(b"solid hopper", &TWO)).unwrap(), wanted);
+        assert_eq!(
+            triangles_of(&binary(b"solid hopper", &TWO)).unwrap(),
+            wanted
+        );
         assert_eq!(triangles_of(TEXT.as_bytes()).unwrap(), wanted);
-        assert_eq!(triangles_of(TEXT.replace('\n', "\r\n").as_bytes()).unwrap(), wanted);
+        assert_eq!(
+            triangles_of(TEXT.replace('\n', "\r\n").as_bytes()).unwrap(),
+            wanted
+        );
         let marked = format!("\u{feff}\n\n{}", TEXT.to_uppercase());
         assert_eq!(triangles_of(marked.as_bytes()).unwrap(), wanted);
         // Names in an old encoding, two bodies.
@@ -348,22 +357,58 @@ mod tests {
     #[test]
     fn rejects_text_files_with_the_line() {
         for (old, new, words) in [
-            ("vertex 1 0 0", "vertex 1 0 zero", "line 5, triangle 1: expected a number, found \"zero\""),
-            ("vertex 1 0 0", "vertex 1 0 nan", "line 5, triangle 1: expected a number"),
+            (
+                "vertex 1 0 0",
+                "vertex 1 0 zero",
+                "line 5, triangle 1: expected a number, found \"zero\"",
+            ),
+            (
+                "vertex 1 0 0",
+                "vertex 1 0 nan",
+                "line 5, triangle 1: expected a number",
+            ),
             ("vertex 1 0 0", "vertex 1 0 1e999", "line 5"),
-            ("vertex 1 0 0", "vertex 1 0", "line 6, triangle 1: expected a number, found \"vertex\""),
-            ("vertex 1 0 0\n", "", "line 6, triangle 1: expected vertex, found \"endloop\""),
-            ("-1 0 0\n  endloop", "-1 0 0\n vertex 1 1 1\n endloop", "triangle 2: expected endloop"),
-            ("endsolid Trichter\n", "", "line 15, triangle 3: expected facet or endsolid, found the end"),
-            ("endfacet\nendsolid Trichter\n", "endfac", "expected endfacet, found \"endfac\""),
+            (
+                "vertex 1 0 0",
+                "vertex 1 0",
+                "line 6, triangle 1: expected a number, found \"vertex\"",
+            ),
+            (
+                "vertex 1 0 0\n",
+                "",
+                "line 6, triangle 1: expected vertex, found \"endloop\"",
+            ),
+            (
+                "-1 0 0\n  endloop",
+                "-1 0 0\n vertex 1 1 1\n endloop",
+                "triangle 2: expected endloop",
+            ),
+            (
+                "endsolid Trichter\n",
+                "",
+                "line 15, triangle 3: expected facet or endsolid, found the end",
+            ),
+            (
+                "endfacet\nendsolid Trichter\n",
+                "endfac",
+                "expected endfacet, found \"endfac\"",
+            ),
         ] {
             assert!(TEXT.contains(old), "{old}");
             let problem = triangles_of(TEXT.replace(old, new).as_bytes()).unwrap_err();
             let problem = problem.to_string();
             assert!(problem.contains(words), "{new}: {problem}");
         }
-        assert_eq!(triangles_of(b"solid nothing\nendsolid nothing\n"), Err(StlProblem::Empty));
-        assert!(triangles_of(b"").unwrap_err().to_string().contains("0 bytes"));
+        assert_eq!(
+            triangles_of(b"solid nothing\nendsolid nothing\n"),
+            Err(StlProblem::Empty)
+        );
+        assert!(
+            triangles_of(b"")
+                .unwrap_err()
+                .to_string()
+                .contains("0 bytes")
+        );
         let page = triangles_of(&[b'<'; 400]).unwrap_err().to_string();
         assert!(page.contains("no binary STL file"), "{page}");
     }
