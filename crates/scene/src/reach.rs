@@ -29,8 +29,8 @@ pub fn reaches_a_sink(scene: &Scene, radius: f64, starts: &[Vector]) -> Option<b
     let walls = scene.walls.iter().filter(|wall| wall.motion.stays());
     let walls: Vec<Wall> = walls.cloned().collect();
     let corners = walls.iter().flat_map(corners_of);
-    let sinks = scene.sinks.iter().flat_map(|own| [own.low, own.high]);
-    let (low, high) = bounds(corners.chain(sinks).chain(starts.iter().copied()));
+    // Around the walls everything is free: who gets there gets to every sink beyond.
+    let (low, high) = bounds(corners.chain(starts.iter().copied()));
     let margin = [AROUND * radius; 3];
     let (low, size) = (
         subtract(low, margin),
@@ -46,6 +46,9 @@ pub fn reaches_a_sink(scene: &Scene, radius: f64, starts: &[Vector]) -> Option<b
         low,
         cell,
         count: size.map(|own| (own / cell).ceil() as usize),
+        beyond: scene.sinks.iter().any(|own| {
+            (0..3).any(|axis| own.low[axis] < low[axis] || own.high[axis] > low[axis] + size[axis])
+        }),
     };
     Some(grid.search(&WallState::new(&walls), radius, starts, &scene.sinks))
 }
@@ -68,6 +71,8 @@ struct Grid {
     low: Vector,
     cell: f64,
     count: [usize; 3],
+    /// Whether a sink reaches out of it.
+    beyond: bool,
 }
 
 impl Grid {
@@ -99,7 +104,7 @@ impl Grid {
             if !free(place) {
                 continue;
             }
-            if away(place) <= corner {
+            if away(place) <= corner || self.beyond && self.on_the_rim(number) {
                 return true;
             }
             let mut stride = 1;
@@ -118,6 +123,14 @@ impl Grid {
             }
         }
         false
+    }
+
+    fn on_the_rim(&self, number: usize) -> bool {
+        let [nx, ny, nz] = self.count;
+        let at = [number % nx, number / nx % ny, number / (nx * ny)];
+        let ends = at.into_iter().zip([nx, ny, nz]);
+        ends.into_iter()
+            .any(|(own, count)| own == 0 || own + 1 == count)
     }
 
     fn number(&self, place: Vector) -> usize {
