@@ -63,7 +63,8 @@ const PLACES: usize = 12;
 /// both, as if the wall were twice as stiff.
 ///
 /// Plates and cylinders are looked at in a grid of places, meshes in the middle of each
-/// triangle: walls that overlap by less than that are not found.
+/// triangle: walls that overlap by less than that are not found. Faces that no fruit can
+/// touch, as where two solid parts are joined, do not count.
 #[must_use]
 pub fn first_doubled(scene: &Scene) -> Option<Doubled> {
     let radii = scene.fruit.iter().map(|fruit| fruit.radius);
@@ -82,6 +83,7 @@ pub fn first_doubled(scene: &Scene) -> Option<Doubled> {
             let above = plus_scaled(place, normal, height);
             near.clear();
             walls.find_near(above, 2.0 * height, &mut near);
+            let mut double = None;
             for &facet in &near {
                 let other = walls.facets[facet as usize].0 as usize;
                 let found = walls.closest(facet, above);
@@ -89,16 +91,34 @@ pub fn first_doubled(scene: &Scene) -> Option<Doubled> {
                 let along = length(cross(found.normal, normal)) < PARALLEL;
                 let there = length(subtract(found.point, place)) < APART * smallest;
                 if other != number && found.inside && close && along && there {
-                    return Some(Doubled {
-                        walls: [number.min(other), number.max(other)],
-                        place,
-                    });
+                    double = Some(other);
                 }
+            }
+            if let Some(other) = double
+                && touchable(&walls, place, normal, smallest)
+            {
+                return Some(Doubled {
+                    walls: [number.min(other), number.max(other)],
+                    place,
+                });
             }
         }
     }
     doubled_planes(&scene.walls, APART * smallest)
 }
+
+/// Whether a sphere has room on either side of a place of a wall.
+fn touchable(walls: &WallState, place: Vector, normal: Vector, radius: f64) -> bool {
+    [radius, -radius].into_iter().any(|side| {
+        let mut near = Vec::new();
+        let centre = plus_scaled(place, normal, side);
+        walls.find_near(centre, (1.0 - TIGHT) * radius, &mut near);
+        near.is_empty()
+    })
+}
+
+/// So much of its radius a sphere may lack room; 1.
+const TIGHT: f64 = 0.1;
 
 /// Planes have no end, and no places to look at: two of them are compared as a whole.
 fn doubled_planes(walls: &[Wall], apart: f64) -> Option<Doubled> {
@@ -161,4 +181,79 @@ fn places(wall: &Wall) -> Vec<(Vector, Vector)> {
         }
     }
     all
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::scene::Fruit;
+    use crate::wall::{Motion, Plate};
+
+    fn scene(shapes: Vec<Shape>) -> Scene {
+        let wall = |shape| Wall {
+            name: "wall".to_owned(),
+            material: 0,
+            shape,
+            motion: Motion::default(),
+        };
+        Scene {
+            walls: shapes.into_iter().map(wall).collect(),
+            fruit: vec![Fruit::sphere(0, 0.04, 840.0, [0.5, 0.5, 0.5])],
+            ..Scene::default()
+        }
+    }
+
+    /// A level plate of 1 m at a height.
+    fn level(height: f64) -> Plate {
+        Plate {
+            corner: [0.0, 0.0, height],
+            edges: [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0]],
+        }
+    }
+
+    #[test]
+    fn walls_on_each_other_are_found_where_fruit_can_touch_them() {
+        let plates = |heights: &[f64]| Shape::Plates(heights.iter().copied().map(level).collect());
+        let found = |shapes| first_doubled(&scene(shapes)).map(|own| own.walls);
+        assert_eq!(found(vec![plates(&[0.0]), plates(&[1e-4])]), Some([0, 1]));
+        assert_eq!(found(vec![plates(&[0.0]), plates(&[1e-2])]), None);
+        // Two slabs of 10 mm, one on the other.
+        assert_eq!(
+            found(vec![plates(&[0.0, 0.01]), plates(&[0.01, 0.02])]),
+            None
+        );
+        let plane = |height: f64, up: f64| Shape::Plane {
+            point: [3.0, 3.0, height],
+            normal: [0.0, 0.0, up],
+        };
+        assert_eq!(
+            found(vec![plane(0.0, 1.0), plates(&[1.0, 0.0])]),
+            Some([0, 1])
+        );
+        assert_eq!(found(vec![plane(0.0, 1.0), plane(1e-5, 1.0)]), Some([0, 1]));
+        assert_eq!(found(vec![plane(0.0, 1.0), plane(2.0, -1.0)]), None);
+        let tube = |radius: f64| Shape::Cylinder {
+            start: [0.0; 3],
+            end: [0.0, 0.0, 1.0],
+            radius,
+        };
+        assert_eq!(found(vec![tube(0.3), tube(0.3001)]), Some([0, 1]));
+        assert_eq!(found(vec![tube(0.3), tube(0.35), plates(&[0.0])]), None);
+    }
+
+    #[test]
+    fn fruit_in_walls_are_found_when_they_come() {
+        let mut own = scene(vec![Shape::Plates(vec![level(0.0)])]);
+        assert_eq!(first_in_wall(&own), None);
+        own.fruit[0].place[2] = 0.03;
+        let found = first_in_wall(&own).map(|own| (own.fruit, own.wall));
+        assert_eq!(found, Some((0, 0)));
+        // Touching is well; a wall that has moved there by then is not.
+        own.fruit[0].place[2] = 0.0399;
+        assert_eq!(first_in_wall(&own), None);
+        own.walls[0].motion.velocity = [0.0, 0.0, 0.1];
+        assert_eq!(first_in_wall(&own), None);
+        own.fruit[0].time = 0.2;
+        assert!(first_in_wall(&own).is_some_and(|own| (own.overlap - 0.0201).abs() < 1e-12));
+    }
 }
