@@ -4,8 +4,7 @@ use crate::error::Error;
 use crate::file_scene::{MeshFile, TurnFile};
 use crate::outcome::FindingOutcome;
 use crate::read_stl::read_stl;
-use crate::scene_key::needed;
-use crate::text_statistic::number;
+use crate::scene_key::{needed, short};
 use crate::toml_source::{TomlSource, invalid, missing, needed_quantity};
 use toml::Spanned;
 use windfall_numerics::unit::parse_as;
@@ -52,7 +51,7 @@ pub fn mesh_of(
     if !(SMALLEST..=LARGEST).contains(&size) {
         let problem = format!(
             "in this unit it is {} m across: is `unit` right?",
-            number(size)
+            short(size)
         );
         return Err(refused("mesh unit", problem));
     }
@@ -128,14 +127,14 @@ fn openness(flaws: &Flaws) -> Option<String> {
     Some(format!(
         "{edges} edges belong to one triangle only: {rims}, the longest of {} m from {} to {} m, \
          before `turn` and `move`",
-        number(longest.length),
+        short(longest.length),
         text_of(longest.low),
         text_of(longest.high),
     ))
 }
 
 fn text_of(place: Vector) -> String {
-    format!("[{}]", place.map(number).join(", "))
+    format!("[{}]", place.map(short).join(", "))
 }
 
 /// What is to be known of a mesh that is used.
@@ -164,7 +163,7 @@ fn findings_of(flaws: &Flaws, wall: &str, file: &str, closed: Option<bool>) -> V
                  corners are one: they were left out",
                 flaws.slivers.len(),
                 first(&flaws.slivers),
-                number(1e6 * flaws.tolerance),
+                short(1e6 * flaws.tolerance),
             ),
         );
     }

@@ -2,7 +2,7 @@
 
 use crate::error::Error;
 use crate::file_scene::SceneFile;
-use crate::text_statistic::number;
+use crate::scene_key::short;
 use crate::toml_source::{TomlSource, place_at};
 use std::ops::Range;
 use windfall_scene::population::{FruitKind, drawn};
@@ -36,7 +36,7 @@ pub fn drawn_fruit(
         let largest = 2.0 * (kind.radius + 3.0 * kind.radius_sd);
         let problem = format!(
             "[[fruit]]: {problem}; the largest of this kind may measure {} m",
-            number(largest)
+            short(largest)
         );
         refused(source, &file.fruit[place].span(), problem)
     })
@@ -63,11 +63,11 @@ pub fn check_room(
             "[[fruit]]: a fruit of \"{}\" of {} m comes in at {} m after {} s, where it overlaps the \
              wall \"{}\" by {} m: move the place where fruit come in, or the wall",
             kinds[kind].0,
-            number(2.0 * fruit.radius),
+            short(2.0 * fruit.radius),
             text_of(fruit.place),
-            number(fruit.time),
+            short(fruit.time),
             wall.name,
-            number(found.overlap),
+            short(found.overlap),
         );
         return Err(refused(source, &file.fruit[kind].span(), problem));
     }
@@ -120,7 +120,7 @@ fn check_ways(
             let problem = format!(
                 "[[sinks]]: the largest fruit of \"{name}\", of {} m, can reach no sink: the walls \
                  leave it no way so wide. Widen the outlet, or leave the sinks out",
-                number(2.0 * largest)
+                short(2.0 * largest)
             );
             return Err(refused(source, &sink.span(), problem));
         }
@@ -139,5 +139,5 @@ fn kind_of(kinds: &[(String, usize)], fruit: usize) -> usize {
 }
 
 fn text_of(place: Vector) -> String {
-    format!("[{}]", place.map(number).join(", "))
+    format!("[{}]", place.map(short).join(", "))
 }

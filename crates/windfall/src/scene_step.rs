@@ -2,7 +2,7 @@
 
 use crate::error::Error;
 use crate::read_scene::ScenePlan;
-use crate::text_statistic::number;
+use crate::scene_key::short;
 use windfall_scene::time_step::{Impact, StepError};
 
 /// Error of peak force or absorbed energy above which a step is refused; 1.
@@ -37,8 +37,8 @@ pub fn checked_step(
     let what = match found {
         Ok(own) => format!(
             "such steps err by {} % in its peak force and by {} % of the impact energy",
-            number(100.0 * own.peak),
-            number(100.0 * own.energy)
+            short(100.0 * own.peak),
+            short(100.0 * own.energy)
         ),
         Err(problem) => format!("with such steps {problem}"),
     };
@@ -49,9 +49,9 @@ pub fn checked_step(
         problem: format!(
             "a contact of {a} and {b} at {} m/s lasts {} ms, and {what}; a shorter time step is \
              needed: \"auto\" would take {} µs or less",
-            number(impact.speed),
-            number(1e3 * fine.duration),
-            number(1e6 * fits)
+            short(impact.speed),
+            short(1e3 * fine.duration),
+            short(1e6 * fits)
         ),
     })
 }
