@@ -6,7 +6,6 @@ use crate::pair_contacts::PairContacts;
 use crate::simulation::Simulation;
 use crate::store::NONE;
 use crate::vector::scaled;
-use crate::wall::Facet;
 use crate::wall_contacts::{Lifted, NearPart};
 use crate::wall_forces::WallContacts;
 use rayon::prelude::*;
@@ -208,18 +207,11 @@ impl Simulation {
         let places = self.bodies.place.par_iter().zip(&self.bodies.lifted);
         let near: Vec<Vec<u32>> = places
             .map(|(&[x, y, z, radius], lifted)| {
-                let facets = 0..walls.facets.len() as u32;
-                let reach = radius + 0.5 * skin;
-                facets
-                    .filter(|&facet| {
-                        let (wall, part) = &walls.facets[facet as usize];
-                        // Points of a moving plane far away go any way in a step.
-                        let endless = matches!(part, Facet::Plane { .. });
-                        endless && walls.placed[*wall as usize].is_some()
-                            || walls.closest(facet, [x, y, z]).distance < reach
-                            || lifted.iter().any(|own| own.facet == facet)
-                    })
-                    .collect()
+                let mut own: Vec<u32> = lifted.iter().map(|own| own.facet).collect();
+                walls.find_near([x, y, z], radius + 0.5 * skin, &mut own);
+                own.sort_unstable();
+                own.dedup();
+                own
             })
             .collect();
         self.near_start = vec![0];

@@ -65,6 +65,21 @@ pub fn unit(a: Vector) -> Option<Vector> {
     (size > 0.0 && size.is_finite()).then(|| scaled(a, 1.0 / size))
 }
 
+/// A direction of length 1 across another.
+#[must_use]
+pub(crate) fn any_normal(along: Vector) -> Vector {
+    let [x, y, z] = along.map(f64::abs);
+    let least = if x <= y && x <= z {
+        [1.0, 0.0, 0.0]
+    } else if y <= z {
+        [0.0, 1.0, 0.0]
+    } else {
+        [0.0, 0.0, 1.0]
+    };
+    let out = cross(along, least);
+    scaled(out, 1.0 / length(out))
+}
+
 /// A rotation as a quaternion of length 1: w, x, y, z.
 pub type Rotation = [f64; 4];
 

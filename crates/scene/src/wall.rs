@@ -1,8 +1,8 @@
 //! Walls: where they are, what they are made of, how they move.
 
 use crate::vector::{
-    Rotation, UNTURNED, Vector, add, cross, dot, length, plus_scaled, scaled, subtract, turn_about,
-    turned, turned_back,
+    Rotation, UNTURNED, Vector, add, any_normal, cross, dot, length, plus_scaled, scaled, subtract,
+    turn_about, turned, turned_back,
 };
 
 /// A wall of the scene.
@@ -145,12 +145,17 @@ impl Motion {
 
 impl Placed {
     /// A point of space in the wall's own frame.
-    fn inward(&self, place: Vector) -> Vector {
+    pub(crate) fn inward(&self, place: Vector) -> Vector {
         let from = subtract(subtract(place, self.shift), self.pivot);
         add(turned_back(self.turn, from), self.pivot)
     }
 
-    fn outward(&self, place: Vector) -> Vector {
+    /// A direction of the wall's own frame in space.
+    pub(crate) fn turned(&self, direction: Vector) -> Vector {
+        turned(self.turn, direction)
+    }
+
+    pub(crate) fn outward(&self, place: Vector) -> Vector {
         let from = subtract(place, self.pivot);
         add(add(turned(self.turn, from), self.pivot), self.shift)
     }
@@ -323,19 +328,6 @@ fn towards(place: Vector, point: Vector, inside: bool, otherwise: Vector) -> Clo
         distance,
         inside,
     }
-}
-
-fn any_normal(along: Vector) -> Vector {
-    let [x, y, z] = along.map(f64::abs);
-    let least = if x <= y && x <= z {
-        [1.0, 0.0, 0.0]
-    } else if y <= z {
-        [0.0, 1.0, 0.0]
-    } else {
-        [0.0, 0.0, 1.0]
-    };
-    let out = cross(along, least);
-    scaled(out, 1.0 / length(out))
 }
 
 /// Coordinates along two edges of the foot of a place on their plane.

@@ -3,11 +3,13 @@
 use crate::contact::{Moment, Outcome, Parcel, encounter, event, parted, spot, too_deep};
 use crate::error::Error;
 use crate::event::Partner;
+use crate::facet_tree::FacetTree;
 use crate::interaction::Interaction;
+use crate::mesh_contacts::thin;
 use crate::react::{History, Touch, dot, surface_velocity};
 use crate::store::NONE;
 use crate::vector::{Rotation, Vector, length, plus_scaled, scaled, subtract};
-use crate::wall::{Closest, Facet, Placed, Wall};
+use crate::wall::{Closest, Facet, Placed, Shape, Wall};
 use crate::wall_forces::{WallContacts, WallMeeting};
 use std::ops::Range;
 use windfall_contact::law_kind::Law;
@@ -43,12 +45,24 @@ pub(crate) struct WallState {
     pub placed: Vec<Option<(Placed, Placed)>>,
     /// Velocities of the surfaces of walls that stay: belts.
     pub belts: Vec<Option<Placed>>,
+    /// Parts that are of no mesh.
+    single: Vec<u32>,
+    /// Of each mesh its wall, its first part, and all of them at rest.
+    trees: Vec<(u32, u32, FacetTree)>,
 }
 
 impl WallState {
     pub(crate) fn new(walls: &[Wall]) -> Self {
         let mut facets = Vec::new();
+        let (mut single, mut trees) = (Vec::new(), Vec::new());
         for (number, wall) in walls.iter().enumerate() {
+            let first = facets.len() as u32;
+            match &wall.shape {
+                Shape::Mesh { triangles } => {
+                    trees.push((number as u32, first, FacetTree::new(triangles)));
+                }
+                other => single.extend(first..first + other.facets().len() as u32),
+            }
             facets.extend(
                 wall.shape
                     .facets()
@@ -65,6 +79,8 @@ impl WallState {
             facets,
             placed: vec![None; walls.len()],
             belts: walls.iter().map(belt).collect(),
+            single,
+            trees,
         }
     }
 
@@ -85,6 +101,37 @@ impl WallState {
         let (wall, facet) = &self.facets[facet as usize];
         let placed = self.placed[*wall as usize].as_ref();
         facet.closest(placed.map(|(now, _)| now), place)
+    }
+
+    /// Adds the parts of walls that come closer to a place than `reach`, by number.
+    pub(crate) fn find_near(&self, place: Vector, reach: f64, near: &mut Vec<u32>) {
+        let first = near.len();
+        near.extend(self.single.iter().copied().filter(|&facet| {
+            let (wall, part) = &self.facets[facet as usize];
+            // Points of a moving plane far away go any way in a step.
+            let endless = matches!(part, Facet::Plane { .. });
+            endless && self.placed[*wall as usize].is_some()
+                || self.closest(facet, place).distance < reach
+        }));
+        for (wall, start, tree) in &self.trees {
+            let placed = self.placed[*wall as usize].as_ref();
+            let own = placed.map_or(place, |(now, _)| now.inward(place));
+            tree.near(own, reach, |triangle| {
+                let facet = start + triangle;
+                if self.facets[facet as usize].1.closest(None, own).distance < reach {
+                    near.push(facet);
+                }
+            });
+        }
+        near[first..].sort_unstable();
+    }
+
+    /// A place of a wall at rest, and a direction there, where the wall is now.
+    pub(crate) fn moved(&self, wall: usize, place: Vector, normal: Vector) -> (Vector, Vector) {
+        match &self.placed[wall] {
+            Some((now, _)) => (now.outward(place), now.turned(normal)),
+            None => (place, normal),
+        }
     }
 
     pub(crate) fn velocity(&self, wall: u32, place: Vector, normal: Vector) -> Vector {
@@ -211,6 +258,12 @@ pub(crate) fn find_hits(
             hits.push((facet, closest));
         }
     }
+    thin(
+        &walls.facets,
+        |facet, place| walls.closest(facet, place),
+        radius,
+        hits,
+    );
     if hits.len() < 2 {
         return;
     }

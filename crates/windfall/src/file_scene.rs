@@ -194,6 +194,8 @@ pub struct WallFile {
     pub bin: Option<Spanned<BoxFile>>,
     /// The side of a cylinder.
     pub cylinder: Option<Spanned<CylinderFile>>,
+    /// Triangles of an STL file.
+    pub mesh: Option<Spanned<MeshFile>>,
     /// Steady velocity; m/s.
     pub velocity: Option<Spanned<[f64; 3]>>,
     /// Velocity of a belt's surface; m/s.
@@ -247,6 +249,33 @@ pub struct CylinderFile {
     pub end: [f64; 3],
     /// Diameter.
     pub diameter: Spanned<QuantityText>,
+}
+
+/// `mesh`
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct MeshFile {
+    /// An STL file, beside the scene.
+    pub file: Spanned<String>,
+    /// Unit of length of its coordinates: STL files do not say it.
+    pub unit: Option<Spanned<String>>,
+    /// Turned about an axis through its origin.
+    pub turn: Option<Spanned<TurnFile>>,
+    /// Then moved by; m.
+    #[serde(default, rename = "move")]
+    pub shift: [f64; 3],
+    /// Whether it must be closed, or is open on purpose.
+    pub closed: Option<bool>,
+}
+
+/// `turn`
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct TurnFile {
+    /// Direction of the axis.
+    pub axis: [f64; 3],
+    /// Angle.
+    pub angle: Spanned<QuantityText>,
 }
 
 /// `vibration`

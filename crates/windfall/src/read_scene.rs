@@ -1,14 +1,16 @@
 //! scene.toml → a scene.
 
-use crate::error::Error;
+use crate::error::{Error, Place};
 use crate::file_scene::{AirFile, ContactFile, GravityFile, SceneFile};
 use crate::law_card::LawCard;
 use crate::law_use::complete_law_among;
+use crate::outcome::FindingOutcome;
 use crate::read_card::{law_of_card, read_card};
 use crate::read_files::check_format;
 use crate::read_rig::STANDARD_GRAVITY;
 use crate::read_scene_bruise::{BruisePlan, bruise_of};
 use crate::read_scene_fruit::fruit_of;
+use crate::read_scene_room::{check_room, drawn_fruit};
 use crate::read_scene_walls::wall_of;
 use crate::scene_card::spread_of_card;
 use crate::scene_key::{material, needed};
@@ -19,7 +21,6 @@ use std::collections::BTreeMap;
 use std::path::Path;
 use toml::Spanned;
 use windfall_scene::interaction::{Interaction, mindlin_ratio};
-use windfall_scene::population::drawn;
 use windfall_scene::scene::{Air, Scene, Sink};
 use windfall_scene::vector::{Vector, scaled};
 use windfall_scene::wall::Wall;
@@ -46,6 +47,10 @@ pub struct ScenePlan {
     pub least_peak_force: f64,
     /// How contacts bruise, where the file says so.
     pub bruise: Option<BruisePlan>,
+    /// Where the file gives a time step, and what stands there.
+    pub given_step: Option<(Place, String)>,
+    /// What is to be known of the scene before it runs.
+    pub findings: Vec<FindingOutcome>,
 }
 
 /// Reads a scene and draws its fruit.
@@ -77,10 +82,11 @@ pub fn read_scene(path: &Path) -> Result<ScenePlan, Error> {
         return Err(missing(&source, &(0..0), &fruit, fruit.table.to_owned()));
     }
     let walls = file.walls.iter();
-    let walls = walls.map(|wall| wall_of(&source, wall, &materials));
+    let mut findings = Vec::new();
+    let walls = walls.map(|wall| wall_of(&source, wall, &materials, &mut findings));
     let walls: Vec<Wall> = walls.collect::<Result<_, _>>()?;
     let seed = file.scene.seed.unwrap_or(1);
-    let fruit = drawn(&kinds, seed).map_err(|problem| scene_error(&source, &file, &problem))?;
+    let fruit = drawn_fruit(&source, &file, &kinds, seed)?;
     let timing = timing(&source, &file)?;
     let bruise = file
         .bruise
@@ -108,6 +114,7 @@ pub fn read_scene(path: &Path) -> Result<ScenePlan, Error> {
     checked
         .check()
         .map_err(|problem| scene_error(&source, &file, &problem))?;
+    check_room(&source, &file, &scene, &names)?;
     Ok(ScenePlan {
         title: file
             .scene
@@ -122,6 +129,8 @@ pub fn read_scene(path: &Path) -> Result<ScenePlan, Error> {
         end: timing.end,
         least_peak_force: timing.least_peak_force,
         bruise: bruise.transpose()?,
+        given_step: timing.given,
+        findings,
     })
 }
 
@@ -177,6 +186,8 @@ fn contacts(
 struct Timing {
     /// 0 where it is automatic; s.
     step: f64,
+    /// Where it stands, and how.
+    given: Option<(Place, String)>,
     error: f64,
     end: f64,
     least_peak_force: f64,
@@ -199,6 +210,7 @@ fn timing(source: &TomlSource, file: &SceneFile) -> Result<Timing, Error> {
         .time_step
         .as_ref()
         .filter(|step| !automatic(step));
+    let given = step.map(|own| (place_at(source, &own.span()), own.get_ref().0.clone()));
     let step = time(step, "time_step", "time step", "time_step = \"20 us\"")?.unwrap_or(0.0);
     let end = time(
         file.scene.end.as_ref(),
@@ -234,6 +246,7 @@ fn timing(source: &TomlSource, file: &SceneFile) -> Result<Timing, Error> {
     let least = optional_quantity(source, file.events.least_peak_force.as_ref(), &force)?;
     Ok(Timing {
         step,
+        given,
         error: error.unwrap_or(DEFAULT_ERROR),
         end,
         least_peak_force: least.unwrap_or(0.0),

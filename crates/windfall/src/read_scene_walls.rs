@@ -2,6 +2,8 @@
 
 use crate::error::Error;
 use crate::file_scene::{BoxFile, WallFile};
+use crate::outcome::FindingOutcome;
+use crate::read_scene_mesh::mesh_of;
 use crate::scene_key::{material, needed};
 use crate::toml_source::{TomlSource, invalid, missing, needed_quantity, suggestion};
 use std::ops::Range;
@@ -9,7 +11,7 @@ use toml::Spanned;
 use windfall_scene::vector::{Vector, cross, length, unit};
 use windfall_scene::wall::{Motion, Plate, Shape, Turning, Vibration, Wall};
 
-/// A wall.
+/// A wall; what is to be known of it is added to the findings.
 ///
 /// # Errors
 /// Something is missing or cannot be.
@@ -17,6 +19,7 @@ pub fn wall_of(
     source: &TomlSource,
     wall: &Spanned<WallFile>,
     materials: &[String],
+    findings: &mut Vec<FindingOutcome>,
 ) -> Result<Wall, Error> {
     const TABLE: &str = "[[walls]]";
     let (file, at) = (wall.get_ref(), wall.span());
@@ -39,13 +42,19 @@ pub fn wall_of(
         let problem = "it must have a length, and edges must not be parallel".to_owned();
         invalid(source, at, (TABLE, key), name.get_ref(), problem)
     };
-    let shape = match (&file.plane, &file.plate, &file.bin, &file.cylinder) {
-        (Some(plane), None, None, None) => Shape::Plane {
+    let shape = match (
+        &file.plane,
+        &file.plate,
+        &file.bin,
+        &file.cylinder,
+        &file.mesh,
+    ) {
+        (Some(plane), None, None, None, None) => Shape::Plane {
             point: plane.get_ref().point,
             normal: unit(plane.get_ref().normal)
                 .ok_or_else(|| flat("plane normal", &plane.span()))?,
         },
-        (None, Some(plate), None, None) => {
+        (None, Some(plate), None, None, None) => {
             let edges = plate.get_ref().edges;
             let area = length(cross(edges[0], edges[1]));
             let spans = area > FLAT * length(edges[0]) * length(edges[1]);
@@ -57,7 +66,7 @@ pub fn wall_of(
                 edges,
             }])
         }
-        (None, None, Some(bin), None) => {
+        (None, None, Some(bin), None, None) => {
             let sides = sides_of(bin.get_ref());
             let sides = sides.map_err(|problem| {
                 let text = bin.get_ref().open.join(", ");
@@ -65,7 +74,7 @@ pub fn wall_of(
             })?;
             Shape::Plates(sides)
         }
-        (None, None, None, Some(tube)) => {
+        (None, None, None, Some(tube), None) => {
             let (file, at) = (tube.get_ref(), tube.span());
             let key = needed(
                 TABLE,
@@ -84,10 +93,15 @@ pub fn wall_of(
                 radius: 0.5 * diameter,
             }
         }
+        (None, None, None, None, Some(mesh)) => mesh_of(source, mesh, name.get_ref(), findings)?,
         _ => {
-            let meaning = "one of plane, plate, box, cylinder";
+            let meaning = "one of plane, plate, box, cylinder, mesh";
             let example = "plane = { point = [0, 0, 0], normal = [0, 0, 1] }";
-            return Err(lacks("plane, plate, box or cylinder", meaning, example));
+            return Err(lacks(
+                "plane, plate, box, cylinder or mesh",
+                meaning,
+                example,
+            ));
         }
     };
     Ok(Wall {

@@ -25,6 +25,13 @@ pub const fn needed(
     }
 }
 
+/// A number in a sentence, to four digits.
+#[must_use]
+pub fn short(value: f64) -> String {
+    let rounded = format!("{value:.3e}").parse::<f64>();
+    rounded.unwrap_or(value).to_string()
+}
+
 /// The number of a material.
 ///
 /// # Errors

@@ -6,6 +6,7 @@ use crate::progress::Progress;
 use crate::read_scene::{ScenePlan, read_scene};
 use crate::scene_bruise::Blows;
 use crate::scene_outcome::{PartnerOutcome, SceneOutcome, StepOutcome, Tally, findings_of_range};
+use crate::scene_step::checked_step;
 use crate::write_file::write_whole;
 use crate::write_scene::{EventFile, fruit_table};
 use std::path::{Path, PathBuf};
@@ -120,7 +121,11 @@ fn run(
         energy: (&last).into(),
         energy_closure: (last.closure() - first.closure())
             / last.lost().abs().max(f64::MIN_POSITIVE),
-        findings: findings_of_range(&plan, &tally, simulation.waiting()),
+        findings: [
+            plan.findings.clone(),
+            findings_of_range(&plan, &tally, simulation.waiting()),
+        ]
+        .concat(),
         files: vec![out.join("events.csv"), fruit, out.join("scene.json")],
     };
     let json = serde_json::to_string_pretty(&outcome).map_err(|error| Error::ResultUnwritable {
@@ -170,7 +175,7 @@ fn time_step(plan: &mut ScenePlan) -> Result<StepOutcome, Error> {
             speed,
         };
         let (step, error) = match given > 0.0 {
-            true => (given, impact.error_of(given).map_err(stopped)?),
+            true => (given, checked_step(plan, &impact, given, [a, b])?),
             false => impact.step_for(plan.time_step_error).map_err(stopped)?,
         };
         let own = StepOutcome {
