@@ -8,6 +8,7 @@
 //!
 //! This crate knows no instrument and no file, and reads no clock.
 
+pub mod binary;
 pub mod bruise;
 mod contact;
 pub mod energy;
@@ -24,6 +25,7 @@ mod react;
 mod relist;
 pub mod scene;
 pub mod simulation;
+pub mod state;
 mod store;
 pub mod time_step;
 mod traffic;

@@ -3,7 +3,7 @@
 use crate::error::{Error, fruit_name};
 use crate::event::{Event, Partner};
 use crate::scene::{Fruit, Sink};
-use crate::simulation::{Leaving, Simulation};
+use crate::simulation::{FruitState, Leaving, Simulation};
 use crate::store::NONE;
 use crate::vector::{Vector, dot, length, plus_scaled, subtract};
 
@@ -42,19 +42,16 @@ impl Simulation {
                 self.scene.fruit[self.released].place = place;
             }
             let fruit = &self.scene.fruit[self.released];
-            let [x, y, z] = fruit.place;
-            let [u, v, w] = plus_scaled(fruit.velocity, gravity, -0.5 * step);
-            let [a, b, c] = fruit.spin;
-            let (mass, inertia) = (1.0 / fruit.mass, 1.0 / fruit.inertia());
             self.account.brought += 0.5 * fruit.mass * dot(fruit.velocity, fruit.velocity)
                 + 0.5 * fruit.inertia() * dot(fruit.spin, fruit.spin)
                 - fruit.mass * dot(gravity, fruit.place);
-            self.bodies.place.push([x, y, z, fruit.radius]);
-            self.bodies.motion.push([u, v, w, mass, a, b, c, inertia]);
-            self.bodies.turn.push(Fruit::ORIENTATION);
-            self.bodies.fruit.push(number);
-            self.bodies.material.push(fruit.material as u32);
-            self.bodies.lifted.push(Vec::new());
+            self.enter(&FruitState {
+                fruit: number,
+                place: fruit.place,
+                velocity: plus_scaled(fruit.velocity, gravity, -0.5 * step),
+                spin: fruit.spin,
+                turn: Fruit::ORIENTATION,
+            });
             self.released += 1;
             came = true;
         }
@@ -62,6 +59,20 @@ impl Simulation {
             self.rebuild();
         }
         Ok(())
+    }
+
+    /// One body more; the list of neighbours does not know it yet.
+    pub(crate) fn enter(&mut self, state: &FruitState) {
+        let fruit = &self.scene.fruit[state.fruit as usize];
+        let ([x, y, z], [u, v, w]) = (state.place, state.velocity);
+        let [a, b, c] = state.spin;
+        let (mass, inertia) = (1.0 / fruit.mass, 1.0 / fruit.inertia());
+        self.bodies.place.push([x, y, z, fruit.radius]);
+        self.bodies.motion.push([u, v, w, mass, a, b, c, inertia]);
+        self.bodies.turn.push(state.turn);
+        self.bodies.fruit.push(state.fruit);
+        self.bodies.material.push(fruit.material as u32);
+        self.bodies.lifted.push(Vec::new());
     }
 
     /// Whether the fruit of the beginning have room.
