@@ -102,6 +102,13 @@ pub struct Blow {
     pub angle: f64,
 }
 
+crate::binary!(Blow {
+    spot,
+    absorbed_energy,
+    peak_force,
+    angle
+});
+
 impl Blow {
     /// A contact felt by a fruit.
     ///

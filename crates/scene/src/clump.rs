@@ -1,6 +1,6 @@
 //! Fruit that are no spheres: rigid clumps of spheres.
 
-use crate::vector::{Rotation, UNTURNED, Vector};
+use crate::vector::{Rotation, UNTURNED, Vector, dot, turned, turned_back};
 use std::f64::consts::PI;
 
 /// A body of spheres that do not move against each other; they may overlap.
@@ -62,6 +62,32 @@ impl Clump {
             b * (1.0 - along * along / (a * a)).max(0.0).sqrt() - off
         });
         pairs.fold(0.0, f64::max)
+    }
+
+    /// Angular momentum; kg m²/s.
+    #[must_use]
+    pub fn momentum(&self, turn: Rotation, spin: Vector) -> Vector {
+        let inward = turned_back(turn, spin);
+        turned(
+            turn,
+            [0, 1, 2].map(|axis| self.moments[axis] * inward[axis]),
+        )
+    }
+
+    /// Angular velocity of an angular momentum; rad/s.
+    #[must_use]
+    pub fn spin(&self, turn: Rotation, momentum: Vector) -> Vector {
+        let inward = turned_back(turn, momentum);
+        turned(
+            turn,
+            [0, 1, 2].map(|axis| inward[axis] / self.moments[axis]),
+        )
+    }
+
+    /// Energy of rotation; J.
+    #[must_use]
+    pub fn rotational(&self, turn: Rotation, spin: Vector) -> f64 {
+        0.5 * dot(self.momentum(turn, spin), spin)
     }
 
     /// Semi-axes of the ellipsoid of the same moments; m.

@@ -122,18 +122,34 @@ impl ClumpContacts {
         }
     }
 
+    /// Contacts of two fruit, with their numbers.
+    pub(crate) fn touching_pairs(&self) -> impl Iterator<Item = ([u32; 2], &Touching)> {
+        let pairs = self.pairs.iter();
+        pairs.filter_map(|(key, own)| Some((*key, own.contact.as_ref()?)))
+    }
+
+    /// Contacts with walls, with the numbers of the fruit.
+    pub(crate) fn touching_walls(&self) -> impl Iterator<Item = (u32, &TouchingWall)> {
+        let walls = self.walls.iter();
+        walls.flat_map(|(fruit, own)| own.contacts.iter().map(|own| (*fruit, own)))
+    }
+
+    /// A contact of two fruit that is there before a list is made.
+    pub(crate) fn put_pair(&mut self, fruit: [u32; 2], own: Touching) {
+        self.pairs.entry(fruit).or_default().contact = Some(own);
+    }
+
+    /// A contact with a wall that is there before a list is made.
+    pub(crate) fn put_wall(&mut self, fruit: u32, own: TouchingWall) {
+        self.walls.entry(fruit).or_default().contacts.push(own);
+    }
+
     /// What contacts remember that are still there, with the fruit and what they touch.
     pub(crate) fn all(&self) -> impl Iterator<Item = (u32, Partner, Parcel)> + '_ {
-        let pairs = self.pairs.iter().filter_map(|(key, own)| {
-            let own = own.contact.as_ref()?;
-            Some((key[0], Partner::Fruit(key[1]), own.parcel))
-        });
-        let walls = self.walls.iter().flat_map(|(fruit, own)| {
-            let contact =
-                |touch: &TouchingWall| (*fruit, Partner::Wall(touch.wall), touch.own.parcel);
-            own.contacts.iter().map(contact)
-        });
-        pairs.chain(walls)
+        let pairs = self.touching_pairs();
+        let pairs = pairs.map(|([a, b], own)| (a, Partner::Fruit(b), own.parcel));
+        let walls = self.touching_walls();
+        pairs.chain(walls.map(|(fruit, own)| (fruit, Partner::Wall(own.wall), own.own.parcel)))
     }
 
     /// Adds the forces of all to the loads of bodies, one step on; the work of walls, J.

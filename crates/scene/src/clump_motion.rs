@@ -1,14 +1,13 @@
 //! How clumps of spheres move.
 
 use crate::clump::Clump;
-use crate::gather::Sums;
+use crate::gather::{PART_OF_CLUMP, Sums};
 use crate::law_column::Four;
 use crate::neighbours::Bodies;
 use crate::scene::{Air, Fruit};
 use crate::store::Load;
 use crate::vector::{
-    Rotation, Vector, add, cross, dot, length, plus_scaled, scaled, subtract, turned, turned_back,
-    turned_on,
+    Rotation, Vector, add, cross, dot, length, plus_scaled, subtract, turned, turned_on,
 };
 use std::f64::consts::PI;
 use windfall_numerics::real::Lanes;
@@ -42,32 +41,35 @@ pub(crate) struct Around<'a> {
 }
 
 impl ClumpState {
-    /// A clump that comes in, and where its spheres are.
-    pub(crate) fn new(number: u32, fruit: &Fruit, own: &Clump, velocity: Vector) -> Self {
-        let inward = turned_back(own.turn, fruit.spin);
-        let momentum = [0, 1, 2].map(|axis| own.moments[axis] * inward[axis]);
+    /// The clump of a fruit; its spheres are not among the bodies yet.
+    ///
+    /// * `place`, m; `velocity`, m/s, and `spin`, rad/s: half a step ago
+    pub(crate) fn new(
+        shape: &Clump,
+        fruit: u32,
+        [place, velocity, spin]: [Vector; 3],
+        turn: Rotation,
+    ) -> Self {
         Self {
-            fruit: number,
-            place: fruit.place,
+            fruit,
+            place,
             velocity,
-            turn: own.turn,
-            momentum: turned(own.turn, momentum),
-            spin: fruit.spin,
-            bodies: Vec::new(),
+            turn,
+            momentum: shape.momentum(turn, spin),
+            spin,
+            bodies: vec![0; shape.spheres.len()],
         }
     }
 
-    /// From the centre to a point of the body, as it is turned now; m.
-    pub(crate) fn arm(&self, offset: Vector) -> Vector {
-        turned(self.turn, offset)
+    /// Where a sphere is, m, and its velocity half a step ago, m/s.
+    pub(crate) fn sphere(&self, offset: Vector, step: f64) -> (Vector, Vector) {
+        let before = turned_on(self.turn, self.spin, -0.5 * step);
+        let place = add(self.place, turned(self.turn, offset));
+        let velocity = add(self.velocity, cross(self.spin, turned(before, offset)));
+        (place, velocity)
     }
 
-    /// Velocity of a point; m/s.
-    pub(crate) fn velocity_at(&self, arm: Vector) -> Vector {
-        add(self.velocity, cross(self.spin, arm))
-    }
-
-    /// Energy of rotation; J.
+    /// Energy of rotation half a step ago; J.
     pub(crate) fn rotational(&self) -> f64 {
         0.5 * dot(self.momentum, self.spin)
     }
@@ -86,7 +88,7 @@ impl ClumpState {
         for &body in &self.bodies {
             let load = &around.loads[body as usize];
             let own = [load[0], load[1], load[2]];
-            let arm = self.arm(bodies.offset[body as usize]);
+            let arm = turned(self.turn, bodies.offset[body as usize]);
             force = add(force, own);
             moment = add(moment, add([load[4], load[5], load[6]], cross(arm, own)));
         }
@@ -99,45 +101,29 @@ impl ClumpState {
             sums.drag += drag * speed * speed * step;
         }
         let acceleration = plus_scaled(around.gravity, force, 1.0 / fruit.mass);
-        let spin_of = |momentum: Vector, turn: Rotation| {
-            let inward = turned_back(turn, momentum);
-            turned(
-                turn,
-                [0, 1, 2].map(|axis| inward[axis] / shape.moments[axis]),
-            )
-        };
         let now = plus_scaled(self.momentum, moment, 0.5 * step);
-        let spin = spin_of(now, self.turn);
+        let spin = shape.spin(self.turn, now);
         let velocity = plus_scaled(self.velocity, acceleration, 0.5 * step);
         sums.kinetic += 0.5 * fruit.mass * dot(velocity, velocity);
         sums.rotational += 0.5 * dot(now, spin);
         sums.potential -= fruit.mass * dot(around.gravity, self.place);
         let between = turned_on(self.turn, spin, 0.5 * step);
         self.momentum = plus_scaled(self.momentum, moment, step);
-        self.spin = spin_of(self.momentum, between);
+        self.spin = shape.spin(between, self.momentum);
         self.turn = turned_on(self.turn, self.spin, step);
         self.velocity = plus_scaled(self.velocity, acceleration, step);
         self.place = plus_scaled(self.place, self.velocity, step);
         for &body in &self.bodies {
             let body = body as usize;
-            let [x, y, z, radius] = bodies.place[body];
-            let next = add(self.place, self.arm(bodies.offset[body]));
-            // The step before was taken without knowing of the clump: its velocity is not.
-            let before = subtract([x, y, z], scaled(motion_of(bodies, body), step));
-            let [u, v, w] = scaled(subtract(next, before), 1.0 / step);
-            let [p, q, r] = self.spin;
-            let ([a, b, c], m) = (next, &mut bodies.motion[body]);
-            bodies.place[body] = [a, b, c, radius];
-            *m = [u, v, w, m[3], p, q, r, m[7]];
+            let (place, velocity) = self.sphere(bodies.offset[body], step);
+            let ([x, y, z], [u, v, w], [p, q, r]) = (place, velocity, self.spin);
+            let radius = bodies.place[body][3];
+            bodies.place[body] = [x, y, z, radius];
+            bodies.motion[body] = [u, v, w, PART_OF_CLUMP, p, q, r, PART_OF_CLUMP];
             bodies.turn[body] = self.turn;
             let Lanes([a, b, c, _]) = around.listed[body];
-            let way = subtract(next, [a, b, c]);
+            let way = subtract(place, [a, b, c]);
             sums.moved = sums.moved.max(dot(way, way));
         }
     }
-}
-
-fn motion_of(bodies: &Bodies, body: usize) -> Vector {
-    let m = &bodies.motion[body];
-    [m[0], m[1], m[2]]
 }

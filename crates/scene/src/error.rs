@@ -69,6 +69,12 @@ pub enum Error {
         /// Number of the fruit.
         fruit: u32,
     },
+    /// A state that belongs to another scene, or to none.
+    #[error("the saved state cannot be taken up: {problem}")]
+    StateUnfit {
+        /// What is wrong with it.
+        problem: String,
+    },
     /// A fruit is released where another one or a wall is.
     #[error(
         "{} is released at {place:?} m, where it overlaps {partner} by {overlap:.3e} m",

@@ -8,6 +8,7 @@
 //!
 //! This crate knows no instrument and no file, and reads no clock.
 
+pub mod binary;
 pub mod bruise;
 pub mod clump;
 mod clump_contacts;
@@ -32,6 +33,7 @@ mod relist;
 pub mod room;
 pub mod scene;
 pub mod simulation;
+pub mod state;
 mod store;
 pub mod time_step;
 mod traffic;

@@ -15,6 +15,12 @@ use windfall_numerics::real::Lanes;
 impl Simulation {
     /// A new list of neighbours; contacts go over into it.
     pub(crate) fn rebuild(&mut self) {
+        let carried = self.renew();
+        self.settle(carried);
+    }
+
+    /// A new list of neighbours without contacts; those of the old one as they go into it.
+    pub(crate) fn renew(&mut self) -> Vec<(usize, Law, Parcel)> {
         self.rebuilds += 1;
         self.lift();
         let (cells, order) = sort_into_cells(&mut self.bodies, self.skin);
@@ -57,6 +63,11 @@ impl Simulation {
                 }
             }
         }
+        carried
+    }
+
+    /// Contacts into a list that holds none of them, and what goes with the list.
+    pub(crate) fn settle(&mut self, mut carried: Vec<(usize, Law, Parcel)>) {
         // In the order of the list, in which they are worked through.
         carried.sort_unstable_by_key(|(entry, ..)| *entry);
         for (entry, law, parcel) in carried {
@@ -95,7 +106,12 @@ impl Simulation {
     }
 
     /// A contact of the old list as one of the new.
-    fn carried(&self, pair: (u32, u32), law: Law, parcel: Parcel) -> Option<(usize, Law, Parcel)> {
+    pub(crate) fn carried(
+        &self,
+        pair: (u32, u32),
+        law: Law,
+        parcel: Parcel,
+    ) -> Option<(usize, Law, Parcel)> {
         if pair.0 == NONE || pair.1 == NONE {
             return None;
         }
@@ -139,7 +155,7 @@ impl Simulation {
     }
 
     /// Number of the interaction of a body and a part of a wall.
-    fn interaction_with(&self, body: usize, facet: u32) -> usize {
+    pub(crate) fn interaction_with(&self, body: usize, facet: u32) -> usize {
         let wall = self.walls.facets[facet as usize].0 as usize;
         let material = self.bodies.material[body] as usize;
         self.numbers[material * self.scene.materials.len() + self.scene.walls[wall].material]

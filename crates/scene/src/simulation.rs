@@ -100,7 +100,15 @@ impl Simulation {
     ///
     /// # Errors
     /// The scene cannot be, see [`Scene::check`]; fruit of time zero overlap each other.
-    pub fn new(mut scene: Scene) -> Result<Self, Error> {
+    pub fn new(scene: Scene) -> Result<Self, Error> {
+        let mut simulation = Self::before_release(scene)?;
+        simulation.release()?;
+        simulation.check_room()?;
+        Ok(simulation)
+    }
+
+    /// A scene into which no fruit has come.
+    pub(crate) fn before_release(mut scene: Scene) -> Result<Self, Error> {
         scene.check()?;
         scene.fruit.sort_by(|a, b| a.time.total_cmp(&b.time));
         let mean = scene.fruit.iter().map(|fruit| fruit.radius).sum::<f64>();
@@ -125,7 +133,7 @@ impl Simulation {
             }
         });
         let wall_speed = wall_speed.fold(0.0, f64::max);
-        let mut simulation = Self {
+        Ok(Self {
             surfaces: scene.interactions.values().cloned().collect(),
             numbers: (0..materials * materials).map(number).collect(),
             walls: WallState::new(&scene.walls),
@@ -151,10 +159,7 @@ impl Simulation {
             taken: Vec::new(),
             account: Account::default(),
             rebuilds: 0,
-        };
-        simulation.release()?;
-        simulation.check_room()?;
-        Ok(simulation)
+        })
     }
 
     /// Time of the places; s.

@@ -5,9 +5,9 @@ use crate::error::{Error, fruit_name};
 use crate::event::{Event, Partner};
 use crate::gather::PART_OF_CLUMP;
 use crate::scene::{Fruit, Sink};
-use crate::simulation::{Leaving, Simulation};
+use crate::simulation::{FruitState, Leaving, Simulation};
 use crate::store::NONE;
-use crate::vector::{Vector, add, dot, length, plus_scaled, subtract};
+use crate::vector::{Vector, dot, length, plus_scaled, subtract};
 
 /// Overlap over the radius that fruit may have at the beginning; 1.
 const ROOM: f64 = 0.01;
@@ -46,17 +46,18 @@ impl Simulation {
             let fruit = &self.scene.fruit[self.released];
             self.account.brought += 0.5 * fruit.mass * dot(fruit.velocity, fruit.velocity)
                 - fruit.mass * dot(gravity, fruit.place);
-            let velocity = plus_scaled(fruit.velocity, gravity, -0.5 * step);
             self.account.brought += match &fruit.clump {
                 None => 0.5 * fruit.inertia() * dot(fruit.spin, fruit.spin),
-                Some(own) => {
-                    let clump = ClumpState::new(number, fruit, own, velocity);
-                    let energy = clump.rotational();
-                    self.clumps.push(clump);
-                    energy
-                }
+                Some(own) => own.rotational(own.turn, fruit.spin),
             };
-            self.let_in(self.released, velocity);
+            let turn = fruit.clump.as_ref().map(|own| own.turn);
+            self.enter(&FruitState {
+                fruit: number,
+                place: fruit.place,
+                velocity: plus_scaled(fruit.velocity, gravity, -0.5 * step),
+                spin: fruit.spin,
+                turn: turn.unwrap_or(Fruit::ORIENTATION),
+            });
             self.released += 1;
             came = true;
         }
@@ -66,44 +67,44 @@ impl Simulation {
         Ok(())
     }
 
-    /// The spheres of a fruit among the bodies.
-    fn let_in(&mut self, number: usize, velocity: Vector) {
-        let fruit = &self.scene.fruit[number];
+    /// One fruit more; the list of neighbours does not know it yet.
+    ///
+    /// * `state`: velocity half a step ago
+    pub(crate) fn enter(&mut self, state: &FruitState) {
+        let fruit = &self.scene.fruit[state.fruit as usize];
         let sphere = ([0.0; 3], fruit.radius);
-        let (spheres, inverse, clump) = match &fruit.clump {
+        let (spheres, inverse) = match &fruit.clump {
             None => (
                 std::slice::from_ref(&sphere),
                 [1.0 / fruit.mass, 1.0 / fruit.inertia()],
-                NONE,
             ),
-            Some(own) => {
-                let clump = self.clumps.len() - 1;
-                self.clumps[clump].bodies = vec![0; own.spheres.len()];
-                (&own.spheres[..], [PART_OF_CLUMP; 2], clump as u32)
-            }
+            Some(own) => (&own.spheres[..], [PART_OF_CLUMP; 2]),
         };
-        for (own, &(offset, radius)) in spheres.iter().enumerate() {
-            let (mut place, mut velocity, mut turn) = (fruit.place, velocity, Fruit::ORIENTATION);
-            if let Some(clump) = self.clumps.get(clump as usize) {
-                let arm = clump.arm(offset);
-                place = add(place, arm);
-                velocity = clump.velocity_at(arm);
-                turn = clump.turn;
-            }
-            let ([x, y, z], [u, v, w], [a, b, c]) = (place, velocity, fruit.spin);
+        let own = fruit.clump.as_ref().map(|own| {
+            let motion = [state.place, state.velocity, state.spin];
+            ClumpState::new(own, state.fruit, motion, state.turn)
+        });
+        let clump = own.as_ref().map_or(NONE, |_| self.clumps.len() as u32);
+        for (number, &(offset, radius)) in spheres.iter().enumerate() {
+            let (place, velocity) = match &own {
+                None => (state.place, state.velocity),
+                Some(own) => own.sphere(offset, self.scene.time_step),
+            };
+            let ([x, y, z], [u, v, w], [a, b, c]) = (place, velocity, state.spin);
             let bodies = &mut self.bodies;
             bodies.place.push([x, y, z, radius]);
             bodies
                 .motion
                 .push([u, v, w, inverse[0], a, b, c, inverse[1]]);
-            bodies.turn.push(turn);
-            bodies.fruit.push(number as u32);
+            bodies.turn.push(state.turn);
+            bodies.fruit.push(state.fruit);
             bodies.material.push(fruit.material as u32);
             bodies.clump.push(clump);
-            bodies.sphere.push(own as u32);
+            bodies.sphere.push(number as u32);
             bodies.offset.push(offset);
             bodies.lifted.push(Vec::new());
         }
+        self.clumps.extend(own);
     }
 
     /// Whether the fruit of the beginning have room.

@@ -27,6 +27,16 @@ impl WallMeeting {
         ])
     }
 
+    /// Its rows.
+    pub(crate) fn rows(&self) -> [[f64; 4]; 4] {
+        self.0.map(|Lanes(row)| row)
+    }
+
+    /// Of rows as [`WallMeeting::rows`] gives them.
+    pub(crate) fn of_rows(rows: [[f64; 4]; 4]) -> Self {
+        Self(rows.map(Lanes))
+    }
+
     /// From the fruit to the wall; length 1.
     pub(crate) fn normal(&self) -> Vector {
         let Lanes([x, y, z, _]) = self.0[0];

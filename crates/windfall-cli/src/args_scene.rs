@@ -19,10 +19,14 @@ where in space and on the fruit, impact speed, peak force, largest displacement,
 fruit.csv (every fruit with its hardest contact) and scene.json (what is printed). Units are in the names of \
 the columns; SI.
 
+A run that was stopped, by Ctrl-C, a full disk or a cut of power, goes on from its last checkpoint with --resume, \
+and gives the same files to the last digit; `checkpoint` in [scene] says how often one is made.
+
 Examples:
   windfall new scene my-scene
   windfall scene run my-scene/scene.toml
-  windfall scene run my-scene/scene.toml --out first-try --threads 2 --format json"
+  windfall scene run my-scene/scene.toml --out first-try --threads 2 --format json
+  windfall scene run my-scene/scene.toml --resume"
 )]
 pub struct SceneRunArguments {
     /// The scene
@@ -34,6 +38,12 @@ pub struct SceneRunArguments {
     /// Number of threads; all cores if left out. It never changes a result
     #[arg(long, value_name = "N")]
     pub threads: Option<usize>,
+    /// Go on with a run that was stopped, from its last checkpoint
+    #[arg(long, conflicts_with = "restart")]
+    pub resume: bool,
+    /// Begin anew where a run was stopped
+    #[arg(long)]
+    pub restart: bool,
     /// How the result is shown
     #[arg(long, value_enum, default_value_t)]
     pub format: Format,

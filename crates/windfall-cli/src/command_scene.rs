@@ -4,8 +4,12 @@ use crate::args_format::Format;
 use crate::args_scene::{SceneCommand, SceneRunArguments};
 use crate::command_fit::{moving, progress_bar};
 use crate::show::{write_json, write_result};
+use std::ops::ControlFlow;
+use std::sync::atomic::Ordering;
+use windfall::scene_run::SceneStart;
 use windfall::workflow_scene::{SceneRequest, run_scene};
 use windfall::write_scene::{csv_of_scene, text_of_scene};
+use windfall_web::interrupt::interruption;
 
 /// Runs what is asked of scenes.
 pub fn run(command: &SceneCommand) -> anyhow::Result<()> {
@@ -16,10 +20,19 @@ pub fn run(command: &SceneCommand) -> anyhow::Result<()> {
 
 fn run_one(arguments: &SceneRunArguments) -> anyhow::Result<()> {
     let bar = progress_bar();
-    let progress = moving(&bar);
+    let (shown, interrupted) = (moving(&bar), interruption());
+    let progress = |done, all| match interrupted.load(Ordering::Relaxed) {
+        true => ControlFlow::Break(()),
+        false => shown(done, all),
+    };
     let request = SceneRequest {
         out: arguments.out.clone(),
         threads: arguments.threads,
+        start: match (arguments.resume, arguments.restart) {
+            (true, _) => SceneStart::Resume,
+            (false, true) => SceneStart::Restart,
+            (false, false) => SceneStart::Fresh,
+        },
     };
     let outcome = run_scene(&arguments.file, &request, &progress);
     bar.finish_and_clear();

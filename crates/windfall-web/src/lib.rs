@@ -18,6 +18,7 @@ mod asset;
 mod described;
 mod given;
 mod guard;
+pub mod interrupt;
 mod job;
 mod openapi;
 mod problem;

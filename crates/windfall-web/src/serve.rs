@@ -2,6 +2,7 @@
 
 use crate::app::App;
 use crate::guard::{Guard, guarded};
+use crate::interrupt::interrupted;
 use crate::problem::Problem;
 use crate::{
     about, api_campaigns, api_changes, api_events, api_files, api_jobs, api_live, api_recordings,
@@ -146,22 +147,6 @@ fn token() -> Result<String, ServeError> {
     let mut bytes = [0; 16];
     getrandom::fill(&mut bytes).map_err(|error| ServeError::System(error.to_string()))?;
     Ok(bytes.iter().map(|byte| format!("{byte:02x}")).collect())
-}
-
-/// Ends when somebody interrupts the program, or the system asks it to end.
-async fn interrupted() {
-    #[cfg(unix)]
-    {
-        use tokio::signal::unix::{SignalKind, signal};
-        if let Ok(mut asked) = signal(SignalKind::terminate()) {
-            tokio::select! {
-                _ = tokio::signal::ctrl_c() => {}
-                _ = asked.recv() => {}
-            }
-            return;
-        }
-    }
-    let _ = tokio::signal::ctrl_c().await;
 }
 
 fn routes(app: App, guard: Arc<Guard>) -> Router {

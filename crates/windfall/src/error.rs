@@ -1,5 +1,7 @@
 //! What can go wrong with files and campaigns, said so that it can be mended.
 
+use crate::error_scene_run::SceneRunError;
+use crate::error_words::{after_refusal, nearest_columns, why_nothing};
 use crate::outcome::FailureOutcome;
 use std::path::PathBuf;
 
@@ -23,6 +25,9 @@ pub enum Error {
     /// A scene whose result would mean nothing from there on.
     #[error("the scene was stopped: {0}")]
     SceneStopped(Box<windfall_scene::error::Error>),
+    /// A run of a scene that does not begin or go on.
+    #[error("{0}")]
+    SceneRun(Box<SceneRunError>),
     /// A change that would leave no campaign that can be read.
     #[error("nothing was written: {problem}")]
     ChangeRefused {
@@ -433,7 +438,10 @@ pub enum Error {
         known: i64,
     },
     /// The database refused an operation.
-    #[error("{path}: cannot {action} the results: {source}", path = path.display())]
+    #[error(
+        "{path}: cannot {action} the results: {source}{}", after_refusal(action),
+        path = path.display()
+    )]
     Store {
         /// The file.
         path: PathBuf,
@@ -554,6 +562,9 @@ impl Error {
     /// work having failed.
     #[must_use]
     pub fn is_request(&self) -> bool {
+        if let Self::SceneRun(error) = self {
+            return error.is_request();
+        }
         !matches!(
             self,
             Self::FileAccess { .. }
@@ -571,24 +582,9 @@ impl Error {
     }
 }
 
-/// What stands above the message that nothing could be fitted.
-fn why_nothing(failures: &[FailureOutcome]) -> String {
-    match failures.len() {
-        0 => ": the campaign has no recordings".to_owned(),
-        1 => "; the message above says why".to_owned(),
-        n => format!("; the {n} messages above say why"),
-    }
-}
-
-fn nearest_columns(nearest: &[String], columns: usize) -> String {
-    match nearest {
-        [] => format!("the header has {columns} columns"),
-        some => format!(
-            "nearest in the header: {} ({columns} columns in all)",
-            some.iter()
-                .map(|name| format!("\"{name}\""))
-                .collect::<Vec<_>>()
-                .join(", ")
-        ),
+impl Error {
+    /// Of a run of a scene.
+    pub(crate) fn scene_run(error: SceneRunError) -> Self {
+        Self::SceneRun(Box::new(error))
     }
 }

@@ -52,6 +52,8 @@ pub struct SceneSection {
     pub time_step_error: Option<Spanned<QuantityText>>,
     /// When the scene ends.
     pub end: Option<Spanned<QuantityText>>,
+    /// Time of the scene between checkpoints, or "never".
+    pub checkpoint: Option<Spanned<QuantityText>>,
 }
 
 /// Gravity in a file.

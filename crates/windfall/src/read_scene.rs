@@ -51,6 +51,8 @@ pub struct ScenePlan {
     pub given_step: Option<(Place, String)>,
     /// What is to be known of the scene before it runs.
     pub findings: Vec<FindingOutcome>,
+    /// Time of the scene between checkpoints, where there are any; s.
+    pub checkpoint: Option<f64>,
 }
 
 /// Reads a scene and draws its fruit.
@@ -131,7 +133,37 @@ pub fn read_scene(path: &Path) -> Result<ScenePlan, Error> {
         bruise: bruise.transpose()?,
         given_step: timing.given,
         findings,
+        checkpoint: checkpoint(&source, &file)?,
     })
+}
+
+/// Time between checkpoints where the file does not say; s.
+const DEFAULT_CHECKPOINT: f64 = 0.5;
+
+fn checkpoint(source: &TomlSource, file: &SceneFile) -> Result<Option<f64>, Error> {
+    let Some(value) = &file.scene.checkpoint else {
+        return Ok(Some(DEFAULT_CHECKPOINT));
+    };
+    let text = value.get_ref().0.trim();
+    if text == "never" {
+        return Ok(None);
+    }
+    let key = needed(
+        "[scene]",
+        "checkpoint",
+        "time of the scene between checkpoints",
+        "s",
+        "checkpoint = \"0.5 s\"   or   \"never\"",
+    );
+    let time = optional_quantity(source, Some(value), &key)?;
+    match time.filter(|time| *time > 0.0 && time.is_finite()) {
+        Some(time) => Ok(Some(time)),
+        None => {
+            let problem = "it must be a time above zero, or \"never\"".to_owned();
+            let key = ("[scene]", "checkpoint");
+            Err(invalid(source, &value.span(), key, text, problem))
+        }
+    }
 }
 
 /// What `[[contacts]]` say, by the pair of materials.

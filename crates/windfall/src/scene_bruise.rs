@@ -1,9 +1,12 @@
 //! Bruises of a scene: from the contacts of each fruit to the share that is bruised.
 
+use crate::outcome::FindingOutcome;
 use crate::read_scene_bruise::BruisePlan;
 use crate::scene_key::FRUIT;
 use serde::Serialize;
 use std::collections::BTreeMap;
+use std::io::{Read, Result as IoResult, Write};
+use windfall_scene::binary::{Binary, no_value};
 use windfall_scene::bruise::{Blow, Bruise};
 use windfall_scene::event::{Event, Partner};
 use windfall_scene::scene::{Fruit, Scene};
@@ -20,6 +23,8 @@ pub struct Blows {
     /// all for a fruit.
     of: Vec<Vec<Blow>>,
     with: Vec<Vec<usize>>,
+    /// Contacts that were too many for a fruit, and weaker than all that are kept of it.
+    crowded: u64,
 }
 
 /// How many fruit are bruised, and where.
@@ -57,10 +62,27 @@ pub struct PlaceOutcome {
 
 /// Standard uncertainties below the threshold up to which contacts are kept.
 const REACH: f64 = 5.0;
+/// Contacts that are kept of a fruit: so many bruises are beyond all counting, and memory has
+/// a bound.
+pub const MOST_BLOWS: usize = 64;
 /// Draws of an interval, and their seed.
 const DRAWS: (usize, u64) = (1000, 1);
 /// Level of intervals; 1.
 const LEVEL: f64 = 0.95;
+
+/// That contacts were more than are kept.
+#[must_use]
+pub fn finding_of_blows(blows: &Blows) -> Option<FindingOutcome> {
+    let crowded = blows.crowded();
+    (crowded > 0).then(|| FindingOutcome {
+        code: "many-blows".to_owned(),
+        message: format!(
+            "of fruit with more than {MOST_BLOWS} contacts above the threshold only the \
+             {MOST_BLOWS} hardest count; {crowded} were left out. A larger threshold leaves out \
+             what does not bruise"
+        ),
+    })
+}
 
 impl Blows {
     /// None yet.
@@ -80,6 +102,7 @@ impl Blows {
             shares: shares.clone(),
             of: vec![Vec::new(); scene.fruit.len()],
             with: vec![Vec::new(); scene.fruit.len()],
+            crowded: 0,
         }
     }
 
@@ -108,6 +131,47 @@ impl Blows {
         if self.plan.model.volume(&blow) > 0.0 {
             self.of[fruit].push(blow);
             self.with[fruit].push(place);
+        }
+        if self.of[fruit].len() > MOST_BLOWS {
+            let volumes = self.of[fruit].iter().map(|own| self.plan.model.volume(own));
+            let weakest = volumes.enumerate().min_by(|a, b| a.1.total_cmp(&b.1));
+            if let Some((weakest, _)) = weakest {
+                self.of[fruit].remove(weakest);
+                self.with[fruit].remove(weakest);
+                self.crowded += 1;
+            }
+        }
+    }
+
+    /// Contacts above the threshold that are not kept: of a fruit that has more than
+    /// [`MOST_BLOWS`] the weakest.
+    #[must_use]
+    pub fn crowded(&self) -> u64 {
+        self.crowded
+    }
+
+    /// Writes what was counted.
+    ///
+    /// # Errors
+    /// Those of the writer.
+    pub fn save(&self, to: &mut dyn Write) -> IoResult<()> {
+        self.of.write(to)?;
+        self.with.write(to)?;
+        self.crowded.write(to)
+    }
+
+    /// Takes up what [`Blows::save`] wrote of the same scene.
+    ///
+    /// # Errors
+    /// Those of the reader; it is of another scene.
+    pub fn take_up(&mut self, from: &mut dyn Read) -> IoResult<()> {
+        let fruit = self.radii.len();
+        self.of = Binary::read(from)?;
+        self.with = Binary::read(from)?;
+        self.crowded = Binary::read(from)?;
+        match self.of.len() == fruit && self.with.len() == fruit {
+            true => Ok(()),
+            false => Err(no_value("bruises of this scene")),
         }
     }
 

@@ -4,9 +4,13 @@ use crate::outcome::FindingOutcome;
 use crate::read_scene::ScenePlan;
 use crate::scene_bruise::BruiseOutcome;
 use crate::scene_key::FRUIT;
+use crate::scene_levels::Levels;
 use serde::Serialize;
 use std::collections::BTreeMap;
+use std::io::{Read, Result as IoResult, Write};
 use std::path::PathBuf;
+use windfall_scene::binary;
+use windfall_scene::binary::{Binary, no_value};
 use windfall_scene::energy::Energy;
 use windfall_scene::event::{Event, Partner};
 use windfall_scene::scene::Scene;
@@ -133,6 +137,56 @@ pub struct FruitTally {
     pub left: Option<Leaving>,
 }
 
+binary!(FruitTally {
+    contacts,
+    hardest,
+    absorbed,
+    left
+});
+
+/// Contacts with one wall, or of fruit with fruit, in memory that does not grow with them.
+#[derive(Clone, Debug, Default)]
+pub struct PartnerTally {
+    /// Contacts.
+    pub contacts: u64,
+    /// A bit for each fruit that had one.
+    fruit: Vec<u64>,
+    /// Peak forces; N.
+    pub peak_force: Levels,
+    /// Impact speeds; m/s.
+    pub impact_speed: Levels,
+    /// Absorbed energies; J.
+    pub absorbed_energy: Levels,
+}
+
+binary!(PartnerTally {
+    contacts,
+    fruit,
+    peak_force,
+    impact_speed,
+    absorbed_energy
+});
+
+impl PartnerTally {
+    fn count(&mut self, event: &Event) {
+        self.contacts += 1;
+        let (word, bit) = (event.fruit as usize / 64, event.fruit % 64);
+        if self.fruit.len() <= word {
+            self.fruit.resize(word + 1, 0);
+        }
+        self.fruit[word] |= 1 << bit;
+        self.peak_force.add(event.peak_force);
+        self.impact_speed.add(event.normal_speed);
+        self.absorbed_energy.add(event.absorbed_energy);
+    }
+
+    /// Fruit that had one.
+    #[must_use]
+    pub fn fruit(&self) -> usize {
+        self.fruit.iter().map(|own| own.count_ones() as usize).sum()
+    }
+}
+
 /// What happened, counted as it happens.
 #[derive(Clone, Debug)]
 pub struct Tally {
@@ -140,11 +194,12 @@ pub struct Tally {
     pub fruit: Vec<FruitTally>,
     /// Contacts in all.
     pub contacts: u64,
-    /// Of each wall, by number; of fruit with fruit behind them: fruit, peak force (N),
-    /// impact speed (m/s), absorbed energy (J).
-    pub partners: Vec<Vec<(u32, [f32; 3])>>,
-    /// Impact speeds of pairs of materials, and how often: for the range of cards.
-    speeds: BTreeMap<(usize, usize), Vec<f32>>,
+    /// Of each wall, by number; of fruit with fruit behind them.
+    pub partners: Vec<PartnerTally>,
+    /// The fastest impact that the card of a pair of materials has seen; m/s.
+    seen: BTreeMap<(usize, usize), f64>,
+    /// Contacts of these pairs, and those of them that were faster.
+    speeds: BTreeMap<(usize, usize), (u64, u64)>,
     materials: Vec<usize>,
     walls: Vec<usize>,
 }
@@ -152,11 +207,15 @@ pub struct Tally {
 impl Tally {
     /// Nothing yet.
     #[must_use]
-    pub fn new(scene: &Scene) -> Self {
+    pub fn new(plan: &ScenePlan) -> Self {
+        let scene = &plan.scene;
+        let fastest = |card: &crate::law_card::LawCard| card.range.impact_velocity[1];
+        let cards = plan.cards.iter();
         Self {
             fruit: vec![FruitTally::default(); scene.fruit.len()],
             contacts: 0,
-            partners: vec![Vec::new(); scene.walls.len() + 1],
+            partners: vec![PartnerTally::default(); scene.walls.len() + 1],
+            seen: cards.map(|(pair, card)| (*pair, fastest(card))).collect(),
             speeds: BTreeMap::new(),
             materials: scene.fruit.iter().map(|fruit| fruit.material).collect(),
             walls: scene.walls.iter().map(|wall| wall.material).collect(),
@@ -174,14 +233,14 @@ impl Tally {
             }
             Partner::Wall(wall) => (wall as usize, self.walls[wall as usize]),
         };
-        let numbers = [event.peak_force, event.normal_speed, event.absorbed_energy];
-        self.partners[place].push((event.fruit, numbers.map(|own| own as f32)));
+        self.partners[place].count(event);
         let own = self.materials[event.fruit as usize];
-        let speeds = self
-            .speeds
-            .entry((own.min(other), own.max(other)))
-            .or_default();
-        speeds.push(event.normal_speed as f32);
+        let pair = (own.min(other), own.max(other));
+        if let Some(fastest) = self.seen.get(&pair) {
+            let (all, beyond) = self.speeds.entry(pair).or_default();
+            *all += 1;
+            *beyond += u64::from(event.normal_speed > *fastest);
+        }
     }
 
     fn suffer(&mut self, fruit: u32, event: &Event) {
@@ -202,6 +261,33 @@ impl Tally {
         self.fruit[leaving.fruit as usize].left = Some(*leaving);
     }
 
+    /// Writes what was counted.
+    ///
+    /// # Errors
+    /// Those of the writer.
+    pub fn save(&self, to: &mut dyn Write) -> IoResult<()> {
+        self.fruit.write(to)?;
+        self.contacts.write(to)?;
+        self.partners.write(to)?;
+        self.speeds.write(to)
+    }
+
+    /// Takes up what [`Tally::save`] wrote of the same scene.
+    ///
+    /// # Errors
+    /// Those of the reader; it is of another scene.
+    pub fn take_up(&mut self, from: &mut dyn Read) -> IoResult<()> {
+        let own = (self.fruit.len(), self.partners.len());
+        self.fruit = Binary::read(from)?;
+        self.contacts = Binary::read(from)?;
+        self.partners = Binary::read(from)?;
+        self.speeds = Binary::read(from)?;
+        match own == (self.fruit.len(), self.partners.len()) {
+            true => Ok(()),
+            false => Err(no_value("tally of this scene")),
+        }
+    }
+
     /// Fruit that left.
     #[must_use]
     pub fn left(&self) -> usize {
@@ -217,26 +303,16 @@ impl PartnerOutcome {
         let names = names.chain([FRUIT.to_owned()]);
         let rows = names
             .zip(&tally.partners)
-            .filter(|(_, contacts)| !contacts.is_empty());
-        rows.map(|(name, contacts)| {
-            let mut fruit: Vec<u32> = contacts.iter().map(|own| own.0).collect();
-            fruit.sort_unstable();
-            fruit.dedup();
-            let levels = |place: usize| {
-                let mut sorted: Vec<f32> = contacts.iter().map(|own| own.1[place]).collect();
-                sorted.sort_by(f32::total_cmp);
-                [0.5, 0.95, 1.0].map(|share| {
-                    let at = (share * sorted.len() as f64).ceil() as usize;
-                    f64::from(sorted[at.clamp(1, sorted.len()) - 1])
-                })
-            };
+            .filter(|(_, own)| own.contacts > 0);
+        rows.map(|(name, own)| {
+            let levels = |of: &Levels| [0.5, 0.95, 1.0].map(|share| of.level(share));
             Self {
                 name,
-                contacts: contacts.len(),
-                fruit: fruit.len(),
-                peak_force: levels(0),
-                impact_speed: levels(1),
-                absorbed_energy: levels(2),
+                contacts: own.contacts as usize,
+                fruit: own.fruit(),
+                peak_force: levels(&own.peak_force),
+                impact_speed: levels(&own.impact_speed),
+                absorbed_energy: levels(&own.absorbed_energy),
             }
         })
         .collect()
@@ -248,16 +324,12 @@ impl PartnerOutcome {
 pub fn findings_of_range(plan: &ScenePlan, tally: &Tally, waiting: usize) -> Vec<FindingOutcome> {
     let mut findings = Vec::new();
     for (pair, card) in &plan.cards {
-        let Some(speeds) = tally.speeds.get(pair) else {
+        let Some(&(all, beyond)) = tally.speeds.get(pair) else {
             continue;
         };
         let [_, fastest] = card.range.impact_velocity;
-        let beyond = speeds
-            .iter()
-            .filter(|own| f64::from(**own) > fastest)
-            .count();
         if beyond > 0 {
-            let share = 100.0 * beyond as f64 / speeds.len() as f64;
+            let share = 100.0 * beyond as f64 / all as f64;
             let names = [pair.0, pair.1].map(|own| plan.scene.materials[own].as_str());
             findings.push(FindingOutcome {
                 code: "law-range".to_owned(),

@@ -4,15 +4,15 @@ use crate::error::Error;
 use crate::on_threads::on_threads;
 use crate::progress::Progress;
 use crate::read_scene::{ScenePlan, read_scene};
-use crate::scene_bruise::Blows;
-use crate::scene_outcome::{PartnerOutcome, SceneOutcome, StepOutcome, Tally, findings_of_range};
+use crate::scene_bruise::finding_of_blows;
+use crate::scene_outcome::{PartnerOutcome, SceneOutcome, StepOutcome, findings_of_range};
+use crate::scene_run::{SceneRun, SceneStart, stopped_scene as stopped};
 use crate::scene_step::checked_step;
 use crate::write_file::write_whole;
-use crate::write_scene::{EventFile, fruit_table};
+use crate::write_scene::fruit_table;
 use std::path::{Path, PathBuf};
-use windfall_scene::event::Event;
+use windfall_scene::energy::Energy;
 use windfall_scene::scene::Scene;
-use windfall_scene::simulation::Simulation;
 use windfall_scene::time_step::Impact;
 use windfall_scene::vector::{add, dot, length};
 use windfall_scene::wall::Shape;
@@ -24,17 +24,17 @@ pub struct SceneRequest {
     pub out: Option<PathBuf>,
     /// Number of threads; all cores where it is left out.
     pub threads: Option<usize>,
+    /// What is to be done with a run that was stopped.
+    pub start: SceneStart,
 }
-
-/// Steps between looks at events and progress.
-const CHUNK: u64 = 64;
 
 /// Runs a scene and writes the contacts and the fruit into a directory.
 ///
-/// * `progress`: steps done, and all; where it does not go on nothing is kept
+/// * `progress`: steps done, and all; where it does not go on the last checkpoint is kept
 ///
 /// # Errors
-/// The file cannot be used; the result would mean nothing; the directory cannot be written.
+/// The file cannot be used; the result would mean nothing; the directory cannot be written,
+/// or holds a run that was stopped.
 pub fn run_scene(
     path: &Path,
     request: &SceneRequest,
@@ -60,84 +60,78 @@ fn run(
         action: "create",
         source,
     })?;
-    let mut simulation = Simulation::new(plan.scene.clone()).map_err(stopped)?;
     // Fruit are numbered in the order in which they come.
-    plan.scene = simulation.scene().clone();
-    let all = (plan.end / plan.scene.time_step).ceil() as u64;
-    let mut file = EventFile::create(&out.join("events.csv"), &plan.scene, plan.least_peak_force)?;
-    let mut tally = Tally::new(&plan.scene);
-    let mut blows = plan
-        .bruise
-        .as_ref()
-        .map(|bruise| Blows::new(bruise, &plan.scene, &plan.fruit_shares));
-    let mut count = |event: &Event, tally: &mut Tally, file: &mut EventFile| {
-        tally.count(event);
-        if let Some(blows) = &mut blows {
-            blows.count(event);
-        }
-        file.write(event)
-    };
-    let first = simulation.step_with_energy().map_err(stopped)?;
-    while simulation.steps() < all {
-        for _ in 0..CHUNK.min(all - simulation.steps()) {
-            simulation.step().map_err(stopped)?;
-        }
-        for event in simulation.take_events() {
-            count(&event, &mut tally, &mut file)?;
-        }
-        for leaving in simulation.take_leavings() {
-            tally.leave(&leaving);
-        }
-        if progress(simulation.steps() as usize, all as usize).is_break() {
-            return Err(Error::Cancelled);
-        }
+    plan.scene.fruit.sort_by(|a, b| a.time.total_cmp(&b.time));
+    let mut run = SceneRun::begin(&plan, &out, request.start)?;
+    run.to_end(progress)?;
+    let last = run.simulation.step_with_energy().map_err(stopped)?;
+    for event in run.simulation.lasting() {
+        run.count(&event).map_err(|error| run.told(error))?;
     }
-    let last = simulation.step_with_energy().map_err(stopped)?;
-    for event in simulation.lasting() {
-        count(&event, &mut tally, &mut file)?;
-    }
-    let written = file.finish()?;
-    let fruit = out.join("fruit.csv");
-    let states = simulation.fruit();
-    let bruised = plan.bruise.as_ref().zip(blows.as_ref());
-    let bruises = bruised.map(|(bruise, blows)| blows.bruises(bruise));
-    let table = fruit_table(&plan, &tally, &states, bruises.as_deref())?;
-    write_whole(&fruit, table.as_bytes())?;
-    let outcome = SceneOutcome {
+    let outcome = outcome_of(&plan, &run, (step, &last), &out);
+    let written = write_results(&plan, &mut run, &outcome);
+    written.map_err(|error| run.told(error))?;
+    run.finish()?;
+    Ok(outcome)
+}
+
+/// What came of a run.
+fn outcome_of(
+    plan: &ScenePlan,
+    run: &SceneRun,
+    (step, last): (StepOutcome, &Energy),
+    out: &Path,
+) -> SceneOutcome {
+    let (simulation, tally) = (&run.simulation, &run.tally);
+    let bruised = plan.bruise.as_ref().zip(run.blows.as_ref());
+    let mut findings = plan.findings.clone();
+    findings.extend(findings_of_range(plan, tally, simulation.waiting()));
+    findings.extend(bruised.and_then(|(_, blows)| finding_of_blows(blows)));
+    SceneOutcome {
         title: plan.title.clone(),
         end: plan.end,
         step: StepOutcome {
             time_step: plan.scene.time_step,
             ..step
         },
-        steps: all,
+        steps: simulation.steps() - 1,
         fruit: plan.scene.fruit.len(),
         waiting: simulation.waiting(),
         left: tally.left(),
         contacts: tally.contacts,
-        written,
-        partners: PartnerOutcome::of(&plan.scene, &tally),
+        written: run.table.written(),
+        partners: PartnerOutcome::of(&plan.scene, tally),
         bruise: bruised.map(|(bruise, blows)| blows.outcome(bruise, &plan.scene)),
-        energy: (&last).into(),
-        energy_closure: (last.closure() - first.closure())
+        energy: last.into(),
+        energy_closure: (last.closure() - run.first_closure)
             / last.lost().abs().max(f64::MIN_POSITIVE),
-        findings: [
-            plan.findings.clone(),
-            findings_of_range(&plan, &tally, simulation.waiting()),
-        ]
-        .concat(),
-        files: vec![out.join("events.csv"), fruit, out.join("scene.json")],
+        findings,
+        files: ["events.csv", "fruit.csv", "scene.json"]
+            .map(|name| out.join(name))
+            .to_vec(),
+    }
+}
+
+/// Writes all but the table of contacts, whose name is the sign that all is there.
+fn write_results(
+    plan: &ScenePlan,
+    run: &mut SceneRun,
+    outcome: &SceneOutcome,
+) -> Result<(), Error> {
+    run.table.sync()?;
+    let [_, fruit, summary] = &outcome.files[..] else {
+        return Ok(());
     };
-    let json = serde_json::to_string_pretty(&outcome).map_err(|error| Error::ResultUnwritable {
+    let states = run.simulation.fruit();
+    let bruised = plan.bruise.as_ref().zip(run.blows.as_ref());
+    let bruises = bruised.map(|(bruise, blows)| blows.bruises(bruise));
+    let table = fruit_table(plan, &run.tally, &states, bruises.as_deref())?;
+    write_whole(fruit, table.as_bytes())?;
+    let json = serde_json::to_string_pretty(outcome).map_err(|error| Error::ResultUnwritable {
         item: plan.title.clone(),
         detail: error.to_string(),
     })?;
-    write_whole(&out.join("scene.json"), (json + "\n").as_bytes())?;
-    Ok(outcome)
-}
-
-fn stopped(problem: windfall_scene::error::Error) -> Error {
-    Error::SceneStopped(Box::new(problem))
+    write_whole(summary, (json + "\n").as_bytes())
 }
 
 /// Sets the time step where it is automatic; what it does to the stiffest contact.

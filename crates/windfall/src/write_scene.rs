@@ -1,15 +1,17 @@
 //! Contacts and fruit of a scene as tables.
 
 use crate::error::Error;
+use crate::error_scene_run::SceneRunError;
 use crate::read_scene::ScenePlan;
 use crate::scene_bruise::BruiseOutcome;
+use crate::scene_checkpoint::damaged;
 use crate::scene_key::FRUIT;
 use crate::scene_outcome::{SceneOutcome, Tally};
 use crate::text_statistic::number;
 use crate::write_csv::csv_text;
 use crate::write_table::page_tables;
-use std::fs::File;
-use std::io::{BufWriter, Write};
+use std::fs::{File, TryLockError};
+use std::io::{BufWriter, Seek, SeekFrom, Write};
 use std::path::{Path, PathBuf};
 use windfall_scene::bruise::Bruise;
 use windfall_scene::event::{Event, Partner};
@@ -29,6 +31,20 @@ pub struct EventFile {
     walls: Vec<String>,
     least: f64,
     written: u64,
+    /// Whether what is not finished stays: a checkpoint goes on from it.
+    keep: bool,
+}
+
+/// Where a table stands until it is whole.
+fn partial_of(path: &Path) -> PathBuf {
+    path.with_extension("csv.partial")
+}
+
+/// Whether a table was begun and not finished, and whether somebody is at it now.
+#[must_use]
+pub fn is_written(path: &Path) -> Option<bool> {
+    let file = File::options().write(true).open(partial_of(path)).ok()?;
+    Some(matches!(file.try_lock(), Err(TryLockError::WouldBlock)))
 }
 
 impl EventFile {
@@ -39,18 +55,90 @@ impl EventFile {
     /// # Errors
     /// It cannot be written.
     pub fn create(path: &Path, scene: &Scene, least: f64) -> Result<Self, Error> {
-        let partial = path.with_extension(format!("csv.{}.partial", std::process::id()));
+        let mut own = Self::open(path, scene, least, (0, 0))?;
+        own.keep = false;
+        writeln!(own.file, "{EVENT_COLUMNS}").map_err(|source| access(path, source))?;
+        Ok(own)
+    }
+
+    /// A table that goes on.
+    ///
+    /// * `length`, `written`: bytes and rows of it that count; what is behind is cut off
+    ///
+    /// # Errors
+    /// It is shorter, or cannot be written.
+    pub fn resume(
+        path: &Path,
+        scene: &Scene,
+        least: f64,
+        (length, written): (u64, u64),
+    ) -> Result<Self, Error> {
+        let partial = partial_of(path);
+        let there = std::fs::metadata(&partial).map_or(0, |own| own.len());
+        if there < length {
+            let problem = format!(
+                "the table has {there} bytes, and the checkpoint goes on behind {length} of them"
+            );
+            return Err(damaged(&partial, problem));
+        }
+        Self::open(path, scene, least, (length, written))
+    }
+
+    fn open(
+        path: &Path,
+        scene: &Scene,
+        least: f64,
+        (length, written): (u64, u64),
+    ) -> Result<Self, Error> {
+        let partial = partial_of(path);
         let failed = |source| access(path, source);
-        let mut file = BufWriter::new(File::create(&partial).map_err(failed)?);
-        writeln!(file, "{EVENT_COLUMNS}").map_err(failed)?;
+        let options = File::options()
+            .create(true)
+            .write(true)
+            .truncate(false)
+            .clone();
+        let mut file = options.open(&partial).map_err(failed)?;
+        // Two at once would mix their rows; a system without locks does without.
+        if let Err(TryLockError::WouldBlock) = file.try_lock() {
+            let path = path.to_path_buf();
+            return Err(Error::scene_run(SceneRunError::Busy { path }));
+        }
+        file.set_len(length)
+            .and_then(|()| file.seek(SeekFrom::Start(length)))
+            .map_err(failed)?;
         Ok(Self {
             path: path.to_path_buf(),
             partial,
-            file,
+            file: BufWriter::new(file),
             walls: scene.walls.iter().map(|wall| quoted(&wall.name)).collect(),
             least,
-            written: 0,
+            written,
+            keep: true,
         })
+    }
+
+    /// Brings all rows so far to the disk; the bytes of the table.
+    ///
+    /// # Errors
+    /// It cannot be written, such as where the disk is full.
+    pub fn sync(&mut self) -> Result<u64, Error> {
+        let path = &self.path;
+        self.file
+            .flush()
+            .and_then(|()| self.file.get_ref().sync_all())
+            .and_then(|()| self.file.stream_position())
+            .map_err(|source| access(path, source))
+    }
+
+    /// Rows so far.
+    #[must_use]
+    pub fn written(&self) -> u64 {
+        self.written
+    }
+
+    /// Whether the rows so far stay where the table is not finished.
+    pub fn keep(&mut self, keep: bool) {
+        self.keep = keep;
     }
 
     /// One contact more.
@@ -89,20 +177,20 @@ impl EventFile {
     /// # Errors
     /// It cannot be written.
     pub fn finish(mut self) -> Result<u64, Error> {
-        let done = self
-            .file
-            .flush()
-            .and_then(|()| self.file.get_ref().sync_all());
-        done.and_then(|()| std::fs::rename(&self.partial, &self.path))
-            .map_err(|source| access(&self.path, source))?;
+        self.sync()?;
+        std::fs::rename(&self.partial, &self.path).map_err(|source| access(&self.path, source))?;
+        // There is nothing under the other name any more.
+        self.keep = true;
         Ok(self.written)
     }
 }
 
-/// What was not finished leaves nothing behind.
+/// What was not finished leaves nothing behind, but for a checkpoint.
 impl Drop for EventFile {
     fn drop(&mut self) {
-        let _ = std::fs::remove_file(&self.partial);
+        if !self.keep {
+            let _ = std::fs::remove_file(&self.partial);
+        }
     }
 }
 

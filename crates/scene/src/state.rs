@@ -1,0 +1,493 @@
+//! The state of a scene that runs: saved, and taken up again with the same bits.
+
+use crate::binary;
+use crate::binary::{Binary, no_value};
+use crate::clump_contacts::{ClumpContacts, Touching, TouchingWall};
+use crate::contact::Parcel;
+use crate::energy::Account;
+use crate::error::Error;
+use crate::event::{Encounter, Event, Partner};
+use crate::neighbours::{Bodies, PairTable};
+use crate::react::{History, Memory};
+use crate::scene::Scene;
+use crate::simulation::{FruitState, Leaving, Simulation};
+use crate::vector::{Vector, scaled};
+use crate::wall_contacts::Lifted;
+use crate::wall_forces::WallMeeting;
+use std::io::{Read, Result as IoResult, Write};
+use windfall_contact::any_law::LARGEST_PARAMETERS;
+use windfall_contact::law_kind::{Law, LawKind};
+
+/// All that a scene remembers from step to step; bytes by [`Binary`].
+#[derive(Clone, Debug)]
+pub struct State {
+    steps: u64,
+    rebuilds: u64,
+    account: Account,
+    /// Where each fruit that was released came in; m.
+    entered: Vec<Vector>,
+    /// Fruit in the scene, by number.
+    fruit: Vec<FruitState>,
+    /// Contacts with walls and the places of their fruit in `fruit`.
+    walls: Vec<(u32, WallContactState)>,
+    /// Contacts of two fruit, by their numbers.
+    pairs: Vec<PairState>,
+    /// Angular momenta of clumps half a step ago, with the numbers of the fruit; kg m²/s.
+    momenta: Vec<(u32, Vector)>,
+    /// Contacts of clumps with other fruit.
+    clump_pairs: Vec<PairState>,
+    /// Contacts of clumps with walls, with the numbers of the fruit.
+    clump_walls: Vec<(u32, ClumpWallState)>,
+}
+
+/// Parameters of a law; zeros behind them.
+type Parameters = [f64; LARGEST_PARAMETERS];
+
+/// A contact of two fruit, as the one with the lower number sees it.
+#[derive(Clone, Debug)]
+struct PairState {
+    fruit: [u32; 2],
+    law: Parameters,
+    scale: f64,
+    history: History,
+    rolling: Vector,
+    encounter: Encounter,
+}
+
+/// A contact of a clump with a wall.
+#[derive(Clone, Debug)]
+struct ClumpWallState {
+    wall: u32,
+    normal: Vector,
+    force: Vector,
+    law: Parameters,
+    scale: f64,
+    history: History,
+    rolling: Vector,
+    encounter: Encounter,
+}
+
+/// A contact with a part of a wall.
+#[derive(Clone, Debug)]
+struct WallContactState {
+    facet: u32,
+    law: Parameters,
+    scale: f64,
+    history: History,
+    rolling: Vector,
+    encounter: Encounter,
+    meeting: [[f64; 4]; 4],
+    force: Vector,
+}
+
+binary!(State {
+    steps,
+    rebuilds,
+    account,
+    entered,
+    fruit,
+    walls,
+    pairs,
+    momenta,
+    clump_pairs,
+    clump_walls
+});
+binary!(ClumpWallState {
+    wall,
+    normal,
+    force,
+    law,
+    scale,
+    history,
+    rolling,
+    encounter
+});
+binary!(PairState {
+    fruit,
+    law,
+    scale,
+    history,
+    rolling,
+    encounter
+});
+binary!(WallContactState {
+    facet,
+    law,
+    scale,
+    history,
+    rolling,
+    encounter,
+    meeting,
+    force
+});
+binary!(FruitState {
+    fruit,
+    place,
+    velocity,
+    spin,
+    turn
+});
+binary!(Account {
+    normal,
+    friction,
+    drag,
+    walls,
+    brought
+});
+binary!(Memory<f64> {
+    elastic, tangential, stiffness, normal, rate, peak, peak_force, work, friction_work, pushed
+});
+binary!(Encounter {
+    time,
+    place,
+    spot,
+    other_spot,
+    normal_speed,
+    tangential_speed
+});
+binary!(Leaving { fruit, time, sink });
+binary!(Event {
+    fruit,
+    partner,
+    time,
+    duration,
+    lasting,
+    place,
+    spot,
+    other_spot,
+    normal_speed,
+    tangential_speed,
+    peak_force,
+    largest_displacement,
+    absorbed_energy,
+    friction_energy
+});
+
+impl Binary for Partner {
+    fn write(&self, to: &mut dyn Write) -> IoResult<()> {
+        let (wall, number) = match self {
+            Self::Fruit(number) => (false, number),
+            Self::Wall(number) => (true, number),
+        };
+        wall.write(to)?;
+        number.write(to)
+    }
+
+    fn read(from: &mut dyn Read) -> IoResult<Self> {
+        let wall = bool::read(from)?;
+        let number = u32::read(from)?;
+        Ok(if wall {
+            Self::Wall(number)
+        } else {
+            Self::Fruit(number)
+        })
+    }
+}
+
+impl State {
+    /// Steps that were done.
+    #[must_use]
+    pub fn steps(&self) -> u64 {
+        self.steps
+    }
+
+    /// Whether it is one of this scene.
+    fn check(&self, scene: &Scene, facets: usize) -> IoResult<()> {
+        let released = self.entered.len();
+        let fruit = |number: u32| (number as usize) < released;
+        let ordered = self.fruit.windows(2).all(|own| own[0].fruit < own[1].fruit);
+        let there = |number: u32| {
+            let place = self.fruit.binary_search_by_key(&number, |own| own.fruit);
+            place.is_ok()
+        };
+        let known = released <= scene.fruit.len()
+            && ordered
+            && self.fruit.iter().all(|own| fruit(own.fruit))
+            && self
+                .pairs
+                .iter()
+                .chain(&self.clump_pairs)
+                .all(|own| own.fruit.into_iter().all(there))
+            && self.momenta.iter().all(|(fruit, _)| there(*fruit))
+            && self
+                .clump_walls
+                .iter()
+                .all(|(fruit, own)| there(*fruit) && (own.wall as usize) < scene.walls.len())
+            && self.walls.iter().all(|(body, own)| {
+                (*body as usize) < self.fruit.len() && (own.facet as usize) < facets
+            });
+        if known {
+            Ok(())
+        } else {
+            Err(no_value("state of this scene"))
+        }
+    }
+}
+
+fn parameters(law: &Law) -> Parameters {
+    let mut all = [0.0; LARGEST_PARAMETERS];
+    for (own, value) in all.iter_mut().zip(law.parameters()) {
+        *own = value;
+    }
+    all
+}
+
+/// The law of these parameters; laws of an interaction keep its kind.
+fn law_of(kind: LawKind, own: &Parameters) -> IoResult<Law> {
+    let count = kind.describe().parameters.len();
+    let values = own.get(..count).unwrap_or(own);
+    kind.from_values(values)
+        .ok_or_else(|| no_value("law of this scene"))
+}
+
+impl Simulation {
+    /// The state now. A simulation that takes it up with [`Simulation::resume`] gives the
+    /// same bits as this one from here on, on any number of threads.
+    ///
+    /// Sums depend on the order of the list of neighbours, which has a history; so this one
+    /// takes its own state up as well: where checkpoints are made belongs to what a run is.
+    /// Events and leavings that were not taken yet stay here, and are not part of the state.
+    ///
+    /// # Errors
+    /// None in practice: the state is this scene's own.
+    pub fn checkpoint(&mut self) -> Result<State, Error> {
+        self.lift();
+        let state = self.state();
+        self.take_up(&state)?;
+        Ok(state)
+    }
+
+    /// A scene that goes on from a state.
+    ///
+    /// # Errors
+    /// The scene cannot be, see [`Scene::check`]; the state is of another scene.
+    pub fn resume(scene: Scene, state: &State) -> Result<Self, Error> {
+        let mut simulation = Self::before_release(scene)?;
+        simulation.take_up(state)?;
+        Ok(simulation)
+    }
+
+    /// The state; contacts with walls are lifted out of their stores.
+    fn state(&self) -> State {
+        let fruit = self.fruit();
+        let place_of = |body: usize| {
+            let number = self.bodies.fruit[body];
+            // Every body is among them.
+            fruit.partition_point(|own| own.fruit < number) as u32
+        };
+        let mut walls = Vec::new();
+        for (body, contacts) in self.bodies.lifted.iter().enumerate() {
+            walls.extend(contacts.iter().map(|own| (place_of(body), wall_state(own))));
+        }
+        walls.sort_by_key(|own| own.0);
+        let mut pairs = Vec::with_capacity(self.pair_contacts());
+        for (parts, contacts) in self.table.blocks.iter().zip(&self.contacts) {
+            for ((_, range), contacts) in parts.iter().zip(contacts) {
+                for contact in 0..contacts.count() {
+                    let (entry, law, parcel) = contacts.at(contact);
+                    let entry = range.start + entry as usize;
+                    let number = |body: u32| self.bodies.fruit[body as usize];
+                    let fruit = [
+                        number(self.table.first[entry]),
+                        number(self.table.second[entry]),
+                    ];
+                    pairs.push(pair_state(fruit, &law, parcel));
+                }
+            }
+        }
+        pairs.sort_unstable_by_key(|own| own.fruit);
+        let entered = self.scene.fruit[..self.released].iter();
+        State {
+            steps: self.steps,
+            rebuilds: self.rebuilds,
+            account: self.account,
+            entered: entered.map(|own| own.place).collect(),
+            fruit,
+            walls,
+            pairs,
+            momenta: self
+                .clumps
+                .iter()
+                .map(|own| (own.fruit, own.momentum))
+                .collect(),
+            clump_pairs: self
+                .clump_contacts
+                .touching_pairs()
+                .map(|(fruit, own)| pair_state(fruit, &own.law, own.parcel))
+                .collect(),
+            clump_walls: self
+                .clump_contacts
+                .touching_walls()
+                .map(|(fruit, own)| (fruit, clump_wall_state(own)))
+                .collect(),
+        }
+    }
+
+    /// Goes on from a state with a list of neighbours that knows no other past.
+    fn take_up(&mut self, state: &State) -> Result<(), Error> {
+        let unfit = |problem: std::io::Error| Error::StateUnfit {
+            problem: problem.to_string(),
+        };
+        state
+            .check(&self.scene, self.walls.facets.len())
+            .map_err(unfit)?;
+        (self.steps, self.rebuilds) = (state.steps, state.rebuilds);
+        (self.account, self.released) = (state.account, state.entered.len());
+        for (fruit, place) in self.scene.fruit.iter_mut().zip(&state.entered) {
+            fruit.place = *place;
+        }
+        self.bodies = Bodies::default();
+        (self.table, self.contacts) = (PairTable::default(), Vec::new());
+        (self.near, self.near_start) = (Vec::new(), vec![0]);
+        self.clumps = Vec::new();
+        let mut first_body = Vec::with_capacity(state.fruit.len());
+        for own in &state.fruit {
+            first_body.push(self.bodies.len());
+            self.enter(own);
+        }
+        for (fruit, momentum) in &state.momenta {
+            let own = self.clumps.iter_mut().find(|own| own.fruit == *fruit);
+            if let Some(own) = own {
+                own.momentum = *momentum;
+            }
+        }
+        self.clump_contacts = self.contacts_of_clumps(state).map_err(unfit)?;
+        for (fruit, own) in &state.walls {
+            let body = first_body[*fruit as usize];
+            let kind = self.surfaces[self.interaction_with(body, own.facet)]
+                .law
+                .kind();
+            let law = law_of(kind, &own.law).map_err(unfit)?;
+            self.bodies.lifted[body].push(lifted(own, law));
+        }
+        // Nothing is in a list: there is none.
+        self.renew();
+        let mut body_of = vec![0; self.released];
+        for (body, &fruit) in self.bodies.fruit.iter().enumerate() {
+            body_of[fruit as usize] = body as u32;
+        }
+        let mut carried = Vec::with_capacity(state.pairs.len());
+        for own in &state.pairs {
+            let [first, second] = own.fruit.map(|fruit| body_of[fruit as usize]);
+            let material = |body: u32| self.bodies.material[body as usize] as usize;
+            let kind = self.kind_between(material(first), material(second));
+            let law = law_of(kind, &own.law).map_err(unfit)?;
+            carried.extend(self.carried((first, second), law, parcel(own)));
+        }
+        self.settle(carried);
+        Ok(())
+    }
+
+    /// Contacts of clumps; where they may touch is not listed yet.
+    fn contacts_of_clumps(&self, state: &State) -> IoResult<ClumpContacts> {
+        let mut contacts = ClumpContacts::default();
+        let material = |fruit: u32| self.scene.fruit[fruit as usize].material;
+        for own in &state.clump_pairs {
+            let [first, second] = own.fruit.map(material);
+            let law = law_of(self.kind_between(first, second), &own.law)?;
+            let parcel = parcel(own);
+            contacts.put_pair(own.fruit, Touching { law, parcel });
+        }
+        for (fruit, own) in &state.clump_walls {
+            let wall = self.scene.walls[own.wall as usize].material;
+            let law = law_of(self.kind_between(material(*fruit), wall), &own.law)?;
+            let parcel = Parcel {
+                scale: own.scale,
+                history: own.history,
+                rolling: own.rolling,
+                encounter: own.encounter,
+            };
+            contacts.put_wall(
+                *fruit,
+                TouchingWall {
+                    wall: own.wall,
+                    normal: own.normal,
+                    force: own.force,
+                    own: Touching { law, parcel },
+                },
+            );
+        }
+        Ok(contacts)
+    }
+
+    fn kind_between(&self, material: usize, other: usize) -> LawKind {
+        let number = self.numbers[material * self.scene.materials.len() + other];
+        self.surfaces[number].law.kind()
+    }
+}
+
+fn pair_state(fruit: [u32; 2], law: &Law, parcel: Parcel) -> PairState {
+    let swap = fruit[1] < fruit[0];
+    let [a, b] = fruit;
+    PairState {
+        fruit: [a.min(b), a.max(b)],
+        law: parameters(law),
+        scale: parcel.scale,
+        history: if swap {
+            parcel.history.swapped()
+        } else {
+            parcel.history
+        },
+        rolling: if swap {
+            scaled(parcel.rolling, -1.0)
+        } else {
+            parcel.rolling
+        },
+        encounter: if swap {
+            parcel.encounter.swapped()
+        } else {
+            parcel.encounter
+        },
+    }
+}
+
+fn parcel(own: &PairState) -> Parcel {
+    Parcel {
+        scale: own.scale,
+        history: own.history,
+        rolling: own.rolling,
+        encounter: own.encounter,
+    }
+}
+
+fn wall_state(own: &Lifted) -> WallContactState {
+    WallContactState {
+        facet: own.facet,
+        law: parameters(&own.law),
+        scale: own.parcel.scale,
+        history: own.parcel.history,
+        rolling: own.parcel.rolling,
+        encounter: own.parcel.encounter,
+        meeting: own.meeting.rows(),
+        force: own.force,
+    }
+}
+
+fn clump_wall_state(own: &TouchingWall) -> ClumpWallState {
+    let parcel = own.own.parcel;
+    ClumpWallState {
+        wall: own.wall,
+        normal: own.normal,
+        force: own.force,
+        law: parameters(&own.own.law),
+        scale: parcel.scale,
+        history: parcel.history,
+        rolling: parcel.rolling,
+        encounter: parcel.encounter,
+    }
+}
+
+fn lifted(own: &WallContactState, law: Law) -> Lifted {
+    Lifted {
+        facet: own.facet,
+        law,
+        parcel: Parcel {
+            scale: own.scale,
+            history: own.history,
+            rolling: own.rolling,
+            encounter: own.encounter,
+        },
+        meeting: WallMeeting::of_rows(own.meeting),
+        force: own.force,
+    }
+}
