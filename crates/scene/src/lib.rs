@@ -9,7 +9,9 @@
 //! This crate knows no instrument and no file, and reads no clock.
 
 pub mod bruise;
+pub mod bruise_regression;
 mod contact;
+pub mod draws;
 pub mod energy;
 pub mod error;
 pub mod event;

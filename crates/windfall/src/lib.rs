@@ -6,6 +6,7 @@
 
 pub mod acoustic_document;
 pub mod any_outcome;
+pub mod bruise_expression;
 pub mod calibrate_card;
 pub mod calibrate_design;
 pub mod calibrate_drops;
@@ -139,6 +140,8 @@ pub mod read_rig;
 pub mod read_scene;
 pub mod read_scene_bruise;
 pub mod read_scene_fruit;
+pub mod read_scene_properties;
+pub mod read_scene_regression;
 pub mod read_scene_walls;
 pub mod read_tables;
 pub mod recording_channel;
@@ -168,8 +171,10 @@ pub mod scan_time;
 pub mod scan_value;
 pub mod scene_bruise;
 pub mod scene_card;
+pub mod scene_histogram;
 pub mod scene_key;
 pub mod scene_outcome;
+pub mod scene_static;
 pub mod simulate_campaign;
 pub mod simulate_compression;
 pub mod simulate_drops;

@@ -3,7 +3,9 @@
 use crate::outcome::FindingOutcome;
 use crate::read_scene::ScenePlan;
 use crate::scene_bruise::BruiseOutcome;
+use crate::scene_histogram::HistogramOutcome;
 use crate::scene_key::FRUIT;
+use crate::scene_static::StaticLoads;
 use serde::Serialize;
 use std::collections::BTreeMap;
 use std::path::PathBuf;
@@ -35,6 +37,8 @@ pub struct SceneOutcome {
     pub written: u64,
     /// Contacts by what was touched.
     pub partners: Vec<PartnerOutcome>,
+    /// How fruit are distributed over the hardest that each suffered.
+    pub histograms: Vec<HistogramOutcome>,
     /// How many fruit are bruised, and where; where the scene says what bruises.
     pub bruise: Option<BruiseOutcome>,
     /// Energies at the end.
@@ -69,11 +73,17 @@ pub struct StepOutcome {
 pub struct PartnerOutcome {
     /// The wall, or "fruit".
     pub name: String,
-    /// Contacts.
+    /// Contacts that were impacts.
     pub contacts: usize,
     /// Fruit that had one.
     pub fruit: usize,
-    /// Peak forces that half and 95 % of the contacts stay below, and the largest; N.
+    /// Contacts that were static loads: much longer than an impact, or there at the end.
+    pub static_loads: usize,
+    /// Fruit that had one.
+    pub static_fruit: usize,
+    /// Largest force of them; N.
+    pub largest_static_force: f64,
+    /// Peak forces that half and 95 % of the impacts stay below, and the largest; N.
     pub peak_force: [f64; 3],
     /// The same of impact speeds; m/s.
     pub impact_speed: [f64; 3],
@@ -129,6 +139,10 @@ pub struct FruitTally {
     pub hardest: Option<Event>,
     /// Largest absorbed energy of a contact, and of all; J.
     pub absorbed: [f64; 2],
+    /// Static loads.
+    pub static_loads: u64,
+    /// Largest force of them; N.
+    pub largest_static_force: f64,
     /// When it left, and through which sink.
     pub left: Option<Leaving>,
 }
@@ -143,6 +157,9 @@ pub struct Tally {
     /// Of each wall, by number; of fruit with fruit behind them: fruit, peak force (N),
     /// impact speed (m/s), absorbed energy (J).
     pub partners: Vec<Vec<(u32, [f32; 3])>>,
+    /// Static loads of each wall and of fruit with fruit: fruit, force (N).
+    statics: Vec<Vec<(u32, f32)>>,
+    loads: StaticLoads,
     /// Impact speeds of pairs of materials, and how often: for the range of cards.
     speeds: BTreeMap<(usize, usize), Vec<f32>>,
     materials: Vec<usize>,
@@ -157,36 +174,47 @@ impl Tally {
             fruit: vec![FruitTally::default(); scene.fruit.len()],
             contacts: 0,
             partners: vec![Vec::new(); scene.walls.len() + 1],
+            statics: vec![Vec::new(); scene.walls.len() + 1],
+            loads: StaticLoads::of(scene),
             speeds: BTreeMap::new(),
             materials: scene.fruit.iter().map(|fruit| fruit.material).collect(),
             walls: scene.walls.iter().map(|wall| wall.material).collect(),
         }
     }
 
-    /// One contact more.
-    pub fn count(&mut self, event: &Event) {
+    /// One contact more; whether it was a static load.
+    pub fn count(&mut self, event: &Event) -> bool {
         self.contacts += 1;
-        self.suffer(event.fruit, event);
+        let lasted = self.loads.is_static(event);
+        self.suffer(event.fruit, event, lasted);
         let (place, other) = match event.partner {
             Partner::Fruit(other) => {
-                self.suffer(other, event);
+                self.suffer(other, event, lasted);
                 (self.walls.len(), self.materials[other as usize])
             }
             Partner::Wall(wall) => (wall as usize, self.walls[wall as usize]),
         };
         let numbers = [event.peak_force, event.normal_speed, event.absorbed_energy];
-        self.partners[place].push((event.fruit, numbers.map(|own| own as f32)));
+        match lasted {
+            true => self.statics[place].push((event.fruit, event.peak_force as f32)),
+            false => self.partners[place].push((event.fruit, numbers.map(|own| own as f32))),
+        }
         let own = self.materials[event.fruit as usize];
         let speeds = self
             .speeds
             .entry((own.min(other), own.max(other)))
             .or_default();
         speeds.push(event.normal_speed as f32);
+        lasted
     }
 
-    fn suffer(&mut self, fruit: u32, event: &Event) {
+    fn suffer(&mut self, fruit: u32, event: &Event, lasted: bool) {
         let own = &mut self.fruit[fruit as usize];
         own.contacts += 1;
+        if lasted {
+            own.static_loads += 1;
+            own.largest_static_force = own.largest_static_force.max(event.peak_force);
+        }
         if own
             .hardest
             .is_none_or(|before| before.peak_force < event.peak_force)
@@ -216,16 +244,21 @@ impl PartnerOutcome {
         let names = scene.walls.iter().map(|wall| wall.name.clone());
         let names = names.chain([FRUIT.to_owned()]);
         let rows = names
-            .zip(&tally.partners)
-            .filter(|(_, contacts)| !contacts.is_empty());
-        rows.map(|(name, contacts)| {
-            let mut fruit: Vec<u32> = contacts.iter().map(|own| own.0).collect();
+            .zip(tally.partners.iter().zip(&tally.statics))
+            .filter(|(_, (impacts, statics))| !(impacts.is_empty() && statics.is_empty()));
+        let different = |mut fruit: Vec<u32>| {
             fruit.sort_unstable();
             fruit.dedup();
+            fruit.len()
+        };
+        rows.map(|(name, (contacts, statics))| {
             let levels = |place: usize| {
                 let mut sorted: Vec<f32> = contacts.iter().map(|own| own.1[place]).collect();
                 sorted.sort_by(f32::total_cmp);
                 [0.5, 0.95, 1.0].map(|share| {
+                    if sorted.is_empty() {
+                        return 0.0;
+                    }
                     let at = (share * sorted.len() as f64).ceil() as usize;
                     f64::from(sorted[at.clamp(1, sorted.len()) - 1])
                 })
@@ -233,7 +266,12 @@ impl PartnerOutcome {
             Self {
                 name,
                 contacts: contacts.len(),
-                fruit: fruit.len(),
+                fruit: different(contacts.iter().map(|own| own.0).collect()),
+                static_loads: statics.len(),
+                static_fruit: different(statics.iter().map(|own| own.0).collect()),
+                largest_static_force: f64::from(
+                    statics.iter().map(|own| own.1).fold(0.0, f32::max),
+                ),
                 peak_force: levels(0),
                 impact_speed: levels(1),
                 absorbed_energy: levels(2),

@@ -1,14 +1,17 @@
 //! A scene from its file to the contacts of each fruit.
 
 use crate::error::Error;
+use crate::figure_files::{FigureFolder, write_figure};
 use crate::on_threads::on_threads;
 use crate::progress::Progress;
 use crate::read_scene::{ScenePlan, read_scene};
 use crate::scene_bruise::Blows;
+use crate::scene_histogram::{HistogramOutcome, figure_of_histograms, histogram};
 use crate::scene_outcome::{PartnerOutcome, SceneOutcome, StepOutcome, Tally, findings_of_range};
 use crate::write_file::write_whole;
 use crate::write_scene::{EventFile, fruit_table};
 use std::path::{Path, PathBuf};
+use windfall_scene::bruise::Bruise;
 use windfall_scene::event::Event;
 use windfall_scene::scene::Scene;
 use windfall_scene::simulation::Simulation;
@@ -40,22 +43,31 @@ pub fn run_scene(
     progress: Progress,
 ) -> Result<SceneOutcome, Error> {
     let plan = read_scene(path)?;
-    on_threads(request.threads, || run(path, plan, request, progress))
+    let out = request.out.clone();
+    let out = out.unwrap_or_else(|| path.with_extension("run"));
+    on_threads(request.threads, || {
+        Ok(run_plan(plan, &out, progress)?.outcome)
+    })
 }
 
-fn run(
-    path: &Path,
-    mut plan: ScenePlan,
-    request: &SceneRequest,
-    progress: Progress,
-) -> Result<SceneOutcome, Error> {
+/// What came of a scene, with the contacts that bruise.
+pub struct RunOfScene {
+    /// What came of it.
+    pub outcome: SceneOutcome,
+    /// Contacts that bruise, where the scene says what does.
+    pub blows: Option<Blows>,
+}
+
+/// Runs a scene that is read already, and writes what comes of it.
+///
+/// * `out`: directory to write into
+///
+/// # Errors
+/// As [`run_scene`].
+pub fn run_plan(mut plan: ScenePlan, out: &Path, progress: Progress) -> Result<RunOfScene, Error> {
     let step = time_step(&mut plan)?;
-    let out = request
-        .out
-        .clone()
-        .unwrap_or_else(|| path.with_extension("run"));
-    std::fs::create_dir_all(&out).map_err(|source| Error::FileAccess {
-        path: out.clone(),
+    std::fs::create_dir_all(out).map_err(|source| Error::FileAccess {
+        path: out.to_path_buf(),
         action: "create",
         source,
     })?;
@@ -70,11 +82,11 @@ fn run(
         .as_ref()
         .map(|bruise| Blows::new(bruise, &plan.scene, &plan.fruit_shares));
     let mut count = |event: &Event, tally: &mut Tally, file: &mut EventFile| {
-        tally.count(event);
+        let lasted = tally.count(event);
         if let Some(blows) = &mut blows {
             blows.count(event);
         }
-        file.write(event)
+        file.write(event, lasted)
     };
     let first = simulation.step_with_energy().map_err(stopped)?;
     while simulation.steps() < all {
@@ -102,6 +114,12 @@ fn run(
     let bruises = bruised.map(|(bruise, blows)| blows.bruises(bruise));
     let table = fruit_table(&plan, &tally, &states, bruises.as_deref())?;
     write_whole(&fruit, table.as_bytes())?;
+    let histograms = histograms_of(&tally, bruises.as_deref());
+    let mut files = vec![out.join("events.csv"), fruit, out.join("scene.json")];
+    let figure = figure_of_histograms(&plan.title, &histograms);
+    files.extend(write_figure(&FigureFolder::of(out), "histograms", &figure)?);
+    let mut findings = findings_of_range(&plan, &tally, simulation.waiting());
+    findings.extend(blows.as_ref().and_then(Blows::finding_of_range));
     let outcome = SceneOutcome {
         title: plan.title.clone(),
         end: plan.end,
@@ -116,19 +134,47 @@ fn run(
         contacts: tally.contacts,
         written,
         partners: PartnerOutcome::of(&plan.scene, &tally),
+        histograms,
         bruise: bruised.map(|(bruise, blows)| blows.outcome(bruise, &plan.scene)),
         energy: (&last).into(),
         energy_closure: (last.closure() - first.closure())
             / last.lost().abs().max(f64::MIN_POSITIVE),
-        findings: findings_of_range(&plan, &tally, simulation.waiting()),
-        files: vec![out.join("events.csv"), fruit, out.join("scene.json")],
+        findings,
+        files,
     };
     let json = serde_json::to_string_pretty(&outcome).map_err(|error| Error::ResultUnwritable {
         item: plan.title.clone(),
         detail: error.to_string(),
     })?;
     write_whole(&out.join("scene.json"), (json + "\n").as_bytes())?;
-    Ok(outcome)
+    Ok(RunOfScene { outcome, blows })
+}
+
+/// Of each fruit the hardest that it suffered.
+fn histograms_of(tally: &Tally, bruises: Option<&[Vec<Bruise>]>) -> Vec<HistogramOutcome> {
+    let fruit = tally.fruit.iter();
+    let forces = fruit
+        .clone()
+        .map(|own| own.hardest.map_or(0.0, |event| event.peak_force));
+    let energies = fruit.map(|own| own.absorbed[0]);
+    let mut all = vec![
+        histogram(
+            "largest peak force of a fruit",
+            "N",
+            &forces.collect::<Vec<f64>>(),
+        ),
+        histogram(
+            "largest absorbed energy of a contact of a fruit",
+            "J",
+            &energies.collect::<Vec<f64>>(),
+        ),
+    ];
+    if let Some(bruises) = bruises {
+        let largest = |own: &Vec<Bruise>| own.iter().map(|own| own.volume).fold(0.0, f64::max);
+        let volumes: Vec<f64> = bruises.iter().map(largest).collect();
+        all.push(histogram("largest bruise of a fruit", "m^3", &volumes));
+    }
+    all.into_iter().flatten().collect()
 }
 
 fn stopped(problem: windfall_scene::error::Error) -> Error {
