@@ -117,6 +117,8 @@ pub enum NewKind {
     Drop,
     /// Not a campaign but a scene: many fruit and a machine, simulated
     Scene,
+    /// Variants of a scene, compared: pads and drop heights
+    SceneStudy,
 }
 
 /// `windfall inspect`

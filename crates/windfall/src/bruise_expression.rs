@@ -4,7 +4,7 @@ use windfall_statistics::expression::{columns_of, function_of, known_functions};
 use windfall_statistics::formula_syntax::{Kind, Node, Operator, parse, spelling};
 
 /// A calculation with the columns of one row.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug)]
 pub enum Expression {
     /// A number.
     Number(f64),

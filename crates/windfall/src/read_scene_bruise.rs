@@ -12,7 +12,7 @@ use toml::Spanned;
 use windfall_scene::bruise::{BruiseModel, Predictor, SameSpot, VolumeLaw};
 
 /// How contacts bruise, and what counts as bruised.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug)]
 pub struct BruisePlan {
     /// The model.
     pub model: BruiseModel,

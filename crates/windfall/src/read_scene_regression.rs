@@ -28,7 +28,7 @@ pub const CONTACT_QUANTITIES: [(&str, &str); 9] = [
 ];
 
 /// A regression with what its columns are.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug)]
 pub struct RegressionPlan {
     /// Coefficients and their covariance.
     pub regression: Regression,
