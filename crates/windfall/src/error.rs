@@ -23,16 +23,6 @@ pub enum Error {
     /// A scene whose result would mean nothing from there on.
     #[error("the scene was stopped: {0}")]
     SceneStopped(Box<windfall_scene::error::Error>),
-    /// A study of which nothing came.
-    #[error("{path}: all {variants} variants failed; the first: {first}", path = path.display())]
-    StudyFailed {
-        /// The study.
-        path: PathBuf,
-        /// How many variants it has.
-        variants: usize,
-        /// Why the first failed.
-        first: String,
-    },
     /// A change that would leave no campaign that can be read.
     #[error("nothing was written: {problem}")]
     ChangeRefused {

@@ -204,6 +204,7 @@ pub mod text_statistic;
 pub mod toml_source;
 pub mod workflow_acoustic;
 pub mod workflow_agreement;
+pub mod workflow_bruise;
 pub mod workflow_calibrate;
 pub mod workflow_card;
 pub mod workflow_compare;

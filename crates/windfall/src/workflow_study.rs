@@ -3,6 +3,7 @@
 use crate::error::Error;
 use crate::figure_files::file_name;
 use crate::on_threads::on_threads;
+use crate::option_value::unusable;
 use crate::outcome::FindingOutcome;
 use crate::progress::Progress;
 use crate::provenance::{VERSION, digest_file, time_now};
@@ -54,11 +55,8 @@ pub fn run_study(
     clear(&out)?;
     let runs = run_all(&plan, &out, request.threads, progress)?;
     if let Some(Err(first)) = runs.iter().all(Result::is_err).then(|| &runs[0]) {
-        return Err(Error::StudyFailed {
-            path: path.to_path_buf(),
-            variants: runs.len(),
-            first: first.clone(),
-        });
+        let problem = format!("all {} variants failed; the first: {first}", runs.len());
+        return Err(unusable(path.display().to_string(), problem));
     }
     let variants = plan.variants.iter().zip(&runs).enumerate();
     let variants = variants.map(|(number, (own, run))| {
