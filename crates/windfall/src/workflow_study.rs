@@ -31,6 +31,8 @@ pub struct StudyRequest {
 
 /// Directory of the runs in that of the study.
 const VARIANTS: &str = "variants";
+/// File by which that directory is known as a study's.
+const MARK: &str = "made_by_a_study.txt";
 /// Bruise models drawn from the uncertainty of their coefficients, and their seed: the same
 /// for all runs.
 const MODELS: (usize, u64) = (200, 1);
@@ -96,27 +98,38 @@ pub fn run_study(
     Ok(outcome)
 }
 
-/// Takes away what an earlier run of a study left: nothing of it is to be taken for new.
+/// Takes away what an earlier run of a study left: nothing of it is to be taken for new. A
+/// directory of runs that no study made is refused.
 fn clear(out: &Path) -> Result<(), Error> {
-    let failed = |path: &Path, action, source| Error::FileAccess {
-        path: path.to_path_buf(),
-        action,
-        source,
-    };
+    let absent = |error: &std::io::Error| error.kind() == std::io::ErrorKind::NotFound;
+    let variants = out.join(VARIANTS);
+    let mark = variants.join(MARK);
+    if variants.exists() && !mark.exists() {
+        return Err(Error::AlreadyThere { path: variants });
+    }
     for name in ["study.json", "study.csv", "study.html"] {
-        match std::fs::remove_file(out.join(name)) {
-            Err(error) if error.kind() != std::io::ErrorKind::NotFound => {
-                return Err(failed(&out.join(name), "replace", error));
-            }
+        let path = out.join(name);
+        match std::fs::remove_file(&path) {
+            Err(error) if !absent(&error) => return Err(failed(&path, "replace", error)),
             _ => {}
         }
     }
-    let variants = out.join(VARIANTS);
     match std::fs::remove_dir_all(&variants) {
-        Err(error) if error.kind() != std::io::ErrorKind::NotFound => {
-            Err(failed(&variants, "replace", error))
-        }
-        _ => std::fs::create_dir_all(&variants).map_err(|error| failed(&variants, "create", error)),
+        Err(error) if !absent(&error) => return Err(failed(&variants, "replace", error)),
+        _ => {}
+    }
+    std::fs::create_dir_all(&variants).map_err(|error| failed(&variants, "create", error))?;
+    write_whole(
+        &mark,
+        b"Runs of windfall scene study; the next one replaces them.\n",
+    )
+}
+
+fn failed(path: &Path, action: &'static str, source: std::io::Error) -> Error {
+    Error::FileAccess {
+        path: path.to_path_buf(),
+        action,
+        source,
     }
 }
 
@@ -202,11 +215,7 @@ fn run_one(
     let own = &plan.variants[number];
     let folder = out.join(VARIANTS).join(directory_of(number, &own.name));
     let folder = folder.join(format!("replicate_{}", replicate + 1));
-    std::fs::create_dir_all(&folder).map_err(|source| Error::FileAccess {
-        path: folder.clone(),
-        action: "create",
-        source,
-    })?;
+    std::fs::create_dir_all(&folder).map_err(|error| failed(&folder, "create", error))?;
     let text = with_seed(&own.text, replicate as u64);
     write_whole(&folder.join("scene.toml"), text.as_bytes())?;
     let mut scene = scene_of(&TomlSource {
