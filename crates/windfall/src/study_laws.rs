@@ -38,7 +38,8 @@ pub fn draw_laws(plan: &mut ScenePlan, seed: u64) -> Result<(), Error> {
         let stream = STREAM + campaign.unwrap_or(0) as u64;
         let draws = normals(seed, stream, factor.len());
         let kind = interaction.law.kind();
-        let names = kind.describe().parameters;
+        let description = kind.describe();
+        let names = &description.parameters;
         let mut values = interaction.law.parameters();
         for (of, row) in covariance.of.iter().zip(&factor) {
             let shift: f64 = row.iter().zip(&draws).map(|(l, z)| l * z).sum();

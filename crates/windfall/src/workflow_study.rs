@@ -196,7 +196,7 @@ fn run_all(
             .iter()
             .cloned()
             .map(|run| run.unwrap_or_else(|| Err("it did not run".to_owned())));
-        own.collect()
+        own.collect::<Result<Vec<Replicate>, String>>()
     });
     match stopped.into_inner() {
         true => Err(Error::Cancelled),

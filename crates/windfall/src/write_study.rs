@@ -3,7 +3,6 @@
 use crate::error::Error;
 use crate::figure_files::{FigureFolder, write_figures};
 use crate::figure_study::figure_of_study;
-use crate::outcome::FailureOutcome;
 use crate::report_page::{CaptionedTable, Report, Section, html_of_report};
 use crate::study_outcome::{StudyOutcome, VariantOutcome};
 use crate::text_statistic::number;
@@ -232,18 +231,13 @@ pub fn write_page(outcome: &StudyOutcome, out: &Path) -> Result<Vec<PathBuf>, Er
         )
     });
     sections.push(Section::of_words("Origin", origin(outcome)));
-    let failed = outcome.variants.iter().filter_map(|own| {
-        Some(FailureOutcome {
-            id: own.name.clone(),
-            message: own.failed.clone()?,
-        })
-    });
     let report = Report {
         title: outcome.title.clone(),
         made: format!("windfall {}, {}", outcome.made[0], outcome.made[1]),
         simulated: None,
         findings: outcome.findings.clone(),
-        failed: failed.collect(),
+        // A failed variant is a finding.
+        failed: Vec::new(),
         sections,
     };
     let mut page = html_of_report(&report);
