@@ -214,7 +214,10 @@ fn rejects_regressions_that_ask_for_what_is_not_there() {
             "nothing says what the column \"temperature_C\" is",
         ),
         (
-            ("limits =", "susceptibility = \"3000 mm^3/J\"\nlimits ="),
+            (
+                "limits = [\"50 mm^3\"",
+                "susceptibility = \"3000 mm^3/J\"\nlimits = [\"50 mm^3\"",
+            ),
             "leave out the susceptibility",
         ),
         (("mean = 10", "mean = 10, sd = -1"), "standard deviation"),

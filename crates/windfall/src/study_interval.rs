@@ -56,10 +56,11 @@ pub fn share(counts: &Counts) -> Estimate {
     let chance = 1.0 / ((n + 1.0) * p * (1.0 - p));
     let half = half_width(&rows, chance);
     let back = |q: f64| 1.0 / (1.0 + (-q).exp());
+    // Half a fruit must not put the share itself outside.
     Estimate {
         value,
-        low: back(centre - half),
-        high: back(centre + half),
+        low: back(centre - half).min(value),
+        high: back(centre + half).max(value),
     }
 }
 

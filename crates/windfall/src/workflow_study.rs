@@ -270,11 +270,14 @@ fn findings(plan: &StudyPlan, runs: &[Result<Vec<Replicate>, String>]) -> Vec<Fi
             Err(problem) => all.push(tell("variant-failed", format!("{}: {problem}", own.name))),
             Ok(replicates) => {
                 let first = replicates.first();
-                let of = first.into_iter().flat_map(|own| &own.findings);
-                all.extend(of.map(|own_finding| FindingOutcome {
-                    code: own_finding.code.clone(),
-                    message: format!("{}: {}", own.name, own_finding.message),
-                }));
+                for of in first.into_iter().flat_map(|own| &own.findings) {
+                    // Each code once, of the first variant that has it; the runs have all.
+                    if all.iter().any(|known| known.code == of.code) {
+                        continue;
+                    }
+                    let message = format!("{}, for one: {}", own.name, of.message);
+                    all.push(tell(&of.code, message));
+                }
             }
         }
     }
