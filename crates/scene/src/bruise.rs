@@ -1,6 +1,7 @@
 //! Bruises: their volume from what one measures of them, and from the contacts of a scene by
 //! a model that the user brings. windfall ships no coefficients of any fruit.
 
+use crate::bruise_regression::Regression;
 use crate::event::Event;
 use crate::population::normal;
 use crate::vector::{Vector, dot};
@@ -60,22 +61,39 @@ pub enum SameSpot {
     Sum,
 }
 
-/// The volume of a bruise from a contact: nothing up to a threshold, then in proportion to
-/// what is above it. Coefficients are the user's.
-#[derive(Clone, Copy, Debug, PartialEq)]
+/// How the volume of a bruise follows from a contact above the threshold.
+#[derive(Clone, Debug, PartialEq)]
+pub enum VolumeLaw {
+    /// In proportion to what is above the threshold.
+    Proportional {
+        /// Volume per unit of the predictor; m³/J or m³/N.
+        susceptibility: f64,
+        /// Its standard uncertainty.
+        sd: f64,
+    },
+    /// By a regression of measured bruises.
+    Regression(Regression),
+}
+
+/// The volume of a bruise from a contact: nothing up to a threshold, then by a law.
+/// Coefficients are the user's.
+#[derive(Clone, Debug, PartialEq)]
 pub struct BruiseModel {
-    /// What tells the bruise.
+    /// What the threshold is of, and what a law of proportion takes.
     pub predictor: Predictor,
     /// Below this nothing bruises; J or N.
     pub threshold: f64,
     /// Its standard uncertainty.
     pub threshold_sd: f64,
-    /// Volume per unit of the predictor above the threshold; m³/J or m³/N.
-    pub susceptibility: f64,
-    /// Its standard uncertainty.
-    pub susceptibility_sd: f64,
+    /// How it differs from fruit to fruit, a standard deviation: then the probability of a
+    /// bruise is Φ((x − threshold)/this), a probit; J or N.
+    pub threshold_between_fruit: f64,
+    /// What is above it.
+    pub law: VolumeLaw,
     /// What contacts on one spot do.
     pub same_spot: SameSpot,
+    /// Smaller bruises are none: a regression of logarithms makes one of every touch; m³.
+    pub least_volume: f64,
 }
 
 /// One bruise.
@@ -90,7 +108,7 @@ pub struct Bruise {
 }
 
 /// A contact as its fruit felt it.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct Blow {
     /// Where on this fruit.
     pub spot: Vector,
@@ -100,13 +118,23 @@ pub struct Blow {
     pub peak_force: f64,
     /// Radius of the area of contact over that of the fruit: the angle that it covers; rad.
     pub angle: f64,
+    /// Terms of a regression, without their coefficients.
+    pub terms: Vec<f64>,
+    /// How this fruit differs from the mean, in standard deviations: its threshold, and its
+    /// volumes in a regression.
+    pub fruit_draws: [f64; 2],
+    /// How this bruise differs from others of the fruit, in standard deviations.
+    pub draw: f64,
 }
 
 crate::binary!(Blow {
     spot,
     absorbed_energy,
     peak_force,
-    angle
+    angle,
+    terms,
+    fruit_draws,
+    draw
 });
 
 impl Blow {
@@ -124,6 +152,7 @@ impl Blow {
             absorbed_energy: share * event.absorbed_energy,
             peak_force: event.peak_force,
             angle: area.min(PI),
+            ..Self::default()
         }
     }
 
@@ -139,7 +168,53 @@ impl BruiseModel {
     /// Volume of the bruise of one contact; m³.
     #[must_use]
     pub fn volume(&self, blow: &Blow) -> f64 {
-        self.susceptibility * (blow.predictor(self.predictor) - self.threshold).max(0.0)
+        let threshold = self.threshold + self.threshold_between_fruit * blow.fruit_draws[0];
+        let above = blow.predictor(self.predictor) - threshold.max(0.0);
+        if above <= 0.0 {
+            return 0.0;
+        }
+        let volume = match &self.law {
+            VolumeLaw::Proportional { susceptibility, .. } => susceptibility * above,
+            VolumeLaw::Regression(own) => own.volume(&blow.terms, blow.fruit_draws[1], blow.draw),
+        };
+        // What is no number is no bruise either.
+        match volume > self.least_volume {
+            true => volume,
+            false => 0.0,
+        }
+    }
+
+    /// Whether a contact bruises, with coefficients within [`REACH`] standard uncertainties.
+    #[must_use]
+    pub fn may_bruise(&self, blow: &Blow) -> bool {
+        let mut most = self.clone();
+        most.threshold = (self.threshold - REACH * self.threshold_sd).max(0.0);
+        match &mut most.law {
+            VolumeLaw::Proportional { susceptibility, sd } => *susceptibility += REACH * *sd,
+            VolumeLaw::Regression(own) => own.shift += REACH * own.sd(&blow.terms),
+        }
+        most.volume(blow) > 0.0
+    }
+
+    /// The model with other coefficients, as uncertain as they are.
+    fn drawn(&self, generator: &mut ChaCha8Rng) -> Self {
+        let mut other = |value: f64, sd: f64| match sd > 0.0 {
+            true => (value + sd * normal(generator)).max(0.0),
+            false => value,
+        };
+        let threshold = other(self.threshold, self.threshold_sd);
+        let law = match &self.law {
+            VolumeLaw::Proportional { susceptibility, sd } => VolumeLaw::Proportional {
+                susceptibility: other(*susceptibility, *sd),
+                sd: *sd,
+            },
+            VolumeLaw::Regression(own) => VolumeLaw::Regression(own.drawn(generator)),
+        };
+        Self {
+            threshold,
+            law,
+            ..self.clone()
+        }
     }
 
     /// Bruises of a fruit. Contacts whose areas overlap are on one spot.
@@ -175,63 +250,98 @@ impl BruiseModel {
         found.into_iter().map(|(bruise, ..)| bruise).collect()
     }
 
-    /// Share of fruit whose largest bruise exceeds a limit, with the ends of its interval.
-    ///
-    /// The interval has in it that other fruit would have come (Jeffreys' distribution of a
-    /// binomial share), and the uncertainty of threshold and susceptibility, drawn anew.
-    ///
-    /// * `blows`: contacts of each fruit
-    /// * `limit`: m³
-    /// * `level`: of the interval; 1
+    /// Volume of the largest bruise of a fruit; m³.
     #[must_use]
-    pub fn share_above(
-        &self,
-        blows: &[Vec<Blow>],
-        limit: f64,
-        level: f64,
-        (replicates, seed): (usize, u64),
-    ) -> Share {
-        let count = blows.len();
-        let bad = |model: &Self| {
-            let largest = |own: &Vec<Blow>| {
-                let bruises = model.bruises(own).into_iter();
+    pub fn largest(&self, blows: &[Blow]) -> f64 {
+        match self.same_spot {
+            // Where only the largest on a spot counts, spots make no difference.
+            SameSpot::Largest => {
+                let volumes = blows.iter().map(|blow| self.volume(blow));
+                volumes.fold(0.0, f64::max)
+            }
+            SameSpot::Sum => {
+                let bruises = self.bruises(blows).into_iter();
                 bruises.map(|bruise| bruise.volume).fold(0.0, f64::max)
-            };
-            blows.iter().filter(|own| largest(own) > limit).count()
-        };
-        let mut generator = ChaCha8Rng::seed_from_u64(seed);
-        let mut shares: Vec<f64> = (0..replicates)
-            .map(|_| {
-                let other = |value: f64, sd: f64, generator: &mut ChaCha8Rng| match sd > 0.0 {
-                    true => (value + sd * normal(generator)).max(0.0),
-                    false => value,
-                };
-                let model = Self {
-                    threshold: other(self.threshold, self.threshold_sd, &mut generator),
-                    susceptibility: other(
-                        self.susceptibility,
-                        self.susceptibility_sd,
-                        &mut generator,
-                    ),
-                    ..*self
-                };
-                let bad = bad(&model);
-                let above = gamma_half(bad, &mut generator);
-                above / (above + gamma_half(count - bad, &mut generator))
-            })
-            .collect();
-        shares.sort_by(f64::total_cmp);
-        let at = |share: f64| {
-            let place = (share * (shares.len() as f64 - 1.0)).round() as usize;
-            shares.get(place).copied().unwrap_or(f64::NAN)
-        };
-        Share {
-            share: bad(self) as f64 / count.max(1) as f64,
-            low: at(0.5 * (1.0 - level)),
-            high: at(0.5 * (1.0 + level)),
+            }
         }
     }
+
+    /// How many fruit have a bruise above each limit: by the model as it is, then by as many
+    /// models as are drawn from the uncertainty of its coefficients.
+    ///
+    /// * `blows`: contacts of each fruit
+    /// * `limits`: m³
+    /// * `draws`: models drawn, and their seed; the same seed draws the same models
+    #[must_use]
+    pub fn counts_above(
+        &self,
+        blows: &[Vec<Blow>],
+        limits: &[f64],
+        (draws, seed): (usize, u64),
+    ) -> Vec<Vec<usize>> {
+        let counts = |model: &Self| {
+            let largest: Vec<f64> = blows.iter().map(|own| model.largest(own)).collect();
+            let above = |limit: &f64| largest.iter().filter(|own| *own > limit).count();
+            limits.iter().map(above).collect::<Vec<usize>>()
+        };
+        let mut generator = ChaCha8Rng::seed_from_u64(seed);
+        let models: Vec<Self> = (0..draws).map(|_| self.drawn(&mut generator)).collect();
+        let all = std::iter::once(self).chain(&models);
+        all.map(counts).collect()
+    }
+
+    /// Shares of fruit whose largest bruise exceeds limits, with the ends of their intervals.
+    ///
+    /// The interval has in it that other fruit would have come (Jeffreys' distribution of a
+    /// binomial share), and the uncertainty of the coefficients, drawn anew.
+    ///
+    /// * `blows`: contacts of each fruit
+    /// * `limits`: m³
+    /// * `level`: of the interval; 1
+    #[must_use]
+    pub fn shares_above(
+        &self,
+        blows: &[Vec<Blow>],
+        limits: &[f64],
+        level: f64,
+        (draws, seed): (usize, u64),
+    ) -> Vec<Share> {
+        let counts = self.counts_above(blows, limits, (draws, seed));
+        let mut generator = ChaCha8Rng::seed_from_u64(seed);
+        // Another stream than that of the models.
+        generator.set_stream(1);
+        let share = |place: usize| {
+            let own: Vec<usize> = counts.iter().map(|counts| counts[place]).collect();
+            share_of(&own, blows.len(), level, &mut generator)
+        };
+        (0..limits.len()).map(share).collect()
+    }
 }
+
+/// A share from counts of fruit: the first by the model as it is, the others by drawn ones.
+fn share_of(counts: &[usize], fruit: usize, level: f64, generator: &mut ChaCha8Rng) -> Share {
+    let (own, drawn) = counts.split_first().unwrap_or((&0, &[]));
+    let mut shares: Vec<f64> = drawn
+        .iter()
+        .map(|&bad| {
+            let above = gamma_half(bad, generator);
+            above / (above + gamma_half(fruit - bad, generator))
+        })
+        .collect();
+    shares.sort_by(f64::total_cmp);
+    let at = |share: f64| {
+        let place = (share * (shares.len() as f64 - 1.0)).round() as usize;
+        shares.get(place).copied().unwrap_or(f64::NAN)
+    };
+    Share {
+        share: *own as f64 / fruit.max(1) as f64,
+        low: at(0.5 * (1.0 - level)),
+        high: at(0.5 * (1.0 + level)),
+    }
+}
+
+/// Standard uncertainties by which coefficients may differ for a contact to be looked at.
+pub const REACH: f64 = 5.0;
 
 /// A number of Gamma's distribution of shape `whole` + ½: exponential ones, and half the
 /// square of a normal one.
@@ -274,17 +384,21 @@ mod tests {
         predictor: Predictor::AbsorbedEnergy,
         threshold: 0.05,
         threshold_sd: 0.0,
-        susceptibility: 3e-6,
-        susceptibility_sd: 0.0,
+        threshold_between_fruit: 0.0,
+        law: VolumeLaw::Proportional {
+            susceptibility: 3e-6,
+            sd: 0.0,
+        },
         same_spot: SameSpot::Largest,
+        least_volume: 0.0,
     };
 
     fn blow(energy: f64, spot: Vector) -> Blow {
         Blow {
             spot,
             absorbed_energy: energy,
-            peak_force: 0.0,
             angle: 0.2,
+            ..Blow::default()
         }
     }
 
@@ -318,7 +432,7 @@ mod tests {
     fn closed_form_shares_and_their_uncertainty() {
         let fruit = |count: usize, energy: f64| vec![vec![blow(energy, [0.0, 0.0, 1.0])]; count];
         let blows = [fruit(3, 0.15), fruit(7, 0.06)].concat();
-        let found = MODEL.share_above(&blows, 1e-7, 0.95, (20_000, 1));
+        let found = MODEL.shares_above(&blows, &[1e-7], 0.95, (20_000, 1))[0];
         // Quantiles of Beta(3.5, 7.5), by Brown, Cai and DasGupta's (2001) interval of Jeffreys:
         // mean 0.318, standard deviation 0.1345; checked by its first two moments below.
         assert_eq!(found.share, 0.3);
@@ -327,7 +441,7 @@ mod tests {
             "{found:?}"
         );
         // None of ten: the interval does not shrink to nothing.
-        let none = MODEL.share_above(&fruit(10, 0.06), 1e-7, 0.95, (20_000, 1));
+        let none = MODEL.shares_above(&fruit(10, 0.06), &[1e-7], 0.95, (20_000, 1))[0];
         assert!(
             none.share == 0.0 && none.low < 1e-3 && (0.20..0.24).contains(&none.high),
             "{none:?}"
@@ -337,8 +451,8 @@ mod tests {
             threshold_sd: 0.03,
             ..MODEL
         };
-        let wide = unsure.share_above(&blows, 2.5e-7, 0.95, (4000, 1));
-        let sure = MODEL.share_above(&blows, 2.5e-7, 0.95, (4000, 1));
+        let wide = unsure.shares_above(&blows, &[2.5e-7], 0.95, (4000, 1))[0];
+        let sure = MODEL.shares_above(&blows, &[2.5e-7], 0.95, (4000, 1))[0];
         assert!(
             wide.high - wide.low > sure.high - sure.low,
             "{wide:?} {sure:?}"

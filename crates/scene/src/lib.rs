@@ -10,10 +10,12 @@
 
 pub mod binary;
 pub mod bruise;
+pub mod bruise_regression;
 pub mod clump;
 mod clump_contacts;
 mod clump_motion;
 mod contact;
+pub mod draws;
 pub mod energy;
 pub mod error;
 pub mod event;

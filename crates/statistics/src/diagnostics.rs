@@ -105,6 +105,32 @@ pub fn inflation(frame: &ModelFrame, fit: &LinearFit) -> Vec<Inflation> {
 /// (MacKinnon & White 1985, J. Econometrics 29, 305-325).
 #[must_use]
 pub fn robust_coefficients(fit: &LinearFit, x: &DMatrix<f64>) -> Vec<Coefficient> {
+    let covariance = robust_covariance(fit, x);
+    let df = fit.residual_df as f64;
+    let quantile = student_quantile(0.5 + 0.5 * fit.confidence, df);
+    let pairs = fit.coefficients.iter().enumerate();
+    pairs
+        .map(|(place, own)| {
+            let se = covariance[(place, place)].sqrt();
+            coefficient(&own.name, own.estimate, se, df, quantile)
+        })
+        .collect()
+}
+
+/// Covariance of the estimates that holds for unequal variances (HC3); rows.
+///
+/// * `x`: model matrix of the fit
+///
+/// # Source
+/// As [`robust_coefficients`].
+#[must_use]
+pub fn robust_covariance_rows(fit: &LinearFit, x: &DMatrix<f64>) -> Vec<Vec<f64>> {
+    let matrix = robust_covariance(fit, x);
+    let rows = matrix.row_iter();
+    rows.map(|row| row.iter().copied().collect()).collect()
+}
+
+fn robust_covariance(fit: &LinearFit, x: &DMatrix<f64>) -> DMatrix<f64> {
     let count = fit.columns.len();
     let mut middle = DMatrix::zeros(count, count);
     for (row, (residual, leverage)) in fit.residuals.iter().zip(&fit.leverages).enumerate() {
@@ -117,14 +143,5 @@ pub fn robust_coefficients(fit: &LinearFit, x: &DMatrix<f64>) -> Vec<Coefficient
         }
     }
     middle.fill_upper_triangle_with_lower_triangle();
-    let covariance = &fit.unscaled_covariance * middle * &fit.unscaled_covariance;
-    let df = fit.residual_df as f64;
-    let quantile = student_quantile(0.5 + 0.5 * fit.confidence, df);
-    let pairs = fit.coefficients.iter().enumerate();
-    pairs
-        .map(|(place, own)| {
-            let se = covariance[(place, place)].sqrt();
-            coefficient(&own.name, own.estimate, se, df, quantile)
-        })
-        .collect()
+    &fit.unscaled_covariance * middle * &fit.unscaled_covariance
 }

@@ -28,6 +28,13 @@ pub fn known_functions() -> String {
     names.join(", ")
 }
 
+/// A function of one number that may stand in formulas.
+#[must_use]
+pub fn function_of(name: &str) -> Option<fn(f64) -> f64> {
+    let known = FUNCTIONS.iter().find(|(own, _)| *own == name);
+    known.map(|(_, function)| *function)
+}
+
 /// Values of an arithmetic expression, one for each row; NaN where a cell is
 /// missing.
 ///

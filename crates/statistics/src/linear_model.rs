@@ -295,6 +295,15 @@ pub struct Quality {
 }
 
 impl LinearFit {
+    /// Covariance of the estimates, for residuals of one variance; rows.
+    #[must_use]
+    pub fn covariance_rows(&self) -> Vec<Vec<f64>> {
+        let variance = self.residual_ss / self.residual_df as f64;
+        let rows = self.unscaled_covariance.row_iter();
+        rows.map(|row| row.iter().map(|own| variance * own).collect())
+            .collect()
+    }
+
     /// Model sum of squares.
     #[must_use]
     pub fn model_ss(&self) -> f64 {

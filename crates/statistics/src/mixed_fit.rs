@@ -211,6 +211,15 @@ fn check_residual(model: &MixedModel, state: &State) -> Result<(), MixedError> {
     })
 }
 
+impl MixedFit {
+    /// Covariance of the coefficients; rows.
+    #[must_use]
+    pub fn covariance_rows(&self) -> Vec<Vec<f64>> {
+        let rows = self.covariance.row_iter();
+        rows.map(|row| row.iter().copied().collect()).collect()
+    }
+}
+
 /// Coefficients of the columns as given, and their covariance.
 fn fixed_effects(model: &MixedModel, state: &State, variance: f64) -> (Vec<f64>, DMatrix<f64>) {
     let p = model.coefficients();

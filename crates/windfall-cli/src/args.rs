@@ -1,5 +1,6 @@
 //! The command line: what may be written, and its help.
 
+use crate::args_bruise::BruiseArguments;
 use crate::args_calibrate::CalibrateArguments;
 use crate::args_compare::{CompareArguments, SummaryArguments};
 use crate::args_design::DesignArguments;
@@ -77,6 +78,8 @@ pub enum Command {
     Surface(Box<SurfaceArguments>),
     /// Radius of curvature from a chord gauge or three diameters
     Radius(RadiusArguments),
+    /// Volumes of bruises from their measured widths and depths
+    Bruise(BruiseArguments),
     /// Show force laws, or take one to another geometry
     Card(CardArguments),
     /// Write shell completions to standard output
@@ -117,6 +120,8 @@ pub enum NewKind {
     Drop,
     /// Not a campaign but a scene: many fruit and a machine, simulated
     Scene,
+    /// Variants of a scene, compared: pads and drop heights
+    SceneStudy,
 }
 
 /// `windfall inspect`

@@ -9,6 +9,8 @@ use std::path::PathBuf;
 pub enum SceneCommand {
     /// Run a scene, and write every contact and every fruit
     Run(SceneRunArguments),
+    /// Run variants of a scene several times each, and compare who is bruised
+    Study(SceneStudyArguments),
 }
 
 /// `windfall scene run`
@@ -44,6 +46,35 @@ pub struct SceneRunArguments {
     /// Begin anew where a run was stopped
     #[arg(long)]
     pub restart: bool,
+    /// How the result is shown
+    #[arg(long, value_enum, default_value_t)]
+    pub format: Format,
+}
+
+/// `windfall scene study`
+#[derive(Debug, Args)]
+#[command(
+    after_help = "FILE names a scene and what is varied: [[vary]] with a name and levels, which set keys of the scene \
+or move walls, sources and sinks. Every combination of levels is run as often as replicates says, with other \
+seeds and with laws drawn from the uncertainty of their cards.
+
+Writes beside FILE, into FILE without its ending and with .study: study.html (the page), study.csv, study.json, \
+figures/, and variants/ with every run. What an earlier run of the study left there is replaced.
+
+Examples:
+  windfall new scene-study my-study
+  windfall scene study my-study/study.toml"
+)]
+pub struct SceneStudyArguments {
+    /// The study
+    #[arg(value_name = "FILE", value_hint = ValueHint::FilePath)]
+    pub file: PathBuf,
+    /// Directory to write into
+    #[arg(long, value_name = "DIR", value_hint = ValueHint::DirPath)]
+    pub out: Option<PathBuf>,
+    /// Number of threads, over which runs are spread; all cores if left out. It never changes a result
+    #[arg(long, value_name = "N")]
+    pub threads: Option<usize>,
     /// How the result is shown
     #[arg(long, value_enum, default_value_t)]
     pub format: Format,

@@ -3,7 +3,9 @@
 use crate::args::{NewArguments, NewKind};
 use crate::args_format::Format;
 use crate::show::{write_json, write_result};
-use windfall::workflow_new::{TemplateKind, write_scene_template, write_template};
+use windfall::workflow_new::{
+    TemplateKind, write_scene_template, write_study_template, write_template,
+};
 
 /// Writes a template and names the files.
 pub fn run(arguments: &NewArguments) -> anyhow::Result<()> {
@@ -15,14 +17,22 @@ pub fn run(arguments: &NewArguments) -> anyhow::Result<()> {
         NewKind::Acoustic => Some(TemplateKind::Acoustic),
         NewKind::Repeats => Some(TemplateKind::Repeats),
         NewKind::Drop => Some(TemplateKind::Drop),
-        NewKind::Scene => None,
+        NewKind::Scene | NewKind::SceneStudy => None,
     };
+    let study = matches!(arguments.kind, NewKind::SceneStudy);
     let (written, next) = match kind {
         Some(kind) => (
             write_template(kind, directory)?,
             format!(
                 "put the recordings into raw/, edit the files, then\n  windfall fit {}",
                 directory.display()
+            ),
+        ),
+        None if study => (
+            write_study_template(directory)?,
+            format!(
+                "windfall scene study {}",
+                directory.join("study.toml").display()
             ),
         ),
         None => (

@@ -4,6 +4,7 @@
 //! Exit status: 0 success, 1 the work failed, 2 the request was wrong.
 
 mod args;
+mod args_bruise;
 mod args_calibrate;
 mod args_compare;
 mod args_design;
@@ -22,6 +23,7 @@ mod args_simulate;
 mod args_simulate_drop;
 mod args_simulate_eccentric;
 mod args_surface;
+mod command_bruise;
 mod command_calibrate;
 mod command_card;
 mod command_compare;
@@ -64,6 +66,7 @@ fn main() -> ExitCode {
         Command::Regress(arguments) => command_regress::run(&arguments),
         Command::Surface(arguments) => command_surface::run(&arguments),
         Command::Radius(arguments) => command_geometry::run_radius(&arguments),
+        Command::Bruise(arguments) => command_bruise::run(&arguments),
         Command::Card(arguments) => command_card::run(&arguments),
         Command::Completions { shell } => {
             let mut command = Arguments::command();

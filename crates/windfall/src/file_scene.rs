@@ -2,6 +2,7 @@
 
 use crate::file_quantity::QuantityText;
 use serde::Deserialize;
+use std::collections::BTreeMap;
 use toml::Spanned;
 
 /// The whole file.
@@ -120,6 +121,20 @@ pub struct FruitFile {
     pub drop: Option<Spanned<DropOneFile>>,
     /// From a tree: at random places in a box, at random times.
     pub tree: Option<Spanned<TreeFile>>,
+    /// What else the fruit have that a regression of bruises asks for, in its units.
+    #[serde(default)]
+    pub properties: BTreeMap<String, Spanned<PropertyFile>>,
+}
+
+/// A property of fruit: temperature, firmness.
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct PropertyFile {
+    /// Its mean.
+    pub mean: f64,
+    /// Its standard deviation between fruit.
+    #[serde(default)]
+    pub sd: f64,
 }
 
 /// `lattice`
@@ -342,10 +357,19 @@ pub struct BruiseFile {
     pub threshold: Option<Spanned<QuantityText>>,
     /// Its standard uncertainty.
     pub threshold_sd: Option<Spanned<QuantityText>>,
+    /// How it differs from fruit to fruit.
+    pub threshold_between_fruit: Option<Spanned<QuantityText>>,
     /// Volume per unit of the predictor above the threshold.
     pub susceptibility: Option<Spanned<QuantityText>>,
     /// Its standard uncertainty.
     pub susceptibility_sd: Option<Spanned<QuantityText>>,
+    /// A regression of bruise volumes, in place of a susceptibility.
+    pub regression: Option<Spanned<String>>,
+    /// What the columns of the regression are, where their names do not tell it.
+    #[serde(default)]
+    pub columns: BTreeMap<String, String>,
+    /// Smaller bruises are none.
+    pub least_volume: Option<Spanned<QuantityText>>,
     /// "largest" or "sum".
     pub same_spot: Option<Spanned<String>>,
     /// Volumes of the largest bruise above which a fruit counts as bruised.

@@ -3,7 +3,10 @@
 use serde::Serialize;
 use windfall_statistics::anova::{Anova, AnovaType, LackOfFit};
 use windfall_statistics::diagnostics::{Inflation, RowInfluence};
+use windfall_statistics::expression::columns_of;
+use windfall_statistics::formula::Formula;
 use windfall_statistics::linear_model::{Coefficient, LinearFit, Prediction, Quality};
+use windfall_statistics::table::Table;
 
 /// A step of a selection.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -41,6 +44,45 @@ pub struct TermOutcome {
     pub high: f64,
     /// Degrees of freedom of t.
     pub df: f64,
+}
+
+/// In which range a column was.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct RangeOutcome {
+    /// The column.
+    pub column: String,
+    /// Its smallest value.
+    pub low: f64,
+    /// Its largest.
+    pub high: f64,
+}
+
+/// Ranges of the columns of numbers on the right side of a formula.
+///
+/// * `kept`: rows that were used
+#[must_use]
+pub fn ranges_of(formula: &Formula, table: &Table, kept: &[usize]) -> Vec<RangeOutcome> {
+    let mut names: Vec<String> = Vec::new();
+    for atom in &formula.atoms {
+        names.extend(columns_of(&atom.node));
+    }
+    names.sort();
+    names.dedup();
+    let numbers = names
+        .iter()
+        .filter_map(|name| Some((name, table.numbers(name).ok()?)));
+    let range = |(name, values): (&String, &[f64])| {
+        let own = kept.iter().map(|row| values[*row]);
+        let (low, high) = own.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), value| {
+            (low.min(value), high.max(value))
+        });
+        RangeOutcome {
+            column: name.clone(),
+            low,
+            high,
+        }
+    };
+    numbers.map(range).collect()
 }
 
 /// A row of an analysis of variance.

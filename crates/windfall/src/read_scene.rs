@@ -10,6 +10,7 @@ use crate::read_files::check_format;
 use crate::read_rig::STANDARD_GRAVITY;
 use crate::read_scene_bruise::{BruisePlan, bruise_of};
 use crate::read_scene_fruit::fruit_of;
+use crate::read_scene_properties::{in_order, with_properties};
 use crate::read_scene_room::{check_room, drawn_fruit};
 use crate::read_scene_walls::wall_of;
 use crate::scene_card::spread_of_card;
@@ -53,6 +54,8 @@ pub struct ScenePlan {
     pub findings: Vec<FindingOutcome>,
     /// Time of the scene between checkpoints, where there are any; s.
     pub checkpoint: Option<f64>,
+    /// Seed of all draws.
+    pub seed: u64,
 }
 
 /// Reads a scene and draws its fruit.
@@ -61,15 +64,25 @@ pub struct ScenePlan {
 /// The file cannot be read, says something that cannot be, or lacks what is needed; the
 /// message names file, line and key.
 pub fn read_scene(path: &Path) -> Result<ScenePlan, Error> {
-    let source = read_source(path, "`windfall new scene DIR` writes a template")?;
-    let file: SceneFile = parse_source(&source)?;
-    check_format(&source, file.format.as_ref())?;
-    let materials = materials(&source, &file)?;
-    let contacts = contacts(&source, &file, &materials)?;
+    scene_of(&read_source(
+        path,
+        "`windfall new scene DIR` writes a template",
+    )?)
+}
+
+/// [`read_scene`] of a text; files that it names lie beside its path.
+///
+/// # Errors
+/// As [`read_scene`].
+pub fn scene_of(source: &TomlSource) -> Result<ScenePlan, Error> {
+    let file: SceneFile = parse_source(source)?;
+    check_format(source, file.format.as_ref())?;
+    let materials = materials(source, &file)?;
+    let contacts = contacts(source, &file, &materials)?;
     let mut kinds = Vec::new();
     let mut names = Vec::new();
     for fruit in &file.fruit {
-        let (name, kind) = fruit_of(&source, fruit, &materials)?;
+        let (name, kind) = fruit_of(source, fruit, &materials)?;
         names.push((name, kind.count));
         kinds.push(kind);
     }
@@ -81,30 +94,37 @@ pub fn read_scene(path: &Path) -> Result<ScenePlan, Error> {
             "",
             "[[fruit]]",
         );
-        return Err(missing(&source, &(0..0), &fruit, fruit.table.to_owned()));
+        return Err(missing(source, &(0..0), &fruit, fruit.table.to_owned()));
     }
     let walls = file.walls.iter();
     let mut findings = Vec::new();
-    let walls = walls.map(|wall| wall_of(&source, wall, &materials, &mut findings));
+    let walls = walls.map(|wall| wall_of(source, wall, &materials, &mut findings));
     let walls: Vec<Wall> = walls.collect::<Result<_, _>>()?;
     let seed = file.scene.seed.unwrap_or(1);
-    let fruit = drawn_fruit(&source, &file, &kinds, seed)?;
-    let timing = timing(&source, &file)?;
+    let fruit = drawn_fruit(source, &file, &kinds, seed)?;
+    // In the order in which they come, which is that of their numbers.
+    let (fruit, kind_of) = in_order(fruit, &kinds);
+    let timing = timing(source, &file)?;
     let bruise = file
         .bruise
         .as_ref()
-        .map(|bruise| bruise_of(&source, bruise));
+        .map(|bruise| bruise_of(source, bruise, &file.fruit, seed))
+        .transpose()?;
+    let bruise = match bruise {
+        Some(plan) => Some(with_properties(source, &file, plan, &kind_of)?),
+        None => None,
+    };
     let scene = Scene {
         materials,
         interactions: contacts.interactions,
         walls,
         fruit,
         sinks: sinks(&file),
-        gravity: gravity(&source, file.scene.gravity.as_ref())?,
+        gravity: gravity(source, file.scene.gravity.as_ref())?,
         air: file
             .air
             .as_ref()
-            .map(|air| air_of(&source, air))
+            .map(|air| air_of(source, air))
             .transpose()?,
         time_step: timing.step,
     };
@@ -115,14 +135,14 @@ pub fn read_scene(path: &Path) -> Result<ScenePlan, Error> {
     };
     checked
         .check()
-        .map_err(|problem| scene_error(&source, &file, &problem))?;
-    check_room(&source, &file, &scene, &names)?;
+        .map_err(|problem| scene_error(source, &file, &problem))?;
+    check_room(source, &file, &scene, &names)?;
     Ok(ScenePlan {
         title: file
             .scene
             .title
             .clone()
-            .unwrap_or_else(|| path.display().to_string()),
+            .unwrap_or_else(|| source.path.display().to_string()),
         scene,
         kinds: names,
         cards: contacts.cards,
@@ -130,10 +150,11 @@ pub fn read_scene(path: &Path) -> Result<ScenePlan, Error> {
         time_step_error: timing.error,
         end: timing.end,
         least_peak_force: timing.least_peak_force,
-        bruise: bruise.transpose()?,
+        bruise,
         given_step: timing.given,
         findings,
-        checkpoint: checkpoint(&source, &file)?,
+        checkpoint: checkpoint(source, &file)?,
+        seed,
     })
 }
 

@@ -8,6 +8,7 @@ use std::collections::BTreeMap;
 use std::io::{Read, Result as IoResult, Write};
 use windfall_scene::binary::{Binary, no_value};
 use windfall_scene::bruise::{Blow, Bruise};
+use windfall_scene::draws::{normal_of, normals};
 use windfall_scene::event::{Event, Partner};
 use windfall_scene::scene::{Fruit, Scene};
 
@@ -16,9 +17,14 @@ use windfall_scene::scene::{Fruit, Scene};
 pub struct Blows {
     plan: BruisePlan,
     radii: Vec<f64>,
+    masses: Vec<f64>,
     materials: Vec<usize>,
     wall_materials: Vec<usize>,
     shares: BTreeMap<(usize, usize), f64>,
+    /// How each fruit differs.
+    draws: Vec<(f64, f64)>,
+    /// Contacts that bruise outside of the range of a regression, and all that do.
+    outside: [usize; 2],
     /// Contacts of each fruit, and what each was with: the number of a wall, or of walls in
     /// all for a fruit.
     of: Vec<Vec<Blow>>,
@@ -32,6 +38,8 @@ pub struct Blows {
 pub struct BruiseOutcome {
     /// Share of fruit whose largest bruise exceeds each limit.
     pub limits: Vec<LimitOutcome>,
+    /// Mean over all fruit of the volume of the largest bruise; m³.
+    pub mean_largest: f64,
     /// What made bruises, the worst first.
     pub places: Vec<PlaceOutcome>,
 }
@@ -60,13 +68,13 @@ pub struct PlaceOutcome {
     pub largest: f64,
 }
 
-/// Standard uncertainties below the threshold up to which contacts are kept.
-const REACH: f64 = 5.0;
 /// Contacts that are kept of a fruit: so many bruises are beyond all counting, and memory has
 /// a bound.
 pub const MOST_BLOWS: usize = 64;
 /// Draws of an interval, and their seed.
 const DRAWS: (usize, u64) = (1000, 1);
+/// Stream of the seed for how fruit differ in their bruises.
+const STREAM: u64 = 1 << 33;
 /// Level of intervals; 1.
 const LEVEL: f64 = 0.95;
 
@@ -91,53 +99,98 @@ impl Blows {
     ///   half of it where two fruit meet, all of it on a wall, where nothing is said
     #[must_use]
     pub fn new(plan: &BruisePlan, scene: &Scene, shares: &BTreeMap<(usize, usize), f64>) -> Self {
-        let mut kept = plan.clone();
-        // Contacts below the threshold may bruise when the threshold is drawn anew.
-        kept.model.threshold = (plan.model.threshold - REACH * plan.model.threshold_sd).max(0.0);
+        let count = scene.fruit.len();
+        let draws = [0, 1].map(|place| normals(plan.seed, STREAM + place, count));
+        let [thresholds, volumes] = draws;
         Self {
-            plan: kept,
+            plan: plan.clone(),
             radii: scene.fruit.iter().map(Fruit::mean_radius).collect(),
+            masses: scene.fruit.iter().map(|fruit| fruit.mass).collect(),
             materials: scene.fruit.iter().map(|fruit| fruit.material).collect(),
             wall_materials: scene.walls.iter().map(|wall| wall.material).collect(),
             shares: shares.clone(),
-            of: vec![Vec::new(); scene.fruit.len()],
-            with: vec![Vec::new(); scene.fruit.len()],
+            draws: thresholds.into_iter().zip(volumes).collect(),
+            of: vec![Vec::new(); count],
+            with: vec![Vec::new(); count],
+            outside: [0; 2],
             crowded: 0,
         }
     }
 
     /// One contact more.
     pub fn count(&mut self, event: &Event) {
-        let own = self.materials[event.fruit as usize];
-        let (place, with, usual) = match event.partner {
-            Partner::Fruit(other) => (
-                self.wall_materials.len(),
-                self.materials[other as usize],
-                0.5,
+        let own = event.fruit as usize;
+        let (place, with, usual, mass) = match event.partner {
+            Partner::Fruit(other) => {
+                let (a, b) = (self.masses[own], self.masses[other as usize]);
+                let with = self.materials[other as usize];
+                (self.wall_materials.len(), with, 0.5, a * b / (a + b))
+            }
+            Partner::Wall(wall) => (
+                wall as usize,
+                self.wall_materials[wall as usize],
+                1.0,
+                self.masses[own],
             ),
-            Partner::Wall(wall) => (wall as usize, self.wall_materials[wall as usize], 1.0),
         };
-        let pair = (own.min(with), own.max(with));
-        let share = self.shares.get(&pair).copied().unwrap_or(usual);
-        self.strike(event, (event.fruit, false), share, place);
+        let with = (self.materials[own].min(with), self.materials[own].max(with));
+        let share = self.shares.get(&with).copied().unwrap_or(usual);
+        let impact_energy = 0.5 * mass * event.normal_speed * event.normal_speed;
+        let felt = (share, impact_energy, place);
+        self.strike(event, (event.fruit, false), felt);
         if let Partner::Fruit(other) = event.partner {
-            self.strike(event, (other, true), share, place);
+            self.strike(event, (other, true), felt);
         }
     }
 
-    fn strike(&mut self, event: &Event, (fruit, other): (u32, bool), share: f64, place: usize) {
-        let fruit = fruit as usize;
-        let blow = Blow::of(event, self.radii[fruit], other, share);
-        if self.plan.model.volume(&blow) > 0.0 {
-            self.of[fruit].push(blow);
-            self.with[fruit].push(place);
+    fn strike(
+        &mut self,
+        event: &Event,
+        (fruit, other): (u32, bool),
+        (share, impact_energy, place): (f64, f64, usize),
+    ) {
+        let number = fruit as usize;
+        let mut blow = Blow::of(event, self.radii[number], other, share);
+        let (threshold, volume) = self.draws[number];
+        blow.fruit_draws = [threshold, volume];
+        let mut outside = false;
+        if let Some(regression) = &self.plan.regression {
+            let contact = [
+                blow.absorbed_energy,
+                share * impact_energy,
+                event.peak_force,
+                event.normal_speed,
+                event.duration,
+                event.largest_displacement,
+                self.radii[number],
+                2.0 * self.radii[number],
+                self.masses[number],
+            ];
+            let columns = regression.columns_of(&contact, &self.plan.properties[number]);
+            outside = regression.is_outside(&columns);
+            blow.terms = regression.terms_of(&columns);
+            // Of the contact alone: whatever else happens, the draw is the same.
+            let words = [self.plan.seed, u64::from(fruit), event.time.to_bits()];
+            let with = match event.partner {
+                Partner::Fruit(own) => u64::from(own),
+                Partner::Wall(own) => u64::MAX - u64::from(own),
+            };
+            blow.draw = normal_of(&[words[0], words[1], words[2], with]);
         }
-        if self.of[fruit].len() > MOST_BLOWS {
-            let volumes = self.of[fruit].iter().map(|own| self.plan.model.volume(own));
+        if self.plan.model.may_bruise(&blow) {
+            let bruises = self.plan.model.volume(&blow) > 0.0;
+            self.outside[0] += usize::from(bruises && outside);
+            self.outside[1] += usize::from(bruises);
+            self.of[number].push(blow);
+            self.with[number].push(place);
+        }
+        if self.of[number].len() > MOST_BLOWS {
+            let volumes = self.of[number].iter();
+            let volumes = volumes.map(|own| self.plan.model.volume(own));
             let weakest = volumes.enumerate().min_by(|a, b| a.1.total_cmp(&b.1));
             if let Some((weakest, _)) = weakest {
-                self.of[fruit].remove(weakest);
-                self.with[fruit].remove(weakest);
+                self.of[number].remove(weakest);
+                self.with[number].remove(weakest);
                 self.crowded += 1;
             }
         }
@@ -157,6 +210,7 @@ impl Blows {
     pub fn save(&self, to: &mut dyn Write) -> IoResult<()> {
         self.of.write(to)?;
         self.with.write(to)?;
+        self.outside.write(to)?;
         self.crowded.write(to)
     }
 
@@ -168,11 +222,34 @@ impl Blows {
         let fruit = self.radii.len();
         self.of = Binary::read(from)?;
         self.with = Binary::read(from)?;
+        self.outside = Binary::read(from)?;
         self.crowded = Binary::read(from)?;
         match self.of.len() == fruit && self.with.len() == fruit {
             true => Ok(()),
             false => Err(no_value("bruises of this scene")),
         }
+    }
+
+    /// How many fruit have a bruise above each limit, by the model as it is and by drawn ones:
+    /// the same models for every scene of the same file.
+    #[must_use]
+    pub fn counts_above(&self, draws: (usize, u64)) -> Vec<Vec<usize>> {
+        let (model, limits) = (&self.plan.model, &self.plan.limits);
+        model.counts_above(&self.of, limits, draws)
+    }
+
+    /// A regression used outside of what it was of.
+    #[must_use]
+    pub fn finding_of_range(&self) -> Option<FindingOutcome> {
+        let [outside, all] = self.outside;
+        (outside > 0).then(|| FindingOutcome {
+            code: "bruise-range".to_owned(),
+            message: format!(
+                "{outside} of {all} contacts that bruise ({:.1} %) lie outside of what the \
+                 regression of bruises was of",
+                100.0 * outside as f64 / all as f64
+            ),
+        })
     }
 
     /// Bruises of each fruit, by the model as it is.
@@ -184,13 +261,14 @@ impl Blows {
     /// What came of it.
     #[must_use]
     pub fn outcome(&self, plan: &BruisePlan, scene: &Scene) -> BruiseOutcome {
-        let limits = plan.limits.iter().map(|&limit| {
-            let found = plan.model.share_above(&self.of, limit, LEVEL, DRAWS);
-            LimitOutcome {
-                limit,
-                share: found.share,
-                interval: [found.low, found.high],
-            }
+        let shares = plan
+            .model
+            .shares_above(&self.of, &plan.limits, LEVEL, DRAWS);
+        let limits = plan.limits.iter().zip(shares);
+        let limits = limits.map(|(&limit, found)| LimitOutcome {
+            limit,
+            share: found.share,
+            interval: [found.low, found.high],
         });
         let names = scene.walls.iter().map(|wall| wall.name.clone());
         let mut places: Vec<PlaceOutcome> = names
@@ -202,6 +280,7 @@ impl Blows {
                 largest: 0.0,
             })
             .collect();
+        let mut largest = 0.0;
         for (bruises, with) in self.bruises(plan).iter().zip(&self.with) {
             let worst = bruises.iter().max_by(|a, b| a.volume.total_cmp(&b.volume));
             for bruise in bruises {
@@ -210,6 +289,7 @@ impl Blows {
                 own.largest = own.largest.max(bruise.volume);
             }
             if let Some(worst) = worst {
+                largest += worst.volume;
                 places[with[worst.contact]].fruit += 1;
             }
         }
@@ -217,6 +297,7 @@ impl Blows {
         places.sort_by(|a, b| b.fruit.cmp(&a.fruit).then(b.largest.total_cmp(&a.largest)));
         BruiseOutcome {
             limits: limits.collect(),
+            mean_largest: largest / self.of.len().max(1) as f64,
             places,
         }
     }

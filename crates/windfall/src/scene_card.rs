@@ -56,7 +56,7 @@ pub fn spread_of_card(card: &LawCard, law: &Law, path: &Path) -> Result<Option<S
 }
 
 /// L of A = L Lᵀ, also where A is singular; `None` where A is no covariance.
-fn lower_factor(matrix: &[Vec<f64>]) -> Option<Vec<Vec<f64>>> {
+pub(crate) fn lower_factor(matrix: &[Vec<f64>]) -> Option<Vec<Vec<f64>>> {
     let n = matrix.len();
     if matrix
         .iter()

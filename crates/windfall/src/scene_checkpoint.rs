@@ -66,6 +66,7 @@ pub fn parts_of(plan: &ScenePlan) -> Parts {
         checkpoint,
         given_step: _,
         findings: _,
+        seed,
     } = plan;
     let Scene {
         materials,
@@ -89,6 +90,7 @@ pub fn parts_of(plan: &ScenePlan) -> Parts {
         part("the times of checkpoints", checkpoint),
         part("[events]", least_peak_force),
         part("[bruise]", bruise),
+        part("the seed", seed),
     ];
     for (pair, interaction) in interactions {
         let name = format!(

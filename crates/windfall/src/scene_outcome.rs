@@ -3,8 +3,10 @@
 use crate::outcome::FindingOutcome;
 use crate::read_scene::ScenePlan;
 use crate::scene_bruise::BruiseOutcome;
+use crate::scene_histogram::HistogramOutcome;
 use crate::scene_key::FRUIT;
 use crate::scene_levels::Levels;
+use crate::scene_static::StaticLoads;
 use serde::Serialize;
 use std::collections::BTreeMap;
 use std::io::{Read, Result as IoResult, Write};
@@ -39,6 +41,8 @@ pub struct SceneOutcome {
     pub written: u64,
     /// Contacts by what was touched.
     pub partners: Vec<PartnerOutcome>,
+    /// How fruit are distributed over the hardest that each suffered.
+    pub histograms: Vec<HistogramOutcome>,
     /// How many fruit are bruised, and where; where the scene says what bruises.
     pub bruise: Option<BruiseOutcome>,
     /// Energies at the end.
@@ -73,11 +77,17 @@ pub struct StepOutcome {
 pub struct PartnerOutcome {
     /// The wall, or "fruit".
     pub name: String,
-    /// Contacts.
+    /// Contacts that were impacts.
     pub contacts: usize,
     /// Fruit that had one.
     pub fruit: usize,
-    /// Peak forces that half and 95 % of the contacts stay below, and the largest; N.
+    /// Contacts that were static loads: much longer than an impact, or there at the end.
+    pub static_loads: usize,
+    /// Fruit that had one.
+    pub static_fruit: usize,
+    /// Largest force of them; N.
+    pub largest_static_force: f64,
+    /// Peak forces that half and 95 % of the impacts stay below, and the largest; N.
     pub peak_force: [f64; 3],
     /// The same of impact speeds; m/s.
     pub impact_speed: [f64; 3],
@@ -133,6 +143,10 @@ pub struct FruitTally {
     pub hardest: Option<Event>,
     /// Largest absorbed energy of a contact, and of all; J.
     pub absorbed: [f64; 2],
+    /// Static loads.
+    pub static_loads: u64,
+    /// Largest force of them; N.
+    pub largest_static_force: f64,
     /// When it left, and through which sink.
     pub left: Option<Leaving>,
 }
@@ -141,17 +155,53 @@ binary!(FruitTally {
     contacts,
     hardest,
     absorbed,
+    static_loads,
+    largest_static_force,
     left
 });
+
+/// Numbers of fruit, a bit for each.
+#[derive(Clone, Debug, Default)]
+struct FruitSet(Vec<u64>);
+
+impl FruitSet {
+    fn insert(&mut self, fruit: u32) {
+        let (word, bit) = (fruit as usize / 64, fruit % 64);
+        if self.0.len() <= word {
+            self.0.resize(word + 1, 0);
+        }
+        self.0[word] |= 1 << bit;
+    }
+
+    fn count(&self) -> usize {
+        self.0.iter().map(|own| own.count_ones() as usize).sum()
+    }
+}
+
+impl Binary for FruitSet {
+    fn write(&self, to: &mut dyn Write) -> IoResult<()> {
+        self.0.write(to)
+    }
+
+    fn read(from: &mut dyn Read) -> IoResult<Self> {
+        Ok(Self(Binary::read(from)?))
+    }
+}
 
 /// Contacts with one wall, or of fruit with fruit, in memory that does not grow with them.
 #[derive(Clone, Debug, Default)]
 pub struct PartnerTally {
-    /// Contacts.
+    /// Impacts.
     pub contacts: u64,
-    /// A bit for each fruit that had one.
-    fruit: Vec<u64>,
-    /// Peak forces; N.
+    /// Fruit that had one.
+    fruit: FruitSet,
+    /// Static loads.
+    pub static_loads: u64,
+    /// Fruit that had one.
+    static_fruit: FruitSet,
+    /// Largest force of them; N.
+    pub largest_static_force: f64,
+    /// Peak forces of impacts; N.
     pub peak_force: Levels,
     /// Impact speeds; m/s.
     pub impact_speed: Levels,
@@ -162,28 +212,27 @@ pub struct PartnerTally {
 binary!(PartnerTally {
     contacts,
     fruit,
+    static_loads,
+    static_fruit,
+    largest_static_force,
     peak_force,
     impact_speed,
     absorbed_energy
 });
 
 impl PartnerTally {
-    fn count(&mut self, event: &Event) {
-        self.contacts += 1;
-        let (word, bit) = (event.fruit as usize / 64, event.fruit % 64);
-        if self.fruit.len() <= word {
-            self.fruit.resize(word + 1, 0);
+    fn count(&mut self, event: &Event, lasted: bool) {
+        if lasted {
+            self.static_loads += 1;
+            self.static_fruit.insert(event.fruit);
+            self.largest_static_force = self.largest_static_force.max(event.peak_force);
+            return;
         }
-        self.fruit[word] |= 1 << bit;
+        self.contacts += 1;
+        self.fruit.insert(event.fruit);
         self.peak_force.add(event.peak_force);
         self.impact_speed.add(event.normal_speed);
         self.absorbed_energy.add(event.absorbed_energy);
-    }
-
-    /// Fruit that had one.
-    #[must_use]
-    pub fn fruit(&self) -> usize {
-        self.fruit.iter().map(|own| own.count_ones() as usize).sum()
     }
 }
 
@@ -196,6 +245,7 @@ pub struct Tally {
     pub contacts: u64,
     /// Of each wall, by number; of fruit with fruit behind them.
     pub partners: Vec<PartnerTally>,
+    loads: StaticLoads,
     /// The fastest impact that the card of a pair of materials has seen; m/s.
     seen: BTreeMap<(usize, usize), f64>,
     /// Contacts of these pairs, and those of them that were faster.
@@ -215,6 +265,7 @@ impl Tally {
             fruit: vec![FruitTally::default(); scene.fruit.len()],
             contacts: 0,
             partners: vec![PartnerTally::default(); scene.walls.len() + 1],
+            loads: StaticLoads::of(scene),
             seen: cards.map(|(pair, card)| (*pair, fastest(card))).collect(),
             speeds: BTreeMap::new(),
             materials: scene.fruit.iter().map(|fruit| fruit.material).collect(),
@@ -222,18 +273,19 @@ impl Tally {
         }
     }
 
-    /// One contact more.
-    pub fn count(&mut self, event: &Event) {
+    /// One contact more; whether it was a static load.
+    pub fn count(&mut self, event: &Event) -> bool {
         self.contacts += 1;
-        self.suffer(event.fruit, event);
+        let lasted = self.loads.is_static(event);
+        self.suffer(event.fruit, event, lasted);
         let (place, other) = match event.partner {
             Partner::Fruit(other) => {
-                self.suffer(other, event);
+                self.suffer(other, event, lasted);
                 (self.walls.len(), self.materials[other as usize])
             }
             Partner::Wall(wall) => (wall as usize, self.walls[wall as usize]),
         };
-        self.partners[place].count(event);
+        self.partners[place].count(event, lasted);
         let own = self.materials[event.fruit as usize];
         let pair = (own.min(other), own.max(other));
         if let Some(fastest) = self.seen.get(&pair) {
@@ -241,11 +293,16 @@ impl Tally {
             *all += 1;
             *beyond += u64::from(event.normal_speed > *fastest);
         }
+        lasted
     }
 
-    fn suffer(&mut self, fruit: u32, event: &Event) {
+    fn suffer(&mut self, fruit: u32, event: &Event, lasted: bool) {
         let own = &mut self.fruit[fruit as usize];
         own.contacts += 1;
+        if lasted {
+            own.static_loads += 1;
+            own.largest_static_force = own.largest_static_force.max(event.peak_force);
+        }
         if own
             .hardest
             .is_none_or(|before| before.peak_force < event.peak_force)
@@ -303,13 +360,19 @@ impl PartnerOutcome {
         let names = names.chain([FRUIT.to_owned()]);
         let rows = names
             .zip(&tally.partners)
-            .filter(|(_, own)| own.contacts > 0);
+            .filter(|(_, own)| own.contacts + own.static_loads > 0);
         rows.map(|(name, own)| {
-            let levels = |of: &Levels| [0.5, 0.95, 1.0].map(|share| of.level(share));
+            let levels = |of: &Levels| match own.contacts {
+                0 => [0.0; 3],
+                _ => [0.5, 0.95, 1.0].map(|share| of.level(share)),
+            };
             Self {
                 name,
                 contacts: own.contacts as usize,
-                fruit: own.fruit(),
+                fruit: own.fruit.count(),
+                static_loads: own.static_loads as usize,
+                static_fruit: own.static_fruit.count(),
+                largest_static_force: own.largest_static_force,
                 peak_force: levels(&own.peak_force),
                 impact_speed: levels(&own.impact_speed),
                 absorbed_energy: levels(&own.absorbed_energy),

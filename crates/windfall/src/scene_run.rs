@@ -207,11 +207,11 @@ impl SceneRun {
     /// # Errors
     /// The table cannot be written.
     pub fn count(&mut self, event: &Event) -> Result<(), Error> {
-        self.tally.count(event);
+        let lasted = self.tally.count(event);
         if let Some(blows) = &mut self.blows {
             blows.count(event);
         }
-        self.table.write(event)
+        self.table.write(event, lasted)
     }
 
     fn save(&mut self) -> Result<(), Error> {

@@ -1,7 +1,7 @@
 //! `windfall regress` with random effects: a linear mixed model.
 
 use crate::error::Error;
-use crate::model_outcome::{AnovaOutcome, TermOutcome};
+use crate::model_outcome::{AnovaOutcome, RangeOutcome, TermOutcome, ranges_of};
 use crate::outcome::FindingOutcome;
 use crate::read_data::{Data, read_data};
 use crate::regress_findings::{aliased_findings, finding, left_out_finding};
@@ -100,6 +100,10 @@ pub struct MixedOutcome {
     pub groups: Vec<(String, usize)>,
     /// Fixed effects.
     pub terms: Vec<TermOutcome>,
+    /// Covariance of the fixed effects, in the order of `terms`.
+    pub covariance: Vec<Vec<f64>>,
+    /// In which ranges the columns of the model were.
+    pub ranges: Vec<RangeOutcome>,
     /// F tests of the terms after all others.
     pub anova: Vec<MixedTest>,
     /// Standard deviations and correlations.
@@ -221,6 +225,8 @@ pub fn regress_mixed(
             .map(|t| (t.term.name.clone(), t.term.groups))
             .collect(),
         terms: tests.iter().map(term_outcome).collect(),
+        covariance: fit.covariance_rows(),
+        ranges: ranges_of(formula, &data.table, &kept),
         anova,
         variances,
         r2: shares.r2_marginal,

@@ -124,6 +124,35 @@ pub fn write_scene_template(directory: &Path) -> Result<Vec<PathBuf>, Error> {
     Ok(vec![path])
 }
 
+/// Writes the example of a study into a directory that does not exist yet, or is empty: the
+/// study, its scene, law cards and a regression of bruises.
+///
+/// # Errors
+/// There is something in the directory already, or it cannot be written.
+pub fn write_study_template(directory: &Path) -> Result<Vec<PathBuf>, Error> {
+    create_directory(directory)?;
+    let files = [
+        ("study.toml", include_str!("templates/study/study.toml")),
+        ("scene.toml", include_str!("templates/study/scene.toml")),
+        ("bruise.toml", include_str!("templates/study/bruise.toml")),
+        (
+            "apple-apple.toml",
+            include_str!("templates/study/apple-apple.toml"),
+        ),
+        (
+            "apple-steel.toml",
+            include_str!("templates/study/apple-steel.toml"),
+        ),
+    ];
+    let mut written = Vec::new();
+    for (name, text) in files {
+        let path = directory.join(name);
+        write_file(&path, text.as_bytes())?;
+        written.push(path);
+    }
+    Ok(written)
+}
+
 /// Creates a directory that is to be filled; one that holds files is refused.
 ///
 /// # Errors

@@ -3,8 +3,8 @@
 use crate::error::Error;
 use crate::model_outcome::{
     AnovaOutcome, InflationOutcome, LackOfFitOutcome, PredictionOutcome, QualityOutcome,
-    RowOutcome, StepOutcome, SumOfSquares, TermOutcome, WholeModel, anova_of, inflation_of,
-    lack_of, predictions_of, roman, rows_of, terms_of, whole_of,
+    RangeOutcome, RowOutcome, StepOutcome, SumOfSquares, TermOutcome, WholeModel, anova_of,
+    inflation_of, lack_of, predictions_of, ranges_of, roman, rows_of, terms_of, whole_of,
 };
 use crate::option_value::unusable;
 use crate::outcome::FindingOutcome;
@@ -16,7 +16,9 @@ use crate::workflow_mixed::{MixedOutcome, regress_mixed};
 use serde::Serialize;
 use windfall_statistics::anova::{anova, lack_of_fit};
 use windfall_statistics::cross_validation::cross_validate;
-use windfall_statistics::diagnostics::{inflation, influence, robust_coefficients};
+use windfall_statistics::diagnostics::{
+    inflation, influence, robust_coefficients, robust_covariance_rows,
+};
 use windfall_statistics::formula::{Formula, formula};
 use windfall_statistics::formula_syntax::spelling;
 use windfall_statistics::linear_model::{LinearFit, fit_reduced, predict};
@@ -50,6 +52,10 @@ pub struct RegressOutcome {
     pub terms: Vec<TermOutcome>,
     /// Whether their standard errors are HC3.
     pub robust: bool,
+    /// Covariance of the estimates, in the order of `terms`.
+    pub covariance: Vec<Vec<f64>>,
+    /// In which ranges the columns of the model were.
+    pub ranges: Vec<RangeOutcome>,
     /// How good the model is.
     #[serde(flatten)]
     pub quality: QualityOutcome,
@@ -240,6 +246,11 @@ fn outcome(
         left_out: rows.left_out.len(),
         terms: terms_of(&coefficients, df),
         robust: request.robust,
+        covariance: match request.robust {
+            true => robust_covariance_rows(fit, &rows.x),
+            false => fit.covariance_rows(),
+        },
+        ranges: ranges_of(formula, &data.table, &rows.kept),
         quality: fit.quality(&rows.y).into(),
         model: whole_of(fit),
         residual: SumOfSquares {

@@ -1,16 +1,19 @@
 //! A scene from its file to the contacts of each fruit.
 
 use crate::error::Error;
+use crate::figure_files::{FigureFolder, write_figure};
 use crate::on_threads::on_threads;
 use crate::progress::Progress;
 use crate::read_scene::{ScenePlan, read_scene};
-use crate::scene_bruise::finding_of_blows;
-use crate::scene_outcome::{PartnerOutcome, SceneOutcome, StepOutcome, findings_of_range};
+use crate::scene_bruise::{Blows, finding_of_blows};
+use crate::scene_histogram::{HistogramOutcome, figure_of_histograms, histogram};
+use crate::scene_outcome::{PartnerOutcome, SceneOutcome, StepOutcome, Tally, findings_of_range};
 use crate::scene_run::{SceneRun, SceneStart, stopped_scene as stopped};
 use crate::scene_step::checked_step;
 use crate::write_file::write_whole;
 use crate::write_scene::fruit_table;
 use std::path::{Path, PathBuf};
+use windfall_scene::bruise::Bruise;
 use windfall_scene::energy::Energy;
 use windfall_scene::scene::Scene;
 use windfall_scene::time_step::Impact;
@@ -41,53 +44,79 @@ pub fn run_scene(
     progress: Progress,
 ) -> Result<SceneOutcome, Error> {
     let plan = read_scene(path)?;
-    on_threads(request.threads, || run(path, plan, request, progress))
+    let out = request.out.clone();
+    let out = out.unwrap_or_else(|| path.with_extension("run"));
+    on_threads(request.threads, || {
+        Ok(run_plan(plan, &out, request.start, progress)?.outcome)
+    })
 }
 
-fn run(
-    path: &Path,
+/// What came of a scene, with the contacts that bruise.
+pub struct RunOfScene {
+    /// What came of it.
+    pub outcome: SceneOutcome,
+    /// Contacts that bruise, where the scene says what does.
+    pub blows: Option<Blows>,
+}
+
+/// Runs a scene that is read already, and writes what comes of it.
+///
+/// * `out`: directory to write into
+///
+/// # Errors
+/// As [`run_scene`].
+pub fn run_plan(
     mut plan: ScenePlan,
-    request: &SceneRequest,
+    out: &Path,
+    start: SceneStart,
     progress: Progress,
-) -> Result<SceneOutcome, Error> {
+) -> Result<RunOfScene, Error> {
     let step = time_step(&mut plan)?;
-    let out = request
-        .out
-        .clone()
-        .unwrap_or_else(|| path.with_extension("run"));
-    std::fs::create_dir_all(&out).map_err(|source| Error::FileAccess {
-        path: out.clone(),
+    std::fs::create_dir_all(out).map_err(|source| Error::FileAccess {
+        path: out.to_path_buf(),
         action: "create",
         source,
     })?;
-    // Fruit are numbered in the order in which they come.
-    plan.scene.fruit.sort_by(|a, b| a.time.total_cmp(&b.time));
-    let mut run = SceneRun::begin(&plan, &out, request.start)?;
+    let mut run = SceneRun::begin(&plan, out, start)?;
     run.to_end(progress)?;
     let last = run.simulation.step_with_energy().map_err(stopped)?;
     for event in run.simulation.lasting() {
         run.count(&event).map_err(|error| run.told(error))?;
     }
-    let outcome = outcome_of(&plan, &run, (step, &last), &out);
-    let written = write_results(&plan, &mut run, &outcome);
-    written.map_err(|error| run.told(error))?;
+    let written = write_results(&plan, &mut run, (step, &last), out);
+    let outcome = written.map_err(|error| run.told(error))?;
+    let blows = run.blows.take();
     run.finish()?;
-    Ok(outcome)
+    Ok(RunOfScene { outcome, blows })
 }
 
-/// What came of a run.
-fn outcome_of(
+/// Writes all but the table of contacts, whose name is the sign that all is there; what came
+/// of the run.
+fn write_results(
     plan: &ScenePlan,
-    run: &SceneRun,
+    run: &mut SceneRun,
     (step, last): (StepOutcome, &Energy),
     out: &Path,
-) -> SceneOutcome {
+) -> Result<SceneOutcome, Error> {
+    run.table.sync()?;
     let (simulation, tally) = (&run.simulation, &run.tally);
     let bruised = plan.bruise.as_ref().zip(run.blows.as_ref());
+    let bruises = bruised.map(|(bruise, blows)| blows.bruises(bruise));
+    let [events, fruit, summary] =
+        ["events.csv", "fruit.csv", "scene.json"].map(|name| out.join(name));
+    let table = fruit_table(plan, tally, &simulation.fruit(), bruises.as_deref())?;
+    write_whole(&fruit, table.as_bytes())?;
+    let histograms = histograms_of(tally, bruises.as_deref());
+    let mut files = vec![events, fruit, summary.clone()];
+    let figure = figure_of_histograms(&plan.title, &histograms);
+    files.extend(write_figure(&FigureFolder::of(out), "histograms", &figure)?);
     let mut findings = plan.findings.clone();
     findings.extend(findings_of_range(plan, tally, simulation.waiting()));
-    findings.extend(bruised.and_then(|(_, blows)| finding_of_blows(blows)));
-    SceneOutcome {
+    if let Some((_, blows)) = bruised {
+        findings.extend(finding_of_blows(blows));
+        findings.extend(blows.finding_of_range());
+    }
+    let outcome = SceneOutcome {
         title: plan.title.clone(),
         end: plan.end,
         step: StepOutcome {
@@ -101,37 +130,47 @@ fn outcome_of(
         contacts: tally.contacts,
         written: run.table.written(),
         partners: PartnerOutcome::of(&plan.scene, tally),
+        histograms,
         bruise: bruised.map(|(bruise, blows)| blows.outcome(bruise, &plan.scene)),
         energy: last.into(),
         energy_closure: (last.closure() - run.first_closure)
             / last.lost().abs().max(f64::MIN_POSITIVE),
         findings,
-        files: ["events.csv", "fruit.csv", "scene.json"]
-            .map(|name| out.join(name))
-            .to_vec(),
-    }
-}
-
-/// Writes all but the table of contacts, whose name is the sign that all is there.
-fn write_results(
-    plan: &ScenePlan,
-    run: &mut SceneRun,
-    outcome: &SceneOutcome,
-) -> Result<(), Error> {
-    run.table.sync()?;
-    let [_, fruit, summary] = &outcome.files[..] else {
-        return Ok(());
+        files,
     };
-    let states = run.simulation.fruit();
-    let bruised = plan.bruise.as_ref().zip(run.blows.as_ref());
-    let bruises = bruised.map(|(bruise, blows)| blows.bruises(bruise));
-    let table = fruit_table(plan, &run.tally, &states, bruises.as_deref())?;
-    write_whole(fruit, table.as_bytes())?;
-    let json = serde_json::to_string_pretty(outcome).map_err(|error| Error::ResultUnwritable {
+    let json = serde_json::to_string_pretty(&outcome).map_err(|error| Error::ResultUnwritable {
         item: plan.title.clone(),
         detail: error.to_string(),
     })?;
-    write_whole(summary, (json + "\n").as_bytes())
+    write_whole(&summary, (json + "\n").as_bytes())?;
+    Ok(outcome)
+}
+
+/// Of each fruit the hardest that it suffered.
+fn histograms_of(tally: &Tally, bruises: Option<&[Vec<Bruise>]>) -> Vec<HistogramOutcome> {
+    let fruit = tally.fruit.iter();
+    let forces = fruit
+        .clone()
+        .map(|own| own.hardest.map_or(0.0, |event| event.peak_force));
+    let energies = fruit.map(|own| own.absorbed[0]);
+    let mut all = vec![
+        histogram(
+            "largest peak force of a fruit",
+            "N",
+            &forces.collect::<Vec<f64>>(),
+        ),
+        histogram(
+            "largest absorbed energy of a contact of a fruit",
+            "J",
+            &energies.collect::<Vec<f64>>(),
+        ),
+    ];
+    if let Some(bruises) = bruises {
+        let largest = |own: &Vec<Bruise>| own.iter().map(|own| own.volume).fold(0.0, f64::max);
+        let volumes: Vec<f64> = bruises.iter().map(largest).collect();
+        all.push(histogram("largest bruise of a fruit", "m^3", &volumes));
+    }
+    all.into_iter().flatten().collect()
 }
 
 /// Sets the time step where it is automatic; what it does to the stiffest contact.

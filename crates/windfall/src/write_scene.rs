@@ -21,7 +21,7 @@ use windfall_scene::simulation::FruitState;
 /// Columns of events.csv.
 const EVENT_COLUMNS: &str = "fruit,partner,partner_fruit,time_s,duration_s,lasting,x_m,y_m,z_m,\
 spot_x,spot_y,spot_z,partner_spot_x,partner_spot_y,partner_spot_z,normal_speed_m_s,\
-tangential_speed_m_s,peak_force_N,largest_displacement_m,absorbed_energy_J,friction_energy_J";
+tangential_speed_m_s,peak_force_N,largest_displacement_m,absorbed_energy_J,friction_energy_J,static";
 
 /// A table of contacts that grows with the scene; it has its name when it is whole.
 pub struct EventFile {
@@ -143,9 +143,11 @@ impl EventFile {
 
     /// One contact more.
     ///
+    /// * `lasted`: whether it was a static load
+    ///
     /// # Errors
     /// It cannot be written, such as where the disk is full.
-    pub fn write(&mut self, event: &Event) -> Result<(), Error> {
+    pub fn write(&mut self, event: &Event, lasted: bool) -> Result<(), Error> {
         if event.peak_force < self.least {
             return Ok(());
         }
@@ -157,7 +159,7 @@ impl EventFile {
         let ([x, y, z], [a, b, c], [d, e, f]) = (event.place, event.spot, event.other_spot);
         writeln!(
             self.file,
-            "{},{partner},{number},{},{},{},{x},{y},{z},{a},{b},{c},{d},{e},{f},{},{},{},{},{},{}",
+            "{},{partner},{number},{},{},{},{x},{y},{z},{a},{b},{c},{d},{e},{f},{},{},{},{},{},{},{lasted}",
             event.fruit + 1,
             event.time,
             event.duration,
@@ -240,6 +242,8 @@ pub fn fruit_table(
         "absorbed_energy_J",
         "bruises",
         "largest_bruise_mm3",
+        "static_loads",
+        "largest_static_force_N",
     ];
     let scene = &plan.scene;
     let mut states = states.iter().peekable();
@@ -287,6 +291,8 @@ pub fn fruit_table(
                     let volumes = own.iter().map(|bruise| 1e9 * bruise.volume);
                     volumes.fold(0.0, f64::max).to_string()
                 }),
+                own.static_loads.to_string(),
+                own.largest_static_force.to_string(),
             ]
         });
     let rows: Vec<Vec<String>> = rows.collect();
@@ -318,7 +324,7 @@ pub fn text_of_scene(outcome: &SceneOutcome) -> String {
     );
     let header = [
         "touched",
-        "contacts",
+        "impacts",
         "fruit",
         "peak force (N)",
         "95 %",
@@ -329,6 +335,8 @@ pub fn text_of_scene(outcome: &SceneOutcome) -> String {
         "absorbed (mJ)",
         "95 %",
         "largest",
+        "static loads",
+        "largest (N)",
     ];
     let rows = outcome.partners.iter().map(|own| {
         let mut row = vec![
@@ -339,6 +347,10 @@ pub fn text_of_scene(outcome: &SceneOutcome) -> String {
         row.extend(own.peak_force.map(number));
         row.extend(own.impact_speed.map(number));
         row.extend(own.absorbed_energy.map(|value| number(1e3 * value)));
+        row.extend([
+            own.static_loads.to_string(),
+            number(own.largest_static_force),
+        ]);
         row
     });
     let rows: Vec<Vec<String>> = rows.collect();
@@ -396,7 +408,7 @@ fn text_of_bruises(bruise: &BruiseOutcome) -> String {
 /// None in practice: the text is written to memory.
 pub fn csv_of_scene(outcome: &SceneOutcome) -> Result<String, Error> {
     let levels = ["median", "p95", "max"];
-    let mut header = ["touched", "contacts", "fruit"].map(str::to_owned).to_vec();
+    let mut header = ["touched", "impacts", "fruit"].map(str::to_owned).to_vec();
     for (name, unit) in [
         ("peak_force", "N"),
         ("impact_speed", "m_s"),
@@ -404,6 +416,7 @@ pub fn csv_of_scene(outcome: &SceneOutcome) -> Result<String, Error> {
     ] {
         header.extend(levels.map(|level| format!("{name}_{level}_{unit}")));
     }
+    header.extend(["static_loads", "static_fruit", "largest_static_force_N"].map(str::to_owned));
     let rows = outcome.partners.iter().map(|own| {
         let mut row = vec![
             own.name.clone(),
@@ -412,6 +425,11 @@ pub fn csv_of_scene(outcome: &SceneOutcome) -> Result<String, Error> {
         ];
         let numbers = [own.peak_force, own.impact_speed, own.absorbed_energy];
         row.extend(numbers.as_flattened().iter().map(f64::to_string));
+        row.extend([
+            own.static_loads.to_string(),
+            own.static_fruit.to_string(),
+            own.largest_static_force.to_string(),
+        ]);
         row
     });
     csv_text(&header, rows)

@@ -1,0 +1,56 @@
+//! A study of a scene as it stands on disk, version 1.
+
+use serde::Deserialize;
+use std::collections::BTreeMap;
+use toml::Spanned;
+
+/// The whole file.
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct StudyFile {
+    /// Version of the shape of this file.
+    pub format: Option<Spanned<i64>>,
+    /// The scene, beside this file.
+    pub scene: Spanned<String>,
+    /// Title.
+    pub title: Option<String>,
+    /// How often each variant is run, with other seeds and laws drawn anew.
+    pub replicates: Option<Spanned<usize>>,
+    /// What is varied.
+    #[serde(default)]
+    pub vary: Vec<Spanned<VaryFile>>,
+}
+
+/// `[[vary]]`
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct VaryFile {
+    /// What is varied.
+    pub name: Spanned<String>,
+    /// Its levels; differences are to the first.
+    pub levels: Vec<Spanned<LevelFile>>,
+}
+
+/// A level.
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct LevelFile {
+    /// Its name.
+    pub name: String,
+    /// New values, by the path of their key.
+    #[serde(default)]
+    pub set: BTreeMap<String, Spanned<toml::Value>>,
+    /// What is moved.
+    #[serde(rename = "move")]
+    pub shift: Option<Spanned<MoveFile>>,
+}
+
+/// `move`
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct MoveFile {
+    /// Names of walls, kinds of fruit and sinks.
+    pub names: Vec<String>,
+    /// By how much; m.
+    pub by: [f64; 3],
+}
