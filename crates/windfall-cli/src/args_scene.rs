@@ -1,6 +1,7 @@
 //! `windfall scene`: what may be asked for.
 
 use crate::args_format::Format;
+use crate::args_scene_view::{ScenePictureArguments, SceneVtkArguments};
 use clap::{Args, Subcommand, ValueHint};
 use std::path::PathBuf;
 
@@ -9,6 +10,10 @@ use std::path::PathBuf;
 pub enum SceneCommand {
     /// Run a scene, and write every contact and every fruit
     Run(SceneRunArguments),
+    /// Draw a scene that has run: walls, and fruit coloured by their largest impact
+    Picture(ScenePictureArguments),
+    /// Write the frames of a scene that has run for ParaView
+    Vtk(SceneVtkArguments),
 }
 
 /// `windfall scene run`

@@ -3,6 +3,7 @@
 use crate::args_format::Format;
 use crate::args_scene::{SceneCommand, SceneRunArguments};
 use crate::command_fit::{moving, progress_bar};
+use crate::command_scene_view;
 use crate::show::{write_json, write_result};
 use windfall::workflow_scene::{SceneRequest, run_scene};
 use windfall::write_scene::{csv_of_scene, text_of_scene};
@@ -11,6 +12,8 @@ use windfall::write_scene::{csv_of_scene, text_of_scene};
 pub fn run(command: &SceneCommand) -> anyhow::Result<()> {
     match command {
         SceneCommand::Run(arguments) => run_one(arguments),
+        SceneCommand::Picture(arguments) => command_scene_view::picture(arguments),
+        SceneCommand::Vtk(arguments) => command_scene_view::vtk(arguments),
     }
 }
 

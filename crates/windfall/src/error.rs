@@ -23,6 +23,9 @@ pub enum Error {
     /// A scene whose result would mean nothing from there on.
     #[error("the scene was stopped: {0}")]
     SceneStopped(Box<windfall_scene::error::Error>),
+    /// What is kept of a scene cannot be used.
+    #[error("{0}")]
+    SceneFile(Box<crate::error_scene::SceneFileError>),
     /// A change that would leave no campaign that can be read.
     #[error("nothing was written: {problem}")]
     ChangeRefused {

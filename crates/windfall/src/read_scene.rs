@@ -9,6 +9,7 @@ use crate::read_files::check_format;
 use crate::read_rig::STANDARD_GRAVITY;
 use crate::read_scene_bruise::{BruisePlan, bruise_of};
 use crate::read_scene_fruit::fruit_of;
+use crate::read_scene_record::{RecordPlan, record_of};
 use crate::read_scene_walls::wall_of;
 use crate::scene_card::spread_of_card;
 use crate::scene_key::{material, needed};
@@ -44,6 +45,8 @@ pub struct ScenePlan {
     pub end: f64,
     /// Contacts with a smaller peak force are counted, not written; N.
     pub least_peak_force: f64,
+    /// What is kept to be seen.
+    pub record: RecordPlan,
     /// How contacts bruise, where the file says so.
     pub bruise: Option<BruisePlan>,
 }
@@ -121,6 +124,7 @@ pub fn read_scene(path: &Path) -> Result<ScenePlan, Error> {
         time_step_error: timing.error,
         end: timing.end,
         least_peak_force: timing.least_peak_force,
+        record: record_of(&source, &file.record)?,
         bruise: bruise.transpose()?,
     })
 }

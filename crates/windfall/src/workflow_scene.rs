@@ -8,6 +8,7 @@ use crate::scene_bruise::Blows;
 use crate::scene_outcome::{PartnerOutcome, SceneOutcome, StepOutcome, Tally, findings_of_range};
 use crate::write_file::write_whole;
 use crate::write_scene::{EventFile, fruit_table};
+use crate::write_scene_frames::SceneRecorder;
 use std::path::{Path, PathBuf};
 use windfall_scene::event::Event;
 use windfall_scene::scene::Scene;
@@ -65,6 +66,8 @@ fn run(
     let all = (plan.end / plan.scene.time_step).ceil() as u64;
     let mut file = EventFile::create(&out.join("events.csv"), &plan.scene, plan.least_peak_force)?;
     let mut tally = Tally::new(&plan.scene);
+    let mut frames = SceneRecorder::create(&plan, &out)?;
+    frames.take(&simulation, &tally)?;
     let mut blows = plan
         .bruise
         .as_ref()
@@ -78,7 +81,7 @@ fn run(
     };
     let first = simulation.step_with_energy().map_err(stopped)?;
     while simulation.steps() < all {
-        for _ in 0..CHUNK.min(all - simulation.steps()) {
+        for _ in 0..frames.steps(&simulation, CHUNK.min(all - simulation.steps())) {
             simulation.step().map_err(stopped)?;
         }
         for event in simulation.take_events() {
@@ -87,6 +90,7 @@ fn run(
         for leaving in simulation.take_leavings() {
             tally.leave(&leaving);
         }
+        frames.take(&simulation, &tally)?;
         if progress(simulation.steps() as usize, all as usize).is_break() {
             return Err(Error::Cancelled);
         }
@@ -96,6 +100,7 @@ fn run(
         count(&event, &mut tally, &mut file)?;
     }
     let written = file.finish()?;
+    let frames = frames.finish(&simulation, &tally)?;
     let fruit = out.join("fruit.csv");
     let states = simulation.fruit();
     let bruised = plan.bruise.as_ref().zip(blows.as_ref());
@@ -121,7 +126,11 @@ fn run(
         energy_closure: (last.closure() - first.closure())
             / last.lost().abs().max(f64::MIN_POSITIVE),
         findings: findings_of_range(&plan, &tally, simulation.waiting()),
-        files: vec![out.join("events.csv"), fruit, out.join("scene.json")],
+        files: [out.join("events.csv"), fruit]
+            .into_iter()
+            .chain(frames)
+            .chain([out.join("scene.json")])
+            .collect(),
     };
     let json = serde_json::to_string_pretty(&outcome).map_err(|error| Error::ResultUnwritable {
         item: plan.title.clone(),
