@@ -50,7 +50,8 @@ const MANY = 2500;
 const SPOTS = 300;
 
 export class Player {
-  /** Called when what is seen may have changed otherwise than by `show`. */
+  /** Called after each drawing. */
+  drawn: () => void = () => undefined;
   readonly #renderer: WebGLRenderer;
   readonly #scene = new Scene();
   readonly #camera = new PerspectiveCamera(FIELD, 1, 0.01, 100);
@@ -345,6 +346,7 @@ export class Player {
       if (!this.#due) return;
       this.#due = false;
       this.#renderer.render(this.#scene, this.#camera);
+      this.drawn();
     });
   }
 
