@@ -10,7 +10,6 @@ use crate::figure_svg::{Anchor, Drawing, Ink};
 use crate::read_scene_frames::SceneFrames;
 use crate::scene_frames::Frame;
 use crate::scene_geometry::WallGeometry;
-use crate::text_statistic::number;
 use crate::write_csv::csv_text;
 use std::collections::BTreeMap;
 use windfall_scene::vector::{Vector, cross, dot, length, subtract, unit};
@@ -34,8 +33,10 @@ const STEPS: usize = 64;
 /// Faces that meet at a smaller angle are one surface; cosine of 25°.
 const SMOOTH: f64 = 0.906;
 
-/// Opacity of a face and of its edges; 1.
+/// Opacity of a face, of one with fruit behind it, whose colours are to be read, and of edges;
+/// 1.
 const FACE: f64 = 0.10;
+const FRONT: f64 = 0.035;
 const PLANE: f64 = 0.06;
 const EDGE: f64 = 0.75;
 
@@ -64,7 +65,7 @@ pub fn scene_painting(
 ) -> Result<Painting, Error> {
     let camera = Camera::around(&looked_at(frames, frame), from, pane());
     let balls = balls_of(frames, frame, &camera, most);
-    let faces: Vec<Pane3> = frames
+    let mut faces: Vec<Pane3> = frames
         .walls
         .iter()
         .zip(&frame.walls)
@@ -74,7 +75,7 @@ pub fn scene_painting(
         })
         .collect();
     let mut drawing = Drawing::new(WIDTH, HEIGHT);
-    for next in order(&balls, &faces, &camera) {
+    for next in order(&balls, &mut faces, &camera) {
         match next {
             Next::Ball(own) => {
                 let ball = &balls[own];
@@ -85,11 +86,7 @@ pub fn scene_painting(
     }
     let title = frames.about.title.as_str();
     drawing.text((LEFT, 28.0), Anchor::Start, 15.0, title);
-    let words = format!(
-        "{} fruit at {} s",
-        frame.fruit.len(),
-        number((frame.time * 1e4).round() / 1e4)
-    );
+    let words = format!("{} fruit at {} s", frame.fruit.len(), time_of(frame));
     drawing.text((LEFT, 47.0), Anchor::Start, 11.5, &words);
     draw_bar(&mut drawing, most);
     draw_axes(&mut drawing, &camera);
@@ -97,11 +94,16 @@ pub fn scene_painting(
         name: "picture".to_owned(),
         caption: format!(
             "{title} at {} s; fruit in the colour of the largest peak force of their contacts so far.",
-            number((frame.time * 1e4).round() / 1e4)
+            time_of(frame)
         ),
         drawing,
         csv: csv_of(frames, frame)?,
     })
+}
+
+/// Time of a frame, without the part of a step that it is late; s.
+fn time_of(frame: &Frame) -> f64 {
+    (frame.time * 1e3).round() / 1e3
 }
 
 fn pane() -> Pane {
@@ -199,6 +201,7 @@ fn faces_of(wall: &WallGeometry, points: &[Vector], camera: &Camera) -> Vec<Pane
             at: seen.iter().map(|own| own.at).collect(),
             edges: meets[number * corners.len()..][..corners.len()].to_vec(),
             endless: wall.about.endless,
+            hides: false,
             corners,
         });
     }
@@ -237,7 +240,11 @@ fn meeting_faces(wall: &WallGeometry, normals: &[Vector]) -> Vec<bool> {
 }
 
 fn draw_face(drawing: &mut Drawing, face: &Pane3) {
-    let opacity = if face.endless { PLANE } else { FACE };
+    let opacity = match (face.hides, face.endless) {
+        (true, _) => FRONT,
+        (false, true) => PLANE,
+        (false, false) => FACE,
+    };
     drawing.veil(&face.at, Ink::Text, opacity);
     for (k, drawn) in face.edges.iter().enumerate() {
         if *drawn {
@@ -249,14 +256,10 @@ fn draw_face(drawing: &mut Drawing, face: &Pane3) {
 
 fn draw_bar(drawing: &mut Drawing, most: f64) {
     let [left, top, width, height] = BAR;
-    let step = height / STEPS as f64;
-    for k in 0..STEPS {
-        let y = top + height - (k + 1) as f64 * step;
-        let colour = colour_of(k as f64 / (STEPS - 1) as f64);
-        // A little over the next one, so that no seam shows.
-        drawing.swatch((left, y), (width, step + 0.4), colour);
-    }
-    let scale = axis(0.0, most, 5);
+    let colours = (0..STEPS).map(|k| colour_of(k as f64 / (STEPS - 1) as f64));
+    let colours: Vec<_> = colours.collect();
+    drawing.colour_bar((left, top), (width, height), &colours);
+    let scale = axis(0.0, most, 6);
     for (tick, label) in scale.ticks.iter().zip(&scale.labels) {
         let y = top + height * (1.0 - tick / most);
         drawing.rule((left + width, y), (left + width + 4.0, y), Ink::Frame);

@@ -33,6 +33,8 @@ pub struct Pane3 {
     pub away: f64,
     /// Whether it stands for an endless plane.
     pub endless: bool,
+    /// Whether a ball is behind it; [`order`] finds it out.
+    pub hides: bool,
 }
 
 /// What is drawn next.
@@ -50,12 +52,12 @@ const SMALL: f64 = 4.0;
 /// The order in which balls and faces are drawn: far ones first. Of a large face its side
 /// tells which balls are behind it.
 #[must_use]
-pub fn order(balls: &[Ball], faces: &[Pane3], camera: &Camera) -> Vec<Next> {
+pub fn order(balls: &[Ball], faces: &mut [Pane3], camera: &Camera) -> Vec<Next> {
     let mut sorted: Vec<usize> = (0..balls.len()).collect();
     sorted.sort_by(|a, b| balls[*b].away.total_cmp(&balls[*a].away));
     let mean = balls.iter().map(|own| own.radius).sum::<f64>() / balls.len().max(1) as f64;
     let mut cuts: Vec<(usize, usize)> = Vec::with_capacity(faces.len());
-    for (number, face) in faces.iter().enumerate() {
+    for (number, face) in faces.iter_mut().enumerate() {
         let extent = face
             .corners
             .iter()
@@ -65,6 +67,7 @@ pub fn order(balls: &[Ball], faces: &[Pane3], camera: &Camera) -> Vec<Next> {
             true => sorted.partition_point(|own| balls[*own].away > face.away),
             false => cut_of(face, balls, &sorted, camera),
         };
+        face.hides = sorted[..cut].iter().any(|own| covers(face, &balls[*own]));
         cuts.push((cut, number));
     }
     cuts.sort_by(|a, b| {
@@ -174,6 +177,7 @@ mod tests {
             away: length(subtract(middle_of(&corners), camera.eye)),
             edges: vec![true; 4],
             endless: false,
+            hides: false,
             corners,
         };
         let balls = [
@@ -182,9 +186,11 @@ mod tests {
             ball([0.0, 5.0, 0.5]),
         ];
         assert!(balls[0].away < balls[1].away);
-        let found = order(&balls[..1], std::slice::from_ref(&face), &camera);
+        let mut faces = [face];
+        let found = order(&balls[..1], &mut faces, &camera);
         assert_eq!(found, [Next::Ball(0), Next::Face(0)]);
-        let found = order(&balls[1..], std::slice::from_ref(&face), &camera);
+        assert!(faces[0].hides);
+        let found = order(&balls[1..], &mut faces, &camera);
         assert_eq!(found, [Next::Ball(1), Next::Face(0), Next::Ball(0)]);
     }
 }

@@ -242,16 +242,21 @@ impl Drawing {
         );
     }
 
-    /// A filled rectangle of any colour.
-    pub fn swatch(&mut self, at: (f64, f64), size: (f64, f64), colour: Rgb) {
+    /// An upright bar of colours, the first at its foot.
+    pub fn colour_bar(&mut self, at: (f64, f64), size: (f64, f64), colours: &[Rgb]) {
+        self.body += r#"<linearGradient id="colours" x1="0" y1="1" x2="0" y2="0">"#;
+        let last = colours.len().saturating_sub(1).max(1) as f64;
+        for (k, colour) in colours.iter().enumerate() {
+            let (offset, colour) = (k as f64 / last, css(*colour));
+            let _ = write!(
+                self.body,
+                r#"<stop offset="{offset:.4}" stop-color="{colour}"/>"#
+            );
+        }
         let _ = writeln!(
             self.body,
-            r#"<rect x="{:.2}" y="{:.2}" width="{:.2}" height="{:.2}" fill="{}"/>"#,
-            at.0,
-            at.1,
-            size.0,
-            size.1,
-            css(colour)
+            r#"</linearGradient><rect x="{:.2}" y="{:.2}" width="{:.2}" height="{:.2}" fill="url(#colours)"/>"#,
+            at.0, at.1, size.0, size.1
         );
     }
 

@@ -6,7 +6,7 @@ use crate::confined::path_inside;
 use crate::error::Error;
 use crate::error_scene::SceneFileError;
 use crate::read_scene_frames::{SceneFrames, frames_file};
-use crate::scene_frames::{FRAMES_FILE, FramesAbout};
+use crate::scene_frames::FramesAbout;
 use crate::workflow_scene_view::largest_force;
 use crate::workspace::Workspace;
 use serde::Serialize;
@@ -123,7 +123,7 @@ fn is_run(path: &Path) -> bool {
 }
 
 fn holds_run(path: &Path) -> bool {
-    path.join(RESULT).is_file() || path.join(FRAMES_FILE).is_file()
+    path.join(RESULT).is_file() || frames_file(path).is_ok()
 }
 
 /// Directories in a directory that are named plainly, by name.

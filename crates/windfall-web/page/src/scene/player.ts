@@ -71,6 +71,11 @@ export class Player {
   #contacts: ContactView[] = [];
   #time = 0;
   #due = false;
+  /** From where it is seen, until somebody turns it. */
+  #from = FROM;
+  #turned = false;
+  /** What must be seen. */
+  readonly #points: Vector3[];
 
   /** Fails where the browser shows no graphics in space. */
   constructor(
@@ -82,10 +87,11 @@ export class Player {
     this.#colours = view.colours.map((own) => new Color(own));
     const { low, high } = view.about.bounds;
     this.#middle = new Vector3(...low).add(new Vector3(...high)).multiplyScalar(0.5);
+    this.#points = outline(view);
     this.#size = Math.max(new Vector3(...low).distanceTo(new Vector3(...high)), 1e-3);
 
-    this.#scene.add(new HemisphereLight(0xffffff, 0x8890a0, 1.9));
-    const sun = new DirectionalLight(0xffffff, 1.5);
+    this.#scene.add(new HemisphereLight(0xffffff, 0xc8ccd4, 2.5));
+    const sun = new DirectionalLight(0xffffff, 1.0);
     sun.position.set(-0.4, -0.8, 1.2);
     this.#scene.add(sun);
 
@@ -114,6 +120,7 @@ export class Player {
     this.#controls.enableDamping = false;
     this.#controls.maxPolarAngle = 0.98 * Math.PI;
     this.#controls.addEventListener("change", () => this.draw());
+    this.#controls.addEventListener("start", () => (this.#turned = true));
     this.look(...FROM);
   }
 
@@ -128,7 +135,7 @@ export class Player {
     geometry.computeVertexNormals();
     const face = new MeshLambertMaterial({
       transparent: true,
-      opacity: endless ? 0.1 : 0.14,
+      opacity: endless ? 0.1 : 0.16,
       side: DoubleSide,
       depthWrite: false,
     });
@@ -159,42 +166,41 @@ export class Player {
     this.#renderer.setSize(width, height, false);
     this.#camera.aspect = width / height;
     this.#camera.updateProjectionMatrix();
-    this.#fit();
-    this.draw();
+    if (this.#turned) this.draw();
+    else this.look(...this.#from);
   }
 
-  /** Brings the scene into view from a side, as far away as it needs. */
+  /** Brings the whole scene into view from a side. */
   look(azimuth: number, elevation: number): void {
+    this.#from = [azimuth, elevation];
+    this.#turned = false;
     const [sin, cos] = [Math.sin(elevation), Math.max(Math.cos(elevation), 1e-3)];
-    const from = new Vector3(Math.cos(azimuth) * cos, Math.sin(azimuth) * cos, sin);
-    this.#controls.target.copy(this.#middle);
-    this.#camera.position.copy(this.#middle).addScaledVector(from, this.#size);
-    this.#controls.update();
-    this.#fit();
-    this.draw();
-  }
-
-  /** As far away that every corner of the scene is seen. */
-  #fit(): void {
-    const { low, high } = this.view.about.bounds;
-    const target = this.#controls.target;
-    const from = this.#camera.position.clone().sub(target).normalize();
-    this.#camera.updateMatrixWorld();
-    const [right, up, back] = [new Vector3(), new Vector3(), new Vector3()];
-    this.#camera.matrixWorld.extractBasis(right, up, back);
-    const high2 = Math.tan((FIELD * Math.PI) / 360);
-    const wide = high2 * this.#camera.aspect;
-    let away = 0;
-    for (let corner = 0; corner < 8; corner++) {
-      const own = new Vector3(
-        corner & 1 ? high[0] : low[0],
-        corner & 2 ? high[1] : low[1],
-        corner & 4 ? high[2] : low[2],
-      ).sub(target);
-      const far = Math.max(Math.abs(own.dot(right)) / wide, Math.abs(own.dot(up)) / high2);
-      away = Math.max(away, far + own.dot(from));
+    const from = new Vector3(Math.cos(azimuth) * cos, Math.sin(azimuth) * cos, sin).normalize();
+    const right = new Vector3(-Math.sin(azimuth), Math.cos(azimuth), 0);
+    const up = new Vector3().crossVectors(from, right);
+    const high = Math.tan((FIELD * Math.PI) / 360);
+    const wide = high * this.#camera.aspect;
+    const target = this.#middle.clone();
+    let away = this.#size;
+    // As far away as it must be; then what is seen is brought into the middle.
+    for (let round = 0; round < 10; round++) {
+      away = 0;
+      for (const point of this.#points) {
+        SPOT.subVectors(point, target);
+        const far = Math.max(Math.abs(SPOT.dot(right)) / wide, Math.abs(SPOT.dot(up)) / high);
+        away = Math.max(away, far + SPOT.dot(from));
+      }
+      const ends = [right, up].map((axis) => {
+        const seen = this.#points.map((point) => {
+          SPOT.subVectors(point, target);
+          return SPOT.dot(axis) / (away - SPOT.dot(from));
+        });
+        return (seen.reduce((a, b) => Math.max(a, b)) + seen.reduce((a, b) => Math.min(a, b))) / 2;
+      });
+      target.addScaledVector(right, ends[0]! * away).addScaledVector(up, ends[1]! * away);
     }
-    away *= 1.04;
+    away *= 1.06;
+    this.#controls.target.copy(target);
     this.#camera.position.copy(target).addScaledVector(from, away);
     this.#camera.near = 0.01 * away;
     this.#camera.far = away + 20 * this.#size;
@@ -202,10 +208,12 @@ export class Player {
     this.#controls.minDistance = 0.02 * away;
     this.#controls.maxDistance = 10 * away;
     this.#controls.update();
+    this.draw();
   }
 
   /** Turns the view by angles (rad), and brings it nearer by a factor. */
   turn(azimuth: number, elevation: number, nearer = 1): void {
+    this.#turned = true;
     const from = this.#camera.position.clone().sub(this.#controls.target);
     const away = from.length();
     const up = Math.min(Math.max(Math.asin(from.z / away) + elevation, -1.5), 1.5);
@@ -363,6 +371,23 @@ const SIZE = new Vector3();
 const ROTATION = new Quaternion();
 const OTHER = new Quaternion();
 const RAY = new Raycaster();
+
+/** Corners of the walls that have an end, or of the whole where there are none. */
+function outline(view: SceneView): Vector3[] {
+  const points: Vector3[] = [];
+  view.about.walls.forEach((wall, place) => {
+    const own = view.vertices[place]!;
+    if (!wall.endless) for (let at = 0; at < own.length; at += 3) points.push(new Vector3().fromArray(own, at));
+  });
+  const { low, high } = view.about.bounds;
+  if (points.length === 0) {
+    for (let corner = 0; corner < 8; corner++) {
+      const [x, y, z] = [0, 1, 2].map((k) => (corner & (1 << k) ? high[k]! : low[k]!));
+      points.push(new Vector3(x, y, z));
+    }
+  }
+  return points;
+}
 
 /** Place and orientation between two records of a fruit, into SPOT and ROTATION. */
 function between(from: Float32Array, a: number, to: Float32Array | null, b: number, part: number): void {
