@@ -113,13 +113,11 @@ fn pane() -> Pane {
     }
 }
 
-/// What the camera must see: walls that have an end, and fruit near them.
+/// What the camera must see: walls, and fruit near them.
 fn looked_at(frames: &SceneFrames, frame: &Frame) -> Vec<Vector> {
     let mut points = Vec::new();
     for (wall, pose) in frames.walls.iter().zip(&frame.walls) {
-        if !wall.about.endless {
-            points.extend(wall.vertices.iter().map(|own| posed(*own, pose)));
-        }
+        points.extend(wall.vertices.iter().map(|own| posed(*own, pose)));
     }
     let bounds = &frames.about.bounds;
     let beside = BESIDE * bounds.diagonal();

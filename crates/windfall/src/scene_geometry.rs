@@ -10,9 +10,9 @@ use windfall_scene::wall::{Shape, Wall};
 /// Faces around a cylinder.
 const SIDES: usize = 48;
 
-/// Half width of the square that stands for an endless plane, over the diagonal of the rest
-/// of the scene; 1.
-const PLANE_REACH: f64 = 0.6;
+/// Width of the rectangle that stands for an endless plane, over that of the rest of the
+/// scene; 1.
+const PLANE_REACH: f64 = 1.15;
 
 /// A wall as faces, at rest.
 #[derive(Clone, Debug, PartialEq)]
@@ -85,6 +85,13 @@ impl Bounds {
         length(subtract(self.high, self.low))
     }
 
+    /// Its width along a direction of length 1; m.
+    #[must_use]
+    pub fn width(&self, along: Vector) -> f64 {
+        let sides = subtract(self.high, self.low);
+        (0..3).map(|k| (sides[k] * along[k]).abs()).sum()
+    }
+
     /// Whether a point lies inside the box widened by `beyond` (m) on every side.
     #[must_use]
     pub fn holds(&self, point: Vector, beyond: f64) -> bool {
@@ -139,19 +146,22 @@ fn geometry(scene: &Scene, wall: &Wall, bounds: &Bounds) -> WallGeometry {
 
 /// Vertices, faces, and vertices of each face.
 ///
-/// * `bounds`: what the square for an endless plane is to reach around
+/// * `bounds`: what the rectangle for an endless plane is to reach around
 fn faces_of(shape: &Shape, bounds: Option<&Bounds>) -> (Vec<Vector>, Vec<u32>, usize) {
     match shape {
         Shape::Plane { point, normal } => {
             let middle = bounds.map_or(*point, Bounds::middle);
-            let half = PLANE_REACH * bounds.map_or(1.0, Bounds::diagonal).max(f64::MIN_POSITIVE);
             let height = dot(subtract(middle, *point), *normal);
             let foot = plus_scaled(middle, *normal, -height);
             let (a, b) = across(*normal);
+            let half = [a, b].map(|axis| {
+                let width = bounds.map_or(1.0, |own| own.width(axis));
+                0.5 * PLANE_REACH * width.max(f64::MIN_POSITIVE)
+            });
             let corners = [(-1.0, -1.0), (1.0, -1.0), (1.0, 1.0), (-1.0, 1.0)];
             let corners = corners.map(|(s, t)| {
-                let along = plus_scaled(foot, a, s * half);
-                plus_scaled(along, b, t * half)
+                let along = plus_scaled(foot, a, s * half[0]);
+                plus_scaled(along, b, t * half[1])
             });
             (corners.to_vec(), vec![0, 1, 2, 3], 4)
         }
@@ -234,7 +244,7 @@ mod tests {
     }
 
     #[test]
-    fn closed_form_the_square_for_a_plane_lies_on_it_around_the_scene() {
+    fn closed_form_the_rectangle_for_a_plane_lies_on_it_around_the_scene() {
         let bounds = Bounds::around([[0.0; 3], [1.0, 2.0, 2.0]]);
         assert!((bounds.diagonal() - 3.0).abs() < 1e-15);
         let normal = unit([1.0, 0.0, 2.0]).unwrap();
@@ -247,6 +257,9 @@ mod tests {
             subtract(vertices[1], vertices[0]),
             subtract(vertices[3], vertices[0]),
         );
-        assert!((length(a) - 3.6).abs() < 1e-12 && dot(a, b).abs() < 1e-12);
+        // Along the slope 1 · 2/√5 + 2 · 1/√5, across it 2.
+        let slope = 1.15 * 4.0 / 5.0_f64.sqrt();
+        assert!((length(a) - slope).abs() < 1e-12 && (length(b) - 2.3).abs() < 1e-12);
+        assert!(dot(a, b).abs() < 1e-12);
     }
 }

@@ -372,13 +372,12 @@ const ROTATION = new Quaternion();
 const OTHER = new Quaternion();
 const RAY = new Raycaster();
 
-/** Corners of the walls that have an end, or of the whole where there are none. */
+/** Corners of the walls, or of the whole where there are none. */
 function outline(view: SceneView): Vector3[] {
   const points: Vector3[] = [];
-  view.about.walls.forEach((wall, place) => {
-    const own = view.vertices[place]!;
-    if (!wall.endless) for (let at = 0; at < own.length; at += 3) points.push(new Vector3().fromArray(own, at));
-  });
+  for (const own of view.vertices) {
+    for (let at = 0; at < own.length; at += 3) points.push(new Vector3().fromArray(own, at));
+  }
   const { low, high } = view.about.bounds;
   if (points.length === 0) {
     for (let corner = 0; corner < 8; corner++) {
