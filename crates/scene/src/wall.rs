@@ -108,6 +108,16 @@ impl Motion {
         self.velocity == [0.0; 3] && self.vibration.is_none() && self.rotation.is_none()
     }
 
+    /// Where the wall is at a time: a point x of it at rest is at q x q⁻¹ + t, with the
+    /// rotation q and the shift t (m).
+    ///
+    /// * `time`: s
+    #[must_use]
+    pub fn pose(&self, time: f64) -> (Rotation, Vector) {
+        let placed = self.at(time);
+        (placed.turn, placed.outward([0.0; 3]))
+    }
+
     pub(crate) fn at(&self, time: f64) -> Placed {
         let mut placed = Placed {
             shift: scaled(self.velocity, time),

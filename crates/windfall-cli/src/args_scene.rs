@@ -1,6 +1,7 @@
 //! `windfall scene`: what may be asked for.
 
 use crate::args_format::Format;
+use crate::args_scene_view::{ScenePictureArguments, SceneVtkArguments};
 use clap::{Args, Subcommand, ValueHint};
 use std::path::PathBuf;
 
@@ -11,6 +12,10 @@ pub enum SceneCommand {
     Run(SceneRunArguments),
     /// Run variants of a scene several times each, and compare who is bruised
     Study(SceneStudyArguments),
+    /// Draw a scene that has run: walls, and fruit coloured by their largest impact
+    Picture(ScenePictureArguments),
+    /// Write the frames of a scene that has run for ParaView
+    Vtk(SceneVtkArguments),
 }
 
 /// `windfall scene run`

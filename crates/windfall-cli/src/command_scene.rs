@@ -3,6 +3,7 @@
 use crate::args_format::Format;
 use crate::args_scene::{SceneCommand, SceneRunArguments, SceneStudyArguments};
 use crate::command_fit::{moving, progress_bar};
+use crate::command_scene_view;
 use crate::show::{write_json, write_result};
 use std::ops::ControlFlow;
 use std::sync::atomic::Ordering;
@@ -18,6 +19,8 @@ pub fn run(command: &SceneCommand) -> anyhow::Result<()> {
     match command {
         SceneCommand::Run(arguments) => run_one(arguments),
         SceneCommand::Study(arguments) => run_variants(arguments),
+        SceneCommand::Picture(arguments) => command_scene_view::picture(arguments),
+        SceneCommand::Vtk(arguments) => command_scene_view::vtk(arguments),
     }
 }
 

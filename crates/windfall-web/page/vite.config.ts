@@ -21,6 +21,8 @@ export default defineConfig({
     // Data addresses would be needless exceptions in the content security policy.
     assetsInlineLimit: 0,
     modulePreload: false,
+    // three.js, which is loaded where a scene is played.
+    chunkSizeWarningLimit: 700,
     // What the page is made of asks to be named wherever it is shipped.
     license: { fileName: "licences.md" },
   },

@@ -12,6 +12,7 @@ mod api_files;
 mod api_jobs;
 mod api_live;
 mod api_recordings;
+mod api_scenes;
 mod api_tables;
 mod app;
 mod asset;

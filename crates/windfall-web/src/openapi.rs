@@ -41,6 +41,11 @@ use utoipa::OpenApi;
         crate::api_tables::surfaces,
         crate::api_files::card,
         crate::api_files::report,
+        crate::api_scenes::scenes,
+        crate::api_scenes::scene,
+        crate::api_scenes::frames,
+        crate::api_scenes::hardest,
+        crate::api_scenes::history,
     ),
     components(schemas(Problem))
 )]

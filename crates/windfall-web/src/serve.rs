@@ -6,7 +6,7 @@ use crate::interrupt::interrupted;
 use crate::problem::Problem;
 use crate::{
     about, api_campaigns, api_changes, api_events, api_files, api_jobs, api_live, api_recordings,
-    api_tables, asset, openapi,
+    api_scenes, api_tables, asset, openapi,
 };
 use axum::Router;
 use axum::extract::DefaultBodyLimit;
@@ -186,6 +186,11 @@ fn routes(app: App, guard: Arc<Guard>) -> Router {
             get(api_campaigns::campaigns).post(api_campaigns::create),
         )
         .nest("/api/campaigns/{id}", campaign)
+        .route("/api/scenes", get(api_scenes::scenes))
+        .route("/api/scenes/{id}", get(api_scenes::scene))
+        .route("/api/scenes/{id}/frames", get(api_scenes::frames))
+        .route("/api/scenes/{id}/hardest", get(api_scenes::hardest))
+        .route("/api/scenes/{id}/history", get(api_scenes::history))
         .route("/api/jobs", get(api_jobs::jobs))
         .route(
             "/api/jobs/{job}",

@@ -28,6 +28,9 @@ pub enum Error {
     /// A run of a scene that does not begin or go on.
     #[error("{0}")]
     SceneRun(Box<SceneRunError>),
+    /// What is kept of a scene cannot be used.
+    #[error("{0}")]
+    SceneFile(Box<crate::error_scene::SceneFileError>),
     /// A change that would leave no campaign that can be read.
     #[error("nothing was written: {problem}")]
     ChangeRefused {

@@ -1,6 +1,8 @@
 //! A small writer of SVG: what the figures of windfall are drawn with.
 
+use crate::colour_map::{Rgb, css, mixed};
 use crate::figure_theme::{SCALE, SERIES, Theme};
+use std::collections::BTreeSet;
 use std::fmt::Write;
 
 /// Fonts of figures, as journals ask for them.
@@ -70,6 +72,8 @@ pub struct Drawing {
     width: f64,
     height: f64,
     body: String,
+    /// Colours of balls: each has a shading of its own.
+    balls: BTreeSet<Rgb>,
 }
 
 impl Drawing {
@@ -80,6 +84,7 @@ impl Drawing {
             width,
             height,
             body: String::new(),
+            balls: BTreeSet::new(),
         }
     }
 
@@ -226,6 +231,55 @@ impl Drawing {
         );
     }
 
+    /// A ball lit from above on the left.
+    pub fn ball(&mut self, at: (f64, f64), radius: f64, colour: Rgb) {
+        self.balls.insert(colour);
+        let name = &css(colour)[1..];
+        let _ = writeln!(
+            self.body,
+            r#"<circle cx="{:.2}" cy="{:.2}" r="{radius:.2}" fill="url(#ball-{name})"/>"#,
+            at.0, at.1
+        );
+    }
+
+    /// An upright bar of colours, the first at its foot.
+    pub fn colour_bar(&mut self, at: (f64, f64), size: (f64, f64), colours: &[Rgb]) {
+        self.body += r#"<linearGradient id="colours" x1="0" y1="1" x2="0" y2="0">"#;
+        let last = colours.len().saturating_sub(1).max(1) as f64;
+        for (k, colour) in colours.iter().enumerate() {
+            let (offset, colour) = (k as f64 / last, css(*colour));
+            let _ = write!(
+                self.body,
+                r#"<stop offset="{offset:.4}" stop-color="{colour}"/>"#
+            );
+        }
+        let _ = writeln!(
+            self.body,
+            r#"</linearGradient><rect x="{:.2}" y="{:.2}" width="{:.2}" height="{:.2}" fill="url(#colours)"/>"#,
+            at.0, at.1, size.0, size.1
+        );
+    }
+
+    /// A shape that one sees through, with corners at points.
+    pub fn veil(&mut self, points: &[(f64, f64)], ink: Ink, opacity: f64) {
+        let ink = ink.mark();
+        self.body += r#"<polygon points=""#;
+        for (x, y) in points {
+            let _ = write!(self.body, "{x:.2},{y:.2} ");
+        }
+        let _ = writeln!(self.body, r#"" fill="{ink}" fill-opacity="{opacity}"/>"#);
+    }
+
+    /// A thin line that one sees through.
+    pub fn faint_line(&mut self, [from, to]: [(f64, f64); 2], ink: Ink, opacity: f64) {
+        let ink = ink.mark();
+        let _ = writeln!(
+            self.body,
+            r#"<line x1="{:.2}" y1="{:.2}" x2="{:.2}" y2="{:.2}" stroke="{ink}" stroke-width="0.9" stroke-opacity="{opacity}" stroke-linecap="round"/>"#,
+            from.0, from.1, to.0, to.1
+        );
+    }
+
     /// [`text`](Self::text) with a rim of another colour, to be read over lines.
     pub fn text_over(
         &mut self,
@@ -267,6 +321,9 @@ impl Drawing {
              <rect width=\"100%\" height=\"100%\" fill=\"{}\"/>\n",
             theme.text, theme.background
         );
+        for colour in &self.balls {
+            svg += &shading(*colour);
+        }
         for c in self.body.chars() {
             match colour_of(c, theme) {
                 Some(colour) => svg += colour,
@@ -275,6 +332,28 @@ impl Drawing {
         }
         svg + "</svg>\n"
     }
+}
+
+/// How a ball of a colour is lit: where, and how far towards white or black.
+fn shading(colour: Rgb) -> String {
+    const WHITE: Rgb = [255; 3];
+    const BLACK: Rgb = [0; 3];
+    let stops = [
+        (0.0, WHITE, 0.55),
+        (0.2, WHITE, 0.2),
+        (0.5, WHITE, 0.0),
+        (0.82, BLACK, 0.2),
+        (1.0, BLACK, 0.5),
+    ];
+    let mut text = format!(
+        r#"<radialGradient id="ball-{}" cx="0.5" cy="0.5" r="0.5" fx="0.36" fy="0.3">"#,
+        &css(colour)[1..]
+    );
+    for (at, towards, part) in stops {
+        let own = css(mixed(colour, towards, part));
+        let _ = write!(text, r#"<stop offset="{at}" stop-color="{own}"/>"#);
+    }
+    text + "</radialGradient>\n"
 }
 
 /// Text as it stands in XML; control characters, which XML cannot hold, become

@@ -33,6 +33,9 @@ pub struct SceneFile {
     /// What is recorded.
     #[serde(default)]
     pub events: EventsFile,
+    /// What is kept to be seen.
+    #[serde(default)]
+    pub record: crate::read_scene_record::RecordFile,
     /// How contacts bruise.
     pub bruise: Option<Spanned<BruiseFile>>,
 }

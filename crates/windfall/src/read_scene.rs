@@ -11,6 +11,7 @@ use crate::read_rig::STANDARD_GRAVITY;
 use crate::read_scene_bruise::{BruisePlan, bruise_of};
 use crate::read_scene_fruit::fruit_of;
 use crate::read_scene_properties::{in_order, with_properties};
+use crate::read_scene_record::{RecordPlan, record_of};
 use crate::read_scene_room::{check_room, drawn_fruit};
 use crate::read_scene_walls::wall_of;
 use crate::scene_card::spread_of_card;
@@ -46,6 +47,8 @@ pub struct ScenePlan {
     pub end: f64,
     /// Contacts with a smaller peak force are counted, not written; N.
     pub least_peak_force: f64,
+    /// What is kept to be seen.
+    pub record: RecordPlan,
     /// How contacts bruise, where the file says so.
     pub bruise: Option<BruisePlan>,
     /// Where the file gives a time step, and what stands there.
@@ -150,6 +153,7 @@ pub fn scene_of(source: &TomlSource) -> Result<ScenePlan, Error> {
         time_step_error: timing.error,
         end: timing.end,
         least_peak_force: timing.least_peak_force,
+        record: record_of(source, &file.record)?,
         bruise,
         given_step: timing.given,
         findings,

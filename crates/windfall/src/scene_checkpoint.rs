@@ -62,6 +62,7 @@ pub fn parts_of(plan: &ScenePlan) -> Parts {
         time_step_error: _,
         end,
         least_peak_force,
+        record,
         bruise,
         checkpoint,
         given_step: _,
@@ -89,6 +90,7 @@ pub fn parts_of(plan: &ScenePlan) -> Parts {
         part("the end", end),
         part("the times of checkpoints", checkpoint),
         part("[events]", least_peak_force),
+        part("[record]", record),
         part("[bruise]", bruise),
         part("the seed", seed),
     ];

@@ -11,6 +11,7 @@ use crate::scene_checkpoint::{
 };
 use crate::scene_outcome::Tally;
 use crate::write_scene::{EventFile, is_written};
+use crate::write_scene_frames::SceneRecorder;
 use std::io::{Read, Result as IoResult};
 use std::path::{Path, PathBuf};
 use windfall_scene::binary::Binary;
@@ -39,6 +40,8 @@ pub struct SceneRun {
     pub simulation: Simulation,
     /// Every contact.
     pub table: EventFile,
+    /// What is kept to be seen.
+    pub frames: SceneRecorder,
     /// What happened.
     pub tally: Tally,
     /// Contacts that may bruise.
@@ -88,9 +91,9 @@ impl SceneRun {
         }
         let parts = parts_of(plan);
         if start == SceneStart::Resume && stopped {
-            return Self::resumed(plan, (checkpoint, &events), parts);
+            return Self::resumed(plan, (checkpoint, &events), directory, parts);
         }
-        let mut simulation = Simulation::new(plan.scene.clone()).map_err(stopped_scene)?;
+        let simulation = Simulation::new(plan.scene.clone()).map_err(stopped_scene)?;
         if checkpoint.exists() {
             std::fs::remove_file(&checkpoint).map_err(|source| Error::FileAccess {
                 path: checkpoint.clone(),
@@ -99,8 +102,10 @@ impl SceneRun {
             })?;
         }
         let table = EventFile::create(&events, &plan.scene, plan.least_peak_force)?;
-        let first = simulation.step_with_energy().map_err(stopped_scene)?;
-        let mut own = Self::new(plan, simulation, table, (checkpoint, parts));
+        let frames = SceneRecorder::create(plan, directory)?;
+        let mut own = Self::new(plan, simulation, (table, frames), (checkpoint, parts));
+        own.frames.take(&own.simulation, &own.tally)?;
+        let first = own.simulation.step_with_energy().map_err(stopped_scene)?;
         own.first_closure = first.closure();
         Ok(own)
     }
@@ -108,7 +113,7 @@ impl SceneRun {
     fn new(
         plan: &ScenePlan,
         simulation: Simulation,
-        table: EventFile,
+        (table, frames): (EventFile, SceneRecorder),
         (checkpoint, parts): (PathBuf, Parts),
     ) -> Self {
         let step = plan.scene.time_step;
@@ -116,6 +121,7 @@ impl SceneRun {
         Self {
             simulation,
             table,
+            frames,
             tally: Tally::new(plan),
             blows: bruise.map(|own| Blows::new(own, &plan.scene, &plan.fruit_shares)),
             first_closure: 0.0,
@@ -133,6 +139,7 @@ impl SceneRun {
     fn resumed(
         plan: &ScenePlan,
         (checkpoint, events): (PathBuf, &Path),
+        directory: &Path,
         parts: Parts,
     ) -> Result<Self, Error> {
         let path = checkpoint.clone();
@@ -145,6 +152,7 @@ impl SceneRun {
             let unread =
                 |error: std::io::Error| damaged(&path, format!("the checkpoint is {error}"));
             let (length, written) = Binary::read(from).map_err(unread)?;
+            let frames = Binary::read(from).map_err(unread)?;
             let closure = f64::read(from).map_err(unread)?;
             let state = State::read(from).map_err(unread)?;
             let simulation = Simulation::resume(plan.scene.clone(), &state)
@@ -152,7 +160,8 @@ impl SceneRun {
             drop(state);
             let least = plan.least_peak_force;
             let table = EventFile::resume(events, &plan.scene, least, (length, written))?;
-            let mut own = Self::new(plan, simulation, table, (checkpoint, parts));
+            let frames = SceneRecorder::resume(plan, directory, frames)?;
+            let mut own = Self::new(plan, simulation, (table, frames), (checkpoint, parts));
             own.take_counts(from).map_err(unread)?;
             (own.first_closure, own.kept) = (closure, Some(head.time));
             Ok(own)
@@ -182,7 +191,8 @@ impl SceneRun {
         while self.simulation.steps() < self.all {
             let steps = self.simulation.steps();
             let to_checkpoint = self.every.map_or(u64::MAX, |every| every - steps % every);
-            for _ in 0..CHUNK.min(self.all - steps).min(to_checkpoint) {
+            let most = CHUNK.min(self.all - steps).min(to_checkpoint);
+            for _ in 0..self.frames.steps(&self.simulation, most) {
                 self.simulation.step().map_err(stopped_scene)?;
             }
             for event in self.simulation.take_events() {
@@ -191,6 +201,7 @@ impl SceneRun {
             for leaving in self.simulation.take_leavings() {
                 self.tally.leave(&leaving);
             }
+            self.frames.take(&self.simulation, &self.tally)?;
             let steps = self.simulation.steps();
             if self.every.is_some_and(|every| steps.is_multiple_of(every)) && steps < self.all {
                 self.save()?;
@@ -218,6 +229,7 @@ impl SceneRun {
         let state = self.simulation.checkpoint().map_err(stopped_scene)?;
         // What the checkpoint counts on is on the disk before it.
         let table = (self.table.sync()?, self.table.written());
+        let frames = self.frames.sync()?;
         let time = self.simulation.time();
         let head = CheckpointHead {
             time,
@@ -226,6 +238,7 @@ impl SceneRun {
         };
         let saved = write_checkpoint(&self.checkpoint, &head, |to| {
             table.write(to)?;
+            frames.write(to)?;
             self.first_closure.write(to)?;
             state.write(to)?;
             self.tally.save(to)?;
@@ -234,6 +247,7 @@ impl SceneRun {
         self.parts = head.parts;
         saved?;
         self.table.keep(true);
+        self.frames.keep(true);
         self.kept = Some(time);
         Ok(())
     }
@@ -272,6 +286,7 @@ impl SceneRun {
 
     fn leave_nothing(&mut self) {
         self.table.keep(false);
+        self.frames.keep(false);
         let _ = std::fs::remove_file(&self.checkpoint);
         self.kept = None;
     }

@@ -99,6 +99,7 @@ fn write_results(
     out: &Path,
 ) -> Result<SceneOutcome, Error> {
     run.table.sync()?;
+    let frames = run.frames.whole(&run.simulation, &run.tally)?;
     let (simulation, tally) = (&run.simulation, &run.tally);
     let bruised = plan.bruise.as_ref().zip(run.blows.as_ref());
     let bruises = bruised.map(|(bruise, blows)| blows.bruises(bruise));
@@ -107,7 +108,9 @@ fn write_results(
     let table = fruit_table(plan, tally, &simulation.fruit(), bruises.as_deref())?;
     write_whole(&fruit, table.as_bytes())?;
     let histograms = histograms_of(tally, bruises.as_deref());
-    let mut files = vec![events, fruit, summary.clone()];
+    let mut files = vec![events, fruit];
+    files.extend(frames);
+    files.push(summary.clone());
     let figure = figure_of_histograms(&plan.title, &histograms);
     files.extend(write_figure(&FigureFolder::of(out), "histograms", &figure)?);
     let mut findings = plan.findings.clone();

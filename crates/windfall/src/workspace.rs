@@ -88,6 +88,12 @@ impl Workspace {
         name_of(&self.root)
     }
 
+    /// The directory.
+    #[must_use]
+    pub fn root(&self) -> &Path {
+        &self.root
+    }
+
     /// Whether the directory is a campaign itself.
     #[must_use]
     pub fn is_campaign(&self) -> bool {

@@ -414,6 +414,92 @@ export interface SurfaceRequest {
   grid_points: number;
 }
 
+/** GET /api/scenes */
+export interface SceneEntry {
+  /** Its directory, and its name in addresses. */
+  id: string;
+  title: string;
+  fruit: number | null;
+  contacts: number | null;
+  /** When it ended; s. */
+  end: number | null;
+  /** Whether it can be played. */
+  frames: boolean;
+  problem: string | null;
+}
+
+export interface WallAbout {
+  name: string;
+  material: string;
+  moves: boolean;
+  /** Stands for an endless plane. */
+  endless: boolean;
+  /** Vertices of each face. */
+  corners: number;
+}
+
+/** GET /api/scenes/{id} */
+export interface SceneView {
+  id: string;
+  about: {
+    title: string;
+    end: number;
+    interval: number;
+    fruit: number;
+    walls: WallAbout[];
+    bounds: { low: [number, number, number]; high: [number, number, number] };
+  };
+  /** Radius of each fruit; m. */
+  radii: number[];
+  /** Vertices of each wall at rest, three numbers each; m. */
+  vertices: number[][];
+  /** Numbers of the vertices of each face of each wall. */
+  faces: number[][];
+  /** Time of each frame; s. */
+  times: number[];
+  /** Fruit in each frame. */
+  counts: number[];
+  /** Force of the last colour; N. */
+  most: number;
+  /** Colours from no force to the largest. */
+  colours: string[];
+  /** scene.json, once the scene has ended. */
+  outcome: { contacts: number; fruit: number; left: number; end: number; findings: Finding[] } | null;
+}
+
+/** A contact of a fruit, in GET /api/scenes/{id}/history?fruit=N. */
+export interface ContactView {
+  time: number;
+  duration: number;
+  lasting: boolean;
+  partner: string;
+  partner_fruit: number | null;
+  /** Direction from the centre of the fruit, fixed to it. */
+  spot: [number, number, number];
+  normal_speed: number;
+  tangential_speed: number;
+  peak_force: number;
+  absorbed_energy: number;
+}
+
+export interface FruitHistory {
+  fruit: number;
+  /** Contacts in events.csv; the hardest are told where there are very many. */
+  contacts: number;
+  told: ContactView[];
+}
+
+/** GET /api/scenes/{id}/hardest?most=N */
+export interface HardestFruit {
+  fruit: number;
+  contacts: number;
+  peak_force: number;
+  partner: string;
+  time: number | null;
+  impact_speed: number | null;
+  absorbed_energy: number;
+}
+
 /** GET /api/campaigns/{id}/card?law=NAME: the law card (TOML) to be saved.
  *  GET /api/campaigns/{id}/report/report.html and what lies beside it.
  *  GET /api/campaigns/{id}/events: server-sent "changed" with {version} when the
@@ -430,6 +516,7 @@ async function call<T>(method: string, path: string, options: {
   body?: BodyInit | object;
   version?: string;
   signal?: AbortSignal;
+  bytes?: boolean;
 } = {}): Promise<T> {
   const headers: Record<string, string> = {};
   let body: BodyInit | undefined;
@@ -463,10 +550,12 @@ async function call<T>(method: string, path: string, options: {
       detail: `the server answered ${response.status} ${response.statusText}`,
     });
   }
+  if (options.bytes) return (await response.arrayBuffer()) as T;
   return response.status === 204 ? (undefined as T) : ((await response.json()) as T);
 }
 
 const at = (id: string) => `/api/campaigns/${encodeURIComponent(id)}`;
+const scene = (id: string) => `/api/scenes/${encodeURIComponent(id)}`;
 const query = (parts: Record<string, string | number | null | undefined>) => {
   const pairs = Object.entries(parts).filter(([, value]) => value !== null && value !== undefined);
   return new URLSearchParams(pairs.map(([key, value]) => [key, String(value)])).toString();
@@ -509,6 +598,15 @@ export const api = {
     call<Record<string, unknown>>("POST", `${at(id)}/regress`, { body }),
   surface: (id: string, body: SurfaceRequest, signal?: AbortSignal) =>
     call<Record<string, unknown>>("POST", `${at(id)}/surface`, { body, signal }),
+  scenes: () => call<SceneEntry[]>("GET", "/api/scenes"),
+  scene: (id: string) => call<SceneView>("GET", scene(id)),
+  /** Whole frames from a number on: as many as the server gives at once. */
+  frames: (id: string, from: number) =>
+    call<ArrayBuffer>("GET", `${scene(id)}/frames?${query({ from })}`, { bytes: true }),
+  hardest: (id: string, most: number) =>
+    call<HardestFruit[]>("GET", `${scene(id)}/hardest?${query({ most })}`),
+  history: (id: string, fruit: number, signal?: AbortSignal) =>
+    call<FruitHistory>("GET", `${scene(id)}/history?${query({ fruit })}`, { signal }),
   cardAddress: (id: string, law: string) => `${at(id)}/card?${query({ law })}`,
   reportAddress: (id: string) => `${at(id)}/report/report.html`,
 };

@@ -93,8 +93,9 @@ export async function serve(directory) {
   };
 }
 
-export const launch = () =>
-  chromium.launch({ executablePath: executable(), args: ["--disable-gpu", "--no-first-run"] });
+/** A browser; `more` are switches of it. */
+export const launch = (...more) =>
+  chromium.launch({ executablePath: executable(), args: ["--disable-gpu", "--no-first-run", ...more] });
 
 /**
  * A page in a window of its own. `troubles` holds errors of the console, exceptions and

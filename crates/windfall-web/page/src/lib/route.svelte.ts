@@ -1,6 +1,6 @@
 /**
- * Addresses within the page: `#/` and `#/c/CAMPAIGN/PART` or `#/c/CAMPAIGN/PART/ITEM`,
- * where the item is an impact or a file.
+ * Addresses within the page: `#/`, `#/c/CAMPAIGN/PART` or `#/c/CAMPAIGN/PART/ITEM`,
+ * where the item is an impact or a file, and `#/s/SCENE`.
  */
 
 export const PARTS = [
@@ -19,6 +19,7 @@ export type Part = (typeof PARTS)[number];
 
 export interface Route {
   campaign: string | null;
+  scene: string | null;
   part: Part;
   item: string | null;
 }
@@ -31,9 +32,11 @@ function routeOf(hash: string): Route {
     words = []; // not an address that this page wrote
   }
   const [start, campaign, part, item] = words;
-  if (start !== "c" || !campaign) return { campaign: null, part: "overview", item: null };
+  const none: Route = { campaign: null, scene: null, part: "overview", item: null };
+  if (start === "s" && campaign) return { ...none, scene: campaign };
+  if (start !== "c" || !campaign) return none;
   const known = PARTS.find((each) => each === part) ?? "overview";
-  return { campaign, part: known, item: item ? item : null };
+  return { campaign, scene: null, part: known, item: item ? item : null };
 }
 
 class Router {
@@ -53,6 +56,9 @@ export function address(campaign: string, part: Part = "overview", item?: string
   const words = ["c", campaign, part, ...(item === undefined ? [] : [item])];
   return "#/" + words.map(encodeURIComponent).join("/");
 }
+
+/** Address of a scene. */
+export const sceneAddress = (id: string) => `#/s/${encodeURIComponent(id)}`;
 
 export function go(to: string): void {
   location.hash = to;
