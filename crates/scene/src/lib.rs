@@ -13,6 +13,7 @@ mod contact;
 pub mod energy;
 pub mod error;
 pub mod event;
+pub mod follow;
 mod gather;
 pub mod interaction;
 mod neighbours;
