@@ -1,16 +1,42 @@
 //! `windfall scene`
 
 use crate::args_format::Format;
-use crate::args_scene::{SceneCommand, SceneRunArguments};
+use crate::args_scene::{EngineName, SceneCommand, SceneExportArguments, SceneRunArguments};
 use crate::command_fit::{moving, progress_bar};
 use crate::show::{write_json, write_result};
-use windfall::workflow_scene::{SceneRequest, run_scene};
+use windfall::engine_kind::Engine;
+use windfall::workflow_engine::{EngineRequest, export_deck, run_on_engine};
+use windfall::workflow_scene::SceneRequest;
+use windfall::write_deck::text_of_deck;
 use windfall::write_scene::{csv_of_scene, text_of_scene};
 
 /// Runs what is asked of scenes.
 pub fn run(command: &SceneCommand) -> anyhow::Result<()> {
     match command {
         SceneCommand::Run(arguments) => run_one(arguments),
+        SceneCommand::Export(arguments) => export(arguments),
+    }
+}
+
+fn engine(name: EngineName) -> Engine {
+    match name {
+        EngineName::Windfall => Engine::Windfall,
+        EngineName::Lammps => Engine::Lammps,
+        EngineName::Liggghts => Engine::Liggghts,
+    }
+}
+
+fn export(arguments: &SceneExportArguments) -> anyhow::Result<()> {
+    let request = EngineRequest {
+        engine: engine(arguments.engine),
+        classes: arguments.of_engine.classes,
+        frame_steps: arguments.of_engine.frame_steps,
+        ..EngineRequest::default()
+    };
+    let outcome = export_deck(&arguments.file, &request, arguments.out.as_deref())?;
+    match arguments.format {
+        Format::Json => write_json(&outcome),
+        _ => write_result(&text_of_deck(&outcome)),
     }
 }
 
@@ -21,7 +47,15 @@ fn run_one(arguments: &SceneRunArguments) -> anyhow::Result<()> {
         out: arguments.out.clone(),
         threads: arguments.threads,
     };
-    let outcome = run_scene(&arguments.file, &request, &progress);
+    let own = EngineRequest {
+        engine: engine(arguments.engine),
+        program: arguments.engine_program.clone(),
+        ranks: arguments.ranks,
+        classes: arguments.of_engine.classes,
+        frame_steps: arguments.of_engine.frame_steps,
+        frames: arguments.frames.clone(),
+    };
+    let outcome = run_on_engine(&arguments.file, &request, &own, &progress);
     bar.finish_and_clear();
     let outcome = outcome?;
     match arguments.format {

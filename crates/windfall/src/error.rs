@@ -23,6 +23,14 @@ pub enum Error {
     /// A scene whose result would mean nothing from there on.
     #[error("the scene was stopped: {0}")]
     SceneStopped(Box<windfall_scene::error::Error>),
+    /// Another engine that is absent, fails, or cannot represent a scene.
+    #[error("{engine}: {problem}")]
+    Engine {
+        /// Its name.
+        engine: &'static str,
+        /// What is wrong.
+        problem: String,
+    },
     /// A change that would leave no campaign that can be read.
     #[error("nothing was written: {problem}")]
     ChangeRefused {

@@ -1,7 +1,9 @@
 //! A scene from its file to the contacts of each fruit.
 
+use crate::engine_kind::Engine;
 use crate::error::Error;
 use crate::on_threads::on_threads;
+use crate::outcome::FindingOutcome;
 use crate::progress::Progress;
 use crate::read_scene::{ScenePlan, read_scene};
 use crate::scene_bruise::Blows;
@@ -9,6 +11,7 @@ use crate::scene_outcome::{PartnerOutcome, SceneOutcome, StepOutcome, Tally, fin
 use crate::write_file::write_whole;
 use crate::write_scene::{EventFile, fruit_table};
 use std::path::{Path, PathBuf};
+use windfall_scene::energy::Energy;
 use windfall_scene::event::Event;
 use windfall_scene::scene::Scene;
 use windfall_scene::simulation::Simulation;
@@ -25,6 +28,42 @@ pub struct SceneRequest {
     pub threads: Option<usize>,
 }
 
+/// What moves the fruit of a scene.
+pub(crate) trait Mover {
+    /// One step on, or one frame; with energies where they are asked for.
+    fn step(&mut self, simulation: &mut Simulation, energy: bool) -> Result<Energy, Error>;
+
+    /// Its own time steps in one.
+    fn steps(&self) -> u64;
+}
+
+/// The engine of this program.
+struct Own;
+
+impl Mover for Own {
+    fn step(&mut self, simulation: &mut Simulation, energy: bool) -> Result<Energy, Error> {
+        let energy = match energy {
+            true => simulation.step_with_energy(),
+            false => simulation.step().map(|()| Energy::default()),
+        };
+        energy.map_err(stopped)
+    }
+
+    fn steps(&self) -> u64 {
+        1
+    }
+}
+
+/// What moves the fruit, and what is to be said of it.
+pub(crate) struct Moved<'a> {
+    pub mover: &'a mut dyn Mover,
+    pub step: StepOutcome,
+    pub engine: String,
+    pub findings: Vec<FindingOutcome>,
+    /// Lack of the energy account that is worth a word, where it is; 1.
+    pub large_closure: Option<f64>,
+}
+
 /// Steps between looks at events and progress.
 const CHUNK: u64 = 64;
 
@@ -39,21 +78,35 @@ pub fn run_scene(
     request: &SceneRequest,
     progress: Progress,
 ) -> Result<SceneOutcome, Error> {
-    let plan = read_scene(path)?;
-    on_threads(request.threads, || run(path, plan, request, progress))
+    let mut plan = read_scene(path)?;
+    let step = time_step(&mut plan)?;
+    let moved = Moved {
+        mover: &mut Own,
+        step,
+        engine: Engine::Windfall.title().to_owned(),
+        findings: Vec::new(),
+        large_closure: None,
+    };
+    on_threads(request.threads, || {
+        run_moved(path, plan, moved, request, progress)
+    })
 }
 
-fn run(
+/// Where the results of a scene go.
+pub(crate) fn directory_of(path: &Path, request: &SceneRequest) -> PathBuf {
+    let out = request.out.clone();
+    out.unwrap_or_else(|| path.with_extension("run"))
+}
+
+pub(crate) fn run_moved(
     path: &Path,
     mut plan: ScenePlan,
+    moved: Moved,
     request: &SceneRequest,
     progress: Progress,
 ) -> Result<SceneOutcome, Error> {
-    let step = time_step(&mut plan)?;
-    let out = request
-        .out
-        .clone()
-        .unwrap_or_else(|| path.with_extension("run"));
+    let mover = moved.mover;
+    let out = directory_of(path, request);
     std::fs::create_dir_all(&out).map_err(|source| Error::FileAccess {
         path: out.clone(),
         action: "create",
@@ -76,10 +129,10 @@ fn run(
         }
         file.write(event)
     };
-    let first = simulation.step_with_energy().map_err(stopped)?;
+    let first = mover.step(&mut simulation, true)?;
     while simulation.steps() < all {
         for _ in 0..CHUNK.min(all - simulation.steps()) {
-            simulation.step().map_err(stopped)?;
+            mover.step(&mut simulation, false)?;
         }
         for event in simulation.take_events() {
             count(&event, &mut tally, &mut file)?;
@@ -91,7 +144,7 @@ fn run(
             return Err(Error::Cancelled);
         }
     }
-    let last = simulation.step_with_energy().map_err(stopped)?;
+    let last = mover.step(&mut simulation, true)?;
     for event in simulation.lasting() {
         count(&event, &mut tally, &mut file)?;
     }
@@ -102,14 +155,20 @@ fn run(
     let bruises = bruised.map(|(bruise, blows)| blows.bruises(bruise));
     let table = fruit_table(&plan, &tally, &states, bruises.as_deref())?;
     write_whole(&fruit, table.as_bytes())?;
+    let energy_closure =
+        (last.closure() - first.closure()) / last.lost().abs().max(f64::MIN_POSITIVE);
+    let mut findings = moved.findings;
+    findings.extend(findings_of_range(&plan, &tally, simulation.waiting()));
+    let large = moved.large_closure.unwrap_or(f64::INFINITY);
+    if energy_closure.abs() > large {
+        findings.push(account(energy_closure));
+    }
     let outcome = SceneOutcome {
         title: plan.title.clone(),
         end: plan.end,
-        step: StepOutcome {
-            time_step: plan.scene.time_step,
-            ..step
-        },
-        steps: all,
+        engine: moved.engine,
+        step: moved.step,
+        steps: all * mover.steps(),
         fruit: plan.scene.fruit.len(),
         waiting: simulation.waiting(),
         left: tally.left(),
@@ -118,9 +177,8 @@ fn run(
         partners: PartnerOutcome::of(&plan.scene, &tally),
         bruise: bruised.map(|(bruise, blows)| blows.outcome(bruise, &plan.scene)),
         energy: (&last).into(),
-        energy_closure: (last.closure() - first.closure())
-            / last.lost().abs().max(f64::MIN_POSITIVE),
-        findings: findings_of_range(&plan, &tally, simulation.waiting()),
+        energy_closure,
+        findings,
         files: vec![out.join("events.csv"), fruit, out.join("scene.json")],
     };
     let json = serde_json::to_string_pretty(&outcome).map_err(|error| Error::ResultUnwritable {
@@ -131,12 +189,24 @@ fn run(
     Ok(outcome)
 }
 
-fn stopped(problem: windfall_scene::error::Error) -> Error {
+/// What a large lack of the account of another engine means.
+fn account(closure: f64) -> FindingOutcome {
+    FindingOutcome {
+        code: "engine-account".to_owned(),
+        message: format!(
+            "what the engine's motion lost and what the contacts took differ by {:.1} %: frames are \
+             too far apart (--frame-steps), or the engine's contacts are not those of the scene",
+            100.0 * closure.abs()
+        ),
+    }
+}
+
+pub(crate) fn stopped(problem: windfall_scene::error::Error) -> Error {
     Error::SceneStopped(Box::new(problem))
 }
 
 /// Sets the time step where it is automatic; what it does to the stiffest contact.
-fn time_step(plan: &mut ScenePlan) -> Result<StepOutcome, Error> {
+pub(crate) fn time_step(plan: &mut ScenePlan) -> Result<StepOutcome, Error> {
     let scene = &plan.scene;
     let speed = fastest(scene);
     let given = scene.time_step;
