@@ -10,7 +10,7 @@ use windfall::engine_classes::MOST;
 pub enum SceneCommand {
     /// Run a scene, and write every contact and every fruit
     Run(SceneRunArguments),
-    /// Write a scene as a complete deck for another engine
+    /// Write a scene as a complete deck for LAMMPS or LIGGGHTS, or its contacts for others
     Export(SceneExportArguments),
 }
 
@@ -39,16 +39,37 @@ pub struct EngineArguments {
     pub frame_steps: Option<u64>,
 }
 
+/// An engine that a scene, or its contacts, are written for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum ExportName {
+    /// A deck for LAMMPS of 29 Sep 2021 or newer
+    Lammps,
+    /// A deck for LIGGGHTS-PUBLIC 3.8
+    Liggghts,
+    /// The contacts as IMPACT statements of Adams
+    Adams,
+    /// The contacts for YADE
+    Yade,
+    /// The contacts as species of MercuryDPM
+    Mercurydpm,
+    /// The contacts as tables of EDEM
+    Edem,
+    /// The contacts as materials of Chrono
+    Chrono,
+}
+
 /// `windfall scene export`
 #[derive(Debug, Args)]
 #[command(
     after_help = "Writes a directory beside FILE, or that of --out. LAMMPS or LIGGGHTS run the deck there, on one \
 machine or on many, and write frames.bin; `windfall scene run FILE --engine … --frames frames.bin` makes \
-contacts, fruit and bruises of it.
+contacts, fruit and bruises of it. For other engines it writes the contact of each pair of materials in \
+their own terms, and says what of it is the law itself.
 
 Examples:
   windfall scene export my-scene/scene.toml --engine lammps
-  windfall scene export my-scene/scene.toml --engine liggghts --out deck"
+  windfall scene export my-scene/scene.toml --engine liggghts --out deck
+  windfall scene export my-scene/scene.toml --engine adams --speed 2"
 )]
 pub struct SceneExportArguments {
     /// The scene
@@ -56,7 +77,10 @@ pub struct SceneExportArguments {
     pub file: PathBuf,
     /// The engine
     #[arg(long, value_enum)]
-    pub engine: EngineName,
+    pub engine: ExportName,
+    /// For the others: impact speed in m/s at which damping that is not the law's takes as much energy
+    #[arg(long, value_name = "SPEED", default_value_t = 1.0)]
+    pub speed: f64,
     /// Directory to write into
     #[arg(long, value_name = "DIR", value_hint = ValueHint::DirPath)]
     pub out: Option<PathBuf>,

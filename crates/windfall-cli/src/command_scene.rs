@@ -1,13 +1,17 @@
 //! `windfall scene`
 
 use crate::args_format::Format;
-use crate::args_scene::{EngineName, SceneCommand, SceneExportArguments, SceneRunArguments};
+use crate::args_scene::{
+    EngineName, ExportName, SceneCommand, SceneExportArguments, SceneRunArguments,
+};
 use crate::command_fit::{moving, progress_bar};
 use crate::show::{write_json, write_result};
+use windfall::contact_parameters::Other;
 use windfall::engine_kind::Engine;
+use windfall::workflow_contacts::export_contacts;
 use windfall::workflow_engine::{EngineRequest, export_deck, run_on_engine};
 use windfall::workflow_scene::SceneRequest;
-use windfall::write_deck::text_of_deck;
+use windfall::write_deck::{text_of_contacts, text_of_deck};
 use windfall::write_scene::{csv_of_scene, text_of_scene};
 
 /// Runs what is asked of scenes.
@@ -27,8 +31,30 @@ fn engine(name: EngineName) -> Engine {
 }
 
 fn export(arguments: &SceneExportArguments) -> anyhow::Result<()> {
+    let other = match arguments.engine {
+        ExportName::Lammps => return deck(arguments, Engine::Lammps),
+        ExportName::Liggghts => return deck(arguments, Engine::Liggghts),
+        ExportName::Adams => Other::Adams,
+        ExportName::Yade => Other::Yade,
+        ExportName::Mercurydpm => Other::MercuryDpm,
+        ExportName::Edem => Other::Edem,
+        ExportName::Chrono => Other::Chrono,
+    };
+    let speed = arguments.speed;
+    anyhow::ensure!(
+        speed > 0.0 && speed.is_finite(),
+        "--speed {speed}: a speed above zero, in m/s"
+    );
+    let outcome = export_contacts(&arguments.file, other, arguments.out.as_deref(), speed)?;
+    match arguments.format {
+        Format::Json => write_json(&outcome),
+        _ => write_result(&text_of_contacts(&outcome)),
+    }
+}
+
+fn deck(arguments: &SceneExportArguments, engine: Engine) -> anyhow::Result<()> {
     let request = EngineRequest {
-        engine: engine(arguments.engine),
+        engine,
         classes: arguments.of_engine.classes,
         frame_steps: arguments.of_engine.frame_steps,
         ..EngineRequest::default()

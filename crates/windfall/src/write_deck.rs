@@ -2,6 +2,7 @@
 
 use crate::engine_kind::Engine;
 use crate::text_statistic::number;
+use crate::workflow_contacts::ContactsOutcome;
 use crate::workflow_engine::DeckOutcome;
 
 /// What was written, and what to do with it.
@@ -38,4 +39,18 @@ pub fn text_of_deck(outcome: &DeckOutcome) -> String {
         .map(|file| file.display().to_string())
         .collect();
     text + &files.join(", ") + "\n"
+}
+
+/// Contacts in another engine's terms: what is exact, and what is not.
+#[must_use]
+pub fn text_of_contacts(outcome: &ContactsOutcome) -> String {
+    let mut text = format!("Contacts for {}.\n", outcome.engine);
+    for own in &outcome.contacts {
+        let [a, b] = &own.between;
+        text += &format!(
+            "\n{a} and {b}\n  exact: {}\n  approximate: {}\n",
+            own.exact, own.approximate
+        );
+    }
+    text + &format!("\nWritten: {}\n", outcome.file.display())
 }
