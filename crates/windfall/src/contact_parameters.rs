@@ -298,8 +298,8 @@ fn mercury(pair: &Pair) -> Words {
     let given = format!(
         "{of}    s->setEffectiveElasticModulusAndRestitutionCoefficient({modulus}, {e});\n    \
          s->setEffectiveShearModulus({});\n    s->setSlidingFrictionCoefficient({friction});\n}}",
-        // k_t/k_n = 4 G*/(2 E*).
-        0.5 * pair.interaction.tangential_ratio * modulus
+        // k_t/k_n = 8 G*/(2 E*).
+        0.25 * pair.interaction.tangential_ratio * modulus
     );
     let exact = format!("{exact}, of HertzianViscoelasticMindlinSpecies");
     (given, exact, joined(&[&approximate, "rolling"]))

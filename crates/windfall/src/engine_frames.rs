@@ -61,7 +61,7 @@ impl<R: Read> FrameReader<R> {
         let columns = self.int()?;
         if columns as usize != COLUMNS || rows < 0 || rows as usize > self.most {
             return Err(format!(
-                "a frame has {rows} rows of {columns} columns, where up to {} of {COLUMNS} are to be",
+                "it is no dump of a deck of windfall: a frame has {rows} rows of {columns} columns, where up to {} of {COLUMNS} are to be",
                 self.most
             ));
         }

@@ -5,7 +5,7 @@ use crate::engine_lammps::terms;
 use crate::engine_law::PairNumbers;
 use crate::engine_walls::{Region, Tilt, region_of};
 use std::fmt::Write;
-use windfall_scene::vector::{Vector, add, dot, plus_scaled, scaled};
+use windfall_scene::vector::{Vector, add, dot, plus_scaled};
 use windfall_scene::wall::{Motion, Wall};
 
 /// Regions and fixes of all walls.
@@ -175,7 +175,7 @@ fn shift(motion: &Motion, region: &Region) -> Result<[String; 3], String> {
         if let Some(own) = motion.vibration
             && own.amplitude[axis] != 0.0
         {
-            let rate = scaled([2.0 * std::f64::consts::PI, 0.0, 0.0], own.frequency)[0];
+            let rate = 2.0 * std::f64::consts::PI * own.frequency;
             parts.push(format!("{}*sin({rate}*time)", own.amplitude[axis]));
         }
         parts.join("+")

@@ -165,7 +165,8 @@ impl Program {
             let Some(path) = on_path(name) else {
                 continue;
             };
-            let (path, kind) = (path.display().to_string(), kind_of(&path));
+            let path = path.display().to_string();
+            let kind = kind_of(&path);
             let mut command = vec![path.clone()];
             if kind == "Open MPI" {
                 command.extend(["--oversubscribe", "--bind-to", "none"].map(str::to_owned));

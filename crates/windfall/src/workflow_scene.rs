@@ -56,7 +56,7 @@ impl Mover for Own {
 
 /// What moves the fruit, and what is to be said of it.
 pub(crate) struct Moved<'a> {
-    pub mover: &'a mut dyn Mover,
+    pub mover: &'a mut (dyn Mover + Send),
     pub step: StepOutcome,
     pub engine: String,
     pub findings: Vec<FindingOutcome>,
