@@ -35,7 +35,7 @@ materials = ["apple", "steel", "foam"]
 title = "Impacts, one by one"
 seed = 1
 time_step = "20 us"
-end = "0.5 s"
+end = "0.4 s"
 [[contacts]]
 between = ["apple", "apple"]
 law = "kuwabara-kono(k=753599, c=1524)"
