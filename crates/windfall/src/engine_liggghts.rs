@@ -146,9 +146,6 @@ fn head(task: &Task, types: &Types, first: usize) -> String {
         task.frame_steps,
         2.2 * task.largest(),
     );
-    for number in 1..=first {
-        let _ = writeln!(text, "set atom {number} property/atom fruit {number}");
-    }
     for (number, material) in types.walls.iter().enumerate() {
         let name = comment(&task.scene.materials[*material]);
         let _ = writeln!(text, "# type {}: {name} of walls", number + 1);
@@ -310,10 +307,15 @@ fn go(task: &Task) -> String {
 
 fn run(task: &Task, types: &Types) -> String {
     let (scene, steps) = (task.scene, task.steps);
+    // It sets properties only after a run.
+    let mut numbers = "run 0\n".to_owned();
+    for number in 1..=task.first() {
+        let _ = writeln!(numbers, "set atom {number} property/atom fruit {number}");
+    }
     let mut text = format!(
         "neighbor {} bin\nneigh_modify delay 0 every {} check yes\ntimestep {}\n\
          thermo_style custom step atoms\nthermo {}\nthermo_modify lost error\n\
-         dump frames all custom {} {FRAMES} f_fruit x y z vx vy vz omegax omegay omegaz\n\
+         {numbers}dump frames all custom {} {FRAMES} f_fruit x y z vx vy vz omegax omegay omegaz\n\
          variable reach equal {}\nvariable wait equal {}\nvariable end equal {steps}\n",
         task.skin(),
         task.looks(),
