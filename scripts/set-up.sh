@@ -113,5 +113,15 @@ need_chromium() {
     have chromium || have chromium-browser || have google-chrome || apt_install chromium
 }
 
+# The engines that scenes are compared with, and run on, in tests.
+need_engines() {
+    missing=
+    have lmp || missing="$missing lammps"
+    have mpirun || missing="$missing openmpi-bin"
+    have liggghts || missing="$missing liggghts"
+    # shellcheck disable=SC2086 # a list of packages
+    [ -z "$missing" ] || apt_install $missing
+}
+
 need_c_compiler
 need_cargo

@@ -20,6 +20,7 @@ pub mod energy;
 pub mod error;
 pub mod event;
 mod facet_tree;
+pub mod follow;
 mod gather;
 pub mod interaction;
 mod law_column;

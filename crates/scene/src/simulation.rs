@@ -295,14 +295,18 @@ impl Simulation {
     }
 
     fn advance(&mut self, with_energy: bool) -> Result<Energy, Error> {
-        let step = self.scene.time_step;
-        let time = self.time();
         if !self.scene.sinks.is_empty() && self.steps.is_multiple_of(SINK_STEPS) {
             self.sink();
         }
         if self.due() {
             self.release()?;
         }
+        self.push(with_energy)
+    }
+
+    /// Forces on all bodies where they are now, and where they take them.
+    pub(crate) fn push(&mut self, with_energy: bool) -> Result<Energy, Error> {
+        let (step, time) = (self.scene.time_step, self.time());
         if 2.0 * self.moved > self.skin || self.moved + self.wall_way > 0.5 * self.skin {
             self.rebuild();
         }

@@ -206,7 +206,7 @@ impl Simulation {
     }
 
     /// Ends contacts of bodies that are not kept, and leaves only those that are.
-    fn end_contacts_without(&mut self, keep: &[usize]) {
+    pub(crate) fn end_contacts_without(&mut self, keep: &[usize]) {
         let mut place = vec![NONE; self.bodies.len()];
         for (new, &old) in keep.iter().enumerate() {
             place[old] = new as u32;

@@ -2,8 +2,9 @@
 
 use crate::args_format::Format;
 use crate::args_scene_view::{ScenePictureArguments, SceneVtkArguments};
-use clap::{Args, Subcommand, ValueHint};
+use clap::{Args, Subcommand, ValueEnum, ValueHint};
 use std::path::PathBuf;
+use windfall::engine_classes::MOST;
 
 /// `windfall scene …`
 #[derive(Debug, Subcommand)]
@@ -16,6 +17,85 @@ pub enum SceneCommand {
     Picture(ScenePictureArguments),
     /// Write the frames of a scene that has run for ParaView
     Vtk(SceneVtkArguments),
+    /// Write a scene as a complete deck for LAMMPS or LIGGGHTS, or its contacts for others
+    Export(SceneExportArguments),
+}
+
+/// An engine that a scene runs on.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum)]
+pub enum EngineName {
+    /// The engine of this program
+    #[default]
+    Windfall,
+    /// LAMMPS of 29 Sep 2021 or newer
+    Lammps,
+    /// LIGGGHTS-PUBLIC 3.8
+    Liggghts,
+}
+
+/// What is asked of another engine.
+#[derive(Debug, Args)]
+pub struct EngineArguments {
+    /// For LAMMPS and LIGGGHTS: classes of size of one material at most, each with coefficients of
+    /// its own
+    #[arg(long, value_name = "N", default_value_t = MOST)]
+    pub classes: usize,
+    /// For LAMMPS and LIGGGHTS: steps between frames, of which contacts are made; a contact lasts 80
+    /// frames at least if left out
+    #[arg(long, value_name = "N")]
+    pub frame_steps: Option<u64>,
+}
+
+/// An engine that a scene, or its contacts, are written for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum ExportName {
+    /// A deck for LAMMPS of 29 Sep 2021 or newer
+    Lammps,
+    /// A deck for LIGGGHTS-PUBLIC 3.8
+    Liggghts,
+    /// The contacts as IMPACT statements of Adams
+    Adams,
+    /// The contacts for YADE
+    Yade,
+    /// The contacts as species of MercuryDPM
+    Mercurydpm,
+    /// The contacts as tables of EDEM
+    Edem,
+    /// The contacts as materials of Chrono
+    Chrono,
+}
+
+/// `windfall scene export`
+#[derive(Debug, Args)]
+#[command(
+    after_help = "Writes a directory beside FILE, or that of --out. LAMMPS or LIGGGHTS run the deck there, on one \
+machine or on many, and write frames.bin; `windfall scene run FILE --engine … --frames frames.bin` makes \
+contacts, fruit and bruises of it. For other engines it writes the contact of each pair of materials in \
+their own terms, and says what of it is the law itself.
+
+Examples:
+  windfall scene export my-scene/scene.toml --engine lammps
+  windfall scene export my-scene/scene.toml --engine liggghts --out deck
+  windfall scene export my-scene/scene.toml --engine adams --speed 2"
+)]
+pub struct SceneExportArguments {
+    /// The scene
+    #[arg(value_name = "FILE", value_hint = ValueHint::FilePath)]
+    pub file: PathBuf,
+    /// The engine
+    #[arg(long, value_enum)]
+    pub engine: ExportName,
+    /// For the others: impact speed in m/s at which damping that is not the law's takes as much energy
+    #[arg(long, value_name = "SPEED", default_value_t = 1.0)]
+    pub speed: f64,
+    /// Directory to write into
+    #[arg(long, value_name = "DIR", value_hint = ValueHint::DirPath)]
+    pub out: Option<PathBuf>,
+    #[command(flatten)]
+    pub of_engine: EngineArguments,
+    /// How the result is shown
+    #[arg(long, value_enum, default_value_t)]
+    pub format: Format,
 }
 
 /// `windfall scene run`
@@ -33,7 +113,8 @@ Examples:
   windfall new scene my-scene
   windfall scene run my-scene/scene.toml
   windfall scene run my-scene/scene.toml --out first-try --threads 2 --format json
-  windfall scene run my-scene/scene.toml --resume"
+  windfall scene run my-scene/scene.toml --resume
+  windfall scene run my-scene/scene.toml --engine lammps --ranks 4"
 )]
 pub struct SceneRunArguments {
     /// The scene
@@ -51,6 +132,21 @@ pub struct SceneRunArguments {
     /// Begin anew where a run was stopped
     #[arg(long)]
     pub restart: bool,
+    /// The engine that moves the fruit
+    #[arg(long, value_enum, default_value_t)]
+    pub engine: EngineName,
+    /// For LAMMPS and LIGGGHTS: ranks of MPI
+    #[arg(long, value_name = "N", default_value_t = 1)]
+    pub ranks: usize,
+    /// For LAMMPS and LIGGGHTS: the program, if it is not on the path as lmp or liggghts
+    #[arg(long, value_name = "FILE", value_hint = ValueHint::FilePath)]
+    pub engine_program: Option<PathBuf>,
+    /// For LAMMPS and LIGGGHTS: frames that an earlier run of the scene's deck wrote, instead of a new
+    /// run
+    #[arg(long, value_name = "FILE", value_hint = ValueHint::FilePath)]
+    pub frames: Option<PathBuf>,
+    #[command(flatten)]
+    pub of_engine: EngineArguments,
     /// How the result is shown
     #[arg(long, value_enum, default_value_t)]
     pub format: Format,

@@ -1,15 +1,23 @@
 //! `windfall scene`
 
 use crate::args_format::Format;
-use crate::args_scene::{SceneCommand, SceneRunArguments, SceneStudyArguments};
+use crate::args_scene::{
+    EngineName, ExportName, SceneCommand, SceneExportArguments, SceneRunArguments,
+    SceneStudyArguments,
+};
 use crate::command_fit::{moving, progress_bar};
 use crate::command_scene_view;
 use crate::show::{write_json, write_result};
 use std::ops::ControlFlow;
 use std::sync::atomic::Ordering;
+use windfall::contact_parameters::Other;
+use windfall::engine_kind::Engine;
 use windfall::scene_run::SceneStart;
-use windfall::workflow_scene::{SceneRequest, run_scene};
+use windfall::workflow_contacts::export_contacts;
+use windfall::workflow_engine::{EngineRequest, export_deck, run_on_engine};
+use windfall::workflow_scene::SceneRequest;
 use windfall::workflow_study::{StudyRequest, run_study};
+use windfall::write_deck::{text_of_contacts, text_of_deck};
 use windfall::write_scene::{csv_of_scene, text_of_scene};
 use windfall::write_study::{csv_of_study, text_of_study};
 use windfall_web::interrupt::interruption;
@@ -21,6 +29,51 @@ pub fn run(command: &SceneCommand) -> anyhow::Result<()> {
         SceneCommand::Study(arguments) => run_variants(arguments),
         SceneCommand::Picture(arguments) => command_scene_view::picture(arguments),
         SceneCommand::Vtk(arguments) => command_scene_view::vtk(arguments),
+        SceneCommand::Export(arguments) => export(arguments),
+    }
+}
+
+fn engine(name: EngineName) -> Engine {
+    match name {
+        EngineName::Windfall => Engine::Windfall,
+        EngineName::Lammps => Engine::Lammps,
+        EngineName::Liggghts => Engine::Liggghts,
+    }
+}
+
+fn export(arguments: &SceneExportArguments) -> anyhow::Result<()> {
+    let other = match arguments.engine {
+        ExportName::Lammps => return deck(arguments, Engine::Lammps),
+        ExportName::Liggghts => return deck(arguments, Engine::Liggghts),
+        ExportName::Adams => Other::Adams,
+        ExportName::Yade => Other::Yade,
+        ExportName::Mercurydpm => Other::MercuryDpm,
+        ExportName::Edem => Other::Edem,
+        ExportName::Chrono => Other::Chrono,
+    };
+    let speed = arguments.speed;
+    anyhow::ensure!(
+        speed > 0.0 && speed.is_finite(),
+        "--speed {speed}: a speed above zero, in m/s"
+    );
+    let outcome = export_contacts(&arguments.file, other, arguments.out.as_deref(), speed)?;
+    match arguments.format {
+        Format::Json => write_json(&outcome),
+        _ => write_result(&text_of_contacts(&outcome)),
+    }
+}
+
+fn deck(arguments: &SceneExportArguments, engine: Engine) -> anyhow::Result<()> {
+    let request = EngineRequest {
+        engine,
+        classes: arguments.of_engine.classes,
+        frame_steps: arguments.of_engine.frame_steps,
+        ..EngineRequest::default()
+    };
+    let outcome = export_deck(&arguments.file, &request, arguments.out.as_deref())?;
+    match arguments.format {
+        Format::Json => write_json(&outcome),
+        _ => write_result(&text_of_deck(&outcome)),
     }
 }
 
@@ -40,7 +93,15 @@ fn run_one(arguments: &SceneRunArguments) -> anyhow::Result<()> {
             (false, false) => SceneStart::Fresh,
         },
     };
-    let outcome = run_scene(&arguments.file, &request, &progress);
+    let own = EngineRequest {
+        engine: engine(arguments.engine),
+        program: arguments.engine_program.clone(),
+        ranks: arguments.ranks,
+        classes: arguments.of_engine.classes,
+        frame_steps: arguments.of_engine.frame_steps,
+        frames: arguments.frames.clone(),
+    };
+    let outcome = run_on_engine(&arguments.file, &request, &own, &progress);
     bar.finish_and_clear();
     let outcome = outcome?;
     match arguments.format {

@@ -31,6 +31,14 @@ pub enum Error {
     /// What is kept of a scene cannot be used.
     #[error("{0}")]
     SceneFile(Box<crate::error_scene::SceneFileError>),
+    /// Another engine that is absent, fails, or cannot represent a scene.
+    #[error("{engine}: {problem}")]
+    Engine {
+        /// Its name.
+        engine: &'static str,
+        /// What is wrong.
+        problem: String,
+    },
     /// A change that would leave no campaign that can be read.
     #[error("nothing was written: {problem}")]
     ChangeRefused {

@@ -25,6 +25,8 @@ pub struct SceneOutcome {
     pub title: String,
     /// When it ended; s.
     pub end: f64,
+    /// The engine that moved the fruit, with its version.
+    pub engine: String,
     /// The time step, and what it does.
     pub step: StepOutcome,
     /// Steps.

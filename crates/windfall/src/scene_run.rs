@@ -15,6 +15,7 @@ use crate::write_scene_frames::SceneRecorder;
 use std::io::{Read, Result as IoResult};
 use std::path::{Path, PathBuf};
 use windfall_scene::binary::Binary;
+use windfall_scene::energy::Energy;
 use windfall_scene::event::Event;
 use windfall_scene::simulation::Simulation;
 use windfall_scene::state::State;
@@ -29,6 +30,39 @@ pub enum SceneStart {
     Resume,
     /// Begin anew.
     Restart,
+}
+
+/// What moves the fruit of a scene.
+pub(crate) trait Mover {
+    /// One step on, or one frame; with energies where they are asked for.
+    fn step(&mut self, simulation: &mut Simulation, energy: bool) -> Result<Energy, Error>;
+
+    /// Its own time steps in one.
+    fn steps(&self) -> u64;
+
+    /// Whether it can go on from a checkpoint.
+    fn goes_on(&self) -> bool;
+}
+
+/// The engine of this program.
+pub(crate) struct Own;
+
+impl Mover for Own {
+    fn step(&mut self, simulation: &mut Simulation, energy: bool) -> Result<Energy, Error> {
+        let energy = match energy {
+            true => simulation.step_with_energy(),
+            false => simulation.step().map(|()| Energy::default()),
+        };
+        energy.map_err(stopped_scene)
+    }
+
+    fn steps(&self) -> u64 {
+        1
+    }
+
+    fn goes_on(&self) -> bool {
+        true
+    }
 }
 
 /// Steps between looks at events and progress.
@@ -66,7 +100,12 @@ impl SceneRun {
     /// # Errors
     /// There is a run that could go on, or none that is to; the scene cannot begin; the
     /// directory cannot be written.
-    pub fn begin(plan: &ScenePlan, directory: &Path, start: SceneStart) -> Result<Self, Error> {
+    pub(crate) fn begin(
+        plan: &ScenePlan,
+        directory: &Path,
+        start: SceneStart,
+        mover: &mut dyn Mover,
+    ) -> Result<Self, Error> {
         let checkpoint = checkpoint_path(directory);
         let events = directory.join("events.csv");
         let going = is_written(&events);
@@ -105,7 +144,10 @@ impl SceneRun {
         let frames = SceneRecorder::create(plan, directory)?;
         let mut own = Self::new(plan, simulation, (table, frames), (checkpoint, parts));
         own.frames.take(&own.simulation, &own.tally)?;
-        let first = own.simulation.step_with_energy().map_err(stopped_scene)?;
+        if !mover.goes_on() {
+            own.every = None;
+        }
+        let first = mover.step(&mut own.simulation, true)?;
         own.first_closure = first.closure();
         Ok(own)
     }
@@ -178,8 +220,12 @@ impl SceneRun {
     /// # Errors
     /// The result would mean nothing from there on; somebody stopped it; a file cannot be
     /// written. What was done up to the last checkpoint is kept in the latter two.
-    pub fn to_end(&mut self, progress: Progress) -> Result<(), Error> {
-        let done = self.steps_to_end(progress);
+    pub(crate) fn to_end(
+        &mut self,
+        mover: &mut dyn Mover,
+        progress: Progress,
+    ) -> Result<(), Error> {
+        let done = self.steps_to_end(mover, progress);
         if let Err(Error::SceneStopped(_)) = &done {
             // It would be stopped there again.
             self.leave_nothing();
@@ -187,13 +233,13 @@ impl SceneRun {
         done.map_err(|error| self.told(error))
     }
 
-    fn steps_to_end(&mut self, progress: Progress) -> Result<(), Error> {
+    fn steps_to_end(&mut self, mover: &mut dyn Mover, progress: Progress) -> Result<(), Error> {
         while self.simulation.steps() < self.all {
             let steps = self.simulation.steps();
             let to_checkpoint = self.every.map_or(u64::MAX, |every| every - steps % every);
             let most = CHUNK.min(self.all - steps).min(to_checkpoint);
             for _ in 0..self.frames.steps(&self.simulation, most) {
-                self.simulation.step().map_err(stopped_scene)?;
+                mover.step(&mut self.simulation, false)?;
             }
             for event in self.simulation.take_events() {
                 self.count(&event)?;

@@ -1,14 +1,16 @@
 //! A scene from its file to the contacts of each fruit.
 
+use crate::engine_kind::Engine;
 use crate::error::Error;
 use crate::figure_files::{FigureFolder, write_figure};
 use crate::on_threads::on_threads;
+use crate::outcome::FindingOutcome;
 use crate::progress::Progress;
 use crate::read_scene::{ScenePlan, read_scene};
 use crate::scene_bruise::{Blows, finding_of_blows};
 use crate::scene_histogram::{HistogramOutcome, figure_of_histograms, histogram};
 use crate::scene_outcome::{PartnerOutcome, SceneOutcome, StepOutcome, Tally, findings_of_range};
-use crate::scene_run::{SceneRun, SceneStart, stopped_scene as stopped};
+use crate::scene_run::{Mover, Own, SceneRun, SceneStart, stopped_scene as stopped};
 use crate::scene_step::checked_step;
 use crate::write_file::write_whole;
 use crate::write_scene::fruit_table;
@@ -31,6 +33,16 @@ pub struct SceneRequest {
     pub start: SceneStart,
 }
 
+/// What moves the fruit, and what is to be said of it.
+pub(crate) struct Moved<'a> {
+    pub mover: &'a mut (dyn Mover + Send),
+    pub step: StepOutcome,
+    pub engine: String,
+    pub findings: Vec<FindingOutcome>,
+    /// Lack of the energy account that is worth a word, where it is; 1.
+    pub large_closure: Option<f64>,
+}
+
 /// Runs a scene and writes the contacts and the fruit into a directory.
 ///
 /// * `progress`: steps done, and all; where it does not go on the last checkpoint is kept
@@ -44,11 +56,16 @@ pub fn run_scene(
     progress: Progress,
 ) -> Result<SceneOutcome, Error> {
     let plan = read_scene(path)?;
-    let out = request.out.clone();
-    let out = out.unwrap_or_else(|| path.with_extension("run"));
+    let out = directory_of(path, request);
     on_threads(request.threads, || {
         Ok(run_plan(plan, &out, request.start, progress)?.outcome)
     })
+}
+
+/// Where the results of a scene go.
+pub(crate) fn directory_of(path: &Path, request: &SceneRequest) -> PathBuf {
+    let out = request.out.clone();
+    out.unwrap_or_else(|| path.with_extension("run"))
 }
 
 /// What came of a scene, with the contacts that bruise.
@@ -72,18 +89,36 @@ pub fn run_plan(
     progress: Progress,
 ) -> Result<RunOfScene, Error> {
     let step = time_step(&mut plan)?;
+    let moved = Moved {
+        mover: &mut Own,
+        step,
+        engine: Engine::Windfall.title().to_owned(),
+        findings: Vec::new(),
+        large_closure: None,
+    };
+    run_moved(&plan, moved, out, start, progress)
+}
+
+/// Runs a scene whose fruit something moves, and writes what comes of it.
+pub(crate) fn run_moved(
+    plan: &ScenePlan,
+    moved: Moved,
+    out: &Path,
+    start: SceneStart,
+    progress: Progress,
+) -> Result<RunOfScene, Error> {
     std::fs::create_dir_all(out).map_err(|source| Error::FileAccess {
         path: out.to_path_buf(),
         action: "create",
         source,
     })?;
-    let mut run = SceneRun::begin(&plan, out, start)?;
-    run.to_end(progress)?;
-    let last = run.simulation.step_with_energy().map_err(stopped)?;
+    let mut run = SceneRun::begin(plan, out, start, moved.mover)?;
+    run.to_end(moved.mover, progress)?;
+    let last = moved.mover.step(&mut run.simulation, true)?;
     for event in run.simulation.lasting() {
         run.count(&event).map_err(|error| run.told(error))?;
     }
-    let written = write_results(&plan, &mut run, (step, &last), out);
+    let written = write_results(plan, &mut run, (&moved, &last), out);
     let outcome = written.map_err(|error| run.told(error))?;
     let blows = run.blows.take();
     run.finish()?;
@@ -95,7 +130,7 @@ pub fn run_plan(
 fn write_results(
     plan: &ScenePlan,
     run: &mut SceneRun,
-    (step, last): (StepOutcome, &Energy),
+    (moved, last): (&Moved, &Energy),
     out: &Path,
 ) -> Result<SceneOutcome, Error> {
     run.table.sync()?;
@@ -113,20 +148,14 @@ fn write_results(
     files.push(summary.clone());
     let figure = figure_of_histograms(&plan.title, &histograms);
     files.extend(write_figure(&FigureFolder::of(out), "histograms", &figure)?);
-    let mut findings = plan.findings.clone();
-    findings.extend(findings_of_range(plan, tally, simulation.waiting()));
-    if let Some((_, blows)) = bruised {
-        findings.extend(finding_of_blows(blows));
-        findings.extend(blows.finding_of_range());
-    }
+    let lacks = last.closure() - run.first_closure;
+    let energy_closure = lacks / last.lost().abs().max(f64::MIN_POSITIVE);
     let outcome = SceneOutcome {
         title: plan.title.clone(),
         end: plan.end,
-        step: StepOutcome {
-            time_step: plan.scene.time_step,
-            ..step
-        },
-        steps: simulation.steps() - 1,
+        engine: moved.engine.clone(),
+        step: moved.step.clone(),
+        steps: (simulation.steps() - 1) * moved.mover.steps(),
         fruit: plan.scene.fruit.len(),
         waiting: simulation.waiting(),
         left: tally.left(),
@@ -136,9 +165,8 @@ fn write_results(
         histograms,
         bruise: bruised.map(|(bruise, blows)| blows.outcome(bruise, &plan.scene)),
         energy: last.into(),
-        energy_closure: (last.closure() - run.first_closure)
-            / last.lost().abs().max(f64::MIN_POSITIVE),
-        findings,
+        energy_closure,
+        findings: findings_of(plan, run, moved, energy_closure),
         files,
     };
     let json = serde_json::to_string_pretty(&outcome).map_err(|error| Error::ResultUnwritable {
@@ -147,6 +175,42 @@ fn write_results(
     })?;
     write_whole(&summary, (json + "\n").as_bytes())?;
     Ok(outcome)
+}
+
+/// All that is to be doubted of a run.
+fn findings_of(
+    plan: &ScenePlan,
+    run: &SceneRun,
+    moved: &Moved,
+    closure: f64,
+) -> Vec<FindingOutcome> {
+    let mut findings = plan.findings.clone();
+    findings.extend(moved.findings.iter().cloned());
+    findings.extend(findings_of_range(
+        plan,
+        &run.tally,
+        run.simulation.waiting(),
+    ));
+    if let Some(blows) = &run.blows {
+        findings.extend(finding_of_blows(blows));
+        findings.extend(blows.finding_of_range());
+    }
+    if closure.abs() > moved.large_closure.unwrap_or(f64::INFINITY) {
+        findings.push(account(closure));
+    }
+    findings
+}
+
+/// What a large lack of the account of another engine means.
+fn account(closure: f64) -> FindingOutcome {
+    FindingOutcome {
+        code: "engine-account".to_owned(),
+        message: format!(
+            "what the engine's motion lost and what the contacts took differ by {:.1} %: frames are \
+             too far apart (--frame-steps), or the engine's contacts are not those of the scene",
+            100.0 * closure.abs()
+        ),
+    }
 }
 
 /// Of each fruit the hardest that it suffered.
@@ -177,7 +241,7 @@ fn histograms_of(tally: &Tally, bruises: Option<&[Vec<Bruise>]>) -> Vec<Histogra
 }
 
 /// Sets the time step where it is automatic; what it does to the stiffest contact.
-fn time_step(plan: &mut ScenePlan) -> Result<StepOutcome, Error> {
+pub(crate) fn time_step(plan: &mut ScenePlan) -> Result<StepOutcome, Error> {
     let scene = &plan.scene;
     let speed = fastest(scene);
     let given = scene.time_step;

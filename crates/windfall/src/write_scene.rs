@@ -1,5 +1,6 @@
 //! Contacts and fruit of a scene as tables.
 
+use crate::engine_kind::Engine;
 use crate::error::Error;
 use crate::error_scene_run::SceneRunError;
 use crate::read_scene::ScenePlan;
@@ -322,6 +323,9 @@ pub fn text_of_scene(outcome: &SceneOutcome) -> String {
         outcome.left,
         number(100.0 * outcome.energy_closure.abs()),
     );
+    if outcome.engine != Engine::Windfall.title() {
+        text += &format!("Moved by {}.\n\n", outcome.engine);
+    }
     let header = [
         "touched",
         "impacts",

@@ -1,0 +1,430 @@
+//! `windfall scene run --engine` and `windfall scene export`, with LAMMPS and LIGGGHTS
+//! themselves: the test command installs them.
+#![cfg(unix)]
+#![allow(clippy::unwrap_used)]
+
+use assert_cmd::Command;
+use std::collections::BTreeMap;
+use std::os::unix::fs::PermissionsExt;
+use std::path::Path;
+
+fn windfall(arguments: &[&str], directory: &Path) -> (bool, String, String) {
+    with_path(arguments, directory, None)
+}
+
+fn with_path(arguments: &[&str], directory: &Path, path: Option<&str>) -> (bool, String, String) {
+    let mut command = Command::cargo_bin("windfall").unwrap();
+    command.args(arguments).current_dir(directory);
+    if let Some(path) = path {
+        command.env("PATH", path);
+    }
+    let output = command.output().unwrap();
+    let text = |bytes: &[u8]| String::from_utf8_lossy(bytes).into_owned();
+    (
+        output.status.success(),
+        text(&output.stdout),
+        text(&output.stderr),
+    )
+}
+
+/// Fruit that come one by one, each on its own place, and two pairs that collide in the air
+/// where two ranks meet; a floor, a pad that vibrates, a tilted plate, a tube, a sink.
+const IMPACTS: &str = r#"format = 1
+materials = ["apple", "steel", "foam"]
+[scene]
+title = "Impacts, one by one"
+seed = 1
+time_step = "20 us"
+end = "0.4 s"
+[[contacts]]
+between = ["apple", "apple"]
+law = "kuwabara-kono(k=753599, c=1524)"
+effective_radius = "18.75 mm"
+friction = 0.3
+rolling = 0.01
+[[contacts]]
+between = ["apple", "steel"]
+law = "kuwabara-kono(k=1065750, c=2155)"
+effective_radius = "37.5 mm"
+friction = 0.3
+[[contacts]]
+between = ["apple", "foam"]
+law = "kelvin-voigt(k=6000, c=25)"
+friction = 0.5
+[[fruit]]
+material = "apple"
+count = 1
+diameter = "75 mm"
+density = "840 kg/m^3"
+drop = { place = [-0.5, 0, 0.2], velocity = [0.3, 0, -0.5] }
+[[fruit]]
+material = "apple"
+count = 2
+diameter = "75 mm"
+diameter_sd = "2 mm"
+density = "840 kg/m^3"
+drop = { place = [0.2, 0, 0.3], interval = "0.2 s", velocity = [0, 0, -1] }
+[[fruit]]
+material = "apple"
+count = 1
+diameter = "70 mm"
+density = "840 kg/m^3"
+drop = { place = [0.6, 0, 0.4] }
+[[fruit]]
+material = "apple"
+count = 1
+diameter = "75 mm"
+density = "840 kg/m^3"
+drop = { place = [-0.05, 0.5, 0.6], velocity = [0.5, 0, 0] }
+[[fruit]]
+material = "apple"
+count = 1
+diameter = "75 mm"
+density = "840 kg/m^3"
+drop = { place = [0.05, 0.5, 0.61], velocity = [-0.5, 0, 0] }
+[[fruit]]
+material = "apple"
+count = 1
+diameter = "75 mm"
+density = "840 kg/m^3"
+drop = { place = [1.2, 0, 0.3], from = "0.05 s" }
+[[walls]]
+name = "floor"
+material = "steel"
+plate = { corner = [-1, -0.3, 0], edges = [[1, 0, 0], [0, 0.6, 0]] }
+[[walls]]
+name = "pad"
+material = "foam"
+plate = { corner = [0, -0.3, 0.05], edges = [[0.4, 0, 0], [0, 0.6, 0]] }
+vibration = { amplitude = [0, 0, 0.002], frequency = "20 Hz" }
+[[walls]]
+name = "slope"
+material = "steel"
+plate = { corner = [0.45, -0.3, 0.2], edges = [[0.4, 0, -0.15], [0, 0.6, 0]] }
+[[sinks]]
+name = "end"
+low = [1, -0.3, -1]
+high = [1.4, 0.3, 0.1]
+"#;
+
+/// What a fruit went through: partner, time, impact speed, peak force, absorbed energy, depth.
+type Contact = (String, [f64; 5]);
+
+fn contacts(directory: &Path, out: &str) -> BTreeMap<String, Vec<Contact>> {
+    let text = std::fs::read_to_string(directory.join(out).join("events.csv")).unwrap();
+    let mut lines = text.lines();
+    let names: Vec<&str> = lines.next().unwrap().split(',').collect();
+    let mut all: BTreeMap<String, Vec<Contact>> = BTreeMap::new();
+    for line in lines {
+        let cells: Vec<&str> = line.split(',').collect();
+        let cell = |name: &str| cells[names.iter().position(|own| *own == name).unwrap()];
+        let numbers = [
+            "time_s",
+            "normal_speed_m_s",
+            "peak_force_N",
+            "absorbed_energy_J",
+            "largest_displacement_m",
+        ];
+        let numbers = numbers.map(|name| cell(name).parse::<f64>().unwrap());
+        let partner = format!("{} {}", cell("partner"), cell("partner_fruit"));
+        if numbers[1] > 0.05 {
+            all.entry(cell("fruit").to_owned())
+                .or_default()
+                .push((partner, numbers));
+        }
+    }
+    for own in all.values_mut() {
+        own.sort_by(|a, b| a.1[0].total_cmp(&b.1[0]));
+    }
+    all
+}
+
+/// Each fruit's contacts are the same within a part.
+fn same(
+    found: &BTreeMap<String, Vec<Contact>>,
+    wanted: &BTreeMap<String, Vec<Contact>>,
+    part: f64,
+) {
+    assert_eq!(
+        found.keys().collect::<Vec<_>>(),
+        wanted.keys().collect::<Vec<_>>()
+    );
+    for (fruit, wanted) in wanted {
+        let found = &found[fruit];
+        assert_eq!(
+            found.len(),
+            wanted.len(),
+            "fruit {fruit}: {found:?} {wanted:?}"
+        );
+        for (found, wanted) in found.iter().zip(wanted) {
+            assert_eq!(found.0, wanted.0);
+            for (found, wanted) in found.1.iter().zip(wanted.1) {
+                let near = (found - wanted).abs() <= part * wanted.abs();
+                assert!(near, "fruit {fruit}: {found} {wanted}");
+            }
+        }
+    }
+}
+
+fn scene_of(text: &str) -> tempfile::TempDir {
+    let folder = tempfile::tempdir().unwrap();
+    std::fs::write(folder.path().join("scene.toml"), text).unwrap();
+    folder
+}
+
+fn run(folder: &Path, out: &str, arguments: &[&str]) -> serde_json::Value {
+    let mut all = vec![
+        "scene",
+        "run",
+        "scene.toml",
+        "--out",
+        out,
+        "--format",
+        "json",
+    ];
+    all.extend(arguments);
+    let (done, json, problem) = windfall(&all, folder);
+    assert!(done, "{arguments:?}: {problem}");
+    serde_json::from_str(&json).unwrap()
+}
+
+#[test]
+fn reference_lammps_gives_the_histories_of_isolated_impacts() {
+    let folder = scene_of(IMPACTS);
+    run(folder.path(), "own", &[]);
+    let own = contacts(folder.path(), "own");
+    assert!(own.values().map(Vec::len).sum::<usize>() >= 8, "{own:?}");
+    // Many classes, so that each fruit has its own coefficients, and every step a frame.
+    let exact = ["--engine", "lammps", "--classes", "28"];
+    let json = run(folder.path(), "lammps", &exact);
+    assert!(json["engine"].as_str().unwrap().starts_with("LAMMPS"));
+    assert_eq!(json["left"], 1);
+    assert!(json["energy_closure"].as_f64().unwrap().abs() < 0.01);
+    let lammps = contacts(folder.path(), "lammps");
+    same(&lammps, &own, 0.01);
+    // Nothing of the pipe is left, but the deck and what it printed.
+    let engine = folder.path().join("lammps/engine");
+    assert!(!engine.join("frames.bin").exists() && engine.join("in.scene").exists());
+    // On two ranks the same, but for rounding.
+    let two = ["--engine", "lammps", "--classes", "28", "--ranks", "2"];
+    let json = run(folder.path(), "two", &two);
+    assert!(json["engine"].as_str().unwrap().contains("2 ranks"));
+    same(&contacts(folder.path(), "two"), &lammps, 1e-6);
+    let screen = std::fs::read_to_string(folder.path().join("two/engine/screen.txt")).unwrap();
+    assert!(screen.contains("on 2 procs"), "{screen}");
+}
+
+#[test]
+fn reference_liggghts_gives_the_histories_of_isolated_impacts() {
+    // It has one form of law for all meshes.
+    let text = IMPACTS.replace(
+        "law = \"kelvin-voigt(k=6000, c=25)\"",
+        "law = \"kuwabara-kono(k=100000, c=500)\"\neffective_radius = \"37.5 mm\"",
+    );
+    let folder = scene_of(&text);
+    run(folder.path(), "own", &[]);
+    run(
+        folder.path(),
+        "liggghts",
+        &["--engine", "liggghts", "--classes", "28"],
+    );
+    let own = contacts(folder.path(), "own");
+    same(&contacts(folder.path(), "liggghts"), &own, 0.01);
+}
+
+#[test]
+fn an_exported_deck_runs_by_itself_and_its_frames_are_read() {
+    let folder = scene_of(IMPACTS);
+    let export = ["scene", "export", "scene.toml", "--engine", "lammps"];
+    let (done, text, problem) = windfall(&export, folder.path());
+    assert!(done && text.contains("lmp -in in.scene"), "{text}{problem}");
+    let deck = folder.path().join("scene.lammps");
+    let lammps = std::process::Command::new("lmp")
+        .args(["-in", "in.scene"])
+        .current_dir(&deck)
+        .output()
+        .unwrap();
+    assert!(lammps.status.success(), "{lammps:?}");
+    let frames = deck.join("frames.bin");
+    let read = ["--engine", "lammps", "--frames", frames.to_str().unwrap()];
+    run(folder.path(), "read", &read);
+    run(folder.path(), "run", &["--engine", "lammps"]);
+    same(
+        &contacts(folder.path(), "read"),
+        &contacts(folder.path(), "run"),
+        1e-9,
+    );
+    // Frames that are cut short, of another deck, or none.
+    let events = std::fs::read(folder.path().join("read/events.csv")).unwrap();
+    let whole = std::fs::read(&frames).unwrap();
+    std::fs::write(folder.path().join("short.bin"), &whole[..whole.len() / 2]).unwrap();
+    for (name, steps, word) in [
+        ("short.bin", None, "cut short"),
+        ("scene.lammps/frames.bin", Some("3"), "another deck"),
+        ("scene.toml", None, "no dump"),
+        ("none.bin", None, "no such file"),
+    ] {
+        let mut all = vec![
+            "scene",
+            "run",
+            "scene.toml",
+            "--out",
+            "read",
+            "--engine",
+            "lammps",
+        ];
+        all.extend(["--frames", name]);
+        all.extend(steps.iter().flat_map(|steps| ["--frame-steps", steps]));
+        let (done, _, problem) = windfall(&all, folder.path());
+        assert!(!done && problem.contains(word), "{name}: {problem}");
+    }
+    // What was there before is there still.
+    assert_eq!(
+        std::fs::read(folder.path().join("read/events.csv")).unwrap(),
+        events
+    );
+}
+
+#[test]
+fn rejects_what_an_engine_cannot_represent_with_all_reasons() {
+    let text = IMPACTS
+        .replace(
+            "kelvin-voigt(k=6000, c=25)",
+            "power-law(k=6000, n=1.9, c=25, p=0)",
+        )
+        .replace(
+            "edges = [[1, 0, 0], [0, 0.6, 0]] }",
+            "edges = [[1, 0, 0], [0.2, 0.6, 0]] }",
+        )
+        .replace("vibration = {", "belt = [0.5, 0, 0]\nvibration = {");
+    let folder = scene_of(&text);
+    let refused = |engine: &str| {
+        let all = ["scene", "export", "scene.toml", "--engine", engine];
+        let (done, _, problem) = windfall(&all, folder.path());
+        assert!(!done && !problem.contains("panicked"), "{problem}");
+        problem
+    };
+    let problem = refused("lammps");
+    for word in ["n = 1.9", "apple and foam", "\"floor\"", "right angles"] {
+        assert!(problem.contains(word), "{word}: {problem}");
+    }
+    let text = IMPACTS.replace("vibration = {", "belt = [0.5, 0, 0]\nvibration = {");
+    std::fs::write(folder.path().join("scene.toml"), text).unwrap();
+    assert!(refused("lammps").contains("belt"));
+    assert!(refused("liggghts").contains("one form of law"));
+}
+
+/// A program of the name in a directory.
+fn fake(directory: &Path, name: &str, text: &str) {
+    let path = directory.join(name);
+    std::fs::write(&path, format!("#!/bin/sh\n{text}\n")).unwrap();
+    std::fs::set_permissions(&path, std::fs::Permissions::from_mode(0o755)).unwrap();
+}
+
+#[test]
+fn rejects_engines_that_are_absent_old_or_fail() {
+    let folder = scene_of(IMPACTS);
+    let programs = folder.path().join("bin");
+    std::fs::create_dir(&programs).unwrap();
+    let only = programs.to_str().unwrap().to_owned();
+    let with_system = format!("{only}:/usr/bin:/bin");
+    let refused = |path: &str, arguments: &[&str]| {
+        let mut all = vec!["scene", "run", "scene.toml", "--engine", "lammps"];
+        all.extend(arguments);
+        let (done, _, problem) = with_path(&all, folder.path(), Some(path));
+        assert!(!done && !problem.contains("panicked"), "{problem}");
+        problem
+    };
+    let problem = refused(&only, &[]);
+    assert!(
+        problem.contains("not installed") && problem.contains("apt install"),
+        "{problem}"
+    );
+    let problem = refused(&only, &["--engine-program", "nowhere/lmp"]);
+    assert!(problem.contains("nowhere/lmp"), "{problem}");
+    fake(&programs, "lmp", "echo I am something else");
+    assert!(refused(&only, &[]).contains("I am something else"));
+    let help = |date: &str, styles: &str| {
+        format!(
+            "if [ \"$1\" = -h ]; then echo 'Large-scale Atomic/Molecular Massively Parallel \
+             Simulator - {date}'; echo 'MPI v3.1: MPICH 4.0, package'; echo '{styles}'; exit; fi"
+        )
+    };
+    let styles = "granular wall/gran/region property/atom nve/sphere evaporate";
+    fake(&programs, "lmp", &help("3 Mar 2020", styles));
+    let problem = refused(&only, &[]);
+    assert!(
+        problem.contains("3 Mar 2020") && problem.contains("29 Sep 2021"),
+        "{problem}"
+    );
+    fake(
+        &programs,
+        "lmp",
+        &help("29 Aug 2024", "granular property/atom nve/sphere"),
+    );
+    assert!(refused(&only, &[]).contains("without wall/gran/region"));
+
+    // One that fails before its first frame; an earlier result stays.
+    let out = folder.path().join("scene.run");
+    std::fs::create_dir(&out).unwrap();
+    std::fs::write(out.join("events.csv"), "earlier").unwrap();
+    let good = help("29 Aug 2024", styles);
+    fake(
+        &programs,
+        "lmp",
+        &format!("{good}\necho 'ERROR: Lost atoms: original 7'; exit 1"),
+    );
+    let problem = refused(&with_system, &[]);
+    assert!(
+        problem.contains("Lost atoms") && problem.contains("step 0"),
+        "{problem}"
+    );
+    assert_eq!(
+        std::fs::read_to_string(out.join("events.csv")).unwrap(),
+        "earlier"
+    );
+
+    // A launcher of another MPI starts as many as are asked for, each for itself.
+    fake(
+        &programs,
+        "lmp",
+        &format!("{good}\necho '  1 by 1 by 1 MPI processor grid'"),
+    );
+    let launcher = "if [ \"$1\" = --version ]; then echo HYDRA; exit; fi\n\
+                    shift; n=$1; shift; while [ $n -gt 0 ]; do \"$@\"; n=$((n - 1)); done";
+    fake(&programs, "mpirun", launcher);
+    let problem = refused(&only, &["--ranks", "2"]);
+    for word in ["on 1 procs", "MPICH 4.0", "same MPI"] {
+        assert!(problem.contains(word), "{word}: {problem}");
+    }
+}
+
+#[test]
+fn every_poured_fruit_comes_on_lammps_too() {
+    let folder = tempfile::tempdir().unwrap();
+    assert!(windfall(&["new", "scene", "s"], folder.path()).0);
+    let text = std::fs::read_to_string(folder.path().join("s/scene.toml")).unwrap();
+    let (belt, end) = ("belt = [0.5, 0, 0]\n", "end = \"4 s\"");
+    assert!(text.contains(belt) && text.contains(end));
+    let text = text.replace(belt, "").replace(end, "end = \"0.7 s\"");
+    std::fs::write(folder.path().join("scene.toml"), text).unwrap();
+    let json = run(folder.path(), "lammps", &["--engine", "lammps"]);
+    assert_eq!(json["fruit"], 100);
+    // Of one each 20 ms those of the first 0.7 s, as here.
+    let own = run(folder.path(), "own", &[]);
+    assert_eq!(json["waiting"], own["waiting"]);
+    let closure = json["energy_closure"].as_f64().unwrap();
+    assert!(closure.abs() < 0.02, "{closure}");
+    let codes = json["findings"].to_string();
+    assert!(
+        codes.contains("engine-classes") && codes.contains("engine-rolling"),
+        "{codes}"
+    );
+    let count = |json: &serde_json::Value| json["contacts"].as_f64().unwrap();
+    assert!(
+        (count(&json) / count(&own)).ln().abs() < 0.3,
+        "{} {}",
+        count(&json),
+        count(&own)
+    );
+}
