@@ -412,7 +412,9 @@ fn every_poured_fruit_comes_on_lammps_too() {
     assert_eq!(json["fruit"], 100);
     // Of one each 20 ms those of the first 0.7 s, as here.
     let own = run(folder.path(), "own", &[]);
-    assert_eq!(json["waiting"], own["waiting"]);
+    let waiting = |json: &serde_json::Value| json["waiting"].as_i64().unwrap();
+    // One that comes within the last frame is seen by one of them.
+    assert!((waiting(&json) - waiting(&own)).abs() <= 1);
     let closure = json["energy_closure"].as_f64().unwrap();
     assert!(closure.abs() < 0.02, "{closure}");
     let codes = json["findings"].to_string();

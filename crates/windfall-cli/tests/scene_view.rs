@@ -436,6 +436,11 @@ fn rejects_what_cannot_be_drawn_or_recorded() {
         &["frames.bin", "cannot write"],
     );
     assert!(file.join("kept").exists());
+    // With room for it the run goes on where it was.
+    std::fs::remove_dir_all(&file).unwrap();
+    let arguments = ["scene", "run", "s/scene.toml", "--resume"];
+    let (done, _, problem) = windfall(&arguments, folder.path());
+    assert!(done, "{problem}");
     let left = std::fs::read_dir(folder.path().join("s/scene.run")).unwrap();
     let left = left.filter(|own| {
         own.as_ref()

@@ -7,7 +7,15 @@ use std::process::{Child, Command, Output, Stdio};
 use std::time::{Duration, Instant};
 
 const WINDFALL: &str = env!("CARGO_BIN_EXE_windfall");
-const TABLES: [&str; 3] = ["events.csv", "fruit.csv", "scene.json"];
+const TABLES: [&str; 7] = [
+    "events.csv",
+    "frames.bin",
+    "fruit.csv",
+    "histograms.csv",
+    "histograms.png",
+    "histograms.svg",
+    "scene.json",
+];
 
 /// The template, shorter and with many checkpoints and bruises.
 fn scene(directory: &Path, changes: &[(&str, &str)]) {
@@ -188,7 +196,7 @@ fn an_interrupted_run_says_how_it_goes_on_and_is_not_lost_unasked() {
     let (done, problem) = told(child.wait_with_output().unwrap());
     assert!(!done && problem.contains("--resume"), "{problem}");
     assert!(problem.contains("of 100 s"), "{problem}");
-    let there = ["checkpoint.bin", "events.csv.partial"];
+    let there = ["checkpoint.bin", "events.csv.partial", "frames.bin.partial"];
     assert_eq!(names(directory), there);
 
     let (done, problem) = run(directory, &[]);

@@ -1,7 +1,7 @@
 //! Walls of a scene as regions of LAMMPS, with `fix wall/gran/region`.
 
 use crate::engine_deck::{Task, comment, triple};
-use crate::engine_lammps::terms;
+use crate::engine_lammps_terms::terms;
 use crate::engine_law::PairNumbers;
 use crate::engine_walls::{Region, Tilt, region_of};
 use std::fmt::Write;

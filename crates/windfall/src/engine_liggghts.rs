@@ -2,34 +2,11 @@
 
 use crate::engine_deck::{Deck, FRAMES, Task, comment, triple};
 use crate::engine_law::{Damping, PairNumbers};
+use crate::engine_liggghts_model::{Model, Types, model_of, words};
 use crate::engine_liggghts_walls::{Walls, walls};
 use std::collections::BTreeSet;
 use std::fmt::Write;
-use windfall_scene::interaction::Interaction;
 use windfall_scene::vector::{length, scaled};
-
-/// A form of the normal force that LIGGGHTS has.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Model {
-    /// `hertz/stiffness`.
-    Hertz,
-    /// `hooke/stiffness absolute_damping on`.
-    Hooke,
-}
-
-/// Types of atoms: materials of walls first, then classes of fruit.
-pub(crate) struct Types {
-    /// Materials of walls.
-    pub walls: Vec<usize>,
-}
-
-impl Types {
-    /// The type of a wall's material.
-    pub(crate) fn of_wall(&self, material: usize) -> usize {
-        let place = self.walls.iter().position(|own| *own == material);
-        place.map_or(0, |place| place + 1)
-    }
-}
 
 /// A deck for LIGGGHTS-PUBLIC 3.8.
 ///
@@ -74,24 +51,6 @@ pub fn liggghts_deck(task: &Task) -> Result<Deck, Vec<String>> {
     })
 }
 
-/// The form of a law.
-///
-/// # Errors
-/// Why it has none.
-pub(crate) fn model_of(interaction: &Interaction) -> Result<Model, String> {
-    // The form depends on neither radius nor mass.
-    let law = PairNumbers::of(interaction, 1.0, 1.0)?.law;
-    match (law.hertzian, law.damping) {
-        (true, Damping::None | Damping::Root(_)) => Ok(Model::Hertz),
-        (false, Damping::None | Damping::Constant(_)) => Ok(Model::Hooke),
-        _ => Err(
-            "of Hertz's contact it has damping that grows as the root of the displacement \
-                  alone"
-                .to_owned(),
-        ),
-    }
-}
-
 /// The form that all contacts of fruit have.
 fn fruit_model(task: &Task) -> Result<Model, String> {
     let classes = &task.classes.classes;
@@ -109,20 +68,6 @@ fn fruit_model(task: &Task) -> Result<Model, String> {
         }
     }
     found.ok_or_else(|| "there are no fruit".to_owned())
-}
-
-/// The words of a form in a pair style or a wall.
-pub(crate) fn words(model: Model, rolls: bool) -> (String, &'static str) {
-    let name = match model {
-        Model::Hertz => "hertz/stiffness",
-        Model::Hooke => "hooke/stiffness",
-    };
-    let rolling = if rolls { " rolling_friction epsd2" } else { "" };
-    let options = match model {
-        Model::Hertz => "limitForce on",
-        Model::Hooke => "limitForce on absolute_damping on",
-    };
-    (format!("model {name} tangential history{rolling}"), options)
 }
 
 fn head(task: &Task, types: &Types, first: usize) -> String {
@@ -355,7 +300,7 @@ fn run(task: &Task, types: &Types) -> String {
     }
     text + &format!(
         "variable now equal step\nvariable to string {steps}\n\
-         if \"${{now}} < ${{to}}\" then \"include go.in\"\n"
+         if \"${{now}} >= ${{to}}\" then \"jump SELF over\"\ninclude go.in\nlabel over\n"
     )
 }
 
@@ -391,7 +336,8 @@ fn data(task: &Task, types: &Types, first: usize) -> String {
 
 /// How a fruit comes, as in the deck for LAMMPS.
 const COME: &str = r#"variable now equal step
-if "${now} < ${to}" then "include go.in"
+if "${now} >= ${to}" then "jump SELF again"
+include go.in
 label again
 variable attempt delete
 variable attempt loop 0 ${attempts}

@@ -1,7 +1,7 @@
 //! Walls of a scene for LIGGGHTS: meshes of triangles, and endless planes along the axes.
 
 use crate::engine_deck::{Task, comment, triple};
-use crate::engine_liggghts::{Model, Types, model_of, words};
+use crate::engine_liggghts_model::{Model, Types, model_of, words};
 use std::fmt::Write;
 use windfall_scene::vector::{Vector, cross, length, scaled, subtract};
 use windfall_scene::wall::{Plate, Shape, Wall};

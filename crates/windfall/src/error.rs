@@ -594,7 +594,6 @@ impl Error {
 }
 
 impl Error {
-    /// Of a run of a scene.
     pub(crate) fn scene_run(error: SceneRunError) -> Self {
         Self::SceneRun(Box::new(error))
     }

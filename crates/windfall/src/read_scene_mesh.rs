@@ -140,7 +140,7 @@ fn text_of(place: Vector) -> String {
 /// What is to be known of a mesh that is used.
 fn findings_of(flaws: &Flaws, wall: &str, file: &str, closed: Option<bool>) -> Vec<FindingOutcome> {
     let mut findings = Vec::new();
-    let mut find = |code: &str, message: String| {
+    let mut tell = |code: &str, message: String| {
         findings.push(FindingOutcome {
             code: code.to_owned(),
             message: format!("\"{wall}\" ({file}): {message}"),
@@ -150,13 +150,13 @@ fn findings_of(flaws: &Flaws, wall: &str, file: &str, closed: Option<bool>) -> V
     if closed.is_none()
         && let Some(open) = openness(flaws)
     {
-        find(
+        tell(
             "mesh-open",
             format!("{open}; a chute may be so: closed = false or true says what it must be"),
         );
     }
     if !flaws.slivers.is_empty() {
-        find(
+        tell(
             "mesh-sliver",
             format!(
                 "{} triangles (the first is number {}) are nowhere wider than {} µm, within which \
@@ -168,7 +168,7 @@ fn findings_of(flaws: &Flaws, wall: &str, file: &str, closed: Option<bool>) -> V
         );
     }
     if !flaws.doubled.is_empty() {
-        find(
+        tell(
             "mesh-double",
             format!(
                 "{} triangles (the first is number {}) stand there twice: they count once",
@@ -178,7 +178,7 @@ fn findings_of(flaws: &Flaws, wall: &str, file: &str, closed: Option<bool>) -> V
         );
     }
     if let Some([a, _]) = flaws.branching.first() {
-        find(
+        tell(
             "mesh-branching",
             format!(
                 "{} edges, one of them at {} m, belong to more than two triangles, as where bodies \
@@ -189,7 +189,7 @@ fn findings_of(flaws: &Flaws, wall: &str, file: &str, closed: Option<bool>) -> V
         );
     }
     if let Some([a, _]) = flaws.contrary.first() {
-        find(
+        tell(
             "mesh-winding",
             format!(
                 "the triangles at {} edges, one of them at {} m, are wound contrary to each other; \

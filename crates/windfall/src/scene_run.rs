@@ -143,7 +143,8 @@ impl SceneRun {
         let table = EventFile::create(&events, &plan.scene, plan.least_peak_force)?;
         let frames = SceneRecorder::create(plan, directory)?;
         let mut own = Self::new(plan, simulation, (table, frames), (checkpoint, parts));
-        own.frames.take(&own.simulation, &own.tally)?;
+        let seen = own.frames.take(&own.simulation, &own.tally);
+        seen.map_err(|error| own.told(error))?;
         if !mover.goes_on() {
             own.every = None;
         }

@@ -1,6 +1,5 @@
 //! `windfall bruise`: volumes of bruises from what one measures of them.
 
-use crate::column_title::column_title;
 use crate::error::Error;
 use crate::option_value::{positive, unusable};
 use crate::read_data::read_data;
@@ -146,8 +145,11 @@ fn lengths(
     name: &str,
 ) -> Result<Option<Vec<f64>>, windfall_statistics::error::Error> {
     for column in &table.columns {
-        let (title, unit) = column_title(&column.name);
-        if title == name
+        // The numbers of widths are no units: what stands behind the last underscore is.
+        let Some((title, unit)) = column.name.rsplit_once('_') else {
+            continue;
+        };
+        if title.replace('_', " ") == name
             && let Ok(size) = parse_as(&format!("1 {unit}"), "m")
         {
             let numbers = table.numbers(&column.name)?;
