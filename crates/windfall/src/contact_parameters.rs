@@ -573,7 +573,7 @@ mod tests {
             .given
             .lines()
             .filter(|line| line.contains("n("))
-            .flat_map(|line| numbers(line))
+            .flat_map(numbers)
             .collect();
         assert!(
             (numbers[0] * 0.04 - 753_599.0).abs() < 1e-6,

@@ -221,7 +221,7 @@ impl SceneRun {
     /// # Errors
     /// The result would mean nothing from there on; somebody stopped it; a file cannot be
     /// written. What was done up to the last checkpoint is kept in the latter two.
-    pub(crate) fn to_end(
+    pub(crate) fn run_to_end(
         &mut self,
         mover: &mut dyn Mover,
         progress: Progress,

@@ -113,7 +113,7 @@ pub(crate) fn run_moved(
         source,
     })?;
     let mut run = SceneRun::begin(plan, out, start, moved.mover)?;
-    run.to_end(moved.mover, progress)?;
+    run.run_to_end(moved.mover, progress)?;
     let last = moved.mover.step(&mut run.simulation, true)?;
     for event in run.simulation.lasting() {
         run.count(&event).map_err(|error| run.told(error))?;
