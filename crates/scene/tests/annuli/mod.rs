@@ -54,7 +54,7 @@ impl Annuli {
 pub fn slip_after(before: f64, friction: f64, ratio: f64) -> f64 {
     // m = 1, v_n = 1e-3; Hertz's greatest depth and time of contact.
     let speed = 1e-3;
-    let deepest = (15.0 / 16.0 * speed * speed).powf(0.4);
+    let deepest = (15.0_f64 / 16.0 * speed * speed).powf(0.4);
     let step = 2.943_275 * deepest / speed / 6000.0;
     let mut contact = Annuli::new(1200, 1.0001 * deepest, friction, ratio);
     let (mut depth, mut rate, mut slip) = (0.0, speed, before * speed);
