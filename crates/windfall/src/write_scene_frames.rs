@@ -76,7 +76,13 @@ impl SceneRecorder {
         let Some(interval) = plan.record.frames else {
             return Ok(Self(None));
         };
-        let partial = partial_of(&out.join(FRAMES_FILE));
+        let path = out.join(FRAMES_FILE);
+        let partial = partial_of(&path);
+        // A run that was stopped on its last steps had given the file its name already.
+        if !partial.exists() && path.is_file() {
+            let renamed = std::fs::rename(&path, &partial);
+            renamed.map_err(|source| access(&path, source))?;
+        }
         let there = std::fs::metadata(&partial).map_or(0, |own| own.len());
         if there < kept[0] {
             let problem = format!(
