@@ -403,3 +403,23 @@ fn a_full_disk_loses_nothing_of_a_scene() {
     assert!(read(directory) == resumed, "other bytes");
     assert_eq!(names(directory), TABLES);
 }
+
+#[test]
+fn a_run_that_is_killed_while_it_names_its_files_goes_on() {
+    let folder = tempfile::tempdir().unwrap();
+    let directory = folder.path();
+    scene(directory, &[]);
+    let (done, problem) = run(directory, &[]);
+    assert!(done, "{problem}");
+    let wanted = read(directory);
+    let results = directory.join("s/scene.run");
+    std::fs::remove_dir_all(&results).unwrap();
+    stopped(directory);
+    // The frames have their name before the table of contacts has.
+    let partial = results.join("frames.bin.partial");
+    std::fs::rename(partial, results.join("frames.bin")).unwrap();
+    let (done, problem) = run(directory, &["--resume"]);
+    assert!(done, "{problem}");
+    assert!(read(directory) == wanted, "other bytes");
+    assert_eq!(names(directory), TABLES);
+}
