@@ -157,5 +157,4 @@ fn converges_the_energy_account_of_a_bin_with_friction() {
     // Below a thousandth at every step; what friction takes is added up to first order.
     assert!(points[0].1 < 1.2e-3 && points[1].1 < 6e-4, "{points:?}");
     assert!(points[3].1 < 2e-4 && order(&points) > 0.9, "{points:?}");
-}");
 }
