@@ -534,7 +534,7 @@ fn rejects_a_time_step_that_is_too_long_with_its_line() {
         &[("time_step = \"auto\"", "time_step = \"200 us\"")],
     );
     let error = run(directory)["step"]["peak_force_error"].as_f64().unwrap();
-    assert!(error > 1e-3 && error < 0.1, "{error}");
+    assert!(error > 1e-5 && error < 0.1, "{error}");
 }
 
 #[test]
