@@ -45,7 +45,7 @@ pub(crate) struct Gather<'a> {
     pub near_start: &'a [u32],
     /// Numbers and materials of the bodies.
     pub bodies: (&'a [u32], &'a [u32]),
-    /// Where each is in its clump, if there are clumps: see [`Bodies`](crate::neighbours::Bodies).
+    /// Where each is in its clump, if there are clumps: see `Bodies`.
     pub clumps: (&'a [u32], &'a [Vector]),
     pub listed: &'a [Four],
     pub with_energy: bool,

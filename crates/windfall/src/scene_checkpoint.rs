@@ -1,6 +1,6 @@
 //! A run of a scene between two steps, as a file.
 //!
-//! The file begins with [`MAGIC`], the version of its shape, that of windfall, the time and
+//! The file begins with `MAGIC`, the version of its shape, that of windfall, the time and
 //! the end of the scene, and digests of the parts of the scene; what the run remembers
 //! follows as [`Binary`] values; SHA-256 of all that ends it.
 

