@@ -1,5 +1,5 @@
 //! How errors go with the time step: of single impacts, and of the energy of a bin.
-#![allow(clippy::unwrap_used)]
+#![allow(clippy::unwrap_used, clippy::print_stdout)]
 
 mod common;
 
