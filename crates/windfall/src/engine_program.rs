@@ -78,7 +78,12 @@ pub fn find_program(engine: Engine, given: Option<&Path>) -> Result<Program, Err
             ))
         })?,
     };
-    let output = Command::new(&path)
+    let mut command = Command::new(&path);
+    if engine == Engine::Liggghts {
+        // It would leave a log where the user stands.
+        command.args(["-log", "none"]);
+    }
+    let output = command
         .arg("-h")
         .stdin(Stdio::null())
         .output()
