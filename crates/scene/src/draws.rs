@@ -1,6 +1,6 @@
 //! Random numbers that depend on nothing but a seed and what they are for.
 
-use crate::population::normal;
+use crate::population::{normal, normal_of_two};
 use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
 
@@ -17,8 +17,7 @@ pub fn normals(seed: u64, stream: u64, count: usize) -> Vec<f64> {
 pub fn normal_of(words: &[u64]) -> f64 {
     let mixed = words.iter().fold(0, |state, word| scrambled(state ^ word));
     let unit = |word: u64| (word >> 11) as f64 / (1_u64 << 53) as f64;
-    let (a, b) = (unit(mixed), unit(scrambled(mixed)));
-    (-2.0 * (1.0 - a).ln()).sqrt() * (2.0 * std::f64::consts::PI * b).cos()
+    normal_of_two(unit(mixed), unit(scrambled(mixed)))
 }
 
 /// A word whose bits all depend on all of those of another.

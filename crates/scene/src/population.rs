@@ -197,7 +197,11 @@ fn ovate(
 
 /// A standard normal number, by Box and Muller (1958).
 pub(crate) fn normal(generator: &mut ChaCha8Rng) -> f64 {
-    let (a, b): (f64, f64) = (generator.random(), generator.random());
+    normal_of_two(generator.random(), generator.random())
+}
+
+/// A standard normal number of two that are even over 0 to 1.
+pub(crate) fn normal_of_two(a: f64, b: f64) -> f64 {
     (-2.0 * (1.0 - a).ln()).sqrt() * (2.0 * std::f64::consts::PI * b).cos()
 }
 

@@ -5,7 +5,7 @@ use std::fmt::Write;
 use windfall_contact::law::ContactLaw;
 use windfall_contact::law_kind::{Law, LawKind};
 use windfall_contact::with_law;
-use windfall_scene::interaction::Interaction;
+use windfall_scene::interaction::{Draws, Interaction};
 use windfall_scene::scene::Scene;
 
 /// An engine whose contacts windfall can write, but which it does not run.
@@ -99,18 +99,9 @@ pub fn contact_terms(other: Other, scene: &Scene, speed: f64) -> Vec<ContactTerm
             (Some(own), None) | (None, Some(own)) => own,
             (None, None) => continue,
         };
-        let scale = interaction.scale(radius);
-        let values: Vec<f64> = interaction.law.parameters();
-        let scaled: Vec<f64> = values.iter().map(|own| own * scale).collect();
-        let law = if scale == 1.0 {
-            interaction.law
-        } else {
-            interaction
-                .law
-                .kind()
-                .from_values(&scaled)
-                .unwrap_or(interaction.law)
-        };
+        // Of the median fruit.
+        let law = interaction.law_of(radius, &Draws::default(), None);
+        let law = law.unwrap_or(interaction.law);
         let names = [scene.materials[a].as_str(), scene.materials[b].as_str()];
         let pair = Pair {
             names,

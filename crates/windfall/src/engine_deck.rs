@@ -4,8 +4,8 @@ use crate::engine_classes::{Classes, classes_of};
 use crate::engine_law::{PairNumbers, granular_law};
 use crate::outcome::FindingOutcome;
 use std::collections::BTreeSet;
-use windfall_scene::scene::Scene;
-use windfall_scene::vector::{Vector, length};
+use windfall_scene::scene::{Fruit, Scene};
+use windfall_scene::vector::{Vector, length, scaled};
 use windfall_scene::wall::Shape;
 
 /// A deck: files in one directory, and what is to be known of them.
@@ -213,6 +213,28 @@ impl<'a> Task<'a> {
         })
     }
 
+    /// Gravity and the drag of the air, in words that both engines have.
+    #[must_use]
+    pub fn fields(&self) -> String {
+        let mut text = String::new();
+        let size = length(self.scene.gravity);
+        if size > 0.0 {
+            let down = triple(scaled(self.scene.gravity, 1.0 / size));
+            text += &format!("fix gravity all gravity {size} vector {down}\n");
+        }
+        if let Some(air) = self.scene.air {
+            let drag = 0.5 * air.density * air.drag_coefficient;
+            text += "compute radius all property/atom radius\n";
+            for axis in ["x", "y", "z"] {
+                text += &format!(
+                    "variable drag{axis} atom -{drag}*PI*c_radius^2*sqrt(vx^2+vy^2+vz^2)*v{axis}\n"
+                );
+            }
+            text += "fix air all addforce v_dragx v_dragy v_dragz\n";
+        }
+        text
+    }
+
     /// Whether some contact resists rolling.
     #[must_use]
     pub fn rolls(&self) -> bool {
@@ -230,6 +252,12 @@ pub fn comment(text: &str) -> String {
         own => own,
     };
     text.chars().map(plain).collect()
+}
+
+/// Density of a fruit as a sphere; kg/m³.
+#[must_use]
+pub fn density(fruit: &Fruit) -> f64 {
+    fruit.mass / (4.0 / 3.0 * std::f64::consts::PI * fruit.radius.powi(3))
 }
 
 /// Three numbers of a deck.

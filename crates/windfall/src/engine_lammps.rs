@@ -1,11 +1,10 @@
 //! A scene as a deck for LAMMPS.
 
-use crate::engine_deck::{Deck, FRAMES, Task, comment, triple};
+use crate::engine_deck::{Deck, FRAMES, Task, comment, density, triple};
 use crate::engine_lammps_terms::terms;
 use crate::engine_lammps_walls::walls;
 use crate::outcome::FindingOutcome;
 use std::fmt::Write;
-use windfall_scene::vector::{length, scaled};
 
 /// Classes that LAMMPS can have at most: it has 32 groups.
 const MOST_CLASSES: usize = 28;
@@ -124,23 +123,7 @@ fn pairs(task: &Task) -> Result<String, String> {
 /// Gravity, air, sinks; how fruit move.
 fn forces(task: &Task) -> String {
     let scene = task.scene;
-    let mut text = String::new();
-    let size = length(scene.gravity);
-    if size > 0.0 {
-        let down = triple(scaled(scene.gravity, 1.0 / size));
-        let _ = writeln!(text, "fix gravity all gravity {size} vector {down}");
-    }
-    if let Some(air) = scene.air {
-        let drag = 0.5 * air.density * air.drag_coefficient;
-        text += "compute radius all property/atom radius\n";
-        for axis in ["x", "y", "z"] {
-            let _ = writeln!(
-                text,
-                "variable drag{axis} atom -{drag}*PI*c_radius^2*sqrt(vx^2+vy^2+vz^2)*v{axis}"
-            );
-        }
-        text += "fix air all addforce v_dragx v_dragy v_dragz\n";
-    }
+    let mut text = task.fields();
     for (number, sink) in scene.sinks.iter().enumerate() {
         let name = comment(&sink.name);
         let (low, high) = (sink.low, sink.high);
@@ -227,7 +210,7 @@ fn data(task: &Task, first: usize) -> String {
     }
     text += "\nAtoms # sphere\n\n";
     for (number, fruit) in task.scene.fruit.iter().take(first).enumerate() {
-        let density = fruit.mass / (4.0 / 3.0 * std::f64::consts::PI * fruit.radius.powi(3));
+        let density = density(fruit);
         let _ = writeln!(
             text,
             "{} {} {} {density} {}",

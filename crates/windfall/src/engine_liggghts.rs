@@ -1,12 +1,11 @@
 //! A scene as a deck for LIGGGHTS.
 
-use crate::engine_deck::{Deck, FRAMES, Task, comment, triple};
+use crate::engine_deck::{Deck, FRAMES, Task, comment, density, triple};
 use crate::engine_law::{Damping, PairNumbers};
 use crate::engine_liggghts_model::{Model, Types, model_of, words};
 use crate::engine_liggghts_walls::{Walls, walls};
 use std::collections::BTreeSet;
 use std::fmt::Write;
-use windfall_scene::vector::{length, scaled};
 
 /// A deck for LIGGGHTS-PUBLIC 3.8.
 ///
@@ -202,22 +201,7 @@ fn forces(task: &Task, model: Model, walls: &Walls) -> String {
         "pair_style gran {form} {options}\npair_coeff * *\n{}",
         walls.text
     );
-    let size = length(scene.gravity);
-    if size > 0.0 {
-        let down = triple(scaled(scene.gravity, 1.0 / size));
-        let _ = writeln!(text, "fix gravity all gravity {size} vector {down}");
-    }
-    if let Some(air) = scene.air {
-        let drag = 0.5 * air.density * air.drag_coefficient;
-        text += "compute radius all property/atom radius\n";
-        for axis in ["x", "y", "z"] {
-            let _ = writeln!(
-                text,
-                "variable drag{axis} atom -{drag}*PI*c_radius^2*sqrt(vx^2+vy^2+vz^2)*v{axis}"
-            );
-        }
-        text += "fix air all addforce v_dragx v_dragy v_dragz\n";
-    }
+    text += &task.fields();
     for (number, sink) in scene.sinks.iter().enumerate() {
         let (low, high) = (sink.low, sink.high);
         let _ = writeln!(
@@ -273,7 +257,7 @@ fn run(task: &Task, types: &Types) -> String {
     let coming = scene.fruit.iter().enumerate().skip(task.first());
     for (number, fruit) in coming.filter(|(_, own)| task.step_of(own.time) < steps) {
         let kind = types.walls.len() + task.classes.of_fruit[number] + 1;
-        let density = fruit.mass / (4.0 / 3.0 * std::f64::consts::PI * fruit.radius.powi(3));
+        let density = density(fruit);
         let [low, high] = fruit.elsewhere.unwrap_or([fruit.place; 2]);
         let attempts = if fruit.elsewhere.is_some() { 8 } else { 0 };
         let _ = write!(
@@ -316,7 +300,7 @@ fn data(task: &Task, types: &Types, first: usize) -> String {
     }
     text += "\nAtoms\n\n";
     for (number, fruit) in task.scene.fruit.iter().take(first).enumerate() {
-        let density = fruit.mass / (4.0 / 3.0 * std::f64::consts::PI * fruit.radius.powi(3));
+        let density = density(fruit);
         let _ = writeln!(
             text,
             "{} {} {} {density} {}",
