@@ -31,7 +31,7 @@ planes = [
     ("front", [0, 0, 0], [0, 1, 0]),
     ("back", [0, width, 0], [0, -1, 0]),
 ]
-contact = 'friction = 0.3\npoisson = 0.3\ntangential_damping = 1.0\n'
+contact = 'friction = 0.3\nannuli = 1\npoisson = 0.3\ntangential_damping = 1.0\n'
 (folder / "scene.toml").write_text(
     f"""format = 1
 materials = ["apple", "steel"]

@@ -1,9 +1,10 @@
 //! A bin that is filled with apples: particle-steps per second of processor time.
 //!
-//!     cargo run --release -p windfall-scene --example bin_fill -- INITIAL STEPS THREADS
+//!     cargo run --release -p windfall-scene --example bin_fill -- INITIAL STEPS THREADS ANNULI
 //!
 //! INITIAL: a text of `id x y z vx vy vz radius` in each line (SI); the bin is as wide as
-//! the round of its lattice of 84 mm, see `bench/compare-scene`.
+//! the round of its lattice of 84 mm, see `bench/compare-scene`. ANNULI: of a contact area, for
+//! friction.
 
 #![allow(clippy::print_stdout)]
 
@@ -16,10 +17,11 @@ use windfall_scene::wall::{Motion, Shape, Wall};
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
     let arguments: Vec<String> = std::env::args().collect();
-    let [_, initial, steps, threads] = &arguments[..] else {
-        return Err("bin_fill INITIAL STEPS THREADS".into());
+    let [_, initial, steps, threads, annuli] = &arguments[..] else {
+        return Err("bin_fill INITIAL STEPS THREADS ANNULI".into());
     };
     let steps: u64 = steps.parse()?;
+    let annuli: usize = annuli.parse()?;
     let pool = rayon::ThreadPoolBuilder::new()
         .num_threads(threads.parse()?)
         .build()?;
@@ -27,6 +29,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let contact = |effective_radius| Interaction {
         effective_radius: Some(effective_radius),
         friction: 0.3,
+        annuli,
         tangential_ratio: mindlin_ratio(0.3),
         tangential_damping: 1.0,
         ..Interaction::frictionless(law)

@@ -12,9 +12,10 @@ use crate::event::Partner;
 use crate::interaction::Interaction;
 use crate::neighbours::Bodies;
 use crate::pair_contacts::LARGEST_OVERLAP;
-use crate::react::{Clock, History, Touch, cross, given, normal_of, react, surface_velocity};
+use crate::react::{Clock, Touch, given, normal_of, react, surface_velocity};
 use crate::store::Load;
 use crate::vector::{Vector, add, dot, length, plus_scaled, scaled, subtract};
+use crate::vector_of::cross;
 use crate::wall::Closest;
 use crate::wall_contacts::{
     DEEPEST, NearPart, SAME_CONTACT, WallState, effective_radius as radius_at, find_hits,
@@ -219,7 +220,8 @@ impl Touching {
         let [d, v, peak] = given(touch, history.rate, history.peak);
         let found = with_law!(&self.law, law => normal_of(law, d, v, peak));
         let rolling = (surface.rolling > 0.0).then_some(&mut self.parcel.rolling);
-        let reaction = react(found, surface, touch, clock, history, rolling);
+        let annuli = &mut self.parcel.annuli.0[..surface.annuli];
+        let reaction = react(found, surface, touch, clock, history, annuli, rolling);
         (reaction.force, reaction.rolling)
     }
 }
@@ -274,13 +276,7 @@ impl FruitPair {
                 encounter.place = plus_scaled(centre(bodies, i), normal, near);
                 encounter.spot = spot_on(bodies, i, normal);
                 encounter.other_spot = spot_on(bodies, j, scaled(normal, -1.0));
-                let history = History::at(now.clock.time, encounter.normal_speed);
-                let parcel = Parcel {
-                    scale: surface.scale(touch.radius),
-                    history,
-                    rolling: [0.0; 3],
-                    encounter,
-                };
+                let parcel = Parcel::begin(surface.scale(touch.radius), now.clock, encounter);
                 none.insert(Touching { law, parcel })
             }
         };
@@ -410,12 +406,7 @@ impl Hit {
         let mut encounter = encounter(touch.normal, self.depth, touch.velocity, now.clock);
         encounter.place = self.closest.point;
         encounter.spot = spot_on(bodies, self.body, touch.normal);
-        let parcel = Parcel {
-            scale: surface.scale(touch.radius),
-            history: History::at(now.clock.time, encounter.normal_speed),
-            rolling: [0.0; 3],
-            encounter,
-        };
+        let parcel = Parcel::begin(surface.scale(touch.radius), now.clock, encounter);
         let law = surface.law_of(touch.radius, draws, None)?;
         Ok(TouchingWall {
             wall: self.wall,

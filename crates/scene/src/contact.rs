@@ -1,10 +1,13 @@
 //! One contact from its beginning to its event, whatever it is with.
 
+use crate::annuli::Annuli;
 use crate::error::Error;
 use crate::event::{Encounter, Event, Partner};
-use crate::react::{Clock, History, dot};
+use crate::react::{Clock, History};
 use crate::scene::Fruit;
-use crate::vector::{Rotation, Vector, length, plus_scaled, scaled, subtract, turned_back, unit};
+use crate::vector::{
+    Rotation, Vector, dot, length, plus_scaled, scaled, subtract, turned_back, unit,
+};
 
 /// What every contact of a step needs to know.
 #[derive(Clone, Copy)]
@@ -26,9 +29,35 @@ pub(crate) struct Parcel {
     /// What radii multiply the median's force by; 1.
     pub scale: f64,
     pub history: History,
+    /// Elastic forces of the annuli on the first body; N.
+    pub annuli: Annuli,
     /// Moment against rolling on the first body; N m.
     pub rolling: Vector,
     pub encounter: Encounter,
+}
+
+impl Parcel {
+    /// A contact that begins.
+    pub(crate) fn begin(scale: f64, clock: Clock, encounter: Encounter) -> Self {
+        Self {
+            scale,
+            history: History::at(clock.time, encounter.normal_speed),
+            annuli: Annuli::default(),
+            rolling: [0.0; 3],
+            encounter,
+        }
+    }
+
+    /// The same contact seen from the second body.
+    pub(crate) fn swapped(self) -> Self {
+        Self {
+            scale: self.scale,
+            history: self.history.swapped(),
+            annuli: self.annuli.swapped(),
+            rolling: scaled(self.rolling, -1.0),
+            encounter: self.encounter.swapped(),
+        }
+    }
 }
 
 /// Why a contact with so much overlap means nothing.

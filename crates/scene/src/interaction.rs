@@ -36,6 +36,9 @@ pub struct Interaction {
     pub tangential_ratio: f64,
     /// Tangential damping over that of the normal law, c_t = ratio · ∂F/∂v; 1.
     pub tangential_damping: f64,
+    /// Annuli of the contact area that stick or slip each for itself, 1 to
+    /// [`MOST_ANNULI`](crate::annuli::MOST_ANNULI).
+    pub annuli: usize,
     /// Coefficient of rolling friction, μ_r; 1. The resisting moment is at most μ_r R* F.
     pub rolling: f64,
 }
@@ -60,6 +63,7 @@ impl Interaction {
             friction: 0.0,
             tangential_ratio: 0.0,
             tangential_damping: 0.0,
+            annuli: 1,
             rolling: 0.0,
         }
     }

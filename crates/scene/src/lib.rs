@@ -8,6 +8,7 @@
 //!
 //! This crate knows no instrument and no file, and reads no clock.
 
+pub mod annuli;
 pub mod binary;
 pub mod bruise;
 pub mod bruise_regression;
@@ -41,6 +42,7 @@ mod store;
 pub mod time_step;
 mod traffic;
 pub mod vector;
+mod vector_of;
 pub mod wall;
 mod wall_contacts;
 mod wall_forces;

@@ -5,9 +5,10 @@ use crate::error::{Error, fruit_name};
 use crate::interaction::Interaction;
 use crate::neighbours::Bodies;
 use crate::pair_forces::Batch;
-use crate::react::{History, dot, surface_velocity};
+use crate::react::surface_velocity;
 use crate::store::{Load, NONE, Store};
 use crate::vector::{length, plus_scaled, scaled, subtract};
+use crate::vector_of::dot;
 use windfall_contact::effective::effective_radius;
 use windfall_contact::law_kind::Law;
 use windfall_numerics::real_vector::with_four_lanes;
@@ -47,10 +48,10 @@ pub(crate) struct PairContacts {
 pub(crate) const LARGEST_OVERLAP: f64 = 0.3;
 
 impl PairContacts {
-    /// No contacts yet under the law of an interaction.
-    pub(crate) fn new(law: &Law) -> Self {
+    /// No contacts yet of an interaction.
+    pub(crate) fn new(surface: &Interaction) -> Self {
         Self {
-            store: Store::new(law),
+            store: Store::new(surface),
             entries: Vec::new(),
             pairs: Vec::new(),
             awake: Vec::new(),
@@ -213,12 +214,7 @@ impl PairContacts {
         };
         encounter.spot = spot(i, normal);
         encounter.other_spot = spot(j, scaled(normal, -1.0));
-        let parcel = Parcel {
-            scale: surface.scale(radius),
-            history: History::at(now.clock.time, dot(velocity, normal)),
-            rolling: [0.0; 3],
-            encounter,
-        };
+        let parcel = Parcel::begin(surface.scale(radius), now.clock, encounter);
         let law = surface.law_of(radius, draws(i), Some(draws(j)))?;
         self.adopt(entry, pair, &law, parcel);
         Ok(())

@@ -3,8 +3,9 @@
 use crate::interaction::Interaction;
 use crate::law_column::Four;
 use crate::neighbours::Bodies;
-use crate::react::{Clock, Normal, Touch, dot, surface_velocity};
+use crate::react::{Clock, Normal, Touch, surface_velocity};
 use crate::store::{CHUNK, Load, Store, add_load, loads};
+use crate::vector_of::dot;
 use windfall_numerics::real::Lanes;
 use windfall_numerics::real_vector::{FourLanes, FourNumbers, LANES};
 

@@ -1,41 +1,11 @@
 //! The force of one contact: the normal law, friction with memory, rolling friction.
 //! For one contact or for several side by side: numbers are any [`Real`].
 
+use crate::annuli::{Shear, slide};
 use crate::interaction::Interaction;
+use crate::vector_of::{Of, add, cross, dot, into_plane, less, times};
 use windfall_contact::law::ContactLaw;
 use windfall_numerics::real::{Lanes, Real};
-
-/// A vector of numbers of any kind.
-pub(crate) type Of<R> = [R; 3];
-
-#[inline(always)]
-pub(crate) fn dot<R: Real>(a: Of<R>, b: Of<R>) -> R {
-    a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
-}
-
-#[inline(always)]
-pub(crate) fn cross<R: Real>(a: Of<R>, b: Of<R>) -> Of<R> {
-    [
-        a[1] * b[2] - a[2] * b[1],
-        a[2] * b[0] - a[0] * b[2],
-        a[0] * b[1] - a[1] * b[0],
-    ]
-}
-
-#[inline(always)]
-fn add<R: Real>(a: Of<R>, b: Of<R>) -> Of<R> {
-    [a[0] + b[0], a[1] + b[1], a[2] + b[2]]
-}
-
-#[inline(always)]
-fn times<R: Real>(a: Of<R>, by: R) -> Of<R> {
-    [a[0] * by, a[1] * by, a[2] * by]
-}
-
-#[inline(always)]
-fn less<R: Real>(a: Of<R>, b: Of<R>, by: R) -> Of<R> {
-    [a[0] - b[0] * by, a[1] - b[1] * by, a[2] - b[2] * by]
-}
 
 /// Two bodies where they touch.
 #[derive(Clone, Copy, Debug)]
@@ -69,8 +39,6 @@ impl<R: Copy> Touch<R> {
 /// What a contact remembers from step to step; of numbers or of several side by side.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Memory<R> {
-    /// Elastic part of the tangential force on the first body; N.
-    pub elastic: [R; 3],
     /// Tangential force on the first body; N.
     pub tangential: [R; 3],
     /// Tangential stiffness; N/m.
@@ -95,7 +63,6 @@ pub struct Memory<R> {
 macro_rules! memory {
     ($own:expr, $vector:ident, $number:ident) => {
         Memory {
-            elastic: $vector!($own.elastic),
             tangential: $vector!($own.tangential),
             stiffness: $number!($own.stiffness),
             normal: $number!($own.normal),
@@ -184,7 +151,6 @@ impl<const W: usize> Memory<Lanes<W>> {
         }
         put!(stiffness normal rate peak peak_force work friction_work pushed);
         for axis in 0..3 {
-            all.elastic[axis].0[lane] = history.elastic[axis];
             all.tangential[axis].0[lane] = history.tangential[axis];
         }
         *self = all;
@@ -207,7 +173,6 @@ impl History {
     /// The same contact seen from the second body.
     pub(crate) fn swapped(self) -> Self {
         Self {
-            elastic: self.elastic.map(|own| -own),
             tangential: self.tangential.map(|own| -own),
             ..self
         }
@@ -287,11 +252,12 @@ pub(crate) fn given<R: Real>(touch: &Touch<R>, rate: R, peak: R) -> Of<R> {
 ///
 /// The normal force is the law's; it never pulls.
 /// The tangential force follows Mindlin's no-slip contact by increments, k_t = ratio ·
-/// ∂F/∂d; while the contact unloads it shrinks with the stiffness, so that no energy comes
-/// of it; Coulomb's limit caps it. Rolling is resisted by a spring that yields at
+/// ∂F/∂d, in each annulus of the contact area for itself; while the contact unloads it shrinks
+/// with the stiffness, so that no energy comes of it; Coulomb's limit caps it. Rolling is resisted by a spring that yields at
 /// μ_r R* F, with the stiffness k_t R*².
 ///
 /// * `found`: what the law says of [`given`]
+/// * `annuli`: elastic forces on the first body, from the innermost; N
 /// * `rolling`: the moment against rolling on the first body a step ago, where there is one
 ///
 /// # Source
@@ -304,6 +270,7 @@ pub(crate) fn react<R: Real>(
     touch: &Touch<R>,
     clock: Clock,
     memory: &mut Memory<R>,
+    annuli: &mut [Of<R::Plain>],
     rolling: Option<&mut Of<R>>,
 ) -> Reaction<R> {
     let &Touch {
@@ -333,56 +300,25 @@ pub(crate) fn react<R: Real>(
     };
     if surface.friction > 0.0 {
         let slip = less(velocity, normal, rate);
-        let found = Normal {
-            force: force * surface.friction,
+        let shear = Shear {
+            limit: force * surface.friction,
             damping: found.damping.max(zero) * surface.tangential_damping,
             stiffness: found.stiffness.max(zero) * surface.tangential_ratio,
         };
-        reaction.force = add(reaction.force, slide(normal, slip, found, clock, memory));
+        let before = memory.stiffness;
+        let growth = before.select(shear.stiffness / before, zero + 1.0);
+        memory.stiffness = shear.stiffness;
+        let whole = slide(annuli, normal, slip, shear, growth, clock.step);
+        let both = add(memory.tangential, whole);
+        memory.friction_work = memory.friction_work - dot(both, slip) * (0.5 * clock.step);
+        memory.tangential = whole;
+        reaction.force = add(reaction.force, whole);
         if let Some(moment) = rolling {
             let limit = touch.radius * force * surface.rolling;
             reaction.rolling = roll(touch, limit, clock, memory, moment);
         }
     }
     reaction
-}
-
-/// The tangential force one step on; the elastic part of it is remembered.
-///
-/// * `tangential`: its largest size, its damping and its stiffness
-#[inline(always)]
-fn slide<R: Real>(
-    normal: Of<R>,
-    slip: Of<R>,
-    tangential: Normal<R>,
-    clock: Clock,
-    memory: &mut Memory<R>,
-) -> Of<R> {
-    let Normal {
-        force: limit,
-        damping,
-        stiffness,
-    } = tangential;
-    let one = limit.constant(1.0);
-    let before = into_plane(memory.elastic, normal);
-    let unloads = memory.stiffness - stiffness;
-    let shrunk = unloads.select(stiffness / memory.stiffness, one);
-    memory.stiffness = stiffness;
-    let elastic = less(times(before, shrunk), slip, stiffness * clock.step);
-    let sticking = less(elastic, slip, damping);
-    let square = dot(sticking, sticking);
-    let beyond = square - limit * limit;
-    let capped = beyond.select(limit / square.sqrt(), one);
-    let whole = times(sticking, capped);
-    let mut next = elastic;
-    for axis in 0..3 {
-        next[axis] = beyond.select(whole[axis] + slip[axis] * damping, elastic[axis]);
-    }
-    memory.elastic = next;
-    let both = add(memory.tangential, whole);
-    memory.friction_work = memory.friction_work - dot(both, slip) * (0.5 * clock.step);
-    memory.tangential = whole;
-    whole
 }
 
 /// The moment against rolling, one step on.
@@ -406,16 +342,6 @@ fn roll<R: Real>(
     memory.friction_work = memory.friction_work - dot(both, rolling) * (0.5 * clock.step);
     *own = moment;
     moment
-}
-
-/// A vector turned with the plane of contact: its length is kept to second order.
-#[inline(always)]
-fn into_plane<R: Real>(a: Of<R>, normal: Of<R>) -> Of<R> {
-    let out = dot(a, normal);
-    let inside = less(a, normal, out);
-    let square = dot(inside, inside);
-    let lost = square.select(out * out / square, out.constant(0.0));
-    times(inside, lost * 0.5 + 1.0)
 }
 
 /// Velocity of a body's surface where it touches, relative to another's.

@@ -5,7 +5,6 @@ use crate::neighbours::{PairTable, sort_into_cells};
 use crate::pair_contacts::PairContacts;
 use crate::simulation::Simulation;
 use crate::store::NONE;
-use crate::vector::scaled;
 use crate::wall_contacts::{Lifted, NearPart};
 use crate::wall_forces::WallContacts;
 use rayon::prelude::*;
@@ -47,7 +46,7 @@ impl Simulation {
             .map(|parts| {
                 let parts = parts.iter();
                 parts
-                    .map(|(own, _)| PairContacts::new(&self.surfaces[*own].law))
+                    .map(|(own, _)| PairContacts::new(&self.surfaces[*own]))
                     .collect()
             })
             .collect();
@@ -117,15 +116,7 @@ impl Simulation {
         }
         let (first, second, parcel) = match pair.0 < pair.1 {
             true => (pair.0, pair.1, parcel),
-            false => {
-                let swapped = Parcel {
-                    scale: parcel.scale,
-                    history: parcel.history.swapped(),
-                    rolling: scaled(parcel.rolling, -1.0),
-                    encounter: parcel.encounter.swapped(),
-                };
-                (pair.1, pair.0, swapped)
-            }
+            false => (pair.1, pair.0, parcel.swapped()),
         };
         self.table
             .find(first, second)
@@ -186,12 +177,7 @@ impl Simulation {
     /// Puts contacts with walls into stores of the new blocks.
     fn settle_walls(&mut self) {
         let surfaces = &self.surfaces;
-        let stores = || {
-            surfaces
-                .iter()
-                .map(|own| WallContacts::new(&own.law))
-                .collect()
-        };
+        let stores = || surfaces.iter().map(|own| WallContacts::new(own)).collect();
         self.wall_contacts = self.table.bounds.iter().map(|_| stores()).collect();
         for (block, bounds) in self.table.bounds.iter().enumerate() {
             let first = self.near_start[bounds.start];

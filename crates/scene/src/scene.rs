@@ -1,5 +1,6 @@
 //! What a scene is, before it runs.
 
+use crate::annuli::MOST_ANNULI;
 use crate::clump::Clump;
 use crate::error::Error;
 use crate::interaction::{Draws, Interaction};
@@ -148,6 +149,23 @@ impl Scene {
         })
     }
 
+    /// R* (m) and effective mass (kg) of the mean fruit of two materials, or of a material
+    /// and a wall.
+    #[must_use]
+    pub fn mean_contact(&self, (first, second): (usize, usize)) -> Option<(f64, f64)> {
+        let mean = |material: usize| {
+            let fruit = self.fruit.iter().filter(|own| own.material == material);
+            let (n, radius, mass) = fruit.fold((0.0, 0.0, 0.0), |(n, radius, mass), own| {
+                (n + 1.0, radius + own.radius, mass + own.mass)
+            });
+            (n > 0.0).then(|| (radius / n, mass / n))
+        };
+        match (mean(first), mean(second)) {
+            (Some(a), Some(b)) => Some((a.0 * b.0 / (a.0 + b.0), a.1 * b.1 / (a.1 + b.1))),
+            (own, None) | (None, own) => own,
+        }
+    }
+
     /// Whether its numbers can be.
     ///
     /// # Errors
@@ -186,6 +204,13 @@ impl Scene {
             }
         }
         for interaction in self.interactions.values() {
+            if !(1..=MOST_ANNULI).contains(&interaction.annuli) {
+                return Err(Error::Value {
+                    what: "a number of annuli",
+                    value: interaction.annuli as f64,
+                    problem: "it must be 1 to 8",
+                });
+            }
             for (what, value) in [
                 ("a coefficient of friction", interaction.friction),
                 ("a coefficient of rolling friction", interaction.rolling),

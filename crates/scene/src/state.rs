@@ -8,10 +8,10 @@ use crate::energy::Account;
 use crate::error::Error;
 use crate::event::{Encounter, Event, Partner};
 use crate::neighbours::{Bodies, PairTable};
-use crate::react::{History, Memory};
+use crate::react::Memory;
 use crate::scene::Scene;
 use crate::simulation::{FruitState, Leaving, Simulation};
-use crate::vector::{Vector, scaled};
+use crate::vector::Vector;
 use crate::wall_contacts::Lifted;
 use crate::wall_forces::WallMeeting;
 use std::io::{Read, Result as IoResult, Write};
@@ -48,10 +48,7 @@ type Parameters = [f64; LARGEST_PARAMETERS];
 struct PairState {
     fruit: [u32; 2],
     law: Parameters,
-    scale: f64,
-    history: History,
-    rolling: Vector,
-    encounter: Encounter,
+    parcel: Parcel,
 }
 
 /// A contact of a clump with a wall.
@@ -61,10 +58,7 @@ struct ClumpWallState {
     normal: Vector,
     force: Vector,
     law: Parameters,
-    scale: f64,
-    history: History,
-    rolling: Vector,
-    encounter: Encounter,
+    parcel: Parcel,
 }
 
 /// A contact with a part of a wall.
@@ -72,10 +66,7 @@ struct ClumpWallState {
 struct WallContactState {
     facet: u32,
     law: Parameters,
-    scale: f64,
-    history: History,
-    rolling: Vector,
-    encounter: Encounter,
+    parcel: Parcel,
     meeting: [[f64; 4]; 4],
     force: Vector,
 }
@@ -97,26 +88,13 @@ binary!(ClumpWallState {
     normal,
     force,
     law,
-    scale,
-    history,
-    rolling,
-    encounter
+    parcel
 });
-binary!(PairState {
-    fruit,
-    law,
-    scale,
-    history,
-    rolling,
-    encounter
-});
+binary!(PairState { fruit, law, parcel });
 binary!(WallContactState {
     facet,
     law,
-    scale,
-    history,
-    rolling,
-    encounter,
+    parcel,
     meeting,
     force
 });
@@ -135,7 +113,14 @@ binary!(Account {
     brought
 });
 binary!(Memory<f64> {
-    elastic, tangential, stiffness, normal, rate, peak, peak_force, work, friction_work, pushed
+    tangential, stiffness, normal, rate, peak, peak_force, work, friction_work, pushed
+});
+binary!(Parcel {
+    scale,
+    history,
+    annuli,
+    rolling,
+    encounter
 });
 binary!(Encounter {
     time,
@@ -372,7 +357,7 @@ impl Simulation {
             let material = |body: u32| self.bodies.material[body as usize] as usize;
             let kind = self.kind_between(material(first), material(second));
             let law = law_of(kind, &own.law).map_err(unfit)?;
-            carried.extend(self.carried((first, second), law, parcel(own)));
+            carried.extend(self.carried((first, second), law, own.parcel));
         }
         self.settle(carried);
         Ok(())
@@ -385,18 +370,13 @@ impl Simulation {
         for own in &state.clump_pairs {
             let [first, second] = own.fruit.map(material);
             let law = law_of(self.kind_between(first, second), &own.law)?;
-            let parcel = parcel(own);
+            let parcel = own.parcel;
             contacts.put_pair(own.fruit, Touching { law, parcel });
         }
         for (fruit, own) in &state.clump_walls {
             let wall = self.scene.walls[own.wall as usize].material;
             let law = law_of(self.kind_between(material(*fruit), wall), &own.law)?;
-            let parcel = Parcel {
-                scale: own.scale,
-                history: own.history,
-                rolling: own.rolling,
-                encounter: own.encounter,
-            };
+            let parcel = own.parcel;
             contacts.put_wall(
                 *fruit,
                 TouchingWall {
@@ -422,31 +402,7 @@ fn pair_state(fruit: [u32; 2], law: &Law, parcel: Parcel) -> PairState {
     PairState {
         fruit: [a.min(b), a.max(b)],
         law: parameters(law),
-        scale: parcel.scale,
-        history: if swap {
-            parcel.history.swapped()
-        } else {
-            parcel.history
-        },
-        rolling: if swap {
-            scaled(parcel.rolling, -1.0)
-        } else {
-            parcel.rolling
-        },
-        encounter: if swap {
-            parcel.encounter.swapped()
-        } else {
-            parcel.encounter
-        },
-    }
-}
-
-fn parcel(own: &PairState) -> Parcel {
-    Parcel {
-        scale: own.scale,
-        history: own.history,
-        rolling: own.rolling,
-        encounter: own.encounter,
+        parcel: if swap { parcel.swapped() } else { parcel },
     }
 }
 
@@ -454,26 +410,19 @@ fn wall_state(own: &Lifted) -> WallContactState {
     WallContactState {
         facet: own.facet,
         law: parameters(&own.law),
-        scale: own.parcel.scale,
-        history: own.parcel.history,
-        rolling: own.parcel.rolling,
-        encounter: own.parcel.encounter,
+        parcel: own.parcel,
         meeting: own.meeting.rows(),
         force: own.force,
     }
 }
 
 fn clump_wall_state(own: &TouchingWall) -> ClumpWallState {
-    let parcel = own.own.parcel;
     ClumpWallState {
         wall: own.wall,
         normal: own.normal,
         force: own.force,
         law: parameters(&own.own.law),
-        scale: parcel.scale,
-        history: parcel.history,
-        rolling: parcel.rolling,
-        encounter: parcel.encounter,
+        parcel: own.own.parcel,
     }
 }
 
@@ -481,12 +430,7 @@ fn lifted(own: &WallContactState, law: Law) -> Lifted {
     Lifted {
         facet: own.facet,
         law,
-        parcel: Parcel {
-            scale: own.scale,
-            history: own.history,
-            rolling: own.rolling,
-            encounter: own.encounter,
-        },
+        parcel: own.parcel,
         meeting: WallMeeting::of_rows(own.meeting),
         force: own.force,
     }

@@ -1,11 +1,13 @@
 //! What contacts remember, four side by side.
 
+use crate::annuli::Annuli;
 use crate::contact::Parcel;
 use crate::event::Encounter;
 use crate::interaction::Interaction;
 use crate::law_column::{Four, Given, LawColumn, law_column};
-use crate::react::{Clock, History, Memory, Normal, Of, Reaction, Touch, cross, given, react};
-use crate::vector::Vector;
+use crate::react::{Clock, Memory, Normal, Reaction, Touch, given, react};
+use crate::vector_of::{Of, cross};
+use std::ops::Range;
 use windfall_contact::law_kind::Law;
 use windfall_numerics::real::Lanes;
 use windfall_numerics::real_vector::{FourNumbers, LANES};
@@ -30,6 +32,10 @@ struct Quad {
 /// Contacts under one law; what is needed in every step stands apart from the rest.
 pub(crate) struct Store {
     quads: Vec<Quad>,
+    /// Elastic forces of the annuli of each group on the first bodies; N.
+    elastic: Vec<Of<Four>>,
+    /// Annuli of a contact.
+    annuli: usize,
     /// Moments against rolling on the first bodies; N m.
     rolling: Vec<Of<Four>>,
     laws: Box<dyn LawColumn>,
@@ -37,12 +43,14 @@ pub(crate) struct Store {
 }
 
 impl Store {
-    /// No contacts yet under the law of an interaction.
-    pub(crate) fn new(law: &Law) -> Self {
+    /// No contacts yet of an interaction.
+    pub(crate) fn new(surface: &Interaction) -> Self {
         Self {
             quads: Vec::new(),
+            elastic: Vec::new(),
+            annuli: surface.annuli,
             rolling: Vec::new(),
-            laws: law_column(law),
+            laws: law_column(&surface.law),
             encounters: Vec::new(),
         }
     }
@@ -63,9 +71,11 @@ impl Store {
                 scale: Lanes::ZERO,
             });
             self.rolling.push([Lanes::ZERO; 3]);
+            let elastic = self.elastic.len() + self.annuli;
+            self.elastic.resize(elastic, [Lanes::ZERO; 3]);
         }
         self.encounters.push(parcel.encounter);
-        self.put(own, &parcel.history, parcel.rolling, parcel.scale);
+        self.put(own, &parcel);
         Some(own as u32)
     }
 
@@ -79,6 +89,7 @@ impl Store {
         Parcel {
             scale: quad.scale.0[lane],
             history: quad.history.lane(lane),
+            annuli: self.annuli_of(contact),
             rolling: self.rolling[contact / LANES].map(|axis| axis.0[lane]),
             encounter: self.encounters[contact],
         }
@@ -88,41 +99,58 @@ impl Store {
     pub(crate) fn remove(&mut self, contact: usize) {
         let last = self.len() - 1;
         let moved = self.parcel(last);
-        self.put(contact, &moved.history, moved.rolling, moved.scale);
+        self.put(contact, &moved);
         self.laws.swap_remove(contact);
         self.encounters.swap_remove(contact);
         if last.is_multiple_of(LANES) {
             self.quads.pop();
             self.rolling.pop();
+            self.elastic.truncate(self.elastic.len() - self.annuli);
         }
     }
 
-    fn put(&mut self, contact: usize, history: &History, rolling: Vector, scale: f64) {
-        let (quad, lane) = (&mut self.quads[contact / LANES], contact % LANES);
-        quad.history.put_lane(lane, history);
-        for (own, value) in self.rolling[contact / LANES].iter_mut().zip(rolling) {
-            own.0[lane] = value;
-        }
-        quad.scale.0[lane] = scale;
+    /// Where the annuli of a group of four stand.
+    #[inline(always)]
+    fn annuli(&self, group: usize) -> Range<usize> {
+        group * self.annuli..(group + 1) * self.annuli
     }
 
-    /// What a group of four is before a step.
-    pub(crate) fn before(&self, group: usize) -> Before {
-        Before {
-            quad: self.quads[group],
-            rolling: self.rolling[group],
+    fn annuli_of(&self, contact: usize) -> Annuli {
+        let mut all = Annuli::default();
+        let four = &self.elastic[self.annuli(contact / LANES)];
+        for (own, four) in all.0.iter_mut().zip(four) {
+            *own = four.map(|axis| axis.0[contact % LANES]);
         }
+        all
+    }
+
+    /// All but the encounter.
+    fn put(&mut self, contact: usize, parcel: &Parcel) {
+        let (group, lane) = (contact / LANES, contact % LANES);
+        let annuli = self.annuli(group);
+        let quad = &mut self.quads[group];
+        quad.history.put_lane(lane, &parcel.history);
+        quad.scale.0[lane] = parcel.scale;
+        let rolling = (&mut self.rolling[group], &parcel.rolling);
+        let elastic = self.elastic[annuli].iter_mut().zip(&parcel.annuli.0);
+        for (four, own) in elastic.chain([rolling]) {
+            for axis in 0..3 {
+                four[axis].0[lane] = own[axis];
+            }
+        }
+    }
+
+    /// What contacts of a group remember before a step.
+    pub(crate) fn before(&self, group: usize) -> [Parcel; LANES] {
+        let last = self.len() - 1;
+        [0, 1, 2, 3].map(|lane| self.parcel((group * LANES + lane).min(last)))
     }
 
     /// Puts back what contacts of a group were before a step.
-    pub(crate) fn restore(&mut self, group: usize, lanes: [bool; LANES], before: &Before) {
-        for (lane, back) in lanes.into_iter().enumerate() {
-            if back {
-                let history = before.quad.history.lane(lane);
-                self.quads[group].history.put_lane(lane, &history);
-                for axis in 0..3 {
-                    self.rolling[group][axis].0[lane] = before.rolling[axis].0[lane];
-                }
+    pub(crate) fn restore(&mut self, group: usize, lanes: [bool; LANES], before: &[Parcel; LANES]) {
+        for lane in (0..LANES).filter(|lane| lanes[*lane]) {
+            if group * LANES + lane < self.len() {
+                self.put(group * LANES + lane, &before[lane]);
             }
         }
     }
@@ -159,6 +187,7 @@ impl Store {
         (surface, clock): (&Interaction, Clock),
         zero: R,
     ) -> Reaction<R> {
+        let annuli = self.annuli(group);
         let quad = &mut self.quads[group];
         let mut memory = quad.history.with_plain(zero);
         // The laws of fruit that differ have the factor within.
@@ -177,19 +206,14 @@ impl Store {
             false => [zero; 3],
         };
         let rolling = if rolls { Some(&mut moment) } else { None };
-        let reaction = react(found, surface, touch, clock, &mut memory, rolling);
+        let annuli = &mut self.elastic[annuli];
+        let reaction = react(found, surface, touch, clock, &mut memory, annuli, rolling);
         quad.history = memory.plain();
         if rolls {
             self.rolling[group] = zero.each_plain(moment);
         }
         reaction
     }
-}
-
-/// What a group of contacts was.
-pub(crate) struct Before {
-    quad: Quad,
-    rolling: Of<Four>,
 }
 
 /// Forces and moments of four contacts as rows: on the first body, or on the second.

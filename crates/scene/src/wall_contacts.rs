@@ -6,9 +6,10 @@ use crate::event::Partner;
 use crate::facet_tree::FacetTree;
 use crate::interaction::Interaction;
 use crate::mesh_contacts::thin;
-use crate::react::{History, Touch, dot, surface_velocity};
+use crate::react::{Touch, surface_velocity};
 use crate::store::NONE;
 use crate::vector::{Rotation, Vector, length, plus_scaled, scaled, subtract};
+use crate::vector_of::dot;
 use crate::wall::{Closest, Facet, Placed, Shape, Wall};
 use crate::wall_forces::{WallContacts, WallMeeting};
 use std::ops::Range;
@@ -368,12 +369,7 @@ fn begin(
     let mut encounter = encounter(touch.normal, touch.displacement, touch.velocity, now.clock);
     encounter.place = point;
     encounter.spot = spot(body.turn, body.offset, body.radius, touch.normal);
-    let parcel = Parcel {
-        scale: surface.scale(touch.radius),
-        history: History::at(now.clock.time, encounter.normal_speed),
-        rolling: [0.0; 3],
-        encounter,
-    };
+    let parcel = Parcel::begin(surface.scale(touch.radius), now.clock, encounter);
     Ok((surface.law_of(touch.radius, draws, None)?, parcel))
 }
 

@@ -55,10 +55,10 @@ pub(crate) struct WallContacts {
 }
 
 impl WallContacts {
-    /// No contacts yet under the law of an interaction.
-    pub(crate) fn new(law: &Law) -> Self {
+    /// No contacts yet of an interaction.
+    pub(crate) fn new(surface: &Interaction) -> Self {
         Self {
-            store: Store::new(law),
+            store: Store::new(surface),
             holders: Vec::new(),
             meetings: Vec::new(),
             forces: Vec::new(),

@@ -28,6 +28,7 @@ fn rough() -> Interaction {
         friction: 0.4,
         tangential_ratio: mindlin_ratio(0.3),
         tangential_damping: 1.0,
+        annuli: 4,
         rolling: 0.02,
         ..Interaction::frictionless(law(LAW))
     }

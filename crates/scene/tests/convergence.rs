@@ -90,6 +90,7 @@ fn bin(step: f64) -> Scene {
         friction: 0.3,
         tangential_ratio: mindlin_ratio(0.3),
         tangential_damping: 1.0,
+        annuli: 4,
         rolling: 0.01,
         ..Interaction::frictionless(law("kuwabara-kono(k=753599, c=1524)"))
     };

@@ -109,6 +109,7 @@ fn down(angle: f64, friction: f64) -> (f64, f64) {
         friction,
         tangential_ratio: mindlin_ratio(POISSON),
         tangential_damping: 1.0,
+        annuli: 4,
         ..Interaction::frictionless(law("kuwabara-kono(k=753599, c=1524)"))
     };
     let mut scene = scene(interaction, 2e-5);
@@ -158,6 +159,7 @@ fn closed_form_rolling_friction_slows_a_ball() {
         friction: 0.5,
         tangential_ratio: mindlin_ratio(POISSON),
         tangential_damping: 1.0,
+        annuli: 4,
         rolling: 0.02,
         ..Interaction::frictionless(law("kuwabara-kono(k=753599, c=1524)"))
     };
@@ -195,6 +197,7 @@ fn a_stack_in_a_groove_rests_without_creep() {
         friction: 0.5,
         tangential_ratio: mindlin_ratio(POISSON),
         tangential_damping: 1.0,
+        annuli: 4,
         rolling: 0.01,
         ..Interaction::frictionless(law("kuwabara-kono(k=753599, c=1524)"))
     };

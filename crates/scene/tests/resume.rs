@@ -25,11 +25,12 @@ fn random(seed: &mut u64) -> f64 {
 /// Two materials of fruit, one of them with a spread, poured on a shaking floor between
 /// walls; a paddle turns among them, a tube stands there, and some roll into a sink.
 fn scene() -> Scene {
-    let interaction = |text: &str, spread: bool| Interaction {
+    let interaction = |text: &str, spread: bool, annuli: usize| Interaction {
         effective_radius: Some(0.01875),
         friction: 0.4,
         tangential_ratio: mindlin_ratio(0.3),
         tangential_damping: 1.0,
+        annuli,
         rolling: 0.02,
         spread: spread.then(|| Spread {
             logarithm: vec![true, true],
@@ -40,19 +41,19 @@ fn scene() -> Scene {
     let apple = "kuwabara-kono(k=753599, c=1524)";
     let pear = FRUIT + 2;
     let interactions = BTreeMap::from([
-        ((FRUIT, FRUIT), interaction(apple, true)),
-        ((FRUIT, STEEL), interaction(apple, true)),
+        ((FRUIT, FRUIT), interaction(apple, true, 4)),
+        ((FRUIT, STEEL), interaction(apple, true, 3)),
         (
             (FRUIT, pear),
-            interaction("kelvin-voigt(k=30000, c=20)", false),
+            interaction("kelvin-voigt(k=30000, c=20)", false, 1),
         ),
         (
             (pear, pear),
-            interaction("tsuji(k=600000, restitution=0.5, mass=0.1)", false),
+            interaction("tsuji(k=600000, restitution=0.5, mass=0.1)", false, 8),
         ),
         (
             (STEEL, pear),
-            interaction("walton-braun(k1=20000, k2=30000)", false),
+            interaction("walton-braun(k1=20000, k2=30000)", false, 2),
         ),
     ]);
     let mut scene = Scene {
@@ -77,7 +78,7 @@ fn scene() -> Scene {
             material: STEEL,
             shape: Shape::Cylinder {
                 start: [0.2, 0.3, 0.0],
-                end: [0.2, 0.3, 0.5],
+                end: [0.2, 0.3, 0.4],
                 radius: 0.04,
             },
             motion: Motion::default(),

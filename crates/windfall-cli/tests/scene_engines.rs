@@ -40,16 +40,19 @@ end = "0.4 s"
 between = ["apple", "apple"]
 law = "kuwabara-kono(k=753599, c=1524)"
 effective_radius = "18.75 mm"
+annuli = 1
 friction = 0.3
 rolling = 0.01
 [[contacts]]
 between = ["apple", "steel"]
 law = "kuwabara-kono(k=1065750, c=2155)"
 effective_radius = "37.5 mm"
+annuli = 1
 friction = 0.3
 [[contacts]]
 between = ["apple", "foam"]
 law = "kelvin-voigt(k=6000, c=25)"
+annuli = 1
 friction = 0.5
 [[fruit]]
 material = "apple"

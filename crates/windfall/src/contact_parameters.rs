@@ -81,23 +81,10 @@ impl Other {
 /// * `speed`: impact speed at which damping that is not the law's takes the same energy; m/s
 #[must_use]
 pub fn contact_terms(other: Other, scene: &Scene, speed: f64) -> Vec<ContactTerms> {
-    let mean = |material: usize| {
-        let own: Vec<_> = scene
-            .fruit
-            .iter()
-            .filter(|own| own.material == material)
-            .collect();
-        let count = own.len() as f64;
-        let radius = own.iter().map(|own| own.radius).sum::<f64>() / count;
-        let mass = own.iter().map(|own| own.mass).sum::<f64>() / count;
-        (!own.is_empty()).then_some((radius, mass))
-    };
     let mut all = Vec::new();
     for (&(a, b), interaction) in &scene.interactions {
-        let (radius, mass) = match (mean(a), mean(b)) {
-            (Some(x), Some(y)) => (x.0 * y.0 / (x.0 + y.0), x.1 * y.1 / (x.1 + y.1)),
-            (Some(own), None) | (None, Some(own)) => own,
-            (None, None) => continue,
+        let Some((radius, mass)) = scene.mean_contact((a, b)) else {
+            continue;
         };
         // Of the median fruit.
         let law = interaction.law_of(radius, &Draws::default(), None);
@@ -111,13 +98,17 @@ pub fn contact_terms(other: Other, scene: &Scene, speed: f64) -> Vec<ContactTerm
             mass,
             speed,
         };
-        let (given, exact, approximate) = match other {
+        let (given, exact, mut approximate) = match other {
             Other::Adams => adams(&pair),
             Other::Yade => yade(&pair),
             Other::MercuryDpm => mercury(&pair),
             Other::Edem => edem(&pair),
             Other::Chrono => chrono(&pair),
         };
+        if interaction.annuli > 1 && !given.is_empty() {
+            let friction = format!("friction by {} annuli", interaction.annuli);
+            approximate = joined(&[&approximate, &friction]);
+        }
         all.push(ContactTerms {
             between: names.map(str::to_owned),
             given,

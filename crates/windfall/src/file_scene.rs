@@ -90,6 +90,8 @@ pub struct ContactFile {
     pub tangential_ratio: Option<Spanned<f64>>,
     /// Tangential over normal damping.
     pub tangential_damping: Option<Spanned<f64>>,
+    /// Annuli of the contact area that stick or slip each for itself.
+    pub annuli: Option<Spanned<usize>>,
     /// Coefficient of rolling friction.
     pub rolling: Option<Spanned<f64>>,
     /// Part of the absorbed energy that a fruit takes.

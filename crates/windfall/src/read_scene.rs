@@ -22,6 +22,7 @@ use crate::toml_source::{
 use std::collections::BTreeMap;
 use std::path::Path;
 use toml::Spanned;
+use windfall_scene::annuli::MOST_ANNULI;
 use windfall_scene::interaction::{Interaction, mindlin_ratio};
 use windfall_scene::scene::{Air, Scene, Sink};
 use windfall_scene::vector::{Vector, scaled};
@@ -424,11 +425,30 @@ fn contact_of(
         friction: number(&file.friction).unwrap_or(0.0),
         tangential_ratio: ratio,
         tangential_damping: number(&file.tangential_damping).unwrap_or(1.0),
+        annuli: annuli(source, file)?,
         rolling: number(&file.rolling).unwrap_or(0.0),
     };
     Ok(((a.min(b), a.max(b)), interaction, card))
 }
 
+fn annuli(source: &TomlSource, file: &ContactFile) -> Result<usize, Error> {
+    let Some(annuli) = &file.annuli else {
+        return Ok(DEFAULT_ANNULI);
+    };
+    match *annuli.get_ref() {
+        own @ 1..=MOST_ANNULI => Ok(own),
+        own => Err(invalid(
+            source,
+            &annuli.span(),
+            ("[[contacts]]", "annuli"),
+            &own.to_string(),
+            format!("annuli of a contact area are 1 to {MOST_ANNULI}"),
+        )),
+    }
+}
+
+/// Annuli of a contact area where their number is not given.
+const DEFAULT_ANNULI: usize = 4;
 /// Poisson's ratio where none is given; 1.
 const DEFAULT_POISSON: f64 = 0.3;
 

@@ -57,17 +57,8 @@ impl StaticLoads {
 }
 
 fn durations_of(scene: &Scene, pair: (usize, usize), own: &Interaction) -> Vec<f64> {
-    let mean = |material: usize| {
-        let fruit = scene.fruit.iter().filter(|own| own.material == material);
-        let (n, radius, mass) = fruit.fold((0.0, 0.0, 0.0), |(n, radius, mass), own| {
-            (n + 1.0, radius + own.radius, mass + own.mass)
-        });
-        (n > 0.0).then(|| (radius / n, mass / n))
-    };
-    let (radius, mass) = match (mean(pair.0), mean(pair.1)) {
-        (Some(a), Some(b)) => (a.0 * b.0 / (a.0 + b.0), a.1 * b.1 / (a.1 + b.1)),
-        (Some(own), None) | (None, Some(own)) => own,
-        (None, None) => return Vec::new(),
+    let Some((radius, mass)) = scene.mean_contact(pair) else {
+        return Vec::new();
     };
     let law = own
         .law_of(radius, &Draws::default(), None)

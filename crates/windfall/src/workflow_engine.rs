@@ -89,25 +89,7 @@ fn ready(path: &Path, request: &EngineRequest) -> Result<Ready, Error> {
                        clumps with every sphere";
         return Err(wrong(engine, problem.to_owned()));
     }
-    let mut findings = Vec::new();
-    let mut spread = Vec::new();
-    for (&(a, b), interaction) in &mut plan.scene.interactions {
-        if interaction.spread.take().is_some() {
-            let [a, b] = [a, b].map(|own| plan.scene.materials[own].clone());
-            spread.push(format!("{a} and {b}"));
-        }
-    }
-    if !spread.is_empty() {
-        findings.push(FindingOutcome {
-            code: "engine-spread".to_owned(),
-            message: format!(
-                "{} has one law for all fruit of a class: the spread of the law between fruit ({}) \
-                 is left out, all are like the median",
-                engine.title(),
-                spread.join("; ")
-            ),
-        });
-    }
+    let findings = simplified(&mut plan, engine);
     let every = step.contact_duration / (FRAMES_IN_CONTACT * step.time_step);
     let frame_steps = request.frame_steps.unwrap_or((every as u64).max(1)).max(1);
     let frames = (plan.end / (frame_steps as f64 * step.time_step)).ceil() as u64;
@@ -131,14 +113,51 @@ fn ready(path: &Path, request: &EngineRequest) -> Result<Ready, Error> {
             format!("it cannot represent this scene (--engine windfall can):\n  - {list}"),
         )
     })?;
-    findings.append(&mut deck.findings);
-    deck.findings = findings;
+    deck.findings.splice(..0, findings);
     Ok(Ready {
         plan,
         step,
         deck,
         frame_steps,
     })
+}
+
+/// Leaves out what no other engine has; says so.
+fn simplified(plan: &mut ScenePlan, engine: Engine) -> Vec<FindingOutcome> {
+    let mut findings = Vec::new();
+    let (mut spread, mut annuli) = (Vec::new(), 1);
+    for (&(a, b), interaction) in &mut plan.scene.interactions {
+        if interaction.spread.take().is_some() {
+            let [a, b] = [a, b].map(|own| plan.scene.materials[own].clone());
+            spread.push(format!("{a} and {b}"));
+        }
+        if interaction.friction > 0.0 {
+            annuli = annuli.max(interaction.annuli);
+        }
+        interaction.annuli = 1;
+    }
+    if !spread.is_empty() {
+        findings.push(FindingOutcome {
+            code: "engine-spread".to_owned(),
+            message: format!(
+                "{} has one law for all fruit of a class: the spread of the law between fruit ({}) \
+                 is left out, all are like the median",
+                engine.title(),
+                spread.join("; ")
+            ),
+        });
+    }
+    if annuli > 1 {
+        findings.push(FindingOutcome {
+            code: "engine-annuli".to_owned(),
+            message: format!(
+                "{} follows friction by one spring for a contact area, not by {annuli} annuli: fruit \
+                 come off oblique impacts otherwise, normal forces stay",
+                engine.title()
+            ),
+        });
+    }
+    findings
 }
 
 fn write_deck(deck: &Deck, directory: &Path) -> Result<Vec<PathBuf>, Error> {
