@@ -12,7 +12,7 @@
 
 use crate::binary::{Binary, no_value};
 use crate::vector::Vector;
-use crate::vector_of::{Of, add, dot, into_plane, less, times};
+use crate::vector_of::{Of, add, dot, into_plane, less, stretch_into_plane, times};
 use std::io::{Read, Result as IoResult, Write};
 use windfall_numerics::real::Real;
 
@@ -94,6 +94,23 @@ pub(crate) fn slide<R: Real>(
     growth: R,
     step: f64,
 ) -> Of<R> {
+    // Compiled apart for the numbers that are usual.
+    match annuli {
+        [_] => slide_over(&mut annuli[..1], normal, slip, shear, growth, step),
+        [_, _, _, _] => slide_over(&mut annuli[..4], normal, slip, shear, growth, step),
+        any => slide_over(any, normal, slip, shear, growth, step),
+    }
+}
+
+#[inline(always)]
+fn slide_over<R: Real>(
+    annuli: &mut [Of<R::Plain>],
+    normal: Of<R>,
+    slip: Of<R>,
+    shear: Shear<R>,
+    growth: R,
+    step: f64,
+) -> Of<R> {
     let zero = growth.constant(0.0);
     let one = growth.constant(1.0);
     let share = 1.0 / annuli.len() as f64;
@@ -103,13 +120,16 @@ pub(crate) fn slide<R: Real>(
     let grown = growth - one;
     let mut whole = [zero; 3];
     let mut flown = [zero; 3];
-    let mut here = into_plane(zero.with_each_plain(annuli[0]), normal);
+    // Annuli that point elsewhere than the innermost are a little too long or too short.
+    let innermost = zero.with_each_plain(annuli[0]);
+    let longer = stretch_into_plane(innermost, normal);
+    let mut here = into_plane(innermost, normal, longer);
     for own in 0..annuli.len() {
         // Through the border of this annulus with the next, or with the outside; inward.
         let moved = (grown * (own + 1) as f64).max(-one);
         let (next, inward) = match annuli.get(own + 1) {
             Some(next) => {
-                let next = into_plane(zero.with_each_plain(*next), normal);
+                let next = into_plane(zero.with_each_plain(*next), normal, longer);
                 let moved = moved.min(one) * 0.5;
                 let sum = times(add(next, here), moved);
                 let change = less(next, here, one);

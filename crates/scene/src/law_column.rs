@@ -37,13 +37,13 @@ pub(crate) trait LawColumn: Send + Sync {
     );
 }
 
-/// A column for laws of the kind.
-pub(crate) fn law_column(law: &Law) -> Box<dyn LawColumn> {
+/// A column for laws of the kind, with room for so many.
+pub(crate) fn law_column(law: &Law, room: usize) -> Box<dyn LawColumn> {
     macro_rules! of {
         ($($variant:ident)*) => {
             match law {
-                $(Law::$variant(_) => Box::new(Column::<laws::$variant, _>(Vec::new())),)*
-                Law::User(_) => Box::new(Column::<UserLaw, _>(Vec::new())),
+                $(Law::$variant(_) => Box::new(Column::<laws::$variant, _>(Vec::with_capacity(room))),)*
+                Law::User(_) => Box::new(Column::<UserLaw, _>(Vec::with_capacity(room))),
             }
         };
     }

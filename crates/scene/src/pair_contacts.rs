@@ -48,12 +48,12 @@ pub(crate) struct PairContacts {
 pub(crate) const LARGEST_OVERLAP: f64 = 0.3;
 
 impl PairContacts {
-    /// No contacts yet of an interaction.
-    pub(crate) fn new(surface: &Interaction) -> Self {
+    /// No contacts yet of an interaction, with room for so many.
+    pub(crate) fn new(surface: &Interaction, room: usize) -> Self {
         Self {
-            store: Store::new(surface),
-            entries: Vec::new(),
-            pairs: Vec::new(),
+            store: Store::new(surface, room),
+            entries: Vec::with_capacity(room),
+            pairs: Vec::with_capacity(room),
             awake: Vec::new(),
             asleep: Vec::new(),
             parting: Vec::new(),
@@ -141,11 +141,16 @@ impl PairContacts {
             .sort_unstable_by(|a, b| widest_first(a, b).unwrap_or(std::cmp::Ordering::Equal));
     }
 
-    /// The entry, law and memory of a contact.
-    pub(crate) fn at(&self, contact: usize) -> (u32, Law, Parcel) {
-        let (law, parcel) = self.store.at(contact);
-        (self.entries[contact], law, parcel)
+    /// The entries of contacts.
+    pub(crate) fn entries(&self) -> &[u32] {
+        &self.entries
     }
+
+    /// Law and memory of a contact.
+    pub(crate) fn at(&self, contact: usize) -> (Law, Parcel) {
+        self.store.at(contact)
+    }
+
     /// Entries whose bodies may have come together since the list was made.
     fn wake(&mut self, moved: f64) {
         // With room for what is rounded.

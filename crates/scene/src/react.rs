@@ -3,7 +3,7 @@
 
 use crate::annuli::{Shear, slide};
 use crate::interaction::Interaction;
-use crate::vector_of::{Of, add, cross, dot, into_plane, less, times};
+use crate::vector_of::{Of, add, cross, dot, into_plane, less, stretch_into_plane, times};
 use windfall_contact::law::ContactLaw;
 use windfall_numerics::real::{Lanes, Real};
 
@@ -332,7 +332,8 @@ fn roll<R: Real>(
 ) -> Of<R> {
     let stiffness = memory.stiffness * touch.radius * touch.radius;
     let rolling = less(touch.spin, touch.normal, dot(touch.spin, touch.normal));
-    let before = into_plane(*own, touch.normal);
+    let stretch = stretch_into_plane(*own, touch.normal);
+    let before = into_plane(*own, touch.normal, stretch);
     let moment = less(before, rolling, stiffness * clock.step);
     let square = dot(moment, moment);
     let beyond = square - limit * limit;

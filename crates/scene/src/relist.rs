@@ -8,18 +8,41 @@ use crate::store::NONE;
 use crate::wall_contacts::{Lifted, NearPart};
 use crate::wall_forces::WallContacts;
 use rayon::prelude::*;
+use std::ops::Range;
 use windfall_contact::law_kind::Law;
 use windfall_numerics::real::Lanes;
+
+/// A contact that goes over into a new list.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Carried {
+    /// Its entry in the new list.
+    entry: u32,
+    /// Whether its first body is the second now.
+    swapped: bool,
+    /// Block, part and contact of the old list.
+    block: u32,
+    part: u32,
+    pub contact: u32,
+}
+
+/// Contacts of a block of an old list, by parts, with the first entries of those.
+pub(crate) struct OldBlock(Vec<(usize, PairContacts)>);
+
+impl OldBlock {
+    fn at(&self, own: &Carried) -> (Law, Parcel) {
+        self.0[own.part as usize].1.at(own.contact as usize)
+    }
+}
 
 impl Simulation {
     /// A new list of neighbours; contacts go over into it.
     pub(crate) fn rebuild(&mut self) {
-        let carried = self.renew();
-        self.settle(carried);
+        let (contacts, carried) = self.renew();
+        self.settle(carried, |own| contacts[own.block as usize].at(own));
     }
 
-    /// A new list of neighbours without contacts; those of the old one as they go into it.
-    pub(crate) fn renew(&mut self) -> Vec<(usize, Law, Parcel)> {
+    /// A new list of neighbours without contacts; those of the old list, and where they go.
+    pub(crate) fn renew(&mut self) -> (Vec<OldBlock>, Vec<Carried>) {
         self.rebuilds += 1;
         self.lift();
         let (cells, order) = sort_into_cells(&mut self.bodies, self.skin);
@@ -38,52 +61,66 @@ impl Simulation {
             |a, b| numbers[a as usize * materials + b as usize],
         );
         let old = std::mem::replace(&mut self.table, table);
-        let contacts = std::mem::take(&mut self.contacts);
-        self.contacts = self
-            .table
+        let parts = old
             .blocks
-            .iter()
-            .map(|parts| {
-                let parts = parts.iter();
-                parts
-                    .map(|(own, _)| PairContacts::new(&self.surfaces[*own]))
-                    .collect()
+            .into_iter()
+            .zip(std::mem::take(&mut self.contacts));
+        let blocks: Vec<OldBlock> = parts
+            .map(|(parts, contacts)| {
+                let starts = parts.into_iter().map(|(_, range)| range.start);
+                OldBlock(starts.zip(contacts).collect())
             })
             .collect();
-        let mut carried = Vec::new();
-        for (parts, contacts) in old.blocks.iter().zip(&contacts) {
-            for ((_, range), contacts) in parts.iter().zip(contacts) {
-                for contact in 0..contacts.count() {
-                    let (entry, law, parcel) = contacts.at(contact);
-                    let entry = range.start + entry as usize;
+        let of_block = |(number, block): (usize, &OldBlock)| {
+            let mut carried = Vec::new();
+            for (part, (start, contacts)) in block.0.iter().enumerate() {
+                for (contact, &entry) in contacts.entries().iter().enumerate() {
+                    let entry = start + entry as usize;
                     let new = |body: u32| place.get(body as usize).copied().unwrap_or(NONE);
                     let pair = (new(old.first[entry]), new(old.second[entry]));
-                    carried.extend(self.carried(pair, law, parcel));
+                    carried.extend(self.carried(pair, [number, part, contact]));
                 }
             }
-        }
-        carried
+            carried
+        };
+        let carried: Vec<Vec<Carried>> = blocks.par_iter().enumerate().map(of_block).collect();
+        (blocks, carried.concat())
     }
 
     /// Contacts into a list that holds none of them, and what goes with the list.
-    pub(crate) fn settle(&mut self, mut carried: Vec<(usize, Law, Parcel)>) {
+    ///
+    /// * `what`: law and memory of one that is carried over, as it was
+    pub(crate) fn settle(
+        &mut self,
+        mut carried: Vec<Carried>,
+        what: impl Fn(&Carried) -> (Law, Parcel) + Sync,
+    ) {
         // In the order of the list, in which they are worked through.
-        carried.sort_unstable_by_key(|(entry, ..)| *entry);
-        for (entry, law, parcel) in carried {
-            let pair = [self.table.first[entry], self.table.second[entry]];
-            let block = self.table.block_of(pair[0] as usize);
-            let parts = &self.table.blocks[block];
-            if let Some(part) = parts.iter().position(|(_, range)| range.contains(&entry)) {
-                let own = (entry - parts[part].1.start) as u32;
-                self.contacts[block][part].adopt(own, pair, &law, parcel);
+        carried.sort_unstable_by_key(|own| own.entry);
+        let (table, bodies) = (&self.table, &self.bodies);
+        let of_part = |(interaction, range): &(usize, Range<usize>)| {
+            let until = |end: usize| carried.partition_point(|own| (own.entry as usize) < end);
+            let carried = &carried[until(range.start)..until(range.end)];
+            let mut contacts = PairContacts::new(&self.surfaces[*interaction], carried.len());
+            for own in carried {
+                let entry = own.entry as usize;
+                let (law, parcel) = what(own);
+                let parcel = if own.swapped {
+                    parcel.swapped()
+                } else {
+                    parcel
+                };
+                let pair = [table.first[entry], table.second[entry]];
+                contacts.adopt((entry - range.start) as u32, pair, &law, parcel);
             }
-        }
-        for (parts, contacts) in self.table.blocks.iter().zip(&mut self.contacts) {
-            for ((_, range), contacts) in parts.iter().zip(contacts) {
-                let (first, second) = (&self.table.first, &self.table.second);
-                contacts.wait(&first[range.clone()], &second[range.clone()], &self.bodies);
-            }
-        }
+            let (first, second) = (&table.first, &table.second);
+            contacts.wait(&first[range.clone()], &second[range.clone()], bodies);
+            contacts
+        };
+        let blocks = table.blocks.par_iter();
+        self.contacts = blocks
+            .map(|parts| parts.iter().map(of_part).collect())
+            .collect();
         self.out = vec![[0.0; 8]; self.table.outs.iter().sum()];
         self.loads = vec![[0.0; 8]; self.bodies.len()];
         self.listed = self.bodies.place.iter().map(|own| Lanes(*own)).collect();
@@ -104,23 +141,25 @@ impl Simulation {
         }
     }
 
-    /// A contact of the old list as one of the new.
+    /// Where a contact of the old list goes.
+    ///
+    /// * `from`: block, part and contact of the old list
     pub(crate) fn carried(
         &self,
         pair: (u32, u32),
-        law: Law,
-        parcel: Parcel,
-    ) -> Option<(usize, Law, Parcel)> {
+        [block, part, contact]: [usize; 3],
+    ) -> Option<Carried> {
         if pair.0 == NONE || pair.1 == NONE {
             return None;
         }
-        let (first, second, parcel) = match pair.0 < pair.1 {
-            true => (pair.0, pair.1, parcel),
-            false => (pair.1, pair.0, parcel.swapped()),
-        };
-        self.table
-            .find(first, second)
-            .map(|entry| (entry, law, parcel))
+        let entry = self.table.find(pair.0.min(pair.1), pair.0.max(pair.1))?;
+        Some(Carried {
+            entry: entry as u32,
+            swapped: pair.1 < pair.0,
+            block: block as u32,
+            part: part as u32,
+            contact: contact as u32,
+        })
     }
 
     /// Takes contacts with walls out of their stores.

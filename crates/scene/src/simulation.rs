@@ -247,8 +247,8 @@ impl Simulation {
         let mut events = Vec::new();
         for (parts, contacts) in self.table.blocks.iter().zip(&self.contacts) {
             for ((_, range), contacts) in parts.iter().zip(contacts) {
-                for contact in 0..contacts.count() {
-                    let (entry, _, parcel) = contacts.at(contact);
+                for (contact, &entry) in contacts.entries().iter().enumerate() {
+                    let (_, parcel) = contacts.at(contact);
                     let entry = range.start + entry as usize;
                     let fruit = |body: u32| self.bodies.fruit[body as usize];
                     let pair = (
@@ -376,7 +376,7 @@ impl Simulation {
         };
         let outcomes: Vec<Outcome> = match tasks.len() < FEW_BLOCKS {
             true => tasks.into_iter().map(work).collect(),
-            false => tasks.into_par_iter().map(work).collect(),
+            false => tasks.into_par_iter().with_max_len(1).map(work).collect(),
         };
         outcomes.into_iter().try_for_each(|own| self.end(own))
     }
@@ -422,7 +422,7 @@ impl Simulation {
         let work = |block| gather.block(block, &now);
         let found: Vec<(Outcome, Sums)> = match blocks.len() < FEW_BLOCKS {
             true => blocks.into_iter().map(work).collect(),
-            false => blocks.into_par_iter().map(work).collect(),
+            false => blocks.into_par_iter().with_max_len(1).map(work).collect(),
         };
         let mut energy = Energy::default();
         self.moved = 0.0;
@@ -509,7 +509,7 @@ impl Simulation {
     fn complete(&self, energy: &mut Energy) {
         for contacts in self.contacts.iter().flatten() {
             for contact in 0..contacts.count() {
-                let (_, _, parcel) = contacts.at(contact);
+                let (_, parcel) = contacts.at(contact);
                 energy.in_contacts += parcel.history.work;
                 energy.in_friction += parcel.history.friction_work;
             }

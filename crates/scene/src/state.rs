@@ -268,8 +268,8 @@ impl Simulation {
         let mut pairs = Vec::with_capacity(self.pair_contacts());
         for (parts, contacts) in self.table.blocks.iter().zip(&self.contacts) {
             for ((_, range), contacts) in parts.iter().zip(contacts) {
-                for contact in 0..contacts.count() {
-                    let (entry, law, parcel) = contacts.at(contact);
+                for (contact, &entry) in contacts.entries().iter().enumerate() {
+                    let (law, parcel) = contacts.at(contact);
                     let entry = range.start + entry as usize;
                     let number = |body: u32| self.bodies.fruit[body as usize];
                     let fruit = [
@@ -352,14 +352,19 @@ impl Simulation {
             body_of[fruit as usize] = body as u32;
         }
         let mut carried = Vec::with_capacity(state.pairs.len());
-        for own in &state.pairs {
+        let mut laws = Vec::with_capacity(state.pairs.len());
+        for (number, own) in state.pairs.iter().enumerate() {
             let [first, second] = own.fruit.map(|fruit| body_of[fruit as usize]);
             let material = |body: u32| self.bodies.material[body as usize] as usize;
             let kind = self.kind_between(material(first), material(second));
             let law = law_of(kind, &own.law).map_err(unfit)?;
-            carried.extend(self.carried((first, second), law, own.parcel));
+            laws.push(law);
+            carried.extend(self.carried((first, second), [0, 0, number]));
         }
-        self.settle(carried);
+        self.settle(carried, |own| {
+            let number = own.contact as usize;
+            (laws[number], state.pairs[number].parcel)
+        });
         Ok(())
     }
 

@@ -43,15 +43,16 @@ pub(crate) struct Store {
 }
 
 impl Store {
-    /// No contacts yet of an interaction.
-    pub(crate) fn new(surface: &Interaction) -> Self {
+    /// No contacts yet of an interaction, with room for so many.
+    pub(crate) fn new(surface: &Interaction, room: usize) -> Self {
+        let groups = room.div_ceil(LANES);
         Self {
-            quads: Vec::new(),
-            elastic: Vec::new(),
+            quads: Vec::with_capacity(groups),
+            elastic: Vec::with_capacity(groups * surface.annuli),
             annuli: surface.annuli,
-            rolling: Vec::new(),
-            laws: law_column(&surface.law),
-            encounters: Vec::new(),
+            rolling: Vec::with_capacity(groups),
+            laws: law_column(&surface.law, room),
+            encounters: Vec::with_capacity(room),
         }
     }
 

@@ -34,12 +34,20 @@ pub(crate) fn less<R: Real>(a: Of<R>, b: Of<R>, by: R) -> Of<R> {
     [a[0] - b[0] * by, a[1] - b[1] * by, a[2] - b[2] * by]
 }
 
-/// A vector turned with the plane of contact: its length is kept to second order.
+/// What a vector that turns with the plane of contact is longer than its shadow on the plane,
+/// to second order; 1.
 #[inline(always)]
-pub(crate) fn into_plane<R: Real>(a: Of<R>, normal: Of<R>) -> Of<R> {
+pub(crate) fn stretch_into_plane<R: Real>(a: Of<R>, normal: Of<R>) -> R {
     let out = dot(a, normal);
     let inside = less(a, normal, out);
     let square = dot(inside, inside);
-    let lost = square.select(out * out / square, out.constant(0.0));
-    times(inside, lost * 0.5 + 1.0)
+    square.select(out * out / square, out.constant(0.0)) * 0.5 + 1.0
+}
+
+/// A vector turned with the plane of contact.
+///
+/// * `stretch`: as [`stretch_into_plane`] says
+#[inline(always)]
+pub(crate) fn into_plane<R: Real>(a: Of<R>, normal: Of<R>, stretch: R) -> Of<R> {
+    times(less(a, normal, dot(a, normal)), stretch)
 }

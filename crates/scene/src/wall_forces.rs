@@ -58,7 +58,7 @@ impl WallContacts {
     /// No contacts yet of an interaction.
     pub(crate) fn new(surface: &Interaction) -> Self {
         Self {
-            store: Store::new(surface),
+            store: Store::new(surface, 0),
             holders: Vec::new(),
             meetings: Vec::new(),
             forces: Vec::new(),

@@ -1,30 +1,15 @@
 //! `windfall scene run --engine` and `windfall scene export`, with LAMMPS and LIGGGHTS
 //! themselves: the test command installs them.
-#![cfg(unix)]
-#![allow(clippy::unwrap_used)]
 
-use assert_cmd::Command;
+use super::{said, windfall, windfall_command};
 use std::collections::BTreeMap;
 use std::os::unix::fs::PermissionsExt;
 use std::path::Path;
 
-fn windfall(arguments: &[&str], directory: &Path) -> (bool, String, String) {
-    with_path(arguments, directory, None)
-}
-
-fn with_path(arguments: &[&str], directory: &Path, path: Option<&str>) -> (bool, String, String) {
-    let mut command = Command::cargo_bin("windfall").unwrap();
-    command.args(arguments).current_dir(directory);
-    if let Some(path) = path {
-        command.env("PATH", path);
-    }
-    let output = command.output().unwrap();
-    let text = |bytes: &[u8]| String::from_utf8_lossy(bytes).into_owned();
-    (
-        output.status.success(),
-        text(&output.stdout),
-        text(&output.stderr),
-    )
+fn with_path(arguments: &[&str], directory: &Path, path: &str) -> (bool, String, String) {
+    let mut command = windfall_command(arguments, directory);
+    command.env("PATH", path);
+    said(command)
 }
 
 /// Fruit that come one by one, each on its own place, and two pairs that collide in the air
@@ -334,7 +319,7 @@ fn rejects_engines_that_are_absent_old_or_fail() {
     let refused = |path: &str, arguments: &[&str]| {
         let mut all = vec!["scene", "run", "scene.toml", "--engine", "lammps"];
         all.extend(arguments);
-        let (done, _, problem) = with_path(&all, folder.path(), Some(path));
+        let (done, _, problem) = with_path(&all, folder.path(), path);
         assert!(!done && !problem.contains("panicked"), "{problem}");
         problem
     };

@@ -1,23 +1,7 @@
 //! Walls from STL files, and what is looked at before a scene runs.
-#![allow(clippy::unwrap_used)]
 
-use assert_cmd::Command;
+use super::windfall;
 use std::path::Path;
-
-fn windfall(arguments: &[&str], directory: &Path) -> (bool, String, String) {
-    let output = Command::cargo_bin("windfall")
-        .unwrap()
-        .args(arguments)
-        .current_dir(directory)
-        .output()
-        .unwrap();
-    let text = |bytes: &[u8]| String::from_utf8_lossy(bytes).into_owned();
-    (
-        output.status.success(),
-        text(&output.stdout),
-        text(&output.stderr),
-    )
-}
 
 type Triangles = Vec<[[f64; 3]; 3]>;
 

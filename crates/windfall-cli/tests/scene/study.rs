@@ -1,24 +1,8 @@
 //! Bruises by a regression, static loads, and `windfall scene study`, as a user meets them.
-#![allow(clippy::unwrap_used)]
 
-use assert_cmd::Command;
+use super::{change, windfall};
 use std::collections::BTreeMap;
 use std::path::Path;
-
-fn windfall(arguments: &[&str], directory: &Path) -> (bool, String, String) {
-    let output = Command::cargo_bin("windfall")
-        .unwrap()
-        .args(arguments)
-        .current_dir(directory)
-        .output()
-        .unwrap();
-    let text = |bytes: &[u8]| String::from_utf8_lossy(bytes).into_owned();
-    (
-        output.status.success(),
-        text(&output.stdout),
-        text(&output.stderr),
-    )
-}
 
 const REGRESSION: &str = "response = \"log(bruise_volume_mm3)\"
 terms = [
@@ -32,11 +16,6 @@ ranges = [{ column = \"absorbed_energy_mJ\", low = 0, high = 100 }]
 
 /// The template with few fruit, a regression of bruises and a property of the fruit.
 fn scene(directory: &Path, changes: &[(&str, &str)]) {
-    let (done, _, problem) = windfall(&["new", "scene", "s"], directory);
-    assert!(done, "{problem}");
-    let path = directory.join("s/scene.toml");
-    let mut text = std::fs::read_to_string(&path).unwrap();
-    text += "[bruise]\nregression = \"bruise.toml\"\nlimits = [\"50 mm^3\", \"300 mm^3\"]\n";
     let own = [
         ("count = 100", "count = 15"),
         ("end = \"4 s\"", "end = \"1.5 s\""),
@@ -46,11 +25,15 @@ fn scene(directory: &Path, changes: &[(&str, &str)]) {
             "density = \"840 kg/m^3\"\nproperties = { temperature_C = { mean = 10 } }",
         ),
     ];
-    for (old, new) in own.iter().chain(changes) {
-        assert!(text.contains(old), "{old}");
-        text = text.replacen(old, new, 1);
-    }
-    std::fs::write(path, text).unwrap();
+    super::scene(directory, &own);
+    let path = directory.join("s/scene.toml");
+    let mut text = std::fs::read_to_string(&path).unwrap();
+    text += "[bruise]
+regression = \"bruise.toml\"
+limits = [\"50 mm^3\", \"300 mm^3\"]
+";
+    std::fs::write(&path, text).unwrap();
+    change(&path, changes);
     std::fs::write(directory.join("s/bruise.toml"), REGRESSION).unwrap();
 }
 

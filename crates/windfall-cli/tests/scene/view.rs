@@ -1,42 +1,14 @@
 //! Frames, pictures and VTK files of scenes as a user meets them. Files are read here by code
 //! of their own, from what the guide says of them.
-#![allow(clippy::unwrap_used)]
 
-use assert_cmd::Command;
+use super::{change, windfall};
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
-fn windfall(arguments: &[&str], directory: &Path) -> (bool, String, String) {
-    let output = Command::cargo_bin("windfall")
-        .unwrap()
-        .args(arguments)
-        .current_dir(directory)
-        .output()
-        .unwrap();
-    let text = |bytes: &[u8]| String::from_utf8_lossy(bytes).into_owned();
-    (
-        output.status.success(),
-        text(&output.stdout),
-        text(&output.stderr),
-    )
-}
-
 /// The template in DIRECTORY/s, with some of its text replaced.
 fn scene(directory: &Path, changes: &[(&str, &str)]) -> PathBuf {
-    let (done, _, problem) = windfall(&["new", "scene", "s"], directory);
-    assert!(done, "{problem}");
-    let path = directory.join("s/scene.toml");
-    change(&path, changes);
-    path
-}
-
-fn change(path: &Path, changes: &[(&str, &str)]) {
-    let mut text = std::fs::read_to_string(path).unwrap();
-    for (old, new) in changes {
-        assert!(text.contains(old), "{old}");
-        text = text.replace(old, new);
-    }
-    std::fs::write(path, text).unwrap();
+    super::scene(directory, changes);
+    directory.join("s/scene.toml")
 }
 
 /// Few fruit for a short time, every contact written, a bin that shakes.
@@ -560,7 +532,7 @@ fn vtk_files_hold_the_frames() {
 
     // VTK's own reader, where VTK_PYTHON names a Python that has it (140 MB; not in CI).
     if let Some(python) = std::env::var_os("VTK_PYTHON") {
-        let script = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/scene_view/check_vtk.py");
+        let script = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/scene/check_vtk.py");
         let done = std::process::Command::new(python)
             .arg(script)
             .arg(&run)

@@ -1,36 +1,7 @@
 //! `windfall scene` as a user meets it.
-#![allow(clippy::unwrap_used)]
 
-use assert_cmd::Command;
+use super::{scene, windfall};
 use std::path::Path;
-
-fn windfall(arguments: &[&str], directory: &Path) -> (bool, String, String) {
-    let output = Command::cargo_bin("windfall")
-        .unwrap()
-        .args(arguments)
-        .current_dir(directory)
-        .output()
-        .unwrap();
-    let text = |bytes: &[u8]| String::from_utf8_lossy(bytes).into_owned();
-    (
-        output.status.success(),
-        text(&output.stdout),
-        text(&output.stderr),
-    )
-}
-
-/// The template, with some of its text replaced.
-fn scene(directory: &Path, changes: &[(&str, &str)]) {
-    let (done, _, problem) = windfall(&["new", "scene", "s"], directory);
-    assert!(done, "{problem}");
-    let path = directory.join("s/scene.toml");
-    let mut text = std::fs::read_to_string(&path).unwrap();
-    for (old, new) in changes {
-        assert!(text.contains(old), "{old}");
-        text = text.replace(old, new);
-    }
-    std::fs::write(path, text).unwrap();
-}
 
 /// What the program says of a scene that it refuses.
 fn refused(changes: &[(&str, &str)]) -> String {
