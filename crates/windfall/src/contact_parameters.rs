@@ -105,8 +105,11 @@ pub fn contact_terms(other: Other, scene: &Scene, speed: f64) -> Vec<ContactTerm
             Other::Edem => edem(&pair),
             Other::Chrono => chrono(&pair),
         };
-        if interaction.annuli > 1 && !given.is_empty() {
-            let friction = format!("friction by {} annuli", interaction.annuli);
+        // Friction in Adams is another one anyway.
+        let sheared = interaction.friction > 0.0 && !matches!(other, Other::Adams);
+        if interaction.annuli > 1 && sheared && !given.is_empty() {
+            let annuli = interaction.annuli;
+            let friction = format!("friction has one spring there, here {annuli} annuli");
             approximate = joined(&[&approximate, &friction]);
         }
         all.push(ContactTerms {
