@@ -168,32 +168,48 @@ impl BruiseModel {
     /// Volume of the bruise of one contact; m³.
     #[must_use]
     pub fn volume(&self, blow: &Blow) -> f64 {
-        let threshold = self.threshold + self.threshold_between_fruit * blow.fruit_draws[0];
-        let above = blow.predictor(self.predictor) - threshold.max(0.0);
-        if above <= 0.0 {
-            return 0.0;
-        }
-        let volume = match &self.law {
-            VolumeLaw::Proportional { susceptibility, .. } => susceptibility * above,
-            VolumeLaw::Regression(own) => own.volume(&blow.terms, blow.fruit_draws[1], blow.draw),
-        };
-        // What is no number is no bruise either.
-        match volume > self.least_volume {
-            true => volume,
-            false => 0.0,
-        }
+        self.volume_within(0.0, blow)
     }
 
     /// Whether a contact bruises, with coefficients within [`REACH`] standard uncertainties.
     #[must_use]
     pub fn may_bruise(&self, blow: &Blow) -> bool {
-        let mut most = self.clone();
-        most.threshold = (self.threshold - REACH * self.threshold_sd).max(0.0);
-        match &mut most.law {
-            VolumeLaw::Proportional { susceptibility, sd } => *susceptibility += REACH * *sd,
-            VolumeLaw::Regression(own) => own.shift += REACH * own.sd(&blow.terms),
+        self.volume_within(REACH, blow) > 0.0
+    }
+
+    /// The largest volume within so many standard uncertainties of the coefficients; m³.
+    fn volume_within(&self, reach: f64, blow: &Blow) -> f64 {
+        let above = self.above(reach, blow);
+        if above <= 0.0 {
+            return 0.0;
         }
-        most.volume(blow) > 0.0
+        let volume = match &self.law {
+            VolumeLaw::Proportional { susceptibility, sd } => (susceptibility + reach * sd) * above,
+            VolumeLaw::Regression(own) => {
+                let value = own.value(&blow.terms, blow.fruit_draws[1], blow.draw);
+                let more = match reach > 0.0 {
+                    true => reach * own.sd(&blow.terms),
+                    false => 0.0,
+                };
+                own.volume(value + more)
+            }
+        };
+        self.counted(volume)
+    }
+
+    /// How much of the predictor is above the threshold.
+    fn above(&self, reach: f64, blow: &Blow) -> f64 {
+        let threshold = (self.threshold - reach * self.threshold_sd).max(0.0);
+        let threshold = threshold + self.threshold_between_fruit * blow.fruit_draws[0];
+        blow.predictor(self.predictor) - threshold.max(0.0)
+    }
+
+    /// The volume, or none where it is too small; what is no number is no bruise either.
+    fn counted(&self, volume: f64) -> f64 {
+        match volume > self.least_volume {
+            true => volume,
+            false => 0.0,
+        }
     }
 
     /// The model with other coefficients, as uncertain as they are.
@@ -253,13 +269,21 @@ impl BruiseModel {
     /// Volume of the largest bruise of a fruit; m³.
     #[must_use]
     pub fn largest(&self, blows: &[Blow]) -> f64 {
-        match self.same_spot {
-            // Where only the largest on a spot counts, spots make no difference.
-            SameSpot::Largest => {
+        match (self.same_spot, &self.law) {
+            // Where only the largest on a spot counts, spots make no difference; and a power
+            // is taken only of the largest.
+            (SameSpot::Largest, VolumeLaw::Regression(own)) if own.rises() => {
+                let above = blows.iter().filter(|blow| self.above(0.0, blow) > 0.0);
+                let values =
+                    above.map(|blow| own.value(&blow.terms, blow.fruit_draws[1], blow.draw));
+                let largest = values.reduce(f64::max);
+                largest.map_or(0.0, |value| self.counted(own.volume(value)))
+            }
+            (SameSpot::Largest, _) => {
                 let volumes = blows.iter().map(|blow| self.volume(blow));
                 volumes.fold(0.0, f64::max)
             }
-            SameSpot::Sum => {
+            (SameSpot::Sum, _) => {
                 let bruises = self.bruises(blows).into_iter();
                 bruises.map(|bruise| bruise.volume).fold(0.0, f64::max)
             }
@@ -279,15 +303,20 @@ impl BruiseModel {
         limits: &[f64],
         (draws, seed): (usize, u64),
     ) -> Vec<Vec<usize>> {
-        let counts = |model: &Self| {
-            let largest: Vec<f64> = blows.iter().map(|own| model.largest(own)).collect();
-            let above = |limit: &f64| largest.iter().filter(|own| *own > limit).count();
-            limits.iter().map(above).collect::<Vec<usize>>()
-        };
         let mut generator = ChaCha8Rng::seed_from_u64(seed);
-        let models: Vec<Self> = (0..draws).map(|_| self.drawn(&mut generator)).collect();
-        let all = std::iter::once(self).chain(&models);
-        all.map(counts).collect()
+        let mut models = vec![self.clone()];
+        models.extend((0..draws).map(|_| self.drawn(&mut generator)));
+        let mut counts = vec![vec![0; limits.len()]; models.len()];
+        // Fruit by fruit: its contacts stay at hand.
+        for own in blows {
+            for (model, counts) in models.iter().zip(&mut counts) {
+                let largest = model.largest(own);
+                for (count, limit) in counts.iter_mut().zip(limits) {
+                    *count += usize::from(largest > *limit);
+                }
+            }
+        }
+        counts
     }
 
     /// Shares of fruit whose largest bruise exceeds limits, with the ends of their intervals.

@@ -32,24 +32,22 @@ pub struct Regression {
     pub between_fruit: f64,
     /// Standard deviation of what is left, of g.
     pub residual: f64,
-    /// Added to g; 0 but where the reach of the regression is asked for.
-    pub shift: f64,
 }
 
 impl Regression {
-    /// Volume of a bruise; m³. Not a number where g has no inverse.
+    /// g of a bruise.
     ///
     /// * `terms`: x
     /// * `fruit`, `own`: how the fruit and this bruise differ; standard deviations
     #[must_use]
-    pub fn volume(&self, terms: &[f64], fruit: f64, own: f64) -> f64 {
-        let sum: f64 = self
-            .coefficients
-            .iter()
-            .zip(terms)
-            .map(|(b, x)| b * x)
-            .sum();
-        let value = sum + self.shift + self.between_fruit * fruit + self.residual * own;
+    pub fn value(&self, terms: &[f64], fruit: f64, own: f64) -> f64 {
+        let products = self.coefficients.iter().zip(terms).map(|(b, x)| b * x);
+        products.sum::<f64>() + self.between_fruit * fruit + self.residual * own
+    }
+
+    /// The volume of which g has a value; m³. Not a number where g has no inverse.
+    #[must_use]
+    pub fn volume(&self, value: f64) -> f64 {
         let volume = match self.response {
             Response::Volume => value,
             Response::Logarithm(base) => base.powf(value),
@@ -57,6 +55,16 @@ impl Regression {
             Response::Power(power) => value.max(0.0).powf(power.recip()),
         };
         self.unit * volume
+    }
+
+    /// Whether a larger g is of a larger volume.
+    #[must_use]
+    pub fn rises(&self) -> bool {
+        match self.response {
+            Response::Volume => true,
+            Response::Logarithm(base) => base > 1.0,
+            Response::Power(power) => power > 0.0,
+        }
     }
 
     /// Standard uncertainty of Σ bᵢ xᵢ.
@@ -97,7 +105,6 @@ mod tests {
             factor: vec![vec![0.2], vec![0.05, 0.04], vec![0.0, 0.0, 0.003]],
             between_fruit: 0.3,
             residual: 0.2,
-            shift: 0.0,
         }
     }
 
@@ -106,22 +113,25 @@ mod tests {
         let terms = [1.0, 0.4_f64.ln(), 20.0];
         let own = regression();
         // e^(7 − 0.4) 0.4^1.1 = 735.095 · 0.364992
-        let volume = 1e9 * own.volume(&terms, 0.0, 0.0);
+        let of = |own: &Regression, terms: &[f64], fruit, draw| {
+            own.volume(own.value(terms, fruit, draw))
+        };
+        let volume = 1e9 * of(&own, &terms, 0.0, 0.0);
         assert!((volume - 268.3).abs() < 0.05, "{volume}");
-        let other = own.volume(&terms, 1.0, -1.0) / own.volume(&terms, 0.0, 0.0);
+        let other = of(&own, &terms, 1.0, -1.0) / of(&own, &terms, 0.0, 0.0);
         assert!((other - 0.1_f64.exp()).abs() < 1e-12);
         let cube = Regression {
             response: Response::Power(1.0 / 3.0),
             coefficients: vec![2.0],
             ..regression()
         };
-        assert!((1e9 * cube.volume(&[1.0], 0.0, 0.0) - 8.0).abs() < 1e-9);
-        assert_eq!(cube.volume(&[-1.0], 0.0, 0.0), 0.0);
+        assert!((1e9 * of(&cube, &[1.0], 0.0, 0.0) - 8.0).abs() < 1e-9);
+        assert_eq!(of(&cube, &[-1.0], 0.0, 0.0), 0.0);
         let line = Regression {
             response: Response::Volume,
             ..cube
         };
-        assert_eq!(line.volume(&[-1.0], 0.0, 0.0), -2e-9);
+        assert_eq!(of(&line, &[-1.0], 0.0, 0.0), -2e-9);
     }
 
     #[test]

@@ -184,7 +184,6 @@ pub fn read_regression(
             factor: factor_of(&file).map_err(wrong)?,
             between_fruit,
             residual,
-            shift: 0.0,
         },
         terms,
         columns: columns.map_err(wrong)?,

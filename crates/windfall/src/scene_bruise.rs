@@ -29,6 +29,8 @@ pub struct Blows {
     /// all for a fruit.
     of: Vec<Vec<Blow>>,
     with: Vec<Vec<usize>>,
+    /// Volumes of their bruises, by the model as it is; m³.
+    volumes: Vec<Vec<f64>>,
     /// Contacts that were too many for a fruit, and weaker than all that are kept of it.
     crowded: u64,
 }
@@ -112,6 +114,7 @@ impl Blows {
             draws: thresholds.into_iter().zip(volumes).collect(),
             of: vec![Vec::new(); count],
             with: vec![Vec::new(); count],
+            volumes: vec![Vec::new(); count],
             outside: [0; 2],
             crowded: 0,
         }
@@ -178,19 +181,20 @@ impl Blows {
             blow.draw = normal_of(&[words[0], words[1], words[2], with]);
         }
         if self.plan.model.may_bruise(&blow) {
-            let bruises = self.plan.model.volume(&blow) > 0.0;
+            let volume = self.plan.model.volume(&blow);
+            let bruises = volume > 0.0;
             self.outside[0] += usize::from(bruises && outside);
             self.outside[1] += usize::from(bruises);
             self.of[number].push(blow);
             self.with[number].push(place);
+            self.volumes[number].push(volume);
         }
         if self.of[number].len() > MOST_BLOWS {
-            let volumes = self.of[number].iter();
-            let volumes = volumes.map(|own| self.plan.model.volume(own));
-            let weakest = volumes.enumerate().min_by(|a, b| a.1.total_cmp(&b.1));
-            if let Some((weakest, _)) = weakest {
+            let volumes = self.volumes[number].iter().enumerate();
+            if let Some((weakest, _)) = volumes.min_by(|a, b| a.1.total_cmp(b.1)) {
                 self.of[number].remove(weakest);
                 self.with[number].remove(weakest);
+                self.volumes[number].remove(weakest);
                 self.crowded += 1;
             }
         }
@@ -224,6 +228,8 @@ impl Blows {
         self.with = Binary::read(from)?;
         self.outside = Binary::read(from)?;
         self.crowded = Binary::read(from)?;
+        let volumes = |own: &Vec<Blow>| own.iter().map(|own| self.plan.model.volume(own)).collect();
+        self.volumes = self.of.iter().map(volumes).collect();
         match self.of.len() == fruit && self.with.len() == fruit {
             true => Ok(()),
             false => Err(no_value("bruises of this scene")),

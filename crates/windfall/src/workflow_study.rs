@@ -14,6 +14,7 @@ use crate::study_laws::{certain_laws, draw_laws};
 use crate::study_outcome::{FactorOutcome, Replicate, StudyOutcome, effects, variant};
 use crate::toml_source::TomlSource;
 use crate::workflow_scene::run_plan;
+use crate::workflow_scene_view::{PictureRequest, draw_scene, open_frames};
 use crate::write_file::write_whole;
 use crate::write_study::{csv_of_study, write_page};
 use std::ops::ControlFlow;
@@ -89,6 +90,10 @@ pub fn run_study(
             .map(|name| out.join(name))
             .into(),
     };
+    let first = outcome.variants.iter().find(|own| own.failed.is_none());
+    if let Some(first) = first.map(|own| out.join(&own.directory).join(replicate_name(0))) {
+        draw_run(&first)?;
+    }
     outcome.files.extend(write_page(&outcome, &out)?);
     write_whole(&out.join("study.csv"), csv_of_study(&outcome)?.as_bytes())?;
     let json = serde_json::to_string_pretty(&outcome).map_err(|error| Error::ResultUnwritable {
@@ -97,6 +102,26 @@ pub fn run_study(
     })?;
     write_whole(&out.join("study.json"), (json + "\n").as_bytes())?;
     Ok(outcome)
+}
+
+/// Name of the directory of a replicate.
+fn replicate_name(replicate: usize) -> String {
+    format!("replicate_{}", replicate + 1)
+}
+
+/// Draws a run at half time, if it has frames: the page shows it.
+fn draw_run(run: &Path) -> Result<(), Error> {
+    let Some(last) = open_frames(run)
+        .ok()
+        .and_then(|own| own.frames.last().map(|own| own.time))
+    else {
+        return Ok(());
+    };
+    let request = PictureRequest {
+        time: Some(0.5 * last),
+        ..PictureRequest::default()
+    };
+    draw_scene(run, &request).map(|_| ())
 }
 
 /// Takes away what an earlier run of a study left: nothing of it is to be taken for new. A
@@ -215,7 +240,7 @@ fn run_one(
     let (number, replicate) = (job / plan.replicates, job % plan.replicates);
     let own = &plan.variants[number];
     let folder = out.join(VARIANTS).join(directory_of(number, &own.name));
-    let folder = folder.join(format!("replicate_{}", replicate + 1));
+    let folder = folder.join(replicate_name(replicate));
     std::fs::create_dir_all(&folder).map_err(|error| failed(&folder, "create", error))?;
     let text = with_seed(&own.text, replicate as u64);
     write_whole(&folder.join("scene.toml"), text.as_bytes())?;
