@@ -216,7 +216,7 @@ impl Simulation {
     /// Puts contacts with walls into stores of the new blocks.
     fn settle_walls(&mut self) {
         let surfaces = &self.surfaces;
-        let stores = || surfaces.iter().map(|own| WallContacts::new(own)).collect();
+        let stores = || surfaces.iter().map(WallContacts::new).collect();
         self.wall_contacts = self.table.bounds.iter().map(|_| stores()).collect();
         for (block, bounds) in self.table.bounds.iter().enumerate() {
             let first = self.near_start[bounds.start];
