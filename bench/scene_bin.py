@@ -1,7 +1,8 @@
-"""Writes the same bin of apples for every engine: scene_bin.py COUNT FOLDER.
+"""Writes the same bin of apples for every engine: scene_bin.py COUNT FOLDER [LAYERS].
 
-COUNT fruit of 70 to 80 mm on a loose lattice above the floor of an open bin, with small random
-displacements and velocities: bin.txt for windfall's example bin_fill, bin.lmp and bin.deck for
+COUNT fruit of 70 to 80 mm on a loose lattice of so many layers (as many as there are along an
+edge, if left out) above the floor of an open bin, with small random displacements and
+velocities: bin.txt for windfall's example bin_fill, bin.lmp and bin.deck for
 LAMMPS (gran/hertz/history: Hertz's contact with Mindlin's tangential history).
 """
 
@@ -14,7 +15,8 @@ K, C, RADIUS, PITCH = 753599.0, 1524.0, 0.0375, 0.084
 
 count, folder = int(sys.argv[1]), sys.argv[2]
 draw = random.Random(1).uniform
-side = max(4, round(count ** (1 / 3)))
+floor = count / int(sys.argv[3]) if len(sys.argv) > 3 else count ** (2 / 3)
+side = max(4, round(floor**0.5))
 width = side * PITCH
 fruit = []
 for n in range(count):
@@ -25,6 +27,7 @@ for n in range(count):
 top = max(own[0][2] for own in fruit) + 0.1
 
 with open(f"{folder}/bin.txt", "w") as out:
+    print(f"# width {width}", file=out)
     for n, (place, velocity, radius) in enumerate(fruit):
         print(n + 1, *place, *velocity, radius, file=out)
 

@@ -14,7 +14,8 @@ initial, steps = sys.argv[1], int(sys.argv[2])
 K, RADIUS, POISSON = 753599.0, 0.0375, 0.3
 fruit = np.loadtxt(initial)
 count = len(fruit)
-side = max(4.0, round(count ** (1 / 3))) * 0.084
+with open(initial) as text:
+    side = float(text.readline().split()[2])
 # k of two apples is 4/3 E* sqrt(R*), E* = E/(2 (1 - nu^2)).
 young = 0.75 * K / np.sqrt(RADIUS / 2) * 2 * (1 - POISSON**2)
 apple = O.materials.append(

@@ -1,24 +1,27 @@
 //! A bin that is filled with apples: particle-steps per second of processor time.
 //!
-//!     cargo run --release -p windfall-scene --example bin_fill -- INITIAL STEPS THREADS ANNULI
+//!     cargo run --release -p windfall-scene --example bin_fill -- INITIAL STEPS THREADS ANNULI [STATE]
 //!
-//! INITIAL: a text of `id x y z vx vy vz radius` in each line (SI); the bin is as wide as
-//! the round of its lattice of 84 mm, see `bench/compare-scene`. ANNULI: of a contact area, for
-//! friction.
+//! INITIAL: `# width` and a number, then `id x y z vx vy vz radius` in each line (SI), see
+//! `bench/scene_bin.py`. ANNULI: of a contact area, for friction. STATE: a file from which
+//! the run goes on if it is there, and that holds the state afterwards.
 
 #![allow(clippy::print_stdout)]
 
 use std::collections::BTreeMap;
+use std::io::Write as _;
 use windfall_contact::expression::parse_law;
+use windfall_scene::binary::Binary as _;
 use windfall_scene::interaction::{Interaction, mindlin_ratio};
 use windfall_scene::scene::{Fruit, Scene};
 use windfall_scene::simulation::Simulation;
+use windfall_scene::state::State;
 use windfall_scene::wall::{Motion, Shape, Wall};
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
     let arguments: Vec<String> = std::env::args().collect();
-    let [_, initial, steps, threads, annuli] = &arguments[..] else {
-        return Err("bin_fill INITIAL STEPS THREADS ANNULI".into());
+    let [_, initial, steps, threads, annuli, state @ ..] = &arguments[..] else {
+        return Err("bin_fill INITIAL STEPS THREADS ANNULI [STATE]".into());
     };
     let steps: u64 = steps.parse()?;
     let annuli: usize = annuli.parse()?;
@@ -41,8 +44,10 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         time_step: 2e-5,
         ..Scene::default()
     };
+    let mut width = 0.0;
     for line in std::fs::read_to_string(initial)?.lines() {
-        if line.starts_with('#') {
+        if let Some(own) = line.strip_prefix("# width ") {
+            width = own.parse()?;
             continue;
         }
         let n: Result<Vec<f64>, _> = line.split_whitespace().map(str::parse).collect();
@@ -54,13 +59,12 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         scene.fruit.push(fruit);
     }
     let count = scene.fruit.len();
-    let side = (count as f64).cbrt().round().max(4.0) * 0.084;
     for (point, normal) in [
         ([0.0; 3], [0.0, 0.0, 1.0]),
         ([0.0; 3], [1.0, 0.0, 0.0]),
         ([0.0; 3], [0.0, 1.0, 0.0]),
-        ([side, 0.0, 0.0], [-1.0, 0.0, 0.0]),
-        ([0.0, side, 0.0], [0.0, -1.0, 0.0]),
+        ([width, 0.0, 0.0], [-1.0, 0.0, 0.0]),
+        ([0.0, width, 0.0], [0.0, -1.0, 0.0]),
     ] {
         scene.walls.push(Wall {
             name: "bin".into(),
@@ -69,7 +73,10 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
             motion: Motion::default(),
         });
     }
-    let mut simulation = Simulation::new(scene)?;
+    let mut simulation = match state.first().map(std::fs::read) {
+        Some(Ok(bytes)) => Simulation::resume(scene, &State::read(&mut &bytes[..])?)?,
+        _ => Simulation::new(scene)?,
+    };
     let mut events = 0;
     for part in 0..10 {
         let (wall, used) = (std::time::Instant::now(), processor_time());
@@ -84,6 +91,11 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
             1e-6 * work / spent,
             1e-6 * work / wall.elapsed().as_secs_f64(),
         );
+    }
+    if let Some(path) = state.first() {
+        let mut to = std::io::BufWriter::new(std::fs::File::create(path)?);
+        simulation.checkpoint()?.write(&mut to)?;
+        to.flush()?;
     }
     let height: f64 = simulation.fruit().iter().map(|own| own.place[2]).sum();
     println!("FINAL mean height {:.4} m", height / count as f64);
