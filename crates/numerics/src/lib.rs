@@ -15,6 +15,7 @@ pub mod ode_dense;
 pub mod ode_lockstep;
 pub mod ode_step;
 pub mod ode_tableau;
+pub mod prefetch;
 pub mod real;
 pub mod real_vector;
 pub mod root;

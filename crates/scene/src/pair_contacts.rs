@@ -11,6 +11,7 @@ use crate::vector::{length, plus_scaled, scaled, subtract};
 use crate::vector_of::dot;
 use windfall_contact::effective::effective_radius;
 use windfall_contact::law_kind::Law;
+use windfall_numerics::prefetch::prefetch;
 use windfall_numerics::real_vector::with_four_lanes;
 
 /// The entries of one block and one interaction.
@@ -37,12 +38,22 @@ pub(crate) struct PairContacts {
     entries: Vec<u32>,
     pairs: Vec<[u32; 2]>,
     /// Entries without a contact that may soon touch.
-    awake: Vec<u32>,
+    awake: Vec<Awake>,
     /// Those that cannot before bodies have moved by half their gap; the widest first.
     asleep: Vec<(f64, u32)>,
     /// Contacts that end in the present step.
     parting: Vec<u32>,
 }
+
+/// An entry and its bodies.
+#[derive(Clone, Copy)]
+struct Awake {
+    entry: u32,
+    pair: [u32; 2],
+}
+
+/// Entries between the one that is looked at and the one whose memory is asked for.
+const AHEAD: usize = 16;
 
 /// Overlap over the smaller radius above which a law of two spheres means nothing.
 pub(crate) const LARGEST_OVERLAP: f64 = 0.3;
@@ -79,8 +90,8 @@ impl PairContacts {
             out_base,
             moved,
         } = part;
-        self.wake(moved);
-        if let Err(problem) = self.begin_all(first, second, bodies, (surface, now)) {
+        self.wake(moved, first, second);
+        if let Err(problem) = self.begin_all(bodies, (surface, now)) {
             outcome.problem.get_or_insert(problem);
             return;
         }
@@ -152,7 +163,7 @@ impl PairContacts {
     }
 
     /// Entries whose bodies may have come together since the list was made.
-    fn wake(&mut self, moved: f64) {
+    fn wake(&mut self, moved: f64, first: &[u32], second: &[u32]) {
         // With room for what is rounded.
         let reach = 2.0 * moved * (1.0 + 1e-9);
         while let Some(&(gap, entry)) = self.asleep.last() {
@@ -161,21 +172,20 @@ impl PairContacts {
                 break;
             }
             self.asleep.pop();
-            self.awake.push(entry);
+            let pair = [first[entry as usize], second[entry as usize]];
+            self.awake.push(Awake { entry, pair });
         }
     }
 
     /// Contacts of entries that touch now.
-    fn begin_all(
-        &mut self,
-        first: &[u32],
-        second: &[u32],
-        bodies: &Bodies,
-        work: (&Interaction, &Moment),
-    ) -> Result<(), Error> {
+    fn begin_all(&mut self, bodies: &Bodies, work: (&Interaction, &Moment)) -> Result<(), Error> {
         let mut place = 0;
-        while let Some(&entry) = self.awake.get(place) {
-            let pair = [first[entry as usize], second[entry as usize]];
+        while let Some(&Awake { entry, pair }) = self.awake.get(place) {
+            if let Some(later) = self.awake.get(place + AHEAD) {
+                for body in later.pair {
+                    prefetch(&bodies.place[body as usize]);
+                }
+            }
             let [a, b] = pair.map(|body| &bodies.place[body as usize]);
             let between = [b[0] - a[0], b[1] - a[1], b[2] - a[2]];
             let reach = a[3] + b[3];
@@ -261,9 +271,9 @@ impl PairContacts {
         let fruit = (bodies.fruit[i], bodies.fruit[j]);
         outcome.events.push(event_of_pair(parted, fruit, false));
         self.store.remove(contact);
-        self.pairs.swap_remove(contact);
+        let pair = self.pairs.swap_remove(contact);
         let entry = self.entries.swap_remove(contact);
-        self.awake.push(entry);
+        self.awake.push(Awake { entry, pair });
         entry
     }
 }

@@ -9,6 +9,9 @@ use crate::vector_of::dot;
 use windfall_numerics::real::Lanes;
 use windfall_numerics::real_vector::{FourLanes, FourNumbers, LANES};
 
+/// Groups between the one that is worked through and the one whose memory is asked for.
+const AHEAD: usize = 24;
+
 /// Contacts of one block and one interaction.
 pub(crate) struct Batch<'a> {
     pub bodies: &'a Bodies,
@@ -54,6 +57,7 @@ impl FourLanes for Batch<'_> {
             let (given, found) = (&given[..count], &mut found[..count]);
             batch.store.normal(batch.surface, first, given, found);
             for own in 0..count {
+                batch.store.prefetch(first + own + AHEAD);
                 batch.push(first + own, &meetings[own], &found[own], zero);
             }
         }

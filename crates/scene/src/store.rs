@@ -9,6 +9,7 @@ use crate::react::{Clock, Memory, Normal, Reaction, Touch, given, react};
 use crate::vector_of::{Of, cross};
 use std::ops::Range;
 use windfall_contact::law_kind::Law;
+use windfall_numerics::prefetch::prefetch;
 use windfall_numerics::real::Lanes;
 use windfall_numerics::real_vector::{FourNumbers, LANES};
 
@@ -153,6 +154,15 @@ impl Store {
             if group * LANES + lane < self.len() {
                 self.put(group * LANES + lane, &before[lane]);
             }
+        }
+    }
+
+    /// Asks for the memory of a group that is soon to be worked through.
+    #[inline(always)]
+    pub(crate) fn prefetch(&self, group: usize) {
+        if let Some(quad) = self.quads.get(group) {
+            prefetch(quad);
+            self.elastic[self.annuli(group)].iter().for_each(prefetch);
         }
     }
 
