@@ -12,7 +12,7 @@ use crate::event::Partner;
 use crate::interaction::Interaction;
 use crate::neighbours::Bodies;
 use crate::pair_contacts::LARGEST_OVERLAP;
-use crate::react::{Clock, Touch, given, normal_of, react, surface_velocity};
+use crate::react::{Clock, Remembered, Touch, given, normal_of, react, surface_velocity};
 use crate::store::Load;
 use crate::vector::{Vector, add, dot, length, plus_scaled, scaled, subtract};
 use crate::vector_of::cross;
@@ -216,12 +216,22 @@ impl Touching {
         touch: &Touch<f64>,
         clock: Clock,
     ) -> (Vector, Vector) {
-        let history = &mut self.parcel.history;
-        let [d, v, peak] = given(touch, history.rate, history.peak);
+        let Parcel {
+            history,
+            peaks,
+            annuli,
+            rolling,
+            ..
+        } = &mut self.parcel;
+        let [d, v, peak] = given(touch, history.rate, peaks.displacement);
         let found = with_law!(&self.law, law => normal_of(law, d, v, peak));
-        let rolling = (surface.rolling > 0.0).then_some(&mut self.parcel.rolling);
-        let annuli = &mut self.parcel.annuli.0[..surface.annuli];
-        let reaction = react(found, surface, touch, clock, history, annuli, rolling);
+        let own = Remembered {
+            memory: history,
+            peaks,
+            annuli: &mut annuli.0[..surface.annuli],
+            rolling: (surface.rolling > 0.0).then_some(rolling),
+        };
+        let reaction = react(found, surface, touch, clock, own);
         (reaction.force, reaction.rolling)
     }
 }
@@ -367,10 +377,7 @@ impl NearWalls {
             // How far it is away is not looked for: the force was small already.
             let parcel = parted(own.own.parcel, 0.0, now.clock);
             let partner = Partner::Wall(own.wall);
-            let (history, encounter) = (&parcel.history, &parcel.encounter);
-            outcome
-                .events
-                .push(event(history, encounter, fruit, partner, false));
+            outcome.events.push(event(&parcel, fruit, partner, false));
         }
         Ok(work)
     }

@@ -3,7 +3,7 @@
 use crate::annuli::Annuli;
 use crate::error::Error;
 use crate::event::{Encounter, Event, Partner};
-use crate::react::{Clock, History};
+use crate::react::{Clock, History, Peaks};
 use crate::scene::Fruit;
 use crate::vector::{
     Rotation, Vector, dot, length, plus_scaled, scaled, subtract, turned_back, unit,
@@ -29,6 +29,7 @@ pub(crate) struct Parcel {
     /// What radii multiply the median's force by; 1.
     pub scale: f64,
     pub history: History,
+    pub peaks: Peaks<f64>,
     /// Elastic forces of the annuli on the first body; N.
     pub annuli: Annuli,
     /// Moment against rolling on the first body; N m.
@@ -41,7 +42,14 @@ impl Parcel {
     pub(crate) fn begin(scale: f64, clock: Clock, encounter: Encounter) -> Self {
         Self {
             scale,
-            history: History::at(clock.time, encounter.normal_speed),
+            history: History {
+                rate: encounter.normal_speed,
+                ..History::default()
+            },
+            peaks: Peaks {
+                ended: clock.time,
+                ..Peaks::default()
+            },
             annuli: Annuli::default(),
             rolling: [0.0; 3],
             encounter,
@@ -53,6 +61,7 @@ impl Parcel {
         Self {
             scale: self.scale,
             history: self.history.swapped(),
+            peaks: self.peaks,
             annuli: self.annuli.swapped(),
             rolling: scaled(self.rolling, -1.0),
             encounter: self.encounter.swapped(),
@@ -117,48 +126,46 @@ pub(crate) fn parted(mut parcel: Parcel, gap: f64, clock: Clock) -> Parcel {
             true => (gap / -history.rate).min(clock.step),
             false => 0.0,
         };
-        history.pushed = clock.time - since;
+        parcel.peaks.ended = clock.time - since;
+    }
+    parcel
+}
+
+/// A contact that lasts, as if it ended with the last step.
+///
+/// * `last`: when that was; s
+pub(crate) fn lasting(mut parcel: Parcel, last: f64) -> Parcel {
+    if parcel.history.normal > 0.0 {
+        parcel.peaks.ended = last;
     }
     parcel
 }
 
 /// The event of two fruit; the lower number first.
 pub(crate) fn event_of_pair(parcel: Parcel, (first, second): (u32, u32), lasting: bool) -> Event {
-    let swap = second < first;
-    let encounter = match swap {
-        true => parcel.encounter.swapped(),
-        false => parcel.encounter,
+    let parcel = match second < first {
+        true => parcel.swapped(),
+        false => parcel,
     };
     let partner = Partner::Fruit(first.max(second));
-    event(
-        &parcel.history,
-        &encounter,
-        first.min(second),
-        partner,
-        lasting,
-    )
+    event(&parcel, first.min(second), partner, lasting)
 }
 
-pub(crate) fn event(
-    history: &History,
-    encounter: &Encounter,
-    fruit: u32,
-    partner: Partner,
-    lasting: bool,
-) -> Event {
+pub(crate) fn event(parcel: &Parcel, fruit: u32, partner: Partner, lasting: bool) -> Event {
+    let (history, peaks, encounter) = (&parcel.history, &parcel.peaks, &parcel.encounter);
     Event {
         fruit,
         partner,
         time: encounter.time,
-        duration: history.pushed - encounter.time,
+        duration: peaks.ended - encounter.time,
         lasting,
         place: encounter.place,
         spot: encounter.spot,
         other_spot: encounter.other_spot,
         normal_speed: encounter.normal_speed,
         tangential_speed: encounter.tangential_speed,
-        peak_force: history.peak_force,
-        largest_displacement: history.peak,
+        peak_force: peaks.force,
+        largest_displacement: peaks.displacement,
         absorbed_energy: history.work,
         friction_energy: history.friction_work,
     }

@@ -36,7 +36,7 @@ impl<R: Copy> Touch<R> {
     }
 }
 
-/// What a contact remembers from step to step; of numbers or of several side by side.
+/// What a contact remembers that changes in every step; of numbers or of several side by side.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Memory<R> {
     /// Tangential force on the first body; N.
@@ -47,16 +47,76 @@ pub struct Memory<R> {
     pub normal: R,
     /// Rate of the displacement half a step ago; m/s.
     pub rate: R,
-    /// Largest displacement; m.
-    pub peak: R,
-    /// Largest normal force; N.
-    pub peak_force: R,
     /// Work of the bodies on the normal contact; J.
     pub work: R,
     /// Work of the bodies on friction and rolling; J.
     pub friction_work: R,
-    /// Last moment of a force; s.
-    pub pushed: R,
+}
+
+/// What a contact remembers that seldom changes: it stands apart, so that it is seldom
+/// written.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Peaks<R> {
+    /// Largest displacement; m.
+    pub displacement: R,
+    /// Largest normal force; N.
+    pub force: R,
+    /// When there was a force last, while there is none; s.
+    pub ended: R,
+}
+
+impl<R: Real> Peaks<R> {
+    /// As numbers without a processor's instructions.
+    #[inline(always)]
+    pub(crate) fn plain(self) -> Peaks<R::Plain> {
+        Peaks {
+            displacement: self.displacement.plain(),
+            force: self.force.plain(),
+            ended: self.ended.plain(),
+        }
+    }
+
+    /// Above zero where any of them is later or larger than it was.
+    #[inline(always)]
+    pub(crate) fn growth_from(&self, before: &Self) -> R {
+        let grown = (self.displacement - before.displacement).max(self.force - before.force);
+        grown.max(self.ended - before.ended)
+    }
+}
+
+impl<const W: usize> Peaks<Lanes<W>> {
+    /// Nothing remembered.
+    pub(crate) const ZERO: Self = Self {
+        displacement: Lanes::ZERO,
+        force: Lanes::ZERO,
+        ended: Lanes::ZERO,
+    };
+
+    /// As numbers like `like`.
+    #[inline(always)]
+    pub(crate) fn with_plain<R: Real<Plain = Lanes<W>>>(self, like: R) -> Peaks<R> {
+        Peaks {
+            displacement: like.with_plain(self.displacement),
+            force: like.with_plain(self.force),
+            ended: like.with_plain(self.ended),
+        }
+    }
+
+    /// One of several side by side.
+    pub(crate) fn lane(&self, lane: usize) -> Peaks<f64> {
+        Peaks {
+            displacement: self.displacement.0[lane],
+            force: self.force.0[lane],
+            ended: self.ended.0[lane],
+        }
+    }
+
+    /// Puts one among several.
+    pub(crate) fn put_lane(&mut self, lane: usize, own: &Peaks<f64>) {
+        self.displacement.0[lane] = own.displacement;
+        self.force.0[lane] = own.force;
+        self.ended.0[lane] = own.ended;
+    }
 }
 
 /// A memory of which each field comes of the same field of another.
@@ -67,11 +127,8 @@ macro_rules! memory {
             stiffness: $number!($own.stiffness),
             normal: $number!($own.normal),
             rate: $number!($own.rate),
-            peak: $number!($own.peak),
-            peak_force: $number!($own.peak_force),
             work: $number!($own.work),
             friction_work: $number!($own.friction_work),
-            pushed: $number!($own.pushed),
         }
     };
 }
@@ -149,7 +206,7 @@ impl<const W: usize> Memory<Lanes<W>> {
                 $(all.$field.0[lane] = history.$field;)*
             };
         }
-        put!(stiffness normal rate peak peak_force work friction_work pushed);
+        put!(stiffness normal rate work friction_work);
         for axis in 0..3 {
             all.tangential[axis].0[lane] = history.tangential[axis];
         }
@@ -161,15 +218,6 @@ impl<const W: usize> Memory<Lanes<W>> {
 pub type History = Memory<f64>;
 
 impl History {
-    /// A contact that begins with a rate of its displacement.
-    pub(crate) fn at(time: f64, rate: f64) -> Self {
-        Self {
-            pushed: time,
-            rate,
-            ..Self::default()
-        }
-    }
-
     /// The same contact seen from the second body.
     pub(crate) fn swapped(self) -> Self {
         Self {
@@ -177,6 +225,16 @@ impl History {
             ..self
         }
     }
+}
+
+/// All that a contact remembers from step to step.
+pub(crate) struct Remembered<'a, R: Real> {
+    pub memory: &'a mut Memory<R>,
+    pub peaks: &'a mut Peaks<R>,
+    /// Elastic forces on the first body, from the innermost; N.
+    pub annuli: &'a mut [Of<R::Plain>],
+    /// The moment against rolling on the first body a step ago, where there is one; N m.
+    pub rolling: Option<&'a mut Of<R>>,
 }
 
 /// What a contact does to the first body; the second has the opposite.
@@ -257,8 +315,6 @@ pub(crate) fn given<R: Real>(touch: &Touch<R>, rate: R, peak: R) -> Of<R> {
 /// μ_r R* F, with the stiffness k_t R*².
 ///
 /// * `found`: what the law says of [`given`]
-/// * `annuli`: elastic forces on the first body, from the innermost; N
-/// * `rolling`: the moment against rolling on the first body a step ago, where there is one
 ///
 /// # Source
 /// Mindlin (1949), J. Appl. Mech. 16, 259; Thornton, Cummins and Cleary (2013), Powder
@@ -269,10 +325,14 @@ pub(crate) fn react<R: Real>(
     surface: &Interaction,
     touch: &Touch<R>,
     clock: Clock,
-    memory: &mut Memory<R>,
-    annuli: &mut [Of<R::Plain>],
-    rolling: Option<&mut Of<R>>,
+    own: Remembered<R>,
 ) -> Reaction<R> {
+    let Remembered {
+        memory,
+        peaks,
+        annuli,
+        rolling,
+    } = own;
     let &Touch {
         normal,
         displacement,
@@ -285,15 +345,13 @@ pub(crate) fn react<R: Real>(
     let force = found.force.max(zero);
     // Where the force ended within the step.
     let since = found.force / (found.force - memory.normal);
-    let ended = memory
-        .normal
-        .select(now - since * clock.step, memory.pushed);
-    memory.pushed = force.select(now, ended);
+    let ended = memory.normal.select(now - since * clock.step, peaks.ended);
+    peaks.ended = force.select(peaks.ended, ended);
     memory.work = memory.work + (memory.normal + force) * rate * (0.5 * clock.step);
     memory.rate = rate;
     memory.normal = force;
-    memory.peak = memory.peak.max(displacement);
-    memory.peak_force = memory.peak_force.max(force);
+    peaks.displacement = peaks.displacement.max(displacement);
+    peaks.force = peaks.force.max(force);
     let mut reaction = Reaction {
         force: times(normal, -force),
         rolling: [zero; 3],

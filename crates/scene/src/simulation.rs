@@ -2,7 +2,7 @@
 
 use crate::clump_contacts::{self, ClumpContacts};
 use crate::clump_motion::{Around, ClumpState};
-use crate::contact::{Moment, Outcome, event, event_of_pair};
+use crate::contact::{Moment, Outcome, event, event_of_pair, lasting};
 use crate::energy::{Account, Energy};
 use crate::error::Error;
 use crate::event::{Event, Partner};
@@ -245,6 +245,7 @@ impl Simulation {
     #[must_use]
     pub fn lasting(&self) -> Vec<Event> {
         let mut events = Vec::new();
+        let last = self.steps.saturating_sub(1) as f64 * self.scene.time_step;
         for (parts, contacts) in self.table.blocks.iter().zip(&self.contacts) {
             for ((_, range), contacts) in parts.iter().zip(contacts) {
                 for (contact, &entry) in contacts.entries().iter().enumerate() {
@@ -255,24 +256,17 @@ impl Simulation {
                         fruit(self.table.first[entry]),
                         fruit(self.table.second[entry]),
                     );
-                    events.push(event_of_pair(parcel, pair, true));
+                    events.push(event_of_pair(lasting(parcel, last), pair, true));
                 }
             }
         }
         for (body, wall, parcel) in self.touched_walls() {
             let fruit = self.bodies.fruit[body];
             let partner = Partner::Wall(wall);
-            events.push(event(
-                &parcel.history,
-                &parcel.encounter,
-                fruit,
-                partner,
-                true,
-            ));
+            events.push(event(&lasting(parcel, last), fruit, partner, true));
         }
         for (fruit, partner, parcel) in self.clump_contacts.all() {
-            let (history, encounter) = (&parcel.history, &parcel.encounter);
-            events.push(event(history, encounter, fruit, partner, true));
+            events.push(event(&lasting(parcel, last), fruit, partner, true));
         }
         events.sort_by_key(|event| (event.fruit, event.partner));
         events

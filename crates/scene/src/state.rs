@@ -8,7 +8,7 @@ use crate::energy::Account;
 use crate::error::Error;
 use crate::event::{Encounter, Event, Partner};
 use crate::neighbours::{Bodies, PairTable};
-use crate::react::Memory;
+use crate::react::{Memory, Peaks};
 use crate::scene::Scene;
 use crate::simulation::{FruitState, Leaving, Simulation};
 use crate::vector::Vector;
@@ -113,11 +113,17 @@ binary!(Account {
     brought
 });
 binary!(Memory<f64> {
-    tangential, stiffness, normal, rate, peak, peak_force, work, friction_work, pushed
+    tangential, stiffness, normal, rate, work, friction_work
+});
+binary!(Peaks<f64> {
+    displacement,
+    force,
+    ended
 });
 binary!(Parcel {
     scale,
     history,
+    peaks,
     annuli,
     rolling,
     encounter

@@ -5,7 +5,7 @@ use crate::contact::Parcel;
 use crate::event::Encounter;
 use crate::interaction::Interaction;
 use crate::law_column::{Four, Given, LawColumn, law_column};
-use crate::react::{Clock, Memory, Normal, Reaction, Touch, given, react};
+use crate::react::{Clock, Memory, Normal, Peaks, Reaction, Remembered, Touch, given, react};
 use crate::vector_of::{Of, cross};
 use std::ops::Range;
 use windfall_contact::law_kind::Law;
@@ -22,17 +22,24 @@ pub(crate) type Load = [f64; 8];
 /// Groups of four that are worked through at a time.
 pub(crate) const CHUNK: usize = 8;
 
-/// What every step needs of four contacts.
+/// What every step changes of four contacts, in whole lines of a processor's memory.
 #[derive(Clone, Copy)]
-struct Quad {
-    history: Memory<Four>,
+#[repr(align(64))]
+struct Often(Memory<Four>);
+
+/// What every step reads and few change.
+#[derive(Clone, Copy)]
+#[repr(align(64))]
+struct Seldom {
+    peaks: Peaks<Four>,
     /// What radii multiply the median's force by; 1.
     scale: Four,
 }
 
 /// Contacts under one law; what is needed in every step stands apart from the rest.
 pub(crate) struct Store {
-    quads: Vec<Quad>,
+    often: Vec<Often>,
+    seldom: Vec<Seldom>,
     /// Elastic forces of the annuli of each group on the first bodies; N.
     elastic: Vec<Of<Four>>,
     /// Annuli of a contact.
@@ -48,7 +55,8 @@ impl Store {
     pub(crate) fn new(surface: &Interaction, room: usize) -> Self {
         let groups = room.div_ceil(LANES);
         Self {
-            quads: Vec::with_capacity(groups),
+            often: Vec::with_capacity(groups),
+            seldom: Vec::with_capacity(groups),
             elastic: Vec::with_capacity(groups * surface.annuli),
             annuli: surface.annuli,
             rolling: Vec::with_capacity(groups),
@@ -68,8 +76,9 @@ impl Store {
         }
         let own = self.len();
         if own.is_multiple_of(LANES) {
-            self.quads.push(Quad {
-                history: Memory::ZERO,
+            self.often.push(Often(Memory::ZERO));
+            self.seldom.push(Seldom {
+                peaks: Peaks::ZERO,
                 scale: Lanes::ZERO,
             });
             self.rolling.push([Lanes::ZERO; 3]);
@@ -87,12 +96,14 @@ impl Store {
     }
 
     pub(crate) fn parcel(&self, contact: usize) -> Parcel {
-        let (quad, lane) = (&self.quads[contact / LANES], contact % LANES);
+        let (group, lane) = (contact / LANES, contact % LANES);
+        let seldom = &self.seldom[group];
         Parcel {
-            scale: quad.scale.0[lane],
-            history: quad.history.lane(lane),
+            scale: seldom.scale.0[lane],
+            history: self.often[group].0.lane(lane),
+            peaks: seldom.peaks.lane(lane),
             annuli: self.annuli_of(contact),
-            rolling: self.rolling[contact / LANES].map(|axis| axis.0[lane]),
+            rolling: self.rolling[group].map(|axis| axis.0[lane]),
             encounter: self.encounters[contact],
         }
     }
@@ -105,7 +116,8 @@ impl Store {
         self.laws.swap_remove(contact);
         self.encounters.swap_remove(contact);
         if last.is_multiple_of(LANES) {
-            self.quads.pop();
+            self.often.pop();
+            self.seldom.pop();
             self.rolling.pop();
             self.elastic.truncate(self.elastic.len() - self.annuli);
         }
@@ -130,9 +142,10 @@ impl Store {
     fn put(&mut self, contact: usize, parcel: &Parcel) {
         let (group, lane) = (contact / LANES, contact % LANES);
         let annuli = self.annuli(group);
-        let quad = &mut self.quads[group];
-        quad.history.put_lane(lane, &parcel.history);
-        quad.scale.0[lane] = parcel.scale;
+        self.often[group].0.put_lane(lane, &parcel.history);
+        let seldom = &mut self.seldom[group];
+        seldom.peaks.put_lane(lane, &parcel.peaks);
+        seldom.scale.0[lane] = parcel.scale;
         let rolling = (&mut self.rolling[group], &parcel.rolling);
         let elastic = self.elastic[annuli].iter_mut().zip(&parcel.annuli.0);
         for (four, own) in elastic.chain([rolling]) {
@@ -160,8 +173,9 @@ impl Store {
     /// Asks for the memory of a group that is soon to be worked through.
     #[inline(always)]
     pub(crate) fn prefetch(&self, group: usize) {
-        if let Some(quad) = self.quads.get(group) {
-            prefetch(quad);
+        if let Some(often) = self.often.get(group) {
+            prefetch(often);
+            prefetch(&self.seldom[group]);
             self.elastic[self.annuli(group)].iter().for_each(prefetch);
         }
     }
@@ -169,8 +183,8 @@ impl Store {
     /// What the law is asked for a group of four.
     #[inline(always)]
     pub(crate) fn given<R: FourNumbers>(&self, group: usize, touch: &Touch<R>, zero: R) -> Given {
-        let history = &self.quads[group].history;
-        let (rate, peak) = (zero.with_plain(history.rate), zero.with_plain(history.peak));
+        let rate = zero.with_plain(self.often[group].0.rate);
+        let peak = zero.with_plain(self.seldom[group].peaks.displacement);
         zero.each_plain(given(touch, rate, peak))
     }
 
@@ -199,11 +213,13 @@ impl Store {
         zero: R,
     ) -> Reaction<R> {
         let annuli = self.annuli(group);
-        let quad = &mut self.quads[group];
-        let mut memory = quad.history.with_plain(zero);
+        let (Often(often), seldom) = (&mut self.often[group], &mut self.seldom[group]);
+        let mut memory = often.with_plain(zero);
+        let before = seldom.peaks.with_plain(zero);
+        let mut peaks = before;
         // The laws of fruit that differ have the factor within.
         let scale = match surface.spread {
-            None => zero.with_plain(quad.scale),
+            None => zero.with_plain(seldom.scale),
             Some(_) => zero.constant(1.0),
         };
         let found = Normal {
@@ -216,10 +232,18 @@ impl Store {
             true => zero.with_each_plain(self.rolling[group]),
             false => [zero; 3],
         };
-        let rolling = if rolls { Some(&mut moment) } else { None };
-        let annuli = &mut self.elastic[annuli];
-        let reaction = react(found, surface, touch, clock, &mut memory, annuli, rolling);
-        quad.history = memory.plain();
+        let own = Remembered {
+            memory: &mut memory,
+            peaks: &mut peaks,
+            annuli: &mut self.elastic[annuli],
+            rolling: if rolls { Some(&mut moment) } else { None },
+        };
+        let reaction = react(found, surface, touch, clock, own);
+        *often = memory.plain();
+        let Lanes(growth) = peaks.growth_from(&before).plain();
+        if growth.into_iter().any(|own| own > 0.0) {
+            seldom.peaks = peaks.plain();
+        }
         if rolls {
             self.rolling[group] = zero.each_plain(moment);
         }

@@ -348,13 +348,10 @@ fn follow<'a>(
         }
         let gap = walls.closest(facet, body.centre).distance - body.radius;
         let parcel = parted(parcel, gap.max(0.0), around.now.clock);
-        outcome.events.push(event(
-            &parcel.history,
-            &parcel.encounter,
-            body.fruit,
-            Partner::Wall(wall),
-            false,
-        ));
+        let partner = Partner::Wall(wall);
+        outcome
+            .events
+            .push(event(&parcel, body.fruit, partner, false));
     }
 }
 
