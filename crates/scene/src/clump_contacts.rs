@@ -77,10 +77,6 @@ pub(crate) struct Around<'a, S> {
 }
 
 impl ClumpContacts {
-    pub(crate) fn is_empty(&self) -> bool {
-        self.pairs.is_empty() && self.walls.is_empty()
-    }
-
     /// Contacts of two fruit now.
     pub(crate) fn pair_count(&self) -> usize {
         let pairs = self.pairs.values();

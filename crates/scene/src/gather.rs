@@ -7,7 +7,7 @@ use crate::law_column::Four;
 use crate::neighbours::PairTable;
 use crate::scene::Scene;
 use crate::store::{Load, NONE};
-use crate::vector::{Rotation, Vector, add, dot, length, scaled, turned_on};
+use crate::vector::{Rotation, Vector, dot, length, plus_scaled, turned_on};
 use crate::vector_of::dot as dot_of;
 use crate::wall_contacts::{Around, Body, NearPart, WallState, aim};
 use crate::wall_forces::WallContacts;
@@ -47,6 +47,8 @@ pub(crate) struct Gather<'a> {
     pub bodies: (&'a [u32], &'a [u32]),
     /// Where each is in its clump, if there are clumps: see `Bodies`.
     pub clumps: (&'a [u32], &'a [Vector]),
+    /// Of contacts of clumps on each body, if there are clumps.
+    pub clump_loads: &'a [Load],
     pub listed: &'a [Four],
     pub with_energy: bool,
 }
@@ -74,11 +76,12 @@ impl Gather<'_> {
         }
         for (own, load) in block.loads.iter_mut().enumerate() {
             for &number in self.table.incoming(block.start + own) {
-                let out = &self.out[number as usize];
-                for at in 0..8 {
-                    load[at] += out[at];
-                }
+                add(load, &self.out[number as usize]);
             }
+        }
+        let of_clumps = self.clump_loads.iter().skip(block.start);
+        for (load, own) in block.loads.iter_mut().zip(of_clumps) {
+            add(load, own);
         }
         let step = now.clock.step;
         if let Some(air) = self.scene.air {
@@ -166,8 +169,8 @@ impl Gather<'_> {
                 continue;
             }
             let half = |axis: usize, by: f64| m[axis] + 0.5 * step * load[axis] * by;
-            let gravity = scaled(self.scene.gravity, 0.5 * step);
-            let velocity = add([0, 1, 2].map(|axis| half(axis, m[3])), gravity);
+            let velocity = [0, 1, 2].map(|axis| half(axis, m[3]));
+            let velocity = plus_scaled(velocity, self.scene.gravity, 0.5 * step);
             let spin = [4, 5, 6].map(|axis| half(axis, m[7]));
             sums.kinetic += 0.5 * dot(velocity, velocity) / m[3];
             sums.rotational += 0.5 * dot(spin, spin) / m[7];
@@ -201,6 +204,12 @@ impl Gather<'_> {
             }
         }
         problem
+    }
+}
+
+fn add(to: &mut Load, own: &Load) {
+    for at in 0..to.len() {
+        to[at] += own[at];
     }
 }
 

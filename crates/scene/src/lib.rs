@@ -39,6 +39,7 @@ pub mod scene;
 pub mod simulation;
 pub mod state;
 mod store;
+mod sweep;
 pub mod time_step;
 mod traffic;
 pub mod vector;

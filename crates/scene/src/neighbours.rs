@@ -1,7 +1,7 @@
 //! Which fruit may touch before the list is made anew: cells, and pairs within a skin.
 
 use crate::store::NONE;
-use crate::vector::{Rotation, Vector};
+use crate::vector::{Rotation, Vector, length};
 use crate::wall_contacts::Lifted;
 use rayon::prelude::*;
 use std::ops::Range;
@@ -39,6 +39,18 @@ impl Bodies {
         (self.clump[body] != NONE).then(|| self.offset[body])
     }
 
+    /// From a body on.
+    pub(crate) fn from(&self, first: usize) -> BodiesFrom<'_> {
+        BodiesFrom {
+            place: &self.place[first..],
+            motion: &self.motion[first..],
+            turn: &self.turn[first..],
+            fruit: &self.fruit[first..],
+            clump: &self.clump[first..],
+            offset: &self.offset[first..],
+        }
+    }
+
     /// In another order: body `order[n]` becomes body n.
     fn reordered(&mut self, order: &[u32]) {
         fn picked<T: Copy>(from: &[T], order: &[u32]) -> Vec<T> {
@@ -57,6 +69,30 @@ impl Bodies {
             .iter()
             .map(|&place| std::mem::take(&mut old[place as usize]))
             .collect();
+    }
+}
+
+/// Bodies from the first of a block on, by their numbers in it: see [`Bodies`].
+#[derive(Clone, Copy)]
+pub(crate) struct BodiesFrom<'a> {
+    pub place: &'a [[f64; 4]],
+    pub motion: &'a [[f64; 8]],
+    pub turn: &'a [Rotation],
+    pub fruit: &'a [u32],
+    pub clump: &'a [u32],
+    pub offset: &'a [Vector],
+}
+
+impl BodiesFrom<'_> {
+    /// Where in its clump a body is, if it belongs to one; m.
+    pub(crate) fn offset_of(&self, body: usize) -> Option<Vector> {
+        (self.clump[body] != NONE).then(|| self.offset[body])
+    }
+
+    /// How far two bodies overlap; m.
+    pub(crate) fn overlap(&self, [i, j]: [u32; 2]) -> f64 {
+        let (a, b) = (&self.place[i as usize], &self.place[j as usize]);
+        a[3] + b[3] - length([b[0] - a[0], b[1] - a[1], b[2] - a[2]])
     }
 }
 
@@ -86,8 +122,8 @@ pub(crate) struct PairTable {
     pub of_clumps: Vec<[u32; 2]>,
     /// For each entry its number among those of two blocks, or [`NONE`].
     pub out: Vec<u32>,
-    /// How many of them each block of first bodies has.
-    pub outs: Vec<usize>,
+    /// Where those of each block begin.
+    out_start: Vec<usize>,
     /// The ones in which each body is second, and where those of each begin.
     incoming: Vec<u32>,
     incoming_start: Vec<u32>,
@@ -301,19 +337,32 @@ impl PairTable {
         }
         let mut foreign = Vec::new();
         self.out = vec![NONE; self.first.len()];
-        self.outs = vec![0; self.bounds.len()];
+        self.out_start = vec![0; self.bounds.len() + 1];
         for entry in all {
             let pair = [self.first[entry as usize], self.second[entry as usize]];
             let [one, other] = pair.map(|body| block[body as usize]);
             if one != other {
                 self.out[entry as usize] = foreign.len() as u32;
-                self.outs[one as usize] += 1;
+                self.out_start[one as usize + 1] += 1;
                 foreign.push(pair[1]);
             }
+        }
+        for block in 0..self.bounds.len() {
+            self.out_start[block + 1] += self.out_start[block];
         }
         let numbers = 0..foreign.len() as u32;
         (self.incoming_start, self.incoming) =
             listed(count, numbers, |number| foreign[number as usize]);
+    }
+
+    /// How many entries of two blocks there are before a block.
+    pub(crate) fn outs_before(&self, block: usize) -> usize {
+        self.out_start[block]
+    }
+
+    /// How many bodies some blocks have.
+    pub(crate) fn bodies_of(&self, blocks: Range<usize>) -> usize {
+        self.bounds[blocks].iter().map(Range::len).sum()
     }
 
     /// Entries of other blocks in which a body is second, by their number.

@@ -3,7 +3,7 @@
 use crate::contact::{Moment, Outcome, Parcel, encounter, event_of_pair, parted, spot, too_deep};
 use crate::error::{Error, fruit_name};
 use crate::interaction::Interaction;
-use crate::neighbours::Bodies;
+use crate::neighbours::BodiesFrom;
 use crate::pair_forces::Batch;
 use crate::react::surface_velocity;
 use crate::store::{Load, NONE, Store};
@@ -16,14 +16,16 @@ use windfall_numerics::real_vector::with_four_lanes;
 
 /// The entries of one block and one interaction.
 pub(crate) struct Part<'a> {
-    pub bodies: &'a Bodies,
+    /// From the first body of the block on.
+    pub bodies: BodiesFrom<'a>,
+    /// Number of that body.
+    pub base: u32,
     pub first: &'a [u32],
     pub second: &'a [u32],
     /// Where each has what it does to a second body of another block.
     pub out: &'a [u32],
-    /// Loads of pairs on the bodies of the block, and the first of them.
+    /// Loads of pairs on the bodies of the block.
     pub loads: &'a mut [Load],
-    pub base: usize,
     /// Loads on second bodies of other blocks, and the number of the first; zero where nothing
     /// touches.
     pub outs: &'a mut [Load],
@@ -36,6 +38,7 @@ pub(crate) struct Part<'a> {
 pub(crate) struct PairContacts {
     store: Store,
     entries: Vec<u32>,
+    /// Their bodies, from the first of the block on.
     pairs: Vec<[u32; 2]>,
     /// Entries without a contact that may soon touch.
     awake: Vec<Awake>,
@@ -45,7 +48,7 @@ pub(crate) struct PairContacts {
     parting: Vec<u32>,
 }
 
-/// An entry and its bodies.
+/// An entry and its bodies, from the first of the block on.
 #[derive(Clone, Copy)]
 struct Awake {
     entry: u32,
@@ -81,28 +84,29 @@ impl PairContacts {
     ) {
         let Part {
             bodies,
+            base,
             first,
             second,
             out,
             loads,
-            base,
             outs,
             out_base,
             moved,
         } = part;
-        self.wake(moved, first, second);
-        if let Err(problem) = self.begin_all(bodies, (surface, now)) {
+        self.wake(moved, |entry| {
+            [first[entry as usize] - base, second[entry as usize] - base]
+        });
+        if let Err(problem) = self.begin_all(&bodies, (surface, now)) {
             outcome.problem.get_or_insert(problem);
             return;
         }
         let mut parting = std::mem::take(&mut self.parting);
         let deepest = with_four_lanes(Batch {
-            bodies,
+            bodies: &bodies,
             store: &mut self.store,
             pairs: &self.pairs,
             out: (&self.entries, out),
             loads,
-            base,
             outs: &mut *outs,
             out_base,
             parting: &mut parting,
@@ -112,10 +116,10 @@ impl PairContacts {
         if deepest > LARGEST_OVERLAP {
             outcome
                 .problem
-                .get_or_insert_with(|| self.deepest(bodies, now));
+                .get_or_insert_with(|| self.deepest(&bodies, now));
         }
         for contact in parting.drain(..) {
-            let entry = self.finish(contact as usize, bodies, now, outcome);
+            let entry = self.finish(contact as usize, &bodies, now, outcome);
             let number = out[entry as usize];
             if number != NONE {
                 outs[(number - out_base) as usize] = [0.0; 8];
@@ -138,13 +142,13 @@ impl PairContacts {
     }
 
     /// Every other entry of a new list waits until it may touch.
-    pub(crate) fn wait(&mut self, first: &[u32], second: &[u32], bodies: &Bodies) {
+    ///
+    /// * `pairs`: the bodies of all entries
+    pub(crate) fn wait(&mut self, pairs: impl Iterator<Item = [u32; 2]>, bodies: &BodiesFrom) {
         let mut known = self.entries.iter().copied().peekable();
-        for (entry, (&i, &j)) in first.iter().zip(second).enumerate() {
-            let entry = entry as u32;
+        for (entry, pair) in (0..).zip(pairs) {
             if known.next_if_eq(&entry).is_none() {
-                self.asleep
-                    .push((-overlap(bodies, i as usize, j as usize), entry));
+                self.asleep.push((-bodies.overlap(pair), entry));
             }
         }
         let widest_first = |a: &(f64, u32), b: &(f64, u32)| (b.0, b.1).partial_cmp(&(a.0, a.1));
@@ -163,7 +167,9 @@ impl PairContacts {
     }
 
     /// Entries whose bodies may have come together since the list was made.
-    fn wake(&mut self, moved: f64, first: &[u32], second: &[u32]) {
+    ///
+    /// * `pair`: the bodies of an entry
+    fn wake(&mut self, moved: f64, pair: impl Fn(u32) -> [u32; 2]) {
         // With room for what is rounded.
         let reach = 2.0 * moved * (1.0 + 1e-9);
         while let Some(&(gap, entry)) = self.asleep.last() {
@@ -172,13 +178,17 @@ impl PairContacts {
                 break;
             }
             self.asleep.pop();
-            let pair = [first[entry as usize], second[entry as usize]];
+            let pair = pair(entry);
             self.awake.push(Awake { entry, pair });
         }
     }
 
     /// Contacts of entries that touch now.
-    fn begin_all(&mut self, bodies: &Bodies, work: (&Interaction, &Moment)) -> Result<(), Error> {
+    fn begin_all(
+        &mut self,
+        bodies: &BodiesFrom,
+        work: (&Interaction, &Moment),
+    ) -> Result<(), Error> {
         let mut place = 0;
         while let Some(&Awake { entry, pair }) = self.awake.get(place) {
             if let Some(later) = self.awake.get(place + AHEAD) {
@@ -189,8 +199,7 @@ impl PairContacts {
             let [a, b] = pair.map(|body| &bodies.place[body as usize]);
             let between = [b[0] - a[0], b[1] - a[1], b[2] - a[2]];
             let reach = a[3] + b[3];
-            let apart = dot(between, between) >= reach * reach
-                || overlap(bodies, pair[0] as usize, pair[1] as usize) <= 0.0;
+            let apart = dot(between, between) >= reach * reach || bodies.overlap(pair) <= 0.0;
             if apart {
                 place += 1;
             } else {
@@ -206,7 +215,7 @@ impl PairContacts {
         &mut self,
         entry: u32,
         pair: [u32; 2],
-        bodies: &Bodies,
+        bodies: &BodiesFrom,
         (surface, now): (&Interaction, &Moment),
     ) -> Result<(), Error> {
         let [i, j] = pair.map(|body| body as usize);
@@ -214,7 +223,7 @@ impl PairContacts {
         let centre = |body: usize| [0, 1, 2].map(|axis| bodies.place[body][axis]);
         let (a, b) = (bodies.place[i][3], bodies.place[j][3]);
         let radius = effective_radius(a, b);
-        let displacement = overlap(bodies, i, j);
+        let displacement = bodies.overlap(pair);
         let between = subtract(centre(j), centre(i));
         let normal = scaled(between, 1.0 / length(between));
         let (u, w) = (&bodies.motion[i], &bodies.motion[j]);
@@ -237,11 +246,11 @@ impl PairContacts {
 
     /// The pair that overlaps too much.
     #[cold]
-    fn deepest(&self, bodies: &Bodies, now: &Moment) -> Error {
+    fn deepest(&self, bodies: &BodiesFrom, now: &Moment) -> Error {
         let share = |pair: &[u32; 2]| {
             let [i, j] = pair.map(|body| body as usize);
             let radius = bodies.place[i][3].min(bodies.place[j][3]);
-            (overlap(bodies, i, j) / radius, i, j, radius)
+            (bodies.overlap(*pair) / radius, i, j, radius)
         };
         let all = self.pairs.iter().map(share);
         let (share, i, j, radius) =
@@ -261,12 +270,12 @@ impl PairContacts {
     fn finish(
         &mut self,
         contact: usize,
-        bodies: &Bodies,
+        bodies: &BodiesFrom,
         now: &Moment,
         outcome: &mut Outcome,
     ) -> u32 {
         let [i, j] = self.pairs[contact].map(|body| body as usize);
-        let gap = -overlap(bodies, i, j);
+        let gap = -bodies.overlap(self.pairs[contact]);
         let parted = parted(self.store.parcel(contact), gap, now.clock);
         let fruit = (bodies.fruit[i], bodies.fruit[j]);
         outcome.events.push(event_of_pair(parted, fruit, false));
@@ -276,10 +285,4 @@ impl PairContacts {
         self.awake.push(Awake { entry, pair });
         entry
     }
-}
-
-/// How far two bodies overlap; m.
-fn overlap(bodies: &Bodies, i: usize, j: usize) -> f64 {
-    let (a, b) = (&bodies.place[i], &bodies.place[j]);
-    a[3] + b[3] - length([b[0] - a[0], b[1] - a[1], b[2] - a[2]])
 }

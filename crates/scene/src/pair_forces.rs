@@ -2,7 +2,7 @@
 
 use crate::interaction::Interaction;
 use crate::law_column::Four;
-use crate::neighbours::Bodies;
+use crate::neighbours::BodiesFrom;
 use crate::react::{Clock, Normal, Touch, surface_velocity};
 use crate::store::{CHUNK, Load, Store, add_load, loads};
 use crate::vector_of::dot;
@@ -14,7 +14,7 @@ const AHEAD: usize = 24;
 
 /// Contacts of one block and one interaction.
 pub(crate) struct Batch<'a> {
-    pub bodies: &'a Bodies,
+    pub bodies: &'a BodiesFrom<'a>,
     pub store: &'a mut Store,
     /// The bodies of each contact.
     pub pairs: &'a [[u32; 2]],
@@ -22,8 +22,6 @@ pub(crate) struct Batch<'a> {
     pub out: (&'a [u32], &'a [u32]),
     /// Loads of pairs on the bodies of the block.
     pub loads: &'a mut [Load],
-    /// The first body of the block.
-    pub base: usize,
     /// Loads on second bodies of other blocks, and the number of the first.
     pub outs: &'a mut [Load],
     pub out_base: u32,
@@ -117,10 +115,13 @@ impl Batch<'_> {
                 continue;
             }
             let [first, second] = self.pairs[start + lane];
-            let (first, second) = (first as usize - self.base, second as usize - self.base);
-            add_load(&mut self.loads[first], &near.0[lane], &near.1[lane]);
+            add_load(
+                &mut self.loads[first as usize],
+                &near.0[lane],
+                &near.1[lane],
+            );
             // Second bodies stand behind.
-            match self.loads.get_mut(second) {
+            match self.loads.get_mut(second as usize) {
                 Some(load) => add_load(load, &far.0[lane], &far.1[lane]),
                 None => {
                     let number = self.out.1[self.out.0[start + lane] as usize];
@@ -167,8 +168,8 @@ fn half(row: &Load, at: usize) -> Four {
 }
 
 #[inline(always)]
-fn meet<R: FourNumbers>(bodies: &Bodies, pairs: [[u32; 2]; LANES], zero: R) -> Meeting<R> {
-    let (places, motions) = (&bodies.place[..], &bodies.motion[..]);
+fn meet<R: FourNumbers>(bodies: &BodiesFrom, pairs: [[u32; 2]; LANES], zero: R) -> Meeting<R> {
+    let (places, motions) = (bodies.place, bodies.motion);
     let i = [pairs[0][0], pairs[1][0], pairs[2][0], pairs[3][0]];
     let j = [pairs[0][1], pairs[1][1], pairs[2][1], pairs[3][1]];
     let mut rows = [[Lanes::ZERO; LANES]; 6];

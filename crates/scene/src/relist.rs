@@ -98,7 +98,11 @@ impl Simulation {
         // In the order of the list, in which they are worked through.
         carried.sort_unstable_by_key(|own| own.entry);
         let (table, bodies) = (&self.table, &self.bodies);
-        let of_part = |(interaction, range): &(usize, Range<usize>)| {
+        let of_part = |base: usize, (interaction, range): &(usize, Range<usize>)| {
+            let bodies = bodies.from(base);
+            let pair = |entry: usize| {
+                [table.first[entry], table.second[entry]].map(|body| body - base as u32)
+            };
             let until = |end: usize| carried.partition_point(|own| (own.entry as usize) < end);
             let carried = &carried[until(range.start)..until(range.end)];
             let mut contacts = PairContacts::new(&self.surfaces[*interaction], carried.len());
@@ -110,19 +114,16 @@ impl Simulation {
                 } else {
                     parcel
                 };
-                let pair = [table.first[entry], table.second[entry]];
-                contacts.adopt((entry - range.start) as u32, pair, &law, parcel);
+                contacts.adopt((entry - range.start) as u32, pair(entry), &law, parcel);
             }
-            let (first, second) = (&table.first, &table.second);
-            contacts.wait(&first[range.clone()], &second[range.clone()], bodies);
+            contacts.wait(range.clone().map(pair), &bodies);
             contacts
         };
-        let blocks = table.blocks.par_iter();
+        let blocks = table.blocks.par_iter().zip(&table.bounds);
         self.contacts = blocks
-            .map(|parts| parts.iter().map(of_part).collect())
+            .map(|(parts, bounds)| parts.iter().map(|own| of_part(bounds.start, own)).collect())
             .collect();
-        self.out = vec![[0.0; 8]; self.table.outs.iter().sum()];
-        self.loads = vec![[0.0; 8]; self.bodies.len()];
+        self.out = vec![[0.0; 8]; self.table.outs_before(self.table.bounds.len())];
         self.listed = self.bodies.place.iter().map(|own| Lanes(*own)).collect();
         (self.moved, self.wall_way) = (0.0, 0.0);
         self.find_near();

@@ -6,18 +6,17 @@ use crate::contact::{Moment, Outcome, event, event_of_pair, lasting};
 use crate::energy::{Account, Energy};
 use crate::error::Error;
 use crate::event::{Event, Partner};
-use crate::gather::{BlockBodies, Gather, Sums};
+use crate::gather::Sums;
 use crate::interaction::Interaction;
 use crate::law_column::Four;
 use crate::neighbours::{Bodies, PairTable};
-use crate::pair_contacts::{PairContacts, Part};
+use crate::pair_contacts::PairContacts;
 use crate::react::Clock;
 use crate::scene::Scene;
 use crate::store::{Load, NONE};
 use crate::vector::{Rotation, Vector};
 use crate::wall_contacts::{NearPart, WallState};
 use crate::wall_forces::WallContacts;
-use rayon::prelude::*;
 
 /// A scene that runs.
 ///
@@ -36,8 +35,10 @@ pub struct Simulation {
     pub(crate) contacts: Vec<Vec<PairContacts>>,
     /// Of pairs of two blocks on the second body.
     pub(crate) out: Vec<Load>,
-    /// Of the pairs of its block on each body, and in the end all.
-    pub(crate) loads: Vec<Load>,
+    /// For the loads on the bodies of blocks, while these are worked through.
+    pub(crate) loads: [Vec<Load>; 2],
+    /// Of contacts of clumps on each body, where there are clumps.
+    pub(crate) clump_loads: Vec<Load>,
     pub(crate) walls: WallState,
     /// Contacts of the bodies of each block with walls, by interaction.
     pub(crate) wall_contacts: Vec<Vec<WallContacts>>,
@@ -88,9 +89,6 @@ pub struct FruitState {
 
 /// Skin of the list of neighbours over the mean radius; 1.
 const SKIN: f64 = 0.16;
-
-/// So few blocks are done sooner by one thread than given to several.
-const FEW_BLOCKS: usize = 2;
 
 /// Steps between looks at sinks.
 const SINK_STEPS: u64 = 32;
@@ -144,7 +142,8 @@ impl Simulation {
             table: PairTable::default(),
             contacts: Vec::new(),
             out: Vec::new(),
-            loads: Vec::new(),
+            loads: Default::default(),
+            clump_loads: Vec::new(),
             wall_contacts: Vec::new(),
             near: Vec::new(),
             near_start: vec![0],
@@ -305,122 +304,23 @@ impl Simulation {
             self.rebuild();
         }
         self.walls.move_to(&self.scene.walls, time, step);
-        self.push_pairs(time)?;
-        self.push_clump_contacts(time)?;
         let energy = self.push_bodies(time, with_energy)?;
         self.wall_way += self.wall_speed * step;
         self.steps += 1;
         Ok(energy)
     }
 
-    /// Forces of all pairs.
-    fn push_pairs(&mut self, time: f64) -> Result<(), Error> {
-        let bodies = &self.bodies;
-        let now = Moment {
-            fruit: &self.scene.fruit,
-            clock: Clock {
-                time,
-                step: self.scene.time_step,
-            },
-        };
-        let table = &self.table;
-        let (mut first, mut second) = (&table.first[..], &table.second[..]);
-        let mut out = &table.out[..];
-        let mut loads = &mut self.loads[..];
-        let mut tasks = Vec::with_capacity(table.blocks.len());
-        let blocks = table.blocks.iter().zip(&table.bounds);
-        let mut outs = &mut self.out[..];
-        let mut out_base = 0;
-        for (((parts, bounds), contacts), count) in blocks.zip(&mut self.contacts).zip(&table.outs)
-        {
-            let mut own = Vec::with_capacity(parts.len());
-            for (interaction, range) in parts {
-                let length = range.len();
-                let entries = (
-                    take(&mut first, length),
-                    take(&mut second, length),
-                    take(&mut out, length),
-                );
-                own.push((*interaction, entries));
-            }
-            let loads = take_mut(&mut loads, bounds.len());
-            let outs = (out_base, take_mut(&mut outs, *count));
-            out_base += *count as u32;
-            tasks.push((own, (bounds.start, loads), outs, contacts));
-        }
-        let (surfaces, moved) = (&self.surfaces, self.moved);
-        let work = |(parts, (base, loads), (out_base, outs), contacts): BlockTask| {
-            let mut outcome = Outcome::default();
-            loads.fill([0.0; 8]);
-            for ((interaction, (first, second, out)), contacts) in parts.into_iter().zip(contacts) {
-                let part = Part {
-                    bodies,
-                    first,
-                    second,
-                    out,
-                    loads: &mut *loads,
-                    base,
-                    outs: &mut *outs,
-                    out_base,
-                    moved,
-                };
-                contacts.advance(part, &surfaces[interaction], &now, &mut outcome);
-            }
-            outcome
-        };
-        let outcomes: Vec<Outcome> = match tasks.len() < FEW_BLOCKS {
-            true => tasks.into_iter().map(work).collect(),
-            false => tasks.into_par_iter().with_max_len(1).map(work).collect(),
-        };
-        outcomes.into_iter().try_for_each(|own| self.end(own))
-    }
-
-    /// Forces on all bodies, and where they take them.
+    /// Forces of everything on all bodies, and where they take them.
     fn push_bodies(&mut self, time: f64, with_energy: bool) -> Result<Energy, Error> {
-        let now = Moment {
-            fruit: &self.scene.fruit,
-            clock: Clock {
-                time,
-                step: self.scene.time_step,
-            },
-        };
-        let gather = Gather {
-            table: &self.table,
-            out: &self.out,
-            scene: &self.scene,
-            surfaces: &self.surfaces,
-            numbers: &self.numbers,
-            walls: &self.walls,
-            near_start: &self.near_start,
-            bodies: (&self.bodies.fruit, &self.bodies.material),
-            clumps: (&self.bodies.clump, &self.bodies.offset),
-            listed: &self.listed,
-            with_energy,
-        };
-        let (mut places, mut motions) = (&mut self.bodies.place[..], &mut self.bodies.motion[..]);
-        let (mut turns, mut near) = (&mut self.bodies.turn[..], &mut self.near[..]);
-        let starts = &self.near_start;
-        let mut loads = &mut self.loads[..];
-        let bounds = self.table.bounds.iter().zip(&mut self.wall_contacts);
-        let blocks: Vec<BlockBodies> = bounds
-            .map(|(own, wall_contacts)| BlockBodies {
-                start: own.start,
-                place: take_mut(&mut places, own.len()),
-                motion: take_mut(&mut motions, own.len()),
-                turn: take_mut(&mut turns, own.len()),
-                loads: take_mut(&mut loads, own.len()),
-                near: take_mut(&mut near, (starts[own.end] - starts[own.start]) as usize),
-                wall_contacts,
-            })
-            .collect();
-        let work = |block| gather.block(block, &now);
-        let found: Vec<(Outcome, Sums)> = match blocks.len() < FEW_BLOCKS {
-            true => blocks.into_iter().map(work).collect(),
-            false => blocks.into_par_iter().with_max_len(1).map(work).collect(),
-        };
+        let step = self.scene.time_step;
+        let clock = Clock { time, step };
+        let of_clumps = self.push_clump_contacts(clock);
+        let swept = self.sweep(clock, with_energy);
+        swept.pairs.into_iter().try_for_each(|own| self.end(own))?;
+        self.end(of_clumps)?;
         let mut energy = Energy::default();
         self.moved = 0.0;
-        for (outcome, sums) in found {
+        for (outcome, sums) in swept.bodies {
             self.end(outcome)?;
             self.moved = self.moved.max(sums.moved.sqrt());
             self.account.drag += sums.drag;
@@ -441,15 +341,17 @@ impl Simulation {
         Ok(energy)
     }
 
-    /// Forces of all contacts of clumps.
-    fn push_clump_contacts(&mut self, time: f64) -> Result<(), Error> {
-        if self.clump_contacts.is_empty() {
-            return Ok(());
+    /// Forces of all contacts of clumps, for themselves.
+    fn push_clump_contacts(&mut self, clock: Clock) -> Outcome {
+        let mut outcome = Outcome::default();
+        self.clump_loads.clear();
+        if self.clumps.is_empty() {
+            return outcome;
         }
-        let step = self.scene.time_step;
+        self.clump_loads.resize(self.bodies.len(), [0.0; 8]);
         let now = Moment {
             fruit: &self.scene.fruit,
-            clock: Clock { time, step },
+            clock,
         };
         let (surfaces, numbers) = (&self.surfaces, &self.numbers);
         let materials = self.scene.materials.len();
@@ -462,12 +364,10 @@ impl Simulation {
             surface: |a: u32, b: u32| &surfaces[numbers[a as usize * materials + b as usize]],
             wall_materials: &wall_materials,
         };
-        let mut outcome = Outcome::default();
-        let work = self
-            .clump_contacts
-            .advance(&around, &mut self.loads, &mut outcome);
+        let contacts = &mut self.clump_contacts;
+        let work = contacts.advance(&around, &mut self.clump_loads, &mut outcome);
         self.account.walls += work;
-        self.end(outcome)
+        outcome
     }
 
     /// Takes in what contacts brought about.
@@ -492,7 +392,7 @@ impl Simulation {
             air: self.scene.air,
             step: self.scene.time_step,
             listed: &self.listed,
-            loads: &self.loads,
+            loads: &self.clump_loads,
         };
         for clump in &mut self.clumps {
             clump.go(&around, &mut self.bodies, &mut sums);
@@ -522,29 +422,4 @@ impl Simulation {
         energy.done_by_walls = self.account.walls;
         energy.brought = self.account.brought;
     }
-}
-
-/// Entries of a block and interaction: first and second bodies, numbers of those of two blocks.
-type Entries<'a> = (&'a [u32], &'a [u32], &'a [u32]);
-
-/// What is to be done of a block: its entries by interaction, its first body and what its bodies
-/// get, the first of its entries of two blocks and what second bodies get, and its contacts.
-type BlockTask<'a> = (
-    Vec<(usize, Entries<'a>)>,
-    (usize, &'a mut [Load]),
-    (u32, &'a mut [Load]),
-    &'a mut Vec<PairContacts>,
-);
-
-/// Takes the first elements off a slice.
-fn take<'a, T>(from: &mut &'a [T], length: usize) -> &'a [T] {
-    let (own, rest) = from.split_at(length);
-    *from = rest;
-    own
-}
-
-fn take_mut<'a, T>(from: &mut &'a mut [T], length: usize) -> &'a mut [T] {
-    let (own, rest) = std::mem::take(from).split_at_mut(length);
-    *from = rest;
-    own
 }
