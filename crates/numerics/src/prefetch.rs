@@ -5,7 +5,7 @@
 #[inline(always)]
 pub fn prefetch<T>(value: &T) {
     #[cfg(target_arch = "x86_64")]
-    lines(std::ptr::from_ref(value).cast(), size_of::<T>().max(1));
+    lines::<T>(std::ptr::from_ref(value).cast());
     #[cfg(not(target_arch = "x86_64"))]
     let _ = value;
 }
@@ -13,13 +13,17 @@ pub fn prefetch<T>(value: &T) {
 #[cfg(target_arch = "x86_64")]
 #[allow(unsafe_code)]
 #[inline(always)]
-fn lines(start: *const i8, bytes: usize) {
+fn lines<T>(start: *const i8) {
     use std::arch::x86_64::{_MM_HINT_T0, _mm_prefetch};
     const LINE: usize = 64;
-    // The last byte too: values need not begin where a line does.
-    for at in (0..bytes).step_by(LINE).chain([bytes - 1]) {
-        // SAFETY: the place lies within the value; and a prefetch reads nothing that a program
+    let at = |byte: usize| {
+        // SAFETY: the byte lies within the value; and a prefetch reads nothing that a program
         // sees, and never faults.
-        unsafe { _mm_prefetch::<_MM_HINT_T0>(start.add(at)) };
+        unsafe { _mm_prefetch::<_MM_HINT_T0>(start.add(byte)) };
+    };
+    (0..size_of::<T>()).step_by(LINE).for_each(at);
+    // What need not begin where a line does may reach into one more.
+    if !align_of::<T>().is_multiple_of(LINE) {
+        at(size_of::<T>().saturating_sub(1));
     }
 }

@@ -22,15 +22,12 @@ pub(crate) type Load = [f64; 8];
 /// Groups of four that are worked through at a time.
 pub(crate) const CHUNK: usize = 8;
 
-/// What every step changes of four contacts, in whole lines of a processor's memory.
+/// What every step needs of four contacts, in whole lines of a processor's memory: those that
+/// every step writes, and those that few do.
 #[derive(Clone, Copy)]
-#[repr(align(64))]
-struct Often(Memory<Four>);
-
-/// What every step reads and few change.
-#[derive(Clone, Copy)]
-#[repr(align(64))]
-struct Seldom {
+#[repr(C, align(64))]
+struct Quad {
+    history: Memory<Four>,
     peaks: Peaks<Four>,
     /// What radii multiply the median's force by; 1.
     scale: Four,
@@ -38,8 +35,7 @@ struct Seldom {
 
 /// Contacts under one law; what is needed in every step stands apart from the rest.
 pub(crate) struct Store {
-    often: Vec<Often>,
-    seldom: Vec<Seldom>,
+    quads: Vec<Quad>,
     /// Elastic forces of the annuli of each group on the first bodies; N.
     elastic: Vec<Of<Four>>,
     /// Annuli of a contact.
@@ -55,8 +51,7 @@ impl Store {
     pub(crate) fn new(surface: &Interaction, room: usize) -> Self {
         let groups = room.div_ceil(LANES);
         Self {
-            often: Vec::with_capacity(groups),
-            seldom: Vec::with_capacity(groups),
+            quads: Vec::with_capacity(groups),
             elastic: Vec::with_capacity(groups * surface.annuli),
             annuli: surface.annuli,
             rolling: Vec::with_capacity(groups),
@@ -76,8 +71,8 @@ impl Store {
         }
         let own = self.len();
         if own.is_multiple_of(LANES) {
-            self.often.push(Often(Memory::ZERO));
-            self.seldom.push(Seldom {
+            self.quads.push(Quad {
+                history: Memory::ZERO,
                 peaks: Peaks::ZERO,
                 scale: Lanes::ZERO,
             });
@@ -97,11 +92,11 @@ impl Store {
 
     pub(crate) fn parcel(&self, contact: usize) -> Parcel {
         let (group, lane) = (contact / LANES, contact % LANES);
-        let seldom = &self.seldom[group];
+        let quad = &self.quads[group];
         Parcel {
-            scale: seldom.scale.0[lane],
-            history: self.often[group].0.lane(lane),
-            peaks: seldom.peaks.lane(lane),
+            scale: quad.scale.0[lane],
+            history: quad.history.lane(lane),
+            peaks: quad.peaks.lane(lane),
             annuli: self.annuli_of(contact),
             rolling: self.rolling[group].map(|axis| axis.0[lane]),
             encounter: self.encounters[contact],
@@ -116,8 +111,7 @@ impl Store {
         self.laws.swap_remove(contact);
         self.encounters.swap_remove(contact);
         if last.is_multiple_of(LANES) {
-            self.often.pop();
-            self.seldom.pop();
+            self.quads.pop();
             self.rolling.pop();
             self.elastic.truncate(self.elastic.len() - self.annuli);
         }
@@ -142,10 +136,10 @@ impl Store {
     fn put(&mut self, contact: usize, parcel: &Parcel) {
         let (group, lane) = (contact / LANES, contact % LANES);
         let annuli = self.annuli(group);
-        self.often[group].0.put_lane(lane, &parcel.history);
-        let seldom = &mut self.seldom[group];
-        seldom.peaks.put_lane(lane, &parcel.peaks);
-        seldom.scale.0[lane] = parcel.scale;
+        let quad = &mut self.quads[group];
+        quad.history.put_lane(lane, &parcel.history);
+        quad.peaks.put_lane(lane, &parcel.peaks);
+        quad.scale.0[lane] = parcel.scale;
         let rolling = (&mut self.rolling[group], &parcel.rolling);
         let elastic = self.elastic[annuli].iter_mut().zip(&parcel.annuli.0);
         for (four, own) in elastic.chain([rolling]) {
@@ -173,9 +167,8 @@ impl Store {
     /// Asks for the memory of a group that is soon to be worked through.
     #[inline(always)]
     pub(crate) fn prefetch(&self, group: usize) {
-        if let Some(often) = self.often.get(group) {
-            prefetch(often);
-            prefetch(&self.seldom[group]);
+        if let Some(quad) = self.quads.get(group) {
+            prefetch(quad);
             self.elastic[self.annuli(group)].iter().for_each(prefetch);
         }
     }
@@ -183,9 +176,9 @@ impl Store {
     /// What the law is asked for a group of four.
     #[inline(always)]
     pub(crate) fn given<R: FourNumbers>(&self, group: usize, touch: &Touch<R>, zero: R) -> Given {
-        let rate = zero.with_plain(self.often[group].0.rate);
-        let peak = zero.with_plain(self.seldom[group].peaks.displacement);
-        zero.each_plain(given(touch, rate, peak))
+        let Quad { history, peaks, .. } = &self.quads[group];
+        let peak = zero.with_plain(peaks.displacement);
+        zero.each_plain(given(touch, zero.with_plain(history.rate), peak))
     }
 
     /// What the laws of some groups say.
@@ -213,13 +206,13 @@ impl Store {
         zero: R,
     ) -> Reaction<R> {
         let annuli = self.annuli(group);
-        let (Often(often), seldom) = (&mut self.often[group], &mut self.seldom[group]);
-        let mut memory = often.with_plain(zero);
-        let before = seldom.peaks.with_plain(zero);
+        let quad = &mut self.quads[group];
+        let mut memory = quad.history.with_plain(zero);
+        let before = quad.peaks.with_plain(zero);
         let mut peaks = before;
         // The laws of fruit that differ have the factor within.
         let scale = match surface.spread {
-            None => zero.with_plain(seldom.scale),
+            None => zero.with_plain(quad.scale),
             Some(_) => zero.constant(1.0),
         };
         let found = Normal {
@@ -239,10 +232,10 @@ impl Store {
             rolling: if rolls { Some(&mut moment) } else { None },
         };
         let reaction = react(found, surface, touch, clock, own);
-        *often = memory.plain();
+        quad.history = memory.plain();
         let Lanes(growth) = peaks.growth_from(&before).plain();
         if growth.into_iter().any(|own| own > 0.0) {
-            seldom.peaks = peaks.plain();
+            quad.peaks = peaks.plain();
         }
         if rolls {
             self.rolling[group] = zero.each_plain(moment);
