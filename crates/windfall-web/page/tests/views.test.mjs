@@ -249,8 +249,17 @@ test("a regression is refitted as terms are toggled or written", async () => {
 
 test("impacts on one specimen are not independent: a random effect", async () => {
   const table = page.getByLabel("Table for the regression");
+  // While a table is being read nothing of the one before can be chosen, only to be lost.
+  const response = page.getByRole("combobox", { name: "Response", exact: true });
+  await page.route(/results\.csv/, async (route) => {
+    await new Promise((done) => setTimeout(done, 300));
+    await route.continue();
+  });
   await table.selectOption("tables/results.csv");
-  await page.getByRole("combobox", { name: "Response", exact: true }).selectOption("c");
+  assert.equal(await response.count(), 0);
+  await response.waitFor();
+  await page.unroute(/results\.csv/);
+  await response.selectOption("c");
   await page.getByRole("textbox", { name: /^Formula/ }).fill("k");
   await page.getByRole("textbox", { name: /^Formula/ }).press("Enter");
   await page.getByRole("region", { name: "Analysis of variance" }).waitFor();
