@@ -53,8 +53,7 @@ pub struct Memory<R> {
     pub friction_work: R,
 }
 
-/// What a contact remembers that seldom changes: it stands apart, so that it is seldom
-/// written.
+/// What a contact remembers that seldom changes, and is written only then.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Peaks<R> {
     /// Largest displacement; m.
