@@ -185,12 +185,6 @@ fn centre(bodies: &Bodies, body: usize) -> Vector {
     [x, y, z]
 }
 
-fn overlap(bodies: &Bodies, [i, j]: [u32; 2]) -> f64 {
-    let (i, j) = (i as usize, j as usize);
-    let between = subtract(centre(bodies, j), centre(bodies, i));
-    bodies.place[i][3] + bodies.place[j][3] - length(between)
-}
-
 fn add_load(load: &mut Load, force: Vector, moment: Vector) {
     for axis in 0..3 {
         load[axis] += force[axis];
@@ -240,7 +234,7 @@ impl FruitPair {
         outcome: &mut Outcome,
     ) -> Result<(), Error> {
         let (bodies, now) = (around.bodies, around.now);
-        let deepest = self.spheres.iter().map(|own| (overlap(bodies, *own), *own));
+        let deepest = self.spheres.iter().map(|own| (bodies.overlap(*own), *own));
         let deepest = deepest.reduce(|a, b| if b.0 > a.0 { b } else { a });
         let Some((depth, [i, j])) = deepest else {
             return Ok(());

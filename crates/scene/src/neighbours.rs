@@ -36,7 +36,12 @@ impl Bodies {
 
     /// Where in its clump a body is, if it belongs to one; m.
     pub(crate) fn offset_of(&self, body: usize) -> Option<Vector> {
-        (self.clump[body] != NONE).then(|| self.offset[body])
+        self.from(0).offset_of(body)
+    }
+
+    /// How far two bodies overlap; m.
+    pub(crate) fn overlap(&self, pair: [u32; 2]) -> f64 {
+        self.from(0).overlap(pair)
     }
 
     /// From a body on.
