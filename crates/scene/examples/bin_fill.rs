@@ -73,8 +73,11 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
             motion: Motion::default(),
         });
     }
-    let mut simulation = match state.first().map(std::fs::read) {
-        Some(Ok(bytes)) => Simulation::resume(scene, &State::read(&mut &bytes[..])?)?,
+    let mut simulation = match state.first().map(std::fs::File::open) {
+        Some(Ok(file)) => {
+            let state = State::read(&mut std::io::BufReader::new(file))?;
+            Simulation::resume(scene, &state)?
+        }
         _ => Simulation::new(scene)?,
     };
     let mut events = 0;
@@ -94,7 +97,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     }
     if let Some(path) = state.first() {
         let mut to = std::io::BufWriter::new(std::fs::File::create(path)?);
-        simulation.checkpoint()?.write(&mut to)?;
+        simulation.checkpoint().write(&mut to)?;
         to.flush()?;
     }
     let height: f64 = simulation.fruit().iter().map(|own| own.place[2]).sum();

@@ -222,8 +222,8 @@ impl Cells {
 
     /// Number of a cell: tile by tile.
     fn number_of(&self, [i, j, k]: [usize; 3]) -> usize {
-        let [tx, ty, _] = self.tiles();
-        let tile = ((k / TILE) * ty + j / TILE) * tx + i / TILE;
+        let [_, ty, tz] = self.tiles();
+        let tile = ((i / TILE) * ty + j / TILE) * tz + k / TILE;
         ((tile * TILE + k % TILE) * TILE + j % TILE) * TILE + i % TILE
     }
 

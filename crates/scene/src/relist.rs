@@ -165,8 +165,17 @@ impl Simulation {
 
     /// Takes contacts with walls out of their stores.
     pub(crate) fn lift(&mut self) {
-        let mut lifted = Vec::new();
-        for (body, part, stores) in self.touched_parts() {
+        let lifted = self.wall_contacts_of_bodies();
+        self.near.clear();
+        self.near_start = vec![0; self.bodies.len() + 1];
+        for (body, own) in lifted {
+            self.bodies.lifted[body].push(own);
+        }
+    }
+
+    /// Contacts with walls, with the bodies that have them.
+    pub(crate) fn wall_contacts_of_bodies(&self) -> Vec<(usize, Lifted)> {
+        let lifted = |(body, part, stores): (usize, NearPart, &[WallContacts])| {
             let store = &stores[self.interaction_with(body, part.facet)];
             let (law, parcel, force) = store.at(part.slot);
             let own = Lifted {
@@ -176,13 +185,9 @@ impl Simulation {
                 meeting: store.meeting(part.slot),
                 force,
             };
-            lifted.push((body, own));
-        }
-        self.near.clear();
-        self.near_start = vec![0; self.bodies.len() + 1];
-        for (body, own) in lifted {
-            self.bodies.lifted[body].push(own);
-        }
+            (body, own)
+        };
+        self.touched_parts().map(lifted).collect()
     }
 
     /// Number of the interaction of a body and a part of a wall.

@@ -7,7 +7,7 @@ use crate::contact::Parcel;
 use crate::energy::Account;
 use crate::error::Error;
 use crate::event::{Encounter, Event, Partner};
-use crate::neighbours::{Bodies, PairTable};
+use crate::neighbours::Bodies;
 use crate::react::{Memory, Peaks};
 use crate::scene::Scene;
 use crate::simulation::{FruitState, Leaving, Simulation};
@@ -231,21 +231,109 @@ fn law_of(kind: LawKind, own: &Parameters) -> IoResult<Law> {
         .ok_or_else(|| no_value("law of this scene"))
 }
 
-impl Simulation {
-    /// The state now. A simulation that takes it up with [`Simulation::resume`] gives the
-    /// same bits as this one from here on, on any number of threads.
-    ///
-    /// Sums depend on the order of the list of neighbours, which has a history; so this one
-    /// takes its own state up as well: where checkpoints are made belongs to what a run is.
-    /// Events and leavings that were not taken yet stay here, and are not part of the state.
+/// The state of a scene, written from the scene itself: as [`State`] reads it.
+pub struct Saved<'a>(&'a Simulation);
+
+impl Saved<'_> {
+    /// Writes it.
     ///
     /// # Errors
-    /// None in practice: the state is this scene's own.
-    pub fn checkpoint(&mut self) -> Result<State, Error> {
+    /// Those of the writer.
+    pub fn write(&self, to: &mut dyn Write) -> IoResult<()> {
+        let own = self.0;
+        let fruit = own.fruit();
+        (own.steps, own.rebuilds).write(to)?;
+        own.account.write(to)?;
+        let entered = own.scene.fruit[..own.released].iter();
+        write_list(entered.map(|own| own.place), to)?;
+        fruit.write(to)?;
+        let mut walls = own.wall_contacts_of_bodies();
+        walls.sort_by_key(|(body, _)| own.bodies.fruit[*body]);
+        let place_of = |body: usize| {
+            // Every body is among them.
+            fruit.partition_point(|state| state.fruit < own.bodies.fruit[body]) as u32
+        };
+        let walls = walls
+            .iter()
+            .map(|(body, wall)| (place_of(*body), wall_state(wall)));
+        write_list(walls, to)?;
+        write_list(self.pairs(), to)?;
+        let momenta = own.clumps.iter().map(|own| (own.fruit, own.momentum));
+        write_list(momenta, to)?;
+        let pairs: Vec<_> = own.clump_contacts.touching_pairs().collect();
+        let pairs = pairs
+            .iter()
+            .map(|(fruit, own)| pair_state(*fruit, &own.law, own.parcel));
+        write_list(pairs, to)?;
+        let walls: Vec<_> = own.clump_contacts.touching_walls().collect();
+        let walls = walls
+            .iter()
+            .map(|(fruit, own)| (*fruit, clump_wall_state(own)));
+        write_list(walls, to)
+    }
+
+    /// Contacts of two fruit that are no clumps, by their numbers.
+    fn pairs(&self) -> impl ExactSizeIterator<Item = PairState> + '_ {
+        let own = self.0;
+        let number = |body: u32| own.bodies.fruit[body as usize];
+        let mut all = Vec::with_capacity(own.pair_contacts());
+        for (block, parts) in own.table.blocks.iter().enumerate() {
+            for (part, (_, range)) in parts.iter().enumerate() {
+                let entries = own.contacts[block][part].entries();
+                for (contact, &entry) in (0_u32..).zip(entries) {
+                    let entry = range.start + entry as usize;
+                    let fruit = [own.table.first[entry], own.table.second[entry]].map(number);
+                    all.push((fruit, [block as u32, part as u32, contact]));
+                }
+            }
+        }
+        all.sort_unstable_by_key(|([a, b], _)| [*a.min(b), *a.max(b)]);
+        all.into_iter().map(|(fruit, place)| {
+            let [block, part, contact] = place.map(|own| own as usize);
+            let (law, parcel) = own.contacts[block][part].at(contact);
+            pair_state(fruit, &law, parcel)
+        })
+    }
+}
+
+/// Writes a list, one after the other, as it is read as a `Vec`.
+fn write_list<T: Binary>(
+    list: impl ExactSizeIterator<Item = T>,
+    to: &mut dyn Write,
+) -> IoResult<()> {
+    list.len().write(to)?;
+    list.into_iter().try_for_each(|own| own.write(to))
+}
+
+impl Simulation {
+    /// The state now, to be written. A simulation that takes it up with
+    /// [`Simulation::resume`] gives the same bits as this one from here on, on any number of
+    /// threads.
+    ///
+    /// Sums depend on the order of the list of neighbours, which has a history; so this one
+    /// forgets it: where checkpoints are made belongs to what a run is.
+    /// Events and leavings that were not taken yet stay here, and are not part of the state.
+    pub fn checkpoint(&mut self) -> Saved<'_> {
         self.lift();
-        let state = self.state();
-        self.take_up(&state)?;
-        Ok(state)
+        let fruit = self.fruit();
+        let old = std::mem::take(&mut self.bodies);
+        let momenta: Vec<Vector> = self.clumps.iter().map(|own| own.momentum).collect();
+        self.enter_all(&fruit);
+        // Clumps stand in the order of their fruit, before and after.
+        for (own, momentum) in self.clumps.iter_mut().zip(momenta) {
+            own.momentum = momentum;
+        }
+        let body_of = self.bodies_by_fruit();
+        let new = |body: u32| body_of[old.fruit[body as usize] as usize];
+        let table = &mut self.table;
+        for body in table.first.iter_mut().chain(&mut table.second) {
+            *body = new(*body);
+        }
+        for (body, lifted) in (0..).zip(old.lifted) {
+            self.bodies.lifted[new(body) as usize].extend(lifted);
+        }
+        self.rebuild();
+        Saved(self)
     }
 
     /// A scene that goes on from a state.
@@ -258,60 +346,20 @@ impl Simulation {
         Ok(simulation)
     }
 
-    /// The state; contacts with walls are lifted out of their stores.
-    fn state(&self) -> State {
-        let fruit = self.fruit();
-        let place_of = |body: usize| {
-            let number = self.bodies.fruit[body];
-            // Every body is among them.
-            fruit.partition_point(|own| own.fruit < number) as u32
-        };
-        let mut walls = Vec::new();
-        for (body, contacts) in self.bodies.lifted.iter().enumerate() {
-            walls.extend(contacts.iter().map(|own| (place_of(body), wall_state(own))));
+    /// Fruit of a state, by number, in place of those that are there.
+    fn enter_all(&mut self, fruit: &[FruitState]) {
+        self.bodies = Bodies::default();
+        self.clumps = Vec::new();
+        fruit.iter().for_each(|own| self.enter(own));
+    }
+
+    /// The body of each fruit that is one; of a clump any of its bodies.
+    fn bodies_by_fruit(&self) -> Vec<u32> {
+        let mut body_of = vec![0; self.released];
+        for (body, &fruit) in self.bodies.fruit.iter().enumerate() {
+            body_of[fruit as usize] = body as u32;
         }
-        walls.sort_by_key(|own| own.0);
-        let mut pairs = Vec::with_capacity(self.pair_contacts());
-        for (parts, contacts) in self.table.blocks.iter().zip(&self.contacts) {
-            for ((_, range), contacts) in parts.iter().zip(contacts) {
-                for (contact, &entry) in contacts.entries().iter().enumerate() {
-                    let (law, parcel) = contacts.at(contact);
-                    let entry = range.start + entry as usize;
-                    let number = |body: u32| self.bodies.fruit[body as usize];
-                    let fruit = [
-                        number(self.table.first[entry]),
-                        number(self.table.second[entry]),
-                    ];
-                    pairs.push(pair_state(fruit, &law, parcel));
-                }
-            }
-        }
-        pairs.sort_unstable_by_key(|own| own.fruit);
-        let entered = self.scene.fruit[..self.released].iter();
-        State {
-            steps: self.steps,
-            rebuilds: self.rebuilds,
-            account: self.account,
-            entered: entered.map(|own| own.place).collect(),
-            fruit,
-            walls,
-            pairs,
-            momenta: self
-                .clumps
-                .iter()
-                .map(|own| (own.fruit, own.momentum))
-                .collect(),
-            clump_pairs: self
-                .clump_contacts
-                .touching_pairs()
-                .map(|(fruit, own)| pair_state(fruit, &own.law, own.parcel))
-                .collect(),
-            clump_walls: self
-                .clump_contacts
-                .touching_walls()
-                .map(|(fruit, own)| (fruit, clump_wall_state(own)))
-                .collect(),
-        }
+        body_of
     }
 
     /// Goes on from a state with a list of neighbours that knows no other past.
@@ -327,15 +375,7 @@ impl Simulation {
         for (fruit, place) in self.scene.fruit.iter_mut().zip(&state.entered) {
             fruit.place = *place;
         }
-        self.bodies = Bodies::default();
-        (self.table, self.contacts) = (PairTable::default(), Vec::new());
-        (self.near, self.near_start) = (Vec::new(), vec![0]);
-        self.clumps = Vec::new();
-        let mut first_body = Vec::with_capacity(state.fruit.len());
-        for own in &state.fruit {
-            first_body.push(self.bodies.len());
-            self.enter(own);
-        }
+        self.enter_all(&state.fruit);
         for (fruit, momentum) in &state.momenta {
             let own = self.clumps.iter_mut().find(|own| own.fruit == *fruit);
             if let Some(own) = own {
@@ -343,8 +383,9 @@ impl Simulation {
             }
         }
         self.clump_contacts = self.contacts_of_clumps(state).map_err(unfit)?;
+        let body_of = self.bodies_by_fruit();
         for (fruit, own) in &state.walls {
-            let body = first_body[*fruit as usize];
+            let body = body_of[state.fruit[*fruit as usize].fruit as usize] as usize;
             let kind = self.surfaces[self.interaction_with(body, own.facet)]
                 .law
                 .kind();
@@ -353,10 +394,8 @@ impl Simulation {
         }
         // Nothing is in a list: there is none.
         self.renew();
-        let mut body_of = vec![0; self.released];
-        for (body, &fruit) in self.bodies.fruit.iter().enumerate() {
-            body_of[fruit as usize] = body as u32;
-        }
+        self.rebuilds = state.rebuilds;
+        let body_of = self.bodies_by_fruit();
         let mut carried = Vec::with_capacity(state.pairs.len());
         let mut laws = Vec::with_capacity(state.pairs.len());
         for (number, own) in state.pairs.iter().enumerate() {

@@ -273,11 +273,11 @@ impl SceneRun {
     }
 
     fn save(&mut self) -> Result<(), Error> {
-        let state = self.simulation.checkpoint().map_err(stopped_scene)?;
+        let time = self.simulation.time();
+        let state = self.simulation.checkpoint();
         // What the checkpoint counts on is on the disk before it.
         let table = (self.table.sync()?, self.table.written());
         let frames = self.frames.sync()?;
-        let time = self.simulation.time();
         let head = CheckpointHead {
             time,
             end: self.end,
