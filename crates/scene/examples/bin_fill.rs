@@ -83,7 +83,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let mut events = 0;
     for part in 0..10 {
         let (wall, used) = (std::time::Instant::now(), processor_time());
-        pool.install(|| (0..steps / 10).try_for_each(|_| simulation.step()))?;
+        pool.install(|| simulation.run(steps / 10))?;
         events += simulation.take_events().len();
         let work = count as f64 * (steps / 10) as f64;
         let spent = processor_time() - used;

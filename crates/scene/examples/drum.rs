@@ -94,13 +94,9 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
             ..Scene::default()
         };
         let mut simulation = Simulation::new(scene)?;
-        while simulation.steps() < steps {
-            simulation.step()?;
-        }
+        simulation.run(steps)?;
         let (start, rebuilds) = (Instant::now(), simulation.rebuilds());
-        for _ in 0..steps / 5 {
-            simulation.step()?;
-        }
+        simulation.run(steps / 5)?;
         println!(
             "{name}: {:.1} µs a step, {} lists in {} steps, {} contacts of fruit and {} in all",
             1e6 * start.elapsed().as_secs_f64() / (steps / 5) as f64,

@@ -47,7 +47,7 @@ impl Simulation {
         self.come(&next, followed);
         self.go(&mut next, followed);
         followed.last = next;
-        self.push(true)
+        self.push(1, true)
     }
 
     /// Takes out fruit that are there no more.
@@ -137,6 +137,7 @@ impl Simulation {
             moved = moved.max(dot(way, way));
         }
         self.moved = moved.sqrt();
+        self.ways.fill(self.moved);
     }
 }
 

@@ -25,6 +25,8 @@ pub(crate) const PART_OF_CLUMP: f64 = 0.0;
 pub(crate) struct Sums {
     /// Square of the largest way since the list was made; m².
     pub moved: f64,
+    /// Square of the largest way in the step; m².
+    pub fastest: f64,
     pub drag: f64,
     pub walls: f64,
     pub kinetic: f64,
@@ -34,9 +36,11 @@ pub(crate) struct Sums {
 
 /// What is known when forces on bodies are added up.
 pub(crate) struct Gather<'a> {
+    pub now: Moment<'a>,
     pub table: &'a PairTable,
-    /// Loads of pairs on second bodies of other blocks.
+    /// Loads of pairs on second bodies of other blocks, and the number of the first.
     pub out: &'a [Load],
+    pub out_base: usize,
     pub scene: &'a Scene,
     pub surfaces: &'a [Interaction],
     pub numbers: &'a [usize],
@@ -67,7 +71,8 @@ pub(crate) struct BlockBodies<'a> {
 }
 
 impl Gather<'_> {
-    pub(crate) fn block(&self, mut block: BlockBodies, now: &Moment) -> (Outcome, Sums) {
+    pub(crate) fn block(&self, mut block: BlockBodies) -> (Outcome, Sums) {
+        let now = &self.now;
         let mut outcome = Outcome::default();
         let mut sums = Sums::default();
         self.aim_at_walls(&mut block, now, &mut outcome);
@@ -76,7 +81,7 @@ impl Gather<'_> {
         }
         for (own, load) in block.loads.iter_mut().enumerate() {
             for &number in self.table.incoming(block.start + own) {
-                add(load, &self.out[number as usize]);
+                add(load, &self.out[number as usize - self.out_base]);
             }
         }
         let of_clumps = self.clump_loads.iter().skip(block.start);
@@ -112,7 +117,7 @@ impl Gather<'_> {
             gravity: self.scene.gravity,
             step,
         });
-        sums.moved = furthest.way;
+        (sums.moved, sums.fastest) = (furthest.way, furthest.fastest);
         // Also what is no number.
         let short = furthest.share <= LONGEST_WAY * LONGEST_WAY;
         if !short {
@@ -228,6 +233,8 @@ struct Move<'a> {
 struct Furthest {
     /// Square of the largest way since the list was made; m².
     way: f64,
+    /// Square of the largest way in the step; m².
+    fastest: f64,
     /// Square of the largest way in the step over the radius; 1. No number where a body has
     /// none.
     share: f64,
@@ -245,7 +252,7 @@ impl FourLanes for Move<'_> {
             gravity * self.gravity[1],
             gravity * self.gravity[2],
         ];
-        let (mut way, mut share, mut all) = (zero, zero, zero);
+        let (mut way, mut fastest, mut share, mut all) = (zero, zero, zero, zero);
         let count = self.place.len();
         for start in (0..count).step_by(LANES) {
             let lanes = LANES.min(count - start);
@@ -276,7 +283,9 @@ impl FourLanes for Move<'_> {
             let turn = turned_on(zero.columns(rows[5]), [spin[0], spin[1], spin[2]], step);
             way = way.max(dot_of(from, from));
             let velocities = [velocity[0], velocity[1], velocity[2]];
-            let own = dot_of(velocities, velocities) * (step * step) / (place[3] * place[3]);
+            let own = dot_of(velocities, velocities) * (step * step);
+            fastest = fastest.max(own);
+            let own = own / (place[3] * place[3]);
             share = share.max(own);
             // A largest one does not show what is no number.
             all = all + own;
@@ -290,12 +299,13 @@ impl FourLanes for Move<'_> {
                 self.turn[own] = turns[lane].0;
             }
         }
-        let (Lanes(way), Lanes(share), Lanes(all)) = (way.plain(), share.plain(), all.plain());
+        let Lanes(all) = all.plain();
         let finite = all.iter().all(|own| own.is_finite());
-        let share = share.into_iter().fold(0.0, f64::max);
+        let largest = |own: R| own.plain().0.into_iter().fold(0.0, f64::max);
         Furthest {
-            way: way.into_iter().fold(0.0, f64::max),
-            share: if finite { share } else { f64::NAN },
+            way: largest(way),
+            fastest: largest(fastest),
+            share: if finite { largest(share) } else { f64::NAN },
         }
     }
 }

@@ -46,14 +46,15 @@ impl Bodies {
 
     /// From a body on.
     pub(crate) fn from(&self, first: usize) -> BodiesFrom<'_> {
-        BodiesFrom {
-            place: &self.place[first..],
-            motion: &self.motion[first..],
-            turn: &self.turn[first..],
-            fruit: &self.fruit[first..],
-            clump: &self.clump[first..],
-            offset: &self.offset[first..],
-        }
+        let all = BodiesFrom {
+            place: &self.place,
+            motion: &self.motion,
+            turn: &self.turn,
+            fruit: &self.fruit,
+            clump: &self.clump,
+            offset: &self.offset,
+        };
+        all.from(first)
     }
 
     /// In another order: body `order[n]` becomes body n.
@@ -88,7 +89,19 @@ pub(crate) struct BodiesFrom<'a> {
     pub offset: &'a [Vector],
 }
 
-impl BodiesFrom<'_> {
+impl<'a> BodiesFrom<'a> {
+    /// From a later body on.
+    pub(crate) fn from(&self, first: usize) -> BodiesFrom<'a> {
+        BodiesFrom {
+            place: &self.place[first..],
+            motion: &self.motion[first..],
+            turn: &self.turn[first..],
+            fruit: &self.fruit[first..],
+            clump: &self.clump[first..],
+            offset: &self.offset[first..],
+        }
+    }
+
     /// Where in its clump a body is, if it belongs to one; m.
     pub(crate) fn offset_of(&self, body: usize) -> Option<Vector> {
         (self.clump[body] != NONE).then(|| self.offset[body])
@@ -120,6 +133,8 @@ pub(crate) struct PairTable {
     pub blocks: Vec<Vec<(usize, Range<usize>)>>,
     /// Bodies of each block.
     pub bounds: Vec<Range<usize>>,
+    /// The last block that pairs of each block reach.
+    pub last: Vec<usize>,
     /// Where the entries of each first body begin, in an order of their own.
     own_start: Vec<u32>,
     own: Vec<u32>,
@@ -327,6 +342,11 @@ impl PairTable {
         table
     }
 
+    /// How many bodies there are.
+    pub(crate) fn bodies(&self) -> usize {
+        self.bounds.last().map_or(0, |block| block.end)
+    }
+
     /// The block of a body.
     pub(crate) fn block_of(&self, body: usize) -> usize {
         self.bounds.partition_point(|block| block.end <= body)
@@ -343,12 +363,15 @@ impl PairTable {
         let mut foreign = Vec::new();
         self.out = vec![NONE; self.first.len()];
         self.out_start = vec![0; self.bounds.len() + 1];
+        self.last = (0..self.bounds.len()).collect();
         for entry in all {
             let pair = [self.first[entry as usize], self.second[entry as usize]];
             let [one, other] = pair.map(|body| block[body as usize]);
             if one != other {
                 self.out[entry as usize] = foreign.len() as u32;
                 self.out_start[one as usize + 1] += 1;
+                let last = &mut self.last[one as usize];
+                *last = (*last).max(other as usize);
                 foreign.push(pair[1]);
             }
         }

@@ -30,8 +30,8 @@ pub(crate) struct Part<'a> {
     /// touches.
     pub outs: &'a mut [Load],
     pub out_base: u32,
-    /// Largest way of a body since the list was made; m.
-    pub moved: f64,
+    /// How far two bodies may have come together since the list was made; m.
+    pub approach: f64,
 }
 
 /// Contacts of one block and one interaction.
@@ -91,9 +91,9 @@ impl PairContacts {
             loads,
             outs,
             out_base,
-            moved,
+            approach,
         } = part;
-        self.wake(moved, |entry| {
+        self.wake(approach, |entry| {
             [first[entry as usize] - base, second[entry as usize] - base]
         });
         if let Err(problem) = self.begin_all(&bodies, (surface, now)) {
@@ -169,11 +169,9 @@ impl PairContacts {
     /// Entries whose bodies may have come together since the list was made.
     ///
     /// * `pair`: the bodies of an entry
-    fn wake(&mut self, moved: f64, pair: impl Fn(u32) -> [u32; 2]) {
-        // With room for what is rounded.
-        let reach = 2.0 * moved * (1.0 + 1e-9);
+    fn wake(&mut self, approach: f64, pair: impl Fn(u32) -> [u32; 2]) {
         while let Some(&(gap, entry)) = self.asleep.last() {
-            let sleeps = gap > reach;
+            let sleeps = gap > approach;
             if sleeps {
                 break;
             }

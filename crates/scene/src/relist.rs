@@ -5,6 +5,7 @@ use crate::neighbours::{PairTable, sort_into_cells};
 use crate::pair_contacts::PairContacts;
 use crate::simulation::Simulation;
 use crate::store::NONE;
+use crate::vector::dot;
 use crate::wall_contacts::{Lifted, NearPart};
 use crate::wall_forces::WallContacts;
 use rayon::prelude::*;
@@ -126,6 +127,13 @@ impl Simulation {
         self.out = vec![[0.0; 8]; self.table.outs_before(self.table.bounds.len())];
         self.listed = self.bodies.place.iter().map(|own| Lanes(*own)).collect();
         (self.moved, self.wall_way) = (0.0, 0.0);
+        self.ways = vec![0.0; self.table.bounds.len()];
+        let speeds = self
+            .bodies
+            .motion
+            .iter()
+            .map(|m| dot([m[0], m[1], m[2]], [m[0], m[1], m[2]]));
+        self.fastest = speeds.fold(0.0, f64::max).sqrt() * self.scene.time_step;
         self.find_near();
         self.settle_walls();
     }

@@ -14,7 +14,8 @@ use crate::pair_contacts::PairContacts;
 use crate::react::Clock;
 use crate::scene::Scene;
 use crate::store::{Load, NONE};
-use crate::vector::{Rotation, Vector};
+use crate::sweep::{Loads, Swept, TOGETHER};
+use crate::vector::{Rotation, Vector, length};
 use crate::wall_contacts::{NearPart, WallState};
 use crate::wall_forces::WallContacts;
 
@@ -36,7 +37,7 @@ pub struct Simulation {
     /// Of pairs of two blocks on the second body.
     pub(crate) out: Vec<Load>,
     /// For the loads on the bodies of blocks, while these are worked through.
-    pub(crate) loads: [Vec<Load>; 2],
+    pub(crate) loads: [Loads; TOGETHER],
     /// Of contacts of clumps on each body, where there are clumps.
     pub(crate) clump_loads: Vec<Load>,
     pub(crate) walls: WallState,
@@ -47,10 +48,15 @@ pub struct Simulation {
     pub(crate) near_start: Vec<u32>,
     /// Places when the list was made; m.
     pub(crate) listed: Vec<Four>,
-    /// Largest way since then, of bodies and of walls; m.
+    /// Largest way since then, of the bodies of each block, of all, and of walls; m.
+    pub(crate) ways: Vec<f64>,
     pub(crate) moved: f64,
     pub(crate) wall_way: f64,
     pub(crate) wall_speed: f64,
+    /// Largest way of a body in the last step; m.
+    pub(crate) fastest: f64,
+    /// Whether this list of neighbours holds until a whole number of [`TOGETHER`].
+    pub(crate) holds: bool,
     pub(crate) skin: f64,
     pub(crate) steps: u64,
     /// Fruit that has come, by number.
@@ -89,6 +95,9 @@ pub struct FruitState {
 
 /// Skin of the list of neighbours over the mean radius; 1.
 const SKIN: f64 = 0.16;
+
+/// Way that every body may make in a step beyond what its speed says over the skin; 1.
+const SLACK: f64 = 0.02;
 
 /// Steps between looks at sinks.
 const SINK_STEPS: u64 = 32;
@@ -148,9 +157,12 @@ impl Simulation {
             near: Vec::new(),
             near_start: vec![0],
             listed: Vec::new(),
+            ways: Vec::new(),
             moved: f64::INFINITY,
             wall_way: 0.0,
             wall_speed,
+            fastest: f64::INFINITY,
+            holds: false,
             skin,
             steps: 0,
             released: 0,
@@ -276,7 +288,20 @@ impl Simulation {
     /// # Errors
     /// The result would mean nothing: bodies overlap or move too much.
     pub fn step(&mut self) -> Result<(), Error> {
-        self.advance(false).map(|_| ())
+        self.advance(1, false).map(|_| ())
+    }
+
+    /// So many time steps on: the same as one after the other, sooner where there are many
+    /// fruit.
+    ///
+    /// # Errors
+    /// See [`Simulation::step`].
+    pub fn run(&mut self, steps: u64) -> Result<(), Error> {
+        let end = self.steps + steps;
+        while self.steps < end {
+            self.advance(end - self.steps, false)?;
+        }
+        Ok(())
     }
 
     /// One time step on; answers the energies at its beginning.
@@ -284,45 +309,107 @@ impl Simulation {
     /// # Errors
     /// See [`Simulation::step`].
     pub fn step_with_energy(&mut self) -> Result<Energy, Error> {
-        self.advance(true)
+        self.advance(1, true)
     }
 
-    fn advance(&mut self, with_energy: bool) -> Result<Energy, Error> {
+    /// One time step on or several, but no more than `most`; energies at the beginning.
+    fn advance(&mut self, most: u64, with_energy: bool) -> Result<Energy, Error> {
         if !self.scene.sinks.is_empty() && self.steps.is_multiple_of(SINK_STEPS) {
             self.sink();
         }
         if self.due() {
             self.release()?;
         }
-        self.push(with_energy)
+        self.push(most, with_energy)
     }
 
-    /// Forces on all bodies where they are now, and where they take them.
-    pub(crate) fn push(&mut self, with_energy: bool) -> Result<Energy, Error> {
-        let (step, time) = (self.scene.time_step, self.time());
-        if 2.0 * self.moved > self.skin || self.moved + self.wall_way > 0.5 * self.skin {
-            self.rebuild();
+    /// Forces on all bodies where they are now, and where they take them; so in one step or
+    /// in several.
+    pub(crate) fn push(&mut self, most: u64, with_energy: bool) -> Result<Energy, Error> {
+        let step = self.scene.time_step;
+        let together = match self.look_ahead() {
+            true => most.min(TOGETHER as u64),
+            false => 1,
+        };
+        self.walls.move_to(&self.scene.walls, self.time(), step);
+        let clock = |steps: u64| Clock {
+            time: (self.steps + steps) as f64 * step,
+            step,
+        };
+        let clocks: Vec<Clock> = (0..together).map(clock).collect();
+        let of_clumps = self.push_clump_contacts(clocks[0]);
+        let mut energy = Energy::default();
+        let swept = self.sweep(&clocks, with_energy);
+        self.end(of_clumps)?;
+        for own in swept {
+            energy = self.take_in(own, with_energy)?;
+            self.wall_way += self.wall_speed * step;
+            self.steps += 1;
+            if self.holds && self.within_round() && 2.0 * self.moved > self.skin {
+                return Err(self.leapt());
+            }
         }
-        self.walls.move_to(&self.scene.walls, time, step);
-        let energy = self.push_bodies(time, with_energy)?;
-        self.wall_way += self.wall_speed * step;
-        self.steps += 1;
         Ok(energy)
     }
 
-    /// Forces of everything on all bodies, and where they take them.
-    fn push_bodies(&mut self, time: f64, with_energy: bool) -> Result<Energy, Error> {
-        let step = self.scene.time_step;
-        let clock = Clock { time, step };
-        let of_clumps = self.push_clump_contacts(clock);
-        let swept = self.sweep(clock, with_energy);
+    /// Whether steps are to come up to the next whole number of [`TOGETHER`].
+    fn within_round(&self) -> bool {
+        !self.steps.is_multiple_of(TOGETHER as u64)
+    }
+
+    /// Makes the list of neighbours anew if it must be; whether the next [`TOGETHER`] steps may
+    /// go through the blocks together. What is done depends on nothing but the scene as it
+    /// is, whether they then do or not.
+    fn look_ahead(&mut self) -> bool {
+        if self.holds && self.within_round() {
+            return false;
+        }
+        let others = TOGETHER as u64 - 1;
+        let calm = !self.within_round()
+            && self.clumps.is_empty()
+            && self.scene.walls.iter().all(|wall| wall.motion.stays())
+            && !self.due_at(self.steps + others);
+        // What bodies may go before the last of them, if none gets much faster.
+        let further = |own: &Self| match calm {
+            true => others as f64 * (2.0 * own.fastest + SLACK * own.skin),
+            false => 0.0,
+        };
+        let gone = self.moved + further(self);
+        if 2.0 * gone > self.skin || gone + self.wall_way > 0.5 * self.skin {
+            self.rebuild();
+        }
+        self.holds = calm && 2.0 * (self.moved + further(self)) <= self.skin;
+        self.holds
+    }
+
+    /// Why a list that was to hold does not.
+    #[cold]
+    fn leapt(&self) -> Error {
+        let speed = |body: usize| {
+            let m = &self.bodies.motion[body];
+            length([m[0], m[1], m[2]])
+        };
+        let bodies = 0..self.bodies.len();
+        let fastest = bodies.max_by(|a, b| speed(*a).total_cmp(&speed(*b)));
+        let body = fastest.unwrap_or_default();
+        let way = speed(body) * self.scene.time_step;
+        Error::Speed {
+            time: self.time(),
+            fruit: self.bodies.fruit[body],
+            speed: speed(body),
+            share: 100.0 * way / self.bodies.place[body][3],
+        }
+    }
+
+    /// Takes in what a step brought about.
+    fn take_in(&mut self, swept: Swept, with_energy: bool) -> Result<Energy, Error> {
         swept.pairs.into_iter().try_for_each(|own| self.end(own))?;
-        self.end(of_clumps)?;
         let mut energy = Energy::default();
-        self.moved = 0.0;
+        (self.moved, self.fastest) = (0.0, 0.0);
         for (outcome, sums) in swept.bodies {
             self.end(outcome)?;
             self.moved = self.moved.max(sums.moved.sqrt());
+            self.fastest = self.fastest.max(sums.fastest.sqrt());
             self.account.drag += sums.drag;
             self.account.walls += sums.walls;
             energy.kinetic += sums.kinetic;

@@ -1,9 +1,13 @@
-//! One step of all blocks: forces of pairs, and where they take the bodies.
+//! Steps of all blocks: forces of pairs, and where they take the bodies.
 //!
 //! Pairs stand with the block of their first body, and second bodies stand behind. So the bodies
 //! of a block may move as soon as its own pairs and those of the blocks before it are done:
 //! no later pair asks where they were. Blocks go through a step in waves, the bodies of one
 //! wave together with the pairs of the next, while what they need is still near the processor.
+//!
+//! For the same reason a second step may follow the first one at a distance: pairs of a block
+//! need no more than that all bodies which they know have made the step before. What contacts
+//! and bodies remember then comes from memory once for several steps.
 
 use crate::contact::{Moment, Outcome};
 use crate::gather::{BlockBodies, Gather, Sums};
@@ -13,9 +17,6 @@ use crate::pair_contacts::{PairContacts, Part};
 use crate::react::Clock;
 use crate::simulation::Simulation;
 use crate::store::Load;
-use crate::vector::{Rotation, Vector};
-use crate::wall_contacts::NearPart;
-use crate::wall_forces::WallContacts;
 use rayon::prelude::*;
 use std::ops::Range;
 
@@ -23,48 +24,118 @@ use std::ops::Range;
 /// the others.
 const WAVE: usize = 8;
 
-/// What blocks brought about, in their order.
+/// Steps that may follow each other through the blocks.
+pub(crate) const TOGETHER: usize = 2;
+
+/// What blocks brought about in a step, in their order.
 #[derive(Default)]
 pub(crate) struct Swept {
     pub pairs: Vec<Outcome>,
     pub bodies: Vec<(Outcome, Sums)>,
 }
 
+/// A step on its way through the blocks.
+struct Front {
+    clock: Clock,
+    /// Blocks whose pairs are done, and whose bodies move next; and the wave behind these.
+    moving: Range<usize>,
+    pushing: Range<usize>,
+    /// Loads on the bodies of either.
+    behind: Vec<Load>,
+    ahead: Vec<Load>,
+    swept: Swept,
+}
+
+/// Loads on the bodies of two waves, kept from step to step.
+pub(crate) type Loads = [Vec<Load>; 2];
+
 impl Simulation {
-    /// All blocks one step on.
-    pub(crate) fn sweep(&mut self, clock: Clock, with_energy: bool) -> Swept {
-        let now = Moment {
-            fruit: &self.scene.fruit,
-            clock,
-        };
-        let (table, surfaces, moved) = (&self.table, &self.surfaces, self.moved);
+    /// All blocks some steps on, one of which begins at each time; what each step brought
+    /// about.
+    pub(crate) fn sweep(&mut self, clocks: &[Clock], with_energy: bool) -> Vec<Swept> {
         let wave = match rayon::current_num_threads() {
             1 => 1,
             threads => WAVE * threads,
         };
-        let mut waiting = Waiting {
-            first: 0,
-            place: &mut self.bodies.place,
-            motion: &mut self.bodies.motion,
-            turn: &mut self.bodies.turn,
-            fruit: &self.bodies.fruit,
-            clump: &self.bodies.clump,
-            offset: &self.bodies.offset,
-            near: &mut self.near,
-            near_start: &self.near_start,
-            wall_contacts: &mut self.wall_contacts,
+        let loads = self.loads.iter_mut().map(std::mem::take);
+        let front = |(&clock, [behind, ahead]): (&Clock, Loads)| Front {
+            clock,
+            moving: 0..0,
+            pushing: 0..0,
+            behind,
+            ahead,
+            swept: Swept::default(),
         };
-        let mut contacts = &mut self.contacts[..];
-        // Of the pairs on the bodies of one wave, and on those of the next.
-        let [behind, ahead] = &mut self.loads;
-        let mut swept = Swept::default();
-        let mut moving = 0..0;
-        while moving.start < table.bounds.len() {
-            let pushing = moving.end..(moving.end + wave).min(table.bounds.len());
-            let (done, outs) = self.out.split_at_mut(table.outs_before(pushing.start));
-            let gather = Gather {
+        let mut fronts: Vec<Front> = clocks.iter().zip(loads).map(front).collect();
+        while let Some(waves) = self.next_waves(&mut fronts, wave) {
+            self.work_through(&mut fronts, waves, with_energy);
+        }
+        let mut all = Vec::with_capacity(fronts.len());
+        for (own, front) in self.loads.iter_mut().zip(fronts) {
+            *own = [front.behind, front.ahead];
+            all.push(front.swept);
+        }
+        all
+    }
+
+    /// What each step works at next; how many tasks that are, or `None` at the end.
+    fn next_waves(&self, fronts: &mut [Front], wave: usize) -> Option<usize> {
+        let blocks = self.table.bounds.len();
+        // Blocks whose bodies have all made the step before.
+        let mut ready = blocks;
+        let mut tasks = 0;
+        for front in fronts {
+            front.moving = std::mem::take(&mut front.pushing);
+            std::mem::swap(&mut front.behind, &mut front.ahead);
+            let start = front.moving.end;
+            let most = start..(start + wave).min(blocks);
+            let may = most.take_while(|block| ready == blocks || self.table.last[*block] < ready);
+            front.pushing = start..start + may.count();
+            let bodies = self.table.bodies_of(front.pushing.clone());
+            front.ahead.resize(bodies, [0.0; 8]);
+            tasks += front.moving.len() + front.pushing.len();
+            ready = front.moving.start;
+        }
+        (tasks > 0).then_some(tasks)
+    }
+
+    /// A wave of each step.
+    fn work_through(&mut self, fronts: &mut [Front], count: usize, with_energy: bool) {
+        let (table, surfaces) = (&self.table, &self.surfaces);
+        let mut place = Cut::of(&mut self.bodies.place);
+        let mut motion = Cut::of(&mut self.bodies.motion);
+        let mut turn = Cut::of(&mut self.bodies.turn);
+        let mut near = Cut::of(&mut self.near);
+        let mut wall_contacts = Cut::of(&mut self.wall_contacts);
+        let mut contacts = Cut::of(&mut self.contacts);
+        let mut out = Cut::of(&mut self.out);
+        let begin = |block: usize| {
+            table
+                .bounds
+                .get(block)
+                .map_or(table.bodies(), |own| own.start)
+        };
+        let parts_of = |bodies: &Range<usize>| {
+            let [start, end] = [bodies.start, bodies.end].map(|body| self.near_start[body]);
+            start as usize..end as usize
+        };
+        let mut gathers: Vec<Gather> = Vec::with_capacity(fronts.len());
+        let mut tasks = Vec::with_capacity(count);
+        // The last step is the first in the order of blocks.
+        let before = fronts.iter().map(|front| front.moving.start);
+        let next: Vec<usize> = std::iter::once(table.bounds.len()).chain(before).collect();
+        let mut out_base = 0;
+        for (number, front) in fronts.iter_mut().enumerate().rev() {
+            let now = Moment {
+                fruit: &self.scene.fruit,
+                clock: front.clock,
+            };
+            let outs = [front.pushing.start, front.pushing.end].map(|own| table.outs_before(own));
+            gathers.push(Gather {
+                now,
                 table,
-                out: done,
+                out: out.take(out_base..outs[0]),
+                out_base,
                 scene: &self.scene,
                 surfaces,
                 numbers: &self.numbers,
@@ -75,44 +146,70 @@ impl Simulation {
                 clump_loads: &self.clump_loads,
                 listed: &self.listed,
                 with_energy,
-            };
-            let mut tasks = Vec::with_capacity(moving.len() + pushing.len());
-            let mut loads = &mut behind[..];
-            for block in moving {
+            });
+            let mut loads = Cut::of(&mut front.behind);
+            for block in front.moving.clone() {
                 let bodies = table.bounds[block].clone();
-                tasks.push(Task::Bodies(waiting.go(bodies, &mut loads)));
+                let own = BlockBodies {
+                    start: bodies.start,
+                    place: place.take(bodies.clone()),
+                    motion: motion.take(bodies.clone()),
+                    turn: turn.take(bodies.clone()),
+                    loads: loads.next(bodies.len()),
+                    near: near.take(parts_of(&bodies)),
+                    wall_contacts: &mut wall_contacts.take(block..block + 1)[0],
+                };
+                tasks.push((number, Task::Bodies(own)));
             }
-            ahead.resize(table.bodies_of(pushing.clone()), [0.0; 8]);
-            let (mut loads, mut outs) = (&mut ahead[..], outs);
-            for block in pushing.clone() {
-                let bodies = table.bounds[block].clone();
-                let out_base = table.outs_before(block);
-                tasks.push(Task::Pairs(BlockPairs {
+            // Those that stay where they are in this wave.
+            let still = begin(front.pushing.start)..begin(next[number]);
+            let bodies = BodiesFrom {
+                place: place.take(still.clone()),
+                motion: motion.take(still.clone()),
+                turn: turn.take(still.clone()),
+                fruit: &self.bodies.fruit[still.clone()],
+                clump: &self.bodies.clump[still.clone()],
+                offset: &self.bodies.offset[still.clone()],
+            };
+            let mut loads = Cut::of(&mut front.ahead);
+            for block in front.pushing.clone() {
+                let own = table.bounds[block].clone();
+                let outs = [block, block + 1].map(|own| table.outs_before(own));
+                let ways = &self.ways[block..=table.last[block]];
+                let furthest = ways.iter().copied().fold(0.0, f64::max);
+                let own = BlockPairs {
                     block,
-                    bodies: waiting.from(bodies.start),
-                    loads: take_mut(&mut loads, bodies.len()),
-                    outs: take_mut(&mut outs, table.outs_before(block + 1) - out_base),
-                    contacts: &mut take_mut(&mut contacts, 1)[0],
-                }));
+                    now,
+                    bodies: bodies.from(own.start - still.start),
+                    loads: loads.next(own.len()),
+                    outs: out.take(outs[0]..outs[1]),
+                    contacts: &mut contacts.take(block..block + 1)[0],
+                    // With room for what is rounded.
+                    approach: (ways[0] + furthest) * (1.0 + 1e-9),
+                };
+                tasks.push((number, Task::Pairs(own)));
             }
-            let work = |task| match task {
-                Task::Pairs(own) => Done::Pairs(own.advance(table, surfaces, moved, &now)),
-                Task::Bodies(own) => Done::Bodies(gather.block(own, &now)),
-            };
-            let found: Vec<Done> = match wave == 1 || tasks.len() == 1 {
-                true => tasks.into_iter().map(work).collect(),
-                false => tasks.into_par_iter().with_max_len(1).map(work).collect(),
-            };
-            for own in found {
-                match own {
-                    Done::Pairs(own) => swept.pairs.push(own),
-                    Done::Bodies(own) => swept.bodies.push(own),
+            out_base = outs[1];
+        }
+        gathers.reverse();
+        let work = |(number, task): (usize, Task)| match task {
+            Task::Pairs(own) => (number, Done::Pairs(own.advance(table, surfaces))),
+            Task::Bodies(own) => (number, Done::Bodies(gathers[number].block(own))),
+        };
+        let found: Vec<(usize, Done)> = match rayon::current_num_threads() == 1 || count == 1 {
+            true => tasks.into_iter().map(work).collect(),
+            false => tasks.into_par_iter().with_max_len(1).map(work).collect(),
+        };
+        for (number, own) in found {
+            let swept = &mut fronts[number].swept;
+            match own {
+                Done::Pairs(own) => swept.pairs.push(own),
+                Done::Bodies(own) => {
+                    self.ways[swept.bodies.len()] = own.1.moved.sqrt();
+                    swept.bodies.push(own);
                 }
             }
-            std::mem::swap(behind, ahead);
-            moving = pushing;
         }
-        swept
     }
 }
 
@@ -128,78 +225,24 @@ enum Done {
     Bodies((Outcome, Sums)),
 }
 
-/// Bodies that have not moved yet, and what goes with them.
-struct Waiting<'a> {
-    /// Number of the first of them.
-    first: usize,
-    place: &'a mut [[f64; 4]],
-    motion: &'a mut [[f64; 8]],
-    turn: &'a mut [Rotation],
-    /// Of all bodies.
-    fruit: &'a [u32],
-    clump: &'a [u32],
-    offset: &'a [Vector],
-    near: &'a mut [NearPart],
-    /// Of all bodies.
-    near_start: &'a [u32],
-    wall_contacts: &'a mut [Vec<WallContacts>],
-}
-
-impl<'a> Waiting<'a> {
-    /// The bodies of the next block, which are to move.
-    ///
-    /// * `loads`: those on them, and on later bodies
-    fn go<'b>(&mut self, bodies: Range<usize>, loads: &mut &'b mut [Load]) -> BlockBodies<'b>
-    where
-        'a: 'b,
-    {
-        let near = self.near_start[bodies.end] - self.near_start[bodies.start];
-        self.first = bodies.end;
-        BlockBodies {
-            start: bodies.start,
-            place: take_mut(&mut self.place, bodies.len()),
-            motion: take_mut(&mut self.motion, bodies.len()),
-            turn: take_mut(&mut self.turn, bodies.len()),
-            loads: take_mut(loads, bodies.len()),
-            near: take_mut(&mut self.near, near as usize),
-            wall_contacts: &mut take_mut(&mut self.wall_contacts, 1)[0],
-        }
-    }
-
-    /// Those from a body on.
-    fn from(&self, body: usize) -> BodiesFrom<'_> {
-        let own = body - self.first;
-        BodiesFrom {
-            place: &self.place[own..],
-            motion: &self.motion[own..],
-            turn: &self.turn[own..],
-            fruit: &self.fruit[body..],
-            clump: &self.clump[body..],
-            offset: &self.offset[body..],
-        }
-    }
-}
-
 /// The pairs of a block.
 struct BlockPairs<'a> {
     block: usize,
+    now: Moment<'a>,
+    /// From its first body on.
     bodies: BodiesFrom<'a>,
     /// What they do to its bodies.
     loads: &'a mut [Load],
     /// What they do to second bodies of other blocks.
     outs: &'a mut [Load],
     contacts: &'a mut [PairContacts],
+    /// How far two bodies may have come together since the list was made; m.
+    approach: f64,
 }
 
 impl BlockPairs<'_> {
     /// One step on.
-    fn advance(
-        self,
-        table: &PairTable,
-        surfaces: &[Interaction],
-        moved: f64,
-        now: &Moment,
-    ) -> Outcome {
+    fn advance(self, table: &PairTable, surfaces: &[Interaction]) -> Outcome {
         let mut outcome = Outcome::default();
         self.loads.fill([0.0; 8]);
         let parts = table.blocks[self.block].iter().zip(self.contacts);
@@ -213,17 +256,40 @@ impl BlockPairs<'_> {
                 loads: &mut *self.loads,
                 outs: &mut *self.outs,
                 out_base: table.outs_before(self.block) as u32,
-                moved,
+                approach: self.approach,
             };
-            contacts.advance(part, &surfaces[*interaction], now, &mut outcome);
+            contacts.advance(part, &surfaces[*interaction], &self.now, &mut outcome);
         }
         outcome
     }
 }
 
-/// Takes the first elements off a slice.
-fn take_mut<'a, T>(from: &mut &'a mut [T], length: usize) -> &'a mut [T] {
-    let (own, rest) = std::mem::take(from).split_at_mut(length);
-    *from = rest;
-    own
+/// A slice of which parts are taken one after the other.
+struct Cut<'a, T> {
+    /// Number of the first element that is left.
+    start: usize,
+    left: &'a mut [T],
+}
+
+impl<'a, T> Cut<'a, T> {
+    fn of(all: &'a mut [T]) -> Self {
+        Self {
+            start: 0,
+            left: all,
+        }
+    }
+
+    /// These elements, behind all that were taken before.
+    fn take(&mut self, range: Range<usize>) -> &'a mut [T] {
+        let left = std::mem::take(&mut self.left);
+        let (_, left) = left.split_at_mut(range.start - self.start);
+        let (own, left) = left.split_at_mut(range.len());
+        (self.start, self.left) = (range.end, left);
+        own
+    }
+
+    /// The next so many elements.
+    fn next(&mut self, count: usize) -> &'a mut [T] {
+        self.take(self.start..self.start + count)
+    }
 }

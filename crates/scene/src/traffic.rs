@@ -26,8 +26,13 @@ const SPREAD_OUT: [f64; 3] = [
 
 impl Simulation {
     pub(crate) fn due(&self) -> bool {
+        self.due_at(self.steps)
+    }
+
+    /// Whether a fruit is to come in at a step.
+    pub(crate) fn due_at(&self, step: u64) -> bool {
         let next = self.scene.fruit.get(self.released);
-        next.is_some_and(|fruit| fruit.time <= self.time())
+        next.is_some_and(|fruit| fruit.time <= step as f64 * self.scene.time_step)
     }
 
     /// Lets in fruit whose time has come.

@@ -162,7 +162,7 @@ impl Frames {
 }
 
 impl Mover for Frames {
-    fn step(&mut self, simulation: &mut Simulation, _energy: bool) -> Result<Energy, Error> {
+    fn step(&mut self, simulation: &mut Simulation) -> Result<Energy, Error> {
         let frame = self.frame()?;
         if frame.step != self.next {
             let problem = format!(

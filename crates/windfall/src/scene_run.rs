@@ -34,8 +34,13 @@ pub enum SceneStart {
 
 /// What moves the fruit of a scene.
 pub(crate) trait Mover {
-    /// One step on, or one frame; with energies where they are asked for.
-    fn step(&mut self, simulation: &mut Simulation, energy: bool) -> Result<Energy, Error>;
+    /// One step on, or one frame; with the energies at its beginning.
+    fn step(&mut self, simulation: &mut Simulation) -> Result<Energy, Error>;
+
+    /// So many steps or frames on.
+    fn run(&mut self, simulation: &mut Simulation, steps: u64) -> Result<(), Error> {
+        (0..steps).try_for_each(|_| self.step(simulation).map(|_| ()))
+    }
 
     /// Its own time steps in one.
     fn steps(&self) -> u64;
@@ -48,12 +53,12 @@ pub(crate) trait Mover {
 pub(crate) struct Own;
 
 impl Mover for Own {
-    fn step(&mut self, simulation: &mut Simulation, energy: bool) -> Result<Energy, Error> {
-        let energy = match energy {
-            true => simulation.step_with_energy(),
-            false => simulation.step().map(|()| Energy::default()),
-        };
-        energy.map_err(stopped_scene)
+    fn step(&mut self, simulation: &mut Simulation) -> Result<Energy, Error> {
+        simulation.step_with_energy().map_err(stopped_scene)
+    }
+
+    fn run(&mut self, simulation: &mut Simulation, steps: u64) -> Result<(), Error> {
+        simulation.run(steps).map_err(stopped_scene)
     }
 
     fn steps(&self) -> u64 {
@@ -148,7 +153,7 @@ impl SceneRun {
         if !mover.goes_on() {
             own.every = None;
         }
-        let first = mover.step(&mut own.simulation, true)?;
+        let first = mover.step(&mut own.simulation)?;
         own.first_closure = first.closure();
         Ok(own)
     }
@@ -239,9 +244,8 @@ impl SceneRun {
             let steps = self.simulation.steps();
             let to_checkpoint = self.every.map_or(u64::MAX, |every| every - steps % every);
             let most = CHUNK.min(self.all - steps).min(to_checkpoint);
-            for _ in 0..self.frames.steps(&self.simulation, most) {
-                mover.step(&mut self.simulation, false)?;
-            }
+            let steps = self.frames.steps(&self.simulation, most);
+            mover.run(&mut self.simulation, steps)?;
             for event in self.simulation.take_events() {
                 self.count(&event)?;
             }
