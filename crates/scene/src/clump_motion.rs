@@ -123,7 +123,7 @@ impl ClumpState {
             bodies.turn[body] = self.turn;
             let Lanes([a, b, c, _]) = around.listed[body];
             let way = subtract(place, [a, b, c]);
-            sums.moved = sums.moved.max(dot(way, way));
+            sums.moved[0] = sums.moved[0].max(dot(way, way));
         }
     }
 }

@@ -136,8 +136,9 @@ impl Simulation {
             let way = subtract(state.place, listed);
             moved = moved.max(dot(way, way));
         }
-        self.moved = moved.sqrt();
-        self.ways.fill(self.moved);
+        let moved = moved.sqrt();
+        (self.moved, self.approach) = (moved, 2.0 * moved);
+        self.ways.fill([moved; 2]);
     }
 }
 

@@ -23,8 +23,8 @@ pub(crate) const PART_OF_CLUMP: f64 = 0.0;
 /// Sums over a block.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct Sums {
-    /// Square of the largest way since the list was made; m².
-    pub moved: f64,
+    /// Squares of the two largest ways since the list was made; m².
+    pub moved: [f64; 2],
     /// Square of the largest way in the step; m².
     pub fastest: f64,
     pub drag: f64,
@@ -231,8 +231,8 @@ struct Move<'a> {
 
 /// Of all bodies that moved.
 struct Furthest {
-    /// Square of the largest way since the list was made; m².
-    way: f64,
+    /// Squares of the two largest ways since the list was made; m².
+    way: [f64; 2],
     /// Square of the largest way in the step; m².
     fastest: f64,
     /// Square of the largest way in the step over the radius; 1. No number where a body has
@@ -252,7 +252,8 @@ impl FourLanes for Move<'_> {
             gravity * self.gravity[1],
             gravity * self.gravity[2],
         ];
-        let (mut way, mut fastest, mut share, mut all) = (zero, zero, zero, zero);
+        let (mut way, mut second, mut fastest) = (zero, zero, zero);
+        let (mut share, mut all) = (zero, zero);
         let count = self.place.len();
         for start in (0..count).step_by(LANES) {
             let lanes = LANES.min(count - start);
@@ -281,7 +282,9 @@ impl FourLanes for Move<'_> {
                 from[axis] = place[axis] - listed[axis];
             }
             let turn = turned_on(zero.columns(rows[5]), [spin[0], spin[1], spin[2]], step);
-            way = way.max(dot_of(from, from));
+            let own = dot_of(from, from);
+            second = second.max(way.min(own));
+            way = way.max(own);
             let velocities = [velocity[0], velocity[1], velocity[2]];
             let own = dot_of(velocities, velocities) * (step * step);
             fastest = fastest.max(own);
@@ -302,8 +305,10 @@ impl FourLanes for Move<'_> {
         let Lanes(all) = all.plain();
         let finite = all.iter().all(|own| own.is_finite());
         let largest = |own: R| own.plain().0.into_iter().fold(0.0, f64::max);
+        let [Lanes(way), Lanes(second)] = [way.plain(), second.plain()];
+        let ways = way.into_iter().chain(second);
         Furthest {
-            way: largest(way),
+            way: ways.fold([0.0; 2], |[a, b], own| [a.max(own), b.max(a.min(own))]),
             fastest: largest(fastest),
             share: if finite { largest(share) } else { f64::NAN },
         }

@@ -383,6 +383,17 @@ impl PairTable {
             listed(count, numbers, |number| foreign[number as usize]);
     }
 
+    /// How far two bodies of which the first is in a block may have come together; m.
+    ///
+    /// * `ways`: the two largest of the bodies of each block; m
+    pub(crate) fn approach(&self, block: usize, ways: &[[f64; 2]]) -> f64 {
+        let [own, second] = ways[block];
+        let others = ways[block + 1..=self.last[block]].iter();
+        let other = others.fold(second, |most, [own, _]| most.max(*own));
+        // With room for what is rounded.
+        (own + other) * (1.0 + 1e-9)
+    }
+
     /// How many entries of two blocks there are before a block.
     pub(crate) fn outs_before(&self, block: usize) -> usize {
         self.out_start[block]

@@ -126,8 +126,8 @@ impl Simulation {
             .collect();
         self.out = vec![[0.0; 8]; self.table.outs_before(self.table.bounds.len())];
         self.listed = self.bodies.place.iter().map(|own| Lanes(*own)).collect();
-        (self.moved, self.wall_way) = (0.0, 0.0);
-        self.ways = vec![0.0; self.table.bounds.len()];
+        (self.moved, self.approach, self.wall_way) = (0.0, 0.0, 0.0);
+        self.ways = vec![[0.0; 2]; self.table.bounds.len()];
         let speeds = self
             .bodies
             .motion
@@ -263,7 +263,7 @@ impl Simulation {
         let near: Vec<Vec<u32>> = places
             .map(|(&[x, y, z, radius], lifted)| {
                 let mut own: Vec<u32> = lifted.iter().map(|own| own.facet).collect();
-                walls.find_near([x, y, z], radius + 0.5 * skin, &mut own);
+                walls.find_near([x, y, z], radius + skin, &mut own);
                 own.sort_unstable();
                 own.dedup();
                 own

@@ -48,9 +48,11 @@ pub struct Simulation {
     pub(crate) near_start: Vec<u32>,
     /// Places when the list was made; m.
     pub(crate) listed: Vec<Four>,
-    /// Largest way since then, of the bodies of each block, of all, and of walls; m.
-    pub(crate) ways: Vec<f64>,
+    /// The two largest ways since then of the bodies of each block; m.
+    pub(crate) ways: Vec<[f64; 2]>,
+    /// Largest way of all, how far two may have come together, and largest way of walls; m.
     pub(crate) moved: f64,
+    pub(crate) approach: f64,
     pub(crate) wall_way: f64,
     pub(crate) wall_speed: f64,
     /// Largest way of a body in the last step; m.
@@ -159,6 +161,7 @@ impl Simulation {
             listed: Vec::new(),
             ways: Vec::new(),
             moved: f64::INFINITY,
+            approach: f64::INFINITY,
             wall_way: 0.0,
             wall_speed,
             fastest: f64::INFINITY,
@@ -345,7 +348,7 @@ impl Simulation {
             energy = self.take_in(own, with_energy)?;
             self.wall_way += self.wall_speed * step;
             self.steps += 1;
-            if self.holds && self.within_round() && 2.0 * self.moved > self.skin {
+            if self.holds && self.within_round() && self.approach > self.skin {
                 return Err(self.leapt());
             }
         }
@@ -374,11 +377,11 @@ impl Simulation {
             true => others as f64 * (2.0 * own.fastest + SLACK * own.skin),
             false => 0.0,
         };
-        let gone = self.moved + further(self);
-        if 2.0 * gone > self.skin || gone + self.wall_way > 0.5 * self.skin {
+        let together = self.approach + 2.0 * further(self);
+        if together > self.skin || self.moved + further(self) + self.wall_way > self.skin {
             self.rebuild();
         }
-        self.holds = calm && 2.0 * (self.moved + further(self)) <= self.skin;
+        self.holds = calm && self.approach + 2.0 * further(self) <= self.skin;
         self.holds
     }
 
@@ -405,10 +408,16 @@ impl Simulation {
     fn take_in(&mut self, swept: Swept, with_energy: bool) -> Result<Energy, Error> {
         swept.pairs.into_iter().try_for_each(|own| self.end(own))?;
         let mut energy = Energy::default();
-        (self.moved, self.fastest) = (0.0, 0.0);
-        for (outcome, sums) in swept.bodies {
+        (self.moved, self.approach, self.fastest) = (0.0, 0.0, 0.0);
+        let ways = swept
+            .bodies
+            .iter()
+            .map(|(_, sums)| sums.moved.map(f64::sqrt));
+        let ways: Vec<[f64; 2]> = ways.collect();
+        for (block, (outcome, sums)) in swept.bodies.into_iter().enumerate() {
             self.end(outcome)?;
-            self.moved = self.moved.max(sums.moved.sqrt());
+            self.moved = self.moved.max(ways[block][0]);
+            self.approach = self.approach.max(self.table.approach(block, &ways));
             self.fastest = self.fastest.max(sums.fastest.sqrt());
             self.account.drag += sums.drag;
             self.account.walls += sums.walls;
@@ -417,7 +426,10 @@ impl Simulation {
             energy.potential += sums.potential;
         }
         let sums = self.push_clumps();
-        self.moved = self.moved.max(sums.moved.sqrt());
+        self.moved = self.moved.max(sums.moved[0].sqrt());
+        if !self.clumps.is_empty() {
+            self.approach = 2.0 * self.moved;
+        }
         self.account.drag += sums.drag;
         if with_energy {
             energy.kinetic += sums.kinetic;

@@ -175,8 +175,6 @@ impl Simulation {
             for block in front.pushing.clone() {
                 let own = table.bounds[block].clone();
                 let outs = [block, block + 1].map(|own| table.outs_before(own));
-                let ways = &self.ways[block..=table.last[block]];
-                let furthest = ways.iter().copied().fold(0.0, f64::max);
                 let own = BlockPairs {
                     block,
                     now,
@@ -184,8 +182,7 @@ impl Simulation {
                     loads: loads.next(own.len()),
                     outs: out.take(outs[0]..outs[1]),
                     contacts: &mut contacts.take(block..block + 1)[0],
-                    // With room for what is rounded.
-                    approach: (ways[0] + furthest) * (1.0 + 1e-9),
+                    approach: table.approach(block, &self.ways),
                 };
                 tasks.push((number, Task::Pairs(own)));
             }
@@ -205,7 +202,7 @@ impl Simulation {
             match own {
                 Done::Pairs(own) => swept.pairs.push(own),
                 Done::Bodies(own) => {
-                    self.ways[swept.bodies.len()] = own.1.moved.sqrt();
+                    self.ways[swept.bodies.len()] = own.1.moved.map(f64::sqrt);
                     swept.bodies.push(own);
                 }
             }
