@@ -114,7 +114,7 @@ pub(crate) fn run_moved(
     })?;
     let mut run = SceneRun::begin(plan, out, start, moved.mover)?;
     run.run_to_end(moved.mover, progress)?;
-    let last = moved.mover.step(&mut run.simulation, true)?;
+    let last = moved.mover.step(&mut run.simulation)?;
     for event in run.simulation.lasting() {
         run.count(&event).map_err(|error| run.told(error))?;
     }
