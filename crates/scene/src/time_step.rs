@@ -31,6 +31,13 @@ pub struct Impact<'a> {
     pub speed: f64,
 }
 
+/// Contact duration (s), peak force (N) and absorbed energy (J) of an impact.
+struct Measured {
+    duration: f64,
+    peak: f64,
+    energy: f64,
+}
+
 /// The finest step that stands for no error, over the contact duration; 1.
 const FINE: f64 = 1.0 / 4000.0;
 /// Longest step over the contact duration; 1. Stiffer contacts in a dense bed need room.
@@ -46,13 +53,19 @@ impl Impact<'_> {
     /// # Errors
     /// The law cannot be used.
     pub fn error_of(&self, step: f64) -> Result<StepError, Error> {
-        let fine = self.measured(FINE * self.duration()?)?;
+        self.error_beside(&self.measured(FINE * self.duration()?)?, step)
+    }
+
+    /// What a step does to this impact.
+    ///
+    /// * `fine`: the impact without error
+    fn error_beside(&self, fine: &Measured, step: f64) -> Result<StepError, Error> {
         let own = self.measured(step)?;
         let energy = 0.5 * self.mass * self.speed * self.speed;
         Ok(StepError {
-            duration: fine.0,
-            peak: (own.1 / fine.1 - 1.0).abs(),
-            energy: (own.2 - fine.2).abs() / energy,
+            duration: fine.duration,
+            peak: (own.peak / fine.peak - 1.0).abs(),
+            energy: (own.energy - fine.energy).abs() / energy,
         })
     }
 
@@ -63,9 +76,10 @@ impl Impact<'_> {
     /// The law cannot be used.
     pub fn step_for(&self, error: f64) -> Result<(f64, StepError), Error> {
         let duration = self.duration()?;
+        let fine = self.measured(FINE * duration)?;
         let mut step = LONGEST * duration;
         loop {
-            let found = self.error_of(step)?;
+            let found = self.error_beside(&fine, step)?;
             if found.peak.max(found.energy) <= error || step < SHORTEST * duration {
                 return Ok((step, found));
             }
@@ -78,13 +92,13 @@ impl Impact<'_> {
         // From a guess that is far too short to one that is fine.
         let mut step = 1e-7;
         for _ in 0..3 {
-            step = 0.002 * self.measured(step)?.0;
+            step = 0.002 * self.measured(step)?.duration;
         }
         Ok(step / 0.002)
     }
 
-    /// Duration, peak force and absorbed energy of the impact.
-    fn measured(&self, step: f64) -> Result<(f64, f64, f64), Error> {
+    /// The impact with a time step.
+    fn measured(&self, step: f64) -> Result<Measured, Error> {
         let wall = Wall {
             name: "wall".to_owned(),
             material: 1,
@@ -114,7 +128,11 @@ impl Impact<'_> {
         for _ in 0..MOST_STEPS {
             simulation.step()?;
             if let Some(event) = simulation.take_events().first() {
-                return Ok((event.duration, event.peak_force, event.absorbed_energy));
+                return Ok(Measured {
+                    duration: event.duration,
+                    peak: event.peak_force,
+                    energy: event.absorbed_energy,
+                });
             }
         }
         Err(Error::Value {
