@@ -34,6 +34,19 @@ pub(crate) struct Sums {
     pub potential: f64,
 }
 
+/// Steps that may follow each other through the blocks.
+pub(crate) const TOGETHER: usize = 2;
+
+/// Loads on the bodies of two waves, kept from step to step.
+pub(crate) type Loads = [Vec<Load>; 2];
+
+/// What blocks brought about in a step, in their order.
+#[derive(Default)]
+pub(crate) struct Swept {
+    pub pairs: Vec<Outcome>,
+    pub bodies: Vec<(Outcome, Sums)>,
+}
+
 /// What is known when forces on bodies are added up.
 pub(crate) struct Gather<'a> {
     pub now: Moment<'a>,

@@ -10,7 +10,7 @@
 //! and bodies remember then comes from memory once for several steps.
 
 use crate::contact::{Moment, Outcome};
-use crate::gather::{BlockBodies, Gather, Sums};
+use crate::gather::{BlockBodies, Gather, Loads, Sums, Swept};
 use crate::interaction::Interaction;
 use crate::neighbours::{BodiesFrom, PairTable};
 use crate::pair_contacts::{PairContacts, Part};
@@ -24,16 +24,6 @@ use std::ops::Range;
 /// the others.
 const WAVE: usize = 8;
 
-/// Steps that may follow each other through the blocks.
-pub(crate) const TOGETHER: usize = 2;
-
-/// What blocks brought about in a step, in their order.
-#[derive(Default)]
-pub(crate) struct Swept {
-    pub pairs: Vec<Outcome>,
-    pub bodies: Vec<(Outcome, Sums)>,
-}
-
 /// A step on its way through the blocks.
 struct Front {
     clock: Clock,
@@ -45,9 +35,6 @@ struct Front {
     ahead: Vec<Load>,
     swept: Swept,
 }
-
-/// Loads on the bodies of two waves, kept from step to step.
-pub(crate) type Loads = [Vec<Load>; 2];
 
 impl Simulation {
     /// All blocks some steps on, one of which begins at each time; what each step brought
