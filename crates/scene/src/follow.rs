@@ -47,7 +47,7 @@ impl Simulation {
         self.come(&next, followed);
         self.go(&mut next, followed);
         followed.last = next;
-        self.push(1, true)
+        self.push_from_anywhere()
     }
 
     /// Takes out fruit that are there no more.

@@ -325,14 +325,25 @@ impl Simulation {
         self.push(most, with_energy)
     }
 
-    /// Forces on all bodies where they are now, and where they take them; so in one step or
-    /// in several.
-    pub(crate) fn push(&mut self, most: u64, with_energy: bool) -> Result<Energy, Error> {
-        let step = self.scene.time_step;
+    /// One step on or several, but no more than `most`, in which nothing comes or leaves.
+    fn push(&mut self, most: u64, with_energy: bool) -> Result<Energy, Error> {
         let together = match self.look_ahead() {
             true => most.min(TOGETHER as u64),
             false => 1,
         };
+        self.push_together(together, with_energy)
+    }
+
+    /// One step on, from places that something else has made.
+    pub(crate) fn push_from_anywhere(&mut self) -> Result<Energy, Error> {
+        self.holds = false;
+        self.renew_beyond(0.0);
+        self.push_together(1, true)
+    }
+
+    /// Forces on all bodies where they are now, and where they take them; in so many steps.
+    fn push_together(&mut self, together: u64, with_energy: bool) -> Result<Energy, Error> {
+        let step = self.scene.time_step;
         self.walls.move_to(&self.scene.walls, self.time(), step);
         let clock = |steps: u64| Clock {
             time: (self.steps + steps) as f64 * step,
@@ -376,12 +387,18 @@ impl Simulation {
             true => others as f64 * (2.0 * own.fastest + SLACK * own.skin),
             false => 0.0,
         };
-        let together = self.approach + 2.0 * further(self);
-        if together > self.skin || self.moved + further(self) + self.wall_way > self.skin {
-            self.rebuild();
-        }
+        self.renew_beyond(further(self));
         self.holds = calm && self.approach + 2.0 * further(self) <= self.skin;
         self.holds
+    }
+
+    /// Makes the list of neighbours anew unless it holds while every body goes that much
+    /// further; m.
+    fn renew_beyond(&mut self, further: f64) {
+        let to_walls = self.moved + self.wall_way + further;
+        if self.approach + 2.0 * further > self.skin || to_walls > self.skin {
+            self.rebuild();
+        }
     }
 
     /// Why a list that was to hold does not.
