@@ -23,7 +23,7 @@ fn lines<T>(start: *const i8) {
     };
     (0..size_of::<T>()).step_by(LINE).for_each(at);
     // What need not begin where a line does may reach into one more.
-    if !align_of::<T>().is_multiple_of(LINE) {
+    if !align_of::<T>().is_multiple_of(LINE) && align_of::<T>() < size_of::<T>() {
         at(size_of::<T>().saturating_sub(1));
     }
 }

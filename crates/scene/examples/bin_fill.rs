@@ -18,6 +18,9 @@ use windfall_scene::simulation::Simulation;
 use windfall_scene::state::State;
 use windfall_scene::wall::{Motion, Shape, Wall};
 
+/// Steps after which contacts that ended are taken.
+const TAKEN: u64 = 200;
+
 fn main() -> Result<(), Box<dyn std::error::Error>> {
     let arguments: Vec<String> = std::env::args().collect();
     let [_, initial, steps, threads, annuli, state @ ..] = &arguments[..] else {
@@ -76,15 +79,20 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let mut simulation = match state.first().map(std::fs::File::open) {
         Some(Ok(file)) => {
             let state = State::read(&mut std::io::BufReader::new(file))?;
-            Simulation::resume(scene, &state)?
+            pool.install(|| Simulation::resume(scene, &state))?
         }
-        _ => Simulation::new(scene)?,
+        _ => pool.install(|| Simulation::new(scene))?,
     };
     let mut events = 0;
     for part in 0..10 {
         let (wall, used) = (std::time::Instant::now(), processor_time());
-        pool.install(|| simulation.run(steps / 10))?;
-        events += simulation.take_events().len();
+        let mut left = steps / 10;
+        while left > 0 {
+            let now = left.min(TAKEN);
+            pool.install(|| simulation.run(now))?;
+            events += simulation.take_events().len();
+            left -= now;
+        }
         let work = count as f64 * (steps / 10) as f64;
         let spent = processor_time() - used;
         println!(

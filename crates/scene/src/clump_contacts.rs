@@ -10,6 +10,7 @@ use crate::contact::{
 use crate::error::{Error, fruit_name};
 use crate::event::Partner;
 use crate::interaction::Interaction;
+use crate::line::HalfLine;
 use crate::neighbours::Bodies;
 use crate::pair_contacts::LARGEST_OVERLAP;
 use crate::react::{Clock, Remembered, Touch, given, normal_of, react, surface_velocity};
@@ -181,7 +182,7 @@ fn motion(bodies: &Bodies, body: usize) -> (Vector, Vector) {
 }
 
 fn centre(bodies: &Bodies, body: usize) -> Vector {
-    let [x, y, z, _] = bodies.place[body];
+    let HalfLine([x, y, z, _]) = bodies.place[body];
     [x, y, z]
 }
 
@@ -219,7 +220,7 @@ impl Touching {
             memory: history,
             peaks,
             annuli: &mut annuli.0[..surface.annuli],
-            rolling: (surface.rolling > 0.0).then_some(rolling),
+            rolling: surface.rolls().then_some(rolling),
         };
         let reaction = react(found, surface, touch, clock, own);
         (reaction.force, reaction.rolling)

@@ -3,6 +3,7 @@
 use crate::clump::Clump;
 use crate::gather::{PART_OF_CLUMP, Sums};
 use crate::law_column::Four;
+use crate::line::{HalfLine, Line};
 use crate::neighbours::Bodies;
 use crate::scene::{Air, Fruit};
 use crate::store::Load;
@@ -118,8 +119,8 @@ impl ClumpState {
             let (place, velocity) = self.sphere(bodies.offset[body], step);
             let ([x, y, z], [u, v, w], [p, q, r]) = (place, velocity, self.spin);
             let radius = bodies.place[body][3];
-            bodies.place[body] = [x, y, z, radius];
-            bodies.motion[body] = [u, v, w, PART_OF_CLUMP, p, q, r, PART_OF_CLUMP];
+            bodies.place[body] = HalfLine([x, y, z, radius]);
+            bodies.motion[body] = Line([u, v, w, PART_OF_CLUMP, p, q, r, PART_OF_CLUMP]);
             bodies.turn[body] = self.turn;
             let Lanes([a, b, c, _]) = around.listed[body];
             let way = subtract(place, [a, b, c]);

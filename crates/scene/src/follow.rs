@@ -5,6 +5,7 @@
 
 use crate::energy::Energy;
 use crate::error::Error;
+use crate::line::HalfLine;
 use crate::scene::Fruit;
 use crate::simulation::{FruitState, Leaving, Simulation};
 use crate::vector::{Vector, add, dot, length, plus_scaled, scaled, subtract, turned_on};
@@ -47,7 +48,7 @@ impl Simulation {
         self.come(&next, followed);
         self.go(&mut next, followed);
         followed.last = next;
-        self.push_from_anywhere()
+        self.push(true)
     }
 
     /// Takes out fruit that are there no more.
@@ -122,7 +123,7 @@ impl Simulation {
             };
             let [x, y, z] = state.place;
             let radius = self.bodies.place[body][3];
-            self.bodies.place[body] = [x, y, z, radius];
+            self.bodies.place[body] = HalfLine([x, y, z, radius]);
             if let Some(before) = &followed.last[fruit] {
                 let velocity = scaled(subtract(state.place, before.place), 1.0 / step);
                 let spin = scaled(add(state.spin, before.spin), 0.5);

@@ -4,18 +4,23 @@ use crate::contact::{Moment, Outcome};
 use crate::error::Error;
 use crate::interaction::Interaction;
 use crate::law_column::Four;
+use crate::line::{HalfLine, Line};
 use crate::neighbours::PairTable;
 use crate::scene::Scene;
-use crate::store::{Load, NONE};
+use crate::store::Load;
 use crate::vector::{Rotation, Vector, dot, length, plus_scaled, turned_on};
 use crate::vector_of::dot as dot_of;
 use crate::wall_contacts::{Around, Body, NearPart, WallState, aim};
 use crate::wall_forces::WallContacts;
+use windfall_numerics::prefetch::prefetch;
 use windfall_numerics::real::Lanes;
 use windfall_numerics::real_vector::{FourLanes, FourNumbers, LANES, with_four_lanes};
 
 /// Way in one step over the radius above which contacts are missed; 1.
 const LONGEST_WAY: f64 = 0.2;
+
+/// Loads between the one that is added and the one whose memory is asked for.
+const AHEAD: usize = 16;
 
 /// Inverse mass (and inertia) of a sphere that moves with its clump.
 pub(crate) const PART_OF_CLUMP: f64 = 0.0;
@@ -25,17 +30,12 @@ pub(crate) const PART_OF_CLUMP: f64 = 0.0;
 pub(crate) struct Sums {
     /// Squares of the two largest ways since the list was made; m².
     pub moved: [f64; 2],
-    /// Square of the largest way in the step; m².
-    pub fastest: f64,
     pub drag: f64,
     pub walls: f64,
     pub kinetic: f64,
     pub rotational: f64,
     pub potential: f64,
 }
-
-/// Steps that may follow each other through the blocks.
-pub(crate) const TOGETHER: usize = 2;
 
 /// Loads on the bodies of two waves, kept from step to step.
 pub(crate) type Loads = [Vec<Load>; 2];
@@ -51,9 +51,8 @@ pub(crate) struct Swept {
 pub(crate) struct Gather<'a> {
     pub now: Moment<'a>,
     pub table: &'a PairTable,
-    /// Loads of pairs on second bodies of other blocks, and the number of the first.
+    /// Loads of pairs on second bodies of other blocks.
     pub out: &'a [Load],
-    pub out_base: usize,
     pub scene: &'a Scene,
     pub surfaces: &'a [Interaction],
     pub numbers: &'a [usize],
@@ -73,8 +72,8 @@ pub(crate) struct Gather<'a> {
 /// What there is of the bodies of a block.
 pub(crate) struct BlockBodies<'a> {
     pub start: usize,
-    pub place: &'a mut [[f64; 4]],
-    pub motion: &'a mut [[f64; 8]],
+    pub place: &'a mut [HalfLine],
+    pub motion: &'a mut [Line],
     pub turn: &'a mut [Rotation],
     /// What pairs of the block do to each.
     pub loads: &'a mut [Load],
@@ -92,11 +91,7 @@ impl Gather<'_> {
         for (own, surface) in block.wall_contacts.iter_mut().zip(self.surfaces) {
             sums.walls += own.advance(block.loads, surface, now.clock);
         }
-        for (own, load) in block.loads.iter_mut().enumerate() {
-            for &number in self.table.incoming(block.start + own) {
-                add(load, &self.out[number as usize - self.out_base]);
-            }
-        }
+        self.take_in(&mut block);
         let of_clumps = self.clump_loads.iter().skip(block.start);
         for (load, own) in block.loads.iter_mut().zip(of_clumps) {
             add(load, own);
@@ -130,7 +125,7 @@ impl Gather<'_> {
             gravity: self.scene.gravity,
             step,
         });
-        (sums.moved, sums.fastest) = (furthest.way, furthest.fastest);
+        sums.moved = furthest.way;
         // Also what is no number.
         let short = furthest.share <= LONGEST_WAY * LONGEST_WAY;
         if !short {
@@ -139,6 +134,21 @@ impl Gather<'_> {
                 .get_or_insert_with(|| self.too_fast(&block, now));
         }
         (outcome, sums)
+    }
+
+    /// What pairs of other blocks do to the bodies of the block.
+    fn take_in(&self, block: &mut BlockBodies) {
+        let out = |number: u32| &self.out[number as usize];
+        let bodies = block.start..block.start + block.loads.len();
+        let mut later = self.table.incoming(bodies.clone()).iter().skip(AHEAD);
+        for (load, body) in block.loads.iter_mut().zip(bodies) {
+            for &number in self.table.incoming(body..body + 1) {
+                if let Some(number) = later.next() {
+                    prefetch(out(*number));
+                }
+                add(load, out(number));
+            }
+        }
     }
 
     /// Where bodies of the block touch walls.
@@ -152,26 +162,26 @@ impl Gather<'_> {
             if near[0] == near[1] {
                 continue;
             }
-            let material = self.bodies.1[body] as usize;
-            let ([x, y, z, radius], m) = (block.place[own], &block.motion[own]);
+            let material = &self.bodies.1[body];
+            let (HalfLine([x, y, z, radius]), m) = (block.place[own], &block.motion[own]);
             let around = Around {
                 walls: self.walls,
                 near: near[0]..near[1],
                 surface: |wall: u32| {
                     let other = self.scene.walls[wall as usize].material;
-                    let number = self.numbers[material * materials + other];
+                    let number = self.numbers[*material as usize * materials + other];
                     (number, &self.surfaces[number])
                 },
                 now,
             };
             let body = Body {
-                fruit: self.bodies.0[body],
+                fruit: &self.bodies.0[body],
                 centre: [x, y, z],
                 radius,
                 velocity: [m[0], m[1], m[2]],
                 spin: [m[4], m[5], m[6]],
-                turn: block.turn[own],
-                offset: (self.clumps.0[body] != NONE).then(|| self.clumps.1[body]),
+                turn: &block.turn[own],
+                clump: (&self.clumps.0[body], &self.clumps.1[body]),
             };
             let stores = &mut *block.wall_contacts;
             let near = &mut *block.near;
@@ -182,7 +192,7 @@ impl Gather<'_> {
     /// Energies at the time of the places.
     fn energies(&self, block: &BlockBodies, step: f64, sums: &mut Sums) {
         for (own, load) in block.loads.iter().enumerate() {
-            let (m, [x, y, z, _]) = (&block.motion[own], block.place[own]);
+            let (m, HalfLine([x, y, z, _])) = (&block.motion[own], block.place[own]);
             if m[3] == PART_OF_CLUMP {
                 continue;
             }
@@ -233,8 +243,8 @@ fn add(to: &mut Load, own: &Load) {
 
 /// Bodies one step on, by what acts on them.
 struct Move<'a> {
-    place: &'a mut [[f64; 4]],
-    motion: &'a mut [[f64; 8]],
+    place: &'a mut [HalfLine],
+    motion: &'a mut [Line],
     turn: &'a mut [Rotation],
     loads: &'a [Load],
     listed: &'a [Four],
@@ -246,8 +256,6 @@ struct Move<'a> {
 struct Furthest {
     /// Squares of the two largest ways since the list was made; m².
     way: [f64; 2],
-    /// Square of the largest way in the step; m².
-    fastest: f64,
     /// Square of the largest way in the step over the radius; 1. No number where a body has
     /// none.
     share: f64,
@@ -265,7 +273,7 @@ impl FourLanes for Move<'_> {
             gravity * self.gravity[1],
             gravity * self.gravity[2],
         ];
-        let (mut way, mut second, mut fastest) = (zero, zero, zero);
+        let (mut way, mut second) = (zero, zero);
         let (mut share, mut all) = (zero, zero);
         let count = self.place.len();
         for start in (0..count).step_by(LANES) {
@@ -275,7 +283,7 @@ impl FourLanes for Move<'_> {
             for lane in 0..LANES {
                 let own = start + lane.min(lanes - 1);
                 let (m, load) = (&self.motion[own], &self.loads[own]);
-                rows[0][lane] = Lanes(self.place[own]);
+                rows[0][lane] = Lanes(self.place[own].0);
                 rows[1][lane] = Lanes([m[0], m[1], m[2], m[3]]);
                 rows[2][lane] = Lanes([m[4], m[5], m[6], m[7]]);
                 rows[3][lane] = Lanes([load[0], load[1], load[2], load[3]]);
@@ -299,9 +307,7 @@ impl FourLanes for Move<'_> {
             second = second.max(way.min(own));
             way = way.max(own);
             let velocities = [velocity[0], velocity[1], velocity[2]];
-            let own = dot_of(velocities, velocities) * (step * step);
-            fastest = fastest.max(own);
-            let own = own / (place[3] * place[3]);
+            let own = dot_of(velocities, velocities) * (step * step) / (place[3] * place[3]);
             share = share.max(own);
             // A largest one does not show what is no number.
             all = all + own;
@@ -309,7 +315,7 @@ impl FourLanes for Move<'_> {
             let [spins, turns] = [R::rows(spin), R::rows(turn)];
             for lane in 0..lanes {
                 let own = start + lane;
-                self.place[own] = places[lane].0;
+                self.place[own] = HalfLine(places[lane].0);
                 self.motion[own][..LANES].copy_from_slice(&velocities[lane].0);
                 self.motion[own][LANES..].copy_from_slice(&spins[lane].0);
                 self.turn[own] = turns[lane].0;
@@ -322,7 +328,6 @@ impl FourLanes for Move<'_> {
         let ways = way.into_iter().chain(second);
         Furthest {
             way: ways.fold([0.0; 2], |[a, b], own| [a.max(own), b.max(a.min(own))]),
-            fastest: largest(fastest),
             share: if finite { largest(share) } else { f64::NAN },
         }
     }

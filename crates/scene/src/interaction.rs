@@ -68,6 +68,11 @@ impl Interaction {
         }
     }
 
+    /// Whether anything acts against rolling.
+    pub(crate) fn rolls(&self) -> bool {
+        self.friction > 0.0 && self.rolling > 0.0
+    }
+
     /// Whether the law follows the radii of what touches.
     #[must_use]
     pub fn follows_radii(&self) -> bool {

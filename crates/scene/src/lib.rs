@@ -25,6 +25,7 @@ pub mod follow;
 mod gather;
 pub mod interaction;
 mod law_column;
+mod line;
 pub mod mesh;
 mod mesh_contacts;
 mod neighbours;

@@ -1,5 +1,6 @@
 //! Which fruit may touch before the list is made anew: cells, and pairs within a skin.
 
+use crate::line::{HalfLine, Line};
 use crate::store::NONE;
 use crate::vector::{Rotation, Vector, length};
 use crate::wall_contacts::Lifted;
@@ -10,9 +11,9 @@ use std::ops::Range;
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Bodies {
     /// Place, m, and radius, m.
-    pub place: Vec<[f64; 4]>,
+    pub place: Vec<HalfLine>,
     /// Velocity half a step ago, m/s; 1/mass; angular velocity, rad/s; 1/moment of inertia.
-    pub motion: Vec<[f64; 8]>,
+    pub motion: Vec<Line>,
     /// Orientation.
     pub turn: Vec<Rotation>,
     /// Number of the fruit in the scene.
@@ -81,8 +82,8 @@ impl Bodies {
 /// Bodies from the first of a block on, by their numbers in it: see [`Bodies`].
 #[derive(Clone, Copy)]
 pub(crate) struct BodiesFrom<'a> {
-    pub place: &'a [[f64; 4]],
-    pub motion: &'a [[f64; 8]],
+    pub place: &'a [HalfLine],
+    pub motion: &'a [Line],
     pub turn: &'a [Rotation],
     pub fruit: &'a [u32],
     pub clump: &'a [u32],
@@ -140,7 +141,7 @@ pub(crate) struct PairTable {
     own: Vec<u32>,
     /// Pairs of which one belongs to a clump: these are no entries.
     pub of_clumps: Vec<[u32; 2]>,
-    /// For each entry its number among those of two blocks, or [`NONE`].
+    /// For each entry its number among those of its block that reach into another, or [`NONE`].
     pub out: Vec<u32>,
     /// Where those of each block begin.
     out_start: Vec<usize>,
@@ -368,8 +369,9 @@ impl PairTable {
             let pair = [self.first[entry as usize], self.second[entry as usize]];
             let [one, other] = pair.map(|body| block[body as usize]);
             if one != other {
-                self.out[entry as usize] = foreign.len() as u32;
-                self.out_start[one as usize + 1] += 1;
+                let outs = &mut self.out_start[one as usize + 1];
+                self.out[entry as usize] = *outs as u32;
+                *outs += 1;
                 let last = &mut self.last[one as usize];
                 *last = (*last).max(other as usize);
                 foreign.push(pair[1]);
@@ -404,10 +406,11 @@ impl PairTable {
         self.bounds[blocks].iter().map(Range::len).sum()
     }
 
-    /// Entries of other blocks in which a body is second, by their number.
+    /// Entries of other blocks in which bodies are second, by their number.
     #[inline(always)]
-    pub(crate) fn incoming(&self, body: usize) -> &[u32] {
-        &self.incoming[self.incoming_start[body] as usize..self.incoming_start[body + 1] as usize]
+    pub(crate) fn incoming(&self, bodies: Range<usize>) -> &[u32] {
+        let start = |body: usize| self.incoming_start[body] as usize;
+        &self.incoming[start(bodies.start)..start(bodies.end)]
     }
 
     /// The entry of two bodies.

@@ -4,9 +4,9 @@ use crate::contact::{Moment, Outcome, Parcel, encounter, event_of_pair, parted, 
 use crate::error::{Error, fruit_name};
 use crate::interaction::Interaction;
 use crate::neighbours::BodiesFrom;
-use crate::pair_forces::Batch;
+use crate::pair_forces::{Batch, Pair};
 use crate::react::surface_velocity;
-use crate::store::{Load, NONE, Store};
+use crate::store::{Load, Store};
 use crate::vector::{length, plus_scaled, scaled, subtract};
 use crate::vector_of::dot;
 use windfall_contact::effective::effective_radius;
@@ -22,14 +22,12 @@ pub(crate) struct Part<'a> {
     pub base: u32,
     pub first: &'a [u32],
     pub second: &'a [u32],
-    /// Where each has what it does to a second body of another block.
+    /// Where each has what it does to a second body of another block, or [`NONE`](crate::store::NONE).
     pub out: &'a [u32],
     /// Loads of pairs on the bodies of the block.
     pub loads: &'a mut [Load],
-    /// Loads on second bodies of other blocks, and the number of the first; zero where nothing
-    /// touches.
+    /// Loads on second bodies of other blocks; zero where nothing touches.
     pub outs: &'a mut [Load],
-    pub out_base: u32,
     /// How far two bodies may have come together since the list was made; m.
     pub approach: f64,
 }
@@ -38,8 +36,7 @@ pub(crate) struct Part<'a> {
 pub(crate) struct PairContacts {
     store: Store,
     entries: Vec<u32>,
-    /// Their bodies, from the first of the block on.
-    pairs: Vec<[u32; 2]>,
+    pairs: Vec<Pair>,
     /// Entries without a contact that may soon touch.
     awake: Vec<Awake>,
     /// Those that cannot before bodies have moved by half their gap; the widest first.
@@ -90,13 +87,12 @@ impl PairContacts {
             out,
             loads,
             outs,
-            out_base,
             approach,
         } = part;
         self.wake(approach, |entry| {
             [first[entry as usize] - base, second[entry as usize] - base]
         });
-        if let Err(problem) = self.begin_all(&bodies, (surface, now)) {
+        if let Err(problem) = self.begin_all(&bodies, out, (surface, now)) {
             outcome.problem.get_or_insert(problem);
             return;
         }
@@ -105,10 +101,8 @@ impl PairContacts {
             bodies: &bodies,
             store: &mut self.store,
             pairs: &self.pairs,
-            out: (&self.entries, out),
             loads,
             outs: &mut *outs,
-            out_base,
             parting: &mut parting,
             surface,
             clock: now.clock,
@@ -119,10 +113,9 @@ impl PairContacts {
                 .get_or_insert_with(|| self.deepest(&bodies, now));
         }
         for contact in parting.drain(..) {
-            let entry = self.finish(contact as usize, &bodies, now, outcome);
-            let number = out[entry as usize];
-            if number != NONE {
-                outs[(number - out_base) as usize] = [0.0; 8];
+            let pair = self.finish(contact as usize, &bodies, now, outcome);
+            if let Some(out) = outs.get_mut(pair.out as usize) {
+                *out = Load::ZERO;
             }
         }
         self.parting = parting;
@@ -134,7 +127,7 @@ impl PairContacts {
     }
 
     /// Takes over the contact of an entry of a new list; entries come in rising order.
-    pub(crate) fn adopt(&mut self, entry: u32, pair: [u32; 2], law: &Law, parcel: Parcel) {
+    pub(crate) fn adopt(&mut self, entry: u32, pair: Pair, law: &Law, parcel: Parcel) {
         if self.store.adopt(law, parcel).is_some() {
             self.entries.push(entry);
             self.pairs.push(pair);
@@ -185,6 +178,7 @@ impl PairContacts {
     fn begin_all(
         &mut self,
         bodies: &BodiesFrom,
+        out: &[u32],
         work: (&Interaction, &Moment),
     ) -> Result<(), Error> {
         let mut place = 0;
@@ -201,7 +195,8 @@ impl PairContacts {
             if apart {
                 place += 1;
             } else {
-                self.begin(entry, pair, bodies, work)?;
+                let out = out[entry as usize];
+                self.begin(entry, Pair { bodies: pair, out }, bodies, work)?;
                 self.awake.swap_remove(place);
             }
         }
@@ -212,16 +207,16 @@ impl PairContacts {
     fn begin(
         &mut self,
         entry: u32,
-        pair: [u32; 2],
+        pair: Pair,
         bodies: &BodiesFrom,
         (surface, now): (&Interaction, &Moment),
     ) -> Result<(), Error> {
-        let [i, j] = pair.map(|body| body as usize);
+        let [i, j] = pair.bodies.map(|body| body as usize);
         let draws = |body: usize| &now.fruit[bodies.fruit[body] as usize].draws;
         let centre = |body: usize| [0, 1, 2].map(|axis| bodies.place[body][axis]);
         let (a, b) = (bodies.place[i][3], bodies.place[j][3]);
         let radius = effective_radius(a, b);
-        let displacement = bodies.overlap(pair);
+        let displacement = bodies.overlap(pair.bodies);
         let between = subtract(centre(j), centre(i));
         let normal = scaled(between, 1.0 / length(between));
         let (u, w) = (&bodies.motion[i], &bodies.motion[j]);
@@ -245,10 +240,10 @@ impl PairContacts {
     /// The pair that overlaps too much.
     #[cold]
     fn deepest(&self, bodies: &BodiesFrom, now: &Moment) -> Error {
-        let share = |pair: &[u32; 2]| {
-            let [i, j] = pair.map(|body| body as usize);
+        let share = |pair: &Pair| {
+            let [i, j] = pair.bodies.map(|body| body as usize);
             let radius = bodies.place[i][3].min(bodies.place[j][3]);
-            (bodies.overlap(*pair) / radius, i, j, radius)
+            (bodies.overlap(pair.bodies) / radius, i, j, radius)
         };
         let all = self.pairs.iter().map(share);
         let (share, i, j, radius) =
@@ -263,7 +258,7 @@ impl PairContacts {
         )
     }
 
-    /// A contact whose bodies part; its entry.
+    /// A contact whose bodies part, out of the list.
     #[cold]
     fn finish(
         &mut self,
@@ -271,16 +266,16 @@ impl PairContacts {
         bodies: &BodiesFrom,
         now: &Moment,
         outcome: &mut Outcome,
-    ) -> u32 {
-        let [i, j] = self.pairs[contact].map(|body| body as usize);
-        let gap = -bodies.overlap(self.pairs[contact]);
+    ) -> Pair {
+        let pair = self.pairs[contact].bodies;
+        let [i, j] = pair.map(|body| body as usize);
+        let gap = -bodies.overlap(pair);
         let parted = parted(self.store.parcel(contact), gap, now.clock);
         let fruit = (bodies.fruit[i], bodies.fruit[j]);
         outcome.events.push(event_of_pair(parted, fruit, false));
         self.store.remove(contact);
-        let pair = self.pairs.swap_remove(contact);
         let entry = self.entries.swap_remove(contact);
         self.awake.push(Awake { entry, pair });
-        entry
+        self.pairs.swap_remove(contact)
     }
 }

@@ -6,25 +6,30 @@ use crate::neighbours::BodiesFrom;
 use crate::react::{Clock, Normal, Touch, surface_velocity};
 use crate::store::{CHUNK, Load, Store, add_load, loads};
 use crate::vector_of::dot;
+use windfall_numerics::prefetch::prefetch;
 use windfall_numerics::real::Lanes;
 use windfall_numerics::real_vector::{FourLanes, FourNumbers, LANES};
 
 /// Groups between the one that is worked through and the one whose memory is asked for.
 const AHEAD: usize = 24;
 
+/// The bodies of a contact, from the first of the block on, and its number among those that
+/// reach into another block, or [`NONE`](crate::store::NONE).
+#[derive(Clone, Copy)]
+pub(crate) struct Pair {
+    pub bodies: [u32; 2],
+    pub out: u32,
+}
+
 /// Contacts of one block and one interaction.
 pub(crate) struct Batch<'a> {
     pub bodies: &'a BodiesFrom<'a>,
     pub store: &'a mut Store,
-    /// The bodies of each contact.
-    pub pairs: &'a [[u32; 2]],
-    /// The entry of each contact, and the number of each entry of two blocks.
-    pub out: (&'a [u32], &'a [u32]),
+    pub pairs: &'a [Pair],
     /// Loads of pairs on the bodies of the block.
     pub loads: &'a mut [Load],
-    /// Loads on second bodies of other blocks, and the number of the first.
+    /// Loads on second bodies of other blocks.
     pub outs: &'a mut [Load],
-    pub out_base: u32,
     /// Contacts whose bodies do not touch any more: for the caller, in falling order.
     pub parting: &'a mut Vec<u32>,
     pub surface: &'a Interaction,
@@ -45,6 +50,7 @@ impl FourLanes for Batch<'_> {
         let groups = batch.pairs.len().div_ceil(LANES);
         for first in (0..groups).step_by(CHUNK) {
             let count = CHUNK.min(groups - first);
+            batch.prefetch(first + CHUNK);
             for own in 0..count {
                 let meeting = meet(batch.bodies, batch.pairs_of(first + own), zero);
                 let touch = &meeting.touch;
@@ -72,11 +78,26 @@ impl Batch<'_> {
         let start = group * LANES;
         let last = self.pairs.len() - 1;
         [
-            self.pairs[start],
-            self.pairs[(start + 1).min(last)],
-            self.pairs[(start + 2).min(last)],
-            self.pairs[(start + 3).min(last)],
+            self.pairs[start].bodies,
+            self.pairs[(start + 1).min(last)].bodies,
+            self.pairs[(start + 2).min(last)].bodies,
+            self.pairs[(start + 3).min(last)].bodies,
         ]
+    }
+
+    /// Asks for the memory of the bodies of the next groups, and of what is to push them.
+    #[inline(always)]
+    fn prefetch(&self, first: usize) {
+        let later = self.pairs.iter().skip(first * LANES);
+        for Pair { bodies, out } in later.take(CHUNK * LANES) {
+            for body in bodies {
+                prefetch(&self.bodies.place[*body as usize]);
+                prefetch(&self.bodies.motion[*body as usize]);
+            }
+            if let Some(out) = self.outs.get(*out as usize) {
+                prefetch(out);
+            }
+        }
     }
 
     /// Forces of a group, to those whom they push.
@@ -114,7 +135,8 @@ impl Batch<'_> {
             if !together && parted[lane] {
                 continue;
             }
-            let [first, second] = self.pairs[start + lane];
+            let Pair { bodies, out } = self.pairs[start + lane];
+            let [first, second] = bodies;
             add_load(
                 &mut self.loads[first as usize],
                 &near.0[lane],
@@ -123,11 +145,7 @@ impl Batch<'_> {
             // Second bodies stand behind.
             match self.loads.get_mut(second as usize) {
                 Some(load) => add_load(load, &far.0[lane], &far.1[lane]),
-                None => {
-                    let number = self.out.1[self.out.0[start + lane] as usize];
-                    let out = &mut self.outs[(number - self.out_base) as usize];
-                    put(out, &far.0[lane], &far.1[lane]);
-                }
+                None => put(&mut self.outs[out as usize], &far.0[lane], &far.1[lane]),
             }
         }
     }
@@ -175,8 +193,8 @@ fn meet<R: FourNumbers>(bodies: &BodiesFrom, pairs: [[u32; 2]; LANES], zero: R) 
     let mut rows = [[Lanes::ZERO; LANES]; 6];
     for lane in 0..LANES {
         let (a, b) = (i[lane] as usize, j[lane] as usize);
-        rows[0][lane] = Lanes(places[a]);
-        rows[1][lane] = Lanes(places[b]);
+        rows[0][lane] = Lanes(places[a].0);
+        rows[1][lane] = Lanes(places[b].0);
         let (u, w) = (&motions[a], &motions[b]);
         rows[2][lane] = half(u, 0);
         rows[3][lane] = half(w, 0);

@@ -1,11 +1,12 @@
 //! The list of neighbours made anew, and what goes over into it.
 
 use crate::contact::Parcel;
+use crate::line::HalfLine;
 use crate::neighbours::{PairTable, sort_into_cells};
 use crate::pair_contacts::PairContacts;
+use crate::pair_forces::Pair;
 use crate::simulation::Simulation;
-use crate::store::NONE;
-use crate::vector::dot;
+use crate::store::{Load, NONE};
 use crate::wall_contacts::{Lifted, NearPart};
 use crate::wall_forces::WallContacts;
 use rayon::prelude::*;
@@ -26,20 +27,60 @@ pub(crate) struct Carried {
     pub contact: u32,
 }
 
+/// Where contacts come from that go over into a new list.
+pub(crate) trait Origin: Sync {
+    /// Law and memory of one, as it was.
+    fn at(&self, own: &Carried) -> (Law, Parcel);
+    /// All that went to entries of the new list before this one are settled.
+    fn settled(&mut self, _before: usize) {}
+}
+
 /// Contacts of a block of an old list, by parts, with the first entries of those.
 pub(crate) struct OldBlock(Vec<(usize, PairContacts)>);
 
-impl OldBlock {
-    fn at(&self, own: &Carried) -> (Law, Parcel) {
-        self.0[own.part as usize].1.at(own.contact as usize)
+/// Blocks of an old list, which go as soon as nothing more comes from them: so there are never
+/// all contacts twice.
+struct OldBlocks {
+    blocks: Vec<OldBlock>,
+    /// The last entry to which each block gives a contact, and the block; the last block to
+    /// go comes first.
+    last: Vec<(u32, usize)>,
+}
+
+impl OldBlocks {
+    fn new(blocks: Vec<OldBlock>, carried: &[Carried]) -> Self {
+        let mut last: Vec<(u32, usize)> = (0..blocks.len()).map(|block| (0, block)).collect();
+        for own in carried {
+            let (entry, _) = &mut last[own.block as usize];
+            *entry = own.entry.max(*entry);
+        }
+        last.sort_unstable_by(|a, b| b.cmp(a));
+        Self { blocks, last }
     }
 }
+
+impl Origin for OldBlocks {
+    fn at(&self, own: &Carried) -> (Law, Parcel) {
+        let OldBlock(parts) = &self.blocks[own.block as usize];
+        parts[own.part as usize].1.at(own.contact as usize)
+    }
+
+    fn settled(&mut self, before: usize) {
+        while let Some((_, block)) = self.last.pop_if(|own| (own.0 as usize) < before) {
+            self.blocks[block].0 = Vec::new();
+        }
+    }
+}
+
+/// Blocks whose contacts are settled at a time.
+const SETTLED: usize = 64;
 
 impl Simulation {
     /// A new list of neighbours; contacts go over into it.
     pub(crate) fn rebuild(&mut self) {
-        let (contacts, carried) = self.renew();
-        self.settle(carried, |own| contacts[own.block as usize].at(own));
+        let (blocks, carried) = self.renew();
+        let origin = OldBlocks::new(blocks, &carried);
+        self.settle(carried, origin);
     }
 
     /// A new list of neighbours without contacts; those of the old list, and where they go.
@@ -89,17 +130,12 @@ impl Simulation {
     }
 
     /// Contacts into a list that holds none of them, and what goes with the list.
-    ///
-    /// * `what`: law and memory of one that is carried over, as it was
-    pub(crate) fn settle(
-        &mut self,
-        mut carried: Vec<Carried>,
-        what: impl Fn(&Carried) -> (Law, Parcel) + Sync,
-    ) {
+    pub(crate) fn settle(&mut self, mut carried: Vec<Carried>, mut origin: impl Origin) {
         // In the order of the list, in which they are worked through.
         carried.sort_unstable_by_key(|own| own.entry);
         let (table, bodies) = (&self.table, &self.bodies);
-        let of_part = |base: usize, (interaction, range): &(usize, Range<usize>)| {
+        let of_part = |origin: &_, base: usize, own: &(usize, Range<usize>)| {
+            let (interaction, range) = own;
             let bodies = bodies.from(base);
             let pair = |entry: usize| {
                 [table.first[entry], table.second[entry]].map(|body| body - base as u32)
@@ -109,31 +145,38 @@ impl Simulation {
             let mut contacts = PairContacts::new(&self.surfaces[*interaction], carried.len());
             for own in carried {
                 let entry = own.entry as usize;
-                let (law, parcel) = what(own);
+                let (law, parcel) = Origin::at(origin, own);
                 let parcel = if own.swapped {
                     parcel.swapped()
                 } else {
                     parcel
                 };
-                contacts.adopt((entry - range.start) as u32, pair(entry), &law, parcel);
+                let (bodies, out) = (pair(entry), table.out[entry]);
+                let pair = Pair { bodies, out };
+                contacts.adopt((entry - range.start) as u32, pair, &law, parcel);
             }
             contacts.wait(range.clone().map(pair), &bodies);
             contacts
         };
-        let blocks = table.blocks.par_iter().zip(&table.bounds);
-        self.contacts = blocks
-            .map(|(parts, bounds)| parts.iter().map(|own| of_part(bounds.start, own)).collect())
-            .collect();
-        self.out = vec![[0.0; 8]; self.table.outs_before(self.table.bounds.len())];
-        self.listed = self.bodies.place.iter().map(|own| Lanes(*own)).collect();
+        self.contacts = Vec::with_capacity(table.blocks.len());
+        let bounds = table.bounds.chunks(SETTLED);
+        for (blocks, bounds) in table.blocks.chunks(SETTLED).zip(bounds) {
+            let of_block = |(parts, bounds): (&Vec<(usize, Range<usize>)>, &Range<usize>)| {
+                let parts = parts.iter();
+                parts
+                    .map(|own| of_part(&origin, bounds.start, own))
+                    .collect()
+            };
+            let settled: Vec<_> = blocks.par_iter().zip(bounds).map(of_block).collect();
+            self.contacts.extend(settled);
+            let last = blocks.iter().flatten().next_back();
+            origin.settled(last.map_or(0, |(_, range)| range.end));
+        }
+        drop(origin);
+        self.out = vec![Load::ZERO; self.table.outs_before(self.table.bounds.len())];
+        self.listed = self.bodies.place.iter().map(|own| Lanes(own.0)).collect();
         (self.moved, self.approach, self.wall_way) = (0.0, 0.0, 0.0);
         self.ways = vec![[0.0; 2]; self.table.bounds.len()];
-        let speeds = self
-            .bodies
-            .motion
-            .iter()
-            .map(|m| dot([m[0], m[1], m[2]], [m[0], m[1], m[2]]));
-        self.fastest = speeds.fold(0.0, f64::max).sqrt() * self.scene.time_step;
         self.find_near();
         self.settle_walls();
     }
@@ -261,7 +304,7 @@ impl Simulation {
         let (walls, skin) = (&self.walls, self.skin);
         let places = self.bodies.place.par_iter().zip(&self.bodies.lifted);
         let near: Vec<Vec<u32>> = places
-            .map(|(&[x, y, z, radius], lifted)| {
+            .map(|(&HalfLine([x, y, z, radius]), lifted)| {
                 let mut own: Vec<u32> = lifted.iter().map(|own| own.facet).collect();
                 walls.find_near([x, y, z], radius + skin, &mut own);
                 own.sort_unstable();

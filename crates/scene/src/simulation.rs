@@ -6,15 +6,16 @@ use crate::contact::{Moment, Outcome, event, event_of_pair, lasting};
 use crate::energy::{Account, Energy};
 use crate::error::Error;
 use crate::event::{Event, Partner};
-use crate::gather::{Loads, Sums, Swept, TOGETHER};
+use crate::gather::{Loads, Sums, Swept};
 use crate::interaction::Interaction;
 use crate::law_column::Four;
+use crate::line::HalfLine;
 use crate::neighbours::{Bodies, PairTable};
 use crate::pair_contacts::PairContacts;
 use crate::react::Clock;
 use crate::scene::Scene;
 use crate::store::{Load, NONE};
-use crate::vector::{Rotation, Vector, length};
+use crate::vector::{Rotation, Vector};
 use crate::wall_contacts::{NearPart, WallState};
 use crate::wall_forces::WallContacts;
 
@@ -36,7 +37,7 @@ pub struct Simulation {
     /// Of pairs of two blocks on the second body.
     pub(crate) out: Vec<Load>,
     /// For the loads on the bodies of blocks, while these are worked through.
-    pub(crate) loads: [Loads; TOGETHER],
+    pub(crate) loads: Loads,
     /// Of contacts of clumps on each body, where there are clumps.
     pub(crate) clump_loads: Vec<Load>,
     pub(crate) walls: WallState,
@@ -54,10 +55,6 @@ pub struct Simulation {
     pub(crate) approach: f64,
     pub(crate) wall_way: f64,
     pub(crate) wall_speed: f64,
-    /// Largest way of a body in the last step; m.
-    pub(crate) fastest: f64,
-    /// Whether this list of neighbours holds until a whole number of [`TOGETHER`].
-    pub(crate) holds: bool,
     pub(crate) skin: f64,
     pub(crate) steps: u64,
     /// Fruit that has come, by number.
@@ -96,9 +93,6 @@ pub struct FruitState {
 
 /// Skin of the list of neighbours over the mean radius; 1.
 const SKIN: f64 = 0.16;
-
-/// Way that every body may make in a step beyond what its speed says over the skin; 1.
-const SLACK: f64 = 0.02;
 
 /// Steps between looks at sinks.
 const SINK_STEPS: u64 = 32;
@@ -163,8 +157,6 @@ impl Simulation {
             approach: f64::INFINITY,
             wall_way: 0.0,
             wall_speed,
-            fastest: f64::INFINITY,
-            holds: false,
             skin,
             steps: 0,
             released: 0,
@@ -222,7 +214,7 @@ impl Simulation {
     #[must_use]
     pub fn fruit(&self) -> Vec<FruitState> {
         let state = |body: usize| {
-            let ([x, y, z, _], m) = (self.bodies.place[body], self.bodies.motion[body]);
+            let (HalfLine([x, y, z, _]), m) = (self.bodies.place[body], self.bodies.motion[body]);
             FruitState {
                 fruit: self.bodies.fruit[body],
                 place: [x, y, z],
@@ -290,20 +282,15 @@ impl Simulation {
     /// # Errors
     /// The result would mean nothing: bodies overlap or move too much.
     pub fn step(&mut self) -> Result<(), Error> {
-        self.advance(1, false).map(|_| ())
+        self.advance(false).map(|_| ())
     }
 
-    /// So many time steps on: the same as one after the other, sooner where there are many
-    /// fruit.
+    /// So many time steps on.
     ///
     /// # Errors
     /// See [`Simulation::step`].
     pub fn run(&mut self, steps: u64) -> Result<(), Error> {
-        let end = self.steps + steps;
-        while self.steps < end {
-            self.advance(end - self.steps, false)?;
-        }
-        Ok(())
+        (0..steps).try_for_each(|_| self.step())
     }
 
     /// One time step on; answers the energies at its beginning.
@@ -311,130 +298,50 @@ impl Simulation {
     /// # Errors
     /// See [`Simulation::step`].
     pub fn step_with_energy(&mut self) -> Result<Energy, Error> {
-        self.advance(1, true)
+        self.advance(true)
     }
 
-    /// One time step on or several, but no more than `most`; energies at the beginning.
-    fn advance(&mut self, most: u64, with_energy: bool) -> Result<Energy, Error> {
+    fn advance(&mut self, with_energy: bool) -> Result<Energy, Error> {
         if !self.scene.sinks.is_empty() && self.steps.is_multiple_of(SINK_STEPS) {
             self.sink();
         }
         if self.due() {
             self.release()?;
         }
-        self.push(most, with_energy)
+        self.push(with_energy)
     }
 
-    /// One step on or several, but no more than `most`, in which nothing comes or leaves.
-    fn push(&mut self, most: u64, with_energy: bool) -> Result<Energy, Error> {
-        let together = match self.look_ahead() {
-            true => most.min(TOGETHER as u64),
-            false => 1,
-        };
-        self.push_together(together, with_energy)
-    }
-
-    /// One step on, from places that something else has made.
-    pub(crate) fn push_from_anywhere(&mut self) -> Result<Energy, Error> {
-        self.holds = false;
-        self.renew_beyond(0.0);
-        self.push_together(1, true)
-    }
-
-    /// Forces on all bodies where they are now, and where they take them; in so many steps.
-    fn push_together(&mut self, together: u64, with_energy: bool) -> Result<Energy, Error> {
-        let step = self.scene.time_step;
-        self.walls.move_to(&self.scene.walls, self.time(), step);
-        let clock = |steps: u64| Clock {
-            time: (self.steps + steps) as f64 * step,
-            step,
-        };
-        let clocks: Vec<Clock> = (0..together).map(clock).collect();
-        let of_clumps = self.push_clump_contacts(clocks[0]);
-        let mut energy = Energy::default();
-        let swept = self.sweep(&clocks, with_energy);
-        self.end(of_clumps)?;
-        for own in swept {
-            energy = self.take_in(own, with_energy)?;
-            self.wall_way += self.wall_speed * step;
-            self.steps += 1;
-            if self.holds && self.within_round() && self.approach > self.skin {
-                return Err(self.leapt());
-            }
-        }
-        Ok(energy)
-    }
-
-    /// Whether steps are to come up to the next whole number of [`TOGETHER`].
-    fn within_round(&self) -> bool {
-        !self.steps.is_multiple_of(TOGETHER as u64)
-    }
-
-    /// Makes the list of neighbours anew if it must be; whether the next [`TOGETHER`] steps may
-    /// go through the blocks together. What is done depends on nothing but the scene as it
-    /// is, whether they then do or not.
-    fn look_ahead(&mut self) -> bool {
-        if self.holds && self.within_round() {
-            return false;
-        }
-        let others = TOGETHER as u64 - 1;
-        let calm = !self.within_round()
-            && self.clumps.is_empty()
-            && self.scene.walls.iter().all(|wall| wall.motion.stays())
-            && !self.due_at(self.steps + others);
-        // What bodies may go before the last of them, if none gets much faster.
-        let further = |own: &Self| match calm {
-            true => others as f64 * (2.0 * own.fastest + SLACK * own.skin),
-            false => 0.0,
-        };
-        self.renew_beyond(further(self));
-        self.holds = calm && self.approach + 2.0 * further(self) <= self.skin;
-        self.holds
-    }
-
-    /// Makes the list of neighbours anew unless it holds while every body goes that much
-    /// further; m.
-    fn renew_beyond(&mut self, further: f64) {
-        let to_walls = self.moved + self.wall_way + further;
-        if self.approach + 2.0 * further > self.skin || to_walls > self.skin {
+    /// Forces on all bodies where they are now, and where they take them.
+    pub(crate) fn push(&mut self, with_energy: bool) -> Result<Energy, Error> {
+        if self.approach > self.skin || self.moved + self.wall_way > self.skin {
             self.rebuild();
         }
-    }
-
-    /// Why a list that was to hold does not.
-    #[cold]
-    fn leapt(&self) -> Error {
-        let speed = |body: usize| {
-            let m = &self.bodies.motion[body];
-            length([m[0], m[1], m[2]])
-        };
-        let bodies = 0..self.bodies.len();
-        let fastest = bodies.max_by(|a, b| speed(*a).total_cmp(&speed(*b)));
-        let body = fastest.unwrap_or_default();
-        let way = speed(body) * self.scene.time_step;
-        Error::Speed {
-            time: self.time(),
-            fruit: self.bodies.fruit[body],
-            speed: speed(body),
-            share: 100.0 * way / self.bodies.place[body][3],
-        }
+        let (time, step) = (self.time(), self.scene.time_step);
+        self.walls.move_to(&self.scene.walls, time, step);
+        let clock = Clock { time, step };
+        let of_clumps = self.push_clump_contacts(clock);
+        let swept = self.sweep(clock, with_energy);
+        self.end(of_clumps)?;
+        let energy = self.take_in(swept, with_energy)?;
+        self.wall_way += self.wall_speed * step;
+        self.steps += 1;
+        Ok(energy)
     }
 
     /// Takes in what a step brought about.
     fn take_in(&mut self, swept: Swept, with_energy: bool) -> Result<Energy, Error> {
         swept.pairs.into_iter().try_for_each(|own| self.end(own))?;
         let mut energy = Energy::default();
-        (self.moved, self.approach, self.fastest) = (0.0, 0.0, 0.0);
+        (self.moved, self.approach) = (0.0, 0.0);
         let ways = swept
             .bodies
             .iter()
             .map(|(_, sums)| sums.moved.map(f64::sqrt));
-        let ways: Vec<[f64; 2]> = ways.collect();
+        self.ways = ways.collect();
         for (block, (outcome, sums)) in swept.bodies.into_iter().enumerate() {
             self.end(outcome)?;
-            self.moved = self.moved.max(ways[block][0]);
-            self.approach = self.approach.max(self.table.approach(block, &ways));
-            self.fastest = self.fastest.max(sums.fastest.sqrt());
+            self.moved = self.moved.max(self.ways[block][0]);
+            self.approach = self.approach.max(self.table.approach(block, &self.ways));
             self.account.drag += sums.drag;
             self.account.walls += sums.walls;
             energy.kinetic += sums.kinetic;
@@ -463,7 +370,7 @@ impl Simulation {
         if self.clumps.is_empty() {
             return outcome;
         }
-        self.clump_loads.resize(self.bodies.len(), [0.0; 8]);
+        self.clump_loads.resize(self.bodies.len(), Load::ZERO);
         let now = Moment {
             fruit: &self.scene.fruit,
             clock,

@@ -9,6 +9,7 @@ use crate::error::Error;
 use crate::event::{Encounter, Event, Partner};
 use crate::neighbours::Bodies;
 use crate::react::{Memory, Peaks};
+use crate::relist::{Carried, Origin};
 use crate::scene::Scene;
 use crate::simulation::{FruitState, Leaving, Simulation};
 use crate::vector::Vector;
@@ -406,10 +407,8 @@ impl Simulation {
             laws.push(law);
             carried.extend(self.carried((first, second), [0, 0, number]));
         }
-        self.settle(carried, |own| {
-            let number = own.contact as usize;
-            (laws[number], state.pairs[number].parcel)
-        });
+        let pairs = &state.pairs;
+        self.settle(carried, ReadPairs { laws, pairs });
         Ok(())
     }
 
@@ -443,6 +442,19 @@ impl Simulation {
     fn kind_between(&self, material: usize, other: usize) -> LawKind {
         let number = self.numbers[material * self.scene.materials.len() + other];
         self.surfaces[number].law.kind()
+    }
+}
+
+/// Contacts of two fruit as they were read.
+struct ReadPairs<'a> {
+    laws: Vec<Law>,
+    pairs: &'a [PairState],
+}
+
+impl Origin for ReadPairs<'_> {
+    fn at(&self, own: &Carried) -> (Law, Parcel) {
+        let number = own.contact as usize;
+        (self.laws[number], self.pairs[number].parcel)
     }
 }
 

@@ -5,6 +5,7 @@ use crate::contact::Parcel;
 use crate::event::Encounter;
 use crate::interaction::Interaction;
 use crate::law_column::{Four, Given, LawColumn, law_column};
+use crate::line::Line;
 use crate::react::{Clock, Memory, Normal, Peaks, Reaction, Remembered, Touch, given, react};
 use crate::vector_of::{Of, cross};
 use std::ops::Range;
@@ -17,7 +18,7 @@ use windfall_numerics::real_vector::{FourNumbers, LANES};
 pub(crate) const NONE: u32 = u32::MAX;
 
 /// Force (N) and moment (N m) on a body: 0 to 2 and 4 to 6.
-pub(crate) type Load = [f64; 8];
+pub(crate) type Load = Line;
 
 /// Groups of four that are worked through at a time.
 pub(crate) const CHUNK: usize = 8;
@@ -40,8 +41,9 @@ pub(crate) struct Store {
     elastic: Vec<Of<Four>>,
     /// Annuli of a contact.
     annuli: usize,
-    /// Moments against rolling on the first bodies; N m.
+    /// Moments against rolling on the first bodies, where anything acts against it; N m.
     rolling: Vec<Of<Four>>,
+    rolls: bool,
     laws: Box<dyn LawColumn>,
     encounters: Vec<Encounter>,
 }
@@ -54,7 +56,8 @@ impl Store {
             quads: Vec::with_capacity(groups),
             elastic: Vec::with_capacity(groups * surface.annuli),
             annuli: surface.annuli,
-            rolling: Vec::with_capacity(groups),
+            rolling: Vec::with_capacity(if surface.rolls() { groups } else { 0 }),
+            rolls: surface.rolls(),
             laws: law_column(&surface.law, room),
             encounters: Vec::with_capacity(room),
         }
@@ -76,7 +79,9 @@ impl Store {
                 peaks: Peaks::ZERO,
                 scale: Lanes::ZERO,
             });
-            self.rolling.push([Lanes::ZERO; 3]);
+            if self.rolls {
+                self.rolling.push([Lanes::ZERO; 3]);
+            }
             let elastic = self.elastic.len() + self.annuli;
             self.elastic.resize(elastic, [Lanes::ZERO; 3]);
         }
@@ -98,7 +103,10 @@ impl Store {
             history: quad.history.lane(lane),
             peaks: quad.peaks.lane(lane),
             annuli: self.annuli_of(contact),
-            rolling: self.rolling[group].map(|axis| axis.0[lane]),
+            rolling: match self.rolling.get(group) {
+                Some(four) => four.map(|axis| axis.0[lane]),
+                None => [0.0; 3],
+            },
             encounter: self.encounters[contact],
         }
     }
@@ -140,9 +148,9 @@ impl Store {
         quad.history.put_lane(lane, &parcel.history);
         quad.peaks.put_lane(lane, &parcel.peaks);
         quad.scale.0[lane] = parcel.scale;
-        let rolling = (&mut self.rolling[group], &parcel.rolling);
+        let rolling = self.rolling.get_mut(group).zip(Some(&parcel.rolling));
         let elastic = self.elastic[annuli].iter_mut().zip(&parcel.annuli.0);
-        for (four, own) in elastic.chain([rolling]) {
+        for (four, own) in elastic.chain(rolling) {
             for axis in 0..3 {
                 four[axis].0[lane] = own[axis];
             }
@@ -220,7 +228,7 @@ impl Store {
             damping: zero.with_plain(found.damping) * scale,
             stiffness: zero.with_plain(found.stiffness) * scale,
         };
-        let rolls = surface.rolling > 0.0;
+        let rolls = self.rolls;
         let mut moment = match rolls {
             true => zero.with_each_plain(self.rolling[group]),
             false => [zero; 3],

@@ -4,13 +4,9 @@
 //! of a block may move as soon as its own pairs and those of the blocks before it are done:
 //! no later pair asks where they were. Blocks go through a step in waves, the bodies of one
 //! wave together with the pairs of the next, while what they need is still near the processor.
-//!
-//! For the same reason a second step may follow the first one at a distance: pairs of a block
-//! need no more than that all bodies which they know have made the step before. What contacts
-//! and bodies remember then comes from memory once for several steps.
 
 use crate::contact::{Moment, Outcome};
-use crate::gather::{BlockBodies, Gather, Loads, Sums, Swept};
+use crate::gather::{BlockBodies, Gather, Sums, Swept};
 use crate::interaction::Interaction;
 use crate::neighbours::{BodiesFrom, PairTable};
 use crate::pair_contacts::{PairContacts, Part};
@@ -26,7 +22,6 @@ const WAVE: usize = 8;
 
 /// A step on its way through the blocks.
 struct Front {
-    clock: Clock,
     /// Blocks whose pairs are done, and whose bodies move next; and the wave behind these.
     moving: Range<usize>,
     pushing: Range<usize>,
@@ -36,162 +31,137 @@ struct Front {
     swept: Swept,
 }
 
+impl Front {
+    /// The next wave; whether there is any.
+    fn goes_on(&mut self, table: &PairTable, wave: usize) -> bool {
+        self.moving = std::mem::take(&mut self.pushing);
+        std::mem::swap(&mut self.behind, &mut self.ahead);
+        let start = self.moving.end;
+        self.pushing = start..(start + wave).min(table.bounds.len());
+        let bodies = table.bodies_of(self.pushing.clone());
+        self.ahead.resize(bodies, Load::ZERO);
+        !self.moving.is_empty() || !self.pushing.is_empty()
+    }
+}
+
 impl Simulation {
-    /// All blocks some steps on, one of which begins at each time; what each step brought
-    /// about.
-    pub(crate) fn sweep(&mut self, clocks: &[Clock], with_energy: bool) -> Vec<Swept> {
+    /// All blocks one step on.
+    pub(crate) fn sweep(&mut self, clock: Clock, with_energy: bool) -> Swept {
         let wave = match rayon::current_num_threads() {
             1 => 1,
             threads => WAVE * threads,
         };
-        let loads = self.loads.iter_mut().map(std::mem::take);
-        let front = |(&clock, [behind, ahead]): (&Clock, Loads)| Front {
-            clock,
+        let [behind, ahead] = std::mem::take(&mut self.loads);
+        let mut front = Front {
             moving: 0..0,
             pushing: 0..0,
             behind,
             ahead,
             swept: Swept::default(),
         };
-        let mut fronts: Vec<Front> = clocks.iter().zip(loads).map(front).collect();
-        while let Some(waves) = self.next_waves(&mut fronts, wave) {
-            self.work_through(&mut fronts, waves, with_energy);
+        while front.goes_on(&self.table, wave) {
+            self.work_through(&mut front, clock, with_energy);
         }
-        let mut all = Vec::with_capacity(fronts.len());
-        for (own, front) in self.loads.iter_mut().zip(fronts) {
-            *own = [front.behind, front.ahead];
-            all.push(front.swept);
-        }
-        all
+        self.loads = [front.behind, front.ahead];
+        front.swept
     }
 
-    /// What each step works at next; how many tasks that are, or `None` at the end.
-    fn next_waves(&self, fronts: &mut [Front], wave: usize) -> Option<usize> {
-        let blocks = self.table.bounds.len();
-        // Blocks whose bodies have all made the step before.
-        let mut ready = blocks;
-        let mut tasks = 0;
-        for front in fronts {
-            front.moving = std::mem::take(&mut front.pushing);
-            std::mem::swap(&mut front.behind, &mut front.ahead);
-            let start = front.moving.end;
-            let most = start..(start + wave).min(blocks);
-            let may = most.take_while(|block| ready == blocks || self.table.last[*block] < ready);
-            front.pushing = start..start + may.count();
-            let bodies = self.table.bodies_of(front.pushing.clone());
-            front.ahead.resize(bodies, [0.0; 8]);
-            tasks += front.moving.len() + front.pushing.len();
-            ready = front.moving.start;
-        }
-        (tasks > 0).then_some(tasks)
-    }
-
-    /// A wave of each step.
-    fn work_through(&mut self, fronts: &mut [Front], count: usize, with_energy: bool) {
+    /// A wave.
+    fn work_through(&mut self, front: &mut Front, clock: Clock, with_energy: bool) {
         let (table, surfaces) = (&self.table, &self.surfaces);
-        let mut place = Cut::of(&mut self.bodies.place);
-        let mut motion = Cut::of(&mut self.bodies.motion);
-        let mut turn = Cut::of(&mut self.bodies.turn);
-        let mut near = Cut::of(&mut self.near);
-        let mut wall_contacts = Cut::of(&mut self.wall_contacts);
-        let mut contacts = Cut::of(&mut self.contacts);
-        let mut out = Cut::of(&mut self.out);
-        let begin = |block: usize| {
-            table
-                .bounds
-                .get(block)
-                .map_or(table.bodies(), |own| own.start)
+        let Front {
+            moving, pushing, ..
+        } = front;
+        let now = Moment {
+            fruit: &self.scene.fruit,
+            clock,
         };
+        let begin = |block: usize| {
+            let own = table.bounds.get(block);
+            own.map_or(table.bodies(), |own| own.start)
+        };
+        let outs = [pushing.start, pushing.end].map(|own| table.outs_before(own));
+        // Pairs of the wave push bodies behind, those before it have pushed.
+        let (before, ahead) = self.out.split_at_mut(outs[0]);
+        let gather = Gather {
+            now,
+            table,
+            out: before,
+            scene: &self.scene,
+            surfaces,
+            numbers: &self.numbers,
+            walls: &self.walls,
+            near_start: &self.near_start,
+            bodies: (&self.bodies.fruit, &self.bodies.material),
+            clumps: (&self.bodies.clump, &self.bodies.offset),
+            clump_loads: &self.clump_loads,
+            listed: &self.listed,
+            with_energy,
+        };
+        let first = begin(moving.start)..begin(pushing.start);
         let parts_of = |bodies: &Range<usize>| {
             let [start, end] = [bodies.start, bodies.end].map(|body| self.near_start[body]);
             start as usize..end as usize
         };
-        let mut gathers: Vec<Gather> = Vec::with_capacity(fronts.len());
-        let mut tasks = Vec::with_capacity(count);
-        // The last step is the first in the order of blocks.
-        let before = fronts.iter().map(|front| front.moving.start);
-        let next: Vec<usize> = std::iter::once(table.bounds.len()).chain(before).collect();
-        let mut out_base = 0;
-        for (number, front) in fronts.iter_mut().enumerate().rev() {
-            let now = Moment {
-                fruit: &self.scene.fruit,
-                clock: front.clock,
-            };
-            let outs = [front.pushing.start, front.pushing.end].map(|own| table.outs_before(own));
-            gathers.push(Gather {
-                now,
-                table,
-                out: out.take(out_base..outs[0]),
-                out_base,
-                scene: &self.scene,
-                surfaces,
-                numbers: &self.numbers,
-                walls: &self.walls,
-                near_start: &self.near_start,
-                bodies: (&self.bodies.fruit, &self.bodies.material),
-                clumps: (&self.bodies.clump, &self.bodies.offset),
-                clump_loads: &self.clump_loads,
-                listed: &self.listed,
-                with_energy,
-            });
-            let mut loads = Cut::of(&mut front.behind);
-            for block in front.moving.clone() {
-                let bodies = table.bounds[block].clone();
-                let own = BlockBodies {
-                    start: bodies.start,
-                    place: place.take(bodies.clone()),
-                    motion: motion.take(bodies.clone()),
-                    turn: turn.take(bodies.clone()),
-                    loads: loads.next(bodies.len()),
-                    near: near.take(parts_of(&bodies)),
-                    wall_contacts: &mut wall_contacts.take(block..block + 1)[0],
-                };
-                tasks.push((number, Task::Bodies(own)));
-            }
-            // Those that stay where they are in this wave.
-            let still = begin(front.pushing.start)..begin(next[number]);
-            let bodies = BodiesFrom {
-                place: place.take(still.clone()),
-                motion: motion.take(still.clone()),
-                turn: turn.take(still.clone()),
-                fruit: &self.bodies.fruit[still.clone()],
-                clump: &self.bodies.clump[still.clone()],
-                offset: &self.bodies.offset[still.clone()],
-            };
-            let mut loads = Cut::of(&mut front.ahead);
-            for block in front.pushing.clone() {
-                let own = table.bounds[block].clone();
-                let outs = [block, block + 1].map(|own| table.outs_before(own));
-                let own = BlockPairs {
-                    block,
-                    now,
-                    bodies: bodies.from(own.start - still.start),
-                    loads: loads.next(own.len()),
-                    outs: out.take(outs[0]..outs[1]),
-                    contacts: &mut contacts.take(block..block + 1)[0],
-                    approach: table.approach(block, &self.ways),
-                };
-                tasks.push((number, Task::Pairs(own)));
-            }
-            out_base = outs[1];
+        let (place, still_place) = self.bodies.place.split_at_mut(first.end);
+        let (motion, still_motion) = self.bodies.motion.split_at_mut(first.end);
+        let (turn, still_turn) = self.bodies.turn.split_at_mut(first.end);
+        let mut place = Cut::of(place);
+        let mut motion = Cut::of(motion);
+        let mut turn = Cut::of(turn);
+        let mut near = Cut::of(&mut self.near);
+        let mut wall_contacts = Cut::of(&mut self.wall_contacts);
+        let mut loads = Cut::of(&mut front.behind);
+        let mut tasks = Vec::with_capacity(moving.len() + pushing.len());
+        for block in moving.clone() {
+            let bodies = table.bounds[block].clone();
+            tasks.push(Task::Bodies(BlockBodies {
+                start: bodies.start,
+                place: place.take(bodies.clone()),
+                motion: motion.take(bodies.clone()),
+                turn: turn.take(bodies.clone()),
+                loads: loads.next(bodies.len()),
+                near: near.take(parts_of(&bodies)),
+                wall_contacts: &mut wall_contacts.take(block..block + 1)[0],
+            }));
         }
-        gathers.reverse();
-        let work = |(number, task): (usize, Task)| match task {
-            Task::Pairs(own) => (number, Done::Pairs(own.advance(table, surfaces))),
-            Task::Bodies(own) => (number, Done::Bodies(gathers[number].block(own))),
+        // Those that stay where they are in this wave.
+        let still = BodiesFrom {
+            place: still_place,
+            motion: still_motion,
+            turn: still_turn,
+            fruit: &self.bodies.fruit[first.end..],
+            clump: &self.bodies.clump[first.end..],
+            offset: &self.bodies.offset[first.end..],
         };
-        let found: Vec<(usize, Done)> = match rayon::current_num_threads() == 1 || count == 1 {
+        let mut contacts = Cut::of(&mut self.contacts);
+        let mut ahead = Cut::of(ahead);
+        let mut loads = Cut::of(&mut front.ahead);
+        for block in pushing.clone() {
+            let own = table.bounds[block].clone();
+            let outs = [block, block + 1].map(|own| table.outs_before(own));
+            tasks.push(Task::Pairs(BlockPairs {
+                block,
+                now,
+                bodies: still.from(own.start - first.end),
+                loads: loads.next(own.len()),
+                outs: ahead.next(outs[1] - outs[0]),
+                contacts: &mut contacts.take(block..block + 1)[0],
+                approach: table.approach(block, &self.ways),
+            }));
+        }
+        let work = |task: Task| match task {
+            Task::Pairs(own) => Done::Pairs(own.advance(table, surfaces)),
+            Task::Bodies(own) => Done::Bodies(gather.block(own)),
+        };
+        let found: Vec<Done> = match rayon::current_num_threads() == 1 || tasks.len() == 1 {
             true => tasks.into_iter().map(work).collect(),
             false => tasks.into_par_iter().with_max_len(1).map(work).collect(),
         };
-        for (number, own) in found {
-            let swept = &mut fronts[number].swept;
+        for own in found {
             match own {
-                Done::Pairs(own) => swept.pairs.push(own),
-                Done::Bodies(own) => {
-                    self.ways[swept.bodies.len()] = own.1.moved.map(f64::sqrt);
-                    swept.bodies.push(own);
-                }
+                Done::Pairs(own) => front.swept.pairs.push(own),
+                Done::Bodies(own) => front.swept.bodies.push(own),
             }
         }
     }
@@ -228,7 +198,7 @@ impl BlockPairs<'_> {
     /// One step on.
     fn advance(self, table: &PairTable, surfaces: &[Interaction]) -> Outcome {
         let mut outcome = Outcome::default();
-        self.loads.fill([0.0; 8]);
+        self.loads.fill(Load::ZERO);
         let parts = table.blocks[self.block].iter().zip(self.contacts);
         for ((interaction, range), contacts) in parts {
             let part = Part {
@@ -239,7 +209,6 @@ impl BlockPairs<'_> {
                 out: &table.out[range.clone()],
                 loads: &mut *self.loads,
                 outs: &mut *self.outs,
-                out_base: table.outs_before(self.block) as u32,
                 approach: self.approach,
             };
             contacts.advance(part, &surfaces[*interaction], &self.now, &mut outcome);

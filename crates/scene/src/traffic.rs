@@ -4,6 +4,7 @@ use crate::clump_motion::ClumpState;
 use crate::error::{Error, fruit_name};
 use crate::event::{Event, Partner};
 use crate::gather::PART_OF_CLUMP;
+use crate::line::{HalfLine, Line};
 use crate::scene::{Fruit, Sink};
 use crate::simulation::{FruitState, Leaving, Simulation};
 use crate::store::NONE;
@@ -26,13 +27,8 @@ const SPREAD_OUT: [f64; 3] = [
 
 impl Simulation {
     pub(crate) fn due(&self) -> bool {
-        self.due_at(self.steps)
-    }
-
-    /// Whether a fruit is to come in at a step.
-    pub(crate) fn due_at(&self, step: u64) -> bool {
         let next = self.scene.fruit.get(self.released);
-        next.is_some_and(|fruit| fruit.time <= step as f64 * self.scene.time_step)
+        next.is_some_and(|fruit| fruit.time <= self.time())
     }
 
     /// Lets in fruit whose time has come.
@@ -97,10 +93,9 @@ impl Simulation {
             };
             let ([x, y, z], [u, v, w], [a, b, c]) = (place, velocity, state.spin);
             let bodies = &mut self.bodies;
-            bodies.place.push([x, y, z, radius]);
-            bodies
-                .motion
-                .push([u, v, w, inverse[0], a, b, c, inverse[1]]);
+            bodies.place.push(HalfLine([x, y, z, radius]));
+            let motion = [u, v, w, inverse[0], a, b, c, inverse[1]];
+            bodies.motion.push(Line(motion));
             bodies.turn.push(state.turn);
             bodies.fruit.push(state.fruit);
             bodies.material.push(fruit.material as u32);
@@ -152,7 +147,7 @@ impl Simulation {
     /// Whether a fruit stands where one is to be released. Those of the beginning are there
     /// at once, and are looked at together.
     fn in_the_way(&self, fruit: &Fruit) -> bool {
-        let overlaps = |&[x, y, z, radius]: &[f64; 4]| {
+        let overlaps = |&HalfLine([x, y, z, radius]): &HalfLine| {
             length(subtract([x, y, z], fruit.place)) < radius + fruit.radius
         };
         self.steps > 0 && self.bodies.place.iter().any(overlaps)
@@ -173,7 +168,7 @@ impl Simulation {
         let mut gone = Vec::new();
         for body in 0..self.bodies.len() {
             let clump = self.clumps.get(self.bodies.clump[body] as usize);
-            let [x, y, z, _] = self.bodies.place[body];
+            let HalfLine([x, y, z, _]) = self.bodies.place[body];
             let place = clump.map_or([x, y, z], |own| own.place);
             let Some(sink) = sink_of(place) else {
                 keep.push(body);

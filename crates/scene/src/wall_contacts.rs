@@ -146,17 +146,17 @@ impl WallState {
 
 /// A fruit that may touch walls.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Body {
-    pub fruit: u32,
+pub(crate) struct Body<'a> {
+    pub fruit: &'a u32,
     pub centre: Vector,
     pub radius: f64,
     /// Half a step ago; m/s.
     pub velocity: Vector,
     /// Half a step ago; rad/s.
     pub spin: Vector,
-    pub turn: Rotation,
-    /// Where in its clump, if it belongs to one; m.
-    pub offset: Option<Vector>,
+    pub turn: &'a Rotation,
+    /// The clump that it belongs to, or [`NONE`], and where in it; m.
+    pub clump: (&'a u32, &'a Vector),
 }
 
 /// What a fruit's contacts with walls need of the rest of the scene.
@@ -233,7 +233,7 @@ pub(crate) fn aim<'a>(
             outcome.problem.get_or_insert_with(|| {
                 too_deep(
                     now.clock.time,
-                    body.fruit,
+                    *body.fruit,
                     walls.name_of(*wall),
                     displacement,
                     radius,
@@ -351,7 +351,7 @@ fn follow<'a>(
         let partner = Partner::Wall(wall);
         outcome
             .events
-            .push(event(&parcel, body.fruit, partner, false));
+            .push(event(&parcel, *body.fruit, partner, false));
     }
 }
 
@@ -362,10 +362,11 @@ fn begin(
     now: &Moment,
     body: &Body,
 ) -> Result<(Law, Parcel), Error> {
-    let draws = &now.fruit[body.fruit as usize].draws;
+    let draws = &now.fruit[*body.fruit as usize].draws;
     let mut encounter = encounter(touch.normal, touch.displacement, touch.velocity, now.clock);
     encounter.place = point;
-    encounter.spot = spot(body.turn, body.offset, body.radius, touch.normal);
+    let offset = (*body.clump.0 != NONE).then_some(*body.clump.1);
+    encounter.spot = spot(*body.turn, offset, body.radius, touch.normal);
     let parcel = Parcel::begin(surface.scale(touch.radius), now.clock, encounter);
     Ok((surface.law_of(touch.radius, draws, None)?, parcel))
 }

@@ -138,22 +138,23 @@ fn scene(moves: bool) -> Scene {
 const STEPS: u64 = 16_000;
 const EVERY: u64 = 2_000;
 
+/// Steps after which what happened is taken.
+const TAKEN: u64 = 37;
+
 /// What a run gives: its end, and what happened.
 type Found = (Vec<FruitState>, Vec<Event>, Vec<Leaving>, Energy, u64);
 
 /// Goes on to a step, with checkpoints; the last of them as bytes, and what happened since.
-///
-/// * `at_a_time`: steps that are asked for at a time
 fn go_on(
     simulation: &mut Simulation,
-    (to, at_a_time): (u64, u64),
+    to: u64,
     events: &mut (Vec<Event>, Vec<Leaving>),
     mut at_checkpoint: impl FnMut(Vec<u8>, &(Vec<Event>, Vec<Leaving>)),
 ) {
     while simulation.steps() < to {
         let steps = simulation.steps();
         let left = (to - steps).min(EVERY - steps % EVERY);
-        simulation.run(left.min(at_a_time)).unwrap();
+        simulation.run(left.min(TAKEN)).unwrap();
         events.0.extend(simulation.take_events());
         events.1.extend(simulation.take_leavings());
         if simulation.steps().is_multiple_of(EVERY) {
@@ -187,7 +188,7 @@ fn check_taken_up(scene: impl Fn() -> Scene + Sync) {
     let whole = on_threads(1, || {
         let mut simulation = Simulation::new(scene()).unwrap();
         let mut happened = Default::default();
-        go_on(&mut simulation, (STEPS, 1), &mut happened, |_, _| ());
+        go_on(&mut simulation, STEPS, &mut happened, |_, _| ());
         found(simulation, happened)
     });
     assert!(whole.1.len() > 3000, "{} events", whole.1.len());
@@ -210,14 +211,9 @@ fn check_taken_up(scene: impl Fn() -> Scene + Sync) {
             };
             let (mut last, mut happened) = kept.clone();
             let mut then = happened.clone();
-            go_on(
-                &mut simulation,
-                (stop, 37),
-                &mut happened,
-                |bytes, events| {
-                    (last, then) = (bytes, events.clone());
-                },
-            );
+            go_on(&mut simulation, stop, &mut happened, |bytes, events| {
+                (last, then) = (bytes, events.clone());
+            });
             if stop == STEPS {
                 let same = found(simulation, happened) == whole;
                 assert!(same, "other bits");
@@ -231,7 +227,7 @@ fn check_taken_up(scene: impl Fn() -> Scene + Sync) {
 fn rejects_a_state_of_another_scene() {
     let mut simulation = Simulation::new(scene(true)).unwrap();
     let mut happened = Default::default();
-    go_on(&mut simulation, (9000, 1), &mut happened, |_, _| ());
+    go_on(&mut simulation, 9000, &mut happened, |_, _| ());
     let mut bytes = Vec::new();
     simulation.checkpoint().write(&mut bytes).unwrap();
     let state = State::read(&mut &bytes[..]).unwrap();
