@@ -68,27 +68,55 @@ impl Simulation {
 
     /// A wave.
     fn work_through(&mut self, front: &mut Front, clock: Clock, with_energy: bool) {
-        let (table, surfaces) = (&self.table, &self.surfaces);
         let Front {
-            moving, pushing, ..
+            moving,
+            pushing,
+            behind,
+            ahead,
+            swept,
         } = front;
+        let blocks = [moving, pushing].map(|own| own.clone());
+        let (gather, tasks) = self.tasks(blocks, [behind, ahead], clock, with_energy);
+        let work = |task: Task| match task {
+            Task::Pairs(own) => Done::Pairs(own.advance(gather.table, gather.surfaces)),
+            Task::Bodies(own) => Done::Bodies(gather.block(own)),
+        };
+        let found: Vec<Done> = match rayon::current_num_threads() == 1 || tasks.len() == 1 {
+            true => tasks.into_iter().map(work).collect(),
+            false => tasks.into_par_iter().with_max_len(1).map(work).collect(),
+        };
+        for own in found {
+            match own {
+                Done::Pairs(own) => swept.pairs.push(own),
+                Done::Bodies(own) => swept.bodies.push(own),
+            }
+        }
+    }
+
+    /// What there is to do in a wave.
+    ///
+    /// * `moving`, `pushing`: blocks whose bodies move, and whose pairs push; and the loads on
+    ///   the bodies of either
+    fn tasks<'a>(
+        &'a mut self,
+        [moving, pushing]: [Range<usize>; 2],
+        [behind, loads]: [&'a mut [Load]; 2],
+        clock: Clock,
+        with_energy: bool,
+    ) -> (Gather<'a>, Vec<Task<'a>>) {
+        let table = &self.table;
         let now = Moment {
             fruit: &self.scene.fruit,
             clock,
         };
-        let begin = |block: usize| {
-            let own = table.bounds.get(block);
-            own.map_or(table.bodies(), |own| own.start)
-        };
-        let outs = [pushing.start, pushing.end].map(|own| table.outs_before(own));
-        // Pairs of the wave push bodies behind, those before it have pushed.
-        let (before, ahead) = self.out.split_at_mut(outs[0]);
+        // What pairs before the wave have done, and what those of the wave are to do.
+        let (before, outs) = self.out.split_at_mut(table.outs_before(pushing.start));
         let gather = Gather {
             now,
             table,
             out: before,
             scene: &self.scene,
-            surfaces,
+            surfaces: &self.surfaces,
             numbers: &self.numbers,
             walls: &self.walls,
             near_start: &self.near_start,
@@ -98,72 +126,60 @@ impl Simulation {
             listed: &self.listed,
             with_energy,
         };
-        let first = begin(moving.start)..begin(pushing.start);
+        // The first body that stays where it is in this wave.
+        let still = table.bounds.get(pushing.start);
+        let still = still.map_or(table.bodies(), |block| block.start);
         let parts_of = |bodies: &Range<usize>| {
             let [start, end] = [bodies.start, bodies.end].map(|body| self.near_start[body]);
             start as usize..end as usize
         };
-        let (place, still_place) = self.bodies.place.split_at_mut(first.end);
-        let (motion, still_motion) = self.bodies.motion.split_at_mut(first.end);
-        let (turn, still_turn) = self.bodies.turn.split_at_mut(first.end);
+        let (place, still_place) = self.bodies.place.split_at_mut(still);
+        let (motion, still_motion) = self.bodies.motion.split_at_mut(still);
+        let (turn, still_turn) = self.bodies.turn.split_at_mut(still);
         let mut place = Cut::of(place);
         let mut motion = Cut::of(motion);
         let mut turn = Cut::of(turn);
         let mut near = Cut::of(&mut self.near);
         let mut wall_contacts = Cut::of(&mut self.wall_contacts);
-        let mut loads = Cut::of(&mut front.behind);
+        let mut behind = Cut::of(behind);
         let mut tasks = Vec::with_capacity(moving.len() + pushing.len());
-        for block in moving.clone() {
+        for block in moving {
             let bodies = table.bounds[block].clone();
             tasks.push(Task::Bodies(BlockBodies {
                 start: bodies.start,
                 place: place.take(bodies.clone()),
                 motion: motion.take(bodies.clone()),
                 turn: turn.take(bodies.clone()),
-                loads: loads.next(bodies.len()),
+                loads: behind.next(bodies.len()),
                 near: near.take(parts_of(&bodies)),
                 wall_contacts: &mut wall_contacts.take(block..block + 1)[0],
             }));
         }
-        // Those that stay where they are in this wave.
-        let still = BodiesFrom {
+        let bodies = BodiesFrom {
             place: still_place,
             motion: still_motion,
             turn: still_turn,
-            fruit: &self.bodies.fruit[first.end..],
-            clump: &self.bodies.clump[first.end..],
-            offset: &self.bodies.offset[first.end..],
+            fruit: &self.bodies.fruit[still..],
+            clump: &self.bodies.clump[still..],
+            offset: &self.bodies.offset[still..],
         };
         let mut contacts = Cut::of(&mut self.contacts);
-        let mut ahead = Cut::of(ahead);
-        let mut loads = Cut::of(&mut front.ahead);
-        for block in pushing.clone() {
+        let mut outs = Cut::of(outs);
+        let mut loads = Cut::of(loads);
+        for block in pushing {
             let own = table.bounds[block].clone();
-            let outs = [block, block + 1].map(|own| table.outs_before(own));
+            let [from, to] = [block, block + 1].map(|own| table.outs_before(own));
             tasks.push(Task::Pairs(BlockPairs {
                 block,
                 now,
-                bodies: still.from(own.start - first.end),
+                bodies: bodies.from(own.start - still),
                 loads: loads.next(own.len()),
-                outs: ahead.next(outs[1] - outs[0]),
+                outs: outs.next(to - from),
                 contacts: &mut contacts.take(block..block + 1)[0],
                 approach: table.approach(block, &self.ways),
             }));
         }
-        let work = |task: Task| match task {
-            Task::Pairs(own) => Done::Pairs(own.advance(table, surfaces)),
-            Task::Bodies(own) => Done::Bodies(gather.block(own)),
-        };
-        let found: Vec<Done> = match rayon::current_num_threads() == 1 || tasks.len() == 1 {
-            true => tasks.into_iter().map(work).collect(),
-            false => tasks.into_par_iter().with_max_len(1).map(work).collect(),
-        };
-        for own in found {
-            match own {
-                Done::Pairs(own) => front.swept.pairs.push(own),
-                Done::Bodies(own) => front.swept.bodies.push(own),
-            }
-        }
+        (gather, tasks)
     }
 }
 
