@@ -26,11 +26,11 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let [_, initial, steps, threads, annuli, state @ ..] = &arguments[..] else {
         return Err("bin_fill INITIAL STEPS THREADS ANNULI [STATE]".into());
     };
+    rayon::ThreadPoolBuilder::new()
+        .num_threads(threads.parse()?)
+        .build_global()?;
     let steps: u64 = steps.parse()?;
     let annuli: usize = annuli.parse()?;
-    let pool = rayon::ThreadPoolBuilder::new()
-        .num_threads(threads.parse()?)
-        .build()?;
     let law = parse_law("kuwabara-kono(k=753599, c=1524)")?.complete()?;
     let contact = |effective_radius| Interaction {
         effective_radius: Some(effective_radius),
@@ -79,9 +79,9 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let mut simulation = match state.first().map(std::fs::File::open) {
         Some(Ok(file)) => {
             let state = State::read(&mut std::io::BufReader::new(file))?;
-            pool.install(|| Simulation::resume(scene, &state))?
+            Simulation::resume(scene, &state)?
         }
-        _ => pool.install(|| Simulation::new(scene))?,
+        _ => Simulation::new(scene)?,
     };
     let mut events = 0;
     for part in 0..10 {
@@ -89,7 +89,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         let mut left = steps / 10;
         while left > 0 {
             let now = left.min(TAKEN);
-            pool.install(|| simulation.run(now))?;
+            simulation.run(now)?;
             events += simulation.take_events().len();
             left -= now;
         }

@@ -59,14 +59,14 @@ const AHEAD: usize = 16;
 pub(crate) const LARGEST_OVERLAP: f64 = 0.3;
 
 impl PairContacts {
-    /// No contacts yet of an interaction, with room for so many.
-    pub(crate) fn new(surface: &Interaction, room: usize) -> Self {
+    /// No contacts yet of an interaction, with room for so many, and for so many entries.
+    pub(crate) fn new(surface: &Interaction, room: usize, entries: usize) -> Self {
         Self {
             store: Store::new(surface, room),
             entries: Vec::with_capacity(room),
             pairs: Vec::with_capacity(room),
             awake: Vec::new(),
-            asleep: Vec::new(),
+            asleep: Vec::with_capacity(entries - room),
             parting: Vec::new(),
         }
     }

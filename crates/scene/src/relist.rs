@@ -134,15 +134,18 @@ impl Simulation {
         // In the order of the list, in which they are worked through.
         carried.sort_unstable_by_key(|own| own.entry);
         let (table, bodies) = (&self.table, &self.bodies);
-        let of_part = |origin: &_, base: usize, own: &(usize, Range<usize>)| {
-            let (interaction, range) = own;
+        let until = |end: usize| carried.partition_point(|own| (own.entry as usize) < end);
+        // Room is made by one thread: several would each keep what is freed for themselves.
+        let room = |(interaction, range): &(usize, Range<usize>)| {
+            let contacts = until(range.end) - until(range.start);
+            PairContacts::new(&self.surfaces[*interaction], contacts, range.len())
+        };
+        let fill = |origin: &_, base: usize, range: &Range<usize>, contacts: &mut PairContacts| {
             let bodies = bodies.from(base);
             let pair = |entry: usize| {
                 [table.first[entry], table.second[entry]].map(|body| body - base as u32)
             };
-            let until = |end: usize| carried.partition_point(|own| (own.entry as usize) < end);
             let carried = &carried[until(range.start)..until(range.end)];
-            let mut contacts = PairContacts::new(&self.surfaces[*interaction], carried.len());
             for own in carried {
                 let entry = own.entry as usize;
                 let (law, parcel) = Origin::at(origin, own);
@@ -156,18 +159,18 @@ impl Simulation {
                 contacts.adopt((entry - range.start) as u32, pair, &law, parcel);
             }
             contacts.wait(range.clone().map(pair), &bodies);
-            contacts
         };
         self.contacts = Vec::with_capacity(table.blocks.len());
         let bounds = table.bounds.chunks(SETTLED);
         for (blocks, bounds) in table.blocks.chunks(SETTLED).zip(bounds) {
-            let of_block = |(parts, bounds): (&Vec<(usize, Range<usize>)>, &Range<usize>)| {
-                let parts = parts.iter();
-                parts
-                    .map(|own| of_part(&origin, bounds.start, own))
-                    .collect()
-            };
-            let settled: Vec<_> = blocks.par_iter().zip(bounds).map(of_block).collect();
+            let made = blocks.iter().map(|parts| parts.iter().map(room));
+            let mut settled: Vec<Vec<PairContacts>> = made.map(Iterator::collect).collect();
+            let all = settled.par_iter_mut().zip(blocks).zip(bounds);
+            all.for_each(|((settled, parts), bounds)| {
+                for (contacts, (_, range)) in settled.iter_mut().zip(parts) {
+                    fill(&origin, bounds.start, range, contacts);
+                }
+            });
             self.contacts.extend(settled);
             let last = blocks.iter().flatten().next_back();
             origin.settled(last.map_or(0, |(_, range)| range.end));
