@@ -12,6 +12,7 @@ use std::collections::BTreeMap;
 use std::io::Write as _;
 use windfall_contact::expression::parse_law;
 use windfall_scene::binary::Binary as _;
+use windfall_scene::error::Error;
 use windfall_scene::interaction::{Interaction, mindlin_ratio};
 use windfall_scene::scene::{Fruit, Scene};
 use windfall_scene::simulation::Simulation;
@@ -83,6 +84,20 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         }
         _ => Simulation::new(scene)?,
     };
+    // As a run does: by one of those who work.
+    rayon::scope(|_| fill(&mut simulation, steps))?;
+    if let Some(path) = state.first() {
+        let mut to = std::io::BufWriter::new(std::fs::File::create(path)?);
+        simulation.checkpoint().write(&mut to)?;
+        to.flush()?;
+    }
+    let height: f64 = simulation.fruit().iter().map(|own| own.place[2]).sum();
+    println!("FINAL mean height {:.4} m", height / count as f64);
+    Ok(())
+}
+
+fn fill(simulation: &mut Simulation, steps: u64) -> Result<(), Error> {
+    let count = simulation.scene().fruit.len();
     let mut events = 0;
     for part in 0..10 {
         let (wall, used) = (std::time::Instant::now(), processor_time());
@@ -103,13 +118,6 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
             1e-6 * work / wall.elapsed().as_secs_f64(),
         );
     }
-    if let Some(path) = state.first() {
-        let mut to = std::io::BufWriter::new(std::fs::File::create(path)?);
-        simulation.checkpoint().write(&mut to)?;
-        to.flush()?;
-    }
-    let height: f64 = simulation.fruit().iter().map(|own| own.place[2]).sum();
-    println!("FINAL mean height {:.4} m", height / count as f64);
     Ok(())
 }
 

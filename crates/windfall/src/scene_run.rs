@@ -33,7 +33,7 @@ pub enum SceneStart {
 }
 
 /// What moves the fruit of a scene.
-pub(crate) trait Mover {
+pub(crate) trait Mover: Send {
     /// One step on, or one frame; with the energies at its beginning.
     fn step(&mut self, simulation: &mut Simulation) -> Result<Energy, Error>;
 
@@ -231,7 +231,8 @@ impl SceneRun {
         mover: &mut dyn Mover,
         progress: Progress,
     ) -> Result<(), Error> {
-        let done = self.steps_to_end(mover, progress);
+        // By one of those who work, who need not be woken for every step.
+        let done = rayon::scope(|_| self.steps_to_end(mover, progress));
         if let Err(Error::SceneStopped(_)) = &done {
             // It would be stopped there again.
             self.leave_nothing();

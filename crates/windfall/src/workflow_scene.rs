@@ -35,7 +35,7 @@ pub struct SceneRequest {
 
 /// What moves the fruit, and what is to be said of it.
 pub(crate) struct Moved<'a> {
-    pub mover: &'a mut (dyn Mover + Send),
+    pub mover: &'a mut dyn Mover,
     pub step: StepOutcome,
     pub engine: String,
     pub findings: Vec<FindingOutcome>,
