@@ -38,8 +38,8 @@ pub(crate) trait Origin: Sync {
 /// Contacts of a block of an old list, by parts, with the first entries of those.
 pub(crate) struct OldBlock(Vec<(usize, PairContacts)>);
 
-/// Blocks of an old list, which go as soon as nothing more comes from them: so there are never
-/// all contacts twice.
+/// Blocks of an old list, which go as soon as nothing more comes from them: so few contacts are
+/// there twice at a time, since bodies hardly change their order.
 struct OldBlocks {
     blocks: Vec<OldBlock>,
     /// The last entry to which each block gives a contact, and the block; the last block to
