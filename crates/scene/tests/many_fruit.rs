@@ -100,6 +100,7 @@ fn stops_where_a_body_is_thrown_across_its_radius() {
     }
     let mut simulation = Simulation::new(scene).unwrap();
     let problem = simulation.run(100).unwrap_err().to_string();
+    assert!(problem.starts_with("at 0.000000 s fruit"), "{problem}");
     assert!(problem.contains("of its radius in one step"), "{problem}");
 }
 
