@@ -1,9 +1,9 @@
 //! What can be wrong with a law or its expression.
 
-use crate::formula_error::FormulaError;
+use crate::formula::error::FormulaError;
 use crate::parameter::number_text;
 use std::fmt;
-use windfall_numerics::unit::UnitError;
+use windfall_numerics::unit::quantity::UnitError;
 
 /// A place in a law expression.
 #[derive(Clone, Debug, PartialEq, Eq)]

@@ -1,11 +1,11 @@
 //! Law expressions: `adams-impact(k="0.868 N/mm^1.91", e=1.91, c=0.556, d="0.001 mm")`.
 
 use crate::error::{Error, Place};
-use crate::law_kind::{Law, LawKind};
+use crate::laws::kind::{Law, LawKind};
 use crate::parameter::number_text;
 use std::fmt;
-use windfall_numerics::nearest_name::nearest_names;
-use windfall_numerics::unit::parse_as;
+use windfall_numerics::unit::nearest_name::nearest_names;
+use windfall_numerics::unit::quantity::parse_as;
 
 /// A law with the parameters that were given.
 #[derive(Clone, Debug, PartialEq)]

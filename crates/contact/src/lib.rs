@@ -4,7 +4,7 @@
 //!
 //! In the order of use: [`parse_law`](expression::parse_law) reads an
 //! expression, [`LawExpression`](expression::LawExpression) holds the values
-//! that were given, [`Law`](law_kind::Law) is a law with all its parameters,
+//! that were given, [`Law`](laws::kind::Law) is a law with all its parameters,
 //! and [`with_law!`] hands the concrete type to code that is generic over
 //! [`ContactLaw`](law::ContactLaw).
 //!
@@ -20,40 +20,16 @@
 //!
 //! This crate knows no instrument, no rig and no file.
 
-pub mod any_law;
-mod any_law_size;
 pub mod apparent_modulus;
 pub mod curvature;
 pub mod damping_factor;
-pub mod define_law;
 pub mod effective;
 pub mod error;
 pub mod expression;
-pub mod force_table;
-pub mod formula_error;
-mod formula_graph;
-mod formula_program;
-mod formula_syntax;
-mod formula_unit;
-mod formula_value;
+pub mod formula;
 pub mod hertz_elliptic;
 pub mod law;
-pub mod law_adams_impact;
-pub mod law_flores;
-pub mod law_herbert_mcwhannell;
-pub mod law_hertz;
-pub mod law_hunt_crossley;
-pub mod law_kelvin_voigt;
-pub mod law_kind;
-pub mod law_kuwabara_kono;
-pub mod law_lankarani_nikravesh;
-pub mod law_power;
-pub mod law_thornton;
-pub mod law_tsuji;
-pub mod law_user;
-pub mod law_walton_braun;
+pub mod laws;
 pub mod parameter;
 pub mod restitution;
 pub mod transfer;
-mod user_law_check;
-pub mod user_law_finding;

@@ -1,6 +1,6 @@
 //! What a law says about itself: names, units, bounds, formula and source.
 
-use windfall_numerics::unit::exponent_text;
+use windfall_numerics::unit::quantity::exponent_text;
 
 /// One parameter of a force law.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -9,7 +9,7 @@ pub struct ParameterDescription {
     pub name: &'static str,
     /// What it is, in a few words.
     pub meaning: &'static str,
-    /// SI unit in the syntax of `windfall_numerics::unit`; names of parameters
+    /// SI unit in the syntax of `windfall_numerics::unit::quantity`; names of parameters
     /// stand for the law's exponents ("N/m^n", "N s/m^(p+1)"). With numbers in
     /// their place: [`LawDescription::unit_of`].
     pub unit: &'static str,

@@ -3,7 +3,7 @@
 
 use crate::damping_factor;
 use crate::error::Error;
-use crate::law_kind::{HuntCrossley, KelvinVoigt, Law, Thornton};
+use crate::laws::kind::{HuntCrossley, KelvinVoigt, Law, Thornton};
 
 /// The restitution that a law takes as a parameter; 1. `None` for laws without.
 ///

@@ -1,7 +1,7 @@
 //! A law found in one geometry, taken to another.
 
 use crate::apparent_modulus::{PressedContact, stiffness_per_modulus};
-use crate::law_kind::{Law, LawKind};
+use crate::laws::kind::{Law, LawKind};
 
 /// Contacts that the law was found in, or is wanted for.
 #[derive(Clone, Debug, PartialEq)]

@@ -2,8 +2,8 @@
 //! cannot be.
 
 use windfall_contact::expression::{LawExpression, parse_law, typical};
-use windfall_contact::law_kind::LawKind;
-use windfall_numerics::unit::parse_unit;
+use windfall_contact::laws::kind::LawKind;
+use windfall_numerics::unit::quantity::parse_unit;
 
 /// The names and parameters of the design, which scripts rely on.
 #[test]

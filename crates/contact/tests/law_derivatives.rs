@@ -2,7 +2,7 @@
 //! lanes against single numbers.
 
 use windfall_contact::law::{ContactForce, ContactLaw, SMALLEST_DISPLACEMENT};
-use windfall_contact::law_kind::{Law, LawKind};
+use windfall_contact::laws::kind::{Law, LawKind};
 use windfall_contact::with_law;
 use windfall_numerics::real::{Lanes, Real};
 

@@ -8,7 +8,7 @@ use windfall_contact::effective::{
 };
 use windfall_contact::expression::parse_law;
 use windfall_contact::law::{ContactLaw, EndRule};
-use windfall_contact::law_kind::{Law, LawKind};
+use windfall_contact::laws::kind::{Law, LawKind};
 use windfall_contact::restitution::{
     closed_form_restitution, damped_power_restitution, damping_for_restitution,
     kelvin_voigt_impact, kuwabara_kono_group, kuwabara_kono_pade, kuwabara_kono_series,
@@ -360,7 +360,7 @@ fn reference_kelvin_voigt_duration() {
     }
     // Without damping half a period; critical damping in between its neighbours.
     let duration = |c: f64| {
-        let law = windfall_contact::law_kind::KelvinVoigt { k: 100.0, c };
+        let law = windfall_contact::laws::kind::KelvinVoigt { k: 100.0, c };
         kelvin_voigt_impact(&law, 1.0).duration
     };
     close(duration(0.0), PI / 10.0, 1e-15);

@@ -1,13 +1,13 @@
 //! Laws that the user writes: against built-in laws, differences and closed
 //! forms; what is refused, and in which words.
 
-use windfall_contact::define_law::define_law;
 use windfall_contact::error::Error;
 use windfall_contact::expression::parse_law_among;
-use windfall_contact::force_table::ForceTable;
 use windfall_contact::law::{ContactForce, ContactLaw};
-use windfall_contact::law_kind::{Law, LawKind};
-use windfall_contact::law_user::{UserForce, UserLaw, UserLawDefinition, UserParameter};
+use windfall_contact::laws::define_law::define_law;
+use windfall_contact::laws::force_table::ForceTable;
+use windfall_contact::laws::kind::{Law, LawKind};
+use windfall_contact::laws::user::{UserForce, UserLaw, UserLawDefinition, UserParameter};
 use windfall_contact::with_law;
 use windfall_numerics::real::Lanes;
 

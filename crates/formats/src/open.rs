@@ -3,17 +3,17 @@
 
 use crate::contents::Format;
 use crate::error::Error;
-use crate::read_hdf5::{self, Hdf5Reader};
-use crate::read_lvm::LvmReader;
-use crate::read_mat::{self, MatReader};
-use crate::read_sigrok::SigrokReader;
-use crate::read_tdms::TdmsReader;
-use crate::read_text::TextReader;
-use crate::read_uff58::UffReader;
-use crate::read_wav::WavReader;
+use crate::hdf5::read::Hdf5Reader;
+use crate::mat::read::MatReader;
 use crate::reader::Reader;
+use crate::sigrok::read::SigrokReader;
 use crate::source::Source;
-use crate::text_options::TextOptions;
+use crate::tdms::read::TdmsReader;
+use crate::text::lvm::LvmReader;
+use crate::text::options::TextOptions;
+use crate::text::read::TextReader;
+use crate::uff::read::UffReader;
+use crate::wav::read::WavReader;
 use std::path::Path;
 
 /// Bytes from which the format is told.
@@ -112,10 +112,10 @@ pub fn tell_format(source: &Source) -> Result<Format, Error> {
         return Ok(Format::Wav);
     }
     // Before MATLAB: its version 7.3 begins like both.
-    if read_hdf5::begins(&head) {
+    if crate::hdf5::read::begins(&head) {
         return Ok(Format::Hdf5);
     }
-    if read_mat::begins(&head) {
+    if crate::mat::read::begins(&head) {
         return Ok(Format::Mat);
     }
     if is_universal(&head) {

@@ -8,8 +8,8 @@ use channels::{check_file, open_bytes, samples};
 use windfall_formats::contents::{Format, TimeBase};
 use windfall_formats::open::{OpenOptions, open_source};
 use windfall_formats::source::Source;
-use windfall_formats::text_options::TextOptions;
-use windfall_formats::text_rows::Separator;
+use windfall_formats::text::options::TextOptions;
+use windfall_formats::text::rows::Separator;
 
 /// Every dialect of one little table: t = 0, 0.5, 1 s and F = 1234.5, -2.25, none.
 #[test]

@@ -8,11 +8,11 @@
 use std::time::Instant;
 use windfall_contact::expression::parse_law;
 use windfall_contact::law::EndRule;
-use windfall_identify::drop_coordinates::law_coordinates;
-use windfall_identify::drop_measured::{
+use windfall_identify::drop::coordinates::law_coordinates;
+use windfall_identify::drop::measured::{
     DropFeature, FeatureKind, RigQuantity, feature_sensitivity, feature_values,
 };
-use windfall_identify::drop_rig::{DropRig, Plate};
+use windfall_identify::drop::rig::{DropRig, Plate};
 
 const REPEATS: u32 = 50;
 

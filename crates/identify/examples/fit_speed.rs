@@ -10,17 +10,17 @@
 use rustix::time::{ClockId, clock_gettime};
 use std::time::Instant;
 use windfall_contact::law::EndRule;
-use windfall_contact::law_kuwabara_kono::KuwabaraKono;
-use windfall_identify::batch_fit::{BatchProblem, minimise_batch};
-use windfall_identify::estimator::{
+use windfall_contact::laws::kuwabara_kono::KuwabaraKono;
+use windfall_identify::fit::batch::{BatchProblem, minimise_batch};
+use windfall_identify::fit::estimator::{
     Coordinate, Estimator, FORESIGHT, FreeParameter, Setting, Target, Values,
 };
-use windfall_identify::model::Sampling;
-use windfall_identify::motion::Motion;
-use windfall_identify::rig::{Pendulum, Rig};
+use windfall_identify::fit::model::Sampling;
+use windfall_identify::rig::kind::{Pendulum, Rig};
+use windfall_identify::rig::motion::Motion;
 use windfall_identify::samples::SampleGroup;
 use windfall_numerics::least_squares::{Minimum, Options};
-use windfall_numerics::ode_step::Tolerance;
+use windfall_numerics::ode::step::Tolerance;
 
 const ARM: f64 = 0.505;
 const FITS: usize = 2001;

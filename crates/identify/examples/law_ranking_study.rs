@@ -16,12 +16,12 @@ mod pendulum;
 
 use pendulum::{Bench, bench, on_threads, recorded, rig};
 use windfall_contact::expression::parse_law;
-use windfall_contact::law_kind::{Law, LawKind};
-use windfall_identify::law_ranking::{
+use windfall_contact::laws::kind::{Law, LawKind};
+use windfall_identify::compare::ranking::{
     LawRanking, LeveledImpact, Verdict, fits_of_impact, rank_laws,
 };
-use windfall_identify::problem::{FitOptions, LawProblem};
-use windfall_signal::noise_gaussian::{NoiseSource, noise_source, normal};
+use windfall_identify::fit::problem::{FitOptions, LawProblem};
+use windfall_signal::noise::gaussian::{NoiseSource, noise_source, normal};
 
 /// Laws with the parameters of a soft rubber ball or of fruit; at 0.388 m/s all
 /// have a peak of about 25 to 40 N.

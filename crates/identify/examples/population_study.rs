@@ -19,19 +19,19 @@ mod pendulum;
 
 use pendulum::{Bench, bench, on_threads, recorded, rig};
 use windfall_contact::expression::parse_law;
-use windfall_contact::law_kind::LawKind;
-use windfall_identify::interval::Drawing;
-use windfall_identify::population::{
-    Covariate, FixedEffect, PopulationData, PopulationFit, PopulationOptions, Spread,
-};
-use windfall_identify::population_fit::fit_population;
-use windfall_identify::population_likelihood::{
+use windfall_contact::laws::kind::LawKind;
+use windfall_identify::fit::interval::Drawing;
+use windfall_identify::fit::problem::{FitOptions, LawProblem};
+use windfall_identify::population::fit::fit_population;
+use windfall_identify::population::likelihood::{
     DRAWN_REACH, ImpactLikelihood, NORMAL_REACH, impact_likelihood,
 };
-use windfall_identify::population_posterior::{PosteriorRange, population_posterior};
-use windfall_identify::population_two_stage::{TwoStage, two_stage};
-use windfall_identify::problem::{FitOptions, LawProblem};
-use windfall_signal::noise_gaussian::{NoiseSource, noise_source, normal, uniform};
+use windfall_identify::population::model::{
+    Covariate, FixedEffect, PopulationData, PopulationFit, PopulationOptions, Spread,
+};
+use windfall_identify::population::posterior::{PosteriorRange, population_posterior};
+use windfall_identify::population::two_stage::{TwoStage, two_stage};
+use windfall_signal::noise::gaussian::{NoiseSource, noise_source, normal, uniform};
 
 const FRUIT: usize = 40;
 const VELOCITIES: [f64; 6] = [0.15, 0.20, 0.27, 0.36, 0.48, 0.60];

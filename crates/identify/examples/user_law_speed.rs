@@ -7,22 +7,22 @@
 #![allow(clippy::print_stdout, clippy::unwrap_used)]
 
 use std::time::Instant;
-use windfall_contact::define_law::define_law;
 use windfall_contact::law::EndRule;
-use windfall_contact::law_kind::{Law, LawKind};
-use windfall_contact::law_kuwabara_kono::KuwabaraKono;
-use windfall_contact::law_user::{UserForce, UserLaw, UserLawDefinition, UserParameter};
-use windfall_identify::estimator::{
+use windfall_contact::laws::define_law::define_law;
+use windfall_contact::laws::kind::{Law, LawKind};
+use windfall_contact::laws::kuwabara_kono::KuwabaraKono;
+use windfall_contact::laws::user::{UserForce, UserLaw, UserLawDefinition, UserParameter};
+use windfall_identify::fit::estimator::{
     Coordinate, Estimator, FreeLaw, FreeParameter, Setting, Target, Values,
 };
-use windfall_identify::model::Sampling;
-use windfall_identify::motion::Motion;
-use windfall_identify::rig::{Pendulum, Rig};
+use windfall_identify::fit::model::Sampling;
+use windfall_identify::rig::kind::{Pendulum, Rig};
+use windfall_identify::rig::motion::Motion;
+use windfall_identify::rig::simulate::trajectory;
 use windfall_identify::samples::SampleGroup;
-use windfall_identify::simulate::trajectory;
 use windfall_numerics::least_squares::Options;
-use windfall_numerics::ode_step::Tolerance;
-use windfall_signal::noise_gaussian::{noise_source, normal};
+use windfall_numerics::ode::step::Tolerance;
+use windfall_signal::noise::gaussian::{noise_source, normal};
 
 /// Instants of three channels: 1,110 or 1,113 samples come nearest to 1,111.
 const INSTANTS: usize = 371;

@@ -4,14 +4,14 @@
 //! compressions of one fruit at several rates; every curve has a first touch of
 //! its own.
 
-use crate::correlated_scores::{
+use crate::compare::correlated_scores::{
     add_product, add_scores, at_least, correlation_lag, inverse_of_free, quadratic, sandwich,
     student,
 };
-use windfall_contact::any_law::{AnyLaw, LARGEST_PARAMETERS};
 use windfall_contact::expression::LawExpression;
 use windfall_contact::law::{ContactLaw, SMALLEST_DISPLACEMENT};
-use windfall_contact::law_kind::{Law, LawKind};
+use windfall_contact::laws::any_law::{AnyLaw, LARGEST_PARAMETERS};
+use windfall_contact::laws::kind::{Law, LawKind};
 use windfall_numerics::cholesky;
 use windfall_numerics::least_squares::{
     Bounds, LeastSquares, Minimum, NormalEquations, Options, Stop, minimise,

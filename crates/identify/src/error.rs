@@ -1,6 +1,6 @@
 //! What can go wrong in a simulation or a fit.
 
-use windfall_numerics::ode_step::StepError;
+use windfall_numerics::ode::step::StepError;
 
 /// Why an impact cannot be a member of a population.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]

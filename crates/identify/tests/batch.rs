@@ -3,21 +3,21 @@
 
 #![allow(clippy::unwrap_used, clippy::print_stdout)]
 
-use windfall_contact::any_law::{AnyLaw, LARGEST_PARAMETERS};
 use windfall_contact::law::EndRule;
-use windfall_contact::law_kind::LawKind;
-use windfall_contact::law_kuwabara_kono::KuwabaraKono;
-use windfall_identify::batch_fit::{BatchProblem, minimise_batch};
-use windfall_identify::batch_law::BatchLaw;
-use windfall_identify::estimator::{
+use windfall_contact::laws::any_law::{AnyLaw, LARGEST_PARAMETERS};
+use windfall_contact::laws::kind::LawKind;
+use windfall_contact::laws::kuwabara_kono::KuwabaraKono;
+use windfall_identify::fit::batch::{BatchProblem, minimise_batch};
+use windfall_identify::fit::batch_law::BatchLaw;
+use windfall_identify::fit::estimator::{
     Coordinate, Estimator, FreeLaw, FreeParameter, Setting, Target, Values,
 };
-use windfall_identify::model::Sampling;
-use windfall_identify::motion::Motion;
-use windfall_identify::rig::{Carriage, Pendulum, Rig};
+use windfall_identify::fit::model::Sampling;
+use windfall_identify::rig::kind::{Carriage, Pendulum, Rig};
+use windfall_identify::rig::motion::Motion;
 use windfall_identify::samples::SampleGroup;
 use windfall_numerics::least_squares::{Minimum, Options, Stop};
-use windfall_numerics::ode_step::Tolerance;
+use windfall_numerics::ode::step::Tolerance;
 
 /// Standard deviations of displacement, rate and force: a pendulum's.
 const NOISE: [f64; 3] = [5e-6, 3e-3, 0.3];

@@ -4,9 +4,9 @@
 
 use windfall_contact::expression::parse_law;
 use windfall_contact::law::EndRule;
-use windfall_contact::law_kind::Law;
-use windfall_identify::drop_rig::{DropRig, Plate};
-use windfall_identify::drop_simulate::{drop_trajectory, simulate_drop};
+use windfall_contact::laws::kind::Law;
+use windfall_identify::drop::rig::{DropRig, Plate};
+use windfall_identify::drop::simulate::{drop_trajectory, simulate_drop};
 
 /// Standard gravity; m/s².
 const GRAVITY: f64 = 9.80665;

@@ -8,19 +8,19 @@ use rand::{Rng, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use windfall_contact::expression::parse_law;
 use windfall_contact::law::EndRule;
-use windfall_contact::law_kind::Law;
-use windfall_identify::drop_coordinates::{LawCoordinates, law_coordinates};
-use windfall_identify::drop_experiment::{Candidate, Choice, expected, ranked, with_candidate};
-use windfall_identify::drop_family::{FamilyOptions, family_point, trace_family};
-use windfall_identify::drop_feature_fit::{FeatureFitOptions, fit_features};
-use windfall_identify::drop_feature_problem::{
+use windfall_contact::laws::kind::Law;
+use windfall_identify::drop::coordinates::{LawCoordinates, law_coordinates};
+use windfall_identify::drop::experiment::{Candidate, Choice, expected, ranked, with_candidate};
+use windfall_identify::drop::family::{FamilyOptions, family_point, trace_family};
+use windfall_identify::drop::feature_fit::{FeatureFitOptions, fit_features};
+use windfall_identify::drop::feature_problem::{
     CoordinatePrior, FeatureProblem, MeasuredDrop, MeasuredFeature, RigUncertainty, linearise,
     nuisances,
 };
-use windfall_identify::drop_information::information;
-use windfall_identify::drop_measured::{DropFeature, FeatureKind, feature_values};
-use windfall_identify::drop_rig::{DropRig, Plate};
-use windfall_identify::drop_start::coarse_starts;
+use windfall_identify::drop::information::information;
+use windfall_identify::drop::measured::{DropFeature, FeatureKind, feature_values};
+use windfall_identify::drop::rig::{DropRig, Plate};
+use windfall_identify::drop::start::coarse_starts;
 use windfall_signal::uncertain::Uncertain;
 
 const PEAK: DropFeature = DropFeature {

@@ -4,14 +4,14 @@
 
 use windfall_contact::expression::parse_law;
 use windfall_contact::law::EndRule;
-use windfall_contact::law_kind::Law;
-use windfall_identify::drop_rig::{DropRig, Plate};
-use windfall_identify::drop_simulate::{drop_trajectory, simulate_drop};
-use windfall_identify::drop_waveform::{
+use windfall_contact::laws::kind::Law;
+use windfall_identify::drop::rig::{DropRig, Plate};
+use windfall_identify::drop::simulate::{drop_trajectory, simulate_drop};
+use windfall_identify::drop::waveform::{
     DropRecord, Knowledge, WaveformFit, WaveformPlate, WaveformProblem, WaveformRig,
 };
-use windfall_identify::drop_waveform_fit::calibrate_waveform;
-use windfall_signal::noise_gaussian::{noise_source, normal};
+use windfall_identify::drop::waveform_fit::calibrate_waveform;
+use windfall_signal::noise::gaussian::{noise_source, normal};
 use windfall_signal::uncertain::Uncertain;
 
 const GRAVITY: f64 = 9.80665;

@@ -5,14 +5,14 @@
 
 use windfall_contact::expression::parse_law;
 use windfall_contact::law::EndRule;
-use windfall_contact::law_kind::Law;
-use windfall_identify::drop_rig::Plate;
-use windfall_identify::eccentric_body::EccentricBody;
-use windfall_identify::eccentric_impact::{EccentricImpact, EccentricSummary};
-use windfall_identify::eccentric_shape::Shape;
-use windfall_identify::eccentric_simulate::{eccentric_trajectory, simulate_eccentric_drop};
+use windfall_contact::laws::kind::Law;
+use windfall_identify::drop::rig::Plate;
+use windfall_identify::eccentric::body::EccentricBody;
+use windfall_identify::eccentric::impact::{EccentricImpact, EccentricSummary};
+use windfall_identify::eccentric::shape::Shape;
+use windfall_identify::eccentric::simulate::{eccentric_trajectory, simulate_eccentric_drop};
 use windfall_identify::error::Error;
-use windfall_identify::simulate::simulate_impact;
+use windfall_identify::rig::simulate::simulate_impact;
 
 const GRAVITY: f64 = 9.80665;
 const MASS: f64 = 0.0048;
@@ -57,7 +57,7 @@ fn drop(law: &Law, body: &EccentricBody, plate: Option<Plate>, impacts: usize) -
 /// ADAMS IMPACT in the study's units: N, mm, s.
 fn adams(k: f64, e: f64, c: f64, d: f64) -> Law {
     let si = [k * 1000f64.powf(e), e, c * 1000.0, d / 1000.0];
-    windfall_contact::law_kind::LawKind::AdamsImpact
+    windfall_contact::laws::kind::LawKind::AdamsImpact
         .with_parameters(&si)
         .unwrap()
 }

@@ -5,13 +5,13 @@
 
 use windfall_contact::expression::parse_law;
 use windfall_contact::law::EndRule;
-use windfall_contact::law_kind::{Law, LawKind};
-use windfall_identify::drop_rig::{DropRig, Plate};
-use windfall_identify::drop_simulate::{DropImpact, simulate_drop};
-use windfall_identify::eccentric_body::EccentricBody;
-use windfall_identify::eccentric_impact::EccentricSummary;
-use windfall_identify::eccentric_shape::Shape;
-use windfall_identify::eccentric_simulate::simulate_eccentric_drop;
+use windfall_contact::laws::kind::{Law, LawKind};
+use windfall_identify::drop::rig::{DropRig, Plate};
+use windfall_identify::drop::simulate::{DropImpact, simulate_drop};
+use windfall_identify::eccentric::body::EccentricBody;
+use windfall_identify::eccentric::impact::EccentricSummary;
+use windfall_identify::eccentric::shape::Shape;
+use windfall_identify::eccentric::simulate::simulate_eccentric_drop;
 
 const GRAVITY: f64 = 9.80665;
 const MASS: f64 = 0.0048;

@@ -5,13 +5,13 @@
 
 use windfall_contact::expression::parse_law;
 use windfall_contact::law::EndRule;
-use windfall_contact::law_kind::LawKind;
-use windfall_identify::fit::fit_impact;
-use windfall_identify::problem::{FitOptions, LawProblem, Treatment, Weighting};
-use windfall_identify::rig::{Carriage, Rig};
-use windfall_identify::simulate::{simulate_rig, trajectory};
+use windfall_contact::laws::kind::LawKind;
+use windfall_identify::fit::problem::{FitOptions, LawProblem, Treatment, Weighting};
+use windfall_identify::fit::result::fit_impact;
+use windfall_identify::rig::kind::{Carriage, Rig};
+use windfall_identify::rig::simulate::{simulate_rig, trajectory};
 use windfall_signal::impact::{Impact, Measured, Series};
-use windfall_signal::noise_gaussian::{noise_source, normal};
+use windfall_signal::noise::gaussian::{noise_source, normal};
 
 const VELOCITY: f64 = 0.5;
 

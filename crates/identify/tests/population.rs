@@ -3,10 +3,10 @@
 
 #![allow(clippy::unwrap_used, clippy::print_stdout)]
 
-use windfall_identify::population::{
+use windfall_identify::population::fit::fit_population;
+use windfall_identify::population::model::{
     Approximation, Covariate, Expansion, Likelihood, PopulationData, PopulationOptions, Structure,
 };
-use windfall_identify::population_fit::fit_population;
 
 fn rows(text: &str) -> Vec<Vec<f64>> {
     let numbers = |line: &str| line.split(',').map(|cell| cell.parse().unwrap()).collect();

@@ -6,9 +6,9 @@ mod rubber;
 
 use rubber::{impact, rig};
 use windfall_contact::expression::parse_law;
-use windfall_identify::fit::fit_impact;
-use windfall_identify::population_likelihood::{ImpactLikelihood, impact_likelihood};
-use windfall_identify::problem::{FitOptions, LawProblem};
+use windfall_identify::fit::problem::{FitOptions, LawProblem};
+use windfall_identify::fit::result::fit_impact;
+use windfall_identify::population::likelihood::{ImpactLikelihood, impact_likelihood};
 
 fn rubber_likelihood(law: &str, seed: u64) -> ImpactLikelihood {
     let problem = LawProblem::from_expression(&parse_law(law).unwrap());

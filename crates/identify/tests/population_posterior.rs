@@ -3,15 +3,15 @@
 #![allow(clippy::unwrap_used, clippy::print_stdout)]
 
 use windfall_identify::error::Error;
-use windfall_identify::interval::Drawing;
-use windfall_identify::population::{
+use windfall_identify::fit::interval::Drawing;
+use windfall_identify::population::fit::fit_population;
+use windfall_identify::population::model::{
     Covariate, Expansion, PopulationData, PopulationFit, PopulationOptions, Structure,
 };
-use windfall_identify::population_fit::fit_population;
-use windfall_identify::population_posterior::{
+use windfall_identify::population::posterior::{
     PopulationPosterior, PosteriorRange, population_posterior,
 };
-use windfall_signal::noise_gaussian::{noise_source, normal};
+use windfall_signal::noise::gaussian::{noise_source, normal};
 
 const DRAWING: Drawing = Drawing {
     chains: 4,

@@ -5,7 +5,7 @@
 mod rubber;
 
 use rubber::{impact, recover};
-use windfall_identify::problem::{FitOptions, Quantities, Treatment, Weighting};
+use windfall_identify::fit::problem::{FitOptions, Quantities, Treatment, Weighting};
 use windfall_identify::samples::Quantity;
 use windfall_signal::impact::Impact;
 

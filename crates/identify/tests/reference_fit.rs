@@ -8,14 +8,16 @@
 
 use std::path::PathBuf;
 use windfall_contact::law::EndRule;
-use windfall_contact::law_kuwabara_kono::KuwabaraKono;
-use windfall_identify::estimator::{Coordinate, Estimator, FreeParameter, Setting, Target, Values};
-use windfall_identify::model::Sampling;
-use windfall_identify::motion::Motion;
-use windfall_identify::rig::{Pendulum, Rig};
+use windfall_contact::laws::kuwabara_kono::KuwabaraKono;
+use windfall_identify::fit::estimator::{
+    Coordinate, Estimator, FreeParameter, Setting, Target, Values,
+};
+use windfall_identify::fit::model::Sampling;
+use windfall_identify::rig::kind::{Pendulum, Rig};
+use windfall_identify::rig::motion::Motion;
 use windfall_identify::samples::SampleGroup;
 use windfall_numerics::least_squares::{Options, Stop};
-use windfall_numerics::ode_step::Tolerance;
+use windfall_numerics::ode::step::Tolerance;
 
 /// Relative agreement with the reference optimum.
 const TOLERANCE: f64 = 2e-6;

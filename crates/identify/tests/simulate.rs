@@ -4,7 +4,7 @@
 
 use windfall_contact::expression::parse_law;
 use windfall_contact::law::EndRule;
-use windfall_identify::simulate::{ImpactSummary, simulate_impact};
+use windfall_identify::rig::simulate::{ImpactSummary, simulate_impact};
 
 /// Relative tolerance of the tables.
 const TOLERANCE: f64 = 1e-8;

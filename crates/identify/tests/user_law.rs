@@ -5,17 +5,17 @@
 
 mod rubber;
 
-use windfall_contact::any_law::AnyLaw;
-use windfall_contact::define_law::define_law;
 use windfall_contact::expression::{parse_law, parse_law_among};
-use windfall_contact::force_table::ForceTable;
 use windfall_contact::law::{ContactLaw, EndRule};
-use windfall_contact::law_kind::{Law, LawKind};
-use windfall_contact::law_user::{UserForce, UserLawDefinition, UserParameter};
-use windfall_identify::fit::{Fit, fit_impact};
-use windfall_identify::problem::{FitOptions, LawProblem};
-use windfall_identify::rig::{Carriage, Rig};
-use windfall_identify::simulate::simulate_rig;
+use windfall_contact::laws::any_law::AnyLaw;
+use windfall_contact::laws::define_law::define_law;
+use windfall_contact::laws::force_table::ForceTable;
+use windfall_contact::laws::kind::{Law, LawKind};
+use windfall_contact::laws::user::{UserForce, UserLawDefinition, UserParameter};
+use windfall_identify::fit::problem::{FitOptions, LawProblem};
+use windfall_identify::fit::result::{Fit, fit_impact};
+use windfall_identify::rig::kind::{Carriage, Rig};
+use windfall_identify::rig::simulate::simulate_rig;
 
 /// `name|unit|start|default`
 fn parameter(text: &str) -> UserParameter {

@@ -216,7 +216,7 @@ mod tests {
 
     #[test]
     fn rejects_a_use_line_against_the_arrows() {
-        let text = "use windfall_contact::law::Hertz;\nfn f() { windfall_identify::fit() }";
+        let text = "use windfall_contact::law::Hertz;\nfn f() { windfall_identify::fit::result() }";
         let path = Path::new("crates/contact/src/a.rs");
         let file = read_source(path, Path::new("src/a.rs"), "windfall-contact", text).unwrap();
         let found = check_imports(&file);

@@ -7,19 +7,11 @@
 
 mod box_quadratic;
 pub mod cholesky;
-mod dimension;
 pub mod double_double;
 pub mod least_squares;
-pub mod nearest_name;
-pub mod ode_dense;
-pub mod ode_lockstep;
-pub mod ode_step;
-pub mod ode_tableau;
+pub mod ode;
 pub mod prefetch;
 pub mod real;
 pub mod real_vector;
 pub mod root;
 pub mod unit;
-mod unit_error;
-pub mod unit_symbol;
-mod unit_syntax;

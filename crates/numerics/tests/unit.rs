@@ -2,7 +2,7 @@
 //! about the ones that cannot be read.
 
 use std::f64::consts::{PI, TAU};
-use windfall_numerics::unit::{UnitError, parse_as, parse_quantity, parse_unit};
+use windfall_numerics::unit::quantity::{UnitError, parse_as, parse_quantity, parse_unit};
 
 #[test]
 fn closed_form_conversions() {

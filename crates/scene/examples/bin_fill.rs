@@ -14,10 +14,10 @@ use windfall_contact::expression::parse_law;
 use windfall_scene::binary::Binary as _;
 use windfall_scene::error::Error;
 use windfall_scene::interaction::{Interaction, mindlin_ratio};
+use windfall_scene::motion::simulation::Simulation;
 use windfall_scene::scene::{Fruit, Scene};
-use windfall_scene::simulation::Simulation;
+use windfall_scene::shape::wall::{Motion, Shape, Wall};
 use windfall_scene::state::State;
-use windfall_scene::wall::{Motion, Shape, Wall};
 
 /// Steps after which contacts that ended are taken.
 const TAKEN: u64 = 200;

@@ -11,9 +11,9 @@ use std::collections::BTreeMap;
 use std::time::Instant;
 use windfall_contact::expression::parse_law;
 use windfall_scene::interaction::{Interaction, mindlin_ratio};
+use windfall_scene::motion::simulation::Simulation;
 use windfall_scene::scene::{Fruit, Scene};
-use windfall_scene::simulation::Simulation;
-use windfall_scene::wall::{Motion, Shape, Turning, Wall};
+use windfall_scene::shape::wall::{Motion, Shape, Turning, Wall};
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
     let arguments: Vec<String> = std::env::args().collect();

@@ -6,8 +6,8 @@
 use crate::energy::Energy;
 use crate::error::Error;
 use crate::line::HalfLine;
+use crate::motion::simulation::{FruitState, Leaving, Simulation};
 use crate::scene::Fruit;
-use crate::simulation::{FruitState, Leaving, Simulation};
 use crate::vector::{Vector, add, dot, length, plus_scaled, scaled, subtract, turned_on};
 
 /// Where each fruit was in the frame before, by its number.

@@ -1,8 +1,8 @@
 //! What two materials do to each other where they touch.
 
 use crate::error::Error;
-use windfall_contact::any_law::LARGEST_PARAMETERS;
-use windfall_contact::law_kind::{Law, LawKind};
+use windfall_contact::laws::any_law::LARGEST_PARAMETERS;
+use windfall_contact::laws::kind::{Law, LawKind};
 
 /// Standard normal numbers of one fruit: how it differs from the median of its kind. They
 /// are the same in all its contacts: a soft fruit is soft against everything.

@@ -1,9 +1,9 @@
 //! Fruit as they are drawn from a population, and when and where they come.
 
-use crate::clump::Clump;
 use crate::error::Error;
 use crate::interaction::Draws;
 use crate::scene::Fruit;
+use crate::shape::clump::Clump;
 use crate::vector::Vector;
 use rand::{Rng, SeedableRng};
 use rand_chacha::ChaCha8Rng;

@@ -1,10 +1,10 @@
 //! Whether a fruit can get from one place of a scene to another at all.
 
-use crate::mesh::bounds;
+use crate::contacts::wall_contacts::WallState;
 use crate::scene::{Scene, Sink};
+use crate::shape::mesh::bounds;
+use crate::shape::wall::{Shape, Wall};
 use crate::vector::{Vector, add, length, scaled, subtract};
-use crate::wall::{Shape, Wall};
-use crate::wall_contacts::WallState;
 use std::collections::BinaryHeap;
 
 /// So much of its radius a fruit may be pressed together where it slips through; 1.
@@ -160,7 +160,7 @@ fn distance(sink: &Sink, place: Vector) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::wall::{Motion, Plate};
+    use crate::shape::wall::{Motion, Plate};
 
     /// A closed box of 1 m with a square hole in its floor, above a sink.
     fn hopper(hole: f64) -> Scene {

@@ -1,10 +1,10 @@
 //! Whether the fruit of a scene have room between its walls where they come in, and whether
 //! two walls lie on each other.
 
+use crate::contacts::wall_contacts::WallState;
 use crate::scene::Scene;
+use crate::shape::wall::{Facet, Shape, Wall};
 use crate::vector::{Vector, any_normal, cross, dot, length, plus_scaled, scaled, subtract};
-use crate::wall::{Facet, Shape, Wall};
-use crate::wall_contacts::WallState;
 
 /// A fruit that comes in where a wall is.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -187,7 +187,7 @@ fn places(wall: &Wall) -> Vec<(Vector, Vector)> {
 mod tests {
     use super::*;
     use crate::scene::Fruit;
-    use crate::wall::{Motion, Plate};
+    use crate::shape::wall::{Motion, Plate};
 
     fn scene(shapes: Vec<Shape>) -> Scene {
         let wall = |shape| Wall {

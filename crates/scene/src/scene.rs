@@ -1,11 +1,11 @@
 //! What a scene is, before it runs.
 
 use crate::annuli::MOST_ANNULI;
-use crate::clump::Clump;
 use crate::error::Error;
 use crate::interaction::{Draws, Interaction};
+use crate::shape::clump::Clump;
+use crate::shape::wall::Wall;
 use crate::vector::{UNTURNED, Vector};
-use crate::wall::Wall;
 use std::collections::BTreeMap;
 
 /// A scene: what is there, and what happens where it touches.

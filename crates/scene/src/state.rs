@@ -2,22 +2,22 @@
 
 use crate::binary;
 use crate::binary::{Binary, no_value};
-use crate::clump_contacts::{ClumpContacts, Touching, TouchingWall};
-use crate::contact::Parcel;
+use crate::contacts::clump_contacts::{ClumpContacts, Touching, TouchingWall};
+use crate::contacts::contact::Parcel;
+use crate::contacts::neighbours::Bodies;
+use crate::contacts::react::{Memory, Peaks};
+use crate::contacts::wall_contacts::Lifted;
+use crate::contacts::wall_forces::WallMeeting;
 use crate::energy::Account;
 use crate::error::Error;
 use crate::event::{Encounter, Event, Partner};
-use crate::neighbours::Bodies;
-use crate::react::{Memory, Peaks};
-use crate::relist::{Carried, Origin};
+use crate::motion::relist::{Carried, Origin};
+use crate::motion::simulation::{FruitState, Leaving, Simulation};
 use crate::scene::Scene;
-use crate::simulation::{FruitState, Leaving, Simulation};
 use crate::vector::Vector;
-use crate::wall_contacts::Lifted;
-use crate::wall_forces::WallMeeting;
 use std::io::{Read, Result as IoResult, Write};
-use windfall_contact::any_law::LARGEST_PARAMETERS;
-use windfall_contact::law_kind::{Law, LawKind};
+use windfall_contact::laws::any_law::LARGEST_PARAMETERS;
+use windfall_contact::laws::kind::{Law, LawKind};
 
 /// All that a scene remembers from step to step; bytes by [`Binary`].
 #[derive(Clone, Debug)]

@@ -13,8 +13,8 @@ use common::{ball, floor, law, scene};
 use std::f64::consts::PI;
 use windfall_scene::event::Event;
 use windfall_scene::interaction::{Interaction, mindlin_ratio};
+use windfall_scene::motion::simulation::{FruitState, Simulation};
 use windfall_scene::scene::Fruit;
-use windfall_scene::simulation::{FruitState, Simulation};
 
 /// Density (kg/m³), Young's modulus (Pa), Poisson's ratio.
 #[derive(Clone, Copy)]

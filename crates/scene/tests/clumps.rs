@@ -4,11 +4,11 @@
 mod common;
 
 use common::{ball, floor, law, scene};
-use windfall_scene::clump::Clump;
 use windfall_scene::event::Event;
 use windfall_scene::interaction::{Interaction, mindlin_ratio};
+use windfall_scene::motion::simulation::{FruitState, Simulation};
 use windfall_scene::scene::{Fruit, Sink};
-use windfall_scene::simulation::{FruitState, Simulation};
+use windfall_scene::shape::clump::Clump;
 use windfall_scene::vector::{Vector, length, subtract, turn_about, turned};
 
 const LAW: &str = "kuwabara-kono(k=753599, c=1524)";

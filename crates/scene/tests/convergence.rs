@@ -5,9 +5,9 @@ mod common;
 
 use common::{STEEL, ball, floor, law, scene};
 use windfall_scene::interaction::{Interaction, mindlin_ratio};
+use windfall_scene::motion::simulation::Simulation;
 use windfall_scene::scene::Scene;
-use windfall_scene::simulation::Simulation;
-use windfall_scene::wall::{Motion, Plate, Shape, Wall};
+use windfall_scene::shape::wall::{Motion, Plate, Shape, Wall};
 
 /// Slope of the logarithms of errors over those of steps, by least squares.
 fn order(points: &[(f64, f64)]) -> f64 {

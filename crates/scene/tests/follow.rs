@@ -6,10 +6,10 @@ use windfall_contact::expression::parse_law;
 use windfall_scene::event::Event;
 use windfall_scene::follow::Followed;
 use windfall_scene::interaction::{Interaction, mindlin_ratio};
+use windfall_scene::motion::simulation::{FruitState, Simulation};
 use windfall_scene::scene::{Fruit, Scene, Sink};
-use windfall_scene::simulation::{FruitState, Simulation};
+use windfall_scene::shape::wall::{Motion, Shape, Wall};
 use windfall_scene::vector::plus_scaled;
-use windfall_scene::wall::{Motion, Shape, Wall};
 
 /// Two apples that collide above a floor and fall on it, and one that comes later.
 fn scene(time_step: f64) -> Scene {

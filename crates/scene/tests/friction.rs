@@ -5,7 +5,7 @@ mod common;
 
 use common::{ball, floor, law, plane, scene};
 use windfall_scene::interaction::{Interaction, mindlin_ratio};
-use windfall_scene::simulation::{FruitState, Simulation};
+use windfall_scene::motion::simulation::{FruitState, Simulation};
 
 const POISSON: f64 = 0.3;
 

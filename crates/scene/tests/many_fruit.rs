@@ -6,9 +6,9 @@ mod common;
 use common::{STEEL, law, scene};
 use windfall_scene::event::{Event, Partner};
 use windfall_scene::interaction::{Interaction, mindlin_ratio};
+use windfall_scene::motion::simulation::{FruitState, Simulation};
 use windfall_scene::scene::{Fruit, Scene};
-use windfall_scene::simulation::{FruitState, Simulation};
-use windfall_scene::wall::{Motion, Plate, Shape, Wall};
+use windfall_scene::shape::wall::{Motion, Plate, Shape, Wall};
 
 fn apples() -> Interaction {
     Interaction {

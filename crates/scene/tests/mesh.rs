@@ -6,10 +6,10 @@ mod common;
 use common::{STEEL, ball, law, scene};
 use windfall_scene::event::Event;
 use windfall_scene::interaction::{Interaction, mindlin_ratio};
+use windfall_scene::motion::simulation::{FruitState, Simulation};
 use windfall_scene::scene::Scene;
-use windfall_scene::simulation::{FruitState, Simulation};
+use windfall_scene::shape::wall::{Motion, Plate, Shape, Turning, Vibration, Wall};
 use windfall_scene::vector::Vector;
-use windfall_scene::wall::{Motion, Plate, Shape, Turning, Vibration, Wall};
 
 fn apple() -> Interaction {
     Interaction {
@@ -205,7 +205,7 @@ fn on_a_globe(parts: usize, off: f64) -> (f64, Vector, usize) {
     let Shape::Mesh { triangles } = globe(0.15) else {
         panic!("a mesh");
     };
-    let surface = windfall_scene::mesh::welded(&triangles);
+    let surface = windfall_scene::shape::mesh::welded(&triangles);
     assert!(surface.flaws.rims.is_empty() && surface.flaws.contrary.is_empty());
     scene.walls.push(wall(
         Shape::Mesh {

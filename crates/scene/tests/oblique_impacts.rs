@@ -7,7 +7,7 @@ mod common;
 use annuli::{Annuli, slip_after};
 use common::{ball, floor, law, scene};
 use windfall_scene::interaction::{Interaction, mindlin_ratio};
-use windfall_scene::simulation::Simulation;
+use windfall_scene::motion::simulation::Simulation;
 
 #[test]
 fn closed_form_annuli_shear_as_cattaneo_and_mindlin_say() {

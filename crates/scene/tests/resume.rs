@@ -9,10 +9,10 @@ use windfall_scene::binary::Binary;
 use windfall_scene::energy::Energy;
 use windfall_scene::event::Event;
 use windfall_scene::interaction::{Interaction, Spread, mindlin_ratio};
+use windfall_scene::motion::simulation::{FruitState, Leaving, Simulation};
 use windfall_scene::scene::{Scene, Sink};
-use windfall_scene::simulation::{FruitState, Leaving, Simulation};
+use windfall_scene::shape::wall::{Motion, Shape, Turning, Vibration, Wall};
 use windfall_scene::state::State;
-use windfall_scene::wall::{Motion, Shape, Turning, Vibration, Wall};
 
 /// Numbers as good as random, the same everywhere; -0.5 to 0.5.
 fn random(seed: &mut u64) -> f64 {

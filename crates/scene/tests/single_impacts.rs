@@ -6,7 +6,7 @@ mod common;
 use common::{ball, floor, law, scene};
 use windfall_scene::event::Event;
 use windfall_scene::interaction::Interaction;
-use windfall_scene::simulation::Simulation;
+use windfall_scene::motion::simulation::Simulation;
 
 /// An apple of 0.2 kg and 40 mm at 0.5 m/s.
 fn impact(expression: &str, pair: bool, step: f64) -> Event {

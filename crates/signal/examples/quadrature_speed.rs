@@ -10,7 +10,7 @@
 #![allow(clippy::print_stdout)]
 
 use std::time::Instant;
-use windfall_signal::quadrature::{
+use windfall_signal::encoder::quadrature::{
     DecodedEdges, IllegalTransition, decode_bytes, decode_volts, fill_counts,
 };
 

@@ -1,8 +1,8 @@
 //! An accelerometer beside a force sensor and an encoder: a check of the force,
 //! and, for comparison, a source of displacement.
 
-use crate::filter_butterworth::{Band, FilterError, butterworth};
-use crate::filter_zero_phase::filter_zero_phase;
+use crate::filter::butterworth::{Band, FilterError, butterworth};
+use crate::filter::zero_phase::filter_zero_phase;
 use crate::kinematics::value_at;
 use crate::measure::Surroundings;
 use crate::uncertain::Uncertain;

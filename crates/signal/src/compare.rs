@@ -2,7 +2,7 @@
 //! the velocities, an accelerometer beside force and displacement.
 
 use crate::accelerometer::{check_force, displacement_error, double_integral, free_acceleration};
-use crate::filter_butterworth::Band;
+use crate::filter::butterworth::Band;
 use crate::finding::Finding;
 use crate::force_loop::force_loop;
 use crate::impact::Measured;

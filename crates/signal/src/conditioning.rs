@@ -3,12 +3,12 @@
 
 use crate::accelerometer::free_acceleration;
 use crate::error::Error;
-use crate::filter_butterworth::{Band, FilterError, butterworth};
-use crate::filter_zero_phase::filter_zero_phase;
+use crate::filter::butterworth::{Band, FilterError, butterworth};
+use crate::filter::zero_phase::filter_zero_phase;
 use crate::finding::Finding;
 use crate::kinematics::value_at;
 use crate::measure::Surroundings;
-use crate::noise::median;
+use crate::noise::estimate::median;
 use crate::polynomial::{evenly_spaced, fit_polynomial};
 use crate::track::{Track, Tracks, mean_interval};
 use crate::trigger::ContactWindow;

@@ -1,6 +1,6 @@
 //! What stops the extraction of an impact.
 
-use crate::filter_butterworth::FilterError;
+use crate::filter::butterworth::FilterError;
 use crate::recording::Quantity;
 
 /// A recording, or an option, from which no impact can be extracted.

@@ -1,7 +1,7 @@
 //! What is poor in a recording, without stopping the extraction.
 
 use crate::error::{Rounded, Times};
-use crate::filter_butterworth::Band;
+use crate::filter::butterworth::Band;
 use std::fmt;
 
 /// Something about the signals that a reader of the results must know.

@@ -2,7 +2,7 @@
 
 use crate::error::Error;
 use crate::kinematics::Encoder;
-use crate::noise_gaussian::{NoiseSource, noise_source, normal, uniform};
+use crate::noise::gaussian::{NoiseSource, noise_source, normal, uniform};
 use crate::recording::{Channel, Quantity, Recording, Times};
 
 /// A motion and the force that goes with it, at increasing times.

@@ -2,8 +2,8 @@
 
 use crate::finding::Finding;
 use crate::measure::Surroundings;
-use crate::noise::{Noise, NoiseSource, combined_noise, scatter_about_polynomial};
-use crate::noise_colour::persistence;
+use crate::noise::colour::persistence;
+use crate::noise::estimate::{Noise, NoiseSource, combined_noise, scatter_about_polynomial};
 use crate::track::Track;
 use crate::trigger::Contacts;
 

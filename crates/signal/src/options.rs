@@ -1,10 +1,10 @@
 //! How an impact is cut out of a recording.
 
 use crate::conditioning::Conditioning;
-use crate::edge_rate::CountTimes;
+use crate::encoder::edge_rate::CountTimes;
+use crate::encoder::quadrature::IllegalTransition;
 use crate::error::Error;
 use crate::kinematics::Encoder;
-use crate::quadrature::IllegalTransition;
 use crate::trigger::{Orientation, TriggerOptions};
 
 /// How the series of the displacement rate is made.

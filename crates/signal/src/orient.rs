@@ -3,7 +3,7 @@
 use crate::finding::Finding;
 use crate::kinematics::{Motion, displacement_from_angles, value_at};
 use crate::measure::{Side, Surroundings, glitch};
-use crate::noise_colour::mean_inflation;
+use crate::noise::colour::mean_inflation;
 use crate::noise_track::baseline_persistence;
 use crate::options::ExtractOptions;
 use crate::track::{Position, Track};

@@ -1,11 +1,11 @@
 //! Displacement rate from displacement.
 
-use crate::edge_rate::{CountTimes, edge_rate, edges};
+use crate::encoder::edge_rate::{CountTimes, edge_rate, edges};
+use crate::filter::smoothing_spline::smoothing_spline_gcv;
 use crate::kinematics::{central_difference, rate_quantum, smoothing_window};
 use crate::measure::Surroundings;
 use crate::options::{ExtractOptions, RateMethod};
 use crate::polynomial::{evenly_spaced, local_polynomial};
-use crate::smoothing_spline::smoothing_spline_gcv;
 use crate::track::{Track, mean_interval};
 
 /// The rate of a displacement by the method asked for; `None` if that is the

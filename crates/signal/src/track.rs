@@ -1,10 +1,10 @@
 //! Channels of a recording, checked and turned into what an impact consists of.
 
+use crate::encoder::quadrature::{Decoded, ILLEGAL_SHARE, IllegalTransition, decode_quadrature};
 use crate::error::Error;
 use crate::finding::Finding;
 use crate::kinematics::{Encoder, count_length};
-use crate::noise::quantum;
-use crate::quadrature::{Decoded, ILLEGAL_SHARE, IllegalTransition, decode_quadrature};
+use crate::noise::estimate::quantum;
 use crate::recording::{Channel, Quantity, Recording};
 use crate::validate::checked_times;
 

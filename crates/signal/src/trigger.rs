@@ -1,7 +1,7 @@
 //! Contact windows: when the force is above a threshold.
 
 use crate::error::{Error, Times};
-use crate::noise::{baseline, median};
+use crate::noise::estimate::{baseline, median};
 use crate::polynomial::fit_polynomial;
 use crate::trigger_scale::{Level, PulseScale, moving_mean, pulse_scale, white_noise};
 

@@ -1,6 +1,6 @@
 //! How long a contact lasts and over what to average it, when noise hides it.
 
-use crate::noise::median;
+use crate::noise::estimate::median;
 
 /// A pulse stands out if its averaged height is this many standard deviations
 /// of the average; 1. So many that its half height is not crossed by chance

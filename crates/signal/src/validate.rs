@@ -2,7 +2,7 @@
 
 use crate::error::Error;
 use crate::finding::Finding;
-use crate::noise::median;
+use crate::noise::estimate::median;
 use crate::recording::{Channel, Times};
 
 /// Intervals that depart from their median by more than this part of it are

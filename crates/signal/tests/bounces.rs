@@ -5,8 +5,8 @@
 mod plate;
 
 use plate::{Contact, PLATE, Plate, RECORD, Record, bounces, channel};
-use windfall_signal::bounce::find_bounces;
-use windfall_signal::bounce_train::{BounceOptions, BounceTrain, PlateRinging, StaticLevel};
+use windfall_signal::bounce::find::find_bounces;
+use windfall_signal::bounce::train::{BounceOptions, BounceTrain, PlateRinging, StaticLevel};
 use windfall_signal::recording::{Channel, Times};
 
 /// A fruit of 4.8 g from 0.5 m with restitution 0.6, contacts of 3.7 ms.

@@ -4,9 +4,9 @@
 #![allow(clippy::unwrap_used)]
 
 use windfall_signal::conditioning::ChannelFilter;
-use windfall_signal::filter_butterworth::Band;
+use windfall_signal::filter::butterworth::Band;
 use windfall_signal::impact::Impact;
-use windfall_signal::noise_gaussian::{noise_source, normal};
+use windfall_signal::noise::gaussian::{noise_source, normal};
 use windfall_signal::options::RateMethod;
 use windfall_signal::recording::{Channel, Quantity, Recording, Times};
 use windfall_signal::trigger::{Baseline, Threshold};

@@ -7,7 +7,7 @@
 
 use std::path::PathBuf;
 use std::process::Command;
-use windfall_signal::quadrature::{
+use windfall_signal::encoder::quadrature::{
     IllegalTransition, counts_at_samples, decode_bytes, decode_quadrature,
 };
 

@@ -6,7 +6,7 @@
 #![allow(clippy::unwrap_used, clippy::print_stdout)]
 
 use std::path::PathBuf;
-use windfall_signal::edge_rate::{CountTimes, edge_rate, edges};
+use windfall_signal::encoder::edge_rate::{CountTimes, edge_rate, edges};
 
 fn wheel() -> Option<(Vec<f64>, Vec<f64>)> {
     let data = std::env::var_os("WINDFALL_DATA").map_or_else(

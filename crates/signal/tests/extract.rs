@@ -12,7 +12,7 @@ use windfall_signal::instrument::{
 };
 use windfall_signal::kinematics::{Encoder, count_length};
 use windfall_signal::mass::mass_from_impulse;
-use windfall_signal::noise_gaussian::{noise_source, normal};
+use windfall_signal::noise::gaussian::{noise_source, normal};
 use windfall_signal::options::RateMethod;
 use windfall_signal::recording::Recording;
 use windfall_signal::trigger::{

@@ -2,12 +2,12 @@
 
 #![allow(clippy::unwrap_used, clippy::print_stdout)]
 
-use windfall_signal::damped_mode::Mode;
-use windfall_signal::first_mode::{
+use windfall_signal::tap::damped_mode::Mode;
+use windfall_signal::tap::first_mode::{
     Confidence, Decision, FirstModeOptions, Rejection, TapModes, first_mode, persistent,
     shared_frequencies,
 };
-use windfall_signal::resonance::Resonance;
+use windfall_signal::tap::resonance::Resonance;
 
 /// Frequency (Hz), quality, level.
 type Peak = (f64, f64, f64);

@@ -3,7 +3,7 @@
 #![allow(clippy::unwrap_used)]
 
 use proptest::prelude::*;
-use windfall_signal::quadrature::{
+use windfall_signal::encoder::quadrature::{
     Decoded, IllegalTransition, counts_at_samples, decode_bytes, decode_quadrature,
 };
 

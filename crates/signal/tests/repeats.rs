@@ -4,10 +4,10 @@
 
 #![allow(clippy::unwrap_used)]
 
-use windfall_signal::noise_gaussian::{NoiseSource, noise_source, normal};
-use windfall_signal::repeat_interval::EnergyInterval;
-use windfall_signal::repeat_permutation::{Differences, SignFlipOptions, sign_flip_test};
-use windfall_signal::repeat_threshold::{Family, fit_threshold};
+use windfall_signal::noise::gaussian::{NoiseSource, noise_source, normal};
+use windfall_signal::repeat::interval::EnergyInterval;
+use windfall_signal::repeat::permutation::{Differences, SignFlipOptions, sign_flip_test};
+use windfall_signal::repeat::threshold::{Family, fit_threshold};
 
 fn scalars(values: &[f64]) -> Differences {
     values.iter().map(|v| Some(vec![*v])).collect()

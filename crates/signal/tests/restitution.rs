@@ -6,13 +6,13 @@
 mod plate;
 
 use plate::{PLATE, Plate, RECORD, Record, bounces, channel};
-use windfall_signal::bounce::find_bounces;
-use windfall_signal::bounce_train::{BounceOptions, BounceTrain};
-use windfall_signal::restitution::{
+use windfall_signal::bounce::find::find_bounces;
+use windfall_signal::bounce::train::{BounceOptions, BounceTrain};
+use windfall_signal::restitution::check::check_restitutions;
+use windfall_signal::restitution::estimate::{
     DropConditions, Restitution, RestitutionMethod, restitution_from_impulse, restitution_from_time,
 };
-use windfall_signal::restitution_check::check_restitutions;
-use windfall_signal::restitution_finding::RestitutionFinding;
+use windfall_signal::restitution::finding::RestitutionFinding;
 use windfall_signal::uncertain::Uncertain;
 
 const E: f64 = 0.6;

@@ -6,10 +6,10 @@
 mod plate;
 
 use plate::{PLATE, RECORD, Record, bounces, channel};
-use windfall_signal::bounce::find_bounces;
-use windfall_signal::bounce_train::{BounceOptions, BounceTrain};
-use windfall_signal::ringing_peaks::{Decrement, FreeRinging, logarithmic_decrement};
-use windfall_signal::ringing_plate::plate_dynamics;
+use windfall_signal::bounce::find::find_bounces;
+use windfall_signal::bounce::train::{BounceOptions, BounceTrain};
+use windfall_signal::ringing::peaks::{Decrement, FreeRinging, logarithmic_decrement};
+use windfall_signal::ringing::plate::plate_dynamics;
 use windfall_signal::uncertain::Uncertain;
 
 fn train(height: f64, seed: u64) -> BounceTrain {

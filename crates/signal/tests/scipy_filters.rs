@@ -7,10 +7,10 @@
 #[path = "scipy/reference.rs"]
 mod reference;
 
-use windfall_signal::filter_butterworth::{Band, FilterError, butterworth, gain};
-use windfall_signal::filter_zero_phase::{filter_zero_phase, padding};
+use windfall_signal::filter::butterworth::{Band, FilterError, butterworth, gain};
+use windfall_signal::filter::smoothing_spline::{smoothing_spline, smoothing_spline_gcv};
+use windfall_signal::filter::zero_phase::{filter_zero_phase, padding};
 use windfall_signal::polynomial::local_polynomial;
-use windfall_signal::smoothing_spline::{smoothing_spline, smoothing_spline_gcv};
 
 const AGREES: f64 = 1e-10;
 

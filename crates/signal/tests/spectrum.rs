@@ -2,8 +2,10 @@
 
 #![allow(clippy::unwrap_used, clippy::print_stdout)]
 
-use windfall_signal::spectrum::{Offset, Scaling, SpectrumOptions, Window, periodogram, welch};
-use windfall_signal::spectrum_peak::peaks;
+use windfall_signal::tap::spectrum::{
+    Offset, Scaling, SpectrumOptions, Window, periodogram, welch,
+};
+use windfall_signal::tap::spectrum_peak::peaks;
 
 const REFERENCE: &str = include_str!("spectra/scipy.txt");
 

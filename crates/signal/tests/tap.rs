@@ -3,10 +3,10 @@
 #![allow(clippy::unwrap_used, clippy::print_stdout)]
 
 use std::f64::consts::{PI, TAU};
-use windfall_signal::noise_gaussian::{noise_source, normal, uniform};
+use windfall_signal::noise::gaussian::{noise_source, normal, uniform};
 use windfall_signal::recording::{Channel, Quantity, Times};
-use windfall_signal::resonance::{Resonance, ResonanceOptions, quiet_spectrum, resonances};
-use windfall_signal::tap::{TapOptions, Taps, find_taps};
+use windfall_signal::tap::find::{TapOptions, Taps, find_taps};
+use windfall_signal::tap::resonance::{Resonance, ResonanceOptions, quiet_spectrum, resonances};
 
 const RATE: f64 = 44_100.0;
 /// Begin of the tap; s.

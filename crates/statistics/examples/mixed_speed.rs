@@ -11,9 +11,9 @@
 
 use nalgebra::DMatrix;
 use std::time::Instant;
-use windfall_statistics::mixed_fit::{MixedOptions, fit_mixed};
-use windfall_statistics::mixed_inference::{coefficient_tests, variance_uncertainty};
-use windfall_statistics::mixed_term::{RandomTerm, random_intercept};
+use windfall_statistics::mixed::fit::{MixedOptions, fit_mixed};
+use windfall_statistics::mixed::inference::{coefficient_tests, variance_uncertainty};
+use windfall_statistics::mixed::term::{RandomTerm, random_intercept};
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
     let mut arguments = std::env::args().skip(1);

@@ -10,8 +10,8 @@
 
 use nalgebra::DMatrix;
 use std::time::Instant;
-use windfall_statistics::linear_model::fit_linear;
-use windfall_statistics::model_frame::ModelFrame;
+use windfall_statistics::model::linear_model::fit_linear;
+use windfall_statistics::model::model_frame::ModelFrame;
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
     let arguments: Vec<String> = std::env::args().collect();

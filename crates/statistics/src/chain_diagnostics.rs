@@ -2,7 +2,7 @@
 //!
 //! Chains are slices of equal length, one parameter at a time.
 
-use crate::distribution_tail::normal_quantile;
+use crate::distribution::tail::normal_quantile;
 
 /// A variance within chains below this part of that of all is rounding: chains
 /// that stand still; 1.

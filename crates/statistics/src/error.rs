@@ -1,6 +1,6 @@
 //! What can go wrong.
 
-use crate::mixed_error::MixedError;
+use crate::mixed::error::MixedError;
 use crate::sample_error::SampleError;
 use thiserror::Error;
 

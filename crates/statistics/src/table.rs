@@ -1,7 +1,7 @@
 //! Columns of numbers and of categories.
 
 use crate::error::Error;
-use windfall_numerics::nearest_name::nearest_names;
+use windfall_numerics::unit::nearest_name::nearest_names;
 
 /// Columns of one length.
 #[derive(Clone, Debug, Default, PartialEq)]

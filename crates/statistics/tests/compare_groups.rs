@@ -5,9 +5,9 @@
 
 #![allow(clippy::excessive_precision)] // as R printed them
 
-use windfall_statistics::compare_means::{MeanDifference, paired, pooled, welch};
-use windfall_statistics::equal_variance::{bartlett, brown_forsythe, levene};
-use windfall_statistics::one_way_anova::{one_way_anova, welch_anova};
+use windfall_statistics::compare::equal_variance::{bartlett, brown_forsythe, levene};
+use windfall_statistics::compare::means::{MeanDifference, paired, pooled, welch};
+use windfall_statistics::compare::one_way_anova::{one_way_anova, welch_anova};
 
 const A: [f64; 7] = [9.1, 10.4, 8.7, 11.2, 9.9, 10.8, 9.5];
 const B: [f64; 7] = [11.0, 12.9, 9.2, 13.1, 12.0, 10.1, 12.6];

@@ -2,9 +2,9 @@
 
 #![allow(clippy::unwrap_used)]
 
-use windfall_statistics::design::{Design, Factor, Point};
-use windfall_statistics::design_box_behnken::{BoxBehnkenOptions, box_behnken};
-use windfall_statistics::design_error::DesignError;
+use windfall_statistics::design::box_behnken::{BoxBehnkenOptions, box_behnken};
+use windfall_statistics::design::error::DesignError;
+use windfall_statistics::design::kind::{Design, Factor, Point};
 
 fn make(count: usize, centre: usize, blocks: usize) -> Result<Design, DesignError> {
     let name = |i: usize| Factor::between(&format!("x{i}"), "", -1.0, 1.0).unwrap();

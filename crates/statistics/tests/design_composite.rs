@@ -3,10 +3,10 @@
 #![allow(clippy::unwrap_used)]
 
 use nalgebra::DMatrix;
-use windfall_statistics::design::{Design, Factor, Point, randomised};
-use windfall_statistics::design_composite::{Alpha, CompositeOptions, Ends, central_composite};
-use windfall_statistics::design_error::DesignError;
-use windfall_statistics::design_word::{Generator, parse_generator};
+use windfall_statistics::design::composite::{Alpha, CompositeOptions, Ends, central_composite};
+use windfall_statistics::design::error::DesignError;
+use windfall_statistics::design::kind::{Design, Factor, Point, randomised};
+use windfall_statistics::design::word::{Generator, parse_generator};
 
 fn factors(count: usize) -> Vec<Factor> {
     (0..count)

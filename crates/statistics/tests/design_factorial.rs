@@ -4,11 +4,11 @@
 #![allow(clippy::unwrap_used)]
 
 use proptest::prelude::*;
-use windfall_statistics::design::{Design, Factor};
-use windfall_statistics::design_catalogue::{catalogued, sizes};
-use windfall_statistics::design_factorial::{FactorialOptions, two_level};
-use windfall_statistics::design_plackett_burman::plackett_burman;
-use windfall_statistics::design_word::{Generator, Word, aliases, fraction_of};
+use windfall_statistics::design::catalogue::{catalogued, sizes};
+use windfall_statistics::design::factorial::{FactorialOptions, two_level};
+use windfall_statistics::design::kind::{Design, Factor};
+use windfall_statistics::design::plackett_burman::plackett_burman;
+use windfall_statistics::design::word::{Generator, Word, aliases, fraction_of};
 
 fn factors(count: usize) -> Vec<Factor> {
     let name = |i: usize| Factor::between(&format!("x{i}"), "", 0.0, 1.0).unwrap();

@@ -2,12 +2,12 @@
 
 #![allow(clippy::unwrap_used)]
 
-use windfall_statistics::design::{Design, Factor, Point, evenly};
-use windfall_statistics::design_error::DesignError;
-use windfall_statistics::design_exchange::Criterion;
-use windfall_statistics::design_model::{DesignModel, extreme_points, model_row, region_points};
-use windfall_statistics::design_optimal::{Candidates, OptimalOptions, optimal};
-use windfall_statistics::design_quality::{DesignQuality, design_quality};
+use windfall_statistics::design::error::DesignError;
+use windfall_statistics::design::exchange::Criterion;
+use windfall_statistics::design::kind::{Design, Factor, Point, evenly};
+use windfall_statistics::design::model::{DesignModel, extreme_points, model_row, region_points};
+use windfall_statistics::design::optimal::{Candidates, OptimalOptions, optimal};
+use windfall_statistics::design::quality::{DesignQuality, design_quality};
 
 fn factors(count: usize) -> Vec<Factor> {
     let name = |i: usize| Factor::between(&format!("x{i}"), "", 0.0, 1.0).unwrap();

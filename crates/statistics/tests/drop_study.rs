@@ -4,11 +4,13 @@
 
 #![allow(clippy::unwrap_used, clippy::print_stdout)]
 
-use windfall_statistics::anova::{AnovaType, anova};
-use windfall_statistics::desirability::{Goal, Region, Wanted, best_settings, equally_good};
-use windfall_statistics::surface::{Surface, fit_surface};
-use windfall_statistics::surface_coding::{CodedFactors, Recognised, code_by_levels};
-use windfall_statistics::surface_terms::surface_terms;
+use windfall_statistics::model::anova::{AnovaType, anova};
+use windfall_statistics::surface::analysis::{Surface, fit_surface};
+use windfall_statistics::surface::coding::{CodedFactors, Recognised, code_by_levels};
+use windfall_statistics::surface::desirability::{
+    Goal, Region, Wanted, best_settings, equally_good,
+};
+use windfall_statistics::surface::terms::surface_terms;
 
 /// k (N/mm^e), e, C (N s/mm), first peak force (N), interval of impacts (ms).
 const RUNS: [[f64; 5]; 15] = [

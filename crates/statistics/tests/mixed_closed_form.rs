@@ -6,13 +6,13 @@ mod mixed_cases;
 
 use mixed_cases::{assert_near, case, fitted};
 use nalgebra::{DMatrix, DVector};
-use windfall_statistics::mixed_error::MixedError;
-use windfall_statistics::mixed_fit::{MixedFit, MixedMethod, MixedOptions, fit_mixed};
-use windfall_statistics::mixed_inference::{coefficient_tests, f_test, variance_uncertainty};
-use windfall_statistics::mixed_kenward_roger::{kenward_roger, kenward_roger_f};
-use windfall_statistics::mixed_predict::{NewRows, NewTerm, predict_mixed};
-use windfall_statistics::mixed_profile::profile_variances;
-use windfall_statistics::mixed_term::{RandomTerm, random_intercept};
+use windfall_statistics::mixed::error::MixedError;
+use windfall_statistics::mixed::fit::{MixedFit, MixedMethod, MixedOptions, fit_mixed};
+use windfall_statistics::mixed::inference::{coefficient_tests, f_test, variance_uncertainty};
+use windfall_statistics::mixed::kenward_roger::{kenward_roger, kenward_roger_f};
+use windfall_statistics::mixed::predict::{NewRows, NewTerm, predict_mixed};
+use windfall_statistics::mixed::profile::profile_variances;
+use windfall_statistics::mixed::term::{RandomTerm, random_intercept};
 
 /// Seven groups of five, and the mean squares between and within.
 struct OneWay {

@@ -5,14 +5,14 @@
 use nalgebra::DMatrix;
 use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::{RngCore, SeedableRng};
-use windfall_statistics::mixed_fit::{MixedMethod, MixedOptions, fit_mixed};
-use windfall_statistics::mixed_inference::{
+use windfall_statistics::mixed::fit::{MixedMethod, MixedOptions, fit_mixed};
+use windfall_statistics::mixed::inference::{
     coefficient_tests, f_test, picking_contrast, variance_uncertainty,
 };
-use windfall_statistics::mixed_kenward_roger::{kenward_roger, kenward_roger_tests};
-use windfall_statistics::mixed_profile::profile_variances;
-use windfall_statistics::mixed_summary::variance_shares;
-use windfall_statistics::mixed_term::RandomTerm;
+use windfall_statistics::mixed::kenward_roger::{kenward_roger, kenward_roger_tests};
+use windfall_statistics::mixed::profile::profile_variances;
+use windfall_statistics::mixed::summary::variance_shares;
+use windfall_statistics::mixed::term::RandomTerm;
 
 const ODD: [f64; 12] = [
     0.0,

@@ -7,13 +7,13 @@ use nalgebra::{DMatrix, DVector};
 use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::{RngCore, SeedableRng};
 use statrs::distribution::{ContinuousCDF, Normal, StudentsT};
-use windfall_statistics::mixed_fit::{MixedMethod, MixedOptions, fit_mixed};
-use windfall_statistics::mixed_inference::{
+use windfall_statistics::mixed::fit::{MixedMethod, MixedOptions, fit_mixed};
+use windfall_statistics::mixed::inference::{
     CoefficientTest, coefficient_tests, variance_uncertainty,
 };
-use windfall_statistics::mixed_kenward_roger::{kenward_roger, kenward_roger_tests};
-use windfall_statistics::mixed_profile::profile_variances;
-use windfall_statistics::mixed_term::random_intercept;
+use windfall_statistics::mixed::kenward_roger::{kenward_roger, kenward_roger_tests};
+use windfall_statistics::mixed::profile::profile_variances;
+use windfall_statistics::mixed::term::random_intercept;
 
 const STUDIES: usize = 1000;
 const PROFILED: usize = 400;

@@ -3,16 +3,16 @@
 mod mixed_cases;
 
 use mixed_cases::{assert_near, fitted, fitted_case, numbers, reference, rows};
-use windfall_statistics::mixed_finding::MixedFinding;
-use windfall_statistics::mixed_fit::MixedMethod;
-use windfall_statistics::mixed_inference::{
+use windfall_statistics::mixed::finding::MixedFinding;
+use windfall_statistics::mixed::fit::MixedMethod;
+use windfall_statistics::mixed::inference::{
     coefficient_tests, f_test, picking_contrast, variance_uncertainty,
 };
-use windfall_statistics::mixed_kenward_roger::{
+use windfall_statistics::mixed::kenward_roger::{
     kenward_roger, kenward_roger_f, kenward_roger_tests,
 };
-use windfall_statistics::mixed_profile::profile_variances;
-use windfall_statistics::mixed_summary::{likelihood_ratio, variance_shares};
+use windfall_statistics::mixed::profile::profile_variances;
+use windfall_statistics::mixed::summary::{likelihood_ratio, variance_shares};
 
 #[test]
 fn reference_estimates_of_lme4() {
@@ -92,7 +92,7 @@ fn reference_satterthwaite_of_lmer_test() {
         let uncertainty = variance_uncertainty(&fit).unwrap();
         let tests = coefficient_tests(&fit, &uncertainty, 0.95);
         let name = format!("{} {}", case["formula"], case["method"]);
-        type Column = fn(&windfall_statistics::mixed_inference::CoefficientTest) -> f64;
+        type Column = fn(&windfall_statistics::mixed::inference::CoefficientTest) -> f64;
         let columns: [(&str, Column, f64); 4] = [
             ("se", |t| t.se, 1e-7),
             ("df", |t| t.df, 1e-5),

@@ -8,7 +8,7 @@
 
 use std::path::{Path, PathBuf};
 use windfall_statistics::accurate_sum::{lag_one_autocorrelation, mean, standard_deviation};
-use windfall_statistics::one_way_anova::one_way_anova;
+use windfall_statistics::compare::one_way_anova::one_way_anova;
 
 /// The file's lines, or `None` where it is not there.
 fn nist(name: &str) -> Option<Vec<String>> {

@@ -5,10 +5,10 @@
 #![allow(clippy::unwrap_used, clippy::print_stdout)]
 
 use std::path::PathBuf;
-use windfall_statistics::contrast::Contrast;
-use windfall_statistics::formula::formula;
-use windfall_statistics::linear_model::{LinearFit, fit_linear};
-use windfall_statistics::model_frame::model_rows;
+use windfall_statistics::model::contrast::Contrast;
+use windfall_statistics::model::formula::formula;
+use windfall_statistics::model::linear_model::{LinearFit, fit_linear};
+use windfall_statistics::model::model_frame::model_rows;
 use windfall_statistics::table::{Cells, Column, Table};
 
 fn table(columns: &[(&str, Vec<f64>)]) -> Table {

@@ -3,10 +3,10 @@
 #![allow(clippy::excessive_precision)] // as the references printed them
 
 use nalgebra::DMatrix;
-use windfall_statistics::box_cox::{BoxCoxOptions, box_cox};
-use windfall_statistics::heteroscedasticity::{breusch_pagan, koenker, white};
-use windfall_statistics::normality::{anderson_darling, jarque_bera, shapiro_wilk};
-use windfall_statistics::residual_order::{durbin_watson, runs_test};
+use windfall_statistics::residuals::box_cox::{BoxCoxOptions, box_cox};
+use windfall_statistics::residuals::heteroscedasticity::{breusch_pagan, koenker, white};
+use windfall_statistics::residuals::normality::{anderson_darling, jarque_bera, shapiro_wilk};
+use windfall_statistics::residuals::order::{durbin_watson, runs_test};
 
 const Y: [f64; 12] = [2.1, 3.7, 2.9, 8.4, 5.5, 4.4, 3.9, 2.2, 12.6, 6.1, 3.3, 4.8];
 const Z: [f64; 12] = [3.0, 1.0, 4.0, 1.0, 5.0, 9.0, 2.0, 6.0, 5.0, 3.0, 5.0, 8.0];

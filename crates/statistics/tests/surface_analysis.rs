@@ -3,18 +3,18 @@
 
 #![allow(clippy::unwrap_used)]
 
-use windfall_statistics::anova::lack_of_fit;
-use windfall_statistics::contrast::Contrast;
-use windfall_statistics::cross_validation::cross_validate;
-use windfall_statistics::desirability::{Goal, Wanted, desirability, overall};
-use windfall_statistics::formula::formula;
-use windfall_statistics::linear_model::fit_linear;
-use windfall_statistics::model_frame::{ModelRows, model_rows};
-use windfall_statistics::reduced::reduce;
-use windfall_statistics::selection::{Criterion, Direction, SelectionOptions, select};
-use windfall_statistics::surface::{Shape, Surface, canonical, fit_surface, ridge};
-use windfall_statistics::surface_coding::FactorCoding;
-use windfall_statistics::surface_terms::surface_terms;
+use windfall_statistics::model::anova::lack_of_fit;
+use windfall_statistics::model::contrast::Contrast;
+use windfall_statistics::model::formula::formula;
+use windfall_statistics::model::linear_model::fit_linear;
+use windfall_statistics::model::model_frame::{ModelRows, model_rows};
+use windfall_statistics::model::reduced::reduce;
+use windfall_statistics::model::selection::{Criterion, Direction, SelectionOptions, select};
+use windfall_statistics::residuals::cross_validation::cross_validate;
+use windfall_statistics::surface::analysis::{Shape, Surface, canonical, fit_surface, ridge};
+use windfall_statistics::surface::coding::FactorCoding;
+use windfall_statistics::surface::desirability::{Goal, Wanted, desirability, overall};
+use windfall_statistics::surface::terms::surface_terms;
 use windfall_statistics::table::{Cells, Column, Table};
 
 /// A quadratic in two factors, sampled on a grid of five levels each with nothing

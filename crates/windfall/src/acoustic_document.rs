@@ -4,8 +4,8 @@ use crate::evaluate::Document;
 use crate::outcome::FindingOutcome;
 use crate::store_documents::StoredValue;
 use serde::{Deserialize, Serialize};
-use windfall_signal::damped_mode::Mode;
-use windfall_signal::resonance::Resonance;
+use windfall_signal::tap::damped_mode::Mode;
+use windfall_signal::tap::resonance::Resonance;
 
 /// Taps of one recording.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]

@@ -1,7 +1,7 @@
 //! Terms of a regression of bruises, as what they make of one contact.
 
-use windfall_statistics::expression::{columns_of, function_of, known_functions};
-use windfall_statistics::formula_syntax::{Kind, Node, Operator, parse, spelling};
+use windfall_statistics::model::expression::{columns_of, function_of, known_functions};
+use windfall_statistics::model::formula_syntax::{Kind, Node, Operator, parse, spelling};
 
 /// A calculation with the columns of one row.
 #[derive(Clone, Debug)]

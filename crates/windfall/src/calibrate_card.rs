@@ -13,9 +13,9 @@ use crate::read_drop::{DropCampaign, PlatePlan};
 use crate::workflow_simulate::end_name;
 use std::collections::BTreeMap;
 use windfall_contact::law::EndRule;
-use windfall_contact::law_kind::Law;
-use windfall_identify::drop_rig::{DropRig, Plate};
-use windfall_identify::drop_simulate::simulate_drop;
+use windfall_contact::laws::kind::Law;
+use windfall_identify::drop::rig::{DropRig, Plate};
+use windfall_identify::drop::simulate::simulate_drop;
 
 /// Files whose digests a card carries.
 const FILES: [&str; 3] = ["campaign.toml", "impacts.csv", "specimens.csv"];

@@ -19,18 +19,18 @@ use crate::text_number::plain;
 use rayon::prelude::*;
 use windfall_contact::expression::LawExpression;
 use windfall_contact::law::EndRule;
-use windfall_contact::law_kind::Law;
-use windfall_identify::drop_measured::{DropFeature, feature_values};
-use windfall_identify::drop_rig::DropRig;
-use windfall_statistics::anova::{AnovaType, anova};
-use windfall_statistics::design::{Design, Factor};
-use windfall_statistics::design_composite::{Alpha, CompositeOptions, Ends, central_composite};
-use windfall_statistics::desirability::{
+use windfall_contact::laws::kind::Law;
+use windfall_identify::drop::measured::{DropFeature, feature_values};
+use windfall_identify::drop::rig::DropRig;
+use windfall_statistics::design::composite::{Alpha, CompositeOptions, Ends, central_composite};
+use windfall_statistics::design::kind::{Design, Factor};
+use windfall_statistics::model::anova::{AnovaType, anova};
+use windfall_statistics::surface::analysis::{Surface, fit_surface};
+use windfall_statistics::surface::coding::FactorCoding;
+use windfall_statistics::surface::desirability::{
     Goal, Optimum, Region, Wanted, best_settings, equally_good,
 };
-use windfall_statistics::surface::{Surface, fit_surface};
-use windfall_statistics::surface_coding::FactorCoding;
-use windfall_statistics::surface_terms::{letter, monomial_name, surface_terms};
+use windfall_statistics::surface::terms::{letter, monomial_name, surface_terms};
 
 /// Responses of the design.
 pub(crate) const RESPONSES: [DropFeature; 2] = [PEAK, INTERVAL];
@@ -466,7 +466,7 @@ fn surface_outcomes(surfaces: &[Surface], runs: &[DesignRunOutcome]) -> Vec<Desi
     surfaces.iter().enumerate().map(outcome).collect()
 }
 
-fn rows_of_anova(table: &windfall_statistics::anova::Anova) -> Vec<AnovaOutcome> {
+fn rows_of_anova(table: &windfall_statistics::model::anova::Anova) -> Vec<AnovaOutcome> {
     let rows = table.rows.iter().map(|row| AnovaOutcome {
         term: row.term.clone(),
         ss: row.ss,

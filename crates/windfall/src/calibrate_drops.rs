@@ -8,9 +8,9 @@ use crate::error::Error;
 use crate::evaluate_drop::{Known, MeasuredDrop};
 use crate::plate_ringing::PlateEstimate;
 use crate::read_drop::{DropCampaign, drop_of};
-use windfall_identify::drop_feature_problem::{MeasuredFeature, RigUncertainty};
-use windfall_identify::drop_measured::{DropFeature, FeatureKind};
-use windfall_identify::drop_rig::{DropRig, Plate};
+use windfall_identify::drop::feature_problem::{MeasuredFeature, RigUncertainty};
+use windfall_identify::drop::measured::{DropFeature, FeatureKind};
+use windfall_identify::drop::rig::{DropRig, Plate};
 use windfall_signal::uncertain::Uncertain;
 
 /// Columns of impacts.csv that hold features, counted from 1: "peak_force_1_N".

@@ -6,9 +6,9 @@ use crate::error::Error;
 use crate::read_calibrate::{CalibrateSettings, DropLaw, ParameterRange, RangeUnit};
 use windfall_contact::effective::{Elastic, effective_modulus, effective_radius, hertz_stiffness};
 use windfall_contact::expression::LawExpression;
-use windfall_contact::law_kind::Law;
-use windfall_identify::drop_coordinates::{LawCoordinates, law_coordinates};
-use windfall_identify::drop_start::{exponent_position, stiffness_of_equal_peak};
+use windfall_contact::laws::kind::Law;
+use windfall_identify::drop::coordinates::{LawCoordinates, law_coordinates};
+use windfall_identify::drop::start::{exponent_position, stiffness_of_equal_peak};
 
 /// Unit of length of a stiffness without a range: indentations are millimetres.
 const MILLIMETRE: f64 = 1e-3;

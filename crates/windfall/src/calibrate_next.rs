@@ -10,12 +10,12 @@ use crate::error::Error;
 use crate::read_calibrate::CalibrateSettings;
 use crate::text_number::plain;
 use windfall_contact::law::EndRule;
-use windfall_identify::drop_experiment::{Candidate, Choice, expected, ranked};
-use windfall_identify::drop_feature_problem::{
+use windfall_identify::drop::experiment::{Candidate, Choice, expected, ranked};
+use windfall_identify::drop::feature_problem::{
     CoordinatePrior, FeatureProblem, linearise, nuisances,
 };
-use windfall_identify::drop_information::{Information, information};
-use windfall_identify::drop_measured::{DropFeature, FeatureKind};
+use windfall_identify::drop::information::{Information, information};
+use windfall_identify::drop::measured::{DropFeature, FeatureKind};
 use windfall_signal::uncertain::Uncertain;
 
 /// How well Hertz's contact with a modulus from elsewhere is believed to tell a
@@ -92,7 +92,7 @@ pub fn closing(setting: &NextSetting, at: &[f64]) -> Result<Vec<ClosingOutcome>,
         let feature = DropFeature { kind, impact };
         problem.drops[0]
             .features
-            .push(windfall_identify::drop_feature_problem::MeasuredFeature {
+            .push(windfall_identify::drop::feature_problem::MeasuredFeature {
                 feature,
                 value: 0.0,
                 sd,

@@ -10,11 +10,11 @@ use crate::read_calibrate::{CalibrateSettings, Target};
 use crate::regress_findings::finding;
 use crate::text_number::plain;
 use windfall_contact::law::EndRule;
-use windfall_identify::drop_feature_problem::{
+use windfall_identify::drop::feature_problem::{
     FeatureProblem, MeasuredDrop, MeasuredFeature, RigUncertainty,
 };
-use windfall_identify::drop_measured::{DropFeature, FeatureKind};
-use windfall_identify::drop_rig::DropRig;
+use windfall_identify::drop::measured::{DropFeature, FeatureKind};
+use windfall_identify::drop::rig::DropRig;
 use windfall_signal::uncertain::Uncertain;
 
 /// The first peak of the force in the support.

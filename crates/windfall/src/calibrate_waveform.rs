@@ -11,14 +11,14 @@ use crate::read_drop::{DropCampaign, PlatePlan};
 use crate::regress_findings::finding;
 use windfall_contact::expression::LawExpression;
 use windfall_contact::law::EndRule;
-use windfall_contact::law_kind::Law;
-use windfall_identify::drop_rig::DropRig;
-use windfall_identify::drop_waveform::{
+use windfall_contact::laws::kind::Law;
+use windfall_identify::drop::rig::DropRig;
+use windfall_identify::drop::waveform::{
     DropRecord, Estimate, Knowledge, RecordFit, WaveformFit, WaveformPlate, WaveformProblem,
     WaveformRig,
 };
-use windfall_identify::drop_waveform_fit::calibrate_waveform;
-use windfall_signal::bounce_train::BounceTrain;
+use windfall_identify::drop::waveform_fit::calibrate_waveform;
+use windfall_signal::bounce::train::BounceTrain;
 use windfall_signal::uncertain::Uncertain;
 
 /// Samples are used from this much before the first visible force, which the
@@ -135,7 +135,7 @@ pub fn waveform_outcome(
 }
 
 /// What campaign.toml knows of the plate; the start of the rest.
-fn plate_of(plan: &PlatePlan, start: windfall_identify::drop_rig::Plate) -> WaveformPlate {
+fn plate_of(plan: &PlatePlan, start: windfall_identify::drop::rig::Plate) -> WaveformPlate {
     let known = |value: Option<Uncertain>, start: f64| {
         value.map_or(Knowledge::Free(start), Knowledge::measured)
     };
@@ -161,7 +161,7 @@ fn plate_of(plan: &PlatePlan, start: windfall_identify::drop_rig::Plate) -> Wave
 fn record_of(campaign: &DropCampaign, drop: &RecordedDrop) -> Result<DropRecord, String> {
     let train = &drop.train;
     let whole =
-        |bounce: &&windfall_signal::bounce_train::Bounce| bounce.complete && !bounce.clipped;
+        |bounce: &&windfall_signal::bounce::train::Bounce| bounce.complete && !bounce.clipped;
     let usable: Vec<_> = train.bounces.iter().take_while(whole).collect();
     let used = usable.len().min(campaign.calibrate.bounces);
     if used == 0 {

@@ -2,10 +2,10 @@
 
 use std::path::PathBuf;
 use windfall_contact::expression::LawExpression;
-use windfall_contact::law_kind::LawKind;
+use windfall_contact::laws::kind::LawKind;
 use windfall_formats::open::OpenOptions;
-use windfall_identify::problem::FitOptions;
-use windfall_identify::rig::Pendulum;
+use windfall_identify::fit::problem::FitOptions;
+use windfall_identify::rig::kind::Pendulum;
 use windfall_signal::ExtractOptions;
 use windfall_signal::recording::Quantity;
 

@@ -20,7 +20,7 @@ use crate::workflow_report::REPORT_DIRECTORY;
 use serde::Serialize;
 use std::path::{Path, PathBuf};
 use std::time::SystemTime;
-use windfall_identify::problem::FitOptions;
+use windfall_identify::fit::problem::FitOptions;
 
 /// Directory of tables for regressions and surfaces in a campaign directory.
 pub const TABLES_DIRECTORY: &str = "tables";

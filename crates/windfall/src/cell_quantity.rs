@@ -3,7 +3,7 @@
 
 use crate::error::{Error, Place};
 use std::path::Path;
-use windfall_numerics::unit::parse_as;
+use windfall_numerics::unit::quantity::parse_as;
 
 /// The quantity `name` among the cells of a row; SI. `None` where there is no
 /// such column or its cell is blank.

@@ -1,7 +1,7 @@
 //! What the name of a channel says: its unit, and what it seems to be.
 
 use windfall_formats::contents::ChannelContents;
-use windfall_numerics::unit::parse_unit;
+use windfall_numerics::unit::quantity::parse_unit;
 
 /// The unit in "Force (N)", "force_N", `Force [N]` or "Force in N".
 #[must_use]

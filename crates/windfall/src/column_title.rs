@@ -1,6 +1,6 @@
 //! Titles of axes from the names of columns: `force_N` is a force in N.
 
-use windfall_numerics::unit::parse_unit;
+use windfall_numerics::unit::quantity::parse_unit;
 
 /// Name and unit of a column as an axis shows them: what follows an underscore and is
 /// a unit becomes the unit, `density_kg_m3` in kg/m³; "" where the name says none.

@@ -4,10 +4,10 @@ use crate::compare_outcome::PairOutcome;
 use crate::error::Error;
 use crate::group_outcome::statistics_error;
 use crate::option_value::unusable;
-use windfall_statistics::compare_means::{MeanDifference, paired, pooled, welch};
-use windfall_statistics::multiple_comparison::{bonferroni, holm};
+use windfall_statistics::compare::means::{MeanDifference, paired, pooled, welch};
+use windfall_statistics::compare::multiple_comparison::{bonferroni, holm};
+use windfall_statistics::compare::tukey::{PairDifference, games_howell, tukey_kramer};
 use windfall_statistics::sample_error::SampleError;
-use windfall_statistics::tukey::{PairDifference, games_howell, tukey_kramer};
 
 /// How groups are compared in pairs.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]

@@ -3,17 +3,17 @@
 use crate::outcome::FindingOutcome;
 use crate::read_repeats::{Margin, RepeatsCampaign};
 use crate::repeat_pairs::{Pair, Pairs, difference_of};
-use windfall_signal::repeat_align::CHANGES;
-use windfall_signal::repeat_criterion::{
+use windfall_signal::repeat::align::CHANGES;
+use windfall_signal::repeat::criterion::{
     Decision, Difference, Repeatability, decide, repeatability,
 };
-use windfall_signal::repeat_equivalence::{Equivalence, Verdict, equivalence};
-use windfall_signal::repeat_interval::{EnergyInterval, energy_interval};
-use windfall_signal::repeat_permutation::{
+use windfall_signal::repeat::equivalence::{Equivalence, Verdict, equivalence};
+use windfall_signal::repeat::interval::{EnergyInterval, energy_interval};
+use windfall_signal::repeat::permutation::{
     ComparedCurves, Differences, SignFlipTest, sign_flip_test,
 };
-use windfall_signal::repeat_threshold::{Threshold, fit_threshold};
-use windfall_signal::repeat_turnbull::{EnergyMass, turnbull};
+use windfall_signal::repeat::threshold::{Threshold, fit_threshold};
+use windfall_signal::repeat::turnbull::{EnergyMass, turnbull};
 
 /// References fewer than this are reported.
 const FEW_REFERENCES: usize = 8;

@@ -3,7 +3,7 @@
 use crate::engine_law::{Damping, granular_law};
 use std::fmt::Write;
 use windfall_contact::law::ContactLaw;
-use windfall_contact::law_kind::{Law, LawKind};
+use windfall_contact::laws::kind::{Law, LawKind};
 use windfall_contact::with_law;
 use windfall_scene::interaction::{Draws, Interaction};
 use windfall_scene::scene::Scene;

@@ -4,8 +4,10 @@ use crate::design_factor::CODED;
 use crate::design_file::read_coding;
 use crate::error::Error;
 use crate::read_data::Data;
-use windfall_statistics::design::Factor;
-use windfall_statistics::surface_coding::{CodedFactors, FactorCoding, Recognised, code_by_levels};
+use windfall_statistics::design::kind::Factor;
+use windfall_statistics::surface::coding::{
+    CodedFactors, FactorCoding, Recognised, code_by_levels,
+};
 
 /// Differences of settings from exact levels that are rounding of the last
 /// bits, in half-ranges.
@@ -120,7 +122,7 @@ mod tests {
     use super::*;
     use crate::design_file::write_design;
     use crate::read_data::read_data;
-    use windfall_statistics::design_composite::{CompositeOptions, central_composite};
+    use windfall_statistics::design::composite::{CompositeOptions, central_composite};
 
     /// A design with one setting changed and the columns as `change` leaves them.
     fn coded(change: impl Fn(String) -> String) -> (CodedFactors, Vec<Vec<f64>>) {

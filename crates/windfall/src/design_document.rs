@@ -3,8 +3,8 @@
 use crate::design_factor::fifteen_digits;
 use crate::workflow_design::DesignOutcome;
 use serde::Serialize;
-use windfall_statistics::design::{Design, Factor};
-use windfall_statistics::design_word::{AliasChain, Fraction, aliases, letter};
+use windfall_statistics::design::kind::{Design, Factor};
+use windfall_statistics::design::word::{AliasChain, Fraction, aliases, letter};
 
 /// Effects of up to so many factors are shown in aliases.
 pub const ALIAS_ORDER: usize = 2;

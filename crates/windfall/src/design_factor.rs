@@ -2,8 +2,8 @@
 
 use crate::error::Error;
 use crate::option_value::unusable;
-use windfall_statistics::design::Factor;
-use windfall_statistics::design_error::DesignError;
+use windfall_statistics::design::error::DesignError;
+use windfall_statistics::design::kind::Factor;
 
 /// A factor, and the levels that were listed for it.
 #[derive(Clone, Debug, PartialEq)]

@@ -21,8 +21,8 @@ use crate::option_value::unusable;
 use crate::write_csv::csv_text;
 use std::io::Write;
 use std::path::Path;
-use windfall_statistics::design::{Design, Factor};
-use windfall_statistics::design_word::letter;
+use windfall_statistics::design::kind::{Design, Factor};
+use windfall_statistics::design::word::letter;
 
 /// Beginning of the line of a factor.
 const FACTOR: &str = "factor ";
@@ -221,9 +221,9 @@ fn parse_coding(text: &str) -> Option<Factor> {
 mod tests {
     use super::*;
     use crate::read_data::read_data;
-    use windfall_statistics::design::randomised;
-    use windfall_statistics::design_composite::{CompositeOptions, Ends, central_composite};
-    use windfall_statistics::design_factorial::{FactorialOptions, two_level};
+    use windfall_statistics::design::composite::{CompositeOptions, Ends, central_composite};
+    use windfall_statistics::design::factorial::{FactorialOptions, two_level};
+    use windfall_statistics::design::kind::randomised;
 
     fn drop_study() -> Design {
         let mut factors = vec![

@@ -2,13 +2,13 @@
 
 use crate::error::Error;
 use crate::option_value::unusable;
-use windfall_statistics::contrast::Contrast;
-use windfall_statistics::design::{Factor, evenly};
-use windfall_statistics::design_model::{DesignModel, model_row, model_terms};
-use windfall_statistics::design_word::letter;
+use windfall_statistics::design::kind::{Factor, evenly};
+use windfall_statistics::design::model::{DesignModel, model_row, model_terms};
+use windfall_statistics::design::word::letter;
 use windfall_statistics::error::Error as StatisticsError;
-use windfall_statistics::formula::formula;
-use windfall_statistics::model_frame::{ModelFrame, model_rows, prediction_rows};
+use windfall_statistics::model::contrast::Contrast;
+use windfall_statistics::model::formula::formula;
+use windfall_statistics::model::model_frame::{ModelFrame, model_rows, prediction_rows};
 use windfall_statistics::table::{Categories, Cells, Column, Table};
 
 /// Levels of each factor in the table that a formula is set up with.

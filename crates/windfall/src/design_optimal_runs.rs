@@ -9,10 +9,10 @@ use crate::error::{Error, Place};
 use crate::option_value::unusable;
 use crate::read_data::{Data, read_data};
 use std::path::Path;
-use windfall_statistics::design::{Design, Factor, evenly};
-use windfall_statistics::design_error::DesignError;
-use windfall_statistics::design_model::DesignModel;
-use windfall_statistics::design_optimal::{Candidates, OptimalOptions, optimal};
+use windfall_statistics::design::error::DesignError;
+use windfall_statistics::design::kind::{Design, Factor, evenly};
+use windfall_statistics::design::model::DesignModel;
+use windfall_statistics::design::optimal::{Candidates, OptimalOptions, optimal};
 use windfall_statistics::table::Cells;
 
 /// Steps of a half-range that coded values of settings are rounded to.

@@ -5,8 +5,8 @@ use crate::engine_law::{PairNumbers, granular_law};
 use crate::outcome::FindingOutcome;
 use std::collections::BTreeSet;
 use windfall_scene::scene::{Fruit, Scene};
+use windfall_scene::shape::wall::Shape;
 use windfall_scene::vector::{Vector, length, scaled};
-use windfall_scene::wall::Shape;
 
 /// A deck: files in one directory, and what is to be known of them.
 #[derive(Clone, Debug)]

@@ -1,7 +1,7 @@
 //! Frames that LAMMPS and LIGGGHTS write: the binary form of `dump custom`.
 
 use std::io::{ErrorKind, Read};
-use windfall_scene::simulation::FruitState;
+use windfall_scene::motion::simulation::FruitState;
 use windfall_scene::vector::UNTURNED;
 
 /// One frame: where all fruit are.

@@ -5,8 +5,8 @@ use crate::engine_lammps_terms::terms;
 use crate::engine_law::PairNumbers;
 use crate::engine_walls::{Region, Tilt, region_of};
 use std::fmt::Write;
+use windfall_scene::shape::wall::{Motion, Wall};
 use windfall_scene::vector::{Vector, add, dot, plus_scaled};
-use windfall_scene::wall::{Motion, Wall};
 
 /// Regions and fixes of all walls.
 ///

@@ -1,6 +1,6 @@
 //! Force laws in the terms of engines for granular matter.
 
-use windfall_contact::law_kind::{Law, LawKind};
+use windfall_contact::laws::kind::{Law, LawKind};
 use windfall_scene::interaction::Interaction;
 
 /// How a law damps, beside k d or k d^1.5.

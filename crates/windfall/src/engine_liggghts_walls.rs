@@ -3,8 +3,8 @@
 use crate::engine_deck::{Task, comment, triple};
 use crate::engine_liggghts_model::{Model, Types, model_of, words};
 use std::fmt::Write;
+use windfall_scene::shape::wall::{Plate, Shape, Wall};
 use windfall_scene::vector::{Vector, cross, length, scaled, subtract};
-use windfall_scene::wall::{Plate, Shape, Wall};
 
 /// Walls of a deck.
 pub(crate) struct Walls {

@@ -14,7 +14,7 @@ use std::sync::mpsc::{Receiver, RecvTimeoutError, sync_channel};
 use std::time::Duration;
 use windfall_scene::energy::Energy;
 use windfall_scene::follow::Followed;
-use windfall_scene::simulation::Simulation;
+use windfall_scene::motion::simulation::Simulation;
 
 /// Frames of an engine, while it runs or from a file of an earlier run.
 pub struct Frames {

@@ -1,7 +1,7 @@
 //! Walls in the terms of engines: blocks with open faces, cylinders, planes.
 
+use windfall_scene::shape::wall::{Plate, Shape, Wall};
 use windfall_scene::vector::{Vector, cross, dot, length, scaled, subtract};
-use windfall_scene::wall::{Plate, Shape, Wall};
 
 /// The surface of a wall as a region of space.
 #[derive(Clone, Debug, PartialEq)]
@@ -229,7 +229,7 @@ mod tests {
             name: "wall".into(),
             material: 0,
             shape,
-            motion: windfall_scene::wall::Motion::default(),
+            motion: windfall_scene::shape::wall::Motion::default(),
         }
     }
 

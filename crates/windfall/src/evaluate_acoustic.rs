@@ -8,9 +8,9 @@ use crate::read_acoustic::AcousticCampaign;
 use crate::read_recording::recording_path;
 use crate::recording_channel::channel_samples;
 use windfall_signal::recording::{Channel, Quantity, Recording, Times};
-use windfall_signal::resonance::{quiet_spectrum, resonances};
-use windfall_signal::tap::{Taps, find_taps};
-use windfall_signal::tap_finding::TapFinding;
+use windfall_signal::tap::find::{Taps, find_taps};
+use windfall_signal::tap::finding::TapFinding;
+use windfall_signal::tap::resonance::{quiet_spectrum, resonances};
 
 /// The sound of an entry and its taps.
 ///

@@ -12,7 +12,7 @@ use crate::recording_channel::channel_samples;
 use crate::text_number::plain;
 use windfall_contact::apparent_modulus::{PressedContact, PrincipalRadii, stiffness_per_modulus};
 use windfall_contact::expression::LawExpression;
-use windfall_contact::law_kind::LawKind;
+use windfall_contact::laws::kind::LawKind;
 use windfall_identify::compression_fit::{
     CompressionEstimate, CompressionFit, LoadingCurve, fit_compression,
 };

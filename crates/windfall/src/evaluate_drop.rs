@@ -13,18 +13,18 @@ use crate::recording_channel::channel_samples;
 use crate::store_documents::StoredValue;
 use serde::{Deserialize, Deserializer, Serialize};
 use std::f64::consts::TAU;
-use windfall_signal::bounce::find_bounces;
-use windfall_signal::bounce_train::{Bounce, BounceOptions, BounceTrain, PlateRinging};
+use windfall_signal::bounce::find::find_bounces;
+use windfall_signal::bounce::train::{Bounce, BounceOptions, BounceTrain, PlateRinging};
 use windfall_signal::recording::{Channel, Quantity, Recording, Times};
-use windfall_signal::restitution::{
+use windfall_signal::restitution::check::check_restitutions;
+use windfall_signal::restitution::estimate::{
     DropConditions, Restitution, RestitutionMethod, impact_speed, restitution_from_impulse,
     restitution_from_time,
 };
-use windfall_signal::restitution_check::check_restitutions;
-use windfall_signal::restitution_motion::{
+use windfall_signal::restitution::motion::{
     MotionOptions, contact_motions, restitution_from_motion,
 };
-use windfall_signal::ringing_peaks::{FreeRinging, logarithmic_decrement};
+use windfall_signal::ringing::peaks::{FreeRinging, logarithmic_decrement};
 use windfall_signal::uncertain::Uncertain;
 
 /// Names of the methods in tables.

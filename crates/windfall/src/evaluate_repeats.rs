@@ -12,7 +12,7 @@ use crate::store_documents::StoredValue;
 use serde::{Deserialize, Serialize};
 use windfall_signal::impact::Series;
 use windfall_signal::recording::Recording;
-use windfall_signal::repeat_align::features;
+use windfall_signal::repeat::align::features;
 use windfall_signal::trigger::ContactChoice;
 use windfall_signal::{ExtractOptions, extract_impact};
 

@@ -2,8 +2,8 @@
 
 use crate::acoustic_document::{TapsDocument, resonance_of};
 use crate::figure_xy::{Figure, Mark, Panel, Series, Side, Style};
-use windfall_signal::damped_mode::mode_samples;
-use windfall_signal::resonance::tap_spectrum;
+use windfall_signal::tap::damped_mode::mode_samples;
+use windfall_signal::tap::resonance::tap_spectrum;
 
 /// Most taps of a recording that are drawn.
 const MOST_TAPS: usize = 4;

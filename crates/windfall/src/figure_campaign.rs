@@ -5,7 +5,7 @@ use crate::figure_files::NamedFigure;
 use crate::figure_xy::{Figure, Panel, Series, Style};
 use crate::outcome::ImpactOutcome;
 use std::f64::consts::TAU;
-use windfall_statistics::distribution_tail::{chi_squared_upper_quantile, f_upper_quantile};
+use windfall_statistics::distribution::tail::{chi_squared_upper_quantile, f_upper_quantile};
 
 /// Probability that an ellipse leaves outside.
 const OUTSIDE: f64 = 0.05;

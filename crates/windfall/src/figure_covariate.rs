@@ -6,7 +6,7 @@ use crate::figure_campaign::{estimated_parameters, groups_of_impacts};
 use crate::figure_files::{NamedFigure, file_name};
 use crate::figure_xy::{Figure, Panel, Series, Style};
 use crate::outcome::ImpactOutcome;
-use windfall_statistics::straight_line::{fit_straight_line, line_at};
+use windfall_statistics::model::straight_line::{fit_straight_line, line_at};
 
 /// Level of the band.
 const CONFIDENCE: f64 = 0.95;
@@ -199,7 +199,7 @@ fn line_and_band(points: &[(f64, f64)]) -> Option<(Line, Line)> {
         .map(|i| low + (high - low) * i as f64 / (POINTS - 1) as f64)
         .collect();
     let found = line_at(&fit, &places);
-    let at = |pick: fn(&windfall_statistics::linear_model::Prediction) -> f64| {
+    let at = |pick: fn(&windfall_statistics::model::linear_model::Prediction) -> f64| {
         let values = places.iter().zip(&found);
         values.map(|(x, p)| (*x, pick(p))).collect::<Line>()
     };

@@ -4,8 +4,8 @@
 use crate::figure_xy::{Figure, Mark, Panel, Series, Side, Style};
 use crate::read_drop::Drop;
 use crate::text_number::plain;
-use windfall_signal::bounce_train::{Bounce, BounceTrain};
-use windfall_signal::ringing::{Ringing, amplitude_at, ringing_at};
+use windfall_signal::bounce::train::{Bounce, BounceTrain};
+use windfall_signal::ringing::model::{Ringing, amplitude_at, ringing_at};
 
 /// The force that contacts are found in is cut off at this many times the
 /// threshold, so that the threshold is seen; 1.

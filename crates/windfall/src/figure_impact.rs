@@ -4,9 +4,9 @@
 use crate::figure_xy::{Figure, Panel, Series, Style};
 use crate::outcome::ImpactOutcome;
 use windfall_contact::law::EndRule;
-use windfall_contact::law_kind::{Law, LawKind};
-use windfall_identify::rig::Rig;
-use windfall_identify::simulate::{Trajectory, trajectory};
+use windfall_contact::laws::kind::{Law, LawKind};
+use windfall_identify::rig::kind::Rig;
+use windfall_identify::rig::simulate::{Trajectory, trajectory};
 use windfall_signal::impact::{Impact, Series as Samples};
 use windfall_signal::kinematics::value_at;
 

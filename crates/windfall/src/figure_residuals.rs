@@ -5,9 +5,9 @@ use crate::figure_impact::{FittedImpact, WINDOW, motion_at};
 use crate::figure_xy::{Figure, Panel, Series, Style};
 use crate::outcome::ImpactOutcome;
 use windfall_contact::law::EndRule;
-use windfall_contact::law_kind::LawKind;
-use windfall_identify::rig::Rig;
-use windfall_identify::simulate::Trajectory;
+use windfall_contact::laws::kind::LawKind;
+use windfall_identify::rig::kind::Rig;
+use windfall_identify::rig::simulate::Trajectory;
 use windfall_signal::impact::{Impact, Series as Samples};
 
 /// Largest lag of the autocorrelation.

@@ -8,7 +8,7 @@ use crate::figure_frame::{Frame, Rectangle};
 use crate::figure_svg::{Anchor, Drawing, Ink};
 use crate::surface_outcome::SurfaceModel;
 use crate::write_csv::csv_text;
-use windfall_statistics::distribution_tail::{normal_quantile, t_upper_quantile};
+use windfall_statistics::distribution::tail::{normal_quantile, t_upper_quantile};
 
 /// Size of the panels and the room around them; px.
 const WIDTH: f64 = 300.0;

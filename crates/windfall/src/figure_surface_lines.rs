@@ -7,7 +7,7 @@ use crate::figure_xy::{Figure, Mark, Panel, Series, Side, Style};
 use crate::model_outcome::RowOutcome;
 use crate::surface_fitted::{FittedSurfaces, desirability_at, settings_along, value_of};
 use crate::surface_outcome::{SurfaceModel, SurfaceOutcome};
-use windfall_statistics::distribution_tail::{normal_quantile, t_upper_quantile};
+use windfall_statistics::distribution::tail::{normal_quantile, t_upper_quantile};
 
 /// Points of a line.
 const POINTS: usize = 81;

@@ -8,9 +8,9 @@ use crate::figure_xy::{Figure, Panel, Series, Style};
 use crate::law_use::complete_law_among;
 use crate::text_number::plain;
 use windfall_contact::law::EndRule;
-use windfall_contact::law_kind::{Law, LawKind};
-use windfall_identify::drop_rig::DropRig;
-use windfall_identify::drop_simulate::drop_trajectory;
+use windfall_contact::laws::kind::{Law, LawKind};
+use windfall_identify::drop::rig::DropRig;
+use windfall_identify::drop::simulate::drop_trajectory;
 
 /// Shown before the first visible force and after the end of a contact; s.
 const BEFORE: f64 = 2e-3;

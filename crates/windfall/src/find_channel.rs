@@ -3,7 +3,7 @@
 use crate::error::Error;
 use std::path::Path;
 use windfall_formats::contents::Contents;
-use windfall_numerics::nearest_name::nearest_names;
+use windfall_numerics::unit::nearest_name::nearest_names;
 
 /// Position of a channel: by its whole name, or by the part behind the last "/"
 /// where only one channel has it.

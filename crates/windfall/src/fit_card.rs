@@ -15,7 +15,7 @@ use crate::workflow_simulate::end_name;
 use std::collections::BTreeMap;
 use std::path::Path;
 use windfall_contact::expression::LawExpression;
-use windfall_contact::law_kind::Law;
+use windfall_contact::laws::kind::Law;
 
 /// Files whose digests a card carries.
 const FILES: [&str; 3] = ["campaign.toml", "impacts.csv", "specimens.csv"];
@@ -148,7 +148,7 @@ fn estimates_of(impacts: &[&ImpactOutcome]) -> Estimates {
 /// The law at the median of what was estimated; what was held as it was.
 fn law_of(
     campaign: &Campaign,
-    kind: windfall_contact::law_kind::LawKind,
+    kind: windfall_contact::laws::kind::LawKind,
     impacts: &[&ImpactOutcome],
     estimates: &Estimates,
     population: &Population,

@@ -10,9 +10,9 @@ use crate::pendulum_angles::add_angles;
 use crate::progress::{Progress, for_each};
 use std::collections::BTreeMap;
 use windfall_contact::expression::LawExpression;
-use windfall_identify::fit::fit_impact;
-use windfall_identify::problem::LawProblem;
-use windfall_identify::rig::Rig;
+use windfall_identify::fit::problem::LawProblem;
+use windfall_identify::fit::result::fit_impact;
+use windfall_identify::rig::kind::Rig;
 use windfall_signal::Finding;
 use windfall_signal::impact::Impact;
 

@@ -9,7 +9,7 @@ use crate::read_files::fill_placeholders;
 use crate::recording_digests::{Digests, campaign_text, file_digests};
 use serde_json::json;
 use windfall_contact::expression::LawExpression;
-use windfall_identify::rig::Rig;
+use windfall_identify::rig::kind::Rig;
 
 /// SHA-256 over everything that the fit of one law to one impact depends on.
 ///

@@ -5,7 +5,7 @@ use crate::error::Error;
 use crate::extract_recording::extract_recording;
 use crate::outcome::{FindingOutcome, MassOutcome};
 use rayon::prelude::*;
-use windfall_identify::rig::{Carriage, Rig};
+use windfall_identify::rig::kind::{Carriage, Rig};
 use windfall_signal::impact::Measured;
 use windfall_signal::mass::{mass_from_impulse, mass_from_impulses};
 use windfall_signal::uncertain::Uncertain;

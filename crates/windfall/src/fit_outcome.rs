@@ -5,10 +5,10 @@ use crate::interval_outcome::interval_outcome;
 use crate::named::Named;
 use crate::outcome::{EstimateOutcome, FindingOutcome, ImpactOutcome};
 use windfall_contact::restitution::nominal_restitution;
-use windfall_identify::fit::{Estimate, Fit};
-use windfall_identify::problem::LawProblem;
-use windfall_identify::rig::Rig;
-use windfall_identify::simulate::ImpactSummary;
+use windfall_identify::fit::problem::LawProblem;
+use windfall_identify::fit::result::{Estimate, Fit};
+use windfall_identify::rig::kind::Rig;
+use windfall_identify::rig::simulate::ImpactSummary;
 use windfall_signal::Finding;
 use windfall_signal::impact::{Impact, Measured};
 
@@ -136,7 +136,7 @@ fn correlations(fit: &Fit) -> Named<f64> {
 }
 
 fn residuals(fit: &Fit) -> Named<crate::outcome::ResidualOutcome> {
-    let of = |q: &windfall_identify::fit::QuantityFit| crate::outcome::ResidualOutcome {
+    let of = |q: &windfall_identify::fit::result::QuantityFit| crate::outcome::ResidualOutcome {
         samples: q.samples,
         weight: q.weight,
         noise: q.noise,

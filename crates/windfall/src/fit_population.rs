@@ -161,7 +161,7 @@ fn keep(matrix: &mut [Vec<f64>], differs: &[bool], diagonal: f64) {
 
 /// Whether a symmetric matrix is positive definite.
 fn is_covariance(matrix: &[Vec<f64>]) -> bool {
-    const LARGEST: usize = windfall_contact::any_law::LARGEST_PARAMETERS;
+    const LARGEST: usize = windfall_contact::laws::any_law::LARGEST_PARAMETERS;
     let mut padded = [[0.0; LARGEST]; LARGEST];
     for (i, row) in padded.iter_mut().enumerate() {
         row[i] = 1.0;

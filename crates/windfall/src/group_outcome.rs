@@ -4,7 +4,7 @@ use crate::error::Error;
 use crate::outcome::FindingOutcome;
 use crate::regress_findings::{finding, lines_text};
 use serde::Serialize;
-use windfall_statistics::group_summary::{Group, Groups, summarize};
+use windfall_statistics::compare::group_summary::{Group, Groups, summarize};
 
 /// What the values of one group look like; NaN (null in JSON) where there are
 /// too few values.

@@ -2,8 +2,8 @@
 
 use crate::named::Named;
 use serde::{Deserialize, Serialize};
-use windfall_identify::fit::Fit;
-use windfall_identify::interval::{IntervalDetail, ProfileCurve};
+use windfall_identify::fit::interval::{IntervalDetail, ProfileCurve};
+use windfall_identify::fit::result::Fit;
 
 /// Draws of a posterior that are kept, to be looked at.
 const KEPT: usize = 500;

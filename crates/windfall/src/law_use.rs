@@ -10,7 +10,7 @@ use crate::read_laws::laws_of_option;
 use crate::text_statistic::number;
 use std::path::Path;
 use windfall_contact::expression::parse_law_among;
-use windfall_contact::law_kind::{Law, LawKind};
+use windfall_contact::laws::kind::{Law, LawKind};
 
 /// Endings of a law card's name.
 pub const CARD_ENDINGS: [&str; 2] = [".toml", ".json"];

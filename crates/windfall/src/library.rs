@@ -6,7 +6,7 @@ use crate::file_library::{EntryFile, LibraryFile, ModelFile, SourceFile, ValueFi
 use crate::toml_source::{TomlSource, parse_source};
 use serde::Serialize;
 use std::path::Path;
-use windfall_numerics::unit::{parse_as, parse_quantity, parse_unit};
+use windfall_numerics::unit::quantity::{parse_as, parse_quantity, parse_unit};
 
 /// What one publication says of one body.
 #[derive(Clone, Debug, PartialEq, Serialize)]

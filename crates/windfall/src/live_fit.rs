@@ -16,8 +16,8 @@ use crate::request_fit::{FitRequest, apply_request};
 use serde::Serialize;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
-use windfall_identify::interval::IntervalMethod;
-use windfall_identify::simulate::Trajectory;
+use windfall_identify::fit::interval::IntervalMethod;
+use windfall_identify::rig::simulate::Trajectory;
 use windfall_signal::impact::{Impact, Series};
 use windfall_signal::recording::Recording;
 

@@ -1,11 +1,11 @@
 //! Fitted linear models as JSON shows them.
 
 use serde::Serialize;
-use windfall_statistics::anova::{Anova, AnovaType, LackOfFit};
-use windfall_statistics::diagnostics::{Inflation, RowInfluence};
-use windfall_statistics::expression::columns_of;
-use windfall_statistics::formula::Formula;
-use windfall_statistics::linear_model::{Coefficient, LinearFit, Prediction, Quality};
+use windfall_statistics::model::anova::{Anova, AnovaType, LackOfFit};
+use windfall_statistics::model::expression::columns_of;
+use windfall_statistics::model::formula::Formula;
+use windfall_statistics::model::linear_model::{Coefficient, LinearFit, Prediction, Quality};
+use windfall_statistics::residuals::diagnostics::{Inflation, RowInfluence};
 use windfall_statistics::table::Table;
 
 /// A step of a selection.

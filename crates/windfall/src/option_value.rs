@@ -2,7 +2,7 @@
 
 use crate::error::Error;
 use crate::toml_source::suggestion;
-use windfall_numerics::unit::parse_as;
+use windfall_numerics::unit::quantity::parse_as;
 
 /// The error of an option that cannot be used.
 #[must_use]

@@ -6,8 +6,8 @@ use crate::measured::{MeasuredItem, MeasuredValue, plain_value, value_with_sd};
 use crate::named::Named;
 use crate::outcome::FindingOutcome;
 use crate::read_drop::{DropCampaign, PlatePlan};
-use windfall_identify::drop_rig::Plate;
-use windfall_signal::ringing_plate::{HeightTable, PlateDynamics, height_table, plate_dynamics};
+use windfall_identify::drop::rig::Plate;
+use windfall_signal::ringing::plate::{HeightTable, PlateDynamics, height_table, plate_dynamics};
 use windfall_signal::uncertain::Uncertain;
 
 /// Method of the table over heights.

@@ -6,7 +6,7 @@ use crate::error::{Error, Place};
 use crate::option_value::unusable;
 use crate::toml_source::suggestion;
 use std::path::PathBuf;
-use windfall_identify::population::Covariate;
+use windfall_identify::population::model::Covariate;
 
 /// The velocity at first touch, measured or fitted; m/s.
 pub const IMPACT_VELOCITY: &str = "impact_velocity";

@@ -2,9 +2,9 @@
 
 use crate::outcome::{FailureOutcome, FindingOutcome};
 use serde::{Deserialize, Serialize};
-use windfall_identify::population::{FixedEffect, PopulationFit, Spread, Variation};
-use windfall_identify::population_posterior::{PopulationPosterior, PosteriorRange};
-use windfall_identify::population_two_stage::TwoStage;
+use windfall_identify::population::model::{FixedEffect, PopulationFit, Spread, Variation};
+use windfall_identify::population::posterior::{PopulationPosterior, PosteriorRange};
+use windfall_identify::population::two_stage::TwoStage;
 
 /// A number with its interval, where there is one.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]

@@ -13,11 +13,11 @@ use crate::toml_source::{
 };
 use std::path::Path;
 use toml::Spanned;
-use windfall_numerics::unit::parse_as;
-use windfall_signal::first_mode::FirstModeOptions;
+use windfall_numerics::unit::quantity::parse_as;
 use windfall_signal::recording::Quantity;
-use windfall_signal::resonance::ResonanceOptions;
-use windfall_signal::tap::TapOptions;
+use windfall_signal::tap::find::TapOptions;
+use windfall_signal::tap::first_mode::FirstModeOptions;
+use windfall_signal::tap::resonance::ResonanceOptions;
 use windfall_signal::uncertain::Uncertain;
 
 /// A campaign of taps.

@@ -5,7 +5,7 @@ use crate::file_campaign::QuantityText;
 use crate::file_drop::BouncesFile;
 use crate::toml_source::{Needed, TomlSource, invalid, optional_quantity};
 use toml::Spanned;
-use windfall_signal::bounce_train::{BounceOptions, StaticLevel};
+use windfall_signal::bounce::train::{BounceOptions, StaticLevel};
 use windfall_signal::trigger::Threshold;
 
 /// How bounces are told from noise and from the ringing of the plate.

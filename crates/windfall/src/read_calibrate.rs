@@ -9,8 +9,8 @@ use crate::toml_source::{Needed, TomlSource, choice, invalid, missing, suggestio
 use toml::Spanned;
 use windfall_contact::expression::{LawExpression, parse_law_among};
 use windfall_contact::law::EndRule;
-use windfall_contact::law_kind::LawKind;
-use windfall_numerics::unit::{parse_as, parse_unit};
+use windfall_contact::laws::kind::LawKind;
+use windfall_numerics::unit::quantity::{parse_as, parse_unit};
 
 /// The law that is calibrated.
 #[derive(Clone, Debug, PartialEq)]

@@ -6,10 +6,10 @@ use crate::option_value::unusable;
 use crate::toml_source::{TomlSource, parse_source, read_source};
 use serde::Deserialize;
 use std::path::Path;
-use windfall_contact::define_law::define_law;
-use windfall_contact::force_table::ForceTable;
-use windfall_contact::law_kind::{Law, LawKind};
-use windfall_contact::law_user::{UserForce, UserLawDefinition, UserParameter};
+use windfall_contact::laws::define_law::define_law;
+use windfall_contact::laws::force_table::ForceTable;
+use windfall_contact::laws::kind::{Law, LawKind};
+use windfall_contact::laws::user::{UserForce, UserLawDefinition, UserParameter};
 
 /// Ending of a card in JSON; any other is TOML.
 const JSON: &str = "json";

@@ -5,7 +5,7 @@ use crate::error::Error;
 use crate::file_campaign::{CampaignFile, ChannelFile, ChannelsFile, QuantityText};
 use crate::toml_source::{Needed, TomlSource, invalid, missing, optional_quantity, place_at};
 use toml::Spanned;
-use windfall_numerics::unit::{UnitError, parse_as, parse_unit};
+use windfall_numerics::unit::quantity::{UnitError, parse_as, parse_unit};
 use windfall_signal::kinematics::Encoder;
 use windfall_signal::recording::Quantity;
 

@@ -18,7 +18,7 @@ use toml::Spanned;
 use windfall_contact::apparent_modulus::PrincipalRadii;
 use windfall_contact::curvature::{radii_of_ellipsoid, radius_from_chord};
 use windfall_contact::expression::LawExpression;
-use windfall_numerics::unit::parse_as;
+use windfall_numerics::unit::quantity::parse_as;
 use windfall_signal::compression::{CompressionOptions, FitRange};
 
 /// A campaign of slow compressions.

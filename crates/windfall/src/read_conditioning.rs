@@ -5,7 +5,7 @@ use crate::file_campaign::{ChannelFile, ChannelsFile, QuantityText};
 use crate::toml_source::{Needed, TomlSource, choice, invalid, optional_quantity};
 use toml::Spanned;
 use windfall_signal::conditioning::{ChannelFilter, Conditioning, USUAL_ORDER};
-use windfall_signal::filter_butterworth::{Band, MAX_ORDER};
+use windfall_signal::filter::butterworth::{Band, MAX_ORDER};
 use windfall_signal::options::RateMethod;
 
 /// What is done to the channels of a campaign before they are used.

@@ -8,7 +8,7 @@ use crate::read_conditioning::{conditioning_plan, rate_plan};
 use crate::toml_source::{Needed, TomlSource, choice, invalid, optional_quantity};
 use toml::Spanned;
 use windfall_signal::ExtractOptions;
-use windfall_signal::edge_rate::CountTimes;
+use windfall_signal::encoder::edge_rate::CountTimes;
 use windfall_signal::kinematics::Encoder;
 use windfall_signal::options::RateMethod;
 use windfall_signal::trigger::{Baseline, ContactChoice, Threshold};

@@ -7,7 +7,7 @@ use crate::error::{Error, Place};
 use std::fs::File;
 use std::io::{BufRead, BufReader, Read};
 use std::path::{Path, PathBuf};
-use windfall_numerics::nearest_name::nearest_names;
+use windfall_numerics::unit::nearest_name::nearest_names;
 
 /// Byte order mark of UTF-8.
 const MARK: &[u8] = b"\xef\xbb\xbf";

@@ -11,8 +11,8 @@ use crate::workflow_new::is_template_file;
 use std::path::{Path, PathBuf};
 use toml::Spanned;
 use windfall_formats::open::OpenOptions;
-use windfall_formats::text_options::TextOptions;
-use windfall_numerics::unit::parse_unit;
+use windfall_formats::text::options::TextOptions;
+use windfall_numerics::unit::quantity::parse_unit;
 
 /// Whether this windfall knows the shape of the file.
 ///

@@ -8,11 +8,11 @@ use crate::toml_source::{Needed, TomlSource, choice, invalid, missing};
 use toml::Spanned;
 use windfall_contact::expression::{LawExpression, parse_law_among};
 use windfall_contact::law::EndRule;
-use windfall_contact::law_kind::LawKind;
-use windfall_identify::interval::{IntervalMethod, IntervalOptions};
-use windfall_identify::problem::{FitOptions, NoiseModel, Quantities, Treatment, Weighting};
+use windfall_contact::laws::kind::LawKind;
+use windfall_identify::fit::interval::{IntervalMethod, IntervalOptions};
+use windfall_identify::fit::problem::{FitOptions, NoiseModel, Quantities, Treatment, Weighting};
 use windfall_identify::samples::Quantity;
-use windfall_numerics::unit::parse_as;
+use windfall_numerics::unit::quantity::parse_as;
 
 const TABLE: &str = "[fit]";
 

@@ -7,11 +7,11 @@ use crate::option_value::unusable;
 use crate::toml_source::{TomlSource, invalid, parse_source, read_source};
 use std::path::Path;
 use toml::Spanned;
-use windfall_contact::define_law::define_law;
-use windfall_contact::force_table::ForceTable;
-use windfall_contact::law_kind::LawKind;
-use windfall_contact::law_user::{UserForce, UserLawDefinition, UserParameter};
-use windfall_numerics::unit::parse_as;
+use windfall_contact::laws::define_law::define_law;
+use windfall_contact::laws::force_table::ForceTable;
+use windfall_contact::laws::kind::LawKind;
+use windfall_contact::laws::user::{UserForce, UserLawDefinition, UserParameter};
+use windfall_numerics::unit::quantity::parse_as;
 
 /// The laws of `--laws FILE`; none without a file.
 ///

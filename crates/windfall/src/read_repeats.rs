@@ -17,9 +17,9 @@ use crate::toml_source::{
 use std::path::Path;
 use toml::Spanned;
 use windfall_signal::conditioning::Conditioning;
-use windfall_signal::repeat_align::{AlignOptions, Alignment};
-use windfall_signal::repeat_permutation::SignFlipOptions;
-use windfall_signal::repeat_threshold::Family;
+use windfall_signal::repeat::align::{AlignOptions, Alignment};
+use windfall_signal::repeat::permutation::SignFlipOptions;
+use windfall_signal::repeat::threshold::Family;
 
 /// A campaign of impacts repeated on one spot.
 #[derive(Clone, Debug)]

@@ -7,7 +7,7 @@ use crate::toml_source::optional_quantity;
 use crate::toml_source::{Needed, TomlSource, choice, invalid, missing, needed_quantity};
 use std::ops::Range;
 use toml::Spanned;
-use windfall_identify::rig::Pendulum;
+use windfall_identify::rig::kind::Pendulum;
 
 /// Standard acceleration of gravity, where the campaign gives none; m/s².
 ///

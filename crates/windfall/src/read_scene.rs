@@ -25,8 +25,8 @@ use toml::Spanned;
 use windfall_scene::annuli::MOST_ANNULI;
 use windfall_scene::interaction::{Interaction, mindlin_ratio};
 use windfall_scene::scene::{Air, Scene, Sink};
+use windfall_scene::shape::wall::Wall;
 use windfall_scene::vector::{Vector, scaled};
-use windfall_scene::wall::Wall;
 
 /// A scene as its file says, ready to run but for an automatic time step.
 #[derive(Clone, Debug)]

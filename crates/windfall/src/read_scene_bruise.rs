@@ -9,7 +9,7 @@ use crate::toml_source::{
 };
 use std::ops::Range;
 use toml::Spanned;
-use windfall_scene::bruise::{BruiseModel, Predictor, SameSpot, VolumeLaw};
+use windfall_scene::bruise::damage::{BruiseModel, Predictor, SameSpot, VolumeLaw};
 
 /// How contacts bruise, and what counts as bruised.
 #[derive(Clone, Debug)]

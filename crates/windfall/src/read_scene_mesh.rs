@@ -7,10 +7,10 @@ use crate::read_stl::read_stl;
 use crate::scene_key::{needed, short};
 use crate::toml_source::{TomlSource, invalid, missing, needed_quantity};
 use toml::Spanned;
-use windfall_numerics::unit::parse_as;
-use windfall_scene::mesh::{Flaws, bounds, welded};
+use windfall_numerics::unit::quantity::parse_as;
+use windfall_scene::shape::mesh::{Flaws, bounds, welded};
+use windfall_scene::shape::wall::Shape;
 use windfall_scene::vector::{Vector, add, length, scaled, subtract, turn_about, turned, unit};
-use windfall_scene::wall::Shape;
 
 const TABLE: &str = "[[walls]]";
 

@@ -10,9 +10,9 @@ use crate::toml_source::{TomlSource, parse_source, read_source, suggestion};
 use serde::Deserialize;
 use std::collections::BTreeMap;
 use std::path::Path;
-use windfall_numerics::unit::{parse_as, parse_unit};
-use windfall_scene::bruise_regression::{Regression, Response};
-use windfall_statistics::formula_syntax::{Kind, Node, Operator, parse, spelling};
+use windfall_numerics::unit::quantity::{parse_as, parse_unit};
+use windfall_scene::bruise::regression::{Regression, Response};
+use windfall_statistics::model::formula_syntax::{Kind, Node, Operator, parse, spelling};
 
 /// What a contact tells; the order in which a contact's values are listed.
 pub const CONTACT_QUANTITIES: [(&str, &str); 9] = [

@@ -8,8 +8,8 @@ use crate::scene_key::{material, needed};
 use crate::toml_source::{TomlSource, invalid, missing, needed_quantity, suggestion};
 use std::ops::Range;
 use toml::Spanned;
+use windfall_scene::shape::wall::{Motion, Plate, Shape, Turning, Vibration, Wall};
 use windfall_scene::vector::{Vector, cross, length, unit};
-use windfall_scene::wall::{Motion, Plate, Shape, Turning, Vibration, Wall};
 
 /// A wall; what is to be known of it is added to the findings.
 ///

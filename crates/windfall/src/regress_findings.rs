@@ -3,10 +3,10 @@
 use crate::model_outcome::StepOutcome;
 use crate::outcome::FindingOutcome;
 use crate::text_number::plain;
-use windfall_statistics::diagnostics::{Inflation, RowInfluence};
-use windfall_statistics::linear_model::LinearFit;
-use windfall_statistics::model_frame::ModelFrame;
-use windfall_statistics::reduced::Aliased;
+use windfall_statistics::model::linear_model::LinearFit;
+use windfall_statistics::model::model_frame::ModelFrame;
+use windfall_statistics::model::reduced::Aliased;
+use windfall_statistics::residuals::diagnostics::{Inflation, RowInfluence};
 
 /// Variance inflation that is worth a word (Montgomery, Peck & Vining,
 /// Introduction to Linear Regression Analysis, 5th ed., §9.4.2).

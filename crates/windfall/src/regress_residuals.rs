@@ -7,13 +7,15 @@ use crate::text_number::plain;
 use crate::text_statistic::{number, probability};
 
 use serde::Serialize;
-use windfall_statistics::box_cox::{BoxCoxOptions, box_cox};
-use windfall_statistics::goodness_index::{CHI_SQUARED_CAVEAT, goodness_index};
-use windfall_statistics::heteroscedasticity::koenker;
-use windfall_statistics::linear_model::LinearFit;
-use windfall_statistics::model_frame::ModelRows;
-use windfall_statistics::normality::{SHAPIRO_WILK_LARGEST, anderson_darling, shapiro_wilk};
-use windfall_statistics::residual_order::durbin_watson;
+use windfall_statistics::compare::goodness_index::{CHI_SQUARED_CAVEAT, goodness_index};
+use windfall_statistics::model::linear_model::LinearFit;
+use windfall_statistics::model::model_frame::ModelRows;
+use windfall_statistics::residuals::box_cox::{BoxCoxOptions, box_cox};
+use windfall_statistics::residuals::heteroscedasticity::koenker;
+use windfall_statistics::residuals::normality::{
+    SHAPIRO_WILK_LARGEST, anderson_darling, shapiro_wilk,
+};
+use windfall_statistics::residuals::order::durbin_watson;
 
 /// Beyond this many rows the tests take long, and find what does not matter.
 const MOST_ROWS: usize = 20_000;

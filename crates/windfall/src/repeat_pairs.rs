@@ -2,8 +2,8 @@
 
 use crate::evaluate_repeats::{RepeatImpact, series_of};
 use crate::outcome::FailureOutcome;
-use windfall_signal::repeat_align::{AlignOptions, AlignedPair, align_pair};
-use windfall_signal::repeat_criterion::Difference;
+use windfall_signal::repeat::align::{AlignOptions, AlignedPair, align_pair};
+use windfall_signal::repeat::criterion::Difference;
 
 /// Energies this close are one level; 1.
 const SAME_ENERGY: f64 = 0.01;

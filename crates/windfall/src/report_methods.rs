@@ -5,10 +5,10 @@ use crate::outcome::CampaignOutcome;
 use crate::text_number::plain;
 use windfall_contact::expression::LawExpression;
 use windfall_contact::law::EndRule;
-use windfall_identify::interval::IntervalMethod;
-use windfall_identify::problem::{FitOptions, NoiseModel, Weighting};
+use windfall_identify::fit::interval::IntervalMethod;
+use windfall_identify::fit::problem::{FitOptions, NoiseModel, Weighting};
 use windfall_signal::conditioning::{ChannelFilter, Conditioning};
-use windfall_signal::filter_butterworth::Band;
+use windfall_signal::filter::butterworth::Band;
 use windfall_signal::options::RateMethod;
 use windfall_signal::trigger::{Baseline, Orientation, Threshold};
 

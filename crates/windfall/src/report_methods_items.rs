@@ -6,9 +6,9 @@ use crate::read_compression::CompressionCampaign;
 use crate::read_drop::{DropCampaign, PlatePlan};
 use crate::read_repeats::{Margin, RepeatsCampaign};
 use crate::report_methods::{filters_text, laws_text, threshold_text};
-use windfall_signal::bounce_train::StaticLevel;
+use windfall_signal::bounce::train::StaticLevel;
 use windfall_signal::compression::FitRange;
-use windfall_signal::repeat_align::Alignment;
+use windfall_signal::repeat::align::Alignment;
 
 /// Intervals of whatever was measured once per recording.
 const SPREAD: &str = "Values are given ± their standard uncertainty; means ± the standard deviation between \

@@ -7,8 +7,8 @@ use crate::option_value::{at_least_zero, chosen, positive, unusable};
 use crate::read_fit::ENDS;
 use std::path::PathBuf;
 use windfall_contact::law::EndRule;
-use windfall_contact::law_kind::Law;
-use windfall_identify::drop_rig::{DropRig, Plate};
+use windfall_contact::laws::kind::Law;
+use windfall_identify::drop::rig::{DropRig, Plate};
 
 /// A fruit that falls on a plate; texts with units.
 #[derive(Clone, Debug)]

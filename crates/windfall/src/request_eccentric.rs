@@ -2,8 +2,8 @@
 
 use crate::error::Error;
 use crate::option_value::{at_least_zero, positive, quantity, unusable};
-use windfall_identify::eccentric_body::EccentricBody;
-use windfall_identify::eccentric_shape::Shape;
+use windfall_identify::eccentric::body::EccentricBody;
+use windfall_identify::eccentric::shape::Shape;
 
 /// A body whose contact is not below its centre of mass; texts with units.
 #[derive(Clone, Debug)]

@@ -9,8 +9,8 @@ use crate::read_rig::STANDARD_GRAVITY;
 use crate::workflow_simulate::{SimulatedImpact, SimulatedMotion, simulate_motion, simulate_one};
 use std::path::PathBuf;
 use windfall_contact::law::EndRule;
-use windfall_contact::law_kind::Law;
-use windfall_identify::rig::{Carriage, Pendulum, Rig};
+use windfall_contact::laws::kind::Law;
+use windfall_identify::rig::kind::{Carriage, Pendulum, Rig};
 
 /// One impact, whatever the rig; SI.
 #[derive(Clone, Debug, PartialEq)]

@@ -14,8 +14,8 @@ use crate::read_laws::laws_of_option;
 use crate::toml_source::suggestion;
 use std::path::PathBuf;
 use windfall_contact::expression::{LawExpression, parse_law_among};
-use windfall_contact::law_kind::LawKind;
-use windfall_identify::problem::FitOptions;
+use windfall_contact::laws::kind::LawKind;
+use windfall_identify::fit::problem::FitOptions;
 
 /// What `fit` is asked for beyond what the campaign says.
 #[derive(Clone, Debug, Default)]

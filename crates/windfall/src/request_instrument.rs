@@ -5,7 +5,7 @@ use crate::option_value::{at_least_zero, chosen, positive, quantity, unusable};
 use crate::read_channels::{KINDS, Kind};
 use crate::request_event::Event;
 use crate::toml_source::suggestion;
-use windfall_identify::rig::Rig;
+use windfall_identify::rig::kind::Rig;
 use windfall_signal::instrument::{
     Converter, EncoderOutput, EncoderSensor, InitialPhase, Instrument, Sensor, pendulum_instrument,
 };

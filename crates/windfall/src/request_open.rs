@@ -5,9 +5,9 @@ use crate::error::Error;
 use crate::option_value::{chosen, unusable};
 use windfall_formats::contents::Format;
 use windfall_formats::open::OpenOptions;
-use windfall_formats::text_encoding::Encoding;
-use windfall_formats::text_options::TextOptions;
-use windfall_formats::text_rows::Separator;
+use windfall_formats::text::encoding::Encoding;
+use windfall_formats::text::options::TextOptions;
+use windfall_formats::text::rows::Separator;
 
 /// Formats by name.
 pub const FORMATS: [(&str, Format); 8] = [

@@ -7,8 +7,8 @@ use crate::simulate_campaign::{Batch, SimulatedCampaign, Weighed, write_simulate
 use crate::toml_source::suggestion;
 use std::path::Path;
 use windfall_contact::expression::LawExpression;
-use windfall_contact::law_kind::Law;
-use windfall_identify::rig::Rig;
+use windfall_contact::laws::kind::Law;
+use windfall_identify::rig::kind::Rig;
 use windfall_signal::instrument::Instrument;
 
 /// Specimens of a simulated campaign.

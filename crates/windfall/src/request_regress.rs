@@ -3,9 +3,9 @@
 use std::path::PathBuf;
 
 pub use crate::mixed_choice::{FreedomMethod, MixedChoice};
-pub use windfall_statistics::anova::AnovaType;
-pub use windfall_statistics::contrast::Contrast;
-pub use windfall_statistics::selection::{Criterion, Direction, SelectionOptions};
+pub use windfall_statistics::model::anova::AnovaType;
+pub use windfall_statistics::model::contrast::Contrast;
+pub use windfall_statistics::model::selection::{Criterion, Direction, SelectionOptions};
 
 /// What `windfall regress` is asked.
 #[derive(Clone, Debug)]

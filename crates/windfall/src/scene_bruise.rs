@@ -7,7 +7,7 @@ use serde::Serialize;
 use std::collections::BTreeMap;
 use std::io::{Read, Result as IoResult, Write};
 use windfall_scene::binary::{Binary, no_value};
-use windfall_scene::bruise::{Blow, Bruise};
+use windfall_scene::bruise::damage::{Blow, Bruise};
 use windfall_scene::draws::{normal_of, normals};
 use windfall_scene::event::{Event, Partner};
 use windfall_scene::scene::{Fruit, Scene};

@@ -4,7 +4,7 @@ use crate::error::Error;
 use crate::law_card::LawCard;
 use crate::option_value::unusable;
 use std::path::Path;
-use windfall_contact::law_kind::Law;
+use windfall_contact::laws::kind::Law;
 use windfall_scene::interaction::Spread;
 
 /// The spread between fruit that a card tells; none where it tells none.

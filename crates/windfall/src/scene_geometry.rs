@@ -2,10 +2,10 @@
 
 use serde::{Deserialize, Serialize};
 use windfall_scene::scene::Scene;
+use windfall_scene::shape::wall::{Shape, Wall};
 use windfall_scene::vector::{
     Vector, add, cross, dot, length, plus_scaled, scaled, subtract, unit,
 };
-use windfall_scene::wall::{Shape, Wall};
 
 /// Faces around a cylinder.
 const SIDES: usize = 48;
@@ -235,7 +235,7 @@ mod tests {
         // A prism of 48 sides: its girth is 2 n r sin(π/n).
         let girth = 48.0 * (std::f64::consts::PI / 48.0).sin();
         assert!((area(&vertices, &faces, corners) - girth).abs() < 1e-12);
-        let plate = windfall_scene::wall::Plate {
+        let plate = windfall_scene::shape::wall::Plate {
             corner: [0.0; 3],
             edges: [[2.0, 0.0, 0.0], [0.5, 3.0, 0.0]],
         };

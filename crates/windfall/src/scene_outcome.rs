@@ -15,8 +15,8 @@ use windfall_scene::binary;
 use windfall_scene::binary::{Binary, no_value};
 use windfall_scene::energy::Energy;
 use windfall_scene::event::{Event, Partner};
+use windfall_scene::motion::simulation::Leaving;
 use windfall_scene::scene::Scene;
-use windfall_scene::simulation::Leaving;
 
 /// What came of a scene; SI throughout.
 #[derive(Clone, Debug, Serialize)]

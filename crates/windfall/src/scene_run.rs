@@ -17,7 +17,7 @@ use std::path::{Path, PathBuf};
 use windfall_scene::binary::Binary;
 use windfall_scene::energy::Energy;
 use windfall_scene::event::Event;
-use windfall_scene::simulation::Simulation;
+use windfall_scene::motion::simulation::Simulation;
 use windfall_scene::state::State;
 
 /// What is to be done where a run was stopped.

@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 use windfall_contact::law::EndRule;
-use windfall_identify::simulate::simulate_impact;
+use windfall_identify::rig::simulate::simulate_impact;
 use windfall_scene::event::{Event, Partner};
 use windfall_scene::interaction::{Draws, Interaction};
 use windfall_scene::scene::Scene;
@@ -75,9 +75,9 @@ fn durations_of(scene: &Scene, pair: (usize, usize), own: &Interaction) -> Vec<f
 #[cfg(test)]
 mod tests {
     use super::*;
-    use windfall_contact::law_kind::LawKind;
+    use windfall_contact::laws::kind::LawKind;
     use windfall_scene::scene::Fruit;
-    use windfall_scene::wall::{Motion, Shape, Wall};
+    use windfall_scene::shape::wall::{Motion, Shape, Wall};
 
     /// A spring and a mass: half a period, π √(m/k), at any speed.
     #[test]

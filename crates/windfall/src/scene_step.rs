@@ -3,7 +3,7 @@
 use crate::error::Error;
 use crate::read_scene::ScenePlan;
 use crate::scene_key::short;
-use windfall_scene::time_step::{Impact, StepError};
+use windfall_scene::motion::time_step::{Impact, StepError};
 
 /// Error of peak force or absorbed energy above which a step is refused; 1.
 const TOO_LARGE: f64 = 0.1;

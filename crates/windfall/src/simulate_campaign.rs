@@ -8,11 +8,11 @@ use crate::write_simulated::{SimulatedFile, campaign_text, recording_text};
 use std::path::{Path, PathBuf};
 use windfall_contact::expression::LawExpression;
 use windfall_contact::law::EndRule;
-use windfall_contact::law_kind::Law;
-use windfall_identify::rig::Rig;
-use windfall_identify::simulate::{simulate_rig, trajectory};
+use windfall_contact::laws::kind::Law;
+use windfall_identify::rig::kind::Rig;
+use windfall_identify::rig::simulate::{simulate_rig, trajectory};
 use windfall_signal::instrument::{Instrument, Trajectory, record};
-use windfall_signal::noise_gaussian::{NoiseSource, noise_source, normal, uniform};
+use windfall_signal::noise::gaussian::{NoiseSource, noise_source, normal, uniform};
 
 /// Recorded before first touch and after separation; s.
 const LEAD: f64 = 3e-3;

@@ -7,8 +7,8 @@ use crate::option_value::{at_least_zero, positive, unusable};
 use crate::workflow_new::{create_directory, write_file};
 use crate::write_csv::csv_text;
 use std::path::{Path, PathBuf};
-use windfall_contact::law_kind::Law;
-use windfall_signal::noise_gaussian::{noise_source, normal};
+use windfall_contact::laws::kind::Law;
+use windfall_signal::noise::gaussian::{noise_source, normal};
 
 /// What is simulated; texts with units.
 #[derive(Clone, Debug)]

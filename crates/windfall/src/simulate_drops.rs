@@ -13,11 +13,11 @@ use crate::write_simulated::recording_text;
 use crate::write_user_laws::law_table;
 use std::path::{Path, PathBuf};
 use windfall_contact::expression::LawExpression;
-use windfall_contact::law_kind::Law;
-use windfall_identify::drop_rig::DropRig;
-use windfall_identify::drop_simulate::{DropSummary, drop_trajectory, simulate_drop};
+use windfall_contact::laws::kind::Law;
+use windfall_identify::drop::rig::DropRig;
+use windfall_identify::drop::simulate::{DropSummary, drop_trajectory, simulate_drop};
 use windfall_signal::instrument::{Converter, Instrument, Sensor, Trajectory, record};
-use windfall_signal::noise_gaussian::{NoiseSource, noise_source, normal, uniform};
+use windfall_signal::noise::gaussian::{NoiseSource, noise_source, normal, uniform};
 
 /// Stream of the seed that fruit are drawn from; the instrument uses others.
 const FRUIT_STREAM: u64 = 100;

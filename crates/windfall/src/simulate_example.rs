@@ -5,8 +5,8 @@ use crate::read_rig::STANDARD_GRAVITY;
 use crate::simulate_campaign::{Batch, SimulatedCampaign, Weighed, write_simulated_campaign};
 use std::path::Path;
 use windfall_contact::law::EndRule;
-use windfall_contact::law_kind::LawKind;
-use windfall_identify::rig::{Pendulum, Rig};
+use windfall_contact::laws::kind::LawKind;
+use windfall_identify::rig::kind::{Pendulum, Rig};
 use windfall_signal::instrument::pendulum_instrument;
 
 /// Impacts of each material.

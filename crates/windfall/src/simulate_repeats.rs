@@ -9,11 +9,11 @@ use crate::write_csv::csv_text;
 use std::f64::consts::PI;
 use std::path::{Path, PathBuf};
 use windfall_contact::law::EndRule;
-use windfall_contact::law_kind::{Law, LawKind};
-use windfall_contact::law_thornton::Thornton;
-use windfall_identify::rig::{Carriage, Rig};
-use windfall_identify::simulate::{simulate_rig, trajectory};
-use windfall_signal::noise_gaussian::{NoiseSource, noise_source, normal, uniform};
+use windfall_contact::laws::kind::{Law, LawKind};
+use windfall_contact::laws::thornton::Thornton;
+use windfall_identify::rig::kind::{Carriage, Rig};
+use windfall_identify::rig::simulate::{simulate_rig, trajectory};
+use windfall_signal::noise::gaussian::{NoiseSource, noise_source, normal, uniform};
 
 /// Effective modulus of tissue and impactor; Pa.
 const MODULUS: f64 = 4e6;

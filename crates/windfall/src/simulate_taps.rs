@@ -8,7 +8,7 @@ use crate::write_csv::csv_text;
 use crate::write_wav::wav_bytes;
 use std::f64::consts::{PI, TAU};
 use std::path::{Path, PathBuf};
-use windfall_signal::noise_gaussian::{NoiseSource, noise_source, normal, uniform};
+use windfall_signal::noise::gaussian::{NoiseSource, noise_source, normal, uniform};
 
 /// What is simulated; texts with units.
 #[derive(Clone, Debug)]

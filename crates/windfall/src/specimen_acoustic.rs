@@ -9,8 +9,10 @@ use crate::named::Named;
 use crate::outcome::FindingOutcome;
 use crate::read_acoustic::{AcousticCampaign, Common, density_of};
 use crate::text_number::plain;
-use windfall_signal::acoustic_stiffness::{acoustic_stiffness, acoustic_stiffness_with_density};
-use windfall_signal::first_mode::{
+use windfall_signal::tap::acoustic_stiffness::{
+    acoustic_stiffness, acoustic_stiffness_with_density,
+};
+use windfall_signal::tap::first_mode::{
     Decision, Persistent, Rejection, TapModes, first_mode, persistent, shared_frequencies,
 };
 use windfall_signal::uncertain::Uncertain;

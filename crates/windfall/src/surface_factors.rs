@@ -7,7 +7,7 @@ use crate::outcome::FindingOutcome;
 use crate::read_data::Data;
 use crate::regress_findings::{finding, lines_text};
 use crate::text_number::plain;
-use windfall_statistics::surface_coding::{
+use windfall_statistics::surface::coding::{
     CodedFactors, FactorCoding, Recognised, code_by_levels, code_with,
 };
 

@@ -4,9 +4,9 @@
 use crate::error::Error;
 use crate::option_value::unusable;
 use serde::Serialize;
-use windfall_statistics::desirability::{Goal, desirability, overall};
-use windfall_statistics::surface::Surface;
-use windfall_statistics::surface_coding::CodedFactors;
+use windfall_statistics::surface::analysis::Surface;
+use windfall_statistics::surface::coding::CodedFactors;
+use windfall_statistics::surface::desirability::{Goal, desirability, overall};
 
 /// A response with its surface.
 #[derive(Clone, Debug)]
@@ -261,9 +261,9 @@ pub fn pairs_of_factors(fitted: &FittedSurfaces) -> Vec<(usize, usize)> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use windfall_statistics::surface::fit_surface;
-    use windfall_statistics::surface_coding::{FactorCoding, Recognised};
-    use windfall_statistics::surface_terms::surface_terms;
+    use windfall_statistics::surface::analysis::fit_surface;
+    use windfall_statistics::surface::coding::{FactorCoding, Recognised};
+    use windfall_statistics::surface::terms::surface_terms;
 
     fn fitted(
         factors: Vec<FactorCoding>,

@@ -2,7 +2,7 @@
 
 use crate::error::Error;
 use crate::option_value::unusable;
-use windfall_statistics::desirability::{Goal, Wanted};
+use windfall_statistics::surface::desirability::{Goal, Wanted};
 
 /// `RESPONSE = target 11.3, low 7.6, high 18.3, weight 1, importance 3` → the
 /// response and its goal.

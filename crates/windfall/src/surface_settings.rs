@@ -6,11 +6,11 @@ use crate::outcome::FindingOutcome;
 use crate::regress_findings::finding;
 use crate::surface_outcome::{FamilyOutcome, GridOutcome, PredictedResponse, SettingOutcome};
 use crate::text_number::plain;
-use windfall_statistics::desirability::{
+use windfall_statistics::surface::analysis::Surface;
+use windfall_statistics::surface::coding::CodedFactors;
+use windfall_statistics::surface::desirability::{
     Goal, Optimum, Region, best_settings, desirability, equally_good,
 };
-use windfall_statistics::surface::Surface;
-use windfall_statistics::surface_coding::CodedFactors;
 
 /// Most points of a grid along a factor.
 const MOST_POINTS: usize = 1001;

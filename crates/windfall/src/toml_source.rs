@@ -5,8 +5,8 @@ use crate::file_campaign::QuantityText;
 use std::ops::Range;
 use std::path::{Path, PathBuf};
 use toml::Spanned;
-use windfall_numerics::nearest_name::nearest_names;
-use windfall_numerics::unit::parse_as;
+use windfall_numerics::unit::nearest_name::nearest_names;
+use windfall_numerics::unit::quantity::parse_as;
 
 /// A TOML file in memory.
 pub struct TomlSource {

@@ -40,7 +40,7 @@ const SHOWN_OF_SPECIMENS: [ShownValue; 4] = [
     shown(
         "acoustic_stiffness",
         "stiffness (10^6 Hz^2 g^(2/3))",
-        windfall_signal::acoustic_stiffness::MEGAHERTZ_GRAM,
+        windfall_signal::tap::acoustic_stiffness::MEGAHERTZ_GRAM,
     ),
     shown("acoustic_stiffness_with_density", "stiffness (MPa)", 1e-6),
     shown("quality", "Q", 1.0),

@@ -8,7 +8,7 @@ use crate::read_data::read_data;
 use crate::regress_findings::{finding, lines_text};
 use serde::Serialize;
 use std::path::PathBuf;
-use windfall_statistics::goodness_index::{CHI_SQUARED_CAVEAT, goodness_index};
+use windfall_statistics::compare::goodness_index::{CHI_SQUARED_CAVEAT, goodness_index};
 
 /// What is asked.
 #[derive(Clone, Debug, PartialEq, Eq)]

@@ -7,8 +7,8 @@ use crate::text_number::plain;
 use crate::write_csv::csv_text;
 use serde::Serialize;
 use std::path::Path;
-use windfall_numerics::unit::parse_as;
-use windfall_scene::bruise::{cap_volume, cap_volume_with_bulge, half_ellipsoid_volume};
+use windfall_numerics::unit::quantity::parse_as;
+use windfall_scene::bruise::damage::{cap_volume, cap_volume_with_bulge, half_ellipsoid_volume};
 use windfall_statistics::table::{Cells, Table};
 
 /// Volumes of one bruise; m³.

@@ -34,7 +34,7 @@ use crate::workflow_drop::measured_drops;
 use crate::write_calibrate_tables::write_calibrate_tables;
 use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
-use windfall_identify::drop_feature_problem::FeatureProblem;
+use windfall_identify::drop::feature_problem::FeatureProblem;
 
 /// What a calibration is asked.
 #[derive(Clone, Debug, Default)]

@@ -7,7 +7,7 @@ use crate::write_table::table_text;
 use serde::Serialize;
 use std::fmt::Write;
 use std::path::Path;
-use windfall_contact::law_kind::LawKind;
+use windfall_contact::laws::kind::LawKind;
 
 /// A force law, as JSON shows it.
 #[derive(Clone, Debug, PartialEq, Serialize)]

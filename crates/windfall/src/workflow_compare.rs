@@ -13,11 +13,11 @@ use crate::regress_findings::finding;
 use crate::workflow_summary::check_confidence;
 use std::path::PathBuf;
 use windfall_statistics::accurate_sum::mean;
-use windfall_statistics::compact_letters::compact_letters;
-use windfall_statistics::equal_variance::{bartlett, brown_forsythe, levene};
-use windfall_statistics::group_summary::{Group, Groups, split_groups};
-use windfall_statistics::normality::shapiro_wilk;
-use windfall_statistics::one_way_anova::{FTest, one_way_anova, welch_anova};
+use windfall_statistics::compare::compact_letters::compact_letters;
+use windfall_statistics::compare::equal_variance::{bartlett, brown_forsythe, levene};
+use windfall_statistics::compare::group_summary::{Group, Groups, split_groups};
+use windfall_statistics::compare::one_way_anova::{FTest, one_way_anova, welch_anova};
+use windfall_statistics::residuals::normality::shapiro_wilk;
 
 /// What `windfall compare` is asked.
 #[derive(Clone, Debug, PartialEq)]

@@ -19,12 +19,12 @@ use crate::request_fit::{FitRequest, apply_request};
 use std::collections::BTreeMap;
 use std::path::Path;
 use windfall_contact::expression::parse_law;
-use windfall_identify::error::Error as IdentifyError;
-use windfall_identify::law_ranking::{
+use windfall_identify::compare::ranking::{
     ImpactFit, LawEvidence, LawRanking, LeveledImpact, Verdict, fits_of_impact, rank_laws,
     velocity_levels,
 };
-use windfall_identify::problem::LawProblem;
+use windfall_identify::error::Error as IdentifyError;
+use windfall_identify::fit::problem::LawProblem;
 
 /// Laws that are compared when none are named: one of each form.
 pub const COMPARED: [&str; 6] = [

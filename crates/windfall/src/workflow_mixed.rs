@@ -7,26 +7,26 @@ use crate::read_data::{Data, read_data};
 use crate::regress_findings::{aliased_findings, finding, left_out_finding};
 use crate::request_regress::{FreedomMethod, RegressRequest};
 use serde::Serialize;
-use windfall_statistics::contrast::Contrast;
 use windfall_statistics::error::Error as StatisticsError;
-use windfall_statistics::formula::Formula;
-use windfall_statistics::formula_syntax::spelling;
-use windfall_statistics::mixed_fit::{MixedFit, MixedMethod, MixedOptions, fit_mixed};
-use windfall_statistics::mixed_inference::{
+use windfall_statistics::mixed::fit::{MixedFit, MixedMethod, MixedOptions, fit_mixed};
+use windfall_statistics::mixed::inference::{
     CoefficientTest, FTest, VarianceUncertainty, coefficient_tests, f_test, picking_contrast,
     variance_uncertainty,
 };
-use windfall_statistics::mixed_kenward_roger::{
+use windfall_statistics::mixed::kenward_roger::{
     KenwardRoger, kenward_roger, kenward_roger_f, kenward_roger_tests,
 };
-use windfall_statistics::mixed_predict::{NewRows, predict_mixed};
-use windfall_statistics::mixed_profile::profile_variances;
-use windfall_statistics::mixed_summary::variance_shares;
-use windfall_statistics::model_frame::{
+use windfall_statistics::mixed::predict::{NewRows, predict_mixed};
+use windfall_statistics::mixed::profile::profile_variances;
+use windfall_statistics::mixed::summary::variance_shares;
+use windfall_statistics::model::contrast::Contrast;
+use windfall_statistics::model::formula::Formula;
+use windfall_statistics::model::formula_syntax::spelling;
+use windfall_statistics::model::model_frame::{
     ModelRows, chosen_rows, complete_rows, model_rows, prediction_rows,
 };
-use windfall_statistics::random_terms::{FramedTerm, new_terms, random_terms};
-use windfall_statistics::reduced::{Aliased, reduce};
+use windfall_statistics::model::random_terms::{FramedTerm, new_terms, random_terms};
+use windfall_statistics::model::reduced::{Aliased, reduce};
 
 /// A standard deviation between groups, or the correlation of two effects.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -245,7 +245,7 @@ pub fn regress_mixed(
     })
 }
 
-fn mixed(error: windfall_statistics::mixed_error::MixedError) -> Error {
+fn mixed(error: windfall_statistics::mixed::error::MixedError) -> Error {
     Error::Statistics(StatisticsError::Mixed(error))
 }
 
@@ -361,7 +361,7 @@ fn variances(
     fit: &MixedFit,
     confidence: f64,
 ) -> Result<(Vec<VarianceOutcome>, Vec<FindingOutcome>), Error> {
-    use windfall_statistics::mixed_constraint::VarianceParameter;
+    use windfall_statistics::mixed::constraint::VarianceParameter;
     let profiles = profile_variances(fit, fit.method, confidence).map_err(mixed)?;
     let shown = profiles.intervals.iter().map(|interval| {
         let (group, kind, of, value) = match &interval.parameter {

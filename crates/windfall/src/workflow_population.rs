@@ -21,16 +21,18 @@ use rayon::prelude::*;
 use std::cell::Cell;
 use std::path::PathBuf;
 use windfall_contact::expression::LawExpression;
-use windfall_identify::interval::{Drawing, IntervalOptions};
-use windfall_identify::population::{Covariate, PopulationData, PopulationFit, PopulationOptions};
-use windfall_identify::population_finding::PopulationFinding;
-use windfall_identify::population_fit::fit_population;
-use windfall_identify::population_likelihood::{
+use windfall_identify::fit::interval::{Drawing, IntervalOptions};
+use windfall_identify::fit::problem::LawProblem;
+use windfall_identify::population::finding::PopulationFinding;
+use windfall_identify::population::fit::fit_population;
+use windfall_identify::population::likelihood::{
     DRAWN_REACH, ImpactLikelihood, NORMAL_REACH, impact_likelihood,
 };
-use windfall_identify::population_posterior::population_posterior;
-use windfall_identify::population_two_stage::two_stage;
-use windfall_identify::problem::LawProblem;
+use windfall_identify::population::model::{
+    Covariate, PopulationData, PopulationFit, PopulationOptions,
+};
+use windfall_identify::population::posterior::population_posterior;
+use windfall_identify::population::two_stage::two_stage;
 
 /// What `population` is asked for.
 #[derive(Clone, Debug, Default)]

@@ -14,17 +14,17 @@ use crate::regress_residuals::{ResidualOutcome, residual_findings, residual_test
 use crate::request_regress::{AnovaType, Contrast, Criterion, Direction, RegressRequest};
 use crate::workflow_mixed::{MixedOutcome, regress_mixed};
 use serde::Serialize;
-use windfall_statistics::anova::{anova, lack_of_fit};
-use windfall_statistics::cross_validation::cross_validate;
-use windfall_statistics::diagnostics::{
+use windfall_statistics::model::anova::{anova, lack_of_fit};
+use windfall_statistics::model::formula::{Formula, formula};
+use windfall_statistics::model::formula_syntax::spelling;
+use windfall_statistics::model::linear_model::{LinearFit, fit_reduced, predict};
+use windfall_statistics::model::model_frame::{ModelRows, model_rows, prediction_rows};
+use windfall_statistics::model::reduced::{Reduced, reduce};
+use windfall_statistics::model::selection::{Selection, select};
+use windfall_statistics::residuals::cross_validation::cross_validate;
+use windfall_statistics::residuals::diagnostics::{
     inflation, influence, robust_coefficients, robust_covariance_rows,
 };
-use windfall_statistics::formula::{Formula, formula};
-use windfall_statistics::formula_syntax::spelling;
-use windfall_statistics::linear_model::{LinearFit, fit_reduced, predict};
-use windfall_statistics::model_frame::{ModelRows, model_rows, prediction_rows};
-use windfall_statistics::reduced::{Reduced, reduce};
-use windfall_statistics::selection::{Selection, select};
 
 /// Quality of predictions of rows left out in parts.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]

@@ -22,10 +22,10 @@ use crate::reported_items::ReportedItems;
 use crate::request_fit::{FitRequest, apply_request_to_items};
 use crate::workflow_fit::STORE_FILE;
 use std::path::Path;
-use windfall_signal::repeat_align::CHANGES;
-use windfall_signal::repeat_equivalence::Verdict;
-use windfall_signal::repeat_threshold::{ProfiledValue, Threshold};
-use windfall_signal::repeat_turnbull::quantile_of;
+use windfall_signal::repeat::align::CHANGES;
+use windfall_signal::repeat::equivalence::Verdict;
+use windfall_signal::repeat::threshold::{ProfiledValue, Threshold};
+use windfall_signal::repeat::turnbull::quantile_of;
 
 const fn shown(name: &'static str, heading: &'static str, factor: f64) -> ShownValue {
     ShownValue {
@@ -337,7 +337,7 @@ fn critical(campaign: &RepeatsCampaign, compared: &Compared) -> Vec<MeasuredItem
         .map(|c| (c.energy, c.verdict))
         .collect();
     if !verdicts.is_empty() {
-        let (interval, _) = windfall_signal::repeat_interval::energy_interval(&verdicts);
+        let (interval, _) = windfall_signal::repeat::interval::energy_interval(&verdicts);
         let mut found = item("least energy with a change over fruit".to_owned(), law);
         let text = between(interval.low, interval.high);
         let mut derived = Vec::new();

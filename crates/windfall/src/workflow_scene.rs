@@ -15,12 +15,12 @@ use crate::scene_step::checked_step;
 use crate::write_file::write_whole;
 use crate::write_scene::fruit_table;
 use std::path::{Path, PathBuf};
-use windfall_scene::bruise::Bruise;
+use windfall_scene::bruise::damage::Bruise;
 use windfall_scene::energy::Energy;
+use windfall_scene::motion::time_step::Impact;
 use windfall_scene::scene::Scene;
-use windfall_scene::time_step::Impact;
+use windfall_scene::shape::wall::Shape;
 use windfall_scene::vector::{add, dot, length};
-use windfall_scene::wall::Shape;
 
 /// What may be asked for besides the file.
 #[derive(Clone, Debug, Default)]

@@ -7,10 +7,10 @@ use crate::outcome::FindingOutcome;
 use serde::Serialize;
 use windfall_contact::expression::LawExpression;
 use windfall_contact::law::EndRule;
-use windfall_contact::law_kind::Law;
+use windfall_contact::laws::kind::Law;
 use windfall_contact::restitution::nominal_restitution;
-use windfall_identify::rig::Rig;
-use windfall_identify::simulate::{ImpactSummary, Trajectory, simulate_rig, trajectory};
+use windfall_identify::rig::kind::Rig;
+use windfall_identify::rig::simulate::{ImpactSummary, Trajectory, simulate_rig, trajectory};
 
 /// What is kept of the motion before and after contact, as a part of its duration.
 const MARGIN: f64 = 0.25;

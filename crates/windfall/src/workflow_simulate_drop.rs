@@ -8,9 +8,9 @@ use crate::request_drop::{DropPlan, one_height};
 use crate::workflow_simulate::end_name;
 use serde::Serialize;
 use windfall_contact::expression::LawExpression;
-use windfall_contact::law_kind::Law;
-use windfall_identify::drop_rig::Plate;
-use windfall_identify::drop_simulate::{
+use windfall_contact::laws::kind::Law;
+use windfall_identify::drop::rig::Plate;
+use windfall_identify::drop::simulate::{
     DropImpact, DropTrajectory, drop_trajectory, simulate_drop,
 };
 

@@ -10,10 +10,10 @@ use crate::workflow_simulate_drop::{
 };
 use serde::Serialize;
 use windfall_contact::expression::LawExpression;
-use windfall_identify::eccentric_body::EccentricBody;
-use windfall_identify::eccentric_impact::EccentricImpact;
-use windfall_identify::eccentric_shape::Shape;
-use windfall_identify::eccentric_simulate::{
+use windfall_identify::eccentric::body::EccentricBody;
+use windfall_identify::eccentric::impact::EccentricImpact;
+use windfall_identify::eccentric::shape::Shape;
+use windfall_identify::eccentric::simulate::{
     EccentricTrajectory, eccentric_trajectory, simulate_eccentric_drop,
 };
 

@@ -7,7 +7,7 @@ use crate::outcome::FindingOutcome;
 use crate::read_data::{Data, read_data};
 use serde::Serialize;
 use std::path::PathBuf;
-use windfall_statistics::group_summary::split_groups;
+use windfall_statistics::compare::group_summary::split_groups;
 use windfall_statistics::table::Cells;
 
 /// What `windfall summary` is asked.

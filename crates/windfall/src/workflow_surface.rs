@@ -24,18 +24,18 @@ use crate::surface_outcome::{
 };
 use crate::surface_settings::{SettingsRequest, grid_of, held, settings};
 use std::path::PathBuf;
-use windfall_statistics::anova::{Anova, anova};
-use windfall_statistics::desirability::Goal;
-use windfall_statistics::diagnostics::{inflation, influence};
-use windfall_statistics::expression::values;
-use windfall_statistics::formula_syntax::parse;
-use windfall_statistics::surface::{
+use windfall_statistics::model::anova::{Anova, anova};
+use windfall_statistics::model::expression::values;
+use windfall_statistics::model::formula_syntax::parse;
+use windfall_statistics::residuals::diagnostics::{inflation, influence};
+use windfall_statistics::surface::analysis::{
     Shape, Surface, canonical, fit_surface, ridge, surface_lack_of_fit,
 };
-use windfall_statistics::surface_coding::CodedFactors;
-use windfall_statistics::surface_terms::{is_hierarchical, letter, monomial_name, surface_terms};
+use windfall_statistics::surface::coding::CodedFactors;
+use windfall_statistics::surface::desirability::Goal;
+use windfall_statistics::surface::terms::{is_hierarchical, letter, monomial_name, surface_terms};
 
-pub use windfall_statistics::anova::AnovaType;
+pub use windfall_statistics::model::anova::AnovaType;
 
 /// What `windfall surface` is asked.
 #[derive(Clone, Debug)]
@@ -269,7 +269,7 @@ fn keep_complete(
         }
     }
     let findings = left_out_finding(&left_out, &data.lines);
-    data.table = windfall_statistics::model_frame::chosen_rows(&data.table, &kept);
+    data.table = windfall_statistics::model::model_frame::chosen_rows(&data.table, &kept);
     data.lines = kept.iter().map(|row| data.lines[*row]).collect();
     match kept.is_empty() {
         true => Err(Error::TableWithoutRows {
@@ -399,7 +399,7 @@ fn model_of(
 fn terms_of(
     surface: &Surface,
     variance: &Anova,
-    vif: &[windfall_statistics::diagnostics::Inflation],
+    vif: &[windfall_statistics::residuals::diagnostics::Inflation],
 ) -> Vec<SurfaceTerm> {
     let names: Vec<String> = surface.factors.iter().map(|f| f.name.clone()).collect();
     let none = vec![0; names.len()];

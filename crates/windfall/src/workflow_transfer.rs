@@ -12,7 +12,7 @@ use std::path::PathBuf;
 use windfall_contact::apparent_modulus::{PressedContact, PrincipalRadii, stiffness_per_modulus};
 use windfall_contact::effective::{Elastic, effective_radius};
 use windfall_contact::expression::LawExpression;
-use windfall_contact::law_kind::Law;
+use windfall_contact::laws::kind::Law;
 use windfall_contact::transfer::{Geometry, Transferred, transfer};
 
 /// What `windfall card transfer` is asked; texts with units.

@@ -3,7 +3,7 @@
 use crate::error::Error;
 use crate::measured::{MeasuredItem, MeasuredOutcome};
 use crate::write_csv::csv_text;
-use windfall_signal::acoustic_stiffness::MEGAHERTZ_GRAM;
+use windfall_signal::tap::acoustic_stiffness::MEGAHERTZ_GRAM;
 
 /// One row per fruit.
 ///

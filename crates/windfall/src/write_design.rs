@@ -5,10 +5,10 @@ use crate::design_file::setting_text;
 use crate::text_number::plain;
 use crate::workflow_design::DesignOutcome;
 use crate::write_table::{page_tables, paragraph, table_text};
-use windfall_statistics::design::{Design, Factor};
-use windfall_statistics::design_factorial::roman;
-use windfall_statistics::design_quality::DesignQuality;
-use windfall_statistics::design_word::{Fraction, letter};
+use windfall_statistics::design::factorial::roman;
+use windfall_statistics::design::kind::{Design, Factor};
+use windfall_statistics::design::quality::DesignQuality;
+use windfall_statistics::design::word::{Fraction, letter};
 
 /// Most runs of a table on a terminal.
 const MOST_ROWS: usize = 200;

@@ -9,7 +9,7 @@ use crate::write_csv::csv_text;
 use crate::write_drop_simulation::{
     Row, column, given, impact_csv, impact_table, plate_text, rows,
 };
-use windfall_identify::eccentric_simulate::EccentricTrajectory;
+use windfall_identify::eccentric::simulate::EccentricTrajectory;
 
 fn eccentric_rows(impact: &SimulatedEccentricBounce) -> Vec<Row> {
     let mut out = rows(&impact.bounce);

@@ -14,10 +14,10 @@ use crate::write_table::page_tables;
 use std::fs::{File, TryLockError};
 use std::io::{BufWriter, Seek, SeekFrom, Write};
 use std::path::{Path, PathBuf};
-use windfall_scene::bruise::Bruise;
+use windfall_scene::bruise::damage::Bruise;
 use windfall_scene::event::{Event, Partner};
+use windfall_scene::motion::simulation::FruitState;
 use windfall_scene::scene::Scene;
-use windfall_scene::simulation::FruitState;
 
 /// Columns of events.csv.
 const EVENT_COLUMNS: &str = "fruit,partner,partner_fruit,time_s,duration_s,lasting,x_m,y_m,z_m,\

@@ -12,7 +12,7 @@ use std::fs::File;
 use std::io::{BufWriter, Seek, SeekFrom, Write};
 use std::path::{Path, PathBuf};
 use windfall_scene::event::Partner;
-use windfall_scene::simulation::Simulation;
+use windfall_scene::motion::simulation::Simulation;
 
 /// Frames as they are asked for; nothing where they are not.
 pub struct SceneRecorder(Option<FrameFile>);

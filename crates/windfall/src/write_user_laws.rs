@@ -1,8 +1,8 @@
 //! Laws of the user as `[laws.NAME]` of a campaign.toml.
 
 use std::fmt::Write;
-use windfall_contact::law_kind::LawKind;
-use windfall_contact::law_user::UserForce;
+use windfall_contact::laws::kind::LawKind;
+use windfall_contact::laws::user::UserForce;
 
 /// Bounds from here on are none.
 const NO_BOUND: f64 = 1e20;

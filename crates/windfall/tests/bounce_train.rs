@@ -11,7 +11,7 @@ mod analysis;
 
 use analysis::{LEAST_SPEED, MASS, Run, calibrate, evaluate, masses};
 use std::path::{Path, PathBuf};
-use windfall_signal::restitution::{Restitution, RestitutionMethod};
+use windfall_signal::restitution::estimate::{Restitution, RestitutionMethod};
 
 fn file() -> Option<PathBuf> {
     let workspace = Path::new(env!("CARGO_MANIFEST_DIR")).join("../..");

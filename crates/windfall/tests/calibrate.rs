@@ -11,9 +11,9 @@ use windfall::write_calibrate::{csv_of_calibration, text_of_calibration};
 use windfall_contact::effective::hertz_stiffness;
 use windfall_contact::expression::parse_law;
 use windfall_contact::law::EndRule;
-use windfall_contact::law_kind::Law;
-use windfall_identify::drop_rig::{DropRig, Plate};
-use windfall_identify::drop_simulate::simulate_drop;
+use windfall_contact::laws::kind::Law;
+use windfall_identify::drop::rig::{DropRig, Plate};
+use windfall_identify::drop::simulate::simulate_drop;
 
 const RANGES: &str = r#"ranges = { k = ["0.3 N/mm^e", "1 N/mm^e"], e = [1.5, 3.0], c = ["1e-4 N s/mm", "6e-4 N s/mm"] }"#;
 

@@ -11,7 +11,7 @@ use windfall::workflow_population::{PopulationRequest, population};
 use windfall::write_population::{csv_of_population, text_of_population};
 use windfall_contact::expression::parse_law;
 use windfall_contact::law::EndRule;
-use windfall_identify::rig::{Pendulum, Rig};
+use windfall_identify::rig::kind::{Pendulum, Rig};
 use windfall_signal::instrument::pendulum_instrument;
 
 const K: f64 = 394_931.0;

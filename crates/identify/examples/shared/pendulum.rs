@@ -4,16 +4,16 @@
 #![allow(dead_code)]
 
 use windfall_contact::law::EndRule;
-use windfall_contact::law_kind::Law;
-use windfall_identify::rig::{Pendulum, Rig};
-use windfall_identify::simulate::trajectory;
+use windfall_contact::laws::kind::Law;
+use windfall_identify::rig::kind::{Pendulum, Rig};
+use windfall_identify::rig::simulate::trajectory;
 use windfall_signal::extract::extract_impact;
 use windfall_signal::impact::Impact;
 use windfall_signal::instrument::{
     Instrument, Trajectory, calibrated, pendulum_instrument, record,
 };
 use windfall_signal::kinematics::Encoder;
-use windfall_signal::noise_gaussian::{noise_source, uniform};
+use windfall_signal::noise::gaussian::{noise_source, uniform};
 use windfall_signal::options::ExtractOptions;
 use windfall_signal::trigger::{Threshold, TriggerOptions};
 

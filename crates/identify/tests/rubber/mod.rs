@@ -6,10 +6,10 @@
 
 use windfall_contact::expression::parse_law;
 use windfall_contact::law::EndRule;
-use windfall_identify::fit::{Estimate, fit_impact};
-use windfall_identify::problem::{FitOptions, LawProblem};
-use windfall_identify::rig::{Pendulum, Rig};
-use windfall_identify::simulate::trajectory;
+use windfall_identify::fit::problem::{FitOptions, LawProblem};
+use windfall_identify::fit::result::{Estimate, fit_impact};
+use windfall_identify::rig::kind::{Pendulum, Rig};
+use windfall_identify::rig::simulate::trajectory;
 use windfall_signal::extract::extract_impact;
 use windfall_signal::impact::Impact;
 use windfall_signal::instrument::{

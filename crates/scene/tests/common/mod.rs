@@ -3,11 +3,11 @@
 
 use std::collections::BTreeMap;
 use windfall_contact::expression::parse_law;
-use windfall_contact::law_kind::Law;
+use windfall_contact::laws::kind::Law;
 use windfall_scene::interaction::Interaction;
 use windfall_scene::scene::{Fruit, Scene};
+use windfall_scene::shape::wall::{Motion, Shape, Wall};
 use windfall_scene::vector::Vector;
-use windfall_scene::wall::{Motion, Shape, Wall};
 
 /// Numbers of the materials.
 pub const FRUIT: usize = 0;

@@ -4,7 +4,7 @@
 #![allow(dead_code, clippy::unwrap_used)]
 
 use std::f64::consts::PI;
-use windfall_signal::noise_gaussian::{noise_source, normal};
+use windfall_signal::noise::gaussian::{noise_source, normal};
 use windfall_signal::recording::{Channel, Quantity, Times};
 
 /// Mass, stiffness and damping; kg, N/m, N s/m.

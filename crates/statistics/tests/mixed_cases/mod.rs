@@ -3,8 +3,8 @@
 
 use nalgebra::DMatrix;
 use serde_json::Value;
-use windfall_statistics::mixed_fit::{MixedFit, MixedMethod, MixedOptions, fit_mixed};
-use windfall_statistics::mixed_term::RandomTerm;
+use windfall_statistics::mixed::fit::{MixedFit, MixedMethod, MixedOptions, fit_mixed};
+use windfall_statistics::mixed::term::RandomTerm;
 
 const TABLES: &[(&str, &str)] = &[
     ("growth", include_str!("../data/mixed_growth.csv")),

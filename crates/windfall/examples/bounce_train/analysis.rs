@@ -5,18 +5,18 @@ use std::path::Path;
 use windfall::read_csv::{column_index, read_table};
 use windfall_contact::expression::typical;
 use windfall_contact::law::EndRule;
-use windfall_contact::law_kind::LawKind;
-use windfall_identify::drop_waveform::{
+use windfall_contact::laws::kind::LawKind;
+use windfall_identify::drop::waveform::{
     DropRecord, Knowledge, WaveformFit, WaveformProblem, WaveformRig,
 };
-use windfall_identify::drop_waveform_fit::calibrate_waveform;
-use windfall_signal::bounce::find_bounces;
-use windfall_signal::bounce_train::{BounceOptions, BounceTrain, PlateRinging, StaticLevel};
+use windfall_identify::drop::waveform_fit::calibrate_waveform;
+use windfall_signal::bounce::find::find_bounces;
+use windfall_signal::bounce::train::{BounceOptions, BounceTrain, PlateRinging, StaticLevel};
 use windfall_signal::recording::{Channel, Quantity, Times};
-use windfall_signal::restitution::{
+use windfall_signal::restitution::estimate::{
     Restitution, RestitutionMethod, flight, restitution_from_heights,
 };
-use windfall_signal::restitution_motion::{
+use windfall_signal::restitution::motion::{
     ContactMotion, MotionOptions, contact_motions, restitution_from_impulse_and_motion,
     restitution_from_motion,
 };

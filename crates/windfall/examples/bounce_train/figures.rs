@@ -3,10 +3,10 @@
 use crate::analysis::{DELAY, DRIVING, LEAST_SPEED, MASS, Run};
 use windfall::figure_xy::{Figure, Panel, Series, Style};
 use windfall_contact::law::EndRule;
-use windfall_identify::drop_rig::DropRig;
-use windfall_identify::drop_simulate::{drop_trajectory, simulate_drop};
-use windfall_identify::drop_waveform::WaveformFit;
-use windfall_signal::restitution::RestitutionMethod;
+use windfall_identify::drop::rig::DropRig;
+use windfall_identify::drop::simulate::{drop_trajectory, simulate_drop};
+use windfall_identify::drop::waveform::WaveformFit;
+use windfall_signal::restitution::estimate::RestitutionMethod;
 
 type Fits<'a> = [(&'a str, WaveformFit)];
 

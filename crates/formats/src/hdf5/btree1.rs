@@ -1,0 +1,75 @@
+//! B-trees of version 1: of the members of groups, and of chunks.
+
+use crate::hdf5::cursor::{Cursor, Problem};
+use crate::hdf5::file::Hdf5File;
+use std::collections::BTreeSet;
+
+/// What a tree is of.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Keys {
+    /// Members of a group.
+    Names,
+    /// Chunks of a dataset of so many extents.
+    Chunks(usize),
+}
+
+/// A leaf: its key, and the address that it leads to.
+#[derive(Clone, Debug)]
+pub(crate) struct Leaf {
+    /// Bytes of the key: of a chunk its size, filters and place.
+    pub key: Vec<u8>,
+    pub address: u64,
+}
+
+/// All leaves of a tree, in order.
+///
+/// # Errors
+/// The tree is damaged.
+pub(crate) fn read_leaves(file: &Hdf5File, root: u64, keys: Keys) -> Result<Vec<Leaf>, Problem> {
+    let mut leaves = Vec::new();
+    let mut seen = BTreeSet::new();
+    read_node(file, root, keys, None, &mut seen, &mut leaves)?;
+    Ok(leaves)
+}
+
+fn read_node(
+    file: &Hdf5File,
+    address: u64,
+    keys: Keys,
+    expected: Option<u8>,
+    seen: &mut BTreeSet<u64>,
+    leaves: &mut Vec<Leaf>,
+) -> Result<(), Problem> {
+    let widths = file.widths;
+    let head_size = 8 + 2 * widths.address as u64;
+    let head = file.bytes(address, head_size)?;
+    let mut cursor = file.cursor(&head, address);
+    cursor.expect(b"TREE")?;
+    let kind = cursor.u8()?;
+    let level = cursor.u8()?;
+    let used = u64::from(cursor.u16()?);
+    let fits = kind == u8::from(keys != Keys::Names) && expected.is_none_or(|e| e == level);
+    if !fits || !seen.insert(address) {
+        return Err(cursor.damaged("a tree has a node that does not belong there"));
+    }
+    let key_size = match keys {
+        Keys::Names => widths.length,
+        Keys::Chunks(rank) => 8 + 8 * (rank + 1),
+    };
+    let size = used * (key_size + widths.address) as u64;
+    let body = file.bytes(address + head_size, size)?;
+    let mut cursor: Cursor<'_> = file.cursor(&body, address + head_size);
+    for _ in 0..used {
+        let key = cursor.take(key_size)?;
+        let child = cursor.address()?;
+        let child = child.ok_or_else(|| cursor.damaged("a tree leads nowhere"))?;
+        match level {
+            0 => leaves.push(Leaf {
+                key: key.to_vec(),
+                address: child,
+            }),
+            _ => read_node(file, child, keys, Some(level - 1), seen, leaves)?,
+        }
+    }
+    Ok(())
+}

@@ -1,0 +1,215 @@
+//! An HDF5 file: its superblock, and bytes at addresses.
+//!
+//! # Source
+//! The HDF Group (2023), "HDF5 File Format Specification 3.0", for this and all
+//! modules `hdf5_*`.
+
+use crate::error::{Error, Place};
+use crate::hdf5::checksum::lookup3;
+use crate::hdf5::cursor::{Cursor, Problem, Widths};
+use crate::source::Source;
+
+/// What an HDF5 file begins with, at byte 0 or behind what another program put
+/// before it: at 512, 1024, 2048 and so on.
+const SIGNATURE: &[u8; 8] = b"\x89HDF\r\n\x1a\n";
+
+/// Largest piece that is read at once; bytes.
+const LARGEST: u64 = 256 << 20;
+
+/// An HDF5 file.
+#[derive(Debug)]
+pub(crate) struct Hdf5File {
+    pub source: Source,
+    /// Byte of the file that is address 0.
+    pub base: u64,
+    pub widths: Widths,
+    /// Version of the superblock.
+    pub version: u8,
+    /// Address of the header of the root group.
+    pub root: u64,
+    /// Bytes that the file had when it was closed.
+    pub end: u64,
+}
+
+/// Whether a file begins like an HDF5 file.
+pub(crate) fn begins(head: &[u8]) -> bool {
+    [0, 512, 1024, 2048].iter().any(|at| {
+        head.get(*at..)
+            .is_some_and(|rest| rest.starts_with(SIGNATURE))
+    })
+}
+
+impl Hdf5File {
+    /// Reads the superblock.
+    ///
+    /// # Errors
+    /// There is none, or it is damaged.
+    pub fn open(source: Source) -> Result<Self, Error> {
+        if source.length() == 0 {
+            return Err(Error::Empty {
+                path: source.path().to_path_buf(),
+                expected: "a recording",
+            });
+        }
+        let at = find_signature(&source)?;
+        let path = source.path().to_path_buf();
+        read_superblock(source, at).map_err(|problem| error_of(&path, None, problem))
+    }
+
+    /// Bytes at an address.
+    ///
+    /// # Errors
+    /// The file has not so many there.
+    pub fn bytes(&self, address: u64, count: u64) -> Result<Vec<u8>, Problem> {
+        let at = self.base.saturating_add(address);
+        if count > self.source.length().saturating_sub(at) {
+            return Err(Problem::Damaged {
+                at,
+                what: format!("{count} bytes are declared here, beyond the end of the file"),
+            });
+        }
+        if count > LARGEST {
+            let what = format!("pieces of {count} bytes");
+            return Err(Problem::Unsupported(what));
+        }
+        Ok(self.source.bytes_at(at, count)?)
+    }
+
+    /// Bytes at an address, `count` or as many as there are.
+    ///
+    /// # Errors
+    /// The address is outside of the file.
+    pub fn bytes_up_to(&self, address: u64, count: u64) -> Result<Vec<u8>, Problem> {
+        let at = self.base.saturating_add(address);
+        let left = self.source.length().saturating_sub(at);
+        self.bytes(address, count.min(left).max(1))
+    }
+
+    /// A cursor on bytes that were read at an address.
+    pub fn cursor<'a>(&self, bytes: &'a [u8], address: u64) -> Cursor<'a> {
+        Cursor::new(bytes, self.base.saturating_add(address), self.widths)
+    }
+
+    /// That the last four bytes are the checksum of those before.
+    ///
+    /// # Errors
+    /// They are not.
+    pub fn check(&self, bytes: &[u8], address: u64) -> Result<(), Problem> {
+        let problem = |what: &str| Problem::Damaged {
+            at: self.base.saturating_add(address),
+            what: what.to_owned(),
+        };
+        let split = bytes.len().checked_sub(4);
+        let (body, sum) = bytes.split_at(split.ok_or_else(|| problem("a checksum is missing"))?);
+        match lookup3(body).to_le_bytes() == sum {
+            true => Ok(()),
+            false => Err(problem(
+                "the checksum of the structure that begins here does not fit",
+            )),
+        }
+    }
+
+    /// What a problem means for a user; `object` is what was being read.
+    pub fn error(&self, object: &str, problem: Problem) -> Error {
+        error_of(self.source.path(), Some(object), problem)
+    }
+}
+
+fn find_signature(source: &Source) -> Result<u64, Error> {
+    let mut at = 0;
+    while at + 8 <= source.length() {
+        if source.bytes_at(at, 8)? == SIGNATURE {
+            return Ok(at);
+        }
+        at = if at == 0 { 512 } else { at * 2 };
+    }
+    Err(Error::Malformed {
+        path: source.path().to_path_buf(),
+        place: Place::Byte(0),
+        problem: "expected the signature of HDF5; this is no HDF5 file".to_owned(),
+        advice: "let windfall find out the format".to_owned(),
+    })
+}
+
+fn read_superblock(source: Source, at: u64) -> Result<Hdf5File, Problem> {
+    let head = source.bytes_at(at, (source.length() - at).min(128))?;
+    let narrow = Widths {
+        address: 8,
+        length: 8,
+    };
+    let mut cursor = Cursor::new(&head, at, narrow);
+    cursor.skip(8)?;
+    let version = cursor.version("the superblock", &[0, 1, 2, 3])?;
+    if version < 2 {
+        cursor.skip(4)?;
+    }
+    let widths = Widths {
+        address: usize::from(cursor.u8()?),
+        length: usize::from(cursor.u8()?),
+    };
+    if ![2, 4, 8].contains(&widths.address) || ![2, 4, 8].contains(&widths.length) {
+        return Err(cursor.damaged("addresses and lengths have neither 2, 4 nor 8 bytes"));
+    }
+    // Of the older versions: sizes of nodes, flags. Of the newer: flags.
+    cursor.skip(match version {
+        0 => 1 + 4 + 4,
+        1 => 1 + 4 + 4 + 4,
+        _ => 1,
+    })?;
+    let mut cursor = Cursor::new(&head[cursor.place()..], cursor.at(), widths);
+    let base = cursor.address()?.unwrap_or(0);
+    cursor.address()?;
+    let end = cursor.address()?.unwrap_or(0);
+    if version < 2 {
+        // Driver information, and the offset of the name of the root group.
+        cursor.address()?;
+        cursor.address()?;
+    }
+    let root = cursor.address()?;
+    let root = root.ok_or_else(|| cursor.damaged("the file has no root group"))?;
+    // Programs that put something before the superblock may leave 0 here.
+    let base = if base == 0 { at } else { base };
+    Ok(Hdf5File {
+        source,
+        base,
+        widths,
+        version,
+        root,
+        end,
+    })
+}
+
+/// What to do with a file that breaks the rules.
+const ADVICE: &str =
+    "the file is damaged or was not closed: copy it again from where it was recorded";
+
+fn error_of(path: &std::path::Path, object: Option<&str>, problem: Problem) -> Error {
+    let path = path.to_path_buf();
+    match problem {
+        Problem::Source(error) => error,
+        Problem::Damaged { at, what } => Error::Malformed {
+            path,
+            place: Place::Byte(at),
+            problem: match object {
+                Some(name) => format!("in \"{name}\": {what}"),
+                None => what,
+            },
+            advice: ADVICE.to_owned(),
+        },
+        Problem::Unsupported(what) => Error::Unsupported {
+            path,
+            place: object.map_or(Place::File, |name| Place::Object(name.to_owned())),
+            what,
+            advice: "save it without that, for example with h5repack, or as CSV".to_owned(),
+        },
+    }
+}
+
+/// A problem as the reason why something is left out.
+pub(crate) fn reason(problem: &Problem) -> String {
+    match problem {
+        Problem::Damaged { at, what } => format!("it is damaged: {what} (byte {at})"),
+        Problem::Unsupported(what) => format!("windfall does not read {what}"),
+        Problem::Source(error) => format!("it cannot be read: {error}"),
+    }
+}

@@ -1,0 +1,131 @@
+//! Data elements of MAT files of version 5: a tag and what it announces.
+
+use crate::error::{Error, Place};
+use crate::mat::flow::{ADVICE, Flow};
+use crate::source::Source;
+
+/// Type of an element that holds a matrix.
+pub(crate) const MATRIX: u32 = 14;
+
+/// Type of an element that holds another, compressed.
+pub(crate) const COMPRESSED: u32 = 15;
+
+/// A tag.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) struct Element {
+    /// What it announces.
+    pub kind: u32,
+    /// First byte of its data.
+    pub at: u64,
+    /// Bytes of its data.
+    pub length: u64,
+    /// First byte behind it and what fills it up.
+    pub next: u64,
+    /// The data, if they stand in the tag itself.
+    small: Option<[u8; 4]>,
+}
+
+/// Where elements are read from: a variable, and how its numbers are ordered.
+pub(crate) struct Elements<'a> {
+    /// The file, for messages.
+    pub source: &'a Source,
+    /// The bytes of the variable.
+    pub flow: Flow<'a>,
+    /// Order of bytes.
+    pub big_endian: bool,
+    /// Where the variable begins in the file, for messages.
+    pub start: u64,
+}
+
+impl Elements<'_> {
+    /// The element at `at` of something that ends at `end`.
+    ///
+    /// # Errors
+    /// It does not fit there.
+    pub fn element(&mut self, at: u64, end: u64) -> Result<Element, Error> {
+        if end.saturating_sub(at) < 8 {
+            return Err(self.malformed("expected a data element, found the end of the variable"));
+        }
+        let mut tag = [0; 8];
+        self.flow.read_at(at, &mut tag)?;
+        let [first, second] = [self.u32(&tag[..4]), self.u32(&tag[4..])];
+        let small = first >> 16 != 0;
+        let element = match small {
+            true => Element {
+                kind: first & 0xffff,
+                at: at + 4,
+                length: u64::from(first >> 16),
+                next: at + 8,
+                small: Some([tag[4], tag[5], tag[6], tag[7]]),
+            },
+            false => Element {
+                kind: first,
+                at: at + 8,
+                length: u64::from(second),
+                next: at + 8 + u64::from(second).next_multiple_of(8),
+                small: None,
+            },
+        };
+        if small && element.length > 4 {
+            return Err(self.malformed("a small data element claims more than 4 bytes"));
+        }
+        let possible = end - element.at;
+        if element.length > possible {
+            return Err(Error::TooLarge {
+                path: self.source.path().to_path_buf(),
+                place: Place::Byte(self.start),
+                what: "a data element of the variable that begins here".to_owned(),
+                declared: element.length,
+                possible,
+            });
+        }
+        // Of the last one in a variable the filling may be missing.
+        let next = element.next.min(end);
+        Ok(Element { next, ..element })
+    }
+
+    /// The data of an element; of a longer one the first `most` bytes.
+    ///
+    /// # Errors
+    /// They are damaged.
+    pub fn data(&mut self, element: Element, most: u64) -> Result<Vec<u8>, Error> {
+        let length = element.length.min(most) as usize;
+        if let Some(small) = element.small {
+            return Ok(small[..length.min(4)].to_vec());
+        }
+        let mut bytes = vec![0; length];
+        if !bytes.is_empty() {
+            self.flow.read_at(element.at, &mut bytes)?;
+        }
+        Ok(bytes)
+    }
+
+    /// The integers of an element, at most `most`.
+    ///
+    /// # Errors
+    /// They are damaged.
+    pub fn integers(&mut self, element: Element, most: u64) -> Result<Vec<u32>, Error> {
+        let bytes = self.data(element, most * 4)?;
+        let words = bytes.as_chunks::<4>().0.iter();
+        Ok(words.map(|b| self.u32(b)).collect())
+    }
+
+    /// Four bytes as a number.
+    pub fn u32(&self, bytes: &[u8]) -> u32 {
+        let bytes = [bytes[0], bytes[1], bytes[2], bytes[3]];
+        match self.big_endian {
+            true => u32::from_be_bytes(bytes),
+            false => u32::from_le_bytes(bytes),
+        }
+    }
+
+    /// The error that the variable breaks the rules.
+    pub fn malformed(&self, problem: &str) -> Error {
+        Error::Malformed {
+            path: self.source.path().to_path_buf(),
+            place: Place::Byte(self.start),
+            problem: format!("in the variable that begins here: {problem}"),
+            advice: ADVICE.to_owned(),
+        }
+    }
+}

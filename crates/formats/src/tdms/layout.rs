@@ -1,0 +1,219 @@
+//! Where the raw data of TDMS segments lie.
+
+use crate::tdms::metadata::{Index, Scaler};
+use crate::tdms::value_type::{Layout, ValueType};
+use std::sync::Arc;
+
+/// One source of values in the rows of a region.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Member {
+    /// Position in the objects of the file.
+    pub object: usize,
+    /// Number by which scales refer to it; [`crate::tdms::scale::RAW`] unless of
+    /// NI-DAQmx.
+    pub id: u32,
+    /// Where its values lie in the rows.
+    pub layout: Layout,
+}
+
+/// Rows of equal width within a chunk.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Region {
+    /// Bytes from the beginning of the chunk.
+    pub offset: u64,
+    /// Rows.
+    pub rows: u64,
+    /// Bytes of a row.
+    pub width: u64,
+    /// What stands in a row.
+    pub members: Vec<Member>,
+}
+
+/// Chunks of one layout, one behind the other.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Group {
+    /// Where the first begins.
+    pub offset: u64,
+    /// How many there are.
+    pub chunks: u64,
+    /// Bytes of one.
+    pub size: u64,
+    /// What stands in one.
+    pub regions: Arc<Vec<Region>>,
+}
+
+/// An object of a segment that has raw data.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Active {
+    /// Position in the objects of the file.
+    pub object: usize,
+    /// What the segment holds of it.
+    pub index: Index,
+}
+
+/// Flags of a segment that bear on its layout.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Flags {
+    /// Values of all channels alternate.
+    pub interleaved: bool,
+    /// The order of bytes.
+    pub big_endian: bool,
+}
+
+/// A whole chunk of a segment and its size in bytes; `None` where the objects
+/// cannot stand together.
+#[must_use]
+pub fn chunk(active: &[Active], flags: Flags) -> Option<(Vec<Region>, u64)> {
+    let daqmx = active
+        .iter()
+        .any(|a| matches!(a.index, Index::Daqmx { .. }));
+    match (daqmx, flags.interleaved) {
+        (true, _) => daqmx_chunk(active, flags),
+        (false, true) => interleaved_chunk(active, flags),
+        (false, false) => contiguous_chunk(active, flags),
+    }
+}
+
+fn contiguous_chunk(active: &[Active], flags: Flags) -> Option<(Vec<Region>, u64)> {
+    let mut at = 0_u64;
+    let mut regions = Vec::new();
+    for object in active {
+        let Index::Values {
+            value,
+            count,
+            bytes,
+        } = object.index
+        else {
+            continue;
+        };
+        if value.size() > 0 {
+            regions.push(Region {
+                offset: at,
+                rows: count,
+                width: value.size(),
+                members: vec![member(object.object, value, 0, value.size(), flags)],
+            });
+        }
+        at = at.checked_add(bytes)?;
+    }
+    Some((regions, at))
+}
+
+fn interleaved_chunk(active: &[Active], flags: Flags) -> Option<(Vec<Region>, u64)> {
+    let mut width = 0_u64;
+    let mut rows = None;
+    for object in active {
+        let Index::Values { value, count, .. } = object.index else {
+            continue;
+        };
+        // Values of no fixed size, or of different numbers, cannot alternate.
+        if value.size() == 0 || rows.is_some_and(|rows| rows != count) {
+            return None;
+        }
+        rows = Some(count);
+        width += value.size();
+    }
+    let rows = rows.unwrap_or(0);
+    let mut offset = 0;
+    let mut members = Vec::new();
+    for object in active {
+        if let Index::Values { value, .. } = object.index {
+            members.push(member(object.object, value, offset, width, flags));
+            offset += value.size();
+        }
+    }
+    let size = rows.checked_mul(width)?;
+    let region = Region {
+        offset: 0,
+        rows,
+        width,
+        members,
+    };
+    Some((vec![region], size))
+}
+
+fn daqmx_chunk(active: &[Active], flags: Flags) -> Option<(Vec<Region>, u64)> {
+    let mut shared: Option<&Vec<u32>> = None;
+    for object in active {
+        match &object.index {
+            Index::Daqmx { widths, .. } if shared.is_none_or(|known| known == widths) => {
+                shared = Some(widths);
+            }
+            _ => return None,
+        }
+    }
+    let widths = shared?;
+    let mut regions: Vec<Region> = widths
+        .iter()
+        .map(|width| Region {
+            offset: 0,
+            rows: 0,
+            width: u64::from(*width),
+            members: Vec::new(),
+        })
+        .collect();
+    for object in active {
+        let Index::Daqmx { count, scalers, .. } = &object.index else {
+            continue;
+        };
+        for scaler in scalers {
+            let region = regions.get_mut(scaler.buffer as usize)?;
+            region.rows = region.rows.max(*count);
+            region
+                .members
+                .push(scaler_member(object.object, scaler, region.width, flags));
+        }
+    }
+    let mut at = 0_u64;
+    for region in &mut regions {
+        region.offset = at;
+        at = at.checked_add(region.rows.checked_mul(region.width)?)?;
+    }
+    regions.retain(|region| region.width > 0);
+    Some((regions, at))
+}
+
+fn member(object: usize, value: ValueType, offset: u64, width: u64, flags: Flags) -> Member {
+    Member {
+        object,
+        id: crate::tdms::scale::RAW,
+        layout: Layout {
+            value,
+            offset: offset as usize,
+            stride: width as usize,
+            big_endian: flags.big_endian,
+            bit: None,
+        },
+    }
+}
+
+fn scaler_member(object: usize, scaler: &Scaler, width: u64, flags: Flags) -> Member {
+    Member {
+        object,
+        id: scaler.id,
+        layout: Layout {
+            value: scaler.value,
+            offset: scaler.offset as usize,
+            stride: width as usize,
+            big_endian: flags.big_endian,
+            bit: scaler.bit,
+        },
+    }
+}
+
+/// What `bytes` bytes hold of a chunk that was cut off.
+#[must_use]
+pub fn cut(regions: &[Region], bytes: u64) -> Vec<Region> {
+    let mut kept = Vec::new();
+    for region in regions {
+        let left = bytes.saturating_sub(region.offset);
+        let rows = (left / region.width).min(region.rows);
+        if rows > 0 {
+            kept.push(Region {
+                rows,
+                ..region.clone()
+            });
+        }
+    }
+    kept
+}

@@ -1,0 +1,336 @@
+//! Scales of TDMS channels: from raw values to physical ones.
+//!
+//! # Source
+//! The names of the properties are those that NI software writes: see
+//! "TDMS file format internal structure" and the help of "TDMS Create Scaling
+//! Information" by National Instruments.
+
+use crate::tdms::metadata::Property;
+use std::collections::BTreeMap;
+
+/// Stands for the raw values in place of a scale's number.
+pub const RAW: u32 = u32::MAX;
+
+/// Most scales of a channel.
+const MOST_SCALES: u32 = 1000;
+
+/// Most steps from the raw values to the last scale.
+const MOST_STEPS: u32 = 500;
+
+/// One scale.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Scale {
+    /// Hands its input on.
+    Same {
+        /// Number of the scale that it takes.
+        input: u32,
+    },
+    /// slope · x + intercept.
+    Linear {
+        /// Number of the scale that it takes.
+        input: u32,
+        /// Slope.
+        slope: f64,
+        /// Intercept.
+        intercept: f64,
+    },
+    /// `Σ coefficients[i] · xⁱ`.
+    Polynomial {
+        /// Number of the scale that it takes.
+        input: u32,
+        /// Coefficients, rising.
+        coefficients: Vec<f64>,
+    },
+    /// Straight lines between points; constant outside.
+    Table {
+        /// Number of the scale that it takes.
+        input: u32,
+        /// Values before, rising.
+        before: Vec<f64>,
+        /// Values after.
+        after: Vec<f64>,
+    },
+    /// left + right, or right − left.
+    Sum {
+        /// Number of the left operand.
+        left: u32,
+        /// Number of the right operand.
+        right: u32,
+        /// Whether the left operand is subtracted.
+        subtract: bool,
+    },
+}
+
+/// The scales of a channel by number; the last is what the channel means.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Scales {
+    scales: BTreeMap<u32, Scale>,
+}
+
+impl Scales {
+    /// The numbers of the raw values that the channel takes.
+    #[must_use]
+    pub fn raw_inputs(&self) -> Vec<u32> {
+        let Some((&last, _)) = self.scales.last_key_value() else {
+            return vec![RAW];
+        };
+        let mut found = Vec::new();
+        self.collect(last, &mut found);
+        found.sort_unstable();
+        found.dedup();
+        found
+    }
+
+    fn collect(&self, number: u32, found: &mut Vec<u32>) {
+        match self.scales.get(&number) {
+            None => found.push(number),
+            Some(scale) => inputs(scale)
+                .iter()
+                .for_each(|input| self.collect(*input, found)),
+        }
+    }
+
+    /// Whether the last scale can be had in a sensible number of steps: scales may
+    /// refer to each other in a circle, or double with each step.
+    #[must_use]
+    pub fn ends(&self) -> bool {
+        let mut budget = MOST_STEPS;
+        let last = self.scales.last_key_value().map_or(RAW, |(last, _)| *last);
+        self.within(last, &mut budget)
+    }
+
+    fn within(&self, number: u32, budget: &mut u32) -> bool {
+        if *budget == 0 {
+            return false;
+        }
+        *budget -= 1;
+        let Some(scale) = self.scales.get(&number) else {
+            return true;
+        };
+        inputs(scale)
+            .into_iter()
+            .all(|input| self.within(input, budget))
+    }
+
+    /// Names of the scales, for people.
+    #[must_use]
+    pub fn describe(&self) -> String {
+        let names = self.scales.values().map(|scale| match scale {
+            Scale::Same { .. } => "no scale",
+            Scale::Linear { .. } => "linear scale",
+            Scale::Polynomial { .. } => "polynomial scale",
+            Scale::Table { .. } => "table scale",
+            Scale::Sum { .. } => "sum of scales",
+        });
+        names.map(|name| format!(", {name}")).collect()
+    }
+
+    /// Scales values; `raw` holds those of each number of [`Scales::raw_inputs`].
+    pub fn apply(&self, raw: &[(u32, &[f64])], out: &mut [f64]) {
+        let last = self.scales.last_key_value().map_or(RAW, |(last, _)| *last);
+        self.value(last, raw, out);
+    }
+
+    /// Scales the raw values of a channel that takes only one number of them, in
+    /// their place.
+    pub fn apply_in_place(&self, values: &mut [f64]) {
+        let last = self.scales.last_key_value().map_or(RAW, |(last, _)| *last);
+        if self
+            .scales
+            .values()
+            .any(|scale| matches!(scale, Scale::Sum { .. }))
+        {
+            let raw = values.to_vec();
+            self.value(last, &[(RAW, &raw)], values);
+        } else {
+            // The raw values are where the innermost scale looks for them.
+            self.value(last, &[], values);
+        }
+    }
+
+    fn value(&self, number: u32, raw: &[(u32, &[f64])], out: &mut [f64]) {
+        let Some(scale) = self.scales.get(&number) else {
+            let found = raw
+                .iter()
+                .find(|(known, _)| *known == number)
+                .or(raw.first());
+            if let Some((_, values)) = found {
+                out.copy_from_slice(values);
+            }
+            return;
+        };
+        match scale {
+            Scale::Same { input } => self.value(*input, raw, out),
+            Scale::Linear {
+                input,
+                slope,
+                intercept,
+            } => {
+                self.value(*input, raw, out);
+                out.iter_mut().for_each(|x| *x = *x * slope + intercept);
+            }
+            Scale::Polynomial {
+                input,
+                coefficients,
+            } => {
+                self.value(*input, raw, out);
+                let polynomial = |x: f64| {
+                    let mut rest = coefficients.iter().rev();
+                    let highest = rest.next().copied().unwrap_or(0.0);
+                    rest.fold(highest, |sum, c| c + sum * x)
+                };
+                out.iter_mut().for_each(|x| *x = polynomial(*x));
+            }
+            Scale::Table {
+                input,
+                before,
+                after,
+            } => {
+                self.value(*input, raw, out);
+                out.iter_mut()
+                    .for_each(|x| *x = interpolated(*x, before, after));
+            }
+            Scale::Sum {
+                left,
+                right,
+                subtract,
+            } => {
+                self.value(*left, raw, out);
+                let mut other = vec![0.0; out.len()];
+                self.value(*right, raw, &mut other);
+                let sign = if *subtract { -1.0 } else { 1.0 };
+                out.iter_mut()
+                    .zip(&other)
+                    .for_each(|(x, y)| *x = sign * *x + y);
+            }
+        }
+    }
+}
+
+fn inputs(scale: &Scale) -> Vec<u32> {
+    match scale {
+        Scale::Same { input }
+        | Scale::Linear { input, .. }
+        | Scale::Polynomial { input, .. }
+        | Scale::Table { input, .. } => vec![*input],
+        Scale::Sum { left, right, .. } => vec![*left, *right],
+    }
+}
+
+/// On the straight line between the two points around `x`.
+fn interpolated(x: f64, before: &[f64], after: &[f64]) -> f64 {
+    let place = before.partition_point(|known| *known <= x);
+    match place {
+        _ if x.is_nan() => x,
+        0 => after[0],
+        place if place == before.len() => after[place - 1],
+        place => {
+            let (x0, x1) = (before[place - 1], before[place]);
+            let (y0, y1) = (after[place - 1], after[place]);
+            (y1 - y0) / (x1 - x0) * (x - x0) + y0
+        }
+    }
+}
+
+/// The scales that properties describe: those of the channel, or of its group,
+/// or of the file.
+///
+/// # Errors
+/// What cannot be read: the type of a scale that is not known, or a property
+/// that is missing.
+pub fn scales_of(properties: &BTreeMap<String, Property>) -> Result<Scales, String> {
+    let mut scales = Scales::default();
+    let count = properties
+        .get("NI_Number_Of_Scales")
+        .and_then(Property::number);
+    let unscaled = properties
+        .get("NI_Scaling_Status")
+        .and_then(Property::text)
+        .is_none_or(|status| status != "scaled");
+    let Some(count) = count.filter(|_| unscaled) else {
+        return Ok(scales);
+    };
+    let count = (count as u32).min(MOST_SCALES);
+    for number in 0..count {
+        // A scale without a type stands for raw values of NI-DAQmx.
+        let prefix = format!("NI_Scale[{number}]_");
+        let Some(kind) = properties
+            .get(&format!("{prefix}Scale_Type"))
+            .and_then(Property::text)
+        else {
+            continue;
+        };
+        scales
+            .scales
+            .insert(number, scale(properties, &prefix, kind)?);
+    }
+    match scales.ends() {
+        true => Ok(scales),
+        false => Err("its scales refer to each other in a circle, or in too many steps".to_owned()),
+    }
+}
+
+fn scale(
+    properties: &BTreeMap<String, Property>,
+    prefix: &str,
+    kind: &str,
+) -> Result<Scale, String> {
+    let optional = |name: &str| {
+        properties
+            .get(&format!("{prefix}{name}"))
+            .and_then(Property::number)
+    };
+    let number = |name: &str| {
+        optional(name).ok_or_else(|| format!("the property {prefix}{name} is missing"))
+    };
+    let input = |name: &str| optional(name).map_or(RAW, |input| input as u32);
+    let list = |name: &str, count: usize| {
+        (0..count)
+            .map(|i| number(&format!("{name}[{i}]")))
+            .collect::<Result<Vec<f64>, String>>()
+    };
+    match kind {
+        "Linear" => Ok(Scale::Linear {
+            input: input("Linear_Input_Source"),
+            slope: number("Linear_Slope")?,
+            intercept: number("Linear_Y_Intercept")?,
+        }),
+        "Polynomial" => {
+            let count = optional("Polynomial_Coefficients_Size").unwrap_or(4.0) as usize;
+            Ok(Scale::Polynomial {
+                input: input("Polynomial_Input_Source"),
+                coefficients: list("Polynomial_Coefficients", count)?,
+            })
+        }
+        "Table" => {
+            let count = number("Table_Pre_Scaled_Values_Size")? as usize;
+            if number("Table_Scaled_Values_Size")? as usize != count || count == 0 {
+                return Err("the two columns of its table differ in length".to_owned());
+            }
+            let mut before = list("Table_Pre_Scaled_Values", count)?;
+            let mut after = list("Table_Scaled_Values", count)?;
+            let rises = |values: &[f64]| values.windows(2).all(|pair| pair[0] < pair[1]);
+            if !rises(&before) {
+                before.reverse();
+                after.reverse();
+            }
+            match rises(&before) {
+                true => Ok(Scale::Table {
+                    input: input("Table_Input_Source"),
+                    before,
+                    after,
+                }),
+                false => Err("its table neither rises nor falls".to_owned()),
+            }
+        }
+        "Add" | "Subtract" => Ok(Scale::Sum {
+            left: number(&format!("{kind}_Left_Operand_Input_Source"))? as u32,
+            right: number(&format!("{kind}_Right_Operand_Input_Source"))? as u32,
+            subtract: kind == "Subtract",
+        }),
+        "AdvancedAPI" => Ok(Scale::Same {
+            input: input("AdvancedAPI_Input_Source"),
+        }),
+        other => Err(format!("its scale \"{other}\" is none that windfall reads")),
+    }
+}

@@ -1,0 +1,392 @@
+//! Numbers in text, correctly rounded, whatever marks decimals and thousands.
+
+use crate::text::power::nearest_double;
+
+/// Powers of ten that a double holds exactly.
+const EXACT_POWERS: [f64; 23] = [
+    1e0, 1e1, 1e2, 1e3, 1e4, 1e5, 1e6, 1e7, 1e8, 1e9, 1e10, 1e11, 1e12, 1e13, 1e14, 1e15, 1e16,
+    1e17, 1e18, 1e19, 1e20, 1e21, 1e22,
+];
+
+/// Largest integer up to which every integer is a double.
+const EXACT_INTEGER: u64 = 1 << 53;
+
+/// Most digits that fit into 64 bits whatever they are.
+const MOST_DIGITS: usize = 19;
+
+/// What stands in a cell.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Cell {
+    /// Nothing but blanks.
+    Blank,
+    /// A finite number.
+    Number(f64),
+    /// Something else.
+    Other,
+}
+
+/// Marks in numbers.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Marks {
+    /// Between integer and fraction: "." or ",".
+    pub decimal: u8,
+    /// Between groups of three digits.
+    pub thousands: Option<char>,
+}
+
+/// A number at the beginning of `bytes`, and how many bytes it takes.
+///
+/// Covers digits, one decimal mark and an exponent without blanks; `None` for
+/// everything else, also where a number of this kind is not finite.
+///
+/// # Source
+/// W. Clinger (1990), "How to read floating point numbers accurately": a product
+/// or quotient of two exact doubles is correctly rounded. Others are left to the
+/// standard library.
+#[inline]
+#[must_use]
+pub fn leading_number(bytes: &[u8], decimal: u8) -> Option<(f64, usize)> {
+    // Signs come at random: a branch on them would be guessed wrong half of the time.
+    let first = bytes.first().copied().unwrap_or(0);
+    let negative = first == b'-';
+    let mut at = usize::from(negative | (first == b'+'));
+    let start = at;
+    let mut mantissa = 0_u64;
+    // The usual number has one digit before the mark, and many behind it.
+    at = match bytes.get(at..at + 2) {
+        Some([digit @ b'0'..=b'9', mark]) if *mark == decimal => {
+            mantissa = u64::from(digit - b'0');
+            at + 1
+        }
+        _ => digits(bytes, at, &mut mantissa),
+    };
+    let mut count = at - start;
+    let mut power = 0_i32;
+    if bytes.get(at) == Some(&decimal) {
+        let fraction = at + 1;
+        at = digits(bytes, fraction, &mut mantissa);
+        count += at - fraction;
+        power = fraction as i32 - at as i32;
+    }
+    if count == 0 {
+        return None;
+    }
+    if let Some(b'e' | b'E' | b'd' | b'D') = bytes.get(at) {
+        let (exponent, end) = exponent(bytes, at + 1)?;
+        power = power.saturating_add(exponent);
+        at = end;
+    }
+    let exact = count <= MOST_DIGITS && mantissa <= EXACT_INTEGER && power.unsigned_abs() <= 22;
+    let size = match exact {
+        true if power < 0 => mantissa as f64 / EXACT_POWERS[power.unsigned_abs() as usize],
+        true => mantissa as f64 * EXACT_POWERS[power as usize],
+        false => match count <= MOST_DIGITS + zeros_before(&bytes[start..at], decimal, count) {
+            true => nearest_double(mantissa, power),
+            false => None,
+        }
+        .map_or_else(|| slow_number(&bytes[start..at], decimal), Some)?,
+    };
+    let sign = u64::from(negative) << 63;
+    Some((f64::from_bits(size.to_bits() | sign), at))
+}
+
+/// Zeros before the first other digit, which fill no part of the mantissa;
+/// looked for only where they matter.
+fn zeros_before(bytes: &[u8], decimal: u8, count: usize) -> usize {
+    if count <= MOST_DIGITS {
+        return 0;
+    }
+    let leading = bytes.iter().take_while(|b| **b == b'0' || **b == decimal);
+    leading.filter(|b| **b == b'0').count()
+}
+
+/// Adds the digits from `at` on to `mantissa`; where they end. Beyond 19 digits
+/// the mantissa is meaningless.
+#[inline]
+fn digits(bytes: &[u8], mut at: usize, mantissa: &mut u64) -> usize {
+    // Up to eight at once: the digits are shifted up, so that zeros come before.
+    while let Some(eight) = bytes.get(at..at + 8) {
+        let word = u64::from_le_bytes(eight.try_into().unwrap_or([0; 8]));
+        let count = leading_digits(word);
+        if count == 0 {
+            return at;
+        }
+        let shifted = word << (64 - 8 * count);
+        let power = INTEGER_POWERS[count as usize];
+        *mantissa = mantissa
+            .wrapping_mul(power)
+            .wrapping_add(eight_digits(shifted));
+        at += count as usize;
+        if count < 8 {
+            return at;
+        }
+    }
+    while let Some(digit) = bytes
+        .get(at)
+        .map(|b| b.wrapping_sub(b'0'))
+        .filter(|d| *d < 10)
+    {
+        *mantissa = mantissa.wrapping_mul(10).wrapping_add(u64::from(digit));
+        at += 1;
+    }
+    at
+}
+
+/// Powers of ten as integers.
+const INTEGER_POWERS: [u64; 9] = [
+    1,
+    10,
+    100,
+    1_000,
+    10_000,
+    100_000,
+    1_000_000,
+    10_000_000,
+    100_000_000,
+];
+
+/// How many of eight bytes, from the lowest on, are digits without a break.
+#[inline]
+fn leading_digits(word: u64) -> u32 {
+    // A byte of 0x30 to 0x39 keeps its high half at 3 with and without 6 added.
+    let high = word & 0xf0f0_f0f0_f0f0_f0f0;
+    let over = (word & 0x7f7f_7f7f_7f7f_7f7f).wrapping_add(0x0606_0606_0606_0606);
+    let other =
+        (high ^ 0x3030_3030_3030_3030) | ((over & 0xf0f0_f0f0_f0f0_f0f0) ^ 0x3030_3030_3030_3030);
+    other.trailing_zeros() / 8
+}
+
+/// The number that eight digits make, the first in the lowest byte.
+#[inline]
+fn eight_digits(word: u64) -> u64 {
+    let ones = word & 0x0f0f_0f0f_0f0f_0f0f;
+    let pairs = (ones.wrapping_mul(10).wrapping_add(ones >> 8)) & 0x00ff_00ff_00ff_00ff;
+    let fours = (pairs.wrapping_mul(100).wrapping_add(pairs >> 16)) & 0x0000_ffff_0000_ffff;
+    (fours.wrapping_mul(10_000).wrapping_add(fours >> 32)) & 0xffff_ffff
+}
+
+/// The exponent from `at` on and where it ends; limited, so that it cannot overflow.
+fn exponent(bytes: &[u8], mut at: usize) -> Option<(i32, usize)> {
+    let negative = match bytes.get(at) {
+        Some(b'-') => {
+            at += 1;
+            true
+        }
+        Some(b'+') => {
+            at += 1;
+            false
+        }
+        _ => false,
+    };
+    let start = at;
+    let mut value = 0_i32;
+    while let Some(digit) = bytes
+        .get(at)
+        .map(|b| b.wrapping_sub(b'0'))
+        .filter(|d| *d < 10)
+    {
+        value = (value * 10 + i32::from(digit)).min(99_999);
+        at += 1;
+    }
+    (at > start).then_some((if negative { -value } else { value }, at))
+}
+
+/// By the standard library; `None` if not finite.
+fn slow_number(bytes: &[u8], decimal: u8) -> Option<f64> {
+    let finite = |value: f64| Some(value).filter(|value| value.is_finite());
+    if decimal == b'.'
+        && let Ok(text) = std::str::from_utf8(bytes)
+        && let Ok(value) = text.parse()
+    {
+        return finite(value);
+    }
+    let text: String = bytes
+        .iter()
+        .map(|&byte| match byte {
+            b if b == decimal => '.',
+            b'd' | b'D' => 'e',
+            b => char::from(b),
+        })
+        .collect();
+    text.parse().ok().and_then(finite)
+}
+
+/// What stands in a cell, quotes and blanks around it allowed.
+#[must_use]
+pub fn cell(text: &str, marks: Marks) -> Cell {
+    let text = bare(text);
+    if text.is_empty() {
+        return Cell::Blank;
+    }
+    // A true minus sign, as some programs export it.
+    let owned;
+    let text = match text.strip_prefix('\u{2212}') {
+        Some(rest) => {
+            owned = format!("-{rest}");
+            &owned
+        }
+        None => text,
+    };
+    match leading_number(text.as_bytes(), marks.decimal) {
+        Some((value, used)) if used == text.len() => return Cell::Number(value),
+        _ => {}
+    }
+    let Some(mark) = marks.thousands else {
+        return Cell::Other;
+    };
+    match without_groups(text, mark, char::from(marks.decimal)) {
+        Some(plain) => match leading_number(plain.as_bytes(), marks.decimal) {
+            Some((value, used)) if used == plain.len() => Cell::Number(value),
+            _ => Cell::Other,
+        },
+        None => Cell::Other,
+    }
+}
+
+/// The text of a cell without blanks and quotes around it.
+#[must_use]
+pub fn bare(text: &str) -> &str {
+    let text = text.trim();
+    let inner = text
+        .strip_prefix('"')
+        .and_then(|rest| rest.strip_suffix('"'));
+    inner.map_or(text, str::trim)
+}
+
+/// The number without its thousands marks; `None` where they do not stand
+/// between groups of three digits.
+#[must_use]
+pub fn without_groups(text: &str, mark: char, decimal: char) -> Option<String> {
+    let (integer, rest) = match text.find([decimal, 'e', 'E']) {
+        Some(at) => text.split_at(at),
+        None => (text, ""),
+    };
+    let (sign, digits) = match integer.strip_prefix(['-', '+']) {
+        Some(digits) => (&integer[..1], digits),
+        None => ("", integer),
+    };
+    let mut groups = digits.split(|c| c == mark || (mark == '\u{a0}' && c == '\u{202f}'));
+    let first = groups.next()?;
+    let is_digits = |group: &str| group.bytes().all(|b| b.is_ascii_digit());
+    let first_fits = (1..=3).contains(&first.len()) && is_digits(first) && first != "0";
+    let mut plain = format!("{sign}{first}");
+    let mut more = 0;
+    for group in groups {
+        if group.len() != 3 || !is_digits(group) {
+            return None;
+        }
+        plain += group;
+        more += 1;
+    }
+    plain += rest;
+    (first_fits && more > 0).then_some(plain)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    const POINT: Marks = Marks {
+        decimal: b'.',
+        thousands: None,
+    };
+
+    #[test]
+    fn reference_numbers_as_the_standard_library_reads_them() {
+        for text in [
+            "0",
+            "-0",
+            "1",
+            "-1.5",
+            "+.5",
+            "5.",
+            "123456789012345678",
+            "0.1",
+            "1e22",
+            "1e23",
+            "9007199254740993",
+            "9007199254740992",
+            "1.7976931348623157e308",
+            "5e-324",
+            "2.2250738585072011e-308",
+            "0.000000000000000000000000000001",
+            "12345678.12345678",
+            "1e-400",
+            "00000000000000000000000000000001.5",
+            "8.98846567431158e307",
+        ] {
+            let expected: f64 = text.parse().unwrap();
+            let (value, used) = leading_number(text.as_bytes(), b'.').unwrap();
+            assert_eq!(
+                (value.to_bits(), used),
+                (expected.to_bits(), text.len()),
+                "{text}"
+            );
+        }
+        for text in [
+            "", "-", ".", "e5", "1e", "1e+", "abc", "1e400", "nan", "inf",
+        ] {
+            let found = leading_number(text.as_bytes(), b'.');
+            assert!(
+                found.is_none_or(|(_, used)| used < text.len()),
+                "{text} {found:?}"
+            );
+        }
+    }
+
+    #[test]
+    fn closed_form_thousands() {
+        let marks = |decimal, thousands| Marks {
+            decimal,
+            thousands: Some(thousands),
+        };
+        for (text, marks, value) in [
+            ("1.234,5", marks(b',', '.'), 1234.5),
+            ("1,234,567.25", marks(b'.', ','), 1_234_567.25),
+            ("-12'345.5", marks(b'.', '\''), -12_345.5),
+            ("1\u{a0}234,5", marks(b',', '\u{a0}'), 1234.5),
+            ("1\u{202f}234,5", marks(b',', '\u{a0}'), 1234.5),
+            ("\" 1 234 \"", marks(b',', ' '), 1234.0),
+            ("\u{2212}3,5", marks(b',', '.'), -3.5),
+            ("1.5D+02", POINT, 150.0),
+        ] {
+            assert_eq!(cell(text, marks), Cell::Number(value), "{text}");
+        }
+        for text in ["1.23,5", "0.123", "1234.567", "1..234"] {
+            assert_eq!(cell(text, marks(b',', '.')), Cell::Other, "{text}");
+        }
+        assert_eq!(cell("  ", POINT), Cell::Blank);
+    }
+
+    proptest! {
+        #[test]
+        fn reference_every_double_is_read_back(bits in any::<u64>(), shape in 0..3) {
+            let value = f64::from_bits(bits);
+            prop_assume!(value.is_finite());
+            let text = match shape {
+                0 => format!("{value}"),
+                1 => format!("{value:e}"),
+                _ => format!("{value:.17e}"),
+            };
+            for decimal in [b'.', b','] {
+                let text = text.replace('.', &char::from(decimal).to_string());
+                let (read, used) = leading_number(text.as_bytes(), decimal).unwrap();
+                prop_assert_eq!(used, text.len());
+                prop_assert_eq!(read.to_bits(), value.to_bits());
+            }
+        }
+
+        #[test]
+        fn reference_decimals_of_any_length(text in "-?[0-9]{0,25}\\.[0-9]{1,25}(e-?[0-9]{1,3})?") {
+            let expected: f64 = text.parse().unwrap();
+            match leading_number(text.as_bytes(), b'.') {
+                Some((value, used)) => {
+                    prop_assert_eq!(used, text.len());
+                    prop_assert_eq!(value.to_bits(), expected.to_bits());
+                }
+                None => prop_assert!(expected.is_infinite()),
+            }
+        }
+    }
+}

@@ -1,0 +1,348 @@
+//! Tables of numbers in text: CSV in every national dialect and its relatives.
+
+use crate::contents::{ChannelContents, Contents, Format, Note, TimeBase};
+use crate::error::Error;
+use crate::reader::{Reader, Sink};
+use crate::source::Source;
+use crate::text::dialect::find_dialect;
+use crate::text::encoding::{Encoding, tell_encoding};
+use crate::text::lines::Lines;
+use crate::text::options::{Dialect, TextOptions};
+use crate::text::rows::{ColumnKind, RowPlan, Separator};
+use crate::text::table::{CutOff, Table, read_table, read_whole_table, shortened};
+use std::collections::{BTreeMap, BTreeSet};
+
+/// Bytes from which the dialect is found out.
+const HEAD: u64 = 1 << 16;
+
+/// Most lines from which the dialect is found out.
+const LINES: usize = 300;
+
+/// A table of numbers in text.
+#[derive(Debug)]
+pub struct TextReader {
+    source: Source,
+    contents: Contents,
+    table: Table,
+    /// Column of the file that each channel is.
+    columns: Vec<usize>,
+}
+
+impl TextReader {
+    /// Finds out the dialect of a file.
+    ///
+    /// # Errors
+    /// The file cannot be read, is empty, holds no table of numbers, or a setting
+    /// does not fit it.
+    pub fn open(source: Source, options: &TextOptions) -> Result<Self, Error> {
+        let head = source.head(HEAD)?;
+        let (told, mark) = tell_encoding(&head);
+        let encoding = options.encoding.unwrap_or(told);
+        let text = encoding.decode(&head[mark.min(head.len())..]);
+        if text
+            .trim_matches(|c: char| c.is_whitespace() || c == '\0')
+            .is_empty()
+        {
+            return Err(Error::Empty {
+                path: source.path().to_path_buf(),
+                expected: "a header line with the names of the columns, then one line per sample",
+            });
+        }
+        check_text(&source, &text)?;
+        let newline = if text.contains('\n') { '\n' } else { '\r' };
+        let mut lines: Vec<&str> = text.split(newline).take(LINES).collect();
+        // The last line may be cut, or is what follows the last line break.
+        if lines.len() > 1
+            && (source.length() > HEAD || lines.len() == LINES || lines[lines.len() - 1].is_empty())
+        {
+            lines.pop();
+        }
+        let plain: Vec<&str> = lines
+            .iter()
+            .map(|line| line.trim_end_matches('\r'))
+            .collect();
+        check_header_line(&source, options, plain.len())?;
+        let dialect = find_dialect(&plain, options).map_err(|at| no_table(&source, &plain, at))?;
+
+        let before: usize = lines[..dialect.first_row]
+            .iter()
+            .map(|l| encoded_length(l, encoding))
+            .sum();
+        let breaks = dialect.first_row * encoding.unit();
+        let lines = Lines {
+            start: (mark + before + breaks) as u64,
+            end: source.length(),
+            encoding,
+            newline: newline as u8,
+        };
+        let (contents, columns, names) = contents(&dialect, encoding);
+        let table = Table {
+            plan: RowPlan {
+                separator: dialect.separator,
+                marks: dialect.marks,
+                encoding,
+                newline: newline as u8,
+                comments: dialect.comments,
+                columns: dialect.kinds,
+                short_rows: false,
+            },
+            lines,
+            first_line: dialect.first_row as u64 + 1,
+            names,
+        };
+        Ok(Self {
+            source,
+            contents,
+            table,
+            columns,
+        })
+    }
+}
+
+/// Bytes that a line takes in the file.
+fn encoded_length(line: &str, encoding: Encoding) -> usize {
+    match encoding {
+        Encoding::Utf8 => line.len(),
+        Encoding::Windows1252 => line.chars().count(),
+        Encoding::Utf16Le | Encoding::Utf16Be => 2 * line.encode_utf16().count(),
+    }
+}
+
+/// Bytes that never stand in a table of text.
+fn check_text(source: &Source, text: &str) -> Result<(), Error> {
+    let control = |c: &char| c.is_control() && !c.is_whitespace();
+    let (mut all, mut strange) = (0_usize, 0_usize);
+    for c in text.chars() {
+        all += 1;
+        strange += usize::from(control(&c));
+    }
+    if 50 * strange <= all {
+        return Ok(());
+    }
+    Err(Error::UnknownFormat {
+        path: source.path().to_path_buf(),
+        found: "this is a binary file of a format that windfall does not know".to_owned(),
+        advice: "export the recording as CSV, TDMS, MAT, HDF5, WAV or UFF58".to_owned(),
+    })
+}
+
+fn check_header_line(source: &Source, options: &TextOptions, lines: usize) -> Result<(), Error> {
+    match options.header_line {
+        Some(line) if line > lines as u64 => Err(Error::Setting {
+            path: source.path().to_path_buf(),
+            option: format!("header_line = {line}"),
+            problem: format!("the beginning of the file has {lines} lines"),
+        }),
+        _ => Ok(()),
+    }
+}
+
+fn no_table(source: &Source, lines: &[&str], at: usize) -> Error {
+    let line = lines.get(at).copied().unwrap_or_default();
+    Error::UnknownFormat {
+        path: source.path().to_path_buf(),
+        found: format!(
+            "no table of numbers found (line {} reads \"{}\")",
+            at + 1,
+            shortened(line.trim())
+        ),
+        advice: "expected lines of numbers with commas, semicolons, tabs or blanks between them; \
+                 the settings separator, decimal and header_line say how to read an unusual one"
+            .to_owned(),
+    }
+}
+
+fn contents(dialect: &Dialect, encoding: Encoding) -> (Contents, Vec<usize>, Vec<String>) {
+    let mut notes = dialect.notes.clone();
+    let names = unique_names(dialect, &mut notes);
+    let mut columns = Vec::new();
+    for (column, kind) in dialect.kinds.iter().enumerate() {
+        match kind {
+            ColumnKind::Text => notes.push(Note::LeftOut {
+                what: format!("column \"{}\"", names[column]),
+                why: "it holds text".to_owned(),
+            }),
+            _ => columns.push(column),
+        }
+    }
+    let is_time = |column: usize| {
+        is_time_name(&names[column]) || matches!(dialect.kinds[column], ColumnKind::Moments(_))
+    };
+    let mut time = columns.iter().position(|&column| is_time(column));
+    if time.is_none() && dialect.rising_first {
+        time = Some(0);
+        notes.push(Note::Assumed {
+            what: format!(
+                "\"{}\" rises evenly and is taken as the time in seconds",
+                names[columns[0]]
+            ),
+        });
+    }
+    let mut channels = Vec::new();
+    for (place, &column) in columns.iter().enumerate() {
+        // A column of times serves those to its right, up to the next one.
+        if is_time(column) {
+            time = Some(place);
+        }
+        let moments = matches!(dialect.kinds[column], ColumnKind::Moments(_));
+        channels.push(ChannelContents {
+            name: names[column].clone(),
+            unit: match moments {
+                true => Some("s".to_owned()),
+                false => dialect.units[column].clone(),
+            },
+            length: None,
+            time: match time {
+                Some(at) if at != place => TimeBase::Channel(at),
+                _ => TimeBase::Unknown,
+            },
+            stored_as: if moments { "date and time" } else { "text" }.to_owned(),
+            properties: Vec::new(),
+        });
+        if moments {
+            notes.push(Note::Assumed {
+                what: format!(
+                    "\"{}\" holds dates or times of day; it is read as seconds since the first row",
+                    names[column]
+                ),
+            });
+        }
+    }
+    let separator = match dialect.separator {
+        Separator::Blanks => "blanks",
+        Separator::Mark(b'\t') => "tabs",
+        Separator::Mark(b';') => "semicolons",
+        Separator::Mark(b',') => "commas",
+        Separator::Mark(b'|') => "bars",
+        Separator::Mark(_) => "other marks",
+    };
+    let decimal = match dialect.marks.decimal {
+        b',' => ", decimal comma",
+        _ => "",
+    };
+    let contents = Contents {
+        format: Format::Text,
+        variant: format!("with {separator}{decimal}, {}", encoding.name()),
+        channels,
+        properties: dialect.preamble.clone(),
+        notes,
+    };
+    (contents, columns, names)
+}
+
+/// Names without repetitions; a column without a name has its number.
+fn unique_names(dialect: &Dialect, notes: &mut Vec<Note>) -> Vec<String> {
+    let mut names: Vec<String> = Vec::new();
+    let mut taken = BTreeSet::new();
+    // How often a name has been given.
+    let mut given: BTreeMap<String, usize> = BTreeMap::new();
+    for (column, name) in dialect.names.iter().enumerate() {
+        let wanted = match name.as_str() {
+            "" => format!("column_{}", column + 1),
+            name => name.to_owned(),
+        };
+        let number = given.entry(wanted.clone()).or_insert(0);
+        *number += 1;
+        let mut unique = wanted.clone();
+        while *number > 1 || taken.contains(&unique) {
+            *number = (*number).max(2);
+            unique = format!("{wanted} ({number})");
+            if !taken.contains(&unique) {
+                break;
+            }
+            *number += 1;
+        }
+        if unique != wanted {
+            notes.push(Note::Odd {
+                what: format!(
+                    "the name \"{wanted}\" stands above several columns; column {} is called \"{unique}\"",
+                    column + 1
+                ),
+            });
+        }
+        taken.insert(unique.clone());
+        names.push(unique);
+    }
+    names
+}
+
+/// Words in names of columns of times.
+const TIME_WORDS: [&str; 10] = [
+    "time",
+    "zeit",
+    "temps",
+    "tiempo",
+    "tempo",
+    "tijd",
+    "timestamp",
+    "datum",
+    "elapsed",
+    "x_value",
+];
+
+/// Whether a column of that name holds times.
+#[must_use]
+pub fn is_time_name(name: &str) -> bool {
+    let lower = name.to_lowercase();
+    // "Run 1: Time (s)": what follows the last colon counts.
+    let part = lower.rsplit(':').next().unwrap_or(&lower).trim();
+    let bare = part
+        .split(['(', '[', '_', '/'])
+        .next()
+        .unwrap_or(part)
+        .trim();
+    // "Temperatur" is none, "time_s" and "Zeit (ms)" are.
+    let words = |text: &str| {
+        TIME_WORDS.iter().any(|word| {
+            text.split(|c: char| !c.is_alphanumeric() && c != '_')
+                .any(|w| {
+                    w == *word
+                        || w.strip_prefix(word)
+                            .is_some_and(|rest| rest.starts_with('_'))
+                })
+        })
+    };
+    bare == "t" || words(part)
+}
+
+impl Reader for TextReader {
+    fn contents(&self) -> &Contents {
+        &self.contents
+    }
+
+    fn read(&mut self, wanted: &[usize], sink: &mut dyn Sink) -> Result<(), Error> {
+        let columns = wanted.iter().map(|&channel| self.columns[channel]);
+        let wanted: Vec<(usize, usize)> = columns.zip(0..).collect();
+        let cut = read_table(&self.source, &self.table, &wanted, sink)?;
+        self.note(cut);
+        Ok(())
+    }
+
+    fn read_whole(&mut self, wanted: &[usize]) -> Result<Vec<Vec<f64>>, Error> {
+        let wanted: Vec<usize> = wanted
+            .iter()
+            .map(|&channel| self.columns[channel])
+            .collect();
+        let (columns, cut) = read_whole_table(&self.source, &self.table, &wanted)?;
+        self.note(cut);
+        Ok(columns)
+    }
+}
+
+impl TextReader {
+    fn note(&mut self, cut: Option<CutOff>) {
+        let Some(cut) = cut else {
+            return;
+        };
+        let expected = self.table.plan.columns.len();
+        let note = Note::CutOff {
+            missing: format!(
+                "its last line, {}, has {} of {expected} cells and is left out",
+                cut.line, cut.found
+            ),
+        };
+        if !self.contents.notes.contains(&note) {
+            self.contents.notes.push(note);
+        }
+    }
+}

@@ -1,0 +1,3 @@
+//! WAV and RF64.
+
+pub mod read;

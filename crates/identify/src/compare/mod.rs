@@ -1,0 +1,5 @@
+//! Laws compared on the same impacts, by information criteria and by prediction.
+
+pub(crate) mod correlated_scores;
+mod prediction;
+pub mod ranking;

@@ -1,0 +1,197 @@
+//! Fits of many impacts side by side, one per vector lane: the fastest way to
+//! fit a campaign on one core.
+//!
+//! The impacts are integrated in lock-step and a lane whose integration is over
+//! takes its next evaluation, or the next impact, at once. The samples of an
+//! impact are read by the same pass as in a single fit. Every fit ends at the
+//! bits of a single one, whatever the others are.
+
+use crate::fit::batch_law::{BatchLaw, IMPACTS};
+use crate::fit::batch_motion::{Impacts, Next, Way, attempt_all};
+use crate::fit::estimator::Estimator;
+use crate::fit::model::Model;
+use crate::fit::residual::{Tally, read_piece, span};
+use crate::fit::search::Search;
+use windfall_numerics::least_squares::{Minimum, NormalEquations, Options};
+use windfall_numerics::ode::lockstep::{Lockstep, Outcome};
+
+/// One impact to fit.
+#[derive(Clone)]
+pub struct BatchProblem<'a, L, const N: usize, const W: usize, const P: usize> {
+    /// Samples, free parameters and, where `from` is `None`, where they start.
+    pub estimator: Estimator<'a, L, N, W, P>,
+    /// Coordinates to start from when they are near the minimum: all samples count
+    /// at once, as in [`Estimator::minimise_from`].
+    pub from: Option<[f64; P]>,
+    /// When to stop.
+    pub options: Options<P>,
+}
+
+/// Minimises the cost of each problem, as [`Estimator::minimise`] does or, with
+/// [`BatchProblem::from`], [`Estimator::minimise_from`]; `minima` takes the
+/// results, in the order of the problems, as many as there are of both.
+///
+/// # Numerics
+/// [`IMPACTS`] impacts at a time. Laws with history or with a kink are integrated
+/// one by one. Nothing is allocated.
+pub fn minimise_batch<L, const N: usize, const W: usize, const P: usize>(
+    problems: &[BatchProblem<L, N, W, P>],
+    minima: &mut [Minimum<P>],
+) where
+    L: BatchLaw<N>,
+{
+    let Some(first) = problems.first() else {
+        return;
+    };
+    let mut waiting = problems.iter().zip(minima);
+    let mut batch = Batch {
+        impacts: Impacts::new(first.estimator.law()),
+        lockstep: Lockstep::IDLE,
+    };
+    let mut slots: [Option<Slot<L, N, W, P>>; IMPACTS] = [const { None }; IMPACTS];
+    for (lane, slot) in slots.iter_mut().enumerate() {
+        batch.feed(lane, slot, &mut waiting);
+    }
+    while slots.iter().any(Option::is_some) {
+        attempt_all(&batch.impacts, &mut batch.lockstep);
+        for (lane, slot) in slots.iter_mut().enumerate() {
+            if batch.step(lane, slot) {
+                batch.feed(lane, slot, &mut waiting);
+            }
+        }
+    }
+}
+
+/// What all lanes share.
+struct Batch<L: BatchLaw<N>, const N: usize, const W: usize> {
+    impacts: Impacts<L, N, W>,
+    lockstep: Lockstep<2, W, IMPACTS>,
+}
+
+/// The impact of one lane.
+struct Slot<'p, 'a, L, const N: usize, const W: usize, const P: usize> {
+    problem: &'p BatchProblem<'a, L, N, W, P>,
+    minimum: &'p mut Minimum<P>,
+    search: Search<P>,
+    run: Option<Run<L, N, W, P>>,
+}
+
+/// One evaluation of an impact.
+struct Run<L, const N: usize, const W: usize, const P: usize> {
+    model: Model<L, N, W, P>,
+    stride: usize,
+    end: f64,
+    way: Way,
+    tally: Tally<P>,
+}
+
+impl<L: BatchLaw<N>, const N: usize, const W: usize> Batch<L, N, W> {
+    /// Gives `lane` something to integrate: the next evaluation of its impact, or
+    /// the first of the next impact that waits.
+    fn feed<'p, 'a: 'p, const P: usize>(
+        &mut self,
+        lane: usize,
+        slot: &mut Option<Slot<'p, 'a, L, N, W, P>>,
+        waiting: &mut impl Iterator<Item = (&'p BatchProblem<'a, L, N, W, P>, &'p mut Minimum<P>)>,
+    ) {
+        loop {
+            let Some(fit) = slot else {
+                let Some((problem, minimum)) = waiting.next() else {
+                    self.lockstep.end(lane);
+                    return;
+                };
+                *slot = Some(Slot {
+                    problem,
+                    minimum,
+                    search: match &problem.from {
+                        Some(from) => problem.estimator.search_from(from, &problem.options),
+                        None => problem.estimator.search(&problem.options),
+                    },
+                    run: None,
+                });
+                continue;
+            };
+            let Some((u, stride)) = fit.search.propose() else {
+                *fit.minimum = fit.search.minimum();
+                *slot = None;
+                continue;
+            };
+            if self.begin(lane, fit, &u, stride) {
+                return;
+            }
+        }
+    }
+
+    /// Begins an evaluation in `lane`; `false` when it was done at once.
+    fn begin<const P: usize>(
+        &mut self,
+        lane: usize,
+        fit: &mut Slot<L, N, W, P>,
+        u: &[f64; P],
+        stride: usize,
+    ) -> bool {
+        let estimator = &fit.problem.estimator;
+        let model = estimator.model_for(u, stride);
+        let (before, end) = span(&model, estimator.groups());
+        let suits = self.impacts.suits(&model.event.law);
+        let way = Way::new(&model.event, before, end).filter(|_| suits);
+        let Some((way, leg)) = way else {
+            fit.search.take(estimator.evaluate_share(u, stride));
+            return false;
+        };
+        self.impacts.place(lane, &model.event);
+        self.impacts.begin(lane, &leg, &mut self.lockstep);
+        fit.run = Some(Run {
+            model,
+            stride,
+            end,
+            way,
+            tally: Tally::EMPTY,
+        });
+        true
+    }
+
+    /// Reads what `lane` did in the last attempt; whether its evaluation is over.
+    fn step<const P: usize>(&mut self, lane: usize, slot: &mut Option<Slot<L, N, W, P>>) -> bool {
+        let Some(fit) = slot else { return false };
+        let found = match self.lockstep.outcome(lane) {
+            Outcome::Idle | Outcome::Rejected => return false,
+            Outcome::Failed => None,
+            Outcome::Accepted => match self.read(lane, fit) {
+                Progress::Going => return false,
+                Progress::Done(equations) => equations,
+            },
+        };
+        fit.search.take(found);
+        true
+    }
+
+    /// Reads the samples of the step that `lane` made.
+    fn read<const P: usize>(&mut self, lane: usize, fit: &mut Slot<L, N, W, P>) -> Progress<P> {
+        let Some(run) = &mut fit.run else {
+            return Progress::Done(None);
+        };
+        let (done, position) = (self.lockstep.step(lane), self.lockstep.position(lane));
+        let (segment, piece, next) = run.way.took(&run.model.event, done, position);
+        let groups = fit.problem.estimator.groups();
+        let share = (groups, run.stride, run.end);
+        let piece = (&segment, piece);
+        read_piece(&run.model, share, piece, &mut run.tally);
+        match next {
+            Next::Step => Progress::Going,
+            Next::Leg(leg) => {
+                self.impacts.begin(lane, &leg, &mut self.lockstep);
+                Progress::Going
+            }
+            Next::End => Progress::Done(Some(run.tally.total(groups, run.stride))),
+            Next::Fail => Progress::Done(None),
+        }
+    }
+}
+
+/// How far an evaluation has come.
+enum Progress<const P: usize> {
+    Going,
+    /// Its normal equations, if there are any.
+    Done(Option<NormalEquations<P>>),
+}

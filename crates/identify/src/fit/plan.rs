@@ -1,0 +1,444 @@
+//! Everything that is decided before the minimiser runs: samples and weights,
+//! free parameters, starting points.
+
+use crate::error::Error;
+use crate::finding::Finding;
+use crate::fit::estimator::{Coordinate, FreeParameter, Setting, Target};
+use crate::fit::interval::IntervalMethod;
+use crate::fit::model::Sampling;
+use crate::fit::noise::{NoisePlan, noise_plan, series};
+use crate::fit::problem::{
+    FitOptions, IMPACT_VELOCITY, LawProblem, NoiseModel, Treatment, Weighting,
+};
+use crate::fit::regression::{RegressionEstimate, regress};
+use crate::fit::solve::{IntervalPlan, Limits, Solution, solve};
+use crate::fit::starting_values::{Features, starting_values};
+use crate::rig::kind::Rig;
+use crate::rig::motion::Motion;
+use crate::rig::simulate::{check_positive, trajectory};
+use crate::samples::{Quantity, SampleGroup};
+use windfall_contact::laws::kind::LawKind;
+use windfall_numerics::ode::step::Tolerance;
+use windfall_signal::impact::Impact;
+
+/// Range searched for a scale parameter, as factors of its start.
+const SEARCH_FACTOR: f64 = 1e5;
+/// Range searched for the velocity, as a factor of its start.
+const VELOCITY_FACTOR: f64 = 5.0;
+/// Factors of stiffness and damping tried when the first start fails.
+const OTHER_STARTS: [(f64, f64); 4] = [(0.3, 1.0), (3.0, 1.0), (1.0, 0.2), (1.0, 3.0)];
+
+/// Everything decided before the minimiser runs.
+pub(crate) struct Plan<'a> {
+    pub(crate) impact: &'a Impact,
+    pub(crate) problem: &'a LawProblem,
+    pub(crate) options: &'a FitOptions,
+    pub(crate) noise: NoisePlan,
+    pub(crate) free: Vec<FreeParameter>,
+    pub(crate) starts: Vec<Vec<f64>>,
+    pub(crate) features: Features,
+    pub(crate) regression: Vec<RegressionEstimate>,
+    pub(crate) motion: Motion,
+    pub(crate) findings: Vec<Finding>,
+}
+
+pub(crate) fn plan<'a>(
+    impact: &'a Impact,
+    rig: &Rig,
+    problem: &'a LawProblem,
+    options: &'a FitOptions,
+) -> Result<Plan<'a>, Error> {
+    let description = problem.kind.describe();
+    if problem.free_positions().next().is_none() {
+        return Err(Error::NothingToFit {
+            law: description.name,
+        });
+    }
+    let (noise, mut findings) = samples(impact, options)?;
+    let mut features = Features::of(impact, rig.effective_mass());
+    if let Some(velocity) = options.known_velocity {
+        check_positive("the velocity at first touch", velocity)?;
+        features.velocity = velocity;
+    }
+    let start = starting_values(problem.kind, &features, &problem.values);
+    let regression = regression_of(impact, problem, &start);
+    let free = free_parameters(impact, problem, options, &features, &start, &mut findings)?;
+    let samples = noise.groups.iter().map(sample_count).sum();
+    if samples <= free.len() {
+        return Err(Error::TooFewSamples {
+            samples,
+            parameters: free.len(),
+        });
+    }
+    Ok(Plan {
+        impact,
+        problem,
+        options,
+        noise,
+        free,
+        starts: starts(problem, start, &regression),
+        features,
+        regression,
+        motion: Motion::from(rig),
+        findings,
+    })
+}
+
+pub(crate) fn sample_count(group: &SampleGroup) -> usize {
+    let quantities = Quantity::ALL.iter().filter(|q| group.holds(**q)).count();
+    quantities * group.times().len()
+}
+
+/// Samples with their noise, and findings for what is missing.
+fn samples(impact: &Impact, options: &FitOptions) -> Result<(NoisePlan, Vec<Finding>), Error> {
+    let mut findings = Vec::new();
+    let missing = Quantity::ALL
+        .into_iter()
+        .filter(|q| options.quantities.holds(*q) && series(impact, *q).is_none());
+    findings.extend(missing.map(|q| Finding::MissingQuantity { quantity: q.name() }));
+    let plan = noise_plan(impact, options, &mut findings);
+    if plan.groups.is_empty() {
+        let present = Quantity::ALL
+            .into_iter()
+            .filter(|q| series(impact, *q).is_some());
+        let present: Vec<_> = present.map(Quantity::name).collect();
+        return Err(Error::NoQuantities {
+            wanted: options.quantities.names().join(", "),
+            present: present.join(", "),
+        });
+    }
+    Ok((plan, findings))
+}
+
+fn regression_of(impact: &Impact, problem: &LawProblem, start: &[f64]) -> Vec<RegressionEstimate> {
+    let law = problem.kind.with_parameters(start).ok();
+    law.and_then(|law| regress(impact, &law))
+        .unwrap_or_default()
+}
+
+/// Starting points in the order in which they are tried.
+fn starts(
+    problem: &LawProblem,
+    start: Vec<f64>,
+    regression: &[RegressionEstimate],
+) -> Vec<Vec<f64>> {
+    let mut out = Vec::new();
+    // The regression, where it makes sense, is nearer than the rough guess.
+    if !regression.is_empty() && regression.iter().all(|r| r.value > 0.0) {
+        let mut near = start.clone();
+        for r in regression.iter().filter(|r| problem.free[r.position]) {
+            near[r.position] = r.value;
+        }
+        out.push(near);
+    }
+    out.push(start.clone());
+    let mut scales = problem
+        .free_positions()
+        .filter(|&i| is_scale(problem.kind, i, start[i]));
+    let (first, second) = (scales.next(), scales.next());
+    for (stiffness, damping) in OTHER_STARTS {
+        let mut other = start.clone();
+        for (position, factor) in [(first, stiffness), (second, damping)] {
+            if let Some(i) = position {
+                other[i] *= factor;
+            }
+        }
+        out.push(other);
+    }
+    out
+}
+
+/// Whether a parameter is a positive scale, to be moved on a logarithmic axis.
+fn is_scale(kind: LawKind, position: usize, start: f64) -> bool {
+    let parameter = &kind.describe().parameters[position];
+    parameter.unit != "1" && parameter.lower >= 0.0 && start > 0.0
+}
+
+/// Size of a parameter that is moved on a linear axis: exponents and the like
+/// are of the order of one, others of that of their start.
+fn linear_scale(kind: LawKind, position: usize, start: f64) -> f64 {
+    match kind.describe().parameters[position].unit {
+        "1" => 1.0,
+        _ if start != 0.0 => start.abs(),
+        _ => 1.0,
+    }
+}
+
+fn free_parameters(
+    impact: &Impact,
+    problem: &LawProblem,
+    options: &FitOptions,
+    features: &Features,
+    start: &[f64],
+    findings: &mut Vec<Finding>,
+) -> Result<Vec<FreeParameter>, Error> {
+    let description = problem.kind.describe();
+    let mut free: Vec<FreeParameter> = problem
+        .free_positions()
+        .map(|i| {
+            let parameter = &description.parameters[i];
+            let scale = is_scale(problem.kind, i, start[i]);
+            FreeParameter {
+                target: Target::Law(i),
+                coordinate: if scale {
+                    Coordinate::Logarithm
+                } else {
+                    Coordinate::Linear(linear_scale(problem.kind, i, start[i]))
+                },
+                lower: if scale {
+                    parameter.lower.max(start[i] / SEARCH_FACTOR)
+                } else {
+                    parameter.lower
+                },
+                upper: if scale {
+                    parameter.upper.min(start[i] * SEARCH_FACTOR)
+                } else {
+                    parameter.upper
+                },
+            }
+        })
+        .collect();
+    let nuisances = nuisances(impact, options, features, findings)?;
+    if !nuisances.is_empty() {
+        let names: Vec<_> = nuisances
+            .iter()
+            .map(|p| nuisance_name(p.target).0)
+            .collect();
+        findings.push(Finding::Freed {
+            quantities: names.join(", "),
+        });
+    }
+    free.extend(nuisances);
+    Ok(free)
+}
+
+/// Name and unit of a nuisance.
+pub(crate) fn nuisance_name(target: Target) -> (&'static str, &'static str) {
+    match target {
+        Target::Onset => ("onset", "s"),
+        Target::DisplacementOffset => ("displacement_offset", "m"),
+        Target::InitialVelocity | Target::Law(_) => ("initial_velocity", "m/s"),
+    }
+}
+
+/// Which nuisances are free, and findings for those that are held.
+fn nuisances(
+    impact: &Impact,
+    options: &FitOptions,
+    features: &Features,
+    findings: &mut Vec<Finding>,
+) -> Result<Vec<FreeParameter>, Error> {
+    let has = |q: Quantity| options.quantities.holds(q) && series(impact, q).is_some();
+    let moves = has(Quantity::Displacement) || has(Quantity::Rate);
+    let mut free = Vec::new();
+
+    let velocity = FreeParameter {
+        target: Target::InitialVelocity,
+        coordinate: Coordinate::Logarithm,
+        lower: features.velocity / VELOCITY_FACTOR,
+        upper: features.velocity * VELOCITY_FACTOR,
+    };
+    let measured = impact.measured.impact_velocity.is_some() || options.known_velocity.is_some();
+    let held = |quantity, value, unit, reason| Finding::Held {
+        quantity,
+        value,
+        unit,
+        reason,
+    };
+    match options.initial_velocity {
+        Treatment::Free => free.push(velocity),
+        Treatment::Auto if moves || !measured => free.push(velocity),
+        Treatment::Auto => findings.push(held(
+            "initial_velocity",
+            features.velocity,
+            "m/s",
+            "the quantities in the cost say little about it, and the motion before contact was measured",
+        )),
+        Treatment::Fixed if !measured => return Err(Error::UnknownVelocity),
+        Treatment::Fixed => findings.push(held(
+            "initial_velocity",
+            features.velocity,
+            "m/s",
+            "as asked",
+        )),
+    }
+    let onset = FreeParameter {
+        target: Target::Onset,
+        coordinate: Coordinate::Linear(features.duration),
+        lower: -features.duration,
+        upper: features.duration,
+    };
+    match options.onset {
+        Treatment::Auto | Treatment::Free => free.push(onset),
+        Treatment::Fixed => findings.push(held("onset", impact.onset, "s", "as asked")),
+    }
+    let offset = FreeParameter {
+        target: Target::DisplacementOffset,
+        coordinate: Coordinate::Linear(features.displacement),
+        lower: -2.0 * features.displacement,
+        upper: 2.0 * features.displacement,
+    };
+    if has(Quantity::Displacement) {
+        match options.displacement_offset {
+            Treatment::Auto | Treatment::Free => free.push(offset),
+            Treatment::Fixed => findings.push(held("displacement_offset", 0.0, "m", "as asked")),
+        }
+    }
+    Ok(free)
+}
+
+impl Plan<'_> {
+    /// Solves from the planned starts; then once more with the noise that the
+    /// residuals show.
+    pub(crate) fn solve(&mut self, rig: &Rig) -> Result<Solution, Error> {
+        let first = self.solve_once(rig)?;
+        if !self.modelled() && self.intervals_wanted().is_none() {
+            return Ok(first);
+        }
+        self.noise = self.noise_after(&first, rig)?;
+        self.solve_again(&first, rig)
+    }
+
+    /// Solves from the planned starts with the noise as it is planned.
+    pub(crate) fn solve_once(&self, rig: &Rig) -> Result<Solution, Error> {
+        let mass = rig.effective_mass();
+        let velocity = self.features.velocity;
+        let starts = self
+            .starts
+            .iter()
+            .map(|law| (law.clone(), [velocity, mass, 0.0, 0.0]));
+        self.solve_from(&starts.collect::<Vec<_>>(), None)
+    }
+
+    /// The noise that the residuals of `first` show, where it is modelled.
+    pub(crate) fn noise_after(&self, first: &Solution, rig: &Rig) -> Result<NoisePlan, Error> {
+        if !self.modelled() {
+            return Ok(self.noise.clone());
+        }
+        let speeds = self.speeds_at_edges(first, rig)?;
+        let count = self.free.len();
+        Ok(self
+            .noise
+            .recalibrated(self.impact, &first.rows, &speeds, count))
+    }
+
+    /// Solves once more from a solution, with the intervals that are wanted.
+    pub(crate) fn solve_again(&self, first: &Solution, rig: &Rig) -> Result<Solution, Error> {
+        let motion = [
+            first.velocity,
+            rig.effective_mass(),
+            first.onset,
+            first.offset,
+        ];
+        let start = (first.law.clone(), motion);
+        let mut second = self.solve_from(&[start], self.intervals_wanted())?;
+        second.evaluations += first.evaluations;
+        Ok(second)
+    }
+
+    /// Whether weights are those of the noise that the recording shows.
+    fn modelled(&self) -> bool {
+        self.options.weighting == Weighting::InverseVariance
+            && self.options.noise == NoiseModel::Automatic
+    }
+
+    fn speeds_at_edges(&self, solution: &Solution, rig: &Rig) -> Result<Vec<f64>, Error> {
+        let Some(edges) = &self.noise.edges else {
+            return Ok(Vec::new());
+        };
+        let law = self.problem.kind.with_parameters(&solution.law)?;
+        let onset = self.impact.onset + solution.onset;
+        let times: Vec<f64> = edges.times.iter().map(|t| t - onset).collect();
+        let motion = trajectory(&law, rig, solution.velocity, &times, self.options.end)?;
+        Ok(motion.rate.iter().map(|rate| rate.abs()).collect())
+    }
+
+    pub(crate) fn solve_with_mass(
+        &self,
+        mass: f64,
+        starts: &[Vec<f64>],
+    ) -> Result<Solution, Error> {
+        let velocity = self.features.velocity;
+        let starts = starts
+            .iter()
+            .map(|law| (law.clone(), [velocity, mass, 0.0, 0.0]));
+        self.solve_from(&starts.collect::<Vec<_>>(), None)
+    }
+
+    fn intervals_wanted(&self) -> Option<IntervalPlan> {
+        let options = self.options.intervals;
+        let samples = self.noise.groups.iter().map(sample_count).sum();
+        (options.method != IntervalMethod::Asymptotic).then(|| IntervalPlan {
+            options,
+            confidence: self.options.confidence,
+            quantile: self.quantile(samples),
+            priors: self.free.iter().map(|p| self.prior(p)).collect(),
+        })
+    }
+
+    /// A parameter's prior in its coordinate.
+    fn prior(&self, parameter: &FreeParameter) -> Option<(f64, f64)> {
+        let Target::Law(i) = parameter.target else {
+            return None;
+        };
+        let prior = self.problem.priors.get(i).copied().flatten()?;
+        let spread = match parameter.coordinate {
+            Coordinate::Logarithm => prior.spread,
+            Coordinate::Linear(scale) => prior.spread / scale,
+        };
+        Some((parameter.coordinate.of(prior.centre), spread))
+    }
+
+    /// What the minimiser holds constant.
+    pub(crate) fn setting(&self) -> Setting<'_> {
+        let description = self.problem.kind.describe();
+        let tied_velocity = description
+            .parameters
+            .iter()
+            .position(|p| p.name == IMPACT_VELOCITY)
+            .filter(|&i| self.problem.values[i].is_none() && !self.problem.free[i]);
+        let accuracy = self.options.accuracy;
+        Setting {
+            motion: self.motion,
+            groups: &self.noise.groups,
+            end: self.options.end,
+            tolerance: Tolerance {
+                relative: accuracy,
+                absolute: [
+                    1e-3 * accuracy * self.features.displacement,
+                    1e-2 * accuracy * self.features.velocity,
+                ],
+            },
+            tied_velocity,
+            sampling: if self.free.iter().any(|p| p.target == Target::Onset) {
+                Sampling::Averaged
+            } else {
+                Sampling::Instantaneous
+            },
+        }
+    }
+
+    fn solve_from(
+        &self,
+        starts: &[(Vec<f64>, [f64; 4])],
+        intervals: Option<IntervalPlan>,
+    ) -> Result<Solution, Error> {
+        let description = self.problem.kind.describe();
+        let no_start = Error::NoStart {
+            law: description.name,
+        };
+        let setting = self.setting();
+        let limits = Limits {
+            cost_tolerance: self.options.cost_tolerance,
+            max_evaluations: self.options.max_evaluations,
+            samples: self.noise.groups.iter().map(sample_count).sum(),
+            offsets: Quantity::ALL.map(|q| match self.modelled() {
+                true => 0.0,
+                false => series(self.impact, q).map_or(0.0, |s| s.zero_sd),
+            }),
+            intervals,
+        };
+        let law = self.problem.kind.with_parameters(&starts[0].0)?;
+        solve(&law, &setting, &self.free, starts, &limits).ok_or(no_start)
+    }
+}

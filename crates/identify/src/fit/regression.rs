@@ -1,0 +1,163 @@
+//! The linear regression of eq. (9): force against the law's terms at the
+//! measured displacement and rate. No motion is simulated.
+
+use windfall_contact::law::ContactLaw;
+use windfall_contact::laws::any_law::AnyLaw;
+use windfall_contact::laws::kind::{Law, LawKind};
+use windfall_contact::laws::user::UserKind;
+use windfall_numerics::cholesky;
+use windfall_numerics::least_squares::NormalEquations;
+use windfall_signal::impact::{Impact, Series};
+use windfall_signal::kinematics::{smoothing_window, value_at};
+
+/// Parameters at most that a law is linear in.
+const TERMS: usize = 2;
+
+/// A parameter estimated by regression.
+#[derive(Clone, Debug, PartialEq)]
+pub struct RegressionEstimate {
+    /// Position in the law's description.
+    pub position: usize,
+    /// Estimate; SI.
+    pub value: f64,
+    /// Standard error of ordinary least squares, which takes displacement and
+    /// rate as exact and residuals as independent; SI.
+    pub standard_error: f64,
+}
+
+/// Parameters that the force is linear in, by position.
+fn linear_positions(law: &Law) -> Vec<usize> {
+    let kind = law.kind();
+    if let LawKind::User(user) = kind {
+        return terms_of_user(law, user);
+    }
+    let linear = |name: &str| match kind {
+        LawKind::Hertz | LawKind::KelvinVoigt | LawKind::KuwabaraKono => true,
+        LawKind::PowerLaw | LawKind::AdamsImpact => name == "k" || name == "c",
+        LawKind::HuntCrossley => name == "k" || name == "lambda",
+        _ => false,
+    };
+    let parameters = kind.describe().parameters.iter().enumerate();
+    parameters
+        .filter(|(_, p)| linear(p.name))
+        .map(|(i, _)| i)
+        .collect()
+}
+
+/// State at which the terms of a user's law are added up.
+const STATE: (f64, f64) = (1e-3, 0.3);
+
+/// Parameters of a user's law whose terms are the whole force; otherwise none.
+fn terms_of_user(law: &Law, user: UserKind) -> Vec<usize> {
+    let positions = [user.linear_at_rest(), user.linear_in_rate()].concat();
+    let at = AnyLaw(*law).evaluate(STATE.0, STATE.1, 0.0);
+    let values = law.parameters();
+    let sum: f64 = positions
+        .iter()
+        .map(|&i| values[i] * at.by_parameter[i])
+        .sum();
+    let whole = (sum - at.force).abs() <= 1e-9 * at.force.abs();
+    match whole && positions.len() <= TERMS {
+        true => positions,
+        false => Vec::new(),
+    }
+}
+
+/// Force regressed on the terms of `law` over the contact:
+///
+/// ```text
+/// F = k X₁ + c X₂,   X₁ = x^1.5,   X₂ = x^0.5 x'    (Kuwabara-Kono)
+/// ```
+///
+/// The rate is the slope of the displacement over a tenth of the
+/// contact: a central difference of counted displacement would bias c towards
+/// zero. Displacement counts from the threshold's onset.
+///
+/// `None` for a law that is linear in none of its parameters, or when force
+/// and motion were not both recorded.
+///
+/// # Source
+/// Eq. (9) of the 2003 pendulum study.
+#[must_use]
+pub fn regress(impact: &Impact, law: &Law) -> Option<Vec<RegressionEstimate>> {
+    let positions = linear_positions(law);
+    if positions.is_empty() {
+        return None;
+    }
+    let force = impact.force.as_ref()?;
+    let displacement = impact.displacement.as_ref()?;
+    let half = smoothing_half(impact, displacement)?;
+
+    // Keep to the contact: outside, the terms are zero and the force is noise.
+    let mut equations = NormalEquations::<TERMS>::ZERO;
+    let mut samples = 0;
+    for (&time, &measured) in force.times.iter().zip(&force.values) {
+        if time < impact.onset || time > impact.end {
+            continue;
+        }
+        let x = value_at(&displacement.times, &displacement.values, time);
+        if x <= 0.0 {
+            continue;
+        }
+        let v = local_slope(displacement, time, half);
+        let terms = AnyLaw(*law).evaluate(x, v, 0.0).by_parameter;
+        let mut row = [0.0; TERMS];
+        for (cell, &position) in row.iter_mut().zip(&positions) {
+            *cell = terms[position];
+        }
+        // The residual at zero parameters is −F: its gradient step is the fit.
+        equations.add(1.0, -measured, &row);
+        samples += 1;
+    }
+    solve(&equations, &positions, samples)
+}
+
+/// Samples on either side of the local slope.
+fn smoothing_half(impact: &Impact, displacement: &Series) -> Option<usize> {
+    let times = &displacement.times;
+    let interval = (times.last()? - times.first()?) / (times.len().max(2) - 1) as f64;
+    let half = smoothing_window(impact.end - impact.onset, interval) / 2;
+    (times.len() > 2 * half).then_some(half)
+}
+
+/// Slope of the straight line through the samples around `time`; on even times
+/// also that of the local quadratic (Savitzky-Golay).
+fn local_slope(series: &Series, time: f64, half: usize) -> f64 {
+    let n = series.times.len();
+    let centre = series.times.partition_point(|t| *t < time);
+    let first = centre.saturating_sub(half).min(n - 2 * half - 1);
+    let window = first..=first + 2 * half;
+    let origin = (series.times[first], series.values[first]);
+    let (mut t1, mut x1, mut t2, mut tx) = (0.0, 0.0, 0.0, 0.0);
+    for i in window {
+        let (t, x) = (series.times[i] - origin.0, series.values[i] - origin.1);
+        t1 += t;
+        x1 += x;
+        t2 += t * t;
+        tx += t * x;
+    }
+    let count = (2 * half + 1) as f64;
+    (tx - t1 * x1 / count) / (t2 - t1 * t1 / count)
+}
+
+fn solve(
+    equations: &NormalEquations<TERMS>,
+    positions: &[usize],
+    samples: usize,
+) -> Option<Vec<RegressionEstimate>> {
+    let mut normal = equations.normal;
+    for i in positions.len()..TERMS {
+        normal[i][i] = 1.0;
+    }
+    let freedom = samples.checked_sub(positions.len()).filter(|f| *f > 0)?;
+    let inverse = cholesky::inverse(&normal)?;
+    let values = cholesky::solve(&normal, &equations.gradient.map(|g| -g))?;
+    let explained: f64 = (0..TERMS).map(|i| -equations.gradient[i] * values[i]).sum();
+    let variance = (equations.cost - explained).max(0.0) / freedom as f64;
+    let estimate = |(i, &position): (usize, &usize)| RegressionEstimate {
+        position,
+        value: values[i],
+        standard_error: (variance * inverse[i][i]).sqrt(),
+    };
+    Some(positions.iter().enumerate().map(estimate).collect())
+}

@@ -1,0 +1,505 @@
+//! Residuals of an impact and their derivatives, summed into the normal
+//! equations in one pass over the samples, several samples at a time.
+
+use crate::fit::model::Model;
+use crate::fit::onset_average::{OnsetAverage, OnsetCorrection};
+use crate::fit::residual_noise::Noise;
+use crate::fit::residual_pack::{Pack, PackModel, Piece, PieceModel, load};
+use crate::rig::contact_motion::{Segment, Sink, follow};
+use crate::samples::{PACK, QUANTITIES, Quantity, SampleGroup};
+use windfall_contact::law::ContactLaw;
+use windfall_numerics::least_squares::NormalEquations;
+use windfall_numerics::ode::step::StepError;
+use windfall_numerics::real::{Lanes, Real};
+use windfall_numerics::real_vector::{FourLanes, with_four_lanes};
+
+/// Residuals and derivatives of every sample, unweighted, for diagnostics.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Rows {
+    /// Per sample group and quantity: model minus measured, in time order.
+    pub residuals: Vec<[Vec<f64>; QUANTITIES]>,
+    /// Per sample group and quantity: P derivatives per sample, in time order.
+    pub jacobian: Vec<[Vec<f64>; QUANTITIES]>,
+}
+
+/// Normal equations of `model` against `groups`; with `rows`, residuals and
+/// derivatives of each sample too.
+///
+/// # Errors
+/// [`StepError`] when the motion cannot be integrated.
+///
+/// # Numerics
+/// One integration with sensitivities; the samples read its dense output in
+/// packs. Sums run in the order of time, so they do not depend on threads.
+/// Nothing is allocated (except in `rows`).
+pub fn evaluate<L, const N: usize, const W: usize, const P: usize>(
+    model: &Model<L, N, W, P>,
+    groups: &[SampleGroup],
+    rows: Option<&mut Rows>,
+) -> Result<NormalEquations<P>, StepError>
+where
+    L: ContactLaw<N>,
+{
+    pulp::Arch::new().dispatch(Pass {
+        model,
+        groups,
+        rows,
+        stride: 1,
+    })
+}
+
+/// [`evaluate`] with a share of the samples and as if their noise were white, for
+/// the way to the minimum: every `stride`-th pack of them, the same ones wherever
+/// the pieces of the motion end.
+///
+/// # Errors
+/// [`StepError`] when the motion cannot be integrated.
+pub(crate) fn evaluate_some<L, const N: usize, const W: usize, const P: usize>(
+    model: &Model<L, N, W, P>,
+    groups: &[SampleGroup],
+    stride: usize,
+) -> Result<NormalEquations<P>, StepError>
+where
+    L: ContactLaw<N>,
+{
+    pulp::Arch::new().dispatch(Pass {
+        model,
+        groups,
+        rows: None,
+        stride,
+    })
+}
+
+/// One pass of [`evaluate`], compiled for the machine's vector instructions.
+struct Pass<'a, L, const N: usize, const W: usize, const P: usize> {
+    model: &'a Model<L, N, W, P>,
+    groups: &'a [SampleGroup],
+    rows: Option<&'a mut Rows>,
+    stride: usize,
+}
+
+impl<L, const N: usize, const W: usize, const P: usize> pulp::WithSimd for Pass<'_, L, N, W, P>
+where
+    L: ContactLaw<N>,
+{
+    type Output = Result<NormalEquations<P>, StepError>;
+
+    #[inline(always)]
+    fn with_simd<S: pulp::Simd>(self, _simd: S) -> Self::Output {
+        let Self {
+            model,
+            groups,
+            rows,
+            stride,
+        } = self;
+        let (before, after) = span(model, groups);
+        let mut tally = Tally::EMPTY;
+        let mut reading = Reading {
+            model,
+            groups,
+            rows,
+            end: after,
+            stride,
+            tally: &mut tally,
+        };
+        follow(&model.event, before, after, &mut reading)?;
+        Ok(tally.total(groups, stride))
+    }
+}
+
+/// First (at most 0) and last time of the samples, from first touch; s.
+#[inline(always)]
+pub(crate) fn span<L, const N: usize, const W: usize, const P: usize>(
+    model: &Model<L, N, W, P>,
+    groups: &[SampleGroup],
+) -> (f64, f64) {
+    let first = groups.iter().filter_map(|g| g.times().first()).copied();
+    let last = groups.iter().filter_map(|g| g.times().last()).copied();
+    let before = first.fold(f64::INFINITY, f64::min) - model.onset;
+    let after = last.fold(f64::NEG_INFINITY, f64::max) - model.onset;
+    (before.min(0.0), after)
+}
+
+/// What a pass over the samples has summed up so far.
+pub(crate) struct Tally<const P: usize> {
+    sums: Sums<Pack, P>,
+    noise: Noise<P>,
+}
+
+impl<const P: usize> Tally<P> {
+    pub(crate) const EMPTY: Self = Self {
+        sums: Sums::ZERO,
+        noise: Noise::NONE,
+    };
+
+    /// The normal equations, after the last piece.
+    #[inline(always)]
+    pub(crate) fn total(&mut self, groups: &[SampleGroup], stride: usize) -> NormalEquations<P> {
+        let mut equations = self.sums.total();
+        if stride == 1 {
+            self.noise.complete(groups, &mut equations);
+        }
+        equations
+    }
+}
+
+/// Adds the samples of one piece of a motion to `tally`: what [`evaluate`] does
+/// with each piece, for motions that are integrated elsewhere. `end` is the last
+/// time of [`span`].
+pub(crate) fn read_piece<L, const N: usize, const W: usize, const P: usize>(
+    model: &Model<L, N, W, P>,
+    (groups, stride, end): (&[SampleGroup], usize, f64),
+    (segment, piece): (&Segment<W>, Piece),
+    tally: &mut Tally<P>,
+) where
+    L: ContactLaw<N>,
+{
+    let mut reading = Reading {
+        model,
+        groups,
+        rows: None,
+        end,
+        stride,
+        tally,
+    };
+    reading.read(segment, piece);
+}
+
+/// Reads the samples of each piece of the motion.
+struct Reading<'a, L, const N: usize, const W: usize, const P: usize> {
+    model: &'a Model<L, N, W, P>,
+    groups: &'a [SampleGroup],
+    rows: Option<&'a mut Rows>,
+    end: f64,
+    stride: usize,
+    tally: &'a mut Tally<P>,
+}
+
+impl<L, const N: usize, const W: usize, const P: usize> Sink<W> for Reading<'_, L, N, W, P>
+where
+    L: ContactLaw<N>,
+{
+    #[inline(always)]
+    fn contact(&mut self, segment: &Segment<W>) {
+        self.read(segment, Piece::Contact);
+    }
+
+    #[inline(always)]
+    fn flight(&mut self, segment: &Segment<W>) {
+        self.read(segment, Piece::Flight);
+    }
+}
+
+impl<L, const N: usize, const W: usize, const P: usize> Reading<'_, L, N, W, P>
+where
+    L: ContactLaw<N>,
+{
+    #[inline(never)]
+    fn read(&mut self, segment: &Segment<W>, piece: Piece) {
+        with_four_lanes(ReadPiece {
+            reading: self,
+            segment,
+            piece,
+        });
+    }
+}
+
+/// The samples of one piece.
+struct ReadPiece<'a, 'b, L, const N: usize, const W: usize, const P: usize> {
+    reading: &'a mut Reading<'b, L, N, W, P>,
+    segment: &'a Segment<W>,
+    piece: Piece,
+}
+
+impl<L, const N: usize, const W: usize, const P: usize> FourLanes for ReadPiece<'_, '_, L, N, W, P>
+where
+    L: ContactLaw<N>,
+{
+    type Output = ();
+
+    #[inline(always)]
+    fn run<R: Real<Plain = Pack>>(self, zero: R) {
+        let Reading {
+            model,
+            groups,
+            rows,
+            end,
+            stride,
+            tally,
+        } = self.reading;
+        for (index, group) in groups.iter().enumerate() {
+            let range = group.range(model.onset, self.segment.from, self.segment.to, *end);
+            if range.0 >= range.1 {
+                continue;
+            }
+            let mut rows = rows.as_deref_mut().map(|rows| (rows, index));
+            // Only contact and the flight before touch the onset.
+            let average = OnsetAverage::new(model, group)
+                .filter(|_| self.piece == Piece::Contact || self.segment.to <= 0.0);
+            // The acceleration matters to a recorded one and to the onset's column.
+            let accelerated = group.holds(Quantity::Acceleration)
+                || model.columns.onset.iter().any(|onset| *onset != 0.0);
+            let share = Share {
+                zero,
+                piece: PieceModel::new(model, self.segment, accelerated),
+                contact: self.piece == Piece::Contact,
+                group,
+                range,
+                stride: *stride,
+                average: average.as_ref().map(|a| a as &dyn OnsetCorrection<P>),
+            };
+            share.read(tally, &mut rows);
+        }
+    }
+}
+
+/// Running sums, one lane per sample of a pack.
+#[derive(Clone, Copy)]
+struct Sums<R, const P: usize> {
+    cost: R,
+    gradient: [R; P],
+    normal: [[R; P]; P],
+}
+
+impl<const P: usize> Sums<Pack, P> {
+    const ZERO: Self = Self {
+        cost: Pack::ZERO,
+        gradient: [Pack::ZERO; P],
+        normal: [[Pack::ZERO; P]; P],
+    };
+
+    fn total(&self) -> NormalEquations<P> {
+        let mut normal = [[0.0; P]; P];
+        for i in 0..P {
+            for j in 0..=i {
+                normal[i][j] = self.normal[i][j].sum();
+                normal[j][i] = normal[i][j];
+            }
+        }
+        NormalEquations {
+            cost: self.cost.sum(),
+            gradient: self.gradient.map(|g| g.sum()),
+            normal,
+        }
+    }
+}
+
+impl<R: Real, const P: usize> Sums<R, P> {
+    /// The sums so far, as numbers like `zero`.
+    #[inline(always)]
+    fn with_plain(sums: &Sums<R::Plain, P>, zero: R) -> Self {
+        let mut normal = [[zero; P]; P];
+        for i in 0..P {
+            normal[i] = zero.with_each_plain(sums.normal[i]);
+        }
+        Self {
+            cost: zero.with_plain(sums.cost),
+            gradient: zero.with_each_plain(sums.gradient),
+            normal,
+        }
+    }
+
+    #[inline(always)]
+    fn plain(&self) -> Sums<R::Plain, P> {
+        let zero = self.cost;
+        let mut normal = [[zero.plain(); P]; P];
+        for i in 0..P {
+            normal[i] = zero.each_plain(self.normal[i]);
+        }
+        Sums {
+            cost: zero.plain(),
+            gradient: zero.each_plain(self.gradient),
+            normal,
+        }
+    }
+
+    #[inline(always)]
+    fn add(&mut self, weight: R, residual: R, jacobian: &[R; P]) {
+        self.cost = (weight * residual).mul_add(residual, self.cost);
+        for i in 0..P {
+            let weighted = weight * jacobian[i];
+            self.gradient[i] = weighted.mul_add(residual, self.gradient[i]);
+            for j in 0..=i {
+                self.normal[i][j] = weighted.mul_add(jacobian[j], self.normal[i][j]);
+            }
+        }
+    }
+}
+
+/// The samples of one group that one piece of the motion reads.
+struct Share<'a, L, R, const N: usize, const W: usize, const P: usize> {
+    /// A number of the kind to calculate with.
+    zero: R,
+    piece: PieceModel<'a, L, N, W, P>,
+    /// Whether the bodies touch during the piece.
+    contact: bool,
+    group: &'a SampleGroup,
+    /// Indices of the first and behind the last.
+    range: (usize, usize),
+    stride: usize,
+    average: Option<&'a dyn OnsetCorrection<P>>,
+}
+
+/// The samples of one pack.
+#[derive(Clone, Copy)]
+struct PackAt<R> {
+    /// Index of the first.
+    at: usize,
+    /// How many there are: [`PACK`] but where the range begins or ends.
+    count: usize,
+    /// 1 in the lanes that hold a sample, 0 in the others.
+    counted: R,
+}
+
+impl<L, R, const N: usize, const W: usize, const P: usize> Share<'_, L, R, N, W, P>
+where
+    L: ContactLaw<N>,
+    R: Real<Plain = Pack>,
+{
+    #[inline(always)]
+    fn read(&self, tally: &mut Tally<P>, rows: &mut Option<(&mut Rows, usize)>) {
+        let (group, stride) = (self.group, self.stride);
+        if stride == 1 {
+            tally.noise.begin(self.range.0);
+        }
+        let simple = (stride > 1 || (0..QUANTITIES).all(|q| group.is_white(q)))
+            && group.relative.iter().all(Vec::is_empty)
+            && self.average.is_none()
+            && rows.is_none();
+        match (simple, self.contact) {
+            (true, true) => self.read_packs::<true, true>(tally, rows),
+            (true, false) => self.read_packs::<true, false>(tally, rows),
+            (false, true) => self.read_packs::<false, true>(tally, rows),
+            (false, false) => self.read_packs::<false, false>(tally, rows),
+        }
+        if stride == 1 {
+            tally.noise.end(group, self.range.0, self.range.1);
+        }
+    }
+
+    /// `SIMPLE` samples have white noise of one variance, are taken at their
+    /// instant, and nothing but sums is wanted; `CONTACT` as [`Share::contact`].
+    #[inline(always)]
+    fn read_packs<const SIMPLE: bool, const CONTACT: bool>(
+        &self,
+        tally: &mut Tally<P>,
+        rows: &mut Option<(&mut Rows, usize)>,
+    ) {
+        let (zero, piece) = (self.zero, &self.piece);
+        let (group, stride) = (self.group, self.stride);
+        let (first, last) = self.range;
+        let mut sums = Sums::with_plain(&tally.sums, zero);
+        let mut at = first_sample(first, stride);
+        let mut times = load(&group.times, at.min(group.len));
+        let mut place = piece.place(zero.with_plain(times));
+        while at < last {
+            let (end, next) = if stride > 1 {
+                let pack = at / PACK;
+                ((pack + 1) * PACK, (pack + stride) * PACK)
+            } else {
+                (at + PACK, at + PACK)
+            };
+            let count = end.min(last) - at;
+            // The roots of the next pack run beside what follows from this one.
+            let next_times = load(&group.times, next.min(group.len));
+            let next_place = piece.place(zero.with_plain(next_times));
+            let mut found = piece.at::<R, CONTACT>(place);
+            if let (false, Some(average)) = (SIMPLE, self.average) {
+                piece.correct_onset(&mut found, times, average);
+            }
+            let pack = PackAt {
+                at,
+                count,
+                counted: zero.with_plain(COUNTED[count]),
+            };
+            // Written out: an index known to the compiler keeps the model in registers.
+            self.add::<0, SIMPLE>(&found, pack, &mut sums, &mut tally.noise);
+            self.add::<1, SIMPLE>(&found, pack, &mut sums, &mut tally.noise);
+            self.add::<2, SIMPLE>(&found, pack, &mut sums, &mut tally.noise);
+            self.add::<3, SIMPLE>(&found, pack, &mut sums, &mut tally.noise);
+            if let (false, Some((rows, index))) = (SIMPLE, rows.as_mut()) {
+                store_rows(rows, *index, group, (at, count), &found.plain());
+            }
+            (at, times, place) = (next, next_times, next_place);
+        }
+        tally.sums = sums.plain();
+    }
+
+    /// Adds the rows of quantity `Q` of a pack.
+    #[inline(always)]
+    fn add<const Q: usize, const SIMPLE: bool>(
+        &self,
+        found: &PackModel<R, P>,
+        pack: PackAt<R>,
+        sums: &mut Sums<R, P>,
+        noise: &mut Noise<P>,
+    ) {
+        let group = self.group;
+        if group.values[Q].is_empty() {
+            return;
+        }
+        let zero = pack.counted;
+        let mut weight = pack.counted * group.weights[Q];
+        if !SIMPLE && !group.relative[Q].is_empty() {
+            weight = weight * zero.with_plain(load(&group.relative[Q], pack.at));
+        }
+        let mut residual = found.values[Q] - zero.with_plain(load(&group.values[Q], pack.at));
+        let mut jacobian = found.jacobian[Q];
+        if !SIMPLE && self.stride == 1 && !group.is_white(Q) {
+            let mut row = (weight.plain(), residual.plain(), zero.each_plain(jacobian));
+            noise.whiten((Q, group), &mut row, pack.count);
+            weight = zero.with_plain(row.0);
+            residual = zero.with_plain(row.1);
+            jacobian = zero.with_each_plain(row.2);
+        }
+        sums.add(weight, residual, &jacobian);
+    }
+}
+
+/// The first sample from `at` on that belongs to the share.
+#[inline(always)]
+fn first_sample(at: usize, stride: usize) -> usize {
+    if (at / PACK).is_multiple_of(stride) {
+        at
+    } else {
+        at.next_multiple_of(stride * PACK)
+    }
+}
+
+/// 1 in the first 0, 1, … lanes.
+const COUNTED: [Pack; PACK + 1] = [
+    Lanes([0.0; PACK]),
+    Lanes([1.0, 0.0, 0.0, 0.0]),
+    Lanes([1.0, 1.0, 0.0, 0.0]),
+    Lanes([1.0, 1.0, 1.0, 0.0]),
+    Lanes([1.0; PACK]),
+];
+
+#[cold]
+#[inline(never)]
+fn store_rows<const P: usize>(
+    rows: &mut Rows,
+    index: usize,
+    group: &SampleGroup,
+    (at, count): (usize, usize),
+    found: &PackModel<Pack, P>,
+) {
+    while rows.residuals.len() <= index {
+        rows.residuals.push(Default::default());
+        rows.jacobian.push(Default::default());
+    }
+    for q in (0..QUANTITIES).filter(|&q| !group.values[q].is_empty()) {
+        // By their index: pieces of the motion do not come in the order of time.
+        let residuals = &mut rows.residuals[index][q];
+        residuals.resize(group.len, 0.0);
+        let derivatives = &mut rows.jacobian[index][q];
+        derivatives.resize(group.len * P, 0.0);
+        for lane in 0..count {
+            let at = at + lane;
+            residuals[at] = found.values[q].0[lane] - group.values[q][at];
+            for (c, column) in found.jacobian[q].iter().enumerate() {
+                derivatives[at * P + c] = column.0[lane];
+            }
+        }
+    }
+}

@@ -1,0 +1,392 @@
+//! From free parameters to estimates with covariance: the part of a fit that
+//! knows the law's concrete type.
+
+use crate::fit::batch_law::BatchLaw;
+use crate::fit::bootstrap::{BootstrapPlan, bootstrap_intervals};
+use crate::fit::estimator::{
+    Coordinate, Estimator, FORESIGHT, FreeLaw, FreeParameter, Setting, Target, Values,
+};
+use crate::fit::interval::{Drawing, FreeIntervals, IntervalMethod, IntervalOptions};
+use crate::fit::model::Sampling;
+use crate::fit::posterior::{PosteriorPlan, posterior_intervals};
+use crate::fit::profile::profile_intervals;
+use crate::fit::residual::Rows;
+use crate::fit::uncertainty::covariance;
+use crate::samples::{QUANTITIES, SampleGroup};
+use windfall_contact::laws::any_law::{AnyLaw, LARGEST_PARAMETERS};
+use windfall_contact::laws::kind::Law;
+use windfall_numerics::cholesky;
+use windfall_numerics::least_squares::{Minimum, Options, Stop};
+
+/// Longest step of a logarithmic and of a linear coordinate.
+const LONGEST_STEP: (f64, f64) = (2.0, 0.5);
+/// Gain, in units of the residual variance, that may be lost to the kinks that
+/// samples leave at separation: a tenth of a standard deviation.
+const ROUGHNESS: f64 = 0.01;
+/// How far another minimum is looked for; blocks of samples.
+const ONSET_SHIFT: f64 = 1.5;
+/// How often it is looked for on either side.
+const MOST_SHIFTS: usize = 4;
+/// A minimum is another one if it is lower by this; units of χ².
+const LOWER_BY: f64 = 1e-3;
+/// Free parameters that one fit can have.
+pub(crate) const LARGEST_FREE: usize = 9;
+/// Velocity, onset and displacement offset.
+const NUISANCES: usize = 3;
+const _: () = assert!(LARGEST_PARAMETERS + NUISANCES <= LARGEST_FREE);
+
+/// What the minimiser found, without the law's type.
+#[derive(Clone, Debug)]
+pub(crate) struct Solution {
+    /// Values of the law's parameters; SI.
+    pub law: Vec<f64>,
+    /// Values of the free parameters, in their order; SI.
+    pub free: Vec<f64>,
+    /// Covariance of the free parameters; empty when it is singular.
+    pub covariance: Vec<Vec<f64>>,
+    /// Velocity at first touch; m/s.
+    pub velocity: f64,
+    /// Time of first touch; s.
+    pub onset: f64,
+    /// Displacement offset; m.
+    pub offset: f64,
+    /// Cost at the optimum.
+    pub cost: f64,
+    /// Evaluations of the model.
+    pub evaluations: usize,
+    /// Why the minimiser stopped.
+    pub stop: Stop,
+    /// −1, 0 or 1 for each free parameter: at its lower bound, at none, at its
+    /// upper bound.
+    pub at_bound: Vec<i8>,
+    /// Residuals and derivatives.
+    pub rows: Rows,
+    /// Intervals that are more than estimate ± deviation, where asked for.
+    pub intervals: Option<FreeIntervals>,
+}
+
+/// Limits of the minimiser and of what is known.
+#[derive(Clone, Debug)]
+pub(crate) struct Limits {
+    /// Relative change of the cost at convergence.
+    pub cost_tolerance: f64,
+    /// Evaluations.
+    pub max_evaluations: usize,
+    /// Samples of all quantities.
+    pub samples: usize,
+    /// Standard uncertainty of each quantity's zero that the weights do not know;
+    /// SI.
+    pub offsets: [f64; QUANTITIES],
+    /// Intervals wanted; `None` while the noise is still being found.
+    pub intervals: Option<IntervalPlan>,
+}
+
+/// What intervals are made with.
+#[derive(Clone, Debug)]
+pub(crate) struct IntervalPlan {
+    pub options: IntervalOptions,
+    pub confidence: f64,
+    /// Student's quantile of the confidence.
+    pub quantile: f64,
+    /// Normal priors of the free parameters' coordinates: mean, deviation.
+    pub priors: Vec<Option<(f64, f64)>>,
+}
+
+/// Solves from each start in turn until one converges inside the bounds, and
+/// returns the best; `None` when the model cannot be evaluated at any.
+pub(crate) fn solve(
+    law: &Law,
+    setting: &Setting,
+    free: &[FreeParameter],
+    starts: &[(Vec<f64>, [f64; 4])],
+    limits: &Limits,
+) -> Option<Solution> {
+    // The narrowest arrays that hold the free parameters; the field's usual
+    // law and those of the user are compiled for themselves, the others share
+    // their code.
+    let count = starts.first()?.0.len();
+    let lanes = free.iter().filter(|p| p.target.needs_lane()).count();
+    match (law, free.len(), lanes) {
+        (Law::KuwabaraKono(law), ..=2, _) => {
+            best_of::<_, 2, 4, 2>(*law, setting, free, &values(starts), count, limits)
+        }
+        (Law::KuwabaraKono(law), ..=5, ..=3) => {
+            best_of::<_, 2, 4, 5>(*law, setting, free, &values(starts), count, limits)
+        }
+        (Law::User(law), ..=5, ..=3) => best_of::<_, LARGEST_PARAMETERS, 4, 5>(
+            *law,
+            setting,
+            free,
+            &values(starts),
+            count,
+            limits,
+        ),
+        (law, _, _) => best_of::<_, LARGEST_PARAMETERS, 8, LARGEST_FREE>(
+            AnyLaw(*law),
+            setting,
+            free,
+            &values(starts),
+            count,
+            limits,
+        ),
+    }
+}
+
+fn values<const N: usize>(starts: &[(Vec<f64>, [f64; 4])]) -> Vec<Values<N>> {
+    let value = |(law, [velocity, mass, onset, offset]): &(Vec<f64>, [f64; 4])| {
+        let mut parameters = [0.0; N];
+        parameters[..law.len()].copy_from_slice(law);
+        Values {
+            law: parameters,
+            velocity: *velocity,
+            inverse_mass: 1.0 / mass,
+            onset: *onset,
+            offset: *offset,
+        }
+    };
+    starts.iter().map(value).collect()
+}
+
+fn best_of<L, const N: usize, const W: usize, const P: usize>(
+    law: L,
+    setting: &Setting,
+    free: &[FreeParameter],
+    starts: &[Values<N>],
+    law_count: usize,
+    limits: &Limits,
+) -> Option<Solution>
+where
+    L: BatchLaw<N>,
+{
+    let mut best: Option<(Estimator<L, N, W, P>, Minimum<P>)> = None;
+    let mut evaluations = 0;
+    for start in starts {
+        let mut estimator = Estimator::<L, N, W, P>::new(law, *setting, free, *start);
+        let minimum = estimator.minimise(&options(free, limits));
+        evaluations += minimum.evaluations;
+        if minimum.stop == Stop::BadStart {
+            continue;
+        }
+        let inside = minimum.at_bound.iter().all(|side| *side == 0);
+        let good = minimum.stop == Stop::Converged && inside;
+        if best.as_ref().is_none_or(|(_, b)| better(&minimum, b)) {
+            best = Some((estimator, minimum));
+        }
+        if good {
+            break;
+        }
+    }
+    let (estimator, minimum) = best?;
+    let (minimum, spent) = over_onsets(&estimator, minimum, free, &options(free, limits));
+    evaluations += spent;
+    let smooth = minimum;
+    let (minimum, spent) = polished(&estimator, minimum, &options(free, limits));
+    evaluations += spent;
+    let mut solution = complete(
+        law_count,
+        &estimator,
+        &minimum,
+        setting.groups,
+        free,
+        limits,
+        evaluations,
+    )?;
+    if let Some(plan) = &limits.intervals
+        && minimum.stop == Stop::Converged
+    {
+        solution.intervals = intervals(&estimator, &smooth, plan, &options(free, limits));
+    }
+    Some(solution)
+}
+
+/// Intervals around the smooth minimum, which follows the data without the cusps
+/// of instantaneous samples.
+fn intervals<L, const N: usize, const W: usize, const P: usize>(
+    estimator: &Estimator<L, N, W, P>,
+    minimum: &Minimum<P>,
+    plan: &IntervalPlan,
+    options: &Options<P>,
+) -> Option<FreeIntervals>
+where
+    L: BatchLaw<N>,
+{
+    let count = estimator.free().len();
+    if plan.options.method == IntervalMethod::Asymptotic {
+        return None;
+    }
+    let (equations, rows) = estimator.rows(&minimum.parameters)?;
+    let minimum = Minimum {
+        equations,
+        ..*minimum
+    };
+    let mut normal = equations.normal;
+    for i in count..P {
+        normal[i][i] = 1.0;
+    }
+    let covariance = cholesky::inverse(&normal)?;
+    let IntervalOptions {
+        replicates,
+        draws,
+        chains,
+        seed,
+        ..
+    } = plan.options;
+    let confidence = plan.confidence;
+    let priors = plan.priors.clone();
+    match plan.options.method {
+        IntervalMethod::Asymptotic => None,
+        IntervalMethod::Profile => Some(profile_intervals(
+            estimator,
+            &minimum,
+            &covariance,
+            plan.quantile,
+            options,
+        )),
+        IntervalMethod::Bootstrap => {
+            let plan = BootstrapPlan {
+                replicates,
+                seed,
+                confidence,
+            };
+            bootstrap_intervals(estimator, &minimum, &rows, &plan, options)
+        }
+        IntervalMethod::Posterior => {
+            let plan = PosteriorPlan {
+                drawing: Drawing {
+                    chains,
+                    draws,
+                    seed,
+                },
+                confidence,
+                priors: &priors,
+            };
+            let factor = cholesky::lower(&covariance)?;
+            posterior_intervals(estimator, &minimum, &factor, &plan)
+        }
+    }
+}
+
+/// The lowest of the minima that lie a block of samples before or after: where
+/// noise is persistent the cost is wavy in the onset.
+fn over_onsets<L, const N: usize, const W: usize, const P: usize>(
+    estimator: &Estimator<L, N, W, P>,
+    minimum: Minimum<P>,
+    free: &[FreeParameter],
+    options: &Options<P>,
+) -> (Minimum<P>, usize)
+where
+    L: FreeLaw<N>,
+{
+    let blocks = estimator.groups().iter().filter(|group| group.means);
+    let interval = blocks.map(SampleGroup::interval).fold(0.0, f64::max);
+    let onset = free.iter().position(|p| p.target == Target::Onset);
+    let (Some(onset), true) = (onset, interval > 0.0) else {
+        return (minimum, 0);
+    };
+    let Coordinate::Linear(scale) = free[onset].coordinate else {
+        return (minimum, 0);
+    };
+    let (mut best, mut spent) = (minimum, 0);
+    for side in [-1.0, 1.0] {
+        for _ in 0..MOST_SHIFTS {
+            let mut start = best.parameters;
+            start[onset] += side * ONSET_SHIFT * interval / scale;
+            let other = estimator.clone().minimise_from(&start, options);
+            spent += other.evaluations;
+            let usable = matches!(other.stop, Stop::Converged | Stop::Stuck);
+            if !(usable && other.equations.cost < best.equations.cost - LOWER_BY) {
+                break;
+            }
+            best = other;
+        }
+    }
+    (best, spent)
+}
+
+/// The minimum for instantaneous samples nearest to that for averaged ones: the
+/// averaging only made the way there smooth. Where a cusp is in the way, or where
+/// averages describe the samples better, the smooth minimum stays.
+fn polished<L, const N: usize, const W: usize, const P: usize>(
+    estimator: &Estimator<L, N, W, P>,
+    minimum: Minimum<P>,
+    options: &Options<P>,
+) -> (Minimum<P>, usize)
+where
+    L: FreeLaw<N>,
+{
+    let means = estimator.groups().iter().any(|group| group.means);
+    if minimum.stop != Stop::Converged || !estimator.averages() || means {
+        return (minimum, 0);
+    }
+    let exact = estimator
+        .with_sampling(Sampling::Instantaneous)
+        .minimise_from(&minimum.parameters, options);
+    let good = exact.stop == Stop::Converged
+        && exact.at_bound == minimum.at_bound
+        && exact.equations.cost <= minimum.equations.cost;
+    let spent = exact.evaluations;
+    (if good { exact } else { minimum }, spent)
+}
+
+fn better<const P: usize>(one: &Minimum<P>, other: &Minimum<P>) -> bool {
+    one.equations.cost < other.equations.cost
+}
+
+fn options<const P: usize>(free: &[FreeParameter], limits: &Limits) -> Options<P> {
+    let mut largest_step = [f64::INFINITY; P];
+    for (step, parameter) in largest_step.iter_mut().zip(free) {
+        *step = match parameter.coordinate {
+            Coordinate::Logarithm => LONGEST_STEP.0,
+            Coordinate::Linear(_) => LONGEST_STEP.1,
+        };
+    }
+    Options {
+        cost_tolerance: limits.cost_tolerance,
+        max_evaluations: limits.max_evaluations,
+        roughness: ROUGHNESS / limits.samples as f64,
+        largest_step,
+        foresight: FORESIGHT,
+        ..Options::default()
+    }
+}
+
+fn complete<L, const N: usize, const W: usize, const P: usize>(
+    law_count: usize,
+    estimator: &Estimator<L, N, W, P>,
+    minimum: &Minimum<P>,
+    groups: &[SampleGroup],
+    free: &[FreeParameter],
+    limits: &Limits,
+    evaluations: usize,
+) -> Option<Solution>
+where
+    L: FreeLaw<N>,
+{
+    let (equations, rows) = estimator.rows(&minimum.parameters)?;
+    let values = estimator.values(&minimum.parameters);
+    let at: Vec<f64> = free.iter().map(|p| values.get(p.target)).collect();
+    let slope = |i: usize| free[i].coordinate.slope(at[i]);
+    let count = free.len();
+    let covariance =
+        covariance(&equations, &rows, groups, &limits.offsets, count).map_or(vec![], |c| {
+            (0..count)
+                .map(|i| (0..count).map(|j| c[i][j] * slope(i) * slope(j)).collect())
+                .collect()
+        });
+    Some(Solution {
+        law: values.law[..law_count].to_vec(),
+        free: at,
+        covariance,
+        velocity: values.velocity,
+        onset: values.onset,
+        offset: values.offset,
+        // Of the samples as they were taken in the end, not of the averages that
+        // the covariance is made with.
+        cost: minimum.equations.cost,
+        evaluations: evaluations + 1,
+        stop: minimum.stop,
+        at_bound: minimum.at_bound[..count].to_vec(),
+        rows,
+        intervals: None,
+    })
+}

@@ -1,0 +1,93 @@
+//! What a fit returns.
+
+use crate::finding::Finding;
+use crate::fit::identifiability::Direction;
+use crate::fit::interval::IntervalDetail;
+use crate::fit::uncertainty::RunsTest;
+use crate::rig::simulate::ImpactSummary;
+use crate::samples::Quantity;
+use windfall_contact::laws::kind::Law;
+
+/// One estimated parameter.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Estimate {
+    /// Name: the law's, or "initial_velocity", "onset", "displacement_offset".
+    pub name: String,
+    /// Estimate; SI.
+    pub value: f64,
+    /// Standard deviation; SI. NaN never: a parameter without one is reported
+    /// with [`Finding::Singular`] and an infinite deviation.
+    pub sd: f64,
+    /// Lower end of the interval; SI.
+    pub low: f64,
+    /// Upper end of the interval; SI.
+    pub high: f64,
+    /// Unit.
+    pub unit: String,
+}
+
+/// How one quantity fits.
+#[derive(Clone, Debug, PartialEq)]
+pub struct QuantityFit {
+    /// The quantity.
+    pub quantity: Quantity,
+    /// Samples.
+    pub samples: usize,
+    /// Weight in the cost.
+    pub weight: f64,
+    /// Noise of a sample, from the recording itself; SI.
+    pub noise: f64,
+    /// Correlation of the noise of successive samples that the fit reckoned
+    /// with; 1.
+    pub persistence: f64,
+    /// Root mean square residual; SI.
+    pub rms_residual: f64,
+    /// Root mean square of the residuals made independent, over their standard
+    /// deviation by the recording's noise alone; 1.
+    pub standardised: f64,
+    /// Runs test of the residuals, where there are enough.
+    pub runs: Option<RunsTest>,
+}
+
+/// A law fitted to an impact.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Fit {
+    /// The law with all its parameters.
+    pub law: Law,
+    /// The law's free parameters.
+    pub parameters: Vec<Estimate>,
+    /// What was estimated besides the law.
+    pub nuisances: Vec<Estimate>,
+    /// Correlations of all free parameters, in the order of `parameters` then
+    /// `nuisances`; empty when they are not available.
+    pub correlations: Vec<Vec<f64>>,
+    /// Weighted sum of squared residuals.
+    pub cost: f64,
+    /// Its root.
+    pub residual_norm: f64,
+    /// Samples of all quantities.
+    pub samples: usize,
+    /// Evaluations of the model.
+    pub evaluations: usize,
+    /// Whether a minimum was reached.
+    pub converged: bool,
+    /// Each quantity of the cost.
+    pub quantities: Vec<QuantityFit>,
+    /// Linear regression of eq. (9) for comparison, by name.
+    pub regression: Vec<Estimate>,
+    /// The impact that the fitted law describes.
+    pub simulated: ImpactSummary,
+    /// Velocity at first touch of the fitted model; m/s.
+    pub velocity: f64,
+    /// Time of first touch on the recording's clock; s.
+    pub onset: f64,
+    /// Displacement offset; m.
+    pub offset: f64,
+    /// Combinations of parameters and nuisances, in their order, from what the
+    /// data tell least to what they tell best; empty where they cannot be told.
+    pub directions: Vec<Direction>,
+    /// How the intervals came about.
+    pub intervals: IntervalDetail,
+    /// What a reader should know.
+    pub findings: Vec<Finding>,
+}

@@ -1,0 +1,163 @@
+//! A counted displacement at the instants where its count changes.
+//!
+//! Between changes an encoder says nothing new: its error is a sawtooth, neither
+//! small nor independent from sample to sample. Where the count changes, the
+//! displacement is known exactly, at a time known to one sampling interval Δt:
+//! an error of displacement uniform over v Δt, independent from edge to edge.
+
+use windfall_signal::encoder::edge_rate::{CountTimes, edges};
+use windfall_signal::impact::Series;
+
+/// Fewest edges that replace the samples.
+const LEAST_EDGES: usize = 4;
+/// More edges than this part of the samples, and several counts pass between
+/// samples: then each sample is rounded by itself; 1.
+const MOST_EDGES: f64 = 0.5;
+/// More changes of direction than this part of the edges, and noise moves the
+/// count to and fro; 1.
+const MOST_REVERSALS: f64 = 0.2;
+/// Steps longer than this many counts are no single ones.
+const SINGLE: f64 = 1.5;
+/// Share of the steps that must be single; 1.
+const MOSTLY: f64 = 0.9;
+/// Lines of an encoder are no more accurate than this part of a count: keeps
+/// the weight of a slow edge finite; 1.
+pub(crate) const LINE_ACCURACY: f64 = 0.02;
+
+/// Displacements at the changes of a count.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct EdgeSamples {
+    /// Times; s on the clock of the series.
+    pub times: Vec<f64>,
+    /// Displacements; m.
+    pub values: Vec<f64>,
+    /// Sampling interval around each; s.
+    pub intervals: Vec<f64>,
+    /// Speed there by the neighbouring edges; m/s.
+    pub speeds: Vec<f64>,
+    /// Length of a count; m.
+    pub quantum: f64,
+}
+
+/// The edges of a displacement, if it is counted and they say all that it does.
+pub(crate) fn edge_samples(series: &Series) -> Option<EdgeSamples> {
+    let quantum = series.quantum?;
+    let (times, values) = (&series.times, &series.values);
+    let found = edges(times, values, CountTimes::Sampled);
+    let count = found.times.len();
+    if count < LEAST_EDGES || count as f64 > MOST_EDGES * times.len() as f64 {
+        return None;
+    }
+    let steps: Vec<(f64, f64)> = (1..times.len())
+        .filter(|&i| values[i] != values[i - 1])
+        .map(|i| (values[i] - values[i - 1], times[i] - times[i - 1]))
+        .collect();
+    let share = |n: usize| n as f64 / count as f64;
+    let single = steps
+        .iter()
+        .filter(|s| s.0.abs() < SINGLE * quantum)
+        .count();
+    let reversals = steps.windows(2).filter(|w| w[0].0 * w[1].0 < 0.0).count();
+    if share(single) < MOSTLY || share(reversals) > MOST_REVERSALS {
+        return None;
+    }
+    let speeds = (0..count)
+        .map(|i| {
+            let (from, to) = (i.saturating_sub(1), (i + 1).min(count - 1));
+            let span = found.times[to] - found.times[from];
+            (found.values[to] - found.values[from]).abs() / span
+        })
+        .collect();
+    Some(EdgeSamples {
+        times: found.times,
+        values: found.values,
+        intervals: steps.iter().map(|s| s.1).collect(),
+        speeds,
+        quantum,
+    })
+}
+
+impl EdgeSamples {
+    /// Variance of each displacement: that of its time, and `jitter`²; m².
+    pub(crate) fn variances(&self, speeds: &[f64], jitter: f64) -> Vec<f64> {
+        let jitter = jitter.max(LINE_ACCURACY * self.quantum);
+        let timed = self.timing_variances(speeds);
+        timed.map(|variance| variance + jitter * jitter).collect()
+    }
+
+    /// Root mean square error of an edge by its time alone; m.
+    pub(crate) fn typical_deviation(&self) -> f64 {
+        let variances = self.variances(&self.speeds, 0.0);
+        (variances.iter().sum::<f64>() / variances.len() as f64).sqrt()
+    }
+
+    fn timing_variances<'a>(&'a self, speeds: &'a [f64]) -> impl Iterator<Item = f64> + 'a {
+        let pairs = speeds.iter().zip(&self.intervals);
+        pairs.map(|(speed, interval)| (speed * interval).powi(2) / 12.0)
+    }
+
+    /// Standard deviation of what the residuals have beyond the timing; m.
+    pub(crate) fn jitter(&self, residuals: &[f64], speeds: &[f64], parameters: usize) -> f64 {
+        let count = residuals.len();
+        let seen: f64 = residuals.iter().map(|r| r * r).sum();
+        let freedom = count.saturating_sub(parameters).max(1) as f64;
+        let timed: f64 = self.timing_variances(speeds).sum();
+        (seen / freedom - timed / count as f64).max(0.0).sqrt()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use windfall_signal::noise::gaussian::{noise_source, uniform};
+
+    fn counted(speed: f64, interval: f64, quantum: f64, samples: usize, phase: f64) -> Series {
+        let times: Vec<f64> = (0..samples).map(|i| i as f64 * interval).collect();
+        let values = times
+            .iter()
+            .map(|t| ((speed * t / quantum + phase).floor() - phase) * quantum)
+            .collect();
+        Series {
+            times,
+            values,
+            quantum: Some(quantum),
+            ..Series::default()
+        }
+    }
+
+    /// Uniform motion: the edge lies midway between two counts, where the true
+    /// displacement departs by a uniform error of v Δt.
+    #[test]
+    fn closed_form_error_of_an_edge() {
+        let (speed, interval, quantum) = (0.31, 5e-6, 8.8e-6);
+        let (mut square, mut count) = (0.0, 0);
+        let mut source = noise_source(1, 0);
+        for _ in 0..200 {
+            let phase = uniform(&mut source);
+            let series = counted(speed, interval, quantum, 600, phase);
+            let edges = edge_samples(&series).unwrap();
+            for (time, value) in edges.times.iter().zip(&edges.values) {
+                // Half a count: a floor is half a count low on average.
+                square += (speed * time - value - 0.5 * quantum).powi(2);
+                count += 1;
+            }
+            let told = edges.variances(&edges.speeds, 0.0)[20] - (0.02 * quantum).powi(2);
+            let expected = (speed * interval).powi(2) / 12.0;
+            assert!((told / expected - 1.0).abs() < 0.2, "{told} {expected}");
+        }
+        let ratio = square / f64::from(count) / ((speed * interval).powi(2) / 12.0);
+        assert!((ratio - 1.0).abs() < 0.05, "{ratio}");
+    }
+
+    #[test]
+    fn rejects_samples_that_are_rounded_one_by_one() {
+        // Three counts pass between samples.
+        assert!(edge_samples(&counted(0.3, 1e-4, 1e-5, 300, 0.2)).is_none());
+        assert!(edge_samples(&counted(0.3, 5e-6, 1e-5, 10, 0.2)).is_none());
+        let smooth = Series {
+            quantum: None,
+            ..counted(0.3, 5e-6, 1e-5, 600, 0.2)
+        };
+        assert!(edge_samples(&smooth).is_none());
+    }
+}

@@ -1,0 +1,391 @@
+//! Forward: one impact under a force law, summed up or sampled.
+
+use crate::error::Error;
+use crate::rig::contact_motion::{
+    ImpactEvent, Seeds, Segment, Separation, Sink, follow, scaled_time,
+};
+use crate::rig::kind::{Carriage, Rig};
+use crate::rig::motion::Motion;
+use windfall_contact::law::{ContactLaw, EndRule, SMALLEST_DISPLACEMENT};
+use windfall_contact::laws::any_law::AnyLaw;
+use windfall_contact::laws::kind::Law;
+use windfall_numerics::ode::step::Tolerance;
+use windfall_numerics::root::bracketed_root;
+
+/// Relative accuracy of simulations; the reference tables ask for 1e-8.
+pub(crate) const ACCURACY: f64 = 1e-12;
+/// Points per piece of the motion among which a maximum is looked for.
+const SEARCH_POINTS: usize = 16;
+/// A peak is located to this fraction of a piece.
+const PEAK_TOLERANCE: f64 = 1e-13;
+/// First guess of the longest contact, and how often it may be doubled; s.
+const FIRST_DURATION: f64 = 0.02;
+const LARGEST_DOUBLINGS: usize = 10;
+/// Gauss-Legendre nodes and weights on [−1, 1], for the impulse (Abramowitz and
+/// Stegun 1964, table 25.4).
+pub(crate) const GAUSS_NODES: [f64; 8] = [
+    -0.960_289_856_497_536_2,
+    -0.796_666_477_413_626_7,
+    -0.525_532_409_916_329,
+    -0.183_434_642_495_649_8,
+    0.183_434_642_495_649_8,
+    0.525_532_409_916_329,
+    0.796_666_477_413_626_7,
+    0.960_289_856_497_536_2,
+];
+pub(crate) const GAUSS_WEIGHTS: [f64; 8] = [
+    0.101_228_536_290_376_26,
+    0.222_381_034_453_374_48,
+    0.313_706_645_877_887_3,
+    0.362_683_783_378_362,
+    0.362_683_783_378_362,
+    0.313_706_645_877_887_3,
+    0.222_381_034_453_374_48,
+    0.101_228_536_290_376_26,
+];
+
+/// What one impact comes to; SI.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct ImpactSummary {
+    /// Largest contact force; N.
+    pub peak_force: f64,
+    /// Time of the largest force, from first touch; s.
+    pub time_of_peak_force: f64,
+    /// Largest displacement; m.
+    pub max_displacement: f64,
+    /// Time of the largest displacement; s.
+    pub time_of_max_displacement: f64,
+    /// Force at the largest displacement; N.
+    pub force_at_max_displacement: f64,
+    /// From first touch to the end of contact; s.
+    pub contact_duration: f64,
+    /// Displacement left at the end of contact; m.
+    pub final_displacement: f64,
+    /// Speed at the end of contact, away from the fruit; m/s.
+    pub separation_velocity: f64,
+    /// Separation over impact velocity; 1.
+    pub restitution: f64,
+    /// Kinetic energy lost, m (v₀² − v²)/2; J.
+    pub absorbed_energy: f64,
+    /// Integral of the force over the contact; N s.
+    pub impulse: f64,
+}
+
+/// Motion at given times.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Trajectory {
+    /// Times from first touch; s.
+    pub times: Vec<f64>,
+    /// Displacement; m.
+    pub displacement: Vec<f64>,
+    /// Displacement rate; m/s.
+    pub rate: Vec<f64>,
+    /// Contact force; N.
+    pub force: Vec<f64>,
+    /// Acceleration; m/s².
+    pub acceleration: Vec<f64>,
+}
+
+/// A free body of `mass` strikes at `velocity`; gravity or another driving
+/// acceleration towards the fruit may act.
+///
+/// # Errors
+/// [`Error::BadInput`] when mass or velocity is not positive,
+/// [`Error::EndlessContact`] when the bodies do not separate.
+pub fn simulate_impact(
+    law: &Law,
+    mass: f64,
+    velocity: f64,
+    driving_acceleration: f64,
+    end: EndRule,
+) -> Result<ImpactSummary, Error> {
+    let rig = Rig::Carriage(Carriage {
+        mass,
+        mass_sd: 0.0,
+        driving_acceleration,
+    });
+    simulate_rig(law, &rig, velocity, end)
+}
+
+/// The impactor of `rig` strikes at `velocity`.
+///
+/// # Errors
+/// As [`simulate_impact`].
+pub fn simulate_rig(
+    law: &Law,
+    rig: &Rig,
+    velocity: f64,
+    end: EndRule,
+) -> Result<ImpactSummary, Error> {
+    rig.check()?;
+    check_positive("velocity", velocity)?;
+    summarise(AnyLaw(*law), rig, velocity, end)
+}
+
+/// Motion of the impactor of `rig` at `times` (ascending, from first touch;
+/// negative before it).
+///
+/// # Errors
+/// As [`simulate_impact`]; a contact that goes on past the last time is no
+/// error here.
+pub fn trajectory(
+    law: &Law,
+    rig: &Rig,
+    velocity: f64,
+    times: &[f64],
+    end: EndRule,
+) -> Result<Trajectory, Error> {
+    rig.check()?;
+    check_positive("velocity", velocity)?;
+    sample(AnyLaw(*law), rig, velocity, times, end)
+}
+
+pub(crate) fn check_positive(name: &'static str, value: f64) -> Result<(), Error> {
+    if value.is_finite() && value > 0.0 {
+        Ok(())
+    } else {
+        Err(Error::BadInput { name, value })
+    }
+}
+
+fn event<L, const N: usize>(
+    law: L,
+    rig: &Rig,
+    velocity: f64,
+    end: EndRule,
+) -> ImpactEvent<L, N, 1> {
+    ImpactEvent {
+        law,
+        motion: Motion::from(rig),
+        velocity,
+        end,
+        seeds: Seeds::NONE,
+        tolerance: Tolerance {
+            relative: ACCURACY,
+            absolute: [ACCURACY * 1e-6, ACCURACY * velocity],
+        },
+    }
+}
+
+fn summarise<L: ContactLaw<N>, const N: usize>(
+    law: L,
+    rig: &Rig,
+    velocity: f64,
+    end: EndRule,
+) -> Result<ImpactSummary, Error> {
+    let event = event(law, rig, velocity, end);
+    let mut duration = FIRST_DURATION;
+    for _ in 0..LARGEST_DOUBLINGS {
+        let mut tally = Tally {
+            event: &event,
+            summary: ImpactSummary::default(),
+        };
+        if let Some(separation) = follow(&event, 0.0, duration, &mut tally)? {
+            return Ok(complete(tally.summary, &separation, rig, velocity));
+        }
+        duration *= 2.0;
+    }
+    Err(Error::EndlessContact {
+        duration: duration * 0.5,
+    })
+}
+
+fn complete(
+    found: ImpactSummary,
+    separation: &Separation,
+    rig: &Rig,
+    velocity: f64,
+) -> ImpactSummary {
+    let speed = -separation.rate;
+    ImpactSummary {
+        contact_duration: separation.time,
+        final_displacement: separation.displacement,
+        separation_velocity: speed,
+        restitution: speed / velocity,
+        absorbed_energy: 0.5 * rig.effective_mass() * (velocity - speed) * (velocity + speed),
+        ..found
+    }
+}
+
+/// State read from a piece of the motion.
+#[derive(Clone, Copy)]
+struct State {
+    time: f64,
+    x: f64,
+    v: f64,
+    force: f64,
+    acceleration: f64,
+    /// dF/dt; N/s.
+    force_rate: f64,
+}
+
+fn state_at<L: ContactLaw<N>, const N: usize>(
+    event: &ImpactEvent<L, N, 1>,
+    segment: &Segment<1>,
+    sigma: f64,
+) -> State {
+    let [x, v] = segment.step.at(sigma).map(|lanes| lanes.0[0]);
+    let law = event
+        .law
+        .evaluate(f64::max(x, SMALLEST_DISPLACEMENT), v, segment.peak);
+    let force = if event.end == EndRule::ForceZero {
+        law.force.max(0.0)
+    } else {
+        law.force
+    };
+    let acceleration = event.motion.acceleration(x, v, force).value;
+    let s = segment.step.start + sigma * segment.step.width;
+    State {
+        time: s.powi(segment.power as i32),
+        x,
+        v,
+        force,
+        acceleration,
+        force_rate: law.by_displacement * v + law.by_rate * acceleration,
+    }
+}
+
+/// Peaks and impulse, piece by piece.
+struct Tally<'a, L, const N: usize> {
+    event: &'a ImpactEvent<L, N, 1>,
+    summary: ImpactSummary,
+}
+
+impl<L: ContactLaw<N>, const N: usize> Sink<1> for Tally<'_, L, N> {
+    fn contact(&mut self, segment: &Segment<1>) {
+        let end = sigma_of(segment, segment.to);
+        let state = |sigma: f64| state_at(self.event, segment, sigma);
+
+        // The force's maximum may be at first touch, where some laws jump.
+        let force = highest(
+            end,
+            |sigma| state(sigma).force,
+            |sigma| state(sigma).force_rate,
+        );
+        let peak = state(force);
+        if peak.force > self.summary.peak_force {
+            self.summary.peak_force = peak.force;
+            self.summary.time_of_peak_force = peak.time;
+        }
+        let deepest = state(highest(end, |sigma| state(sigma).x, |sigma| state(sigma).v));
+        if deepest.x > self.summary.max_displacement {
+            self.summary.max_displacement = deepest.x;
+            self.summary.time_of_max_displacement = deepest.time;
+            self.summary.force_at_max_displacement = deepest.force;
+        }
+
+        // ∫ F dt = ∫ F q s^(q−1) ds
+        let (power, width) = (f64::from(segment.power), segment.step.width);
+        for (node, weight) in GAUSS_NODES.iter().zip(GAUSS_WEIGHTS) {
+            let sigma = 0.5 * end * (1.0 + node);
+            let s = segment.step.start + sigma * width;
+            let stretch = power * s.powi(segment.power as i32 - 1);
+            self.summary.impulse += 0.5 * end * width * weight * stretch * state(sigma).force;
+        }
+    }
+
+    fn flight(&mut self, _segment: &Segment<1>) {}
+}
+
+fn sigma_of(segment: &Segment<1>, time: f64) -> f64 {
+    (scaled_time(time, segment.power) - segment.step.start) / segment.step.width
+}
+
+/// Where in `[0, end]` a function with the derivative `slope` is highest.
+#[inline(always)]
+pub(crate) fn highest(end: f64, value: impl Fn(f64) -> f64, slope: impl Fn(f64) -> f64) -> f64 {
+    let point = |i: usize| end * i as f64 / SEARCH_POINTS as f64;
+    let best = (0..=SEARCH_POINTS)
+        .map(|i| (i, value(point(i))))
+        .fold((0, f64::NEG_INFINITY), |best, next| {
+            if next.1 > best.1 { next } else { best }
+        })
+        .0;
+    let (low, high) = (
+        point(best.saturating_sub(1)),
+        point((best + 1).min(SEARCH_POINTS)),
+    );
+    let root = bracketed_root(low, high, PEAK_TOLERANCE, slope);
+    if value(root) >= value(point(best)) {
+        root
+    } else {
+        point(best)
+    }
+}
+
+/// Reads the motion at given times.
+struct Sampler<'a, L, const N: usize> {
+    event: &'a ImpactEvent<L, N, 1>,
+    times: &'a [f64],
+    out: Trajectory,
+    last: f64,
+}
+
+impl<L: ContactLaw<N>, const N: usize> Sampler<'_, L, N> {
+    fn read(&mut self, segment: &Segment<1>, touching: bool) {
+        for (i, &time) in self.times.iter().enumerate() {
+            let ends = segment.to >= self.last && time <= segment.to;
+            if time < segment.from || !(time < segment.to || ends) {
+                continue;
+            }
+            let sigma = sigma_of(segment, time);
+            let (x, v, force, acceleration) = if touching {
+                let s = state_at(self.event, segment, sigma);
+                (s.x, s.v, s.force, s.acceleration)
+            } else {
+                let [x, v] = segment.step.at(sigma).map(|lanes| lanes.0[0]);
+                let a = self.event.motion.acceleration(x, v, 0.0).value;
+                (x, v, 0.0, a)
+            };
+            self.out.displacement[i] = x;
+            self.out.rate[i] = v;
+            self.out.force[i] = force;
+            self.out.acceleration[i] = acceleration;
+        }
+    }
+}
+
+impl<L: ContactLaw<N>, const N: usize> Sink<1> for Sampler<'_, L, N> {
+    fn contact(&mut self, segment: &Segment<1>) {
+        self.read(segment, true);
+    }
+
+    fn flight(&mut self, segment: &Segment<1>) {
+        self.read(segment, false);
+    }
+}
+
+fn sample<L: ContactLaw<N>, const N: usize>(
+    law: L,
+    rig: &Rig,
+    velocity: f64,
+    times: &[f64],
+    end: EndRule,
+) -> Result<Trajectory, Error> {
+    let (Some(&first), Some(&last)) = (times.first(), times.last()) else {
+        return Ok(Trajectory::default());
+    };
+    if let Some(i) = (1..times.len()).find(|&i| times[i] < times[i - 1]) {
+        return Err(Error::UnorderedTimes {
+            index: i,
+            time: times[i],
+            before: times[i - 1],
+        });
+    }
+    let event = event(law, rig, velocity, end);
+    let zeros = vec![0.0; times.len()];
+    let mut sampler = Sampler {
+        event: &event,
+        times,
+        out: Trajectory {
+            times: times.to_vec(),
+            displacement: zeros.clone(),
+            rate: zeros.clone(),
+            force: zeros.clone(),
+            acceleration: zeros,
+        },
+        last,
+    };
+    follow(&event, first.min(0.0), last, &mut sampler)?;
+    Ok(sampler.out)
+}

@@ -1,0 +1,8 @@
+//! Quantities with units, as text.
+
+mod dimension;
+mod error;
+pub mod nearest_name;
+pub mod quantity;
+pub mod symbol;
+mod syntax;

@@ -1,0 +1,4 @@
+//! Bruise from the impacts of a scene.
+
+pub mod damage;
+pub mod regression;

@@ -1,0 +1,416 @@
+//! Contacts of clumps of spheres: one for each pair of fruit, one for each side of a wall.
+//!
+//! Spheres of a clump overlap, and several of them may reach into the same partner. As the
+//! fruit that they stand for is convex, it touches once: the sphere that reaches deepest makes
+//! the contact, and hands it on when another one does.
+
+use crate::contacts::contact::{
+    Moment, Outcome, Parcel, encounter, event, event_of_pair, parted, spot, too_deep,
+};
+use crate::contacts::neighbours::Bodies;
+use crate::contacts::pair_contacts::LARGEST_OVERLAP;
+use crate::contacts::react::{Clock, Remembered, Touch, given, normal_of, react, surface_velocity};
+use crate::contacts::store::Load;
+use crate::contacts::wall_contacts::{
+    DEEPEST, NearPart, SAME_CONTACT, WallState, effective_radius as radius_at, find_hits,
+};
+use crate::error::{Error, fruit_name};
+use crate::event::Partner;
+use crate::interaction::Interaction;
+use crate::line::HalfLine;
+use crate::shape::wall::Closest;
+use crate::vector::{Vector, add, dot, length, plus_scaled, scaled, subtract};
+use crate::vector_of::cross;
+use std::collections::BTreeMap;
+use windfall_contact::effective::effective_radius;
+use windfall_contact::laws::kind::Law;
+use windfall_contact::with_law;
+
+/// A contact that is there.
+#[derive(Clone, Debug)]
+pub(crate) struct Touching {
+    pub law: Law,
+    pub parcel: Parcel,
+}
+
+/// A contact of a clump with a wall.
+#[derive(Clone, Debug)]
+pub(crate) struct TouchingWall {
+    pub wall: u32,
+    /// From the clump to the wall.
+    pub normal: Vector,
+    /// On the fruit a step ago; N.
+    pub force: Vector,
+    pub own: Touching,
+}
+
+/// Two fruit of which one or both are clumps.
+#[derive(Clone, Debug, Default)]
+struct FruitPair {
+    /// Bodies of the first (with the lower number) and of the second that may touch.
+    spheres: Vec<[u32; 2]>,
+    contact: Option<Touching>,
+}
+
+/// A clump and the walls near it.
+#[derive(Clone, Debug, Default)]
+struct NearWalls {
+    /// Its bodies, each with the parts of walls near it.
+    near: Vec<(u32, Vec<NearPart>)>,
+    contacts: Vec<TouchingWall>,
+}
+
+/// All contacts of clumps, by the numbers of the fruit.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct ClumpContacts {
+    pairs: BTreeMap<[u32; 2], FruitPair>,
+    walls: BTreeMap<u32, NearWalls>,
+}
+
+/// What a step needs to know.
+pub(crate) struct Around<'a, S> {
+    pub bodies: &'a Bodies,
+    pub walls: &'a WallState,
+    pub now: &'a Moment<'a>,
+    /// The interaction of two materials; of a material and a wall.
+    pub surface: S,
+    pub wall_materials: &'a [u32],
+}
+
+impl ClumpContacts {
+    /// Contacts of two fruit now.
+    pub(crate) fn pair_count(&self) -> usize {
+        let pairs = self.pairs.values();
+        pairs.filter(|own| own.contact.is_some()).count()
+    }
+
+    /// A new list of what may touch; contacts go over into it.
+    ///
+    /// * `pairs`: bodies of different fruit, of which one belongs to a clump
+    /// * `near`: bodies of clumps with parts of walls near them
+    pub(crate) fn relist(
+        &mut self,
+        bodies: &Bodies,
+        pairs: &[[u32; 2]],
+        near: Vec<(u32, Vec<NearPart>)>,
+    ) {
+        let mut old = std::mem::take(self);
+        let number = |body: u32| bodies.fruit[body as usize];
+        for &[i, j] in pairs {
+            let spheres = if number(i) < number(j) {
+                [i, j]
+            } else {
+                [j, i]
+            };
+            let own = self.pairs.entry(spheres.map(number)).or_default();
+            own.spheres.push(spheres);
+        }
+        for (key, own) in &mut self.pairs {
+            own.spheres.sort_unstable();
+            own.contact = old.pairs.get_mut(key).and_then(|old| old.contact.take());
+        }
+        for (body, parts) in near {
+            let own = self.walls.entry(number(body)).or_default();
+            own.near.push((body, parts));
+        }
+        for (fruit, own) in &mut self.walls {
+            own.near.sort_unstable_by_key(|(body, _)| *body);
+            let old = old.walls.get_mut(fruit);
+            own.contacts = old.map_or_else(Vec::new, |old| std::mem::take(&mut old.contacts));
+        }
+    }
+
+    /// Contacts of two fruit, with their numbers.
+    pub(crate) fn touching_pairs(&self) -> impl Iterator<Item = ([u32; 2], &Touching)> {
+        let pairs = self.pairs.iter();
+        pairs.filter_map(|(key, own)| Some((*key, own.contact.as_ref()?)))
+    }
+
+    /// Contacts with walls, with the numbers of the fruit.
+    pub(crate) fn touching_walls(&self) -> impl Iterator<Item = (u32, &TouchingWall)> {
+        let walls = self.walls.iter();
+        walls.flat_map(|(fruit, own)| own.contacts.iter().map(|own| (*fruit, own)))
+    }
+
+    /// A contact of two fruit that is there before a list is made.
+    pub(crate) fn put_pair(&mut self, fruit: [u32; 2], own: Touching) {
+        self.pairs.entry(fruit).or_default().contact = Some(own);
+    }
+
+    /// A contact with a wall that is there before a list is made.
+    pub(crate) fn put_wall(&mut self, fruit: u32, own: TouchingWall) {
+        self.walls.entry(fruit).or_default().contacts.push(own);
+    }
+
+    /// What contacts remember that are still there, with the fruit and what they touch.
+    pub(crate) fn all(&self) -> impl Iterator<Item = (u32, Partner, Parcel)> + '_ {
+        let pairs = self.touching_pairs();
+        let pairs = pairs.map(|([a, b], own)| (a, Partner::Fruit(b), own.parcel));
+        let walls = self.touching_walls();
+        pairs.chain(walls.map(|(fruit, own)| (fruit, Partner::Wall(own.wall), own.own.parcel)))
+    }
+
+    /// Adds the forces of all to the loads of bodies, one step on; the work of walls, J.
+    pub(crate) fn advance<'a>(
+        &mut self,
+        around: &Around<'a, impl Fn(u32, u32) -> &'a Interaction>,
+        loads: &mut [Load],
+        outcome: &mut Outcome,
+    ) -> f64 {
+        for own in self.pairs.values_mut() {
+            if let Err(problem) = own.advance(around, loads, outcome) {
+                outcome.problem.get_or_insert(problem);
+            }
+        }
+        let mut work = 0.0;
+        for (fruit, own) in &mut self.walls {
+            match own.advance(*fruit, around, loads, outcome) {
+                Ok(done) => work += done,
+                Err(problem) => {
+                    outcome.problem.get_or_insert(problem);
+                }
+            }
+        }
+        work
+    }
+}
+
+/// Velocity and spin of a body half a step ago.
+fn motion(bodies: &Bodies, body: usize) -> (Vector, Vector) {
+    let m = &bodies.motion[body];
+    ([m[0], m[1], m[2]], [m[4], m[5], m[6]])
+}
+
+fn centre(bodies: &Bodies, body: usize) -> Vector {
+    let HalfLine([x, y, z, _]) = bodies.place[body];
+    [x, y, z]
+}
+
+fn add_load(load: &mut Load, force: Vector, moment: Vector) {
+    for axis in 0..3 {
+        load[axis] += force[axis];
+        load[4 + axis] += moment[axis];
+    }
+}
+
+/// Where on its fruit a body is touched.
+fn spot_on(bodies: &Bodies, body: usize, normal: Vector) -> Vector {
+    let (turn, radius) = (bodies.turn[body], bodies.place[body][3]);
+    spot(turn, bodies.offset_of(body), radius, normal)
+}
+
+impl Touching {
+    /// Force and moment against rolling on the first body, one step on.
+    fn push(
+        &mut self,
+        surface: &Interaction,
+        touch: &Touch<f64>,
+        clock: Clock,
+    ) -> (Vector, Vector) {
+        let Parcel {
+            history,
+            peaks,
+            annuli,
+            rolling,
+            ..
+        } = &mut self.parcel;
+        let [d, v, peak] = given(touch, history.rate, peaks.displacement);
+        let found = with_law!(&self.law, law => normal_of(law, d, v, peak));
+        let own = Remembered {
+            memory: history,
+            peaks,
+            annuli: &mut annuli.0[..surface.annuli],
+            rolling: surface.rolls().then_some(rolling),
+        };
+        let reaction = react(found, surface, touch, clock, own);
+        (reaction.force, reaction.rolling)
+    }
+}
+
+impl FruitPair {
+    fn advance<'a>(
+        &mut self,
+        around: &Around<'a, impl Fn(u32, u32) -> &'a Interaction>,
+        loads: &mut [Load],
+        outcome: &mut Outcome,
+    ) -> Result<(), Error> {
+        let (bodies, now) = (around.bodies, around.now);
+        let deepest = self.spheres.iter().map(|own| (bodies.overlap(*own), *own));
+        let deepest = deepest.reduce(|a, b| if b.0 > a.0 { b } else { a });
+        let Some((depth, [i, j])) = deepest else {
+            return Ok(());
+        };
+        let (i, j) = (i as usize, j as usize);
+        if depth <= 0.0 {
+            if let Some(own) = self.contact.take() {
+                let fruit = (bodies.fruit[i], bodies.fruit[j]);
+                let parted = parted(own.parcel, -depth, now.clock);
+                outcome.events.push(event_of_pair(parted, fruit, false));
+            }
+            return Ok(());
+        }
+        let (a, b) = (bodies.place[i][3], bodies.place[j][3]);
+        let shallow = depth <= LARGEST_OVERLAP * a.min(b);
+        if !shallow {
+            let (fruit, partner) = (bodies.fruit[i], fruit_name(bodies.fruit[j]));
+            return Err(too_deep(now.clock.time, fruit, partner, depth, a.min(b)));
+        }
+        let between = subtract(centre(bodies, j), centre(bodies, i));
+        let normal = scaled(between, 1.0 / length(between));
+        let ((u, p), (w, q)) = (motion(bodies, i), motion(bodies, j));
+        let (near, far) = (a - 0.5 * depth, b - 0.5 * depth);
+        let arms = add(scaled(p, near), scaled(q, far));
+        let touch = Touch {
+            normal,
+            displacement: depth,
+            velocity: surface_velocity(subtract(u, w), arms, normal),
+            spin: subtract(p, q),
+            radius: effective_radius(a, b),
+        };
+        let surface = (around.surface)(bodies.material[i], bodies.material[j]);
+        let own = match &mut self.contact {
+            Some(own) => own,
+            none => {
+                let draws = |body: usize| &now.fruit[bodies.fruit[body] as usize].draws;
+                let law = surface.law_of(touch.radius, draws(i), Some(draws(j)))?;
+                let mut encounter = encounter(normal, depth, touch.velocity, now.clock);
+                encounter.place = plus_scaled(centre(bodies, i), normal, near);
+                encounter.spot = spot_on(bodies, i, normal);
+                encounter.other_spot = spot_on(bodies, j, scaled(normal, -1.0));
+                let parcel = Parcel::begin(surface.scale(touch.radius), now.clock, encounter);
+                none.insert(Touching { law, parcel })
+            }
+        };
+        let (force, rolling) = own.push(surface, &touch, now.clock);
+        let twist = cross(normal, force);
+        add_load(&mut loads[i], force, add(scaled(twist, near), rolling));
+        let (force, rolling) = (scaled(force, -1.0), scaled(rolling, -1.0));
+        add_load(&mut loads[j], force, add(scaled(twist, far), rolling));
+        Ok(())
+    }
+}
+
+/// A sphere of a clump that reaches into a wall.
+struct Hit {
+    body: usize,
+    facet: u32,
+    wall: u32,
+    depth: f64,
+    closest: Closest,
+}
+
+impl NearWalls {
+    /// Where the clump touches: the deepest of hits on one side of a wall.
+    fn hits(&self, bodies: &Bodies, walls: &WallState) -> Vec<Hit> {
+        let (mut all, mut found) = (Vec::new(), Vec::new());
+        for (body, parts) in &self.near {
+            let body = *body as usize;
+            let radius = bodies.place[body][3];
+            find_hits(walls, parts, centre(bodies, body), radius, &mut found);
+            all.extend(found.iter().map(|&(facet, closest)| Hit {
+                body,
+                facet,
+                wall: walls.facets[facet as usize].0,
+                depth: radius - closest.distance,
+                closest,
+            }));
+        }
+        // The deepest first; of the same depth in the order of bodies.
+        all.sort_by(|a, b| b.depth.total_cmp(&a.depth));
+        let mut kept: Vec<Hit> = Vec::new();
+        for hit in all {
+            let same = |own: &Hit| {
+                own.wall == hit.wall && dot(own.closest.normal, hit.closest.normal) > SAME_CONTACT
+            };
+            if !kept.iter().any(same) {
+                kept.push(hit);
+            }
+        }
+        kept
+    }
+
+    fn advance<'a>(
+        &mut self,
+        fruit: u32,
+        around: &Around<'a, impl Fn(u32, u32) -> &'a Interaction>,
+        loads: &mut [Load],
+        outcome: &mut Outcome,
+    ) -> Result<f64, Error> {
+        let (bodies, now) = (around.bodies, around.now);
+        let mut before = std::mem::take(&mut self.contacts);
+        let mut work = 0.0;
+        for hit in self.hits(bodies, around.walls) {
+            let goes_on = |own: &TouchingWall| {
+                own.wall == hit.wall && dot(own.normal, hit.closest.normal) > SAME_CONTACT
+            };
+            let material = around.wall_materials[hit.wall as usize];
+            let surface = (around.surface)(bodies.material[hit.body], material);
+            let radius = bodies.place[hit.body][3];
+            let shallow = hit.depth <= DEEPEST * radius;
+            if !shallow {
+                let partner = around.walls.name_of(hit.wall);
+                return Err(too_deep(now.clock.time, fruit, partner, hit.depth, radius));
+            }
+            let (touch, wall_velocity) = hit.touch(around.walls, bodies);
+            let mut own = match before.iter().position(goes_on) {
+                Some(place) => before.remove(place),
+                None => hit.begin(surface, &touch, bodies, now)?,
+            };
+            let (force, rolling) = own.own.push(surface, &touch, now.clock);
+            let mean = scaled(add(own.force, force), 0.5);
+            work += dot(mean, wall_velocity) * now.clock.step;
+            (own.force, own.normal) = (force, touch.normal);
+            let moment = scaled(cross(touch.normal, force), hit.closest.distance);
+            add_load(&mut loads[hit.body], force, add(moment, rolling));
+            self.contacts.push(own);
+        }
+        for own in before {
+            // How far it is away is not looked for: the force was small already.
+            let parcel = parted(own.own.parcel, 0.0, now.clock);
+            let partner = Partner::Wall(own.wall);
+            outcome.events.push(event(&parcel, fruit, partner, false));
+        }
+        Ok(work)
+    }
+}
+
+impl Hit {
+    /// How the sphere and the wall meet, and the velocity of the wall there.
+    fn touch(&self, walls: &WallState, bodies: &Bodies) -> (Touch<f64>, Vector) {
+        let Closest { point, normal, .. } = self.closest;
+        let (velocity, spin) = motion(bodies, self.body);
+        let wall_velocity = walls.velocity(self.wall, point, normal);
+        let relative = subtract(velocity, wall_velocity);
+        let arm = self.closest.distance;
+        let (radius, at) = (bodies.place[self.body][3], centre(bodies, self.body));
+        let touch = Touch {
+            normal,
+            displacement: self.depth,
+            velocity: surface_velocity(relative, scaled(spin, arm), normal),
+            spin,
+            radius: radius_at(&walls.facets[self.facet as usize].1, radius, at),
+        };
+        (touch, wall_velocity)
+    }
+
+    fn begin(
+        &self,
+        surface: &Interaction,
+        touch: &Touch<f64>,
+        bodies: &Bodies,
+        now: &Moment,
+    ) -> Result<TouchingWall, Error> {
+        let draws = &now.fruit[bodies.fruit[self.body] as usize].draws;
+        let mut encounter = encounter(touch.normal, self.depth, touch.velocity, now.clock);
+        encounter.place = self.closest.point;
+        encounter.spot = spot_on(bodies, self.body, touch.normal);
+        let parcel = Parcel::begin(surface.scale(touch.radius), now.clock, encounter);
+        let law = surface.law_of(touch.radius, draws, None)?;
+        Ok(TouchingWall {
+            wall: self.wall,
+            normal: touch.normal,
+            force: [0.0; 3],
+            own: Touching { law, parcel },
+        })
+    }
+}

@@ -1,0 +1,283 @@
+//! Contacts of two fruit, compiled once for each law.
+
+use crate::contacts::contact::{
+    Moment, Outcome, Parcel, encounter, event_of_pair, parted, spot, too_deep,
+};
+use crate::contacts::neighbours::BodiesFrom;
+use crate::contacts::pair_forces::{Batch, Pair};
+use crate::contacts::react::surface_velocity;
+use crate::contacts::store::{Load, Store};
+use crate::error::{Error, fruit_name};
+use crate::interaction::Interaction;
+use crate::vector::{length, plus_scaled, scaled, subtract};
+use crate::vector_of::dot;
+use windfall_contact::effective::effective_radius;
+use windfall_contact::laws::kind::Law;
+use windfall_numerics::prefetch::prefetch;
+use windfall_numerics::real_vector::with_four_lanes;
+
+/// The entries of one block and one interaction.
+pub(crate) struct Part<'a> {
+    /// From the first body of the block on.
+    pub bodies: BodiesFrom<'a>,
+    /// Number of that body.
+    pub base: u32,
+    pub first: &'a [u32],
+    pub second: &'a [u32],
+    /// Where each has what it does to a second body of another block, or [`NONE`](crate::contacts::store::NONE).
+    pub out: &'a [u32],
+    /// Loads of pairs on the bodies of the block.
+    pub loads: &'a mut [Load],
+    /// Loads on second bodies of other blocks; zero where nothing touches.
+    pub outs: &'a mut [Load],
+    /// How far two bodies may have come together since the list was made; m.
+    pub approach: f64,
+}
+
+/// Contacts of one block and one interaction.
+pub(crate) struct PairContacts {
+    store: Store,
+    entries: Vec<u32>,
+    pairs: Vec<Pair>,
+    /// Entries without a contact that may soon touch.
+    awake: Vec<Awake>,
+    /// Those that cannot before bodies have moved by half their gap; the widest first.
+    asleep: Vec<(f64, u32)>,
+    /// Contacts that end in the present step.
+    parting: Vec<u32>,
+}
+
+/// An entry and its bodies, from the first of the block on.
+#[derive(Clone, Copy)]
+struct Awake {
+    entry: u32,
+    pair: [u32; 2],
+}
+
+/// Entries between the one that is looked at and the one whose memory is asked for.
+const AHEAD: usize = 16;
+
+/// Overlap over the smaller radius above which a law of two spheres means nothing.
+pub(crate) const LARGEST_OVERLAP: f64 = 0.3;
+
+impl PairContacts {
+    /// No contacts yet of an interaction, with room for so many, and for so many entries.
+    pub(crate) fn new(surface: &Interaction, room: usize, entries: usize) -> Self {
+        Self {
+            store: Store::new(surface, room),
+            entries: Vec::with_capacity(room),
+            pairs: Vec::with_capacity(room),
+            awake: Vec::new(),
+            asleep: Vec::with_capacity(entries - room),
+            parting: Vec::new(),
+        }
+    }
+
+    /// Forces of all entries, one step on.
+    pub(crate) fn advance(
+        &mut self,
+        part: Part,
+        surface: &Interaction,
+        now: &Moment,
+        outcome: &mut Outcome,
+    ) {
+        let Part {
+            bodies,
+            base,
+            first,
+            second,
+            out,
+            loads,
+            outs,
+            approach,
+        } = part;
+        self.wake(approach, |entry| {
+            [first[entry as usize] - base, second[entry as usize] - base]
+        });
+        if let Err(problem) = self.begin_all(&bodies, out, (surface, now)) {
+            outcome.problem.get_or_insert(problem);
+            return;
+        }
+        let mut parting = std::mem::take(&mut self.parting);
+        let deepest = with_four_lanes(Batch {
+            bodies: &bodies,
+            store: &mut self.store,
+            pairs: &self.pairs,
+            loads,
+            outs: &mut *outs,
+            parting: &mut parting,
+            surface,
+            clock: now.clock,
+        });
+        if deepest > LARGEST_OVERLAP {
+            outcome
+                .problem
+                .get_or_insert_with(|| self.deepest(&bodies, now));
+        }
+        for contact in parting.drain(..) {
+            let pair = self.finish(contact as usize, &bodies, now, outcome);
+            if let Some(out) = outs.get_mut(pair.out as usize) {
+                *out = Load::ZERO;
+            }
+        }
+        self.parting = parting;
+    }
+
+    /// Number of contacts.
+    pub(crate) fn count(&self) -> usize {
+        self.store.len()
+    }
+
+    /// Takes over the contact of an entry of a new list; entries come in rising order.
+    pub(crate) fn adopt(&mut self, entry: u32, pair: Pair, law: &Law, parcel: Parcel) {
+        if self.store.adopt(law, parcel).is_some() {
+            self.entries.push(entry);
+            self.pairs.push(pair);
+        }
+    }
+
+    /// Every other entry of a new list waits until it may touch.
+    ///
+    /// * `pairs`: the bodies of all entries
+    pub(crate) fn wait(&mut self, pairs: impl Iterator<Item = [u32; 2]>, bodies: &BodiesFrom) {
+        let mut known = self.entries.iter().copied().peekable();
+        for (entry, pair) in (0..).zip(pairs) {
+            if known.next_if_eq(&entry).is_none() {
+                self.asleep.push((-bodies.overlap(pair), entry));
+            }
+        }
+        let widest_first = |a: &(f64, u32), b: &(f64, u32)| (b.0, b.1).partial_cmp(&(a.0, a.1));
+        self.asleep
+            .sort_unstable_by(|a, b| widest_first(a, b).unwrap_or(std::cmp::Ordering::Equal));
+    }
+
+    /// The entries of contacts.
+    pub(crate) fn entries(&self) -> &[u32] {
+        &self.entries
+    }
+
+    /// Law and memory of a contact.
+    pub(crate) fn at(&self, contact: usize) -> (Law, Parcel) {
+        self.store.at(contact)
+    }
+
+    /// Entries whose bodies may have come together since the list was made.
+    ///
+    /// * `pair`: the bodies of an entry
+    fn wake(&mut self, approach: f64, pair: impl Fn(u32) -> [u32; 2]) {
+        while let Some(&(gap, entry)) = self.asleep.last() {
+            let sleeps = gap > approach;
+            if sleeps {
+                break;
+            }
+            self.asleep.pop();
+            let pair = pair(entry);
+            self.awake.push(Awake { entry, pair });
+        }
+    }
+
+    /// Contacts of entries that touch now.
+    fn begin_all(
+        &mut self,
+        bodies: &BodiesFrom,
+        out: &[u32],
+        work: (&Interaction, &Moment),
+    ) -> Result<(), Error> {
+        let mut place = 0;
+        while let Some(&Awake { entry, pair }) = self.awake.get(place) {
+            if let Some(later) = self.awake.get(place + AHEAD) {
+                for body in later.pair {
+                    prefetch(&bodies.place[body as usize]);
+                }
+            }
+            let [a, b] = pair.map(|body| &bodies.place[body as usize]);
+            let between = [b[0] - a[0], b[1] - a[1], b[2] - a[2]];
+            let reach = a[3] + b[3];
+            let apart = dot(between, between) >= reach * reach || bodies.overlap(pair) <= 0.0;
+            if apart {
+                place += 1;
+            } else {
+                let out = out[entry as usize];
+                self.begin(entry, Pair { bodies: pair, out }, bodies, work)?;
+                self.awake.swap_remove(place);
+            }
+        }
+        Ok(())
+    }
+
+    #[cold]
+    fn begin(
+        &mut self,
+        entry: u32,
+        pair: Pair,
+        bodies: &BodiesFrom,
+        (surface, now): (&Interaction, &Moment),
+    ) -> Result<(), Error> {
+        let [i, j] = pair.bodies.map(|body| body as usize);
+        let draws = |body: usize| &now.fruit[bodies.fruit[body] as usize].draws;
+        let centre = |body: usize| [0, 1, 2].map(|axis| bodies.place[body][axis]);
+        let (a, b) = (bodies.place[i][3], bodies.place[j][3]);
+        let radius = effective_radius(a, b);
+        let displacement = bodies.overlap(pair.bodies);
+        let between = subtract(centre(j), centre(i));
+        let normal = scaled(between, 1.0 / length(between));
+        let (u, w) = (&bodies.motion[i], &bodies.motion[j]);
+        let relative = [u[0] - w[0], u[1] - w[1], u[2] - w[2]];
+        let arms = [4, 5, 6].map(|at| a * u[at] + b * w[at]);
+        let velocity = surface_velocity(relative, arms, normal);
+        let mut encounter = encounter(normal, displacement, velocity, now.clock);
+        encounter.place = plus_scaled(centre(i), normal, a - 0.5 * displacement);
+        let spot = |body: usize, normal| {
+            let radius = bodies.place[body][3];
+            spot(bodies.turn[body], bodies.offset_of(body), radius, normal)
+        };
+        encounter.spot = spot(i, normal);
+        encounter.other_spot = spot(j, scaled(normal, -1.0));
+        let parcel = Parcel::begin(surface.scale(radius), now.clock, encounter);
+        let law = surface.law_of(radius, draws(i), Some(draws(j)))?;
+        self.adopt(entry, pair, &law, parcel);
+        Ok(())
+    }
+
+    /// The pair that overlaps too much.
+    #[cold]
+    fn deepest(&self, bodies: &BodiesFrom, now: &Moment) -> Error {
+        let share = |pair: &Pair| {
+            let [i, j] = pair.bodies.map(|body| body as usize);
+            let radius = bodies.place[i][3].min(bodies.place[j][3]);
+            (bodies.overlap(pair.bodies) / radius, i, j, radius)
+        };
+        let all = self.pairs.iter().map(share);
+        let (share, i, j, radius) =
+            all.fold((0.0, 0, 0, 1.0), |a, b| if b.0 > a.0 { b } else { a });
+        let partner = fruit_name(bodies.fruit[j]);
+        too_deep(
+            now.clock.time,
+            bodies.fruit[i],
+            partner,
+            share * radius,
+            radius,
+        )
+    }
+
+    /// A contact whose bodies part, out of the list.
+    #[cold]
+    fn finish(
+        &mut self,
+        contact: usize,
+        bodies: &BodiesFrom,
+        now: &Moment,
+        outcome: &mut Outcome,
+    ) -> Pair {
+        let pair = self.pairs[contact].bodies;
+        let [i, j] = pair.map(|body| body as usize);
+        let gap = -bodies.overlap(pair);
+        let parted = parted(self.store.parcel(contact), gap, now.clock);
+        let fruit = (bodies.fruit[i], bodies.fruit[j]);
+        outcome.events.push(event_of_pair(parted, fruit, false));
+        self.store.remove(contact);
+        let entry = self.entries.swap_remove(contact);
+        self.awake.push(Awake { entry, pair });
+        self.pairs.swap_remove(contact)
+    }
+}

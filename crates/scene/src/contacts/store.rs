@@ -1,0 +1,289 @@
+//! What contacts remember, four side by side.
+
+use crate::annuli::Annuli;
+use crate::contacts::contact::Parcel;
+use crate::contacts::law_column::{Four, Given, LawColumn, law_column};
+use crate::contacts::react::{
+    Clock, Memory, Normal, Peaks, Reaction, Remembered, Touch, given, react,
+};
+use crate::event::Encounter;
+use crate::interaction::Interaction;
+use crate::line::Line;
+use crate::vector_of::{Of, cross};
+use std::ops::Range;
+use windfall_contact::laws::kind::Law;
+use windfall_numerics::prefetch::prefetch;
+use windfall_numerics::real::Lanes;
+use windfall_numerics::real_vector::{FourNumbers, LANES};
+
+/// No contact, body or entry.
+pub(crate) const NONE: u32 = u32::MAX;
+
+/// Force (N) and moment (N m) on a body: 0 to 2 and 4 to 6.
+pub(crate) type Load = Line;
+
+/// Groups of four that are worked through at a time.
+pub(crate) const CHUNK: usize = 8;
+
+/// What every step needs of four contacts, in whole lines of a processor's memory: those that
+/// every step writes, and those that few do.
+#[derive(Clone, Copy)]
+#[repr(C, align(64))]
+struct Quad {
+    history: Memory<Four>,
+    peaks: Peaks<Four>,
+    /// What radii multiply the median's force by; 1.
+    scale: Four,
+}
+
+/// Contacts under one law; what is needed in every step stands apart from the rest.
+pub(crate) struct Store {
+    quads: Vec<Quad>,
+    /// Elastic forces of the annuli of each group on the first bodies; N.
+    elastic: Vec<Of<Four>>,
+    /// Annuli of a contact.
+    annuli: usize,
+    /// Moments against rolling on the first bodies, where anything acts against it; N m.
+    rolling: Vec<Of<Four>>,
+    rolls: bool,
+    laws: Box<dyn LawColumn>,
+    encounters: Vec<Encounter>,
+}
+
+impl Store {
+    /// No contacts yet of an interaction, with room for so many.
+    pub(crate) fn new(surface: &Interaction, room: usize) -> Self {
+        let groups = room.div_ceil(LANES);
+        Self {
+            quads: Vec::with_capacity(groups),
+            elastic: Vec::with_capacity(groups * surface.annuli),
+            annuli: surface.annuli,
+            rolling: Vec::with_capacity(if surface.rolls() { groups } else { 0 }),
+            rolls: surface.rolls(),
+            laws: law_column(&surface.law, room),
+            encounters: Vec::with_capacity(room),
+        }
+    }
+
+    pub(crate) fn len(&self) -> usize {
+        self.encounters.len()
+    }
+
+    /// Takes over a contact; its number. The law of an interaction keeps its kind.
+    pub(crate) fn adopt(&mut self, law: &Law, parcel: Parcel) -> Option<u32> {
+        if !self.laws.push(law) {
+            return None;
+        }
+        let own = self.len();
+        if own.is_multiple_of(LANES) {
+            self.quads.push(Quad {
+                history: Memory::ZERO,
+                peaks: Peaks::ZERO,
+                scale: Lanes::ZERO,
+            });
+            if self.rolls {
+                self.rolling.push([Lanes::ZERO; 3]);
+            }
+            let elastic = self.elastic.len() + self.annuli;
+            self.elastic.resize(elastic, [Lanes::ZERO; 3]);
+        }
+        self.encounters.push(parcel.encounter);
+        self.put(own, &parcel);
+        Some(own as u32)
+    }
+
+    /// Law and memory of a contact.
+    pub(crate) fn at(&self, contact: usize) -> (Law, Parcel) {
+        (self.laws.at(contact), self.parcel(contact))
+    }
+
+    pub(crate) fn parcel(&self, contact: usize) -> Parcel {
+        let (group, lane) = (contact / LANES, contact % LANES);
+        let quad = &self.quads[group];
+        Parcel {
+            scale: quad.scale.0[lane],
+            history: quad.history.lane(lane),
+            peaks: quad.peaks.lane(lane),
+            annuli: self.annuli_of(contact),
+            rolling: match self.rolling.get(group) {
+                Some(four) => four.map(|axis| axis.0[lane]),
+                None => [0.0; 3],
+            },
+            encounter: self.encounters[contact],
+        }
+    }
+
+    /// Takes out a contact; the last one takes its number.
+    pub(crate) fn remove(&mut self, contact: usize) {
+        let last = self.len() - 1;
+        let moved = self.parcel(last);
+        self.put(contact, &moved);
+        self.laws.swap_remove(contact);
+        self.encounters.swap_remove(contact);
+        if last.is_multiple_of(LANES) {
+            self.quads.pop();
+            self.rolling.pop();
+            self.elastic.truncate(self.elastic.len() - self.annuli);
+        }
+    }
+
+    /// Where the annuli of a group of four stand.
+    #[inline(always)]
+    fn annuli(&self, group: usize) -> Range<usize> {
+        group * self.annuli..(group + 1) * self.annuli
+    }
+
+    fn annuli_of(&self, contact: usize) -> Annuli {
+        let mut all = Annuli::default();
+        let four = &self.elastic[self.annuli(contact / LANES)];
+        for (own, four) in all.0.iter_mut().zip(four) {
+            *own = four.map(|axis| axis.0[contact % LANES]);
+        }
+        all
+    }
+
+    /// All but the encounter.
+    fn put(&mut self, contact: usize, parcel: &Parcel) {
+        let (group, lane) = (contact / LANES, contact % LANES);
+        let annuli = self.annuli(group);
+        let quad = &mut self.quads[group];
+        quad.history.put_lane(lane, &parcel.history);
+        quad.peaks.put_lane(lane, &parcel.peaks);
+        quad.scale.0[lane] = parcel.scale;
+        let rolling = self.rolling.get_mut(group).zip(Some(&parcel.rolling));
+        let elastic = self.elastic[annuli].iter_mut().zip(&parcel.annuli.0);
+        for (four, own) in elastic.chain(rolling) {
+            for axis in 0..3 {
+                four[axis].0[lane] = own[axis];
+            }
+        }
+    }
+
+    /// What contacts of a group remember before a step.
+    pub(crate) fn before(&self, group: usize) -> [Parcel; LANES] {
+        let last = self.len() - 1;
+        [0, 1, 2, 3].map(|lane| self.parcel((group * LANES + lane).min(last)))
+    }
+
+    /// Puts back what contacts of a group were before a step.
+    pub(crate) fn restore(&mut self, group: usize, lanes: [bool; LANES], before: &[Parcel; LANES]) {
+        for lane in (0..LANES).filter(|lane| lanes[*lane]) {
+            if group * LANES + lane < self.len() {
+                self.put(group * LANES + lane, &before[lane]);
+            }
+        }
+    }
+
+    /// Asks for the memory of a group that is soon to be worked through.
+    #[inline(always)]
+    pub(crate) fn prefetch(&self, group: usize) {
+        if let Some(quad) = self.quads.get(group) {
+            prefetch(quad);
+            self.elastic[self.annuli(group)].iter().for_each(prefetch);
+        }
+    }
+
+    /// What the law is asked for a group of four.
+    #[inline(always)]
+    pub(crate) fn given<R: FourNumbers>(&self, group: usize, touch: &Touch<R>, zero: R) -> Given {
+        let Quad { history, peaks, .. } = &self.quads[group];
+        let peak = zero.with_plain(peaks.displacement);
+        zero.each_plain(given(touch, zero.with_plain(history.rate), peak))
+    }
+
+    /// What the laws of some groups say.
+    pub(crate) fn normal(
+        &self,
+        surface: &Interaction,
+        first: usize,
+        given: &[Given],
+        found: &mut [Normal<Four>],
+    ) {
+        let median = surface.spread.is_none().then_some(&surface.law);
+        self.laws.normal(median, first, given, found);
+    }
+
+    /// Forces of a group of four, one step on.
+    ///
+    /// * `found`: what the law says
+    #[inline(always)]
+    pub(crate) fn react<R: FourNumbers>(
+        &mut self,
+        group: usize,
+        touch: &Touch<R>,
+        found: &Normal<Four>,
+        (surface, clock): (&Interaction, Clock),
+        zero: R,
+    ) -> Reaction<R> {
+        let annuli = self.annuli(group);
+        let quad = &mut self.quads[group];
+        let mut memory = quad.history.with_plain(zero);
+        let before = quad.peaks.with_plain(zero);
+        let mut peaks = before;
+        // The laws of fruit that differ have the factor within.
+        let scale = match surface.spread {
+            None => zero.with_plain(quad.scale),
+            Some(_) => zero.constant(1.0),
+        };
+        let found = Normal {
+            force: zero.with_plain(found.force) * scale,
+            damping: zero.with_plain(found.damping) * scale,
+            stiffness: zero.with_plain(found.stiffness) * scale,
+        };
+        let rolls = self.rolls;
+        let mut moment = match rolls {
+            true => zero.with_each_plain(self.rolling[group]),
+            false => [zero; 3],
+        };
+        let own = Remembered {
+            memory: &mut memory,
+            peaks: &mut peaks,
+            annuli: &mut self.elastic[annuli],
+            rolling: if rolls { Some(&mut moment) } else { None },
+        };
+        let reaction = react(found, surface, touch, clock, own);
+        quad.history = memory.plain();
+        let Lanes(growth) = peaks.growth_from(&before).plain();
+        if growth.into_iter().any(|own| own > 0.0) {
+            quad.peaks = peaks.plain();
+        }
+        if rolls {
+            self.rolling[group] = zero.each_plain(moment);
+        }
+        reaction
+    }
+}
+
+/// Forces and moments of four contacts as rows: on the first body, or on the second.
+///
+/// * `arm`: from the body's centre to the contact; m
+/// * `sign`: of the force on it
+#[inline(always)]
+pub(crate) fn loads<R: FourNumbers>(
+    normal: Of<R>,
+    reaction: &Reaction<R>,
+    arm: R,
+    sign: f64,
+    zero: R,
+) -> ([Four; LANES], [Four; LANES]) {
+    let (force, twist) = (reaction.force, cross(normal, reaction.force));
+    let rolling = reaction.rolling;
+    (
+        R::rows([force[0] * sign, force[1] * sign, force[2] * sign, zero]),
+        R::rows([
+            twist[0] * arm + rolling[0] * sign,
+            twist[1] * arm + rolling[1] * sign,
+            twist[2] * arm + rolling[2] * sign,
+            zero,
+        ]),
+    )
+}
+
+/// Adds a row of forces and one of moments.
+#[inline(always)]
+pub(crate) fn add_load(to: &mut Load, force: &Four, moment: &Four) {
+    for axis in 0..LANES {
+        to[axis] += force.0[axis];
+        to[LANES + axis] += moment.0[axis];
+    }
+}

@@ -1,0 +1,389 @@
+//! Contacts of a fruit with walls.
+
+use crate::contacts::contact::{Moment, Outcome, Parcel, encounter, event, parted, spot, too_deep};
+use crate::contacts::mesh_contacts::thin;
+use crate::contacts::react::{Touch, surface_velocity};
+use crate::contacts::store::NONE;
+use crate::contacts::wall_forces::{WallContacts, WallMeeting};
+use crate::error::Error;
+use crate::event::Partner;
+use crate::interaction::Interaction;
+use crate::shape::facet_tree::FacetTree;
+use crate::shape::wall::{Closest, Facet, Placed, Shape, Wall};
+use crate::vector::{Rotation, Vector, length, plus_scaled, scaled, subtract};
+use crate::vector_of::dot;
+use std::ops::Range;
+use windfall_contact::laws::kind::Law;
+
+/// A part of a wall that a body may touch.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct NearPart {
+    pub facet: u32,
+    /// Number of the contact in its store, or [`NONE`].
+    pub slot: u32,
+}
+
+/// A contact with a wall while the list is made anew.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Lifted {
+    pub facet: u32,
+    pub law: Law,
+    pub parcel: Parcel,
+    /// How they met last.
+    pub meeting: WallMeeting,
+    /// Force on the fruit a step ago; N.
+    pub force: Vector,
+}
+
+/// The walls of a scene in parts, where they are now.
+#[derive(Clone, Debug)]
+pub(crate) struct WallState {
+    /// Names of the walls.
+    names: Vec<String>,
+    /// Every part of every wall, with the wall's number.
+    pub facets: Vec<(u32, Facet)>,
+    /// Where moving walls are, and where they were half a step ago.
+    pub placed: Vec<Option<(Placed, Placed)>>,
+    /// Velocities of the surfaces of walls that stay: belts.
+    pub belts: Vec<Option<Placed>>,
+    /// Parts that are of no mesh.
+    single: Vec<u32>,
+    /// Of each mesh its wall, its first part, and all of them at rest.
+    trees: Vec<(u32, u32, FacetTree)>,
+}
+
+impl WallState {
+    pub(crate) fn new(walls: &[Wall]) -> Self {
+        let mut facets = Vec::new();
+        let (mut single, mut trees) = (Vec::new(), Vec::new());
+        for (number, wall) in walls.iter().enumerate() {
+            let first = facets.len() as u32;
+            match &wall.shape {
+                Shape::Mesh { triangles } => {
+                    trees.push((number as u32, first, FacetTree::new(triangles)));
+                }
+                other => single.extend(first..first + other.facets().len() as u32),
+            }
+            facets.extend(
+                wall.shape
+                    .facets()
+                    .into_iter()
+                    .map(|facet| (number as u32, facet)),
+            );
+        }
+        let belt = |wall: &Wall| {
+            let runs = wall.motion.surface_velocity != [0.0; 3];
+            (runs && wall.motion.stays()).then(|| wall.motion.at(0.0))
+        };
+        Self {
+            names: walls.iter().map(|wall| wall.name.clone()).collect(),
+            facets,
+            placed: vec![None; walls.len()],
+            belts: walls.iter().map(belt).collect(),
+            single,
+            trees,
+        }
+    }
+
+    pub(crate) fn move_to(&mut self, walls: &[Wall], time: f64, step: f64) {
+        for (placed, wall) in self.placed.iter_mut().zip(walls) {
+            if !wall.motion.stays() {
+                *placed = Some((wall.motion.at(time), wall.motion.at(time - 0.5 * step)));
+            }
+        }
+    }
+
+    /// The name of a wall as messages have it.
+    pub(crate) fn name_of(&self, wall: u32) -> String {
+        format!("\"{}\"", self.names[wall as usize])
+    }
+
+    pub(crate) fn closest(&self, facet: u32, place: Vector) -> Closest {
+        let (wall, facet) = &self.facets[facet as usize];
+        let placed = self.placed[*wall as usize].as_ref();
+        facet.closest(placed.map(|(now, _)| now), place)
+    }
+
+    /// Adds the parts of walls that come closer to a place than `reach`, by number.
+    pub(crate) fn find_near(&self, place: Vector, reach: f64, near: &mut Vec<u32>) {
+        let first = near.len();
+        near.extend(self.single.iter().copied().filter(|&facet| {
+            let (wall, part) = &self.facets[facet as usize];
+            // Points of a moving plane far away go any way in a step.
+            let endless = matches!(part, Facet::Plane { .. });
+            endless && self.placed[*wall as usize].is_some()
+                || self.closest(facet, place).distance < reach
+        }));
+        for (wall, start, tree) in &self.trees {
+            let placed = self.placed[*wall as usize].as_ref();
+            let own = placed.map_or(place, |(now, _)| now.inward(place));
+            tree.near(own, reach, |triangle| {
+                let facet = start + triangle;
+                if self.facets[facet as usize].1.closest(None, own).distance < reach {
+                    near.push(facet);
+                }
+            });
+        }
+        near[first..].sort_unstable();
+    }
+
+    /// A place of a wall at rest, and a direction there, where the wall is now.
+    pub(crate) fn moved(&self, wall: usize, place: Vector, normal: Vector) -> (Vector, Vector) {
+        match &self.placed[wall] {
+            Some((now, _)) => (now.outward(place), now.turned(normal)),
+            None => (place, normal),
+        }
+    }
+
+    pub(crate) fn velocity(&self, wall: u32, place: Vector, normal: Vector) -> Vector {
+        match (&self.placed[wall as usize], &self.belts[wall as usize]) {
+            (Some((_, before)), _) => before.velocity_at(place, normal),
+            (None, Some(belt)) => belt.velocity_at(place, normal),
+            (None, None) => [0.0; 3],
+        }
+    }
+}
+
+/// A fruit that may touch walls.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Body<'a> {
+    pub fruit: &'a u32,
+    pub centre: Vector,
+    pub radius: f64,
+    /// Half a step ago; m/s.
+    pub velocity: Vector,
+    /// Half a step ago; rad/s.
+    pub spin: Vector,
+    pub turn: &'a Rotation,
+    /// The clump that it belongs to, or [`NONE`], and where in it; m.
+    pub clump: (&'a u32, &'a Vector),
+}
+
+/// What a fruit's contacts with walls need of the rest of the scene.
+pub(crate) struct Around<'a, S> {
+    pub walls: &'a WallState,
+    /// Which of the parts near bodies of the block are near this one.
+    pub near: Range<usize>,
+    /// Number of the interaction with a wall, and the interaction.
+    pub surface: S,
+    pub now: &'a Moment<'a>,
+}
+
+/// Finds where a fruit touches walls, begins and ends contacts, and puts into their stores
+/// where each touches now.
+///
+/// * `near`: parts of walls near the bodies of the block
+/// * `owner`: the fruit among these
+/// * `hits`: room for what it touches
+pub(crate) fn aim<'a>(
+    near: &mut [NearPart],
+    owner: u32,
+    body: &Body,
+    around: &Around<impl Fn(u32) -> (usize, &'a Interaction)>,
+    stores: &mut [WallContacts],
+    hits: &mut Vec<(u32, Closest)>,
+    outcome: &mut Outcome,
+) {
+    let (walls, now) = (around.walls, around.now);
+    let &Body { centre, radius, .. } = body;
+    find_hits(walls, &near[around.near.clone()], centre, radius, hits);
+    let own = around.near.clone();
+    if hits.is_empty() && near[own].iter().all(|part| part.slot == NONE) {
+        return;
+    }
+    follow(near, around, hits, body, stores, outcome);
+    for &(facet, closest) in hits.iter() {
+        let (wall, part) = &walls.facets[facet as usize];
+        let (interaction, surface) = (around.surface)(*wall);
+        let displacement = radius - closest.distance;
+        let arm = closest.distance;
+        let wall_velocity = walls.velocity(*wall, closest.point, closest.normal);
+        let relative = subtract(body.velocity, wall_velocity);
+        let touch = Touch {
+            normal: closest.normal,
+            displacement,
+            velocity: surface_velocity(relative, scaled(body.spin, arm), closest.normal),
+            spin: body.spin,
+            radius: effective_radius(part, radius, centre),
+        };
+        let Some(place) = around
+            .near
+            .clone()
+            .find(|place| near[*place].facet == facet)
+        else {
+            continue;
+        };
+        if near[place].slot == NONE {
+            match begin(surface, &touch, closest.point, now, body) {
+                Ok((law, parcel)) => {
+                    let holder = [owner, place as u32];
+                    near[place].slot = stores[interaction].adopt(holder, &law, parcel, [0.0; 3]);
+                }
+                Err(problem) => {
+                    outcome.problem.get_or_insert(problem);
+                    continue;
+                }
+            }
+        }
+        let meeting = WallMeeting::new(&touch, arm, wall_velocity);
+        stores[interaction].aim(near[place].slot, meeting);
+        // Also where the distance is no number.
+        let shallow = displacement <= DEEPEST * radius;
+        if !shallow {
+            outcome.problem.get_or_insert_with(|| {
+                too_deep(
+                    now.clock.time,
+                    *body.fruit,
+                    walls.name_of(*wall),
+                    displacement,
+                    radius,
+                )
+            });
+        }
+    }
+}
+
+/// Parts of walls that overlap a fruit. An edge counts only where no face beside it does.
+pub(crate) fn find_hits(
+    walls: &WallState,
+    near: &[NearPart],
+    centre: Vector,
+    radius: f64,
+    hits: &mut Vec<(u32, Closest)>,
+) {
+    hits.clear();
+    for &NearPart { facet, .. } in near {
+        let closest = walls.closest(facet, centre);
+        let apart = closest.distance >= radius;
+        if !apart {
+            hits.push((facet, closest));
+        }
+    }
+    thin(
+        &walls.facets,
+        |facet, place| walls.closest(facet, place),
+        radius,
+        hits,
+    );
+    if hits.len() < 2 {
+        return;
+    }
+    // Faces first; an edge gives way to a face in whose plane it lies, and to the same
+    // edge of another facet.
+    hits.sort_by_key(|(facet, closest)| (!closest.inside, *facet));
+    let mut kept = 0;
+    for place in 0..hits.len() {
+        let (facet, closest) = hits[place];
+        let wall = walls.facets[facet as usize].0;
+        let covered = hits[..kept].iter().any(|(other, before)| {
+            let same_wall = walls.facets[*other as usize].0 == wall;
+            let off = subtract(closest.point, before.point);
+            let height = dot(off, before.normal).abs();
+            let flat = before.inside && height < COINCIDENT * radius;
+            same_wall && (flat || length(off) < COINCIDENT * radius)
+        });
+        let doubled = match closest.inside {
+            true => hits[..kept]
+                .iter()
+                .any(|(_, before)| same_place(before, &closest, radius)),
+            false => covered,
+        };
+        if !doubled {
+            hits[kept] = (facet, closest);
+            kept += 1;
+        }
+    }
+    hits.truncate(kept);
+}
+
+fn same_place(a: &Closest, b: &Closest, radius: f64) -> bool {
+    length(subtract(a.point, b.point)) < COINCIDENT * radius && dot(a.normal, b.normal) > 0.999
+}
+
+/// Overlap over the radius above which a contact with a wall means nothing: a soft wall
+/// may give way, but not beyond the centre of a fruit; 1.
+pub(crate) const DEEPEST: f64 = 0.9;
+
+/// Points closer than this part of the radius are one.
+const COINCIDENT: f64 = 1e-6;
+
+/// A fruit that rolls from one part of a wall on to the next keeps its contact: this is the
+/// least cosine between the normals.
+pub(crate) const SAME_CONTACT: f64 = 0.9;
+
+/// Ends contacts that are over, and hands on those that go over to another part of a wall.
+fn follow<'a>(
+    near: &mut [NearPart],
+    around: &Around<impl Fn(u32) -> (usize, &'a Interaction)>,
+    hits: &[(u32, Closest)],
+    body: &Body,
+    stores: &mut [WallContacts],
+    outcome: &mut Outcome,
+) {
+    let walls = around.walls;
+    for place in around.near.clone() {
+        let NearPart { facet, slot } = near[place];
+        if slot == NONE || hits.iter().any(|(hit, _)| *hit == facet) {
+            continue;
+        }
+        let wall = walls.facets[facet as usize].0;
+        let interaction = (around.surface)(wall).0;
+        let normal = stores[interaction].meeting(slot).normal();
+        let next = hits.iter().find_map(|(hit, closest)| {
+            let goes_on =
+                walls.facets[*hit as usize].0 == wall && dot(closest.normal, normal) > SAME_CONTACT;
+            let mut others = around.near.clone();
+            let other = others.find(|other| near[*other].facet == *hit)?;
+            (goes_on && near[other].slot == NONE).then_some(other)
+        });
+        near[place].slot = NONE;
+        if let Some(next) = next {
+            near[next].slot = slot;
+            stores[interaction].hold(slot, next as u32);
+            continue;
+        }
+        let (_, parcel, _) = stores[interaction].at(slot);
+        if let Some(moved) = stores[interaction].remove(slot) {
+            near[moved as usize].slot = slot;
+        }
+        let gap = walls.closest(facet, body.centre).distance - body.radius;
+        let parcel = parted(parcel, gap.max(0.0), around.now.clock);
+        let partner = Partner::Wall(wall);
+        outcome
+            .events
+            .push(event(&parcel, *body.fruit, partner, false));
+    }
+}
+
+fn begin(
+    surface: &Interaction,
+    touch: &Touch<f64>,
+    point: Vector,
+    now: &Moment,
+    body: &Body,
+) -> Result<(Law, Parcel), Error> {
+    let draws = &now.fruit[*body.fruit as usize].draws;
+    let mut encounter = encounter(touch.normal, touch.displacement, touch.velocity, now.clock);
+    encounter.place = point;
+    let offset = (*body.clump.0 != NONE).then_some(*body.clump.1);
+    encounter.spot = spot(*body.turn, offset, body.radius, touch.normal);
+    let parcel = Parcel::begin(surface.scale(touch.radius), now.clock, encounter);
+    Ok((surface.law_of(touch.radius, draws, None)?, parcel))
+}
+
+/// R* of a fruit on a part of a wall; m. Edges count as flat.
+pub(crate) fn effective_radius(facet: &Facet, radius: f64, centre: Vector) -> f64 {
+    let Facet::Cylinder {
+        start,
+        along,
+        radius: tube,
+    } = facet
+    else {
+        return radius;
+    };
+    let from = subtract(centre, *start);
+    let out = plus_scaled(from, *along, -dot(from, *along) / dot(*along, *along));
+    // Of a sphere against a cylinder, by the mean of the two curvatures.
+    let sign = if length(out) < *tube { -1.0 } else { 1.0 };
+    1.0 / (1.0 / radius + sign * 0.5 / tube)
+}

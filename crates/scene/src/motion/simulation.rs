@@ -1,0 +1,447 @@
+//! A scene from step to step.
+
+use crate::contacts::clump_contacts::{self, ClumpContacts};
+use crate::contacts::contact::{Moment, Outcome, event, event_of_pair, lasting};
+use crate::contacts::law_column::Four;
+use crate::contacts::neighbours::{Bodies, PairTable};
+use crate::contacts::pair_contacts::PairContacts;
+use crate::contacts::react::Clock;
+use crate::contacts::store::{Load, NONE};
+use crate::contacts::wall_contacts::{NearPart, WallState};
+use crate::contacts::wall_forces::WallContacts;
+use crate::energy::{Account, Energy};
+use crate::error::Error;
+use crate::event::{Event, Partner};
+use crate::interaction::Interaction;
+use crate::line::HalfLine;
+use crate::motion::clump_motion::{Around, ClumpState};
+use crate::motion::gather::{Loads, Sums, Swept};
+use crate::scene::Scene;
+use crate::vector::{Rotation, Vector};
+
+/// A scene that runs.
+///
+/// Forces, places and events do not depend on the number of threads, to the last bit.
+pub struct Simulation {
+    pub(crate) scene: Scene,
+    /// Interactions by number, and the number of each pair of materials.
+    pub(crate) surfaces: Vec<Interaction>,
+    pub(crate) numbers: Vec<usize>,
+    pub(crate) bodies: Bodies,
+    /// Fruit that are several of the bodies.
+    pub(crate) clumps: Vec<ClumpState>,
+    pub(crate) clump_contacts: ClumpContacts,
+    pub(crate) table: PairTable,
+    /// Contacts of each block, in the order of its parts.
+    pub(crate) contacts: Vec<Vec<PairContacts>>,
+    /// Of pairs of two blocks on the second body.
+    pub(crate) out: Vec<Load>,
+    /// For the loads on the bodies of blocks, while these are worked through.
+    pub(crate) loads: Loads,
+    /// Of contacts of clumps on each body, where there are clumps.
+    pub(crate) clump_loads: Vec<Load>,
+    pub(crate) walls: WallState,
+    /// Contacts of the bodies of each block with walls, by interaction.
+    pub(crate) wall_contacts: Vec<Vec<WallContacts>>,
+    /// Parts of walls near each body, and where those of each begin.
+    pub(crate) near: Vec<NearPart>,
+    pub(crate) near_start: Vec<u32>,
+    /// Places when the list was made; m.
+    pub(crate) listed: Vec<Four>,
+    /// The two largest ways since then of the bodies of each block; m.
+    pub(crate) ways: Vec<[f64; 2]>,
+    /// Largest way of all, how far two may have come together, and largest way of walls; m.
+    pub(crate) moved: f64,
+    pub(crate) approach: f64,
+    pub(crate) wall_way: f64,
+    pub(crate) wall_speed: f64,
+    pub(crate) skin: f64,
+    pub(crate) steps: u64,
+    /// Fruit that has come, by number.
+    pub(crate) released: usize,
+    pub(crate) events: Vec<Event>,
+    pub(crate) taken: Vec<Leaving>,
+    pub(crate) account: Account,
+    pub(crate) rebuilds: u64,
+}
+
+/// A fruit that left.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Leaving {
+    /// Its number.
+    pub fruit: u32,
+    /// When; s.
+    pub time: f64,
+    /// The sink, by its number.
+    pub sink: usize,
+}
+
+/// A fruit now.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct FruitState {
+    /// Its number.
+    pub fruit: u32,
+    /// Where; m.
+    pub place: Vector,
+    /// Velocity, half a step before the place; m/s.
+    pub velocity: Vector,
+    /// Angular velocity; rad/s.
+    pub spin: Vector,
+    /// Orientation, as a quaternion.
+    pub turn: Rotation,
+}
+
+/// Skin of the list of neighbours over the mean radius; 1.
+const SKIN: f64 = 0.16;
+
+/// Steps between looks at sinks.
+const SINK_STEPS: u64 = 32;
+
+impl Simulation {
+    /// A scene at its beginning.
+    ///
+    /// # Errors
+    /// The scene cannot be, see [`Scene::check`]; fruit of time zero overlap each other.
+    pub fn new(scene: Scene) -> Result<Self, Error> {
+        let mut simulation = Self::before_release(scene)?;
+        simulation.release()?;
+        simulation.check_room()?;
+        Ok(simulation)
+    }
+
+    /// A scene into which no fruit has come.
+    pub(crate) fn before_release(mut scene: Scene) -> Result<Self, Error> {
+        scene.check()?;
+        scene.fruit.sort_by(|a, b| a.time.total_cmp(&b.time));
+        let mean = scene.fruit.iter().map(|fruit| fruit.radius).sum::<f64>();
+        let skin = SKIN * mean / scene.fruit.len().max(1) as f64;
+        let keys: Vec<(usize, usize)> = scene.interactions.keys().copied().collect();
+        let materials = scene.materials.len();
+        let number = |place: usize| {
+            let (a, b) = (place / materials, place % materials);
+            let key = (a.min(b), a.max(b));
+            keys.iter()
+                .position(|own| *own == key)
+                .unwrap_or(usize::MAX)
+        };
+        let wall_speed = scene.walls.iter().map(|wall| {
+            let pivot = wall.motion.rotation.map_or([0.0; 3], |own| own.point);
+            let reach = wall.shape.reach(pivot);
+            // Planes are always looked at.
+            if reach.is_finite() {
+                wall.motion.largest_speed(reach)
+            } else {
+                0.0
+            }
+        });
+        let wall_speed = wall_speed.fold(0.0, f64::max);
+        Ok(Self {
+            surfaces: scene.interactions.values().cloned().collect(),
+            numbers: (0..materials * materials).map(number).collect(),
+            walls: WallState::new(&scene.walls),
+            scene,
+            bodies: Bodies::default(),
+            clumps: Vec::new(),
+            clump_contacts: ClumpContacts::default(),
+            table: PairTable::default(),
+            contacts: Vec::new(),
+            out: Vec::new(),
+            loads: Default::default(),
+            clump_loads: Vec::new(),
+            wall_contacts: Vec::new(),
+            near: Vec::new(),
+            near_start: vec![0],
+            listed: Vec::new(),
+            ways: Vec::new(),
+            moved: f64::INFINITY,
+            approach: f64::INFINITY,
+            wall_way: 0.0,
+            wall_speed,
+            skin,
+            steps: 0,
+            released: 0,
+            events: Vec::new(),
+            taken: Vec::new(),
+            account: Account::default(),
+            rebuilds: 0,
+        })
+    }
+
+    /// Time of the places; s.
+    #[must_use]
+    pub fn time(&self) -> f64 {
+        self.steps as f64 * self.scene.time_step
+    }
+
+    /// Steps so far.
+    #[must_use]
+    pub fn steps(&self) -> u64 {
+        self.steps
+    }
+
+    /// The scene.
+    #[must_use]
+    pub fn scene(&self) -> &Scene {
+        &self.scene
+    }
+
+    /// How often the list of neighbours was made.
+    #[must_use]
+    pub fn rebuilds(&self) -> u64 {
+        self.rebuilds
+    }
+
+    /// Fruit in the scene now.
+    #[must_use]
+    pub fn count(&self) -> usize {
+        self.clumps.len() + self.bodies.clump.iter().filter(|own| **own == NONE).count()
+    }
+
+    /// Fruit that are still to come.
+    #[must_use]
+    pub fn waiting(&self) -> usize {
+        self.scene.fruit.len() - self.released
+    }
+
+    /// Contacts of two fruit now.
+    #[must_use]
+    pub fn pair_contacts(&self) -> usize {
+        let spheres: usize = self.contacts.iter().flatten().map(|own| own.count()).sum();
+        spheres + self.clump_contacts.pair_count()
+    }
+
+    /// Every fruit in the scene, by number.
+    #[must_use]
+    pub fn fruit(&self) -> Vec<FruitState> {
+        let state = |body: usize| {
+            let (HalfLine([x, y, z, _]), m) = (self.bodies.place[body], self.bodies.motion[body]);
+            FruitState {
+                fruit: self.bodies.fruit[body],
+                place: [x, y, z],
+                velocity: [m[0], m[1], m[2]],
+                spin: [m[4], m[5], m[6]],
+                turn: self.bodies.turn[body],
+            }
+        };
+        let spheres = (0..self.bodies.len()).filter(|body| self.bodies.clump[*body] == NONE);
+        let mut all: Vec<FruitState> = spheres.map(state).collect();
+        all.extend(self.clumps.iter().map(|own| FruitState {
+            fruit: own.fruit,
+            place: own.place,
+            velocity: own.velocity,
+            spin: own.spin,
+            turn: own.turn,
+        }));
+        all.sort_by_key(|own| own.fruit);
+        all
+    }
+
+    /// Contacts that ended since this was last asked, in the order of steps.
+    pub fn take_events(&mut self) -> Vec<Event> {
+        std::mem::take(&mut self.events)
+    }
+
+    /// Fruit that left since this was last asked.
+    pub fn take_leavings(&mut self) -> Vec<Leaving> {
+        std::mem::take(&mut self.taken)
+    }
+
+    /// Contacts that are still there, as if they ended now.
+    #[must_use]
+    pub fn lasting(&self) -> Vec<Event> {
+        let mut events = Vec::new();
+        let last = self.steps.saturating_sub(1) as f64 * self.scene.time_step;
+        for (parts, contacts) in self.table.blocks.iter().zip(&self.contacts) {
+            for ((_, range), contacts) in parts.iter().zip(contacts) {
+                for (contact, &entry) in contacts.entries().iter().enumerate() {
+                    let (_, parcel) = contacts.at(contact);
+                    let entry = range.start + entry as usize;
+                    let fruit = |body: u32| self.bodies.fruit[body as usize];
+                    let pair = (
+                        fruit(self.table.first[entry]),
+                        fruit(self.table.second[entry]),
+                    );
+                    events.push(event_of_pair(lasting(parcel, last), pair, true));
+                }
+            }
+        }
+        for (body, wall, parcel) in self.touched_walls() {
+            let fruit = self.bodies.fruit[body];
+            let partner = Partner::Wall(wall);
+            events.push(event(&lasting(parcel, last), fruit, partner, true));
+        }
+        for (fruit, partner, parcel) in self.clump_contacts.all() {
+            events.push(event(&lasting(parcel, last), fruit, partner, true));
+        }
+        events.sort_by_key(|event| (event.fruit, event.partner));
+        events
+    }
+
+    /// One time step on.
+    ///
+    /// # Errors
+    /// The result would mean nothing: bodies overlap or move too much.
+    pub fn step(&mut self) -> Result<(), Error> {
+        self.advance(false).map(|_| ())
+    }
+
+    /// So many time steps on.
+    ///
+    /// # Errors
+    /// See [`Simulation::step`].
+    pub fn run(&mut self, steps: u64) -> Result<(), Error> {
+        (0..steps).try_for_each(|_| self.step())
+    }
+
+    /// One time step on; answers the energies at its beginning.
+    ///
+    /// # Errors
+    /// See [`Simulation::step`].
+    pub fn step_with_energy(&mut self) -> Result<Energy, Error> {
+        self.advance(true)
+    }
+
+    fn advance(&mut self, with_energy: bool) -> Result<Energy, Error> {
+        if !self.scene.sinks.is_empty() && self.steps.is_multiple_of(SINK_STEPS) {
+            self.sink();
+        }
+        if self.due() {
+            self.release()?;
+        }
+        self.push(with_energy)
+    }
+
+    /// Forces on all bodies where they are now, and where they take them.
+    pub(crate) fn push(&mut self, with_energy: bool) -> Result<Energy, Error> {
+        if self.approach > self.skin || self.moved + self.wall_way > self.skin {
+            self.rebuild();
+        }
+        let (time, step) = (self.time(), self.scene.time_step);
+        self.walls.move_to(&self.scene.walls, time, step);
+        let clock = Clock { time, step };
+        let of_clumps = self.push_clump_contacts(clock);
+        let swept = self.sweep(clock, with_energy);
+        self.end(of_clumps)?;
+        let energy = self.take_in(swept, with_energy)?;
+        self.wall_way += self.wall_speed * step;
+        self.steps += 1;
+        Ok(energy)
+    }
+
+    /// Takes in what a step brought about.
+    fn take_in(&mut self, swept: Swept, with_energy: bool) -> Result<Energy, Error> {
+        swept.pairs.into_iter().try_for_each(|own| self.end(own))?;
+        let mut energy = Energy::default();
+        (self.moved, self.approach) = (0.0, 0.0);
+        let ways = swept
+            .bodies
+            .iter()
+            .map(|(_, sums)| sums.moved.map(f64::sqrt));
+        self.ways = ways.collect();
+        for (block, (outcome, sums)) in swept.bodies.into_iter().enumerate() {
+            self.end(outcome)?;
+            self.moved = self.moved.max(self.ways[block][0]);
+            self.approach = self.approach.max(self.table.approach(block, &self.ways));
+            self.account.drag += sums.drag;
+            self.account.walls += sums.walls;
+            energy.kinetic += sums.kinetic;
+            energy.rotational += sums.rotational;
+            energy.potential += sums.potential;
+        }
+        let sums = self.push_clumps();
+        self.moved = self.moved.max(sums.moved[0].sqrt());
+        if !self.clumps.is_empty() {
+            self.approach = 2.0 * self.moved;
+        }
+        self.account.drag += sums.drag;
+        if with_energy {
+            energy.kinetic += sums.kinetic;
+            energy.rotational += sums.rotational;
+            energy.potential += sums.potential;
+            self.complete(&mut energy);
+        }
+        Ok(energy)
+    }
+
+    /// Forces of all contacts of clumps, for themselves.
+    fn push_clump_contacts(&mut self, clock: Clock) -> Outcome {
+        let mut outcome = Outcome::default();
+        self.clump_loads.clear();
+        if self.clumps.is_empty() {
+            return outcome;
+        }
+        self.clump_loads.resize(self.bodies.len(), Load::ZERO);
+        let now = Moment {
+            fruit: &self.scene.fruit,
+            clock,
+        };
+        let (surfaces, numbers) = (&self.surfaces, &self.numbers);
+        let materials = self.scene.materials.len();
+        let wall_materials = self.scene.walls.iter().map(|wall| wall.material as u32);
+        let wall_materials: Vec<u32> = wall_materials.collect();
+        let around = clump_contacts::Around {
+            bodies: &self.bodies,
+            walls: &self.walls,
+            now: &now,
+            surface: |a: u32, b: u32| &surfaces[numbers[a as usize * materials + b as usize]],
+            wall_materials: &wall_materials,
+        };
+        let contacts = &mut self.clump_contacts;
+        let work = contacts.advance(&around, &mut self.clump_loads, &mut outcome);
+        self.account.walls += work;
+        outcome
+    }
+
+    /// Takes in what contacts brought about.
+    fn end(&mut self, outcome: Outcome) -> Result<(), Error> {
+        if let Some(problem) = outcome.problem {
+            return Err(problem);
+        }
+        for event in outcome.events {
+            self.account.normal += event.absorbed_energy;
+            self.account.friction += event.friction_energy;
+            self.events.push(event);
+        }
+        Ok(())
+    }
+
+    /// Clumps one step on, and their spheres with them.
+    fn push_clumps(&mut self) -> Sums {
+        let mut sums = Sums::default();
+        let around = Around {
+            fruit: &self.scene.fruit,
+            gravity: self.scene.gravity,
+            air: self.scene.air,
+            step: self.scene.time_step,
+            listed: &self.listed,
+            loads: &self.clump_loads,
+        };
+        for clump in &mut self.clumps {
+            clump.go(&around, &mut self.bodies, &mut sums);
+        }
+        sums
+    }
+
+    fn complete(&self, energy: &mut Energy) {
+        for contacts in self.contacts.iter().flatten() {
+            for contact in 0..contacts.count() {
+                let (_, parcel) = contacts.at(contact);
+                energy.in_contacts += parcel.history.work;
+                energy.in_friction += parcel.history.friction_work;
+            }
+        }
+        for (_, _, parcel) in self.touched_walls() {
+            energy.in_contacts += parcel.history.work;
+            energy.in_friction += parcel.history.friction_work;
+        }
+        for (_, _, parcel) in self.clump_contacts.all() {
+            energy.in_contacts += parcel.history.work;
+            energy.in_friction += parcel.history.friction_work;
+        }
+        energy.lost_in_contacts = self.account.normal;
+        energy.lost_by_friction = self.account.friction;
+        energy.lost_by_drag = self.account.drag;
+        energy.done_by_walls = self.account.walls;
+        energy.brought = self.account.brought;
+    }
+}

@@ -1,0 +1,6 @@
+//! Shapes of fruit and walls.
+
+pub mod clump;
+pub(crate) mod facet_tree;
+pub mod mesh;
+pub mod wall;

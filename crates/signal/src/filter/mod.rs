@@ -1,0 +1,5 @@
+//! Filters and smoothing.
+
+pub mod butterworth;
+pub mod smoothing_spline;
+pub mod zero_phase;

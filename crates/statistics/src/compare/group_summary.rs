@@ -1,0 +1,234 @@
+//! Groups of a table's rows, and what each group's values look like.
+
+use crate::accurate_sum::{mean, standard_deviation};
+use crate::distribution::quantile::quantile;
+use crate::distribution::tail::t_upper_quantile;
+use crate::error::Error;
+use crate::sample::check_probability;
+use crate::table::{Categories, Cells, Table};
+
+/// The values of one group of rows.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Group {
+    /// Level of each grouping column, in the order they were named.
+    pub levels: Vec<String>,
+    /// Rows of the table, from 0, whose value is there.
+    pub rows: Vec<usize>,
+    /// Their values.
+    pub values: Vec<f64>,
+    /// Rows of the group whose value is missing.
+    pub missing: usize,
+}
+
+/// The rows of a table by the levels of grouping columns.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Groups {
+    /// Groups that occur, in the order of their levels.
+    pub groups: Vec<Group>,
+    /// Rows, from 0, that belong to no group: a grouping cell is missing.
+    pub ungrouped: Vec<usize>,
+}
+
+/// What the values of a group look like.
+#[derive(Clone, Debug, PartialEq)]
+pub struct GroupSummary {
+    /// Level of each grouping column.
+    pub levels: Vec<String>,
+    /// Number of values.
+    pub n: usize,
+    /// Number of rows whose value is missing.
+    pub missing: usize,
+    /// Mean; NaN without values, as all below.
+    pub mean: f64,
+    /// Standard deviation (n - 1); NaN for fewer than two values.
+    pub standard_deviation: f64,
+    /// Standard deviation over |mean|: the coefficient of variation; a fraction.
+    pub coefficient_of_variation: f64,
+    /// Standard error of the mean.
+    pub standard_error: f64,
+    /// Lower end of the mean's interval, by Student's t.
+    pub low: f64,
+    /// Upper end.
+    pub high: f64,
+    /// Smallest value.
+    pub smallest: f64,
+    /// First quartile, as [`quantile`].
+    pub first_quartile: f64,
+    /// Median.
+    pub median: f64,
+    /// Third quartile.
+    pub third_quartile: f64,
+    /// Largest value.
+    pub largest: f64,
+}
+
+/// The values of a column, by the levels of others.
+///
+/// A grouping column of numbers groups by equal numbers. Without grouping
+/// columns all rows are one group.
+///
+/// # Errors
+/// [`Error::UnknownColumn`]; [`Error::NotNumbers`] for the column of values.
+pub fn split_groups(table: &Table, by: &[&str], value: &str) -> Result<Groups, Error> {
+    let values = table.numbers(value)?;
+    let columns: Vec<Categories> = by
+        .iter()
+        .map(|name| Ok(categories_of(&table.column(name)?.cells)))
+        .collect::<Result<_, Error>>()?;
+    let mut ungrouped = Vec::new();
+    let mut keyed: Vec<(Vec<usize>, usize)> = Vec::new();
+    for row in 0..values.len() {
+        match columns.iter().map(|column| column.codes[row]).collect() {
+            Some(key) => keyed.push((key, row)),
+            None => ungrouped.push(row),
+        }
+    }
+    // stable: rows keep their order within a group
+    keyed.sort_by(|a, b| a.0.cmp(&b.0));
+    let groups = keyed
+        .chunk_by(|a, b| a.0 == b.0)
+        .map(|rows| group_of(rows, &columns, values))
+        .collect();
+    Ok(Groups { groups, ungrouped })
+}
+
+fn group_of(keyed: &[(Vec<usize>, usize)], columns: &[Categories], values: &[f64]) -> Group {
+    let key = &keyed[0].0;
+    let levels = columns.iter().zip(key);
+    let rows = keyed.iter().map(|(_, row)| *row);
+    let rows: Vec<usize> = rows.filter(|row| !values[*row].is_nan()).collect();
+    Group {
+        levels: levels
+            .map(|(column, code)| column.levels[*code].clone())
+            .collect(),
+        values: rows.iter().map(|row| values[*row]).collect(),
+        missing: keyed.len() - rows.len(),
+        rows,
+    }
+}
+
+/// Categories as they are; numbers as categories of equal numbers.
+fn categories_of(cells: &Cells) -> Categories {
+    match cells {
+        Cells::Categories(categories) => categories.clone(),
+        Cells::Numbers(numbers) => {
+            let mut known: Vec<f64> = numbers.iter().copied().filter(|x| !x.is_nan()).collect();
+            known.sort_by(f64::total_cmp);
+            known.dedup();
+            let place = |x: &f64| known.binary_search_by(|other| other.total_cmp(x)).ok();
+            Categories {
+                codes: numbers.iter().map(place).collect(),
+                levels: known.iter().map(f64::to_string).collect(),
+            }
+        }
+    }
+}
+
+/// What the values of a column look like, by the levels of others.
+///
+/// # Errors
+/// As [`split_groups`], or a confidence outside (0, 1).
+pub fn summarize_groups(
+    table: &Table,
+    by: &[&str],
+    value: &str,
+    confidence: f64,
+) -> Result<Vec<GroupSummary>, Error> {
+    let groups = split_groups(table, by, value)?.groups;
+    groups
+        .iter()
+        .map(|group| summarize(group, confidence))
+        .collect()
+}
+
+/// What the values of one group look like.
+///
+/// # Errors
+/// A confidence outside (0, 1).
+pub fn summarize(group: &Group, confidence: f64) -> Result<GroupSummary, Error> {
+    check_probability("the confidence", confidence)?;
+    let values = &group.values;
+    let n = values.len();
+    let mean = mean(values).value();
+    let deviation = standard_deviation(values);
+    let error = deviation / (n as f64).sqrt();
+    let reach = match n {
+        0 | 1 => f64::NAN,
+        _ => error * t_upper_quantile(0.5 * (1.0 - confidence), n as f64 - 1.0),
+    };
+    Ok(GroupSummary {
+        levels: group.levels.clone(),
+        n,
+        missing: group.missing,
+        mean,
+        standard_deviation: deviation,
+        coefficient_of_variation: deviation / mean.abs(),
+        standard_error: error,
+        low: mean - reach,
+        high: mean + reach,
+        smallest: quantile(values, 0.0),
+        first_quartile: quantile(values, 0.25),
+        median: quantile(values, 0.5),
+        third_quartile: quantile(values, 0.75),
+        largest: quantile(values, 1.0),
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::table::Column;
+
+    fn table() -> Table {
+        let text = |cells: &[&str]| {
+            let cells: Vec<String> = cells.iter().map(|cell| (*cell).to_owned()).collect();
+            Cells::Categories(Categories::of_cells(&cells))
+        };
+        let column = |name: &str, cells: Cells| Column {
+            name: name.to_owned(),
+            cells,
+        };
+        Table {
+            columns: vec![
+                column(
+                    "variety",
+                    text(&["red", "golden", "red", "", "red", "golden"]),
+                ),
+                column("V", Cells::Numbers(vec![0.3, 0.1, 0.3, 0.1, 0.1, 0.1])),
+                column("k", Cells::Numbers(vec![2.0, 5.0, 4.0, 7.0, f64::NAN, 5.5])),
+            ],
+        }
+    }
+
+    #[test]
+    fn closed_form_groups_of_two_columns_with_missing_cells() {
+        let found = split_groups(&table(), &["variety", "V"], "k").unwrap();
+        let levels: Vec<String> = found.groups.iter().map(|g| g.levels.join(" ")).collect();
+        assert_eq!(levels, ["golden 0.1", "red 0.1", "red 0.3"]);
+        assert_eq!(found.groups[2].values, [2.0, 4.0]);
+        assert_eq!(found.groups[2].rows, [0, 2]);
+        assert_eq!(found.groups[1].missing, 1);
+        assert_eq!(found.ungrouped, [3]);
+    }
+
+    #[test]
+    fn closed_form_summary() {
+        let found = summarize_groups(&table(), &["variety"], "k", 0.5).unwrap();
+        let red = &found[1];
+        assert_eq!((red.n, red.missing), (2, 1));
+        assert_eq!(red.mean, 3.0);
+        assert_eq!(red.standard_deviation, 2f64.sqrt());
+        assert!((red.standard_error - 1.0).abs() < 1e-15);
+        // Student's t of one degree at 1/4 is 1
+        assert!((red.low - 2.0).abs() < 1e-14 && (red.high - 4.0).abs() < 1e-14);
+        assert_eq!([red.first_quartile, red.median], [2.5, 3.0]);
+        let all = summarize_groups(&table(), &[], "k", 0.95).unwrap();
+        assert_eq!((all.len(), all[0].n, all[0].missing), (1, 5, 1));
+    }
+
+    #[test]
+    fn rejects_text_where_numbers_are_needed() {
+        let message = split_groups(&table(), &["V"], "variety").unwrap_err();
+        assert!(message.to_string().contains("holds text"), "{message}");
+    }
+}

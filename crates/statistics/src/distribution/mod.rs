@@ -1,0 +1,8 @@
+//! Tails and quantiles of distributions.
+
+mod incomplete_beta;
+mod incomplete_gamma;
+mod log_gamma_rest;
+pub mod quantile;
+pub mod studentized_range;
+pub mod tail;

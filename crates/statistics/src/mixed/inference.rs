@@ -1,0 +1,385 @@
+//! Tests of fixed effects with Satterthwaite's degrees of freedom.
+
+use crate::distribution::tail::{f_upper, t_two_sided, t_upper_quantile};
+use crate::mixed::boundary::Criterion;
+use crate::mixed::error::MixedError;
+use crate::mixed::evaluate::{State, evaluate};
+use crate::mixed::finding::MixedFinding;
+use crate::mixed::fit::{MixedFit, MixedMethod};
+use crate::mixed::minimise::{FLAT, differences};
+use crate::mixed::term::{check_finite, check_length};
+use crate::mixed::theta::{blocks_of, entries_from};
+use nalgebra::{DMatrix, DVector};
+
+/// Eigenvalues of a contrast's covariance below this share of the largest count as
+/// zero: the contrast's rows follow from each other.
+const RANK: f64 = 1e-10;
+
+/// Covariance of the variance parameters, and how the coefficients' covariance
+/// depends on them: all that Satterthwaite's method needs of a fit.
+///
+/// The parameters are the free entries of the relative covariance factors, then σ.
+#[derive(Clone, Debug)]
+pub struct VarianceUncertainty {
+    /// Covariance of the parameters: twice the inverse of the second derivative of
+    /// -2 log likelihood, without flat directions.
+    pub(crate) covariance: DMatrix<f64>,
+    /// Derivative of the coefficients' covariance by each parameter.
+    pub(crate) slopes: Vec<DMatrix<f64>>,
+    /// What the reader should know.
+    pub findings: Vec<MixedFinding>,
+}
+
+/// Test of one coefficient or of one combination of coefficients.
+#[derive(Clone, Debug, PartialEq)]
+pub struct CoefficientTest {
+    /// Name of the coefficient.
+    pub name: String,
+    /// Estimate.
+    pub estimate: f64,
+    /// Standard error.
+    pub se: f64,
+    /// Degrees of freedom.
+    pub df: f64,
+    /// Estimate over standard error.
+    pub t: f64,
+    /// Two-sided p-value.
+    pub p: f64,
+    /// Lower end of the confidence interval.
+    pub low: f64,
+    /// Upper end.
+    pub high: f64,
+}
+
+/// Test that several combinations of coefficients are all zero.
+#[derive(Clone, Debug, PartialEq)]
+pub struct FTest {
+    /// F.
+    pub f: f64,
+    /// Degrees of freedom of the numerator.
+    pub numerator: usize,
+    /// Degrees of freedom of the denominator.
+    pub denominator: f64,
+    /// p-value.
+    pub p: f64,
+}
+
+/// What Satterthwaite's method needs of a fit.
+///
+/// The second derivative of the likelihood is taken by differences of fourth order
+/// of its exact gradient, those of the covariance exactly as differences of it: both
+/// are good to about 1e-9.
+///
+/// # Errors
+/// [`MixedError::NoCriterion`] if the criterion is not finite near the estimate.
+///
+/// # Source
+/// Kuznetsova, Brockhoff and Christensen (2017), lmerTest package, J. Stat. Softw.
+/// 82(13), doi 10.18637/jss.v082.i13, sec. 2; Fai and Cornelius (1996).
+pub fn variance_uncertainty(fit: &MixedFit) -> Result<VarianceUncertainty, MixedError> {
+    let p = fit.model.coefficients();
+    let sigma = fit.residual_sd;
+    let theta = &fit.estimate.theta;
+    let k = theta.len();
+    // outputs: gradient by θ of log|V| (+ log|X'V⁻¹X|), gradient of the squares,
+    // and the coefficients' covariance over σ²
+    let outputs = |at: &[f64]| -> Option<Vec<f64>> {
+        let state = evaluate(
+            &fit.model,
+            &blocks_of(&fit.model, &fit.estimate.entries, at),
+        )?;
+        let mut all = deviance_slope(fit, &state);
+        all.extend(covariance_of(fit, &state).as_slice());
+        Some(all)
+    };
+    let rows = differences(&outputs, theta).ok_or(MixedError::NoCriterion)?;
+
+    let mut second = DMatrix::zeros(k + 1, k + 1);
+    for i in 0..k {
+        for j in 0..k {
+            second[(i, j)] = f64::midpoint(rows[i][j], rows[j][i]);
+        }
+    }
+    // deviance = logs + denominator log(2πσ²) + squares / σ²
+    let criterion = Criterion::of_model(&fit.model, fit.method == MixedMethod::Reml);
+    let squares_slope = squares_slope(fit, &fit.state);
+    for i in 0..k {
+        second[(i, k)] = -2.0 * squares_slope[i] / sigma.powi(3);
+        second[(k, i)] = second[(i, k)];
+    }
+    second[(k, k)] =
+        -2.0 * criterion.denominator / sigma.powi(2) + 6.0 * fit.state.squares / sigma.powi(4);
+
+    let mut slopes: Vec<DMatrix<f64>> = rows
+        .iter()
+        .map(|row| DMatrix::from_column_slice(p, p, &row[k..]) * (sigma * sigma))
+        .collect();
+    slopes.push(&fit.covariance * (2.0 / sigma));
+    if second.iter().any(|value| !value.is_finite()) {
+        return Err(MixedError::NoCriterion);
+    }
+    let (covariance, flat) = covariance_from(second);
+    let mut findings = Vec::new();
+    if flat > 0 {
+        findings.push(MixedFinding::FlatCriterion { directions: flat });
+    }
+    Ok(VarianceUncertainty {
+        covariance,
+        slopes,
+        findings,
+    })
+}
+
+/// Gradient by θ, at fixed σ, of -2 log likelihood.
+fn deviance_slope(fit: &MixedFit, state: &State) -> Vec<f64> {
+    let restricted = fit.method == MixedMethod::Reml;
+    let (slopes, _) = crate::mixed::slope::slopes(&fit.model, state);
+    let variance = fit.residual_sd * fit.residual_sd;
+    let mut sum = slopes.log_v;
+    for (factor, sum) in sum.iter_mut().enumerate() {
+        *sum += &slopes.squares[factor] / variance;
+        if restricted {
+            *sum += &slopes.log_fixed[factor];
+        }
+    }
+    entries_from(&fit.estimate.entries, &sum)
+}
+
+fn squares_slope(fit: &MixedFit, state: &State) -> Vec<f64> {
+    let (slopes, _) = crate::mixed::slope::slopes(&fit.model, state);
+    entries_from(&fit.estimate.entries, &slopes.squares)
+}
+
+/// Covariance of the coefficients over σ², in the columns as given.
+fn covariance_of(fit: &MixedFit, state: &State) -> DMatrix<f64> {
+    let p = fit.model.coefficients();
+    let inverse = fit
+        .model
+        .basis
+        .r
+        .solve_upper_triangular(&DMatrix::identity(p, p));
+    let inverse = inverse.unwrap_or_else(|| DMatrix::zeros(p, p));
+    &inverse * &state.covariance * inverse.transpose()
+}
+
+/// Twice the inverse of a second derivative over its curved directions, and the
+/// number of flat ones. Scaled to a unit diagonal first, so that flatness does not
+/// depend on units.
+fn covariance_from(second: DMatrix<f64>) -> (DMatrix<f64>, usize) {
+    let n = second.nrows();
+    let largest = second.diagonal().amax();
+    let scale = DVector::from_fn(n, |i, _| {
+        let diagonal = second[(i, i)];
+        if diagonal > FLAT * largest {
+            diagonal.sqrt().recip()
+        } else {
+            largest.sqrt().recip()
+        }
+    });
+    let scaled = DMatrix::from_fn(n, n, |i, j| second[(i, j)] * scale[i] * scale[j]);
+    let eigen = scaled.symmetric_eigen();
+    let mut inverse = DMatrix::zeros(n, n);
+    let mut flat = 0;
+    for (value, vector) in eigen
+        .eigenvalues
+        .iter()
+        .zip(eigen.eigenvectors.column_iter())
+    {
+        if *value > FLAT {
+            inverse += vector * vector.transpose() * (2.0 / value);
+        } else {
+            flat += 1;
+        }
+    }
+    let covariance = DMatrix::from_fn(n, n, |i, j| inverse[(i, j)] * scale[i] * scale[j]);
+    (covariance, flat)
+}
+
+/// Satterthwaite's degrees of freedom of a variance with this derivative by the
+/// variance parameters: 2 v² / (g' A g).
+pub(crate) fn degrees_of_freedom(
+    uncertainty: &VarianceUncertainty,
+    variance: f64,
+    slope: &DVector<f64>,
+) -> f64 {
+    2.0 * variance * variance / (slope.transpose() * &uncertainty.covariance * slope)[(0, 0)]
+}
+
+/// Degrees of freedom of a combination of coefficients.
+fn contrast_df(
+    uncertainty: &VarianceUncertainty,
+    covariance: &DMatrix<f64>,
+    weights: &DVector<f64>,
+) -> f64 {
+    let quadratic = |matrix: &DMatrix<f64>| (weights.transpose() * matrix * weights)[(0, 0)];
+    let slope = DVector::from_iterator(
+        uncertainty.slopes.len(),
+        uncertainty.slopes.iter().map(quadratic),
+    );
+    degrees_of_freedom(uncertainty, quadratic(covariance), &slope)
+}
+
+/// Tests of every coefficient, with intervals of this confidence (as 0.95).
+#[must_use]
+pub fn coefficient_tests(
+    fit: &MixedFit,
+    uncertainty: &VarianceUncertainty,
+    confidence: f64,
+) -> Vec<CoefficientTest> {
+    let p = fit.model.coefficients();
+    let tests = (0..p).map(|k| {
+        let weights = DVector::from_fn(p, |i, _| f64::from(u8::from(i == k)));
+        let df = contrast_df(uncertainty, &fit.covariance, &weights);
+        test_of(
+            fit,
+            &fit.covariance,
+            &fit.model.x_names[k],
+            &weights,
+            df,
+            confidence,
+        )
+    });
+    tests.collect()
+}
+
+/// Test of one combination of coefficients.
+///
+/// # Errors
+/// [`MixedError::WrongLength`] unless there is a weight per coefficient.
+pub fn combination_test(
+    fit: &MixedFit,
+    uncertainty: &VarianceUncertainty,
+    name: &str,
+    weights: &[f64],
+    confidence: f64,
+) -> Result<CoefficientTest, MixedError> {
+    let what = format!("weights of {name}");
+    check_length(&what, weights.len(), fit.model.coefficients())?;
+    check_finite(&what, weights)?;
+    let weights = DVector::from_column_slice(weights);
+    let df = contrast_df(uncertainty, &fit.covariance, &weights);
+    Ok(test_of(
+        fit,
+        &fit.covariance,
+        name,
+        &weights,
+        df,
+        confidence,
+    ))
+}
+
+/// t, p and interval with these degrees of freedom.
+pub(crate) fn test_of(
+    fit: &MixedFit,
+    covariance: &DMatrix<f64>,
+    name: &str,
+    weights: &DVector<f64>,
+    df: f64,
+    confidence: f64,
+) -> CoefficientTest {
+    let estimate = weights.dot(&DVector::from_column_slice(&fit.coefficients));
+    let se = (weights.transpose() * covariance * weights)[(0, 0)].sqrt();
+    let t = estimate / se;
+    let half = half_width(confidence, df) * se;
+    CoefficientTest {
+        name: name.to_owned(),
+        estimate,
+        se,
+        df,
+        t,
+        p: t_two_sided(t, df),
+        low: estimate - half,
+        high: estimate + half,
+    }
+}
+
+/// F test that all rows of `contrast` times the coefficients are zero; with one row
+/// per coefficient of a term, the term's test of type III.
+///
+/// # Errors
+/// [`MixedError::WrongLength`] unless there is a column per coefficient;
+/// [`MixedError::EmptyContrast`] if no row differs from zero.
+///
+/// # Source
+/// lmerTest's `contestMD` (Kuznetsova et al. 2017, sec. 2.1): the contrast is turned
+/// into independent ones, whose degrees of freedom are joined by the mean of F.
+pub fn f_test(
+    fit: &MixedFit,
+    uncertainty: &VarianceUncertainty,
+    contrast: &DMatrix<f64>,
+) -> Result<FTest, MixedError> {
+    let p = fit.model.coefficients();
+    check_length("columns of the contrast", contrast.ncols(), p)?;
+    check_contrast(contrast)?;
+    let covariance = contrast * &fit.covariance * contrast.transpose();
+    let eigen = covariance.symmetric_eigen();
+    let largest = eigen.eigenvalues.amax();
+    let beta = DVector::from_column_slice(&fit.coefficients);
+    let mut sum = 0.0;
+    let mut dfs = Vec::new();
+    for (value, vector) in eigen
+        .eigenvalues
+        .iter()
+        .zip(eigen.eigenvectors.column_iter())
+    {
+        if *value <= RANK * largest || *value <= 0.0 {
+            continue;
+        }
+        let weights = contrast.tr_mul(&vector);
+        sum += weights.dot(&beta).powi(2) / value;
+        dfs.push(contrast_df(uncertainty, &fit.covariance, &weights));
+    }
+    if dfs.is_empty() {
+        return Err(MixedError::EmptyContrast);
+    }
+    let f = sum / dfs.len() as f64;
+    let denominator = joint_df(&dfs);
+    Ok(FTest {
+        f,
+        numerator: dfs.len(),
+        denominator,
+        p: f_upper(f, dfs.len() as f64, denominator),
+    })
+}
+
+/// A contrast of finite weights in at least one row.
+pub(crate) fn check_contrast(contrast: &DMatrix<f64>) -> Result<(), MixedError> {
+    if contrast.nrows() == 0 {
+        return Err(MixedError::EmptyContrast);
+    }
+    for column in contrast.column_iter() {
+        check_finite("contrast", column.as_slice())?;
+    }
+    Ok(())
+}
+
+/// Degrees of freedom of the mean of squared independent t's, from the mean of F.
+fn joint_df(dfs: &[f64]) -> f64 {
+    let first = dfs[0];
+    if dfs.iter().all(|df| (df - first).abs() < 1e-8) {
+        return dfs.iter().sum::<f64>() / dfs.len() as f64;
+    }
+    if dfs.iter().any(|df| *df <= 2.0) {
+        return 2.0;
+    }
+    let mean: f64 = dfs.iter().map(|df| df / (df - 2.0)).sum();
+    2.0 * mean / (mean - dfs.len() as f64)
+}
+
+/// Contrast that picks these coefficients.
+#[must_use]
+pub fn picking_contrast(coefficients: usize, picked: &[usize]) -> DMatrix<f64> {
+    DMatrix::from_fn(picked.len(), coefficients, |i, j| {
+        f64::from(u8::from(picked[i] == j))
+    })
+}
+
+/// Half width of an interval of this confidence in standard errors; NaN where the
+/// confidence is none.
+pub(crate) fn half_width(confidence: f64, df: f64) -> f64 {
+    if confidence > 0.0 && confidence < 1.0 {
+        t_upper_quantile((1.0 - confidence) / 2.0, df)
+    } else {
+        f64::NAN
+    }
+}

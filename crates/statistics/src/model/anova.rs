@@ -1,0 +1,169 @@
+//! Analysis of variance of linear models.
+
+use crate::model::linear_model::fisher_upper;
+use crate::model::model_frame::ModelFrame;
+use crate::model::reduced::Reduced;
+use nalgebra::DMatrix;
+
+/// Which models a term is tested between.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum AnovaType {
+    /// Each term after those before it.
+    Sequential,
+    /// Each term after all that do not contain it.
+    Hierarchical,
+    /// Each term after all others, as the columns are coded: sum contrasts for
+    /// categories and centred numbers make it mean something.
+    Partial,
+}
+
+/// A row of an analysis of variance.
+#[derive(Clone, Debug, PartialEq)]
+pub struct AnovaRow {
+    /// The term.
+    pub term: String,
+    /// Its sum of squares.
+    pub ss: f64,
+    /// Its degrees of freedom; zero for a term that is aliased.
+    pub df: usize,
+    /// Its mean square over that of the residuals.
+    pub f: f64,
+    /// Probability of F or more without the term.
+    pub p: f64,
+}
+
+/// An analysis of variance.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Anova {
+    /// What was tested.
+    pub kind: AnovaType,
+    /// The terms.
+    pub rows: Vec<AnovaRow>,
+    /// Sum of squares of the residuals.
+    pub residual_ss: f64,
+    /// Their degrees of freedom.
+    pub residual_df: usize,
+}
+
+/// Analyses the variance of a model.
+///
+/// * `terms`: positions of the terms of the frame that are in the model
+#[must_use]
+pub fn anova(frame: &ModelFrame, reduced: &Reduced, terms: &[usize], kind: AnovaType) -> Anova {
+    let base: Vec<usize> = if frame.intercept { vec![0] } else { Vec::new() };
+    // What is aliased in the whole model is in none: else every column that it
+    // depends on would explain nothing after it.
+    let every = terms
+        .iter()
+        .flat_map(|term| frame.terms[*term].columns.clone());
+    let every: Vec<usize> = base.iter().copied().chain(every).collect();
+    let estimated_columns = reduced.solve(&every).columns;
+    let columns_of = |chosen: &dyn Fn(usize) -> bool| {
+        let chosen = terms.iter().filter(|term| chosen(**term));
+        let columns = chosen.flat_map(|term| frame.terms[*term].columns.clone());
+        let columns = columns.filter(|column| estimated_columns.contains(column));
+        let columns: Vec<usize> = base.iter().copied().chain(columns).collect();
+        let solved = reduced.solve(&columns);
+        (solved.residual.value().max(0.0), solved.columns.len())
+    };
+    let (residual_ss, estimated) = columns_of(&|_| true);
+    let residual_df = reduced.rows.saturating_sub(estimated);
+    let contains = |outer: usize, inner: usize| {
+        let outer: Vec<usize> = frame.terms[outer].atoms.iter().map(|a| a.0).collect();
+        let mut inner = frame.terms[inner].atoms.iter().map(|a| a.0);
+        inner.all(|atom| outer.contains(&atom))
+    };
+    let rows = terms.iter().enumerate().map(|(place, term)| {
+        let ((without, few), (with, many)) = match kind {
+            AnovaType::Sequential => {
+                let before = |t: usize| terms[..place].contains(&t);
+                let up_to = |t: usize| terms[..=place].contains(&t);
+                (columns_of(&before), columns_of(&up_to))
+            }
+            AnovaType::Hierarchical => {
+                let others = |t: usize| !contains(t, *term);
+                let also = |t: usize| t == *term || !contains(t, *term);
+                (columns_of(&others), columns_of(&also))
+            }
+            AnovaType::Partial => (columns_of(&|t| t != *term), (residual_ss, estimated)),
+        };
+        row(
+            &frame.terms[*term].name,
+            (without - with).max(0.0),
+            many - few,
+            (residual_ss, residual_df),
+        )
+    });
+    Anova {
+        kind,
+        rows: rows.collect(),
+        residual_ss,
+        residual_df,
+    }
+}
+
+fn row(term: &str, ss: f64, df: usize, (residual_ss, residual_df): (f64, usize)) -> AnovaRow {
+    let f = match (df, residual_df) {
+        (0, _) | (_, 0) => f64::NAN,
+        _ => (ss / df as f64) / (residual_ss / residual_df as f64),
+    };
+    AnovaRow {
+        term: term.to_owned(),
+        ss,
+        df,
+        f,
+        p: fisher_upper(f, df as f64, residual_df as f64),
+    }
+}
+
+/// How far the residuals exceed what repeated rows scatter.
+#[derive(Clone, Debug, PartialEq)]
+pub struct LackOfFit {
+    /// What the model misses.
+    pub lack: AnovaRow,
+    /// Scatter of rows with equal settings: sum of squares.
+    pub pure_ss: f64,
+    /// Its degrees of freedom.
+    pub pure_df: usize,
+}
+
+/// Splits the residuals into lack of fit and pure error; `None` without repeated
+/// rows or without anything left over.
+///
+/// * `settings`: columns that tell equal settings
+#[must_use]
+pub fn lack_of_fit(
+    settings: &DMatrix<f64>,
+    y: &[f64],
+    residual_ss: f64,
+    residual_df: usize,
+) -> Option<LackOfFit> {
+    let mut order: Vec<usize> = (0..y.len()).collect();
+    let key = |row: usize| {
+        settings
+            .row(row)
+            .iter()
+            .map(|v| (v + 0.0).to_bits())
+            .collect::<Vec<_>>()
+    };
+    let keys: Vec<Vec<u64>> = (0..y.len()).map(key).collect();
+    order.sort_by(|a, b| keys[*a].cmp(&keys[*b]).then(a.cmp(b)));
+    let (mut pure_ss, mut pure_df) = (0.0, 0);
+    for group in order.chunk_by(|a, b| keys[*a] == keys[*b]) {
+        let mean = group.iter().map(|row| y[*row]).sum::<f64>() / group.len() as f64;
+        pure_ss += group
+            .iter()
+            .map(|row| (y[*row] - mean).powi(2))
+            .sum::<f64>();
+        pure_df += group.len() - 1;
+    }
+    if pure_df == 0 || residual_df <= pure_df {
+        return None;
+    }
+    let ss = (residual_ss - pure_ss).max(0.0);
+    Some(LackOfFit {
+        lack: row("lack of fit", ss, residual_df - pure_df, (pure_ss, pure_df)),
+        pure_ss,
+        pure_df,
+    })
+}

@@ -1,0 +1,442 @@
+//! Linear models: estimates with their errors, and how good they are.
+
+use crate::distribution::tail::{f_upper, t_two_sided, t_upper_quantile};
+use crate::error::Error;
+use crate::model::model_frame::ModelFrame;
+use crate::model::reduced::{Aliased, Reduced, Solved, reduce};
+use nalgebra::DMatrix;
+use rayon::prelude::*;
+use windfall_numerics::double_double::DoubleDouble;
+
+/// A fitted linear model.
+#[derive(Clone, Debug, PartialEq)]
+pub struct LinearFit {
+    /// Estimates, without the aliased columns.
+    pub coefficients: Vec<Coefficient>,
+    /// Columns that depend on those before them.
+    pub aliased: Vec<Aliased>,
+    /// Columns of the model matrix that were estimated.
+    pub columns: Vec<usize>,
+    /// (X'X)⁻¹ of these.
+    pub unscaled_covariance: DMatrix<f64>,
+    /// Inverse of the triangle of these.
+    pub inverse_triangle: DMatrix<f64>,
+    /// Rows.
+    pub rows: usize,
+    /// Whether the model has an intercept.
+    pub intercept: bool,
+    /// Sum of squares of the residuals.
+    pub residual_ss: f64,
+    /// Degrees of freedom of the residuals.
+    pub residual_df: usize,
+    /// Sum of squares of the response: about its mean if there is an intercept.
+    pub total_ss: f64,
+    /// Level of the intervals.
+    pub confidence: f64,
+    /// A bound from below of the condition of the columns at length one.
+    pub condition: f64,
+    /// Residuals.
+    pub residuals: Vec<f64>,
+    /// Leverages: diagonal of the hat matrix.
+    pub leverages: Vec<f64>,
+}
+
+/// An estimate. What needs residual degrees of freedom is NaN where there are none.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Coefficient {
+    /// Its column.
+    pub name: String,
+    /// Its value.
+    pub estimate: f64,
+    /// Its standard error.
+    pub se: f64,
+    /// Estimate over standard error.
+    pub t: f64,
+    /// Probability of |t| or more if the coefficient were zero.
+    pub p: f64,
+    /// Lower end of its interval.
+    pub low: f64,
+    /// Upper end.
+    pub high: f64,
+}
+
+/// Fits a linear model by least squares.
+///
+/// * `x`: model matrix with columns of `frame`; `y`: response
+/// * `wanted`: columns that are in the model
+/// * `confidence`: level of intervals, 0.95 say
+///
+/// # Errors
+/// [`Error::TooFewRows`]; [`Error::Constant`] for a response of one value.
+pub fn fit_linear(
+    frame: &ModelFrame,
+    x: &DMatrix<f64>,
+    y: &[f64],
+    wanted: &[usize],
+    confidence: f64,
+) -> Result<LinearFit, Error> {
+    let reduced = reduce(x, y);
+    fit_reduced(frame, x, y, &reduced, wanted, confidence)
+}
+
+/// As [`fit_linear`], with rows that are reduced already.
+///
+/// # Errors
+/// As [`fit_linear`].
+pub fn fit_reduced(
+    frame: &ModelFrame,
+    x: &DMatrix<f64>,
+    y: &[f64],
+    reduced: &Reduced,
+    wanted: &[usize],
+    confidence: f64,
+) -> Result<LinearFit, Error> {
+    let solved = reduced.solve(wanted);
+    let (rows, count) = (x.nrows(), solved.columns.len());
+    if rows < wanted.len() {
+        return Err(Error::TooFewRows {
+            rows,
+            terms: wanted.len(),
+        });
+    }
+    let intercept = frame.intercept && wanted.contains(&0);
+    let total_ss = total(reduced, intercept);
+    if total_ss == 0.0 {
+        return Err(Error::Constant {
+            name: "the response".to_owned(),
+        });
+    }
+    let residual_df = rows - count;
+    // Exact fits leave the rounding of the data.
+    let residual_ss = solved.residual.value().max(0.0);
+    let (residuals, leverages) = residuals_and_leverages(x, y, &solved);
+    let unscaled = &solved.inverse * solved.inverse.transpose();
+    let variance = residual_ss / residual_df as f64;
+    let names = &frame.names;
+    let quantile = student_quantile(0.5 + 0.5 * confidence, residual_df as f64);
+    let coefficients = solved
+        .columns
+        .iter()
+        .zip(&solved.estimates)
+        .enumerate()
+        .map(|(place, (column, estimate))| {
+            let row = solved.inverse.row(place);
+            let se = (variance * row.dot(&row)).sqrt();
+            coefficient(
+                &names[*column],
+                estimate.value(),
+                se,
+                residual_df as f64,
+                quantile,
+            )
+        })
+        .collect();
+    Ok(LinearFit {
+        coefficients,
+        aliased: solved.aliased,
+        columns: solved.columns,
+        unscaled_covariance: unscaled,
+        inverse_triangle: solved.inverse,
+        rows,
+        intercept,
+        residual_ss,
+        residual_df,
+        total_ss,
+        confidence,
+        condition: solved.condition,
+        residuals,
+        leverages,
+    })
+}
+
+/// A coefficient with its test and interval.
+pub(crate) fn coefficient(
+    name: &str,
+    estimate: f64,
+    se: f64,
+    df: f64,
+    quantile: f64,
+) -> Coefficient {
+    let t = estimate / se;
+    Coefficient {
+        name: name.to_owned(),
+        estimate,
+        se,
+        t,
+        p: student_two_sided(t, df),
+        low: estimate - quantile * se,
+        high: estimate + quantile * se,
+    }
+}
+
+/// Sum of squares of the response, about its mean with an intercept.
+fn total(reduced: &Reduced, intercept: bool) -> f64 {
+    // The first column is the intercept: what it takes up is the mean.
+    let columns = reduced.response.iter().skip(usize::from(intercept));
+    let sum: DoubleDouble = columns.map(|v| *v * *v).sum();
+    (sum + reduced.rest).value()
+}
+
+/// Rows handled at once.
+const BLOCK: usize = 4096;
+
+fn residuals_and_leverages(x: &DMatrix<f64>, y: &[f64], solved: &Solved) -> (Vec<f64>, Vec<f64>) {
+    let rows = x.nrows();
+    let precise = rows * solved.columns.len() <= 1_000_000;
+    let starts: Vec<usize> = (0..rows).step_by(BLOCK).collect();
+    let parts: Vec<(Vec<f64>, Vec<f64>)> = starts
+        .into_par_iter()
+        .map(|start| {
+            let end = (start + BLOCK).min(rows);
+            (
+                residuals(x, y, solved, start..end, precise),
+                leverages(x, solved, start..end),
+            )
+        })
+        .collect();
+    let mut found = (Vec::with_capacity(rows), Vec::with_capacity(rows));
+    for (residuals, leverages) in parts {
+        found.0.extend(residuals);
+        found.1.extend(leverages);
+    }
+    found
+}
+
+fn residuals(
+    x: &DMatrix<f64>,
+    y: &[f64],
+    solved: &Solved,
+    rows: std::ops::Range<usize>,
+    precise: bool,
+) -> Vec<f64> {
+    let pairs = solved.columns.iter().zip(&solved.estimates);
+    if precise {
+        let mut left: Vec<DoubleDouble> = y[rows.clone()].iter().map(|y| (*y).into()).collect();
+        for (column, estimate) in pairs {
+            let own = &x.column(*column).data.into_slice()[rows.clone()];
+            for (left, x) in left.iter_mut().zip(own) {
+                *left -= *estimate * DoubleDouble::from(*x);
+            }
+        }
+        return left.into_iter().map(DoubleDouble::value).collect();
+    }
+    let mut left = y[rows.clone()].to_vec();
+    for (column, estimate) in pairs {
+        let own = &x.column(*column).data.into_slice()[rows.clone()];
+        for (left, x) in left.iter_mut().zip(own) {
+            *left -= estimate.value() * x;
+        }
+    }
+    left
+}
+
+/// Squared lengths of the rows of X R⁻¹.
+fn leverages(x: &DMatrix<f64>, solved: &Solved, rows: std::ops::Range<usize>) -> Vec<f64> {
+    let mut found = vec![0.0; rows.len()];
+    let mut row_of_q = vec![0.0; rows.len()];
+    for step in 0..solved.columns.len() {
+        row_of_q.fill(0.0);
+        for (inner, column) in solved.columns[..=step].iter().enumerate() {
+            let factor = solved.inverse[(inner, step)];
+            let own = &x.column(*column).data.into_slice()[rows.clone()];
+            for (sum, x) in row_of_q.iter_mut().zip(own) {
+                *sum += factor * x;
+            }
+        }
+        for (sum, q) in found.iter_mut().zip(&row_of_q) {
+            *sum += q * q;
+        }
+    }
+    found.iter().map(|h| h.min(1.0)).collect()
+}
+
+/// Two-sided probability of Student's t; NaN without degrees of freedom.
+#[must_use]
+pub fn student_two_sided(t: f64, df: f64) -> f64 {
+    t_two_sided(t, df)
+}
+
+/// Quantile of Student's t; NaN without degrees of freedom.
+#[must_use]
+pub fn student_quantile(probability: f64, df: f64) -> f64 {
+    -t_upper_quantile(probability, df)
+}
+
+/// Probability of F or more; NaN without degrees of freedom.
+#[must_use]
+pub fn fisher_upper(f: f64, df: f64, residual_df: f64) -> f64 {
+    f_upper(f, df, residual_df)
+}
+
+/// How well a model describes what it was fitted to, and what it was not.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Quality {
+    /// Part of the total sum of squares that is described.
+    pub r2: f64,
+    /// The same per degree of freedom.
+    pub r2_adjusted: f64,
+    /// Sum of squares of predictions of each row by a fit without it; infinite
+    /// where a row decides a coefficient alone.
+    pub press: f64,
+    /// Part of the total that these predictions describe.
+    pub r2_predicted: f64,
+    /// Range of predictions over their mean standard error; more than 4 is wanted.
+    pub adequate_precision: f64,
+    /// Residual standard deviation.
+    pub sigma: f64,
+    /// Log-likelihood of normal residuals.
+    pub log_likelihood: f64,
+    /// Akaike's criterion, counting the variance as a parameter.
+    pub aic: f64,
+    /// The same for small samples (Hurvich & Tsai 1989, Biometrika 76, 297-307).
+    pub aicc: f64,
+    /// Schwarz' criterion.
+    pub bic: f64,
+}
+
+impl LinearFit {
+    /// Covariance of the estimates, for residuals of one variance; rows.
+    #[must_use]
+    pub fn covariance_rows(&self) -> Vec<Vec<f64>> {
+        let variance = self.residual_ss / self.residual_df as f64;
+        let rows = self.unscaled_covariance.row_iter();
+        rows.map(|row| row.iter().map(|own| variance * own).collect())
+            .collect()
+    }
+
+    /// Model sum of squares.
+    #[must_use]
+    pub fn model_ss(&self) -> f64 {
+        self.total_ss - self.residual_ss
+    }
+
+    /// Degrees of freedom of the model, without the intercept.
+    #[must_use]
+    pub fn model_df(&self) -> usize {
+        self.columns.len() - usize::from(self.intercept)
+    }
+
+    /// Residual variance; NaN without degrees of freedom.
+    #[must_use]
+    pub fn variance(&self) -> f64 {
+        match self.residual_df {
+            0 => f64::NAN,
+            df => self.residual_ss / df as f64,
+        }
+    }
+
+    /// F of the whole model and its probability.
+    #[must_use]
+    pub fn whole_test(&self) -> (f64, f64) {
+        let df = self.model_df() as f64;
+        let f = self.model_ss() / df / self.variance();
+        (f, fisher_upper(f, df, self.residual_df as f64))
+    }
+
+    /// Predictions of the rows it was fitted to.
+    #[must_use]
+    pub fn fitted(&self, y: &[f64]) -> Vec<f64> {
+        y.iter().zip(&self.residuals).map(|(y, e)| y - e).collect()
+    }
+
+    /// How good it is.
+    #[must_use]
+    pub fn quality(&self, y: &[f64]) -> Quality {
+        let (rows, count) = (self.rows as f64, self.columns.len() as f64);
+        let total_df = rows - f64::from(u8::from(self.intercept));
+        let press = press(&self.residuals, &self.leverages);
+        let fitted = self.fitted(y);
+        let (low, high) = fitted
+            .iter()
+            .fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), v| {
+                (l.min(*v), h.max(*v))
+            });
+        let variance = self.variance();
+        let log_likelihood = log_likelihood(self.residual_ss, rows);
+        let parameters = count + 1.0;
+        let aic = 2.0 * parameters - 2.0 * log_likelihood;
+        Quality {
+            r2: 1.0 - self.residual_ss / self.total_ss,
+            r2_adjusted: 1.0 - variance / (self.total_ss / total_df),
+            press,
+            r2_predicted: 1.0 - press / self.total_ss,
+            adequate_precision: (high - low) / (count * variance / rows).sqrt(),
+            sigma: variance.sqrt(),
+            log_likelihood,
+            aic,
+            aicc: small_sample(aic, parameters, rows),
+            bic: parameters * rows.ln() - 2.0 * log_likelihood,
+        }
+    }
+}
+
+/// Log-likelihood of normal residuals with their most likely variance.
+pub(crate) fn log_likelihood(residual_ss: f64, rows: f64) -> f64 {
+    -0.5 * rows * ((2.0 * std::f64::consts::PI * residual_ss / rows).ln() + 1.0)
+}
+
+/// Akaike's criterion for small samples; infinite where it is not defined.
+pub(crate) fn small_sample(aic: f64, parameters: f64, rows: f64) -> f64 {
+    match rows - parameters - 1.0 {
+        left if left > 0.0 => aic + 2.0 * parameters * (parameters + 1.0) / left,
+        _ => f64::INFINITY,
+    }
+}
+
+fn press(residuals: &[f64], leverages: &[f64]) -> f64 {
+    let terms = residuals.iter().zip(leverages).map(|(e, h)| {
+        let left = 1.0 - h;
+        // A leverage of one: no other row tells of this one.
+        match left <= 1e-12 {
+            true => f64::INFINITY,
+            false => DoubleDouble::from((e / left).powi(2)).value(),
+        }
+    });
+    terms.map(DoubleDouble::from).sum::<DoubleDouble>().value()
+}
+
+/// A prediction with its intervals.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Prediction {
+    /// The mean at this place.
+    pub mean: f64,
+    /// Its standard error.
+    pub se: f64,
+    /// Interval of the mean.
+    pub mean_interval: (f64, f64),
+    /// Interval of one further observation.
+    pub interval: (f64, f64),
+}
+
+/// Predictions at rows of a model matrix with the columns of the fitted one.
+#[must_use]
+pub fn predict(fit: &LinearFit, x: &DMatrix<f64>) -> Vec<Prediction> {
+    let variance = fit.variance();
+    let quantile = student_quantile(0.5 + 0.5 * fit.confidence, fit.residual_df as f64);
+    let count = fit.columns.len();
+    let row = |row: usize| {
+        let values: Vec<f64> = fit.columns.iter().map(|c| x[(row, *c)]).collect();
+        let pairs = values.iter().zip(&fit.coefficients);
+        let mean: DoubleDouble = pairs
+            .map(|(x, c)| DoubleDouble::from(*x) * DoubleDouble::from(c.estimate))
+            .sum();
+        let leverage: f64 = (0..count)
+            .map(|step| {
+                let inner = (0..=step).map(|i| fit.inverse_triangle[(i, step)] * values[i]);
+                inner.sum::<f64>().powi(2)
+            })
+            .sum();
+        let (mean, se) = (mean.value(), (variance * leverage).sqrt());
+        let (near, far) = (
+            quantile * se,
+            quantile * (variance * (1.0 + leverage)).sqrt(),
+        );
+        Prediction {
+            mean,
+            se,
+            mean_interval: (mean - near, mean + near),
+            interval: (mean - far, mean + far),
+        }
+    };
+    (0..x.nrows()).map(row).collect()
+}

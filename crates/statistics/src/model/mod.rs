@@ -1,0 +1,14 @@
+//! Formulas, model frames, linear models and their analysis of variance.
+
+pub mod anova;
+pub mod contrast;
+pub mod expression;
+pub mod formula;
+pub mod formula_syntax;
+pub mod linear_model;
+pub mod model_frame;
+pub mod random_terms;
+pub mod reduced;
+pub mod selection;
+pub mod straight_line;
+pub mod term_order;

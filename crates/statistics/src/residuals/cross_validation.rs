@@ -1,0 +1,85 @@
+//! How well a model predicts rows that it was not fitted to.
+
+use crate::model::model_frame::ModelFrame;
+use crate::model::reduced::reduce;
+use crate::model::selection::{SelectionOptions, select};
+use nalgebra::DMatrix;
+use rand_chacha::ChaCha8Rng;
+use rand_chacha::rand_core::{RngCore, SeedableRng};
+
+/// The quality of predictions of left-out rows.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct CrossValidation {
+    /// Parts the rows were divided into.
+    pub folds: usize,
+    /// Root mean square error of prediction.
+    pub rms: f64,
+    /// Part of the variation about the mean of the fitted rows that is predicted.
+    pub r2: f64,
+}
+
+/// Divides the rows into parts by chance and predicts each part from the others.
+///
+/// * `terms`: terms of the model, all that may be selected from
+/// * `selection`: is repeated within each division, so that the result counts what
+///   choosing costs
+///
+/// `None` where some division leaves a column without an estimate.
+#[must_use]
+pub fn cross_validate(
+    frame: &ModelFrame,
+    x: &DMatrix<f64>,
+    y: &[f64],
+    terms: &[usize],
+    selection: Option<&SelectionOptions>,
+    folds: usize,
+    seed: u64,
+) -> Option<CrossValidation> {
+    let rows = y.len();
+    let folds = folds.clamp(2, rows.max(2));
+    let mut order: Vec<usize> = (0..rows).collect();
+    shuffle(&mut order, seed);
+    let (mut error, mut total) = (0.0, 0.0);
+    for fold in 0..folds {
+        let left_out: Vec<usize> = order.iter().copied().skip(fold).step_by(folds).collect();
+        let mut inside = vec![true; rows];
+        left_out.iter().for_each(|row| inside[*row] = false);
+        let kept: Vec<usize> = (0..rows).filter(|row| inside[*row]).collect();
+        let train_x = x.select_rows(&kept);
+        let train_y: Vec<f64> = kept.iter().map(|row| y[*row]).collect();
+        let reduced = reduce(&train_x, &train_y);
+        let chosen = match selection {
+            Some(options) => select(frame, &reduced, options).terms,
+            None => terms.to_vec(),
+        };
+        let base = frame.intercept.then_some(0);
+        let columns = chosen.iter().flat_map(|t| frame.terms[*t].columns.clone());
+        let columns: Vec<usize> = base.into_iter().chain(columns).collect();
+        let solved = reduced.solve(&columns);
+        if !solved.aliased.is_empty() {
+            return None;
+        }
+        let mean = train_y.iter().sum::<f64>() / train_y.len() as f64;
+        for row in left_out {
+            let pairs = solved.columns.iter().zip(&solved.estimates);
+            let predicted: f64 = pairs.map(|(c, b)| x[(row, *c)] * b.value()).sum();
+            error += (y[row] - predicted).powi(2);
+            total += (y[row] - mean).powi(2);
+        }
+    }
+    Some(CrossValidation {
+        folds,
+        rms: (error / rows as f64).sqrt(),
+        r2: 1.0 - error / total,
+    })
+}
+
+/// Fisher and Yates' shuffle.
+fn shuffle(order: &mut [usize], seed: u64) {
+    let mut random = ChaCha8Rng::seed_from_u64(seed);
+    for last in (1..order.len()).rev() {
+        // A product with a 32-bit number: uniform to 1 in 4e9.
+        let chosen = (u64::from(random.next_u32()) * (last as u64 + 1)) >> 32;
+        order.swap(last, chosen as usize);
+    }
+}

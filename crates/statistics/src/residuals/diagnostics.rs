@@ -1,0 +1,147 @@
+//! Rows and columns that a linear model hangs on.
+
+use crate::model::linear_model::{Coefficient, LinearFit, coefficient, student_quantile};
+use crate::model::model_frame::ModelFrame;
+use nalgebra::DMatrix;
+
+/// What a row does to a fit.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct RowInfluence {
+    /// Observed less predicted.
+    pub residual: f64,
+    /// Diagonal of the hat matrix: 1 where the row alone decides.
+    pub leverage: f64,
+    /// Residual over its standard error.
+    pub standardised: f64,
+    /// The same with the variance of the other rows: Student's t of the row.
+    pub studentised: f64,
+    /// Cook's distance (Cook 1977, Technometrics 19, 15-18).
+    pub cook: f64,
+    /// Change of the prediction in its standard errors when the row is left out.
+    pub dffits: f64,
+}
+
+/// Influence of each row.
+#[must_use]
+pub fn influence(fit: &LinearFit) -> Vec<RowInfluence> {
+    let (variance, df) = (fit.variance(), fit.residual_df as f64);
+    let count = fit.columns.len() as f64;
+    let rows = fit.residuals.iter().zip(&fit.leverages);
+    rows.map(|(residual, leverage)| {
+        let left = 1.0 - leverage;
+        let standardised = residual / (variance * left).sqrt();
+        let without = (variance * df - residual * residual / left) / (df - 1.0);
+        let studentised = residual / (without * left).sqrt();
+        RowInfluence {
+            residual: *residual,
+            leverage: *leverage,
+            standardised,
+            studentised,
+            cook: standardised * standardised * leverage / left / count,
+            dffits: studentised * (leverage / left).sqrt(),
+        }
+    })
+    .collect()
+}
+
+/// Variance inflation of a term.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Inflation {
+    /// The term.
+    pub term: String,
+    /// Columns of it.
+    pub df: usize,
+    /// Factor by which correlation with the other terms inflates the variance of
+    /// its estimates: for one column 1/(1 - R²), for several the generalised one
+    /// (Fox & Monette 1992, J. Am. Stat. Assoc. 87, 178-183).
+    pub factor: f64,
+}
+
+/// Variance inflation of the terms of a model with an intercept; empty without it
+/// or with a single term.
+#[must_use]
+pub fn inflation(frame: &ModelFrame, fit: &LinearFit) -> Vec<Inflation> {
+    let places = |columns: &std::ops::Range<usize>| -> Vec<usize> {
+        let estimated = fit.columns.iter().enumerate();
+        let own = estimated.filter(|(_, column)| columns.contains(column));
+        own.map(|(place, _)| place).collect()
+    };
+    let terms: Vec<(String, Vec<usize>)> = frame
+        .terms
+        .iter()
+        .map(|term| (term.name.clone(), places(&term.columns)))
+        .filter(|(_, places)| !places.is_empty())
+        .collect();
+    if !fit.intercept || terms.len() < 2 {
+        return Vec::new();
+    }
+    let all: Vec<usize> = terms
+        .iter()
+        .flat_map(|(_, places)| places.clone())
+        .collect();
+    let correlation = |chosen: &[usize]| {
+        let covariance = &fit.unscaled_covariance;
+        DMatrix::from_fn(chosen.len(), chosen.len(), |a, b| {
+            let (a, b) = (chosen[a], chosen[b]);
+            covariance[(a, b)] / (covariance[(a, a)] * covariance[(b, b)]).sqrt()
+        })
+    };
+    let whole = correlation(&all).determinant();
+    terms
+        .into_iter()
+        .map(|(term, own)| {
+            let others: Vec<usize> = all.iter().copied().filter(|p| !own.contains(p)).collect();
+            let parts = correlation(&own).determinant() * correlation(&others).determinant();
+            Inflation {
+                term,
+                df: own.len(),
+                factor: parts / whole,
+            }
+        })
+        .collect()
+}
+
+/// Coefficients with standard errors that hold for unequal variances: HC3
+/// (MacKinnon & White 1985, J. Econometrics 29, 305-325).
+#[must_use]
+pub fn robust_coefficients(fit: &LinearFit, x: &DMatrix<f64>) -> Vec<Coefficient> {
+    let covariance = robust_covariance(fit, x);
+    let df = fit.residual_df as f64;
+    let quantile = student_quantile(0.5 + 0.5 * fit.confidence, df);
+    let pairs = fit.coefficients.iter().enumerate();
+    pairs
+        .map(|(place, own)| {
+            let se = covariance[(place, place)].sqrt();
+            coefficient(&own.name, own.estimate, se, df, quantile)
+        })
+        .collect()
+}
+
+/// Covariance of the estimates that holds for unequal variances (HC3); rows.
+///
+/// * `x`: model matrix of the fit
+///
+/// # Source
+/// As [`robust_coefficients`].
+#[must_use]
+pub fn robust_covariance_rows(fit: &LinearFit, x: &DMatrix<f64>) -> Vec<Vec<f64>> {
+    let matrix = robust_covariance(fit, x);
+    let rows = matrix.row_iter();
+    rows.map(|row| row.iter().copied().collect()).collect()
+}
+
+fn robust_covariance(fit: &LinearFit, x: &DMatrix<f64>) -> DMatrix<f64> {
+    let count = fit.columns.len();
+    let mut middle = DMatrix::zeros(count, count);
+    for (row, (residual, leverage)) in fit.residuals.iter().zip(&fit.leverages).enumerate() {
+        let weight = (residual / (1.0 - leverage)).powi(2);
+        for a in 0..count {
+            let value = weight * x[(row, fit.columns[a])];
+            for b in 0..=a {
+                middle[(a, b)] += value * x[(row, fit.columns[b])];
+            }
+        }
+    }
+    middle.fill_upper_triangle_with_lower_triangle();
+    &fit.unscaled_covariance * middle * &fit.unscaled_covariance
+}
