@@ -44,7 +44,7 @@ impl Problem {
     /// An error of a workflow; `text` is how it reads here.
     pub(crate) fn of(error: &Error, text: String) -> Self {
         let (status, code) = match error {
-            Error::SceneFile(problem) if problem.is_absence() => (StatusCode::NOT_FOUND, "absent"),
+            Error::Room(problem) if problem.is_absence() => (StatusCode::NOT_FOUND, "absent"),
             Error::CampaignUnknown { .. }
             | Error::ImpactUnknown { .. }
             | Error::FileAbsent { .. } => (StatusCode::NOT_FOUND, "absent"),

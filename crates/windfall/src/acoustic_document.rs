@@ -1,7 +1,7 @@
 //! What the store keeps of a recording of taps.
 
 use crate::evaluate::Document;
-use crate::outcome::FindingOutcome;
+use crate::found::FindingOutcome;
 use crate::store_documents::StoredValue;
 use serde::{Deserialize, Serialize};
 use windfall_signal::tap::damped_mode::Mode;

@@ -1,7 +1,8 @@
 //! What `fit` gives, whatever the campaign measures.
 
+use crate::found::FailureOutcome;
 use crate::measured::MeasuredOutcome;
-use crate::outcome::{CampaignOutcome, FailureOutcome, StatusOutcome};
+use crate::outcome::{CampaignOutcome, StatusOutcome};
 use serde::Serialize;
 
 /// What `fit` gives, whatever the campaign measures.

@@ -7,10 +7,10 @@ use crate::law_card::{
     CARD_FORMAT, CardBodies, CardCovariance, CardOrigin, CardParameter, CardRange, LawCard,
 };
 use crate::law_use::complete_law_among;
+use crate::law_use::end_name;
 use crate::provenance::{VERSION, digest_file, time_now};
 use crate::read_card::card_definition;
 use crate::read_drop::{DropCampaign, PlatePlan};
-use crate::workflow_simulate::end_name;
 use std::collections::BTreeMap;
 use windfall_contact::law::EndRule;
 use windfall_contact::laws::kind::Law;

@@ -12,8 +12,8 @@ use crate::calibrate_target::{
     CalibrateRig, DropData, INTERVAL, PEAK, TargetCondition, heights_of, mean_feature, same_height,
 };
 use crate::error::Error;
+use crate::found::FindingOutcome;
 use crate::model_outcome::{AnovaOutcome, whole_of};
-use crate::outcome::FindingOutcome;
 use crate::regress_findings::finding;
 use crate::text_number::plain;
 use rayon::prelude::*;

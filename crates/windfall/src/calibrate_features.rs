@@ -10,9 +10,9 @@ use crate::calibrate_target::{
     CalibrateRig, DropData, INTERVAL, PEAK, TargetCondition, target_problem,
 };
 use crate::error::Error;
+use crate::found::FindingOutcome;
 use crate::measured::value_with_sd;
 use crate::named::Named;
-use crate::outcome::FindingOutcome;
 use crate::regress_findings::finding;
 use crate::text_number::plain;
 use windfall_contact::expression::LawExpression;

@@ -1,10 +1,10 @@
 //! What `windfall calibrate` gives; numbers are SI unless a unit stands with them.
 
 use crate::calibrate_waveform_outcome::WaveformOutcome;
+use crate::found::{FailureOutcome, FindingOutcome};
 use crate::measured::MeasuredValue;
 use crate::model_outcome::AnovaOutcome;
 use crate::named::Named;
-use crate::outcome::{FailureOutcome, FindingOutcome};
 use serde::Serialize;
 
 /// Everything that a calibration gives.

@@ -3,9 +3,9 @@
 
 use crate::calibrate_outcome::{DropOutcome, TargetOutcome};
 use crate::error::Error;
+use crate::found::FindingOutcome;
 use crate::measured::{MeasuredValue, plain_value, value_with_sd};
 use crate::named::Named;
-use crate::outcome::FindingOutcome;
 use crate::read_calibrate::{CalibrateSettings, Target};
 use crate::regress_findings::finding;
 use crate::text_number::plain;

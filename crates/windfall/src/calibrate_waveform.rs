@@ -4,9 +4,9 @@ use crate::calibrate_waveform_outcome::{
     WaveformDropOutcome, WaveformOutcome, WaveformParameter, WeakOutcome,
 };
 use crate::error::Error;
+use crate::found::FindingOutcome;
 use crate::measured::MeasuredValue;
 use crate::named::Named;
-use crate::outcome::FindingOutcome;
 use crate::read_drop::{DropCampaign, PlatePlan};
 use crate::regress_findings::finding;
 use windfall_contact::expression::LawExpression;

@@ -1,7 +1,7 @@
 //! What a comparison of groups finds.
 
+use crate::found::FindingOutcome;
 use crate::group_outcome::GroupOutcome;
-use crate::outcome::FindingOutcome;
 use serde::Serialize;
 
 /// Groups compared.

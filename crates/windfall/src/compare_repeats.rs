@@ -1,6 +1,6 @@
 //! Pairs of impacts → what changed, at which energy, and the critical energy.
 
-use crate::outcome::FindingOutcome;
+use crate::found::FindingOutcome;
 use crate::read_repeats::{Margin, RepeatsCampaign};
 use crate::repeat_pairs::{Pair, Pairs, difference_of};
 use windfall_signal::repeat::align::CHANGES;

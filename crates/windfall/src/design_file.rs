@@ -15,10 +15,10 @@
 //! the columns `run`, `standard_order`, `block`, `point`, one per factor with its
 //! settings, and one per number with its exact coded values (`k_coded`).
 
+use crate::csv_text::csv_text;
 use crate::design_factor::{CODED, fifteen_digits};
 use crate::error::Error;
 use crate::option_value::unusable;
-use crate::write_csv::csv_text;
 use std::io::Write;
 use std::path::Path;
 use windfall_statistics::design::kind::{Design, Factor};

@@ -2,7 +2,7 @@
 
 use crate::engine_classes::{Classes, classes_of};
 use crate::engine_law::{PairNumbers, granular_law};
-use crate::outcome::FindingOutcome;
+use crate::found::FindingOutcome;
 use std::collections::BTreeSet;
 use windfall_scene::scene::{Fruit, Scene};
 use windfall_scene::shape::wall::Shape;

@@ -3,7 +3,7 @@
 use crate::engine_deck::{Deck, FRAMES, Task, comment, density, triple};
 use crate::engine_lammps_terms::terms;
 use crate::engine_lammps_walls::walls;
-use crate::outcome::FindingOutcome;
+use crate::found::FindingOutcome;
 use std::fmt::Write;
 
 /// Classes that LAMMPS can have at most: it has 32 groups.

@@ -1,8 +1,7 @@
 //! What can go wrong with files and campaigns, said so that it can be mended.
 
-use crate::error_scene_run::SceneRunError;
 use crate::error_words::{after_refusal, nearest_columns, why_nothing};
-use crate::outcome::FailureOutcome;
+use crate::found::FailureOutcome;
 use std::path::PathBuf;
 
 pub use crate::error_place::{DropQuantity, Place};
@@ -14,23 +13,17 @@ pub enum Error {
     /// Somebody stopped the work.
     #[error("stopped before it was done; nothing of it was kept")]
     Cancelled,
-    /// A scene that cannot be.
+    /// What a file asks for cannot be.
     #[error("{place}: {problem}")]
-    SceneRefused {
-        /// Where its file says so.
+    Refused {
+        /// Where the file says so.
         place: Place,
         /// What is wrong.
         problem: String,
     },
-    /// A scene whose result would mean nothing from there on.
-    #[error("the scene was stopped: {0}")]
-    SceneStopped(Box<windfall_scene::error::Error>),
-    /// A run of a scene that does not begin or go on.
+    /// An error that only one room knows, such as that of a scene.
     #[error("{0}")]
-    SceneRun(Box<SceneRunError>),
-    /// What is kept of a scene cannot be used.
-    #[error("{0}")]
-    SceneFile(Box<crate::error_scene::SceneFileError>),
+    Room(Box<dyn Fault>),
     /// Another engine that is absent, fails, or cannot represent a scene.
     #[error("{engine}: {problem}")]
     Engine {
@@ -573,14 +566,13 @@ impl Error {
     /// work having failed.
     #[must_use]
     pub fn is_request(&self) -> bool {
-        if let Self::SceneRun(error) = self {
-            return error.is_request();
+        if let Self::Room(fault) = self {
+            return fault.is_request();
         }
         !matches!(
             self,
             Self::FileAccess { .. }
                 | Self::Cancelled
-                | Self::SceneStopped(_)
                 | Self::NothingFitted { .. }
                 | Self::MassUnknown { .. }
                 | Self::StoreDamaged { .. }
@@ -594,7 +586,28 @@ impl Error {
 }
 
 impl Error {
-    pub(crate) fn scene_run(error: SceneRunError) -> Self {
-        Self::SceneRun(Box::new(error))
+    /// The error of a room, where this is one of type `T`.
+    #[must_use]
+    pub fn of_room<T: Fault>(&self) -> Option<&T> {
+        let Self::Room(fault) = self else { return None };
+        let fault: &dyn std::error::Error = &**fault;
+        fault.downcast_ref()
+    }
+}
+
+impl<T: Fault> From<T> for Error {
+    fn from(fault: T) -> Self {
+        Self::Room(Box::new(fault))
+    }
+}
+
+/// An error that one room declares and the rooms above it pass on as [`Error::Room`].
+pub trait Fault: std::error::Error + Send + Sync + 'static {
+    /// Whether the request is wrong, rather than the work having failed.
+    fn is_request(&self) -> bool;
+
+    /// Whether what was asked for is not there.
+    fn is_absence(&self) -> bool {
+        false
     }
 }

@@ -1,11 +1,14 @@
 //! What can be wrong with what is kept of a scene.
 
+use crate::error::Fault;
 use std::path::PathBuf;
 
-impl SceneFileError {
-    /// Whether what was asked for is not there.
-    #[must_use]
-    pub fn is_absence(&self) -> bool {
+impl Fault for SceneFileError {
+    fn is_request(&self) -> bool {
+        true
+    }
+
+    fn is_absence(&self) -> bool {
         matches!(
             self,
             Self::FramesAbsent { .. } | Self::RunUnknown { .. } | Self::FruitUnknown { .. }

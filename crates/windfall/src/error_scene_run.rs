@@ -1,5 +1,6 @@
 //! What can come between the beginning of a scene's run and its end.
 
+use crate::error::Fault;
 use std::path::PathBuf;
 
 /// Version of windfall.
@@ -73,6 +74,9 @@ pub enum SceneRunError {
         /// Of the other.
         version: String,
     },
+    /// The scene's results would mean nothing from there on.
+    #[error("the scene was stopped: {0}")]
+    Failed(windfall_scene::error::Error),
     /// Somebody stopped it.
     #[error(
         "stopped at {now:.6} s of {end} s; what was done up to {kept:.6} s is kept: the same command \
@@ -114,10 +118,8 @@ fn kept_of(kept: Option<f64>) -> String {
     }
 }
 
-impl SceneRunError {
-    /// Whether the request was wrong, and not the work.
-    #[must_use]
-    pub fn is_request(&self) -> bool {
+impl Fault for SceneRunError {
+    fn is_request(&self) -> bool {
         matches!(
             self,
             Self::Unfinished { .. } | Self::NothingToResume { .. } | Self::Changed { .. }

@@ -1,6 +1,6 @@
 //! What messages say by the case.
 
-use crate::outcome::FailureOutcome;
+use crate::found::FailureOutcome;
 
 /// What holds after a database refused something, and what to do.
 pub(crate) fn after_refusal(action: &str) -> &'static str {

@@ -3,8 +3,9 @@
 
 use crate::campaign::{ImpactEntry, TimePlan};
 use crate::error::Error;
+use crate::found::FailureOutcome;
 use crate::item_campaign::ItemCampaign;
-use crate::outcome::{FailureOutcome, StatusOutcome};
+use crate::outcome::StatusOutcome;
 use crate::progress::{Progress, for_each};
 use crate::provenance::{VERSION, digest_text, time_now};
 use crate::read_files::fill_placeholders;

@@ -3,7 +3,7 @@
 use crate::acoustic_document::{TapDocument, TapsDocument, document_of};
 use crate::campaign::ImpactEntry;
 use crate::error::Error;
-use crate::outcome::FindingOutcome;
+use crate::found::FindingOutcome;
 use crate::read_acoustic::AcousticCampaign;
 use crate::read_recording::recording_path;
 use crate::recording_channel::channel_samples;

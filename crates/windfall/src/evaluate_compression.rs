@@ -2,10 +2,10 @@
 
 use crate::campaign::ImpactEntry;
 use crate::error::Error;
+use crate::found::FindingOutcome;
 use crate::item_campaign::{group_of, specimen_of};
 use crate::measured::{MeasuredItem, MeasuredItems, MeasuredValue, plain_value, value_with_sd};
 use crate::named::Named;
-use crate::outcome::FindingOutcome;
 use crate::read_compression::{CompressionCampaign, specimen_radii};
 use crate::read_recording::recording_path;
 use crate::recording_channel::channel_samples;

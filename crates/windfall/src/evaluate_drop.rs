@@ -3,10 +3,10 @@
 use crate::campaign::ImpactEntry;
 use crate::error::Error;
 use crate::evaluate::Document;
+use crate::found::FindingOutcome;
 use crate::item_campaign::group_of;
 use crate::measured::{MeasuredItem, MeasuredItems, MeasuredValue, plain_value, value_with_sd};
 use crate::named::Named;
-use crate::outcome::FindingOutcome;
 use crate::read_drop::{Drop, DropCampaign, PlatePlan, drop_of};
 use crate::read_recording::recording_path;
 use crate::recording_channel::channel_samples;

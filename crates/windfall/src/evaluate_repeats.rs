@@ -3,9 +3,9 @@
 use crate::campaign::ImpactEntry;
 use crate::error::Error;
 use crate::evaluate::Document;
+use crate::found::FindingOutcome;
 use crate::measured::{MeasuredItem, MeasuredItems, plain_value, value_with_sd};
 use crate::named::Named;
-use crate::outcome::FindingOutcome;
 use crate::read_recording::recording_path;
 use crate::read_repeats::{RepeatsCampaign, cell_of, energy_of};
 use crate::store_documents::StoredValue;

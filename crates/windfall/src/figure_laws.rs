@@ -1,13 +1,13 @@
 //! A comparison of laws as a figure: how much worse than the best each law is, over
 //! the campaign and on each impact, and how well it foretells unseen velocities.
 
+use crate::csv_text::csv_text;
 use crate::error::Error;
 use crate::figure_axis::{Axis, axis};
 use crate::figure_files::Painting;
 use crate::figure_frame::{Frame, Rectangle};
 use crate::figure_svg::{Anchor, Drawing, Ink};
 use crate::laws_outcome::{LawEvidenceOutcome, LawsOutcome};
-use crate::write_csv::csv_text;
 
 /// Size of the panels and the room around them; px.
 const WIDTH: f64 = 244.0;

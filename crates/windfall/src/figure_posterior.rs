@@ -3,7 +3,8 @@
 
 use crate::figure_campaign::own_ellipse;
 use crate::figure_xy::{Figure, Panel, Series, Style};
-use crate::outcome::{EstimateOutcome, ImpactOutcome};
+use crate::found::EstimateOutcome;
+use crate::outcome::ImpactOutcome;
 use std::f64::consts::TAU;
 
 /// Points of a density.

@@ -1,7 +1,8 @@
 //! How the likelihood falls on either side of each estimate.
 
 use crate::figure_xy::{Figure, Panel, Series, Style};
-use crate::outcome::{EstimateOutcome, ImpactOutcome};
+use crate::found::EstimateOutcome;
+use crate::outcome::ImpactOutcome;
 
 /// Points of the parabola.
 const POINTS: usize = 81;

@@ -1,11 +1,11 @@
 //! A recording as a figure: one panel per channel over a shared time axis.
 
+use crate::csv_text::csv_text;
 use crate::curve::{Curve, CurvePoint};
 use crate::error::Error;
 use crate::figure_axis::{Axis, axis, unit_label};
 use crate::figure_svg::{Anchor, Drawing, Ink};
 use crate::figure_theme::Theme;
-use crate::write_csv::csv_text;
 
 /// Most panels of a figure.
 pub const MOST_PANELS: usize = 12;

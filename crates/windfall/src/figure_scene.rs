@@ -1,6 +1,7 @@
 //! A scene as a picture: walls that one sees through, fruit coloured by their largest impact.
 
 use crate::colour_map::colour_of;
+use crate::csv_text::csv_text;
 use crate::error::Error;
 use crate::figure_axis::{axis, unit_label};
 use crate::figure_files::Painting;
@@ -10,7 +11,6 @@ use crate::figure_svg::{Anchor, Drawing, Ink};
 use crate::read_scene_frames::SceneFrames;
 use crate::scene_frames::Frame;
 use crate::scene_geometry::WallGeometry;
-use crate::write_csv::csv_text;
 use std::collections::BTreeMap;
 use windfall_scene::vector::{Vector, cross, dot, length, subtract, unit};
 

@@ -1,13 +1,13 @@
 //! Which terms of a response surface matter: Pareto and half-normal plot of their t.
 
 use crate::column_title::column_title;
+use crate::csv_text::csv_text;
 use crate::error::Error;
 use crate::figure_axis::axis;
 use crate::figure_files::{Painting, file_name};
 use crate::figure_frame::{Frame, Rectangle};
 use crate::figure_svg::{Anchor, Drawing, Ink};
 use crate::surface_outcome::SurfaceModel;
-use crate::write_csv::csv_text;
 use windfall_statistics::distribution::tail::{normal_quantile, t_upper_quantile};
 
 /// Size of the panels and the room around them; px.

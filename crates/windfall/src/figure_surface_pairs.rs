@@ -1,6 +1,7 @@
 //! What the figures over pairs of factors share: which grids, titles and places.
 
 use crate::column_title::column_title;
+use crate::csv_text::csv_text;
 use crate::error::Error;
 use crate::figure_axis::unit_label;
 use crate::figure_heights::Heights;
@@ -9,7 +10,6 @@ use crate::surface_fitted::{
 };
 use crate::surface_outcome::SurfaceOutcome;
 use crate::text_number::plain;
-use crate::write_csv::csv_text;
 
 /// More pairs than this are left to `--grid`.
 pub const MOST_PAIRS: usize = 15;

@@ -1,11 +1,11 @@
 //! Figures of one quantity against another: loops, loading curves, spectra.
 
+use crate::csv_text::csv_text;
 use crate::error::Error;
 use crate::figure_axis::axis;
 use crate::figure_frame::{Frame, Rectangle};
 use crate::figure_svg::{Anchor, Drawing, Ink};
 use crate::figure_theme::{SERIES, Theme};
-use crate::write_csv::csv_text;
 
 /// Size of a panel and the room around it; px.
 const WIDTH: f64 = 640.0;

@@ -8,10 +8,10 @@ use crate::law_card::{
     CARD_FORMAT, CardBodies, CardCovariance, CardOrigin, CardParameter, CardPopulation, CardRange,
     LawCard,
 };
+use crate::law_use::end_name;
 use crate::outcome::{CampaignOutcome, ImpactOutcome};
 use crate::provenance::{VERSION, digest_file, time_now};
 use crate::read_card::card_definition;
-use crate::workflow_simulate::end_name;
 use std::collections::BTreeMap;
 use std::path::Path;
 use windfall_contact::expression::LawExpression;

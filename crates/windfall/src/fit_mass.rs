@@ -3,7 +3,8 @@
 use crate::campaign::{Campaign, ImpactEntry, MassPlan, RigPlan};
 use crate::error::Error;
 use crate::extract_recording::extract_recording;
-use crate::outcome::{FindingOutcome, MassOutcome};
+use crate::found::FindingOutcome;
+use crate::outcome::MassOutcome;
 use rayon::prelude::*;
 use windfall_identify::rig::kind::{Carriage, Rig};
 use windfall_signal::impact::Measured;

@@ -1,9 +1,10 @@
 //! A fit as it is saved and shown.
 
 use crate::campaign::ImpactEntry;
+use crate::found::{EstimateOutcome, FindingOutcome};
 use crate::interval_outcome::interval_outcome;
 use crate::named::Named;
-use crate::outcome::{EstimateOutcome, FindingOutcome, ImpactOutcome};
+use crate::outcome::ImpactOutcome;
 use windfall_contact::restitution::nominal_restitution;
 use windfall_identify::fit::problem::LawProblem;
 use windfall_identify::fit::result::{Estimate, Fit};

@@ -1,7 +1,7 @@
 //! Groups of a table as results show them.
 
 use crate::error::Error;
-use crate::outcome::FindingOutcome;
+use crate::found::FindingOutcome;
 use crate::regress_findings::{finding, lines_text};
 use serde::Serialize;
 use windfall_statistics::compare::group_summary::{Group, Groups, summarize};

@@ -2,14 +2,15 @@
 //! which it was seen.
 
 use crate::error::Error;
+use crate::found::FindingOutcome;
 use crate::law_card::CardRange;
 use crate::option_value::unusable;
-use crate::outcome::FindingOutcome;
 use crate::read_card::{law_of_card, read_card};
 use crate::read_laws::laws_of_option;
 use crate::text_statistic::number;
 use std::path::Path;
 use windfall_contact::expression::parse_law_among;
+use windfall_contact::law::EndRule;
 use windfall_contact::laws::kind::{Law, LawKind};
 
 /// Endings of a law card's name.
@@ -205,4 +206,13 @@ fn outside(range: &CardRange, used: &[LawUse]) -> Vec<LawUseFinding> {
         }
     }
     findings
+}
+
+/// Name of an end rule in files and results.
+#[must_use]
+pub fn end_name(end: EndRule) -> &'static str {
+    match end {
+        EndRule::ForceZero => "force-zero",
+        EndRule::GapZero => "gap-zero",
+    }
 }

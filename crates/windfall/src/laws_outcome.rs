@@ -1,6 +1,6 @@
 //! What `windfall laws` gives, as JSON shows it.
 
-use crate::outcome::{FailureOutcome, FindingOutcome};
+use crate::found::{FailureOutcome, FindingOutcome};
 use serde::Serialize;
 
 /// What `windfall laws` gives.

@@ -2,10 +2,11 @@
 //! names, saved in the store, shown as text, JSON or CSV.
 
 use crate::evaluate::Document;
+use crate::found::spread;
+use crate::found::{FailureOutcome, FindingOutcome, SpreadOutcome};
 use crate::named::Named;
-use crate::outcome::{FailureOutcome, FindingOutcome, SpreadOutcome, StatusOutcome};
+use crate::outcome::StatusOutcome;
 use crate::store_documents::StoredValue;
-use crate::summary::spread;
 use serde::{Deserialize, Serialize};
 
 /// One value; SI.

@@ -3,27 +3,10 @@
 //! The names of the fields are the keys of the JSON that scripts rely on.
 //! All numbers are SI.
 
+use crate::found::{EstimateOutcome, FailureOutcome, FindingOutcome, SpreadOutcome};
 use crate::interval_outcome::IntervalOutcome;
 use crate::named::Named;
 use serde::{Deserialize, Serialize};
-
-/// One estimated or held value.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct EstimateOutcome {
-    /// Value.
-    pub value: f64,
-    /// Standard deviation; `None` for a value that was held, or when the data
-    /// cannot tell.
-    pub sd: Option<f64>,
-    /// Lower end of the 95 % interval.
-    pub low: Option<f64>,
-    /// Upper end of the 95 % interval.
-    pub high: Option<f64>,
-    /// SI unit.
-    pub unit: String,
-    /// Whether the value was held, not estimated.
-    pub held: bool,
-}
 
 /// How one quantity of the cost function fits.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
@@ -43,15 +26,6 @@ pub struct ResidualOutcome {
     /// Runs test: standardised number of runs; far below 0 when the residuals
     /// are not random.
     pub runs_z: Option<f64>,
-}
-
-/// Something that a reader of the result must know.
-#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
-pub struct FindingOutcome {
-    /// Short name for scripts.
-    pub code: String,
-    /// A sentence.
-    pub message: String,
 }
 
 /// One law fitted to one impact.
@@ -108,34 +82,6 @@ pub struct ImpactOutcome {
     pub intervals: IntervalOutcome,
     /// What a reader must know.
     pub findings: Vec<FindingOutcome>,
-}
-
-/// An impact that could not be fitted.
-#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
-pub struct FailureOutcome {
-    /// Id of the impact.
-    pub id: String,
-    /// Id of the specimen.
-    pub specimen: String,
-    /// The recording, as impacts.csv names it.
-    pub file: String,
-    /// The law, where the failure concerns one law only.
-    pub law: Option<String>,
-    /// What is wrong and what to do.
-    pub message: String,
-}
-
-/// Spread of one quantity over impacts.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-pub struct SpreadOutcome {
-    /// Mean.
-    pub mean: f64,
-    /// Standard deviation between impacts (n − 1); `None` for one impact.
-    pub sd: Option<f64>,
-    /// Number of impacts.
-    pub n: usize,
-    /// Coefficient of variation, sd / |mean|.
-    pub cv: Option<f64>,
 }
 
 /// Spread of parameters and derived quantities over the impacts of a group.

@@ -4,7 +4,8 @@
 use crate::campaign::{Campaign, ImpactEntry, RigPlan};
 use crate::cell_quantity::cell_quantity;
 use crate::error::Error;
-use crate::outcome::{FindingOutcome, ImpactOutcome};
+use crate::found::FindingOutcome;
+use crate::outcome::ImpactOutcome;
 use windfall_signal::energy_angles::{pendulum_energy, speed_of_energy};
 
 /// Velocities that differ by more than this are told; 1.

@@ -2,9 +2,9 @@
 
 use crate::error::Error;
 use crate::evaluate_drop::{Known, MeasuredDrop, height_text};
+use crate::found::FindingOutcome;
 use crate::measured::{MeasuredItem, MeasuredValue, plain_value, value_with_sd};
 use crate::named::Named;
-use crate::outcome::FindingOutcome;
 use crate::read_drop::{DropCampaign, PlatePlan};
 use windfall_identify::drop::rig::Plate;
 use windfall_signal::ringing::plate::{HeightTable, PlateDynamics, height_table, plate_dynamics};

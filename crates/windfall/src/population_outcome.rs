@@ -1,6 +1,6 @@
 //! A population as it is saved and shown.
 
-use crate::outcome::{FailureOutcome, FindingOutcome};
+use crate::found::{FailureOutcome, FindingOutcome};
 use serde::{Deserialize, Serialize};
 use windfall_identify::population::model::{FixedEffect, PopulationFit, Spread, Variation};
 use windfall_identify::population::posterior::{PopulationPosterior, PosteriorRange};

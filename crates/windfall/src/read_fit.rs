@@ -77,7 +77,7 @@ pub fn fit_plan(source: &TomlSource, file: &FitFile, user: Vec<LawKind>) -> Resu
     if let Some(end) = choice(source, file.end.as_ref(), (TABLE, "end"), &ENDS)? {
         options.end = end;
     }
-    let treatment = |value: Option<&Spanned<String>>, key| {
+    let treatment = |value: Option<&Spanned<String>>, key| -> Result<Treatment, Error> {
         Ok(choice(source, value, (TABLE, key), &TREATMENTS)?.unwrap_or(Treatment::Auto))
     };
     let velocity = file.initial_velocity.as_ref();

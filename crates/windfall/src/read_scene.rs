@@ -2,9 +2,9 @@
 
 use crate::error::{Error, Place};
 use crate::file_scene::{AirFile, ContactFile, GravityFile, SceneFile};
+use crate::found::FindingOutcome;
 use crate::law_card::LawCard;
 use crate::law_use::complete_law_among;
-use crate::outcome::FindingOutcome;
 use crate::read_card::{law_of_card, read_card};
 use crate::read_files::check_format;
 use crate::read_rig::STANDARD_GRAVITY;
@@ -320,7 +320,7 @@ fn scene_error(
     file: &SceneFile,
     problem: &windfall_scene::error::Error,
 ) -> Error {
-    Error::SceneRefused {
+    Error::Refused {
         place: place_at(source, &file.materials.span()),
         problem: problem.to_string(),
     }

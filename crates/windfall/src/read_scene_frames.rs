@@ -57,7 +57,7 @@ pub fn frames_file(directory: &Path) -> Result<PathBuf, Error> {
     });
     growing.max().ok_or_else(|| {
         let path = directory.to_path_buf();
-        Error::SceneFile(Box::new(SceneFileError::FramesAbsent { path }))
+        Error::from(SceneFileError::FramesAbsent { path })
     })
 }
 
@@ -85,11 +85,11 @@ impl SceneFrames {
         let version = u32::from_le_bytes(start.array()?);
         if version != VERSION {
             let path = path.to_path_buf();
-            return Err(Error::SceneFile(Box::new(SceneFileError::FramesNewer {
+            return Err(Error::from(SceneFileError::FramesNewer {
                 path,
                 found: version,
                 known: VERSION,
-            })));
+            }));
         }
         let size = u64::from(u32::from_le_bytes(start.array()?));
         if size > MOST_ABOUT {
@@ -273,9 +273,9 @@ fn access(path: &Path, source: std::io::Error) -> Error {
 
 fn damaged(path: &Path, byte: u64, problem: &'static str) -> Error {
     let path = path.to_path_buf();
-    Error::SceneFile(Box::new(SceneFileError::FramesDamaged {
+    Error::from(SceneFileError::FramesDamaged {
         path,
         byte,
         problem,
-    }))
+    })
 }

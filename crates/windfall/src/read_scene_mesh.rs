@@ -2,7 +2,7 @@
 
 use crate::error::Error;
 use crate::file_scene::{MeshFile, TurnFile};
-use crate::outcome::FindingOutcome;
+use crate::found::FindingOutcome;
 use crate::read_stl::read_stl;
 use crate::scene_key::{needed, short};
 use crate::toml_source::{TomlSource, invalid, missing, needed_quantity};

@@ -12,7 +12,7 @@ use windfall_scene::scene::{Fruit, Scene};
 use windfall_scene::vector::Vector;
 
 fn refused(source: &TomlSource, at: &Range<usize>, problem: String) -> Error {
-    Error::SceneRefused {
+    Error::Refused {
         place: place_at(source, at),
         problem,
     }

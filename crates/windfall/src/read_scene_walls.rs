@@ -2,7 +2,7 @@
 
 use crate::error::Error;
 use crate::file_scene::{BoxFile, WallFile};
-use crate::outcome::FindingOutcome;
+use crate::found::FindingOutcome;
 use crate::read_scene_mesh::mesh_of;
 use crate::scene_key::{material, needed};
 use crate::toml_source::{TomlSource, invalid, missing, needed_quantity, suggestion};

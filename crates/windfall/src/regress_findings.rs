@@ -1,7 +1,7 @@
 //! What a reader of a linear model must know.
 
+use crate::found::FindingOutcome;
 use crate::model_outcome::StepOutcome;
-use crate::outcome::FindingOutcome;
 use crate::text_number::plain;
 use windfall_statistics::model::linear_model::LinearFit;
 use windfall_statistics::model::model_frame::ModelFrame;

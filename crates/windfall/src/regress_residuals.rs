@@ -1,7 +1,7 @@
 //! Tests of the residuals of a linear model, and indices of its distance from
 //! what was measured.
 
-use crate::outcome::FindingOutcome;
+use crate::found::FindingOutcome;
 use crate::regress_findings::finding;
 use crate::text_number::plain;
 use crate::text_statistic::{number, probability};

@@ -1,7 +1,7 @@
 //! Impacts of a campaign → pairs of successive impacts on one spot.
 
 use crate::evaluate_repeats::{RepeatImpact, series_of};
-use crate::outcome::FailureOutcome;
+use crate::found::FailureOutcome;
 use windfall_signal::repeat::align::{AlignOptions, AlignedPair, align_pair};
 use windfall_signal::repeat::criterion::Difference;
 

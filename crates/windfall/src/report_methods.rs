@@ -1,16 +1,14 @@
 //! What was done to the recordings, in the words of a methods section.
 
 use crate::campaign::{Campaign, MassPlan, RigPlan};
+use crate::methods_words::{filters_text, laws_text, listed, threshold_text};
 use crate::outcome::CampaignOutcome;
 use crate::text_number::plain;
-use windfall_contact::expression::LawExpression;
 use windfall_contact::law::EndRule;
 use windfall_identify::fit::interval::IntervalMethod;
 use windfall_identify::fit::problem::{FitOptions, NoiseModel, Weighting};
-use windfall_signal::conditioning::{ChannelFilter, Conditioning};
-use windfall_signal::filter::butterworth::Band;
 use windfall_signal::options::RateMethod;
-use windfall_signal::trigger::{Baseline, Orientation, Threshold};
+use windfall_signal::trigger::{Baseline, Orientation};
 
 /// Paragraphs that say exactly how the results came about.
 #[must_use]
@@ -100,70 +98,6 @@ fn signals(campaign: &Campaign) -> String {
     )
 }
 
-/// "exceeded 1 N".
-pub(crate) fn threshold_text(threshold: &Threshold) -> String {
-    match *threshold {
-        Threshold::Fixed(force) => format!("exceeded {} N", force),
-        Threshold::Automatic {
-            deviations,
-            least,
-            share,
-        } => format!(
-            "exceeded the largest of {} standard deviations of its noise before contact, {} N \
-             and {} of its peak",
-            deviations, least, share
-        ),
-    }
-}
-
-/// Which channels were filtered, and how.
-pub(crate) fn filters_text(conditioning: &Conditioning) -> String {
-    let filters = [
-        ("force", conditioning.force),
-        ("position", conditioning.position),
-        ("displacement rate", conditioning.rate),
-        ("acceleration", conditioning.acceleration),
-    ];
-    let filters: Vec<String> = filters
-        .iter()
-        .filter_map(|(name, filter)| filter.map(|f| format!("{name} {}", filter_text(&f))))
-        .collect();
-    match filters.is_empty() {
-        true => "No channel was filtered.".to_owned(),
-        false => format!(
-            "Filters (Butterworth, forwards and backwards): {}.",
-            filters.join("; ")
-        ),
-    }
-}
-
-fn filter_text(filter: &ChannelFilter) -> String {
-    let band = match filter.band {
-        Band::LowPass(cutoff) => format!("low-pass {} Hz", cutoff),
-        Band::HighPass(cutoff) => format!("high-pass {} Hz", cutoff),
-        Band::BandPass(low, high) => format!("band-pass {} to {} Hz", low, high),
-    };
-    format!("{band}, order {}", filter.order)
-}
-
-/// A sentence on each law.
-pub(crate) fn laws_text(laws: &[LawExpression], free: &[String]) -> Vec<String> {
-    let of = |law: &LawExpression| {
-        let about = law.kind.describe();
-        let also: Vec<&str> = free
-            .iter()
-            .map(String::as_str)
-            .filter(|name| about.parameters.iter().any(|p| p.name == *name))
-            .collect();
-        let also = match also.is_empty() {
-            true => String::new(),
-            false => format!(" Estimated too: {}.", listed(&also)),
-        };
-        format!("Law {law}: {} ({}).{also}", about.formula, about.source)
-    };
-    laws.iter().map(of).collect()
-}
-
 fn cost(options: &FitOptions) -> String {
     let quantities = listed(&options.quantities.names());
     let weights = match options.weighting {
@@ -212,15 +146,6 @@ fn nuisances(options: &FitOptions, outcome: &CampaignOutcome) -> String {
         estimated("onset"),
         estimated("displacement_offset")
     )
-}
-
-/// "a, b and c".
-fn listed(names: &[&str]) -> String {
-    match names {
-        [] => String::new(),
-        [one] => (*one).to_owned(),
-        [first @ .., last] => format!("{} and {last}", first.join(", ")),
-    }
 }
 
 fn intervals(options: &FitOptions) -> String {

@@ -3,7 +3,7 @@
 use crate::figure_files::NamedFigure;
 use crate::figure_theme::{DARK, LIGHT, PAGE, declarations};
 use crate::figure_xy::element_of_figure;
-use crate::outcome::{FailureOutcome, FindingOutcome};
+use crate::found::{FailureOutcome, FindingOutcome};
 use crate::write_table::Cells;
 use maud::{DOCTYPE, Markup, PreEscaped, html};
 

@@ -1,10 +1,8 @@
 //! `windfall fit` as it is asked for, on top of what the campaign says.
 
 use crate::campaign::{Campaign, ImpactEntry, Specimen};
-use crate::campaign_kind::CampaignKind;
 use crate::error::Error;
 use crate::figure_files::FigureFolder;
-use crate::item_campaign::ItemCampaign;
 use crate::option_value::{chosen, unusable};
 use crate::read_fit::{
     ENDS, INTERVALS, NOISES, TREATMENTS, WEIGHTS, enough_work, hold_velocity, known_velocity,
@@ -108,7 +106,10 @@ fn merged(campaign: &[LawKind], request: &FitRequest) -> Result<Vec<LawKind>, Er
 }
 
 /// A group that one of the tables has.
-fn known_group(group: &str, names: &[&str]) -> Result<String, Error> {
+///
+/// # Errors
+/// Neither has it.
+pub fn known_group(group: &str, names: &[&str]) -> Result<String, Error> {
     if names.contains(&group) {
         return Ok(group.to_owned());
     }
@@ -140,45 +141,6 @@ pub fn laws_and_free(
             return Err(unusable(format!("--free {}", request.free[index]), problem));
         }
         free.clone_from(&request.free);
-    }
-    Ok(())
-}
-
-/// Puts what is asked for in the place of what a campaign says that fits no
-/// impacts: only the group, and laws where it fits some ([`laws_and_free`]).
-///
-/// # Errors
-/// An option that only impacts have, or one that cannot be used.
-pub fn apply_request_to_items(
-    campaign: &mut ItemCampaign,
-    request: &FitRequest,
-) -> Result<(), Error> {
-    let kind = campaign.kind;
-    let fits_laws = kind == CampaignKind::Compression;
-    let laws = !(request.laws.is_empty() && request.free.is_empty());
-    let strangers = [
-        ("--law and --free", laws && !fits_laws),
-        ("--laws", request.laws_file.is_some()),
-        ("--card", request.card.is_some()),
-        ("--quantities", !request.quantities.is_empty()),
-        ("--weights", request.weights.is_some()),
-        ("--noise", request.noise.is_some()),
-        ("--intervals", request.intervals.is_some()),
-        ("--initial-velocity", request.initial_velocity.is_some()),
-        ("--onset", request.onset.is_some()),
-        (
-            "--displacement-offset",
-            request.displacement_offset.is_some(),
-        ),
-        ("--end", request.end.is_some()),
-    ];
-    if let Some((option, _)) = strangers.iter().find(|(_, given)| *given) {
-        let problem = format!("a campaign of kind \"{}\" has no such option", kind.name());
-        return Err(unusable((*option).to_owned(), problem));
-    }
-    if let Some(group) = &request.group {
-        let names = columns(&campaign.specimens, &campaign.entries);
-        campaign.group = Some(known_group(group, &names)?);
     }
     Ok(())
 }
@@ -259,7 +221,9 @@ fn apply_options(options: &mut FitOptions, request: &FitRequest) -> Result<(), E
     Ok(())
 }
 
-fn columns<'a>(specimens: &'a [Specimen], entries: &'a [ImpactEntry]) -> Vec<&'a str> {
+/// Columns of both tables.
+#[must_use]
+pub fn columns<'a>(specimens: &'a [Specimen], entries: &'a [ImpactEntry]) -> Vec<&'a str> {
     let specimen = specimens.first().map_or(&[][..], |s| &s.cells);
     let entry = entries.first().map_or(&[][..], |i| &i.cells);
     let cells = specimen.iter().chain(entry);

@@ -4,9 +4,9 @@
 use crate::any_outcome::AnyOutcome;
 use crate::campaign_view::{CampaignView, TABLES_DIRECTORY, TableView, view_campaign};
 use crate::confined::path_inside;
+use crate::csv_text::csv_text;
 use crate::error::Error;
 use crate::write_any::csv_of_any;
-use crate::write_csv::csv_text;
 use crate::write_file::write_whole;
 use std::collections::BTreeMap;
 use std::path::Path;

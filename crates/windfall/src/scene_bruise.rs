@@ -1,6 +1,6 @@
 //! Bruises of a scene: from the contacts of each fruit to the share that is bruised.
 
-use crate::outcome::FindingOutcome;
+use crate::found::FindingOutcome;
 use crate::read_scene_bruise::BruisePlan;
 use crate::scene_key::FRUIT;
 use serde::Serialize;

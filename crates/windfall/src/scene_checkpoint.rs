@@ -271,14 +271,14 @@ fn version_of(path: &Path, mut from: &mut dyn Read) -> Result<(), Error> {
         return Ok(());
     }
     let path = path.to_path_buf();
-    Err(Error::scene_run(SceneRunError::Version { path, version }))
+    Err(Error::from(SceneRunError::Version { path, version }))
 }
 
 /// What is wrong with a file that a run was to go on from.
 #[must_use]
 pub fn damaged(path: &Path, problem: String) -> Error {
     let path = path.to_path_buf();
-    Error::scene_run(SceneRunError::Damaged { path, problem })
+    Error::from(SceneRunError::Damaged { path, problem })
 }
 
 fn open(path: &Path) -> Result<File, Error> {

@@ -143,11 +143,11 @@ impl Table {
 }
 
 fn damaged(path: &Path, line: u64, problem: String) -> Error {
-    Error::SceneFile(Box::new(SceneFileError::TableDamaged {
+    Error::from(SceneFileError::TableDamaged {
         path: path.to_path_buf(),
         line,
         problem,
-    }))
+    })
 }
 
 /// The contacts of one fruit, from events.csv; the memory it takes does not grow with the
@@ -159,10 +159,7 @@ fn damaged(path: &Path, line: u64, problem: String) -> Error {
 /// The table cannot be read, or there is no such fruit.
 pub fn fruit_history(directory: &Path, fruit: u64, count: usize) -> Result<FruitHistory, Error> {
     if fruit == 0 || fruit > count as u64 {
-        return Err(Error::SceneFile(Box::new(SceneFileError::FruitUnknown {
-            fruit,
-            count,
-        })));
+        return Err(Error::from(SceneFileError::FruitUnknown { fruit, count }));
     }
     let mut table = Table::open(directory.join("events.csv"))?;
     let columns = EventColumns::of(&table)?;

@@ -1,6 +1,6 @@
 //! What came of a scene.
 
-use crate::outcome::FindingOutcome;
+use crate::found::FindingOutcome;
 use crate::read_scene::ScenePlan;
 use crate::scene_bruise::BruiseOutcome;
 use crate::scene_histogram::HistogramOutcome;

@@ -117,19 +117,17 @@ impl SceneRun {
         // The table gets its name as the last of all: what is without it is done.
         let stopped = checkpoint.exists() && going.is_some();
         match (start, going) {
-            (_, Some(true)) => return Err(Error::scene_run(SceneRunError::Busy { path: events })),
+            (_, Some(true)) => return Err(Error::from(SceneRunError::Busy { path: events })),
             (SceneStart::Fresh, _) if stopped => {
                 let head = checkpoint_head(&checkpoint);
-                return Err(Error::scene_run(SceneRunError::Unfinished {
+                return Err(Error::from(SceneRunError::Unfinished {
                     directory: directory.to_path_buf(),
                     at: head.map(|head| [head.time, head.end]),
                 }));
             }
             (SceneStart::Resume, None) => {
                 let directory = directory.to_path_buf();
-                return Err(Error::scene_run(SceneRunError::NothingToResume {
-                    directory,
-                }));
+                return Err(Error::from(SceneRunError::NothingToResume { directory }));
             }
             _ => {}
         }
@@ -195,7 +193,7 @@ impl SceneRun {
             let changed = changed_parts(&head.parts, &parts);
             if !changed.is_empty() {
                 let path = path.clone();
-                return Err(Error::scene_run(SceneRunError::Changed { path, changed }));
+                return Err(Error::from(SceneRunError::Changed { path, changed }));
             }
             let unread =
                 |error: std::io::Error| damaged(&path, format!("the checkpoint is {error}"));
@@ -233,7 +231,9 @@ impl SceneRun {
     ) -> Result<(), Error> {
         // By one of those who work, who need not be woken for every step.
         let done = rayon::scope(|_| self.steps_to_end(mover, progress));
-        if let Err(Error::SceneStopped(_)) = &done {
+        if let Err(error) = &done
+            && let Some(SceneRunError::Failed(_)) = error.of_room()
+        {
             // It would be stopped there again.
             self.leave_nothing();
         }
@@ -307,7 +307,7 @@ impl SceneRun {
     fn interrupted(&self) -> Error {
         let (now, end) = (self.simulation.time(), self.end);
         match self.kept {
-            Some(kept) => Error::scene_run(SceneRunError::Stopped { now, end, kept }),
+            Some(kept) => Error::from(SceneRunError::Stopped { now, end, kept }),
             None => Error::Cancelled,
         }
     }
@@ -316,7 +316,7 @@ impl SceneRun {
     #[must_use]
     pub fn told(&self, error: Error) -> Error {
         match error {
-            Error::FileAccess { path, source, .. } => Error::scene_run(SceneRunError::Unwritable {
+            Error::FileAccess { path, source, .. } => Error::from(SceneRunError::Unwritable {
                 path,
                 source,
                 kept: self.kept,
@@ -347,5 +347,5 @@ impl SceneRun {
 /// A scene whose result would mean nothing.
 #[must_use]
 pub fn stopped_scene(problem: windfall_scene::error::Error) -> Error {
-    Error::SceneStopped(Box::new(problem))
+    SceneRunError::Failed(problem).into()
 }

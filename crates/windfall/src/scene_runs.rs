@@ -102,7 +102,7 @@ pub fn scene_runs(workspace: &Workspace) -> Result<Vec<SceneEntry>, Error> {
 /// There is none of that name.
 pub fn scene_run(workspace: &Workspace, id: &str) -> Result<PathBuf, Error> {
     let root = workspace.root();
-    let unknown = || Error::SceneFile(Box::new(SceneFileError::RunUnknown { id: id.to_owned() }));
+    let unknown = || Error::from(SceneFileError::RunUnknown { id: id.to_owned() });
     if holds_run(root) && id == name_of(root) {
         return Ok(root.to_path_buf());
     }
@@ -148,7 +148,8 @@ fn entry_of(path: &Path, id: String) -> SceneEntry {
     let result = result_of(path);
     let number = |key: &str| result.as_ref().and_then(|own| own[key].as_u64());
     let title = result.as_ref().and_then(|own| own["title"].as_str());
-    let absent = |problem: &Error| matches!(problem, Error::SceneFile(own) if matches!(**own, SceneFileError::FramesAbsent { .. }));
+    let absent =
+        |problem: &Error| matches!(problem.of_room(), Some(SceneFileError::FramesAbsent { .. }));
     let problem = frames.as_ref().err().filter(|own| !absent(own));
     SceneEntry {
         title: title.map_or_else(|| id.clone(), str::to_owned),

@@ -1,6 +1,7 @@
 //! A time step that a scene's file gives, looked at before it runs.
 
 use crate::error::Error;
+use crate::error_scene_run::SceneRunError;
 use crate::read_scene::ScenePlan;
 use crate::scene_key::short;
 use windfall_scene::motion::time_step::{Impact, StepError};
@@ -27,7 +28,7 @@ pub fn checked_step(
     {
         return Ok(own);
     }
-    let stopped = |problem| Error::SceneStopped(Box::new(problem));
+    let stopped = |problem| Error::from(SceneRunError::Failed(problem));
     // Where no step will do, it is not the step's fault.
     let (fits, fine) = impact.step_for(plan.time_step_error).map_err(stopped)?;
     let Some((place, text)) = plan.given_step.clone() else {

@@ -1,9 +1,9 @@
 //! A whole simulated campaign: recordings as the instrument would have written
 //! them, with tables, campaign.toml and the parameters that were drawn.
 
+use crate::csv_text::csv_text;
 use crate::error::Error;
 use crate::workflow_new::{create_directory, write_file};
-use crate::write_csv::csv_text;
 use crate::write_simulated::{SimulatedFile, campaign_text, recording_text};
 use std::path::{Path, PathBuf};
 use windfall_contact::expression::LawExpression;

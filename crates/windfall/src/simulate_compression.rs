@@ -1,11 +1,11 @@
 //! `windfall simulate compression`: a campaign of slow compressions by a known
 //! law, to try the program and to check it.
 
+use crate::csv_text::csv_text;
 use crate::error::Error;
 use crate::law_use::chosen_law;
 use crate::option_value::{at_least_zero, positive, unusable};
 use crate::workflow_new::{create_directory, write_file};
-use crate::write_csv::csv_text;
 use std::path::{Path, PathBuf};
 use windfall_contact::laws::kind::Law;
 use windfall_signal::noise::gaussian::{noise_source, normal};

@@ -1,14 +1,14 @@
 //! `windfall simulate drop DIR`: recordings of drops on a plate as a load cell
 //! writes them, to try the program and to check it.
 
+use crate::csv_text::csv_text;
 use crate::error::Error;
+use crate::law_use::end_name;
 use crate::option_value::{at_least_zero, positive, quantity, unusable};
 use crate::request_drop::DropPlan;
 use crate::request_recordings::spread;
 use crate::simulate_campaign::{Batch, drawn, seed_of};
 use crate::workflow_new::{create_directory, write_file};
-use crate::workflow_simulate::end_name;
-use crate::write_csv::csv_text;
 use crate::write_simulated::recording_text;
 use crate::write_user_laws::law_table;
 use std::path::{Path, PathBuf};

@@ -1,11 +1,11 @@
 //! `windfall simulate repeats`: drops repeated on one spot of fruit with a known
 //! critical energy, to try the program and to check it.
 
+use crate::csv_text::csv_text;
 use crate::error::Error;
 use crate::option_value::{at_least_zero, positive, unusable};
 use crate::read_rig::STANDARD_GRAVITY;
 use crate::workflow_new::{create_directory, write_file};
-use crate::write_csv::csv_text;
 use std::f64::consts::PI;
 use std::path::{Path, PathBuf};
 use windfall_contact::law::EndRule;

@@ -1,10 +1,10 @@
 //! `windfall simulate tap`: a campaign of taps on fruit of known frequency, to
 //! try the program and to check it.
 
+use crate::csv_text::csv_text;
 use crate::error::Error;
 use crate::option_value::{chosen, positive, unusable};
 use crate::workflow_new::{create_directory, write_file};
-use crate::write_csv::csv_text;
 use crate::write_wav::wav_bytes;
 use std::f64::consts::{PI, TAU};
 use std::path::{Path, PathBuf};

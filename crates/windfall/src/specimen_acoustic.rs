@@ -4,9 +4,9 @@ use crate::acoustic_document::{TapsDocument, resonance_of};
 use crate::campaign::{ImpactEntry, Specimen};
 use crate::cell_quantity::cell_quantity;
 use crate::error::Error;
+use crate::found::FindingOutcome;
 use crate::measured::{MeasuredItem, MeasuredValue, plain_value, value_with_sd};
 use crate::named::Named;
-use crate::outcome::FindingOutcome;
 use crate::read_acoustic::{AcousticCampaign, Common, density_of};
 use crate::text_number::plain;
 use windfall_signal::tap::acoustic_stiffness::{

@@ -6,7 +6,8 @@
 //! from a newer windfall is refused and left alone.
 
 use crate::error::Error;
-use crate::outcome::{FailureOutcome, ImpactOutcome};
+use crate::found::FailureOutcome;
+use crate::outcome::ImpactOutcome;
 use crate::store_documents::{DocumentRecord, document_keys, insert_document};
 use crate::store_file::{PATIENCE, create_schema, open_existing, store_error};
 use rusqlite::{Connection, OptionalExtension, Transaction, params};
@@ -268,8 +269,8 @@ fn read_latest(connection: &Connection) -> rusqlite::Result<Option<RunIdentity>>
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::found::{EstimateOutcome, FindingOutcome};
     use crate::named::Named;
-    use crate::outcome::{EstimateOutcome, FindingOutcome};
 
     fn outcome(id: &str) -> ImpactOutcome {
         let estimate = EstimateOutcome {

@@ -1,6 +1,6 @@
 //! What came of a study.
 
-use crate::outcome::FindingOutcome;
+use crate::found::FindingOutcome;
 use crate::read_study::StudyPlan;
 use crate::scene_bruise::{LimitOutcome, PlaceOutcome};
 use crate::study_interval::{Counts, difference, share};

@@ -1,27 +1,8 @@
 //! Mean, standard deviation and number of impacts, over all and per group.
 
+use crate::found::{SpreadOutcome, spread};
 use crate::named::Named;
-use crate::outcome::{GroupOutcome, ImpactOutcome, SpreadOutcome};
-
-/// Spread of some values; `None` when there is none.
-///
-/// ```text
-/// mean = Σx / n,   sd² = Σ(x − mean)² / (n − 1),   cv = sd / |mean|
-/// ```
-///
-/// The sums run in the order of the values.
-#[must_use]
-pub fn spread(values: &[f64]) -> Option<SpreadOutcome> {
-    if values.is_empty() {
-        return None;
-    }
-    let n = values.len();
-    let mean = values.iter().sum::<f64>() / n as f64;
-    let squares: f64 = values.iter().map(|x| (x - mean) * (x - mean)).sum();
-    let sd = (n > 1).then(|| (squares / (n - 1) as f64).sqrt());
-    let cv = sd.filter(|_| mean != 0.0).map(|sd| sd / mean.abs());
-    Some(SpreadOutcome { mean, sd, n, cv })
-}
+use crate::outcome::{GroupOutcome, ImpactOutcome};
 
 /// Spread of the impacts of each group and law, groups and laws in order of
 /// first appearance.
@@ -106,24 +87,4 @@ fn collect<'a>(
         .filter_map(|(name, list)| Some((name.to_owned(), spread(&list)?)))
         .collect();
     Named(spreads)
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    /// NIST Statistical Reference Datasets, univariate, `NumAcc1`: certified mean
-    /// 10000002, standard deviation 1.
-    #[test]
-    fn reference_nist_numacc1() {
-        let found = spread(&[10000001.0, 10000003.0, 10000002.0]).unwrap();
-        assert_eq!((found.mean, found.sd, found.n), (10000002.0, Some(1.0), 3));
-    }
-
-    #[test]
-    fn closed_form_one_impact_has_no_spread() {
-        let found = spread(&[5.0]).unwrap();
-        assert_eq!((found.sd, found.cv), (None, None));
-        assert!(spread(&[]).is_none());
-    }
 }

@@ -2,8 +2,8 @@
 
 use crate::design_coding::coding_of_design;
 use crate::error::Error;
+use crate::found::FindingOutcome;
 use crate::option_value::unusable;
-use crate::outcome::FindingOutcome;
 use crate::read_data::Data;
 use crate::regress_findings::{finding, lines_text};
 use crate::text_number::plain;

@@ -1,9 +1,9 @@
 //! Fitted response surfaces as JSON shows them.
 
+use crate::found::FindingOutcome;
 use crate::model_outcome::{
     LackOfFitOutcome, QualityOutcome, RowOutcome, SumOfSquares, WholeModel,
 };
-use crate::outcome::FindingOutcome;
 use serde::Serialize;
 
 /// A term of a surface.

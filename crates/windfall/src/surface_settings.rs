@@ -1,8 +1,8 @@
 //! The most desirable settings, all that are as good, and grids of predictions.
 
 use crate::error::Error;
+use crate::found::FindingOutcome;
 use crate::option_value::unusable;
-use crate::outcome::FindingOutcome;
 use crate::regress_findings::finding;
 use crate::surface_outcome::{FamilyOutcome, GridOutcome, PredictedResponse, SettingOutcome};
 use crate::text_number::plain;

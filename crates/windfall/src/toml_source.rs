@@ -1,7 +1,7 @@
 //! A TOML text and the places in it, so that messages name file, line and key.
 
 use crate::error::{Error, Place};
-use crate::file_campaign::QuantityText;
+use crate::file_quantity::QuantityText;
 use std::ops::Range;
 use std::path::{Path, PathBuf};
 use toml::Spanned;

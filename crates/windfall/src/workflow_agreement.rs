@@ -2,8 +2,8 @@
 //! what was measured.
 
 use crate::error::Error;
+use crate::found::FindingOutcome;
 use crate::group_outcome::statistics_error;
-use crate::outcome::FindingOutcome;
 use crate::read_data::read_data;
 use crate::regress_findings::{finding, lines_text};
 use serde::Serialize;

@@ -1,10 +1,10 @@
 //! `windfall bruise`: volumes of bruises from what one measures of them.
 
+use crate::csv_text::csv_text;
 use crate::error::Error;
 use crate::option_value::{positive, unusable};
 use crate::read_data::read_data;
 use crate::text_number::plain;
-use crate::write_csv::csv_text;
 use serde::Serialize;
 use std::path::Path;
 use windfall_numerics::unit::quantity::parse_as;

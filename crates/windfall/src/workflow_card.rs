@@ -1,8 +1,8 @@
 //! `windfall card show`: what the force laws say about themselves.
 
+use crate::csv_text::csv_text;
 use crate::error::Error;
 use crate::read_laws::laws_of_option;
-use crate::write_csv::csv_text;
 use crate::write_table::table_text;
 use serde::Serialize;
 use std::fmt::Write;

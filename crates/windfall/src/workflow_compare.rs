@@ -5,9 +5,9 @@ use crate::compare_outcome::{
 };
 use crate::compare_pairs::{PairMethod, compare_paired, compare_pairs, shared};
 use crate::error::Error;
+use crate::found::FindingOutcome;
 use crate::group_outcome::{group_outcomes, missing_findings, statistics_error};
 use crate::option_value::unusable;
-use crate::outcome::FindingOutcome;
 use crate::read_data::{Data, read_data};
 use crate::regress_findings::finding;
 use crate::workflow_summary::check_confidence;

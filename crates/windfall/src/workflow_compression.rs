@@ -9,20 +9,21 @@ use crate::evaluate_compression::{
 };
 use crate::figure_compression::figure_of_compression;
 use crate::figure_files::{FigureFolder, NamedFigure, file_name, write_figure};
+use crate::found::FindingOutcome;
+use crate::item_request::apply_request_to_items;
 use crate::measured::{
     MeasuredItem, MeasuredItems, MeasuredOutcome, ShownValue, groups_of, laws_of, plain_value,
     spread_of,
 };
+use crate::methods_compression::methods_of_compression;
 use crate::named::Named;
 use crate::on_threads::on_threads;
-use crate::outcome::FindingOutcome;
 use crate::progress::Progress;
 use crate::provenance::VERSION;
 use crate::read_compression::{CompressionCampaign, read_compression};
 use crate::read_recording::read_recording;
-use crate::report_methods_items::methods_of_compression;
 use crate::reported_items::{ReportedItems, reported_items};
-use crate::request_fit::{FitRequest, apply_request_to_items, laws_and_free};
+use crate::request_fit::{FitRequest, laws_and_free};
 use crate::workflow_fit::STORE_FILE;
 use std::path::Path;
 use windfall_identify::compression_fit::fit_compression;

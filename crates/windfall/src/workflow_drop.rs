@@ -8,16 +8,17 @@ use crate::evaluate_drop::{MeasuredDrop, bounce_options, bounce_train, evaluate_
 use crate::figure_drop::figure_of_drop;
 use crate::figure_files::{FigureFolder, NamedFigure, file_name, write_figure};
 use crate::item_campaign::group_of;
+use crate::item_request::apply_request_to_items;
 use crate::measured::{MeasuredItem, MeasuredOutcome, ShownValue, groups_of, spread_of};
+use crate::methods_drops::methods_of_drops;
 use crate::on_threads::on_threads;
 use crate::plate_ringing::plate_items;
 use crate::progress::Progress;
 use crate::provenance::VERSION;
 use crate::read_drop::{DropCampaign, drop_of, read_drop};
 use crate::read_recording::read_recording;
-use crate::report_methods_items::methods_of_drops;
 use crate::reported_items::{ReportedItems, reported_items};
-use crate::request_fit::{FitRequest, Reuse, apply_request_to_items};
+use crate::request_fit::{FitRequest, Reuse};
 use crate::workflow_fit::STORE_FILE;
 use std::path::Path;
 

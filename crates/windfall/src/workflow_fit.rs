@@ -9,11 +9,10 @@ use crate::fit_card::card_of_fit;
 use crate::fit_impact::{FitTask, fit_tasks};
 use crate::fit_key::{impact_key, input_digests};
 use crate::fit_mass::{RigFound, find_rig};
+use crate::found::{FailureOutcome, FindingOutcome};
 use crate::law_use::{LawUse, findings_of_use};
 use crate::on_threads::on_threads;
-use crate::outcome::{
-    CampaignOutcome, FailureOutcome, FindingOutcome, ImpactOutcome, StatusOutcome,
-};
+use crate::outcome::{CampaignOutcome, ImpactOutcome, StatusOutcome};
 use crate::progress::Progress;
 use crate::provenance::{VERSION, time_now};
 use crate::read_campaign::{CAMPAIGN_FILE, read_campaign};

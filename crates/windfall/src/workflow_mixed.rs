@@ -1,8 +1,8 @@
 //! `windfall regress` with random effects: a linear mixed model.
 
 use crate::error::Error;
+use crate::found::FindingOutcome;
 use crate::model_outcome::{AnovaOutcome, RangeOutcome, TermOutcome, ranges_of};
-use crate::outcome::FindingOutcome;
 use crate::read_data::{Data, read_data};
 use crate::regress_findings::{aliased_findings, finding, left_out_finding};
 use crate::request_regress::{FreedomMethod, RegressRequest};

@@ -6,8 +6,8 @@ use crate::error::Error;
 use crate::extract_recording::extract_recording;
 use crate::fit_impact::law_problem;
 use crate::fit_mass::{RigFound, find_rig};
+use crate::found::{FailureOutcome, FindingOutcome};
 use crate::on_threads::on_threads;
-use crate::outcome::{FailureOutcome, FindingOutcome};
 use crate::population_covariates::find_covariates;
 use crate::population_outcome::{
     FruitOutcome, PopulationOutcome, Varying, correlations_of, effects_of, parameters_of,

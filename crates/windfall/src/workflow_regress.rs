@@ -1,13 +1,13 @@
 //! `windfall regress`: a table and a formula → a linear model.
 
 use crate::error::Error;
+use crate::found::FindingOutcome;
 use crate::model_outcome::{
     AnovaOutcome, InflationOutcome, LackOfFitOutcome, PredictionOutcome, QualityOutcome,
     RangeOutcome, RowOutcome, StepOutcome, SumOfSquares, TermOutcome, WholeModel, anova_of,
     inflation_of, lack_of, predictions_of, ranges_of, roman, rows_of, terms_of, whole_of,
 };
 use crate::option_value::unusable;
-use crate::outcome::FindingOutcome;
 use crate::read_data::{Data, read_data};
 use crate::regress_findings::{aliased_findings, finding, fit_findings, left_out_finding};
 use crate::regress_residuals::{ResidualOutcome, residual_findings, residual_tests};

@@ -7,19 +7,21 @@ use crate::evaluate::{Evaluation, evaluate};
 use crate::evaluate_repeats::{RepeatImpact, evaluate_impact};
 use crate::figure_files::{NamedFigure, file_name, write_figures};
 use crate::figure_repeats::figure_of_comparison;
+use crate::found::FindingOutcome;
+use crate::item_request::apply_request_to_items;
 use crate::measured::{
     MeasuredItem, MeasuredOutcome, MeasuredValue, ShownValue, groups_of, plain_value,
 };
+use crate::methods_repeats::methods_of_repeats;
 use crate::named::Named;
 use crate::on_threads::on_threads;
-use crate::outcome::{FindingOutcome, StatusOutcome};
+use crate::outcome::StatusOutcome;
 use crate::progress::Progress;
 use crate::provenance::VERSION;
 use crate::read_repeats::{RepeatsCampaign, cell_of, energy_of, read_repeats};
 use crate::repeat_pairs::pairs_of;
-use crate::report_methods_items::methods_of_repeats;
 use crate::reported_items::ReportedItems;
-use crate::request_fit::{FitRequest, apply_request_to_items};
+use crate::request_fit::FitRequest;
 use crate::workflow_fit::STORE_FILE;
 use std::path::Path;
 use windfall_signal::repeat::align::CHANGES;

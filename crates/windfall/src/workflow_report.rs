@@ -3,6 +3,7 @@
 use crate::any_outcome::AnyOutcome;
 use crate::campaign::FilePlan;
 use crate::campaign_kind::{CampaignKind, campaign_kind};
+use crate::csv_text::csv_text;
 use crate::error::Error;
 use crate::figure_files::{FigureFolder, NamedFigure, write_figures};
 use crate::figure_theme::FigureTheme;
@@ -23,7 +24,6 @@ use crate::workflow_drop::reported_drops;
 use crate::workflow_fit::{FittedCampaign, fitted_campaign};
 use crate::workflow_repeats::reported_repeats;
 use crate::write_any::csv_of_any;
-use crate::write_csv::csv_text;
 use crate::write_file::write_whole;
 use crate::write_findings::findings_once;
 use crate::write_measured::findings_of_measured;

@@ -3,8 +3,8 @@
 use crate::engine_kind::Engine;
 use crate::error::Error;
 use crate::figure_files::{FigureFolder, write_figure};
+use crate::found::FindingOutcome;
 use crate::on_threads::on_threads;
-use crate::outcome::FindingOutcome;
 use crate::progress::Progress;
 use crate::read_scene::{ScenePlan, read_scene};
 use crate::scene_bruise::{Blows, finding_of_blows};

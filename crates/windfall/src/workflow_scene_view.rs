@@ -91,9 +91,9 @@ pub fn draw_scene(path: &Path, request: &PictureRequest) -> Result<PictureOutcom
     let mut frames = open_frames(path)?;
     let Some(last) = frames.frames.len().checked_sub(1) else {
         let path = frames.path().to_path_buf();
-        return Err(Error::SceneFile(Box::new(
+        return Err(Error::from(
             crate::error_scene::SceneFileError::FramesAbsent { path },
-        )));
+        ));
     };
     if let Some(time) = request.time {
         let end = frames.frames[last].time;

@@ -1,9 +1,9 @@
 //! `windfall simulate`: one event from a force law.
 
 use crate::error::Error;
+use crate::found::FindingOutcome;
 use crate::law_card::CardRange;
 use crate::law_use::{LawUse, findings_of_use};
-use crate::outcome::FindingOutcome;
 use serde::Serialize;
 use windfall_contact::expression::LawExpression;
 use windfall_contact::law::EndRule;
@@ -145,7 +145,7 @@ fn simulated(
         law: LawExpression::from(*law).to_string(),
         effective_mass: rig.effective_mass(),
         impact_velocity: velocity,
-        end: end_name(end),
+        end: crate::law_use::end_name(end),
         peak_force: summary.peak_force,
         time_of_peak_force: summary.time_of_peak_force,
         max_displacement: summary.max_displacement,
@@ -158,14 +158,5 @@ fn simulated(
         absorbed_energy: summary.absorbed_energy,
         impulse: summary.impulse,
         findings: Vec::new(),
-    }
-}
-
-/// Name of an end rule in files and results.
-#[must_use]
-pub fn end_name(end: EndRule) -> &'static str {
-    match end {
-        EndRule::ForceZero => "force-zero",
-        EndRule::GapZero => "gap-zero",
     }
 }

@@ -1,11 +1,11 @@
 //! `windfall simulate drop`: a fruit falls on a plate and bounces.
 
 use crate::error::Error;
+use crate::found::FindingOutcome;
+use crate::law_use::end_name;
 use crate::law_use::{LawUse, findings_of_use};
 use crate::option_value::{positive, unusable};
-use crate::outcome::FindingOutcome;
 use crate::request_drop::{DropPlan, one_height};
-use crate::workflow_simulate::end_name;
 use serde::Serialize;
 use windfall_contact::expression::LawExpression;
 use windfall_contact::laws::kind::Law;

@@ -2,9 +2,9 @@
 //! mass.
 
 use crate::error::Error;
+use crate::law_use::end_name;
 use crate::option_value::unusable;
 use crate::request_drop::{DropPlan, one_height};
-use crate::workflow_simulate::end_name;
 use crate::workflow_simulate_drop::{
     PlateOutcome, SimulatedBounce, bounce, failed, motion_times, plate_outcome,
 };

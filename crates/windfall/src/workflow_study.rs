@@ -2,9 +2,9 @@
 
 use crate::error::Error;
 use crate::figure_files::file_name;
+use crate::found::FindingOutcome;
 use crate::on_threads::on_threads;
 use crate::option_value::unusable;
-use crate::outcome::FindingOutcome;
 use crate::progress::Progress;
 use crate::provenance::{VERSION, digest_file, time_now};
 use crate::read_scene::scene_of;

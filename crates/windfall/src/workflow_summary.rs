@@ -1,9 +1,9 @@
 //! `windfall summary`: what the values of a table look like, group by group.
 
 use crate::error::Error;
+use crate::found::FindingOutcome;
 use crate::group_outcome::{GroupOutcome, group_outcomes, missing_findings, statistics_error};
 use crate::option_value::unusable;
-use crate::outcome::FindingOutcome;
 use crate::read_data::{Data, read_data};
 use serde::Serialize;
 use std::path::PathBuf;

@@ -10,9 +10,9 @@ use crate::figure_surface_lines::{
     figure_of_desirability, figure_of_perturbation, figures_of_models,
 };
 use crate::figure_surface_view::view_paintings;
+use crate::found::FindingOutcome;
 use crate::model_outcome::{SumOfSquares, lack_of, roman, rows_of, whole_of};
 use crate::option_value::unusable;
-use crate::outcome::FindingOutcome;
 use crate::read_data::{Data, read_data};
 use crate::regress_findings::{aliased_findings, fit_findings, left_out_finding};
 use crate::surface_factors::{coded_factors, coding_findings, coding_text};

@@ -1,8 +1,8 @@
 //! Results of taps as CSV: columns for the specimens.csv of another campaign.
 
+use crate::csv_text::csv_text;
 use crate::error::Error;
 use crate::measured::{MeasuredItem, MeasuredOutcome};
-use crate::write_csv::csv_text;
 use windfall_signal::tap::acoustic_stiffness::MEGAHERTZ_GRAM;
 
 /// One row per fruit.

@@ -2,12 +2,12 @@
 
 use crate::calibrate_outcome::{CalibrateOutcome, FeaturesOutcome, TargetOutcome};
 use crate::calibrate_tables::{closing_table, design_tables, line_table, next_table};
+use crate::csv_text::csv_text;
 use crate::error::Error;
 use crate::text_number::{plain, value_and_sd};
 use crate::write_calibrate_tables::text_of_table;
 use crate::write_calibrate_waveform::{shown_value, text_of_waveform};
-use crate::write_csv::csv_text;
-use crate::write_regress::findings_list;
+use crate::write_table::findings_list;
 use crate::write_table::{page_tables, paragraph};
 use std::fmt::Write;
 

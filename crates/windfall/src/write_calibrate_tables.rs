@@ -4,10 +4,10 @@ use crate::calibrate_outcome::CalibrateOutcome;
 use crate::calibrate_tables::{
     CalibrateTable, Cell, closing_table, design_tables, line_table, next_table,
 };
+use crate::csv_text::csv_text;
 use crate::error::Error;
 use crate::text_number::plain;
 use crate::text_statistic::probability;
-use crate::write_csv::csv_text;
 use crate::write_table::{page_tables, paragraph};
 use std::path::Path;
 

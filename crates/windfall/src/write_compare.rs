@@ -1,14 +1,14 @@
 //! Group summaries and comparisons as text and CSV.
 
 use crate::compare_outcome::{CompareOutcome, RatioTest, StatisticTest};
+use crate::csv_text::csv_text;
 use crate::error::Error;
 use crate::group_outcome::GroupOutcome;
 use crate::text_number::plain;
 use crate::text_statistic::{freedom, number, probability};
 use crate::workflow_agreement::AgreementOutcome;
 use crate::workflow_summary::SummaryOutcome;
-use crate::write_csv::csv_text;
-use crate::write_regress::findings_list;
+use crate::write_table::findings_list;
 use crate::write_table::page_tables;
 
 fn strings(words: &[&str]) -> Vec<String> {

@@ -1,8 +1,8 @@
 //! Results of `fit` as CSV: one row per impact and law.
 
+use crate::csv_text::csv_text;
 use crate::error::Error;
 use crate::outcome::{CampaignOutcome, ImpactOutcome};
-use std::path::Path;
 
 /// Columns of derived quantities: name, column.
 const DERIVED: [(&str, &str); 12] = [
@@ -43,30 +43,6 @@ pub fn csv_of_campaign(outcome: &CampaignOutcome) -> Result<String, Error> {
         .iter()
         .map(|impact| row_of(impact, &names, outcome));
     csv_text(&header, rows)
-}
-
-/// CSV text from a header and rows.
-///
-/// # Errors
-/// None in practice: the text is written to memory.
-pub fn csv_text(
-    header: &[String],
-    rows: impl IntoIterator<Item = Vec<String>>,
-) -> Result<String, Error> {
-    let mut writer = csv::Writer::from_writer(Vec::new());
-    let failed = |error: csv::Error| Error::FileAccess {
-        path: Path::new("the table in memory").to_path_buf(),
-        action: "write",
-        source: std::io::Error::other(error.to_string()),
-    };
-    writer.write_record(header).map_err(failed)?;
-    for row in rows {
-        writer.write_record(row).map_err(failed)?;
-    }
-    let bytes = writer
-        .into_inner()
-        .map_err(|error| failed(error.into_error().into()))?;
-    Ok(String::from_utf8_lossy(&bytes).into_owned())
 }
 
 fn row_of(impact: &ImpactOutcome, names: &[&str], outcome: &CampaignOutcome) -> Vec<String> {

@@ -1,11 +1,11 @@
 //! Simulated drops and their motions as text, CSV and JSON.
 
+use crate::csv_text::csv_text;
 use crate::error::Error;
 use crate::named::Named;
 use crate::workflow_simulate_drop::{
     PlateOutcome, SimulatedBounce, SimulatedDrop, SimulatedDropMotion,
 };
-use crate::write_csv::csv_text;
 use crate::write_simulation::{findings_text, six_digits};
 use crate::write_table::table_text;
 

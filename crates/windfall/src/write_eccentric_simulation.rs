@@ -1,11 +1,11 @@
 //! Simulated drops of planar bodies and their motions as text, CSV and JSON.
 
+use crate::csv_text::csv_text;
 use crate::error::Error;
 use crate::named::Named;
 use crate::workflow_simulate_eccentric::{
     BodyOutcome, SimulatedEccentricBounce, SimulatedEccentricDrop,
 };
-use crate::write_csv::csv_text;
 use crate::write_drop_simulation::{
     Row, column, given, impact_csv, impact_table, plate_text, rows,
 };

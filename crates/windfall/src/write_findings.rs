@@ -1,6 +1,7 @@
 //! Findings and failures as text: each kind once, with how many share it.
 
-use crate::outcome::{CampaignOutcome, FindingOutcome};
+use crate::found::FindingOutcome;
+use crate::outcome::CampaignOutcome;
 use crate::write_table::paragraph;
 
 /// Indentation of the second line of a finding; characters.

@@ -1,8 +1,9 @@
 //! Tables of groups: parameters, signals and energies, laws compared.
 
+use crate::found::SpreadOutcome;
+use crate::found::spread;
 use crate::named::Named;
-use crate::outcome::{CampaignOutcome, GroupOutcome, ImpactOutcome, SpreadOutcome};
-use crate::summary::spread;
+use crate::outcome::{CampaignOutcome, GroupOutcome, ImpactOutcome};
 use crate::text_number::{plain, spread_percent, spread_text};
 use crate::write_table::{Cells, page_tables, paragraph};
 

@@ -1,9 +1,9 @@
 //! What `inspect` found, as text and CSV.
 
+use crate::csv_text::csv_text;
 use crate::error::Error;
 use crate::text_number::plain;
 use crate::workflow_inspect::{ColumnInspection, Inspection};
-use crate::write_csv::csv_text;
 use crate::write_table::table_text;
 use crate::write_terminal_plot::terminal_plot;
 use std::fmt::Write;

@@ -1,9 +1,9 @@
 //! A law card as text for people.
 
+use crate::csv_text::csv_text;
 use crate::error::Error;
 use crate::law_card::{CardCovariate, CardPopulation, LawCard};
 use crate::text_statistic::number;
-use crate::write_csv::csv_text;
 use crate::write_table::table_text;
 use std::fmt::Write;
 

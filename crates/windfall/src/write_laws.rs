@@ -1,9 +1,9 @@
 //! The comparison of laws as text and CSV.
 
+use crate::csv_text::csv_text;
 use crate::error::Error;
 use crate::laws_outcome::LawsOutcome;
 use crate::text_number::plain;
-use crate::write_csv::csv_text;
 use crate::write_table::{page_tables, paragraph};
 use std::fmt::Write;
 

@@ -1,9 +1,9 @@
 //! Published values and models as text and CSV.
 
+use crate::csv_text::csv_text;
 use crate::error::Error;
 use crate::library::LibraryEntry;
 use crate::workflow_library::{Evaluated, LibraryOutcome};
-use crate::write_csv::csv_text;
 use crate::write_table::{page_tables, paragraph};
 use std::fmt::Write;
 

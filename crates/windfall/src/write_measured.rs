@@ -1,13 +1,13 @@
 //! Results of campaigns that fit no impacts, as text and as CSV.
 
 use crate::campaign_kind::CampaignKind;
+use crate::csv_text::csv_text;
 use crate::error::Error;
+use crate::found::{FailureOutcome, FindingOutcome};
 use crate::measured::{
     MeasuredItem, MeasuredOutcome, MeasuredValue, ShownValue, laws_of, spread_of, value_of,
 };
-use crate::outcome::{FailureOutcome, FindingOutcome};
 use crate::text_number::{spread_percent, value_and_sd};
-use crate::write_csv::csv_text;
 use crate::write_table::{Cells, page_tables, paragraph};
 use std::fmt::Write;
 

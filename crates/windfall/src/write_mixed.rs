@@ -1,11 +1,12 @@
 //! A mixed model as text and CSV.
 
+use crate::csv_text::csv_text;
 use crate::error::Error;
 use crate::text_number::plain;
 use crate::text_statistic::{freedom, number, probability};
 use crate::workflow_mixed::MixedOutcome;
-use crate::write_csv::csv_text;
-use crate::write_regress::{csv_of_terms, findings_list};
+use crate::write_regress::csv_of_terms;
+use crate::write_table::findings_list;
 use crate::write_table::page_tables;
 
 fn strings(words: &[&str]) -> Vec<String> {

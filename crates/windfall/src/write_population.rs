@@ -1,5 +1,6 @@
 //! A population as text and CSV.
 
+use crate::csv_text::csv_text;
 use crate::error::Error;
 use crate::population_outcome::{
     PopulationEffect, PopulationOutcome, PopulationParameter, PopulationPosteriorOutcome,
@@ -7,8 +8,7 @@ use crate::population_outcome::{
 };
 use crate::text_number::plain;
 use crate::text_statistic::{number, probability};
-use crate::write_csv::csv_text;
-use crate::write_regress::findings_list;
+use crate::write_table::findings_list;
 use crate::write_table::{page_tables, paragraph};
 
 fn strings(words: &[&str]) -> Vec<String> {

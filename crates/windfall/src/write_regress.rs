@@ -1,12 +1,12 @@
 //! A linear model as text and CSV.
 
+use crate::csv_text::csv_text;
 use crate::error::Error;
 use crate::model_outcome::{AnovaOutcome, TermOutcome};
-use crate::outcome::FindingOutcome;
 use crate::regress_residuals::residuals_text;
 use crate::text_statistic::{freedom, number, probability};
 use crate::workflow_regress::RegressOutcome;
-use crate::write_csv::csv_text;
+use crate::write_table::findings_list;
 use crate::write_table::{page_tables, paragraph};
 
 fn strings(words: &[&str]) -> Vec<String> {
@@ -56,19 +56,6 @@ pub fn anova_text(rows: &[AnovaOutcome], rest: &[(&str, f64, f64)]) -> String {
         ]
     });
     page_tables(&header, &own.chain(rest).collect::<Vec<_>>(), &[0])
-}
-
-/// Findings as a list.
-#[must_use]
-pub fn findings_list(findings: &[FindingOutcome]) -> String {
-    if findings.is_empty() {
-        return String::new();
-    }
-    let lines = findings.iter().map(|finding| {
-        let line = format!("  {}: {}", finding.code, finding.message);
-        paragraph(&line, 4) + "\n"
-    });
-    format!("\nFindings:\n{}", lines.collect::<String>())
 }
 
 /// A model as text.

@@ -1,5 +1,6 @@
 //! Contacts and fruit of a scene as tables.
 
+use crate::csv_text::csv_text;
 use crate::engine_kind::Engine;
 use crate::error::Error;
 use crate::error_scene_run::SceneRunError;
@@ -9,7 +10,6 @@ use crate::scene_checkpoint::damaged;
 use crate::scene_key::FRUIT;
 use crate::scene_outcome::{SceneOutcome, Tally};
 use crate::text_statistic::number;
-use crate::write_csv::csv_text;
 use crate::write_table::page_tables;
 use std::fs::{File, TryLockError};
 use std::io::{BufWriter, Seek, SeekFrom, Write};
@@ -102,7 +102,7 @@ impl EventFile {
         // Two at once would mix their rows; a system without locks does without.
         if let Err(TryLockError::WouldBlock) = file.try_lock() {
             let path = path.to_path_buf();
-            return Err(Error::scene_run(SceneRunError::Busy { path }));
+            return Err(Error::from(SceneRunError::Busy { path }));
         }
         file.set_len(length)
             .and_then(|()| file.seek(SeekFrom::Start(length)))

@@ -1,8 +1,8 @@
 //! Files of a simulated campaign: recordings as CSV, campaign.toml.
 
+use crate::law_use::end_name;
 use crate::read_channels::{KINDS, Kind};
 use crate::read_rig::FROM_IMPULSE;
-use crate::workflow_simulate::end_name;
 use crate::write_user_laws::law_table;
 use std::fmt::Write;
 use windfall_contact::law::EndRule;

@@ -1,10 +1,10 @@
 //! Simulated impacts and motions as text, CSV and JSON.
 
+use crate::csv_text::csv_text;
 use crate::error::Error;
+use crate::found::FindingOutcome;
 use crate::named::Named;
-use crate::outcome::FindingOutcome;
 use crate::workflow_simulate::{SimulatedImpact, SimulatedMotion};
-use crate::write_csv::csv_text;
 use crate::write_table::table_text;
 
 /// Rows of a summary: name, value, unit.

@@ -1,12 +1,12 @@
 //! A study for people: words, tables, a page.
 
+use crate::csv_text::csv_text;
 use crate::error::Error;
 use crate::figure_files::{FigureFolder, write_figures};
 use crate::figure_study::figure_of_study;
 use crate::report_page::{CaptionedTable, Report, Section, html_of_report};
 use crate::study_outcome::{StudyOutcome, VariantOutcome};
 use crate::text_statistic::number;
-use crate::write_csv::csv_text;
 use crate::write_file::write_whole;
 use crate::write_table::{Cells, page_tables};
 use std::path::{Path, PathBuf};

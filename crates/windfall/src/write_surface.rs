@@ -1,12 +1,13 @@
 //! Response surfaces as text and CSV.
 
+use crate::csv_text::csv_text;
 use crate::error::Error;
 use crate::model_outcome::AnovaOutcome;
 use crate::surface_outcome::{SettingOutcome, SurfaceModel, SurfaceOutcome};
 use crate::text_number::plain;
 use crate::text_statistic::{freedom, number, probability};
-use crate::write_csv::csv_text;
-use crate::write_regress::{anova_text, findings_list};
+use crate::write_regress::anova_text;
+use crate::write_table::findings_list;
 use crate::write_table::page_tables;
 
 fn strings(words: &[&str]) -> Vec<String> {

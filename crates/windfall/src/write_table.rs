@@ -1,5 +1,6 @@
 //! Aligned tables for a terminal, none wider than a page.
 
+use crate::found::FindingOutcome;
 use comfy_table::{CellAlignment, ContentArrangement, LineStyle, Table, TableStyle};
 
 /// Widest line of a table or a paragraph; characters.
@@ -88,6 +89,19 @@ pub fn paragraph(text: &str, indent: usize) -> String {
         }
     }
     lines.join("\n")
+}
+
+/// Findings as a list.
+#[must_use]
+pub fn findings_list(findings: &[FindingOutcome]) -> String {
+    if findings.is_empty() {
+        return String::new();
+    }
+    let lines = findings.iter().map(|finding| {
+        let line = format!("  {}: {}", finding.code, finding.message);
+        paragraph(&line, 4) + "\n"
+    });
+    format!("\nFindings:\n{}", lines.collect::<String>())
 }
 
 #[cfg(test)]

@@ -1,0 +1,28 @@
+//! Tables as CSV text.
+
+use crate::error::Error;
+use std::path::Path;
+
+/// CSV text from a header and rows.
+///
+/// # Errors
+/// None in practice: the text is written to memory.
+pub fn csv_text(
+    header: &[String],
+    rows: impl IntoIterator<Item = Vec<String>>,
+) -> Result<String, Error> {
+    let mut writer = csv::Writer::from_writer(Vec::new());
+    let failed = |error: csv::Error| Error::FileAccess {
+        path: Path::new("the table in memory").to_path_buf(),
+        action: "write",
+        source: std::io::Error::other(error.to_string()),
+    };
+    writer.write_record(header).map_err(failed)?;
+    for row in rows {
+        writer.write_record(row).map_err(failed)?;
+    }
+    let bytes = writer
+        .into_inner()
+        .map_err(|error| failed(error.into_error().into()))?;
+    Ok(String::from_utf8_lossy(&bytes).into_owned())
+}

@@ -1,0 +1,101 @@
+//! What every command says in its results: estimates, spreads, findings, failures.
+//!
+//! The names of the fields are the keys of the JSON that scripts rely on.
+//! All numbers are SI.
+
+use serde::{Deserialize, Serialize};
+
+/// One estimated or held value.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct EstimateOutcome {
+    /// Value.
+    pub value: f64,
+    /// Standard deviation; `None` for a value that was held, or when the data
+    /// cannot tell.
+    pub sd: Option<f64>,
+    /// Lower end of the 95 % interval.
+    pub low: Option<f64>,
+    /// Upper end of the 95 % interval.
+    pub high: Option<f64>,
+    /// SI unit.
+    pub unit: String,
+    /// Whether the value was held, not estimated.
+    pub held: bool,
+}
+
+/// Something that a reader of the result must know.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct FindingOutcome {
+    /// Short name for scripts.
+    pub code: String,
+    /// A sentence.
+    pub message: String,
+}
+
+/// An impact that could not be fitted.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct FailureOutcome {
+    /// Id of the impact.
+    pub id: String,
+    /// Id of the specimen.
+    pub specimen: String,
+    /// The recording, as impacts.csv names it.
+    pub file: String,
+    /// The law, where the failure concerns one law only.
+    pub law: Option<String>,
+    /// What is wrong and what to do.
+    pub message: String,
+}
+
+/// Spread of one quantity over impacts.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct SpreadOutcome {
+    /// Mean.
+    pub mean: f64,
+    /// Standard deviation between impacts (n − 1); `None` for one impact.
+    pub sd: Option<f64>,
+    /// Number of impacts.
+    pub n: usize,
+    /// Coefficient of variation, sd / |mean|.
+    pub cv: Option<f64>,
+}
+
+/// Spread of some values; `None` when there is none.
+///
+/// ```text
+/// mean = Σx / n,   sd² = Σ(x − mean)² / (n − 1),   cv = sd / |mean|
+/// ```
+///
+/// The sums run in the order of the values.
+#[must_use]
+pub fn spread(values: &[f64]) -> Option<SpreadOutcome> {
+    if values.is_empty() {
+        return None;
+    }
+    let n = values.len();
+    let mean = values.iter().sum::<f64>() / n as f64;
+    let squares: f64 = values.iter().map(|x| (x - mean) * (x - mean)).sum();
+    let sd = (n > 1).then(|| (squares / (n - 1) as f64).sqrt());
+    let cv = sd.filter(|_| mean != 0.0).map(|sd| sd / mean.abs());
+    Some(SpreadOutcome { mean, sd, n, cv })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// NIST Statistical Reference Datasets, univariate, `NumAcc1`: certified mean
+    /// 10000002, standard deviation 1.
+    #[test]
+    fn reference_nist_numacc1() {
+        let found = spread(&[10000001.0, 10000003.0, 10000002.0]).unwrap();
+        assert_eq!((found.mean, found.sd, found.n), (10000002.0, Some(1.0), 3));
+    }
+
+    #[test]
+    fn closed_form_one_impact_has_no_spread() {
+        let found = spread(&[5.0]).unwrap();
+        assert_eq!((found.sd, found.cv), (None, None));
+        assert!(spread(&[]).is_none());
+    }
+}
