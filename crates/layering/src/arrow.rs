@@ -22,10 +22,29 @@ pub const ARROWS: &[(&str, &[&str])] = &[
     ("windfall-scene", &["windfall-contact", "windfall-numerics"]),
     ("windfall-formats", &[]),
     (
-        "windfall",
+        "windfall-files",
         &[
+            "windfall-statistics",
             "windfall-formats",
-            "windfall-scene",
+            "windfall-numerics",
+        ],
+    ),
+    ("windfall-draw", &["windfall-files"]),
+    (
+        "windfall-cards",
+        &["windfall-files", "windfall-contact", "windfall-numerics"],
+    ),
+    (
+        "windfall-tables",
+        &["windfall-draw", "windfall-files", "windfall-statistics"],
+    ),
+    (
+        "windfall-campaign",
+        &[
+            "windfall-cards",
+            "windfall-draw",
+            "windfall-files",
+            "windfall-formats",
             "windfall-identify",
             "windfall-contact",
             "windfall-signal",
@@ -33,8 +52,155 @@ pub const ARROWS: &[(&str, &[&str])] = &[
             "windfall-numerics",
         ],
     ),
-    ("windfall-web", &["windfall"]),
-    ("windfall-cli", &["windfall", "windfall-web"]),
+    (
+        "windfall-inspect",
+        &[
+            "windfall-campaign",
+            "windfall-draw",
+            "windfall-files",
+            "windfall-formats",
+        ],
+    ),
+    (
+        "windfall-simulate",
+        &[
+            "windfall-campaign",
+            "windfall-cards",
+            "windfall-draw",
+            "windfall-files",
+            "windfall-identify",
+            "windfall-contact",
+            "windfall-signal",
+        ],
+    ),
+    (
+        "windfall-population",
+        &[
+            "windfall-campaign",
+            "windfall-cards",
+            "windfall-draw",
+            "windfall-files",
+            "windfall-tables",
+            "windfall-identify",
+            "windfall-contact",
+            "windfall-signal",
+        ],
+    ),
+    (
+        "windfall-drop",
+        &[
+            "windfall-campaign",
+            "windfall-tables",
+            "windfall-cards",
+            "windfall-draw",
+            "windfall-files",
+            "windfall-identify",
+            "windfall-contact",
+            "windfall-signal",
+            "windfall-statistics",
+            "windfall-numerics",
+        ],
+    ),
+    (
+        "windfall-scene-run",
+        &[
+            "windfall-campaign",
+            "windfall-cards",
+            "windfall-draw",
+            "windfall-files",
+            "windfall-scene",
+            "windfall-identify",
+            "windfall-contact",
+            "windfall-statistics",
+            "windfall-numerics",
+        ],
+    ),
+    (
+        "windfall-engines",
+        &[
+            "windfall-scene-run",
+            "windfall-files",
+            "windfall-scene",
+            "windfall-contact",
+        ],
+    ),
+    (
+        "windfall-report",
+        &[
+            "windfall-drop",
+            "windfall-campaign",
+            "windfall-cards",
+            "windfall-draw",
+            "windfall-files",
+            "windfall-identify",
+            "windfall-contact",
+            "windfall-signal",
+        ],
+    ),
+    (
+        "windfall-workspace",
+        &[
+            "windfall-report",
+            "windfall-drop",
+            "windfall-scene-run",
+            "windfall-campaign",
+            "windfall-draw",
+            "windfall-files",
+            "windfall-formats",
+            "windfall-identify",
+            "windfall-signal",
+        ],
+    ),
+    (
+        "windfall",
+        &[
+            "windfall-report",
+            "windfall-drop",
+            "windfall-population",
+            "windfall-simulate",
+            "windfall-campaign",
+            "windfall-cards",
+            "windfall-draw",
+            "windfall-files",
+            "windfall-formats",
+            "windfall-identify",
+            "windfall-contact",
+            "windfall-signal",
+        ],
+    ),
+    (
+        "windfall-web",
+        &[
+            "windfall-workspace",
+            "windfall-report",
+            "windfall-drop",
+            "windfall-population",
+            "windfall-tables",
+            "windfall-inspect",
+            "windfall-scene-run",
+            "windfall-campaign",
+            "windfall-cards",
+            "windfall-files",
+        ],
+    ),
+    (
+        "windfall-cli",
+        &[
+            "windfall-web",
+            "windfall-engines",
+            "windfall-scene-run",
+            "windfall-report",
+            "windfall-drop",
+            "windfall-population",
+            "windfall-simulate",
+            "windfall-inspect",
+            "windfall-campaign",
+            "windfall-tables",
+            "windfall-cards",
+            "windfall-draw",
+            "windfall-files",
+        ],
+    ),
     ("windfall-python", &["windfall"]),
     ("windfall-layering", &[]),
 ];
@@ -198,14 +364,14 @@ mod tests {
         assert_eq!(arrow("windfall-identify", "windfall", false).len(), 1);
         assert_eq!(arrow("windfall-cli", "windfall-identify", false).len(), 1);
         assert_eq!(arrow("windfall-identify", "windfall-contact", false), []);
-        assert_eq!(arrow("windfall-cli", "windfall", false), []);
+        assert_eq!(arrow("windfall-cli", "windfall-files", false), []);
     }
 
     #[test]
     fn rejects_formats_in_inner_crates() {
         assert_eq!(arrow("windfall-signal", "csv", false).len(), 1);
         assert_eq!(arrow("windfall-signal", "serde_json", true), []);
-        assert_eq!(arrow("windfall", "csv", false), []);
+        assert_eq!(arrow("windfall-files", "csv", false), []);
     }
 
     #[test]

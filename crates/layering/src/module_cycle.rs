@@ -29,6 +29,31 @@ pub fn check_module_cycles(package: &str, files: &[&SourceFile]) -> Vec<Violatio
         .collect()
 }
 
+/// Cycles among the folders of one crate: a folder, or a file that lies in none, counts
+/// as one, and what the crate's root declares as nothing.
+#[must_use]
+pub fn check_folder_cycles(package: &str, files: &[&SourceFile]) -> Vec<Violation> {
+    let shipped: Vec<&SourceFile> = files
+        .iter()
+        .copied()
+        .filter(|file| file.role == Role::Shipped && !file.module.is_empty())
+        .collect();
+    let folder = |module: &Module| module.iter().take(1).cloned().collect::<Module>();
+    let mut graph: BTreeMap<Module, BTreeSet<Module>> = BTreeMap::new();
+    for (module, imported) in import_graph(&shipped) {
+        let from = folder(&module);
+        let to = imported.iter().map(folder).filter(|to| *to != from);
+        graph.entry(from.clone()).or_default().extend(to);
+    }
+    cycles(&graph)
+        .into_iter()
+        .map(|cycle| Violation::ModuleCycle {
+            package: package.to_owned(),
+            modules: cycle.iter().map(name_of).collect(),
+        })
+        .collect()
+}
+
 fn name_of(module: &&Module) -> String {
     if module.is_empty() {
         "the crate root".to_owned()
@@ -201,6 +226,27 @@ mod tests {
                 other => panic!("{other}"),
             })
             .collect()
+    }
+
+    #[test]
+    fn rejects_folders_that_import_each_other() {
+        let files: Vec<SourceFile> = [
+            ("src/lib.rs", "pub mod fit;\npub mod rig;"),
+            ("src/fit/mod.rs", "pub mod plan;\npub mod run;"),
+            ("src/fit/plan.rs", "use crate::rig::Rig;"),
+            ("src/fit/run.rs", "pub fn run() {}"),
+            ("src/rig.rs", "use crate::fit::run::run;"),
+        ]
+        .iter()
+        .map(|(path, text)| read_source(Path::new(path), Path::new(path), "a", text).unwrap())
+        .collect();
+        let all: Vec<&SourceFile> = files.iter().collect();
+        assert_eq!(check_module_cycles("a", &all), []);
+        let found = check_folder_cycles("a", &all);
+        assert!(
+            matches!(&found[..], [Violation::ModuleCycle { modules, .. }] if modules == &["fit", "rig"]),
+            "{found:?}"
+        );
     }
 
     #[test]

@@ -4,11 +4,18 @@ use crate::error::Error;
 use crate::source::{Role, SourceFile, tokens_of};
 use crate::violation::{Place, Violation};
 use proc_macro2::{TokenStream, TokenTree};
+use std::collections::BTreeMap;
 use std::path::Path;
 
 /// Most lines of a source file outside tests. Files are split near 500; the
 /// rest is room for the change that shows it is time.
 pub const LONGEST_FILE: usize = 600;
+
+/// Most source files in one folder.
+pub const MOST_FILES: usize = 40;
+
+/// Most lines of a crate outside tests.
+pub const LARGEST_CRATE: usize = 15_000;
 
 /// Beginnings of paths that exist on one machine. In two parts, so that this
 /// file does not contain them.
@@ -41,6 +48,35 @@ pub fn check_length(file: &SourceFile) -> Option<Violation> {
         lines: file.lines,
         limit: LONGEST_FILE,
     })
+}
+
+/// Folders with too many source files, and crates with too many lines.
+#[must_use]
+pub fn check_crowding(sources: &[SourceFile]) -> Vec<Violation> {
+    let mut folders: BTreeMap<&Path, usize> = BTreeMap::new();
+    let mut crates: BTreeMap<&str, usize> = BTreeMap::new();
+    for file in sources.iter().filter(|file| file.role == Role::Shipped) {
+        *folders
+            .entry(file.path.parent().unwrap_or(&file.path))
+            .or_default() += 1;
+        *crates.entry(&file.package).or_default() += file.lines;
+    }
+    let crowded = folders.into_iter().filter(|(_, files)| *files > MOST_FILES);
+    let large = crates
+        .into_iter()
+        .filter(|(_, lines)| *lines > LARGEST_CRATE);
+    crowded
+        .map(|(folder, files)| Violation::CrowdedFolder {
+            path: folder.to_path_buf(),
+            files,
+            limit: MOST_FILES,
+        })
+        .chain(large.map(|(package, lines)| Violation::LargeCrate {
+            package: package.to_owned(),
+            lines,
+            limit: LARGEST_CRATE,
+        }))
+        .collect()
 }
 
 /// Tests that are switched off and code that is not written yet, in Rust text.
@@ -196,6 +232,29 @@ mod tests {
         let tests = format!("fn f() {{}}\n#[cfg(test)]\nmod tests {{\n{long}}}\n");
         assert_eq!(read(&tests).lines, 1);
         assert!(check_length(&read(&tests)).is_none());
+    }
+
+    #[test]
+    fn rejects_crowded_folders_and_large_crates() {
+        let read = |path: String, text: &str| {
+            read_source(Path::new(&path), Path::new(&path), "a", text).unwrap()
+        };
+        let files = |count: usize, text: &str| -> Vec<SourceFile> {
+            (0..count)
+                .map(|i| read(format!("src/f{i}.rs"), text))
+                .collect()
+        };
+        assert_eq!(check_crowding(&files(MOST_FILES, "")), []);
+        assert!(matches!(
+            check_crowding(&files(MOST_FILES + 1, ""))[..],
+            [Violation::CrowdedFolder { .. }]
+        ));
+        let half = "fn f() {}\n".repeat(LARGEST_CRATE / 2);
+        assert_eq!(check_crowding(&files(2, &half)), []);
+        assert!(matches!(
+            check_crowding(&files(3, &half))[..],
+            [Violation::LargeCrate { .. }]
+        ));
     }
 
     #[test]

@@ -76,6 +76,24 @@ pub enum Violation {
         /// Most lines allowed.
         limit: usize,
     },
+    /// A folder holds too many source files.
+    CrowdedFolder {
+        /// Folder.
+        path: PathBuf,
+        /// Source files in it.
+        files: usize,
+        /// Most files allowed.
+        limit: usize,
+    },
+    /// A crate is too large.
+    LargeCrate {
+        /// Package name.
+        package: String,
+        /// Lines outside tests.
+        lines: usize,
+        /// Most lines allowed.
+        limit: usize,
+    },
     /// Unfinished or switched-off code.
     Unfinished {
         /// Where.
@@ -123,6 +141,19 @@ impl fmt::Display for Violation {
                 f,
                 "{}: {lines} lines outside tests, at most {limit}: split it",
                 path.display()
+            ),
+            Self::CrowdedFolder { path, files, limit } => write!(
+                f,
+                "{}: {files} source files, at most {limit}: make folders by subject",
+                path.display()
+            ),
+            Self::LargeCrate {
+                package,
+                lines,
+                limit,
+            } => write!(
+                f,
+                "{package}: {lines} lines outside tests, at most {limit}: split it"
             ),
             Self::Unfinished { place, found } => write!(
                 f,

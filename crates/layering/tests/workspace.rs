@@ -6,9 +6,9 @@ use std::path::Path;
 use windfall_layering::arrow::{FRONT_ENDS, INNER, check_dependencies, check_imports};
 use windfall_layering::error::Error;
 use windfall_layering::forbidden::{check_front_end, check_inner};
-use windfall_layering::module_cycle::check_module_cycles;
+use windfall_layering::module_cycle::{check_folder_cycles, check_module_cycles};
 use windfall_layering::source::SourceFile;
-use windfall_layering::tidiness::{check_length, check_local, check_unfinished};
+use windfall_layering::tidiness::{check_crowding, check_length, check_local, check_unfinished};
 use windfall_layering::violation::Violation;
 use windfall_layering::workspace::{Workspace, read_workspace};
 
@@ -80,7 +80,12 @@ fn rejects_modules_that_import_each_other() -> Result<(), Error> {
     let violations: Vec<Violation> = workspace
         .packages
         .iter()
-        .flat_map(|package| check_module_cycles(package, &of_package(&workspace, package)))
+        .flat_map(|package| {
+            let files = of_package(&workspace, package);
+            let mut found = check_module_cycles(package, &files);
+            found.extend(check_folder_cycles(package, &files));
+            found
+        })
         .collect();
     assert_none(&violations);
     Ok(())
@@ -106,6 +111,7 @@ fn rejects_long_files_and_unfinished_code() -> Result<(), Error> {
     let workspace = workspace()?;
     let mut violations: Vec<Violation> =
         workspace.sources.iter().filter_map(check_length).collect();
+    violations.extend(check_crowding(&workspace.sources));
     for file in &workspace.texts {
         if file
             .path

@@ -1,9 +1,9 @@
 //! Where text goes: results to standard output, messages to standard error.
 
-use crate::args_format::Format;
+use crate::args::format::Format;
 use std::io::{ErrorKind, Write};
 use std::path::Path;
-use windfall::error::Error;
+use windfall_files::error::Error;
 
 /// Writes a result. A reader that has heard enough (`| head`) is no error.
 pub fn write_result(text: &str) -> anyhow::Result<()> {

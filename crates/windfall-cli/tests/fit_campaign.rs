@@ -6,7 +6,7 @@ use assert_cmd::cargo::cargo_bin;
 use std::path::Path;
 use std::process::{Command, Output, Stdio};
 use std::time::Instant;
-use windfall::store::{count_runs, find_results, latest_run};
+use windfall_campaign::store::runs::{count_runs, find_results, latest_run};
 
 fn windfall(arguments: &[&str]) -> Output {
     Command::new(cargo_bin("windfall"))

@@ -3,8 +3,8 @@
 use crate::app::{Answer, App};
 use axum::extract::State;
 use serde::Serialize;
-use windfall::provenance::VERSION;
-use windfall::workflow_card::{LawCardText, law_cards};
+use windfall_cards::library::laws::{LawCardText, law_cards};
+use windfall_files::provenance::VERSION;
 
 /// Kinds of campaigns that `new` knows, with the words of the command line.
 pub(crate) const KINDS: [&str; 6] = [

@@ -9,9 +9,9 @@ use std::marker::PhantomData;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use tokio::sync::Semaphore;
-use windfall::error::Error;
-use windfall::live_cache::LiveCache;
-use windfall::workspace::Workspace;
+use windfall_files::error::Error;
+use windfall_workspace::live_cache::LiveCache;
+use windfall_workspace::workspace::Workspace;
 
 /// Pieces of work that are done at once; further ones wait.
 const AT_ONCE: usize = 8;
@@ -74,7 +74,7 @@ impl Shared {
 }
 
 impl App {
-    pub(crate) fn new(workspace: Workspace, upload_limit: u64) -> Self {
+    pub fn new(workspace: Workspace, upload_limit: u64) -> Self {
         Self(Arc::new(Shared {
             workspace,
             cache: LiveCache::default(),

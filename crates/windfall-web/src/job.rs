@@ -8,7 +8,7 @@ use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 use std::sync::{Arc, Mutex, PoisonError};
 use tokio::sync::watch;
 use utoipa::ToSchema;
-use windfall::error::Error;
+use windfall_files::error::Error;
 
 /// Jobs that are remembered.
 const REMEMBERED: usize = 100;

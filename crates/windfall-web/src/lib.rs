@@ -5,15 +5,7 @@
 //! sees it; the page is built from `page/` and lies ready in `assets/`.
 
 mod about;
-mod api_campaigns;
-mod api_changes;
-mod api_events;
-mod api_files;
-mod api_jobs;
-mod api_live;
-mod api_recordings;
-mod api_scenes;
-mod api_tables;
+mod api;
 mod app;
 mod asset;
 mod described;

@@ -5,7 +5,7 @@ use axum::http::{HeaderValue, StatusCode, header};
 use axum::response::{IntoResponse, Response};
 use serde::Serialize;
 use utoipa::ToSchema;
-use windfall::error::Error;
+use windfall_files::error::Error;
 
 /// What went wrong.
 #[derive(Clone, Debug, Serialize, ToSchema)]
@@ -22,7 +22,7 @@ pub(crate) struct Problem {
 
 impl Problem {
     /// A problem of a status.
-    pub(crate) fn new(status: StatusCode, code: &'static str, detail: impl Into<String>) -> Self {
+    pub fn new(status: StatusCode, code: &'static str, detail: impl Into<String>) -> Self {
         Self {
             title: status.canonical_reason().unwrap_or_default().to_owned(),
             status: status.as_u16(),
@@ -42,7 +42,7 @@ impl Problem {
     }
 
     /// An error of a workflow; `text` is how it reads here.
-    pub(crate) fn of(error: &Error, text: String) -> Self {
+    pub fn of(error: &Error, text: String) -> Self {
         let (status, code) = match error {
             Error::Room(problem) if problem.is_absence() => (StatusCode::NOT_FOUND, "absent"),
             Error::CampaignUnknown { .. }

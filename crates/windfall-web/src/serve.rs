@@ -1,13 +1,11 @@
 //! Starting and stopping the server.
 
+use crate::api::{campaigns, changes, events, files, jobs, live, recordings, scenes, tables};
 use crate::app::App;
 use crate::guard::{Guard, guarded};
 use crate::interrupt::interrupted;
 use crate::problem::Problem;
-use crate::{
-    about, api_campaigns, api_changes, api_events, api_files, api_jobs, api_live, api_recordings,
-    api_scenes, api_tables, asset, openapi,
-};
+use crate::{about, asset, openapi};
 use axum::Router;
 use axum::extract::DefaultBodyLimit;
 use axum::http::StatusCode;
@@ -17,7 +15,7 @@ use std::net::{IpAddr, Ipv4Addr, SocketAddr, TcpListener};
 use std::path::PathBuf;
 use std::sync::Arc;
 use std::time::Duration;
-use windfall::workspace::Workspace;
+use windfall_workspace::workspace::Workspace;
 
 /// Most bytes of a body that is no upload.
 const MOST_BODY: usize = 4 << 20;
@@ -47,7 +45,7 @@ pub struct ServeRequest {
 pub enum ServeError {
     /// The directory cannot be served.
     #[error(transparent)]
-    Directory(#[from] windfall::error::Error),
+    Directory(#[from] windfall_files::error::Error),
     /// The address cannot be listened at.
     #[error("cannot listen at {address}: {source}; choose another --port or --host")]
     Listen {
@@ -151,52 +149,49 @@ fn token() -> Result<String, ServeError> {
 
 fn routes(app: App, guard: Arc<Guard>) -> Router {
     let campaign = Router::new()
-        .route("/", get(api_campaigns::campaign))
-        .route("/results", get(api_campaigns::results))
-        .route("/events", get(api_events::campaign_events))
-        .route("/recordings", get(api_recordings::recordings))
-        .route("/recording", get(api_recordings::recording))
-        .route("/outline", get(api_recordings::outline))
+        .route("/", get(campaigns::campaign))
+        .route("/results", get(campaigns::results))
+        .route("/events", get(events::campaign_events))
+        .route("/recordings", get(recordings::recordings))
+        .route("/recording", get(recordings::recording))
+        .route("/outline", get(recordings::outline))
         .route(
             "/raw",
-            put(api_recordings::upload_recording).layer(DefaultBodyLimit::disable()),
+            put(recordings::upload_recording).layer(DefaultBodyLimit::disable()),
         )
         .route(
             "/table",
-            get(api_tables::table)
-                .put(api_recordings::upload_table)
+            get(tables::table)
+                .put(recordings::upload_table)
                 .layer(DefaultBodyLimit::disable()),
         )
-        .route("/refit", post(api_live::refit))
-        .route("/text", put(api_changes::text))
-        .route("/window", put(api_changes::window))
-        .route("/options", put(api_changes::options))
-        .route("/channels", put(api_changes::channels))
-        .route("/impacts", post(api_changes::impacts))
-        .route("/jobs", post(api_jobs::start))
-        .route("/regress", post(api_tables::regression))
-        .route("/surface", post(api_tables::surfaces))
-        .route("/card", get(api_files::card))
-        .route("/report/{*file}", get(api_files::report));
+        .route("/refit", post(live::refit))
+        .route("/text", put(changes::text))
+        .route("/window", put(changes::window))
+        .route("/options", put(changes::options))
+        .route("/channels", put(changes::channels))
+        .route("/impacts", post(changes::impacts))
+        .route("/jobs", post(jobs::start))
+        .route("/regress", post(tables::regression))
+        .route("/surface", post(tables::surfaces))
+        .route("/card", get(files::card))
+        .route("/report/{*file}", get(files::report));
     Router::new()
         .route("/api/about", get(about::about))
         .route("/api/openapi.json", get(openapi::openapi))
         .route(
             "/api/campaigns",
-            get(api_campaigns::campaigns).post(api_campaigns::create),
+            get(campaigns::campaigns).post(campaigns::create),
         )
         .nest("/api/campaigns/{id}", campaign)
-        .route("/api/scenes", get(api_scenes::scenes))
-        .route("/api/scenes/{id}", get(api_scenes::scene))
-        .route("/api/scenes/{id}/frames", get(api_scenes::frames))
-        .route("/api/scenes/{id}/hardest", get(api_scenes::hardest))
-        .route("/api/scenes/{id}/history", get(api_scenes::history))
-        .route("/api/jobs", get(api_jobs::jobs))
-        .route(
-            "/api/jobs/{job}",
-            get(api_jobs::job).delete(api_jobs::cancel),
-        )
-        .route("/api/jobs/{job}/events", get(api_events::job_events))
+        .route("/api/scenes", get(scenes::scenes))
+        .route("/api/scenes/{id}", get(scenes::scene))
+        .route("/api/scenes/{id}/frames", get(scenes::frames))
+        .route("/api/scenes/{id}/hardest", get(scenes::hardest))
+        .route("/api/scenes/{id}/history", get(scenes::history))
+        .route("/api/jobs", get(jobs::jobs))
+        .route("/api/jobs/{job}", get(jobs::job).delete(jobs::cancel))
+        .route("/api/jobs/{job}/events", get(events::job_events))
         .route("/api/{*unknown}", get(unknown))
         .method_not_allowed_fallback(not_allowed)
         .fallback(get(asset::asset))

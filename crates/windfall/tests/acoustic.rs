@@ -3,12 +3,12 @@
 #![allow(clippy::unwrap_used, clippy::print_stdout)]
 
 use std::path::Path;
-use windfall::any_outcome::AnyOutcome;
-use windfall::measured::{MeasuredItem, MeasuredOutcome};
-use windfall::request_fit::FitRequest;
-use windfall::simulate_taps::{SimulateTapsRequest, simulate_taps};
-use windfall::workflow_fit_any::fit_any;
-use windfall::write_any::{csv_of_any, text_of_any};
+use windfall_campaign::impacts::request::FitRequest;
+use windfall_campaign::measure::any_outcome::AnyOutcome;
+use windfall_campaign::measure::measured::{MeasuredItem, MeasuredOutcome};
+use windfall_report::any_text::{csv_of_any, text_of_any};
+use windfall_report::fit_any::fit_any;
+use windfall_simulate::taps::{SimulateTapsRequest, simulate_taps};
 
 fn request() -> SimulateTapsRequest {
     SimulateTapsRequest {
@@ -27,7 +27,7 @@ fn request() -> SimulateTapsRequest {
 }
 
 fn fit(directory: &Path, request: &FitRequest) -> MeasuredOutcome {
-    match fit_any(directory, request, &windfall::progress::quiet).unwrap() {
+    match fit_any(directory, request, &windfall_files::progress::quiet).unwrap() {
         AnyOutcome::Measured(outcome) => *outcome,
         AnyOutcome::Impacts(_) => panic!("no taps"),
     }
@@ -140,7 +140,7 @@ fn repeats_from_the_store_and_for_any_number_of_threads() {
     simulate_taps(&campaign, &request).unwrap();
     let threads = |n| FitRequest {
         threads: Some(n),
-        reuse: windfall::request_fit::Reuse::Nothing,
+        reuse: windfall_campaign::impacts::request::Reuse::Nothing,
         ..FitRequest::default()
     };
     let one = fit(&campaign, &threads(1));
@@ -169,7 +169,7 @@ fn pinned_columns_for_specimens_csv_and_figures() {
     let outcome = fit(
         &campaign,
         &FitRequest {
-            figures: Some(windfall::figure_files::FigureFolder::of(&figures)),
+            figures: Some(windfall_draw::files::FigureFolder::of(&figures)),
             ..FitRequest::default()
         },
     );
@@ -216,7 +216,7 @@ fn rejects_settings_that_make_no_sense() {
         match fit_any(
             &campaign,
             &FitRequest::default(),
-            &windfall::progress::quiet,
+            &windfall_files::progress::quiet,
         ) {
             Ok(outcome) => outcome.failed()[0].message.clone(),
             Err(error) => error.to_string(),
@@ -241,7 +241,7 @@ fn rejects_settings_that_make_no_sense() {
     let error = fit_any(
         &campaign,
         &FitRequest::default(),
-        &windfall::progress::quiet,
+        &windfall_files::progress::quiet,
     )
     .unwrap_err();
     assert!(
@@ -253,7 +253,7 @@ fn rejects_settings_that_make_no_sense() {
         laws: vec!["hertz".to_owned()],
         ..FitRequest::default()
     };
-    let error = fit_any(&campaign, &law, &windfall::progress::quiet).unwrap_err();
+    let error = fit_any(&campaign, &law, &windfall_files::progress::quiet).unwrap_err();
     assert!(error.to_string().contains("acoustic"), "{error}");
     // A recording that is cut short is one failure, not the end.
     let wav = campaign.join("raw/fruit-1-1.wav");

@@ -6,9 +6,9 @@
 #![allow(clippy::unwrap_used, clippy::print_stdout)]
 
 use std::path::{Path, PathBuf};
-use windfall::outcome::CampaignOutcome;
-use windfall::request_fit::FitRequest;
-use windfall::workflow_fit::fit_campaign;
+use windfall_campaign::impacts::request::FitRequest;
+use windfall_campaign::impacts::run::fit_campaign;
+use windfall_campaign::result::outcome::CampaignOutcome;
 
 fn fixtures() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/fixtures")
@@ -31,7 +31,7 @@ fn fit(directory: &Path) -> Result<CampaignOutcome, String> {
     fit_campaign(
         directory,
         &FitRequest::default(),
-        &windfall::progress::quiet,
+        &windfall_files::progress::quiet,
     )
     .map_err(|error| error.to_string())
 }

@@ -4,14 +4,14 @@
 #![allow(clippy::unwrap_used, clippy::print_stdout)]
 
 use std::path::Path;
-use windfall::calibrate_outcome::CalibrateOutcome;
-use windfall::read_calibrate::Way;
-use windfall::workflow_calibrate::{CalibrateRequest, calibrate};
-use windfall::write_calibrate::{csv_of_calibration, text_of_calibration};
 use windfall_contact::effective::hertz_stiffness;
 use windfall_contact::expression::parse_law;
 use windfall_contact::law::EndRule;
 use windfall_contact::laws::kind::Law;
+use windfall_drop::calibrate::outcome::CalibrateOutcome;
+use windfall_drop::calibrate::run::{CalibrateRequest, calibrate};
+use windfall_drop::calibrate::text::{csv_of_calibration, text_of_calibration};
+use windfall_drop::calibrate_settings::Way;
 use windfall_identify::drop::rig::{DropRig, Plate};
 use windfall_identify::drop::simulate::simulate_drop;
 
@@ -87,12 +87,12 @@ fn calibrated(calibrate_lines: &str, impacts: &str) -> CalibrateOutcome {
     write(directory.path(), calibrate_lines, impacts);
     let request = CalibrateRequest {
         tables: Some(directory.path().join("tables")),
-        figures: Some(windfall::figure_files::FigureFolder::of(
+        figures: Some(windfall_draw::files::FigureFolder::of(
             &directory.path().join("figures"),
         )),
         ..CalibrateRequest::default()
     };
-    let outcome = calibrate(directory.path(), &request, &windfall::progress::quiet).unwrap();
+    let outcome = calibrate(directory.path(), &request, &windfall_files::progress::quiet).unwrap();
     for name in [
         "table_3_design.csv",
         "table_6_optimum.txt",
@@ -268,7 +268,7 @@ fn rejects_what_cannot_be_calibrated() {
             ways,
             ..CalibrateRequest::default()
         };
-        calibrate(directory.path(), &request, &windfall::progress::quiet)
+        calibrate(directory.path(), &request, &windfall_files::progress::quiet)
             .unwrap_err()
             .to_string()
     };
@@ -286,7 +286,8 @@ fn rejects_what_cannot_be_calibrated() {
         ways: vec![Way::Design],
         ..CalibrateRequest::default()
     };
-    let error = calibrate(directory.path(), &request, &windfall::progress::quiet).unwrap_err();
+    let error =
+        calibrate(directory.path(), &request, &windfall_files::progress::quiet).unwrap_err();
     assert!(
         error.to_string().contains("parameter k has no range"),
         "{error}"

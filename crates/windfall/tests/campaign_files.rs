@@ -3,8 +3,8 @@
 #![allow(clippy::unwrap_used, clippy::print_stdout)]
 
 use std::path::Path;
-use windfall::read_campaign::read_campaign;
-use windfall::workflow_new::{TemplateKind, template, write_template};
+use windfall_campaign::settings::read::read_campaign;
+use windfall_campaign::settings::template::{TemplateKind, template, write_template};
 
 fn message_of(toml: &str) -> String {
     let scratch = tempfile::tempdir().unwrap();
@@ -73,7 +73,8 @@ fn closed_form_force_calibration() {
     .unwrap();
     let campaign = read_campaign(scratch.path()).unwrap();
     let recording =
-        windfall::read_recording::read_recording(&campaign.files, &campaign.impacts[0]).unwrap();
+        windfall_campaign::recording::read::read_recording(&campaign.files, &campaign.impacts[0])
+            .unwrap();
     let force = &recording.channels[0].samples;
     assert!(
         (force[0] - 10.0).abs() < 1e-12 && force[1].abs() < 1e-12,

@@ -3,14 +3,14 @@
 #![allow(clippy::unwrap_used, clippy::print_stdout)]
 
 use std::path::{Path, PathBuf};
-use windfall::any_outcome::AnyOutcome;
-use windfall::measured::{MeasuredItem, MeasuredOutcome, value_of};
-use windfall::request_fit::FitRequest;
-use windfall::simulate_compression::{SimulateCompressionRequest, simulate_compression};
-use windfall::workflow_fit_any::fit_any;
+use windfall_campaign::impacts::request::FitRequest;
+use windfall_campaign::measure::any_outcome::AnyOutcome;
+use windfall_campaign::measure::measured::{MeasuredItem, MeasuredOutcome, value_of};
+use windfall_report::fit_any::fit_any;
+use windfall_simulate::compression::{SimulateCompressionRequest, simulate_compression};
 
 fn fit(directory: &Path, request: &FitRequest) -> MeasuredOutcome {
-    match fit_any(directory, request, &windfall::progress::quiet).unwrap() {
+    match fit_any(directory, request, &windfall_files::progress::quiet).unwrap() {
         AnyOutcome::Measured(outcome) => *outcome,
         AnyOutcome::Impacts(_) => panic!("no compressions"),
     }
@@ -124,7 +124,7 @@ fn reference_kiwi_and_mango() {
     let figures = dir.path().join("figures");
     let request = FitRequest {
         laws: vec!["hertz".to_owned()],
-        figures: Some(windfall::figure_files::FigureFolder::of(&figures)),
+        figures: Some(windfall_draw::files::FigureFolder::of(&figures)),
         ..FitRequest::default()
     };
     let outcome = fit(dir.path(), &request);
@@ -184,7 +184,7 @@ fn rejects_options_that_only_impacts_have() {
             "neither specimens.csv",
         ),
     ] {
-        let message = match fit_any(&campaign, &request, &windfall::progress::quiet) {
+        let message = match fit_any(&campaign, &request, &windfall_files::progress::quiet) {
             Err(error) => error.to_string(),
             Ok(outcome) => outcome.failed()[0].message.clone(),
         };

@@ -4,9 +4,9 @@
 
 use std::fmt::Write;
 use std::path::Path;
-use windfall::outcome::ImpactOutcome;
-use windfall::request_fit::FitRequest;
-use windfall::workflow_fit::fit_campaign;
+use windfall_campaign::impacts::request::FitRequest;
+use windfall_campaign::impacts::run::fit_campaign;
+use windfall_campaign::result::outcome::ImpactOutcome;
 
 const MASS: f64 = 0.2;
 
@@ -56,7 +56,7 @@ fn fit(rig: &str, channels: &str, contact: &str) -> Result<ImpactOutcome, String
     let outcome = fit_campaign(
         dir.path(),
         &FitRequest::default(),
-        &windfall::progress::quiet,
+        &windfall_files::progress::quiet,
     );
     let mut outcome = outcome.map_err(|error| error.to_string())?;
     match outcome.failed.first() {
@@ -101,10 +101,10 @@ fn conserves_the_loop_in_the_figure() {
     campaign(dir.path(), CARRIAGE, "", "baseline = \"drift\"");
     let figures = dir.path().join("figures");
     let request = FitRequest {
-        figures: Some(windfall::figure_files::FigureFolder::of(&figures)),
+        figures: Some(windfall_draw::files::FigureFolder::of(&figures)),
         ..FitRequest::default()
     };
-    fit_campaign(dir.path(), &request, &windfall::progress::quiet).unwrap();
+    fit_campaign(dir.path(), &request, &windfall_files::progress::quiet).unwrap();
     let svg = std::fs::read_to_string(figures.join("a.svg")).unwrap();
     assert!(svg.contains("kelvin-voigt") && svg.ends_with("</svg>\n"));
     // The fourth panel is the loop: F = 50 N/mm x, up and down.

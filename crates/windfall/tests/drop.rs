@@ -3,16 +3,16 @@
 #![allow(clippy::unwrap_used)]
 
 use std::path::{Path, PathBuf};
-use windfall::any_outcome::AnyOutcome;
-use windfall::measured::{MeasuredItem, MeasuredOutcome, value_of};
-use windfall::read_calibrate::{RangeUnit, Target};
-use windfall::read_drop::{DropCampaign, PlatePlan, drop_of, read_drop};
-use windfall::request_drop::{DropRequest, drop_plan};
-use windfall::request_fit::FitRequest;
-use windfall::simulate_drops::{SimulateDropsRequest, simulate_drops};
-use windfall::workflow_fit_any::fit_any;
-use windfall::workflow_new::{TemplateKind, write_template};
-use windfall::write_any::text_of_any;
+use windfall_campaign::impacts::request::FitRequest;
+use windfall_campaign::measure::any_outcome::AnyOutcome;
+use windfall_campaign::measure::measured::{MeasuredItem, MeasuredOutcome, value_of};
+use windfall_campaign::settings::template::{TemplateKind, write_template};
+use windfall_drop::calibrate_settings::{RangeUnit, Target};
+use windfall_drop::read::{DropCampaign, PlatePlan, drop_of, read_drop};
+use windfall_report::any_text::text_of_any;
+use windfall_report::fit_any::fit_any;
+use windfall_simulate::drops::{SimulateDropsRequest, simulate_drops};
+use windfall_simulate::request::drop::{DropRequest, drop_plan};
 
 fn template(folder: &Path) -> PathBuf {
     let directory = folder.join("campaign");
@@ -284,7 +284,7 @@ fn fitted(directory: &Path) -> MeasuredOutcome {
     match fit_any(
         directory,
         &FitRequest::default(),
-        &windfall::progress::quiet,
+        &windfall_files::progress::quiet,
     )
     .unwrap()
     {

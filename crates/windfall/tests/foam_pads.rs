@@ -7,9 +7,9 @@
 #![allow(clippy::unwrap_used, clippy::print_stdout)]
 
 use std::path::{Path, PathBuf};
-use windfall::outcome::ImpactOutcome;
-use windfall::request_fit::FitRequest;
-use windfall::workflow_fit::fit_campaign;
+use windfall_campaign::impacts::request::FitRequest;
+use windfall_campaign::impacts::run::fit_campaign;
+use windfall_campaign::result::outcome::ImpactOutcome;
 
 fn data_folder() -> PathBuf {
     let workspace = Path::new(env!("CARGO_MANIFEST_DIR")).join("../..");
@@ -45,7 +45,7 @@ fn recovers_cart_and_pads_from_real_recordings() {
         laws: vec!["kelvin-voigt".to_owned(), "hertz".to_owned()],
         ..FitRequest::default()
     };
-    let outcome = fit_campaign(scratch.path(), &request, &windfall::progress::quiet).unwrap();
+    let outcome = fit_campaign(scratch.path(), &request, &windfall_files::progress::quiet).unwrap();
     assert!(outcome.failed.is_empty(), "{:?}", outcome.failed);
     assert_eq!((outcome.impacts.len(), outcome.groups.len()), (20, 4));
 

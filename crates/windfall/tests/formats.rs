@@ -3,9 +3,9 @@
 #![allow(clippy::unwrap_used)]
 
 use std::path::Path;
-use windfall::outcome::CampaignOutcome;
-use windfall::request_fit::FitRequest;
-use windfall::workflow_fit::fit_campaign;
+use windfall_campaign::impacts::request::FitRequest;
+use windfall_campaign::impacts::run::fit_campaign;
+use windfall_campaign::result::outcome::CampaignOutcome;
 
 const FIXTURE: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/fixtures/no_contact");
 
@@ -31,7 +31,12 @@ fn fit(file: &str, bytes: &[u8], files: &str) -> CampaignOutcome {
         campaign.replace("time = \"time_s\"", files),
     )
     .unwrap();
-    let outcome = fit_campaign(folder, &FitRequest::default(), &windfall::progress::quiet).unwrap();
+    let outcome = fit_campaign(
+        folder,
+        &FitRequest::default(),
+        &windfall_files::progress::quiet,
+    )
+    .unwrap();
     assert!(outcome.failed.is_empty(), "{file}: {:?}", outcome.failed);
     outcome
 }

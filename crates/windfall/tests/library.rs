@@ -2,8 +2,8 @@
 
 #![allow(clippy::unwrap_used)]
 
-use windfall::library::library;
-use windfall::workflow_library::{LibraryRequest, show_library};
+use windfall_cards::library::show::{LibraryRequest, show_library};
+use windfall_cards::library::values::library;
 use windfall_contact::expression::parse_law;
 
 fn ask(name: &str, at: &str) -> LibraryRequest {

@@ -4,15 +4,15 @@
 #![allow(clippy::unwrap_used, clippy::print_stdout)]
 
 use std::path::Path;
-use windfall::population_outcome::PopulationOutcome;
-use windfall::request_fit::FitRequest;
-use windfall::simulate_campaign::{Batch, SimulatedCampaign, Weighed, write_simulated_campaign};
-use windfall::workflow_population::{PopulationRequest, population};
-use windfall::write_population::{csv_of_population, text_of_population};
+use windfall_campaign::impacts::request::FitRequest;
 use windfall_contact::expression::parse_law;
 use windfall_contact::law::EndRule;
 use windfall_identify::rig::kind::{Pendulum, Rig};
+use windfall_population::outcome::PopulationOutcome;
+use windfall_population::run::{PopulationRequest, population};
+use windfall_population::text::{csv_of_population, text_of_population};
 use windfall_signal::instrument::pendulum_instrument;
+use windfall_simulate::campaign::{Batch, SimulatedCampaign, Weighed, write_simulated_campaign};
 
 const K: f64 = 394_931.0;
 const C: f64 = 681.0;
@@ -69,7 +69,7 @@ fn run(directory: &Path, covariates: &[&str], threads: usize) -> PopulationOutco
         covariates: covariates.iter().map(|c| (*c).to_owned()).collect(),
         ..PopulationRequest::default()
     };
-    population(&request, &windfall::progress::quiet).unwrap()
+    population(&request, &windfall_files::progress::quiet).unwrap()
 }
 
 /// Laws of the specimens as they were drawn.
@@ -160,7 +160,7 @@ fn recovers_the_fruit_that_were_drawn() {
             covariates: vec![covariate.to_owned()],
             ..PopulationRequest::default()
         };
-        let error = population(&request, &windfall::progress::quiet).unwrap_err();
+        let error = population(&request, &windfall_files::progress::quiet).unwrap_err();
         assert!(error.to_string().contains(expected), "{error}");
         assert!(error.is_request());
     }
@@ -180,7 +180,7 @@ fn check_posterior(directory: &Path, estimate: &PopulationOutcome) {
             posterior: true,
             ..PopulationRequest::default()
         };
-        population(&request, &windfall::progress::quiet).unwrap()
+        population(&request, &windfall_files::progress::quiet).unwrap()
     };
     let outcome = drawn(2);
     let posterior = outcome.posterior.as_ref().unwrap();

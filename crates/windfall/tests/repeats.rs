@@ -3,12 +3,12 @@
 #![allow(clippy::unwrap_used, clippy::print_stdout)]
 
 use std::path::Path;
-use windfall::any_outcome::AnyOutcome;
-use windfall::measured::{MeasuredItem, MeasuredOutcome, value_of};
-use windfall::request_fit::FitRequest;
-use windfall::simulate_repeats::{SimulateRepeatsRequest, Spots, simulate_repeats};
-use windfall::workflow_fit_any::fit_any;
-use windfall::workflow_new::{TemplateKind, write_template};
+use windfall_campaign::impacts::request::FitRequest;
+use windfall_campaign::measure::any_outcome::AnyOutcome;
+use windfall_campaign::measure::measured::{MeasuredItem, MeasuredOutcome, value_of};
+use windfall_campaign::settings::template::{TemplateKind, write_template};
+use windfall_report::fit_any::fit_any;
+use windfall_simulate::repeats::{SimulateRepeatsRequest, Spots, simulate_repeats};
 
 fn request(seed: u64, spots: Spots) -> SimulateRepeatsRequest {
     let energies = ["40 mJ", "60 mJ", "90 mJ", "130 mJ", "190 mJ", "280 mJ"];
@@ -31,7 +31,7 @@ fn fit(directory: &Path) -> MeasuredOutcome {
     match fit_any(
         directory,
         &FitRequest::default(),
-        &windfall::progress::quiet,
+        &windfall_files::progress::quiet,
     )
     .unwrap()
     {
@@ -175,7 +175,7 @@ fn rejects_impacts_without_an_energy() {
     let error = fit_any(
         &campaign,
         &FitRequest::default(),
-        &windfall::progress::quiet,
+        &windfall_files::progress::quiet,
     )
     .unwrap_err();
     let message = error.to_string();
@@ -187,7 +187,7 @@ fn rejects_impacts_without_an_energy() {
     let error = fit_any(
         &campaign,
         &FitRequest::default(),
-        &windfall::progress::quiet,
+        &windfall_files::progress::quiet,
     )
     .unwrap_err();
     assert!(error.to_string().contains("[repeats] level"), "{error}");

@@ -28,7 +28,7 @@ pub(crate) struct MonotoneCubic {
 
 impl MonotoneCubic {
     /// Through the points; at least two, with `at` rising.
-    pub(crate) fn new(at: &[f64], value: &[f64]) -> Self {
+    pub fn new(at: &[f64], value: &[f64]) -> Self {
         let last = at.len() - 1;
         let width: Vec<f64> = at.windows(2).map(|w| w[1] - w[0]).collect();
         let secant: Vec<f64> = (0..last)

@@ -33,7 +33,7 @@ pub(crate) struct Impacts<L: BatchLaw<N>, const N: usize, const W: usize> {
 
 impl<L: BatchLaw<N>, const N: usize, const W: usize> Impacts<L, N, W> {
     /// No impacts yet; those to come have laws like `law`.
-    pub(crate) fn new(law: L) -> Self {
+    pub fn new(law: L) -> Self {
         let laws = [law; IMPACTS];
         Self {
             laws,
@@ -182,7 +182,7 @@ pub(crate) struct Way {
 impl Way {
     /// The way from `before` (≤ 0) to `after`, s from first touch, and its first
     /// leg; `None` when there is nothing to integrate.
-    pub(crate) fn new<L: BatchLaw<N>, const N: usize, const W: usize>(
+    pub fn new<L: BatchLaw<N>, const N: usize, const W: usize>(
         event: &ImpactEvent<L, N, W>,
         before: f64,
         after: f64,

@@ -40,7 +40,7 @@ impl<'a, L: ContactLaw<N>, const N: usize, const W: usize, const P: usize>
     OnsetAverage<'a, L, N, W, P>
 {
     /// `None` when samples are instantaneous or hold no force.
-    pub(crate) fn new(model: &'a Model<L, N, W, P>, group: &SampleGroup) -> Option<Self> {
+    pub fn new(model: &'a Model<L, N, W, P>, group: &SampleGroup) -> Option<Self> {
         let forces = group.holds(Quantity::Force) || group.holds(Quantity::Acceleration);
         let averaged = model.sampling == Sampling::Averaged && forces && group.interval() > 0.0;
         averaged.then(|| Self {

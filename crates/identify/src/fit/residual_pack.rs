@@ -52,7 +52,7 @@ where
 {
     /// The model during `segment`; the acceleration only where it is `accelerated`.
     #[inline(always)]
-    pub(crate) fn new(
+    pub fn new(
         model: &'a Model<L, N, W, P>,
         segment: &'a Segment<W>,
         accelerated: bool,

@@ -38,7 +38,7 @@ pub(crate) struct Search<const P: usize> {
 
 impl<const P: usize> Search<P> {
     /// A search from `start`; on the way, one in `stride` packs of samples counts.
-    pub(crate) fn new(
+    pub fn new(
         start: &[f64; P],
         bounds: &Bounds<P>,
         options: &Options<P>,

@@ -39,7 +39,7 @@ pub(crate) struct Features {
 impl Features {
     /// Features of a measured impact, the missing ones by the mechanics of a
     /// half-sine impact.
-    pub(crate) fn of(impact: &Impact, mass: f64) -> Self {
+    pub fn of(impact: &Impact, mass: f64) -> Self {
         let measured = &impact.measured;
         let positive = |value: Option<f64>| value.filter(|v| v.is_finite() && *v > 0.0);
         let duration = positive(measured.contact_duration).unwrap_or(impact.end - impact.onset);

@@ -26,7 +26,7 @@ pub(crate) struct Level {
 
 impl Level {
     /// `noise`: variances of what tells the members apart.
-    pub(crate) fn new(
+    pub fn new(
         variation: &Variation,
         structure: Structure,
         members: usize,
@@ -147,7 +147,7 @@ pub(crate) struct Normal<'a> {
 }
 
 impl<'a> Normal<'a> {
-    pub(crate) fn new(level: &Level, root: &'a DMatrix<f64>) -> Self {
+    pub fn new(level: &Level, root: &'a DMatrix<f64>) -> Self {
         Self {
             told: level.told,
             root,

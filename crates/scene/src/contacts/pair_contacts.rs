@@ -62,7 +62,7 @@ pub(crate) const LARGEST_OVERLAP: f64 = 0.3;
 
 impl PairContacts {
     /// No contacts yet of an interaction, with room for so many, and for so many entries.
-    pub(crate) fn new(surface: &Interaction, room: usize, entries: usize) -> Self {
+    pub fn new(surface: &Interaction, room: usize, entries: usize) -> Self {
         Self {
             store: Store::new(surface, room),
             entries: Vec::with_capacity(room),

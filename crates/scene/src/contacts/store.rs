@@ -52,7 +52,7 @@ pub(crate) struct Store {
 
 impl Store {
     /// No contacts yet of an interaction, with room for so many.
-    pub(crate) fn new(surface: &Interaction, room: usize) -> Self {
+    pub fn new(surface: &Interaction, room: usize) -> Self {
         let groups = room.div_ceil(LANES);
         Self {
             quads: Vec::with_capacity(groups),

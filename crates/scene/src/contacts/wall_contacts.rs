@@ -53,7 +53,7 @@ pub(crate) struct WallState {
 }
 
 impl WallState {
-    pub(crate) fn new(walls: &[Wall]) -> Self {
+    pub fn new(walls: &[Wall]) -> Self {
         let mut facets = Vec::new();
         let (mut single, mut trees) = (Vec::new(), Vec::new());
         for (number, wall) in walls.iter().enumerate() {

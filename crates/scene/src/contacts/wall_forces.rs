@@ -17,7 +17,7 @@ pub(crate) struct WallMeeting([Four; 4]);
 
 impl WallMeeting {
     /// * `arm`: from the centre to the wall; m
-    pub(crate) fn new(touch: &Touch<f64>, arm: f64, wall_velocity: Vector) -> Self {
+    pub fn new(touch: &Touch<f64>, arm: f64, wall_velocity: Vector) -> Self {
         let row = |[x, y, z]: Vector, last: f64| Lanes([x, y, z, last]);
         Self([
             row(touch.normal, touch.displacement),
@@ -56,7 +56,7 @@ pub(crate) struct WallContacts {
 
 impl WallContacts {
     /// No contacts yet of an interaction.
-    pub(crate) fn new(surface: &Interaction) -> Self {
+    pub fn new(surface: &Interaction) -> Self {
         Self {
             store: Store::new(surface, 0),
             holders: Vec::new(),

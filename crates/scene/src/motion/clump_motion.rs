@@ -45,7 +45,7 @@ impl ClumpState {
     /// The clump of a fruit; its spheres are not among the bodies yet.
     ///
     /// * `place`, m; `velocity`, m/s, and `spin`, rad/s: half a step ago
-    pub(crate) fn new(
+    pub fn new(
         shape: &Clump,
         fruit: u32,
         [place, velocity, spin]: [Vector; 3],

@@ -26,7 +26,7 @@ struct Node {
 
 impl FacetTree {
     /// The tree of some triangles.
-    pub(crate) fn new(triangles: &[[Vector; 3]]) -> Self {
+    pub fn new(triangles: &[[Vector; 3]]) -> Self {
         let mut tree = Self {
             nodes: Vec::new(),
             order: (0..triangles.len() as u32).collect(),

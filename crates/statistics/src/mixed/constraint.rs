@@ -78,7 +78,7 @@ struct Point {
 }
 
 impl<'a> Constrained<'a> {
-    pub(crate) fn of(fit: &'a MixedFit, parameter: VarianceParameter) -> Self {
+    pub fn of(fit: &'a MixedFit, parameter: VarianceParameter) -> Self {
         let (term, order) = match parameter {
             VarianceParameter::Sd { term, column } => (Some(term), vec![column]),
             VarianceParameter::Correlation {

@@ -65,7 +65,7 @@ pub(crate) struct TrunkInverse {
 }
 
 impl TrunkInverse {
-    pub(crate) fn of(model: &MixedModel, state: &State) -> Self {
+    pub fn of(model: &MixedModel, state: &State) -> Self {
         let plain = model.trunk.envelope.inverse(&state.trunk_factor);
         let scaled = between_blocks(model, &plain, |block| {
             state.blocks[block.factor].transpose()

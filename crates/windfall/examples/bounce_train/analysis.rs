@@ -2,10 +2,10 @@
 //! incline that rebounds from a pad until it rests, five runs side by side.
 
 use std::path::Path;
-use windfall::read_csv::{column_index, read_table};
 use windfall_contact::expression::typical;
 use windfall_contact::law::EndRule;
 use windfall_contact::laws::kind::LawKind;
+use windfall_files::table::csv::{column_index, read_table};
 use windfall_identify::drop::waveform::{
     DropRecord, Knowledge, WaveformFit, WaveformProblem, WaveformRig,
 };
@@ -54,12 +54,13 @@ pub struct Run {
 
 /// Reads and evaluates all runs.
 pub fn evaluate(file: &Path) -> Result<Vec<Run>, String> {
-    let text = |e: windfall::error::Error| e.to_string();
+    let text = |e: windfall_files::error::Error| e.to_string();
     let table = read_table(file).map_err(text)?;
     let column = |run: &str, what: &str| -> Result<(Vec<f64>, Vec<f64>), String> {
         let time = column_index(&table, &format!("{run}: Time (s)")).map_err(text)?;
         let value = column_index(&table, &format!("{run}: {what}")).map_err(text)?;
-        let cell = |row: &windfall::read_csv::Row, i: usize| row.cells.get(i)?.parse::<f64>().ok();
+        let cell =
+            |row: &windfall_files::table::csv::Row, i: usize| row.cells.get(i)?.parse::<f64>().ok();
         Ok(table
             .rows
             .iter()

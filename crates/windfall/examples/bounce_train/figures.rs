@@ -1,8 +1,8 @@
 //! Figures of the bounce trains.
 
 use crate::analysis::{DELAY, DRIVING, LEAST_SPEED, MASS, Run};
-use windfall::figure_xy::{Figure, Panel, Series, Style};
 use windfall_contact::law::EndRule;
+use windfall_draw::xy::{Figure, Panel, Series, Style};
 use windfall_identify::drop::rig::DropRig;
 use windfall_identify::drop::simulate::{drop_trajectory, simulate_drop};
 use windfall_identify::drop::waveform::WaveformFit;

@@ -9,8 +9,8 @@ mod figures;
 
 use analysis::{LEAST_SPEED, Run, calibrate, evaluate, masses};
 use figures::{restitution_figure, train_figure, waveform_figure};
-use windfall::figure_theme::LIGHT;
-use windfall::figure_xy::svg_of_figure;
+use windfall_draw::theme::LIGHT;
+use windfall_draw::xy::svg_of_figure;
 
 fn main() -> Result<(), String> {
     let arguments: Vec<String> = std::env::args().collect();

@@ -1,0 +1,356 @@
+//! One slow compression: loading curve, yield, laws, modulus.
+
+use crate::compression::read::{CompressionCampaign, specimen_radii};
+use crate::measure::item_campaign::{group_of, specimen_of};
+use crate::measure::measured::{
+    MeasuredItem, MeasuredItems, MeasuredValue, plain_value, value_with_sd,
+};
+use crate::recording::channel::channel_samples;
+use crate::recording::read::recording_path;
+use crate::settings::model::ImpactEntry;
+use windfall_contact::apparent_modulus::{PressedContact, PrincipalRadii, stiffness_per_modulus};
+use windfall_contact::expression::LawExpression;
+use windfall_contact::laws::kind::LawKind;
+use windfall_files::error::Error;
+use windfall_files::found::FindingOutcome;
+use windfall_files::named::Named;
+use windfall_files::text::number::plain;
+use windfall_identify::compression_fit::{
+    CompressionEstimate, CompressionFit, LoadingCurve, fit_compression,
+};
+use windfall_signal::compression::{
+    CompressionCurve, CurvePoint, FitRange, LoadingEnd, compression_curve, fitted_range,
+};
+use windfall_signal::kinematics::value_at;
+use windfall_signal::polynomial::local_polynomial;
+use windfall_signal::recording::{Quantity, Recording};
+
+/// Points of a curve at most that a law is fitted to; more are averaged.
+const MOST_POINTS: usize = 2000;
+
+/// A law misses a curve when the residuals are this many times the noise.
+const MISSES: f64 = 5.0;
+
+/// A rate is uneven when it varies by more than this part; 1.
+const UNEVEN: f64 = 0.1;
+
+/// The loading curve of an entry.
+///
+/// # Errors
+/// A channel is not there, or the recording shows no compression.
+pub fn loading_curve(
+    campaign: &CompressionCampaign,
+    entry: &ImpactEntry,
+    recording: &Recording,
+) -> Result<CompressionCurve, Error> {
+    let force = channel_samples(recording, Quantity::Force, entry)?;
+    let position = channel_samples(recording, Quantity::Displacement, entry)?;
+    let at_force = |time: &f64| value_at(&position.times, &position.values, *time);
+    let positions: Vec<f64> = force.times.iter().map(at_force).collect();
+    compression_curve(&force.times, &positions, &force.values, &campaign.options).map_err(
+        |source| Error::Evaluation {
+            path: recording_path(&campaign.shared.files, entry),
+            source: Box::new(source),
+        },
+    )
+}
+
+/// The part of a curve that a law is fitted to, with its rate, averaged to a
+/// few thousand points.
+///
+/// Where the campaign does not say otherwise, a law without damping is fitted up
+/// to the largest stiffness; a damped one, whose force rises steepest at touch,
+/// up to half of the yield force.
+#[must_use]
+pub fn fitted_part(
+    campaign: &CompressionCampaign,
+    curve: &CompressionCurve,
+    law: &LawExpression,
+) -> LoadingCurve {
+    let damping = law.kind.describe().index_of("c");
+    let undamped = damping.is_none_or(|index| law.values[index] == Some(0.0));
+    let range = campaign.fit_to.unwrap_or(match undamped {
+        true => FitRange::LargestStiffness,
+        false => FitRange::PartOfYield(0.5),
+    });
+    let (first, last) = fitted_range(curve, range);
+    let range = first..=last;
+    let (times, deformation) = (
+        &curve.times[range.clone()],
+        &curve.deformation[range.clone()],
+    );
+    let force = &curve.force[range];
+    let n = times.len();
+    let window = ((n / 10) | 1).max(5);
+    let overall = (deformation[n - 1] - deformation[0]) / (times[n - 1] - times[0]);
+    let rate = local_polynomial(times, deformation, window, 1, 1);
+    let rate = rate.unwrap_or_else(|| vec![overall; n]);
+    let block = n.div_ceil(MOST_POINTS);
+    let mean = |values: &[f64]| -> Vec<f64> {
+        let blocks = values.chunks(block);
+        blocks
+            .map(|b| b.iter().sum::<f64>() / b.len() as f64)
+            .collect()
+    };
+    LoadingCurve {
+        deformation: mean(deformation),
+        rate: mean(&rate),
+        force: mean(force),
+    }
+}
+
+/// Everything about one entry: one item for each law.
+///
+/// # Errors
+/// The recording shows no compression, or a law cannot be fitted.
+pub fn evaluate_compression(
+    campaign: &CompressionCampaign,
+    entry: &ImpactEntry,
+    recording: &Recording,
+) -> Result<MeasuredItems, Error> {
+    let curve = loading_curve(campaign, entry, recording)?;
+    let radii = radii_of_entry(campaign, entry)?;
+    let items = campaign.laws.iter().map(|law| {
+        let part = fitted_part(campaign, &curve, law);
+        let fit = fit_compression(std::slice::from_ref(&part), law, &campaign.free);
+        let fit = fit.map_err(|source| Error::Evaluation {
+            path: recording_path(&campaign.shared.files, entry),
+            source: Box::new(source),
+        })?;
+        Ok(item(campaign, entry, (&curve, &part, &fit), radii))
+    });
+    Ok(MeasuredItems {
+        items: items.collect::<Result<Vec<_>, Error>>()?,
+    })
+}
+
+/// Radii of the specimen of an entry, or in the entry's own row.
+///
+/// # Errors
+/// A cell is no positive number.
+pub fn radii_of_entry(
+    campaign: &CompressionCampaign,
+    entry: &ImpactEntry,
+) -> Result<Option<PrincipalRadii>, Error> {
+    let directory = &campaign.shared.directory;
+    let own = specimen_radii(&entry.cells, &directory.join("impacts.csv"))?;
+    match (own, specimen_of(&campaign.shared, entry)) {
+        (None, Some(specimen)) => specimen_radii(&specimen.cells, &directory.join("specimens.csv")),
+        (own, _) => Ok(own),
+    }
+}
+
+fn item(
+    campaign: &CompressionCampaign,
+    entry: &ImpactEntry,
+    (curve, part, fit): (&CompressionCurve, &LoadingCurve, &CompressionFit),
+    radii: Option<PrincipalRadii>,
+) -> MeasuredItem {
+    let ended = match curve.ended_by {
+        LoadingEnd::Bioyield => "bioyield",
+        LoadingEnd::Rupture => "rupture",
+        LoadingEnd::Reversal => "reversal",
+        LoadingEnd::RecordingEnd => "end of recording",
+    };
+    let mut derived = curve_values(curve, fit, part);
+    let modulus = radii.and_then(|radii| modulus(campaign, fit, radii));
+    derived.extend(modulus.into_iter().flatten());
+    MeasuredItem {
+        id: entry.id.clone(),
+        specimen: entry.specimen.clone(),
+        group: group_of(&campaign.shared, entry),
+        file: entry.file.clone(),
+        law: fit.law.kind().name().to_owned(),
+        words: Named(vec![("loading_ended_by".to_owned(), ended.to_owned())]),
+        parameters: parameters_of(fit),
+        derived: Named(derived),
+        findings: findings(curve, part, fit, radii),
+    }
+}
+
+/// Parameters of a fitted law with their uncertainties; held ones too.
+#[must_use]
+pub fn parameters_of(fit: &CompressionFit) -> Named<MeasuredValue> {
+    let description = fit.law.kind().describe();
+    let values = fit.law.parameters();
+    let named = description
+        .parameters
+        .iter()
+        .enumerate()
+        .map(|(i, parameter)| {
+            let unit = fit.law.unit_of(i);
+            let value = match &fit.parameters[i] {
+                Some(estimate) => measured(estimate, &unit),
+                None => plain_value(values[i], &unit),
+            };
+            (parameter.name.to_owned(), value)
+        });
+    Named(named.collect())
+}
+
+fn measured(estimate: &CompressionEstimate, unit: &str) -> MeasuredValue {
+    let finite = |value: f64| value.is_finite().then_some(value);
+    MeasuredValue {
+        value: estimate.value,
+        sd: finite(estimate.sd),
+        low: finite(estimate.low),
+        high: finite(estimate.high),
+        unit: unit.to_owned(),
+    }
+}
+
+fn curve_values(
+    curve: &CompressionCurve,
+    fit: &CompressionFit,
+    part: &LoadingCurve,
+) -> Vec<(String, MeasuredValue)> {
+    let touch = fit.touches[0].value;
+    let mut values = Vec::new();
+    let mut push = |name: &str, value: MeasuredValue| values.push((name.to_owned(), value));
+    let mut point = |name: &str, point: &Option<CurvePoint>| {
+        if let Some(point) = point {
+            let deformation = point.deformation - touch;
+            push(&format!("{name}_force"), plain_value(point.force, "N"));
+            push(
+                &format!("{name}_deformation"),
+                plain_value(deformation, "m"),
+            );
+        }
+    };
+    point("bioyield", &curve.bioyield);
+    point("softening", &curve.softening);
+    point("rupture", &curve.rupture);
+    let end = &curve.loading_end;
+    push("loading_force", plain_value(end.force, "N"));
+    push(
+        "loading_deformation",
+        plain_value(end.deformation - touch, "m"),
+    );
+    push("loading_energy", plain_value(curve.energy, "J"));
+    if curve.bioyield.is_some() {
+        push("energy_to_yield", plain_value(curve.energy, "J"));
+    }
+    let stiffness = curve.stiffness;
+    push(
+        "stiffness",
+        value_with_sd(stiffness.value, stiffness.sd, "N/m"),
+    );
+    let secant = end.force / (end.deformation - touch);
+    push("secant_stiffness", plain_value(secant, "N/m"));
+    let (rate, variation) = mean_and_variation(&part.rate);
+    push("deformation_rate", plain_value(rate, "m/s"));
+    push("rate_variation", plain_value(variation, "1"));
+    push(
+        "fitted_force",
+        plain_value(part.force[part.force.len() - 1], "N"),
+    );
+    let fitted = part.deformation[part.deformation.len() - 1] - touch;
+    push("fitted_deformation", plain_value(fitted, "m"));
+    push("touch", measured(&fit.touches[0], "m"));
+    push("residual_rms", plain_value(fit.rms, "N"));
+    push("force_noise", plain_value(curve.force_noise, "N"));
+    values
+}
+
+fn mean_and_variation(values: &[f64]) -> (f64, f64) {
+    let n = values.len() as f64;
+    let mean = values.iter().sum::<f64>() / n;
+    let squares: f64 = values.iter().map(|v| (v - mean).powi(2)).sum();
+    (mean, (squares / n).sqrt() / mean.abs())
+}
+
+/// Apparent modulus and k/√R* of a law of Hertz's contact.
+fn modulus(
+    campaign: &CompressionCampaign,
+    fit: &CompressionFit,
+    radii: PrincipalRadii,
+) -> Option<Vec<(String, MeasuredValue)>> {
+    if !matches!(fit.law.kind(), LawKind::Hertz | LawKind::KuwabaraKono) {
+        return None;
+    }
+    let contact = PressedContact {
+        fruit: radii,
+        indenter: campaign.indenter,
+    };
+    let per_modulus = stiffness_per_modulus(&vec![contact; campaign.plates]);
+    let k = fit.law.parameters()[0];
+    let sd = fit.parameters[0].map_or(0.0, |estimate| estimate.sd);
+    let factor = (1.0 - campaign.poisson_ratio.powi(2)) / per_modulus;
+    let modulus = value_with_sd(k * factor, sd * factor, "Pa");
+    Some(vec![
+        ("apparent_modulus".to_owned(), modulus),
+        ("radius".to_owned(), plain_value(radii.first, "m")),
+        ("radius_2".to_owned(), plain_value(radii.second, "m")),
+    ])
+}
+
+fn findings(
+    curve: &CompressionCurve,
+    part: &LoadingCurve,
+    fit: &CompressionFit,
+    radii: Option<PrincipalRadii>,
+) -> Vec<FindingOutcome> {
+    let mut findings = Vec::new();
+    let mut tell = |code: &str, message: String| {
+        findings.push(FindingOutcome {
+            code: code.to_owned(),
+            message,
+        });
+    };
+    if curve.began_in_contact {
+        let touch = plain(1e3 * fit.touches[0].value);
+        tell(
+            "began_in_contact",
+            format!(
+                "force was there from the first sample on: the first touch is extrapolated by the law, to {touch} mm on the axis of deformation"
+            ),
+        );
+    }
+    match curve.ended_by {
+        LoadingEnd::Reversal => tell("loading_reversed", format!(
+            "the deformation decreased {} s after the first touch or sample, before any yield: unloading, or a controller that oscillates; what follows is not used",
+            plain(curve.loading_end.time - curve.times[0])
+        )),
+        LoadingEnd::RecordingEnd => tell("no_yield", "the recording ends before the force ceases to increase: there is no bioyield point in it".to_owned()),
+        LoadingEnd::Rupture | LoadingEnd::Bioyield => {}
+    }
+    let noise = curve.force_noise.max(f64::MIN_POSITIVE);
+    let part_of_force = fit.rms / part.force[part.force.len() - 1];
+    if fit.rms > MISSES * noise && part_of_force > 0.002 {
+        tell(
+            "law_misses_curve",
+            format!(
+                "{} describes the curve to {} % of the force at the end of the fitted range, {} times the noise: its parameters are a compromise",
+                fit.law.kind().name(),
+                plain(100.0 * part_of_force),
+                plain(fit.rms / noise)
+            ),
+        );
+    }
+    if !fit.converged {
+        tell(
+            "fit_not_converged",
+            "the fit did not converge; its parameters are not to be used".to_owned(),
+        );
+    }
+    let damping = fit.law.kind().describe().index_of("c");
+    if let Some(c) = damping.and_then(|index| fit.parameters[index])
+        && (c.low <= 0.0 || !c.sd.is_finite())
+    {
+        tell("damping_not_told", "the interval of the damping c holds zero: one rate of deformation does not tell it; compress the same fruit at several rates, or hold c".to_owned());
+    }
+    let (_, variation) = mean_and_variation(&part.rate);
+    if variation > UNEVEN {
+        tell(
+            "rate_uneven",
+            format!(
+                "the rate of deformation varies by {} % over the fitted range; stiffness and modulus belong to no single rate",
+                plain(100.0 * variation)
+            ),
+        );
+    }
+    if radii.is_none() {
+        tell("radius_unknown", "no apparent modulus: specimens.csv has none of radius_mm, diameter_1_mm to diameter_3_mm, or chord_mm and sagitta_mm".to_owned());
+    }
+    findings
+}

@@ -1,0 +1,285 @@
+//! campaign.toml of slow compressions → [`CompressionCampaign`].
+
+use crate::compression::file::{CompressionFile, CompressionRigFile, YieldFile};
+use crate::measure::item_campaign::{ItemCampaign, SharedFile, read_item_campaign};
+use crate::settings::channels::channel_plans;
+use crate::settings::conditioning::refuse_conditioning;
+use crate::settings::files::check_format;
+use crate::settings::fit::{LawKeys, free_names, law_expressions};
+use crate::settings::kind::CampaignKind;
+use crate::settings::read::CAMPAIGN_FILE;
+use std::path::Path;
+use toml::Spanned;
+use windfall_contact::apparent_modulus::PrincipalRadii;
+use windfall_contact::curvature::{radii_of_ellipsoid, radius_from_chord};
+use windfall_contact::expression::LawExpression;
+use windfall_files::error::Error;
+use windfall_files::text::cell_quantity::cell_quantity;
+use windfall_files::text::toml_source::{
+    Needed, TomlSource, invalid, missing, optional_quantity, parse_source, read_source,
+};
+use windfall_numerics::unit::quantity::parse_as;
+use windfall_signal::compression::{CompressionOptions, FitRange};
+
+/// A campaign of slow compressions.
+#[derive(Clone, Debug)]
+pub struct CompressionCampaign {
+    /// What all kinds share.
+    pub shared: ItemCampaign,
+    /// Plates that deform the fruit.
+    pub plates: usize,
+    /// Poisson's ratio of the fruit; 1.
+    pub poisson_ratio: f64,
+    /// Radii of plate or indenter; m.
+    pub indenter: PrincipalRadii,
+    /// How curves are read.
+    pub options: CompressionOptions,
+    /// Where the fitted range ends, where the campaign says so.
+    pub fit_to: Option<FitRange>,
+    /// Laws, each fitted to every curve.
+    pub laws: Vec<LawExpression>,
+    /// Parameters that are estimated although they have a value.
+    pub free: Vec<String>,
+}
+
+const ADVICE: &str = "`windfall new compression DIR` writes a template";
+
+/// Reads a campaign directory of slow compressions.
+///
+/// # Errors
+/// A file of the campaign is missing or does not say what it must.
+pub fn read_compression(directory: &Path) -> Result<CompressionCampaign, Error> {
+    let source = read_source(&directory.join(CAMPAIGN_FILE), ADVICE)?;
+    let file: CompressionFile = parse_source(&source)?;
+    check_format(&source, file.format.as_ref())?;
+    let (plates, poisson_ratio, indenter) = rig(&source, &file.rig)?;
+    let keys = LawKeys {
+        law: file.fit.law.as_ref(),
+        laws: file.fit.laws.as_deref(),
+        free: file.fit.free.as_deref(),
+    };
+    let laws = law_expressions(&source, &keys, &[])?;
+    let free = free_names(&source, &keys, &laws)?;
+    if let Some(channels) = file.channels.as_ref().map(Spanned::get_ref) {
+        let why = "slow compressions are not filtered";
+        for (table, channel) in [
+            ("[channels.force]", &channels.force),
+            ("[channels.position]", &channels.position),
+        ] {
+            refuse_conditioning(&source, table, channel.as_ref(), why)?;
+        }
+    }
+    let channels = channel_plans(&source, file.channels.as_ref())?;
+    let shared = SharedFile {
+        campaign: &file.campaign,
+        files: &file.files,
+        summary: &file.summary,
+    };
+    let kind = CampaignKind::Compression;
+    Ok(CompressionCampaign {
+        fit_to: fit_range(&source, file.compression.fit_to.as_ref())?,
+        options: options(&source, &file.compression, file.rig.get_ref())?,
+        shared: read_item_campaign(&source, directory, kind, &shared, channels)?,
+        plates,
+        poisson_ratio,
+        indenter,
+        laws,
+        free,
+    })
+}
+
+fn rig(
+    source: &TomlSource,
+    rig: &Spanned<CompressionRigFile>,
+) -> Result<(usize, f64, PrincipalRadii), Error> {
+    let (at, rig) = (rig.span(), rig.get_ref());
+    let needed = Needed {
+        table: "[rig]",
+        key: "plates",
+        meaning: "number of plates that deform the fruit: 2 between plane plates, 1 where only one \
+                  end is pressed",
+        unit: "",
+        example: "plates = 2",
+    };
+    let Some(plates) = &rig.plates else {
+        return Err(missing(source, &at, &needed, "[rig]".to_owned()));
+    };
+    let number = *plates.get_ref();
+    if !(1..=2).contains(&number) {
+        let (text, problem) = (number.to_string(), "expected 1 or 2".to_owned());
+        return Err(invalid(
+            source,
+            &plates.span(),
+            ("[rig]", "plates"),
+            &text,
+            problem,
+        ));
+    }
+    let poisson = match &rig.poisson_ratio {
+        None => 0.3,
+        Some(value) if (0.0..0.5).contains(value.get_ref()) => *value.get_ref(),
+        Some(value) => {
+            let problem = "expected a number from 0 to below 0.5".to_owned();
+            let text = value.get_ref().to_string();
+            let key = ("[rig]", "poisson_ratio");
+            return Err(invalid(source, &value.span(), key, &text, problem));
+        }
+    };
+    let radius = Needed {
+        key: "indenter_radius",
+        meaning: "radius of a spherical indenter",
+        unit: "m",
+        example: "indenter_radius = \"4 mm\"",
+        ..needed
+    };
+    let indenter = match positive(source, rig.indenter_radius.as_ref(), &radius)? {
+        Some(radius) => PrincipalRadii::sphere(radius),
+        None => PrincipalRadii::PLANE,
+    };
+    Ok((number as usize, poisson, indenter))
+}
+
+fn positive(
+    source: &TomlSource,
+    value: Option<&Spanned<crate::settings::file::QuantityText>>,
+    needed: &Needed,
+) -> Result<Option<f64>, Error> {
+    let number = optional_quantity(source, value, needed)?;
+    match (value, number) {
+        (Some(value), Some(number)) if number <= 0.0 => {
+            let problem = format!("must be above zero, for example: {}", needed.example);
+            let key = (needed.table, needed.key);
+            Err(invalid(
+                source,
+                &value.span(),
+                key,
+                &value.get_ref().0,
+                problem,
+            ))
+        }
+        _ => Ok(number),
+    }
+}
+
+fn options(
+    source: &TomlSource,
+    file: &YieldFile,
+    rig: &CompressionRigFile,
+) -> Result<CompressionOptions, Error> {
+    let defaults = CompressionOptions::default();
+    let touch = Needed {
+        table: "[compression]",
+        key: "touch_force",
+        meaning: "force from which the fruit counts as touched",
+        unit: "N",
+        example: "touch_force = \"0.05 N\"",
+    };
+    let machine = Needed {
+        table: "[rig]",
+        key: "machine_stiffness",
+        meaning: "stiffness of machine, load cell and pads in series with the fruit",
+        unit: "N/m",
+        example: "machine_stiffness = \"50 N/mm\"",
+    };
+    let part = |value: Option<&Spanned<f64>>, key, default| match value {
+        None => Ok(default),
+        Some(value) if *value.get_ref() > 0.0 && *value.get_ref() < 1.0 => Ok(*value.get_ref()),
+        Some(value) => {
+            let problem = "expected a part between 0 and 1".to_owned();
+            let text = value.get_ref().to_string();
+            Err(invalid(
+                source,
+                &value.span(),
+                ("[compression]", key),
+                &text,
+                problem,
+            ))
+        }
+    };
+    let stiffness = positive(source, rig.machine_stiffness.as_ref(), &machine)?;
+    Ok(CompressionOptions {
+        touch_force: positive(source, file.touch_force.as_ref(), &touch)?,
+        machine_stiffness: stiffness.unwrap_or(defaults.machine_stiffness),
+        yield_window: part(
+            file.yield_window.as_ref(),
+            "yield_window",
+            defaults.yield_window,
+        )?,
+        stiffness_window: part(
+            file.stiffness_window.as_ref(),
+            "stiffness_window",
+            defaults.stiffness_window,
+        )?,
+        softening: part(file.softening.as_ref(), "softening", defaults.softening)?,
+        rupture: part(file.rupture.as_ref(), "rupture", defaults.rupture)?,
+    })
+}
+
+fn fit_range(
+    source: &TomlSource,
+    value: Option<&Spanned<String>>,
+) -> Result<Option<FitRange>, Error> {
+    let Some(value) = value else {
+        return Ok(None);
+    };
+    let text = value.get_ref().trim();
+    if text == "largest-stiffness" {
+        return Ok(Some(FitRange::LargestStiffness));
+    }
+    let part = text
+        .strip_suffix('%')
+        .and_then(|part| part.trim().parse::<f64>().ok());
+    if let Some(part) = part
+        && part > 0.0
+        && part <= 100.0
+    {
+        return Ok(Some(FitRange::PartOfYield(part / 100.0)));
+    }
+    match parse_as(text, "m") {
+        Ok(length) if length > 0.0 && !text.ends_with('%') => {
+            Ok(Some(FitRange::Deformation(length)))
+        }
+        _ => {
+            let problem = "expected \"largest-stiffness\", a part of the yield force such as \
+                           \"50 %\", or a deformation such as \"0.5 mm\""
+                .to_owned();
+            let key = ("[compression]", "fit_to");
+            Err(invalid(source, &value.span(), key, text, problem))
+        }
+    }
+}
+
+/// Principal radii of a specimen from the columns of its row: `radius` (and
+/// `radius_2`), or `diameter_1` to `diameter_3` with the first along the axis
+/// that is pressed, or `chord` and `sagitta` (and `chord_2`, `sagitta_2`), each
+/// with its unit. `None` where there are none.
+///
+/// # Errors
+/// A cell is no positive number.
+pub fn specimen_radii(
+    cells: &[(String, String)],
+    file: &Path,
+) -> Result<Option<PrincipalRadii>, Error> {
+    let length = |name: &str| cell_quantity(cells, name, "m", file);
+    if let Some(first) = length("radius")? {
+        let second = length("radius_2")?.unwrap_or(first);
+        return Ok(Some(PrincipalRadii { first, second }));
+    }
+    let diameters = (
+        length("diameter_1")?,
+        length("diameter_2")?,
+        length("diameter_3")?,
+    );
+    if let (Some(first), Some(second), Some(third)) = diameters {
+        return Ok(Some(radii_of_ellipsoid(first, second, third)));
+    }
+    if let (Some(chord), Some(sagitta)) = (length("chord")?, length("sagitta")?) {
+        let first = radius_from_chord(chord, sagitta);
+        let second = match (length("chord_2")?, length("sagitta_2")?) {
+            (Some(chord), Some(sagitta)) => radius_from_chord(chord, sagitta),
+            _ => first,
+        };
+        return Ok(Some(PrincipalRadii { first, second }));
+    }
+    Ok(None)
+}

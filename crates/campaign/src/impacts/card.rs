@@ -1,0 +1,271 @@
+//! The law card of a campaign of fitted impacts: the median fruit, how fruit
+//! differ, and in what the law was seen.
+
+use crate::impacts::two_stage::{Estimates, Population, two_stage};
+use crate::result::outcome::{CampaignOutcome, ImpactOutcome};
+use crate::settings::model::Campaign;
+use std::collections::BTreeMap;
+use std::path::Path;
+use windfall_cards::law_card::{
+    CARD_FORMAT, CardBodies, CardCovariance, CardOrigin, CardParameter, CardPopulation, CardRange,
+    LawCard,
+};
+use windfall_cards::law_use::end_name;
+use windfall_cards::read_card::card_definition;
+use windfall_contact::expression::LawExpression;
+use windfall_contact::laws::kind::Law;
+use windfall_files::error::Error;
+use windfall_files::provenance::{VERSION, digest_file, time_now};
+
+/// Files whose digests a card carries.
+const FILES: [&str; 3] = ["campaign.toml", "impacts.csv", "specimens.csv"];
+/// Normal quantile of 95 %; 1.
+const QUANTILE: f64 = 1.96;
+
+/// The law of a campaign as a card: the median over its fruit.
+///
+/// # Errors
+/// More than one law was fitted, or no impact was fitted with success.
+pub fn card_of_fit(campaign: &Campaign, outcome: &CampaignOutcome) -> Result<LawCard, Error> {
+    let [asked] = &campaign.fit.laws[..] else {
+        return Err(unknown(
+            campaign,
+            "a card is of one law, and several were fitted".to_owned(),
+            "name one, as in `windfall fit DIR --law kuwabara-kono --card FILE`",
+        ));
+    };
+    let kind = asked.kind;
+    let mut impacts: Vec<&ImpactOutcome> = outcome.impacts.iter().collect();
+    let all = impacts.len();
+    impacts.retain(|impact| impact.converged);
+    if impacts.is_empty() {
+        return Err(unknown(
+            campaign,
+            "no impact was fitted with success".to_owned(),
+            "see the findings of `windfall fit DIR`",
+        ));
+    }
+    let estimates = estimates_of(&impacts);
+    let population = two_stage(&estimates);
+    let law = law_of(campaign, kind, &impacts, &estimates, &population)?;
+    let mut cautions: Vec<String> = outcome.findings.iter().map(|f| f.message.clone()).collect();
+    if impacts.len() < all {
+        cautions.push(format!(
+            "{} of {all} impacts did not converge and are left out",
+            all - impacts.len()
+        ));
+    }
+    // What the method leaves out, where it leaves something out.
+    if population.between.is_none() || population.method.contains(';') {
+        cautions.push(population.method.clone());
+    }
+    Ok(LawCard {
+        format: CARD_FORMAT,
+        title: campaign.title.clone(),
+        law: kind.name().to_owned(),
+        expression: LawExpression::from(law).to_string(),
+        end: end_name(campaign.fit.options.end).to_owned(),
+        cautions,
+        parameters: parameters_of(&law, &estimates, &population),
+        covariance: Some(CardCovariance {
+            of: estimates.labels(),
+            matrix: population.of_mean.clone(),
+            of_what: "the median fruit, by the scatter between fruit".to_owned(),
+        })
+        .filter(|covariance| covariance.matrix.iter().flatten().all(|v| v.is_finite())),
+        range: range_of(outcome, &impacts),
+        bodies: CardBodies {
+            impactor: impactor(campaign).to_owned(),
+            target: "fruit".to_owned(),
+            effective_mass_factor: 1.0,
+            specimens: population.fruit,
+            recordings: impacts.len(),
+            radius: None,
+        },
+        origin: origin(campaign, outcome)?,
+        contact: None,
+        population: card_population(&estimates, &population, impacts.len()),
+        definition: card_definition(kind),
+    })
+}
+
+fn unknown(campaign: &Campaign, missing: String, advice: &str) -> Error {
+    Error::ValueNotKnown {
+        item: campaign.title.clone(),
+        missing,
+        advice: advice.to_owned(),
+    }
+}
+
+fn impactor(campaign: &Campaign) -> &'static str {
+    match campaign.rig {
+        crate::settings::model::RigPlan::Pendulum(_) => "impactor of a pendulum",
+        crate::settings::model::RigPlan::Carriage { .. } => "impactor on a line",
+    }
+}
+
+/// What was estimated on each impact, by fruit; positive scales as logarithms.
+fn estimates_of(impacts: &[&ImpactOutcome]) -> Estimates {
+    let free: Vec<&String> = impacts[0]
+        .parameters
+        .0
+        .iter()
+        .filter(|(_, estimate)| !estimate.held)
+        .map(|(name, _)| name)
+        .collect();
+    let value = |impact: &ImpactOutcome, name: &str| {
+        impact.parameters.get(name).map_or(f64::NAN, |e| e.value)
+    };
+    let logarithmic: Vec<bool> = free
+        .iter()
+        .map(|name| {
+            let plain = impacts[0]
+                .parameters
+                .get(name)
+                .is_none_or(|e| e.unit == "1");
+            !plain && impacts.iter().all(|impact| value(impact, name) > 0.0)
+        })
+        .collect();
+    let mut fruit: Vec<(String, Vec<Vec<f64>>)> = Vec::new();
+    for impact in impacts {
+        let row = free.iter().zip(&logarithmic).map(|(name, logarithmic)| {
+            let value = value(impact, name);
+            if *logarithmic { value.ln() } else { value }
+        });
+        let row: Vec<f64> = row.collect();
+        match fruit.iter_mut().find(|(id, _)| *id == impact.specimen) {
+            Some((_, rows)) => rows.push(row),
+            None => fruit.push((impact.specimen.clone(), vec![row])),
+        }
+    }
+    Estimates {
+        names: free.into_iter().cloned().collect(),
+        logarithmic,
+        fruit: fruit.into_iter().map(|(_, rows)| rows).collect(),
+    }
+}
+
+/// The law at the median of what was estimated; what was held as it was.
+fn law_of(
+    campaign: &Campaign,
+    kind: windfall_contact::laws::kind::LawKind,
+    impacts: &[&ImpactOutcome],
+    estimates: &Estimates,
+    population: &Population,
+) -> Result<Law, Error> {
+    let medians = estimates.values(&population.mean);
+    let values: Vec<f64> = kind
+        .describe()
+        .parameters
+        .iter()
+        .map(|parameter| {
+            let place = estimates.names.iter().position(|n| n == parameter.name);
+            match place {
+                Some(place) => medians[place],
+                // Held, or following each impact: the mean.
+                None => {
+                    let found = impacts
+                        .iter()
+                        .filter_map(|i| i.parameters.get(parameter.name));
+                    found.map(|e| e.value).sum::<f64>() / impacts.len() as f64
+                }
+            }
+        })
+        .collect();
+    kind.with_parameters(&values).map_err(|error| {
+        unknown(
+            campaign,
+            format!("the median of its parameters is no law ({error})"),
+            "look at the impacts one by one: `windfall fit DIR`",
+        )
+    })
+}
+
+fn parameters_of(
+    law: &Law,
+    estimates: &Estimates,
+    population: &Population,
+) -> BTreeMap<String, CardParameter> {
+    let named = law
+        .kind()
+        .describe()
+        .parameters
+        .iter()
+        .zip(law.parameters());
+    named
+        .enumerate()
+        .map(|(index, (parameter, value))| {
+            let place = estimates.names.iter().position(|n| n == parameter.name);
+            let sd = place.map(|p| population.of_mean[p][p].sqrt());
+            let sd = sd.filter(|sd| sd.is_finite());
+            let logarithmic = place.is_some_and(|p| estimates.logarithmic[p]);
+            let card = CardParameter {
+                value,
+                unit: law.unit_of(index),
+                sd: sd.map(|sd| if logarithmic { value * sd } else { sd }),
+                interval: sd.map(|sd| match logarithmic {
+                    true => [
+                        value * (-QUANTILE * sd).exp(),
+                        value * (QUANTILE * sd).exp(),
+                    ],
+                    false => [value - QUANTILE * sd, value + QUANTILE * sd],
+                }),
+            };
+            (parameter.name.to_owned(), card)
+        })
+        .collect()
+}
+
+fn card_population(
+    estimates: &Estimates,
+    population: &Population,
+    impacts: usize,
+) -> Option<CardPopulation> {
+    Some(CardPopulation {
+        of: estimates.labels(),
+        median: estimates.values(&population.mean),
+        between_fruit: population.between.clone()?,
+        within_fruit: population.within.clone(),
+        fruit: population.fruit,
+        impacts,
+        method: population.method.clone(),
+        covariates: Vec::new(),
+    })
+}
+
+/// In what the law was seen: the motions under the fitted laws.
+fn range_of(outcome: &CampaignOutcome, impacts: &[&ImpactOutcome]) -> CardRange {
+    let of = |name: &str| {
+        let values = impacts.iter().filter_map(|impact| {
+            let fitted = impact.fitted.get(name).copied().flatten();
+            fitted.or_else(|| impact.derived.get(name).copied().flatten())
+        });
+        values.fold([f64::INFINITY, f64::NEG_INFINITY], |range, value| {
+            [range[0].min(value), range[1].max(value)]
+        })
+    };
+    CardRange {
+        impact_velocity: of("impact_velocity"),
+        peak_force: of("peak_force"),
+        displacement: of("max_displacement"),
+        mass: [outcome.effective_mass.value; 2],
+    }
+}
+
+fn origin(campaign: &Campaign, outcome: &CampaignOutcome) -> Result<CardOrigin, Error> {
+    let mut digests = BTreeMap::new();
+    for file in FILES {
+        let path: &Path = &campaign.directory.join(file);
+        if path.is_file() {
+            digests.insert(file.to_owned(), digest_file(path)?);
+        }
+    }
+    Ok(CardOrigin {
+        campaign: campaign.title.clone(),
+        method: "each impact fitted, then the median over fruit".to_owned(),
+        simulated: outcome.simulated.clone(),
+        digests,
+        windfall: VERSION.to_owned(),
+        date: time_now(),
+    })
+}

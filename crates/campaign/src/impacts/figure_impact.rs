@@ -1,0 +1,315 @@
+//! An impact as a figure: force and displacement over time, the loop of force
+//! over displacement, and the fitted laws over all of them.
+
+use crate::result::outcome::ImpactOutcome;
+use windfall_contact::law::EndRule;
+use windfall_contact::laws::kind::{Law, LawKind};
+use windfall_draw::xy::{Figure, Panel, Series, Style};
+use windfall_identify::rig::kind::Rig;
+use windfall_identify::rig::simulate::{Trajectory, trajectory};
+use windfall_signal::impact::{Impact, Series as Samples};
+use windfall_signal::kinematics::value_at;
+
+/// Time over which differences of the displacement are shown as its rate, as a part
+/// of the contact's duration; 1.
+const RATE_SPAN: f64 = 0.05;
+
+/// Colour of the contact window, which no law has before the fourth.
+pub(crate) const WINDOW: usize = 4;
+
+/// Points of a law's line.
+const POINTS: usize = 400;
+
+/// The channels of an impact with the laws that were fitted to it.
+///
+/// * `outcomes`: results of all laws on this impact
+/// * `used`: rig, end of contact, and the user's own laws
+#[must_use]
+pub fn figure_of_impact(
+    title: &str,
+    impact: &Impact,
+    outcomes: &[&ImpactOutcome],
+    used: (&Rig, EndRule, &[LawKind]),
+) -> Figure {
+    let laws: Vec<FittedMotion> = outcomes
+        .iter()
+        .filter_map(|outcome| fitted_motion(impact, outcome, used))
+        .collect();
+    let mut panels = Vec::new();
+    if let Some(force) = &impact.force {
+        panels.push(over_time(
+            impact,
+            "contact force",
+            ("N", 1.0),
+            force,
+            &laws,
+            |m| &m.force,
+        ));
+    }
+    if let Some(displacement) = &impact.displacement {
+        let unit = ("mm", 1e3);
+        panels.push(over_time(
+            impact,
+            "displacement",
+            unit,
+            displacement,
+            &laws,
+            |m| &m.displacement,
+        ));
+    }
+    if let (Some((label, rate)), true) = (shown_rate(impact), !panels.is_empty()) {
+        let mut panel = over_time(
+            impact,
+            "displacement rate",
+            ("m/s", 1.0),
+            &rate,
+            &laws,
+            |m| &m.rate,
+        );
+        panel.series[1].label = label;
+        panels.push(panel);
+    }
+    if let (Some(force), Some(displacement)) = (&impact.force, &impact.displacement) {
+        panels.push(force_loop(impact, force, displacement, &laws));
+    }
+    if panels.is_empty() {
+        for (name, unit, series) in [
+            ("displacement rate", "m/s", &impact.rate),
+            ("acceleration", "m/s²", &impact.acceleration),
+        ] {
+            if let Some(series) = series {
+                panels.push(over_time(impact, name, (unit, 1.0), series, &[], |m| {
+                    &m.force
+                }));
+            }
+        }
+    }
+    Figure {
+        title: title.to_owned(),
+        panels,
+    }
+}
+
+/// A fitted law ready to be followed.
+pub struct FittedImpact<'a> {
+    law: Law,
+    rig: &'a Rig,
+    end: EndRule,
+    velocity: f64,
+    onset: f64,
+    offset: f64,
+}
+
+impl<'a> FittedImpact<'a> {
+    /// `None` where the outcome does not hold all that the motion depends on.
+    pub fn of(
+        impact: &Impact,
+        outcome: &ImpactOutcome,
+        (rig, end, user): (&'a Rig, EndRule, &[LawKind]),
+    ) -> Option<Self> {
+        let kind = LawKind::from_name_among(&outcome.law, user).ok()?;
+        let values: Vec<f64> = outcome.parameters.0.iter().map(|(_, e)| e.value).collect();
+        let nuisance = |name: &str| outcome.nuisances.get(name).map(|estimate| estimate.value);
+        Some(Self {
+            law: kind.with_parameters(&values).ok()?,
+            rig,
+            end,
+            velocity: outcome.fitted.get("impact_velocity").copied().flatten()?,
+            onset: nuisance("onset").unwrap_or(impact.onset),
+            offset: nuisance("displacement_offset").unwrap_or(0.0),
+        })
+    }
+}
+
+/// The motion of a fitted impact at times on the clock of the recording, with the
+/// displacement as the recording counts it; `None` where it cannot be followed.
+pub fn motion_at(fitted: &FittedImpact, times: &[f64]) -> Option<Trajectory> {
+    let since: Vec<f64> = times.iter().map(|t| t - fitted.onset).collect();
+    let FittedImpact {
+        law,
+        rig,
+        end,
+        velocity,
+        ..
+    } = fitted;
+    let mut motion = trajectory(law, rig, *velocity, &since, *end).ok()?;
+    motion.times = times.to_vec();
+    for displacement in &mut motion.displacement {
+        *displacement += fitted.offset;
+    }
+    Some(motion)
+}
+
+/// The motion under a fitted law on the clock of the recording.
+struct FittedMotion {
+    law: String,
+    motion: Trajectory,
+}
+
+fn fitted_motion(
+    impact: &Impact,
+    outcome: &ImpactOutcome,
+    used: (&Rig, EndRule, &[LawKind]),
+) -> Option<FittedMotion> {
+    Some(FittedMotion {
+        law: outcome.law.clone(),
+        motion: line_of_law(impact, outcome, used)?,
+    })
+}
+
+/// The motion under a fitted law at even times over all that is shown of an impact;
+/// `None` where it cannot be followed.
+pub fn line_of_law(
+    impact: &Impact,
+    outcome: &ImpactOutcome,
+    used: (&Rig, EndRule, &[LawKind]),
+) -> Option<Trajectory> {
+    let fitted = FittedImpact::of(impact, outcome, used)?;
+    let (from, to) = range(impact)?;
+    let step = (to - from) / (POINTS - 1) as f64;
+    let times: Vec<f64> = (0..POINTS).map(|i| from + i as f64 * step).collect();
+    motion_at(&fitted, &times)
+}
+
+fn range(impact: &Impact) -> Option<(f64, f64)> {
+    let all = [
+        &impact.force,
+        &impact.displacement,
+        &impact.rate,
+        &impact.acceleration,
+    ];
+    let ends = all
+        .into_iter()
+        .flatten()
+        .filter_map(|series| Some((*series.times.first()?, *series.times.last()?)));
+    ends.reduce(|a, b| (a.0.min(b.0), a.1.max(b.1)))
+}
+
+/// The displacement rate as people can read it, with how it came about. Differences
+/// between neighbouring counts of an encoder are nothing or a whole count: those over
+/// a longer time are shown.
+pub fn shown_rate(impact: &Impact) -> Option<(String, Samples)> {
+    if let Some(rate) = impact.rate.as_ref().filter(|rate| !rate.derived) {
+        return Some(("measured".to_owned(), rate.clone()));
+    }
+    let displacement = impact.displacement.as_ref()?;
+    let (times, values) = (&displacement.times, &displacement.values);
+    let step = (times.last()? - times.first()?) / (times.len() - 1).max(1) as f64;
+    let span = RATE_SPAN * (impact.end - impact.onset);
+    let half = (0.5 * span / step).round().max(1.0) as usize;
+    let mut rate = Samples::default();
+    for i in half..times.len().saturating_sub(half) {
+        let (from, to) = (i - half, i + half);
+        rate.times.push(times[i]);
+        rate.values
+            .push((values[to] - values[from]) / (times[to] - times[from]));
+    }
+    let span = 2e3 * half as f64 * step;
+    let label = format!("differences of the displacement over {span:.2} ms");
+    (!rate.times.is_empty()).then_some((label, rate))
+}
+
+fn over_time(
+    impact: &Impact,
+    name: &str,
+    (unit, scale): (&str, f64),
+    measured: &Samples,
+    laws: &[FittedMotion],
+    pick: impl Fn(&Trajectory) -> &Vec<f64>,
+) -> Panel {
+    let point = |(t, value): (&f64, &f64)| (1e3 * (t - impact.onset), scale * value);
+    let window = [impact.onset, impact.end].map(|t| (1e3 * (t - impact.onset), 0.0));
+    let mut series = vec![
+        Series {
+            label: "contact (force threshold)".to_owned(),
+            style: Style::Shade,
+            colour: Some(WINDOW),
+            points: window.to_vec(),
+        },
+        Series {
+            label: "measured".to_owned(),
+            style: Style::Dots,
+            colour: Some(0),
+            points: measured
+                .times
+                .iter()
+                .zip(&measured.values)
+                .map(point)
+                .collect(),
+        },
+    ];
+    series.extend(laws.iter().enumerate().map(|(index, motion)| {
+        Series {
+            label: motion.law.clone(),
+            style: Style::Line,
+            colour: Some(1 + index),
+            points: motion
+                .motion
+                .times
+                .iter()
+                .zip(pick(&motion.motion))
+                .map(point)
+                .collect(),
+        }
+    }));
+    Panel {
+        x: "time since the force threshold".to_owned(),
+        x_unit: "ms".to_owned(),
+        y: name.to_owned(),
+        y_unit: unit.to_owned(),
+        series,
+        marks: Vec::new(),
+    }
+}
+
+fn force_loop(
+    impact: &Impact,
+    force: &Samples,
+    displacement: &Samples,
+    laws: &[FittedMotion],
+) -> Panel {
+    // At the times of the channel with more samples.
+    let times = match force.times.len() >= displacement.times.len() {
+        true => &force.times,
+        false => &displacement.times,
+    };
+    let guard = 0.05 * (impact.end - impact.onset);
+    let inside = times
+        .iter()
+        .filter(|t| (impact.onset - guard..=impact.end + guard).contains(t));
+    let points = inside.map(|t| {
+        let x = value_at(&displacement.times, &displacement.values, *t);
+        (1e3 * x, value_at(&force.times, &force.values, *t))
+    });
+    let mut series = vec![Series {
+        label: "measured".to_owned(),
+        style: Style::Dots,
+        colour: None,
+        points: points.collect(),
+    }];
+    series.extend(laws.iter().enumerate().map(|(index, motion)| {
+        let Trajectory {
+            times,
+            displacement,
+            force,
+            ..
+        } = &motion.motion;
+        let inside = times.iter().zip(displacement.iter().zip(force));
+        let inside =
+            inside.filter(|(t, _)| (impact.onset - guard..=impact.end + guard).contains(t));
+        Series {
+            label: motion.law.clone(),
+            style: Style::Line,
+            colour: Some(1 + index),
+            points: inside.map(|(_, (x, f))| (1e3 * x, *f)).collect(),
+        }
+    }));
+    Panel {
+        x: "displacement".to_owned(),
+        x_unit: "mm".to_owned(),
+        y: "force".to_owned(),
+        y_unit: "N".to_owned(),
+        series,
+        marks: Vec::new(),
+    }
+}

@@ -1,0 +1,122 @@
+//! How the likelihood falls on either side of each estimate.
+
+use crate::result::outcome::ImpactOutcome;
+use windfall_draw::xy::{Figure, Panel, Series, Style};
+use windfall_files::found::EstimateOutcome;
+
+/// Points of the parabola.
+const POINTS: usize = 81;
+
+/// −2 ln of the profile likelihood of each parameter over its value, with the ends of
+/// the 95 % interval and the parabola that estimate and standard deviation stand for;
+/// `None` where the intervals were not made by profiles.
+#[must_use]
+pub fn figure_of_profiles(title: &str, outcome: &ImpactOutcome) -> Option<Figure> {
+    let panels: Vec<Panel> = outcome
+        .intervals
+        .profiles
+        .0
+        .iter()
+        .filter_map(|(name, profile)| {
+            let estimate = outcome
+                .parameters
+                .get(name)
+                .or_else(|| outcome.nuisances.get(name))?;
+            let mut points: Vec<(f64, f64)> = profile
+                .values
+                .iter()
+                .copied()
+                .zip(profile.rises.iter().copied())
+                .collect();
+            points.sort_by(|a, b| a.0.total_cmp(&b.0));
+            (!points.is_empty()).then(|| panel(name, estimate, points))
+        })
+        .collect();
+    (!panels.is_empty()).then(|| Figure {
+        title: format!("{title}: profile likelihood, {}", outcome.law),
+        panels,
+    })
+}
+
+fn panel(name: &str, estimate: &EstimateOutcome, points: Vec<(f64, f64)>) -> Panel {
+    let drawn = |label: &str, style, colour, points| Series {
+        label: label.to_owned(),
+        style,
+        colour: Some(colour),
+        points,
+    };
+    let ends = [estimate.low, estimate.high].into_iter().flatten();
+    let ends = ends.map(|end| (end, 0.0)).collect();
+    let mut series = vec![drawn("95 % interval", Style::Upright, 1, ends)];
+    if let (Some(sd), Some(first), Some(last)) = (estimate.sd, points.first(), points.last()) {
+        let highest = points.iter().map(|p| p.1).fold(0.0, f64::max);
+        let parabola = (0..POINTS).map(|i| {
+            let x = first.0 + (last.0 - first.0) * i as f64 / (POINTS - 1) as f64;
+            (x, ((x - estimate.value) / sd).powi(2))
+        });
+        let within = parabola
+            .filter(|(_, rise)| *rise <= 1.2 * highest)
+            .collect();
+        series.push(drawn(
+            "parabola of the standard deviation",
+            Style::Dashed,
+            6,
+            within,
+        ));
+    }
+    let line = between(&points, estimate.value);
+    series.push(drawn("profile", Style::Line, 0, line));
+    series.push(drawn("", Style::Dots, 0, points));
+    let unit = match estimate.unit.as_str() {
+        "1" => "",
+        unit => unit,
+    };
+    Panel {
+        x: name.to_owned(),
+        x_unit: unit.to_owned(),
+        y: "−2 ln of the likelihood, above its least".to_owned(),
+        y_unit: String::new(),
+        series,
+        marks: Vec::new(),
+    }
+}
+
+/// The profile between the points at which it was found: straight in the root of the
+/// rise, negative below the estimate, which curves far less than the rise does.
+///
+/// # Source
+/// D. M. Bates, D. G. Watts, Nonlinear Regression Analysis (1988), section 6.1.
+fn between(points: &[(f64, f64)], estimate: f64) -> Vec<(f64, f64)> {
+    let root = |(x, rise): (f64, f64)| match x < estimate {
+        true => -rise.max(0.0).sqrt(),
+        false => rise.max(0.0).sqrt(),
+    };
+    let mut line = Vec::new();
+    for pair in points.windows(2) {
+        let (from, to) = (pair[0], pair[1]);
+        let (low, high) = (root(from), root(to));
+        line.extend((0..POINTS).map(|i| {
+            let part = i as f64 / (POINTS - 1) as f64;
+            let root = low + part * (high - low);
+            (from.0 + part * (to.0 - from.0), root * root)
+        }));
+    }
+    line
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Three points of a parabola give the parabola.
+    #[test]
+    fn closed_form_parabola_between_three_points() {
+        let parabola = |x: f64| ((x - 3.0) / 0.5_f64).powi(2);
+        let points = [2.0, 3.0, 4.5].map(|x| (x, parabola(x)));
+        let line = between(&points, 3.0);
+        assert_eq!(line.len(), 2 * POINTS);
+        for (x, rise) in line {
+            assert!((rise - parabola(x)).abs() < 1e-12, "{x} {rise}");
+        }
+    }
+}

@@ -1,0 +1,288 @@
+//! Tables of groups: parameters, signals and energies, laws compared.
+
+use crate::result::outcome::{CampaignOutcome, GroupOutcome, ImpactOutcome};
+use windfall_files::found::SpreadOutcome;
+use windfall_files::found::spread;
+use windfall_files::named::Named;
+use windfall_files::text::number::{plain, spread_percent, spread_text};
+use windfall_files::text::table::{Cells, page_tables, paragraph};
+
+/// A derived quantity in a table: name, heading, unit, factor from SI.
+type Column = (&'static str, &'static str, &'static str, f64);
+
+/// Velocities and peaks.
+const SIGNALS: [Column; 4] = [
+    ("impact_velocity", "velocity", "m/s", 1.0),
+    ("peak_force", "peak force", "N", 1.0),
+    ("max_displacement", "displacement", "mm", 1e3),
+    ("contact_duration", "duration", "ms", 1e3),
+];
+
+/// Energies and their ratio.
+const ENERGIES: [Column; 4] = [
+    ("impact_energy", "impact energy", "mJ", 1e3),
+    ("elastic_energy", "elastic energy", "mJ", 1e3),
+    ("absorbed_energy", "absorbed energy", "mJ", 1e3),
+    ("restitution", "restitution", "", 1.0),
+];
+
+/// Up to this relative spread a quantity is said once and not in every row; 1.
+const ALIKE: f64 = 1e-3;
+
+/// Groups of one law, in their order.
+#[must_use]
+pub fn groups_of<'a>(outcome: &'a CampaignOutcome, law: &str) -> Vec<&'a GroupOutcome> {
+    let groups = outcome.groups.iter();
+    groups.filter(|group| group.law == law).collect()
+}
+
+/// "k (N/m^1.5)", or the name alone where impacts differ in the unit.
+#[must_use]
+pub fn heading_of(impacts: &[&ImpactOutcome], name: &str) -> String {
+    let mut units = impacts
+        .iter()
+        .filter_map(|i| i.parameters.get(name))
+        .map(|e| &e.unit);
+    match units.next() {
+        Some(unit) if unit != "1" && units.all(|other| other == unit) => format!("{name} ({unit})"),
+        _ => name.to_owned(),
+    }
+}
+
+/// Parameters per group, as Table 2 of the 2003 pendulum study.
+#[must_use]
+pub fn parameter_table(groups: &[&GroupOutcome], impacts: &[&ImpactOutcome]) -> String {
+    let cells = parameter_cells(groups, impacts);
+    page_tables(&cells.header, &cells.rows, &[0])
+}
+
+/// The cells of [`parameter_table`].
+#[must_use]
+pub fn parameter_cells(groups: &[&GroupOutcome], impacts: &[&ImpactOutcome]) -> Cells {
+    let mut header = ["group", "impacts", "specimens"]
+        .map(str::to_owned)
+        .to_vec();
+    let estimated: Vec<&str> = parameter_names(groups);
+    header.extend(estimated.iter().map(|name| heading_of(impacts, name)));
+    let rows = groups.iter().map(|group| {
+        let mut row = vec![
+            group_name(group.group.as_deref()),
+            group.impacts.to_string(),
+            group.specimens.to_string(),
+        ];
+        row.extend(estimated.iter().map(|name| {
+            let spread = group.parameters.get(name);
+            spread.map_or_else(dash, |s| spread_text(s.mean, s.sd, s.cv))
+        }));
+        row
+    });
+    let rows = rows.collect();
+    Cells { header, rows }
+}
+
+/// Velocities, peaks and energies per group, all of them.
+#[must_use]
+pub fn derived_cells(groups: &[&GroupOutcome]) -> [Cells; 2] {
+    [&SIGNALS, &ENERGIES].map(|columns| {
+        let columns: Vec<&Column> = columns.iter().collect();
+        let mut header = vec!["group".to_owned(), "n".to_owned()];
+        header.extend(columns.iter().map(|column| heading(column)));
+        let rows = groups.iter().map(|group| derived_row(group, &columns));
+        let rows = rows.collect();
+        Cells { header, rows }
+    })
+}
+
+/// Velocities, peaks and energies per group, as Table 3 of the same study. They
+/// are read off the signals and hardly depend on the law.
+#[must_use]
+pub fn derived_tables(groups: &[&GroupOutcome]) -> String {
+    let (alike, varied): (Vec<&Column>, Vec<&Column>) = SIGNALS
+        .iter()
+        .chain(&ENERGIES)
+        .partition(|column| alike(groups, column.0));
+    let mut text = String::new();
+    for columns in [&SIGNALS, &ENERGIES] {
+        let columns: Vec<&Column> = columns.iter().filter(|c| varied.contains(c)).collect();
+        if columns.is_empty() {
+            continue;
+        }
+        let mut header = vec!["group".to_owned(), "n".to_owned()];
+        header.extend(columns.iter().map(|column| heading(column)));
+        let rows = groups.iter().map(|group| derived_row(group, &columns));
+        text += &page_tables(&header, &rows.collect::<Vec<_>>(), &[0]);
+        text += "\n\n";
+    }
+    let said: Vec<String> = alike
+        .iter()
+        .filter_map(|column| {
+            let mean = groups.first()?.derived.get(column.0)?.mean;
+            let number = plain(mean * column.3);
+            Some(
+                format!("{} {number} {}", column.1, column.2)
+                    .trim_end()
+                    .to_owned(),
+            )
+        })
+        .collect();
+    if !said.is_empty() {
+        let line = format!(
+            "The same in all impacts (SD below 0.1 %): {}",
+            said.join(", ")
+        );
+        text += &(paragraph(&line, 2) + "\n");
+    }
+    text.trim_end().to_owned() + "\n"
+}
+
+fn heading((_, heading, unit, _): &Column) -> String {
+    match *unit {
+        "" => (*heading).to_owned(),
+        unit => format!("{heading} ({unit})"),
+    }
+}
+
+fn derived_row(group: &GroupOutcome, columns: &[&Column]) -> Vec<String> {
+    let mut row = vec![
+        group_name(group.group.as_deref()),
+        group.impacts.to_string(),
+    ];
+    row.extend(columns.iter().map(|(name, _, _, factor)| {
+        let spread = group.derived.get(name);
+        spread.map_or_else(dash, |s| spread_percent(s.mean * factor, s.cv))
+    }));
+    row
+}
+
+/// Whether a quantity is the same in all impacts of several.
+fn alike(groups: &[&GroupOutcome], name: &str) -> bool {
+    let spreads: Option<Vec<&SpreadOutcome>> =
+        groups.iter().map(|group| group.derived.get(name)).collect();
+    let Some(spreads) = spreads else { return false };
+    let impacts: usize = spreads.iter().map(|spread| spread.n).sum();
+    let first = spreads.first().map_or(0.0, |spread| spread.mean);
+    impacts > 1
+        && spreads.iter().all(|spread| {
+            (spread.mean - first).abs() <= ALIKE * first.abs()
+                && spread.cv.is_none_or(|cv| cv < ALIKE)
+        })
+}
+
+/// What a law with a restitution promises, what it gives once fitted, and what
+/// the signals show; empty for other laws.
+#[must_use]
+pub fn restitution_table(impacts: &[&ImpactOutcome]) -> String {
+    let promised = |impact: &&ImpactOutcome| impact.fitted.get("nominal_restitution").is_some();
+    if !impacts.iter().any(promised) {
+        return String::new();
+    }
+    let header = ["group", "nominal (parameter)", "delivered (law)", "signal"].map(str::to_owned);
+    let rows = group_names(impacts).into_iter().map(|group| {
+        let members: Vec<&&ImpactOutcome> = impacts
+            .iter()
+            .filter(|impact| impact.group.as_deref() == group)
+            .collect();
+        let cell = |value: &dyn Fn(&ImpactOutcome) -> Option<f64>| {
+            let values: Vec<f64> = members.iter().filter_map(|impact| value(impact)).collect();
+            spread(&values).map_or_else(dash, |s| spread_percent(s.mean, s.cv))
+        };
+        let of = |values: &Named<Option<f64>>, name: &str| values.get(name).copied().flatten();
+        vec![
+            group_name(group),
+            cell(&|impact| of(&impact.fitted, "nominal_restitution")),
+            cell(&|impact| of(&impact.fitted, "restitution")),
+            cell(&|impact| of(&impact.derived, "restitution")),
+        ]
+    });
+    let table = page_tables(&header, &rows.collect::<Vec<_>>(), &[0]);
+    format!("\nRestitution, nominal beside delivered (mean ± SD in %):\n{table}\n")
+}
+
+/// How several laws describe the same impacts: residuals over noise per
+/// quantity, root mean square over impacts.
+#[must_use]
+pub fn law_table(outcome: &CampaignOutcome, laws: &[&str]) -> String {
+    let cells = law_cells(outcome, laws);
+    page_tables(&cells.header, &cells.rows, &[0, 1])
+}
+
+/// The cells of [`law_table`].
+#[must_use]
+pub fn law_cells(outcome: &CampaignOutcome, laws: &[&str]) -> Cells {
+    let mut quantities: Vec<&str> = Vec::new();
+    for (name, _) in outcome.impacts.iter().flat_map(|i| &i.residuals.0) {
+        if !quantities.contains(&name.as_str()) {
+            quantities.push(name);
+        }
+    }
+    let mut header = ["law", "group", "estimated", "impacts", "converged"]
+        .map(str::to_owned)
+        .to_vec();
+    header.extend(quantities.iter().map(|name| (*name).to_owned()));
+    let all: Vec<&ImpactOutcome> = outcome.impacts.iter().collect();
+    let groups = group_names(&all);
+    let pairs = laws
+        .iter()
+        .flat_map(|law| groups.iter().map(move |group| (*law, *group)));
+    let rows = pairs.map(|(law, group)| {
+        let of_law = |i: &&ImpactOutcome| i.law == law && i.group.as_deref() == group;
+        let impacts: Vec<&ImpactOutcome> = outcome.impacts.iter().filter(of_law).collect();
+        let estimated = impacts.first().map_or(0, |impact| estimated_count(impact));
+        let converged = impacts.iter().filter(|i| i.converged).count();
+        let mut row = vec![law.to_owned(), group_name(group)];
+        row.extend([estimated, impacts.len(), converged].map(|n| n.to_string()));
+        let misfits = quantities
+            .iter()
+            .map(|name| residual_over_noise(&impacts, name));
+        row.extend(misfits);
+        row
+    });
+    let rows = rows.collect();
+    Cells { header, rows }
+}
+
+fn group_names<'a>(impacts: &[&'a ImpactOutcome]) -> Vec<Option<&'a str>> {
+    let mut names: Vec<Option<&str>> = Vec::new();
+    for impact in impacts {
+        if !names.contains(&impact.group.as_deref()) {
+            names.push(impact.group.as_deref());
+        }
+    }
+    names
+}
+
+fn estimated_count(impact: &ImpactOutcome) -> usize {
+    let parameters = impact.parameters.0.iter();
+    parameters.filter(|(_, estimate)| !estimate.held).count()
+}
+
+fn residual_over_noise(impacts: &[&ImpactOutcome], quantity: &str) -> String {
+    let ratios: Vec<f64> = impacts
+        .iter()
+        .filter_map(|impact| impact.residuals.get(quantity))
+        .filter(|residual| residual.noise > 0.0)
+        .map(|residual| (residual.rms / residual.noise).powi(2))
+        .collect();
+    match ratios.len() {
+        0 => dash(),
+        n => format!("{:.2}", (ratios.iter().sum::<f64>() / n as f64).sqrt()),
+    }
+}
+
+fn parameter_names<'a>(groups: &[&'a GroupOutcome]) -> Vec<&'a str> {
+    let mut names: Vec<&str> = Vec::new();
+    for (name, _) in groups.iter().flat_map(|group| &group.parameters.0) {
+        if !names.contains(&name.as_str()) {
+            names.push(name);
+        }
+    }
+    names
+}
+
+fn group_name(group: Option<&str>) -> String {
+    group.unwrap_or("all").to_owned()
+}
+
+fn dash() -> String {
+    "-".to_owned()
+}

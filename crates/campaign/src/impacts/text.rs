@@ -1,0 +1,230 @@
+//! Results of `fit` as text for a terminal.
+
+use crate::impacts::findings::findings_text;
+use crate::impacts::groups::{
+    derived_tables, groups_of, heading_of, law_table, parameter_table, restitution_table,
+};
+use crate::result::outcome::{CampaignOutcome, ImpactOutcome};
+use std::fmt::Write;
+use windfall_files::text::number::{plain, value_and_sd};
+use windfall_files::text::table::{page_tables, paragraph};
+
+/// More impacts than this are shown as groups only.
+const LISTED_IMPACTS: usize = 40;
+
+/// Quantities in the table of impacts: name, heading, factor from SI.
+const OF_IMPACTS: [(&str, &str, f64); 3] = [
+    ("impact_velocity", "velocity (m/s)", 1.0),
+    ("restitution", "restitution", 1.0),
+    ("absorbed_energy", "absorbed (mJ)", 1e3),
+];
+
+/// A campaign's results: impacts, groups, what was left out, findings.
+#[must_use]
+pub fn text_of_campaign(outcome: &CampaignOutcome) -> String {
+    let mut text = format!("{}\n", paragraph(&outcome.campaign, 2));
+    if let Some(label) = &outcome.simulated {
+        let label = format!("SIMULATED recordings: {label}");
+        let _ = writeln!(text, "{}", paragraph(&label, 2));
+    }
+    let _ = writeln!(text, "{}", mass_line(outcome));
+    let laws = laws_of(outcome);
+    for law in &laws {
+        text += &law_text(outcome, law);
+    }
+    if let Some(first) = laws.first() {
+        text += match outcome.impacts.len() {
+            1 => "\nRead off the signals (from the fit where they do not show it):\n",
+            _ => {
+                "\nRead off the signals (from the fit where they do not show it), mean ± SD in %:\n"
+            }
+        };
+        text += &derived_tables(&groups_of(outcome, first));
+        text += "Duration and displacement count from the force threshold; the fitted law's: --format json.\n";
+    }
+    if laws.len() > 1 {
+        text += "\nThe laws compared by residual over noise; 1 is a law that describes the signal to its noise:\n";
+        let _ = writeln!(text, "{}", law_table(outcome, &laws));
+    }
+    text + &findings_text(outcome)
+}
+
+/// One law: its impacts, if they are few, and its groups.
+fn law_text(outcome: &CampaignOutcome, law: &str) -> String {
+    let of_law = |impact: &&ImpactOutcome| impact.law == law;
+    let impacts: Vec<&ImpactOutcome> = outcome.impacts.iter().filter(of_law).collect();
+    let mut text = format!("\n{law}, fitted to {}\n", impacts[0].quantities.join(", "));
+    if impacts.len() <= LISTED_IMPACTS {
+        text += "Each impact (± standard deviation of the estimate):\n";
+        let _ = writeln!(text, "{}", impact_table(&impacts));
+        text += &interval_table(&impacts);
+    }
+    if impacts.len() > 1 {
+        text += "\nMean ± SD over the impacts (SD in % of the mean):\n";
+        let table = parameter_table(&groups_of(outcome, law), &impacts);
+        let _ = writeln!(text, "{table}");
+    }
+    text += &restitution_table(&impacts);
+    if impacts.len() > LISTED_IMPACTS {
+        let n = impacts.len();
+        let _ = writeln!(text, "Each of the {n} impacts: --format csv or json.");
+    }
+    text
+}
+
+/// The effective mass and where it comes from.
+pub fn mass_line(outcome: &CampaignOutcome) -> String {
+    let mass = &outcome.effective_mass;
+    let value = value_and_sd(mass.value, Some(mass.sd));
+    let known = format!("Effective mass {value} kg");
+    match mass.impacts {
+        0 => known,
+        1 => format!("{known}, from impulse and change of velocity of one impact"),
+        n => format!("{known}, from impulse and change of velocity of {n} impacts"),
+    }
+}
+
+/// Laws in order of first appearance.
+pub fn laws_of(outcome: &CampaignOutcome) -> Vec<&str> {
+    let mut laws: Vec<&str> = Vec::new();
+    for impact in &outcome.impacts {
+        if !laws.contains(&impact.law.as_str()) {
+            laws.push(&impact.law);
+        }
+    }
+    laws
+}
+
+fn impact_table(impacts: &[&ImpactOutcome]) -> String {
+    let mut header = vec!["impact".to_owned()];
+    let named = impacts.iter().any(|impact| impact.id != impact.specimen);
+    if named {
+        header.push("specimen".to_owned());
+    }
+    header.extend(parameter_headings(impacts));
+    header.extend(OF_IMPACTS.map(|(_, heading, _)| heading.to_owned()));
+    let shared = shared_codes(impacts);
+    let mut rows: Vec<Vec<String>> = Vec::new();
+    let mut remarks = false;
+    for impact in impacts {
+        let mut row = vec![impact.id.clone()];
+        if named {
+            row.push(impact.specimen.clone());
+        }
+        row.extend(impact.parameters.0.iter().map(|(_, e)| match e.held {
+            false => value_and_sd(e.value, e.sd),
+            true => format!("{} held", plain(e.value)),
+        }));
+        row.extend(OF_IMPACTS.map(|(name, _, factor)| {
+            let value = impact.derived.get(name).copied().flatten();
+            value.map_or_else(|| "-".to_owned(), |value| plain(value * factor))
+        }));
+        let codes = own_codes(impact, &shared);
+        remarks |= !codes.is_empty();
+        row.push(codes);
+        rows.push(row);
+    }
+    let mut left = vec![0];
+    left.extend(named.then_some(1));
+    if remarks {
+        left.push(header.len());
+        header.push("findings".to_owned());
+    }
+    rows.iter_mut().for_each(|row| row.truncate(header.len()));
+    page_tables(&header, &rows, &left)
+}
+
+/// Intervals that are more than ± a multiple of the deviation.
+fn interval_table(impacts: &[&ImpactOutcome]) -> String {
+    let followed = impacts
+        .iter()
+        .find(|impact| !matches!(impact.intervals.method.as_str(), "" | "asymptotic"));
+    let Some(first) = followed else {
+        return String::new();
+    };
+    let title = match first.intervals.method.as_str() {
+        "profile" => "95 % intervals by profile likelihood".to_owned(),
+        "bootstrap" => format!(
+            "95 % intervals by bootstrap of residual blocks, {} recordings of each impact",
+            first.intervals.replicates.unwrap_or(0)
+        ),
+        _ => format!(
+            "95 % intervals of the posterior, {} draws of {} chains",
+            first.intervals.draws.unwrap_or(0),
+            first.intervals.chains.unwrap_or(0)
+        ),
+    };
+    let mut header = vec!["impact".to_owned()];
+    header.extend(parameter_headings(impacts));
+    let sampled = impacts
+        .iter()
+        .any(|impact| !impact.intervals.mixing.0.is_empty());
+    if sampled {
+        header.extend(["largest R-hat", "fewest draws", "divergences"].map(str::to_owned));
+    }
+    let rows: Vec<Vec<String>> = impacts
+        .iter()
+        .map(|impact| {
+            let mut row = vec![impact.id.clone()];
+            row.extend(
+                impact
+                    .parameters
+                    .0
+                    .iter()
+                    .map(|(_, e)| match (e.low, e.high) {
+                        (Some(low), Some(high)) => format!("{} to {}", plain(low), plain(high)),
+                        _ => "held".to_owned(),
+                    }),
+            );
+            if sampled {
+                row.extend(mixing_cells(impact));
+            }
+            row
+        })
+        .collect();
+    format!("\n{title}:\n{}\n", page_tables(&header, &rows, &[0]))
+}
+
+fn mixing_cells(impact: &ImpactOutcome) -> [String; 3] {
+    let mixing = || impact.intervals.mixing.0.iter().map(|(_, m)| m);
+    let r_hat = mixing().map(|m| m.r_hat.unwrap_or(f64::INFINITY));
+    let draws = mixing().map(|m| m.bulk_draws.min(m.tail_draws));
+    [
+        format!("{:.3}", r_hat.fold(1.0, f64::max)),
+        format!("{:.0}", draws.fold(f64::INFINITY, f64::min)),
+        impact.intervals.divergences.unwrap_or(0).to_string(),
+    ]
+}
+
+/// Codes of an impact's findings that not all share, each once.
+pub fn own_codes(impact: &ImpactOutcome, shared: &[&str]) -> String {
+    let mut codes: Vec<&str> = Vec::new();
+    for code in impact.findings.iter().map(|finding| finding.code.as_str()) {
+        if !shared.contains(&code) && !codes.contains(&code) {
+            codes.push(code);
+        }
+    }
+    codes.join(" ")
+}
+
+/// Codes of findings that every impact has: said once below the tables, they
+/// tell nothing in a row.
+pub fn shared_codes<'a>(impacts: &[&'a ImpactOutcome]) -> Vec<&'a str> {
+    let Some((first, rest)) = impacts.split_first() else {
+        return Vec::new();
+    };
+    let has = |impact: &ImpactOutcome, code: &str| impact.findings.iter().any(|f| f.code == code);
+    let codes = first.findings.iter().map(|finding| finding.code.as_str());
+    codes
+        .filter(|code| rest.iter().all(|impact| has(impact, code)))
+        .collect()
+}
+
+fn parameter_headings(impacts: &[&ImpactOutcome]) -> Vec<String> {
+    let first = impacts.first().map(|impact| &impact.parameters.0);
+    first
+        .into_iter()
+        .flatten()
+        .map(|(name, _)| heading_of(impacts, name))
+        .collect()
+}

@@ -1,0 +1,385 @@
+//! Results of campaigns that fit no impacts, as text and as CSV.
+
+use crate::measure::measured::{
+    MeasuredItem, MeasuredOutcome, MeasuredValue, ShownValue, laws_of, spread_of, value_of,
+};
+use crate::settings::kind::CampaignKind;
+use std::fmt::Write;
+use windfall_files::error::Error;
+use windfall_files::found::{FailureOutcome, FindingOutcome};
+use windfall_files::table::write::csv_text;
+use windfall_files::text::number::{spread_percent, value_and_sd};
+use windfall_files::text::table::{Cells, page_tables, paragraph};
+
+/// Indentation of the second line of a finding; characters.
+const INDENT: usize = 4;
+
+/// More results than this are shown as groups only.
+const LISTED: usize = 40;
+
+/// Tables for people: recordings, specimens, the whole, findings.
+#[must_use]
+pub fn text_of_measured(outcome: &MeasuredOutcome) -> String {
+    let mut text = format!("{}\n", paragraph(&outcome.campaign, 2));
+    if let Some(label) = &outcome.simulated {
+        let label = format!("SIMULATED recordings: {label}");
+        let _ = writeln!(text, "{}", paragraph(&label, 2));
+    }
+    let of_specimens = &outcome.shown_of_specimens;
+    for law in laws_of(&outcome.impacts) {
+        let items = of_law(&outcome.impacts, law);
+        // A recording holds several taps; groups of fruit, not of taps, have a spread.
+        let (each, over, shown, spread) = match of_taps(outcome) {
+            true => ("tap", "fruit", of_specimens, &outcome.specimens),
+            false => ("recording", "recordings", &outcome.shown, &outcome.impacts),
+        };
+        match items.len() {
+            n if n > LISTED => {
+                let _ = writeln!(text, "\n{law}: {n} results; each: --format csv or json.");
+            }
+            _ => {
+                let _ = writeln!(
+                    text,
+                    "\n{law}: each {each} (± standard deviation of the estimate)"
+                );
+                let _ = writeln!(text, "{}", items_table(each, &items, &outcome.shown));
+            }
+        }
+        if of_law(spread, law).len() > 1 {
+            let _ = writeln!(text, "\nMean ± SD over the {over} (SD in % of the mean):");
+            let table = groups_table(outcome, law, (shown, spread));
+            let _ = writeln!(text, "{table}");
+        }
+    }
+    for (what, items, shown) in [
+        ("part", &outcome.parts, &outcome.shown_of_parts),
+        ("specimen", &outcome.specimens, of_specimens),
+        ("campaign", &outcome.whole, of_specimens),
+    ] {
+        for law in laws_of(items) {
+            let items = of_law(items, law);
+            match items.len() {
+                n if n > LISTED && what == "part" => {
+                    let _ = writeln!(text, "\n{law}: {n} results; each: --format json.");
+                }
+                _ => {
+                    let _ = writeln!(text, "\n{law}, for each {what}:");
+                    let _ = writeln!(text, "{}", items_table(what, &items, shown));
+                }
+            }
+        }
+    }
+    text + &findings_text(outcome)
+}
+
+/// Items of a law or method.
+#[must_use]
+pub fn of_law<'a>(items: &'a [MeasuredItem], law: &str) -> Vec<&'a MeasuredItem> {
+    items.iter().filter(|item| item.law == law).collect()
+}
+
+/// A value with as many digits as its uncertainty lets it have, scaled.
+fn shown_value(value: &MeasuredValue, factor: f64) -> String {
+    value_and_sd(value.value * factor, value.sd.map(|sd| sd * factor))
+}
+
+fn items_table(what: &str, items: &[&MeasuredItem], shown: &[ShownValue]) -> String {
+    let cells = items_cells(what, items, shown);
+    // Words stand last: they have no place among the headings of values.
+    let words = words_of(items).len();
+    let mut left = vec![0];
+    left.extend(is_named(what, items).then_some(1));
+    left.extend(cells.header.len() - words..cells.header.len());
+    page_tables(&cells.header, &cells.rows, &left)
+}
+
+/// Names of the words that items have.
+fn words_of<'a>(items: &[&'a MeasuredItem]) -> Vec<&'a str> {
+    let mut words: Vec<&str> = Vec::new();
+    for (name, _) in items.iter().flat_map(|item| &item.words.0) {
+        if !words.contains(&name.as_str()) {
+            words.push(name);
+        }
+    }
+    words
+}
+
+/// Whether items have a name beside that of their specimen.
+fn is_named(what: &str, items: &[&MeasuredItem]) -> bool {
+    ["recording", "tap"].contains(&what) && items.iter().any(|item| item.id != item.specimen)
+}
+
+/// Items with the values that are shown and their words, row by row.
+///
+/// * `what`: "recording", "tap", "part", "specimen" or "campaign"
+#[must_use]
+pub fn items_cells(what: &str, items: &[&MeasuredItem], shown: &[ShownValue]) -> Cells {
+    let present: Vec<&ShownValue> = shown
+        .iter()
+        .filter(|column| {
+            items
+                .iter()
+                .any(|item| value_of(item, column.name).is_some())
+        })
+        .collect();
+    let (words, named) = (words_of(items), is_named(what, items));
+    let mut header = vec![what.to_owned()];
+    header.extend(named.then(|| "specimen".to_owned()));
+    header.extend(present.iter().map(|column| column.heading.to_owned()));
+    header.extend(words.iter().map(|name| (*name).to_owned()));
+    let rows: Vec<Vec<String>> = items
+        .iter()
+        .map(|item| {
+            let mut row = vec![item.id.clone()];
+            row.extend(named.then(|| item.specimen.clone()));
+            row.extend(present.iter().map(|column| {
+                let value = value_of(item, column.name);
+                value.map_or_else(|| "-".to_owned(), |v| shown_value(v, column.factor))
+            }));
+            let word = |name: &&str| item.words.get(name).cloned().unwrap_or_default();
+            row.extend(words.iter().map(word));
+            row
+        })
+        .collect();
+    Cells { header, rows }
+}
+
+/// Whether a recording holds several taps, so that groups of fruit have a spread.
+pub fn of_taps(outcome: &MeasuredOutcome) -> bool {
+    outcome.kind == CampaignKind::Acoustic.name()
+}
+
+fn groups_table(
+    outcome: &MeasuredOutcome,
+    law: &str,
+    of: (&[ShownValue], &[MeasuredItem]),
+) -> String {
+    let cells = groups_cells(outcome, law, of);
+    page_tables(&cells.header, &cells.rows, &[0])
+}
+
+/// Mean and spread of the values that are shown, for each group and for all.
+#[must_use]
+pub fn groups_cells(
+    outcome: &MeasuredOutcome,
+    law: &str,
+    (shown, items): (&[ShownValue], &[MeasuredItem]),
+) -> Cells {
+    let mut groups: Vec<_> = outcome
+        .groups
+        .iter()
+        .filter(|g| g.law == law)
+        .cloned()
+        .collect();
+    if groups.len() > 1 {
+        groups.push(spread_of(items, law, None));
+    }
+    let present: Vec<&ShownValue> = shown
+        .iter()
+        .filter(|column| groups.iter().any(|g| g.values.get(column.name).is_some()))
+        .collect();
+    let mut header = vec!["group".to_owned(), "n".to_owned()];
+    header.extend(present.iter().map(|column| column.heading.to_owned()));
+    let rows: Vec<Vec<String>> = groups
+        .iter()
+        .map(|group| {
+            let name = group.group.clone().unwrap_or_else(|| "all".to_owned());
+            let mut row = vec![name, group.recordings.to_string()];
+            row.extend(present.iter().map(|column| {
+                group.values.get(column.name).map_or_else(
+                    || "-".to_owned(),
+                    |s| spread_percent(s.mean * column.factor, s.cv),
+                )
+            }));
+            row
+        })
+        .collect();
+    Cells { header, rows }
+}
+
+/// Each kind of finding once, with how many share it, and what failed.
+fn findings_text(outcome: &MeasuredOutcome) -> String {
+    let found = findings_of_measured(outcome);
+    let mut text = match found.is_empty() {
+        true => String::new(),
+        false => "\nFindings:\n".to_owned(),
+    };
+    let found = found.iter().map(|f| format!("  {}: {}", f.code, f.message));
+    for line in found.chain(outcome.failed.iter().map(failure_line)) {
+        text += &paragraph(&line, INDENT);
+        text.push('\n');
+    }
+    text
+}
+
+/// Findings of the whole, then each kind of those of its items once, with the first
+/// item that has it and how many share it.
+#[must_use]
+pub fn findings_of_measured(outcome: &MeasuredOutcome) -> Vec<FindingOutcome> {
+    let mut found = outcome.findings.clone();
+    let items = outcome
+        .impacts
+        .iter()
+        .chain(&outcome.parts)
+        .chain(&outcome.specimens)
+        .chain(&outcome.whole);
+    let mut seen: Vec<(&FindingOutcome, &str, Vec<&str>)> = Vec::new();
+    for item in items {
+        for finding in &item.findings {
+            match seen
+                .iter_mut()
+                .find(|(first, _, _)| first.code == finding.code)
+            {
+                Some((_, _, ids)) if ids.contains(&item.id.as_str()) => {}
+                Some((_, _, ids)) => ids.push(&item.id),
+                None => seen.push((finding, &item.id, vec![&item.id])),
+            }
+        }
+    }
+    for (finding, first, ids) in &seen {
+        let more = match ids.len() {
+            1 => String::new(),
+            2..=6 => format!(" (also {})", ids[1..].join(", ")),
+            n => format!(" (and {} more of this kind)", n - 1),
+        };
+        found.push(FindingOutcome {
+            code: finding.code.clone(),
+            message: format!("{first}: {}{more}", finding.message),
+        });
+    }
+    found
+}
+
+fn failure_line(failure: &FailureOutcome) -> String {
+    format!("not evaluated: {}: {}", failure.id, failure.message)
+}
+
+/// One row per recording and law; of specimens where there are results on them
+/// and `specimens` asks for it.
+///
+/// # Errors
+/// None in practice: the text is written to memory.
+pub fn csv_of_measured(outcome: &MeasuredOutcome) -> Result<String, Error> {
+    csv_of_items(&outcome.impacts, outcome.simulated.as_deref())
+}
+
+/// One row per item: its values with unit in the name of the column, where all
+/// have the same, and beside it otherwise.
+///
+/// # Errors
+/// None in practice: the text is written to memory.
+pub fn csv_of_items(items: &[MeasuredItem], simulated: Option<&str>) -> Result<String, Error> {
+    let columns = columns_of(items);
+    let mut header: Vec<String> = ["id", "specimen", "group", "file", "law"]
+        .map(str::to_owned)
+        .to_vec();
+    for column in &columns {
+        header.push(column.heading.clone());
+        header.extend(column.sd.then(|| format!("{}_sd", column.name)));
+        if column.interval {
+            header.extend(["_low", "_high"].map(|end| format!("{}{end}", column.name)));
+        }
+        header.extend(column.unit.then(|| format!("{}_unit", column.name)));
+    }
+    let words = word_names(items);
+    header.extend(words.iter().map(|word| (*word).to_owned()));
+    header.extend(["findings", "simulated"].map(str::to_owned));
+    let rows = items.iter().map(|item| {
+        let mut row = vec![
+            item.id.clone(),
+            item.specimen.clone(),
+            item.group.clone().unwrap_or_default(),
+            item.file.clone(),
+            item.law.clone(),
+        ];
+        for column in &columns {
+            let value = value_of(item, column.name);
+            row.push(number(value.map(|v| v.value)));
+            row.extend(column.sd.then(|| number(value.and_then(|v| v.sd))));
+            if column.interval {
+                row.push(number(value.and_then(|v| v.low)));
+                row.push(number(value.and_then(|v| v.high)));
+            }
+            let unit = || value.map_or_else(String::new, |v| v.unit.clone());
+            row.extend(column.unit.then(unit));
+        }
+        row.extend(
+            words
+                .iter()
+                .map(|word| item.words.get(word).cloned().unwrap_or_default()),
+        );
+        let codes: Vec<&str> = item.findings.iter().map(|f| f.code.as_str()).collect();
+        row.push(codes.join(" "));
+        row.push(simulated.unwrap_or_default().to_owned());
+        row
+    });
+    csv_text(&header, rows)
+}
+
+struct Column<'a> {
+    name: &'a str,
+    heading: String,
+    sd: bool,
+    interval: bool,
+    /// Whether the unit stands in a column of its own.
+    unit: bool,
+}
+
+fn columns_of(items: &[MeasuredItem]) -> Vec<Column<'_>> {
+    let mut names: Vec<&str> = Vec::new();
+    for item in items {
+        for (name, _) in item.parameters.0.iter().chain(&item.derived.0) {
+            if !names.contains(&name.as_str()) {
+                names.push(name);
+            }
+        }
+    }
+    names
+        .into_iter()
+        .map(|name| {
+            let values: Vec<&MeasuredValue> = items
+                .iter()
+                .filter_map(|item| value_of(item, name))
+                .collect();
+            // Parameters of laws have units that depend on the law.
+            let parameter = items.iter().any(|item| item.parameters.get(name).is_some());
+            let heading = match parameter {
+                true => name.to_owned(),
+                false => heading(name, &values[0].unit),
+            };
+            Column {
+                name,
+                heading,
+                sd: values.iter().any(|value| value.sd.is_some()),
+                interval: values.iter().any(|value| value.low.is_some()),
+                unit: parameter,
+            }
+        })
+        .collect()
+}
+
+/// "bioyield_force_N": the unit as it can stand in the name of a column.
+#[must_use]
+pub fn heading(name: &str, unit: &str) -> String {
+    match unit {
+        "1" | "" => name.to_owned(),
+        unit => format!(
+            "{name}_{}",
+            unit.replace(['/', ' '], "_").replace(['^', '(', ')'], "")
+        ),
+    }
+}
+
+fn word_names(items: &[MeasuredItem]) -> Vec<&str> {
+    let mut names: Vec<&str> = Vec::new();
+    for (name, _) in items.iter().flat_map(|item| &item.words.0) {
+        if !names.contains(&name.as_str()) {
+            names.push(name);
+        }
+    }
+    names
+}
+
+fn number(value: Option<f64>) -> String {
+    value.map_or_else(String::new, |value| value.to_string())
+}

@@ -1,0 +1,94 @@
+//! SHA-256 of the files of a campaign.
+
+use crate::recording::read::recording_path;
+use crate::settings::model::{FilePlan, ImpactEntry};
+use crate::settings::read::CAMPAIGN_FILE;
+use rayon::prelude::*;
+use std::collections::BTreeMap;
+use std::path::{Path, PathBuf};
+use windfall_files::error::Error;
+use windfall_files::provenance::digest_file;
+
+/// SHA-256 of each recording; a message where it cannot be read.
+pub type Digests = BTreeMap<PathBuf, Result<String, String>>;
+
+/// SHA-256 of each recording once; a message where it cannot be read.
+///
+/// * `directory`: of the campaign, for messages
+#[must_use]
+pub fn recording_digests(directory: &Path, files: &FilePlan, entries: &[ImpactEntry]) -> Digests {
+    let mut first: BTreeMap<PathBuf, &ImpactEntry> = BTreeMap::new();
+    for entry in entries {
+        first.entry(recording_path(files, entry)).or_insert(entry);
+    }
+    let paths: Vec<(PathBuf, &ImpactEntry)> = first.into_iter().collect();
+    let digests: Vec<Result<String, String>> = paths
+        .par_iter()
+        .map(|(path, entry)| {
+            digest_file(path).map_err(|error| match error {
+                Error::FileAccess { source, .. }
+                    if source.kind() == std::io::ErrorKind::NotFound =>
+                {
+                    absent(directory, entry, path)
+                }
+                other => other.to_string(),
+            })
+        })
+        .collect();
+    paths
+        .into_iter()
+        .map(|(path, _)| path)
+        .zip(digests)
+        .collect()
+}
+
+fn absent(directory: &Path, entry: &ImpactEntry, path: &Path) -> String {
+    let list = directory.join("impacts.csv");
+    let advice = format!(
+        "{}, line {} names it. Put the file there, correct the name, or remove the line",
+        list.display(),
+        entry.line
+    );
+    Error::FileAbsent {
+        path: path.to_path_buf(),
+        advice,
+    }
+    .to_string()
+}
+
+/// Names and SHA-256 of all files of a campaign that could be read.
+///
+/// # Errors
+/// A table of the campaign can no longer be read.
+pub fn file_digests(
+    directory: &Path,
+    recordings: &Digests,
+) -> Result<Vec<(String, String)>, Error> {
+    let mut inputs = Vec::new();
+    for name in [CAMPAIGN_FILE, "specimens.csv", "impacts.csv"] {
+        let path = directory.join(name);
+        if path.exists() {
+            inputs.push((name.to_owned(), digest_file(&path)?));
+        }
+    }
+    for (path, digest) in recordings {
+        if let Ok(digest) = digest {
+            let name = path.strip_prefix(directory).unwrap_or(path);
+            inputs.push((name.display().to_string(), digest.clone()));
+        }
+    }
+    Ok(inputs)
+}
+
+/// campaign.toml, word for word.
+///
+/// # Errors
+/// It can no longer be read.
+pub fn campaign_text(directory: &Path) -> Result<String, Error> {
+    let path = directory.join(CAMPAIGN_FILE);
+    std::fs::read_to_string(&path).map_err(|source| Error::FileAccess {
+        path,
+        action: "read",
+        source,
+    })
+}

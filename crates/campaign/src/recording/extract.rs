@@ -1,0 +1,48 @@
+//! One entry of impacts.csv → one impact.
+
+use crate::recording::read::{read_recording, recording_path};
+use crate::settings::model::{Campaign, ImpactEntry};
+use windfall_files::error::Error;
+use windfall_signal::impact::Impact;
+use windfall_signal::recording::Recording;
+use windfall_signal::trigger::ContactChoice;
+use windfall_signal::{Finding, extract_impact};
+
+/// Reads the recording of an entry and cuts its impact out.
+///
+/// * `effective_mass`: for the energies; kg
+///
+/// # Errors
+/// The recording cannot be read, or shows no impact.
+pub fn extract_recording(
+    campaign: &Campaign,
+    entry: &ImpactEntry,
+    effective_mass: Option<f64>,
+) -> Result<(Impact, Vec<Finding>), Error> {
+    let recording = read_recording(&campaign.files, entry)?;
+    extract_entry(campaign, entry, &recording, effective_mass)
+}
+
+/// [`extract_recording`] from a recording that has been read.
+///
+/// # Errors
+/// The recording shows no impact.
+pub fn extract_entry(
+    campaign: &Campaign,
+    entry: &ImpactEntry,
+    recording: &Recording,
+    effective_mass: Option<f64>,
+) -> Result<(Impact, Vec<Finding>), Error> {
+    let mut options = campaign.contact;
+    options.effective_mass = effective_mass;
+    if entry.from.is_some() || entry.to.is_some() {
+        options.trigger.choice = ContactChoice::Within {
+            from: entry.from.unwrap_or(f64::NEG_INFINITY),
+            to: entry.to.unwrap_or(f64::INFINITY),
+        };
+    }
+    extract_impact(recording, &options).map_err(|source| Error::Signal {
+        path: recording_path(&campaign.files, entry),
+        source: Box::new(source),
+    })
+}

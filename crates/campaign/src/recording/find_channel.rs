@@ -1,0 +1,43 @@
+//! A channel of a file by the name that a person gave.
+
+use std::path::Path;
+use windfall_files::error::Error;
+use windfall_formats::contents::Contents;
+use windfall_numerics::unit::nearest_name::nearest_names;
+
+/// Position of a channel: by its whole name, or by the part behind the last "/"
+/// where only one channel has it.
+///
+/// * `asked_by`: who asks, in brackets with a blank before, for the message
+///
+/// # Errors
+/// There is no such channel; the message names the nearest.
+pub fn find_channel(
+    contents: &Contents,
+    name: &str,
+    path: &Path,
+    asked_by: &str,
+) -> Result<usize, Error> {
+    let names = || {
+        contents
+            .channels
+            .iter()
+            .map(|channel| channel.name.as_str())
+    };
+    let found = names().position(|known| known == name).or_else(|| {
+        let tail = |known: &str| known.rsplit('/').next() == Some(name);
+        let mut same = names().enumerate().filter(|(_, known)| tail(known));
+        let first = same.next();
+        first.filter(|_| same.next().is_none()).map(|(at, _)| at)
+    });
+    found.ok_or_else(|| Error::ColumnMissing {
+        path: path.to_path_buf(),
+        column: name.to_owned(),
+        asked_by: asked_by.to_owned(),
+        nearest: nearest_names(name, names())
+            .into_iter()
+            .map(str::to_owned)
+            .collect(),
+        columns: contents.channels.len(),
+    })
+}

@@ -1,0 +1,89 @@
+//! Energies and velocities of a pendulum from the angles of release and rebound
+//! in impacts.csv.
+
+use crate::result::outcome::ImpactOutcome;
+use crate::settings::model::{Campaign, ImpactEntry, RigPlan};
+use windfall_files::error::Error;
+use windfall_files::found::FindingOutcome;
+use windfall_files::text::cell_quantity::cell_quantity;
+use windfall_signal::energy_angles::{pendulum_energy, speed_of_energy};
+
+/// Velocities that differ by more than this are told; 1.
+const DISAGREES: f64 = 0.05;
+
+/// Angles of release and rebound from the vertical; rad. `None` where impacts.csv
+/// has no such column.
+///
+/// # Errors
+/// A cell is no positive number.
+pub fn angles_of_entry(
+    campaign: &Campaign,
+    entry: &ImpactEntry,
+) -> Result<[Option<f64>; 2], Error> {
+    let file = campaign.directory.join("impacts.csv");
+    let angle = |name| cell_quantity(&entry.cells, name, "rad", &file);
+    Ok([angle("release_angle")?, angle("rebound_angle")?])
+}
+
+/// Adds what the angles tell to a result; nothing for another rig.
+///
+/// # Errors
+/// A cell is no positive number.
+pub fn add_angles(
+    campaign: &Campaign,
+    entry: &ImpactEntry,
+    outcome: &mut ImpactOutcome,
+) -> Result<(), Error> {
+    let [release, rebound] = angles_of_entry(campaign, entry)?;
+    let RigPlan::Pendulum(rig) = campaign.rig else {
+        return Ok(());
+    };
+    let mass = rig.inertia / (rig.arm * rig.arm);
+    let energy = |angle| pendulum_energy(rig.mass, rig.gravity, rig.centre_of_mass, angle);
+    let mut push = |name: &str, value: f64| {
+        outcome.derived.0.push((name.to_owned(), Some(value)));
+        outcome
+            .derived_from
+            .0
+            .push((name.to_owned(), "angles".to_owned()));
+    };
+    if let Some(angle) = release {
+        push("impact_energy_from_angle", energy(angle));
+        push(
+            "impact_velocity_from_angle",
+            speed_of_energy(energy(angle), mass),
+        );
+    }
+    if let Some(angle) = rebound {
+        push("elastic_energy_from_angle", energy(angle));
+        push(
+            "rebound_velocity_from_angle",
+            speed_of_energy(energy(angle), mass),
+        );
+    }
+    if let (Some(release), Some(rebound)) = (release, rebound) {
+        push(
+            "absorbed_energy_from_angles",
+            energy(release) - energy(rebound),
+        );
+    }
+    for (velocity, angle) in [("impact_velocity", release), ("rebound_velocity", rebound)] {
+        let read = outcome.derived.get(velocity).copied().flatten();
+        let (Some(read), Some(angle)) = (read, angle) else {
+            continue;
+        };
+        let expected = speed_of_energy(energy(angle), mass);
+        if (read / expected - 1.0).abs() > DISAGREES {
+            outcome.findings.push(FindingOutcome {
+                code: "angle-disagrees".to_owned(),
+                message: format!(
+                    "the {} of {read:.4} m/s and the angle of {:.2}°, which gives {expected:.4} m/s, \
+                     disagree; check angle, mass, centre of mass and inertia, and friction of the pivot",
+                    velocity.replace('_', " "),
+                    angle.to_degrees()
+                ),
+            });
+        }
+    }
+    Ok(())
+}

@@ -1,0 +1,144 @@
+//! One impact of a campaign of repeated impacts.
+
+use crate::measure::evaluate::Document;
+use crate::measure::measured::{MeasuredItem, MeasuredItems, plain_value, value_with_sd};
+use crate::recording::read::recording_path;
+use crate::repeats::read::{RepeatsCampaign, cell_of, energy_of};
+use crate::settings::model::ImpactEntry;
+use crate::store::documents::StoredValue;
+use serde::{Deserialize, Serialize};
+use windfall_files::error::Error;
+use windfall_files::found::FindingOutcome;
+use windfall_files::named::Named;
+use windfall_signal::impact::Series;
+use windfall_signal::recording::Recording;
+use windfall_signal::repeat::align::features;
+use windfall_signal::trigger::ContactChoice;
+use windfall_signal::{ExtractOptions, extract_impact};
+
+/// Name of the method in tables.
+pub const IMPACT: &str = "impact";
+
+/// What one recording gives: values, and the force for the comparisons.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct RepeatImpact {
+    /// Values of this impact alone.
+    pub item: MeasuredItem,
+    /// Impact energy; J.
+    pub energy: f64,
+    /// Spot on the specimen.
+    pub spot: String,
+    /// Number of the impact on this spot at this energy, where it is given.
+    pub repeat: Option<f64>,
+    /// Whether the specimen cannot be damaged.
+    pub reference: bool,
+    /// Sampling times of the force; s.
+    pub times: Vec<f64>,
+    /// Force; N.
+    pub force: Vec<f64>,
+    /// Standard deviation of its noise; N.
+    pub noise: f64,
+}
+
+impl Document for RepeatImpact {
+    fn values(&self) -> Vec<StoredValue> {
+        let items = vec![self.item.clone()];
+        MeasuredItems { items }.values()
+    }
+}
+
+/// The force of an impact as the comparisons take it.
+#[must_use]
+pub fn series_of(impact: &RepeatImpact) -> Series {
+    Series {
+        times: impact.times.clone(),
+        values: impact.force.clone(),
+        noise: impact.noise,
+        ..Series::default()
+    }
+}
+
+/// Cuts the impact out of a recording and reads it.
+///
+/// # Errors
+/// There is no force or no contact, or it is cut off.
+pub fn evaluate_impact(
+    campaign: &RepeatsCampaign,
+    entry: &ImpactEntry,
+    recording: &Recording,
+) -> Result<RepeatImpact, Error> {
+    let mut options = ExtractOptions {
+        conditioning: campaign.conditioning,
+        ..ExtractOptions::default()
+    };
+    if entry.from.is_some() || entry.to.is_some() {
+        options.trigger.choice = ContactChoice::Within {
+            from: entry.from.unwrap_or(f64::NEG_INFINITY),
+            to: entry.to.unwrap_or(f64::INFINITY),
+        };
+    }
+    let signal = |source| Error::Signal {
+        path: recording_path(&campaign.shared.files, entry),
+        source: Box::new(source),
+    };
+    let (impact, findings) = extract_impact(recording, &options).map_err(signal)?;
+    let force = impact.force.ok_or_else(|| Error::ChannelNotMapped {
+        item: entry.id.clone(),
+        quantity: "force".to_owned(),
+    })?;
+    let read = features(&force, &campaign.align).map_err(signal)?;
+    let energy = energy_of(campaign, entry)?;
+    let (column, value) = &campaign.reference;
+    let reference = cell_of(campaign, entry, column) == value;
+    let spot = cell_of(campaign, entry, "spot").to_owned();
+    let repeat = cell_of(campaign, entry, "repeat").parse().ok();
+    let impulse = impact
+        .measured
+        .impulse
+        .map(|value| match impact.measured.impulse_sd {
+            Some(sd) => value_with_sd(value, sd, "N s"),
+            None => plain_value(value, "N s"),
+        });
+    let mut derived = vec![
+        ("energy".to_owned(), plain_value(energy, "J")),
+        ("peak_force".to_owned(), plain_value(read.peak, "N")),
+        (
+            "contact_duration".to_owned(),
+            plain_value(read.duration, "s"),
+        ),
+        ("rise_slope".to_owned(), plain_value(read.rise_slope, "N/s")),
+        ("force_noise".to_owned(), plain_value(force.noise, "N")),
+    ];
+    derived.extend(impulse.map(|value| ("impulse".to_owned(), value)));
+    let number = cell_of(campaign, entry, "repeat");
+    let role = if reference { "reference, " } else { "" };
+    let mut words = vec![("repeat".to_owned(), number.to_owned())];
+    words.extend((!spot.is_empty()).then(|| ("spot".to_owned(), spot.clone())));
+    let item = MeasuredItem {
+        id: entry.id.clone(),
+        specimen: entry.specimen.clone(),
+        group: Some(format!("{role}{energy:.4} J, impact {number}")),
+        file: entry.file.clone(),
+        law: IMPACT.to_owned(),
+        words: Named(words),
+        parameters: Named(Vec::new()),
+        derived: Named(derived),
+        findings: findings
+            .iter()
+            .map(|finding| FindingOutcome {
+                code: finding.code().to_owned(),
+                message: finding.to_string(),
+            })
+            .collect(),
+    };
+    Ok(RepeatImpact {
+        item,
+        energy,
+        spot,
+        repeat,
+        reference,
+        times: force.times,
+        force: force.values,
+        noise: force.noise,
+    })
+}

@@ -1,0 +1,110 @@
+//! Repeated impacts as a figure: mean curves, differences, the statistic with
+//! its critical level.
+
+use crate::repeats::compare::Compared;
+use crate::repeats::pairs::{Pair, Pairs};
+use windfall_draw::xy::{Figure, Panel, Series, Style};
+
+/// One comparison of a campaign.
+#[must_use]
+pub fn figure_of_comparison(
+    title: &str,
+    pairs: &Pairs,
+    compared: &Compared,
+    index: usize,
+) -> Figure {
+    let comparison = &compared.comparisons[index];
+    let members: Vec<&Pair> = pairs
+        .pairs
+        .iter()
+        .filter(|pair| {
+            !pair.reference
+                && pair.order == comparison.order
+                && (pairs.energies[pair.level] - comparison.energy).abs() < f64::EPSILON
+        })
+        .collect();
+    let instants = members
+        .first()
+        .map_or(&[][..], |pair| &pair.aligned.instants);
+    let points = |values: &[f64]| -> Vec<(f64, f64)> {
+        instants
+            .iter()
+            .copied()
+            .zip(values.iter().copied())
+            .collect()
+    };
+    let mean = |of: &dyn Fn(&Pair) -> &Vec<f64>| -> Vec<f64> {
+        let n = members.len() as f64;
+        let at = |i: usize| {
+            let parts = members
+                .iter()
+                .map(|p| of(p)[i] / p.aligned.first_features.peak);
+            100.0 * parts.sum::<f64>() / n
+        };
+        (0..instants.len()).map(at).collect()
+    };
+    let series = |label: &str, style: Style, points: Vec<(f64, f64)>| Series {
+        label: label.to_owned(),
+        style,
+        colour: None,
+        points,
+    };
+    let (first, second) = (comparison.order + 1, comparison.order + 2);
+    let curves = vec![
+        series(
+            &format!("impact {first}, mean"),
+            Style::Line,
+            points(&mean(&|pair| &pair.aligned.first)),
+        ),
+        series(
+            &format!("impact {second}, mean"),
+            Style::Line,
+            points(&mean(&|pair| &pair.aligned.second)),
+        ),
+    ];
+    let percent = |values: &[f64]| values.iter().map(|v| 100.0 * v).collect::<Vec<f64>>();
+    let every = members
+        .iter()
+        .flat_map(|p| points(&percent(&p.aligned.difference())));
+    let differences = vec![
+        series("each fruit", Style::Dots, every.collect()),
+        series(
+            "mean",
+            Style::Line,
+            points(&percent(&comparison.curves.mean)),
+        ),
+    ];
+    let mut statistic = vec![series(
+        "studentised mean difference",
+        Style::Line,
+        points(&comparison.curves.statistic),
+    )];
+    if let Some(critical) = compared.test.as_ref().and_then(|test| test.critical) {
+        let from = instants.first().copied().unwrap_or(0.0);
+        statistic.push(series(
+            "critical level over all instants and energies",
+            Style::Level,
+            vec![(from, critical), (from, -critical)],
+        ));
+    }
+    let panel = |y: &str, unit: &str, series: Vec<Series>| Panel {
+        x: "time from the crossing, in contact durations".to_owned(),
+        x_unit: String::new(),
+        y: y.to_owned(),
+        y_unit: unit.to_owned(),
+        series,
+        marks: Vec::new(),
+    };
+    Figure {
+        title: format!(
+            "{title}: {}, p = {:.4}",
+            comparison.verdict.word(),
+            comparison.curves.p
+        ),
+        panels: vec![
+            panel("force / first peak", "%", curves),
+            panel("difference / first peak", "%", differences),
+            panel("statistic", "", statistic),
+        ],
+    }
+}

@@ -1,0 +1,151 @@
+//! What `fit` gives: saved in the store, shown as text, JSON or CSV.
+//!
+//! The names of the fields are the keys of the JSON that scripts rely on.
+//! All numbers are SI.
+
+use crate::result::interval_outcome::IntervalOutcome;
+use serde::{Deserialize, Serialize};
+use windfall_files::found::{EstimateOutcome, FailureOutcome, FindingOutcome, SpreadOutcome};
+use windfall_files::named::Named;
+
+/// How one quantity of the cost function fits.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct ResidualOutcome {
+    /// Samples.
+    pub samples: usize,
+    /// Weight of a square in the cost.
+    pub weight: f64,
+    /// Noise of a sample, from the recording itself.
+    pub noise: f64,
+    /// Correlation of the noise of successive samples that the fit reckoned
+    /// with; 1.
+    #[serde(default)]
+    pub persistence: f64,
+    /// Root mean square residual.
+    pub rms: f64,
+    /// Runs test: standardised number of runs; far below 0 when the residuals
+    /// are not random.
+    pub runs_z: Option<f64>,
+}
+
+/// One law fitted to one impact.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct ImpactOutcome {
+    /// Id of the impact.
+    pub id: String,
+    /// Id of the specimen.
+    pub specimen: String,
+    /// Group of the specimen or impact, where the campaign has groups.
+    pub group: Option<String>,
+    /// The recording, as impacts.csv names it.
+    pub file: String,
+    /// Name of the law.
+    pub law: String,
+    /// Quantities in the cost function.
+    pub quantities: Vec<String>,
+    /// Parameters of the law, in its order.
+    pub parameters: Named<EstimateOutcome>,
+    /// Initial velocity, onset and offset, as far as they were estimated.
+    pub nuisances: Named<EstimateOutcome>,
+    /// Correlations of the estimates: "k, c".
+    pub correlations: Named<f64>,
+    /// Value of the cost function.
+    pub cost: f64,
+    /// Samples in it.
+    pub samples: usize,
+    /// Evaluations of the model.
+    pub evaluations: usize,
+    /// Whether a minimum was reached.
+    pub converged: bool,
+    /// Root of the cost.
+    pub residual_norm: f64,
+    /// How each quantity fits.
+    pub residuals: Named<ResidualOutcome>,
+    /// Parameters by the linear regression of the force, for comparison.
+    pub regression: Named<EstimateOutcome>,
+    /// Velocities, energies, peaks.
+    pub derived: Named<Option<f64>>,
+    /// Standard uncertainties of those read off the signals, where known.
+    pub derived_sd: Named<f64>,
+    /// "signal" or "fit" for each entry of `derived`.
+    pub derived_from: Named<String>,
+    /// The same quantities in the motion under the fitted law; `restitution` is
+    /// what the law delivers. A law that takes a restitution as a parameter has
+    /// it here too, as `nominal_restitution`.
+    pub fitted: Named<Option<f64>>,
+    /// Combinations of parameters, from what the data tell least to what they tell
+    /// best: the change of each that changes −2 ln of the likelihood by 1.
+    #[serde(default)]
+    pub directions: Vec<Named<f64>>,
+    /// How the intervals came about.
+    #[serde(default)]
+    pub intervals: IntervalOutcome,
+    /// What a reader must know.
+    pub findings: Vec<FindingOutcome>,
+}
+
+/// Spread of parameters and derived quantities over the impacts of a group.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct GroupOutcome {
+    /// Name of the group; `None` for all impacts together.
+    pub group: Option<String>,
+    /// Name of the law.
+    pub law: String,
+    /// Impacts fitted.
+    pub impacts: usize,
+    /// Specimens among them.
+    pub specimens: usize,
+    /// Parameters that were estimated.
+    pub parameters: Named<SpreadOutcome>,
+    /// Velocities, energies, peaks.
+    pub derived: Named<SpreadOutcome>,
+}
+
+/// How the results came about.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+pub struct StatusOutcome {
+    /// Fits done in this run.
+    pub fitted: usize,
+    /// Fits answered from the store.
+    pub stored: usize,
+    /// Impacts, or laws on an impact, that failed.
+    pub failed: usize,
+    /// Whether nothing had to be fitted.
+    pub up_to_date: bool,
+}
+
+/// A value of the rig that was found from the recordings.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct MassOutcome {
+    /// Mass; kg.
+    pub value: f64,
+    /// Its standard uncertainty; kg.
+    pub sd: f64,
+    /// Impacts that it was found from; 0 for a mass that was weighed.
+    pub impacts: usize,
+}
+
+/// Everything that `fit` gives for a campaign.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct CampaignOutcome {
+    /// Version of windfall.
+    pub windfall: String,
+    /// Title of the campaign.
+    pub campaign: String,
+    /// Label of simulated recordings.
+    pub simulated: Option<String>,
+    /// Effective mass at the contact.
+    pub effective_mass: MassOutcome,
+    /// How the results came about.
+    pub status: StatusOutcome,
+    /// One entry per impact and law.
+    pub impacts: Vec<ImpactOutcome>,
+    /// What could not be fitted.
+    pub failed: Vec<FailureOutcome>,
+    /// Spread over all impacts, of the first law.
+    pub summary: Named<SpreadOutcome>,
+    /// Spread per group and law.
+    pub groups: Vec<GroupOutcome>,
+    /// What a reader of the whole must know.
+    pub findings: Vec<FindingOutcome>,
+}

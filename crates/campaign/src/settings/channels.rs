@@ -1,0 +1,412 @@
+//! `[channels.*]` and `[encoder]` of campaign.toml.
+
+use crate::settings::file::{CampaignFile, ChannelFile, ChannelsFile, QuantityText};
+use crate::settings::model::ChannelPlan;
+use toml::Spanned;
+use windfall_files::error::Error;
+use windfall_files::text::toml_source::{
+    Needed, TomlSource, invalid, missing, optional_quantity, place_at,
+};
+use windfall_numerics::unit::quantity::{UnitError, parse_as, parse_unit};
+use windfall_signal::kinematics::Encoder;
+use windfall_signal::recording::Quantity;
+
+/// What a channel of a campaign may hold.
+#[derive(Clone, Copy, Debug)]
+pub struct Kind {
+    /// Its table in campaign.toml, with brackets.
+    pub table: &'static str,
+    /// What it holds.
+    pub quantity: Quantity,
+    /// SI unit; empty where samples are taken as they are.
+    pub unit: &'static str,
+}
+
+impl Kind {
+    /// Name of the channel: that of its table without "channels".
+    #[must_use]
+    pub fn name(&self) -> &'static str {
+        let (_, name) = self.table.rsplit_once('.').unwrap_or_default();
+        name.trim_end_matches(']')
+    }
+
+    /// SI unit of the sensitivity of a sensor of this quantity.
+    #[must_use]
+    pub fn sensitivity_unit(&self) -> String {
+        match self.unit {
+            "m/s" => "V s/m".to_owned(),
+            "m/s^2" => "V s^2/m".to_owned(),
+            unit => format!("V/{unit}"),
+        }
+    }
+}
+
+/// The channels that a campaign may have.
+pub const KINDS: [Kind; 8] = [
+    Kind {
+        table: "[channels.force]",
+        quantity: Quantity::Force,
+        unit: "N",
+    },
+    Kind {
+        table: "[channels.position]",
+        quantity: Quantity::Displacement,
+        unit: "m",
+    },
+    Kind {
+        table: "[channels.velocity]",
+        quantity: Quantity::Rate,
+        unit: "m/s",
+    },
+    Kind {
+        table: "[channels.acceleration]",
+        quantity: Quantity::Acceleration,
+        unit: "m/s^2",
+    },
+    Kind {
+        table: "[channels.angle]",
+        quantity: Quantity::Angle,
+        unit: "rad",
+    },
+    Kind {
+        table: "[channels.count]",
+        quantity: Quantity::EncoderCount,
+        unit: "",
+    },
+    Kind {
+        table: "[channels.phase_a]",
+        quantity: Quantity::PhaseA,
+        unit: "",
+    },
+    Kind {
+        table: "[channels.phase_b]",
+        quantity: Quantity::PhaseB,
+        unit: "",
+    },
+];
+
+/// The channels of a campaign.
+///
+/// # Errors
+/// There is none, or one cannot be scaled to SI.
+pub fn channel_plans(
+    source: &TomlSource,
+    channels: Option<&Spanned<ChannelsFile>>,
+) -> Result<Vec<ChannelPlan>, Error> {
+    let empty = ChannelsFile::default();
+    let file = channels.map_or(&empty, |channels| channels.get_ref());
+    let all = [
+        &file.force,
+        &file.position,
+        &file.velocity,
+        &file.acceleration,
+        &file.angle,
+        &file.count,
+        &file.phase_a,
+        &file.phase_b,
+    ];
+    let plans = KINDS
+        .iter()
+        .zip(all)
+        .filter_map(|(kind, channel)| Some((kind, channel.as_ref()?)))
+        .map(|(kind, channel)| channel_plan(source, kind, channel))
+        .collect::<Result<Vec<_>, _>>()?;
+    if plans.is_empty() {
+        let needed = Needed {
+            table: "[channels]",
+            key: "force",
+            meaning: "at least one channel: force, position, velocity, acceleration, angle, \
+                      count, or phase_a and phase_b",
+            unit: "",
+            example: "[channels.force] column = \"force_N\", unit = \"N\"",
+        };
+        let at = channels.map_or(0..0, Spanned::span);
+        return Err(missing(source, &at, &needed, needed.table.to_owned()));
+    }
+    Ok(plans)
+}
+
+/// The plan of one channel.
+///
+/// # Errors
+/// It names no column, or cannot be scaled to SI.
+pub fn channel_plan(
+    source: &TomlSource,
+    kind: &Kind,
+    channel: &Spanned<ChannelFile>,
+) -> Result<ChannelPlan, Error> {
+    let (at, file) = (channel.span(), channel.get_ref());
+    let Some(column) = &file.column else {
+        let needed = Needed {
+            table: kind.table,
+            key: "column",
+            meaning: "name of the column in the recordings",
+            unit: "",
+            example: "column = \"force_N\"",
+        };
+        return Err(missing(source, &at, &needed, kind.table.to_owned()));
+    };
+    let (scale, offset) = calibration(source, kind, channel)?;
+    Ok(ChannelPlan {
+        table: kind.table,
+        line: place_at(source, &at).line,
+        quantity: kind.quantity,
+        column: column.get_ref().clone(),
+        time: file.time.as_ref().map(|time| time.get_ref().clone()),
+        scale: scale * sign(source, kind, file)?,
+        offset,
+        delay: delay(source, kind, file)?,
+    })
+}
+
+/// SI units per unit of the column, and the zero in units of the column.
+///
+/// With a sensitivity the column is a voltage (or whatever the sensitivity says
+/// above the line); without one the column is the quantity itself.
+fn calibration(
+    source: &TomlSource,
+    kind: &Kind,
+    channel: &Spanned<ChannelFile>,
+) -> Result<(f64, f64), Error> {
+    let file = channel.get_ref();
+    if kind.unit.is_empty() {
+        return Ok((1.0, 0.0));
+    }
+    let Some(sensitivity) = &file.sensitivity else {
+        return direct_calibration(source, kind, channel);
+    };
+    let needed = Needed {
+        table: kind.table,
+        key: "sensitivity",
+        meaning: "output per unit",
+        unit: "",
+        example: "sensitivity = \"11 mV/N\"",
+    };
+    let per_unit = sensitivity_value(source, kind, sensitivity, &needed)?;
+    let gain = file.gain.as_ref().map_or(1.0, |gain| *gain.get_ref());
+    if gain == 0.0 || !gain.is_finite() {
+        let at = file.gain.as_ref().map_or(0..0, Spanned::span);
+        let problem = "a gain must be a number other than zero".to_owned();
+        return Err(invalid(
+            source,
+            &at,
+            (kind.table, "gain"),
+            &gain.to_string(),
+            problem,
+        ));
+    }
+    let cell = column_unit(source, kind, file, "V")?;
+    let offset = offset_value(source, kind, file, "V")?;
+    Ok((cell / (per_unit * gain), offset / cell))
+}
+
+fn sensitivity_value(
+    source: &TomlSource,
+    kind: &Kind,
+    text: &Spanned<QuantityText>,
+    needed: &Needed,
+) -> Result<f64, Error> {
+    let value = parse_as(&text.get_ref().0, &kind.sensitivity_unit())
+        .map_err(|error| bad_unit(source, text, needed, &error))?;
+    if value == 0.0 {
+        let problem = "a sensitivity cannot be zero".to_owned();
+        let at = (kind.table, needed.key);
+        return Err(invalid(
+            source,
+            &text.span(),
+            at,
+            &text.get_ref().0,
+            problem,
+        ));
+    }
+    Ok(value)
+}
+
+fn bad_unit(
+    source: &TomlSource,
+    text: &Spanned<QuantityText>,
+    needed: &Needed,
+    error: &UnitError,
+) -> Error {
+    let at = (needed.table, needed.key);
+    invalid(
+        source,
+        &text.span(),
+        at,
+        &text.get_ref().0,
+        error.to_string(),
+    )
+}
+
+/// A column in units of the quantity itself.
+fn direct_calibration(
+    source: &TomlSource,
+    kind: &Kind,
+    channel: &Spanned<ChannelFile>,
+) -> Result<(f64, f64), Error> {
+    let file = channel.get_ref();
+    if file.unit.is_none() {
+        let needed = Needed {
+            table: kind.table,
+            key: "unit",
+            meaning: "unit of the column; or `sensitivity` where it holds volts",
+            unit: "",
+            example: "unit = \"mm\"   or   sensitivity = \"11 mV/N\"",
+        };
+        return Err(missing(
+            source,
+            &channel.span(),
+            &needed,
+            kind.table.to_owned(),
+        ));
+    }
+    let cell = column_unit(source, kind, file, kind.unit)?;
+    let offset = offset_value(source, kind, file, kind.unit)?;
+    if let Some(gain) = &file.gain {
+        let problem =
+            "a gain belongs to a `sensitivity`; this channel has only a `unit`".to_owned();
+        let text = gain.get_ref().to_string();
+        return Err(invalid(
+            source,
+            &gain.span(),
+            (kind.table, "gain"),
+            &text,
+            problem,
+        ));
+    }
+    Ok((cell, offset / cell))
+}
+
+/// SI value of one unit of the column.
+fn column_unit(
+    source: &TomlSource,
+    kind: &Kind,
+    file: &ChannelFile,
+    expected: &str,
+) -> Result<f64, Error> {
+    let Some(unit) = &file.unit else {
+        return Ok(1.0);
+    };
+    let wrong = |problem: String| {
+        invalid(
+            source,
+            &unit.span(),
+            (kind.table, "unit"),
+            unit.get_ref(),
+            problem,
+        )
+    };
+    let scale = parse_scale(unit.get_ref(), expected).map_err(|error| wrong(error.to_string()))?;
+    match scale.is_normal() {
+        true => Ok(scale),
+        false => Err(wrong("it scales the column to nothing".to_owned())),
+    }
+}
+
+/// SI units per unit of a column, from a unit ("mm") or what one unit of the column
+/// stands for ("-1 N", "0.17 mm").
+///
+/// # Errors
+/// What is wrong with the text, or that its dimension is not that of `expected`.
+pub fn parse_scale(text: &str, expected: &str) -> Result<f64, UnitError> {
+    if text.starts_with(|c: char| c.is_ascii_digit() || "+-.−".contains(c)) {
+        return parse_as(text, expected);
+    }
+    parse_unit(text)?;
+    parse_as(&format!("1 {text}"), expected)
+}
+
+/// The column's zero in SI.
+fn offset_value(
+    source: &TomlSource,
+    kind: &Kind,
+    file: &ChannelFile,
+    unit: &'static str,
+) -> Result<f64, Error> {
+    let needed = Needed {
+        table: kind.table,
+        key: "offset",
+        meaning: "what the column shows at zero",
+        unit,
+        example: "offset = \"0.02 V\"",
+    };
+    Ok(optional_quantity(source, file.offset.as_ref(), &needed)?.unwrap_or(0.0))
+}
+
+/// By how much the channel is late; s.
+fn delay(source: &TomlSource, kind: &Kind, file: &ChannelFile) -> Result<f64, Error> {
+    let needed = Needed {
+        table: kind.table,
+        key: "delay",
+        meaning: "by how much this channel shows an event later than the others",
+        unit: "s",
+        example: "delay = \"10 ms\"",
+    };
+    Ok(optional_quantity(source, file.delay.as_ref(), &needed)?.unwrap_or(0.0))
+}
+
+fn sign(source: &TomlSource, kind: &Kind, file: &ChannelFile) -> Result<f64, Error> {
+    match file.sign.as_ref().map(|sign| *sign.get_ref()) {
+        None | Some(1) => Ok(1.0),
+        Some(-1) => Ok(-1.0),
+        Some(other) => {
+            let at = file.sign.as_ref().map_or(0..0, Spanned::span);
+            let problem = "expected 1, or -1 where the column counts the other way".to_owned();
+            Err(invalid(
+                source,
+                &at,
+                (kind.table, "sign"),
+                &other.to_string(),
+                problem,
+            ))
+        }
+    }
+}
+
+/// The encoder of a campaign.
+///
+/// # Errors
+/// Phases or counts are recorded and the encoder does not say what they mean.
+pub fn encoder_plan(source: &TomlSource, file: &CampaignFile) -> Result<Option<Encoder>, Error> {
+    let counts = file.channels.as_ref().is_some_and(|channels| {
+        let channels = channels.get_ref();
+        channels.count.is_some() || channels.phase_a.is_some() || channels.phase_b.is_some()
+    });
+    let needed = Needed {
+        table: "[encoder]",
+        key: "counts_per_revolution",
+        meaning: "counts per revolution after x4 decoding, for an encoder on a pendulum's pivot; \
+                  or `count_length` for a wheel or a linear scale",
+        unit: "m",
+        example: "counts_per_revolution = 360000   or   count_length = \"0.17 mm\"",
+    };
+    let Some(encoder) = &file.encoder else {
+        return if counts {
+            Err(missing(source, &(0..0), &needed, needed.table.to_owned()))
+        } else {
+            Ok(None)
+        };
+    };
+    let (at, encoder) = (encoder.span(), encoder.get_ref());
+    let length_key = Needed {
+        key: "count_length",
+        ..needed
+    };
+    let length = optional_quantity(source, encoder.count_length.as_ref(), &length_key)?;
+    let per_revolution = encoder.counts_per_revolution.as_ref().map(|c| *c.get_ref());
+    match (per_revolution, length) {
+        (Some(counts), None) if counts > 0.0 => Ok(Some(Encoder::Rotary {
+            counts_per_revolution: counts,
+        })),
+        (None, Some(length)) if length > 0.0 => Ok(Some(Encoder::Linear {
+            count_length: length,
+        })),
+        (None, None) => Err(missing(source, &at, &needed, needed.table.to_owned())),
+        (counts, _) => {
+            let text = counts.map_or_else(String::new, |counts| counts.to_string());
+            let problem = "give one of `counts_per_revolution` and `count_length`, above zero";
+            let key = (needed.table, needed.key);
+            Err(invalid(source, &at, key, &text, problem.to_owned()))
+        }
+    }
+}

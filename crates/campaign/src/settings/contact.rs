@@ -1,0 +1,250 @@
+//! `[contact]` of campaign.toml.
+
+use crate::settings::channels::encoder_plan;
+use crate::settings::conditioning::{conditioning_plan, rate_plan};
+use crate::settings::file::{CampaignFile, ContactFile, QuantityText};
+use crate::settings::model::RigPlan;
+use toml::Spanned;
+use windfall_files::error::Error;
+use windfall_files::text::toml_source::{Needed, TomlSource, choice, invalid, optional_quantity};
+use windfall_signal::ExtractOptions;
+use windfall_signal::encoder::edge_rate::CountTimes;
+use windfall_signal::kinematics::Encoder;
+use windfall_signal::options::RateMethod;
+use windfall_signal::trigger::{Baseline, ContactChoice, Threshold};
+
+const TABLE: &str = "[contact]";
+
+/// Text that asks for a threshold from the noise.
+const AUTO: &str = "auto";
+
+/// How impacts are cut out of the recordings of a campaign.
+///
+/// # Errors
+/// A value cannot be used, or an encoder does not fit the rig.
+pub fn contact_plan(
+    source: &TomlSource,
+    file: &CampaignFile,
+    rig: &RigPlan,
+) -> Result<ExtractOptions, Error> {
+    let contact = &file.contact;
+    let mut options = ExtractOptions::default();
+    options.trigger.threshold = threshold(source, contact.threshold.as_ref())?;
+    let baselines = [
+        ("remove", Baseline::Remove),
+        ("drift", Baseline::Drift),
+        ("keep", Baseline::Keep),
+    ];
+    if let Some(baseline) = choice(
+        source,
+        contact.baseline.as_ref(),
+        (TABLE, "baseline"),
+        &baselines,
+    )? {
+        options.trigger.baseline = baseline;
+    }
+    let contacts = [
+        ("first", ContactChoice::First),
+        ("strongest", ContactChoice::Strongest),
+    ];
+    if let Some(chosen) = choice(
+        source,
+        contact.contact.as_ref(),
+        (TABLE, "contact"),
+        &contacts,
+    )? {
+        options.trigger.choice = chosen;
+    }
+    if let Some(margin) = &contact.margin_before {
+        options.margin_before = checked_margin(source, margin, "margin_before")?;
+    }
+    if let Some(margin) = &contact.margin_after {
+        options.margin_after = checked_margin(source, margin, "margin_after")?;
+    }
+    if let Some(release) = &contact.release {
+        options.trigger.release = checked_release(source, release)?;
+    }
+    let time = |value: &Option<Spanned<QuantityText>>, key, about| {
+        span_of_time(source, value.as_ref(), key, about)
+    };
+    let gap = (
+        "contacts closer than this are one",
+        "minimum_gap = \"1 ms\"",
+    );
+    options.trigger.minimum_gap = time(&contact.minimum_gap, "minimum_gap", gap)?;
+    let before = ("what is kept before contact", "pre_trigger = \"2 ms\"");
+    options.pre_trigger = time(&contact.pre_trigger, "pre_trigger", before)?.unwrap_or(0.0);
+    let after = ("what is kept after contact", "post_trigger = \"2 ms\"");
+    options.post_trigger = time(&contact.post_trigger, "post_trigger", after)?.unwrap_or(0.0);
+    options.rate = rate_plan(source, contact.rate.as_ref())?;
+    options.edge_window = edge_window(source, contact, options.rate)?;
+    options.count_times = count_times(source, file)?;
+    options.conditioning = conditioning_plan(source, file.channels.as_ref())?;
+    options.encoder = encoder_plan(source, file)?;
+    match rig {
+        RigPlan::Pendulum(pendulum) => options.arm = Some(pendulum.arm),
+        RigPlan::Carriage {
+            driving_acceleration,
+            ..
+        } => {
+            options.driving_acceleration = *driving_acceleration;
+            check_encoder(source, file, options.encoder)?;
+        }
+    }
+    Ok(options)
+}
+
+fn threshold(
+    source: &TomlSource,
+    value: Option<&Spanned<QuantityText>>,
+) -> Result<Threshold, Error> {
+    let needed = Needed {
+        table: TABLE,
+        key: "threshold",
+        meaning: "force above which there is contact",
+        unit: "N",
+        example: "threshold = \"1 N\"   or   threshold = \"auto\"",
+    };
+    let Some(text) = value.filter(|text| text.get_ref().0 != AUTO) else {
+        return Ok(Threshold::default());
+    };
+    match optional_quantity(source, value, &needed)? {
+        Some(force) if force > 0.0 => Ok(Threshold::Fixed(force)),
+        _ => {
+            let problem = format!("must be above zero, for example: {}", needed.example);
+            let at = (TABLE, "threshold");
+            Err(invalid(
+                source,
+                &text.span(),
+                at,
+                &text.get_ref().0,
+                problem,
+            ))
+        }
+    }
+}
+
+fn checked_release(source: &TomlSource, release: &Spanned<f64>) -> Result<f64, Error> {
+    let value = *release.get_ref();
+    if value > 0.0 && value <= 1.0 {
+        return Ok(value);
+    }
+    let problem = "expected a part of the threshold above 0, at most 1, such as 0.5".to_owned();
+    let key = (TABLE, "release");
+    Err(invalid(
+        source,
+        &release.span(),
+        key,
+        &value.to_string(),
+        problem,
+    ))
+}
+
+/// A time of `[contact]` that may be left out, not below zero; s.
+fn span_of_time(
+    source: &TomlSource,
+    value: Option<&Spanned<QuantityText>>,
+    key: &'static str,
+    (meaning, example): (&'static str, &'static str),
+) -> Result<Option<f64>, Error> {
+    let needed = Needed {
+        table: TABLE,
+        key,
+        meaning,
+        unit: "s",
+        example,
+    };
+    let time = optional_quantity(source, value, &needed)?;
+    match (value, time) {
+        (Some(value), Some(time)) if time < 0.0 => {
+            let problem = "must not be below zero".to_owned();
+            let text = &value.get_ref().0;
+            Err(invalid(source, &value.span(), (TABLE, key), text, problem))
+        }
+        _ => Ok(time),
+    }
+}
+
+/// How far the edges of a rate from edge times lie apart at least; s.
+fn edge_window(
+    source: &TomlSource,
+    contact: &ContactFile,
+    method: RateMethod,
+) -> Result<f64, Error> {
+    let about = (
+        "least time between the two edges of a rate",
+        "rate_window = \"0.3 ms\"",
+    );
+    let value = contact.rate_window.as_ref();
+    let window = span_of_time(source, value, "rate_window", about)?;
+    match (value, window) {
+        (Some(value), Some(_)) if method != RateMethod::EdgeTimes => {
+            let problem =
+                "belongs to rate = \"edge-times\"; remove the line or set that".to_owned();
+            let key = (TABLE, "rate_window");
+            let text = &value.get_ref().0;
+            Err(invalid(source, &value.span(), key, text, problem))
+        }
+        (_, window) => Ok(window.unwrap_or(0.0)),
+    }
+}
+
+/// What the times beside counts mean.
+fn count_times(source: &TomlSource, file: &CampaignFile) -> Result<CountTimes, Error> {
+    let words = [
+        ("sampled", CountTimes::Sampled),
+        ("events", CountTimes::Events),
+    ];
+    let times = file
+        .encoder
+        .as_ref()
+        .and_then(|encoder| encoder.get_ref().times.as_ref());
+    let chosen = choice(source, times, ("[encoder]", "times"), &words)?;
+    Ok(chosen.unwrap_or_default())
+}
+
+fn checked_margin(
+    source: &TomlSource,
+    margin: &Spanned<f64>,
+    key: &'static str,
+) -> Result<f64, Error> {
+    let value = *margin.get_ref();
+    if (0.0..=100.0).contains(&value) {
+        return Ok(value);
+    }
+    let problem = "expected a part of the contact's duration from 0 to 100, such as 0.2".to_owned();
+    Err(invalid(
+        source,
+        &margin.span(),
+        (TABLE, key),
+        &value.to_string(),
+        problem,
+    ))
+}
+
+fn check_encoder(
+    source: &TomlSource,
+    file: &CampaignFile,
+    encoder: Option<Encoder>,
+) -> Result<(), Error> {
+    let (
+        Some(Encoder::Rotary {
+            counts_per_revolution,
+        }),
+        Some(table),
+    ) = (encoder, &file.encoder)
+    else {
+        return Ok(());
+    };
+    let problem = "a carriage has no arm; give the length of one count: \
+                   count_length = \"0.17 mm\""
+        .to_owned();
+    let at = ("[encoder]", "counts_per_revolution");
+    Err(invalid(
+        source,
+        &table.span(),
+        at,
+        &counts_per_revolution.to_string(),
+        problem,
+    ))
+}

@@ -1,0 +1,307 @@
+//! `[fit]` of campaign.toml.
+
+use crate::settings::file::FitFile;
+use crate::settings::model::FitPlan;
+use toml::Spanned;
+use windfall_contact::expression::{LawExpression, parse_law_among};
+use windfall_contact::law::EndRule;
+use windfall_contact::laws::kind::LawKind;
+use windfall_files::error::Error;
+use windfall_files::text::toml_source::suggestion;
+use windfall_files::text::toml_source::{Needed, TomlSource, choice, invalid, missing};
+use windfall_identify::fit::interval::{IntervalMethod, IntervalOptions};
+use windfall_identify::fit::problem::{FitOptions, NoiseModel, Quantities, Treatment, Weighting};
+use windfall_identify::samples::Quantity;
+use windfall_numerics::unit::quantity::parse_as;
+
+const TABLE: &str = "[fit]";
+
+/// Words for the weights of a cost function.
+pub const WEIGHTS: [(&str, Weighting); 2] = [
+    ("inverse-variance", Weighting::InverseVariance),
+    ("inverse-mean", Weighting::InverseMean),
+];
+
+/// Words for what is taken for the noise of the channels.
+pub const NOISES: [(&str, NoiseModel); 2] = [
+    ("automatic", NoiseModel::Automatic),
+    ("white", NoiseModel::White),
+];
+
+/// Words for how intervals are made.
+pub const INTERVALS: [(&str, IntervalMethod); 4] = [
+    ("asymptotic", IntervalMethod::Asymptotic),
+    ("profile", IntervalMethod::Profile),
+    ("bootstrap", IntervalMethod::Bootstrap),
+    ("posterior", IntervalMethod::Posterior),
+];
+
+/// Words for the end of contact.
+pub const ENDS: [(&str, EndRule); 2] = [
+    ("force-zero", EndRule::ForceZero),
+    ("gap-zero", EndRule::GapZero),
+];
+
+/// Words for what is done about a quantity that is not of interest in itself.
+pub const TREATMENTS: [(&str, Treatment); 3] = [
+    ("auto", Treatment::Auto),
+    ("free", Treatment::Free),
+    ("fixed", Treatment::Fixed),
+];
+
+/// What a campaign fits.
+///
+/// * `user`: the user's own laws
+///
+/// # Errors
+/// No law is named, or a word is not known.
+pub fn fit_plan(source: &TomlSource, file: &FitFile, user: Vec<LawKind>) -> Result<FitPlan, Error> {
+    let keys = LawKeys {
+        law: file.law.as_ref(),
+        laws: file.laws.as_deref(),
+        free: file.free.as_deref(),
+    };
+    let laws = law_expressions(source, &keys, &user)?;
+    let free = free_names(source, &keys, &laws)?;
+    let mut options = FitOptions::default();
+    if let Some(words) = &file.quantities {
+        options.quantities = quantities(source, words)?;
+    }
+    if let Some(weights) = choice(source, file.weights.as_ref(), (TABLE, "weights"), &WEIGHTS)? {
+        options.weighting = weights;
+    }
+    if let Some(noise) = choice(source, file.noise.as_ref(), (TABLE, "noise"), &NOISES)? {
+        options.noise = noise;
+    }
+    interval_options(source, file, &mut options.intervals)?;
+    if let Some(end) = choice(source, file.end.as_ref(), (TABLE, "end"), &ENDS)? {
+        options.end = end;
+    }
+    let treatment = |value: Option<&Spanned<String>>, key| -> Result<Treatment, Error> {
+        Ok(choice(source, value, (TABLE, key), &TREATMENTS)?.unwrap_or(Treatment::Auto))
+    };
+    let velocity = file.initial_velocity.as_ref();
+    match velocity.and_then(|value| known_velocity(value.get_ref())) {
+        Some(known) => hold_velocity(&mut options, known),
+        None => options.initial_velocity = treatment(velocity, "initial_velocity")?,
+    }
+    options.onset = treatment(file.onset.as_ref(), "onset")?;
+    options.displacement_offset =
+        treatment(file.displacement_offset.as_ref(), "displacement_offset")?;
+    Ok(FitPlan {
+        laws,
+        free,
+        user,
+        options,
+    })
+}
+
+/// Fewest resampled recordings, draws and chains that an interval can be read
+/// from.
+pub const LEAST_WORK: [(&str, usize); 3] = [("replicates", 100), ("draws", 100), ("chains", 2)];
+
+/// Whether there is enough work for an interval; what was expected, if not.
+///
+/// # Errors
+/// What was expected.
+pub fn enough_work(name: &str, value: usize) -> Result<usize, String> {
+    let least = LEAST_WORK.iter().find(|(known, _)| *known == name);
+    match least {
+        Some((_, least)) if value < *least => Err(format!(
+            "{value} are too few to read an interval from; give at least {least}"
+        )),
+        _ => Ok(value),
+    }
+}
+
+fn interval_options(
+    source: &TomlSource,
+    file: &FitFile,
+    options: &mut IntervalOptions,
+) -> Result<(), Error> {
+    let place = (TABLE, "intervals");
+    if let Some(method) = choice(source, file.intervals.as_ref(), place, &INTERVALS)? {
+        options.method = method;
+    }
+    let numbers = [
+        ("replicates", &file.replicates, &mut options.replicates),
+        ("draws", &file.draws, &mut options.draws),
+        ("chains", &file.chains, &mut options.chains),
+    ];
+    for (key, given, place) in numbers {
+        if let Some(value) = given {
+            let number = usize::try_from(*value.get_ref()).unwrap_or(usize::MAX);
+            *place = enough_work(key, number).map_err(|problem| {
+                invalid(
+                    source,
+                    &value.span(),
+                    (TABLE, key),
+                    &number.to_string(),
+                    problem,
+                )
+            })?;
+        }
+    }
+    if let Some(seed) = &file.seed {
+        options.seed = *seed.get_ref();
+    }
+    Ok(())
+}
+
+/// A velocity given in place of a treatment: "0.35 m/s". Its unit tells it from
+/// a word.
+#[must_use]
+pub fn known_velocity(text: &str) -> Option<f64> {
+    let value = parse_as(text, "m/s").ok()?;
+    (value.is_finite() && value > 0.0).then_some(value)
+}
+
+/// Holds the velocity at first touch at a given value; m/s.
+pub fn hold_velocity(options: &mut FitOptions, velocity: f64) {
+    options.initial_velocity = Treatment::Fixed;
+    options.known_velocity = Some(velocity);
+}
+
+/// Quantities of a cost function by their names.
+///
+/// # Errors
+/// The word that is no quantity, with what was expected.
+pub fn quantities_named<'a>(
+    words: impl IntoIterator<Item = &'a str>,
+) -> Result<Quantities, (String, String)> {
+    let names = Quantity::ALL.map(Quantity::name);
+    let mut chosen = Vec::new();
+    for word in words {
+        let found = Quantity::ALL
+            .into_iter()
+            .find(|quantity| quantity.name() == word);
+        chosen.push(found.ok_or_else(|| {
+            let hint = suggestion(word, names);
+            (
+                word.to_owned(),
+                format!("expected any of {}{hint}", names.join(", ")),
+            )
+        })?);
+    }
+    match chosen.is_empty() {
+        false => Ok(Quantities::of(&chosen)),
+        true => Err((
+            String::new(),
+            format!("expected at least one of {}", names.join(", ")),
+        )),
+    }
+}
+
+/// The first of `free` that is a parameter of none of the laws, with what was
+/// expected.
+#[must_use]
+pub fn unknown_parameter(free: &[String], laws: &[LawExpression]) -> Option<(usize, String)> {
+    let names: Vec<&str> = laws
+        .iter()
+        .flat_map(|law| law.kind.describe().parameters)
+        .map(|p| p.name)
+        .collect();
+    let index = free
+        .iter()
+        .position(|name| !names.contains(&name.as_str()))?;
+    let known = names.join(", ");
+    let problem = format!(
+        "no law here has a parameter of that name{}; they have: {known}",
+        suggestion(&free[index], names.iter().copied())
+    );
+    Some((index, problem))
+}
+
+fn quantities(source: &TomlSource, words: &[Spanned<String>]) -> Result<Quantities, Error> {
+    quantities_named(words.iter().map(|word| word.get_ref().as_str())).map_err(|(text, problem)| {
+        let at = words
+            .iter()
+            .find(|word| *word.get_ref() == text)
+            .map_or(0..0, Spanned::span);
+        invalid(source, &at, (TABLE, "quantities"), &text, problem)
+    })
+}
+
+/// The keys of `[fit]` that name laws and parameters.
+#[derive(Clone, Copy)]
+pub struct LawKeys<'a> {
+    /// One law.
+    pub law: Option<&'a Spanned<String>>,
+    /// Several laws.
+    pub laws: Option<&'a [Spanned<String>]>,
+    /// Parameters that are estimated although they have a value.
+    pub free: Option<&'a [Spanned<String>]>,
+}
+
+/// The laws of a campaign: built-in ones and those of `user`.
+///
+/// # Errors
+/// None is named, one is not known, or one is named twice.
+pub fn law_expressions(
+    source: &TomlSource,
+    keys: &LawKeys,
+    user: &[LawKind],
+) -> Result<Vec<LawExpression>, Error> {
+    let several = keys.laws.unwrap_or_default();
+    let texts: Vec<&Spanned<String>> = keys.law.into_iter().chain(several).collect();
+    if texts.is_empty() {
+        let needed = Needed {
+            table: TABLE,
+            key: "laws",
+            meaning: "the force laws to fit; `windfall card show --laws` lists them",
+            unit: "",
+            example: "laws = [\"kuwabara-kono\"]",
+        };
+        return Err(missing(source, &(0..0), &needed, TABLE.to_owned()));
+    }
+    let mut laws: Vec<LawExpression> = Vec::new();
+    for text in texts {
+        let law = parse_law_among(text.get_ref(), user).map_err(|error| {
+            invalid(
+                source,
+                &text.span(),
+                (TABLE, "law"),
+                text.get_ref(),
+                error.to_string(),
+            )
+        })?;
+        if laws.iter().any(|known| known.kind == law.kind) {
+            let problem = "this law is named twice; each law can be fitted once".to_owned();
+            return Err(invalid(
+                source,
+                &text.span(),
+                (TABLE, "law"),
+                text.get_ref(),
+                problem,
+            ));
+        }
+        laws.push(law);
+    }
+    Ok(laws)
+}
+
+/// The parameters that a campaign frees by name.
+///
+/// # Errors
+/// A name is no parameter of any of the laws.
+pub fn free_names(
+    source: &TomlSource,
+    keys: &LawKeys,
+    laws: &[LawExpression],
+) -> Result<Vec<String>, Error> {
+    let words = keys.free.unwrap_or_default();
+    let names: Vec<String> = words.iter().map(|word| word.get_ref().clone()).collect();
+    match unknown_parameter(&names, laws) {
+        None => Ok(names),
+        Some((index, problem)) => {
+            let at = words[index].span();
+            Err(invalid(
+                source,
+                &at,
+                (TABLE, "free"),
+                &names[index],
+                problem,
+            ))
+        }
+    }
+}

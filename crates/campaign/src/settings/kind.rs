@@ -1,0 +1,68 @@
+//! What a campaign measures: the word after `kind` in `[rig]`.
+
+use crate::settings::read::CAMPAIGN_FILE;
+use serde::Deserialize;
+use std::path::Path;
+use windfall_files::error::Error;
+use windfall_files::text::toml_source::{parse_source, read_source};
+
+/// What a campaign measures.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum CampaignKind {
+    /// Single impacts, on a pendulum or a carriage; also every kind that is not
+    /// known, so that its reader can say what is wrong.
+    Impacts,
+    /// Slow compressions in a testing machine.
+    Compression,
+    /// Taps, for acoustic firmness.
+    Acoustic,
+    /// Impacts repeated on one spot, for the critical impact energy.
+    Repeats,
+    /// Fruit that fall on a plate and bounce.
+    Drop,
+}
+
+impl CampaignKind {
+    /// The word in `[rig] kind`.
+    #[must_use]
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Impacts => "impacts",
+            Self::Compression => "compression",
+            Self::Acoustic => "acoustic",
+            Self::Repeats => "repeats",
+            Self::Drop => "drop",
+        }
+    }
+}
+
+/// Just enough of campaign.toml to tell its kind.
+#[derive(Deserialize)]
+struct KindFile {
+    rig: Option<RigKindFile>,
+}
+
+#[derive(Deserialize)]
+struct RigKindFile {
+    kind: Option<String>,
+}
+
+/// What the campaign in a directory measures.
+///
+/// # Errors
+/// There is no campaign.toml, or it is no TOML.
+pub fn campaign_kind(directory: &Path) -> Result<CampaignKind, Error> {
+    let advice = "a campaign directory holds a campaign.toml; \
+                  `windfall new pendulum DIR` writes a template (`windfall new --help` lists the kinds)";
+    let source = read_source(&directory.join(CAMPAIGN_FILE), advice)?;
+    let file: KindFile = parse_source(&source)?;
+    let kind = file.rig.and_then(|rig| rig.kind).unwrap_or_default();
+    let others = [
+        CampaignKind::Compression,
+        CampaignKind::Acoustic,
+        CampaignKind::Repeats,
+        CampaignKind::Drop,
+    ];
+    let known = others.into_iter().find(|other| other.name() == kind);
+    Ok(known.unwrap_or(CampaignKind::Impacts))
+}

@@ -1,0 +1,15 @@
+//! What campaign.toml, specimens.csv and impacts.csv say.
+
+pub mod channels;
+pub mod conditioning;
+pub mod contact;
+pub mod file;
+pub mod files;
+pub mod fit;
+pub mod kind;
+pub mod model;
+pub mod open_options;
+pub mod read;
+pub mod rig;
+pub mod tables;
+pub mod template;

@@ -1,0 +1,107 @@
+//! How files are read that do not say it themselves, as texts: in `[files]` of
+//! campaign.toml and as flags of `inspect`.
+
+use windfall_files::error::Error;
+use windfall_files::option_value::{chosen, unusable};
+use windfall_formats::contents::Format;
+use windfall_formats::open::OpenOptions;
+use windfall_formats::text::encoding::Encoding;
+use windfall_formats::text::options::TextOptions;
+use windfall_formats::text::rows::Separator;
+
+/// Formats by name.
+pub const FORMATS: [(&str, Format); 8] = [
+    ("text", Format::Text),
+    ("lvm", Format::Lvm),
+    ("tdms", Format::Tdms),
+    ("mat", Format::Mat),
+    ("hdf5", Format::Hdf5),
+    ("wav", Format::Wav),
+    ("uff58", Format::Uff58),
+    ("sigrok", Format::Sigrok),
+];
+
+/// Separators of tables in text by name.
+pub const SEPARATORS: [(&str, Separator); 5] = [
+    ("comma", Separator::Mark(b',')),
+    ("semicolon", Separator::Mark(b';')),
+    ("tab", Separator::Mark(b'\t')),
+    ("bar", Separator::Mark(b'|')),
+    ("blanks", Separator::Blanks),
+];
+
+/// Decimal marks by name.
+pub const DECIMALS: [(&str, char); 2] = [("point", '.'), ("comma", ',')];
+
+/// Marks between groups of three digits by name.
+pub const THOUSANDS: [(&str, char); 4] = [
+    ("point", '.'),
+    ("comma", ','),
+    ("apostrophe", '\''),
+    ("space", ' '),
+];
+
+/// Encodings of text by name.
+pub const ENCODINGS: [(&str, Encoding); 4] = [
+    ("utf-8", Encoding::Utf8),
+    ("windows-1252", Encoding::Windows1252),
+    ("utf-16le", Encoding::Utf16Le),
+    ("utf-16be", Encoding::Utf16Be),
+];
+
+/// How files are to be read; what is left out is found out.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct OpenRequest {
+    /// A name of [`FORMATS`].
+    pub format: Option<String>,
+    /// A name of [`SEPARATORS`].
+    pub separator: Option<String>,
+    /// A name of [`DECIMALS`].
+    pub decimal: Option<String>,
+    /// A name of [`THOUSANDS`].
+    pub thousands: Option<String>,
+    /// A name of [`ENCODINGS`].
+    pub encoding: Option<String>,
+    /// Line with the names of the columns, from 1; 0 for none.
+    pub header_line: Option<u64>,
+    /// Beginning of lines that are passed over.
+    pub comment: Option<String>,
+}
+
+/// The options of the readers.
+///
+/// # Errors
+/// A text cannot be used; the message names the flag.
+pub fn open_options(request: &OpenRequest) -> Result<OpenOptions, Error> {
+    fn named<T: Copy>(
+        option: &str,
+        text: Option<&String>,
+        known: &[(&str, T)],
+    ) -> Result<Option<T>, Error> {
+        text.map(|text| chosen(option, text, known)).transpose()
+    }
+    let separator = named("--separator", request.separator.as_ref(), &SEPARATORS)?;
+    let decimal = named("--decimal", request.decimal.as_ref(), &DECIMALS)?;
+    let thousands = named("--thousands", request.thousands.as_ref(), &THOUSANDS)?;
+    if decimal.is_some() && decimal == thousands {
+        let problem = "decimals and thousands cannot have the same mark";
+        return Err(unusable("--thousands", problem));
+    }
+    if request.comment.as_deref() == Some("") {
+        return Err(unusable(
+            "--comment",
+            "give the characters that comments begin with",
+        ));
+    }
+    Ok(OpenOptions {
+        format: named("--file-format", request.format.as_ref(), &FORMATS)?,
+        text: TextOptions {
+            separator,
+            decimal,
+            thousands,
+            encoding: named("--encoding", request.encoding.as_ref(), &ENCODINGS)?,
+            header_line: request.header_line,
+            comment: request.comment.clone(),
+        },
+    })
+}

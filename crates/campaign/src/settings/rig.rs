@@ -1,0 +1,223 @@
+//! `[rig]` of campaign.toml.
+
+use crate::settings::file::{QuantityText, RigFile};
+use crate::settings::model::{MassPlan, RigPlan};
+use std::ops::Range;
+use toml::Spanned;
+use windfall_files::error::Error;
+use windfall_files::text::toml_source::optional_quantity;
+use windfall_files::text::toml_source::{
+    Needed, TomlSource, choice, invalid, missing, needed_quantity,
+};
+use windfall_identify::rig::kind::Pendulum;
+
+/// Standard acceleration of gravity, where the campaign gives none; m/s².
+///
+/// # Source
+/// 3rd General Conference on Weights and Measures (1901).
+pub const STANDARD_GRAVITY: f64 = 9.80665;
+
+/// Text that asks for the mass from impulse and change of velocity.
+pub const FROM_IMPULSE: &str = "from impulse";
+
+const TABLE: &str = "[rig]";
+
+const fn needed(
+    key: &'static str,
+    meaning: &'static str,
+    unit: &'static str,
+    example: &'static str,
+) -> Needed {
+    Needed {
+        table: TABLE,
+        key,
+        meaning,
+        unit,
+        example,
+    }
+}
+
+const KIND: Needed = needed(
+    "kind",
+    "the kind of rig",
+    "",
+    "kind = \"pendulum\"   or   kind = \"carriage\"",
+);
+const INERTIA: Needed = needed(
+    "inertia",
+    "moment of inertia of arm and impactor about the pivot",
+    "kg m^2",
+    "inertia = \"0.01435 kg m^2\"",
+);
+const ARM: Needed = needed(
+    "arm",
+    "distance from pivot to point of contact",
+    "m",
+    "arm = \"0.505 m\"",
+);
+const PENDULUM_MASS: Needed = needed(
+    "mass",
+    "mass of arm and impactor together",
+    "kg",
+    "mass = \"0.11 kg\"",
+);
+const CENTRE: Needed = needed(
+    "centre_of_mass",
+    "distance from pivot to the centre of mass",
+    "m",
+    "centre_of_mass = \"0.35 m\"",
+);
+const GRAVITY: Needed = needed(
+    "gravity",
+    "acceleration of gravity",
+    "m/s^2",
+    "gravity = \"9.81 m/s^2\"",
+);
+const CARRIAGE_MASS: Needed = needed(
+    "mass",
+    "mass of the moving body",
+    "kg",
+    "mass = \"0.5 kg\"   or   mass = \"from impulse\"",
+);
+const MASS_SD: Needed = needed(
+    "mass_sd",
+    "standard uncertainty of the mass",
+    "kg",
+    "mass_sd = \"0.5 g\"",
+);
+const DRIVING: Needed = needed(
+    "driving_acceleration",
+    "acceleration towards the fruit when nothing touches: g0 for a free fall, 0 on a level track",
+    "m/s^2",
+    "driving_acceleration = \"0 m/s^2\"",
+);
+
+const DRIVING_SD: Needed = needed(
+    "driving_acceleration_sd",
+    "standard uncertainty of the driving acceleration",
+    "m/s^2",
+    "driving_acceleration_sd = \"0.02 m/s^2\"",
+);
+
+#[derive(Clone, Copy)]
+enum Kind {
+    Pendulum,
+    Carriage,
+}
+
+/// The rig of a campaign.
+///
+/// # Errors
+/// A value is left out, is no such quantity, or is out of range.
+pub fn rig_plan(source: &TomlSource, rig: Option<&Spanned<RigFile>>) -> Result<RigPlan, Error> {
+    let Some(rig) = rig else {
+        return Err(missing(source, &(0..0), &KIND, TABLE.to_owned()));
+    };
+    let (at, rig) = (rig.span(), rig.get_ref());
+    let kinds = [("pendulum", Kind::Pendulum), ("carriage", Kind::Carriage)];
+    match choice(source, rig.kind.as_ref(), (TABLE, "kind"), &kinds)? {
+        None => Err(missing(source, &at, &KIND, TABLE.to_owned())),
+        Some(Kind::Pendulum) => pendulum(source, &at, rig),
+        Some(Kind::Carriage) => carriage(source, &at, rig),
+    }
+}
+
+fn pendulum(source: &TomlSource, at: &Range<usize>, rig: &RigFile) -> Result<RigPlan, Error> {
+    let strangers = [
+        (rig.mass_sd.as_ref(), "mass_sd"),
+        (rig.driving_acceleration.as_ref(), "driving_acceleration"),
+        (
+            rig.driving_acceleration_sd.as_ref(),
+            "driving_acceleration_sd",
+        ),
+    ];
+    refuse(source, strangers, "a pendulum")?;
+    let gravity = optional_quantity(source, rig.gravity.as_ref(), &GRAVITY)?;
+    Ok(RigPlan::Pendulum(Pendulum {
+        inertia: positive(source, at, rig.inertia.as_ref(), &INERTIA)?,
+        arm: positive(source, at, rig.arm.as_ref(), &ARM)?,
+        mass: positive(source, at, rig.mass.as_ref(), &PENDULUM_MASS)?,
+        centre_of_mass: needed_quantity(source, at, rig.centre_of_mass.as_ref(), &CENTRE)?,
+        gravity: gravity.unwrap_or(STANDARD_GRAVITY),
+    }))
+}
+
+fn carriage(source: &TomlSource, at: &Range<usize>, rig: &RigFile) -> Result<RigPlan, Error> {
+    let strangers = [
+        (rig.inertia.as_ref(), "inertia"),
+        (rig.arm.as_ref(), "arm"),
+        (rig.centre_of_mass.as_ref(), "centre_of_mass"),
+        (rig.gravity.as_ref(), "gravity"),
+    ];
+    refuse(source, strangers, "a carriage")?;
+    let from_impulse = rig
+        .mass
+        .as_ref()
+        .is_some_and(|mass| mass.get_ref().0 == FROM_IMPULSE);
+    let mass = if from_impulse {
+        refuse(
+            source,
+            [(rig.mass_sd.as_ref(), "mass_sd")],
+            "a mass from impulse",
+        )?;
+        MassPlan::FromImpulse
+    } else {
+        let sd = optional_quantity(source, rig.mass_sd.as_ref(), &MASS_SD)?;
+        let value = positive(source, at, rig.mass.as_ref(), &CARRIAGE_MASS)?;
+        MassPlan::Given {
+            value,
+            sd: sd.unwrap_or(0.0),
+        }
+    };
+    let driving = rig.driving_acceleration.as_ref();
+    let driving_acceleration = needed_quantity(source, at, driving, &DRIVING)?;
+    let driving_sd = rig.driving_acceleration_sd.as_ref();
+    Ok(RigPlan::Carriage {
+        mass,
+        driving_acceleration,
+        driving_acceleration_sd: optional_quantity(source, driving_sd, &DRIVING_SD)?.unwrap_or(0.0),
+    })
+}
+
+fn refuse<const N: usize>(
+    source: &TomlSource,
+    strangers: [(Option<&Spanned<QuantityText>>, &str); N],
+    rig: &str,
+) -> Result<(), Error> {
+    for (value, key) in strangers {
+        if let Some(value) = value {
+            let problem = format!("{rig} has no such value; remove the line");
+            return Err(invalid(
+                source,
+                &value.span(),
+                (TABLE, key),
+                &value.get_ref().0,
+                problem,
+            ));
+        }
+    }
+    Ok(())
+}
+
+fn positive(
+    source: &TomlSource,
+    at: &Range<usize>,
+    value: Option<&Spanned<QuantityText>>,
+    needed: &Needed,
+) -> Result<f64, Error> {
+    let number = needed_quantity(source, at, value, needed)?;
+    match value {
+        Some(value) if number <= 0.0 => {
+            let problem = format!("must be above zero, for example: {}", needed.example);
+            let text = &value.get_ref().0;
+            Err(invalid(
+                source,
+                &value.span(),
+                (TABLE, needed.key),
+                text,
+                problem,
+            ))
+        }
+        _ => Ok(number),
+    }
+}

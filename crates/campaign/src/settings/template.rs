@@ -1,0 +1,208 @@
+//! `windfall new KIND DIR`: a commented template of a campaign or a scene.
+
+use std::path::{Path, PathBuf};
+use windfall_files::error::Error;
+
+/// Rig of a template.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum TemplateKind {
+    /// Pendulum with encoder and force sensor.
+    Pendulum,
+    /// Body on a line with force sensor and position.
+    Carriage,
+    /// Testing machine that compresses fruit slowly.
+    Compression,
+    /// Microphone that records taps.
+    Acoustic,
+    /// Drops repeated on one spot.
+    Repeats,
+    /// Fruit that fall on a plate over a load cell.
+    Drop,
+}
+
+/// Table of specimens of a template.
+const SPECIMENS: &str = "id,variety,mass_g\nfruit-1,Golden,182\nfruit-2,Golden,175\n";
+
+/// Table of impacts of a template.
+const IMPACTS: &str = "id,specimen,file,level\nfruit-1-a,fruit-1,fruit-1-a.csv,1\n\
+                       fruit-1-b,fruit-1,fruit-1-b.csv,1\nfruit-2-a,fruit-2,fruit-2-a.csv,1\n";
+
+/// Specimens of slow compressions: radii where the plates touch.
+const COMPRESSED: &str = "id,variety,radius_mm,radius_2_mm\nfruit-1,Golden,38,36\n\
+                          fruit-2,Golden,37,37\n";
+
+/// Recordings of taps: two places of each fruit.
+const TAPPED: &str = "id,specimen,file,orientation\nfruit-1-a,fruit-1,fruit-1-a.wav,stem up\n\
+                      fruit-1-b,fruit-1,fruit-1-b.wav,quarter turn\n\
+                      fruit-2-a,fruit-2,fruit-2-a.wav,stem up\n\
+                      fruit-2-b,fruit-2,fruit-2-b.wav,quarter turn\n";
+/// Specimens of repeated impacts, with the reference.
+const STRUCK: &str =
+    "id,role,variety\nball,reference,\nfruit-1,fruit,Golden\nfruit-2,fruit,Golden\n";
+
+/// Repeated impacts.
+const DROPS: &str = "id,specimen,file,spot,repeat,drop_height_m\n\
+                     ball-1,ball,ball-1.csv,1,1,0.05\nball-2,ball,ball-2.csv,1,2,0.05\n\
+                     fruit-1-a,fruit-1,fruit-1-a.csv,1,1,0.05\nfruit-1-b,fruit-1,fruit-1-b.csv,1,2,0.05\n\
+                     fruit-2-a,fruit-2,fruit-2-a.csv,1,1,0.05\nfruit-2-b,fruit-2,fruit-2-b.csv,1,2,0.05\n";
+
+/// Fruit that are dropped.
+const FRUIT: &str = "id,variety,mass_g\nfruit-1,Nongda 4,4.82\nfruit-2,Nongda 4,4.76\n";
+
+/// Drops from several heights, of a fresh fruit each.
+const HEIGHTS: &str = "id,specimen,file,drop_height_mm\n\
+                       c-100-1,fruit-1,c-100-1.csv,100\n\
+                       c-500-1,fruit-2,c-500-1.csv,500\n";
+
+/// Whether a file is a table of a template that nobody has touched.
+#[must_use]
+pub fn is_template_file(path: &Path) -> bool {
+    let tables = [
+        SPECIMENS, IMPACTS, COMPRESSED, TAPPED, STRUCK, DROPS, FRUIT, HEIGHTS,
+    ];
+    std::fs::read_to_string(path).is_ok_and(|text| tables.contains(&text.as_str()))
+}
+
+/// The tables of specimens and of recordings of a rig.
+fn tables(kind: TemplateKind) -> (&'static str, &'static str) {
+    match kind {
+        TemplateKind::Pendulum | TemplateKind::Carriage => (SPECIMENS, IMPACTS),
+        TemplateKind::Compression => (COMPRESSED, IMPACTS),
+        TemplateKind::Acoustic => (SPECIMENS, TAPPED),
+        TemplateKind::Repeats => (STRUCK, DROPS),
+        TemplateKind::Drop => (FRUIT, HEIGHTS),
+    }
+}
+
+/// The commented campaign.toml of a rig.
+#[must_use]
+pub fn template(kind: TemplateKind) -> &'static str {
+    match kind {
+        TemplateKind::Pendulum => include_str!("../../templates/pendulum.toml"),
+        TemplateKind::Carriage => include_str!("../../templates/carriage.toml"),
+        TemplateKind::Compression => include_str!("../../templates/compression.toml"),
+        TemplateKind::Acoustic => include_str!("../../templates/acoustic.toml"),
+        TemplateKind::Repeats => include_str!("../../templates/repeats.toml"),
+        TemplateKind::Drop => include_str!("../../templates/drop.toml"),
+    }
+}
+
+/// Writes a template into a directory that does not exist yet, or is empty.
+///
+/// Returns the files written.
+///
+/// # Errors
+/// There is something in the directory already, or it cannot be written.
+pub fn write_template(kind: TemplateKind, directory: &Path) -> Result<Vec<PathBuf>, Error> {
+    create_directory(directory)?;
+    let (specimens, impacts) = tables(kind);
+    let files = [
+        ("campaign.toml", template(kind)),
+        ("specimens.csv", specimens),
+        ("impacts.csv", impacts),
+    ];
+    let mut written = Vec::new();
+    for (name, text) in files {
+        let path = directory.join(name);
+        write_file(&path, text.as_bytes())?;
+        written.push(path);
+    }
+    let raw = directory.join("raw");
+    std::fs::create_dir(&raw).map_err(|source| create_error(&raw, source))?;
+    written.push(raw);
+    Ok(written)
+}
+
+/// Writes the template of a scene into a directory that does not exist yet, or is empty.
+///
+/// # Errors
+/// There is something in the directory already, or it cannot be written.
+pub fn write_scene_template(directory: &Path) -> Result<Vec<PathBuf>, Error> {
+    create_directory(directory)?;
+    let path = directory.join("scene.toml");
+    write_file(&path, include_str!("../../templates/scene.toml").as_bytes())?;
+    Ok(vec![path])
+}
+
+/// Writes the example of a study into a directory that does not exist yet, or is empty: the
+/// study, its scene, law cards and a regression of bruises.
+///
+/// # Errors
+/// There is something in the directory already, or it cannot be written.
+pub fn write_study_template(directory: &Path) -> Result<Vec<PathBuf>, Error> {
+    create_directory(directory)?;
+    let files = [
+        (
+            "study.toml",
+            include_str!("../../templates/study/study.toml"),
+        ),
+        (
+            "scene.toml",
+            include_str!("../../templates/study/scene.toml"),
+        ),
+        (
+            "bruise.toml",
+            include_str!("../../templates/study/bruise.toml"),
+        ),
+        (
+            "apple-apple.toml",
+            include_str!("../../templates/study/apple-apple.toml"),
+        ),
+        (
+            "apple-steel.toml",
+            include_str!("../../templates/study/apple-steel.toml"),
+        ),
+    ];
+    let mut written = Vec::new();
+    for (name, text) in files {
+        let path = directory.join(name);
+        write_file(&path, text.as_bytes())?;
+        written.push(path);
+    }
+    Ok(written)
+}
+
+/// Creates a directory that is to be filled; one that holds files is refused.
+///
+/// # Errors
+/// Something is there already, or the directory cannot be made.
+pub fn create_directory(directory: &Path) -> Result<(), Error> {
+    match std::fs::read_dir(directory) {
+        Ok(mut entries) => match entries.next() {
+            Some(_) => Err(Error::AlreadyThere {
+                path: directory.to_path_buf(),
+            }),
+            None => Ok(()),
+        },
+        Err(error) if error.kind() == std::io::ErrorKind::NotFound => {
+            std::fs::create_dir_all(directory).map_err(|source| create_error(directory, source))
+        }
+        Err(source) => Err(create_error(directory, source)),
+    }
+}
+
+/// Writes a file that does not exist yet.
+///
+/// # Errors
+/// It exists already or cannot be written.
+pub fn write_file(path: &Path, bytes: &[u8]) -> Result<(), Error> {
+    use std::io::Write;
+    let mut file = std::fs::File::create_new(path).map_err(|source| create_error(path, source))?;
+    file.write_all(bytes).map_err(|source| Error::FileAccess {
+        path: path.to_path_buf(),
+        action: "write",
+        source,
+    })
+}
+
+fn create_error(path: &Path, source: std::io::Error) -> Error {
+    let path = path.to_path_buf();
+    match source.kind() {
+        std::io::ErrorKind::AlreadyExists => Error::AlreadyThere { path },
+        _ => Error::FileAccess {
+            path,
+            action: "create",
+            source,
+        },
+    }
+}

@@ -1,0 +1,69 @@
+//! Results of taps as CSV: columns for the specimens.csv of another campaign.
+
+use crate::measure::measured::{MeasuredItem, MeasuredOutcome};
+use windfall_files::error::Error;
+use windfall_files::table::write::csv_text;
+use windfall_signal::tap::acoustic_stiffness::MEGAHERTZ_GRAM;
+
+/// One row per fruit.
+///
+/// # Errors
+/// None in practice: the text is written to memory.
+pub fn csv_of_acoustic(outcome: &MeasuredOutcome) -> Result<String, Error> {
+    let with = "acoustic_stiffness_with_density";
+    let dense = outcome
+        .specimens
+        .iter()
+        .any(|item| item.derived.get(with).is_some());
+    let mut header = vec![
+        "specimen",
+        "acoustic_frequency_Hz",
+        "acoustic_frequency_sd_Hz",
+        "acoustic_stiffness_Hz2_kg2_3",
+        "acoustic_stiffness_sd_Hz2_kg2_3",
+        "acoustic_stiffness_1e6_Hz2_g2_3",
+    ];
+    if dense {
+        header.extend(["acoustic_stiffness_Pa", "acoustic_stiffness_sd_Pa"]);
+    }
+    header.extend(["taps", "confidence"]);
+    if outcome.simulated.is_some() {
+        header.push("simulated");
+    }
+    let header: Vec<String> = header.into_iter().map(str::to_owned).collect();
+    let rows = outcome.specimens.iter().map(|item| {
+        let mut row = vec![item.id.clone()];
+        row.extend(value_and_sd(item, "acoustic_frequency"));
+        row.extend(value_and_sd(item, "acoustic_stiffness"));
+        let stiffness = item.derived.get("acoustic_stiffness");
+        row.push(number(stiffness.map(|value| value.value * MEGAHERTZ_GRAM)));
+        if dense {
+            row.extend(value_and_sd(item, with));
+        }
+        let word = |name: &str| item.words.get(name).cloned().unwrap_or_default();
+        // "3/4": of the taps that were evaluated, those that show the mode.
+        row.push(
+            word("taps")
+                .split('/')
+                .next()
+                .unwrap_or_default()
+                .to_owned(),
+        );
+        row.push(word("confidence"));
+        row.extend(outcome.simulated.clone());
+        row
+    });
+    csv_text(&header, rows.collect::<Vec<_>>())
+}
+
+fn value_and_sd(item: &MeasuredItem, name: &str) -> [String; 2] {
+    let value = item.derived.get(name);
+    [
+        number(value.map(|value| value.value)),
+        number(value.and_then(|value| value.sd)),
+    ]
+}
+
+fn number(value: Option<f64>) -> String {
+    value.map_or_else(String::new, |value| value.to_string())
+}

@@ -1,0 +1,242 @@
+//! Published values and models of fruit contacts, each with its source and what
+//! to beware of.
+
+use crate::library::file::{EntryFile, LibraryFile, ModelFile, SourceFile, ValueFile};
+use serde::Serialize;
+use std::path::Path;
+use windfall_files::error::Error;
+use windfall_files::text::toml_source::{TomlSource, parse_source};
+use windfall_numerics::unit::quantity::{parse_as, parse_quantity, parse_unit};
+
+/// What one publication says of one body.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct LibraryEntry {
+    /// Name to ask for it.
+    pub name: String,
+    /// What was struck, dropped or pressed.
+    pub body: String,
+    /// Its variety or kind.
+    pub variety: Option<String>,
+    /// What it met.
+    pub counterpart: Option<String>,
+    /// How it was measured.
+    pub conditions: Option<String>,
+    /// Values; SI.
+    pub values: Vec<LibraryValue>,
+    /// Regressions, all in SI.
+    pub models: Vec<LibraryModel>,
+    /// Variables of the regressions.
+    pub variables: Vec<LibraryVariable>,
+    /// The force law the values make, as `--law` takes it; for regressions its
+    /// name.
+    pub law: Option<String>,
+    /// The publication.
+    pub citation: String,
+    /// Its digital object identifier.
+    pub doi: Option<String>,
+    /// Table or section.
+    pub place: String,
+    /// What was read of it: "full text" or "abstract".
+    pub seen: String,
+    /// What to beware of.
+    pub cautions: Vec<String>,
+}
+
+/// One published value.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct LibraryValue {
+    /// What it is.
+    pub quantity: String,
+    /// The value; SI.
+    pub value: f64,
+    /// Standard deviation; SI.
+    pub deviation: Option<f64>,
+    /// Dimension in SI units; empty for pure numbers.
+    pub unit: String,
+    /// As it is printed.
+    pub printed: String,
+    /// Conditions of this value alone.
+    pub conditions: Option<String>,
+    /// Its place, where it is not the entry's.
+    pub place: Option<String>,
+}
+
+/// A published regression.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct LibraryModel {
+    /// What it gives.
+    pub quantity: String,
+    /// Unit of that.
+    pub unit: String,
+    /// Coefficient of determination, as printed.
+    pub r_squared: f64,
+    /// The equation as text.
+    pub formula: String,
+    /// Its terms.
+    pub terms: Vec<LibraryTerm>,
+}
+
+/// A coefficient and the variables it multiplies.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct LibraryTerm {
+    /// The coefficient; SI.
+    pub coefficient: f64,
+    /// Symbols of the variables; none for the constant.
+    pub of: Vec<String>,
+}
+
+/// A variable of a regression.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct LibraryVariable {
+    /// Its symbol.
+    pub name: String,
+    /// What it is.
+    pub meaning: String,
+    /// SI unit.
+    pub unit: String,
+    /// Smallest value it was measured at; SI.
+    pub seen_from: f64,
+    /// Largest; SI.
+    pub seen_to: f64,
+}
+
+/// All published values and models that come with windfall.
+///
+/// # Errors
+/// None as windfall is delivered; the text is part of the program.
+pub fn library() -> Result<Vec<LibraryEntry>, Error> {
+    let source = TomlSource {
+        path: Path::new("library.toml (built in)").to_path_buf(),
+        text: include_str!("../../data/library.toml").to_owned(),
+    };
+    let file: LibraryFile = parse_source(&source)?;
+    file.entry
+        .iter()
+        .map(|entry| entry_of(entry, &file.source))
+        .collect()
+}
+
+fn unusable(entry: &EntryFile, problem: impl std::fmt::Display) -> Error {
+    Error::OptionInvalid {
+        option: format!("library entry {}", entry.name),
+        problem: problem.to_string(),
+    }
+}
+
+fn entry_of(entry: &EntryFile, sources: &[SourceFile]) -> Result<LibraryEntry, Error> {
+    let source = sources.iter().find(|source| source.key == entry.source);
+    let source = source.ok_or_else(|| unusable(entry, format!("no source {}", entry.source)))?;
+    let values = entry.value.iter().map(|value| value_of(entry, value));
+    let variables = entry.variable.iter().map(|variable| LibraryVariable {
+        name: variable.name.clone(),
+        meaning: variable.meaning.clone(),
+        unit: variable.unit.clone(),
+        seen_from: variable.seen_from,
+        seen_to: variable.seen_to,
+    });
+    Ok(LibraryEntry {
+        name: entry.name.clone(),
+        body: entry.body.clone(),
+        variety: entry.variety.clone(),
+        counterpart: entry.counterpart.clone(),
+        conditions: entry.conditions.clone(),
+        values: values.collect::<Result<_, Error>>()?,
+        models: entry.model.iter().map(model_of).collect(),
+        variables: variables.collect(),
+        law: entry.law.clone(),
+        citation: source.citation.clone(),
+        doi: source.doi.clone(),
+        place: entry.r#where.clone(),
+        seen: entry.seen.clone(),
+        cautions: entry.cautions.clone(),
+    })
+}
+
+fn value_of(entry: &EntryFile, value: &ValueFile) -> Result<LibraryValue, Error> {
+    let failed = |error| unusable(entry, error);
+    let quantity = parse_quantity(&value.value).map_err(failed)?;
+    let deviation = match (&value.deviation, &value.variation) {
+        (Some(text), _) => Some(parse_quantity(text).map_err(failed)?.value),
+        (None, Some(text)) => Some(parse_as(text, "1").map_err(failed)? * quantity.value),
+        (None, None) => None,
+    };
+    let spread = value.deviation.as_ref().or(value.variation.as_ref());
+    Ok(LibraryValue {
+        quantity: value.quantity.clone(),
+        value: quantity.value,
+        deviation,
+        unit: si_unit(&value.value, &quantity.dimension.to_string()),
+        printed: match spread {
+            Some(spread) => format!("{} ± {spread}", value.value),
+            None => value.value.clone(),
+        },
+        conditions: value.conditions.clone(),
+        place: value.r#where.clone(),
+    })
+}
+
+/// The unit as printed where it is SI, else the dimension in SI units; empty for
+/// pure numbers.
+fn si_unit(printed: &str, dimension: &str) -> String {
+    let unit = printed.split_once(' ').map_or("", |(_, unit)| unit.trim());
+    match parse_unit(unit) {
+        Ok(known) if known.multiply == 1.0 && known.divide == 1.0 => unit.to_owned(),
+        _ if dimension == "1" => String::new(),
+        _ => dimension.to_owned(),
+    }
+}
+
+fn model_of(model: &ModelFile) -> LibraryModel {
+    let terms: Vec<LibraryTerm> = model
+        .terms
+        .iter()
+        .map(|term| LibraryTerm {
+            coefficient: term.coefficient,
+            of: term.of.clone(),
+        })
+        .collect();
+    LibraryModel {
+        quantity: model.quantity.clone(),
+        unit: model.unit.clone(),
+        r_squared: model.r_squared,
+        formula: formula_of(&model.quantity, &terms),
+        terms,
+    }
+}
+
+/// "k = 662728.094 - 328492.591 V + …".
+fn formula_of(quantity: &str, terms: &[LibraryTerm]) -> String {
+    let mut text = format!("{quantity} =");
+    for (place, term) in terms.iter().enumerate() {
+        let sign = match (place, term.coefficient < 0.0) {
+            (0, false) => "",
+            (0, true) => " -",
+            (_, false) => " +",
+            (_, true) => " -",
+        };
+        text += &format!("{sign} {}", term.coefficient.abs());
+        for name in &term.of {
+            text += &format!(" {name}");
+        }
+    }
+    text
+}
+
+/// The value of a regression.
+///
+/// * `at`: symbol and value of every variable; SI
+///
+/// `None` where a variable has no value.
+#[must_use]
+pub fn evaluate_model(model: &LibraryModel, at: &[(String, f64)]) -> Option<f64> {
+    let value_of = |name: &String| at.iter().find(|(known, _)| known == name).map(|(_, v)| v);
+    model
+        .terms
+        .iter()
+        .map(|term| {
+            term.of.iter().try_fold(term.coefficient, |product, name| {
+                value_of(name).map(|value| product * value)
+            })
+        })
+        .sum()
+}

@@ -1,0 +1,369 @@
+//! `windfall card transfer`: a law, or a law card, taken from one geometry to
+//! another by R* and E*.
+
+use crate::law_card::{CARD_FORMAT, CardContact, LawCard};
+use crate::law_use::complete_law_among;
+use crate::read_card::{law_of_card, read_card, write_card};
+use serde::Serialize;
+use std::path::PathBuf;
+use windfall_contact::apparent_modulus::{PressedContact, PrincipalRadii, stiffness_per_modulus};
+use windfall_contact::effective::{Elastic, effective_radius};
+use windfall_contact::expression::LawExpression;
+use windfall_contact::laws::kind::Law;
+use windfall_contact::transfer::{Geometry, Transferred, transfer};
+use windfall_files::error::Error;
+use windfall_files::option_value::{positive, quantity, unusable};
+use windfall_files::text::number::plain;
+
+/// What `windfall card transfer` is asked; texts with units.
+#[derive(Clone, Debug, Default)]
+pub struct TransferRequest {
+    /// The law with its parameters; none where a card is given.
+    pub law: Option<String>,
+    /// A law card.
+    pub file: Option<PathBuf>,
+    /// Radii in the geometry where it was found: "41.5 mm, plane".
+    pub from: String,
+    /// Plates that deformed the fruit there.
+    pub from_plates: usize,
+    /// The other body there: "rigid", "fruit", or its modulus and Poisson's ratio.
+    pub from_other: Option<String>,
+    /// Radii in the geometry where it is wanted: "41.5 mm, 25 mm".
+    pub to: String,
+    /// Plates that deform the fruit there.
+    pub to_plates: usize,
+    /// The other body there.
+    pub to_other: Option<String>,
+    /// Where the card of the law in its new geometry is written.
+    pub card: Option<PathBuf>,
+}
+
+/// A law in another geometry; SI.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct TransferOutcome {
+    /// The law there, as an expression.
+    pub law: String,
+    /// k there over k here.
+    pub stiffness_ratio: f64,
+    /// The contact that it was found in.
+    pub from: ContactOutcome,
+    /// The contact that it is wanted for.
+    pub to: ContactOutcome,
+    /// What is assumed.
+    pub assumptions: Vec<String>,
+}
+
+/// A contact of Hertz; SI.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct ContactOutcome {
+    /// R*; m.
+    pub effective_radius: f64,
+    /// E*; Pa.
+    pub effective_modulus: f64,
+    /// What touches what.
+    pub bodies: String,
+}
+
+/// A law in another geometry; a card of it where one is asked for.
+///
+/// # Errors
+/// A text or file cannot be used, or the law cannot be transferred.
+pub fn transfer_law(request: &TransferRequest) -> Result<TransferOutcome, Error> {
+    let (law, option, card) = found_law(request)?;
+    let here = side(
+        "--from",
+        &request.from,
+        request.from_plates,
+        &request.from_other,
+    )?;
+    let there = side("--to", &request.to, request.to_plates, &request.to_other)?;
+    // Only laws of Hertz's contact have a k that tells the modulus: see first.
+    let plain = transfer(law, &here.geometry, &there.geometry)
+        .map_err(|error| unusable(option.clone(), error.to_string()))?;
+    let (from_relative, to_relative) = relative_moduli(&law, &here, &there)?;
+    let from = Geometry {
+        relative_modulus: from_relative,
+        ..here.geometry.clone()
+    };
+    let to = Geometry {
+        relative_modulus: to_relative,
+        ..there.geometry.clone()
+    };
+    let found = transfer(law, &from, &to).unwrap_or(plain);
+    let outcome = TransferOutcome {
+        law: LawExpression::from(found.law).to_string(),
+        stiffness_ratio: found.stiffness_ratio,
+        from: here.outcome(&law),
+        to: there.outcome(&found.law),
+        assumptions: assumptions(&here, &there),
+    };
+    if let Some(path) = &request.card {
+        let Some(card) = card else {
+            let problem = "a card is written from a card: give --file FILE in place of --law";
+            return Err(unusable("--card", problem));
+        };
+        write_card(path, &card_there(card, &found, &outcome))?;
+    }
+    Ok(outcome)
+}
+
+/// The law that is asked for, how it was asked for, and its card.
+fn found_law(request: &TransferRequest) -> Result<(Law, String, Option<LawCard>), Error> {
+    match (&request.law, &request.file) {
+        (Some(text), None) => Ok((
+            complete_law_among(text, &[])?,
+            format!("--law {text}"),
+            None,
+        )),
+        (None, Some(path)) => {
+            let card = read_card(path)?;
+            let law = law_of_card(&card, path)?;
+            Ok((law, format!("--file {}", path.display()), Some(card)))
+        }
+        _ => Err(unusable(
+            "windfall card transfer",
+            "give one of --law LAW and --file FILE",
+        )),
+    }
+}
+
+/// The body that the fruit touches.
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Other {
+    Rigid,
+    Fruit,
+    Elastic(Elastic),
+}
+
+/// A geometry as it was asked for.
+#[derive(Clone, Debug)]
+struct Side {
+    geometry: Geometry,
+    other: Other,
+    radius: f64,
+    text: String,
+}
+
+impl Side {
+    /// E* from the stiffness of a law of Hertz's contact there.
+    fn modulus(&self, law: &Law) -> f64 {
+        law.parameters()[0] / stiffness_per_modulus(&self.geometry.contacts)
+    }
+
+    fn outcome(&self, law: &Law) -> ContactOutcome {
+        ContactOutcome {
+            effective_radius: self.radius,
+            effective_modulus: self.modulus(law),
+            bodies: self.text.clone(),
+        }
+    }
+}
+
+/// "41.5 mm, plane" with one or two contacts of that kind.
+fn side(option: &str, text: &str, plates: usize, other: &Option<String>) -> Result<Side, Error> {
+    let parts: Vec<&str> = text.split(',').map(str::trim).collect();
+    let [fruit, body] = parts[..] else {
+        let problem = "expected the radius of the fruit and that of the other body, such as \
+                       \"41.5 mm, 25 mm\" or \"41.5 mm, plane\"";
+        return Err(unusable(format!("{option} {text}"), problem));
+    };
+    if !(1..=2).contains(&plates) {
+        return Err(unusable(format!("{option}-plates"), "expected 1 or 2"));
+    }
+    let radius = positive(option, fruit, "m")?;
+    let (indenter, other_radius) = match body {
+        "plane" => (PrincipalRadii::PLANE, f64::INFINITY),
+        body => {
+            let radius = positive(option, body, "m")?;
+            (PrincipalRadii::sphere(radius), radius)
+        }
+    };
+    let contact = PressedContact {
+        fruit: PrincipalRadii::sphere(radius),
+        indenter,
+    };
+    let other = other_body(&format!("{option}-other"), other.as_deref())?;
+    let name = match other {
+        Other::Rigid => "rigid body".to_owned(),
+        Other::Fruit => "fruit of the same modulus".to_owned(),
+        Other::Elastic(body) => format!("body of {} Pa, ν = {}", plain(body.modulus), body.poisson),
+    };
+    let contacts = if plates == 2 { "between two: " } else { "" };
+    Ok(Side {
+        geometry: Geometry {
+            contacts: vec![contact; plates],
+            relative_modulus: 1.0,
+        },
+        other,
+        radius: effective_radius(radius, other_radius),
+        text: format!("{contacts}fruit of {fruit} on {name}, {body}"),
+    })
+}
+
+fn other_body(option: &str, text: Option<&str>) -> Result<Other, Error> {
+    match text.map(str::trim) {
+        None | Some("rigid") => Ok(Other::Rigid),
+        Some("fruit") => Ok(Other::Fruit),
+        Some(text) => {
+            let Some((modulus, poisson)) = text.split_once(',') else {
+                let problem = "expected \"rigid\", \"fruit\", or a modulus and Poisson's ratio such \
+                               as \"3 GPa, 0.4\"";
+                return Err(unusable(format!("{option} {text}"), problem));
+            };
+            let poisson = quantity(option, poisson.trim(), "1")?;
+            if !(0.0..=0.5).contains(&poisson) {
+                let problem = "Poisson's ratio is from 0 to 0.5";
+                return Err(unusable(format!("{option} {text}"), problem));
+            }
+            Ok(Other::Elastic(Elastic {
+                modulus: positive(option, modulus.trim(), "Pa")?,
+                poisson,
+            }))
+        }
+    }
+}
+
+/// E* of both contacts over that of the fruit on a rigid body.
+///
+/// The stiffness where the law was found tells E* there; what the other body
+/// gives way there is taken off, and what it gives way where the law is wanted is
+/// added: 1/E* = A_fruit + A_other with A = (1 − ν²)/E.
+fn relative_moduli(law: &Law, here: &Side, there: &Side) -> Result<(f64, f64), Error> {
+    let whole = 1.0 / here.modulus(law);
+    let compliance = |body: Elastic| (1.0 - body.poisson * body.poisson) / body.modulus;
+    let fruit = match here.other {
+        Other::Rigid => whole,
+        Other::Fruit => 0.5 * whole,
+        Other::Elastic(body) => whole - compliance(body),
+    };
+    if fruit <= 0.0 {
+        let problem = format!(
+            "the other body alone would give way more than the contact does (E* is {} Pa): its \
+             modulus is too low",
+            plain(1.0 / whole)
+        );
+        return Err(unusable("--from-other", problem));
+    }
+    let relative = |other: Other| match other {
+        Other::Rigid => 1.0,
+        Other::Fruit => 0.5,
+        Other::Elastic(body) => fruit / (fruit + compliance(body)),
+    };
+    Ok((relative(here.other), relative(there.other)))
+}
+
+fn assumptions(here: &Side, there: &Side) -> Vec<String> {
+    let mut assumptions = vec![
+        "Hertz's contact: k goes as E*√R*, and deformations of contacts in series add".to_owned(),
+    ];
+    if [here.other, there.other].contains(&Other::Rigid) {
+        assumptions.push("plates and impactor are rigid beside the fruit".to_owned());
+    }
+    assumptions.push(
+        "the damping of the material, c/k, is the same; rates of deformation are not".to_owned(),
+    );
+    if there.other == Other::Fruit {
+        assumptions
+            .push("both bodies are fruit of one modulus: E* is half of a fruit's".to_owned());
+    }
+    if [here.other, there.other]
+        .iter()
+        .any(|other| matches!(other, Other::Elastic(_)))
+    {
+        assumptions.push("a body that is no fruit gives way without damping of its own".to_owned());
+    }
+    assumptions
+}
+
+/// The card of the law in its new geometry.
+fn card_there(mut card: LawCard, found: &Transferred, outcome: &TransferOutcome) -> LawCard {
+    let ratio = found.stiffness_ratio;
+    for parameter in card.parameters.values_mut() {
+        parameter.value *= ratio;
+        parameter.sd = parameter.sd.map(|sd| ratio * sd);
+        parameter.interval = parameter.interval.map(|ends| ends.map(|end| ratio * end));
+    }
+    // Covariances of logarithms stay; those of values go with their squares.
+    if let Some(covariance) = &mut card.covariance {
+        scale(&mut covariance.matrix, &covariance.of, ratio);
+    }
+    if let Some(population) = &mut card.population {
+        population
+            .median
+            .iter_mut()
+            .for_each(|value| *value *= ratio);
+        scale(&mut population.between_fruit, &population.of, ratio);
+        if let Some(within) = &mut population.within_fruit {
+            scale(within, &population.of, ratio);
+        }
+    }
+    // Equal strain in the contact, √(d/R*), bounds what was seen.
+    let size = outcome.to.effective_radius / outcome.from.effective_radius;
+    let moduli = outcome.to.effective_modulus / outcome.from.effective_modulus;
+    card.range.displacement = card.range.displacement.map(|d| d * size);
+    card.range.peak_force = card
+        .range
+        .peak_force
+        .map(|force| force * moduli * size * size);
+    card.format = CARD_FORMAT;
+    card.expression.clone_from(&outcome.law);
+    card.bodies.impactor = outcome.to.bodies.clone();
+    card.cautions.push(format!(
+        "transferred from {} (R* = {} m, E* = {} Pa) to {} (R* = {} m, E* = {} Pa): {} times the \
+         stiffness",
+        outcome.from.bodies,
+        plain(outcome.from.effective_radius),
+        plain(outcome.from.effective_modulus),
+        outcome.to.bodies,
+        plain(outcome.to.effective_radius),
+        plain(outcome.to.effective_modulus),
+        plain(ratio)
+    ));
+    card.cautions
+        .extend(outcome.assumptions.iter().map(|a| format!("assumed: {a}")));
+    card.cautions.push(
+        "its ranges of displacement and force are those of equal strain in the contact; velocities \
+         and masses are as they were seen"
+            .to_owned(),
+    );
+    card.contact = Some(CardContact {
+        effective_radius: outcome.to.effective_radius,
+        effective_modulus: outcome.to.effective_modulus,
+        bodies: outcome.to.bodies.clone(),
+    });
+    card
+}
+
+/// Scales rows and columns of what is no logarithm.
+fn scale(matrix: &mut [Vec<f64>], of: &[String], ratio: f64) {
+    let factor = |name: &String| if name.starts_with("ln ") { 1.0 } else { ratio };
+    for (row, first) in matrix.iter_mut().zip(of) {
+        for (cell, second) in row.iter_mut().zip(of) {
+            *cell *= factor(first) * factor(second);
+        }
+    }
+}
+
+/// A transferred law for people.
+#[must_use]
+pub fn text_of_transfer(outcome: &TransferOutcome) -> String {
+    let contact = |contact: &ContactOutcome| {
+        format!(
+            "{}: R* = {} mm, E* = {} MPa",
+            contact.bodies,
+            plain(1e3 * contact.effective_radius),
+            plain(1e-6 * contact.effective_modulus)
+        )
+    };
+    let mut text = format!(
+        "{}\n\nfrom {}\nto   {}\n\n{} times the stiffness of the geometry it was found in, assuming that\n",
+        outcome.law,
+        contact(&outcome.from),
+        contact(&outcome.to),
+        plain(outcome.stiffness_ratio)
+    );
+    for assumption in &outcome.assumptions {
+        text += &format!("  - {assumption}\n");
+    }
+    text
+}

@@ -1,0 +1,113 @@
+//! The frame of a panel: axes with ticks, grid and titles around a rectangle.
+
+use crate::axis::{Axis, unit_label};
+use crate::svg::{Anchor, Drawing, Ink};
+
+/// Sizes of the letters at ticks and of titles; px.
+const TICK: f64 = 10.5;
+const TITLE: f64 = 11.5;
+
+/// A rectangle of a drawing; px, y downwards.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Rectangle {
+    /// Left end.
+    pub left: f64,
+    /// Upper end.
+    pub top: f64,
+    /// Width.
+    pub width: f64,
+    /// Height.
+    pub height: f64,
+}
+
+impl Rectangle {
+    /// Right end.
+    #[must_use]
+    pub fn right(&self) -> f64 {
+        self.left + self.width
+    }
+
+    /// Lower end.
+    #[must_use]
+    pub fn bottom(&self) -> f64 {
+        self.top + self.height
+    }
+
+    /// Whether a place lies within, and this far from every side.
+    #[must_use]
+    pub fn holds(&self, (x, y): (f64, f64), room: f64) -> bool {
+        x >= self.left + room
+            && x <= self.right() - room
+            && y >= self.top + room
+            && y <= self.bottom() - room
+    }
+}
+
+/// A panel with its axes.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Frame {
+    /// Where it stands.
+    pub within: Rectangle,
+    /// Horizontal axis.
+    pub across: Axis,
+    /// Vertical axis.
+    pub up: Axis,
+}
+
+impl Frame {
+    /// Where a point of the data stands in the drawing.
+    #[must_use]
+    pub fn place(&self, (x, y): (f64, f64)) -> (f64, f64) {
+        let (across, up, within) = (&self.across, &self.up, &self.within);
+        (
+            within.left + within.width * (x - across.low) / (across.high - across.low),
+            within.top + within.height * (up.high - y) / (up.high - up.low),
+        )
+    }
+
+    /// Lines behind the data at the ticks.
+    pub fn draw_grid(&self, drawing: &mut Drawing) {
+        let within = &self.within;
+        for tick in &self.across.ticks {
+            let (x, _) = self.place((*tick, self.up.low));
+            drawing.rule((x, within.top), (x, within.bottom()), Ink::Grid);
+        }
+        for tick in &self.up.ticks {
+            let (_, y) = self.place((self.across.low, *tick));
+            drawing.rule((within.left, y), (within.right(), y), Ink::Grid);
+        }
+    }
+
+    /// Axes with ticks, their labels and titles.
+    ///
+    /// * `x`, `y`: name and unit
+    /// * `aside`: distance of the vertical title from the axis; px
+    pub fn draw_axes(
+        &self,
+        drawing: &mut Drawing,
+        (x, x_unit): (&str, &str),
+        (y, y_unit): (&str, &str),
+        aside: f64,
+    ) {
+        let within = &self.within;
+        let (left, bottom) = (within.left, within.bottom());
+        for (tick, label) in self.across.ticks.iter().zip(&self.across.labels) {
+            let (x, _) = self.place((*tick, self.up.low));
+            drawing.rule((x, bottom), (x, bottom + 4.0), Ink::Frame);
+            drawing.text((x, bottom + 16.0), Anchor::Middle, TICK, label);
+        }
+        for (tick, label) in self.up.ticks.iter().zip(&self.up.labels) {
+            let (_, y) = self.place((self.across.low, *tick));
+            drawing.rule((left - 4.0, y), (left, y), Ink::Frame);
+            drawing.text((left - 7.0, y + 3.6), Anchor::End, TICK, label);
+        }
+        drawing.rule((left, within.top), (left, bottom), Ink::Frame);
+        drawing.rule((left, bottom), (within.right(), bottom), Ink::Frame);
+        let title = format!("{x}{}", unit_label(x_unit, self.across.power));
+        let middle = left + 0.5 * within.width;
+        drawing.text((middle, bottom + 36.0), Anchor::Middle, TITLE, &title);
+        let title = format!("{y}{}", unit_label(y_unit, self.up.power));
+        let middle = within.top + 0.5 * within.height;
+        drawing.turned_text((left - aside, middle), TITLE, &title);
+    }
+}

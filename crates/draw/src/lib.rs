@@ -1,0 +1,15 @@
+//! Figures of nothing in particular: SVG, axes, themes, contours, PNG, plots in a terminal, pages of HTML.
+
+pub mod axis;
+pub mod colour_map;
+pub mod contour_lines;
+pub mod curve;
+pub mod files;
+pub mod frame;
+pub mod page;
+pub mod plot;
+pub mod png;
+pub mod svg;
+pub mod terminal_plot;
+pub mod theme;
+pub mod xy;

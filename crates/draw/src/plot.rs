@@ -1,0 +1,49 @@
+//! One figure under the name that `--plot` gives, with its data beside it.
+
+use crate::png::{PRINT, png_of_svg};
+use std::path::{Path, PathBuf};
+use windfall_files::error::Error;
+use windfall_files::write_file::write_whole;
+
+/// Writes a figure as SVG or PNG, by the ending of the name, and what it shows
+/// as CSV under the same name.
+///
+/// * `inputs`: files that neither may replace, with what they are
+///
+/// # Errors
+/// The name has another ending, the data would replace an input, or a file
+/// cannot be written.
+pub fn write_plot(
+    path: &Path,
+    svg: String,
+    csv: &str,
+    inputs: &[(&Path, &str)],
+) -> Result<[PathBuf; 2], Error> {
+    let unusable = |problem: String| Error::OptionInvalid {
+        option: format!("--plot {}", path.display()),
+        problem,
+    };
+    let dots = match path.extension().and_then(|extension| extension.to_str()) {
+        Some("svg") => false,
+        Some("png") => true,
+        _ => {
+            return Err(unusable(
+                "figures are written as SVG or PNG; give a name that ends in \".svg\" or \".png\""
+                    .to_owned(),
+            ));
+        }
+    };
+    let data = path.with_extension("csv");
+    if let Some((_, what)) = inputs.iter().find(|(input, _)| *input == data) {
+        return Err(unusable(format!(
+            "its data would replace {what}; give another name"
+        )));
+    }
+    let picture = match dots {
+        true => png_of_svg(&svg, PRINT)?,
+        false => svg.into_bytes(),
+    };
+    write_whole(path, &picture)?;
+    write_whole(&data, csv.as_bytes())?;
+    Ok([path.to_path_buf(), data])
+}

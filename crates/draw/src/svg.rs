@@ -1,0 +1,479 @@
+//! A small writer of SVG: what the figures of windfall are drawn with.
+
+use crate::colour_map::{Rgb, css, mixed};
+use crate::theme::{SCALE, SERIES, Theme};
+use std::collections::BTreeSet;
+use std::fmt::Write;
+
+/// Fonts of figures, as journals ask for them.
+const FONTS: &str = "Helvetica, Arial, 'Liberation Sans', 'DejaVu Sans', sans-serif";
+
+/// Where the text of a label is fixed to its place.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Anchor {
+    /// At its beginning.
+    Start,
+    /// In its middle.
+    Middle,
+    /// At its end.
+    End,
+}
+
+/// What something is drawn with; the [`Theme`] says which colour that is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Ink {
+    /// Axes and ticks.
+    Frame,
+    /// Lines behind the data.
+    Grid,
+    /// Text, and rings around named places.
+    Text,
+    /// The colour behind everything.
+    Background,
+    /// Series of this number; the colours repeat after [`SERIES`].
+    Series(usize),
+    /// This step of the scale from low to high; steps beyond it are its ends.
+    Scale(usize),
+}
+
+/// First of the characters that stand for colours until the theme is known. Text
+/// cannot hold them: they are for private use, and [`escaped`] blanks them.
+const FIRST_INK: u32 = 0xE000;
+
+/// Colours besides those of series.
+const PLAIN_INKS: usize = 4;
+
+impl Ink {
+    /// The character that stands for it.
+    fn mark(self) -> char {
+        let index = match self {
+            Self::Frame => 0,
+            Self::Grid => 1,
+            Self::Text => 2,
+            Self::Background => 3,
+            Self::Series(series) => PLAIN_INKS + series % SERIES,
+            Self::Scale(step) => PLAIN_INKS + SERIES + step.min(SCALE - 1),
+        };
+        char::from_u32(FIRST_INK + index as u32).unwrap_or(' ')
+    }
+}
+
+/// Colour that a character stands for, if it stands for one.
+fn colour_of(mark: char, theme: &Theme) -> Option<&'static str> {
+    let index = (mark as u32).checked_sub(FIRST_INK)? as usize;
+    let plain = [theme.frame, theme.grid, theme.text, theme.background];
+    let inks = plain.iter().chain(&theme.series).chain(&theme.scale);
+    inks.copied().nth(index)
+}
+
+/// A drawing of a given size; px, y downwards.
+#[derive(Clone, Debug)]
+pub struct Drawing {
+    width: f64,
+    height: f64,
+    body: String,
+    /// Colours of balls: each has a shading of its own.
+    balls: BTreeSet<Rgb>,
+}
+
+impl Drawing {
+    /// An empty drawing.
+    #[must_use]
+    pub fn new(width: f64, height: f64) -> Self {
+        Self {
+            width,
+            height,
+            body: String::new(),
+            balls: BTreeSet::new(),
+        }
+    }
+
+    /// A straight line of the colour of frames and ticks.
+    pub fn rule(&mut self, from: (f64, f64), to: (f64, f64), ink: Ink) {
+        let ink = ink.mark();
+        let _ = writeln!(
+            self.body,
+            r#"<line x1="{:.2}" y1="{:.2}" x2="{:.2}" y2="{:.2}" stroke="{ink}" stroke-width="0.8"/>"#,
+            from.0, from.1, to.0, to.1
+        );
+    }
+
+    /// A line through points.
+    pub fn polyline(&mut self, points: &[(f64, f64)], ink: Ink, width: f64) {
+        let ink = ink.mark();
+        self.body += r#"<polyline points=""#;
+        for (x, y) in points {
+            let _ = write!(self.body, "{x:.2},{y:.2} ");
+        }
+        let _ = writeln!(
+            self.body,
+            r#"" fill="none" stroke="{ink}" stroke-width="{width}" stroke-linejoin="round"/>"#
+        );
+    }
+
+    /// A dashed line through points.
+    pub fn dashed(&mut self, points: &[(f64, f64)], ink: Ink, width: f64) {
+        let ink = ink.mark();
+        self.body += r#"<polyline points=""#;
+        for (x, y) in points {
+            let _ = write!(self.body, "{x:.2},{y:.2} ");
+        }
+        let _ = writeln!(
+            self.body,
+            r#"" fill="none" stroke-dasharray="5 3" stroke="{ink}" stroke-width="{width}" stroke-linejoin="round"/>"#
+        );
+    }
+
+    /// A tinted rectangle.
+    ///
+    /// * `size`: width and height; px
+    pub fn tint(&mut self, at: (f64, f64), size: (f64, f64), ink: Ink) {
+        let ink = ink.mark();
+        let _ = writeln!(
+            self.body,
+            r#"<rect x="{:.2}" y="{:.2}" width="{:.2}" height="{:.2}" fill="{ink}" fill-opacity="0.16"/>"#,
+            at.0, at.1, size.0, size.1
+        );
+    }
+
+    /// A dot.
+    pub fn dot(&mut self, at: (f64, f64), radius: f64, ink: Ink) {
+        let ink = ink.mark();
+        let _ = writeln!(
+            self.body,
+            r#"<circle cx="{:.2}" cy="{:.2}" r="{radius}" fill="{ink}"/>"#,
+            at.0, at.1
+        );
+    }
+
+    /// A text; what XML would misread is escaped.
+    pub fn text(&mut self, at: (f64, f64), anchor: Anchor, size: f64, text: &str) {
+        let anchor = match anchor {
+            Anchor::Start => "start",
+            Anchor::Middle => "middle",
+            Anchor::End => "end",
+        };
+        let _ = writeln!(
+            self.body,
+            r#"<text x="{:.2}" y="{:.2}" text-anchor="{anchor}" font-size="{size}">{}</text>"#,
+            at.0,
+            at.1,
+            set_text(text, size)
+        );
+    }
+
+    /// A text turned to read upwards, about its middle.
+    pub fn turned_text(&mut self, at: (f64, f64), size: f64, text: &str) {
+        let (x, y) = at;
+        let _ = writeln!(
+            self.body,
+            r#"<text x="{x:.2}" y="{y:.2}" text-anchor="middle" font-size="{size}" transform="rotate(-90 {x:.2} {y:.2})">{}</text>"#,
+            set_text(text, size)
+        );
+    }
+
+    /// A circle that is not filled.
+    pub fn ring(&mut self, at: (f64, f64), radius: f64, ink: Ink) {
+        let ink = ink.mark();
+        let _ = writeln!(
+            self.body,
+            r#"<circle cx="{:.2}" cy="{:.2}" r="{radius}" fill="none" stroke="{ink}" stroke-width="1.3"/>"#,
+            at.0, at.1
+        );
+    }
+
+    /// A tinted shape with corners at points.
+    pub fn tinted_shape(&mut self, points: &[(f64, f64)], ink: Ink) {
+        let ink = ink.mark();
+        self.body += r#"<polygon points=""#;
+        for (x, y) in points {
+            let _ = write!(self.body, "{x:.2},{y:.2} ");
+        }
+        let _ = writeln!(self.body, r#"" fill="{ink}" fill-opacity="0.16"/>"#);
+    }
+
+    /// A filled area that closed lines enclose: what lies within an odd number of
+    /// them.
+    pub fn area(&mut self, loops: &[Vec<(f64, f64)>], ink: Ink) {
+        let ink = ink.mark();
+        self.body += r#"<path d=""#;
+        for points in loops {
+            for (index, (x, y)) in points.iter().enumerate() {
+                let command = if index == 0 { 'M' } else { 'L' };
+                let _ = write!(self.body, "{command}{x:.1} {y:.1}");
+            }
+            self.body.push('Z');
+        }
+        let _ = writeln!(self.body, r#"" fill="{ink}" fill-rule="evenodd"/>"#);
+    }
+
+    /// A filled shape with corners at points, within a thin line.
+    pub fn facet(&mut self, points: &[(f64, f64)], fill: Ink, edge: Ink) {
+        let (fill, edge) = (fill.mark(), edge.mark());
+        self.body += r#"<polygon points=""#;
+        for (x, y) in points {
+            let _ = write!(self.body, "{x:.1},{y:.1} ");
+        }
+        let _ = writeln!(
+            self.body,
+            r#"" fill="{fill}" stroke="{edge}" stroke-width="0.5" stroke-linejoin="round"/>"#
+        );
+    }
+
+    /// A filled circle within a line of the background's colour, which sets it off
+    /// from what is below it.
+    pub fn spot(&mut self, at: (f64, f64), radius: f64, ink: Ink) {
+        let (ink, around) = (ink.mark(), Ink::Background.mark());
+        let _ = writeln!(
+            self.body,
+            r#"<circle cx="{:.2}" cy="{:.2}" r="{radius}" fill="{ink}" stroke="{around}" stroke-width="1.2"/>"#,
+            at.0, at.1
+        );
+    }
+
+    /// A ball lit from above on the left.
+    pub fn ball(&mut self, at: (f64, f64), radius: f64, colour: Rgb) {
+        self.balls.insert(colour);
+        let name = &css(colour)[1..];
+        let _ = writeln!(
+            self.body,
+            r#"<circle cx="{:.2}" cy="{:.2}" r="{radius:.2}" fill="url(#ball-{name})"/>"#,
+            at.0, at.1
+        );
+    }
+
+    /// An upright bar of colours, the first at its foot.
+    pub fn colour_bar(&mut self, at: (f64, f64), size: (f64, f64), colours: &[Rgb]) {
+        self.body += r#"<linearGradient id="colours" x1="0" y1="1" x2="0" y2="0">"#;
+        let last = colours.len().saturating_sub(1).max(1) as f64;
+        for (k, colour) in colours.iter().enumerate() {
+            let (offset, colour) = (k as f64 / last, css(*colour));
+            let _ = write!(
+                self.body,
+                r#"<stop offset="{offset:.4}" stop-color="{colour}"/>"#
+            );
+        }
+        let _ = writeln!(
+            self.body,
+            r#"</linearGradient><rect x="{:.2}" y="{:.2}" width="{:.2}" height="{:.2}" fill="url(#colours)"/>"#,
+            at.0, at.1, size.0, size.1
+        );
+    }
+
+    /// A shape that one sees through, with corners at points.
+    pub fn veil(&mut self, points: &[(f64, f64)], ink: Ink, opacity: f64) {
+        let ink = ink.mark();
+        self.body += r#"<polygon points=""#;
+        for (x, y) in points {
+            let _ = write!(self.body, "{x:.2},{y:.2} ");
+        }
+        let _ = writeln!(self.body, r#"" fill="{ink}" fill-opacity="{opacity}"/>"#);
+    }
+
+    /// A thin line that one sees through.
+    pub fn faint_line(&mut self, [from, to]: [(f64, f64); 2], ink: Ink, opacity: f64) {
+        let ink = ink.mark();
+        let _ = writeln!(
+            self.body,
+            r#"<line x1="{:.2}" y1="{:.2}" x2="{:.2}" y2="{:.2}" stroke="{ink}" stroke-width="0.9" stroke-opacity="{opacity}" stroke-linecap="round"/>"#,
+            from.0, from.1, to.0, to.1
+        );
+    }
+
+    /// [`text`](Self::text) with a rim of another colour, to be read over lines.
+    pub fn text_over(
+        &mut self,
+        at: (f64, f64),
+        (anchor, size): (Anchor, f64),
+        text: &str,
+        rim: Ink,
+    ) {
+        let rim = rim.mark();
+        let _ = write!(
+            self.body,
+            r#"<g stroke="{rim}" stroke-width="3" stroke-linejoin="round" paint-order="stroke">"#
+        );
+        self.text(at, anchor, size, text);
+        self.body += "</g>\n";
+    }
+
+    /// The whole as an SVG file.
+    #[must_use]
+    pub fn svg(&self, theme: &Theme) -> String {
+        format!(
+            "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n{}",
+            self.element(theme, "")
+        )
+    }
+
+    /// The whole as an element of a page, described by `label` for those who do not
+    /// see it; "" for a picture that is described elsewhere.
+    #[must_use]
+    pub fn element(&self, theme: &Theme, label: &str) -> String {
+        let (width, height) = (self.width, self.height);
+        let described = match label {
+            "" => String::new(),
+            label => format!(r#" role="img" aria-label="{}""#, escaped(label)),
+        };
+        let mut svg = format!(
+            "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{width}\" height=\"{height}\" \
+             viewBox=\"0 0 {width} {height}\" font-family=\"{FONTS}\" fill=\"{}\"{described}>\n\
+             <rect width=\"100%\" height=\"100%\" fill=\"{}\"/>\n",
+            theme.text, theme.background
+        );
+        for colour in &self.balls {
+            svg += &shading(*colour);
+        }
+        for c in self.body.chars() {
+            match colour_of(c, theme) {
+                Some(colour) => svg += colour,
+                None => svg.push(c),
+            }
+        }
+        svg + "</svg>\n"
+    }
+}
+
+/// How a ball of a colour is lit: where, and how far towards white or black.
+fn shading(colour: Rgb) -> String {
+    const WHITE: Rgb = [255; 3];
+    const BLACK: Rgb = [0; 3];
+    let stops = [
+        (0.0, WHITE, 0.55),
+        (0.2, WHITE, 0.2),
+        (0.5, WHITE, 0.0),
+        (0.82, BLACK, 0.2),
+        (1.0, BLACK, 0.5),
+    ];
+    let mut text = format!(
+        r#"<radialGradient id="ball-{}" cx="0.5" cy="0.5" r="0.5" fx="0.36" fy="0.3">"#,
+        &css(colour)[1..]
+    );
+    for (at, towards, part) in stops {
+        let own = css(mixed(colour, towards, part));
+        let _ = write!(text, r#"<stop offset="{at}" stop-color="{own}"/>"#);
+    }
+    text + "</radialGradient>\n"
+}
+
+/// Text as it stands in XML; control characters, which XML cannot hold, become
+/// blanks, and so do those that stand for colours.
+fn escaped(text: &str) -> String {
+    let mut whole = String::with_capacity(text.len());
+    for c in text.chars() {
+        match c {
+            '&' => whole += "&amp;",
+            '<' => whole += "&lt;",
+            '>' => whole += "&gt;",
+            '"' => whole += "&quot;",
+            '\u{E000}'..='\u{F8FF}' => whole.push(' '),
+            c if c.is_control() => whole.push(' '),
+            c => whole.push(c),
+        }
+    }
+    whole
+}
+
+/// Characters above the line with those that they are raised from. Few fonts have
+/// all of them, and of different heights.
+const RAISED: [(char, char); 11] = [
+    ('⁰', '0'),
+    ('¹', '1'),
+    ('²', '2'),
+    ('³', '3'),
+    ('⁴', '4'),
+    ('⁵', '5'),
+    ('⁶', '6'),
+    ('⁷', '7'),
+    ('⁸', '8'),
+    ('⁹', '9'),
+    ('⁻', '\u{2212}'),
+];
+
+/// Text in parts, each with whether it is raised: raised characters, and numbers
+/// behind a "^".
+fn parts(text: &str) -> Vec<(String, bool)> {
+    let mut parts: Vec<(String, bool)> = Vec::new();
+    let mut push = |c: char, raised: bool| match parts.last_mut() {
+        Some((part, of)) if *of == raised => part.push(c),
+        _ => parts.push((c.to_string(), raised)),
+    };
+    let mut exponent = false;
+    let mut characters = text.chars().peekable();
+    while let Some(c) = characters.next() {
+        let number = |c: &char| c.is_ascii_digit() || ".-".contains(*c);
+        if c == '^' && characters.peek().is_some_and(number) {
+            exponent = true;
+            continue;
+        }
+        exponent &= number(&c);
+        let raised = RAISED.iter().find(|(from, _)| *from == c);
+        match (raised, exponent) {
+            (Some((_, to)), _) => push(*to, true),
+            (None, true) => push(if c == '-' { '\u{2212}' } else { c }, true),
+            (None, false) => push(c, false),
+        }
+    }
+    parts
+}
+
+/// [`escaped`] text whose raised parts are set as such at font size `size`.
+fn set_text(text: &str, size: f64) -> String {
+    let rise = 0.36 * size;
+    let (mut whole, mut above) = (String::new(), false);
+    for (part, raised) in parts(text) {
+        let part = escaped(&part);
+        let _ = match (raised, above) {
+            (true, _) => write!(
+                whole,
+                r#"<tspan dy="{:.2}" font-size="{:.2}">{part}</tspan>"#,
+                -rise,
+                0.72 * size
+            ),
+            // Back to the line.
+            (false, true) => write!(whole, r#"<tspan dy="{rise:.2}">{part}</tspan>"#),
+            (false, false) => write!(whole, "{part}"),
+        };
+        above = raised;
+    }
+    whole
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::theme::{DARK, LIGHT};
+
+    #[test]
+    fn closed_form_text_is_escaped() {
+        let mut drawing = Drawing::new(10.0, 10.0);
+        drawing.text((1.0, 2.0), Anchor::End, 9.0, "F < 3 & \u{1}g");
+        let svg = drawing.svg(&LIGHT);
+        assert!(svg.contains(">F &lt; 3 &amp;  g</text>"));
+    }
+
+    #[test]
+    fn closed_form_inks_get_the_colours_of_the_theme_and_text_keeps_none() {
+        let mut drawing = Drawing::new(10.0, 10.0);
+        drawing.rule((0.0, 0.0), (1.0, 1.0), Ink::Series(SERIES + 1));
+        drawing.text((1.0, 2.0), Anchor::End, 9.0, "\u{E000}a");
+        for theme in [&LIGHT, &DARK] {
+            let svg = drawing.svg(theme);
+            let stroke = format!(r#"stroke="{}""#, theme.series[1]);
+            assert!(svg.contains(&stroke) && svg.contains("> a</text>"), "{svg}");
+            assert!(!svg.contains('\u{E000}'));
+        }
+    }
+
+    #[test]
+    fn closed_form_powers_are_raised_and_what_follows_is_not() {
+        assert_eq!(
+            set_text("10⁻³ m/s²", 10.0),
+            "10<tspan dy=\"-3.60\" font-size=\"7.20\">\u{2212}3</tspan>\
+             <tspan dy=\"3.60\"> m/s</tspan><tspan dy=\"-3.60\" font-size=\"7.20\">2</tspan>"
+        );
+        let found = parts("k (N/m^1.5) f^ 2");
+        let words: Vec<&str> = found.iter().map(|(part, _)| part.as_str()).collect();
+        assert_eq!(words, ["k (N/m", "1.5", ") f^ 2"]);
+    }
+}

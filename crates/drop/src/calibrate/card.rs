@@ -1,0 +1,227 @@
+//! The law card of a calibration.
+
+use crate::calibrate::outcome::CalibrateOutcome;
+use crate::calibrate::waveform_outcome::WaveformOutcome;
+use crate::read::{DropCampaign, PlatePlan};
+use std::collections::BTreeMap;
+use windfall_cards::law_card::{
+    CARD_FORMAT, CardBodies, CardCovariance, CardOrigin, CardParameter, CardRange, LawCard,
+};
+use windfall_cards::law_use::complete_law_among;
+use windfall_cards::law_use::end_name;
+use windfall_cards::read_card::card_definition;
+use windfall_contact::law::EndRule;
+use windfall_contact::laws::kind::Law;
+use windfall_files::error::Error;
+use windfall_files::provenance::{VERSION, digest_file, time_now};
+use windfall_identify::drop::rig::{DropRig, Plate};
+use windfall_identify::drop::simulate::simulate_drop;
+
+/// Files whose digests a card carries.
+const FILES: [&str; 3] = ["campaign.toml", "impacts.csv", "specimens.csv"];
+
+/// The law of a calibration as a card: that of the waveforms, or else that of
+/// the features.
+///
+/// # Errors
+/// There is no single law: the features leave a family, or neither way was
+/// asked for.
+pub fn card_of_calibration(
+    campaign: &DropCampaign,
+    outcome: &CalibrateOutcome,
+) -> Result<LawCard, Error> {
+    let found = match (&outcome.waveform, &outcome.features) {
+        (Some(waveform), _) => from_waveform(waveform),
+        (None, Some(features)) if features.rank == features.parameters.len() => Found {
+            expression: features.law.clone(),
+            parameters: features
+                .parameters
+                .iter()
+                .map(|p| {
+                    let parameter = CardParameter {
+                        value: p.value,
+                        unit: p.unit.clone(),
+                        sd: p.sd,
+                        interval: None,
+                    };
+                    (p.name.clone(), parameter)
+                })
+                .collect(),
+            covariance: None,
+            method: "features of drops (peaks and intervals)",
+        },
+        _ => {
+            return Err(Error::ValueNotKnown {
+                item: campaign.shared.title.clone(),
+                missing: "there is no one law for a card: what was measured leaves a family"
+                    .to_owned(),
+                advice: "calibrate on waveforms (--way waveform), or add drops from another height"
+                    .to_owned(),
+            });
+        }
+    };
+    let law = complete_law_among(&found.expression, &campaign.calibrate.user)?;
+    let end = campaign
+        .calibrate
+        .law
+        .as_ref()
+        .map_or(EndRule::ForceZero, |law| law.end);
+    let mut origin_digests = BTreeMap::new();
+    for file in FILES {
+        let path = campaign.shared.directory.join(file);
+        if path.is_file() {
+            origin_digests.insert(file.to_owned(), digest_file(&path)?);
+        }
+    }
+    let mut specimens: Vec<&str> = outcome.drops.iter().map(|d| d.specimen.as_str()).collect();
+    specimens.sort_unstable();
+    specimens.dedup();
+    Ok(LawCard {
+        format: CARD_FORMAT,
+        title: campaign.shared.title.clone(),
+        law: law.kind().name().to_owned(),
+        expression: found.expression,
+        end: end_name(end).to_owned(),
+        cautions: outcome
+            .findings
+            .iter()
+            .map(|finding| finding.message.clone())
+            .collect(),
+        parameters: all_parameters(&law, &found.parameters),
+        covariance: found.covariance,
+        range: range_of(campaign, outcome, &law, end),
+        bodies: CardBodies {
+            impactor: "fruit".to_owned(),
+            target: match campaign.rig.plate {
+                PlatePlan::Rigid => "rigid plate".to_owned(),
+                PlatePlan::Sprung { .. } => "plate on spring and damper".to_owned(),
+            },
+            effective_mass_factor: campaign.rig.effective_mass_factor,
+            specimens: specimens.len(),
+            recordings: outcome.drops.len(),
+            radius: campaign.calibrate.hertz.map(|hertz| hertz.radius),
+        },
+        origin: CardOrigin {
+            campaign: campaign.shared.title.clone(),
+            method: found.method.to_owned(),
+            simulated: outcome.simulated.clone(),
+            digests: origin_digests,
+            windfall: VERSION.to_owned(),
+            date: time_now(),
+        },
+        contact: None,
+        population: None,
+        definition: card_definition(law.kind()),
+    })
+}
+
+/// A law with what is known of its free parameters.
+struct Found {
+    expression: String,
+    parameters: BTreeMap<String, CardParameter>,
+    covariance: Option<CardCovariance>,
+    method: &'static str,
+}
+
+fn from_waveform(waveform: &WaveformOutcome) -> Found {
+    let parameters = waveform.parameters.iter().map(|parameter| {
+        let value = &parameter.value;
+        let card = CardParameter {
+            value: value.value,
+            unit: value.unit.clone(),
+            sd: value.sd,
+            interval: value.low.zip(value.high).map(|(low, high)| [low, high]),
+        };
+        (parameter.name.clone(), card)
+    });
+    let names = waveform.parameters.iter().zip(&waveform.logarithmic);
+    Found {
+        expression: waveform.law.clone(),
+        parameters: parameters.collect(),
+        covariance: Some(CardCovariance {
+            of: names
+                .map(|(parameter, logarithmic)| match logarithmic {
+                    true => format!("ln {}", parameter.name),
+                    false => parameter.name.clone(),
+                })
+                .collect(),
+            matrix: waveform.covariance.clone(),
+            of_what: match waveform.by_scatter {
+                true => "the mean, by the scatter from drop to drop".to_owned(),
+                false => "the estimate, by the noise of the recordings".to_owned(),
+            },
+        }),
+        method: "waveforms of drops",
+    }
+}
+
+/// Every parameter of the law: as found, or as held.
+fn all_parameters(
+    law: &Law,
+    found: &BTreeMap<String, CardParameter>,
+) -> BTreeMap<String, CardParameter> {
+    let description = law.kind().describe();
+    let parameters = description
+        .parameters
+        .iter()
+        .zip(law.parameters())
+        .enumerate();
+    parameters
+        .map(|(place, (parameter, value))| {
+            let card = found.get(parameter.name).cloned().unwrap_or(CardParameter {
+                value,
+                unit: law.unit_of(place),
+                sd: None,
+                interval: None,
+            });
+            (parameter.name.to_owned(), card)
+        })
+        .collect()
+}
+
+/// In what the law was seen: the drops as it has them.
+fn range_of(
+    campaign: &DropCampaign,
+    outcome: &CalibrateOutcome,
+    law: &Law,
+    end: EndRule,
+) -> CardRange {
+    let plate = |name: &str| outcome.plate.get(name).map(|value| value.value);
+    let plate = match (plate("mass"), plate("stiffness"), plate("damping")) {
+        (Some(mass), Some(stiffness), Some(damping)) => Some(Plate {
+            mass,
+            stiffness,
+            damping,
+        }),
+        _ => None,
+    };
+    let nothing = [f64::INFINITY, f64::NEG_INFINITY];
+    let mut range = CardRange {
+        impact_velocity: nothing,
+        peak_force: nothing,
+        displacement: nothing,
+        mass: nothing,
+    };
+    let widen = |range: &mut [f64; 2], value: f64| {
+        *range = [range[0].min(value), range[1].max(value)];
+    };
+    for drop in &outcome.drops {
+        let rig = DropRig {
+            mass: drop.mass.value,
+            effective_mass_factor: campaign.rig.effective_mass_factor,
+            gravity: campaign.rig.gravity,
+            plate,
+        };
+        widen(&mut range.mass, drop.mass.value);
+        let impacts = campaign.calibrate.bounces;
+        let Ok(simulated) = simulate_drop(law, &rig, drop.height.value, impacts, end) else {
+            continue;
+        };
+        for impact in &simulated.impacts {
+            widen(&mut range.impact_velocity, impact.impact_velocity);
+            widen(&mut range.peak_force, impact.peak_contact_force);
+            widen(&mut range.displacement, impact.max_displacement);
+        }
+    }
+    range
+}

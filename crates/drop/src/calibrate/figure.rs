@@ -1,0 +1,213 @@
+//! Figures of a calibration: the line of equally good laws with what tells them
+//! apart, and the surfaces of the design.
+
+use crate::calibrate::outcome::{CalibrateOutcome, DesignWayOutcome, FamilyLine};
+use windfall_draw::files::{FigureFolder, write_figure};
+use windfall_draw::xy::{Figure, Mark, Panel, Series, Side, Style};
+use windfall_files::error::Error;
+
+/// Writes the figures of a calibration into a directory.
+///
+/// # Errors
+/// The directory or a file cannot be written.
+pub fn write_calibrate_figures(
+    folder: &FigureFolder,
+    outcome: &CalibrateOutcome,
+) -> Result<(), Error> {
+    if let Some(family) = outcome.family.as_ref().filter(|f| f.members.len() > 1) {
+        write_figure(folder, "family", &figure_of_family(outcome, family))?;
+    }
+    if let Some(design) = &outcome.design {
+        write_figure(folder, "design", &figure_of_design(outcome, design))?;
+    }
+    Ok(())
+}
+
+fn series(label: &str, style: Style, points: Vec<(f64, f64)>) -> Series {
+    Series {
+        label: label.to_owned(),
+        style,
+        colour: None,
+        points,
+    }
+}
+
+fn panel(x: (&str, &str), y: (&str, &str), series: Vec<Series>) -> Panel {
+    // What has no unit shows none.
+    let unit = |unit: &str| {
+        if unit == "1" {
+            String::new()
+        } else {
+            unit.to_owned()
+        }
+    };
+    Panel {
+        x: x.0.to_owned(),
+        x_unit: unit(x.1),
+        y: y.0.to_owned(),
+        y_unit: unit(y.1),
+        series,
+        marks: Vec::new(),
+    }
+}
+
+fn units(outcome: &CalibrateOutcome) -> Vec<String> {
+    match (&outcome.features, &outcome.design) {
+        (Some(features), _) => {
+            let parameters = features.parameters.iter();
+            parameters.map(|p| p.written.unit.clone()).collect()
+        }
+        (None, Some(design)) => design.factors.iter().map(|f| f.unit.clone()).collect(),
+        (None, None) => vec![String::new(); outcome.free.len()],
+    }
+}
+
+/// The line in the planes of the first parameter and each other, then the peak at
+/// every height over the first parameter, as parts of that of the first member.
+#[must_use]
+pub fn figure_of_family(outcome: &CalibrateOutcome, family: &FamilyLine) -> Figure {
+    let units = units(outcome);
+    let first = (outcome.free[0].as_str(), units[0].as_str());
+    let mut panels: Vec<Panel> = (1..outcome.free.len())
+        .map(|place| {
+            let members = family.members.iter();
+            let points: Vec<(f64, f64)> = members
+                .map(|m| (m.parameters[0], m.parameters[place]))
+                .collect();
+            let mut all = vec![
+                series("same first peak and interval", Style::Line, points.clone()),
+                series("", Style::Dots, points),
+            ];
+            let line = outcome.design.iter().flat_map(|design| &design.family);
+            let on_surfaces: Vec<(f64, f64)> =
+                line.map(|m| (m.levels[0], m.levels[place])).collect();
+            if !on_surfaces.is_empty() {
+                all.push(series(
+                    "the same by the surfaces",
+                    Style::Dashed,
+                    on_surfaces,
+                ));
+            }
+            let mut panel = panel(first, (&outcome.free[place], &units[place]), all);
+            panel.marks.extend(fitted_mark(outcome, place));
+            panel
+        })
+        .collect();
+    for (name, title) in [
+        (
+            "peak_support_force_1",
+            "first peak, over that of the first law",
+        ),
+        ("interval_1", "interval, over that of the first law"),
+    ] {
+        panels.push(panel(first, (title, ""), ratios(family, name)));
+    }
+    Figure {
+        title: "Laws that one height cannot tell apart, and what other heights say".to_owned(),
+        panels,
+    }
+}
+
+/// Where the features of all drops put the law, if they do.
+fn fitted_mark(outcome: &CalibrateOutcome, place: usize) -> Option<Mark> {
+    let features = outcome.features.as_ref()?;
+    features.parameters[place].sd?;
+    let value = |place: usize| features.parameters[place].written.value;
+    Some(Mark {
+        label: "all drops".to_owned(),
+        at: (value(0), value(place)),
+        side: Side::BelowRight,
+    })
+}
+
+/// A feature along the line at each height, over that of its first member.
+fn ratios(family: &FamilyLine, name: &str) -> Vec<Series> {
+    let count = family.members[0].heights.len();
+    (0..count)
+        .map(|place| {
+            let value = |member: usize| {
+                let at = &family.members[member].heights[place];
+                at.features.get(name).copied().unwrap_or(f64::NAN)
+            };
+            let points = family.members.iter().enumerate();
+            let points = points.map(|(i, m)| (m.parameters[0], value(i) / value(0)));
+            let height = 1e3 * family.members[0].heights[place].height;
+            series(&format!("{height:.0} mm"), Style::Line, points.collect())
+        })
+        .collect()
+}
+
+/// What the surfaces say of the runs: predicted by the surface over simulated, and
+/// the runs over each factor.
+#[must_use]
+pub fn figure_of_design(outcome: &CalibrateOutcome, design: &DesignWayOutcome) -> Figure {
+    let mut panels = Vec::new();
+    for (place, surface) in design.surfaces.iter().enumerate() {
+        let scale = if surface.unit == "s" { 1e3 } else { 1.0 };
+        let unit = if surface.unit == "s" {
+            "ms"
+        } else {
+            &surface.unit
+        };
+        let mut all: Vec<Series> = design
+            .factors
+            .iter()
+            .enumerate()
+            .map(|(factor, own)| {
+                let points = curve(design, place, factor);
+                let points = points.into_iter().map(|(x, y)| (x, scale * y));
+                let name = format!("{} ({}), the others at their centre", own.letter, own.name);
+                series(&name, Style::Line, points.collect())
+            })
+            .collect();
+        // Runs on the axis of a factor, where its curve should pass.
+        let on_axis = (0..design.factors.len()).flat_map(|factor| {
+            let own = design.runs.iter().filter(move |run| {
+                let mut others = run.coded.iter().enumerate().filter(|(i, _)| *i != factor);
+                others.all(|(_, x)| x.abs() < 1e-9)
+            });
+            own.map(move |run| (run.coded[factor], scale * run.responses[place]))
+        });
+        all.push(series("simulated", Style::Dots, on_axis.collect()));
+        let target = outcome.target.features.get(&surface.response);
+        if let Some(target) = target {
+            let level = vec![(0.0, scale * target.value)];
+            all.push(series("measured", Style::Level, level));
+        }
+        panels.push(panel(("coded level", ""), (&surface.response, unit), all));
+    }
+    Figure {
+        title: "Responses over the factors of the design: surfaces and simulator".to_owned(),
+        panels,
+    }
+}
+
+/// Points of a curve.
+const POINTS: usize = 41;
+
+/// A surface along one factor, the others at the centre.
+fn curve(design: &DesignWayOutcome, place: usize, factor: usize) -> Vec<(f64, f64)> {
+    let letter = &design.factors[factor].letter;
+    let surface = &design.surfaces[place];
+    (0..POINTS)
+        .map(|step| {
+            let part = step as f64 / (POINTS - 1) as f64;
+            let x = design.alpha * (2.0 * part - 1.0);
+            let terms = surface.terms.iter().map(|term| {
+                let power = match term.term.strip_prefix(letter.as_str()) {
+                    _ if is_constant(&term.term) => Some(0),
+                    Some("") => Some(1),
+                    Some(rest) => rest.strip_prefix('^').and_then(|p| p.parse::<i32>().ok()),
+                    None => None,
+                };
+                power.map_or(0.0, |power| term.coded * x.powi(power))
+            });
+            (x, terms.sum())
+        })
+        .collect()
+}
+
+/// Whether a term is the intercept.
+fn is_constant(term: &str) -> bool {
+    term.is_empty() || term == "1" || term == "(Intercept)"
+}

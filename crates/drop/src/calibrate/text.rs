@@ -1,0 +1,210 @@
+//! A calibration as text and CSV.
+
+use crate::calibrate::outcome::{CalibrateOutcome, FeaturesOutcome, TargetOutcome};
+use crate::calibrate::tables::{closing_table, design_tables, line_table, next_table};
+use crate::calibrate::tables_text::text_of_table;
+use crate::calibrate::waveform_text::{shown_value, text_of_waveform};
+use std::fmt::Write;
+use windfall_files::error::Error;
+use windfall_files::table::write::csv_text;
+use windfall_files::text::number::{plain, value_and_sd};
+use windfall_files::text::table::findings_list;
+use windfall_files::text::table::{page_tables, paragraph};
+
+/// Features of the fit that are listed each.
+const LISTED: usize = 24;
+
+/// A calibration for people.
+#[must_use]
+pub fn text_of_calibration(outcome: &CalibrateOutcome) -> String {
+    let mut text = format!("{}\n", paragraph(&outcome.campaign, 2));
+    if let Some(label) = &outcome.simulated {
+        let label = format!("SIMULATED recordings: {label}");
+        let _ = writeln!(text, "{}", paragraph(&label, 2));
+    }
+    let line = format!("law: {}, free: {}", outcome.law, outcome.free.join(", "));
+    let _ = writeln!(text, "{}", paragraph(&line, 2));
+    let start = match outcome.start.rule.is_empty() {
+        true => format!("start: {}", outcome.start.law),
+        false => format!("start: {} ({})", outcome.start.law, outcome.start.rule),
+    };
+    let _ = writeln!(text, "{}", paragraph(&start, 2));
+    if let Some(hertz) = outcome.start.hertz_stiffness {
+        let millimetres = hertz / 1000f64.powf(1.5);
+        let _ = writeln!(text, "Hertz's stiffness: {} N/mm^1.5", plain(millimetres));
+    }
+    let _ = writeln!(text, "{}", target_text(&outcome.target));
+    if let Some(waveform) = &outcome.waveform {
+        text += &text_of_waveform(waveform);
+    }
+    if let Some(features) = &outcome.features {
+        text += &features_text(features);
+    }
+    if let Some(family) = &outcome.family {
+        let _ = writeln!(text, "\n{}", paragraph(&family.words, 0));
+    }
+    if let Some(table) = line_table(outcome) {
+        let _ = write!(text, "\n{}", text_of_table(&table));
+    }
+    let _ = write!(text, "\n{}", text_of_table(&closing_table(outcome)));
+    if let Some(table) = next_table(outcome) {
+        let _ = write!(text, "\n{}", text_of_table(&table));
+    }
+    for table in design_tables(outcome) {
+        let _ = write!(text, "\n{}", text_of_table(&table));
+    }
+    for failure in &outcome.failed {
+        let line = format!("not used: {}: {}", failure.id, failure.message);
+        let _ = writeln!(text, "{}", paragraph(&line, 2));
+    }
+    text + &findings_list(&outcome.findings)
+}
+
+fn target_text(target: &TargetOutcome) -> String {
+    let features = target.features.0.iter().map(|(name, value)| {
+        let (scale, unit) = match value.unit.as_str() {
+            "s" => (1e3, "ms"),
+            unit => (1.0, unit),
+        };
+        let shown = value_and_sd(scale * value.value, value.sd.map(|sd| scale * sd));
+        format!("{name} {shown} {unit}")
+    });
+    let line = format!(
+        "target: {} ({}, fruit of {} g): {}",
+        target.of,
+        match target.drops {
+            1 => "1 drop".to_owned(),
+            drops => format!("mean of {drops} drops"),
+        },
+        plain(1e3 * target.mass),
+        features.collect::<Vec<_>>().join(", ")
+    );
+    paragraph(&line, 2)
+}
+
+fn features_text(features: &FeaturesOutcome) -> String {
+    let strings = |words: &[&str]| words.iter().map(|w| (*w).to_owned()).collect::<Vec<_>>();
+    let mut text = format!("\nBy features: {}\n", features.law);
+    let rows = features.parameters.iter().map(|parameter| {
+        let written = &parameter.written;
+        let end = |value: Option<f64>| value.map_or_else(|| "open".to_owned(), plain);
+        let unit = if written.unit == "1" {
+            ""
+        } else {
+            &written.unit
+        };
+        let sd = written
+            .sd
+            .map_or_else(|| "not determined".to_owned(), plain);
+        vec![
+            parameter.name.clone(),
+            plain(written.value),
+            sd,
+            end(written.low),
+            end(written.high),
+            unit.to_owned(),
+        ]
+    });
+    let header = strings(&["parameter", "value", "sd", "95 % from", "to", "unit"]);
+    text += &page_tables(&header, &rows.collect::<Vec<_>>(), &[0, 5]);
+    let p = features
+        .p
+        .map_or_else(String::new, |p| format!(", p {p:.3}"));
+    let _ = writeln!(
+        text,
+        "\nχ² {} on {}{p}; directions determined: {} of {}",
+        plain(features.chi_square),
+        features.freedom,
+        features.rank,
+        features.parameters.len()
+    );
+    for direction in &features.directions {
+        let _ = writeln!(text, "  {}", direction.words);
+    }
+    if features.fitted.len() <= LISTED {
+        let header = strings(&["drop", "feature", "measured", "fitted", "difference / sd"]);
+        let rows = features.fitted.iter().map(|fitted| {
+            let (scale, unit) = match fitted.measured.unit.as_str() {
+                "s" => (1e3, "ms"),
+                unit => (1.0, unit),
+            };
+            let measured = &fitted.measured;
+            vec![
+                fitted.drop.clone(),
+                format!("{} ({unit})", fitted.feature),
+                value_and_sd(scale * measured.value, measured.sd.map(|sd| scale * sd)),
+                plain(scale * fitted.fitted),
+                format!("{:+.2}", fitted.standardised),
+            ]
+        });
+        let table = page_tables(&header, &rows.collect::<Vec<_>>(), &[0, 1]);
+        let _ = writeln!(text, "\n{table}");
+    }
+    text
+}
+
+/// The estimates as CSV: a row per way and parameter.
+///
+/// # Errors
+/// None in practice: the text is written to memory.
+pub fn csv_of_calibration(outcome: &CalibrateOutcome) -> Result<String, Error> {
+    let header = [
+        "way",
+        "parameter",
+        "value_SI",
+        "sd_SI",
+        "unit_SI",
+        "value",
+        "sd",
+        "low",
+        "high",
+        "unit",
+        "determined",
+    ];
+    let number = |value: Option<f64>| value.map_or_else(String::new, |value| value.to_string());
+    let mut rows = Vec::new();
+    for parameter in outcome.waveform.iter().flat_map(|w| &w.parameters) {
+        let (value, shown) = (&parameter.value, shown_value(parameter));
+        rows.push(vec![
+            "waveform".to_owned(),
+            parameter.name.clone(),
+            value.value.to_string(),
+            number(value.sd),
+            value.unit.clone(),
+            shown.value.to_string(),
+            number(shown.sd),
+            number(shown.low),
+            number(shown.high),
+            shown.unit.clone(),
+            true.to_string(),
+        ]);
+    }
+    for parameter in outcome.features.iter().flat_map(|f| &f.parameters) {
+        let written = &parameter.written;
+        rows.push(vec![
+            "features".to_owned(),
+            parameter.name.clone(),
+            parameter.value.to_string(),
+            number(parameter.sd),
+            parameter.unit.clone(),
+            written.value.to_string(),
+            number(written.sd),
+            number(written.low),
+            number(written.high),
+            written.unit.clone(),
+            parameter.sd.is_some().to_string(),
+        ]);
+    }
+    if let Some(design) = &outcome.design {
+        for (factor, level) in design.factors.iter().zip(&design.optimum.levels) {
+            let mut row = vec![String::new(); header.len()];
+            row[0] = "design".to_owned();
+            row[1] = factor.name.clone();
+            row[5] = level.to_string();
+            row[9] = factor.unit.clone();
+            row[10] = design.family.is_empty().to_string();
+            rows.push(row);
+        }
+    }
+    csv_text(&header.map(str::to_owned), rows)
+}

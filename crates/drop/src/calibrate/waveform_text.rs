@@ -1,0 +1,76 @@
+//! A calibration on waveforms for people.
+
+use crate::calibrate::waveform_outcome::{WaveformOutcome, WaveformParameter};
+use std::fmt::Write;
+use windfall_campaign::measure::measured::MeasuredValue;
+use windfall_files::text::number::{plain, value_and_sd};
+use windfall_files::text::statistic::number;
+use windfall_files::text::table::page_tables;
+
+/// A stiffness with its exponent per millimetre, others in SI.
+#[must_use]
+pub fn shown_value(parameter: &WaveformParameter) -> &MeasuredValue {
+    parameter
+        .per_millimetre
+        .as_ref()
+        .unwrap_or(&parameter.value)
+}
+
+/// Estimates, and what each drop tells.
+#[must_use]
+pub fn text_of_waveform(waveform: &WaveformOutcome) -> String {
+    let strings = |words: &[&str]| words.iter().map(|w| (*w).to_owned()).collect::<Vec<_>>();
+    let mut text = format!(
+        "\nBy waveforms ({} impacts of {} drops): {}\n",
+        waveform.impacts,
+        waveform.drops.len(),
+        waveform.law
+    );
+    let rows = waveform.parameters.iter().map(|parameter| {
+        let shown = shown_value(parameter);
+        let end = |value: Option<f64>| number(value.unwrap_or(f64::NAN));
+        let unit = if shown.unit == "1" { "" } else { &shown.unit };
+        vec![
+            parameter.name.clone(),
+            value_and_sd(shown.value, shown.sd),
+            end(shown.low),
+            end(shown.high),
+            unit.to_owned(),
+        ]
+    });
+    let header = strings(&["parameter", "value ± sd", "95 % from", "to", "unit"]);
+    text += &page_tables(&header, &rows.collect::<Vec<_>>(), &[0, 4]);
+    let _ = writeln!(
+        text,
+        "\nχ² {} per sample, {} samples; uncertainties are those of {}",
+        plain(waveform.misfit),
+        waveform.samples,
+        if waveform.by_scatter {
+            "the scatter from drop to drop"
+        } else {
+            "noise"
+        }
+    );
+    let rows = waveform.drops.iter().map(|drop| {
+        vec![
+            drop.id.clone(),
+            plain(1e3 * drop.height),
+            value_and_sd(drop.velocity.value, drop.velocity.sd),
+            value_and_sd(1e3 * drop.mass.value, drop.mass.sd.map(|sd| 1e3 * sd)),
+            plain(drop.misfit),
+        ]
+    });
+    let header = strings(&[
+        "drop",
+        "height (mm)",
+        "velocity (m/s)",
+        "mass (g)",
+        "χ² per sample",
+    ]);
+    let _ = writeln!(
+        text,
+        "\n{}",
+        page_tables(&header, &rows.collect::<Vec<_>>(), &[0])
+    );
+    text
+}

@@ -1,0 +1,201 @@
+//! A drop as a figure: its bounces, the force they are found in, the ringing of
+//! the plate after the first.
+
+use crate::read::Drop;
+use windfall_draw::xy::{Figure, Mark, Panel, Series, Side, Style};
+use windfall_files::text::number::plain;
+use windfall_signal::bounce::train::{Bounce, BounceTrain};
+use windfall_signal::ringing::model::{Ringing, amplitude_at, ringing_at};
+
+/// The force that contacts are found in is cut off at this many times the
+/// threshold, so that the threshold is seen; 1.
+const CUT: f64 = 12.0;
+
+/// Shown before the first touch, as a part of the contact; 1.
+const BEFORE: f64 = 0.5;
+
+/// Shown after a contact, in periods of the ringing, and in contacts where
+/// nothing rings; 1.
+const PERIODS: f64 = 9.0;
+const CONTACTS: f64 = 3.0;
+
+/// Points of a fitted curve in a period.
+const POINTS: f64 = 40.0;
+
+/// A drop with its bounces.
+#[must_use]
+pub fn figure_of_drop(id: &str, drop: &Drop, train: &BounceTrain) -> Figure {
+    let bounces = match train.bounces.len() {
+        1 => "1 bounce".to_owned(),
+        n => format!("{n} bounces"),
+    };
+    let mut panels = vec![overview(train), detection(train)];
+    panels.extend(train.bounces.first().map(|bounce| first(train, bounce)));
+    Figure {
+        title: format!(
+            "{id}: {} g from {} mm, {bounces}",
+            plain(1e3 * drop.mass.value),
+            plain(1e3 * drop.height.value)
+        ),
+        panels,
+    }
+}
+
+fn series(label: &str, style: Style, points: Vec<(f64, f64)>) -> Series {
+    Series {
+        label: label.to_owned(),
+        style,
+        colour: None,
+        points,
+    }
+}
+
+fn panel(x: &str, y: &str, series: Vec<Series>, marks: Vec<Mark>) -> Panel {
+    Panel {
+        x: x.to_owned(),
+        x_unit: "ms".to_owned(),
+        y: y.to_owned(),
+        y_unit: "N".to_owned(),
+        series,
+        marks,
+    }
+}
+
+/// Begin and end of each contact on the horizontal axis; ms.
+fn contacts(train: &BounceTrain, zero: f64) -> Vec<(f64, f64)> {
+    let ends = |bounce: &Bounce| [bounce.onset.value, bounce.end.value];
+    let ends = train.bounces.iter().flat_map(ends);
+    ends.map(|time| (1e3 * (time - zero), 0.0)).collect()
+}
+
+fn onsets(train: &BounceTrain) -> Vec<(f64, f64)> {
+    let onsets = train.bounces.iter().map(|bounce| bounce.onset.value);
+    onsets.map(|time| (1e3 * time, 0.0)).collect()
+}
+
+/// Points of some samples; ms and N.
+fn points(
+    train: &BounceTrain,
+    values: &[f64],
+    zero: f64,
+    (from, to): (f64, f64),
+) -> Vec<(f64, f64)> {
+    let pairs = train.times.iter().zip(values);
+    pairs
+        .filter(|(time, _)| (from..=to).contains(*time))
+        .map(|(time, value)| (1e3 * (time - zero), *value))
+        .collect()
+}
+
+const ALL: (f64, f64) = (f64::NEG_INFINITY, f64::INFINITY);
+
+fn overview(train: &BounceTrain) -> Panel {
+    let all = vec![
+        series(
+            "support force from its static level",
+            Style::Line,
+            points(train, &train.force, 0.0, ALL),
+        ),
+        series("contact", Style::Shade, contacts(train, 0.0)),
+    ];
+    let mark = |(number, bounce): (usize, &Bounce)| Mark {
+        label: format!("{}: {:.3} N", number + 1, bounce.peak),
+        at: (1e3 * bounce.peak_time, bounce.peak),
+        side: Side::BelowRight,
+    };
+    let marks = train.bounces.iter().enumerate().map(mark).collect();
+    panel("time", "force", all, marks)
+}
+
+fn detection(train: &BounceTrain) -> Panel {
+    let (on, off) = train.thresholds;
+    let cut = CUT * on;
+    let force: Vec<f64> = train
+        .contact_force
+        .iter()
+        .map(|force| force.clamp(-cut, cut))
+        .collect();
+    let at = train.times.first().map_or(0.0, |time| 1e3 * time);
+    let all = vec![
+        series(
+            &format!(
+                "contact force, smoothed over {:.2} ms",
+                1e3 * train.smoothing
+            ),
+            Style::Line,
+            points(train, &force, 0.0, ALL),
+        ),
+        series("onset", Style::Upright, onsets(train)),
+        series(
+            &format!("a contact begins above {on:.2} N, is over below {off:.2} N"),
+            Style::Level,
+            vec![(at, on), (at, off)],
+        ),
+    ];
+    panel("time", &format!("force, cut at ±{cut:.2}"), all, Vec::new())
+}
+
+fn first(train: &BounceTrain, bounce: &Bounce) -> Panel {
+    let zero = bounce.onset.value;
+    let contact = bounce.end.value - zero;
+    let shown = bounce
+        .ringing
+        .map_or(CONTACTS * contact, |ringing| PERIODS * ringing.period.value);
+    let next = train
+        .bounces
+        .get(1)
+        .map_or(f64::INFINITY, |next| next.onset.value);
+    let range = (
+        zero - BEFORE * contact,
+        (bounce.end.value + shown).min(next),
+    );
+    let contact = &contacts(train, zero)[..2];
+    let mut all = vec![
+        series(
+            "support force",
+            Style::Dots,
+            points(train, &train.force, zero, range),
+        ),
+        series("contact", Style::Shade, contact.to_vec()),
+        series(
+            "contact force behind it, smoothed",
+            Style::Line,
+            points(train, &train.contact_force, zero, range),
+        ),
+    ];
+    if let Some(ringing) = &bounce.ringing {
+        all.extend(ringing_series(ringing, zero, range.1));
+    }
+    panel("time from the first touch", "force", all, Vec::new())
+}
+
+fn ringing_series(ringing: &Ringing, zero: f64, to: f64) -> Vec<Series> {
+    let step = ringing.period.value / POINTS;
+    let count = ((to - ringing.from) / step).max(0.0) as usize;
+    let times: Vec<f64> = (0..=count)
+        .map(|i| ringing.from + step * i as f64)
+        .collect();
+    let curve = |value: &dyn Fn(f64) -> f64| -> Vec<(f64, f64)> {
+        times
+            .iter()
+            .map(|t| (1e3 * (t - zero), value(*t)))
+            .collect()
+    };
+    // Out along the upper envelope and back along the lower: one series.
+    let mut envelope = curve(&|time| amplitude_at(ringing, time));
+    let lower = curve(&|time| -amplitude_at(ringing, time));
+    envelope.extend(lower.into_iter().rev());
+    let label = format!(
+        "ringing: period {:.3} ms, damping ratio {:.4}",
+        1e3 * ringing.period.value,
+        ringing.damping_ratio.value
+    );
+    vec![
+        series(
+            &label,
+            Style::Line,
+            curve(&|time| ringing_at(ringing, time)),
+        ),
+        series("its envelope", Style::Dashed, envelope),
+    ]
+}

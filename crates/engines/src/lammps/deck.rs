@@ -1,0 +1,261 @@
+//! A scene as a deck for LAMMPS.
+
+use crate::deck::{Deck, FRAMES, Task, comment, density, triple};
+use crate::lammps::terms::terms;
+use crate::lammps::walls::walls;
+use std::fmt::Write;
+use windfall_files::found::FindingOutcome;
+
+/// Classes that LAMMPS can have at most: it has 32 groups.
+const MOST_CLASSES: usize = 28;
+
+/// A deck that every LAMMPS from 29 September 2021 on reads.
+///
+/// # Errors
+/// What the engine cannot represent, each with its reason.
+pub fn lammps_deck(task: &Task) -> Result<Deck, Vec<String>> {
+    let mut reasons = task.lawless();
+    if task.classes.classes.len() > MOST_CLASSES {
+        reasons.push(format!(
+            "{} classes of fruit: it can have {MOST_CLASSES}, ask for fewer with --classes",
+            task.classes.classes.len()
+        ));
+    }
+    let pairs = pairs(task);
+    let walls = walls(task);
+    reasons.extend(pairs.as_ref().err().cloned());
+    reasons.extend(walls.as_ref().err().cloned().into_iter().flatten());
+    let (true, Ok(pairs), Ok(walls)) = (reasons.is_empty(), pairs, walls) else {
+        return Err(reasons);
+    };
+    let first = task.first();
+    let mut files = vec![("in.scene".to_owned(), {
+        let mut text = head(task, first > 0);
+        text += &format!("{pairs}\n{walls}\n{}", forces(task));
+        text += &run(task);
+        text
+    })];
+    if first > 0 {
+        files.push(("fruit.data".to_owned(), data(task, first)));
+    }
+    if first < task.scene.fruit.len() {
+        files.push(("come.in".to_owned(), COME.to_owned()));
+    }
+    let mut findings: Vec<FindingOutcome> = task.finding_of_classes().into_iter().collect();
+    if task.rolls() {
+        findings.push(FindingOutcome {
+            code: "engine-rolling".to_owned(),
+            message: "LAMMPS resists rolling with one stiffness at any load: the limit of the \
+                      moment is the scene's, its stiffness is right at five times the weight"
+                .to_owned(),
+        });
+    }
+    Ok(Deck {
+        files,
+        steps: task.steps,
+        findings,
+    })
+}
+
+fn head(task: &Task, with_data: bool) -> String {
+    let scene = task.scene;
+    let types = task.classes.classes.len();
+    let [low, high] = task.bounds();
+    let down = (0..3).max_by(|&a, &b| scene.gravity[a].abs().total_cmp(&scene.gravity[b].abs()));
+    let processors = match down {
+        Some(0) => "1 * *",
+        Some(1) => "* 1 *",
+        _ => "* * 1",
+    };
+    let reach = 2.0 * task.largest() + task.skin();
+    let box_of = match with_data {
+        true => "read_data fruit.data".to_owned(),
+        false => format!(
+            "region scene block {} {} {} {} {} {} units box\ncreate_box {types} scene",
+            low[0], high[0], low[1], high[1], low[2], high[2]
+        ),
+    };
+    let mut text = format!(
+        "# {}\n# A scene of windfall for LAMMPS of 29 September 2021 and newer: lmp -in in.scene\n\
+         # Frames go to {FRAMES} every {} steps: `windfall scene run FILE --engine lammps --frames \
+         {FRAMES}`\n# makes contacts, fruit and bruises of them.\n\
+         units si\natom_style sphere\natom_modify map hash sort 1000 {}\nboundary m m m\n\
+         newton off\ncomm_modify vel yes cutoff {reach}\nprocessors {processors}\n{box_of}\n\
+         fix fruit all property/atom i_fruit\nvariable id atom id\nset group all i_fruit v_id\n\
+         group old empty\ngroup new empty\n",
+        comment(task.title),
+        task.frame_steps,
+        2.2 * task.largest(),
+    );
+    for (number, class) in task.classes.classes.iter().enumerate() {
+        let kind = number + 1;
+        let material = comment(&scene.materials[class.material]);
+        let _ = writeln!(
+            text,
+            "# type {kind}: {material}, about {} m across, {} kg\ngroup t{kind} type {kind}",
+            2.0 * class.radius,
+            class.mass
+        );
+    }
+    if !with_data {
+        // Of an empty box there is nobody to number.
+        text = text.replace("variable id atom id\nset group all i_fruit v_id\n", "");
+    }
+    text
+}
+
+fn pairs(task: &Task) -> Result<String, String> {
+    let classes = &task.classes.classes;
+    let mut text = "pair_style granular\n".to_owned();
+    for (first, a) in classes.iter().enumerate() {
+        for (second, b) in classes.iter().enumerate().skip(first) {
+            let radius = a.radius * b.radius / (a.radius + b.radius);
+            let mass = a.mass * b.mass / (a.mass + b.mass);
+            let interaction = task.scene.interaction(a.material, b.material);
+            let interaction = interaction.map_err(|problem| problem.to_string())?;
+            let terms = terms(task, interaction, radius, mass)?;
+            let _ = writeln!(text, "pair_coeff {} {} {terms}", first + 1, second + 1);
+        }
+    }
+    Ok(text)
+}
+
+/// Gravity, air, sinks; how fruit move.
+fn forces(task: &Task) -> String {
+    let scene = task.scene;
+    let mut text = task.fields();
+    for (number, sink) in scene.sinks.iter().enumerate() {
+        let name = comment(&sink.name);
+        let (low, high) = (sink.low, sink.high);
+        let _ = writeln!(
+            text,
+            "# sink: {name}\nregion sink{number} block {} {} {} {} {} {} units box\n\
+             fix sink{number} all evaporate {SINK_STEPS} 1000000000 sink{number} 1",
+            low[0], high[0], low[1], high[1], low[2], high[2]
+        );
+    }
+    text + "fix move all nve/sphere\n"
+}
+
+/// Steps between looks at sinks.
+const SINK_STEPS: u64 = 32;
+
+fn run(task: &Task) -> String {
+    let (scene, steps) = (task.scene, task.steps);
+    let mut text = format!(
+        "neighbor {} bin\nneigh_modify delay 0 every {} check yes\ntimestep {}\n\
+         thermo_style custom step atoms\nthermo {}\nthermo_modify lost error\n\
+         compute_modify thermo_temp dynamic/dof yes\n\
+         dump frames all custom {} {FRAMES} i_fruit x y z vx vy vz omegax omegay omegaz\n",
+        task.skin(),
+        task.looks(),
+        scene.time_step,
+        (steps / 20).max(1),
+        task.frame_steps,
+    );
+    let coming = scene.fruit.iter().enumerate().skip(task.first());
+    let coming = coming.filter(|(_, own)| task.step_of(own.time) < steps);
+    for (place, (number, fruit)) in coming.enumerate() {
+        if place == 0 {
+            let _ = writeln!(
+                text,
+                "variable reach equal {}\nvariable wait equal {}\nvariable end equal {steps}",
+                2.0 * task.largest(),
+                task.wait()
+            );
+        }
+        let kind = task.classes.of_fruit[number] + 1;
+        let mut lines = vec![
+            ("at", task.step_of(fruit.time).to_string()),
+            ("fruit", (number + 1).to_string()),
+            ("type", kind.to_string()),
+            ("diameter", (2.0 * fruit.radius).to_string()),
+            ("mass", fruit.mass.to_string()),
+        ];
+        for (name, vector) in [("", fruit.place), ("v", fruit.velocity)] {
+            for (axis, value) in ["x", "y", "z"].iter().zip(vector) {
+                lines.push(("", format!("{name}{axis} string {value}")));
+            }
+        }
+        lines.push((
+            "attempts",
+            if fruit.elsewhere.is_some() { "8" } else { "0" }.to_owned(),
+        ));
+        let [low, high] = fruit.elsewhere.unwrap_or([fruit.place; 2]);
+        for (name, vector) in [("l", low), ("h", high)] {
+            for (axis, value) in ["x", "y", "z"].iter().zip(vector) {
+                lines.push(("", format!("{name}{axis} string {value}")));
+            }
+        }
+        for (name, value) in lines {
+            let _ = match name {
+                "" => writeln!(text, "variable {value}"),
+                name => writeln!(text, "variable {name} string {value}"),
+            };
+        }
+        text += "include come.in\n";
+    }
+    text + &format!("if \"$(step) < {steps}\" then \"run {steps} upto\"\n")
+}
+
+/// Fruit that are there from the beginning.
+fn data(task: &Task, first: usize) -> String {
+    let [low, high] = task.bounds();
+    let mut text = format!(
+        "fruit of a scene of windfall\n\n{first} atoms\n{} atom types\n\n",
+        task.classes.classes.len()
+    );
+    for (axis, name) in ["x", "y", "z"].iter().enumerate() {
+        let _ = writeln!(text, "{} {} {name}lo {name}hi", low[axis], high[axis]);
+    }
+    text += "\nAtoms # sphere\n\n";
+    for (number, fruit) in task.scene.fruit.iter().take(first).enumerate() {
+        let density = density(fruit);
+        let _ = writeln!(
+            text,
+            "{} {} {} {density} {}",
+            number + 1,
+            task.classes.of_fruit[number] + 1,
+            2.0 * fruit.radius,
+            triple(fruit.place)
+        );
+    }
+    text += "\nVelocities\n\n";
+    for (number, fruit) in task.scene.fruit.iter().take(first).enumerate() {
+        let (velocity, spin) = (triple(fruit.velocity), triple(fruit.spin));
+        let _ = writeln!(text, "{} {velocity} {spin}", number + 1);
+    }
+    text
+}
+
+/// How a fruit comes: at its step; where its place is taken elsewhere in its box, on places
+/// that are spread over it, and where there is no room it waits.
+const COME: &str = r#"if "$(step) < ${at}" then "run ${at} upto"
+label again
+variable attempt delete
+variable attempt loop 0 ${attempts}
+label try
+variable n equal $((step%65536)*8+v_attempt-1)
+if "${attempt} == 0" then "variable px string ${x}" "variable py string ${y}" "variable pz string ${z}" else "variable px string $(v_lx+(v_hx-v_lx)*(v_n*0.8191725133961644-floor(v_n*0.8191725133961644)))" "variable py string $(v_ly+(v_hy-v_ly)*(v_n*0.6710436067037893-floor(v_n*0.6710436067037893)))" "variable pz string $(v_lz+(v_hz-v_lz)*(v_n*0.5497004779019703-floor(v_n*0.5497004779019703)))"
+region spot sphere ${px} ${py} ${pz} ${reach} units box
+variable taken string $(count(all,spot))
+region spot delete
+if "${taken} == 0" then "jump SELF free"
+next attempt
+jump SELF try
+if "$(step+v_wait) > ${end}" then "jump SELF done"
+run ${wait}
+jump SELF again
+label free
+group old clear
+group old union all
+create_atoms ${type} single ${px} ${py} ${pz} units box
+group new clear
+group new subtract all old
+set group new diameter ${diameter}
+set group new mass ${mass}
+set group new i_fruit ${fruit}
+velocity new set ${vx} ${vy} ${vz} units box
+group t${type} union new
+label done
+"#;

@@ -1,0 +1,5 @@
+//! LAMMPS.
+
+pub mod deck;
+mod terms;
+pub mod walls;

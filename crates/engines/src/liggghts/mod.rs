@@ -1,0 +1,5 @@
+//! LIGGGHTS.
+
+pub mod deck;
+mod model;
+pub mod walls;

@@ -1,0 +1,167 @@
+//! Walls of a scene for LIGGGHTS: meshes of triangles, and endless planes along the axes.
+
+use crate::deck::{Task, comment, triple};
+use crate::liggghts::model::{Model, Types, model_of, words};
+use std::fmt::Write;
+use windfall_scene::shape::wall::{Plate, Shape, Wall};
+use windfall_scene::vector::{Vector, cross, length, scaled, subtract};
+
+/// Walls of a deck.
+pub(crate) struct Walls {
+    /// Their lines.
+    pub text: String,
+    /// Files of their meshes.
+    pub meshes: Vec<(String, String)>,
+}
+
+/// All walls.
+///
+/// # Errors
+/// Those that it cannot represent, each with its reason.
+pub(crate) fn walls(task: &Task, types: &Types) -> Result<Walls, Vec<String>> {
+    let mut found = Walls {
+        text: String::new(),
+        meshes: Vec::new(),
+    };
+    let (mut reasons, mut names, mut form) = (Vec::new(), Vec::new(), None);
+    for (number, wall) in task.scene.walls.iter().enumerate() {
+        let own = model(task, wall).and_then(|model| {
+            if let Shape::Plane { point, normal } = &wall.shape {
+                found.text += &plane(task, types, (number, wall), (*point, *normal), model)?;
+                return Ok(());
+            }
+            if *form.get_or_insert(model) != model {
+                return Err(
+                    "all walls but endless planes need one form of law, k d or k d^1.5".to_owned(),
+                );
+            }
+            let (text, stl) = mesh(types, number, wall)?;
+            found.text += &text;
+            found.meshes.push((format!("wall{number}.stl"), stl));
+            names.push(format!("wall{number}"));
+            Ok(())
+        });
+        if let Err(reason) = own {
+            reasons.push(format!("the wall \"{}\": {reason}", wall.name));
+        }
+    }
+    if let Some(model) = form {
+        let (form, options) = words(model, task.rolls());
+        let _ = writeln!(
+            found.text,
+            "fix meshes all wall/gran {form} mesh n_meshes {} meshes {} {options}",
+            names.len(),
+            names.join(" ")
+        );
+    }
+    match reasons.is_empty() {
+        true => Ok(found),
+        false => Err(reasons),
+    }
+}
+
+/// The form of the law that all fruit have with a wall.
+fn model(task: &Task, wall: &Wall) -> Result<Model, String> {
+    let mut found = None;
+    for class in &task.classes.classes {
+        let interaction = task.scene.interaction(class.material, wall.material);
+        let model = model_of(interaction.map_err(|problem| problem.to_string())?)?;
+        if *found.get_or_insert(model) != model {
+            return Err("its contacts with all fruit need one form of law".to_owned());
+        }
+    }
+    found.ok_or_else(|| "there are no fruit".to_owned())
+}
+
+fn plane(
+    task: &Task,
+    types: &Types,
+    (number, wall): (usize, &Wall),
+    (point, normal): (Vector, Vector),
+    model: Model,
+) -> Result<String, String> {
+    if !wall.motion.stays() || wall.motion.surface_velocity != [0.0; 3] {
+        return Err("an endless plane that moves: a plate can".to_owned());
+    }
+    let across = (0..3).find(|&axis| normal[axis].abs() == 1.0);
+    let axis = across.ok_or("an endless plane that is not across an axis: a plate can")?;
+    let (form, options) = words(model, task.rolls());
+    Ok(format!(
+        "# {}\nfix plane{number} all wall/gran {form} primitive type {} {}plane {} {options}\n",
+        comment(&wall.name),
+        types.of_wall(wall.material),
+        ["x", "y", "z"][axis],
+        point[axis]
+    ))
+}
+
+fn mesh(types: &Types, number: usize, wall: &Wall) -> Result<(String, String), String> {
+    let triangles = match &wall.shape {
+        Shape::Plates(plates) => plates.iter().flat_map(halves).collect(),
+        Shape::Mesh { triangles } => triangles.clone(),
+        Shape::Plane { .. } => return Err("no mesh".to_owned()),
+        Shape::Cylinder { .. } => {
+            return Err(
+                "a cylinder: as a mesh it would have edges that fruit touch twice".to_owned(),
+            );
+        }
+    };
+    let motion = &wall.motion;
+    let belt = match motion.surface_velocity {
+        own if own == [0.0; 3] => String::new(),
+        own => format!(" surface_vel {}", triple(own)),
+    };
+    let mut text = format!(
+        "# {}\nfix wall{number} all mesh/surface file wall{number}.stl type {}{belt}\n",
+        comment(&wall.name),
+        types.of_wall(wall.material)
+    );
+    let mut moves = Vec::new();
+    if motion.velocity != [0.0; 3] {
+        moves.push(format!("linear {}", triple(motion.velocity)));
+    }
+    if let Some(own) = motion.vibration {
+        let period = 1.0 / own.frequency;
+        moves.push(format!(
+            "wiggle amplitude {} period {period}",
+            triple(own.amplitude)
+        ));
+    }
+    if let Some(own) = motion.rotation {
+        let axis = scaled(own.axis, own.angular_velocity.signum());
+        let period = 2.0 * std::f64::consts::PI / own.angular_velocity.abs();
+        moves.push(format!(
+            "rotate origin {} axis {} period {period}",
+            triple(own.point),
+            triple(axis)
+        ));
+    }
+    for (place, own) in moves.iter().enumerate() {
+        let _ = writeln!(
+            text,
+            "fix move{number}_{place} all move/mesh mesh wall{number} {own}"
+        );
+    }
+    Ok((text, stl(&triangles)))
+}
+
+/// A plate as two triangles.
+fn halves(plate: &Plate) -> [[Vector; 3]; 2] {
+    let [a, b, c, d] = plate.corners();
+    [[a, b, d], [a, d, c]]
+}
+
+/// Triangles as STL text.
+fn stl(triangles: &[[Vector; 3]]) -> String {
+    let mut text = "solid wall\n".to_owned();
+    for [a, b, c] in triangles {
+        let across = cross(subtract(*b, *a), subtract(*c, *a));
+        let normal = scaled(across, 1.0 / length(across));
+        let _ = writeln!(text, "facet normal {}\nouter loop", triple(normal));
+        for corner in [a, b, c] {
+            let _ = writeln!(text, "vertex {}", triple(*corner));
+        }
+        text += "endloop\nendfacet\n";
+    }
+    text + "endsolid wall\n"
+}

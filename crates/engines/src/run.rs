@@ -1,0 +1,270 @@
+//! A scene on another engine: its deck, its run, and what came of it.
+
+use crate::classes::MOST;
+use crate::deck::{Deck, Task};
+use crate::lammps::deck::lammps_deck;
+use crate::liggghts::deck::liggghts_deck;
+use crate::motion::Frames;
+use crate::program::{find_program, wrong};
+use serde::Serialize;
+use std::path::{Path, PathBuf};
+use windfall_files::error::Error;
+use windfall_files::found::FindingOutcome;
+use windfall_files::on_threads::on_threads;
+use windfall_files::progress::Progress;
+use windfall_files::write_file::write_whole;
+use windfall_scene_run::file::engine_kind::Engine;
+use windfall_scene_run::file::read::{ScenePlan, read_scene};
+use windfall_scene_run::run::outcome::{SceneOutcome, StepOutcome};
+use windfall_scene_run::run::run::SceneStart;
+use windfall_scene_run::run::workflow::{
+    Moved, SceneRequest, directory_of, run_moved, run_scene, time_step,
+};
+
+/// What may be asked of another engine.
+#[derive(Clone, Debug)]
+pub struct EngineRequest {
+    /// The engine.
+    pub engine: Engine,
+    /// Its program, where it is not on the path.
+    pub program: Option<PathBuf>,
+    /// Ranks of MPI.
+    pub ranks: usize,
+    /// Classes of size of one material at most.
+    pub classes: usize,
+    /// Steps between frames; from the contact duration where it is left out.
+    pub frame_steps: Option<u64>,
+    /// Frames of an earlier run, to be followed instead of a new one.
+    pub frames: Option<PathBuf>,
+}
+
+impl Default for EngineRequest {
+    fn default() -> Self {
+        Self {
+            engine: Engine::default(),
+            program: None,
+            ranks: 1,
+            classes: MOST,
+            frame_steps: None,
+            frames: None,
+        }
+    }
+}
+
+/// A deck that was written.
+#[derive(Clone, Debug, Serialize)]
+pub struct DeckOutcome {
+    /// Engine.
+    pub engine: String,
+    /// Files, the first of which the engine is given.
+    pub files: Vec<PathBuf>,
+    /// Steps.
+    pub steps: u64,
+    /// Time step; s.
+    pub time_step: f64,
+    /// Steps between frames.
+    pub frame_steps: u64,
+    /// What the engine does otherwise.
+    pub findings: Vec<FindingOutcome>,
+}
+
+/// Frames in the shortest contact that is expected, at least.
+const FRAMES_IN_CONTACT: f64 = 80.0;
+/// Lack of the energy account that is worth a word; 1.
+const LARGE_CLOSURE: f64 = 0.02;
+
+/// A scene made ready for an engine.
+struct Ready {
+    plan: ScenePlan,
+    step: StepOutcome,
+    deck: Deck,
+    frame_steps: u64,
+}
+
+fn ready(path: &Path, request: &EngineRequest) -> Result<Ready, Error> {
+    let mut plan = read_scene(path)?;
+    let step = time_step(&mut plan)?;
+    let engine = request.engine;
+    if plan.scene.fruit.iter().any(|fruit| fruit.clump.is_some()) {
+        let problem = "it cannot represent this scene (--engine windfall can): its ovate fruit touch \
+                       a partner once, where the deepest of their spheres does, and the engine's \
+                       clumps with every sphere";
+        return Err(wrong(engine, problem.to_owned()));
+    }
+    let findings = simplified(&mut plan, engine);
+    let every = step.contact_duration / (FRAMES_IN_CONTACT * step.time_step);
+    let frame_steps = request.frame_steps.unwrap_or((every as u64).max(1)).max(1);
+    let frames = (plan.end / (frame_steps as f64 * step.time_step)).ceil() as u64;
+    let task = Task::new(
+        &plan.scene,
+        &plan.title,
+        request.classes,
+        frames * frame_steps,
+        frame_steps,
+        step.speed,
+    );
+    let deck = match engine {
+        Engine::Windfall => Err(vec!["it is this program and needs no deck".to_owned()]),
+        Engine::Lammps => lammps_deck(&task),
+        Engine::Liggghts => liggghts_deck(&task),
+    };
+    let mut deck = deck.map_err(|reasons| {
+        let list = reasons.join("\n  - ");
+        wrong(
+            engine,
+            format!("it cannot represent this scene (--engine windfall can):\n  - {list}"),
+        )
+    })?;
+    deck.findings.splice(..0, findings);
+    Ok(Ready {
+        plan,
+        step,
+        deck,
+        frame_steps,
+    })
+}
+
+/// Leaves out what no other engine has; says so.
+fn simplified(plan: &mut ScenePlan, engine: Engine) -> Vec<FindingOutcome> {
+    let mut findings = Vec::new();
+    let (mut spread, mut annuli) = (Vec::new(), 1);
+    for (&(a, b), interaction) in &mut plan.scene.interactions {
+        if interaction.spread.take().is_some() {
+            let [a, b] = [a, b].map(|own| plan.scene.materials[own].clone());
+            spread.push(format!("{a} and {b}"));
+        }
+        if interaction.friction > 0.0 {
+            annuli = annuli.max(interaction.annuli);
+        }
+        interaction.annuli = 1;
+    }
+    if !spread.is_empty() {
+        findings.push(FindingOutcome {
+            code: "engine-spread".to_owned(),
+            message: format!(
+                "{} has one law for all fruit of a class: the spread of the law between fruit ({}) \
+                 is left out, all are like the median",
+                engine.title(),
+                spread.join("; ")
+            ),
+        });
+    }
+    if annuli > 1 {
+        findings.push(FindingOutcome {
+            code: "engine-annuli".to_owned(),
+            message: format!(
+                "{} follows friction by one spring for a contact area, not by {annuli} annuli: fruit \
+                 come off oblique impacts otherwise, normal forces stay",
+                engine.title()
+            ),
+        });
+    }
+    findings
+}
+
+fn write_deck(deck: &Deck, directory: &Path) -> Result<Vec<PathBuf>, Error> {
+    std::fs::create_dir_all(directory).map_err(|source| Error::FileAccess {
+        path: directory.to_path_buf(),
+        action: "create",
+        source,
+    })?;
+    let mut files = Vec::new();
+    for (name, text) in &deck.files {
+        let path = directory.join(name);
+        write_whole(&path, text.as_bytes())?;
+        files.push(path);
+    }
+    Ok(files)
+}
+
+/// Writes the deck of a scene.
+///
+/// * `out`: directory to write into; beside the file where it is left out
+///
+/// # Errors
+/// The scene cannot be used, or not on this engine; the directory cannot be written.
+pub fn export_deck(
+    path: &Path,
+    request: &EngineRequest,
+    out: Option<&Path>,
+) -> Result<DeckOutcome, Error> {
+    let ready = ready(path, request)?;
+    let beside = path.with_extension(request.engine.name());
+    let files = write_deck(&ready.deck, out.unwrap_or(&beside))?;
+    Ok(DeckOutcome {
+        engine: request.engine.title().to_owned(),
+        files,
+        steps: ready.deck.steps,
+        time_step: ready.step.time_step,
+        frame_steps: ready.frame_steps,
+        findings: ready.deck.findings,
+    })
+}
+
+/// Runs a scene on an engine. Of another one the frames are followed, and the contacts and
+/// the fruit written as [`run_scene`] does.
+///
+/// # Errors
+/// The engine is absent, cannot represent the scene, or fails; and those of [`run_scene`].
+pub fn run_on_engine(
+    path: &Path,
+    request: &SceneRequest,
+    own: &EngineRequest,
+    progress: Progress,
+) -> Result<SceneOutcome, Error> {
+    if own.engine == Engine::Windfall {
+        return run_scene(path, request, progress);
+    }
+    let ready = ready(path, own)?;
+    let mut plan = ready.plan;
+    let fruit = plan.scene.fruit.len();
+    let out = directory_of(path, request);
+    if request.start == SceneStart::Resume {
+        let problem = "a run on it cannot go on from a checkpoint: begin anew with --restart";
+        return Err(wrong(own.engine, problem.to_owned()));
+    }
+    let steps = ready.frame_steps;
+    let (mut frames, name) = match &own.frames {
+        Some(file) => {
+            if !file.is_file() {
+                let advice = "--frames takes the frames that the deck of `windfall scene export` \
+                              has written";
+                return Err(Error::FileAbsent {
+                    path: file.clone(),
+                    advice: advice.to_owned(),
+                });
+            }
+            let frames = Frames::of_file(own.engine, file, fruit, steps);
+            (
+                frames,
+                format!("{} ({})", own.engine.title(), file.display()),
+            )
+        }
+        None => {
+            let program = find_program(own.engine, own.program.as_deref())?;
+            let launch = program.launch(own.ranks.max(1))?;
+            let directory = out.join("engine");
+            write_deck(&ready.deck, &directory)?;
+            let deck = (directory.as_path(), ready.deck.files[0].0.as_str());
+            let frames = Frames::of_run((&program, &launch), deck, (fruit, steps))?;
+            let ranks = match own.ranks {
+                0 | 1 => String::new(),
+                ranks => format!(", {ranks} ranks"),
+            };
+            let name = format!("{} {}{ranks}", own.engine.title(), program.version);
+            (frames, name)
+        }
+    };
+    // Between two frames is one step of who follows.
+    plan.scene.time_step *= steps as f64;
+    let moved = Moved {
+        mover: &mut frames,
+        step: ready.step,
+        engine: name,
+        findings: ready.deck.findings,
+        large_closure: Some(LARGE_CLOSURE),
+    };
+    on_threads(request.threads, || {
+        Ok(run_moved(&plan, moved, &out, request.start, progress)?.outcome)
+    })
+}

@@ -1,0 +1,56 @@
+//! A deck that was written, for a terminal.
+
+use crate::contacts::ContactsOutcome;
+use crate::run::DeckOutcome;
+use windfall_files::text::statistic::number;
+use windfall_scene_run::file::engine_kind::Engine;
+
+/// What was written, and what to do with it.
+#[must_use]
+pub fn text_of_deck(outcome: &DeckOutcome) -> String {
+    let mut text = format!(
+        "A deck for {}: {} steps of {} µs, a frame every {}.\n",
+        outcome.engine,
+        outcome.steps,
+        number(1e6 * outcome.time_step),
+        match outcome.frame_steps {
+            1 => "step".to_owned(),
+            steps => format!("{steps} steps"),
+        }
+    );
+    for finding in &outcome.findings {
+        text += &format!("\n{}: {}\n", finding.code, finding.message);
+    }
+    let program = match outcome.engine == Engine::Liggghts.title() {
+        true => "liggghts",
+        false => "lmp",
+    };
+    let start = outcome.files.first().and_then(|file| file.file_name());
+    let start = start.map_or(String::new(), |name| name.to_string_lossy().into_owned());
+    text += &format!(
+        "\nThere: {program} -in {start}, on one machine or on many. It writes frames.bin, of which\n\
+         `windfall scene run FILE --engine {} --frames frames.bin` makes contacts, fruit and bruises.\n\
+         \nWritten: ",
+        outcome.engine.to_lowercase()
+    );
+    let files: Vec<String> = outcome
+        .files
+        .iter()
+        .map(|file| file.display().to_string())
+        .collect();
+    text + &files.join(", ") + "\n"
+}
+
+/// Contacts in another engine's terms: what is exact, and what is not.
+#[must_use]
+pub fn text_of_contacts(outcome: &ContactsOutcome) -> String {
+    let mut text = format!("Contacts for {}.\n", outcome.engine);
+    for own in &outcome.contacts {
+        let [a, b] = &own.between;
+        text += &format!(
+            "\n{a} and {b}\n  exact: {}\n  approximate: {}\n",
+            own.exact, own.approximate
+        );
+    }
+    text + &format!("\nWritten: {}\n", outcome.file.display())
+}

@@ -1,0 +1,613 @@
+//! What can go wrong with files and campaigns, said so that it can be mended.
+
+use crate::error_words::{after_refusal, nearest_columns, why_nothing};
+use crate::found::FailureOutcome;
+use std::path::PathBuf;
+
+pub use crate::place::{DropQuantity, Place};
+
+/// What can go wrong between a file and a result.
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum Error {
+    /// Somebody stopped the work.
+    #[error("stopped before it was done; nothing of it was kept")]
+    Cancelled,
+    /// What a file asks for cannot be.
+    #[error("{place}: {problem}")]
+    Refused {
+        /// Where the file says so.
+        place: Place,
+        /// What is wrong.
+        problem: String,
+    },
+    /// An error that only one room knows, such as that of a scene.
+    #[error("{0}")]
+    Room(Box<dyn Fault>),
+    /// Another engine that is absent, fails, or cannot represent a scene.
+    #[error("{engine}: {problem}")]
+    Engine {
+        /// Its name.
+        engine: &'static str,
+        /// What is wrong.
+        problem: String,
+    },
+    /// A change that would leave no campaign that can be read.
+    #[error("nothing was written: {problem}")]
+    ChangeRefused {
+        /// What would be wrong.
+        problem: String,
+    },
+    /// The recordings of a campaign lie outside of its directory.
+    #[error(
+        "the recordings of this campaign lie outside of its directory ([files] directory in campaign.toml); they can be fitted, but not listed, shown or added to here"
+    )]
+    RecordingsElsewhere,
+    /// No impact of that id.
+    #[error("impacts.csv has no impact \"{id}\"")]
+    ImpactUnknown {
+        /// The id.
+        id: String,
+    },
+    /// No campaign of that name.
+    #[error("there is no campaign \"{id}\" here")]
+    CampaignUnknown {
+        /// The name.
+        id: String,
+    },
+    /// Somebody else has changed the campaign meanwhile.
+    #[error(
+        "the files of the campaign have changed since they were read; nothing was written. Read them again and repeat the change"
+    )]
+    ChangedMeanwhile,
+    /// A name that would lead out of a directory, or that some system cannot have.
+    #[error("the name \"{name}\" {problem}")]
+    NameRefused {
+        /// The name.
+        name: String,
+        /// What is wrong with it.
+        problem: String,
+    },
+    /// A figure that cannot be drawn as dots.
+    #[error("the figure cannot be drawn as PNG: {detail}; its SVG and CSV are complete")]
+    FigureUndrawable {
+        /// What the renderer said.
+        detail: String,
+    },
+    /// A result that cannot be put into words of JSON.
+    #[error("the result on \"{item}\" cannot be kept: {detail}")]
+    ResultUnwritable {
+        /// Id in impacts.csv.
+        item: String,
+        /// What the writer said.
+        detail: String,
+    },
+    /// A recording that cannot be read.
+    #[error("{0}")]
+    Format(windfall_formats::Error),
+    /// A design or a model that cannot be.
+    #[error("{0}")]
+    Statistics(windfall_statistics::error::Error),
+    /// Nothing says when samples were taken.
+    #[error(
+        "{path}: nothing says when the samples of \"{column}\" were taken; give the column of \
+         times or the sampling rate in campaign.toml: [files] time = \"time_s\"   or   \
+         rate = \"200 kHz\"", path = path.display()
+    )]
+    TimesUnknown {
+        /// The file.
+        path: PathBuf,
+        /// The channel.
+        column: String,
+    },
+    /// A sample of a binary file that is no number.
+    #[error(
+        "{path}: \"{column}\" is {value} at sample {sample}; choose a range of time without it \
+         (from_s and to_s in impacts.csv), or mend the recording", path = path.display()
+    )]
+    SampleNotFinite {
+        /// The file.
+        path: PathBuf,
+        /// The channel.
+        column: String,
+        /// Number of the sample, from 0.
+        sample: usize,
+        /// What stands there.
+        value: f64,
+    },
+    /// A file that was named is not there.
+    #[error("{path}: there is no such file; {advice}", path = path.display())]
+    FileAbsent {
+        /// The file.
+        path: PathBuf,
+        /// Where its name came from and what to do.
+        advice: String,
+    },
+    /// A file could not be read or written.
+    #[error("{path}: cannot {action}: {source}", path = path.display())]
+    FileAccess {
+        /// The file.
+        path: PathBuf,
+        /// What was attempted: "read", "write", "create".
+        action: &'static str,
+        /// What the system said.
+        source: std::io::Error,
+    },
+    /// A table without a header.
+    #[error(
+        "{path}: the file is empty; expected a header line with the names of the columns, \
+         then one line per sample", path = path.display()
+    )]
+    TableEmpty {
+        /// The file.
+        path: PathBuf,
+    },
+    /// A table with a header and nothing below it.
+    #[error(
+        "{path}: the file has a header and no rows; expected one line per {row_is}",
+        path = path.display()
+    )]
+    TableWithoutRows {
+        /// The file.
+        path: PathBuf,
+        /// What one row stands for.
+        row_is: &'static str,
+    },
+    /// A column that is asked for is not in the header.
+    #[error(
+        "{path}: there is no column \"{column}\"{asked_by}; {nearest}",
+        path = path.display(),
+        nearest = nearest_columns(nearest, *columns)
+    )]
+    ColumnMissing {
+        /// The file.
+        path: PathBuf,
+        /// The column asked for.
+        column: String,
+        /// Who asks, for the message: " (asked for by [channels.force])" or "".
+        asked_by: String,
+        /// The columns with the most similar names, best first.
+        nearest: Vec<String>,
+        /// How many columns the file has.
+        columns: usize,
+    },
+    /// Two columns of one name.
+    #[error(
+        "{path}, line 1: the column \"{column}\" appears twice in the header; rename one of them, \
+         or map the channel to another column", path = path.display()
+    )]
+    ColumnRepeated {
+        /// The file.
+        path: PathBuf,
+        /// The name.
+        column: String,
+    },
+    /// A row with more or fewer cells than the header.
+    #[error(
+        "{place}: the row has {found} cells where the header has {expected}; \
+         the file may be cut short, or use another separator in this line (it is read with {separator})"
+    )]
+    RowRagged {
+        /// Where.
+        place: Place,
+        /// Cells in the header.
+        expected: usize,
+        /// Cells in the row.
+        found: usize,
+        /// Name of the separator that the header uses.
+        separator: &'static str,
+    },
+    /// A cell that should hold a number.
+    #[error(
+        "{place}, column \"{column}\": \"{text}\" is not a number{hint}; \
+         leave the cell blank where there is no sample"
+    )]
+    CellNotNumber {
+        /// Where.
+        place: Place,
+        /// The column.
+        column: String,
+        /// What stands there.
+        text: String,
+        /// What may be meant, for the message.
+        hint: &'static str,
+    },
+    /// A cell that holds NaN or an infinity.
+    #[error(
+        "{place}, column \"{column}\": the value is {text}, which is not a finite number; \
+         leave the cell blank where there is no sample"
+    )]
+    CellNotFinite {
+        /// Where.
+        place: Place,
+        /// The column.
+        column: String,
+        /// What stands there.
+        text: String,
+    },
+    /// A sample without its time.
+    #[error(
+        "{place}: sample {sample} of column \"{column}\" has no time, the cell in column \"{time}\" \
+         is blank; fill in the time or leave the sample blank too"
+    )]
+    SampleWithoutTime {
+        /// Where.
+        place: Place,
+        /// Row below the header, from 0.
+        sample: usize,
+        /// The column with the sample.
+        column: String,
+        /// The column of times.
+        time: String,
+    },
+    /// A column without a single sample.
+    #[error(
+        "{path}: the column \"{column}\" holds no sample, every cell is blank; \
+         map the channel to another column", path = path.display()
+    )]
+    ColumnBlank {
+        /// The file.
+        path: PathBuf,
+        /// The column.
+        column: String,
+    },
+    /// Text that is not UTF-8.
+    #[error(
+        "{place}: the text is not UTF-8; save the file as UTF-8 (in a spreadsheet: \"CSV UTF-8\")"
+    )]
+    NotUtf8 {
+        /// Where.
+        place: Place,
+    },
+    /// A campaign file that is not TOML or does not have the shape of one.
+    #[error("{place}: {message}")]
+    CampaignSyntax {
+        /// Where.
+        place: Place,
+        /// What the reader of TOML says.
+        message: String,
+    },
+    /// A key of a campaign file that windfall does not know.
+    #[error("{place}: there is no key \"{key}\" here{nearest}; known keys: {known}", known = known.join(", "))]
+    KeyUnknown {
+        /// Where.
+        place: Place,
+        /// The key.
+        key: String,
+        /// Suggestion for the message, or "".
+        nearest: String,
+        /// The keys that may stand here.
+        known: Vec<String>,
+    },
+    /// A value that the campaign leaves out and windfall cannot guess.
+    #[error("{place}: {table} needs `{key}` ({meaning}); add for example: {example}")]
+    ValueMissing {
+        /// Where the table starts.
+        place: Place,
+        /// The table, with brackets.
+        table: String,
+        /// The key left out.
+        key: &'static str,
+        /// What it is.
+        meaning: &'static str,
+        /// A line that would do.
+        example: &'static str,
+    },
+    /// A value whose text cannot be used.
+    #[error("{place}: {key} = \"{text}\": {problem}")]
+    ValueInvalid {
+        /// Where.
+        place: Place,
+        /// Table and key.
+        key: String,
+        /// What stands there.
+        text: String,
+        /// What is wrong with it and what was expected.
+        problem: String,
+    },
+    /// A campaign file of a version that this windfall does not read.
+    #[error(
+        "{place}: format = {found}, but this windfall reads format = {expected}; \
+         install a newer windfall, or make a fresh template with `windfall new`"
+    )]
+    CampaignFormat {
+        /// Where.
+        place: Place,
+        /// Version found.
+        found: i64,
+        /// Version expected.
+        expected: i64,
+    },
+    /// An environment variable used in a path is not set.
+    #[error(
+        "{place}: {key} uses the environment variable {variable}, which is not set; \
+         set it, for example: export {variable}=/path/to/recordings"
+    )]
+    VariableUnset {
+        /// Where.
+        place: Place,
+        /// Table and key.
+        key: String,
+        /// The variable.
+        variable: String,
+    },
+    /// A column placeholder that no column of impacts.csv fills.
+    #[error(
+        "{place}: column = \"{text}\" uses {{{name}}}, but impacts.csv has no column \"{name}\"; \
+         add it, or write the column's name in full"
+    )]
+    PlaceholderUnknown {
+        /// Where.
+        place: Place,
+        /// The column's name with its placeholders.
+        text: String,
+        /// The placeholder.
+        name: String,
+    },
+    /// An id given to two rows.
+    #[error(
+        "{place}: the {what} \"{id}\" is named twice (first in line {first}); ids must be unique"
+    )]
+    IdRepeated {
+        /// The second place.
+        place: Place,
+        /// "specimen" or "impact".
+        what: &'static str,
+        /// The id.
+        id: String,
+        /// Line of the first.
+        first: usize,
+    },
+    /// A row without a value that it must have.
+    #[error("{place}: the cell in column \"{column}\" is blank; every row needs one")]
+    CellBlank {
+        /// Where.
+        place: Place,
+        /// The column.
+        column: String,
+    },
+    /// An impact on a specimen that specimens.csv does not list.
+    #[error(
+        "{place}: the specimen \"{specimen}\" is not in specimens.csv{nearest}; add it there or correct the id"
+    )]
+    SpecimenUnknown {
+        /// Where.
+        place: Place,
+        /// The specimen.
+        specimen: String,
+        /// Suggestion for the message, or "".
+        nearest: String,
+    },
+    /// A directory or file that a command would have to overwrite.
+    #[error("{path}: exists already and is not overwritten; choose another name or remove it first", path = path.display())]
+    AlreadyThere {
+        /// The file or directory.
+        path: PathBuf,
+    },
+    /// Not one impact of a campaign could be fitted.
+    #[error("{path}: nothing could be fitted{}", why_nothing(failures), path = path.display())]
+    NothingFitted {
+        /// The campaign directory.
+        path: PathBuf,
+        /// What could not be fitted, and why.
+        failures: Vec<FailureOutcome>,
+    },
+    /// No impact shows the mass of the carriage.
+    #[error(
+        "{path}: the mass cannot be found from any of the {impacts} impacts; give it in \
+         campaign.toml: mass = \"0.5 kg\". The first impact says: {first}", path = path.display()
+    )]
+    MassUnknown {
+        /// The campaign directory.
+        path: PathBuf,
+        /// How many impacts there are.
+        impacts: usize,
+        /// Why the first one does not show it.
+        first: String,
+    },
+    /// A results file that is no database, or a damaged one.
+    #[error(
+        "{path}: the results file is damaged or not a database ({detail}); nothing was written. \
+         Move it away (or restore a copy) and run again to make a new one", path = path.display()
+    )]
+    StoreDamaged {
+        /// The file.
+        path: PathBuf,
+        /// What SQLite said.
+        detail: String,
+    },
+    /// A database that another program made.
+    #[error(
+        "{path}: this is a database of another program (application id {application_id}); \
+         nothing was written. Move it away and run again", path = path.display()
+    )]
+    StoreForeign {
+        /// The file.
+        path: PathBuf,
+        /// The application id found.
+        application_id: i64,
+    },
+    /// A results file of a newer windfall.
+    #[error(
+        "{path}: these results were written by a newer windfall (store version {found}, this one \
+         knows {known}); nothing was written. Install the newer windfall, or move the file away",
+        path = path.display()
+    )]
+    StoreNewer {
+        /// The file.
+        path: PathBuf,
+        /// Version found.
+        found: i64,
+        /// Newest version that this windfall knows.
+        known: i64,
+    },
+    /// The database refused an operation.
+    #[error(
+        "{path}: cannot {action} the results: {source}{}", after_refusal(action),
+        path = path.display()
+    )]
+    Store {
+        /// The file.
+        path: PathBuf,
+        /// "open", "read" or "write".
+        action: &'static str,
+        /// What SQLite said.
+        source: Box<dyn std::error::Error + Send + Sync>,
+    },
+    /// An option of a command that cannot be used.
+    #[error("{option}: {problem}")]
+    OptionInvalid {
+        /// The option, as written on the command line.
+        option: String,
+        /// What is wrong with it and what was expected.
+        problem: String,
+    },
+    /// A cell that should hold a quantity above zero.
+    #[error(
+        "{place}, column \"{column}\": \"{text}\" is not a number above zero; \
+         leave the cell blank where it is not known"
+    )]
+    CellNotPositive {
+        /// Where.
+        place: Place,
+        /// The column.
+        column: String,
+        /// What stands there.
+        text: String,
+    },
+    /// An impact whose energy nothing says.
+    #[error(
+        "{place}: the impact energy is not known; give a column energy_J, or drop_height_m \
+         together with mass_kg or with `mass` in [rig]"
+    )]
+    EnergyUnknown {
+        /// Where.
+        place: Place,
+    },
+    /// A drop without its mass or its height.
+    #[error(
+        "{place}: the {} of \"{item}\" is not known: column \"{}\" is {found}; \
+         fill it in, or give one value for all drops in campaign.toml: [rig] {}",
+        needed.name, needed.column, needed.example
+    )]
+    DropUnknown {
+        /// Row of impacts.csv.
+        place: Place,
+        /// Id in impacts.csv.
+        item: String,
+        /// What is not known.
+        needed: &'static DropQuantity,
+        /// "blank" or "not there".
+        found: &'static str,
+    },
+    /// A campaign without a channel that its kind needs.
+    #[error(
+        "{item}: no channel holds {quantity}; map a column to it under [channels] in campaign.toml"
+    )]
+    ChannelNotMapped {
+        /// Id in impacts.csv.
+        item: String,
+        /// The quantity.
+        quantity: String,
+    },
+    /// No samples between from_s and to_s.
+    #[error(
+        "{item}: channel '{channel}' has no samples between {from} s and {to} s; correct from_s \
+         and to_s in impacts.csv (`windfall inspect` shows the times of a recording)"
+    )]
+    RangeEmpty {
+        /// Id in impacts.csv.
+        item: String,
+        /// The channel.
+        channel: String,
+        /// Begin of the range; s.
+        from: f64,
+        /// Its end; s.
+        to: f64,
+    },
+    /// A value that a result needs is not in the tables.
+    #[error("{item}: {missing}; add {advice}")]
+    ValueNotKnown {
+        /// Id in impacts.csv, or of the specimen.
+        item: String,
+        /// What is not known.
+        missing: String,
+        /// What would tell it.
+        advice: String,
+    },
+    /// A recording that could not be evaluated.
+    #[error("{path}: {source}", path = path.display())]
+    Evaluation {
+        /// The recording.
+        path: PathBuf,
+        /// What is wrong.
+        source: Box<dyn std::error::Error + Send + Sync>,
+    },
+    /// The signals of a recording could not be used.
+    #[error("{path}: {source}", path = path.display())]
+    Signal {
+        /// The recording.
+        path: PathBuf,
+        /// What is wrong.
+        source: Box<dyn std::error::Error + Send + Sync>,
+    },
+    /// A fit or a simulation failed.
+    #[error("{subject}: {source}")]
+    Identify {
+        /// The impact or event.
+        subject: String,
+        /// What is wrong.
+        source: Box<dyn std::error::Error + Send + Sync>,
+    },
+}
+
+impl Error {
+    /// Whether the request (options, campaign files) is wrong, rather than the
+    /// work having failed.
+    #[must_use]
+    pub fn is_request(&self) -> bool {
+        if let Self::Room(fault) = self {
+            return fault.is_request();
+        }
+        !matches!(
+            self,
+            Self::FileAccess { .. }
+                | Self::Cancelled
+                | Self::NothingFitted { .. }
+                | Self::MassUnknown { .. }
+                | Self::StoreDamaged { .. }
+                | Self::StoreForeign { .. }
+                | Self::StoreNewer { .. }
+                | Self::Store { .. }
+                | Self::Signal { .. }
+                | Self::Identify { .. }
+        )
+    }
+}
+
+impl Error {
+    /// The error of a room, where this is one of type `T`.
+    #[must_use]
+    pub fn of_room<T: Fault>(&self) -> Option<&T> {
+        let Self::Room(fault) = self else { return None };
+        let fault: &dyn std::error::Error = &**fault;
+        fault.downcast_ref()
+    }
+}
+
+impl<T: Fault> From<T> for Error {
+    fn from(fault: T) -> Self {
+        Self::Room(Box::new(fault))
+    }
+}
+
+/// An error that one room declares and the rooms above it pass on as [`Error::Room`].
+pub trait Fault: std::error::Error + Send + Sync + 'static {
+    /// Whether the request is wrong, rather than the work having failed.
+    fn is_request(&self) -> bool;
+
+    /// Whether what was asked for is not there.
+    fn is_absence(&self) -> bool {
+        false
+    }
+}

@@ -1,0 +1,15 @@
+//! Files of campaigns and tables, cells and units as text, errors that name file, line and key, and where a result comes from.
+
+pub mod confined;
+pub mod error;
+mod error_words;
+pub mod found;
+pub mod named;
+pub mod on_threads;
+pub mod option_value;
+pub mod place;
+pub mod progress;
+pub mod provenance;
+pub mod table;
+pub mod text;
+pub mod write_file;

@@ -1,0 +1,69 @@
+//! Values of options on a command line: texts with units, words.
+
+use crate::error::Error;
+use crate::text::toml_source::suggestion;
+use windfall_numerics::unit::quantity::parse_as;
+
+/// The error of an option that cannot be used.
+#[must_use]
+pub fn unusable(option: impl Into<String>, problem: impl Into<String>) -> Error {
+    Error::OptionInvalid {
+        option: option.into(),
+        problem: problem.into(),
+    }
+}
+
+/// A quantity in SI.
+///
+/// # Errors
+/// The text is no quantity of the unit.
+pub fn quantity(option: &str, text: &str, unit: &str) -> Result<f64, Error> {
+    parse_as(text, unit).map_err(|error| unusable(option, error.to_string()))
+}
+
+/// A quantity above zero, in SI.
+///
+/// # Errors
+/// The text is no quantity of the unit, or not above zero.
+pub fn positive(option: &str, text: &str, unit: &str) -> Result<f64, Error> {
+    match quantity(option, text, unit)? {
+        value if value > 0.0 => Ok(value),
+        _ => Err(unusable(option, format!("\"{text}\" must be above zero"))),
+    }
+}
+
+/// A quantity that is zero or above, in SI.
+///
+/// # Errors
+/// The text is no quantity of the unit, or below zero.
+pub fn at_least_zero(option: &str, text: &str, unit: &str) -> Result<f64, Error> {
+    match quantity(option, text, unit)? {
+        value if value >= 0.0 => Ok(value),
+        _ => Err(unusable(
+            option,
+            format!("\"{text}\" must not be below zero"),
+        )),
+    }
+}
+
+/// What a word stands for.
+///
+/// # Errors
+/// Another word, with the nearest of those that are known.
+pub fn chosen<T: Copy>(option: &str, word: &str, choices: &[(&str, T)]) -> Result<T, Error> {
+    let found = choices.iter().find(|(name, _)| *name == word);
+    found.map(|(_, value)| *value).ok_or_else(|| {
+        let names: Vec<&str> = choices.iter().map(|(name, _)| *name).collect();
+        let hint = suggestion(word, names.iter().copied());
+        unusable(
+            option,
+            format!("\"{word}\": expected {}{hint}", names.join(" or ")),
+        )
+    })
+}
+/// The word for a value; empty for one that has no word.
+#[must_use]
+pub fn word_of<T: Copy + PartialEq>(choices: &[(&str, T)], value: T) -> String {
+    let found = choices.iter().find(|(_, known)| *known == value);
+    found.map_or_else(String::new, |(word, _)| (*word).to_owned())
+}

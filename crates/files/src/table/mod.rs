@@ -1,0 +1,5 @@
+//! Tables in CSV files, read and written.
+
+pub mod csv;
+pub mod data;
+pub mod write;

@@ -1,0 +1,10 @@
+//! Numbers, quantities and tables as text, and the text of TOML files with its places.
+
+pub mod cell_quantity;
+pub mod column_role;
+pub mod column_title;
+pub mod file_quantity;
+pub mod number;
+pub mod statistic;
+pub mod table;
+pub mod toml_source;

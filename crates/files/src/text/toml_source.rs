@@ -1,0 +1,220 @@
+//! A TOML text and the places in it, so that messages name file, line and key.
+
+use crate::error::{Error, Place};
+use crate::text::file_quantity::QuantityText;
+use std::ops::Range;
+use std::path::{Path, PathBuf};
+use toml::Spanned;
+use windfall_numerics::unit::nearest_name::nearest_names;
+use windfall_numerics::unit::quantity::parse_as;
+
+/// A TOML file in memory.
+pub struct TomlSource {
+    /// The file, for messages.
+    pub path: PathBuf,
+    /// Its text.
+    pub text: String,
+}
+
+/// A value that must stand in a table: what the message says when it does not.
+#[derive(Clone, Copy, Debug)]
+pub struct Needed {
+    /// The table, with brackets.
+    pub table: &'static str,
+    /// The key.
+    pub key: &'static str,
+    /// What it is.
+    pub meaning: &'static str,
+    /// SI unit of the quantity; empty for other values.
+    pub unit: &'static str,
+    /// A line that would do.
+    pub example: &'static str,
+}
+
+/// Reads a TOML file as text.
+///
+/// # Errors
+/// The file is absent or unreadable or not UTF-8.
+pub fn read_source(path: &Path, advice: &str) -> Result<TomlSource, Error> {
+    match std::fs::read_to_string(path) {
+        Ok(text) => Ok(TomlSource {
+            path: path.to_path_buf(),
+            text,
+        }),
+        Err(error) if error.kind() == std::io::ErrorKind::NotFound => Err(Error::FileAbsent {
+            path: path.to_path_buf(),
+            advice: advice.to_owned(),
+        }),
+        Err(source) => Err(Error::FileAccess {
+            path: path.to_path_buf(),
+            action: "read",
+            source,
+        }),
+    }
+}
+
+/// Reads the file struct out of the text.
+///
+/// # Errors
+/// The text is no TOML, holds an unknown key, or a value of the wrong type.
+pub fn parse_source<T: serde::de::DeserializeOwned>(source: &TomlSource) -> Result<T, Error> {
+    toml::from_str(&source.text).map_err(|error| {
+        let span = error.span().unwrap_or(0..0);
+        let place = place_at(source, &span);
+        let message = error.message();
+        if message.starts_with("unknown field") {
+            return key_unknown(source, &span, message, place);
+        }
+        Error::CampaignSyntax {
+            place,
+            message: syntax_message(source, &span, message),
+        }
+    })
+}
+
+/// Line of a place in the text.
+#[must_use]
+pub fn place_at(source: &TomlSource, span: &Range<usize>) -> Place {
+    let before = &source.text.as_bytes()[..span.start.min(source.text.len())];
+    let line = 1 + before.iter().filter(|&&byte| byte == b'\n').count();
+    Place {
+        file: source.path.clone(),
+        line,
+    }
+}
+
+/// A quantity that may be left out; its SI value.
+///
+/// # Errors
+/// The text is no quantity of the unit.
+pub fn optional_quantity(
+    source: &TomlSource,
+    value: Option<&Spanned<QuantityText>>,
+    needed: &Needed,
+) -> Result<Option<f64>, Error> {
+    let Some(value) = value else { return Ok(None) };
+    let text = &value.get_ref().0;
+    parse_as(text, needed.unit).map(Some).map_err(|error| {
+        invalid(
+            source,
+            &value.span(),
+            (needed.table, needed.key),
+            text,
+            error.to_string(),
+        )
+    })
+}
+
+/// A quantity that must be there; its SI value.
+///
+/// * `table_at`: where its table stands, for the message
+///
+/// # Errors
+/// It is left out, or its text is no quantity of the unit.
+pub fn needed_quantity(
+    source: &TomlSource,
+    table_at: &Range<usize>,
+    value: Option<&Spanned<QuantityText>>,
+    needed: &Needed,
+) -> Result<f64, Error> {
+    optional_quantity(source, value, needed)?
+        .ok_or_else(|| missing(source, table_at, needed, needed.table.to_owned()))
+}
+
+/// The error of a value that is left out.
+#[must_use]
+pub fn missing(
+    source: &TomlSource,
+    table_at: &Range<usize>,
+    needed: &Needed,
+    table: String,
+) -> Error {
+    Error::ValueMissing {
+        place: place_at(source, table_at),
+        table,
+        key: needed.key,
+        meaning: needed.meaning,
+        example: needed.example,
+    }
+}
+
+/// The error of a value that cannot be used.
+#[must_use]
+pub fn invalid(
+    source: &TomlSource,
+    span: &Range<usize>,
+    (table, key): (&str, &str),
+    text: &str,
+    problem: String,
+) -> Error {
+    Error::ValueInvalid {
+        place: place_at(source, span),
+        key: format!("{table} {key}"),
+        text: text.to_owned(),
+        problem,
+    }
+}
+
+/// One of several words, or the first when the key is left out.
+///
+/// # Errors
+/// Another word.
+pub fn choice<T: Copy>(
+    source: &TomlSource,
+    value: Option<&Spanned<String>>,
+    (table, key): (&str, &str),
+    choices: &[(&str, T)],
+) -> Result<Option<T>, Error> {
+    let Some(value) = value else { return Ok(None) };
+    let word = value.get_ref();
+    let found = choices
+        .iter()
+        .find(|(name, _)| name == word)
+        .map(|(_, chosen)| *chosen);
+    found.map(Some).ok_or_else(|| {
+        let names: Vec<String> = choices
+            .iter()
+            .map(|(name, _)| format!("\"{name}\""))
+            .collect();
+        let problem = format!(
+            "expected {}{}",
+            names.join(" or "),
+            suggestion(word, choices.iter().map(|(name, _)| *name))
+        );
+        invalid(source, &value.span(), (table, key), word, problem)
+    })
+}
+
+/// " (did you mean \"arm\"?)", or nothing when no candidate is similar.
+#[must_use]
+pub fn suggestion<'a>(name: &str, candidates: impl IntoIterator<Item = &'a str>) -> String {
+    match nearest_names(name, candidates).first() {
+        Some(best) => format!(" (did you mean \"{best}\"?)"),
+        None => String::new(),
+    }
+}
+
+/// serde says: unknown field `x`, expected one of `a`, `b`.
+fn key_unknown(source: &TomlSource, span: &Range<usize>, message: &str, place: Place) -> Error {
+    let mut quoted = message.split('`').skip(1).step_by(2).map(str::to_owned);
+    let key = quoted
+        .next()
+        .unwrap_or_else(|| source.text[span.clone()].to_owned());
+    let known: Vec<String> = quoted.collect();
+    let nearest = suggestion(&key, known.iter().map(String::as_str));
+    Error::KeyUnknown {
+        place,
+        key,
+        nearest,
+        known,
+    }
+}
+
+/// The reader's message with the line that it is about.
+fn syntax_message(source: &TomlSource, span: &Range<usize>, message: &str) -> String {
+    let start = source.text[..span.start.min(source.text.len())]
+        .rfind('\n')
+        .map_or(0, |at| at + 1);
+    let line = source.text[start..].lines().next().unwrap_or_default();
+    format!("{} in: {}", message.trim().replace('\n', "; "), line.trim())
+}

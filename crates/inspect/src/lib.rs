@@ -1,0 +1,9 @@
+//! `windfall inspect`: what a recording holds, and what looks wrong, in bounded memory.
+
+pub mod envelope;
+pub mod figure;
+pub mod run;
+pub mod scan_decimated;
+pub mod scan_time;
+pub mod scan_value;
+pub mod text;

@@ -1,0 +1,8 @@
+//! `windfall population` and `windfall laws`: how fruit differ, and which law fits best.
+
+pub mod card;
+pub mod covariates;
+pub mod outcome;
+pub mod ranking;
+pub mod run;
+pub mod text;

@@ -1,0 +1,243 @@
+//! A comparison of laws as a figure: how much worse than the best each law is, over
+//! the campaign and on each impact, and how well it foretells unseen velocities.
+
+use crate::ranking::outcome::{LawEvidenceOutcome, LawsOutcome};
+use windfall_draw::axis::{Axis, axis};
+use windfall_draw::files::Painting;
+use windfall_draw::frame::{Frame, Rectangle};
+use windfall_draw::svg::{Anchor, Drawing, Ink};
+use windfall_files::error::Error;
+use windfall_files::table::write::csv_text;
+
+/// Size of the panels and the room around them; px.
+const WIDTH: f64 = 244.0;
+const LEFT: f64 = 134.0;
+const BETWEEN: f64 = 26.0;
+const RIGHT: f64 = 20.0;
+const TOP: f64 = 62.0;
+const BELOW: f64 = 52.0;
+
+/// Height of a law; px.
+const ROW: f64 = 34.0;
+
+/// Impacts are spread over this part of the height of their law; 1.
+const SPREAD: f64 = 0.62;
+
+/// Above the best by this much, a law has next to no support (Burnham and Anderson
+/// 2002, section 2.6).
+const NO_SUPPORT: f64 = 10.0;
+
+/// The comparison: ΔAICc of each law over the campaign with its interval, ΔAICc on each
+/// impact, and the error of what it foretells.
+///
+/// # Errors
+/// None in practice: the data are written to memory.
+pub fn laws_painting(outcome: &LawsOutcome) -> Result<Painting, Error> {
+    Ok(Painting {
+        name: "laws".to_owned(),
+        caption: "AICc of each law above that of the best one, over all impacts with 95 % \
+                  intervals (impacts taken as independent) and on each impact; error of the \
+                  forces that a law foretells for velocities it has not seen, ± one standard \
+                  error. Beyond the broken line a law has next to no support."
+            .to_owned(),
+        drawing: drawing_of(outcome),
+        csv: csv_of(outcome)?,
+    })
+}
+
+fn csv_of(outcome: &LawsOutcome) -> Result<String, Error> {
+    let header = ["panel", "law", "impact", "value", "low", "high"];
+    let text = |value: Option<f64>| value.map_or_else(String::new, |v| v.to_string());
+    let mut rows = Vec::new();
+    for law in &outcome.laws {
+        let name = || law.law.clone();
+        let row = |panel: &str, impact: &str, values: [Option<f64>; 3]| {
+            let mut row = vec![panel.to_owned(), name(), impact.to_owned()];
+            row.extend(values.map(text));
+            row
+        };
+        let ends = [Some(law.aicc), law.aicc_low, law.aicc_high];
+        rows.push(row("campaign", "", ends));
+        for impact in &law.impacts {
+            rows.push(row("impact", &impact.id, [Some(impact.aicc), None, None]));
+        }
+        if let Some(value) = law.prediction {
+            let end = |sign: f64| law.prediction_sd.map(|sd| value + sign * sd);
+            rows.push(row(
+                "unseen velocity",
+                "",
+                [Some(value), end(-1.0), end(1.0)],
+            ));
+        }
+    }
+    csv_text(&header.map(str::to_owned), rows)
+}
+
+/// Differences of all sizes on one axis: logarithms of 1 + |d|, with its sign.
+fn squeezed(difference: f64) -> f64 {
+    difference.signum() * (1.0 + difference.abs()).log10()
+}
+
+/// The axis of [`squeezed`] differences: 0, 1, 10, 100 …
+fn squeezed_axis(values: impl Iterator<Item = f64>) -> Axis {
+    let finite = values.filter(|value| value.is_finite());
+    let (low, high) = finite.fold((0.0, NO_SUPPORT), |(low, high): (f64, f64), value| {
+        (low.min(value), high.max(value))
+    });
+    let (low, high) = (squeezed(low) - 0.18, squeezed(high) + 0.18);
+    let label = |power: i32| match power {
+        0..=3 => format!("{}", 10_i64.pow(power.unsigned_abs())),
+        power => {
+            const RAISED: [char; 10] = ['⁰', '¹', '²', '³', '⁴', '⁵', '⁶', '⁷', '⁸', '⁹'];
+            let digits = power.to_string();
+            let digits = digits.chars().filter_map(|c| c.to_digit(10));
+            let raised: String = digits.map(|d| RAISED[d as usize]).collect();
+            format!("10{raised}")
+        }
+    };
+    let mut found = vec![(0.0, "0".to_owned())];
+    for power in 0..=18 {
+        let at = squeezed(10_f64.powi(power));
+        found.extend((at <= high).then(|| (at, label(power))));
+        found.extend((-at >= low).then(|| (-at, format!("\u{2212}{}", label(power)))));
+    }
+    found.sort_by(|a, b| a.0.total_cmp(&b.0));
+    let (ticks, labels) = found.into_iter().unzip();
+    Axis {
+        low,
+        high,
+        ticks,
+        labels,
+        power: 0,
+    }
+}
+
+fn drawing_of(outcome: &LawsOutcome) -> Drawing {
+    let laws = &outcome.laws;
+    let height = ROW * laws.len().max(1) as f64;
+    let foretold = laws.iter().any(|law| law.prediction.is_some());
+    let panels = if foretold { 3.0 } else { 2.0 };
+    let width = LEFT + panels * WIDTH + (panels - 1.0) * BETWEEN + RIGHT;
+    let mut drawing = Drawing::new(width, TOP + height + BELOW);
+    let title = format!("{} laws on {} impacts", laws.len(), outcome.impacts);
+    drawing.text((24.0, 22.0), Anchor::Start, 13.0, &title);
+    drawing.dashed(&[(24.0, 43.0), (42.0, 43.0)], Ink::Text, 1.0);
+    let legend = "ΔAICc of 10: a law beyond it has next to no support";
+    drawing.text((48.0, 46.8), Anchor::Start, 11.0, legend);
+    let within = |place: f64| Rectangle {
+        left: LEFT + place * (WIDTH + BETWEEN),
+        top: TOP,
+        width: WIDTH,
+        height,
+    };
+    for (row, law) in laws.iter().enumerate() {
+        let y = TOP + (row as f64 + 0.5) * ROW;
+        drawing.text((LEFT - 8.0, y + 3.8), Anchor::End, 11.0, &law.law);
+    }
+
+    let ends = |law: &LawEvidenceOutcome| [Some(law.aicc), law.aicc_low, law.aicc_high];
+    let across = squeezed_axis(laws.iter().flat_map(ends).flatten());
+    let frame = panel(
+        &mut drawing,
+        within(0.0),
+        across,
+        "ΔAICc over all impacts",
+        laws.len(),
+    );
+    support(&mut drawing, &frame);
+    for (row, law) in laws.iter().enumerate() {
+        let at = |value: f64| frame.place((squeezed(value), row as f64 + 0.5));
+        if let (Some(low), Some(high)) = (law.aicc_low, law.aicc_high) {
+            drawing.polyline(&[at(low), at(high)], Ink::Series(row), 2.0);
+        }
+        drawing.spot(at(law.aicc), 4.5, Ink::Series(row));
+    }
+
+    let values = laws.iter().flat_map(|law| &law.impacts).map(|i| i.aicc);
+    let across = squeezed_axis(values);
+    let frame = panel(
+        &mut drawing,
+        within(1.0),
+        across,
+        "ΔAICc on each impact",
+        laws.len(),
+    );
+    support(&mut drawing, &frame);
+    for (row, law) in laws.iter().enumerate() {
+        let count = law.impacts.len().max(1) as f64;
+        for (index, impact) in law.impacts.iter().enumerate() {
+            let part = (index as f64 + 0.5) / count - 0.5;
+            let at = (squeezed(impact.aicc), row as f64 + 0.5 + SPREAD * part);
+            drawing.dot(frame.place(at), 1.8, Ink::Series(row));
+        }
+    }
+
+    if foretold {
+        let reach = |law: &LawEvidenceOutcome| {
+            Some(100.0 * (law.prediction? + law.prediction_sd.unwrap_or(0.0)))
+        };
+        let high = laws.iter().filter_map(reach).fold(0.0, f64::max);
+        let across = axis(0.0, 1.06 * high, 5);
+        let title = "error at unseen velocities (% of peak)";
+        let frame = panel(&mut drawing, within(2.0), across, title, laws.len());
+        for (row, law) in laws.iter().enumerate() {
+            let Some(value) = law.prediction else {
+                continue;
+            };
+            let at = |value: f64| frame.place((100.0 * value, row as f64 + 0.5));
+            if let Some(sd) = law.prediction_sd {
+                let ends = [at((value - sd).max(0.0)), at(value + sd)];
+                drawing.polyline(&ends, Ink::Series(row), 2.0);
+            }
+            drawing.spot(at(value), 4.5, Ink::Series(row));
+        }
+    }
+    drawing
+}
+
+/// A panel of laws, the best on top.
+fn panel(drawing: &mut Drawing, within: Rectangle, across: Axis, x: &str, laws: usize) -> Frame {
+    let frame = Frame {
+        within,
+        across,
+        // Downwards, as the names stand.
+        up: Axis {
+            low: laws.max(1) as f64,
+            high: 0.0,
+            ticks: Vec::new(),
+            labels: Vec::new(),
+            power: 0,
+        },
+    };
+    frame.draw_grid(drawing);
+    for row in 1..laws {
+        let (_, y) = frame.place((0.0, row as f64));
+        drawing.rule((within.left, y), (within.right(), y), Ink::Grid);
+    }
+    frame.draw_axes(drawing, (x, ""), ("", ""), 0.0);
+    frame
+}
+
+fn support(drawing: &mut Drawing, frame: &Frame) {
+    let (x, _) = frame.place((squeezed(NO_SUPPORT), 0.0));
+    let ends = [(x, frame.within.top), (x, frame.within.bottom())];
+    drawing.dashed(&ends, Ink::Text, 1.0);
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// 0 → 0, 9 → 1, −99 → −2; ticks stand at 0, ±1, ±10, 100.
+    #[test]
+    fn closed_form_squeezed_differences() {
+        assert_eq!([0.0, 9.0, -99.0].map(squeezed), [0.0, 1.0, -2.0]);
+        let found = squeezed_axis([-12.0, 150.0].into_iter());
+        assert_eq!(found.labels, ["−10", "−1", "0", "1", "10", "100"]);
+        assert!((found.ticks[5] - 101.0_f64.log10()).abs() < 1e-12);
+        assert_eq!(
+            squeezed_axis([1e5].into_iter()).labels.last().unwrap(),
+            "10⁵"
+        );
+    }
+}

@@ -1,0 +1,360 @@
+//! `windfall laws`: which law the impacts of a campaign obey.
+
+use crate::ranking::figure::laws_painting;
+use crate::ranking::outcome::{ImpactEvidenceOutcome, LawEvidenceOutcome, LawsOutcome};
+use std::collections::BTreeMap;
+use std::path::Path;
+use windfall_campaign::impacts::figure_impact::figure_of_impact;
+use windfall_campaign::impacts::fit::{failure, law_problem};
+use windfall_campaign::impacts::mass::{RigFound, find_rig};
+use windfall_campaign::impacts::request::{FitRequest, apply_request};
+use windfall_campaign::recording::extract::extract_recording;
+use windfall_campaign::result::fit_outcome::impact_outcome;
+use windfall_campaign::result::outcome::ImpactOutcome;
+use windfall_campaign::settings::model::{Campaign, ImpactEntry};
+use windfall_campaign::settings::read::read_campaign;
+use windfall_contact::expression::parse_law;
+use windfall_draw::files::{FigureFolder, file_name, write_figure, write_paintings};
+use windfall_files::error::Error;
+use windfall_files::found::{FailureOutcome, FindingOutcome};
+use windfall_files::on_threads::on_threads;
+use windfall_files::progress::{Progress, for_each};
+use windfall_files::provenance::VERSION;
+use windfall_identify::compare::ranking::{
+    ImpactFit, LawEvidence, LawRanking, LeveledImpact, Verdict, fits_of_impact, rank_laws,
+    velocity_levels,
+};
+use windfall_identify::error::Error as IdentifyError;
+use windfall_identify::fit::problem::LawProblem;
+
+/// Laws that are compared when none are named: one of each form.
+pub const COMPARED: [&str; 6] = [
+    "hertz",
+    "kelvin-voigt",
+    "kuwabara-kono",
+    "hunt-crossley",
+    "tsuji",
+    "walton-braun",
+];
+/// Column of impacts.csv with the velocity level.
+const LEVEL_COLUMN: &str = "level";
+/// Velocities that differ by more than this part belong to different levels,
+/// where no column says so; 1.
+const LEVEL_GAP: f64 = 0.08;
+
+/// Ranks laws over the impacts of a campaign: those of the request, those of the
+/// campaign if it names at least two, else [`COMPARED`].
+///
+/// # Errors
+/// The campaign or the request is wrong, or nothing can be compared. A recording
+/// that cannot be used is reported in the outcome.
+pub fn rank_campaign(
+    directory: &Path,
+    request: &FitRequest,
+    progress: Progress,
+) -> Result<LawsOutcome, Error> {
+    let mut campaign = read_campaign(directory)?;
+    apply_request(&mut campaign, request)?;
+    if campaign.fit.laws.len() < 2 {
+        if request.laws.len() == 1 {
+            return Err(Error::OptionInvalid {
+                option: format!("--law {}", request.laws[0]),
+                problem: "one law has nothing to be compared with; name at least two, or none"
+                    .to_owned(),
+            });
+        }
+        campaign.fit.laws = COMPARED
+            .iter()
+            .filter_map(|name| parse_law(name).ok())
+            .collect();
+    }
+    on_threads(request.threads, || {
+        rank(&campaign, request.figures.as_ref(), progress)
+    })
+}
+
+/// What one recording gives: the impact, its fits, or why there are none.
+type Fitted = Result<(windfall_signal::impact::Impact, Vec<ImpactFit>), FailureOutcome>;
+
+fn rank(
+    campaign: &Campaign,
+    figures: Option<&FigureFolder>,
+    progress: Progress,
+) -> Result<LawsOutcome, Error> {
+    let rig = find_rig(campaign)?;
+    let problems: Vec<LawProblem> = campaign
+        .fit
+        .laws
+        .iter()
+        .map(|law| law_problem(law, &campaign.fit.free))
+        .collect();
+    let results = for_each(progress, campaign.impacts.len(), |item| {
+        fits(campaign, &campaign.impacts[item], &rig, &problems)
+    })?;
+    let (mut impacts, mut fitted, mut entries, mut failed) = (vec![], vec![], vec![], vec![]);
+    for (entry, result) in campaign.impacts.iter().zip(results) {
+        match result {
+            Ok((impact, fits)) => {
+                impacts.push(LeveledImpact { impact, level: 0 });
+                fitted.push(fits);
+                entries.push(entry);
+            }
+            Err(failure) => failed.push(failure),
+        }
+    }
+    let mut findings = rig.findings.clone();
+    set_levels(&mut impacts, &entries, &fitted, &mut findings);
+    let compare = |impacts: &[LeveledImpact], fits: &[Vec<ImpactFit>]| {
+        rank_laws(impacts, fits, &rig.rig, &problems, &campaign.fit.options)
+    };
+    let ranking = compare(&impacts, &fitted).map_err(|source| Error::Identify {
+        subject: campaign.title.clone(),
+        source: Box::new(source),
+    })?;
+    let specimens_first = firsts(&impacts, &fitted, &entries, &ranking, &compare);
+    let ids: Vec<String> = ranking
+        .compared
+        .iter()
+        .map(|place| entries[*place].id.clone())
+        .collect();
+    let shown = middle_impact(&ranking.compared, &fitted);
+    let outcome = outcome(campaign, ranking, &ids, specimens_first, failed, findings);
+    if let Some(folder) = figures {
+        write_paintings(folder, &[laws_painting(&outcome)?])?;
+        if let Some(place) = shown {
+            draw_impact(campaign, &rig, entries[place], &problems, &outcome, folder)?;
+        }
+    }
+    Ok(outcome)
+}
+
+/// Of the impacts that are compared the one with the middle velocity.
+fn middle_impact(compared: &[usize], fits: &[Vec<ImpactFit>]) -> Option<usize> {
+    let velocity = |place: usize| {
+        let fit = fits[place].iter().find_map(|fit| fit.fit.as_ref());
+        fit.map_or(f64::NAN, |fit| fit.velocity)
+    };
+    let mut order = compared.to_vec();
+    order.sort_by(|a, b| velocity(*a).total_cmp(&velocity(*b)));
+    order.get(order.len() / 2).copied()
+}
+
+/// One impact with the best fit of each law over its signals, the best law first.
+fn draw_impact(
+    campaign: &Campaign,
+    rig: &RigFound,
+    entry: &ImpactEntry,
+    problems: &[LawProblem],
+    outcome: &LawsOutcome,
+    folder: &FigureFolder,
+) -> Result<(), Error> {
+    let mass = Some(rig.rig.effective_mass());
+    let (impact, findings) = extract_recording(campaign, entry, mass)?;
+    let fits = fits_of_impact(&impact, &rig.rig, problems, &campaign.fit.options);
+    let ranked = outcome.laws.iter().filter_map(|law| {
+        let place = problems.iter().position(|p| p.kind.name() == law.law)?;
+        let fit = fits[place].fit.as_ref()?;
+        Some(impact_outcome(
+            entry,
+            &impact,
+            &findings,
+            fit,
+            &problems[place],
+            &rig.rig,
+        ))
+    });
+    let ranked: Vec<ImpactOutcome> = ranked.collect();
+    let own: Vec<&ImpactOutcome> = ranked.iter().collect();
+    let used = (&rig.rig, campaign.fit.options.end, &campaign.fit.user[..]);
+    let title = format!("{}: every law at its best", entry.id);
+    let figure = figure_of_impact(&title, &impact, &own, used);
+    let name = file_name(&format!("laws-impact-{}", entry.id));
+    write_figure(folder, &name, &figure).map(|_| ())
+}
+
+fn fits(
+    campaign: &Campaign,
+    entry: &ImpactEntry,
+    rig: &RigFound,
+    problems: &[LawProblem],
+) -> Fitted {
+    let mass = Some(rig.rig.effective_mass());
+    let (impact, _) = extract_recording(campaign, entry, mass)
+        .map_err(|error| failure(entry, None, error.to_string()))?;
+    let fits = fits_of_impact(&impact, &rig.rig, problems, &campaign.fit.options);
+    if fits.iter().all(|fit| fit.fit.is_none()) {
+        let message = "none of the laws could be fitted".to_owned();
+        return Err(failure(entry, None, message));
+    }
+    Ok((impact, fits))
+}
+
+/// Levels from the column of impacts.csv, else from the velocities.
+fn set_levels(
+    impacts: &mut [LeveledImpact],
+    entries: &[&ImpactEntry],
+    fits: &[Vec<ImpactFit>],
+    findings: &mut Vec<FindingOutcome>,
+) {
+    let cell = |entry: &ImpactEntry| {
+        let mut cells = entry.cells.iter();
+        cells
+            .find(|(name, _)| name == LEVEL_COLUMN)
+            .map(|(_, cell)| cell.clone())
+    };
+    let cells: Option<Vec<String>> = entries.iter().map(|entry| cell(entry)).collect();
+    let levels = match cells {
+        Some(cells) => {
+            let mut numbers = BTreeMap::new();
+            cells
+                .into_iter()
+                .map(|cell| {
+                    let next = numbers.len();
+                    *numbers.entry(cell).or_insert(next)
+                })
+                .collect()
+        }
+        None => {
+            let velocities: Vec<f64> = fits
+                .iter()
+                .map(|fits| {
+                    let fit = fits.iter().find_map(|fit| fit.fit.as_ref());
+                    fit.map_or(f64::NAN, |fit| fit.velocity)
+                })
+                .collect();
+            velocity_levels(&velocities, LEVEL_GAP)
+        }
+    };
+    for (impact, level) in impacts.iter_mut().zip(&levels) {
+        impact.level = *level;
+    }
+    if levels.iter().all(|level| *level == 0) {
+        findings.push(FindingOutcome {
+            code: "one-level".to_owned(),
+            message: "all impacts have one velocity: whether a law foretells others cannot be \
+                      told; laws that differ in velocity only look alike"
+                .to_owned(),
+        });
+    }
+}
+
+/// Ranks the laws over some of the impacts.
+type Compare<'a> =
+    dyn Fn(&[LeveledImpact], &[Vec<ImpactFit>]) -> Result<LawRanking, IdentifyError> + 'a;
+
+/// For how many specimens each law of the ranking is first.
+fn firsts(
+    impacts: &[LeveledImpact],
+    fits: &[Vec<ImpactFit>],
+    entries: &[&ImpactEntry],
+    ranking: &LawRanking,
+    compare: &Compare,
+) -> Vec<usize> {
+    let mut by_specimen: BTreeMap<&str, Vec<usize>> = BTreeMap::new();
+    for (i, entry) in entries.iter().enumerate() {
+        by_specimen.entry(&entry.specimen).or_default().push(i);
+    }
+    let mut counts = vec![0; ranking.laws.len()];
+    for indices in by_specimen.values() {
+        let own: Vec<LeveledImpact> = indices.iter().map(|&i| impacts[i].clone()).collect();
+        let own_fits: Vec<Vec<ImpactFit>> = indices.iter().map(|&i| fits[i].clone()).collect();
+        let first = compare(&own, &own_fits).ok().map(|r| r.laws[0].kind);
+        if let Some(place) = ranking.laws.iter().position(|law| Some(law.kind) == first) {
+            counts[place] += 1;
+        }
+    }
+    counts
+}
+
+fn outcome(
+    campaign: &Campaign,
+    ranking: LawRanking,
+    ids: &[String],
+    specimens_first: Vec<usize>,
+    failed: Vec<FailureOutcome>,
+    findings: Vec<FindingOutcome>,
+) -> LawsOutcome {
+    let (verdict, meaning) = words(&ranking.verdict);
+    let least = ranking.laws.first().map_or(0.0, |law| law.cost);
+    LawsOutcome {
+        windfall: VERSION.to_owned(),
+        campaign: campaign.title.clone(),
+        simulated: campaign.simulated.clone(),
+        impacts: ranking.impacts,
+        levels: ranking.levels,
+        verdict,
+        meaning,
+        laws: ranking
+            .laws
+            .iter()
+            .map(|law| evidence(law, ids, least))
+            .collect(),
+        specimens_first,
+        failed,
+        findings,
+    }
+}
+
+fn evidence(law: &LawEvidence, ids: &[String], least: f64) -> LawEvidenceOutcome {
+    LawEvidenceOutcome {
+        law: law.kind.name().to_owned(),
+        failed: law.failed,
+        parameters_per_impact: law.parameters as f64 / law.impacts.max(1) as f64,
+        cost: law.cost - least,
+        aicc: law.aicc,
+        aicc_low: law.aicc_low,
+        aicc_high: law.aicc_high,
+        impacts: ids
+            .iter()
+            .zip(&law.aicc_of_impacts)
+            .map(|(id, aicc)| ImpactEvidenceOutcome {
+                id: id.clone(),
+                aicc: *aicc,
+            })
+            .collect(),
+        bic: law.bic,
+        first_share: law.first_share,
+        prediction: law.prediction,
+        prediction_sd: law.prediction_error,
+        residual_ratio: law.residual_ratio,
+        runs_z: law.runs_z,
+    }
+}
+
+fn words(verdict: &Verdict) -> (&'static str, String) {
+    match verdict {
+        Verdict::Sure { law, to_noise } => {
+            let rest = match to_noise {
+                true => "it describes them to their noise",
+                false => {
+                    "but it does not describe them to their noise: of these laws it is only the least wrong"
+                }
+            };
+            let name = law.name();
+            (
+                "sure",
+                format!("{name} describes these impacts better than the others; {rest}"),
+            )
+        }
+        Verdict::Undecided { first, second } => (
+            "undecided",
+            format!(
+                "these impacts cannot tell {} from {}: another sample of them would rank them otherwise",
+                first.name(),
+                second.name()
+            ),
+        ),
+        Verdict::Divided {
+            likelihood,
+            prediction,
+        } => (
+            "divided",
+            format!(
+                "{} describes each impact best, but {} foretells other velocities better: the \
+                 parameters of the first change with velocity",
+                likelihood.name(),
+                prediction.name()
+            ),
+        ),
+    }
+}

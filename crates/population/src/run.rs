@@ -1,0 +1,338 @@
+//! `windfall population`: how the law's parameters vary between fruit and with
+//! covariates.
+
+use crate::covariates::find_covariates;
+use crate::outcome::{
+    FruitOutcome, PopulationOutcome, Varying, correlations_of, effects_of, parameters_of,
+    population_of, posterior_outcome, two_stage_outcome,
+};
+use rayon::prelude::*;
+use std::cell::Cell;
+use std::path::PathBuf;
+use windfall_campaign::impacts::fit::law_problem;
+use windfall_campaign::impacts::mass::{RigFound, find_rig};
+use windfall_campaign::impacts::request::{FitRequest, apply_request};
+use windfall_campaign::recording::extract::extract_recording;
+use windfall_campaign::settings::model::{Campaign, ImpactEntry};
+use windfall_campaign::settings::read::read_campaign;
+use windfall_contact::expression::LawExpression;
+use windfall_files::error::Error;
+use windfall_files::found::{FailureOutcome, FindingOutcome};
+use windfall_files::on_threads::on_threads;
+use windfall_files::progress::{Progress, for_each};
+use windfall_files::provenance::VERSION;
+use windfall_identify::fit::interval::{Drawing, IntervalOptions};
+use windfall_identify::fit::problem::LawProblem;
+use windfall_identify::population::finding::PopulationFinding;
+use windfall_identify::population::fit::fit_population;
+use windfall_identify::population::likelihood::{
+    DRAWN_REACH, ImpactLikelihood, NORMAL_REACH, impact_likelihood,
+};
+use windfall_identify::population::model::{
+    Covariate, PopulationData, PopulationFit, PopulationOptions,
+};
+use windfall_identify::population::posterior::population_posterior;
+use windfall_identify::population::two_stage::two_stage;
+
+/// What `population` is asked for.
+#[derive(Clone, Debug, Default)]
+pub struct PopulationRequest {
+    /// The campaign directory.
+    pub directory: PathBuf,
+    /// Law and fit options beyond what the campaign says, and threads.
+    pub fit: FitRequest,
+    /// Covariates in place of those of the campaign; none keeps them.
+    pub covariates: Vec<String>,
+    /// Whether the posterior is drawn beside the estimate: chains, draws and seed
+    /// as of the campaign's intervals.
+    pub posterior: bool,
+    /// Where a law card of the population is written.
+    pub card: Option<PathBuf>,
+}
+
+/// An impact that takes part.
+struct Member<'a> {
+    entry: &'a ImpactEntry,
+    likelihood: ImpactLikelihood,
+    velocity: f64,
+}
+
+/// Estimates the population of a campaign's fruit with the campaign's first law.
+///
+/// Impacts whose fit says too little, or whose covariates are blank, are left
+/// out and named in the outcome. The result has the same bits for any number of
+/// threads.
+///
+/// # Errors
+/// The campaign or the request is wrong, or too few impacts are left.
+pub fn population(
+    request: &PopulationRequest,
+    progress: Progress,
+) -> Result<PopulationOutcome, Error> {
+    let mut campaign = read_campaign(&request.directory)?;
+    apply_request(&mut campaign, &request.fit)?;
+    if !request.covariates.is_empty() {
+        campaign.covariates.clone_from(&request.covariates);
+    }
+    on_threads(request.fit.threads, || {
+        estimate(&campaign, request.posterior, progress)
+    })
+}
+
+fn estimate(
+    campaign: &Campaign,
+    posterior: bool,
+    progress: Progress,
+) -> Result<PopulationOutcome, Error> {
+    let rig = find_rig(campaign)?;
+    let law = &campaign.fit.laws[0];
+    let problem = law_problem(law, &campaign.fit.free);
+    let (members, mut failed) = members(campaign, &rig, &problem, progress)?;
+    if members.is_empty() {
+        return Err(Error::NothingFitted {
+            path: campaign.directory.clone(),
+            failures: failed,
+        });
+    }
+    let entries: Vec<&ImpactEntry> = members.iter().map(|member| member.entry).collect();
+    let velocities: Vec<f64> = members.iter().map(|member| member.velocity).collect();
+    let found = find_covariates(campaign, &entries, &velocities, &campaign.covariates)?;
+    for (i, reason) in &found.left_out {
+        failed.push(failure(entries[*i], reason.clone()));
+    }
+    let members: Vec<&Member> = found.kept.iter().map(|&i| &members[i]).collect();
+    let varying = varying(law, &problem);
+    let (data, specimens) = data(&members, &varying, found.covariates);
+    let starts: Vec<Vec<f64>> = members.iter().map(|m| m.likelihood.estimate()).collect();
+    let expand_beyond = |reach: f64, points: &[Vec<f64>]| {
+        let own = members.par_iter().zip(points);
+        own.map(|(member, at)| member.likelihood.expand_beyond(reach, at))
+            .collect()
+    };
+    let expand = |points: &[Vec<f64>]| expand_beyond(NORMAL_REACH, points);
+    let options = PopulationOptions {
+        confidence: campaign.fit.options.confidence,
+        ..PopulationOptions::default()
+    };
+    let subject = |source| Error::Identify {
+        subject: format!("population of {}", law.kind.name()),
+        source: Box::new(source),
+    };
+    let fit = fit_population(&data, &starts, &expand, &options).map_err(subject)?;
+    let stages = two_stage(&data, &starts, options.confidence).map_err(subject)?;
+    let posterior = match posterior {
+        false => None,
+        true => {
+            let IntervalOptions {
+                chains,
+                draws,
+                seed,
+                ..
+            } = campaign.fit.options.intervals;
+            let drawing = Drawing {
+                chains,
+                draws,
+                seed,
+            };
+            let expand = |points: &[Vec<f64>]| expand_beyond(DRAWN_REACH, points);
+            // The sampler does not stop halfway: what it gave is then not used.
+            let stopped = Cell::new(false);
+            let tell = |done, all| stopped.set(progress(done, all).is_break());
+            let found = population_posterior(&data, &fit, &expand, &options, &drawing, &tell);
+            if stopped.get() {
+                return Err(Error::Cancelled);
+            }
+            Some(found.map_err(subject)?)
+        }
+    };
+    let mut findings = findings(campaign, &rig, &fit, &specimens);
+    let remarks = posterior.iter().flat_map(|posterior| posterior.findings());
+    findings.extend(remarks.map(|finding| population_finding(&finding)));
+    let method = "REML, Laplace";
+    Ok(PopulationOutcome {
+        windfall: VERSION.to_owned(),
+        campaign: campaign.title.clone(),
+        simulated: campaign.simulated.clone(),
+        law: law.kind.name().to_owned(),
+        method: method.to_owned(),
+        fruits: fit.fruit.len(),
+        impacts: members.len(),
+        parameters: parameters_of(&fit, &varying),
+        correlations: correlations_of(&fit),
+        effects: effects_of(&fit.effects, &fit.covariates),
+        two_stage: two_stage_outcome(&stages, &varying, &fit.covariates),
+        log_likelihood: fit.log_likelihood,
+        shift_from_fits: fit.shift_from_fits,
+        shift_from_first_order: fit.shift_from_first_order,
+        converged: fit.converged,
+        fruit: fruit(&fit, &data, &specimens, &varying),
+        population: population_of(&fit, &varying, method),
+        posterior: posterior.map(|found| posterior_outcome(&found, &fit, &varying)),
+        findings,
+        failed,
+    })
+}
+
+/// The likelihoods of all impacts that have one, and why the others have none.
+fn members<'a>(
+    campaign: &'a Campaign,
+    rig: &RigFound,
+    problem: &LawProblem,
+    progress: Progress,
+) -> Result<(Vec<Member<'a>>, Vec<FailureOutcome>), Error> {
+    let found = for_each(progress, campaign.impacts.len(), |item| {
+        let entry = &campaign.impacts[item];
+        member(campaign, rig, problem, entry).map_err(|error| failure(entry, error.to_string()))
+    })?;
+    let (mut members, mut failed) = (Vec::new(), Vec::new());
+    for result in found {
+        match result {
+            Ok(member) => members.push(member),
+            Err(failure) => failed.push(failure),
+        }
+    }
+    Ok((members, failed))
+}
+
+fn member<'a>(
+    campaign: &Campaign,
+    rig: &RigFound,
+    problem: &LawProblem,
+    entry: &'a ImpactEntry,
+) -> Result<Member<'a>, Error> {
+    let (impact, _) = extract_recording(campaign, entry, Some(rig.rig.effective_mass()))?;
+    let options = &campaign.fit.options;
+    let likelihood = impact_likelihood(&impact, &rig.rig, problem, options);
+    let likelihood = likelihood.map_err(|source| Error::Identify {
+        subject: problem.kind.name().to_owned(),
+        source: Box::new(source),
+    })?;
+    Ok(Member {
+        entry,
+        velocity: impact
+            .measured
+            .impact_velocity
+            .unwrap_or(likelihood.velocity()),
+        likelihood,
+    })
+}
+
+fn failure(entry: &ImpactEntry, message: String) -> FailureOutcome {
+    FailureOutcome {
+        id: entry.id.clone(),
+        specimen: entry.specimen.clone(),
+        file: entry.file.clone(),
+        law: None,
+        message,
+    }
+}
+
+fn varying(law: &LawExpression, problem: &LawProblem) -> Vec<Varying> {
+    let parameters = law.kind.describe().parameters;
+    let own = problem.free_positions().map(|i| Varying {
+        name: parameters[i].name.to_owned(),
+        unit: unit_of(problem, i),
+        logarithmic: parameters[i].unit != "1",
+    });
+    own.collect()
+}
+
+/// Unit of a parameter, with the exponent that the law has.
+fn unit_of(problem: &LawProblem, position: usize) -> String {
+    let parameters = problem.kind.describe().parameters;
+    let values = parameters.iter().zip(&problem.values);
+    let values: Vec<f64> = values
+        .map(|(p, v)| v.or(p.default).unwrap_or(1.0))
+        .collect();
+    match problem.kind.with_parameters(&values) {
+        Ok(law) => law.unit_of(position),
+        Err(_) => parameters[position].unit.to_owned(),
+    }
+}
+
+/// The data, and the specimens in the order of their numbers.
+fn data(
+    members: &[&Member],
+    varying: &[Varying],
+    covariates: Vec<Covariate>,
+) -> (PopulationData, Vec<String>) {
+    let mut specimens: Vec<String> = Vec::new();
+    let fruit = members.iter().map(|member| {
+        let specimen = &member.entry.specimen;
+        match specimens.iter().position(|known| known == specimen) {
+            Some(index) => index,
+            None => {
+                specimens.push(specimen.clone());
+                specimens.len() - 1
+            }
+        }
+    });
+    let fruit = fruit.collect();
+    let data = PopulationData {
+        parameters: varying.iter().map(|v| v.name.clone()).collect(),
+        fruit,
+        covariates,
+    };
+    (data, specimens)
+}
+
+fn fruit(
+    fit: &PopulationFit,
+    data: &PopulationData,
+    specimens: &[String],
+    varying: &[Varying],
+) -> Vec<FruitOutcome> {
+    let own = specimens.iter().zip(&fit.fruit).enumerate();
+    own.map(|(i, (specimen, phi))| FruitOutcome {
+        specimen: specimen.clone(),
+        impacts: data.fruit.iter().filter(|fruit| **fruit == i).count(),
+        parameters: varying
+            .iter()
+            .zip(phi)
+            .map(|(v, phi)| v.value(*phi))
+            .collect(),
+    })
+    .collect()
+}
+
+fn findings(
+    campaign: &Campaign,
+    rig: &RigFound,
+    fit: &PopulationFit,
+    specimens: &[String],
+) -> Vec<FindingOutcome> {
+    let mut out = rig.findings.clone();
+    let mut lost: Vec<&str> = campaign
+        .impacts
+        .iter()
+        .map(|i| i.specimen.as_str())
+        .collect();
+    lost.sort_unstable();
+    lost.dedup();
+    lost.retain(|id| !specimens.iter().any(|known| known == id));
+    if !lost.is_empty() {
+        out.push(FindingOutcome {
+            code: "fruit-left-out".to_owned(),
+            message: format!("no usable impact: {}", lost.join(", ")),
+        });
+    }
+    if campaign.fit.laws.len() > 1 {
+        out.push(FindingOutcome {
+            code: "first-law".to_owned(),
+            message: format!(
+                "the campaign fits {} laws; the population is that of the first, {} (choose with --law)",
+                campaign.fit.laws.len(),
+                campaign.fit.laws[0].kind.name()
+            ),
+        });
+    }
+    out.extend(fit.findings.iter().map(population_finding));
+    out
+}
+
+fn population_finding(finding: &PopulationFinding) -> FindingOutcome {
+    FindingOutcome {
+        code: finding.code().to_owned(),
+        message: finding.to_string(),
+    }
+}

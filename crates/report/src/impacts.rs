@@ -1,0 +1,255 @@
+//! What the report of a campaign of impacts says.
+
+use crate::methods::methods;
+use windfall_campaign::impacts::figure_covariate::{covariates_of, figure_of_covariate};
+use windfall_campaign::impacts::figure_impact::figure_of_impact;
+use windfall_campaign::impacts::figure_parameters::{
+    estimated_parameters, figure_of_pairs, figure_of_predictions, groups_of_impacts,
+};
+use windfall_campaign::impacts::figure_posterior::figure_of_posterior;
+use windfall_campaign::impacts::figure_profiles::figure_of_profiles;
+use windfall_campaign::impacts::figure_residuals::figure_of_residuals;
+use windfall_campaign::impacts::groups::{
+    derived_cells, groups_of, heading_of, law_cells, parameter_cells,
+};
+use windfall_campaign::impacts::mass::RigFound;
+use windfall_campaign::impacts::text::{laws_of, mass_line, own_codes, shared_codes};
+use windfall_campaign::recording::extract::extract_recording;
+use windfall_campaign::result::outcome::{CampaignOutcome, ImpactOutcome};
+use windfall_campaign::settings::model::Campaign;
+use windfall_draw::files::{NamedFigure, file_name};
+use windfall_draw::page::{CaptionedTable, Section};
+use windfall_files::error::Error;
+use windfall_files::text::number::{plain, value_and_sd};
+use windfall_files::text::table::Cells;
+
+/// Quantities in the table of impacts: name, heading, factor from SI.
+const OF_IMPACTS: [(&str, &str, f64); 4] = [
+    ("impact_velocity", "velocity (m/s)", 1.0),
+    ("peak_force", "peak force (N)", 1.0),
+    ("restitution", "restitution", 1.0),
+    ("absorbed_energy", "absorbed (mJ)", 1e3),
+];
+
+/// Sections on a campaign, with the figures of the whole and of a few impacts.
+///
+/// # Errors
+/// A recording that was fitted cannot be read any more.
+pub fn sections_of_campaign(
+    campaign: &Campaign,
+    rig: &RigFound,
+    outcome: &CampaignOutcome,
+) -> Result<Vec<Section>, Error> {
+    let mut sections = vec![
+        Section::of_words("Methods", methods(campaign, outcome)),
+        results(outcome),
+    ];
+    for law in laws_of(outcome) {
+        let impacts: Vec<&ImpactOutcome> = of_law(outcome, law);
+        let mut figures: Vec<NamedFigure> = Vec::new();
+        figures.extend(figure_of_pairs(law, &impacts));
+        let covariates = covariates_of(campaign, &impacts);
+        let over = covariates
+            .iter()
+            .filter_map(|c| figure_of_covariate(law, &impacts, c));
+        figures.extend(over);
+        figures.extend(figure_of_predictions(law, &impacts));
+        sections.push(Section {
+            figures,
+            ..Section::of_words(&format!("Figures: {law}"), Vec::new())
+        });
+    }
+    sections.push(examples(campaign, rig, outcome)?);
+    sections.push(every_impact(outcome));
+    Ok(sections)
+}
+
+fn of_law<'a>(outcome: &'a CampaignOutcome, law: &str) -> Vec<&'a ImpactOutcome> {
+    outcome.impacts.iter().filter(|i| i.law == law).collect()
+}
+
+/// Tables of groups.
+fn results(outcome: &CampaignOutcome) -> Section {
+    let laws = laws_of(outcome);
+    let mut tables = Vec::new();
+    for law in &laws {
+        tables.push(CaptionedTable {
+            caption: format!("Parameters of {law}, mean ± SD over impacts (SD in % of the mean)"),
+            cells: parameter_cells(&groups_of(outcome, law), &of_law(outcome, law)),
+        });
+    }
+    if let Some(first) = laws.first() {
+        let [signals, energies] = derived_cells(&groups_of(outcome, first));
+        let read = "read off the signals (from the fit where they do not show it), mean ± SD in %";
+        for (what, cells) in [("Velocities and peaks", signals), ("Energies", energies)] {
+            tables.push(CaptionedTable {
+                caption: format!("{what}, {read}"),
+                cells,
+            });
+        }
+    }
+    if laws.len() > 1 {
+        tables.push(CaptionedTable {
+            caption: "The laws compared by residual over noise; 1 is a law that describes the \
+                      signal to its noise"
+                .to_owned(),
+            cells: law_cells(outcome, &laws),
+        });
+    }
+    Section {
+        tables,
+        ..Section::of_words("Results", vec![format!("{}.", mass_line(outcome))])
+    }
+}
+
+/// Every impact with its parameters and their intervals.
+fn every_impact(outcome: &CampaignOutcome) -> Section {
+    let tables = laws_of(outcome).into_iter().map(|law| CaptionedTable {
+        caption: format!(
+            "Each impact under {law}: estimate ± standard deviation, and 95 % interval"
+        ),
+        cells: impact_cells(&of_law(outcome, law)),
+    });
+    Section {
+        tables: tables.collect(),
+        ..Section::of_words("Each impact", Vec::new())
+    }
+}
+
+fn impact_cells(impacts: &[&ImpactOutcome]) -> Cells {
+    let names = estimated_parameters(impacts);
+    let shared = shared_codes(impacts);
+    let mut header = ["impact", "specimen", "group"].map(str::to_owned).to_vec();
+    for (name, _) in &names {
+        header.push(heading_of(impacts, name));
+        header.push("95 % interval".to_owned());
+    }
+    header.extend(OF_IMPACTS.map(|(_, heading, _)| heading.to_owned()));
+    header.push("findings".to_owned());
+    let row = |impact: &&ImpactOutcome| {
+        let group = impact.group.clone().unwrap_or_default();
+        let mut row = vec![impact.id.clone(), impact.specimen.clone(), group];
+        for (name, _) in &names {
+            let Some(found) = impact.parameters.get(name) else {
+                row.extend(["-", "-"].map(str::to_owned));
+                continue;
+            };
+            row.push(value_and_sd(found.value, found.sd));
+            row.push(match (found.low, found.high) {
+                (Some(low), Some(high)) => format!("{} to {}", plain(low), plain(high)),
+                _ => "-".to_owned(),
+            });
+        }
+        row.extend(OF_IMPACTS.map(|(name, _, factor)| {
+            let value = impact.derived.get(name).copied().flatten();
+            value.map_or_else(|| "-".to_owned(), |value| plain(factor * value))
+        }));
+        row.push(own_codes(impact, &shared));
+        row
+    };
+    Cells {
+        rows: impacts.iter().map(row).collect(),
+        header,
+    }
+}
+
+/// Of each group the impact with the middle first parameter, and of all the one that
+/// its law describes worst.
+fn shown_impacts<'a>(impacts: &[&'a ImpactOutcome]) -> Vec<(&'a ImpactOutcome, &'static str)> {
+    let mut shown: Vec<(&ImpactOutcome, &str)> = Vec::new();
+    for (_, mut members) in groups_of_impacts(impacts) {
+        let first = |impact: &&ImpactOutcome| {
+            let (_, estimate) = impact.parameters.0.first()?;
+            Some(estimate.value)
+        };
+        members.sort_by(|a, b| {
+            let (a, b) = (first(a).unwrap_or(f64::NAN), first(b).unwrap_or(f64::NAN));
+            a.total_cmp(&b)
+        });
+        shown.push((members[members.len() / 2], "the middle one of its group"));
+    }
+    let worst = impacts
+        .iter()
+        .max_by(|a, b| misfit(a).total_cmp(&misfit(b)));
+    if let Some(worst) = worst
+        && shown
+            .iter()
+            .all(|(impact, _)| !std::ptr::eq(*impact, *worst))
+    {
+        shown.push((worst, "the one that the law describes worst"));
+    }
+    shown
+}
+
+/// Largest root mean square residual over noise among the quantities.
+fn misfit(impact: &ImpactOutcome) -> f64 {
+    let ratios = impact.residuals.0.iter().map(|(_, r)| r.rms / r.noise);
+    ratios.filter(|r| r.is_finite()).fold(0.0, f64::max)
+}
+
+/// Figures of a few impacts: signals and residuals.
+fn examples(
+    campaign: &Campaign,
+    rig: &RigFound,
+    outcome: &CampaignOutcome,
+) -> Result<Section, Error> {
+    let laws = laws_of(outcome);
+    let first = laws.first().copied().unwrap_or_default();
+    let used = (&rig.rig, campaign.fit.options.end, &campaign.fit.user[..]);
+    let mut figures = Vec::new();
+    for (shown, why) in shown_impacts(&of_law(outcome, first)) {
+        let id = &shown.id;
+        let Some(entry) = campaign.impacts.iter().find(|entry| entry.id == *id) else {
+            continue;
+        };
+        let mass = Some(rig.rig.effective_mass());
+        let (impact, _) = extract_recording(campaign, entry, mass)?;
+        let own: Vec<&ImpactOutcome> = outcome.impacts.iter().filter(|i| i.id == *id).collect();
+        let group = shown.group.as_deref().unwrap_or_default();
+        let title = format!("{id} {group}").trim_end().to_owned();
+        figures.push(NamedFigure {
+            name: file_name(&format!("impact-{id}")),
+            caption: format!(
+                "Impact {id}, {why}: signals with the contact window, fitted motion, and loop of \
+                 force over displacement."
+            ),
+            figure: figure_of_impact(&title, &impact, &own, used),
+        });
+        figures.extend(
+            figure_of_residuals(&title, &impact, shown, used).map(|figure| NamedFigure {
+                name: file_name(&format!("impact-{id}-residuals")),
+                caption: format!(
+                    "Impact {id}: what {first} leaves of the signals, beside the noise of a \
+                     sample, and how it goes together from sample to sample."
+                ),
+                figure,
+            }),
+        );
+        figures.extend(figure_of_profiles(&title, shown).map(|figure| NamedFigure {
+            name: file_name(&format!("impact-{id}-profiles")),
+            caption: format!(
+                "Impact {id}: profile of the likelihood, maximal over all other parameters. Where it \
+                 leaves the broken parabola, estimate ± standard deviation does not tell all."
+            ),
+            figure,
+        }));
+        figures.extend(figure_of_posterior(&title, shown).map(|figure| NamedFigure {
+            name: file_name(&format!("impact-{id}-posterior")),
+            caption: format!(
+                "Impact {id}: how probable each value of a parameter is after the recording, with \
+                 the 95 % interval, and draws of the parameters of the law against each other."
+            ),
+            figure,
+        }));
+    }
+    Ok(Section {
+        figures,
+        ..Section::of_words(
+            "Single impacts",
+            vec![format!(
+                "Of each group the impact whose first parameter is the middle one, and the impact \
+                 that {first} describes worst."
+            )],
+        )
+    })
+}

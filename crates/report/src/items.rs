@@ -1,0 +1,102 @@
+//! What the report of a campaign that fits no impacts says.
+
+use windfall_campaign::measure::measured::{MeasuredItem, MeasuredOutcome, ShownValue, laws_of};
+use windfall_campaign::measure::reported_items::ReportedItems;
+use windfall_campaign::measure::text::{groups_cells, items_cells, of_law, of_taps};
+use windfall_draw::page::{CaptionedTable, Section};
+
+/// More rows than this stand in impacts.csv alone.
+const LISTED: usize = 400;
+
+/// Sections on such a campaign.
+#[must_use]
+pub fn sections_of_items(reported: &ReportedItems) -> Vec<Section> {
+    let outcome = &reported.outcome;
+    let mut sections = vec![
+        Section::of_words("Methods", reported.methods.clone()),
+        results(outcome),
+    ];
+    if !reported.figures.is_empty() {
+        sections.push(Section {
+            figures: reported.figures.clone(),
+            ..Section::of_words("Figures", vec![reported.shown.clone()])
+        });
+    }
+    sections.push(every_item(outcome));
+    sections
+}
+
+/// The whole campaign, its groups, its specimens.
+fn results(outcome: &MeasuredOutcome) -> Section {
+    let mut tables = Vec::new();
+    for law in laws_of(&outcome.impacts) {
+        // A tap is no fruit: groups of fruit have a spread.
+        let (shown, items) = match of_taps(outcome) {
+            true => (&outcome.shown_of_specimens, &outcome.specimens),
+            false => (&outcome.shown, &outcome.impacts),
+        };
+        if of_law(items, law).len() > 1 {
+            let cells = groups_cells(outcome, law, (shown, items));
+            tables.extend((cells.header.len() > 2).then(|| CaptionedTable {
+                caption: format!("{law}: mean ± SD (SD in % of the mean)"),
+                cells,
+            }));
+        }
+    }
+    let shown = &outcome.shown_of_specimens;
+    tables.extend(tables_of(
+        "campaign",
+        "Over the campaign",
+        &outcome.whole,
+        shown,
+    ));
+    tables.extend(tables_of(
+        "specimen",
+        "Each fruit",
+        &outcome.specimens,
+        shown,
+    ));
+    Section {
+        tables,
+        ..Section::of_words("Results", Vec::new())
+    }
+}
+
+/// Every recording and every part of one.
+fn every_item(outcome: &MeasuredOutcome) -> Section {
+    let mut tables = tables_of(
+        "recording",
+        "Each recording",
+        &outcome.impacts,
+        &outcome.shown,
+    );
+    let parts = &outcome.shown_of_parts;
+    tables.extend(tables_of("part", "Each bounce", &outcome.parts, parts));
+    let words = match outcome.impacts.len().max(outcome.parts.len()) > LISTED {
+        true => vec![format!(
+            "Tables of more than {LISTED} rows are left to impacts.csv and results.json."
+        )],
+        false => Vec::new(),
+    };
+    Section {
+        tables,
+        ..Section::of_words("Each recording", words)
+    }
+}
+
+fn tables_of(
+    what: &str,
+    title: &str,
+    items: &[MeasuredItem],
+    shown: &[ShownValue],
+) -> Vec<CaptionedTable> {
+    let laws = laws_of(items).into_iter();
+    let tables = laws.filter_map(|law| {
+        let own = of_law(items, law);
+        (own.len() <= LISTED).then(|| CaptionedTable {
+            caption: format!("{title}, {law} (± standard uncertainty)"),
+            cells: items_cells(what, &own, shown),
+        })
+    });
+    tables.collect()
+}

@@ -1,0 +1,9 @@
+//! `windfall fit` and `windfall report` for campaigns of every kind.
+
+pub mod any_text;
+pub mod fit_any;
+pub mod impacts;
+pub mod items;
+pub mod methods;
+pub mod run;
+pub mod stored_card;

@@ -1,0 +1,309 @@
+//! `windfall report`: figures, tables and a page that says what was done.
+
+use crate::any_text::csv_of_any;
+use crate::impacts::sections_of_campaign;
+use crate::items::sections_of_items;
+use serde::Serialize;
+use serde_json::json;
+use std::path::{Path, PathBuf};
+use windfall_campaign::compression::run::reported_compressions;
+use windfall_campaign::impacts::findings::findings_once;
+use windfall_campaign::impacts::key::input_digests;
+use windfall_campaign::impacts::request::FitRequest;
+use windfall_campaign::impacts::run::{FittedCampaign, fitted_campaign};
+use windfall_campaign::measure::any_outcome::AnyOutcome;
+use windfall_campaign::measure::reported_items::ReportedItems;
+use windfall_campaign::measure::text::findings_of_measured;
+use windfall_campaign::recording::digests::{campaign_text, file_digests, recording_digests};
+use windfall_campaign::repeats::run::reported_repeats;
+use windfall_campaign::settings::kind::{CampaignKind, campaign_kind};
+use windfall_campaign::settings::model::FilePlan;
+use windfall_campaign::settings::read::CAMPAIGN_FILE;
+use windfall_campaign::taps::run::reported_taps;
+use windfall_draw::files::{FigureFolder, NamedFigure, write_figures};
+use windfall_draw::page::{CaptionedTable, Report, Section, html_of_report};
+use windfall_draw::theme::FigureTheme;
+use windfall_drop::run::reported_drops;
+use windfall_files::error::Error;
+use windfall_files::on_threads::on_threads;
+use windfall_files::progress::Progress;
+use windfall_files::provenance::{VERSION, time_now};
+use windfall_files::table::write::csv_text;
+use windfall_files::text::table::Cells;
+use windfall_files::write_file::write_whole;
+
+/// Directory of the report in a campaign directory.
+pub const REPORT_DIRECTORY: &str = "report";
+
+/// What is asked of a report.
+#[derive(Clone, Debug, Default)]
+pub struct ReportRequest {
+    /// How impacts are fitted; what is unchanged comes from the store.
+    pub fit: FitRequest,
+    /// Where to write in place of the campaign's own directory.
+    pub out: Option<PathBuf>,
+    /// Colours of the files of figures; the page has both.
+    pub theme: FigureTheme,
+}
+
+/// What was written.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
+pub struct ReportOutcome {
+    /// The page.
+    pub page: PathBuf,
+    /// All files, the page among them.
+    pub files: Vec<PathBuf>,
+    /// Impacts in it.
+    pub impacts: usize,
+    /// What could not be fitted.
+    pub failed: usize,
+}
+
+/// Evaluates a campaign of any kind, as far as its results are not in its store, and writes figures,
+/// tables and a page that holds all of it.
+///
+/// Each file is written whole or not at all; files of other names are left alone.
+///
+/// # Errors
+/// The campaign or the request is wrong, nothing could be fitted (the error says why
+/// of each recording), or a file cannot be written.
+pub fn report_campaign(
+    directory: &Path,
+    request: &ReportRequest,
+    progress: Progress,
+) -> Result<ReportOutcome, Error> {
+    let fit = &request.fit;
+    let items = match campaign_kind(directory)? {
+        CampaignKind::Impacts => {
+            let fitted = fitted_campaign(directory, fit, progress)?;
+            return on_threads(fit.threads, || report_impacts(request, fitted));
+        }
+        CampaignKind::Compression => reported_compressions(directory, fit, progress)?,
+        CampaignKind::Acoustic => reported_taps(directory, fit, progress)?,
+        CampaignKind::Repeats => reported_repeats(directory, fit, progress)?,
+        CampaignKind::Drop => reported_drops(directory, fit, progress)?,
+    };
+    on_threads(fit.threads, || report_items(request, items))
+}
+
+fn report_impacts(request: &ReportRequest, fitted: FittedCampaign) -> Result<ReportOutcome, Error> {
+    let FittedCampaign {
+        campaign,
+        rig,
+        digests,
+        outcome,
+    } = fitted;
+    let sections = match outcome.impacts.is_empty() {
+        true => Vec::new(),
+        false => sections_of_campaign(&campaign, &rig, &outcome)?,
+    };
+    let (inputs, options) = input_digests(&campaign, &digests)?;
+    let source = Source {
+        directory: &campaign.directory,
+        recordings: campaign.impacts.len(),
+        inputs: shown_names(&campaign.files, inputs),
+        options,
+    };
+    let report = Report {
+        title: outcome.campaign.clone(),
+        made: String::new(),
+        simulated: outcome.simulated.clone(),
+        findings: findings_once(&outcome),
+        failed: outcome.failed.clone(),
+        sections,
+    };
+    write(
+        request,
+        &source,
+        report,
+        &AnyOutcome::Impacts(Box::new(outcome)),
+    )
+}
+
+fn report_items(request: &ReportRequest, reported: ReportedItems) -> Result<ReportOutcome, Error> {
+    let (campaign, outcome) = (&reported.campaign, &reported.outcome);
+    let directory = &campaign.directory;
+    let digests = recording_digests(directory, &campaign.files, &campaign.entries);
+    let options = json!({ CAMPAIGN_FILE: campaign_text(directory)? }).to_string();
+    let source = Source {
+        directory,
+        recordings: campaign.entries.len(),
+        inputs: shown_names(&campaign.files, file_digests(directory, &digests)?),
+        options,
+    };
+    let report = Report {
+        title: outcome.campaign.clone(),
+        made: String::new(),
+        simulated: outcome.simulated.clone(),
+        findings: findings_of_measured(outcome),
+        failed: outcome.failed.clone(),
+        sections: sections_of_items(&reported),
+    };
+    let any = AnyOutcome::Measured(Box::new(outcome.clone()));
+    write(request, &source, report, &any)
+}
+
+/// Where the results of a report come from.
+struct Source<'a> {
+    /// The campaign directory.
+    directory: &'a Path,
+    /// Recordings in the table.
+    recordings: usize,
+    /// Files that were read with their SHA-256.
+    inputs: Vec<(String, String)>,
+    /// Options as JSON.
+    options: String,
+}
+
+/// Writes a report with all its files: what only says where it comes from is added here.
+fn write(
+    request: &ReportRequest,
+    source: &Source,
+    mut report: Report,
+    outcome: &AnyOutcome,
+) -> Result<ReportOutcome, Error> {
+    let (results, failed) = (outcome.results(), outcome.failed().len());
+    if results == 0 {
+        return Err(Error::NothingFitted {
+            path: source.directory.to_path_buf(),
+            failures: outcome.failed().to_vec(),
+        });
+    }
+    report.made = format!(
+        "Made by windfall {VERSION} on {}; {results} results of {} recordings, {failed} failures",
+        time_now(),
+        source.recordings
+    );
+    report
+        .sections
+        .push(origin(&source.inputs, &source.options));
+    report.sections.push(citation());
+
+    let out = request.out.clone();
+    let out = out.unwrap_or_else(|| source.directory.join(REPORT_DIRECTORY));
+    let drawn: Vec<&NamedFigure> = report.sections.iter().flat_map(|s| &s.figures).collect();
+    let folder = FigureFolder {
+        directory: out.join("figures"),
+        theme: request.theme,
+    };
+    let mut files = write_figures(&folder, &drawn)?;
+    let json = serde_json::to_string_pretty(outcome).map_err(|error| Error::ResultUnwritable {
+        item: report.title.clone(),
+        detail: error.to_string(),
+    })?;
+    let page = out.join("report.html");
+    let others = [
+        ("impacts.csv", csv_of_any(outcome)?),
+        ("results.json", json + "\n"),
+        ("inputs.csv", csv_of_inputs(&source.inputs)?),
+        ("windfall.bib", bibtex()),
+        ("CITATION.cff", citation_file()),
+        // Last: whoever sees the page finds all that it names.
+        ("report.html", html_of_report(&report)),
+    ];
+    for (name, contents) in others {
+        let path = out.join(name);
+        write_whole(&path, contents.as_bytes())?;
+        files.push(path);
+    }
+    Ok(ReportOutcome {
+        page,
+        files,
+        impacts: results,
+        failed,
+    })
+}
+
+/// Recordings outside the campaign directory by their names within the directory of
+/// recordings: a report is given away, and where files lie on a machine is not its
+/// reader's business.
+fn shown_names(files: &FilePlan, inputs: Vec<(String, String)>) -> Vec<(String, String)> {
+    let shown = |name: String| {
+        let path = Path::new(&name);
+        let within = path.strip_prefix(&files.directory);
+        within.map_or(name.clone(), |within| within.display().to_string())
+    };
+    let named = inputs
+        .into_iter()
+        .map(|(name, digest)| (shown(name), digest));
+    named.collect()
+}
+
+/// Where the results come from.
+fn origin(inputs: &[(String, String)], options: &str) -> Section {
+    let rows = inputs
+        .iter()
+        .map(|(name, digest)| vec![name.clone(), digest.clone()]);
+    let table = CaptionedTable {
+        caption: "SHA-256 of every file that was read".to_owned(),
+        cells: Cells {
+            header: ["file", "SHA-256"].map(str::to_owned).to_vec(),
+            rows: rows.collect(),
+        },
+    };
+    Section {
+        listing: Some(readable(options)),
+        tables: vec![table],
+        ..Section::of_words(
+            "Origin",
+            vec![format!(
+                "windfall {VERSION}. The same files, options and version give the same numbers to \
+                 the last bit, on any number of threads. Options, campaign.toml word for word \
+                 among them:"
+            )],
+        )
+    }
+}
+
+/// JSON with texts of several lines written as such.
+fn readable(options: &str) -> String {
+    let Ok(serde_json::Value::Object(map)) = serde_json::from_str(options) else {
+        return options.to_owned();
+    };
+    let text = |value: &serde_json::Value| match value {
+        serde_json::Value::String(text) => text.clone(),
+        other => other.to_string(),
+    };
+    let parts = map
+        .iter()
+        .map(|(key, value)| format!("{key}: {}", text(value)));
+    parts.collect::<Vec<_>>().join("\n")
+}
+
+fn citation() -> Section {
+    Section {
+        listing: Some(bibtex()),
+        ..Section::of_words(
+            "How to cite",
+            vec![
+                "Cite windfall with its version, beside the source of the law (under Methods); \
+                 the same is in windfall.bib and CITATION.cff beside this page."
+                    .to_owned(),
+            ],
+        )
+    }
+}
+
+fn bibtex() -> String {
+    format!(
+        "@software{{windfall,\n  title = {{windfall: contact-force laws of fruit from impact \
+         recordings}},\n  version = {{{VERSION}}},\n  year = {{{}}}\n}}\n",
+        &time_now()[..4]
+    )
+}
+
+fn citation_file() -> String {
+    format!(
+        "cff-version: 1.2.0\nmessage: If you use windfall, please cite it as below.\n\
+         title: windfall\nabstract: Contact-force laws of fruit from impact recordings, with \
+         calibrated uncertainty.\ntype: software\nversion: {VERSION}\nauthors:\n  - name: The \
+         windfall developers\n"
+    )
+}
+
+fn csv_of_inputs(inputs: &[(String, String)]) -> Result<String, Error> {
+    let rows = inputs
+        .iter()
+        .map(|(name, digest)| vec![name.clone(), digest.clone()]);
+    csv_text(&["file", "sha256"].map(str::to_owned), rows)
+}

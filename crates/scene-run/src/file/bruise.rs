@@ -1,0 +1,235 @@
+//! `[bruise]` of scene.toml.
+
+use crate::file::key::needed;
+use crate::file::regression::{RegressionPlan, read_regression};
+use crate::file::scene::{BruiseFile, FruitFile};
+use std::ops::Range;
+use toml::Spanned;
+use windfall_files::error::Error;
+use windfall_files::text::toml_source::{
+    Needed, TomlSource, choice, invalid, missing, needed_quantity, optional_quantity,
+};
+use windfall_scene::bruise::damage::{BruiseModel, Predictor, SameSpot, VolumeLaw};
+
+/// How contacts bruise, and what counts as bruised.
+#[derive(Clone, Debug)]
+pub struct BruisePlan {
+    /// The model.
+    pub model: BruiseModel,
+    /// Volumes above which a fruit counts as bruised; m³.
+    pub limits: Vec<f64>,
+    /// What a regression takes of contacts and fruit.
+    pub regression: Option<RegressionPlan>,
+    /// Properties that the regression asks for, of each fruit in the order of the scene.
+    pub properties: Vec<Vec<f64>>,
+    /// Seed of how fruit and bruises differ.
+    pub seed: u64,
+}
+
+const TABLE: &str = "[bruise]";
+/// Bruises of a regression that are smaller than this part of the smallest limit are none; 1.
+const LEAST_PART: f64 = 0.01;
+
+/// The model of `[bruise]`, without the properties of the fruit.
+///
+/// # Errors
+/// Something is missing or cannot be.
+pub fn bruise_of(
+    source: &TomlSource,
+    bruise: &Spanned<BruiseFile>,
+    fruit: &[Spanned<FruitFile>],
+    seed: u64,
+) -> Result<BruisePlan, Error> {
+    let (file, at) = (bruise.get_ref(), bruise.span());
+    let predictor = predictor_of(source, file, &at)?;
+    let limits = limits_of(source, file, &at)?;
+    let smallest = limits.iter().copied().fold(f64::INFINITY, f64::min);
+    let mut model = threshold_of(source, file, &at, predictor)?;
+    let spots = [("largest", SameSpot::Largest), ("sum", SameSpot::Sum)];
+    let key = (TABLE, "same_spot");
+    model.same_spot =
+        choice(source, file.same_spot.as_ref(), key, &spots)?.unwrap_or(SameSpot::Largest);
+    let regression = regression_of(source, file, fruit)?;
+    if let Some(own) = &regression {
+        model.law = VolumeLaw::Regression(own.regression.clone());
+        model.least_volume = LEAST_PART * smallest;
+    }
+    let least = needed(
+        TABLE,
+        "least_volume",
+        "a volume",
+        "m^3",
+        "least_volume = \"1 mm^3\"",
+    );
+    if let Some(volume) = optional_quantity(source, file.least_volume.as_ref(), &least)? {
+        model.least_volume = volume;
+    }
+    Ok(BruisePlan {
+        model,
+        limits,
+        regression,
+        properties: Vec::new(),
+        seed,
+    })
+}
+
+fn predictor_of(
+    source: &TomlSource,
+    file: &BruiseFile,
+    at: &Range<usize>,
+) -> Result<Predictor, Error> {
+    let predictors = [
+        ("absorbed energy", Predictor::AbsorbedEnergy),
+        ("peak force", Predictor::PeakForce),
+    ];
+    let key = (TABLE, "predictor");
+    match choice(source, file.predictor.as_ref(), key, &predictors)? {
+        Some(predictor) => Ok(predictor),
+        // A regression knows its columns; without a threshold nothing else is asked for.
+        None if file.regression.is_some() && file.threshold.is_none() => {
+            Ok(Predictor::AbsorbedEnergy)
+        }
+        None => {
+            let meaning = "what of a contact tells its bruise";
+            let example = "predictor = \"absorbed energy\"";
+            let key = needed(TABLE, "predictor", meaning, "", example);
+            Err(missing(source, at, &key, TABLE.to_owned()))
+        }
+    }
+}
+
+fn limits_of(source: &TomlSource, file: &BruiseFile, at: &Range<usize>) -> Result<Vec<f64>, Error> {
+    let volume = needed(
+        TABLE,
+        "limits",
+        "a volume",
+        "m^3",
+        "limits = [\"100 mm^3\", \"500 mm^3\"]",
+    );
+    let limits = file.limits.iter();
+    let limits = limits.map(|limit| needed_quantity(source, at, Some(limit), &volume));
+    let limits: Vec<f64> = limits.collect::<Result<_, _>>()?;
+    match limits.is_empty() {
+        true => Err(missing(source, at, &volume, TABLE.to_owned())),
+        false => Ok(limits),
+    }
+}
+
+/// Threshold and susceptibility; with a regression the threshold may be left out, and there
+/// is no susceptibility.
+fn threshold_of(
+    source: &TomlSource,
+    file: &BruiseFile,
+    at: &Range<usize>,
+    predictor: Predictor,
+) -> Result<BruiseModel, Error> {
+    let (unit, per, threshold, volume) = match predictor {
+        Predictor::AbsorbedEnergy => (
+            "J",
+            "m^3/J",
+            "threshold = \"50 mJ\"",
+            "susceptibility = \"3000 mm^3/J\"",
+        ),
+        Predictor::PeakForce => (
+            "N",
+            "m^3/N",
+            "threshold = \"40 N\"",
+            "susceptibility = \"5 mm^3/N\"",
+        ),
+    };
+    let key = |key, unit, example| needed(TABLE, key, "a coefficient of the bruise", unit, example);
+    let own = |value, needed: &Needed| needed_quantity(source, at, value, needed);
+    let or_none = |value, needed: &Needed| {
+        Ok::<f64, Error>(optional_quantity(source, value, needed)?.unwrap_or(0.0))
+    };
+    let by_regression = file.regression.is_some();
+    let given = file
+        .susceptibility
+        .as_ref()
+        .or(file.susceptibility_sd.as_ref());
+    if let (true, Some(given)) = (by_regression, given) {
+        let problem = "a regression says the volumes: leave out the susceptibility or the \
+                       regression"
+            .to_owned();
+        let key = (TABLE, "susceptibility");
+        return Err(invalid(
+            source,
+            &given.span(),
+            key,
+            &given.get_ref().0,
+            problem,
+        ));
+    }
+    let threshold_key = key("threshold", unit, threshold);
+    let susceptibility_key = key("susceptibility", per, volume);
+    let model = BruiseModel {
+        predictor,
+        threshold: match by_regression {
+            true => or_none(file.threshold.as_ref(), &threshold_key)?,
+            false => own(file.threshold.as_ref(), &threshold_key)?,
+        },
+        threshold_sd: or_none(
+            file.threshold_sd.as_ref(),
+            &key("threshold_sd", unit, threshold),
+        )?,
+        threshold_between_fruit: or_none(
+            file.threshold_between_fruit.as_ref(),
+            &key("threshold_between_fruit", unit, threshold),
+        )?,
+        law: VolumeLaw::Proportional {
+            susceptibility: match by_regression {
+                true => 0.0,
+                false => own(file.susceptibility.as_ref(), &susceptibility_key)?,
+            },
+            sd: or_none(
+                file.susceptibility_sd.as_ref(),
+                &key("susceptibility_sd", per, volume),
+            )?,
+        },
+        same_spot: SameSpot::Largest,
+        least_volume: 0.0,
+    };
+    let mut numbers = vec![
+        model.threshold,
+        model.threshold_sd,
+        model.threshold_between_fruit,
+    ];
+    if let VolumeLaw::Proportional { susceptibility, sd } = model.law {
+        numbers.extend([susceptibility, sd]);
+    }
+    if numbers.iter().any(|own| !(*own >= 0.0 && own.is_finite())) {
+        let problem = "coefficients of bruises must be at or above zero".to_owned();
+        let key = (TABLE, "threshold");
+        return Err(invalid(source, at, key, &format!("{numbers:?}"), problem));
+    }
+    Ok(model)
+}
+
+fn regression_of(
+    source: &TomlSource,
+    file: &BruiseFile,
+    fruit: &[Spanned<FruitFile>],
+) -> Result<Option<RegressionPlan>, Error> {
+    let Some(name) = &file.regression else {
+        return Ok(None);
+    };
+    let every = fruit.iter().flat_map(|own| own.get_ref().properties.keys());
+    let mut known: Vec<String> = every.cloned().collect();
+    known.sort();
+    known.dedup();
+    let path = source.path.with_file_name(name.get_ref());
+    let plan = read_regression(&path, &file.columns, &known)?;
+    for own in fruit {
+        for property in plan.properties() {
+            if !own.get_ref().properties.contains_key(&property) {
+                let problem = format!(
+                    "the regression asks for {property} of every fruit: add {property} = \
+                     {{ mean = …, sd = … }} to its properties"
+                );
+                let key = ("[[fruit]]", "properties");
+                return Err(invalid(source, &own.span(), key, &property, problem));
+            }
+        }
+    }
+    Ok(Some(plan))
+}

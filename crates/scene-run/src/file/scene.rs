@@ -1,0 +1,383 @@
+//! scene.toml as it stands on disk, version 1.
+
+use serde::Deserialize;
+use std::collections::BTreeMap;
+use toml::Spanned;
+use windfall_files::text::file_quantity::QuantityText;
+
+/// The whole file.
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct SceneFile {
+    /// Version of the shape of this file.
+    pub format: Option<Spanned<i64>>,
+    /// Title, gravity, time.
+    #[serde(default)]
+    pub scene: SceneSection,
+    /// Names of the materials.
+    pub materials: Spanned<Vec<Spanned<String>>>,
+    /// What pairs of materials do to each other.
+    #[serde(default)]
+    pub contacts: Vec<Spanned<ContactFile>>,
+    /// Kinds of fruit, and how they come.
+    #[serde(default)]
+    pub fruit: Vec<Spanned<FruitFile>>,
+    /// Walls.
+    #[serde(default)]
+    pub walls: Vec<Spanned<WallFile>>,
+    /// Where fruit leave.
+    #[serde(default)]
+    pub sinks: Vec<Spanned<SinkFile>>,
+    /// Air.
+    pub air: Option<Spanned<AirFile>>,
+    /// What is recorded.
+    #[serde(default)]
+    pub events: EventsFile,
+    /// What is kept to be seen.
+    #[serde(default)]
+    pub record: crate::file::record::RecordFile,
+    /// How contacts bruise.
+    pub bruise: Option<Spanned<BruiseFile>>,
+}
+
+/// `[scene]`
+#[derive(Debug, Default, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct SceneSection {
+    /// Title.
+    pub title: Option<String>,
+    /// Seed of all draws.
+    pub seed: Option<u64>,
+    /// Gravity: downward, or a vector.
+    pub gravity: Option<Spanned<GravityFile>>,
+    /// Time step, or "auto".
+    pub time_step: Option<Spanned<QuantityText>>,
+    /// Error of the peak force that an automatic time step may make.
+    pub time_step_error: Option<Spanned<QuantityText>>,
+    /// When the scene ends.
+    pub end: Option<Spanned<QuantityText>>,
+    /// Time of the scene between checkpoints, or "never".
+    pub checkpoint: Option<Spanned<QuantityText>>,
+}
+
+/// Gravity in a file.
+#[derive(Debug, Deserialize)]
+#[serde(untagged)]
+pub enum GravityFile {
+    /// Against z.
+    Down(QuantityText),
+    /// In any direction; m/s².
+    Vector([f64; 3]),
+}
+
+/// `[[contacts]]`
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct ContactFile {
+    /// The two materials.
+    pub between: Option<Spanned<[String; 2]>>,
+    /// A law card.
+    pub card: Option<Spanned<String>>,
+    /// A law, where there is no card.
+    pub law: Option<Spanned<String>>,
+    /// R* that the law was found with.
+    pub effective_radius: Option<Spanned<QuantityText>>,
+    /// Coefficient of sliding friction.
+    pub friction: Option<Spanned<f64>>,
+    /// Poisson's ratio, for the tangential stiffness.
+    pub poisson: Option<Spanned<f64>>,
+    /// Tangential over normal stiffness, in its place.
+    pub tangential_ratio: Option<Spanned<f64>>,
+    /// Tangential over normal damping.
+    pub tangential_damping: Option<Spanned<f64>>,
+    /// Annuli of the contact area that stick or slip each for itself.
+    pub annuli: Option<Spanned<usize>>,
+    /// Coefficient of rolling friction.
+    pub rolling: Option<Spanned<f64>>,
+    /// Part of the absorbed energy that a fruit takes.
+    pub fruit_share: Option<Spanned<f64>>,
+}
+
+/// `[[fruit]]`
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct FruitFile {
+    /// Name of the kind.
+    pub name: Option<Spanned<String>>,
+    /// Material.
+    pub material: Option<Spanned<String>>,
+    /// How many.
+    pub count: Option<Spanned<usize>>,
+    /// Mean diameter.
+    pub diameter: Option<Spanned<QuantityText>>,
+    /// Mean length, of ovate fruit.
+    pub length: Option<Spanned<QuantityText>>,
+    /// Number of spheres that make up an ovate fruit.
+    pub spheres: Option<Spanned<usize>>,
+    /// Standard deviation of the diameter between fruit.
+    pub diameter_sd: Option<Spanned<QuantityText>>,
+    /// Density.
+    pub density: Option<Spanned<QuantityText>>,
+    /// All there at the beginning, on a lattice in a box.
+    pub lattice: Option<Spanned<LatticeFile>>,
+    /// Poured at a rate through a box.
+    pub pour: Option<Spanned<PourFile>>,
+    /// One after the other from one place.
+    pub drop: Option<Spanned<DropOneFile>>,
+    /// From a tree: at random places in a box, at random times.
+    pub tree: Option<Spanned<TreeFile>>,
+    /// What else the fruit have that a regression of bruises asks for, in its units.
+    #[serde(default)]
+    pub properties: BTreeMap<String, Spanned<PropertyFile>>,
+}
+
+/// A property of fruit: temperature, firmness.
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct PropertyFile {
+    /// Its mean.
+    pub mean: f64,
+    /// Its standard deviation between fruit.
+    #[serde(default)]
+    pub sd: f64,
+}
+
+/// `lattice`
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct LatticeFile {
+    /// Lowest corner of the box; m.
+    pub low: [f64; 3],
+    /// Highest corner; m.
+    pub high: [f64; 3],
+    /// Velocity; m/s.
+    #[serde(default)]
+    pub velocity: [f64; 3],
+}
+
+/// `pour`
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct PourFile {
+    /// Lowest corner of the box; m.
+    pub low: [f64; 3],
+    /// Highest corner; m.
+    pub high: [f64; 3],
+    /// Velocity; m/s.
+    #[serde(default)]
+    pub velocity: [f64; 3],
+    /// Fruit per second.
+    pub rate: Spanned<QuantityText>,
+    /// When it begins.
+    pub from: Option<Spanned<QuantityText>>,
+}
+
+/// `drop`
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct DropOneFile {
+    /// From where; m.
+    pub place: [f64; 3],
+    /// Velocity; m/s.
+    #[serde(default)]
+    pub velocity: [f64; 3],
+    /// Time from one to the next.
+    pub interval: Option<Spanned<QuantityText>>,
+    /// When the first comes.
+    pub from: Option<Spanned<QuantityText>>,
+}
+
+/// `tree`
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct TreeFile {
+    /// Lowest corner of the box of the crown; m.
+    pub low: [f64; 3],
+    /// Highest corner; m.
+    pub high: [f64; 3],
+    /// Over which time they come off.
+    pub over: Option<Spanned<QuantityText>>,
+}
+
+/// `[[walls]]`
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct WallFile {
+    /// Name.
+    pub name: Option<Spanned<String>>,
+    /// Material.
+    pub material: Option<Spanned<String>>,
+    /// An endless plane.
+    pub plane: Option<Spanned<PlaneFile>>,
+    /// A parallelogram.
+    pub plate: Option<Spanned<PlateFile>>,
+    /// A box.
+    #[serde(rename = "box")]
+    pub bin: Option<Spanned<BoxFile>>,
+    /// The side of a cylinder.
+    pub cylinder: Option<Spanned<CylinderFile>>,
+    /// Triangles of an STL file.
+    pub mesh: Option<Spanned<MeshFile>>,
+    /// Steady velocity; m/s.
+    pub velocity: Option<Spanned<[f64; 3]>>,
+    /// Velocity of a belt's surface; m/s.
+    pub belt: Option<Spanned<[f64; 3]>>,
+    /// A vibration.
+    pub vibration: Option<Spanned<VibrationFile>>,
+    /// A rotation.
+    pub rotation: Option<Spanned<RotationFile>>,
+}
+
+/// `plane`
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct PlaneFile {
+    /// A point of it; m.
+    pub point: [f64; 3],
+    /// Towards the free side.
+    pub normal: [f64; 3],
+}
+
+/// `plate`
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct PlateFile {
+    /// A corner; m.
+    pub corner: [f64; 3],
+    /// Edges from it; m.
+    pub edges: [[f64; 3]; 2],
+}
+
+/// `box`
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct BoxFile {
+    /// Lowest corner; m.
+    pub low: [f64; 3],
+    /// Highest corner; m.
+    pub high: [f64; 3],
+    /// Sides that are open: "top", "bottom", "left", "right", "front", "back".
+    #[serde(default)]
+    pub open: Vec<String>,
+}
+
+/// `cylinder`
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct CylinderFile {
+    /// Centre of one end; m.
+    pub start: [f64; 3],
+    /// Centre of the other; m.
+    pub end: [f64; 3],
+    /// Diameter.
+    pub diameter: Spanned<QuantityText>,
+}
+
+/// `mesh`
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct MeshFile {
+    /// An STL file, beside the scene.
+    pub file: Spanned<String>,
+    /// Unit of length of its coordinates: STL files do not say it.
+    pub unit: Option<Spanned<String>>,
+    /// Turned about an axis through its origin.
+    pub turn: Option<Spanned<TurnFile>>,
+    /// Then moved by; m.
+    #[serde(default, rename = "move")]
+    pub shift: [f64; 3],
+    /// Whether it must be closed, or is open on purpose.
+    pub closed: Option<bool>,
+}
+
+/// `turn`
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct TurnFile {
+    /// Direction of the axis.
+    pub axis: [f64; 3],
+    /// Angle.
+    pub angle: Spanned<QuantityText>,
+}
+
+/// `vibration`
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct VibrationFile {
+    /// Amplitude and direction; m.
+    pub amplitude: [f64; 3],
+    /// Frequency.
+    pub frequency: Spanned<QuantityText>,
+}
+
+/// `rotation`
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct RotationFile {
+    /// A point of the axis; m.
+    pub point: [f64; 3],
+    /// Its direction.
+    pub axis: [f64; 3],
+    /// Angular velocity.
+    pub angular_velocity: Spanned<QuantityText>,
+}
+
+/// `[[sinks]]`
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct SinkFile {
+    /// Name.
+    pub name: Option<String>,
+    /// Lowest corner; m.
+    pub low: [f64; 3],
+    /// Highest corner; m.
+    pub high: [f64; 3],
+}
+
+/// `[air]`
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct AirFile {
+    /// Density.
+    pub density: Option<Spanned<QuantityText>>,
+    /// Drag coefficient of a sphere.
+    pub drag_coefficient: Option<Spanned<f64>>,
+}
+
+/// `[events]`
+#[derive(Debug, Default, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct EventsFile {
+    /// Contacts with a smaller peak force are counted, not written.
+    pub least_peak_force: Option<Spanned<QuantityText>>,
+}
+
+/// `[bruise]`
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct BruiseFile {
+    /// "absorbed energy" or "peak force".
+    pub predictor: Option<Spanned<String>>,
+    /// Below this nothing bruises.
+    pub threshold: Option<Spanned<QuantityText>>,
+    /// Its standard uncertainty.
+    pub threshold_sd: Option<Spanned<QuantityText>>,
+    /// How it differs from fruit to fruit.
+    pub threshold_between_fruit: Option<Spanned<QuantityText>>,
+    /// Volume per unit of the predictor above the threshold.
+    pub susceptibility: Option<Spanned<QuantityText>>,
+    /// Its standard uncertainty.
+    pub susceptibility_sd: Option<Spanned<QuantityText>>,
+    /// A regression of bruise volumes, in place of a susceptibility.
+    pub regression: Option<Spanned<String>>,
+    /// What the columns of the regression are, where their names do not tell it.
+    #[serde(default)]
+    pub columns: BTreeMap<String, String>,
+    /// Smaller bruises are none.
+    pub least_volume: Option<Spanned<QuantityText>>,
+    /// "largest" or "sum".
+    pub same_spot: Option<Spanned<String>>,
+    /// Volumes of the largest bruise above which a fruit counts as bruised.
+    #[serde(default)]
+    pub limits: Vec<Spanned<QuantityText>>,
+}

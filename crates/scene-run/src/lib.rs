@@ -1,0 +1,10 @@
+//! Scenes of many fruit: their files, runs, frames, bruises and studies.
+
+pub mod bruise;
+pub mod file;
+pub mod file_error;
+pub mod frames;
+pub mod geometry;
+pub mod run;
+pub mod run_error;
+pub mod study;

@@ -1,0 +1,351 @@
+//! A scene from its beginning or a checkpoint to its end.
+
+use crate::bruise::scene::Blows;
+use crate::file::read::ScenePlan;
+use crate::run::checkpoint::{
+    CheckpointHead, Parts, changed_parts, checkpoint_head, checkpoint_path, damaged, parts_of,
+    read_checkpoint, write_checkpoint,
+};
+use crate::run::frames::SceneRecorder;
+use crate::run::outcome::Tally;
+use crate::run::tables::{EventFile, is_written};
+use crate::run_error::SceneRunError;
+use std::io::{Read, Result as IoResult};
+use std::path::{Path, PathBuf};
+use windfall_files::error::Error;
+use windfall_files::progress::Progress;
+use windfall_scene::binary::Binary;
+use windfall_scene::energy::Energy;
+use windfall_scene::event::Event;
+use windfall_scene::motion::simulation::Simulation;
+use windfall_scene::state::State;
+
+/// What is to be done where a run was stopped.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum SceneStart {
+    /// Nothing: it is not to be lost unasked.
+    #[default]
+    Fresh,
+    /// Go on from its checkpoint.
+    Resume,
+    /// Begin anew.
+    Restart,
+}
+
+/// What moves the fruit of a scene.
+pub trait Mover: Send {
+    /// One step on, or one frame; with the energies at its beginning.
+    fn step(&mut self, simulation: &mut Simulation) -> Result<Energy, Error>;
+
+    /// So many steps or frames on.
+    fn run(&mut self, simulation: &mut Simulation, steps: u64) -> Result<(), Error> {
+        (0..steps).try_for_each(|_| self.step(simulation).map(|_| ()))
+    }
+
+    /// Its own time steps in one.
+    fn steps(&self) -> u64;
+
+    /// Whether it can go on from a checkpoint.
+    fn goes_on(&self) -> bool;
+}
+
+/// The engine of this program.
+pub(crate) struct Own;
+
+impl Mover for Own {
+    fn step(&mut self, simulation: &mut Simulation) -> Result<Energy, Error> {
+        simulation.step_with_energy().map_err(stopped_scene)
+    }
+
+    fn run(&mut self, simulation: &mut Simulation, steps: u64) -> Result<(), Error> {
+        simulation.run(steps).map_err(stopped_scene)
+    }
+
+    fn steps(&self) -> u64 {
+        1
+    }
+
+    fn goes_on(&self) -> bool {
+        true
+    }
+}
+
+/// Steps between looks at events and progress.
+const CHUNK: u64 = 64;
+
+/// A scene that runs, and what is kept of it.
+pub struct SceneRun {
+    /// The scene now.
+    pub simulation: Simulation,
+    /// Every contact.
+    pub table: EventFile,
+    /// What is kept to be seen.
+    pub frames: SceneRecorder,
+    /// What happened.
+    pub tally: Tally,
+    /// Contacts that may bruise.
+    pub blows: Option<Blows>,
+    /// What the energy account lacked at the first step; J.
+    pub first_closure: f64,
+    checkpoint: PathBuf,
+    parts: Parts,
+    /// Steps in all, and those between two checkpoints.
+    all: u64,
+    every: Option<u64>,
+    end: f64,
+    /// Time of the last checkpoint; s.
+    kept: Option<f64>,
+}
+
+impl SceneRun {
+    /// A run that begins, or goes on.
+    ///
+    /// * `plan`: with its time step, and with fruit in the order in which they come
+    ///
+    /// # Errors
+    /// There is a run that could go on, or none that is to; the scene cannot begin; the
+    /// directory cannot be written.
+    pub(crate) fn begin(
+        plan: &ScenePlan,
+        directory: &Path,
+        start: SceneStart,
+        mover: &mut dyn Mover,
+    ) -> Result<Self, Error> {
+        let checkpoint = checkpoint_path(directory);
+        let events = directory.join("events.csv");
+        let going = is_written(&events);
+        // The table gets its name as the last of all: what is without it is done.
+        let stopped = checkpoint.exists() && going.is_some();
+        match (start, going) {
+            (_, Some(true)) => return Err(Error::from(SceneRunError::Busy { path: events })),
+            (SceneStart::Fresh, _) if stopped => {
+                let head = checkpoint_head(&checkpoint);
+                return Err(Error::from(SceneRunError::Unfinished {
+                    directory: directory.to_path_buf(),
+                    at: head.map(|head| [head.time, head.end]),
+                }));
+            }
+            (SceneStart::Resume, None) => {
+                let directory = directory.to_path_buf();
+                return Err(Error::from(SceneRunError::NothingToResume { directory }));
+            }
+            _ => {}
+        }
+        let parts = parts_of(plan);
+        if start == SceneStart::Resume && stopped {
+            return Self::resumed(plan, (checkpoint, &events), directory, parts);
+        }
+        let simulation = Simulation::new(plan.scene.clone()).map_err(stopped_scene)?;
+        if checkpoint.exists() {
+            std::fs::remove_file(&checkpoint).map_err(|source| Error::FileAccess {
+                path: checkpoint.clone(),
+                action: "remove",
+                source,
+            })?;
+        }
+        let table = EventFile::create(&events, &plan.scene, plan.least_peak_force)?;
+        let frames = SceneRecorder::create(plan, directory)?;
+        let mut own = Self::new(plan, simulation, (table, frames), (checkpoint, parts));
+        let seen = own.frames.take(&own.simulation, &own.tally);
+        seen.map_err(|error| own.told(error))?;
+        if !mover.goes_on() {
+            own.every = None;
+        }
+        let first = mover.step(&mut own.simulation)?;
+        own.first_closure = first.closure();
+        Ok(own)
+    }
+
+    fn new(
+        plan: &ScenePlan,
+        simulation: Simulation,
+        (table, frames): (EventFile, SceneRecorder),
+        (checkpoint, parts): (PathBuf, Parts),
+    ) -> Self {
+        let step = plan.scene.time_step;
+        let bruise = plan.bruise.as_ref();
+        Self {
+            simulation,
+            table,
+            frames,
+            tally: Tally::new(plan),
+            blows: bruise.map(|own| Blows::new(own, &plan.scene, &plan.fruit_shares)),
+            first_closure: 0.0,
+            checkpoint,
+            parts,
+            all: (plan.end / step).ceil() as u64,
+            every: plan
+                .checkpoint
+                .map(|own| (own / step).round().max(1.0) as u64),
+            end: plan.end,
+            kept: None,
+        }
+    }
+
+    fn resumed(
+        plan: &ScenePlan,
+        (checkpoint, events): (PathBuf, &Path),
+        directory: &Path,
+        parts: Parts,
+    ) -> Result<Self, Error> {
+        let path = checkpoint.clone();
+        read_checkpoint(&path, |head, from| {
+            let changed = changed_parts(&head.parts, &parts);
+            if !changed.is_empty() {
+                let path = path.clone();
+                return Err(Error::from(SceneRunError::Changed { path, changed }));
+            }
+            let unread =
+                |error: std::io::Error| damaged(&path, format!("the checkpoint is {error}"));
+            let (length, written) = Binary::read(from).map_err(unread)?;
+            let frames = Binary::read(from).map_err(unread)?;
+            let closure = f64::read(from).map_err(unread)?;
+            let state = State::read(from).map_err(unread)?;
+            let simulation = Simulation::resume(plan.scene.clone(), &state)
+                .map_err(|error| damaged(&path, error.to_string()))?;
+            drop(state);
+            let least = plan.least_peak_force;
+            let table = EventFile::resume(events, &plan.scene, least, (length, written))?;
+            let frames = SceneRecorder::resume(plan, directory, frames)?;
+            let mut own = Self::new(plan, simulation, (table, frames), (checkpoint, parts));
+            own.take_counts(from).map_err(unread)?;
+            (own.first_closure, own.kept) = (closure, Some(head.time));
+            Ok(own)
+        })
+    }
+
+    fn take_counts(&mut self, from: &mut dyn Read) -> IoResult<()> {
+        self.tally.take_up(from)?;
+        self.blows.iter_mut().try_for_each(|own| own.take_up(from))
+    }
+
+    /// Steps up to the end; contacts that last are not counted.
+    ///
+    /// # Errors
+    /// The result would mean nothing from there on; somebody stopped it; a file cannot be
+    /// written. What was done up to the last checkpoint is kept in the latter two.
+    pub(crate) fn run_to_end(
+        &mut self,
+        mover: &mut dyn Mover,
+        progress: Progress,
+    ) -> Result<(), Error> {
+        // By one of those who work, who need not be woken for every step.
+        let done = rayon::scope(|_| self.steps_to_end(mover, progress));
+        if let Err(error) = &done
+            && let Some(SceneRunError::Failed(_)) = error.of_room()
+        {
+            // It would be stopped there again.
+            self.leave_nothing();
+        }
+        done.map_err(|error| self.told(error))
+    }
+
+    fn steps_to_end(&mut self, mover: &mut dyn Mover, progress: Progress) -> Result<(), Error> {
+        while self.simulation.steps() < self.all {
+            let steps = self.simulation.steps();
+            let to_checkpoint = self.every.map_or(u64::MAX, |every| every - steps % every);
+            let most = CHUNK.min(self.all - steps).min(to_checkpoint);
+            let steps = self.frames.steps(&self.simulation, most);
+            mover.run(&mut self.simulation, steps)?;
+            for event in self.simulation.take_events() {
+                self.count(&event)?;
+            }
+            for leaving in self.simulation.take_leavings() {
+                self.tally.leave(&leaving);
+            }
+            self.frames.take(&self.simulation, &self.tally)?;
+            let steps = self.simulation.steps();
+            if self.every.is_some_and(|every| steps.is_multiple_of(every)) && steps < self.all {
+                self.save()?;
+            }
+            if progress(steps as usize, self.all as usize).is_break() {
+                return Err(self.interrupted());
+            }
+        }
+        Ok(())
+    }
+
+    /// One contact more.
+    ///
+    /// # Errors
+    /// The table cannot be written.
+    pub fn count(&mut self, event: &Event) -> Result<(), Error> {
+        let lasted = self.tally.count(event);
+        if let Some(blows) = &mut self.blows {
+            blows.count(event);
+        }
+        self.table.write(event, lasted)
+    }
+
+    fn save(&mut self) -> Result<(), Error> {
+        let time = self.simulation.time();
+        let state = self.simulation.checkpoint();
+        // What the checkpoint counts on is on the disk before it.
+        let table = (self.table.sync()?, self.table.written());
+        let frames = self.frames.sync()?;
+        let head = CheckpointHead {
+            time,
+            end: self.end,
+            parts: std::mem::take(&mut self.parts),
+        };
+        let saved = write_checkpoint(&self.checkpoint, &head, |to| {
+            table.write(to)?;
+            frames.write(to)?;
+            self.first_closure.write(to)?;
+            state.write(to)?;
+            self.tally.save(to)?;
+            self.blows.iter().try_for_each(|own| own.save(to))
+        });
+        self.parts = head.parts;
+        saved?;
+        self.table.keep(true);
+        self.frames.keep(true);
+        self.kept = Some(time);
+        Ok(())
+    }
+
+    fn interrupted(&self) -> Error {
+        let (now, end) = (self.simulation.time(), self.end);
+        match self.kept {
+            Some(kept) => Error::from(SceneRunError::Stopped { now, end, kept }),
+            None => Error::Cancelled,
+        }
+    }
+
+    /// What went wrong, with what is kept.
+    #[must_use]
+    pub fn told(&self, error: Error) -> Error {
+        match error {
+            Error::FileAccess { path, source, .. } => Error::from(SceneRunError::Unwritable {
+                path,
+                source,
+                kept: self.kept,
+            }),
+            other => other,
+        }
+    }
+
+    /// Ends the run: the table gets its name, and there is nothing to go on from.
+    ///
+    /// # Errors
+    /// It cannot be renamed.
+    pub fn finish(self) -> Result<(), Error> {
+        self.table.finish()?;
+        // One that is left without its table is taken for what it is: of a run that is over.
+        let _ = std::fs::remove_file(&self.checkpoint);
+        Ok(())
+    }
+
+    fn leave_nothing(&mut self) {
+        self.table.keep(false);
+        self.frames.keep(false);
+        let _ = std::fs::remove_file(&self.checkpoint);
+        self.kept = None;
+    }
+}
+
+/// A scene whose result would mean nothing.
+#[must_use]
+pub fn stopped_scene(problem: windfall_scene::error::Error) -> Error {
+    SceneRunError::Failed(problem).into()
+}

@@ -1,0 +1,440 @@
+//! Contacts and fruit of a scene as tables.
+
+use crate::bruise::scene::BruiseOutcome;
+use crate::file::engine_kind::Engine;
+use crate::file::key::FRUIT;
+use crate::file::read::ScenePlan;
+use crate::run::checkpoint::damaged;
+use crate::run::outcome::{SceneOutcome, Tally};
+use crate::run_error::SceneRunError;
+use std::fs::{File, TryLockError};
+use std::io::{BufWriter, Seek, SeekFrom, Write};
+use std::path::{Path, PathBuf};
+use windfall_files::error::Error;
+use windfall_files::table::write::csv_text;
+use windfall_files::text::statistic::number;
+use windfall_files::text::table::page_tables;
+use windfall_scene::bruise::damage::Bruise;
+use windfall_scene::event::{Event, Partner};
+use windfall_scene::motion::simulation::FruitState;
+use windfall_scene::scene::Scene;
+
+/// Columns of events.csv.
+const EVENT_COLUMNS: &str = "fruit,partner,partner_fruit,time_s,duration_s,lasting,x_m,y_m,z_m,\
+spot_x,spot_y,spot_z,partner_spot_x,partner_spot_y,partner_spot_z,normal_speed_m_s,\
+tangential_speed_m_s,peak_force_N,largest_displacement_m,absorbed_energy_J,friction_energy_J,static";
+
+/// A table of contacts that grows with the scene; it has its name when it is whole.
+pub struct EventFile {
+    path: PathBuf,
+    partial: PathBuf,
+    file: BufWriter<File>,
+    walls: Vec<String>,
+    least: f64,
+    written: u64,
+    /// Whether what is not finished stays: a checkpoint goes on from it.
+    keep: bool,
+}
+
+/// Where a table stands until it is whole.
+fn partial_of(path: &Path) -> PathBuf {
+    path.with_extension("csv.partial")
+}
+
+/// Whether a table was begun and not finished, and whether somebody is at it now.
+#[must_use]
+pub fn is_written(path: &Path) -> Option<bool> {
+    let file = File::options().write(true).open(partial_of(path)).ok()?;
+    Some(matches!(file.try_lock(), Err(TryLockError::WouldBlock)))
+}
+
+impl EventFile {
+    /// A table without rows.
+    ///
+    /// * `least`: contacts with a smaller peak force are left out; N
+    ///
+    /// # Errors
+    /// It cannot be written.
+    pub fn create(path: &Path, scene: &Scene, least: f64) -> Result<Self, Error> {
+        let mut own = Self::open(path, scene, least, (0, 0))?;
+        own.keep = false;
+        writeln!(own.file, "{EVENT_COLUMNS}").map_err(|source| access(path, source))?;
+        Ok(own)
+    }
+
+    /// A table that goes on.
+    ///
+    /// * `length`, `written`: bytes and rows of it that count; what is behind is cut off
+    ///
+    /// # Errors
+    /// It is shorter, or cannot be written.
+    pub fn resume(
+        path: &Path,
+        scene: &Scene,
+        least: f64,
+        (length, written): (u64, u64),
+    ) -> Result<Self, Error> {
+        let partial = partial_of(path);
+        let there = std::fs::metadata(&partial).map_or(0, |own| own.len());
+        if there < length {
+            let problem = format!(
+                "the table has {there} bytes, and the checkpoint goes on behind {length} of them"
+            );
+            return Err(damaged(&partial, problem));
+        }
+        Self::open(path, scene, least, (length, written))
+    }
+
+    fn open(
+        path: &Path,
+        scene: &Scene,
+        least: f64,
+        (length, written): (u64, u64),
+    ) -> Result<Self, Error> {
+        let partial = partial_of(path);
+        let failed = |source| access(path, source);
+        let options = File::options()
+            .create(true)
+            .write(true)
+            .truncate(false)
+            .clone();
+        let mut file = options.open(&partial).map_err(failed)?;
+        // Two at once would mix their rows; a system without locks does without.
+        if let Err(TryLockError::WouldBlock) = file.try_lock() {
+            let path = path.to_path_buf();
+            return Err(Error::from(SceneRunError::Busy { path }));
+        }
+        file.set_len(length)
+            .and_then(|()| file.seek(SeekFrom::Start(length)))
+            .map_err(failed)?;
+        Ok(Self {
+            path: path.to_path_buf(),
+            partial,
+            file: BufWriter::new(file),
+            walls: scene.walls.iter().map(|wall| quoted(&wall.name)).collect(),
+            least,
+            written,
+            keep: true,
+        })
+    }
+
+    /// Brings all rows so far to the disk; the bytes of the table.
+    ///
+    /// # Errors
+    /// It cannot be written, such as where the disk is full.
+    pub fn sync(&mut self) -> Result<u64, Error> {
+        let path = &self.path;
+        self.file
+            .flush()
+            .and_then(|()| self.file.get_ref().sync_all())
+            .and_then(|()| self.file.stream_position())
+            .map_err(|source| access(path, source))
+    }
+
+    /// Rows so far.
+    #[must_use]
+    pub fn written(&self) -> u64 {
+        self.written
+    }
+
+    /// Whether the rows so far stay where the table is not finished.
+    pub fn keep(&mut self, keep: bool) {
+        self.keep = keep;
+    }
+
+    /// One contact more.
+    ///
+    /// * `lasted`: whether it was a static load
+    ///
+    /// # Errors
+    /// It cannot be written, such as where the disk is full.
+    pub fn write(&mut self, event: &Event, lasted: bool) -> Result<(), Error> {
+        if event.peak_force < self.least {
+            return Ok(());
+        }
+        self.written += 1;
+        let (partner, number) = match event.partner {
+            Partner::Fruit(other) => (FRUIT, (other + 1).to_string()),
+            Partner::Wall(wall) => (self.walls[wall as usize].as_str(), String::new()),
+        };
+        let ([x, y, z], [a, b, c], [d, e, f]) = (event.place, event.spot, event.other_spot);
+        writeln!(
+            self.file,
+            "{},{partner},{number},{},{},{},{x},{y},{z},{a},{b},{c},{d},{e},{f},{},{},{},{},{},{},{lasted}",
+            event.fruit + 1,
+            event.time,
+            event.duration,
+            event.lasting,
+            event.normal_speed,
+            event.tangential_speed,
+            event.peak_force,
+            event.largest_displacement,
+            event.absorbed_energy,
+            event.friction_energy,
+        )
+        .map_err(|source| access(&self.path, source))
+    }
+
+    /// Gives the table its name; the number of its rows.
+    ///
+    /// # Errors
+    /// It cannot be written.
+    pub fn finish(mut self) -> Result<u64, Error> {
+        self.sync()?;
+        std::fs::rename(&self.partial, &self.path).map_err(|source| access(&self.path, source))?;
+        // There is nothing under the other name any more.
+        self.keep = true;
+        Ok(self.written)
+    }
+}
+
+/// What was not finished leaves nothing behind, but for a checkpoint.
+impl Drop for EventFile {
+    fn drop(&mut self) {
+        if !self.keep {
+            let _ = std::fs::remove_file(&self.partial);
+        }
+    }
+}
+
+fn access(path: &Path, source: std::io::Error) -> Error {
+    Error::FileAccess {
+        path: path.to_path_buf(),
+        action: "write",
+        source,
+    }
+}
+
+/// A name as a cell.
+fn quoted(name: &str) -> String {
+    match name.contains([',', '"', '\n', '\r']) {
+        true => format!("\"{}\"", name.replace('"', "\"\"")),
+        false => name.to_owned(),
+    }
+}
+
+/// One row per fruit: what it is, what it went through, where it is.
+///
+/// # Errors
+/// None in practice: the text is written to memory.
+pub fn fruit_table(
+    plan: &ScenePlan,
+    tally: &Tally,
+    states: &[FruitState],
+    bruises: Option<&[Vec<Bruise>]>,
+) -> Result<String, Error> {
+    let header = [
+        "fruit",
+        "material",
+        "diameter_m",
+        "mass_kg",
+        "released_s",
+        "left_s",
+        "sink",
+        "x_m",
+        "y_m",
+        "z_m",
+        "contacts",
+        "largest_peak_force_N",
+        "partner_of_it",
+        "time_of_it_s",
+        "impact_speed_of_it_m_s",
+        "largest_absorbed_energy_J",
+        "absorbed_energy_J",
+        "bruises",
+        "largest_bruise_mm3",
+        "static_loads",
+        "largest_static_force_N",
+    ];
+    let scene = &plan.scene;
+    let mut states = states.iter().peekable();
+    let rows = scene
+        .fruit
+        .iter()
+        .zip(&tally.fruit)
+        .enumerate()
+        .map(|(number, (fruit, own))| {
+            let state = states.next_if(|state| state.fruit as usize == number);
+            let place = state.map_or([const { String::new() }; 3], |state| {
+                state.place.map(|at| at.to_string())
+            });
+            let bruised = bruises.map(|all| &all[number]);
+            let of_bruises =
+                |what: &dyn Fn(&Vec<Bruise>) -> String| bruised.map_or(String::new(), what);
+            let hardest = own.hardest.as_ref();
+            let partner = hardest.map_or(String::new(), |event| match event.partner {
+                Partner::Fruit(_) => FRUIT.to_owned(),
+                Partner::Wall(wall) => scene.walls[wall as usize].name.clone(),
+            });
+            let of = |number: Option<f64>| number.map_or(String::new(), |own| own.to_string());
+            let [x, y, z] = place;
+            vec![
+                (number + 1).to_string(),
+                scene.materials[fruit.material].clone(),
+                fruit.diameter().to_string(),
+                fruit.mass.to_string(),
+                fruit.time.to_string(),
+                of(own.left.map(|left| left.time)),
+                own.left
+                    .map_or(String::new(), |left| scene.sinks[left.sink].name.clone()),
+                x,
+                y,
+                z,
+                own.contacts.to_string(),
+                of(hardest.map(|event| event.peak_force)),
+                partner,
+                of(hardest.map(|event| event.time)),
+                of(hardest.map(|event| event.normal_speed)),
+                own.absorbed[0].to_string(),
+                own.absorbed[1].to_string(),
+                of_bruises(&|own| own.len().to_string()),
+                of_bruises(&|own| {
+                    let volumes = own.iter().map(|bruise| 1e9 * bruise.volume);
+                    volumes.fold(0.0, f64::max).to_string()
+                }),
+                own.static_loads.to_string(),
+                own.largest_static_force.to_string(),
+            ]
+        });
+    let rows: Vec<Vec<String>> = rows.collect();
+    csv_text(&header.map(str::to_owned), rows)
+}
+
+/// What came of a scene, for a terminal.
+#[must_use]
+pub fn text_of_scene(outcome: &SceneOutcome) -> String {
+    let step = &outcome.step;
+    let mut text = format!(
+        "{}\n\n{} fruit over {} s in {} steps of {} µs: peak forces of {} and {} at {} m/s err by \
+         {} %, absorbed energies by {} % of the impact energy.\n{} contacts, {} of them written; \
+         {} fruit left. The energy account closes to {} % of what was lost.\n\n",
+        outcome.title,
+        outcome.fruit,
+        outcome.end,
+        outcome.steps,
+        number(1e6 * step.time_step),
+        step.between[0],
+        step.between[1],
+        number(step.speed),
+        number(100.0 * step.peak_force_error),
+        number(100.0 * step.energy_error),
+        outcome.contacts,
+        outcome.written,
+        outcome.left,
+        number(100.0 * outcome.energy_closure.abs()),
+    );
+    if outcome.engine != Engine::Windfall.title() {
+        text += &format!("Moved by {}.\n\n", outcome.engine);
+    }
+    let header = [
+        "touched",
+        "impacts",
+        "fruit",
+        "peak force (N)",
+        "95 %",
+        "largest",
+        "impact speed (m/s)",
+        "95 %",
+        "largest",
+        "absorbed (mJ)",
+        "95 %",
+        "largest",
+        "static loads",
+        "largest (N)",
+    ];
+    let rows = outcome.partners.iter().map(|own| {
+        let mut row = vec![
+            own.name.clone(),
+            own.contacts.to_string(),
+            own.fruit.to_string(),
+        ];
+        row.extend(own.peak_force.map(number));
+        row.extend(own.impact_speed.map(number));
+        row.extend(own.absorbed_energy.map(|value| number(1e3 * value)));
+        row.extend([
+            own.static_loads.to_string(),
+            number(own.largest_static_force),
+        ]);
+        row
+    });
+    let rows: Vec<Vec<String>> = rows.collect();
+    text += &page_tables(&header.map(str::to_owned), &rows, &[0]);
+    if let Some(bruise) = &outcome.bruise {
+        text += &text_of_bruises(bruise);
+    }
+    for finding in &outcome.findings {
+        text += &format!("\n{}: {}\n", finding.code, finding.message);
+    }
+    text += "\n\nWritten: ";
+    let files: Vec<String> = outcome
+        .files
+        .iter()
+        .map(|file| file.display().to_string())
+        .collect();
+    text + &files.join(", ") + "\n"
+}
+
+/// Who is bruised, and by what.
+fn text_of_bruises(bruise: &BruiseOutcome) -> String {
+    let header = ["largest bruise above (mm³)", "fruit (%)", "95 % interval"];
+    let rows = bruise.limits.iter().map(|own| {
+        let [low, high] = own.interval.map(|end| number(100.0 * end));
+        vec![
+            number(1e9 * own.limit),
+            number(100.0 * own.share),
+            format!("{low} … {high}"),
+        ]
+    });
+    let rows: Vec<Vec<String>> = rows.collect();
+    let limits = page_tables(&header.map(str::to_owned), &rows, &[]);
+    let header = [
+        "bruised by",
+        "bruises",
+        "the largest of so many fruit",
+        "largest (mm³)",
+    ];
+    let rows = bruise.places.iter().map(|own| {
+        vec![
+            own.name.clone(),
+            own.bruises.to_string(),
+            own.fruit.to_string(),
+            number(1e9 * own.largest),
+        ]
+    });
+    let rows: Vec<Vec<String>> = rows.collect();
+    let places = page_tables(&header.map(str::to_owned), &rows, &[0]);
+    format!("\n\n{limits}\n\n{places}\n")
+}
+
+/// Contacts by what was touched, as CSV.
+///
+/// # Errors
+/// None in practice: the text is written to memory.
+pub fn csv_of_scene(outcome: &SceneOutcome) -> Result<String, Error> {
+    let levels = ["median", "p95", "max"];
+    let mut header = ["touched", "impacts", "fruit"].map(str::to_owned).to_vec();
+    for (name, unit) in [
+        ("peak_force", "N"),
+        ("impact_speed", "m_s"),
+        ("absorbed_energy", "J"),
+    ] {
+        header.extend(levels.map(|level| format!("{name}_{level}_{unit}")));
+    }
+    header.extend(["static_loads", "static_fruit", "largest_static_force_N"].map(str::to_owned));
+    let rows = outcome.partners.iter().map(|own| {
+        let mut row = vec![
+            own.name.clone(),
+            own.contacts.to_string(),
+            own.fruit.to_string(),
+        ];
+        let numbers = [own.peak_force, own.impact_speed, own.absorbed_energy];
+        row.extend(numbers.as_flattened().iter().map(f64::to_string));
+        row.extend([
+            own.static_loads.to_string(),
+            own.static_fruit.to_string(),
+            own.largest_static_force.to_string(),
+        ]);
+        row
+    });
+    csv_text(&header, rows)
+}

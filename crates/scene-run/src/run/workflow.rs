@@ -1,0 +1,358 @@
+//! A scene from its file to the contacts of each fruit.
+
+use crate::bruise::scene::{Blows, finding_of_blows};
+use crate::file::engine_kind::Engine;
+use crate::file::read::{ScenePlan, read_scene};
+use crate::file::step::checked_step;
+use crate::run::histogram::{HistogramOutcome, figure_of_histograms, histogram};
+use crate::run::outcome::{PartnerOutcome, SceneOutcome, StepOutcome, Tally, findings_of_range};
+use crate::run::run::{Mover, Own, SceneRun, SceneStart, stopped_scene as stopped};
+use crate::run::tables::fruit_table;
+use std::path::{Path, PathBuf};
+use windfall_draw::files::{FigureFolder, write_figure};
+use windfall_files::error::Error;
+use windfall_files::found::FindingOutcome;
+use windfall_files::on_threads::on_threads;
+use windfall_files::progress::Progress;
+use windfall_files::write_file::write_whole;
+use windfall_scene::bruise::damage::Bruise;
+use windfall_scene::energy::Energy;
+use windfall_scene::motion::time_step::Impact;
+use windfall_scene::scene::Scene;
+use windfall_scene::shape::wall::Shape;
+use windfall_scene::vector::{add, dot, length};
+
+/// What may be asked for besides the file.
+#[derive(Clone, Debug, Default)]
+pub struct SceneRequest {
+    /// Directory to write into; beside the file where it is left out.
+    pub out: Option<PathBuf>,
+    /// Number of threads; all cores where it is left out.
+    pub threads: Option<usize>,
+    /// What is to be done with a run that was stopped.
+    pub start: SceneStart,
+}
+
+/// What moves the fruit, and what is to be said of it.
+pub struct Moved<'a> {
+    /// The engine.
+    pub mover: &'a mut dyn Mover,
+    /// Its time step.
+    pub step: StepOutcome,
+    /// Its name and version.
+    pub engine: String,
+    /// What a reader must know of it.
+    pub findings: Vec<FindingOutcome>,
+    /// Lack of the energy account that is worth a word, where it is; 1.
+    pub large_closure: Option<f64>,
+}
+
+/// Runs a scene and writes the contacts and the fruit into a directory.
+///
+/// * `progress`: steps done, and all; where it does not go on the last checkpoint is kept
+///
+/// # Errors
+/// The file cannot be used; the result would mean nothing; the directory cannot be written,
+/// or holds a run that was stopped.
+pub fn run_scene(
+    path: &Path,
+    request: &SceneRequest,
+    progress: Progress,
+) -> Result<SceneOutcome, Error> {
+    let plan = read_scene(path)?;
+    let out = directory_of(path, request);
+    on_threads(request.threads, || {
+        Ok(run_plan(plan, &out, request.start, progress)?.outcome)
+    })
+}
+
+/// Where the results of a scene go.
+pub fn directory_of(path: &Path, request: &SceneRequest) -> PathBuf {
+    let out = request.out.clone();
+    out.unwrap_or_else(|| path.with_extension("run"))
+}
+
+/// What came of a scene, with the contacts that bruise.
+pub struct RunOfScene {
+    /// What came of it.
+    pub outcome: SceneOutcome,
+    /// Contacts that bruise, where the scene says what does.
+    pub blows: Option<Blows>,
+}
+
+/// Runs a scene that is read already, and writes what comes of it.
+///
+/// * `out`: directory to write into
+///
+/// # Errors
+/// As [`run_scene`].
+pub fn run_plan(
+    mut plan: ScenePlan,
+    out: &Path,
+    start: SceneStart,
+    progress: Progress,
+) -> Result<RunOfScene, Error> {
+    let step = time_step(&mut plan)?;
+    let moved = Moved {
+        mover: &mut Own,
+        step,
+        engine: Engine::Windfall.title().to_owned(),
+        findings: Vec::new(),
+        large_closure: None,
+    };
+    run_moved(&plan, moved, out, start, progress)
+}
+
+/// Runs a scene whose fruit something moves, and writes what comes of it.
+pub fn run_moved(
+    plan: &ScenePlan,
+    moved: Moved,
+    out: &Path,
+    start: SceneStart,
+    progress: Progress,
+) -> Result<RunOfScene, Error> {
+    std::fs::create_dir_all(out).map_err(|source| Error::FileAccess {
+        path: out.to_path_buf(),
+        action: "create",
+        source,
+    })?;
+    let mut run = SceneRun::begin(plan, out, start, moved.mover)?;
+    run.run_to_end(moved.mover, progress)?;
+    let last = moved.mover.step(&mut run.simulation)?;
+    for event in run.simulation.lasting() {
+        run.count(&event).map_err(|error| run.told(error))?;
+    }
+    let written = write_results(plan, &mut run, (&moved, &last), out);
+    let outcome = written.map_err(|error| run.told(error))?;
+    let blows = run.blows.take();
+    run.finish()?;
+    Ok(RunOfScene { outcome, blows })
+}
+
+/// Writes all but the table of contacts, whose name is the sign that all is there; what came
+/// of the run.
+fn write_results(
+    plan: &ScenePlan,
+    run: &mut SceneRun,
+    (moved, last): (&Moved, &Energy),
+    out: &Path,
+) -> Result<SceneOutcome, Error> {
+    run.table.sync()?;
+    let frames = run.frames.whole(&run.simulation, &run.tally)?;
+    let (simulation, tally) = (&run.simulation, &run.tally);
+    let bruised = plan.bruise.as_ref().zip(run.blows.as_ref());
+    let bruises = bruised.map(|(bruise, blows)| blows.bruises(bruise));
+    let [events, fruit, summary] =
+        ["events.csv", "fruit.csv", "scene.json"].map(|name| out.join(name));
+    let table = fruit_table(plan, tally, &simulation.fruit(), bruises.as_deref())?;
+    write_whole(&fruit, table.as_bytes())?;
+    let histograms = histograms_of(tally, bruises.as_deref());
+    let mut files = vec![events, fruit];
+    files.extend(frames);
+    files.push(summary.clone());
+    let figure = figure_of_histograms(&plan.title, &histograms);
+    files.extend(write_figure(&FigureFolder::of(out), "histograms", &figure)?);
+    let lacks = last.closure() - run.first_closure;
+    let energy_closure = lacks / last.lost().abs().max(f64::MIN_POSITIVE);
+    let outcome = SceneOutcome {
+        title: plan.title.clone(),
+        end: plan.end,
+        engine: moved.engine.clone(),
+        step: moved.step.clone(),
+        steps: (simulation.steps() - 1) * moved.mover.steps(),
+        fruit: plan.scene.fruit.len(),
+        waiting: simulation.waiting(),
+        left: tally.left(),
+        contacts: tally.contacts,
+        written: run.table.written(),
+        partners: PartnerOutcome::of(&plan.scene, tally),
+        histograms,
+        bruise: bruised.map(|(bruise, blows)| blows.outcome(bruise, &plan.scene)),
+        energy: last.into(),
+        energy_closure,
+        findings: findings_of(plan, run, moved, energy_closure),
+        files,
+    };
+    let json = serde_json::to_string_pretty(&outcome).map_err(|error| Error::ResultUnwritable {
+        item: plan.title.clone(),
+        detail: error.to_string(),
+    })?;
+    write_whole(&summary, (json + "\n").as_bytes())?;
+    Ok(outcome)
+}
+
+/// All that is to be doubted of a run.
+fn findings_of(
+    plan: &ScenePlan,
+    run: &SceneRun,
+    moved: &Moved,
+    closure: f64,
+) -> Vec<FindingOutcome> {
+    let mut findings = plan.findings.clone();
+    findings.extend(moved.findings.iter().cloned());
+    findings.extend(findings_of_range(
+        plan,
+        &run.tally,
+        run.simulation.waiting(),
+    ));
+    if let Some(blows) = &run.blows {
+        findings.extend(finding_of_blows(blows));
+        findings.extend(blows.finding_of_range());
+    }
+    if closure.abs() > moved.large_closure.unwrap_or(f64::INFINITY) {
+        findings.push(account(closure));
+    }
+    findings
+}
+
+/// What a large lack of the account of another engine means.
+fn account(closure: f64) -> FindingOutcome {
+    FindingOutcome {
+        code: "engine-account".to_owned(),
+        message: format!(
+            "what the engine's motion lost and what the contacts took differ by {:.1} %: frames are \
+             too far apart (--frame-steps), or the engine's contacts are not those of the scene",
+            100.0 * closure.abs()
+        ),
+    }
+}
+
+/// Of each fruit the hardest that it suffered.
+fn histograms_of(tally: &Tally, bruises: Option<&[Vec<Bruise>]>) -> Vec<HistogramOutcome> {
+    let fruit = tally.fruit.iter();
+    let forces = fruit
+        .clone()
+        .map(|own| own.hardest.map_or(0.0, |event| event.peak_force));
+    let energies = fruit.map(|own| own.absorbed[0]);
+    let mut all = vec![
+        histogram(
+            "largest peak force of a fruit",
+            "N",
+            &forces.collect::<Vec<f64>>(),
+        ),
+        histogram(
+            "largest absorbed energy of a contact of a fruit",
+            "J",
+            &energies.collect::<Vec<f64>>(),
+        ),
+    ];
+    if let Some(bruises) = bruises {
+        let largest = |own: &Vec<Bruise>| own.iter().map(|own| own.volume).fold(0.0, f64::max);
+        let volumes: Vec<f64> = bruises.iter().map(largest).collect();
+        all.push(histogram("largest bruise of a fruit", "m^3", &volumes));
+    }
+    all.into_iter().flatten().collect()
+}
+
+/// Sets the time step where it is automatic; what it does to the stiffest contact.
+pub fn time_step(plan: &mut ScenePlan) -> Result<StepOutcome, Error> {
+    let scene = &plan.scene;
+    let speed = fastest(scene);
+    let given = scene.time_step;
+    let mut found = StepOutcome::default();
+    for (&(a, b), interaction) in &scene.interactions {
+        let smallest = |material: usize| {
+            let own = scene
+                .fruit
+                .iter()
+                .filter(|fruit| fruit.material == material);
+            own.min_by(|x, y| x.least_felt_mass().total_cmp(&y.least_felt_mass()))
+        };
+        // Of two fruit half the mass and half the radius move.
+        let Some((fruit, share)) = (match (smallest(a), smallest(b)) {
+            (Some(x), Some(y)) => Some((
+                if x.least_felt_mass() < y.least_felt_mass() {
+                    x
+                } else {
+                    y
+                },
+                0.5,
+            )),
+            (own, None) | (None, own) => own.map(|own| (own, 1.0)),
+        }) else {
+            continue;
+        };
+        let impact = Impact {
+            interaction,
+            radius: share * fruit.radius,
+            mass: share * fruit.least_felt_mass(),
+            speed,
+        };
+        let (step, error) = match given > 0.0 {
+            true => (given, checked_step(plan, &impact, given, [a, b])?),
+            false => impact.step_for(plan.time_step_error).map_err(stopped)?,
+        };
+        let own = StepOutcome {
+            time_step: step,
+            between: [scene.materials[a].clone(), scene.materials[b].clone()],
+            speed,
+            contact_duration: error.duration,
+            peak_force_error: error.peak,
+            energy_error: error.energy,
+        };
+        let worse = match given > 0.0 {
+            true => error.peak > found.peak_force_error,
+            false => step < found.time_step,
+        };
+        if found.time_step == 0.0 || worse {
+            found = own;
+        }
+    }
+    if found.time_step == 0.0 {
+        return Err(stopped(windfall_scene::error::Error::Value {
+            what: "the number of contacts that can be",
+            value: 0.0,
+            problem: "nothing tells a time step: give time_step",
+        }));
+    }
+    plan.scene.time_step = found.time_step;
+    Ok(found)
+}
+
+/// Slowest impact that a time step is chosen for; m/s.
+const LEAST_SPEED: f64 = 0.5;
+
+/// The speed that a fruit can have at most by falling through the scene, or brings along; m/s.
+fn fastest(scene: &Scene) -> f64 {
+    let gravity = length(scene.gravity);
+    let height = |place: [f64; 3]| -dot(scene.gravity, place) / gravity.max(f64::MIN_POSITIVE);
+    let top = scene.fruit.iter().map(|fruit| height(fruit.place));
+    let top = top.fold(f64::NEG_INFINITY, f64::max);
+    let mut bottom = f64::INFINITY;
+    for wall in &scene.walls {
+        match &wall.shape {
+            Shape::Plane { point, .. } => bottom = bottom.min(height(*point)),
+            Shape::Plates(plates) => {
+                for plate in plates {
+                    for corner in plate.corners() {
+                        bottom = bottom.min(height(corner));
+                    }
+                }
+            }
+            Shape::Cylinder { start, end, .. } => {
+                bottom = bottom.min(height(*start)).min(height(*end));
+            }
+            Shape::Mesh { triangles } => {
+                for corner in triangles.iter().flatten() {
+                    bottom = bottom.min(height(*corner));
+                }
+            }
+        }
+    }
+    let fall = match (top - bottom).is_finite() {
+        true => (2.0 * gravity * (top - bottom).max(0.0)).sqrt(),
+        false => 0.0,
+    };
+    let brought = scene
+        .fruit
+        .iter()
+        .map(|fruit| length(fruit.velocity))
+        .fold(0.0, f64::max);
+    let belts = scene
+        .walls
+        .iter()
+        .map(|wall| length(add(wall.motion.velocity, wall.motion.surface_velocity)));
+    (fall + brought)
+        .max(belts.fold(0.0, f64::max))
+        .max(LEAST_SPEED)
+}

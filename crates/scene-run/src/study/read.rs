@@ -1,0 +1,170 @@
+//! A study's file → the scenes of its variants.
+
+use crate::file::key::needed;
+use crate::study::change::{move_named, set_value};
+use crate::study::file::{LevelFile, StudyFile, VaryFile};
+use std::path::{Path, PathBuf};
+use toml::Spanned;
+use toml_edit::DocumentMut;
+use windfall_campaign::settings::files::check_format;
+use windfall_files::error::Error;
+use windfall_files::text::toml_source::{TomlSource, invalid, missing, parse_source, read_source};
+
+/// A study, ready to run.
+#[derive(Clone, Debug)]
+pub struct StudyPlan {
+    /// Title.
+    pub title: String,
+    /// The scene's file.
+    pub scene: PathBuf,
+    /// How often each variant is run.
+    pub replicates: usize,
+    /// What is varied, and its levels.
+    pub factors: Vec<(String, Vec<String>)>,
+    /// Every combination of levels.
+    pub variants: Vec<VariantPlan>,
+}
+
+/// One combination of levels.
+#[derive(Clone, Debug)]
+pub struct VariantPlan {
+    /// Its name: those of its levels.
+    pub name: String,
+    /// Level of each factor.
+    pub levels: Vec<usize>,
+    /// Text of its scene.
+    pub text: String,
+}
+
+const TABLE: &str = "[[vary]]";
+/// Replicates where the file does not say.
+const REPLICATES: usize = 4;
+/// More variants than this are a mistake.
+const MOST: usize = 1000;
+
+/// Reads a study and makes its variants.
+///
+/// # Errors
+/// The file cannot be read, or a change cannot be made in its scene.
+pub fn read_study(path: &Path) -> Result<StudyPlan, Error> {
+    let source = read_source(path, "`windfall new scene-study DIR` writes an example")?;
+    let file: StudyFile = parse_source(&source)?;
+    check_format(&source, file.format.as_ref())?;
+    let scene = path.with_file_name(file.scene.get_ref());
+    let base = read_source(&scene, "`scene` in the study names it, beside the study")?;
+    let document: DocumentMut = base.text.parse().map_err(|error: toml_edit::TomlError| {
+        let problem = error.message().to_owned();
+        let key = ("the file", "scene");
+        invalid(
+            &source,
+            &file.scene.span(),
+            key,
+            file.scene.get_ref(),
+            problem,
+        )
+    })?;
+    let replicates = match &file.replicates {
+        Some(own) if *own.get_ref() == 0 => {
+            let problem = "each variant must run at least once".to_owned();
+            let key = ("the file", "replicates");
+            return Err(invalid(&source, &own.span(), key, "0", problem));
+        }
+        own => own.as_ref().map_or(REPLICATES, |own| *own.get_ref()),
+    };
+    let factors = factors_of(&source, &file.vary)?;
+    let all = factors.iter().map(|(_, levels)| levels.len());
+    let count = all.fold(1_usize, usize::saturating_mul);
+    if count > MOST {
+        let problem = format!("{count} combinations of levels are more than {MOST}");
+        let at = file.vary.first().map_or(0..0, Spanned::span);
+        return Err(invalid(&source, &at, (TABLE, "levels"), "", problem));
+    }
+    let variants = (0..count).map(|number| variant_of(&source, &file.vary, &document, number));
+    Ok(StudyPlan {
+        title: file
+            .title
+            .clone()
+            .unwrap_or_else(|| path.display().to_string()),
+        scene,
+        replicates,
+        factors,
+        variants: variants.collect::<Result<_, _>>()?,
+    })
+}
+
+fn factors_of(
+    source: &TomlSource,
+    vary: &[Spanned<VaryFile>],
+) -> Result<Vec<(String, Vec<String>)>, Error> {
+    let example = "levels = [{ name = \"steel\", set = { \"walls.pad.material\" = \"steel\" } }]";
+    let mut factors: Vec<(String, Vec<String>)> = Vec::new();
+    for own in vary {
+        let (file, at) = (own.get_ref(), own.span());
+        if file.levels.is_empty() {
+            let key = needed(TABLE, "levels", "at least one level", "", example);
+            return Err(missing(source, &at, &key, TABLE.to_owned()));
+        }
+        let mut levels: Vec<String> = Vec::new();
+        for level in &file.levels {
+            let name = &level.get_ref().name;
+            if levels.contains(name) {
+                let problem = "this level stands there twice".to_owned();
+                let key = (TABLE, "levels name");
+                return Err(invalid(source, &level.span(), key, name, problem));
+            }
+            levels.push(name.clone());
+        }
+        factors.push((file.name.get_ref().clone(), levels));
+    }
+    Ok(factors)
+}
+
+/// The last factor changes fastest.
+fn variant_of(
+    source: &TomlSource,
+    vary: &[Spanned<VaryFile>],
+    base: &DocumentMut,
+    number: usize,
+) -> Result<VariantPlan, Error> {
+    let mut rest = number;
+    let mut levels = vec![0; vary.len()];
+    for (place, own) in vary.iter().enumerate().rev() {
+        let count = own.get_ref().levels.len();
+        (levels[place], rest) = (rest % count, rest / count);
+    }
+    let mut document = base.clone();
+    let mut names = Vec::new();
+    for (own, &level) in vary.iter().zip(&levels) {
+        let level = &own.get_ref().levels[level];
+        change(source, &mut document, level)?;
+        names.push(level.get_ref().name.clone());
+    }
+    Ok(VariantPlan {
+        name: match names.is_empty() {
+            true => "as it is".to_owned(),
+            false => names.join(", "),
+        },
+        levels,
+        text: document.to_string(),
+    })
+}
+
+fn change(
+    source: &TomlSource,
+    document: &mut DocumentMut,
+    level: &Spanned<LevelFile>,
+) -> Result<(), Error> {
+    let file = level.get_ref();
+    for (path, value) in &file.set {
+        set_value(document, path, value.get_ref())
+            .map_err(|problem| invalid(source, &value.span(), (TABLE, "set"), path, problem))?;
+    }
+    if let Some(shift) = &file.shift {
+        for name in &shift.get_ref().names {
+            move_named(document, name, shift.get_ref().by).map_err(|problem| {
+                invalid(source, &shift.span(), (TABLE, "move"), name, problem)
+            })?;
+        }
+    }
+    Ok(())
+}

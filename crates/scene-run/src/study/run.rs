@@ -1,0 +1,335 @@
+//! `windfall scene study`: variants of a scene, run several times each, side by side.
+
+use crate::file::read::scene_of;
+use crate::frames::view::{PictureRequest, draw_scene, open_frames};
+use crate::run::run::SceneStart;
+use crate::run::workflow::run_plan;
+use crate::study::laws::{certain_laws, draw_laws};
+use crate::study::outcome::{FactorOutcome, Replicate, StudyOutcome, effects, variant};
+use crate::study::read::{StudyPlan, read_study};
+use crate::study::text::{csv_of_study, write_page};
+use std::ops::ControlFlow;
+use std::path::{Path, PathBuf};
+use std::sync::Mutex;
+use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
+use windfall_draw::files::file_name;
+use windfall_files::error::Error;
+use windfall_files::found::FindingOutcome;
+use windfall_files::on_threads::on_threads;
+use windfall_files::option_value::unusable;
+use windfall_files::progress::Progress;
+use windfall_files::provenance::{VERSION, digest_file, time_now};
+use windfall_files::text::toml_source::TomlSource;
+use windfall_files::write_file::write_whole;
+
+/// What may be asked for besides the file.
+#[derive(Clone, Debug, Default)]
+pub struct StudyRequest {
+    /// Directory to write into; beside the file where it is left out.
+    pub out: Option<PathBuf>,
+    /// Number of threads; all cores where it is left out.
+    pub threads: Option<usize>,
+}
+
+/// Directory of the runs in that of the study.
+const VARIANTS: &str = "variants";
+/// File by which that directory is known as a study's.
+const MARK: &str = "made_by_a_study.txt";
+/// Bruise models drawn from the uncertainty of their coefficients, and their seed: the same
+/// for all runs.
+const MODELS: (usize, u64) = (200, 1);
+/// Parts in which the progress of a run is told.
+const PARTS: usize = 100;
+
+/// Runs every variant of a study several times, and writes each run, a table, a page and a
+/// figure. A variant that fails is reported and takes nothing from the others.
+///
+/// * `progress`: parts of runs done, and all
+///
+/// # Errors
+/// The study cannot be read; no variant has a result; the directory cannot be written.
+pub fn run_study(
+    path: &Path,
+    request: &StudyRequest,
+    progress: Progress,
+) -> Result<StudyOutcome, Error> {
+    let plan = read_study(path)?;
+    let out = request.out.clone();
+    let out = out.unwrap_or_else(|| path.with_extension("study"));
+    clear(&out)?;
+    let runs = run_all(&plan, &out, request.threads, progress)?;
+    if let Some(Err(first)) = runs.iter().all(Result::is_err).then(|| &runs[0]) {
+        let problem = format!("all {} variants failed; the first: {first}", runs.len());
+        return Err(unusable(path.display().to_string(), problem));
+    }
+    let variants = plan.variants.iter().zip(&runs).enumerate();
+    let variants = variants.map(|(number, (own, run))| {
+        variant(
+            &own.name,
+            Path::new(VARIANTS).join(directory_of(number, &own.name)),
+            run,
+        )
+    });
+    let mut outcome = StudyOutcome {
+        title: plan.title.clone(),
+        made: [VERSION.to_owned(), time_now()],
+        digests: [digest_file(path)?, digest_file(&plan.scene)?],
+        replicates: plan.replicates,
+        factors: plan
+            .factors
+            .iter()
+            .map(|(name, levels)| FactorOutcome {
+                name: name.clone(),
+                levels: levels.clone(),
+            })
+            .collect(),
+        variants: variants.collect(),
+        effects: effects(&plan, &runs),
+        findings: findings(&plan, &runs),
+        files: ["study.json", "study.csv"]
+            .map(|name| out.join(name))
+            .into(),
+    };
+    let first = outcome.variants.iter().find(|own| own.failed.is_none());
+    if let Some(first) = first.map(|own| out.join(&own.directory).join(replicate_name(0))) {
+        draw_run(&first)?;
+    }
+    outcome.files.extend(write_page(&outcome, &out)?);
+    write_whole(&out.join("study.csv"), csv_of_study(&outcome)?.as_bytes())?;
+    let json = serde_json::to_string_pretty(&outcome).map_err(|error| Error::ResultUnwritable {
+        item: outcome.title.clone(),
+        detail: error.to_string(),
+    })?;
+    write_whole(&out.join("study.json"), (json + "\n").as_bytes())?;
+    Ok(outcome)
+}
+
+/// Name of the directory of a replicate.
+fn replicate_name(replicate: usize) -> String {
+    format!("replicate_{}", replicate + 1)
+}
+
+/// Draws a run at half time, if it has frames: the page shows it.
+fn draw_run(run: &Path) -> Result<(), Error> {
+    let Some(last) = open_frames(run)
+        .ok()
+        .and_then(|own| own.frames.last().map(|own| own.time))
+    else {
+        return Ok(());
+    };
+    let request = PictureRequest {
+        time: Some(0.5 * last),
+        ..PictureRequest::default()
+    };
+    draw_scene(run, &request).map(|_| ())
+}
+
+/// Takes away what an earlier run of a study left: nothing of it is to be taken for new. A
+/// directory of runs that no study made is refused.
+fn clear(out: &Path) -> Result<(), Error> {
+    let absent = |error: &std::io::Error| error.kind() == std::io::ErrorKind::NotFound;
+    let variants = out.join(VARIANTS);
+    let mark = variants.join(MARK);
+    if variants.exists() && !mark.exists() {
+        return Err(Error::AlreadyThere { path: variants });
+    }
+    for name in ["study.json", "study.csv", "study.html"] {
+        let path = out.join(name);
+        match std::fs::remove_file(&path) {
+            Err(error) if !absent(&error) => return Err(failed(&path, "replace", error)),
+            _ => {}
+        }
+    }
+    match std::fs::remove_dir_all(&variants) {
+        Err(error) if !absent(&error) => return Err(failed(&variants, "replace", error)),
+        _ => {}
+    }
+    std::fs::create_dir_all(&variants).map_err(|error| failed(&variants, "create", error))?;
+    write_whole(
+        &mark,
+        b"Runs of windfall scene study; the next one replaces them.\n",
+    )
+}
+
+fn failed(path: &Path, action: &'static str, source: std::io::Error) -> Error {
+    Error::FileAccess {
+        path: path.to_path_buf(),
+        action,
+        source,
+    }
+}
+
+fn directory_of(number: usize, name: &str) -> String {
+    format!("{:02}_{}", number + 1, file_name(name))
+}
+
+/// The runs of each variant, or why one of them failed.
+type Runs = Vec<Result<Vec<Replicate>, String>>;
+
+/// All runs, each on its own thread as far as there are threads for all.
+fn run_all(
+    plan: &StudyPlan,
+    out: &Path,
+    threads: Option<usize>,
+    progress: Progress,
+) -> Result<Runs, Error> {
+    let all = plan.variants.len() * plan.replicates;
+    let cores = || std::thread::available_parallelism().map_or(1, usize::from);
+    let threads = threads.filter(|own| *own > 0).unwrap_or_else(cores);
+    let workers = threads.min(all).max(1);
+    let each = (threads / workers).max(1);
+    let (next, done, stopped) = (
+        AtomicUsize::new(0),
+        AtomicUsize::new(0),
+        AtomicBool::new(false),
+    );
+    let results: Mutex<Vec<Option<Result<Replicate, String>>>> = Mutex::new(vec![None; all]);
+    let work = || {
+        loop {
+            let job = next.fetch_add(1, Ordering::Relaxed);
+            if job >= all || stopped.load(Ordering::Relaxed) {
+                return;
+            }
+            let told = AtomicUsize::new(0);
+            let tell = |steps: usize, of: usize| {
+                let part = PARTS * steps / of.max(1);
+                let before = told.swap(part, Ordering::Relaxed);
+                let sum = done.fetch_add(part - before.min(part), Ordering::Relaxed);
+                let sum = sum + part - before.min(part);
+                if progress(sum, PARTS * all).is_break() {
+                    stopped.store(true, Ordering::Relaxed);
+                }
+                match stopped.load(Ordering::Relaxed) {
+                    true => ControlFlow::Break(()),
+                    false => ControlFlow::Continue(()),
+                }
+            };
+            let result = on_threads(Some(each), || run_one(plan, out, job, &tell));
+            let result = result.map_err(|error| error.to_string());
+            if let Ok(mut results) = results.lock() {
+                results[job] = Some(result);
+            }
+        }
+    };
+    std::thread::scope(|scope| {
+        for _ in 0..workers {
+            scope.spawn(work);
+        }
+    });
+    let results = results.into_inner().unwrap_or_default();
+    let runs = results.chunks(plan.replicates).map(|own| {
+        let own = own
+            .iter()
+            .cloned()
+            .map(|run| run.unwrap_or_else(|| Err("it did not run".to_owned())));
+        own.collect::<Result<Vec<Replicate>, String>>()
+    });
+    match stopped.into_inner() {
+        true => Err(Error::Cancelled),
+        false => Ok(runs.collect()),
+    }
+}
+
+/// One run: a variant with another seed, and its laws drawn anew where there are several.
+fn run_one(
+    plan: &StudyPlan,
+    out: &Path,
+    job: usize,
+    progress: Progress,
+) -> Result<Replicate, Error> {
+    let (number, replicate) = (job / plan.replicates, job % plan.replicates);
+    let own = &plan.variants[number];
+    let folder = out.join(VARIANTS).join(directory_of(number, &own.name));
+    let folder = folder.join(replicate_name(replicate));
+    std::fs::create_dir_all(&folder).map_err(|error| failed(&folder, "create", error))?;
+    let text = with_seed(&own.text, replicate as u64);
+    write_whole(&folder.join("scene.toml"), text.as_bytes())?;
+    let mut scene = scene_of(&TomlSource {
+        path: plan.scene.clone(),
+        text,
+    })?;
+    if plan.replicates > 1 {
+        draw_laws(&mut scene, replicate as u64 + 1)?;
+    }
+    let limits = scene.bruise.as_ref().map(|own| own.limits.clone());
+    let run = run_plan(scene, &folder, SceneStart::Restart, progress)?;
+    let bruise = run.outcome.bruise.as_ref();
+    Ok(Replicate {
+        above: run.blows.as_ref().map_or_else(
+            || vec![Vec::new(); MODELS.0 + 1],
+            |blows| blows.counts_above(MODELS),
+        ),
+        limits: limits.unwrap_or_default(),
+        fruit: run.outcome.fruit,
+        contacts: run.outcome.contacts,
+        waiting: run.outcome.waiting,
+        left: run.outcome.left,
+        mean_largest: bruise.map_or(0.0, |own| own.mean_largest),
+        places: bruise.map_or_else(Vec::new, |own| own.places.clone()),
+        findings: run.outcome.findings,
+    })
+}
+
+/// The text with the seed of a replicate: the scene's own, and those that follow it.
+fn with_seed(text: &str, replicate: u64) -> String {
+    let Ok(mut document) = text.parse::<toml_edit::DocumentMut>() else {
+        return text.to_owned();
+    };
+    let table = document.entry("scene").or_insert_with(toml_edit::table);
+    let seed = table.get("seed").and_then(toml_edit::Item::as_integer);
+    let seed = seed.unwrap_or(1).saturating_add_unsigned(replicate);
+    if let Some(table) = table.as_table_like_mut() {
+        table.insert("seed", toml_edit::value(seed));
+    }
+    document.to_string()
+}
+
+/// Findings of all runs, each code once for a variant, and those of the study.
+fn findings(plan: &StudyPlan, runs: &[Result<Vec<Replicate>, String>]) -> Vec<FindingOutcome> {
+    let mut all: Vec<FindingOutcome> = Vec::new();
+    let tell = |code: &str, message: String| FindingOutcome {
+        code: code.to_owned(),
+        message,
+    };
+    for (own, run) in plan.variants.iter().zip(runs) {
+        match run {
+            Err(problem) => all.push(tell("variant-failed", format!("{}: {problem}", own.name))),
+            Ok(replicates) => {
+                let first = replicates.first();
+                for of in first.into_iter().flat_map(|own| &own.findings) {
+                    // Each code once, of the first variant that has it; the runs have all.
+                    if all.iter().any(|known| known.code == of.code) {
+                        continue;
+                    }
+                    let message = format!("{}, for one: {}", own.name, of.message);
+                    all.push(tell(&of.code, message));
+                }
+            }
+        }
+    }
+    if plan.replicates == 1 {
+        all.push(tell(
+            "one-replicate",
+            "each variant ran once: that laws are uncertain, and that other places and paths \
+             would have come, is not in the intervals; set replicates to 4 or more"
+                .to_owned(),
+        ));
+    }
+    let text = plan.variants.first().map(|own| own.text.clone());
+    let scene = text.and_then(|text| {
+        let path = plan.scene.clone();
+        scene_of(&TomlSource { path, text }).ok()
+    });
+    let certain = scene.as_ref().map_or_else(Vec::new, certain_laws);
+    if !certain.is_empty() {
+        all.push(tell(
+            "law-certain",
+            format!(
+                "the law of {} has no stated uncertainty (no card, or one without covariance): \
+                 the intervals take it as certain",
+                certain.join("; of ")
+            ),
+        ));
+    }
+    all
+}

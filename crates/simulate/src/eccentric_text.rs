@@ -1,0 +1,158 @@
+//! Simulated drops of planar bodies and their motions as text, CSV and JSON.
+
+use crate::drop_text::{Row, column, given, impact_csv, impact_table, plate_text, rows};
+use crate::eccentric::{BodyOutcome, SimulatedEccentricBounce, SimulatedEccentricDrop};
+use windfall_files::error::Error;
+use windfall_files::named::Named;
+use windfall_files::table::write::csv_text;
+use windfall_identify::eccentric::simulate::EccentricTrajectory;
+
+fn eccentric_rows(impact: &SimulatedEccentricBounce) -> Vec<Row> {
+    let mut out = rows(&impact.bounce);
+    out.extend([
+        ("rotation", Some(impact.rotation), "rad"),
+        ("lever_arm", Some(impact.lever_arm), "m"),
+        (
+            "effective_mass_factor",
+            Some(impact.effective_mass_factor),
+            "1",
+        ),
+        (
+            "angular_velocity_before",
+            Some(impact.angular_velocity_before),
+            "rad/s",
+        ),
+        ("angular_velocity", impact.angular_velocity, "rad/s"),
+        (
+            "tangential_velocity_before",
+            Some(impact.tangential_velocity_before),
+            "m/s",
+        ),
+        ("tangential_velocity", impact.tangential_velocity, "m/s"),
+        ("friction_impulse", Some(impact.friction_impulse), "N s"),
+        (
+            "translation_energy_before",
+            Some(impact.translation_energy_before),
+            "J",
+        ),
+        (
+            "rotation_energy_before",
+            Some(impact.rotation_energy_before),
+            "J",
+        ),
+        ("translation_energy", impact.translation_energy, "J"),
+        ("rotation_energy", impact.rotation_energy, "J"),
+        ("contact_energy", Some(impact.contact_energy), "J"),
+        ("sliding_energy", Some(impact.sliding_energy), "J"),
+        ("support_energy", Some(impact.support_energy), "J"),
+    ]);
+    out
+}
+
+fn columns(drop: &SimulatedEccentricDrop) -> Vec<Vec<Row>> {
+    drop.impacts.iter().map(eccentric_rows).collect()
+}
+
+/// A simulated drop of a planar body as text: a column for each impact.
+#[must_use]
+pub fn text_of_eccentric_drop(drop: &SimulatedEccentricDrop) -> String {
+    let rest = match drop.at_rest {
+        true => "\nThe fruit then stays on the plate.\n",
+        false => "",
+    };
+    format!(
+        "simulated: {}, contact ends at {}\n{} of {} kg, from {} m under {} m/s^2; {}\n\
+         moment of inertia {} kg m^2, friction {}; at release the contact would feel {} of the \
+         mass\n\n{}\n{rest}",
+        drop.law,
+        drop.end,
+        shape_text(&drop.body),
+        given(drop.mass),
+        given(drop.height),
+        given(drop.gravity),
+        plate_text(drop.plate.as_ref()),
+        given(drop.body.inertia),
+        given(drop.body.friction),
+        given(drop.effective_mass_factor),
+        impact_table(&columns(drop), &drop.intervals)
+    )
+}
+
+fn shape_text(body: &BodyOutcome) -> String {
+    let angle = given(body.angle.to_degrees());
+    match (body.radius, body.offset, body.semi_axes) {
+        (Some(radius), Some(offset), _) => format!(
+            "ball of radius {} m, centre of mass {} m off the centre at {angle}° from straight down,",
+            given(radius),
+            given(offset)
+        ),
+        (_, _, Some([a, b])) => format!(
+            "ellipse of semi-axes {} m and {} m, tilted by {angle}°,",
+            given(a),
+            given(b)
+        ),
+        _ => "body".to_owned(),
+    }
+}
+
+/// A simulated drop of a planar body as CSV, one row per impact, units in the
+/// header.
+///
+/// # Errors
+/// None in practice: the text is written to memory.
+pub fn csv_of_eccentric_drop(drop: &SimulatedEccentricDrop) -> Result<String, Error> {
+    impact_csv(&columns(drop), &drop.intervals)
+}
+
+/// Columns of a motion: name, unit, values.
+fn motion_columns(motion: &EccentricTrajectory) -> [(&'static str, &'static str, &[f64]); 12] {
+    [
+        ("time", "s", &motion.times),
+        ("contact_force", "N", &motion.contact_force),
+        ("friction_force", "N", &motion.friction_force),
+        ("support_force", "N", &motion.support_force),
+        ("height_of_centre_of_mass", "m", &motion.height),
+        ("velocity", "m/s", &motion.velocity),
+        ("rotation", "rad", &motion.rotation),
+        ("angular_velocity", "rad/s", &motion.angular_velocity),
+        (
+            "tangential_displacement",
+            "m",
+            &motion.tangential_displacement,
+        ),
+        ("tangential_velocity", "m/s", &motion.tangential_velocity),
+        ("plate_displacement", "m", &motion.plate_displacement),
+        ("plate_velocity", "m/s", &motion.plate_velocity),
+    ]
+}
+
+/// The motion of a planar body as CSV; empty after it has come to stay.
+///
+/// # Errors
+/// None in practice: the text is written to memory.
+pub fn csv_of_eccentric_motion(motion: &EccentricTrajectory) -> Result<String, Error> {
+    let columns = motion_columns(motion);
+    let header = columns.map(|(name, unit, _)| column(name, unit));
+    let number = |value: f64| match value.is_finite() {
+        true => value.to_string(),
+        false => String::new(),
+    };
+    let rows =
+        (0..motion.times.len()).map(|i| columns.map(|(_, _, values)| number(values[i])).to_vec());
+    csv_text(&header, rows)
+}
+
+/// A drop and its motion as JSON: the keys of the drop, and `motion`.
+#[must_use]
+pub fn json_of_eccentric_motion(
+    drop: &SimulatedEccentricDrop,
+    motion: &EccentricTrajectory,
+) -> serde_json::Value {
+    let mut value = serde_json::json!(drop);
+    let columns = motion_columns(motion).map(|(name, _, values)| (name.to_owned(), values));
+    if let Some(keys) = value.as_object_mut() {
+        let columns = serde_json::json!(Named(columns.to_vec()));
+        keys.insert("motion".to_owned(), columns);
+    }
+    value
+}

@@ -1,0 +1,123 @@
+//! What a comparison of groups finds.
+
+use crate::compare::group_outcome::GroupOutcome;
+use serde::Serialize;
+use windfall_files::found::FindingOutcome;
+
+/// Groups compared.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct CompareOutcome {
+    /// The column of values.
+    pub value: String,
+    /// Columns that group the rows.
+    pub by: Vec<String>,
+    /// The column that pairs them.
+    pub paired: Option<String>,
+    /// Confidence of all intervals.
+    pub confidence: f64,
+    /// The groups.
+    pub groups: Vec<LetteredGroup>,
+    /// Analysis of variance, for groups that are not paired.
+    pub anova: Option<AnovaTable>,
+    /// Welch's analysis of variance.
+    pub welch: Option<RatioTest>,
+    /// Levene's test of equal variances (about means).
+    pub levene: Option<RatioTest>,
+    /// Brown and Forsythe's (about medians).
+    pub brown_forsythe: Option<RatioTest>,
+    /// Bartlett's.
+    pub bartlett: Option<StatisticTest>,
+    /// Shapiro and Wilk's test of the values less their group's mean, or of the
+    /// differences of pairs.
+    pub shapiro_wilk: Option<StatisticTest>,
+    /// How pairs of groups are compared.
+    pub method: &'static str,
+    /// Every pair of groups.
+    pub pairs: Vec<PairOutcome>,
+    /// What has to be said beside the numbers.
+    pub findings: Vec<FindingOutcome>,
+}
+
+/// A group with the letters that say from which it differs.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct LetteredGroup {
+    /// What its values look like.
+    #[serde(flatten)]
+    pub group: GroupOutcome,
+    /// Groups that share a letter do not differ.
+    pub letters: String,
+}
+
+/// A one-way analysis of variance.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct AnovaTable {
+    /// Sum of squares between groups.
+    pub between_ss: f64,
+    /// Its degrees of freedom.
+    pub between_df: f64,
+    /// Sum of squares within groups.
+    pub within_ss: f64,
+    /// Its degrees of freedom.
+    pub within_df: f64,
+    /// Ratio of mean squares.
+    pub f: f64,
+    /// Its probability.
+    pub p: f64,
+    /// Share between groups, η².
+    pub eta_squared: f64,
+    /// The same without bias, ω².
+    pub omega_squared: f64,
+    /// Standard deviation within groups.
+    pub residual_sd: f64,
+}
+
+/// A ratio and its probability.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct RatioTest {
+    /// F.
+    pub f: f64,
+    /// Degrees of freedom above.
+    pub df1: f64,
+    /// Degrees of freedom below.
+    pub df2: f64,
+    /// Its probability.
+    pub p: f64,
+}
+
+/// A statistic and its probability.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct StatisticTest {
+    /// The statistic.
+    pub statistic: f64,
+    /// Degrees of freedom, where it has any.
+    pub df: Option<f64>,
+    /// Its probability.
+    pub p: f64,
+}
+
+/// Two groups.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct PairOutcome {
+    /// The first group.
+    pub first: String,
+    /// The second.
+    pub second: String,
+    /// Mean of the second less mean of the first.
+    pub difference: f64,
+    /// Its standard error.
+    pub se: f64,
+    /// Student's t, or the studentised range for more than two groups.
+    pub statistic: f64,
+    /// Degrees of freedom.
+    pub df: f64,
+    /// Probability, adjusted for all pairs.
+    pub p: f64,
+    /// Lower end of the interval.
+    pub low: f64,
+    /// Upper end.
+    pub high: f64,
+    /// Hedges' g: the difference in standard deviations.
+    pub hedges_g: f64,
+    /// Pairs behind a paired comparison.
+    pub n_pairs: Option<usize>,
+}

@@ -1,0 +1,415 @@
+//! `windfall compare`: groups of a table against each other.
+
+use crate::compare::group_outcome::{group_outcomes, missing_findings, statistics_error};
+use crate::compare::outcome::{
+    AnovaTable, CompareOutcome, LetteredGroup, PairOutcome, RatioTest, StatisticTest,
+};
+use crate::compare::pairs::{PairMethod, compare_paired, compare_pairs, shared};
+use crate::compare::summary::check_confidence;
+use crate::regress::findings::finding;
+use std::path::PathBuf;
+use windfall_files::error::Error;
+use windfall_files::found::FindingOutcome;
+use windfall_files::option_value::unusable;
+use windfall_files::table::data::{Data, read_data};
+use windfall_statistics::accurate_sum::mean;
+use windfall_statistics::compare::compact_letters::compact_letters;
+use windfall_statistics::compare::equal_variance::{bartlett, brown_forsythe, levene};
+use windfall_statistics::compare::group_summary::{Group, Groups, split_groups};
+use windfall_statistics::compare::one_way_anova::{FTest, one_way_anova, welch_anova};
+use windfall_statistics::residuals::normality::shapiro_wilk;
+
+/// What `windfall compare` is asked.
+#[derive(Clone, Debug, PartialEq)]
+pub struct CompareRequest {
+    /// The table.
+    pub table: PathBuf,
+    /// The column of values.
+    pub value: String,
+    /// Columns that group the rows.
+    pub by: Vec<String>,
+    /// Column of specimens that were measured in every group.
+    pub paired: Option<String>,
+    /// Column of specimens measured several times within a group: their means
+    /// are compared.
+    pub specimen: Option<String>,
+    /// How pairs of groups are compared.
+    pub method: PairMethod,
+    /// Confidence of all intervals.
+    pub confidence: f64,
+}
+
+/// Columns whose names say that rows may repeat a specimen.
+const SPECIMEN_COLUMNS: [&str; 5] = ["specimen", "fruit", "sample", "specimen_id", "fruit_id"];
+
+/// Compares groups of a table.
+///
+/// # Errors
+/// The table cannot be read, a column is not there or holds text, fewer than two
+/// groups, too few values, or no specimen that two groups share.
+pub fn compare_groups(request: &CompareRequest) -> Result<CompareOutcome, Error> {
+    check_confidence(request.confidence)?;
+    let data = read_data(&request.table)?;
+    let by: Vec<&str> = request.by.iter().map(String::as_str).collect();
+    let mut groups = split_groups(&data.table, &by, &request.value).map_err(Error::Statistics)?;
+    let mut findings = missing_findings(&groups, &request.value, &request.by, &data.lines);
+    findings.extend(drop_empty(&mut groups));
+    if groups.groups.len() < 2 {
+        let found = groups.groups.first().map(|group| group.levels.join(", "));
+        return Err(unusable(
+            "--by",
+            format!(
+                "{} has one group with values ({}); a comparison needs at least two",
+                request.by.join(", "),
+                found.unwrap_or_else(|| "none".to_owned())
+            ),
+        ));
+    }
+    match (&request.paired, &request.specimen) {
+        (Some(column), _) => paired_outcome(request, &data, &groups, column, findings),
+        (None, Some(column)) => {
+            let means = specimen_means(&data, &groups, column)?;
+            findings.extend(averaged_finding(&groups, &means, column));
+            let groups: Vec<Group> = groups
+                .groups
+                .iter()
+                .zip(&means)
+                .map(|(group, means)| Group {
+                    values: means.iter().map(|(_, value)| *value).collect(),
+                    ..group.clone()
+                })
+                .collect();
+            unpaired_outcome(request, &groups, findings)
+        }
+        (None, None) => {
+            findings.extend(repeated_finding(&data, &groups)?);
+            unpaired_outcome(request, &groups.groups, findings)
+        }
+    }
+}
+
+fn drop_empty(groups: &mut Groups) -> Option<FindingOutcome> {
+    let empty = groups.groups.iter().filter(|group| group.values.is_empty());
+    let empty: Vec<String> = empty.map(|group| group.levels.join(", ")).collect();
+    groups.groups.retain(|group| !group.values.is_empty());
+    (!empty.is_empty()).then(|| {
+        finding(
+            "empty",
+            format!("no value in {}, left out", empty.join("; ")),
+        )
+    })
+}
+
+/// Groups of independent values.
+fn unpaired_outcome(
+    request: &CompareRequest,
+    groups: &[Group],
+    mut findings: Vec<FindingOutcome>,
+) -> Result<CompareOutcome, Error> {
+    let described = group_outcomes(groups, request.confidence)?;
+    let names: Vec<String> = described.iter().map(|group| group.group.clone()).collect();
+    let values: Vec<Vec<f64>> = groups.iter().map(|group| group.values.clone()).collect();
+    let anova = one_way_anova(&values).map_err(statistics_error)?;
+    let (pairs, method) = compare_pairs(&names, &values, request.method, request.confidence)?;
+    let residuals: Vec<f64> = values
+        .iter()
+        .flat_map(|group| {
+            let centre = mean(group).value();
+            group.iter().map(move |value| value - centre)
+        })
+        .collect();
+    let brown_forsythe = brown_forsythe(&values).ok().map(ratio);
+    let shapiro_wilk = shapiro_of(&residuals);
+    findings.extend(variance_finding(brown_forsythe, request));
+    findings.extend(normality_finding(
+        shapiro_wilk,
+        "values about their group means",
+    ));
+    findings.extend(single_finding(&names, &values));
+    let letters = letters_of(&names, groups, &pairs, request.confidence);
+    Ok(CompareOutcome {
+        value: request.value.clone(),
+        by: request.by.clone(),
+        paired: None,
+        confidence: request.confidence,
+        groups: lettered(described, letters),
+        anova: Some(AnovaTable {
+            between_ss: anova.between,
+            between_df: anova.between_df,
+            within_ss: anova.within,
+            within_df: anova.within_df,
+            f: anova.f,
+            p: anova.p,
+            eta_squared: anova.eta_squared,
+            omega_squared: anova.omega_squared,
+            residual_sd: anova.residual_deviation,
+        }),
+        welch: welch_anova(&values).ok().map(ratio),
+        levene: levene(&values).ok().map(ratio),
+        brown_forsythe,
+        bartlett: bartlett(&values).ok().map(|test| StatisticTest {
+            statistic: test.statistic,
+            df: Some(test.df),
+            p: test.p,
+        }),
+        shapiro_wilk,
+        method,
+        pairs,
+        findings,
+    })
+}
+
+/// The same specimens in every group.
+fn paired_outcome(
+    request: &CompareRequest,
+    data: &Data,
+    groups: &Groups,
+    column: &str,
+    mut findings: Vec<FindingOutcome>,
+) -> Result<CompareOutcome, Error> {
+    let described = group_outcomes(&groups.groups, request.confidence)?;
+    let names: Vec<String> = described.iter().map(|group| group.group.clone()).collect();
+    let means = specimen_means(data, groups, column)?;
+    findings.extend(averaged_finding(groups, &means, column));
+    findings.extend(partner_finding(&means, column));
+    let pairs = compare_paired(&names, &means, request.confidence)?;
+    let differences: Vec<f64> = match means.as_slice() {
+        [first, second] => {
+            let (a, b) = shared(first, second);
+            a.iter().zip(&b).map(|(a, b)| b - a).collect()
+        }
+        _ => Vec::new(),
+    };
+    let shapiro_wilk = shapiro_of(&differences);
+    findings.extend(normality_finding(shapiro_wilk, "differences of pairs"));
+    if names.len() > 2 {
+        findings.push(finding(
+            "mixed-model",
+            format!(
+                "{} groups of the same specimens: a mixed model uses all of them at once \
+                 (windfall regress --random {column})",
+                names.len()
+            ),
+        ));
+    }
+    let letters = letters_of(&names, &groups.groups, &pairs, request.confidence);
+    Ok(CompareOutcome {
+        value: request.value.clone(),
+        by: request.by.clone(),
+        paired: Some(column.to_owned()),
+        confidence: request.confidence,
+        groups: lettered(described, letters),
+        anova: None,
+        welch: None,
+        levene: None,
+        brown_forsythe: None,
+        bartlett: None,
+        shapiro_wilk,
+        method: match names.len() {
+            2 => "paired t test",
+            _ => "paired t tests, p by Holm, intervals by Bonferroni",
+        },
+        pairs,
+        findings,
+    })
+}
+
+/// Mean of each specimen in each group, in the order of their names.
+fn specimen_means(
+    data: &Data,
+    groups: &Groups,
+    column: &str,
+) -> Result<Vec<Vec<(String, f64)>>, Error> {
+    let names = specimen_names(data, column)?;
+    let of_group = |group: &Group| {
+        let rows = group.rows.iter().zip(&group.values);
+        let mut named: Vec<(String, f64)> = rows
+            .filter_map(|(row, value)| names[*row].clone().map(|name| (name, *value)))
+            .collect();
+        named.sort_by(|a, b| a.0.cmp(&b.0));
+        named
+            .chunk_by(|a, b| a.0 == b.0)
+            .map(|chunk| {
+                let values: Vec<f64> = chunk.iter().map(|(_, value)| *value).collect();
+                (chunk[0].0.clone(), mean(&values).value())
+            })
+            .collect()
+    };
+    Ok(groups.groups.iter().map(of_group).collect())
+}
+
+/// Specimen of each row; `None` where the cell is missing.
+fn specimen_names(data: &Data, column: &str) -> Result<Vec<Option<String>>, Error> {
+    use windfall_statistics::table::Cells;
+    let column = data.table.column(column).map_err(Error::Statistics)?;
+    Ok(match &column.cells {
+        Cells::Numbers(numbers) => numbers
+            .iter()
+            .map(|number| (!number.is_nan()).then(|| number.to_string()))
+            .collect(),
+        Cells::Categories(categories) => categories
+            .codes
+            .iter()
+            .map(|code| code.map(|code| categories.levels[code].clone()))
+            .collect(),
+    })
+}
+
+fn averaged_finding(
+    groups: &Groups,
+    means: &[Vec<(String, f64)>],
+    column: &str,
+) -> Option<FindingOutcome> {
+    let rows: usize = groups.groups.iter().map(|group| group.values.len()).sum();
+    let kept: usize = means.iter().map(Vec::len).sum();
+    (kept < rows).then(|| {
+        finding(
+            "averaged",
+            format!("{rows} values were averaged to {kept}, one per {column} and group"),
+        )
+    })
+}
+
+/// Specimens that are not in every group.
+fn partner_finding(means: &[Vec<(String, f64)>], column: &str) -> Option<FindingOutcome> {
+    let mut all: Vec<&String> = means.iter().flatten().map(|(name, _)| name).collect();
+    all.sort_unstable();
+    let alone: Vec<&str> = all
+        .chunk_by(|a, b| a == b)
+        .filter(|same| same.len() < means.len())
+        .map(|same| same[0].as_str())
+        .collect();
+    (!alone.is_empty()).then(|| {
+        let shown: Vec<&str> = alone.iter().take(8).copied().collect();
+        let more = if alone.len() > 8 { ", …" } else { "" };
+        finding(
+            "unpaired",
+            format!(
+                "{} of {column} are not in every group and are left out of pairs without them: {}{more}",
+                alone.len(),
+                shown.join(", ")
+            ),
+        )
+    })
+}
+
+/// Rows that look like repeats of one specimen.
+fn repeated_finding(data: &Data, groups: &Groups) -> Result<Option<FindingOutcome>, Error> {
+    let known = |name: &str| SPECIMEN_COLUMNS.contains(&name.to_lowercase().as_str());
+    let mut columns = data.table.columns.iter();
+    let Some(column) = columns.find(|column| known(&column.name)) else {
+        return Ok(None);
+    };
+    let means = specimen_means(data, groups, &column.name)?;
+    let rows: usize = groups.groups.iter().map(|group| group.values.len()).sum();
+    let within: usize = means.iter().map(Vec::len).sum();
+    let mut names: Vec<&String> = means.iter().flatten().map(|(name, _)| name).collect();
+    names.sort_unstable();
+    names.dedup();
+    let name = &column.name;
+    if names.is_empty() {
+        return Ok(None);
+    }
+    if within < rows {
+        return Ok(Some(finding(
+            "repeated-specimens",
+            format!(
+                "{rows} values are of {within} {name} within groups: they are not independent, and \
+                 p-values and intervals here are too small; compare their means with --specimen \
+                 {name}, or use a mixed model: windfall regress --random {name}"
+            ),
+        )));
+    }
+    Ok((names.len() < within).then(|| {
+        finding(
+            "shared-specimens",
+            format!(
+                "the same names of {name} stand in several groups: if they are the same {name}, \
+                 compare with --paired {name}"
+            ),
+        )
+    }))
+}
+
+/// p below which a test of an assumption is worth a word.
+const NOTABLE: f64 = 0.05;
+
+fn variance_finding(test: Option<RatioTest>, request: &CompareRequest) -> Option<FindingOutcome> {
+    let p = test.map(|test| test.p).filter(|p| *p < NOTABLE)?;
+    let advice = match request.method {
+        PairMethod::Tukey => "read Welch's test and --pairs games-howell",
+        _ => "read Welch's test rather than the analysis of variance",
+    };
+    Some(finding(
+        "unequal-variances",
+        format!("the groups' variances differ (Brown-Forsythe p {p:.2e}): {advice}"),
+    ))
+}
+
+fn normality_finding(test: Option<StatisticTest>, what: &str) -> Option<FindingOutcome> {
+    let p = test.map(|test| test.p).filter(|p| *p < NOTABLE)?;
+    Some(finding(
+        "not-normal",
+        format!("the {what} are not normal (Shapiro-Wilk p {p:.2e}); look for outliers or skew"),
+    ))
+}
+
+fn single_finding(names: &[String], groups: &[Vec<f64>]) -> Option<FindingOutcome> {
+    let single: Vec<&str> = names
+        .iter()
+        .zip(groups)
+        .filter(|(_, group)| group.len() < 2)
+        .map(|(name, _)| name.as_str())
+        .collect();
+    (!single.is_empty()).then(|| {
+        finding(
+            "single",
+            format!(
+                "one value only in {}: no variance of its own, no Welch's test",
+                single.join("; ")
+            ),
+        )
+    })
+}
+
+fn shapiro_of(values: &[f64]) -> Option<StatisticTest> {
+    shapiro_wilk(values).ok().map(|test| StatisticTest {
+        statistic: test.statistic,
+        df: None,
+        p: test.p,
+    })
+}
+
+fn ratio(test: FTest) -> RatioTest {
+    RatioTest {
+        f: test.f,
+        df1: test.df_above,
+        df2: test.df_below,
+        p: test.p,
+    }
+}
+
+fn letters_of(
+    names: &[String],
+    groups: &[Group],
+    pairs: &[PairOutcome],
+    confidence: f64,
+) -> Vec<String> {
+    let means: Vec<f64> = groups.iter().map(|g| mean(&g.values).value()).collect();
+    let place = |name: &String| names.iter().position(|other| other == name);
+    let differ: Vec<(usize, usize)> = pairs
+        .iter()
+        .filter(|pair| pair.p < 1.0 - confidence)
+        .filter_map(|pair| Some((place(&pair.first)?, place(&pair.second)?)))
+        .collect();
+    compact_letters(&means, &differ)
+}
+
+fn lettered(
+    groups: Vec<crate::compare::group_outcome::GroupOutcome>,
+    letters: Vec<String>,
+) -> Vec<LetteredGroup> {
+    let both = groups.into_iter().zip(letters);
+    both.map(|(group, letters)| LetteredGroup { group, letters })
+        .collect()
+}

@@ -1,0 +1,101 @@
+//! `windfall summary`: what the values of a table look like, group by group.
+
+use crate::compare::group_outcome::{
+    GroupOutcome, group_outcomes, missing_findings, statistics_error,
+};
+use serde::Serialize;
+use std::path::PathBuf;
+use windfall_files::error::Error;
+use windfall_files::found::FindingOutcome;
+use windfall_files::option_value::unusable;
+use windfall_files::table::data::{Data, read_data};
+use windfall_statistics::compare::group_summary::split_groups;
+use windfall_statistics::table::Cells;
+
+/// What `windfall summary` is asked.
+#[derive(Clone, Debug, PartialEq)]
+pub struct SummaryRequest {
+    /// The table.
+    pub table: PathBuf,
+    /// Columns that group the rows; all rows are one group without.
+    pub by: Vec<String>,
+    /// Columns of values; all columns of numbers that do not group without.
+    pub values: Vec<String>,
+    /// Confidence of the intervals of means.
+    pub confidence: f64,
+}
+
+/// Every group of every value.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct SummaryOutcome {
+    /// Columns that group the rows.
+    pub by: Vec<String>,
+    /// Confidence of the intervals.
+    pub confidence: f64,
+    /// One per column of values.
+    pub values: Vec<ValueSummary>,
+    /// What has to be said beside the numbers.
+    pub findings: Vec<FindingOutcome>,
+}
+
+/// The groups of one value.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct ValueSummary {
+    /// The column.
+    pub value: String,
+    /// Its groups.
+    pub groups: Vec<GroupOutcome>,
+}
+
+/// Describes the values of a table, group by group.
+///
+/// # Errors
+/// The table cannot be read, a column is not there or holds text.
+pub fn summarize_table(request: &SummaryRequest) -> Result<SummaryOutcome, Error> {
+    check_confidence(request.confidence)?;
+    let data = read_data(&request.table)?;
+    let by: Vec<&str> = request.by.iter().map(String::as_str).collect();
+    let mut outcome = SummaryOutcome {
+        by: request.by.clone(),
+        confidence: request.confidence,
+        values: Vec::new(),
+        findings: Vec::new(),
+    };
+    for value in values_of(request, &data)? {
+        let groups = split_groups(&data.table, &by, &value).map_err(Error::Statistics)?;
+        let found = missing_findings(&groups, &value, &request.by, &data.lines);
+        for finding in found {
+            // rows without a group are the same for every value
+            if !outcome.findings.contains(&finding) {
+                outcome.findings.push(finding);
+            }
+        }
+        outcome.values.push(ValueSummary {
+            groups: group_outcomes(&groups.groups, request.confidence)?,
+            value,
+        });
+    }
+    Ok(outcome)
+}
+
+/// A confidence strictly between 0 and 1.
+pub(crate) fn check_confidence(confidence: f64) -> Result<(), Error> {
+    windfall_statistics::sample::check_probability("--confidence", confidence)
+        .map_err(statistics_error)
+}
+
+fn values_of(request: &SummaryRequest, data: &Data) -> Result<Vec<String>, Error> {
+    if !request.values.is_empty() {
+        return Ok(request.values.clone());
+    }
+    let columns = data.table.columns.iter();
+    let found: Vec<String> = columns
+        .filter(|column| matches!(column.cells, Cells::Numbers(_)))
+        .filter(|column| !request.by.contains(&column.name))
+        .map(|column| column.name.clone())
+        .collect();
+    match found.is_empty() {
+        true => Err(unusable("--value", "no column of the table holds numbers")),
+        false => Ok(found),
+    }
+}

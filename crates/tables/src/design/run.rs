@@ -1,0 +1,414 @@
+//! `windfall design`: from texts to a design, what it can tell, and its file.
+
+use crate::design::factor::{DesignFactor, parse_factor};
+use crate::design::model_row::{RowModel, row_at, terms_of};
+use crate::design::optimal_runs::optimal_design;
+use crate::design::request::{DesignKind, DesignRequest, Order};
+use windfall_files::error::Error;
+use windfall_files::option_value::{chosen, unusable};
+use windfall_statistics::design::box_behnken::{BoxBehnkenOptions, box_behnken};
+use windfall_statistics::design::catalogue::catalogued;
+use windfall_statistics::design::composite::{Alpha, CompositeOptions, Ends, central_composite};
+use windfall_statistics::design::error::DesignError;
+use windfall_statistics::design::factorial::{FactorialOptions, full_factorial, two_level};
+use windfall_statistics::design::finding::DesignFinding;
+use windfall_statistics::design::kind::{Design, Factor, Point, Run, evenly, randomised};
+use windfall_statistics::design::latin::latin_hypercube;
+use windfall_statistics::design::model::{DesignModel, extreme_points, region_points};
+use windfall_statistics::design::plackett_burman::plackett_burman;
+use windfall_statistics::design::quality::{DesignQuality, design_quality};
+use windfall_statistics::design::sobol::sobol;
+use windfall_statistics::design::word::{Generator, parse_generator};
+
+/// Most terms of a model that a design is judged by.
+const MOST_TERMS: usize = 300;
+
+/// Most numbers in a model matrix that a design is judged by.
+const MOST_NUMBERS: usize = 20_000_000;
+
+/// A design with what it can tell.
+#[derive(Clone, Debug, PartialEq)]
+pub struct DesignOutcome {
+    /// The design, in run order.
+    pub design: Design,
+    /// The model it is judged by.
+    pub model: String,
+    /// Names of the columns of that model.
+    pub terms: Vec<String>,
+    /// Figures for that model; `None` where no model can be estimated.
+    pub quality: Option<DesignQuality>,
+    /// Lines for the header of the file.
+    pub about: Vec<String>,
+}
+
+/// Makes a design.
+///
+/// # Errors
+/// A text that cannot be used, a design that cannot be.
+pub fn make_design(request: &DesignRequest) -> Result<DesignOutcome, Error> {
+    let (mut design, asked, about) = match &request.kind {
+        DesignKind::Optimal(optimal) => {
+            let (design, model) = optimal_design(optimal, &request.factors, request.seed)?;
+            let about = vec![
+                format!("model {}", optimal.model),
+                format!("search of seed {}", request.seed),
+            ];
+            (design, Some((optimal.model.clone(), model)), about)
+        }
+        kind => {
+            let given = factors_of(&request.factors)?;
+            let about = match kind {
+                DesignKind::LatinHypercube { .. } => {
+                    vec![format!("search of seed {}", request.seed)]
+                }
+                _ => Vec::new(),
+            };
+            (design_of_kind(kind, given, request.seed)?, None, about)
+        }
+    };
+    set_decimals(&mut design, &request.decimals)?;
+    if request.order == Order::Random {
+        design = randomised(design, request.seed);
+    }
+    let (model, terms, quality) = match asked {
+        Some((name, model)) => {
+            let quality = quality_of(&design, &model);
+            (name, names_of(&design, &model), quality)
+        }
+        None => largest_model(&design),
+    };
+    Ok(DesignOutcome {
+        design,
+        model,
+        terms,
+        quality,
+        about,
+    })
+}
+
+/// Factors of the command line.
+///
+/// # Errors
+/// A text that is no factor.
+pub fn factors_of(texts: &[String]) -> Result<Vec<DesignFactor>, Error> {
+    texts.iter().map(|text| parse_factor(text)).collect()
+}
+
+/// The error of a design that cannot be.
+#[must_use]
+pub fn impossible(error: DesignError) -> Error {
+    unusable("windfall design", error.to_string())
+}
+
+fn design_of_kind(kind: &DesignKind, given: Vec<DesignFactor>, seed: u64) -> Result<Design, Error> {
+    if !matches!(kind, DesignKind::Factorial { .. }) {
+        check_ranges(&given)?;
+    }
+    let factors: Vec<Factor> = given.iter().map(|given| given.factor.clone()).collect();
+    let made = match kind {
+        DesignKind::Factorial { .. } => return factorial(kind, given),
+        DesignKind::Composite { .. } => return composite(kind, factors),
+        DesignKind::PlackettBurman { runs, centre } => plackett_burman(factors, *runs, *centre),
+        DesignKind::BoxBehnken { centre, blocks } => {
+            let usual = if *blocks > 1 { 2 } else { 5 };
+            let centre = centre.unwrap_or(usual);
+            box_behnken(
+                factors,
+                &BoxBehnkenOptions {
+                    centre,
+                    blocks: *blocks,
+                },
+            )
+        }
+        DesignKind::LatinHypercube { runs } => latin_hypercube(factors, *runs, seed),
+        DesignKind::Sobol { runs } => sobol(factors, *runs),
+        DesignKind::Optimal(_) => {
+            return Err(unusable(
+                "windfall design",
+                "an optimal design is made by exchange",
+            ));
+        }
+    };
+    made.map_err(impossible)
+}
+
+/// Levels of numbers are listed for factorial and optimal designs alone.
+fn check_ranges(given: &[DesignFactor]) -> Result<(), Error> {
+    let inner = |given: &&DesignFactor| {
+        given.factor.categories.is_empty() && given.levels.as_ref().is_some_and(|l| l.len() > 2)
+    };
+    match given.iter().find(inner) {
+        Some(found) => Err(unusable(
+            format!("--factor '{}=…'", found.factor.name),
+            "this kind of design sets its own levels: give the range, LOW..HIGH",
+        )),
+        None => Ok(()),
+    }
+}
+
+fn factorial(kind: &DesignKind, given: Vec<DesignFactor>) -> Result<Design, Error> {
+    let DesignKind::Factorial {
+        points,
+        fraction,
+        runs,
+        replicates,
+        centre,
+        blocks,
+    } = kind
+    else {
+        return Err(unusable("windfall design", "expected a factorial"));
+    };
+    let options = FactorialOptions {
+        replicates: *replicates,
+        centre: *centre,
+        blocks: *blocks,
+    };
+    let factors: Vec<Factor> = given.iter().map(|given| given.factor.clone()).collect();
+    if fraction.is_some() || runs.is_some() {
+        check_ranges(&given)?;
+        let generators = generators_of(fraction.as_deref(), *runs, &factors)?;
+        return two_level(factors, &generators, &options).map_err(impossible);
+    }
+    if *points < 2 {
+        return Err(unusable("--points", "expected at least 2 levels"));
+    }
+    let levels: Vec<Vec<f64>> = given
+        .into_iter()
+        .map(|given| given.levels.unwrap_or_else(|| evenly(*points)))
+        .collect();
+    full_factorial(factors, &levels, &options).map_err(impossible)
+}
+
+/// Generators from "D=AB, E=AC", from "1/2", or from the number of runs.
+fn generators_of(
+    fraction: Option<&str>,
+    runs: Option<usize>,
+    factors: &[Factor],
+) -> Result<Vec<Generator>, Error> {
+    let runs = match (fraction, runs) {
+        (Some(_), Some(_)) => {
+            return Err(unusable(
+                "--runs",
+                "a fraction is given already; leave one of them out",
+            ));
+        }
+        (None, None) => return Ok(Vec::new()),
+        (None, Some(runs)) => runs,
+        (Some(text), None) if text.contains('=') => {
+            let names: Vec<&str> = factors.iter().map(|factor| &factor.name[..]).collect();
+            let texts = text
+                .split([',', ';'])
+                .filter(|text| !text.trim().is_empty());
+            let read = |text: &str| parse_generator(text, &names).map_err(impossible);
+            return texts.map(read).collect();
+        }
+        (Some(text), None) => {
+            let part = text
+                .trim()
+                .strip_prefix("1/")
+                .and_then(|part| part.parse::<usize>().ok());
+            let exponent = part
+                .filter(|part| part.is_power_of_two())
+                .map(usize::trailing_zeros);
+            let exponent = exponent.filter(|e| (*e as usize) < factors.len() && factors.len() < 60);
+            let exponent = exponent.ok_or_else(|| {
+                let problem = "expected generators such as 'D=AB, E=AC', or a fraction such as 1/2";
+                unusable(format!("--fraction '{text}'"), problem)
+            })?;
+            1 << (factors.len() - exponent as usize)
+        }
+    };
+    catalogued(factors.len(), runs).map_err(impossible)
+}
+
+fn composite(kind: &DesignKind, factors: Vec<Factor>) -> Result<Design, Error> {
+    let DesignKind::Composite {
+        alpha,
+        levels,
+        fraction,
+        centre,
+        blocks,
+    } = kind
+    else {
+        return Err(unusable(
+            "windfall design",
+            "expected a central composite design",
+        ));
+    };
+    let ends = [("factorial", Ends::Factorial), ("axial", Ends::Axial)];
+    let (centre, centre_axial) = centres_of(centre.as_deref(), *blocks)?;
+    let options = CompositeOptions {
+        alpha: alpha_of(alpha.as_deref(), *blocks)?,
+        ends: chosen("--levels", levels, &ends)?,
+        generators: generators_of(fraction.as_deref(), None, &factors)?,
+        blocks: *blocks,
+        centre,
+        centre_axial,
+    };
+    central_composite(factors, &options).map_err(impossible)
+}
+
+fn alpha_of(text: Option<&str>, blocks: usize) -> Result<Alpha, Error> {
+    let words = [
+        ("rotatable", Alpha::Rotatable),
+        ("face", Alpha::Face),
+        ("spherical", Alpha::Spherical),
+        ("orthogonal", Alpha::Orthogonal),
+        ("blocks", Alpha::Blocks),
+    ];
+    match text {
+        None if blocks > 1 => Ok(Alpha::Blocks),
+        None => Ok(Alpha::Rotatable),
+        Some(text) => match text.parse() {
+            Ok(number) => Ok(Alpha::Given(number)),
+            Err(_) => chosen("--alpha (or a number)", text, &words),
+        },
+    }
+}
+
+/// Centre points with each part of the cube, and with the axial points.
+fn centres_of(text: Option<&str>, blocks: usize) -> Result<(usize, usize), Error> {
+    let Some(text) = text else {
+        return Ok(if blocks > 1 { (2, 2) } else { (5, 0) });
+    };
+    let numbers: Option<Vec<usize>> = text.split(',').map(|n| n.trim().parse().ok()).collect();
+    match numbers.as_deref() {
+        Some([one]) => Ok((*one, *one)),
+        Some([cube, axial]) if blocks > 1 => Ok((*cube, *axial)),
+        _ => Err(unusable(
+            format!("--centre {text}"),
+            "expected a number, or with blocks two: in each part of the cube, and in the axial \
+             block",
+        )),
+    }
+}
+
+/// Decimals of printed settings: "k=2".
+fn set_decimals(design: &mut Design, texts: &[String]) -> Result<(), Error> {
+    for text in texts {
+        let option = || format!("--decimals {text}");
+        let parts = text.split_once('=');
+        let parsed = parts.and_then(|(name, n)| Some((name.trim(), n.trim().parse().ok()?)));
+        let (name, decimals) = parsed
+            .filter(|(_, decimals): &(&str, usize)| *decimals <= 15)
+            .ok_or_else(|| unusable(option(), "expected NAME=DECIMALS, such as k=2, 0 to 15"))?;
+        let names: Vec<(&str, usize)> = design
+            .factors
+            .iter()
+            .enumerate()
+            .map(|(place, factor)| (&factor.name[..], place))
+            .collect();
+        let place = chosen("--decimals", name, &names)?;
+        let factor = &mut design.factors[place];
+        if !factor.categories.is_empty() {
+            return Err(unusable(
+                option(),
+                "the factor has categories, and no decimals",
+            ));
+        }
+        factor.decimals = Some(decimals);
+        let findings = rounding_findings(design, place, decimals);
+        design.findings.extend(findings);
+    }
+    Ok(())
+}
+
+fn rounding_findings(design: &Design, place: usize, decimals: usize) -> Vec<DesignFinding> {
+    let factor = &design.factors[place];
+    let mut levels: Vec<f64> = design.runs.iter().map(|run| run.coded[place]).collect();
+    levels.sort_by(f64::total_cmp);
+    levels.dedup();
+    let name = || factor.name.clone();
+    let settings: Vec<f64> = levels.iter().map(|level| factor.setting(*level)).collect();
+    let mut findings = Vec::new();
+    if settings.windows(2).any(|pair| pair[0] == pair[1]) {
+        findings.push(DesignFinding::SettingsMerged {
+            factor: name(),
+            decimals,
+        });
+    }
+    let differences = settings.iter().zip(&levels);
+    let coded = differences.map(|(setting, level)| (factor.coded(*setting) - level).abs());
+    let coded = coded.fold(0.0, f64::max);
+    if coded > 1e-12 {
+        findings.push(DesignFinding::SettingsRounded {
+            factor: name(),
+            coded,
+        });
+    }
+    findings
+}
+
+/// The largest of the named models that the design can estimate.
+fn largest_model(design: &Design) -> (String, Vec<String>, Option<DesignQuality>) {
+    let models = [
+        DesignModel::Quadratic,
+        DesignModel::Interactions,
+        DesignModel::Linear,
+    ];
+    let found = models.into_iter().find_map(|model| {
+        let quality = quality_of(design, &RowModel::Named(model))?;
+        Some((model, quality))
+    });
+    match found {
+        Some((model, quality)) => {
+            let terms = names_of(design, &RowModel::Named(model));
+            (model.name().to_owned(), terms, Some(quality))
+        }
+        None => ("none".to_owned(), Vec::new(), None),
+    }
+}
+
+/// Figures for a model, with an effect for each block but the last.
+///
+/// Runs that were made before an augmentation count as one block with the new
+/// ones: that is the model they were chosen for.
+fn quality_of(design: &Design, model: &RowModel) -> Option<DesignQuality> {
+    let blocks = block_effects(design);
+    let terms = terms_of(model, &design.factors).len() + blocks;
+    if terms > MOST_TERMS || design.runs.len() < terms || design.runs.len() * terms > MOST_NUMBERS {
+        return None;
+    }
+    let row = |coded: &[f64]| row_at(model, &design.factors, coded);
+    let in_block = |run: &Run| {
+        let mut row = row(&run.coded);
+        let effect = |block: usize| match run.block {
+            own if own == block => 1.0,
+            own if own == blocks + 1 => -1.0,
+            _ => 0.0,
+        };
+        row.extend((1..=blocks).map(effect));
+        row
+    };
+    let rows: Vec<Vec<f64>> = design.runs.iter().map(in_block).collect();
+    // Extreme points have no weight in the mean, but may be the largest.
+    let extreme = extreme_points(&design.factors)
+        .into_iter()
+        .map(|x| (0.0, x));
+    let region = region_points(&design.factors).into_iter().chain(extreme);
+    let region: Vec<(f64, Vec<f64>)> = region
+        .map(|(weight, x)| {
+            let mut row = row(&x);
+            row.resize(terms, 0.0);
+            (weight, row)
+        })
+        .collect();
+    design_quality(&rows, &region)
+}
+
+/// Columns for differences between blocks.
+fn block_effects(design: &Design) -> usize {
+    let augmented = design.runs.iter().any(|run| run.point == Point::Existing);
+    if augmented {
+        0
+    } else {
+        design.blocks().saturating_sub(1)
+    }
+}
+
+/// Names of the columns of a model, with those of the blocks.
+fn names_of(design: &Design, model: &RowModel) -> Vec<String> {
+    let mut names = terms_of(model, &design.factors);
+    names.extend((1..=block_effects(design)).map(|block| format!("block {block}")));
+    names
+}

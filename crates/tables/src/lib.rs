@@ -1,0 +1,6 @@
+//! Statistics of tables: designs, regression, response surfaces, comparison of groups.
+
+pub mod compare;
+pub mod design;
+pub mod regress;
+pub mod surface;

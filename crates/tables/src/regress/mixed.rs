@@ -1,0 +1,464 @@
+//! `windfall regress` with random effects: a linear mixed model.
+
+use crate::regress::findings::{aliased_findings, finding, left_out_finding};
+use crate::regress::outcome::{AnovaOutcome, RangeOutcome, TermOutcome, ranges_of};
+use crate::regress::request::{FreedomMethod, RegressRequest};
+use serde::Serialize;
+use windfall_files::error::Error;
+use windfall_files::found::FindingOutcome;
+use windfall_files::table::data::{Data, read_data};
+use windfall_statistics::error::Error as StatisticsError;
+use windfall_statistics::mixed::fit::{MixedFit, MixedMethod, MixedOptions, fit_mixed};
+use windfall_statistics::mixed::inference::{
+    CoefficientTest, FTest, VarianceUncertainty, coefficient_tests, f_test, picking_contrast,
+    variance_uncertainty,
+};
+use windfall_statistics::mixed::kenward_roger::{
+    KenwardRoger, kenward_roger, kenward_roger_f, kenward_roger_tests,
+};
+use windfall_statistics::mixed::predict::{NewRows, predict_mixed};
+use windfall_statistics::mixed::profile::profile_variances;
+use windfall_statistics::mixed::summary::variance_shares;
+use windfall_statistics::model::contrast::Contrast;
+use windfall_statistics::model::formula::Formula;
+use windfall_statistics::model::formula_syntax::spelling;
+use windfall_statistics::model::model_frame::{
+    ModelRows, chosen_rows, complete_rows, model_rows, prediction_rows,
+};
+use windfall_statistics::model::random_terms::{FramedTerm, new_terms, random_terms};
+use windfall_statistics::model::reduced::{Aliased, reduce};
+
+/// A standard deviation between groups, or the correlation of two effects.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct VarianceOutcome {
+    /// Groups: `specimen`; "residual".
+    pub group: String,
+    /// "sd" or "correlation".
+    pub kind: &'static str,
+    /// What varies between the groups.
+    pub of: String,
+    /// Its value.
+    pub value: f64,
+    /// Lower end of its profile interval.
+    pub low: f64,
+    /// Upper end.
+    pub high: f64,
+}
+
+/// An effect of a group.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct EffectOutcome {
+    /// What names the group: `specimen`.
+    pub by: String,
+    /// The group.
+    pub group: String,
+    /// What varies.
+    pub of: String,
+    /// Its deviation from the mean over groups.
+    pub value: f64,
+    /// Its standard deviation.
+    pub sd: f64,
+}
+
+/// A prediction with the effects of known groups.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct MixedPredictionOutcome {
+    /// Line of the file that asks for it.
+    pub line: usize,
+    /// Mean over all groups.
+    pub population: f64,
+    /// Mean in the group, the same where it is not known.
+    pub predicted: f64,
+    /// Its standard error.
+    pub se: f64,
+    /// Interval of the mean in the group.
+    pub mean_low: f64,
+    /// Its upper end.
+    pub mean_high: f64,
+    /// Interval of one further observation.
+    pub low: f64,
+    /// Its upper end.
+    pub high: f64,
+}
+
+/// A fitted mixed model.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct MixedOutcome {
+    /// The formula.
+    pub formula: String,
+    /// What is modelled.
+    pub response: String,
+    /// "REML" or "ML".
+    pub method: &'static str,
+    /// "Satterthwaite" or "Kenward-Roger".
+    pub df_method: &'static str,
+    /// Rows that were used.
+    pub rows: usize,
+    /// Rows that were left out for missing cells.
+    pub left_out: usize,
+    /// Groups of each random term.
+    pub groups: Vec<(String, usize)>,
+    /// Fixed effects.
+    pub terms: Vec<TermOutcome>,
+    /// Covariance of the fixed effects, in the order of `terms`.
+    pub covariance: Vec<Vec<f64>>,
+    /// In which ranges the columns of the model were.
+    pub ranges: Vec<RangeOutcome>,
+    /// F tests of the terms after all others.
+    pub anova: Vec<MixedTest>,
+    /// Standard deviations and correlations.
+    pub variances: Vec<VarianceOutcome>,
+    /// Part of the variance that fixed effects describe (marginal).
+    pub r2: f64,
+    /// Not defined for mixed models.
+    pub r2_adjusted: Option<f64>,
+    /// Part that fixed and random effects describe.
+    pub r2_conditional: f64,
+    /// Share of each random term in what fixed effects leave.
+    pub intraclass: Vec<f64>,
+    /// Log of the (restricted) likelihood.
+    pub log_likelihood: f64,
+    /// -2 times it.
+    pub criterion: f64,
+    /// Akaike's criterion.
+    pub aic: f64,
+    /// The same for small samples.
+    pub aicc: f64,
+    /// Schwarz' criterion.
+    pub bic: f64,
+    /// None: terms of mixed models are not selected.
+    pub removed: Vec<String>,
+    /// Effects of the groups.
+    pub effects: Vec<EffectOutcome>,
+    /// Predictions.
+    pub predictions: Vec<MixedPredictionOutcome>,
+    /// What a reader must know.
+    pub findings: Vec<FindingOutcome>,
+}
+
+/// An F test of a term.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct MixedTest {
+    /// F with the degrees of freedom of the term; no sum of squares is defined.
+    #[serde(flatten)]
+    pub test: AnovaOutcome,
+    /// Degrees of freedom of the denominator.
+    pub df_denominator: f64,
+}
+
+struct Fitted {
+    rows: ModelRows,
+    aliased: Vec<Aliased>,
+    columns: Vec<usize>,
+    terms: Vec<FramedTerm>,
+    fit: MixedFit,
+}
+
+/// Fits a mixed model.
+///
+/// * `formula`: with its random parts; `text`: as it was written
+///
+/// # Errors
+/// The table or the formula cannot be used; the model cannot be fitted.
+pub fn regress_mixed(
+    request: &RegressRequest,
+    data: &Data,
+    formula: &Formula,
+    text: &str,
+) -> Result<MixedOutcome, Error> {
+    if request.selection.is_some() {
+        let problem = "terms of mixed models are not selected here: compare models fitted by \
+                       --likelihood ml by their criteria";
+        return Err(windfall_files::option_value::unusable("--select", problem));
+    }
+    if request.robust {
+        let problem = "there are no HC3 errors of mixed models: the random effects are what makes \
+                       their errors right";
+        return Err(windfall_files::option_value::unusable("--robust", problem));
+    }
+    let (kept, left_out) = complete_rows(formula, &data.table, &[]).map_err(Error::Statistics)?;
+    let table = chosen_rows(&data.table, &kept);
+    let chosen = Data {
+        table,
+        comments: Vec::new(),
+        lines: kept.iter().map(|row| data.lines[*row]).collect(),
+    };
+    let inference = infer(request, &chosen, formula, request.contrast)?;
+    let summed = match inference.fitted.rows.frame.has_categories() {
+        true => Some(infer(request, &chosen, formula, Contrast::Sum)?),
+        false => None,
+    };
+    let anova = term_tests(summed.as_ref().unwrap_or(&inference))?;
+    let Inference {
+        fitted,
+        uncertainty,
+        adjusted,
+    } = inference;
+    let tests = match &adjusted {
+        None => coefficient_tests(&fitted.fit, &uncertainty, request.confidence),
+        Some(adjusted) => kenward_roger_tests(&fitted.fit, adjusted, request.confidence),
+    };
+    let (variances, profile_findings) = variances(&fitted.fit, request.confidence)?;
+    let mut findings = left_out_finding(&left_out, &data.lines);
+    findings.extend(aliased_findings(&fitted.rows.frame, &fitted.aliased));
+    let own = fitted.fit.findings.iter().chain(&uncertainty.findings);
+    let own = own.map(|f| finding(f.code(), f.to_string()));
+    findings.extend(own.chain(profile_findings));
+    let shares = variance_shares(&fitted.fit);
+    let fit = &fitted.fit;
+    Ok(MixedOutcome {
+        formula: text.to_owned(),
+        response: formula.response.as_ref().map(spelling).unwrap_or_default(),
+        method: match fit.method {
+            MixedMethod::Reml => "REML",
+            MixedMethod::MaximumLikelihood => "ML",
+        },
+        df_method: match adjusted {
+            None => "Satterthwaite",
+            Some(_) => "Kenward-Roger",
+        },
+        rows: kept.len(),
+        left_out: left_out.len(),
+        groups: fitted
+            .terms
+            .iter()
+            .map(|t| (t.term.name.clone(), t.term.groups))
+            .collect(),
+        terms: tests.iter().map(term_outcome).collect(),
+        covariance: fit.covariance_rows(),
+        ranges: ranges_of(formula, &data.table, &kept),
+        anova,
+        variances,
+        r2: shares.r2_marginal,
+        r2_adjusted: None,
+        r2_conditional: shares.r2_conditional,
+        intraclass: shares.intraclass,
+        log_likelihood: fit.log_likelihood,
+        criterion: fit.criterion,
+        aic: fit.aic,
+        aicc: fit.aicc,
+        bic: fit.bic,
+        removed: Vec::new(),
+        effects: effects(&fitted),
+        predictions: predictions(request, &fitted, &uncertainty)?,
+        findings,
+    })
+}
+
+fn mixed(error: windfall_statistics::mixed::error::MixedError) -> Error {
+    Error::Statistics(StatisticsError::Mixed(error))
+}
+
+fn fit(
+    request: &RegressRequest,
+    data: &Data,
+    formula: &Formula,
+    contrast: Contrast,
+) -> Result<Fitted, Error> {
+    let rows = model_rows(formula, &data.table, contrast, &[]).map_err(Error::Statistics)?;
+    let terms = random_terms(formula, &data.table, contrast).map_err(Error::Statistics)?;
+    let every: Vec<usize> = (0..rows.x.ncols()).collect();
+    let solved = reduce(&rows.x, &rows.y).solve(&every);
+    let (columns, aliased) = (solved.columns, solved.aliased);
+    let names: Vec<String> = columns
+        .iter()
+        .map(|c| rows.frame.names[*c].clone())
+        .collect();
+    let numbers: Vec<_> = terms.iter().map(|framed| framed.term.clone()).collect();
+    let options = MixedOptions {
+        method: match request.mixed.maximum_likelihood {
+            true => MixedMethod::MaximumLikelihood,
+            false => MixedMethod::Reml,
+        },
+    };
+    let x = rows.x.select_columns(&columns);
+    let fit = fit_mixed(&rows.y, &x, &names, &numbers, &options).map_err(mixed)?;
+    Ok(Fitted {
+        rows,
+        aliased,
+        columns,
+        terms,
+        fit,
+    })
+}
+
+fn term_outcome(test: &CoefficientTest) -> TermOutcome {
+    TermOutcome {
+        term: test.name.clone(),
+        estimate: test.estimate,
+        se: test.se,
+        t: test.t,
+        p: test.p,
+        low: test.low,
+        high: test.high,
+        df: test.df,
+    }
+}
+
+/// A fit with what its tests need.
+struct Inference {
+    fitted: Fitted,
+    uncertainty: VarianceUncertainty,
+    adjusted: Option<KenwardRoger>,
+}
+
+fn infer(
+    request: &RegressRequest,
+    data: &Data,
+    formula: &Formula,
+    contrast: Contrast,
+) -> Result<Inference, Error> {
+    let fitted = fit(request, data, formula, contrast)?;
+    Ok(Inference {
+        uncertainty: variance_uncertainty(&fitted.fit).map_err(mixed)?,
+        adjusted: match request.mixed.freedom {
+            FreedomMethod::Satterthwaite => None,
+            FreedomMethod::KenwardRoger => Some(kenward_roger(&fitted.fit).map_err(mixed)?),
+        },
+        fitted,
+    })
+}
+
+/// F tests of the terms after all others.
+///
+/// * `inference`: with contrasts of categories that sum to zero
+fn term_tests(inference: &Inference) -> Result<Vec<MixedTest>, Error> {
+    let Inference {
+        fitted,
+        uncertainty,
+        adjusted,
+    } = inference;
+    let count = fitted.columns.len();
+    let mut tests = Vec::new();
+    for term in &fitted.rows.frame.terms {
+        let places = fitted.columns.iter().enumerate();
+        let picked = places.filter(|(_, column)| term.columns.contains(column));
+        let picked: Vec<usize> = picked.map(|(place, _)| place).collect();
+        if picked.is_empty() {
+            continue;
+        }
+        let contrast = picking_contrast(count, &picked);
+        let test: FTest = match adjusted {
+            None => f_test(&fitted.fit, uncertainty, &contrast).map_err(mixed)?,
+            Some(adjusted) => kenward_roger_f(&fitted.fit, adjusted, &contrast).map_err(mixed)?,
+        };
+        tests.push(MixedTest {
+            test: AnovaOutcome {
+                term: term.name.clone(),
+                ss: f64::NAN,
+                df: test.numerator as f64,
+                f: test.f,
+                p: test.p,
+            },
+            df_denominator: test.denominator,
+        });
+    }
+    Ok(tests)
+}
+
+/// Variances with profile intervals.
+fn variances(
+    fit: &MixedFit,
+    confidence: f64,
+) -> Result<(Vec<VarianceOutcome>, Vec<FindingOutcome>), Error> {
+    use windfall_statistics::mixed::constraint::VarianceParameter;
+    let profiles = profile_variances(fit, fit.method, confidence).map_err(mixed)?;
+    let shown = profiles.intervals.iter().map(|interval| {
+        let (group, kind, of, value) = match &interval.parameter {
+            VarianceParameter::Sd { term, column } => {
+                let own = &fit.variances[*term];
+                (
+                    own.term.clone(),
+                    "sd",
+                    own.columns[*column].clone(),
+                    own.sds[*column],
+                )
+            }
+            VarianceParameter::Correlation {
+                term,
+                first,
+                second,
+            } => {
+                let own = &fit.variances[*term];
+                let of = format!("{}, {}", own.columns[*first], own.columns[*second]);
+                (
+                    own.term.clone(),
+                    "correlation",
+                    of,
+                    own.correlations[(*first, *second)],
+                )
+            }
+            VarianceParameter::ResidualSd => {
+                ("residual".to_owned(), "sd", String::new(), fit.residual_sd)
+            }
+        };
+        VarianceOutcome {
+            group,
+            kind,
+            of,
+            value,
+            low: interval.low,
+            high: interval.high,
+        }
+    });
+    let findings = profiles.findings.iter();
+    Ok((
+        shown.collect(),
+        findings.map(|f| finding(f.code(), f.to_string())).collect(),
+    ))
+}
+
+fn effects(fitted: &Fitted) -> Vec<EffectOutcome> {
+    let pairs = fitted.terms.iter().zip(&fitted.fit.effects);
+    pairs
+        .flat_map(|(framed, effects)| {
+            let term = &framed.term;
+            term.group_names
+                .iter()
+                .enumerate()
+                .flat_map(move |(group, name)| {
+                    term.column_names
+                        .iter()
+                        .enumerate()
+                        .map(move |(column, of)| EffectOutcome {
+                            by: term.name.clone(),
+                            group: name.clone(),
+                            of: of.clone(),
+                            value: effects.values[group][column],
+                            sd: effects.sds[group][column],
+                        })
+                })
+        })
+        .collect()
+}
+
+fn predictions(
+    request: &RegressRequest,
+    fitted: &Fitted,
+    uncertainty: &VarianceUncertainty,
+) -> Result<Vec<MixedPredictionOutcome>, Error> {
+    let Some(path) = &request.predict else {
+        return Ok(Vec::new());
+    };
+    let asked = read_data(path)?;
+    let x = prediction_rows(&fitted.rows.frame, &asked.table).map_err(Error::Statistics)?;
+    let rows = NewRows {
+        x: x.select_columns(&fitted.columns),
+        terms: new_terms(&fitted.terms, &asked.table).map_err(Error::Statistics)?,
+    };
+    let found = predict_mixed(&fitted.fit, uncertainty, &rows, request.confidence);
+    let found = found.map_err(mixed)?;
+    let shown = found.iter().zip(&asked.lines);
+    Ok(shown
+        .map(|(prediction, line)| MixedPredictionOutcome {
+            line: *line,
+            population: prediction.population,
+            predicted: prediction.value,
+            se: prediction.se,
+            mean_low: prediction.low,
+            mean_high: prediction.high,
+            low: prediction.single_low,
+            high: prediction.single_high,
+        })
+        .collect())
+}

@@ -1,0 +1,11 @@
+//! `windfall regress`: linear and mixed models.
+
+pub mod findings;
+pub mod mixed;
+mod mixed_choice;
+pub mod mixed_text;
+pub mod outcome;
+pub mod request;
+pub mod residuals;
+pub mod run;
+pub mod text;

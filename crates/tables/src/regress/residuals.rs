@@ -1,0 +1,192 @@
+//! Tests of the residuals of a linear model, and indices of its distance from
+//! what was measured.
+
+use crate::regress::findings::finding;
+use windfall_files::found::FindingOutcome;
+use windfall_files::text::number::plain;
+use windfall_files::text::statistic::{number, probability};
+
+use serde::Serialize;
+use windfall_statistics::compare::goodness_index::{CHI_SQUARED_CAVEAT, goodness_index};
+use windfall_statistics::model::linear_model::LinearFit;
+use windfall_statistics::model::model_frame::ModelRows;
+use windfall_statistics::residuals::box_cox::{BoxCoxOptions, box_cox};
+use windfall_statistics::residuals::heteroscedasticity::koenker;
+use windfall_statistics::residuals::normality::{
+    SHAPIRO_WILK_LARGEST, anderson_darling, shapiro_wilk,
+};
+use windfall_statistics::residuals::order::durbin_watson;
+
+/// Beyond this many rows the tests take long, and find what does not matter.
+const MOST_ROWS: usize = 20_000;
+
+/// Probability below which a test is worth a word.
+const DOUBTFUL: f64 = 0.01;
+
+/// A test.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct TestOutcome {
+    /// The test.
+    pub test: &'static str,
+    /// Its statistic.
+    pub statistic: f64,
+    /// Its probability.
+    pub p: f64,
+}
+
+/// The power of the response that suits the model best.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct BoxCoxOutcome {
+    /// 1 no transform, 0.5 root, 0 logarithm, -1 inverse.
+    pub lambda: f64,
+    /// Lower end of its interval.
+    pub low: Option<f64>,
+    /// Upper end.
+    pub high: Option<f64>,
+}
+
+/// How far predictions are from what was measured.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct GoodnessOutcome {
+    /// Σ (O - P)² / P, where predictions are positive.
+    pub chi_squared: Option<f64>,
+    /// Σ (O - P)² / (N - p).
+    pub reduced_chi_squared: Option<f64>,
+    /// What has to be said beside these.
+    pub caveat: &'static str,
+    /// Root mean square difference.
+    pub root_mean_square: f64,
+    /// Mean of |O - P|.
+    pub mean_absolute: f64,
+    /// Mean of |O - P| / |O|.
+    pub mean_absolute_relative: Option<f64>,
+}
+
+/// Tests of residuals, transform of the response, goodness indices.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct ResidualOutcome {
+    /// Normality, equal variance, order.
+    pub tests: Vec<TestOutcome>,
+    /// Where the response is positive.
+    pub box_cox: Option<BoxCoxOutcome>,
+    /// Indices.
+    pub goodness: Option<GoodnessOutcome>,
+}
+
+/// Tests the residuals of a model.
+#[must_use]
+pub fn residual_tests(rows: &ModelRows, fit: &LinearFit) -> ResidualOutcome {
+    let goodness = goodness_index(&rows.y, &fit.fitted(&rows.y), fit.columns.len()).ok();
+    let goodness = goodness.map(|index| GoodnessOutcome {
+        chi_squared: index.chi_squared,
+        reduced_chi_squared: index.reduced_chi_squared,
+        caveat: CHI_SQUARED_CAVEAT,
+        root_mean_square: index.root_mean_square,
+        mean_absolute: index.mean_absolute,
+        mean_absolute_relative: index.mean_absolute_relative,
+    });
+    let mut outcome = ResidualOutcome {
+        tests: Vec::new(),
+        box_cox: None,
+        goodness,
+    };
+    if fit.rows > MOST_ROWS || fit.residual_df == 0 {
+        return outcome;
+    }
+    let x = rows.x.select_columns(&fit.columns);
+    let residuals = &fit.residuals;
+    let normal = match residuals.len() <= SHAPIRO_WILK_LARGEST {
+        true => shapiro_wilk(residuals).map(|t| ("normal (Shapiro-Wilk)", t)),
+        false => anderson_darling(residuals).map(|t| ("normal (Anderson-Darling)", t)),
+    };
+    let normal = normal.map(|(test, t)| TestOutcome {
+        test,
+        statistic: t.statistic,
+        p: t.p,
+    });
+    let variance = koenker(residuals, &x).map(|t| TestOutcome {
+        test: "equal variance (Breusch-Pagan, Koenker's form)",
+        statistic: t.statistic,
+        p: t.p,
+    });
+    let order = durbin_watson(residuals, &x).map(|t| TestOutcome {
+        test: "independent of the order of rows (Durbin-Watson)",
+        statistic: t.statistic,
+        p: t.p,
+    });
+    // A test that these rows cannot feed (too few, no spread) is left out.
+    outcome.tests = [normal, variance, order].into_iter().flatten().collect();
+    let options = BoxCoxOptions {
+        confidence: fit.confidence,
+        ..BoxCoxOptions::default()
+    };
+    outcome.box_cox = box_cox(&rows.y, &x, &options)
+        .ok()
+        .map(|found| BoxCoxOutcome {
+            lambda: found.lambda,
+            low: found.low,
+            high: found.high,
+        });
+    outcome
+}
+
+/// What the tests say that a reader must know.
+pub(crate) fn residual_findings(outcome: &ResidualOutcome) -> Vec<FindingOutcome> {
+    let doubtful = outcome.tests.iter().filter(|test| test.p < DOUBTFUL);
+    let mut found: Vec<FindingOutcome> = doubtful
+        .map(|test| {
+            let message = format!(
+                "the residuals are not {}: p {}",
+                test.test,
+                probability(test.p)
+            );
+            finding("residuals", message)
+        })
+        .collect();
+    if let Some(transform) = &outcome.box_cox {
+        let above = transform.low.is_some_and(|low| low > 1.0);
+        let below = transform.high.is_some_and(|high| high < 1.0);
+        if above || below {
+            found.push(finding(
+                "transform",
+                format!(
+                    "the response suits the model better to the power {} (Box-Cox; 0 is the \
+                     logarithm)",
+                    plain(transform.lambda)
+                ),
+            ));
+        }
+    }
+    found
+}
+
+/// The tests as text.
+#[must_use]
+pub fn residuals_text(outcome: &ResidualOutcome) -> String {
+    let mut text = String::new();
+    if !outcome.tests.is_empty() {
+        text += "\nResiduals:\n";
+    }
+    for test in &outcome.tests {
+        let (statistic, p) = (number(test.statistic), probability(test.p));
+        text += &format!("  {}: {statistic}, p {p}\n", test.test);
+    }
+    if let Some(found) = &outcome.box_cox {
+        let end = |end: Option<f64>| end.map_or_else(|| "beyond ±3".to_owned(), plain);
+        text += &format!(
+            "  power of the response (Box-Cox): {}, from {} to {}\n",
+            plain(found.lambda),
+            end(found.low),
+            end(found.high)
+        );
+    }
+    if let Some(goodness) = &outcome.goodness {
+        let given = |value: Option<f64>| value.map_or_else(|| "-".to_owned(), plain);
+        text += &format!(
+            "  chi-square index {}, per degree of freedom {}: not a test, both depend on the unit\n",
+            given(goodness.chi_squared),
+            given(goodness.reduced_chi_squared),
+        );
+    }
+    text
+}

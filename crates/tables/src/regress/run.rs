@@ -1,0 +1,346 @@
+//! `windfall regress`: a table and a formula → a linear model.
+
+use crate::regress::findings::{aliased_findings, finding, fit_findings, left_out_finding};
+use crate::regress::mixed::{MixedOutcome, regress_mixed};
+use crate::regress::outcome::{
+    AnovaOutcome, InflationOutcome, LackOfFitOutcome, PredictionOutcome, QualityOutcome,
+    RangeOutcome, RowOutcome, StepOutcome, SumOfSquares, TermOutcome, WholeModel, anova_of,
+    inflation_of, lack_of, predictions_of, ranges_of, roman, rows_of, terms_of, whole_of,
+};
+use crate::regress::request::{AnovaType, Contrast, Criterion, Direction, RegressRequest};
+use crate::regress::residuals::{ResidualOutcome, residual_findings, residual_tests};
+use serde::Serialize;
+use windfall_files::error::Error;
+use windfall_files::found::FindingOutcome;
+use windfall_files::option_value::unusable;
+use windfall_files::table::data::{Data, read_data};
+use windfall_statistics::model::anova::{anova, lack_of_fit};
+use windfall_statistics::model::formula::{Formula, formula};
+use windfall_statistics::model::formula_syntax::spelling;
+use windfall_statistics::model::linear_model::{LinearFit, fit_reduced, predict};
+use windfall_statistics::model::model_frame::{ModelRows, model_rows, prediction_rows};
+use windfall_statistics::model::reduced::{Reduced, reduce};
+use windfall_statistics::model::selection::{Selection, select};
+use windfall_statistics::residuals::cross_validation::cross_validate;
+use windfall_statistics::residuals::diagnostics::{
+    inflation, influence, robust_coefficients, robust_covariance_rows,
+};
+
+/// Quality of predictions of rows left out in parts.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct CrossValidationOutcome {
+    /// Parts.
+    pub folds: usize,
+    /// Root mean square error of prediction.
+    pub rms: f64,
+    /// Part of the variation that is predicted.
+    pub r2: f64,
+}
+
+/// A fitted linear model.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct RegressOutcome {
+    /// The formula in one spelling.
+    pub formula: String,
+    /// What is modelled.
+    pub response: String,
+    /// Rows that were used.
+    pub rows: usize,
+    /// Rows that were left out for missing cells.
+    pub left_out: usize,
+    /// Estimates.
+    pub terms: Vec<TermOutcome>,
+    /// Whether their standard errors are HC3.
+    pub robust: bool,
+    /// Covariance of the estimates, in the order of `terms`.
+    pub covariance: Vec<Vec<f64>>,
+    /// In which ranges the columns of the model were.
+    pub ranges: Vec<RangeOutcome>,
+    /// How good the model is.
+    #[serde(flatten)]
+    pub quality: QualityOutcome,
+    /// The model against none.
+    pub model: WholeModel,
+    /// Residuals.
+    pub residual: SumOfSquares,
+    /// The response.
+    pub total: SumOfSquares,
+    /// "I", "II" or "III".
+    pub anova_type: &'static str,
+    /// Analysis of variance.
+    pub anova: Vec<AnovaOutcome>,
+    /// Lack of fit, where rows are repeated.
+    pub lack_of_fit: Option<LackOfFitOutcome>,
+    /// Variance inflation.
+    pub vif: Vec<InflationOutcome>,
+    /// Terms that were removed, in order.
+    pub removed: Vec<StepOutcome>,
+    /// Every step of the selection.
+    pub steps: Vec<StepOutcome>,
+    /// How the model predicts rows it was not fitted to.
+    pub cross_validation: Option<CrossValidationOutcome>,
+    /// Tests of the residuals.
+    pub residuals: ResidualOutcome,
+    /// Rows with their influence.
+    pub influence: Vec<RowOutcome>,
+    /// Predictions.
+    pub predictions: Vec<PredictionOutcome>,
+    /// What a reader must know.
+    pub findings: Vec<FindingOutcome>,
+}
+
+/// A model without random effects, or with them.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+#[serde(untagged)]
+pub enum AnyRegressOutcome {
+    /// Without.
+    Linear(Box<RegressOutcome>),
+    /// With.
+    Mixed(Box<MixedOutcome>),
+}
+
+/// Fits a linear model to a table, with random effects where there are any.
+///
+/// # Errors
+/// The table or the formula cannot be read; too few rows; a response of one value.
+pub fn regress(request: &RegressRequest) -> Result<AnyRegressOutcome, Error> {
+    check(request)?;
+    let data = read_data(&request.table)?;
+    let names: Vec<String> = data.table.columns.iter().map(|c| c.name.clone()).collect();
+    let mut text = request.model.formula(&names);
+    for random in &request.random {
+        text += &match random.contains('|') {
+            true => format!(" + ({random})"),
+            false if names.contains(random) => format!(" + (1 | `{random}`)"),
+            false => format!(" + (1 | {random})"),
+        };
+    }
+    let formula = formula(&text, &names).map_err(Error::Statistics)?;
+    if formula.response.is_none() {
+        let problem = "the response is missing: write 'response ~ terms'";
+        return Err(unusable("--formula", problem));
+    }
+    match formula.random.is_empty() {
+        true => {
+            let outcome = regress_linear(request, &data, &formula)?;
+            Ok(AnyRegressOutcome::Linear(Box::new(outcome)))
+        }
+        false => {
+            let outcome = regress_mixed(request, &data, &formula, &text)?;
+            Ok(AnyRegressOutcome::Mixed(Box::new(outcome)))
+        }
+    }
+}
+
+fn regress_linear(
+    request: &RegressRequest,
+    data: &Data,
+    formula: &Formula,
+) -> Result<RegressOutcome, Error> {
+    let rows =
+        model_rows(formula, &data.table, request.contrast, &[]).map_err(Error::Statistics)?;
+    let reduced = reduce(&rows.x, &rows.y);
+    let every: Vec<usize> = (0..rows.frame.terms.len()).collect();
+    let selection = match &request.selection {
+        Some(options) => select(&rows.frame, &reduced, options),
+        None => Selection {
+            terms: every,
+            steps: Vec::new(),
+        },
+    };
+    let wanted = columns_of(&rows, &selection.terms);
+    let fit = fit_reduced(
+        &rows.frame,
+        &rows.x,
+        &rows.y,
+        &reduced,
+        &wanted,
+        request.confidence,
+    )
+    .map_err(Error::Statistics)?;
+    outcome(request, data, formula, &rows, &reduced, &selection, &fit)
+}
+
+fn check(request: &RegressRequest) -> Result<(), Error> {
+    part("--confidence", request.confidence)?;
+    let Some(selection) = &request.selection else {
+        return Ok(());
+    };
+    if let Criterion::Probability { enter, remove } = selection.criterion {
+        part("--p-enter", enter)?;
+        part("--p-remove", remove)?;
+        if selection.direction == Direction::Stepwise && enter > remove {
+            let problem = "terms must not enter at a probability at which they leave: give \
+                           --p-enter no larger than --p-remove";
+            return Err(unusable("--p-enter", problem));
+        }
+    }
+    Ok(())
+}
+
+fn part(option: &str, value: f64) -> Result<(), Error> {
+    match value > 0.0 && value < 1.0 {
+        true => Ok(()),
+        false => Err(unusable(option, format!("{value} is not between 0 and 1"))),
+    }
+}
+
+/// Columns of some terms, with the intercept.
+fn columns_of(rows: &ModelRows, terms: &[usize]) -> Vec<usize> {
+    let base = rows.frame.intercept.then_some(0);
+    let columns = terms
+        .iter()
+        .flat_map(|t| rows.frame.terms[*t].columns.clone());
+    base.into_iter().chain(columns).collect()
+}
+
+fn outcome(
+    request: &RegressRequest,
+    data: &Data,
+    formula: &Formula,
+    rows: &ModelRows,
+    reduced: &Reduced,
+    selection: &Selection,
+    fit: &LinearFit,
+) -> Result<RegressOutcome, Error> {
+    let settings = rows.x.select_columns(&fit.columns);
+    let lines: Vec<usize> = rows.kept.iter().map(|row| data.lines[*row]).collect();
+    let influence = influence(fit);
+    let vif = inflation(&rows.frame, fit);
+    let steps = steps_of(rows, selection);
+    let df = fit.residual_df as f64;
+    let coefficients = match request.robust {
+        true => robust_coefficients(fit, &rows.x),
+        false => fit.coefficients.clone(),
+    };
+    let validation = (request.folds > 0)
+        .then(|| {
+            cross_validate(
+                &rows.frame,
+                &rows.x,
+                &rows.y,
+                &selection.terms,
+                request.selection.as_ref(),
+                request.folds,
+                request.seed,
+            )
+        })
+        .flatten();
+    let mut findings = left_out_finding(&rows.left_out, &data.lines);
+    findings.extend(aliased_findings(&rows.frame, &fit.aliased));
+    findings.extend(fit_findings(fit, &influence, &vif, &lines, &steps));
+    if request.folds > 0 && validation.is_none() {
+        findings.push(finding(
+            "no-cross-validation",
+            "a part without some rows leaves a coefficient without an estimate: rows cannot be \
+             predicted from the others"
+                .to_owned(),
+        ));
+    }
+    let residuals = residual_tests(rows, fit);
+    findings.extend(residual_findings(&residuals));
+    Ok(RegressOutcome {
+        formula: formula_of(formula, rows, selection),
+        response: formula.response.as_ref().map(spelling).unwrap_or_default(),
+        rows: fit.rows,
+        left_out: rows.left_out.len(),
+        terms: terms_of(&coefficients, df),
+        robust: request.robust,
+        covariance: match request.robust {
+            true => robust_covariance_rows(fit, &rows.x),
+            false => fit.covariance_rows(),
+        },
+        ranges: ranges_of(formula, &data.table, &rows.kept),
+        quality: fit.quality(&rows.y).into(),
+        model: whole_of(fit),
+        residual: SumOfSquares {
+            ss: fit.residual_ss,
+            df,
+        },
+        total: SumOfSquares {
+            ss: fit.total_ss,
+            df: df + fit.model_df() as f64,
+        },
+        anova_type: roman(request.anova),
+        anova: variance_of(request, data, formula, rows, reduced, selection)?,
+        lack_of_fit: lack_of_fit(&settings, &rows.y, fit.residual_ss, fit.residual_df)
+            .as_ref()
+            .map(lack_of),
+        vif: inflation_of(&vif),
+        removed: steps
+            .iter()
+            .filter(|s| s.action == "removed")
+            .cloned()
+            .collect(),
+        steps,
+        cross_validation: validation.map(|found| CrossValidationOutcome {
+            folds: found.folds,
+            rms: found.rms,
+            r2: found.r2,
+        }),
+        residuals,
+        influence: rows_of(&influence, &rows.y, &lines),
+        predictions: predictions(request, rows, fit)?,
+        findings,
+    })
+}
+
+/// Partial tests of categories mean something only with contrasts that sum to zero.
+fn variance_of(
+    request: &RegressRequest,
+    data: &Data,
+    formula: &Formula,
+    rows: &ModelRows,
+    reduced: &Reduced,
+    selection: &Selection,
+) -> Result<Vec<AnovaOutcome>, Error> {
+    let terms = &selection.terms;
+    if request.anova == AnovaType::Partial && rows.frame.has_categories() {
+        let summed = model_rows(formula, &data.table, Contrast::Sum, &[]);
+        let summed = summed.map_err(Error::Statistics)?;
+        let reduced = reduce(&summed.x, &summed.y);
+        return Ok(anova_of(&anova(
+            &summed.frame,
+            &reduced,
+            terms,
+            request.anova,
+        )));
+    }
+    Ok(anova_of(&anova(&rows.frame, reduced, terms, request.anova)))
+}
+
+fn steps_of(rows: &ModelRows, selection: &Selection) -> Vec<StepOutcome> {
+    let steps = selection.steps.iter().map(|step| StepOutcome {
+        term: rows.frame.terms[step.term].name.clone(),
+        action: if step.entered { "entered" } else { "removed" },
+        f: step.f,
+        p: step.p,
+        criterion: step.criterion,
+        r2: step.r2,
+    });
+    steps.collect()
+}
+
+fn formula_of(formula: &Formula, rows: &ModelRows, selection: &Selection) -> String {
+    let response = formula.response.as_ref().map(spelling).unwrap_or_default();
+    let intercept = if formula.intercept { "1" } else { "0" };
+    let terms = selection
+        .terms
+        .iter()
+        .map(|t| rows.frame.terms[*t].name.clone());
+    let terms: Vec<String> = std::iter::once(intercept.to_owned()).chain(terms).collect();
+    format!("{response} ~ {}", terms.join(" + "))
+}
+
+fn predictions(
+    request: &RegressRequest,
+    rows: &ModelRows,
+    fit: &LinearFit,
+) -> Result<Vec<PredictionOutcome>, Error> {
+    let Some(path) = &request.predict else {
+        return Ok(Vec::new());
+    };
+    let asked = read_data(path)?;
+    let x = prediction_rows(&rows.frame, &asked.table).map_err(Error::Statistics)?;
+    Ok(predictions_of(&predict(fit, &x), &asked.lines))
+}

@@ -1,0 +1,15 @@
+//! `windfall surface`: response surfaces and their optima.
+
+mod factors;
+pub mod figure_contour;
+pub mod figure_effects;
+pub mod figure_heights;
+pub mod figure_lines;
+pub mod figure_pairs;
+pub mod figure_view;
+pub mod fitted;
+pub mod goal;
+pub mod outcome;
+pub mod run;
+mod settings;
+pub mod text;

@@ -1,0 +1,203 @@
+//! Fitted response surfaces as JSON shows them.
+
+use crate::regress::outcome::{
+    LackOfFitOutcome, QualityOutcome, RowOutcome, SumOfSquares, WholeModel,
+};
+use serde::Serialize;
+use windfall_files::found::FindingOutcome;
+
+/// A term of a surface.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct SurfaceTerm {
+    /// As it was written: `AB`, `k:e`; `(Intercept)`.
+    pub term: String,
+    /// With the names of the factors.
+    pub name: String,
+    /// Coefficient in coded units.
+    pub coded: f64,
+    /// Its standard error.
+    pub se: f64,
+    /// Lower end of its interval.
+    pub low: f64,
+    /// Upper end.
+    pub high: f64,
+    /// Coefficient of the same term when the polynomial is written in actual units.
+    pub actual: f64,
+    /// Sum of squares of the term, in coded units.
+    pub ss: Option<f64>,
+    /// Degrees of freedom.
+    pub df: Option<f64>,
+    /// Mean square over that of the residuals.
+    pub f: Option<f64>,
+    /// Probability of F or more without the term.
+    pub p: Option<f64>,
+    /// Variance inflation.
+    pub vif: Option<f64>,
+}
+
+/// A term of the polynomial in actual units.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct ActualTerm {
+    /// With the names of the factors.
+    pub name: String,
+    /// Its coefficient.
+    pub coefficient: f64,
+}
+
+/// Coding of a factor.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct FactorOutcome {
+    /// A, B, C …
+    pub letter: String,
+    /// Its name.
+    pub name: String,
+    /// Actual value of coded 0.
+    pub centre: f64,
+    /// Actual step of coded 1.
+    pub half_range: f64,
+    /// Lowest actual value in the table.
+    pub lowest: f64,
+    /// Highest.
+    pub highest: f64,
+}
+
+/// The stationary point of a quadratic surface.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct CanonicalOutcome {
+    /// "maximum", "minimum", "saddle" or "ridge".
+    pub shape: &'static str,
+    /// Where, in coded units.
+    pub coded: Vec<f64>,
+    /// Where, in actual units.
+    pub actual: Vec<f64>,
+    /// Distance from the centre in coded units.
+    pub distance: f64,
+    /// Whether it lies within the range of the runs.
+    pub inside: bool,
+    /// The response there.
+    pub value: f64,
+    /// Curvatures.
+    pub eigenvalues: Vec<f64>,
+    /// Directions of these in coded units.
+    pub directions: Vec<Vec<f64>>,
+}
+
+/// A point of a ridge.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct RidgeOutcome {
+    /// "maximum" or "minimum".
+    pub of: &'static str,
+    /// Distance from the centre in coded units.
+    pub radius: f64,
+    /// Actual settings.
+    pub actual: Vec<f64>,
+    /// The response there.
+    pub value: f64,
+}
+
+/// The surface of one response.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct SurfaceModel {
+    /// The response.
+    pub response: String,
+    /// Its terms, the intercept first.
+    pub terms: Vec<SurfaceTerm>,
+    /// The polynomial in actual units, whole.
+    pub actual_terms: Vec<ActualTerm>,
+    /// The model against none.
+    pub model: WholeModel,
+    /// Residuals.
+    pub residual: SumOfSquares,
+    /// The response.
+    pub total: SumOfSquares,
+    /// How good it is.
+    #[serde(flatten)]
+    pub quality: QualityOutcome,
+    /// Residual standard deviation in percent of the mean.
+    pub cv_percent: f64,
+    /// "I", "II" or "III".
+    pub anova_type: &'static str,
+    /// Lack of fit, where runs are repeated.
+    pub lack_of_fit: Option<LackOfFitOutcome>,
+    /// Stationary point of a quadratic surface.
+    pub canonical: Option<CanonicalOutcome>,
+    /// Best points at distances from the centre.
+    pub ridge: Vec<RidgeOutcome>,
+    /// Runs with their influence.
+    pub influence: Vec<RowOutcome>,
+}
+
+/// Settings with what they give.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct SettingOutcome {
+    /// Actual settings of the factors.
+    pub actual: Vec<f64>,
+    /// The same in coded units.
+    pub coded: Vec<f64>,
+    /// Responses.
+    pub responses: Vec<PredictedResponse>,
+    /// Desirability.
+    pub desirability: f64,
+}
+
+/// A response at some settings.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct PredictedResponse {
+    /// The response.
+    pub response: String,
+    /// Its mean there.
+    pub predicted: f64,
+    /// Interval of one further observation.
+    pub low: f64,
+    /// Its upper end.
+    pub high: f64,
+    /// Desirability of this response alone.
+    pub desirability: f64,
+}
+
+/// Settings that are as good as the best.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct FamilyOutcome {
+    /// Directions in which settings can change and stay as good.
+    pub dimension: usize,
+    /// Factor at whose values the members are given.
+    pub along: String,
+    /// Least actual value of that factor with such settings.
+    pub from: f64,
+    /// Largest.
+    pub to: f64,
+    /// Members.
+    pub members: Vec<SettingOutcome>,
+}
+
+/// What `windfall surface` found.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct SurfaceOutcome {
+    /// Coding of the factors.
+    pub factors: Vec<FactorOutcome>,
+    /// Where the coding came from.
+    pub coding: String,
+    /// The first response.
+    #[serde(flatten)]
+    pub first: SurfaceModel,
+    /// All responses.
+    pub responses: Vec<SurfaceModel>,
+    /// The most desirable settings, where goals were given.
+    pub optimum: Option<SettingOutcome>,
+    /// All settings that are as good, where the best is not alone.
+    pub family: Option<FamilyOutcome>,
+    /// What a reader must know.
+    pub findings: Vec<FindingOutcome>,
+    /// Predictions over two factors.
+    pub grid: Option<GridOutcome>,
+}
+
+/// Predictions over two factors, for contours and surfaces.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct GridOutcome {
+    /// Names of all factors, then of the responses with the standard errors of
+    /// their means.
+    pub columns: Vec<String>,
+    /// One for each point, the first factor varying fastest.
+    pub rows: Vec<Vec<f64>>,
+}

@@ -1,0 +1,226 @@
+//! The command line: what may be written, and its help.
+
+use crate::args::bruise::BruiseArguments;
+use crate::args::calibrate::CalibrateArguments;
+use crate::args::compare::{CompareArguments, SummaryArguments};
+use crate::args::design::DesignArguments;
+use crate::args::fit::FitArguments;
+use crate::args::format::Format;
+use crate::args::geometry::{RadiusArguments, TransferArguments};
+use crate::args::laws::LawsArguments;
+use crate::args::population::PopulationArguments;
+use crate::args::regress::RegressArguments;
+use crate::args::report::ReportArguments;
+use crate::args::scene::SceneCommand;
+use crate::args::serve::ServeArguments;
+use crate::args::simulate::SimulateArguments;
+use crate::args::surface::SurfaceArguments;
+use clap::{Args, Parser, Subcommand, ValueEnum, ValueHint};
+use std::path::PathBuf;
+
+/// From recordings of fruit impacts to contact-force laws.
+#[derive(Debug, Parser)]
+#[command(
+    name = "windfall",
+    version,
+    propagate_version = true,
+    arg_required_else_help = true
+)]
+#[command(after_help = "Examples:
+  windfall new pendulum my-campaign       write a commented template
+  windfall inspect my-campaign/raw/*.csv  see what the recordings hold
+  windfall fit my-campaign                recordings → parameters, table, results.sqlite
+  windfall report my-campaign             figures and a page with all of it
+  windfall serve my-campaign              all of it in the browser
+  windfall simulate impact --law 'kuwabara-kono(k=753599, c=1524)' --mass '0.2 kg' --velocity '0.5 m/s'
+  windfall new scene my-scene; windfall scene run my-scene/scene.toml
+  windfall design ccd --factor 'k=0.3..1' --factor 'e=1.5..3' --out design.csv
+  windfall card show --laws               the force laws")]
+pub struct Arguments {
+    /// What to do.
+    #[command(subcommand)]
+    pub command: Command,
+}
+
+/// The commands.
+#[derive(Debug, Subcommand)]
+pub enum Command {
+    /// Write a commented template of a campaign or a scene
+    New(NewArguments),
+    /// Show what recordings hold and what looks wrong
+    Inspect(InspectArguments),
+    /// Fit force laws to the impacts of a campaign
+    Fit(Box<FitArguments>),
+    /// Compare force laws: which one the impacts of a campaign obey, and how sure that is
+    Laws(LawsArguments),
+    /// Estimate how the law varies between fruit and with covariates
+    Population(PopulationArguments),
+    /// Write figures, tables and a page on a campaign: methods, results, findings, origin
+    Report(Box<ReportArguments>),
+    /// Work on campaigns in the browser: a server on this machine, for this machine
+    Serve(ServeArguments),
+    /// Calibrate a contact law to dropped fruit: by features, and by design and surface
+    Calibrate(CalibrateArguments),
+    /// Make a design of experiments
+    Design(Box<DesignArguments>),
+    /// Simulate one event from a force law
+    Simulate(SimulateArguments),
+    /// Simulate many fruit in a machine: which contacts each fruit suffers
+    #[command(subcommand)]
+    Scene(SceneCommand),
+    /// Describe the values of a table group by group: mean, SD, CV, interval, quartiles
+    Summary(SummaryArguments),
+    /// Compare groups of a table, or predictions with what was measured
+    Compare(Box<CompareArguments>),
+    /// Fit a linear model to a table
+    Regress(Box<RegressArguments>),
+    /// Fit response surfaces to a table of runs, and find the best settings
+    Surface(Box<SurfaceArguments>),
+    /// Radius of curvature from a chord gauge or three diameters
+    Radius(RadiusArguments),
+    /// Volumes of bruises from their measured widths and depths
+    Bruise(BruiseArguments),
+    /// Show force laws, or take one to another geometry
+    Card(CardArguments),
+    /// Write shell completions to standard output
+    Completions {
+        /// The shell
+        shell: clap_complete::Shell,
+    },
+}
+
+/// `windfall new`
+#[derive(Debug, Args)]
+#[command(after_help = "Example:\n  windfall new pendulum my-campaign")]
+pub struct NewArguments {
+    /// Kind of rig
+    pub kind: NewKind,
+    /// Directory to make; it must not exist or be empty
+    #[arg(value_hint = ValueHint::DirPath)]
+    pub directory: PathBuf,
+    /// How the list of written files is shown
+    #[arg(long, value_enum, default_value_t)]
+    pub format: Format,
+}
+
+/// Rigs that have a template.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum NewKind {
+    /// Arm with encoder and force sensor that strikes a fruit on an anvil
+    Pendulum,
+    /// Body on a line: a cart on an incline, a drop hammer
+    Carriage,
+    /// Slow compression in a testing machine or a gripper
+    Compression,
+    /// Taps recorded by a microphone: acoustic firmness
+    Acoustic,
+    /// Drops repeated on one spot, for the critical impact energy
+    Repeats,
+    /// Fruit fall on a plate over a load cell and bounce
+    Drop,
+    /// Not a campaign but a scene: many fruit and a machine, simulated
+    Scene,
+    /// Variants of a scene, compared: pads and drop heights
+    SceneStudy,
+}
+
+/// `windfall inspect`
+#[derive(Debug, Args)]
+#[command(after_help = "Examples:
+  windfall inspect raw/*.tdms
+  windfall inspect impact.lvm --plot impact.svg
+      a figure of all channels, with its data in impact.csv beside it
+  windfall inspect tap.wav --channel 'channel 1' --format json
+
+Formats: text (CSV and relatives), LVM, TDMS, MAT (4 to 7.3), HDF5, WAV, UFF58 and 58b, sigrok; \
+found out from the first bytes of the file.")]
+pub struct InspectArguments {
+    /// Recordings of any format
+    #[arg(required = true, value_hint = ValueHint::FilePath)]
+    pub files: Vec<PathBuf>,
+    /// Show only this channel; may be repeated
+    #[arg(long = "channel", value_name = "NAME")]
+    pub channels: Vec<String>,
+    /// Write a figure of the channels (SVG or PNG, by its ending) and its data (CSV, same name); one recording only
+    #[arg(long, value_name = "FILE.svg|FILE.png", value_hint = ValueHint::FilePath)]
+    pub plot: Option<PathBuf>,
+    /// How files are read that do not say it themselves
+    #[command(flatten)]
+    pub open: OpenArguments,
+    /// How the result is shown
+    #[arg(long, value_enum, default_value_t)]
+    pub format: Format,
+}
+
+/// How files are read that do not say it themselves; all is found out if left out.
+#[derive(Debug, Args)]
+#[command(next_help_heading = "Reading unusual files (found out if left out)")]
+pub struct OpenArguments {
+    /// Format, whatever the first bytes say: text, lvm, tdms, mat, hdf5, wav, uff58, sigrok
+    #[arg(long, value_name = "FORMAT")]
+    pub file_format: Option<String>,
+    /// Between the cells of a text: comma, semicolon, tab, bar or blanks
+    #[arg(long, value_name = "NAME")]
+    pub separator: Option<String>,
+    /// Before decimals: point or comma
+    #[arg(long, value_name = "NAME")]
+    pub decimal: Option<String>,
+    /// Between groups of three digits: point, comma, apostrophe or space
+    #[arg(long, value_name = "NAME")]
+    pub thousands: Option<String>,
+    /// Encoding of a text: utf-8, windows-1252, utf-16le or utf-16be
+    #[arg(long, value_name = "NAME")]
+    pub encoding: Option<String>,
+    /// Line with the names of the columns, from 1; 0 if there is none
+    #[arg(long, value_name = "LINE")]
+    pub header_line: Option<u64>,
+    /// Beginning of lines that are passed over
+    #[arg(long, value_name = "TEXT")]
+    pub comment: Option<String>,
+}
+
+/// `windfall card`
+#[derive(Debug, Args)]
+pub struct CardArguments {
+    /// What to do with cards
+    #[command(subcommand)]
+    pub action: CardAction,
+}
+
+/// Actions on law cards.
+#[derive(Debug, Subcommand)]
+pub enum CardAction {
+    /// Show the force laws, or published values: parameters, units, source
+    #[command(after_help = "Examples:
+  windfall card show --laws
+  windfall card show --laws my-campaign/campaign.toml
+  windfall card show --file law.toml
+  windfall card show --library --fruit apple
+  windfall card show --library jonagold-2003
+  windfall card show --library golden-delicious-regression --at 'V=0.34 m/s, R=50 mm, t=6 ms'")]
+    Show {
+        /// List all laws, or the own laws of a file ([laws.NAME] tables, as in campaign.toml)
+        #[arg(long, value_name = "FILE", num_args = 0..=1, value_hint = ValueHint::FilePath, required_unless_present_any = ["law", "library", "file"])]
+        laws: Option<Option<PathBuf>>,
+        /// Show one law, with all its parameters
+        #[arg(long, value_name = "LAW")]
+        law: Option<String>,
+        /// Show a law card: a calibrated law with its uncertainty, range and origin
+        #[arg(long, value_name = "FILE", value_hint = ValueHint::FilePath, conflicts_with_all = ["laws", "law", "library"])]
+        file: Option<PathBuf>,
+        /// Published values and models, or the entry of this name, with source and cautions
+        #[arg(long, value_name = "NAME", num_args = 0..=1, conflicts_with_all = ["laws", "law"])]
+        library: Option<Option<String>>,
+        /// Of the library, only this fruit or variety
+        #[arg(long, value_name = "FRUIT", requires = "library", conflicts_with_all = ["laws", "law"])]
+        fruit: Option<String>,
+        /// Evaluate regressions of the library: NAME=VALUE with units, separated by commas
+        #[arg(long, value_name = "VALUES", requires = "library", conflicts_with_all = ["laws", "law"])]
+        at: Option<String>,
+        /// How the result is shown
+        #[arg(long, value_enum, default_value_t)]
+        format: Format,
+    },
+    /// Take a law from one geometry to another by R* and E*
+    Transfer(TransferArguments),
+}

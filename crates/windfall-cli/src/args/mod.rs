@@ -1,0 +1,23 @@
+//! Arguments of the commands.
+
+pub mod bruise;
+pub mod calibrate;
+pub(crate) mod common;
+pub mod compare;
+pub mod design;
+pub(crate) mod end;
+mod figures;
+pub mod fit;
+pub(crate) mod format;
+pub mod geometry;
+pub mod laws;
+pub mod population;
+pub mod regress;
+pub mod report;
+pub mod scene;
+pub(crate) mod scene_view;
+pub mod serve;
+pub mod simulate;
+pub(crate) mod simulate_drop;
+pub(crate) mod simulate_eccentric;
+pub mod surface;

@@ -1,0 +1,182 @@
+//! `windfall scene`: what may be asked for.
+
+use crate::args::format::Format;
+use crate::args::scene_view::{ScenePictureArguments, SceneVtkArguments};
+use clap::{Args, Subcommand, ValueEnum, ValueHint};
+use std::path::PathBuf;
+use windfall_engines::classes::MOST;
+
+/// `windfall scene …`
+#[derive(Debug, Subcommand)]
+pub enum SceneCommand {
+    /// Run a scene, and write every contact and every fruit
+    Run(SceneRunArguments),
+    /// Run variants of a scene several times each, and compare who is bruised
+    Study(SceneStudyArguments),
+    /// Draw a scene that has run: walls, and fruit coloured by their largest impact
+    Picture(ScenePictureArguments),
+    /// Write the frames of a scene that has run for ParaView
+    Vtk(SceneVtkArguments),
+    /// Write a scene as a complete deck for LAMMPS or LIGGGHTS, or its contacts for others
+    Export(SceneExportArguments),
+}
+
+/// An engine that a scene runs on.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum)]
+pub enum EngineName {
+    /// The engine of this program
+    #[default]
+    Windfall,
+    /// LAMMPS of 29 Sep 2021 or newer
+    Lammps,
+    /// LIGGGHTS-PUBLIC 3.8
+    Liggghts,
+}
+
+/// What is asked of another engine.
+#[derive(Debug, Args)]
+pub struct EngineArguments {
+    /// For LAMMPS and LIGGGHTS: classes of size of one material at most, each with coefficients of
+    /// its own
+    #[arg(long, value_name = "N", default_value_t = MOST)]
+    pub classes: usize,
+    /// For LAMMPS and LIGGGHTS: steps between frames, of which contacts are made; a contact lasts 80
+    /// frames at least if left out
+    #[arg(long, value_name = "N")]
+    pub frame_steps: Option<u64>,
+}
+
+/// An engine that a scene, or its contacts, are written for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum ExportName {
+    /// A deck for LAMMPS of 29 Sep 2021 or newer
+    Lammps,
+    /// A deck for LIGGGHTS-PUBLIC 3.8
+    Liggghts,
+    /// The contacts as IMPACT statements of Adams
+    Adams,
+    /// The contacts for YADE
+    Yade,
+    /// The contacts as species of MercuryDPM
+    Mercurydpm,
+    /// The contacts as tables of EDEM
+    Edem,
+    /// The contacts as materials of Chrono
+    Chrono,
+}
+
+/// `windfall scene export`
+#[derive(Debug, Args)]
+#[command(
+    after_help = "Writes a directory beside FILE, or that of --out. LAMMPS or LIGGGHTS run the deck there, on one \
+machine or on many, and write frames.bin; `windfall scene run FILE --engine … --frames frames.bin` makes \
+contacts, fruit and bruises of it. For other engines it writes the contact of each pair of materials in \
+their own terms, and says what of it is the law itself.
+
+Examples:
+  windfall scene export my-scene/scene.toml --engine lammps
+  windfall scene export my-scene/scene.toml --engine liggghts --out deck
+  windfall scene export my-scene/scene.toml --engine adams --speed 2"
+)]
+pub struct SceneExportArguments {
+    /// The scene
+    #[arg(value_name = "FILE", value_hint = ValueHint::FilePath)]
+    pub file: PathBuf,
+    /// The engine
+    #[arg(long, value_enum)]
+    pub engine: ExportName,
+    /// For the others: impact speed in m/s at which damping that is not the law's takes as much energy
+    #[arg(long, value_name = "SPEED", default_value_t = 1.0)]
+    pub speed: f64,
+    /// Directory to write into
+    #[arg(long, value_name = "DIR", value_hint = ValueHint::DirPath)]
+    pub out: Option<PathBuf>,
+    #[command(flatten)]
+    pub of_engine: EngineArguments,
+    /// How the result is shown
+    #[arg(long, value_enum, default_value_t)]
+    pub format: Format,
+}
+
+/// `windfall scene run`
+#[derive(Debug, Args)]
+#[command(
+    after_help = "Writes beside FILE, into FILE without its ending and with .run: events.csv (every contact: when, \
+where in space and on the fruit, impact speed, peak force, largest displacement, duration, absorbed energy), \
+fruit.csv (every fruit with its hardest contact) and scene.json (what is printed). Units are in the names of \
+the columns; SI.
+
+A run that was stopped, by Ctrl-C, a full disk or a cut of power, goes on from its last checkpoint with --resume, \
+and gives the same files to the last digit; `checkpoint` in [scene] says how often one is made.
+
+Examples:
+  windfall new scene my-scene
+  windfall scene run my-scene/scene.toml
+  windfall scene run my-scene/scene.toml --out first-try --threads 2 --format json
+  windfall scene run my-scene/scene.toml --resume
+  windfall scene run my-scene/scene.toml --engine lammps --ranks 4"
+)]
+pub struct SceneRunArguments {
+    /// The scene
+    #[arg(value_name = "FILE", value_hint = ValueHint::FilePath)]
+    pub file: PathBuf,
+    /// Directory to write into
+    #[arg(long, value_name = "DIR", value_hint = ValueHint::DirPath)]
+    pub out: Option<PathBuf>,
+    /// Number of threads; all cores if left out. It never changes a result
+    #[arg(long, value_name = "N")]
+    pub threads: Option<usize>,
+    /// Go on with a run that was stopped, from its last checkpoint
+    #[arg(long, conflicts_with = "restart")]
+    pub resume: bool,
+    /// Begin anew where a run was stopped
+    #[arg(long)]
+    pub restart: bool,
+    /// The engine that moves the fruit
+    #[arg(long, value_enum, default_value_t)]
+    pub engine: EngineName,
+    /// For LAMMPS and LIGGGHTS: ranks of MPI
+    #[arg(long, value_name = "N", default_value_t = 1)]
+    pub ranks: usize,
+    /// For LAMMPS and LIGGGHTS: the program, if it is not on the path as lmp or liggghts
+    #[arg(long, value_name = "FILE", value_hint = ValueHint::FilePath)]
+    pub engine_program: Option<PathBuf>,
+    /// For LAMMPS and LIGGGHTS: frames that an earlier run of the scene's deck wrote, instead of a new
+    /// run
+    #[arg(long, value_name = "FILE", value_hint = ValueHint::FilePath)]
+    pub frames: Option<PathBuf>,
+    #[command(flatten)]
+    pub of_engine: EngineArguments,
+    /// How the result is shown
+    #[arg(long, value_enum, default_value_t)]
+    pub format: Format,
+}
+
+/// `windfall scene study`
+#[derive(Debug, Args)]
+#[command(
+    after_help = "FILE names a scene and what is varied: [[vary]] with a name and levels, which set keys of the scene \
+or move walls, sources and sinks. Every combination of levels is run as often as replicates says, with other \
+seeds and with laws drawn from the uncertainty of their cards.
+
+Writes beside FILE, into FILE without its ending and with .study: study.html (the page), study.csv, study.json, \
+figures/, and variants/ with every run. What an earlier run of the study left there is replaced.
+
+Examples:
+  windfall new scene-study my-study
+  windfall scene study my-study/study.toml"
+)]
+pub struct SceneStudyArguments {
+    /// The study
+    #[arg(value_name = "FILE", value_hint = ValueHint::FilePath)]
+    pub file: PathBuf,
+    /// Directory to write into
+    #[arg(long, value_name = "DIR", value_hint = ValueHint::DirPath)]
+    pub out: Option<PathBuf>,
+    /// Number of threads, over which runs are spread; all cores if left out. It never changes a result
+    #[arg(long, value_name = "N")]
+    pub threads: Option<usize>,
+    /// How the result is shown
+    #[arg(long, value_enum, default_value_t)]
+    pub format: Format,
+}

@@ -1,0 +1,63 @@
+//! `windfall scene picture` and `windfall scene vtk`: what may be asked for.
+
+use crate::args::figures::Theme;
+use crate::args::format::Format;
+use clap::{Args, ValueHint};
+use std::path::PathBuf;
+
+/// `windfall scene picture`
+#[derive(Debug, Args)]
+#[command(
+    after_help = "The scene must have been run with frames: [record] frames = \"20 ms\" in its file. Fruit have \
+the colour of the largest peak force of their contacts so far.
+
+Examples:
+  windfall scene picture my-scene/scene.run
+  windfall scene picture my-scene/scene.run --time \"1.2 s\" --from \"-30 deg,35 deg\" --out bin.svg
+  windfall scene picture my-scene/scene.run --largest-force \"100 N\" --theme dark --out bin.png"
+)]
+pub struct ScenePictureArguments {
+    /// Directory that `windfall scene run` wrote into, or the scene file beside it
+    #[arg(value_name = "RUN", value_hint = ValueHint::AnyPath)]
+    pub run: PathBuf,
+    /// When, as "1.2 s"; the end if left out
+    #[arg(long, value_name = "TIME")]
+    pub time: Option<String>,
+    /// From where: azimuth from x towards y and elevation, as "-62 deg,24 deg"
+    #[arg(long, value_name = "ANGLES", allow_hyphen_values = true)]
+    pub from: Option<String>,
+    /// Force of the last colour, as "100 N"; the largest of the scene if left out
+    #[arg(long, value_name = "FORCE")]
+    pub largest_force: Option<String>,
+    /// Colours
+    #[arg(long, value_enum, default_value_t = Theme::Light)]
+    pub theme: Theme,
+    /// An .svg or .png (300 dots per inch); picture.svg and picture.png in RUN if left out
+    #[arg(long, value_name = "FILE", value_hint = ValueHint::FilePath)]
+    pub out: Option<PathBuf>,
+    /// How the result is shown
+    #[arg(long, value_enum, default_value_t)]
+    pub format: Format,
+}
+
+/// `windfall scene vtk`
+#[derive(Debug, Args)]
+#[command(
+    after_help = "Writes fruit_*.vtp (points with radius, velocity, largest_peak_force, orientation and number of \
+the fruit), walls.vtp (or walls_*.vtp where walls move) and scene.pvd, which lists them with their times: open \
+that one in ParaView, and show the fruit as glyphs (sphere, scaled by radius, factor 2).
+
+Example:
+  windfall scene vtk my-scene/scene.run"
+)]
+pub struct SceneVtkArguments {
+    /// Directory that `windfall scene run` wrote into, or the scene file beside it
+    #[arg(value_name = "RUN", value_hint = ValueHint::AnyPath)]
+    pub run: PathBuf,
+    /// Directory to write into; RUN/vtk if left out
+    #[arg(long, value_name = "DIR", value_hint = ValueHint::DirPath)]
+    pub out: Option<PathBuf>,
+    /// How the result is shown
+    #[arg(long, value_enum, default_value_t)]
+    pub format: Format,
+}

@@ -1,0 +1,140 @@
+//! `windfall fit`
+
+use crate::args::fit::{FitArguments, RecordingArguments};
+use crate::args::format::Format;
+use crate::show::{message, write_json, write_result};
+use indicatif::{ProgressBar, ProgressStyle};
+use std::io::IsTerminal;
+use std::ops::ControlFlow;
+use windfall_campaign::impacts::request::{FitRequest, Reuse};
+use windfall_campaign::impacts::run::fit_recording;
+use windfall_campaign::measure::any_outcome::AnyOutcome;
+use windfall_campaign::recording::request::RecordingRequest;
+use windfall_files::error::Error;
+use windfall_report::any_text::{csv_of_any, text_of_any};
+use windfall_report::fit_any::fit_any;
+
+/// Fits a campaign and shows the result.
+pub fn run(arguments: &FitArguments) -> anyhow::Result<()> {
+    let request = fit_request(arguments);
+    let bar = progress_bar();
+    let progress = moving(&bar);
+    let path = &arguments.directory;
+    let outcome = match recording_request(&arguments.recording) {
+        Some(recording) => fit_recording(path, &recording, &request, &progress)
+            .map(|outcome| AnyOutcome::Impacts(Box::new(outcome))),
+        None => fit_any(path, &request, &progress),
+    };
+    bar.finish_and_clear();
+    let outcome = outcome?;
+    match arguments.format {
+        Format::Json => write_json(&outcome)?,
+        Format::Csv => write_result(&csv_of_any(&outcome)?)?,
+        Format::Text => write_result(&text_of_any(&outcome))?,
+    }
+    // The text shows failures itself, beside the results.
+    let told = if arguments.format == Format::Text {
+        &[][..]
+    } else {
+        outcome.failed()
+    };
+    for failure in told {
+        message(&format!("not fitted: {}: {}", failure.id, failure.message));
+    }
+    if outcome.results() == 0 {
+        let path = arguments.directory.clone();
+        return Err(Error::NothingFitted {
+            path,
+            failures: outcome.failed().to_vec(),
+        }
+        .into());
+    }
+    if arguments.recording.rig.is_none() {
+        message(&status_line(outcome.status()));
+    }
+    Ok(())
+}
+
+fn fit_request(arguments: &FitArguments) -> FitRequest {
+    FitRequest {
+        laws: arguments.laws.clone(),
+        laws_file: arguments.laws_file.clone(),
+        free: arguments.free.clone(),
+        quantities: arguments.quantities.clone(),
+        weights: arguments.weights.clone(),
+        noise: arguments.noise.clone(),
+        intervals: arguments.intervals.clone(),
+        replicates: arguments.replicates,
+        draws: arguments.draws,
+        seed: arguments.seed,
+        initial_velocity: arguments.initial_velocity.clone(),
+        onset: arguments.onset.clone(),
+        displacement_offset: arguments.displacement_offset.clone(),
+        end: arguments.end.clone(),
+        group: arguments.group.clone(),
+        reuse: match arguments.refit {
+            true => Reuse::Nothing,
+            false => Reuse::Unchanged,
+        },
+        figures: arguments.drawn.folder(),
+        card: arguments.card.clone(),
+        threads: arguments.threads,
+    }
+}
+
+fn recording_request(arguments: &RecordingArguments) -> Option<RecordingRequest> {
+    Some(RecordingRequest {
+        rig: arguments.rig.clone()?,
+        inertia: arguments.inertia.clone(),
+        arm: arguments.arm.clone(),
+        mass: arguments.mass.clone(),
+        centre_of_mass: arguments.centre_of_mass.clone(),
+        gravity: arguments.gravity.clone(),
+        driving_acceleration: arguments.driving_acceleration.clone(),
+        channels: arguments.channels.clone(),
+        time: arguments.time.clone(),
+        sampling_rate: arguments.sampling_rate.clone(),
+        counts_per_revolution: arguments.counts_per_revolution,
+        count_length: arguments.count_length.clone(),
+        threshold: arguments.threshold.clone(),
+    })
+}
+
+fn status_line(status: &windfall_campaign::result::outcome::StatusOutcome) -> String {
+    let failed = match status.failed {
+        0 => String::new(),
+        n => format!("; {n} could not be fitted, the rest was"),
+    };
+    if status.up_to_date {
+        return format!(
+            "up to date: nothing has changed since the last fit, {} results from results.sqlite{failed}",
+            status.stored
+        );
+    }
+    format!(
+        "{} fitted, {} unchanged from results.sqlite{failed}",
+        status.fitted, status.stored
+    )
+}
+
+/// A bar on a terminal, nothing elsewhere.
+pub(crate) fn progress_bar() -> ProgressBar {
+    if !std::io::stderr().is_terminal() {
+        return ProgressBar::hidden();
+    }
+    let style = ProgressStyle::with_template("{bar:40} {pos}/{len} recordings, {eta} left");
+    let bar = ProgressBar::new(0);
+    match style {
+        Ok(style) => bar.with_style(style),
+        Err(_) => bar,
+    }
+}
+
+/// Moves the bar as the work goes on; who wants it to stop interrupts the program.
+pub(crate) fn moving(bar: &ProgressBar) -> impl Fn(usize, usize) -> ControlFlow<()> + Sync {
+    |done, all| {
+        bar.set_length(all as u64);
+        bar.set_position(done as u64);
+        ControlFlow::Continue(())
+    }
+}

@@ -1,0 +1,54 @@
+//! `windfall inspect`
+
+use crate::args::common::InspectArguments;
+use crate::args::format::Format;
+use crate::show::{message, write_json, write_result};
+use windfall_campaign::settings::open_options::OpenRequest;
+use windfall_inspect::run::{InspectRequest, inspect_recording, write_figure};
+use windfall_inspect::text::{csv_of_inspections, text_of_inspection};
+
+/// Width of a terminal that does not say.
+const COLUMNS: usize = 80;
+
+/// Looks through every file; one that cannot be read does not stop the others.
+pub fn run(arguments: &InspectArguments) -> anyhow::Result<()> {
+    let request = InspectRequest {
+        open: OpenRequest {
+            format: arguments.open.file_format.clone(),
+            separator: arguments.open.separator.clone(),
+            decimal: arguments.open.decimal.clone(),
+            thousands: arguments.open.thousands.clone(),
+            encoding: arguments.open.encoding.clone(),
+            header_line: arguments.open.header_line,
+            comment: arguments.open.comment.clone(),
+        },
+        channels: arguments.channels.clone(),
+    };
+    let mut inspections = Vec::new();
+    let mut first_failure = None;
+    for file in &arguments.files {
+        match inspect_recording(file, &request) {
+            Ok(inspection) => inspections.push(inspection),
+            Err(error) => {
+                // The first failure is the command's own and is shown at the end.
+                if let Some(before) = first_failure.replace(error) {
+                    message(&format!("error: {before}"));
+                }
+            }
+        }
+    }
+    if let Some(path) = &arguments.plot {
+        for written in write_figure(path, &inspections)? {
+            message(&format!("written: {}", written.display()));
+        }
+    }
+    match arguments.format {
+        Format::Json => write_json(&serde_json::json!({ "files": inspections }))?,
+        Format::Csv => write_result(&csv_of_inspections(&inspections)?)?,
+        Format::Text => {
+            let texts = inspections.iter().map(|i| text_of_inspection(i, COLUMNS));
+            write_result(&texts.collect::<Vec<_>>().join("\n"))?;
+        }
+    }
+    first_failure.map_or(Ok(()), |error| Err(error.into()))
+}

@@ -1,0 +1,22 @@
+//! The commands: each calls one workflow and shows what it returns.
+
+pub(crate) mod bruise;
+pub(crate) mod calibrate;
+pub(crate) mod card;
+pub(crate) mod compare;
+pub(crate) mod design;
+pub(crate) mod fit;
+pub(crate) mod geometry;
+pub(crate) mod inspect;
+pub(crate) mod laws;
+pub mod new;
+pub(crate) mod population;
+pub(crate) mod regress;
+pub(crate) mod report;
+pub(crate) mod scene;
+pub(crate) mod scene_view;
+pub(crate) mod serve;
+pub(crate) mod simulate;
+pub(crate) mod simulate_drop;
+pub(crate) mod simulate_eccentric;
+pub(crate) mod surface;

@@ -1,0 +1,46 @@
+//! `windfall report`
+
+use crate::args::format::Format;
+use crate::args::report::ReportArguments;
+use crate::command::fit::{moving, progress_bar};
+use crate::show::{tell_failures, write_json, write_result};
+use windfall_campaign::impacts::request::FitRequest;
+use windfall_report::run::{ReportRequest, report_campaign};
+
+/// Writes the report of a campaign and says which files it is.
+pub fn run(arguments: &ReportArguments) -> anyhow::Result<()> {
+    let bar = progress_bar();
+    let progress = moving(&bar);
+    let request = ReportRequest {
+        fit: FitRequest {
+            laws: arguments.laws.clone(),
+            free: arguments.free.clone(),
+            intervals: arguments.intervals.clone(),
+            group: arguments.group.clone(),
+            threads: arguments.threads,
+            ..FitRequest::default()
+        },
+        out: arguments.out.clone(),
+        theme: arguments.theme.into(),
+    };
+    let outcome = report_campaign(&arguments.directory, &request, &progress);
+    bar.finish_and_clear();
+    let outcome = outcome.map_err(tell_failures)?;
+    let lines = outcome.files.iter().map(|f| format!("{}\n", f.display()));
+    match arguments.format {
+        Format::Json => write_json(&outcome),
+        Format::Csv => write_result(&("file\n".to_owned() + &lines.collect::<String>())),
+        Format::Text => {
+            let failed = match outcome.failed {
+                0 => String::new(),
+                n => format!("; {n} could not be fitted, the page says why"),
+            };
+            write_result(&format!(
+                "{}: {} results, {} files{failed}\n",
+                outcome.page.display(),
+                outcome.impacts,
+                outcome.files.len()
+            ))
+        }
+    }
+}

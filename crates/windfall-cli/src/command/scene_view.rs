@@ -1,0 +1,70 @@
+//! `windfall scene picture` and `windfall scene vtk`
+
+use crate::args::format::Format;
+use crate::args::scene_view::{ScenePictureArguments, SceneVtkArguments};
+use crate::command::fit::{moving, progress_bar};
+use crate::show::{write_json, write_result};
+use windfall_files::option_value::{positive, quantity, unusable};
+use windfall_scene_run::frames::view::{PictureRequest, draw_scene, vtk_of_scene};
+
+/// Draws a scene.
+pub fn picture(arguments: &ScenePictureArguments) -> anyhow::Result<()> {
+    let time = arguments.time.as_deref();
+    let most = arguments.largest_force.as_deref();
+    let request = PictureRequest {
+        time: time.map(|text| quantity("--time", text, "s")).transpose()?,
+        from: arguments.from.as_deref().map(angles).transpose()?,
+        most: most
+            .map(|text| positive("--largest-force", text, "N"))
+            .transpose()?,
+        theme: arguments.theme.into(),
+        out: arguments.out.clone(),
+    };
+    let outcome = draw_scene(&arguments.run, &request)?;
+    let files: Vec<String> = outcome
+        .files
+        .iter()
+        .map(|file| file.display().to_string())
+        .collect();
+    match arguments.format {
+        Format::Json => write_json(&outcome),
+        Format::Csv => write_result(&format!("file\n{}\n", files.join("\n"))),
+        Format::Text => write_result(&format!(
+            "{}\n\nWritten: {}\n",
+            outcome.caption,
+            files.join(", ")
+        )),
+    }
+}
+
+/// Azimuth and elevation; rad.
+fn angles(text: &str) -> Result<[f64; 2], windfall_files::error::Error> {
+    const OPTION: &str = "--from";
+    let Some((azimuth, elevation)) = text.split_once(',') else {
+        let problem = format!("\"{text}\": expected azimuth and elevation, as \"-62 deg,24 deg\"");
+        return Err(unusable(OPTION, problem));
+    };
+    Ok([
+        quantity(OPTION, azimuth.trim(), "rad")?,
+        quantity(OPTION, elevation.trim(), "rad")?,
+    ])
+}
+
+/// Writes files for ParaView.
+pub fn vtk(arguments: &SceneVtkArguments) -> anyhow::Result<()> {
+    let bar = progress_bar();
+    let progress = moving(&bar);
+    let outcome = vtk_of_scene(&arguments.run, arguments.out.as_deref(), &progress);
+    bar.finish_and_clear();
+    let outcome = outcome?;
+    match arguments.format {
+        Format::Json => write_json(&outcome),
+        Format::Csv => write_result(&format!("file\n{}\n", outcome.collection.display())),
+        Format::Text => write_result(&format!(
+            "{} frames. Open this one in ParaView; {} files lie beside it.\n\nWritten: {}\n",
+            outcome.frames,
+            outcome.files,
+            outcome.collection.display()
+        )),
+    }
+}

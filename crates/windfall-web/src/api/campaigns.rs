@@ -1,0 +1,103 @@
+//! Campaigns: which there are, what they say, what their stores hold.
+
+use crate::about::KINDS;
+use crate::app::{Answer, App};
+use crate::described::{QuestionProblems, RequestProblems};
+use crate::given::Given;
+use crate::problem::Problem;
+use axum::Json;
+use axum::extract::{Path, State};
+use axum::http::{HeaderMap, HeaderValue, StatusCode, header};
+use axum::response::{IntoResponse, Response};
+use serde::Deserialize;
+use utoipa::ToSchema;
+use windfall_campaign::settings::template::{TemplateKind, write_template};
+use windfall_workspace::campaign_view::{CampaignView, view_campaign};
+use windfall_workspace::workspace::{CampaignEntry, StoredResults, stored_results};
+
+/// A campaign to be made.
+#[derive(Debug, Deserialize, ToSchema)]
+#[serde(deny_unknown_fields)]
+pub(crate) struct NewCampaign {
+    /// Name of its directory.
+    id: String,
+    /// "pendulum", "carriage", "drop", "compression", "acoustic" or "repeats".
+    kind: String,
+}
+
+/// All campaigns of the directory.
+#[utoipa::path(get, path = "/api/campaigns", responses((status = 200, body = Vec<Object>)))]
+pub(crate) async fn campaigns(State(app): State<App>) -> Answer<Vec<CampaignEntry>> {
+    let entries = app.work(|app| app.workspace.campaigns()).await?;
+    app.tell(&entries)
+}
+
+/// Makes a campaign from a template, as `windfall new` does.
+#[utoipa::path(
+    post, path = "/api/campaigns", request_body = NewCampaign,
+    responses((status = 201, body = Object), RequestProblems))]
+pub(crate) async fn create(
+    State(app): State<App>,
+    Given(new): Given<NewCampaign>,
+) -> Result<Response, Problem> {
+    let Some(kind) = template_kind(&new.kind) else {
+        let detail = format!(
+            "kind \"{}\": expected one of {}",
+            new.kind,
+            KINDS.join(", ")
+        );
+        return Err(Problem::request(detail));
+    };
+    let view = app.work(move |app| {
+        let directory = app.workspace.place(&new.id)?;
+        write_template(kind, &directory)?;
+        view_campaign(&directory)
+    });
+    let view = view.await?;
+    Ok((StatusCode::CREATED, with_version(view)).into_response())
+}
+
+fn template_kind(word: &str) -> Option<TemplateKind> {
+    match word {
+        "pendulum" => Some(TemplateKind::Pendulum),
+        "carriage" => Some(TemplateKind::Carriage),
+        "drop" => Some(TemplateKind::Drop),
+        "compression" => Some(TemplateKind::Compression),
+        "acoustic" => Some(TemplateKind::Acoustic),
+        "repeats" => Some(TemplateKind::Repeats),
+        _ => None,
+    }
+}
+
+/// What the files of a campaign say; its version is the ETag.
+#[utoipa::path(
+    get, path = "/api/campaigns/{id}", params(("id" = String, Path, example = "bench")),
+    responses((status = 200, body = Object), QuestionProblems))]
+pub(crate) async fn campaign(
+    State(app): State<App>,
+    Path(id): Path<String>,
+) -> Result<Response, Problem> {
+    let view = app.on_campaign(id, |_, directory| view_campaign(directory));
+    Ok(with_version(view.await?).into_response())
+}
+
+/// A campaign with its version as ETag.
+pub(crate) fn with_version(view: CampaignView) -> (HeaderMap, Json<CampaignView>) {
+    let mut headers = HeaderMap::new();
+    if let Ok(version) = HeaderValue::from_str(&format!("\"{}\"", view.version)) {
+        headers.insert(header::ETAG, version);
+    }
+    (headers, Json(view))
+}
+
+/// What the store holds of the campaign as it is now; nothing is fitted.
+#[utoipa::path(
+    get, path = "/api/campaigns/{id}/results", params(("id" = String, Path, example = "bench")),
+    responses((status = 200, body = Object), QuestionProblems))]
+pub(crate) async fn results(
+    State(app): State<App>,
+    Path(id): Path<String>,
+) -> Answer<StoredResults> {
+    app.answer(id, |_, directory| stored_results(directory))
+        .await
+}

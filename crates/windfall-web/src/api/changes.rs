@@ -1,0 +1,229 @@
+//! Changes of a campaign's files; each names the version that it rests on.
+
+use crate::api::campaigns::with_version;
+use crate::app::App;
+use crate::described::ChangeProblems;
+use crate::given::{Given, Version};
+use crate::problem::Problem;
+use axum::extract::{Path, State};
+use axum::response::{IntoResponse, Response};
+use serde::Deserialize;
+use std::collections::BTreeMap;
+use utoipa::ToSchema;
+use windfall_workspace::edit_campaign::{
+    Change, ChannelsChange, NewImpact, OptionsChange, change_campaign,
+};
+
+/// campaign.toml as a whole.
+#[derive(Debug, Deserialize, ToSchema)]
+#[serde(deny_unknown_fields)]
+pub(crate) struct TextGiven {
+    /// The text.
+    text: String,
+}
+
+/// The part of the recording that an impact uses.
+#[derive(Debug, Deserialize, ToSchema)]
+#[serde(deny_unknown_fields)]
+pub(crate) struct WindowGiven {
+    /// Id of the impact.
+    impact: String,
+    /// Its begin; s.
+    from: Option<f64>,
+    /// Its end; s.
+    to: Option<f64>,
+}
+
+/// Options of the fit; what is left out stays.
+#[derive(Debug, Default, Deserialize, ToSchema)]
+#[serde(default, deny_unknown_fields)]
+pub(crate) struct OptionsGiven {
+    laws: Option<Vec<String>>,
+    free: Option<Vec<String>>,
+    quantities: Option<Vec<String>>,
+    weights: Option<String>,
+    noise: Option<String>,
+    intervals: Option<String>,
+    onset: Option<String>,
+    initial_velocity: Option<String>,
+    displacement_offset: Option<String>,
+    end: Option<String>,
+    /// Column by which results are grouped; empty for none.
+    group: Option<String>,
+}
+
+/// Where the channels are.
+#[derive(Debug, Deserialize, ToSchema)]
+#[serde(deny_unknown_fields)]
+pub(crate) struct ChannelsGiven {
+    /// Channels.
+    channels: Vec<ChannelGiven>,
+    /// Column of times.
+    time: Option<String>,
+    /// Sampling rate.
+    rate: Option<String>,
+}
+
+/// A channel.
+#[derive(Debug, Deserialize, ToSchema)]
+#[serde(deny_unknown_fields)]
+pub(crate) struct ChannelGiven {
+    /// "force", "position", …
+    quantity: String,
+    /// Column in the files.
+    column: String,
+    /// Its unit, or the sensitivity of its sensor.
+    unit: String,
+}
+
+/// Further impacts.
+#[derive(Debug, Deserialize, ToSchema)]
+#[serde(deny_unknown_fields)]
+pub(crate) struct ImpactsGiven {
+    /// Rows of impacts.csv.
+    impacts: Vec<ImpactGiven>,
+}
+
+/// A row of impacts.csv.
+#[derive(Debug, Deserialize, ToSchema)]
+#[serde(deny_unknown_fields)]
+pub(crate) struct ImpactGiven {
+    /// Id.
+    id: String,
+    /// Specimen.
+    specimen: String,
+    /// Recording.
+    file: String,
+    /// Other columns.
+    #[serde(default)]
+    cells: BTreeMap<String, String>,
+}
+
+async fn changed(
+    app: App,
+    id: String,
+    version: String,
+    change: Change,
+) -> Result<Response, Problem> {
+    let view = app.on_campaign(id, move |_, directory| {
+        change_campaign(directory, &version, &change)
+    });
+    Ok(with_version(view.await?).into_response())
+}
+
+/// Replaces campaign.toml.
+#[utoipa::path(
+    put, path = "/api/campaigns/{id}/text", request_body = TextGiven,
+    params(("id" = String, Path, example = "bench"), ("If-Match" = String, Header, example = "*")),
+    responses((status = 200, body = Object), ChangeProblems))]
+pub(crate) async fn text(
+    State(app): State<App>,
+    Path(id): Path<String>,
+    Version(version): Version,
+    Given(given): Given<TextGiven>,
+) -> Result<Response, Problem> {
+    changed(app, id, version, Change::Text(given.text)).await
+}
+
+/// Sets from_s and to_s of an impact.
+#[utoipa::path(
+    put, path = "/api/campaigns/{id}/window", request_body = WindowGiven,
+    params(("id" = String, Path, example = "bench"), ("If-Match" = String, Header, example = "*")),
+    responses((status = 200, body = Object), ChangeProblems))]
+pub(crate) async fn window(
+    State(app): State<App>,
+    Path(id): Path<String>,
+    Version(version): Version,
+    Given(given): Given<WindowGiven>,
+) -> Result<Response, Problem> {
+    let times = [given.from, given.to].into_iter().flatten();
+    if times.clone().any(|time| !time.is_finite()) || given.from >= given.to && times.count() == 2 {
+        return Err(Problem::request("a window begins before it ends"));
+    }
+    let change = Change::Window {
+        impact: given.impact,
+        from: given.from,
+        to: given.to,
+    };
+    changed(app, id, version, change).await
+}
+
+/// Sets options of the fit.
+#[utoipa::path(
+    put, path = "/api/campaigns/{id}/options", request_body = OptionsGiven,
+    params(("id" = String, Path, example = "bench"), ("If-Match" = String, Header, example = "*")),
+    responses((status = 200, body = Object), ChangeProblems))]
+pub(crate) async fn options(
+    State(app): State<App>,
+    Path(id): Path<String>,
+    Version(version): Version,
+    Given(given): Given<OptionsGiven>,
+) -> Result<Response, Problem> {
+    let lists = [
+        ("laws", given.laws),
+        ("free", given.free),
+        ("quantities", given.quantities),
+    ];
+    let words = [
+        ("weights", given.weights),
+        ("noise", given.noise),
+        ("intervals", given.intervals),
+        ("onset", given.onset),
+        ("initial_velocity", given.initial_velocity),
+        ("displacement_offset", given.displacement_offset),
+        ("end", given.end),
+    ];
+    let change = OptionsChange {
+        lists: present(lists),
+        words: present(words),
+        group: given.group,
+    };
+    changed(app, id, version, Change::Options(change)).await
+}
+
+fn present<T, const N: usize>(pairs: [(&str, Option<T>); N]) -> BTreeMap<String, T> {
+    let given = pairs.into_iter();
+    given
+        .filter_map(|(key, value)| Some((key.to_owned(), value?)))
+        .collect()
+}
+
+/// Says where the channels are.
+#[utoipa::path(
+    put, path = "/api/campaigns/{id}/channels", request_body = ChannelsGiven,
+    params(("id" = String, Path, example = "bench"), ("If-Match" = String, Header, example = "*")),
+    responses((status = 200, body = Object), ChangeProblems))]
+pub(crate) async fn channels(
+    State(app): State<App>,
+    Path(id): Path<String>,
+    Version(version): Version,
+    Given(given): Given<ChannelsGiven>,
+) -> Result<Response, Problem> {
+    let own = given.channels.into_iter();
+    let change = ChannelsChange {
+        channels: own.map(|c| (c.quantity, c.column, c.unit)).collect(),
+        time: given.time,
+        rate: given.rate,
+    };
+    changed(app, id, version, Change::Channels(change)).await
+}
+
+/// Adds impacts, and specimens that are new.
+#[utoipa::path(
+    post, path = "/api/campaigns/{id}/impacts", request_body = ImpactsGiven,
+    params(("id" = String, Path, example = "bench"), ("If-Match" = String, Header, example = "*")),
+    responses((status = 200, body = Object), ChangeProblems))]
+pub(crate) async fn impacts(
+    State(app): State<App>,
+    Path(id): Path<String>,
+    Version(version): Version,
+    Given(given): Given<ImpactsGiven>,
+) -> Result<Response, Problem> {
+    let rows = given.impacts.into_iter().map(|row| NewImpact {
+        id: row.id,
+        specimen: row.specimen,
+        file: row.file,
+        cells: row.cells,
+    });
+    changed(app, id, version, Change::Impacts(rows.collect())).await
+}

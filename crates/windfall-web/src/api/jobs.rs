@@ -1,0 +1,228 @@
+//! Long work: fits, comparisons of laws, populations, calibrations, reports.
+
+use crate::app::{Answer, App};
+use crate::described::RequestProblems;
+use crate::given::Given;
+use crate::job::{Job, JobView};
+use crate::problem::Problem;
+use axum::Json;
+use axum::extract::{Path, State};
+use axum::http::StatusCode;
+use axum::response::{IntoResponse, Response};
+use serde::{Deserialize, Serialize};
+use serde_json::value::{RawValue, to_raw_value};
+use std::path::PathBuf;
+use std::sync::Arc;
+use utoipa::ToSchema;
+use windfall_campaign::impacts::request::FitRequest;
+use windfall_drop::calibrate::run::{CalibrateRequest, calibrate};
+use windfall_files::error::Error;
+use windfall_population::ranking::run::rank_campaign;
+use windfall_population::run::{PopulationRequest, population};
+use windfall_report::fit_any::fit_any;
+use windfall_report::run::{ReportRequest, report_campaign};
+use windfall_report::stored_card::CARD_FILE;
+use windfall_workspace::campaign_view::name_of;
+use windfall_workspace::equal_command::{command, command_of_fit};
+use windfall_workspace::results_table::write_results_table;
+
+/// Kinds of long work.
+#[derive(Clone, Copy, Debug, Deserialize, ToSchema)]
+#[serde(rename_all = "kebab-case")]
+pub(crate) enum Work {
+    Fit,
+    Laws,
+    Population,
+    Calibrate,
+    Report,
+}
+
+impl Work {
+    fn name(self) -> &'static str {
+        match self {
+            Self::Fit => "fit",
+            Self::Laws => "laws",
+            Self::Population => "population",
+            Self::Calibrate => "calibrate",
+            Self::Report => "report",
+        }
+    }
+}
+
+/// Work that is asked for.
+#[derive(Debug, Deserialize, ToSchema)]
+#[serde(deny_unknown_fields)]
+pub(crate) struct JobGiven {
+    /// What is to be done.
+    work: Work,
+    /// Laws in place of those of the campaign.
+    #[serde(default)]
+    laws: Vec<String>,
+    /// Covariates of a population.
+    #[serde(default)]
+    covariates: Vec<String>,
+    /// How intervals are made.
+    intervals: Option<String>,
+}
+
+impl JobGiven {
+    fn fit(&self) -> FitRequest {
+        FitRequest {
+            laws: self.laws.clone(),
+            intervals: self.intervals.clone(),
+            ..FitRequest::default()
+        }
+    }
+
+    fn command(&self, shown: &str) -> String {
+        let fit = command_of_fit(&[self.work.name(), shown], &self.fit());
+        match self.work {
+            Work::Fit | Work::Laws | Work::Report => fit,
+            Work::Population => {
+                let covariates = self.covariates.iter();
+                let pairs = covariates.flat_map(|c| ["--covariate", c.as_str()]);
+                let words: Vec<&str> = ["population", shown].into_iter().chain(pairs).collect();
+                command(&words)
+            }
+            Work::Calibrate => command(&[
+                "calibrate",
+                shown,
+                "--card",
+                &format!("{shown}/{CARD_FILE}"),
+            ]),
+        }
+    }
+
+    /// Does the work; what the equal command gives in JSON.
+    fn run(&self, directory: PathBuf, job: &Job) -> Result<Box<RawValue>, Error> {
+        let progress = |done: usize, all: usize| job.progress(done, all);
+        match self.work {
+            Work::Fit => {
+                let outcome = fit_any(&directory, &self.fit(), &progress)?;
+                if outcome.results() > 0 {
+                    write_results_table(&directory, &outcome)?;
+                }
+                json(&outcome)
+            }
+            Work::Laws => json(&rank_campaign(&directory, &self.fit(), &progress)?),
+            Work::Population => {
+                let request = PopulationRequest {
+                    directory,
+                    fit: self.fit(),
+                    covariates: self.covariates.clone(),
+                    ..PopulationRequest::default()
+                };
+                json(&population(&request, &progress)?)
+            }
+            Work::Calibrate => {
+                let request = CalibrateRequest {
+                    card: Some(directory.join(CARD_FILE)),
+                    ..CalibrateRequest::default()
+                };
+                json(&calibrate(&directory, &request, &progress)?)
+            }
+            Work::Report => {
+                let request = ReportRequest {
+                    fit: self.fit(),
+                    ..ReportRequest::default()
+                };
+                let outcome = report_campaign(&directory, &request, &progress)?;
+                let inside = |path: &PathBuf| {
+                    let own = path.strip_prefix(&directory).unwrap_or(path);
+                    own.display().to_string()
+                };
+                json(&serde_json::json!({
+                    "page": inside(&outcome.page),
+                    "files": outcome.files.iter().map(inside).collect::<Vec<_>>(),
+                    "impacts": outcome.impacts,
+                    "failed": outcome.failed,
+                }))
+            }
+        }
+    }
+}
+
+/// JSON as the command writes it, with names in its order.
+fn json(outcome: &impl Serialize) -> Result<Box<RawValue>, Error> {
+    to_raw_value(outcome).map_err(|error| Error::ResultUnwritable {
+        item: "result".to_owned(),
+        detail: error.to_string(),
+    })
+}
+
+/// Begins work on a campaign.
+#[utoipa::path(
+    post, path = "/api/campaigns/{id}/jobs", params(("id" = String, Path, example = "bench")), request_body = JobGiven,
+    responses((status = 202, body = JobView), RequestProblems))]
+pub(crate) async fn start(
+    State(app): State<App>,
+    Path(id): Path<String>,
+    Given(given): Given<JobGiven>,
+) -> Result<Response, Problem> {
+    let own = id.clone();
+    let directory = app.on_campaign(id, |_, directory| Ok(directory.to_path_buf()));
+    let directory = directory.await?;
+    let command = given.command(&name_of(&directory));
+    let Some(job) = app.jobs.begin(&own, given.work.name(), command) else {
+        return Err(Problem::new(
+            StatusCode::CONFLICT,
+            "busy",
+            "the same work runs on this campaign already; wait for it, or cancel it",
+        ));
+    };
+    let (view, running) = (job.view(), app.clone());
+    // A thread of its own: requests are answered beside it.
+    let begun = std::thread::Builder::new()
+        .name("windfall job".to_owned())
+        .spawn(move || work(&running, &given, directory, &job));
+    begun.map_err(|error| Problem::internal(format!("no thread can be had: {error}")))?;
+    Ok((StatusCode::ACCEPTED, Json(view)).into_response())
+}
+
+fn work(app: &App, given: &JobGiven, directory: PathBuf, job: &Arc<Job>) {
+    /// Tells the end also where the work panics.
+    struct Ending<'a>(&'a Job);
+    impl Drop for Ending<'_> {
+        fn drop(&mut self) {
+            self.0
+                .fail("windfall failed at this work; the terminal in which it runs says more");
+        }
+    }
+    let ending = Ending(job);
+    job.end(given.run(directory, job), |error| app.told(error));
+    drop(ending);
+}
+
+/// All work since the server was started.
+#[utoipa::path(get, path = "/api/jobs", responses((status = 200, body = Vec<JobView>)))]
+pub(crate) async fn jobs(State(app): State<App>) -> Answer<Vec<JobView>> {
+    app.tell(&app.jobs.list())
+}
+
+/// A piece of work, with its result once it is done.
+#[utoipa::path(
+    get, path = "/api/jobs/{job}", params(("job" = String, Path)),
+    responses((status = 200, body = JobView), (status = 404, body = Problem, content_type = "application/problem+json"))
+)]
+pub(crate) async fn job(State(app): State<App>, Path(job): Path<String>) -> Answer<JobView> {
+    app.tell(&found(&app, &job)?.view())
+}
+
+/// Stops work: what it was doing is not kept.
+#[utoipa::path(
+    delete, path = "/api/jobs/{job}", params(("job" = String, Path)),
+    responses((status = 200, body = JobView), (status = 404, body = Problem, content_type = "application/problem+json"))
+)]
+pub(crate) async fn cancel(State(app): State<App>, Path(job): Path<String>) -> Answer<JobView> {
+    let job = found(&app, &job)?;
+    job.cancel();
+    app.tell(&job.view())
+}
+
+/// A job by its name.
+pub(crate) fn found(app: &App, name: &str) -> Result<Arc<Job>, Problem> {
+    app.jobs.find(name).ok_or_else(|| {
+        let detail = "there is no such work; the server may have been started anew meanwhile";
+        Problem::new(StatusCode::NOT_FOUND, "absent", detail)
+    })
+}

@@ -1,0 +1,91 @@
+//! One impact, fitted while somebody moves its window and tries laws.
+
+use crate::app::{Answer, App};
+use crate::described::RequestProblems;
+use crate::given::Given;
+use crate::problem::Problem;
+use axum::extract::{Path, State};
+use serde::Deserialize;
+use utoipa::ToSchema;
+use windfall_campaign::impacts::request::FitRequest;
+use windfall_workspace::campaign_view::name_of;
+use windfall_workspace::live_fit::{LiveOutcome, LiveRequest};
+
+/// What is to be fitted; what is left out is as the campaign says.
+#[derive(Debug, Default, Deserialize, ToSchema)]
+#[serde(default, deny_unknown_fields)]
+pub(crate) struct Refit {
+    /// Id of the impact.
+    #[schema(example = "specimen-01-01")]
+    impact: String,
+    /// Begin of the part of the recording that is used; s.
+    from: Option<f64>,
+    /// Its end; s.
+    to: Option<f64>,
+    /// Laws as expressions.
+    laws: Vec<String>,
+    /// Parameters to estimate although they have a value.
+    free: Vec<String>,
+    /// Quantities of the cost function.
+    quantities: Vec<String>,
+    /// Weights of the cost function.
+    weights: Option<String>,
+    /// Noise of the channels.
+    noise: Option<String>,
+    /// "asymptotic" or "profile".
+    intervals: Option<String>,
+    /// Time of first touch.
+    onset: Option<String>,
+    /// Velocity at first touch.
+    initial_velocity: Option<String>,
+    /// Zero of the displacement.
+    displacement_offset: Option<String>,
+    /// End of contact.
+    end: Option<String>,
+    /// Whether measured series and residuals are wanted.
+    series: bool,
+}
+
+/// Fits one impact now; nothing is kept.
+#[utoipa::path(
+    post, path = "/api/campaigns/{id}/refit", params(("id" = String, Path, example = "bench")), request_body = Refit,
+    responses((status = 200, body = Object), RequestProblems))]
+pub(crate) async fn refit(
+    State(app): State<App>,
+    Path(id): Path<String>,
+    Given(asked): Given<Refit>,
+) -> Answer<LiveOutcome> {
+    // What takes long is a job of the whole campaign.
+    let quick = ["asymptotic", "profile"];
+    let intervals = asked.intervals.as_deref();
+    if intervals.is_some_and(|word| !quick.contains(&word)) {
+        return Err(Problem::request(
+            "a live fit has asymptotic or profile intervals; set the others in the campaign and \
+             fit it",
+        ));
+    }
+    app.answer(id, move |app, directory| {
+        let impact = app.cache.impact(directory, &asked.impact)?;
+        let finite = |time: Option<f64>| time.filter(|time| time.is_finite());
+        let request = LiveRequest {
+            from: finite(asked.from),
+            to: finite(asked.to),
+            fit: FitRequest {
+                laws: asked.laws,
+                free: asked.free,
+                quantities: asked.quantities,
+                weights: asked.weights,
+                noise: asked.noise,
+                intervals: asked.intervals,
+                onset: asked.onset,
+                initial_velocity: asked.initial_velocity,
+                displacement_offset: asked.displacement_offset,
+                end: asked.end,
+                ..FitRequest::default()
+            },
+            series: asked.series,
+        };
+        impact.refit(&request, &name_of(directory))
+    })
+    .await
+}

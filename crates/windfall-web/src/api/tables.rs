@@ -1,0 +1,256 @@
+//! Tables of a campaign, regressions and response surfaces over them.
+
+use crate::api::recordings::FileAsked;
+use crate::app::{Answer, App};
+use crate::described::{QuestionProblems, RequestProblems};
+use crate::given::{Asked, Given};
+use crate::problem::Problem;
+use axum::extract::{Path, State};
+use serde::{Deserialize, Serialize};
+use std::path::{Path as FilePath, PathBuf};
+use utoipa::ToSchema;
+use windfall_files::confined::path_inside;
+use windfall_files::error::Error;
+use windfall_files::table::csv::read_table;
+use windfall_tables::regress::request::{ModelText, RegressRequest};
+use windfall_tables::regress::run::{AnyRegressOutcome, regress};
+use windfall_tables::surface::outcome::SurfaceOutcome;
+use windfall_tables::surface::run::{SurfaceRequest, surface};
+use windfall_workspace::campaign_view::name_of;
+use windfall_workspace::equal_command::command;
+
+/// Most points of a grid along one factor.
+const MOST_GRID_POINTS: usize = 200;
+
+/// A table.
+#[derive(Debug, Serialize)]
+pub(crate) struct DataTable {
+    file: String,
+    columns: Vec<DataColumn>,
+    rows: Vec<Vec<String>>,
+}
+
+#[derive(Debug, Serialize)]
+struct DataColumn {
+    name: String,
+    /// Whether all its cells are numbers, or blank.
+    numbers: bool,
+}
+
+/// A linear model of a table.
+#[derive(Debug, Deserialize, ToSchema)]
+#[serde(deny_unknown_fields)]
+pub(crate) struct RegressGiven {
+    /// The table: "tables/results.csv".
+    table: String,
+    /// A column, or a function of one.
+    response: String,
+    /// What it is modelled by: "V*R + t".
+    terms: String,
+    /// What varies between groups.
+    #[serde(default)]
+    random: Vec<String>,
+    /// Whether terms are removed while they tell too little.
+    #[serde(default)]
+    select: bool,
+}
+
+/// Response surfaces of a table.
+#[derive(Debug, Deserialize, ToSchema)]
+#[serde(deny_unknown_fields)]
+pub(crate) struct SurfaceGiven {
+    /// The table.
+    table: String,
+    /// Factors in the order of their letters.
+    factors: Vec<String>,
+    /// Responses with their models.
+    responses: Vec<ResponseGiven>,
+    /// What is wanted of responses.
+    #[serde(default)]
+    goals: Vec<String>,
+    /// Factors that are held.
+    #[serde(default)]
+    hold: Vec<String>,
+    /// Factor at whose values equally good settings are given.
+    along: Option<String>,
+    /// How many of these values.
+    #[serde(default = "usual_members")]
+    members: usize,
+    /// Two factors for a grid of predictions.
+    grid: Option<String>,
+    /// Points of the grid along each.
+    #[serde(default = "usual_grid_points")]
+    grid_points: usize,
+}
+
+/// A response with its model.
+#[derive(Debug, Deserialize, ToSchema)]
+#[serde(deny_unknown_fields)]
+pub(crate) struct ResponseGiven {
+    /// The column.
+    name: String,
+    /// "quadratic", or terms in the letters of the factors.
+    model: String,
+}
+
+fn usual_members() -> usize {
+    15
+}
+
+fn usual_grid_points() -> usize {
+    41
+}
+
+/// An outcome with the equal command.
+#[derive(Debug, Serialize)]
+pub(crate) struct WithCommand<T> {
+    #[serde(flatten)]
+    outcome: T,
+    command: String,
+}
+
+/// A table of a campaign.
+fn table_inside(directory: &FilePath, name: &str) -> Result<PathBuf, Error> {
+    let path = path_inside(directory, name)?;
+    if !name.to_lowercase().ends_with(".csv") {
+        return Err(Error::NameRefused {
+            name: name.to_owned(),
+            problem: "is no table: its name does not end in .csv".to_owned(),
+        });
+    }
+    match path.is_file() {
+        true => Ok(path),
+        false => Err(Error::FileAbsent {
+            path,
+            advice: "fit the campaign to get tables/results.csv, or add a table".to_owned(),
+        }),
+    }
+}
+
+/// A table of the campaign, cell by cell.
+#[utoipa::path(
+    get, path = "/api/campaigns/{id}/table", params(("id" = String, Path, example = "bench"), FileAsked),
+    responses((status = 200, body = Object), QuestionProblems))]
+pub(crate) async fn table(
+    State(app): State<App>,
+    Path(id): Path<String>,
+    Asked(asked): Asked<FileAsked>,
+) -> Answer<DataTable> {
+    app.answer(id, move |_, directory| {
+        let table = read_table(&table_inside(directory, &asked.file)?)?;
+        let number = |cell: &String| cell.is_empty() || cell.parse::<f64>().is_ok();
+        let columns = table.columns.iter().enumerate().map(|(place, name)| {
+            let mut cells = table.rows.iter().map(|row| &row.cells[place]);
+            DataColumn {
+                name: name.clone(),
+                numbers: cells.clone().any(|cell| !cell.is_empty()) && cells.all(number),
+            }
+        });
+        Ok(DataTable {
+            file: asked.file,
+            columns: columns.collect(),
+            rows: table.rows.iter().map(|row| row.cells.clone()).collect(),
+        })
+    })
+    .await
+}
+
+/// A linear model, as `windfall regress` gives it.
+#[utoipa::path(
+    post, path = "/api/campaigns/{id}/regress", params(("id" = String, Path, example = "bench")),
+    request_body = RegressGiven,
+    responses((status = 200, body = Object), RequestProblems))]
+pub(crate) async fn regression(
+    State(app): State<App>,
+    Path(id): Path<String>,
+    Given(given): Given<RegressGiven>,
+) -> Answer<WithCommand<AnyRegressOutcome>> {
+    app.answer(id, move |_, directory| {
+        let table = table_inside(directory, &given.table)?;
+        let shown = format!("{}/{}", name_of(directory), given.table);
+        let mut words = vec!["regress", &shown, "--response", &given.response];
+        words.extend(["--terms", &given.terms]);
+        given
+            .random
+            .iter()
+            .for_each(|r| words.extend(["--random", r]));
+        if given.select {
+            words.extend(["--select", "backward"]);
+        }
+        let command = command(&words);
+        let model = ModelText::Parts {
+            response: given.response,
+            terms: given.terms,
+        };
+        let mut request = RegressRequest::usual(table, model);
+        request.random = given.random;
+        if given.select {
+            request.selection = Some(RegressRequest::usual_selection());
+        }
+        Ok(WithCommand {
+            outcome: regress(&request)?,
+            command,
+        })
+    })
+    .await
+}
+
+/// Response surfaces, as `windfall surface` gives them.
+#[utoipa::path(
+    post, path = "/api/campaigns/{id}/surface", params(("id" = String, Path, example = "bench")),
+    request_body = SurfaceGiven,
+    responses((status = 200, body = Object), RequestProblems))]
+pub(crate) async fn surfaces(
+    State(app): State<App>,
+    Path(id): Path<String>,
+    Given(given): Given<SurfaceGiven>,
+) -> Answer<WithCommand<SurfaceOutcome>> {
+    if given.responses.is_empty() {
+        return Err(Problem::request("name at least one response"));
+    }
+    app.answer(id, move |_, directory| fitted_surface(directory, given))
+        .await
+}
+
+fn fitted_surface(
+    directory: &FilePath,
+    given: SurfaceGiven,
+) -> Result<WithCommand<SurfaceOutcome>, Error> {
+    let table = table_inside(directory, &given.table)?;
+    let shown = format!("{}/{}", name_of(directory), given.table);
+    let mut words = vec!["surface", shown.as_str()];
+    for response in &given.responses {
+        words.extend(["--response", &response.name]);
+    }
+    for response in &given.responses {
+        words.extend(["--model", &response.model]);
+    }
+    let lists = [
+        ("--factor", &given.factors),
+        ("--goal", &given.goals),
+        ("--hold", &given.hold),
+    ];
+    for (option, values) in lists {
+        values
+            .iter()
+            .for_each(|value| words.extend([option, value]));
+    }
+    let members = given.members.to_string();
+    if let Some(along) = &given.along {
+        words.extend(["--along", along, "--members", &members]);
+    }
+    let command = command(&words);
+    let responses = given.responses.into_iter().map(|r| (r.name, r.model));
+    let mut request = SurfaceRequest::usual(table, responses.collect());
+    request.factors = given.factors;
+    request.goals = given.goals;
+    request.hold = given.hold;
+    request.along = given.along;
+    request.members = given.members.min(1000);
+    request.grid = given.grid;
+    request.grid_points = given.grid_points.clamp(2, MOST_GRID_POINTS);
+    Ok(WithCommand {
+        outcome: surface(&request)?,
+        command,
+    })
+}

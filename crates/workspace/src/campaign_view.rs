@@ -1,0 +1,411 @@
+//! A campaign as it is shown to somebody who works on it: what its files say, whatever
+//! it measures.
+
+use crate::equal_command::command;
+use serde::Serialize;
+use std::path::{Path, PathBuf};
+use std::time::SystemTime;
+use windfall_campaign::compression::read::read_compression;
+use windfall_campaign::impacts::run::STORE_FILE;
+use windfall_campaign::measure::item_campaign::ItemCampaign;
+use windfall_campaign::recording::digests::campaign_text;
+use windfall_campaign::repeats::read::read_repeats;
+use windfall_campaign::settings::fit::{ENDS, INTERVALS, NOISES, TREATMENTS, WEIGHTS};
+use windfall_campaign::settings::kind::{CampaignKind, campaign_kind};
+use windfall_campaign::settings::model::{Campaign, FilePlan, ImpactEntry, Specimen};
+use windfall_campaign::settings::read::{CAMPAIGN_FILE, read_campaign};
+use windfall_campaign::taps::read::read_acoustic;
+use windfall_drop::read::read_drop;
+use windfall_files::error::Error;
+use windfall_files::option_value::word_of;
+use windfall_files::provenance::digest_text;
+use windfall_identify::fit::problem::FitOptions;
+use windfall_report::run::REPORT_DIRECTORY;
+
+/// Directory of tables for regressions and surfaces in a campaign directory.
+pub const TABLES_DIRECTORY: &str = "tables";
+
+/// Files that make a campaign; the store and the recordings are no part of it.
+pub const CAMPAIGN_FILES: [&str; 3] = [CAMPAIGN_FILE, "specimens.csv", "impacts.csv"];
+
+/// A table of text.
+#[derive(Clone, Debug, Default, PartialEq, Serialize)]
+pub struct TableView {
+    /// Names of the columns.
+    pub columns: Vec<String>,
+    /// Cells, row by row.
+    pub rows: Vec<Vec<String>>,
+}
+
+/// A channel as campaign.toml has it.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct ChannelView {
+    /// What it holds.
+    pub quantity: String,
+    /// Column in the files.
+    pub column: String,
+    /// Its unit, what one unit of it stands for ("-1 N"), or the sensitivity of its
+    /// sensor; with the channel's sign.
+    pub unit: String,
+}
+
+/// Options of the fit, in the words of the command line.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct FitOptionsView {
+    /// Quantities of the cost.
+    pub quantities: Vec<String>,
+    /// Weights.
+    pub weights: String,
+    /// Noise.
+    pub noise: String,
+    /// Intervals.
+    pub intervals: String,
+    /// Time of first touch.
+    pub onset: String,
+    /// Velocity at first touch.
+    pub initial_velocity: String,
+    /// Zero of the displacement.
+    pub displacement_offset: String,
+    /// End of contact.
+    pub end: String,
+    /// Parameters that are estimated although they have a value.
+    pub free: Vec<String>,
+}
+
+/// What the files of a campaign say.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct CampaignView {
+    /// Name of the directory.
+    pub id: String,
+    /// Digest of the files of the campaign.
+    pub version: String,
+    /// Title.
+    pub title: String,
+    /// What it measures.
+    pub kind: &'static str,
+    /// Label of simulated recordings.
+    pub simulated: Option<String>,
+    /// Lines of `[rig]`: key and value.
+    pub rig: Vec<(String, String)>,
+    /// Channels.
+    pub channels: Vec<ChannelView>,
+    /// Column of times that `[files]` names.
+    pub time: Option<String>,
+    /// Sampling rate that `[files]` gives.
+    pub rate: Option<String>,
+    /// Laws as expressions.
+    pub laws: Vec<String>,
+    /// Options of the fit, where single impacts are fitted.
+    pub options: Option<FitOptionsView>,
+    /// Column by which results are grouped.
+    pub group: Option<String>,
+    /// specimens.csv.
+    pub specimens: TableView,
+    /// impacts.csv.
+    pub impacts: TableView,
+    /// campaign.toml, word for word.
+    pub text: String,
+    /// Tables for regressions and surfaces.
+    pub tables: Vec<String>,
+    /// Whether a report was written.
+    pub report: bool,
+    /// The command that fits the campaign.
+    pub command: String,
+}
+
+/// A campaign of any kind.
+enum AnyCampaign {
+    Impacts(Box<Campaign>),
+    Items(Box<ItemCampaign>),
+}
+
+/// Reads a campaign of any kind.
+fn read_any(directory: &Path) -> Result<(CampaignKind, AnyCampaign), Error> {
+    let kind = campaign_kind(directory)?;
+    let campaign = match kind {
+        CampaignKind::Impacts => AnyCampaign::Impacts(Box::new(read_campaign(directory)?)),
+        CampaignKind::Compression => {
+            AnyCampaign::Items(Box::new(read_compression(directory)?.shared))
+        }
+        CampaignKind::Acoustic => AnyCampaign::Items(Box::new(read_acoustic(directory)?.shared)),
+        CampaignKind::Repeats => AnyCampaign::Items(Box::new(read_repeats(directory)?.shared)),
+        CampaignKind::Drop => AnyCampaign::Items(Box::new(read_drop(directory)?.shared)),
+    };
+    Ok((kind, campaign))
+}
+
+/// Whether the files of a campaign say what they must.
+///
+/// # Errors
+/// What they do not.
+pub fn check_campaign(directory: &Path) -> Result<(), Error> {
+    read_any(directory).map(|_| ())
+}
+
+/// Where the recordings of a campaign are, and how its files are read.
+///
+/// # Errors
+/// The campaign cannot be read.
+pub fn file_plan_of(directory: &Path) -> Result<FilePlan, Error> {
+    read_any(directory).map(|(_, campaign)| match campaign {
+        AnyCampaign::Impacts(campaign) => campaign.files,
+        AnyCampaign::Items(campaign) => campaign.files,
+    })
+}
+
+/// What the files of a campaign say.
+///
+/// # Errors
+/// A file of the campaign is missing or does not say what it must.
+pub fn view_campaign(directory: &Path) -> Result<CampaignView, Error> {
+    // The version of what is read below, or of something older: then whoever writes
+    // with it is told that the campaign has changed.
+    let version = campaign_version(directory)?;
+    let (kind, campaign) = read_any(directory)?;
+    let text = campaign_text(directory)?;
+    let tables: toml::Table = toml::from_str(&text).unwrap_or_default();
+    let id = name_of(directory);
+    let (title, simulated, group, specimens, entries) = match &campaign {
+        AnyCampaign::Impacts(c) => (&c.title, &c.simulated, &c.group, &c.specimens, &c.impacts),
+        AnyCampaign::Items(c) => (&c.title, &c.simulated, &c.group, &c.specimens, &c.entries),
+    };
+    let untitled = directory.display().to_string();
+    Ok(CampaignView {
+        version,
+        title: match *title == untitled {
+            true => id.clone(),
+            false => title.clone(),
+        },
+        kind: kind.name(),
+        simulated: simulated.clone(),
+        rig: lines_of(&tables, "rig"),
+        channels: channels_of(&tables),
+        time: files_key(&tables, "time"),
+        rate: files_key(&tables, "rate"),
+        laws: match &campaign {
+            AnyCampaign::Impacts(campaign) => laws_of(campaign),
+            AnyCampaign::Items(_) => laws_written(&tables),
+        },
+        options: match &campaign {
+            AnyCampaign::Impacts(campaign) => Some(options_of(campaign)),
+            AnyCampaign::Items(_) => None,
+        },
+        group: group.clone(),
+        specimens: table_of(specimens.iter().map(|specimen: &Specimen| &specimen.cells)),
+        impacts: table_of(entries.iter().map(|entry: &ImpactEntry| &entry.cells)),
+        text,
+        tables: tables_of(directory)?,
+        report: directory
+            .join(REPORT_DIRECTORY)
+            .join("report.html")
+            .is_file(),
+        command: command(&["fit", &id]),
+        id,
+    })
+}
+
+/// Digest of the files of a campaign; one that is absent counts as empty.
+///
+/// # Errors
+/// One of them cannot be read.
+pub fn campaign_version(directory: &Path) -> Result<String, Error> {
+    let mut all = String::new();
+    for name in CAMPAIGN_FILES {
+        let path = directory.join(name);
+        let bytes = match std::fs::read(&path) {
+            Ok(bytes) => bytes,
+            Err(error) if error.kind() == std::io::ErrorKind::NotFound => Vec::new(),
+            Err(source) => {
+                return Err(Error::FileAccess {
+                    path,
+                    action: "read",
+                    source,
+                });
+            }
+        };
+        let text = String::from_utf8_lossy(&bytes);
+        all += &format!("{name} {}\n{text}\n", bytes.len());
+    }
+    Ok(digest_text(&all)[..16].to_owned())
+}
+
+/// What changes when the files of a campaign or its store do.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct CampaignStamp {
+    /// Digest of the files of the campaign.
+    pub version: String,
+    /// Size and time of change of its store.
+    pub store: Option<(u64, Option<SystemTime>)>,
+}
+
+/// What changes when the files of a campaign or its store do.
+///
+/// # Errors
+/// A file of the campaign cannot be read.
+pub fn campaign_stamp(directory: &Path) -> Result<CampaignStamp, Error> {
+    let store = std::fs::metadata(directory.join(STORE_FILE));
+    Ok(CampaignStamp {
+        version: campaign_version(directory)?,
+        store: store.ok().map(|data| (data.len(), data.modified().ok())),
+    })
+}
+
+/// The last part of the path of a directory.
+#[must_use]
+pub fn name_of(directory: &Path) -> String {
+    let name = directory.file_name().unwrap_or(directory.as_os_str());
+    name.to_string_lossy().into_owned()
+}
+
+fn laws_of(campaign: &Campaign) -> Vec<String> {
+    let laws = campaign.fit.laws.iter();
+    laws.map(ToString::to_string).collect()
+}
+
+/// Laws of campaigns whose readers differ, as the file has them.
+fn laws_written(tables: &toml::Table) -> Vec<String> {
+    let law = |table: &str, key: &str| match tables.get(table)?.get(key)? {
+        toml::Value::Array(laws) => {
+            let texts = laws.iter().filter_map(toml::Value::as_str);
+            Some(texts.map(str::to_owned).collect())
+        }
+        value => value.as_str().map(|law| vec![law.to_owned()]),
+    };
+    let places = [("fit", "laws"), ("fit", "law"), ("calibrate", "law")];
+    let found = places.iter().find_map(|(table, key)| law(table, key));
+    found.unwrap_or_default()
+}
+
+fn options_of(campaign: &Campaign) -> FitOptionsView {
+    let options: &FitOptions = &campaign.fit.options;
+    FitOptionsView {
+        quantities: options
+            .quantities
+            .names()
+            .into_iter()
+            .map(str::to_owned)
+            .collect(),
+        weights: word_of(&WEIGHTS, options.weighting),
+        noise: word_of(&NOISES, options.noise),
+        intervals: word_of(&INTERVALS, options.intervals.method),
+        onset: word_of(&TREATMENTS, options.onset),
+        initial_velocity: match options.known_velocity {
+            Some(velocity) => format!("{velocity} m/s"),
+            None => word_of(&TREATMENTS, options.initial_velocity),
+        },
+        displacement_offset: word_of(&TREATMENTS, options.displacement_offset),
+        end: word_of(&ENDS, options.end),
+        free: campaign.fit.free.clone(),
+    }
+}
+
+/// The table of named cells; columns in the order of the first row.
+fn table_of<'a>(rows: impl Iterator<Item = &'a Vec<(String, String)>>) -> TableView {
+    let mut table = TableView::default();
+    for cells in rows {
+        if table.columns.is_empty() {
+            table.columns = cells.iter().map(|(name, _)| name.clone()).collect();
+        }
+        table
+            .rows
+            .push(cells.iter().map(|(_, cell)| cell.clone()).collect());
+    }
+    table
+}
+
+fn lines_of(tables: &toml::Table, name: &str) -> Vec<(String, String)> {
+    let lines = tables.get(name).and_then(toml::Value::as_table);
+    let lines = lines.into_iter().flatten();
+    lines
+        .map(|(key, value)| (key.clone(), text_of(value)))
+        .collect()
+}
+
+fn files_key(tables: &toml::Table, key: &str) -> Option<String> {
+    tables.get("files")?.get(key).map(text_of)
+}
+
+fn text_of(value: &toml::Value) -> String {
+    match value {
+        toml::Value::String(text) => text.clone(),
+        other => other.to_string(),
+    }
+}
+
+fn channels_of(tables: &toml::Table) -> Vec<ChannelView> {
+    let channels = tables.get("channels").and_then(toml::Value::as_table);
+    let channels = channels.into_iter().flatten();
+    channels
+        .map(|(quantity, channel)| {
+            let key = |name: &str| channel.get(name).map(text_of);
+            let unit = key("sensitivity")
+                .or_else(|| key("unit"))
+                .unwrap_or_default();
+            let sign = channel.get("sign").and_then(toml::Value::as_integer);
+            ChannelView {
+                quantity: quantity.clone(),
+                column: key("column").unwrap_or_default(),
+                unit: signed_unit(&unit, sign),
+            }
+        })
+        .collect()
+}
+
+/// A unit or sensitivity with the sign of its channel: "N" turned round is "-1 N".
+pub(crate) fn signed_unit(unit: &str, sign: Option<i64>) -> String {
+    let number = unit.starts_with(|c: char| c.is_ascii_digit() || c == '.');
+    match sign == Some(-1) && !unit.is_empty() {
+        true if number => format!("-{unit}"),
+        true => match unit.strip_prefix(['-', '−']) {
+            Some(positive) => positive.to_owned(),
+            None => format!("-1 {unit}"),
+        },
+        false => unit.to_owned(),
+    }
+}
+
+/// Names of the CSV files that regressions and surfaces can use.
+fn tables_of(directory: &Path) -> Result<Vec<String>, Error> {
+    let mut found = Vec::new();
+    for (prefix, folder) in [
+        ("", directory.to_path_buf()),
+        ("tables/", directory.join(TABLES_DIRECTORY)),
+    ] {
+        let own = names_in(&folder)?.into_iter().filter(|name| {
+            let csv = name.to_lowercase().ends_with(".csv");
+            csv && !(prefix.is_empty() && CAMPAIGN_FILES.contains(&name.as_str()))
+        });
+        found.extend(own.map(|name| format!("{prefix}{name}")));
+    }
+    Ok(found)
+}
+
+/// Names of the plain files in a directory, sorted; none where there is no such
+/// directory.
+///
+/// # Errors
+/// It cannot be read.
+pub(crate) fn names_in(folder: &Path) -> Result<Vec<String>, Error> {
+    let unreadable = |source| Error::FileAccess {
+        path: PathBuf::from(folder),
+        action: "read",
+        source,
+    };
+    let entries = match std::fs::read_dir(folder) {
+        Ok(entries) => entries,
+        Err(error) if error.kind() == std::io::ErrorKind::NotFound => return Ok(Vec::new()),
+        Err(source) => return Err(unreadable(source)),
+    };
+    let mut names = Vec::new();
+    for entry in entries {
+        let entry = entry.map_err(unreadable)?;
+        let plain = entry.file_type().is_ok_and(|kind| kind.is_file());
+        if let (true, Ok(name)) = (plain, entry.file_name().into_string())
+            && !name.starts_with('.')
+        {
+            names.push(name);
+        }
+    }
+    names.sort();
+    Ok(names)
+}

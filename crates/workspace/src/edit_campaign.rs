@@ -1,0 +1,492 @@
+//! Changes of a campaign's files on behalf of somebody who sees them: comments and
+//! layout stay, the campaign that results is checked before it takes the place of the
+//! one before, and a change on the ground of an older version is refused.
+
+use crate::campaign_view::{
+    CAMPAIGN_FILES, CampaignView, campaign_version, check_campaign, file_plan_of, signed_unit,
+    view_campaign,
+};
+use crate::edit_table::{add_rows, set_cells};
+use crate::workspace::recordings_inside;
+use std::collections::BTreeMap;
+use std::path::{Component, Path};
+use std::sync::{Mutex, PoisonError};
+use toml_edit::{Array, DocumentMut, Item, Table, value};
+use windfall_campaign::recording::digests::campaign_text;
+use windfall_campaign::settings::channels::{KINDS, parse_scale};
+use windfall_campaign::settings::read::CAMPAIGN_FILE;
+use windfall_campaign::settings::tables::read_specimens;
+use windfall_campaign::settings::template::is_template_file;
+use windfall_files::confined::path_inside;
+use windfall_files::error::Error;
+use windfall_files::text::column_role::unit_of;
+use windfall_files::write_file::write_whole;
+
+/// One change at a time, so that of two on the ground of one version the second is
+/// refused.
+static CHANGING: Mutex<()> = Mutex::new(());
+
+/// What is changed.
+#[derive(Clone, Debug)]
+pub enum Change {
+    /// The whole campaign.toml.
+    Text(String),
+    /// The part of the recording that an impact uses; s.
+    Window {
+        /// Id of the impact.
+        impact: String,
+        /// Its begin; none where it has no bound.
+        from: Option<f64>,
+        /// Its end.
+        to: Option<f64>,
+    },
+    /// Keys of `[fit]`, and the column to group by.
+    Options(OptionsChange),
+    /// Where the channels are in the files.
+    Channels(ChannelsChange),
+    /// Further impacts.
+    Impacts(Vec<NewImpact>),
+}
+
+/// Keys of `[fit]` and of `[summary]` that change; what is `None` stays.
+#[derive(Clone, Debug, Default)]
+pub struct OptionsChange {
+    /// Lists: laws, free, quantities.
+    pub lists: BTreeMap<String, Vec<String>>,
+    /// Words: weights, noise, intervals, onset …
+    pub words: BTreeMap<String, String>,
+    /// Column to group by; an empty name for none.
+    pub group: Option<String>,
+}
+
+/// Where the channels are.
+#[derive(Clone, Debug, Default)]
+pub struct ChannelsChange {
+    /// Quantity, column, and the unit of the column or the sensitivity of its sensor.
+    pub channels: Vec<(String, String, String)>,
+    /// Column of times.
+    pub time: Option<String>,
+    /// Sampling rate.
+    pub rate: Option<String>,
+}
+
+/// A row of impacts.csv.
+#[derive(Clone, Debug, Default)]
+pub struct NewImpact {
+    /// Id.
+    pub id: String,
+    /// Specimen; it is added to specimens.csv if it is not there.
+    pub specimen: String,
+    /// Recording, below the directory of recordings.
+    pub file: String,
+    /// Other columns.
+    pub cells: BTreeMap<String, String>,
+}
+
+/// Changes a campaign that is of that version, and shows what it is then.
+///
+/// * `version`: as [`campaign_version`] gives it; "*" for whatever it is now
+///
+/// # Errors
+/// [`Error::ChangedMeanwhile`]; the change makes no campaign that can be read; a file
+/// cannot be written. Then all is as it was.
+pub fn change_campaign(
+    directory: &Path,
+    version: &str,
+    change: &Change,
+) -> Result<CampaignView, Error> {
+    let _one = CHANGING.lock().unwrap_or_else(PoisonError::into_inner);
+    if version != "*" && campaign_version(directory)? != version {
+        return Err(Error::ChangedMeanwhile);
+    }
+    let files = changed_files(directory, change)?;
+    check_changed(directory, &files)?;
+    for (name, text) in &files {
+        write_whole(&directory.join(name), text.as_bytes())?;
+    }
+    view_campaign(directory)
+}
+
+/// Names and texts of the files that a change writes.
+fn changed_files(directory: &Path, change: &Change) -> Result<Vec<(&'static str, String)>, Error> {
+    let impacts = directory.join("impacts.csv");
+    match change {
+        Change::Text(text) => Ok(vec![(CAMPAIGN_FILE, text.clone())]),
+        Change::Window { impact, from, to } => {
+            let cell = |time: &Option<f64>| time.map_or_else(String::new, |time| time.to_string());
+            let cells = [("from_s", cell(from)), ("to_s", cell(to))];
+            Ok(vec![("impacts.csv", set_cells(&impacts, impact, &cells)?)])
+        }
+        Change::Options(options) => {
+            let mut document = document(directory)?;
+            change_options(&mut document, options)?;
+            Ok(vec![(CAMPAIGN_FILE, document.to_string())])
+        }
+        Change::Channels(channels) => {
+            let mut document = document(directory)?;
+            change_channels(&mut document, channels)?;
+            Ok(vec![(CAMPAIGN_FILE, document.to_string())])
+        }
+        Change::Impacts(rows) => new_impacts(directory, rows),
+    }
+}
+
+fn document(directory: &Path) -> Result<DocumentMut, Error> {
+    let text = campaign_text(directory)?;
+    text.parse().map_err(|error: toml_edit::TomlError| {
+        let line = error.span().map_or(0, |span| {
+            1 + text[..span.start].bytes().filter(|b| *b == b'\n').count()
+        });
+        Error::CampaignSyntax {
+            place: windfall_files::error::Place {
+                file: directory.join(CAMPAIGN_FILE),
+                line,
+            },
+            message: error.message().to_owned(),
+        }
+    })
+}
+
+/// The table of that name, made where it is not there.
+///
+/// # Errors
+/// Something else stands there.
+fn table<'a>(document: &'a mut Table, name: &str) -> Result<&'a mut Table, Error> {
+    let item = document
+        .entry(name)
+        .or_insert_with(|| Item::Table(Table::new()));
+    // A table within one line has keys like any other.
+    if item.is_inline_table() {
+        let inline = std::mem::take(item).into_table();
+        *item = inline.map_or_else(|other| other, Item::Table);
+    }
+    item.as_table_mut().ok_or_else(|| Error::ChangeRefused {
+        problem: format!("{name} in campaign.toml is no table"),
+    })
+}
+
+/// Sets a key and keeps the remark behind it.
+fn set(table: &mut Table, key: &str, new: Item) {
+    match (table.get_mut(key), new) {
+        (Some(Item::Value(old)), Item::Value(mut new)) => {
+            *new.decor_mut() = old.decor().clone();
+            *old = new;
+        }
+        (_, new) => {
+            table.insert(key, new);
+        }
+    }
+}
+
+fn change_options(document: &mut DocumentMut, options: &OptionsChange) -> Result<(), Error> {
+    let fit = table(document, "fit")?;
+    for (key, texts) in &options.lists {
+        let list: Array = texts.iter().map(String::as_str).collect();
+        set(fit, key, value(list));
+        if key == "laws" {
+            fit.remove("law");
+        }
+    }
+    for (key, word) in &options.words {
+        set(fit, key, value(word.as_str()));
+    }
+    match options.group.as_deref() {
+        None => {}
+        Some("") => {
+            table(document, "summary")?.remove("group");
+        }
+        Some(group) => set(table(document, "summary")?, "group", value(group)),
+    }
+    Ok(())
+}
+
+fn change_channels(document: &mut DocumentMut, change: &ChannelsChange) -> Result<(), Error> {
+    let known = |name: &str| KINDS.iter().any(|kind| kind.name() == name);
+    if let Some((quantity, ..)) = change.channels.iter().find(|(name, ..)| !known(name)) {
+        let names: Vec<&str> = KINDS.iter().map(|kind| kind.name()).collect();
+        return Err(Error::OptionInvalid {
+            option: format!("channel {quantity}"),
+            problem: format!("expected one of {}", names.join(", ")),
+        });
+    }
+    let channels = table(document, "channels")?;
+    channels.set_implicit(true);
+    for kind in &KINDS {
+        let wanted = change
+            .channels
+            .iter()
+            .find(|(name, ..)| name == kind.name());
+        let Some((_, column, unit)) = wanted else {
+            channels.remove(kind.name());
+            continue;
+        };
+        let channel = table(channels, kind.name())?;
+        set(channel, "column", value(column.as_str()));
+        set_unit(channel, kind.unit, unit);
+    }
+    let files = table(document, "files")?;
+    let before = files.get("time").and_then(Item::as_str);
+    if before != change.time.as_deref() {
+        // The unit of another column is the one in its name, as for every channel.
+        match change.time.as_deref().and_then(unit_of) {
+            Some(unit) => set(files, "time_unit", value(unit)),
+            None => {
+                files.remove("time_unit");
+            }
+        }
+    }
+    for (key, text) in [("time", &change.time), ("rate", &change.rate)] {
+        match text {
+            Some(text) => set(files, key, value(text.as_str())),
+            None => {
+                files.remove(key);
+            }
+        }
+    }
+    Ok(())
+}
+
+/// A unit of the quantity itself is the unit of the column, another one the
+/// sensitivity of a sensor. The sign is in it.
+fn set_unit(channel: &mut Table, quantity: &str, unit: &str) {
+    let own = |key: &str| channel.get(key).and_then(Item::as_str);
+    let before = own("sensitivity")
+        .or_else(|| own("unit"))
+        .unwrap_or_default();
+    let sign = channel.get("sign").and_then(Item::as_integer);
+    if !unit.is_empty() && unit == signed_unit(before, sign) {
+        return;
+    }
+    for key in ["unit", "sensitivity", "sign"] {
+        if unit.is_empty() || quantity.is_empty() || key == "sign" {
+            channel.remove(key);
+        }
+    }
+    if unit.is_empty() || quantity.is_empty() {
+        return;
+    }
+    // "11 mV/N" is a sensitivity, "-1 N" what one unit of the column stands for.
+    let (used, other) = match parse_scale(unit, quantity) {
+        Ok(_) => ("unit", "sensitivity"),
+        Err(_) => ("sensitivity", "unit"),
+    };
+    channel.remove(other);
+    set(channel, used, value(unit));
+    if used == "unit" {
+        // What only a sensor's volts have.
+        channel.remove("gain");
+        channel.remove("offset");
+    }
+}
+
+fn new_impacts(directory: &Path, rows: &[NewImpact]) -> Result<Vec<(&'static str, String)>, Error> {
+    let recordings = recordings_inside(directory)?.directory;
+    for row in rows {
+        path_inside(&recordings, &row.file)?;
+    }
+    let table = rows.iter().map(|row| {
+        let own = [
+            ("id", &row.id),
+            ("specimen", &row.specimen),
+            ("file", &row.file),
+        ];
+        let own = own.map(|(name, cell)| (name.to_owned(), cell.clone()));
+        own.into_iter().chain(row.cells.clone()).collect()
+    });
+    let table: Vec<BTreeMap<String, String>> = table.collect();
+    let impacts = add_rows(&directory.join("impacts.csv"), &table)?;
+    let mut files = vec![("impacts.csv", impacts)];
+    let specimens = directory.join("specimens.csv");
+    if specimens.exists() {
+        let known = match is_template_file(&specimens) {
+            true => Vec::new(),
+            false => read_specimens(&specimens)?,
+        };
+        let mut new: Vec<BTreeMap<String, String>> = Vec::new();
+        for row in rows {
+            let cells = BTreeMap::from([("id".to_owned(), row.specimen.clone())]);
+            if known.iter().all(|s| s.id != row.specimen) && !new.contains(&cells) {
+                new.push(cells);
+            }
+        }
+        if !new.is_empty() {
+            files.push(("specimens.csv", add_rows(&specimens, &new)?));
+        }
+    }
+    Ok(files)
+}
+
+/// Reads the campaign as it will be, beside the one that is there.
+fn check_changed(directory: &Path, files: &[(&'static str, String)]) -> Result<(), Error> {
+    let scratch = tempfile::Builder::new()
+        .prefix("windfall-")
+        .tempdir()
+        .map_err(|source| Error::FileAccess {
+            path: std::env::temp_dir(),
+            action: "write",
+            source,
+        })?;
+    let failed = |path: &Path| {
+        let path = path.to_path_buf();
+        move |source| Error::FileAccess {
+            path,
+            action: "check",
+            source,
+        }
+    };
+    for (name, text) in files {
+        let path = scratch.path().join(name);
+        std::fs::write(&path, text).map_err(failed(&path))?;
+    }
+    // The rest as it is: laws may be tables in files of their own.
+    for entry in std::fs::read_dir(directory).map_err(failed(directory))? {
+        let entry = entry.map_err(failed(directory))?;
+        let name = entry.file_name();
+        let place = scratch.path().join(&name);
+        let own = CAMPAIGN_FILES.iter().any(|known| name == *known);
+        let plain = entry.file_type().is_ok_and(|kind| kind.is_file());
+        if !place.exists() && (own || plain && small(&entry)) {
+            std::fs::copy(entry.path(), &place).map_err(failed(&place))?;
+        }
+    }
+    check_campaign(scratch.path()).map_err(|error| Error::ChangeRefused {
+        problem: error
+            .to_string()
+            .replace(&format!("{}/", scratch.path().display()), ""),
+    })?;
+    stays_inside(directory, scratch.path())
+}
+
+/// Whoever may change a campaign may not make it read files elsewhere; one that does so
+/// already may go on.
+fn stays_inside(directory: &Path, changed: &Path) -> Result<(), Error> {
+    let new = file_plan_of(changed)?.directory;
+    let plain = |path: &Path| path.components().all(|c| c != Component::ParentDir);
+    let same = file_plan_of(directory).is_ok_and(|old| old.directory == new);
+    match same || (plain(&new) && new.starts_with(changed)) {
+        true => Ok(()),
+        false => Err(Error::ChangeRefused {
+            problem: "[files] directory must lie in the directory of the campaign; another one \
+                      can be given with an editor"
+                .to_owned(),
+        }),
+    }
+}
+
+/// Whether a file may be a table of a law.
+fn small(entry: &std::fs::DirEntry) -> bool {
+    entry.metadata().is_ok_and(|data| data.len() < 1 << 20)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use windfall_campaign::settings::template::{TemplateKind, write_template};
+
+    #[test]
+    fn a_column_of_times_brings_its_unit_and_remarks_stay() {
+        let folder = tempfile::tempdir().unwrap();
+        let directory = folder.path().join("campaign");
+        write_template(TemplateKind::Carriage, &directory).unwrap();
+        let channel = |quantity: &str, column: &str, unit: &str| {
+            (quantity.to_owned(), column.to_owned(), unit.to_owned())
+        };
+        let channels = |time: &str| {
+            Change::Channels(ChannelsChange {
+                channels: vec![
+                    channel("force", "Kraft [N]", "N"),
+                    channel("position", "Weg [mm]", "mm"),
+                ],
+                time: Some(time.to_owned()),
+                rate: None,
+            })
+        };
+        let view = change_campaign(&directory, "*", &channels("Zeit [ms]")).unwrap();
+        assert_eq!((view.time.as_deref(), view.rate), (Some("Zeit [ms]"), None));
+        assert!(view.text.contains("time_unit = \"ms\""), "{}", view.text);
+        assert!(
+            view.text.contains("# Each channel names its column"),
+            "{}",
+            view.text
+        );
+        // Said once more it stays; another column has another unit.
+        let view = change_campaign(&directory, &view.version, &channels("Zeit [ms]")).unwrap();
+        assert!(view.text.contains("time_unit = \"ms\""));
+        let view = change_campaign(&directory, &view.version, &channels("t")).unwrap();
+        assert!(!view.text.contains("\ntime_unit"), "{}", view.text);
+    }
+
+    #[test]
+    fn what_one_unit_of_a_column_stands_for_may_be_negative() {
+        let folder = tempfile::tempdir().unwrap();
+        let directory = folder.path().join("campaign");
+        write_template(TemplateKind::Carriage, &directory).unwrap();
+        let path = directory.join(CAMPAIGN_FILE);
+        let change = |force: &str| {
+            let channel = |quantity: &str, unit: &str| {
+                (quantity.to_owned(), quantity.to_owned(), unit.to_owned())
+            };
+            let change = ChannelsChange {
+                channels: vec![channel("force", force), channel("position", "0.17 mm")],
+                time: Some("t".to_owned()),
+                rate: None,
+            };
+            let view = change_campaign(&directory, "*", &Change::Channels(change)).unwrap();
+            let force = view.channels.iter().find(|own| own.quantity == "force");
+            (force.unwrap().unit.clone(), view.text)
+        };
+        let (unit, text) = change("-1 N");
+        assert_eq!(unit, "-1 N");
+        assert!(
+            text.contains("unit = \"-1 N\"") && text.contains("unit = \"0.17 mm\""),
+            "{text}"
+        );
+        // A sign of its own is part of it, and stays where nothing is changed.
+        std::fs::write(
+            &path,
+            text.replace("unit = \"-1 N\"", "unit = \"N\"\nsign = -1"),
+        )
+        .unwrap();
+        let (unit, text) = change("-1 N");
+        assert_eq!(unit, "-1 N");
+        assert!(text.contains("\nsign = -1"), "{text}");
+        let (unit, text) = change("-11 mV/N");
+        assert_eq!(unit, "-11 mV/N");
+        assert!(
+            !text.contains("\nsign") && text.contains("sensitivity = \"-11 mV/N\""),
+            "{text}"
+        );
+        let (unit, text) = change("N");
+        assert_eq!(unit, "N");
+        assert!(!text.contains("\nsensitivity = "), "{text}");
+    }
+
+    #[test]
+    fn tables_within_a_line_keep_their_other_keys() {
+        let folder = tempfile::tempdir().unwrap();
+        let directory = folder.path().join("campaign");
+        write_template(TemplateKind::Carriage, &directory).unwrap();
+        let path = directory.join(CAMPAIGN_FILE);
+        let text = std::fs::read_to_string(&path).unwrap();
+        let begin = text.find("[fit]").unwrap();
+        let text = format!(
+            "summary = {{ group = \"variety\" }}\nfit = {{ laws = [\"hertz\"], noise = \"white\" }}\n{}",
+            &text[..begin]
+        );
+        std::fs::write(&path, text).unwrap();
+        let change = OptionsChange {
+            words: BTreeMap::from([("end".to_owned(), "gap-zero".to_owned())]),
+            ..OptionsChange::default()
+        };
+        let view = change_campaign(&directory, "*", &Change::Options(change)).unwrap();
+        let options = view.options.unwrap();
+        assert_eq!(
+            (view.laws.as_slice(), view.group.as_deref()),
+            (&["hertz".to_owned()][..], Some("variety"))
+        );
+        assert_eq!(
+            (options.noise.as_str(), options.end.as_str()),
+            ("white", "gap-zero")
+        );
+    }
+}

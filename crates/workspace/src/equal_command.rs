@@ -1,0 +1,76 @@
+//! The command line that does the same as a request.
+
+use windfall_campaign::impacts::request::FitRequest;
+
+/// A word as a shell takes it.
+fn quoted(word: &str) -> String {
+    let plain = |c: char| c.is_ascii_alphanumeric() || "-_./=,:+@%".contains(c);
+    match !word.is_empty() && word.chars().all(plain) {
+        true => word.to_owned(),
+        false => format!("'{}'", word.replace('\'', r"'\''")),
+    }
+}
+
+/// `windfall WORD …`, with what a shell would take apart in quotes.
+#[must_use]
+pub fn command(words: &[&str]) -> String {
+    let words = words.iter().map(|word| quoted(word));
+    let all = std::iter::once("windfall".to_owned()).chain(words);
+    all.collect::<Vec<_>>().join(" ")
+}
+
+/// The options of a command that fits, as far as the request says them.
+#[must_use]
+pub fn fit_options(request: &FitRequest) -> Vec<String> {
+    let mut words = Vec::new();
+    let mut add = |option: &str, value: &str| {
+        words.extend([option.to_owned(), value.to_owned()]);
+    };
+    request.laws.iter().for_each(|law| add("--law", law));
+    request.free.iter().for_each(|name| add("--free", name));
+    if !request.quantities.is_empty() {
+        add("--quantities", &request.quantities.join(","));
+    }
+    let single = [
+        ("--weights", &request.weights),
+        ("--noise", &request.noise),
+        ("--intervals", &request.intervals),
+        ("--onset", &request.onset),
+        ("--initial-velocity", &request.initial_velocity),
+        ("--displacement-offset", &request.displacement_offset),
+        ("--end", &request.end),
+        ("--group", &request.group),
+    ];
+    for (option, value) in single {
+        if let Some(value) = value {
+            add(option, value);
+        }
+    }
+    words
+}
+
+/// `windfall WORD … OPTION …`
+#[must_use]
+pub fn command_of_fit(words: &[&str], request: &FitRequest) -> String {
+    let options = fit_options(request);
+    let options = options.iter().map(String::as_str);
+    command(&words.iter().copied().chain(options).collect::<Vec<_>>())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn closed_form_quotes_what_a_shell_would_take_apart() {
+        let request = FitRequest {
+            laws: vec!["kuwabara-kono(k=1, c=2)".to_owned()],
+            weights: Some("inverse-mean".to_owned()),
+            ..FitRequest::default()
+        };
+        assert_eq!(
+            command_of_fit(&["fit", "it's here"], &request),
+            r"windfall fit 'it'\''s here' --law 'kuwabara-kono(k=1, c=2)' --weights inverse-mean"
+        );
+    }
+}

@@ -1,0 +1,12 @@
+//! A directory of campaigns as the page shows and edits it.
+
+pub mod campaign_view;
+pub mod edit_campaign;
+pub mod edit_table;
+pub mod equal_command;
+pub mod live_cache;
+pub mod live_fit;
+pub mod recording_outline;
+pub mod results_table;
+pub mod scene_runs;
+pub mod workspace;

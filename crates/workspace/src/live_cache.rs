@@ -1,0 +1,148 @@
+//! Recordings that somebody looks at, kept in memory while there is room.
+
+use crate::campaign_view::campaign_version;
+use crate::live_fit::{LiveCampaign, LiveImpact};
+use crate::recording_outline::OutlinedChannel;
+use crate::workspace::recordings_inside;
+use std::path::{Path, PathBuf};
+use std::sync::{Arc, Mutex, PoisonError};
+use windfall_campaign::settings::model::FilePlan;
+use windfall_files::confined::path_inside;
+use windfall_files::error::Error;
+
+/// Most bytes of recordings in memory; the newest stays in any case.
+const ROOM: usize = 1 << 30;
+
+/// What is kept under keys, the one used last in front.
+struct Kept<T> {
+    entries: Mutex<Vec<(String, Arc<T>, usize)>>,
+}
+
+impl<T> Default for Kept<T> {
+    fn default() -> Self {
+        Self {
+            entries: Mutex::new(Vec::new()),
+        }
+    }
+}
+
+impl<T> Kept<T> {
+    /// What is kept under a key, or is made for it. Two who ask at once may both make
+    /// it; one of them is kept.
+    fn get(
+        &self,
+        key: &str,
+        make: impl FnOnce() -> Result<T, Error>,
+        bytes: impl Fn(&T) -> usize,
+    ) -> Result<Arc<T>, Error> {
+        let lock = || self.entries.lock().unwrap_or_else(PoisonError::into_inner);
+        {
+            let mut entries = lock();
+            if let Some(place) = entries.iter().position(|(known, ..)| known == key) {
+                let found = entries.remove(place);
+                let value = found.1.clone();
+                entries.insert(0, found);
+                return Ok(value);
+            }
+        }
+        let value = Arc::new(make()?);
+        let size = bytes(&value);
+        let mut entries = lock();
+        // Somebody else may have made it meanwhile.
+        entries.retain(|(known, ..)| known != key);
+        entries.insert(0, (key.to_owned(), value.clone(), size));
+        let mut held = 0;
+        entries.retain(|(_, _, size)| {
+            let first = held == 0;
+            held += size.max(&1);
+            first || held <= ROOM
+        });
+        Ok(value)
+    }
+}
+
+/// Recordings and campaigns in memory; what changes on disk is read anew.
+#[derive(Default)]
+pub struct LiveCache {
+    campaigns: Kept<LiveCampaign>,
+    impacts: Kept<LiveImpact>,
+    channels: Kept<OutlinedChannel>,
+}
+
+impl LiveCache {
+    /// An impact of a campaign, ready for fits.
+    ///
+    /// # Errors
+    /// As [`LiveCampaign::open`] and [`LiveCampaign::impact`].
+    pub fn impact(&self, directory: &Path, id: &str) -> Result<Arc<LiveImpact>, Error> {
+        let version = campaign_version(directory)?;
+        let key = format!("{} {version}", directory.display());
+        let make = || LiveCampaign::open(directory);
+        // A campaign is small beside recordings; a few are kept.
+        let campaign = self.campaigns.get(&key, make, |_| ROOM / 8)?;
+        let stamp = stamp(&campaign.recording(id)?);
+        let make = || campaign.impact(id);
+        self.impacts
+            .get(&format!("{key} {id} {stamp}"), make, LiveImpact::bytes)
+    }
+
+    /// A channel of a recording of a campaign, ready to be outlined.
+    ///
+    /// # Errors
+    /// The name is refused, or as [`OutlinedChannel::read`].
+    pub fn channel(
+        &self,
+        directory: &Path,
+        file: &str,
+        channel: &str,
+    ) -> Result<Arc<OutlinedChannel>, Error> {
+        let (path, plan) = recording_inside(directory, file)?;
+        let key = format!(
+            "{} {} {channel} {:?}",
+            path.display(),
+            stamp(&path),
+            plan.time
+        );
+        let make = || OutlinedChannel::read(&path, &plan, channel);
+        self.channels.get(&key, make, OutlinedChannel::bytes)
+    }
+}
+
+/// A recording of a campaign, and how its files are read.
+///
+/// # Errors
+/// The name is refused, there is no such file, or the campaign cannot be read.
+pub fn recording_inside(directory: &Path, file: &str) -> Result<(PathBuf, FilePlan), Error> {
+    let plan = recordings_inside(directory)?;
+    let path = path_inside(&plan.directory, file)?;
+    match path.is_file() {
+        true => Ok((path, plan)),
+        false => Err(Error::FileAbsent {
+            path,
+            advice: "it may have been moved or renamed meanwhile".to_owned(),
+        }),
+    }
+}
+
+/// Size and time of change of a file, to see whether it is the same.
+fn stamp(path: &Path) -> String {
+    match std::fs::metadata(path) {
+        Ok(data) => format!("{} {:?}", data.len(), data.modified().ok()),
+        Err(error) => error.to_string(),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_is_used_stays_and_the_rest_makes_room() {
+        let kept: Kept<usize> = Kept::default();
+        let get = |key: &str, value: usize| *kept.get(key, || Ok(value), |_| ROOM / 2).unwrap();
+        assert_eq!((get("a", 1), get("b", 2), get("a", 9)), (1, 2, 1));
+        // There is room for two: the one that was not used since goes.
+        assert_eq!((get("c", 3), get("a", 9), get("b", 7)), (3, 1, 7));
+        assert!(kept.get("d", || Err(Error::Cancelled), |_| 1).is_err());
+    }
+}

@@ -1,0 +1,363 @@
+//! One impact, fitted again and again while somebody tries windows, laws and
+//! options: the recording is read once, and nothing is kept.
+
+use crate::equal_command::command_of_fit;
+use serde::Serialize;
+use std::path::{Path, PathBuf};
+use std::time::Instant;
+use windfall_campaign::impacts::figure_impact::{FittedImpact, line_of_law, motion_at, shown_rate};
+use windfall_campaign::impacts::fit::fit_law;
+use windfall_campaign::impacts::mass::{RigFound, find_rig};
+use windfall_campaign::impacts::request::{FitRequest, apply_request};
+use windfall_campaign::recording::extract::extract_entry;
+use windfall_campaign::recording::read::{read_recording, recording_path};
+use windfall_campaign::result::outcome::ImpactOutcome;
+use windfall_campaign::settings::model::{Campaign, ImpactEntry};
+use windfall_campaign::settings::read::read_campaign;
+use windfall_files::error::Error;
+use windfall_files::found::FindingOutcome;
+use windfall_files::named::Named;
+use windfall_identify::fit::interval::IntervalMethod;
+use windfall_identify::rig::simulate::Trajectory;
+use windfall_signal::impact::{Impact, Series};
+use windfall_signal::recording::Recording;
+
+/// Most samples of a series that are shown.
+const MOST_SHOWN: usize = 3000;
+
+/// A campaign of impacts with its rig, ready for fits.
+#[derive(Clone, Debug)]
+pub struct LiveCampaign {
+    campaign: Campaign,
+    rig: RigFound,
+}
+
+/// An impact of it with its recording in memory.
+#[derive(Clone, Debug)]
+pub struct LiveImpact {
+    // Of this impact and its specimen only.
+    campaign: Campaign,
+    rig: RigFound,
+    recording: Recording,
+}
+
+/// What a live fit is asked.
+#[derive(Clone, Debug, Default)]
+pub struct LiveRequest {
+    /// Begin of the part of the recording that is used, in place of that in
+    /// impacts.csv; s.
+    pub from: Option<f64>,
+    /// Its end; s.
+    pub to: Option<f64>,
+    /// Laws and options in place of those of the campaign.
+    pub fit: FitRequest,
+    /// Whether measured series and residuals are wanted.
+    pub series: bool,
+}
+
+/// Values at times on the clock of the recording.
+#[derive(Clone, Debug, Default, PartialEq, Serialize)]
+pub struct ShownSamples {
+    /// Times; s.
+    pub time: Vec<f64>,
+    /// Values, as exact as a picture can be; SI.
+    pub value: Vec<f32>,
+}
+
+/// The motion under a fitted law.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct ShownMotion {
+    /// Times on the clock of the recording; s.
+    pub time: Vec<f64>,
+    /// Displacement as the recording counts it; m.
+    pub displacement: Vec<f32>,
+    /// Displacement rate; m/s.
+    pub rate: Vec<f32>,
+    /// Contact force; N.
+    pub force: Vec<f32>,
+}
+
+/// One law on the impact.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct LiveLaw {
+    /// Name of the law.
+    pub law: String,
+    /// The result, as `fit` would give it.
+    pub outcome: Option<ImpactOutcome>,
+    /// Why there is none.
+    pub problem: Option<String>,
+    /// Its motion.
+    pub motion: Option<ShownMotion>,
+    /// Measured less fitted, of each quantity of the cost; SI.
+    pub residuals: Named<ShownSamples>,
+}
+
+/// What a live fit gives.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct LiveOutcome {
+    /// Id of the impact.
+    pub impact: String,
+    /// Part of the recording that was used; s.
+    pub from: Option<f64>,
+    /// Its end; s.
+    pub to: Option<f64>,
+    /// First time in the recording; s.
+    pub start: f64,
+    /// Last time in it; s.
+    pub stop: f64,
+    /// First contact by the threshold; s.
+    pub onset: f64,
+    /// End of contact by the threshold; s.
+    pub end: f64,
+    /// What the instruments show around the contact.
+    pub measured: Named<ShownSamples>,
+    /// Laws, in the order asked for.
+    pub laws: Vec<LiveLaw>,
+    /// What the signals say of themselves.
+    pub findings: Vec<FindingOutcome>,
+    /// The equal command.
+    pub command: String,
+    /// Time that it took; s.
+    pub seconds: f64,
+}
+
+impl LiveCampaign {
+    /// Reads a campaign of single impacts.
+    ///
+    /// # Errors
+    /// The campaign is wrong, or nothing shows the mass of its rig.
+    pub fn open(directory: &Path) -> Result<Self, Error> {
+        let campaign = read_campaign(directory)?;
+        let rig = find_rig(&campaign)?;
+        Ok(Self { campaign, rig })
+    }
+
+    fn entry(&self, id: &str) -> Result<&ImpactEntry, Error> {
+        let entry = self.campaign.impacts.iter().find(|entry| entry.id == id);
+        entry.ok_or_else(|| Error::ImpactUnknown { id: id.to_owned() })
+    }
+
+    /// Where the recording of one of its impacts is.
+    ///
+    /// # Errors
+    /// There is no such impact.
+    pub fn recording(&self, id: &str) -> Result<PathBuf, Error> {
+        let entry = self.entry(id)?;
+        Ok(recording_path(&self.campaign.files, entry))
+    }
+
+    /// Reads the recording of one of its impacts.
+    ///
+    /// # Errors
+    /// There is no such impact, or its recording cannot be read.
+    pub fn impact(&self, id: &str) -> Result<LiveImpact, Error> {
+        let entry = self.entry(id)?.clone();
+        let recording = read_recording(&self.campaign.files, &entry)?;
+        let mut specimens = self.campaign.specimens.clone();
+        specimens.retain(|specimen| specimen.id == entry.specimen);
+        let campaign = Campaign {
+            impacts: vec![entry],
+            specimens,
+            ..self.campaign.clone()
+        };
+        Ok(LiveImpact {
+            campaign,
+            rig: self.rig.clone(),
+            recording,
+        })
+    }
+}
+
+impl LiveImpact {
+    /// Bytes that its recording takes in memory, about.
+    #[must_use]
+    pub fn bytes(&self) -> usize {
+        let channels = self.recording.channels.iter();
+        channels.map(|channel| 16 * channel.samples.len()).sum()
+    }
+
+    /// Fits the impact as asked; intervals that would take long are asymptotic.
+    ///
+    /// * `shown`: name of the campaign directory in the equal command
+    ///
+    /// # Errors
+    /// The request is wrong, or there is no contact in the part of the recording. A law
+    /// that cannot be fitted is reported in the outcome.
+    pub fn refit(&self, request: &LiveRequest, shown: &str) -> Result<LiveOutcome, Error> {
+        let begin = Instant::now();
+        let mut campaign = self.campaign.clone();
+        apply_request(&mut campaign, &request.fit)?;
+        // What resamples or draws takes long, and is for the whole campaign.
+        let method = &mut campaign.fit.options.intervals.method;
+        if matches!(
+            method,
+            IntervalMethod::Bootstrap | IntervalMethod::Posterior
+        ) {
+            *method = IntervalMethod::Asymptotic;
+        }
+        let mut entry = campaign.impacts[0].clone();
+        entry.from = request.from.or(entry.from);
+        entry.to = request.to.or(entry.to);
+        let mass = self.rig.rig.effective_mass();
+        let (impact, findings) = extract_entry(&campaign, &entry, &self.recording, Some(mass))?;
+        let laws = campaign.fit.laws.iter().map(|law| {
+            let fitted = fit_law(
+                (&campaign, &self.rig.rig),
+                &entry,
+                (&impact, &findings),
+                law,
+            );
+            self.live_law(&campaign, &impact, law.kind.name(), fitted, request.series)
+        });
+        let laws = laws.collect();
+        let (start, stop) = ends(&self.recording);
+        Ok(LiveOutcome {
+            impact: entry.id.clone(),
+            from: entry.from,
+            to: entry.to,
+            start,
+            stop,
+            onset: impact.onset,
+            end: impact.end,
+            measured: match request.series {
+                true => measured(&impact),
+                false => Named(Vec::new()),
+            },
+            laws,
+            findings: findings
+                .iter()
+                .map(|finding| FindingOutcome {
+                    code: finding.code().to_owned(),
+                    message: finding.to_string(),
+                })
+                .collect(),
+            command: equal_command(&campaign, &entry, shown, &request.fit),
+            seconds: begin.elapsed().as_secs_f64(),
+        })
+    }
+
+    fn live_law(
+        &self,
+        campaign: &Campaign,
+        impact: &Impact,
+        law: &str,
+        fitted: Result<ImpactOutcome, Error>,
+        series: bool,
+    ) -> LiveLaw {
+        let mut shown = LiveLaw {
+            law: law.to_owned(),
+            outcome: None,
+            problem: None,
+            motion: None,
+            residuals: Named(Vec::new()),
+        };
+        let outcome = match fitted {
+            Ok(outcome) => outcome,
+            Err(error) => {
+                shown.problem = Some(error.to_string());
+                return shown;
+            }
+        };
+        let used = (
+            &self.rig.rig,
+            campaign.fit.options.end,
+            &campaign.fit.user[..],
+        );
+        shown.motion = line_of_law(impact, &outcome, used).map(|motion| shown_motion(&motion));
+        if let (true, Some(fitted)) = (series, FittedImpact::of(impact, &outcome, used)) {
+            for (name, _) in &outcome.residuals.0 {
+                if let Some(left) = residuals(&fitted, impact, name) {
+                    shown.residuals.0.push((name.clone(), left));
+                }
+            }
+        }
+        shown.outcome = Some(outcome);
+        shown
+    }
+}
+
+fn equal_command(
+    campaign: &Campaign,
+    entry: &ImpactEntry,
+    shown: &str,
+    request: &FitRequest,
+) -> String {
+    let folder = campaign.files.directory.strip_prefix(&campaign.directory);
+    let path = folder
+        .unwrap_or(&campaign.files.directory)
+        .join(&entry.file);
+    let path = Path::new(shown).join(path).display().to_string();
+    command_of_fit(&["fit", &path], request)
+}
+
+/// First and last time of a recording; s.
+fn ends(recording: &Recording) -> (f64, f64) {
+    let channels = recording.channels.iter().filter(|c| !c.samples.is_empty());
+    let ends = channels.map(|c| (c.times.at(0), c.times.at(c.samples.len() - 1)));
+    ends.reduce(|a, b| (a.0.min(b.0), a.1.max(b.1)))
+        .unwrap_or_default()
+}
+
+/// Names of the series of an impact, as the quantities of a cost are called.
+fn named_series(impact: &Impact) -> [(&'static str, Option<&Series>); 4] {
+    [
+        ("force", impact.force.as_ref()),
+        ("displacement", impact.displacement.as_ref()),
+        ("rate", impact.rate.as_ref()),
+        ("acceleration", impact.acceleration.as_ref()),
+    ]
+}
+
+fn measured(impact: &Impact) -> Named<ShownSamples> {
+    let mut shown = Vec::new();
+    for (name, series) in named_series(impact) {
+        if let (Some(series), true) = (series, name != "rate") {
+            let samples = shown_samples(&series.times, &series.values);
+            shown.push((name.to_owned(), samples));
+        }
+    }
+    // Differences of neighbouring counts would be nothing or a whole count.
+    if let Some((_, rate)) = shown_rate(impact) {
+        let samples = shown_samples(&rate.times, &rate.values);
+        shown.push(("rate".to_owned(), samples));
+    }
+    Named(shown)
+}
+
+/// Every n-th sample, so that few enough are left.
+fn shown_samples(times: &[f64], values: &[f64]) -> ShownSamples {
+    let stride = times.len().div_ceil(MOST_SHOWN).max(1);
+    ShownSamples {
+        time: times.iter().copied().step_by(stride).collect(),
+        value: single(values.iter().copied().step_by(stride)),
+    }
+}
+
+fn single(values: impl Iterator<Item = f64>) -> Vec<f32> {
+    values.map(|value| value as f32).collect()
+}
+
+fn residuals(fitted: &FittedImpact, impact: &Impact, name: &str) -> Option<ShownSamples> {
+    let found = named_series(impact);
+    let (_, series) = found.into_iter().find(|(known, _)| *known == name)?;
+    let series = series?;
+    let motion = motion_at(fitted, &series.times)?;
+    let model = match name {
+        "force" => &motion.force,
+        "displacement" => &motion.displacement,
+        "rate" => &motion.rate,
+        _ => &motion.acceleration,
+    };
+    let left = series.values.iter().zip(model);
+    let left: Vec<f64> = left.map(|(measured, model)| measured - model).collect();
+    Some(shown_samples(&series.times, &left))
+}
+
+fn shown_motion(motion: &Trajectory) -> ShownMotion {
+    ShownMotion {
+        time: motion.times.clone(),
+        displacement: single(motion.displacement.iter().copied()),
+        rate: single(motion.rate.iter().copied()),
+        force: single(motion.force.iter().copied()),
+    }
+}
