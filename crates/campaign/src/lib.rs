@@ -1,6 +1,7 @@
 //! Campaigns: what their files say, their recordings, the evaluation of each, results and their store.
 
 pub mod compression;
+pub mod error;
 pub mod impacts;
 pub mod measure;
 pub mod recording;

@@ -5,10 +5,10 @@ use crate::read::{DropCampaign, PlatePlan};
 use windfall_campaign::measure::measured::{
     MeasuredItem, MeasuredValue, plain_value, value_with_sd,
 };
+use windfall_drop_rig::rig::Plate;
 use windfall_files::error::Error;
 use windfall_files::found::FindingOutcome;
 use windfall_files::named::Named;
-use windfall_identify::drop::rig::Plate;
 use windfall_signal::ringing::plate::{HeightTable, PlateDynamics, height_table, plate_dynamics};
 use windfall_signal::uncertain::Uncertain;
 

@@ -1,6 +1,6 @@
 //! What can go wrong with files and campaigns, said so that it can be mended.
 
-use crate::error_words::{after_refusal, nearest_columns, why_nothing};
+use crate::error_words::{nearest_columns, why_nothing};
 use crate::found::FailureOutcome;
 use std::path::PathBuf;
 
@@ -88,33 +88,6 @@ pub enum Error {
     /// A design or a model that cannot be.
     #[error("{0}")]
     Statistics(windfall_statistics::error::Error),
-    /// Nothing says when samples were taken.
-    #[error(
-        "{path}: nothing says when the samples of \"{column}\" were taken; give the column of \
-         times or the sampling rate in campaign.toml: [files] time = \"time_s\"   or   \
-         rate = \"200 kHz\"", path = path.display()
-    )]
-    TimesUnknown {
-        /// The file.
-        path: PathBuf,
-        /// The channel.
-        column: String,
-    },
-    /// A sample of a binary file that is no number.
-    #[error(
-        "{path}: \"{column}\" is {value} at sample {sample}; choose a range of time without it \
-         (from_s and to_s in impacts.csv), or mend the recording", path = path.display()
-    )]
-    SampleNotFinite {
-        /// The file.
-        path: PathBuf,
-        /// The channel.
-        column: String,
-        /// Number of the sample, from 0.
-        sample: usize,
-        /// What stands there.
-        value: f64,
-    },
     /// A file that was named is not there.
     #[error("{path}: there is no such file; {advice}", path = path.display())]
     FileAbsent {
@@ -225,32 +198,6 @@ pub enum Error {
         /// What stands there.
         text: String,
     },
-    /// A sample without its time.
-    #[error(
-        "{place}: sample {sample} of column \"{column}\" has no time, the cell in column \"{time}\" \
-         is blank; fill in the time or leave the sample blank too"
-    )]
-    SampleWithoutTime {
-        /// Where.
-        place: Place,
-        /// Row below the header, from 0.
-        sample: usize,
-        /// The column with the sample.
-        column: String,
-        /// The column of times.
-        time: String,
-    },
-    /// A column without a single sample.
-    #[error(
-        "{path}: the column \"{column}\" holds no sample, every cell is blank; \
-         map the channel to another column", path = path.display()
-    )]
-    ColumnBlank {
-        /// The file.
-        path: PathBuf,
-        /// The column.
-        column: String,
-    },
     /// Text that is not UTF-8.
     #[error(
         "{place}: the text is not UTF-8; save the file as UTF-8 (in a spreadsheet: \"CSV UTF-8\")"
@@ -305,59 +252,6 @@ pub enum Error {
         /// What is wrong with it and what was expected.
         problem: String,
     },
-    /// A campaign file of a version that this windfall does not read.
-    #[error(
-        "{place}: format = {found}, but this windfall reads format = {expected}; \
-         install a newer windfall, or make a fresh template with `windfall new`"
-    )]
-    CampaignFormat {
-        /// Where.
-        place: Place,
-        /// Version found.
-        found: i64,
-        /// Version expected.
-        expected: i64,
-    },
-    /// An environment variable used in a path is not set.
-    #[error(
-        "{place}: {key} uses the environment variable {variable}, which is not set; \
-         set it, for example: export {variable}=/path/to/recordings"
-    )]
-    VariableUnset {
-        /// Where.
-        place: Place,
-        /// Table and key.
-        key: String,
-        /// The variable.
-        variable: String,
-    },
-    /// A column placeholder that no column of impacts.csv fills.
-    #[error(
-        "{place}: column = \"{text}\" uses {{{name}}}, but impacts.csv has no column \"{name}\"; \
-         add it, or write the column's name in full"
-    )]
-    PlaceholderUnknown {
-        /// Where.
-        place: Place,
-        /// The column's name with its placeholders.
-        text: String,
-        /// The placeholder.
-        name: String,
-    },
-    /// An id given to two rows.
-    #[error(
-        "{place}: the {what} \"{id}\" is named twice (first in line {first}); ids must be unique"
-    )]
-    IdRepeated {
-        /// The second place.
-        place: Place,
-        /// "specimen" or "impact".
-        what: &'static str,
-        /// The id.
-        id: String,
-        /// Line of the first.
-        first: usize,
-    },
     /// A row without a value that it must have.
     #[error("{place}: the cell in column \"{column}\" is blank; every row needs one")]
     CellBlank {
@@ -365,18 +259,6 @@ pub enum Error {
         place: Place,
         /// The column.
         column: String,
-    },
-    /// An impact on a specimen that specimens.csv does not list.
-    #[error(
-        "{place}: the specimen \"{specimen}\" is not in specimens.csv{nearest}; add it there or correct the id"
-    )]
-    SpecimenUnknown {
-        /// Where.
-        place: Place,
-        /// The specimen.
-        specimen: String,
-        /// Suggestion for the message, or "".
-        nearest: String,
     },
     /// A directory or file that a command would have to overwrite.
     #[error("{path}: exists already and is not overwritten; choose another name or remove it first", path = path.display())]
@@ -391,68 +273,6 @@ pub enum Error {
         path: PathBuf,
         /// What could not be fitted, and why.
         failures: Vec<FailureOutcome>,
-    },
-    /// No impact shows the mass of the carriage.
-    #[error(
-        "{path}: the mass cannot be found from any of the {impacts} impacts; give it in \
-         campaign.toml: mass = \"0.5 kg\". The first impact says: {first}", path = path.display()
-    )]
-    MassUnknown {
-        /// The campaign directory.
-        path: PathBuf,
-        /// How many impacts there are.
-        impacts: usize,
-        /// Why the first one does not show it.
-        first: String,
-    },
-    /// A results file that is no database, or a damaged one.
-    #[error(
-        "{path}: the results file is damaged or not a database ({detail}); nothing was written. \
-         Move it away (or restore a copy) and run again to make a new one", path = path.display()
-    )]
-    StoreDamaged {
-        /// The file.
-        path: PathBuf,
-        /// What SQLite said.
-        detail: String,
-    },
-    /// A database that another program made.
-    #[error(
-        "{path}: this is a database of another program (application id {application_id}); \
-         nothing was written. Move it away and run again", path = path.display()
-    )]
-    StoreForeign {
-        /// The file.
-        path: PathBuf,
-        /// The application id found.
-        application_id: i64,
-    },
-    /// A results file of a newer windfall.
-    #[error(
-        "{path}: these results were written by a newer windfall (store version {found}, this one \
-         knows {known}); nothing was written. Install the newer windfall, or move the file away",
-        path = path.display()
-    )]
-    StoreNewer {
-        /// The file.
-        path: PathBuf,
-        /// Version found.
-        found: i64,
-        /// Newest version that this windfall knows.
-        known: i64,
-    },
-    /// The database refused an operation.
-    #[error(
-        "{path}: cannot {action} the results: {source}{}", after_refusal(action),
-        path = path.display()
-    )]
-    Store {
-        /// The file.
-        path: PathBuf,
-        /// "open", "read" or "write".
-        action: &'static str,
-        /// What SQLite said.
-        source: Box<dyn std::error::Error + Send + Sync>,
     },
     /// An option of a command that cannot be used.
     #[error("{option}: {problem}")]
@@ -475,15 +295,6 @@ pub enum Error {
         /// What stands there.
         text: String,
     },
-    /// An impact whose energy nothing says.
-    #[error(
-        "{place}: the impact energy is not known; give a column energy_J, or drop_height_m \
-         together with mass_kg or with `mass` in [rig]"
-    )]
-    EnergyUnknown {
-        /// Where.
-        place: Place,
-    },
     /// A drop without its mass or its height.
     #[error(
         "{place}: the {} of \"{item}\" is not known: column \"{}\" is {found}; \
@@ -499,31 +310,6 @@ pub enum Error {
         needed: &'static DropQuantity,
         /// "blank" or "not there".
         found: &'static str,
-    },
-    /// A campaign without a channel that its kind needs.
-    #[error(
-        "{item}: no channel holds {quantity}; map a column to it under [channels] in campaign.toml"
-    )]
-    ChannelNotMapped {
-        /// Id in impacts.csv.
-        item: String,
-        /// The quantity.
-        quantity: String,
-    },
-    /// No samples between from_s and to_s.
-    #[error(
-        "{item}: channel '{channel}' has no samples between {from} s and {to} s; correct from_s \
-         and to_s in impacts.csv (`windfall inspect` shows the times of a recording)"
-    )]
-    RangeEmpty {
-        /// Id in impacts.csv.
-        item: String,
-        /// The channel.
-        channel: String,
-        /// Begin of the range; s.
-        from: f64,
-        /// Its end; s.
-        to: f64,
     },
     /// A value that a result needs is not in the tables.
     #[error("{item}: {missing}; add {advice}")]
@@ -574,11 +360,6 @@ impl Error {
             Self::FileAccess { .. }
                 | Self::Cancelled
                 | Self::NothingFitted { .. }
-                | Self::MassUnknown { .. }
-                | Self::StoreDamaged { .. }
-                | Self::StoreForeign { .. }
-                | Self::StoreNewer { .. }
-                | Self::Store { .. }
                 | Self::Signal { .. }
                 | Self::Identify { .. }
         )

@@ -2,16 +2,6 @@
 
 use crate::found::FailureOutcome;
 
-/// What holds after a database refused something, and what to do.
-pub(crate) fn after_refusal(action: &str) -> &'static str {
-    match action {
-        "write" => {
-            "; earlier results are as they were. If the disk is full, make room and run again"
-        }
-        _ => "",
-    }
-}
-
 /// What stands above the message that nothing could be fitted.
 pub(crate) fn why_nothing(failures: &[FailureOutcome]) -> String {
     match failures.len() {

@@ -6,8 +6,6 @@
 
 pub mod compare;
 pub mod compression_fit;
-pub mod drop;
-pub mod eccentric;
 pub mod error;
 pub mod finding;
 pub mod fit;

@@ -2,7 +2,7 @@
 
 #![allow(clippy::unwrap_used, clippy::print_stdout)]
 
-mod rubber;
+use crate::rubber;
 
 use rubber::{impact, rig};
 use windfall_contact::expression::parse_law;

@@ -2,7 +2,7 @@
 
 #![allow(clippy::unwrap_used, clippy::print_stdout)]
 
-mod rubber;
+use crate::rubber;
 
 use nalgebra::{DMatrix, DVector};
 use rubber::{C, K, impact, impact_of, rig};

@@ -2,7 +2,7 @@
 
 #![allow(clippy::unwrap_used, clippy::print_stdout)]
 
-mod rubber;
+use crate::rubber;
 
 use rubber::{impact, recover};
 use windfall_identify::fit::problem::{FitOptions, Quantities, Treatment, Weighting};

@@ -3,7 +3,7 @@
 
 #![allow(clippy::unwrap_used)]
 
-mod rubber;
+use crate::rubber;
 
 use windfall_contact::expression::{parse_law, parse_law_among};
 use windfall_contact::law::{ContactLaw, EndRule};

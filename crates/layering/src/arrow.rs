@@ -8,6 +8,7 @@ use crate::violation::{Place, Violation};
 pub const ARROWS: &[(&str, &[&str])] = &[
     ("windfall-numerics", &[]),
     ("windfall-statistics", &["windfall-numerics"]),
+    ("windfall-design", &[]),
     ("windfall-contact", &["windfall-numerics"]),
     ("windfall-signal", &["windfall-numerics"]),
     (
@@ -16,6 +17,15 @@ pub const ARROWS: &[(&str, &[&str])] = &[
             "windfall-contact",
             "windfall-signal",
             "windfall-statistics",
+            "windfall-numerics",
+        ],
+    ),
+    (
+        "windfall-drop-rig",
+        &[
+            "windfall-identify",
+            "windfall-signal",
+            "windfall-contact",
             "windfall-numerics",
         ],
     ),
@@ -36,7 +46,12 @@ pub const ARROWS: &[(&str, &[&str])] = &[
     ),
     (
         "windfall-tables",
-        &["windfall-draw", "windfall-files", "windfall-statistics"],
+        &[
+            "windfall-design",
+            "windfall-draw",
+            "windfall-files",
+            "windfall-statistics",
+        ],
     ),
     (
         "windfall-campaign",
@@ -64,6 +79,7 @@ pub const ARROWS: &[(&str, &[&str])] = &[
     (
         "windfall-simulate",
         &[
+            "windfall-drop-rig",
             "windfall-campaign",
             "windfall-cards",
             "windfall-draw",
@@ -89,6 +105,8 @@ pub const ARROWS: &[(&str, &[&str])] = &[
     (
         "windfall-drop",
         &[
+            "windfall-design",
+            "windfall-drop-rig",
             "windfall-campaign",
             "windfall-tables",
             "windfall-cards",
@@ -154,6 +172,7 @@ pub const ARROWS: &[(&str, &[&str])] = &[
     (
         "windfall",
         &[
+            "windfall-drop-rig",
             "windfall-report",
             "windfall-drop",
             "windfall-population",
@@ -213,6 +232,8 @@ pub const INNER: &[&str] = &[
     "windfall-contact",
     "windfall-signal",
     "windfall-identify",
+    "windfall-drop-rig",
+    "windfall-design",
     "windfall-scene",
 ];
 

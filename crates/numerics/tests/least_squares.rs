@@ -4,7 +4,7 @@
 //! named and left out.
 #![cfg_attr(test, allow(clippy::unwrap_used, clippy::print_stdout))]
 
-mod strd;
+use crate::strd;
 
 use strd::model::{self, Model};
 use windfall_numerics::cholesky;

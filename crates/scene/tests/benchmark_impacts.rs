@@ -5,8 +5,8 @@
 //! aluminium alloy.
 #![allow(clippy::unwrap_used)]
 
-mod annuli;
-mod common;
+use crate::annuli;
+use crate::common;
 
 use annuli::slip_after;
 use common::{ball, floor, law, scene};

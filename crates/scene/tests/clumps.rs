@@ -1,7 +1,7 @@
 //! Fruit that are clumps of spheres: how they turn, and how they are struck.
 #![allow(clippy::unwrap_used)]
 
-mod common;
+use crate::common;
 
 use common::{ball, floor, law, scene};
 use windfall_scene::event::Event;

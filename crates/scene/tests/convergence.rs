@@ -1,7 +1,7 @@
 //! How errors go with the time step: of single impacts, and of the energy of a bin.
 #![allow(clippy::unwrap_used, clippy::print_stdout)]
 
-mod common;
+use crate::common;
 
 use common::{STEEL, ball, floor, law, scene};
 use windfall_scene::interaction::{Interaction, mindlin_ratio};

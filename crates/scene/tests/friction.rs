@@ -1,7 +1,7 @@
 //! Friction: oblique impacts, inclines, stacks.
 #![allow(clippy::unwrap_used)]
 
-mod common;
+use crate::common;
 
 use common::{ball, floor, law, plane, scene};
 use windfall_scene::interaction::{Interaction, mindlin_ratio};

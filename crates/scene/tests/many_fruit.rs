@@ -1,7 +1,7 @@
 //! Many fruit in a bin: energy, threads, lists of neighbours.
 #![allow(clippy::unwrap_used)]
 
-mod common;
+use crate::common;
 
 use common::{STEEL, law, scene};
 use windfall_scene::event::{Event, Partner};

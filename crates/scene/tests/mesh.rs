@@ -1,7 +1,7 @@
 //! Walls of many triangles against the shapes that they stand for.
 #![allow(clippy::unwrap_used)]
 
-mod common;
+use crate::common;
 
 use common::{STEEL, ball, law, scene};
 use windfall_scene::event::Event;

@@ -1,8 +1,8 @@
 //! Oblique impacts against the solution by annuli of the contact area.
 #![allow(clippy::unwrap_used)]
 
-mod annuli;
-mod common;
+use crate::annuli;
+use crate::common;
 
 use annuli::{Annuli, slip_after};
 use common::{ball, floor, law, scene};

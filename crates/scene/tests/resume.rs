@@ -1,7 +1,7 @@
 //! A run that is stopped and taken up has the bits of one that never was.
 #![allow(clippy::unwrap_used)]
 
-mod common;
+use crate::common;
 
 use common::{FRUIT, STEEL, ball, floor, law, plane};
 use std::collections::BTreeMap;

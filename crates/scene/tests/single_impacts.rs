@@ -1,7 +1,7 @@
 //! One impact at a time against the accurate solution of its equation of motion.
 #![allow(clippy::unwrap_used)]
 
-mod common;
+use crate::common;
 
 use common::{ball, floor, law, scene};
 use windfall_scene::event::Event;

@@ -2,7 +2,7 @@
 
 #![allow(clippy::unwrap_used, clippy::print_stdout)]
 
-mod plate;
+use crate::plate;
 
 use plate::{Contact, PLATE, Plate, RECORD, Record, bounces, channel};
 use windfall_signal::bounce::find::find_bounces;

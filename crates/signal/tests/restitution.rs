@@ -3,7 +3,7 @@
 
 #![allow(clippy::unwrap_used, clippy::print_stdout)]
 
-mod plate;
+use crate::plate;
 
 use plate::{PLATE, Plate, RECORD, Record, bounces, channel};
 use windfall_signal::bounce::find::find_bounces;

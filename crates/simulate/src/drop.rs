@@ -6,13 +6,11 @@ use windfall_cards::law_use::end_name;
 use windfall_cards::law_use::{LawUse, findings_of_use};
 use windfall_contact::expression::LawExpression;
 use windfall_contact::laws::kind::Law;
+use windfall_drop_rig::rig::Plate;
+use windfall_drop_rig::simulate::{DropImpact, DropTrajectory, drop_trajectory, simulate_drop};
 use windfall_files::error::Error;
 use windfall_files::found::FindingOutcome;
 use windfall_files::option_value::{positive, unusable};
-use windfall_identify::drop::rig::Plate;
-use windfall_identify::drop::simulate::{
-    DropImpact, DropTrajectory, drop_trajectory, simulate_drop,
-};
 
 /// Motion is shown up to this many mean contact durations after the last
 /// separation; 1.

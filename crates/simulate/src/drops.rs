@@ -11,11 +11,11 @@ use windfall_cards::law_use::end_name;
 use windfall_cards::user_laws::text::law_table;
 use windfall_contact::expression::LawExpression;
 use windfall_contact::laws::kind::Law;
+use windfall_drop_rig::rig::DropRig;
+use windfall_drop_rig::simulate::{DropSummary, drop_trajectory, simulate_drop};
 use windfall_files::error::Error;
 use windfall_files::option_value::{at_least_zero, positive, quantity, unusable};
 use windfall_files::table::write::csv_text;
-use windfall_identify::drop::rig::DropRig;
-use windfall_identify::drop::simulate::{DropSummary, drop_trajectory, simulate_drop};
 use windfall_signal::instrument::{Converter, Instrument, Sensor, Trajectory, record};
 use windfall_signal::noise::gaussian::{NoiseSource, noise_source, normal, uniform};
 

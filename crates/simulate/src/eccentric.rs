@@ -6,14 +6,14 @@ use crate::request::drop::{DropPlan, one_height};
 use serde::Serialize;
 use windfall_cards::law_use::end_name;
 use windfall_contact::expression::LawExpression;
-use windfall_files::error::Error;
-use windfall_files::option_value::unusable;
-use windfall_identify::eccentric::body::EccentricBody;
-use windfall_identify::eccentric::impact::EccentricImpact;
-use windfall_identify::eccentric::shape::Shape;
-use windfall_identify::eccentric::simulate::{
+use windfall_drop_rig::eccentric::body::EccentricBody;
+use windfall_drop_rig::eccentric::impact::EccentricImpact;
+use windfall_drop_rig::eccentric::shape::Shape;
+use windfall_drop_rig::eccentric::simulate::{
     EccentricTrajectory, eccentric_trajectory, simulate_eccentric_drop,
 };
+use windfall_files::error::Error;
+use windfall_files::option_value::unusable;
 
 /// One impact of a planar body; SI. The keys of a central impact, and these.
 #[derive(Clone, Debug, PartialEq, Serialize)]

@@ -2,10 +2,10 @@
 
 use crate::drop_text::{Row, column, given, impact_csv, impact_table, plate_text, rows};
 use crate::eccentric::{BodyOutcome, SimulatedEccentricBounce, SimulatedEccentricDrop};
+use windfall_drop_rig::eccentric::simulate::EccentricTrajectory;
 use windfall_files::error::Error;
 use windfall_files::named::Named;
 use windfall_files::table::write::csv_text;
-use windfall_identify::eccentric::simulate::EccentricTrajectory;
 
 fn eccentric_rows(impact: &SimulatedEccentricBounce) -> Vec<Row> {
     let mut out = rows(&impact.bounce);

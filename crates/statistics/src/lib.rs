@@ -8,7 +8,6 @@ pub mod accurate_sum;
 pub mod as_written;
 pub mod chain_diagnostics;
 pub mod compare;
-pub mod design;
 pub mod distribution;
 pub mod error;
 pub mod mixed;

@@ -2,7 +2,7 @@
 
 #![allow(clippy::unwrap_used)]
 
-mod mixed_cases;
+use crate::mixed_cases;
 
 use mixed_cases::{assert_near, case, fitted};
 use nalgebra::{DMatrix, DVector};

@@ -1,6 +1,6 @@
 //! Mixed models against lme4, lmerTest and pbkrtest (`bench/mixed_reference.R`).
 
-mod mixed_cases;
+use crate::mixed_cases;
 
 use mixed_cases::{assert_near, fitted, fitted_case, numbers, reference, rows};
 use windfall_statistics::mixed::finding::MixedFinding;

@@ -2,7 +2,7 @@
 
 #![allow(clippy::unwrap_used)]
 
-mod http;
+use crate::http;
 
 use http::{Running, break_off, serve};
 use serde_json::{Value, json};

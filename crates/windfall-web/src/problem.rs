@@ -5,6 +5,7 @@ use axum::http::{HeaderValue, StatusCode, header};
 use axum::response::{IntoResponse, Response};
 use serde::Serialize;
 use utoipa::ToSchema;
+use windfall_campaign::store::error::StoreError;
 use windfall_files::error::Error;
 
 /// What went wrong.
@@ -61,11 +62,10 @@ impl Problem {
             Error::FileAccess { source, .. } if source.kind() == std::io::ErrorKind::NotFound => {
                 (StatusCode::NOT_FOUND, "absent")
             }
-            Error::FileAccess { .. }
-            | Error::Store { .. }
-            | Error::StoreDamaged { .. }
-            | Error::StoreForeign { .. }
-            | Error::StoreNewer { .. } => (StatusCode::INTERNAL_SERVER_ERROR, "files"),
+            Error::FileAccess { .. } => (StatusCode::INTERNAL_SERVER_ERROR, "files"),
+            Error::Room(_) if error.of_room::<StoreError>().is_some() => {
+                (StatusCode::INTERNAL_SERVER_ERROR, "files")
+            }
             _ => (StatusCode::UNPROCESSABLE_ENTITY, "unusable"),
         };
         Self::new(status, code, text)

@@ -12,8 +12,8 @@ use windfall_drop::calibrate::outcome::CalibrateOutcome;
 use windfall_drop::calibrate::run::{CalibrateRequest, calibrate};
 use windfall_drop::calibrate::text::{csv_of_calibration, text_of_calibration};
 use windfall_drop::calibrate_settings::Way;
-use windfall_identify::drop::rig::{DropRig, Plate};
-use windfall_identify::drop::simulate::simulate_drop;
+use windfall_drop_rig::rig::{DropRig, Plate};
+use windfall_drop_rig::simulate::simulate_drop;
 
 const RANGES: &str = r#"ranges = { k = ["0.3 N/mm^e", "1 N/mm^e"], e = [1.5, 3.0], c = ["1e-4 N s/mm", "6e-4 N s/mm"] }"#;
 

@@ -1,5 +1,6 @@
 //! The rig of a campaign with its mass, weighed or from the recordings.
 
+use crate::error::CampaignError;
 use crate::recording::extract::extract_recording;
 use crate::result::outcome::MassOutcome;
 use crate::settings::model::{Campaign, ImpactEntry, MassPlan, RigPlan};
@@ -83,11 +84,11 @@ fn from_impulse(campaign: &Campaign, driving: Uncertain) -> Result<RigFound, Err
             .into_iter()
             .find_map(Result::err)
             .unwrap_or_default();
-        return Err(Error::MassUnknown {
+        return Err(Error::from(CampaignError::MassUnknown {
             path: campaign.directory.clone(),
             impacts: campaign.impacts.len(),
             first,
-        });
+        }));
     };
     let findings = campaign
         .impacts

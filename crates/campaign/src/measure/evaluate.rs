@@ -9,6 +9,7 @@ use crate::result::outcome::StatusOutcome;
 use crate::settings::files::fill_placeholders;
 use crate::settings::model::{ImpactEntry, TimePlan};
 use crate::store::documents::{DocumentRecord, StoredValue, find_documents};
+use crate::store::error::StoreError;
 use crate::store::runs::{RunRecord, latest_run, write_run};
 use serde::Serialize;
 use serde::de::DeserializeOwned;
@@ -135,9 +136,11 @@ fn stored_results<T: Document>(
         return Ok(vec![None; keys.len()]);
     }
     let read = |text: String| {
-        serde_json::from_str(&text).map_err(|error| Error::StoreDamaged {
-            path: evaluation.store.to_path_buf(),
-            detail: format!("a result cannot be read: {error}"),
+        serde_json::from_str(&text).map_err(|error| {
+            Error::from(StoreError::Damaged {
+                path: evaluation.store.to_path_buf(),
+                detail: format!("a result cannot be read: {error}"),
+            })
         })
     };
     found.into_iter().map(|t| t.map(read).transpose()).collect()

@@ -1,5 +1,6 @@
 //! The samples of one channel of a recording, within the range of an entry.
 
+use crate::error::CampaignError;
 use crate::settings::model::ImpactEntry;
 use windfall_files::error::Error;
 use windfall_signal::recording::{Quantity, Recording};
@@ -24,10 +25,10 @@ pub fn channel_samples(
 ) -> Result<Samples, Error> {
     let channel = recording.channels.iter().find(|c| c.quantity == quantity);
     let Some(channel) = channel else {
-        return Err(Error::ChannelNotMapped {
+        return Err(Error::from(CampaignError::ChannelNotMapped {
             item: entry.id.clone(),
             quantity: quantity.to_string(),
-        });
+        }));
     };
     let from = entry.from.unwrap_or(f64::NEG_INFINITY);
     let to = entry.to.unwrap_or(f64::INFINITY);
@@ -37,11 +38,11 @@ pub fn channel_samples(
         kept.filter(|(time, _)| (from..=to).contains(time)).unzip();
     match times.is_empty() {
         false => Ok(Samples { times, values }),
-        true => Err(Error::RangeEmpty {
+        true => Err(Error::from(CampaignError::RangeEmpty {
             item: entry.id.clone(),
             channel: channel.name.clone(),
             from,
             to,
-        }),
+        })),
     }
 }

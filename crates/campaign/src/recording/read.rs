@@ -1,5 +1,6 @@
 //! One impact's recording: channels of a file → channels in SI units.
 
+use crate::error::CampaignError;
 use crate::recording::find_channel::find_channel;
 use crate::settings::files::fill_placeholders;
 use crate::settings::model::{ChannelPlan, FilePlan, ImpactEntry, TimePlan};
@@ -83,13 +84,15 @@ fn source_of<'a>(
     contents: &Contents,
 ) -> Result<Source<'a>, Error> {
     let fill = |text: &str| {
-        fill_placeholders(text, &impact.cells).map_err(|name| Error::PlaceholderUnknown {
-            place: Place {
-                file: path.to_path_buf(),
-                line: 0,
-            },
-            text: text.to_owned(),
-            name,
+        fill_placeholders(text, &impact.cells).map_err(|name| {
+            Error::from(CampaignError::PlaceholderUnknown {
+                place: Place {
+                    file: path.to_path_buf(),
+                    line: 0,
+                },
+                text: text.to_owned(),
+                name,
+            })
         })
     };
     let asked_by = match plan.line {
@@ -125,10 +128,10 @@ fn clock_in_file(contents: &Contents, index: usize, path: &Path) -> Result<Clock
             index: at,
             scale: seconds_per_unit(&contents.channels[at]),
         }),
-        TimeBase::Unknown => Err(Error::TimesUnknown {
+        TimeBase::Unknown => Err(Error::from(CampaignError::TimesUnknown {
             path: path.to_path_buf(),
             column: contents.channels[index].name.clone(),
-        }),
+        })),
     }
 }
 
@@ -142,10 +145,10 @@ fn channel_of<'a>(
     let name = &contents.channels[source.index].name;
     let cells = without_filling(column(source.index));
     if cells.iter().all(|cell| cell.is_nan()) {
-        return Err(Error::ColumnBlank {
+        return Err(Error::from(CampaignError::ColumnBlank {
             path: path.to_path_buf(),
             column: name.clone(),
-        });
+        }));
     }
     check_finite(cells, contents, source.index, path)?;
     let present = || cells.iter().enumerate().filter(|(_, cell)| !cell.is_nan());
@@ -154,7 +157,7 @@ fn channel_of<'a>(
             let times = column(index);
             let listed = present().map(|(row, _)| match times.get(row) {
                 Some(time) if !time.is_nan() => Ok(time * scale - plan.delay),
-                _ => Err(Error::SampleWithoutTime {
+                _ => Err(Error::from(CampaignError::SampleWithoutTime {
                     place: Place {
                         file: path.to_path_buf(),
                         line: 0,
@@ -162,7 +165,7 @@ fn channel_of<'a>(
                     sample: row,
                     column: name.clone(),
                     time: contents.channels[index].name.clone(),
-                }),
+                })),
             });
             Times::Listed(listed.collect::<Result<_, _>>()?)
         }
@@ -206,11 +209,11 @@ fn check_finite(
     let bad = |cell: &f64| cell.is_infinite() || (cell.is_nan() && !blank);
     match cells.iter().position(bad) {
         None => Ok(()),
-        Some(sample) => Err(Error::SampleNotFinite {
+        Some(sample) => Err(Error::from(CampaignError::SampleNotFinite {
             path: path.to_path_buf(),
             column: contents.channels[index].name.clone(),
             sample,
             value: cells[sample],
-        }),
+        })),
     }
 }

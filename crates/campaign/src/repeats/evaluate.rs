@@ -1,5 +1,6 @@
 //! One impact of a campaign of repeated impacts.
 
+use crate::error::CampaignError;
 use crate::measure::evaluate::Document;
 use crate::measure::measured::{MeasuredItem, MeasuredItems, plain_value, value_with_sd};
 use crate::recording::read::recording_path;
@@ -82,9 +83,11 @@ pub fn evaluate_impact(
         source: Box::new(source),
     };
     let (impact, findings) = extract_impact(recording, &options).map_err(signal)?;
-    let force = impact.force.ok_or_else(|| Error::ChannelNotMapped {
-        item: entry.id.clone(),
-        quantity: "force".to_owned(),
+    let force = impact.force.ok_or_else(|| {
+        Error::from(CampaignError::ChannelNotMapped {
+            item: entry.id.clone(),
+            quantity: "force".to_owned(),
+        })
     })?;
     let read = features(&force, &campaign.align).map_err(signal)?;
     let energy = energy_of(campaign, entry)?;

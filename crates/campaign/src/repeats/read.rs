@@ -1,5 +1,6 @@
 //! campaign.toml of impacts repeated on one spot → [`RepeatsCampaign`].
 
+use crate::error::CampaignError;
 use crate::measure::item_campaign::{ItemCampaign, SharedFile, read_item_campaign, specimen_of};
 use crate::repeats::file::{ComparisonFile, RepeatsFile};
 use crate::settings::channels::channel_plans;
@@ -214,12 +215,12 @@ pub fn energy_of(campaign: &RepeatsCampaign, entry: &ImpactEntry) -> Result<f64,
     let mass = cell("mass", "kg")?.or(campaign.mass);
     match (cell("drop_height", "m")?, mass) {
         (Some(height), Some(mass)) => Ok(mass * campaign.gravity * height),
-        _ => Err(Error::EnergyUnknown {
+        _ => Err(Error::from(CampaignError::EnergyUnknown {
             place: Place {
                 file,
                 line: entry.line,
             },
-        }),
+        })),
     }
 }
 

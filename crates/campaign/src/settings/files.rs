@@ -1,6 +1,7 @@
 //! What all kinds of campaigns share: `format`, `[files]`, `[summary]`, and the
 //! placeholders in names of columns.
 
+use crate::error::CampaignError;
 use crate::settings::file::{FORMAT, FilesFile};
 use crate::settings::model::{ChannelPlan, FilePlan, ImpactEntry, Specimen, TimePlan};
 use crate::settings::open_options::{DECIMALS, ENCODINGS, FORMATS, SEPARATORS, THOUSANDS};
@@ -32,11 +33,11 @@ pub fn check_format(source: &TomlSource, format: Option<&Spanned<i64>>) -> Resul
     if *format.get_ref() == FORMAT {
         return Ok(());
     }
-    Err(Error::CampaignFormat {
+    Err(Error::from(CampaignError::CampaignFormat {
         place: place_at(source, &format.span()),
         found: *format.get_ref(),
         expected: FORMAT,
-    })
+    }))
 }
 
 /// How the recordings of a campaign are read.
@@ -114,10 +115,12 @@ fn with_variables(source: &TomlSource, text: &Spanned<String>) -> Result<String,
                 problem,
             ));
         };
-        let value = std::env::var(name).map_err(|_| Error::VariableUnset {
-            place: place_at(source, &text.span()),
-            key: "[files] directory".to_owned(),
-            variable: name.to_owned(),
+        let value = std::env::var(name).map_err(|_| {
+            Error::from(CampaignError::VariableUnset {
+                place: place_at(source, &text.span()),
+                key: "[files] directory".to_owned(),
+                variable: name.to_owned(),
+            })
         })?;
         whole.push_str(before);
         whole.push_str(&value);
@@ -233,13 +236,15 @@ pub fn check_placeholders(
             .into_iter()
             .flatten()
         {
-            fill_placeholders(text, &first.cells).map_err(|name| Error::PlaceholderUnknown {
-                place: Place {
-                    file: source.path.clone(),
-                    line: channel.line,
-                },
-                text: text.clone(),
-                name,
+            fill_placeholders(text, &first.cells).map_err(|name| {
+                Error::from(CampaignError::PlaceholderUnknown {
+                    place: Place {
+                        file: source.path.clone(),
+                        line: channel.line,
+                    },
+                    text: text.clone(),
+                    name,
+                })
             })?;
         }
     }

@@ -1,5 +1,6 @@
 //! specimens.csv and impacts.csv.
 
+use crate::error::CampaignError;
 use crate::settings::model::{ImpactEntry, Specimen};
 use std::path::Path;
 use windfall_files::error::{Error, Place};
@@ -53,11 +54,11 @@ pub fn read_impacts(
         .map(|row| {
             let known = specimens.unwrap_or_default();
             if specimens.is_some() && !known.iter().any(|s| s.id == row.cells[specimen]) {
-                return Err(Error::SpecimenUnknown {
+                return Err(Error::from(CampaignError::SpecimenUnknown {
                     place: place(&table, row),
                     specimen: row.cells[specimen].clone(),
                     nearest: suggestion(&row.cells[specimen], known.iter().map(|s| s.id.as_str())),
-                });
+                }));
             }
             Ok(ImpactEntry {
                 id: row.cells[id].clone(),
@@ -84,12 +85,12 @@ fn check_ids(table: &Table, column: usize, what: &'static str) -> Result<(), Err
         .find(|pair| pair[0].cells[column] == pair[1].cells[column])
     {
         None => Ok(()),
-        Some(pair) => Err(Error::IdRepeated {
+        Some(pair) => Err(Error::from(CampaignError::IdRepeated {
             place: place(table, pair[1]),
             what,
             id: pair[1].cells[column].clone(),
             first: pair[0].line,
-        }),
+        })),
     }
 }
 

@@ -1,5 +1,6 @@
 //! The file results.sqlite: whose it is, which version, whether it is sound.
 
+use crate::store::error::StoreError;
 use rusqlite::{Connection, ErrorCode, OpenFlags, Transaction};
 use std::path::Path;
 use std::time::Duration;
@@ -40,17 +41,17 @@ pub(crate) fn open_existing(path: &Path) -> Result<Option<Connection>, Error> {
     }
     let path = path.to_path_buf();
     if application_id != APPLICATION_ID {
-        return Err(Error::StoreForeign {
+        return Err(Error::from(StoreError::Foreign {
             path,
             application_id,
-        });
+        }));
     }
     if version > STORE_VERSION {
-        return Err(Error::StoreNewer {
+        return Err(Error::from(StoreError::Newer {
             path,
             found: version,
             known: STORE_VERSION,
-        });
+        }));
     }
     check_integrity(&connection, &path)?;
     Ok(Some(connection))
@@ -64,25 +65,27 @@ fn check_integrity(connection: &Connection, path: &Path) -> Result<(), Error> {
         return Ok(());
     }
     let detail = verdict.lines().next().unwrap_or_default().to_owned();
-    Err(Error::StoreDamaged {
+    Err(Error::from(StoreError::Damaged {
         path: path.to_path_buf(),
         detail,
-    })
+    }))
 }
 
 /// What the database said, in our words.
 pub(crate) fn store_error(path: &Path, action: &'static str, source: rusqlite::Error) -> Error {
     let path = path.to_path_buf();
     match source.sqlite_error_code() {
-        Some(ErrorCode::NotADatabase | ErrorCode::DatabaseCorrupt) => Error::StoreDamaged {
-            path,
-            detail: source.to_string(),
-        },
-        _ => Error::Store {
+        Some(ErrorCode::NotADatabase | ErrorCode::DatabaseCorrupt) => {
+            Error::from(StoreError::Damaged {
+                path,
+                detail: source.to_string(),
+            })
+        }
+        _ => Error::from(StoreError::Refused {
             path,
             action,
             source: source.into(),
-        },
+        }),
     }
 }
 

@@ -1,5 +1,6 @@
 //! results.sqlite: every result with its provenance.
 
 pub mod documents;
+pub mod error;
 pub mod file;
 pub mod runs;

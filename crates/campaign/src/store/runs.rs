@@ -7,6 +7,7 @@
 
 use crate::result::outcome::ImpactOutcome;
 use crate::store::documents::{DocumentRecord, document_keys, insert_document};
+use crate::store::error::StoreError;
 use crate::store::file::{PATIENCE, create_schema, open_existing, store_error};
 use rusqlite::{Connection, OptionalExtension, Transaction, params};
 use std::path::Path;
@@ -66,9 +67,11 @@ pub fn find_results(path: &Path, keys: &[String]) -> Result<Vec<Option<ImpactOut
                 .optional()
                 .map_err(failed)?;
             text.map(|text| {
-                serde_json::from_str(&text).map_err(|error| Error::StoreDamaged {
-                    path: path.to_path_buf(),
-                    detail: format!("the result {key} cannot be read: {error}"),
+                serde_json::from_str(&text).map_err(|error| {
+                    Error::from(StoreError::Damaged {
+                        path: path.to_path_buf(),
+                        detail: format!("the result {key} cannot be read: {error}"),
+                    })
                 })
             })
             .transpose()

@@ -12,10 +12,10 @@ use windfall_cards::law_use::end_name;
 use windfall_cards::read_card::card_definition;
 use windfall_contact::law::EndRule;
 use windfall_contact::laws::kind::Law;
+use windfall_drop_rig::rig::{DropRig, Plate};
+use windfall_drop_rig::simulate::simulate_drop;
 use windfall_files::error::Error;
 use windfall_files::provenance::{VERSION, digest_file, time_now};
-use windfall_identify::drop::rig::{DropRig, Plate};
-use windfall_identify::drop::simulate::simulate_drop;
 
 /// Files whose digests a card carries.
 const FILES: [&str; 3] = ["campaign.toml", "impacts.csv", "specimens.csv"];

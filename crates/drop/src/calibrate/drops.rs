@@ -6,11 +6,11 @@ use crate::evaluate::{Known, MeasuredDrop};
 use crate::plate_ringing::PlateEstimate;
 use crate::read::{DropCampaign, drop_of};
 use windfall_campaign::settings::model::ImpactEntry;
+use windfall_drop_rig::feature_problem::{MeasuredFeature, RigUncertainty};
+use windfall_drop_rig::measured::{DropFeature, FeatureKind};
+use windfall_drop_rig::rig::{DropRig, Plate};
 use windfall_files::error::Error;
 use windfall_files::text::cell_quantity::cell_quantity;
-use windfall_identify::drop::feature_problem::{MeasuredFeature, RigUncertainty};
-use windfall_identify::drop::measured::{DropFeature, FeatureKind};
-use windfall_identify::drop::rig::{DropRig, Plate};
 use windfall_signal::uncertain::Uncertain;
 
 /// Columns of impacts.csv that hold features, counted from 1: "peak_force_1_N".

@@ -13,17 +13,17 @@ use windfall_campaign::measure::measured::value_with_sd;
 use windfall_contact::expression::LawExpression;
 use windfall_contact::law::EndRule;
 use windfall_contact::laws::kind::Law;
+use windfall_drop_rig::family::{FamilyOptions, family_point, trace_family};
+use windfall_drop_rig::feature_fit::{FeatureFit, FeatureFitOptions, fit_features};
+use windfall_drop_rig::feature_problem::{FeatureProblem, Nuisance, linearise};
+use windfall_drop_rig::information::Direction;
+use windfall_drop_rig::measured::{DropFeature, FeatureKind, RigQuantity, feature_values};
+use windfall_drop_rig::rig::DropRig;
+use windfall_drop_rig::start::coarse_starts;
 use windfall_files::error::Error;
 use windfall_files::found::FindingOutcome;
 use windfall_files::named::Named;
 use windfall_files::text::number::plain;
-use windfall_identify::drop::family::{FamilyOptions, family_point, trace_family};
-use windfall_identify::drop::feature_fit::{FeatureFit, FeatureFitOptions, fit_features};
-use windfall_identify::drop::feature_problem::{FeatureProblem, Nuisance, linearise};
-use windfall_identify::drop::information::Direction;
-use windfall_identify::drop::measured::{DropFeature, FeatureKind, RigQuantity, feature_values};
-use windfall_identify::drop::rig::DropRig;
-use windfall_identify::drop::start::coarse_starts;
 use windfall_tables::regress::findings::finding;
 
 /// A direction that is known no better than to this, relative, is as good as open.
@@ -213,7 +213,7 @@ pub fn direction_words(law: &FreeLaw, vector: &[f64], length: f64) -> String {
 }
 
 fn nuisance_name(nuisance: &Nuisance, drops: &[DropData], problem: &FeatureProblem) -> String {
-    let drop = |pick: fn(&windfall_identify::drop::feature_problem::MeasuredDrop) -> usize| {
+    let drop = |pick: fn(&windfall_drop_rig::feature_problem::MeasuredDrop) -> usize| {
         let place = problem.drops.iter().position(|d| pick(d) == nuisance.index);
         place.and_then(|place| drops.get(place))
     };
@@ -333,7 +333,7 @@ pub fn family_line(
     problem.rig.mass = target.mass.value;
     problem.fruits[0].sd = 0.0;
     problem.heights[0].sd = 0.0;
-    problem.rig_sd = windfall_identify::drop::feature_problem::RigUncertainty::default();
+    problem.rig_sd = windfall_drop_rig::feature_problem::RigUncertainty::default();
     let start = fit(law, &problem, target, false)?;
     let dimension = law.count() - start.information.rank;
     let (low, high) = law.limits(&start.at);
@@ -385,7 +385,7 @@ fn within(at: &[f64], low: &[f64], high: &[f64]) -> bool {
 
 /// A point of the line within the limits, from one beyond.
 fn enter(
-    model: &mut windfall_identify::drop::family::FamilyModel,
+    model: &mut windfall_drop_rig::family::FamilyModel,
     from: &[f64],
     options: &FamilyOptions,
 ) -> Option<Vec<f64>> {
@@ -406,7 +406,7 @@ fn enter(
 /// Points evenly over the first coordinate that changes much, exact on the line.
 fn chosen_points(
     line: &[Vec<f64>],
-    model: &mut windfall_identify::drop::family::FamilyModel,
+    model: &mut windfall_drop_rig::family::FamilyModel,
     options: &FamilyOptions,
 ) -> Vec<Vec<f64>> {
     let (first, last) = (&line[0], &line[line.len() - 1]);

@@ -7,10 +7,10 @@ use windfall_contact::law::EndRule;
 use windfall_contact::laws::kind::{Law, LawKind};
 use windfall_draw::files::{FigureFolder, write_figure};
 use windfall_draw::xy::{Figure, Panel, Series, Style};
+use windfall_drop_rig::rig::DropRig;
+use windfall_drop_rig::simulate::drop_trajectory;
 use windfall_files::error::Error;
 use windfall_files::text::number::plain;
-use windfall_identify::drop::rig::DropRig;
-use windfall_identify::drop::simulate::drop_trajectory;
 
 /// Shown before the first visible force and after the end of a contact; s.
 const BEFORE: f64 = 2e-3;

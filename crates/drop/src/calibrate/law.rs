@@ -6,9 +6,9 @@ use crate::calibrate_settings::{CalibrateSettings, DropLaw, ParameterRange, Rang
 use windfall_contact::effective::{Elastic, effective_modulus, effective_radius, hertz_stiffness};
 use windfall_contact::expression::LawExpression;
 use windfall_contact::laws::kind::Law;
+use windfall_drop_rig::coordinates::{LawCoordinates, law_coordinates};
+use windfall_drop_rig::start::{exponent_position, stiffness_of_equal_peak};
 use windfall_files::error::Error;
-use windfall_identify::drop::coordinates::{LawCoordinates, law_coordinates};
-use windfall_identify::drop::start::{exponent_position, stiffness_of_equal_peak};
 
 /// Unit of length of a stiffness without a range: indentations are millimetres.
 const MILLIMETRE: f64 = 1e-3;

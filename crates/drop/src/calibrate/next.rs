@@ -8,14 +8,12 @@ use crate::calibrate::target::{
 };
 use crate::calibrate_settings::CalibrateSettings;
 use windfall_contact::law::EndRule;
+use windfall_drop_rig::experiment::{Candidate, Choice, expected, ranked};
+use windfall_drop_rig::feature_problem::{CoordinatePrior, FeatureProblem, linearise, nuisances};
+use windfall_drop_rig::information::{Information, information};
+use windfall_drop_rig::measured::{DropFeature, FeatureKind};
 use windfall_files::error::Error;
 use windfall_files::text::number::plain;
-use windfall_identify::drop::experiment::{Candidate, Choice, expected, ranked};
-use windfall_identify::drop::feature_problem::{
-    CoordinatePrior, FeatureProblem, linearise, nuisances,
-};
-use windfall_identify::drop::information::{Information, information};
-use windfall_identify::drop::measured::{DropFeature, FeatureKind};
 use windfall_signal::uncertain::Uncertain;
 
 /// How well Hertz's contact with a modulus from elsewhere is believed to tell a
@@ -92,7 +90,7 @@ pub fn closing(setting: &NextSetting, at: &[f64]) -> Result<Vec<ClosingOutcome>,
         let feature = DropFeature { kind, impact };
         problem.drops[0]
             .features
-            .push(windfall_identify::drop::feature_problem::MeasuredFeature {
+            .push(windfall_drop_rig::feature_problem::MeasuredFeature {
                 feature,
                 value: 0.0,
                 sd,

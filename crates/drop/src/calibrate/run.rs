@@ -30,11 +30,11 @@ use windfall_campaign::measure::evaluate::Evaluated;
 use windfall_campaign::result::outcome::StatusOutcome;
 use windfall_cards::read_card::write_card;
 use windfall_draw::files::FigureFolder;
+use windfall_drop_rig::feature_problem::FeatureProblem;
 use windfall_files::error::Error;
 use windfall_files::found::{FailureOutcome, FindingOutcome};
 use windfall_files::progress::Progress;
 use windfall_files::provenance::VERSION;
-use windfall_identify::drop::feature_problem::FeatureProblem;
 use windfall_tables::regress::findings::finding;
 
 /// What a calibration is asked.

@@ -5,15 +5,15 @@ use crate::calibrate::outcome::{DropOutcome, TargetOutcome};
 use crate::calibrate_settings::{CalibrateSettings, Target};
 use windfall_campaign::measure::measured::{MeasuredValue, plain_value, value_with_sd};
 use windfall_contact::law::EndRule;
+use windfall_drop_rig::feature_problem::{
+    FeatureProblem, MeasuredDrop, MeasuredFeature, RigUncertainty,
+};
+use windfall_drop_rig::measured::{DropFeature, FeatureKind};
+use windfall_drop_rig::rig::DropRig;
 use windfall_files::error::Error;
 use windfall_files::found::FindingOutcome;
 use windfall_files::named::Named;
 use windfall_files::text::number::plain;
-use windfall_identify::drop::feature_problem::{
-    FeatureProblem, MeasuredDrop, MeasuredFeature, RigUncertainty,
-};
-use windfall_identify::drop::measured::{DropFeature, FeatureKind};
-use windfall_identify::drop::rig::DropRig;
 use windfall_signal::uncertain::Uncertain;
 use windfall_tables::regress::findings::finding;
 

@@ -8,15 +8,15 @@ use windfall_campaign::measure::measured::MeasuredValue;
 use windfall_contact::expression::LawExpression;
 use windfall_contact::law::EndRule;
 use windfall_contact::laws::kind::Law;
-use windfall_files::error::Error;
-use windfall_files::found::FindingOutcome;
-use windfall_files::named::Named;
-use windfall_identify::drop::rig::DropRig;
-use windfall_identify::drop::waveform::{
+use windfall_drop_rig::rig::DropRig;
+use windfall_drop_rig::waveform::{
     DropRecord, Estimate, Knowledge, RecordFit, WaveformFit, WaveformPlate, WaveformProblem,
     WaveformRig,
 };
-use windfall_identify::drop::waveform_fit::calibrate_waveform;
+use windfall_drop_rig::waveform_fit::calibrate_waveform;
+use windfall_files::error::Error;
+use windfall_files::found::FindingOutcome;
+use windfall_files::named::Named;
 use windfall_signal::bounce::train::BounceTrain;
 use windfall_signal::uncertain::Uncertain;
 use windfall_tables::regress::findings::finding;
@@ -135,7 +135,7 @@ pub fn waveform_outcome(
 }
 
 /// What campaign.toml knows of the plate; the start of the rest.
-fn plate_of(plan: &PlatePlan, start: windfall_identify::drop::rig::Plate) -> WaveformPlate {
+fn plate_of(plan: &PlatePlan, start: windfall_drop_rig::rig::Plate) -> WaveformPlate {
     let known = |value: Option<Uncertain>, start: f64| {
         value.map_or(Knowledge::Free(start), Knowledge::measured)
     };

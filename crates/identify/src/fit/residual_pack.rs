@@ -52,11 +52,7 @@ where
 {
     /// The model during `segment`; the acceleration only where it is `accelerated`.
     #[inline(always)]
-    pub fn new(
-        model: &'a Model<L, N, W, P>,
-        segment: &'a Segment<W>,
-        accelerated: bool,
-    ) -> Self {
+    pub fn new(model: &'a Model<L, N, W, P>, segment: &'a Segment<W>, accelerated: bool) -> Self {
         let step = &segment.step;
         let [x, v] = &step.coefficients;
         let mut columns = [[&STILL; 2]; P];

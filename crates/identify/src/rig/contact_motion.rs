@@ -108,7 +108,7 @@ pub fn scaled_time<R: Real>(time: R, power: u32) -> R {
 
 /// t = s^q.
 #[inline(always)]
-pub(crate) fn time_of(s: f64, power: u32) -> f64 {
+pub fn time_of(s: f64, power: u32) -> f64 {
     match power {
         1 => s,
         2 => s * s,
@@ -436,7 +436,7 @@ fn first_stop<L: ContactLaw<N>, const N: usize, const W: usize>(
 }
 
 /// The event that comes first within a step.
-pub(crate) fn earlier<E: Copy>(first: Option<(E, f64)>, second: (E, f64)) -> Option<(E, f64)> {
+pub fn earlier<E: Copy>(first: Option<(E, f64)>, second: (E, f64)) -> Option<(E, f64)> {
     match first {
         Some(found) if found.1 <= second.1 => Some(found),
         _ => Some(second),

@@ -13,7 +13,7 @@ use windfall_numerics::ode::step::Tolerance;
 use windfall_numerics::root::bracketed_root;
 
 /// Relative accuracy of simulations; the reference tables ask for 1e-8.
-pub(crate) const ACCURACY: f64 = 1e-12;
+pub const ACCURACY: f64 = 1e-12;
 /// Points per piece of the motion among which a maximum is looked for.
 const SEARCH_POINTS: usize = 16;
 /// A peak is located to this fraction of a piece.
@@ -23,7 +23,7 @@ const FIRST_DURATION: f64 = 0.02;
 const LARGEST_DOUBLINGS: usize = 10;
 /// Gauss-Legendre nodes and weights on [−1, 1], for the impulse (Abramowitz and
 /// Stegun 1964, table 25.4).
-pub(crate) const GAUSS_NODES: [f64; 8] = [
+pub const GAUSS_NODES: [f64; 8] = [
     -0.960_289_856_497_536_2,
     -0.796_666_477_413_626_7,
     -0.525_532_409_916_329,
@@ -33,7 +33,8 @@ pub(crate) const GAUSS_NODES: [f64; 8] = [
     0.796_666_477_413_626_7,
     0.960_289_856_497_536_2,
 ];
-pub(crate) const GAUSS_WEIGHTS: [f64; 8] = [
+/// Weights of the nodes.
+pub const GAUSS_WEIGHTS: [f64; 8] = [
     0.101_228_536_290_376_26,
     0.222_381_034_453_374_48,
     0.313_706_645_877_887_3,
@@ -140,7 +141,9 @@ pub fn trajectory(
     sample(AnyLaw(*law), rig, velocity, times, end)
 }
 
-pub(crate) fn check_positive(name: &'static str, value: f64) -> Result<(), Error> {
+/// # Errors
+/// The value is not a finite number above zero.
+pub fn check_positive(name: &'static str, value: f64) -> Result<(), Error> {
     if value.is_finite() && value > 0.0 {
         Ok(())
     } else {
@@ -293,7 +296,7 @@ fn sigma_of(segment: &Segment<1>, time: f64) -> f64 {
 
 /// Where in `[0, end]` a function with the derivative `slope` is highest.
 #[inline(always)]
-pub(crate) fn highest(end: f64, value: impl Fn(f64) -> f64, slope: impl Fn(f64) -> f64) -> f64 {
+pub fn highest(end: f64, value: impl Fn(f64) -> f64, slope: impl Fn(f64) -> f64) -> f64 {
     let point = |i: usize| end * i as f64 / SEARCH_POINTS as f64;
     let best = (0..=SEARCH_POINTS)
         .map(|i| (i, value(point(i))))

@@ -23,6 +23,7 @@ use crate::vector::{Rotation, Vector};
 ///
 /// Forces, places and events do not depend on the number of threads, to the last bit.
 pub struct Simulation {
+    /// What moves.
     pub scene: Scene,
     /// Interactions by number, and the number of each pair of materials.
     pub(crate) surfaces: Vec<Interaction>,

@@ -6,9 +6,9 @@ use windfall_cards::law_card::CardRange;
 use windfall_cards::law_use::chosen_law;
 use windfall_contact::law::EndRule;
 use windfall_contact::laws::kind::Law;
+use windfall_drop_rig::rig::{DropRig, Plate};
 use windfall_files::error::Error;
 use windfall_files::option_value::{at_least_zero, chosen, positive, unusable};
-use windfall_identify::drop::rig::{DropRig, Plate};
 
 /// A fruit that falls on a plate; texts with units.
 #[derive(Clone, Debug)]

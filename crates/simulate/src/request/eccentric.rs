@@ -1,9 +1,9 @@
 //! A planar body as it is asked for: texts with units → SI.
 
+use windfall_drop_rig::eccentric::body::EccentricBody;
+use windfall_drop_rig::eccentric::shape::Shape;
 use windfall_files::error::Error;
 use windfall_files::option_value::{at_least_zero, positive, quantity, unusable};
-use windfall_identify::eccentric::body::EccentricBody;
-use windfall_identify::eccentric::shape::Shape;
 
 /// A body whose contact is not below its centre of mass; texts with units.
 #[derive(Clone, Debug)]

@@ -2,9 +2,9 @@
 
 use crate::design::factor::CODED;
 use crate::design::file::read_coding;
+use windfall_design::kind::Factor;
 use windfall_files::error::Error;
 use windfall_files::table::data::Data;
-use windfall_statistics::design::kind::Factor;
 use windfall_statistics::surface::coding::{
     CodedFactors, FactorCoding, Recognised, code_by_levels,
 };
@@ -121,8 +121,8 @@ fn factor_values(factor: &Factor, settings: &[f64], exact: Option<&[f64]>) -> Fa
 mod tests {
     use super::*;
     use crate::design::file::write_design;
+    use windfall_design::composite::{CompositeOptions, central_composite};
     use windfall_files::table::data::read_data;
-    use windfall_statistics::design::composite::{CompositeOptions, central_composite};
 
     /// A design with one setting changed and the columns as `change` leaves them.
     fn coded(change: impl Fn(String) -> String) -> (CodedFactors, Vec<Vec<f64>>) {

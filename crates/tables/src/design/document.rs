@@ -3,8 +3,8 @@
 use crate::design::factor::fifteen_digits;
 use crate::design::run::DesignOutcome;
 use serde::Serialize;
-use windfall_statistics::design::kind::{Design, Factor};
-use windfall_statistics::design::word::{AliasChain, Fraction, aliases, letter};
+use windfall_design::kind::{Design, Factor};
+use windfall_design::word::{AliasChain, Fraction, aliases, letter};
 
 /// Effects of up to so many factors are shown in aliases.
 pub const ALIAS_ORDER: usize = 2;

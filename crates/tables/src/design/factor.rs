@@ -1,9 +1,9 @@
 //! Factors of a design as the command line gives them: `k=0.44..0.86 N/mm`.
 
+use windfall_design::error::DesignError;
+use windfall_design::kind::Factor;
 use windfall_files::error::Error;
 use windfall_files::option_value::unusable;
-use windfall_statistics::design::error::DesignError;
-use windfall_statistics::design::kind::Factor;
 
 /// A factor, and the levels that were listed for it.
 #[derive(Clone, Debug, PartialEq)]

@@ -18,11 +18,11 @@
 use crate::design::factor::{CODED, fifteen_digits};
 use std::io::Write;
 use std::path::Path;
+use windfall_design::kind::{Design, Factor};
+use windfall_design::word::letter;
 use windfall_files::error::Error;
 use windfall_files::option_value::unusable;
 use windfall_files::table::write::csv_text;
-use windfall_statistics::design::kind::{Design, Factor};
-use windfall_statistics::design::word::letter;
 
 /// Beginning of the line of a factor.
 const FACTOR: &str = "factor ";
@@ -220,10 +220,10 @@ fn parse_coding(text: &str) -> Option<Factor> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use windfall_design::composite::{CompositeOptions, Ends, central_composite};
+    use windfall_design::factorial::{FactorialOptions, two_level};
+    use windfall_design::kind::randomised;
     use windfall_files::table::data::read_data;
-    use windfall_statistics::design::composite::{CompositeOptions, Ends, central_composite};
-    use windfall_statistics::design::factorial::{FactorialOptions, two_level};
-    use windfall_statistics::design::kind::randomised;
 
     fn drop_study() -> Design {
         let mut factors = vec![

@@ -1,10 +1,10 @@
 //! The model of an optimal design: by its name or as a formula.
 
+use windfall_design::kind::{Factor, evenly};
+use windfall_design::model::{DesignModel, model_row, model_terms};
+use windfall_design::word::letter;
 use windfall_files::error::Error;
 use windfall_files::option_value::unusable;
-use windfall_statistics::design::kind::{Factor, evenly};
-use windfall_statistics::design::model::{DesignModel, model_row, model_terms};
-use windfall_statistics::design::word::letter;
 use windfall_statistics::error::Error as StatisticsError;
 use windfall_statistics::model::contrast::Contrast;
 use windfall_statistics::model::formula::formula;

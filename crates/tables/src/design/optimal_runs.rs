@@ -6,13 +6,13 @@ use crate::design::file::read_coding;
 use crate::design::model_row::{RowModel, row_at, row_model};
 use crate::design::request::OptimalRequest;
 use std::path::Path;
+use windfall_design::error::DesignError;
+use windfall_design::kind::{Design, Factor, evenly};
+use windfall_design::model::DesignModel;
+use windfall_design::optimal::{Candidates, OptimalOptions, optimal};
 use windfall_files::error::{Error, Place};
 use windfall_files::option_value::unusable;
 use windfall_files::table::data::{Data, read_data};
-use windfall_statistics::design::error::DesignError;
-use windfall_statistics::design::kind::{Design, Factor, evenly};
-use windfall_statistics::design::model::DesignModel;
-use windfall_statistics::design::optimal::{Candidates, OptimalOptions, optimal};
 use windfall_statistics::table::Cells;
 
 /// Steps of a half-range that coded values of settings are rounded to.

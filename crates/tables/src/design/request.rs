@@ -1,7 +1,7 @@
 //! What `windfall design` is asked: texts of the command line.
 
 use std::path::PathBuf;
-pub use windfall_statistics::design::exchange::Criterion;
+pub use windfall_design::exchange::Criterion;
 
 /// A design that is wanted.
 #[derive(Clone, Debug, PartialEq)]

@@ -3,12 +3,12 @@
 use crate::design::document::{alias_chains, generated};
 use crate::design::file::setting_text;
 use crate::design::run::DesignOutcome;
+use windfall_design::factorial::roman;
+use windfall_design::kind::{Design, Factor};
+use windfall_design::quality::DesignQuality;
+use windfall_design::word::{Fraction, letter};
 use windfall_files::text::number::plain;
 use windfall_files::text::table::{page_tables, paragraph, table_text};
-use windfall_statistics::design::factorial::roman;
-use windfall_statistics::design::kind::{Design, Factor};
-use windfall_statistics::design::quality::DesignQuality;
-use windfall_statistics::design::word::{Fraction, letter};
 
 /// Most runs of a table on a terminal.
 const MOST_ROWS: usize = 200;

@@ -5,11 +5,11 @@ use std::path::Path;
 use windfall_contact::expression::typical;
 use windfall_contact::law::EndRule;
 use windfall_contact::laws::kind::LawKind;
-use windfall_files::table::csv::{column_index, read_table};
-use windfall_identify::drop::waveform::{
+use windfall_drop_rig::waveform::{
     DropRecord, Knowledge, WaveformFit, WaveformProblem, WaveformRig,
 };
-use windfall_identify::drop::waveform_fit::calibrate_waveform;
+use windfall_drop_rig::waveform_fit::calibrate_waveform;
+use windfall_files::table::csv::{column_index, read_table};
 use windfall_signal::bounce::find::find_bounces;
 use windfall_signal::bounce::train::{BounceOptions, BounceTrain, PlateRinging, StaticLevel};
 use windfall_signal::recording::{Channel, Quantity, Times};

@@ -3,9 +3,9 @@
 use crate::analysis::{DELAY, DRIVING, LEAST_SPEED, MASS, Run};
 use windfall_contact::law::EndRule;
 use windfall_draw::xy::{Figure, Panel, Series, Style};
-use windfall_identify::drop::rig::DropRig;
-use windfall_identify::drop::simulate::{drop_trajectory, simulate_drop};
-use windfall_identify::drop::waveform::WaveformFit;
+use windfall_drop_rig::rig::DropRig;
+use windfall_drop_rig::simulate::{drop_trajectory, simulate_drop};
+use windfall_drop_rig::waveform::WaveformFit;
 use windfall_signal::restitution::estimate::RestitutionMethod;
 
 type Fits<'a> = [(&'a str, WaveformFit)];

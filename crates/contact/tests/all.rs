@@ -1,0 +1,6 @@
+//! The tests of this crate as one program, which is built and linked once.
+
+mod expression;
+mod law_derivatives;
+mod law_values;
+mod user_law;

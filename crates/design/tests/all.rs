@@ -1,0 +1,6 @@
+//! The tests of this crate as one program, which is built and linked once.
+
+mod design_box_behnken;
+mod design_composite;
+mod design_factorial;
+mod design_optimal;

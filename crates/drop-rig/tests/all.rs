@@ -1,0 +1,7 @@
+//! The tests of this crate as one program, which is built and linked once.
+
+mod drop;
+mod drop_features;
+mod drop_waveform;
+mod eccentric;
+mod eccentric_study;

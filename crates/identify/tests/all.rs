@@ -1,0 +1,15 @@
+//! The tests of this crate as one program, which is built and linked once.
+
+mod allocation;
+mod batch;
+mod compression;
+mod intervals;
+mod laws;
+mod population;
+mod population_impacts;
+mod population_posterior;
+mod recovers;
+mod reference_fit;
+mod rubber;
+mod simulate;
+mod user_law;

@@ -1,0 +1,6 @@
+//! The tests of this crate as one program, which is built and linked once.
+
+mod cholesky;
+mod least_squares;
+mod strd;
+mod unit;

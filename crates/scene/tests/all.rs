@@ -1,0 +1,14 @@
+//! The tests of this crate as one program, which is built and linked once.
+
+mod annuli;
+mod benchmark_impacts;
+mod clumps;
+mod common;
+mod convergence;
+mod follow;
+mod friction;
+mod many_fruit;
+mod mesh;
+mod oblique_impacts;
+mod resume;
+mod single_impacts;

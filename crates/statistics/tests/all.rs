@@ -1,0 +1,14 @@
+//! The tests of this crate as one program, which is built and linked once.
+
+mod compare_groups;
+mod drop_study;
+mod mixed_cases;
+mod mixed_closed_form;
+mod mixed_odd_input;
+mod mixed_recovers;
+mod mixed_reference;
+mod nist_anova;
+mod nist_linear;
+mod residuals;
+mod studentized_range;
+mod surface_analysis;

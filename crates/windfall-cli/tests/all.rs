@@ -1,0 +1,22 @@
+//! The tests of this crate as one program, which is built and linked once.
+
+mod calibrate;
+mod command_line;
+mod compare;
+mod design;
+mod drop;
+mod drop_eccentric;
+mod figures;
+mod fit_campaign;
+mod fit_recording;
+mod guide;
+mod http;
+mod identification;
+mod kinds;
+mod library;
+mod regress;
+mod report;
+mod scene;
+mod serve;
+mod stopped_runs;
+mod user_laws;
