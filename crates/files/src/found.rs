@@ -23,6 +23,14 @@ pub struct EstimateOutcome {
     pub held: bool,
 }
 
+impl EstimateOutcome {
+    /// The 95 % interval, where the data can tell one.
+    #[must_use]
+    pub fn interval(&self) -> Option<(f64, f64)> {
+        self.low.zip(self.high)
+    }
+}
+
 /// Something that a reader of the result must know.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct FindingOutcome {

@@ -16,6 +16,7 @@ use windfall_campaign::impacts::mass::RigFound;
 use windfall_campaign::impacts::text::{laws_of, mass_line, own_codes, shared_codes};
 use windfall_campaign::recording::extract::extract_recording;
 use windfall_campaign::result::outcome::{CampaignOutcome, ImpactOutcome};
+use windfall_campaign::result::quantity::quantities_named;
 use windfall_campaign::settings::model::Campaign;
 use windfall_draw::files::{NamedFigure, file_name};
 use windfall_draw::page::{CaptionedTable, Section};
@@ -23,12 +24,12 @@ use windfall_files::error::Error;
 use windfall_files::text::number::{plain, value_and_sd};
 use windfall_files::text::table::Cells;
 
-/// Quantities in the table of impacts: name, heading, factor from SI.
-const OF_IMPACTS: [(&str, &str, f64); 4] = [
-    ("impact_velocity", "velocity (m/s)", 1.0),
-    ("peak_force", "peak force (N)", 1.0),
-    ("restitution", "restitution", 1.0),
-    ("absorbed_energy", "absorbed (mJ)", 1e3),
+/// Quantities in the table of impacts.
+const OF_IMPACTS: [&str; 4] = [
+    "impact_velocity",
+    "peak_force",
+    "restitution",
+    "absorbed_energy",
 ];
 
 /// Sections on a campaign, with the figures of the whole and of a few impacts.
@@ -124,7 +125,8 @@ fn impact_cells(impacts: &[&ImpactOutcome]) -> Cells {
         header.push(heading_of(impacts, name));
         header.push("95 % interval".to_owned());
     }
-    header.extend(OF_IMPACTS.map(|(_, heading, _)| heading.to_owned()));
+    let columns = quantities_named(&OF_IMPACTS);
+    header.extend(columns.iter().map(|column| column.narrow_title()));
     header.push("findings".to_owned());
     let row = |impact: &&ImpactOutcome| {
         let group = impact.group.clone().unwrap_or_default();
@@ -140,9 +142,9 @@ fn impact_cells(impacts: &[&ImpactOutcome]) -> Cells {
                 _ => "-".to_owned(),
             });
         }
-        row.extend(OF_IMPACTS.map(|(name, _, factor)| {
-            let value = impact.derived.get(name).copied().flatten();
-            value.map_or_else(|| "-".to_owned(), |value| plain(factor * value))
+        row.extend(columns.iter().map(|column| {
+            let value = impact.derived.get(column.name).copied().flatten();
+            value.map_or_else(|| "-".to_owned(), |value| plain(value * column.factor))
         }));
         row.push(own_codes(impact, &shared));
         row

@@ -1,24 +1,12 @@
 //! Results of `fit` as CSV: one row per impact and law.
 
 use crate::result::outcome::{CampaignOutcome, ImpactOutcome};
+use crate::result::quantity::{QUANTITIES, Quantity};
 use windfall_files::error::Error;
 use windfall_files::table::write::csv_text;
 
-/// Columns of derived quantities: name, column.
-const DERIVED: [(&str, &str); 12] = [
-    ("impact_velocity", "impact_velocity_m_s"),
-    ("rebound_velocity", "rebound_velocity_m_s"),
-    ("restitution", "restitution"),
-    ("contact_duration", "contact_duration_s"),
-    ("peak_force", "peak_force_N"),
-    ("max_displacement", "max_displacement_m"),
-    ("impact_energy", "impact_energy_J"),
-    ("elastic_energy", "elastic_energy_J"),
-    ("absorbed_energy", "absorbed_energy_J"),
-    ("impulse", "impulse_N_s"),
-    ("loading_energy", "loading_energy_J"),
-    ("hysteresis_energy", "hysteresis_energy_J"),
-];
+/// Quantities that have a column even when no impact has a value.
+const ALWAYS: usize = 12;
 
 /// The table of impacts.
 ///
@@ -35,13 +23,28 @@ pub fn csv_of_campaign(outcome: &CampaignOutcome) -> Result<String, Error> {
     for name in &names {
         header.extend(["", "_sd", "_low", "_high", "_unit"].map(|end| format!("{name}{end}")));
     }
-    header.extend(DERIVED.map(|(_, column)| column.to_owned()));
+    let (always, others) = QUANTITIES.split_at(ALWAYS);
+    header.extend(always.iter().map(Quantity::column));
     header.extend(["restitution_delivered", "restitution_nominal"].map(str::to_owned));
     header.extend(["cost", "samples", "converged", "findings", "simulated"].map(str::to_owned));
-    let rows = outcome
-        .impacts
+    let any = |has: &dyn Fn(&ImpactOutcome) -> bool| outcome.impacts.iter().any(has);
+    let others: Vec<&Quantity> = others
         .iter()
-        .map(|impact| row_of(impact, &names, outcome));
+        .filter(|quantity| any(&|impact| impact.derived.get(quantity.name).is_some()))
+        .collect();
+    let uncertain: Vec<&Quantity> = QUANTITIES
+        .iter()
+        .filter(|quantity| any(&|impact| impact.derived_sd.get(quantity.name).is_some()))
+        .collect();
+    header.extend(others.iter().map(|quantity| quantity.column()));
+    header.extend(uncertain.iter().map(|quantity| quantity.sd_column()));
+    let rows = outcome.impacts.iter().map(|impact| {
+        let mut row = row_of(impact, &names, outcome);
+        row.extend(others.iter().map(|quantity| derived(impact, quantity)));
+        let sd = |quantity: &&Quantity| number(impact.derived_sd.get(quantity.name).copied());
+        row.extend(uncertain.iter().map(sd));
+        row
+    });
     csv_text(&header, rows)
 }
 
@@ -65,9 +68,8 @@ fn row_of(impact: &ImpactOutcome, names: &[&str], outcome: &CampaignOutcome) -> 
             ]),
         }
     }
-    for (name, _) in DERIVED {
-        row.push(number(impact.derived.get(name).copied().flatten()));
-    }
+    let always = &QUANTITIES[..ALWAYS];
+    row.extend(always.iter().map(|quantity| derived(impact, quantity)));
     // What the fitted law gives, beside what it takes as a parameter.
     for name in ["restitution", "nominal_restitution"] {
         row.push(number(impact.fitted.get(name).copied().flatten()));
@@ -85,6 +87,10 @@ fn row_of(impact: &ImpactOutcome, names: &[&str], outcome: &CampaignOutcome) -> 
         outcome.simulated.clone().unwrap_or_default(),
     ]);
     row
+}
+
+fn derived(impact: &ImpactOutcome, quantity: &Quantity) -> String {
+    number(impact.derived.get(quantity.name).copied().flatten())
 }
 
 fn number(value: Option<f64>) -> String {

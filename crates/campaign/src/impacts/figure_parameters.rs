@@ -2,6 +2,7 @@
 //! foretells against what the signals show.
 
 use crate::result::outcome::ImpactOutcome;
+use crate::result::quantity::{Quantity, quantities_named};
 use std::f64::consts::TAU;
 use windfall_draw::files::NamedFigure;
 use windfall_draw::xy::{Figure, Panel, Series, Style};
@@ -16,12 +17,12 @@ const CORNERS: usize = 96;
 /// More impacts than this are shown without the ellipse of each.
 const MOST_ELLIPSES: usize = 200;
 
-/// What is foretold and seen: name, heading, unit, factor from SI.
-const FORETOLD: [(&str, &str, &str, f64); 4] = [
-    ("peak_force", "peak force", "N", 1.0),
-    ("restitution", "coefficient of restitution", "", 1.0),
-    ("absorbed_energy", "absorbed energy", "mJ", 1e3),
-    ("rebound_velocity", "rebound velocity", "m/s", 1.0),
+/// Quantities predicted by the fitted law and measured on their own.
+const PREDICTED: [&str; 4] = [
+    "peak_force",
+    "restitution",
+    "absorbed_energy",
+    "rebound_velocity",
 ];
 
 /// Groups in order of first appearance; one of "impacts" where there are none.
@@ -191,8 +192,8 @@ fn ellipse((x, y): (f64, f64), [xx, xy, yy]: [f64; 3], reach: f64) -> Option<Vec
 /// where the signals show nothing of it.
 #[must_use]
 pub fn figure_of_predictions(law: &str, impacts: &[&ImpactOutcome]) -> Option<NamedFigure> {
-    let panels: Vec<Panel> = FORETOLD
-        .iter()
+    let panels: Vec<Panel> = quantities_named(&PREDICTED)
+        .into_iter()
         .filter_map(|quantity| prediction_panel(impacts, quantity))
         .collect();
     if panels.is_empty() {
@@ -210,10 +211,9 @@ pub fn figure_of_predictions(law: &str, impacts: &[&ImpactOutcome]) -> Option<Na
     })
 }
 
-fn prediction_panel(
-    impacts: &[&ImpactOutcome],
-    (name, heading, unit, factor): &(&str, &str, &str, f64),
-) -> Option<Panel> {
+fn prediction_panel(impacts: &[&ImpactOutcome], quantity: &Quantity) -> Option<Panel> {
+    let (name, factor) = (quantity.name, quantity.factor);
+    let heading = quantity.label.to_lowercase();
     let pair = |impact: &&ImpactOutcome| {
         let seen = impact.derived_from.get(name)? == "signal";
         let measured = impact.derived.get(name).copied().flatten()?;
@@ -247,9 +247,9 @@ fn prediction_panel(
     );
     Some(Panel {
         x: format!("measured {heading}"),
-        x_unit: (*unit).to_owned(),
+        x_unit: quantity.shown_unit.to_owned(),
         y: format!("fitted {heading}"),
-        y_unit: (*unit).to_owned(),
+        y_unit: quantity.shown_unit.to_owned(),
         series,
         marks: Vec::new(),
     })

@@ -1,29 +1,27 @@
 //! Tables of groups: parameters, signals and energies, laws compared.
 
 use crate::result::outcome::{CampaignOutcome, GroupOutcome, ImpactOutcome};
+use crate::result::quantity::{Quantity, quantities_named};
 use windfall_files::found::SpreadOutcome;
 use windfall_files::found::spread;
 use windfall_files::named::Named;
 use windfall_files::text::number::{plain, spread_percent, spread_text};
 use windfall_files::text::table::{Cells, page_tables, paragraph};
 
-/// A derived quantity in a table: name, heading, unit, factor from SI.
-type Column = (&'static str, &'static str, &'static str, f64);
-
 /// Velocities and peaks.
-const SIGNALS: [Column; 4] = [
-    ("impact_velocity", "velocity", "m/s", 1.0),
-    ("peak_force", "peak force", "N", 1.0),
-    ("max_displacement", "displacement", "mm", 1e3),
-    ("contact_duration", "duration", "ms", 1e3),
+const SIGNALS: [&str; 4] = [
+    "impact_velocity",
+    "peak_force",
+    "max_displacement",
+    "contact_duration",
 ];
 
 /// Energies and their ratio.
-const ENERGIES: [Column; 4] = [
-    ("impact_energy", "impact energy", "mJ", 1e3),
-    ("elastic_energy", "elastic energy", "mJ", 1e3),
-    ("absorbed_energy", "absorbed energy", "mJ", 1e3),
-    ("restitution", "restitution", "", 1.0),
+const ENERGIES: [&str; 4] = [
+    "impact_energy",
+    "elastic_energy",
+    "absorbed_energy",
+    "restitution",
 ];
 
 /// Up to this relative spread a quantity is said once and not in every row; 1.
@@ -83,10 +81,10 @@ pub fn parameter_cells(groups: &[&GroupOutcome], impacts: &[&ImpactOutcome]) -> 
 /// Velocities, peaks and energies per group, all of them.
 #[must_use]
 pub fn derived_cells(groups: &[&GroupOutcome]) -> [Cells; 2] {
-    [&SIGNALS, &ENERGIES].map(|columns| {
-        let columns: Vec<&Column> = columns.iter().collect();
+    [SIGNALS, ENERGIES].map(|names| {
+        let columns = quantities_named(&names);
         let mut header = vec!["group".to_owned(), "n".to_owned()];
-        header.extend(columns.iter().map(|column| heading(column)));
+        header.extend(columns.iter().map(|column| column.title()));
         let rows = groups.iter().map(|group| derived_row(group, &columns));
         let rows = rows.collect();
         Cells { header, rows }
@@ -97,29 +95,30 @@ pub fn derived_cells(groups: &[&GroupOutcome]) -> [Cells; 2] {
 /// are read off the signals and hardly depend on the law.
 #[must_use]
 pub fn derived_tables(groups: &[&GroupOutcome]) -> String {
-    let (alike, varied): (Vec<&Column>, Vec<&Column>) = SIGNALS
-        .iter()
-        .chain(&ENERGIES)
-        .partition(|column| alike(groups, column.0));
+    let (alike, varied): (Vec<&str>, Vec<&str>) = SIGNALS
+        .into_iter()
+        .chain(ENERGIES)
+        .partition(|name| alike(groups, name));
     let mut text = String::new();
-    for columns in [&SIGNALS, &ENERGIES] {
-        let columns: Vec<&Column> = columns.iter().filter(|c| varied.contains(c)).collect();
+    for mut names in [SIGNALS.to_vec(), ENERGIES.to_vec()] {
+        names.retain(|name| varied.contains(name));
+        let columns = quantities_named(&names);
         if columns.is_empty() {
             continue;
         }
         let mut header = vec!["group".to_owned(), "n".to_owned()];
-        header.extend(columns.iter().map(|column| heading(column)));
+        header.extend(columns.iter().map(|column| column.title()));
         let rows = groups.iter().map(|group| derived_row(group, &columns));
         text += &page_tables(&header, &rows.collect::<Vec<_>>(), &[0]);
         text += "\n\n";
     }
-    let said: Vec<String> = alike
-        .iter()
+    let said: Vec<String> = quantities_named(&alike)
+        .into_iter()
         .filter_map(|column| {
-            let mean = groups.first()?.derived.get(column.0)?.mean;
-            let number = plain(mean * column.3);
+            let mean = groups.first()?.derived.get(column.name)?.mean;
+            let number = plain(mean * column.factor);
             Some(
-                format!("{} {number} {}", column.1, column.2)
+                format!("{} {number} {}", column.heading, column.shown_unit)
                     .trim_end()
                     .to_owned(),
             )
@@ -135,21 +134,14 @@ pub fn derived_tables(groups: &[&GroupOutcome]) -> String {
     text.trim_end().to_owned() + "\n"
 }
 
-fn heading((_, heading, unit, _): &Column) -> String {
-    match *unit {
-        "" => (*heading).to_owned(),
-        unit => format!("{heading} ({unit})"),
-    }
-}
-
-fn derived_row(group: &GroupOutcome, columns: &[&Column]) -> Vec<String> {
+fn derived_row(group: &GroupOutcome, columns: &[&Quantity]) -> Vec<String> {
     let mut row = vec![
         group_name(group.group.as_deref()),
         group.impacts.to_string(),
     ];
-    row.extend(columns.iter().map(|(name, _, _, factor)| {
-        let spread = group.derived.get(name);
-        spread.map_or_else(dash, |s| spread_percent(s.mean * factor, s.cv))
+    row.extend(columns.iter().map(|column| {
+        let spread = group.derived.get(column.name);
+        spread.map_or_else(dash, |s| spread_percent(s.mean * column.factor, s.cv))
     }));
     row
 }

@@ -5,6 +5,7 @@ use crate::impacts::groups::{
     derived_tables, groups_of, heading_of, law_table, parameter_table, restitution_table,
 };
 use crate::result::outcome::{CampaignOutcome, ImpactOutcome};
+use crate::result::quantity::quantities_named;
 use std::fmt::Write;
 use windfall_files::text::number::{plain, value_and_sd};
 use windfall_files::text::table::{page_tables, paragraph};
@@ -12,12 +13,8 @@ use windfall_files::text::table::{page_tables, paragraph};
 /// More impacts than this are shown as groups only.
 const LISTED_IMPACTS: usize = 40;
 
-/// Quantities in the table of impacts: name, heading, factor from SI.
-const OF_IMPACTS: [(&str, &str, f64); 3] = [
-    ("impact_velocity", "velocity (m/s)", 1.0),
-    ("restitution", "restitution", 1.0),
-    ("absorbed_energy", "absorbed (mJ)", 1e3),
-];
+/// Quantities in the table of impacts.
+const OF_IMPACTS: [&str; 3] = ["impact_velocity", "restitution", "absorbed_energy"];
 
 /// A campaign's results: impacts, groups, what was left out, findings.
 #[must_use]
@@ -102,7 +99,8 @@ fn impact_table(impacts: &[&ImpactOutcome]) -> String {
         header.push("specimen".to_owned());
     }
     header.extend(parameter_headings(impacts));
-    header.extend(OF_IMPACTS.map(|(_, heading, _)| heading.to_owned()));
+    let columns = quantities_named(&OF_IMPACTS);
+    header.extend(columns.iter().map(|column| column.narrow_title()));
     let shared = shared_codes(impacts);
     let mut rows: Vec<Vec<String>> = Vec::new();
     let mut remarks = false;
@@ -115,9 +113,9 @@ fn impact_table(impacts: &[&ImpactOutcome]) -> String {
             false => value_and_sd(e.value, e.sd),
             true => format!("{} held", plain(e.value)),
         }));
-        row.extend(OF_IMPACTS.map(|(name, _, factor)| {
-            let value = impact.derived.get(name).copied().flatten();
-            value.map_or_else(|| "-".to_owned(), |value| plain(value * factor))
+        row.extend(columns.iter().map(|column| {
+            let value = impact.derived.get(column.name).copied().flatten();
+            value.map_or_else(|| "-".to_owned(), |value| plain(value * column.factor))
         }));
         let codes = own_codes(impact, &shared);
         remarks |= !codes.is_empty();

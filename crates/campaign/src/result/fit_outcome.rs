@@ -2,6 +2,7 @@
 
 use crate::result::interval_outcome::interval_outcome;
 use crate::result::outcome::ImpactOutcome;
+use crate::result::quantity::{FittedMotion, QUANTITIES, Quantity};
 use crate::settings::model::ImpactEntry;
 use windfall_contact::restitution::nominal_restitution;
 use windfall_files::found::{EstimateOutcome, FindingOutcome};
@@ -9,7 +10,6 @@ use windfall_files::named::Named;
 use windfall_identify::fit::problem::LawProblem;
 use windfall_identify::fit::result::{Estimate, Fit};
 use windfall_identify::rig::kind::Rig;
-use windfall_identify::rig::simulate::ImpactSummary;
 use windfall_signal::Finding;
 use windfall_signal::impact::{Impact, Measured};
 
@@ -23,10 +23,13 @@ pub fn impact_outcome(
     problem: &LawProblem,
     rig: &Rig,
 ) -> ImpactOutcome {
-    let fitted = fitted_values(&fit.simulated, fit.velocity, rig.effective_mass());
-    let (derived, derived_from) = derived_values(&impact.measured, &fitted);
+    let mut fitted = fitted_values(&FittedMotion {
+        summary: &fit.simulated,
+        velocity: fit.velocity,
+        mass: rig.effective_mass(),
+    });
+    let (derived, derived_sd, derived_from) = derived_values(&impact.measured, &fitted);
     let nominal = nominal_restitution(&fit.law);
-    let mut fitted = fitted;
     fitted
         .0
         .extend(nominal.map(|value| ("nominal_restitution".to_owned(), Some(value))));
@@ -52,7 +55,7 @@ pub fn impact_outcome(
         residuals: residuals(fit),
         regression: named(&fit.regression),
         derived,
-        derived_sd: derived_uncertainties(&impact.measured),
+        derived_sd,
         derived_from,
         fitted,
         directions: directions(fit),
@@ -155,101 +158,33 @@ fn residuals(fit: &Fit) -> Named<crate::result::outcome::ResidualOutcome> {
 }
 
 /// The derived quantities in the motion under the fitted law.
-fn fitted_values(summary: &ImpactSummary, velocity: f64, mass: f64) -> Named<Option<f64>> {
-    let energy = |speed: f64| 0.5 * mass * speed * speed;
-    let values = [
-        ("impact_velocity", velocity),
-        ("rebound_velocity", summary.separation_velocity),
-        ("restitution", summary.restitution),
-        ("contact_duration", summary.contact_duration),
-        ("peak_force", summary.peak_force),
-        ("max_displacement", summary.max_displacement),
-        ("impact_energy", energy(velocity)),
-        ("elastic_energy", energy(summary.separation_velocity)),
-        ("absorbed_energy", summary.absorbed_energy),
-        ("impulse", summary.impulse),
-    ];
-    Named(
-        values
-            .into_iter()
-            .map(|(name, value)| (name.to_owned(), value.is_finite().then_some(value)))
-            .collect(),
-    )
-}
-
-/// Read off the signals where they show it, else from the fitted law.
-fn derived_values(
-    measured: &Measured,
-    fitted: &Named<Option<f64>>,
-) -> (Named<Option<f64>>, Named<String>) {
-    let of_signal = |name: &str| match name {
-        "impact_velocity" => measured.impact_velocity,
-        "rebound_velocity" => measured.rebound_velocity,
-        "restitution" => measured.restitution,
-        "contact_duration" => measured.contact_duration,
-        "peak_force" => measured.peak_force,
-        "max_displacement" => measured.max_displacement,
-        "impact_energy" => measured.impact_energy,
-        "elastic_energy" => measured.elastic_energy,
-        "absorbed_energy" => measured.absorbed_energy,
-        "impulse" => measured.impulse,
-        _ => None,
+fn fitted_values(motion: &FittedMotion) -> Named<Option<f64>> {
+    let value = |quantity: &Quantity| {
+        let value = quantity.fitted(motion)?;
+        Some((quantity.name.to_owned(), value.is_finite().then_some(value)))
     };
-    let (mut values, mut sources) = (Vec::new(), Vec::new());
-    for (name, fitted) in &fitted.0 {
-        let measured = of_signal(name).filter(|value| value.is_finite());
-        let source = if measured.is_some() { "signal" } else { "fit" };
-        values.push((name.clone(), measured.or(*fitted)));
-        sources.push((name.clone(), source.to_owned()));
-    }
-    // What only channels tell, where they do.
-    for (name, value) in [
-        ("loading_energy", measured.loading_energy),
-        ("hysteresis_energy", measured.hysteresis_energy),
-        (
-            "acceleration_impulse_ratio",
-            measured.acceleration_impulse_ratio,
-        ),
-        ("acceleration_peak_ratio", measured.acceleration_peak_ratio),
-        (
-            "integrated_displacement_error",
-            measured.integrated_displacement_error,
-        ),
-        (
-            "integrated_displacement_rms",
-            measured.integrated_displacement_rms,
-        ),
-        (
-            "integrated_displacement_drift",
-            measured.integrated_displacement_drift,
-        ),
-    ] {
-        if let Some(value) = value.filter(|value| value.is_finite()) {
-            values.push((name.to_owned(), Some(value)));
-            sources.push((name.to_owned(), "signal".to_owned()));
-        }
-    }
-    (Named(values), Named(sources))
+    Named(QUANTITIES.iter().filter_map(value).collect())
 }
 
-fn derived_uncertainties(measured: &Measured) -> Named<f64> {
-    let values = [
-        ("impact_velocity", measured.impact_velocity_sd),
-        ("rebound_velocity", measured.rebound_velocity_sd),
-        ("impulse", measured.impulse_sd),
-        (
-            "acceleration_impulse_ratio",
-            measured.acceleration_impulse_ratio_sd,
-        ),
-        (
-            "acceleration_peak_ratio",
-            measured.acceleration_peak_ratio_sd,
-        ),
-    ];
-    let known = values
-        .into_iter()
-        .filter_map(|(name, sd)| Some((name.to_owned(), sd?)));
-    Named(known.filter(|(_, sd)| sd.is_finite()).collect())
+/// Values of the derived quantities, their uncertainties, and where they come from: the
+/// signals where they show them, else the fitted law.
+type Derived = (Named<Option<f64>>, Named<f64>, Named<String>);
+
+fn derived_values(measured: &Measured, fitted: &Named<Option<f64>>) -> Derived {
+    let (mut values, mut sds, mut sources) = (Vec::new(), Vec::new(), Vec::new());
+    for quantity in &QUANTITIES {
+        let name = || quantity.name.to_owned();
+        let (value, sd) = quantity.measured(measured);
+        sds.extend(sd.map(|sd| (name(), sd)));
+        let (value, source) = match (value, fitted.get(quantity.name)) {
+            (Some(value), _) => (Some(value), "signal"),
+            (None, Some(fitted)) => (*fitted, "fit"),
+            (None, None) => continue,
+        };
+        values.push((name(), value));
+        sources.push((name(), source.to_owned()));
+    }
+    (Named(values), Named(sds), Named(sources))
 }
 
 fn findings(signal: &[Finding], fit: &Fit) -> Vec<FindingOutcome> {

@@ -3,4 +3,5 @@
 pub mod fit_outcome;
 pub mod interval_outcome;
 pub mod outcome;
+pub mod quantity;
 pub mod summary;
