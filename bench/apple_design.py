@@ -13,7 +13,7 @@ own, each impact another. Acoustic stiffness S has no effect.
 the fruit in the variance, and counts the 95 % intervals that hold the true value.
 `selection` does the study's backward elimination on them, and counts what is left.
 They need nothing but Python 3.8 and windfall, and take a minute or two. See
-docs/apple_study.md.
+docs/guide/src/compared/apple_study.md.
 """
 
 import argparse
