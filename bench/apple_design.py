@@ -1,4 +1,4 @@
-"""Simulated impacts in the design of an apple study, and what two models make of them.
+"""Simulated impacts in the design of an apple study, and two models fitted to them.
 
     python3 bench/apple_design.py data 1 > apples.csv      # one data set, of seed 1
     python3 bench/apple_design.py coverage --windfall target/release/windfall
@@ -13,7 +13,7 @@ own, each impact another. Acoustic stiffness S has no effect.
 the fruit in the variance, and counts the 95 % intervals that hold the true value.
 `selection` does the study's backward elimination on them, and counts what is left.
 They need nothing but Python 3.8 and windfall, and take a minute or two. See
-docs/apple_study.md.
+docs/guide/src/compared/apple_study.md.
 """
 
 import argparse
@@ -29,7 +29,7 @@ from statistics import NormalDist, mean, stdev
 # Golden Delicious, Table 3 of the study: V in m/s, R in m, t in s, k in N/m^1.5.
 INTERCEPT, BY_V, BY_R, BY_T, BY_VR = 662728.094, -328492.591, 216226.530, 4.058e7, 434154.296
 SCATTER = 10000.0  # standard deviation about the regression, N/m^1.5: gives its R² of 0.98
-# V and R are centred in their product, so that V is the effect at R = 0.05 m and R that at
+# V and R are centred in their product, so V is the effect at R = 0.05 m and R the effect at
 # V = 0.3 m/s, the means of the design.
 PRODUCT = "I((V - 0.3) * (R - 0.05))"
 TERMS = f"V + R + t + {PRODUCT} + S"
@@ -44,7 +44,7 @@ def fruit_velocities():
 
 
 def data_set(seed, share, fruit_count=40):
-    """Rows of one data set; `share` is that of the fruit in the variance about the means."""
+    """Rows of one data set; `share` is the fruit's share of the variance around the means."""
     draw = random.Random(seed)
 
     def normal():
@@ -100,7 +100,7 @@ def coverage(windfall, sets, shares, fruit_count):
 
 
 def selection(windfall, sets, shares):
-    """What backward elimination leaves of all terms and their pairs."""
+    """The terms that backward elimination keeps, of all terms and their pairs."""
     rules = {"no hierarchy": [], "hierarchy": ["--hierarchy"]}
     print("share  rule          a term with S  V gone  terms (mean)")
     with tempfile.TemporaryDirectory() as folder:
@@ -121,7 +121,7 @@ def selection(windfall, sets, shares):
 
 
 def eliminate(windfall, table, *options):
-    """Names of the terms that are left, the intercept among them."""
+    """Names of the remaining terms, including the intercept."""
     command = [windfall, "regress", table, "--response", "k", "--terms", "(V + R + t + S)^2"]
     command += ["--select", "backward", "--p-remove", "0.05", "--folds", "0"]
     command += ["--format", "json", *options]
@@ -130,7 +130,7 @@ def eliminate(windfall, table, *options):
 
 
 def print_line(share, model, name, true, fits):
-    """Root mean square of the standard errors over the scatter of the estimates, and counts."""
+    """Prints the ratio of the RMS standard error to the scatter of the estimates, and counts."""
     error = mean(fit["se"] ** 2 for fit in fits) ** 0.5
     ratio = error / stdev(fit["estimate"] for fit in fits)
     freedom = mean(fit["df"] for fit in fits)

@@ -114,10 +114,10 @@ def read_mat(path):
                 add_matrix(channels, name, value)
 
     for name, value in scipy.io.loadmat(path).items():
-        # "None" is how SciPy calls a variable without a name.
+        # SciPy calls a variable without a name "None".
         if not name.startswith("__") and name != "None":
             walk(name, value)
-    # Single numbers are properties, unless there is nothing else.
+    # Single numbers are properties, unless the file has nothing else.
     longer = [c for c in channels if c["length"] > 1]
     return longer or channels
 
@@ -228,7 +228,7 @@ def peer_of(path):
     return PEERS.get(path.suffix.lower())
 
 
-# --- TDMS files that nobody ships: made by the specification ---------------------
+# --- TDMS variants without public samples: made from the specification -----------
 
 
 def tdms_text(text):
@@ -297,7 +297,7 @@ def make_tdms(folder):
         "unfinished_interleaved.tdms": tdms_segment(
             meta | new | data | woven, two(), rows.tobytes() * 2, unfinished=True)[:-77],
     }
-    # Segments without metadata repeat those before: the lead-in says 0 bytes of it.
+    # Segments without metadata (0 bytes in the lead-in) repeat the previous ones.
     lead = b"TDSm" + struct.pack("<IIQQ", data, 4713, len(contiguous), 0)
     made["repeated.tdms"] = tdms_segment(meta | new | data, two(), contiguous) + (lead + contiguous) * 2
 

@@ -93,7 +93,7 @@ def run(engine):
 
 
 def distance(a, b):
-    """Of Kolmogorov and Smirnov."""
+    """Kolmogorov-Smirnov distance of two samples."""
     both = np.sort(np.concatenate([a, b]))
     below = [np.searchsorted(np.sort(own), both, side="right") / len(own) for own in (a, b)]
     return np.abs(below[0] - below[1]).max()

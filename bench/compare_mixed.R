@@ -29,7 +29,7 @@ models <- list(
     data = table_of(rep(0:999, each = 100), rep(0:99, 1000)))
 )
 file <- file.path(folder, "mixed.csv")
-# The table as both programs read it
+# Writes the table and reads it back, so that both programs see the same numbers
 written <- function(data) {
   write.table(lapply(data, format, digits = 15, trim = TRUE, scientific = FALSE), file,
     sep = ",", row.names = FALSE, col.names = FALSE, quote = FALSE)
@@ -53,7 +53,7 @@ for (model in models) {
     model$name, median(peer), median(ours), median(peer) / median(ours), REMLcrit(fit) - criterion))
 }
 
-# Small tables, many of them on the edge of what covariances can be
+# Small tables, many with covariances on the edge of the parameter space
 higher <- c(lme4 = 0, windfall = 0)
 tables <- 300
 for (index in seq_len(tables)) {

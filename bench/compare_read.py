@@ -91,7 +91,7 @@ def timed(work):
 
 
 def timed_elsewhere(*command):
-    """Seconds that a program tells which times itself."""
+    """Seconds that a self-timing program reports."""
     def seconds(path):
         return float(subprocess.run([*command, path, "1"], capture_output=True, text=True, check=True).stdout)
     return seconds

@@ -1,5 +1,5 @@
 # Runs R and windfall on the same tables and prints the largest relative difference
-# of every quantity; stops with an error where one is beyond its limit.
+# of every quantity; stops with an error if one exceeds its limit.
 #
 # Usage: Rscript compare_statistics.R WINDFALL FOLDER
 
@@ -25,7 +25,7 @@ ask <- function(path, ...) {
   fromJSON(paste(output, collapse = "\n"))
 }
 
-# Probabilities are compared where they are not vanishing.
+# Vanishing probabilities are not compared.
 compare <- function(group, what, found, expected, limit) {
   stopifnot(length(found) == length(expected))
   scale <- pmax(abs(expected), 1e-12 * max(abs(expected), na.rm = TRUE))
@@ -35,7 +35,7 @@ compare <- function(group, what, found, expected, limit) {
   worst[[key]] <<- c(difference, limit)
 }
 
-# R's names of columns, as windfall writes them, are not needed: the order is the same.
+# The columns are in the same order, so R's column names need no translation.
 check_linear <- function(group, path, formula, table, arguments = character()) {
   fit <- lm(formula, table)
   found <- ask(path, "--formula", shQuote(paste(deparse(formula, width.cutoff = 500), collapse = "")), "--folds 0", arguments)

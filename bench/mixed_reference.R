@@ -1,4 +1,4 @@
-# Makes the tables and the reference numbers that the tests of mixed models read:
+# Generates the tables and reference numbers for the tests of mixed models:
 #
 #   Rscript bench/mixed_reference.R
 #

@@ -1,4 +1,4 @@
-// From the start of `windfall serve` to its first answer, over an empty directory:
+// Time from the start of `windfall serve` in an empty directory to its first answer:
 // node bench/page_start.mjs PROGRAM
 
 import { spawn } from "node:child_process";

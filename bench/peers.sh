@@ -1,6 +1,6 @@
 # shellcheck shell=bash
-# Sets `python` to a Python with the programs that recordings are compared with,
-# and `target` to the folder of the build. Sourced from the top of the repository.
+# Sets `python` to a Python with the programs that recordings are compared with, and
+# `target` to the build folder. Sourced from the top of the repository.
 
 target=$(realpath -m "${CARGO_TARGET_DIR:-target}")
 venv=$target/peers-venv

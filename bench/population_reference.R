@@ -1,5 +1,5 @@
-# Reference numbers for crates/identify/tests/population.rs, with packages that
-# windfall has no part in: Rscript bench/population_reference.R OUTPUT_DIRECTORY
+# Reference numbers for crates/identify/tests/population.rs, from packages independent
+# of windfall: Rscript bench/population_reference.R OUTPUT_DIRECTORY
 #
 # linear.csv, linear.txt    impacts as normal observations with known covariance;
 #                           ML: nlme::lme on whitened rows with residual sigma 1,

@@ -16,7 +16,7 @@ WORK = 6e7  # particle-steps of a round
 
 
 def run(count, steps, threads, state):
-    """Contacts of a fruit, and particle-steps per second after the first tenth of the run."""
+    """Contacts per fruit, and particle-steps per second after the first tenth of the run."""
     command = [example, f"{folder}/{count}/bin.txt", str(steps), str(threads), annuli, state]
     if threads == 1:
         command = ["taskset", "-c", "0"] + command
@@ -35,7 +35,7 @@ for count in (10000, 100000):
 speeds = {}
 for turn in range(rounds):
     for count, number in ((10000, 1), (10000, 2), (100000, 1)):
-        # Each round from the same bed.
+        # Each round starts from the same bed.
         shutil.copy(f"{folder}/{count}/state", f"{folder}/now")
         _, speed = run(count, int(WORK / count), number, f"{folder}/now")
         speeds.setdefault((count, number), []).append(speed)

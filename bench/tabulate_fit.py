@@ -11,23 +11,23 @@ import pathlib
 import statistics
 import sys
 
-# Targets of windfall per two-parameter fit of the 1,111 samples: how many times
-# as fast as Ceres, and as the hand-vectorised floor; how many times the floor's
-# rate over many impacts; and how near to the reference optimum (relative).
+# Windfall's targets for a two-parameter fit of the 1,111 samples: speed relative to
+# Ceres and to the hand-vectorised floor, rate over many impacts relative to the
+# floor, and relative distance to the reference optimum.
 SPEED_TARGET = 10.0
 FLOOR_TARGET = 1.0
 BATCH_TARGET = 3.0
 OPTIMUM_TARGET = 2e-6
 
-# Keys of the rate over many impacts, fits/s, the first that a tool prints: windfall
-# fits a thousand (the hundred noise seeds ten times) side by side on one core, the
-# others the hundred seeds one after the other.
+# Keys of the rate over many impacts, fits/s; the first one that a tool prints is used.
+# windfall fits a thousand (the hundred noise seeds ten times) side by side on one
+# core, the others fit the hundred seeds one after the other.
 BATCHES = ("batch1000_fits_per_s", "batch100_fits_per_s")
-# Key of how many fits of windfall's batch end elsewhere than its single fits.
+# Key of the number of windfall's batch fits that differ from its single fits.
 DIFFERENT = "batch1000_different"
 
-# Largest relative difference between given and generated tables that another
-# version of the integrator or of the mathematical library explains.
+# Largest relative difference between given and generated tables that can come from
+# another version of the integrator or of the mathematical library.
 SAME_DATA = 1e-9
 
 
@@ -61,7 +61,7 @@ def columns(ours, theirs):
 
 
 def write_stand_ins(folder):
-    """Modules that are imported by fit_scipy.py but not used by its SciPy rows."""
+    """Modules that fit_scipy.py imports but its SciPy rows do not use."""
     folder = pathlib.Path(folder)
     folder.mkdir(parents=True)
     (folder / "lmfit.py").write_text("")
@@ -138,8 +138,8 @@ def windfall_line(lines, data, parameters):
 
 
 def ratio(line, ours):
-    """How many times as long as windfall: median over the rounds that both ran,
-    so that a slow minute of the machine weighs on both alike."""
+    """Time relative to windfall: median over the rounds that both ran, so that a slow
+    minute of the machine affects both alike."""
     if line["rounds"] == 1:
         return line["seconds"] / ours["seconds"]
     common = line["by_round"].keys() & ours["by_round"].keys()
@@ -177,7 +177,7 @@ def print_table(lines):
 
 
 def check_targets(lines):
-    """Prints each target with what was reached; true if all are met."""
+    """Prints each target with the value reached; true if all are met."""
     met = []
     ours = windfall_line(lines, "data100k", "2p")
     if ours is None:

@@ -1,7 +1,7 @@
 # shellcheck shell=sh
-# Installs what building windfall needs and this machine lacks: a C compiler
-# (for the bundled SQLite) and a Rust toolchain. Sourced by the other scripts,
-# from the top of the repository; does nothing when nothing is missing.
+# Installs what windfall needs to build, if it is missing: a C compiler (for the
+# bundled SQLite) and a Rust toolchain. Sourced by the other scripts, from the top
+# of the repository; does nothing if nothing is missing.
 
 say() {
     printf '%s\n' "$*" >&2
@@ -42,7 +42,7 @@ at_least() {
     [ "$(printf '%s\n%s\n' "$2" "$1" | sort -V | head -n 1)" = "$2" ]
 }
 
-# Version of the cargo that would run here; nothing when there is none.
+# Version of the cargo that would run here; empty if there is none.
 cargo_version() {
     # A rustup without a toolchain has a cargo that fails.
     cargo --version 2>/dev/null | cut -d ' ' -f 2
@@ -88,8 +88,8 @@ need_cargo() {
     fi
 }
 
-# Node of at least 20.19, for building and testing the page; kept in folder $1 where
-# the machine's own is older. Users of windfall need none.
+# Node 20.19 or newer, to build and test the page; kept in folder $1 if the system's
+# own is older. Users of windfall do not need it.
 need_node() {
     node_wanted=20.19.0
     PATH=$1/node_modules/.bin:$PATH
@@ -100,8 +100,8 @@ need_node() {
     fi
     say "set-up: the page needs Node $node_wanted or newer; found ${node_found:-none}"
     have npm || apt_install npm
-    # The registry has Node itself as a package. With its own npm: that of Debian finds
-    # its parts with Debian's Node alone.
+    # The registry has Node itself as a package. It gets its own npm, because Debian's
+    # npm works only with Debian's Node.
     npm install --prefix "$1" --no-save --no-audit --no-fund --loglevel=error node@22 npm@10 >/dev/null ||
         fail "npm could not install Node; install Node $node_wanted or newer and run again"
     node_found=$(node --version | sed 's/^v//')
@@ -113,7 +113,7 @@ need_chromium() {
     have chromium || have chromium-browser || have google-chrome || apt_install chromium
 }
 
-# The engines that scenes are compared with, and run on, in tests.
+# The engines on which tests run scenes for comparison.
 need_engines() {
     missing=
     have lmp || missing="$missing lammps"

@@ -1,5 +1,5 @@
 //! Errors of the displacement rate by each method, on a motion in closed form
-//! as encoders of three rigs count it: the table of docs/rates.md.
+//! as encoders of three rigs count it: the table of docs/guide/src/rates.md.
 //!
 //! `cargo run --release -p windfall-signal --example rates`
 

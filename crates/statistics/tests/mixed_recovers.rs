@@ -1,5 +1,5 @@
 //! What the right model changes for the apple study's design, by simulation: the
-//! numbers of `docs/mixed_models.md`.
+//! numbers of `docs/guide/src/mixed_models.md`.
 
 #![allow(clippy::unwrap_used)]
 

@@ -1,7 +1,7 @@
 //! Forward: a body whose contact is not below its centre of mass falls on the
 //! plate, turns and bounces.
 //!
-//! The equations and the choices are in `docs/eccentric_contact.md` and at
+//! The equations and the choices are in `docs/guide/src/made/eccentric_contact.md` and at
 //! [`EccentricBody`].
 
 use crate::eccentric::body::{EccentricBody, Planar, State, positive};

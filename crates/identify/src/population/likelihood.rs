@@ -207,7 +207,7 @@ impl ImpactLikelihood {
     ///
     /// Samples that the onset passes leave kinks in the likelihood, which shift
     /// what it says by some tenths of a standard error from one point to the
-    /// next (docs/onset.md); near the fit the fit knows better.
+    /// next (docs/guide/src/compared/onset.md); near the fit the fit knows better.
     #[must_use]
     pub fn expand_beyond(&self, reach: f64, at: &[f64]) -> Option<Expansion> {
         let law = self.law_count;

@@ -171,7 +171,7 @@ test("the table shows them, and points are brushed", { skip: absent }, async () 
   for (const [id, exponent] of Object.entries(theirs)) {
     assert.ok(Math.abs(mine[id] / exponent - 1) < 1e-6, `${id}: ${mine[id]}, ${exponent}`);
   }
-  // docs/foam_pads.md: 1.16 on 40 mm.
+  // docs/guide/src/compared/foam_pads.md: 1.16 on 40 mm.
   const mean = RUNS.reduce((sum, _, place) => sum + mine[`pad-40-${place + 1}`], 0) / RUNS.length;
   assert.ok(Math.abs(mean - 1.16) < 0.005, `${mean}`);
 });

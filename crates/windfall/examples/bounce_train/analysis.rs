@@ -25,7 +25,7 @@ use windfall_signal::uncertain::Uncertain;
 /// Names of the runs in the file.
 pub const RUNS: [&str; 5] = ["Latest", "Run 1", "Run 2", "Run 3", "Run 4"];
 /// Mass of the cart, from the impulses of ten other recordings with the same
-/// cart (docs/foam_pads.md); kg. Its uncertainty is the 3 % stated there.
+/// cart (docs/guide/src/compared/foam_pads.md); kg. Its uncertainty is the 3 % stated there.
 pub const MASS: Uncertain = Uncertain {
     value: 523.6e-3,
     sd: 0.016,
@@ -37,11 +37,11 @@ pub const DRIVING: Uncertain = Uncertain {
     value: 0.155,
     sd: 0.015,
 };
-/// The force comes later than the position (docs/foam_pads.md); s.
+/// The force comes later than the position (docs/guide/src/compared/foam_pads.md); s.
 pub const DELAY: f64 = 0.015;
 /// The cart stands until it is let go; position glitches before that; s.
 pub const RELEASE: f64 = 1.0;
-/// Noise of a position; m (docs/foam_pads.md).
+/// Noise of a position; m (docs/guide/src/compared/foam_pads.md).
 pub const POSITION_NOISE: f64 = 4e-4;
 
 /// One run with what is found in it.

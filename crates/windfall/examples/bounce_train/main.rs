@@ -1,4 +1,4 @@
-//! Bounces of a real cart: tables and figures of docs/bounce_train.md.
+//! Bounces of a real cart: tables and figures of docs/guide/src/compared/bounce_train.md.
 //!
 //!     cargo run --example bounce_train -- DATA/impact/foam_pads/bounce_train.csv OUT
 
