@@ -22,9 +22,6 @@ pub(crate) struct Leaf {
 }
 
 /// All leaves of a tree, in order.
-///
-/// # Errors
-/// The tree is damaged.
 pub(crate) fn read_leaves(file: &Hdf5File, root: u64, keys: Keys) -> Result<Vec<Leaf>, Problem> {
     let mut leaves = Vec::new();
     let mut seen = BTreeSet::new();

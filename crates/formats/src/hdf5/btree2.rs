@@ -30,9 +30,6 @@ struct Tree<'a> {
 }
 
 /// All records of a tree of a type, in order.
-///
-/// # Errors
-/// The tree is damaged.
 pub(crate) fn read_records(
     file: &Hdf5File,
     address: u64,

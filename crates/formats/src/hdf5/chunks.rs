@@ -22,9 +22,6 @@ pub(crate) fn grid(extents: &[u64], chunk: &[u64]) -> Vec<u64> {
 }
 
 /// Reads the index of a dataset.
-///
-/// # Errors
-/// It is damaged.
 pub(crate) fn read_chunks(
     file: &Hdf5File,
     chunked: &Chunked,

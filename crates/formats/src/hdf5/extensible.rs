@@ -24,9 +24,6 @@ struct Array<'a> {
 }
 
 /// The entries of an array, by number.
-///
-/// # Errors
-/// The array is damaged.
 pub(crate) fn read_extensible(
     file: &Hdf5File,
     address: u64,

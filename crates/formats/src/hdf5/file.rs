@@ -41,9 +41,6 @@ pub(crate) fn begins(head: &[u8]) -> bool {
 
 impl Hdf5File {
     /// Reads the superblock.
-    ///
-    /// # Errors
-    /// There is none, or it is damaged.
     pub fn open(source: Source) -> Result<Self, Error> {
         if source.length() == 0 {
             return Err(Error::Empty {
@@ -57,9 +54,6 @@ impl Hdf5File {
     }
 
     /// Bytes at an address.
-    ///
-    /// # Errors
-    /// The file has not so many there.
     pub fn bytes(&self, address: u64, count: u64) -> Result<Vec<u8>, Problem> {
         let at = self.base.saturating_add(address);
         if count > self.source.length().saturating_sub(at) {
@@ -76,9 +70,6 @@ impl Hdf5File {
     }
 
     /// Bytes at an address, `count` or as many as there are.
-    ///
-    /// # Errors
-    /// The address is outside of the file.
     pub fn bytes_up_to(&self, address: u64, count: u64) -> Result<Vec<u8>, Problem> {
         let at = self.base.saturating_add(address);
         let left = self.source.length().saturating_sub(at);
@@ -91,9 +82,6 @@ impl Hdf5File {
     }
 
     /// That the last four bytes are the checksum of those before.
-    ///
-    /// # Errors
-    /// They are not.
     pub fn check(&self, bytes: &[u8], address: u64) -> Result<(), Problem> {
         let problem = |what: &str| Problem::Damaged {
             at: self.base.saturating_add(address),
@@ -123,12 +111,11 @@ fn find_signature(source: &Source) -> Result<u64, Error> {
         }
         at = if at == 0 { 512 } else { at * 2 };
     }
-    Err(Error::Malformed {
-        path: source.path().to_path_buf(),
-        place: Place::Byte(0),
-        problem: "expected the signature of HDF5; this is no HDF5 file".to_owned(),
-        advice: "let windfall find out the format".to_owned(),
-    })
+    Err(source.malformed(
+        Place::Byte(0),
+        "expected the signature of HDF5; this is no HDF5 file",
+        "let windfall find out the format",
+    ))
 }
 
 fn read_superblock(source: Source, at: u64) -> Result<Hdf5File, Problem> {

@@ -20,9 +20,6 @@ pub(crate) enum Filter {
 }
 
 /// Reads the filters of a dataset, in the order of writing.
-///
-/// # Errors
-/// They are damaged, or one is not read.
 pub(crate) fn read_filters(cursor: &mut Cursor<'_>) -> Result<Vec<Filter>, Problem> {
     let version = cursor.version("filters", &[1, 2])?;
     let count = cursor.u8()?;

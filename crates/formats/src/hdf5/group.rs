@@ -29,9 +29,6 @@ pub(crate) enum Link {
 }
 
 /// The members of a group, by name.
-///
-/// # Errors
-/// The group is damaged.
 pub(crate) fn read_members(file: &Hdf5File, header: &Header) -> Result<Vec<Member>, Problem> {
     let mut members = Vec::new();
     for message in &header.messages {

@@ -11,9 +11,6 @@ pub(crate) struct LocalHeap {
 
 impl LocalHeap {
     /// Reads a heap of names.
-    ///
-    /// # Errors
-    /// It is damaged.
     pub fn read(file: &Hdf5File, address: u64) -> Result<Self, Problem> {
         let size = 8 + 2 * file.widths.length + file.widths.address;
         let bytes = file.bytes(address, size as u64)?;
@@ -31,9 +28,6 @@ impl LocalHeap {
     }
 
     /// The name at an offset.
-    ///
-    /// # Errors
-    /// There is none.
     pub fn name(&self, file: &Hdf5File, offset: u64) -> Result<String, Problem> {
         let rest = usize::try_from(offset)
             .ok()
@@ -46,9 +40,6 @@ impl LocalHeap {
 
 /// The bytes of an object in a heap of texts: `reference` is its length, the
 /// address of the collection, and its number in it.
-///
-/// # Errors
-/// It is not there.
 pub(crate) fn read_text(file: &Hdf5File, reference: &[u8], at: u64) -> Result<Vec<u8>, Problem> {
     let mut cursor = file.cursor(reference, at);
     let length = u64::from(cursor.u32()?);
@@ -106,9 +97,6 @@ const DEEPEST: usize = 16;
 
 impl<'a> FractalHeap<'a> {
     /// Reads the header of a heap.
-    ///
-    /// # Errors
-    /// It is damaged, or its blocks are filtered.
     pub fn read(file: &'a Hdf5File, address: u64) -> Result<Self, Problem> {
         let widths = file.widths;
         let size = 26 + 12 * widths.length + 3 * widths.address;
@@ -162,9 +150,6 @@ impl<'a> FractalHeap<'a> {
     }
 
     /// An object, with its address.
-    ///
-    /// # Errors
-    /// It is not there, or too large to stand in the heap itself.
     pub fn object(&self, id: &[u8]) -> Result<(Vec<u8>, u64), Problem> {
         let mut cursor = self.file.cursor(id, 0);
         let flags = cursor.u8()?;

@@ -68,9 +68,6 @@ impl Blocks {
 }
 
 /// Reads the header at an address.
-///
-/// # Errors
-/// There is none, or it is damaged.
 pub(crate) fn read_header(file: &Hdf5File, address: u64) -> Result<Header, Problem> {
     let head = file.bytes_up_to(address, 64)?;
     let mut cursor = file.cursor(&head, address);
@@ -194,9 +191,6 @@ fn add_message(
 }
 
 /// The message that a shared one stands for; another is given back as it is.
-///
-/// # Errors
-/// It is damaged, or shared in a way that is not read.
 pub(crate) fn resolve(file: &Hdf5File, message: &Message) -> Result<Message, Problem> {
     if !message.shared {
         return Ok(message.clone());

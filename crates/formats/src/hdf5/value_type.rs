@@ -58,9 +58,6 @@ pub(crate) struct Member {
 const ODD: &str = "its numbers do not fill their bytes, or are floats of an unusual form";
 
 /// Reads a type.
-///
-/// # Errors
-/// It is damaged.
 pub(crate) fn read_type(cursor: &mut Cursor<'_>) -> Result<Datatype, Problem> {
     read_nested(cursor, 0)
 }

@@ -39,9 +39,6 @@ pub(crate) struct Elements<'a> {
 
 impl Elements<'_> {
     /// The element at `at` of something that ends at `end`.
-    ///
-    /// # Errors
-    /// It does not fit there.
     pub fn element(&mut self, at: u64, end: u64) -> Result<Element, Error> {
         if end.saturating_sub(at) < 8 {
             return Err(self.malformed("expected a data element, found the end of the variable"));
@@ -85,9 +82,6 @@ impl Elements<'_> {
     }
 
     /// The data of an element; of a longer one the first `most` bytes.
-    ///
-    /// # Errors
-    /// They are damaged.
     pub fn data(&mut self, element: Element, most: u64) -> Result<Vec<u8>, Error> {
         let length = element.length.min(most) as usize;
         if let Some(small) = element.small {
@@ -101,9 +95,6 @@ impl Elements<'_> {
     }
 
     /// The integers of an element, at most `most`.
-    ///
-    /// # Errors
-    /// They are damaged.
     pub fn integers(&mut self, element: Element, most: u64) -> Result<Vec<u32>, Error> {
         let bytes = self.data(element, most * 4)?;
         let words = bytes.as_chunks::<4>().0.iter();
@@ -121,11 +112,10 @@ impl Elements<'_> {
 
     /// The error that the variable breaks the rules.
     pub fn malformed(&self, problem: &str) -> Error {
-        Error::Malformed {
-            path: self.source.path().to_path_buf(),
-            place: Place::Byte(self.start),
-            problem: format!("in the variable that begins here: {problem}"),
-            advice: ADVICE.to_owned(),
-        }
+        self.source.malformed(
+            Place::Byte(self.start),
+            format!("in the variable that begins here: {problem}"),
+            ADVICE,
+        )
     }
 }

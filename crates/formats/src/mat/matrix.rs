@@ -45,9 +45,6 @@ struct Matrix {
 }
 
 /// Lists what a variable holds.
-///
-/// # Errors
-/// It is damaged.
 pub(crate) fn list_variable(
     elements: &mut Elements<'_>,
     region: Region,

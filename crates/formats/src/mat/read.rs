@@ -30,9 +30,6 @@ pub(crate) fn begins(head: &[u8]) -> bool {
 
 impl MatReader {
     /// Lists what a file holds.
-    ///
-    /// # Errors
-    /// The file cannot be read, is none of MATLAB, or is damaged.
     pub fn open(source: Source) -> Result<Self, Error> {
         let mut properties = Vec::new();
         let head = source.head(128)?;

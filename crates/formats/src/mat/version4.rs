@@ -79,9 +79,6 @@ fn read_header(bytes: &[u8]) -> Option<Header> {
 }
 
 /// Lists the matrices of a file.
-///
-/// # Errors
-/// A header is none, or the numbers are those of a VAX or a Cray.
 pub(crate) fn list(source: &Source) -> Result<MatTree, Error> {
     let mut found = MatTree::default();
     let mut at = 0;
@@ -224,19 +221,13 @@ fn refused_machine(source: &Source, at: u64, header: &Header) -> Error {
         3 => "VAX G-float",
         _ => "Cray",
     };
-    Error::Unsupported {
-        path: source.path().to_path_buf(),
-        place: Place::Byte(at),
-        what: format!("{machine} numbers"),
-        advice: "load the file in MATLAB and save it again".to_owned(),
-    }
+    source.unsupported(
+        Place::Byte(at),
+        format!("{machine} numbers"),
+        "load the file in MATLAB and save it again",
+    )
 }
 
 fn malformed(source: &Source, at: u64, problem: &str) -> Error {
-    Error::Malformed {
-        path: source.path().to_path_buf(),
-        place: Place::Byte(at),
-        problem: problem.to_owned(),
-        advice: ADVICE.to_owned(),
-    }
+    source.malformed(Place::Byte(at), problem, ADVICE)
 }

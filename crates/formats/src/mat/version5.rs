@@ -32,9 +32,6 @@ pub(crate) fn begins(head: &[u8]) -> bool {
 }
 
 /// The header of a file.
-///
-/// # Errors
-/// It is none, or that of version 7.3.
 pub(crate) fn read_header(source: &Source) -> Result<Header, Error> {
     if source.length() < HEADER {
         return Err(source.truncated(0, "the header of a MAT file", HEADER));
@@ -51,12 +48,11 @@ pub(crate) fn read_header(source: &Source) -> Result<Header, Error> {
             0x0200 => "this is version 7.3, which is an HDF5 file".to_owned(),
             _ => format!("expected version 256 and \"IM\" or \"MI\", found version {version}"),
         };
-        return Err(Error::Malformed {
-            path: source.path().to_path_buf(),
-            place: Place::Byte(124),
+        return Err(source.malformed(
+            Place::Byte(124),
             problem,
-            advice: "let windfall find out the format, or save the file again in MATLAB".to_owned(),
-        });
+            "let windfall find out the format, or save the file again in MATLAB",
+        ));
     }
     let text = String::from_utf8_lossy(&bytes[..116]);
     let mut offset = [0; 8];
@@ -73,10 +69,6 @@ pub(crate) fn read_header(source: &Source) -> Result<Header, Error> {
 }
 
 /// Lists the arrays of a file, and whether any variable is compressed.
-///
-/// # Errors
-/// The file is damaged; if it is only cut off, and there is anything before,
-/// that is a note.
 pub(crate) fn list(source: &Source, header: &Header) -> Result<(MatTree, bool), Error> {
     let mut walk = Walk::default();
     let mut any_compressed = false;
