@@ -54,6 +54,13 @@ impl Number {
         }
     }
 
+    /// Decodes all whole numbers in `bytes`.
+    pub fn decode_all(self, bytes: &[u8], big_endian: bool) -> Vec<f64> {
+        let mut numbers = vec![0.0; bytes.len() / self.size() as usize];
+        self.decode(bytes, self.packed(big_endian), &mut numbers);
+        numbers
+    }
+
     /// Decodes as many numbers as `out` takes; `bytes` must hold them all.
     pub fn decode(self, bytes: &[u8], layout: Layout, out: &mut [f64]) {
         macro_rules! numbers {

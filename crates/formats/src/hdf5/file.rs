@@ -8,6 +8,7 @@ use crate::error::{Error, Place};
 use crate::hdf5::checksum::lookup3;
 use crate::hdf5::cursor::{Cursor, Problem, Widths};
 use crate::source::Source;
+use std::borrow::Cow;
 
 /// What an HDF5 file begins with, at byte 0 or behind what another program put
 /// before it: at 512, 1024, 2048 and so on.
@@ -69,6 +70,26 @@ impl Hdf5File {
         Ok(self.source.bytes_at(at, count)?)
     }
 
+    /// The bytes of a structure at an address, behind its signature; the last four
+    /// are the checksum of those before.
+    pub fn checked(
+        &self,
+        address: u64,
+        count: u64,
+        signature: &[u8; 4],
+    ) -> Result<Cursor<'static>, Problem> {
+        let mut cursor = self.checked_page(address, count)?;
+        cursor.signature(signature)?;
+        Ok(cursor)
+    }
+
+    /// As [`Self::checked`], without a signature.
+    pub fn checked_page(&self, address: u64, count: u64) -> Result<Cursor<'static>, Problem> {
+        let bytes = self.bytes(address, count)?;
+        self.check(&bytes, address)?;
+        Ok(self.cursor(bytes, address))
+    }
+
     /// Bytes at an address, `count` or as many as there are.
     pub fn bytes_up_to(&self, address: u64, count: u64) -> Result<Vec<u8>, Problem> {
         let at = self.base.saturating_add(address);
@@ -77,7 +98,7 @@ impl Hdf5File {
     }
 
     /// A cursor on bytes that were read at an address.
-    pub fn cursor<'a>(&self, bytes: &'a [u8], address: u64) -> Cursor<'a> {
+    pub fn cursor<'a>(&self, bytes: impl Into<Cow<'a, [u8]>>, address: u64) -> Cursor<'a> {
         Cursor::new(bytes, self.base.saturating_add(address), self.widths)
     }
 
@@ -124,7 +145,7 @@ fn read_superblock(source: Source, at: u64) -> Result<Hdf5File, Problem> {
         address: 8,
         length: 8,
     };
-    let mut cursor = Cursor::new(&head, at, narrow);
+    let mut cursor = Cursor::new(&head[..], at, narrow);
     cursor.skip(8)?;
     let version = cursor.version("the superblock", &[0, 1, 2, 3])?;
     if version < 2 {

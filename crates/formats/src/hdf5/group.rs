@@ -69,13 +69,12 @@ fn read_symbols(
     let heap = LocalHeap::read(file, heap)?;
     let entry = 2 * file.widths.address + 24;
     for leaf in read_leaves(file, tree, Keys::Names)? {
-        let head = file.bytes(leaf.address, 8)?;
-        let mut cursor = file.cursor(&head, leaf.address);
-        cursor.expect(b"SNOD")?;
+        let mut cursor = file.cursor(file.bytes(leaf.address, 8)?, leaf.address);
+        cursor.signature(b"SNOD")?;
         cursor.skip(2)?;
         let count = usize::from(cursor.u16()?);
-        let bytes = file.bytes(leaf.address + 8, (count * entry) as u64)?;
-        let mut cursor = file.cursor(&bytes, leaf.address + 8);
+        let entries = leaf.address + 8;
+        let mut cursor = file.cursor(file.bytes(entries, (count * entry) as u64)?, entries);
         for _ in 0..count {
             let name = cursor.uint(file.widths.address)?;
             let address = cursor.address()?;

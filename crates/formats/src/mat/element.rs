@@ -1,7 +1,8 @@
 //! Data elements of MAT files of version 5: a tag and what it announces.
 
 use crate::error::{Error, Place};
-use crate::mat::flow::{ADVICE, Flow};
+use crate::mat::flow::{ADVICE, Flow, Region};
+use crate::number::integer;
 use crate::source::Source;
 
 /// Type of an element that holds a matrix.
@@ -29,8 +30,9 @@ pub(crate) struct Element {
 pub(crate) struct Elements<'a> {
     /// The file, for messages.
     pub source: &'a Source,
-    /// The bytes of the variable.
+    /// The bytes of the variable, and where they stand in the file.
     pub flow: Flow<'a>,
+    pub region: Region,
     /// Order of bytes.
     pub big_endian: bool,
     /// Where the variable begins in the file, for messages.
@@ -102,12 +104,8 @@ impl Elements<'_> {
     }
 
     /// Four bytes as a number.
-    pub fn u32(&self, bytes: &[u8]) -> u32 {
-        let bytes = [bytes[0], bytes[1], bytes[2], bytes[3]];
-        match self.big_endian {
-            true => u32::from_be_bytes(bytes),
-            false => u32::from_le_bytes(bytes),
-        }
+    fn u32(&self, bytes: &[u8]) -> u32 {
+        integer(bytes, self.big_endian) as u32
     }
 
     /// The error that the variable breaks the rules.
