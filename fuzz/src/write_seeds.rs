@@ -1,6 +1,6 @@
 //! Writes the small valid files of the tests into FOLDER/FORMAT/.
 
-#[path = "../../crates/formats/tests/seeds/mod.rs"]
+#[path = "../../crates/formats/tests/formats/seeds.rs"]
 mod seeds;
 
 fn main() -> std::io::Result<()> {

@@ -6,7 +6,7 @@
 //! [`reader::Reader::read`] hands over the samples in blocks, so that a file of
 //! any size is looked through in bounded memory.
 //!
-//! One file `read_*` for each format. Values are those of the file after the
+//! One folder for each format. Values are those of the file after the
 //! scaling that the file itself prescribes; what they mean on a rig, in which
 //! unit, is said in a campaign and is not known here. Sizes and offsets that a
 //! file declares are checked against its length before anything is allocated.
@@ -14,16 +14,18 @@
 mod arrays;
 pub mod contents;
 pub mod error;
-pub mod hdf5;
-pub mod mat;
+mod hdf5;
+mod mat;
+mod names;
+mod number;
 pub mod open;
 pub mod reader;
 mod room;
-pub mod sigrok;
+mod sigrok;
 pub mod source;
-pub mod tdms;
+mod tdms;
 pub mod text;
-pub mod uff;
-pub mod wav;
+mod uff;
+mod wav;
 
 pub use error::Error;

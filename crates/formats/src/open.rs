@@ -94,11 +94,10 @@ pub fn tell_format(source: &Source) -> Result<Format, Error> {
         });
     }
     if let Some((_, what, advice)) = OTHERS.iter().find(|(magic, ..)| head.starts_with(magic)) {
-        return Err(Error::UnknownFormat {
-            path: source.path().to_path_buf(),
-            found: format!("this is {what}, which windfall does not read"),
-            advice: (*advice).to_owned(),
-        });
+        return Err(source.unknown(
+            format!("this is {what}, which windfall does not read"),
+            advice,
+        ));
     }
     if head.starts_with(b"PK\x03\x04") {
         return Ok(Format::Sigrok);

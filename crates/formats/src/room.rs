@@ -5,7 +5,6 @@ const MANY: usize = 1 << 19;
 
 /// As many zeros, on large pages where the system has them: the first touch of
 /// each small page costs as much as reading what goes into it.
-#[must_use]
 pub(crate) fn zeros(count: usize) -> Vec<f64> {
     let zeros = vec![0.0; count];
     if count >= MANY {

@@ -135,6 +135,40 @@ impl Source {
             left: self.length.saturating_sub(offset),
         }
     }
+
+    /// The error that the file breaks the rules of its format.
+    pub(crate) fn malformed(
+        &self,
+        place: Place,
+        problem: impl Into<String>,
+        advice: &str,
+    ) -> Error {
+        Error::Malformed {
+            path: self.path.clone(),
+            place,
+            problem: problem.into(),
+            advice: advice.to_owned(),
+        }
+    }
+
+    /// The error that the file needs a part of its format that windfall does not read.
+    pub(crate) fn unsupported(&self, place: Place, what: impl Into<String>, advice: &str) -> Error {
+        Error::Unsupported {
+            path: self.path.clone(),
+            place,
+            what: what.into(),
+            advice: advice.to_owned(),
+        }
+    }
+
+    /// The error that the file is in another format than any that windfall reads.
+    pub(crate) fn unknown(&self, found: impl Into<String>, advice: &str) -> Error {
+        Error::UnknownFormat {
+            path: self.path.clone(),
+            found: found.into(),
+            advice: advice.to_owned(),
+        }
+    }
 }
 
 #[cfg(unix)]

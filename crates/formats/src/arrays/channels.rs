@@ -3,7 +3,7 @@
 use crate::arrays::clock::{names_time, time_bases};
 use crate::arrays::tree::{Array, Extent, Listing, Series, Tree, count};
 use crate::contents::{ChannelContents, Note, TimeBase};
-use std::collections::{BTreeMap, BTreeSet};
+use crate::names::Names;
 
 /// Most channels that one array is taken apart into. What has more rows and
 /// columns than this is a picture or a matrix of a calculation.
@@ -44,7 +44,7 @@ pub(crate) fn list_channels(mut tree: Tree) -> Listing {
     }
     let mut names = Names::default();
     for channel in &mut listing.channels {
-        names.make_unique(&mut channel.name);
+        channel.name = names.unique(&channel.name);
     }
     listing
         .properties
@@ -167,29 +167,6 @@ fn rows_are_channels(array: &Array, samples: u64) -> Note {
             array.path.join("/"),
             shape.join(" × "),
         ),
-    }
-}
-
-/// Numbers those names that stood before.
-#[derive(Default)]
-struct Names {
-    taken: BTreeSet<String>,
-    times: BTreeMap<String, usize>,
-}
-
-impl Names {
-    fn make_unique(&mut self, name: &mut String) {
-        let times = self.times.entry(name.clone()).or_default();
-        let first = name.clone();
-        loop {
-            *times += 1;
-            if *times > 1 {
-                *name = format!("{first} ({times})");
-            }
-            if self.taken.insert(name.clone()) {
-                return;
-            }
-        }
     }
 }
 

@@ -34,9 +34,6 @@ impl Pass {
     }
 
     /// The next elements of the array, of which the first is number `first`.
-    ///
-    /// # Errors
-    /// What the sink returns.
     pub fn take(&mut self, first: u64, elements: &[f64], sink: &mut dyn Sink) -> Result<(), Error> {
         let end = first + elements.len() as u64;
         for (position, series) in &self.wanted {

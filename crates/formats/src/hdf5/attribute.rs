@@ -183,12 +183,11 @@ fn read_value(file: &Hdf5File, cursor: &mut Cursor<'_>, head: &Head) -> Result<V
     let at = cursor.at() - file.base.min(cursor.at());
     let count = read_space(&mut file.cursor(cursor.take(head.space_size)?, at))?.count();
     let at = cursor.at();
-    let data = cursor.rest();
     if datatype.size == 0 {
         return Err(cursor.damaged("an attribute has elements of no bytes"));
     }
     let shown = usize::try_from(count.min(MOST_VALUES)).unwrap_or(0);
-    let elements = data.chunks_exact(datatype.size).take(shown);
+    let elements = cursor.rest().chunks_exact(datatype.size).take(shown);
     let texts: Vec<String> = elements
         .clone()
         .filter_map(|bytes| text_of(file, &datatype, bytes, at))

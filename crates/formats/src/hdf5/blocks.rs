@@ -16,9 +16,6 @@ pub(crate) type Take<'a> = dyn FnMut(u64, &[u8]) -> Result<(), Error> + 'a;
 
 /// Calls `take` with blocks of a dataset that hold its elements from number
 /// `from` to before `to`.
-///
-/// # Errors
-/// The dataset cannot be read, or `take` failed.
 pub(crate) fn each_block(
     file: &Hdf5File,
     dataset: &mut Dataset,

@@ -1,6 +1,6 @@
 //! B-trees of version 1: of the members of groups, and of chunks.
 
-use crate::hdf5::cursor::{Cursor, Problem};
+use crate::hdf5::cursor::Problem;
 use crate::hdf5::file::Hdf5File;
 use std::collections::BTreeSet;
 
@@ -22,9 +22,6 @@ pub(crate) struct Leaf {
 }
 
 /// All leaves of a tree, in order.
-///
-/// # Errors
-/// The tree is damaged.
 pub(crate) fn read_leaves(file: &Hdf5File, root: u64, keys: Keys) -> Result<Vec<Leaf>, Problem> {
     let mut leaves = Vec::new();
     let mut seen = BTreeSet::new();
@@ -42,9 +39,8 @@ fn read_node(
 ) -> Result<(), Problem> {
     let widths = file.widths;
     let head_size = 8 + 2 * widths.address as u64;
-    let head = file.bytes(address, head_size)?;
-    let mut cursor = file.cursor(&head, address);
-    cursor.expect(b"TREE")?;
+    let mut cursor = file.cursor(file.bytes(address, head_size)?, address);
+    cursor.signature(b"TREE")?;
     let kind = cursor.u8()?;
     let level = cursor.u8()?;
     let used = u64::from(cursor.u16()?);
@@ -57,15 +53,15 @@ fn read_node(
         Keys::Chunks(rank) => 8 + 8 * (rank + 1),
     };
     let size = used * (key_size + widths.address) as u64;
-    let body = file.bytes(address + head_size, size)?;
-    let mut cursor: Cursor<'_> = file.cursor(&body, address + head_size);
+    let body = address + head_size;
+    let mut cursor = file.cursor(file.bytes(body, size)?, body);
     for _ in 0..used {
-        let key = cursor.take(key_size)?;
+        let key = cursor.take(key_size)?.to_vec();
         let child = cursor.address()?;
         let child = child.ok_or_else(|| cursor.damaged("a tree leads nowhere"))?;
         match level {
             0 => leaves.push(Leaf {
-                key: key.to_vec(),
+                key,
                 address: child,
             }),
             _ => read_node(file, child, keys, Some(level - 1), seen, leaves)?,

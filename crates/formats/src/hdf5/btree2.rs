@@ -30,19 +30,13 @@ struct Tree<'a> {
 }
 
 /// All records of a tree of a type, in order.
-///
-/// # Errors
-/// The tree is damaged.
 pub(crate) fn read_records(
     file: &Hdf5File,
     address: u64,
     kinds: &[u8],
 ) -> Result<(u8, Vec<Vec<u8>>), Problem> {
     let size = 22 + file.widths.address + file.widths.length;
-    let bytes = file.bytes(address, size as u64)?;
-    file.check(&bytes, address)?;
-    let mut cursor = file.cursor(&bytes, address);
-    cursor.expect(b"BTHD")?;
+    let mut cursor = file.checked(address, size as u64, b"BTHD")?;
     cursor.version("a tree", &[0])?;
     let kind = cursor.u8()?;
     let node = u64::from(cursor.u32()?);
@@ -104,14 +98,11 @@ impl Tree<'_> {
             size += (count + 1) * pointer as u64;
         }
         if size > self.node || !self.seen.insert(address) {
-            return Err(file
-                .cursor(&[], address)
-                .damaged("a tree has a node that does not belong there"));
+            let here = file.cursor(&[][..], address);
+            return Err(here.damaged("a tree has a node that does not belong there"));
         }
-        let bytes = file.bytes(address, size)?;
-        file.check(&bytes, address)?;
-        let mut cursor = file.cursor(&bytes, address);
-        cursor.expect(if depth == 0 { b"BTLF" } else { b"BTIN" })?;
+        let signature = if depth == 0 { b"BTLF" } else { b"BTIN" };
+        let mut cursor = file.checked(address, size, signature)?;
         cursor.skip(2)?;
         let own: Vec<Vec<u8>> = (0..count)
             .map(|_| cursor.take(self.record).map(<[u8]>::to_vec))

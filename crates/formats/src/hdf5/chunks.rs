@@ -22,9 +22,6 @@ pub(crate) fn grid(extents: &[u64], chunk: &[u64]) -> Vec<u64> {
 }
 
 /// Reads the index of a dataset.
-///
-/// # Errors
-/// It is damaged.
 pub(crate) fn read_chunks(
     file: &Hdf5File,
     chunked: &Chunked,
@@ -141,22 +138,18 @@ fn read_tree1(
     let rank = chunked.chunk.len();
     let mut chunks = Chunks::new();
     for leaf in read_leaves(file, address, Keys::Chunks(rank))? {
-        let mut key = file.cursor(&leaf.key, address);
-        let size = u64::from(key.u32()?);
-        let skipped = key.u32()?;
+        let mut key = file.cursor(leaf.key, address);
+        let chunk = Chunk {
+            address: leaf.address,
+            size: Some(u64::from(key.u32()?)),
+            skipped: key.u32()?,
+        };
         let coordinates: Vec<u64> = chunked
             .chunk
             .iter()
             .map(|extent| Ok(key.u64()? / extent))
             .collect::<Result<_, Problem>>()?;
-        if let Some(number) = place.number(&coordinates) {
-            let chunk = Chunk {
-                address: leaf.address,
-                size: Some(size),
-                skipped,
-            };
-            chunks.insert(number, chunk);
-        }
+        chunks.extend(place.number(&coordinates).map(|number| (number, chunk)));
     }
     Ok(chunks)
 }
@@ -171,26 +164,13 @@ fn read_tree2(
     let (kind, records) = read_records(file, address, &[10, 11])?;
     let mut chunks = Chunks::new();
     for record in records {
-        let mut cursor = file.cursor(&record, address);
-        let chunk_at = cursor.address()?;
-        let (mut size, mut skipped) = (None, 0);
-        if kind == 11 {
-            let width = cursor.left().checked_sub(4 + 8 * rank);
-            let width = width.ok_or_else(|| cursor.damaged("a record of a chunk is too short"))?;
-            size = Some(cursor.uint(width)?);
-            skipped = cursor.u32()?;
-        }
+        let mut cursor = file.cursor(record, address);
+        let entry = cursor.left().saturating_sub(8 * rank);
+        let chunk = read_entry(&mut cursor, entry, kind == 11)?;
         let coordinates: Vec<u64> = (0..rank)
             .map(|_| cursor.u64())
             .collect::<Result<_, Problem>>()?;
-        if let (Some(number), Some(address)) = (place.number(&coordinates), chunk_at) {
-            let chunk = Chunk {
-                address,
-                size,
-                skipped,
-            };
-            chunks.insert(number, chunk);
-        }
+        chunks.extend(place.number(&coordinates).zip(chunk));
     }
     Ok(chunks)
 }
@@ -203,10 +183,7 @@ fn read_fixed(
 ) -> Result<Vec<(u64, Option<Chunk>)>, Problem> {
     let widths = file.widths;
     let size = 12 + widths.length + widths.address;
-    let bytes = file.bytes(address, size as u64)?;
-    file.check(&bytes, address)?;
-    let mut cursor = file.cursor(&bytes, address);
-    cursor.expect(b"FAHD")?;
+    let mut cursor = file.checked(address, size as u64, b"FAHD")?;
     cursor.version("an array of chunks", &[0])?;
     let client = cursor.u8()?;
     let entry = usize::from(cursor.u8()?);
@@ -224,9 +201,7 @@ fn read_fixed(
     let page = 1_u64 << page_bits;
     let mut entries = Vec::new();
     let mut read = |at: u64, first: u64, count: u64, before: u64| -> Result<(), Problem> {
-        let bytes = file.bytes(at, before + count * entry as u64 + 4)?;
-        file.check(&bytes, at)?;
-        let mut cursor = file.cursor(&bytes, at);
+        let mut cursor = file.checked_page(at, before + count * entry as u64 + 4)?;
         cursor.skip(before as usize)?;
         for i in 0..count {
             entries.push((first + i, read_entry(&mut cursor, entry, filtered)?));
@@ -238,11 +213,11 @@ fn read_fixed(
         return Ok(entries);
     }
     let pages = count.div_ceil(page);
-    let written = file.bytes(block, head + pages.div_ceil(8) + 4)?;
-    file.check(&written, block)?;
-    let first = block + written.len() as u64;
+    let mut cursor = file.checked_page(block, head + pages.div_ceil(8) + 4)?;
+    let first = block + cursor.left() as u64;
+    cursor.skip(head as usize)?;
     for p in 0..pages {
-        let bits = written[(head + p / 8) as usize];
+        let bits = cursor.rest()[(p / 8) as usize];
         if bits & (0x80 >> (p % 8)) != 0 {
             let at = first + p * (page * entry as u64 + 4);
             read(at, p * page, page.min(count - p * page), 0)?;

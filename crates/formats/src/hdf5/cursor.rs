@@ -1,6 +1,8 @@
 //! Bytes of the structures of an HDF5 file, read one field after the other.
 
 use crate::error::Error;
+use crate::number::integer;
+use std::borrow::Cow;
 
 /// Why a part of an HDF5 file cannot be read.
 #[derive(Debug)]
@@ -29,16 +31,16 @@ pub(crate) struct Widths {
 /// A place in bytes that begin at `start` in the file.
 #[derive(Clone, Debug)]
 pub(crate) struct Cursor<'a> {
-    bytes: &'a [u8],
+    bytes: Cow<'a, [u8]>,
     place: usize,
     start: u64,
     widths: Widths,
 }
 
 impl<'a> Cursor<'a> {
-    pub fn new(bytes: &'a [u8], start: u64, widths: Widths) -> Self {
+    pub fn new(bytes: impl Into<Cow<'a, [u8]>>, start: u64, widths: Widths) -> Self {
         Self {
-            bytes,
+            bytes: bytes.into(),
             place: 0,
             start,
             widths,
@@ -73,21 +75,17 @@ impl<'a> Cursor<'a> {
         }
     }
 
-    pub fn take(&mut self, count: usize) -> Result<&'a [u8], Problem> {
-        match self.bytes[self.place..].get(..count) {
-            Some(bytes) => {
-                self.place += count;
-                Ok(bytes)
-            }
-            None => Err(self.damaged("a structure ends before what it declares")),
+    pub fn take(&mut self, count: usize) -> Result<&[u8], Problem> {
+        if count > self.left() {
+            return Err(self.damaged("a structure ends before what it declares"));
         }
+        self.place += count;
+        Ok(&self.bytes[self.place - count..self.place])
     }
 
     /// All that is left.
-    pub fn rest(&mut self) -> &'a [u8] {
-        let rest = &self.bytes[self.place..];
-        self.place = self.bytes.len();
-        rest
+    pub fn rest(&self) -> &[u8] {
+        &self.bytes[self.place..]
     }
 
     pub fn skip(&mut self, count: usize) -> Result<(), Problem> {
@@ -102,13 +100,11 @@ impl<'a> Cursor<'a> {
 
     /// A whole number of up to eight bytes.
     pub fn uint(&mut self, size: usize) -> Result<u64, Problem> {
-        let mut word = [0; 8];
         let bytes = self.take(size)?;
-        match word.get_mut(..size) {
-            Some(low) => low.copy_from_slice(bytes),
-            None => return Err(self.damaged("a number is longer than eight bytes")),
+        match size <= 8 {
+            true => Ok(integer(bytes, false)),
+            false => Err(self.damaged("a number is longer than eight bytes")),
         }
-        Ok(u64::from_le_bytes(word))
     }
 
     pub fn u8(&mut self) -> Result<u8, Problem> {
@@ -141,12 +137,11 @@ impl<'a> Cursor<'a> {
     }
 
     /// That the next bytes are a signature.
-    pub fn expect(&mut self, signature: &[u8; 4]) -> Result<(), Problem> {
-        let found = self.take(4)?;
-        if found == signature {
+    pub fn signature(&mut self, expected: &[u8; 4]) -> Result<(), Problem> {
+        if self.take(4)? == expected {
             return Ok(());
         }
-        let name = String::from_utf8_lossy(signature);
+        let name = String::from_utf8_lossy(expected);
         Err(Problem::Damaged {
             at: self.at() - 4,
             what: format!("expected a structure \"{name}\""),

@@ -34,9 +34,6 @@ pub(crate) struct Dataset {
 
 impl Dataset {
     /// Reads what a header says of a dataset; `None` if it is none.
-    ///
-    /// # Errors
-    /// It is damaged, or of a kind that is not read.
     pub fn read(file: &Hdf5File, header: &Header) -> Result<Option<Self>, Problem> {
         let (Some(space), Some(datatype), Some(layout)) = (
             header.message(DATASPACE),
@@ -112,9 +109,6 @@ impl Dataset {
 
     /// The bytes of those elements that have indices from `low` to before `high`:
     /// one index in some first extents, a range in the next, and all below.
-    ///
-    /// # Errors
-    /// They are damaged, or not in the file.
     pub fn bytes(
         &mut self,
         file: &Hdf5File,

@@ -24,9 +24,6 @@ struct Array<'a> {
 }
 
 /// The entries of an array, by number.
-///
-/// # Errors
-/// The array is damaged.
 pub(crate) fn read_extensible(
     file: &Hdf5File,
     address: u64,
@@ -34,10 +31,7 @@ pub(crate) fn read_extensible(
 ) -> Result<Vec<(u64, Option<Chunk>)>, Problem> {
     let widths = file.widths;
     let size = 16 + 6 * widths.length + widths.address;
-    let bytes = file.bytes(address, size as u64)?;
-    file.check(&bytes, address)?;
-    let mut cursor = file.cursor(&bytes, address);
-    cursor.expect(b"EAHD")?;
+    let mut cursor = file.checked(address, size as u64, b"EAHD")?;
     cursor.version("an array of chunks", &[0])?;
     let client = cursor.u8()?;
     let entry = usize::from(cursor.u8()?);
@@ -105,10 +99,7 @@ impl Array<'_> {
         let steps = 2 * u64::from(pointers.ilog2());
         let above = supers.saturating_sub(steps);
         let size = 6 + width + in_index * self.entry as u64 + (direct + above) * width + 4;
-        let bytes = self.file.bytes(address, size)?;
-        self.file.check(&bytes, address)?;
-        let mut cursor = self.file.cursor(&bytes, address);
-        cursor.expect(b"EAIB")?;
+        let mut cursor = self.file.checked(address, size, b"EAIB")?;
         cursor.skip(2 + width as usize)?;
         self.read_entries(&mut cursor, in_index)?;
         for step in 0..steps.min(supers) {
@@ -147,12 +138,9 @@ impl Array<'_> {
         let bitmap = pages.div_ceil(8);
         let size = blocks.saturating_mul(bitmap + width);
         let size = size.saturating_add(10 + width + self.offset as u64);
-        let bytes = self.file.bytes(address, size)?;
-        self.file.check(&bytes, address)?;
-        let mut cursor = self.file.cursor(&bytes, address);
-        cursor.expect(b"EASB")?;
+        let mut cursor = self.file.checked(address, size, b"EASB")?;
         cursor.skip(2 + width as usize + self.offset)?;
-        let bitmaps = cursor.take((blocks * bitmap) as usize)?;
+        let bitmaps = cursor.take((blocks * bitmap) as usize)?.to_vec();
         for block in 0..blocks {
             let at = cursor.address()?;
             let from = (block * bitmap) as usize;
@@ -180,10 +168,8 @@ impl Array<'_> {
         } else {
             entries * self.entry as u64
         };
-        let bytes = self.file.bytes(address, head as u64 + within + 4)?;
-        self.file.check(&bytes, address)?;
-        let mut cursor = self.file.cursor(&bytes, address);
-        cursor.expect(b"EADB")?;
+        let size = head as u64 + within + 4;
+        let mut cursor = self.file.checked(address, size, b"EADB")?;
         cursor.skip(head - 4)?;
         if !paged {
             return self.read_entries(&mut cursor, entries);
@@ -195,11 +181,9 @@ impl Array<'_> {
                 self.next = self.next.saturating_add(self.page);
                 continue;
             }
-            let at = address + bytes.len() as u64 + p * page_bytes;
-            let page = self.file.bytes(at, page_bytes)?;
-            self.file.check(&page, at)?;
-            let mut cursor = self.file.cursor(&page, at);
-            self.read_entries(&mut cursor, self.page)?;
+            let at = address + size + p * page_bytes;
+            let mut page = self.file.checked_page(at, page_bytes)?;
+            self.read_entries(&mut page, self.page)?;
         }
         Ok(())
     }

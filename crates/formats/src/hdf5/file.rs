@@ -8,6 +8,7 @@ use crate::error::{Error, Place};
 use crate::hdf5::checksum::lookup3;
 use crate::hdf5::cursor::{Cursor, Problem, Widths};
 use crate::source::Source;
+use std::borrow::Cow;
 
 /// What an HDF5 file begins with, at byte 0 or behind what another program put
 /// before it: at 512, 1024, 2048 and so on.
@@ -41,9 +42,6 @@ pub(crate) fn begins(head: &[u8]) -> bool {
 
 impl Hdf5File {
     /// Reads the superblock.
-    ///
-    /// # Errors
-    /// There is none, or it is damaged.
     pub fn open(source: Source) -> Result<Self, Error> {
         if source.length() == 0 {
             return Err(Error::Empty {
@@ -57,9 +55,6 @@ impl Hdf5File {
     }
 
     /// Bytes at an address.
-    ///
-    /// # Errors
-    /// The file has not so many there.
     pub fn bytes(&self, address: u64, count: u64) -> Result<Vec<u8>, Problem> {
         let at = self.base.saturating_add(address);
         if count > self.source.length().saturating_sub(at) {
@@ -75,10 +70,27 @@ impl Hdf5File {
         Ok(self.source.bytes_at(at, count)?)
     }
 
+    /// The bytes of a structure at an address, behind its signature; the last four
+    /// are the checksum of those before.
+    pub fn checked(
+        &self,
+        address: u64,
+        count: u64,
+        signature: &[u8; 4],
+    ) -> Result<Cursor<'static>, Problem> {
+        let mut cursor = self.checked_page(address, count)?;
+        cursor.signature(signature)?;
+        Ok(cursor)
+    }
+
+    /// As [`Self::checked`], without a signature.
+    pub fn checked_page(&self, address: u64, count: u64) -> Result<Cursor<'static>, Problem> {
+        let bytes = self.bytes(address, count)?;
+        self.check(&bytes, address)?;
+        Ok(self.cursor(bytes, address))
+    }
+
     /// Bytes at an address, `count` or as many as there are.
-    ///
-    /// # Errors
-    /// The address is outside of the file.
     pub fn bytes_up_to(&self, address: u64, count: u64) -> Result<Vec<u8>, Problem> {
         let at = self.base.saturating_add(address);
         let left = self.source.length().saturating_sub(at);
@@ -86,14 +98,11 @@ impl Hdf5File {
     }
 
     /// A cursor on bytes that were read at an address.
-    pub fn cursor<'a>(&self, bytes: &'a [u8], address: u64) -> Cursor<'a> {
+    pub fn cursor<'a>(&self, bytes: impl Into<Cow<'a, [u8]>>, address: u64) -> Cursor<'a> {
         Cursor::new(bytes, self.base.saturating_add(address), self.widths)
     }
 
     /// That the last four bytes are the checksum of those before.
-    ///
-    /// # Errors
-    /// They are not.
     pub fn check(&self, bytes: &[u8], address: u64) -> Result<(), Problem> {
         let problem = |what: &str| Problem::Damaged {
             at: self.base.saturating_add(address),
@@ -123,12 +132,11 @@ fn find_signature(source: &Source) -> Result<u64, Error> {
         }
         at = if at == 0 { 512 } else { at * 2 };
     }
-    Err(Error::Malformed {
-        path: source.path().to_path_buf(),
-        place: Place::Byte(0),
-        problem: "expected the signature of HDF5; this is no HDF5 file".to_owned(),
-        advice: "let windfall find out the format".to_owned(),
-    })
+    Err(source.malformed(
+        Place::Byte(0),
+        "expected the signature of HDF5; this is no HDF5 file",
+        "let windfall find out the format",
+    ))
 }
 
 fn read_superblock(source: Source, at: u64) -> Result<Hdf5File, Problem> {
@@ -137,7 +145,7 @@ fn read_superblock(source: Source, at: u64) -> Result<Hdf5File, Problem> {
         address: 8,
         length: 8,
     };
-    let mut cursor = Cursor::new(&head, at, narrow);
+    let mut cursor = Cursor::new(&head[..], at, narrow);
     cursor.skip(8)?;
     let version = cursor.version("the superblock", &[0, 1, 2, 3])?;
     if version < 2 {

@@ -20,9 +20,6 @@ pub(crate) enum Filter {
 }
 
 /// Reads the filters of a dataset, in the order of writing.
-///
-/// # Errors
-/// They are damaged, or one is not read.
 pub(crate) fn read_filters(cursor: &mut Cursor<'_>) -> Result<Vec<Filter>, Problem> {
     let version = cursor.version("filters", &[1, 2])?;
     let count = cursor.u8()?;
@@ -37,14 +34,14 @@ pub(crate) fn read_filters(cursor: &mut Cursor<'_>) -> Result<Vec<Filter>, Probl
         let number = cursor.u16()?;
         let named = version == 1 || number >= 256;
         let name_length = if named { cursor.u16()? } else { 0 };
-        let flags = cursor.u16()?;
+        cursor.skip(2)?;
         let values = usize::from(cursor.u16()?);
         let name_length = usize::from(name_length);
         let padded = match version {
             1 => name_length.next_multiple_of(8),
             _ => name_length,
         };
-        let name = cursor.take(padded)?;
+        let name = cursor.take(padded)?.to_vec();
         let mut first = None;
         for i in 0..values {
             let value = cursor.u32()?;
@@ -60,13 +57,13 @@ pub(crate) fn read_filters(cursor: &mut Cursor<'_>) -> Result<Vec<Filter>, Probl
             (2, Some(size)) if size > 0 => Filter::Shuffle(size),
             (3, _) => Filter::Fletcher32,
             (32000, _) => Filter::Lzf,
-            _ => return Err(unknown(number, name, flags)),
+            _ => return Err(unknown(number, &name)),
         });
     }
     Ok(filters)
 }
 
-fn unknown(number: u16, name: &[u8], _flags: u16) -> Problem {
+fn unknown(number: u16, name: &[u8]) -> Problem {
     let known = match number {
         4 => "SZIP",
         5 => "n-bit",

@@ -29,9 +29,6 @@ pub(crate) enum Link {
 }
 
 /// The members of a group, by name.
-///
-/// # Errors
-/// The group is damaged.
 pub(crate) fn read_members(file: &Hdf5File, header: &Header) -> Result<Vec<Member>, Problem> {
     let mut members = Vec::new();
     for message in &header.messages {
@@ -72,13 +69,12 @@ fn read_symbols(
     let heap = LocalHeap::read(file, heap)?;
     let entry = 2 * file.widths.address + 24;
     for leaf in read_leaves(file, tree, Keys::Names)? {
-        let head = file.bytes(leaf.address, 8)?;
-        let mut cursor = file.cursor(&head, leaf.address);
-        cursor.expect(b"SNOD")?;
+        let mut cursor = file.cursor(file.bytes(leaf.address, 8)?, leaf.address);
+        cursor.signature(b"SNOD")?;
         cursor.skip(2)?;
         let count = usize::from(cursor.u16()?);
-        let bytes = file.bytes(leaf.address + 8, (count * entry) as u64)?;
-        let mut cursor = file.cursor(&bytes, leaf.address + 8);
+        let entries = leaf.address + 8;
+        let mut cursor = file.cursor(file.bytes(entries, (count * entry) as u64)?, entries);
         for _ in 0..count {
             let name = cursor.uint(file.widths.address)?;
             let address = cursor.address()?;

@@ -11,14 +11,10 @@ pub(crate) struct LocalHeap {
 
 impl LocalHeap {
     /// Reads a heap of names.
-    ///
-    /// # Errors
-    /// It is damaged.
     pub fn read(file: &Hdf5File, address: u64) -> Result<Self, Problem> {
         let size = 8 + 2 * file.widths.length + file.widths.address;
-        let bytes = file.bytes(address, size as u64)?;
-        let mut cursor = file.cursor(&bytes, address);
-        cursor.expect(b"HEAP")?;
+        let mut cursor = file.cursor(file.bytes(address, size as u64)?, address);
+        cursor.signature(b"HEAP")?;
         cursor.skip(4)?;
         let size = cursor.length()?;
         cursor.length()?;
@@ -31,9 +27,6 @@ impl LocalHeap {
     }
 
     /// The name at an offset.
-    ///
-    /// # Errors
-    /// There is none.
     pub fn name(&self, file: &Hdf5File, offset: u64) -> Result<String, Problem> {
         let rest = usize::try_from(offset)
             .ok()
@@ -46,9 +39,6 @@ impl LocalHeap {
 
 /// The bytes of an object in a heap of texts: `reference` is its length, the
 /// address of the collection, and its number in it.
-///
-/// # Errors
-/// It is not there.
 pub(crate) fn read_text(file: &Hdf5File, reference: &[u8], at: u64) -> Result<Vec<u8>, Problem> {
     let mut cursor = file.cursor(reference, at);
     let length = u64::from(cursor.u32()?);
@@ -58,13 +48,11 @@ pub(crate) fn read_text(file: &Hdf5File, reference: &[u8], at: u64) -> Result<Ve
         return Ok(Vec::new());
     };
     let widths = file.widths;
-    let head = file.bytes(address, 8 + widths.length as u64)?;
-    let mut cursor = file.cursor(&head, address);
-    cursor.expect(b"GCOL")?;
+    let mut cursor = file.cursor(file.bytes(address, 8 + widths.length as u64)?, address);
+    cursor.signature(b"GCOL")?;
     cursor.skip(4)?;
     let size = cursor.length()?;
-    let bytes = file.bytes(address, size)?;
-    let mut cursor = file.cursor(&bytes, address);
+    let mut cursor = file.cursor(file.bytes(address, size)?, address);
     cursor.skip(8 + widths.length)?;
     while cursor.left() >= 8 + widths.length {
         let found = u32::from(cursor.u16()?);
@@ -106,16 +94,10 @@ const DEEPEST: usize = 16;
 
 impl<'a> FractalHeap<'a> {
     /// Reads the header of a heap.
-    ///
-    /// # Errors
-    /// It is damaged, or its blocks are filtered.
     pub fn read(file: &'a Hdf5File, address: u64) -> Result<Self, Problem> {
         let widths = file.widths;
         let size = 26 + 12 * widths.length + 3 * widths.address;
-        let bytes = file.bytes(address, size as u64)?;
-        file.check(&bytes, address)?;
-        let mut cursor = file.cursor(&bytes, address);
-        cursor.expect(b"FRHP")?;
+        let mut cursor = file.checked(address, size as u64, b"FRHP")?;
         cursor.version("a heap", &[0])?;
         let id_length = usize::from(cursor.u16()?);
         if cursor.u16()? != 0 {
@@ -162,9 +144,6 @@ impl<'a> FractalHeap<'a> {
     }
 
     /// An object, with its address.
-    ///
-    /// # Errors
-    /// It is not there, or too large to stand in the heap itself.
     pub fn object(&self, id: &[u8]) -> Result<(Vec<u8>, u64), Problem> {
         let mut cursor = self.file.cursor(id, 0);
         let flags = cursor.u8()?;
@@ -203,17 +182,15 @@ impl<'a> FractalHeap<'a> {
             }
             let head = 5 + self.file.widths.address + self.offset_size;
             let direct = self.direct_rows().min(rows);
-            let index = row * self.width + column;
-            let place = head as u64 + index * self.file.widths.address as u64;
-            let bytes = self.file.bytes(
-                block.checked_add(place).ok_or_else(nowhere)?,
-                self.file.widths.address as u64,
-            )?;
+            let width = self.file.widths.address as u64;
+            let place = head as u64 + (row * self.width + column) * width;
+            let place = block.checked_add(place).ok_or_else(nowhere)?;
+            let pointer = self.file.bytes(place, width)?;
             let signature = self.file.bytes(block, 4)?;
-            self.file.cursor(&signature, block).expect(b"FHIB")?;
+            self.file.cursor(signature, block).signature(b"FHIB")?;
             block = self
                 .file
-                .cursor(&bytes, block)
+                .cursor(pointer, block)
                 .address()?
                 .ok_or_else(nowhere)?;
             // A block below has as many rows as make up its size.

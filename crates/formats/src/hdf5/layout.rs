@@ -60,9 +60,6 @@ pub(crate) enum Index {
 }
 
 /// Reads extents.
-///
-/// # Errors
-/// They are damaged.
 pub(crate) fn read_space(cursor: &mut Cursor<'_>) -> Result<Space, Problem> {
     let version = cursor.version("extents", &[1, 2])?;
     let rank = cursor.u8()?;
@@ -98,9 +95,6 @@ pub(crate) fn read_space(cursor: &mut Cursor<'_>) -> Result<Space, Problem> {
 }
 
 /// Reads where the elements are.
-///
-/// # Errors
-/// It is damaged, or of a kind that is not read.
 pub(crate) fn read_layout(
     cursor: &mut Cursor<'_>,
     elements: u64,
@@ -222,9 +216,6 @@ fn read_chunked4(cursor: &mut Cursor<'_>) -> Result<Layout, Problem> {
 
 /// Reads the value of elements that were never written; `old` for the message of
 /// the first versions.
-///
-/// # Errors
-/// It is damaged.
 pub(crate) fn read_fill(cursor: &mut Cursor<'_>, old: bool) -> Result<Vec<u8>, Problem> {
     let defined = match old {
         true => true,

@@ -1,6 +1,7 @@
 //! Elements of HDF5 datasets → numbers.
 
 use crate::hdf5::value_type::{Datatype, Kind, Member};
+use crate::number::{self, Layout, integer};
 
 /// Most numbers in one element.
 const MOST_PARTS: usize = 4096;
@@ -166,42 +167,45 @@ pub(crate) fn number_of(bytes: &[u8], datatype: &Datatype) -> Option<f64> {
 
 /// Appends the number that stands in each element of `bytes`.
 pub(crate) fn decode(bytes: &[u8], element: usize, number: Number, numbers: &mut Vec<f64>) {
-    macro_rules! each {
-        ($kind:ty, $size:literal, $from:ident) => {
-            numbers.extend(
-                bytes
-                    .as_chunks::<$size>()
-                    .0
-                    .iter()
-                    .map(|b| <$kind>::$from(*b) as f64),
-            )
+    let elements = bytes.chunks_exact(element);
+    let Some(kind) = number.usual().filter(|_| elements.len() > 0) else {
+        numbers
+            .extend(elements.filter_map(|bytes| decode_one(bytes.get(number.offset..)?, number)));
+        return;
+    };
+    let layout = Layout {
+        offset: number.offset,
+        stride: element,
+        big_endian: number.big_endian,
+    };
+    let from = numbers.len();
+    numbers.resize(from + elements.len(), 0.0);
+    kind.decode(bytes, layout, &mut numbers[from..]);
+}
+
+impl Number {
+    /// The type of numbers that most files have.
+    fn usual(self) -> Option<number::Number> {
+        use number::Number::{F32, F64, I8, I16, I32, I64, U8, U16, U32, U64};
+        let [signed, unsigned] = match self.size {
+            1 => [I8, U8],
+            2 => [I16, U16],
+            4 => [I32, U32],
+            8 => [I64, U64],
+            _ => return None,
         };
-    }
-    let packed = element == number.size;
-    match (number.form, number.size, number.big_endian) {
-        (Form::Float, 8, false) if packed => each!(f64, 8, from_le_bytes),
-        (Form::Float, 8, true) if packed => each!(f64, 8, from_be_bytes),
-        (Form::Float, 4, false) if packed => each!(f32, 4, from_le_bytes),
-        (Form::Float, 4, true) if packed => each!(f32, 4, from_be_bytes),
-        (Form::Signed, 2, false) if packed => each!(i16, 2, from_le_bytes),
-        (Form::Signed, 4, false) if packed => each!(i32, 4, from_le_bytes),
-        _ => numbers.extend(
-            bytes
-                .chunks_exact(element)
-                .filter_map(|bytes| decode_one(bytes.get(number.offset..)?, number)),
-        ),
+        match (self.form, self.size) {
+            (Form::Signed, _) => Some(signed),
+            (Form::Unsigned, _) => Some(unsigned),
+            (Form::Float, 4) => Some(F32),
+            (Form::Float, 8) => Some(F64),
+            (Form::Float, _) => None,
+        }
     }
 }
 
 fn decode_one(bytes: &[u8], number: Number) -> Option<f64> {
-    // The bytes in the order of significance, the least first.
-    let mut word = [0; 8];
-    let part = word.get_mut(..number.size)?;
-    part.copy_from_slice(bytes.get(..number.size)?);
-    if number.big_endian {
-        part.reverse();
-    }
-    let word = u64::from_le_bytes(word);
+    let word = integer(bytes.get(..number.size)?, number.big_endian);
     Some(match (number.form, number.size) {
         (Form::Unsigned, _) => word as f64,
         (Form::Signed, size) => {

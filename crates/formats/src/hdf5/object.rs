@@ -49,132 +49,119 @@ impl Header {
 }
 
 /// Blocks of messages that are still to be read.
+#[derive(Default)]
 struct Blocks {
     waiting: Vec<(u64, u64)>,
-    seen: Vec<u64>,
     bytes: u64,
 }
 
 impl Blocks {
     fn add(&mut self, cursor: &Cursor<'_>, address: u64, length: u64) -> Result<(), Problem> {
         self.bytes = self.bytes.saturating_add(length);
-        if self.seen.contains(&address) || self.seen.len() > MOST_BLOCKS || self.bytes > LARGEST {
+        let seen = self.waiting.iter().any(|(known, _)| *known == address);
+        if seen || self.waiting.len() > MOST_BLOCKS || self.bytes > LARGEST {
             return Err(cursor.damaged("a header goes round in circles, or is too long"));
         }
-        self.seen.push(address);
         self.waiting.push((address, length));
         Ok(())
     }
 }
 
-/// Reads the header at an address.
-///
-/// # Errors
-/// There is none, or it is damaged.
-pub(crate) fn read_header(file: &Hdf5File, address: u64) -> Result<Header, Problem> {
-    let head = file.bytes_up_to(address, 64)?;
-    let mut cursor = file.cursor(&head, address);
-    match head.starts_with(b"OHDR") {
-        true => read_version2(file, address, &mut cursor),
-        false => read_version1(file, address, &mut cursor),
-    }
+/// How the messages of a header are written.
+enum Form {
+    Version1,
+    /// Bytes before the first message, and of the order of creation of each.
+    Version2 {
+        before: usize,
+        tracked: usize,
+    },
 }
 
-fn read_version1(
-    file: &Hdf5File,
-    address: u64,
-    cursor: &mut Cursor<'_>,
-) -> Result<Header, Problem> {
-    if cursor.u8()? != 1 {
-        return Err(file
-            .cursor(&[], address)
-            .damaged("expected the header of a group or dataset"));
-    }
-    cursor.skip(7)?;
-    let length = u64::from(cursor.u32()?);
-    let mut blocks = Blocks {
-        waiting: Vec::new(),
-        seen: Vec::new(),
-        bytes: 0,
+/// Reads the header at an address.
+pub(crate) fn read_header(file: &Hdf5File, address: u64) -> Result<Header, Problem> {
+    let mut cursor = file.cursor(file.bytes_up_to(address, 64)?, address);
+    let mut blocks = Blocks::default();
+    let form = match cursor.rest().starts_with(b"OHDR") {
+        true => {
+            let (length, form) = begin_version2(&mut cursor)?;
+            blocks.add(&cursor, address, length)?;
+            form
+        }
+        false => {
+            if cursor.u8()? != 1 {
+                return Err(file
+                    .cursor(&[][..], address)
+                    .damaged("expected the header of a group or dataset"));
+            }
+            cursor.skip(7)?;
+            let length = u64::from(cursor.u32()?);
+            blocks.add(&cursor, address + 16, length)?;
+            Form::Version1
+        }
     };
-    blocks.add(cursor, address + 16, length)?;
     let mut header = Header::default();
     let mut next = 0;
     while let Some(&(address, length)) = blocks.waiting.get(next) {
+        let mut bytes = file.bytes(address, length)?;
+        if let Form::Version2 { .. } = form {
+            file.check(&bytes, address)?;
+            bytes.truncate(bytes.len() - 4);
+        }
+        let mut cursor = file.cursor(bytes, address);
+        let head = match form {
+            Form::Version1 => 8,
+            Form::Version2 { before, tracked } => {
+                match next {
+                    0 => cursor.skip(before)?,
+                    _ => cursor.signature(b"OCHK")?,
+                }
+                4 + tracked
+            }
+        };
         next += 1;
-        let bytes = file.bytes(address, length)?;
-        let mut cursor = file.cursor(&bytes, address);
-        while cursor.left() >= 8 {
-            let kind = cursor.u16()?;
-            let size = usize::from(cursor.u16()?);
-            let flags = cursor.u8()?;
-            cursor.skip(3)?;
-            add_message(
-                &mut header,
-                &mut blocks,
-                &mut cursor,
-                (kind, size, flags),
-                address,
-            )?;
+        while cursor.left() >= head {
+            add_message(&mut header, &mut blocks, &mut cursor, &form, address)?;
         }
     }
     Ok(header)
 }
 
-fn read_version2(
-    file: &Hdf5File,
-    address: u64,
-    cursor: &mut Cursor<'_>,
-) -> Result<Header, Problem> {
-    cursor.expect(b"OHDR")?;
+/// The length of the first block of a header of version 2, and its form.
+fn begin_version2(cursor: &mut Cursor<'_>) -> Result<(u64, Form), Problem> {
+    cursor.signature(b"OHDR")?;
     cursor.version("a header", &[2])?;
     let flags = cursor.u8()?;
     // Times, and limits of compact attributes.
     cursor.skip(if flags & 0x20 != 0 { 16 } else { 0 })?;
     cursor.skip(if flags & 0x10 != 0 { 4 } else { 0 })?;
     let length = cursor.uint(1 << (flags & 3))?;
-    let before = cursor.place() as u64;
-    let mut blocks = Blocks {
-        waiting: Vec::new(),
-        seen: Vec::new(),
-        bytes: 0,
+    let form = Form::Version2 {
+        before: cursor.place(),
+        tracked: if flags & 4 != 0 { 2 } else { 0 },
     };
-    let whole = length.saturating_add(before + 4);
-    blocks.add(cursor, address, whole)?;
-    let mut header = Header::default();
-    let mut next = 0;
-    while let Some(&(address, length)) = blocks.waiting.get(next) {
-        let bytes = file.bytes(address, length)?;
-        file.check(&bytes, address)?;
-        let mut cursor = file.cursor(&bytes[..bytes.len() - 4], address);
-        match next {
-            0 => cursor.skip(before as usize)?,
-            _ => cursor.expect(b"OCHK")?,
-        }
-        next += 1;
-        let tracked = if flags & 4 != 0 { 2 } else { 0 };
-        while cursor.left() >= 4 + tracked {
-            let kind = u16::from(cursor.u8()?);
-            let size = usize::from(cursor.u16()?);
-            let message_flags = cursor.u8()?;
-            cursor.skip(tracked)?;
-            let what = (kind, size, message_flags);
-            add_message(&mut header, &mut blocks, &mut cursor, what, address)?;
-        }
-    }
-    Ok(header)
+    Ok((length.saturating_add(cursor.place() as u64 + 4), form))
 }
 
 fn add_message(
     header: &mut Header,
     blocks: &mut Blocks,
     cursor: &mut Cursor<'_>,
-    (kind, size, flags): (u16, usize, u8),
+    form: &Form,
     block: u64,
 ) -> Result<(), Problem> {
+    let kind = match form {
+        Form::Version1 => cursor.u16()?,
+        Form::Version2 { .. } => u16::from(cursor.u8()?),
+    };
+    let size = usize::from(cursor.u16()?);
+    let shared = cursor.u8()? & 2 != 0;
+    cursor.skip(match form {
+        Form::Version1 => 3,
+        Form::Version2 { tracked, .. } => *tracked,
+    })?;
     let address = block + cursor.place() as u64;
     let start = cursor.at();
-    let bytes = cursor.take(size)?;
+    let bytes = cursor.take(size)?.to_vec();
     if kind == CONTINUATION {
         let mut body = Cursor::new(bytes, start, cursor.widths());
         let next = body.address()?;
@@ -185,8 +172,8 @@ fn add_message(
     if kind != 0 {
         header.messages.push(Message {
             kind,
-            shared: flags & 2 != 0,
-            bytes: bytes.to_vec(),
+            shared,
+            bytes,
             address,
         });
     }
@@ -194,9 +181,6 @@ fn add_message(
 }
 
 /// The message that a shared one stands for; another is given back as it is.
-///
-/// # Errors
-/// It is damaged, or shared in a way that is not read.
 pub(crate) fn resolve(file: &Hdf5File, message: &Message) -> Result<Message, Problem> {
     if !message.shared {
         return Ok(message.clone());

@@ -30,9 +30,6 @@ pub(crate) fn begins(head: &[u8]) -> bool {
 
 impl Hdf5Reader {
     /// Lists what a file holds.
-    ///
-    /// # Errors
-    /// The file cannot be read, is no HDF5 file, or its root is damaged.
     pub fn open(source: Source) -> Result<Self, Error> {
         let file = Hdf5File::open(source)?;
         let length = file.source.length();

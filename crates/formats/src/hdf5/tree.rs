@@ -70,9 +70,6 @@ struct Walk<'a> {
 }
 
 /// Lists what a file holds.
-///
-/// # Errors
-/// Its root cannot be read. What cannot be read below is left out with a note.
 pub(crate) fn list(file: &Hdf5File) -> Result<Hdf5Tree, Error> {
     let mut walk = Walk {
         file,

@@ -58,9 +58,6 @@ pub(crate) struct Member {
 const ODD: &str = "its numbers do not fill their bytes, or are floats of an unusual form";
 
 /// Reads a type.
-///
-/// # Errors
-/// It is damaged.
 pub(crate) fn read_type(cursor: &mut Cursor<'_>) -> Result<Datatype, Problem> {
     read_nested(cursor, 0)
 }
@@ -127,7 +124,7 @@ fn read_integer(
 fn read_float(cursor: &mut Cursor<'_>, bits: u64, size: usize) -> Result<Kind, Problem> {
     let (offset, precision) = (cursor.u16()?, cursor.u16()?);
     // Place and size of the exponent, and of the fraction.
-    let form = cursor.take(4)?;
+    let form = cursor.take(4)?.to_vec();
     let bias = cursor.u32()?;
     let sign = bits >> 8 & 0xff;
     let usual = match size {

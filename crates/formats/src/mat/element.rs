@@ -1,7 +1,8 @@
 //! Data elements of MAT files of version 5: a tag and what it announces.
 
 use crate::error::{Error, Place};
-use crate::mat::flow::{ADVICE, Flow};
+use crate::mat::flow::{ADVICE, Flow, Region};
+use crate::number::integer;
 use crate::source::Source;
 
 /// Type of an element that holds a matrix.
@@ -29,8 +30,9 @@ pub(crate) struct Element {
 pub(crate) struct Elements<'a> {
     /// The file, for messages.
     pub source: &'a Source,
-    /// The bytes of the variable.
+    /// The bytes of the variable, and where they stand in the file.
     pub flow: Flow<'a>,
+    pub region: Region,
     /// Order of bytes.
     pub big_endian: bool,
     /// Where the variable begins in the file, for messages.
@@ -39,9 +41,6 @@ pub(crate) struct Elements<'a> {
 
 impl Elements<'_> {
     /// The element at `at` of something that ends at `end`.
-    ///
-    /// # Errors
-    /// It does not fit there.
     pub fn element(&mut self, at: u64, end: u64) -> Result<Element, Error> {
         if end.saturating_sub(at) < 8 {
             return Err(self.malformed("expected a data element, found the end of the variable"));
@@ -85,9 +84,6 @@ impl Elements<'_> {
     }
 
     /// The data of an element; of a longer one the first `most` bytes.
-    ///
-    /// # Errors
-    /// They are damaged.
     pub fn data(&mut self, element: Element, most: u64) -> Result<Vec<u8>, Error> {
         let length = element.length.min(most) as usize;
         if let Some(small) = element.small {
@@ -101,9 +97,6 @@ impl Elements<'_> {
     }
 
     /// The integers of an element, at most `most`.
-    ///
-    /// # Errors
-    /// They are damaged.
     pub fn integers(&mut self, element: Element, most: u64) -> Result<Vec<u32>, Error> {
         let bytes = self.data(element, most * 4)?;
         let words = bytes.as_chunks::<4>().0.iter();
@@ -111,21 +104,16 @@ impl Elements<'_> {
     }
 
     /// Four bytes as a number.
-    pub fn u32(&self, bytes: &[u8]) -> u32 {
-        let bytes = [bytes[0], bytes[1], bytes[2], bytes[3]];
-        match self.big_endian {
-            true => u32::from_be_bytes(bytes),
-            false => u32::from_le_bytes(bytes),
-        }
+    fn u32(&self, bytes: &[u8]) -> u32 {
+        integer(bytes, self.big_endian) as u32
     }
 
     /// The error that the variable breaks the rules.
     pub fn malformed(&self, problem: &str) -> Error {
-        Error::Malformed {
-            path: self.source.path().to_path_buf(),
-            place: Place::Byte(self.start),
-            problem: format!("in the variable that begins here: {problem}"),
-            advice: ADVICE.to_owned(),
-        }
+        self.source.malformed(
+            Place::Byte(self.start),
+            format!("in the variable that begins here: {problem}"),
+            ADVICE,
+        )
     }
 }

@@ -70,23 +70,19 @@ impl<'a> Flow<'a> {
 
     /// Fills `buffer` with the (decompressed) bytes from `at` on. Of compressed
     /// ones `at` must not be before the end of what was read.
-    ///
-    /// # Errors
-    /// There are too few, or they are damaged.
     pub fn read_at(&mut self, at: u64, buffer: &mut [u8]) -> Result<(), Error> {
         let (source, region) = (self.source, self.region);
         let Some(inflater) = &mut self.inflater else {
             let needed = at.saturating_add(buffer.len() as u64);
             if needed > region.length {
-                return Err(Error::Malformed {
-                    path: source.path().to_path_buf(),
-                    place: Place::Byte(region.start.saturating_add(at)),
-                    problem: format!(
+                return Err(source.malformed(
+                    Place::Byte(region.start.saturating_add(at)),
+                    format!(
                         "{} bytes are declared beyond the end of the variable",
                         needed - region.length
                     ),
-                    advice: ADVICE.to_owned(),
-                });
+                    ADVICE,
+                ));
             }
             return source.read_at(region.start + at, buffer);
         };
@@ -109,9 +105,6 @@ impl<'a> Flow<'a> {
 
     /// Reads the few bytes behind the last number, and with them tests the
     /// checksum of compressed ones.
-    ///
-    /// # Errors
-    /// It does not fit.
     pub fn finish(&mut self) -> Result<(), Error> {
         let mut rest = [0; 8];
         let (source, start) = (self.source, self.region.start);
@@ -133,17 +126,16 @@ impl<'a> Flow<'a> {
 }
 
 fn damaged(source: &Source, start: u64, error: &std::io::Error) -> Error {
-    Error::Malformed {
-        path: source.path().to_path_buf(),
-        place: Place::Byte(start),
-        problem: match error.kind() {
+    source.malformed(
+        Place::Byte(start),
+        match error.kind() {
             std::io::ErrorKind::UnexpectedEof => {
                 "the compressed data that begin here end before what they declare".to_owned()
             }
             _ => format!("the compressed data that begin here are damaged ({error})"),
         },
-        advice: ADVICE.to_owned(),
-    }
+        ADVICE,
+    )
 }
 
 /// What to do with damaged data.

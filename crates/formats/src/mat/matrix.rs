@@ -3,9 +3,9 @@
 use crate::arrays::tree::{Array, BEGINNING, first_fastest};
 use crate::error::Error;
 use crate::mat::element::{Element, Elements, MATRIX};
-use crate::mat::flow::Region;
-use crate::mat::number::MatNumber;
+use crate::mat::number::{name_of, of_class, of_element};
 use crate::mat::stored::{MatTree, Stored};
+use crate::number::{Number, integer};
 
 /// Deepest nesting of structs and cells.
 const DEEPEST: usize = 32;
@@ -45,31 +45,23 @@ struct Matrix {
 }
 
 /// Lists what a variable holds.
-///
-/// # Errors
-/// It is damaged.
-pub(crate) fn list_variable(
-    elements: &mut Elements<'_>,
-    region: Region,
-    walk: &mut Walk,
-) -> Result<(), Error> {
+pub(crate) fn list_variable(elements: &mut Elements<'_>, walk: &mut Walk) -> Result<(), Error> {
     // The length of decompressed bytes is only known from their first tag.
-    let end = match region.compressed {
+    let end = match elements.region.compressed {
         true => u64::MAX,
-        false => region.length,
+        false => elements.region.length,
     };
     let element = elements.element(0, end)?;
     if element.kind != MATRIX {
         return Err(elements.malformed("expected a matrix"));
     }
     walk.end = element.at + element.length;
-    list_matrix(elements, region, element, &[], walk)
+    list_matrix(elements, element, &[], walk)
 }
 
 /// Lists a matrix; `above` is empty for a variable, which has its own name.
 fn list_matrix(
     elements: &mut Elements<'_>,
-    region: Region,
     element: Element,
     above: &[String],
     walk: &mut Walk,
@@ -128,11 +120,11 @@ fn list_matrix(
         return Ok(());
     }
     match class {
-        CELL => list_cells(elements, region, &matrix, &path, walk),
-        STRUCT => list_struct(elements, region, &matrix, &path, walk),
+        CELL => list_cells(elements, &matrix, &path, walk),
+        STRUCT => list_struct(elements, &matrix, &path, walk),
         TEXT => list_text(elements, &matrix, path, walk),
-        _ => match MatNumber::of_class(class) {
-            Some(number) => list_numbers(elements, region, &matrix, (path, number), walk),
+        _ => match of_class(class) {
+            Some(number) => list_numbers(elements, &matrix, (path, number), walk),
             None => {
                 walk.found.tree.leave_out(&path, reason(class));
                 Ok(())
@@ -158,7 +150,6 @@ fn reason(class: u8) -> &'static str {
 
 fn list_cells(
     elements: &mut Elements<'_>,
-    region: Region,
     matrix: &Matrix,
     path: &[String],
     walk: &mut Walk,
@@ -167,7 +158,7 @@ fn list_cells(
     check_room(elements, matrix, matrix.count)?;
     for cell in 0..matrix.count {
         let element = elements.element(at, matrix.end)?;
-        list_part(elements, region, element, path, &[cell + 1], None, walk)?;
+        list_part(elements, element, path, &[cell + 1], None, walk)?;
         at = element.next;
     }
     Ok(())
@@ -175,7 +166,6 @@ fn list_cells(
 
 fn list_struct(
     elements: &mut Elements<'_>,
-    region: Region,
     matrix: &Matrix,
     path: &[String],
     walk: &mut Walk,
@@ -216,7 +206,7 @@ fn list_struct(
         };
         for name in &names {
             let element = elements.element(at, matrix.end)?;
-            list_part(elements, region, element, path, number, Some(name), walk)?;
+            list_part(elements, element, path, number, Some(name), walk)?;
             at = element.next;
         }
     }
@@ -226,7 +216,6 @@ fn list_struct(
 /// Lists a cell, or a field of a struct.
 fn list_part(
     elements: &mut Elements<'_>,
-    region: Region,
     element: Element,
     path: &[String],
     number: &[u64],
@@ -239,7 +228,7 @@ fn list_part(
     let mut path = path.to_vec();
     path.extend(number.iter().map(u64::to_string));
     path.extend(name.cloned());
-    list_matrix(elements, region, element, &path, walk)
+    list_matrix(elements, element, &path, walk)
 }
 
 /// Each part of a struct or cell needs a tag of eight bytes.
@@ -267,10 +256,7 @@ fn list_text(
         1 | 2 | 16 => String::from_utf8_lossy(&bytes).into_owned(),
         4 | 17 => {
             let pairs = bytes.as_chunks::<2>().0.iter();
-            let units = pairs.map(|b| match big_endian {
-                true => u16::from_be_bytes(*b),
-                false => u16::from_le_bytes(*b),
-            });
+            let units = pairs.map(|pair| integer(pair, big_endian) as u16);
             char::decode_utf16(units)
                 .map(|c| c.unwrap_or(char::REPLACEMENT_CHARACTER))
                 .collect()
@@ -299,9 +285,8 @@ fn by_rows(text: &str, matrix: &Matrix) -> String {
 
 fn list_numbers(
     elements: &mut Elements<'_>,
-    region: Region,
     matrix: &Matrix,
-    (path, class): (Vec<String>, MatNumber),
+    (path, class): (Vec<String>, Number),
     walk: &mut Walk,
 ) -> Result<(), Error> {
     let parts: &[&'static str] = match matrix.complex {
@@ -312,7 +297,7 @@ fn list_numbers(
     for &part in parts {
         let element = elements.element(at, matrix.end)?;
         at = element.next;
-        let Some(number) = MatNumber::of_element(element.kind) else {
+        let Some(number) = of_element(element.kind) else {
             return Err(elements.malformed("expected the numbers of a matrix"));
         };
         if element.length != matrix.count.saturating_mul(number.size()) {
@@ -321,14 +306,14 @@ fn list_numbers(
                 path.join("/"),
                 matrix.count,
                 element.length,
-                number.name()
+                name_of(number)
             );
             return Err(elements.malformed(&problem));
         }
         let first = first_column(elements, matrix, element, number)?;
         let value = first.first().copied().filter(|_| matrix.count == 1);
         walk.found.stored.push(Stored {
-            region,
+            region: elements.region,
             at: element.at,
             number,
             count: matrix.count,
@@ -339,7 +324,7 @@ fn list_numbers(
             path: path.clone(),
             part,
             extents: first_fastest(&matrix.extents),
-            stored_as: stored_as(matrix, class, number, region),
+            stored_as: stored_as(matrix, class, number, elements.region.compressed),
             value,
             beginning: first,
             unit: None,
@@ -354,27 +339,26 @@ fn first_column(
     elements: &mut Elements<'_>,
     matrix: &Matrix,
     element: Element,
-    number: MatNumber,
+    number: Number,
 ) -> Result<Vec<f64>, Error> {
-    let mut numbers = Vec::new();
     if matrix.count == 1 || (matrix.extents.len() == 2 && matrix.extents[1] > 1) {
         let most = matrix.extents[0].min(BEGINNING) * number.size();
         let bytes = elements.data(element, most)?;
-        number.decode(&bytes, elements.big_endian, &mut numbers);
+        return Ok(number.decode_all(&bytes, elements.big_endian));
     }
-    Ok(numbers)
+    Ok(Vec::new())
 }
 
-fn stored_as(matrix: &Matrix, class: MatNumber, number: MatNumber, region: Region) -> String {
+fn stored_as(matrix: &Matrix, class: Number, number: Number, compressed: bool) -> String {
     let mut text = match matrix.logical {
         true => "logical".to_owned(),
-        false => class.name().to_owned(),
+        false => name_of(class).to_owned(),
     };
     if number != class {
         text.push_str(", stored as ");
-        text.push_str(number.name());
+        text.push_str(name_of(number));
     }
-    if region.compressed {
+    if compressed {
         text.push_str(", compressed");
     }
     text

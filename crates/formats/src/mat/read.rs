@@ -30,9 +30,6 @@ pub(crate) fn begins(head: &[u8]) -> bool {
 
 impl MatReader {
     /// Lists what a file holds.
-    ///
-    /// # Errors
-    /// The file cannot be read, is none of MATLAB, or is damaged.
     pub fn open(source: Source) -> Result<Self, Error> {
         let mut properties = Vec::new();
         let head = source.head(128)?;
@@ -105,10 +102,9 @@ fn read_array(
         let count = (end - at).min(BLOCK);
         bytes.resize((count * size) as usize, 0);
         flow.read_at(stored.at + at * size, &mut bytes)?;
-        numbers.clear();
-        stored
-            .number
-            .decode(&bytes, stored.big_endian, &mut numbers);
+        numbers.resize(count as usize, 0.0);
+        let layout = stored.number.packed(stored.big_endian);
+        stored.number.decode(&bytes, layout, &mut numbers);
         pass.take(at, &numbers, sink)?;
         at += count;
     }

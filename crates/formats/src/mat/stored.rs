@@ -2,7 +2,7 @@
 
 use crate::arrays::tree::Tree;
 use crate::mat::flow::Region;
-use crate::mat::number::MatNumber;
+use crate::number::Number;
 
 /// The numbers of one array.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -12,7 +12,7 @@ pub(crate) struct Stored {
     /// First byte, within the (decompressed) bytes of the region.
     pub at: u64,
     /// How each is stored.
-    pub number: MatNumber,
+    pub number: Number,
     /// How many.
     pub count: u64,
     /// Order of bytes.

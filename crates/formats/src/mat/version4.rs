@@ -7,8 +7,9 @@ use crate::arrays::tree::{Array, BEGINNING, first_fastest};
 use crate::contents::Note;
 use crate::error::{Error, Place};
 use crate::mat::flow::{ADVICE, Flow, Region};
-use crate::mat::number::MatNumber;
+use crate::mat::number::{name_of, of_version_4};
 use crate::mat::stored::{MatTree, Stored};
+use crate::number::integer;
 use crate::source::Source;
 
 /// Bytes of a header.
@@ -51,10 +52,7 @@ pub(crate) fn begins(head: &[u8]) -> bool {
 fn read_header(bytes: &[u8]) -> Option<Header> {
     let words = bytes.get(..HEADER as usize)?.as_chunks::<4>().0;
     [false, true].into_iter().find_map(|big_endian| {
-        let word = |i: usize| match big_endian {
-            true => u32::from_be_bytes(words[i]),
-            false => u32::from_le_bytes(words[i]),
-        };
+        let word = |i: usize| integer(&words[i], big_endian) as u32;
         let kind = word(0);
         let header = Header {
             machine: kind / 1000,
@@ -79,9 +77,6 @@ fn read_header(bytes: &[u8]) -> Option<Header> {
 }
 
 /// Lists the matrices of a file.
-///
-/// # Errors
-/// A header is none, or the numbers are those of a VAX or a Cray.
 pub(crate) fn list(source: &Source) -> Result<MatTree, Error> {
     let mut found = MatTree::default();
     let mut at = 0;
@@ -117,7 +112,7 @@ fn list_matrix(source: &Source, at: u64, found: &mut MatTree) -> Result<u64, Err
     if header.machine > 1 {
         return Err(refused_machine(source, at, &header));
     }
-    let number = MatNumber::of_version_4(header.digit)
+    let number = of_version_4(header.digit)
         .ok_or_else(|| malformed(source, at, "expected a type of numbers from 0 to 5"))?;
     let count = u64::from(header.rows) * u64::from(header.columns);
     let parts = 1 + u64::from(header.complex);
@@ -180,7 +175,7 @@ fn add(
             path: path.clone(),
             part,
             extents: first_fastest(&[u64::from(header.rows), u64::from(header.columns)]),
-            stored_as: stored.number.name().to_owned(),
+            stored_as: name_of(stored.number).to_owned(),
             value,
             beginning: if header.columns > 1 {
                 first
@@ -211,11 +206,7 @@ fn read_some(source: &Source, stored: Stored, most: u64) -> Result<Vec<f64>, Err
     let count = stored.count.min(most);
     let mut bytes = vec![0; (count * stored.number.size()) as usize];
     Flow::new(source, stored.region).read_at(stored.at, &mut bytes)?;
-    let mut numbers = Vec::with_capacity(count as usize);
-    stored
-        .number
-        .decode(&bytes, stored.big_endian, &mut numbers);
-    Ok(numbers)
+    Ok(stored.number.decode_all(&bytes, stored.big_endian))
 }
 
 fn refused_machine(source: &Source, at: u64, header: &Header) -> Error {
@@ -224,19 +215,13 @@ fn refused_machine(source: &Source, at: u64, header: &Header) -> Error {
         3 => "VAX G-float",
         _ => "Cray",
     };
-    Error::Unsupported {
-        path: source.path().to_path_buf(),
-        place: Place::Byte(at),
-        what: format!("{machine} numbers"),
-        advice: "load the file in MATLAB and save it again".to_owned(),
-    }
+    source.unsupported(
+        Place::Byte(at),
+        format!("{machine} numbers"),
+        "load the file in MATLAB and save it again",
+    )
 }
 
 fn malformed(source: &Source, at: u64, problem: &str) -> Error {
-    Error::Malformed {
-        path: source.path().to_path_buf(),
-        place: Place::Byte(at),
-        problem: problem.to_owned(),
-        advice: ADVICE.to_owned(),
-    }
+    source.malformed(Place::Byte(at), problem, ADVICE)
 }

@@ -10,6 +10,7 @@ use crate::mat::element::{COMPRESSED, Elements, MATRIX};
 use crate::mat::flow::{Flow, Region};
 use crate::mat::matrix::{Walk, list_variable};
 use crate::mat::stored::MatTree;
+use crate::number::integer;
 use crate::source::Source;
 
 /// Bytes of the header of a file.
@@ -32,84 +33,56 @@ pub(crate) fn begins(head: &[u8]) -> bool {
 }
 
 /// The header of a file.
-///
-/// # Errors
-/// It is none, or that of version 7.3.
 pub(crate) fn read_header(source: &Source) -> Result<Header, Error> {
     if source.length() < HEADER {
         return Err(source.truncated(0, "the header of a MAT file", HEADER));
     }
     let bytes = source.bytes_at(0, HEADER)?;
     let big_endian = &bytes[126..] == b"MI";
-    let whole = |i: usize| match big_endian {
-        true => u16::from_be_bytes([bytes[i], bytes[i + 1]]),
-        false => u16::from_le_bytes([bytes[i], bytes[i + 1]]),
-    };
-    let version = whole(124);
+    let version = integer(&bytes[124..126], big_endian);
     if !begins(&bytes) || version != 0x0100 {
         let problem = match version {
             0x0200 => "this is version 7.3, which is an HDF5 file".to_owned(),
             _ => format!("expected version 256 and \"IM\" or \"MI\", found version {version}"),
         };
-        return Err(Error::Malformed {
-            path: source.path().to_path_buf(),
-            place: Place::Byte(124),
+        return Err(source.malformed(
+            Place::Byte(124),
             problem,
-            advice: "let windfall find out the format, or save the file again in MATLAB".to_owned(),
-        });
+            "let windfall find out the format, or save the file again in MATLAB",
+        ));
     }
     let text = String::from_utf8_lossy(&bytes[..116]);
-    let mut offset = [0; 8];
-    offset.copy_from_slice(&bytes[116..124]);
-    let subsystem = match big_endian {
-        true => u64::from_be_bytes(offset),
-        false => u64::from_le_bytes(offset),
-    };
     Ok(Header {
         description: text.trim_matches(['\0', ' ']).to_owned(),
         big_endian,
-        subsystem,
+        subsystem: integer(&bytes[116..124], big_endian),
     })
 }
 
 /// Lists the arrays of a file, and whether any variable is compressed.
-///
-/// # Errors
-/// The file is damaged; if it is only cut off, and there is anything before,
-/// that is a note.
 pub(crate) fn list(source: &Source, header: &Header) -> Result<(MatTree, bool), Error> {
     let mut walk = Walk::default();
     let mut any_compressed = false;
     let mut at = HEADER;
     while at < source.length() {
-        let left = source.length() - at - 8.min(source.length() - at);
-        let whole = Region {
-            start: at,
-            length: source.length() - at,
-            compressed: false,
-        };
-        if whole.length < 8 {
+        let left = source.length() - at;
+        if left < 8 {
             cut_off(source, &mut walk, at, "the tag of a variable", 8)?;
             break;
         }
         let (kind, length) = read_tag(source, header, at)?;
-        if length > left {
+        if length > left - 8 {
             cut_off(source, &mut walk, at + 8, "a variable", length)?;
             break;
         }
         let compressed = kind == COMPRESSED;
         any_compressed |= compressed;
-        let region = match compressed {
-            true => Region {
-                start: at + 8,
-                length,
-                compressed,
-            },
-            false => Region {
-                start: at,
-                length: length + 8,
-                compressed,
-            },
+        // The tag of a matrix belongs to it.
+        let tag = if compressed { 0 } else { 8 };
+        let region = Region {
+            start: at + 8 - tag,
+            length: length + tag,
+            compressed,
         };
         if at == header.subsystem {
             walk.found.tree.leave_out(
@@ -120,10 +93,11 @@ pub(crate) fn list(source: &Source, header: &Header) -> Result<(MatTree, bool), 
             let mut elements = Elements {
                 source,
                 flow: Flow::new(source, region),
+                region,
                 big_endian: header.big_endian,
                 start: at,
             };
-            list_variable(&mut elements, region, &mut walk)?;
+            list_variable(&mut elements, &mut walk)?;
         } else {
             walk.found.tree.notes.push(Note::Odd {
                 what: format!("at byte {at} stands a data element of type {kind}, passed over"),
@@ -140,14 +114,8 @@ pub(crate) fn list(source: &Source, header: &Header) -> Result<(MatTree, bool), 
 
 fn read_tag(source: &Source, header: &Header, at: u64) -> Result<(u32, u64), Error> {
     let bytes = source.bytes_at(at, 8)?;
-    let [mut kind, mut length] = [[0; 4]; 2];
-    kind.copy_from_slice(&bytes[..4]);
-    length.copy_from_slice(&bytes[4..]);
-    let whole = |bytes| match header.big_endian {
-        true => u32::from_be_bytes(bytes),
-        false => u32::from_le_bytes(bytes),
-    };
-    Ok((whole(kind), u64::from(whole(length))))
+    let [kind, length] = [&bytes[..4], &bytes[4..]].map(|b| integer(b, header.big_endian));
+    Ok((kind as u32, length))
 }
 
 /// Notes that a file ends too early; an error if nothing stands before.

@@ -45,19 +45,13 @@ struct Metadata {
 
 impl SigrokReader {
     /// Reads the description of a capture.
-    ///
-    /// # Errors
-    /// The file cannot be read, is no capture, or its description lacks something.
     pub fn open(source: Source) -> Result<Self, Error> {
         let entries = read_entries(&source)?;
         let Some(description) = entries.iter().find(|entry| entry.name == "metadata") else {
-            return Err(Error::UnknownFormat {
-                path: source.path().to_path_buf(),
-                found: "this zip archive is no capture of sigrok: it has no entry \"metadata\""
-                    .to_owned(),
-                advice: "unpack it and name the recording; save a workbook's sheet as CSV"
-                    .to_owned(),
-            });
+            return Err(source.unknown(
+                "this zip archive is no capture of sigrok: it has no entry \"metadata\"",
+                "unpack it and name the recording; save a workbook's sheet as CSV",
+            ));
         };
         let metadata = read_metadata(&source, description)?;
         let mut parts: Vec<(u64, Entry)> = entries
@@ -116,11 +110,12 @@ impl SigrokReader {
 }
 
 fn read_metadata(source: &Source, entry: &Entry) -> Result<Metadata, Error> {
-    let broken = |problem: String| Error::Malformed {
-        path: source.path().to_path_buf(),
-        place: Place::Object("metadata".to_owned()),
-        problem,
-        advice: "save the capture again".to_owned(),
+    let broken = |problem: String| {
+        source.malformed(
+            Place::Object("metadata".to_owned()),
+            problem,
+            "save the capture again",
+        )
     };
     let mut text = String::new();
     let read = open_entry(source, entry)?
@@ -191,11 +186,12 @@ impl Reader for SigrokReader {
         for part in &self.parts {
             let mut stream = open_entry(&self.source, part)?;
             loop {
-                let filled = fill(&mut stream, &mut bytes).map_err(|error| Error::Malformed {
-                    path: self.source.path().to_path_buf(),
-                    place: Place::Object(part.name.clone()),
-                    problem: format!("the capture cannot be unpacked: {error}"),
-                    advice: "save the capture again".to_owned(),
+                let filled = fill(&mut stream, &mut bytes).map_err(|error| {
+                    self.source.malformed(
+                        Place::Object(part.name.clone()),
+                        format!("the capture cannot be unpacked: {error}"),
+                        "save the capture again",
+                    )
                 })?;
                 let rows = filled / self.unit;
                 for (position, channel) in wanted.iter().enumerate() {

@@ -38,12 +38,11 @@ pub struct Entry {
 }
 
 fn malformed(source: &Source, at: u64, problem: &str) -> Error {
-    Error::Malformed {
-        path: source.path().to_path_buf(),
-        place: Place::Byte(at),
-        problem: problem.to_owned(),
-        advice: "the archive is damaged; copy or export the capture again".to_owned(),
-    }
+    source.malformed(
+        Place::Byte(at),
+        problem,
+        "the archive is damaged; copy or export the capture again",
+    )
 }
 
 fn u16_at(bytes: &[u8], at: usize) -> u16 {
@@ -60,9 +59,6 @@ fn u32_at(bytes: &[u8], at: usize) -> u64 {
 }
 
 /// The entries of an archive, in the order of its directory.
-///
-/// # Errors
-/// There is no directory, or it lies outside of the file.
 pub fn read_entries(source: &Source) -> Result<Vec<Entry>, Error> {
     let length = source.length();
     let tail = (END_RECORD + LONGEST_COMMENT).min(length);
@@ -106,10 +102,6 @@ pub fn read_entries(source: &Source) -> Result<Vec<Entry>, Error> {
 }
 
 /// The bytes of an entry as a stream.
-///
-/// # Errors
-/// Its data lie outside of the file, or it is compressed in another way than by
-/// deflate.
 pub fn open_entry<'a>(source: &'a Source, entry: &Entry) -> Result<Box<dyn Read + 'a>, Error> {
     let header = source.bytes_at(entry.header, LOCAL_HEADER)?;
     if !header.starts_with(b"PK\x03\x04") {
@@ -132,12 +124,11 @@ pub fn open_entry<'a>(source: &'a Source, entry: &Entry) -> Result<Box<dyn Read 
     match entry.method {
         0 => Ok(Box::new(BufReader::new(stored))),
         8 => Ok(Box::new(DeflateDecoder::new(BufReader::new(stored)))),
-        other => Err(Error::Unsupported {
-            path: source.path().to_path_buf(),
-            place: Place::Object(entry.name.clone()),
-            what: format!("entries compressed by method {other}"),
-            advice: "save the capture again".to_owned(),
-        }),
+        other => Err(source.unsupported(
+            Place::Object(entry.name.clone()),
+            format!("entries compressed by method {other}"),
+            "save the capture again",
+        )),
     }
 }
 

@@ -1,6 +1,8 @@
 //! Where the raw data of TDMS segments lie.
 
+use crate::number;
 use crate::tdms::metadata::{Index, Scaler};
+use crate::tdms::scale::RAW;
 use crate::tdms::value_type::{Layout, ValueType};
 use std::sync::Arc;
 
@@ -9,7 +11,7 @@ use std::sync::Arc;
 pub struct Member {
     /// Position in the objects of the file.
     pub object: usize,
-    /// Number by which scales refer to it; [`crate::tdms::scale::RAW`] unless of
+    /// Number by which scales refer to it; [`RAW`] unless of
     /// NI-DAQmx.
     pub id: u32,
     /// Where its values lie in the rows.
@@ -62,7 +64,6 @@ pub struct Flags {
 
 /// A whole chunk of a segment and its size in bytes; `None` where the objects
 /// cannot stand together.
-#[must_use]
 pub fn chunk(active: &[Active], flags: Flags) -> Option<(Vec<Region>, u64)> {
     let daqmx = active
         .iter()
@@ -176,44 +177,35 @@ fn daqmx_chunk(active: &[Active], flags: Flags) -> Option<(Vec<Region>, u64)> {
 fn member(object: usize, value: ValueType, offset: u64, width: u64, flags: Flags) -> Member {
     Member {
         object,
-        id: crate::tdms::scale::RAW,
+        id: RAW,
         layout: Layout {
             value,
-            offset: offset as usize,
-            stride: width as usize,
-            big_endian: flags.big_endian,
+            place: number::Layout {
+                offset: offset as usize,
+                stride: width as usize,
+                big_endian: flags.big_endian,
+            },
             bit: None,
         },
     }
 }
 
 fn scaler_member(object: usize, scaler: &Scaler, width: u64, flags: Flags) -> Member {
-    Member {
-        object,
-        id: scaler.id,
-        layout: Layout {
-            value: scaler.value,
-            offset: scaler.offset as usize,
-            stride: width as usize,
-            big_endian: flags.big_endian,
-            bit: scaler.bit,
-        },
-    }
+    let offset = u64::from(scaler.offset);
+    let mut member = member(object, scaler.value, offset, width, flags);
+    member.id = scaler.id;
+    member.layout.bit = scaler.bit;
+    member
 }
 
 /// What `bytes` bytes hold of a chunk that was cut off.
-#[must_use]
 pub fn cut(regions: &[Region], bytes: u64) -> Vec<Region> {
-    let mut kept = Vec::new();
-    for region in regions {
+    let kept = regions.iter().map(|region| {
         let left = bytes.saturating_sub(region.offset);
-        let rows = (left / region.width).min(region.rows);
-        if rows > 0 {
-            kept.push(Region {
-                rows,
-                ..region.clone()
-            });
+        Region {
+            rows: (left / region.width).min(region.rows),
+            ..region.clone()
         }
-    }
-    kept
+    });
+    kept.filter(|region| region.rows > 0).collect()
 }

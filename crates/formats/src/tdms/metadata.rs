@@ -3,6 +3,7 @@
 //! # Source
 //! National Instruments, "TDMS file format internal structure".
 
+use crate::number::{Number, integer};
 use crate::tdms::value_type::{ValueType, timestamp};
 use std::collections::BTreeMap;
 
@@ -23,7 +24,6 @@ pub enum Property {
 
 impl Property {
     /// The number, if it is one.
-    #[must_use]
     pub fn number(&self) -> Option<f64> {
         match self {
             Self::Number(value) => Some(*value),
@@ -32,7 +32,6 @@ impl Property {
     }
 
     /// The text, if it is one.
-    #[must_use]
     pub fn text(&self) -> Option<&str> {
         match self {
             Self::Number(_) => None,
@@ -114,7 +113,6 @@ pub struct Fault {
 
 impl<'a> Cursor<'a> {
     /// At the beginning of `bytes`.
-    #[must_use]
     pub fn new(bytes: &'a [u8], big_endian: bool) -> Self {
         Self {
             bytes,
@@ -132,39 +130,25 @@ impl<'a> Cursor<'a> {
     }
 
     fn take(&mut self, count: usize) -> Result<&'a [u8], Fault> {
-        let end = self
-            .at
-            .checked_add(count)
-            .filter(|end| *end <= self.bytes.len());
-        let Some(end) = end else {
-            return Err(Fault {
-                at: self.at,
-                problem: format!(
-                    "{count} bytes are needed, {} are left of the metadata",
-                    self.bytes.len() - self.at
-                ),
-                ended: true,
-            });
-        };
-        let taken = &self.bytes[self.at..end];
-        self.at = end;
+        let left = &self.bytes[self.at..];
+        let taken = left.get(..count).ok_or_else(|| Fault {
+            at: self.at,
+            problem: format!(
+                "{count} bytes are needed, {} are left of the metadata",
+                left.len()
+            ),
+            ended: true,
+        })?;
+        self.at += count;
         Ok(taken)
     }
 
     fn u32(&mut self) -> Result<u32, Fault> {
-        let bytes: [u8; 4] = self.take(4)?.try_into().unwrap_or([0; 4]);
-        Ok(match self.big_endian {
-            true => u32::from_be_bytes(bytes),
-            false => u32::from_le_bytes(bytes),
-        })
+        Ok(integer(self.take(4)?, self.big_endian) as u32)
     }
 
     fn u64(&mut self) -> Result<u64, Fault> {
-        let bytes: [u8; 8] = self.take(8)?.try_into().unwrap_or([0; 8]);
-        Ok(match self.big_endian {
-            true => u64::from_be_bytes(bytes),
-            false => u64::from_le_bytes(bytes),
-        })
+        Ok(integer(self.take(8)?, self.big_endian))
     }
 
     fn text(&mut self) -> Result<String, Fault> {
@@ -174,9 +158,6 @@ impl<'a> Cursor<'a> {
 }
 
 /// Reads the objects of a segment.
-///
-/// # Errors
-/// Where the metadata ends too early or breaks the rules.
 pub fn read_objects(cursor: &mut Cursor) -> Result<Vec<ObjectEntry>, Fault> {
     let count = cursor.u32()?;
     let mut objects = Vec::new();
@@ -295,18 +276,13 @@ fn read_property(cursor: &mut Cursor) -> Result<Option<Property>, Fault> {
             fraction,
         ))));
     }
-    if !value.is_number() {
-        return Ok(None);
-    }
-    let mut out = [0.0];
-    let layout = crate::tdms::value_type::Layout {
-        value,
-        offset: 0,
-        stride: bytes.len(),
-        big_endian,
-        bit: None,
+    let number = match value {
+        ValueType::Number(number) => number,
+        ValueType::Bool => Number::U8,
+        _ => return Ok(None),
     };
-    crate::tdms::value_type::decode(bytes, layout, 0, &mut out);
+    let mut out = [0.0];
+    number.decode(bytes, number.packed(big_endian), &mut out);
     Ok(Some(Property::Number(out[0])))
 }
 
@@ -335,7 +311,6 @@ fn date(seconds: i64, fraction: f64) -> String {
 }
 
 /// Group and channel of a path; "" for the file, and a group alone for a group.
-#[must_use]
 pub fn names_of(path: &str) -> Vec<String> {
     let mut names = Vec::new();
     let mut rest = path;

@@ -6,6 +6,7 @@
 
 use crate::contents::{ChannelContents, Contents, Format, Note, TimeBase};
 use crate::error::Error;
+use crate::number::Number;
 use crate::reader::{Reader, Sink};
 use crate::room::zeros;
 use crate::source::Source;
@@ -45,10 +46,6 @@ struct Channel {
 
 impl TdmsReader {
     /// Reads the metadata of all segments.
-    ///
-    /// # Errors
-    /// The file cannot be read, is none of this format, or is damaged before its
-    /// last segment.
     pub fn open(source: Source) -> Result<Self, Error> {
         let found = read_segments(&source)?;
         let version = source.bytes_at(4, 8)?;
@@ -302,14 +299,12 @@ fn decode_channel(channel: &Channel, bytes: &[u8], region: &Region, out: &mut [f
 /// Whether a region holds one channel as this machine keeps its numbers.
 fn holds_doubles(region: &Region) -> bool {
     let doubles = Layout {
-        value: ValueType::F64,
-        offset: 0,
-        stride: size_of::<f64>(),
-        big_endian: cfg!(target_endian = "big"),
+        value: ValueType::Number(Number::F64),
+        place: Number::F64.packed(cfg!(target_endian = "big")),
         bit: None,
     };
     matches!(region.members[..], [Member { layout, .. }] if layout == doubles)
-        && region.width == doubles.stride as u64
+        && region.width == Number::F64.size()
 }
 
 /// Objects among the members of a region, each once, with their places.

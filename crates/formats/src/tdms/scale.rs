@@ -69,7 +69,6 @@ pub struct Scales {
 
 impl Scales {
     /// The numbers of the raw values that the channel takes.
-    #[must_use]
     pub fn raw_inputs(&self) -> Vec<u32> {
         let Some((&last, _)) = self.scales.last_key_value() else {
             return vec![RAW];
@@ -92,7 +91,6 @@ impl Scales {
 
     /// Whether the last scale can be had in a sensible number of steps: scales may
     /// refer to each other in a circle, or double with each step.
-    #[must_use]
     pub fn ends(&self) -> bool {
         let mut budget = MOST_STEPS;
         let last = self.scales.last_key_value().map_or(RAW, |(last, _)| *last);
@@ -113,7 +111,6 @@ impl Scales {
     }
 
     /// Names of the scales, for people.
-    #[must_use]
     pub fn describe(&self) -> String {
         let names = self.scales.values().map(|scale| match scale {
             Scale::Same { .. } => "no scale",
@@ -234,10 +231,6 @@ fn interpolated(x: f64, before: &[f64], after: &[f64]) -> f64 {
 
 /// The scales that properties describe: those of the channel, or of its group,
 /// or of the file.
-///
-/// # Errors
-/// What cannot be read: the type of a scale that is not known, or a property
-/// that is missing.
 pub fn scales_of(properties: &BTreeMap<String, Property>) -> Result<Scales, String> {
     let mut scales = Scales::default();
     let count = properties

@@ -2,6 +2,7 @@
 
 use crate::contents::Note;
 use crate::error::{Error, Place};
+use crate::number::integer;
 use crate::source::Source;
 use crate::tdms::layout::{Active, Flags, Group, Region, chunk, cut};
 use crate::tdms::metadata::{Cursor, Index, ObjectEntry, Property, read_objects};
@@ -61,10 +62,6 @@ pub struct Found {
 }
 
 /// Reads the metadata of all segments.
-///
-/// # Errors
-/// The file cannot be read, is none of this format, or is damaged before its last
-/// segment.
 pub fn read_segments(source: &Source) -> Result<Found, Error> {
     let mut found = Found::default();
     let mut at = 0;
@@ -89,14 +86,12 @@ pub fn read_segments(source: &Source) -> Result<Found, Error> {
 }
 
 fn malformed(source: &Source, at: u64, problem: String) -> Error {
-    Error::Malformed {
-        path: source.path().to_path_buf(),
-        place: Place::Byte(at),
+    source.malformed(
+        Place::Byte(at),
         problem,
-        advice: "the file is damaged, or was written by a program that does not keep to the \
-                 format; export the recording again"
-            .to_owned(),
-    }
+        "the file is damaged, or was written by a program that does not keep to the \
+                 format; export the recording again",
+    )
 }
 
 fn read_lead_in(source: &Source, at: u64) -> Result<LeadIn, Error> {
@@ -108,17 +103,11 @@ fn read_lead_in(source: &Source, at: u64) -> Result<LeadIn, Error> {
         };
         return Err(malformed(source, at, problem));
     }
-    let flags = u32::from_le_bytes(bytes[4..8].try_into().unwrap_or([0; 4]));
-    let flag = |bit: u32| flags & (1 << bit) != 0;
+    // Flags are little-endian whatever the rest is.
+    let flag = |bit: u32| bytes[4] & (1 << bit) != 0;
     let big_endian = flag(6);
-    let offset = |from: usize| {
-        let bytes: [u8; 8] = bytes[from..from + 8].try_into().unwrap_or([0; 8]);
-        match big_endian {
-            true => u64::from_be_bytes(bytes),
-            false => u64::from_le_bytes(bytes),
-        }
-    };
-    let (length, metadata_length) = (offset(12), offset(20));
+    let length = integer(&bytes[12..20], big_endian);
+    let metadata_length = integer(&bytes[20..28], big_endian);
     let next = at + LEAD_IN;
     let next = next
         .checked_add(length)
@@ -307,11 +296,14 @@ fn add_data(
 
 fn add_group(found: &mut Found, offset: u64, chunks: u64, size: u64, regions: &Arc<Vec<Region>>) {
     for region in regions.iter() {
-        let big_endian = region.members.first().is_some_and(|m| m.layout.big_endian);
+        let big_endian = region
+            .members
+            .first()
+            .is_some_and(|m| m.layout.place.big_endian);
         let mut counted = None;
         for member in &region.members {
             let object = &mut found.objects[member.object];
-            let value_at = offset + region.offset + member.layout.offset as u64;
+            let value_at = offset + region.offset + member.layout.place.offset as u64;
             object.first.get_or_insert((value_at, big_endian));
             // Several scalers of a channel are one sample.
             if counted != Some(member.object) {

@@ -3,7 +3,6 @@
 use crate::text::rows::Separator;
 
 /// Cells of a line.
-#[must_use]
 pub fn cells(line: &str, separator: Separator) -> Vec<&str> {
     match separator {
         Separator::Blanks => line.split_whitespace().collect(),
@@ -26,7 +25,6 @@ pub fn cells(line: &str, separator: Separator) -> Vec<&str> {
 
 /// The cells of a line that has as many as the table has columns, or one blank
 /// cell more.
-#[must_use]
 pub fn row(line: &str, separator: Separator, count: usize) -> Option<Vec<&str>> {
     let mut cells = cells(line, separator);
     if cells.len() == count + 1 && cells[count].trim().is_empty() {

@@ -11,7 +11,6 @@ pub struct Moment {
 
 impl Moment {
     /// Time from `start` to this moment; s.
-    #[must_use]
     pub fn since(self, start: Self) -> f64 {
         (self.seconds - start.seconds) as f64 + (self.fraction - start.fraction)
     }
@@ -22,7 +21,6 @@ impl Moment {
 /// Read are "2024-11-19 20:39:53.123" (also with "T", "/", "Z" or an offset from
 /// UTC), "19.11.2024 20:39:53,123", and "20:39:53.123". A date alone, or with
 /// slashes and the year last, is none: day and month could be exchanged.
-#[must_use]
 pub fn moment(text: &str) -> Option<Moment> {
     let text = text.trim();
     let (date, clock) = match text.find(['T', ' ']) {

@@ -54,9 +54,6 @@ fn look(text: &str, marks: Marks) -> Look {
 ///
 /// Returns `None` where no line holds a number between separators, and the
 /// position of a line that shows it.
-///
-/// # Errors
-/// The position of a line that is no row of a table of numbers.
 pub fn find_dialect(lines: &[&str], options: &TextOptions) -> Result<Dialect, usize> {
     let comments = comment_marks(lines, options);
     let data: Vec<usize> = (0..lines.len())

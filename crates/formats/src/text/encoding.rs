@@ -26,8 +26,7 @@ const WINDOWS_1252: [char; 32] = [
 
 impl Encoding {
     /// Bytes of one unit, which a line break takes.
-    #[must_use]
-    pub fn unit(self) -> usize {
+    pub(crate) fn unit(self) -> usize {
         match self {
             Self::Utf8 | Self::Windows1252 => 1,
             Self::Utf16Le | Self::Utf16Be => 2,
@@ -35,8 +34,7 @@ impl Encoding {
     }
 
     /// Its name.
-    #[must_use]
-    pub fn name(self) -> &'static str {
+    pub(crate) fn name(self) -> &'static str {
         match self {
             Self::Utf8 => "UTF-8",
             Self::Windows1252 => "Windows-1252",
@@ -46,8 +44,7 @@ impl Encoding {
     }
 
     /// The text that bytes stand for; what is no character becomes "\u{fffd}".
-    #[must_use]
-    pub fn decode(self, bytes: &[u8]) -> Cow<'_, str> {
+    pub(crate) fn decode(self, bytes: &[u8]) -> Cow<'_, str> {
         match self {
             Self::Utf8 => String::from_utf8_lossy(bytes),
             Self::Windows1252 => match std::str::from_utf8(bytes) {
@@ -75,8 +72,7 @@ fn utf16(bytes: &[u8], unit: fn([u8; 2]) -> u16) -> Cow<'static, str> {
 }
 
 /// The encoding of a file by its first bytes, and the length of its mark.
-#[must_use]
-pub fn tell_encoding(head: &[u8]) -> (Encoding, usize) {
+pub(crate) fn tell_encoding(head: &[u8]) -> (Encoding, usize) {
     if head.starts_with(b"\xef\xbb\xbf") {
         return (Encoding::Utf8, 3);
     }

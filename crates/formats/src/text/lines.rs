@@ -27,16 +27,12 @@ pub struct Lines {
 }
 
 /// Number of stretches.
-#[must_use]
 pub fn stretches(lines: &Lines) -> u64 {
     lines.end.saturating_sub(lines.start).div_ceil(STRETCH)
 }
 
 /// Stretch `index` in UTF-8 or a code page of one byte: the lines that begin in
 /// it. Each line belongs to one stretch.
-///
-/// # Errors
-/// The file cannot be read, or a line is longer than 4 MiB.
 pub fn stretch(source: &Source, lines: &Lines, index: u64) -> Result<Vec<u8>, Error> {
     let mut buffer = Vec::new();
     Ok(stretch_in(source, lines, index, &mut buffer)?.to_vec())
@@ -44,9 +40,6 @@ pub fn stretch(source: &Source, lines: &Lines, index: u64) -> Result<Vec<u8>, Er
 
 /// As [`stretch`], in a buffer that may serve for many: fresh memory for each
 /// would cost as much time as the reading.
-///
-/// # Errors
-/// As [`stretch`].
 pub fn stretch_in<'a>(
     source: &Source,
     lines: &Lines,
@@ -84,13 +77,11 @@ pub fn stretch_in<'a>(
             break filled;
         }
         if at - to > LONGEST_LINE {
-            return Err(Error::Malformed {
-                path: source.path().to_path_buf(),
-                place: Place::Byte(to),
-                problem: "a line is longer than 4 MiB".to_owned(),
-                advice: "a table of numbers has one line for each sample; is this another format?"
-                    .to_owned(),
-            });
+            return Err(source.malformed(
+                Place::Byte(to),
+                "a line is longer than 4 MiB",
+                "a table of numbers has one line for each sample; is this another format?",
+            ));
         }
         searched = filled;
         let next = (at + FURTHER).min(lines.end);

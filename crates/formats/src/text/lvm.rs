@@ -5,6 +5,7 @@
 
 use crate::contents::{ChannelContents, Contents, Format, Note, TimeBase};
 use crate::error::{Error, Place};
+use crate::names::Names;
 use crate::reader::{Reader, Sink};
 use crate::source::Source;
 use crate::text::encoding::{Encoding, tell_encoding};
@@ -73,9 +74,6 @@ struct Segment {
 
 impl LvmReader {
     /// Reads the headers of a file.
-    ///
-    /// # Errors
-    /// The file cannot be read, or a header lacks what it must have.
     pub fn open(source: Source) -> Result<Self, Error> {
         let (encoding, _) = tell_encoding(&source.head(1 << 16)?);
         let marks = header_ends(&source)?;
@@ -107,12 +105,14 @@ impl LvmReader {
         };
         let mut places = Vec::new();
         let mut tables = Vec::new();
+        let mut names = Names::default();
         for (index, segment) in segments.iter().enumerate() {
             let suffix = match segments.len() {
                 1 => String::new(),
                 _ => format!(" (segment {})", index + 1),
             };
-            let columns = add_channels(&source, &file, segment, &suffix, &mut contents)?;
+            let columns =
+                add_channels(&source, &file, segment, &suffix, &mut names, &mut contents)?;
             places.extend(columns.into_iter().map(|column| (index, column)));
             tables.push(table(&file, segment));
         }
@@ -126,12 +126,11 @@ impl LvmReader {
 }
 
 fn malformed(source: &Source, line: u64, problem: &str) -> Error {
-    Error::Malformed {
-        path: source.path().to_path_buf(),
-        place: Place::Line(line),
-        problem: format!("this is no complete LabVIEW measurement file: {problem}"),
-        advice: "write the file again, or read it as text (format \"text\")".to_owned(),
-    }
+    source.malformed(
+        Place::Line(line),
+        format!("this is no complete LabVIEW measurement file: {problem}"),
+        "write the file again, or read it as text (format \"text\")",
+    )
 }
 
 /// Where the lines that end headers begin.
@@ -321,6 +320,7 @@ fn add_channels(
     file: &FileHeader,
     segment: &Segment,
     suffix: &str,
+    names: &mut Names,
     contents: &mut Contents,
 ) -> Result<Vec<usize>, Error> {
     let value = |key: &str, column: usize| {
@@ -353,11 +353,14 @@ fn add_channels(
     let mut x_channel = None;
     for column in 0..last {
         let place = contents.channels.len();
-        let name = unique(contents, &segment.names[column], column, suffix);
+        if is_x(column) && file.x_columns == XColumns::No {
+            continue;
+        }
+        let name = names.unique(&match segment.names[column].as_str() {
+            "" => format!("column_{}{suffix}", column + 1),
+            name => format!("{name}{suffix}"),
+        });
         if is_x(column) {
-            if file.x_columns == XColumns::No {
-                continue;
-            }
             x_channel = Some((place, column));
             contents
                 .channels
@@ -411,17 +414,6 @@ fn channel(name: String, unit: Option<String>, time: TimeBase) -> ChannelContent
         stored_as: "text".to_owned(),
         properties: Vec::new(),
     }
-}
-
-fn unique(contents: &Contents, name: &str, column: usize, suffix: &str) -> String {
-    let name = match name {
-        "" => format!("column_{}{suffix}", column + 1),
-        name => format!("{name}{suffix}"),
-    };
-    let taken = |name: &str| contents.channels.iter().any(|channel| channel.name == name);
-    let numbered = (2..).map(|number| format!("{name} ({number})"));
-    let mut names = std::iter::once(name.clone()).chain(numbered);
-    names.find(|name| !taken(name)).unwrap_or(name)
 }
 
 /// Cells of the first rows of a segment.

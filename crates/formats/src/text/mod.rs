@@ -1,15 +1,15 @@
 //! Delimited text, and LVM by LabVIEW.
 
-pub mod cells;
-pub mod date;
-pub mod dialect;
+mod cells;
+mod date;
+mod dialect;
 pub mod encoding;
-pub mod header;
-pub mod lines;
-pub mod lvm;
-pub mod number;
+mod header;
+mod lines;
+pub(crate) mod lvm;
+pub(crate) mod number;
 pub mod options;
 mod power;
-pub mod read;
+pub(crate) mod read;
 pub mod rows;
-pub mod table;
+pub(crate) mod table;

@@ -44,7 +44,6 @@ pub struct Marks {
 /// or quotient of two exact doubles is correctly rounded. Others are left to the
 /// standard library.
 #[inline]
-#[must_use]
 pub fn leading_number(bytes: &[u8], decimal: u8) -> Option<(f64, usize)> {
     // Signs come at random: a branch on them would be guessed wrong half of the time.
     let first = bytes.first().copied().unwrap_or(0);
@@ -212,7 +211,6 @@ fn slow_number(bytes: &[u8], decimal: u8) -> Option<f64> {
 }
 
 /// What stands in a cell, quotes and blanks around it allowed.
-#[must_use]
 pub fn cell(text: &str, marks: Marks) -> Cell {
     let text = bare(text);
     if text.is_empty() {
@@ -244,7 +242,6 @@ pub fn cell(text: &str, marks: Marks) -> Cell {
 }
 
 /// The text of a cell without blanks and quotes around it.
-#[must_use]
 pub fn bare(text: &str) -> &str {
     let text = text.trim();
     let inner = text
@@ -255,7 +252,6 @@ pub fn bare(text: &str) -> &str {
 
 /// The number without its thousands marks; `None` where they do not stand
 /// between groups of three digits.
-#[must_use]
 pub fn without_groups(text: &str, mark: char, decimal: char) -> Option<String> {
     let (integer, rest) = match text.find([decimal, 'e', 'E']) {
         Some(at) => text.split_at(at),

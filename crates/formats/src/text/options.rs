@@ -24,7 +24,7 @@ pub struct TextOptions {
 
 /// Columns and how they are written.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Dialect {
+pub(crate) struct Dialect {
     /// What stands between cells.
     pub separator: Separator,
     /// Marks in numbers.

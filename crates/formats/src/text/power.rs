@@ -107,7 +107,6 @@ fn double(words: &mut [u32]) {
 /// # Source
 /// D. Lemire (2021), "Number parsing at a gigabyte per second", Softw. Pract.
 /// Exper. 51:1700: a product with 128 bits of 5^q decides all but a few cases.
-#[must_use]
 pub fn nearest_double(mantissa: u64, power: i32) -> Option<f64> {
     if mantissa == 0 {
         return Some(0.0);

@@ -2,6 +2,7 @@
 
 use crate::contents::{ChannelContents, Contents, Format, Note, TimeBase};
 use crate::error::Error;
+use crate::names::Names;
 use crate::reader::{Reader, Sink};
 use crate::source::Source;
 use crate::text::dialect::find_dialect;
@@ -10,7 +11,6 @@ use crate::text::lines::Lines;
 use crate::text::options::{Dialect, TextOptions};
 use crate::text::rows::{ColumnKind, RowPlan, Separator};
 use crate::text::table::{CutOff, Table, read_table, read_whole_table, shortened};
-use std::collections::{BTreeMap, BTreeSet};
 
 /// Bytes from which the dialect is found out.
 const HEAD: u64 = 1 << 16;
@@ -30,10 +30,6 @@ pub struct TextReader {
 
 impl TextReader {
     /// Finds out the dialect of a file.
-    ///
-    /// # Errors
-    /// The file cannot be read, is empty, holds no table of numbers, or a setting
-    /// does not fit it.
     pub fn open(source: Source, options: &TextOptions) -> Result<Self, Error> {
         let head = source.head(HEAD)?;
         let (told, mark) = tell_encoding(&head);
@@ -119,11 +115,10 @@ fn check_text(source: &Source, text: &str) -> Result<(), Error> {
     if 50 * strange <= all {
         return Ok(());
     }
-    Err(Error::UnknownFormat {
-        path: source.path().to_path_buf(),
-        found: "this is a binary file of a format that windfall does not know".to_owned(),
-        advice: "export the recording as CSV, TDMS, MAT, HDF5, WAV or UFF58".to_owned(),
-    })
+    Err(source.unknown(
+        "this is a binary file of a format that windfall does not know",
+        "export the recording as CSV, TDMS, MAT, HDF5, WAV or UFF58",
+    ))
 }
 
 fn check_header_line(source: &Source, options: &TextOptions, lines: usize) -> Result<(), Error> {
@@ -139,17 +134,15 @@ fn check_header_line(source: &Source, options: &TextOptions, lines: usize) -> Re
 
 fn no_table(source: &Source, lines: &[&str], at: usize) -> Error {
     let line = lines.get(at).copied().unwrap_or_default();
-    Error::UnknownFormat {
-        path: source.path().to_path_buf(),
-        found: format!(
+    source.unknown(
+        format!(
             "no table of numbers found (line {} reads \"{}\")",
             at + 1,
             shortened(line.trim())
         ),
-        advice: "expected lines of numbers with commas, semicolons, tabs or blanks between them; \
-                 the settings separator, decimal and header_line say how to read an unusual one"
-            .to_owned(),
-    }
+        "expected lines of numbers with commas, semicolons, tabs or blanks between them; \
+                 the settings separator, decimal and header_line say how to read an unusual one",
+    )
 }
 
 fn contents(dialect: &Dialect, encoding: Encoding) -> (Contents, Vec<usize>, Vec<String>) {
@@ -232,26 +225,14 @@ fn contents(dialect: &Dialect, encoding: Encoding) -> (Contents, Vec<usize>, Vec
 
 /// Names without repetitions; a column without a name has its number.
 fn unique_names(dialect: &Dialect, notes: &mut Vec<Note>) -> Vec<String> {
-    let mut names: Vec<String> = Vec::new();
-    let mut taken = BTreeSet::new();
-    // How often a name has been given.
-    let mut given: BTreeMap<String, usize> = BTreeMap::new();
+    let mut names = Names::default();
+    let mut named = Vec::new();
     for (column, name) in dialect.names.iter().enumerate() {
         let wanted = match name.as_str() {
             "" => format!("column_{}", column + 1),
             name => name.to_owned(),
         };
-        let number = given.entry(wanted.clone()).or_insert(0);
-        *number += 1;
-        let mut unique = wanted.clone();
-        while *number > 1 || taken.contains(&unique) {
-            *number = (*number).max(2);
-            unique = format!("{wanted} ({number})");
-            if !taken.contains(&unique) {
-                break;
-            }
-            *number += 1;
-        }
+        let unique = names.unique(&wanted);
         if unique != wanted {
             notes.push(Note::Odd {
                 what: format!(
@@ -260,10 +241,9 @@ fn unique_names(dialect: &Dialect, notes: &mut Vec<Note>) -> Vec<String> {
                 ),
             });
         }
-        taken.insert(unique.clone());
-        names.push(unique);
+        named.push(unique);
     }
-    names
+    named
 }
 
 /// Words in names of columns of times.
@@ -281,7 +261,6 @@ const TIME_WORDS: [&str; 10] = [
 ];
 
 /// Whether a column of that name holds times.
-#[must_use]
 pub fn is_time_name(name: &str) -> bool {
     let lower = name.to_lowercase();
     // "Run 1: Time (s)": what follows the last colon counts.

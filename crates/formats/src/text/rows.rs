@@ -15,7 +15,7 @@ pub enum Separator {
 
 /// What a column holds.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum ColumnKind {
+pub(crate) enum ColumnKind {
     /// Numbers.
     Numbers,
     /// Moments, which become seconds since this one.
@@ -26,7 +26,7 @@ pub enum ColumnKind {
 
 /// How lines are read.
 #[derive(Clone, Debug, PartialEq)]
-pub struct RowPlan {
+pub(crate) struct RowPlan {
     /// What stands between cells.
     pub separator: Separator,
     /// Marks in numbers.
@@ -45,15 +45,14 @@ pub struct RowPlan {
 
 /// Room for the samples of a column: one for each line is enough.
 #[derive(Debug)]
-pub struct Column<'a> {
+pub(crate) struct Column<'a> {
     room: &'a mut [f64],
     length: usize,
 }
 
 impl<'a> Column<'a> {
     /// An empty column with some room.
-    #[must_use]
-    pub fn new(room: &'a mut [f64]) -> Self {
+    pub(crate) fn new(room: &'a mut [f64]) -> Self {
         Self { room, length: 0 }
     }
 
@@ -68,7 +67,7 @@ impl<'a> Column<'a> {
 
 /// What a stretch of lines holds, besides the samples.
 #[derive(Debug, Default)]
-pub struct Rows {
+pub(crate) struct Rows {
     /// Rows: samples in each column; NaN stands where a cell is blank.
     pub rows: usize,
     /// Lines, also those that are no rows.
@@ -81,7 +80,7 @@ pub struct Rows {
 
 /// A cell that is no number.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Fault {
+pub(crate) struct Fault {
     /// Line in the stretch, from 0.
     pub line: u64,
     /// Column of the file.
@@ -92,7 +91,7 @@ pub struct Fault {
 
 /// A line with the wrong number of cells.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Ragged {
+pub(crate) struct Ragged {
     /// Line in the stretch, from 0.
     pub line: u64,
     /// Cells in it.
@@ -103,8 +102,7 @@ pub struct Ragged {
 
 /// The most rows that a stretch can hold: one for each line, and no more than
 /// its bytes allow, so that room for them is bounded whatever the file says.
-#[must_use]
-pub fn most_rows(bytes: &[u8], plan: &RowPlan) -> usize {
+pub(crate) fn most_rows(bytes: &[u8], plan: &RowPlan) -> usize {
     let ends = memchr::memchr_iter(plan.newline, bytes).count();
     let lines = ends + usize::from(bytes.last().is_some_and(|last| *last != plan.newline));
     let shortest = match (plan.separator, plan.short_rows) {
@@ -120,7 +118,7 @@ pub fn most_rows(bytes: &[u8], plan: &RowPlan) -> usize {
 ///
 /// * `places`: for each column of the file, its position in `columns`
 /// * `columns`: where samples go, with room for [`most_rows`] each
-pub fn read_rows(
+pub(crate) fn read_rows(
     bytes: &[u8],
     plan: &RowPlan,
     places: &[Option<usize>],

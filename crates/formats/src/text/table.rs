@@ -44,10 +44,6 @@ type Read = (Vec<Vec<f64>>, Rows);
 /// * `wanted`: column of the file and position for the sink
 ///
 /// Returns the last line where that was cut off; it is left out.
-///
-/// # Errors
-/// The file cannot be read, a line has the wrong number of cells, there is no
-/// row, or the sink returned an error.
 pub fn read_table(
     source: &Source,
     table: &Table,
@@ -90,9 +86,6 @@ pub fn read_table(
 /// Reads columns of a table into memory, each stretch right into its place.
 ///
 /// * `wanted`: columns of the file
-///
-/// # Errors
-/// As [`read_table`], with the first cell that is no number.
 pub fn read_whole_table(
     source: &Source,
     table: &Table,
@@ -237,14 +230,12 @@ impl Course {
 }
 
 fn malformed(source: &Source, line: u64, problem: String) -> Error {
-    Error::Malformed {
-        path: source.path().to_path_buf(),
-        place: Place::Line(line),
+    source.malformed(
+        Place::Line(line),
         problem,
-        advice: "mend the line, or say with the settings separator, decimal and header_line how \
-                 to read the file"
-            .to_owned(),
-    }
+        "mend the line, or say with the settings separator, decimal and header_line how \
+                 to read the file",
+    )
 }
 
 fn fault_error(source: &Source, table: &Table, fault: &Fault, first_line: u64) -> Error {
@@ -270,7 +261,6 @@ fn hint(table: &Table, text: &str) -> String {
 }
 
 /// A text for a message, not too long.
-#[must_use]
 pub fn shortened(text: &str) -> String {
     match text.char_indices().nth(SHOWN) {
         Some((at, _)) => format!("{}…", &text[..at]),

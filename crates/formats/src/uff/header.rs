@@ -40,22 +40,17 @@ pub struct Axis {
 pub const TIME: u32 = 17;
 
 /// The error that a line is not what it must be.
-#[must_use]
 pub fn malformed(source: &Source, line: u64, problem: &str) -> Error {
-    Error::Malformed {
-        path: source.path().to_path_buf(),
-        place: Place::Line(line),
-        problem: problem.to_owned(),
-        advice: "export the functions again as data set 58".to_owned(),
-    }
+    source.malformed(
+        Place::Line(line),
+        problem,
+        "export the functions again as data set 58",
+    )
 }
 
 /// Reads the eleven lines above the data of a function.
 ///
 /// * `line`: number of the line before them
-///
-/// # Errors
-/// The type of the data or the number of points is not there.
 pub fn parse_header(source: &Source, lines: &[String], line: u64) -> Result<Header, Error> {
     let marks = Marks {
         decimal: b'.',

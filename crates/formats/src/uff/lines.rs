@@ -32,7 +32,6 @@ pub struct Line {
 
 impl LineReader {
     /// From byte `at` on, where line `number` begins.
-    #[must_use]
     pub fn new(at: u64, number: u64) -> Self {
         Self {
             at,
@@ -43,13 +42,11 @@ impl LineReader {
     }
 
     /// Where the next line begins.
-    #[must_use]
     pub fn offset(&self) -> u64 {
         self.at
     }
 
     /// Number of the next line, from 1.
-    #[must_use]
     pub fn number(&self) -> u64 {
         self.number
     }
@@ -62,9 +59,6 @@ impl LineReader {
     }
 
     /// The next line; `None` at the end of the file.
-    ///
-    /// # Errors
-    /// The file cannot be read, or a line is longer than 1 MiB.
     pub fn next(&mut self, source: &Source) -> Result<Option<Line>, Error> {
         loop {
             let from = (self.at - self.begin) as usize;
@@ -72,12 +66,11 @@ impl LineReader {
             let filled = self.begin + self.buffer.len() as u64;
             if found.is_none() && filled < source.length() {
                 if self.buffer.len() - from > LONGEST_LINE {
-                    return Err(Error::Malformed {
-                        path: source.path().to_path_buf(),
-                        place: Place::Line(self.number),
-                        problem: "the line is longer than 1 MiB".to_owned(),
-                        advice: "this is no universal file of text; was it damaged?".to_owned(),
-                    });
+                    return Err(source.malformed(
+                        Place::Line(self.number),
+                        "the line is longer than 1 MiB",
+                        "this is no universal file of text; was it damaged?",
+                    ));
                 }
                 self.buffer.drain(..from);
                 self.begin = self.at;

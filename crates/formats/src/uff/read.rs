@@ -5,9 +5,10 @@
 
 use crate::contents::{ChannelContents, Contents, Format, Note, TimeBase};
 use crate::error::{Error, Place};
+use crate::names::Names;
+use crate::number::Number;
 use crate::reader::{Reader, Sink};
 use crate::source::Source;
-use crate::tdms::value_type::{Layout, ValueType, decode};
 use crate::text::number::{Cell, Marks, cell};
 use crate::uff::header::{Header, TIME, malformed, parse_header};
 use crate::uff::lines::LineReader;
@@ -29,6 +30,7 @@ pub struct UffReader {
     records: Vec<Record>,
     /// Record and place in its points of each channel.
     places: Vec<(usize, usize)>,
+    names: Names,
 }
 
 /// The data of one function.
@@ -49,14 +51,11 @@ struct Record {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Coding {
     Text,
-    Binary { value: ValueType, big_endian: bool },
+    Binary { number: Number, big_endian: bool },
 }
 
 impl UffReader {
     /// Finds the functions of a file.
-    ///
-    /// # Errors
-    /// The file cannot be read, a function is damaged, or there is none.
     pub fn open(source: Source) -> Result<Self, Error> {
         let mut found = Self {
             contents: Contents {
@@ -68,6 +67,7 @@ impl UffReader {
             },
             records: Vec::new(),
             places: Vec::new(),
+            names: Names::default(),
             source,
         };
         let mut others: Vec<(String, u64)> = Vec::new();
@@ -107,12 +107,11 @@ impl UffReader {
             });
         }
         if found.records.is_empty() {
-            return Err(Error::Malformed {
-                path: found.source.path().to_path_buf(),
-                place: Place::File,
-                problem: "this universal file holds no function (data set 58 or 58b)".to_owned(),
-                advice: "export time histories or spectra as data set 58".to_owned(),
-            });
+            return Err(found.source.malformed(
+                Place::File,
+                "this universal file holds no function (data set 58 or 58b)",
+                "export time histories or spectra as data set 58",
+            ));
         }
         found.contents.variant = format!("{} functions", found.records.len());
         Ok(found)
@@ -205,19 +204,18 @@ fn binary_data(
     };
     let (order, float) = (field(7, 13), field(13, 19));
     if float.is_some_and(|float| float != 2) {
-        return Err(Error::Unsupported {
-            path: found.source.path().to_path_buf(),
-            place: Place::Object(header.name.clone()),
-            what: "floats of DEC or IBM machines".to_owned(),
-            advice: "export the functions with IEEE floats".to_owned(),
-        });
+        return Err(found.source.unsupported(
+            Place::Object(header.name.clone()),
+            "floats of DEC or IBM machines",
+            "export the functions with IEEE floats",
+        ));
     }
-    let value = if header.double {
-        ValueType::F64
+    let number = if header.double {
+        Number::F64
     } else {
-        ValueType::F32
+        Number::F32
     };
-    let needed = header.points.checked_mul(width as u64 * value.size());
+    let needed = header.points.checked_mul(width as u64 * number.size());
     let left = found.source.length() - lines.offset();
     let bytes = match (needed, field(31, 43)) {
         (Some(needed), Some(declared)) if declared >= needed => declared,
@@ -244,7 +242,7 @@ fn binary_data(
     let end = lines.offset() + needed.unwrap_or(bytes).min(left);
     lines.seek(lines.offset() + bytes.min(left));
     let coding = Coding::Binary {
-        value,
+        number,
         big_endian: order == Some(2),
     };
     // Past the "-1" behind the data.
@@ -256,7 +254,7 @@ fn binary_data(
 /// real and imaginary parts.
 fn add_channels(found: &mut UffReader, record: Record, header: &Header) {
     let index = found.records.len();
-    let name = unique(found, &header.name);
+    let name = found.names.unique(&header.name);
     let mut place = 0;
     let mut time = match header.even && header.interval > 0.0 && header.abscissa.kind == TIME {
         true => TimeBase::Uniform {
@@ -312,13 +310,6 @@ fn add_channels(found: &mut UffReader, record: Record, header: &Header) {
         place += 1;
     }
     found.records.push(Record { name, ..record });
-}
-
-fn unique(found: &UffReader, name: &str) -> String {
-    let taken = |name: &str| found.records.iter().any(|record| record.name == name);
-    let numbered = (2..).map(|number| format!("{name} ({number})"));
-    let mut names = std::iter::once(name.to_owned()).chain(numbered);
-    names.find(|name| !taken(name)).unwrap_or_default()
 }
 
 /// Collects the numbers of the wanted places of a record's points.
@@ -382,8 +373,8 @@ impl Reader for UffReader {
                 sink,
             };
             match record.coding {
-                Coding::Binary { value, big_endian } => {
-                    read_binary(&self.source, record, value, big_endian, &mut collector)?;
+                Coding::Binary { number, big_endian } => {
+                    read_binary(&self.source, record, number, big_endian, &mut collector)?;
                 }
                 Coding::Text => read_text(&self.source, record, &mut collector)?,
             }
@@ -404,25 +395,18 @@ impl Reader for UffReader {
 fn read_binary(
     source: &Source,
     record: &Record,
-    value: ValueType,
+    number: Number,
     big_endian: bool,
     collector: &mut Collector,
 ) -> Result<(), Error> {
-    let size = value.size();
-    let layout = Layout {
-        value,
-        offset: 0,
-        stride: size as usize,
-        big_endian,
-        bit: None,
-    };
+    let size = number.size();
     let mut samples = Vec::new();
     let mut at = record.start;
     while at + size <= record.end {
         let count = ((record.end - at) / size).min(BLOCK as u64);
         let bytes = source.bytes_at(at, count * size)?;
         samples.resize(count as usize, 0.0);
-        decode(&bytes, layout, 0, &mut samples);
+        number.decode(&bytes, number.packed(big_endian), &mut samples);
         samples
             .iter()
             .try_for_each(|sample| collector.push(*sample))?;

@@ -55,10 +55,6 @@ struct Shape {
 
 impl WavReader {
     /// Reads the chunks of a file.
-    ///
-    /// # Errors
-    /// The file cannot be read, has no format or no data, or a coding that is
-    /// not read.
     pub fn open(source: Source) -> Result<Self, Error> {
         let head = source.bytes_at(0, 12.min(source.length()))?;
         let big_endian = head.starts_with(b"RIFX");
@@ -170,12 +166,7 @@ impl Order {
 }
 
 fn malformed(source: &Source, at: u64, problem: &str) -> Error {
-    Error::Malformed {
-        path: source.path().to_path_buf(),
-        place: Place::Byte(at),
-        problem: problem.to_owned(),
-        advice: "record or export the sound again".to_owned(),
-    }
+    source.malformed(Place::Byte(at), problem, "record or export the sound again")
 }
 
 fn read_shape(source: &Source, at: u64, size: u32, order: Order) -> Result<Shape, Error> {
@@ -204,12 +195,11 @@ fn read_shape(source: &Source, at: u64, size: u32, order: Order) -> Result<Shape
         6 => Coding::ALaw,
         7 => Coding::MuLaw,
         other => {
-            return Err(Error::Unsupported {
-                path: source.path().to_path_buf(),
-                place: Place::Byte(at),
-                what: format!("sound of format {other} ({})", codec(other)),
-                advice: "convert it to PCM".to_owned(),
-            });
+            return Err(source.unsupported(
+                Place::Byte(at),
+                format!("sound of format {other} ({})", codec(other)),
+                "convert it to PCM",
+            ));
         }
     };
     if channels == 0 || channels > MOST_CHANNELS || rate == 0 || align == 0 {

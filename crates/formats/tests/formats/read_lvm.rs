@@ -1,16 +1,12 @@
 //! LabVIEW measurement files.
 
-#![allow(clippy::unwrap_used, clippy::print_stdout)]
-
-mod channels;
-
-use channels::{check_file, open_bytes, samples};
+use crate::channels::{check_file, open_bytes, samples};
 use windfall_formats::contents::{Format, TimeBase};
 
 /// Checksums by lvm_read 1.21; it gives the times of even channels as we do.
 #[test]
 fn reference_real_files() {
-    let files: &[(&str, &[channels::Expected])] = &[
+    let files: &[(&str, &[crate::channels::Expected])] = &[
         (
             "daq_formats/lvm/short.lvm",
             &[

@@ -1,7 +1,5 @@
 //! What the tests of all readers share.
 
-#![allow(dead_code)]
-
 use std::path::{Path, PathBuf};
 use windfall_formats::Error;
 use windfall_formats::contents::{Format, TimeBase};

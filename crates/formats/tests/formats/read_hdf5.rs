@@ -1,11 +1,7 @@
 //! HDF5 files and those of MATLAB 7.3. How the small files were made is told in
 //! `fixtures/make_fixtures.py`; their numbers follow the rules that stand there.
 
-#![allow(clippy::unwrap_used, clippy::print_stdout)]
-
-mod channels;
-
-use channels::{check_file, data, open_bytes, samples};
+use crate::channels::{check_file, data, open_bytes, samples};
 use windfall_formats::contents::{ChannelContents, Format, TimeBase};
 use windfall_formats::open::{OpenOptions, open, open_source};
 use windfall_formats::source::Source;
@@ -13,7 +9,7 @@ use windfall_formats::source::Source;
 /// Checksums by h5py 3.16.
 #[test]
 fn reference_real_files() {
-    let files: &[(&str, &[channels::Expected])] = &[
+    let files: &[(&str, &[crate::channels::Expected])] = &[
         (
             "daq_formats/mat/scipy_testhdf5_7.4_GLNX86.mat",
             &[("testdouble", 9, 0x0492_f25d_99b4_dd7d, None)],

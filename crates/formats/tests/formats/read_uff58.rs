@@ -1,16 +1,12 @@
 //! Universal files.
 
-#![allow(clippy::unwrap_used, clippy::print_stdout)]
-
-mod channels;
-
-use channels::{check_file, open_bytes};
+use crate::channels::{check_file, open_bytes};
 use windfall_formats::contents::Format;
 
 /// Checksums by pyuff 2.5.
 #[test]
 fn reference_real_files() {
-    let files: &[(&str, &[channels::Expected])] = &[
+    let files: &[(&str, &[crate::channels::Expected])] = &[
         (
             "daq_formats/uff/Sample_UFF58_ascii.uff",
             &[(

@@ -2,8 +2,6 @@
 //! extreme numbers in any place. Each is read or refused; none makes the reader
 //! panic or hand over more than the file can hold.
 
-#![allow(clippy::unwrap_used)]
-
 use windfall_formats::Error;
 use windfall_formats::contents::Format;
 use windfall_formats::open::{OpenOptions, open_source};

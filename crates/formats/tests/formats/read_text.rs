@@ -1,10 +1,6 @@
 //! Tables in text: dialects, values of real files, faults.
 
-#![allow(clippy::unwrap_used, clippy::print_stdout)]
-
-mod channels;
-
-use channels::{check_file, open_bytes, samples};
+use crate::channels::{check_file, open_bytes, samples};
 use windfall_formats::contents::{Format, TimeBase};
 use windfall_formats::open::{OpenOptions, open_source};
 use windfall_formats::source::Source;
@@ -204,7 +200,7 @@ fn recovers_a_file_that_was_cut_off() {
 /// and, for blanks, by numpy 2.4 (`loadtxt`).
 #[test]
 fn reference_real_files() {
-    let files: &[(&str, &[channels::Expected])] = &[
+    let files: &[(&str, &[crate::channels::Expected])] = &[
         (
             "impact/impack_water/2mps_sphere_1_100gPR_20kHz.csv",
             &[

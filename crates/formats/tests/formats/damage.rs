@@ -1,11 +1,7 @@
 //! Files cut off, with bytes changed and with absurd sizes: an error or samples,
 //! never a panic, never more samples than the file can hold.
 
-#![allow(clippy::unwrap_used)]
-
-mod seeds;
-
-use seeds::seeds;
+use crate::seeds::seeds;
 use windfall_formats::Error;
 use windfall_formats::contents::Format;
 use windfall_formats::open::{OpenOptions, open_source};

@@ -1,17 +1,13 @@
 //! MATLAB files, versions 4 to 7.
 
-#![allow(clippy::unwrap_used, clippy::print_stdout)]
-
-mod channels;
-
-use channels::{check_file, data, open_bytes, samples};
+use crate::channels::{check_file, data, open_bytes, samples};
 use windfall_formats::contents::{Format, TimeBase};
 use windfall_formats::open::{OpenOptions, open};
 
 /// Checksums by SciPy 1.17 (`scipy.io.loadmat`).
 #[test]
 fn reference_real_files() {
-    let files: &[(&str, &[channels::Expected])] = &[
+    let files: &[(&str, &[crate::channels::Expected])] = &[
         (
             "daq_formats/mat/scipy_big_endian.mat",
             &[
@@ -70,7 +66,7 @@ fn reference_real_files() {
 /// Checksums by SciPy 1.17; single numbers, of which these files hold nothing else.
 #[test]
 fn reference_nested_real_files() {
-    let numbers = |names: &'static [(&'static str, f64)]| -> Vec<channels::Expected> {
+    let numbers = |names: &'static [(&'static str, f64)]| -> Vec<crate::channels::Expected> {
         let expected = |(name, value): &(&'static str, f64)| (*name, 1, value.to_bits(), None);
         names.iter().map(expected).collect()
     };

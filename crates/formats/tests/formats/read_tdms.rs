@@ -1,16 +1,12 @@
 //! TDMS files.
 
-#![allow(clippy::unwrap_used, clippy::print_stdout)]
-
-mod channels;
-
-use channels::{check_file, open_bytes, samples};
+use crate::channels::{check_file, open_bytes, samples};
 use windfall_formats::contents::{Format, TimeBase};
 
 /// Checksums by npTDMS 1.10.
 #[test]
 fn reference_real_files() {
-    let files: &[(&str, &[channels::Expected])] = &[
+    let files: &[(&str, &[crate::channels::Expected])] = &[
         (
             "daq_formats/tdms/NIspec_IncrementalMeta_step1.tdms",
             &[

@@ -1,17 +1,13 @@
 //! WAVE files.
 
-#![allow(clippy::unwrap_used, clippy::print_stdout)]
-
-mod channels;
-
-use channels::{check_file, open_bytes, samples};
+use crate::channels::{check_file, open_bytes, samples};
 use windfall_formats::contents::Format;
 
 /// Checksums by soundfile 0.13 (float64) or, for integers above 32 bits, by
 /// scipy.io.wavfile 1.17 divided by full scale.
 #[test]
 fn reference_real_files() {
-    let files: &[(&str, &[channels::Expected])] = &[
+    let files: &[(&str, &[crate::channels::Expected])] = &[
         (
             "daq_formats/wav_odd/test-1234Hz-le-1ch-10S-20bit-extra.wav",
             &[(

@@ -1,7 +1,5 @@
 //! Files that once made a reader panic, found by `scripts/fuzz`.
 
-#![allow(clippy::unwrap_used)]
-
 use windfall_formats::Error;
 use windfall_formats::contents::Format;
 use windfall_formats::open::{OpenOptions, open_source};

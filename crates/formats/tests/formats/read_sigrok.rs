@@ -1,16 +1,12 @@
 //! Captures of sigrok.
 
-#![allow(clippy::unwrap_used, clippy::print_stdout)]
-
-mod channels;
-
-use channels::{check_file, open_bytes};
+use crate::channels::{check_file, open_bytes};
 use windfall_formats::contents::Format;
 
 /// Checksums by zipfile of Python 3 and numpy 2.4.
 #[test]
 fn reference_real_files() {
-    let files: &[(&str, &[channels::Expected])] = &[
+    let files: &[(&str, &[crate::channels::Expected])] = &[
         (
             "encoder/sigrok_graycode-ramp-no-samplerate.sr",
             &[

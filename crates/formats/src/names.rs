@@ -1,0 +1,27 @@
+//! Unique names of channels.
+
+use std::collections::{BTreeMap, BTreeSet};
+
+/// Numbers names that were given before: "x", "x (2)", "x (3)".
+#[derive(Debug, Default)]
+pub(crate) struct Names {
+    taken: BTreeSet<String>,
+    times: BTreeMap<String, usize>,
+}
+
+impl Names {
+    /// The name itself, or with the lowest number that makes it unique.
+    pub fn unique(&mut self, name: &str) -> String {
+        let times = self.times.entry(name.to_owned()).or_default();
+        loop {
+            *times += 1;
+            let unique = match *times {
+                1 => name.to_owned(),
+                times => format!("{name} ({times})"),
+            };
+            if self.taken.insert(unique.clone()) {
+                return unique;
+            }
+        }
+    }
+}

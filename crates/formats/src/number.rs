@@ -1,0 +1,108 @@
+//! Numbers as binary files store them.
+
+/// The integer in up to eight bytes.
+pub(crate) fn integer(bytes: &[u8], big_endian: bool) -> u64 {
+    let join = |value: u64, byte: &u8| (value << 8) | u64::from(*byte);
+    match big_endian {
+        true => bytes.iter().fold(0, join),
+        false => bytes.iter().rev().fold(0, join),
+    }
+}
+
+/// A type of numbers.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Number {
+    I8,
+    I16,
+    I32,
+    I64,
+    U8,
+    U16,
+    U32,
+    U64,
+    F32,
+    F64,
+}
+
+/// Where numbers lie among bytes.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) struct Layout {
+    /// Bytes before the first.
+    pub offset: usize,
+    /// Bytes from one to the next.
+    pub stride: usize,
+    pub big_endian: bool,
+}
+
+impl Number {
+    /// Bytes of one.
+    pub fn size(self) -> u64 {
+        match self {
+            Self::I8 | Self::U8 => 1,
+            Self::I16 | Self::U16 => 2,
+            Self::I32 | Self::U32 | Self::F32 => 4,
+            Self::I64 | Self::U64 | Self::F64 => 8,
+        }
+    }
+
+    /// One number behind the other.
+    pub fn packed(self, big_endian: bool) -> Layout {
+        Layout {
+            offset: 0,
+            stride: self.size() as usize,
+            big_endian,
+        }
+    }
+
+    /// Decodes all whole numbers in `bytes`.
+    pub fn decode_all(self, bytes: &[u8], big_endian: bool) -> Vec<f64> {
+        let mut numbers = vec![0.0; bytes.len() / self.size() as usize];
+        self.decode(bytes, self.packed(big_endian), &mut numbers);
+        numbers
+    }
+
+    /// Decodes as many numbers as `out` takes; `bytes` must hold them all.
+    pub fn decode(self, bytes: &[u8], layout: Layout, out: &mut [f64]) {
+        macro_rules! numbers {
+            ($type:ty) => {{
+                const SIZE: usize = size_of::<$type>();
+                let bytes = &bytes[layout.offset..];
+                let packed = layout.stride == SIZE;
+                // Each loop apart: the compiler then copies whole registers.
+                match (packed, layout.big_endian) {
+                    (true, false) => {
+                        for (out, value) in out.iter_mut().zip(bytes.as_chunks::<SIZE>().0) {
+                            *out = <$type>::from_le_bytes(*value) as f64;
+                        }
+                    }
+                    (true, true) => {
+                        for (out, value) in out.iter_mut().zip(bytes.as_chunks::<SIZE>().0) {
+                            *out = <$type>::from_be_bytes(*value) as f64;
+                        }
+                    }
+                    _ => {
+                        for (out, row) in out.iter_mut().zip(bytes.chunks(layout.stride)) {
+                            let value = row.first_chunk::<SIZE>().copied().unwrap_or_default();
+                            *out = match layout.big_endian {
+                                true => <$type>::from_be_bytes(value) as f64,
+                                false => <$type>::from_le_bytes(value) as f64,
+                            };
+                        }
+                    }
+                }
+            }};
+        }
+        match self {
+            Self::I8 => numbers!(i8),
+            Self::I16 => numbers!(i16),
+            Self::I32 => numbers!(i32),
+            Self::I64 => numbers!(i64),
+            Self::U8 => numbers!(u8),
+            Self::U16 => numbers!(u16),
+            Self::U32 => numbers!(u32),
+            Self::U64 => numbers!(u64),
+            Self::F32 => numbers!(f32),
+            Self::F64 => numbers!(f64),
+        }
+    }
+}
