@@ -9,7 +9,7 @@ use crate::summary::spread;
 use serde::{Deserialize, Serialize};
 
 /// One value; SI.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, utoipa::ToSchema, Deserialize)]
 pub struct MeasuredValue {
     /// Value.
     pub value: f64,
@@ -45,7 +45,7 @@ pub fn value_with_sd(value: f64, sd: f64, unit: &str) -> MeasuredValue {
 }
 
 /// What was found in one recording, or of one specimen.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, utoipa::ToSchema, Deserialize)]
 pub struct MeasuredItem {
     /// Id of the recording, or of the specimen.
     pub id: String,
@@ -97,7 +97,7 @@ impl Document for MeasuredItems {
 }
 
 /// Spread of the values over a group.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, utoipa::ToSchema, Deserialize)]
 pub struct MeasuredGroup {
     /// Name of the group; `None` for all together.
     pub group: Option<String>,
@@ -121,7 +121,7 @@ pub struct ShownValue {
 }
 
 /// Everything that `fit` gives for such a campaign.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, utoipa::ToSchema)]
 pub struct MeasuredOutcome {
     /// Version of windfall.
     pub windfall: String,

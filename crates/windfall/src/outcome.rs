@@ -8,7 +8,7 @@ use crate::named::Named;
 use serde::{Deserialize, Serialize};
 
 /// One estimated or held value.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, utoipa::ToSchema, Deserialize)]
 pub struct EstimateOutcome {
     /// Value.
     pub value: f64,
@@ -26,7 +26,7 @@ pub struct EstimateOutcome {
 }
 
 /// How one quantity of the cost function fits.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, utoipa::ToSchema, Deserialize)]
 pub struct ResidualOutcome {
     /// Samples.
     pub samples: usize,
@@ -46,7 +46,7 @@ pub struct ResidualOutcome {
 }
 
 /// Something that a reader of the result must know.
-#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, utoipa::ToSchema, Deserialize)]
 pub struct FindingOutcome {
     /// Short name for scripts.
     pub code: String,
@@ -55,7 +55,7 @@ pub struct FindingOutcome {
 }
 
 /// One law fitted to one impact.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, utoipa::ToSchema, Deserialize)]
 pub struct ImpactOutcome {
     /// Id of the impact.
     pub id: String,
@@ -111,7 +111,7 @@ pub struct ImpactOutcome {
 }
 
 /// An impact that could not be fitted.
-#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, utoipa::ToSchema, Deserialize)]
 pub struct FailureOutcome {
     /// Id of the impact.
     pub id: String,
@@ -126,7 +126,7 @@ pub struct FailureOutcome {
 }
 
 /// Spread of one quantity over impacts.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, utoipa::ToSchema, Deserialize)]
 pub struct SpreadOutcome {
     /// Mean.
     pub mean: f64,
@@ -139,7 +139,7 @@ pub struct SpreadOutcome {
 }
 
 /// Spread of parameters and derived quantities over the impacts of a group.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, utoipa::ToSchema, Deserialize)]
 pub struct GroupOutcome {
     /// Name of the group; `None` for all impacts together.
     pub group: Option<String>,
@@ -156,7 +156,7 @@ pub struct GroupOutcome {
 }
 
 /// How the results came about.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, utoipa::ToSchema, Deserialize)]
 pub struct StatusOutcome {
     /// Fits done in this run.
     pub fitted: usize,
@@ -169,7 +169,7 @@ pub struct StatusOutcome {
 }
 
 /// A value of the rig that was found from the recordings.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, utoipa::ToSchema, Deserialize)]
 pub struct MassOutcome {
     /// Mass; kg.
     pub value: f64,
@@ -180,7 +180,7 @@ pub struct MassOutcome {
 }
 
 /// Everything that `fit` gives for a campaign.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, utoipa::ToSchema, Deserialize)]
 pub struct CampaignOutcome {
     /// Version of windfall.
     pub windfall: String,
