@@ -16,6 +16,7 @@ mod api_scenes;
 mod api_tables;
 mod app;
 mod asset;
+mod contour_map;
 mod described;
 mod given;
 mod guard;

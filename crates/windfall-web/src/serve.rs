@@ -186,6 +186,7 @@ fn routes(app: App, guard: Arc<Guard>) -> Router {
             get(api_campaigns::campaigns).post(api_campaigns::create),
         )
         .nest("/api/campaigns/{id}", campaign)
+        .route("/api/contours", post(api_tables::contours))
         .route("/api/scenes", get(api_scenes::scenes))
         .route("/api/scenes/{id}", get(api_scenes::scene))
         .route("/api/scenes/{id}/frames", get(api_scenes::frames))
