@@ -6,7 +6,7 @@
 use serde::{Deserialize, Serialize};
 
 /// One estimated or held value.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, utoipa::ToSchema, Deserialize)]
 pub struct EstimateOutcome {
     /// Value.
     pub value: f64,
@@ -32,7 +32,7 @@ impl EstimateOutcome {
 }
 
 /// Something that a reader of the result must know.
-#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, utoipa::ToSchema, Deserialize)]
 pub struct FindingOutcome {
     /// Short name for scripts.
     pub code: String,
@@ -41,7 +41,7 @@ pub struct FindingOutcome {
 }
 
 /// An impact that could not be fitted.
-#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, utoipa::ToSchema, Deserialize)]
 pub struct FailureOutcome {
     /// Id of the impact.
     pub id: String,
@@ -56,7 +56,7 @@ pub struct FailureOutcome {
 }
 
 /// Spread of one quantity over impacts.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, utoipa::ToSchema, Deserialize)]
 pub struct SpreadOutcome {
     /// Mean.
     pub mean: f64,

@@ -6,7 +6,8 @@ use serde::{Deserialize, Deserializer, Serialize, Serializer};
 use std::marker::PhantomData;
 
 /// Values under names, in the order they were given.
-#[derive(Clone, Debug, Default, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq, utoipa::ToSchema)]
+#[schema(value_type = std::collections::BTreeMap<String, T>)]
 pub struct Named<T>(pub Vec<(String, T)>);
 
 impl<T> Named<T> {

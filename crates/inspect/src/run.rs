@@ -25,7 +25,7 @@ use windfall_formats::reader::Sink;
 const DESCRIBED_FAULTS: usize = 10;
 
 /// What a recording holds.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, utoipa::ToSchema)]
 pub struct Inspection {
     /// The file.
     pub file: String,
@@ -45,7 +45,7 @@ pub struct Inspection {
 }
 
 /// One channel of a recording.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, utoipa::ToSchema)]
 pub struct ColumnInspection {
     /// Its name, by which a campaign asks for it.
     pub column: String,

@@ -190,6 +190,7 @@ pub const ARROWS: &[(&str, &[&str])] = &[
     (
         "windfall-web",
         &[
+            "windfall-draw",
             "windfall-workspace",
             "windfall-report",
             "windfall-drop",

@@ -7,7 +7,7 @@ use windfall_identify::population::posterior::{PopulationPosterior, PosteriorRan
 use windfall_identify::population::two_stage::TwoStage;
 
 /// A number with its interval, where there is one.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, utoipa::ToSchema, Deserialize)]
 pub struct RangeOutcome {
     /// Estimate.
     pub value: f64,
@@ -18,7 +18,7 @@ pub struct RangeOutcome {
 }
 
 /// One parameter of the law over the fruit.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, utoipa::ToSchema, Deserialize)]
 pub struct PopulationParameter {
     /// Name.
     pub name: String,
@@ -35,7 +35,7 @@ pub struct PopulationParameter {
 }
 
 /// Correlation of two parameters.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, utoipa::ToSchema, Deserialize)]
 pub struct PopulationCorrelation {
     /// One parameter.
     pub first: String,
@@ -48,7 +48,7 @@ pub struct PopulationCorrelation {
 }
 
 /// Effect of a covariate on a parameter.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, utoipa::ToSchema, Deserialize)]
 pub struct PopulationEffect {
     /// The covariate.
     pub covariate: String,
@@ -71,7 +71,7 @@ pub struct PopulationEffect {
 }
 
 /// The usual way: fit each impact, average per fruit, regress all fits.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, utoipa::ToSchema, Deserialize)]
 pub struct TwoStageOutcome {
     /// Exponential of the mean of the averages (mean of exponents).
     pub medians: Vec<RangeOutcome>,
@@ -84,7 +84,7 @@ pub struct TwoStageOutcome {
 }
 
 /// The posterior, drawn beside the estimate.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, utoipa::ToSchema, Deserialize)]
 pub struct PopulationPosteriorOutcome {
     /// Medians of the parameters over fruit: median of the draws, interval between
     /// their quantiles; SI.
@@ -114,7 +114,7 @@ pub struct PopulationPosteriorOutcome {
 }
 
 /// The population in numbers alone, as a law card carries it.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, utoipa::ToSchema, Deserialize)]
 pub struct Population {
     /// Names of the parameters that vary.
     pub parameters: Vec<String>,
@@ -139,7 +139,7 @@ pub struct Population {
 }
 
 /// One covariate of a [`Population`].
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, utoipa::ToSchema, Deserialize)]
 pub struct CovariateEffect {
     /// Its name.
     pub name: String,
@@ -152,7 +152,7 @@ pub struct CovariateEffect {
 }
 
 /// What `windfall population` returns.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, utoipa::ToSchema, Deserialize)]
 pub struct PopulationOutcome {
     /// Version of windfall.
     pub windfall: String,
@@ -198,7 +198,7 @@ pub struct PopulationOutcome {
 }
 
 /// One fruit.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, utoipa::ToSchema, Deserialize)]
 pub struct FruitOutcome {
     /// Its id.
     pub specimen: String,

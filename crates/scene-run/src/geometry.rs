@@ -26,7 +26,7 @@ pub struct WallGeometry {
 }
 
 /// A wall without its faces.
-#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, utoipa::ToSchema, Deserialize)]
 pub struct WallAbout {
     /// Name.
     pub name: String,
@@ -45,11 +45,13 @@ pub struct WallAbout {
 }
 
 /// A box of space; m.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, utoipa::ToSchema, Deserialize)]
 pub struct Bounds {
     /// Its lowest corner.
+    #[schema(value_type = (f64, f64, f64))]
     pub low: [f64; 3],
     /// Its highest corner.
+    #[schema(value_type = (f64, f64, f64))]
     pub high: [f64; 3],
 }
 

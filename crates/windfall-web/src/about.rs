@@ -3,6 +3,7 @@
 use crate::app::{Answer, App};
 use axum::extract::State;
 use serde::Serialize;
+use utoipa::ToSchema;
 use windfall_cards::library::laws::{LawCardText, law_cards};
 use windfall_files::provenance::VERSION;
 
@@ -17,26 +18,35 @@ pub(crate) const KINDS: [&str; 6] = [
 ];
 
 /// What the page must know.
-#[derive(Debug, Serialize)]
+#[derive(Debug, Serialize, ToSchema)]
 pub(crate) struct About {
+    /// Version of windfall.
     version: &'static str,
+    /// Name of the directory that is served.
     directory: String,
     /// Whether further campaigns can be made.
     creates: bool,
+    /// Most bytes of an upload.
     upload_limit: u64,
+    /// Kinds of campaigns that can be made.
     kinds: [&'static str; 6],
+    /// Force laws.
     laws: Vec<LawAbout>,
 }
 
-#[derive(Debug, Serialize)]
+/// A force law.
+#[derive(Debug, Serialize, ToSchema)]
 struct LawAbout {
     name: &'static str,
+    /// F = …
     formula: &'static str,
     parameters: Vec<ParameterAbout>,
+    /// Shape at first touch, and source.
     notes: String,
 }
 
-#[derive(Debug, Serialize)]
+/// A parameter of a force law.
+#[derive(Debug, Serialize, ToSchema)]
 struct ParameterAbout {
     name: &'static str,
     unit: &'static str,
@@ -46,7 +56,7 @@ struct ParameterAbout {
 }
 
 /// Version, directory, limits and force laws.
-#[utoipa::path(get, path = "/api/about", responses((status = 200, body = Object)))]
+#[utoipa::path(get, path = "/api/about", responses((status = 200, body = About)))]
 pub(crate) async fn about(State(app): State<App>) -> Answer<About> {
     let laws = app.work(|_| law_cards(None, None)).await?;
     app.tell(&About {

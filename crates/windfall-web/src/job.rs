@@ -1,17 +1,92 @@
 //! Long work beside the requests: its progress is told, and it can be stopped.
 
-use serde::{Serialize, Serializer};
-use serde_json::value::RawValue;
+use serde::{Deserialize, Serialize};
 use std::collections::VecDeque;
 use std::ops::ControlFlow;
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 use std::sync::{Arc, Mutex, PoisonError};
 use tokio::sync::watch;
 use utoipa::ToSchema;
+use windfall_campaign::measure::any_outcome::AnyOutcome;
+use windfall_drop::calibrate::outcome::CalibrateOutcome;
 use windfall_files::error::Error;
+use windfall_population::outcome::PopulationOutcome;
+use windfall_population::ranking::outcome::LawsOutcome;
 
 /// Jobs that are remembered.
 const REMEMBERED: usize = 100;
+
+/// Kinds of long work.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize, ToSchema)]
+#[serde(rename_all = "kebab-case")]
+pub(crate) enum Work {
+    Fit,
+    Laws,
+    Population,
+    Calibrate,
+    Report,
+}
+
+impl Work {
+    /// Its name, also that of the equal command.
+    pub(crate) fn name(self) -> &'static str {
+        match self {
+            Self::Fit => "fit",
+            Self::Laws => "laws",
+            Self::Population => "population",
+            Self::Calibrate => "calibrate",
+            Self::Report => "report",
+        }
+    }
+}
+
+/// What a report consists of; names are those below the campaign.
+#[derive(Clone, Debug, Serialize, ToSchema)]
+pub(crate) struct ReportFiles {
+    /// The page.
+    pub page: String,
+    /// All files.
+    pub files: Vec<String>,
+    /// Results in it.
+    pub impacts: usize,
+    /// What could not be evaluated.
+    pub failed: usize,
+}
+
+/// Work with what the equal command gives in JSON, once it is done.
+#[derive(Clone, Debug, Serialize, ToSchema)]
+#[serde(tag = "work", content = "result", rename_all = "kebab-case")]
+pub(crate) enum JobWork {
+    Fit(Option<Box<AnyOutcome>>),
+    Laws(Option<Box<LawsOutcome>>),
+    Population(Option<Box<PopulationOutcome>>),
+    Calibrate(Option<Box<CalibrateOutcome>>),
+    Report(Option<Box<ReportFiles>>),
+}
+
+impl JobWork {
+    /// Work without a result.
+    fn begun(work: Work) -> Self {
+        match work {
+            Work::Fit => Self::Fit(None),
+            Work::Laws => Self::Laws(None),
+            Work::Population => Self::Population(None),
+            Work::Calibrate => Self::Calibrate(None),
+            Work::Report => Self::Report(None),
+        }
+    }
+
+    /// Its kind.
+    fn kind(&self) -> Work {
+        match self {
+            Self::Fit(_) => Work::Fit,
+            Self::Laws(_) => Work::Laws,
+            Self::Population(_) => Work::Population,
+            Self::Calibrate(_) => Work::Calibrate,
+            Self::Report(_) => Work::Report,
+        }
+    }
+}
 
 /// How a job stands.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, ToSchema)]
@@ -30,26 +105,32 @@ pub(crate) struct JobView {
     pub job: String,
     /// The campaign.
     pub campaign: String,
-    /// "fit", "laws", "population", "calibrate" or "report".
-    pub work: &'static str,
+    /// What it does, and its result.
+    #[serde(flatten)]
+    pub work: JobWork,
     /// How it stands.
     pub state: JobState,
     /// Items done.
     pub done: usize,
     /// Of how many.
     pub all: usize,
-    /// What the equal command would give in JSON, once it is done.
-    #[schema(value_type = Option<Object>)]
-    #[serde(serialize_with = "shared")]
-    pub result: Option<Arc<RawValue>>,
     /// Why it failed.
     pub problem: Option<String>,
     /// The equal command.
     pub command: String,
 }
 
-fn shared<S: Serializer>(value: &Option<Arc<RawValue>>, serializer: S) -> Result<S::Ok, S::Error> {
-    value.as_deref().serialize(serializer)
+impl JobView {
+    fn without_result(&self) -> Self {
+        Self {
+            job: self.job.clone(),
+            campaign: self.campaign.clone(),
+            work: JobWork::begun(self.work.kind()),
+            problem: self.problem.clone(),
+            command: self.command.clone(),
+            ..*self
+        }
+    }
 }
 
 /// A job that runs, or has run.
@@ -87,15 +168,11 @@ impl Job {
     }
 
     /// Takes note of its end.
-    pub(crate) fn end(
-        &self,
-        result: Result<Box<RawValue>, Error>,
-        told: impl Fn(&Error) -> String,
-    ) {
+    pub(crate) fn end(&self, result: Result<JobWork, Error>, told: impl Fn(&Error) -> String) {
         self.view.send_modify(|view| match result {
-            Ok(json) => {
+            Ok(done) => {
                 view.state = JobState::Done;
-                view.result = Some(Arc::from(json));
+                view.work = done;
             }
             Err(Error::Cancelled) => {
                 view.state = JobState::Cancelled;
@@ -132,16 +209,11 @@ impl Jobs {
     }
 
     /// Begins a job; `None` where the same work runs on the same campaign already.
-    pub(crate) fn begin(
-        &self,
-        campaign: &str,
-        work: &'static str,
-        command: String,
-    ) -> Option<Arc<Job>> {
+    pub(crate) fn begin(&self, campaign: &str, work: Work, command: String) -> Option<Arc<Job>> {
         let mut all = self.lock();
         let busy = all.iter().any(|job| {
             let view = job.view.borrow();
-            view.state == JobState::Running && view.campaign == campaign && view.work == work
+            view.state == JobState::Running && view.campaign == campaign && view.work.kind() == work
         });
         if busy {
             return None;
@@ -150,11 +222,10 @@ impl Jobs {
         let view = JobView {
             job: number.to_string(),
             campaign: campaign.to_owned(),
-            work,
+            work: JobWork::begun(work),
             state: JobState::Running,
             done: 0,
             all: 0,
-            result: None,
             problem: None,
             command,
         };
@@ -182,10 +253,7 @@ impl Jobs {
     /// All jobs without their results.
     pub(crate) fn list(&self) -> Vec<JobView> {
         let all = self.lock();
-        let views = all.iter().map(|job| JobView {
-            result: None,
-            ..job.view()
-        });
+        let views = all.iter().map(|job| job.view.borrow().without_result());
         views.collect()
     }
 

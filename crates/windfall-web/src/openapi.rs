@@ -2,7 +2,9 @@
 
 use crate::problem::Problem;
 use axum::Json;
-use utoipa::OpenApi;
+use utoipa::openapi::schema::{AdditionalProperties, Object, Schema};
+use utoipa::openapi::{OpenApi as Description, Ref, RefOr};
+use utoipa::{Modify, OpenApi};
 
 /// The interface.
 #[derive(OpenApi)]
@@ -39,6 +41,7 @@ use utoipa::OpenApi;
         crate::api::tables::table,
         crate::api::tables::regression,
         crate::api::tables::surfaces,
+        crate::api::tables::contours,
         crate::api::files::card,
         crate::api::files::report,
         crate::api::scenes::scenes,
@@ -47,11 +50,97 @@ use utoipa::OpenApi;
         crate::api::scenes::hardest,
         crate::api::scenes::history,
     ),
-    components(schemas(Problem))
+    components(schemas(Problem)),
+    modifiers(&NamedValues, &KeysOfAnswers)
 )]
 pub(crate) struct Interface;
 
+/// Values under names refer to the schema of a value, which else would stand in each of them.
+struct NamedValues;
+
+impl Modify for NamedValues {
+    fn modify(&self, description: &mut Description) {
+        let Some(components) = description.components.as_mut() else {
+            return;
+        };
+        let mut values = Vec::new();
+        for (name, schema) in &mut components.schemas {
+            let (Some(of), RefOr::T(Schema::Object(map))) = (name.strip_prefix("Named_"), schema)
+            else {
+                continue;
+            };
+            let Some(further) = map.additional_properties.as_deref_mut() else {
+                continue;
+            };
+            if let AdditionalProperties::RefOr(RefOr::T(Schema::Object(value))) = further
+                && !value.properties.is_empty()
+            {
+                values.push((of.to_owned(), RefOr::T(Schema::Object(value.clone()))));
+                *further = AdditionalProperties::RefOr(Ref::from_schema_name(of).into());
+            }
+        }
+        for (name, schema) in values {
+            components.schemas.entry(name).or_insert(schema);
+        }
+    }
+}
+
+/// Keys that answers leave out where there is nothing to tell.
+const LEFT_OUT: [(&str, &[&str]); 5] = [
+    (
+        "IntervalOutcome",
+        &[
+            "replicates",
+            "failed",
+            "chains",
+            "draws",
+            "divergences",
+            "mixing",
+            "drawn",
+            "profiles",
+        ],
+    ),
+    ("ProfileOutcome", &["open"]),
+    ("LawEvidenceOutcome", &["aicc_low", "aicc_high"]),
+    ("PopulationOutcome", &["posterior"]),
+    ("MeasuredOutcome", &["parts"]),
+];
+
+/// Marks all other keys of answers as required: what has no value is `null`.
+struct KeysOfAnswers;
+
+impl Modify for KeysOfAnswers {
+    fn modify(&self, description: &mut Description) {
+        let components = description.components.iter_mut();
+        for (name, schema) in components.flat_map(|all| &mut all.schemas) {
+            let left_out = LEFT_OUT.iter().find(|(own, _)| own == name);
+            let left_out = left_out.map_or(&[][..], |(_, keys)| *keys);
+            require(schema, left_out);
+        }
+    }
+}
+
+fn require(schema: &mut RefOr<Schema>, left_out: &[&str]) {
+    let RefOr::T(schema) = schema else { return };
+    match schema {
+        Schema::Object(object) if !is_request(object) => {
+            let keys = object.properties.keys();
+            let always = keys.filter(|key| !left_out.contains(&key.as_str()));
+            object.required = always.cloned().collect();
+        }
+        Schema::AllOf(all) => all.items.iter_mut().for_each(|own| require(own, left_out)),
+        Schema::OneOf(one) => one.items.iter_mut().for_each(|own| require(own, left_out)),
+        _ => {}
+    }
+}
+
+/// Requests refuse keys that they do not know.
+fn is_request(object: &Object) -> bool {
+    let further = object.additional_properties.as_deref();
+    matches!(further, Some(AdditionalProperties::FreeForm(false)))
+}
+
 /// The description itself.
-pub(crate) async fn openapi() -> Json<utoipa::openapi::OpenApi> {
+pub(crate) async fn openapi() -> Json<Description> {
     Json(Interface::openapi())
 }

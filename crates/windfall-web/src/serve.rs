@@ -184,6 +184,7 @@ fn routes(app: App, guard: Arc<Guard>) -> Router {
             get(campaigns::campaigns).post(campaigns::create),
         )
         .nest("/api/campaigns/{id}", campaign)
+        .route("/api/contours", post(tables::contours))
         .route("/api/scenes", get(scenes::scenes))
         .route("/api/scenes/{id}", get(scenes::scene))
         .route("/api/scenes/{id}/frames", get(scenes::frames))

@@ -29,7 +29,7 @@ pub const TABLES_DIRECTORY: &str = "tables";
 pub const CAMPAIGN_FILES: [&str; 3] = [CAMPAIGN_FILE, "specimens.csv", "impacts.csv"];
 
 /// A table of text.
-#[derive(Clone, Debug, Default, PartialEq, Serialize)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, utoipa::ToSchema)]
 pub struct TableView {
     /// Names of the columns.
     pub columns: Vec<String>,
@@ -38,7 +38,7 @@ pub struct TableView {
 }
 
 /// A channel as campaign.toml has it.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, utoipa::ToSchema)]
 pub struct ChannelView {
     /// What it holds.
     pub quantity: String,
@@ -50,7 +50,7 @@ pub struct ChannelView {
 }
 
 /// Options of the fit, in the words of the command line.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, utoipa::ToSchema)]
 pub struct FitOptionsView {
     /// Quantities of the cost.
     pub quantities: Vec<String>,
@@ -73,7 +73,7 @@ pub struct FitOptionsView {
 }
 
 /// What the files of a campaign say.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, utoipa::ToSchema)]
 pub struct CampaignView {
     /// Name of the directory.
     pub id: String,

@@ -56,7 +56,7 @@ pub struct LiveRequest {
 }
 
 /// Values at times on the clock of the recording.
-#[derive(Clone, Debug, Default, PartialEq, Serialize)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, utoipa::ToSchema)]
 pub struct ShownSamples {
     /// Times; s.
     pub time: Vec<f64>,
@@ -65,7 +65,7 @@ pub struct ShownSamples {
 }
 
 /// The motion under a fitted law.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, utoipa::ToSchema)]
 pub struct ShownMotion {
     /// Times on the clock of the recording; s.
     pub time: Vec<f64>,
@@ -78,7 +78,7 @@ pub struct ShownMotion {
 }
 
 /// One law on the impact.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, utoipa::ToSchema)]
 pub struct LiveLaw {
     /// Name of the law.
     pub law: String,
@@ -93,7 +93,7 @@ pub struct LiveLaw {
 }
 
 /// What a live fit gives.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, utoipa::ToSchema)]
 pub struct LiveOutcome {
     /// Id of the impact.
     pub impact: String,

@@ -42,7 +42,7 @@ enum Clock {
 }
 
 /// A part of a channel as it is shown.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, utoipa::ToSchema)]
 pub struct Outline {
     /// Name of the channel.
     pub channel: String,

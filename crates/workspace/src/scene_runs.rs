@@ -26,7 +26,7 @@ const PIECE: u64 = 4 << 20;
 const COLOURS: usize = 64;
 
 /// Results of a scene in a list.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, utoipa::ToSchema)]
 pub struct SceneEntry {
     /// Its directory below the one that is served.
     pub id: String,
@@ -45,7 +45,7 @@ pub struct SceneEntry {
 }
 
 /// A scene that can be played.
-#[derive(Clone, Debug, Serialize)]
+#[derive(Clone, Debug, Serialize, utoipa::ToSchema)]
 pub struct SceneView {
     /// Its directory below the one that is served.
     pub id: String,
@@ -66,6 +66,7 @@ pub struct SceneView {
     /// Colours from no force to the largest.
     pub colours: Vec<String>,
     /// What the scene came to; nothing while it runs.
+    #[schema(value_type = Option<windfall_scene_run::run::outcome::SceneOutcome>)]
     pub outcome: Option<Value>,
 }
 

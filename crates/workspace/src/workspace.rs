@@ -23,7 +23,7 @@ pub struct Workspace {
 }
 
 /// A campaign in a list.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, utoipa::ToSchema)]
 pub struct CampaignEntry {
     /// Name of its directory.
     pub id: String,
@@ -40,7 +40,7 @@ pub struct CampaignEntry {
 }
 
 /// A run in a store.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, utoipa::ToSchema)]
 pub struct RunView {
     /// When it was; UTC.
     pub time: String,
@@ -51,7 +51,7 @@ pub struct RunView {
 }
 
 /// What the store holds of a campaign as it is now.
-#[derive(Clone, Debug, Serialize)]
+#[derive(Clone, Debug, Serialize, utoipa::ToSchema)]
 pub struct StoredResults {
     /// As `fit` gives it; `None` where nothing is stored.
     pub outcome: Option<AnyOutcome>,
@@ -253,7 +253,7 @@ pub fn stored_results(directory: &Path) -> Result<StoredResults, Error> {
 }
 
 /// A file of recordings.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, utoipa::ToSchema)]
 pub struct RecordingEntry {
     /// Name below the directory of recordings.
     pub file: String,

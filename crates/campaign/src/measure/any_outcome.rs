@@ -9,7 +9,7 @@ use windfall_files::found::FailureOutcome;
 ///
 /// In JSON every kind has `windfall`, `campaign`, `simulated`, `status`,
 /// `impacts` (one entry per result), `failed`, `summary` and `findings`.
-#[derive(Clone, Debug, Serialize)]
+#[derive(Clone, Debug, Serialize, utoipa::ToSchema)]
 #[serde(untagged)]
 pub enum AnyOutcome {
     /// Laws fitted to single impacts.

@@ -10,7 +10,7 @@ use windfall_files::found::{FailureOutcome, FindingOutcome, SpreadOutcome};
 use windfall_files::named::Named;
 
 /// One value; SI.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, utoipa::ToSchema, Deserialize)]
 pub struct MeasuredValue {
     /// Value.
     pub value: f64,
@@ -46,7 +46,7 @@ pub fn value_with_sd(value: f64, sd: f64, unit: &str) -> MeasuredValue {
 }
 
 /// What was found in one recording, or of one specimen.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, utoipa::ToSchema, Deserialize)]
 pub struct MeasuredItem {
     /// Id of the recording, or of the specimen.
     pub id: String,
@@ -98,7 +98,7 @@ impl Document for MeasuredItems {
 }
 
 /// Spread of the values over a group.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, utoipa::ToSchema, Deserialize)]
 pub struct MeasuredGroup {
     /// Name of the group; `None` for all together.
     pub group: Option<String>,
@@ -122,7 +122,7 @@ pub struct ShownValue {
 }
 
 /// Everything that `fit` gives for such a campaign.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, utoipa::ToSchema)]
 pub struct MeasuredOutcome {
     /// Version of windfall.
     pub windfall: String,

@@ -9,7 +9,7 @@ use windfall_identify::fit::result::Fit;
 const KEPT: usize = 500;
 
 /// How the intervals of a fit came about.
-#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, utoipa::ToSchema, Deserialize)]
 pub struct IntervalOutcome {
     /// "asymptotic", "profile", "bootstrap" or "posterior".
     pub method: String,
@@ -40,7 +40,7 @@ pub struct IntervalOutcome {
 }
 
 /// How well the chains of one parameter agree.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, utoipa::ToSchema, Deserialize)]
 pub struct MixingOutcome {
     /// Spread of all chains over that within chains; `None` when they stand
     /// still.
@@ -52,7 +52,7 @@ pub struct MixingOutcome {
 }
 
 /// Profile of one parameter.
-#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, utoipa::ToSchema, Deserialize)]
 pub struct ProfileOutcome {
     /// Values looked at; SI.
     pub values: Vec<f64>,

@@ -9,7 +9,7 @@ use windfall_files::found::{EstimateOutcome, FailureOutcome, FindingOutcome, Spr
 use windfall_files::named::Named;
 
 /// How one quantity of the cost function fits.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, utoipa::ToSchema, Deserialize)]
 pub struct ResidualOutcome {
     /// Samples.
     pub samples: usize,
@@ -29,7 +29,7 @@ pub struct ResidualOutcome {
 }
 
 /// One law fitted to one impact.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, utoipa::ToSchema, Deserialize)]
 pub struct ImpactOutcome {
     /// Id of the impact.
     pub id: String,
@@ -85,7 +85,7 @@ pub struct ImpactOutcome {
 }
 
 /// Spread of parameters and derived quantities over the impacts of a group.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, utoipa::ToSchema, Deserialize)]
 pub struct GroupOutcome {
     /// Name of the group; `None` for all impacts together.
     pub group: Option<String>,
@@ -102,7 +102,7 @@ pub struct GroupOutcome {
 }
 
 /// How the results came about.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, utoipa::ToSchema, Deserialize)]
 pub struct StatusOutcome {
     /// Fits done in this run.
     pub fitted: usize,
@@ -115,7 +115,7 @@ pub struct StatusOutcome {
 }
 
 /// A value of the rig that was found from the recordings.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, utoipa::ToSchema, Deserialize)]
 pub struct MassOutcome {
     /// Mass; kg.
     pub value: f64,
@@ -126,7 +126,7 @@ pub struct MassOutcome {
 }
 
 /// Everything that `fit` gives for a campaign.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, utoipa::ToSchema, Deserialize)]
 pub struct CampaignOutcome {
     /// Version of windfall.
     pub windfall: String,

@@ -8,7 +8,7 @@ use windfall_files::named::Named;
 use windfall_tables::regress::outcome::AnovaOutcome;
 
 /// Everything that a calibration gives.
-#[derive(Clone, Debug, Serialize)]
+#[derive(Clone, Debug, Serialize, utoipa::ToSchema)]
 pub struct CalibrateOutcome {
     /// Version of windfall.
     pub windfall: String,
@@ -47,7 +47,7 @@ pub struct CalibrateOutcome {
 }
 
 /// Features of one drop.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, utoipa::ToSchema)]
 pub struct DropOutcome {
     /// Id in impacts.csv.
     pub id: String,
@@ -62,7 +62,7 @@ pub struct DropOutcome {
 }
 
 /// The features that are to be met at one height.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, utoipa::ToSchema)]
 pub struct TargetOutcome {
     /// Which drops they are of.
     pub of: String,
@@ -77,7 +77,7 @@ pub struct TargetOutcome {
 }
 
 /// Where the search starts.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, utoipa::ToSchema)]
 pub struct StartOutcome {
     /// The law with its start values.
     pub law: String,
@@ -88,7 +88,7 @@ pub struct StartOutcome {
 }
 
 /// A free parameter as estimated.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, utoipa::ToSchema)]
 pub struct CalibratedParameter {
     /// Its name.
     pub name: String,
@@ -105,7 +105,7 @@ pub struct CalibratedParameter {
 }
 
 /// A value in the unit of a campaign's ranges: N/mm^e.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, utoipa::ToSchema)]
 pub struct WrittenValue {
     /// Value.
     pub value: f64,
@@ -120,7 +120,7 @@ pub struct WrittenValue {
 }
 
 /// Least squares of features.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, utoipa::ToSchema)]
 pub struct FeaturesOutcome {
     /// The law.
     pub law: String,
@@ -151,7 +151,7 @@ pub struct FeaturesOutcome {
 }
 
 /// A direction in the free parameters.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, utoipa::ToSchema)]
 pub struct DirectionOutcome {
     /// Parts: relative changes of what has a unit, changes of exponents.
     pub parts: Named<f64>,
@@ -162,7 +162,7 @@ pub struct DirectionOutcome {
 }
 
 /// A feature as measured and as the law has it.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, utoipa::ToSchema)]
 pub struct FittedFeature {
     /// The drop.
     pub drop: String,
@@ -177,7 +177,7 @@ pub struct FittedFeature {
 }
 
 /// A quantity of the rig that was estimated along.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, utoipa::ToSchema)]
 pub struct AlongOutcome {
     /// What.
     pub quantity: String,
@@ -188,7 +188,7 @@ pub struct AlongOutcome {
 }
 
 /// The line of laws that have the same features at one height.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, utoipa::ToSchema)]
 pub struct FamilyLine {
     /// Directions that are open.
     pub dimension: usize,
@@ -199,7 +199,7 @@ pub struct FamilyLine {
 }
 
 /// A law of the line.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, utoipa::ToSchema)]
 pub struct FamilyMember {
     /// Values of the free parameters, in the units of their ranges.
     pub parameters: Vec<f64>,
@@ -210,7 +210,7 @@ pub struct FamilyMember {
 }
 
 /// Features at a height.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, utoipa::ToSchema)]
 pub struct HeightFeatures {
     /// Drop height; m.
     pub height: f64,
@@ -219,7 +219,7 @@ pub struct HeightFeatures {
 }
 
 /// Uncertainties with some knowledge.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, utoipa::ToSchema)]
 pub struct ClosingOutcome {
     /// What is known.
     pub with: String,
@@ -231,7 +231,7 @@ pub struct ClosingOutcome {
 }
 
 /// Calibration by design and surface.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, utoipa::ToSchema)]
 pub struct DesignWayOutcome {
     /// Kind of the design.
     pub kind: String,
@@ -254,7 +254,7 @@ pub struct DesignWayOutcome {
 }
 
 /// A factor of the design.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, utoipa::ToSchema)]
 pub struct DesignFactorOutcome {
     /// A, B, C …
     pub letter: String,
@@ -273,7 +273,7 @@ pub struct DesignFactorOutcome {
 }
 
 /// A run of the design.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, utoipa::ToSchema)]
 pub struct DesignRunOutcome {
     /// Coded levels.
     pub coded: Vec<f64>,
@@ -284,7 +284,7 @@ pub struct DesignRunOutcome {
 }
 
 /// The surface of a response.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, utoipa::ToSchema)]
 pub struct DesignSurfaceOutcome {
     /// The response.
     pub response: String,
@@ -315,7 +315,7 @@ pub struct DesignSurfaceOutcome {
 }
 
 /// A term of a surface.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, utoipa::ToSchema)]
 pub struct DesignTerm {
     /// Its letters.
     pub term: String,
@@ -326,7 +326,7 @@ pub struct DesignTerm {
 }
 
 /// Settings of a surface with the response there and in the simulator.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, utoipa::ToSchema)]
 pub struct DesignOptimum {
     /// Levels.
     pub levels: Vec<f64>,
@@ -339,7 +339,7 @@ pub struct DesignOptimum {
 }
 
 /// A response at the optimum: Table 6 of the study.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, utoipa::ToSchema)]
 pub struct VerifiedResponse {
     /// The response.
     pub response: String,
@@ -348,6 +348,7 @@ pub struct VerifiedResponse {
     /// As measured.
     pub measured: Option<f64>,
     /// As the surface has it.
+    #[schema(value_type = Option<f64>)]
     pub predicted: f64,
     /// As the simulator has it.
     pub simulated: Option<f64>,
@@ -356,7 +357,7 @@ pub struct VerifiedResponse {
 }
 
 /// A member of the family on the surfaces.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, utoipa::ToSchema)]
 pub struct DesignMember {
     /// Levels.
     pub levels: Vec<f64>,
@@ -367,7 +368,7 @@ pub struct DesignMember {
 }
 
 /// The optimum at another height.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, utoipa::ToSchema)]
 pub struct DesignHeight {
     /// Drop height; m.
     pub height: f64,
@@ -378,7 +379,7 @@ pub struct DesignHeight {
 }
 
 /// Table 2 of the study: responses over the depth of full damping.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, utoipa::ToSchema)]
 pub struct DepthOutcome {
     /// The law at which it was varied.
     pub law: String,
@@ -393,7 +394,7 @@ pub struct DepthOutcome {
 }
 
 /// What to measure next.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, utoipa::ToSchema)]
 pub struct NextOutcome {
     /// Whose gain decides beside the determinant.
     pub interest: String,
@@ -404,7 +405,7 @@ pub struct NextOutcome {
 }
 
 /// A further drop.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, utoipa::ToSchema)]
 pub struct CandidateOutcome {
     /// Drop height; m.
     pub height: f64,

@@ -6,7 +6,7 @@ use windfall_campaign::measure::measured::MeasuredValue;
 use windfall_files::named::Named;
 
 /// A law calibrated on waveforms.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, utoipa::ToSchema)]
 pub struct WaveformOutcome {
     /// The law.
     pub law: String,
@@ -37,7 +37,7 @@ pub struct WaveformOutcome {
 }
 
 /// An estimate.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, utoipa::ToSchema)]
 pub struct WaveformParameter {
     /// Its name.
     pub name: String,
@@ -50,7 +50,7 @@ pub struct WaveformParameter {
 }
 
 /// A combination of parameters that is known little.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, utoipa::ToSchema)]
 pub struct WeakOutcome {
     /// Its standard uncertainty: relative, of exponents absolute.
     pub sd: f64,
@@ -59,7 +59,7 @@ pub struct WeakOutcome {
 }
 
 /// What the waveform of one drop tells.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, utoipa::ToSchema)]
 pub struct WaveformDropOutcome {
     /// Id in impacts.csv.
     pub id: String,

@@ -4,7 +4,7 @@ use serde::Serialize;
 use windfall_files::found::{FailureOutcome, FindingOutcome};
 
 /// What `windfall laws` gives.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, utoipa::ToSchema)]
 pub struct LawsOutcome {
     /// Version of windfall.
     pub windfall: String,
@@ -31,7 +31,7 @@ pub struct LawsOutcome {
 }
 
 /// Evidence of one impact for one law.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, utoipa::ToSchema)]
 pub struct ImpactEvidenceOutcome {
     /// The impact.
     pub id: String,
@@ -40,7 +40,7 @@ pub struct ImpactEvidenceOutcome {
 }
 
 /// Evidence for one law.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, utoipa::ToSchema)]
 pub struct LawEvidenceOutcome {
     /// The law.
     pub law: String,

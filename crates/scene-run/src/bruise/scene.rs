@@ -36,7 +36,7 @@ pub struct Blows {
 }
 
 /// How many fruit are bruised, and where.
-#[derive(Clone, Debug, Serialize)]
+#[derive(Clone, Debug, Serialize, utoipa::ToSchema)]
 pub struct BruiseOutcome {
     /// Share of fruit whose largest bruise exceeds each limit.
     pub limits: Vec<LimitOutcome>,
@@ -47,7 +47,7 @@ pub struct BruiseOutcome {
 }
 
 /// Share of fruit above a limit.
-#[derive(Clone, Copy, Debug, Serialize)]
+#[derive(Clone, Copy, Debug, Serialize, utoipa::ToSchema)]
 pub struct LimitOutcome {
     /// Volume of the largest bruise; m³.
     pub limit: f64,
@@ -58,7 +58,7 @@ pub struct LimitOutcome {
 }
 
 /// Bruises made by one wall, or by other fruit.
-#[derive(Clone, Debug, Serialize)]
+#[derive(Clone, Debug, Serialize, utoipa::ToSchema)]
 pub struct PlaceOutcome {
     /// The wall, or "fruit".
     pub name: String,

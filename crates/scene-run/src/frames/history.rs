@@ -11,7 +11,7 @@ use windfall_files::error::Error;
 const MOST: usize = 2000;
 
 /// A contact of a fruit.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, utoipa::ToSchema)]
 pub struct ContactView {
     /// First touch; s.
     pub time: f64,
@@ -24,6 +24,7 @@ pub struct ContactView {
     /// Number of the other fruit.
     pub partner_fruit: Option<u64>,
     /// Where on this fruit: direction from its centre, fixed to it.
+    #[schema(value_type = (f64, f64, f64))]
     pub spot: [f64; 3],
     /// Normal speed at first touch; m/s.
     pub normal_speed: f64,
@@ -36,7 +37,7 @@ pub struct ContactView {
 }
 
 /// What one fruit went through.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, utoipa::ToSchema)]
 pub struct FruitHistory {
     /// Its number.
     pub fruit: u64,
@@ -47,7 +48,7 @@ pub struct FruitHistory {
 }
 
 /// A fruit in the list of those that were hit hardest.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, utoipa::ToSchema)]
 pub struct HardestFruit {
     /// Its number.
     pub fruit: u64,

@@ -42,7 +42,7 @@ pub const FRUIT_BYTES: usize = 48;
 pub const WALL_BYTES: usize = 28;
 
 /// What the file is about, in its JSON.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, utoipa::ToSchema, Deserialize)]
 pub struct FramesAbout {
     /// Title of the scene.
     pub title: String,

@@ -5,7 +5,7 @@ use windfall_draw::axis::axis;
 use windfall_draw::xy::{Figure, Panel, Series, Style};
 
 /// Counts of fruit over the values of a quantity.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, utoipa::ToSchema)]
 pub struct HistogramOutcome {
     /// The quantity, of each fruit the largest.
     pub quantity: String,

@@ -19,7 +19,7 @@ use windfall_scene::motion::simulation::Leaving;
 use windfall_scene::scene::Scene;
 
 /// What came of a scene; SI throughout.
-#[derive(Clone, Debug, Serialize)]
+#[derive(Clone, Debug, Serialize, utoipa::ToSchema)]
 pub struct SceneOutcome {
     /// Title.
     pub title: String,
@@ -54,11 +54,13 @@ pub struct SceneOutcome {
     /// What is to be known of the result.
     pub findings: Vec<FindingOutcome>,
     /// Files written.
+    #[schema(value_type = Vec<String>)]
     pub files: Vec<PathBuf>,
 }
 
 /// A time step, and what it does to the contact that suffers most.
-#[derive(Clone, Debug, Default, Serialize)]
+#[derive(Clone, Debug, Default, Serialize, utoipa::ToSchema)]
+#[schema(as = SceneStep)]
 pub struct StepOutcome {
     /// Time step; s.
     pub time_step: f64,
@@ -75,7 +77,7 @@ pub struct StepOutcome {
 }
 
 /// Contacts with one wall, or of fruit with fruit.
-#[derive(Clone, Debug, Serialize)]
+#[derive(Clone, Debug, Serialize, utoipa::ToSchema)]
 pub struct PartnerOutcome {
     /// The wall, or "fruit".
     pub name: String,
@@ -98,7 +100,7 @@ pub struct PartnerOutcome {
 }
 
 /// Energies; J.
-#[derive(Clone, Copy, Debug, Serialize)]
+#[derive(Clone, Copy, Debug, Serialize, utoipa::ToSchema)]
 pub struct EnergyOutcome {
     /// Of translation.
     pub kinetic: f64,

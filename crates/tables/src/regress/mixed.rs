@@ -29,7 +29,7 @@ use windfall_statistics::model::random_terms::{FramedTerm, new_terms, random_ter
 use windfall_statistics::model::reduced::{Aliased, reduce};
 
 /// A standard deviation between groups, or the correlation of two effects.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, utoipa::ToSchema)]
 pub struct VarianceOutcome {
     /// Groups: `specimen`; "residual".
     pub group: String,
@@ -40,13 +40,15 @@ pub struct VarianceOutcome {
     /// Its value.
     pub value: f64,
     /// Lower end of its profile interval.
+    #[schema(value_type = Option<f64>)]
     pub low: f64,
     /// Upper end.
+    #[schema(value_type = Option<f64>)]
     pub high: f64,
 }
 
 /// An effect of a group.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, utoipa::ToSchema)]
 pub struct EffectOutcome {
     /// What names the group: `specimen`.
     pub by: String,
@@ -61,7 +63,7 @@ pub struct EffectOutcome {
 }
 
 /// A prediction with the effects of known groups.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, utoipa::ToSchema)]
 pub struct MixedPredictionOutcome {
     /// Line of the file that asks for it.
     pub line: usize,
@@ -82,7 +84,7 @@ pub struct MixedPredictionOutcome {
 }
 
 /// A fitted mixed model.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, utoipa::ToSchema)]
 pub struct MixedOutcome {
     /// The formula.
     pub formula: String,
@@ -137,7 +139,7 @@ pub struct MixedOutcome {
 }
 
 /// An F test of a term.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, utoipa::ToSchema)]
 pub struct MixedTest {
     /// F with the degrees of freedom of the term; no sum of squares is defined.
     #[serde(flatten)]

@@ -9,7 +9,7 @@ use windfall_statistics::residuals::diagnostics::{Inflation, RowInfluence};
 use windfall_statistics::table::Table;
 
 /// A step of a selection.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, utoipa::ToSchema)]
 pub struct StepOutcome {
     /// The term.
     pub term: String,
@@ -26,7 +26,7 @@ pub struct StepOutcome {
 }
 
 /// An estimate.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, utoipa::ToSchema)]
 pub struct TermOutcome {
     /// Its column.
     pub term: String,
@@ -47,7 +47,8 @@ pub struct TermOutcome {
 }
 
 /// In which range a column was.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, utoipa::ToSchema)]
+#[schema(as = ModelRange)]
 pub struct RangeOutcome {
     /// The column.
     pub column: String,
@@ -86,11 +87,12 @@ pub fn ranges_of(formula: &Formula, table: &Table, kept: &[usize]) -> Vec<RangeO
 }
 
 /// A row of an analysis of variance.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, utoipa::ToSchema)]
 pub struct AnovaOutcome {
     /// The term.
     pub term: String,
     /// Its sum of squares.
+    #[schema(value_type = Option<f64>)]
     pub ss: f64,
     /// Its degrees of freedom.
     pub df: f64,
@@ -101,7 +103,7 @@ pub struct AnovaOutcome {
 }
 
 /// A sum of squares with its degrees of freedom.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, utoipa::ToSchema)]
 pub struct SumOfSquares {
     /// Sum of squares.
     pub ss: f64,
@@ -110,7 +112,7 @@ pub struct SumOfSquares {
 }
 
 /// The whole model against none.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, utoipa::ToSchema)]
 pub struct WholeModel {
     /// Sum of squares.
     pub ss: f64,
@@ -123,7 +125,7 @@ pub struct WholeModel {
 }
 
 /// Lack of fit against pure error.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, utoipa::ToSchema)]
 pub struct LackOfFitOutcome {
     /// What the model misses.
     pub lack: AnovaOutcome,
@@ -132,7 +134,7 @@ pub struct LackOfFitOutcome {
 }
 
 /// Variance inflation of a term.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, utoipa::ToSchema)]
 pub struct InflationOutcome {
     /// The term.
     pub term: String,
@@ -143,7 +145,7 @@ pub struct InflationOutcome {
 }
 
 /// What a row does to the fit.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, utoipa::ToSchema)]
 pub struct RowOutcome {
     /// Line of the table's file.
     pub line: usize,
@@ -158,15 +160,17 @@ pub struct RowOutcome {
     /// Residual over its standard error.
     pub standardised: f64,
     /// The same with the variance of the other rows.
+    #[schema(value_type = Option<f64>)]
     pub studentised: f64,
     /// Cook's distance.
+    #[schema(value_type = Option<f64>)]
     pub cook: f64,
     /// Change of the prediction without the row, in standard errors.
     pub dffits: f64,
 }
 
 /// A prediction with intervals.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, utoipa::ToSchema)]
 pub struct PredictionOutcome {
     /// Line of the file that asks for it.
     pub line: usize,
@@ -185,7 +189,7 @@ pub struct PredictionOutcome {
 }
 
 /// How good a model is.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, utoipa::ToSchema)]
 pub struct QualityOutcome {
     /// Part of the variation that is described.
     pub r2: f64,

@@ -24,7 +24,7 @@ const MOST_ROWS: usize = 20_000;
 const DOUBTFUL: f64 = 0.01;
 
 /// A test.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, utoipa::ToSchema)]
 pub struct TestOutcome {
     /// The test.
     pub test: &'static str,
@@ -35,7 +35,7 @@ pub struct TestOutcome {
 }
 
 /// The power of the response that suits the model best.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, utoipa::ToSchema)]
 pub struct BoxCoxOutcome {
     /// 1 no transform, 0.5 root, 0 logarithm, -1 inverse.
     pub lambda: f64,
@@ -46,7 +46,7 @@ pub struct BoxCoxOutcome {
 }
 
 /// How far predictions are from what was measured.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, utoipa::ToSchema)]
 pub struct GoodnessOutcome {
     /// Σ (O - P)² / P, where predictions are positive.
     pub chi_squared: Option<f64>,
@@ -63,7 +63,8 @@ pub struct GoodnessOutcome {
 }
 
 /// Tests of residuals, transform of the response, goodness indices.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, utoipa::ToSchema)]
+#[schema(as = ModelResiduals)]
 pub struct ResidualOutcome {
     /// Normality, equal variance, order.
     pub tests: Vec<TestOutcome>,

@@ -27,7 +27,7 @@ use windfall_statistics::residuals::diagnostics::{
 };
 
 /// Quality of predictions of rows left out in parts.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, utoipa::ToSchema)]
 pub struct CrossValidationOutcome {
     /// Parts.
     pub folds: usize,
@@ -38,7 +38,7 @@ pub struct CrossValidationOutcome {
 }
 
 /// A fitted linear model.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, utoipa::ToSchema)]
 pub struct RegressOutcome {
     /// The formula in one spelling.
     pub formula: String,
@@ -90,7 +90,7 @@ pub struct RegressOutcome {
 }
 
 /// A model without random effects, or with them.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, utoipa::ToSchema)]
 #[serde(untagged)]
 pub enum AnyRegressOutcome {
     /// Without.

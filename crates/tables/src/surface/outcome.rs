@@ -7,7 +7,7 @@ use serde::Serialize;
 use windfall_files::found::FindingOutcome;
 
 /// A term of a surface.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, utoipa::ToSchema)]
 pub struct SurfaceTerm {
     /// As it was written: `AB`, `k:e`; `(Intercept)`.
     pub term: String,
@@ -36,7 +36,7 @@ pub struct SurfaceTerm {
 }
 
 /// A term of the polynomial in actual units.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, utoipa::ToSchema)]
 pub struct ActualTerm {
     /// With the names of the factors.
     pub name: String,
@@ -45,7 +45,7 @@ pub struct ActualTerm {
 }
 
 /// Coding of a factor.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, utoipa::ToSchema)]
 pub struct FactorOutcome {
     /// A, B, C …
     pub letter: String,
@@ -62,7 +62,7 @@ pub struct FactorOutcome {
 }
 
 /// The stationary point of a quadratic surface.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, utoipa::ToSchema)]
 pub struct CanonicalOutcome {
     /// "maximum", "minimum", "saddle" or "ridge".
     pub shape: &'static str,
@@ -83,7 +83,7 @@ pub struct CanonicalOutcome {
 }
 
 /// A point of a ridge.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, utoipa::ToSchema)]
 pub struct RidgeOutcome {
     /// "maximum" or "minimum".
     pub of: &'static str,
@@ -96,7 +96,7 @@ pub struct RidgeOutcome {
 }
 
 /// The surface of one response.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, utoipa::ToSchema)]
 pub struct SurfaceModel {
     /// The response.
     pub response: String,
@@ -128,7 +128,7 @@ pub struct SurfaceModel {
 }
 
 /// Settings with what they give.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, utoipa::ToSchema)]
 pub struct SettingOutcome {
     /// Actual settings of the factors.
     pub actual: Vec<f64>,
@@ -141,7 +141,7 @@ pub struct SettingOutcome {
 }
 
 /// A response at some settings.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, utoipa::ToSchema)]
 pub struct PredictedResponse {
     /// The response.
     pub response: String,
@@ -152,11 +152,12 @@ pub struct PredictedResponse {
     /// Its upper end.
     pub high: f64,
     /// Desirability of this response alone.
+    #[schema(value_type = Option<f64>)]
     pub desirability: f64,
 }
 
 /// Settings that are as good as the best.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, utoipa::ToSchema)]
 pub struct FamilyOutcome {
     /// Directions in which settings can change and stay as good.
     pub dimension: usize,
@@ -171,7 +172,7 @@ pub struct FamilyOutcome {
 }
 
 /// What `windfall surface` found.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, utoipa::ToSchema)]
 pub struct SurfaceOutcome {
     /// Coding of the factors.
     pub factors: Vec<FactorOutcome>,
@@ -193,7 +194,7 @@ pub struct SurfaceOutcome {
 }
 
 /// Predictions over two factors, for contours and surfaces.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, utoipa::ToSchema)]
 pub struct GridOutcome {
     /// Names of all factors, then of the responses with the standard errors of
     /// their means.

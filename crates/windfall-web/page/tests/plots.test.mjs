@@ -4,65 +4,21 @@ import { runnerImport } from "vite";
 
 const load = async (path) => (await runnerImport(path, { configFile: false, logLevel: "error" })).module;
 const scale = await load("./src/plots/scale.ts");
-const contour = await load("./src/plots/contour.ts");
+const { valueAt } = await load("./src/plots/grid.ts");
 const surface = await load("./src/plots/surface3d.ts");
-const { evaluate } = await load("./src/plots/polynomial.ts");
-const { colourOf } = await load("./src/plots/colour.ts");
+const { evaluate } = await load("./src/lib/polynomial.ts");
 
 const range = (from, to, count) =>
   Array.from({ length: count }, (_, i) => from + ((to - from) * i) / (count - 1));
 
 function gridOf(of, xs, ys) {
-  return { xs, ys, values: ys.flatMap((y) => xs.map((x) => of(x, y))) };
+  return { x: xs, y: ys, values: ys.flatMap((y) => xs.map((x) => of(x, y))) };
 }
 
-test("the contour of x² + y² at r² is one closed circle", () => {
-  const grid = gridOf((x, y) => x * x + y * y, range(-1, 1, 41), range(-1, 1, 41));
-  for (const r of [0.3, 0.55, 0.9]) {
-    const lines = contour.contourLines(grid, r * r);
-    assert.equal(lines.length, 1);
-    const [line] = lines;
-    assert.deepEqual(line[0], line.at(-1));
-    // A secant of a cell of width h is off by h²/(8 r) at most.
-    const tolerance = 0.05 ** 2 / (8 * r) + 1e-12;
-    for (const [x, y] of line) {
-      assert.ok(Math.abs(Math.hypot(x, y) - r) < tolerance, `${Math.hypot(x, y)} is not ${r}`);
-    }
-    // Once around: the area of the polygon is that of the circle.
-    let area = 0;
-    for (let i = 1; i < line.length; i += 1) {
-      area += (line[i - 1][0] * line[i][1] - line[i][0] * line[i - 1][1]) / 2;
-    }
-    assert.ok(Math.abs(Math.abs(area) / (Math.PI * r * r) - 1) < 0.01);
-  }
-});
-
-test("the contour of a plane is a line from edge to edge, and a saddle has two branches", () => {
-  const plane = gridOf((x, y) => x + 2 * y, range(0, 1, 9), range(0, 1, 9));
-  const [line, ...others] = contour.contourLines(plane, 1.03);
-  assert.equal(others.length, 0);
-  for (const [x, y] of line) assert.ok(Math.abs(x + 2 * y - 1.03) < 1e-12);
-  const saddle = gridOf((x, y) => x * y, range(-1, 1, 20), range(-1, 1, 20));
-  assert.equal(contour.contourLines(saddle, 0.1).length, 2);
-  assert.equal(contour.contourLines(saddle, 5).length, 0);
-});
-
-test("cells without values break a contour and spoil nothing", () => {
-  const holed = gridOf((x, y) => (x > 0.4 && x < 0.6 ? NaN : y), range(0, 1, 11), range(0, 1, 11));
-  const lines = contour.contourLines(holed, 0.55);
-  assert.equal(lines.length, 2);
-  assert.ok(lines.flat(2).every(Number.isFinite));
-});
-
-test("a table of points becomes a grid whatever its order; a gap is refused", () => {
-  const rows = [];
-  for (const y of [1, 2, 3]) for (const x of [10, 20]) rows.push([x, 7, y, x * y]);
-  const shuffled = [3, 0, 5, 1, 4, 2].map((i) => rows[i]);
-  const grid = contour.gridOf(shuffled, 0, 2, 3);
-  assert.deepEqual(grid, { xs: [10, 20], ys: [1, 2, 3], values: [10, 20, 20, 40, 30, 60] });
-  assert.equal(contour.gridOf(rows.slice(1), 0, 2, 3), null);
-  assert.equal(contour.valueAt(grid, 15, 2.5), 37.5);
-  assert.ok(Number.isNaN(contour.valueAt(grid, 25, 2)));
+test("values between points of a grid are bilinear, and there are none outside", () => {
+  const grid = gridOf((x, y) => x * y, [10, 20], [1, 2, 3]);
+  assert.equal(valueAt(grid, 15, 2.5), 37.5);
+  assert.ok(Number.isNaN(valueAt(grid, 25, 2)));
 });
 
 test("painting goes from far to near, and a turn brings the back to the front", () => {
@@ -124,9 +80,7 @@ test("a polynomial in actual units is the fitted one, and other terms are refuse
   assert.equal(evaluate([{ name: "log(k)", coefficient: 1 }], ["k"], [2]), null);
 });
 
-test("colours grow lighter from end to end", () => {
-  const lightness = ([r, g, b]) => 0.2126 * r + 0.7152 * g + 0.0722 * b;
-  const all = range(0, 1, 50).map((part) => lightness(colourOf(part)));
-  for (let i = 1; i < all.length; i += 1) assert.ok(all[i] > all[i - 1]);
-  assert.deepEqual(colourOf(-3), colourOf(0));
+test("an item is picked by its part of a list, ends beyond the ends", () => {
+  const list = ["a", "b", "c"];
+  assert.deepEqual([-3, 0, 0.3, 0.6, 1, 2].map((part) => scale.pick(list, part)), ["a", "a", "b", "b", "c", "c"]);
 });

@@ -26,7 +26,7 @@ pub(crate) struct NewCampaign {
 }
 
 /// All campaigns of the directory.
-#[utoipa::path(get, path = "/api/campaigns", responses((status = 200, body = Vec<Object>)))]
+#[utoipa::path(get, path = "/api/campaigns", responses((status = 200, body = Vec<CampaignEntry>)))]
 pub(crate) async fn campaigns(State(app): State<App>) -> Answer<Vec<CampaignEntry>> {
     let entries = app.work(|app| app.workspace.campaigns()).await?;
     app.tell(&entries)
@@ -35,7 +35,7 @@ pub(crate) async fn campaigns(State(app): State<App>) -> Answer<Vec<CampaignEntr
 /// Makes a campaign from a template, as `windfall new` does.
 #[utoipa::path(
     post, path = "/api/campaigns", request_body = NewCampaign,
-    responses((status = 201, body = Object), RequestProblems))]
+    responses((status = 201, body = CampaignView), RequestProblems))]
 pub(crate) async fn create(
     State(app): State<App>,
     Given(new): Given<NewCampaign>,
@@ -72,7 +72,7 @@ fn template_kind(word: &str) -> Option<TemplateKind> {
 /// What the files of a campaign say; its version is the ETag.
 #[utoipa::path(
     get, path = "/api/campaigns/{id}", params(("id" = String, Path, example = "bench")),
-    responses((status = 200, body = Object), QuestionProblems))]
+    responses((status = 200, body = CampaignView), QuestionProblems))]
 pub(crate) async fn campaign(
     State(app): State<App>,
     Path(id): Path<String>,
@@ -93,7 +93,7 @@ pub(crate) fn with_version(view: CampaignView) -> (HeaderMap, Json<CampaignView>
 /// What the store holds of the campaign as it is now; nothing is fitted.
 #[utoipa::path(
     get, path = "/api/campaigns/{id}/results", params(("id" = String, Path, example = "bench")),
-    responses((status = 200, body = Object), QuestionProblems))]
+    responses((status = 200, body = StoredResults), QuestionProblems))]
 pub(crate) async fn results(
     State(app): State<App>,
     Path(id): Path<String>,

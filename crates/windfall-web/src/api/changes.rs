@@ -10,6 +10,7 @@ use axum::response::{IntoResponse, Response};
 use serde::Deserialize;
 use std::collections::BTreeMap;
 use utoipa::ToSchema;
+use windfall_workspace::campaign_view::CampaignView;
 use windfall_workspace::edit_campaign::{
     Change, ChannelsChange, NewImpact, OptionsChange, change_campaign,
 };
@@ -115,7 +116,7 @@ async fn changed(
 #[utoipa::path(
     put, path = "/api/campaigns/{id}/text", request_body = TextGiven,
     params(("id" = String, Path, example = "bench"), ("If-Match" = String, Header, example = "*")),
-    responses((status = 200, body = Object), ChangeProblems))]
+    responses((status = 200, body = CampaignView), ChangeProblems))]
 pub(crate) async fn text(
     State(app): State<App>,
     Path(id): Path<String>,
@@ -129,7 +130,7 @@ pub(crate) async fn text(
 #[utoipa::path(
     put, path = "/api/campaigns/{id}/window", request_body = WindowGiven,
     params(("id" = String, Path, example = "bench"), ("If-Match" = String, Header, example = "*")),
-    responses((status = 200, body = Object), ChangeProblems))]
+    responses((status = 200, body = CampaignView), ChangeProblems))]
 pub(crate) async fn window(
     State(app): State<App>,
     Path(id): Path<String>,
@@ -152,7 +153,7 @@ pub(crate) async fn window(
 #[utoipa::path(
     put, path = "/api/campaigns/{id}/options", request_body = OptionsGiven,
     params(("id" = String, Path, example = "bench"), ("If-Match" = String, Header, example = "*")),
-    responses((status = 200, body = Object), ChangeProblems))]
+    responses((status = 200, body = CampaignView), ChangeProblems))]
 pub(crate) async fn options(
     State(app): State<App>,
     Path(id): Path<String>,
@@ -192,7 +193,7 @@ fn present<T, const N: usize>(pairs: [(&str, Option<T>); N]) -> BTreeMap<String,
 #[utoipa::path(
     put, path = "/api/campaigns/{id}/channels", request_body = ChannelsGiven,
     params(("id" = String, Path, example = "bench"), ("If-Match" = String, Header, example = "*")),
-    responses((status = 200, body = Object), ChangeProblems))]
+    responses((status = 200, body = CampaignView), ChangeProblems))]
 pub(crate) async fn channels(
     State(app): State<App>,
     Path(id): Path<String>,
@@ -212,7 +213,7 @@ pub(crate) async fn channels(
 #[utoipa::path(
     post, path = "/api/campaigns/{id}/impacts", request_body = ImpactsGiven,
     params(("id" = String, Path, example = "bench"), ("If-Match" = String, Header, example = "*")),
-    responses((status = 200, body = Object), ChangeProblems))]
+    responses((status = 200, body = CampaignView), ChangeProblems))]
 pub(crate) async fn impacts(
     State(app): State<App>,
     Path(id): Path<String>,

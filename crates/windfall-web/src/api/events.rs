@@ -2,15 +2,17 @@
 
 use crate::api::jobs::found;
 use crate::app::{App, Told};
-use crate::job::JobState;
+use crate::job::{JobState, JobView};
 use crate::problem::Problem;
 use axum::extract::{Path, State};
 use axum::response::Sse;
 use axum::response::sse::{Event, KeepAlive};
+use serde::Serialize;
 use std::convert::Infallible;
 use std::time::Duration;
 use tokio_stream::wrappers::{IntervalStream, ReceiverStream};
 use tokio_stream::{Stream, StreamExt};
+use utoipa::ToSchema;
 use windfall_workspace::campaign_view::campaign_stamp;
 
 /// Least time between two events of progress.
@@ -21,11 +23,18 @@ const LOOK: Duration = Duration::from_secs(1);
 
 type Events<S> = Sse<axum::response::sse::KeepAliveStream<S>>;
 
+/// The files of a campaign, or its store, have changed.
+#[derive(Debug, Serialize, ToSchema)]
+pub(crate) struct CampaignChanged {
+    /// The version of the campaign now.
+    version: String,
+}
+
 /// Progress of a job until it ends.
 #[utoipa::path(
     get, path = "/api/jobs/{job}/events", params(("job" = String, Path)),
     responses(
-        (status = 200, body = Object, content_type = "text/event-stream"),
+        (status = 200, body = JobView, content_type = "text/event-stream"),
         (status = 404, body = Problem, content_type = "application/problem+json"),
     )
 )]
@@ -62,7 +71,7 @@ pub(crate) async fn job_events(
 #[utoipa::path(
     get, path = "/api/campaigns/{id}/events", params(("id" = String, Path, example = "bench")),
     responses(
-        (status = 200, body = Object, content_type = "text/event-stream"),
+        (status = 200, body = CampaignChanged, content_type = "text/event-stream"),
         (status = 404, body = Problem, content_type = "application/problem+json"),
     )
 )]
@@ -83,7 +92,10 @@ pub(crate) async fn campaign_events(
         let before = last.replace(stamp.clone());
         // The first look is what the page has just read.
         (before? != stamp).then(|| {
-            let text = serde_json::json!({ "version": stamp.version }).to_string();
+            let changed = CampaignChanged {
+                version: stamp.version,
+            };
+            let text = serde_json::to_string(&changed).unwrap_or_default();
             Ok(Event::default().event("changed").data(text))
         })
     });

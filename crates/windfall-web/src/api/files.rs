@@ -16,6 +16,7 @@ use windfall_report::stored_card::stored_card;
 
 /// The law of a card.
 #[derive(Debug, Deserialize, IntoParams)]
+#[into_params(parameter_in = Query)]
 pub(crate) struct CardAsked {
     /// Name of the law; of no account for a campaign of drops.
     #[serde(default)]

@@ -3,14 +3,13 @@
 use crate::app::{Answer, App};
 use crate::described::RequestProblems;
 use crate::given::Given;
-use crate::job::{Job, JobView};
+use crate::job::{Job, JobView, JobWork, ReportFiles, Work};
 use crate::problem::Problem;
 use axum::Json;
 use axum::extract::{Path, State};
 use axum::http::StatusCode;
 use axum::response::{IntoResponse, Response};
-use serde::{Deserialize, Serialize};
-use serde_json::value::{RawValue, to_raw_value};
+use serde::Deserialize;
 use std::path::PathBuf;
 use std::sync::Arc;
 use utoipa::ToSchema;
@@ -25,29 +24,6 @@ use windfall_report::stored_card::CARD_FILE;
 use windfall_workspace::campaign_view::name_of;
 use windfall_workspace::equal_command::{command, command_of_fit};
 use windfall_workspace::results_table::write_results_table;
-
-/// Kinds of long work.
-#[derive(Clone, Copy, Debug, Deserialize, ToSchema)]
-#[serde(rename_all = "kebab-case")]
-pub(crate) enum Work {
-    Fit,
-    Laws,
-    Population,
-    Calibrate,
-    Report,
-}
-
-impl Work {
-    fn name(self) -> &'static str {
-        match self {
-            Self::Fit => "fit",
-            Self::Laws => "laws",
-            Self::Population => "population",
-            Self::Calibrate => "calibrate",
-            Self::Report => "report",
-        }
-    }
-}
 
 /// Work that is asked for.
 #[derive(Debug, Deserialize, ToSchema)]
@@ -93,18 +69,18 @@ impl JobGiven {
         }
     }
 
-    /// Does the work; what the equal command gives in JSON.
-    fn run(&self, directory: PathBuf, job: &Job) -> Result<Box<RawValue>, Error> {
+    /// Does the work.
+    fn run(&self, directory: PathBuf, job: &Job) -> Result<JobWork, Error> {
         let progress = |done: usize, all: usize| job.progress(done, all);
-        match self.work {
+        Ok(match self.work {
             Work::Fit => {
                 let outcome = fit_any(&directory, &self.fit(), &progress)?;
                 if outcome.results() > 0 {
                     write_results_table(&directory, &outcome)?;
                 }
-                json(&outcome)
+                JobWork::Fit(done(outcome))
             }
-            Work::Laws => json(&rank_campaign(&directory, &self.fit(), &progress)?),
+            Work::Laws => JobWork::Laws(done(rank_campaign(&directory, &self.fit(), &progress)?)),
             Work::Population => {
                 let request = PopulationRequest {
                     directory,
@@ -112,14 +88,14 @@ impl JobGiven {
                     covariates: self.covariates.clone(),
                     ..PopulationRequest::default()
                 };
-                json(&population(&request, &progress)?)
+                JobWork::Population(done(population(&request, &progress)?))
             }
             Work::Calibrate => {
                 let request = CalibrateRequest {
                     card: Some(directory.join(CARD_FILE)),
                     ..CalibrateRequest::default()
                 };
-                json(&calibrate(&directory, &request, &progress)?)
+                JobWork::Calibrate(done(calibrate(&directory, &request, &progress)?))
             }
             Work::Report => {
                 let request = ReportRequest {
@@ -131,23 +107,19 @@ impl JobGiven {
                     let own = path.strip_prefix(&directory).unwrap_or(path);
                     own.display().to_string()
                 };
-                json(&serde_json::json!({
-                    "page": inside(&outcome.page),
-                    "files": outcome.files.iter().map(inside).collect::<Vec<_>>(),
-                    "impacts": outcome.impacts,
-                    "failed": outcome.failed,
+                JobWork::Report(done(ReportFiles {
+                    page: inside(&outcome.page),
+                    files: outcome.files.iter().map(inside).collect(),
+                    impacts: outcome.impacts,
+                    failed: outcome.failed,
                 }))
             }
-        }
+        })
     }
 }
 
-/// JSON as the command writes it, with names in its order.
-fn json(outcome: &impl Serialize) -> Result<Box<RawValue>, Error> {
-    to_raw_value(outcome).map_err(|error| Error::ResultUnwritable {
-        item: "result".to_owned(),
-        detail: error.to_string(),
-    })
+fn done<T>(outcome: T) -> Option<Box<T>> {
+    Some(Box::new(outcome))
 }
 
 /// Begins work on a campaign.
@@ -163,7 +135,7 @@ pub(crate) async fn start(
     let directory = app.on_campaign(id, |_, directory| Ok(directory.to_path_buf()));
     let directory = directory.await?;
     let command = given.command(&name_of(&directory));
-    let Some(job) = app.jobs.begin(&own, given.work.name(), command) else {
+    let Some(job) = app.jobs.begin(&own, given.work, command) else {
         return Err(Problem::new(
             StatusCode::CONFLICT,
             "busy",

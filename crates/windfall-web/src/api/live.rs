@@ -49,7 +49,7 @@ pub(crate) struct Refit {
 /// Fits one impact now; nothing is kept.
 #[utoipa::path(
     post, path = "/api/campaigns/{id}/refit", params(("id" = String, Path, example = "bench")), request_body = Refit,
-    responses((status = 200, body = Object), RequestProblems))]
+    responses((status = 200, body = LiveOutcome), RequestProblems))]
 pub(crate) async fn refit(
     State(app): State<App>,
     Path(id): Path<String>,

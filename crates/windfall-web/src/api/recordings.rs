@@ -28,6 +28,7 @@ const MOST_POINTS: usize = 20_000;
 
 /// A file of a campaign.
 #[derive(Debug, Deserialize, IntoParams)]
+#[into_params(parameter_in = Query)]
 pub(crate) struct FileAsked {
     /// Its name below the directory of its kind.
     #[param(example = "specimen-01-01.csv")]
@@ -36,6 +37,7 @@ pub(crate) struct FileAsked {
 
 /// A part of a channel.
 #[derive(Debug, Deserialize, IntoParams)]
+#[into_params(parameter_in = Query)]
 pub(crate) struct OutlineAsked {
     /// The recording.
     #[param(example = "specimen-01-01.csv")]
@@ -61,14 +63,13 @@ pub(crate) struct Uploaded {
     /// Its digest.
     sha256: String,
     /// What `inspect` says of it; nothing for a table.
-    #[schema(value_type = Option<Object>)]
     recording: Option<Inspection>,
 }
 
 /// The recordings of a campaign.
 #[utoipa::path(
     get, path = "/api/campaigns/{id}/recordings", params(("id" = String, Path, example = "bench")),
-    responses((status = 200, body = Vec<Object>), QuestionProblems))]
+    responses((status = 200, body = Vec<RecordingEntry>), QuestionProblems))]
 pub(crate) async fn recordings(
     State(app): State<App>,
     Path(id): Path<String>,
@@ -80,7 +81,7 @@ pub(crate) async fn recordings(
 /// What a recording holds, as `windfall inspect` says it.
 #[utoipa::path(
     get, path = "/api/campaigns/{id}/recording", params(("id" = String, Path, example = "bench"), FileAsked),
-    responses((status = 200, body = Object), QuestionProblems))]
+    responses((status = 200, body = Inspection), QuestionProblems))]
 pub(crate) async fn recording(
     State(app): State<App>,
     Path(id): Path<String>,
@@ -100,7 +101,7 @@ fn inspected(directory: &std::path::Path, file: &str) -> Result<Inspection, Erro
 /// A part of a channel at the resolution of a screen.
 #[utoipa::path(
     get, path = "/api/campaigns/{id}/outline", params(("id" = String, Path, example = "bench"), OutlineAsked),
-    responses((status = 200, body = Object), QuestionProblems))]
+    responses((status = 200, body = Outline), QuestionProblems))]
 pub(crate) async fn outline(
     State(app): State<App>,
     Path(id): Path<String>,

@@ -22,6 +22,7 @@ const MOST: usize = 2000;
 
 /// From which frame on.
 #[derive(Debug, Deserialize, IntoParams)]
+#[into_params(parameter_in = Query)]
 pub(crate) struct FramesAsked {
     /// Number of the first frame, from 0.
     #[serde(default)]
@@ -30,6 +31,7 @@ pub(crate) struct FramesAsked {
 
 /// How many fruit.
 #[derive(Debug, Deserialize, IntoParams)]
+#[into_params(parameter_in = Query)]
 pub(crate) struct HardestAsked {
     /// At most so many; 200 if left out, 2000 at most.
     most: Option<usize>,
@@ -37,13 +39,14 @@ pub(crate) struct HardestAsked {
 
 /// Which fruit.
 #[derive(Debug, Deserialize, IntoParams)]
+#[into_params(parameter_in = Query)]
 pub(crate) struct FruitAsked {
     /// Its number, from 1.
     fruit: u64,
 }
 
 /// The results of scenes in the directory.
-#[utoipa::path(get, path = "/api/scenes", responses((status = 200, body = Vec<Object>)))]
+#[utoipa::path(get, path = "/api/scenes", responses((status = 200, body = Vec<SceneEntry>)))]
 pub(crate) async fn scenes(State(app): State<App>) -> Answer<Vec<SceneEntry>> {
     let entries = app.work(|app| scene_runs(&app.workspace)).await?;
     app.tell(&entries)
@@ -52,7 +55,7 @@ pub(crate) async fn scenes(State(app): State<App>) -> Answer<Vec<SceneEntry>> {
 /// A scene with its walls and the times of its frames.
 #[utoipa::path(
     get, path = "/api/scenes/{id}", params(("id" = String, Path, example = "scene.run")),
-    responses((status = 200, body = Object), QuestionProblems))]
+    responses((status = 200, body = SceneView), QuestionProblems))]
 pub(crate) async fn scene(State(app): State<App>, Path(id): Path<String>) -> Answer<SceneView> {
     let view = app.work(move |app| scene_view(&scene_run(&app.workspace, &id)?, id));
     app.tell(&view.await?)
@@ -79,7 +82,7 @@ pub(crate) async fn frames(
 #[utoipa::path(
     get, path = "/api/scenes/{id}/hardest",
     params(("id" = String, Path, example = "scene.run"), HardestAsked),
-    responses((status = 200, body = Vec<Object>), QuestionProblems))]
+    responses((status = 200, body = Vec<HardestFruit>), QuestionProblems))]
 pub(crate) async fn hardest(
     State(app): State<App>,
     Path(id): Path<String>,
@@ -94,7 +97,7 @@ pub(crate) async fn hardest(
 #[utoipa::path(
     get, path = "/api/scenes/{id}/history",
     params(("id" = String, Path, example = "scene.run"), FruitAsked),
-    responses((status = 200, body = Object), QuestionProblems))]
+    responses((status = 200, body = FruitHistory), QuestionProblems))]
 pub(crate) async fn history(
     State(app): State<App>,
     Path(id): Path<String>,

@@ -2,6 +2,7 @@
 
 use crate::api::recordings::FileAsked;
 use crate::app::{Answer, App};
+use crate::contour_map::{ContourMap, ResponseMap, contour_map, response_maps};
 use crate::described::{QuestionProblems, RequestProblems};
 use crate::given::{Asked, Given};
 use crate::problem::Problem;
@@ -23,15 +24,19 @@ use windfall_workspace::equal_command::command;
 const MOST_GRID_POINTS: usize = 200;
 
 /// A table.
-#[derive(Debug, Serialize)]
+#[derive(Debug, Serialize, ToSchema)]
 pub(crate) struct DataTable {
+    /// Its name below the campaign.
     file: String,
     columns: Vec<DataColumn>,
+    /// Cells as they are written.
     rows: Vec<Vec<String>>,
 }
 
-#[derive(Debug, Serialize)]
+/// A column of a table.
+#[derive(Debug, Serialize, ToSchema)]
 struct DataColumn {
+    /// Its heading.
     name: String,
     /// Whether all its cells are numbers, or blank.
     numbers: bool,
@@ -101,11 +106,33 @@ fn usual_grid_points() -> usize {
     41
 }
 
-/// An outcome with the equal command.
-#[derive(Debug, Serialize)]
-pub(crate) struct WithCommand<T> {
+/// Values over a rectangular grid.
+#[derive(Debug, Deserialize, ToSchema)]
+#[serde(deny_unknown_fields)]
+pub(crate) struct GridGiven {
+    /// First coordinates, rising.
+    x: Vec<f64>,
+    /// Second coordinates, rising.
+    y: Vec<f64>,
+    /// Values, the first coordinate varying fastest.
+    values: Vec<f64>,
+}
+
+/// Response surfaces with the equal command.
+#[derive(Debug, Serialize, ToSchema)]
+pub(crate) struct SurfaceAnswer {
     #[serde(flatten)]
-    outcome: T,
+    outcome: SurfaceOutcome,
+    /// Contour maps of the responses, where a grid was asked for.
+    maps: Vec<ResponseMap>,
+    command: String,
+}
+
+/// A linear model with the equal command.
+#[derive(Debug, Serialize, ToSchema)]
+pub(crate) struct RegressAnswer {
+    #[serde(flatten)]
+    outcome: AnyRegressOutcome,
     command: String,
 }
 
@@ -130,7 +157,7 @@ fn table_inside(directory: &FilePath, name: &str) -> Result<PathBuf, Error> {
 /// A table of the campaign, cell by cell.
 #[utoipa::path(
     get, path = "/api/campaigns/{id}/table", params(("id" = String, Path, example = "bench"), FileAsked),
-    responses((status = 200, body = Object), QuestionProblems))]
+    responses((status = 200, body = DataTable), QuestionProblems))]
 pub(crate) async fn table(
     State(app): State<App>,
     Path(id): Path<String>,
@@ -159,12 +186,12 @@ pub(crate) async fn table(
 #[utoipa::path(
     post, path = "/api/campaigns/{id}/regress", params(("id" = String, Path, example = "bench")),
     request_body = RegressGiven,
-    responses((status = 200, body = Object), RequestProblems))]
+    responses((status = 200, body = RegressAnswer), RequestProblems))]
 pub(crate) async fn regression(
     State(app): State<App>,
     Path(id): Path<String>,
     Given(given): Given<RegressGiven>,
-) -> Answer<WithCommand<AnyRegressOutcome>> {
+) -> Answer<RegressAnswer> {
     app.answer(id, move |_, directory| {
         let table = table_inside(directory, &given.table)?;
         let shown = format!("{}/{}", name_of(directory), given.table);
@@ -187,7 +214,7 @@ pub(crate) async fn regression(
         if given.select {
             request.selection = Some(RegressRequest::usual_selection());
         }
-        Ok(WithCommand {
+        Ok(RegressAnswer {
             outcome: regress(&request)?,
             command,
         })
@@ -199,12 +226,12 @@ pub(crate) async fn regression(
 #[utoipa::path(
     post, path = "/api/campaigns/{id}/surface", params(("id" = String, Path, example = "bench")),
     request_body = SurfaceGiven,
-    responses((status = 200, body = Object), RequestProblems))]
+    responses((status = 200, body = SurfaceAnswer), RequestProblems))]
 pub(crate) async fn surfaces(
     State(app): State<App>,
     Path(id): Path<String>,
     Given(given): Given<SurfaceGiven>,
-) -> Answer<WithCommand<SurfaceOutcome>> {
+) -> Answer<SurfaceAnswer> {
     if given.responses.is_empty() {
         return Err(Problem::request("name at least one response"));
     }
@@ -212,10 +239,7 @@ pub(crate) async fn surfaces(
         .await
 }
 
-fn fitted_surface(
-    directory: &FilePath,
-    given: SurfaceGiven,
-) -> Result<WithCommand<SurfaceOutcome>, Error> {
+fn fitted_surface(directory: &FilePath, given: SurfaceGiven) -> Result<SurfaceAnswer, Error> {
     let table = table_inside(directory, &given.table)?;
     let shown = format!("{}/{}", name_of(directory), given.table);
     let mut words = vec!["surface", shown.as_str()];
@@ -240,6 +264,7 @@ fn fitted_surface(
         words.extend(["--along", along, "--members", &members]);
     }
     let command = command(&words);
+    let names: Vec<String> = given.responses.iter().map(|r| r.name.clone()).collect();
     let responses = given.responses.into_iter().map(|r| (r.name, r.model));
     let mut request = SurfaceRequest::usual(table, responses.collect());
     request.factors = given.factors;
@@ -249,8 +274,39 @@ fn fitted_surface(
     request.members = given.members.min(1000);
     request.grid = given.grid;
     request.grid_points = given.grid_points.clamp(2, MOST_GRID_POINTS);
-    Ok(WithCommand {
-        outcome: surface(&request)?,
+    let outcome = surface(&request)?;
+    let maps = match (&outcome.grid, &request.grid) {
+        (Some(grid), Some(pair)) => response_maps(grid, pair, &names),
+        _ => Vec::new(),
+    };
+    Ok(SurfaceAnswer {
+        outcome,
+        maps,
         command,
     })
+}
+
+/// Contours of values over a grid.
+#[utoipa::path(
+    post, path = "/api/contours", request_body = GridGiven,
+    responses((status = 200, body = ContourMap), RequestProblems))]
+pub(crate) async fn contours(
+    State(app): State<App>,
+    Given(given): Given<GridGiven>,
+) -> Answer<ContourMap> {
+    let sizes = [given.x.len(), given.y.len()];
+    let rising = |places: &[f64]| places.windows(2).all(|pair| pair[0] < pair[1]);
+    if sizes
+        .iter()
+        .any(|size| !(2..=MOST_GRID_POINTS).contains(size))
+        || sizes[0] * sizes[1] != given.values.len()
+        || !rising(&given.x)
+        || !rising(&given.y)
+    {
+        return Err(Problem::request(format!(
+            "a grid has 2 to {MOST_GRID_POINTS} rising coordinates along each side, and a value \
+             at each point"
+        )));
+    }
+    app.tell(&contour_map(given.x, given.y, given.values))
 }

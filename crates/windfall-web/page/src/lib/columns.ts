@@ -1,11 +1,11 @@
 /** Which columns of a table could explain others. Pure. */
 
-import type { DataTable } from "../api";
+import type { DataTable } from "../api/types";
 
 /** Columns that number the rows, or say in which order they were made. */
 const COUNTERS = /^(id|run|no|nr|line|order|std|standard_order|block)$/i;
 
-export interface Explaining {
+interface Explaining {
   name: string;
   numbers: boolean;
   /** Different cells. */

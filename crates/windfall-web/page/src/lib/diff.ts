@@ -1,6 +1,6 @@
 /** Lines that two texts have in common, and those that only one has. */
 
-export interface DiffLine {
+interface DiffLine {
   sign: " " | "-" | "+";
   text: string;
 }

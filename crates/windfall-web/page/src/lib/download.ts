@@ -1,4 +1,5 @@
-import { Failed, type Problem } from "../api";
+import { Failed } from "../api/calls";
+import type { Problem } from "../api/types";
 
 /** Saves what an address gives under a name; a failure is thrown, not saved. */
 export async function download(address: string, name: string): Promise<void> {

@@ -1,5 +1,6 @@
 import { untrack } from "svelte";
-import { api, type CampaignView } from "../api";
+import { api } from "../api/calls";
+import type { CampaignView } from "../api/types";
 import { changesOf, draftOf, type Draft } from "./options";
 import { save } from "./save";
 import type { OpenCampaign } from "./state.svelte";

@@ -1,6 +1,6 @@
 /** Numbers, units and names as people read them. */
 
-import type { Estimate } from "../api";
+import type { EstimateOutcome } from "../api/types";
 
 const MINUS = "\u2212";
 const THIN = "\u202f";
@@ -66,7 +66,7 @@ export function plusMinus(value: number | null | undefined, sd: number | null | 
 }
 
 /** `value ± sd unit` of an estimate; a held one says so. */
-export function estimate(of: Estimate): string {
+export function estimate(of: EstimateOutcome): string {
   // A held value was written by somebody, and not with more digits than it needs.
   const words = of.held ? `${held(of.value)} (held)` : plusMinus(of.value, of.sd);
   return withUnit(words, of.unit);
@@ -78,7 +78,7 @@ const held = (value: number) => {
 };
 
 /** The 95 % interval of an estimate. */
-export function interval(of: Estimate): string {
+export function interval(of: EstimateOutcome): string {
   if (of.held || of.low === null || of.high === null) return "–";
   // As many digits as it takes to see how wide it is.
   const width = Math.abs(of.high - of.low);

@@ -1,6 +1,6 @@
 /** Asks that follow each other faster than answers come: the newest wins. */
 
-export interface Latest<T> {
+interface Latest<T> {
   /** Asks, after what runs now; asks in between are left out. */
   ask: (work: (signal: AbortSignal) => Promise<T>) => void;
   /** Forgets what was asked. */

@@ -1,6 +1,6 @@
 /** Names, symbols and units of what windfall computes. */
 
-export interface Meaning {
+interface Meaning {
   label: string;
   symbol: string;
   unit: string;

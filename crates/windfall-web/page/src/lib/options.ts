@@ -1,6 +1,6 @@
 /** Options of a fit, as they are being changed in a form. */
 
-import type { CampaignView, FitOptionsView, LawAbout, OptionsRequest } from "../api";
+import type { CampaignView, FitOptionsView, LawAbout, OptionsGiven } from "../api/types";
 
 export interface Draft extends FitOptionsView {
   laws: string[];
@@ -54,12 +54,12 @@ export const draftOf = (view: CampaignView): Draft => ({
 });
 
 /** What a draft says other than the campaign. */
-export function changesOf(draft: Draft, view: CampaignView): OptionsRequest {
+export function changesOf(draft: Draft, view: CampaignView): OptionsGiven {
   const present = draftOf(view);
   const entries = (Object.keys(present) as (keyof Draft)[]).filter(
     (key) => JSON.stringify(draft[key]) !== JSON.stringify(present[key]),
   );
-  return Object.fromEntries(entries.map((key) => [key, copy(draft[key])])) as OptionsRequest;
+  return Object.fromEntries(entries.map((key) => [key, copy(draft[key])])) as OptionsGiven;
 }
 
 const copy = (value: string | string[]) => (Array.isArray(value) ? [...value] : value);

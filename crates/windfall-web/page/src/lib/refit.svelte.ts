@@ -1,4 +1,5 @@
-import { api, type RefitRequest, type RefitView } from "../api";
+import { api } from "../api/calls";
+import type { Refit, LiveOutcome } from "../api/types";
 import { wordsOf } from "./state.svelte";
 
 /**
@@ -7,18 +8,18 @@ import { wordsOf } from "./state.svelte";
  * never older than one fit.
  */
 export class Refitter {
-  view = $state.raw<RefitView | null>(null);
+  view = $state.raw<LiveOutcome | null>(null);
   /** Why the newest request failed. */
   problem = $state<string | null>(null);
   busy = $state(false);
   /** Whether measured series and residuals belong to the fit that is shown. */
   complete = $state(false);
-  #waiting: { id: string; request: RefitRequest; laws: string[]; at: number | null } | null = null;
+  #waiting: { id: string; request: Refit; laws: string[]; at: number | null } | null = null;
 
   /** `laws`: the expressions that are fitted, also where the request leaves them to the
    *  campaign; `at`: time stamp of the event that asked, to measure how long it takes to
    *  see the answer. */
-  ask(id: string, request: RefitRequest, laws: string[], at: number | null = null): void {
+  ask(id: string, request: Refit, laws: string[], at: number | null = null): void {
     this.#waiting = { id, request, laws, at };
     if (!this.busy) void this.#work();
   }
@@ -30,7 +31,7 @@ export class Refitter {
       this.#waiting = null;
       try {
         const answer = await api.refit(id, request);
-        this.#show(answer, laws, request.series);
+        this.#show(answer, laws, request.series ?? false);
         if (at !== null) afterPaint(() => performance.measure("refit", { start: at }));
       } catch (error) {
         this.problem = wordsOf(error);
@@ -39,7 +40,7 @@ export class Refitter {
     this.busy = false;
   }
 
-  #show(fitted: RefitView, laws: string[], series: boolean): void {
+  #show(fitted: LiveOutcome, laws: string[], series: boolean): void {
     const before = this.view;
     // With the values that it was given, as it was asked for.
     const named = fitted.laws.map((law, index) => ({ ...law, law: laws[index] ?? law.law }));

@@ -3,7 +3,7 @@
  * where the item is an impact or a file, and `#/s/SCENE`.
  */
 
-export const PARTS = [
+const PARTS = [
   "overview",
   "recordings",
   "import",
@@ -17,7 +17,7 @@ export const PARTS = [
 ] as const;
 export type Part = (typeof PARTS)[number];
 
-export interface Route {
+interface Route {
   campaign: string | null;
   scene: string | null;
   part: Part;

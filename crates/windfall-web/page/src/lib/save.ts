@@ -1,4 +1,5 @@
-import { Failed, type CampaignView } from "../api";
+import { Failed } from "../api/calls";
+import type { CampaignView } from "../api/types";
 import { notices, type OpenCampaign } from "./state.svelte";
 
 /**

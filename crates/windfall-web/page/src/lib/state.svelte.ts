@@ -5,19 +5,10 @@
  * are loaded anew whenever the files change on disk, by whomever.
  */
 
-import {
-  Failed,
-  api,
-  follow,
-  watch,
-  type About,
-  type CampaignView,
-  type Job,
-  type JobRequest,
-  type ResultsView,
-} from "../api";
+import { Failed, api, follow, watch } from "../api/calls";
+import type { About, CampaignView, JobView, JobGiven, StoredResults } from "../api/types";
 
-export interface Notice {
+interface Notice {
   key: number;
   kind: "error" | "done";
   text: string;
@@ -72,11 +63,11 @@ export async function attempt<T>(work: () => Promise<T>): Promise<T | null> {
 
 class Jobs {
   /** Those that run, and those that ended while the page was open. */
-  list = $state<Job[]>([]);
+  list = $state<JobView[]>([]);
   running = $derived(this.list.filter((job) => job.state === "running"));
 
   /** Starts a job and follows it; answers it once it has ended, however it ended. */
-  async run(campaign: string, request: JobRequest): Promise<Job> {
+  async run(campaign: string, request: JobGiven): Promise<JobView> {
     const job = await api.start(campaign, request);
     return this.#follow(job);
   }
@@ -95,7 +86,7 @@ class Jobs {
     }
   }
 
-  async #follow(job: Job): Promise<Job> {
+  async #follow(job: JobView): Promise<JobView> {
     this.#put(job);
     try {
       const ended = await follow(job.job, (progress) => this.#put(progress));
@@ -109,7 +100,7 @@ class Jobs {
     }
   }
 
-  #put(job: Job): void {
+  #put(job: JobView): void {
     const index = this.list.findIndex((known) => known.job === job.job);
     // A cancelled job may still tell of progress that it made before.
     if (index >= 0 && this.list[index]!.state !== "running" && job.state === "running") return;
@@ -122,7 +113,7 @@ export const jobs = new Jobs();
 /** One campaign as the server last told it. */
 export class OpenCampaign {
   view = $state.raw<CampaignView | null>(null);
-  results = $state.raw<ResultsView | null>(null);
+  results = $state.raw<StoredResults | null>(null);
   /** Why it could not be read. */
   problem = $state<string | null>(null);
   /** Grows whenever the files or results changed, for what a view loads by itself. */

@@ -1,10 +1,19 @@
 /** The table of all results of a campaign: joined with what specimens.csv and
  *  impacts.csv say, sorted, filtered, described, written as CSV. Pure. */
 
-import type { CampaignView, ResultsView, TableView } from "../api";
+import type {
+  CampaignView,
+  EstimateOutcome,
+  ImpactOutcome,
+  MeasuredItem,
+  MeasuredValue,
+  StoredResults,
+  TableView,
+} from "../api/types";
+import { plusMinus, unitText } from "./format";
 import { DERIVED, words } from "./names";
 
-export type Cell = number | string | null;
+type Cell = number | string | null;
 
 export interface Column {
   /** Unlike that of any other column. */
@@ -45,31 +54,11 @@ export interface ResultTable {
 }
 
 /** Value of a result, however its kind of campaign writes it. */
-interface Value {
-  value: number | null;
-  sd?: number | null;
-  low?: number | null;
-  high?: number | null;
-  unit?: string;
-}
-
-/** An impact's outcome, or the document of another kind of recording. */
-interface Item {
-  id: string;
-  specimen?: string;
-  group?: string | null;
-  law?: string;
-  parameters?: Record<string, Value | number | null>;
-  derived?: Record<string, Value | number | null>;
-  values?: Record<string, Value | number | null>;
-  words?: Record<string, string>;
-  converged?: boolean;
-  findings?: { code: string }[];
-}
+type Value = Partial<EstimateOutcome | MeasuredValue>;
 
 /** Joins the results with the tables of the campaign. */
-export function resultTable(campaign: CampaignView, results: ResultsView | null): ResultTable {
-  const items = (results?.outcome?.impacts ?? []) as unknown as Item[];
+export function resultTable(campaign: CampaignView, results: StoredResults | null): ResultTable {
+  const items: (ImpactOutcome | MeasuredItem)[] = results?.outcome?.impacts ?? [];
   const columns = new Map<string, Column>();
   const note = (key: string, label: string, unit: string, from: Column["from"], numbers: boolean) => {
     const known = columns.get(key);
@@ -86,18 +75,18 @@ export function resultTable(campaign: CampaignView, results: ResultsView | null)
       key: `${place} ${item.id}`,
       id: item.id,
       group: item.group ?? "",
-      law: item.law ?? "",
+      law: item.law,
       cells: new Map<string, Cell>([
         ["id", item.id],
-        ["specimen", item.specimen ?? ""],
+        ["specimen", item.specimen],
         ["group", item.group ?? ""],
-        ["law", item.law ?? ""],
+        ["law", item.law],
       ]),
       spreads: new Map(),
     };
-    for (const set of [item.parameters, item.derived, item.values]) {
-      for (const [name, given] of Object.entries(set ?? {})) {
-        const found: Value = given !== null && typeof given === "object" ? given : { value: given };
+    for (const set of [item.parameters, item.derived]) {
+      for (const [name, given] of Object.entries(set)) {
+        const found: Value = given !== null && typeof given === "object" ? given : { value: given ?? undefined };
         const meaning = DERIVED[name];
         const unit = found.unit ?? meaning?.unit ?? "";
         note(name, meaning?.label ?? labelOf(name), unit === "1" ? "" : unit, "result", true);
@@ -107,14 +96,14 @@ export function resultTable(campaign: CampaignView, results: ResultsView | null)
         if (sd !== null || interval) row.spreads.set(name, { sd, interval });
       }
     }
-    for (const [name, text] of Object.entries(item.words ?? {})) {
+    for (const [name, text] of Object.entries("words" in item ? item.words : {})) {
       if (row.cells.has(name)) continue;
       note(name, words(name), "", "result", false);
       row.cells.set(name, text);
     }
     note("findings", "Findings", "", "result", false);
-    row.cells.set("findings", (item.findings ?? []).map((finding) => finding.code).join(", "));
-    specimens.put(row, item.specimen ?? "");
+    row.cells.set("findings", item.findings.map((finding) => finding.code).join(", "));
+    specimens.put(row, item.specimen);
     impacts.put(row, item.id);
     return row;
   });
@@ -157,10 +146,28 @@ function joined(table: TableView, from: "specimens.csv" | "impacts.csv") {
   };
 }
 
+/** Label of a column with its unit. */
+export const heading = (of: Column) => (of.unit === "" ? of.label : `${of.label} (${unitText(of.unit)})`);
+
+/** A cell in words, with its standard deviation. */
+export function shown(row: Row, of: Column): string {
+  const cell = row.cells.get(of.key);
+  const sd = row.spreads.get(of.key)?.sd;
+  if (typeof cell === "number") return Number.isInteger(cell) && !sd ? String(cell) : plusMinus(cell, sd);
+  return cell === null || cell === undefined || cell === "" ? "–" : cell;
+}
+
 /** The number that a cell is, all of it. */
 export function numberOf(cell: string): number | null {
   const text = cell.trim();
   return /^[+-]?(\d+\.?\d*|\.\d+)(e[+-]?\d+)?$/i.test(text) ? Number(text) : null;
+}
+
+/** What rows are sorted by. */
+export interface Order {
+  /** Key of a column; "" for none. */
+  key: string;
+  descending: boolean;
 }
 
 export interface Filter {
@@ -207,7 +214,7 @@ export function sorted(rows: Row[], key: string, descending: boolean): Row[] {
   });
 }
 
-export interface Described {
+interface Described {
   n: number;
   mean: number | null;
   /** Standard deviation, n − 1; of one value there is none. */

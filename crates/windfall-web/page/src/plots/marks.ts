@@ -1,6 +1,7 @@
 /** Marks of points: groups differ in shape as well as in colour. */
 
-import { SERIES } from "./colour";
+/** Series that have colours of their own; further ones repeat them with other marks. */
+const SERIES = 7;
 
 const SHAPES: ((x: number, y: number, r: number) => string)[] = [
   (x, y, r) => `M${x - r},${y}a${r},${r} 0 1,0 ${2 * r},0a${r},${r} 0 1,0 ${-2 * r},0Z`,

@@ -41,6 +41,12 @@ export function padded(
   return [low - part * width, high + part * width];
 }
 
+/** The item of an evenly spaced list at a part between 0 and 1. */
+export function pick<T>(list: T[], part: number): T {
+  const last = list.length - 1;
+  return list[Math.round(Math.min(Math.max(part, 0), 1) * last)]!;
+}
+
 /** Place of a value; px. Values that a logarithm does not have lie at the low end. */
 export function place(scale: Scale, value: number): number {
   const [from, to] = scale.range;
@@ -62,7 +68,7 @@ export function value(scale: Scale, at: number): number {
 }
 
 /** Round step near `width / count`: 1, 2 or 5 times a power of ten. */
-export function roundStep(width: number, count: number): number {
+function roundStep(width: number, count: number): number {
   const raw = width / Math.max(count, 1);
   const power = 10 ** Math.floor(Math.log10(raw));
   const lead = raw / power;
@@ -111,7 +117,7 @@ export function superscript(power: number): string {
   return (power < 0 ? "⁻" : "") + digits.join("");
 }
 
-export interface TickLabels {
+interface TickLabels {
   labels: string[];
   /** Power of ten by which all labels are to be multiplied; 0: none. */
   power: number;

@@ -1,7 +1,7 @@
 /** A surface over a grid, seen from a side: which quadrilaterals to paint, where, and
  *  in which order. Pure; `Surface3d.svelte` paints. */
 
-import type { Grid } from "./contour";
+import type { Grid } from "./grid";
 
 export interface View {
   /** Turn about the upright axis; rad. */
@@ -10,7 +10,7 @@ export interface View {
   elevation: number;
 }
 
-export interface Projected {
+interface Projected {
   /** To the right; the unit cube fills about -1 to 1. */
   x: number;
   /** Downwards. */
@@ -29,7 +29,7 @@ export function project(view: View, [x, y, z]: [number, number, number]): Projec
   return { x: right, y: -(z * level + away * up), depth: away * level - z * up };
 }
 
-export interface Quad {
+interface Quad {
   corners: [Projected, Projected, Projected, Projected];
   /** Mean value of the corners. */
   value: number;
@@ -40,7 +40,7 @@ export interface Quad {
  *
  *  * `range`: values at the bottom and the top of the cube */
 export function quads(grid: Grid, view: View, range: [number, number]): Quad[] {
-  const { xs, ys, values } = grid;
+  const { x: xs, y: ys, values } = grid;
   const width = xs.length;
   const points = values.map((value, at) => {
     const x = along(xs, xs[at % width]!);

@@ -3,17 +3,17 @@
  * fetched in pieces around the time that is shown, and forgotten again.
  */
 
-import { api, type SceneView } from "../api";
+import { api } from "../api/calls";
+import type { SceneView } from "../api/types";
 
 const HEADER = 16;
 const WALL = 28;
 const FRUIT = 48;
 /** Words of 32 bits of a fruit. */
 export const WORDS = FRUIT / 4;
-/** Where in them place, orientation, velocity and largest peak force begin. */
+/** Where in them place, orientation and largest peak force begin. */
 export const PLACE = 1;
 export const TURN = 4;
-export const VELOCITY = 8;
 export const PEAK = 11;
 
 /** Bytes that the server gives at once. */
@@ -32,7 +32,7 @@ export interface Frame {
 }
 
 /** All frames of a piece. */
-export function decode(bytes: ArrayBuffer, walls: number): Frame[] {
+function decode(bytes: ArrayBuffer, walls: number): Frame[] {
   const view = new DataView(bytes);
   const frames: Frame[] = [];
   for (let at = 0; at + HEADER <= bytes.byteLength; ) {

@@ -28,7 +28,8 @@ import {
   WebGLRenderer,
 } from "three";
 import { OrbitControls } from "three/addons/controls/OrbitControls.js";
-import type { ContactView, SceneView } from "../api";
+import type { ContactView, SceneView } from "../api/types";
+import { pick } from "../plots/scale";
 import { PEAK, PLACE, TURN, WORDS, type Frame } from "./frames";
 
 /** Colours that the theme gives. */
@@ -288,9 +289,7 @@ export class Player {
   }
 
   #colour(force: number): Color {
-    const last = this.#colours.length - 1;
-    const step = Math.round(Math.min(Math.max(force / this.view.most, 0), 1) * last);
-    return this.#colours[step]!;
+    return pick(this.#colours, force / this.view.most);
   }
 
   /** Marks a fruit, and where it was struck; `through` makes the others transparent. */

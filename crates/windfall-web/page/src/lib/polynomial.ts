@@ -1,12 +1,10 @@
 /** The polynomial that a fitted surface is, in actual units. */
 
-export interface ActualTerm {
-  /** "(Intercept)", "k", "k:e", "k^2:e", with the names of the factors. */
-  name: string;
-  coefficient: number;
-}
+import type { ActualTerm } from "../api/types";
 
-/** Value of a polynomial; `null` where a term is none of powers of the factors. */
+/** Value of a polynomial; `null` where a term is none of powers of the factors.
+ *
+ *  * `terms`: named "(Intercept)", "k", "k:e", "k^2:e", with the names of the factors */
 export function evaluate(
   terms: ActualTerm[],
   factors: string[],

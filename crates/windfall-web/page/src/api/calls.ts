@@ -1,0 +1,163 @@
+/**
+ * The calls of the HTTP interface; what they send and answer is in types.ts.
+ *
+ * All numbers are SI. A failure is a `Problem` (RFC 9457,
+ * `application/problem+json`), whose `detail` is a sentence for the user.
+ */
+
+import type {
+  Calls,
+  CampaignChanged,
+  ChannelsGiven,
+  GridGiven,
+  ImpactsGiven,
+  JobGiven,
+  JobView,
+  NewCampaign,
+  OptionsGiven,
+  Problem,
+  Refit,
+  RegressGiven,
+  SurfaceGiven,
+  WindowGiven,
+} from "./types";
+
+export class Failed extends Error {
+  constructor(readonly problem: Problem) {
+    super(problem.detail);
+  }
+}
+
+interface Options<K extends keyof Calls> {
+  /** Behind "?". */
+  query?: Calls[K]["query"];
+  body?: Calls[K]["body"];
+  /** Version of the campaign that a change is based on. */
+  version?: string;
+  signal?: AbortSignal;
+}
+
+/** Sends a request; parts of the address in braces are filled from `path`, in order. */
+async function call<K extends keyof Calls>(
+  key: K,
+  path: string[] = [],
+  { query, body, version, signal }: Options<K> = {},
+): Promise<Calls[K]["answer"]> {
+  const [method, address] = key.split(" ") as [string, string];
+  const headers: Record<string, string> = {};
+  if (method !== "GET") headers["X-Windfall"] = "page";
+  if (version !== undefined) headers["If-Match"] = `"${version}"`;
+  if (body !== undefined) {
+    headers["Content-Type"] = body instanceof Blob ? "application/octet-stream" : "application/json";
+  }
+  let response: Response;
+  try {
+    response = await fetch(addressOf(address, path, query), {
+      method,
+      headers,
+      body: body === undefined || body instanceof Blob ? body : JSON.stringify(body),
+      signal,
+    });
+  } catch (error) {
+    if (error instanceof DOMException && error.name === "AbortError") throw error;
+    throw new Failed({
+      title: "No answer",
+      status: 0,
+      code: "no-answer",
+      detail: "windfall does not answer; is `windfall serve` still running? Nothing was changed.",
+    });
+  }
+  if (!response.ok) {
+    const problem = (await response.json().catch(() => null)) as Problem | null;
+    throw new Failed(problem ?? {
+      title: response.statusText,
+      status: response.status,
+      code: "unknown",
+      detail: `the server answered ${response.status} ${response.statusText}`,
+    });
+  }
+  const json = response.headers.get("Content-Type")?.startsWith("application/json");
+  return (await (json ? response.json() : response.arrayBuffer())) as Calls[K]["answer"];
+}
+
+function addressOf(template: string, path: string[], query: object = {}): string {
+  let next = 0;
+  const address = template.replace(/\{\w+\}/g, () => encodeURIComponent(path[next++] ?? ""));
+  const pairs = Object.entries(query).filter(([, value]) => value !== null && value !== undefined);
+  const words = new URLSearchParams(pairs.map(([key, value]) => [key, String(value)])).toString();
+  return words === "" ? address : `${address}?${words}`;
+}
+
+export const api = {
+  about: () => call("GET /api/about"),
+  campaigns: () => call("GET /api/campaigns"),
+  create: (body: NewCampaign) => call("POST /api/campaigns", [], { body }),
+  campaign: (id: string) => call("GET /api/campaigns/{id}", [id]),
+  results: (id: string) => call("GET /api/campaigns/{id}/results", [id]),
+  recordings: (id: string) => call("GET /api/campaigns/{id}/recordings", [id]),
+  recording: (id: string, file: string) => call("GET /api/campaigns/{id}/recording", [id], { query: { file } }),
+  outline: (id: string, query: Calls["GET /api/campaigns/{id}/outline"]["query"], signal?: AbortSignal) =>
+    call("GET /api/campaigns/{id}/outline", [id], { query, signal }),
+  refit: (id: string, body: Refit, signal?: AbortSignal) =>
+    call("POST /api/campaigns/{id}/refit", [id], { body, signal }),
+  saveWindow: (id: string, version: string, body: WindowGiven) =>
+    call("PUT /api/campaigns/{id}/window", [id], { body, version }),
+  saveOptions: (id: string, version: string, body: OptionsGiven) =>
+    call("PUT /api/campaigns/{id}/options", [id], { body, version }),
+  saveText: (id: string, version: string, text: string) =>
+    call("PUT /api/campaigns/{id}/text", [id], { body: { text }, version }),
+  saveChannels: (id: string, version: string, body: ChannelsGiven) =>
+    call("PUT /api/campaigns/{id}/channels", [id], { body, version }),
+  addImpacts: (id: string, version: string, body: ImpactsGiven) =>
+    call("POST /api/campaigns/{id}/impacts", [id], { body, version }),
+  upload: (id: string, to: "raw" | "table", file: string, body: Blob, signal?: AbortSignal) =>
+    call(`PUT /api/campaigns/{id}/${to}`, [id], { query: { file }, body, signal }),
+  start: (id: string, body: JobGiven) => call("POST /api/campaigns/{id}/jobs", [id], { body }),
+  jobs: () => call("GET /api/jobs"),
+  cancel: (job: string) => call("DELETE /api/jobs/{job}", [job]),
+  table: (id: string, file: string) => call("GET /api/campaigns/{id}/table", [id], { query: { file } }),
+  regress: (id: string, body: RegressGiven) => call("POST /api/campaigns/{id}/regress", [id], { body }),
+  surface: (id: string, body: SurfaceGiven, signal?: AbortSignal) =>
+    call("POST /api/campaigns/{id}/surface", [id], { body, signal }),
+  contours: (body: GridGiven, signal?: AbortSignal) => call("POST /api/contours", [], { body, signal }),
+  scenes: () => call("GET /api/scenes"),
+  scene: (id: string) => call("GET /api/scenes/{id}", [id]),
+  /** Whole frames from a number on: as many as the server gives at once. */
+  frames: (id: string, from: number) => call("GET /api/scenes/{id}/frames", [id], { query: { from } }),
+  hardest: (id: string, most: number) => call("GET /api/scenes/{id}/hardest", [id], { query: { most } }),
+  history: (id: string, fruit: number, signal?: AbortSignal) =>
+    call("GET /api/scenes/{id}/history", [id], { query: { fruit }, signal }),
+  cardAddress: (id: string, law: string) => addressOf("/api/campaigns/{id}/card", [id], { law }),
+  reportAddress: (id: string) => addressOf("/api/campaigns/{id}/report/report.html", [id]),
+};
+
+/** Follows a job until it ends. */
+export function follow(job: string, progress: (job: JobView) => void): Promise<JobView> {
+  return new Promise((resolve, reject) => {
+    const events = new EventSource(addressOf("/api/jobs/{job}/events", [job]));
+    events.addEventListener("progress", (event) => progress(JSON.parse(event.data) as JobView));
+    events.addEventListener("end", (event) => {
+      events.close();
+      resolve(JSON.parse(event.data) as JobView);
+    });
+    events.onerror = () => {
+      if (events.readyState === EventSource.CLOSED) reject(new Error("the connection was lost"));
+    };
+  });
+}
+
+/** Calls back whenever the files of a campaign change, and when the connection is lost
+ *  or restored; the result ends it. */
+export function watch(
+  id: string,
+  changed: (version: string) => void,
+  connected: (there: boolean) => void,
+): () => void {
+  const events = new EventSource(addressOf("/api/campaigns/{id}/events", [id]));
+  events.onopen = () => connected(true);
+  events.onerror = () => connected(false);
+  events.addEventListener("changed", (event) => {
+    changed((JSON.parse(event.data) as CampaignChanged).version);
+  });
+  return () => events.close();
+}
