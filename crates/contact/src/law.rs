@@ -1,5 +1,6 @@
 //! The one trait to extend: a normal contact-force law.
 
+use serde::Serialize;
 use windfall_numerics::real::Real;
 
 /// A force law evaluated at one state, with its exact first derivatives.
@@ -99,7 +100,8 @@ pub trait ContactLaw<const N: usize>: Copy + Send + Sync {
 pub const SMALLEST_DISPLACEMENT: f64 = 1e-30;
 
 /// When a contact is over.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Default, Serialize)]
+#[serde(rename_all = "snake_case")]
 pub enum EndRule {
     /// At the first return of the law's force to zero: no adhesion.
     #[default]

@@ -12,9 +12,10 @@ use crate::noise::estimate::median;
 use crate::polynomial::{evenly_spaced, fit_polynomial};
 use crate::track::{Track, Tracks, mean_interval};
 use crate::trigger::ContactWindow;
+use serde::Serialize;
 
 /// A zero-phase Butterworth filter of a channel.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct ChannelFilter {
     /// What it lets through.
     pub band: Band,
@@ -26,7 +27,7 @@ pub struct ChannelFilter {
 pub const USUAL_ORDER: usize = 4;
 
 /// What is done to the channels.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
 pub struct Conditioning {
     /// Filter of the force.
     pub force: Option<ChannelFilter>,

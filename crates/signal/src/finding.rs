@@ -2,12 +2,18 @@
 
 use crate::error::{Rounded, Times};
 use crate::filter::butterworth::Band;
-use std::fmt;
 
 /// Something about the signals that a reader of the results must know.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum Finding {
     /// More than 0.1 % of the encoder's transitions skip a state.
+    #[error(
+        "{channels}: {illegal} of {transitions} transitions skip a state ({:.2} %), the first at {} s; the displacement is wrong from there by 2 counts each. Raise the sampling rate (now {} Hz; it must exceed speed / count length) or check the wiring{}",
+        100.0 * *illegal as f64 / *transitions as f64,
+        Rounded(*first),
+        Rounded(*sampling_rate),
+        added_text(*added)
+    )]
     IllegalTransitions {
         /// Names of the phases.
         channels: String,
@@ -23,6 +29,10 @@ pub enum Finding {
         added: i64,
     },
     /// A channel with the opposite sign of the convention.
+    #[error(
+        "channel '{channel}' has the opposite sign of the convention (motion into the fruit and repulsive force are positive); {}. Set its sign in campaign.toml, or swap the phases of an encoder",
+        if *corrected { "its sign has been changed" } else { "it is used as recorded" }
+    )]
     Reversed {
         /// Name of the channel.
         channel: String,
@@ -30,6 +40,11 @@ pub enum Finding {
         corrected: bool,
     },
     /// Successive force samples at the limit of the instrument.
+    #[error(
+        "channel '{channel}' is clipped: {samples} successive samples at {value} from {} s to {} s; peak, impulse and fitted parameters are biased. Enlarge the measuring range",
+        Rounded(*from),
+        Rounded(*to)
+    )]
     Clipped {
         /// Name of the channel.
         channel: String,
@@ -43,6 +58,10 @@ pub enum Finding {
         to: f64,
     },
     /// Sampling intervals that differ.
+    #[error(
+        "channel '{channel}' is sampled irregularly: the interval departs by up to {jitter:.3e} s from its median of {interval:.3e} s, most at {} s; the recorded times are used as they are",
+        Rounded(*at)
+    )]
     IrregularSampling {
         /// Name of the channel.
         channel: String,
@@ -54,6 +73,11 @@ pub enum Finding {
         at: f64,
     },
     /// More than one contact.
+    #[error(
+        "{} contacts, beginning at {onsets} s; the one at {} s is used. Give a time range to choose another",
+        onsets.0.len(),
+        Rounded(*used)
+    )]
     SeveralContacts {
         /// Onset of each; s.
         onsets: Times,
@@ -61,16 +85,27 @@ pub enum Finding {
         used: f64,
     },
     /// The recording begins in contact.
+    #[error(
+        "the recording begins in contact ({} s): onset and impact velocity are not seen. Record some samples before the trigger",
+        Rounded(*time)
+    )]
     ContactAtStart {
         /// Begin of the recording; s.
         time: f64,
     },
     /// The recording ends in contact.
+    #[error(
+        "the recording ends in contact ({} s): separation and rebound are not seen. Record longer",
+        Rounded(*time)
+    )]
     ContactAtEnd {
         /// End of the recording; s.
         time: f64,
     },
     /// Hardly any sample before contact from which to know zero and noise.
+    #[error(
+        "channel '{channel}' has only {samples} samples before contact: its zero and its noise are poorly known"
+    )]
     ShortBaseline {
         /// Name of the channel.
         channel: String,
@@ -78,6 +113,9 @@ pub enum Finding {
         samples: usize,
     },
     /// An offset of the force that has been subtracted.
+    #[error(
+        "channel '{channel}' reads {offset:.4} ± {offset_sd:.4} N before contact; this offset has been subtracted"
+    )]
     OffsetRemoved {
         /// Name of the channel.
         channel: String,
@@ -87,6 +125,9 @@ pub enum Finding {
         offset_sd: f64,
     },
     /// No force channel: the contact window comes from the motion.
+    #[error(
+        "no force channel: the contact window comes from the deceleration in '{channel}' and is known to about {resolution:.2e} s"
+    )]
     WindowFromMotion {
         /// Name of the channel.
         channel: String,
@@ -94,6 +135,7 @@ pub enum Finding {
         resolution: f64,
     },
     /// The noise could not be measured and a floor stands in for it.
+    #[error("the noise of '{channel}' cannot be measured; {floor:.3e} is assumed ({reason})")]
     NoiseAtFloor {
         /// Name of the channel.
         channel: String,
@@ -103,6 +145,10 @@ pub enum Finding {
         reason: &'static str,
     },
     /// A sample next to the contact that does not belong to the motion.
+    #[error(
+        "channel '{channel}': the sample at {} s ({value:.4e}) does not fit the free motion around it and is left out",
+        Rounded(*time)
+    )]
     Glitch {
         /// Name of the channel.
         channel: String,
@@ -112,6 +158,11 @@ pub enum Finding {
         value: f64,
     },
     /// A channel that has been filtered.
+    #[error(
+        "channel '{channel}' was {} (Butterworth of order {order}, forwards and backwards, no delay); {:.1} % of its range is left, and neighbouring samples share their noise",
+        band_text(*band),
+        100.0 * kept
+    )]
     Filtered {
         /// Name of the channel.
         channel: String,
@@ -123,6 +174,9 @@ pub enum Finding {
         kept: f64,
     },
     /// A drift of the force that has been taken off.
+    #[error(
+        "a drift of {slope:.4} ± {slope_sd:.4} N/s in channel '{channel}', from the quiet stretches before and after contact, has been subtracted"
+    )]
     DriftRemoved {
         /// Name of the channel.
         channel: String,
@@ -132,6 +186,9 @@ pub enum Finding {
         slope_sd: f64,
     },
     /// A drift that cannot be told.
+    #[error(
+        "no drift of channel '{channel}' can be told from {before} samples before and {after} after contact; only the mean before it has been subtracted. Record longer"
+    )]
     DriftUnknown {
         /// Name of the channel.
         channel: String,
@@ -141,6 +198,12 @@ pub enum Finding {
         after: usize,
     },
     /// The force of the tip ahead of the sensor has been added.
+    #[error(
+        "a tip of {} kg ahead of '{channel}': its inertia, from {}, raises the largest force by {:.1} %",
+        Rounded(*mass),
+        if *measured { "the measured acceleration" } else { "the rig's own motion (a rigid impactor)" },
+        100.0 * (raised - 1.0)
+    )]
     TipMass {
         /// Name of the channel.
         channel: String,
@@ -152,6 +215,9 @@ pub enum Finding {
         raised: f64,
     },
     /// Force and acceleration do not belong to one mass.
+    #[error(
+        "force and mass times acceleration disagree: impulses as {impulse_ratio:.3} ± {impulse_ratio_sd:.3} to 1, peaks as {peak_ratio:.3} ± {peak_ratio_sd:.3} to 1; check both calibrations, the mass, and that the accelerometer sits where the force acts"
+    )]
     AccelerometerDisagrees {
         /// Ratio of the impulses; 1.
         impulse_ratio: f64,
@@ -163,6 +229,9 @@ pub enum Finding {
         peak_ratio_sd: f64,
     },
     /// The loop of force over displacement and the velocities tell other energies.
+    #[error(
+        "the loop of force over displacement holds {area:.4e} J and the velocities tell {absorbed:.4e} J absorbed; check the calibrations of force and displacement, the delay between them, and the mass"
+    )]
     EnergyMismatch {
         /// Area of the loop; J.
         area: f64,
@@ -170,6 +239,9 @@ pub enum Finding {
         absorbed: f64,
     },
     /// Few samples during contact.
+    #[error(
+        "channel '{channel}' has only {samples} samples during contact: it says little about the shape of the force law"
+    )]
     FewSamples {
         /// Name of the channel.
         channel: String,
@@ -206,194 +278,21 @@ impl Finding {
     }
 }
 
-impl fmt::Display for Finding {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Self::IllegalTransitions {
-                channels,
-                illegal,
-                transitions,
-                first,
-                sampling_rate,
-                added,
-            } => {
-                write!(
-                    f,
-                    "{channels}: {illegal} of {transitions} transitions skip a state ({:.2} %), the first at {} s; the displacement is wrong from there by 2 counts each. Raise the sampling rate (now {} Hz; it must exceed speed / count length) or check the wiring",
-                    100.0 * *illegal as f64 / *transitions as f64,
-                    Rounded(*first),
-                    Rounded(*sampling_rate),
-                )?;
-                if *added > 0 {
-                    write!(
-                        f,
-                        "; {added} counts were added in the local direction, as asked"
-                    )?;
-                }
-                Ok(())
-            }
-            Self::Reversed { channel, corrected } => {
-                let what = if *corrected {
-                    "its sign has been changed"
-                } else {
-                    "it is used as recorded"
-                };
-                write!(
-                    f,
-                    "channel '{channel}' has the opposite sign of the convention (motion into the fruit and repulsive force are positive); {what}. Set its sign in campaign.toml, or swap the phases of an encoder"
-                )
-            }
-            Self::Clipped {
-                channel,
-                value,
-                samples,
-                from,
-                to,
-            } => write!(
-                f,
-                "channel '{channel}' is clipped: {samples} successive samples at {value} from {} s to {} s; peak, impulse and fitted parameters are biased. Enlarge the measuring range",
-                Rounded(*from),
-                Rounded(*to),
-            ),
-            Self::IrregularSampling {
-                channel,
-                interval,
-                jitter,
-                at,
-            } => write!(
-                f,
-                "channel '{channel}' is sampled irregularly: the interval departs by up to {jitter:.3e} s from its median of {interval:.3e} s, most at {} s; the recorded times are used as they are",
-                Rounded(*at),
-            ),
-            Self::SeveralContacts { onsets, used } => write!(
-                f,
-                "{} contacts, beginning at {onsets} s; the one at {} s is used. Give a time range to choose another",
-                onsets.0.len(),
-                Rounded(*used),
-            ),
-            Self::ContactAtStart { time } => write!(
-                f,
-                "the recording begins in contact ({} s): onset and impact velocity are not seen. Record some samples before the trigger",
-                Rounded(*time),
-            ),
-            Self::ContactAtEnd { time } => write!(
-                f,
-                "the recording ends in contact ({} s): separation and rebound are not seen. Record longer",
-                Rounded(*time),
-            ),
-            Self::ShortBaseline { channel, samples } => write!(
-                f,
-                "channel '{channel}' has only {samples} samples before contact: its zero and its noise are poorly known"
-            ),
-            Self::OffsetRemoved {
-                channel,
-                offset,
-                offset_sd,
-            } => write!(
-                f,
-                "channel '{channel}' reads {offset:.4} ± {offset_sd:.4} N before contact; this offset has been subtracted"
-            ),
-            Self::WindowFromMotion {
-                channel,
-                resolution,
-            } => write!(
-                f,
-                "no force channel: the contact window comes from the deceleration in '{channel}' and is known to about {resolution:.2e} s"
-            ),
-            Self::NoiseAtFloor {
-                channel,
-                floor,
-                reason,
-            } => write!(
-                f,
-                "the noise of '{channel}' cannot be measured; {floor:.3e} is assumed ({reason})"
-            ),
-            Self::Glitch {
-                channel,
-                time,
-                value,
-            } => write!(
-                f,
-                "channel '{channel}': the sample at {} s ({value:.4e}) does not fit the free motion around it and is left out",
-                Rounded(*time),
-            ),
-            Self::Filtered {
-                channel,
-                band,
-                order,
-                kept,
-            } => {
-                let band = match band {
-                    Band::LowPass(cutoff) => {
-                        format!("low-pass filtered at {} Hz", Rounded(*cutoff))
-                    }
-                    Band::HighPass(cutoff) => {
-                        format!("high-pass filtered at {} Hz", Rounded(*cutoff))
-                    }
-                    Band::BandPass(low, high) => {
-                        format!(
-                            "band-pass filtered from {} Hz to {} Hz",
-                            Rounded(*low),
-                            Rounded(*high)
-                        )
-                    }
-                };
-                write!(
-                    f,
-                    "channel '{channel}' was {band} (Butterworth of order {order}, forwards and backwards, no delay); {:.1} % of its range is left, and neighbouring samples share their noise",
-                    100.0 * kept
-                )
-            }
-            Self::DriftRemoved {
-                channel,
-                slope,
-                slope_sd,
-            } => write!(
-                f,
-                "a drift of {slope:.4} ± {slope_sd:.4} N/s in channel '{channel}', from the quiet stretches before and after contact, has been subtracted"
-            ),
-            Self::DriftUnknown {
-                channel,
-                before,
-                after,
-            } => write!(
-                f,
-                "no drift of channel '{channel}' can be told from {before} samples before and {after} after contact; only the mean before it has been subtracted. Record longer"
-            ),
-            Self::TipMass {
-                channel,
-                mass,
-                measured,
-                raised,
-            } => {
-                let from = match measured {
-                    true => "the measured acceleration",
-                    false => "the rig's own motion (a rigid impactor)",
-                };
-                write!(
-                    f,
-                    "a tip of {} kg ahead of '{channel}': its inertia, from {from}, raises the largest force by {:.1} %",
-                    Rounded(*mass),
-                    100.0 * (raised - 1.0)
-                )
-            }
-            Self::AccelerometerDisagrees {
-                impulse_ratio,
-                impulse_ratio_sd,
-                peak_ratio,
-                peak_ratio_sd,
-            } => write!(
-                f,
-                "force and mass times acceleration disagree: impulses as {impulse_ratio:.3} ± {impulse_ratio_sd:.3} to 1, peaks as {peak_ratio:.3} ± {peak_ratio_sd:.3} to 1; check both calibrations, the mass, and that the accelerometer sits where the force acts"
-            ),
-            Self::EnergyMismatch { area, absorbed } => write!(
-                f,
-                "the loop of force over displacement holds {area:.4e} J and the velocities tell {absorbed:.4e} J absorbed; check the calibrations of force and displacement, the delay between them, and the mass"
-            ),
-            Self::FewSamples { channel, samples } => write!(
-                f,
-                "channel '{channel}' has only {samples} samples during contact: it says little about the shape of the force law"
-            ),
-        }
+fn added_text(added: i64) -> String {
+    match added {
+        1.. => format!("; {added} counts were added in the local direction, as asked"),
+        _ => String::new(),
+    }
+}
+
+fn band_text(band: Band) -> String {
+    match band {
+        Band::LowPass(cutoff) => format!("low-pass filtered at {} Hz", Rounded(cutoff)),
+        Band::HighPass(cutoff) => format!("high-pass filtered at {} Hz", Rounded(cutoff)),
+        Band::BandPass(low, high) => format!(
+            "band-pass filtered from {} Hz to {} Hz",
+            Rounded(low),
+            Rounded(high)
+        ),
     }
 }

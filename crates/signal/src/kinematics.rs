@@ -1,5 +1,7 @@
 //! Displacement and displacement rate.
 
+use serde::Serialize;
+
 /// What a signal of motion holds.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Motion {
@@ -10,7 +12,8 @@ pub enum Motion {
 }
 
 /// What turns the counts of an incremental encoder into a length.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[serde(rename_all = "snake_case")]
 pub enum Encoder {
     /// On the axis of a pendulum arm.
     Rotary {

@@ -6,9 +6,11 @@ use crate::encoder::quadrature::IllegalTransition;
 use crate::error::Error;
 use crate::kinematics::Encoder;
 use crate::trigger::{Orientation, TriggerOptions};
+use serde::Serialize;
 
 /// How the series of the displacement rate is made.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "snake_case")]
 pub enum RateMethod {
     /// The measured channel if there is one, else the central difference of the
     /// displacement if that is sampled evenly, else none.
@@ -35,7 +37,7 @@ pub enum RateMethod {
 }
 
 /// How an impact is cut out of a recording.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct ExtractOptions {
     /// Contact window.
     pub trigger: TriggerOptions,

@@ -4,6 +4,7 @@ use crate::error::{Error, Times};
 use crate::noise::estimate::{baseline, median};
 use crate::polynomial::fit_polynomial;
 use crate::trigger_scale::{Level, PulseScale, moving_mean, pulse_scale, white_noise};
+use serde::Serialize;
 
 /// Samples from which the baseline is first guessed, as a part of the signal; 1.
 const PILOT_SHARE: f64 = 0.05;
@@ -35,7 +36,8 @@ const LEAST_AVERAGES: usize = 40;
 const LEAST_SAMPLES: usize = 3;
 
 /// Above what a force counts as contact.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[serde(rename_all = "snake_case")]
 pub enum Threshold {
     /// A force above the baseline; N.
     Fixed(f64),
@@ -61,7 +63,8 @@ impl Default for Threshold {
 }
 
 /// What the force is measured from.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "snake_case")]
 pub enum Baseline {
     /// The mean before the first contact is subtracted.
     #[default]
@@ -74,7 +77,8 @@ pub enum Baseline {
 }
 
 /// What is done about a channel whose sign is opposite to the convention.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "snake_case")]
 pub enum Orientation {
     /// Change its sign, and report it.
     #[default]
@@ -84,7 +88,8 @@ pub enum Orientation {
 }
 
 /// Which of several contacts is used.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
+#[serde(rename_all = "snake_case")]
 pub enum ContactChoice {
     /// The first.
     #[default]
@@ -101,7 +106,7 @@ pub enum ContactChoice {
 }
 
 /// How contact windows are found.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct TriggerOptions {
     /// Above what a force counts as contact.
     pub threshold: Threshold,

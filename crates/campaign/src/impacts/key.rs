@@ -8,7 +8,7 @@ use crate::settings::read::CAMPAIGN_FILE;
 use serde_json::json;
 use windfall_contact::expression::LawExpression;
 use windfall_files::error::Error;
-use windfall_files::provenance::{VERSION, digest_text};
+use windfall_files::provenance::{REVISION, digest_text};
 use windfall_identify::rig::kind::Rig;
 
 /// SHA-256 over everything that the fit of one law to one impact depends on.
@@ -57,7 +57,7 @@ pub fn impact_key(
         })
         .collect();
     let everything = json!({
-        "windfall": VERSION,
+        "revision": REVISION,
         "recording": digest,
         "impact": [entry.id, entry.specimen, entry.file],
         "range": format!("{:?} {:?}", entry.from, entry.to),
@@ -65,11 +65,11 @@ pub fn impact_key(
         "open": format!("{:?}", campaign.files.open),
         "time_scale": format!("{:?}", campaign.files.time_scale),
         "channels": channels,
-        "contact": format!("{:?}", campaign.contact),
+        "contact": campaign.contact,
         "angles": format!("{:?}", angles_of_entry(campaign, entry).ok()),
         "law": format!("{:?}", law),
         "free": free,
-        "fit": format!("{:?}", campaign.fit.options),
+        "fit": campaign.fit.options,
     });
     digest_text(&everything.to_string())
 }
@@ -89,9 +89,8 @@ pub fn input_digests(
         CAMPAIGN_FILE: text,
         "laws": campaign.fit.laws.iter().map(ToString::to_string).collect::<Vec<_>>(),
         "free": campaign.fit.free,
-        "quantities": campaign.fit.options.quantities.names(),
-        "contact": format!("{:?}", campaign.contact),
-        "fit": format!("{:?}", campaign.fit.options),
+        "contact": campaign.contact,
+        "fit": campaign.fit.options,
     });
     Ok((inputs, options.to_string()))
 }

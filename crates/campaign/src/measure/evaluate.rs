@@ -18,7 +18,7 @@ use std::path::Path;
 use windfall_files::error::Error;
 use windfall_files::found::FailureOutcome;
 use windfall_files::progress::{Progress, for_each};
-use windfall_files::provenance::{VERSION, digest_text, time_now};
+use windfall_files::provenance::{REVISION, VERSION, digest_text, time_now};
 use windfall_signal::recording::Recording;
 
 /// Result on one recording.
@@ -111,7 +111,7 @@ fn key_of<T>(evaluation: &Evaluation<T>, entry: &ImpactEntry, digest: &str) -> S
         other => format!("{other:?}"),
     };
     let everything = json!({
-        "windfall": VERSION,
+        "revision": REVISION,
         "kind": campaign.kind.name(),
         "recording": digest,
         "item": [entry.id, entry.specimen, entry.file],

@@ -43,12 +43,6 @@ pub fn figure_of_comparison(
         };
         (0..instants.len()).map(at).collect()
     };
-    let series = |label: &str, style: Style, points: Vec<(f64, f64)>| Series {
-        label: label.to_owned(),
-        style,
-        colour: None,
-        points,
-    };
     let (first, second) = (comparison.order + 1, comparison.order + 2);
     let curves = vec![
         series(
@@ -87,14 +81,6 @@ pub fn figure_of_comparison(
             vec![(from, critical), (from, -critical)],
         ));
     }
-    let panel = |y: &str, unit: &str, series: Vec<Series>| Panel {
-        x: "time from the crossing, in contact durations".to_owned(),
-        x_unit: String::new(),
-        y: y.to_owned(),
-        y_unit: unit.to_owned(),
-        series,
-        marks: Vec::new(),
-    };
     Figure {
         title: format!(
             "{title}: {}, p = {:.4}",
@@ -106,5 +92,25 @@ pub fn figure_of_comparison(
             panel("difference / first peak", "%", differences),
             panel("statistic", "", statistic),
         ],
+    }
+}
+
+fn series(label: &str, style: Style, points: Vec<(f64, f64)>) -> Series {
+    Series {
+        label: label.to_owned(),
+        style,
+        colour: None,
+        points,
+    }
+}
+
+fn panel(y: &str, unit: &str, series: Vec<Series>) -> Panel {
+    Panel {
+        x: "time from the crossing, in contact durations".to_owned(),
+        x_unit: String::new(),
+        y: y.to_owned(),
+        y_unit: unit.to_owned(),
+        series,
+        marks: Vec::new(),
     }
 }

@@ -13,7 +13,8 @@ use windfall_signal::tap::acoustic_stiffness::{
     acoustic_stiffness, acoustic_stiffness_with_density,
 };
 use windfall_signal::tap::first_mode::{
-    Decision, Persistent, Rejection, TapModes, first_mode, persistent, shared_frequencies,
+    Decision, FirstMode, Persistent, Rejection, TapModes, first_mode, persistent,
+    shared_frequencies,
 };
 use windfall_signal::uncertain::Uncertain;
 
@@ -211,14 +212,14 @@ fn cell(
     cell_quantity(&specimen.cells, name, unit, &file)
 }
 
+fn finding(code: &str, message: String) -> FindingOutcome {
+    FindingOutcome {
+        code: code.to_owned(),
+        message,
+    }
+}
+
 fn findings(decision: &Decision, weighed: bool, taps: usize, places: usize) -> Vec<FindingOutcome> {
-    let mut findings = Vec::new();
-    let mut tell = |code: &str, message: String| {
-        findings.push(FindingOutcome {
-            code: code.to_owned(),
-            message,
-        });
-    };
     let Some(mode) = &decision.accepted else {
         let seen = decision.rejected.iter().map(|(mode, why)| {
             let hertz = mode.frequency.value;
@@ -233,14 +234,28 @@ fn findings(decision: &Decision, weighed: bool, taps: usize, places: usize) -> V
             true => "no tap shows a peak".to_owned(),
             false => seen.join("; "),
         };
-        tell(
+        return vec![finding(
             "no_first_mode",
             format!(
                 "no resonance can be accepted as the first mode of the fruit: {seen}. A soft fruit may not ring at all"
             ),
-        );
-        return findings;
+        )];
     };
+    let mut findings = findings_of_peaks(decision, mode);
+    findings.extend(findings_of_taps(mode, taps, places));
+    if !weighed {
+        findings.push(finding(
+            "mass_unknown",
+            "no stiffness: specimens.csv has no mass_g or mass_kg for this fruit".to_owned(),
+        ));
+    }
+    findings
+}
+
+/// What the other peaks say of the mode.
+fn findings_of_peaks(decision: &Decision, mode: &FirstMode) -> Vec<FindingOutcome> {
+    let mut findings = Vec::new();
+    let mut tell = |code: &str, message| findings.push(finding(code, message));
     if let Some((low, high)) = mode.doublet {
         tell(
             "doublet",
@@ -267,6 +282,13 @@ fn findings(decision: &Decision, weighed: bool, taps: usize, places: usize) -> V
             ),
         );
     }
+    findings
+}
+
+/// How well taps agree on the mode.
+fn findings_of_taps(mode: &FirstMode, taps: usize, places: usize) -> Vec<FindingOutcome> {
+    let mut findings = Vec::new();
+    let mut tell = |code: &str, message| findings.push(finding(code, message));
     if mode.taps < 3 {
         let what = if mode.taps == 1 {
             "one tap"
@@ -305,12 +327,6 @@ fn findings(decision: &Decision, weighed: bool, taps: usize, places: usize) -> V
                 "a higher peak is {} times stronger: the hit, or the place of the microphone, does not suit the first mode, or it is another resonance",
                 plain(1.0 / mode.level)
             ),
-        );
-    }
-    if !weighed {
-        tell(
-            "mass_unknown",
-            "no stiffness: specimens.csv has no mass_g or mass_kg for this fruit".to_owned(),
         );
     }
     findings

@@ -9,7 +9,7 @@ use windfall_campaign::recording::digests::{campaign_text, file_digests, recordi
 use windfall_campaign::store::documents::{DocumentRecord, StoredValue};
 use windfall_campaign::store::runs::{RunRecord, latest_run, write_run};
 use windfall_files::error::Error;
-use windfall_files::provenance::{VERSION, digest_text, time_now};
+use windfall_files::provenance::{REVISION, VERSION, digest_text, time_now};
 
 /// Keeps a calibration, unless the newest run in the store is the same.
 ///
@@ -23,7 +23,7 @@ pub fn keep_calibration(campaign: &DropCampaign, outcome: &CalibrateOutcome) -> 
     })?;
     let text = campaign_text(&shared.directory)?;
     // What it depends on is in the document: drops, rig, law.
-    let key = digest_text(&json!([VERSION, "calibration", text, document]).to_string());
+    let key = digest_text(&json!([REVISION, "calibration", text, document]).to_string());
     let store = shared.directory.join(STORE_FILE);
     if latest_run(&store)?.is_some_and(|run| run.keys == [key.clone()]) {
         return Ok(());

@@ -175,39 +175,21 @@ pub fn rank_laws(
     let shares = first_shares(&criteria);
     let mut laws = Vec::new();
     for (place, &law) in candidates.iter().enumerate() {
-        let own: Vec<&Fit> = common
+        let own: Vec<(&LeveledImpact, &Fit)> = common
             .iter()
-            .filter_map(|&i| fits[i][law].fit.as_ref())
+            .filter_map(|&i| Some((&impacts[i], fits[i][law].fit.as_ref()?)))
             .collect();
-        let examples: Vec<Example> = common
-            .iter()
-            .zip(&own)
-            .map(|(&i, &fit)| Example {
-                impact: &impacts[i].impact,
-                fit,
-                level: impacts[i].level,
-            })
-            .collect();
-        let foretold = (distinct.len() > 1)
-            .then(|| prediction_error(&examples, &problems[law], rig, options))
+        let predicted = (distinct.len() > 1)
+            .then(|| predicted(&own, &problems[law], rig, options))
             .flatten();
         laws.push(LawEvidence {
-            kind: problems[law].kind,
-            impacts: own.len(),
             failed: failed[law],
-            parameters: own.iter().map(|fit| free_count(fit)).sum(),
-            cost: own.iter().map(|fit| fit.cost).sum(),
             aicc: criteria[place].iter().sum(),
-            aicc_low: None,
-            aicc_high: None,
             aicc_of_impacts: criteria[place].clone(),
-            bic: own.iter().map(|fit| schwarz(fit)).sum(),
             first_share: shares[place],
-            prediction: foretold.map(|f| f.0),
-            prediction_error: foretold.map(|f| f.1),
-            residual_ratio: own.iter().map(|fit| residual_ratio(fit)).sum::<f64>()
-                / own.len() as f64,
-            runs_z: own.iter().map(|fit| least_runs(fit)).sum::<f64>() / own.len() as f64,
+            prediction: predicted.map(|f| f.0),
+            prediction_error: predicted.map(|f| f.1),
+            ..evidence(problems[law].kind, &own)
         });
     }
     laws.sort_by(|a, b| a.aicc.total_cmp(&b.aicc));
@@ -237,6 +219,47 @@ pub fn rank_laws(
         levels: distinct.len(),
         verdict,
     })
+}
+
+/// What the fits of one law add up to, without what takes the other laws.
+fn evidence(kind: LawKind, own: &[(&LeveledImpact, &Fit)]) -> LawEvidence {
+    let sum = |of: &dyn Fn(&Fit) -> f64| own.iter().map(|(_, fit)| of(fit)).sum::<f64>();
+    let count = own.len() as f64;
+    LawEvidence {
+        kind,
+        impacts: own.len(),
+        failed: 0,
+        parameters: own.iter().map(|(_, fit)| free_count(fit)).sum(),
+        cost: sum(&|fit| fit.cost),
+        aicc: 0.0,
+        aicc_low: None,
+        aicc_high: None,
+        aicc_of_impacts: Vec::new(),
+        bic: sum(&schwarz),
+        first_share: 0.0,
+        prediction: None,
+        prediction_error: None,
+        residual_ratio: sum(&residual_ratio) / count,
+        runs_z: sum(&least_runs) / count,
+    }
+}
+
+/// Prediction error at held-out velocities.
+fn predicted(
+    own: &[(&LeveledImpact, &Fit)],
+    problem: &LawProblem,
+    rig: &Rig,
+    options: &FitOptions,
+) -> Option<(f64, f64)> {
+    let examples: Vec<Example> = own
+        .iter()
+        .map(|&(leveled, fit)| Example {
+            impact: &leveled.impact,
+            fit,
+            level: leveled.level,
+        })
+        .collect();
+    prediction_error(&examples, problem, rig, options)
 }
 
 /// All laws on one impact, with one noise.

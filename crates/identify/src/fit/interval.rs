@@ -1,8 +1,11 @@
 //! Intervals that follow the likelihood: what they are asked for with, and what
 //! is told besides their ends.
 
+use serde::Serialize;
+
 /// How intervals are made.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Default, Serialize)]
+#[serde(rename_all = "snake_case")]
 pub enum IntervalMethod {
     /// Estimate ± t × standard deviation, from the curvature of the likelihood.
     #[default]
@@ -40,7 +43,7 @@ impl IntervalMethod {
 }
 
 /// How intervals are made, and with how much work.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct IntervalOptions {
     /// How.
     pub method: IntervalMethod,

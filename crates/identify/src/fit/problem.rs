@@ -3,6 +3,7 @@
 
 use crate::fit::interval::IntervalOptions;
 use crate::samples::{QUANTITIES, Quantity};
+use serde::Serialize;
 use windfall_contact::expression::LawExpression;
 use windfall_contact::law::EndRule;
 use windfall_contact::laws::kind::LawKind;
@@ -73,7 +74,8 @@ pub(crate) const IMPACT_VELOCITY: &str = "impact_velocity";
 pub(crate) const MASS: &str = "mass";
 
 /// Weight of a quantity in the cost.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Default, Serialize)]
+#[serde(rename_all = "snake_case")]
 pub enum Weighting {
     /// 1/σ² with the noise of each channel.
     #[default]
@@ -84,7 +86,8 @@ pub enum Weighting {
 }
 
 /// What is taken for the noise of each channel when weights are 1/σ².
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Default, Serialize)]
+#[serde(rename_all = "snake_case")]
 pub enum NoiseModel {
     /// What the recording and the residuals show: white or persistent from
     /// sample to sample, a zero that all samples share, a displacement that is
@@ -96,7 +99,8 @@ pub enum NoiseModel {
 }
 
 /// What is done about a quantity that is not of interest in itself.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Default, Serialize)]
+#[serde(rename_all = "snake_case")]
 pub enum Treatment {
     /// Free where the data can tell, held otherwise; a finding says which.
     #[default]
@@ -111,6 +115,12 @@ pub enum Treatment {
 /// [`Quantity::ALL`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Quantities(pub [bool; QUANTITIES]);
+
+impl Serialize for Quantities {
+    fn serialize<S: serde::Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        self.names().serialize(serializer)
+    }
+}
 
 impl Default for Quantities {
     fn default() -> Self {
@@ -140,7 +150,7 @@ impl Quantities {
 }
 
 /// How an impact is fitted.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct FitOptions {
     /// Quantities in the cost.
     pub quantities: Quantities,

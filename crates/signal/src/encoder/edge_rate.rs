@@ -1,7 +1,10 @@
 //! Displacement rate from the times at which an encoder's count changes.
 
+use serde::Serialize;
+
 /// What the time beside a count means.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "snake_case")]
 pub enum CountTimes {
     /// The count was looked at then: it changed since the sample before.
     #[default]

@@ -7,12 +7,14 @@
 
 use crate::encoder::phase_bits::{PhaseBits, phase_of_bytes, phase_of_volts};
 use crate::error::Error;
+use serde::Serialize;
 
 /// Share of illegal transitions above which a decoding is doubtful; 1.
 pub const ILLEGAL_SHARE: f64 = 1e-3;
 
 /// What a transition in which both phases change does to the count.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "snake_case")]
 pub enum IllegalTransition {
     /// Nothing: the displacement then misses two counts.
     #[default]

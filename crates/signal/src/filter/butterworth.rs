@@ -1,10 +1,12 @@
 //! Butterworth filters as second-order sections.
 
 use num_complex::Complex;
+use serde::Serialize;
 use std::f64::consts::PI;
 
 /// What a filter lets through.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[serde(rename_all = "snake_case")]
 pub enum Band {
     /// Frequencies below this; Hz.
     LowPass(f64),
