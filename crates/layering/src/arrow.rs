@@ -9,7 +9,10 @@ pub const ARROWS: &[(&str, &[&str])] = &[
     ("windfall-numerics", &[]),
     ("windfall-statistics", &["windfall-numerics"]),
     ("windfall-contact", &["windfall-numerics"]),
-    ("windfall-signal", &["windfall-numerics"]),
+    (
+        "windfall-signal",
+        &["windfall-statistics", "windfall-numerics"],
+    ),
     (
         "windfall-identify",
         &[
