@@ -1,0 +1,7 @@
+//! Draws from a posterior by the no-U-turn sampler, from its log-density and gradient.
+
+pub(crate) mod chains;
+mod no_u_turn;
+#[cfg(test)]
+mod reference;
+mod tuning;
