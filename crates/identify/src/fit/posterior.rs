@@ -5,7 +5,8 @@ use crate::fit::interval::{
     Drawing, FreeIntervals, IntervalDetail, Mixing, Posterior, deviation, quantile,
 };
 use crate::fit::residual::evaluate;
-use crate::sampler::chains::{LogDensity, draw_chains};
+use crate::sampler::chains::draw_chains;
+use crate::sampler::density::LogDensity;
 use windfall_numerics::least_squares::Minimum;
 use windfall_statistics::chain_diagnostics::chain_diagnostics;
 

@@ -9,7 +9,8 @@ use crate::population::level::{Level, Normal};
 use crate::population::model::{
     Expand, Expansion, PopulationData, PopulationFit, PopulationOptions,
 };
-use crate::sampler::chains::{LogDensity, draw_chains};
+use crate::sampler::chains::draw_chains;
+use crate::sampler::density::LogDensity;
 use nalgebra::{DMatrix, DVector};
 use std::cell::{Cell, RefCell};
 

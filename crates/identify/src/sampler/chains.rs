@@ -1,7 +1,8 @@
 //! Chains of draws from a density, each tuned before its draws are kept.
 
 use crate::fit::interval::Drawing;
-use crate::sampler::no_u_turn::{Chain, Point};
+use crate::sampler::density::{LogDensity, Point};
+use crate::sampler::no_u_turn::Chain;
 use crate::sampler::tuning::Tuning;
 use windfall_signal::noise::gaussian::noise_source;
 
@@ -9,19 +10,6 @@ use windfall_signal::noise::gaussian::noise_source;
 const MOST_TUNING: usize = 500;
 /// Coordinates of a start near the middle.
 const NEAR_ZERO: f64 = 1e-3;
-
-/// A density in coordinates in which it is near a standard normal one.
-pub(crate) trait LogDensity {
-    /// Number of coordinates.
-    fn size(&self) -> usize;
-
-    /// Log-density at `z`, up to a constant, and its gradient; `None` where there
-    /// is none.
-    fn evaluate(&self, z: &[f64], gradient: &mut [f64]) -> Option<f64>;
-
-    /// Told after each of `all` draws, those for tuning among them.
-    fn drawn(&self, _done: usize, _all: usize) {}
-}
 
 /// Runs the chains, chain c from `start(c)` or else from close to zero. `keep` takes
 /// each draw, chain by chain. Returns how many diverged; `None` where a chain cannot

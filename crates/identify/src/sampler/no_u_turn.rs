@@ -6,35 +6,13 @@
 //! arXiv:1701.02434, appendix A, for points drawn by their weight and for the
 //! criterion of turning.
 
-use crate::sampler::chains::LogDensity;
+use crate::sampler::density::{LogDensity, Point};
 use windfall_signal::noise::gaussian::{NoiseSource, normal, uniform};
 
 /// Doublings of a trajectory at most.
 const MOST_DOUBLINGS: usize = 10;
 /// Error of the energy at which a trajectory has diverged.
 const DIVERGED: f64 = 1000.0;
-
-/// A point with the density there.
-#[derive(Clone)]
-pub(crate) struct Point {
-    at: Vec<f64>,
-    gradient: Vec<f64>,
-    log_density: f64,
-}
-
-impl Point {
-    /// The point at `at`; `None` where there is no density.
-    pub(crate) fn new(density: &dyn LogDensity, at: Vec<f64>) -> Option<Self> {
-        let mut gradient = vec![0.0; at.len()];
-        let log_density = density.evaluate(&at, &mut gradient)?;
-        let finite = log_density.is_finite() && gradient.iter().all(|g| g.is_finite());
-        finite.then_some(Self {
-            at,
-            gradient,
-            log_density,
-        })
-    }
-}
 
 /// A point in motion.
 #[derive(Clone)]

@@ -1,7 +1,8 @@
 //! The sampler against posteriors that are known otherwise.
 
 use crate::fit::interval::Drawing;
-use crate::sampler::chains::{LogDensity, draw_chains};
+use crate::sampler::chains::draw_chains;
+use crate::sampler::density::LogDensity;
 use std::cell::Cell;
 use windfall_statistics::chain_diagnostics::chain_diagnostics;
 
