@@ -21,6 +21,7 @@
 //! This crate knows no instrument, no rig and no file.
 
 pub mod apparent_modulus;
+mod closed_collision;
 pub mod curvature;
 pub mod damping_factor;
 pub mod effective;
@@ -28,8 +29,10 @@ pub mod error;
 pub mod expression;
 pub mod formula;
 pub mod hertz_elliptic;
+pub mod impact_law;
 pub mod law;
 pub mod laws;
 pub mod parameter;
 pub mod restitution;
+pub mod starting_values;
 pub mod transfer;

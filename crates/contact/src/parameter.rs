@@ -44,11 +44,52 @@ pub struct LawDescription {
     pub first_touch: &'static str,
     /// Where the formula comes from.
     pub source: &'static str,
+    /// How the force at rest rises with displacement.
+    pub elastic: Elastic,
+    /// Whether a slow loading curve tells its parameters.
+    pub from_compression: bool,
     /// Parameters, in the order of the derivatives of the law.
     pub parameters: &'static [ParameterDescription],
 }
 
+/// How a law's force at rest rises with displacement.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Elastic {
+    /// k d^1.5 of two spheres, whose stiffness k follows the radii of what touches.
+    Hertzian,
+    /// In proportion to this power.
+    Power(f64),
+    /// In proportion to a power that is the parameter of this name.
+    Parameter(&'static str),
+    /// In no proportion to a power.
+    Other,
+}
+
+/// Velocity at first touch, as a parameter of a law: it belongs to the impact and not
+/// to the fruit.
+pub const IMPACT_VELOCITY: &str = "impact_velocity";
+/// Effective mass, as a parameter of a law; it belongs to the impact too.
+pub const MASS: &str = "mass";
+
 impl LawDescription {
+    /// Exponent of the force at rest; 1. `None` where the force is no power of the
+    /// displacement.
+    ///
+    /// * `values`: of the law's parameters; SI. An exponent that is `None` takes its
+    ///   default
+    #[must_use]
+    pub fn elastic_exponent(&self, values: &[Option<f64>]) -> Option<f64> {
+        match self.elastic {
+            Elastic::Hertzian => Some(1.5),
+            Elastic::Power(exponent) => Some(exponent),
+            Elastic::Parameter(name) => {
+                let index = self.index_of(name)?;
+                values.get(index)?.or(self.parameters[index].default)
+            }
+            Elastic::Other => None,
+        }
+    }
+
     /// Position of the parameter `name`; case and `-` or `_` do not count.
     #[must_use]
     pub fn index_of(&self, name: &str) -> Option<usize> {

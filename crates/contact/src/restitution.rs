@@ -1,22 +1,23 @@
 //! Coefficient of restitution: what a law promises, and what it delivers where
 //! that is known in closed form.
 
-use crate::damping_factor;
-use crate::error::Error;
-use crate::laws::kind::{HuntCrossley, KelvinVoigt, Law, Thornton};
+use crate::impact_law::ImpactLaw;
+use crate::laws::kind::Law;
+use crate::with_law;
+
+pub use crate::closed_collision::{
+    damped_power_restitution, damping_for_restitution, kuwabara_kono_group, kuwabara_kono_pade,
+    kuwabara_kono_series,
+};
+pub use crate::laws::kelvin_voigt::{LinearImpact, kelvin_voigt_impact};
+pub use crate::laws::thornton::thornton_yield_velocity;
 
 /// The restitution that a law takes as a parameter; 1. `None` for laws without.
 ///
 /// What it delivers differs: see [`closed_form_restitution`].
 #[must_use]
 pub fn nominal_restitution(law: &Law) -> Option<f64> {
-    match law {
-        Law::LankaraniNikravesh(law) => Some(law.restitution),
-        Law::Flores(law) => Some(law.restitution),
-        Law::HerbertMcWhannell(law) => Some(law.restitution),
-        Law::Tsuji(law) => Some(law.restitution),
-        _ => None,
-    }
+    with_law!(law, law => law.nominal_restitution())
 }
 
 /// Restitution of a collision without gravity that ends at zero force; 1.
@@ -28,228 +29,5 @@ pub fn nominal_restitution(law: &Law) -> Option<f64> {
 /// [`kuwabara_kono_pade`]), the general power law, Tsuji and ADAMS IMPACT.
 #[must_use]
 pub fn closed_form_restitution(law: &Law, mass: f64, velocity: f64) -> Option<f64> {
-    let damped = |factor: f64| damped_power_restitution(factor * velocity);
-    match law {
-        Law::Hertz(_) => Some(1.0),
-        Law::KelvinVoigt(law) => Some(kelvin_voigt_impact(law, mass).restitution),
-        Law::HuntCrossley(HuntCrossley { k, lambda, .. }) => Some(damped(lambda / k)),
-        Law::LankaraniNikravesh(law) => {
-            let factor = damping_factor::lankarani_nikravesh(law.restitution, law.impact_velocity);
-            Some(damped(factor.value))
-        }
-        Law::Flores(law) => {
-            let factor = damping_factor::flores(law.restitution, law.impact_velocity);
-            Some(damped(factor.value))
-        }
-        Law::HerbertMcWhannell(law) => {
-            let factor = damping_factor::herbert_mcwhannell(law.restitution, law.impact_velocity);
-            Some(damped(factor.value))
-        }
-        Law::WaltonBraun(law) => Some((law.k1 / law.k2).sqrt().min(1.0)),
-        Law::Thornton(law) => Some(thornton_restitution(law, mass, velocity)),
-        Law::KuwabaraKono(_)
-        | Law::PowerLaw(_)
-        | Law::Tsuji(_)
-        | Law::AdamsImpact(_)
-        | Law::User(_) => None,
-    }
+    with_law!(law, law => law.closed_form_restitution(mass, velocity))
 }
-
-/// Restitution e of F = k d^n (1 + a v), any n, from z = a v0.
-///
-/// ```text
-/// z (1 + e) = ln[(1 + z)/(1 − e z)]
-/// ```
-///
-/// * `z`: damping factor times velocity at first touch, at or above zero; 1
-///
-/// # Numerics
-/// With w = e z the equation is −w − ln(1 − w) = z − ln(1 + z); the left side
-/// is convex, so Newton's method from the right converges without overshoot.
-#[must_use]
-pub fn damped_power_restitution(z: f64) -> f64 {
-    if z < SMALLEST_DAMPING {
-        return 1.0 - 2.0 / 3.0 * z;
-    }
-    let excess = excess_over_log(z);
-    // −w − ln(1 − w) ≥ w²/2 and w ≤ 1 bound the root from above.
-    let bound = (2.0 * excess).sqrt().min(-(-excess - 1.0).exp_m1());
-    let mut w = bound;
-    for _ in 0..NEWTON_STEPS {
-        // So much damping that 1 − w is lost in rounding.
-        if w == 1.0 {
-            break;
-        }
-        let step = (excess_over_log(-w) - excess) * (1.0 - w) / w;
-        w = (w - step).min(bound);
-        if step.abs() <= f64::EPSILON * w {
-            break;
-        }
-    }
-    w / z
-}
-
-/// Below this z the restitution is linear in z to the last digit; 1.
-const SMALLEST_DAMPING: f64 = 1e-9;
-/// More than Newton's method ever took in the tests, from z = 1e-9 to 1e9.
-const NEWTON_STEPS: usize = 100;
-
-/// x − ln(1 + x), without cancellation for small x.
-fn excess_over_log(x: f64) -> f64 {
-    if x.abs() > 0.1 {
-        return x - x.ln_1p();
-    }
-    // x²/2 − x³/3 + …: 17 terms reach the last digit at 0.1.
-    let mut sum = 0.0;
-    for power in (2..=18).rev() {
-        sum = 1.0 / f64::from(power) - x * sum;
-    }
-    x * x * sum
-}
-
-/// Damping factor a of F = k d^n (1 + a v) that truly delivers a restitution; s/m.
-///
-/// * `restitution`: above 0, at most 1; 1
-/// * `velocity`: at first touch; m/s
-///
-/// Hunt-Crossley takes λ = a k.
-///
-/// # Errors
-/// [`Error::ImpossibleRestitution`].
-///
-/// # Numerics
-/// Bisection: [`damped_power_restitution`] falls from 1 to 0 as z = a v0 grows
-/// from 0 to 1/e.
-pub fn damping_for_restitution(restitution: f64, velocity: f64) -> Result<f64, Error> {
-    if !(restitution > 0.0 && restitution <= 1.0) {
-        return Err(Error::ImpossibleRestitution { value: restitution });
-    }
-    let (mut low, mut high) = (0.0, 1.0 / restitution);
-    if restitution == 1.0 {
-        high = 0.0;
-    }
-    loop {
-        let middle = 0.5 * (low + high);
-        if middle <= low || middle >= high {
-            return Ok(middle / velocity);
-        }
-        if damped_power_restitution(middle) > restitution {
-            low = middle;
-        } else {
-            high = middle;
-        }
-    }
-}
-
-/// Duration and restitution of a Kelvin-Voigt impact.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct LinearImpact {
-    /// Time from first touch to zero force; s.
-    pub duration: f64,
-    /// Restitution; 1.
-    pub restitution: f64,
-}
-
-/// Kelvin-Voigt impact that ends at zero force, for any damping.
-///
-/// ```text
-/// b = c/(2m),  w0² = k/m,  e = exp(−b T)
-/// b < w0:  T = atan2(2 b w, b² − w²)/w,     w² = w0² − b²
-/// b = w0:  T = 2/b
-/// b > w0:  T = ln((b + W)/(b − W))/W,    W² = b² − w0²
-/// ```
-///
-/// # Source
-/// Schwager and Poeschel (2007), Granular Matter 9, 465.
-#[must_use]
-pub fn kelvin_voigt_impact(law: &KelvinVoigt, mass: f64) -> LinearImpact {
-    let b = law.c / (2.0 * mass);
-    let square = law.k / mass - b * b;
-    let duration = if square > 0.0 {
-        let w = square.sqrt();
-        // The angle runs from π (no damping) to 0 (critical).
-        (2.0 * b * w).atan2(b * b - square) / w
-    } else if square < 0.0 {
-        let w = (-square).sqrt();
-        // (b + W)/(b − W) = (b + W)²/w0², without cancellation.
-        ((b + w) * (b + w) / (law.k / mass)).ln() / w
-    } else {
-        2.0 / b
-    };
-    LinearImpact {
-        duration,
-        restitution: (-b * duration).exp(),
-    }
-}
-
-/// Restitution of Thornton's law; 1 below the yield velocity.
-///
-/// ```text
-/// r = v_y/v0,  e = √(6√3/5) √(1 − r²/6) [r/(r + 2 √(6/5 − r²/5))]^¼
-/// ```
-///
-/// # Source
-/// Thornton (1997), J. Appl. Mech. 64, 383, eq. for the unloading with the
-/// radius R_p.
-fn thornton_restitution(law: &Thornton, mass: f64, velocity: f64) -> f64 {
-    let r = thornton_yield_velocity(law, mass) / velocity;
-    if r >= 1.0 {
-        return 1.0;
-    }
-    let square = r * r;
-    let ratio = r / (r + 2.0 * (1.2 - square / 5.0).sqrt());
-    (6.0 * 3.0_f64.sqrt() / 5.0).sqrt() * (1.0 - square / 6.0).sqrt() * ratio.sqrt().sqrt()
-}
-
-/// Velocity above which Thornton's law yields: m v²/2 = (2/5) F_y d_y; m/s.
-///
-/// * `mass`: effective mass; kg
-#[must_use]
-pub fn thornton_yield_velocity(law: &Thornton, mass: f64) -> f64 {
-    (0.8 * law.yield_force() * law.yield_displacement() / mass).sqrt()
-}
-
-/// The one group of a Kuwabara-Kono impact, B = (c/m)(m/k)^(3/5) v^(1/5); 1.
-///
-/// * `k`, `c`: parameters of the law; N/m^1.5, N s/m^1.5
-/// * `mass`: effective mass; kg
-/// * `velocity`: at first touch; m/s
-///
-/// # Source
-/// Scaling of the equation of motion; Ramirez et al. (1999), Phys. Rev. E 60, 4465.
-#[must_use]
-pub fn kuwabara_kono_group(k: f64, c: f64, mass: f64, velocity: f64) -> f64 {
-    c / mass * (mass / k).powf(0.6) * velocity.powf(0.2)
-}
-
-/// Restitution of Kuwabara-Kono ending at zero force, by a Padé approximation.
-///
-/// * `group`: B of [`kuwabara_kono_group`]; 1
-///
-/// In error by 4e-4 at B = 0.25 and 5e-3 at B = 1: a first guess and a
-/// cross-check, not the truth.
-///
-/// # Source
-/// Mueller and Poeschel (2011), Phys. Rev. E 84, 021302, approximant \[1/4\].
-#[must_use]
-pub fn kuwabara_kono_pade(group: f64) -> f64 {
-    let s = group.sqrt();
-    let above = 1.0 + 0.501086 * s;
-    above / (above + s * s * (1.15345 + s * (0.577977 + s * 0.532178)))
-}
-
-/// The same by the first terms of its series, 1 − C1 B + (3/5) C1² B²; useful
-/// for B below 0.1.
-///
-/// C1 = √π Γ(3/5)/(2^(1/5) 5^(2/5) Γ(21/10)).
-///
-/// # Source
-/// Schwager and Poeschel (1998), Phys. Rev. E 57, 650.
-#[must_use]
-pub fn kuwabara_kono_series(group: f64) -> f64 {
-    let first = SERIES_COEFFICIENT * group;
-    1.0 - first + 0.6 * first * first
-}
-
-/// C1 of the series; 1.
-const SERIES_COEFFICIENT: f64 = 1.153_448_858_095_288_4;

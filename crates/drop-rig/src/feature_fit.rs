@@ -5,9 +5,9 @@ use crate::coordinates::LawCoordinates;
 use crate::feature_problem::{FeatureProblem, Linearised, Nuisance, linearise, nuisances};
 use crate::information::{Information, information};
 use nalgebra::{DMatrix, DVector};
-use statrs::distribution::{ChiSquared, ContinuousCDF};
 use windfall_contact::laws::kind::Law;
 use windfall_identify::error::Error;
+use windfall_statistics::distribution::tail::{chi_squared_upper, chi_squared_upper_quantile};
 
 /// Limits of the search.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -286,10 +286,7 @@ impl Search<'_> {
         let told = information(&best.linearised);
         let measured = best.linearised.features + self.problem.priors.len();
         let freedom = measured.saturating_sub(told.rank);
-        let p = (freedom > 0)
-            .then(|| ChiSquared::new(freedom as f64).ok())
-            .flatten()
-            .map(|distribution| distribution.sf(best.cost));
+        let p = (freedom > 0).then(|| chi_squared_upper(best.cost, freedom as f64));
         let widened = match p {
             Some(p) if p < IMPROBABLE => (best.cost / freedom as f64).sqrt(),
             _ => 1.0,
@@ -337,10 +334,8 @@ impl Search<'_> {
     /// Profile intervals: how far a parameter can go, with all others at their
     /// best, before χ² has grown by what chance allows.
     fn profile(&self, best: &Minimum, fit: &mut FeatureFit) {
-        let Ok(distribution) = ChiSquared::new(1.0) else {
-            return;
-        };
-        let allowed = distribution.inverse_cdf(self.options.confidence) * fit.widened * fit.widened;
+        let chance = chi_squared_upper_quantile(1.0 - self.options.confidence, 1.0);
+        let allowed = chance * fit.widened * fit.widened;
         for place in 0..best.at.len() {
             let sd = fit
                 .information

@@ -3,8 +3,8 @@
 use crate::arrow_system::{Arrow, OWN, SHARED};
 use crate::waveform::{Estimate, RecordFit, WaveformFit, WeakDirection};
 use crate::waveform_parameters::{LEVEL, MASS, ONSET, Parameters, Point, VELOCITY};
-use statrs::distribution::{ContinuousCDF, StudentsT};
 use windfall_identify::error::Error;
+use windfall_statistics::distribution::tail::t_upper_quantile;
 
 /// Normal quantile of a two-sided 95 % interval.
 const NORMAL: f64 = 1.959_963_984_540_054;
@@ -97,8 +97,7 @@ fn misfit(solution: &Solution) -> f64 {
 }
 
 fn student(records: usize) -> f64 {
-    StudentsT::new(0.0, 1.0, records.saturating_sub(1).max(1) as f64)
-        .map_or(NORMAL, |t| t.inverse_cdf(0.975))
+    t_upper_quantile(0.025, records.saturating_sub(1).max(1) as f64)
 }
 
 fn estimate(value: f64, sd: f64, quantile: f64, logarithmic: bool) -> Estimate {

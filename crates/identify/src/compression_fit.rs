@@ -95,14 +95,6 @@ pub enum CompressionFitError {
     },
 }
 
-/// Laws that a loading curve tells.
-pub const COMPRESSION_LAWS: [LawKind; 4] = [
-    LawKind::Hertz,
-    LawKind::KelvinVoigt,
-    LawKind::KuwabaraKono,
-    LawKind::PowerLaw,
-];
-
 /// Parameters at most, with one first touch.
 const SIZE: usize = LARGEST_PARAMETERS + 1;
 
@@ -144,7 +136,7 @@ pub fn fit_compression(
     free: &[String],
 ) -> Result<CompressionFit, CompressionFitError> {
     let kind = expression.kind;
-    if !COMPRESSION_LAWS.contains(&kind) {
+    if !kind.describe().from_compression {
         return Err(CompressionFitError::LawUnsuited { law: kind.name() });
     }
     let held = held_values(expression, free);
@@ -226,11 +218,7 @@ impl<'a> Problem<'a> {
     /// its slope tells.
     fn start(&mut self, held: &[Option<f64>]) -> Option<[f64; LARGEST_PARAMETERS]> {
         let description = self.kind.describe();
-        let exponent = match self.kind {
-            LawKind::KelvinVoigt => 1.0,
-            LawKind::PowerLaw => held[description.index_of("n")?].unwrap_or(1.5),
-            _ => 1.5,
-        };
+        let exponent = description.elastic_exponent(held).unwrap_or(1.5);
         let mut stiffness = Vec::new();
         for curve in self.curves {
             let from = curve.force.len() / 3;

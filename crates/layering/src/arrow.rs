@@ -10,7 +10,10 @@ pub const ARROWS: &[(&str, &[&str])] = &[
     ("windfall-statistics", &["windfall-numerics"]),
     ("windfall-design", &[]),
     ("windfall-contact", &["windfall-numerics"]),
-    ("windfall-signal", &["windfall-numerics"]),
+    (
+        "windfall-signal",
+        &["windfall-statistics", "windfall-numerics"],
+    ),
     (
         "windfall-identify",
         &[
@@ -23,6 +26,7 @@ pub const ARROWS: &[(&str, &[&str])] = &[
     (
         "windfall-drop-rig",
         &[
+            "windfall-statistics",
             "windfall-identify",
             "windfall-signal",
             "windfall-contact",

@@ -2,7 +2,8 @@
 
 use crate::error::Error;
 use windfall_contact::laws::any_law::LARGEST_PARAMETERS;
-use windfall_contact::laws::kind::{Law, LawKind};
+use windfall_contact::laws::kind::Law;
+use windfall_contact::parameter::Elastic;
 
 /// Standard normal numbers of one fruit: how it differs from the median of its kind. They
 /// are the same in all its contacts: a soft fruit is soft against everything.
@@ -76,7 +77,7 @@ impl Interaction {
     /// Whether the law follows the radii of what touches.
     #[must_use]
     pub fn follows_radii(&self) -> bool {
-        let hertzian = matches!(self.law.kind(), LawKind::Hertz | LawKind::KuwabaraKono);
+        let hertzian = self.law.kind().describe().elastic == Elastic::Hertzian;
         hertzian && self.effective_radius.is_some()
     }
 

@@ -1,7 +1,8 @@
 //! ADAMS IMPACT: power-law spring with damping that grows over a depth.
 
+use crate::impact_law::{Given, ImpactLaw, ImpactScales};
 use crate::law::{ContactForce, ContactLaw};
-use crate::parameter::{LawDescription, ParameterDescription};
+use crate::parameter::{Elastic, LawDescription, ParameterDescription};
 use windfall_numerics::real::Real;
 
 /// F = k x^e + c STEP(x; 0, d) v, STEP = w^2 (3 - 2 w), w = min(x/d, 1).
@@ -35,6 +36,8 @@ pub const DESCRIPTION: LawDescription = LawDescription {
     formula: "F = k x^e + c STEP(x; 0, d) v, STEP = w^2 (3 - 2 w), w = min(x/d, 1)",
     first_touch: "force and slope are zero, but with a small d the force is nearly c v0 at once",
     source: "MSC Adams function reference, IMPACT and (cubic) STEP; x is the indentation",
+    elastic: Elastic::Parameter("e"),
+    from_compression: false,
     parameters: &[
         ParameterDescription {
             name: "k",
@@ -112,5 +115,25 @@ impl ContactLaw<4> for AdamsImpact {
 
     fn kink(&self) -> f64 {
         self.d
+    }
+}
+
+impl ImpactLaw for AdamsImpact {
+    fn nominal_restitution(&self) -> Option<f64> {
+        None
+    }
+
+    fn closed_form_restitution(&self, _mass: f64, _velocity: f64) -> Option<f64> {
+        None
+    }
+
+    fn start(scales: &ImpactScales, given: &Given) -> Vec<(&'static str, f64)> {
+        let e = given("e").unwrap_or(1.5);
+        vec![
+            ("k", scales.stiffness(e)),
+            ("e", e),
+            ("c", scales.damping(0.0)),
+            ("d", 0.1 * scales.displacement),
+        ]
     }
 }

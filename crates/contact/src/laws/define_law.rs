@@ -15,7 +15,7 @@ use crate::laws::user::{
 };
 use crate::laws::user_check::{Looked, check_force};
 use crate::laws::user_finding::UserLawFinding;
-use crate::parameter::{LawDescription, ParameterDescription};
+use crate::parameter::{Elastic, LawDescription, ParameterDescription};
 use std::sync::{Mutex, PoisonError};
 use windfall_numerics::unit::quantity::Dimension;
 
@@ -39,9 +39,9 @@ static KNOWN: Mutex<Vec<&'static Known>> = Mutex::new(Vec::new());
 ///
 /// # Example
 /// ```
-/// use crate::laws::define_law::define_law;
+/// use windfall_contact::laws::define_law::define_law;
 /// use windfall_contact::expression::parse_law_among;
-/// use crate::laws::user::{UserForce, UserLawDefinition, UserParameter};
+/// use windfall_contact::laws::user::{UserForce, UserLawDefinition, UserParameter};
 /// let stiffness = UserParameter {
 ///     name: "k".into(),
 ///     unit: "N/m^1.5".into(),
@@ -222,6 +222,8 @@ fn make_formula(
         formula: leaked(formula.trim()),
         first_touch: "as the formula says",
         source: "the user's own formula",
+        elastic: Elastic::Other,
+        from_compression: false,
         parameters: descriptions,
     };
     let mut findings = unit_findings(&term, formula, &names, &description, &values)?;
@@ -482,6 +484,8 @@ fn make_table(
             formula,
             first_touch: "the force is zero and its slope finite",
             source: "the user's own table",
+            elastic: Elastic::Other,
+            from_compression: false,
             parameters: Box::leak(parameters.into_boxed_slice()),
         },
         findings: Vec::new(),

@@ -1,7 +1,8 @@
 //! Hertz: elastic spheres.
 
+use crate::impact_law::{Given, ImpactLaw, ImpactScales};
 use crate::law::{ContactForce, ContactLaw};
-use crate::parameter::{LawDescription, ParameterDescription};
+use crate::parameter::{Elastic, LawDescription, ParameterDescription};
 use windfall_numerics::real::Real;
 
 /// F = k d^1.5.
@@ -24,6 +25,8 @@ pub const DESCRIPTION: LawDescription = LawDescription {
     formula: "F = k d^1.5",
     first_touch: "force and slope are zero",
     source: "Hertz (1881); Johnson (1985), Contact Mechanics, eq. (4.23)",
+    elastic: Elastic::Hertzian,
+    from_compression: true,
     parameters: &[ParameterDescription {
         name: "k",
         meaning: "stiffness, (4/3) E* √R*",
@@ -58,5 +61,19 @@ impl ContactLaw<1> for Hertz {
             by_parameter: [d * root],
             by_peak: d.constant(0.0),
         }
+    }
+}
+
+impl ImpactLaw for Hertz {
+    fn nominal_restitution(&self) -> Option<f64> {
+        None
+    }
+
+    fn closed_form_restitution(&self, _mass: f64, _velocity: f64) -> Option<f64> {
+        Some(1.0)
+    }
+
+    fn start(scales: &ImpactScales, _given: &Given) -> Vec<(&'static str, f64)> {
+        vec![("k", scales.stiffness(1.5))]
     }
 }

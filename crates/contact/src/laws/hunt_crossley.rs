@@ -1,7 +1,9 @@
 //! Hunt-Crossley: damping in proportion to the elastic force.
 
+use crate::closed_collision::{damped_power_restitution, damping_for_restitution};
+use crate::impact_law::{Given, ImpactLaw, ImpactScales};
 use crate::law::{ContactForce, ContactLaw};
-use crate::parameter::{LawDescription, ParameterDescription};
+use crate::parameter::{Elastic, LawDescription, ParameterDescription};
 use windfall_numerics::real::Real;
 
 /// F = k d^n + lambda d^n v.
@@ -31,6 +33,8 @@ pub const DESCRIPTION: LawDescription = LawDescription {
     formula: "F = k d^n + lambda d^n v",
     first_touch: "force and slope are zero for n > 1; the force never changes sign before d = 0",
     source: "Hunt and Crossley (1975), J. Appl. Mech. 42, 440",
+    elastic: Elastic::Parameter("n"),
+    from_compression: false,
     parameters: &[
         ParameterDescription {
             name: "k",
@@ -87,5 +91,23 @@ impl ContactLaw<3> for HuntCrossley {
             by_parameter: [power, power * v, force * d.ln()],
             by_peak: d.constant(0.0),
         }
+    }
+}
+
+impl ImpactLaw for HuntCrossley {
+    fn nominal_restitution(&self) -> Option<f64> {
+        None
+    }
+
+    fn closed_form_restitution(&self, _mass: f64, velocity: f64) -> Option<f64> {
+        Some(damped_power_restitution(self.lambda / self.k * velocity))
+    }
+
+    fn start(scales: &ImpactScales, given: &Given) -> Vec<(&'static str, f64)> {
+        let n = given("n").unwrap_or(1.5);
+        let factor = damping_for_restitution(scales.restitution, scales.velocity);
+        let factor = factor.unwrap_or(1.5 * (1.0 - scales.restitution) / scales.velocity);
+        let k = scales.stiffness(n);
+        vec![("k", k), ("lambda", factor * k), ("n", n)]
     }
 }

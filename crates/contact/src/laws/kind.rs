@@ -9,7 +9,7 @@ use windfall_numerics::unit::nearest_name::nearest_names;
 /// Declares the registry from one list: variant and module, which hold a type
 /// of the variant's name and its `DESCRIPTION`.
 macro_rules! registry {
-    ($count:literal: $($variant:ident in $module:ident,)*) => {
+    (() $($variant:ident in $module:ident,)*) => {
         $(pub use crate::laws::$module::$variant;)*
 
         /// A force law without its parameters.
@@ -30,7 +30,7 @@ macro_rules! registry {
 
         impl LawKind {
             /// Every built-in law, in the order in which they are listed to people.
-            pub const ALL: [Self; $count] = [$(Self::$variant),*];
+            pub const ALL: [Self; [$(stringify!($variant)),*].len()] = [$(Self::$variant),*];
 
             /// Formula, parameters, behaviour at first touch and source.
             #[must_use]
@@ -77,20 +77,28 @@ macro_rules! registry {
     };
 }
 
-registry! { 12:
-    Hertz in hertz,
-    KelvinVoigt in kelvin_voigt,
-    KuwabaraKono in kuwabara_kono,
-    PowerLaw in power,
-    HuntCrossley in hunt_crossley,
-    LankaraniNikravesh in lankarani_nikravesh,
-    Flores in flores,
-    HerbertMcWhannell in herbert_mcwhannell,
-    Tsuji in tsuji,
-    AdamsImpact in adams_impact,
-    WaltonBraun in walton_braun,
-    Thornton in thornton,
+/// Calls the macro `$then` with `$extra` and every built-in law: the one list of them.
+#[macro_export]
+macro_rules! for_each_law {
+    (($($then:tt)*) $extra:tt) => {
+        $($then)*! { $extra
+            Hertz in hertz,
+            KelvinVoigt in kelvin_voigt,
+            KuwabaraKono in kuwabara_kono,
+            PowerLaw in power,
+            HuntCrossley in hunt_crossley,
+            LankaraniNikravesh in lankarani_nikravesh,
+            Flores in flores,
+            HerbertMcWhannell in herbert_mcwhannell,
+            Tsuji in tsuji,
+            AdamsImpact in adams_impact,
+            WaltonBraun in walton_braun,
+            Thornton in thornton,
+        }
+    };
 }
+
+for_each_law! { (registry) () }
 
 /// Evaluates an expression with the concrete type of a [`Law`].
 ///
@@ -111,19 +119,17 @@ registry! { 12:
 #[macro_export]
 macro_rules! with_law {
     ($law:expr, $concrete:ident => $body:expr) => {
+        $crate::for_each_law! { ($crate::with_law_arms) ($law, $concrete => $body) }
+    };
+}
+
+/// The arms of [`with_law!`](crate::with_law).
+#[doc(hidden)]
+#[macro_export]
+macro_rules! with_law_arms {
+    (($law:expr, $concrete:ident => $body:expr) $($variant:ident in $module:ident,)*) => {
         match $law {
-            $crate::laws::kind::Law::Hertz($concrete) => $body,
-            $crate::laws::kind::Law::KelvinVoigt($concrete) => $body,
-            $crate::laws::kind::Law::KuwabaraKono($concrete) => $body,
-            $crate::laws::kind::Law::PowerLaw($concrete) => $body,
-            $crate::laws::kind::Law::HuntCrossley($concrete) => $body,
-            $crate::laws::kind::Law::LankaraniNikravesh($concrete) => $body,
-            $crate::laws::kind::Law::Flores($concrete) => $body,
-            $crate::laws::kind::Law::HerbertMcWhannell($concrete) => $body,
-            $crate::laws::kind::Law::Tsuji($concrete) => $body,
-            $crate::laws::kind::Law::AdamsImpact($concrete) => $body,
-            $crate::laws::kind::Law::WaltonBraun($concrete) => $body,
-            $crate::laws::kind::Law::Thornton($concrete) => $body,
+            $($crate::laws::kind::Law::$variant($concrete) => $body,)*
             $crate::laws::kind::Law::User($concrete) => $body,
         }
     };

@@ -1,8 +1,11 @@
 //! Kuwabara-Kono: viscoelastic spheres.
 
+use crate::closed_collision::kuwabara_kono_pade;
+use crate::impact_law::{Given, ImpactLaw, ImpactScales};
 use crate::law::{ContactForce, ContactLaw};
-use crate::parameter::{LawDescription, ParameterDescription};
+use crate::parameter::{Elastic, LawDescription, ParameterDescription};
 use windfall_numerics::real::Real;
+use windfall_numerics::root::bracketed_root;
 
 /// F = k d^1.5 + c d^0.5 v.
 ///
@@ -28,6 +31,8 @@ pub const DESCRIPTION: LawDescription = LawDescription {
     formula: "F = k d^1.5 + c d^0.5 v",
     first_touch: "the force is zero and its slope in d infinite",
     source: "Kuwabara and Kono (1987); Brilliantov et al. (1996); eq. (5) of the 2003 pendulum study",
+    elastic: Elastic::Hertzian,
+    from_compression: true,
     parameters: &[
         ParameterDescription {
             name: "k",
@@ -76,3 +81,25 @@ impl ContactLaw<2> for KuwabaraKono {
         }
     }
 }
+
+impl ImpactLaw for KuwabaraKono {
+    fn nominal_restitution(&self) -> Option<f64> {
+        None
+    }
+
+    fn closed_form_restitution(&self, _mass: f64, _velocity: f64) -> Option<f64> {
+        None
+    }
+
+    fn start(scales: &ImpactScales, _given: &Given) -> Vec<(&'static str, f64)> {
+        let k = scales.stiffness(1.5);
+        let group = bracketed_root(0.0, LARGEST_GROUP, 1e-6, |group| {
+            kuwabara_kono_pade(group) - scales.restitution
+        });
+        let c = group * scales.mass * (k / scales.mass).powf(0.6) / scales.velocity.powf(0.2);
+        vec![("k", k), ("c", c)]
+    }
+}
+
+/// Largest group (c/m)(m/k)^(3/5) v^(1/5) that a start looks at; 1.
+const LARGEST_GROUP: f64 = 20.0;

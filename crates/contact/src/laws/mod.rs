@@ -3,6 +3,7 @@
 pub mod adams_impact;
 pub mod any_law;
 mod any_law_size;
+mod damped_power;
 pub mod define_law;
 pub mod flores;
 pub mod force_table;
@@ -19,4 +20,5 @@ pub mod tsuji;
 pub mod user;
 mod user_check;
 pub mod user_finding;
+pub(crate) mod user_start;
 pub mod walton_braun;

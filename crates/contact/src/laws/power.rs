@@ -1,7 +1,8 @@
 //! General power law: spring and dashpot with free exponents.
 
+use crate::impact_law::{Given, ImpactLaw, ImpactScales};
 use crate::law::{ContactForce, ContactLaw};
-use crate::parameter::{LawDescription, ParameterDescription};
+use crate::parameter::{Elastic, LawDescription, ParameterDescription};
 use windfall_numerics::real::Real;
 
 /// F = k d^n + c d^p v.
@@ -35,6 +36,8 @@ pub const DESCRIPTION: LawDescription = LawDescription {
     formula: "F = k d^n + c d^p v",
     first_touch: "the force is zero for p > 0; its slope in d is infinite for p < 1",
     source: "general form of Hertz (n = 1.5, c = 0), Kelvin-Voigt (n = 1, p = 0), Kuwabara-Kono (n = 1.5, p = 0.5) and Hunt-Crossley (p = n)",
+    elastic: Elastic::Parameter("n"),
+    from_compression: true,
     parameters: &[
         ParameterDescription {
             name: "k",
@@ -106,5 +109,22 @@ impl ContactLaw<4> for PowerLaw {
             ],
             by_peak: d.constant(0.0),
         }
+    }
+}
+
+impl ImpactLaw for PowerLaw {
+    fn nominal_restitution(&self) -> Option<f64> {
+        None
+    }
+
+    fn closed_form_restitution(&self, _mass: f64, _velocity: f64) -> Option<f64> {
+        None
+    }
+
+    fn start(scales: &ImpactScales, given: &Given) -> Vec<(&'static str, f64)> {
+        let n = given("n").unwrap_or(1.5);
+        let p = given("p").unwrap_or(0.5);
+        let (k, c) = (scales.stiffness(n), scales.damping(p));
+        vec![("k", k), ("n", n), ("c", c), ("p", p)]
     }
 }

@@ -1,7 +1,8 @@
 //! Thornton: elastic spheres with a limiting contact pressure.
 
+use crate::impact_law::{Given, ImpactLaw, ImpactScales};
 use crate::law::{ContactForce, ContactLaw};
-use crate::parameter::{LawDescription, ParameterDescription};
+use crate::parameter::{Elastic, LawDescription, ParameterDescription};
 use std::f64::consts::PI;
 use windfall_numerics::real::Real;
 
@@ -31,6 +32,8 @@ pub const DESCRIPTION: LawDescription = LawDescription {
     formula: "F = (4/3) E* sqrt(R*) d^1.5 up to yield, then F_y + pi p_y R* (d - d_y); unloading (4/3) E* sqrt(R_p) (d - d_p)^1.5",
     first_touch: "force and slope are zero",
     source: "Thornton (1997), J. Appl. Mech. 64, 383",
+    elastic: Elastic::Other,
+    from_compression: false,
     parameters: &[
         ParameterDescription {
             name: "E_star",
@@ -228,4 +231,53 @@ impl ContactLaw<3> for Thornton {
     fn kink(&self) -> f64 {
         self.yield_displacement()
     }
+}
+
+impl ImpactLaw for Thornton {
+    fn nominal_restitution(&self) -> Option<f64> {
+        None
+    }
+
+    fn closed_form_restitution(&self, mass: f64, velocity: f64) -> Option<f64> {
+        Some(thornton_restitution(self, mass, velocity))
+    }
+
+    fn start(scales: &ImpactScales, given: &Given) -> Vec<(&'static str, f64)> {
+        let radius = given("R_star").unwrap_or(0.02);
+        let modulus = 1.5 * scales.stiffness(1.5) / radius.sqrt();
+        // The peak force is reached on the plastic slope π p_y R.
+        let pressure = scales.force / (PI * radius * scales.displacement);
+        vec![
+            ("E_star", modulus),
+            ("R_star", radius),
+            ("yield_pressure", pressure),
+        ]
+    }
+}
+
+/// Restitution of Thornton's law; 1 below the yield velocity.
+///
+/// ```text
+/// r = v_y/v0,  e = √(6√3/5) √(1 − r²/6) [r/(r + 2 √(6/5 − r²/5))]^¼
+/// ```
+///
+/// # Source
+/// Thornton (1997), J. Appl. Mech. 64, 383, eq. for the unloading with the
+/// radius R_p.
+fn thornton_restitution(law: &Thornton, mass: f64, velocity: f64) -> f64 {
+    let r = thornton_yield_velocity(law, mass) / velocity;
+    if r >= 1.0 {
+        return 1.0;
+    }
+    let square = r * r;
+    let ratio = r / (r + 2.0 * (1.2 - square / 5.0).sqrt());
+    (6.0 * 3.0_f64.sqrt() / 5.0).sqrt() * (1.0 - square / 6.0).sqrt() * ratio.sqrt().sqrt()
+}
+
+/// Velocity above which Thornton's law yields: m v²/2 = (2/5) F_y d_y; m/s.
+///
+/// * `mass`: effective mass; kg
+#[must_use]
+pub fn thornton_yield_velocity(law: &Thornton, mass: f64) -> f64 {
+    (0.8 * law.yield_force() * law.yield_displacement() / mass).sqrt()
 }

@@ -1,7 +1,8 @@
 //! Tsuji: damping that gives one restitution at every velocity.
 
+use crate::impact_law::{Given, ImpactLaw, ImpactScales};
 use crate::law::{ContactForce, ContactLaw};
-use crate::parameter::{LawDescription, ParameterDescription};
+use crate::parameter::{Elastic, LawDescription, ParameterDescription};
 use std::f64::consts::PI;
 use windfall_numerics::real::Real;
 
@@ -33,6 +34,8 @@ pub const DESCRIPTION: LawDescription = LawDescription {
     formula: "F = k d^1.5 + alpha sqrt(m k) d^0.25 v, alpha = -sqrt(5) ln e/sqrt((ln e)^2 + pi^2)",
     first_touch: "the force is zero and its slope in d infinite",
     source: "Tsuji, Tanaka and Ishida (1992), Powder Technol. 71, 239; alpha in closed form: the restitution is e exactly where contact ends with the gap (gap-zero)",
+    elastic: Elastic::Power(1.5),
+    from_compression: false,
     parameters: &[
         ParameterDescription {
             name: "k",
@@ -113,5 +116,22 @@ impl ContactLaw<3> for Tsuji {
             ],
             by_peak: d.constant(0.0),
         }
+    }
+}
+
+impl ImpactLaw for Tsuji {
+    fn nominal_restitution(&self) -> Option<f64> {
+        Some(self.restitution)
+    }
+
+    fn closed_form_restitution(&self, _mass: f64, _velocity: f64) -> Option<f64> {
+        None
+    }
+
+    fn start(scales: &ImpactScales, _given: &Given) -> Vec<(&'static str, f64)> {
+        vec![
+            ("k", scales.stiffness(1.5)),
+            ("restitution", scales.restitution),
+        ]
     }
 }

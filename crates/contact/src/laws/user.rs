@@ -284,6 +284,18 @@ impl ContactLaw<LARGEST_PARAMETERS> for UserLaw {
     }
 }
 
+impl UserLaw {
+    /// None: a formula tells nothing of restitution.
+    pub(crate) fn nominal_restitution(&self) -> Option<f64> {
+        None
+    }
+
+    /// None, as [`nominal_restitution`](Self::nominal_restitution).
+    pub(crate) fn closed_form_restitution(&self, _mass: f64, _velocity: f64) -> Option<f64> {
+        None
+    }
+}
+
 #[inline(never)]
 fn tabulated<R: Real>(
     constants: &[f64; CONSTANTS],

@@ -1,7 +1,8 @@
 //! Walton-Braun: linear loading, steeper linear unloading.
 
+use crate::impact_law::{Given, ImpactLaw, ImpactScales};
 use crate::law::{ContactForce, ContactLaw};
-use crate::parameter::{LawDescription, ParameterDescription};
+use crate::parameter::{Elastic, LawDescription, ParameterDescription};
 use windfall_numerics::real::Real;
 
 /// F = k1 d while loading; k1 d_peak + k2 (d - d_peak) below the largest displacement d_peak.
@@ -27,6 +28,8 @@ pub const DESCRIPTION: LawDescription = LawDescription {
     formula: "F = k1 d while loading; k1 d_peak + k2 (d - d_peak) below the largest displacement d_peak",
     first_touch: "the force is zero and its slope k1",
     source: "Walton and Braun (1986), J. Rheol. 30, 949",
+    elastic: Elastic::Power(1.0),
+    from_compression: false,
     parameters: &[
         ParameterDescription {
             name: "k1",
@@ -82,5 +85,20 @@ impl ContactLaw<2> for WaltonBraun {
             by_parameter: [below.select(by_k1, d), below.select(by_k2, zero)],
             by_peak: below.select(d.constant(self.k1 - unloading), zero),
         }
+    }
+}
+
+impl ImpactLaw for WaltonBraun {
+    fn nominal_restitution(&self) -> Option<f64> {
+        None
+    }
+
+    fn closed_form_restitution(&self, _mass: f64, _velocity: f64) -> Option<f64> {
+        Some((self.k1 / self.k2).sqrt().min(1.0))
+    }
+
+    fn start(scales: &ImpactScales, _given: &Given) -> Vec<(&'static str, f64)> {
+        let k1 = scales.force / scales.displacement;
+        vec![("k1", k1), ("k2", k1 / scales.restitution.powi(2))]
     }
 }

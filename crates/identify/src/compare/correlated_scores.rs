@@ -1,8 +1,8 @@
 //! Covariances of estimates whose residuals are correlated along a curve.
 
-use statrs::distribution::{ContinuousCDF, StudentsT};
 use windfall_contact::laws::any_law::LARGEST_PARAMETERS;
 use windfall_numerics::cholesky;
+use windfall_statistics::distribution::tail::t_upper_quantile;
 
 /// Probability that an interval holds the value.
 const CONFIDENCE: f64 = 0.95;
@@ -117,6 +117,5 @@ pub(crate) fn quadratic(matrix: &Square, vector: &[f64; LARGEST_PARAMETERS]) -> 
 
 /// Two-sided quantile of Student's distribution.
 pub(crate) fn student(freedom: f64) -> f64 {
-    let student = StudentsT::new(0.0, 1.0, freedom.max(1.0));
-    student.map_or(f64::INFINITY, |t| t.inverse_cdf(0.5 + 0.5 * CONFIDENCE))
+    t_upper_quantile(0.5 * (1.0 - CONFIDENCE), freedom.max(1.0))
 }

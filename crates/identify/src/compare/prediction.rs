@@ -1,9 +1,10 @@
 //! Impacts of one velocity foretold from those of the others.
 
-use crate::fit::problem::{FitOptions, IMPACT_VELOCITY, LawProblem};
+use crate::fit::problem::{FitOptions, LawProblem};
 use crate::fit::result::Fit;
 use crate::rig::kind::Rig;
 use crate::rig::simulate::trajectory;
+use windfall_contact::parameter::IMPACT_VELOCITY;
 use windfall_signal::impact::Impact;
 
 /// An impact with the fit of a law to it.

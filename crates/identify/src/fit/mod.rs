@@ -20,7 +20,6 @@ pub mod residual;
 mod residual_noise;
 mod residual_pack;
 pub mod result;
-pub(crate) mod sampler;
 mod search;
 pub(crate) mod solve;
 mod starting_values;

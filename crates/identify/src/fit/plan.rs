@@ -7,17 +7,18 @@ use crate::fit::estimator::{Coordinate, FreeParameter, Setting, Target};
 use crate::fit::interval::IntervalMethod;
 use crate::fit::model::Sampling;
 use crate::fit::noise::{NoisePlan, noise_plan, series};
-use crate::fit::problem::{
-    FitOptions, IMPACT_VELOCITY, LawProblem, NoiseModel, Treatment, Weighting,
-};
+use crate::fit::problem::{FitOptions, LawProblem, NoiseModel, Treatment, Weighting};
 use crate::fit::regression::{RegressionEstimate, regress};
 use crate::fit::solve::{IntervalPlan, Limits, Solution, solve};
-use crate::fit::starting_values::{Features, starting_values};
+use crate::fit::starting_values::impact_scales;
 use crate::rig::kind::Rig;
 use crate::rig::motion::Motion;
 use crate::rig::simulate::{check_positive, trajectory};
 use crate::samples::{Quantity, SampleGroup};
+use windfall_contact::impact_law::ImpactScales;
 use windfall_contact::laws::kind::LawKind;
+use windfall_contact::parameter::IMPACT_VELOCITY;
+use windfall_contact::starting_values::starting_values;
 use windfall_numerics::ode::step::Tolerance;
 use windfall_signal::impact::Impact;
 
@@ -36,7 +37,7 @@ pub(crate) struct Plan<'a> {
     pub(crate) noise: NoisePlan,
     pub(crate) free: Vec<FreeParameter>,
     pub(crate) starts: Vec<Vec<f64>>,
-    pub(crate) features: Features,
+    pub(crate) features: ImpactScales,
     pub(crate) regression: Vec<RegressionEstimate>,
     pub(crate) motion: Motion,
     pub(crate) findings: Vec<Finding>,
@@ -55,7 +56,7 @@ pub(crate) fn plan<'a>(
         });
     }
     let (noise, mut findings) = samples(impact, options)?;
-    let mut features = Features::of(impact, rig.effective_mass());
+    let mut features = impact_scales(impact, rig.effective_mass());
     if let Some(velocity) = options.known_velocity {
         check_positive("the velocity at first touch", velocity)?;
         features.velocity = velocity;
@@ -168,7 +169,7 @@ fn free_parameters(
     impact: &Impact,
     problem: &LawProblem,
     options: &FitOptions,
-    features: &Features,
+    features: &ImpactScales,
     start: &[f64],
     findings: &mut Vec<Finding>,
 ) -> Result<Vec<FreeParameter>, Error> {
@@ -225,7 +226,7 @@ pub(crate) fn nuisance_name(target: Target) -> (&'static str, &'static str) {
 fn nuisances(
     impact: &Impact,
     options: &FitOptions,
-    features: &Features,
+    features: &ImpactScales,
     findings: &mut Vec<Finding>,
 ) -> Result<Vec<FreeParameter>, Error> {
     let has = |q: Quantity| options.quantities.holds(q) && series(impact, q).is_some();

@@ -5,7 +5,8 @@ use crate::fit::interval::{
     Drawing, FreeIntervals, IntervalDetail, Mixing, Posterior, deviation, quantile,
 };
 use crate::fit::residual::evaluate;
-use crate::fit::sampler::{LogDensity, draw_chains};
+use crate::sampler::chains::draw_chains;
+use crate::sampler::density::LogDensity;
 use windfall_numerics::least_squares::Minimum;
 use windfall_statistics::chain_diagnostics::chain_diagnostics;
 
@@ -108,7 +109,7 @@ where
         (0..count).map(at).collect()
     };
     let mut drawn = vec![Vec::with_capacity(chains * draws); count];
-    let divergences = draw_chains(&density, &plan.drawing, start, |z| {
+    let divergences = draw_chains(&density, &plan.drawing, &start, &mut |z| {
         let u = density.coordinates(z);
         for (i, parameter) in estimator.free().iter().enumerate() {
             drawn[i].push(parameter.coordinate.value(u[i]));

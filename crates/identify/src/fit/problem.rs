@@ -7,6 +7,7 @@ use serde::Serialize;
 use windfall_contact::expression::LawExpression;
 use windfall_contact::law::EndRule;
 use windfall_contact::laws::kind::LawKind;
+use windfall_contact::parameter::{IMPACT_VELOCITY, MASS};
 
 /// A law whose parameters are given, free, or both (a starting value).
 #[derive(Clone, Debug, PartialEq)]
@@ -67,11 +68,6 @@ impl LawProblem {
 pub(crate) fn of_the_event(parameter: &str) -> bool {
     parameter == IMPACT_VELOCITY || parameter == MASS
 }
-
-/// Name of the parameter that follows the velocity at first touch.
-pub(crate) const IMPACT_VELOCITY: &str = "impact_velocity";
-/// Name of the parameter that is the rig's effective mass.
-pub(crate) const MASS: &str = "mass";
 
 /// Weight of a quantity in the cost.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default, Serialize)]

@@ -12,10 +12,10 @@ use crate::fit::uncertainty::{runs_test, standardised};
 use crate::rig::kind::Rig;
 use crate::rig::simulate::simulate_rig;
 use crate::samples::Quantity;
-use statrs::distribution::{ContinuousCDF, StudentsT};
 use windfall_contact::laws::kind::Law;
 use windfall_contact::restitution::nominal_restitution;
 use windfall_numerics::least_squares::Stop;
+use windfall_statistics::distribution::tail::t_upper_quantile;
 
 /// Correlation above which two parameters of the law, and a parameter and a
 /// nuisance, are reported as inseparable. A stiffness always moves with the
@@ -81,10 +81,10 @@ impl Plan<'_> {
 
     pub(crate) fn quantile(&self, samples: usize) -> f64 {
         let freedom = (samples - self.free.len()) as f64;
-        let student = StudentsT::new(0.0, 1.0, freedom);
-        student.map_or(f64::INFINITY, |t| {
-            t.inverse_cdf(0.5 * (1.0 + self.options.confidence))
-        })
+        match freedom > 0.0 {
+            true => t_upper_quantile(0.5 * (1.0 - self.options.confidence), freedom),
+            false => f64::INFINITY,
+        }
     }
 
     fn estimates(&self, solution: &Solution, law: &Law, samples: usize) -> Vec<Estimate> {

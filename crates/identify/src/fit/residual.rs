@@ -40,12 +40,7 @@ pub fn evaluate<L, const N: usize, const W: usize, const P: usize>(
 where
     L: ContactLaw<N>,
 {
-    pulp::Arch::new().dispatch(Pass {
-        model,
-        groups,
-        rows,
-        stride: 1,
-    })
+    pass(model, groups, rows, 1)
 }
 
 /// [`evaluate`] with a share of the samples and as if their noise were white, for
@@ -62,10 +57,24 @@ pub(crate) fn evaluate_some<L, const N: usize, const W: usize, const P: usize>(
 where
     L: ContactLaw<N>,
 {
+    pass(model, groups, None, stride)
+}
+
+/// Compiled once for every share of the samples: it holds the whole integrator.
+#[inline(never)]
+fn pass<L, const N: usize, const W: usize, const P: usize>(
+    model: &Model<L, N, W, P>,
+    groups: &[SampleGroup],
+    rows: Option<&mut Rows>,
+    stride: usize,
+) -> Result<NormalEquations<P>, StepError>
+where
+    L: ContactLaw<N>,
+{
     pulp::Arch::new().dispatch(Pass {
         model,
         groups,
-        rows: None,
+        rows,
         stride,
     })
 }
@@ -366,11 +375,9 @@ where
             && group.relative.iter().all(Vec::is_empty)
             && self.average.is_none()
             && rows.is_none();
-        match (simple, self.contact) {
-            (true, true) => self.read_packs::<true, true>(tally, rows),
-            (true, false) => self.read_packs::<true, false>(tally, rows),
-            (false, true) => self.read_packs::<false, true>(tally, rows),
-            (false, false) => self.read_packs::<false, false>(tally, rows),
+        match simple {
+            true => self.read_packs::<true>(tally, rows),
+            false => self.read_packs::<false>(tally, rows),
         }
         if stride == 1 {
             tally.noise.end(group, self.range.0, self.range.1);
@@ -378,9 +385,9 @@ where
     }
 
     /// `SIMPLE` samples have white noise of one variance, are taken at their
-    /// instant, and nothing but sums is wanted; `CONTACT` as [`Share::contact`].
+    /// instant, and nothing but sums is wanted.
     #[inline(always)]
-    fn read_packs<const SIMPLE: bool, const CONTACT: bool>(
+    fn read_packs<const SIMPLE: bool>(
         &self,
         tally: &mut Tally<P>,
         rows: &mut Option<(&mut Rows, usize)>,
@@ -403,7 +410,7 @@ where
             // The roots of the next pack run beside what follows from this one.
             let next_times = load(&group.times, next.min(group.len));
             let next_place = piece.place(zero.with_plain(next_times));
-            let mut found = piece.at::<R, CONTACT>(place);
+            let mut found = piece.at(place, self.contact);
             if let (false, Some(average)) = (SIMPLE, self.average) {
                 piece.correct_onset(&mut found, times, average);
             }

@@ -84,10 +84,7 @@ where
 
     /// The model of samples at a [`place`](Self::place), in contact or in flight.
     #[inline(always)]
-    pub(crate) fn at<R: Real, const CONTACT: bool>(
-        &self,
-        (sigma, rest): (R, R),
-    ) -> PackModel<R, P> {
+    pub(crate) fn at<R: Real>(&self, (sigma, rest): (R, R), contact: bool) -> PackModel<R, P> {
         let zero = sigma.constant(0.0);
         let columns = &self.model.columns;
         let x = dense_at(self.state[0], sigma, rest);
@@ -97,7 +94,7 @@ where
             jacobian[0][c] = dense_at(self.columns[c][0], sigma, rest);
             jacobian[1][c] = dense_at(self.columns[c][1], sigma, rest);
         }
-        let force = if CONTACT {
+        let force = if contact {
             self.force(x, v)
         } else {
             no_force(zero)
@@ -110,14 +107,14 @@ where
                 let later = zero.constant(-columns.onset[c]);
                 jacobian[0][c] = v.mul_add(later, jacobian[0][c]);
                 jacobian[1][c] = motion.value.mul_add(later, jacobian[1][c]);
-                if CONTACT {
+                if contact {
                     jacobian[2][c] = self.force_column(&force, &jacobian, c);
                 }
                 jacobian[3][c] = motion.by_displacement * jacobian[0][c]
                     + motion.by_rate * jacobian[1][c]
                     + motion.by_force * jacobian[2][c];
             }
-        } else if CONTACT {
+        } else if contact {
             for c in 0..P {
                 jacobian[2][c] = self.force_column(&force, &jacobian, c);
             }

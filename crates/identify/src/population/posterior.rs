@@ -4,12 +4,13 @@
 use crate::error::Error;
 use crate::fit::interval::{Drawing, Mixing, quantile};
 use crate::fit::posterior::mixing;
-use crate::fit::sampler::{LogDensity, draw_chains};
 use crate::population::finding::PopulationFinding;
 use crate::population::level::{Level, Normal};
 use crate::population::model::{
     Expand, Expansion, PopulationData, PopulationFit, PopulationOptions,
 };
+use crate::sampler::chains::draw_chains;
+use crate::sampler::density::LogDensity;
 use nalgebra::{DMatrix, DVector};
 use std::cell::{Cell, RefCell};
 
@@ -124,8 +125,7 @@ pub fn population_posterior(
     let model = (expand, progress);
     let hierarchy = Hierarchy::new(data, fit, model, options).ok_or(Error::NoPopulation)?;
     let mut drawn = vec![Vec::new(); hierarchy.quantities()];
-    // The chains start around the estimate, some of its uncertainty away; the sampler
-    // refuses a start where a slope is exactly zero, as at the estimate some may be.
+    // The chains start around the estimate, some of its uncertainty away.
     let start = |chain: usize| {
         let sign = if chain.is_multiple_of(2) { 1.0 } else { -1.0 };
         let at = |i: usize| match i < hierarchy.fruit_from && i % 3 == chain / 2 % 3 {
@@ -134,7 +134,7 @@ pub fn population_posterior(
         };
         (0..hierarchy.size()).map(at).collect()
     };
-    let divergences = draw_chains(&hierarchy, drawing, start, |z| {
+    let divergences = draw_chains(&hierarchy, drawing, &start, &mut |z| {
         for (all, value) in drawn.iter_mut().zip(hierarchy.told(z)) {
             all.push(value);
         }

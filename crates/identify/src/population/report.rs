@@ -9,7 +9,9 @@ use crate::population::profile::{Quantity, interval};
 use crate::population::state::{State, iteration_findings};
 use crate::population::variance::Structure;
 use nalgebra::{SMatrix, SVector};
-use statrs::distribution::{ChiSquared, ContinuousCDF, StudentsT};
+use windfall_statistics::distribution::tail::{
+    chi_squared_upper_quantile, t_two_sided, t_upper_quantile,
+};
 
 /// Fewer fruit than this are remarked on.
 const FEW_FRUIT: usize = 10;
@@ -100,10 +102,7 @@ fn fixed_effects<const Q: usize>(
             .as_ref()
             .map_or(f64::INFINITY, |f| f[k])
             .clamp(1.0, 1e6);
-        let student = StudentsT::new(0.0, 1.0, df).ok();
-        let quantile = student.map_or(f64::INFINITY, |t| {
-            t.inverse_cdf(0.5 * (1.0 + options.confidence))
-        });
+        let quantile = t_upper_quantile(0.5 * (1.0 - options.confidence), df);
         FixedEffect {
             parameter: data.parameters[k / columns].clone(),
             covariate: (k % columns)
@@ -114,7 +113,7 @@ fn fixed_effects<const Q: usize>(
             df,
             low: estimate - quantile * se,
             high: estimate + quantile * se,
-            p: student.map_or(f64::NAN, |t| 2.0 * t.cdf(-(estimate / se).abs())),
+            p: t_two_sided(estimate / se, df),
         }
     };
     (0..value.effects.len()).map(effect).collect()
@@ -167,8 +166,7 @@ fn variation<const Q: usize>(
     level: Level,
     options: &PopulationOptions,
 ) -> Variation {
-    let threshold =
-        ChiSquared::new(1.0).map_or(f64::INFINITY, |c| c.inverse_cdf(options.confidence));
+    let threshold = chi_squared_upper_quantile(1.0 - options.confidence, 1.0);
     let structure = level.structure(state);
     let of = |quantity| match structure {
         Structure::Zero => None,

@@ -6,7 +6,9 @@ use crate::error::Error;
 use crate::population::design::design;
 use crate::population::model::{FixedEffect, PopulationData, Spread};
 use nalgebra::{DMatrix, DVector};
-use statrs::distribution::{ChiSquared, ContinuousCDF, StudentsT};
+use windfall_statistics::distribution::tail::{
+    chi_squared_upper_quantile, t_two_sided, t_upper_quantile,
+};
 
 /// What the usual way says.
 #[derive(Clone, Debug, PartialEq)]
@@ -78,8 +80,10 @@ pub fn two_stage(
 
 /// An effect with its t interval and p-value, its names empty.
 fn t_interval(value: f64, se: f64, df: f64, confidence: f64) -> FixedEffect {
-    let student = StudentsT::new(0.0, 1.0, df).ok();
-    let quantile = student.map_or(f64::INFINITY, |t| t.inverse_cdf(0.5 * (1.0 + confidence)));
+    let quantile = match df > 0.0 {
+        true => t_upper_quantile(0.5 * (1.0 - confidence), df),
+        false => f64::INFINITY,
+    };
     FixedEffect {
         parameter: String::new(),
         covariate: None,
@@ -88,7 +92,7 @@ fn t_interval(value: f64, se: f64, df: f64, confidence: f64) -> FixedEffect {
         df,
         low: value - quantile * se,
         high: value + quantile * se,
-        p: student.map_or(f64::NAN, |t| 2.0 * t.cdf(-(value / se).abs())),
+        p: t_two_sided(value / se, df),
     }
 }
 
@@ -112,11 +116,8 @@ fn spread(values: &[f64], confidence: f64) -> (Spread, Spread) {
     let square: f64 = values.iter().map(|v| (v - mean) * (v - mean)).sum();
     let sd = (square / (n - 1.0)).sqrt();
     let t = t_interval(mean, sd / n.sqrt(), n - 1.0, confidence);
-    let end = |part: f64| {
-        let chi = ChiSquared::new(n - 1.0).ok()?;
-        Some((square / chi.inverse_cdf(part)).sqrt())
-    };
-    let (low, high) = (end(0.5 + 0.5 * confidence), end(0.5 - 0.5 * confidence));
+    let end = |above: f64| (square / chi_squared_upper_quantile(above, n - 1.0)).sqrt();
+    let (low, high) = (end(0.5 - 0.5 * confidence), end(0.5 + 0.5 * confidence));
     (
         Spread {
             value: mean,
@@ -124,7 +125,7 @@ fn spread(values: &[f64], confidence: f64) -> (Spread, Spread) {
         },
         Spread {
             value: sd,
-            interval: low.zip(high),
+            interval: (n > 1.0).then_some((low, high)),
         },
     )
 }

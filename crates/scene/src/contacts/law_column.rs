@@ -1,6 +1,7 @@
 //! The laws of contacts, and what they say of many at once; compiled once for each law.
 
 use crate::contacts::react::{Normal, normal_of};
+use windfall_contact::for_each_law;
 use windfall_contact::law::ContactLaw;
 use windfall_contact::laws::kind as laws;
 use windfall_contact::laws::kind::Law;
@@ -40,17 +41,14 @@ pub(crate) trait LawColumn: Send + Sync {
 /// A column for laws of the kind, with room for so many.
 pub(crate) fn law_column(law: &Law, room: usize) -> Box<dyn LawColumn> {
     macro_rules! of {
-        ($($variant:ident)*) => {
+        (() $($variant:ident in $module:ident,)*) => {
             match law {
                 $(Law::$variant(_) => Box::new(Column::<laws::$variant, _>(Vec::with_capacity(room))),)*
                 Law::User(_) => Box::new(Column::<UserLaw, _>(Vec::with_capacity(room))),
             }
         };
     }
-    of! {
-        Hertz KelvinVoigt KuwabaraKono PowerLaw HuntCrossley LankaraniNikravesh Flores
-        HerbertMcWhannell Tsuji AdamsImpact WaltonBraun Thornton
-    }
+    for_each_law! { (of) () }
 }
 
 struct Column<L, const N: usize>(Vec<L>);
@@ -130,8 +128,11 @@ trait Variant: Copy {
 }
 
 macro_rules! variants {
-    ($($variant:ident: $type:ty,)*) => {
-        $(impl Variant for $type {
+    (() $($variant:ident in $module:ident,)*) => {
+        $(variants! { $variant: laws::$variant })*
+    };
+    ($variant:ident: $type:ty) => {
+        impl Variant for $type {
             fn of(law: &Law) -> Option<Self> {
                 match law {
                     Law::$variant(own) => Some(*own),
@@ -142,22 +143,9 @@ macro_rules! variants {
             fn law(self) -> Law {
                 Law::$variant(self)
             }
-        })*
+        }
     };
 }
 
-variants! {
-    Hertz: laws::Hertz,
-    KelvinVoigt: laws::KelvinVoigt,
-    KuwabaraKono: laws::KuwabaraKono,
-    PowerLaw: laws::PowerLaw,
-    HuntCrossley: laws::HuntCrossley,
-    LankaraniNikravesh: laws::LankaraniNikravesh,
-    Flores: laws::Flores,
-    HerbertMcWhannell: laws::HerbertMcWhannell,
-    Tsuji: laws::Tsuji,
-    AdamsImpact: laws::AdamsImpact,
-    WaltonBraun: laws::WaltonBraun,
-    Thornton: laws::Thornton,
-    User: UserLaw,
-}
+for_each_law! { (variants) () }
+variants! { User: UserLaw }

@@ -1,7 +1,7 @@
 //! Whether a quantity stays the same within a margin: two one-sided tests.
 
 use crate::error::Error;
-use statrs::distribution::{ContinuousCDF, StudentsT};
+use windfall_statistics::distribution::tail::{t_upper, t_upper_quantile};
 
 /// What the data say about a change.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -120,15 +120,18 @@ pub(crate) fn check_level(level: f64) -> Result<(), Error> {
 /// Quantile of Student's t; infinite without degrees of freedom.
 #[must_use]
 pub fn t_quantile(probability: f64, freedom: f64) -> f64 {
-    match StudentsT::new(0.0, 1.0, freedom) {
-        Ok(t) => t.inverse_cdf(probability),
-        Err(_) => f64::INFINITY,
+    match freedom > 0.0 {
+        true => -t_upper_quantile(probability, freedom),
+        false => f64::INFINITY,
     }
 }
 
 /// Probability that Student's t is above a value.
 fn t_above(value: f64, freedom: f64) -> f64 {
-    StudentsT::new(0.0, 1.0, freedom).map_or(1.0, |t| t.sf(value))
+    match freedom > 0.0 {
+        true => t_upper(value, freedom),
+        false => 1.0,
+    }
 }
 
 #[cfg(test)]

@@ -6,7 +6,7 @@ use crate::repeat::interval::EnergyInterval;
 pub use crate::repeat::threshold_family::Family;
 use crate::repeat::threshold_family::interval_terms;
 use crate::repeat::turnbull::check_intervals;
-use statrs::distribution::{ChiSquared, ContinuousCDF, Normal};
+use windfall_statistics::distribution::tail::{chi_squared_upper_quantile, normal_quantile};
 
 /// Range of 1/σ that is searched, σ the spread of ln energy; 1.
 const STEEPNESS: (f64, f64) = (0.02, 200.0);
@@ -253,11 +253,11 @@ fn end(best: f64, far: f64, target: f64, profile: &impl Fn(f64) -> f64) -> Optio
 
 fn standard_quantile(family: Family, probability: f64) -> f64 {
     match family {
-        Family::LogNormal => Normal::standard().inverse_cdf(probability),
+        Family::LogNormal => normal_quantile(probability),
         Family::Weibull => (-f64::ln_1p(-probability)).ln(),
     }
 }
 
 fn chi_squared(probability: f64) -> f64 {
-    ChiSquared::new(1.0).map_or(f64::INFINITY, |chi| chi.inverse_cdf(probability))
+    chi_squared_upper_quantile(1.0 - probability, 1.0)
 }

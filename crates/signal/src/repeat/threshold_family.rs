@@ -1,6 +1,6 @@
 //! Location-scale families of the logarithm of the critical energy.
 
-use statrs::function::erf::erfc;
+use windfall_statistics::distribution::tail::normal_lower;
 
 /// Form of the distribution of critical energies between fruit.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -50,7 +50,7 @@ fn ln_normal_below(z: f64) -> f64 {
         return z;
     }
     if z > -10.0 {
-        return (0.5 * erfc(-z * std::f64::consts::FRAC_1_SQRT_2)).ln();
+        return normal_lower(z).ln();
     }
     // Asymptotic series (Abramowitz and Stegun 26.2.12).
     let square = 1.0 / (z * z);

@@ -1,0 +1,60 @@
+//! What laws know of impacts as a whole.
+
+/// What is given of a law's parameters, or else their defaults, by name; SI.
+pub type Given<'a> = dyn Fn(&str) -> Option<f64> + 'a;
+
+/// What a law knows of impacts as a whole. There are no defaults: each law says it.
+pub trait ImpactLaw: Sized {
+    /// The restitution that the law takes as a parameter; 1. `None` for laws without.
+    fn nominal_restitution(&self) -> Option<f64>;
+
+    /// Restitution of a collision without gravity that ends at zero force; 1. `None`
+    /// where there is no closed form.
+    ///
+    /// * `mass`: effective mass; kg
+    /// * `velocity`: at first touch, above zero; m/s
+    fn closed_form_restitution(&self, mass: f64, velocity: f64) -> Option<f64>;
+
+    /// Parameters with which a fit may begin, right in order of magnitude; SI.
+    /// Parameters that are left out take their default or typical value.
+    fn start(scales: &ImpactScales, given: &Given) -> Vec<(&'static str, f64)>;
+}
+
+/// Rough features of an impact.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ImpactScales {
+    /// Effective mass; kg.
+    pub mass: f64,
+    /// Velocity at first touch; m/s.
+    pub velocity: f64,
+    /// Largest displacement; m.
+    pub displacement: f64,
+    /// Largest force; N.
+    pub force: f64,
+    /// Contact duration; s.
+    pub duration: f64,
+    /// Coefficient of restitution; 1.
+    pub restitution: f64,
+}
+
+impl ImpactScales {
+    /// Energy lost; J.
+    #[must_use]
+    pub fn loss(&self) -> f64 {
+        0.5 * self.mass * self.velocity.powi(2) * (1.0 - self.restitution.powi(2))
+    }
+
+    /// k of an elastic force k d^n; N/m^n.
+    #[must_use]
+    pub fn stiffness(&self, n: f64) -> f64 {
+        // A damped force peaks before the displacement does.
+        0.9 * self.force / self.displacement.powf(n)
+    }
+
+    /// c of a damping c d^p v; N s/m^(p+1).
+    #[must_use]
+    pub fn damping(&self, p: f64) -> f64 {
+        // ∮ c d^p v dd over loading and unloading, with v falling to zero halfway.
+        self.loss() * (p + 1.5) / (1.3 * self.velocity * self.displacement.powf(p + 1.0))
+    }
+}

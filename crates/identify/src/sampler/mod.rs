@@ -1,0 +1,8 @@
+//! Draws from a posterior by the no-U-turn sampler, from its log-density and gradient.
+
+pub(crate) mod chains;
+pub(crate) mod density;
+mod no_u_turn;
+#[cfg(test)]
+mod reference;
+mod tuning;
