@@ -6,8 +6,9 @@
 use crate::contents::{ChannelContents, Contents, Format, Note, TimeBase};
 use crate::error::{Error, Place};
 use crate::reader::{Reader, Sink};
-use crate::sigrok::zip_entries::{Entry, open_entry, read_entries};
+use crate::sigrok::zip_entries::{Entry, open_archive, open_entry};
 use crate::source::Source;
+use rawzip::ZipArchive;
 use std::io::Read;
 
 /// Longest description of a capture; bytes.
@@ -22,7 +23,7 @@ const BLOCK: usize = 1 << 15;
 /// A capture of a logic analyser.
 #[derive(Debug)]
 pub struct SigrokReader {
-    source: Source,
+    archive: ZipArchive<Source>,
     contents: Contents,
     /// Parts of the capture in order.
     parts: Vec<Entry>,
@@ -46,14 +47,14 @@ struct Metadata {
 impl SigrokReader {
     /// Reads the description of a capture.
     pub fn open(source: Source) -> Result<Self, Error> {
-        let entries = read_entries(&source)?;
+        let (archive, entries) = open_archive(source)?;
         let Some(description) = entries.iter().find(|entry| entry.name == "metadata") else {
-            return Err(source.unknown(
+            return Err(archive.get_ref().unknown(
                 "this zip archive is no capture of sigrok: it has no entry \"metadata\"",
                 "unpack it and name the recording; save a workbook's sheet as CSV",
             ));
         };
-        let metadata = read_metadata(&source, description)?;
+        let metadata = read_metadata(&archive, description)?;
         let mut parts: Vec<(u64, Entry)> = entries
             .iter()
             .filter_map(|entry| {
@@ -104,21 +105,21 @@ impl SigrokReader {
             parts,
             unit,
             bits: metadata.probes.iter().map(|(bit, _)| *bit).collect(),
-            source,
+            archive,
         })
     }
 }
 
-fn read_metadata(source: &Source, entry: &Entry) -> Result<Metadata, Error> {
+fn read_metadata(archive: &ZipArchive<Source>, entry: &Entry) -> Result<Metadata, Error> {
     let broken = |problem: String| {
-        source.malformed(
+        archive.get_ref().malformed(
             Place::Object("metadata".to_owned()),
             problem,
             "save the capture again",
         )
     };
     let mut text = String::new();
-    let read = open_entry(source, entry)?
+    let read = open_entry(archive, entry)?
         .take(LONGEST_METADATA)
         .read_to_string(&mut text);
     read.map_err(|error| broken(format!("it cannot be unpacked: {error}")))?;
@@ -184,10 +185,10 @@ impl Reader for SigrokReader {
         let mut bytes = vec![0; BLOCK * self.unit];
         let mut samples = Vec::new();
         for part in &self.parts {
-            let mut stream = open_entry(&self.source, part)?;
+            let mut stream = open_entry(&self.archive, part)?;
             loop {
                 let filled = fill(&mut stream, &mut bytes).map_err(|error| {
-                    self.source.malformed(
+                    self.archive.get_ref().malformed(
                         Place::Object(part.name.clone()),
                         format!("the capture cannot be unpacked: {error}"),
                         "save the capture again",

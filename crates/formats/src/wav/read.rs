@@ -7,6 +7,7 @@
 
 use crate::contents::{ChannelContents, Contents, Format, Note, TimeBase};
 use crate::error::{Error, Place};
+use crate::number::integer;
 use crate::reader::{Reader, Sink};
 use crate::source::Source;
 
@@ -58,15 +59,13 @@ impl WavReader {
     pub fn open(source: Source) -> Result<Self, Error> {
         let head = source.bytes_at(0, 12.min(source.length()))?;
         let big_endian = head.starts_with(b"RIFX");
-        let wave = head.get(8..12) == Some(b"WAVE");
-        if !wave {
+        if head.get(8..12) != Some(b"WAVE") {
             return Err(malformed(
                 &source,
                 8,
                 "expected \"WAVE\"; this is no WAVE file",
             ));
         }
-        let order = Order { big_endian };
         let mut notes = Vec::new();
         let mut properties = Vec::new();
         let mut shape = None;
@@ -75,15 +74,15 @@ impl WavReader {
         let mut at = 12;
         while at + 8 <= source.length() {
             let header = source.bytes_at(at, 8)?;
-            let (name, size) = (&header[..4], order.u32(&header[4..8]));
+            let (name, size) = (&header[..4], integer(&header[4..8], big_endian) as u32);
             let (begin, left) = (at + 8, source.length() - at - 8);
             match name {
                 b"ds64" if size >= 16 && left >= 16 => {
                     let sizes = source.bytes_at(begin, 16)?;
-                    long_size = Some(order.u64(&sizes[8..16]));
+                    long_size = Some(integer(&sizes[8..16], big_endian));
                 }
-                b"fmt " => shape = Some(read_shape(&source, begin, size, order)?),
-                b"LIST" => properties.extend(read_info(&source, begin, size, order)?),
+                b"fmt " => shape = Some(read_shape(&source, begin, size, big_endian)?),
+                b"LIST" => properties.extend(read_info(&source, begin, size, big_endian)?),
                 b"data" => {
                     let declared = match size {
                         NO_SIZE => long_size.unwrap_or(left),
@@ -98,12 +97,12 @@ impl WavReader {
                 }
                 _ => {}
             }
-            // Chunks begin at even places.
-            let padded = u64::from(size) + u64::from(size % 2);
-            at = match (name, data) {
-                (b"data", Some((_, declared, _))) => begin + declared + declared % 2,
-                _ => begin + padded,
+            let length = match (name, data) {
+                (b"data", Some((_, declared, _))) => declared,
+                _ => u64::from(size),
             };
+            // Chunks begin at even places.
+            at = begin + length + length % 2;
         }
         let shape = shape.ok_or_else(|| malformed(&source, 12, "there is no chunk \"fmt \""))?;
         let (start, declared, left) = data.ok_or_else(|| {
@@ -140,36 +139,11 @@ impl WavReader {
     }
 }
 
-/// The order of bytes.
-#[derive(Clone, Copy)]
-struct Order {
-    big_endian: bool,
-}
-
-impl Order {
-    /// The number in up to eight bytes.
-    fn u64(self, bytes: &[u8]) -> u64 {
-        let join = |value: u64, byte: &u8| (value << 8) | u64::from(*byte);
-        match self.big_endian {
-            true => bytes.iter().fold(0, join),
-            false => bytes.iter().rev().fold(0, join),
-        }
-    }
-
-    fn u32(self, bytes: &[u8]) -> u32 {
-        self.u64(&bytes[..4]) as u32
-    }
-
-    fn u16(self, bytes: &[u8]) -> u16 {
-        self.u64(&bytes[..2]) as u16
-    }
-}
-
 fn malformed(source: &Source, at: u64, problem: &str) -> Error {
     source.malformed(Place::Byte(at), problem, "record or export the sound again")
 }
 
-fn read_shape(source: &Source, at: u64, size: u32, order: Order) -> Result<Shape, Error> {
+fn read_shape(source: &Source, at: u64, size: u32, big_endian: bool) -> Result<Shape, Error> {
     if size < 16 {
         return Err(malformed(
             source,
@@ -178,16 +152,17 @@ fn read_shape(source: &Source, at: u64, size: u32, order: Order) -> Result<Shape
         ));
     }
     let bytes = source.bytes_at(at, u64::from(size.min(40)))?;
-    let mut code = order.u16(&bytes);
-    let (channels, rate) = (order.u16(&bytes[2..]), order.u32(&bytes[4..]));
-    let (align, mut bits) = (order.u16(&bytes[12..]), order.u16(&bytes[14..]));
+    let u16_at = |at: usize| integer(&bytes[at..at + 2], big_endian) as u16;
+    let (mut code, channels) = (u16_at(0), u16_at(2));
+    let rate = integer(&bytes[4..8], big_endian) as u32;
+    let (align, mut bits) = (u16_at(12), u16_at(14));
     // WAVE_FORMAT_EXTENSIBLE: the code and the valid bits stand further behind.
     if code == 0xfffe && bytes.len() >= 28 {
-        let valid = order.u16(&bytes[18..]);
+        let valid = u16_at(18);
         if valid > 0 && valid <= bits {
             bits = valid;
         }
-        code = order.u32(&bytes[24..]) as u16;
+        code = integer(&bytes[24..28], big_endian) as u16;
     }
     let coding = match code {
         1 => Coding::Integer,
@@ -228,7 +203,7 @@ fn read_shape(source: &Source, at: u64, size: u32, order: Order) -> Result<Shape
         rate,
         container,
         bits,
-        big_endian: order.big_endian,
+        big_endian,
     })
 }
 
@@ -247,7 +222,7 @@ fn read_info(
     source: &Source,
     at: u64,
     size: u32,
-    order: Order,
+    big_endian: bool,
 ) -> Result<Vec<(String, String)>, Error> {
     const LONGEST: u64 = 1 << 16;
     let count = u64::from(size)
@@ -259,7 +234,7 @@ fn read_info(
         return Ok(found);
     };
     while rest.len() >= 8 {
-        let (name, length) = (&rest[..4], order.u32(&rest[4..8]) as usize);
+        let (name, length) = (&rest[..4], integer(&rest[4..8], big_endian) as usize);
         let text = &rest[8..(8_usize.saturating_add(length)).min(rest.len())];
         let text = String::from_utf8_lossy(text)
             .trim_end_matches('\0')
@@ -342,19 +317,18 @@ impl Reader for WavReader {
 
 /// From the bytes of a sample to its value, full scale being 1.
 fn decoder(shape: Shape) -> impl Fn(&[u8]) -> f64 {
-    let order = Order {
-        big_endian: shape.big_endian,
-    };
     move |bytes| match shape.coding {
         Coding::Integer if shape.container == 1 => (f64::from(bytes[0]) - 128.0) / 128.0,
         Coding::Integer => {
             // Samples fill their container from the top; so the sign is in place.
             let shift = 64 - 8 * u32::from(shape.container);
-            let value = (order.u64(bytes) << shift) as i64;
+            let value = (integer(bytes, shape.big_endian) << shift) as i64;
             value as f64 / 2_f64.powi(63)
         }
-        Coding::Float if shape.container == 4 => f64::from(f32::from_bits(order.u32(bytes))),
-        Coding::Float => f64::from_bits(order.u64(bytes)),
+        Coding::Float if shape.container == 4 => {
+            f64::from(f32::from_bits(integer(bytes, shape.big_endian) as u32))
+        }
+        Coding::Float => f64::from_bits(integer(bytes, shape.big_endian)),
         Coding::MuLaw => f64::from(mu_law(bytes[0])) / 32768.0,
         Coding::ALaw => f64::from(a_law(bytes[0])) / 32768.0,
     }
