@@ -1,4 +1,4 @@
-//! What the page must know before it shows a campaign.
+//! What the page needs before it opens a campaign.
 
 use crate::app::{Answer, App};
 use axum::extract::State;
@@ -7,7 +7,7 @@ use utoipa::ToSchema;
 use windfall_cards::library::laws::{LawCardText, law_cards};
 use windfall_files::provenance::VERSION;
 
-/// Kinds of campaigns that `new` knows, with the words of the command line.
+/// Kinds of campaigns that can be created, as `new` names them.
 pub(crate) const KINDS: [&str; 6] = [
     "pendulum",
     "carriage",
@@ -17,18 +17,18 @@ pub(crate) const KINDS: [&str; 6] = [
     "repeats",
 ];
 
-/// What the page must know.
+/// What the page needs before it opens a campaign.
 #[derive(Debug, Serialize, ToSchema)]
 pub(crate) struct About {
     /// Version of windfall.
     version: &'static str,
     /// Name of the directory that is served.
     directory: String,
-    /// Whether further campaigns can be made.
+    /// Whether campaigns can be created here.
     creates: bool,
-    /// Most bytes of an upload.
+    /// Size limit of an upload; bytes.
     upload_limit: u64,
-    /// Kinds of campaigns that can be made.
+    /// Kinds of campaigns that can be created.
     kinds: [&'static str; 6],
     /// Force laws.
     laws: Vec<LawAbout>,

@@ -1,4 +1,4 @@
-//! What all requests share.
+//! State shared by all requests.
 
 use crate::job::Jobs;
 use crate::problem::Problem;
@@ -13,13 +13,13 @@ use windfall_files::error::Error;
 use windfall_workspace::live_cache::LiveCache;
 use windfall_workspace::workspace::Workspace;
 
-/// Pieces of work that are done at once; further ones wait.
+/// Blocking tasks that run at once; further ones wait.
 const AT_ONCE: usize = 8;
 
 /// An answer in JSON, or what went wrong.
 pub(crate) type Answer<T> = Result<Told<T>, Problem>;
 
-/// A value as it is told here: in JSON, without paths of the machine.
+/// A value as JSON, without paths of the machine.
 pub(crate) struct Told<T> {
     json: String,
     of: PhantomData<T>,
@@ -38,15 +38,15 @@ impl<T> IntoResponse for Told<T> {
     }
 }
 
-/// What all requests share.
+/// State shared by all requests.
 pub(crate) struct Shared {
     /// The directory that is served.
     pub workspace: Workspace,
     /// Recordings in memory.
     pub cache: LiveCache,
-    /// Long work.
+    /// Jobs.
     pub jobs: Jobs,
-    /// Most bytes of an upload.
+    /// Size limit of an upload; bytes.
     pub upload_limit: u64,
     permits: Semaphore,
 }
@@ -63,7 +63,7 @@ impl std::ops::Deref for App {
 }
 
 impl Shared {
-    /// A value as it is told here.
+    /// A value as JSON, without paths of the machine.
     pub(crate) fn tell<T: Serialize>(&self, value: &T) -> Answer<T> {
         let json = serde_json::to_string(value).map_err(|e| Problem::internal(e.to_string()))?;
         Ok(Told {
@@ -84,7 +84,7 @@ impl App {
         }))
     }
 
-    /// An error as it is told here: without paths of the machine.
+    /// An error as an answer, without paths of the machine.
     pub(crate) fn problem(&self, error: &Error) -> Problem {
         Problem::of(error, self.told(error))
     }
@@ -94,7 +94,7 @@ impl App {
         self.workspace.without_path(&error.to_string())
     }
 
-    /// Does work that takes time or reads files beside the answering of requests.
+    /// Runs slow or file-reading work off the request threads.
     pub(crate) async fn work<T: Send + 'static>(
         &self,
         work: impl FnOnce(&Shared) -> Result<T, Error> + Send + 'static,

@@ -1,4 +1,4 @@
-//! The page, as it lies in the program.
+//! The page, embedded in the program.
 
 use axum::http::{StatusCode, Uri, header};
 use axum::response::{IntoResponse, Response};

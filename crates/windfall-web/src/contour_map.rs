@@ -2,13 +2,16 @@
 
 use serde::Serialize;
 use utoipa::ToSchema;
+use windfall_draw::axis::axis;
 use windfall_draw::colour_map::{colour_of, css};
 use windfall_draw::contour_lines::{Field, area_above, contours};
-use windfall_tables::surface::figure_heights::Heights;
 use windfall_tables::surface::outcome::GridOutcome;
 
 /// Colours of a map from its lowest to its highest value.
 const COLOURS: usize = 256;
+
+/// Most levels but for one at an end: a screen has room for more than a printed figure.
+const LEVELS: usize = 14;
 
 /// Values on a rectangular grid with their contours.
 #[derive(Debug, PartialEq, Serialize, ToSchema)]
@@ -61,7 +64,9 @@ pub(crate) fn contour_map(x: Vec<f64>, y: Vec<f64>, values: Vec<f64>) -> Contour
         y: &y,
         values: &values,
     };
-    let ticks = Heights::of(values.iter()).axis.ticks;
+    let low = values.iter().copied().fold(f64::INFINITY, f64::min);
+    let high = values.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+    let ticks = axis(low, high, LEVELS).ticks;
     let bands = (ticks.len() + 1) as f64;
     let band = |place: usize| css(colour_of((place as f64 + 0.5) / bands));
     let level = |(place, value): (usize, &f64)| ContourLevel {

@@ -1,11 +1,11 @@
-//! What can be wrong with requests, for the description of the interface.
+//! Problems that requests can meet, for the description of the interface.
 
 use axum::http::StatusCode;
 use std::collections::BTreeMap;
 use utoipa::IntoResponses;
 use utoipa::openapi::{ContentBuilder, Ref, RefOr, Response, ResponseBuilder};
 
-/// What can be wrong with a change of a campaign.
+/// Problems of a change to a campaign.
 pub(crate) struct ChangeProblems;
 
 impl IntoResponses for ChangeProblems {
@@ -14,7 +14,7 @@ impl IntoResponses for ChangeProblems {
     }
 }
 
-/// What can be wrong with a request that sends what is to be done.
+/// Problems of a request with a body.
 pub(crate) struct RequestProblems;
 
 impl IntoResponses for RequestProblems {
@@ -23,7 +23,7 @@ impl IntoResponses for RequestProblems {
     }
 }
 
-/// What can be wrong with a question about a campaign, or a file of it.
+/// Problems of a query about a campaign or one of its files.
 pub(crate) struct QuestionProblems;
 
 impl IntoResponses for QuestionProblems {
@@ -32,7 +32,7 @@ impl IntoResponses for QuestionProblems {
     }
 }
 
-/// What can be wrong with a file that is sent.
+/// Problems of an upload.
 pub(crate) struct UploadProblems;
 
 impl IntoResponses for UploadProblems {

@@ -1,4 +1,4 @@
-//! What comes with a request; what cannot be understood is answered as a [`Problem`].
+//! Extractors for requests; malformed ones are answered with a [`Problem`].
 
 use crate::problem::Problem;
 use axum::Json;
@@ -26,7 +26,7 @@ impl<S: Send + Sync, T: DeserializeOwned> FromRequest<S> for Given<T> {
     }
 }
 
-/// Parts of the address behind "?".
+/// Query parameters.
 pub(crate) struct Asked<T>(pub T);
 
 impl<S: Send + Sync, T: DeserializeOwned> FromRequestParts<S> for Asked<T> {
@@ -40,7 +40,7 @@ impl<S: Send + Sync, T: DeserializeOwned> FromRequestParts<S> for Asked<T> {
     }
 }
 
-/// The version of a campaign that a change rests on; "*" for whatever it is now.
+/// The version of a campaign that a change is based on; "*" for the current one.
 pub(crate) struct Version(pub String);
 
 impl<S: Send + Sync> FromRequestParts<S> for Version {

@@ -1,4 +1,4 @@
-//! Who may ask, and what browsers may do with the answers.
+//! Access control, and restrictions on what browsers do with answers.
 //!
 //! A page of another site cannot use the interface: its requests carry another origin
 //! or another host (also after its name has been bound to the loopback address), and
@@ -19,22 +19,22 @@ const COOKIE: &str = "windfall";
 /// Header that changes need.
 const CHANGES: HeaderName = HeaderName::from_static("x-windfall");
 
-/// What a page may load: itself, and nothing from elsewhere.
+/// The page may load itself and nothing from elsewhere.
 const PAGE_POLICY: &str = "default-src 'none'; script-src 'self'; style-src 'self'; \
     img-src 'self' data: blob:; connect-src 'self'; font-src 'self'; frame-src 'self'; \
     base-uri 'none'; form-action 'none'; frame-ancestors 'none'";
 
-/// What a report may do: nothing but be shown, also inside of the page.
+/// A report may only be shown, also inside the page.
 pub(crate) const REPORT_POLICY: &str = "default-src 'none'; style-src 'unsafe-inline'; \
     img-src data:; sandbox allow-modals; base-uri 'none'; form-action 'none'; \
     frame-ancestors 'self'";
 
-/// Who may ask.
+/// Access control.
 #[derive(Debug)]
 pub(crate) struct Guard {
     /// Where the server is bound.
     pub address: SocketAddr,
-    /// Needed of every request where others could reach the server.
+    /// Required of every request if others could reach the server.
     pub token: Option<String>,
 }
 
@@ -88,7 +88,7 @@ impl Guard {
     }
 }
 
-/// Compares in a time that does not depend on where two texts differ.
+/// Compares in constant time.
 fn same(a: &str, b: &str) -> bool {
     let differences = a
         .bytes()
@@ -112,7 +112,7 @@ fn has_token(query: &str, token: &str) -> bool {
     pairs.any(|(name, value)| name == "token" && same(value, token))
 }
 
-/// Answers those who may ask, with headers that keep browsers strict.
+/// Answers permitted requests, with strict security headers.
 pub(crate) async fn guarded(
     State(guard): State<Arc<Guard>>,
     request: Request,
@@ -120,7 +120,7 @@ pub(crate) async fn guarded(
 ) -> Response {
     let query = request.uri().query().unwrap_or_default().to_owned();
     let checked = guard.check(request.method(), request.headers(), &query);
-    // The token leaves the address, where others could see it, for a cookie.
+    // The token moves from the address, where others could see it, to a cookie.
     let entering = guard
         .token
         .as_ref()
@@ -151,7 +151,7 @@ pub(crate) async fn guarded(
     response
 }
 
-/// Puts the token into a cookie and leads to the same place without it.
+/// Sets the token as a cookie and redirects to the same address without it.
 fn entered(address: &axum::http::Uri, token: &str) -> Response {
     let cookie = format!("{COOKIE}={token}; HttpOnly; SameSite=Strict; Path=/");
     let headers = [

@@ -1,4 +1,4 @@
-//! Whether somebody asked the program to end.
+//! Interruption of the program.
 
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -6,7 +6,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 /// Exit status of a program that was interrupted, as shells have it.
 const INTERRUPTED: i32 = 130;
 
-/// Ends when somebody interrupts the program, or the system asks it to end.
+/// Resolves when the user interrupts the program or the system asks it to end.
 pub(crate) async fn interrupted() {
     #[cfg(unix)]
     {
@@ -22,8 +22,8 @@ pub(crate) async fn interrupted() {
     let _ = tokio::signal::ctrl_c().await;
 }
 
-/// A flag that is set when somebody interrupts the program or the system asks it to end; from
-/// now on only the second time ends it at once.
+/// A flag that is set when the user interrupts the program or the system asks it to end; a
+/// second interruption ends it at once.
 ///
 /// Where the system gives no thread or no signal the flag stays as it is, and an interruption
 /// ends the program at once.
@@ -38,12 +38,12 @@ pub fn interruption() -> Arc<AtomicBool> {
         if let Ok(runtime) = runtime {
             runtime.block_on(interrupted());
             set.store(true, Ordering::Relaxed);
-            // Who asks twice does not want to wait.
+            // A second request means now.
             runtime.block_on(interrupted());
             std::process::exit(INTERRUPTED);
         }
     };
-    // Whoever asked goes on without it.
+    // The caller carries on without it.
     let _ = std::thread::Builder::new()
         .name("interruption".into())
         .spawn(watch);

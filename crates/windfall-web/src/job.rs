@@ -1,4 +1,4 @@
-//! Long work beside the requests: its progress is told, and it can be stopped.
+//! Jobs that run beside the requests, report progress and can be cancelled.
 
 use serde::{Deserialize, Serialize};
 use std::collections::VecDeque;
@@ -13,10 +13,10 @@ use windfall_files::error::Error;
 use windfall_population::outcome::PopulationOutcome;
 use windfall_population::ranking::outcome::LawsOutcome;
 
-/// Jobs that are remembered.
+/// Jobs that are kept in memory.
 const REMEMBERED: usize = 100;
 
-/// Kinds of long work.
+/// Kinds of jobs.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize, ToSchema)]
 #[serde(rename_all = "kebab-case")]
 pub(crate) enum Work {
@@ -88,7 +88,7 @@ impl JobWork {
     }
 }
 
-/// How a job stands.
+/// State of a job.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, ToSchema)]
 #[serde(rename_all = "kebab-case")]
 pub(crate) enum JobState {
@@ -108,11 +108,11 @@ pub(crate) struct JobView {
     /// What it does, and its result.
     #[serde(flatten)]
     pub work: JobWork,
-    /// How it stands.
+    /// Its state.
     pub state: JobState,
     /// Items done.
     pub done: usize,
-    /// Of how many.
+    /// Items in all.
     pub all: usize,
     /// Why it failed.
     pub problem: Option<String>,
@@ -140,22 +140,22 @@ pub(crate) struct Job {
 }
 
 impl Job {
-    /// How it stands.
+    /// Its state.
     pub(crate) fn view(&self) -> JobView {
         self.view.borrow().clone()
     }
 
-    /// How it stands, again and again.
+    /// Its state as it changes.
     pub(crate) fn watch(&self) -> watch::Receiver<JobView> {
         self.view.subscribe()
     }
 
-    /// Asks it to stop.
+    /// Requests cancellation.
     pub(crate) fn cancel(&self) {
         self.stop.store(true, Ordering::Relaxed);
     }
 
-    /// Takes note of its progress; whether it goes on.
+    /// Records progress; breaks if the job was cancelled.
     pub(crate) fn progress(&self, done: usize, all: usize) -> ControlFlow<()> {
         self.view.send_modify(|view| {
             view.done = done.max(view.done);
@@ -167,7 +167,7 @@ impl Job {
         }
     }
 
-    /// Takes note of its end.
+    /// Records the end.
     pub(crate) fn end(&self, result: Result<JobWork, Error>, told: impl Fn(&Error) -> String) {
         self.view.send_modify(|view| match result {
             Ok(done) => {
@@ -185,7 +185,7 @@ impl Job {
         });
     }
 
-    /// Takes note that windfall itself failed.
+    /// Records a failure of windfall itself.
     pub(crate) fn fail(&self, problem: &str) {
         self.view.send_modify(|view| {
             if view.state == JobState::Running {
@@ -196,7 +196,7 @@ impl Job {
     }
 }
 
-/// All jobs since the start, the newest last.
+/// All jobs since the start, newest last.
 #[derive(Default)]
 pub(crate) struct Jobs {
     all: Mutex<VecDeque<Arc<Job>>>,
@@ -208,7 +208,7 @@ impl Jobs {
         self.all.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
-    /// Begins a job; `None` where the same work runs on the same campaign already.
+    /// Adds a job; `None` if the same work is already running on the campaign.
     pub(crate) fn begin(&self, campaign: &str, work: Work, command: String) -> Option<Arc<Job>> {
         let mut all = self.lock();
         let busy = all.iter().any(|job| {
@@ -257,7 +257,7 @@ impl Jobs {
         views.collect()
     }
 
-    /// Asks all to stop.
+    /// Cancels all jobs.
     pub(crate) fn cancel_all(&self) {
         self.lock().iter().for_each(|job| job.cancel());
     }

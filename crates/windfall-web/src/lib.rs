@@ -1,8 +1,8 @@
 //! The local web application of windfall: an HTTP interface over the workflows of the
 //! crate `windfall`, and the page that uses it.
 //!
-//! What is done in the page is done to the files of a campaign, so that the command line
-//! sees it; the page is built from `page/` and lies ready in `assets/`.
+//! The page works on the files of a campaign, as the command line does. It is built from
+//! `page/` into `assets/`.
 
 mod about;
 mod api;

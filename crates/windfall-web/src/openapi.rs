@@ -1,4 +1,4 @@
-//! The interface described (OpenAPI 3.1).
+//! Description of the interface (OpenAPI 3.1).
 
 use crate::problem::Problem;
 use axum::Json;
@@ -13,7 +13,7 @@ use utoipa::{Modify, OpenApi};
         title = "windfall",
         description = "What the page of `windfall serve` uses. All numbers are SI. Results have \
                        the keys of the commands' JSON. Requests that change something need the \
-                       header X-Windfall, changes of a campaign its version in If-Match.",
+                       header X-Windfall; changes to a campaign need its version in If-Match.",
     ),
     paths(
         crate::about::about,
@@ -55,7 +55,7 @@ use utoipa::{Modify, OpenApi};
 )]
 pub(crate) struct Interface;
 
-/// Values under names refer to the schema of a value, which else would stand in each of them.
+/// Replaces the value schemas that utoipa inlines into maps by references.
 struct NamedValues;
 
 impl Modify for NamedValues {
@@ -85,7 +85,7 @@ impl Modify for NamedValues {
     }
 }
 
-/// Keys that answers leave out where there is nothing to tell.
+/// Keys that answers omit when empty.
 const LEFT_OUT: [(&str, &[&str]); 5] = [
     (
         "IntervalOutcome",
@@ -106,7 +106,7 @@ const LEFT_OUT: [(&str, &[&str]); 5] = [
     ("MeasuredOutcome", &["parts"]),
 ];
 
-/// Marks all other keys of answers as required: what has no value is `null`.
+/// Marks all other keys of answers as required; missing values are `null`.
 struct KeysOfAnswers;
 
 impl Modify for KeysOfAnswers {
@@ -134,7 +134,7 @@ fn require(schema: &mut RefOr<Schema>, left_out: &[&str]) {
     }
 }
 
-/// Requests refuse keys that they do not know.
+/// Requests reject unknown keys.
 fn is_request(object: &Object) -> bool {
     let further = object.additional_properties.as_deref();
     matches!(further, Some(AdditionalProperties::FreeForm(false)))

@@ -1,4 +1,4 @@
-//! What went wrong, as an answer (RFC 9457, `application/problem+json`).
+//! Failures as answers (RFC 9457, `application/problem+json`).
 
 use axum::Json;
 use axum::http::{HeaderValue, StatusCode, header};
@@ -8,7 +8,7 @@ use utoipa::ToSchema;
 use windfall_campaign::store::error::StoreError;
 use windfall_files::error::Error;
 
-/// What went wrong.
+/// A failure.
 #[derive(Clone, Debug, Serialize, ToSchema)]
 pub(crate) struct Problem {
     /// The status in words.
@@ -32,12 +32,12 @@ impl Problem {
         }
     }
 
-    /// A request that cannot be understood.
+    /// A malformed request.
     pub(crate) fn request(detail: impl Into<String>) -> Self {
         Self::new(StatusCode::BAD_REQUEST, "request", detail)
     }
 
-    /// A fault of windfall itself.
+    /// A bug or failure of windfall itself.
     pub(crate) fn internal(detail: impl Into<String>) -> Self {
         Self::new(StatusCode::INTERNAL_SERVER_ERROR, "internal", detail)
     }

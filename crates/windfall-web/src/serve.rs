@@ -17,13 +17,13 @@ use std::sync::Arc;
 use std::time::Duration;
 use windfall_workspace::workspace::Workspace;
 
-/// Most bytes of a body that is no upload.
+/// Size limit of a body other than an upload; bytes.
 const MOST_BODY: usize = 4 << 20;
 
-/// Time that running requests get when the server stops.
+/// Grace period for running requests when the server stops.
 const GRACE: Duration = Duration::from_secs(2);
 
-/// Port that is tried first where none is asked for.
+/// Default port.
 const USUAL_PORT: u16 = 8417;
 
 /// How the server is started.
@@ -31,27 +31,27 @@ const USUAL_PORT: u16 = 8417;
 pub struct ServeRequest {
     /// A campaign directory, or a directory with campaigns in it.
     pub directory: PathBuf,
-    /// Where it listens; loopback unless others are to reach it.
+    /// Address to listen on; loopback unless others need access.
     pub host: IpAddr,
-    /// Its port; 8417 or a free one if `None`.
+    /// Port; 8417 or a free one if `None`.
     pub port: Option<u16>,
-    /// Most bytes of an upload.
+    /// Size limit of an upload; bytes.
     pub upload_limit: u64,
 }
 
-/// Why a server cannot be started.
+/// Why the server cannot start.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum ServeError {
     /// The directory cannot be served.
     #[error(transparent)]
     Directory(#[from] windfall_files::error::Error),
-    /// The address cannot be listened at.
+    /// The address is unavailable.
     #[error("cannot listen at {address}: {source}; choose another --port or --host")]
     Listen {
         /// The address.
         address: SocketAddr,
-        /// What the system says.
+        /// The system's error.
         source: std::io::Error,
     },
     /// The system gives no randomness for a token, or no threads.
@@ -59,7 +59,7 @@ pub enum ServeError {
     System(String),
 }
 
-/// A server that listens, and answers once it runs.
+/// A server that listens, and answers once [`Server::run`] is called.
 pub struct Server {
     app: App,
     guard: Arc<Guard>,
@@ -92,7 +92,7 @@ impl Server {
     #[must_use]
     pub fn address(&self) -> String {
         let mut at = self.guard.address;
-        // All addresses of the machine: this one opens it here.
+        // Bound to all addresses: loopback opens it here.
         if at.ip().is_unspecified() {
             at.set_ip(IpAddr::V4(Ipv4Addr::LOCALHOST));
         }
@@ -102,7 +102,7 @@ impl Server {
         }
     }
 
-    /// Answers until the program is interrupted; running work is then stopped, and
+    /// Serves until the program is interrupted; running jobs are then cancelled, and
     /// nothing half-written remains.
     ///
     /// # Errors

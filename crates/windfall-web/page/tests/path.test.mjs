@@ -122,7 +122,7 @@ test("text that was changed on disk meanwhile is shown, and one's own is not los
   const mine = text.replace("Simulated pendulum campaign", "Apples of my own");
   await editor.fill(mine);
   await writeFile(file, text.replace("Simulated pendulum campaign", "Apples of another"));
-  const conflict = page.getByText("changed by someone else meanwhile");
+  const conflict = page.getByText("has been changed by someone else");
   await conflict.waitFor();
   assert.equal(await editor.inputValue(), mine);
   await page.getByText('+ title = "Apples of my own"').waitFor();
@@ -175,7 +175,7 @@ test("a new campaign: a file is imported, its channels mapped, an impact added a
   await visit(page, "#/");
   await title("Campaigns");
   await page.getByLabel("Kind").selectOption("carriage");
-  await page.getByLabel("Name of its directory").fill("german");
+  await page.getByLabel("Directory name").fill("german");
   await page.getByRole("button", { name: "Make it" }).click();
   await page.waitForURL(/#\/c\/german/);
   await visit(page, "#/c/german/recordings");

@@ -52,7 +52,7 @@ const button = (name, options) => page.getByRole("button", { name, ...options })
 
 test("recordings of others are imported and their channels mapped", { skip: absent }, async () => {
   await page.getByLabel("Kind").selectOption("carriage");
-  await page.getByLabel("Name of its directory").fill("pads");
+  await page.getByLabel("Directory name").fill("pads");
   await button("Make it").click();
   await page.waitForURL(/#\/c\/pads/);
   await visit(page, "#/c/pads/recordings");
@@ -113,7 +113,7 @@ test("impacts of runs side by side are added", { skip: absent }, async () => {
     assert.equal(await page.getByLabel(`What ${first}: Force (N) is`).inputValue(), "force");
     assert.equal(await page.getByLabel(`Unit of ${first}: Force (N)`).inputValue(), "-1 N");
     const rows = page.getByRole("region", { name: "Impacts to add" }).locator("tbody tr").filter({ hasText: file });
-    for (let more = 1; more < RUNS.length; more++) await button("One more impact in this file").click();
+    for (let more = 1; more < RUNS.length; more++) await button("Another impact in this file").click();
     assert.equal(await rows.count(), RUNS.length);
     for (const [place, run] of RUNS.entries()) {
       const row = rows.nth(place);

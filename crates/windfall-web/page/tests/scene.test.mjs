@@ -128,7 +128,7 @@ test("it starts at the end, is scrubbed by keys, and what is drawn changes", asy
   assert.equal(await now(), 0);
   for (let k = 0; k < 10; k++) await page.keyboard.press("ArrowRight");
   assert.ok(Math.abs((await now()) - 0.2) < 1e-9);
-  await page.getByRole("button", { name: "One frame on" }).click();
+  await page.getByRole("button", { name: "One frame forward" }).click();
   assert.ok(Math.abs((await now()) - 0.22) < 1e-3, `${await now()}`);
   await settle();
   // Released until then.
@@ -247,13 +247,13 @@ test("nothing went wrong on the way", () => {
   assert.deepEqual(view.troubles, []);
 });
 
-test("without graphics in space the page says so, and shows the tables", async () => {
+test("without 3D graphics the page says so, and shows the tables", async () => {
   const plain = await launch("--disable-3d-apis");
   const own = await open(plain, server, {
     hash: `#/s/${encodeURIComponent("chute/scene.run")}`,
     expected: (words) => /WebGL/.test(words),
   });
-  await own.page.getByRole("alert").getByText("no graphics in space").waitFor();
+  await own.page.getByRole("alert").getByText("no 3D graphics").waitFor();
   await own.page.getByRole("region", { name: "Fruit that were hit hardest" }).locator("button").first().click();
   await own.page.locator("table.history tbody tr").first().waitFor();
   assert.deepEqual(own.troubles, []);

@@ -206,7 +206,7 @@ test("laws are compared, and the population estimated", async () => {
 
 test("a law alone cannot be compared, and is not asked for", async () => {
   await page.getByRole("checkbox", { name: "hertz", exact: true }).uncheck();
-  await page.getByText("One law has nothing to be compared with").waitFor();
+  await page.getByText("A single law cannot be compared").waitFor();
   assert.ok(await button("Compare").isDisabled());
 });
 
@@ -283,7 +283,7 @@ test("surfaces: the optimum is a line, and sliders turn through it", async () =>
     await own.getByRole("textbox", { name: "Target" }).press("Enter");
   }
   // The answer to the second goal, not that to the first alone.
-  await page.getByRole("row", { name: /^interval_ms, foretold 300\.0/ }).waitFor();
+  await page.getByRole("row", { name: /^interval_ms, predicted 300\.0/ }).waitFor();
   await page.getByText("The optimum is one of many.").waitFor();
   const contour = page.getByRole("img", { name: /^Contours of force_N/ });
   await contour.waitFor();
@@ -324,18 +324,26 @@ test("a goal that cannot be is told beside it", async () => {
   await page.locator("main").getByRole("alert").filter({ hasText: "target" }).waitFor();
 });
 
+test("the overview of a campaign of another kind shows its values by group", async () => {
+  await windfall("fit", join(place.directory, "drops"));
+  await visit(page, "#/c/drops/overview");
+  const groups = page.getByRole("region", { name: "Parameters by group" });
+  await groups.getByRole("row", { name: /Recordings/ }).waitFor();
+  await groups.getByRole("row", { name: /restitution/ }).first().waitFor();
+});
+
 test("drops are calibrated, and the law leaves as a card", async () => {
   await visit(page, "#/c/drops/calibrate");
   await title("Calibration");
   await page.getByText("Nothing is calibrated yet").waitFor();
   await button("Calibrate", { exact: true }).click();
-  const ways = page.getByRole("region", { name: "Parameters by each way" });
+  const ways = page.getByRole("region", { name: "Parameters by method" });
   await ways.waitFor({ timeout: 120_000 });
   // Put in: k 0.868 N/mm^1.91, e 1.91.
   const cell = async (row) => numberIn(await ways.locator("tbody tr").nth(row).locator("td").first().innerText());
   assert.ok(Math.abs((await cell(0)) / 0.868 - 1) < 0.05);
   assert.ok(Math.abs((await cell(1)) / 1.91 - 1) < 0.02);
-  await page.getByRole("heading", { name: "The family that the features leave" }).waitFor();
+  await page.getByRole("heading", { name: "Laws that the features cannot tell apart" }).waitFor();
   await page.getByRole("heading", { name: "Which drops to make next" }).waitFor();
   const [download] = await Promise.all([
     page.waitForEvent("download"),
@@ -349,7 +357,7 @@ test("results of long work are still there after a look elsewhere", async () => 
   await visit(page, "#/c/drops/table");
   await title("Table of results");
   await visit(page, "#/c/drops/calibrate");
-  await page.getByRole("region", { name: "Parameters by each way" }).waitFor();
+  await page.getByRole("region", { name: "Parameters by method" }).waitFor();
 });
 
 test("the report is written and shown where nothing can run", async () => {

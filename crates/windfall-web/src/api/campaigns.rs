@@ -1,4 +1,4 @@
-//! Campaigns: which there are, what they say, what their stores hold.
+//! Campaigns: the list, their files, their stored results.
 
 use crate::about::KINDS;
 use crate::app::{Answer, App};
@@ -15,7 +15,7 @@ use windfall_campaign::settings::template::{TemplateKind, write_template};
 use windfall_workspace::campaign_view::{CampaignView, view_campaign};
 use windfall_workspace::workspace::{CampaignEntry, StoredResults, stored_results};
 
-/// A campaign to be made.
+/// A campaign to create.
 #[derive(Debug, Deserialize, ToSchema)]
 #[serde(deny_unknown_fields)]
 pub(crate) struct NewCampaign {
@@ -69,7 +69,7 @@ fn template_kind(word: &str) -> Option<TemplateKind> {
     }
 }
 
-/// What the files of a campaign say; its version is the ETag.
+/// A campaign as its files describe it; its version is the ETag.
 #[utoipa::path(
     get, path = "/api/campaigns/{id}", params(("id" = String, Path, example = "bench")),
     responses((status = 200, body = CampaignView), QuestionProblems))]
@@ -90,7 +90,7 @@ pub(crate) fn with_version(view: CampaignView) -> (HeaderMap, Json<CampaignView>
     (headers, Json(view))
 }
 
-/// What the store holds of the campaign as it is now; nothing is fitted.
+/// Stored results for the current files and options; nothing is fitted.
 #[utoipa::path(
     get, path = "/api/campaigns/{id}/results", params(("id" = String, Path, example = "bench")),
     responses((status = 200, body = StoredResults), QuestionProblems))]

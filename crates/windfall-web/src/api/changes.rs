@@ -1,4 +1,4 @@
-//! Changes of a campaign's files; each names the version that it rests on.
+//! Changes to a campaign's files; each names the version it is based on.
 
 use crate::api::campaigns::with_version;
 use crate::app::App;
@@ -15,7 +15,7 @@ use windfall_workspace::edit_campaign::{
     Change, ChannelsChange, NewImpact, OptionsChange, change_campaign,
 };
 
-/// campaign.toml as a whole.
+/// The whole of campaign.toml.
 #[derive(Debug, Deserialize, ToSchema)]
 #[serde(deny_unknown_fields)]
 pub(crate) struct TextGiven {
@@ -29,13 +29,13 @@ pub(crate) struct TextGiven {
 pub(crate) struct WindowGiven {
     /// Id of the impact.
     impact: String,
-    /// Its begin; s.
+    /// Its start; s.
     from: Option<f64>,
     /// Its end; s.
     to: Option<f64>,
 }
 
-/// Options of the fit; what is left out stays.
+/// Options of the fit; those left out are unchanged.
 #[derive(Debug, Default, Deserialize, ToSchema)]
 #[serde(default, deny_unknown_fields)]
 pub(crate) struct OptionsGiven {
@@ -53,7 +53,7 @@ pub(crate) struct OptionsGiven {
     group: Option<String>,
 }
 
-/// Where the channels are.
+/// The columns of the channels.
 #[derive(Debug, Deserialize, ToSchema)]
 #[serde(deny_unknown_fields)]
 pub(crate) struct ChannelsGiven {
@@ -189,7 +189,7 @@ fn present<T, const N: usize>(pairs: [(&str, Option<T>); N]) -> BTreeMap<String,
         .collect()
 }
 
-/// Says where the channels are.
+/// Sets the columns of the channels.
 #[utoipa::path(
     put, path = "/api/campaigns/{id}/channels", request_body = ChannelsGiven,
     params(("id" = String, Path, example = "bench"), ("If-Match" = String, Header, example = "*")),

@@ -1,4 +1,4 @@
-//! What happens, as it happens (server-sent events).
+//! Progress and changes as server-sent events.
 
 use crate::api::jobs::found;
 use crate::app::{App, Told};
@@ -18,7 +18,7 @@ use windfall_workspace::campaign_view::campaign_stamp;
 /// Least time between two events of progress.
 const TICK: Duration = Duration::from_millis(100);
 
-/// How often the files of a campaign are looked at.
+/// How often the files of a campaign are checked.
 const LOOK: Duration = Duration::from_secs(1);
 
 type Events<S> = Sse<axum::response::sse::KeepAliveStream<S>>;
@@ -67,7 +67,7 @@ pub(crate) async fn job_events(
     Ok(Sse::new(events).keep_alive(KeepAlive::default()))
 }
 
-/// Tells when the files of a campaign or its store change on disk.
+/// Changes of a campaign's files or store on disk.
 #[utoipa::path(
     get, path = "/api/campaigns/{id}/events", params(("id" = String, Path, example = "bench")),
     responses(
@@ -90,7 +90,7 @@ pub(crate) async fn campaign_events(
     let events = stamps.filter_map(move |stamp| {
         let stamp = stamp?;
         let before = last.replace(stamp.clone());
-        // The first look is what the page has just read.
+        // The first stamp is what the page has just read.
         (before? != stamp).then(|| {
             let changed = CampaignChanged {
                 version: stamp.version,

@@ -1,4 +1,4 @@
-//! Files to be saved or read: law cards, and what a report consists of.
+//! Files to download: law cards and reports.
 
 use crate::app::App;
 use crate::described::QuestionProblems;
@@ -18,12 +18,12 @@ use windfall_report::stored_card::stored_card;
 #[derive(Debug, Deserialize, IntoParams)]
 #[into_params(parameter_in = Query)]
 pub(crate) struct CardAsked {
-    /// Name of the law; of no account for a campaign of drops.
+    /// Name of the law; ignored for campaigns of drops.
     #[serde(default)]
     law: String,
 }
 
-/// The law card of a campaign, to be saved.
+/// The law card of a campaign, as a download.
 #[utoipa::path(
     get, path = "/api/campaigns/{id}/card", params(("id" = String, Path, example = "bench"), CardAsked),
     responses((status = 200, body = String, content_type = "application/toml"), QuestionProblems))]

@@ -1,4 +1,4 @@
-//! Long work: fits, comparisons of laws, populations, calibrations, reports.
+//! Jobs: fits, comparisons of laws, populations, calibrations, reports.
 
 use crate::app::{Answer, App};
 use crate::described::RequestProblems;
@@ -25,19 +25,19 @@ use windfall_workspace::campaign_view::name_of;
 use windfall_workspace::equal_command::{command, command_of_fit};
 use windfall_workspace::results_table::write_results_table;
 
-/// Work that is asked for.
+/// A job to start.
 #[derive(Debug, Deserialize, ToSchema)]
 #[serde(deny_unknown_fields)]
 pub(crate) struct JobGiven {
-    /// What is to be done.
+    /// What to do.
     work: Work,
-    /// Laws in place of those of the campaign.
+    /// Laws instead of the campaign's.
     #[serde(default)]
     laws: Vec<String>,
     /// Covariates of a population.
     #[serde(default)]
     covariates: Vec<String>,
-    /// How intervals are made.
+    /// How intervals are computed.
     intervals: Option<String>,
 }
 
@@ -122,7 +122,7 @@ fn done<T>(outcome: T) -> Option<Box<T>> {
     Some(Box::new(outcome))
 }
 
-/// Begins work on a campaign.
+/// Starts a job on a campaign.
 #[utoipa::path(
     post, path = "/api/campaigns/{id}/jobs", params(("id" = String, Path, example = "bench")), request_body = JobGiven,
     responses((status = 202, body = JobView), RequestProblems))]
@@ -143,7 +143,7 @@ pub(crate) async fn start(
         ));
     };
     let (view, running) = (job.view(), app.clone());
-    // A thread of its own: requests are answered beside it.
+    // On a thread of its own, so that requests are still answered.
     let begun = std::thread::Builder::new()
         .name("windfall job".to_owned())
         .spawn(move || work(&running, &given, directory, &job));
@@ -152,7 +152,7 @@ pub(crate) async fn start(
 }
 
 fn work(app: &App, given: &JobGiven, directory: PathBuf, job: &Arc<Job>) {
-    /// Tells the end also where the work panics.
+    /// Reports the end even if the work panics.
     struct Ending<'a>(&'a Job);
     impl Drop for Ending<'_> {
         fn drop(&mut self) {
@@ -165,13 +165,13 @@ fn work(app: &App, given: &JobGiven, directory: PathBuf, job: &Arc<Job>) {
     drop(ending);
 }
 
-/// All work since the server was started.
+/// All jobs since the server was started.
 #[utoipa::path(get, path = "/api/jobs", responses((status = 200, body = Vec<JobView>)))]
 pub(crate) async fn jobs(State(app): State<App>) -> Answer<Vec<JobView>> {
     app.tell(&app.jobs.list())
 }
 
-/// A piece of work, with its result once it is done.
+/// A job, with its result once it is done.
 #[utoipa::path(
     get, path = "/api/jobs/{job}", params(("job" = String, Path)),
     responses((status = 200, body = JobView), (status = 404, body = Problem, content_type = "application/problem+json"))
@@ -180,7 +180,7 @@ pub(crate) async fn job(State(app): State<App>, Path(job): Path<String>) -> Answ
     app.tell(&found(&app, &job)?.view())
 }
 
-/// Stops work: what it was doing is not kept.
+/// Cancels a job; nothing unfinished is kept.
 #[utoipa::path(
     delete, path = "/api/jobs/{job}", params(("job" = String, Path)),
     responses((status = 200, body = JobView), (status = 404, body = Problem, content_type = "application/problem+json"))

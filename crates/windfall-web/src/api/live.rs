@@ -1,4 +1,4 @@
-//! One impact, fitted while somebody moves its window and tries laws.
+//! Live fits of one impact, as its window and laws are changed.
 
 use crate::app::{Answer, App};
 use crate::described::RequestProblems;
@@ -11,20 +11,20 @@ use windfall_campaign::impacts::request::FitRequest;
 use windfall_workspace::campaign_view::name_of;
 use windfall_workspace::live_fit::{LiveOutcome, LiveRequest};
 
-/// What is to be fitted; what is left out is as the campaign says.
+/// What to fit; what is left out is taken from the campaign.
 #[derive(Debug, Default, Deserialize, ToSchema)]
 #[serde(default, deny_unknown_fields)]
 pub(crate) struct Refit {
     /// Id of the impact.
     #[schema(example = "specimen-01-01")]
     impact: String,
-    /// Begin of the part of the recording that is used; s.
+    /// Start of the used part of the recording; s.
     from: Option<f64>,
     /// Its end; s.
     to: Option<f64>,
     /// Laws as expressions.
     laws: Vec<String>,
-    /// Parameters to estimate although they have a value.
+    /// Parameters to estimate even though they have a value.
     free: Vec<String>,
     /// Quantities of the cost function.
     quantities: Vec<String>,
@@ -42,7 +42,7 @@ pub(crate) struct Refit {
     displacement_offset: Option<String>,
     /// End of contact.
     end: Option<String>,
-    /// Whether measured series and residuals are wanted.
+    /// Whether to return measured series and residuals.
     series: bool,
 }
 
@@ -55,7 +55,7 @@ pub(crate) async fn refit(
     Path(id): Path<String>,
     Given(asked): Given<Refit>,
 ) -> Answer<LiveOutcome> {
-    // What takes long is a job of the whole campaign.
+    // Slow methods run as jobs of the whole campaign.
     let quick = ["asymptotic", "profile"];
     let intervals = asked.intervals.as_deref();
     if intervals.is_some_and(|word| !quick.contains(&word)) {

@@ -1,4 +1,4 @@
-//! Recordings: which there are, what they hold, their outlines; and new ones.
+//! Recordings: the list, contents, outlines, uploads.
 
 use crate::app::{Answer, App};
 use crate::described::{QuestionProblems, UploadProblems};
@@ -23,14 +23,14 @@ use windfall_workspace::live_cache::recording_inside;
 use windfall_workspace::recording_outline::Outline;
 use windfall_workspace::workspace::{RecordingEntry, recordings_inside, recordings_of};
 
-/// Most points of an outline.
+/// Largest number of points of an outline.
 const MOST_POINTS: usize = 20_000;
 
 /// A file of a campaign.
 #[derive(Debug, Deserialize, IntoParams)]
 #[into_params(parameter_in = Query)]
 pub(crate) struct FileAsked {
-    /// Its name below the directory of its kind.
+    /// Its name, relative to the directory of its kind.
     #[param(example = "specimen-01-01.csv")]
     pub file: String,
 }
@@ -45,15 +45,15 @@ pub(crate) struct OutlineAsked {
     /// The channel.
     #[param(example = "force_V")]
     channel: String,
-    /// Begin; s, or number of a sample where no times are known.
+    /// Start; s, or sample number if times are unknown.
     from: Option<f64>,
     /// End.
     to: Option<f64>,
-    /// Points that can be shown.
+    /// Number of points to return.
     points: Option<usize>,
 }
 
-/// A file that has arrived.
+/// An uploaded file.
 #[derive(Debug, Serialize, ToSchema)]
 pub(crate) struct Uploaded {
     /// Its name.
@@ -62,7 +62,7 @@ pub(crate) struct Uploaded {
     bytes: u64,
     /// Its digest.
     sha256: String,
-    /// What `inspect` says of it; nothing for a table.
+    /// The output of `inspect`; `null` for a table.
     recording: Option<Inspection>,
 }
 
@@ -78,7 +78,7 @@ pub(crate) async fn recordings(
         .await
 }
 
-/// What a recording holds, as `windfall inspect` says it.
+/// Contents of a recording, as `windfall inspect` shows them.
 #[utoipa::path(
     get, path = "/api/campaigns/{id}/recording", params(("id" = String, Path, example = "bench"), FileAsked),
     responses((status = 200, body = Inspection), QuestionProblems))]
@@ -116,7 +116,7 @@ pub(crate) async fn outline(
     .await
 }
 
-/// Takes a recording into the campaign; it replaces none.
+/// Uploads a recording into the campaign; existing files are never replaced.
 #[utoipa::path(
     put, path = "/api/campaigns/{id}/raw", params(("id" = String, Path, example = "bench"), FileAsked),
     request_body(content = Vec<u8>, content_type = "application/octet-stream"),
@@ -134,7 +134,7 @@ pub(crate) async fn upload_recording(
     let (path, bytes) = arrive(&app, folder.await?, asked.file.clone(), body).await?;
     let file = asked.file;
     let uploaded = app.on_campaign(own, move |_, directory| {
-        // A file that no reader takes has no place among the recordings.
+        // Unreadable files are not kept among the recordings.
         let recording = inspected(directory, &file).inspect_err(|_| discard(&path))?;
         Ok(Uploaded {
             sha256: digest_file(&path)?,
@@ -146,7 +146,7 @@ pub(crate) async fn upload_recording(
     Ok((StatusCode::CREATED, Json(uploaded.await?)).into_response())
 }
 
-/// Takes a table for regressions and surfaces into the campaign; it replaces none.
+/// Uploads a table for regressions and surfaces; existing files are never replaced.
 #[utoipa::path(
     put, path = "/api/campaigns/{id}/table", params(("id" = String, Path, example = "bench"), FileAsked),
     request_body(content = Vec<u8>, content_type = "application/octet-stream"),
@@ -178,7 +178,7 @@ pub(crate) async fn upload_table(
     Ok((StatusCode::CREATED, Json(uploaded.await?)).into_response())
 }
 
-/// Writes a body to a file as it comes; where it is and how large.
+/// Streams a body to a file; returns its path and size.
 async fn arrive(
     app: &App,
     folder: PathBuf,

@@ -1,4 +1,4 @@
-//! Scenes that have run: which there are, what is where when, and what each fruit went through.
+//! Results of scenes: the list, frames, and the history of each fruit.
 
 use crate::app::{Answer, App};
 use crate::described::QuestionProblems;
@@ -16,11 +16,11 @@ use windfall_workspace::scene_runs::{
     SceneEntry, SceneView, scene_frames_from, scene_fruit_count, scene_run, scene_runs, scene_view,
 };
 
-/// Fruit that are told where nothing is said, and at most.
+/// Default and largest number of fruit listed.
 const USUAL: usize = 200;
 const MOST: usize = 2000;
 
-/// From which frame on.
+/// The first frame.
 #[derive(Debug, Deserialize, IntoParams)]
 #[into_params(parameter_in = Query)]
 pub(crate) struct FramesAsked {
@@ -33,7 +33,7 @@ pub(crate) struct FramesAsked {
 #[derive(Debug, Deserialize, IntoParams)]
 #[into_params(parameter_in = Query)]
 pub(crate) struct HardestAsked {
-    /// At most so many; 200 if left out, 2000 at most.
+    /// Limit; 200 by default, 2000 at most.
     most: Option<usize>,
 }
 
@@ -61,8 +61,8 @@ pub(crate) async fn scene(State(app): State<App>, Path(id): Path<String>) -> Ans
     app.tell(&view.await?)
 }
 
-/// Whole frames from a number on, as they stand in frames.bin: about 4 MB of them, one at
-/// least; none behind the last.
+/// Whole frames from a number on, as in frames.bin: about 4 MB of them, at least one;
+/// none after the last.
 #[utoipa::path(
     get, path = "/api/scenes/{id}/frames",
     params(("id" = String, Path, example = "scene.run"), FramesAsked),
@@ -78,7 +78,7 @@ pub(crate) async fn frames(
     Ok((headers, bytes.await?).into_response())
 }
 
-/// The fruit that were hit hardest, the hardest first.
+/// The fruit that were hit hardest, hardest first.
 #[utoipa::path(
     get, path = "/api/scenes/{id}/hardest",
     params(("id" = String, Path, example = "scene.run"), HardestAsked),

@@ -20,7 +20,7 @@ use windfall_tables::surface::run::{SurfaceRequest, surface};
 use windfall_workspace::campaign_view::name_of;
 use windfall_workspace::equal_command::command;
 
-/// Most points of a grid along one factor.
+/// Largest number of grid points along one factor.
 const MOST_GRID_POINTS: usize = 200;
 
 /// A table.
@@ -50,12 +50,12 @@ pub(crate) struct RegressGiven {
     table: String,
     /// A column, or a function of one.
     response: String,
-    /// What it is modelled by: "V*R + t".
+    /// Its terms: "V*R + t".
     terms: String,
-    /// What varies between groups.
+    /// Random effects.
     #[serde(default)]
     random: Vec<String>,
-    /// Whether terms are removed while they tell too little.
+    /// Whether to remove terms by backward selection.
     #[serde(default)]
     select: bool,
 }
@@ -70,13 +70,13 @@ pub(crate) struct SurfaceGiven {
     factors: Vec<String>,
     /// Responses with their models.
     responses: Vec<ResponseGiven>,
-    /// What is wanted of responses.
+    /// Goals for responses.
     #[serde(default)]
     goals: Vec<String>,
-    /// Factors that are held.
+    /// Factors held at a value.
     #[serde(default)]
     hold: Vec<String>,
-    /// Factor at whose values equally good settings are given.
+    /// Factor along which equally good settings are listed.
     along: Option<String>,
     /// How many of these values.
     #[serde(default = "usual_members")]

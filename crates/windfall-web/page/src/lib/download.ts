@@ -1,7 +1,7 @@
 import { Failed } from "../api/calls";
 import type { Problem } from "../api/types";
 
-/** Saves what an address gives under a name; a failure is thrown, not saved. */
+/** Downloads an address under a name; throws on failure. */
 export async function download(address: string, name: string): Promise<void> {
   const response = await fetch(address).catch(() => {
     throw new Error("windfall does not answer; is `windfall serve` still running?");

@@ -29,7 +29,7 @@ export class OptionsDraft {
     return this.#campaign().view!;
   }
 
-  /** What the form says other than the campaign. */
+  /** Differences between the form and the campaign. */
   get changes() {
     return changesOf($state.snapshot(this.draft), this.#view);
   }

@@ -67,7 +67,7 @@ export function plusMinus(value: number | null | undefined, sd: number | null | 
 
 /** `value ± sd unit` of an estimate; a held one says so. */
 export function estimate(of: EstimateOutcome): string {
-  // A held value was written by somebody, and not with more digits than it needs.
+  // A held value was typed, with no more digits than it needs.
   const words = of.held ? `${held(of.value)} (held)` : plusMinus(of.value, of.sd);
   return withUnit(words, of.unit);
 }
@@ -80,7 +80,7 @@ const held = (value: number) => {
 /** The 95 % interval of an estimate. */
 export function interval(of: EstimateOutcome): string {
   if (of.held || of.low === null || of.high === null) return "–";
-  // As many digits as it takes to see how wide it is.
+  // Enough digits to show its width.
   const width = Math.abs(of.high - of.low);
   const size = Math.max(Math.abs(of.low), Math.abs(of.high));
   const digits = width > 0 ? exponentOf(size) - exponentOf(width) + 3 : 5;

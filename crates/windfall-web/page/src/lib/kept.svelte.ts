@@ -1,9 +1,8 @@
-/** Results of long work that stay while the page is open, so that going to another
- *  part and back does not ask for them again. */
+/** Results of jobs, kept while the page is open so that views need not ask again. */
 
 import type { JobView, Work } from "../api/types";
 
-// Results are large and never change: they need no watching within.
+// Results are large and never change: no deep reactivity.
 let kept = $state.raw<Record<string, JobView>>({});
 
 export const keep = (job: JobView): void => {

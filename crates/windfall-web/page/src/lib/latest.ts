@@ -1,15 +1,15 @@
-/** Asks that follow each other faster than answers come: the newest wins. */
+/** Requests that are made faster than they are answered: the newest wins. */
 
 interface Latest<T> {
-  /** Asks, after what runs now; asks in between are left out. */
+  /** Makes a request once the running one is done; only the newest waits. */
   ask: (work: (signal: AbortSignal) => Promise<T>) => void;
-  /** Forgets what was asked. */
+  /** Drops the running and the waiting request. */
   stop: () => void;
 }
 
-/** * `answered`: is told the answer, or the failure, of the newest that was asked
- *  * `cancel`: whether what runs is broken off for a newer one; otherwise its answer is
- *    shown too, so that something moves while a slider does */
+/** * `answered`, `failed`: called with the outcome of the newest request
+ *  * `cancel`: whether the running request is aborted for a newer one; otherwise its
+ *    answer is shown too, so that the picture follows a slider */
 export function latest<T>(
   answered: (answer: T) => void,
   failed: (error: unknown) => void,

@@ -13,7 +13,7 @@ export const CHOICES = {
     ["inverse-mean", "1/mean, as in the 2003 study"],
   ],
   noise: [
-    ["automatic", "as the recording shows it"],
+    ["automatic", "estimated from the recording"],
     ["white", "white, sample by sample"],
   ],
   intervals: [
@@ -23,12 +23,12 @@ export const CHOICES = {
     ["posterior", "posterior"],
   ],
   onset: [
-    ["auto", "as the data can tell"],
+    ["auto", "as far as the data determine it"],
     ["free", "estimated"],
     ["fixed", "where the force passes its threshold"],
   ],
   displacement_offset: [
-    ["auto", "as the data can tell"],
+    ["auto", "as far as the data determine it"],
     ["free", "estimated"],
     ["fixed", "as measured"],
   ],
@@ -53,7 +53,7 @@ export const draftOf = (view: CampaignView): Draft => ({
   free: [...(view.options?.free ?? [])],
 });
 
-/** What a draft says other than the campaign. */
+/** Differences between a draft and the campaign. */
 export function changesOf(draft: Draft, view: CampaignView): OptionsGiven {
   const present = draftOf(view);
   const entries = (Object.keys(present) as (keyof Draft)[]).filter(

@@ -17,8 +17,8 @@ export class Refitter {
   #waiting: { id: string; request: Refit; laws: string[]; at: number | null } | null = null;
 
   /** `laws`: the expressions that are fitted, also where the request leaves them to the
-   *  campaign; `at`: time stamp of the event that asked, to measure how long it takes to
-   *  see the answer. */
+   *  campaign; `at`: time stamp of the event, to measure how long the answer takes to
+   *  appear. */
   ask(id: string, request: Refit, laws: string[], at: number | null = null): void {
     this.#waiting = { id, request, laws, at };
     if (!this.busy) void this.#work();
@@ -42,7 +42,7 @@ export class Refitter {
 
   #show(fitted: LiveOutcome, laws: string[], series: boolean): void {
     const before = this.view;
-    // With the values that it was given, as it was asked for.
+    // With its given values, as requested.
     const named = fitted.laws.map((law, index) => ({ ...law, law: laws[index] ?? law.law }));
     const answer = { ...fitted, laws: named };
     this.problem = null;
@@ -51,8 +51,8 @@ export class Refitter {
       this.view = answer;
       return;
     }
-    // The measured series are those of the impact, whatever part of it is used; the
-    // residuals stay until those of the last fit are there.
+    // The measured series do not depend on the window; residuals stay until those of
+    // the last fit arrive.
     this.view = {
       ...answer,
       measured: before.measured,
@@ -64,7 +64,7 @@ export class Refitter {
   }
 }
 
-/** Calls back once the frame that is being made has been painted. */
+/** Calls back once the current frame has been painted. */
 function afterPaint(work: () => void): void {
   requestAnimationFrame(() => {
     const channel = new MessageChannel();

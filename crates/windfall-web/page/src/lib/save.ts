@@ -23,7 +23,7 @@ export async function save(
       await campaign.load();
       notices.error(
         new Error(
-          "the campaign's files were changed meanwhile, so nothing was saved. They have been read again, and your entries are still here: look at them and save once more.",
+          "the campaign's files have changed, so nothing was saved. They have been read again and your entries are still here: check them and save again.",
         ),
       );
     } else {

@@ -2,7 +2,7 @@
  * What several parts of the page share: notices, jobs, and the campaign that is open.
  *
  * A view asks `openCampaign(id)` for its campaign and reads `view` and `results`, which
- * are loaded anew whenever the files change on disk, by whomever.
+ * are reloaded whenever the files change on disk.
  */
 
 import { Failed, api, follow, watch } from "../api/calls";
@@ -14,7 +14,7 @@ interface Notice {
   text: string;
 }
 
-/** What to tell the user about a failure, or null where there is nothing to tell. */
+/** Message of a failure for the user, or null if there is nothing to say. */
 export function wordsOf(error: unknown): string | null {
   if (error instanceof Failed) return error.problem.detail;
   if (error instanceof DOMException && error.name === "AbortError") return null;
@@ -40,7 +40,7 @@ class Notices {
   }
 
   #add(kind: Notice["kind"], text: string): number {
-    // The same words once: a server that is gone would fill the page with them.
+    // Each text once: an unreachable server would fill the page with it.
     const same = this.list.find((notice) => notice.kind === kind && notice.text === text);
     if (same) return same.key;
     const key = this.#next++;
@@ -77,7 +77,7 @@ class Jobs {
     if (ended) this.#put(ended);
   }
 
-  /** Takes up jobs that were started by another window or before a reload. */
+  /** Adopts jobs started by another window or before a reload. */
   async adopt(): Promise<void> {
     for (const job of await api.jobs()) {
       if (job.state === "running" && !this.list.some((known) => known.job === job.job)) {
@@ -92,7 +92,7 @@ class Jobs {
       const ended = await follow(job.job, (progress) => this.#put(progress));
       this.#put(ended);
       if (ended.state === "failed") notices.error(new Error(ended.problem ?? "the work failed"));
-      if (ended.state === "cancelled") notices.done("The work was cancelled; nothing half-done was kept.");
+      if (ended.state === "cancelled") notices.done("Cancelled; nothing half-done was kept.");
       return ended;
     } catch (error) {
       this.list = this.list.filter((known) => known.job !== job.job);
@@ -102,7 +102,7 @@ class Jobs {
 
   #put(job: JobView): void {
     const index = this.list.findIndex((known) => known.job === job.job);
-    // A cancelled job may still tell of progress that it made before.
+    // A cancelled job may still report earlier progress.
     if (index >= 0 && this.list[index]!.state !== "running" && job.state === "running") return;
     this.list = index < 0 ? [...this.list, job] : this.list.with(index, job);
   }
@@ -110,15 +110,15 @@ class Jobs {
 
 export const jobs = new Jobs();
 
-/** One campaign as the server last told it. */
+/** One campaign as last read from the server. */
 export class OpenCampaign {
   view = $state.raw<CampaignView | null>(null);
   results = $state.raw<StoredResults | null>(null);
   /** Why it could not be read. */
   problem = $state<string | null>(null);
-  /** Grows whenever the files or results changed, for what a view loads by itself. */
+  /** Counts changes of files or results, for what views load themselves. */
   changes = $state(0);
-  /** Whether the server answers no more; the browser goes on trying. */
+  /** Whether the server is unreachable; the browser keeps trying. */
   lost = $state(false);
   readonly #end: () => void;
 
@@ -128,7 +128,7 @@ export class OpenCampaign {
       id,
       () => void this.load(),
       (there) => {
-        // What changed while nobody told is read once somebody does again.
+        // Changes while disconnected are read on reconnecting.
         if (there && this.lost) void this.load();
         this.lost = !there;
       },
@@ -143,13 +143,13 @@ export class OpenCampaign {
       this.problem = null;
       this.changes += 1;
     } catch (error) {
-      // What is shown stays: a file may be half written at this moment.
+      // Keep what is shown: a file may be half written at this moment.
       if (this.view === null) this.problem = wordsOf(error);
       else notices.error(error);
     }
   }
 
-  /** Takes what a change through the page answered. */
+  /** Takes the answer to a change made through the page. */
   changed(view: CampaignView): void {
     this.view = view;
     void this.load();

@@ -16,19 +16,19 @@ import { DERIVED, words } from "./names";
 type Cell = number | string | null;
 
 export interface Column {
-  /** Unlike that of any other column. */
+  /** Unique among columns. */
   key: string;
   label: string;
   /** SI; "" where there is none, or where it differs from row to row. */
   unit: string;
   /** Whether it holds numbers. */
   numbers: boolean;
-  /** Where it came from: what was found, or one of the tables. */
+  /** Source: the results, or one of the tables. */
   from: "result" | "specimens.csv" | "impacts.csv";
 }
 
 export interface Row {
-  /** Unlike that of any other row. */
+  /** Unique among rows. */
   key: string;
   /** The impact, or the recording. */
   id: string;
@@ -253,7 +253,7 @@ export function csvOf(columns: Column[], rows: Row[]): string {
   return [header, ...lines].map((line) => line.map(quoted).join(",")).join("\r\n") + "\r\n";
 }
 
-/** Text that a spreadsheet would take for a formula is kept from being one. */
+/** Escapes text that a spreadsheet would take for a formula. */
 function quoted(cell: Cell): string {
   if (cell === null) return "";
   if (typeof cell === "number") return String(cell);

@@ -47,8 +47,8 @@ class Theme {
 
 export const theme = new Theme();
 
-/** Colours that were asked for, by theme and variable: asking takes a while, and plots
- *  that follow the pointer ask often. */
+/** Colours by theme and variable: looking them up is slow, and plots that follow the
+ *  pointer do it often. */
 const colours = new Map<string, string>();
 
 /** Colour of a variable of app.css, for a canvas. Depends on the theme when asked

@@ -33,7 +33,7 @@ export function padded(
     return [10 ** a, 10 ** b];
   }
   const width = high - low;
-  // Values that agree to rounding have no width of their own.
+  // Values equal but for rounding have no width.
   if (width <= 1e-12 * Math.max(Math.abs(low), Math.abs(high))) {
     const room = Math.abs(low) * 0.05 || 1;
     return [low - room, high + room];
@@ -47,7 +47,7 @@ export function pick<T>(list: T[], part: number): T {
   return list[Math.round(Math.min(Math.max(part, 0), 1) * last)]!;
 }
 
-/** Place of a value; px. Values that a logarithm does not have lie at the low end. */
+/** Place of a value; px. Values without a logarithm lie at the low end. */
 export function place(scale: Scale, value: number): number {
   const [from, to] = scale.range;
   return from + part(scale, value) * (to - from);

@@ -1,6 +1,6 @@
 /**
  * Frames of a scene, as they stand in frames.bin (crates/windfall/src/scene_frames.rs):
- * fetched in pieces around the time that is shown, and forgotten again.
+ * fetched in pieces around the time shown, and dropped again.
  */
 
 import { api } from "../api/calls";
@@ -36,7 +36,7 @@ function decode(bytes: ArrayBuffer, walls: number): Frame[] {
   const view = new DataView(bytes);
   const frames: Frame[] = [];
   for (let at = 0; at + HEADER <= bytes.byteLength; ) {
-    if (view.getUint32(at, true) !== 0x656d7266) throw new Error("the frames cannot be read: load the page again");
+    if (view.getUint32(at, true) !== 0x656d7266) throw new Error("the frames cannot be read: reload the page");
     const count = view.getUint32(at + 4, true);
     const fruit = at + HEADER + walls * WALL;
     frames.push({
@@ -88,14 +88,14 @@ export class Frames {
     const start = this.#startOf(frame);
     const next = this.#starts[this.#starts.indexOf(start) + 1];
     const frames = await this.#piece(start);
-    // What follows is there when playing comes to it.
+    // Prefetches what plays next.
     if (next !== undefined) void this.#piece(next).catch(() => undefined);
     return frames[frame - start] ?? null;
   }
 
   #piece(start: number): Promise<Frame[]> {
     const known = this.#pieces.get(start);
-    // Those asked for last are kept longest.
+    // Least recently used pieces go first.
     if (known) this.#pieces.delete(start);
     const piece = known ?? this.#fetch(start);
     this.#pieces.set(start, piece);

@@ -1,5 +1,5 @@
-/** A scene in space: walls that one sees through, fruit as shaded balls in the colour of
- *  their largest peak force. */
+/** A scene in 3D: transparent walls, fruit as shaded balls coloured by their largest peak
+ *  force. */
 
 import {
   BackSide,
@@ -39,7 +39,7 @@ export interface Look {
   chosen: string;
 }
 
-/** From where a scene is seen first: azimuth from x towards y, elevation; rad. As in
+/** Initial view of a scene: azimuth from x towards y, elevation; rad. As in
  *  crates/windfall/src/figure_scene.rs. */
 const FROM: [number, number] = [(-62 * Math.PI) / 180, (24 * Math.PI) / 180];
 const FIELD = 28;
@@ -72,13 +72,13 @@ export class Player {
   #contacts: ContactView[] = [];
   #time = 0;
   #due = false;
-  /** From where it is seen, until somebody turns it. */
+  /** The view, until the user turns it. */
   #from = FROM;
   #turned = false;
   /** What must be seen. */
   readonly #points: Vector3[];
 
-  /** Fails where the browser shows no graphics in space. */
+  /** Fails where the browser shows no 3D graphics. */
   constructor(
     readonly canvas: HTMLCanvasElement,
     readonly view: SceneView,
@@ -171,7 +171,7 @@ export class Player {
     else this.look(...this.#from);
   }
 
-  /** Brings the whole scene into view from a side. */
+  /** Fits the whole scene into view from a side. */
   look(azimuth: number, elevation: number): void {
     this.#from = [azimuth, elevation];
     this.#turned = false;
@@ -183,7 +183,7 @@ export class Player {
     const wide = high * this.#camera.aspect;
     const target = this.#middle.clone();
     let away = this.#size;
-    // As far away as it must be; then what is seen is brought into the middle.
+    // As far away as needed, then centred.
     for (let round = 0; round < 10; round++) {
       away = 0;
       for (const point of this.#points) {
@@ -212,7 +212,7 @@ export class Player {
     this.draw();
   }
 
-  /** Turns the view by angles (rad), and brings it nearer by a factor. */
+  /** Turns the view by angles (rad) and zooms by a factor. */
   turn(azimuth: number, elevation: number, nearer = 1): void {
     this.#turned = true;
     const from = this.#camera.position.clone().sub(this.#controls.target);
@@ -225,7 +225,7 @@ export class Player {
     this.draw();
   }
 
-  /** Shows a time between two frames; what is in both moves evenly. */
+  /** Shows a time between two frames, interpolating linearly. */
   show(before: Frame, after: Frame | null, time: number): void {
     const span = after ? after.time - before.time : 0;
     const part = after && span > 0 ? Math.min(Math.max((time - before.time) / span, 0), 1) : 0;
@@ -345,7 +345,7 @@ export class Player {
     return null;
   }
 
-  /** Draws with the next picture of the screen. */
+  /** Draws in the next animation frame. */
   draw(): void {
     if (this.#due) return;
     this.#due = true;
@@ -412,7 +412,7 @@ function pose(from: Float32Array, to: Float32Array | null, at: number, part: num
   into.compose(SPOT, ROTATION, SIZE.setScalar(1));
 }
 
-/** A ball with dark poles, so that one sees it roll. */
+/** A ball with dark poles, so that its rolling shows. */
 function marked(around: number): SphereGeometry {
   const ball = new SphereGeometry(1, around, Math.round(0.6 * around));
   const places = ball.getAttribute("position");
