@@ -1,6 +1,7 @@
 //! `windfall fit` and `windfall report` for campaigns of every kind.
 
 pub mod any_text;
+pub mod explain;
 pub mod fit_any;
 pub mod impacts;
 pub mod items;

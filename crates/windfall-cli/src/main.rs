@@ -8,11 +8,14 @@ mod command;
 mod show;
 
 use args::common::{Arguments, Command};
-use clap::{CommandFactory, Parser};
+use args::groups::grouped;
+use clap::{CommandFactory, FromArgMatches};
 use std::process::ExitCode;
 
 fn main() -> ExitCode {
-    let outcome = match Arguments::parse().command {
+    let matches = grouped(Arguments::command()).get_matches();
+    let arguments = Arguments::from_arg_matches(&matches).unwrap_or_else(|error| error.exit());
+    let outcome = match arguments.command {
         Command::New(arguments) => command::new::run(&arguments),
         Command::Inspect(arguments) => command::inspect::run(&arguments),
         Command::Design(arguments) => command::design::run(&arguments),
@@ -30,6 +33,7 @@ fn main() -> ExitCode {
         Command::Surface(arguments) => command::surface::run(&arguments),
         Command::Radius(arguments) => command::geometry::run_radius(&arguments),
         Command::Bruise(arguments) => command::bruise::run(&arguments),
+        Command::Explain(arguments) => command::explain::run(&arguments),
         Command::Card(arguments) => command::card::run(&arguments),
         Command::Completions { shell } => {
             let mut command = Arguments::command();

@@ -16,6 +16,7 @@ mod kinds;
 mod library;
 mod regress;
 mod report;
+mod revision;
 mod scene;
 mod serve;
 mod stopped_runs;

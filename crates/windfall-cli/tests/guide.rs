@@ -386,15 +386,15 @@ fn keys(source: &str) -> BTreeSet<String> {
 fn reference_every_key_of_a_campaign_is_explained() {
     let page = page("campaign.md");
     let readers = [
-        "campaign",
-        "acoustic",
-        "compression",
-        "drop",
-        "laws",
-        "repeats",
+        "campaign/src/settings",
+        "campaign/src/taps",
+        "campaign/src/compression",
+        "drop/src",
+        "cards/src/user_laws",
+        "campaign/src/repeats",
     ];
     for reader in readers {
-        let file = format!("windfall/src/file_{reader}.rs");
+        let file = format!("{reader}/file.rs");
         let (_, source) = sources()
             .into_iter()
             .find(|(name, _)| name.ends_with(&file))

@@ -82,6 +82,8 @@ pub enum Command {
     Bruise(BruiseArguments),
     /// Show force laws, or take one to another geometry
     Card(CardArguments),
+    /// Explain findings: what they mean and what to do
+    Explain(ExplainArguments),
     /// Write shell completions to standard output
     Completions {
         /// The shell
@@ -122,6 +124,19 @@ pub enum NewKind {
     Scene,
     /// Variants of a scene, compared: pads and drop heights
     SceneStudy,
+}
+
+/// `windfall explain`
+#[derive(Debug, Args)]
+#[command(after_help = "Examples:
+  windfall explain clipped offset-removed
+  windfall explain                        all of them")]
+pub struct ExplainArguments {
+    /// Codes of findings; all if left out
+    pub codes: Vec<String>,
+    /// How they are shown
+    #[arg(long, value_enum, default_value_t)]
+    pub format: Format,
 }
 
 /// `windfall inspect`

@@ -10,6 +10,7 @@ mod figures;
 pub mod fit;
 pub(crate) mod format;
 pub mod geometry;
+pub mod groups;
 pub mod laws;
 pub mod population;
 pub mod regress;

@@ -5,6 +5,7 @@ pub(crate) mod calibrate;
 pub(crate) mod card;
 pub(crate) mod compare;
 pub(crate) mod design;
+pub(crate) mod explain;
 pub(crate) mod fit;
 pub(crate) mod geometry;
 pub(crate) mod inspect;

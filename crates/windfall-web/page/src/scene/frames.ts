@@ -1,5 +1,5 @@
 /**
- * Frames of a scene, as they stand in frames.bin (crates/windfall/src/scene_frames.rs):
+ * Frames of a scene, as they stand in frames.bin (crates/scene-run/src/run/frame_format.rs):
  * fetched in pieces around the time shown, and dropped again.
  */
 

@@ -40,7 +40,7 @@ export interface Look {
 }
 
 /** Initial view of a scene: azimuth from x towards y, elevation; rad. As in
- *  crates/windfall/src/figure_scene.rs. */
+ *  crates/scene-run/src/frames/figure.rs. */
 const FROM: [number, number] = [(-62 * Math.PI) / 180, (24 * Math.PI) / 180];
 const FIELD = 28;
 /** Edges are drawn where faces meet at more than this; degrees. */
