@@ -1,8 +1,7 @@
 //! The comparison data of the fit benchmark: optima found by another program
 //! (Ceres with DOPRI5 at a tolerance of 1e-12) from twenty starts.
 //!
-//! The data are read from the folder in `WINDFALL_PEERS` (default: the shared
-//! folder beside the checkout); where it is not there, the tests say so.
+//! The data lie in `windfall-test-data`.
 
 #![allow(clippy::unwrap_used, clippy::print_stdout)]
 
@@ -27,14 +26,7 @@ const ONSET_TOLERANCE: f64 = 2e-10;
 const ARM: f64 = 0.505;
 
 fn folder() -> Option<PathBuf> {
-    let default = concat!(env!("CARGO_MANIFEST_DIR"), "/../../../shared/peers");
-    let folder = std::env::var("WINDFALL_PEERS").unwrap_or_else(|_| default.to_owned());
-    let folder = PathBuf::from(folder).join("fit");
-    if folder.is_dir() {
-        return Some(folder);
-    }
-    println!("left out: no comparison data in {}", folder.display());
-    None
+    windfall_test_data::find("fit")
 }
 
 fn numbers(path: PathBuf) -> Vec<Vec<f64>> {

@@ -1,6 +1,6 @@
 //! Which crate may import which.
 
-use crate::source::SourceFile;
+use crate::source::{Role, SourceFile};
 use crate::violation::{Place, Violation};
 
 /// Crates of the workspace and what each may import, innermost first: the
@@ -226,8 +226,12 @@ pub const ARROWS: &[(&str, &[&str])] = &[
         ],
     ),
     ("windfall-python", &["windfall"]),
+    (TEST_DATA, &[]),
     ("windfall-layering", &[]),
 ];
+
+/// Finds the data of tests: any crate may import it for them, and for nothing else.
+const TEST_DATA: &str = "windfall-test-data";
 
 /// Crates that compute: they print nothing, open no file, read no clock and
 /// know neither formats nor HTTP nor Python.
@@ -298,7 +302,8 @@ fn check_dependency(dependency: &Dependency) -> Option<Violation> {
         development,
     } = dependency;
     if is_ours(to) {
-        let forbidden = !allowed(from).unwrap_or(&[]).contains(&to.as_str());
+        let for_tests = *development && to == TEST_DATA;
+        let forbidden = !for_tests && !allowed(from).unwrap_or(&[]).contains(&to.as_str());
         return forbidden.then(|| Violation::Dependency {
             from: from.clone(),
             to: to.clone(),
@@ -325,6 +330,7 @@ pub fn check_imports(file: &SourceFile) -> Vec<Violation> {
         // the library beside it.
         let forbidden = is_ours(&to)
             && to != file.package
+            && !(to == TEST_DATA && file.role == Role::Outside)
             && !allowed(&file.package).unwrap_or(&[]).contains(&to.as_str());
         if forbidden {
             let place = Place {

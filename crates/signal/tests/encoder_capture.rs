@@ -5,22 +5,13 @@
 
 #![allow(clippy::unwrap_used, clippy::print_stdout)]
 
-use std::path::PathBuf;
 use std::process::Command;
 use windfall_signal::encoder::quadrature::{
     IllegalTransition, counts_at_samples, decode_bytes, decode_quadrature,
 };
 
 fn capture() -> Option<Vec<u8>> {
-    let data = std::env::var_os("WINDFALL_DATA").map_or_else(
-        || PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("../../../shared/data"),
-        PathBuf::from,
-    );
-    let file = data.join("encoder/sigrok_rotary-ramp.sr");
-    if !file.is_file() {
-        println!("left out: no file {}; set WINDFALL_DATA", file.display());
-        return None;
-    }
+    let file = windfall_test_data::find("encoder/sigrok_rotary-ramp.sr")?;
     let output = Command::new("unzip")
         .arg("-p")
         .arg(&file)
@@ -29,7 +20,7 @@ fn capture() -> Option<Vec<u8>> {
     match output {
         Ok(output) if output.status.success() => Some(output.stdout),
         _ => {
-            println!("left out: no unzip to open {}", file.display());
+            windfall_test_data::note("unzip");
             None
         }
     }

@@ -5,19 +5,11 @@
 
 #![allow(clippy::unwrap_used, clippy::print_stdout)]
 
-use std::path::PathBuf;
 use windfall_signal::encoder::edge_rate::{CountTimes, edge_rate, edges};
 
 fn wheel() -> Option<(Vec<f64>, Vec<f64>)> {
-    let data = std::env::var_os("WINDFALL_DATA").map_or_else(
-        || PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("../../../shared/data"),
-        PathBuf::from,
-    );
-    let file = data.join("encoder/ibl_wheel/training_ge5_encoderPositions.raw.ssv");
-    let Ok(text) = std::fs::read_to_string(&file) else {
-        println!("left out: no file {}; set WINDFALL_DATA", file.display());
-        return None;
-    };
+    let file = "encoder/ibl_wheel/training_ge5_encoderPositions.raw.ssv";
+    let text = std::fs::read_to_string(windfall_test_data::find(file)?).unwrap();
     let cells = text.lines().map(|line| {
         let mut cells = line.split_whitespace().map(|c| c.parse::<f64>().unwrap());
         (cells.next().unwrap() * 1e-6, cells.next().unwrap())

@@ -12,19 +12,7 @@ use windfall_signal::uncertain::Uncertain;
 use windfall_signal::{ExtractOptions, Finding, extract_impact};
 
 fn pads() -> Option<PathBuf> {
-    let data = std::env::var_os("WINDFALL_DATA").map_or_else(
-        || PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("../../../shared/data"),
-        PathBuf::from,
-    );
-    let folder = data.join("impact/foam_pads");
-    if folder.is_dir() {
-        return Some(folder);
-    }
-    println!(
-        "left out: no folder {}; set WINDFALL_DATA",
-        folder.display()
-    );
-    None
+    windfall_test_data::find("impact/foam_pads")
 }
 
 /// One run of the five in a file: force, position and velocity.

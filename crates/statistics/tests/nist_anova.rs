@@ -6,21 +6,13 @@
 
 #![allow(clippy::unwrap_used, clippy::print_stdout)]
 
-use std::path::{Path, PathBuf};
 use windfall_statistics::accurate_sum::{lag_one_autocorrelation, mean, standard_deviation};
 use windfall_statistics::compare::one_way_anova::one_way_anova;
 
 /// The file's lines, or `None` where it is not there.
 fn nist(name: &str) -> Option<Vec<String>> {
-    let data = std::env::var_os("WINDFALL_DATA").map_or_else(
-        || Path::new(env!("CARGO_MANIFEST_DIR")).join("../../../shared/data"),
-        PathBuf::from,
-    );
-    let file = data.join("nist").join(format!("{name}.dat"));
-    let Ok(bytes) = std::fs::read(&file) else {
-        println!("left out: no file {}; set WINDFALL_DATA", file.display());
-        return None;
-    };
+    let file = windfall_test_data::find(&format!("nist/{name}.dat"))?;
+    let bytes = std::fs::read(file).unwrap();
     let text = String::from_utf8_lossy(&bytes);
     Some(text.lines().map(str::to_owned).collect())
 }

@@ -4,7 +4,6 @@
 
 #![allow(clippy::unwrap_used, clippy::print_stdout)]
 
-use std::path::PathBuf;
 use windfall_statistics::model::contrast::Contrast;
 use windfall_statistics::model::formula::formula;
 use windfall_statistics::model::linear_model::{LinearFit, fit_linear};
@@ -129,11 +128,8 @@ type Collected = (Vec<Vec<f64>>, Vec<(f64, f64)>);
 
 /// What a file of the collection holds.
 fn read(name: &str) -> Option<Collected> {
-    let folder = std::env::var_os("WINDFALL_DATA").map_or_else(
-        || PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("../../../shared/data"),
-        PathBuf::from,
-    );
-    let text = std::fs::read_to_string(folder.join("nist").join(format!("{name}.dat"))).ok()?;
+    let file = windfall_test_data::find(&format!("nist/{name}.dat"))?;
+    let text = std::fs::read_to_string(file).unwrap();
     let numbers = |line: &str| -> Vec<f64> {
         line.split_whitespace()
             .map_while(|word| word.parse().ok())
@@ -168,7 +164,6 @@ fn reference_files_of_the_collection() {
         ("Wampler2", POLYNOMIAL_5),
     ] {
         let Some((rows, certified)) = read(name) else {
-            println!("left out: {name} ($WINDFALL_DATA/nist does not hold it)");
             continue;
         };
         let columns: Vec<(&str, Vec<f64>)> = names

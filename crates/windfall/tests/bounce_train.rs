@@ -10,19 +10,11 @@
 mod analysis;
 
 use analysis::{LEAST_SPEED, MASS, Run, calibrate, evaluate, masses};
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 use windfall_signal::restitution::estimate::{Restitution, RestitutionMethod};
 
 fn file() -> Option<PathBuf> {
-    let workspace = Path::new(env!("CARGO_MANIFEST_DIR")).join("../..");
-    let data = std::env::var_os("WINDFALL_DATA")
-        .map_or_else(|| workspace.join("../shared/data"), PathBuf::from);
-    let file = data.join("impact/foam_pads/bounce_train.csv");
-    if !file.is_file() {
-        println!("left out: no {}; set WINDFALL_DATA", file.display());
-        return None;
-    }
-    Some(file)
+    windfall_test_data::find("impact/foam_pads/bounce_train.csv")
 }
 
 fn by(run: &Run, method: RestitutionMethod, bounce: usize) -> Option<&Restitution> {

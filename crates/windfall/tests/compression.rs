@@ -2,7 +2,7 @@
 
 #![allow(clippy::unwrap_used, clippy::print_stdout)]
 
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use windfall_campaign::impacts::request::FitRequest;
 use windfall_campaign::measure::any_outcome::AnyOutcome;
 use windfall_campaign::measure::measured::{MeasuredItem, MeasuredOutcome, value_of};
@@ -105,15 +105,10 @@ fn conserves_results_whatever_the_file_holds_after_the_yield() {
 /// the other four recordings have none.
 #[test]
 fn reference_kiwi_and_mango() {
-    let default = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../../shared/data");
-    let data = std::env::var_os("WINDFALL_DATA").map_or(default, PathBuf::from);
-    if !data.join("compression/fruit_grip").is_dir() {
-        println!(
-            "left out: no compression/fruit_grip under {}",
-            data.display()
-        );
+    if windfall_test_data::find("compression/fruit_grip").is_none() {
         return;
     }
+    let data = windfall_test_data::recordings();
     let example = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../examples/fruit_grip");
     let dir = tempfile::tempdir().unwrap();
     for name in ["campaign.toml", "specimens.csv", "impacts.csv"] {

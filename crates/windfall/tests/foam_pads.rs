@@ -6,16 +6,10 @@
 
 #![allow(clippy::unwrap_used, clippy::print_stdout)]
 
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use windfall_campaign::impacts::request::FitRequest;
 use windfall_campaign::impacts::run::fit_campaign;
 use windfall_campaign::result::outcome::ImpactOutcome;
-
-fn data_folder() -> PathBuf {
-    let workspace = Path::new(env!("CARGO_MANIFEST_DIR")).join("../..");
-    std::env::var_os("WINDFALL_DATA")
-        .map_or_else(|| workspace.join("../shared/data"), PathBuf::from)
-}
 
 /// The shipped campaign with the folder written out; nothing else changed.
 fn campaign_in(scratch: &Path, data: &Path) {
@@ -31,14 +25,10 @@ fn campaign_in(scratch: &Path, data: &Path) {
 
 #[test]
 fn recovers_cart_and_pads_from_real_recordings() {
-    let data = data_folder();
-    if !data.join("impact/foam_pads").is_dir() {
-        println!(
-            "left out: no foam_pads under {}; set WINDFALL_DATA",
-            data.display()
-        );
+    if windfall_test_data::find("impact/foam_pads").is_none() {
         return;
     }
+    let data = windfall_test_data::recordings();
     let scratch = tempfile::tempdir().unwrap();
     campaign_in(scratch.path(), &data);
     let request = FitRequest {

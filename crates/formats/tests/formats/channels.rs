@@ -1,6 +1,5 @@
 //! What the tests of all readers share.
 
-use std::path::{Path, PathBuf};
 use windfall_formats::Error;
 use windfall_formats::contents::{Format, TimeBase};
 use windfall_formats::open::{OpenOptions, open, open_source};
@@ -32,26 +31,16 @@ pub fn checksum(samples: &[f64]) -> u64 {
     (0..).zip(samples).map(term).fold(0, u64::wrapping_add)
 }
 
-/// Folder of the real recordings; `None` where it is not there.
-pub fn data() -> Option<PathBuf> {
-    let folder = std::env::var_os("WINDFALL_DATA").map_or_else(
-        || Path::new(env!("CARGO_MANIFEST_DIR")).join("../../../shared/data"),
-        PathBuf::from,
-    );
-    folder.is_dir().then_some(folder)
-}
-
 /// One channel as another program reads it: name, length, checksum, start and
 /// interval where the file has them.
 pub type Expected = (&'static str, usize, u64, Option<(f64, f64)>);
 
 /// Whether a real file holds these channels, by name, in this order.
 pub fn check_file(file: &str, format: Format, expected: &[Expected]) {
-    let Some(folder) = data() else {
-        println!("left out: {file} (WINDFALL_DATA is not set)");
+    let Some(path) = windfall_test_data::find(file) else {
         return;
     };
-    let mut reader = open(&folder.join(file), &OpenOptions::default()).unwrap();
+    let mut reader = open(&path, &OpenOptions::default()).unwrap();
     assert_eq!(reader.contents().format, format, "{file}");
     let contents = reader.contents().clone();
     let found = samples(reader.as_mut());

@@ -1,7 +1,7 @@
 //! HDF5 files and those of MATLAB 7.3. How the small files were made is told in
 //! `fixtures/make_fixtures.py`; their numbers follow the rules that stand there.
 
-use crate::channels::{check_file, data, open_bytes, samples};
+use crate::channels::{check_file, open_bytes, samples};
 use windfall_formats::contents::{ChannelContents, Format, TimeBase};
 use windfall_formats::open::{OpenOptions, open, open_source};
 use windfall_formats::source::Source;
@@ -38,11 +38,9 @@ fn reference_real_files() {
 
 #[test]
 fn reference_objects_and_texts_of_matlab() {
-    let Some(folder) = data() else {
-        println!("left out: texts of MATLAB 7.3 (WINDFALL_DATA is not set)");
+    let Some(file) = windfall_test_data::find("daq_formats/mat/pymatreader_string_v73.mat") else {
         return;
     };
-    let file = folder.join("daq_formats/mat/pymatreader_string_v73.mat");
     let reader = open(&file, &OpenOptions::default()).unwrap();
     let contents = reader.contents();
     assert_eq!(contents.variant, "MATLAB v7.3");

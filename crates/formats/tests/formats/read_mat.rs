@@ -1,6 +1,6 @@
 //! MATLAB files, versions 4 to 7.
 
-use crate::channels::{check_file, data, open_bytes, samples};
+use crate::channels::{check_file, open_bytes, samples};
 use windfall_formats::contents::{Format, TimeBase};
 use windfall_formats::open::{OpenOptions, open};
 
@@ -178,11 +178,11 @@ fn rejects_numbers_of_other_machines() {
 
 #[test]
 fn reference_nested_texts_and_numbers() {
-    let Some(folder) = data() else {
-        println!("left out: nested MAT files (WINDFALL_DATA is not set)");
+    let Some(file) =
+        windfall_test_data::find("daq_formats/mat/scipy_teststructnest_7.4_GLNX86.mat")
+    else {
         return;
     };
-    let file = folder.join("daq_formats/mat/scipy_teststructnest_7.4_GLNX86.mat");
     let reader = open(&file, &OpenOptions::default()).unwrap();
     let properties = &reader.contents().properties;
     let has = |name: &str, value: &str| properties.contains(&(name.to_owned(), value.to_owned()));

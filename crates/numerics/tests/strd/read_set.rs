@@ -24,11 +24,7 @@ pub struct DataSet {
 
 /// Where the `.dat` files are, or would be.
 pub fn folder() -> PathBuf {
-    let data = std::env::var_os("WINDFALL_DATA").map_or_else(
-        || Path::new(env!("CARGO_MANIFEST_DIR")).join("../../../shared/data"),
-        PathBuf::from,
-    );
-    data.join("nist")
+    windfall_test_data::find("nist").unwrap_or_default()
 }
 
 /// Names of the sets for nonlinear regression that the folder holds, sorted.
