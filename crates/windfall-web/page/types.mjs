@@ -99,7 +99,8 @@ export async function types() {
     const of = (found, bytes) => {
       if (!found) return "undefined";
       const [kind, { schema }] = found;
-      return /json|event-stream/.test(kind) ? typeOf(schema, "  ") : kind === "application/octet-stream" ? bytes : "string";
+      if (kind === "application/json") return typeOf(schema, "  ");
+      return kind === "application/octet-stream" ? bytes : "string";
     };
     const asked = parameters.filter((own) => own.in === "query");
     const query = asked.map((own) => `${own.name}${own.required ? "" : "?"}: ${typeOf(own.schema, "")}`);

@@ -1,6 +1,6 @@
 // Made by `npm run types` from the description of the interface; not to be edited.
 
-/** What the page must know. */
+/** What the page needs before it opens a campaign. */
 export interface About {
   version: string; directory: string; creates: boolean; upload_limit: number; kinds: string[];
   laws: LawAbout[];
@@ -105,7 +105,7 @@ export interface ChannelView {
   quantity: string; column: string; unit: string;
 }
 
-/** Where the channels are. */
+/** The columns of the channels. */
 export interface ChannelsGiven {
   channels: ChannelGiven[]; time?: string | null; rate?: string | null;
 }
@@ -385,12 +385,12 @@ export interface IntervalOutcome {
   drawn?: Record<string, number[]>; profiles?: Record<string, ProfileOutcome>;
 }
 
-/** Work that is asked for. */
+/** A job to start. */
 export interface JobGiven {
   work: Work; laws?: string[]; covariates?: string[]; intervals?: string | null;
 }
 
-/** How a job stands. */
+/** State of a job. */
 export type JobState = "running" | "done" | "failed" | "cancelled";
 
 /** A job as it is shown. */
@@ -521,7 +521,7 @@ export interface ModelResiduals {
   tests: TestOutcome[]; box_cox: BoxCoxOutcome | null; goodness: GoodnessOutcome | null;
 }
 
-/** A campaign to be made. */
+/** A campaign to create. */
 export interface NewCampaign {
   id: string; kind: string;
 }
@@ -531,7 +531,7 @@ export interface NextOutcome {
   interest: string; now: (number | null)[]; candidates: CandidateOutcome[];
 }
 
-/** Options of the fit; what is left out stays. */
+/** Options of the fit; those left out are unchanged. */
 export interface OptionsGiven {
   laws?: string[] | null; free?: string[] | null; quantities?: string[] | null;
   weights?: string | null; noise?: string | null; intervals?: string | null; onset?: string | null;
@@ -615,7 +615,7 @@ export interface PredictionOutcome {
   high: number;
 }
 
-/** What went wrong. */
+/** A failure. */
 export interface Problem {
   title: string; status: number; detail: string; code: string;
 }
@@ -641,7 +641,7 @@ export interface RecordingEntry {
   file: string; bytes: number; impacts: string[];
 }
 
-/** What is to be fitted; what is left out is as the campaign says. */
+/** What to fit; what is left out is taken from the campaign. */
 export interface Refit {
   impact?: string; from?: number | null; to?: number | null; laws?: string[]; free?: string[];
   quantities?: string[]; weights?: string | null; noise?: string | null; intervals?: string | null;
@@ -830,7 +830,7 @@ export interface TestOutcome {
   test: string; statistic: number; p: number;
 }
 
-/** campaign.toml as a whole. */
+/** The whole of campaign.toml. */
 export interface TextGiven {
   text: string;
 }
@@ -841,7 +841,7 @@ export interface TwoStageOutcome {
   effects: PopulationEffect[];
 }
 
-/** A file that has arrived. */
+/** An uploaded file. */
 export interface Uploaded {
   file: string; bytes: number; sha256: string; recording: Inspection | null;
 }
@@ -897,7 +897,7 @@ export interface WindowGiven {
   impact: string; from?: number | null; to?: number | null;
 }
 
-/** Kinds of long work. */
+/** Kinds of jobs. */
 export type Work = "fit" | "laws" | "population" | "calibrate" | "report";
 
 /** A value in the unit of a campaign's ranges: N/mm^e. */
@@ -920,25 +920,25 @@ export interface Calls {
   "GET /api/campaigns": Call<CampaignEntry[]>;
   /** Makes a campaign from a template, as `windfall new` does. */
   "POST /api/campaigns": Call<CampaignView, NewCampaign>;
-  /** What the files of a campaign say; its version is the ETag. */
+  /** A campaign as its files describe it; its version is the ETag. */
   "GET /api/campaigns/{id}": Call<CampaignView>;
-  /** The law card of a campaign, to be saved. */
+  /** The law card of a campaign, as a download. */
   "GET /api/campaigns/{id}/card": Call<string, undefined, { law?: string }>;
-  /** Says where the channels are. */
+  /** Sets the columns of the channels. */
   "PUT /api/campaigns/{id}/channels": Call<CampaignView, ChannelsGiven>;
-  /** Tells when the files of a campaign or its store change on disk. */
-  "GET /api/campaigns/{id}/events": Call<CampaignChanged>;
+  /** Changes of a campaign's files or store on disk: the data of each event is a `CampaignChanged`. */
+  "GET /api/campaigns/{id}/events": Call<string>;
   /** Adds impacts, and specimens that are new. */
   "POST /api/campaigns/{id}/impacts": Call<CampaignView, ImpactsGiven>;
-  /** Begins work on a campaign. */
+  /** Starts a job on a campaign. */
   "POST /api/campaigns/{id}/jobs": Call<JobView, JobGiven>;
   /** Sets options of the fit. */
   "PUT /api/campaigns/{id}/options": Call<CampaignView, OptionsGiven>;
   /** A part of a channel at the resolution of a screen. */
   "GET /api/campaigns/{id}/outline": Call<Outline, undefined, { file: string; channel: string; from?: number; to?: number; points?: number }>;
-  /** Takes a recording into the campaign; it replaces none. */
+  /** Uploads a recording into the campaign; existing files are never replaced. */
   "PUT /api/campaigns/{id}/raw": Call<Uploaded, Blob, { file: string }>;
-  /** What a recording holds, as `windfall inspect` says it. */
+  /** Contents of a recording, as `windfall inspect` shows them. */
   "GET /api/campaigns/{id}/recording": Call<Inspection, undefined, { file: string }>;
   /** The recordings of a campaign. */
   "GET /api/campaigns/{id}/recordings": Call<RecordingEntry[]>;
@@ -948,13 +948,13 @@ export interface Calls {
   "POST /api/campaigns/{id}/regress": Call<RegressAnswer, RegressGiven>;
   /** A file of the report of a campaign. */
   "GET /api/campaigns/{id}/report/{file}": Call<string>;
-  /** What the store holds of the campaign as it is now; nothing is fitted. */
+  /** Stored results for the current files and options; nothing is fitted. */
   "GET /api/campaigns/{id}/results": Call<StoredResults>;
   /** Response surfaces, as `windfall surface` gives them. */
   "POST /api/campaigns/{id}/surface": Call<SurfaceAnswer, SurfaceGiven>;
   /** A table of the campaign, cell by cell. */
   "GET /api/campaigns/{id}/table": Call<DataTable, undefined, { file: string }>;
-  /** Takes a table for regressions and surfaces into the campaign; it replaces none. */
+  /** Uploads a table for regressions and surfaces; existing files are never replaced. */
   "PUT /api/campaigns/{id}/table": Call<Uploaded, Blob, { file: string }>;
   /** Replaces campaign.toml. */
   "PUT /api/campaigns/{id}/text": Call<CampaignView, TextGiven>;
@@ -962,21 +962,21 @@ export interface Calls {
   "PUT /api/campaigns/{id}/window": Call<CampaignView, WindowGiven>;
   /** Contours of values over a grid. */
   "POST /api/contours": Call<ContourMap, GridGiven>;
-  /** All work since the server was started. */
+  /** All jobs since the server was started. */
   "GET /api/jobs": Call<JobView[]>;
-  /** A piece of work, with its result once it is done. */
+  /** A job, with its result once it is done. */
   "GET /api/jobs/{job}": Call<JobView>;
-  /** Stops work: what it was doing is not kept. */
+  /** Cancels a job; nothing unfinished is kept. */
   "DELETE /api/jobs/{job}": Call<JobView>;
-  /** Progress of a job until it ends. */
-  "GET /api/jobs/{job}/events": Call<JobView>;
+  /** Progress of a job until it ends: the data of each event is a `JobView`. */
+  "GET /api/jobs/{job}/events": Call<string>;
   /** The results of scenes in the directory. */
   "GET /api/scenes": Call<SceneEntry[]>;
   /** A scene with its walls and the times of its frames. */
   "GET /api/scenes/{id}": Call<SceneView>;
-  /** Whole frames from a number on, as they stand in frames.bin: about 4 MB of them, one at least; none behind the last. */
+  /** Whole frames from a number on, as in frames.bin: about 4 MB of them, at least one; none after the last. */
   "GET /api/scenes/{id}/frames": Call<ArrayBuffer, undefined, { from?: number }>;
-  /** The fruit that were hit hardest, the hardest first. */
+  /** The fruit that were hit hardest, hardest first. */
   "GET /api/scenes/{id}/hardest": Call<HardestFruit[], undefined, { most?: number }>;
   /** The contacts of a fruit. */
   "GET /api/scenes/{id}/history": Call<FruitHistory, undefined, { fruit: number }>;
