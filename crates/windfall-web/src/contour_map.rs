@@ -11,7 +11,7 @@ use windfall_tables::surface::outcome::GridOutcome;
 const COLOURS: usize = 256;
 
 /// Most levels but for one at an end: a screen has room for more than a printed figure.
-const LEVELS: usize = 14;
+const LEVELS: usize = 15;
 
 /// Values on a rectangular grid with their contours.
 #[derive(Debug, PartialEq, Serialize, ToSchema)]

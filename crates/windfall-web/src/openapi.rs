@@ -1,5 +1,6 @@
 //! Description of the interface (OpenAPI 3.1).
 
+use crate::api::events::CampaignChanged;
 use crate::problem::Problem;
 use axum::Json;
 use utoipa::openapi::schema::{AdditionalProperties, Object, Schema};
@@ -50,7 +51,7 @@ use utoipa::{Modify, OpenApi};
         crate::api::scenes::hardest,
         crate::api::scenes::history,
     ),
-    components(schemas(Problem)),
+    components(schemas(Problem, CampaignChanged)),
     modifiers(&NamedValues, &KeysOfAnswers)
 )]
 pub(crate) struct Interface;

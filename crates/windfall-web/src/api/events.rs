@@ -2,7 +2,7 @@
 
 use crate::api::jobs::found;
 use crate::app::{App, Told};
-use crate::job::{JobState, JobView};
+use crate::job::JobState;
 use crate::problem::Problem;
 use axum::extract::{Path, State};
 use axum::response::Sse;
@@ -30,11 +30,11 @@ pub(crate) struct CampaignChanged {
     version: String,
 }
 
-/// Progress of a job until it ends.
+/// Progress of a job until it ends: the data of each event is a `JobView`.
 #[utoipa::path(
     get, path = "/api/jobs/{job}/events", params(("job" = String, Path)),
     responses(
-        (status = 200, body = JobView, content_type = "text/event-stream"),
+        (status = 200, body = Object, content_type = "text/event-stream"),
         (status = 404, body = Problem, content_type = "application/problem+json"),
     )
 )]
@@ -67,11 +67,11 @@ pub(crate) async fn job_events(
     Ok(Sse::new(events).keep_alive(KeepAlive::default()))
 }
 
-/// Changes of a campaign's files or store on disk.
+/// Changes of a campaign's files or store on disk: the data of each event is a `CampaignChanged`.
 #[utoipa::path(
     get, path = "/api/campaigns/{id}/events", params(("id" = String, Path, example = "bench")),
     responses(
-        (status = 200, body = CampaignChanged, content_type = "text/event-stream"),
+        (status = 200, body = Object, content_type = "text/event-stream"),
         (status = 404, body = Problem, content_type = "application/problem+json"),
     )
 )]

@@ -18,7 +18,7 @@ function stored(): Choice {
 class Theme {
   choice = $state<Choice>(stored());
   #system = $state(dark.matches);
-  /** What is shown now; plots draw anew when it changes. */
+  /** The theme shown now; plots redraw when it changes. */
   shown = $derived(this.choice === "system" ? (this.#system ? "dark" : "light") : this.choice);
 
   constructor() {
