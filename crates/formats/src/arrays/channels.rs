@@ -4,6 +4,7 @@ use crate::arrays::clock::{names_time, time_bases};
 use crate::arrays::tree::{Array, Extent, Listing, Series, Tree, count};
 use crate::contents::{ChannelContents, Note, TimeBase};
 use crate::names::Names;
+use crate::text::number::rises_evenly;
 
 /// Most channels that one array is taken apart into. What has more rows and
 /// columns than this is a picture or a matrix of a calculation.
@@ -120,17 +121,6 @@ fn first_is_time(name: &str, many: usize, tree: &mut Tree, listing: &mut Listing
     for channel in &mut listing.channels[first + 1..] {
         channel.time = TimeBase::Channel(first);
     }
-}
-
-/// Whether values rise by the same step, within a jitter; not by one: those are
-/// numbers of samples.
-fn rises_evenly(values: &[f64]) -> bool {
-    if values.len() < 3 {
-        return false;
-    }
-    let step = (values[values.len() - 1] - values[0]) / (values.len() - 1) as f64;
-    let even = |pair: &[f64]| ((pair[1] - pair[0]) - step).abs() < 0.2 * step;
-    step > 0.0 && step != 1.0 && values.windows(2).all(even)
 }
 
 /// Which extent is the samples.

@@ -98,7 +98,7 @@ fn contents(
             continue;
         }
         let name = names.join("/");
-        match channel(source, found, position, &name)? {
+        match channel(source, found, position)? {
             Ok((channel, stored_as)) => {
                 contents.channels.push(ChannelContents {
                     unit: object
@@ -138,12 +138,7 @@ fn time_base(properties: &BTreeMap<String, Property>) -> TimeBase {
 /// A channel and how it is stored, or why it is left out.
 type Described = Result<(Channel, String), String>;
 
-fn channel(
-    source: &Source,
-    found: &Found,
-    position: usize,
-    name: &str,
-) -> Result<Described, Error> {
+fn channel(source: &Source, found: &Found, position: usize) -> Result<Described, Error> {
     let object = &found.objects[position];
     if object.length == 0 && object.types.is_empty() {
         return Ok(Err("it has no samples".to_owned()));
@@ -193,11 +188,11 @@ fn channel(
         length: object.length,
         zero,
     };
-    check_buffers(found, &channel, name).map_or(Ok(Ok((channel, stored_as))), |why| Ok(Err(why)))
+    check_buffers(found, &channel).map_or(Ok(Ok((channel, stored_as))), |why| Ok(Err(why)))
 }
 
 /// Why the raw values of a channel cannot be brought together, if so.
-fn check_buffers(found: &Found, channel: &Channel, _name: &str) -> Option<String> {
+fn check_buffers(found: &Found, channel: &Channel) -> Option<String> {
     if channel.inputs.len() < 2 {
         return None;
     }

@@ -17,46 +17,29 @@ const MOST_SCALES: u32 = 1000;
 /// Most steps from the raw values to the last scale.
 const MOST_STEPS: u32 = 500;
 
-/// One scale.
+/// One scale; inputs are numbers of other scales, or of raw values.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Scale {
     /// Hands its input on.
-    Same {
-        /// Number of the scale that it takes.
-        input: u32,
-    },
+    Same { input: u32 },
     /// slope · x + intercept.
     Linear {
-        /// Number of the scale that it takes.
         input: u32,
-        /// Slope.
         slope: f64,
-        /// Intercept.
         intercept: f64,
     },
     /// `Σ coefficients[i] · xⁱ`.
-    Polynomial {
-        /// Number of the scale that it takes.
-        input: u32,
-        /// Coefficients, rising.
-        coefficients: Vec<f64>,
-    },
-    /// Straight lines between points; constant outside.
+    Polynomial { input: u32, coefficients: Vec<f64> },
+    /// Straight lines between points, of which `before` rises; constant outside.
     Table {
-        /// Number of the scale that it takes.
         input: u32,
-        /// Values before, rising.
         before: Vec<f64>,
-        /// Values after.
         after: Vec<f64>,
     },
     /// left + right, or right − left.
     Sum {
-        /// Number of the left operand.
         left: u32,
-        /// Number of the right operand.
         right: u32,
-        /// Whether the left operand is subtracted.
         subtract: bool,
     },
 }
@@ -70,14 +53,16 @@ pub struct Scales {
 impl Scales {
     /// The numbers of the raw values that the channel takes.
     pub fn raw_inputs(&self) -> Vec<u32> {
-        let Some((&last, _)) = self.scales.last_key_value() else {
-            return vec![RAW];
-        };
         let mut found = Vec::new();
-        self.collect(last, &mut found);
+        self.collect(self.last(), &mut found);
         found.sort_unstable();
         found.dedup();
         found
+    }
+
+    /// The number of the scale that gives what the channel means.
+    fn last(&self) -> u32 {
+        self.scales.last_key_value().map_or(RAW, |(last, _)| *last)
     }
 
     fn collect(&self, number: u32, found: &mut Vec<u32>) {
@@ -93,8 +78,7 @@ impl Scales {
     /// refer to each other in a circle, or double with each step.
     pub fn ends(&self) -> bool {
         let mut budget = MOST_STEPS;
-        let last = self.scales.last_key_value().map_or(RAW, |(last, _)| *last);
-        self.within(last, &mut budget)
+        self.within(self.last(), &mut budget)
     }
 
     fn within(&self, number: u32, budget: &mut u32) -> bool {
@@ -124,24 +108,22 @@ impl Scales {
 
     /// Scales values; `raw` holds those of each number of [`Scales::raw_inputs`].
     pub fn apply(&self, raw: &[(u32, &[f64])], out: &mut [f64]) {
-        let last = self.scales.last_key_value().map_or(RAW, |(last, _)| *last);
-        self.value(last, raw, out);
+        self.value(self.last(), raw, out);
     }
 
     /// Scales the raw values of a channel that takes only one number of them, in
     /// their place.
     pub fn apply_in_place(&self, values: &mut [f64]) {
-        let last = self.scales.last_key_value().map_or(RAW, |(last, _)| *last);
         if self
             .scales
             .values()
             .any(|scale| matches!(scale, Scale::Sum { .. }))
         {
             let raw = values.to_vec();
-            self.value(last, &[(RAW, &raw)], values);
+            self.value(self.last(), &[(RAW, &raw)], values);
         } else {
             // The raw values are where the innermost scale looks for them.
-            self.value(last, &[], values);
+            self.value(self.last(), &[], values);
         }
     }
 
@@ -156,21 +138,13 @@ impl Scales {
             }
             return;
         };
+        self.value(inputs(scale)[0], raw, out);
         match scale {
-            Scale::Same { input } => self.value(*input, raw, out),
+            Scale::Same { .. } => {}
             Scale::Linear {
-                input,
-                slope,
-                intercept,
-            } => {
-                self.value(*input, raw, out);
-                out.iter_mut().for_each(|x| *x = *x * slope + intercept);
-            }
-            Scale::Polynomial {
-                input,
-                coefficients,
-            } => {
-                self.value(*input, raw, out);
+                slope, intercept, ..
+            } => out.iter_mut().for_each(|x| *x = *x * slope + intercept),
+            Scale::Polynomial { coefficients, .. } => {
                 let polynomial = |x: f64| {
                     let mut rest = coefficients.iter().rev();
                     let highest = rest.next().copied().unwrap_or(0.0);
@@ -178,21 +152,13 @@ impl Scales {
                 };
                 out.iter_mut().for_each(|x| *x = polynomial(*x));
             }
-            Scale::Table {
-                input,
-                before,
-                after,
-            } => {
-                self.value(*input, raw, out);
+            Scale::Table { before, after, .. } => {
                 out.iter_mut()
                     .for_each(|x| *x = interpolated(*x, before, after));
             }
             Scale::Sum {
-                left,
-                right,
-                subtract,
+                right, subtract, ..
             } => {
-                self.value(*left, raw, out);
                 let mut other = vec![0.0; out.len()];
                 self.value(*right, raw, &mut other);
                 let sign = if *subtract { -1.0 } else { 1.0 };
@@ -233,9 +199,8 @@ fn interpolated(x: f64, before: &[f64], after: &[f64]) -> f64 {
 /// or of the file.
 pub fn scales_of(properties: &BTreeMap<String, Property>) -> Result<Scales, String> {
     let mut scales = Scales::default();
-    let count = properties
-        .get("NI_Number_Of_Scales")
-        .and_then(Property::number);
+    let count = properties.get("NI_Number_Of_Scales");
+    let count = count.and_then(Property::number);
     let unscaled = properties
         .get("NI_Scaling_Status")
         .and_then(Property::text)

@@ -4,7 +4,9 @@ use crate::contents::Note;
 use crate::text::cells::{cells, row};
 use crate::text::date::{Moment, moment};
 use crate::text::header::name_columns;
-use crate::text::number::{Cell, Marks, bare, cell, leading_number, without_groups};
+use crate::text::number::{
+    Cell, Marks, bare, cell, leading_number, number, rises_evenly, without_groups,
+};
 use crate::text::options::{Dialect, TextOptions};
 use crate::text::rows::{ColumnKind, Separator};
 use std::collections::{BTreeMap, BTreeSet};
@@ -52,8 +54,7 @@ fn look(text: &str, marks: Marks) -> Look {
 
 /// Finds out the dialect from the first lines of a file.
 ///
-/// Returns `None` where no line holds a number between separators, and the
-/// position of a line that shows it.
+/// The error is the position of a line that is no row of a table of numbers.
 pub fn find_dialect(lines: &[&str], options: &TextOptions) -> Result<Dialect, usize> {
     let comments = comment_marks(lines, options);
     let data: Vec<usize> = (0..lines.len())
@@ -114,7 +115,7 @@ pub fn find_dialect(lines: &[&str], options: &TextOptions) -> Result<Dialect, us
     };
     name_columns(&mut dialect, lines, &data, options);
     let unnamed = dialect.names.iter().all(String::is_empty);
-    dialect.rising_first = unnamed && count > 1 && rises_evenly(lines, &rows, &dialect);
+    dialect.rising_first = unnamed && count > 1 && first_rises(lines, &rows, &dialect);
     if candidate.ambiguous && options.decimal.is_none() {
         let (mark, other) = match marks.decimal {
             b',' => ("comma", "\",\" as a mark of thousands"),
@@ -130,23 +131,14 @@ pub fn find_dialect(lines: &[&str], options: &TextOptions) -> Result<Dialect, us
     Ok(dialect)
 }
 
-/// Whether the first column rises by the same step from row to row, as printed
-/// times do, and is not a count of rows.
-fn rises_evenly(lines: &[&str], rows: &[usize], dialect: &Dialect) -> bool {
-    let number = |at: usize| {
+/// Whether the first column rises like printed times.
+fn first_rises(lines: &[&str], rows: &[usize], dialect: &Dialect) -> bool {
+    let first = |at: usize| {
         let cells = row(lines[at], dialect.separator, dialect.names.len())?;
-        match cell(cells[0], dialect.marks) {
-            Cell::Number(value) => Some(value),
-            _ => None,
-        }
+        number(cells[0], dialect.marks)
     };
-    let values: Option<Vec<f64>> = rows.iter().map(|&at| number(at)).collect();
-    let Some(values) = values.filter(|values| values.len() > 2) else {
-        return false;
-    };
-    let step = (values[values.len() - 1] - values[0]) / (values.len() - 1) as f64;
-    let even = |pair: &[f64]| ((pair[1] - pair[0]) - step).abs() < 0.2 * step;
-    step > 0.0 && step != 1.0 && values.windows(2).all(even)
+    let values: Option<Vec<f64>> = rows.iter().map(|&at| first(at)).collect();
+    values.is_some_and(|values| rises_evenly(&values))
 }
 
 fn comment_marks(lines: &[&str], options: &TextOptions) -> Vec<String> {
@@ -234,13 +226,8 @@ fn best_candidate(lines: &[&str], data: &[usize], options: &TextOptions) -> Opti
 /// Whether a cell holds a comma or a point at all.
 fn has_marks(lines: &[&str], data: &[usize], separator: Separator) -> bool {
     let either = |text: &str| {
-        let number = |decimal| {
-            let marks = Marks {
-                decimal,
-                thousands: None,
-            };
-            grouped_look(text, marks, separator) == Look::Number
-        };
+        let number =
+            |decimal| grouped_look(text, Marks::decimal(decimal), separator) == Look::Number;
         text.contains([',', '.']) && number(b'.') && number(b',')
     };
     data.iter()
@@ -254,10 +241,7 @@ fn candidate(
     decimal: u8,
 ) -> Option<Candidate> {
     let count = usual_count(lines, data, separator, decimal)?;
-    let marks = Marks {
-        decimal,
-        thousands: None,
-    };
+    let marks = Marks::decimal(decimal);
     let tallies: Vec<(usize, f64, f64)> = data
         .iter()
         .filter_map(|&at| {

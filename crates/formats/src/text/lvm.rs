@@ -10,7 +10,7 @@ use crate::reader::{Reader, Sink};
 use crate::source::Source;
 use crate::text::encoding::{Encoding, tell_encoding};
 use crate::text::lines::Lines;
-use crate::text::number::{Cell, Marks, cell};
+use crate::text::number::{Marks, number};
 use crate::text::rows::{ColumnKind, RowPlan, Separator};
 use crate::text::table::{Table, read_table};
 
@@ -193,13 +193,10 @@ fn file_header(source: &Source, end: u64, encoding: Encoding) -> Result<FileHead
     });
     Ok(FileHeader {
         separator,
-        marks: Marks {
-            decimal: match value("Decimal_Separator") {
-                Some(",") => b',',
-                _ => b'.',
-            },
-            thousands: None,
-        },
+        marks: Marks::decimal(match value("Decimal_Separator") {
+            Some(",") => b',',
+            _ => b'.',
+        }),
         x_columns: match value("X_Columns") {
             Some("No") => XColumns::No,
             Some("Multi") => XColumns::Multi,
@@ -327,10 +324,7 @@ fn add_channels(
         let line = segment.header.iter().find(|cells| cells[0] == key)?;
         line.get(column).filter(|value| !value.is_empty()).cloned()
     };
-    let number = |key: &str, column: usize| match cell(&value(key, column)?, file.marks) {
-        Cell::Number(value) => Some(value),
-        _ => None,
-    };
+    let number = |key: &str, column: usize| number(&value(key, column)?, file.marks);
     let is_x = |column: usize| match file.x_columns {
         XColumns::No | XColumns::One => column == 0,
         XColumns::Multi => column.is_multiple_of(2),
@@ -433,14 +427,8 @@ fn first_rows(
 
 /// Whether printed times are those of an even spacing, but for their rounding.
 fn agrees(rows: &[Vec<String>], column: usize, start: f64, interval: f64) -> bool {
-    let marks = Marks {
-        decimal: b'.',
-        thousands: None,
-    };
-    let printed = |row: &Vec<String>| match cell(&row.get(column)?.replace(',', "."), marks) {
-        Cell::Number(value) => Some(value),
-        _ => None,
-    };
+    let marks = Marks::decimal(b'.');
+    let printed = |row: &Vec<String>| number(&row.get(column)?.replace(',', "."), marks);
     let times: Vec<f64> = rows.iter().filter_map(printed).collect();
     let even =
         |(row, time): (usize, &f64)| (time - start - row as f64 * interval).abs() < EVEN * interval;

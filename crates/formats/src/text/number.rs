@@ -1,6 +1,7 @@
 //! Numbers in text, correctly rounded, whatever marks decimals and thousands.
 
 use crate::text::power::nearest_double;
+use std::borrow::Cow;
 
 /// Powers of ten that a double holds exactly.
 const EXACT_POWERS: [f64; 23] = [
@@ -32,6 +33,16 @@ pub struct Marks {
     pub decimal: u8,
     /// Between groups of three digits.
     pub thousands: Option<char>,
+}
+
+impl Marks {
+    /// A decimal mark, and none between groups of digits.
+    pub const fn decimal(decimal: u8) -> Self {
+        Self {
+            decimal,
+            thousands: None,
+        }
+    }
 }
 
 /// A number at the beginning of `bytes`, and how many bytes it takes.
@@ -166,17 +177,9 @@ fn eight_digits(word: u64) -> u64 {
 
 /// The exponent from `at` on and where it ends; limited, so that it cannot overflow.
 fn exponent(bytes: &[u8], mut at: usize) -> Option<(i32, usize)> {
-    let negative = match bytes.get(at) {
-        Some(b'-') => {
-            at += 1;
-            true
-        }
-        Some(b'+') => {
-            at += 1;
-            false
-        }
-        _ => false,
-    };
+    let sign = bytes.get(at);
+    let negative = sign == Some(&b'-');
+    at += usize::from(matches!(sign, Some(b'-' | b'+')));
     let start = at;
     let mut value = 0_i32;
     while let Some(digit) = bytes
@@ -217,28 +220,40 @@ pub fn cell(text: &str, marks: Marks) -> Cell {
         return Cell::Blank;
     }
     // A true minus sign, as some programs export it.
-    let owned;
-    let text = match text.strip_prefix('\u{2212}') {
-        Some(rest) => {
-            owned = format!("-{rest}");
-            &owned
-        }
-        None => text,
+    let text: Cow<'_, str> = match text.strip_prefix('\u{2212}') {
+        Some(rest) => format!("-{rest}").into(),
+        None => text.into(),
     };
-    match leading_number(text.as_bytes(), marks.decimal) {
-        Some((value, used)) if used == text.len() => return Cell::Number(value),
-        _ => {}
-    }
-    let Some(mark) = marks.thousands else {
-        return Cell::Other;
+    let whole = |text: &str| {
+        let (value, used) = leading_number(text.as_bytes(), marks.decimal)?;
+        (used == text.len()).then_some(value)
     };
-    match without_groups(text, mark, char::from(marks.decimal)) {
-        Some(plain) => match leading_number(plain.as_bytes(), marks.decimal) {
-            Some((value, used)) if used == plain.len() => Cell::Number(value),
-            _ => Cell::Other,
-        },
-        None => Cell::Other,
+    let grouped = || {
+        let plain = without_groups(&text, marks.thousands?, char::from(marks.decimal))?;
+        whole(&plain)
+    };
+    whole(&text)
+        .or_else(grouped)
+        .map_or(Cell::Other, Cell::Number)
+}
+
+/// The number in a cell.
+pub fn number(text: &str, marks: Marks) -> Option<f64> {
+    match cell(text, marks) {
+        Cell::Number(value) => Some(value),
+        _ => None,
     }
+}
+
+/// Whether values rise by the same step, within a jitter; not by one: those are
+/// numbers of rows.
+pub fn rises_evenly(values: &[f64]) -> bool {
+    if values.len() < 3 {
+        return false;
+    }
+    let step = (values[values.len() - 1] - values[0]) / (values.len() - 1) as f64;
+    let even = |pair: &[f64]| ((pair[1] - pair[0]) - step).abs() < 0.2 * step;
+    step > 0.0 && step != 1.0 && values.windows(2).all(even)
 }
 
 /// The text of a cell without blanks and quotes around it.
@@ -283,10 +298,7 @@ mod tests {
     use super::*;
     use proptest::prelude::*;
 
-    const POINT: Marks = Marks {
-        decimal: b'.',
-        thousands: None,
-    };
+    const POINT: Marks = Marks::decimal(b'.');
 
     #[test]
     fn reference_numbers_as_the_standard_library_reads_them() {

@@ -384,10 +384,7 @@ mod tests {
     fn plan(separator: Separator, columns: usize) -> RowPlan {
         RowPlan {
             separator,
-            marks: Marks {
-                decimal: b'.',
-                thousands: None,
-            },
+            marks: Marks::decimal(b'.'),
             encoding: Encoding::Utf8,
             newline: b'\n',
             comments: vec!["#".to_owned()],

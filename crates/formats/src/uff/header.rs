@@ -2,7 +2,7 @@
 
 use crate::error::{Error, Place};
 use crate::source::Source;
-use crate::text::number::{Cell, Marks, cell};
+use crate::text::number::{Marks, number};
 
 /// What the eleven lines above the data say.
 pub struct Header {
@@ -52,10 +52,7 @@ pub fn malformed(source: &Source, line: u64, problem: &str) -> Error {
 ///
 /// * `line`: number of the line before them
 pub fn parse_header(source: &Source, lines: &[String], line: u64) -> Result<Header, Error> {
-    let marks = Marks {
-        decimal: b'.',
-        thousands: None,
-    };
+    let marks = Marks::decimal(b'.');
     let bad =
         |offset: u64, what: &str| malformed(source, line + offset, &format!("expected {what}"));
     let text = |index: usize, from: usize, to: usize| {
@@ -66,10 +63,7 @@ pub fn parse_header(source: &Source, lines: &[String], line: u64) -> Result<Head
         })
     };
     let integer = |index: usize, from: usize, to: usize| text(index, from, to).parse::<u64>().ok();
-    let number = |index: usize, from: usize, to: usize| match cell(&text(index, from, to), marks) {
-        Cell::Number(value) => Some(value),
-        _ => None,
-    };
+    let number = |index: usize, from: usize, to: usize| number(&text(index, from, to), marks);
     let data_type =
         integer(6, 0, 10).ok_or_else(|| bad(7, "the type of the data in ten characters"))?;
     let points =

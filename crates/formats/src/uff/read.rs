@@ -416,10 +416,7 @@ fn read_binary(
 }
 
 fn read_text(source: &Source, record: &Record, collector: &mut Collector) -> Result<(), Error> {
-    let marks = Marks {
-        decimal: b'.',
-        thousands: None,
-    };
+    let marks = Marks::decimal(b'.');
     let mut lines = LineReader::new(record.start, record.first_line);
     while lines.offset() < record.end {
         let Some(line) = lines.next(source)? else {
