@@ -1,21 +1,21 @@
-//! B-trees of version 2: of links, attributes and chunks.
+//! Version 2 B-trees: links, attributes and chunks.
 
 use crate::hdf5::cursor::{Problem, bytes_for};
 use crate::hdf5::file::Hdf5File;
 use std::collections::BTreeSet;
 
-/// Bytes of a node around its records.
+/// Bytes of a node besides its records.
 const AROUND: u64 = 10;
 
 /// Deepest tree.
 const DEEPEST: u64 = 16;
 
-/// Sizes of nodes at a depth.
+/// Node sizes at a depth.
 #[derive(Clone, Copy, Debug)]
 struct Level {
-    /// Bytes of the number of records of a node.
+    /// Width of the record count of a node; bytes.
     count: usize,
-    /// The most records in and below a node, and the bytes of their number.
+    /// Most records in and below a node, and the width of that count.
     most_below: u64,
     below: usize,
 }
@@ -29,7 +29,7 @@ struct Tree<'a> {
     records: Vec<Vec<u8>>,
 }
 
-/// All records of a tree of a type, in order.
+/// All records of a tree, in order, with its type.
 pub(crate) fn read_records(
     file: &Hdf5File,
     address: u64,

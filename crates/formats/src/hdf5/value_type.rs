@@ -1,25 +1,25 @@
-//! Types of elements.
+//! Datatypes.
 
 use crate::hdf5::cursor::{Cursor, Problem};
 
-/// Deepest nesting of compounds and arrays.
+/// Deepest nesting of datatypes.
 const DEEPEST: usize = 16;
 
 /// Most members of a compound.
 const MOST_MEMBERS: u16 = 4096;
 
-/// Most extents of an array in an element.
+/// Most dimensions of an array datatype.
 const MOST_EXTENTS: u8 = 32;
 
-/// A type of elements.
+/// A datatype.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Datatype {
-    /// Bytes of one element.
+    /// Bytes per element.
     pub size: usize,
     pub kind: Kind,
 }
 
-/// What the bytes of an element mean.
+/// Class of a datatype.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) enum Kind {
     Integer {
@@ -29,20 +29,20 @@ pub(crate) enum Kind {
     Float {
         big_endian: bool,
     },
-    /// An integer whose values have names.
+    /// An enumeration, stored as an integer.
     Enumeration(Box<Datatype>),
-    /// A text of fixed length.
+    /// Text of fixed length.
     Text,
-    /// A text of any length, in the heap.
+    /// Text of variable length, stored in the heap.
     HeapText,
-    /// The address of another object.
+    /// Reference to another object.
     Reference,
     Compound(Vec<Member>),
     Array {
         base: Box<Datatype>,
         count: u64,
     },
-    /// What is no number, and why.
+    /// Any other class, and why it is not read.
     Other(&'static str),
 }
 
@@ -50,14 +50,14 @@ pub(crate) enum Kind {
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Member {
     pub name: String,
-    /// Bytes before it.
+    /// Offset in bytes.
     pub offset: usize,
     pub datatype: Datatype,
 }
 
 const ODD: &str = "its numbers do not fill their bytes, or are floats of an unusual form";
 
-/// Reads a type.
+/// Reads a datatype.
 pub(crate) fn read_type(cursor: &mut Cursor<'_>) -> Result<Datatype, Problem> {
     read_nested(cursor, 0)
 }
@@ -123,7 +123,7 @@ fn read_integer(
 
 fn read_float(cursor: &mut Cursor<'_>, bits: u64, size: usize) -> Result<Kind, Problem> {
     let (offset, precision) = (cursor.u16()?, cursor.u16()?);
-    // Place and size of the exponent, and of the fraction.
+    // Position and size of exponent and fraction.
     let form = cursor.take(4)?.to_vec();
     let bias = cursor.u32()?;
     let sign = bits >> 8 & 0xff;
@@ -133,7 +133,7 @@ fn read_float(cursor: &mut Cursor<'_>, bits: u64, size: usize) -> Result<Kind, P
         8 => form == [52, 11, 0, 52] && sign == 63 && bias == 1023,
         _ => false,
     };
-    // Bit 6 and bit 0 give the order: 1 of VAX has both.
+    // Bits 6 and 0 give the byte order; VAX sets both.
     let order = bits & 0x41;
     let fills = offset == 0 && usize::from(precision) == size.saturating_mul(8);
     Ok(match usual && fills && order <= 1 {

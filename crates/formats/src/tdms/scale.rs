@@ -1,26 +1,25 @@
-//! Scales of TDMS channels: from raw values to physical ones.
+//! Scales of TDMS channels, from raw to physical values.
 //!
 //! # Source
-//! The names of the properties are those that NI software writes: see
-//! "TDMS file format internal structure" and the help of "TDMS Create Scaling
-//! Information" by National Instruments.
+//! Property names as written by NI software: National Instruments, "TDMS file format
+//! internal structure" and the help of "TDMS Create Scaling Information".
 
 use crate::tdms::metadata::Property;
 use std::collections::BTreeMap;
 
-/// Stands for the raw values in place of a scale's number.
+/// Input number that denotes the raw values.
 pub const RAW: u32 = u32::MAX;
 
 /// Most scales of a channel.
 const MOST_SCALES: u32 = 1000;
 
-/// Most steps from the raw values to the last scale.
+/// Most steps to evaluate the last scale.
 const MOST_STEPS: u32 = 500;
 
-/// One scale; inputs are numbers of other scales, or of raw values.
+/// A scale; inputs are numbers of other scales or of raw values.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Scale {
-    /// Hands its input on.
+    /// Identity.
     Same { input: u32 },
     /// slope · x + intercept.
     Linear {
@@ -30,7 +29,7 @@ pub enum Scale {
     },
     /// `Σ coefficients[i] · xⁱ`.
     Polynomial { input: u32, coefficients: Vec<f64> },
-    /// Straight lines between points, of which `before` rises; constant outside.
+    /// Linear interpolation, with rising `before`; constant outside.
     Table {
         input: u32,
         before: Vec<f64>,
@@ -44,14 +43,14 @@ pub enum Scale {
     },
 }
 
-/// The scales of a channel by number; the last is what the channel means.
+/// The scales of a channel by number; the last one yields the physical value.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Scales {
     scales: BTreeMap<u32, Scale>,
 }
 
 impl Scales {
-    /// The numbers of the raw values that the channel takes.
+    /// Numbers of the raw inputs of the channel.
     pub fn raw_inputs(&self) -> Vec<u32> {
         let mut found = Vec::new();
         self.collect(self.last(), &mut found);
@@ -60,7 +59,7 @@ impl Scales {
         found
     }
 
-    /// The number of the scale that gives what the channel means.
+    /// Number of the scale that yields the physical value.
     fn last(&self) -> u32 {
         self.scales.last_key_value().map_or(RAW, |(last, _)| *last)
     }
@@ -74,8 +73,8 @@ impl Scales {
         }
     }
 
-    /// Whether the last scale can be had in a sensible number of steps: scales may
-    /// refer to each other in a circle, or double with each step.
+    /// Whether evaluation ends in a sensible number of steps: damaged scales may
+    /// form cycles or grow exponentially.
     pub fn ends(&self) -> bool {
         let mut budget = MOST_STEPS;
         self.within(self.last(), &mut budget)
@@ -94,7 +93,7 @@ impl Scales {
             .all(|input| self.within(input, budget))
     }
 
-    /// Names of the scales, for people.
+    /// Names of the scales for display.
     pub fn describe(&self) -> String {
         let names = self.scales.values().map(|scale| match scale {
             Scale::Same { .. } => "no scale",
@@ -106,13 +105,12 @@ impl Scales {
         names.map(|name| format!(", {name}")).collect()
     }
 
-    /// Scales values; `raw` holds those of each number of [`Scales::raw_inputs`].
+    /// Applies the scales; `raw` has the values of each of [`Scales::raw_inputs`].
     pub fn apply(&self, raw: &[(u32, &[f64])], out: &mut [f64]) {
         self.value(self.last(), raw, out);
     }
 
-    /// Scales the raw values of a channel that takes only one number of them, in
-    /// their place.
+    /// Applies the scales in place to a channel with a single raw input.
     pub fn apply_in_place(&self, values: &mut [f64]) {
         if self
             .scales
@@ -122,7 +120,7 @@ impl Scales {
             let raw = values.to_vec();
             self.value(self.last(), &[(RAW, &raw)], values);
         } else {
-            // The raw values are where the innermost scale looks for them.
+            // The innermost scale finds the raw values in place.
             self.value(self.last(), &[], values);
         }
     }
@@ -180,7 +178,7 @@ fn inputs(scale: &Scale) -> Vec<u32> {
     }
 }
 
-/// On the straight line between the two points around `x`.
+/// Linear interpolation at `x`.
 fn interpolated(x: f64, before: &[f64], after: &[f64]) -> f64 {
     let place = before.partition_point(|known| *known <= x);
     match place {
@@ -195,8 +193,7 @@ fn interpolated(x: f64, before: &[f64], after: &[f64]) -> f64 {
     }
 }
 
-/// The scales that properties describe: those of the channel, or of its group,
-/// or of the file.
+/// The scales described by properties of a channel, group or file.
 pub fn scales_of(properties: &BTreeMap<String, Property>) -> Result<Scales, String> {
     let mut scales = Scales::default();
     let count = properties.get("NI_Number_Of_Scales");
@@ -210,7 +207,7 @@ pub fn scales_of(properties: &BTreeMap<String, Property>) -> Result<Scales, Stri
     };
     let count = (count as u32).min(MOST_SCALES);
     for number in 0..count {
-        // A scale without a type stands for raw values of NI-DAQmx.
+        // A scale without a type denotes NI-DAQmx raw values.
         let prefix = format!("NI_Scale[{number}]_");
         let Some(kind) = properties
             .get(&format!("{prefix}Scale_Type"))
