@@ -23,7 +23,7 @@ const OTHERS: [(&[u8], &str, &str); 7] = [
     (
         b"\x1aE\xdf\xa3",
         "an EBML file, such as an enDAQ recording (.ide)",
-        "export the channels as CSV or MAT with the program of the recorder",
+        "export the channels as CSV or MAT with the software of the recorder",
     ),
     (b"\x1f\x8b", "a gzip archive", "unpack it (gunzip)"),
     (

@@ -81,7 +81,7 @@ impl Source {
         let left = self.length.saturating_sub(offset);
         let needed = buffer.len() as u64;
         if needed > left || offset > self.length {
-            return Err(self.truncated(offset, "what stands here", needed));
+            return Err(self.truncated(offset, "the data here", needed));
         }
         match &self.bytes {
             Bytes::Memory(bytes) => {
@@ -92,7 +92,7 @@ impl Source {
             Bytes::File(file) => read_exact_at(file, offset, buffer).map_err(|source| {
                 // The file has shrunk since it was opened.
                 if source.kind() == std::io::ErrorKind::UnexpectedEof {
-                    return self.truncated(offset, "what stands here", needed);
+                    return self.truncated(offset, "the data here", needed);
                 }
                 Error::Access {
                     path: self.path.clone(),
@@ -108,7 +108,7 @@ impl Source {
     /// As [`Source::read_at`].
     pub fn bytes_at(&self, offset: u64, count: u64) -> Result<Vec<u8>, Error> {
         if count > self.length.saturating_sub(offset) {
-            return Err(self.truncated(offset, "what stands here", count));
+            return Err(self.truncated(offset, "the data here", count));
         }
         let mut buffer = vec![0; count as usize];
         self.read_at(offset, &mut buffer)?;
@@ -213,7 +213,7 @@ mod tests {
         let error = source.bytes_at(4, u64::MAX).unwrap_err();
         assert_eq!(
             error.to_string(),
-            "a.bin, at byte 4: the file ends too early: what stands here needs \
+            "a.bin, at byte 4: the file ends too early: the data here needs \
              18446744073709551615 bytes, 6 are left; it was cut off while it was written or copied"
         );
         assert!(source.bytes_at(u64::MAX, 1).is_err());

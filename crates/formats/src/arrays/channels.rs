@@ -74,7 +74,7 @@ fn add_channels(at: usize, array: &Array, name: &str, tree: &mut Tree, listing: 
         .collect();
     let many = count(&others);
     if many > MOST_SERIES {
-        let why = "it would be more than 4096 channels; it is taken to be a picture or the like";
+        let why = "it would give more than 4096 channels, so it is probably a picture";
         return tree.leave_out(&array.path, why);
     }
     if listing.channels.len() + many as usize > MOST_CHANNELS {

@@ -181,7 +181,7 @@ fn read_value(file: &Hdf5File, cursor: &mut Cursor<'_>, head: &Head) -> Result<V
     let count = read_space(&mut file.cursor(cursor.take(head.space_size)?, at))?.count();
     let at = cursor.at();
     if datatype.size == 0 {
-        return Err(cursor.damaged("an attribute has elements of no bytes"));
+        return Err(cursor.damaged("an attribute has elements of zero size"));
     }
     let shown = usize::try_from(count.min(MOST_VALUES)).unwrap_or(0);
     let elements = cursor.rest().chunks_exact(datatype.size).take(shown);
@@ -213,7 +213,7 @@ pub(crate) fn read_shared_type(
     let header = read_header(file, address)?;
     match header.message(DATATYPE).filter(|m| !m.shared) {
         Some(found) => read_type(&mut file.cursor(&found.bytes, found.address)),
-        None => Err(cursor.damaged("a type is not where it should be")),
+        None => Err(cursor.damaged("a datatype is not where it should be")),
     }
 }
 

@@ -46,7 +46,7 @@ fn read_node(
     let used = u64::from(cursor.u16()?);
     let fits = kind == u8::from(keys != Keys::Names) && expected.is_none_or(|e| e == level);
     if !fits || !seen.insert(address) {
-        return Err(cursor.damaged("a tree has a node that does not belong there"));
+        return Err(cursor.damaged("a B-tree has a misplaced node"));
     }
     let key_size = match keys {
         Keys::Names => widths.length,
@@ -58,7 +58,7 @@ fn read_node(
     for _ in 0..used {
         let key = cursor.take(key_size)?.to_vec();
         let child = cursor.address()?;
-        let child = child.ok_or_else(|| cursor.damaged("a tree leads nowhere"))?;
+        let child = child.ok_or_else(|| cursor.damaged("a B-tree has an undefined address"))?;
         match level {
             0 => leaves.push(Leaf {
                 key,

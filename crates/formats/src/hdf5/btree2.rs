@@ -46,7 +46,7 @@ pub(crate) fn read_records(
     let root = cursor.address()?;
     let count = u64::from(cursor.u16()?);
     if !kinds.contains(&kind) || record == 0 || node <= AROUND || depth > DEEPEST {
-        return Err(cursor.damaged("a tree is of another kind than expected"));
+        return Err(cursor.damaged("a B-tree has an unexpected type"));
     }
     let mut tree = Tree {
         file,
@@ -99,7 +99,7 @@ impl Tree<'_> {
         }
         if size > self.node || !self.seen.insert(address) {
             let here = file.cursor(&[][..], address);
-            return Err(here.damaged("a tree has a node that does not belong there"));
+            return Err(here.damaged("a B-tree has a misplaced node"));
         }
         let signature = if depth == 0 { b"BTLF" } else { b"BTIN" };
         let mut cursor = file.checked(address, size, signature)?;
@@ -114,7 +114,7 @@ impl Tree<'_> {
         let mut own = own.into_iter();
         for _ in 0..=count {
             let child = cursor.address()?;
-            let child = child.ok_or_else(|| cursor.damaged("a tree leads nowhere"))?;
+            let child = child.ok_or_else(|| cursor.damaged("a B-tree has an undefined address"))?;
             let below = cursor.uint(level.count)?;
             cursor.skip(under.below)?;
             self.read_node(child, below, depth - 1)?;

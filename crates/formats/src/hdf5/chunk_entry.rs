@@ -22,7 +22,7 @@ pub(crate) fn read_entry(
     let (mut bytes, mut skipped) = (None, 0);
     if filtered {
         let width = size.checked_sub(cursor.widths().address + 4);
-        let width = width.ok_or_else(|| cursor.damaged("an entry of a chunk is too short"))?;
+        let width = width.ok_or_else(|| cursor.damaged("a chunk index entry is too short"))?;
         bytes = Some(cursor.uint(width)?);
         skipped = cursor.u32()?;
     }

@@ -192,7 +192,7 @@ fn read_fixed(
     let block = cursor.address()?;
     let fits = entry >= widths.address && client == u8::from(filtered) && page_bits < 32;
     if !fits || count > file.source.length() {
-        return Err(cursor.damaged("the sizes of an array of chunks make no sense"));
+        return Err(cursor.damaged("the sizes in a chunk index are inconsistent"));
     }
     let Some(block) = block else {
         return Ok(Vec::new());

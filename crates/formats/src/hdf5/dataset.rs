@@ -44,7 +44,7 @@ impl Dataset {
         };
         if header.message(EXTERNAL_FILES).is_some() {
             return Err(Problem::Unsupported(
-                "data that are in other files".to_owned(),
+                "data stored in other files".to_owned(),
             ));
         }
         let cursor = |message: &Message| (message.bytes.clone(), message.address);
@@ -56,7 +56,7 @@ impl Dataset {
             false => read_type(&mut inner)?,
         };
         if datatype.size == 0 {
-            return Err(inner.damaged("the elements of a dataset have no bytes"));
+            return Err(inner.damaged("the elements of a dataset have zero size"));
         }
         let mut inner = file.cursor(&layout.bytes, layout.address);
         let layout = read_layout(&mut inner, space.count(), datatype.size)?;
@@ -78,7 +78,9 @@ impl Dataset {
         };
         match dataset.fits() {
             true => Ok(Some(dataset)),
-            false => Err(inner.damaged("the extents of a dataset and of its chunks do not fit")),
+            false => {
+                Err(inner.damaged("the extents of a dataset do not match those of its chunks"))
+            }
         }
     }
 
@@ -211,7 +213,7 @@ impl Dataset {
         let unpacked = undo_filters(packed, &self.filters, chunk.skipped, size as usize);
         let unpacked = unpacked.ok_or_else(|| Problem::Damaged {
             at: file.base.saturating_add(chunk.address),
-            what: "the chunk that begins here cannot be unpacked, or its checksum does not fit"
+            what: "the chunk that begins here cannot be unpacked, or its checksum is wrong"
                 .to_owned(),
         })?;
         let kept: usize = self.kept.iter().map(|(_, bytes)| bytes.len()).sum();

@@ -51,7 +51,7 @@ pub(crate) fn read_extensible(
         && page_bits < 32
         && most <= file.source.length();
     if !usual {
-        return Err(cursor.damaged("the sizes of an array of chunks make no sense"));
+        return Err(cursor.damaged("the sizes in a chunk index are inconsistent"));
     }
     let Some(index) = index else {
         return Ok(Vec::new());

@@ -111,7 +111,7 @@ impl Hdf5File {
         match lookup3(body).to_le_bytes() == sum {
             true => Ok(()),
             false => Err(problem(
-                "the checksum of the structure that begins here does not fit",
+                "the structure that begins here has a wrong checksum",
             )),
         }
     }
@@ -132,8 +132,8 @@ fn find_signature(source: &Source) -> Result<u64, Error> {
     }
     Err(source.malformed(
         Place::Byte(0),
-        "expected the signature of HDF5; this is no HDF5 file",
-        "let windfall find out the format",
+        "expected the signature of HDF5; this is not an HDF5 file",
+        "let windfall detect the format",
     ))
 }
 
@@ -154,7 +154,7 @@ fn read_superblock(source: Source, at: u64) -> Result<Hdf5File, Problem> {
         length: usize::from(cursor.u8()?),
     };
     if ![2, 4, 8].contains(&widths.address) || ![2, 4, 8].contains(&widths.length) {
-        return Err(cursor.damaged("addresses and lengths have neither 2, 4 nor 8 bytes"));
+        return Err(cursor.damaged("addresses or lengths are not 2, 4 or 8 bytes long"));
     }
     // Older versions have node sizes and flags, newer ones flags.
     cursor.skip(match version {
@@ -206,7 +206,7 @@ fn error_of(path: &std::path::Path, object: Option<&str>, problem: Problem) -> E
             path,
             place: object.map_or(Place::File, |name| Place::Object(name.to_owned())),
             what,
-            advice: "save it without that, for example with h5repack, or as CSV".to_owned(),
+            advice: "save the file without it, for example with h5repack, or as CSV".to_owned(),
         },
     }
 }

@@ -110,7 +110,7 @@ fn read_link(cursor: &mut Cursor<'_>) -> Result<Member, Problem> {
     let link = match kind {
         0 => {
             let address = cursor.address()?;
-            Link::Hard(address.ok_or_else(|| cursor.damaged("a link leads nowhere"))?)
+            Link::Hard(address.ok_or_else(|| cursor.damaged("a link has an undefined address"))?)
         }
         1 => {
             let length = usize::from(cursor.u16()?);
@@ -138,7 +138,7 @@ fn read_dense(
     for record in records {
         // After the hash of the name.
         let id = record.get(4..4 + heap.id_length());
-        let id = id.ok_or_else(|| cursor.damaged("a record of a link is too short"))?;
+        let id = id.ok_or_else(|| cursor.damaged("a link record is too short"))?;
         let (bytes, address) = heap.object(id)?;
         members.push(read_link(&mut file.cursor(&bytes, address))?);
         if members.len() > MOST_MEMBERS {

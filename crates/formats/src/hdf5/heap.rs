@@ -18,7 +18,7 @@ impl LocalHeap {
         let size = cursor.length()?;
         cursor.length()?;
         let data = cursor.address()?;
-        let data = data.ok_or_else(|| cursor.damaged("a heap of names is nowhere"))?;
+        let data = data.ok_or_else(|| cursor.damaged("a name heap has an undefined address"))?;
         Ok(Self {
             bytes: file.bytes(data, size)?,
             address: data,
@@ -121,7 +121,7 @@ impl<'a> FractalHeap<'a> {
             && bits <= 64
             && width <= 1 << 16;
         if !usual {
-            return Err(cursor.damaged("the sizes of a heap make no sense"));
+            return Err(cursor.damaged("the sizes in a heap are inconsistent"));
         }
         Ok(Self {
             file,
@@ -157,7 +157,7 @@ impl<'a> FractalHeap<'a> {
                 Ok((cursor.take(length)?.to_vec(), 0))
             }
             _ => Err(Problem::Unsupported(
-                "attributes and links of more than 64 kB".to_owned(),
+                "attributes and links larger than 64 kB".to_owned(),
             )),
         }
     }

@@ -66,7 +66,7 @@ pub(crate) fn read_space(cursor: &mut Cursor<'_>) -> Result<Space, Problem> {
     let flags = cursor.u8()?;
     let kind = cursor.u8()?;
     if rank > MOST_EXTENTS {
-        return Err(cursor.damaged("a dataset has more than 32 extents"));
+        return Err(cursor.damaged("a dataset has more than 32 dimensions"));
     }
     if version == 1 {
         cursor.skip(4)?;
@@ -125,9 +125,9 @@ pub(crate) fn read_layout(
                 }
                 (2, _) => read_chunked4(cursor),
                 (3, _) => Err(Problem::Unsupported(
-                    "virtual datasets, whose data are in other files".to_owned(),
+                    "virtual datasets, with data in other files".to_owned(),
                 )),
-                _ => Err(cursor.damaged("the layout of data is of an unknown class")),
+                _ => Err(cursor.damaged("the layout of a dataset is of an unknown class")),
             }
         }
     }
@@ -158,14 +158,14 @@ fn read_old(cursor: &mut Cursor<'_>, elements: u64, size: usize) -> Result<Layou
             index: Index::Tree1,
             address,
         })),
-        _ => Err(cursor.damaged("the layout of data is of an unknown class")),
+        _ => Err(cursor.damaged("the layout of a dataset is of an unknown class")),
     }
 }
 
 /// Reads the extents of a chunk, which are followed by the element size.
 fn read_chunk(cursor: &mut Cursor<'_>, rank: u8, width: usize) -> Result<Vec<u64>, Problem> {
     if rank == 0 || rank > MOST_EXTENTS + 1 {
-        return Err(cursor.damaged("a chunk has no extents, or more than 32"));
+        return Err(cursor.damaged("a chunk has no dimensions, or more than 32"));
     }
     let mut chunk = Vec::new();
     for _ in 0..rank {
@@ -203,7 +203,7 @@ fn read_chunked4(cursor: &mut Cursor<'_>) -> Result<Layout, Problem> {
         }
         _ => {
             return Err(Problem::Unsupported(format!(
-                "chunks by an index of kind {kind}"
+                "chunk indexes of type {kind}"
             )));
         }
     };

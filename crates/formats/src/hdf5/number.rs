@@ -117,9 +117,9 @@ fn complex_suffixes(members: &[Member]) -> Option<[&'static str; 2]> {
 fn reason(kind: &Kind) -> &'static str {
     match kind {
         Kind::Text | Kind::HeapText => "it is text",
-        Kind::Reference => "it holds references to other things",
+        Kind::Reference => "it holds references to other objects",
         Kind::Other(why) => why,
-        _ => "it is no number",
+        _ => "it is not a number",
     }
 }
 

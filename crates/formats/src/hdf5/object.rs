@@ -60,7 +60,7 @@ impl Blocks {
         self.bytes = self.bytes.saturating_add(length);
         let seen = self.waiting.iter().any(|(known, _)| *known == address);
         if seen || self.waiting.len() > MOST_BLOCKS || self.bytes > LARGEST {
-            return Err(cursor.damaged("a header goes round in circles, or is too long"));
+            return Err(cursor.damaged("an object header is cyclic or too long"));
         }
         self.waiting.push((address, length));
         Ok(())
@@ -166,7 +166,8 @@ fn add_message(
         let mut body = Cursor::new(bytes, start, cursor.widths());
         let next = body.address()?;
         let length = body.length()?;
-        let next = next.ok_or_else(|| cursor.damaged("a header goes on nowhere"))?;
+        let next = next
+            .ok_or_else(|| cursor.damaged("an object header continues at an undefined address"))?;
         return blocks.add(cursor, next, length);
     }
     if kind != 0 {
@@ -190,7 +191,7 @@ pub(crate) fn resolve(file: &Hdf5File, message: &Message) -> Result<Message, Pro
     let header = read_header(file, target)?;
     match header.message(message.kind) {
         Some(found) if !found.shared => Ok(found.clone()),
-        _ => Err(cursor.damaged("what a shared message refers to is not there")),
+        _ => Err(cursor.damaged("a shared message refers to nothing")),
     }
 }
 
@@ -203,9 +204,9 @@ pub(crate) fn shared_address(cursor: &mut Cursor<'_>) -> Result<u64, Problem> {
     }
     if version == 3 && kind != 2 {
         return Err(Problem::Unsupported(
-            "messages that are kept in a table of the file".to_owned(),
+            "messages kept in a table of the file".to_owned(),
         ));
     }
     let address = cursor.address()?;
-    address.ok_or_else(|| cursor.damaged("a shared message is nowhere"))
+    address.ok_or_else(|| cursor.damaged("a shared message has an undefined address"))
 }

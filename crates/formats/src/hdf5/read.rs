@@ -35,7 +35,7 @@ impl Hdf5Reader {
         let length = file.source.length();
         let found = list(&file);
         if found.is_err() && file.end > length {
-            let what = "the file as it was written";
+            let what = "the complete file";
             return Err(file.source.truncated(0, what, file.end));
         }
         let mut found = found?;

@@ -123,7 +123,10 @@ impl Walk<'_> {
     fn list_object(&mut self, address: u64, path: Vec<String>, in_struct: bool) {
         self.things += 1;
         if path.len() > DEEPEST || self.things > MOST_THINGS {
-            return self.leave_out(&path, "it is nested too deep, or the file holds too much");
+            return self.leave_out(
+                &path,
+                "it is nested too deep, or the file holds too many objects",
+            );
         }
         if let Err(problem) = self.list_header(address, &path, in_struct) {
             self.leave_out(&path, &reason(&problem));
@@ -391,7 +394,7 @@ fn too_much(dataset: &Dataset) -> Problem {
     Problem::Damaged {
         at: 0,
         what: format!(
-            "it claims {} elements, more than the file can hold",
+            "it declares {} elements, more than the file can hold",
             dataset.space.count()
         ),
     }

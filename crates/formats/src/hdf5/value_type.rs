@@ -55,7 +55,7 @@ pub(crate) struct Member {
     pub datatype: Datatype,
 }
 
-const ODD: &str = "its numbers do not fill their bytes, or are floats of an unusual form";
+const ODD: &str = "its numbers have padding bits, or are floats of an unusual form";
 
 /// Reads a datatype.
 pub(crate) fn read_type(cursor: &mut Cursor<'_>) -> Result<Datatype, Problem> {
@@ -64,7 +64,9 @@ pub(crate) fn read_type(cursor: &mut Cursor<'_>) -> Result<Datatype, Problem> {
 
 fn read_nested(cursor: &mut Cursor<'_>, depth: usize) -> Result<Datatype, Problem> {
     if depth > DEEPEST {
-        return Err(Problem::Unsupported("types nested that deep".to_owned()));
+        return Err(Problem::Unsupported(
+            "datatypes nested that deeply".to_owned(),
+        ));
     }
     let head = cursor.u8()?;
     let (version, class) = (head >> 4, head & 0xf);
@@ -75,7 +77,7 @@ fn read_nested(cursor: &mut Cursor<'_>, depth: usize) -> Result<Datatype, Proble
         1 => read_float(cursor, bits, size)?,
         2 => {
             cursor.skip(2)?;
-            Kind::Other("it holds times of an old form")
+            Kind::Other("it holds times in an old format")
         }
         3 => Kind::Text,
         5 => {
@@ -84,13 +86,13 @@ fn read_nested(cursor: &mut Cursor<'_>, depth: usize) -> Result<Datatype, Proble
         }
         6 => read_compound(cursor, version, bits, (size, depth))?,
         7 if bits & 0xf == 0 => Kind::Reference,
-        7 => Kind::Other("it holds references to parts of other things"),
+        7 => Kind::Other("it holds references to regions of datasets"),
         8 => read_enumeration(cursor, version, bits, depth)?,
         9 => {
             read_nested(cursor, depth + 1)?;
             match bits & 0xf {
                 1 => Kind::HeapText,
-                _ => Kind::Other("its elements are of varying length"),
+                _ => Kind::Other("its elements vary in length"),
             }
         }
         10 => read_array(cursor, version, depth)?,
@@ -99,7 +101,7 @@ fn read_nested(cursor: &mut Cursor<'_>, depth: usize) -> Result<Datatype, Proble
     if let Kind::Array { base, count } = &kind
         && count.checked_mul(base.size as u64) != Some(size as u64)
     {
-        return Err(cursor.damaged("an array in an element has another size than its parts"));
+        return Err(cursor.damaged("the size of an array type does not match its elements"));
     }
     Ok(Datatype { size, kind })
 }
@@ -153,7 +155,7 @@ fn read_compound(
     let count = (bits & 0xffff) as u16;
     if count > MOST_MEMBERS {
         return Err(Problem::Unsupported(format!(
-            "compounds of {count} members"
+            "compound types with {count} members"
         )));
     }
     let mut members = Vec::new();
@@ -184,7 +186,7 @@ fn read_compound(
         }
         let fits = (offset as usize).checked_add(datatype.size);
         if fits.is_none_or(|end| end > size) {
-            return Err(cursor.damaged("a member stands outside of its compound"));
+            return Err(cursor.damaged("a member lies outside of its compound type"));
         }
         members.push(Member {
             name,
@@ -220,7 +222,7 @@ fn read_enumeration(
 fn read_array(cursor: &mut Cursor<'_>, version: u8, depth: usize) -> Result<Kind, Problem> {
     let rank = cursor.u8()?;
     if rank > MOST_EXTENTS {
-        return Err(cursor.damaged("an array in an element has too many extents"));
+        return Err(cursor.damaged("an array type has too many dimensions"));
     }
     if version < 3 {
         cursor.skip(3)?;
@@ -249,6 +251,6 @@ fn array_of(cursor: &Cursor<'_>, base: Datatype, extents: &[u64]) -> Result<Data
                 count,
             },
         }),
-        _ => Err(cursor.damaged("an array in an element is too large")),
+        _ => Err(cursor.damaged("an array type is too large")),
     }
 }

@@ -64,7 +64,7 @@ impl Elements<'_> {
             },
         };
         if small && element.length > 4 {
-            return Err(self.malformed("a small data element claims more than 4 bytes"));
+            return Err(self.malformed("a small data element declares more than 4 bytes"));
         }
         let possible = end - element.at;
         if element.length > possible {

@@ -130,7 +130,7 @@ fn damaged(source: &Source, start: u64, error: &std::io::Error) -> Error {
         Place::Byte(start),
         match error.kind() {
             std::io::ErrorKind::UnexpectedEof => {
-                "the compressed data that begin here end before what they declare".to_owned()
+                "the compressed data that begin here end too early".to_owned()
             }
             _ => format!("the compressed data that begin here are damaged ({error})"),
         },

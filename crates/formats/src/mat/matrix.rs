@@ -73,7 +73,7 @@ fn list_matrix(
     if above.len() > DEEPEST || walk.things > MOST_THINGS {
         walk.found.tree.leave_out(
             above,
-            "it is nested too deep, or the file holds too many things",
+            "it is nested too deep, or the file holds too many objects",
         );
         return Ok(());
     }
@@ -102,7 +102,7 @@ fn list_matrix(
     let lengths = elements.integers(extents, MOST_EXTENTS)?;
     let lengths: Vec<u64> = lengths.into_iter().map(u64::from).collect();
     if lengths.len() < 2 || extents.length / 4 > MOST_EXTENTS {
-        return Err(elements.malformed("expected 2 to 32 extents of a matrix"));
+        return Err(elements.malformed("expected a matrix of 2 to 32 dimensions"));
     }
     let (path, at) = named(elements, extents.next)?;
     let matrix = Matrix {
@@ -143,7 +143,7 @@ fn reason(class: u8) -> &'static str {
         3 | OPAQUE => "it is an object of MATLAB (a table, a string, a date …); save plain arrays",
         5 => "it is a sparse matrix; save full(…) of it",
         16 => "it is a function",
-        _ => "it is of a class that windfall does not know",
+        _ => "windfall does not know its class",
     }
 }
 
@@ -175,7 +175,7 @@ fn list_struct(
     let text = elements.data(names_element, LONGEST_NAMES)?;
     let width = match width_words.first() {
         Some(&width) if width > 0 => width as usize,
-        _ => return Err(elements.malformed("expected the length of names of fields")),
+        _ => return Err(elements.malformed("expected the length of field names")),
     };
     let names: Vec<String> = text
         .chunks_exact(width)
@@ -233,7 +233,9 @@ fn list_part(
 /// Each part of a struct or cell takes at least a tag of eight bytes.
 fn check_room(elements: &Elements<'_>, matrix: &Matrix, parts: u64) -> Result<(), Error> {
     match parts > matrix.end.saturating_sub(matrix.at) / 8 {
-        true => Err(elements.malformed("a struct or cell claims more parts than it has room for")),
+        true => {
+            Err(elements.malformed("a struct or cell declares more parts than it has room for"))
+        }
         false => Ok(()),
     }
 }

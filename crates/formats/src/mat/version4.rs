@@ -100,7 +100,7 @@ fn list_matrix(source: &Source, at: u64, found: &mut MatTree) -> Result<u64, Err
         return Err(source.truncated(at, "the header of a variable", HEADER));
     }
     let header = read_header(&source.bytes_at(at, HEADER)?)
-        .ok_or_else(|| malformed(source, at, "expected the header of a matrix of version 4"))?;
+        .ok_or_else(|| malformed(source, at, "expected the header of a version 4 matrix"))?;
     let name_at = at + HEADER;
     let needed = u64::from(header.name);
     if source.length() - name_at < needed {
@@ -113,7 +113,7 @@ fn list_matrix(source: &Source, at: u64, found: &mut MatTree) -> Result<u64, Err
         return Err(refused_machine(source, at, &header));
     }
     let number = of_version_4(header.digit)
-        .ok_or_else(|| malformed(source, at, "expected a type of numbers from 0 to 5"))?;
+        .ok_or_else(|| malformed(source, at, "expected a number type from 0 to 5"))?;
     let count = u64::from(header.rows) * u64::from(header.columns);
     let parts = 1 + u64::from(header.complex);
     let start = name_at + needed;
@@ -121,7 +121,7 @@ fn list_matrix(source: &Source, at: u64, found: &mut MatTree) -> Result<u64, Err
     let length = bytes
         .filter(|b| *b <= source.length() - start)
         .ok_or_else(|| {
-            let what = format!("the variable \"{name}\" and what stands behind it");
+            let what = format!("the variable \"{name}\"");
             source.truncated(start, &what, bytes.unwrap_or(u64::MAX))
         })?;
     let region = Region {

@@ -47,7 +47,7 @@ pub(crate) fn read_header(source: &Source) -> Result<Header, Error> {
         return Err(source.malformed(
             Place::Byte(124),
             problem,
-            "let windfall find out the format, or save the file again in MATLAB",
+            "let windfall detect the format, or save the file again in MATLAB",
         ));
     }
     let text = String::from_utf8_lossy(&bytes[..116]);
@@ -100,7 +100,7 @@ pub(crate) fn list(source: &Source, header: &Header) -> Result<(MatTree, bool), 
             list_variable(&mut elements, &mut walk)?;
         } else {
             walk.found.tree.notes.push(Note::Odd {
-                what: format!("at byte {at} stands a data element of type {kind}, passed over"),
+                what: format!("the data element of type {kind} at byte {at} is skipped"),
             });
         }
         let end = at + 8 + length;

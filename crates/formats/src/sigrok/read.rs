@@ -50,7 +50,7 @@ impl SigrokReader {
         let (archive, entries) = open_archive(source)?;
         let Some(description) = entries.iter().find(|entry| entry.name == "metadata") else {
             return Err(archive.get_ref().unknown(
-                "this zip archive is no capture of sigrok: it has no entry \"metadata\"",
+                "this zip archive is not a sigrok capture: it has no entry \"metadata\"",
                 "unpack it and name the recording; save a workbook's sheet as CSV",
             ));
         };
@@ -143,7 +143,7 @@ fn read_metadata(archive: &ZipArchive<Source>, entry: &Entry) -> Result<Metadata
     }
     if metadata.file.is_empty() || metadata.unit == 0 || metadata.unit > MOST_PROBES / 8 {
         return Err(broken(
-            "it names no capture file or no size of a sample".to_owned(),
+            "it gives no capture file or no sample size".to_owned(),
         ));
     }
     let unit = metadata.unit;
@@ -157,7 +157,7 @@ fn read_metadata(archive: &ZipArchive<Source>, entry: &Entry) -> Result<Metadata
         }
     }
     match metadata.probes.is_empty() {
-        true => Err(broken("it names no probes".to_owned())),
+        true => Err(broken("it lists no probes".to_owned())),
         false => Ok(metadata),
     }
 }

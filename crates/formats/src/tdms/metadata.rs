@@ -184,14 +184,14 @@ fn read_index(cursor: &mut Cursor) -> Result<Index, Fault> {
         .ok_or_else(|| cursor.fault(format!("the data type {code:#x} is not known")))?;
     let dimensions = cursor.u32()?;
     if dimensions != 1 {
-        return Err(cursor.fault(format!("arrays of {dimensions} dimensions cannot be")));
+        return Err(cursor.fault(format!("arrays cannot have {dimensions} dimensions")));
     }
     let count = cursor.u64()?;
     let bytes = match value {
         ValueType::Text => Some(cursor.u64()?),
         value => count.checked_mul(value.size()),
     };
-    let bytes = bytes.ok_or_else(|| cursor.fault(format!("{count} values cannot be")))?;
+    let bytes = bytes.ok_or_else(|| cursor.fault(format!("{count} values are impossible")))?;
     Ok(Index::Values {
         value,
         count,
@@ -203,12 +203,12 @@ fn read_daqmx(cursor: &mut Cursor, digital: bool) -> Result<Index, Fault> {
     cursor.u32()?;
     let dimensions = cursor.u32()?;
     if dimensions != 1 {
-        return Err(cursor.fault(format!("arrays of {dimensions} dimensions cannot be")));
+        return Err(cursor.fault(format!("arrays cannot have {dimensions} dimensions")));
     }
     let count = cursor.u64()?;
     let number = cursor.u32()?;
     if number == 0 || number > MOST_SCALERS {
-        return Err(cursor.fault(format!("{number} scalers cannot be")));
+        return Err(cursor.fault(format!("{number} scalers are impossible")));
     }
     let mut scalers = Vec::new();
     for _ in 0..number {
@@ -231,7 +231,7 @@ fn read_daqmx(cursor: &mut Cursor, digital: bool) -> Result<Index, Fault> {
     }
     let number = cursor.u32()?;
     if number == 0 || number > MOST_SCALERS {
-        return Err(cursor.fault(format!("{number} raw buffers cannot be")));
+        return Err(cursor.fault(format!("{number} raw buffers are impossible")));
     }
     let widths = (0..number)
         .map(|_| cursor.u32())

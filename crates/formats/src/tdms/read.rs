@@ -204,7 +204,7 @@ fn check_buffers(found: &Found, channel: &Channel) -> Option<String> {
         last = Some(&group.regions);
         let holds = |region: &&Region| region.members.iter().any(|m| m.object == channel.object);
         if group.regions.iter().filter(holds).count() > 1 {
-            return Some("its raw values lie in several raw buffers".to_owned());
+            return Some("its raw values are spread over several raw buffers".to_owned());
         }
     }
     None

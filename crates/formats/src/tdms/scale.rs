@@ -221,7 +221,7 @@ pub fn scales_of(properties: &BTreeMap<String, Property>) -> Result<Scales, Stri
     }
     match scales.ends() {
         true => Ok(scales),
-        false => Err("its scales refer to each other in a circle, or in too many steps".to_owned()),
+        false => Err("its scales are cyclic or too deeply nested".to_owned()),
     }
 }
 
@@ -286,6 +286,6 @@ fn scale(
         "AdvancedAPI" => Ok(Scale::Same {
             input: input("AdvancedAPI_Input_Source"),
         }),
-        other => Err(format!("its scale \"{other}\" is none that windfall reads")),
+        other => Err(format!("windfall does not read its scale \"{other}\"")),
     }
 }

@@ -66,7 +66,7 @@ pub fn read_segments(source: &Source) -> Result<Found, Error> {
     while at < source.length() {
         if source.length() - at < LEAD_IN {
             let left = source.length() - at;
-            let missing = format!("{left} bytes behind the last segment are no whole one");
+            let missing = format!("{left} bytes after the last segment are not a whole segment");
             found.notes.push(Note::CutOff { missing });
             break;
         }
@@ -112,7 +112,7 @@ fn read_lead_in(source: &Source, at: u64) -> Result<LeadIn, Error> {
         .filter(|next| *next <= source.length());
     if next.is_some() && metadata_length > length {
         let problem = format!(
-            "the raw data begin at {metadata_length}, behind the end of their segment at {length}"
+            "the raw data begin at {metadata_length}, after the end of their segment at {length}"
         );
         return Err(malformed(source, at + 20, problem));
     }
@@ -138,7 +138,7 @@ fn read_segment(
 ) -> Result<bool, Error> {
     let begin = at + LEAD_IN;
     if lead_in.next.is_none() {
-        let missing = "its last segment was not finished; what is complete in it is read";
+        let missing = "its last segment was not finished; the complete part of it is read";
         found.notes.push(Note::CutOff {
             missing: missing.to_owned(),
         });
@@ -205,7 +205,8 @@ fn update(
             Index::Same => match found.objects[object].index.clone() {
                 Some(index) => index,
                 None => {
-                    let problem = format!("{} refers to an index that was never given", entry.path);
+                    let problem =
+                        format!("{} refers to an index that was never defined", entry.path);
                     return Err(malformed(source, at, problem));
                 }
             },

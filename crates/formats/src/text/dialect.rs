@@ -118,8 +118,8 @@ pub fn find_dialect(lines: &[&str], options: &TextOptions) -> Result<Dialect, us
     dialect.rising_first = unnamed && count > 1 && first_rises(lines, &rows, &dialect);
     if candidate.ambiguous && options.decimal.is_none() {
         let (mark, other) = match marks.decimal {
-            b',' => ("comma", "\",\" as a mark of thousands"),
-            _ => ("point", "\".\" as a mark of thousands"),
+            b',' => ("comma", "\",\" as thousands separator"),
+            _ => ("point", "\".\" as thousands separator"),
         };
         dialect.notes.push(Note::Assumed {
             what: format!(

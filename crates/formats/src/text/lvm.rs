@@ -128,7 +128,7 @@ impl LvmReader {
 fn malformed(source: &Source, line: u64, problem: &str) -> Error {
     source.malformed(
         Place::Line(line),
-        format!("this is no complete LabVIEW measurement file: {problem}"),
+        format!("this is not a complete LabVIEW measurement file: {problem}"),
         "write the file again, or read it as text (format \"text\")",
     )
 }
@@ -213,11 +213,7 @@ fn find_segments(source: &Source, file: &FileHeader, marks: &[u64]) -> Result<Ve
     let mut lines = count_lines(source, 0, before)?;
     for &mark in &marks[1..] {
         if mark < before {
-            return Err(malformed(
-                source,
-                lines,
-                "two headers end in the same lines",
-            ));
+            return Err(malformed(source, lines, "two headers overlap"));
         }
         let from = before.max(mark.saturating_sub(LONGEST_HEADER));
         let bytes = source.bytes_at(from, mark.saturating_sub(from))?;
@@ -338,7 +334,7 @@ fn add_channels(
         return Err(malformed(
             source,
             line,
-            "the line with the names of the channels is missing",
+            "the line with the channel names is missing",
         ));
     }
     let first_rows = first_rows(source, file, segment)?;

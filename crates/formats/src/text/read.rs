@@ -41,7 +41,7 @@ impl TextReader {
         {
             return Err(Error::Empty {
                 path: source.path().to_path_buf(),
-                expected: "a header line with the names of the columns, then one line per sample",
+                expected: "a header line with column names, then one line per sample",
             });
         }
         check_text(&source, &text)?;
@@ -116,7 +116,7 @@ fn check_text(source: &Source, text: &str) -> Result<(), Error> {
         return Ok(());
     }
     Err(source.unknown(
-        "this is a binary file of a format that windfall does not know",
+        "this is a binary file of an unknown format",
         "export the recording as CSV, TDMS, MAT, HDF5, WAV or UFF58",
     ))
 }

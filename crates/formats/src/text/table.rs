@@ -206,7 +206,7 @@ impl Course {
             return Ok(Some(CutOff { line, found }));
         }
         let problem =
-            format!("expected {expected} cells, as in the lines before, and found {found}");
+            format!("expected {expected} cells, as in the lines before, but found {found}");
         Err(malformed(source, line, problem))
     }
 

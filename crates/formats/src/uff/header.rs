@@ -58,8 +58,7 @@ pub fn parse_header(source: &Source, lines: &[String], line: u64) -> Result<Head
     };
     let integer = |index: usize, from: usize, to: usize| text(index, from, to).parse::<u64>().ok();
     let number = |index: usize, from: usize, to: usize| number(&text(index, from, to), marks);
-    let data_type =
-        integer(6, 0, 10).ok_or_else(|| bad(7, "the type of the data in ten characters"))?;
+    let data_type = integer(6, 0, 10).ok_or_else(|| bad(7, "the data type in ten characters"))?;
     let points =
         integer(6, 10, 20).ok_or_else(|| bad(7, "the number of points in ten characters"))?;
     let even = integer(6, 20, 30) != Some(0);

@@ -69,7 +69,7 @@ impl LineReader {
                     return Err(source.malformed(
                         Place::Line(self.number),
                         "the line is longer than 1 MiB",
-                        "this is no universal file of text; was it damaged?",
+                        "is this universal file damaged?",
                     ));
                 }
                 self.buffer.drain(..from);

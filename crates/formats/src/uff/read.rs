@@ -143,7 +143,7 @@ fn read_function(
                 return Err(malformed(
                     &found.source,
                     lines.number(),
-                    "the header of a function ends too early",
+                    "the header of a function is incomplete",
                 ));
             }
         }
@@ -225,7 +225,7 @@ fn binary_data(
                 &found.source,
                 lines.number(),
                 &format!(
-                    "{} points do not fit into the bytes that are declared",
+                    "{} points do not fit into the declared bytes",
                     header.points
                 ),
             ));

@@ -63,7 +63,7 @@ impl WavReader {
             return Err(malformed(
                 &source,
                 8,
-                "expected \"WAVE\"; this is no WAVE file",
+                "expected \"WAVE\"; this is not a WAVE file",
             ));
         }
         let mut notes = Vec::new();
@@ -122,7 +122,7 @@ impl WavReader {
         if bytes % frame != 0 {
             notes.push(Note::Odd {
                 what: format!(
-                    "{} bytes behind the last whole frame are left out",
+                    "{} bytes after the last whole frame are left out",
                     bytes % frame
                 ),
             });
@@ -172,7 +172,7 @@ fn read_shape(source: &Source, at: u64, size: u32, big_endian: bool) -> Result<S
         other => {
             return Err(source.unsupported(
                 Place::Byte(at),
-                format!("sound of format {other} ({})", codec(other)),
+                format!("WAVE format {other} ({})", codec(other)),
                 "convert it to PCM",
             ));
         }
@@ -181,7 +181,7 @@ fn read_shape(source: &Source, at: u64, size: u32, big_endian: bool) -> Result<S
         return Err(malformed(
             source,
             at,
-            &format!("{channels} channels at {rate} Hz in frames of {align} bytes cannot be"),
+            &format!("{channels} channels at {rate} Hz in frames of {align} bytes are impossible"),
         ));
     }
     let container = align / channels;
@@ -194,7 +194,9 @@ fn read_shape(source: &Source, at: u64, size: u32, big_endian: bool) -> Result<S
         return Err(malformed(
             source,
             at,
-            &format!("{bits} bits in frames of {align} bytes for {channels} channels cannot be"),
+            &format!(
+                "{bits} bits in frames of {align} bytes for {channels} channels are impossible"
+            ),
         ));
     }
     Ok(Shape {
