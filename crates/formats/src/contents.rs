@@ -1,9 +1,9 @@
-//! What a file holds, known without reading its samples.
+//! Contents of a file, known without reading its samples.
 
 /// A file format.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Format {
-    /// Lines of numbers between separators.
+    /// Delimited text.
     Text,
     /// LabVIEW measurement file.
     Lvm,
@@ -11,13 +11,13 @@ pub enum Format {
     Tdms,
     /// MATLAB, versions 4 to 7.
     Mat,
-    /// HDF5, which MATLAB 7.3 files are too.
+    /// HDF5, including MATLAB 7.3.
     Hdf5,
     /// RIFF, RIFX or RF64 WAVE.
     Wav,
     /// Universal file, data sets 58 and 58b.
     Uff58,
-    /// Logic-analyser capture of sigrok.
+    /// sigrok logic-analyser capture.
     Sigrok,
 }
 
@@ -36,69 +36,69 @@ impl std::fmt::Display for Format {
     }
 }
 
-/// When the samples of a channel were taken, as far as the file says.
+/// When the samples of a channel were taken, if the file says so.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum TimeBase {
-    /// It does not say.
+    /// Not stated.
     Unknown,
-    /// Evenly.
+    /// At a constant rate.
     Uniform {
         /// Time of the first sample; s.
         start: f64,
         /// Time between samples; s.
         interval: f64,
     },
-    /// At the times in another channel of the same file, in that channel's unit.
+    /// At times stored in another channel of the file, in its unit.
     Channel(usize),
 }
 
 /// One channel of a file.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ChannelContents {
-    /// Name by which a campaign asks for it; unique within the file. Groups and
-    /// channels, or nested things, are joined by "/".
+    /// Name used in campaigns; unique within the file. Groups and nested objects are
+    /// joined by "/".
     pub name: String,
-    /// Unit as the file writes it.
+    /// Unit as written in the file.
     pub unit: Option<String>,
-    /// Number of samples; `None` where only reading tells.
+    /// Number of samples; `None` if unknown before reading.
     pub length: Option<u64>,
-    /// When they were taken.
+    /// When the samples were taken.
     pub time: TimeBase,
-    /// How they are stored, in a few words: "16-bit integer, linear scale".
+    /// How samples are stored, for example "16-bit integer, linear scale".
     pub stored_as: String,
-    /// Other things that the file says of the channel: name and text.
+    /// Other properties of the channel: name and text.
     pub properties: Vec<(String, String)>,
 }
 
-/// Something about the file that a user must know; reading goes on.
+/// Something the user should know about the file; not an error.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Note {
-    /// A part of the file is not numbers, or not read: what, and why.
+    /// A part of the file that is not numeric or not supported.
     LeftOut {
-        /// What.
+        /// The part.
         what: String,
-        /// Why.
+        /// The reason.
         why: String,
     },
-    /// The last part of the file is incomplete; what is complete is read.
+    /// The file is truncated; what is complete is read.
     CutOff {
         /// What is missing.
         missing: String,
     },
-    /// The file does not say, and windfall has taken the usual.
+    /// Something not stated in the file was assumed.
     Assumed {
-        /// What was taken, and how to say otherwise.
+        /// The assumption, and how to override it.
         what: String,
     },
-    /// The file contradicts itself or its format; how it was read.
+    /// The file contradicts itself or its format.
     Odd {
-        /// What, and how it was read.
+        /// The contradiction, and how it was resolved.
         what: String,
     },
 }
 
 impl Note {
-    /// Short name for scripts.
+    /// Short code for scripts.
     #[must_use]
     pub fn code(&self) -> &'static str {
         match self {
@@ -120,17 +120,17 @@ impl std::fmt::Display for Note {
     }
 }
 
-/// What a file holds.
+/// Contents of a file.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Contents {
     /// Its format.
     pub format: Format,
-    /// Version or variant of the format, as one would say it: "v7.3", "RIFX".
+    /// Version or variant of the format, such as "v7.3" or "RIFX".
     pub variant: String,
-    /// Channels of numbers, in the order of the file.
+    /// Numeric channels in file order.
     pub channels: Vec<ChannelContents>,
-    /// What the file says of itself: name and text.
+    /// Properties of the file: name and text.
     pub properties: Vec<(String, String)>,
-    /// What a user must know.
+    /// Notes for the user.
     pub notes: Vec<Note>,
 }

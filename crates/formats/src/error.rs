@@ -1,8 +1,8 @@
-//! Why a file cannot be read, said so that it can be mended.
+//! Errors of reading a file.
 
 use std::path::PathBuf;
 
-/// Where in a file the fault is.
+/// Location of a fault in a file.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Place {
     /// The file as a whole.
@@ -18,13 +18,13 @@ pub enum Place {
         /// Name of the column.
         column: String,
     },
-    /// A channel, dataset, variable or other named thing in the file.
+    /// A channel, dataset, variable or other named object.
     Object(String),
     /// A sample of a channel, counted from 0.
     Sample {
         /// Name of the channel.
         channel: String,
-        /// Position in it.
+        /// Index of the sample.
         sample: u64,
     },
 }
@@ -46,39 +46,39 @@ impl std::fmt::Display for Place {
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum Error {
-    /// There is no such file.
+    /// The file does not exist.
     #[error("{path}: there is no such file; check the name and the directory", path = path.display())]
     Absent {
         /// The file.
         path: PathBuf,
     },
-    /// The system refuses.
+    /// The operating system reported an error.
     #[error("{path}: cannot read: {source}", path = path.display())]
     Access {
         /// The file.
         path: PathBuf,
-        /// What the system said.
+        /// The error reported.
         source: std::io::Error,
     },
-    /// A file of no bytes, or without anything to read.
+    /// The file is empty.
     #[error("{path}: the file is empty; expected {expected}", path = path.display())]
     Empty {
         /// The file.
         path: PathBuf,
-        /// What a file of its kind holds.
+        /// What such a file should contain.
         expected: &'static str,
     },
-    /// The format could not be told, or is one that windfall does not read.
+    /// The format is unknown or unsupported.
     #[error("{path}: {found}; {advice}", path = path.display())]
     UnknownFormat {
         /// The file.
         path: PathBuf,
-        /// What it seems to be.
+        /// What the file seems to be.
         found: String,
         /// What to do.
         advice: String,
     },
-    /// The file ends before what it declares.
+    /// The file is truncated.
     #[error(
         "{path}{place}: the file ends too early: {what} needs {needed} bytes, {left} are left; \
          it was cut off while it was written or copied", path = path.display()
@@ -88,14 +88,14 @@ pub enum Error {
         path: PathBuf,
         /// Where.
         place: Place,
-        /// What should have stood there.
+        /// What should be there.
         what: String,
-        /// Bytes that it needs.
+        /// Bytes needed.
         needed: u64,
-        /// Bytes that the file still has.
+        /// Bytes left in the file.
         left: u64,
     },
-    /// The file breaks the rules of its format.
+    /// The file violates its format.
     #[error("{path}{place}: {problem}; {advice}", path = path.display())]
     Malformed {
         /// The file.
@@ -107,19 +107,19 @@ pub enum Error {
         /// What to do.
         advice: String,
     },
-    /// A part of the format that windfall does not read.
+    /// The file uses an unsupported part of its format.
     #[error("{path}{place}: windfall does not read {what}; {advice}", path = path.display())]
     Unsupported {
         /// The file.
         path: PathBuf,
         /// Where.
         place: Place,
-        /// What is not read.
+        /// What is not supported.
         what: String,
         /// What to do.
         advice: String,
     },
-    /// A declared size that the file cannot hold.
+    /// A declared size exceeds the file.
     #[error(
         "{path}{place}: {what} claims {declared}, the file has room for {possible}; \
          the file is damaged", path = path.display()
@@ -129,26 +129,26 @@ pub enum Error {
         path: PathBuf,
         /// Where.
         place: Place,
-        /// What claims a size.
+        /// What has this size.
         what: String,
-        /// The claim, in the unit of `what`.
+        /// Declared size, in the unit of `what`.
         declared: u64,
-        /// The most that can be.
+        /// Largest possible size.
         possible: u64,
     },
-    /// A cell of a text file that is no number.
+    /// A cell is not a number.
     #[error("{path}{place}: \"{text}\" is not a number{hint}", path = path.display())]
     NotNumber {
         /// The file.
         path: PathBuf,
         /// Where.
         place: Place,
-        /// What stands there.
+        /// Text of the cell.
         text: String,
-        /// A remark that starts with a blank, or nothing.
+        /// A remark that starts with a space or semicolon, or nothing.
         hint: String,
     },
-    /// A setting that does not fit the file or makes no sense.
+    /// A setting does not fit the file.
     #[error("{path}: the setting {option} does not fit: {problem}", path = path.display())]
     Setting {
         /// The file.

@@ -1,15 +1,14 @@
-//! Files of instruments → channels of numbers, as the instrument wrote them.
+//! Reads instrument files: channels of numbers as the instrument wrote them.
 //!
-//! [`open::open`] finds out the format of a file and returns a
-//! [`reader::Reader`]; its [`contents::Contents`] names the channels with unit,
-//! length and time base without reading their samples, and
-//! [`reader::Reader::read`] hands over the samples in blocks, so that a file of
-//! any size is looked through in bounded memory.
+//! [`open::open`] detects the format of a file and returns a [`reader::Reader`].
+//! Its [`contents::Contents`] lists the channels with unit, length and time base
+//! without reading their samples; [`reader::Reader::read`] passes on the samples in
+//! blocks, so that files of any size can be read in bounded memory.
 //!
-//! One folder for each format. Values are those of the file after the
-//! scaling that the file itself prescribes; what they mean on a rig, in which
-//! unit, is said in a campaign and is not known here. Sizes and offsets that a
-//! file declares are checked against its length before anything is allocated.
+//! There is one folder per format. Values are scaled as the file itself
+//! prescribes; what they mean on a rig, and in which unit, is set in a campaign and
+//! unknown here. Sizes and offsets declared in a file are checked against its
+//! length before anything is allocated.
 
 mod arrays;
 pub mod contents;

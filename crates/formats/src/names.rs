@@ -2,7 +2,7 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
-/// Numbers names that were given before: "x", "x (2)", "x (3)".
+/// Makes names unique: "x", "x (2)", "x (3)".
 #[derive(Debug, Default)]
 pub(crate) struct Names {
     taken: BTreeSet<String>,
@@ -10,7 +10,7 @@ pub(crate) struct Names {
 }
 
 impl Names {
-    /// The name itself, or with the lowest number that makes it unique.
+    /// The name, numbered if it was used before.
     pub fn unique(&mut self, name: &str) -> String {
         let times = self.times.entry(name.to_owned()).or_default();
         loop {

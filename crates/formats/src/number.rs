@@ -1,6 +1,6 @@
-//! Numbers as binary files store them.
+//! Numbers in binary files.
 
-/// The integer in up to eight bytes.
+/// Decodes an integer of up to eight bytes.
 pub(crate) fn integer(bytes: &[u8], big_endian: bool) -> u64 {
     let join = |value: u64, byte: &u8| (value << 8) | u64::from(*byte);
     match big_endian {
@@ -24,18 +24,18 @@ pub(crate) enum Number {
     F64,
 }
 
-/// Where numbers lie among bytes.
+/// Position of numbers in a buffer.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct Layout {
     /// Bytes before the first.
     pub offset: usize,
-    /// Bytes from one to the next.
+    /// Bytes from one number to the next.
     pub stride: usize,
     pub big_endian: bool,
 }
 
 impl Number {
-    /// Bytes of one.
+    /// Size in bytes.
     pub fn size(self) -> u64 {
         match self {
             Self::I8 | Self::U8 => 1,
@@ -45,7 +45,7 @@ impl Number {
         }
     }
 
-    /// One number behind the other.
+    /// The layout of densely packed numbers.
     pub fn packed(self, big_endian: bool) -> Layout {
         Layout {
             offset: 0,
@@ -54,21 +54,21 @@ impl Number {
         }
     }
 
-    /// Decodes all whole numbers in `bytes`.
+    /// Decodes all numbers in `bytes`.
     pub fn decode_all(self, bytes: &[u8], big_endian: bool) -> Vec<f64> {
         let mut numbers = vec![0.0; bytes.len() / self.size() as usize];
         self.decode(bytes, self.packed(big_endian), &mut numbers);
         numbers
     }
 
-    /// Decodes as many numbers as `out` takes; `bytes` must hold them all.
+    /// Fills `out`; `bytes` must hold enough numbers.
     pub fn decode(self, bytes: &[u8], layout: Layout, out: &mut [f64]) {
         macro_rules! numbers {
             ($type:ty) => {{
                 const SIZE: usize = size_of::<$type>();
                 let bytes = &bytes[layout.offset..];
                 let packed = layout.stride == SIZE;
-                // Each loop apart: the compiler then copies whole registers.
+                // Separate loops, so that each one is vectorised.
                 match (packed, layout.big_endian) {
                     (true, false) => {
                         for (out, value) in out.iter_mut().zip(bytes.as_chunks::<SIZE>().0) {

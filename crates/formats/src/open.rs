@@ -1,5 +1,4 @@
-//! Which reader a file needs, by its first bytes; its name decides only where
-//! these leave a choice.
+//! Picks the reader for a file by its first bytes.
 
 use crate::contents::Format;
 use crate::error::Error;
@@ -16,16 +15,15 @@ use crate::uff::read::UffReader;
 use crate::wav::read::WavReader;
 use std::path::Path;
 
-/// Bytes from which the format is told.
+/// Bytes used to detect the format.
 const HEAD: u64 = 4096;
 
-/// Files that people have beside their recordings: first bytes, what they are, what
-/// to do.
+/// Other files often found beside recordings: first bytes, description, advice.
 const OTHERS: [(&[u8], &str, &str); 7] = [
     (
         b"\x1aE\xdf\xa3",
         "an EBML file, such as an enDAQ recording (.ide)",
-        "export the channels as CSV or MAT with the program of the recorder",
+        "export the channels as CSV or MAT with the software of the recorder",
     ),
     (b"\x1f\x8b", "a gzip archive", "unpack it (gunzip)"),
     (
@@ -43,24 +41,24 @@ const OTHERS: [(&[u8], &str, &str); 7] = [
     ),
 ];
 
-/// How a file is to be read where it does not say so itself.
+/// How to read a file where it does not say so itself.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct OpenOptions {
-    /// The format; `None`: found out.
+    /// The format; `None` to detect it.
     pub format: Option<Format>,
-    /// How tables in text are written.
+    /// Dialect of text tables.
     pub text: TextOptions,
 }
 
-/// Opens a file with the reader that its format needs.
+/// Opens a file with the reader for its format.
 ///
 /// # Errors
-/// The file cannot be read, is of no known format, or breaks the rules of its own.
+/// The file cannot be read, has an unknown format, or violates its format.
 pub fn open(path: &Path, options: &OpenOptions) -> Result<Box<dyn Reader>, Error> {
     open_source(Source::open(path)?, options)
 }
 
-/// Opens bytes with the reader that their format needs.
+/// Opens bytes with the reader for their format.
 ///
 /// # Errors
 /// As [`open`].
@@ -81,10 +79,10 @@ pub fn open_source(source: Source, options: &OpenOptions) -> Result<Box<dyn Read
     }
 }
 
-/// The format of a file, by its first bytes.
+/// Detects the format of a file from its first bytes.
 ///
 /// # Errors
-/// It cannot be read, is empty, or is a known format that windfall does not read.
+/// The file cannot be read, is empty, or has a known but unsupported format.
 pub fn tell_format(source: &Source) -> Result<Format, Error> {
     let head = source.head(HEAD)?;
     if head.is_empty() {
@@ -110,7 +108,7 @@ pub fn tell_format(source: &Source) -> Result<Format, Error> {
     {
         return Ok(Format::Wav);
     }
-    // Before MATLAB: its version 7.3 begins like both.
+    // Before MATLAB, as version 7.3 files match both.
     if crate::hdf5::read::begins(&head) {
         return Ok(Format::Hdf5);
     }
@@ -126,7 +124,7 @@ pub fn tell_format(source: &Source) -> Result<Format, Error> {
     Ok(Format::Text)
 }
 
-/// A universal file begins with "    -1" and the number of a data set below.
+/// A universal file begins with "    -1" and, on the next line, a data set number.
 fn is_universal(head: &[u8]) -> bool {
     let text = String::from_utf8_lossy(head);
     let mut lines = text.lines().skip_while(|line| line.trim().is_empty());

@@ -1,42 +1,41 @@
-//! An opened file: what it holds, and its samples in blocks.
+//! An open file: its contents, and its samples in blocks.
 
 use crate::contents::Contents;
 use crate::error::Error;
 
-/// Takes samples as they are read.
+/// Receives samples as they are read.
 pub trait Sink {
-    /// The next samples of the channel `wanted[position]`, in the order of the
-    /// file. NaN stands where the channel has no sample (a blank cell).
+    /// The next samples of the channel `wanted[position]`, in file order. Missing
+    /// samples (blank cells) are NaN.
     ///
     /// # Errors
-    /// Reading stops with the error returned.
+    /// Returning an error stops the reading.
     fn take(&mut self, position: usize, samples: &[f64]) -> Result<(), Error>;
 
-    /// A sample that cannot be read; its place is kept by a NaN if reading goes on.
+    /// A sample that cannot be read; it becomes NaN if reading continues.
     ///
     /// # Errors
-    /// Reading stops with the error returned: here with the fault itself.
+    /// Returning an error stops the reading; the default returns the fault.
     fn fault(&mut self, fault: Error) -> Result<(), Error> {
         Err(fault)
     }
 }
 
-/// An opened file.
+/// An open file.
 pub trait Reader: Send {
-    /// What it holds.
+    /// Its contents.
     fn contents(&self) -> &Contents;
 
-    /// Reads channels in blocks of bounded size, each channel in order; blocks
-    /// of different channels may alternate in any way.
+    /// Reads channels in blocks of bounded size. Each channel arrives in order;
+    /// blocks of different channels may interleave.
     ///
-    /// * `wanted`: positions in the channels of [`Contents`], each once
+    /// * `wanted`: indices of channels in [`Contents`], without repetition
     ///
     /// # Errors
-    /// The file cannot be read or breaks the rules of its format, or `sink`
-    /// returned an error.
+    /// The file cannot be read, is malformed, or `sink` returned an error.
     fn read(&mut self, wanted: &[usize], sink: &mut dyn Sink) -> Result<(), Error>;
 
-    /// All samples of some channels.
+    /// Reads all samples of some channels.
     ///
     /// # Errors
     /// As [`Reader::read`].

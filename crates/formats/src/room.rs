@@ -1,10 +1,10 @@
-//! Room for many samples.
+//! Memory for large arrays of samples.
 
-/// Samples from which large pages are asked for; 4 MB.
+/// Samples from which large pages are requested; 4 MB.
 const MANY: usize = 1 << 19;
 
-/// As many zeros, on large pages where the system has them: the first touch of
-/// each small page costs as much as reading what goes into it.
+/// Zeros, on large pages where the system supports them: faulting in small pages
+/// costs as much time as reading the samples.
 pub(crate) fn zeros(count: usize) -> Vec<f64> {
     let zeros = vec![0.0; count];
     if count >= MANY {
@@ -20,9 +20,8 @@ fn ask_for_large_pages(values: &[f64]) {
     let range = values.as_ptr_range();
     let start = (range.start as usize).next_multiple_of(PAGE);
     let length = (range.end as usize).saturating_sub(start);
-    // SAFETY: the range lies within the slice, which is alive, and the advice
-    // changes how its pages are backed, never what they hold. Refused, it does
-    // nothing, which is as well.
+    // SAFETY: the range lies within the live slice, and the advice changes how its
+    // pages are backed, never their contents. A refusal is harmless.
     unsafe {
         libc::madvise(start as *mut libc::c_void, length, libc::MADV_HUGEPAGE);
     }

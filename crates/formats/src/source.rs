@@ -1,4 +1,4 @@
-//! The bytes of a file, read at any place.
+//! Random access to the bytes of a file.
 
 use crate::error::{Error, Place};
 use std::fs::File;
@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 
 /// The bytes of a file.
 ///
-/// Reading moves no position, so that threads can share it.
+/// Reads have no shared position, so threads can share it.
 #[derive(Debug)]
 pub struct Source {
     path: PathBuf,
@@ -24,7 +24,7 @@ impl Source {
     /// Opens a file.
     ///
     /// # Errors
-    /// It is not there, is no regular file, or cannot be opened.
+    /// It does not exist, is a directory, or cannot be opened.
     pub fn open(path: &Path) -> Result<Self, Error> {
         let access = |source: std::io::Error| match source.kind() {
             std::io::ErrorKind::NotFound => Error::Absent {
@@ -51,7 +51,7 @@ impl Source {
         })
     }
 
-    /// Bytes in memory, with a name for messages.
+    /// Wraps bytes in memory, with a name for messages.
     #[must_use]
     pub fn from_bytes(name: &str, bytes: Vec<u8>) -> Self {
         Self {
@@ -73,15 +73,15 @@ impl Source {
         self.length
     }
 
-    /// Fills `buffer` with the bytes from `offset` on.
+    /// Fills `buffer` from `offset`.
     ///
     /// # Errors
-    /// [`Error::Truncated`] where the file has too few; [`Error::Access`].
+    /// [`Error::Truncated`] if the file is too short; [`Error::Access`].
     pub fn read_at(&self, offset: u64, buffer: &mut [u8]) -> Result<(), Error> {
         let left = self.length.saturating_sub(offset);
         let needed = buffer.len() as u64;
         if needed > left || offset > self.length {
-            return Err(self.truncated(offset, "what stands here", needed));
+            return Err(self.truncated(offset, "the data here", needed));
         }
         match &self.bytes {
             Bytes::Memory(bytes) => {
@@ -90,9 +90,9 @@ impl Source {
                 Ok(())
             }
             Bytes::File(file) => read_exact_at(file, offset, buffer).map_err(|source| {
-                // The file has become shorter since it was opened.
+                // The file has shrunk since it was opened.
                 if source.kind() == std::io::ErrorKind::UnexpectedEof {
-                    return self.truncated(offset, "what stands here", needed);
+                    return self.truncated(offset, "the data here", needed);
                 }
                 Error::Access {
                     path: self.path.clone(),
@@ -102,21 +102,20 @@ impl Source {
         }
     }
 
-    /// `count` bytes from `offset` on; nothing is allocated before it is known
-    /// that the file has them.
+    /// `count` bytes from `offset`; checked against the length before allocating.
     ///
     /// # Errors
     /// As [`Source::read_at`].
     pub fn bytes_at(&self, offset: u64, count: u64) -> Result<Vec<u8>, Error> {
         if count > self.length.saturating_sub(offset) {
-            return Err(self.truncated(offset, "what stands here", count));
+            return Err(self.truncated(offset, "the data here", count));
         }
         let mut buffer = vec![0; count as usize];
         self.read_at(offset, &mut buffer)?;
         Ok(buffer)
     }
 
-    /// The first bytes, `count` or as many as there are.
+    /// The first `count` bytes, or fewer if the file is shorter.
     ///
     /// # Errors
     /// [`Error::Access`].
@@ -124,7 +123,7 @@ impl Source {
         self.bytes_at(0, count.min(self.length))
     }
 
-    /// The error that `what`, at `offset`, needs more bytes than there are.
+    /// Error: `what`, at `offset`, extends beyond the end of the file.
     #[must_use]
     pub fn truncated(&self, offset: u64, what: &str, needed: u64) -> Error {
         Error::Truncated {
@@ -136,7 +135,7 @@ impl Source {
         }
     }
 
-    /// The error that the file breaks the rules of its format.
+    /// Error: the file violates its format.
     pub(crate) fn malformed(
         &self,
         place: Place,
@@ -151,7 +150,7 @@ impl Source {
         }
     }
 
-    /// The error that the file needs a part of its format that windfall does not read.
+    /// Error: the file uses an unsupported part of its format.
     pub(crate) fn unsupported(&self, place: Place, what: impl Into<String>, advice: &str) -> Error {
         Error::Unsupported {
             path: self.path.clone(),
@@ -161,7 +160,7 @@ impl Source {
         }
     }
 
-    /// The error that the file is in another format than any that windfall reads.
+    /// Error: the format is unknown or unsupported.
     pub(crate) fn unknown(&self, found: impl Into<String>, advice: &str) -> Error {
         Error::UnknownFormat {
             path: self.path.clone(),
@@ -214,11 +213,11 @@ mod tests {
         let error = source.bytes_at(4, u64::MAX).unwrap_err();
         assert_eq!(
             error.to_string(),
-            "a.bin, at byte 4: the file ends too early: what stands here needs \
+            "a.bin, at byte 4: the file ends too early: the data here needs \
              18446744073709551615 bytes, 6 are left; it was cut off while it was written or copied"
         );
         assert!(source.bytes_at(u64::MAX, 1).is_err());
-        // No bytes beyond the end: a crash that fuzzing found.
+        // Zero bytes beyond the end: a crash found by fuzzing.
         assert!(source.bytes_at(11, 0).is_err());
         assert_eq!(source.bytes_at(10, 0).unwrap(), b"");
     }

@@ -1,28 +1,29 @@
-//! Arrays of numbers in a tree → channels: the rules that MAT and HDF5 files share.
+//! Turns a tree of arrays into channels; shared by MAT and HDF5 files.
 
 use crate::arrays::clock::{names_time, time_bases};
 use crate::arrays::tree::{Array, Extent, Listing, Series, Tree, count};
 use crate::contents::{ChannelContents, Note, TimeBase};
 use crate::names::Names;
+use crate::text::number::rises_evenly;
 
-/// Most channels that one array is taken apart into. What has more rows and
-/// columns than this is a picture or a matrix of a calculation.
+/// Most channels made from one array. Larger arrays are pictures or matrices of a
+/// calculation.
 const MOST_SERIES: u64 = 4096;
 
 /// Most channels of a file.
 const MOST_CHANNELS: usize = 1 << 16;
 
-/// A second extent must be longer than this before it is taken as the samples.
+/// A later dimension must be longer than this to be taken as the samples.
 const LONG: u64 = 64;
 
-/// Most names that a note lists.
+/// Most names listed in a note.
 const MOST_NAMES: usize = 6;
 
-/// Channels of a file: a vector is one, the columns of a matrix are one each,
-/// single numbers and texts are properties.
+/// Lists the channels: a vector is one channel, each column of a matrix is one;
+/// scalars and texts are properties.
 ///
-/// Of a matrix the first extent is the samples, unless another is longer than
-/// it and than 64.
+/// Samples run along the first dimension of a matrix, unless another is longer
+/// than it and than 64.
 pub(crate) fn list_channels(mut tree: Tree) -> Listing {
     let mut listing = Listing::default();
     let only_scalars = tree.arrays.iter().all(|a| count(&a.extents) <= 1);
@@ -73,7 +74,7 @@ fn add_channels(at: usize, array: &Array, name: &str, tree: &mut Tree, listing: 
         .collect();
     let many = count(&others);
     if many > MOST_SERIES {
-        let why = "it would be more than 4096 channels; it is taken to be a picture or the like";
+        let why = "it would give more than 4096 channels, so it is probably a picture";
         return tree.leave_out(&array.path, why);
     }
     if listing.channels.len() + many as usize > MOST_CHANNELS {
@@ -109,7 +110,7 @@ fn add_channels(at: usize, array: &Array, name: &str, tree: &mut Tree, listing: 
     }
 }
 
-/// The first of the last `many` channels times the others.
+/// The first of the last `many` channels is the time of the others.
 fn first_is_time(name: &str, many: usize, tree: &mut Tree, listing: &mut Listing) {
     let first = listing.channels.len() - many;
     tree.notes.push(Note::Assumed {
@@ -122,18 +123,7 @@ fn first_is_time(name: &str, many: usize, tree: &mut Tree, listing: &mut Listing
     }
 }
 
-/// Whether values rise by the same step, within a jitter; not by one: those are
-/// numbers of samples.
-fn rises_evenly(values: &[f64]) -> bool {
-    if values.len() < 3 {
-        return false;
-    }
-    let step = (values[values.len() - 1] - values[0]) / (values.len() - 1) as f64;
-    let even = |pair: &[f64]| ((pair[1] - pair[0]) - step).abs() < 0.2 * step;
-    step > 0.0 && step != 1.0 && values.windows(2).all(even)
-}
-
-/// Which extent is the samples.
+/// Index of the dimension along which samples run.
 fn sample_extent(wide: &[Extent]) -> usize {
     let mut best = 0;
     for (i, extent) in wide.iter().enumerate().skip(1) {
@@ -144,8 +134,8 @@ fn sample_extent(wide: &[Extent]) -> usize {
     best
 }
 
-/// Suffix of the name, and first element, of the `k`th series; the last of the
-/// other extents runs fastest.
+/// Name suffix and first element of the `k`th series; the last dimension varies
+/// fastest.
 fn place_of(mut k: u64, others: &[Extent]) -> (String, u64) {
     let mut suffix = String::new();
     let mut start = 0_u64;
@@ -170,7 +160,7 @@ fn rows_are_channels(array: &Array, samples: u64) -> Note {
     }
 }
 
-/// A text "unit" beside a single array is its unit.
+/// A text named "unit" beside a single array gives its unit.
 fn add_units(tree: &Tree, listing: &mut Listing) {
     for (path, text) in &tree.texts {
         let Some((name, level)) = path.split_last() else {

@@ -1,5 +1,5 @@
-//! When the arrays of a file were sampled, by the names of what stands beside
-//! them: a vector "time" of their length, or a number "fs" or "dt".
+//! Sampling times of arrays, from the names beside them: a vector "time" of the same
+//! length, or a scalar "fs" or "dt".
 
 use crate::arrays::tree::{Listing, Scalar, Tree, count};
 use crate::contents::{Note, TimeBase};
@@ -50,12 +50,12 @@ const INTERVALS: [&str; 12] = [
 ];
 const STARTS: [&str; 3] = ["t0", "tstart", "wfstartoffset"];
 
-/// Whether a name is one by which times go.
+/// Whether a name suggests times.
 pub(crate) fn names_time(name: &str) -> bool {
     is_time_name(name) || TIMES.contains(&plain(name).as_str())
 }
 
-/// Lower case, without the marks between words.
+/// Lower case, without punctuation and remarks in brackets.
 fn plain(name: &str) -> String {
     let kept = name.split(['(', '[']).next().unwrap_or(name);
     kept.chars()
@@ -64,17 +64,17 @@ fn plain(name: &str) -> String {
         .collect()
 }
 
-/// What says when the samples below a level were taken.
+/// Sampling times that apply to a level and below.
 #[derive(Clone, Debug, Default)]
 struct Clock {
-    /// Channels of times.
+    /// Time channels.
     times: Vec<usize>,
     interval: Option<(f64, String)>,
     start: f64,
 }
 
-/// Gives each channel the time base that stands nearest to it: on its own level
-/// or on one above. Returns what was assumed.
+/// Assigns to each channel the nearest time base, on its own level or above.
+/// Returns what was assumed.
 pub(crate) fn time_bases(tree: &Tree, listing: &mut Listing) -> Vec<Note> {
     let clocks = find_clocks(tree, listing);
     let mut assumed: Vec<(String, usize)> = Vec::new();
@@ -167,7 +167,7 @@ fn is_time(clocks: &BTreeMap<Vec<String>, Clock>, path: &[String], channel: usiz
         .is_some_and(|clock| clock.times.contains(&channel))
 }
 
-/// The time base of a channel by one clock, and what to call it.
+/// The time base that a clock gives a channel, and how to describe it.
 fn base_by(clock: &Clock, channel: usize, listing: &Listing) -> Option<(TimeBase, String)> {
     let length = listing.series[channel].length;
     let fits = |&&t: &&usize| listing.series[t].length == length;

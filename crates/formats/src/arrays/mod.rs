@@ -1,4 +1,4 @@
-//! Trees of named arrays, as HDF5 and MAT hold them, read as channels.
+//! Trees of named arrays (HDF5, MAT) read as channels.
 
 pub(crate) mod channels;
 mod clock;

@@ -1,18 +1,18 @@
-//! One pass over an array in the order of storage → the channels in it.
+//! Splits an array, read in storage order, into its channels.
 
 use crate::arrays::tree::Series;
 use crate::error::Error;
 use crate::reader::Sink;
 
-/// Hands parts of an array to the channels that want them.
+/// Passes the elements of an array on to the requested channels.
 pub(crate) struct Pass {
-    /// Position among the channels that are wanted, and where its samples are.
+    /// Position among the requested channels, and where the samples are.
     wanted: Vec<(usize, Series)>,
     gathered: Vec<f64>,
 }
 
 impl Pass {
-    /// A pass for those of the wanted channels that are in an array.
+    /// A pass for the requested channels within one array.
     pub fn new(array: usize, wanted: &[usize], series: &[Series]) -> Self {
         let wanted = wanted
             .iter()
@@ -26,14 +26,14 @@ impl Pass {
         }
     }
 
-    /// The elements that are needed: from the first to before the last.
+    /// The range of elements needed; the end is exclusive.
     pub fn range(&self) -> (u64, u64) {
         let first = self.wanted.iter().map(|(_, s)| s.start).min();
         let end = self.wanted.iter().map(|(_, s)| end_of(s)).max();
         (first.unwrap_or(0), end.unwrap_or(0))
     }
 
-    /// The next elements of the array, of which the first is number `first`.
+    /// Takes the next elements of the array, starting with number `first`.
     pub fn take(&mut self, first: u64, elements: &[f64], sink: &mut dyn Sink) -> Result<(), Error> {
         let end = first + elements.len() as u64;
         for (position, series) in &self.wanted {
@@ -60,7 +60,7 @@ impl Pass {
     }
 }
 
-/// The element behind the last of a series.
+/// One past the last element of a series.
 fn end_of(series: &Series) -> u64 {
     match series.length {
         0 => series.start,

@@ -1,5 +1,4 @@
-//! Arrays of numbers under names in a tree, as MAT and HDF5 files hold them, and
-//! the channels in them.
+//! Trees of named arrays, and the channels in them.
 
 use crate::contents::{ChannelContents, Note};
 use std::collections::BTreeMap;
@@ -7,69 +6,62 @@ use std::collections::BTreeMap;
 /// An array of numbers in a file.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Array {
-    /// Names from the root to it.
+    /// Path from the root.
     pub path: Vec<String>,
-    /// What is appended to the name: " (real)".
+    /// Suffix of the name, such as " (real)".
     pub part: &'static str,
-    /// Its extents as a user sees them.
+    /// Its dimensions in the order the user sees.
     pub extents: Vec<Extent>,
     /// How its numbers are stored.
     pub stored_as: String,
-    /// Its value, if it is one number.
+    /// Its value if it is a scalar.
     pub value: Option<f64>,
-    /// Its first numbers along the first extent, if it has two.
+    /// Its first numbers along the first of two dimensions.
     pub beginning: Vec<f64>,
-    /// The unit that the file gives.
     pub unit: Option<String>,
-    /// Other things that the file says of it.
     pub properties: Vec<(String, String)>,
 }
 
-/// One extent of an array.
+/// One dimension of an array.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct Extent {
     /// Number of elements along it.
     pub length: u64,
-    /// Elements in the order of storage from one to the next.
+    /// Distance between neighbours in storage order.
     pub step: u64,
 }
 
-/// One number with a name that may say how fast the arrays beside it or below
-/// were sampled.
+/// A named scalar that may give the sampling rate of arrays beside or below it.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Scalar {
-    /// Names from the root to where it stands; for an attribute, to its owner.
+    /// Path to its level; for an attribute, to its owner.
     pub level: Vec<String>,
-    /// Its own name.
     pub name: String,
-    /// The number.
     pub value: f64,
 }
 
-/// Numbers from which a column of times is told.
+/// Numbers inspected to recognise a column of times.
 pub(crate) const BEGINNING: u64 = 64;
 
-/// What was found in a file, in its order.
+/// What was found in a file, in file order.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Tree {
-    /// Arrays of numbers.
     pub arrays: Vec<Array>,
-    /// Numbers of attributes; those of arrays of one element need not be listed.
+    /// Scalars from attributes; arrays of one element need not be repeated here.
     pub scalars: Vec<Scalar>,
-    /// Texts: names from the root, and the text.
+    /// Texts: path and value.
     pub texts: Vec<(Vec<String>, String)>,
-    /// What is no numbers, by the reason why it is left out.
+    /// What is left out, by reason.
     pub left_out: BTreeMap<String, Vec<String>>,
-    /// Other notes.
     pub notes: Vec<Note>,
 }
 
 /// The samples of one channel within an array.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct Series {
-    /// Position of the array.
+    /// Index of the array.
     pub array: usize,
-    /// Its first sample, in elements in the order of storage.
+    /// First element in storage order.
     pub start: u64,
     /// Elements from one sample to the next.
     pub step: u64,
@@ -80,25 +72,21 @@ pub(crate) struct Series {
 /// The channels of a file.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Listing {
-    /// What a user sees of them.
     pub channels: Vec<ChannelContents>,
-    /// Where the samples of each are.
     pub series: Vec<Series>,
-    /// Numbers and texts of the file.
     pub properties: Vec<(String, String)>,
-    /// What a user must know.
     pub notes: Vec<Note>,
 }
 
 impl Tree {
-    /// Notes that something is no channel.
+    /// Records that something is left out.
     pub fn leave_out(&mut self, path: &[String], why: &str) {
         let name = path.join("/");
         self.left_out.entry(why.to_owned()).or_default().push(name);
     }
 }
 
-/// Extents whose first runs fastest in storage, as MATLAB stores.
+/// Dimensions in column-major order, as in MATLAB.
 pub(crate) fn first_fastest(lengths: &[u64]) -> Vec<Extent> {
     let mut step = 1_u64;
     lengths
@@ -111,7 +99,7 @@ pub(crate) fn first_fastest(lengths: &[u64]) -> Vec<Extent> {
         .collect()
 }
 
-/// Extents whose last runs fastest in storage, as C and HDF5 store.
+/// Dimensions in row-major order, as in C and HDF5.
 pub(crate) fn last_fastest(lengths: &[u64]) -> Vec<Extent> {
     let reversed: Vec<u64> = lengths.iter().rev().copied().collect();
     let mut extents = first_fastest(&reversed);
@@ -119,12 +107,12 @@ pub(crate) fn last_fastest(lengths: &[u64]) -> Vec<Extent> {
     extents
 }
 
-/// Number of elements; `u64::MAX` where they cannot be counted.
+/// Number of elements; `u64::MAX` on overflow.
 pub(crate) fn count(extents: &[Extent]) -> u64 {
     extents
         .iter()
         .try_fold(1_u64, |n, e| n.checked_mul(e.length))
-        // A zero among numbers too large is still nothing.
+        // A zero among huge factors still gives zero.
         .unwrap_or_else(|| match extents.iter().any(|e| e.length == 0) {
             true => 0,
             false => u64::MAX,

@@ -11,16 +11,16 @@ use crate::hdf5::object::{
 };
 use crate::hdf5::value_type::{Datatype, Kind, read_type};
 
-/// Most numbers or texts of an attribute that are shown.
+/// Most values of an attribute that are shown.
 const MOST_VALUES: u64 = 16;
 
-/// Longest text of an attribute that is kept; characters.
+/// Longest attribute text kept; characters.
 const LONGEST_TEXT: usize = 4096;
 
-/// Most attributes of one thing.
+/// Most attributes of one object.
 const MOST_ATTRIBUTES: usize = 65_536;
 
-/// Attributes by which programs keep their own order.
+/// Attributes for internal use of other programs.
 const INTERNAL: [&str; 8] = [
     "H5PATH",
     "CLASS",
@@ -32,7 +32,7 @@ const INTERNAL: [&str; 8] = [
     "_Netcdf4Coordinates",
 ];
 
-/// What an attribute holds.
+/// Value of an attribute.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) enum Value {
     Number(f64),
@@ -48,13 +48,12 @@ impl std::fmt::Display for Value {
     }
 }
 
-/// The attributes of a thing, by name.
+/// The attributes of an object, by name.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Attributes(pub Vec<(String, Value)>);
 
 impl Attributes {
-    /// Reads the attributes of a header. One that cannot be read says so in its
-    /// value.
+    /// Reads the attributes of a header; unreadable ones say so in their value.
     pub fn read(file: &Hdf5File, header: &Header) -> Self {
         let mut values = Vec::new();
         for message in &header.messages {
@@ -62,7 +61,7 @@ impl Attributes {
             match message.kind {
                 ATTRIBUTE if !message.shared => values.extend(read_attribute(file, &mut cursor)),
                 ATTRIBUTE_INFO => {
-                    // What is damaged here is only said of the data.
+                    // Damage in attributes alone is not reported.
                     let _ = read_dense(file, &mut cursor, &mut values);
                 }
                 _ => {}
@@ -72,7 +71,7 @@ impl Attributes {
         Self(values)
     }
 
-    /// A text.
+    /// The text of an attribute.
     pub fn text(&self, name: &str) -> Option<&str> {
         self.0.iter().find_map(|(n, value)| match value {
             Value::Text(text) if n == name => Some(text.as_str()),
@@ -80,12 +79,10 @@ impl Attributes {
         })
     }
 
-    /// Whether there is one of this name.
     pub fn has(&self, name: &str) -> bool {
         self.0.iter().any(|(n, _)| n == name)
     }
 
-    /// The unit.
     pub fn unit(&self) -> Option<String> {
         const UNITS: [&str; 3] = ["unit", "units", "unit_string"];
         self.0.iter().find_map(|(name, value)| match value {
@@ -98,7 +95,7 @@ impl Attributes {
         })
     }
 
-    /// What a user may want to see.
+    /// Attributes worth showing to the user.
     pub fn shown(&self) -> impl Iterator<Item = &(String, Value)> {
         self.0
             .iter()
@@ -106,7 +103,7 @@ impl Attributes {
     }
 }
 
-/// Attributes of a thing that has many.
+/// Attributes in dense storage.
 fn read_dense(
     file: &Hdf5File,
     cursor: &mut Cursor<'_>,
@@ -129,7 +126,7 @@ fn read_dense(
     Ok(())
 }
 
-/// An attribute; one without a name cannot be shown.
+/// An attribute; `None` if not even its name can be read.
 fn read_attribute(file: &Hdf5File, cursor: &mut Cursor<'_>) -> Option<(String, Value)> {
     let head = read_head(cursor).ok()?;
     let value = read_value(file, cursor, &head);
@@ -184,7 +181,7 @@ fn read_value(file: &Hdf5File, cursor: &mut Cursor<'_>, head: &Head) -> Result<V
     let count = read_space(&mut file.cursor(cursor.take(head.space_size)?, at))?.count();
     let at = cursor.at();
     if datatype.size == 0 {
-        return Err(cursor.damaged("an attribute has elements of no bytes"));
+        return Err(cursor.damaged("an attribute has elements of zero size"));
     }
     let shown = usize::try_from(count.min(MOST_VALUES)).unwrap_or(0);
     let elements = cursor.rest().chunks_exact(datatype.size).take(shown);
@@ -207,7 +204,7 @@ fn read_value(file: &Hdf5File, cursor: &mut Cursor<'_>, head: &Head) -> Result<V
     })
 }
 
-/// A type that stands in a header of its own.
+/// A committed datatype, which has a header of its own.
 pub(crate) fn read_shared_type(
     file: &Hdf5File,
     cursor: &mut Cursor<'_>,
@@ -216,11 +213,10 @@ pub(crate) fn read_shared_type(
     let header = read_header(file, address)?;
     match header.message(DATATYPE).filter(|m| !m.shared) {
         Some(found) => read_type(&mut file.cursor(&found.bytes, found.address)),
-        None => Err(cursor.damaged("a type is not where it should be")),
+        None => Err(cursor.damaged("a datatype is not where it should be")),
     }
 }
 
-/// The text in an element.
 pub(crate) fn text_of(
     file: &Hdf5File,
     datatype: &Datatype,

@@ -1,21 +1,20 @@
-//! The elements of a dataset in the order of storage, in blocks.
+//! Reads a dataset in blocks, in storage order.
 
 use crate::error::Error;
 use crate::hdf5::cursor::Problem;
 use crate::hdf5::dataset::Dataset;
 use crate::hdf5::file::Hdf5File;
 
-/// Elements that are read at once.
+/// Elements per block.
 const BLOCK: u64 = 1 << 16;
 
-/// Bytes that are read at once where chunks are larger than a block.
+/// Largest block, where chunks are large; bytes.
 const LARGEST_BLOCK: u64 = 16 << 20;
 
-/// Takes the number of the first element of a block, and its bytes.
+/// Receives the index of the first element of a block, and its bytes.
 pub(crate) type Take<'a> = dyn FnMut(u64, &[u8]) -> Result<(), Error> + 'a;
 
-/// Calls `take` with blocks of a dataset that hold its elements from number
-/// `from` to before `to`.
+/// Calls `take` with blocks that cover the elements `from..to`.
 pub(crate) fn each_block(
     file: &Hdf5File,
     dataset: &mut Dataset,
@@ -49,12 +48,12 @@ struct Plan<'a, 'b> {
 }
 
 impl Plan<'_, '_> {
-    /// Reads what lies below the indices `above`; its first element is `first`.
+    /// Reads the elements below the indices `above`, starting with `first`.
     fn read(&mut self, above: &mut Vec<u64>, first: u64) -> Result<(), Problem> {
         let depth = above.len();
         let extents = self.dataset.space.extents.clone();
         let below: u64 = extents[depth + 1..].iter().product();
-        // Those rows that hold what is wanted.
+        // The rows that contain requested elements.
         let begin = self.from.saturating_sub(first) / below;
         let end = extents[depth].min(self.to.saturating_sub(first).div_ceil(below));
         let rows = self.rows(depth, below);
@@ -67,7 +66,7 @@ impl Plan<'_, '_> {
                 row += 1;
                 continue;
             }
-            // Blocks begin where chunks do, so that each is unpacked once.
+            // Align blocks with chunks, so that each is unpacked once.
             let next = ((row / rows + 1) * rows).min(end);
             let mut low = above.clone();
             let mut high: Vec<u64> = above.iter().map(|i| i + 1).collect();
@@ -82,12 +81,12 @@ impl Plan<'_, '_> {
         Ok(())
     }
 
-    /// Elements of the largest block.
+    /// Elements in the largest block.
     fn largest(&self) -> u64 {
         (LARGEST_BLOCK / self.dataset.datatype.size as u64).max(1)
     }
 
-    /// Rows that are read at once.
+    /// Rows per block.
     fn rows(&self, depth: usize, below: u64) -> u64 {
         let most = BLOCK.min(self.largest());
         let few = (most / below).max(1);

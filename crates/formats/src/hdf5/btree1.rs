@@ -1,22 +1,22 @@
-//! B-trees of version 1: of the members of groups, and of chunks.
+//! Version 1 B-trees: group members and chunks.
 
 use crate::hdf5::cursor::Problem;
 use crate::hdf5::file::Hdf5File;
 use std::collections::BTreeSet;
 
-/// What a tree is of.
+/// What a tree indexes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Keys {
     /// Members of a group.
     Names,
-    /// Chunks of a dataset of so many extents.
+    /// Chunks of a dataset with this many dimensions.
     Chunks(usize),
 }
 
-/// A leaf: its key, and the address that it leads to.
+/// A leaf: a key and the address it points to.
 #[derive(Clone, Debug)]
 pub(crate) struct Leaf {
-    /// Bytes of the key: of a chunk its size, filters and place.
+    /// The key; for chunks the size, filter mask and position.
     pub key: Vec<u8>,
     pub address: u64,
 }
@@ -46,7 +46,7 @@ fn read_node(
     let used = u64::from(cursor.u16()?);
     let fits = kind == u8::from(keys != Keys::Names) && expected.is_none_or(|e| e == level);
     if !fits || !seen.insert(address) {
-        return Err(cursor.damaged("a tree has a node that does not belong there"));
+        return Err(cursor.damaged("a B-tree has a misplaced node"));
     }
     let key_size = match keys {
         Keys::Names => widths.length,
@@ -58,7 +58,7 @@ fn read_node(
     for _ in 0..used {
         let key = cursor.take(key_size)?.to_vec();
         let child = cursor.address()?;
-        let child = child.ok_or_else(|| cursor.damaged("a tree leads nowhere"))?;
+        let child = child.ok_or_else(|| cursor.damaged("a B-tree has an undefined address"))?;
         match level {
             0 => leaves.push(Leaf {
                 key,

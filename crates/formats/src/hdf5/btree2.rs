@@ -1,21 +1,21 @@
-//! B-trees of version 2: of links, attributes and chunks.
+//! Version 2 B-trees: links, attributes and chunks.
 
 use crate::hdf5::cursor::{Problem, bytes_for};
 use crate::hdf5::file::Hdf5File;
 use std::collections::BTreeSet;
 
-/// Bytes of a node around its records.
+/// Bytes of a node besides its records.
 const AROUND: u64 = 10;
 
 /// Deepest tree.
 const DEEPEST: u64 = 16;
 
-/// Sizes of nodes at a depth.
+/// Node sizes at a depth.
 #[derive(Clone, Copy, Debug)]
 struct Level {
-    /// Bytes of the number of records of a node.
+    /// Width of the record count of a node; bytes.
     count: usize,
-    /// The most records in and below a node, and the bytes of their number.
+    /// Most records in and below a node, and the width of that count.
     most_below: u64,
     below: usize,
 }
@@ -29,7 +29,7 @@ struct Tree<'a> {
     records: Vec<Vec<u8>>,
 }
 
-/// All records of a tree of a type, in order.
+/// All records of a tree, in order, with its type.
 pub(crate) fn read_records(
     file: &Hdf5File,
     address: u64,
@@ -46,7 +46,7 @@ pub(crate) fn read_records(
     let root = cursor.address()?;
     let count = u64::from(cursor.u16()?);
     if !kinds.contains(&kind) || record == 0 || node <= AROUND || depth > DEEPEST {
-        return Err(cursor.damaged("a tree is of another kind than expected"));
+        return Err(cursor.damaged("a B-tree has an unexpected type"));
     }
     let mut tree = Tree {
         file,
@@ -99,7 +99,7 @@ impl Tree<'_> {
         }
         if size > self.node || !self.seen.insert(address) {
             let here = file.cursor(&[][..], address);
-            return Err(here.damaged("a tree has a node that does not belong there"));
+            return Err(here.damaged("a B-tree has a misplaced node"));
         }
         let signature = if depth == 0 { b"BTLF" } else { b"BTIN" };
         let mut cursor = file.checked(address, size, signature)?;
@@ -114,7 +114,7 @@ impl Tree<'_> {
         let mut own = own.into_iter();
         for _ in 0..=count {
             let child = cursor.address()?;
-            let child = child.ok_or_else(|| cursor.damaged("a tree leads nowhere"))?;
+            let child = child.ok_or_else(|| cursor.damaged("a B-tree has an undefined address"))?;
             let below = cursor.uint(level.count)?;
             cursor.skip(under.below)?;
             self.read_node(child, below, depth - 1)?;

@@ -1,11 +1,11 @@
-//! Checksums of HDF5: of its structures, and of chunks.
+//! Checksums of metadata and of chunks.
 //!
 //! # Source
 //! B. Jenkins (2006), lookup3.c, `hashlittle`; J. Fletcher (1982), "An arithmetic
 //! checksum for serial transmissions", IEEE Trans. Commun. 30(1), 247-252, in the
 //! form of HDF5 (`H5_checksum_fletcher32`).
 
-/// Jenkins' lookup3 with the first value 0.
+/// Jenkins' lookup3 with initial value 0.
 pub(crate) fn lookup3(bytes: &[u8]) -> u32 {
     let begin = 0xdead_beef_u32.wrapping_add(bytes.len() as u32);
     let [mut a, mut b, mut c] = [begin; 3];
@@ -56,12 +56,12 @@ pub(crate) fn lookup3(bytes: &[u8]) -> u32 {
     c
 }
 
-/// The checksum that follows a chunk.
+/// Fletcher-32 as stored behind chunks.
 pub(crate) fn fletcher32(bytes: &[u8]) -> u32 {
     let (mut first, mut second) = (0_u32, 0_u32);
     let fold = |sum: u32| (sum & 0xffff) + (sum >> 16);
     let (pairs, last) = bytes.as_chunks::<2>();
-    // 360 pairs are the most whose sums stay below 2³².
+    // At most 360 pairs keep the sums below 2³².
     for pairs in pairs.chunks(360) {
         for pair in pairs {
             first += u32::from(u16::from_be_bytes(*pair));

@@ -1,18 +1,18 @@
-//! A chunk in the file, as an index tells it.
+//! Location of a chunk, as stored in an index.
 
 use crate::hdf5::cursor::{Cursor, Problem};
 
-/// A chunk in the file.
+/// Location of a chunk.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct Chunk {
     pub address: u64,
-    /// Its bytes there; `None`: as many as it has without filters.
+    /// Stored size in bytes; `None` if unfiltered.
     pub size: Option<u64>,
-    /// A bit for each filter that was not applied.
+    /// Mask of filters that were not applied.
     pub skipped: u32,
 }
 
-/// An entry of an array: a chunk, or none at an undefined address.
+/// Reads an index entry; `None` if its address is undefined.
 pub(crate) fn read_entry(
     cursor: &mut Cursor<'_>,
     size: usize,
@@ -22,7 +22,7 @@ pub(crate) fn read_entry(
     let (mut bytes, mut skipped) = (None, 0);
     if filtered {
         let width = size.checked_sub(cursor.widths().address + 4);
-        let width = width.ok_or_else(|| cursor.damaged("an entry of a chunk is too short"))?;
+        let width = width.ok_or_else(|| cursor.damaged("a chunk index entry is too short"))?;
         bytes = Some(cursor.uint(width)?);
         skipped = cursor.u32()?;
     }

@@ -1,4 +1,4 @@
-//! Where the chunks of a dataset are.
+//! Locates the chunks of a dataset.
 
 use crate::hdf5::btree1::{Keys, read_leaves};
 use crate::hdf5::btree2::read_records;
@@ -9,10 +9,10 @@ use crate::hdf5::file::Hdf5File;
 use crate::hdf5::layout::{Chunked, Index, Space};
 use std::collections::BTreeMap;
 
-/// The chunks of a dataset by their number: the last extent runs fastest.
+/// The chunks of a dataset by number; the last dimension varies fastest.
 pub(crate) type Chunks = BTreeMap<u64, Chunk>;
 
-/// Chunks along each extent.
+/// Number of chunks along each dimension.
 pub(crate) fn grid(extents: &[u64], chunk: &[u64]) -> Vec<u64> {
     extents
         .iter()
@@ -21,7 +21,7 @@ pub(crate) fn grid(extents: &[u64], chunk: &[u64]) -> Vec<u64> {
         .collect()
 }
 
-/// Reads the index of a dataset.
+/// Reads the chunk index of a dataset.
 pub(crate) fn read_chunks(
     file: &Hdf5File,
     chunked: &Chunked,
@@ -68,12 +68,12 @@ pub(crate) fn read_chunks(
     }
 }
 
-/// From the number of a chunk in an array to its number in the dataset as it is.
+/// Converts numbers of chunks in an index to numbers in the dataset.
 struct Places {
-    /// Chunks along each extent now, and at most.
+    /// Chunks along each dimension, now and at most.
     now: Vec<u64>,
     most: Vec<u64>,
-    /// The extent without limit, if there is one; it runs slowest.
+    /// The unlimited dimension, if any; it varies slowest.
     unlimited: Option<usize>,
 }
 
@@ -89,14 +89,14 @@ impl Places {
         }
     }
 
-    /// Chunks by their number; those outside of the dataset are none.
+    /// Chunks by number, without those outside of the dataset.
     fn numbered(&self, entries: impl Iterator<Item = (u64, Option<Chunk>)>) -> Chunks {
         entries
             .filter_map(|(number, chunk)| Some((self.number(&self.coordinates(number)?)?, chunk?)))
             .collect()
     }
 
-    /// Coordinates of a chunk by its number in an array.
+    /// Coordinates of a chunk from its number in the index.
     fn coordinates(&self, mut number: u64) -> Option<Vec<u64>> {
         let mut coordinates = vec![0; self.most.len()];
         for d in (0..self.most.len()).rev() {
@@ -114,7 +114,7 @@ impl Places {
         Some(coordinates)
     }
 
-    /// The number of a chunk in the dataset as it is.
+    /// Number of a chunk in the dataset.
     fn number(&self, coordinates: &[u64]) -> Option<u64> {
         self.now
             .iter()
@@ -175,7 +175,7 @@ fn read_tree2(
     Ok(chunks)
 }
 
-/// The entries of an array of fixed length, by number.
+/// The entries of a fixed array, by number.
 fn read_fixed(
     file: &Hdf5File,
     address: u64,
@@ -192,7 +192,7 @@ fn read_fixed(
     let block = cursor.address()?;
     let fits = entry >= widths.address && client == u8::from(filtered) && page_bits < 32;
     if !fits || count > file.source.length() {
-        return Err(cursor.damaged("the sizes of an array of chunks make no sense"));
+        return Err(cursor.damaged("the sizes in a chunk index are inconsistent"));
     }
     let Some(block) = block else {
         return Ok(Vec::new());

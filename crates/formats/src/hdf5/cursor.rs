@@ -1,4 +1,4 @@
-//! Bytes of the structures of an HDF5 file, read one field after the other.
+//! Reads the structures of an HDF5 file field by field.
 
 use crate::error::Error;
 use crate::number::integer;
@@ -7,9 +7,9 @@ use std::borrow::Cow;
 /// Why a part of an HDF5 file cannot be read.
 #[derive(Debug)]
 pub(crate) enum Problem {
-    /// The file breaks the rules of its format: where, and how.
+    /// The file is damaged.
     Damaged { at: u64, what: String },
-    /// A part of the format that is not read.
+    /// An unsupported part of the format.
     Unsupported(String),
     /// The bytes cannot be read.
     Source(Error),
@@ -28,7 +28,7 @@ pub(crate) struct Widths {
     pub length: usize,
 }
 
-/// A place in bytes that begin at `start` in the file.
+/// A position in bytes from offset `start` of the file.
 #[derive(Clone, Debug)]
 pub(crate) struct Cursor<'a> {
     bytes: Cow<'a, [u8]>,
@@ -47,27 +47,26 @@ impl<'a> Cursor<'a> {
         }
     }
 
-    /// Sizes of addresses and lengths.
     pub fn widths(&self) -> Widths {
         self.widths
     }
 
-    /// The byte of the file that comes next.
+    /// Offset of the next byte in the file.
     pub fn at(&self) -> u64 {
         self.start + self.place as u64
     }
 
-    /// Bytes before the cursor.
+    /// Number of bytes read.
     pub fn place(&self) -> usize {
         self.place
     }
 
-    /// Bytes that are left.
+    /// Number of bytes left.
     pub fn left(&self) -> usize {
         self.bytes.len() - self.place
     }
 
-    /// That the file is damaged here.
+    /// Error: the file is damaged here.
     pub fn damaged(&self, what: &str) -> Problem {
         Problem::Damaged {
             at: self.at(),
@@ -83,7 +82,7 @@ impl<'a> Cursor<'a> {
         Ok(&self.bytes[self.place - count..self.place])
     }
 
-    /// All that is left.
+    /// The remaining bytes.
     pub fn rest(&self) -> &[u8] {
         &self.bytes[self.place..]
     }
@@ -92,13 +91,13 @@ impl<'a> Cursor<'a> {
         self.take(count).map(|_| ())
     }
 
-    /// Passes over what fills up to a multiple of eight bytes since `from`.
+    /// Skips padding to a multiple of eight bytes since `from`.
     pub fn align(&mut self, from: usize) -> Result<(), Problem> {
         let used = self.place - from;
         self.skip(used.next_multiple_of(8) - used)
     }
 
-    /// A whole number of up to eight bytes.
+    /// An integer of up to eight bytes.
     pub fn uint(&mut self, size: usize) -> Result<u64, Problem> {
         let bytes = self.take(size)?;
         match size <= 8 {
@@ -128,7 +127,7 @@ impl<'a> Cursor<'a> {
         self.uint(self.widths.length)
     }
 
-    /// An address; `None` for the undefined one.
+    /// An address; `None` if undefined.
     pub fn address(&mut self) -> Result<Option<u64>, Problem> {
         let size = self.widths.address;
         let address = self.uint(size)?;
@@ -136,7 +135,7 @@ impl<'a> Cursor<'a> {
         Ok((address != undefined).then_some(address))
     }
 
-    /// That the next bytes are a signature.
+    /// Checks for a signature.
     pub fn signature(&mut self, expected: &[u8; 4]) -> Result<(), Problem> {
         if self.take(4)? == expected {
             return Ok(());
@@ -148,7 +147,7 @@ impl<'a> Cursor<'a> {
         })
     }
 
-    /// That the next byte is one of some versions.
+    /// Reads a version and checks that it is supported.
     pub fn version(&mut self, of: &str, known: &[u8]) -> Result<u8, Problem> {
         let version = self.u8()?;
         match known.contains(&version) {
@@ -157,7 +156,7 @@ impl<'a> Cursor<'a> {
         }
     }
 
-    /// A text that ends with a zero.
+    /// A zero-terminated text.
     pub fn text(&mut self) -> Result<String, Problem> {
         let end = self.bytes[self.place..].iter().position(|b| *b == 0);
         let end = end.ok_or_else(|| self.damaged("a name has no end"))?;
@@ -167,7 +166,7 @@ impl<'a> Cursor<'a> {
     }
 }
 
-/// Bytes that a count up to `most` needs.
+/// Bytes needed for a count of up to `most`.
 pub(crate) fn bytes_for(most: u64) -> usize {
     (most.max(1).ilog2() / 8 + 1) as usize
 }

@@ -1,4 +1,4 @@
-//! Datasets: what their elements are, and the bytes of parts of them.
+//! Datasets: type, extents and raw bytes.
 
 use crate::hdf5::attribute::read_shared_type;
 use crate::hdf5::chunk_entry::Chunk;
@@ -12,10 +12,10 @@ use crate::hdf5::object::{
 };
 use crate::hdf5::value_type::{Datatype, read_type};
 
-/// Largest chunk; bytes. Programs write some MB.
+/// Largest chunk; bytes. Programs write a few MB.
 const LARGEST_CHUNK: u64 = 256 << 20;
 
-/// Unpacked chunks that are kept; bytes.
+/// Cache of unpacked chunks; bytes.
 const KEPT: usize = 64 << 20;
 
 /// A dataset.
@@ -25,15 +25,15 @@ pub(crate) struct Dataset {
     pub datatype: Datatype,
     pub layout: Layout,
     pub filters: Vec<Filter>,
-    /// Bytes of an element that was never written.
+    /// Fill value.
     fill: Vec<u8>,
     chunks: Option<Chunks>,
-    /// Chunks that were unpacked last: number and bytes.
+    /// Cache of unpacked chunks: number and bytes.
     kept: Vec<(u64, Vec<u8>)>,
 }
 
 impl Dataset {
-    /// Reads what a header says of a dataset; `None` if it is none.
+    /// Reads a dataset from its header; `None` if it is not a dataset.
     pub fn read(file: &Hdf5File, header: &Header) -> Result<Option<Self>, Problem> {
         let (Some(space), Some(datatype), Some(layout)) = (
             header.message(DATASPACE),
@@ -44,7 +44,7 @@ impl Dataset {
         };
         if header.message(EXTERNAL_FILES).is_some() {
             return Err(Problem::Unsupported(
-                "data that are in other files".to_owned(),
+                "data stored in other files".to_owned(),
             ));
         }
         let cursor = |message: &Message| (message.bytes.clone(), message.address);
@@ -56,7 +56,7 @@ impl Dataset {
             false => read_type(&mut inner)?,
         };
         if datatype.size == 0 {
-            return Err(inner.damaged("the elements of a dataset have no bytes"));
+            return Err(inner.damaged("the elements of a dataset have zero size"));
         }
         let mut inner = file.cursor(&layout.bytes, layout.address);
         let layout = read_layout(&mut inner, space.count(), datatype.size)?;
@@ -78,7 +78,9 @@ impl Dataset {
         };
         match dataset.fits() {
             true => Ok(Some(dataset)),
-            false => Err(inner.damaged("the extents of a dataset and of its chunks do not fit")),
+            false => {
+                Err(inner.damaged("the extents of a dataset do not match those of its chunks"))
+            }
         }
     }
 
@@ -99,7 +101,7 @@ impl Dataset {
         self.space.count().saturating_mul(element)
     }
 
-    /// Extents of chunks; nothing if it has none.
+    /// Extents of a chunk; empty if not chunked.
     pub fn chunk(&self) -> &[u64] {
         match &self.layout {
             Layout::Chunked(chunked) => &chunked.chunk,
@@ -107,8 +109,8 @@ impl Dataset {
         }
     }
 
-    /// The bytes of those elements that have indices from `low` to before `high`:
-    /// one index in some first extents, a range in the next, and all below.
+    /// The bytes of the elements in the box from `low` to `high` (exclusive), which
+    /// must be contiguous: single indices, then one range, then full dimensions.
     pub fn bytes(
         &mut self,
         file: &Hdf5File,
@@ -177,7 +179,7 @@ impl Dataset {
         let mut bytes = self.filled(size);
         let chunk = &chunked.chunk;
         let grid = grid(&self.space.extents, chunk);
-        // Coordinates of the chunks that overlap, the last running fastest.
+        // Coordinates of the overlapping chunks; the last varies fastest.
         let first: Vec<u64> = low.iter().zip(chunk).map(|(l, c)| l / c).collect();
         let last: Vec<u64> = high.iter().zip(chunk).map(|(h, c)| (h - 1) / c).collect();
         let mut at = first.clone();
@@ -196,7 +198,7 @@ impl Dataset {
         }
     }
 
-    /// The bytes of a chunk.
+    /// The unpacked bytes of a chunk.
     fn unpack(
         &mut self,
         file: &Hdf5File,
@@ -211,7 +213,7 @@ impl Dataset {
         let unpacked = undo_filters(packed, &self.filters, chunk.skipped, size as usize);
         let unpacked = unpacked.ok_or_else(|| Problem::Damaged {
             at: file.base.saturating_add(chunk.address),
-            what: "the chunk that begins here cannot be unpacked, or its checksum does not fit"
+            what: "the chunk that begins here cannot be unpacked, or its checksum is wrong"
                 .to_owned(),
         })?;
         let kept: usize = self.kept.iter().map(|(_, bytes)| bytes.len()).sum();
@@ -222,7 +224,7 @@ impl Dataset {
         Ok(self.kept.last().map_or(&[], |(_, bytes)| bytes))
     }
 
-    /// Forgets the chunks that were unpacked.
+    /// Clears the cache of chunks.
     pub fn forget(&mut self) {
         self.kept.clear();
         self.kept.shrink_to_fit();
@@ -245,7 +247,7 @@ fn too_short() -> Problem {
     }
 }
 
-/// Copies what a chunk and a box of elements have in common.
+/// Copies the overlap of a chunk and a box of elements.
 fn copy_overlap(
     chunk_bytes: &[u8],
     bytes: &mut [u8],
@@ -258,7 +260,7 @@ fn copy_overlap(
     let end: Vec<u64> = (0..rank)
         .map(|d| high[d].min((at[d] + 1) * chunk[d]))
         .collect();
-    // Runs along the last extent are copied at once.
+    // Copy runs along the last dimension at once.
     let run = ((end[rank - 1] - begin[rank - 1]) * element) as usize;
     let mut index = begin.clone();
     loop {

@@ -1,29 +1,27 @@
-//! Extensible arrays: the index of chunks of a dataset that can grow in one
-//! direction.
+//! Extensible arrays: chunk index of datasets with one unlimited dimension.
 
 use crate::hdf5::chunk_entry::{Chunk, read_entry};
 use crate::hdf5::cursor::{Cursor, Problem};
 use crate::hdf5::file::Hdf5File;
 
-/// An array.
 struct Array<'a> {
     file: &'a Hdf5File,
     filtered: bool,
-    /// Bytes of an entry.
+    /// Bytes per entry.
     entry: usize,
-    /// Bytes of the offset of a block.
+    /// Width of a block offset; bytes.
     offset: usize,
-    /// Entries of the smallest block.
+    /// Entries in the smallest block.
     smallest: u64,
-    /// Entries of a page.
+    /// Entries per page.
     page: u64,
-    /// Entries that were ever written.
+    /// Number of entries ever written.
     most: u64,
     entries: Vec<(u64, Option<Chunk>)>,
     next: u64,
 }
 
-/// The entries of an array, by number.
+/// The entries of an extensible array, by number.
 pub(crate) fn read_extensible(
     file: &Hdf5File,
     address: u64,
@@ -53,7 +51,7 @@ pub(crate) fn read_extensible(
         && page_bits < 32
         && most <= file.source.length();
     if !usual {
-        return Err(cursor.damaged("the sizes of an array of chunks make no sense"));
+        return Err(cursor.damaged("the sizes in a chunk index are inconsistent"));
     }
     let Some(index) = index else {
         return Ok(Vec::new());
@@ -95,7 +93,7 @@ impl Array<'_> {
     ) -> Result<(), Problem> {
         let width = self.file.widths.address as u64;
         let direct = 2 * (pointers - 1);
-        // Blocks of so many steps of growth stand in the index itself.
+        // The index itself points to the blocks of the first steps of growth.
         let steps = 2 * u64::from(pointers.ilog2());
         let above = supers.saturating_sub(steps);
         let size = 6 + width + in_index * self.entry as u64 + (direct + above) * width + 4;
@@ -118,7 +116,7 @@ impl Array<'_> {
         Ok(())
     }
 
-    /// Entries of a block of a step of growth.
+    /// Entries per block in a step of growth.
     fn block_entries(&self, step: u64) -> u64 {
         self.smallest << step.div_ceil(2)
     }
@@ -150,7 +148,7 @@ impl Array<'_> {
         Ok(())
     }
 
-    /// A block of entries; `written` has a bit for each page that is there.
+    /// Reads a block of entries; `written` has a bit for each page that exists.
     fn read_block(
         &mut self,
         address: Option<u64>,

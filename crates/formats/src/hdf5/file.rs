@@ -1,8 +1,8 @@
-//! An HDF5 file: its superblock, and bytes at addresses.
+//! HDF5 files: superblock and access by address.
 //!
 //! # Source
-//! The HDF Group (2023), "HDF5 File Format Specification 3.0", for this and all
-//! modules `hdf5_*`.
+//! The HDF Group (2023), "HDF5 File Format Specification 3.0", for all files of this
+//! folder.
 
 use crate::error::{Error, Place};
 use crate::hdf5::checksum::lookup3;
@@ -10,29 +10,28 @@ use crate::hdf5::cursor::{Cursor, Problem, Widths};
 use crate::source::Source;
 use std::borrow::Cow;
 
-/// What an HDF5 file begins with, at byte 0 or behind what another program put
-/// before it: at 512, 1024, 2048 and so on.
+/// Signature of HDF5: at byte 0, or after a user block at 512, 1024, 2048 and so on.
 const SIGNATURE: &[u8; 8] = b"\x89HDF\r\n\x1a\n";
 
-/// Largest piece that is read at once; bytes.
+/// Largest single read; bytes.
 const LARGEST: u64 = 256 << 20;
 
 /// An HDF5 file.
 #[derive(Debug)]
 pub(crate) struct Hdf5File {
     pub source: Source,
-    /// Byte of the file that is address 0.
+    /// Offset of address 0 in the file.
     pub base: u64,
     pub widths: Widths,
     /// Version of the superblock.
     pub version: u8,
-    /// Address of the header of the root group.
+    /// Address of the root group.
     pub root: u64,
-    /// Bytes that the file had when it was closed.
+    /// Length of the file when it was closed.
     pub end: u64,
 }
 
-/// Whether a file begins like an HDF5 file.
+/// Whether a file starts like an HDF5 file.
 pub(crate) fn begins(head: &[u8]) -> bool {
     [0, 512, 1024, 2048].iter().any(|at| {
         head.get(*at..)
@@ -70,8 +69,7 @@ impl Hdf5File {
         Ok(self.source.bytes_at(at, count)?)
     }
 
-    /// The bytes of a structure at an address, behind its signature; the last four
-    /// are the checksum of those before.
+    /// Reads a structure, verifying its signature and the checksum at its end.
     pub fn checked(
         &self,
         address: u64,
@@ -83,26 +81,26 @@ impl Hdf5File {
         Ok(cursor)
     }
 
-    /// As [`Self::checked`], without a signature.
+    /// Like [`Self::checked`], without a signature.
     pub fn checked_page(&self, address: u64, count: u64) -> Result<Cursor<'static>, Problem> {
         let bytes = self.bytes(address, count)?;
         self.check(&bytes, address)?;
         Ok(self.cursor(bytes, address))
     }
 
-    /// Bytes at an address, `count` or as many as there are.
+    /// Up to `count` bytes at an address.
     pub fn bytes_up_to(&self, address: u64, count: u64) -> Result<Vec<u8>, Problem> {
         let at = self.base.saturating_add(address);
         let left = self.source.length().saturating_sub(at);
         self.bytes(address, count.min(left).max(1))
     }
 
-    /// A cursor on bytes that were read at an address.
+    /// A cursor over bytes read at an address.
     pub fn cursor<'a>(&self, bytes: impl Into<Cow<'a, [u8]>>, address: u64) -> Cursor<'a> {
         Cursor::new(bytes, self.base.saturating_add(address), self.widths)
     }
 
-    /// That the last four bytes are the checksum of those before.
+    /// Verifies the checksum in the last four bytes.
     pub fn check(&self, bytes: &[u8], address: u64) -> Result<(), Problem> {
         let problem = |what: &str| Problem::Damaged {
             at: self.base.saturating_add(address),
@@ -113,12 +111,12 @@ impl Hdf5File {
         match lookup3(body).to_le_bytes() == sum {
             true => Ok(()),
             false => Err(problem(
-                "the checksum of the structure that begins here does not fit",
+                "the structure that begins here has a wrong checksum",
             )),
         }
     }
 
-    /// What a problem means for a user; `object` is what was being read.
+    /// Converts a problem while reading `object` to an error.
     pub fn error(&self, object: &str, problem: Problem) -> Error {
         error_of(self.source.path(), Some(object), problem)
     }
@@ -134,8 +132,8 @@ fn find_signature(source: &Source) -> Result<u64, Error> {
     }
     Err(source.malformed(
         Place::Byte(0),
-        "expected the signature of HDF5; this is no HDF5 file",
-        "let windfall find out the format",
+        "expected the signature of HDF5; this is not an HDF5 file",
+        "let windfall detect the format",
     ))
 }
 
@@ -156,9 +154,9 @@ fn read_superblock(source: Source, at: u64) -> Result<Hdf5File, Problem> {
         length: usize::from(cursor.u8()?),
     };
     if ![2, 4, 8].contains(&widths.address) || ![2, 4, 8].contains(&widths.length) {
-        return Err(cursor.damaged("addresses and lengths have neither 2, 4 nor 8 bytes"));
+        return Err(cursor.damaged("addresses or lengths are not 2, 4 or 8 bytes long"));
     }
-    // Of the older versions: sizes of nodes, flags. Of the newer: flags.
+    // Older versions have node sizes and flags, newer ones flags.
     cursor.skip(match version {
         0 => 1 + 4 + 4,
         1 => 1 + 4 + 4 + 4,
@@ -169,13 +167,13 @@ fn read_superblock(source: Source, at: u64) -> Result<Hdf5File, Problem> {
     cursor.address()?;
     let end = cursor.address()?.unwrap_or(0);
     if version < 2 {
-        // Driver information, and the offset of the name of the root group.
+        // Driver information, and the name offset of the root group.
         cursor.address()?;
         cursor.address()?;
     }
     let root = cursor.address()?;
     let root = root.ok_or_else(|| cursor.damaged("the file has no root group"))?;
-    // Programs that put something before the superblock may leave 0 here.
+    // Programs that write a user block may leave 0 here.
     let base = if base == 0 { at } else { base };
     Ok(Hdf5File {
         source,
@@ -187,7 +185,7 @@ fn read_superblock(source: Source, at: u64) -> Result<Hdf5File, Problem> {
     })
 }
 
-/// What to do with a file that breaks the rules.
+/// Advice for damaged files.
 const ADVICE: &str =
     "the file is damaged or was not closed: copy it again from where it was recorded";
 
@@ -208,12 +206,12 @@ fn error_of(path: &std::path::Path, object: Option<&str>, problem: Problem) -> E
             path,
             place: object.map_or(Place::File, |name| Place::Object(name.to_owned())),
             what,
-            advice: "save it without that, for example with h5repack, or as CSV".to_owned(),
+            advice: "save the file without it, for example with h5repack, or as CSV".to_owned(),
         },
     }
 }
 
-/// A problem as the reason why something is left out.
+/// Describes a problem as the reason for leaving something out.
 pub(crate) fn reason(problem: &Problem) -> String {
     match problem {
         Problem::Damaged { at, what } => format!("it is damaged: {what} (byte {at})"),

@@ -1,4 +1,4 @@
-//! Filters of chunks: compression, order of bytes, checksums.
+//! Chunk filters: compression, shuffling, checksums.
 
 use crate::hdf5::checksum::fletcher32;
 use crate::hdf5::cursor::{Cursor, Problem};
@@ -9,17 +9,17 @@ use std::io::Read;
 /// Most filters of a dataset; HDF5 has 32.
 const MOST_FILTERS: u8 = 32;
 
-/// One filter.
+/// A filter.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Filter {
     Deflate,
-    /// Bytes of elements side by side; the size of an element.
+    /// Byte shuffling; the size of an element.
     Shuffle(usize),
     Fletcher32,
     Lzf,
 }
 
-/// Reads the filters of a dataset, in the order of writing.
+/// Reads the filters of a dataset, in the order of application.
 pub(crate) fn read_filters(cursor: &mut Cursor<'_>) -> Result<Vec<Filter>, Problem> {
     let version = cursor.version("filters", &[1, 2])?;
     let count = cursor.u8()?;
@@ -85,17 +85,17 @@ fn unknown(number: u16, name: &[u8]) -> Problem {
 
 /// Undoes the filters of a chunk.
 ///
-/// * `skipped`: a bit for each filter that was not applied to it
-/// * `size`: bytes of the chunk without filters
+/// * `skipped`: mask of filters that were not applied
+/// * `size`: unfiltered size; bytes
 ///
-/// Returns `None` for damaged data.
+/// Returns `None` if the data are damaged.
 pub(crate) fn undo_filters(
     mut bytes: Vec<u8>,
     filters: &[Filter],
     skipped: u32,
     size: usize,
 ) -> Option<Vec<u8>> {
-    // Before the last filter is undone checksums may still be in.
+    // Intermediate results may still contain checksums.
     let most = size.checked_add(4 * filters.len())?;
     for (i, filter) in filters.iter().enumerate().rev() {
         if skipped >> i & 1 != 0 {
@@ -118,8 +118,8 @@ fn inflate(bytes: &[u8], most: usize) -> Option<Vec<u8>> {
     (inflated.len() <= most).then_some(inflated)
 }
 
-/// First bytes of all elements stand first, then the second ones. What is left
-/// behind the last whole element stays at its place.
+/// Shuffled data have the first bytes of all elements, then the second ones, and so
+/// on. A remainder after the last whole element is not shuffled.
 fn unshuffle(bytes: &[u8], element: usize) -> Vec<u8> {
     let count = bytes.len() / element;
     if element < 2 || count < 2 {
@@ -134,12 +134,12 @@ fn unshuffle(bytes: &[u8], element: usize) -> Vec<u8> {
     ordered
 }
 
-/// Bytes without the checksum behind them, if it fits.
+/// Verifies and removes the checksum at the end.
 fn checked(mut bytes: Vec<u8>) -> Option<Vec<u8>> {
     let body = bytes.len().checked_sub(4)?;
     let sum: [u8; 4] = bytes[body..].try_into().ok()?;
     let found = fletcher32(&bytes[..body]);
-    // Before version 1.6.3 the bytes of both halves were written in the other order.
+    // Before HDF5 1.6.3 the bytes within both halves were swapped.
     let turned = (found & 0x00ff_00ff) << 8 | (found >> 8) & 0x00ff_00ff;
     bytes.truncate(body);
     let sum = u32::from_le_bytes(sum);

@@ -17,18 +17,18 @@ pub(crate) struct Member {
     pub link: Link,
 }
 
-/// What a name stands for.
+/// Target of a name.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(crate) enum Link {
-    /// What has its header at this address.
+    /// The object with a header at this address.
     Hard(u64),
-    /// Another name in the file.
+    /// Another path in the file.
     Soft(String),
-    /// Something in another file.
+    /// An object in another file.
     External,
 }
 
-/// The members of a group, by name.
+/// The members of a group, sorted by name.
 pub(crate) fn read_members(file: &Hdf5File, header: &Header) -> Result<Vec<Member>, Problem> {
     let mut members = Vec::new();
     for message in &header.messages {
@@ -50,14 +50,14 @@ pub(crate) fn read_members(file: &Hdf5File, header: &Header) -> Result<Vec<Membe
     Ok(members)
 }
 
-/// Whether a header is that of a group.
+/// Whether a header belongs to a group.
 pub(crate) fn is_group(header: &Header) -> bool {
     [SYMBOL_TABLE, LINK, LINK_INFO]
         .iter()
         .any(|kind| header.message(*kind).is_some())
 }
 
-/// Members of a group of the old kind.
+/// Members of an old-style group.
 fn read_symbols(
     file: &Hdf5File,
     cursor: &mut Cursor<'_>,
@@ -97,7 +97,7 @@ fn read_symbols(
     Ok(())
 }
 
-/// One member of a group of the new kind.
+/// A member of a new-style group.
 fn read_link(cursor: &mut Cursor<'_>) -> Result<Member, Problem> {
     cursor.version("links", &[1])?;
     let flags = cursor.u8()?;
@@ -110,7 +110,7 @@ fn read_link(cursor: &mut Cursor<'_>) -> Result<Member, Problem> {
     let link = match kind {
         0 => {
             let address = cursor.address()?;
-            Link::Hard(address.ok_or_else(|| cursor.damaged("a link leads nowhere"))?)
+            Link::Hard(address.ok_or_else(|| cursor.damaged("a link has an undefined address"))?)
         }
         1 => {
             let length = usize::from(cursor.u16()?);
@@ -121,7 +121,7 @@ fn read_link(cursor: &mut Cursor<'_>) -> Result<Member, Problem> {
     Ok(Member { name, link })
 }
 
-/// Members of a large group of the new kind.
+/// Members of a new-style group in dense storage.
 fn read_dense(
     file: &Hdf5File,
     cursor: &mut Cursor<'_>,
@@ -136,9 +136,9 @@ fn read_dense(
     let heap = FractalHeap::read(file, heap)?;
     let (_, records) = read_records(file, names, &[5])?;
     for record in records {
-        // Behind the hash of the name.
+        // After the hash of the name.
         let id = record.get(4..4 + heap.id_length());
-        let id = id.ok_or_else(|| cursor.damaged("a record of a link is too short"))?;
+        let id = id.ok_or_else(|| cursor.damaged("a link record is too short"))?;
         let (bytes, address) = heap.object(id)?;
         members.push(read_link(&mut file.cursor(&bytes, address))?);
         if members.len() > MOST_MEMBERS {

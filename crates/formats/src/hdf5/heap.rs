@@ -1,16 +1,15 @@
-//! Heaps: where names, links, attributes and texts are kept.
+//! Heaps, which store names, links, attributes and texts.
 
 use crate::hdf5::cursor::{Problem, bytes_for};
 use crate::hdf5::file::Hdf5File;
 
-/// The names of an old group.
+/// Names of the members of an old-style group.
 pub(crate) struct LocalHeap {
     bytes: Vec<u8>,
     address: u64,
 }
 
 impl LocalHeap {
-    /// Reads a heap of names.
     pub fn read(file: &Hdf5File, address: u64) -> Result<Self, Problem> {
         let size = 8 + 2 * file.widths.length + file.widths.address;
         let mut cursor = file.cursor(file.bytes(address, size as u64)?, address);
@@ -19,14 +18,13 @@ impl LocalHeap {
         let size = cursor.length()?;
         cursor.length()?;
         let data = cursor.address()?;
-        let data = data.ok_or_else(|| cursor.damaged("a heap of names is nowhere"))?;
+        let data = data.ok_or_else(|| cursor.damaged("a name heap has an undefined address"))?;
         Ok(Self {
             bytes: file.bytes(data, size)?,
             address: data,
         })
     }
 
-    /// The name at an offset.
     pub fn name(&self, file: &Hdf5File, offset: u64) -> Result<String, Problem> {
         let rest = usize::try_from(offset)
             .ok()
@@ -37,8 +35,8 @@ impl LocalHeap {
     }
 }
 
-/// The bytes of an object in a heap of texts: `reference` is its length, the
-/// address of the collection, and its number in it.
+/// The bytes of an object in a global heap; `reference` gives its length, the
+/// address of the collection, and its number.
 pub(crate) fn read_text(file: &Hdf5File, reference: &[u8], at: u64) -> Result<Vec<u8>, Problem> {
     let mut cursor = file.cursor(reference, at);
     let length = u64::from(cursor.u32()?);
@@ -73,19 +71,19 @@ pub(crate) fn read_text(file: &Hdf5File, reference: &[u8], at: u64) -> Result<Ve
     Err(cursor.damaged("a text is not in its heap"))
 }
 
-/// A heap of links or attributes.
+/// A fractal heap, which stores links or attributes.
 pub(crate) struct FractalHeap<'a> {
     file: &'a Hdf5File,
     id_length: usize,
-    /// Blocks in a row.
+    /// Blocks per row.
     width: u64,
-    /// Bytes of the first block, and of the largest that holds objects.
+    /// Sizes of the first and of the largest direct block; bytes.
     first: u64,
     largest: u64,
     offset_size: usize,
     length_size: usize,
     root: Option<u64>,
-    /// Rows of the root; 0 if it is a block of objects itself.
+    /// Rows of the root block; 0 if it is a direct block.
     rows: u64,
 }
 
@@ -123,7 +121,7 @@ impl<'a> FractalHeap<'a> {
             && bits <= 64
             && width <= 1 << 16;
         if !usual {
-            return Err(cursor.damaged("the sizes of a heap make no sense"));
+            return Err(cursor.damaged("the sizes in a heap are inconsistent"));
         }
         Ok(Self {
             file,
@@ -138,12 +136,12 @@ impl<'a> FractalHeap<'a> {
         })
     }
 
-    /// Bytes of an identifier of an object.
+    /// Length of an object identifier; bytes.
     pub fn id_length(&self) -> usize {
         self.id_length
     }
 
-    /// An object, with its address.
+    /// An object and its address.
     pub fn object(&self, id: &[u8]) -> Result<(Vec<u8>, u64), Problem> {
         let mut cursor = self.file.cursor(id, 0);
         let flags = cursor.u8()?;
@@ -159,12 +157,12 @@ impl<'a> FractalHeap<'a> {
                 Ok((cursor.take(length)?.to_vec(), 0))
             }
             _ => Err(Problem::Unsupported(
-                "attributes and links of more than 64 kB".to_owned(),
+                "attributes and links larger than 64 kB".to_owned(),
             )),
         }
     }
 
-    /// The address of what stands at an offset in the heap.
+    /// Converts a heap offset to an address.
     fn locate(&self, mut offset: u64) -> Result<u64, Problem> {
         let nowhere = || Problem::Damaged {
             at: 0,
@@ -193,7 +191,7 @@ impl<'a> FractalHeap<'a> {
                 .cursor(pointer, block)
                 .address()?
                 .ok_or_else(nowhere)?;
-            // A block below has as many rows as make up its size.
+            // The rows of an indirect block follow from its size.
             rows = match row < direct {
                 true => 0,
                 false => row - self.first_bits(),
@@ -203,17 +201,17 @@ impl<'a> FractalHeap<'a> {
         Err(nowhere())
     }
 
-    /// Rows whose blocks hold objects.
+    /// Number of rows of direct blocks.
     fn direct_rows(&self) -> u64 {
         u64::from(self.largest.ilog2() - self.first.ilog2()) + 2
     }
 
-    /// By how many rows a block below has fewer than its number.
+    /// Rows by which an indirect block falls short of its row number.
     fn first_bits(&self) -> u64 {
         u64::from(self.width.ilog2())
     }
 
-    /// Row and column of the block at an offset, and the offset in it.
+    /// Row and column of the block at an offset, and the offset within it.
     fn cell(&self, offset: u64) -> (u64, u64, u64) {
         let row_bytes = self.first * self.width;
         let (row, begin, size) = match offset < row_bytes {

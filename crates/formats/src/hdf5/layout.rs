@@ -1,20 +1,20 @@
-//! How many elements a dataset has, and where they are.
+//! Extents and storage layout of datasets.
 
 use crate::hdf5::cursor::{Cursor, Problem};
 
-/// Most extents of a dataset; HDF5 has 32.
+/// Most dimensions of a dataset; the limit of HDF5.
 const MOST_EXTENTS: u8 = 32;
 
 /// Extents of a dataset.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(crate) struct Space {
     pub extents: Vec<u64>,
-    /// The largest that they may become; `u64::MAX` for any.
+    /// Maximum extents; `u64::MAX` if unlimited.
     pub most: Vec<u64>,
 }
 
 impl Space {
-    /// Number of elements; `u64::MAX` if they cannot be counted.
+    /// Number of elements; `u64::MAX` on overflow.
     pub fn count(&self) -> u64 {
         if self.extents.contains(&0) {
             return 0;
@@ -23,12 +23,12 @@ impl Space {
     }
 }
 
-/// Where the elements of a dataset are.
+/// Storage layout of a dataset.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(crate) enum Layout {
-    /// In its header.
+    /// In the object header.
     Compact(Vec<u8>),
-    /// In one piece; at no address as long as nothing is written.
+    /// In one piece; no address if nothing was written.
     Contiguous {
         address: Option<u64>,
         size: u64,
@@ -36,23 +36,23 @@ pub(crate) enum Layout {
     Chunked(Chunked),
 }
 
-/// A dataset in chunks.
+/// A chunked layout.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(crate) struct Chunked {
     /// Extents of a chunk.
     pub chunk: Vec<u64>,
     pub index: Index,
-    /// Where the index is; nowhere as long as nothing is written.
+    /// Address of the index; `None` if nothing was written.
     pub address: Option<u64>,
 }
 
-/// How chunks are found.
+/// Type of the chunk index.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Index {
     Tree1,
-    /// There is only one; its bytes and the filters left out, if it is filtered.
+    /// A single chunk; if filtered, its stored size and filter mask.
     Single(Option<(u64, u32)>),
-    /// One after the other.
+    /// Consecutive chunks without an index.
     Implicit,
     FixedArray,
     ExtensibleArray,
@@ -66,7 +66,7 @@ pub(crate) fn read_space(cursor: &mut Cursor<'_>) -> Result<Space, Problem> {
     let flags = cursor.u8()?;
     let kind = cursor.u8()?;
     if rank > MOST_EXTENTS {
-        return Err(cursor.damaged("a dataset has more than 32 extents"));
+        return Err(cursor.damaged("a dataset has more than 32 dimensions"));
     }
     if version == 1 {
         cursor.skip(4)?;
@@ -94,7 +94,7 @@ pub(crate) fn read_space(cursor: &mut Cursor<'_>) -> Result<Space, Problem> {
     })
 }
 
-/// Reads where the elements are.
+/// Reads the storage layout.
 pub(crate) fn read_layout(
     cursor: &mut Cursor<'_>,
     elements: u64,
@@ -125,9 +125,9 @@ pub(crate) fn read_layout(
                 }
                 (2, _) => read_chunked4(cursor),
                 (3, _) => Err(Problem::Unsupported(
-                    "virtual datasets, whose data are in other files".to_owned(),
+                    "virtual datasets, with data in other files".to_owned(),
                 )),
-                _ => Err(cursor.damaged("the layout of data is of an unknown class")),
+                _ => Err(cursor.damaged("the layout of a dataset is of an unknown class")),
             }
         }
     }
@@ -148,7 +148,7 @@ fn read_old(cursor: &mut Cursor<'_>, elements: u64, size: usize) -> Result<Layou
             let size = cursor.u32()? as usize;
             Ok(Layout::Compact(cursor.take(size)?.to_vec()))
         }
-        // The extents that follow are those of the dataset, in 32 bits.
+        // The extents of the dataset follow, in 32 bits.
         1 => Ok(Layout::Contiguous {
             address,
             size: elements.saturating_mul(size as u64),
@@ -158,14 +158,14 @@ fn read_old(cursor: &mut Cursor<'_>, elements: u64, size: usize) -> Result<Layou
             index: Index::Tree1,
             address,
         })),
-        _ => Err(cursor.damaged("the layout of data is of an unknown class")),
+        _ => Err(cursor.damaged("the layout of a dataset is of an unknown class")),
     }
 }
 
-/// Extents of a chunk; behind them stands the size of an element.
+/// Reads the extents of a chunk, which are followed by the element size.
 fn read_chunk(cursor: &mut Cursor<'_>, rank: u8, width: usize) -> Result<Vec<u64>, Problem> {
     if rank == 0 || rank > MOST_EXTENTS + 1 {
-        return Err(cursor.damaged("a chunk has no extents, or more than 32"));
+        return Err(cursor.damaged("a chunk has no dimensions, or more than 32"));
     }
     let mut chunk = Vec::new();
     for _ in 0..rank {
@@ -203,7 +203,7 @@ fn read_chunked4(cursor: &mut Cursor<'_>) -> Result<Layout, Problem> {
         }
         _ => {
             return Err(Problem::Unsupported(format!(
-                "chunks by an index of kind {kind}"
+                "chunk indexes of type {kind}"
             )));
         }
     };
@@ -214,8 +214,7 @@ fn read_chunked4(cursor: &mut Cursor<'_>) -> Result<Layout, Problem> {
     }))
 }
 
-/// Reads the value of elements that were never written; `old` for the message of
-/// the first versions.
+/// Reads the fill value; `old` selects the original message type.
 pub(crate) fn read_fill(cursor: &mut Cursor<'_>, old: bool) -> Result<Vec<u8>, Problem> {
     let defined = match old {
         true => true,

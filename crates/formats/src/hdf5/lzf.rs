@@ -1,11 +1,11 @@
-//! The LZF compression of h5py.
+//! LZF decompression, for files of h5py.
 //!
 //! # Source
-//! M. A. Lehmann, LibLZF, format of its blocks: a control byte below 32 announces
-//! that many literals and one more; any other holds in three bits the length of a
-//! repetition, less two, and in five the high bits of its distance, less one.
+//! M. A. Lehmann, LibLZF block format: a control byte n < 32 precedes n + 1 literals;
+//! otherwise its upper three bits give the length of a match minus two, its lower
+//! five the high bits of the distance minus one.
 
-/// Unpacks a block to at most `most` bytes; `None` if it is damaged or longer.
+/// Unpacks at most `most` bytes; `None` if the data are damaged or longer.
 pub(crate) fn unpack_lzf(packed: &[u8], most: usize) -> Option<Vec<u8>> {
     let mut unpacked: Vec<u8> = Vec::new();
     let mut rest = packed;

@@ -1,30 +1,30 @@
-//! Elements of HDF5 datasets → numbers.
+//! Decodes elements of datasets to numbers.
 
 use crate::hdf5::value_type::{Datatype, Kind, Member};
 use crate::number::{self, Layout, integer};
 
-/// Most numbers in one element.
+/// Most numbers per element.
 const MOST_PARTS: usize = 4096;
 
-/// One number in an element.
+/// A number within an element.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Part {
-    /// Names from the element to it; empty for an element that is a number.
+    /// Path within the element; empty if the element is a number.
     pub path: Vec<String>,
-    /// What is appended to the name: " (real)".
+    /// Suffix of the name, such as " (real)".
     pub suffix: &'static str,
-    /// How it is stored, in a few words.
+    /// Description of the storage type.
     pub stored_as: String,
-    /// Where in an element, and how.
+    /// Position and storage type.
     pub number: Number,
 }
 
-/// A number in an element.
+/// Position and storage type of a number within an element.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct Number {
-    /// Bytes before it.
+    /// Offset in bytes.
     pub offset: usize,
-    /// Bytes of it.
+    /// Size in bytes.
     pub size: usize,
     form: Form,
     big_endian: bool,
@@ -37,10 +37,10 @@ enum Form {
     Float,
 }
 
-/// What of an element is no number: names from the element to it, and why.
+/// Non-numeric parts of an element: path and reason.
 pub(crate) type LeftOut = Vec<(Vec<String>, &'static str)>;
 
-/// The numbers in an element of a type, and what else is in it.
+/// The numbers in an element of a type, and its other parts.
 pub(crate) fn parts(datatype: &Datatype) -> (Vec<Part>, LeftOut) {
     let (mut found, mut left_out) = (Vec::new(), Vec::new());
     add_parts(datatype, 0, &[], &mut found, &mut left_out);
@@ -102,7 +102,7 @@ fn add_parts(
     }
 }
 
-/// The suffixes of the two members of a complex number.
+/// Suffixes of the two members of a complex number.
 fn complex_suffixes(members: &[Member]) -> Option<[&'static str; 2]> {
     let [real, imaginary] = members else {
         return None;
@@ -113,17 +113,17 @@ fn complex_suffixes(members: &[Member]) -> Option<[&'static str; 2]> {
     (named && numbers).then_some([" (real)", " (imaginary)"])
 }
 
-/// Why a type is no number.
+/// Why a type is not a number.
 fn reason(kind: &Kind) -> &'static str {
     match kind {
         Kind::Text | Kind::HeapText => "it is text",
-        Kind::Reference => "it holds references to other things",
+        Kind::Reference => "it holds references to other objects",
         Kind::Other(why) => why,
-        _ => "it is no number",
+        _ => "it is not a number",
     }
 }
 
-/// The number that a type is, at an offset.
+/// The number of a scalar type at an offset.
 fn number(datatype: &Datatype, offset: usize) -> Option<Number> {
     let of = |form, big_endian| {
         Some(Number {
@@ -160,12 +160,12 @@ fn describe(number: Number, kind: &Kind) -> String {
     format!("{}-bit {form}{order}", 8 * number.size)
 }
 
-/// The number in an element whose type is one.
+/// The number in an element of scalar type.
 pub(crate) fn number_of(bytes: &[u8], datatype: &Datatype) -> Option<f64> {
     decode_one(bytes, number(datatype, 0)?)
 }
 
-/// Appends the number that stands in each element of `bytes`.
+/// Appends the number from each element of `bytes`.
 pub(crate) fn decode(bytes: &[u8], element: usize, number: Number, numbers: &mut Vec<f64>) {
     let elements = bytes.chunks_exact(element);
     let Some(kind) = number.usual().filter(|_| elements.len() > 0) else {
@@ -184,7 +184,7 @@ pub(crate) fn decode(bytes: &[u8], element: usize, number: Number, numbers: &mut
 }
 
 impl Number {
-    /// The type of numbers that most files have.
+    /// The corresponding native type, if any.
     fn usual(self) -> Option<number::Number> {
         use number::Number::{F32, F64, I8, I16, I32, I64, U8, U16, U32, U64};
         let [signed, unsigned] = match self.size {
@@ -218,7 +218,7 @@ fn decode_one(bytes: &[u8], number: Number) -> Option<f64> {
     })
 }
 
-/// A float of 16 bits, IEEE 754-2008 binary16.
+/// IEEE 754-2008 binary16.
 fn half(bits: u16) -> f64 {
     let sign = if bits & 0x8000 == 0 { 1.0 } else { -1.0 };
     let fraction = f64::from(bits & 0x3ff);

@@ -1,9 +1,9 @@
-//! Headers of groups and datasets: rows of messages.
+//! Object headers: lists of messages.
 
 use crate::hdf5::cursor::{Cursor, Problem};
 use crate::hdf5::file::Hdf5File;
 
-/// Kinds of messages that are read.
+/// Message types that are read.
 pub(crate) const DATASPACE: u16 = 0x01;
 pub(crate) const LINK_INFO: u16 = 0x02;
 pub(crate) const DATATYPE: u16 = 0x03;
@@ -28,27 +28,27 @@ const LARGEST: u64 = 16 << 20;
 #[derive(Clone, Debug)]
 pub(crate) struct Message {
     pub kind: u16,
-    /// Whether it tells where the message is instead.
+    /// Whether it only refers to the message.
     pub shared: bool,
     pub bytes: Vec<u8>,
     /// Its address.
     pub address: u64,
 }
 
-/// The messages of a group or dataset.
+/// The messages of an object.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Header {
     pub messages: Vec<Message>,
 }
 
 impl Header {
-    /// The first message of a kind.
+    /// The first message of a type.
     pub fn message(&self, kind: u16) -> Option<&Message> {
         self.messages.iter().find(|m| m.kind == kind)
     }
 }
 
-/// Blocks of messages that are still to be read.
+/// Blocks of messages found so far.
 #[derive(Default)]
 struct Blocks {
     waiting: Vec<(u64, u64)>,
@@ -60,17 +60,17 @@ impl Blocks {
         self.bytes = self.bytes.saturating_add(length);
         let seen = self.waiting.iter().any(|(known, _)| *known == address);
         if seen || self.waiting.len() > MOST_BLOCKS || self.bytes > LARGEST {
-            return Err(cursor.damaged("a header goes round in circles, or is too long"));
+            return Err(cursor.damaged("an object header is cyclic or too long"));
         }
         self.waiting.push((address, length));
         Ok(())
     }
 }
 
-/// How the messages of a header are written.
+/// Version of a header.
 enum Form {
     Version1,
-    /// Bytes before the first message, and of the order of creation of each.
+    /// Bytes before the first message, and of the creation order of each.
     Version2 {
         before: usize,
         tracked: usize,
@@ -126,7 +126,7 @@ pub(crate) fn read_header(file: &Hdf5File, address: u64) -> Result<Header, Probl
     Ok(header)
 }
 
-/// The length of the first block of a header of version 2, and its form.
+/// Length and form of the first block of a version 2 header.
 fn begin_version2(cursor: &mut Cursor<'_>) -> Result<(u64, Form), Problem> {
     cursor.signature(b"OHDR")?;
     cursor.version("a header", &[2])?;
@@ -166,7 +166,8 @@ fn add_message(
         let mut body = Cursor::new(bytes, start, cursor.widths());
         let next = body.address()?;
         let length = body.length()?;
-        let next = next.ok_or_else(|| cursor.damaged("a header goes on nowhere"))?;
+        let next = next
+            .ok_or_else(|| cursor.damaged("an object header continues at an undefined address"))?;
         return blocks.add(cursor, next, length);
     }
     if kind != 0 {
@@ -180,7 +181,7 @@ fn add_message(
     Ok(())
 }
 
-/// The message that a shared one stands for; another is given back as it is.
+/// Resolves a shared message; others are returned unchanged.
 pub(crate) fn resolve(file: &Hdf5File, message: &Message) -> Result<Message, Problem> {
     if !message.shared {
         return Ok(message.clone());
@@ -190,7 +191,7 @@ pub(crate) fn resolve(file: &Hdf5File, message: &Message) -> Result<Message, Pro
     let header = read_header(file, target)?;
     match header.message(message.kind) {
         Some(found) if !found.shared => Ok(found.clone()),
-        _ => Err(cursor.damaged("what a shared message refers to is not there")),
+        _ => Err(cursor.damaged("a shared message refers to nothing")),
     }
 }
 
@@ -203,9 +204,9 @@ pub(crate) fn shared_address(cursor: &mut Cursor<'_>) -> Result<u64, Problem> {
     }
     if version == 3 && kind != 2 {
         return Err(Problem::Unsupported(
-            "messages that are kept in a table of the file".to_owned(),
+            "messages kept in a table of the file".to_owned(),
         ));
     }
     let address = cursor.address()?;
-    address.ok_or_else(|| cursor.damaged("a shared message is nowhere"))
+    address.ok_or_else(|| cursor.damaged("a shared message has an undefined address"))
 }

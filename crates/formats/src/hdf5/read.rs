@@ -1,4 +1,4 @@
-//! HDF5 files, and those of MATLAB 7.3, which are HDF5 too.
+//! HDF5 files, including MATLAB 7.3.
 
 use crate::arrays::channels::list_channels;
 use crate::arrays::pass::Pass;
@@ -23,19 +23,19 @@ pub struct Hdf5Reader {
     datasets: Vec<Dataset>,
 }
 
-/// Whether a file begins like an HDF5 file.
+/// Whether a file starts like an HDF5 file.
 pub(crate) fn begins(head: &[u8]) -> bool {
     file::begins(head)
 }
 
 impl Hdf5Reader {
-    /// Lists what a file holds.
+    /// Lists the contents of a file; unreadable objects are left out with a note.
     pub fn open(source: Source) -> Result<Self, Error> {
         let file = Hdf5File::open(source)?;
         let length = file.source.length();
         let found = list(&file);
         if found.is_err() && file.end > length {
-            let what = "the file as it was written";
+            let what = "the complete file";
             return Err(file.source.truncated(0, what, file.end));
         }
         let mut found = found?;
@@ -74,7 +74,7 @@ impl Hdf5Reader {
         })
     }
 
-    /// Reads those channels that are in one dataset.
+    /// Reads the channels within one dataset.
     fn read_dataset(
         &mut self,
         at: usize,

@@ -1,10 +1,10 @@
-//! The groups and datasets of an HDF5 file, of MATLAB 7.3 among them.
+//! Walks the groups and datasets of an HDF5 file, including MATLAB 7.3.
 //!
 //! # Source
-//! The HDF Group (2023), "HDF5 File Format Specification 3.0". How MATLAB uses
-//! it is not published; the attributes `MATLAB_class`, `MATLAB_empty`,
-//! `MATLAB_sparse` and `MATLAB_object_decode`, and the group `#refs#` for what is
-//! in cells, are taken from files that it wrote.
+//! The HDF Group (2023), "HDF5 File Format Specification 3.0". MATLAB's conventions
+//! are not published; the attributes `MATLAB_class`, `MATLAB_empty`, `MATLAB_sparse`
+//! and `MATLAB_object_decode`, and the group `#refs#` for the contents of cells, are
+//! inferred from its files.
 
 use crate::arrays::tree::{Array, BEGINNING, Scalar, Tree, count, first_fastest, last_fastest};
 use crate::error::Error;
@@ -23,35 +23,33 @@ use std::collections::BTreeSet;
 /// Deepest nesting of groups and cells.
 const DEEPEST: usize = 32;
 
-/// Most things in a file: groups, datasets, cells.
+/// Most objects in a file: groups, datasets, cells.
 const MOST_THINGS: usize = 200_000;
 
-/// Longest text that is kept; characters.
+/// Longest text kept; characters.
 const LONGEST_TEXT: u64 = 8192;
 
-/// Most that data can be compressed: deflate holds 258 bytes in two bits.
+/// Largest compression ratio: deflate stores 258 bytes in two bits.
 const MOST_PACKED: u64 = 1032;
 
-/// Bytes that datasets may have that were never written.
+/// Bytes allowed for datasets that were never written.
 const LARGEST_UNWRITTEN: u64 = 1 << 16;
 
-/// Where the numbers of an array are.
+/// Location of the numbers of an array.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Stored {
-    /// Position of the dataset.
+    /// Index of the dataset.
     pub dataset: usize,
-    /// Which number of its elements.
+    /// Which number within its elements.
     pub number: Number,
 }
 
-/// What an HDF5 file holds.
+/// Contents of an HDF5 file.
 #[derive(Default, Debug)]
 pub(crate) struct Hdf5Tree {
-    /// Arrays and texts.
     pub tree: Tree,
-    /// Where the numbers of each array are.
+    /// Location of the numbers of each array.
     pub stored: Vec<Stored>,
-    /// Datasets.
     pub datasets: Vec<Dataset>,
     /// Attributes of groups.
     pub properties: Vec<(String, String)>,
@@ -62,14 +60,14 @@ pub(crate) struct Hdf5Tree {
 struct Walk<'a> {
     file: &'a Hdf5File,
     found: Hdf5Tree,
-    /// Addresses of what has been listed.
+    /// Addresses of listed objects.
     seen: BTreeSet<u64>,
     things: usize,
-    /// Bytes of all datasets so far.
+    /// Total size of the datasets so far; bytes.
     claimed: u64,
 }
 
-/// Lists what a file holds.
+/// Lists the contents of a file; unreadable objects are left out with a note.
 pub(crate) fn list(file: &Hdf5File) -> Result<Hdf5Tree, Error> {
     let mut walk = Walk {
         file,
@@ -96,7 +94,7 @@ impl Walk<'_> {
         self.add_attributes(&Attributes::read(self.file, &header), &[]);
         for member in members {
             match (member.name.as_str(), self.found.by_matlab) {
-                // What is in cells stands here without names.
+                // Holds the contents of cells, without names.
                 ("#refs#", true) => {}
                 ("#subsystem#", true) => {
                     let name = ["MATLAB's store of objects".to_owned()];
@@ -108,7 +106,7 @@ impl Walk<'_> {
         Ok(())
     }
 
-    /// Lists a member of a group; `in_struct` for those in a struct of MATLAB.
+    /// Lists a member of a group; `in_struct` if it is a MATLAB struct.
     fn list_member(&mut self, member: &Member, above: &[String], in_struct: bool) {
         let path = [above, std::slice::from_ref(&member.name)].concat();
         match &member.link {
@@ -125,7 +123,10 @@ impl Walk<'_> {
     fn list_object(&mut self, address: u64, path: Vec<String>, in_struct: bool) {
         self.things += 1;
         if path.len() > DEEPEST || self.things > MOST_THINGS {
-            return self.leave_out(&path, "it is nested too deep, or the file holds too much");
+            return self.leave_out(
+                &path,
+                "it is nested too deep, or the file holds too many objects",
+            );
         }
         if let Err(problem) = self.list_header(address, &path, in_struct) {
             self.leave_out(&path, &reason(&problem));
@@ -142,7 +143,7 @@ impl Walk<'_> {
         let attributes = Attributes::read(self.file, &header);
         let class = attributes.text("MATLAB_class");
         self.found.by_matlab |= class.is_some();
-        // MATLAB lets all empty cells refer to one dataset.
+        // In MATLAB files, all empty cells refer to one dataset.
         if attributes.has("MATLAB_empty") {
             self.leave_out(path, "it is empty");
             return Ok(());
@@ -186,7 +187,7 @@ impl Walk<'_> {
         Ok(())
     }
 
-    /// Attributes of a group: texts are shown, numbers may be sampling rates.
+    /// Attributes of a group become properties; numbers may be sampling rates.
     fn add_attributes(&mut self, attributes: &Attributes, path: &[String]) {
         for (name, value) in attributes.shown() {
             let mut full = path.to_vec();
@@ -238,7 +239,7 @@ impl Walk<'_> {
         }
     }
 
-    /// The bytes of the first elements of a dataset.
+    /// Bytes of the first elements of a dataset.
     fn some_bytes(&self, dataset: &mut Dataset, most: u64) -> Result<Vec<u8>, Problem> {
         let count = dataset.space.count().min(most);
         let mut found = Vec::new();
@@ -254,7 +255,7 @@ impl Walk<'_> {
         Ok(found)
     }
 
-    /// Whether a dataset has more bytes than the file can hold.
+    /// Whether a dataset declares more bytes than the file can hold.
     fn claims_too_much(&self, dataset: &Dataset) -> bool {
         let packed = match (&dataset.layout, dataset.filters.is_empty()) {
             (Layout::Chunked(_), false) => MOST_PACKED,
@@ -270,7 +271,7 @@ impl Walk<'_> {
             || self.claimed.saturating_add(size) > possible_all.saturating_add(LARGEST_UNWRITTEN)
     }
 
-    /// Cells, and the fields of an array of structs, refer to other datasets.
+    /// Cells, and fields of struct arrays, are references to other datasets.
     fn list_references(
         &mut self,
         mut dataset: Dataset,
@@ -281,7 +282,7 @@ impl Walk<'_> {
         let bytes = self.some_bytes(&mut dataset, MOST_THINGS as u64)?;
         for (k, address) in bytes.chunks_exact(size).enumerate() {
             let mut path = path.to_vec();
-            // The field of the third struct is "s/3/field".
+            // A field of the third struct is "s/3/field".
             let place = if of_structs {
                 path.len() - 1
             } else {
@@ -296,7 +297,7 @@ impl Walk<'_> {
         Ok(())
     }
 
-    /// Text of MATLAB, stored as numbers.
+    /// MATLAB text, stored as numbers.
     fn list_characters(&mut self, mut dataset: Dataset, path: &[String]) -> Result<(), Problem> {
         let bytes = self.some_bytes(&mut dataset, LONGEST_TEXT)?;
         let (parts, _) = parts(&dataset.datatype);
@@ -343,14 +344,14 @@ impl Walk<'_> {
         }
         self.claimed = self.claimed.saturating_add(dataset.size());
         let extents = match by_matlab {
-            // MATLAB's first extent runs fastest and is written last.
+            // MATLAB's first dimension varies fastest and is written last.
             true => {
                 let reversed: Vec<u64> = dataset.space.extents.iter().rev().copied().collect();
                 first_fastest(&reversed)
             }
             false => last_fastest(&dataset.space.extents),
         };
-        // The beginning of the first column, or the only element.
+        // Read the start of the first column, or a scalar.
         let step = extents.first().map_or(1, |e| e.step);
         let wanted = match (count(&extents), &extents[..]) {
             (1, _) => 1,
@@ -393,19 +394,19 @@ fn too_much(dataset: &Dataset) -> Problem {
     Problem::Damaged {
         at: 0,
         what: format!(
-            "it claims {} elements, more than the file can hold",
+            "it declares {} elements, more than the file can hold",
             dataset.space.count()
         ),
     }
 }
 
-/// Classes of MATLAB that are numbers.
+/// Numeric MATLAB classes.
 const NUMERIC: [&str; 11] = [
     "double", "single", "logical", "int8", "uint8", "int16", "uint16", "int32", "uint32", "int64",
     "uint64",
 ];
 
-/// Why classes of MATLAB are left out.
+/// Why other MATLAB classes are left out.
 const OBJECT: &str = "it is an object of MATLAB (a table, a string, a date …); save plain arrays";
 
 fn stored_as(dataset: &Dataset, part: &Part) -> String {

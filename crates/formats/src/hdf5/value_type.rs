@@ -1,25 +1,25 @@
-//! Types of elements.
+//! Datatypes.
 
 use crate::hdf5::cursor::{Cursor, Problem};
 
-/// Deepest nesting of compounds and arrays.
+/// Deepest nesting of datatypes.
 const DEEPEST: usize = 16;
 
 /// Most members of a compound.
 const MOST_MEMBERS: u16 = 4096;
 
-/// Most extents of an array in an element.
+/// Most dimensions of an array datatype.
 const MOST_EXTENTS: u8 = 32;
 
-/// A type of elements.
+/// A datatype.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Datatype {
-    /// Bytes of one element.
+    /// Bytes per element.
     pub size: usize,
     pub kind: Kind,
 }
 
-/// What the bytes of an element mean.
+/// Class of a datatype.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) enum Kind {
     Integer {
@@ -29,20 +29,20 @@ pub(crate) enum Kind {
     Float {
         big_endian: bool,
     },
-    /// An integer whose values have names.
+    /// An enumeration, stored as an integer.
     Enumeration(Box<Datatype>),
-    /// A text of fixed length.
+    /// Text of fixed length.
     Text,
-    /// A text of any length, in the heap.
+    /// Text of variable length, stored in the heap.
     HeapText,
-    /// The address of another object.
+    /// Reference to another object.
     Reference,
     Compound(Vec<Member>),
     Array {
         base: Box<Datatype>,
         count: u64,
     },
-    /// What is no number, and why.
+    /// Any other class, and why it is not read.
     Other(&'static str),
 }
 
@@ -50,21 +50,23 @@ pub(crate) enum Kind {
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Member {
     pub name: String,
-    /// Bytes before it.
+    /// Offset in bytes.
     pub offset: usize,
     pub datatype: Datatype,
 }
 
-const ODD: &str = "its numbers do not fill their bytes, or are floats of an unusual form";
+const ODD: &str = "its numbers have padding bits, or are floats of an unusual form";
 
-/// Reads a type.
+/// Reads a datatype.
 pub(crate) fn read_type(cursor: &mut Cursor<'_>) -> Result<Datatype, Problem> {
     read_nested(cursor, 0)
 }
 
 fn read_nested(cursor: &mut Cursor<'_>, depth: usize) -> Result<Datatype, Problem> {
     if depth > DEEPEST {
-        return Err(Problem::Unsupported("types nested that deep".to_owned()));
+        return Err(Problem::Unsupported(
+            "datatypes nested that deeply".to_owned(),
+        ));
     }
     let head = cursor.u8()?;
     let (version, class) = (head >> 4, head & 0xf);
@@ -75,7 +77,7 @@ fn read_nested(cursor: &mut Cursor<'_>, depth: usize) -> Result<Datatype, Proble
         1 => read_float(cursor, bits, size)?,
         2 => {
             cursor.skip(2)?;
-            Kind::Other("it holds times of an old form")
+            Kind::Other("it holds times in an old format")
         }
         3 => Kind::Text,
         5 => {
@@ -84,13 +86,13 @@ fn read_nested(cursor: &mut Cursor<'_>, depth: usize) -> Result<Datatype, Proble
         }
         6 => read_compound(cursor, version, bits, (size, depth))?,
         7 if bits & 0xf == 0 => Kind::Reference,
-        7 => Kind::Other("it holds references to parts of other things"),
+        7 => Kind::Other("it holds references to regions of datasets"),
         8 => read_enumeration(cursor, version, bits, depth)?,
         9 => {
             read_nested(cursor, depth + 1)?;
             match bits & 0xf {
                 1 => Kind::HeapText,
-                _ => Kind::Other("its elements are of varying length"),
+                _ => Kind::Other("its elements vary in length"),
             }
         }
         10 => read_array(cursor, version, depth)?,
@@ -99,7 +101,7 @@ fn read_nested(cursor: &mut Cursor<'_>, depth: usize) -> Result<Datatype, Proble
     if let Kind::Array { base, count } = &kind
         && count.checked_mul(base.size as u64) != Some(size as u64)
     {
-        return Err(cursor.damaged("an array in an element has another size than its parts"));
+        return Err(cursor.damaged("the size of an array type does not match its elements"));
     }
     Ok(Datatype { size, kind })
 }
@@ -123,7 +125,7 @@ fn read_integer(
 
 fn read_float(cursor: &mut Cursor<'_>, bits: u64, size: usize) -> Result<Kind, Problem> {
     let (offset, precision) = (cursor.u16()?, cursor.u16()?);
-    // Place and size of the exponent, and of the fraction.
+    // Position and size of exponent and fraction.
     let form = cursor.take(4)?.to_vec();
     let bias = cursor.u32()?;
     let sign = bits >> 8 & 0xff;
@@ -133,7 +135,7 @@ fn read_float(cursor: &mut Cursor<'_>, bits: u64, size: usize) -> Result<Kind, P
         8 => form == [52, 11, 0, 52] && sign == 63 && bias == 1023,
         _ => false,
     };
-    // Bit 6 and bit 0 give the order: 1 of VAX has both.
+    // Bits 6 and 0 give the byte order; VAX sets both.
     let order = bits & 0x41;
     let fills = offset == 0 && usize::from(precision) == size.saturating_mul(8);
     Ok(match usual && fills && order <= 1 {
@@ -153,7 +155,7 @@ fn read_compound(
     let count = (bits & 0xffff) as u16;
     if count > MOST_MEMBERS {
         return Err(Problem::Unsupported(format!(
-            "compounds of {count} members"
+            "compound types with {count} members"
         )));
     }
     let mut members = Vec::new();
@@ -184,7 +186,7 @@ fn read_compound(
         }
         let fits = (offset as usize).checked_add(datatype.size);
         if fits.is_none_or(|end| end > size) {
-            return Err(cursor.damaged("a member stands outside of its compound"));
+            return Err(cursor.damaged("a member lies outside of its compound type"));
         }
         members.push(Member {
             name,
@@ -220,7 +222,7 @@ fn read_enumeration(
 fn read_array(cursor: &mut Cursor<'_>, version: u8, depth: usize) -> Result<Kind, Problem> {
     let rank = cursor.u8()?;
     if rank > MOST_EXTENTS {
-        return Err(cursor.damaged("an array in an element has too many extents"));
+        return Err(cursor.damaged("an array type has too many dimensions"));
     }
     if version < 3 {
         cursor.skip(3)?;
@@ -249,6 +251,6 @@ fn array_of(cursor: &Cursor<'_>, base: Datatype, extents: &[u64]) -> Result<Data
                 count,
             },
         }),
-        _ => Err(cursor.damaged("an array in an element is too large")),
+        _ => Err(cursor.damaged("an array type is too large")),
     }
 }

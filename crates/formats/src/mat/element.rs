@@ -1,46 +1,44 @@
-//! Data elements of MAT files of version 5: a tag and what it announces.
+//! Data elements of version 5 MAT files: a tag and its data.
 
 use crate::error::{Error, Place};
 use crate::mat::flow::{ADVICE, Flow, Region};
 use crate::number::integer;
 use crate::source::Source;
 
-/// Type of an element that holds a matrix.
+/// Type of matrix elements.
 pub(crate) const MATRIX: u32 = 14;
 
-/// Type of an element that holds another, compressed.
+/// Type of compressed elements.
 pub(crate) const COMPRESSED: u32 = 15;
 
-/// A tag.
+/// A data element.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct Element {
-    /// What it announces.
+    /// Type of the data.
     pub kind: u32,
-    /// First byte of its data.
+    /// Offset of the data.
     pub at: u64,
-    /// Bytes of its data.
+    /// Length of the data; bytes.
     pub length: u64,
-    /// First byte behind it and what fills it up.
+    /// Offset after the data and padding.
     pub next: u64,
-    /// The data, if they stand in the tag itself.
+    /// The data, if stored in the tag itself.
     small: Option<[u8; 4]>,
 }
 
-/// Where elements are read from: a variable, and how its numbers are ordered.
+/// A variable from which elements are read.
 pub(crate) struct Elements<'a> {
-    /// The file, for messages.
     pub source: &'a Source,
-    /// The bytes of the variable, and where they stand in the file.
+    /// The bytes of the variable, and their place in the file.
     pub flow: Flow<'a>,
     pub region: Region,
-    /// Order of bytes.
     pub big_endian: bool,
-    /// Where the variable begins in the file, for messages.
+    /// Offset of the variable in the file, for messages.
     pub start: u64,
 }
 
 impl Elements<'_> {
-    /// The element at `at` of something that ends at `end`.
+    /// The element at `at` within a structure that ends at `end`.
     pub fn element(&mut self, at: u64, end: u64) -> Result<Element, Error> {
         if end.saturating_sub(at) < 8 {
             return Err(self.malformed("expected a data element, found the end of the variable"));
@@ -66,7 +64,7 @@ impl Elements<'_> {
             },
         };
         if small && element.length > 4 {
-            return Err(self.malformed("a small data element claims more than 4 bytes"));
+            return Err(self.malformed("a small data element declares more than 4 bytes"));
         }
         let possible = end - element.at;
         if element.length > possible {
@@ -78,12 +76,12 @@ impl Elements<'_> {
                 possible,
             });
         }
-        // Of the last one in a variable the filling may be missing.
+        // The last element of a variable may lack its padding.
         let next = element.next.min(end);
         Ok(Element { next, ..element })
     }
 
-    /// The data of an element; of a longer one the first `most` bytes.
+    /// The data of an element, at most `most` bytes.
     pub fn data(&mut self, element: Element, most: u64) -> Result<Vec<u8>, Error> {
         let length = element.length.min(most) as usize;
         if let Some(small) = element.small {
@@ -103,12 +101,11 @@ impl Elements<'_> {
         Ok(words.map(|b| self.u32(b)).collect())
     }
 
-    /// Four bytes as a number.
     fn u32(&self, bytes: &[u8]) -> u32 {
         integer(bytes, self.big_endian) as u32
     }
 
-    /// The error that the variable breaks the rules.
+    /// Error: the variable is malformed.
     pub fn malformed(&self, problem: &str) -> Error {
         self.source.malformed(
             Place::Byte(self.start),

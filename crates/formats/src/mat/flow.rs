@@ -5,21 +5,21 @@ use crate::source::Source;
 use flate2::read::ZlibDecoder;
 use std::io::Read;
 
-/// Bytes that are decompressed at once where they are only passed over.
+/// Bytes decompressed at a time while skipping.
 const SKIP: usize = 1 << 15;
 
-/// Where the bytes of a variable stand in the file.
+/// Location of a variable in the file.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct Region {
-    /// First byte in the file.
+    /// Offset in the file.
     pub start: u64,
-    /// Number of bytes in the file.
+    /// Length in the file; bytes.
     pub length: u64,
-    /// Whether they are compressed (zlib).
+    /// Whether compressed with zlib.
     pub compressed: bool,
 }
 
-/// The bytes of a variable, read at ascending places.
+/// The bytes of a variable, read at ascending offsets.
 pub(crate) struct Flow<'a> {
     source: &'a Source,
     region: Region,
@@ -51,7 +51,7 @@ impl Read for Part<'_> {
 }
 
 impl<'a> Flow<'a> {
-    /// The bytes of a region, which the file must have.
+    /// Reads a region, which must lie within the file.
     pub fn new(source: &'a Source, region: Region) -> Self {
         let inflater = region.compressed.then(|| Inflater {
             decoder: ZlibDecoder::new(Part {
@@ -68,8 +68,8 @@ impl<'a> Flow<'a> {
         }
     }
 
-    /// Fills `buffer` with the (decompressed) bytes from `at` on. Of compressed
-    /// ones `at` must not be before the end of what was read.
+    /// Fills `buffer` with (decompressed) bytes from `at`, which for compressed data
+    /// must not lie before the end of the last read.
     pub fn read_at(&mut self, at: u64, buffer: &mut [u8]) -> Result<(), Error> {
         let (source, region) = (self.source, self.region);
         let Some(inflater) = &mut self.inflater else {
@@ -103,8 +103,8 @@ impl<'a> Flow<'a> {
         Ok(())
     }
 
-    /// Reads the few bytes behind the last number, and with them tests the
-    /// checksum of compressed ones.
+    /// Reads the few bytes after the last number, which verifies the checksum of
+    /// compressed data.
     pub fn finish(&mut self) -> Result<(), Error> {
         let mut rest = [0; 8];
         let (source, start) = (self.source, self.region.start);
@@ -130,7 +130,7 @@ fn damaged(source: &Source, start: u64, error: &std::io::Error) -> Error {
         Place::Byte(start),
         match error.kind() {
             std::io::ErrorKind::UnexpectedEof => {
-                "the compressed data that begin here end before what they declare".to_owned()
+                "the compressed data that begin here end too early".to_owned()
             }
             _ => format!("the compressed data that begin here are damaged ({error})"),
         },
@@ -138,6 +138,6 @@ fn damaged(source: &Source, start: u64, error: &std::io::Error) -> Error {
     )
 }
 
-/// What to do with damaged data.
+/// Advice for damaged data.
 pub(crate) const ADVICE: &str =
     "the file is damaged: copy it again from where it was recorded, or save it again in MATLAB";

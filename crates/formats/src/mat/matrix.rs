@@ -1,4 +1,4 @@
-//! One variable of a MAT file of version 5: numbers, texts, structs and cells.
+//! Variables of version 5 MAT files: numbers, texts, structs and cells.
 
 use crate::arrays::tree::{Array, BEGINNING, first_fastest};
 use crate::error::Error;
@@ -10,43 +10,42 @@ use crate::number::{Number, integer};
 /// Deepest nesting of structs and cells.
 const DEEPEST: usize = 32;
 
-/// Most things in a file: arrays, texts, fields and cells.
+/// Most objects in a file: arrays, texts, fields and cells.
 const MOST_THINGS: usize = 200_000;
 
-/// Most extents of an array.
+/// Most dimensions of an array.
 const MOST_EXTENTS: u64 = 32;
 
-/// Longest text that is kept; bytes.
+/// Longest text kept; bytes.
 const LONGEST_TEXT: u64 = 8192;
 
-/// Most bytes of all names of fields of a struct.
+/// Most bytes of the field names of a struct.
 const LONGEST_NAMES: u64 = 1 << 20;
 
-/// What was found so far.
+/// Contents found so far.
 #[derive(Debug, Default)]
 pub(crate) struct Walk {
-    /// Arrays and texts.
     pub found: MatTree,
     things: usize,
-    /// Where the variable ends that is being listed.
+    /// End of the current variable.
     end: u64,
 }
 
-/// What all matrices begin with.
+/// Common part of all matrices.
 struct Matrix {
     complex: bool,
     logical: bool,
     extents: Vec<u64>,
     /// Number of elements.
     count: u64,
-    /// What comes behind the name.
+    /// Offset after the name.
     at: u64,
     end: u64,
 }
 
-/// Lists what a variable holds.
+/// Lists the contents of a variable.
 pub(crate) fn list_variable(elements: &mut Elements<'_>, walk: &mut Walk) -> Result<(), Error> {
-    // The length of decompressed bytes is only known from their first tag.
+    // The decompressed length is only known from the first tag.
     let end = match elements.region.compressed {
         true => u64::MAX,
         false => elements.region.length,
@@ -59,7 +58,7 @@ pub(crate) fn list_variable(elements: &mut Elements<'_>, walk: &mut Walk) -> Res
     list_matrix(elements, element, &[], walk)
 }
 
-/// Lists a matrix; `above` is empty for a variable, which has its own name.
+/// Lists a matrix; `above` is empty for variables, which are named.
 fn list_matrix(
     elements: &mut Elements<'_>,
     element: Element,
@@ -74,7 +73,7 @@ fn list_matrix(
     if above.len() > DEEPEST || walk.things > MOST_THINGS {
         walk.found.tree.leave_out(
             above,
-            "it is nested too deep, or the file holds too many things",
+            "it is nested too deep, or the file holds too many objects",
         );
         return Ok(());
     }
@@ -103,7 +102,7 @@ fn list_matrix(
     let lengths = elements.integers(extents, MOST_EXTENTS)?;
     let lengths: Vec<u64> = lengths.into_iter().map(u64::from).collect();
     if lengths.len() < 2 || extents.length / 4 > MOST_EXTENTS {
-        return Err(elements.malformed("expected 2 to 32 extents of a matrix"));
+        return Err(elements.malformed("expected a matrix of 2 to 32 dimensions"));
     }
     let (path, at) = named(elements, extents.next)?;
     let matrix = Matrix {
@@ -138,13 +137,13 @@ const STRUCT: u8 = 2;
 const TEXT: u8 = 4;
 const OPAQUE: u8 = 17;
 
-/// Why a class of matrices is no channel.
+/// Why a class of matrices is not read.
 fn reason(class: u8) -> &'static str {
     match class {
         3 | OPAQUE => "it is an object of MATLAB (a table, a string, a date …); save plain arrays",
         5 => "it is a sparse matrix; save full(…) of it",
         16 => "it is a function",
-        _ => "it is of a class that windfall does not know",
+        _ => "windfall does not know its class",
     }
 }
 
@@ -176,7 +175,7 @@ fn list_struct(
     let text = elements.data(names_element, LONGEST_NAMES)?;
     let width = match width_words.first() {
         Some(&width) if width > 0 => width as usize,
-        _ => return Err(elements.malformed("expected the length of names of fields")),
+        _ => return Err(elements.malformed("expected the length of field names")),
     };
     let names: Vec<String> = text
         .chunks_exact(width)
@@ -197,7 +196,7 @@ fn list_struct(
         matrix.count.saturating_mul(names.len() as u64),
     )?;
     for k in 0..matrix.count {
-        // A single struct needs no number.
+        // A single struct is not numbered.
         let number = [k + 1];
         let number = if matrix.count == 1 {
             &number[..0]
@@ -231,10 +230,12 @@ fn list_part(
     list_matrix(elements, element, &path, walk)
 }
 
-/// Each part of a struct or cell needs a tag of eight bytes.
+/// Each part of a struct or cell takes at least a tag of eight bytes.
 fn check_room(elements: &Elements<'_>, matrix: &Matrix, parts: u64) -> Result<(), Error> {
     match parts > matrix.end.saturating_sub(matrix.at) / 8 {
-        true => Err(elements.malformed("a struct or cell claims more parts than it has room for")),
+        true => {
+            Err(elements.malformed("a struct or cell declares more parts than it has room for"))
+        }
         false => Ok(()),
     }
 }
@@ -267,11 +268,11 @@ fn list_text(
     Ok(())
 }
 
-/// Text is stored by columns; its rows are lines.
+/// Text is stored by columns; rows are lines.
 fn by_rows(text: &str, matrix: &Matrix) -> String {
     let rows = matrix.extents[0];
     let characters: Vec<char> = text.chars().collect();
-    // A text of several rows and no columns holds nothing.
+    // A text with rows but no columns is empty.
     if rows <= 1 || characters.is_empty() || characters.len() as u64 != matrix.count {
         return text.to_owned();
     }
@@ -334,7 +335,7 @@ fn list_numbers(
     Ok(())
 }
 
-/// The beginning of the first column of a matrix, or a single number.
+/// The start of the first column of a matrix, or a scalar.
 fn first_column(
     elements: &mut Elements<'_>,
     matrix: &Matrix,

@@ -1,8 +1,8 @@
-//! Numbers as MAT files store them.
+//! Number types of MAT files.
 
 use crate::number::Number;
 
-/// The name that MATLAB has for a type of numbers.
+/// MATLAB's name of a number type.
 pub(crate) fn name_of(number: Number) -> &'static str {
     match number {
         Number::I8 => "int8",
@@ -18,7 +18,7 @@ pub(crate) fn name_of(number: Number) -> &'static str {
     }
 }
 
-/// By the type of a data element of version 5.
+/// Number type of a version 5 data element.
 pub(crate) fn of_element(kind: u32) -> Option<Number> {
     Some(match kind {
         1 => Number::I8,
@@ -35,14 +35,14 @@ pub(crate) fn of_element(kind: u32) -> Option<Number> {
     })
 }
 
-/// By the class of an array of version 5.
+/// Number type of a version 5 array class.
 pub(crate) fn of_class(class: u8) -> Option<Number> {
     use Number::{F32, F64, I8, I16, I32, I64, U8, U16, U32, U64};
     let classes = [F64, F32, I8, U8, I16, U16, I32, U32, I64, U64];
     classes.get(usize::from(class.checked_sub(6)?)).copied()
 }
 
-/// By the digit P of the type of version 4.
+/// Number type by the digit P of version 4.
 pub(crate) fn of_version_4(digit: u32) -> Option<Number> {
     use Number::{F32, F64, I16, I32, U8, U16};
     let digits = [F64, F32, I32, I16, U16, U8];

@@ -1,4 +1,4 @@
-//! MATLAB files of versions 4 to 7. Version 7.3 is HDF5: see `hdf5::read`.
+//! MATLAB files of versions 4 to 7. For version 7.3 see `hdf5::read`.
 
 use crate::arrays::channels::list_channels;
 use crate::arrays::pass::Pass;
@@ -11,7 +11,7 @@ use crate::mat::{version4, version5};
 use crate::reader::{Reader, Sink};
 use crate::source::Source;
 
-/// Numbers that are read at once.
+/// Numbers read at a time.
 const BLOCK: u64 = 1 << 16;
 
 /// A MATLAB file of version 4 to 7.
@@ -23,13 +23,13 @@ pub struct MatReader {
     stored: Vec<Stored>,
 }
 
-/// Whether a file begins like a MATLAB file of version 4 to 7.
+/// Whether a file starts like a MATLAB file of versions 4 to 7.
 pub(crate) fn begins(head: &[u8]) -> bool {
     version5::begins(head) || version4::begins(head)
 }
 
 impl MatReader {
-    /// Lists what a file holds.
+    /// Lists the contents of a file.
     pub fn open(source: Source) -> Result<Self, Error> {
         let mut properties = Vec::new();
         let head = source.head(128)?;
@@ -75,7 +75,7 @@ impl Reader for MatReader {
         let mut open: Option<(Region, Flow<'_>)> = None;
         for array in arrays {
             let stored = self.stored[array];
-            // Arrays of one variable share a flow: they come in its order.
+            // Arrays of one variable share a flow, as they are in order.
             let flow = match open.take() {
                 Some((region, flow)) if region == stored.region => flow,
                 _ => Flow::new(&self.source, stored.region),

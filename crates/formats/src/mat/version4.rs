@@ -1,4 +1,4 @@
-//! MAT files of version 4: a row of full matrices, each behind its header.
+//! Version 4 MAT files: a sequence of matrices with headers.
 //!
 //! # Source
 //! The MathWorks (2023), "MAT-File Format", chapter 2, "Level 4 MAT-Files".
@@ -18,7 +18,7 @@ const HEADER: u64 = 20;
 /// Longest name; MATLAB has 63.
 const LONGEST_NAME: u32 = 256;
 
-/// Longest text that is kept.
+/// Longest text kept.
 const LONGEST_TEXT: u64 = 4096;
 
 /// The header of a matrix.
@@ -34,7 +34,7 @@ pub(crate) struct Header {
     big_endian: bool,
 }
 
-/// Whether a file begins like one of version 4.
+/// Whether a file starts like version 4.
 pub(crate) fn begins(head: &[u8]) -> bool {
     let Some(header) = read_header(head) else {
         return false;
@@ -48,7 +48,7 @@ pub(crate) fn begins(head: &[u8]) -> bool {
         })
 }
 
-/// A header, if these bytes can be one.
+/// Parses a header, if the bytes are plausible.
 fn read_header(bytes: &[u8]) -> Option<Header> {
     let words = bytes.get(..HEADER as usize)?.as_chunks::<4>().0;
     [false, true].into_iter().find_map(|big_endian| {
@@ -93,14 +93,14 @@ pub(crate) fn list(source: &Source) -> Result<MatTree, Error> {
     Ok(found)
 }
 
-/// Lists the matrix at `at`; returns where it ends.
+/// Lists the matrix at `at`; returns its end.
 fn list_matrix(source: &Source, at: u64, found: &mut MatTree) -> Result<u64, Error> {
     let left = source.length() - at;
     if left < HEADER {
         return Err(source.truncated(at, "the header of a variable", HEADER));
     }
     let header = read_header(&source.bytes_at(at, HEADER)?)
-        .ok_or_else(|| malformed(source, at, "expected the header of a matrix of version 4"))?;
+        .ok_or_else(|| malformed(source, at, "expected the header of a version 4 matrix"))?;
     let name_at = at + HEADER;
     let needed = u64::from(header.name);
     if source.length() - name_at < needed {
@@ -113,7 +113,7 @@ fn list_matrix(source: &Source, at: u64, found: &mut MatTree) -> Result<u64, Err
         return Err(refused_machine(source, at, &header));
     }
     let number = of_version_4(header.digit)
-        .ok_or_else(|| malformed(source, at, "expected a type of numbers from 0 to 5"))?;
+        .ok_or_else(|| malformed(source, at, "expected a number type from 0 to 5"))?;
     let count = u64::from(header.rows) * u64::from(header.columns);
     let parts = 1 + u64::from(header.complex);
     let start = name_at + needed;
@@ -121,7 +121,7 @@ fn list_matrix(source: &Source, at: u64, found: &mut MatTree) -> Result<u64, Err
     let length = bytes
         .filter(|b| *b <= source.length() - start)
         .ok_or_else(|| {
-            let what = format!("the variable \"{name}\" and what stands behind it");
+            let what = format!("the variable \"{name}\"");
             source.truncated(start, &what, bytes.unwrap_or(u64::MAX))
         })?;
     let region = Region {
@@ -189,7 +189,7 @@ fn add(
     Ok(())
 }
 
-/// The text of a matrix of characters; rows are lines.
+/// Text of a character matrix; rows are lines.
 fn read_text(source: &Source, header: &Header, stored: Stored) -> Result<String, Error> {
     let codes = read_some(source, stored, LONGEST_TEXT)?;
     let character =
@@ -201,7 +201,7 @@ fn read_text(source: &Source, header: &Header, stored: Stored) -> Result<String,
     Ok(lines.join("\n"))
 }
 
-/// The first numbers, `most` or as many as there are.
+/// The first numbers, at most `most`.
 fn read_some(source: &Source, stored: Stored, most: u64) -> Result<Vec<f64>, Error> {
     let count = stored.count.min(most);
     let mut bytes = vec![0; (count * stored.number.size()) as usize];

@@ -1,5 +1,5 @@
-//! MAT files of version 5 and later (MATLAB 5 to 7): a header and a row of
-//! variables, each a tree of matrices, structs and cells.
+//! Version 5 MAT files (MATLAB 5 to 7): a header and a sequence of variables, each a
+//! tree of matrices, structs and cells.
 //!
 //! # Source
 //! The MathWorks (2023), "MAT-File Format", chapter 1, "Level 5 MAT-Files".
@@ -19,15 +19,14 @@ const HEADER: u64 = 128;
 /// The header of a file.
 #[derive(Clone, Debug)]
 pub(crate) struct Header {
-    /// What the program that wrote the file says of itself.
+    /// Text written by the program that made the file.
     pub description: String,
-    /// Order of bytes.
     pub big_endian: bool,
-    /// Where MATLAB keeps what belongs to objects.
+    /// Offset of MATLAB's data for objects.
     subsystem: u64,
 }
 
-/// Whether a file begins like one of version 5.
+/// Whether a file starts like version 5.
 pub(crate) fn begins(head: &[u8]) -> bool {
     matches!(head.get(126..128), Some(b"IM" | b"MI")) && head[..4].iter().all(|c| *c != 0)
 }
@@ -48,7 +47,7 @@ pub(crate) fn read_header(source: &Source) -> Result<Header, Error> {
         return Err(source.malformed(
             Place::Byte(124),
             problem,
-            "let windfall find out the format, or save the file again in MATLAB",
+            "let windfall detect the format, or save the file again in MATLAB",
         ));
     }
     let text = String::from_utf8_lossy(&bytes[..116]);
@@ -59,7 +58,8 @@ pub(crate) fn read_header(source: &Source) -> Result<Header, Error> {
     })
 }
 
-/// Lists the arrays of a file, and whether any variable is compressed.
+/// Lists the arrays of a file, and whether any variable is compressed. A file
+/// cut off after its first array is noted, not refused.
 pub(crate) fn list(source: &Source, header: &Header) -> Result<(MatTree, bool), Error> {
     let mut walk = Walk::default();
     let mut any_compressed = false;
@@ -77,7 +77,7 @@ pub(crate) fn list(source: &Source, header: &Header) -> Result<(MatTree, bool), 
         }
         let compressed = kind == COMPRESSED;
         any_compressed |= compressed;
-        // The tag of a matrix belongs to it.
+        // An uncompressed matrix is read including its tag.
         let tag = if compressed { 0 } else { 8 };
         let region = Region {
             start: at + 8 - tag,
@@ -100,7 +100,7 @@ pub(crate) fn list(source: &Source, header: &Header) -> Result<(MatTree, bool), 
             list_variable(&mut elements, &mut walk)?;
         } else {
             walk.found.tree.notes.push(Note::Odd {
-                what: format!("at byte {at} stands a data element of type {kind}, passed over"),
+                what: format!("the data element of type {kind} at byte {at} is skipped"),
             });
         }
         let end = at + 8 + length;
@@ -118,7 +118,7 @@ fn read_tag(source: &Source, header: &Header, at: u64) -> Result<(u32, u64), Err
     Ok((kind as u32, length))
 }
 
-/// Notes that a file ends too early; an error if nothing stands before.
+/// Notes a truncated file; an error if nothing was found before.
 fn cut_off(
     source: &Source,
     walk: &mut Walk,

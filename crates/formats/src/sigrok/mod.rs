@@ -1,4 +1,4 @@
-//! Captures of logic analysers by sigrok.
+//! sigrok logic-analyser captures.
 
 pub mod read;
 pub mod zip_entries;

@@ -1,4 +1,4 @@
-//! Captures of logic analysers by sigrok (.sr): bits over time.
+//! sigrok logic-analyser captures (.sr).
 //!
 //! # Source
 //! The sigrok project, "File format: sigrok/v2".
@@ -11,13 +11,13 @@ use crate::source::Source;
 use rawzip::ZipArchive;
 use std::io::Read;
 
-/// Longest description of a capture; bytes.
+/// Longest metadata of a capture; bytes.
 const LONGEST_METADATA: u64 = 1 << 20;
 
 /// Most probes.
 const MOST_PROBES: usize = 512;
 
-/// Samples decoded at once.
+/// Samples decoded at a time.
 const BLOCK: usize = 1 << 15;
 
 /// A capture of a logic analyser.
@@ -25,15 +25,15 @@ const BLOCK: usize = 1 << 15;
 pub struct SigrokReader {
     archive: ZipArchive<Source>,
     contents: Contents,
-    /// Parts of the capture in order.
+    /// Parts of the capture, in order.
     parts: Vec<Entry>,
-    /// Bytes of a sample of all probes.
+    /// Bytes per sample of all probes.
     unit: usize,
     /// Bit of each channel.
     bits: Vec<usize>,
 }
 
-/// What the entry "metadata" says of the first device.
+/// Contents of the entry "metadata" for the first device.
 #[derive(Default)]
 struct Metadata {
     file: String,
@@ -45,12 +45,12 @@ struct Metadata {
 }
 
 impl SigrokReader {
-    /// Reads the description of a capture.
+    /// Reads the metadata of a capture.
     pub fn open(source: Source) -> Result<Self, Error> {
         let (archive, entries) = open_archive(source)?;
         let Some(description) = entries.iter().find(|entry| entry.name == "metadata") else {
             return Err(archive.get_ref().unknown(
-                "this zip archive is no capture of sigrok: it has no entry \"metadata\"",
+                "this zip archive is not a sigrok capture: it has no entry \"metadata\"",
                 "unpack it and name the recording; save a workbook's sheet as CSV",
             ));
         };
@@ -143,12 +143,12 @@ fn read_metadata(archive: &ZipArchive<Source>, entry: &Entry) -> Result<Metadata
     }
     if metadata.file.is_empty() || metadata.unit == 0 || metadata.unit > MOST_PROBES / 8 {
         return Err(broken(
-            "it names no capture file or no size of a sample".to_owned(),
+            "it gives no capture file or no sample size".to_owned(),
         ));
     }
     let unit = metadata.unit;
     metadata.probes.retain(|(bit, _)| *bit < 8 * unit);
-    // A name may have been given twice; the number of the probe tells them apart.
+    // Names may repeat; add the probe number then.
     for place in 1..metadata.probes.len() {
         let (before, after) = metadata.probes.split_at_mut(place);
         let (bit, name) = &mut after[0];
@@ -157,7 +157,7 @@ fn read_metadata(archive: &ZipArchive<Source>, entry: &Entry) -> Result<Metadata
         }
     }
     match metadata.probes.is_empty() {
-        true => Err(broken("it names no probes".to_owned())),
+        true => Err(broken("it lists no probes".to_owned())),
         false => Ok(metadata),
     }
 }
@@ -211,7 +211,7 @@ impl Reader for SigrokReader {
     }
 }
 
-/// Fills a buffer as far as the stream goes.
+/// Fills a buffer as far as possible.
 fn fill(stream: &mut dyn Read, buffer: &mut [u8]) -> std::io::Result<usize> {
     let mut filled = 0;
     while filled < buffer.len() {

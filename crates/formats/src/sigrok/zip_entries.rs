@@ -1,4 +1,4 @@
-//! Entries of a zip archive, read as streams.
+//! Reads entries of a zip archive as streams.
 
 use crate::error::{Error, Place};
 use crate::source::Source;
@@ -9,14 +9,14 @@ use std::io::{BufReader, Read};
 /// Most entries that are listed.
 const MOST_ENTRIES: usize = 1 << 18;
 
-/// One file in an archive.
+/// An entry of an archive.
 #[derive(Clone, Debug)]
 pub struct Entry {
     pub name: String,
-    /// Bytes that it claims to have.
+    /// Declared size; bytes.
     pub size: u64,
     method: CompressionMethod,
-    /// Where its header begins.
+    /// Offset of the local header.
     header: u64,
     place: ZipArchiveEntryWayfinder,
 }
@@ -66,7 +66,7 @@ pub fn open_archive(source: Source) -> Result<(ZipArchive<Source>, Vec<Entry>), 
     Ok((archive, entries))
 }
 
-/// The bytes of an entry as a stream.
+/// Opens an entry as a stream.
 pub fn open_entry<'a>(
     archive: &'a ZipArchive<Source>,
     entry: &Entry,

@@ -1,4 +1,4 @@
-//! Where the raw data of TDMS segments lie.
+//! Layout of raw data in TDMS segments.
 
 use crate::number;
 use crate::tdms::metadata::{Index, Scaler};
@@ -6,64 +6,56 @@ use crate::tdms::scale::RAW;
 use crate::tdms::value_type::{Layout, ValueType};
 use std::sync::Arc;
 
-/// One source of values in the rows of a region.
+/// A source of values within the rows of a region.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Member {
-    /// Position in the objects of the file.
+    /// Index of the object in the file.
     pub object: usize,
-    /// Number by which scales refer to it; [`RAW`] unless of
-    /// NI-DAQmx.
+    /// Number used by scales; [`RAW`] except for NI-DAQmx.
     pub id: u32,
-    /// Where its values lie in the rows.
     pub layout: Layout,
 }
 
-/// Rows of equal width within a chunk.
+/// Rows of equal width in a chunk.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Region {
-    /// Bytes from the beginning of the chunk.
+    /// Offset in the chunk; bytes.
     pub offset: u64,
-    /// Rows.
     pub rows: u64,
-    /// Bytes of a row.
+    /// Bytes per row.
     pub width: u64,
-    /// What stands in a row.
     pub members: Vec<Member>,
 }
 
-/// Chunks of one layout, one behind the other.
+/// Consecutive chunks of one layout.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Group {
-    /// Where the first begins.
+    /// Offset of the first chunk.
     pub offset: u64,
-    /// How many there are.
+    /// Number of chunks.
     pub chunks: u64,
-    /// Bytes of one.
+    /// Bytes per chunk.
     pub size: u64,
-    /// What stands in one.
     pub regions: Arc<Vec<Region>>,
 }
 
-/// An object of a segment that has raw data.
+/// An object with raw data in a segment.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Active {
-    /// Position in the objects of the file.
+    /// Index of the object in the file.
     pub object: usize,
-    /// What the segment holds of it.
     pub index: Index,
 }
 
-/// Flags of a segment that bear on its layout.
+/// Segment flags that affect the layout.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Flags {
-    /// Values of all channels alternate.
     pub interleaved: bool,
-    /// The order of bytes.
     pub big_endian: bool,
 }
 
-/// A whole chunk of a segment and its size in bytes; `None` where the objects
-/// cannot stand together.
+/// The layout and size in bytes of a chunk; `None` if the objects cannot be
+/// combined.
 pub fn chunk(active: &[Active], flags: Flags) -> Option<(Vec<Region>, u64)> {
     let daqmx = active
         .iter()
@@ -107,7 +99,7 @@ fn interleaved_chunk(active: &[Active], flags: Flags) -> Option<(Vec<Region>, u6
         let Index::Values { value, count, .. } = object.index else {
             continue;
         };
-        // Values of no fixed size, or of different numbers, cannot alternate.
+        // Interleaving needs values of fixed size and equal count.
         if value.size() == 0 || rows.is_some_and(|rows| rows != count) {
             return None;
         }
@@ -198,7 +190,7 @@ fn scaler_member(object: usize, scaler: &Scaler, width: u64, flags: Flags) -> Me
     member
 }
 
-/// What `bytes` bytes hold of a chunk that was cut off.
+/// The complete rows in the first `bytes` bytes of a truncated chunk.
 pub fn cut(regions: &[Region], bytes: u64) -> Vec<Region> {
     let kept = regions.iter().map(|region| {
         let left = bytes.saturating_sub(region.offset);

@@ -1,4 +1,4 @@
-//! Metadata of TDMS segments: objects, their properties and raw data indexes.
+//! Metadata of TDMS segments: objects, properties and raw data indexes.
 //!
 //! # Source
 //! National Instruments, "TDMS file format internal structure".
@@ -10,20 +10,17 @@ use std::collections::BTreeMap;
 /// Seconds from 1904 to 1970.
 const TO_UNIX: i64 = 2_082_844_800;
 
-/// Most scalers or raw buffers of a channel of NI-DAQmx.
+/// Most scalers or raw buffers of an NI-DAQmx channel.
 const MOST_SCALERS: u32 = 1 << 12;
 
 /// The value of a property.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Property {
-    /// A number.
     Number(f64),
-    /// A text.
     Text(String),
 }
 
 impl Property {
-    /// The number, if it is one.
     pub fn number(&self) -> Option<f64> {
         match self {
             Self::Number(value) => Some(*value),
@@ -31,7 +28,6 @@ impl Property {
         }
     }
 
-    /// The text, if it is one.
     pub fn text(&self) -> Option<&str> {
         match self {
             Self::Number(_) => None,
@@ -40,25 +36,24 @@ impl Property {
     }
 }
 
-/// What a segment holds of an object.
+/// Raw data of an object in a segment.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Index {
     /// No raw data.
     Nothing,
-    /// As in the segment before.
+    /// Same as in the previous segment.
     Same,
     /// Values of one type.
     Values {
-        /// Their type.
         value: ValueType,
-        /// Values in a chunk.
+        /// Values per chunk.
         count: u64,
-        /// Bytes in a chunk.
+        /// Bytes per chunk.
         bytes: u64,
     },
-    /// Raw data of NI-DAQmx.
+    /// NI-DAQmx raw data.
     Daqmx {
-        /// Values in a chunk.
+        /// Values per chunk.
         count: u64,
         /// Where they are.
         scalers: Vec<Scaler>,
@@ -67,52 +62,48 @@ pub enum Index {
     },
 }
 
-/// One source of values of a channel of NI-DAQmx.
+/// A source of values of an NI-DAQmx channel.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Scaler {
-    /// Type of its values.
     pub value: ValueType,
-    /// Raw buffer.
+    /// Index of the raw buffer.
     pub buffer: u32,
-    /// Bytes before it in the buffer's rows.
+    /// Offset in the rows of the buffer; bytes.
     pub offset: u32,
-    /// For a digital line, its bit in the byte.
+    /// Bit of a digital line.
     pub bit: Option<u8>,
-    /// Number by which scales refer to it.
+    /// Number used by scales.
     pub id: u32,
 }
 
-/// One object of a segment's metadata.
+/// An object in the metadata of a segment.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ObjectEntry {
-    /// Its path: "/'group'/'channel'".
+    /// Path such as "/'group'/'channel'".
     pub path: String,
-    /// What the segment holds of it.
     pub index: Index,
-    /// Its properties, as far as they are new.
+    /// New or changed properties.
     pub properties: BTreeMap<String, Property>,
 }
 
-/// Reads numbers and texts one after the other.
+/// Reads numbers and texts in sequence.
 pub struct Cursor<'a> {
     bytes: &'a [u8],
     at: usize,
     big_endian: bool,
 }
 
-/// Where metadata cannot be read, and why.
+/// A fault in the metadata.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Fault {
-    /// Byte of the metadata.
+    /// Offset in the metadata.
     pub at: usize,
-    /// What is wrong.
     pub problem: String,
-    /// Whether the bytes end too early.
+    /// Whether the metadata are truncated.
     pub ended: bool,
 }
 
 impl<'a> Cursor<'a> {
-    /// At the beginning of `bytes`.
     pub fn new(bytes: &'a [u8], big_endian: bool) -> Self {
         Self {
             bytes,
@@ -193,14 +184,14 @@ fn read_index(cursor: &mut Cursor) -> Result<Index, Fault> {
         .ok_or_else(|| cursor.fault(format!("the data type {code:#x} is not known")))?;
     let dimensions = cursor.u32()?;
     if dimensions != 1 {
-        return Err(cursor.fault(format!("arrays of {dimensions} dimensions cannot be")));
+        return Err(cursor.fault(format!("arrays cannot have {dimensions} dimensions")));
     }
     let count = cursor.u64()?;
     let bytes = match value {
         ValueType::Text => Some(cursor.u64()?),
         value => count.checked_mul(value.size()),
     };
-    let bytes = bytes.ok_or_else(|| cursor.fault(format!("{count} values cannot be")))?;
+    let bytes = bytes.ok_or_else(|| cursor.fault(format!("{count} values are impossible")))?;
     Ok(Index::Values {
         value,
         count,
@@ -212,12 +203,12 @@ fn read_daqmx(cursor: &mut Cursor, digital: bool) -> Result<Index, Fault> {
     cursor.u32()?;
     let dimensions = cursor.u32()?;
     if dimensions != 1 {
-        return Err(cursor.fault(format!("arrays of {dimensions} dimensions cannot be")));
+        return Err(cursor.fault(format!("arrays cannot have {dimensions} dimensions")));
     }
     let count = cursor.u64()?;
     let number = cursor.u32()?;
     if number == 0 || number > MOST_SCALERS {
-        return Err(cursor.fault(format!("{number} scalers cannot be")));
+        return Err(cursor.fault(format!("{number} scalers are impossible")));
     }
     let mut scalers = Vec::new();
     for _ in 0..number {
@@ -240,7 +231,7 @@ fn read_daqmx(cursor: &mut Cursor, digital: bool) -> Result<Index, Fault> {
     }
     let number = cursor.u32()?;
     if number == 0 || number > MOST_SCALERS {
-        return Err(cursor.fault(format!("{number} raw buffers cannot be")));
+        return Err(cursor.fault(format!("{number} raw buffers are impossible")));
     }
     let widths = (0..number)
         .map(|_| cursor.u32())
@@ -259,7 +250,7 @@ fn read_daqmx(cursor: &mut Cursor, digital: bool) -> Result<Index, Fault> {
     })
 }
 
-/// The value of a property; `None` for one that is no number and no text.
+/// The value of a property; `None` if neither a number nor a text.
 fn read_property(cursor: &mut Cursor) -> Result<Option<Property>, Fault> {
     let code = cursor.u32()?;
     let value = ValueType::of_code(code)
@@ -310,12 +301,12 @@ fn date(seconds: i64, fraction: f64) -> String {
     )
 }
 
-/// Group and channel of a path; "" for the file, and a group alone for a group.
+/// Group and channel names of a path; empty for the file, one name for a group.
 pub fn names_of(path: &str) -> Vec<String> {
     let mut names = Vec::new();
     let mut rest = path;
     while let Some(quoted) = rest.strip_prefix("/'") {
-        // A quote in a name is doubled.
+        // Quotes in names are doubled.
         let mut name = String::new();
         let mut chars = quoted.char_indices().peekable();
         let mut end = quoted.len();

@@ -1,5 +1,5 @@
-//! LabVIEW TDMS files: segments, incremental metadata, contiguous, interleaved
-//! and DAQmx raw data, scales.
+//! LabVIEW TDMS files: segments, incremental metadata, scales, and contiguous,
+//! interleaved and DAQmx raw data.
 //!
 //! # Source
 //! National Instruments, "TDMS file format internal structure".
@@ -19,7 +19,7 @@ use rayon::prelude::*;
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
-/// Bytes that are read and decoded at once: they stay in the processor's cache.
+/// Bytes read and decoded at a time, small enough for the processor's cache.
 const WINDOW: u64 = 1 << 18;
 
 /// A TDMS file.
@@ -31,16 +31,16 @@ pub struct TdmsReader {
     groups: Vec<Group>,
 }
 
-/// A channel of numbers.
+/// A numeric channel.
 #[derive(Debug)]
 struct Channel {
-    /// Position in the objects of the file.
+    /// Index of the object in the file.
     object: usize,
     scales: Scales,
-    /// Numbers of the raw values that its scales take.
+    /// Raw inputs of the scales.
     inputs: Vec<u32>,
     length: u64,
-    /// The second from which timestamps count.
+    /// Second subtracted from timestamps.
     zero: i64,
 }
 
@@ -98,7 +98,7 @@ fn contents(
             continue;
         }
         let name = names.join("/");
-        match channel(source, found, position, &name)? {
+        match channel(source, found, position)? {
             Ok((channel, stored_as)) => {
                 contents.channels.push(ChannelContents {
                     unit: object
@@ -138,12 +138,7 @@ fn time_base(properties: &BTreeMap<String, Property>) -> TimeBase {
 /// A channel and how it is stored, or why it is left out.
 type Described = Result<(Channel, String), String>;
 
-fn channel(
-    source: &Source,
-    found: &Found,
-    position: usize,
-    name: &str,
-) -> Result<Described, Error> {
+fn channel(source: &Source, found: &Found, position: usize) -> Result<Described, Error> {
     let object = &found.objects[position];
     if object.length == 0 && object.types.is_empty() {
         return Ok(Err("it has no samples".to_owned()));
@@ -151,7 +146,7 @@ fn channel(
     if let Some(other) = object.types.iter().find(|value| !value.is_number()) {
         return Ok(Err(format!("it holds values of type {}", other.name())));
     }
-    // What a channel does not say itself, its group or the file may say.
+    // Scales may be set on the group or the file instead.
     let group = format!(
         "/{}",
         object
@@ -193,11 +188,11 @@ fn channel(
         length: object.length,
         zero,
     };
-    check_buffers(found, &channel, name).map_or(Ok(Ok((channel, stored_as))), |why| Ok(Err(why)))
+    check_buffers(found, &channel).map_or(Ok(Ok((channel, stored_as))), |why| Ok(Err(why)))
 }
 
-/// Why the raw values of a channel cannot be brought together, if so.
-fn check_buffers(found: &Found, channel: &Channel, _name: &str) -> Option<String> {
+/// Why the raw values of a channel cannot be combined, if so.
+fn check_buffers(found: &Found, channel: &Channel) -> Option<String> {
     if channel.inputs.len() < 2 {
         return None;
     }
@@ -209,7 +204,7 @@ fn check_buffers(found: &Found, channel: &Channel, _name: &str) -> Option<String
         last = Some(&group.regions);
         let holds = |region: &&Region| region.members.iter().any(|m| m.object == channel.object);
         if group.regions.iter().filter(holds).count() > 1 {
-            return Some("its raw values lie in several raw buffers".to_owned());
+            return Some("its raw values are spread over several raw buffers".to_owned());
         }
     }
     None
@@ -223,8 +218,8 @@ struct Window<'a> {
 }
 
 impl TdmsReader {
-    /// Calls `take` with the windows of all regions that hold one of the wanted
-    /// objects, in the order of the file.
+    /// Calls `take` with the windows of all regions that contain a requested
+    /// object, in file order.
     fn windows<'a>(
         &'a self,
         places: &[Option<usize>],
@@ -258,7 +253,7 @@ impl TdmsReader {
         Ok(())
     }
 
-    /// Position among the wanted of each object of the file.
+    /// Position of each object of the file among the requested channels.
     fn places(&self, wanted: &[usize]) -> Vec<Option<usize>> {
         let last = self.channels.iter().map(|channel| channel.object).max();
         let mut places = vec![None; last.map_or(0, |last| last + 1)];
@@ -296,7 +291,7 @@ fn decode_channel(channel: &Channel, bytes: &[u8], region: &Region, out: &mut [f
     channel.scales.apply(&raw, out);
 }
 
-/// Whether a region holds one channel as this machine keeps its numbers.
+/// Whether a region is a single channel of native doubles.
 fn holds_doubles(region: &Region) -> bool {
     let doubles = Layout {
         value: ValueType::Number(Number::F64),
@@ -307,7 +302,7 @@ fn holds_doubles(region: &Region) -> bool {
         && region.width == Number::F64.size()
 }
 
-/// Objects among the members of a region, each once, with their places.
+/// Positions of the requested channels in a region, without repetition.
 fn objects_of<'a>(
     region: &'a Region,
     places: &'a [Option<usize>],
@@ -353,7 +348,7 @@ impl Reader for TdmsReader {
             .map(|channel| self.channels[*channel].length as usize);
         let mut columns: Vec<Vec<f64>> = lengths.map(zeros).collect();
 
-        // Each window with the parts of the columns that it fills.
+        // Pair each window with the parts of the columns it fills.
         let mut rest: Vec<&mut [f64]> = columns.iter_mut().map(Vec::as_mut_slice).collect();
         let mut tasks = Vec::new();
         self.windows(&places, |window| {

@@ -1,83 +1,67 @@
-//! Scales of TDMS channels: from raw values to physical ones.
+//! Scales of TDMS channels, from raw to physical values.
 //!
 //! # Source
-//! The names of the properties are those that NI software writes: see
-//! "TDMS file format internal structure" and the help of "TDMS Create Scaling
-//! Information" by National Instruments.
+//! Property names as written by NI software: National Instruments, "TDMS file format
+//! internal structure" and the help of "TDMS Create Scaling Information".
 
 use crate::tdms::metadata::Property;
 use std::collections::BTreeMap;
 
-/// Stands for the raw values in place of a scale's number.
+/// Input number that denotes the raw values.
 pub const RAW: u32 = u32::MAX;
 
 /// Most scales of a channel.
 const MOST_SCALES: u32 = 1000;
 
-/// Most steps from the raw values to the last scale.
+/// Most steps to evaluate the last scale.
 const MOST_STEPS: u32 = 500;
 
-/// One scale.
+/// A scale; inputs are numbers of other scales or of raw values.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Scale {
-    /// Hands its input on.
-    Same {
-        /// Number of the scale that it takes.
-        input: u32,
-    },
+    /// Identity.
+    Same { input: u32 },
     /// slope · x + intercept.
     Linear {
-        /// Number of the scale that it takes.
         input: u32,
-        /// Slope.
         slope: f64,
-        /// Intercept.
         intercept: f64,
     },
     /// `Σ coefficients[i] · xⁱ`.
-    Polynomial {
-        /// Number of the scale that it takes.
-        input: u32,
-        /// Coefficients, rising.
-        coefficients: Vec<f64>,
-    },
-    /// Straight lines between points; constant outside.
+    Polynomial { input: u32, coefficients: Vec<f64> },
+    /// Linear interpolation, with rising `before`; constant outside.
     Table {
-        /// Number of the scale that it takes.
         input: u32,
-        /// Values before, rising.
         before: Vec<f64>,
-        /// Values after.
         after: Vec<f64>,
     },
     /// left + right, or right − left.
     Sum {
-        /// Number of the left operand.
         left: u32,
-        /// Number of the right operand.
         right: u32,
-        /// Whether the left operand is subtracted.
         subtract: bool,
     },
 }
 
-/// The scales of a channel by number; the last is what the channel means.
+/// The scales of a channel by number; the last one yields the physical value.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Scales {
     scales: BTreeMap<u32, Scale>,
 }
 
 impl Scales {
-    /// The numbers of the raw values that the channel takes.
+    /// Numbers of the raw inputs of the channel.
     pub fn raw_inputs(&self) -> Vec<u32> {
-        let Some((&last, _)) = self.scales.last_key_value() else {
-            return vec![RAW];
-        };
         let mut found = Vec::new();
-        self.collect(last, &mut found);
+        self.collect(self.last(), &mut found);
         found.sort_unstable();
         found.dedup();
         found
+    }
+
+    /// Number of the scale that yields the physical value.
+    fn last(&self) -> u32 {
+        self.scales.last_key_value().map_or(RAW, |(last, _)| *last)
     }
 
     fn collect(&self, number: u32, found: &mut Vec<u32>) {
@@ -89,12 +73,11 @@ impl Scales {
         }
     }
 
-    /// Whether the last scale can be had in a sensible number of steps: scales may
-    /// refer to each other in a circle, or double with each step.
+    /// Whether evaluation ends in a sensible number of steps: damaged scales may
+    /// form cycles or grow exponentially.
     pub fn ends(&self) -> bool {
         let mut budget = MOST_STEPS;
-        let last = self.scales.last_key_value().map_or(RAW, |(last, _)| *last);
-        self.within(last, &mut budget)
+        self.within(self.last(), &mut budget)
     }
 
     fn within(&self, number: u32, budget: &mut u32) -> bool {
@@ -110,7 +93,7 @@ impl Scales {
             .all(|input| self.within(input, budget))
     }
 
-    /// Names of the scales, for people.
+    /// Names of the scales for display.
     pub fn describe(&self) -> String {
         let names = self.scales.values().map(|scale| match scale {
             Scale::Same { .. } => "no scale",
@@ -122,26 +105,23 @@ impl Scales {
         names.map(|name| format!(", {name}")).collect()
     }
 
-    /// Scales values; `raw` holds those of each number of [`Scales::raw_inputs`].
+    /// Applies the scales; `raw` has the values of each of [`Scales::raw_inputs`].
     pub fn apply(&self, raw: &[(u32, &[f64])], out: &mut [f64]) {
-        let last = self.scales.last_key_value().map_or(RAW, |(last, _)| *last);
-        self.value(last, raw, out);
+        self.value(self.last(), raw, out);
     }
 
-    /// Scales the raw values of a channel that takes only one number of them, in
-    /// their place.
+    /// Applies the scales in place to a channel with a single raw input.
     pub fn apply_in_place(&self, values: &mut [f64]) {
-        let last = self.scales.last_key_value().map_or(RAW, |(last, _)| *last);
         if self
             .scales
             .values()
             .any(|scale| matches!(scale, Scale::Sum { .. }))
         {
             let raw = values.to_vec();
-            self.value(last, &[(RAW, &raw)], values);
+            self.value(self.last(), &[(RAW, &raw)], values);
         } else {
-            // The raw values are where the innermost scale looks for them.
-            self.value(last, &[], values);
+            // The innermost scale finds the raw values in place.
+            self.value(self.last(), &[], values);
         }
     }
 
@@ -156,21 +136,13 @@ impl Scales {
             }
             return;
         };
+        self.value(inputs(scale)[0], raw, out);
         match scale {
-            Scale::Same { input } => self.value(*input, raw, out),
+            Scale::Same { .. } => {}
             Scale::Linear {
-                input,
-                slope,
-                intercept,
-            } => {
-                self.value(*input, raw, out);
-                out.iter_mut().for_each(|x| *x = *x * slope + intercept);
-            }
-            Scale::Polynomial {
-                input,
-                coefficients,
-            } => {
-                self.value(*input, raw, out);
+                slope, intercept, ..
+            } => out.iter_mut().for_each(|x| *x = *x * slope + intercept),
+            Scale::Polynomial { coefficients, .. } => {
                 let polynomial = |x: f64| {
                     let mut rest = coefficients.iter().rev();
                     let highest = rest.next().copied().unwrap_or(0.0);
@@ -178,21 +150,13 @@ impl Scales {
                 };
                 out.iter_mut().for_each(|x| *x = polynomial(*x));
             }
-            Scale::Table {
-                input,
-                before,
-                after,
-            } => {
-                self.value(*input, raw, out);
+            Scale::Table { before, after, .. } => {
                 out.iter_mut()
                     .for_each(|x| *x = interpolated(*x, before, after));
             }
             Scale::Sum {
-                left,
-                right,
-                subtract,
+                right, subtract, ..
             } => {
-                self.value(*left, raw, out);
                 let mut other = vec![0.0; out.len()];
                 self.value(*right, raw, &mut other);
                 let sign = if *subtract { -1.0 } else { 1.0 };
@@ -214,7 +178,7 @@ fn inputs(scale: &Scale) -> Vec<u32> {
     }
 }
 
-/// On the straight line between the two points around `x`.
+/// Linear interpolation at `x`.
 fn interpolated(x: f64, before: &[f64], after: &[f64]) -> f64 {
     let place = before.partition_point(|known| *known <= x);
     match place {
@@ -229,13 +193,11 @@ fn interpolated(x: f64, before: &[f64], after: &[f64]) -> f64 {
     }
 }
 
-/// The scales that properties describe: those of the channel, or of its group,
-/// or of the file.
+/// The scales described by properties of a channel, group or file.
 pub fn scales_of(properties: &BTreeMap<String, Property>) -> Result<Scales, String> {
     let mut scales = Scales::default();
-    let count = properties
-        .get("NI_Number_Of_Scales")
-        .and_then(Property::number);
+    let count = properties.get("NI_Number_Of_Scales");
+    let count = count.and_then(Property::number);
     let unscaled = properties
         .get("NI_Scaling_Status")
         .and_then(Property::text)
@@ -245,7 +207,7 @@ pub fn scales_of(properties: &BTreeMap<String, Property>) -> Result<Scales, Stri
     };
     let count = (count as u32).min(MOST_SCALES);
     for number in 0..count {
-        // A scale without a type stands for raw values of NI-DAQmx.
+        // A scale without a type denotes NI-DAQmx raw values.
         let prefix = format!("NI_Scale[{number}]_");
         let Some(kind) = properties
             .get(&format!("{prefix}Scale_Type"))
@@ -259,7 +221,7 @@ pub fn scales_of(properties: &BTreeMap<String, Property>) -> Result<Scales, Stri
     }
     match scales.ends() {
         true => Ok(scales),
-        false => Err("its scales refer to each other in a circle, or in too many steps".to_owned()),
+        false => Err("its scales are cyclic or too deeply nested".to_owned()),
     }
 }
 
@@ -324,6 +286,6 @@ fn scale(
         "AdvancedAPI" => Ok(Scale::Same {
             input: input("AdvancedAPI_Input_Source"),
         }),
-        other => Err(format!("its scale \"{other}\" is none that windfall reads")),
+        other => Err(format!("windfall does not read its scale \"{other}\"")),
     }
 }

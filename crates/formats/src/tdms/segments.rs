@@ -16,48 +16,46 @@ const LEAD_IN: u64 = 28;
 /// Longest metadata of a segment; bytes.
 const LONGEST_METADATA: u64 = 1 << 28;
 
-/// What is known of an object while segments are read.
+/// An object, accumulated over segments.
 #[derive(Debug, Default)]
 pub struct Object {
-    /// Its path.
     pub path: String,
-    /// Its properties, the newest of each name.
+    /// Latest value of each property.
     pub properties: BTreeMap<String, Property>,
     index: Option<Index>,
-    /// Its samples.
+    /// Number of samples.
     pub length: u64,
-    /// Types of its values.
+    /// Types of the values.
     pub types: Vec<ValueType>,
-    /// Where its first value is, and the order of bytes.
+    /// Offset of the first value, and whether it is big-endian.
     pub first: Option<(u64, bool)>,
 }
 
-/// The flags in the lead-in of a segment.
+/// Lead-in of a segment.
 struct LeadIn {
     metadata: bool,
     new_list: bool,
     raw_data: bool,
     flags: Flags,
     metadata_length: u64,
-    /// Where the next segment begins; `None` for one that was not finished.
+    /// Start of the next segment; `None` if this one is unfinished.
     next: Option<u64>,
 }
 
-/// What has been found in the segments so far.
+/// Result of reading the segments.
 #[derive(Debug, Default)]
 pub struct Found {
-    /// Objects in the order of their appearance.
+    /// Objects in order of appearance.
     pub objects: Vec<Object>,
-    /// Positions of the objects by path.
+    /// Indices of the objects by path.
     pub by_path: BTreeMap<String, usize>,
     active: Vec<Active>,
-    /// Where the raw data are, in the order of the file.
+    /// Raw data in file order.
     pub groups: Vec<Group>,
-    /// What a user must know.
     pub notes: Vec<Note>,
     /// Number of segments.
     pub segments: u64,
-    /// Chunk of the segment before, for one without new metadata.
+    /// Chunk layout of the previous segment, reused without new metadata.
     last_chunk: Option<(Flags, Arc<Vec<Region>>, u64)>,
 }
 
@@ -68,7 +66,7 @@ pub fn read_segments(source: &Source) -> Result<Found, Error> {
     while at < source.length() {
         if source.length() - at < LEAD_IN {
             let left = source.length() - at;
-            let missing = format!("{left} bytes behind the last segment are no whole one");
+            let missing = format!("{left} bytes after the last segment are not a whole segment");
             found.notes.push(Note::CutOff { missing });
             break;
         }
@@ -103,7 +101,7 @@ fn read_lead_in(source: &Source, at: u64) -> Result<LeadIn, Error> {
         };
         return Err(malformed(source, at, problem));
     }
-    // Flags are little-endian whatever the rest is.
+    // The flags are always little-endian.
     let flag = |bit: u32| bytes[4] & (1 << bit) != 0;
     let big_endian = flag(6);
     let length = integer(&bytes[12..20], big_endian);
@@ -114,7 +112,7 @@ fn read_lead_in(source: &Source, at: u64) -> Result<LeadIn, Error> {
         .filter(|next| *next <= source.length());
     if next.is_some() && metadata_length > length {
         let problem = format!(
-            "the raw data begin at {metadata_length}, behind the end of their segment at {length}"
+            "the raw data begin at {metadata_length}, after the end of their segment at {length}"
         );
         return Err(malformed(source, at + 20, problem));
     }
@@ -131,7 +129,7 @@ fn read_lead_in(source: &Source, at: u64) -> Result<LeadIn, Error> {
     })
 }
 
-/// Reads a segment; false where its metadata were cut off.
+/// Reads a segment; false if its metadata are truncated.
 fn read_segment(
     source: &Source,
     at: u64,
@@ -140,7 +138,7 @@ fn read_segment(
 ) -> Result<bool, Error> {
     let begin = at + LEAD_IN;
     if lead_in.next.is_none() {
-        let missing = "its last segment was not finished; what is complete in it is read";
+        let missing = "its last segment was not finished; the complete part of it is read";
         found.notes.push(Note::CutOff {
             missing: missing.to_owned(),
         });
@@ -178,7 +176,7 @@ fn read_segment(
     Ok(true)
 }
 
-/// Takes over the objects of a segment's metadata.
+/// Merges the metadata of a segment.
 fn update(
     source: &Source,
     at: u64,
@@ -207,7 +205,8 @@ fn update(
             Index::Same => match found.objects[object].index.clone() {
                 Some(index) => index,
                 None => {
-                    let problem = format!("{} refers to an index that was never given", entry.path);
+                    let problem =
+                        format!("{} refers to an index that was never defined", entry.path);
                     return Err(malformed(source, at, problem));
                 }
             },
@@ -305,7 +304,7 @@ fn add_group(found: &mut Found, offset: u64, chunks: u64, size: u64, regions: &A
             let object = &mut found.objects[member.object];
             let value_at = offset + region.offset + member.layout.place.offset as u64;
             object.first.get_or_insert((value_at, big_endian));
-            // Several scalers of a channel are one sample.
+            // Several scalers of a channel make one sample.
             if counted != Some(member.object) {
                 object.length = object
                     .length

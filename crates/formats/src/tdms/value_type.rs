@@ -1,15 +1,15 @@
-//! Types of values in TDMS files, and their decoding to doubles.
+//! TDMS value types and their conversion to doubles.
 
 use crate::number::{self, Number, integer};
 
-/// A type of value.
+/// A value type.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ValueType {
     Number(Number),
     Bool,
-    /// Time in seconds since 1904 and 2⁻⁶⁴ s.
+    /// Seconds since 1904, and a fraction in 2⁻⁶⁴ s.
     Timestamp,
-    // The values of the others are not read.
+    // Values of the remaining types are not read.
     /// 80-bit float in 16 bytes.
     Extended,
     Text,
@@ -17,12 +17,12 @@ pub enum ValueType {
     Complex64,
     /// Two 64-bit floats.
     Complex128,
-    /// Raw data of NI-DAQmx.
+    /// NI-DAQmx raw data.
     Daqmx,
 }
 
 impl ValueType {
-    /// The type of a code in an index or a property.
+    /// Type for a code in an index or property.
     pub fn of_code(code: u32) -> Option<Self> {
         Some(match code {
             1 => Self::Number(Number::I8),
@@ -46,14 +46,14 @@ impl ValueType {
         })
     }
 
-    /// The type of a code in a scaler of NI-DAQmx.
+    /// Type for a code in an NI-DAQmx scaler.
     pub fn of_scaler_code(code: u32) -> Option<Self> {
         use Number::{F32, F64, I8, I16, I32, I64, U8, U16, U32, U64};
         let types = [U8, I8, U16, I16, U32, I32, U64, I64, F32, F64];
         types.get(code as usize).copied().map(Self::Number)
     }
 
-    /// Bytes of a value; 0 where that is not fixed.
+    /// Bytes per value; 0 if variable.
     pub fn size(self) -> u64 {
         match self {
             Self::Number(number) => number.size(),
@@ -64,7 +64,7 @@ impl ValueType {
         }
     }
 
-    /// Its name, for people.
+    /// Name for display.
     pub fn name(self) -> &'static str {
         match self {
             Self::Number(number) => match number {
@@ -88,26 +88,24 @@ impl ValueType {
         }
     }
 
-    /// Whether its values become doubles.
+    /// Whether values convert to doubles.
     pub fn is_number(self) -> bool {
         matches!(self, Self::Number(_) | Self::Bool | Self::Timestamp)
     }
 }
 
-/// Where values lie among bytes.
+/// Position and type of values in a buffer.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Layout {
     pub value: ValueType,
     pub place: number::Layout,
-    /// For a digital line: its bit.
+    /// Bit of a digital line.
     pub bit: Option<u8>,
 }
 
-/// Decodes as many values as `out` takes.
+/// Fills `out`; `bytes` must hold enough values.
 ///
-/// * `zero`: the second from which timestamps count
-///
-/// `bytes` must hold them all.
+/// * `zero`: second subtracted from timestamps
 pub fn decode(bytes: &[u8], layout: Layout, zero: i64, out: &mut [f64]) {
     let place = layout.place;
     match layout.value {
@@ -129,7 +127,7 @@ pub fn decode(bytes: &[u8], layout: Layout, zero: i64, out: &mut [f64]) {
     }
 }
 
-/// Seconds since 1904 and the part of a second of a timestamp.
+/// Seconds since 1904, and the fraction of a second.
 pub fn timestamp(bytes: &[u8], big_endian: bool) -> (i64, f64) {
     let (first, second) = (&bytes[..8], &bytes[8..16]);
     let (seconds, fraction) = match big_endian {

@@ -1,4 +1,4 @@
-//! Lines of text → cells, for finding out the dialect of a table.
+//! Splits lines into cells, to detect the dialect of a table.
 
 use crate::text::rows::Separator;
 
@@ -23,8 +23,8 @@ pub fn cells(line: &str, separator: Separator) -> Vec<&str> {
     }
 }
 
-/// The cells of a line that has as many as the table has columns, or one blank
-/// cell more.
+/// The cells of a line if it has one per column of the table, or one blank cell
+/// more.
 pub fn row(line: &str, separator: Separator, count: usize) -> Option<Vec<&str>> {
     let mut cells = cells(line, separator);
     if cells.len() == count + 1 && cells[count].trim().is_empty() {

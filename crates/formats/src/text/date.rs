@@ -1,16 +1,16 @@
 //! Dates and times of day in text.
 
-/// A moment: whole seconds since 1970 (or since midnight), and the rest.
+/// A date and time: seconds since 1970, or since midnight.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Moment {
     /// Whole seconds.
     pub seconds: i64,
-    /// The rest, 0 up to 1; s.
+    /// Fraction of a second.
     pub fraction: f64,
 }
 
 impl Moment {
-    /// Time from `start` to this moment; s.
+    /// Time elapsed since `start`; s.
     pub fn since(self, start: Self) -> f64 {
         (self.seconds - start.seconds) as f64 + (self.fraction - start.fraction)
     }
@@ -18,9 +18,9 @@ impl Moment {
 
 /// A date with a time of day, or a time of day alone.
 ///
-/// Read are "2024-11-19 20:39:53.123" (also with "T", "/", "Z" or an offset from
-/// UTC), "19.11.2024 20:39:53,123", and "20:39:53.123". A date alone, or with
-/// slashes and the year last, is none: day and month could be exchanged.
+/// Accepts "2024-11-19 20:39:53.123" (also with "T", "/", "Z" or a UTC offset),
+/// "19.11.2024 20:39:53,123" and "20:39:53.123". Dates alone are rejected, and so
+/// are dates with slashes and the year last, where day and month are ambiguous.
 pub fn moment(text: &str) -> Option<Moment> {
     let text = text.trim();
     let (date, clock) = match text.find(['T', ' ']) {
@@ -71,7 +71,7 @@ fn days_from_civil(year: i64, month: i64, day: i64) -> i64 {
     era * 146_097 + year_of_era * 365 + year_of_era / 4 - year_of_era / 100 + day_of_year - 719_468
 }
 
-/// The time of day without its zone, and the zone's offset; s.
+/// Splits off the UTC offset; s.
 fn without_zone(clock: &str) -> Option<(&str, i64)> {
     if let Some(clock) = clock.strip_suffix('Z') {
         return Some((clock, 0));

@@ -1,18 +1,20 @@
-//! The dialect of a table in text, found out from its first lines.
+//! Detects the dialect of a text table from its first lines.
 
 use crate::contents::Note;
 use crate::text::cells::{cells, row};
 use crate::text::date::{Moment, moment};
 use crate::text::header::name_columns;
-use crate::text::number::{Cell, Marks, bare, cell, leading_number, without_groups};
+use crate::text::number::{
+    Cell, Marks, bare, cell, leading_number, number, rises_evenly, without_groups,
+};
 use crate::text::options::{Dialect, TextOptions};
 use crate::text::rows::{ColumnKind, Separator};
 use std::collections::{BTreeMap, BTreeSet};
 
-/// Beginnings of lines that are usually comments.
+/// Usual comment prefixes.
 const COMMENTS: [&str; 3] = ["#", "%", "//"];
 
-/// Separators that are tried, the likeliest first.
+/// Candidate separators, the likeliest first.
 const SEPARATORS: [Separator; 5] = [
     Separator::Mark(b'\t'),
     Separator::Mark(b';'),
@@ -21,10 +23,10 @@ const SEPARATORS: [Separator; 5] = [
     Separator::Blanks,
 ];
 
-/// Marks between groups of three digits that are tried.
+/// Candidate thousands separators.
 const THOUSANDS: [char; 5] = ['.', ',', '\'', ' ', '\u{a0}'];
 
-/// What a cell looks like under some marks.
+/// What a cell looks like with given marks.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Look {
     Blank,
@@ -34,7 +36,7 @@ enum Look {
 }
 
 fn look(text: &str, marks: Marks) -> Look {
-    // Most text is told from its first character.
+    // Most text is recognised by its first character.
     let start = |c: char| c.is_ascii_digit() || matches!(c, '+' | '-' | '.' | ',' | '\u{2212}');
     let text = bare(text);
     if text.is_empty() {
@@ -50,10 +52,9 @@ fn look(text: &str, marks: Marks) -> Look {
     }
 }
 
-/// Finds out the dialect from the first lines of a file.
+/// Detects the dialect from the first lines of a file.
 ///
-/// Returns `None` where no line holds a number between separators, and the
-/// position of a line that shows it.
+/// On failure, the index of a line that is not a row of numbers.
 pub fn find_dialect(lines: &[&str], options: &TextOptions) -> Result<Dialect, usize> {
     let comments = comment_marks(lines, options);
     let data: Vec<usize> = (0..lines.len())
@@ -86,7 +87,7 @@ pub fn find_dialect(lines: &[&str], options: &TextOptions) -> Result<Dialect, us
         row(lines[at], separator, count).is_some_and(|cells| is_row(&cells, &kinds, marks))
     };
     let first_row = match options.header_line {
-        // Below the header that the user names; a row of units is no number.
+        // Below the header line named by the user and any row of units.
         Some(line) => rows
             .iter()
             .copied()
@@ -94,7 +95,7 @@ pub fn find_dialect(lines: &[&str], options: &TextOptions) -> Result<Dialect, us
         None => rows.iter().copied().find(|&at| numeric(at)),
     };
     let first_row = first_row.ok_or_else(nothing)?;
-    // Prose has numbers too, but its lines are no rows.
+    // Prose has numbers too, but its lines are not rows.
     let below: Vec<usize> = data.iter().copied().filter(|&at| at >= first_row).collect();
     let fitting = below.iter().filter(|&&at| numeric(at)).count();
     if 2 * fitting < below.len() {
@@ -114,11 +115,11 @@ pub fn find_dialect(lines: &[&str], options: &TextOptions) -> Result<Dialect, us
     };
     name_columns(&mut dialect, lines, &data, options);
     let unnamed = dialect.names.iter().all(String::is_empty);
-    dialect.rising_first = unnamed && count > 1 && rises_evenly(lines, &rows, &dialect);
+    dialect.rising_first = unnamed && count > 1 && first_rises(lines, &rows, &dialect);
     if candidate.ambiguous && options.decimal.is_none() {
         let (mark, other) = match marks.decimal {
-            b',' => ("comma", "\",\" as a mark of thousands"),
-            _ => ("point", "\".\" as a mark of thousands"),
+            b',' => ("comma", "\",\" as thousands separator"),
+            _ => ("point", "\".\" as thousands separator"),
         };
         dialect.notes.push(Note::Assumed {
             what: format!(
@@ -130,23 +131,14 @@ pub fn find_dialect(lines: &[&str], options: &TextOptions) -> Result<Dialect, us
     Ok(dialect)
 }
 
-/// Whether the first column rises by the same step from row to row, as printed
-/// times do, and is not a count of rows.
-fn rises_evenly(lines: &[&str], rows: &[usize], dialect: &Dialect) -> bool {
-    let number = |at: usize| {
+/// Whether the first column rises like a column of times.
+fn first_rises(lines: &[&str], rows: &[usize], dialect: &Dialect) -> bool {
+    let first = |at: usize| {
         let cells = row(lines[at], dialect.separator, dialect.names.len())?;
-        match cell(cells[0], dialect.marks) {
-            Cell::Number(value) => Some(value),
-            _ => None,
-        }
+        number(cells[0], dialect.marks)
     };
-    let values: Option<Vec<f64>> = rows.iter().map(|&at| number(at)).collect();
-    let Some(values) = values.filter(|values| values.len() > 2) else {
-        return false;
-    };
-    let step = (values[values.len() - 1] - values[0]) / (values.len() - 1) as f64;
-    let even = |pair: &[f64]| ((pair[1] - pair[0]) - step).abs() < 0.2 * step;
-    step > 0.0 && step != 1.0 && values.windows(2).all(even)
+    let values: Option<Vec<f64>> = rows.iter().map(|&at| first(at)).collect();
+    values.is_some_and(|values| rises_evenly(&values))
 }
 
 fn comment_marks(lines: &[&str], options: &TextOptions) -> Vec<String> {
@@ -184,7 +176,7 @@ fn is_row(cells: &[&str], kinds: &[ColumnKind], marks: Marks) -> bool {
     numbers > 0
 }
 
-/// A separator and a decimal mark, and how well they explain the lines.
+/// A separator and decimal mark, and how well they fit the lines.
 #[derive(Clone, Copy, Debug)]
 struct Candidate {
     separator: Separator,
@@ -193,7 +185,7 @@ struct Candidate {
     /// First line that looks like a row of numbers.
     first: usize,
     score: f64,
-    /// Whether the other decimal mark would do as well.
+    /// Whether the other decimal mark fits equally well.
     ambiguous: bool,
 }
 
@@ -213,8 +205,8 @@ fn best_candidate(lines: &[&str], data: &[usize], options: &TextOptions) -> Opti
                 continue;
             };
             match &mut best {
-                // Numbers of three digits behind a mark read either way: where
-                // lists are separated by semicolons, commas are decimal marks.
+                // Three digits after a mark are ambiguous; with semicolons between
+                // cells, commas are decimal marks.
                 Some(best) if found.score == best.score && found.separator == best.separator => {
                     let grouped = data.iter().any(|&at| lines[at].contains([',', '.']));
                     best.ambiguous = grouped && has_marks(lines, data, separator);
@@ -231,16 +223,11 @@ fn best_candidate(lines: &[&str], data: &[usize], options: &TextOptions) -> Opti
     (best.score > 0.0).then_some(best)
 }
 
-/// Whether a cell holds a comma or a point at all.
+/// Whether any cell is a number with either decimal mark.
 fn has_marks(lines: &[&str], data: &[usize], separator: Separator) -> bool {
     let either = |text: &str| {
-        let number = |decimal| {
-            let marks = Marks {
-                decimal,
-                thousands: None,
-            };
-            grouped_look(text, marks, separator) == Look::Number
-        };
+        let number =
+            |decimal| grouped_look(text, Marks::decimal(decimal), separator) == Look::Number;
         text.contains([',', '.']) && number(b'.') && number(b',')
     };
     data.iter()
@@ -254,10 +241,7 @@ fn candidate(
     decimal: u8,
 ) -> Option<Candidate> {
     let count = usual_count(lines, data, separator, decimal)?;
-    let marks = Marks {
-        decimal,
-        thousands: None,
-    };
+    let marks = Marks::decimal(decimal);
     let tallies: Vec<(usize, f64, f64)> = data
         .iter()
         .filter_map(|&at| {
@@ -266,7 +250,7 @@ fn candidate(
             Some((at, numbers, texts))
         })
         .collect();
-    // Rows begin where numbers prevail; a table may be mostly text.
+    // Rows begin where numbers prevail, though a table may be mostly text.
     let first = tallies
         .iter()
         .find(|(_, numbers, texts)| numbers > texts)
@@ -274,7 +258,7 @@ fn candidate(
         .0;
     let below = tallies.iter().filter(|(at, ..)| *at >= first);
     let (numbers, texts) = below.fold((0.0, 0.0), |sum, t| (sum.0 + t.1, sum.1 + t.2));
-    // A header with another number of names speaks against the separator.
+    // A header with a different number of names counts against the separator.
     let above = data.iter().rev().find(|&&at| at < first);
     let fits = above.is_none_or(|&at| row(lines[at], separator, count).is_some());
     let share = numbers / (numbers + texts);
@@ -288,7 +272,7 @@ fn candidate(
     })
 }
 
-/// Cells that are numbers or moments, and cells that are text.
+/// Counts cells that are numbers or times, and cells that are text.
 fn tally(cells: &[&str], marks: Marks, separator: Separator) -> (f64, f64) {
     let (mut numbers, mut texts) = (0.0, 0.0);
     for cell in cells {
@@ -301,7 +285,7 @@ fn tally(cells: &[&str], marks: Marks, separator: Separator) -> (f64, f64) {
     (numbers, texts)
 }
 
-/// As [`look`], but numbers with any marks of thousands count as numbers.
+/// Like [`look`], but numbers with any thousands separator count as numbers.
 fn grouped_look(text: &str, marks: Marks, separator: Separator) -> Look {
     let plain = look(text, marks);
     if plain != Look::Text
@@ -324,12 +308,12 @@ fn grouped_look(text: &str, marks: Marks, separator: Separator) -> Look {
     if grouped { Look::Number } else { Look::Text }
 }
 
-/// The number of cells that most lines with a number have.
+/// The most common number of cells in lines that contain a number.
 fn usual_count(lines: &[&str], data: &[usize], separator: Separator, decimal: u8) -> Option<usize> {
     let rows: Vec<Vec<&str>> = data.iter().map(|&at| cells(lines[at], separator)).collect();
     let ends_blank = |row: &[&str]| row.last().is_some_and(|cell| cell.trim().is_empty());
-    // Numbers of cells of which the last holds something in any line: there a
-    // blank one is a cell, elsewhere only the mark behind the last cell.
+    // A blank last cell counts only if some line of that width has text in it;
+    // otherwise it is just a trailing separator.
     let filled: BTreeSet<usize> = rows
         .iter()
         .filter(|row| !ends_blank(row))
@@ -354,10 +338,10 @@ fn usual_count(lines: &[&str], data: &[usize], separator: Separator, decimal: u8
     Some(count)
 }
 
-/// The mark of thousands, if cells have one.
+/// The thousands separator, if cells use one.
 fn thousands(lines: &[&str], data: &[usize], candidate: &Candidate) -> Option<char> {
     let decimal = char::from(candidate.marks.decimal);
-    // The separator itself may group digits within quotes.
+    // The cell separator itself may group digits within quotes.
     let usable = |mark: &char| *mark != decimal;
     THOUSANDS.into_iter().filter(usable).find(|&mark| {
         data.iter().any(|&at| {
@@ -372,7 +356,7 @@ fn thousands(lines: &[&str], data: &[usize], candidate: &Candidate) -> Option<ch
     })
 }
 
-/// Numbers, moments or text, by what most cells hold.
+/// Kind of each column, by majority of its cells.
 fn column_kinds(
     lines: &[&str],
     rows: &[usize],
@@ -410,7 +394,7 @@ fn column_kinds(
         .collect()
 }
 
-/// Moments count from the first row.
+/// Times are relative to the first row.
 fn first_moments(
     lines: &[&str],
     first_row: usize,

@@ -1,21 +1,21 @@
-//! How a text file writes its characters.
+//! Text encodings.
 
 use std::borrow::Cow;
 
-/// How a text file writes its characters.
+/// Text encodings.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Encoding {
-    /// UTF-8, of which ASCII is a part.
+    /// UTF-8, including ASCII.
     Utf8,
-    /// The code page of western Windows, of which ISO 8859-1 is nearly a part.
+    /// Windows-1252, nearly a superset of ISO 8859-1.
     Windows1252,
-    /// UTF-16, low byte first.
+    /// UTF-16, little-endian.
     Utf16Le,
-    /// UTF-16, high byte first.
+    /// UTF-16, big-endian.
     Utf16Be,
 }
 
-/// Characters of bytes 0x80 to 0x9f in Windows-1252; others are as in Unicode.
+/// Characters 0x80 to 0x9f of Windows-1252; the others match Unicode.
 ///
 /// # Source
 /// WHATWG, Encoding Standard, index windows-1252.
@@ -25,7 +25,7 @@ const WINDOWS_1252: [char; 32] = [
 ];
 
 impl Encoding {
-    /// Bytes of one unit, which a line break takes.
+    /// Bytes per code unit, and so per line break.
     pub(crate) fn unit(self) -> usize {
         match self {
             Self::Utf8 | Self::Windows1252 => 1,
@@ -43,7 +43,7 @@ impl Encoding {
         }
     }
 
-    /// The text that bytes stand for; what is no character becomes "\u{fffd}".
+    /// Decodes bytes; invalid sequences become "\u{fffd}".
     pub(crate) fn decode(self, bytes: &[u8]) -> Cow<'_, str> {
         match self {
             Self::Utf8 => String::from_utf8_lossy(bytes),
@@ -71,7 +71,7 @@ fn utf16(bytes: &[u8], unit: fn([u8; 2]) -> u16) -> Cow<'static, str> {
         .collect()
 }
 
-/// The encoding of a file by its first bytes, and the length of its mark.
+/// Detects the encoding from the first bytes; also the length of the byte order mark.
 pub(crate) fn tell_encoding(head: &[u8]) -> (Encoding, usize) {
     if head.starts_with(b"\xef\xbb\xbf") {
         return (Encoding::Utf8, 3);
@@ -82,7 +82,7 @@ pub(crate) fn tell_encoding(head: &[u8]) -> (Encoding, usize) {
     if head.starts_with(b"\xfe\xff") {
         return (Encoding::Utf16Be, 2);
     }
-    // Tables are nearly all ASCII: in UTF-16 every second byte is then zero.
+    // Tables are nearly all ASCII, so in UTF-16 every other byte is zero.
     let zeros = |odd: usize| {
         head.iter()
             .skip(odd)
@@ -99,7 +99,7 @@ pub(crate) fn tell_encoding(head: &[u8]) -> (Encoding, usize) {
     }
     match std::str::from_utf8(head) {
         Ok(_) => (Encoding::Utf8, 0),
-        // Cut within a character at the end of what was looked at.
+        // The sample ends within a character.
         Err(error) if error.error_len().is_none() => (Encoding::Utf8, 0),
         Err(_) => (Encoding::Windows1252, 0),
     }

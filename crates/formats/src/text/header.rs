@@ -1,4 +1,4 @@
-//! Names and units of the columns of a table in text.
+//! Column names and units of a text table.
 
 use crate::contents::Note;
 use crate::text::cells::{cells, row};
@@ -6,10 +6,10 @@ use crate::text::number::bare;
 use crate::text::options::{Dialect, TextOptions};
 use crate::text::rows::Separator;
 
-/// Most names that a header can have above a table without one.
+/// Most header rows below a header line named by the user.
 const MOST_HEADER_ROWS: usize = 2;
 
-/// Names and units from the lines above the first row.
+/// Takes names and units from the lines above the first row.
 pub fn name_columns(dialect: &mut Dialect, lines: &[&str], data: &[usize], options: &TextOptions) {
     let count = dialect.names.len();
     let clean = |cells: Vec<&str>| cells.iter().map(|c| bare(c).to_owned()).collect::<Vec<_>>();
@@ -32,7 +32,7 @@ pub fn name_columns(dialect: &mut Dialect, lines: &[&str], data: &[usize], optio
         header.truncate(MOST_HEADER_ROWS);
     }
     let mut used = above.len();
-    // The last line above the rows is the header, or a row of units below it.
+    // The last line above the rows is the header or its row of units.
     match header.last().and_then(|&at| fitting(at)) {
         Some(last) => {
             used -= 1;
@@ -49,7 +49,7 @@ pub fn name_columns(dialect: &mut Dialect, lines: &[&str], data: &[usize], optio
                     dialect.names = names;
                     used -= 1;
                 }
-                // Two full rows and nothing above them: names and remarks.
+                // Two full rows and nothing above: names and remarks.
                 Some(names) if header.len() == 2 && filled(&names) && filled(&last) => {
                     dialect.notes.push(Note::Odd {
                         what: format!(
@@ -95,7 +95,7 @@ pub fn name_columns(dialect: &mut Dialect, lines: &[&str], data: &[usize], optio
     dialect.preamble = preamble.collect();
 }
 
-/// Names in a line that has more cells than the table has columns, all filled.
+/// Names from a line with more cells than columns, all filled.
 fn more_names(line: &str, dialect: &Dialect) -> Option<Vec<String>> {
     let names: Vec<String> = cells(line, dialect.separator)
         .iter()
@@ -115,7 +115,7 @@ fn filled(cells: &[String]) -> bool {
     2 * cells.iter().filter(|cell| !cell.is_empty()).count() > cells.len()
 }
 
-/// Names in the comment right above the first row: "# time(s), force(N)".
+/// Names from a comment just above the first row: "# time(s), force(N)".
 fn commented_header(lines: &[&str], dialect: &Dialect, count: usize) -> Option<Vec<String>> {
     let above = lines[..dialect.first_row]
         .iter()
@@ -136,7 +136,7 @@ fn commented_header(lines: &[&str], dialect: &Dialect, count: usize) -> Option<V
         .find(|names| names.len() == count)
 }
 
-/// Whether a row holds units: "(s)", "[mm]", "N".
+/// Whether a row contains units: "(s)", "[mm]", "N".
 fn is_unit_row(cells: &[String]) -> bool {
     let known = |cell: &String| {
         let unit = bare_unit(cell);
@@ -146,7 +146,7 @@ fn is_unit_row(cells: &[String]) -> bool {
     !filled.is_empty() && 2 * filled.iter().filter(|cell| known(cell)).count() > filled.len()
 }
 
-/// Units that stand in rows of units without brackets.
+/// Units recognised without brackets.
 const UNITS: [&str; 40] = [
     "s", "ms", "us", "µs", "min", "h", "sec", "N", "mN", "kN", "g", "kg", "m", "mm", "cm", "um",
     "µm", "m/s", "mm/s", "mm/min", "m/s^2", "m/s²", "m/s2", "V", "mV", "A", "mA", "Pa", "kPa",

@@ -1,4 +1,4 @@
-//! Stretches of whole lines out of a text file of any length.
+//! Splits a text file of any length into stretches of whole lines.
 
 use crate::error::{Error, Place};
 use crate::source::Source;
@@ -7,22 +7,21 @@ use crate::text::encoding::Encoding;
 /// Nominal size of a stretch; bytes.
 const STRETCH: u64 = 1 << 20;
 
-/// How much is read at once to find the end of a line; bytes.
+/// Bytes read at a time to find the end of a line.
 const FURTHER: u64 = 1 << 14;
 
 /// Longest line; bytes.
 const LONGEST_LINE: u64 = 1 << 22;
 
-/// The part of a file that holds lines.
+/// A range of lines within a file.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Lines {
-    /// Its first byte, where a line begins.
+    /// First byte, at the start of a line.
     pub start: u64,
-    /// Behind its last byte.
+    /// One past the last byte.
     pub end: u64,
-    /// How characters are written.
     pub encoding: Encoding,
-    /// The character that ends a line: a line feed, or a carriage return alone.
+    /// Line terminator: line feed, or a lone carriage return.
     pub newline: u8,
 }
 
@@ -31,15 +30,15 @@ pub fn stretches(lines: &Lines) -> u64 {
     lines.end.saturating_sub(lines.start).div_ceil(STRETCH)
 }
 
-/// Stretch `index` in UTF-8 or a code page of one byte: the lines that begin in
-/// it. Each line belongs to one stretch.
+/// The lines that begin in stretch `index`, as UTF-8 or single bytes. Each line
+/// belongs to exactly one stretch.
 pub fn stretch(source: &Source, lines: &Lines, index: u64) -> Result<Vec<u8>, Error> {
     let mut buffer = Vec::new();
     Ok(stretch_in(source, lines, index, &mut buffer)?.to_vec())
 }
 
-/// As [`stretch`], in a buffer that may serve for many: fresh memory for each
-/// would cost as much time as the reading.
+/// Like [`stretch`], with a reusable buffer: allocating one per stretch would cost
+/// as much time as the reading.
 pub fn stretch_in<'a>(
     source: &Source,
     lines: &Lines,
@@ -49,7 +48,7 @@ pub fn stretch_in<'a>(
     let unit = lines.encoding.unit() as u64;
     let from = lines.start + index * STRETCH;
     let to = (from + STRETCH).min(lines.end);
-    // One unit more at the front tells whether a line begins right there.
+    // One extra unit in front shows whether a line begins right there.
     let lead = if index == 0 { 0 } else { unit };
     let first = (to - from + lead) as usize;
     grow(buffer, first);
@@ -59,13 +58,13 @@ pub fn stretch_in<'a>(
         _ => behind_newline(&buffer[..first], lines, 0),
     };
     let Some(begin) = begin else {
-        // All of it belongs to a line that began before.
+        // The stretch lies within a line that began earlier.
         return Ok(&[]);
     };
     if begin == first && to < lines.end {
         return Ok(&[]);
     }
-    // To the end of the last line that begins before `to`.
+    // Extend to the end of the last line that begins before `to`.
     let last_unit = first.saturating_sub(unit as usize);
     let mut searched = last_unit.max(begin.saturating_sub(unit as usize));
     let (mut at, mut filled) = (to, first);
@@ -107,7 +106,7 @@ fn grow(buffer: &mut Vec<u8>, length: usize) {
     }
 }
 
-/// Where the line behind the first newline at or after `from` begins.
+/// Start of the line after the first newline at or after `from`.
 fn behind_newline(bytes: &[u8], lines: &Lines, from: usize) -> Option<usize> {
     let newline = lines.newline;
     match lines.encoding {
@@ -133,7 +132,7 @@ mod tests {
 
     #[test]
     fn conserves_every_line_whatever_its_place() {
-        // Lines of many lengths, also some longer than what is read further.
+        // Lines of many lengths, some longer than one further read.
         let mut text = String::new();
         for i in 0..60_000_u32 {
             text += &format!("{i};{}\n", "x".repeat((i % 97) as usize));

@@ -10,14 +10,14 @@ use crate::reader::{Reader, Sink};
 use crate::source::Source;
 use crate::text::encoding::{Encoding, tell_encoding};
 use crate::text::lines::Lines;
-use crate::text::number::{Cell, Marks, cell};
+use crate::text::number::{Marks, number};
 use crate::text::rows::{ColumnKind, RowPlan, Separator};
 use crate::text::table::{Table, read_table};
 
 /// The line that ends a header.
 const END_OF_HEADER: &[u8] = b"***End_of_Header***";
 
-/// Bytes searched at once.
+/// Bytes searched at a time.
 const BLOCK: u64 = 1 << 20;
 
 /// Longest header of a segment; bytes.
@@ -26,14 +26,14 @@ const LONGEST_HEADER: u64 = 1 << 20;
 /// Most segments of a file.
 const MOST_SEGMENTS: usize = 10_000;
 
-/// Agreement of printed times with the spacing in the header, in steps; printed
-/// times have six decimals.
+/// Tolerance between printed times and the spacing in the header, in steps; times
+/// are printed with six decimals.
 const EVEN: f64 = 0.1;
 
-/// Rows from which the spacing of printed times is told.
+/// Rows compared with the spacing in the header.
 const FIRST_ROWS: usize = 50;
 
-/// Bytes that hold the first rows.
+/// Bytes read for the first rows.
 const FIRST_BYTES: u64 = 1 << 14;
 
 /// A LabVIEW measurement file.
@@ -46,7 +46,7 @@ pub struct LvmReader {
     places: Vec<(usize, usize)>,
 }
 
-/// What the header of the file says.
+/// The header of the file.
 struct FileHeader {
     separator: char,
     marks: Marks,
@@ -55,7 +55,7 @@ struct FileHeader {
     properties: Vec<(String, String)>,
 }
 
-/// Which columns of times there are.
+/// Which time columns exist.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum XColumns {
     No,
@@ -63,7 +63,7 @@ enum XColumns {
     Multi,
 }
 
-/// One segment: its header and where its rows are.
+/// A segment: its header and the range of its rows.
 struct Segment {
     header: Vec<Vec<String>>,
     names: Vec<String>,
@@ -128,18 +128,18 @@ impl LvmReader {
 fn malformed(source: &Source, line: u64, problem: &str) -> Error {
     source.malformed(
         Place::Line(line),
-        format!("this is no complete LabVIEW measurement file: {problem}"),
+        format!("this is not a complete LabVIEW measurement file: {problem}"),
         "write the file again, or read it as text (format \"text\")",
     )
 }
 
-/// Where the lines that end headers begin.
+/// Offsets of the lines that end headers.
 fn header_ends(source: &Source) -> Result<Vec<u64>, Error> {
     let finder = memchr::memmem::Finder::new(END_OF_HEADER);
     let mut found = Vec::new();
     let mut at = 0;
     while at < source.length() {
-        // Blocks overlap by what a mark could be cut by.
+        // Blocks overlap in case a marker is split.
         let count = (BLOCK + END_OF_HEADER.len() as u64 - 1).min(source.length() - at);
         let bytes = source.bytes_at(at, count)?;
         found.extend(finder.find_iter(&bytes).map(|place| at + place as u64));
@@ -151,7 +151,7 @@ fn header_ends(source: &Source) -> Result<Vec<u64>, Error> {
     Ok(found)
 }
 
-/// Behind the line that holds the byte `at`.
+/// End of the line that contains byte `at`.
 fn line_end(source: &Source, at: u64) -> Result<u64, Error> {
     let mut from = at;
     while from < source.length() {
@@ -173,7 +173,7 @@ fn file_header(source: &Source, end: u64, encoding: Encoding) -> Result<FileHead
     }
     let bytes = source.bytes_at(0, end)?;
     let text = encoding.decode(&bytes);
-    // The character behind the word Separator is the separator.
+    // The character after the word "Separator" is the separator.
     let mark = text.lines().find_map(|line| {
         let rest = line.strip_prefix("Separator")?;
         rest.chars().next().filter(|c| !c.is_alphanumeric())
@@ -193,13 +193,10 @@ fn file_header(source: &Source, end: u64, encoding: Encoding) -> Result<FileHead
     });
     Ok(FileHeader {
         separator,
-        marks: Marks {
-            decimal: match value("Decimal_Separator") {
-                Some(",") => b',',
-                _ => b'.',
-            },
-            thousands: None,
-        },
+        marks: Marks::decimal(match value("Decimal_Separator") {
+            Some(",") => b',',
+            _ => b'.',
+        }),
         x_columns: match value("X_Columns") {
             Some("No") => XColumns::No,
             Some("Multi") => XColumns::Multi,
@@ -216,15 +213,11 @@ fn find_segments(source: &Source, file: &FileHeader, marks: &[u64]) -> Result<Ve
     let mut lines = count_lines(source, 0, before)?;
     for &mark in &marks[1..] {
         if mark < before {
-            return Err(malformed(
-                source,
-                lines,
-                "two headers end in the same lines",
-            ));
+            return Err(malformed(source, lines, "two headers overlap"));
         }
         let from = before.max(mark.saturating_sub(LONGEST_HEADER));
         let bytes = source.bytes_at(from, mark.saturating_sub(from))?;
-        // The header begins behind the last blank line.
+        // The header begins after the last blank line.
         let (blank, begin) = header_begin(&bytes, file.separator);
         let begin = from + begin as u64;
         if let Some(last) = segments.last_mut() {
@@ -249,15 +242,15 @@ fn find_segments(source: &Source, file: &FileHeader, marks: &[u64]) -> Result<Ve
     Ok(segments)
 }
 
-/// Where the header begins that ends with `bytes`: behind the last line that
-/// holds nothing but blanks and separators; and where that line begins.
+/// Start of the last blank line in `bytes`, and the start of the header after it.
+/// Lines of nothing but separators count as blank.
 fn header_begin(bytes: &[u8], separator: char) -> (usize, usize) {
     let blank = |line: &[u8]| {
         line.iter()
             .all(|b| b.is_ascii_whitespace() || *b == separator as u8)
     };
     let mut end = bytes.len();
-    // The last line is that of the mark itself, cut before the mark.
+    // The last line is that of the marker itself.
     while let Some(newline) = memchr::memrchr(b'\n', &bytes[..end]) {
         let line_begin = memchr::memrchr(b'\n', &bytes[..newline]).map_or(0, |at| at + 1);
         if blank(&bytes[line_begin..newline]) {
@@ -314,7 +307,7 @@ fn table(file: &FileHeader, segment: &Segment) -> Table {
     }
 }
 
-/// Adds the channels of a segment; the column of each.
+/// Adds the channels of a segment; returns the column of each.
 fn add_channels(
     source: &Source,
     file: &FileHeader,
@@ -327,10 +320,7 @@ fn add_channels(
         let line = segment.header.iter().find(|cells| cells[0] == key)?;
         line.get(column).filter(|value| !value.is_empty()).cloned()
     };
-    let number = |key: &str, column: usize| match cell(&value(key, column)?, file.marks) {
-        Cell::Number(value) => Some(value),
-        _ => None,
-    };
+    let number = |key: &str, column: usize| number(&value(key, column)?, file.marks);
     let is_x = |column: usize| match file.x_columns {
         XColumns::No | XColumns::One => column == 0,
         XColumns::Multi => column.is_multiple_of(2),
@@ -344,7 +334,7 @@ fn add_channels(
         return Err(malformed(
             source,
             line,
-            "the line with the names of the channels is missing",
+            "the line with the channel names is missing",
         ));
     }
     let first_rows = first_rows(source, file, segment)?;
@@ -416,7 +406,7 @@ fn channel(name: String, unit: Option<String>, time: TimeBase) -> ChannelContent
     }
 }
 
-/// Cells of the first rows of a segment.
+/// The cells of the first rows of a segment.
 fn first_rows(
     source: &Source,
     file: &FileHeader,
@@ -425,22 +415,16 @@ fn first_rows(
     let count = FIRST_BYTES.min(segment.end.saturating_sub(segment.start));
     let bytes = source.bytes_at(segment.start, count)?;
     let mut rows = split_lines(&file.encoding.decode(&bytes), file.separator);
-    // The last may be cut.
+    // The last row may be incomplete.
     rows.pop();
     rows.truncate(FIRST_ROWS);
     Ok(rows)
 }
 
-/// Whether printed times are those of an even spacing, but for their rounding.
+/// Whether printed times match an even spacing to within rounding.
 fn agrees(rows: &[Vec<String>], column: usize, start: f64, interval: f64) -> bool {
-    let marks = Marks {
-        decimal: b'.',
-        thousands: None,
-    };
-    let printed = |row: &Vec<String>| match cell(&row.get(column)?.replace(',', "."), marks) {
-        Cell::Number(value) => Some(value),
-        _ => None,
-    };
+    let marks = Marks::decimal(b'.');
+    let printed = |row: &Vec<String>| number(&row.get(column)?.replace(',', "."), marks);
     let times: Vec<f64> = rows.iter().filter_map(printed).collect();
     let even =
         |(row, time): (usize, &f64)| (time - start - row as f64 * interval).abs() < EVEN * interval;
@@ -460,7 +444,7 @@ impl Reader for LvmReader {
             });
             let columns: Vec<(usize, usize)> = columns.collect();
             if !columns.is_empty() {
-                // Short rows are usual here, so nothing is cut off.
+                // Short rows are normal here, so nothing was truncated.
                 read_table(&self.source, table, &columns, sink)?;
             }
         }

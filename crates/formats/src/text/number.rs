@@ -1,23 +1,24 @@
-//! Numbers in text, correctly rounded, whatever marks decimals and thousands.
+//! Parses numbers, correctly rounded, with any decimal and thousands marks.
 
 use crate::text::power::nearest_double;
+use std::borrow::Cow;
 
-/// Powers of ten that a double holds exactly.
+/// Powers of ten that are exact doubles.
 const EXACT_POWERS: [f64; 23] = [
     1e0, 1e1, 1e2, 1e3, 1e4, 1e5, 1e6, 1e7, 1e8, 1e9, 1e10, 1e11, 1e12, 1e13, 1e14, 1e15, 1e16,
     1e17, 1e18, 1e19, 1e20, 1e21, 1e22,
 ];
 
-/// Largest integer up to which every integer is a double.
+/// All integers up to this one are exact doubles.
 const EXACT_INTEGER: u64 = 1 << 53;
 
-/// Most digits that fit into 64 bits whatever they are.
+/// Number of digits that always fits into 64 bits.
 const MOST_DIGITS: usize = 19;
 
-/// What stands in a cell.
+/// Content of a cell.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Cell {
-    /// Nothing but blanks.
+    /// Blank.
     Blank,
     /// A finite number.
     Number(f64),
@@ -25,33 +26,43 @@ pub enum Cell {
     Other,
 }
 
-/// Marks in numbers.
+/// Decimal and thousands marks.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Marks {
-    /// Between integer and fraction: "." or ",".
+    /// Decimal mark: "." or ",".
     pub decimal: u8,
-    /// Between groups of three digits.
+    /// Thousands separator.
     pub thousands: Option<char>,
 }
 
-/// A number at the beginning of `bytes`, and how many bytes it takes.
+impl Marks {
+    /// A decimal mark, and no thousands separator.
+    pub const fn decimal(decimal: u8) -> Self {
+        Self {
+            decimal,
+            thousands: None,
+        }
+    }
+}
+
+/// Parses a number at the start of `bytes`; returns it with its length in bytes.
 ///
-/// Covers digits, one decimal mark and an exponent without blanks; `None` for
-/// everything else, also where a number of this kind is not finite.
+/// Accepts digits, one decimal mark and an exponent, without blanks; `None` for
+/// anything else and for numbers that overflow.
 ///
 /// # Source
 /// W. Clinger (1990), "How to read floating point numbers accurately": a product
-/// or quotient of two exact doubles is correctly rounded. Others are left to the
-/// standard library.
+/// or quotient of two exact doubles is correctly rounded. Other numbers take
+/// slower paths.
 #[inline]
 pub fn leading_number(bytes: &[u8], decimal: u8) -> Option<(f64, usize)> {
-    // Signs come at random: a branch on them would be guessed wrong half of the time.
+    // Branch-free, as random signs would be mispredicted half of the time.
     let first = bytes.first().copied().unwrap_or(0);
     let negative = first == b'-';
     let mut at = usize::from(negative | (first == b'+'));
     let start = at;
     let mut mantissa = 0_u64;
-    // The usual number has one digit before the mark, and many behind it.
+    // Most numbers have one digit before the mark and several after it.
     at = match bytes.get(at..at + 2) {
         Some([digit @ b'0'..=b'9', mark]) if *mark == decimal => {
             mantissa = u64::from(digit - b'0');
@@ -89,8 +100,7 @@ pub fn leading_number(bytes: &[u8], decimal: u8) -> Option<(f64, usize)> {
     Some((f64::from_bits(size.to_bits() | sign), at))
 }
 
-/// Zeros before the first other digit, which fill no part of the mantissa;
-/// looked for only where they matter.
+/// Leading zeros, which take no space in the mantissa; counted only if they matter.
 fn zeros_before(bytes: &[u8], decimal: u8, count: usize) -> usize {
     if count <= MOST_DIGITS {
         return 0;
@@ -99,11 +109,11 @@ fn zeros_before(bytes: &[u8], decimal: u8, count: usize) -> usize {
     leading.filter(|b| **b == b'0').count()
 }
 
-/// Adds the digits from `at` on to `mantissa`; where they end. Beyond 19 digits
-/// the mantissa is meaningless.
+/// Appends the digits from `at` to `mantissa` and returns where they end. Beyond 19
+/// digits the mantissa is meaningless.
 #[inline]
 fn digits(bytes: &[u8], mut at: usize, mantissa: &mut u64) -> usize {
-    // Up to eight at once: the digits are shifted up, so that zeros come before.
+    // Up to eight digits at a time, shifted up so that zeros precede them.
     while let Some(eight) = bytes.get(at..at + 8) {
         let word = u64::from_le_bytes(eight.try_into().unwrap_or([0; 8]));
         let count = leading_digits(word);
@@ -144,10 +154,10 @@ const INTEGER_POWERS: [u64; 9] = [
     100_000_000,
 ];
 
-/// How many of eight bytes, from the lowest on, are digits without a break.
+/// Length of the run of digits at the low end of eight bytes.
 #[inline]
 fn leading_digits(word: u64) -> u32 {
-    // A byte of 0x30 to 0x39 keeps its high half at 3 with and without 6 added.
+    // A byte is a digit if its high nibble is 3 both before and after adding 6.
     let high = word & 0xf0f0_f0f0_f0f0_f0f0;
     let over = (word & 0x7f7f_7f7f_7f7f_7f7f).wrapping_add(0x0606_0606_0606_0606);
     let other =
@@ -155,7 +165,7 @@ fn leading_digits(word: u64) -> u32 {
     other.trailing_zeros() / 8
 }
 
-/// The number that eight digits make, the first in the lowest byte.
+/// The value of eight digits, the first in the lowest byte.
 #[inline]
 fn eight_digits(word: u64) -> u64 {
     let ones = word & 0x0f0f_0f0f_0f0f_0f0f;
@@ -164,19 +174,11 @@ fn eight_digits(word: u64) -> u64 {
     (fours.wrapping_mul(10_000).wrapping_add(fours >> 32)) & 0xffff_ffff
 }
 
-/// The exponent from `at` on and where it ends; limited, so that it cannot overflow.
+/// Parses an exponent at `at`; returns it, clamped, and its end.
 fn exponent(bytes: &[u8], mut at: usize) -> Option<(i32, usize)> {
-    let negative = match bytes.get(at) {
-        Some(b'-') => {
-            at += 1;
-            true
-        }
-        Some(b'+') => {
-            at += 1;
-            false
-        }
-        _ => false,
-    };
+    let sign = bytes.get(at);
+    let negative = sign == Some(&b'-');
+    at += usize::from(matches!(sign, Some(b'-' | b'+')));
     let start = at;
     let mut value = 0_i32;
     while let Some(digit) = bytes
@@ -190,7 +192,7 @@ fn exponent(bytes: &[u8], mut at: usize) -> Option<(i32, usize)> {
     (at > start).then_some((if negative { -value } else { value }, at))
 }
 
-/// By the standard library; `None` if not finite.
+/// Parses with the standard library; `None` if not finite.
 fn slow_number(bytes: &[u8], decimal: u8) -> Option<f64> {
     let finite = |value: f64| Some(value).filter(|value| value.is_finite());
     if decimal == b'.'
@@ -210,38 +212,50 @@ fn slow_number(bytes: &[u8], decimal: u8) -> Option<f64> {
     text.parse().ok().and_then(finite)
 }
 
-/// What stands in a cell, quotes and blanks around it allowed.
+/// Parses a cell; surrounding quotes and blanks are allowed.
 pub fn cell(text: &str, marks: Marks) -> Cell {
     let text = bare(text);
     if text.is_empty() {
         return Cell::Blank;
     }
-    // A true minus sign, as some programs export it.
-    let owned;
-    let text = match text.strip_prefix('\u{2212}') {
-        Some(rest) => {
-            owned = format!("-{rest}");
-            &owned
-        }
-        None => text,
+    // Some programs write a true minus sign.
+    let text: Cow<'_, str> = match text.strip_prefix('\u{2212}') {
+        Some(rest) => format!("-{rest}").into(),
+        None => text.into(),
     };
-    match leading_number(text.as_bytes(), marks.decimal) {
-        Some((value, used)) if used == text.len() => return Cell::Number(value),
-        _ => {}
-    }
-    let Some(mark) = marks.thousands else {
-        return Cell::Other;
+    let whole = |text: &str| {
+        let (value, used) = leading_number(text.as_bytes(), marks.decimal)?;
+        (used == text.len()).then_some(value)
     };
-    match without_groups(text, mark, char::from(marks.decimal)) {
-        Some(plain) => match leading_number(plain.as_bytes(), marks.decimal) {
-            Some((value, used)) if used == plain.len() => Cell::Number(value),
-            _ => Cell::Other,
-        },
-        None => Cell::Other,
+    let grouped = || {
+        let plain = without_groups(&text, marks.thousands?, char::from(marks.decimal))?;
+        whole(&plain)
+    };
+    whole(&text)
+        .or_else(grouped)
+        .map_or(Cell::Other, Cell::Number)
+}
+
+/// The number in a cell.
+pub fn number(text: &str, marks: Marks) -> Option<f64> {
+    match cell(text, marks) {
+        Cell::Number(value) => Some(value),
+        _ => None,
     }
 }
 
-/// The text of a cell without blanks and quotes around it.
+/// Whether values rise in even steps, within some jitter. Steps of one are row
+/// numbers and do not count.
+pub fn rises_evenly(values: &[f64]) -> bool {
+    if values.len() < 3 {
+        return false;
+    }
+    let step = (values[values.len() - 1] - values[0]) / (values.len() - 1) as f64;
+    let even = |pair: &[f64]| ((pair[1] - pair[0]) - step).abs() < 0.2 * step;
+    step > 0.0 && step != 1.0 && values.windows(2).all(even)
+}
+
+/// A cell without surrounding blanks and quotes.
 pub fn bare(text: &str) -> &str {
     let text = text.trim();
     let inner = text
@@ -250,8 +264,8 @@ pub fn bare(text: &str) -> &str {
     inner.map_or(text, str::trim)
 }
 
-/// The number without its thousands marks; `None` where they do not stand
-/// between groups of three digits.
+/// Removes thousands separators; `None` unless they separate groups of three
+/// digits.
 pub fn without_groups(text: &str, mark: char, decimal: char) -> Option<String> {
     let (integer, rest) = match text.find([decimal, 'e', 'E']) {
         Some(at) => text.split_at(at),
@@ -283,10 +297,7 @@ mod tests {
     use super::*;
     use proptest::prelude::*;
 
-    const POINT: Marks = Marks {
-        decimal: b'.',
-        thousands: None,
-    };
+    const POINT: Marks = Marks::decimal(b'.');
 
     #[test]
     fn reference_numbers_as_the_standard_library_reads_them() {

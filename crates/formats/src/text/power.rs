@@ -1,12 +1,12 @@
-//! Decimal numbers to doubles, correctly rounded, from their digits as an integer.
+//! Converts decimal numbers to doubles, correctly rounded.
 
 use std::sync::LazyLock;
 
-/// Powers of ten that are tabled; beyond, the standard library reads the number.
+/// Largest power of ten in the table; the standard library handles the rest.
 const LARGEST_POWER: i32 = 80;
 
-/// The leading 128 bits of 5^q for q from −[`LARGEST_POWER`] on: cut off for
-/// q ≥ 0, rounded up for q < 0.
+/// The leading 128 bits of 5^q for q ≥ −[`LARGEST_POWER`]: truncated for q ≥ 0,
+/// rounded up for q < 0.
 static FIVES: LazyLock<Vec<u128>> = LazyLock::new(|| {
     (-LARGEST_POWER..=LARGEST_POWER)
         .map(|q| match q < 0 {
@@ -16,7 +16,7 @@ static FIVES: LazyLock<Vec<u128>> = LazyLock::new(|| {
         .collect()
 });
 
-/// 5^n, the lowest 32 bits first.
+/// 5^n in words of 32 bits, least significant first.
 fn power_of_five(n: u32) -> Vec<u32> {
     let mut words = vec![1_u32];
     for _ in 0..n {
@@ -44,7 +44,7 @@ fn bit_length(words: &[u32]) -> usize {
     32 * words.len() - last.leading_zeros() as usize
 }
 
-/// The first 128 bits, with zeros behind where there are fewer.
+/// The leading 128 bits, padded with zeros.
 fn leading_bits(words: &[u32]) -> u128 {
     let length = bit_length(words);
     (0..128).fold(0, |bits, i| {
@@ -52,9 +52,9 @@ fn leading_bits(words: &[u32]) -> u128 {
     })
 }
 
-/// The first 128 bits of 1/n, rounded up: long division of a power of two.
+/// The leading 128 bits of 1/n, rounded up, by long division.
 fn reciprocal(n: &[u32]) -> u128 {
-    // 2^length / n lies between 1 and 2: its bits are those of the quotient.
+    // 2^length / n lies between 1 and 2.
     let mut rest: Vec<u32> = vec![0; n.len() + 1];
     let length = bit_length(n);
     rest[length / 32] |= 1 << (length % 32);
@@ -101,8 +101,8 @@ fn double(words: &mut [u32]) {
     }
 }
 
-/// The double nearest to `mantissa` · 10^`power`; `None` where that cannot be
-/// told from 128 bits of the power, or is no normal number.
+/// The double nearest to `mantissa` · 10^`power`; `None` if 128 bits of the power
+/// do not decide it or the result is not a normal number.
 ///
 /// # Source
 /// D. Lemire (2021), "Number parsing at a gigabyte per second", Softw. Pract.
@@ -119,18 +119,18 @@ pub fn nearest_double(mantissa: u64, power: i32) -> Option<f64> {
     let lower = u128::from(scaled) * (five & u128::from(u64::MAX));
     let product = upper + (lower >> 64);
     let (high, low) = ((product >> 64) as u64, product as u64);
-    // What is cut off might carry into the bits that are kept.
+    // The truncated part might carry into the bits kept.
     if low == u64::MAX && !(-27..=55).contains(&power) {
         return None;
     }
     let top = high >> 63;
-    // 53 bits and one to round by.
+    // 53 bits and a rounding bit.
     let shift = top as u32 + 9;
     let mut kept = high >> shift;
-    // 2^exponent · 1.xxx: floor(q log2 10) as an integer product.
+    // floor(q log2 10) as an integer product.
     let log = (power * 217_706) >> 16;
     let exponent = log + 63 + top as i32 - zeros as i32;
-    // Half way between two doubles, exactly: to the even one.
+    // Exactly half way between two doubles: round to even.
     if low <= 1 && (-4..=23).contains(&power) && kept & 3 == 1 && kept << shift == high {
         kept &= !1;
     }

@@ -1,4 +1,4 @@
-//! Tables of numbers in text: CSV in every national dialect and its relatives.
+//! Text tables of numbers: CSV in all its dialects.
 
 use crate::contents::{ChannelContents, Contents, Format, Note, TimeBase};
 use crate::error::Error;
@@ -12,24 +12,24 @@ use crate::text::options::{Dialect, TextOptions};
 use crate::text::rows::{ColumnKind, RowPlan, Separator};
 use crate::text::table::{CutOff, Table, read_table, read_whole_table, shortened};
 
-/// Bytes from which the dialect is found out.
+/// Bytes used to detect the dialect.
 const HEAD: u64 = 1 << 16;
 
-/// Most lines from which the dialect is found out.
+/// Most lines used to detect the dialect.
 const LINES: usize = 300;
 
-/// A table of numbers in text.
+/// A text table of numbers.
 #[derive(Debug)]
 pub struct TextReader {
     source: Source,
     contents: Contents,
     table: Table,
-    /// Column of the file that each channel is.
+    /// File column of each channel.
     columns: Vec<usize>,
 }
 
 impl TextReader {
-    /// Finds out the dialect of a file.
+    /// Detects the dialect of a file.
     pub fn open(source: Source, options: &TextOptions) -> Result<Self, Error> {
         let head = source.head(HEAD)?;
         let (told, mark) = tell_encoding(&head);
@@ -41,13 +41,13 @@ impl TextReader {
         {
             return Err(Error::Empty {
                 path: source.path().to_path_buf(),
-                expected: "a header line with the names of the columns, then one line per sample",
+                expected: "a header line with column names, then one line per sample",
             });
         }
         check_text(&source, &text)?;
         let newline = if text.contains('\n') { '\n' } else { '\r' };
         let mut lines: Vec<&str> = text.split(newline).take(LINES).collect();
-        // The last line may be cut, or is what follows the last line break.
+        // The last line may be incomplete, or empty after the last line break.
         if lines.len() > 1
             && (source.length() > HEAD || lines.len() == LINES || lines[lines.len() - 1].is_empty())
         {
@@ -95,7 +95,7 @@ impl TextReader {
     }
 }
 
-/// Bytes that a line takes in the file.
+/// Length of a line in the file; bytes.
 fn encoded_length(line: &str, encoding: Encoding) -> usize {
     match encoding {
         Encoding::Utf8 => line.len(),
@@ -104,7 +104,7 @@ fn encoded_length(line: &str, encoding: Encoding) -> usize {
     }
 }
 
-/// Bytes that never stand in a table of text.
+/// Rejects files with many control characters.
 fn check_text(source: &Source, text: &str) -> Result<(), Error> {
     let control = |c: &char| c.is_control() && !c.is_whitespace();
     let (mut all, mut strange) = (0_usize, 0_usize);
@@ -116,7 +116,7 @@ fn check_text(source: &Source, text: &str) -> Result<(), Error> {
         return Ok(());
     }
     Err(source.unknown(
-        "this is a binary file of a format that windfall does not know",
+        "this is a binary file of an unknown format",
         "export the recording as CSV, TDMS, MAT, HDF5, WAV or UFF58",
     ))
 }
@@ -173,7 +173,7 @@ fn contents(dialect: &Dialect, encoding: Encoding) -> (Contents, Vec<usize>, Vec
     }
     let mut channels = Vec::new();
     for (place, &column) in columns.iter().enumerate() {
-        // A column of times serves those to its right, up to the next one.
+        // A time column applies to those on its right, up to the next one.
         if is_time(column) {
             time = Some(place);
         }
@@ -223,7 +223,7 @@ fn contents(dialect: &Dialect, encoding: Encoding) -> (Contents, Vec<usize>, Vec
     (contents, columns, names)
 }
 
-/// Names without repetitions; a column without a name has its number.
+/// Unique names; unnamed columns are numbered.
 fn unique_names(dialect: &Dialect, notes: &mut Vec<Note>) -> Vec<String> {
     let mut names = Names::default();
     let mut named = Vec::new();
@@ -246,7 +246,7 @@ fn unique_names(dialect: &Dialect, notes: &mut Vec<Note>) -> Vec<String> {
     named
 }
 
-/// Words in names of columns of times.
+/// Words in the names of time columns.
 const TIME_WORDS: [&str; 10] = [
     "time",
     "zeit",
@@ -260,17 +260,17 @@ const TIME_WORDS: [&str; 10] = [
     "x_value",
 ];
 
-/// Whether a column of that name holds times.
+/// Whether a column name suggests times.
 pub fn is_time_name(name: &str) -> bool {
     let lower = name.to_lowercase();
-    // "Run 1: Time (s)": what follows the last colon counts.
+    // In "Run 1: Time (s)", only the part after the last colon counts.
     let part = lower.rsplit(':').next().unwrap_or(&lower).trim();
     let bare = part
         .split(['(', '[', '_', '/'])
         .next()
         .unwrap_or(part)
         .trim();
-    // "Temperatur" is none, "time_s" and "Zeit (ms)" are.
+    // "time_s" and "Zeit (ms)" match, "Temperatur" does not.
     let words = |text: &str| {
         TIME_WORDS.iter().any(|word| {
             text.split(|c: char| !c.is_alphanumeric() && c != '_')

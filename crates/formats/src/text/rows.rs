@@ -1,49 +1,46 @@
-//! Lines of cells → columns of numbers.
+//! Parses lines of cells into columns of numbers.
 
 use crate::text::date::{Moment, moment};
 use crate::text::encoding::Encoding;
 use crate::text::number::{Cell, Marks, bare, cell, leading_number};
 
-/// What stands between cells.
+/// Separator between cells.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Separator {
     /// One character.
     Mark(u8),
-    /// Blanks and tabs, any number of them.
+    /// Any number of spaces and tabs.
     Blanks,
 }
 
-/// What a column holds.
+/// Kind of a column.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum ColumnKind {
     /// Numbers.
     Numbers,
-    /// Moments, which become seconds since this one.
+    /// Dates or times, converted to seconds since this one.
     Moments(Moment),
-    /// Text, which is not read.
+    /// Text, which is skipped.
     Text,
 }
 
-/// How lines are read.
+/// How to parse lines.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct RowPlan {
-    /// What stands between cells.
+    /// Separator between cells.
     pub separator: Separator,
-    /// Marks in numbers.
+    /// Decimal and thousands marks.
     pub marks: Marks,
-    /// How characters are written.
     pub encoding: Encoding,
-    /// The character that ends a line.
     pub newline: u8,
-    /// Beginnings of lines that are passed over.
+    /// Prefixes of comment lines.
     pub comments: Vec<String>,
-    /// What each column holds.
     pub columns: Vec<ColumnKind>,
-    /// Whether a line may lack its last cells.
+    /// Whether the last cells of a line may be missing.
     pub short_rows: bool,
 }
 
-/// Room for the samples of a column: one for each line is enough.
+/// Preallocated space for the samples of a column.
 #[derive(Debug)]
 pub(crate) struct Column<'a> {
     room: &'a mut [f64],
@@ -51,7 +48,6 @@ pub(crate) struct Column<'a> {
 }
 
 impl<'a> Column<'a> {
-    /// An empty column with some room.
     pub(crate) fn new(room: &'a mut [f64]) -> Self {
         Self { room, length: 0 }
     }
@@ -65,48 +61,46 @@ impl<'a> Column<'a> {
     }
 }
 
-/// What a stretch of lines holds, besides the samples.
+/// Result of parsing a stretch, besides the samples.
 #[derive(Debug, Default)]
 pub(crate) struct Rows {
-    /// Rows: samples in each column; NaN stands where a cell is blank.
+    /// Number of rows, and so of samples per column; blank cells are NaN.
     pub rows: usize,
-    /// Lines, also those that are no rows.
+    /// Number of lines, including those that are not rows.
     pub lines: u64,
-    /// Cells that are no numbers, in order.
+    /// Cells that are not numbers, in order.
     pub faults: Vec<Fault>,
-    /// A line with the wrong number of cells; nothing behind it is read.
+    /// A line with the wrong number of cells; nothing after it is read.
     pub ragged: Option<Ragged>,
 }
 
-/// A cell that is no number.
+/// A cell that is not a number.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(crate) struct Fault {
-    /// Line in the stretch, from 0.
+    /// Line within the stretch, from 0.
     pub line: u64,
-    /// Column of the file.
     pub column: usize,
-    /// What stands there.
     pub text: String,
 }
 
 /// A line with the wrong number of cells.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct Ragged {
-    /// Line in the stretch, from 0.
+    /// Line within the stretch, from 0.
     pub line: u64,
-    /// Cells in it.
+    /// Number of cells.
     pub found: usize,
-    /// Whether it is the last line and lacks its end.
+    /// Whether it is the last line and has no line break.
     pub last: bool,
 }
 
-/// The most rows that a stretch can hold: one for each line, and no more than
-/// its bytes allow, so that room for them is bounded whatever the file says.
+/// Upper bound on the rows of a stretch: one per line, and no more than its bytes
+/// allow, so that memory is bounded whatever the file contains.
 pub(crate) fn most_rows(bytes: &[u8], plan: &RowPlan) -> usize {
     let ends = memchr::memchr_iter(plan.newline, bytes).count();
     let lines = ends + usize::from(bytes.last().is_some_and(|last| *last != plan.newline));
     let shortest = match (plan.separator, plan.short_rows) {
-        // The separators and the end of the line.
+        // The separators and the line break.
         (Separator::Mark(_), false) => plan.columns.len(),
         (Separator::Blanks, false) => 2 * plan.columns.len(),
         (_, true) => 1,
@@ -114,10 +108,10 @@ pub(crate) fn most_rows(bytes: &[u8], plan: &RowPlan) -> usize {
     lines.min(bytes.len() / shortest.max(1) + 1)
 }
 
-/// Reads the lines of a stretch.
+/// Parses the lines of a stretch.
 ///
-/// * `places`: for each column of the file, its position in `columns`
-/// * `columns`: where samples go, with room for [`most_rows`] each
+/// * `places`: for each file column, its index in `columns`
+/// * `columns`: output, with space for [`most_rows`] samples each
 pub(crate) fn read_rows(
     bytes: &[u8],
     plan: &RowPlan,
@@ -166,9 +160,8 @@ pub(crate) fn read_rows(
     rows
 }
 
-/// Reads a line of bare numbers and blank cells, one for each column, in place;
-/// where the next line begins. `None` where something else stands in it: columns
-/// may then have got a number too many.
+/// Fast path: parses a line of plain numbers and blank cells; returns the start of
+/// the next line. `None` for any other line; columns may then have surplus samples.
 #[inline]
 fn bare_row(
     bytes: &[u8],
@@ -184,7 +177,7 @@ fn bare_row(
     }
     for (column, place) in places.iter().enumerate() {
         let Some(place) = *place else {
-            // A cell that nobody wants.
+            // A column that was not requested.
             let cell = &bytes[at..];
             let end = cell.iter().position(|b| *b == mark || *b == plan.newline)?;
             if cell[..end].contains(&b'"') {
@@ -235,7 +228,7 @@ fn passed_over(line: &[u8], plan: &RowPlan) -> bool {
     is_comment(&line[first..], plan)
 }
 
-/// Whether a comment begins here, behind blanks at the most.
+/// Whether a comment begins here, possibly after blanks.
 #[inline]
 fn is_comment(bytes: &[u8], plan: &RowPlan) -> bool {
     let begins = |mark: &String| {
@@ -246,7 +239,7 @@ fn is_comment(bytes: &[u8], plan: &RowPlan) -> bool {
     !plan.comments.is_empty() && plan.comments.iter().any(begins)
 }
 
-/// Reads a line with a mark between cells; the number of cells.
+/// Parses a line of cells with separators; returns the number of cells.
 fn marked_row(
     line: &[u8],
     mark: u8,
@@ -258,12 +251,12 @@ fn marked_row(
     let mut at = 0;
     let mut column = 0;
     loop {
-        // One mark more at the end of each line is no cell.
+        // A trailing separator is not a cell.
         if at == line.len() && column > 0 && column == plan.columns.len() {
             return column;
         }
         let place = places.get(column).copied().flatten();
-        // The usual cell: a bare number up to the mark or the end of the line.
+        // The usual cell: a plain number up to the separator or the end of the line.
         if let Some(place) = place
             && plan.columns[column] == ColumnKind::Numbers
         {
@@ -298,7 +291,7 @@ fn blanks(bytes: &[u8]) -> usize {
     bytes.iter().take_while(|byte| **byte == b' ').count()
 }
 
-/// End of the cell that begins at `at`: its mark, not counting marks in quotes.
+/// End of the cell that begins at `at`, ignoring separators in quotes.
 fn cell_end(line: &[u8], at: usize, mark: u8) -> usize {
     let mut quoted = false;
     for (offset, &byte) in line[at..].iter().enumerate() {
@@ -310,7 +303,7 @@ fn cell_end(line: &[u8], at: usize, mark: u8) -> usize {
     line.len()
 }
 
-/// Cells that a short line lacks.
+/// Fills in the cells missing from a short line.
 fn finish(found: usize, plan: &RowPlan, places: &[Option<usize>], columns: &mut [Column]) -> usize {
     if found >= plan.columns.len() || !plan.short_rows {
         return found;
@@ -321,7 +314,7 @@ fn finish(found: usize, plan: &RowPlan, places: &[Option<usize>], columns: &mut 
     plan.columns.len()
 }
 
-/// Reads a line with blanks between cells; the number of cells.
+/// Parses a line of cells separated by blanks; returns the number of cells.
 fn blank_row(
     line: &[u8],
     plan: &RowPlan,
@@ -348,11 +341,11 @@ fn blank_row(
     finish(column, plan, places, columns)
 }
 
-/// A cell with quotes, blanks, thousands marks, a moment, or nothing.
+/// Slow path: quotes, blanks, thousands separators, times, or an empty cell.
 fn slow_cell(bytes: &[u8], column: usize, out: &mut Column, plan: &RowPlan, rows: &mut Rows) {
     let text = match plan.encoding {
         Encoding::Windows1252 => plan.encoding.decode(bytes),
-        // UTF-16 has become UTF-8 on the way.
+        // UTF-16 has been converted to UTF-8.
         _ => Encoding::Utf8.decode(bytes),
     };
     let found = match plan.columns[column] {
@@ -384,10 +377,7 @@ mod tests {
     fn plan(separator: Separator, columns: usize) -> RowPlan {
         RowPlan {
             separator,
-            marks: Marks {
-                decimal: b'.',
-                thousands: None,
-            },
+            marks: Marks::decimal(b'.'),
             encoding: Encoding::Utf8,
             newline: b'\n',
             comments: vec!["#".to_owned()],
@@ -437,7 +427,7 @@ mod tests {
     #[test]
     fn conserves_memory_whatever_the_lines() {
         let plan = plan(Separator::Mark(b','), 1000);
-        // Blank lines are no rows: room for as many would be 8 GB.
+        // Blank lines are not rows; space for as many would take 8 GB.
         assert!(most_rows(&vec![b'\n'; 1 << 20], &plan) <= 1050);
         assert_eq!(most_rows(&vec![b','; 2000], &plan), 1);
     }

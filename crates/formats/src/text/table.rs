@@ -1,4 +1,4 @@
-//! The rows of a table in text, read on all cores in bounded memory.
+//! Reads the rows of a text table on all cores, in bounded memory.
 
 use crate::error::{Error, Place};
 use crate::reader::Sink;
@@ -8,42 +8,40 @@ use crate::text::lines::{Lines, stretch, stretch_in, stretches};
 use crate::text::rows::{Column, Fault, RowPlan, Rows, most_rows, read_rows};
 use rayon::prelude::*;
 
-/// Stretches read at once for each thread.
+/// Stretches read ahead per thread.
 const AHEAD: usize = 2;
 
-/// Longest text of a cell in a message; characters.
+/// Longest cell text quoted in a message; characters.
 const SHOWN: usize = 40;
 
-/// A table within a file.
+/// A table in a file.
 #[derive(Debug)]
 pub struct Table {
-    /// How its lines are read.
     pub plan: RowPlan,
-    /// Where they are.
     pub lines: Lines,
     /// Line number of the first row, from 1.
     pub first_line: u64,
-    /// Names of the columns, for messages.
+    /// Column names, for messages.
     pub names: Vec<String>,
 }
 
-/// The last line, which was cut off.
+/// A truncated last line.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct CutOff {
-    /// Its number, from 1.
+    /// Line number, from 1.
     pub line: u64,
-    /// Cells in it.
+    /// Number of cells.
     pub found: usize,
 }
 
-/// Samples of the columns of a stretch, and what else was found in it.
+/// Samples of a stretch by column, and what else was found.
 type Read = (Vec<Vec<f64>>, Rows);
 
 /// Reads columns of a table in blocks.
 ///
-/// * `wanted`: column of the file and position for the sink
+/// * `wanted`: file column and sink position
 ///
-/// Returns the last line where that was cut off; it is left out.
+/// Returns the last line if it was truncated; it is left out.
 pub fn read_table(
     source: &Source,
     table: &Table,
@@ -83,9 +81,9 @@ pub fn read_table(
     course.end(source, table, wanted.is_empty())
 }
 
-/// Reads columns of a table into memory, each stretch right into its place.
+/// Reads whole columns, parsing stretches directly into their final place.
 ///
-/// * `wanted`: columns of the file
+/// * `wanted`: file columns
 pub fn read_whole_table(
     source: &Source,
     table: &Table,
@@ -109,7 +107,7 @@ pub fn read_whole_table(
     let most = lengths.iter().sum();
     let mut columns: Vec<Vec<f64>> = wanted.iter().map(|_| zeros(most)).collect();
 
-    // The room of each stretch in every column.
+    // The space of each stretch in every column.
     let mut rest: Vec<&mut [f64]> = columns.iter_mut().map(Vec::as_mut_slice).collect();
     let mut rooms: Vec<Vec<Column>> = Vec::new();
     for length in &lengths {
@@ -130,7 +128,7 @@ pub fn read_whole_table(
         })
         .collect::<Result<_, Error>>()?;
 
-    // Blank lines and comments have left gaps.
+    // Close the gaps left by blank lines and comments.
     let (mut from, mut to) = (0, 0);
     let mut course = Course::new(table);
     let mut cut = None;
@@ -163,7 +161,7 @@ fn places(table: &Table, wanted: impl Iterator<Item = usize>) -> Vec<Option<usiz
     places
 }
 
-/// How far the reading of a table has come.
+/// Progress through a table.
 struct Course {
     line: u64,
     rows: usize,
@@ -190,7 +188,7 @@ impl Course {
             .try_for_each(|f| sink.fault(f))
     }
 
-    /// Goes on behind a stretch; the last line where that was cut off.
+    /// Moves past a stretch; returns a truncated last line.
     fn advance(
         &mut self,
         source: &Source,
@@ -208,7 +206,7 @@ impl Course {
             return Ok(Some(CutOff { line, found }));
         }
         let problem =
-            format!("expected {expected} cells, as in the lines before, and found {found}");
+            format!("expected {expected} cells, as in the lines before, but found {found}");
         Err(malformed(source, line, problem))
     }
 
@@ -260,7 +258,7 @@ fn hint(table: &Table, text: &str) -> String {
     "; leave the cell blank where there is no sample".to_owned()
 }
 
-/// A text for a message, not too long.
+/// Shortens a text for a message.
 pub fn shortened(text: &str) -> String {
     match text.char_indices().nth(SHOWN) {
         Some((at, _)) => format!("{}…", &text[..at]),

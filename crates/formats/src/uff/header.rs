@@ -1,45 +1,39 @@
-//! The header of a function in a universal file.
+//! Header of a function in a universal file.
 
 use crate::error::{Error, Place};
 use crate::source::Source;
-use crate::text::number::{Cell, Marks, cell};
+use crate::text::number::{Marks, number};
 
-/// What the eleven lines above the data say.
+/// Contents of the eleven header lines.
 pub struct Header {
-    /// Name of the function.
     pub name: String,
-    /// Whether numbers are double.
+    /// Whether numbers are double precision.
     pub double: bool,
-    /// Whether numbers are complex.
     pub complex: bool,
-    /// Whether the abscissa is even.
+    /// Whether the abscissa is evenly spaced.
     pub even: bool,
-    /// Points.
+    /// Number of points.
     pub points: u64,
-    /// First abscissa.
+    /// First value of the abscissa.
     pub start: f64,
-    /// Step of an even abscissa.
+    /// Step of the abscissa.
     pub interval: f64,
-    /// What the abscissa is.
     pub abscissa: Axis,
-    /// What the ordinate is.
     pub ordinate: Axis,
-    /// Other things that it says.
     pub properties: Vec<(String, String)>,
 }
 
 /// A quantity on an axis.
 pub struct Axis {
-    /// Its kind by the number of the format.
+    /// Code of the quantity.
     pub kind: u32,
-    /// Its unit.
     pub unit: Option<String>,
 }
 
-/// Abscissa of this kind is a time; s.
+/// Code of time; s.
 pub const TIME: u32 = 17;
 
-/// The error that a line is not what it must be.
+/// Error: a line is malformed.
 pub fn malformed(source: &Source, line: u64, problem: &str) -> Error {
     source.malformed(
         Place::Line(line),
@@ -48,14 +42,11 @@ pub fn malformed(source: &Source, line: u64, problem: &str) -> Error {
     )
 }
 
-/// Reads the eleven lines above the data of a function.
+/// Parses the eleven header lines of a function.
 ///
-/// * `line`: number of the line before them
+/// * `line`: number of the preceding line
 pub fn parse_header(source: &Source, lines: &[String], line: u64) -> Result<Header, Error> {
-    let marks = Marks {
-        decimal: b'.',
-        thousands: None,
-    };
+    let marks = Marks::decimal(b'.');
     let bad =
         |offset: u64, what: &str| malformed(source, line + offset, &format!("expected {what}"));
     let text = |index: usize, from: usize, to: usize| {
@@ -66,12 +57,8 @@ pub fn parse_header(source: &Source, lines: &[String], line: u64) -> Result<Head
         })
     };
     let integer = |index: usize, from: usize, to: usize| text(index, from, to).parse::<u64>().ok();
-    let number = |index: usize, from: usize, to: usize| match cell(&text(index, from, to), marks) {
-        Cell::Number(value) => Some(value),
-        _ => None,
-    };
-    let data_type =
-        integer(6, 0, 10).ok_or_else(|| bad(7, "the type of the data in ten characters"))?;
+    let number = |index: usize, from: usize, to: usize| number(&text(index, from, to), marks);
+    let data_type = integer(6, 0, 10).ok_or_else(|| bad(7, "the data type in ten characters"))?;
     let points =
         integer(6, 10, 20).ok_or_else(|| bad(7, "the number of points in ten characters"))?;
     let even = integer(6, 20, 30) != Some(0);

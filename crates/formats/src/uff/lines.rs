@@ -1,37 +1,37 @@
-//! Lines of a file that holds text and binary data, one after the other.
+//! Reads lines from files that mix text and binary data.
 
 use crate::error::{Error, Place};
 use crate::source::Source;
 
-/// Bytes read at once.
+/// Bytes read at a time.
 const BLOCK: u64 = 1 << 16;
 
 /// Longest line; bytes.
 const LONGEST_LINE: usize = 1 << 20;
 
-/// Reads lines from a place in a file on.
+/// Reads lines from a position in a file.
 #[derive(Debug)]
 pub struct LineReader {
-    /// Where the next line begins.
+    /// Offset of the next line.
     at: u64,
     /// Number of the next line.
     number: u64,
     buffer: Vec<u8>,
-    /// Where the buffer begins in the file.
+    /// Offset of the buffer in the file.
     begin: u64,
 }
 
-/// A line and its number, from 1.
+/// A line.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Line {
-    /// Its text, without its end.
+    /// Text without the line break.
     pub text: String,
-    /// Its number.
+    /// Number, from 1.
     pub number: u64,
 }
 
 impl LineReader {
-    /// From byte `at` on, where line `number` begins.
+    /// Starts at byte `at`, where line `number` begins.
     pub fn new(at: u64, number: u64) -> Self {
         Self {
             at,
@@ -41,7 +41,7 @@ impl LineReader {
         }
     }
 
-    /// Where the next line begins.
+    /// Offset of the next line.
     pub fn offset(&self) -> u64 {
         self.at
     }
@@ -51,7 +51,7 @@ impl LineReader {
         self.number
     }
 
-    /// Goes on at another place.
+    /// Continues at another offset.
     pub fn seek(&mut self, at: u64) {
         self.at = at;
         self.begin = at;
@@ -69,7 +69,7 @@ impl LineReader {
                     return Err(source.malformed(
                         Place::Line(self.number),
                         "the line is longer than 1 MiB",
-                        "this is no universal file of text; was it damaged?",
+                        "is this universal file damaged?",
                     ));
                 }
                 self.buffer.drain(..from);

@@ -13,10 +13,10 @@ use crate::text::number::{Cell, Marks, cell};
 use crate::uff::header::{Header, TIME, malformed, parse_header};
 use crate::uff::lines::LineReader;
 
-/// Lines between the number of the data set and its data.
+/// Header lines of a function.
 const HEADER_LINES: usize = 11;
 
-/// Numbers handed over at once.
+/// Numbers passed on at a time.
 const BLOCK: usize = 1 << 15;
 
 /// Most data sets of a file.
@@ -28,7 +28,7 @@ pub struct UffReader {
     source: Source,
     contents: Contents,
     records: Vec<Record>,
-    /// Record and place in its points of each channel.
+    /// Record of each channel, and its place within points.
     places: Vec<(usize, usize)>,
     names: Names,
 }
@@ -41,7 +41,7 @@ struct Record {
     first_line: u64,
     points: u64,
     coding: Coding,
-    /// Numbers of one point: abscissa if uneven, real part, imaginary part.
+    /// Numbers per point: abscissa if uneven, real part, imaginary part.
     width: usize,
     /// Widths of the columns of text; characters.
     columns: Vec<usize>,
@@ -118,7 +118,7 @@ impl UffReader {
     }
 }
 
-/// Passes over the lines of a data set, with the "-1" behind it.
+/// Skips a data set, including the "-1" at its end.
 fn skip_set(source: &Source, lines: &mut LineReader) -> Result<bool, Error> {
     while let Some(line) = lines.next(source)? {
         if line.text.trim() == "-1" {
@@ -143,7 +143,7 @@ fn read_function(
                 return Err(malformed(
                     &found.source,
                     lines.number(),
-                    "the header of a function ends too early",
+                    "the header of a function is incomplete",
                 ));
             }
         }
@@ -225,7 +225,7 @@ fn binary_data(
                 &found.source,
                 lines.number(),
                 &format!(
-                    "{} points do not fit into the bytes that are declared",
+                    "{} points do not fit into the declared bytes",
                     header.points
                 ),
             ));
@@ -245,13 +245,12 @@ fn binary_data(
         number,
         big_endian: order == Some(2),
     };
-    // Past the "-1" behind the data.
+    // Skip the "-1" after the data.
     skip_set(&found.source, lines)?;
     Ok((coding, end))
 }
 
-/// Adds the channels of a function: its abscissa where that is uneven, and its
-/// real and imaginary parts.
+/// Adds the channels of a function: uneven abscissa, real and imaginary parts.
 fn add_channels(found: &mut UffReader, record: Record, header: &Header) {
     let index = found.records.len();
     let name = found.names.unique(&header.name);
@@ -312,7 +311,7 @@ fn add_channels(found: &mut UffReader, record: Record, header: &Header) {
     found.records.push(Record { name, ..record });
 }
 
-/// Collects the numbers of the wanted places of a record's points.
+/// Collects the requested numbers of the points of a record.
 struct Collector<'a> {
     wanted: &'a [(usize, usize)],
     width: usize,
@@ -416,10 +415,7 @@ fn read_binary(
 }
 
 fn read_text(source: &Source, record: &Record, collector: &mut Collector) -> Result<(), Error> {
-    let marks = Marks {
-        decimal: b'.',
-        thousands: None,
-    };
+    let marks = Marks::decimal(b'.');
     let mut lines = LineReader::new(record.start, record.first_line);
     while lines.offset() < record.end {
         let Some(line) = lines.next(source)? else {
@@ -448,8 +444,7 @@ fn read_text(source: &Source, record: &Record, collector: &mut Collector) -> Res
     Ok(())
 }
 
-/// Numbers of a line, by their columns; by blanks where a line does not keep to
-/// the columns.
+/// Splits a line into its fixed columns, or at blanks if it does not fit them.
 fn cells<'a>(line: &'a str, columns: &[usize]) -> Vec<&'a str> {
     let line = line.trim_end();
     let mut ends = columns.iter().scan(0, |at, width| {

@@ -1,4 +1,4 @@
-//! WAVE sound files: RIFF, RIFX and RF64, every depth of integers and floats.
+//! WAVE files: RIFF, RIFX and RF64, integers and floats of any depth.
 //!
 //! # Source
 //! Microsoft and IBM (1991), "Multimedia Programming Interface and Data
@@ -11,20 +11,20 @@ use crate::number::integer;
 use crate::reader::{Reader, Sink};
 use crate::source::Source;
 
-/// Samples of all channels together that are read at once.
+/// Samples read at a time, over all channels.
 const BLOCK: u64 = 1 << 16;
 
 /// Most channels of a file.
 const MOST_CHANNELS: u16 = 4096;
 
-/// A size that says "unknown": of a file that was still being written, or whose
-/// size stands elsewhere (RF64).
+/// Unknown size: the file was still being written, or gives its size elsewhere
+/// (RF64).
 const NO_SIZE: u32 = u32::MAX;
 
-/// How samples are coded.
+/// Coding of samples.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Coding {
-    /// Two's complement; of eight bits and less, counted from half of the range.
+    /// Two's complement; offset binary up to eight bits.
     Integer,
     Float,
     MuLaw,
@@ -41,15 +41,15 @@ pub struct WavReader {
     frames: u64,
 }
 
-/// What the chunk `fmt ` says.
+/// Contents of the chunk `fmt `.
 #[derive(Clone, Copy, Debug)]
 struct Shape {
     coding: Coding,
     channels: u16,
     rate: u32,
-    /// Bytes of one sample.
+    /// Bytes per sample.
     container: u16,
-    /// Bits of it that count.
+    /// Significant bits per sample.
     bits: u16,
     big_endian: bool,
 }
@@ -63,7 +63,7 @@ impl WavReader {
             return Err(malformed(
                 &source,
                 8,
-                "expected \"WAVE\"; this is no WAVE file",
+                "expected \"WAVE\"; this is not a WAVE file",
             ));
         }
         let mut notes = Vec::new();
@@ -86,7 +86,7 @@ impl WavReader {
                 b"data" => {
                     let declared = match size {
                         NO_SIZE => long_size.unwrap_or(left),
-                        // A recorder that was switched off leaves a zero.
+                        // Left by a recorder that was switched off.
                         0 => left,
                         size => u64::from(size),
                     };
@@ -101,7 +101,7 @@ impl WavReader {
                 (b"data", Some((_, declared, _))) => declared,
                 _ => u64::from(size),
             };
-            // Chunks begin at even places.
+            // Chunks begin at even offsets.
             at = begin + length + length % 2;
         }
         let shape = shape.ok_or_else(|| malformed(&source, 12, "there is no chunk \"fmt \""))?;
@@ -122,7 +122,7 @@ impl WavReader {
         if bytes % frame != 0 {
             notes.push(Note::Odd {
                 what: format!(
-                    "{} bytes behind the last whole frame are left out",
+                    "{} bytes after the last whole frame are left out",
                     bytes % frame
                 ),
             });
@@ -156,7 +156,7 @@ fn read_shape(source: &Source, at: u64, size: u32, big_endian: bool) -> Result<S
     let (mut code, channels) = (u16_at(0), u16_at(2));
     let rate = integer(&bytes[4..8], big_endian) as u32;
     let (align, mut bits) = (u16_at(12), u16_at(14));
-    // WAVE_FORMAT_EXTENSIBLE: the code and the valid bits stand further behind.
+    // WAVE_FORMAT_EXTENSIBLE has the code and the valid bits further on.
     if code == 0xfffe && bytes.len() >= 28 {
         let valid = u16_at(18);
         if valid > 0 && valid <= bits {
@@ -172,7 +172,7 @@ fn read_shape(source: &Source, at: u64, size: u32, big_endian: bool) -> Result<S
         other => {
             return Err(source.unsupported(
                 Place::Byte(at),
-                format!("sound of format {other} ({})", codec(other)),
+                format!("WAVE format {other} ({})", codec(other)),
                 "convert it to PCM",
             ));
         }
@@ -181,7 +181,7 @@ fn read_shape(source: &Source, at: u64, size: u32, big_endian: bool) -> Result<S
         return Err(malformed(
             source,
             at,
-            &format!("{channels} channels at {rate} Hz in frames of {align} bytes cannot be"),
+            &format!("{channels} channels at {rate} Hz in frames of {align} bytes are impossible"),
         ));
     }
     let container = align / channels;
@@ -194,7 +194,9 @@ fn read_shape(source: &Source, at: u64, size: u32, big_endian: bool) -> Result<S
         return Err(malformed(
             source,
             at,
-            &format!("{bits} bits in frames of {align} bytes for {channels} channels cannot be"),
+            &format!(
+                "{bits} bits in frames of {align} bytes for {channels} channels are impossible"
+            ),
         ));
     }
     Ok(Shape {
@@ -315,12 +317,12 @@ impl Reader for WavReader {
     }
 }
 
-/// From the bytes of a sample to its value, full scale being 1.
+/// Decodes a sample; full scale is 1.
 fn decoder(shape: Shape) -> impl Fn(&[u8]) -> f64 {
     move |bytes| match shape.coding {
         Coding::Integer if shape.container == 1 => (f64::from(bytes[0]) - 128.0) / 128.0,
         Coding::Integer => {
-            // Samples fill their container from the top; so the sign is in place.
+            // Samples are left-aligned, so the sign is in place.
             let shift = 64 - 8 * u32::from(shape.container);
             let value = (integer(bytes, shape.big_endian) << shift) as i64;
             value as f64 / 2_f64.powi(63)

@@ -201,12 +201,12 @@ fn rejects_what_is_no_hdf5_file_or_damaged() {
         (&b""[..], "x.h5: the file is empty; expected a recording"),
         (
             &[7; 3000],
-            "x.h5, at byte 0: expected the signature of HDF5; this is no HDF5 file",
+            "x.h5, at byte 0: expected the signature of HDF5; this is not an HDF5 file",
         ),
         (&OLD[..60], "a structure ends before what it declares"),
         (
             &OLD[..90],
-            "the file as it was written needs 14880 bytes, 90 are left",
+            "the complete file needs 14880 bytes, 90 are left",
         ),
     ] {
         let message = refused(bytes);

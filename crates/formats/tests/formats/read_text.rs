@@ -165,11 +165,11 @@ fn rejects_what_is_no_table_of_numbers_or_damaged() {
         ),
         (
             "t,F\n0,1\n1\n2,3\n",
-            "t.csv, line 3: expected 2 cells, as in the lines before, and found 1".to_owned(),
+            "t.csv, line 3: expected 2 cells, as in the lines before, but found 1".to_owned(),
         ),
         (
             "t,F\n0,1\n1,2,3\n2,3\n",
-            "t.csv, line 3: expected 2 cells, as in the lines before, and found 3".to_owned(),
+            "t.csv, line 3: expected 2 cells, as in the lines before, but found 3".to_owned(),
         ),
     ] {
         println!("{text:?}");

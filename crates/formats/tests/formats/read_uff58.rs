@@ -65,7 +65,7 @@ fn rejects_files_without_functions_and_other_floats() {
         ),
         (
             short,
-            "t.uff, line 4: the header of a function ends too early",
+            "t.uff, line 4: the header of a function is incomplete",
         ),
     ] {
         let read = open_bytes("t.uff", bytes, Format::Uff58).map(|_| ());

@@ -352,20 +352,20 @@ fn rejects_compressed_and_impossible_files() {
     for (bytes, expected) in [
         (
             wav(2, 1, 1, 4, &[0; 8]),
-            "windfall does not read sound of format 2 (Microsoft ADPCM); convert it to PCM",
+            "windfall does not read WAVE format 2 (Microsoft ADPCM); convert it to PCM",
         ),
         (
             wav(1, 0, 2, 16, &[0; 8]),
-            "0 channels at 8000 Hz in frames of 2 bytes cannot be",
+            "0 channels at 8000 Hz in frames of 2 bytes are impossible",
         ),
         (
             wav(3, 1, 2, 16, &[0; 8]),
-            "16 bits in frames of 2 bytes for 1 channels cannot be",
+            "16 bits in frames of 2 bytes for 1 channels are impossible",
         ),
         (b"RIFF\x04\0\0\0WAVE".to_vec(), "there is no chunk \"fmt \""),
         (
             b"RIFF\x04\0\0\0AVI ".to_vec(),
-            "expected \"WAVE\"; this is no WAVE file",
+            "expected \"WAVE\"; this is not a WAVE file",
         ),
     ] {
         let message = open_bytes("t.wav", bytes, Format::Wav)
