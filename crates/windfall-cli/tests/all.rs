@@ -14,6 +14,7 @@ mod http;
 mod identification;
 mod kinds;
 mod library;
+mod page_quantities;
 mod regress;
 mod report;
 mod revision;

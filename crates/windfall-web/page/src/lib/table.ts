@@ -11,7 +11,8 @@ import type {
   TableView,
 } from "../api/types";
 import { plusMinus, unitText } from "./format";
-import { DERIVED, words } from "./names";
+import { words } from "./names";
+import { DERIVED } from "./quantities";
 
 type Cell = number | string | null;
 
