@@ -1,5 +1,7 @@
 //! The tests of this crate as one program, which is built and linked once.
 
+#![allow(clippy::unwrap_used)]
+
 mod expression;
 mod law_derivatives;
 mod law_values;

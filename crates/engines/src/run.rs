@@ -15,8 +15,8 @@ use windfall_files::progress::Progress;
 use windfall_files::write_file::write_whole;
 use windfall_scene_run::file::engine_kind::Engine;
 use windfall_scene_run::file::read::{ScenePlan, read_scene};
+use windfall_scene_run::run::advance::SceneStart;
 use windfall_scene_run::run::outcome::{SceneOutcome, StepOutcome};
-use windfall_scene_run::run::run::SceneStart;
 use windfall_scene_run::run::workflow::{
     Moved, SceneRequest, directory_of, run_moved, run_scene, time_step,
 };

@@ -20,7 +20,6 @@ mod pendulum;
 use pendulum::{Bench, bench, on_threads, recorded, rig};
 use windfall_contact::expression::parse_law;
 use windfall_contact::laws::kind::LawKind;
-use windfall_identify::fit::interval::Drawing;
 use windfall_identify::fit::problem::{FitOptions, LawProblem};
 use windfall_identify::population::fit::fit_population;
 use windfall_identify::population::likelihood::{
@@ -31,6 +30,7 @@ use windfall_identify::population::model::{
 };
 use windfall_identify::population::posterior::{PosteriorRange, population_posterior};
 use windfall_identify::population::two_stage::{TwoStage, two_stage};
+use windfall_identify::sampler::chains::Drawing;
 use windfall_signal::noise::gaussian::{NoiseSource, noise_source, normal, uniform};
 
 const FRUIT: usize = 40;

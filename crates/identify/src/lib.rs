@@ -12,5 +12,5 @@ pub mod fit;
 mod noise;
 pub mod population;
 pub mod rig;
-mod sampler;
+pub mod sampler;
 pub mod samples;

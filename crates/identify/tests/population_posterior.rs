@@ -3,7 +3,6 @@
 #![allow(clippy::unwrap_used, clippy::print_stdout)]
 
 use windfall_identify::error::Error;
-use windfall_identify::fit::interval::Drawing;
 use windfall_identify::population::fit::fit_population;
 use windfall_identify::population::model::{
     Covariate, Expansion, PopulationData, PopulationFit, PopulationOptions, Structure,
@@ -11,6 +10,7 @@ use windfall_identify::population::model::{
 use windfall_identify::population::posterior::{
     PopulationPosterior, PosteriorRange, population_posterior,
 };
+use windfall_identify::sampler::chains::Drawing;
 use windfall_signal::noise::gaussian::{noise_source, normal};
 
 const DRAWING: Drawing = Drawing {

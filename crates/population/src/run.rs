@@ -21,7 +21,7 @@ use windfall_files::found::{FailureOutcome, FindingOutcome};
 use windfall_files::on_threads::on_threads;
 use windfall_files::progress::{Progress, for_each};
 use windfall_files::provenance::VERSION;
-use windfall_identify::fit::interval::{Drawing, IntervalOptions};
+use windfall_identify::fit::interval::IntervalOptions;
 use windfall_identify::fit::problem::LawProblem;
 use windfall_identify::population::finding::PopulationFinding;
 use windfall_identify::population::fit::fit_population;
@@ -33,6 +33,7 @@ use windfall_identify::population::model::{
 };
 use windfall_identify::population::posterior::population_posterior;
 use windfall_identify::population::two_stage::two_stage;
+use windfall_identify::sampler::chains::Drawing;
 
 /// What `population` is asked for.
 #[derive(Clone, Debug, Default)]

@@ -1,5 +1,7 @@
 //! The tests of this crate as one program, which is built and linked once.
 
+#![allow(clippy::unwrap_used)]
+
 mod bounces;
 mod conditioning;
 mod encoder_capture;

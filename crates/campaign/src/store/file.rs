@@ -84,7 +84,7 @@ pub(crate) fn store_error(path: &Path, action: &'static str, source: rusqlite::E
         _ => Error::from(StoreError::Refused {
             path,
             action,
-            source: source.into(),
+            source,
         }),
     }
 }

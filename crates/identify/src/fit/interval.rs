@@ -134,17 +134,6 @@ pub struct Mixing {
     pub tail_draws: f64,
 }
 
-/// How much of a posterior is drawn.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Drawing {
-    /// Chains.
-    pub chains: usize,
-    /// Kept draws of each.
-    pub draws: usize,
-    /// Seed of all of them.
-    pub seed: u64,
-}
-
 /// Largest R-hat and fewest independent draws of chains that say something.
 const MIXED: (f64, f64) = (1.01, 400.0);
 

@@ -1,10 +1,9 @@
 //! Posterior distribution of one impact's parameters, by the no-U-turn sampler.
 
 use crate::fit::estimator::{Estimator, FreeLaw};
-use crate::fit::interval::{
-    Drawing, FreeIntervals, IntervalDetail, Mixing, Posterior, deviation, quantile,
-};
+use crate::fit::interval::{FreeIntervals, IntervalDetail, Mixing, Posterior, deviation, quantile};
 use crate::fit::residual::evaluate;
+use crate::sampler::chains::Drawing;
 use crate::sampler::chains::draw_chains;
 use crate::sampler::density::LogDensity;
 use windfall_numerics::least_squares::Minimum;

@@ -6,12 +6,13 @@ use crate::fit::bootstrap::{BootstrapPlan, bootstrap_intervals};
 use crate::fit::estimator::{
     Coordinate, Estimator, FORESIGHT, FreeLaw, FreeParameter, Setting, Target, Values,
 };
-use crate::fit::interval::{Drawing, FreeIntervals, IntervalMethod, IntervalOptions};
+use crate::fit::interval::{FreeIntervals, IntervalMethod, IntervalOptions};
 use crate::fit::model::Sampling;
 use crate::fit::posterior::{PosteriorPlan, posterior_intervals};
 use crate::fit::profile::profile_intervals;
 use crate::fit::residual::Rows;
 use crate::fit::uncertainty::covariance;
+use crate::sampler::chains::Drawing;
 use crate::samples::{QUANTITIES, SampleGroup};
 use windfall_contact::laws::any_law::{AnyLaw, LARGEST_PARAMETERS};
 use windfall_contact::laws::kind::Law;

@@ -2,13 +2,14 @@
 //! what [`fit_population`](crate::population::fit::fit_population) approximates.
 
 use crate::error::Error;
-use crate::fit::interval::{Drawing, Mixing, quantile};
+use crate::fit::interval::{Mixing, quantile};
 use crate::fit::posterior::mixing;
 use crate::population::finding::PopulationFinding;
 use crate::population::level::{Level, Normal};
 use crate::population::model::{
     Expand, Expansion, PopulationData, PopulationFit, PopulationOptions,
 };
+use crate::sampler::chains::Drawing;
 use crate::sampler::chains::draw_chains;
 use crate::sampler::density::LogDensity;
 use nalgebra::{DMatrix, DVector};

@@ -1,10 +1,20 @@
 //! Chains of draws from a density, each tuned before its draws are kept.
 
-use crate::fit::interval::Drawing;
 use crate::sampler::density::{LogDensity, Point};
 use crate::sampler::no_u_turn::Chain;
 use crate::sampler::tuning::Tuning;
 use windfall_signal::noise::gaussian::noise_source;
+
+/// How much of a posterior is drawn.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Drawing {
+    /// Chains.
+    pub chains: usize,
+    /// Kept draws of each.
+    pub draws: usize,
+    /// Seed of all of them.
+    pub seed: u64,
+}
 
 /// Draws before the kept ones that tune a chain: as many as are kept, at most these.
 const MOST_TUNING: usize = 500;

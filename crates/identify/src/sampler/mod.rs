@@ -1,6 +1,6 @@
 //! Draws from a posterior by the no-U-turn sampler, from its log-density and gradient.
 
-pub(crate) mod chains;
+pub mod chains;
 pub(crate) mod density;
 mod no_u_turn;
 #[cfg(test)]

@@ -194,7 +194,7 @@ impl<'a> Chain<'a> {
             .map_or(f64::NEG_INFINITY, |to| trajectory.energy - self.energy(to));
         trajectory.steps += 1;
         trajectory.acceptance += gain.min(0.0).exp();
-        if !(gain > -DIVERGED) {
+        if gain.is_nan() || gain <= -DIVERGED {
             trajectory.diverged = true;
             return None;
         }

@@ -1,6 +1,6 @@
 //! The sampler against posteriors that are known otherwise.
 
-use crate::fit::interval::Drawing;
+use crate::sampler::chains::Drawing;
 use crate::sampler::chains::draw_chains;
 use crate::sampler::density::LogDensity;
 use std::cell::Cell;

@@ -2,7 +2,7 @@
 
 use crate::file::read::scene_of;
 use crate::frames::view::{PictureRequest, draw_scene, open_frames};
-use crate::run::run::SceneStart;
+use crate::run::advance::SceneStart;
 use crate::run::workflow::run_plan;
 use crate::study::laws::{certain_laws, draw_laws};
 use crate::study::outcome::{FactorOutcome, Replicate, StudyOutcome, effects, variant};

@@ -15,7 +15,7 @@ use windfall_engines::parameters::Other;
 use windfall_engines::run::{EngineRequest, export_deck, run_on_engine};
 use windfall_engines::text::{text_of_contacts, text_of_deck};
 use windfall_scene_run::file::engine_kind::Engine;
-use windfall_scene_run::run::run::SceneStart;
+use windfall_scene_run::run::advance::SceneStart;
 use windfall_scene_run::run::tables::{csv_of_scene, text_of_scene};
 use windfall_scene_run::run::workflow::SceneRequest;
 use windfall_scene_run::study::run::{StudyRequest, run_study};
