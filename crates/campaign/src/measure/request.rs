@@ -7,7 +7,7 @@ use windfall_files::error::Error;
 use windfall_files::option_value::unusable;
 
 /// Puts what is asked for in the place of what a campaign says that fits no
-/// impacts: only the group, and laws where it fits some ([`laws_and_free`]).
+/// impacts: only the group, and laws where it fits some ([`laws_and_free`](crate::impacts::request::laws_and_free)).
 ///
 /// # Errors
 /// An option that only impacts have, or one that cannot be used.
