@@ -63,32 +63,20 @@ impl Number {
 
     /// Fills `out`; `bytes` must hold enough numbers.
     pub fn decode(self, bytes: &[u8], layout: Layout, out: &mut [f64]) {
+        let bytes = &bytes[layout.offset..];
         macro_rules! numbers {
             ($type:ty) => {{
                 const SIZE: usize = size_of::<$type>();
-                let bytes = &bytes[layout.offset..];
-                let packed = layout.stride == SIZE;
+                let packed = bytes.as_chunks::<SIZE>().0.iter().copied();
+                let rows = bytes.chunks(layout.stride);
+                let rows = rows.map(|row| *row.first_chunk::<SIZE>().unwrap_or(&[0; SIZE]));
+                let (little, big) = (<$type>::from_le_bytes, <$type>::from_be_bytes);
                 // Separate loops, so that each one is vectorised.
-                match (packed, layout.big_endian) {
-                    (true, false) => {
-                        for (out, value) in out.iter_mut().zip(bytes.as_chunks::<SIZE>().0) {
-                            *out = <$type>::from_le_bytes(*value) as f64;
-                        }
-                    }
-                    (true, true) => {
-                        for (out, value) in out.iter_mut().zip(bytes.as_chunks::<SIZE>().0) {
-                            *out = <$type>::from_be_bytes(*value) as f64;
-                        }
-                    }
-                    _ => {
-                        for (out, row) in out.iter_mut().zip(bytes.chunks(layout.stride)) {
-                            let value = row.first_chunk::<SIZE>().copied().unwrap_or_default();
-                            *out = match layout.big_endian {
-                                true => <$type>::from_be_bytes(value) as f64,
-                                false => <$type>::from_le_bytes(value) as f64,
-                            };
-                        }
-                    }
+                match (layout.stride == SIZE, layout.big_endian) {
+                    (true, false) => fill(out, packed.map(|value| little(value) as f64)),
+                    (true, true) => fill(out, packed.map(|value| big(value) as f64)),
+                    (false, false) => fill(out, rows.map(|value| little(value) as f64)),
+                    (false, true) => fill(out, rows.map(|value| big(value) as f64)),
                 }
             }};
         }
@@ -105,4 +93,10 @@ impl Number {
             Self::F64 => numbers!(f64),
         }
     }
+}
+
+fn fill(out: &mut [f64], values: impl Iterator<Item = f64>) {
+    out.iter_mut()
+        .zip(values)
+        .for_each(|(out, value)| *out = value);
 }

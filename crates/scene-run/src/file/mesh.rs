@@ -14,12 +14,12 @@ use windfall_scene::vector::{Vector, add, length, scaled, subtract, turn_about, 
 
 const TABLE: &str = "[[walls]]";
 
-/// A mesh larger than this stands in another unit; m.
+/// Extent above which the file is probably in mm; m.
 const LARGEST: f64 = 100.0;
-/// And one smaller than this; m.
+/// Extent below which the unit is probably wrong too; m.
 const SMALLEST: f64 = 2e-3;
 
-/// The surface of a wall from an STL file; what is to be known of it is added to the findings.
+/// Reads the surface of a wall from an STL file, and adds its flaws to the findings.
 ///
 /// # Errors
 /// The file cannot be read, is damaged, is open where it must be closed, or is of a size

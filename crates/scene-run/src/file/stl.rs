@@ -1,79 +1,82 @@
-//! STL files → triangles: the binary and the text form.
+//! Reads triangles from binary and text STL files.
+//!
+//! Coordinates of text files keep double precision, and faults are located by byte or
+//! line and triangle; `stl_io` does neither.
 
 use std::path::Path;
 use windfall_files::error::Error;
 use windfall_scene::vector::Vector;
 
-/// Why bytes are no STL file.
+/// Why a file is not a valid STL file.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum StlProblem {
-    /// It ends before anything stands in it.
+    /// Truncated before the first facet.
     #[error("it is no STL file: it has {bytes} bytes, and the shortest has 134")]
     Short {
-        /// Its length.
+        /// Length of the file.
         bytes: usize,
     },
-    /// It has no triangle.
+    /// No triangles.
     #[error("there is no triangle in it")]
     Empty,
-    /// The count and the length of a binary file contradict each other.
+    /// A binary file is shorter than its count of triangles requires.
     #[error(
         "it says (at byte 80) that it has {said} triangles, which take {needed} bytes, but it has \
          {bytes}: it was cut off after triangle {whole}, or is no binary STL file"
     )]
     Cut {
-        /// Triangles that it says.
+        /// Declared number of triangles.
         said: u32,
-        /// Bytes that they need.
+        /// Bytes they take.
         needed: u64,
-        /// Bytes that are there.
+        /// Length of the file; bytes.
         bytes: usize,
-        /// Whole triangles that are there.
+        /// Complete triangles in the file.
         whole: usize,
     },
-    /// More bytes than the triangles of a binary file take.
+    /// A binary file is longer than its count of triangles requires.
     #[error(
         "it says (at byte 80) that it has {said} triangles, which end at byte {needed}, but it has \
          {bytes} bytes, room for {whole}: write it anew"
     )]
     Beyond {
-        /// Triangles that it says.
+        /// Declared number of triangles.
         said: u32,
-        /// Bytes that they need.
+        /// Bytes they take.
         needed: u64,
-        /// Bytes that are there.
+        /// Length of the file; bytes.
         bytes: usize,
-        /// Triangles for which there is room.
+        /// Triangles that would fit.
         whole: usize,
     },
-    /// A coordinate of a binary file is no number.
+    /// A coordinate of a binary file is not finite.
     #[error("triangle {triangle} (at byte {byte}): a coordinate is {value}")]
     NotFinite {
         /// Counted from 1.
         triangle: usize,
-        /// Where the coordinate stands.
+        /// Offset of the coordinate.
         byte: usize,
-        /// What it is.
+        /// Its value.
         value: f32,
     },
-    /// A word of a text file is another than must stand there.
+    /// Unexpected word in a text file.
     #[error("line {line}, triangle {triangle}: expected {expected}, found {found}")]
     Word {
         /// Counted from 1.
         line: usize,
         /// Counted from 1.
         triangle: usize,
-        /// What must stand there.
+        /// Expected word.
         expected: &'static str,
-        /// What does.
+        /// Word found.
         found: String,
     },
 }
 
-/// Reads the triangles of an STL file, in its own unit.
+/// Reads the triangles of an STL file, in the unit of the file.
 ///
 /// # Errors
-/// It cannot be read, or is no whole STL file.
+/// The file cannot be read; the inner error says that it is not a complete STL file.
 pub fn read_stl(path: &Path) -> Result<Result<Vec<[Vector; 3]>, StlProblem>, Error> {
     let bytes = std::fs::read(path).map_err(|source| match source.kind() {
         std::io::ErrorKind::NotFound => Error::FileAbsent {
@@ -89,18 +92,18 @@ pub fn read_stl(path: &Path) -> Result<Result<Vec<[Vector; 3]>, StlProblem>, Err
     Ok(triangles_of(&bytes))
 }
 
-/// Bytes before the triangles of a binary file: a text, and their number.
+/// Header of a binary file: a text and the number of triangles; bytes.
 const HEAD: usize = 84;
-/// Bytes of a triangle of a binary file: a normal, three corners, two more bytes.
+/// Triangle of a binary file: normal, three corners, two more bytes; bytes.
 const TRIANGLE: usize = 50;
 
-/// Triangles of an STL file.
+/// Parses the triangles of an STL file.
 ///
-/// Text files begin with `solid`; so do some binary ones, which are known by their length.
-/// Normals are left unread: walls are felt from both sides.
+/// Text files begin with `solid`; so do some binary ones, recognised by their length.
+/// Normals are ignored, as walls act on both sides.
 ///
 /// # Errors
-/// It is no whole STL file; the problem says where.
+/// It is not a complete STL file; the problem says where.
 ///
 /// # Source
 /// 3D Systems (1989), StereoLithography Interface Specification.
@@ -123,14 +126,14 @@ pub fn triangles_of(bytes: &[u8]) -> Result<Vec<[Vector; 3]>, StlProblem> {
     }
 }
 
-/// Whether the first word is `solid` and what follows is text.
+/// Whether the first word is `solid` and the rest is text.
 fn is_text(bytes: &[u8]) -> bool {
     let from = bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(bytes);
     let from = from.trim_ascii_start();
     let named = from
         .get(..5)
         .is_some_and(|word| word.eq_ignore_ascii_case(b"solid"));
-    // Names may be in any language, but no text has a zero in it.
+    // Names may be in any language, but text contains no zero bytes.
     named && !from.iter().take(1024).any(|&byte| byte == 0)
 }
 
@@ -174,7 +177,7 @@ fn of_binary(bytes: &[u8], said: u32, needed: u64) -> Result<Vec<[Vector; 3]>, S
     Ok(triangles)
 }
 
-/// Words of a text file, with their lines.
+/// Words of a text file, with line numbers.
 struct Words<'a> {
     words: std::iter::Peekable<Box<dyn Iterator<Item = (usize, &'a str)> + 'a>>,
     line: usize,
@@ -182,7 +185,7 @@ struct Words<'a> {
 }
 
 impl<'a> Words<'a> {
-    /// The next word is one of these.
+    /// Checks that these words come next.
     fn expect(&mut self, expected: &'static str) -> Result<(), StlProblem> {
         for word in expected.split(' ') {
             let found = self.words.next();
@@ -218,7 +221,7 @@ impl<'a> Words<'a> {
 fn of_text(bytes: &[u8]) -> Result<Vec<[Vector; 3]>, StlProblem> {
     let text = String::from_utf8_lossy(bytes);
     let mut triangles = Vec::new();
-    // The rest of the line after `solid` and `endsolid` is a name, in which anything may be.
+    // After `solid` and `endsolid`, the rest of the line is an arbitrary name.
     let named = |line: &str, word: &str| {
         let first = line.split_whitespace().next().unwrap_or_default();
         first.eq_ignore_ascii_case(word)
@@ -236,7 +239,7 @@ fn of_text(bytes: &[u8]) -> Result<Vec<[Vector; 3]>, StlProblem> {
         line: 1,
         triangle: 1,
     };
-    // Some files hold several bodies.
+    // Some files contain several bodies.
     while words.words.peek().is_some() {
         words.expect("solid")?;
         let ends = |own: Option<&(usize, &str)>| {
@@ -253,7 +256,7 @@ fn of_text(bytes: &[u8]) -> Result<Vec<[Vector; 3]>, StlProblem> {
                 return Err(words.unlike("facet or endsolid", found));
             }
             words.expect("facet normal")?;
-            // Its three numbers are not used, and some programs write nan.
+            // Skip its three numbers: they are not used, and some programs write nan.
             for _ in 0..3 {
                 words.words.next();
             }
