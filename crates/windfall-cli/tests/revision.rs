@@ -125,6 +125,17 @@ fn pinned_numbers_are_those_of_the_revision() {
         digest(&repeats, &[]),
         digest(&drops, &[]),
     ];
-    let expected = (1, ["", "", "", "", "", ""].map(str::to_owned));
+    let expected = (
+        1,
+        [
+            "cdf6db80b13ce43c",
+            "0c81e42d4c05837a",
+            "1253325f53235364",
+            "1baeec52d83f17a4",
+            "aaa8b6c5ac056656",
+            "60d981a4239d54a3",
+        ]
+        .map(str::to_owned),
+    );
     assert_eq!((REVISION, found), expected);
 }
