@@ -30,7 +30,7 @@ use windfall_identify::population::model::{
 };
 use windfall_identify::population::posterior::{PosteriorRange, population_posterior};
 use windfall_identify::population::two_stage::{TwoStage, two_stage};
-use windfall_identify::sampler::chains::Drawing;
+use windfall_identify::sampler::Drawing;
 use windfall_signal::noise::gaussian::{NoiseSource, noise_source, normal, uniform};
 
 const FRUIT: usize = 40;

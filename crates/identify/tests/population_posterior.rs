@@ -10,7 +10,7 @@ use windfall_identify::population::model::{
 use windfall_identify::population::posterior::{
     PopulationPosterior, PosteriorRange, population_posterior,
 };
-use windfall_identify::sampler::chains::Drawing;
+use windfall_identify::sampler::Drawing;
 use windfall_signal::noise::gaussian::{noise_source, normal};
 
 const DRAWING: Drawing = Drawing {

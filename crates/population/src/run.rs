@@ -33,7 +33,7 @@ use windfall_identify::population::model::{
 };
 use windfall_identify::population::posterior::population_posterior;
 use windfall_identify::population::two_stage::two_stage;
-use windfall_identify::sampler::chains::Drawing;
+use windfall_identify::sampler::Drawing;
 
 /// What `population` is asked for.
 #[derive(Clone, Debug, Default)]

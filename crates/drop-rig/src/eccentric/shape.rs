@@ -146,7 +146,7 @@ impl Shape {
 /// A uniform rod (I = m L²/12) struck at its end (r = L/2) feels a quarter of
 /// its mass:
 /// ```
-/// use crate::eccentric::shape::effective_mass_factor;
+/// use windfall_drop_rig::eccentric::shape::effective_mass_factor;
 /// let factor = effective_mass_factor(2.0, 0.5, 2.0 / 12.0);
 /// assert!((factor - 0.25).abs() < 1e-15);
 /// ```

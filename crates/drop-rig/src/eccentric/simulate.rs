@@ -69,9 +69,9 @@ pub struct EccentricTrajectory {
 /// fell:
 /// ```
 /// use windfall_contact::{expression::parse_law, law::EndRule};
-/// use crate::eccentric::body::EccentricBody;
-/// use crate::eccentric::shape::Shape;
-/// use crate::eccentric::simulate::simulate_eccentric_drop;
+/// use windfall_drop_rig::eccentric::body::EccentricBody;
+/// use windfall_drop_rig::eccentric::shape::Shape;
+/// use windfall_drop_rig::eccentric::simulate::simulate_eccentric_drop;
 ///
 /// let law = parse_law("hertz(k=1e7)")?.complete()?;
 /// let shape = Shape::OffsetDisc { radius: 0.01, offset: 0.002, angle: 90f64.to_radians() };

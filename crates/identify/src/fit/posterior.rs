@@ -3,9 +3,9 @@
 use crate::fit::estimator::{Estimator, FreeLaw};
 use crate::fit::interval::{FreeIntervals, IntervalDetail, Mixing, Posterior, deviation, quantile};
 use crate::fit::residual::evaluate;
-use crate::sampler::chains::Drawing;
-use crate::sampler::chains::draw_chains;
-use crate::sampler::density::LogDensity;
+use crate::sampler::Drawing;
+use crate::sampler::LogDensity;
+use crate::sampler::draw_chains;
 use windfall_numerics::least_squares::Minimum;
 use windfall_statistics::chain_diagnostics::chain_diagnostics;
 

@@ -12,7 +12,7 @@ use crate::fit::posterior::{PosteriorPlan, posterior_intervals};
 use crate::fit::profile::profile_intervals;
 use crate::fit::residual::Rows;
 use crate::fit::uncertainty::covariance;
-use crate::sampler::chains::Drawing;
+use crate::sampler::Drawing;
 use crate::samples::{QUANTITIES, SampleGroup};
 use windfall_contact::laws::any_law::{AnyLaw, LARGEST_PARAMETERS};
 use windfall_contact::laws::kind::Law;

@@ -9,9 +9,9 @@ use crate::population::level::{Level, Normal};
 use crate::population::model::{
     Expand, Expansion, PopulationData, PopulationFit, PopulationOptions,
 };
-use crate::sampler::chains::Drawing;
-use crate::sampler::chains::draw_chains;
-use crate::sampler::density::LogDensity;
+use crate::sampler::Drawing;
+use crate::sampler::LogDensity;
+use crate::sampler::draw_chains;
 use nalgebra::{DMatrix, DVector};
 use std::cell::{Cell, RefCell};
 

@@ -8,7 +8,7 @@
 ///
 /// # Example
 /// ```
-/// use crate::unit::nearest_name::nearest_names;
+/// use windfall_numerics::unit::nearest_name::nearest_names;
 /// assert_eq!(nearest_names("herz", ["hertz", "flores"]), ["hertz"]);
 /// assert!(nearest_names("spring", ["hertz", "flores"]).is_empty());
 /// ```

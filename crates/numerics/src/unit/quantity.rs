@@ -30,9 +30,9 @@ pub struct Quantity {
 ///
 /// # Example
 /// ```
-/// use crate::unit::quantity::parse_quantity;
+/// use windfall_numerics::unit::quantity::parse_quantity;
 /// assert_eq!(parse_quantity("4.8 g")?.value, 0.0048);
-/// # Ok::<(), crate::unit::quantity::UnitError>(())
+/// # Ok::<(), windfall_numerics::unit::quantity::UnitError>(())
 /// ```
 pub fn parse_quantity(text: &str) -> Result<Quantity, UnitError> {
     let (number, unit_start) = parse_number(text)?;
@@ -72,7 +72,7 @@ pub fn parse_quantity(text: &str) -> Result<Quantity, UnitError> {
 ///
 /// # Example
 /// ```
-/// use crate::unit::quantity::parse_as;
+/// use windfall_numerics::unit::quantity::parse_as;
 /// assert_eq!(parse_as("8 mm", "m")?, 0.008);
 /// assert_eq!(parse_as("753599", "N/m^1.5")?, 753599.0);
 /// let error = parse_as("8 mm", "N").unwrap_err();
@@ -80,7 +80,7 @@ pub fn parse_quantity(text: &str) -> Result<Quantity, UnitError> {
 ///     error.to_string(),
 ///     "\"8 mm\" is a length (m), but a force in N was expected: write it like \"1 N\""
 /// );
-/// # Ok::<(), crate::unit::quantity::UnitError>(())
+/// # Ok::<(), windfall_numerics::unit::quantity::UnitError>(())
 /// ```
 pub fn parse_as(text: &str, unit: &str) -> Result<f64, UnitError> {
     let expected = parse_unit(unit)?;

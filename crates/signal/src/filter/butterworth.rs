@@ -95,7 +95,7 @@ pub enum FilterError {
 ///
 /// # Example
 /// ```
-/// use crate::filter::butterworth::{Band, butterworth, gain};
+/// use windfall_signal::filter::butterworth::{Band, butterworth, gain};
 /// let filter = butterworth(Band::LowPass(1000.0), 4, 200e3).unwrap();
 /// // Half of the power at the cut-off, everything at zero.
 /// assert!((gain(&filter, 1000.0, 200e3).powi(2) - 0.5).abs() < 1e-9);

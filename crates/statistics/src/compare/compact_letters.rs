@@ -11,7 +11,7 @@
 ///
 /// # Example
 /// ```
-/// use crate::compare::compact_letters::compact_letters;
+/// use windfall_statistics::compare::compact_letters::compact_letters;
 /// // only the largest and the smallest differ
 /// assert_eq!(compact_letters(&[1.0, 3.0, 2.0], &[(0, 1)]), ["b", "a", "ab"]);
 /// ```

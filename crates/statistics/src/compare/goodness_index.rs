@@ -47,7 +47,7 @@ pub struct GoodnessIndex {
 ///
 /// # Example
 /// ```
-/// use crate::compare::goodness_index::goodness_index;
+/// use windfall_statistics::compare::goodness_index::goodness_index;
 /// let found = goodness_index(&[1.0, 2.0, 3.0], &[1.0, 2.0, 4.0], 1)?;
 /// assert_eq!(found.chi_squared, Some(0.25));
 /// assert_eq!(found.reduced_chi_squared, Some(0.5));

@@ -62,7 +62,7 @@ pub fn one_sample(
 ///
 /// # Example
 /// ```
-/// use crate::compare::means::paired;
+/// use windfall_statistics::compare::means::paired;
 /// let found = paired(&[3.0, 5.0, 4.0], &[1.0, 4.0, 3.0], 0.95)?;
 /// assert!((found.difference - 4.0 / 3.0).abs() < 1e-15);
 /// assert!((found.t - 4.0).abs() < 1e-14); // 4/3 against √(1/3)/√3 = 1/3

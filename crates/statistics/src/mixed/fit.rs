@@ -121,8 +121,8 @@ pub struct MixedFit {
 /// is 32, so that the variance between fruit is (32 - 2) / 2 = 15.
 /// ```
 /// use nalgebra::DMatrix;
-/// use crate::mixed::fit::{MixedOptions, fit_mixed};
-/// use crate::mixed::term::random_intercept;
+/// use windfall_statistics::mixed::fit::{MixedOptions, fit_mixed};
+/// use windfall_statistics::mixed::term::random_intercept;
 ///
 /// let names = ["a", "b", "c"].map(str::to_owned);
 /// let fruit = random_intercept("fruit", &[0, 0, 1, 1, 2, 2], &names);
@@ -131,7 +131,7 @@ pub struct MixedFit {
 /// let fit = fit_mixed(&y, &x, &["mean".to_owned()], &[fruit], &MixedOptions::default())?;
 /// assert!((fit.variances[0].covariance[(0, 0)] - 15.0).abs() < 1e-9);
 /// assert!((fit.residual_sd.powi(2) - 2.0).abs() < 1e-9);
-/// # Ok::<(), crate::mixed::error::MixedError>(())
+/// # Ok::<(), windfall_statistics::mixed::error::MixedError>(())
 /// ```
 pub fn fit_mixed(
     y: &[f64],

@@ -64,7 +64,7 @@ struct Expansion<'a> {
 /// [`Error::FormulaSyntax`] with the place.
 ///
 /// ```
-/// use crate::model::formula::{formula, term_name};
+/// use windfall_statistics::model::formula::{formula, term_name};
 /// let formula = formula("k ~ V*R + t + V^2", &[]).unwrap();
 /// let names: Vec<String> = formula.terms.iter().map(|t| term_name(&formula.atoms, t)).collect();
 /// assert_eq!(names, ["V", "R", "t", "V^2", "V:R"]);

@@ -34,7 +34,7 @@ pub fn letter(factor: usize) -> String {
 /// [`Error::Request`] for a name that is the letter of another factor.
 ///
 /// ```
-/// use crate::surface::terms::surface_terms;
+/// use windfall_statistics::surface::terms::surface_terms;
 /// let factors = ["k", "e"].map(String::from);
 /// let terms = surface_terms("A + B + AB + B^2", &factors).unwrap();
 /// assert_eq!(terms.monomials, [vec![1, 0], vec![0, 1], vec![1, 1], vec![0, 2]]);

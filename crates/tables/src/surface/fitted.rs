@@ -76,9 +76,9 @@ pub struct SettingsValue {
 ///
 /// # Example
 /// ```no_run
-/// # fn example(request: &crate::surface::run::SurfaceRequest) -> Result<(), windfall_files::error::Error> {
-/// let (_, fitted) = crate::surface::run::fitted_surfaces(request)?;
-/// let there = crate::surface::fitted::values_at(&fitted, &[0.868, 1.91, 5.56e-4])?;
+/// # fn example(request: &windfall_tables::surface::run::SurfaceRequest) -> Result<(), windfall_files::error::Error> {
+/// let (_, fitted) = windfall_tables::surface::run::fitted_surfaces(request)?;
+/// let there = windfall_tables::surface::fitted::values_at(&fitted, &[0.868, 1.91, 5.56e-4])?;
 /// let (low, high) = (there.responses[0].mean_low, there.responses[0].mean_high);
 /// # Ok(()) }
 /// ```
