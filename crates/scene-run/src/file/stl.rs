@@ -186,7 +186,7 @@ struct Words<'a> {
 
 impl<'a> Words<'a> {
     /// Checks that these words come next.
-    fn expect(&mut self, expected: &'static str) -> Result<(), StlProblem> {
+    fn require(&mut self, expected: &'static str) -> Result<(), StlProblem> {
         for word in expected.split(' ') {
             let found = self.words.next();
             if !found.is_some_and(|(_, own)| own.eq_ignore_ascii_case(word)) {
@@ -241,7 +241,7 @@ fn of_text(bytes: &[u8]) -> Result<Vec<[Vector; 3]>, StlProblem> {
     };
     // Some files contain several bodies.
     while words.words.peek().is_some() {
-        words.expect("solid")?;
+        words.require("solid")?;
         let ends = |own: Option<&(usize, &str)>| {
             own.is_some_and(|(_, own)| own.eq_ignore_ascii_case("endsolid"))
         };
@@ -255,24 +255,24 @@ fn of_text(bytes: &[u8]) -> Result<Vec<[Vector; 3]>, StlProblem> {
                 let found = words.words.next();
                 return Err(words.unlike("facet or endsolid", found));
             }
-            words.expect("facet normal")?;
+            words.require("facet normal")?;
             // Skip its three numbers: they are not used, and some programs write nan.
             for _ in 0..3 {
                 words.words.next();
             }
-            words.expect("outer loop")?;
+            words.require("outer loop")?;
             let mut corners = [[0.0; 3]; 3];
             for corner in &mut corners {
-                words.expect("vertex")?;
+                words.require("vertex")?;
                 for value in corner {
                     *value = words.number()?;
                 }
             }
-            words.expect("endloop")?;
-            words.expect("endfacet")?;
+            words.require("endloop")?;
+            words.require("endfacet")?;
             triangles.push(corners);
         }
-        words.expect("endsolid")?;
+        words.require("endsolid")?;
     }
     Ok(triangles)
 }
