@@ -4,6 +4,7 @@ pub mod compression;
 pub mod error;
 pub mod impacts;
 pub mod measure;
+pub mod pipeline;
 pub mod recording;
 pub mod repeats;
 pub mod result;

@@ -4,7 +4,9 @@ use crate::file::BouncesFile;
 use toml::Spanned;
 use windfall_campaign::settings::file::QuantityText;
 use windfall_files::error::Error;
-use windfall_files::text::toml_source::{Needed, TomlSource, invalid, optional_quantity};
+use windfall_files::text::toml_source::{
+    Needed, TomlSource, number_that, optional_quantity, positive_quantity, refused,
+};
 use windfall_signal::bounce::train::{BounceOptions, StaticLevel};
 use windfall_signal::trigger::Threshold;
 
@@ -40,13 +42,7 @@ const STATIC_LEVELS: [(&str, StaticLevel); 2] = [
 /// A value cannot be used.
 pub fn bounce_plan(source: &TomlSource, file: &BouncesFile) -> Result<BouncePlan, Error> {
     let defaults = BounceOptions::default();
-    let needed = |key, meaning, unit, example| Needed {
-        table: TABLE,
-        key,
-        meaning,
-        unit,
-        example,
-    };
+    let needed = |key, meaning, unit, example| Needed::of(TABLE, key, meaning, unit, example);
     let threshold = needed(
         "threshold",
         "contact force above which a contact begins",
@@ -61,13 +57,13 @@ pub fn bounce_plan(source: &TomlSource, file: &BouncesFile) -> Result<BouncePlan
     );
     let given = file.threshold.as_ref();
     let given = given.filter(|text| text.get_ref().0 != AUTO);
-    let force = positive(source, given, &threshold)?;
+    let force = positive_quantity(source, given, &threshold)?;
     Ok(BouncePlan {
         options: BounceOptions {
             static_level: static_level(source, file.static_level.as_ref())?,
             threshold: force.map_or(defaults.threshold, Threshold::Fixed),
             release: part(source, file.release.as_ref(), "release")?.unwrap_or(defaults.release),
-            smallest_gap: positive(source, file.minimum_gap.as_ref(), &gap)?,
+            smallest_gap: positive_quantity(source, file.minimum_gap.as_ref(), &gap)?,
             ..defaults
         },
         least_impulse: part(source, file.least_impulse.as_ref(), "least_impulse")?,
@@ -97,30 +93,9 @@ fn static_level(
     };
     let level = optional_quantity(source, value, &needed).map_err(|_| {
         let problem = format!("expected a force or a word: {}", needed.example);
-        let (at, key) = (text.span(), (TABLE, needed.key));
-        invalid(source, &at, key, &text.get_ref().0, problem)
+        refused(source, text, (TABLE, needed.key), problem)
     })?;
     Ok(level.map_or(StaticLevel::default(), StaticLevel::Given))
-}
-
-/// A quantity above zero that may be left out; SI.
-///
-/// # Errors
-/// It is no such quantity, or not above zero.
-pub fn positive(
-    source: &TomlSource,
-    value: Option<&Spanned<QuantityText>>,
-    needed: &Needed,
-) -> Result<Option<f64>, Error> {
-    match (value, optional_quantity(source, value, needed)?) {
-        (Some(text), Some(number)) if number <= 0.0 => {
-            let problem = format!("must be above zero, for example: {}", needed.example);
-            let key = (needed.table, needed.key);
-            let at = text.span();
-            Err(invalid(source, &at, key, &text.get_ref().0, problem))
-        }
-        (_, number) => Ok(number),
-    }
 }
 
 fn part(
@@ -128,24 +103,21 @@ fn part(
     value: Option<&Spanned<f64>>,
     key: &'static str,
 ) -> Result<Option<f64>, Error> {
-    match value {
-        Some(value) if !(*value.get_ref() > 0.0 && *value.get_ref() < 1.0) => {
-            let problem = "expected a part above 0 and below 1".to_owned();
-            let text = value.get_ref().to_string();
-            Err(invalid(source, &value.span(), (TABLE, key), &text, problem))
-        }
-        value => Ok(value.map(|value| *value.get_ref())),
-    }
+    let fits = |part| part > 0.0 && part < 1.0;
+    number_that(
+        source,
+        value,
+        (TABLE, key),
+        fits,
+        "a part above 0 and below 1",
+    )
 }
 
 fn cycles(source: &TomlSource, value: Option<&Spanned<u32>>) -> Result<Option<usize>, Error> {
-    match value {
-        Some(value) if !(1..=MOST_CYCLES).contains(value.get_ref()) => {
-            let problem = format!("expected a whole number from 1 to {MOST_CYCLES}");
-            let text = value.get_ref().to_string();
-            let key = (TABLE, "ringing_cycles");
-            Err(invalid(source, &value.span(), key, &text, problem))
-        }
-        value => Ok(value.map(|value| *value.get_ref() as usize)),
-    }
+    let (key, fits) = ((TABLE, "ringing_cycles"), |n| {
+        (1..=MOST_CYCLES).contains(&n)
+    });
+    let expected = format!("a whole number from 1 to {MOST_CYCLES}");
+    let cycles = number_that(source, value, key, fits, &expected)?;
+    Ok(cycles.map(|cycles| cycles as usize))
 }

@@ -1,6 +1,5 @@
 //! `[fit]` and `[calibrate]` of campaign.toml of a drop rig.
 
-use crate::bounces::positive;
 use crate::file::{CalibrateFile, DropFitFile, HertzFile};
 use toml::Spanned;
 use windfall_campaign::settings::file::QuantityText;
@@ -9,7 +8,10 @@ use windfall_contact::expression::{LawExpression, parse_law_among};
 use windfall_contact::law::EndRule;
 use windfall_contact::laws::kind::LawKind;
 use windfall_files::error::Error;
-use windfall_files::text::toml_source::{Needed, TomlSource, choice, invalid, missing, suggestion};
+use windfall_files::text::toml_source::{
+    Needed, TomlSource, choice, invalid, missing, number_that, positive_quantity, refused,
+    suggestion,
+};
 use windfall_numerics::unit::quantity::{parse_as, parse_unit};
 
 /// The law that is calibrated.
@@ -200,7 +202,7 @@ fn drop_law(
         };
         let problem = "there is no `law` in [fit] whose parameter this could be".to_owned();
         let key = ("[fit]", "free");
-        return Err(invalid(source, &free.span(), key, free.get_ref(), problem));
+        return Err(refused(source, free, key, problem));
     }
     let laws = law_expressions(source, &keys, user)?;
     let names = free_names(source, &keys, &laws)?;
@@ -240,15 +242,7 @@ fn start(
     let Some(text) = &file.start else {
         return Ok(None);
     };
-    let wrong = |problem: String| {
-        invalid(
-            source,
-            &text.span(),
-            (TABLE, "start"),
-            text.get_ref(),
-            problem,
-        )
-    };
+    let wrong = |problem: String| refused(source, text, (TABLE, "start"), problem);
     let start = parse_law_among(text.get_ref(), user).map_err(|error| wrong(error.to_string()))?;
     match law {
         Some(law) if law.law.kind != start.kind => Err(wrong(format!(
@@ -262,13 +256,8 @@ fn start(
 fn hertz_contact(source: &TomlSource, file: &Spanned<HertzFile>) -> Result<HertzContact, Error> {
     let at = file.span();
     let hertz = file.get_ref();
-    let needed = |key, meaning, unit, example| Needed {
-        table: "[calibrate] hertz",
-        key,
-        meaning,
-        unit,
-        example,
-    };
+    let table = "[calibrate] hertz";
+    let needed = |key, meaning, unit, example| Needed::of(table, key, meaning, unit, example);
     let radius = needed(
         "radius",
         "radius where it touches",
@@ -278,36 +267,25 @@ fn hertz_contact(source: &TomlSource, file: &Spanned<HertzFile>) -> Result<Hertz
     let modulus = needed("modulus", "Young's modulus", "Pa", "modulus = \"1 MPa\"");
     let poisson = needed("poisson", "Poisson's ratio", "", "poisson = 0.468");
     let quantity = |value: &Option<Spanned<QuantityText>>, needed: &Needed| {
-        positive(source, value.as_ref(), needed)?
+        positive_quantity(source, value.as_ref(), needed)?
             .ok_or_else(|| missing(source, &at, needed, needed.table.to_owned()))
     };
-    let Some(ratio) = &hertz.poisson else {
-        return Err(missing(source, &at, &poisson, poisson.table.to_owned()));
-    };
-    if !(-1.0..=0.5).contains(ratio.get_ref()) {
-        let problem = "expected a number from -1 to 0.5".to_owned();
-        let (key, text) = ((poisson.table, "poisson"), ratio.get_ref().to_string());
-        return Err(invalid(source, &ratio.span(), key, &text, problem));
-    }
+    let (key, fits) = ((table, "poisson"), |ratio| (-1.0..=0.5).contains(&ratio));
+    let expected = "a number from -1 to 0.5";
+    let ratio = number_that(source, hertz.poisson.as_ref(), key, fits, expected)?
+        .ok_or_else(|| missing(source, &at, &poisson, table.to_owned()))?;
     Ok(HertzContact {
         radius: quantity(&hertz.radius, &radius)?,
         modulus: quantity(&hertz.modulus, &modulus)?,
-        poisson: *ratio.get_ref(),
+        poisson: ratio,
     })
 }
 
 fn bounces(source: &TomlSource, file: &CalibrateFile) -> Result<usize, Error> {
-    match &file.bounces {
-        None => Ok(BOUNCES as usize),
-        Some(number) if (1..=MOST_BOUNCES).contains(number.get_ref()) => {
-            Ok(*number.get_ref() as usize)
-        }
-        Some(number) => {
-            let problem = format!("expected a whole number from 1 to {MOST_BOUNCES}");
-            let (key, text) = ((TABLE, "bounces"), number.get_ref().to_string());
-            Err(invalid(source, &number.span(), key, &text, problem))
-        }
-    }
+    let (key, fits) = ((TABLE, "bounces"), |n| (1..=MOST_BOUNCES).contains(&n));
+    let expected = format!("a whole number from 1 to {MOST_BOUNCES}");
+    let number = number_that(source, file.bounces.as_ref(), key, fits, &expected)?;
+    Ok(number.unwrap_or(BOUNCES) as usize)
 }
 
 fn target(source: &TomlSource, file: &CalibrateFile) -> Result<Target, Error> {
@@ -318,12 +296,12 @@ fn target(source: &TomlSource, file: &CalibrateFile) -> Result<Target, Error> {
         unit: "m",
         example: "target_height = \"500 mm\"",
     };
-    let height = positive(source, file.target_height.as_ref(), &needed)?;
+    let height = positive_quantity(source, file.target_height.as_ref(), &needed)?;
     match (height, &file.target_drop) {
         (Some(_), Some(drop)) => {
             let problem = "`target_height` is given too; keep one of them".to_owned();
             let key = (TABLE, "target_drop");
-            Err(invalid(source, &drop.span(), key, drop.get_ref(), problem))
+            Err(refused(source, drop, key, problem))
         }
         (Some(height), None) => Ok(Target::Height(height)),
         (None, Some(drop)) => Ok(Target::Drop(drop.get_ref().clone())),
@@ -332,15 +310,10 @@ fn target(source: &TomlSource, file: &CalibrateFile) -> Result<Target, Error> {
 }
 
 fn tolerance(source: &TomlSource, file: &CalibrateFile) -> Result<f64, Error> {
-    match &file.tolerance {
-        None => Ok(TOLERANCE),
-        Some(part) if *part.get_ref() > 0.0 && *part.get_ref() < 1.0 => Ok(*part.get_ref()),
-        Some(part) => {
-            let problem = "expected a part above 0 and below 1".to_owned();
-            let (key, text) = ((TABLE, "tolerance"), part.get_ref().to_string());
-            Err(invalid(source, &part.span(), key, &text, problem))
-        }
-    }
+    let (key, fits) = ((TABLE, "tolerance"), |part| part > 0.0 && part < 1.0);
+    let expected = "a part above 0 and below 1";
+    let part = number_that(source, file.tolerance.as_ref(), key, fits, expected)?;
+    Ok(part.unwrap_or(TOLERANCE))
 }
 
 fn ranges(

@@ -3,11 +3,10 @@
 use crate::read::{Drop, DropCampaign, PlatePlan, drop_of};
 use serde::{Deserialize, Deserializer, Serialize};
 use std::f64::consts::TAU;
-use windfall_campaign::measure::evaluate::Document;
-use windfall_campaign::measure::item_campaign::group_of;
 use windfall_campaign::measure::measured::{
     MeasuredItem, MeasuredItems, MeasuredValue, plain_value, value_with_sd,
 };
+use windfall_campaign::pipeline::evaluate::Document;
 use windfall_campaign::recording::channel::channel_samples;
 use windfall_campaign::recording::read::recording_path;
 use windfall_campaign::settings::model::ImpactEntry;
@@ -300,7 +299,7 @@ fn blank_item(campaign: &DropCampaign, entry: &ImpactEntry, drop: &Drop) -> Meas
         id: entry.id.clone(),
         specimen: entry.specimen.clone(),
         // A mean over heights would mean nothing.
-        group: group_of(&campaign.shared, entry).or(Some(height)),
+        group: campaign.shared.group_of(entry).or(Some(height)),
         file: entry.file.clone(),
         law: DROP.to_owned(),
         words: Named(Vec::new()),

@@ -1,27 +1,25 @@
 //! campaign.toml of a drop rig → [`DropCampaign`].
 
-use crate::bounces::{BouncePlan, bounce_plan, positive};
+use crate::bounces::{BouncePlan, bounce_plan};
 use crate::calibrate_settings::{CalibrateSettings, Target, calibrate_settings};
 use crate::file::{DropFile, DropRigFile};
 use std::path::Path;
 use toml::Spanned;
-use windfall_campaign::measure::item_campaign::{
-    ItemCampaign, SharedFile, read_item_campaign, specimen_of,
-};
 use windfall_campaign::settings::channels::channel_plans;
 use windfall_campaign::settings::conditioning::refuse_conditioning;
 use windfall_campaign::settings::file::{ChannelsFile, QuantityText};
 use windfall_campaign::settings::files::check_format;
 use windfall_campaign::settings::kind::CampaignKind;
-use windfall_campaign::settings::model::ImpactEntry;
+use windfall_campaign::settings::model::{Campaign, ImpactEntry};
 use windfall_campaign::settings::read::CAMPAIGN_FILE;
 use windfall_campaign::settings::rig::STANDARD_GRAVITY;
+use windfall_campaign::settings::shared::{SharedFile, read_shared};
 use windfall_cards::user_laws::read::user_laws;
 use windfall_files::error::{DropQuantity, Error, Place};
 use windfall_files::text::cell_quantity::cell_quantity;
 use windfall_files::text::toml_source::{
-    Needed, TomlSource, choice, invalid, missing, optional_quantity, parse_source, read_source,
-    suggestion,
+    Needed, TomlSource, choice, missing, number_that, parse_source, positive_quantity, read_source,
+    refused, suggestion, uncertainty,
 };
 use windfall_signal::uncertain::Uncertain;
 
@@ -29,7 +27,7 @@ use windfall_signal::uncertain::Uncertain;
 #[derive(Clone, Debug)]
 pub struct DropCampaign {
     /// What all kinds share.
-    pub shared: ItemCampaign,
+    pub shared: Campaign,
     /// What falls on what, as far as it is given.
     pub rig: DropRigPlan,
     /// How bounces are found.
@@ -126,7 +124,7 @@ pub fn read_drop(directory: &Path) -> Result<DropCampaign, Error> {
             &file.calibrate,
             user_laws(&source, &file.laws, directory)?,
         )?,
-        shared: read_item_campaign(&source, directory, kind, &shared, channels)?,
+        shared: read_shared(&source, directory, kind, &shared, channels)?,
     };
     for entry in &campaign.shared.entries {
         drop_of(&campaign, entry)?;
@@ -171,7 +169,7 @@ pub fn drop_of(campaign: &DropCampaign, entry: &ImpactEntry) -> Result<Drop, Err
         line,
     };
     let of_entry = (place("impacts.csv", entry.line), &entry.cells[..]);
-    let specimen = specimen_of(&campaign.shared, entry);
+    let specimen = campaign.shared.specimen_of(entry);
     let of_specimen = specimen.map(|s| (place("specimens.csv", s.line), &s.cells[..]));
     let mut mass = measured(&of_entry, "mass", "kg", (None, rig.mass_sd))?;
     if let (None, Some(row)) = (mass, &of_specimen) {
@@ -234,13 +232,7 @@ const fn needed(
     unit: &'static str,
     example: &'static str,
 ) -> Needed {
-    Needed {
-        table: TABLE,
-        key,
-        meaning,
-        unit,
-        example,
-    }
+    Needed::of(TABLE, key, meaning, unit, example)
 }
 
 fn rig_plan(source: &TomlSource, file: &Spanned<DropRigFile>) -> Result<DropRigPlan, Error> {
@@ -265,8 +257,9 @@ fn rig_plan(source: &TomlSource, file: &Spanned<DropRigFile>) -> Result<DropRigP
         "m",
         "height_sd = \"1 mm\"",
     );
-    let above =
-        |value: &Option<Spanned<QuantityText>>, needed| positive(source, value.as_ref(), needed);
+    let above = |value: &Option<Spanned<QuantityText>>, needed| {
+        positive_quantity(source, value.as_ref(), needed)
+    };
     Ok(DropRigPlan {
         gravity: above(&rig.gravity, &gravity)?.unwrap_or(STANDARD_GRAVITY),
         mass: above(&rig.mass, &mass)?,
@@ -278,40 +271,19 @@ fn rig_plan(source: &TomlSource, file: &Spanned<DropRigFile>) -> Result<DropRigP
     })
 }
 
-fn uncertainty(
-    source: &TomlSource,
-    value: Option<&Spanned<QuantityText>>,
-    needed: &Needed,
-) -> Result<f64, Error> {
-    match (value, optional_quantity(source, value, needed)?) {
-        (Some(text), Some(number)) if number < 0.0 => {
-            let problem = format!("must not be below zero, for example: {}", needed.example);
-            let (at, key) = (text.span(), (needed.table, needed.key));
-            Err(invalid(source, &at, key, &text.get_ref().0, problem))
-        }
-        (_, number) => Ok(number.unwrap_or(0.0)),
-    }
-}
-
 fn effective_mass_factor(source: &TomlSource, rig: &DropRigFile) -> Result<f64, Error> {
-    match &rig.effective_mass_factor {
-        None => Ok(1.0),
-        Some(factor) if *factor.get_ref() > 0.0 && *factor.get_ref() <= 1.0 => {
-            Ok(*factor.get_ref())
-        }
-        Some(factor) => {
-            let problem = "expected a number above 0 and up to 1, which is a central impact";
-            let key = (TABLE, "effective_mass_factor");
-            let text = factor.get_ref().to_string();
-            Err(invalid(
-                source,
-                &factor.span(),
-                key,
-                &text,
-                problem.to_owned(),
-            ))
-        }
-    }
+    let (key, fits) = ((TABLE, "effective_mass_factor"), |factor| {
+        factor > 0.0 && factor <= 1.0
+    });
+    let expected = "a number above 0 and up to 1, which is a central impact";
+    let factor = number_that(
+        source,
+        rig.effective_mass_factor.as_ref(),
+        key,
+        fits,
+        expected,
+    )?;
+    Ok(factor.unwrap_or(1.0))
 }
 
 fn plate_plan(source: &TomlSource, file: &Spanned<DropRigFile>) -> Result<PlatePlan, Error> {
@@ -334,9 +306,8 @@ fn plate_plan(source: &TomlSource, file: &Spanned<DropRigFile>) -> Result<PlateP
         {
             None => Ok(rigid),
             Some((value, key)) => {
-                let problem = "a rigid plate has no such value; remove the line".to_owned();
-                let (at, key) = (value.span(), (TABLE, *key));
-                Err(invalid(source, &at, key, &value.get_ref().0, problem))
+                let problem = "a rigid plate has no such value; remove the line";
+                Err(refused(source, value, (TABLE, *key), problem))
             }
         };
     }
@@ -346,7 +317,7 @@ fn plate_plan(source: &TomlSource, file: &Spanned<DropRigFile>) -> Result<PlateP
         "kg",
         "plate_mass = \"0.2 kg\"",
     );
-    let value = positive(source, rig.plate_mass.as_ref(), &mass)?;
+    let value = positive_quantity(source, rig.plate_mass.as_ref(), &mass)?;
     let value = value.ok_or_else(|| missing(source, &file.span(), &mass, TABLE.to_owned()))?;
     let sd = needed(
         "plate_mass_sd",
@@ -394,13 +365,12 @@ fn plate_value(
     ),
     needed: &Needed,
 ) -> Result<Option<Uncertain>, Error> {
-    let number = positive(source, value, needed)?;
+    let number = positive_quantity(source, value, needed)?;
     let deviation = uncertainty(source, sd, needed)?;
     match (number, sd) {
         (None, Some(sd)) => {
             let problem = format!("an uncertainty without its value: {}", needed.example);
-            let (at, key) = (sd.span(), (TABLE, needed.key));
-            Err(invalid(source, &at, key, &sd.get_ref().0, problem))
+            Err(refused(source, sd, (TABLE, needed.key), problem))
         }
         (number, _) => Ok(number.map(|value| Uncertain {
             value,
@@ -421,7 +391,7 @@ fn check_target(
             let ids = entries.iter().map(|entry| entry.id.as_str());
             let problem = format!("impacts.csv has no drop of this id{}", suggestion(id, ids));
             let key = ("[calibrate]", "target_drop");
-            Err(invalid(source, &text.span(), key, id, problem))
+            Err(refused(source, text, key, problem))
         }
         _ => Ok(()),
     }

@@ -6,9 +6,15 @@ use serde::{Deserialize, Deserializer, Serialize, Serializer};
 use std::marker::PhantomData;
 
 /// Values under names, in the order they were given.
-#[derive(Clone, Debug, Default, PartialEq, utoipa::ToSchema)]
+#[derive(Clone, Debug, PartialEq, utoipa::ToSchema)]
 #[schema(value_type = std::collections::BTreeMap<String, T>)]
 pub struct Named<T>(pub Vec<(String, T)>);
+
+impl<T> Default for Named<T> {
+    fn default() -> Self {
+        Self(Vec::new())
+    }
+}
 
 impl<T> Named<T> {
     /// The value of that name.

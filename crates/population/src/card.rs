@@ -4,8 +4,8 @@
 use crate::outcome::{Population, PopulationOutcome, PopulationParameter};
 use crate::run::PopulationRequest;
 use windfall_campaign::impacts::card::card_of_fit;
-use windfall_campaign::impacts::request::apply_request;
 use windfall_campaign::impacts::run::fit_campaign;
+use windfall_campaign::pipeline::request::apply_request;
 use windfall_campaign::settings::read::read_campaign;
 use windfall_cards::law_card::{
     CardCovariance, CardCovariate, CardParameter, CardPopulation, LawCard,
@@ -50,7 +50,7 @@ pub fn card_of_population(
     let law = kind
         .with_parameters(&values)
         .map_err(|error| Error::ValueNotKnown {
-            item: campaign.title.clone(),
+            item: campaign.shared.title.clone(),
             missing: format!("the median of its parameters is no law ({error})"),
             advice: "look at the impacts one by one: `windfall fit DIR`".to_owned(),
         })?;

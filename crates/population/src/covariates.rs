@@ -2,7 +2,7 @@
 //! specimens.csv.
 
 use std::path::PathBuf;
-use windfall_campaign::settings::model::{Campaign, ImpactEntry};
+use windfall_campaign::settings::model::{ImpactCampaign, ImpactEntry};
 use windfall_files::error::{Error, Place};
 use windfall_files::option_value::unusable;
 use windfall_files::text::toml_source::suggestion;
@@ -47,7 +47,7 @@ pub struct CovariatesFound {
 /// A column that neither table has; a cell that is no number in a column of
 /// numbers, or not above zero under a logarithm.
 pub fn find_covariates(
-    campaign: &Campaign,
+    campaign: &ImpactCampaign,
     entries: &[&ImpactEntry],
     velocities: &[f64],
     asked: &[String],
@@ -128,7 +128,7 @@ fn indicators(column: &str, words: &[Option<String>], kept: &[usize]) -> Vec<Cov
 }
 
 fn cells(
-    campaign: &Campaign,
+    campaign: &ImpactCampaign,
     entries: &[&ImpactEntry],
     velocities: &[f64],
     asked: &Asked,
@@ -185,7 +185,7 @@ fn cells(
 
 /// The cell of an impact, or of its specimen, with where it stands.
 fn cell<'a>(
-    campaign: &'a Campaign,
+    campaign: &'a ImpactCampaign,
     entry: &'a ImpactEntry,
     column: &str,
 ) -> Option<(&'a str, Place)> {
@@ -194,18 +194,26 @@ fn cell<'a>(
         found.map(|(_, cell)| cell.trim())
     };
     let place = |file: &str, line: usize| Place {
-        file: campaign.directory.join(PathBuf::from(file)),
+        file: campaign.shared.directory.join(PathBuf::from(file)),
         line,
     };
     if let Some(found) = find(&entry.cells) {
         return Some((found, place("impacts.csv", entry.line)));
     }
-    let specimen = campaign.specimens.iter().find(|s| s.id == entry.specimen)?;
+    let specimen = campaign
+        .shared
+        .specimens
+        .iter()
+        .find(|s| s.id == entry.specimen)?;
     find(&specimen.cells).map(|found| (found, place("specimens.csv", specimen.line)))
 }
 
-fn no_column(campaign: &Campaign, entries: &[&ImpactEntry], asked: &Asked) -> Error {
-    let specimen = campaign.specimens.first().map_or(&[][..], |s| &s.cells);
+fn no_column(campaign: &ImpactCampaign, entries: &[&ImpactEntry], asked: &Asked) -> Error {
+    let specimen = campaign
+        .shared
+        .specimens
+        .first()
+        .map_or(&[][..], |s| &s.cells);
     let entry = entries.first().map_or(&[][..], |entry| &entry.cells);
     let mut names: Vec<&str> = vec![IMPACT_VELOCITY];
     names.extend(specimen.iter().chain(entry).map(|(name, _)| name.as_str()));

@@ -11,9 +11,9 @@ use std::cell::Cell;
 use std::path::PathBuf;
 use windfall_campaign::impacts::fit::law_problem;
 use windfall_campaign::impacts::mass::{RigFound, find_rig};
-use windfall_campaign::impacts::request::{FitRequest, apply_request};
+use windfall_campaign::pipeline::request::{FitRequest, apply_request};
 use windfall_campaign::recording::extract::extract_recording;
-use windfall_campaign::settings::model::{Campaign, ImpactEntry};
+use windfall_campaign::settings::model::{ImpactCampaign, ImpactEntry};
 use windfall_campaign::settings::read::read_campaign;
 use windfall_contact::expression::LawExpression;
 use windfall_files::error::Error;
@@ -81,7 +81,7 @@ pub fn population(
 }
 
 fn estimate(
-    campaign: &Campaign,
+    campaign: &ImpactCampaign,
     posterior: bool,
     progress: Progress,
 ) -> Result<PopulationOutcome, Error> {
@@ -91,7 +91,7 @@ fn estimate(
     let (members, mut failed) = members(campaign, &rig, &problem, progress)?;
     if members.is_empty() {
         return Err(Error::NothingFitted {
-            path: campaign.directory.clone(),
+            path: campaign.shared.directory.clone(),
             failures: failed,
         });
     }
@@ -152,8 +152,8 @@ fn estimate(
     let method = "REML, Laplace";
     Ok(PopulationOutcome {
         windfall: VERSION.to_owned(),
-        campaign: campaign.title.clone(),
-        simulated: campaign.simulated.clone(),
+        campaign: campaign.shared.title.clone(),
+        simulated: campaign.shared.simulated.clone(),
         law: law.kind.name().to_owned(),
         method: method.to_owned(),
         fruits: fit.fruit.len(),
@@ -176,13 +176,13 @@ fn estimate(
 
 /// The likelihoods of all impacts that have one, and why the others have none.
 fn members<'a>(
-    campaign: &'a Campaign,
+    campaign: &'a ImpactCampaign,
     rig: &RigFound,
     problem: &LawProblem,
     progress: Progress,
 ) -> Result<(Vec<Member<'a>>, Vec<FailureOutcome>), Error> {
-    let found = for_each(progress, campaign.impacts.len(), |item| {
-        let entry = &campaign.impacts[item];
+    let found = for_each(progress, campaign.shared.entries.len(), |item| {
+        let entry = &campaign.shared.entries[item];
         member(campaign, rig, problem, entry).map_err(|error| failure(entry, error.to_string()))
     })?;
     let (mut members, mut failed) = (Vec::new(), Vec::new());
@@ -196,7 +196,7 @@ fn members<'a>(
 }
 
 fn member<'a>(
-    campaign: &Campaign,
+    campaign: &ImpactCampaign,
     rig: &RigFound,
     problem: &LawProblem,
     entry: &'a ImpactEntry,
@@ -297,14 +297,15 @@ fn fruit(
 }
 
 fn findings(
-    campaign: &Campaign,
+    campaign: &ImpactCampaign,
     rig: &RigFound,
     fit: &PopulationFit,
     specimens: &[String],
 ) -> Vec<FindingOutcome> {
     let mut out = rig.findings.clone();
     let mut lost: Vec<&str> = campaign
-        .impacts
+        .shared
+        .entries
         .iter()
         .map(|i| i.specimen.as_str())
         .collect();

@@ -1,16 +1,52 @@
 //! `windfall fit DIR`, whatever the campaign measures.
 
 use std::path::Path;
-use windfall_campaign::compression::run::fit_compressions;
-use windfall_campaign::impacts::request::FitRequest;
+use windfall_campaign::compression::read::CompressionCampaign;
 use windfall_campaign::impacts::run::fit_campaign;
 use windfall_campaign::measure::any_outcome::AnyOutcome;
-use windfall_campaign::repeats::run::fit_repeats;
+use windfall_campaign::measure::kind::Measurement;
+use windfall_campaign::measure::measured::MeasuredOutcome;
+use windfall_campaign::measure::run::{ReportedItems, measure_campaign, reported_campaign};
+use windfall_campaign::pipeline::request::FitRequest;
+use windfall_campaign::repeats::read::RepeatsCampaign;
 use windfall_campaign::settings::kind::{CampaignKind, campaign_kind};
-use windfall_campaign::taps::run::fit_taps;
-use windfall_drop::run::fit_drops;
+use windfall_campaign::settings::model::Campaign;
+use windfall_campaign::taps::read::AcousticCampaign;
+use windfall_drop::read::DropCampaign;
 use windfall_files::error::Error;
 use windfall_files::progress::Progress;
+
+/// What is done with campaigns of a kind that fits no impacts.
+pub struct MeasurementWork {
+    /// Reads a campaign directory.
+    pub read: fn(&Path) -> Result<Campaign, Error>,
+    /// Evaluates a campaign.
+    pub fit: fn(&Path, &FitRequest, Progress) -> Result<MeasuredOutcome, Error>,
+    /// Evaluates a campaign for a report.
+    pub report: fn(&Path, &FitRequest, Progress) -> Result<ReportedItems, Error>,
+}
+
+impl MeasurementWork {
+    const fn of<K: Measurement>() -> Self {
+        Self {
+            read: |directory| K::read(directory).map(|campaign| campaign.shared().clone()),
+            fit: measure_campaign::<K>,
+            report: reported_campaign::<K>,
+        }
+    }
+}
+
+/// The measurement of a kind; `None` where single impacts are fitted.
+#[must_use]
+pub fn measurement_of(kind: CampaignKind) -> Option<MeasurementWork> {
+    match kind {
+        CampaignKind::Impacts => None,
+        CampaignKind::Compression => Some(MeasurementWork::of::<CompressionCampaign>()),
+        CampaignKind::Acoustic => Some(MeasurementWork::of::<AcousticCampaign>()),
+        CampaignKind::Repeats => Some(MeasurementWork::of::<RepeatsCampaign>()),
+        CampaignKind::Drop => Some(MeasurementWork::of::<DropCampaign>()),
+    }
+}
 
 /// Evaluates a campaign directory, or one recording of a campaign of impacts,
 /// and keeps the results in its store.
@@ -22,13 +58,14 @@ pub fn fit_any(path: &Path, request: &FitRequest, progress: Progress) -> Result<
         true => CampaignKind::Impacts,
         false => campaign_kind(path)?,
     };
-    match kind {
-        CampaignKind::Compression => fit_compressions(path, request, progress),
-        CampaignKind::Acoustic => fit_taps(path, request, progress),
-        CampaignKind::Repeats => fit_repeats(path, request, progress),
-        CampaignKind::Drop => fit_drops(path, request, progress),
-        CampaignKind::Impacts => {
-            fit_campaign(path, request, progress).map(|o| AnyOutcome::Impacts(Box::new(o)))
+    match measurement_of(kind) {
+        Some(measurement) => {
+            let outcome = (measurement.fit)(path, request, progress)?;
+            Ok(AnyOutcome::Measured(Box::new(outcome)))
+        }
+        None => {
+            let outcome = fit_campaign(path, request, progress)?;
+            Ok(AnyOutcome::Impacts(Box::new(outcome)))
         }
     }
 }

@@ -17,7 +17,7 @@ use windfall_campaign::impacts::text::{laws_of, mass_line, own_codes, shared_cod
 use windfall_campaign::recording::extract::extract_recording;
 use windfall_campaign::result::outcome::{CampaignOutcome, ImpactOutcome};
 use windfall_campaign::result::quantity::quantities_named;
-use windfall_campaign::settings::model::Campaign;
+use windfall_campaign::settings::model::ImpactCampaign;
 use windfall_draw::files::{NamedFigure, file_name};
 use windfall_draw::page::{CaptionedTable, Section};
 use windfall_files::error::Error;
@@ -37,7 +37,7 @@ const OF_IMPACTS: [&str; 4] = [
 /// # Errors
 /// A recording that was fitted cannot be read any more.
 pub fn sections_of_campaign(
-    campaign: &Campaign,
+    campaign: &ImpactCampaign,
     rig: &RigFound,
     outcome: &CampaignOutcome,
 ) -> Result<Vec<Section>, Error> {
@@ -191,7 +191,7 @@ fn misfit(impact: &ImpactOutcome) -> f64 {
 
 /// Figures of a few impacts: signals and residuals.
 fn examples(
-    campaign: &Campaign,
+    campaign: &ImpactCampaign,
     rig: &RigFound,
     outcome: &CampaignOutcome,
 ) -> Result<Section, Error> {
@@ -201,7 +201,7 @@ fn examples(
     let mut figures = Vec::new();
     for (shown, why) in shown_impacts(&of_law(outcome, first)) {
         let id = &shown.id;
-        let Some(entry) = campaign.impacts.iter().find(|entry| entry.id == *id) else {
+        let Some(entry) = campaign.shared.entries.iter().find(|entry| entry.id == *id) else {
             continue;
         };
         let mass = Some(rig.rig.effective_mass());

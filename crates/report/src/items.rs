@@ -1,7 +1,7 @@
 //! What the report of a campaign that fits no impacts says.
 
 use windfall_campaign::measure::measured::{MeasuredItem, MeasuredOutcome, ShownValue, laws_of};
-use windfall_campaign::measure::reported_items::ReportedItems;
+use windfall_campaign::measure::run::ReportedItems;
 use windfall_campaign::measure::text::{groups_cells, items_cells, of_law, of_taps};
 use windfall_draw::page::{CaptionedTable, Section};
 
@@ -32,8 +32,8 @@ fn results(outcome: &MeasuredOutcome) -> Section {
     for law in laws_of(&outcome.impacts) {
         // A tap is no fruit: groups of fruit have a spread.
         let (shown, items) = match of_taps(outcome) {
-            true => (&outcome.shown_of_specimens, &outcome.specimens),
-            false => (&outcome.shown, &outcome.impacts),
+            true => (outcome.shown.specimens, &outcome.specimens),
+            false => (outcome.shown.items, &outcome.impacts),
         };
         if of_law(items, law).len() > 1 {
             let cells = groups_cells(outcome, law, (shown, items));
@@ -43,7 +43,7 @@ fn results(outcome: &MeasuredOutcome) -> Section {
             }));
         }
     }
-    let shown = &outcome.shown_of_specimens;
+    let shown = outcome.shown.specimens;
     tables.extend(tables_of(
         "campaign",
         "Over the campaign",
@@ -68,9 +68,9 @@ fn every_item(outcome: &MeasuredOutcome) -> Section {
         "recording",
         "Each recording",
         &outcome.impacts,
-        &outcome.shown,
+        outcome.shown.items,
     );
-    let parts = &outcome.shown_of_parts;
+    let parts = outcome.shown.parts;
     tables.extend(tables_of("part", "Each bounce", &outcome.parts, parts));
     let words = match outcome.impacts.len().max(outcome.parts.len()) > LISTED {
         true => vec![format!(

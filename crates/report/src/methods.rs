@@ -2,7 +2,7 @@
 
 use windfall_campaign::measure::words::{filters_text, laws_text, listed, threshold_text};
 use windfall_campaign::result::outcome::CampaignOutcome;
-use windfall_campaign::settings::model::{Campaign, MassPlan, RigPlan};
+use windfall_campaign::settings::model::{ImpactCampaign, MassPlan, RigPlan};
 use windfall_contact::law::EndRule;
 use windfall_files::text::number::plain;
 use windfall_identify::fit::interval::IntervalMethod;
@@ -12,7 +12,7 @@ use windfall_signal::trigger::{Baseline, Orientation};
 
 /// Paragraphs that say exactly how the results came about.
 #[must_use]
-pub fn methods(campaign: &Campaign, outcome: &CampaignOutcome) -> Vec<String> {
+pub fn methods(campaign: &ImpactCampaign, outcome: &CampaignOutcome) -> Vec<String> {
     let mut paragraphs = vec![rig(campaign, outcome), signals(campaign)];
     paragraphs.extend(laws_text(&campaign.fit.laws, &campaign.fit.free));
     paragraphs.push(cost(&campaign.fit.options));
@@ -21,7 +21,7 @@ pub fn methods(campaign: &Campaign, outcome: &CampaignOutcome) -> Vec<String> {
     paragraphs
 }
 
-fn rig(campaign: &Campaign, outcome: &CampaignOutcome) -> String {
+fn rig(campaign: &ImpactCampaign, outcome: &CampaignOutcome) -> String {
     let mass = plain(outcome.effective_mass.value);
     match campaign.rig {
         RigPlan::Pendulum(rig) => format!(
@@ -53,7 +53,7 @@ fn rig(campaign: &Campaign, outcome: &CampaignOutcome) -> String {
     }
 }
 
-fn signals(campaign: &Campaign) -> String {
+fn signals(campaign: &ImpactCampaign) -> String {
     let contact = &campaign.contact;
     let trigger = &contact.trigger;
     let threshold = threshold_text(&trigger.threshold);

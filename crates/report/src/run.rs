@@ -1,29 +1,25 @@
 //! `windfall report`: figures, tables and a page that says what was done.
 
 use crate::any_text::csv_of_any;
+use crate::fit_any::measurement_of;
 use crate::impacts::sections_of_campaign;
 use crate::items::sections_of_items;
 use serde::Serialize;
-use serde_json::json;
+use serde_json::{Map, Value};
 use std::path::{Path, PathBuf};
-use windfall_campaign::compression::run::reported_compressions;
 use windfall_campaign::impacts::findings::findings_once;
-use windfall_campaign::impacts::key::input_digests;
-use windfall_campaign::impacts::request::FitRequest;
+use windfall_campaign::impacts::key::run_options;
 use windfall_campaign::impacts::run::{FittedCampaign, fitted_campaign};
 use windfall_campaign::measure::any_outcome::AnyOutcome;
-use windfall_campaign::measure::reported_items::ReportedItems;
+use windfall_campaign::measure::run::ReportedItems;
 use windfall_campaign::measure::text::findings_of_measured;
-use windfall_campaign::recording::digests::{campaign_text, file_digests, recording_digests};
-use windfall_campaign::repeats::run::reported_repeats;
-use windfall_campaign::settings::kind::{CampaignKind, campaign_kind};
-use windfall_campaign::settings::model::FilePlan;
-use windfall_campaign::settings::read::CAMPAIGN_FILE;
-use windfall_campaign::taps::run::reported_taps;
+use windfall_campaign::pipeline::request::FitRequest;
+use windfall_campaign::recording::digests::{Digests, run_origin};
+use windfall_campaign::settings::kind::campaign_kind;
+use windfall_campaign::settings::model::{Campaign, FilePlan};
 use windfall_draw::files::{FigureFolder, NamedFigure, write_figures};
 use windfall_draw::page::{CaptionedTable, Report, Section, html_of_report};
 use windfall_draw::theme::FigureTheme;
-use windfall_drop::run::reported_drops;
 use windfall_files::error::Error;
 use windfall_files::on_threads::on_threads;
 use windfall_files::progress::Progress;
@@ -73,16 +69,11 @@ pub fn report_campaign(
     progress: Progress,
 ) -> Result<ReportOutcome, Error> {
     let fit = &request.fit;
-    let items = match campaign_kind(directory)? {
-        CampaignKind::Impacts => {
-            let fitted = fitted_campaign(directory, fit, progress)?;
-            return on_threads(fit.threads, || report_impacts(request, fitted));
-        }
-        CampaignKind::Compression => reported_compressions(directory, fit, progress)?,
-        CampaignKind::Acoustic => reported_taps(directory, fit, progress)?,
-        CampaignKind::Repeats => reported_repeats(directory, fit, progress)?,
-        CampaignKind::Drop => reported_drops(directory, fit, progress)?,
+    let Some(measurement) = measurement_of(campaign_kind(directory)?) else {
+        let fitted = fitted_campaign(directory, fit, progress)?;
+        return on_threads(fit.threads, || report_impacts(request, fitted));
     };
+    let items = (measurement.report)(directory, fit, progress)?;
     on_threads(fit.threads, || report_items(request, items))
 }
 
@@ -97,13 +88,7 @@ fn report_impacts(request: &ReportRequest, fitted: FittedCampaign) -> Result<Rep
         true => Vec::new(),
         false => sections_of_campaign(&campaign, &rig, &outcome)?,
     };
-    let (inputs, options) = input_digests(&campaign, &digests)?;
-    let source = Source {
-        directory: &campaign.directory,
-        recordings: campaign.impacts.len(),
-        inputs: shown_names(&campaign.files, inputs),
-        options,
-    };
+    let source = Source::of(&campaign.shared, &digests, run_options(&campaign))?;
     let report = Report {
         title: outcome.campaign.clone(),
         made: String::new(),
@@ -122,15 +107,7 @@ fn report_impacts(request: &ReportRequest, fitted: FittedCampaign) -> Result<Rep
 
 fn report_items(request: &ReportRequest, reported: ReportedItems) -> Result<ReportOutcome, Error> {
     let (campaign, outcome) = (&reported.campaign, &reported.outcome);
-    let directory = &campaign.directory;
-    let digests = recording_digests(directory, &campaign.files, &campaign.entries);
-    let options = json!({ CAMPAIGN_FILE: campaign_text(directory)? }).to_string();
-    let source = Source {
-        directory,
-        recordings: campaign.entries.len(),
-        inputs: shown_names(&campaign.files, file_digests(directory, &digests)?),
-        options,
-    };
+    let source = Source::of(campaign, &reported.digests, Map::new())?;
     let report = Report {
         title: outcome.campaign.clone(),
         made: String::new(),
@@ -153,6 +130,22 @@ struct Source<'a> {
     inputs: Vec<(String, String)>,
     /// Options as JSON.
     options: String,
+}
+
+impl<'a> Source<'a> {
+    fn of(
+        campaign: &'a Campaign,
+        digests: &Digests,
+        options: Map<String, Value>,
+    ) -> Result<Self, Error> {
+        let origin = run_origin(campaign, digests, options)?;
+        Ok(Self {
+            directory: &campaign.directory,
+            recordings: campaign.entries.len(),
+            inputs: shown_names(&campaign.files, origin.inputs),
+            options: origin.options,
+        })
+    }
 }
 
 /// Writes a report with all its files: what only says where it comes from is added here.

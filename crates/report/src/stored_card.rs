@@ -3,8 +3,8 @@
 
 use std::path::Path;
 use windfall_campaign::impacts::card::card_of_fit;
-use windfall_campaign::impacts::request::{FitRequest, Reuse};
 use windfall_campaign::impacts::run::fitted_campaign;
+use windfall_campaign::pipeline::request::{FitRequest, Reuse};
 use windfall_campaign::settings::kind::{CampaignKind, campaign_kind};
 use windfall_cards::read_card::card_text;
 use windfall_files::error::Error;

@@ -35,9 +35,9 @@
 
 /// What another program needs.
 pub mod prelude {
-    pub use windfall_campaign::impacts::request::{FitRequest, Reuse};
     pub use windfall_campaign::impacts::run::{fit_campaign, fit_recording};
     pub use windfall_campaign::measure::any_outcome::AnyOutcome;
+    pub use windfall_campaign::pipeline::request::{FitRequest, Reuse};
     pub use windfall_campaign::recording::request::RecordingRequest;
     pub use windfall_campaign::result::outcome::{CampaignOutcome, ImpactOutcome};
     pub use windfall_cards::law_card::LawCard;

@@ -3,9 +3,9 @@
 #![allow(clippy::unwrap_used, clippy::print_stdout)]
 
 use std::path::Path;
-use windfall_campaign::impacts::request::FitRequest;
 use windfall_campaign::measure::any_outcome::AnyOutcome;
 use windfall_campaign::measure::measured::{MeasuredItem, MeasuredOutcome};
+use windfall_campaign::pipeline::request::FitRequest;
 use windfall_report::any_text::{csv_of_any, text_of_any};
 use windfall_report::fit_any::fit_any;
 use windfall_simulate::taps::{SimulateTapsRequest, simulate_taps};
@@ -140,7 +140,7 @@ fn repeats_from_the_store_and_for_any_number_of_threads() {
     simulate_taps(&campaign, &request).unwrap();
     let threads = |n| FitRequest {
         threads: Some(n),
-        reuse: windfall_campaign::impacts::request::Reuse::Nothing,
+        reuse: windfall_campaign::pipeline::request::Reuse::Nothing,
         ..FitRequest::default()
     };
     let one = fit(&campaign, &threads(1));

@@ -6,8 +6,8 @@
 #![allow(clippy::unwrap_used, clippy::print_stdout)]
 
 use std::path::{Path, PathBuf};
-use windfall_campaign::impacts::request::FitRequest;
 use windfall_campaign::impacts::run::fit_campaign;
+use windfall_campaign::pipeline::request::FitRequest;
 use windfall_campaign::result::outcome::CampaignOutcome;
 
 fn fixtures() -> PathBuf {

@@ -35,7 +35,10 @@ fn closed_form_templates_are_campaigns() {
         write_template(kind, &directory).unwrap();
         let campaign = read_campaign(&directory).unwrap();
         assert_eq!(
-            (campaign.impacts.len(), campaign.specimens.len()),
+            (
+                campaign.shared.entries.len(),
+                campaign.shared.specimens.len()
+            ),
             (3, 2),
             "{kind:?}"
         );
@@ -72,9 +75,11 @@ fn closed_form_force_calibration() {
     )
     .unwrap();
     let campaign = read_campaign(scratch.path()).unwrap();
-    let recording =
-        windfall_campaign::recording::read::read_recording(&campaign.files, &campaign.impacts[0])
-            .unwrap();
+    let recording = windfall_campaign::recording::read::read_recording(
+        &campaign.shared.files,
+        &campaign.shared.entries[0],
+    )
+    .unwrap();
     let force = &recording.channels[0].samples;
     assert!(
         (force[0] - 10.0).abs() < 1e-12 && force[1].abs() < 1e-12,

@@ -4,8 +4,8 @@
 
 use std::fmt::Write;
 use std::path::Path;
-use windfall_campaign::impacts::request::FitRequest;
 use windfall_campaign::impacts::run::fit_campaign;
+use windfall_campaign::pipeline::request::FitRequest;
 use windfall_campaign::result::outcome::ImpactOutcome;
 
 const MASS: f64 = 0.2;

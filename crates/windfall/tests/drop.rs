@@ -3,13 +3,13 @@
 #![allow(clippy::unwrap_used)]
 
 use std::path::{Path, PathBuf};
-use windfall_campaign::impacts::request::FitRequest;
 use windfall_campaign::measure::any_outcome::AnyOutcome;
 use windfall_campaign::measure::measured::{MeasuredItem, MeasuredOutcome, value_of};
+use windfall_campaign::pipeline::request::FitRequest;
 use windfall_campaign::settings::template::{TemplateKind, write_template};
 use windfall_drop::calibrate_settings::{RangeUnit, Target};
 use windfall_drop::read::{DropCampaign, PlatePlan, drop_of, read_drop};
-use windfall_report::any_text::text_of_any;
+use windfall_report::any_text::{csv_of_any, text_of_any};
 use windfall_report::fit_any::fit_any;
 use windfall_simulate::drops::{SimulateDropsRequest, simulate_drops};
 use windfall_simulate::request::drop::{DropRequest, drop_plan};
@@ -419,6 +419,18 @@ fn recovers_bounces_on_a_rigid_plate() {
     let (e, sd) = value(&outcome.impacts[0], "restitution");
     assert!((e - exact).abs() < 4.0 * sd, "{e} ± {sd}, {exact}");
     assert!(outcome.whole.is_empty());
+
+    // The table of results has each column once: number and word "bounces" are two.
+    let csv = csv_of_any(&AnyOutcome::Measured(Box::new(outcome))).unwrap();
+    let mut columns: Vec<&str> = csv.lines().next().unwrap().split(',').collect();
+    assert!(
+        columns.contains(&"bounces") && columns.contains(&"bounces_text"),
+        "{columns:?}"
+    );
+    let all = columns.len();
+    columns.sort_unstable();
+    columns.dedup();
+    assert_eq!(columns.len(), all);
 }
 
 #[test]

@@ -7,8 +7,8 @@
 #![allow(clippy::unwrap_used, clippy::print_stdout)]
 
 use std::path::Path;
-use windfall_campaign::impacts::request::FitRequest;
 use windfall_campaign::impacts::run::fit_campaign;
+use windfall_campaign::pipeline::request::FitRequest;
 use windfall_campaign::result::outcome::ImpactOutcome;
 
 /// The shipped campaign with the folder written out; nothing else changed.

@@ -3,8 +3,8 @@
 #![allow(clippy::unwrap_used)]
 
 use std::path::Path;
-use windfall_campaign::impacts::request::FitRequest;
 use windfall_campaign::impacts::run::fit_campaign;
+use windfall_campaign::pipeline::request::FitRequest;
 use windfall_campaign::result::outcome::CampaignOutcome;
 
 const FIXTURE: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/fixtures/no_contact");

@@ -4,7 +4,7 @@
 #![allow(clippy::unwrap_used, clippy::print_stdout)]
 
 use std::path::Path;
-use windfall_campaign::impacts::request::FitRequest;
+use windfall_campaign::pipeline::request::FitRequest;
 use windfall_contact::expression::parse_law;
 use windfall_contact::law::EndRule;
 use windfall_identify::rig::kind::{Pendulum, Rig};

@@ -5,21 +5,17 @@ use crate::equal_command::command;
 use serde::Serialize;
 use std::path::{Path, PathBuf};
 use std::time::SystemTime;
-use windfall_campaign::compression::read::read_compression;
-use windfall_campaign::impacts::run::STORE_FILE;
-use windfall_campaign::measure::item_campaign::ItemCampaign;
+use windfall_campaign::pipeline::evaluate::STORE_FILE;
 use windfall_campaign::recording::digests::campaign_text;
-use windfall_campaign::repeats::read::read_repeats;
 use windfall_campaign::settings::fit::{ENDS, INTERVALS, NOISES, TREATMENTS, WEIGHTS};
-use windfall_campaign::settings::kind::{CampaignKind, campaign_kind};
-use windfall_campaign::settings::model::{Campaign, FilePlan, ImpactEntry, Specimen};
+use windfall_campaign::settings::kind::campaign_kind;
+use windfall_campaign::settings::model::{Campaign, FilePlan, ImpactCampaign};
 use windfall_campaign::settings::read::{CAMPAIGN_FILE, read_campaign};
-use windfall_campaign::taps::read::read_acoustic;
-use windfall_drop::read::read_drop;
 use windfall_files::error::Error;
 use windfall_files::option_value::word_of;
 use windfall_files::provenance::digest_text;
 use windfall_identify::fit::problem::FitOptions;
+use windfall_report::fit_any::measurement_of;
 use windfall_report::run::REPORT_DIRECTORY;
 
 /// Directory of tables for regressions and surfaces in a campaign directory.
@@ -113,25 +109,13 @@ pub struct CampaignView {
     pub command: String,
 }
 
-/// A campaign of any kind.
-enum AnyCampaign {
-    Impacts(Box<Campaign>),
-    Items(Box<ItemCampaign>),
-}
-
-/// Reads a campaign of any kind.
-fn read_any(directory: &Path) -> Result<(CampaignKind, AnyCampaign), Error> {
-    let kind = campaign_kind(directory)?;
-    let campaign = match kind {
-        CampaignKind::Impacts => AnyCampaign::Impacts(Box::new(read_campaign(directory)?)),
-        CampaignKind::Compression => {
-            AnyCampaign::Items(Box::new(read_compression(directory)?.shared))
-        }
-        CampaignKind::Acoustic => AnyCampaign::Items(Box::new(read_acoustic(directory)?.shared)),
-        CampaignKind::Repeats => AnyCampaign::Items(Box::new(read_repeats(directory)?.shared)),
-        CampaignKind::Drop => AnyCampaign::Items(Box::new(read_drop(directory)?.shared)),
-    };
-    Ok((kind, campaign))
+/// A campaign of any kind: what all kinds share, and what only impacts have.
+fn read_any(directory: &Path) -> Result<(Campaign, Option<ImpactCampaign>), Error> {
+    if let Some(measurement) = measurement_of(campaign_kind(directory)?) {
+        return Ok(((measurement.read)(directory)?, None));
+    }
+    let campaign = read_campaign(directory)?;
+    Ok((campaign.shared.clone(), Some(campaign)))
 }
 
 /// Whether the files of a campaign say what they must.
@@ -147,10 +131,7 @@ pub fn check_campaign(directory: &Path) -> Result<(), Error> {
 /// # Errors
 /// The campaign cannot be read.
 pub fn file_plan_of(directory: &Path) -> Result<FilePlan, Error> {
-    read_any(directory).map(|(_, campaign)| match campaign {
-        AnyCampaign::Impacts(campaign) => campaign.files,
-        AnyCampaign::Items(campaign) => campaign.files,
-    })
+    read_any(directory).map(|(campaign, _)| campaign.files)
 }
 
 /// What the files of a campaign say.
@@ -161,38 +142,31 @@ pub fn view_campaign(directory: &Path) -> Result<CampaignView, Error> {
     // The version of what is read below, or of something older: then whoever writes
     // with it is told that the campaign has changed.
     let version = campaign_version(directory)?;
-    let (kind, campaign) = read_any(directory)?;
+    let (campaign, impacts) = read_any(directory)?;
     let text = campaign_text(directory)?;
     let tables: toml::Table = toml::from_str(&text).unwrap_or_default();
     let id = name_of(directory);
-    let (title, simulated, group, specimens, entries) = match &campaign {
-        AnyCampaign::Impacts(c) => (&c.title, &c.simulated, &c.group, &c.specimens, &c.impacts),
-        AnyCampaign::Items(c) => (&c.title, &c.simulated, &c.group, &c.specimens, &c.entries),
-    };
     let untitled = directory.display().to_string();
     Ok(CampaignView {
         version,
-        title: match *title == untitled {
+        title: match campaign.title == untitled {
             true => id.clone(),
-            false => title.clone(),
+            false => campaign.title,
         },
-        kind: kind.name(),
-        simulated: simulated.clone(),
+        kind: campaign.kind.name(),
+        simulated: campaign.simulated,
         rig: lines_of(&tables, "rig"),
         channels: channels_of(&tables),
         time: files_key(&tables, "time"),
         rate: files_key(&tables, "rate"),
-        laws: match &campaign {
-            AnyCampaign::Impacts(campaign) => laws_of(campaign),
-            AnyCampaign::Items(_) => laws_written(&tables),
+        laws: match &impacts {
+            Some(impacts) => impacts.fit.laws.iter().map(ToString::to_string).collect(),
+            None => laws_written(&tables),
         },
-        options: match &campaign {
-            AnyCampaign::Impacts(campaign) => Some(options_of(campaign)),
-            AnyCampaign::Items(_) => None,
-        },
-        group: group.clone(),
-        specimens: table_of(specimens.iter().map(|specimen: &Specimen| &specimen.cells)),
-        impacts: table_of(entries.iter().map(|entry: &ImpactEntry| &entry.cells)),
+        options: impacts.as_ref().map(options_of),
+        group: campaign.group,
+        specimens: table_of(campaign.specimens.iter().map(|specimen| &specimen.cells)),
+        impacts: table_of(campaign.entries.iter().map(|entry| &entry.cells)),
         text,
         tables: tables_of(directory)?,
         report: directory
@@ -257,11 +231,6 @@ pub fn name_of(directory: &Path) -> String {
     name.to_string_lossy().into_owned()
 }
 
-fn laws_of(campaign: &Campaign) -> Vec<String> {
-    let laws = campaign.fit.laws.iter();
-    laws.map(ToString::to_string).collect()
-}
-
 /// Laws of campaigns whose readers differ, as the file has them.
 fn laws_written(tables: &toml::Table) -> Vec<String> {
     let law = |table: &str, key: &str| match tables.get(table)?.get(key)? {
@@ -276,7 +245,7 @@ fn laws_written(tables: &toml::Table) -> Vec<String> {
     found.unwrap_or_default()
 }
 
-fn options_of(campaign: &Campaign) -> FitOptionsView {
+fn options_of(campaign: &ImpactCampaign) -> FitOptionsView {
     let options: &FitOptions = &campaign.fit.options;
     FitOptionsView {
         quantities: options

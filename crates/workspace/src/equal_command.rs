@@ -1,6 +1,6 @@
 //! The command line that does the same as a request.
 
-use windfall_campaign::impacts::request::FitRequest;
+use windfall_campaign::pipeline::request::FitRequest;
 
 /// A word as a shell takes it.
 fn quoted(word: &str) -> String {

@@ -8,11 +8,11 @@ use std::time::Instant;
 use windfall_campaign::impacts::figure_impact::{FittedImpact, line_of_law, motion_at, shown_rate};
 use windfall_campaign::impacts::fit::fit_law;
 use windfall_campaign::impacts::mass::{RigFound, find_rig};
-use windfall_campaign::impacts::request::{FitRequest, apply_request};
+use windfall_campaign::pipeline::request::{FitRequest, apply_request};
 use windfall_campaign::recording::extract::extract_entry;
 use windfall_campaign::recording::read::{read_recording, recording_path};
 use windfall_campaign::result::outcome::ImpactOutcome;
-use windfall_campaign::settings::model::{Campaign, ImpactEntry};
+use windfall_campaign::settings::model::{ImpactCampaign, ImpactEntry};
 use windfall_campaign::settings::read::read_campaign;
 use windfall_files::error::Error;
 use windfall_files::found::FindingOutcome;
@@ -28,7 +28,7 @@ const MOST_SHOWN: usize = 3000;
 /// A campaign of impacts with its rig, ready for fits.
 #[derive(Clone, Debug)]
 pub struct LiveCampaign {
-    campaign: Campaign,
+    campaign: ImpactCampaign,
     rig: RigFound,
 }
 
@@ -36,7 +36,7 @@ pub struct LiveCampaign {
 #[derive(Clone, Debug)]
 pub struct LiveImpact {
     // Of this impact and its specimen only.
-    campaign: Campaign,
+    campaign: ImpactCampaign,
     rig: RigFound,
     recording: Recording,
 }
@@ -133,7 +133,12 @@ impl LiveCampaign {
     }
 
     fn entry(&self, id: &str) -> Result<&ImpactEntry, Error> {
-        let entry = self.campaign.impacts.iter().find(|entry| entry.id == id);
+        let entry = self
+            .campaign
+            .shared
+            .entries
+            .iter()
+            .find(|entry| entry.id == id);
         entry.ok_or_else(|| Error::ImpactUnknown { id: id.to_owned() })
     }
 
@@ -143,7 +148,7 @@ impl LiveCampaign {
     /// There is no such impact.
     pub fn recording(&self, id: &str) -> Result<PathBuf, Error> {
         let entry = self.entry(id)?;
-        Ok(recording_path(&self.campaign.files, entry))
+        Ok(recording_path(&self.campaign.shared.files, entry))
     }
 
     /// Reads the recording of one of its impacts.
@@ -152,14 +157,11 @@ impl LiveCampaign {
     /// There is no such impact, or its recording cannot be read.
     pub fn impact(&self, id: &str) -> Result<LiveImpact, Error> {
         let entry = self.entry(id)?.clone();
-        let recording = read_recording(&self.campaign.files, &entry)?;
-        let mut specimens = self.campaign.specimens.clone();
+        let recording = read_recording(&self.campaign.shared.files, &entry)?;
+        let mut campaign = self.campaign.clone();
+        let specimens = &mut campaign.shared.specimens;
         specimens.retain(|specimen| specimen.id == entry.specimen);
-        let campaign = Campaign {
-            impacts: vec![entry],
-            specimens,
-            ..self.campaign.clone()
-        };
+        campaign.shared.entries = vec![entry];
         Ok(LiveImpact {
             campaign,
             rig: self.rig.clone(),
@@ -195,7 +197,7 @@ impl LiveImpact {
         ) {
             *method = IntervalMethod::Asymptotic;
         }
-        let mut entry = campaign.impacts[0].clone();
+        let mut entry = campaign.shared.entries[0].clone();
         entry.from = request.from.or(entry.from);
         entry.to = request.to.or(entry.to);
         let mass = self.rig.rig.effective_mass();
@@ -238,7 +240,7 @@ impl LiveImpact {
 
     fn live_law(
         &self,
-        campaign: &Campaign,
+        campaign: &ImpactCampaign,
         impact: &Impact,
         law: &str,
         fitted: Result<ImpactOutcome, Error>,
@@ -277,14 +279,18 @@ impl LiveImpact {
 }
 
 fn equal_command(
-    campaign: &Campaign,
+    campaign: &ImpactCampaign,
     entry: &ImpactEntry,
     shown: &str,
     request: &FitRequest,
 ) -> String {
-    let folder = campaign.files.directory.strip_prefix(&campaign.directory);
+    let folder = campaign
+        .shared
+        .files
+        .directory
+        .strip_prefix(&campaign.shared.directory);
     let path = folder
-        .unwrap_or(&campaign.files.directory)
+        .unwrap_or(&campaign.shared.files.directory)
         .join(&entry.file);
     let path = Path::new(shown).join(path).display().to_string();
     command_of_fit(&["fit", &path], request)

@@ -4,9 +4,9 @@
 use crate::campaign_view::{CAMPAIGN_FILES, file_plan_of, name_of, names_in, view_campaign};
 use serde::Serialize;
 use std::path::{Path, PathBuf};
-use windfall_campaign::impacts::request::{FitRequest, PENDING, Reuse};
-use windfall_campaign::impacts::run::STORE_FILE;
 use windfall_campaign::measure::any_outcome::AnyOutcome;
+use windfall_campaign::pipeline::evaluate::STORE_FILE;
+use windfall_campaign::pipeline::request::{FitRequest, PENDING, Reuse};
 use windfall_campaign::settings::model::FilePlan;
 use windfall_campaign::settings::read::CAMPAIGN_FILE;
 use windfall_campaign::store::runs::latest_run;

@@ -1,7 +1,6 @@
 //! One slow compression: loading curve, yield, laws, modulus.
 
 use crate::compression::read::{CompressionCampaign, specimen_radii};
-use crate::measure::item_campaign::{group_of, specimen_of};
 use crate::measure::measured::{
     MeasuredItem, MeasuredItems, MeasuredValue, plain_value, value_with_sd,
 };
@@ -134,7 +133,7 @@ pub fn radii_of_entry(
 ) -> Result<Option<PrincipalRadii>, Error> {
     let directory = &campaign.shared.directory;
     let own = specimen_radii(&entry.cells, &directory.join("impacts.csv"))?;
-    match (own, specimen_of(&campaign.shared, entry)) {
+    match (own, campaign.shared.specimen_of(entry)) {
         (None, Some(specimen)) => specimen_radii(&specimen.cells, &directory.join("specimens.csv")),
         (own, _) => Ok(own),
     }
@@ -158,7 +157,7 @@ fn item(
     MeasuredItem {
         id: entry.id.clone(),
         specimen: entry.specimen.clone(),
-        group: group_of(&campaign.shared, entry),
+        group: campaign.shared.group_of(entry),
         file: entry.file.clone(),
         law: fit.law.kind().name().to_owned(),
         words: Named(vec![("loading_ended_by".to_owned(), ended.to_owned())]),

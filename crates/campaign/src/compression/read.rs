@@ -1,13 +1,14 @@
 //! campaign.toml of slow compressions → [`CompressionCampaign`].
 
 use crate::compression::file::{CompressionFile, CompressionRigFile, YieldFile};
-use crate::measure::item_campaign::{ItemCampaign, SharedFile, read_item_campaign};
 use crate::settings::channels::channel_plans;
 use crate::settings::conditioning::refuse_conditioning;
 use crate::settings::files::check_format;
 use crate::settings::fit::{LawKeys, free_names, law_expressions};
 use crate::settings::kind::CampaignKind;
+use crate::settings::model::Campaign;
 use crate::settings::read::CAMPAIGN_FILE;
+use crate::settings::shared::{SharedFile, read_shared};
 use std::path::Path;
 use toml::Spanned;
 use windfall_contact::apparent_modulus::PrincipalRadii;
@@ -16,7 +17,7 @@ use windfall_contact::expression::LawExpression;
 use windfall_files::error::Error;
 use windfall_files::text::cell_quantity::cell_quantity;
 use windfall_files::text::toml_source::{
-    Needed, TomlSource, invalid, missing, optional_quantity, parse_source, read_source,
+    Needed, TomlSource, missing, number_that, parse_source, positive_quantity, read_source, refused,
 };
 use windfall_numerics::unit::quantity::parse_as;
 use windfall_signal::compression::{CompressionOptions, FitRange};
@@ -25,7 +26,7 @@ use windfall_signal::compression::{CompressionOptions, FitRange};
 #[derive(Clone, Debug)]
 pub struct CompressionCampaign {
     /// What all kinds share.
-    pub shared: ItemCampaign,
+    pub shared: Campaign,
     /// Plates that deform the fruit.
     pub plates: usize,
     /// Poisson's ratio of the fruit; 1.
@@ -79,7 +80,7 @@ pub fn read_compression(directory: &Path) -> Result<CompressionCampaign, Error> 
     Ok(CompressionCampaign {
         fit_to: fit_range(&source, file.compression.fit_to.as_ref())?,
         options: options(&source, &file.compression, file.rig.get_ref())?,
-        shared: read_item_campaign(&source, directory, kind, &shared, channels)?,
+        shared: read_shared(&source, directory, kind, &shared, channels)?,
         plates,
         poisson_ratio,
         indenter,
@@ -106,25 +107,18 @@ fn rig(
     };
     let number = *plates.get_ref();
     if !(1..=2).contains(&number) {
-        let (text, problem) = (number.to_string(), "expected 1 or 2".to_owned());
-        return Err(invalid(
+        return Err(refused(
             source,
-            &plates.span(),
+            plates,
             ("[rig]", "plates"),
-            &text,
-            problem,
+            "expected 1 or 2",
         ));
     }
-    let poisson = match &rig.poisson_ratio {
-        None => 0.3,
-        Some(value) if (0.0..0.5).contains(value.get_ref()) => *value.get_ref(),
-        Some(value) => {
-            let problem = "expected a number from 0 to below 0.5".to_owned();
-            let text = value.get_ref().to_string();
-            let key = ("[rig]", "poisson_ratio");
-            return Err(invalid(source, &value.span(), key, &text, problem));
-        }
-    };
+    let (key, fits) = (("[rig]", "poisson_ratio"), |ratio| {
+        (0.0..0.5).contains(&ratio)
+    });
+    let expected = "a number from 0 to below 0.5";
+    let poisson = number_that(source, rig.poisson_ratio.as_ref(), key, fits, expected)?;
     let radius = Needed {
         key: "indenter_radius",
         meaning: "radius of a spherical indenter",
@@ -132,33 +126,11 @@ fn rig(
         example: "indenter_radius = \"4 mm\"",
         ..needed
     };
-    let indenter = match positive(source, rig.indenter_radius.as_ref(), &radius)? {
+    let indenter = match positive_quantity(source, rig.indenter_radius.as_ref(), &radius)? {
         Some(radius) => PrincipalRadii::sphere(radius),
         None => PrincipalRadii::PLANE,
     };
-    Ok((number as usize, poisson, indenter))
-}
-
-fn positive(
-    source: &TomlSource,
-    value: Option<&Spanned<crate::settings::file::QuantityText>>,
-    needed: &Needed,
-) -> Result<Option<f64>, Error> {
-    let number = optional_quantity(source, value, needed)?;
-    match (value, number) {
-        (Some(value), Some(number)) if number <= 0.0 => {
-            let problem = format!("must be above zero, for example: {}", needed.example);
-            let key = (needed.table, needed.key);
-            Err(invalid(
-                source,
-                &value.span(),
-                key,
-                &value.get_ref().0,
-                problem,
-            ))
-        }
-        _ => Ok(number),
-    }
+    Ok((number as usize, poisson.unwrap_or(0.3), indenter))
 }
 
 fn options(
@@ -181,37 +153,23 @@ fn options(
         unit: "N/m",
         example: "machine_stiffness = \"50 N/mm\"",
     };
-    let part = |value: Option<&Spanned<f64>>, key, default| match value {
-        None => Ok(default),
-        Some(value) if *value.get_ref() > 0.0 && *value.get_ref() < 1.0 => Ok(*value.get_ref()),
-        Some(value) => {
-            let problem = "expected a part between 0 and 1".to_owned();
-            let text = value.get_ref().to_string();
-            Err(invalid(
-                source,
-                &value.span(),
-                ("[compression]", key),
-                &text,
-                problem,
-            ))
-        }
+    let part = |value: &Option<Spanned<f64>>, key, default: f64| {
+        let (key, fits) = (("[compression]", key), |part| part > 0.0 && part < 1.0);
+        let part = number_that(source, value.as_ref(), key, fits, "a part between 0 and 1")?;
+        Ok::<_, Error>(part.unwrap_or(default))
     };
-    let stiffness = positive(source, rig.machine_stiffness.as_ref(), &machine)?;
+    let stiffness = positive_quantity(source, rig.machine_stiffness.as_ref(), &machine)?;
     Ok(CompressionOptions {
-        touch_force: positive(source, file.touch_force.as_ref(), &touch)?,
+        touch_force: positive_quantity(source, file.touch_force.as_ref(), &touch)?,
         machine_stiffness: stiffness.unwrap_or(defaults.machine_stiffness),
-        yield_window: part(
-            file.yield_window.as_ref(),
-            "yield_window",
-            defaults.yield_window,
-        )?,
+        yield_window: part(&file.yield_window, "yield_window", defaults.yield_window)?,
         stiffness_window: part(
-            file.stiffness_window.as_ref(),
+            &file.stiffness_window,
             "stiffness_window",
             defaults.stiffness_window,
         )?,
-        softening: part(file.softening.as_ref(), "softening", defaults.softening)?,
-        rupture: part(file.rupture.as_ref(), "rupture", defaults.rupture)?,
+        softening: part(&file.softening, "softening", defaults.softening)?,
+        rupture: part(&file.rupture, "rupture", defaults.rupture)?,
     })
 }
 
@@ -241,10 +199,8 @@ fn fit_range(
         }
         _ => {
             let problem = "expected \"largest-stiffness\", a part of the yield force such as \
-                           \"50 %\", or a deformation such as \"0.5 mm\""
-                .to_owned();
-            let key = ("[compression]", "fit_to");
-            Err(invalid(source, &value.span(), key, text, problem))
+                           \"50 %\", or a deformation such as \"0.5 mm\"";
+            Err(refused(source, value, ("[compression]", "fit_to"), problem))
         }
     }
 }

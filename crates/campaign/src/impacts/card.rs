@@ -3,7 +3,7 @@
 
 use crate::impacts::two_stage::{Estimates, Population, two_stage};
 use crate::result::outcome::{CampaignOutcome, ImpactOutcome};
-use crate::settings::model::Campaign;
+use crate::settings::model::ImpactCampaign;
 use std::collections::BTreeMap;
 use std::path::Path;
 use windfall_cards::law_card::{
@@ -26,7 +26,7 @@ const QUANTILE: f64 = 1.96;
 ///
 /// # Errors
 /// More than one law was fitted, or no impact was fitted with success.
-pub fn card_of_fit(campaign: &Campaign, outcome: &CampaignOutcome) -> Result<LawCard, Error> {
+pub fn card_of_fit(campaign: &ImpactCampaign, outcome: &CampaignOutcome) -> Result<LawCard, Error> {
     let [asked] = &campaign.fit.laws[..] else {
         return Err(unknown(
             campaign,
@@ -61,7 +61,7 @@ pub fn card_of_fit(campaign: &Campaign, outcome: &CampaignOutcome) -> Result<Law
     }
     Ok(LawCard {
         format: CARD_FORMAT,
-        title: campaign.title.clone(),
+        title: campaign.shared.title.clone(),
         law: kind.name().to_owned(),
         expression: LawExpression::from(law).to_string(),
         end: end_name(campaign.fit.options.end).to_owned(),
@@ -89,15 +89,15 @@ pub fn card_of_fit(campaign: &Campaign, outcome: &CampaignOutcome) -> Result<Law
     })
 }
 
-fn unknown(campaign: &Campaign, missing: String, advice: &str) -> Error {
+fn unknown(campaign: &ImpactCampaign, missing: String, advice: &str) -> Error {
     Error::ValueNotKnown {
-        item: campaign.title.clone(),
+        item: campaign.shared.title.clone(),
         missing,
         advice: advice.to_owned(),
     }
 }
 
-fn impactor(campaign: &Campaign) -> &'static str {
+fn impactor(campaign: &ImpactCampaign) -> &'static str {
     match campaign.rig {
         crate::settings::model::RigPlan::Pendulum(_) => "impactor of a pendulum",
         crate::settings::model::RigPlan::Carriage { .. } => "impactor on a line",
@@ -147,7 +147,7 @@ fn estimates_of(impacts: &[&ImpactOutcome]) -> Estimates {
 
 /// The law at the median of what was estimated; what was held as it was.
 fn law_of(
-    campaign: &Campaign,
+    campaign: &ImpactCampaign,
     kind: windfall_contact::laws::kind::LawKind,
     impacts: &[&ImpactOutcome],
     estimates: &Estimates,
@@ -252,16 +252,16 @@ fn range_of(outcome: &CampaignOutcome, impacts: &[&ImpactOutcome]) -> CardRange 
     }
 }
 
-fn origin(campaign: &Campaign, outcome: &CampaignOutcome) -> Result<CardOrigin, Error> {
+fn origin(campaign: &ImpactCampaign, outcome: &CampaignOutcome) -> Result<CardOrigin, Error> {
     let mut digests = BTreeMap::new();
     for file in FILES {
-        let path: &Path = &campaign.directory.join(file);
+        let path: &Path = &campaign.shared.directory.join(file);
         if path.is_file() {
             digests.insert(file.to_owned(), digest_file(path)?);
         }
     }
     Ok(CardOrigin {
-        campaign: campaign.title.clone(),
+        campaign: campaign.shared.title.clone(),
         method: "each impact fitted, then the median over fruit".to_owned(),
         simulated: outcome.simulated.clone(),
         digests,

@@ -2,6 +2,7 @@
 
 use crate::result::outcome::{CampaignOutcome, ImpactOutcome};
 use crate::result::quantity::{QUANTITIES, Quantity};
+use itertools::Itertools;
 use windfall_files::error::Error;
 use windfall_files::table::write::csv_text;
 
@@ -98,15 +99,12 @@ fn number(value: Option<f64>) -> String {
 }
 
 fn parameter_names(outcome: &CampaignOutcome) -> Vec<&str> {
-    let mut names: Vec<&str> = Vec::new();
-    for (name, _) in outcome
+    let names: Vec<&str> = outcome
         .impacts
         .iter()
         .flat_map(|impact| &impact.parameters.0)
-    {
-        if !names.contains(&name.as_str()) {
-            names.push(name);
-        }
-    }
+        .map(|(name, _)| name.as_str())
+        .unique()
+        .collect();
     names
 }

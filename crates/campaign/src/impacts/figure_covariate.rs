@@ -2,7 +2,7 @@
 
 use crate::impacts::figure_parameters::{estimated_parameters, groups_of_impacts};
 use crate::result::outcome::ImpactOutcome;
-use crate::settings::model::Campaign;
+use crate::settings::model::ImpactCampaign;
 use windfall_draw::files::{NamedFigure, file_name};
 use windfall_draw::xy::{Figure, Panel, Series, Style};
 use windfall_files::text::column_title::column_title;
@@ -38,7 +38,7 @@ pub struct Covariate {
 /// The velocity at first touch, then the columns of impacts.csv and specimens.csv
 /// that hold numbers of which at least three differ.
 #[must_use]
-pub fn covariates_of(campaign: &Campaign, impacts: &[&ImpactOutcome]) -> Vec<Covariate> {
+pub fn covariates_of(campaign: &ImpactCampaign, impacts: &[&ImpactOutcome]) -> Vec<Covariate> {
     let velocity =
         |impact: &&ImpactOutcome| impact.fitted.get("impact_velocity").copied().flatten();
     let mut found = vec![Covariate {
@@ -47,8 +47,12 @@ pub fn covariates_of(campaign: &Campaign, impacts: &[&ImpactOutcome]) -> Vec<Cov
         values: impacts.iter().map(velocity).collect(),
     }];
     let mut names: Vec<&String> = Vec::new();
-    let columns = campaign.impacts.iter().flat_map(|entry| &entry.cells);
-    let of_specimens = campaign.specimens.iter().flat_map(|s| &s.cells);
+    let columns = campaign
+        .shared
+        .entries
+        .iter()
+        .flat_map(|entry| &entry.cells);
+    let of_specimens = campaign.shared.specimens.iter().flat_map(|s| &s.cells);
     for (name, _) in columns.chain(of_specimens) {
         if !names.contains(&name) && !PLACES.contains(&name.as_str()) {
             names.push(name);
@@ -80,12 +84,17 @@ pub fn covariates_of(campaign: &Campaign, impacts: &[&ImpactOutcome]) -> Vec<Cov
 }
 
 /// The cell of an impact's row, or of its specimen's.
-fn cell<'a>(campaign: &'a Campaign, impact: &ImpactOutcome, column: &str) -> Option<&'a str> {
+fn cell<'a>(campaign: &'a ImpactCampaign, impact: &ImpactOutcome, column: &str) -> Option<&'a str> {
     let entry = campaign
-        .impacts
+        .shared
+        .entries
         .iter()
         .find(|entry| entry.id == impact.id)?;
-    let specimen = campaign.specimens.iter().find(|s| s.id == entry.specimen);
+    let specimen = campaign
+        .shared
+        .specimens
+        .iter()
+        .find(|s| s.id == entry.specimen);
     let of_specimen = specimen.map_or(&[][..], |s| &s.cells);
     let mut cells = entry.cells.iter().chain(of_specimen);
     let found = cells.find(|(name, _)| name == column)?;

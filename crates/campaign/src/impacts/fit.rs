@@ -1,95 +1,81 @@
-//! The impacts of a campaign on all cores: recording → impact → fits.
+//! Recording → impact → fits of the laws.
 
+use crate::impacts::key::{impact_key, run_options};
 use crate::impacts::mass::RigFound;
+use crate::pipeline::evaluate::{Evaluation, failure};
 use crate::recording::extract::extract_recording;
 use crate::recording::pendulum_angles::add_angles;
 use crate::result::fit_outcome::impact_outcome;
 use crate::result::outcome::ImpactOutcome;
-use crate::settings::model::{Campaign, ImpactEntry};
-use std::collections::BTreeMap;
+use crate::settings::model::{Campaign, ImpactCampaign, ImpactEntry};
+use serde_json::{Map, Value};
 use windfall_contact::expression::LawExpression;
 use windfall_files::error::Error;
 use windfall_files::found::FailureOutcome;
-use windfall_files::progress::{Progress, for_each};
 use windfall_identify::fit::problem::LawProblem;
 use windfall_identify::fit::result::fit_impact;
 use windfall_identify::rig::kind::Rig;
 use windfall_signal::Finding;
 use windfall_signal::impact::Impact;
 
-/// One law on one impact.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub struct FitTask {
-    /// Position in the campaign's impacts.
-    pub impact: usize,
-    /// Position in the campaign's laws.
-    pub law: usize,
-    /// Digest of everything that the result depends on; `None` when the
-    /// recording cannot be read.
-    pub key: Option<String>,
-    /// Why there is nothing to fit: the recording cannot be read.
-    pub problem: Option<String>,
+/// The laws of a campaign on each of its impacts.
+pub struct Fits<'a> {
+    /// The campaign.
+    pub campaign: &'a ImpactCampaign,
+    /// Its rig.
+    pub rig: &'a RigFound,
 }
 
-/// Does the tasks, grouped by impact, and keeps their order.
-///
-/// Tasks whose key is in `stored` are answered from there. `progress` is called
-/// with the impacts done and all impacts, from any thread.
-///
-/// # Errors
-/// `progress` stopped the work.
-pub fn fit_tasks(
-    campaign: &Campaign,
-    rig: &RigFound,
-    tasks: &[FitTask],
-    stored: &BTreeMap<String, ImpactOutcome>,
-    progress: Progress,
-) -> Result<Vec<Result<ImpactOutcome, FailureOutcome>>, Error> {
-    let groups: Vec<&[FitTask]> = tasks.chunk_by(|a, b| a.impact == b.impact).collect();
-    let results = for_each(progress, groups.len(), |group| {
-        fit_group(campaign, rig, groups[group], stored)
-    })?;
-    Ok(results.into_iter().flatten().collect())
-}
+impl Evaluation for Fits<'_> {
+    type Found = ImpactOutcome;
 
-/// The laws on one impact; its recording is read only if one of them is new.
-fn fit_group(
-    campaign: &Campaign,
-    rig: &RigFound,
-    group: &[FitTask],
-    stored: &BTreeMap<String, ImpactOutcome>,
-) -> Vec<Result<ImpactOutcome, FailureOutcome>> {
-    let entry = &campaign.impacts[group[0].impact];
-    let settled = |task: &FitTask| match &task.problem {
-        Some(problem) => Some(Err(failure(entry, None, problem.clone()))),
-        None => {
-            let known = task.key.as_ref().and_then(|key| stored.get(key));
-            known.cloned().map(Ok)
-        }
-    };
-    let known: Vec<_> = group.iter().map(settled).collect();
-    if known.iter().all(Option::is_some) {
-        return known.into_iter().flatten().collect();
+    fn campaign(&self) -> &Campaign {
+        &self.campaign.shared
     }
-    let extracted = match extract_recording(campaign, entry, Some(rig.rig.effective_mass())) {
-        Ok(extracted) => extracted,
-        Err(error) => {
-            let failure = failure(entry, None, error.to_string());
-            return group.iter().map(|_| Err(failure.clone())).collect();
+
+    fn parts(&self) -> usize {
+        self.campaign.fit.laws.len()
+    }
+
+    fn key(&self, entry: &ImpactEntry, part: usize, recording: &str) -> String {
+        let law = &self.campaign.fit.laws[part];
+        impact_key(self.campaign, entry, law, &self.rig.rig, recording)
+    }
+
+    /// The recording is read only if one of the laws is new.
+    fn evaluate(
+        &self,
+        entry: &ImpactEntry,
+        known: Vec<Option<ImpactOutcome>>,
+    ) -> Vec<Result<ImpactOutcome, FailureOutcome>> {
+        let (campaign, rig) = (self.campaign, &self.rig.rig);
+        let group = campaign.shared.group_of(entry);
+        let grouped = |outcome: ImpactOutcome| ImpactOutcome {
+            group: group.clone(),
+            ..outcome
+        };
+        if known.iter().all(Option::is_some) {
+            let known = known.into_iter().flatten();
+            return known.map(|outcome| Ok(grouped(outcome))).collect();
         }
-    };
-    let (impact, findings) = extracted;
-    group
-        .iter()
-        .zip(known)
-        .map(|(task, known)| {
-            known.unwrap_or_else(|| {
-                let law = &campaign.fit.laws[task.law];
-                fit_law((campaign, &rig.rig), entry, (&impact, &findings), law)
+        let extracted = extract_recording(campaign, entry, Some(rig.effective_mass()))
+            .map_err(|error| failure(entry, None, error.to_string()));
+        let laws = campaign.fit.laws.iter().zip(known);
+        laws.map(|(law, known)| match (known, &extracted) {
+            (Some(outcome), _) => Ok(grouped(outcome)),
+            (None, Err(failure)) => Err(failure.clone()),
+            (None, Ok((impact, findings))) => {
+                fit_law((campaign, rig), entry, (impact, findings), law)
+                    .map(grouped)
                     .map_err(|error| failure(entry, Some(law.kind.name()), error.to_string()))
-            })
+            }
         })
         .collect()
+    }
+
+    fn options(&self) -> Map<String, Value> {
+        run_options(self.campaign)
+    }
 }
 
 /// One law on one impact that has been cut out, with the options of its campaign.
@@ -97,7 +83,7 @@ fn fit_group(
 /// # Errors
 /// The law cannot be fitted to it.
 pub fn fit_law(
-    (campaign, rig): (&Campaign, &Rig),
+    (campaign, rig): (&ImpactCampaign, &Rig),
     entry: &ImpactEntry,
     (impact, findings): (&Impact, &[Finding]),
     law: &LawExpression,
@@ -132,16 +118,4 @@ pub fn law_problem(law: &LawExpression, free: &[String]) -> LawProblem {
         *is_free |= free.iter().any(|name| name == parameter.name);
     }
     problem
-}
-
-/// An entry, or one law on it, that could not be fitted.
-#[must_use]
-pub fn failure(entry: &ImpactEntry, law: Option<&str>, message: String) -> FailureOutcome {
-    FailureOutcome {
-        id: entry.id.clone(),
-        specimen: entry.specimen.clone(),
-        file: entry.file.clone(),
-        law: law.map(str::to_owned),
-        message,
-    }
 }

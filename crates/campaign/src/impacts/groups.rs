@@ -2,6 +2,7 @@
 
 use crate::result::outcome::{CampaignOutcome, GroupOutcome, ImpactOutcome};
 use crate::result::quantity::{Quantity, quantities_named};
+use itertools::Itertools;
 use windfall_files::found::SpreadOutcome;
 use windfall_files::found::spread;
 use windfall_files::named::Named;
@@ -201,12 +202,13 @@ pub fn law_table(outcome: &CampaignOutcome, laws: &[&str]) -> String {
 /// The cells of [`law_table`].
 #[must_use]
 pub fn law_cells(outcome: &CampaignOutcome, laws: &[&str]) -> Cells {
-    let mut quantities: Vec<&str> = Vec::new();
-    for (name, _) in outcome.impacts.iter().flat_map(|i| &i.residuals.0) {
-        if !quantities.contains(&name.as_str()) {
-            quantities.push(name);
-        }
-    }
+    let quantities: Vec<&str> = outcome
+        .impacts
+        .iter()
+        .flat_map(|i| &i.residuals.0)
+        .map(|(name, _)| name.as_str())
+        .unique()
+        .collect();
     let mut header = ["law", "group", "estimated", "impacts", "converged"]
         .map(str::to_owned)
         .to_vec();
@@ -234,12 +236,11 @@ pub fn law_cells(outcome: &CampaignOutcome, laws: &[&str]) -> Cells {
 }
 
 fn group_names<'a>(impacts: &[&'a ImpactOutcome]) -> Vec<Option<&'a str>> {
-    let mut names: Vec<Option<&str>> = Vec::new();
-    for impact in impacts {
-        if !names.contains(&impact.group.as_deref()) {
-            names.push(impact.group.as_deref());
-        }
-    }
+    let names: Vec<Option<&str>> = impacts
+        .iter()
+        .map(|impact| impact.group.as_deref())
+        .unique()
+        .collect();
     names
 }
 
@@ -262,12 +263,12 @@ fn residual_over_noise(impacts: &[&ImpactOutcome], quantity: &str) -> String {
 }
 
 fn parameter_names<'a>(groups: &[&'a GroupOutcome]) -> Vec<&'a str> {
-    let mut names: Vec<&str> = Vec::new();
-    for (name, _) in groups.iter().flat_map(|group| &group.parameters.0) {
-        if !names.contains(&name.as_str()) {
-            names.push(name);
-        }
-    }
+    let names: Vec<&str> = groups
+        .iter()
+        .flat_map(|group| &group.parameters.0)
+        .map(|(name, _)| name.as_str())
+        .unique()
+        .collect();
     names
 }
 

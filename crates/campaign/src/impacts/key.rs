@@ -1,13 +1,10 @@
 //! What a result depends on, as one digest: equal keys mean equal results.
 
-use crate::recording::digests::{Digests, campaign_text, file_digests};
 use crate::recording::pendulum_angles::angles_of_entry;
 use crate::settings::files::fill_placeholders;
-use crate::settings::model::{Campaign, ImpactEntry, TimePlan};
-use crate::settings::read::CAMPAIGN_FILE;
-use serde_json::json;
+use crate::settings::model::{ImpactCampaign, ImpactEntry, TimePlan};
+use serde_json::{Map, Value, json};
 use windfall_contact::expression::LawExpression;
-use windfall_files::error::Error;
 use windfall_files::provenance::{REVISION, digest_text};
 use windfall_identify::rig::kind::Rig;
 
@@ -19,7 +16,7 @@ use windfall_identify::rig::kind::Rig;
 /// tables do not enter: changing them keeps the results.
 #[must_use]
 pub fn impact_key(
-    campaign: &Campaign,
+    campaign: &ImpactCampaign,
     entry: &ImpactEntry,
     law: &LawExpression,
     rig: &Rig,
@@ -27,11 +24,12 @@ pub fn impact_key(
 ) -> String {
     let filled = |text: &str| fill_placeholders(text, &entry.cells).unwrap_or_default();
     let channels: Vec<String> = campaign
+        .shared
         .files
         .channels
         .iter()
         .map(|plan| {
-            let time = match (&plan.time, &campaign.files.time) {
+            let time = match (&plan.time, &campaign.shared.files.time) {
                 (Some(own), _) => filled(own),
                 (None, TimePlan::Column(shared)) => filled(shared),
                 (None, TimePlan::Rate(rate)) => format!("{rate:?} Hz"),
@@ -62,8 +60,8 @@ pub fn impact_key(
         "impact": [entry.id, entry.specimen, entry.file],
         "range": format!("{:?} {:?}", entry.from, entry.to),
         "rig": format!("{rig:?}"),
-        "open": format!("{:?}", campaign.files.open),
-        "time_scale": format!("{:?}", campaign.files.time_scale),
+        "open": format!("{:?}", campaign.shared.files.open),
+        "time_scale": format!("{:?}", campaign.shared.files.time_scale),
         "channels": channels,
         "contact": campaign.contact,
         "angles": format!("{:?}", angles_of_entry(campaign, entry).ok()),
@@ -74,23 +72,19 @@ pub fn impact_key(
     digest_text(&everything.to_string())
 }
 
-/// Names and SHA-256 of all files that a run read, and its options as JSON: the
-/// campaign file word for word, and what was fitted in the end.
-///
-/// # Errors
-/// A file of the campaign can no longer be read.
-pub fn input_digests(
-    campaign: &Campaign,
-    recordings: &Digests,
-) -> Result<(Vec<(String, String)>, String), Error> {
-    let inputs = file_digests(&campaign.directory, recordings)?;
-    let text = campaign_text(&campaign.directory)?;
-    let options = json!({
-        CAMPAIGN_FILE: text,
-        "laws": campaign.fit.laws.iter().map(ToString::to_string).collect::<Vec<_>>(),
-        "free": campaign.fit.free,
-        "contact": campaign.contact,
-        "fit": campaign.fit.options,
-    });
-    Ok((inputs, options.to_string()))
+/// Options of a run beside campaign.toml: what was fitted in the end.
+#[must_use]
+pub fn run_options(campaign: &ImpactCampaign) -> Map<String, Value> {
+    let fit = &campaign.fit;
+    let laws: Vec<String> = fit.laws.iter().map(ToString::to_string).collect();
+    let options = [
+        ("laws", json!(laws)),
+        ("free", json!(fit.free)),
+        ("contact", json!(campaign.contact)),
+        ("fit", json!(fit.options)),
+    ];
+    options
+        .map(|(name, option)| (name.to_owned(), option))
+        .into_iter()
+        .collect()
 }

@@ -3,7 +3,7 @@
 use crate::error::CampaignError;
 use crate::recording::extract::extract_recording;
 use crate::result::outcome::MassOutcome;
-use crate::settings::model::{Campaign, ImpactEntry, MassPlan, RigPlan};
+use crate::settings::model::{ImpactCampaign, ImpactEntry, MassPlan, RigPlan};
 use rayon::prelude::*;
 use windfall_files::error::Error;
 use windfall_files::found::FindingOutcome;
@@ -30,7 +30,7 @@ pub struct RigFound {
 ///
 /// # Errors
 /// No impact shows the mass.
-pub fn find_rig(campaign: &Campaign) -> Result<RigFound, Error> {
+pub fn find_rig(campaign: &ImpactCampaign) -> Result<RigFound, Error> {
     match campaign.rig {
         RigPlan::Pendulum(pendulum) => Ok(known(Rig::Pendulum(pendulum), 0.0)),
         RigPlan::Carriage {
@@ -72,9 +72,10 @@ fn known(rig: Rig, sd: f64) -> RigFound {
     }
 }
 
-fn from_impulse(campaign: &Campaign, driving: Uncertain) -> Result<RigFound, Error> {
+fn from_impulse(campaign: &ImpactCampaign, driving: Uncertain) -> Result<RigFound, Error> {
     let measured: Vec<Result<Measured, String>> = campaign
-        .impacts
+        .shared
+        .entries
         .par_iter()
         .map(|entry| measured(campaign, entry, driving).map_err(|error| error.to_string()))
         .collect();
@@ -85,13 +86,14 @@ fn from_impulse(campaign: &Campaign, driving: Uncertain) -> Result<RigFound, Err
             .find_map(Result::err)
             .unwrap_or_default();
         return Err(Error::from(CampaignError::MassUnknown {
-            path: campaign.directory.clone(),
-            impacts: campaign.impacts.len(),
+            path: campaign.shared.directory.clone(),
+            impacts: campaign.shared.entries.len(),
             first,
         }));
     };
     let findings = campaign
-        .impacts
+        .shared
+        .entries
         .iter()
         .zip(&measured)
         .filter_map(|(entry, measured)| {
@@ -122,7 +124,7 @@ fn from_impulse(campaign: &Campaign, driving: Uncertain) -> Result<RigFound, Err
 
 /// What an impact that shows the mass measured.
 fn measured(
-    campaign: &Campaign,
+    campaign: &ImpactCampaign,
     entry: &ImpactEntry,
     driving: Uncertain,
 ) -> Result<Measured, Error> {
@@ -130,7 +132,7 @@ fn measured(
     mass_from_impulse(&impact.measured, driving)
         .map(|_| impact.measured)
         .map_err(|source| Error::Signal {
-            path: crate::recording::read::recording_path(&campaign.files, entry),
+            path: crate::recording::read::recording_path(&campaign.shared.files, entry),
             source: Box::new(source),
         })
 }

@@ -13,7 +13,6 @@ pub mod fit;
 pub mod groups;
 pub mod key;
 pub mod mass;
-pub mod request;
 pub mod run;
 pub mod text;
 pub mod two_stage;

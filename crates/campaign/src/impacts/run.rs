@@ -2,34 +2,29 @@
 
 use crate::impacts::card::card_of_fit;
 use crate::impacts::figure_impact::figure_of_impact;
-use crate::impacts::fit::{FitTask, fit_tasks};
-use crate::impacts::key::{impact_key, input_digests};
+use crate::impacts::fit::Fits;
 use crate::impacts::mass::{RigFound, find_rig};
-use crate::impacts::request::{FitRequest, PENDING, Reuse, apply_request};
-use crate::recording::digests::{Digests, recording_digests};
+use crate::pipeline::evaluate::{Evaluated, evaluate};
+use crate::pipeline::request::{FitRequest, Reuse, apply_request};
+use crate::recording::digests::Digests;
 use crate::recording::extract::extract_recording;
 use crate::recording::read::recording_path;
 use crate::recording::request::{RecordingRequest, campaign_of_file};
-use crate::result::outcome::{CampaignOutcome, ImpactOutcome, StatusOutcome};
+use crate::result::outcome::{CampaignOutcome, ImpactOutcome};
 use crate::result::summary::{summarise, summarise_groups};
-use crate::settings::model::{Campaign, ImpactEntry};
+use crate::settings::model::ImpactCampaign;
 use crate::settings::read::{CAMPAIGN_FILE, read_campaign};
-use crate::store::runs::{RunRecord, find_results, latest_run, write_run};
 use rayon::prelude::*;
-use std::collections::BTreeMap;
 use std::path::Path;
 use windfall_cards::law_use::{LawUse, findings_of_use};
 use windfall_cards::read_card::write_card;
 use windfall_contact::expression::typical;
 use windfall_draw::files::{FigureFolder, write_figure};
 use windfall_files::error::Error;
-use windfall_files::found::{FailureOutcome, FindingOutcome};
+use windfall_files::found::FindingOutcome;
 use windfall_files::on_threads::on_threads;
 use windfall_files::progress::Progress;
-use windfall_files::provenance::{VERSION, time_now};
-
-/// Name of the store in a campaign directory.
-pub const STORE_FILE: &str = "results.sqlite";
+use windfall_files::provenance::VERSION;
 
 /// Fits the impacts of a campaign and keeps the results in its store.
 ///
@@ -53,10 +48,10 @@ pub fn fit_campaign(
 /// A fitted campaign with what its results rest on.
 pub struct FittedCampaign {
     /// What its files say.
-    pub campaign: Campaign,
+    pub campaign: ImpactCampaign,
     /// The rig, with its mass.
     pub rig: RigFound,
-    /// Digests of its files.
+    /// Digests of its recordings.
     pub digests: Digests,
     /// Its results.
     pub outcome: CampaignOutcome,
@@ -73,7 +68,8 @@ pub fn fitted_campaign(
         false => read_campaign(directory)?,
     };
     apply_request(&mut campaign, request)?;
-    on_threads(request.threads, || fit(campaign, request, progress))
+    let reuse = Some(request.reuse);
+    on_threads(request.threads, || fit(campaign, reuse, request, progress))
 }
 
 /// Fits the impact in one recording that belongs to no campaign; what it needs
@@ -90,27 +86,12 @@ pub fn fit_recording(
 ) -> Result<CampaignOutcome, Error> {
     let mut campaign = campaign_of_file(file, recording)?;
     apply_request(&mut campaign, request)?;
-    on_threads(request.threads, || {
-        let rig = find_rig(&campaign)?;
-        let task = |law| FitTask {
-            impact: 0,
-            law,
-            key: None,
-            problem: None,
-        };
-        let tasks: Vec<FitTask> = (0..campaign.fit.laws.len()).map(task).collect();
-        let stored = BTreeMap::new();
-        let results = fit_tasks(&campaign, &rig, &tasks, &stored, progress)?;
-        let outcome = assemble(&campaign, &rig, &tasks, results, &stored).shown;
-        if let Some(folder) = &request.figures {
-            draw(&campaign, &rig, &outcome, folder)?;
-        }
-        Ok(outcome)
-    })
+    let fitted = on_threads(request.threads, || fit(campaign, None, request, progress))?;
+    Ok(fitted.outcome)
 }
 
 /// The campaign around a recording, with the impacts of that recording only.
-fn campaign_of_recording(file: &Path) -> Result<Campaign, Error> {
+fn campaign_of_recording(file: &Path) -> Result<ImpactCampaign, Error> {
     let real = |path: &Path| path.canonicalize().unwrap_or_else(|_| path.to_path_buf());
     let file = real(file);
     let above = file
@@ -130,11 +111,12 @@ fn campaign_of_recording(file: &Path) -> Result<Campaign, Error> {
         )
     })?;
     let mut campaign = read_campaign(directory)?;
-    let files = campaign.files.clone();
+    let files = campaign.shared.files.clone();
     campaign
-        .impacts
+        .shared
+        .entries
         .retain(|impact| real(&recording_path(&files, impact)) == file);
-    if campaign.impacts.is_empty() {
+    if campaign.shared.entries.is_empty() {
         let list = directory.join("impacts.csv");
         return Err(unusable(format!(
             "{} has no line with this recording; add one",
@@ -145,71 +127,42 @@ fn campaign_of_recording(file: &Path) -> Result<Campaign, Error> {
 }
 
 fn fit(
-    campaign: Campaign,
+    campaign: ImpactCampaign,
+    reuse: Option<Reuse>,
     request: &FitRequest,
     progress: Progress,
 ) -> Result<FittedCampaign, Error> {
-    let store = campaign.directory.join(STORE_FILE);
-    let digests = recording_digests(&campaign.directory, &campaign.files, &campaign.impacts);
     let rig = find_rig(&campaign)?;
-
-    // What each law on each impact depends on, and what the store knows of it.
-    let mut tasks: Vec<FitTask> = tasks(&campaign, &digests, &rig);
-    let keys: Vec<String> = tasks.iter().filter_map(|task| task.key.clone()).collect();
-    let stored = match request.reuse {
-        Reuse::Unchanged | Reuse::Only => find_results(&store, &keys)?,
-        Reuse::Nothing => {
-            // A store that could not be written is found out before the work.
-            latest_run(&store)?;
-            vec![None; keys.len()]
-        }
+    let fits = Fits {
+        campaign: &campaign,
+        rig: &rig,
     };
-    let stored: BTreeMap<String, ImpactOutcome> = keys
-        .iter()
-        .cloned()
-        .zip(stored)
-        .filter_map(|(key, found)| Some((key, found?)))
-        .collect();
-
-    if request.reuse == Reuse::Only {
-        for task in &mut tasks {
-            let known = task
-                .key
-                .as_ref()
-                .is_some_and(|key| stored.contains_key(key));
-            if !known && task.problem.is_none() {
-                task.problem = Some(PENDING.to_owned());
-            }
-        }
-    }
-    let results = fit_tasks(&campaign, &rig, &tasks, &stored, progress)?;
-    let mut outcome = assemble(&campaign, &rig, &tasks, results, &stored);
-    if request.reuse != Reuse::Only {
-        keep(&campaign, &store, &digests, &mut outcome)?;
-    }
+    let mut evaluated = evaluate(&fits, reuse, progress)?;
+    let digests = std::mem::take(&mut evaluated.digests);
+    let outcome = outcome_of(&fits, evaluated);
     if let Some(folder) = &request.figures {
-        draw(&campaign, &rig, &outcome.shown, folder)?;
+        draw(&campaign, &rig, &outcome, folder)?;
     }
     if let Some(path) = &request.card {
-        write_card(path, &card_of_fit(&campaign, &outcome.shown)?)?;
+        write_card(path, &card_of_fit(&campaign, &outcome)?)?;
     }
     Ok(FittedCampaign {
         campaign,
         rig,
         digests,
-        outcome: outcome.shown,
+        outcome,
     })
 }
 
 /// A figure of every impact that was fitted.
 fn draw(
-    campaign: &Campaign,
+    campaign: &ImpactCampaign,
     rig: &RigFound,
     outcome: &CampaignOutcome,
     folder: &FigureFolder,
 ) -> Result<(), Error> {
     let end = campaign.fit.options.end;
-    campaign.impacts.par_iter().try_for_each(|entry| {
+    campaign.shared.entries.par_iter().try_for_each(|entry| {
         let own = outcome
             .impacts
             .iter()
@@ -230,62 +183,11 @@ fn draw(
     })
 }
 
-fn tasks(campaign: &Campaign, digests: &Digests, rig: &RigFound) -> Vec<FitTask> {
-    let mut tasks = Vec::new();
-    for (index, entry) in campaign.impacts.iter().enumerate() {
-        let digest = &digests[&recording_path(&campaign.files, entry)];
-        for law in 0..campaign.fit.laws.len() {
-            let key = digest.as_ref().ok().map(|digest| {
-                impact_key(campaign, entry, &campaign.fit.laws[law], &rig.rig, digest)
-            });
-            let problem = digest.as_ref().err().cloned();
-            tasks.push(FitTask {
-                impact: index,
-                law,
-                key,
-                problem,
-            });
-        }
-    }
-    tasks
-}
-
-/// What is shown and what is kept.
-struct Assembled {
-    shown: CampaignOutcome,
-    keys: Vec<String>,
-}
-
-fn assemble(
-    campaign: &Campaign,
-    rig: &RigFound,
-    tasks: &[FitTask],
-    results: Vec<Result<ImpactOutcome, FailureOutcome>>,
-    stored: &BTreeMap<String, ImpactOutcome>,
-) -> Assembled {
-    let (mut impacts, mut failed, mut keys) = (Vec::new(), Vec::new(), Vec::new());
-    let mut status = StatusOutcome::default();
-    for (task, result) in tasks.iter().zip(results) {
-        match result {
-            Ok(mut impact) => {
-                let key = task.key.clone().unwrap_or_default();
-                match stored.contains_key(&key) {
-                    true => status.stored += 1,
-                    false => status.fitted += 1,
-                }
-                impact.group = group_of(campaign, &campaign.impacts[task.impact]);
-                keys.push(key);
-                impacts.push(impact);
-            }
-            Err(failure) => {
-                // A recording that cannot be read is one failure, not one per law.
-                if !failed.contains(&failure) {
-                    failed.push(failure);
-                }
-            }
-        }
-    }
-    status.failed = failed.len();
+/// Results with their summary.
+fn outcome_of(fits: &Fits, evaluated: Evaluated<ImpactOutcome>) -> CampaignOutcome {
+    let (campaign, rig) = (fits.campaign, fits.rig);
+    let items = evaluated.items.into_iter();
+    let impacts: Vec<ImpactOutcome> = items.map(|(_, impact)| impact).collect();
     let first_law: Vec<&ImpactOutcome> = impacts
         .iter()
         .filter(|i| Some(&i.law) == impacts.first().map(|first| &first.law))
@@ -297,23 +199,22 @@ fn assemble(
     let groups = summarise_groups(&impacts);
     let mut findings = rig.findings.clone();
     findings.extend(law_findings(campaign, &impacts));
-    let shown = CampaignOutcome {
+    CampaignOutcome {
         windfall: VERSION.to_owned(),
-        campaign: campaign.title.clone(),
-        simulated: campaign.simulated.clone(),
+        campaign: campaign.shared.title.clone(),
+        simulated: campaign.shared.simulated.clone(),
         effective_mass: rig.mass,
-        status,
+        status: evaluated.status,
         impacts,
-        failed,
+        failed: evaluated.failed,
         summary,
         groups,
         findings,
-    };
-    Assembled { shown, keys }
+    }
 }
 
 /// Remarks on the laws as they were used.
-fn law_findings(campaign: &Campaign, impacts: &[ImpactOutcome]) -> Vec<FindingOutcome> {
+fn law_findings(campaign: &ImpactCampaign, impacts: &[ImpactOutcome]) -> Vec<FindingOutcome> {
     let mut findings: Vec<FindingOutcome> = Vec::new();
     for law in &campaign.fit.laws {
         let Ok(typical) = typical(law.kind).complete() else {
@@ -339,55 +240,4 @@ fn law_findings(campaign: &Campaign, impacts: &[ImpactOutcome]) -> Vec<FindingOu
         }
     }
     findings
-}
-
-fn group_of(campaign: &Campaign, entry: &ImpactEntry) -> Option<String> {
-    let column = campaign.group.as_ref()?;
-    let specimen = campaign
-        .specimens
-        .iter()
-        .find(|specimen| specimen.id == entry.specimen);
-    let specimen_cells = specimen.map_or(&[][..], |specimen| &specimen.cells);
-    let mut cells = specimen_cells.iter().chain(&entry.cells);
-    cells
-        .find(|(name, _)| name == column)
-        .map(|(_, cell)| cell.clone())
-}
-
-/// Writes the run, unless the newest one in the store is the same.
-fn keep(
-    campaign: &Campaign,
-    store: &Path,
-    digests: &Digests,
-    outcome: &mut Assembled,
-) -> Result<(), Error> {
-    // A run of nothing but failures is told, not kept.
-    if outcome.keys.is_empty() {
-        return Ok(());
-    }
-    let same = latest_run(store)?
-        .is_some_and(|run| run.keys == outcome.keys && run.failures == outcome.shown.failed);
-    if same && outcome.shown.status.fitted == 0 {
-        outcome.shown.status.up_to_date = true;
-        return Ok(());
-    }
-    let (inputs, options) = input_digests(campaign, digests)?;
-    let results = outcome
-        .keys
-        .iter()
-        .cloned()
-        .zip(outcome.shown.impacts.iter().cloned());
-    write_run(
-        store,
-        &RunRecord {
-            time: time_now(),
-            windfall: VERSION.to_owned(),
-            options,
-            seed: None,
-            inputs,
-            results: results.collect(),
-            documents: Vec::new(),
-            failures: outcome.shown.failed.clone(),
-        },
-    )
 }

@@ -6,6 +6,7 @@ use crate::impacts::groups::{
 };
 use crate::result::outcome::{CampaignOutcome, ImpactOutcome};
 use crate::result::quantity::quantities_named;
+use itertools::Itertools;
 use std::fmt::Write;
 use windfall_files::text::number::{plain, value_and_sd};
 use windfall_files::text::table::{page_tables, paragraph};
@@ -83,12 +84,12 @@ pub fn mass_line(outcome: &CampaignOutcome) -> String {
 
 /// Laws in order of first appearance.
 pub fn laws_of(outcome: &CampaignOutcome) -> Vec<&str> {
-    let mut laws: Vec<&str> = Vec::new();
-    for impact in &outcome.impacts {
-        if !laws.contains(&impact.law.as_str()) {
-            laws.push(&impact.law);
-        }
-    }
+    let laws: Vec<&str> = outcome
+        .impacts
+        .iter()
+        .map(|impact| impact.law.as_str())
+        .unique()
+        .collect();
     laws
 }
 

@@ -1,9 +1,10 @@
 //! Results of campaigns that fit no impacts: values with uncertainties under
 //! names, saved in the store, shown as text, JSON or CSV.
 
-use crate::measure::evaluate::Document;
+use crate::pipeline::evaluate::Document;
 use crate::result::outcome::StatusOutcome;
 use crate::store::documents::StoredValue;
+use itertools::Itertools;
 use serde::{Deserialize, Serialize};
 use windfall_files::found::spread;
 use windfall_files::found::{FailureOutcome, FindingOutcome, SpreadOutcome};
@@ -46,7 +47,7 @@ pub fn value_with_sd(value: f64, sd: f64, unit: &str) -> MeasuredValue {
 }
 
 /// What was found in one recording, or of one specimen.
-#[derive(Clone, Debug, PartialEq, Serialize, utoipa::ToSchema, Deserialize)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, utoipa::ToSchema, Deserialize)]
 pub struct MeasuredItem {
     /// Id of the recording, or of the specimen.
     pub id: String,
@@ -110,7 +111,18 @@ pub struct MeasuredGroup {
     pub values: Named<SpreadOutcome>,
 }
 
-/// A column of the tables for people.
+/// Columns of the tables that people read.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct ShownTables {
+    /// Of recordings.
+    pub items: &'static [ShownValue],
+    /// Of their parts.
+    pub parts: &'static [ShownValue],
+    /// Of specimens and of the whole.
+    pub specimens: &'static [ShownValue],
+}
+
+/// A column of the tables that people read.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ShownValue {
     /// Name among the parameters or the derived values.
@@ -151,15 +163,19 @@ pub struct MeasuredOutcome {
     pub groups: Vec<MeasuredGroup>,
     /// What a reader of the whole must know.
     pub findings: Vec<FindingOutcome>,
-    /// What the tables of recordings show.
+    /// Columns of the tables that people read.
     #[serde(skip)]
-    pub shown: Vec<ShownValue>,
-    /// What the table of parts shows.
-    #[serde(skip)]
-    pub shown_of_parts: Vec<ShownValue>,
-    /// What the tables of specimens and of the whole show.
-    #[serde(skip)]
-    pub shown_of_specimens: Vec<ShownValue>,
+    pub shown: ShownTables,
+}
+
+/// A column of the tables that people read.
+#[must_use]
+pub const fn shown(name: &'static str, heading: &'static str, factor: f64) -> ShownValue {
+    ShownValue {
+        name,
+        heading,
+        factor,
+    }
 }
 
 /// A value of an item by its name.
@@ -171,12 +187,11 @@ pub fn value_of<'a>(item: &'a MeasuredItem, name: &str) -> Option<&'a MeasuredVa
 /// Laws or methods in order of first appearance.
 #[must_use]
 pub fn laws_of(items: &[MeasuredItem]) -> Vec<&str> {
-    let mut laws: Vec<&str> = Vec::new();
-    for item in items {
-        if !laws.contains(&item.law.as_str()) {
-            laws.push(&item.law);
-        }
-    }
+    let laws: Vec<&str> = items
+        .iter()
+        .map(|item| item.law.as_str())
+        .unique()
+        .collect();
     laws
 }
 
@@ -214,12 +229,11 @@ pub fn spread_of(items: &[MeasuredItem], law: &str, group: Option<&str>) -> Meas
 /// Spread per law and group, in order of first appearance.
 #[must_use]
 pub fn groups_of(items: &[MeasuredItem]) -> Vec<MeasuredGroup> {
-    let mut names: Vec<&str> = Vec::new();
-    for name in items.iter().filter_map(|item| item.group.as_deref()) {
-        if !names.contains(&name) {
-            names.push(name);
-        }
-    }
+    let names: Vec<&str> = items
+        .iter()
+        .filter_map(|item| item.group.as_deref())
+        .unique()
+        .collect();
     let mut groups = Vec::new();
     for law in laws_of(items) {
         match names.is_empty() {

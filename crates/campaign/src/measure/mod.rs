@@ -1,10 +1,8 @@
 //! What campaigns share that fit no impacts.
 
 pub mod any_outcome;
-pub mod evaluate;
-pub mod item_campaign;
+pub mod kind;
 pub mod measured;
-pub mod reported_items;
-pub mod request;
+pub mod run;
 pub mod text;
 pub mod words;

@@ -4,6 +4,7 @@ use crate::measure::measured::{
     MeasuredItem, MeasuredOutcome, MeasuredValue, ShownValue, laws_of, spread_of, value_of,
 };
 use crate::settings::kind::CampaignKind;
+use itertools::Itertools;
 use std::fmt::Write;
 use windfall_files::error::Error;
 use windfall_files::found::{FailureOutcome, FindingOutcome};
@@ -25,13 +26,18 @@ pub fn text_of_measured(outcome: &MeasuredOutcome) -> String {
         let label = format!("SIMULATED recordings: {label}");
         let _ = writeln!(text, "{}", paragraph(&label, 2));
     }
-    let of_specimens = &outcome.shown_of_specimens;
+    let of_specimens = outcome.shown.specimens;
     for law in laws_of(&outcome.impacts) {
         let items = of_law(&outcome.impacts, law);
         // A recording holds several taps; groups of fruit, not of taps, have a spread.
         let (each, over, shown, spread) = match of_taps(outcome) {
             true => ("tap", "fruit", of_specimens, &outcome.specimens),
-            false => ("recording", "recordings", &outcome.shown, &outcome.impacts),
+            false => (
+                "recording",
+                "recordings",
+                outcome.shown.items,
+                &outcome.impacts,
+            ),
         };
         match items.len() {
             n if n > LISTED => {
@@ -42,7 +48,7 @@ pub fn text_of_measured(outcome: &MeasuredOutcome) -> String {
                     text,
                     "\n{law}: each {each} (± standard deviation of the estimate)"
                 );
-                let _ = writeln!(text, "{}", items_table(each, &items, &outcome.shown));
+                let _ = writeln!(text, "{}", items_table(each, &items, outcome.shown.items));
             }
         }
         if of_law(spread, law).len() > 1 {
@@ -52,7 +58,7 @@ pub fn text_of_measured(outcome: &MeasuredOutcome) -> String {
         }
     }
     for (what, items, shown) in [
-        ("part", &outcome.parts, &outcome.shown_of_parts),
+        ("part", &outcome.parts, outcome.shown.parts),
         ("specimen", &outcome.specimens, of_specimens),
         ("campaign", &outcome.whole, of_specimens),
     ] {
@@ -86,7 +92,7 @@ fn shown_value(value: &MeasuredValue, factor: f64) -> String {
 fn items_table(what: &str, items: &[&MeasuredItem], shown: &[ShownValue]) -> String {
     let cells = items_cells(what, items, shown);
     // Words stand last: they have no place among the headings of values.
-    let words = words_of(items).len();
+    let words = words_of(items.iter().copied()).len();
     let mut left = vec![0];
     left.extend(is_named(what, items).then_some(1));
     left.extend(cells.header.len() - words..cells.header.len());
@@ -94,14 +100,9 @@ fn items_table(what: &str, items: &[&MeasuredItem], shown: &[ShownValue]) -> Str
 }
 
 /// Names of the words that items have.
-fn words_of<'a>(items: &[&'a MeasuredItem]) -> Vec<&'a str> {
-    let mut words: Vec<&str> = Vec::new();
-    for (name, _) in items.iter().flat_map(|item| &item.words.0) {
-        if !words.contains(&name.as_str()) {
-            words.push(name);
-        }
-    }
-    words
+fn words_of<'a>(items: impl IntoIterator<Item = &'a MeasuredItem>) -> Vec<&'a str> {
+    let words = items.into_iter().flat_map(|item| &item.words.0);
+    words.map(|(name, _)| name.as_str()).unique().collect()
 }
 
 /// Whether items have a name beside that of their specimen.
@@ -122,7 +123,7 @@ pub fn items_cells(what: &str, items: &[&MeasuredItem], shown: &[ShownValue]) ->
                 .any(|item| value_of(item, column.name).is_some())
         })
         .collect();
-    let (words, named) = (words_of(items), is_named(what, items));
+    let (words, named) = (words_of(items.iter().copied()), is_named(what, items));
     let mut header = vec![what.to_owned()];
     header.extend(named.then(|| "specimen".to_owned()));
     header.extend(present.iter().map(|column| column.heading.to_owned()));
@@ -281,8 +282,14 @@ pub fn csv_of_items(items: &[MeasuredItem], simulated: Option<&str>) -> Result<S
         }
         header.extend(column.unit.then(|| format!("{}_unit", column.name)));
     }
-    let words = word_names(items);
-    header.extend(words.iter().map(|word| (*word).to_owned()));
+    let words = words_of(items);
+    // A word may have the name of a number: the column of the number keeps it.
+    header.extend(words.iter().map(
+        |word| match columns.iter().any(|column| column.heading == *word) {
+            true => format!("{word}_text"),
+            false => (*word).to_owned(),
+        },
+    ));
     header.extend(["findings", "simulated"].map(str::to_owned));
     let rows = items.iter().map(|item| {
         let mut row = vec![
@@ -326,16 +333,11 @@ struct Column<'a> {
 }
 
 fn columns_of(items: &[MeasuredItem]) -> Vec<Column<'_>> {
-    let mut names: Vec<&str> = Vec::new();
-    for item in items {
-        for (name, _) in item.parameters.0.iter().chain(&item.derived.0) {
-            if !names.contains(&name.as_str()) {
-                names.push(name);
-            }
-        }
-    }
+    let values = items
+        .iter()
+        .flat_map(|item| item.parameters.0.iter().chain(&item.derived.0));
+    let names = values.map(|(name, _)| name.as_str()).unique();
     names
-        .into_iter()
         .map(|name| {
             let values: Vec<&MeasuredValue> = items
                 .iter()
@@ -368,16 +370,6 @@ pub fn heading(name: &str, unit: &str) -> String {
             unit.replace(['/', ' '], "_").replace(['^', '(', ')'], "")
         ),
     }
-}
-
-fn word_names(items: &[MeasuredItem]) -> Vec<&str> {
-    let mut names: Vec<&str> = Vec::new();
-    for (name, _) in items.iter().flat_map(|item| &item.words.0) {
-        if !names.contains(&name.as_str()) {
-            names.push(name);
-        }
-    }
-    names
 }
 
 fn number(value: Option<f64>) -> String {

@@ -1,9 +1,10 @@
 //! SHA-256 of the files of a campaign.
 
 use crate::recording::read::recording_path;
-use crate::settings::model::{FilePlan, ImpactEntry};
+use crate::settings::model::{Campaign, FilePlan, ImpactEntry};
 use crate::settings::read::CAMPAIGN_FILE;
 use rayon::prelude::*;
+use serde_json::{Map, Value, json};
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use windfall_files::error::Error;
@@ -56,14 +57,27 @@ fn absent(directory: &Path, entry: &ImpactEntry, path: &Path) -> String {
     .to_string()
 }
 
-/// Names and SHA-256 of all files of a campaign that could be read.
+/// What the results of a run rest on.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct RunOrigin {
+    /// Names and SHA-256 of all files that were read.
+    pub inputs: Vec<(String, String)>,
+    /// Options as JSON: campaign.toml word for word, and what else was decided.
+    pub options: String,
+}
+
+/// What the results of a run rest on.
+///
+/// * `decided`: options that are kept beside campaign.toml
 ///
 /// # Errors
 /// A table of the campaign can no longer be read.
-pub fn file_digests(
-    directory: &Path,
+pub fn run_origin(
+    campaign: &Campaign,
     recordings: &Digests,
-) -> Result<Vec<(String, String)>, Error> {
+    decided: Map<String, Value>,
+) -> Result<RunOrigin, Error> {
+    let directory = &campaign.directory;
     let mut inputs = Vec::new();
     for name in [CAMPAIGN_FILE, "specimens.csv", "impacts.csv"] {
         let path = directory.join(name);
@@ -77,7 +91,12 @@ pub fn file_digests(
             inputs.push((name.display().to_string(), digest.clone()));
         }
     }
-    Ok(inputs)
+    let mut options = json!({ CAMPAIGN_FILE: campaign_text(directory)? });
+    for (name, option) in decided {
+        options[name] = option;
+    }
+    let options = options.to_string();
+    Ok(RunOrigin { inputs, options })
 }
 
 /// campaign.toml, word for word.

@@ -1,7 +1,7 @@
 //! One entry of impacts.csv → one impact.
 
 use crate::recording::read::{read_recording, recording_path};
-use crate::settings::model::{Campaign, ImpactEntry};
+use crate::settings::model::{ImpactCampaign, ImpactEntry};
 use windfall_files::error::Error;
 use windfall_signal::impact::Impact;
 use windfall_signal::recording::Recording;
@@ -15,11 +15,11 @@ use windfall_signal::{Finding, extract_impact};
 /// # Errors
 /// The recording cannot be read, or shows no impact.
 pub fn extract_recording(
-    campaign: &Campaign,
+    campaign: &ImpactCampaign,
     entry: &ImpactEntry,
     effective_mass: Option<f64>,
 ) -> Result<(Impact, Vec<Finding>), Error> {
-    let recording = read_recording(&campaign.files, entry)?;
+    let recording = read_recording(&campaign.shared.files, entry)?;
     extract_entry(campaign, entry, &recording, effective_mass)
 }
 
@@ -28,7 +28,7 @@ pub fn extract_recording(
 /// # Errors
 /// The recording shows no impact.
 pub fn extract_entry(
-    campaign: &Campaign,
+    campaign: &ImpactCampaign,
     entry: &ImpactEntry,
     recording: &Recording,
     effective_mass: Option<f64>,
@@ -42,7 +42,7 @@ pub fn extract_entry(
         };
     }
     extract_impact(recording, &options).map_err(|source| Error::Signal {
-        path: recording_path(&campaign.files, entry),
+        path: recording_path(&campaign.shared.files, entry),
         source: Box::new(source),
     })
 }

@@ -2,7 +2,7 @@
 //! in impacts.csv.
 
 use crate::result::outcome::ImpactOutcome;
-use crate::settings::model::{Campaign, ImpactEntry, RigPlan};
+use crate::settings::model::{ImpactCampaign, ImpactEntry, RigPlan};
 use windfall_files::error::Error;
 use windfall_files::found::FindingOutcome;
 use windfall_files::text::cell_quantity::cell_quantity;
@@ -17,10 +17,10 @@ const DISAGREES: f64 = 0.05;
 /// # Errors
 /// A cell is no positive number.
 pub fn angles_of_entry(
-    campaign: &Campaign,
+    campaign: &ImpactCampaign,
     entry: &ImpactEntry,
 ) -> Result<[Option<f64>; 2], Error> {
-    let file = campaign.directory.join("impacts.csv");
+    let file = campaign.shared.directory.join("impacts.csv");
     let angle = |name| cell_quantity(&entry.cells, name, "rad", &file);
     Ok([angle("release_angle")?, angle("rebound_angle")?])
 }
@@ -30,7 +30,7 @@ pub fn angles_of_entry(
 /// # Errors
 /// A cell is no positive number.
 pub fn add_angles(
-    campaign: &Campaign,
+    campaign: &ImpactCampaign,
     entry: &ImpactEntry,
     outcome: &mut ImpactOutcome,
 ) -> Result<(), Error> {

@@ -1,8 +1,10 @@
 //! One recording without a campaign: what campaign.toml would say, as options.
 
 use crate::settings::channels::{KINDS, Kind, parse_scale};
+use crate::settings::kind::CampaignKind;
 use crate::settings::model::{
-    Campaign, ChannelPlan, FilePlan, FitPlan, ImpactEntry, MassPlan, RigPlan, TimePlan,
+    Campaign, ChannelPlan, FilePlan, FitPlan, ImpactCampaign, ImpactEntry, MassPlan, RigPlan,
+    TimePlan,
 };
 use crate::settings::rig::{FROM_IMPULSE, STANDARD_GRAVITY};
 use std::path::Path;
@@ -51,7 +53,7 @@ pub struct RecordingRequest {
 ///
 /// # Errors
 /// An option is missing or cannot be used.
-pub fn campaign_of_file(file: &Path, request: &RecordingRequest) -> Result<Campaign, Error> {
+pub fn campaign_of_file(file: &Path, request: &RecordingRequest) -> Result<ImpactCampaign, Error> {
     if !file.is_file() {
         let advice = "with --rig the argument is one recording; check its name";
         return Err(Error::FileAbsent {
@@ -77,23 +79,15 @@ pub fn campaign_of_file(file: &Path, request: &RecordingRequest) -> Result<Campa
         let problem = "name at least one channel, such as --channel force=F:N";
         return Err(unusable("--channel", problem));
     }
-    Ok(Campaign {
+    let shared = Campaign {
         directory,
+        kind: CampaignKind::Impacts,
         title: file.display().to_string(),
         simulated: None,
-        contact: extract_options(request, &rig)?,
-        rig,
         files,
-        fit: FitPlan {
-            laws: Vec::new(),
-            user: Vec::new(),
-            free: Vec::new(),
-            options: FitOptions::default(),
-        },
         group: None,
-        covariates: Vec::new(),
         specimens: Vec::new(),
-        impacts: vec![ImpactEntry {
+        entries: vec![ImpactEntry {
             id: name(file.file_stem()),
             specimen: name(file.file_stem()),
             file: name(file.file_name()),
@@ -102,6 +96,18 @@ pub fn campaign_of_file(file: &Path, request: &RecordingRequest) -> Result<Campa
             to: None,
             cells: Vec::new(),
         }],
+    };
+    Ok(ImpactCampaign {
+        shared,
+        contact: extract_options(request, &rig)?,
+        rig,
+        fit: FitPlan {
+            laws: Vec::new(),
+            user: Vec::new(),
+            free: Vec::new(),
+            options: FitOptions::default(),
+        },
+        covariates: Vec::new(),
     })
 }
 

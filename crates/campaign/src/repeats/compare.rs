@@ -2,6 +2,7 @@
 
 use crate::repeats::pairs::{Pair, Pairs, difference_of};
 use crate::repeats::read::{Margin, RepeatsCampaign};
+use itertools::Itertools;
 use windfall_files::found::FindingOutcome;
 use windfall_signal::repeat::align::CHANGES;
 use windfall_signal::repeat::criterion::{
@@ -127,12 +128,13 @@ fn reference(campaign: &RepeatsCampaign, pairs: &Pairs, compared: &mut Compared)
 
 /// Specimens that can be damaged, in order of first appearance.
 fn fruit_of(pairs: &Pairs) -> Vec<String> {
-    let mut fruit: Vec<String> = Vec::new();
-    for pair in pairs.pairs.iter().filter(|pair| !pair.reference) {
-        if !fruit.contains(&pair.specimen) {
-            fruit.push(pair.specimen.clone());
-        }
-    }
+    let fruit: Vec<String> = pairs
+        .pairs
+        .iter()
+        .filter(|pair| !pair.reference)
+        .map(|pair| pair.specimen.clone())
+        .unique()
+        .collect();
     fruit
 }
 

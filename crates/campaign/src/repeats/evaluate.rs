@@ -1,8 +1,8 @@
 //! One impact of a campaign of repeated impacts.
 
 use crate::error::CampaignError;
-use crate::measure::evaluate::Document;
 use crate::measure::measured::{MeasuredItem, MeasuredItems, plain_value, value_with_sd};
+use crate::pipeline::evaluate::Document;
 use crate::recording::read::recording_path;
 use crate::repeats::read::{RepeatsCampaign, cell_of, energy_of};
 use crate::settings::model::ImpactEntry;

@@ -1,21 +1,22 @@
 //! campaign.toml of impacts repeated on one spot → [`RepeatsCampaign`].
 
 use crate::error::CampaignError;
-use crate::measure::item_campaign::{ItemCampaign, SharedFile, read_item_campaign, specimen_of};
 use crate::repeats::file::{ComparisonFile, RepeatsFile};
 use crate::settings::channels::channel_plans;
 use crate::settings::conditioning::conditioning_plan;
 use crate::settings::files::check_format;
 use crate::settings::kind::CampaignKind;
+use crate::settings::model::Campaign;
 use crate::settings::model::ImpactEntry;
 use crate::settings::read::CAMPAIGN_FILE;
 use crate::settings::rig::STANDARD_GRAVITY;
+use crate::settings::shared::{SharedFile, read_shared};
 use std::path::Path;
 use toml::Spanned;
 use windfall_files::error::{Error, Place};
 use windfall_files::text::cell_quantity::cell_quantity;
 use windfall_files::text::toml_source::{
-    Needed, TomlSource, choice, invalid, optional_quantity, parse_source, read_source,
+    Needed, TomlSource, choice, number_that, optional_quantity, parse_source, read_source, refused,
 };
 use windfall_signal::conditioning::Conditioning;
 use windfall_signal::repeat::align::{AlignOptions, Alignment};
@@ -26,7 +27,7 @@ use windfall_signal::repeat::threshold::Family;
 #[derive(Clone, Debug)]
 pub struct RepeatsCampaign {
     /// What all kinds share.
-    pub shared: ItemCampaign,
+    pub shared: Campaign,
     /// Mass that falls, where the campaign has one for all; kg.
     pub mass: Option<f64>,
     /// Acceleration of gravity; m/s².
@@ -68,13 +69,7 @@ pub fn read_repeats(directory: &Path) -> Result<RepeatsCampaign, Error> {
     let source = read_source(&directory.join(CAMPAIGN_FILE), ADVICE)?;
     let file: RepeatsFile = parse_source(&source)?;
     check_format(&source, file.format.as_ref())?;
-    let needed = |key, meaning, unit, example| Needed {
-        table: "[rig]",
-        key,
-        meaning,
-        unit,
-        example,
-    };
+    let needed = |key, meaning, unit, example| Needed::of("[rig]", key, meaning, unit, example);
     let mass = needed("mass", "mass that falls", "kg", "mass = \"200 g\"");
     let gravity = needed(
         "gravity",
@@ -103,7 +98,7 @@ pub fn read_repeats(directory: &Path) -> Result<RepeatsCampaign, Error> {
         align: align(&source, &file.repeats)?,
         test: test(&source, &file.repeats)?,
         family: family(&source, &file.repeats)?,
-        shared: read_item_campaign(&source, directory, kind, &shared, channels)?,
+        shared: read_shared(&source, directory, kind, &shared, channels)?,
     };
     for entry in &campaign.shared.entries {
         energy_of(&campaign, entry)?;
@@ -121,17 +116,9 @@ fn number(
     key: &str,
     (low, high): (f64, f64),
 ) -> Result<Option<f64>, Error> {
-    match value {
-        None => Ok(None),
-        Some(value) if *value.get_ref() > low && *value.get_ref() < high => {
-            Ok(Some(*value.get_ref()))
-        }
-        Some(value) => {
-            let problem = format!("expected a number between {low} and {high}");
-            let text = value.get_ref().to_string();
-            Err(invalid(source, &value.span(), (TABLE, key), &text, problem))
-        }
-    }
+    let expected = format!("a number between {low} and {high}");
+    let fits = |number| number > low && number < high;
+    number_that(source, value, (TABLE, key), fits, &expected)
 }
 
 fn margin(source: &TomlSource, file: &ComparisonFile) -> Result<Margin, Error> {
@@ -140,10 +127,13 @@ fn margin(source: &TomlSource, file: &ComparisonFile) -> Result<Margin, Error> {
     let deviations = number(source, deviations, "margin_deviations", (0.0, 100.0))?;
     match (given, &file.margin_deviations) {
         (Some(_), Some(twice)) => {
-            let problem = "`margin` is given too; keep one of them".to_owned();
-            let text = twice.get_ref().to_string();
-            let key = (TABLE, "margin_deviations");
-            Err(invalid(source, &twice.span(), key, &text, problem))
+            let problem = "`margin` is given too; keep one of them";
+            Err(refused(
+                source,
+                twice,
+                (TABLE, "margin_deviations"),
+                problem,
+            ))
         }
         (Some(margin), None) => Ok(Margin::Given(margin)),
         (None, _) => Ok(Margin::Deviations(deviations.unwrap_or(DEVIATIONS))),
@@ -170,24 +160,12 @@ fn align(source: &TomlSource, file: &ComparisonFile) -> Result<AlignOptions, Err
 fn test(source: &TomlSource, file: &ComparisonFile) -> Result<SignFlipOptions, Error> {
     let defaults = SignFlipOptions::default();
     let level = number(source, file.level.as_ref(), "level", (0.0, 0.5))?;
-    let draws = match &file.draws {
-        None => defaults.draws,
-        Some(draws) if (99..=1_000_000).contains(draws.get_ref()) => *draws.get_ref() as usize,
-        Some(draws) => {
-            let problem = "expected a number from 99 to 1000000".to_owned();
-            let text = draws.get_ref().to_string();
-            return Err(invalid(
-                source,
-                &draws.span(),
-                (TABLE, "draws"),
-                &text,
-                problem,
-            ));
-        }
-    };
+    let (key, fits) = ((TABLE, "draws"), |draws| (99..=1_000_000).contains(&draws));
+    let expected = "a number from 99 to 1000000";
+    let draws = number_that(source, file.draws.as_ref(), key, fits, expected)?;
     Ok(SignFlipOptions {
         level: level.unwrap_or(defaults.level),
-        draws,
+        draws: draws.map_or(defaults.draws, |draws| draws as usize),
         seed: file.seed.unwrap_or(defaults.seed),
         ..defaults
     })
@@ -227,7 +205,7 @@ pub fn energy_of(campaign: &RepeatsCampaign, entry: &ImpactEntry) -> Result<f64,
 /// A cell of an entry or of its specimen; empty where there is none.
 #[must_use]
 pub fn cell_of<'a>(campaign: &'a RepeatsCampaign, entry: &'a ImpactEntry, name: &str) -> &'a str {
-    let specimen = specimen_of(&campaign.shared, entry);
+    let specimen = campaign.shared.specimen_of(entry);
     let cells = specimen.map_or(&[][..], |specimen| &specimen.cells);
     let mut all = entry.cells.iter().chain(cells);
     all.find(|(column, _)| column == name)

@@ -1,41 +1,26 @@
-//! `windfall fit DIR` for a campaign of impacts repeated on one spot.
+//! Repeated impacts as a measurement: impact after impact on one spot → critical energy.
 
-use crate::impacts::request::FitRequest;
-use crate::impacts::run::STORE_FILE;
-use crate::measure::any_outcome::AnyOutcome;
-use crate::measure::evaluate::{Evaluation, evaluate};
+use crate::measure::kind::{FoundItems, MeasuredResults, Measurement};
 use crate::measure::measured::{
-    MeasuredItem, MeasuredOutcome, MeasuredValue, ShownValue, groups_of, plain_value,
+    MeasuredItem, MeasuredValue, ShownTables, ShownValue, plain_value, shown,
 };
-use crate::measure::reported_items::ReportedItems;
-use crate::measure::request::apply_request_to_items;
 use crate::repeats::compare::{Compared, Comparison, FruitResult, compare_repeats};
 use crate::repeats::evaluate::{RepeatImpact, evaluate_impact};
 use crate::repeats::figure::figure_of_comparison;
 use crate::repeats::methods::methods_of_repeats;
 use crate::repeats::pairs::pairs_of;
 use crate::repeats::read::{RepeatsCampaign, cell_of, energy_of, read_repeats};
-use crate::result::outcome::StatusOutcome;
+use crate::settings::model::{Campaign, ImpactEntry};
 use std::path::Path;
-use windfall_draw::files::{NamedFigure, file_name, write_figures};
+use windfall_draw::files::{NamedFigure, file_name};
 use windfall_files::error::Error;
 use windfall_files::found::FindingOutcome;
 use windfall_files::named::Named;
-use windfall_files::on_threads::on_threads;
-use windfall_files::progress::Progress;
-use windfall_files::provenance::VERSION;
+use windfall_signal::recording::Recording;
 use windfall_signal::repeat::align::CHANGES;
 use windfall_signal::repeat::equivalence::Verdict;
 use windfall_signal::repeat::threshold::{ProfiledValue, Threshold};
 use windfall_signal::repeat::turnbull::quantile_of;
-
-const fn shown(name: &'static str, heading: &'static str, factor: f64) -> ShownValue {
-    ShownValue {
-        name,
-        heading,
-        factor,
-    }
-}
 
 /// What the table of impacts shows.
 const SHOWN: [ShownValue; 4] = [
@@ -56,145 +41,109 @@ const SHOWN_OF_SPECIMENS: [ShownValue; 4] = [
 /// Shares of fruit below this are none; 1.
 const LEAST_SHARE: f64 = 1e-6;
 
-/// Evaluates a campaign of repeated impacts and keeps the impacts in its store.
-///
-/// # Errors
-/// The campaign or the request is wrong, or the store cannot be used.
-pub fn fit_repeats(
-    directory: &Path,
-    request: &FitRequest,
-    progress: Progress,
-) -> Result<AnyOutcome, Error> {
-    let campaign = campaign_of(directory, request)?;
-    on_threads(request.threads, || {
-        let (outcome, figures) = evaluated(&campaign, request, progress)?;
-        if let Some(folder) = &request.figures {
-            write_figures(folder, &figures.iter().collect::<Vec<_>>())?;
-        }
-        Ok(AnyOutcome::Measured(Box::new(outcome)))
-    })
-}
+impl Measurement for RepeatsCampaign {
+    type Found = RepeatImpact;
 
-/// [`fit_repeats`], with what a report says and shows of it.
-pub fn reported_repeats(
-    directory: &Path,
-    request: &FitRequest,
-    progress: Progress,
-) -> Result<ReportedItems, Error> {
-    let campaign = campaign_of(directory, request)?;
-    on_threads(request.threads, || {
-        let (outcome, figures) = evaluated(&campaign, request, progress)?;
-        Ok(ReportedItems {
-            figures,
-            shown: "Every energy, over all fruit.".to_owned(),
-            methods: methods_of_repeats(&campaign),
-            outcome,
-            campaign: campaign.shared,
-        })
-    })
-}
-
-fn campaign_of(directory: &Path, request: &FitRequest) -> Result<RepeatsCampaign, Error> {
-    let mut campaign = read_repeats(directory)?;
-    apply_request_to_items(&mut campaign.shared, request)?;
-    Ok(campaign)
-}
-
-/// The results, and a figure of each comparison.
-fn evaluated(
-    campaign: &RepeatsCampaign,
-    request: &FitRequest,
-    progress: Progress,
-) -> Result<(MeasuredOutcome, Vec<NamedFigure>), Error> {
-    let evaluated = evaluate::<RepeatImpact>(
-        &Evaluation {
-            campaign: &campaign.shared,
-            store: &campaign.shared.directory.join(STORE_FILE),
-            reuse: request.reuse,
-            depends_on: &|entry| {
-                let (column, _) = &campaign.reference;
-                let cells = [column, "spot", "repeat"].map(|c| cell_of(campaign, entry, c));
-                let energy = energy_of(campaign, entry).ok();
-                format!(
-                    "{:?} {:?} {:?} {cells:?} {energy:?}",
-                    campaign.align, campaign.conditioning, campaign.reference
-                )
-            },
-            work: &|entry, recording| evaluate_impact(campaign, entry, recording),
-        },
-        progress,
-    )?;
-    let impacts: Vec<RepeatImpact> = evaluated.items.into_iter().map(|(_, item)| item).collect();
-    let pairs = pairs_of(&impacts, &campaign.align);
-    let compared = compare_repeats(campaign, &pairs);
-    let figures = compared.comparisons.iter().enumerate();
-    let figures = figures.map(|(index, comparison)| {
-        let name = name_of(comparison.energy, comparison.order);
-        NamedFigure {
-            caption: format!(
-                "{name}: mean curves of both impacts, their differences as parts of the first \
-                 peak, and the test statistic with its critical level."
-            ),
-            figure: figure_of_comparison(&name, &pairs, &compared, index),
-            name: file_name(&name),
-        }
-    });
-    let figures: Vec<NamedFigure> = figures.collect();
-    let items: Vec<MeasuredItem> = impacts.into_iter().map(|impact| impact.item).collect();
-    let mut findings = compared.findings.clone();
-    if !pairs.alone.is_empty() {
-        findings.push(FindingOutcome {
-            code: "impact-alone".to_owned(),
-            message: format!(
-                "no second impact on the same spot at the same energy: {}",
-                pairs.alone.join(", ")
-            ),
-        });
-    }
-    let failed: Vec<_> = evaluated.failed.into_iter().chain(pairs.failed).collect();
-    let mut whole: Vec<MeasuredItem> = compared.comparisons.iter().map(over_fruit).collect();
-    whole.extend(critical(campaign, &compared));
-    let outcome = MeasuredOutcome {
-        parts: Vec::new(),
-        shown_of_parts: Vec::new(),
-        windfall: VERSION.to_owned(),
-        campaign: campaign.shared.title.clone(),
-        kind: campaign.shared.kind.name().to_owned(),
-        simulated: campaign.shared.simulated.clone(),
-        status: StatusOutcome {
-            failed: failed.len(),
-            ..evaluated.status
-        },
-        failed,
-        specimens: compared.fruit.iter().map(on_fruit).collect(),
-        whole,
-        summary: Named(Vec::new()),
-        groups: groups_of(&items),
-        findings,
-        shown: SHOWN.to_vec(),
-        shown_of_specimens: SHOWN_OF_SPECIMENS.to_vec(),
-        impacts: items,
+    const SHOWN: ShownTables = ShownTables {
+        items: &SHOWN,
+        parts: &[],
+        specimens: &SHOWN_OF_SPECIMENS,
     };
-    Ok((outcome, figures))
+
+    fn read(directory: &Path) -> Result<Self, Error> {
+        read_repeats(directory)
+    }
+
+    fn shared(&self) -> &Campaign {
+        &self.shared
+    }
+
+    fn shared_mut(&mut self) -> &mut Campaign {
+        &mut self.shared
+    }
+
+    fn depends_on(&self, entry: &ImpactEntry) -> String {
+        let (column, _) = &self.reference;
+        let cells = [column, "spot", "repeat"].map(|c| cell_of(self, entry, c));
+        let energy = energy_of(self, entry).ok();
+        format!(
+            "{:?} {:?} {:?} {cells:?} {energy:?}",
+            self.align, self.conditioning, self.reference
+        )
+    }
+
+    fn evaluate(&self, entry: &ImpactEntry, recording: &Recording) -> Result<RepeatImpact, Error> {
+        evaluate_impact(self, entry, recording)
+    }
+
+    fn results(&self, found: &FoundItems<Self>) -> Result<MeasuredResults, Error> {
+        let impacts: Vec<RepeatImpact> = found.iter().map(|(_, found)| found.clone()).collect();
+        let pairs = pairs_of(&impacts, &self.align);
+        let compared = compare_repeats(self, &pairs);
+        let figures = compared.comparisons.iter().enumerate();
+        let figures = figures.map(|(index, comparison)| {
+            let name = name_of(comparison.energy, comparison.order);
+            NamedFigure {
+                caption: format!(
+                    "{name}: mean curves of both impacts, their differences as parts of the first \
+                     peak, and the test statistic with its critical level."
+                ),
+                figure: figure_of_comparison(&name, &pairs, &compared, index),
+                name: file_name(&name),
+            }
+        });
+        let figures: Vec<NamedFigure> = figures.collect();
+        let items: Vec<MeasuredItem> = impacts.into_iter().map(|impact| impact.item).collect();
+        let mut findings = compared.findings.clone();
+        if !pairs.alone.is_empty() {
+            findings.push(FindingOutcome {
+                code: "impact-alone".to_owned(),
+                message: format!(
+                    "no second impact on the same spot at the same energy: {}",
+                    pairs.alone.join(", ")
+                ),
+            });
+        }
+        let mut whole: Vec<MeasuredItem> = compared.comparisons.iter().map(over_fruit).collect();
+        whole.extend(critical(self, &compared));
+        Ok(MeasuredResults {
+            failed: pairs.failed,
+            specimens: compared.fruit.iter().map(on_fruit).collect(),
+            whole,
+            summary: Named(Vec::new()),
+            findings,
+            figures: Some(("Every energy, over all fruit.".to_owned(), figures)),
+            ..MeasuredResults::of(items)
+        })
+    }
+
+    fn methods(&self) -> Vec<String> {
+        methods_of_repeats(self)
+    }
+
+    fn figure(
+        &self,
+        _: &ImpactEntry,
+        _: Option<&RepeatImpact>,
+        _: &MeasuredResults,
+    ) -> Result<Option<NamedFigure>, Error> {
+        Ok(None)
+    }
+}
+
+/// An item of no recording.
+fn blank_item(id: String, law: &str) -> MeasuredItem {
+    MeasuredItem {
+        specimen: id.clone(),
+        id,
+        law: law.to_owned(),
+        ..MeasuredItem::default()
+    }
 }
 
 /// "0.1200 J, impacts 1 and 2".
 fn name_of(energy: f64, order: usize) -> String {
     format!("{energy:.4} J, impacts {} and {}", order + 1, order + 2)
-}
-
-fn item(id: String, law: &str) -> MeasuredItem {
-    MeasuredItem {
-        specimen: id.clone(),
-        id,
-        group: None,
-        file: String::new(),
-        law: law.to_owned(),
-        words: Named(Vec::new()),
-        parameters: Named(Vec::new()),
-        derived: Named(Vec::new()),
-        findings: Vec::new(),
-    }
 }
 
 fn percent(part: f64) -> String {
@@ -204,7 +153,7 @@ fn percent(part: f64) -> String {
 /// One comparison over all fruit.
 fn over_fruit(comparison: &Comparison) -> MeasuredItem {
     let name = name_of(comparison.energy, comparison.order);
-    let mut found = item(name, "change from one impact to the next, over fruit");
+    let mut found = blank_item(name, "change from one impact to the next, over fruit");
     found.file = format!("{} fruit", comparison.curves.fruit);
     let curves = &comparison.curves;
     let mut derived = vec![
@@ -255,7 +204,7 @@ fn between(low: f64, high: f64) -> String {
 
 /// One fruit by the reference.
 fn on_fruit(result: &FruitResult) -> MeasuredItem {
-    let mut found = item(
+    let mut found = blank_item(
         result.specimen.clone(),
         "critical energy by the repeatability of the reference",
     );
@@ -302,7 +251,7 @@ fn critical(campaign: &RepeatsCampaign, compared: &Compared) -> Vec<MeasuredItem
         items.push(parametric(threshold, campaign.test.level, law));
     }
     if let Some(median) = quantile_of(&compared.masses, 0.5) {
-        let mut found = item("Turnbull, of single fruit".to_owned(), law);
+        let mut found = blank_item("Turnbull, of single fruit".to_owned(), law);
         let mut derived = Vec::new();
         if median.low > 0.0 {
             derived.push(("median_low".to_owned(), plain_value(median.low, "J")));
@@ -322,7 +271,7 @@ fn critical(campaign: &RepeatsCampaign, compared: &Compared) -> Vec<MeasuredItem
         .iter()
         .filter(|mass| mass.share > LEAST_SHARE)
     {
-        let mut found = item(
+        let mut found = blank_item(
             between(mass.low, mass.high),
             "share of fruit by critical energy (Turnbull)",
         );
@@ -340,7 +289,7 @@ fn critical(campaign: &RepeatsCampaign, compared: &Compared) -> Vec<MeasuredItem
         .collect();
     if !verdicts.is_empty() {
         let (interval, _) = windfall_signal::repeat::interval::energy_interval(&verdicts);
-        let mut found = item("least energy with a change over fruit".to_owned(), law);
+        let mut found = blank_item("least energy with a change over fruit".to_owned(), law);
         let text = between(interval.low, interval.high);
         let mut derived = Vec::new();
         if interval.high.is_finite() {
@@ -357,7 +306,7 @@ fn critical(campaign: &RepeatsCampaign, compared: &Compared) -> Vec<MeasuredItem
 }
 
 fn parametric(threshold: &Threshold, level: f64, law: &str) -> MeasuredItem {
-    let mut found = item(format!("{}, of single fruit", threshold.family.name()), law);
+    let mut found = blank_item(format!("{}, of single fruit", threshold.family.name()), law);
     let value = |profiled: ProfiledValue, unit: &str| MeasuredValue {
         low: profiled.low,
         high: profiled.high,

@@ -1,6 +1,7 @@
 //! Mean, standard deviation and number of impacts, over all and per group.
 
 use crate::result::outcome::{GroupOutcome, ImpactOutcome};
+use itertools::Itertools;
 use windfall_files::found::{SpreadOutcome, spread};
 use windfall_files::named::Named;
 
@@ -15,12 +16,7 @@ pub fn summarise_groups(impacts: &[ImpactOutcome]) -> Vec<GroupOutcome> {
             keys.push(key);
         }
     }
-    let mut laws: Vec<&str> = Vec::new();
-    for (law, _) in &keys {
-        if !laws.contains(law) {
-            laws.push(law);
-        }
-    }
+    let laws: Vec<&str> = keys.iter().map(|(law, _)| *law).unique().collect();
     keys.sort_by_key(|(law, _)| laws.iter().position(|known| known == law));
     keys.into_iter()
         .map(|(law, group)| {

@@ -5,7 +5,7 @@ use crate::settings::model::ChannelPlan;
 use toml::Spanned;
 use windfall_files::error::Error;
 use windfall_files::text::toml_source::{
-    Needed, TomlSource, invalid, missing, optional_quantity, place_at,
+    Needed, TomlSource, invalid, missing, number_that, optional_quantity, place_at, refused,
 };
 use windfall_numerics::unit::quantity::{UnitError, parse_as, parse_unit};
 use windfall_signal::kinematics::Encoder;
@@ -183,18 +183,17 @@ fn calibration(
         example: "sensitivity = \"11 mV/N\"",
     };
     let per_unit = sensitivity_value(source, kind, sensitivity, &needed)?;
-    let gain = file.gain.as_ref().map_or(1.0, |gain| *gain.get_ref());
-    if gain == 0.0 || !gain.is_finite() {
-        let at = file.gain.as_ref().map_or(0..0, Spanned::span);
-        let problem = "a gain must be a number other than zero".to_owned();
-        return Err(invalid(
-            source,
-            &at,
-            (kind.table, "gain"),
-            &gain.to_string(),
-            problem,
-        ));
-    }
+    let (key, fits) = ((kind.table, "gain"), |gain: f64| {
+        gain != 0.0 && gain.is_finite()
+    });
+    let gain = number_that(
+        source,
+        file.gain.as_ref(),
+        key,
+        fits,
+        "a number other than zero",
+    )?;
+    let gain = gain.unwrap_or(1.0);
     let cell = column_unit(source, kind, file, "V")?;
     let offset = offset_value(source, kind, file, "V")?;
     Ok((cell / (per_unit * gain), offset / cell))
@@ -211,13 +210,7 @@ fn sensitivity_value(
     if value == 0.0 {
         let problem = "a sensitivity cannot be zero".to_owned();
         let at = (kind.table, needed.key);
-        return Err(invalid(
-            source,
-            &text.span(),
-            at,
-            &text.get_ref().0,
-            problem,
-        ));
+        return Err(refused(source, text, at, problem));
     }
     Ok(value)
 }
@@ -229,13 +222,7 @@ fn bad_unit(
     error: &UnitError,
 ) -> Error {
     let at = (needed.table, needed.key);
-    invalid(
-        source,
-        &text.span(),
-        at,
-        &text.get_ref().0,
-        error.to_string(),
-    )
+    refused(source, text, at, error.to_string())
 }
 
 /// A column in units of the quantity itself.
@@ -263,16 +250,8 @@ fn direct_calibration(
     let cell = column_unit(source, kind, file, kind.unit)?;
     let offset = offset_value(source, kind, file, kind.unit)?;
     if let Some(gain) = &file.gain {
-        let problem =
-            "a gain belongs to a `sensitivity`; this channel has only a `unit`".to_owned();
-        let text = gain.get_ref().to_string();
-        return Err(invalid(
-            source,
-            &gain.span(),
-            (kind.table, "gain"),
-            &text,
-            problem,
-        ));
+        let problem = "a gain belongs to a `sensitivity`; this channel has only a `unit`";
+        return Err(refused(source, gain, (kind.table, "gain"), problem));
     }
     Ok((cell, offset / cell))
 }
@@ -287,15 +266,7 @@ fn column_unit(
     let Some(unit) = &file.unit else {
         return Ok(1.0);
     };
-    let wrong = |problem: String| {
-        invalid(
-            source,
-            &unit.span(),
-            (kind.table, "unit"),
-            unit.get_ref(),
-            problem,
-        )
-    };
+    let wrong = |problem: String| refused(source, unit, (kind.table, "unit"), problem);
     let scale = parse_scale(unit.get_ref(), expected).map_err(|error| wrong(error.to_string()))?;
     match scale.is_normal() {
         true => Ok(scale),
@@ -346,21 +317,10 @@ fn delay(source: &TomlSource, kind: &Kind, file: &ChannelFile) -> Result<f64, Er
 }
 
 fn sign(source: &TomlSource, kind: &Kind, file: &ChannelFile) -> Result<f64, Error> {
-    match file.sign.as_ref().map(|sign| *sign.get_ref()) {
-        None | Some(1) => Ok(1.0),
-        Some(-1) => Ok(-1.0),
-        Some(other) => {
-            let at = file.sign.as_ref().map_or(0..0, Spanned::span);
-            let problem = "expected 1, or -1 where the column counts the other way".to_owned();
-            Err(invalid(
-                source,
-                &at,
-                (kind.table, "sign"),
-                &other.to_string(),
-                problem,
-            ))
-        }
-    }
+    let (key, fits) = ((kind.table, "sign"), |sign| sign == 1 || sign == -1);
+    let expected = "1, or -1 where the column counts the other way";
+    let sign = number_that(source, file.sign.as_ref(), key, fits, expected)?;
+    Ok(sign.map_or(1.0, |sign| sign as f64))
 }
 
 /// The encoder of a campaign.

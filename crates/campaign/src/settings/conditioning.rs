@@ -3,7 +3,9 @@
 use crate::settings::file::{ChannelFile, ChannelsFile, QuantityText};
 use toml::Spanned;
 use windfall_files::error::Error;
-use windfall_files::text::toml_source::{Needed, TomlSource, choice, invalid, optional_quantity};
+use windfall_files::text::toml_source::{
+    Needed, TomlSource, choice, number_that, positive_quantity, refused,
+};
 use windfall_signal::conditioning::{ChannelFilter, Conditioning, USUAL_ORDER};
 use windfall_signal::filter::butterworth::{Band, MAX_ORDER};
 use windfall_signal::options::RateMethod;
@@ -46,7 +48,7 @@ pub fn conditioning_plan(
     ] {
         if let Some(tip) = channel.as_ref().and_then(|c| c.get_ref().tip_mass.as_ref()) {
             let problem = "a tip stands ahead of a force sensor: put it under [channels.force]";
-            return Err(bad(source, table, "tip_mass", tip, problem.to_owned()));
+            return Err(refused(source, tip, (table, "tip_mass"), problem));
         }
     }
     let needed = Needed {
@@ -61,7 +63,7 @@ pub fn conditioning_plan(
         position,
         rate: of("[channels.velocity]", &channels.velocity)?,
         acceleration: of("[channels.acceleration]", &channels.acceleration)?,
-        tip_mass: positive(source, tip, &needed)?,
+        tip_mass: positive_quantity(source, tip, &needed)?,
     })
 }
 
@@ -85,41 +87,10 @@ pub fn refuse_conditioning(
     ] {
         if let Some(value) = value {
             let problem = format!("{why}; remove the line");
-            return Err(bad(source, table, key, value, problem));
+            return Err(refused(source, value, (table, key), problem));
         }
     }
     Ok(())
-}
-
-fn bad(
-    source: &TomlSource,
-    table: &str,
-    key: &str,
-    value: &Spanned<QuantityText>,
-    problem: String,
-) -> Error {
-    invalid(
-        source,
-        &value.span(),
-        (table, key),
-        &value.get_ref().0,
-        problem,
-    )
-}
-
-fn positive(
-    source: &TomlSource,
-    value: Option<&Spanned<QuantityText>>,
-    needed: &Needed,
-) -> Result<Option<f64>, Error> {
-    let number = optional_quantity(source, value, needed)?;
-    match (value, number) {
-        (Some(value), Some(number)) if number <= 0.0 => {
-            let problem = format!("must be above zero, for example: {}", needed.example);
-            Err(bad(source, needed.table, needed.key, value, problem))
-        }
-        _ => Ok(number),
-    }
 }
 
 fn filter_of(
@@ -128,14 +99,9 @@ fn filter_of(
     channel: &ChannelFile,
 ) -> Result<Option<ChannelFilter>, Error> {
     let cutoff = |value: Option<&Spanned<QuantityText>>, key| {
-        let needed = Needed {
-            table,
-            key,
-            meaning: "cut-off of a zero-phase Butterworth filter",
-            unit: "Hz",
-            example: "low_pass = \"5 kHz\"",
-        };
-        positive(source, value, &needed)
+        let meaning = "cut-off of a zero-phase Butterworth filter";
+        let needed = Needed::of(table, key, meaning, "Hz", "low_pass = \"5 kHz\"");
+        positive_quantity(source, value, &needed)
     };
     let low_pass = cutoff(channel.low_pass.as_ref(), "low_pass")?;
     let high_pass = cutoff(channel.high_pass.as_ref(), "high_pass")?;
@@ -145,18 +111,11 @@ fn filter_of(
         (None, Some(cutoff)) => Band::HighPass(cutoff),
         (Some(high), Some(low)) => Band::BandPass(low, high),
     };
-    let order = match &channel.filter_order {
-        None => USUAL_ORDER,
-        Some(order) => match usize::try_from(*order.get_ref()) {
-            Ok(number) if (1..=MAX_ORDER).contains(&number) => number,
-            _ => {
-                let text = order.get_ref().to_string();
-                let problem = format!("expected an order from 1 to {MAX_ORDER}");
-                let key = (table, "filter_order");
-                return Err(invalid(source, &order.span(), key, &text, problem));
-            }
-        },
-    };
+    let orders = 1..=MAX_ORDER as i64;
+    let expected = format!("an order from 1 to {MAX_ORDER}");
+    let (key, fits) = ((table, "filter_order"), |order| orders.contains(&order));
+    let order = number_that(source, channel.filter_order.as_ref(), key, fits, &expected)?;
+    let order = order.map_or(USUAL_ORDER, |order| order as usize);
     Ok(Some(ChannelFilter { band, order }))
 }
 
@@ -168,10 +127,8 @@ fn no_order(
     match &channel.filter_order {
         None => Ok(None),
         Some(order) => {
-            let text = order.get_ref().to_string();
-            let problem = "an order without low_pass or high_pass filters nothing".to_owned();
-            let key = (table, "filter_order");
-            Err(invalid(source, &order.span(), key, &text, problem))
+            let problem = "an order without low_pass or high_pass filters nothing";
+            Err(refused(source, order, (table, "filter_order"), problem))
         }
     }
 }

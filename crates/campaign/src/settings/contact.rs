@@ -6,7 +6,9 @@ use crate::settings::file::{CampaignFile, ContactFile, QuantityText};
 use crate::settings::model::RigPlan;
 use toml::Spanned;
 use windfall_files::error::Error;
-use windfall_files::text::toml_source::{Needed, TomlSource, choice, invalid, optional_quantity};
+use windfall_files::text::toml_source::{
+    Needed, TomlSource, choice, invalid, number_that, optional_quantity, positive_quantity, refused,
+};
 use windfall_signal::ExtractOptions;
 use windfall_signal::encoder::edge_rate::CountTimes;
 use windfall_signal::kinematics::Encoder;
@@ -55,15 +57,22 @@ pub fn contact_plan(
     )? {
         options.trigger.choice = chosen;
     }
-    if let Some(margin) = &contact.margin_before {
-        options.margin_before = checked_margin(source, margin, "margin_before")?;
-    }
-    if let Some(margin) = &contact.margin_after {
-        options.margin_after = checked_margin(source, margin, "margin_after")?;
-    }
-    if let Some(release) = &contact.release {
-        options.trigger.release = checked_release(source, release)?;
-    }
+    let expected = "a part of the contact's duration from 0 to 100, such as 0.2";
+    let margin = |value: &Option<Spanned<f64>>, key, default| {
+        let fits = |part| (0.0..=100.0).contains(&part);
+        let margin = number_that(source, value.as_ref(), (TABLE, key), fits, expected)?;
+        Ok::<f64, Error>(margin.unwrap_or(default))
+    };
+    options.margin_before = margin(
+        &contact.margin_before,
+        "margin_before",
+        options.margin_before,
+    )?;
+    options.margin_after = margin(&contact.margin_after, "margin_after", options.margin_after)?;
+    let (key, fits) = ((TABLE, "release"), |part| part > 0.0 && part <= 1.0);
+    let expected = "a part of the threshold above 0, at most 1, such as 0.5";
+    let release = number_that(source, contact.release.as_ref(), key, fits, expected)?;
+    options.trigger.release = release.unwrap_or(options.trigger.release);
     let time = |value: &Option<Spanned<QuantityText>>, key, about| {
         span_of_time(source, value.as_ref(), key, about)
     };
@@ -98,46 +107,16 @@ fn threshold(
     source: &TomlSource,
     value: Option<&Spanned<QuantityText>>,
 ) -> Result<Threshold, Error> {
-    let needed = Needed {
-        table: TABLE,
-        key: "threshold",
-        meaning: "force above which there is contact",
-        unit: "N",
-        example: "threshold = \"1 N\"   or   threshold = \"auto\"",
-    };
-    let Some(text) = value.filter(|text| text.get_ref().0 != AUTO) else {
-        return Ok(Threshold::default());
-    };
-    match optional_quantity(source, value, &needed)? {
-        Some(force) if force > 0.0 => Ok(Threshold::Fixed(force)),
-        _ => {
-            let problem = format!("must be above zero, for example: {}", needed.example);
-            let at = (TABLE, "threshold");
-            Err(invalid(
-                source,
-                &text.span(),
-                at,
-                &text.get_ref().0,
-                problem,
-            ))
-        }
-    }
-}
-
-fn checked_release(source: &TomlSource, release: &Spanned<f64>) -> Result<f64, Error> {
-    let value = *release.get_ref();
-    if value > 0.0 && value <= 1.0 {
-        return Ok(value);
-    }
-    let problem = "expected a part of the threshold above 0, at most 1, such as 0.5".to_owned();
-    let key = (TABLE, "release");
-    Err(invalid(
-        source,
-        &release.span(),
-        key,
-        &value.to_string(),
-        problem,
-    ))
+    let needed = Needed::of(
+        TABLE,
+        "threshold",
+        "force above which there is contact",
+        "N",
+        "threshold = \"1 N\"   or   threshold = \"auto\"",
+    );
+    let given = value.filter(|text| text.get_ref().0 != AUTO);
+    let force = positive_quantity(source, given, &needed)?;
+    Ok(force.map_or(Threshold::default(), Threshold::Fixed))
 }
 
 /// A time of `[contact]` that may be left out, not below zero; s.
@@ -147,21 +126,15 @@ fn span_of_time(
     key: &'static str,
     (meaning, example): (&'static str, &'static str),
 ) -> Result<Option<f64>, Error> {
-    let needed = Needed {
-        table: TABLE,
-        key,
-        meaning,
-        unit: "s",
-        example,
-    };
-    let time = optional_quantity(source, value, &needed)?;
-    match (value, time) {
-        (Some(value), Some(time)) if time < 0.0 => {
-            let problem = "must not be below zero".to_owned();
-            let text = &value.get_ref().0;
-            Err(invalid(source, &value.span(), (TABLE, key), text, problem))
-        }
-        _ => Ok(time),
+    let needed = Needed::of(TABLE, key, meaning, "s", example);
+    match (value, optional_quantity(source, value, &needed)?) {
+        (Some(value), Some(time)) if time < 0.0 => Err(refused(
+            source,
+            value,
+            (TABLE, key),
+            "must not be below zero",
+        )),
+        (_, time) => Ok(time),
     }
 }
 
@@ -179,11 +152,8 @@ fn edge_window(
     let window = span_of_time(source, value, "rate_window", about)?;
     match (value, window) {
         (Some(value), Some(_)) if method != RateMethod::EdgeTimes => {
-            let problem =
-                "belongs to rate = \"edge-times\"; remove the line or set that".to_owned();
-            let key = (TABLE, "rate_window");
-            let text = &value.get_ref().0;
-            Err(invalid(source, &value.span(), key, text, problem))
+            let problem = "belongs to rate = \"edge-times\"; remove the line or set that";
+            Err(refused(source, value, (TABLE, "rate_window"), problem))
         }
         (_, window) => Ok(window.unwrap_or(0.0)),
     }
@@ -201,25 +171,6 @@ fn count_times(source: &TomlSource, file: &CampaignFile) -> Result<CountTimes, E
         .and_then(|encoder| encoder.get_ref().times.as_ref());
     let chosen = choice(source, times, ("[encoder]", "times"), &words)?;
     Ok(chosen.unwrap_or_default())
-}
-
-fn checked_margin(
-    source: &TomlSource,
-    margin: &Spanned<f64>,
-    key: &'static str,
-) -> Result<f64, Error> {
-    let value = *margin.get_ref();
-    if (0.0..=100.0).contains(&value) {
-        return Ok(value);
-    }
-    let problem = "expected a part of the contact's duration from 0 to 100, such as 0.2".to_owned();
-    Err(invalid(
-        source,
-        &margin.span(),
-        (TABLE, key),
-        &value.to_string(),
-        problem,
-    ))
 }
 
 fn check_encoder(

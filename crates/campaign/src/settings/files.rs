@@ -9,8 +9,9 @@ use crate::settings::template::is_template_file;
 use std::path::{Path, PathBuf};
 use toml::Spanned;
 use windfall_files::error::{Error, Place};
-use windfall_files::text::toml_source::{Needed, TomlSource, choice, invalid, missing, place_at};
-use windfall_files::text::toml_source::{optional_quantity, suggestion};
+use windfall_files::text::toml_source::{
+    Needed, TomlSource, choice, missing, place_at, positive_quantity, refused, suggestion,
+};
 use windfall_formats::open::OpenOptions;
 use windfall_formats::text::options::TextOptions;
 use windfall_numerics::unit::quantity::parse_unit;
@@ -107,13 +108,7 @@ fn with_variables(source: &TomlSource, text: &Spanned<String>) -> Result<String,
     while let Some((before, after)) = rest.split_once("${") {
         let Some((name, behind)) = after.split_once('}') else {
             let problem = "a \"${\" is not closed by \"}\"".to_owned();
-            return Err(invalid(
-                source,
-                &text.span(),
-                ("[files]", "directory"),
-                text.get_ref(),
-                problem,
-            ));
+            return Err(refused(source, text, ("[files]", "directory"), problem));
         };
         let value = std::env::var(name).map_err(|_| {
             Error::from(CampaignError::VariableUnset {
@@ -137,30 +132,15 @@ fn time_plan(source: &TomlSource, files: &FilesFile) -> Result<TimePlan, Error> 
         unit: "Hz",
         example: "rate = \"200 kHz\"",
     };
-    match (
-        &files.time,
-        optional_quantity(source, files.rate.as_ref(), &rate_key)?,
-    ) {
-        (Some(column), None) => Ok(TimePlan::Column(column.get_ref().clone())),
-        (None, Some(rate)) if rate > 0.0 => Ok(TimePlan::Rate(rate)),
-        (None, None) => Ok(TimePlan::OfFile),
-        (time, _) => {
-            let rate = files
-                .rate
-                .as_ref()
-                .map_or((0..0, ""), |r| (r.span(), &r.get_ref().0));
-            let problem = match time {
-                Some(_) => "the times are given by a column too; keep one of `time` and `rate`",
-                None => "a sampling rate must be above zero, such as \"200 kHz\"",
-            };
-            Err(invalid(
-                source,
-                &rate.0,
-                ("[files]", "rate"),
-                rate.1,
-                problem.to_owned(),
-            ))
+    let rate = positive_quantity(source, files.rate.as_ref(), &rate_key)?;
+    match (&files.time, rate, &files.rate) {
+        (Some(_), _, Some(rate)) => {
+            let problem = "the times are given by a column too; keep one of `time` and `rate`";
+            Err(refused(source, rate, ("[files]", "rate"), problem))
         }
+        (Some(column), ..) => Ok(TimePlan::Column(column.get_ref().clone())),
+        (None, Some(rate), _) => Ok(TimePlan::Rate(rate)),
+        (None, None, _) => Ok(TimePlan::OfFile),
     }
 }
 
@@ -169,14 +149,14 @@ fn time_scale(source: &TomlSource, files: &FilesFile) -> Result<f64, Error> {
         return Ok(1.0);
     };
     let at = ("[files]", "time_unit");
-    let parsed = parse_unit(unit.get_ref())
-        .map_err(|error| invalid(source, &unit.span(), at, unit.get_ref(), error.to_string()))?;
+    let parsed =
+        parse_unit(unit.get_ref()).map_err(|error| refused(source, unit, at, error.to_string()))?;
     let second = parse_unit("s").map_or(parsed.dimension, |second| second.dimension);
     if parsed.dimension.matches(&second) {
         return Ok(parsed.si_from(1.0));
     }
     let problem = "expected a unit of time, such as \"s\" or \"ms\"".to_owned();
-    Err(invalid(source, &unit.span(), at, unit.get_ref(), problem))
+    Err(refused(source, unit, at, problem))
 }
 
 /// Whether the column to group by exists.
@@ -206,13 +186,7 @@ pub fn check_group(
         suggestion(group.get_ref(), names()),
         names().collect::<Vec<_>>().join(", ")
     );
-    Err(invalid(
-        source,
-        &group.span(),
-        ("[summary]", "group"),
-        group.get_ref(),
-        problem,
-    ))
+    Err(refused(source, group, ("[summary]", "group"), problem))
 }
 
 /// Whether every `{name}` in the columns of a campaign is a column of impacts.csv; one

@@ -7,8 +7,9 @@ use windfall_contact::expression::{LawExpression, parse_law_among};
 use windfall_contact::law::EndRule;
 use windfall_contact::laws::kind::LawKind;
 use windfall_files::error::Error;
-use windfall_files::text::toml_source::suggestion;
-use windfall_files::text::toml_source::{Needed, TomlSource, choice, invalid, missing};
+use windfall_files::text::toml_source::{
+    Needed, TomlSource, choice, invalid, missing, refused, suggestion,
+};
 use windfall_identify::fit::interval::{IntervalMethod, IntervalOptions};
 use windfall_identify::fit::problem::{FitOptions, NoiseModel, Quantities, Treatment, Weighting};
 use windfall_identify::samples::Quantity;
@@ -131,15 +132,8 @@ fn interval_options(
     for (key, given, place) in numbers {
         if let Some(value) = given {
             let number = usize::try_from(*value.get_ref()).unwrap_or(usize::MAX);
-            *place = enough_work(key, number).map_err(|problem| {
-                invalid(
-                    source,
-                    &value.span(),
-                    (TABLE, key),
-                    &number.to_string(),
-                    problem,
-                )
-            })?;
+            *place = enough_work(key, number)
+                .map_err(|problem| refused(source, value, (TABLE, key), problem))?;
         }
     }
     if let Some(seed) = &file.seed {
@@ -256,24 +250,11 @@ pub fn law_expressions(
     }
     let mut laws: Vec<LawExpression> = Vec::new();
     for text in texts {
-        let law = parse_law_among(text.get_ref(), user).map_err(|error| {
-            invalid(
-                source,
-                &text.span(),
-                (TABLE, "law"),
-                text.get_ref(),
-                error.to_string(),
-            )
-        })?;
+        let law = parse_law_among(text.get_ref(), user)
+            .map_err(|error| refused(source, text, (TABLE, "law"), error.to_string()))?;
         if laws.iter().any(|known| known.kind == law.kind) {
             let problem = "this law is named twice; each law can be fitted once".to_owned();
-            return Err(invalid(
-                source,
-                &text.span(),
-                (TABLE, "law"),
-                text.get_ref(),
-                problem,
-            ));
+            return Err(refused(source, text, (TABLE, "law"), problem));
         }
         laws.push(law);
     }
@@ -293,15 +274,6 @@ pub fn free_names(
     let names: Vec<String> = words.iter().map(|word| word.get_ref().clone()).collect();
     match unknown_parameter(&names, laws) {
         None => Ok(names),
-        Some((index, problem)) => {
-            let at = words[index].span();
-            Err(invalid(
-                source,
-                &at,
-                (TABLE, "free"),
-                &names[index],
-                problem,
-            ))
-        }
+        Some((index, problem)) => Err(refused(source, &words[index], (TABLE, "free"), problem)),
     }
 }

@@ -11,5 +11,6 @@ pub mod model;
 pub mod open_options;
 pub mod read;
 pub mod rig;
+pub mod shared;
 pub mod tables;
 pub mod template;

@@ -1,5 +1,6 @@
-//! A campaign: rig, channels, options, specimens and impacts, in SI units.
+//! A campaign: channels, specimens, entries, and of impacts rig and options, in SI units.
 
+use crate::settings::kind::CampaignKind;
 use std::path::PathBuf;
 use windfall_contact::expression::LawExpression;
 use windfall_contact::laws::kind::LawKind;
@@ -9,32 +10,61 @@ use windfall_identify::rig::kind::Pendulum;
 use windfall_signal::ExtractOptions;
 use windfall_signal::recording::Quantity;
 
-/// What a campaign directory says.
+/// What the directory of a campaign of any kind says.
 #[derive(Clone, Debug)]
 pub struct Campaign {
     /// The campaign directory.
     pub directory: PathBuf,
+    /// What it measures.
+    pub kind: CampaignKind,
     /// Title of tables and reports.
     pub title: String,
     /// Label shown with every result when the recordings are simulated.
     pub simulated: Option<String>,
-    /// The rig.
-    pub rig: RigPlan,
     /// How recordings are read.
     pub files: FilePlan,
+    /// Column of specimens.csv or impacts.csv by which results are grouped.
+    pub group: Option<String>,
+    /// Specimens, in the order of specimens.csv; none where there is no such file.
+    pub specimens: Vec<Specimen>,
+    /// Rows of impacts.csv, one for each recording or part of one.
+    pub entries: Vec<ImpactEntry>,
+}
+
+impl Campaign {
+    /// The specimen of an entry, where specimens.csv has it.
+    #[must_use]
+    pub fn specimen_of(&self, entry: &ImpactEntry) -> Option<&Specimen> {
+        let mut specimens = self.specimens.iter();
+        specimens.find(|specimen| specimen.id == entry.specimen)
+    }
+
+    /// The group of an entry, where the campaign has groups.
+    #[must_use]
+    pub fn group_of(&self, entry: &ImpactEntry) -> Option<String> {
+        let column = self.group.as_ref()?;
+        let specimen = self.specimen_of(entry);
+        let specimen = specimen.map_or(&[][..], |specimen| &specimen.cells);
+        let mut cells = specimen.iter().chain(&entry.cells);
+        let (_, cell) = cells.find(|(name, _)| name == column)?;
+        Some(cell.clone())
+    }
+}
+
+/// A campaign of single impacts.
+#[derive(Clone, Debug)]
+pub struct ImpactCampaign {
+    /// What all kinds share.
+    pub shared: Campaign,
+    /// The rig.
+    pub rig: RigPlan,
     /// How contacts are found and impacts cut out; the mass of the rig and the
     /// time range of an impact are filled in later.
     pub contact: ExtractOptions,
     /// What is fitted.
     pub fit: FitPlan,
-    /// Column of specimens.csv or impacts.csv by which results are grouped.
-    pub group: Option<String>,
     /// Covariates of the population: columns, or their logarithms.
     pub covariates: Vec<String>,
-    /// Specimens, in the order of specimens.csv; none where there is no such file.
-    pub specimens: Vec<Specimen>,
-    /// Impacts, in the order of impacts.csv.
-    pub impacts: Vec<ImpactEntry>,
 }
 
 /// The rig, as far as the campaign knows it.

@@ -5,9 +5,9 @@ use crate::settings::model::{MassPlan, RigPlan};
 use std::ops::Range;
 use toml::Spanned;
 use windfall_files::error::Error;
-use windfall_files::text::toml_source::optional_quantity;
 use windfall_files::text::toml_source::{
-    Needed, TomlSource, choice, invalid, missing, needed_quantity,
+    Needed, TomlSource, choice, missing, needed_quantity, optional_quantity, positive_quantity,
+    refused,
 };
 use windfall_identify::rig::kind::Pendulum;
 
@@ -22,77 +22,72 @@ pub const FROM_IMPULSE: &str = "from impulse";
 
 const TABLE: &str = "[rig]";
 
-const fn needed(
-    key: &'static str,
-    meaning: &'static str,
-    unit: &'static str,
-    example: &'static str,
-) -> Needed {
-    Needed {
-        table: TABLE,
-        key,
-        meaning,
-        unit,
-        example,
-    }
-}
-
-const KIND: Needed = needed(
+const KIND: Needed = Needed::of(
+    TABLE,
     "kind",
     "the kind of rig",
     "",
     "kind = \"pendulum\"   or   kind = \"carriage\"",
 );
-const INERTIA: Needed = needed(
+const INERTIA: Needed = Needed::of(
+    TABLE,
     "inertia",
     "moment of inertia of arm and impactor about the pivot",
     "kg m^2",
     "inertia = \"0.01435 kg m^2\"",
 );
-const ARM: Needed = needed(
+const ARM: Needed = Needed::of(
+    TABLE,
     "arm",
     "distance from pivot to point of contact",
     "m",
     "arm = \"0.505 m\"",
 );
-const PENDULUM_MASS: Needed = needed(
+const PENDULUM_MASS: Needed = Needed::of(
+    TABLE,
     "mass",
     "mass of arm and impactor together",
     "kg",
     "mass = \"0.11 kg\"",
 );
-const CENTRE: Needed = needed(
+const CENTRE: Needed = Needed::of(
+    TABLE,
     "centre_of_mass",
     "distance from pivot to the centre of mass",
     "m",
     "centre_of_mass = \"0.35 m\"",
 );
-const GRAVITY: Needed = needed(
+const GRAVITY: Needed = Needed::of(
+    TABLE,
     "gravity",
     "acceleration of gravity",
     "m/s^2",
     "gravity = \"9.81 m/s^2\"",
 );
-const CARRIAGE_MASS: Needed = needed(
+const CARRIAGE_MASS: Needed = Needed::of(
+    TABLE,
     "mass",
     "mass of the moving body",
     "kg",
     "mass = \"0.5 kg\"   or   mass = \"from impulse\"",
 );
-const MASS_SD: Needed = needed(
+const MASS_SD: Needed = Needed::of(
+    TABLE,
     "mass_sd",
     "standard uncertainty of the mass",
     "kg",
     "mass_sd = \"0.5 g\"",
 );
-const DRIVING: Needed = needed(
+const DRIVING: Needed = Needed::of(
+    TABLE,
     "driving_acceleration",
     "acceleration towards the fruit when nothing touches: g0 for a free fall, 0 on a level track",
     "m/s^2",
     "driving_acceleration = \"0 m/s^2\"",
 );
 
-const DRIVING_SD: Needed = needed(
+const DRIVING_SD: Needed = Needed::of(
+    TABLE,
     "driving_acceleration_sd",
     "standard uncertainty of the driving acceleration",
     "m/s^2",
@@ -187,13 +182,7 @@ fn refuse<const N: usize>(
     for (value, key) in strangers {
         if let Some(value) = value {
             let problem = format!("{rig} has no such value; remove the line");
-            return Err(invalid(
-                source,
-                &value.span(),
-                (TABLE, key),
-                &value.get_ref().0,
-                problem,
-            ));
+            return Err(refused(source, value, (TABLE, key), problem));
         }
     }
     Ok(())
@@ -205,19 +194,6 @@ fn positive(
     value: Option<&Spanned<QuantityText>>,
     needed: &Needed,
 ) -> Result<f64, Error> {
-    let number = needed_quantity(source, at, value, needed)?;
-    match value {
-        Some(value) if number <= 0.0 => {
-            let problem = format!("must be above zero, for example: {}", needed.example);
-            let text = &value.get_ref().0;
-            Err(invalid(
-                source,
-                &value.span(),
-                (TABLE, needed.key),
-                text,
-                problem,
-            ))
-        }
-        _ => Ok(number),
-    }
+    positive_quantity(source, value, needed)?
+        .ok_or_else(|| missing(source, at, needed, TABLE.to_owned()))
 }

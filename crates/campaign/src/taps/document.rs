@@ -1,6 +1,6 @@
 //! What the store keeps of a recording of taps.
 
-use crate::measure::evaluate::Document;
+use crate::pipeline::evaluate::Document;
 use crate::store::documents::StoredValue;
 use serde::{Deserialize, Serialize};
 use windfall_files::found::FindingOutcome;

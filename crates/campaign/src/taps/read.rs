@@ -1,17 +1,18 @@
 //! campaign.toml of taps → [`AcousticCampaign`].
 
-use crate::measure::item_campaign::{ItemCampaign, SharedFile, read_item_campaign};
 use crate::settings::channels::{Kind, channel_plan};
-use crate::settings::file::QuantityText;
 use crate::settings::files::check_format;
 use crate::settings::kind::CampaignKind;
+use crate::settings::model::Campaign;
 use crate::settings::read::CAMPAIGN_FILE;
-use crate::taps::file::{AcousticFile, AcousticRigFile, ResonanceFile, SoundFile};
+use crate::settings::shared::{SharedFile, read_shared};
+use crate::taps::file::{AcousticFile, ResonanceFile, SoundFile};
 use std::path::Path;
 use toml::Spanned;
 use windfall_files::error::Error;
 use windfall_files::text::toml_source::{
-    Needed, TomlSource, choice, invalid, missing, optional_quantity, parse_source, read_source,
+    Needed, TomlSource, choice, missing, number_that, parse_source, positive_quantity, read_source,
+    refused, uncertainty,
 };
 use windfall_numerics::unit::quantity::parse_as;
 use windfall_signal::recording::Quantity;
@@ -24,7 +25,7 @@ use windfall_signal::uncertain::Uncertain;
 #[derive(Clone, Debug)]
 pub struct AcousticCampaign {
     /// What all kinds share.
-    pub shared: ItemCampaign,
+    pub shared: Campaign,
     /// Standard uncertainty of the masses; kg.
     pub mass_sd: f64,
     /// Density of fruit that have none in specimens.csv; kg/m³.
@@ -60,6 +61,28 @@ const SOUND: Kind = Kind {
     unit: "",
 };
 
+const MASS_SD: Needed = Needed::of(
+    "[rig]",
+    "mass_sd",
+    "standard uncertainty of the masses",
+    "kg",
+    "mass_sd = \"0.1 g\"",
+);
+const DENSITY: Needed = Needed::of(
+    "[rig]",
+    "density",
+    "density of the fruit",
+    "kg/m^3",
+    "density = \"850 kg/m^3\"",
+);
+const DENSITY_SD: Needed = Needed::of(
+    "[rig]",
+    "density_sd",
+    "standard uncertainty of densities",
+    "kg/m^3",
+    "density_sd = \"10 kg/m^3\"",
+);
+
 /// Reads a campaign directory of taps.
 ///
 /// # Errors
@@ -69,7 +92,7 @@ pub fn read_acoustic(directory: &Path) -> Result<AcousticCampaign, Error> {
     let file: AcousticFile = parse_source(&source)?;
     check_format(&source, file.format.as_ref())?;
     let rig = file.rig.get_ref();
-    let density = above_zero(&source, rig.density.as_ref(), &rig_key("density"))?;
+    let density = positive_quantity(&source, rig.density.as_ref(), &DENSITY)?;
     let settings = &file.acoustic;
     let (low, high) = band(&source, settings)?;
     let channel = channel(&source, file.channels.as_ref())?;
@@ -82,9 +105,9 @@ pub fn read_acoustic(directory: &Path) -> Result<AcousticCampaign, Error> {
     let common = [("reject", Common::Reject), ("keep", Common::Keep)];
     let key = ("[acoustic]", "shared");
     Ok(AcousticCampaign {
-        mass_sd: uncertainty(&source, rig, "mass_sd")?,
+        mass_sd: uncertainty(&source, rig.mass_sd.as_ref(), &MASS_SD)?,
         density,
-        density_sd: uncertainty(&source, rig, "density_sd")?,
+        density_sd: uncertainty(&source, rig.density_sd.as_ref(), &DENSITY_SD)?,
         taps: tap_options(&source, settings, (low, high))?,
         resonances: ResonanceOptions {
             low,
@@ -99,7 +122,7 @@ pub fn read_acoustic(directory: &Path) -> Result<AcousticCampaign, Error> {
         },
         first_mode: first_mode_options(&source, settings)?,
         common: choice(&source, settings.shared.as_ref(), key, &common)?.unwrap_or_default(),
-        shared: read_item_campaign(&source, directory, kind, &shared, vec![channel])?,
+        shared: read_shared(&source, directory, kind, &shared, vec![channel])?,
     })
 }
 
@@ -132,76 +155,6 @@ fn channel(
     }
 }
 
-fn rig_key(key: &'static str) -> Needed {
-    let (unit, meaning, example) = match key {
-        "mass_sd" => (
-            "kg",
-            "standard uncertainty of the masses",
-            "mass_sd = \"0.1 g\"",
-        ),
-        "density_sd" => (
-            "kg/m^3",
-            "standard uncertainty of densities",
-            "density_sd = \"10 kg/m^3\"",
-        ),
-        _ => ("kg/m^3", "density of the fruit", "density = \"850 kg/m^3\""),
-    };
-    Needed {
-        table: "[rig]",
-        key,
-        meaning,
-        unit,
-        example,
-    }
-}
-
-fn uncertainty(
-    source: &TomlSource,
-    rig: &AcousticRigFile,
-    key: &'static str,
-) -> Result<f64, Error> {
-    let value = match key {
-        "mass_sd" => rig.mass_sd.as_ref(),
-        _ => rig.density_sd.as_ref(),
-    };
-    let needed = rig_key(key);
-    match (value, optional_quantity(source, value, &needed)?) {
-        (Some(text), Some(number)) if number < 0.0 => {
-            let problem = format!("must not be below zero, for example: {}", needed.example);
-            let key = (needed.table, needed.key);
-            Err(invalid(
-                source,
-                &text.span(),
-                key,
-                &text.get_ref().0,
-                problem,
-            ))
-        }
-        (_, number) => Ok(number.unwrap_or(0.0)),
-    }
-}
-
-fn above_zero(
-    source: &TomlSource,
-    value: Option<&Spanned<QuantityText>>,
-    needed: &Needed,
-) -> Result<Option<f64>, Error> {
-    match (value, optional_quantity(source, value, needed)?) {
-        (Some(text), Some(number)) if number <= 0.0 => {
-            let problem = format!("must be above zero, for example: {}", needed.example);
-            let key = (needed.table, needed.key);
-            Err(invalid(
-                source,
-                &text.span(),
-                key,
-                &text.get_ref().0,
-                problem,
-            ))
-        }
-        (_, number) => Ok(number),
-    }
-}
-
 /// "150 Hz … 2500 Hz"; also with "..." or "to".
 fn band(source: &TomlSource, file: &ResonanceFile) -> Result<(f64, f64), Error> {
     let defaults = TapOptions::default();
@@ -219,7 +172,7 @@ fn band(source: &TomlSource, file: &ResonanceFile) -> Result<(f64, f64), Error> 
         _ => {
             let problem = "expected two frequencies, the lower first: \"150 Hz … 2500 Hz\"";
             let key = ("[acoustic]", "band");
-            Err(invalid(source, &text.span(), key, word, problem.to_owned()))
+            Err(refused(source, text, key, problem))
         }
     }
 }
@@ -230,28 +183,16 @@ fn tap_options(
     (low, high): (f64, f64),
 ) -> Result<TapOptions, Error> {
     let defaults = TapOptions::default();
-    let time = |key, meaning, example| Needed {
-        table: "[acoustic]",
-        key,
-        meaning,
-        unit: "s",
-        example,
-    };
+    let time = |key, meaning, example| Needed::of("[acoustic]", key, meaning, "s", example);
     let hit = time("hit", "left out after the begin of a tap", "hit = \"2 ms\"");
     let longest = time("longest", "longest part of a tap", "longest = \"250 ms\"");
-    let hit = above_zero(source, file.hit.as_ref(), &hit)?.unwrap_or(defaults.hit);
-    let given = above_zero(source, file.longest.as_ref(), &longest)?;
+    let hit = positive_quantity(source, file.hit.as_ref(), &hit)?.unwrap_or(defaults.hit);
+    let given = positive_quantity(source, file.longest.as_ref(), &longest)?;
     let longest = given.unwrap_or(defaults.longest);
     if let (Some(text), true) = (&file.longest, longest < defaults.shortest) {
         let problem = format!("must be at least {} s", defaults.shortest);
         let key = ("[acoustic]", "longest");
-        return Err(invalid(
-            source,
-            &text.span(),
-            key,
-            &text.get_ref().0,
-            problem,
-        ));
+        return Err(refused(source, text, key, problem));
     }
     Ok(TapOptions {
         low,
@@ -267,19 +208,13 @@ fn first_mode_options(
     file: &ResonanceFile,
 ) -> Result<FirstModeOptions, Error> {
     let defaults = FirstModeOptions::default();
-    let quality = match &file.least_quality {
-        None => defaults.least_quality,
-        Some(value) if *value.get_ref() >= 0.5 => *value.get_ref(),
-        Some(value) => {
-            let problem = "expected a number of at least 0.5".to_owned();
-            let (key, text) = (("[acoustic]", "least_quality"), value.get_ref().to_string());
-            return Err(invalid(source, &value.span(), key, &text, problem));
-        }
-    };
+    let key = ("[acoustic]", "least_quality");
+    let (fits, expected) = (|quality| quality >= 0.5, "a number of at least 0.5");
+    let quality = number_that(source, file.least_quality.as_ref(), key, fits, expected)?;
     let part =
         |value, key, default: f64| Ok::<f64, Error>(part(source, value, key)?.unwrap_or(default));
     Ok(FirstModeOptions {
-        least_quality: quality,
+        least_quality: quality.unwrap_or(defaults.least_quality),
         agreement: part(file.agreement.as_ref(), "agreement", defaults.agreement)?,
         least_share: part(
             file.least_share.as_ref(),
@@ -295,21 +230,7 @@ fn part(
     value: Option<&Spanned<f64>>,
     key: &'static str,
 ) -> Result<Option<f64>, Error> {
-    match value {
-        None => Ok(None),
-        Some(value) if *value.get_ref() > 0.0 && *value.get_ref() <= 1.0 => {
-            Ok(Some(*value.get_ref()))
-        }
-        Some(value) => {
-            let problem = "expected a part above 0 and up to 1".to_owned();
-            let text = value.get_ref().to_string();
-            Err(invalid(
-                source,
-                &value.span(),
-                ("[acoustic]", key),
-                &text,
-                problem,
-            ))
-        }
-    }
+    let fits = |part| part > 0.0 && part <= 1.0;
+    let key = ("[acoustic]", key);
+    number_that(source, value, key, fits, "a part above 0 and up to 1")
 }

@@ -31,7 +31,7 @@ pub struct TapsOfEntry<'a> {
     /// Group of the entry, where the campaign has groups.
     pub group: Option<String>,
     /// The result.
-    pub taps: TapsDocument,
+    pub taps: &'a TapsDocument,
 }
 
 /// Taps and specimens of a campaign.

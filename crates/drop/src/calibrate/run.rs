@@ -22,12 +22,10 @@ use crate::calibrate_settings::{DropLaw, Way};
 use crate::evaluate::MeasuredDrop;
 use crate::plate_ringing::{PlateEstimate, plate_of};
 use crate::read::{DropCampaign, read_drop};
-use crate::run::measured_drops;
 use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
-use windfall_campaign::impacts::request::Reuse;
-use windfall_campaign::measure::evaluate::Evaluated;
-use windfall_campaign::result::outcome::StatusOutcome;
+use windfall_campaign::measure::run::measure_recordings;
+use windfall_campaign::pipeline::request::Reuse;
 use windfall_cards::read_card::write_card;
 use windfall_draw::files::FigureFolder;
 use windfall_drop_rig::feature_problem::FeatureProblem;
@@ -115,25 +113,20 @@ fn feature_drops(campaign: &DropCampaign, progress: Progress) -> Result<Seen, Er
         .iter()
         .map(|entry| written_features(campaign, entry))
         .collect::<Result<_, Error>>()?;
-    let recorded = match written.iter().all(|features| !features.is_empty()) {
-        true => Evaluated {
-            items: Vec::new(),
-            failed: Vec::new(),
-            status: StatusOutcome::default(),
-        },
-        false => measured_drops(campaign, Reuse::Unchanged, progress)?,
+    let (recorded, mut failed) = match written.iter().all(|features| !features.is_empty()) {
+        true => (Vec::new(), Vec::new()),
+        false => {
+            let evaluated = measure_recordings(campaign, Reuse::Unchanged, progress)?;
+            (evaluated.items, evaluated.failed)
+        }
     };
-    let mut failed = recorded.failed;
     failed.retain(|failure| {
         let place = entries.iter().position(|entry| entry.id == failure.id);
         place.is_none_or(|place| written[place].is_empty())
     });
     let mut drops = Vec::new();
     for (place, entry) in entries.iter().enumerate() {
-        let own = recorded
-            .items
-            .iter()
-            .find(|(position, _)| *position == place);
+        let own = recorded.iter().find(|(position, _)| *position == place);
         let features = match (written[place].is_empty(), own) {
             (false, _) => written[place].clone(),
             (true, Some((_, measured))) => recorded_features(measured, campaign.calibrate.bounces),
@@ -151,7 +144,7 @@ fn feature_drops(campaign: &DropCampaign, progress: Progress) -> Result<Seen, Er
             }),
         }
     }
-    let measured: Vec<MeasuredDrop> = recorded.items.into_iter().map(|(_, drop)| drop).collect();
+    let measured: Vec<MeasuredDrop> = recorded.into_iter().map(|(_, drop)| drop).collect();
     Ok(Seen {
         drops,
         plate: plate_of(campaign, &measured)?,

@@ -4,8 +4,8 @@
 use crate::calibrate::outcome::CalibrateOutcome;
 use crate::read::DropCampaign;
 use serde_json::json;
-use windfall_campaign::impacts::run::STORE_FILE;
-use windfall_campaign::recording::digests::{campaign_text, file_digests, recording_digests};
+use windfall_campaign::pipeline::evaluate::STORE_FILE;
+use windfall_campaign::recording::digests::{campaign_text, recording_digests, run_origin};
 use windfall_campaign::store::documents::{DocumentRecord, StoredValue};
 use windfall_campaign::store::runs::{RunRecord, latest_run, write_run};
 use windfall_files::error::Error;
@@ -29,6 +29,7 @@ pub fn keep_calibration(campaign: &DropCampaign, outcome: &CalibrateOutcome) -> 
         return Ok(());
     }
     let digests = recording_digests(&shared.directory, &shared.files, &shared.entries);
+    let origin = run_origin(shared, &digests, serde_json::Map::new())?;
     let record = DocumentRecord {
         key,
         kind: "calibration".to_owned(),
@@ -41,9 +42,9 @@ pub fn keep_calibration(campaign: &DropCampaign, outcome: &CalibrateOutcome) -> 
     let run = RunRecord {
         time: time_now(),
         windfall: VERSION.to_owned(),
-        options: json!({ "campaign.toml": text }).to_string(),
+        options: origin.options,
         seed: None,
-        inputs: file_digests(&shared.directory, &digests)?,
+        inputs: origin.inputs,
         results: Vec::new(),
         documents: vec![record],
         failures: outcome.failed.clone(),

@@ -7,6 +7,12 @@ use serde::de::{Deserializer, Visitor};
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct QuantityText(pub String);
 
+impl std::fmt::Display for QuantityText {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.write_str(&self.0)
+    }
+}
+
 impl<'de> Deserialize<'de> for QuantityText {
     fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
         struct Text;

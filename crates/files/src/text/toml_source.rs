@@ -2,6 +2,7 @@
 
 use crate::error::{Error, Place};
 use crate::text::file_quantity::QuantityText;
+use std::fmt::Display;
 use std::ops::Range;
 use std::path::{Path, PathBuf};
 use toml::Spanned;
@@ -29,6 +30,26 @@ pub struct Needed {
     pub unit: &'static str,
     /// A line that would do.
     pub example: &'static str,
+}
+
+impl Needed {
+    /// A value of a table, with its meaning, SI unit and a line that would do.
+    #[must_use]
+    pub const fn of(
+        table: &'static str,
+        key: &'static str,
+        meaning: &'static str,
+        unit: &'static str,
+        example: &'static str,
+    ) -> Self {
+        Self {
+            table,
+            key,
+            meaning,
+            unit,
+            example,
+        }
+    }
 }
 
 /// Reads a TOML file as text.
@@ -93,15 +114,10 @@ pub fn optional_quantity(
     needed: &Needed,
 ) -> Result<Option<f64>, Error> {
     let Some(value) = value else { return Ok(None) };
-    let text = &value.get_ref().0;
-    parse_as(text, needed.unit).map(Some).map_err(|error| {
-        invalid(
-            source,
-            &value.span(),
-            (needed.table, needed.key),
-            text,
-            error.to_string(),
-        )
+    let number = parse_as(&value.get_ref().0, needed.unit);
+    number.map(Some).map_err(|error| {
+        let key = (needed.table, needed.key);
+        refused(source, value, key, error.to_string())
     })
 }
 
@@ -121,6 +137,75 @@ pub fn needed_quantity(
         .ok_or_else(|| missing(source, table_at, needed, needed.table.to_owned()))
 }
 
+/// A quantity above zero that may be left out; SI.
+///
+/// # Errors
+/// The text is no quantity of the unit, or not above zero.
+pub fn positive_quantity(
+    source: &TomlSource,
+    value: Option<&Spanned<QuantityText>>,
+    needed: &Needed,
+) -> Result<Option<f64>, Error> {
+    bounded(
+        source,
+        value,
+        needed,
+        |number| number > 0.0,
+        "be above zero",
+    )
+}
+
+/// A standard uncertainty, zero where it is left out; SI.
+///
+/// # Errors
+/// The text is no quantity of the unit, or below zero.
+pub fn uncertainty(
+    source: &TomlSource,
+    value: Option<&Spanned<QuantityText>>,
+    needed: &Needed,
+) -> Result<f64, Error> {
+    let fits = |number| number >= 0.0;
+    let number = bounded(source, value, needed, fits, "not be below zero")?;
+    Ok(number.unwrap_or(0.0))
+}
+
+fn bounded(
+    source: &TomlSource,
+    value: Option<&Spanned<QuantityText>>,
+    needed: &Needed,
+    fits: impl Fn(f64) -> bool,
+    bound: &str,
+) -> Result<Option<f64>, Error> {
+    match (value, optional_quantity(source, value, needed)?) {
+        (Some(value), Some(number)) if !fits(number) => {
+            let problem = format!("must {bound}, for example: {}", needed.example);
+            Err(refused(source, value, (needed.table, needed.key), problem))
+        }
+        (_, number) => Ok(number),
+    }
+}
+
+/// A number that may be left out.
+///
+/// * `expected`: what the message asks for
+///
+/// # Errors
+/// The number does not fit.
+pub fn number_that<T: Copy + Display>(
+    source: &TomlSource,
+    value: Option<&Spanned<T>>,
+    key: (&str, &str),
+    fits: impl Fn(T) -> bool,
+    expected: &str,
+) -> Result<Option<T>, Error> {
+    match value {
+        Some(value) if !fits(*value.get_ref()) => {
+            Err(refused(source, value, key, format!("expected {expected}")))
+        }
+        value => Ok(value.map(|value| *value.get_ref())),
+    }
+}
+
 /// The error of a value that is left out.
 #[must_use]
 pub fn missing(
@@ -136,6 +221,18 @@ pub fn missing(
         meaning: needed.meaning,
         example: needed.example,
     }
+}
+
+/// The error of a value that cannot be used.
+#[must_use]
+pub fn refused<T: Display>(
+    source: &TomlSource,
+    value: &Spanned<T>,
+    key: (&str, &str),
+    problem: impl Into<String>,
+) -> Error {
+    let text = value.get_ref().to_string();
+    invalid(source, &value.span(), key, &text, problem.into())
 }
 
 /// The error of a value that cannot be used.

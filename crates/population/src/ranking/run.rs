@@ -5,13 +5,14 @@ use crate::ranking::outcome::{ImpactEvidenceOutcome, LawEvidenceOutcome, LawsOut
 use std::collections::BTreeMap;
 use std::path::Path;
 use windfall_campaign::impacts::figure_impact::figure_of_impact;
-use windfall_campaign::impacts::fit::{failure, law_problem};
+use windfall_campaign::impacts::fit::law_problem;
 use windfall_campaign::impacts::mass::{RigFound, find_rig};
-use windfall_campaign::impacts::request::{FitRequest, apply_request};
+use windfall_campaign::pipeline::evaluate::failure;
+use windfall_campaign::pipeline::request::{FitRequest, apply_request};
 use windfall_campaign::recording::extract::extract_recording;
 use windfall_campaign::result::fit_outcome::impact_outcome;
 use windfall_campaign::result::outcome::ImpactOutcome;
-use windfall_campaign::settings::model::{Campaign, ImpactEntry};
+use windfall_campaign::settings::model::{ImpactCampaign, ImpactEntry};
 use windfall_campaign::settings::read::read_campaign;
 use windfall_contact::expression::parse_law;
 use windfall_draw::files::{FigureFolder, file_name, write_figure, write_paintings};
@@ -77,7 +78,7 @@ pub fn rank_campaign(
 type Fitted = Result<(windfall_signal::impact::Impact, Vec<ImpactFit>), FailureOutcome>;
 
 fn rank(
-    campaign: &Campaign,
+    campaign: &ImpactCampaign,
     figures: Option<&FigureFolder>,
     progress: Progress,
 ) -> Result<LawsOutcome, Error> {
@@ -88,11 +89,11 @@ fn rank(
         .iter()
         .map(|law| law_problem(law, &campaign.fit.free))
         .collect();
-    let results = for_each(progress, campaign.impacts.len(), |item| {
-        fits(campaign, &campaign.impacts[item], &rig, &problems)
+    let results = for_each(progress, campaign.shared.entries.len(), |item| {
+        fits(campaign, &campaign.shared.entries[item], &rig, &problems)
     })?;
     let (mut impacts, mut fitted, mut entries, mut failed) = (vec![], vec![], vec![], vec![]);
-    for (entry, result) in campaign.impacts.iter().zip(results) {
+    for (entry, result) in campaign.shared.entries.iter().zip(results) {
         match result {
             Ok((impact, fits)) => {
                 impacts.push(LeveledImpact { impact, level: 0 });
@@ -108,7 +109,7 @@ fn rank(
         rank_laws(impacts, fits, &rig.rig, &problems, &campaign.fit.options)
     };
     let ranking = compare(&impacts, &fitted).map_err(|source| Error::Identify {
-        subject: campaign.title.clone(),
+        subject: campaign.shared.title.clone(),
         source: Box::new(source),
     })?;
     let specimens_first = firsts(&impacts, &fitted, &entries, &ranking, &compare);
@@ -141,7 +142,7 @@ fn middle_impact(compared: &[usize], fits: &[Vec<ImpactFit>]) -> Option<usize> {
 
 /// One impact with the best fit of each law over its signals, the best law first.
 fn draw_impact(
-    campaign: &Campaign,
+    campaign: &ImpactCampaign,
     rig: &RigFound,
     entry: &ImpactEntry,
     problems: &[LawProblem],
@@ -173,7 +174,7 @@ fn draw_impact(
 }
 
 fn fits(
-    campaign: &Campaign,
+    campaign: &ImpactCampaign,
     entry: &ImpactEntry,
     rig: &RigFound,
     problems: &[LawProblem],
@@ -267,7 +268,7 @@ fn firsts(
 }
 
 fn outcome(
-    campaign: &Campaign,
+    campaign: &ImpactCampaign,
     ranking: LawRanking,
     ids: &[String],
     specimens_first: Vec<usize>,
@@ -278,8 +279,8 @@ fn outcome(
     let least = ranking.laws.first().map_or(0.0, |law| law.cost);
     LawsOutcome {
         windfall: VERSION.to_owned(),
-        campaign: campaign.title.clone(),
-        simulated: campaign.simulated.clone(),
+        campaign: campaign.shared.title.clone(),
+        simulated: campaign.shared.simulated.clone(),
         impacts: ranking.impacts,
         levels: ranking.levels,
         verdict,

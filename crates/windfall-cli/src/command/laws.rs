@@ -4,7 +4,7 @@ use crate::args::format::Format;
 use crate::args::laws::LawsArguments;
 use crate::command::fit::{moving, progress_bar};
 use crate::show::{message, write_json, write_result};
-use windfall_campaign::impacts::request::FitRequest;
+use windfall_campaign::pipeline::request::FitRequest;
 use windfall_population::ranking::run::rank_campaign;
 use windfall_population::ranking::text::{csv_of_laws, text_of_laws};
 

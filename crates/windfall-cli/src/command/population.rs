@@ -4,7 +4,7 @@ use crate::args::format::Format;
 use crate::args::population::PopulationArguments;
 use crate::command::fit::{moving, progress_bar};
 use crate::show::{message, tell_failures, write_json, write_result};
-use windfall_campaign::impacts::request::FitRequest;
+use windfall_campaign::pipeline::request::FitRequest;
 use windfall_cards::read_card::write_card;
 use windfall_population::card::card_of_population;
 use windfall_population::run::{PopulationRequest, population};

@@ -4,7 +4,7 @@ use crate::args::format::Format;
 use crate::args::report::ReportArguments;
 use crate::command::fit::{moving, progress_bar};
 use crate::show::{tell_failures, write_json, write_result};
-use windfall_campaign::impacts::request::FitRequest;
+use windfall_campaign::pipeline::request::FitRequest;
 use windfall_report::run::{ReportRequest, report_campaign};
 
 /// Writes the report of a campaign and says which files it is.

@@ -13,7 +13,7 @@ use serde::Deserialize;
 use std::path::PathBuf;
 use std::sync::Arc;
 use utoipa::ToSchema;
-use windfall_campaign::impacts::request::FitRequest;
+use windfall_campaign::pipeline::request::FitRequest;
 use windfall_drop::calibrate::run::{CalibrateRequest, calibrate};
 use windfall_files::error::Error;
 use windfall_population::ranking::run::rank_campaign;

@@ -7,7 +7,7 @@ use crate::problem::Problem;
 use axum::extract::{Path, State};
 use serde::Deserialize;
 use utoipa::ToSchema;
-use windfall_campaign::impacts::request::FitRequest;
+use windfall_campaign::pipeline::request::FitRequest;
 use windfall_workspace::campaign_view::name_of;
 use windfall_workspace::live_fit::{LiveOutcome, LiveRequest};
 

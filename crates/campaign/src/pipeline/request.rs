@@ -1,10 +1,11 @@
-//! `windfall fit` as it is asked for, on top of what the campaign says.
+//! Options of `windfall fit`, which override those of the campaign.
 
 use crate::settings::fit::{
     ENDS, INTERVALS, NOISES, TREATMENTS, WEIGHTS, enough_work, hold_velocity, known_velocity,
     quantities_named, unknown_parameter,
 };
-use crate::settings::model::{Campaign, ImpactEntry, Specimen};
+use crate::settings::kind::CampaignKind;
+use crate::settings::model::{Campaign, ImpactCampaign, ImpactEntry, Specimen};
 use std::path::PathBuf;
 use windfall_cards::user_laws::read::laws_of_option;
 use windfall_contact::expression::{LawExpression, parse_law_among};
@@ -76,20 +77,16 @@ pub enum Reuse {
     Only,
 }
 
-/// Puts what is asked for in the place of what the campaign says.
+/// Overrides settings of a campaign of impacts with options.
 ///
 /// # Errors
 /// An option cannot be used.
-pub fn apply_request(campaign: &mut Campaign, request: &FitRequest) -> Result<(), Error> {
+pub fn apply_request(campaign: &mut ImpactCampaign, request: &FitRequest) -> Result<(), Error> {
     campaign.fit.user = merged(&campaign.fit.user, request)?;
     let fit = &mut campaign.fit;
     laws_and_free(&mut fit.laws, &mut fit.free, &fit.user, request)?;
     apply_options(&mut campaign.fit.options, request)?;
-    if let Some(group) = &request.group {
-        let names = columns(&campaign.specimens, &campaign.impacts);
-        campaign.group = Some(known_group(group, &names)?);
-    }
-    Ok(())
+    apply_group(&mut campaign.shared, request)
 }
 
 /// The laws of the campaign and of the file that is asked for; of the same name,
@@ -105,23 +102,25 @@ fn merged(campaign: &[LawKind], request: &FitRequest) -> Result<Vec<LawKind>, Er
     Ok(laws)
 }
 
-/// A group that one of the tables has.
-///
-/// # Errors
-/// Neither has it.
-pub fn known_group(group: &str, names: &[&str]) -> Result<String, Error> {
-    if names.contains(&group) {
-        return Ok(group.to_owned());
+/// Groups by another column where the request names one that a table has.
+fn apply_group(campaign: &mut Campaign, request: &FitRequest) -> Result<(), Error> {
+    let Some(group) = &request.group else {
+        return Ok(());
+    };
+    let names = columns(&campaign.specimens, &campaign.entries);
+    if !names.contains(&group.as_str()) {
+        let problem = format!(
+            "neither specimens.csv nor impacts.csv has this column{}; they have: {}",
+            suggestion(group, names.iter().copied()),
+            names.join(", ")
+        );
+        return Err(unusable(format!("--group {group}"), problem));
     }
-    let problem = format!(
-        "neither specimens.csv nor impacts.csv has this column{}; they have: {}",
-        suggestion(group, names.iter().copied()),
-        names.join(", ")
-    );
-    Err(unusable(format!("--group {group}"), problem))
+    campaign.group = Some(group.clone());
+    Ok(())
 }
 
-/// Puts the laws and free parameters that are asked for in the place of others.
+/// Overrides laws and free parameters with options.
 ///
 /// # Errors
 /// A law or a parameter is not known.
@@ -222,10 +221,44 @@ fn apply_options(options: &mut FitOptions, request: &FitRequest) -> Result<(), E
 }
 
 /// Columns of both tables.
-#[must_use]
-pub fn columns<'a>(specimens: &'a [Specimen], entries: &'a [ImpactEntry]) -> Vec<&'a str> {
+fn columns<'a>(specimens: &'a [Specimen], entries: &'a [ImpactEntry]) -> Vec<&'a str> {
     let specimen = specimens.first().map_or(&[][..], |s| &s.cells);
     let entry = entries.first().map_or(&[][..], |i| &i.cells);
     let cells = specimen.iter().chain(entry);
     cells.map(|(name, _)| name.as_str()).collect()
+}
+
+/// Overrides the group of a campaign that fits no impacts; laws are overridden where it
+/// fits some ([`laws_and_free`]).
+///
+/// # Errors
+/// An option that only impacts have, or one that cannot be used.
+pub fn apply_request_to_measurement(
+    campaign: &mut Campaign,
+    request: &FitRequest,
+) -> Result<(), Error> {
+    let kind = campaign.kind;
+    let fits_laws = kind == CampaignKind::Compression;
+    let laws = !(request.laws.is_empty() && request.free.is_empty());
+    let strangers = [
+        ("--law and --free", laws && !fits_laws),
+        ("--laws", request.laws_file.is_some()),
+        ("--card", request.card.is_some()),
+        ("--quantities", !request.quantities.is_empty()),
+        ("--weights", request.weights.is_some()),
+        ("--noise", request.noise.is_some()),
+        ("--intervals", request.intervals.is_some()),
+        ("--initial-velocity", request.initial_velocity.is_some()),
+        ("--onset", request.onset.is_some()),
+        (
+            "--displacement-offset",
+            request.displacement_offset.is_some(),
+        ),
+        ("--end", request.end.is_some()),
+    ];
+    if let Some((option, _)) = strangers.iter().find(|(_, given)| *given) {
+        let problem = format!("a campaign of kind \"{}\" has no such option", kind.name());
+        return Err(unusable((*option).to_owned(), problem));
+    }
+    apply_group(campaign, request)
 }
