@@ -14,7 +14,7 @@ use std::sync::{Mutex, PoisonError};
 use toml_edit::{Array, DocumentMut, Item, Table, value};
 use windfall_campaign::recording::digests::campaign_text;
 use windfall_campaign::settings::channels::{KINDS, parse_scale};
-use windfall_campaign::settings::read::CAMPAIGN_FILE;
+use windfall_campaign::settings::kind::CAMPAIGN_FILE;
 use windfall_campaign::settings::tables::read_specimens;
 use windfall_campaign::settings::template::is_template_file;
 use windfall_files::confined::path_inside;

@@ -1,8 +1,8 @@
 //! SHA-256 of the files of a campaign.
 
 use crate::recording::read::recording_path;
+use crate::settings::kind::CAMPAIGN_FILE;
 use crate::settings::model::{Campaign, FilePlan, ImpactEntry};
-use crate::settings::read::CAMPAIGN_FILE;
 use rayon::prelude::*;
 use serde_json::{Map, Value, json};
 use std::collections::BTreeMap;

@@ -1,10 +1,12 @@
 //! What a campaign measures: the word after `kind` in `[rig]`.
 
-use crate::settings::read::CAMPAIGN_FILE;
 use serde::Deserialize;
 use std::path::Path;
 use windfall_files::error::Error;
 use windfall_files::text::toml_source::{parse_source, read_source};
+
+/// Name of the campaign file.
+pub const CAMPAIGN_FILE: &str = "campaign.toml";
 
 /// What a campaign measures.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

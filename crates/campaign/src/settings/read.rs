@@ -5,7 +5,7 @@ use crate::settings::contact::contact_plan;
 use crate::settings::file::CampaignFile;
 use crate::settings::files::check_format;
 use crate::settings::fit::fit_plan;
-use crate::settings::kind::CampaignKind;
+use crate::settings::kind::{CAMPAIGN_FILE, CampaignKind};
 use crate::settings::model::ImpactCampaign;
 use crate::settings::rig::rig_plan;
 use crate::settings::shared::{SharedFile, read_shared};
@@ -13,9 +13,6 @@ use std::path::Path;
 use windfall_cards::user_laws::read::user_laws;
 use windfall_files::error::Error;
 use windfall_files::text::toml_source::{parse_source, read_source};
-
-/// Name of the campaign file.
-pub const CAMPAIGN_FILE: &str = "campaign.toml";
 
 /// Reads a campaign directory.
 ///

@@ -2,9 +2,8 @@
 
 use crate::settings::channels::{Kind, channel_plan};
 use crate::settings::files::check_format;
-use crate::settings::kind::CampaignKind;
+use crate::settings::kind::{CAMPAIGN_FILE, CampaignKind};
 use crate::settings::model::Campaign;
-use crate::settings::read::CAMPAIGN_FILE;
 use crate::settings::shared::{SharedFile, read_shared};
 use crate::taps::file::{AcousticFile, ResonanceFile, SoundFile};
 use std::path::Path;
