@@ -46,22 +46,11 @@ pub struct TransferOutcome {
     /// k there over k here.
     pub stiffness_ratio: f64,
     /// The contact that it was found in.
-    pub from: ContactOutcome,
+    pub from: CardContact,
     /// The contact that it is wanted for.
-    pub to: ContactOutcome,
+    pub to: CardContact,
     /// What is assumed.
     pub assumptions: Vec<String>,
-}
-
-/// A contact of Hertz; SI.
-#[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct ContactOutcome {
-    /// R*; m.
-    pub effective_radius: f64,
-    /// E*; Pa.
-    pub effective_modulus: f64,
-    /// What touches what.
-    pub bodies: String,
 }
 
 /// A law in another geometry; a card of it where one is asked for.
@@ -70,26 +59,18 @@ pub struct ContactOutcome {
 /// A text or file cannot be used, or the law cannot be transferred.
 pub fn transfer_law(request: &TransferRequest) -> Result<TransferOutcome, Error> {
     let (law, option, card) = found_law(request)?;
-    let here = side(
-        "--from",
-        &request.from,
-        request.from_plates,
-        &request.from_other,
-    )?;
+    let (from_plates, from_other) = (request.from_plates, &request.from_other);
+    let here = side("--from", &request.from, from_plates, from_other)?;
     let there = side("--to", &request.to, request.to_plates, &request.to_other)?;
     // Only laws of Hertz's contact have a k that tells the modulus: see first.
     let plain = transfer(law, &here.geometry, &there.geometry)
         .map_err(|error| unusable(option.clone(), error.to_string()))?;
-    let (from_relative, to_relative) = relative_moduli(&law, &here, &there)?;
-    let from = Geometry {
-        relative_modulus: from_relative,
-        ..here.geometry.clone()
+    let (from, to) = relative_moduli(&law, &here, &there)?;
+    let relative = |side: &Side, relative_modulus| Geometry {
+        relative_modulus,
+        ..side.geometry.clone()
     };
-    let to = Geometry {
-        relative_modulus: to_relative,
-        ..there.geometry.clone()
-    };
-    let found = transfer(law, &from, &to).unwrap_or(plain);
+    let found = transfer(law, &relative(&here, from), &relative(&there, to)).unwrap_or(plain);
     let outcome = TransferOutcome {
         law: LawExpression::from(found.law).to_string(),
         stiffness_ratio: found.stiffness_ratio,
@@ -150,8 +131,8 @@ impl Side {
         law.parameters()[0] / stiffness_per_modulus(&self.geometry.contacts)
     }
 
-    fn outcome(&self, law: &Law) -> ContactOutcome {
-        ContactOutcome {
+    fn outcome(&self, law: &Law) -> CardContact {
+        CardContact {
             effective_radius: self.radius,
             effective_modulus: self.modulus(law),
             bodies: self.text.clone(),
@@ -326,11 +307,7 @@ fn card_there(mut card: LawCard, found: &Transferred, outcome: &TransferOutcome)
          and masses are as they were seen"
             .to_owned(),
     );
-    card.contact = Some(CardContact {
-        effective_radius: outcome.to.effective_radius,
-        effective_modulus: outcome.to.effective_modulus,
-        bodies: outcome.to.bodies.clone(),
-    });
+    card.contact = Some(outcome.to.clone());
     card
 }
 
@@ -347,7 +324,7 @@ fn scale(matrix: &mut [Vec<f64>], of: &[String], ratio: f64) {
 /// A transferred law for people.
 #[must_use]
 pub fn text_of_transfer(outcome: &TransferOutcome) -> String {
-    let contact = |contact: &ContactOutcome| {
+    let contact = |contact: &CardContact| {
         format!(
             "{}: R* = {} mm, E* = {} MPa",
             contact.bodies,

@@ -173,28 +173,6 @@ pub enum Error {
     },
 }
 
-impl Error {
-    /// Byte offset in the expression of what is wrong, if it has a place.
-    #[must_use]
-    pub fn offset(&self) -> Option<usize> {
-        match self {
-            Self::UnknownLaw { place, .. } | Self::OutOfBounds { place, .. } => {
-                place.as_ref().map(|place| place.offset)
-            }
-            Self::UnknownParameter { place, .. }
-            | Self::RepeatedParameter { place, .. }
-            | Self::BadValue { place, .. }
-            | Self::UnknownExponent { place, .. }
-            | Self::Syntax { place, .. } => Some(place.offset),
-            Self::ParameterCount { .. }
-            | Self::MissingParameters { .. }
-            | Self::SofterUnloading { .. }
-            | Self::UserLaw { .. }
-            | Self::ImpossibleRestitution { .. } => None,
-        }
-    }
-}
-
 fn with_unit(value: &f64, unit: &str) -> String {
     match unit.is_empty() {
         true => number_text(*value),

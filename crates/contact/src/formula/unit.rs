@@ -3,7 +3,9 @@
 use crate::formula::error::{FormulaError, FormulaPlace};
 use crate::formula::syntax::{Function, Operator, Term, What};
 use crate::formula::value::term_value;
-use windfall_numerics::unit::quantity::{Dimension, EXPONENT_TOLERANCE, exponent_text, parse_unit};
+use windfall_numerics::unit::quantity::{
+    Dimension, EXPONENT_TOLERANCE, UnitError, exponent_text, parse_unit,
+};
 
 /// Base units m, kg and s in [`Dimension::exponents`]; rad.
 const METRE: usize = 0;
@@ -29,19 +31,12 @@ enum Found {
 }
 
 /// The dimension of a unit without a factor; `Err(None)` for one with a factor.
-pub(crate) fn si_dimension(
-    unit: &str,
-) -> Result<Dimension, Option<windfall_numerics::unit::quantity::UnitError>> {
+pub(crate) fn si_dimension(unit: &str) -> Result<Dimension, Option<UnitError>> {
     let unit = parse_unit(unit).map_err(Some)?;
     match unit.multiply == 1.0 && unit.divide == 1.0 {
         true => Ok(unit.dimension),
         false => Err(None),
     }
-}
-
-/// Whether the force comes out in newtons.
-pub(crate) fn check_units(term: &Term, units: &Units) -> Result<(), FormulaError> {
-    check_force(term, units)
 }
 
 fn newton() -> Dimension {
@@ -58,17 +53,17 @@ fn base(index: usize) -> Dimension {
     Dimension { exponents }
 }
 
-/// Every term of a sum of forces must be a force; the message names the one
-/// that is not.
-fn check_force(term: &Term, units: &Units) -> Result<(), FormulaError> {
+/// Whether the force comes out in newtons: every term of a sum of forces must be a force, and
+/// the message names the one that is not.
+pub(crate) fn check_units(term: &Term, units: &Units) -> Result<(), FormulaError> {
     match &term.what {
         What::Binary(Operator::Plus | Operator::Minus, a, b)
         | What::Smaller(a, b)
         | What::Larger(a, b) => {
-            check_force(a, units)?;
-            check_force(b, units)
+            check_units(a, units)?;
+            check_units(b, units)
         }
-        What::Negative(a) | What::Call(Function::Abs, a) => check_force(a, units),
+        What::Negative(a) | What::Call(Function::Abs, a) => check_units(a, units),
         What::If {
             left,
             right,
@@ -77,8 +72,8 @@ fn check_force(term: &Term, units: &Units) -> Result<(), FormulaError> {
             ..
         } => {
             units.same(left, right)?;
-            check_force(then, units)?;
-            check_force(otherwise, units)
+            check_units(then, units)?;
+            check_units(otherwise, units)
         }
         _ => match units.of(term)? {
             Found::Any => Ok(()),

@@ -13,7 +13,6 @@ use crate::rig::kind::Rig;
 use crate::rig::simulate::simulate_rig;
 use crate::samples::Quantity;
 use windfall_contact::laws::kind::Law;
-use windfall_contact::restitution::nominal_restitution;
 use windfall_numerics::least_squares::Stop;
 use windfall_statistics::distribution::tail::t_upper_quantile;
 
@@ -283,7 +282,7 @@ impl Plan<'_> {
         }
         out.extend(self.weak_direction(solution, fit));
         out.extend(fit.quantities.iter().flat_map(quantity_remarks));
-        if let Some(nominal) = nominal_restitution(&fit.law) {
+        if let Some(nominal) = fit.law.nominal_restitution() {
             out.push(Finding::NominalRestitution {
                 nominal,
                 delivered: fit.simulated.restitution,
