@@ -155,6 +155,15 @@ impl LawDescription {
         }
     }
 
+    /// Name of the parameter that is the exponent of the force at rest.
+    #[must_use]
+    pub fn exponent_name(&self) -> Option<&'static str> {
+        match self.elastic {
+            Elastic::Power(Power::Parameter(name)) => Some(name),
+            _ => None,
+        }
+    }
+
     /// Exponent of a power; 1. `None` where its parameter has neither value nor default.
     #[must_use]
     pub fn exponent(&self, power: Power, values: &[Option<f64>]) -> Option<f64> {

@@ -8,7 +8,8 @@
 use crate::dual::{derivatives, instant, product};
 use crate::event::{DropEvent, RigDuals};
 use windfall_contact::law::{ContactForce, ContactLaw, EndRule, SMALLEST_DISPLACEMENT};
-use windfall_identify::rig::contact_motion::{earlier, scaled_time, time_of};
+use windfall_identify::rig::contact_stop::earlier;
+use windfall_identify::rig::contact_time::{scaled_time, time_of};
 use windfall_numerics::ode::step::{Position, Step, StepError, System, dense_at, step};
 use windfall_numerics::real::{Lanes, Real};
 use windfall_numerics::root::bracketed_root;

@@ -2,6 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 use windfall_files::found::{FailureOutcome, FindingOutcome};
+use windfall_identify::fit::interval::independent_draws;
 use windfall_identify::population::model::{FixedEffect, PopulationFit, Spread, Variation};
 use windfall_identify::population::posterior::{PopulationPosterior, PosteriorRange};
 use windfall_identify::population::two_stage::TwoStage;
@@ -366,7 +367,7 @@ pub fn posterior_outcome(
         seed: posterior.drawing.seed,
         largest_r_hat: mixing().map(|m| m.r_hat).fold(1.0, f64::max),
         fewest_draws: mixing()
-            .map(|m| m.independent_draws())
+            .map(|m| independent_draws(&m))
             .fold(f64::INFINITY, f64::min),
         divergences: posterior.divergences,
     }

@@ -21,7 +21,6 @@ use windfall_files::found::{FailureOutcome, FindingOutcome};
 use windfall_files::on_threads::on_threads;
 use windfall_files::progress::{Progress, for_each};
 use windfall_files::provenance::VERSION;
-use windfall_identify::fit::interval::IntervalOptions;
 use windfall_identify::fit::problem::LawProblem;
 use windfall_identify::population::finding::PopulationFinding;
 use windfall_identify::population::fit::fit_population;
@@ -33,7 +32,6 @@ use windfall_identify::population::model::{
 };
 use windfall_identify::population::posterior::population_posterior;
 use windfall_identify::population::two_stage::two_stage;
-use windfall_identify::sampler::Drawing;
 
 /// What `population` is asked for.
 #[derive(Clone, Debug, Default)]
@@ -124,17 +122,7 @@ fn estimate(
     let posterior = match posterior {
         false => None,
         true => {
-            let IntervalOptions {
-                chains,
-                draws,
-                seed,
-                ..
-            } = campaign.fit.options.intervals;
-            let drawing = Drawing {
-                chains,
-                draws,
-                seed,
-            };
+            let drawing = campaign.fit.options.intervals.drawing();
             let expand = |points: &[Vec<f64>]| expand_beyond(DRAWN_REACH, points);
             // The sampler does not stop halfway: what it gave is then not used.
             let stopped = Cell::new(false);

@@ -4,7 +4,7 @@ use crate::error::Error;
 use crate::finding::Finding;
 use crate::fit::estimator::{Coordinate, Target};
 use crate::fit::identifiability::{directions, in_words, trade};
-use crate::fit::interval::{IntervalDetail, IntervalMethod};
+use crate::fit::interval::{IntervalDetail, IntervalMethod, independent_draws, mixes};
 use crate::fit::plan::{Plan, nuisance_name, sample_count};
 use crate::fit::solve::Solution;
 use crate::fit::types::{Estimate, Fit, QuantityFit};
@@ -327,11 +327,11 @@ fn interval_remarks(detail: &IntervalDetail, estimates: &[&Estimate]) -> Vec<Fin
                 });
             }
             for (i, mixing) in found.mixing.iter().enumerate() {
-                if !mixing.suffices() {
+                if !mixes(mixing) {
                     out.push(Finding::NotMixed {
                         parameter: name(i),
                         r_hat: mixing.r_hat,
-                        draws: mixing.independent_draws(),
+                        draws: independent_draws(mixing),
                     });
                 }
             }

@@ -2,18 +2,17 @@
 //! what [`fit_population`](crate::population::fit::fit_population) approximates.
 
 use crate::error::Error;
-use crate::fit::interval::{Mixing, quantile};
+use crate::fit::interval::{independent_draws, mixes, quantile};
 use crate::fit::posterior::mixing;
 use crate::population::finding::PopulationFinding;
 use crate::population::level::{Level, Normal};
 use crate::population::model::{
     Expand, Expansion, PopulationData, PopulationFit, PopulationOptions,
 };
-use crate::sampler::Drawing;
-use crate::sampler::LogDensity;
-use crate::sampler::draw_chains;
+use crate::sampler::{Drawing, LogDensity, draw_chains};
 use nalgebra::{DMatrix, DVector};
 use std::cell::{Cell, RefCell};
+use windfall_statistics::chain_diagnostics::ChainDiagnostics;
 
 /// A quantity as its draws tell it.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -25,7 +24,7 @@ pub struct PosteriorRange {
     /// Upper end.
     pub high: f64,
     /// How well the chains mix.
-    pub mixing: Mixing,
+    pub mixing: ChainDiagnostics,
 }
 
 /// Variation at one level.
@@ -74,9 +73,9 @@ impl PopulationPosterior {
             });
         }
         let all = self.ranges().map(|range| range.mixing);
-        let poor: Vec<Mixing> = all.filter(|mixing| !mixing.suffices()).collect();
+        let poor: Vec<ChainDiagnostics> = all.filter(|mixing| !mixes(mixing)).collect();
         if !poor.is_empty() {
-            let draws = poor.iter().map(Mixing::independent_draws);
+            let draws = poor.iter().map(independent_draws);
             out.push(PopulationFinding::NotMixed {
                 quantities: poor.len(),
                 r_hat: poor.iter().map(|mixing| mixing.r_hat).fold(1.0, f64::max),
