@@ -74,8 +74,8 @@ impl<const P: usize> Default for Options<P> {
 pub enum Stop {
     /// No step within the bounds lowers the cost noticeably: the full
     /// Gauss-Newton step gains less than `cost_tolerance`, or less than the
-    /// rounding of the parameters, or less than `roughness` and fails. A parameter that the data do not tell, at
-    /// this point, has no step to take: look at the normal matrix.
+    /// rounding of the parameters, or less than `roughness` and fails. A parameter that
+    /// the data do not determine has no step to take: see the normal matrix.
     Converged,
     /// The full step promises a gain, but shorter and shorter steps did not
     /// deliver it: the model is not smooth, or its derivatives are wrong.
@@ -189,7 +189,7 @@ pub struct Descent<const P: usize> {
     stop: Stop,
 }
 
-/// An evaluation that is asked for.
+/// A requested evaluation.
 #[derive(Clone, Copy, Debug)]
 enum Asked<const P: usize> {
     Start,
@@ -375,7 +375,7 @@ struct Damping<const P: usize> {
 }
 
 impl<const P: usize> Damping<P> {
-    /// Less damping where the quadratic model foretold the gain, more where it
+    /// Less damping where the quadratic model predicted the gain, more where it
     /// promised too much.
     fn follow(&mut self, from: &Point<P>, to: &Point<P>, gain: f64) {
         let fall = from.equations.cost - to.equations.cost;
@@ -398,7 +398,7 @@ fn accepted<const P: usize>(from: &Point<P>, to: &Point<P>) -> bool {
     rise <= 0.0 || (rise <= noise(from) && to.left < from.left)
 }
 
-/// Change of the cost that says nothing.
+/// Change of the cost that is rounding.
 fn noise<const P: usize>(at: &Point<P>) -> f64 {
     let rounding = rounding_gain(at);
     NOISE * at.equations.cost + 2.0 * (at.equations.cost * rounding).sqrt() + rounding
@@ -428,7 +428,7 @@ fn point<const P: usize>(
     equations: NormalEquations<P>,
     bounds: &Bounds<P>,
 ) -> Point<P> {
-    // Parameters that cannot be told apart need the least damping that works.
+    // Inseparable parameters need the least damping that works.
     let least = std::array::from_fn(|i| SMALLEST_DAMPING * equations.normal[i][i]);
     let full = bounded_step(&equations, &parameters, bounds, &[0.0; P])
         .or_else(|| bounded_step(&equations, &parameters, bounds, &least))

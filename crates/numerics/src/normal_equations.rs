@@ -1,5 +1,7 @@
 //! The normal equations of weighted least squares.
 
+use crate::cholesky;
+
 /// Cost, gradient and normal matrix of weighted least squares:
 ///
 /// ```text
@@ -34,6 +36,17 @@ impl<const P: usize> NormalEquations<P> {
         gradient: [0.0; P],
         normal: [[0.0; P]; P],
     };
+
+    /// Inverse of the normal matrix of the first `count` parameters, the only ones;
+    /// `None` where it is singular.
+    #[must_use]
+    pub fn inverse(&self, count: usize) -> Option<[[f64; P]; P]> {
+        let mut normal = self.normal;
+        for i in count..P {
+            normal[i][i] = 1.0;
+        }
+        cholesky::inverse(&normal)
+    }
 
     pub(crate) fn is_finite(&self) -> bool {
         self.cost.is_finite()
