@@ -34,7 +34,7 @@ pub fn exponent_position(description: &LawDescription) -> Option<usize> {
     match description.elastic {
         Elastic::Power(Power::Parameter(name)) => description.index_of(name),
         Elastic::Power(Power::Number(_)) | Elastic::Hertzian => None,
-        // A user's law says nothing of its exponents but their names.
+        // The exponents of a user's law are known by name only.
         Elastic::Other => ["n", "e"]
             .into_iter()
             .find_map(|name| description.index_of(name)),

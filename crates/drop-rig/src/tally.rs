@@ -38,7 +38,7 @@ pub struct ImpactTally<const W: usize> {
     pub departure: Option<Departure<W>>,
 }
 
-/// A quantity of what is seen: its value, and with derivatives.
+/// A quantity of an observation: its value, and with derivatives.
 type Value = fn(&Observed<1>) -> f64;
 type Full<const W: usize> = fn(&Observed<W>) -> Lanes<W>;
 
@@ -57,7 +57,7 @@ pub struct DropTally<const W: usize> {
 pub(crate) struct Tally<'a, L, const N: usize, const W: usize> {
     pub event: &'a DropEvent<L, N, W>,
     pub rig: &'a RigDuals<W>,
-    /// The same without derivatives: maxima are looked for with these.
+    /// The same without derivatives, to search for maxima.
     pub values: (&'a DropEvent<L, N, 1>, &'a RigDuals<1>),
     pub impacts: Vec<ImpactTally<W>>,
     /// First touch after the last of them.

@@ -53,8 +53,8 @@ impl<'a> Problem<'a> {
         }
     }
 
-    /// Where a straight line through F^(1/n) meets zero, and the stiffness that
-    /// its slope tells.
+    /// Start from a straight line through F^(1/n): its zero is the touch, its slope the
+    /// stiffness.
     pub(crate) fn start(&mut self, held: &[Option<f64>]) -> Option<[f64; LARGEST_PARAMETERS]> {
         let description = self.kind.describe();
         let exponent = description.elastic_exponent(held).unwrap_or(1.5);

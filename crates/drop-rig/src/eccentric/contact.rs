@@ -15,11 +15,11 @@ use windfall_numerics::root::bracketed_root;
 const LARGEST_STEPS: usize = 50_000;
 /// First step; s.
 const FIRST_STEP: f64 = 1e-4;
-/// Pieces of a step in each of which events are looked for.
+/// Parts of a step searched for events.
 const SEARCH_PIECES: usize = 8;
 /// Event times are located to this fraction of a step.
 const EVENT_TOLERANCE: f64 = 1e-14;
-/// Where a contact that ends within its very first step is looked for from.
+/// Earliest end of a contact within its first step, as a fraction of the step.
 const EARLIEST_END: f64 = 1e-3;
 /// Sliding slower than this part of the impact velocity is a sign lost in
 /// rounding.

@@ -1,4 +1,4 @@
-//! Which law the impacts of a campaign obey, and how sure that is.
+//! Which law fits best, and how certain the ranking is.
 //!
 //! Each law is fitted to each impact by itself, all with the same noise, so that
 //! their likelihoods can be compared; then each law predicts the impacts of a
@@ -28,7 +28,7 @@ pub struct LeveledImpact {
     pub level: usize,
 }
 
-/// What the impacts say about one law.
+/// Evidence for one law.
 #[derive(Clone, Debug, PartialEq)]
 pub struct LawEvidence {
     /// The law.
@@ -93,7 +93,7 @@ pub enum Verdict {
         /// Whether it describes them to their noise.
         to_noise: bool,
     },
-    /// The data cannot tell these apart.
+    /// The data cannot separate these.
     Undecided {
         /// The first.
         first: LawKind,

@@ -11,7 +11,6 @@ use crate::fit::residual::Rows;
 use crate::fit::uncertainty::{inflation, standardised, whitened_derivatives, whitened_zero};
 use crate::noise::whitening::unit_shift;
 use crate::samples::{Quantity, SampleGroup};
-use windfall_numerics::cholesky;
 use windfall_numerics::least_squares::{Minimum, Options, Stop};
 use windfall_signal::noise::gaussian::{NoiseSource, noise_source, normal, uniform};
 use windfall_statistics::distribution::tail::{normal_lower, normal_quantile};
@@ -73,11 +72,7 @@ pub(crate) fn bootstrap_intervals<
     let free = estimator.free();
     let count = free.len();
     let channels = channels::<P>(estimator.groups(), rows, count);
-    let mut normal = minimum.equations.normal;
-    for i in count..P {
-        normal[i][i] = 1.0;
-    }
-    let inverse = cholesky::inverse(&normal)?;
+    let inverse = minimum.equations.inverse(count)?;
     let options = Options {
         cost_tolerance: GAIN_LEFT / minimum.equations.cost.max(1.0),
         ..*options
@@ -161,8 +156,7 @@ fn channels<const P: usize>(
     rows: &Rows,
     parameters: usize,
 ) -> Vec<Channel<P>> {
-    let total: usize = rows.residuals.iter().flatten().map(Vec::len).sum();
-    let freedom = total as f64 / total.saturating_sub(parameters).max(1) as f64;
+    let freedom = rows.freedom_lost(parameters);
     let mut out = Vec::new();
     for (g, group) in groups.iter().enumerate() {
         for quantity in Quantity::ALL {
@@ -190,11 +184,7 @@ fn channels<const P: usize>(
                     .map(|i| group.values(quantity)[i] + residuals[i])
                     .collect(),
                 scale: (0..n)
-                    .map(|i| {
-                        (group.weight(quantity) * group.relative_weight(quantity, i))
-                            .sqrt()
-                            .recip()
-                    })
+                    .map(|i| group.weight_of(quantity, i).sqrt().recip())
                     .collect(),
                 block: block_of(&pool),
                 zero: ([0.0; P], 0.0),

@@ -1,7 +1,7 @@
 //! Everything that is decided before the minimiser runs: samples and weights,
 //! free parameters, starting points.
 
-use crate::error::Error;
+use crate::error::{Error, check_positive};
 use crate::finding::Finding;
 use crate::fit::estimator::{Coordinate, FreeParameter, Setting, Target};
 use crate::fit::interval::{IntervalMethod, IntervalPlan};
@@ -13,7 +13,7 @@ use crate::fit::solve::{Limits, Solution, Start, solve};
 use crate::fit::starting_values::impact_scales;
 use crate::rig::kind::Rig;
 use crate::rig::motion::Motion;
-use crate::rig::simulate::{check_positive, trajectory};
+use crate::rig::simulate::trajectory;
 use crate::samples::{Quantity, SampleGroup};
 use windfall_contact::impact_law::ImpactScales;
 use windfall_contact::laws::kind::LawKind;
@@ -90,7 +90,7 @@ pub(crate) fn sample_count(group: &SampleGroup) -> usize {
     quantities * group.times().len()
 }
 
-/// Samples with their noise, and findings for what is missing.
+/// Samples with their noise, and findings for missing quantities.
 fn samples(impact: &Impact, options: &FitOptions) -> Result<(NoisePlan, Vec<Finding>), Error> {
     let mut findings = Vec::new();
     let missing = Quantity::ALL

@@ -97,7 +97,7 @@ impl Plan<'_> {
                     .covariance
                     .get(i)
                     .map_or(f64::INFINITY, |row| row[i].max(0.0).sqrt());
-                // The onset is told on the recording's clock.
+                // The onset is on the recording's clock.
                 let clock = match parameter.target {
                     Target::Onset => self.impact.onset,
                     _ => 0.0,
@@ -169,7 +169,7 @@ impl Plan<'_> {
                 out.push(QuantityFit {
                     quantity,
                     samples: residuals.len(),
-                    weight: group.weight(quantity),
+                    weight: group.weights[quantity as usize],
                     noise: self.noise.noise[quantity as usize],
                     persistence: self.noise.persistence[quantity as usize],
                     rms_residual: (square / residuals.len().max(1) as f64).sqrt(),
@@ -188,7 +188,7 @@ impl Plan<'_> {
         let z = standardised(group, quantity, residuals);
         let square = z.iter().map(|z| z * z).sum::<f64>() / z.len().max(1) as f64;
         let noise = self.noise.noise[quantity as usize];
-        (square / (group.weight(quantity) * noise * noise)).sqrt()
+        (square / (group.weights[quantity as usize] * noise * noise)).sqrt()
     }
 
     /// A law's parameter that would be known much better if another one were.

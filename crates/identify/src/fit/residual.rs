@@ -23,6 +23,14 @@ pub struct Rows {
     pub jacobian: Vec<[Vec<f64>; QUANTITIES]>,
 }
 
+impl Rows {
+    /// Residuals over degrees of freedom, which all channels share.
+    pub(crate) fn freedom_lost(&self, parameters: usize) -> f64 {
+        let total: usize = self.residuals.iter().flatten().map(Vec::len).sum();
+        total as f64 / total.saturating_sub(parameters).max(1) as f64
+    }
+}
+
 /// Normal equations of `model` against `groups`; with `rows`, residuals and
 /// derivatives of each sample too.
 ///

@@ -23,9 +23,9 @@ const LONGEST_STEP: (f64, f64) = (2.0, 0.5);
 /// Gain, in units of the residual variance, that may be lost to the kinks that
 /// samples leave at separation: a tenth of a standard deviation.
 const ROUGHNESS: f64 = 0.01;
-/// How far another minimum is looked for; blocks of samples.
+/// Step of the search for another minimum; blocks of samples.
 const ONSET_SHIFT: f64 = 1.5;
-/// How often it is looked for on either side.
+/// Steps of that search to either side.
 const MOST_SHIFTS: usize = 4;
 /// A minimum is another one if it is lower by this; units of χ².
 const LOWER_BY: f64 = 1e-3;
@@ -61,11 +61,11 @@ pub(crate) struct Solution {
     pub at_bound: Vec<i8>,
     /// Residuals and derivatives.
     pub rows: Rows,
-    /// Intervals that are more than estimate ± deviation, where asked for.
+    /// Intervals other than estimate ± deviation, if requested.
     pub intervals: Option<FreeIntervals>,
 }
 
-/// Limits of the minimiser and of what is known.
+/// Limits of the minimiser, and known uncertainties.
 #[derive(Clone, Debug)]
 pub(crate) struct Limits {
     /// Relative change of the cost at convergence.
@@ -190,11 +190,7 @@ fn intervals<L: BatchLaw<N>, const N: usize, const W: usize, const P: usize>(
         equations,
         ..*minimum
     };
-    let mut normal = equations.normal;
-    for i in count..P {
-        normal[i][i] = 1.0;
-    }
-    let covariance = cholesky::inverse(&normal)?;
+    let covariance = equations.inverse(count)?;
     match plan.options.method {
         IntervalMethod::Asymptotic => None,
         IntervalMethod::Profile => Some(profile_intervals(

@@ -73,7 +73,7 @@ struct Equations {
 ///
 /// # Errors
 /// As [`fit_impact`](crate::fit::result::fit_impact); [`Error::NotAMember`] where the
-/// fit says too little for a likelihood.
+/// fit does not determine a likelihood.
 pub fn impact_likelihood(
     impact: &Impact,
     rig: &Rig,
@@ -156,8 +156,10 @@ impl ImpactLikelihood {
         let (_, curvature) = self.profiled(&equations)?;
         // Half the second derivatives of C are those of −ℓ.
         let shape = curvature.cholesky()?;
-        let told = self.covariance.clone().cholesky()?.inverse().cholesky()?;
-        self.adjustment = shape.l().tr_solve_lower_triangular(&told.l().transpose())?;
+        let information = self.covariance.clone().cholesky()?.inverse().cholesky()?;
+        self.adjustment = shape
+            .l()
+            .tr_solve_lower_triangular(&information.l().transpose())?;
         self.lowest = equations.cost;
         self.smooth = at;
         Some(())

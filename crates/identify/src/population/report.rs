@@ -22,8 +22,8 @@ const BOUND: f64 = 0.9995;
 /// Shift, in standard errors, that is remarked on.
 const SHIFT: f64 = 0.2;
 
-/// The estimates; `first_order`: the problem without the second-order shifts,
-/// in which the likelihood is told.
+/// The estimates; `first_order`: the problem without the second-order shifts, whose
+/// likelihood is reported.
 pub(crate) fn report<const Q: usize>(
     data: &PopulationData,
     state: &State<Q>,

@@ -10,7 +10,7 @@ use windfall_numerics::root::bracketed_root;
 
 /// Event times are located to this fraction of a step.
 const EVENT_TOLERANCE: f64 = 1e-14;
-/// Where a contact that ends within its very first step is looked for from.
+/// Earliest end of a contact within its first step, as a fraction of the step.
 const EARLIEST_END: f64 = 1e-3;
 
 /// Right-hand side during contact.

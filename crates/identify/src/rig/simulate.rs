@@ -1,6 +1,6 @@
-//! Forward: one impact under a force law, summed up or sampled.
+//! Simulation of one impact under a force law: its summary, or its samples.
 
-use crate::error::Error;
+use crate::error::{Error, check_positive};
 use crate::rig::contact_motion::{Piece, Segment, Separation, follow};
 use crate::rig::contact_time::scaled_time;
 use crate::rig::impact_event::{ImpactEvent, Seeds};
@@ -13,9 +13,9 @@ use windfall_numerics::ode::step::Tolerance;
 use windfall_numerics::quadrature::EIGHT_NODES;
 use windfall_numerics::root::bracketed_root;
 
-/// Relative accuracy of simulations; the reference tables ask for 1e-8.
+/// Relative accuracy of simulations; the reference tables require 1e-8.
 pub const ACCURACY: f64 = 1e-12;
-/// Points per piece of the motion among which a maximum is looked for.
+/// Points per piece of the motion among which a maximum is searched.
 const SEARCH_POINTS: usize = 16;
 /// A peak is located to this fraction of a piece.
 const PEAK_TOLERANCE: f64 = 1e-13;
@@ -23,7 +23,7 @@ const PEAK_TOLERANCE: f64 = 1e-13;
 const FIRST_DURATION: f64 = 0.02;
 const LARGEST_DOUBLINGS: usize = 10;
 
-/// What one impact comes to; SI.
+/// Summary of one impact; SI.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct ImpactSummary {
     /// Largest contact force; N.
@@ -119,8 +119,7 @@ pub fn simulate_rig(
 /// negative before it).
 ///
 /// # Errors
-/// As [`simulate_impact`]; a contact that goes on past the last time is no
-/// error here.
+/// As [`simulate_impact`]; a contact may last beyond the last time.
 pub fn trajectory(
     law: &Law,
     rig: &Rig,
@@ -157,16 +156,6 @@ pub fn check_ascending(times: &[f64]) -> Result<(), Error> {
             before: times[i - 1],
         }),
         None => Ok(()),
-    }
-}
-
-/// # Errors
-/// The value is not a finite number above zero.
-pub fn check_positive(name: &'static str, value: f64) -> Result<(), Error> {
-    if value.is_finite() && value > 0.0 {
-        Ok(())
-    } else {
-        Err(Error::BadInput { name, value })
     }
 }
 
