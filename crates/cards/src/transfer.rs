@@ -53,7 +53,7 @@ pub struct TransferOutcome {
     pub assumptions: Vec<String>,
 }
 
-/// A law in another geometry; a card of it where one is asked for.
+/// A law in another geometry, and its card if requested.
 ///
 /// # Errors
 /// A text or file cannot be used, or the law cannot be transferred.
@@ -62,7 +62,7 @@ pub fn transfer_law(request: &TransferRequest) -> Result<TransferOutcome, Error>
     let (from_plates, from_other) = (request.from_plates, &request.from_other);
     let here = side("--from", &request.from, from_plates, from_other)?;
     let there = side("--to", &request.to, request.to_plates, &request.to_other)?;
-    // Only laws of Hertz's contact have a k that tells the modulus: see first.
+    // Only laws of Hertz's contact have a k that gives the modulus.
     let plain = transfer(law, &here.geometry, &there.geometry)
         .map_err(|error| unusable(option.clone(), error.to_string()))?;
     let (from, to) = relative_moduli(&law, &here, &there)?;
@@ -88,7 +88,7 @@ pub fn transfer_law(request: &TransferRequest) -> Result<TransferOutcome, Error>
     Ok(outcome)
 }
 
-/// The law that is asked for, how it was asked for, and its card.
+/// The requested law, its text and its card.
 fn found_law(request: &TransferRequest) -> Result<(Law, String, Option<LawCard>), Error> {
     match (&request.law, &request.file) {
         (Some(text), None) => Ok((
@@ -116,7 +116,7 @@ enum Other {
     Elastic(Elastic),
 }
 
-/// A geometry as it was asked for.
+/// The requested geometry.
 #[derive(Clone, Debug)]
 struct Side {
     geometry: Geometry,
@@ -311,7 +311,7 @@ fn card_there(mut card: LawCard, found: &Transferred, outcome: &TransferOutcome)
     card
 }
 
-/// Scales rows and columns of what is no logarithm.
+/// Scales rows and columns of values that are not logarithms.
 fn scale(matrix: &mut [Vec<f64>], of: &[String], ratio: f64) {
     let factor = |name: &String| if name.starts_with("ln ") { 1.0 } else { ratio };
     for (row, first) in matrix.iter_mut().zip(of) {

@@ -10,7 +10,7 @@ use windfall_numerics::unit::quantity::UnitError;
 pub struct Place {
     /// The whole expression.
     pub text: String,
-    /// Byte offset in `text` of what is wrong.
+    /// Byte offset of the error in `text`.
     pub offset: usize,
 }
 

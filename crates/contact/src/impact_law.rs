@@ -1,11 +1,11 @@
-//! What a law knows besides its force: of impacts as a whole, and of other engines.
+//! Properties of a law besides its force: of whole impacts, and for other engines.
 
 use crate::granular_law::GranularLaw;
 
 /// What is given of a law's parameters, or else their defaults, by name; SI.
 pub type Given<'a> = dyn Fn(&str) -> Option<f64> + 'a;
 
-/// What a law knows besides its force. There are no defaults: each law says it.
+/// Properties of a law besides its force. There are no defaults.
 pub trait ImpactLaw: Sized {
     /// Parameters with which a fit may begin, right in order of magnitude; SI.
     /// Parameters that are left out take their default or typical value.

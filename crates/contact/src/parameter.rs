@@ -1,4 +1,4 @@
-//! What a law says about itself: names, units, bounds, formula and source.
+//! Descriptions of laws: names, units, bounds, formula and source.
 
 use serde::{Serialize, Serializer};
 use windfall_numerics::unit::quantity::exponent_text;
@@ -104,7 +104,7 @@ pub struct LawDescription {
     /// that of the damping.
     #[serde(skip)]
     pub linear: &'static [&'static str],
-    /// Whether a slow loading curve tells its parameters.
+    /// Whether a slow loading curve determines its parameters.
     #[serde(skip)]
     pub from_compression: bool,
     /// Parameters, in the order of the derivatives of the law.

@@ -14,7 +14,7 @@ use windfall_files::text::table::table_text;
 /// A force law, as JSON shows it.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct LawCardText {
-    /// What the law says about itself.
+    /// Description of the law.
     #[serde(flatten)]
     pub law: &'static LawDescription,
     /// What the user of an own law should know.

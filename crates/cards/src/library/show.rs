@@ -23,7 +23,7 @@ pub struct LibraryRequest {
 pub struct LibraryOutcome {
     /// The entries.
     pub entries: Vec<LibraryEntry>,
-    /// Values of the entries' regressions, where they were asked for.
+    /// Values of the entries' regressions, if requested.
     pub evaluated: Vec<Evaluated>,
 }
 
@@ -53,7 +53,7 @@ pub struct NamedValue {
     pub unit: String,
 }
 
-/// The entries that were asked for.
+/// The requested entries.
 ///
 /// # Errors
 /// No entry of that name or fruit (names the nearest); a place that cannot be

@@ -11,7 +11,7 @@ use windfall_files::option_value;
 use windfall_files::text::toml_source::{TomlSource, parse_source};
 use windfall_numerics::unit::quantity::{parse_as, parse_quantity, parse_unit};
 
-/// What one publication says of one body.
+/// One publication's values for one body.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct LibraryEntry {
     /// Name to ask for it.

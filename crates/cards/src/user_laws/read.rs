@@ -40,7 +40,7 @@ pub fn read_laws(path: &Path) -> Result<Vec<LawKind>, Error> {
 
 /// The laws of tables.
 ///
-/// * `directory`: where files of tables are looked for
+/// * `directory`: of the files of tables
 ///
 /// # Errors
 /// A law cannot be used; the message names file, line and what is wrong.

@@ -23,7 +23,7 @@ pub struct AdamsImpact {
     pub d: f64,
 }
 
-/// What the law says about itself.
+/// Description of the law.
 pub const DESCRIPTION: LawDescription = LawDescription {
     name: "adams-impact",
     formula: "F = k x^e + c STEP(x; 0, d) v, STEP = w^2 (3 - 2 w), w = min(x/d, 1)",

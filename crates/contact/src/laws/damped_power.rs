@@ -32,7 +32,7 @@ macro_rules! damped_power_law {
             pub impact_velocity: f64,
         }
 
-        /// What the law says about itself.
+        /// Description of the law.
         pub const DESCRIPTION: LawDescription =
             crate::laws::damped_power::description($name, $formula, $source);
 
@@ -83,7 +83,7 @@ const PARAMETERS: [ParameterDescription; 4] = [
     ),
 ];
 
-/// What such a law says about itself.
+/// Description of such a law.
 pub(crate) const fn description(
     name: &'static str,
     formula: &'static str,

@@ -19,7 +19,7 @@ use crate::parameter::{Elastic, LawDescription, NO_BOUND, ParameterDescription, 
 use std::sync::{Mutex, PoisonError};
 use windfall_numerics::unit::quantity::Dimension;
 
-/// Change of an exponent by which units are looked at again.
+/// Change of an exponent with which units are checked again.
 const OTHER_EXPONENT: f64 = 0.125;
 
 /// The definitions of this run of the program. They are few, and a law must be
@@ -120,7 +120,7 @@ fn described(parameter: &UserParameter) -> ParameterDescription {
     }
 }
 
-/// A value at which a law can be looked at.
+/// A value at which a law is checked.
 fn usual(parameter: &UserParameter) -> f64 {
     let (lower, upper) = (parameter.lower, parameter.upper);
     let between = match (lower > 0.0, upper < NO_BOUND) {
@@ -171,7 +171,7 @@ fn check_parameters(parameters: &[UserParameter]) -> Result<(), FormulaError> {
 fn check_bounds(parameter: &UserParameter) -> Result<(), FormulaError> {
     let (lower, upper) = (parameter.lower, parameter.upper);
     let name = || parameter.name.clone();
-    // Also refuses what is no number.
+    // Also refuses NaN.
     if !matches!(lower.partial_cmp(&upper), Some(std::cmp::Ordering::Less)) {
         return Err(FormulaError::EmptyBounds {
             parameter: name(),

@@ -16,7 +16,7 @@ pub struct Hertz {
     pub k: f64,
 }
 
-/// What the law says about itself.
+/// Description of the law.
 pub const DESCRIPTION: LawDescription = LawDescription {
     name: "hertz",
     formula: "F = k d^1.5",

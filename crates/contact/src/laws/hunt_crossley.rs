@@ -21,7 +21,7 @@ pub struct HuntCrossley {
     pub n: f64,
 }
 
-/// What the law says about itself.
+/// Description of the law.
 pub const DESCRIPTION: LawDescription = LawDescription {
     name: "hunt-crossley",
     formula: "F = k d^n + lambda d^n v",

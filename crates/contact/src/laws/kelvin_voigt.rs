@@ -20,7 +20,7 @@ pub struct KelvinVoigt {
     pub c: f64,
 }
 
-/// What the law says about itself.
+/// Description of the law.
 pub const DESCRIPTION: LawDescription = LawDescription {
     name: "kelvin-voigt",
     formula: "F = k d + c v",

@@ -21,7 +21,7 @@ pub struct KuwabaraKono {
     pub c: f64,
 }
 
-/// What the law says about itself.
+/// Description of the law.
 pub const DESCRIPTION: LawDescription = LawDescription {
     name: "kuwabara-kono",
     formula: "F = k d^1.5 + c d^0.5 v",

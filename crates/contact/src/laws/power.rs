@@ -23,7 +23,7 @@ pub struct PowerLaw {
     pub p: f64,
 }
 
-/// What the law says about itself.
+/// Description of the law.
 pub const DESCRIPTION: LawDescription = LawDescription {
     name: "power-law",
     formula: "F = k d^n + c d^p v",

@@ -21,7 +21,7 @@ pub struct Thornton {
     pub yield_pressure: f64,
 }
 
-/// What the law says about itself.
+/// Description of the law.
 pub const DESCRIPTION: LawDescription = LawDescription {
     name: "thornton",
     formula: "F = (4/3) E* sqrt(R*) d^1.5 up to yield, then F_y + pi p_y R* (d - d_y); unloading (4/3) E* sqrt(R_p) (d - d_p)^1.5",

@@ -23,7 +23,7 @@ pub struct Tsuji {
     pub mass: f64,
 }
 
-/// What the law says about itself.
+/// Description of the law.
 pub const DESCRIPTION: LawDescription = LawDescription {
     name: "tsuji",
     formula: "F = k d^1.5 + alpha sqrt(m k) d^0.25 v, alpha = -sqrt(5) ln e/sqrt((ln e)^2 + pi^2)",

@@ -98,7 +98,7 @@ pub(crate) struct FormulaBody {
 pub struct UserKind(pub(crate) &'static Known);
 
 impl UserKind {
-    /// What the law says about itself.
+    /// Description of the law.
     #[must_use]
     pub fn description(self) -> &'static LawDescription {
         &self.0.description

@@ -18,7 +18,7 @@ pub struct WaltonBraun {
     pub k2: f64,
 }
 
-/// What the law says about itself.
+/// Description of the law.
 pub const DESCRIPTION: LawDescription = LawDescription {
     name: "walton-braun",
     formula: "F = k1 d while loading; k1 d_peak + k2 (d - d_peak) below the largest displacement d_peak",
