@@ -84,7 +84,7 @@ pub struct TwoStageOutcome {
     pub effects: Vec<PopulationEffect>,
 }
 
-/// The posterior, drawn beside the estimate.
+/// The posterior, next to the estimate.
 #[derive(Clone, Debug, PartialEq, Serialize, utoipa::ToSchema, Deserialize)]
 pub struct PopulationPosteriorOutcome {
     /// Medians of the parameters over fruit: median of the draws, interval between
@@ -152,7 +152,7 @@ pub struct CovariateEffect {
     pub sds: Vec<f64>,
 }
 
-/// What `windfall population` returns.
+/// The result of `windfall population`.
 #[derive(Clone, Debug, PartialEq, Serialize, utoipa::ToSchema, Deserialize)]
 pub struct PopulationOutcome {
     /// Version of windfall.
@@ -177,7 +177,7 @@ pub struct PopulationOutcome {
     pub effects: Vec<PopulationEffect>,
     /// The usual way beside it.
     pub two_stage: TwoStageOutcome,
-    /// The posterior, where it was asked for.
+    /// The posterior, if requested.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub posterior: Option<PopulationPosteriorOutcome>,
     /// Log-likelihood.

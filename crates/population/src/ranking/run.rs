@@ -39,7 +39,7 @@ pub const COMPARED: [&str; 6] = [
 /// Column of impacts.csv with the velocity level.
 const LEVEL_COLUMN: &str = "level";
 /// Velocities that differ by more than this part belong to different levels,
-/// where no column says so; 1.
+/// where no column gives levels; 1.
 const LEVEL_GAP: f64 = 0.08;
 
 /// Ranks laws over the impacts of a campaign: those of the request, those of the
@@ -231,8 +231,8 @@ fn set_levels(
     if levels.iter().all(|level| *level == 0) {
         findings.push(FindingOutcome {
             code: "one-level".to_owned(),
-            message: "all impacts have one velocity: whether a law foretells others cannot be \
-                      told; laws that differ in velocity only look alike"
+            message: "all impacts have the same velocity, so prediction at other velocities \
+                      cannot be tested; laws that differ only in velocity look alike"
                 .to_owned(),
         });
     }
@@ -339,7 +339,7 @@ fn words(verdict: &Verdict) -> (&'static str, String) {
         Verdict::Undecided { first, second } => (
             "undecided",
             format!(
-                "these impacts cannot tell {} from {}: another sample of them would rank them otherwise",
+                "these impacts cannot separate {} from {}: another sample might rank them differently",
                 first.name(),
                 second.name()
             ),
@@ -350,7 +350,7 @@ fn words(verdict: &Verdict) -> (&'static str, String) {
         } => (
             "divided",
             format!(
-                "{} describes each impact best, but {} foretells other velocities better: the \
+                "{} describes each impact best, but {} predicts other velocities better: the \
                  parameters of the first change with velocity",
                 likelihood.name(),
                 prediction.name()
