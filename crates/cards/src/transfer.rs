@@ -15,7 +15,7 @@ use windfall_files::error::Error;
 use windfall_files::option_value::{positive, quantity, unusable};
 use windfall_files::text::number::plain;
 
-/// What `windfall card transfer` is asked; texts with units.
+/// Inputs of `windfall card transfer`; texts with units.
 #[derive(Clone, Debug, Default)]
 pub struct TransferRequest {
     /// The law with its parameters; none where a card is given.
@@ -101,10 +101,10 @@ fn found_law(request: &TransferRequest) -> Result<(Law, String, Option<LawCard>)
             let law = law_of_card(&card, path)?;
             Ok((law, format!("--file {}", path.display()), Some(card)))
         }
-        _ => Err(unusable(
-            "windfall card transfer",
-            "give one of --law LAW and --file FILE",
-        )),
+        _ => {
+            let problem = "give one of --law LAW and --file FILE";
+            Err(unusable("windfall card transfer", problem))
+        }
     }
 }
 
@@ -206,9 +206,9 @@ fn other_body(option: &str, text: Option<&str>) -> Result<Other, Error> {
 
 /// E* of both contacts over that of the fruit on a rigid body.
 ///
-/// The stiffness where the law was found tells E* there; what the other body
-/// gives way there is taken off, and what it gives way where the law is wanted is
-/// added: 1/E* = A_fruit + A_other with A = (1 − ν²)/E.
+/// The stiffness where the law was found gives E* there; the compliance of the other
+/// body there is subtracted, that of the new one added: 1/E* = A_fruit + A_other with
+/// A = (1 − ν²)/E.
 fn relative_moduli(law: &Law, here: &Side, there: &Side) -> Result<(f64, f64), Error> {
     let whole = 1.0 / here.modulus(law);
     let compliance = |body: Elastic| (1.0 - body.poisson * body.poisson) / body.modulus;
@@ -247,10 +247,8 @@ fn assumptions(here: &Side, there: &Side) -> Vec<String> {
         assumptions
             .push("both bodies are fruit of one modulus: E* is half of a fruit's".to_owned());
     }
-    if [here.other, there.other]
-        .iter()
-        .any(|other| matches!(other, Other::Elastic(_)))
-    {
+    let elastic = |other: &Other| matches!(other, Other::Elastic(_));
+    if [here.other, there.other].iter().any(elastic) {
         assumptions.push("a body that is no fruit gives way without damping of its own".to_owned());
     }
     assumptions

@@ -45,6 +45,13 @@ pub struct LibraryEntry {
     pub cautions: Vec<String>,
 }
 
+impl LibraryEntry {
+    /// The variable of a name.
+    pub(crate) fn variable(&self, name: &str) -> Option<&LibraryVariable> {
+        self.variables.iter().find(|variable| variable.name == name)
+    }
+}
+
 /// One published value.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct LibraryValue {
