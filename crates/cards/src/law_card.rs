@@ -1,4 +1,4 @@
-//! A law card: a fitted law in one file, with what is needed to use it elsewhere.
+//! A law card: a fitted law in one file, ready for use elsewhere.
 //! Its file is read and written by the module `read_card`.
 
 use serde::{Deserialize, Serialize};

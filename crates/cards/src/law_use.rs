@@ -18,7 +18,7 @@ pub const CARD_ENDINGS: [&str; 2] = [".toml", ".json"];
 /// Rounding that is no excess over a range; 1.
 const ROUNDING: f64 = 1e-6;
 
-/// A law with all its parameters, as it was asked for.
+/// A law with all its parameters, as requested.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ChosenLaw {
     /// The law.

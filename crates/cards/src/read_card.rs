@@ -7,14 +7,13 @@ use windfall_contact::laws::define_law::define_law;
 use windfall_contact::laws::force_table::ForceTable;
 use windfall_contact::laws::kind::{Law, LawKind};
 use windfall_contact::laws::user::{UserForce, UserLawDefinition, UserParameter};
+use windfall_contact::parameter::NO_BOUND;
 use windfall_files::error::Error;
 use windfall_files::option_value::unusable;
 use windfall_files::text::toml_source::{TomlSource, parse_source, read_source};
 
 /// Ending of a card in JSON; any other is TOML.
 const JSON: &str = "json";
-/// Bounds from here on are none.
-const NO_BOUND: f64 = 1e20;
 
 fn is_json(path: &Path) -> bool {
     path.extension()

@@ -15,7 +15,7 @@ use windfall_files::error::Error;
 use windfall_files::option_value::{positive, quantity, unusable};
 use windfall_files::text::number::plain;
 
-/// What `windfall card transfer` is asked; texts with units.
+/// Inputs of `windfall card transfer`; texts with units.
 #[derive(Clone, Debug, Default)]
 pub struct TransferRequest {
     /// The law with its parameters; none where a card is given.
@@ -46,50 +46,31 @@ pub struct TransferOutcome {
     /// k there over k here.
     pub stiffness_ratio: f64,
     /// The contact that it was found in.
-    pub from: ContactOutcome,
+    pub from: CardContact,
     /// The contact that it is wanted for.
-    pub to: ContactOutcome,
+    pub to: CardContact,
     /// What is assumed.
     pub assumptions: Vec<String>,
 }
 
-/// A contact of Hertz; SI.
-#[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct ContactOutcome {
-    /// R*; m.
-    pub effective_radius: f64,
-    /// E*; Pa.
-    pub effective_modulus: f64,
-    /// What touches what.
-    pub bodies: String,
-}
-
-/// A law in another geometry; a card of it where one is asked for.
+/// A law in another geometry, and its card if requested.
 ///
 /// # Errors
 /// A text or file cannot be used, or the law cannot be transferred.
 pub fn transfer_law(request: &TransferRequest) -> Result<TransferOutcome, Error> {
     let (law, option, card) = found_law(request)?;
-    let here = side(
-        "--from",
-        &request.from,
-        request.from_plates,
-        &request.from_other,
-    )?;
+    let (from_plates, from_other) = (request.from_plates, &request.from_other);
+    let here = side("--from", &request.from, from_plates, from_other)?;
     let there = side("--to", &request.to, request.to_plates, &request.to_other)?;
-    // Only laws of Hertz's contact have a k that tells the modulus: see first.
+    // Only laws of Hertz's contact have a k that gives the modulus.
     let plain = transfer(law, &here.geometry, &there.geometry)
         .map_err(|error| unusable(option.clone(), error.to_string()))?;
-    let (from_relative, to_relative) = relative_moduli(&law, &here, &there)?;
-    let from = Geometry {
-        relative_modulus: from_relative,
-        ..here.geometry.clone()
+    let (from, to) = relative_moduli(&law, &here, &there)?;
+    let relative = |side: &Side, relative_modulus| Geometry {
+        relative_modulus,
+        ..side.geometry.clone()
     };
-    let to = Geometry {
-        relative_modulus: to_relative,
-        ..there.geometry.clone()
-    };
-    let found = transfer(law, &from, &to).unwrap_or(plain);
+    let found = transfer(law, &relative(&here, from), &relative(&there, to)).unwrap_or(plain);
     let outcome = TransferOutcome {
         law: LawExpression::from(found.law).to_string(),
         stiffness_ratio: found.stiffness_ratio,
@@ -107,7 +88,7 @@ pub fn transfer_law(request: &TransferRequest) -> Result<TransferOutcome, Error>
     Ok(outcome)
 }
 
-/// The law that is asked for, how it was asked for, and its card.
+/// The requested law, its text and its card.
 fn found_law(request: &TransferRequest) -> Result<(Law, String, Option<LawCard>), Error> {
     match (&request.law, &request.file) {
         (Some(text), None) => Ok((
@@ -120,10 +101,10 @@ fn found_law(request: &TransferRequest) -> Result<(Law, String, Option<LawCard>)
             let law = law_of_card(&card, path)?;
             Ok((law, format!("--file {}", path.display()), Some(card)))
         }
-        _ => Err(unusable(
-            "windfall card transfer",
-            "give one of --law LAW and --file FILE",
-        )),
+        _ => {
+            let problem = "give one of --law LAW and --file FILE";
+            Err(unusable("windfall card transfer", problem))
+        }
     }
 }
 
@@ -135,7 +116,7 @@ enum Other {
     Elastic(Elastic),
 }
 
-/// A geometry as it was asked for.
+/// The requested geometry.
 #[derive(Clone, Debug)]
 struct Side {
     geometry: Geometry,
@@ -150,8 +131,8 @@ impl Side {
         law.parameters()[0] / stiffness_per_modulus(&self.geometry.contacts)
     }
 
-    fn outcome(&self, law: &Law) -> ContactOutcome {
-        ContactOutcome {
+    fn outcome(&self, law: &Law) -> CardContact {
+        CardContact {
             effective_radius: self.radius,
             effective_modulus: self.modulus(law),
             bodies: self.text.clone(),
@@ -225,9 +206,9 @@ fn other_body(option: &str, text: Option<&str>) -> Result<Other, Error> {
 
 /// E* of both contacts over that of the fruit on a rigid body.
 ///
-/// The stiffness where the law was found tells E* there; what the other body
-/// gives way there is taken off, and what it gives way where the law is wanted is
-/// added: 1/E* = A_fruit + A_other with A = (1 − ν²)/E.
+/// The stiffness where the law was found gives E* there; the compliance of the other
+/// body there is subtracted, that of the new one added: 1/E* = A_fruit + A_other with
+/// A = (1 − ν²)/E.
 fn relative_moduli(law: &Law, here: &Side, there: &Side) -> Result<(f64, f64), Error> {
     let whole = 1.0 / here.modulus(law);
     let compliance = |body: Elastic| (1.0 - body.poisson * body.poisson) / body.modulus;
@@ -266,10 +247,8 @@ fn assumptions(here: &Side, there: &Side) -> Vec<String> {
         assumptions
             .push("both bodies are fruit of one modulus: E* is half of a fruit's".to_owned());
     }
-    if [here.other, there.other]
-        .iter()
-        .any(|other| matches!(other, Other::Elastic(_)))
-    {
+    let elastic = |other: &Other| matches!(other, Other::Elastic(_));
+    if [here.other, there.other].iter().any(elastic) {
         assumptions.push("a body that is no fruit gives way without damping of its own".to_owned());
     }
     assumptions
@@ -326,15 +305,11 @@ fn card_there(mut card: LawCard, found: &Transferred, outcome: &TransferOutcome)
          and masses are as they were seen"
             .to_owned(),
     );
-    card.contact = Some(CardContact {
-        effective_radius: outcome.to.effective_radius,
-        effective_modulus: outcome.to.effective_modulus,
-        bodies: outcome.to.bodies.clone(),
-    });
+    card.contact = Some(outcome.to.clone());
     card
 }
 
-/// Scales rows and columns of what is no logarithm.
+/// Scales rows and columns of values that are not logarithms.
 fn scale(matrix: &mut [Vec<f64>], of: &[String], ratio: f64) {
     let factor = |name: &String| if name.starts_with("ln ") { 1.0 } else { ratio };
     for (row, first) in matrix.iter_mut().zip(of) {
@@ -347,7 +322,7 @@ fn scale(matrix: &mut [Vec<f64>], of: &[String], ratio: f64) {
 /// A transferred law for people.
 #[must_use]
 pub fn text_of_transfer(outcome: &TransferOutcome) -> String {
-    let contact = |contact: &ContactOutcome| {
+    let contact = |contact: &CardContact| {
         format!(
             "{}: R* = {} mm, E* = {} MPa",
             contact.bodies,

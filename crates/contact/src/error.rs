@@ -10,7 +10,7 @@ use windfall_numerics::unit::quantity::UnitError;
 pub struct Place {
     /// The whole expression.
     pub text: String,
-    /// Byte offset in `text` of what is wrong.
+    /// Byte offset of the error in `text`.
     pub offset: usize,
 }
 
@@ -171,28 +171,6 @@ pub enum Error {
         /// Value given; 1.
         value: f64,
     },
-}
-
-impl Error {
-    /// Byte offset in the expression of what is wrong, if it has a place.
-    #[must_use]
-    pub fn offset(&self) -> Option<usize> {
-        match self {
-            Self::UnknownLaw { place, .. } | Self::OutOfBounds { place, .. } => {
-                place.as_ref().map(|place| place.offset)
-            }
-            Self::UnknownParameter { place, .. }
-            | Self::RepeatedParameter { place, .. }
-            | Self::BadValue { place, .. }
-            | Self::UnknownExponent { place, .. }
-            | Self::Syntax { place, .. } => Some(place.offset),
-            Self::ParameterCount { .. }
-            | Self::MissingParameters { .. }
-            | Self::SofterUnloading { .. }
-            | Self::UserLaw { .. }
-            | Self::ImpossibleRestitution { .. } => None,
-        }
-    }
 }
 
 fn with_unit(value: &f64, unit: &str) -> String {

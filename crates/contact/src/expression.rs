@@ -238,38 +238,11 @@ fn read_value(
 }
 
 /// The same error with its place in the expression.
-fn placed(error: Error, at: Place) -> Error {
-    match error {
-        Error::UnknownLaw {
-            name,
-            nearest,
-            known,
-            ..
-        } => Error::UnknownLaw {
-            name,
-            nearest,
-            known,
-            place: Some(at),
-        },
-        Error::OutOfBounds {
-            law,
-            parameter,
-            value,
-            unit,
-            lower,
-            upper,
-            ..
-        } => Error::OutOfBounds {
-            law,
-            parameter,
-            value,
-            unit,
-            lower,
-            upper,
-            place: Some(at),
-        },
-        other => other,
+fn placed(mut error: Error, at: Place) -> Error {
+    if let Error::UnknownLaw { place, .. } | Error::OutOfBounds { place, .. } = &mut error {
+        *place = Some(at);
     }
+    error
 }
 
 /// Position in an expression that is being read.

@@ -1,23 +1,21 @@
-//! What laws know of impacts as a whole.
+//! Properties of a law besides its force: of whole impacts, and for other engines.
+
+use crate::granular_law::GranularLaw;
 
 /// What is given of a law's parameters, or else their defaults, by name; SI.
 pub type Given<'a> = dyn Fn(&str) -> Option<f64> + 'a;
 
-/// What a law knows of impacts as a whole. There are no defaults: each law says it.
+/// Properties of a law besides its force. There are no defaults.
 pub trait ImpactLaw: Sized {
-    /// The restitution that the law takes as a parameter; 1. `None` for laws without.
-    fn nominal_restitution(&self) -> Option<f64>;
-
-    /// Restitution of a collision without gravity that ends at zero force; 1. `None`
-    /// where there is no closed form.
-    ///
-    /// * `mass`: effective mass; kg
-    /// * `velocity`: at first touch, above zero; m/s
-    fn closed_form_restitution(&self, mass: f64, velocity: f64) -> Option<f64>;
-
     /// Parameters with which a fit may begin, right in order of magnitude; SI.
     /// Parameters that are left out take their default or typical value.
     fn start(scales: &ImpactScales, given: &Given) -> Vec<(&'static str, f64)>;
+
+    /// The law in the terms of engines for granular matter.
+    ///
+    /// # Errors
+    /// Why it cannot be put so, after the law's name.
+    fn granular(&self) -> Result<GranularLaw, String>;
 }
 
 /// Rough features of an impact.

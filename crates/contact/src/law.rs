@@ -95,6 +95,25 @@ pub trait ContactLaw<const N: usize>: Copy + Send + Sync {
     }
 }
 
+/// Declares the conversions of a law from and into the values of its parameters, in the
+/// order of its description.
+macro_rules! from_values {
+    ($law:ident [$($field:ident),*]) => {
+        impl From<[f64; [$(stringify!($field)),*].len()]> for $law {
+            fn from([$($field),*]: [f64; [$(stringify!($field)),*].len()]) -> Self {
+                Self { $($field),* }
+            }
+        }
+
+        impl From<$law> for [f64; [$(stringify!($field)),*].len()] {
+            fn from(law: $law) -> Self {
+                [$(law.$field),*]
+            }
+        }
+    };
+}
+pub(crate) use from_values;
+
 /// Displacements below this are evaluated here: fractional powers keep finite
 /// derivatives, and the force is indistinguishable from that at touch; m.
 pub const SMALLEST_DISPLACEMENT: f64 = 1e-30;

@@ -21,13 +21,13 @@
 //! This crate knows no instrument, no rig and no file.
 
 pub mod apparent_modulus;
-mod closed_collision;
 pub mod curvature;
 pub mod damping_factor;
 pub mod effective;
 pub mod error;
 pub mod expression;
 pub mod formula;
+pub mod granular_law;
 pub mod hertz_elliptic;
 pub mod impact_law;
 pub mod law;

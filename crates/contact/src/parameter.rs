@@ -1,9 +1,10 @@
-//! What a law says about itself: names, units, bounds, formula and source.
+//! Descriptions of laws: names, units, bounds, formula and source.
 
+use serde::{Serialize, Serializer};
 use windfall_numerics::unit::quantity::exponent_text;
 
 /// One parameter of a force law.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct ParameterDescription {
     /// Name in law expressions, campaign files and results.
     pub name: &'static str,
@@ -15,7 +16,8 @@ pub struct ParameterDescription {
     pub unit: &'static str,
     /// Smallest legal value; SI.
     pub lower: f64,
-    /// Largest legal value; SI.
+    /// Largest legal value; SI. In JSON null where there is no bound.
+    #[serde(serialize_with = "bound")]
     pub upper: f64,
     /// Typical value for fruit, the starting point when nothing better is
     /// known; SI.
@@ -25,7 +27,54 @@ pub struct ParameterDescription {
     pub default: Option<f64>,
 }
 
+/// A parameter without a default.
+pub(crate) const fn parameter(
+    name: &'static str,
+    unit: &'static str,
+    meaning: &'static str,
+    [lower, upper]: [f64; 2],
+    typical: f64,
+) -> ParameterDescription {
+    ParameterDescription {
+        name,
+        meaning,
+        unit,
+        lower,
+        upper,
+        typical,
+        default: None,
+    }
+}
+
+/// Bounds that only keep the arithmetic finite: of a positive scale, and of one that may
+/// be zero.
+pub(crate) const POSITIVE: [f64; 2] = [1e-9, 1e30];
+pub(crate) const FROM_ZERO: [f64; 2] = [0.0, 1e30];
+/// Bounds of the exponent of an elastic force.
+pub(crate) const EXPONENTS: [f64; 2] = [0.5, 6.0];
+
+/// Bounds from here on only keep the arithmetic finite.
+pub const NO_BOUND: f64 = 1e20;
+
+fn bound<S: Serializer>(upper: &f64, serializer: S) -> Result<S::Ok, S::Error> {
+    (*upper < NO_BOUND).then_some(upper).serialize(serializer)
+}
+
 impl ParameterDescription {
+    /// Largest legal value; SI. `None` where there is no bound.
+    #[must_use]
+    pub fn bound_above(&self) -> Option<f64> {
+        Some(self.upper).filter(|upper| *upper < NO_BOUND)
+    }
+
+    /// The same with its typical value as the default.
+    pub(crate) const fn held(self) -> Self {
+        Self {
+            default: Some(self.typical),
+            ..self
+        }
+    }
+
     /// Whether the unit contains exponents of the law.
     pub(crate) fn unit_names_exponents(&self) -> bool {
         let mut powers = self.unit.split('^').skip(1);
@@ -34,7 +83,7 @@ impl ParameterDescription {
 }
 
 /// One force law.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct LawDescription {
     /// Name in law expressions.
     pub name: &'static str,
@@ -45,8 +94,18 @@ pub struct LawDescription {
     /// Where the formula comes from.
     pub source: &'static str,
     /// How the force at rest rises with displacement.
+    #[serde(skip)]
     pub elastic: Elastic,
-    /// Whether a slow loading curve tells its parameters.
+    /// Parameter of the damping force, and the power of the displacement that this force
+    /// goes with.
+    #[serde(skip)]
+    pub damping: Option<(&'static str, Power)>,
+    /// Parameters that the force is linear in, all at once: that of the force at rest, then
+    /// that of the damping.
+    #[serde(skip)]
+    pub linear: &'static [&'static str],
+    /// Whether a slow loading curve determines its parameters.
+    #[serde(skip)]
     pub from_compression: bool,
     /// Parameters, in the order of the derivatives of the law.
     pub parameters: &'static [ParameterDescription],
@@ -55,14 +114,22 @@ pub struct LawDescription {
 /// How a law's force at rest rises with displacement.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Elastic {
-    /// k d^1.5 of two spheres, whose stiffness k follows the radii of what touches.
+    /// k d^1.5 of two spheres: every parameter of the law follows the radii and moduli of
+    /// what touches.
     Hertzian,
-    /// In proportion to this power.
-    Power(f64),
-    /// In proportion to a power that is the parameter of this name.
-    Parameter(&'static str),
-    /// In no proportion to a power.
+    /// In proportion to a power.
+    Power(Power),
+    /// In proportion to no power.
     Other,
+}
+
+/// A power of the displacement.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Power {
+    /// This exponent.
+    Number(f64),
+    /// The parameter of this name.
+    Parameter(&'static str),
 }
 
 /// Velocity at first touch, as a parameter of a law: it belongs to the impact and not
@@ -70,6 +137,8 @@ pub enum Elastic {
 pub const IMPACT_VELOCITY: &str = "impact_velocity";
 /// Effective mass, as a parameter of a law; it belongs to the impact too.
 pub const MASS: &str = "mass";
+/// Nominal coefficient of restitution, as a parameter of a law.
+pub const RESTITUTION: &str = "restitution";
 
 impl LawDescription {
     /// Exponent of the force at rest; 1. `None` where the force is no power of the
@@ -81,12 +150,26 @@ impl LawDescription {
     pub fn elastic_exponent(&self, values: &[Option<f64>]) -> Option<f64> {
         match self.elastic {
             Elastic::Hertzian => Some(1.5),
-            Elastic::Power(exponent) => Some(exponent),
-            Elastic::Parameter(name) => {
-                let index = self.index_of(name)?;
-                values.get(index)?.or(self.parameters[index].default)
-            }
+            Elastic::Power(power) => self.exponent(power, values),
             Elastic::Other => None,
+        }
+    }
+
+    /// Name of the parameter that is the exponent of the force at rest.
+    #[must_use]
+    pub fn exponent_name(&self) -> Option<&'static str> {
+        match self.elastic {
+            Elastic::Power(Power::Parameter(name)) => Some(name),
+            _ => None,
+        }
+    }
+
+    /// Exponent of a power; 1. `None` where its parameter has neither value nor default.
+    #[must_use]
+    pub fn exponent(&self, power: Power, values: &[Option<f64>]) -> Option<f64> {
+        match power {
+            Power::Number(exponent) => Some(exponent),
+            Power::Parameter(name) => self.known(name, values),
         }
     }
 

@@ -1,7 +1,8 @@
 //! A law found in one geometry, taken to another.
 
 use crate::apparent_modulus::{PressedContact, stiffness_per_modulus};
-use crate::laws::kind::{Law, LawKind};
+use crate::laws::kind::Law;
+use crate::parameter::Elastic;
 
 /// Contacts that the law was found in, or is wanted for.
 #[derive(Clone, Debug, PartialEq)]
@@ -63,9 +64,10 @@ pub struct Transferred {
 /// assert!((there.stiffness_ratio - 0.6131393).abs() < 1e-7);
 /// ```
 pub fn transfer(law: Law, from: &Geometry, to: &Geometry) -> Result<Transferred, NotTransferable> {
-    let name = law.kind().name();
-    let refused = NotTransferable { law: name };
-    if !matches!(law.kind(), LawKind::Hertz | LawKind::KuwabaraKono) {
+    let refused = NotTransferable {
+        law: law.kind().name(),
+    };
+    if law.kind().describe().elastic != Elastic::Hertzian {
         return Err(refused);
     }
     let per_modulus = |g: &Geometry| g.relative_modulus * stiffness_per_modulus(&g.contacts);

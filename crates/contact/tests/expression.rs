@@ -1,9 +1,25 @@
 //! Law expressions and the registry: what is read, and what is said about what
 //! cannot be.
 
+use windfall_contact::error::Error;
 use windfall_contact::expression::{LawExpression, parse_law, typical};
 use windfall_contact::laws::kind::LawKind;
 use windfall_numerics::unit::quantity::parse_unit;
+
+/// Byte offset in the expression of what is wrong, if it has a place.
+fn offset_of(error: &Error) -> Option<usize> {
+    match error {
+        Error::UnknownLaw { place, .. } | Error::OutOfBounds { place, .. } => {
+            place.as_ref().map(|place| place.offset)
+        }
+        Error::UnknownParameter { place, .. }
+        | Error::RepeatedParameter { place, .. }
+        | Error::BadValue { place, .. }
+        | Error::UnknownExponent { place, .. }
+        | Error::Syntax { place, .. } => Some(place.offset),
+        _ => None,
+    }
+}
 
 /// The names and parameters of the design, which scripts rely on.
 #[test]
@@ -256,7 +272,7 @@ fn rejects_with_a_message_that_says_what_to_do() {
     for (text, offset, message) in cases {
         let error = parse_law(text).unwrap_err();
         assert_eq!(error.to_string(), message, "{text}");
-        assert_eq!(error.offset(), Some(offset), "{text}");
+        assert_eq!(offset_of(&error), Some(offset), "{text}");
     }
 }
 
@@ -265,7 +281,7 @@ fn rejects_with_a_message_that_says_what_to_do() {
 fn rejects_at_the_right_column_behind_other_letters() {
     let error = parse_law("hertz(k=\"5 N·m^-1.5\", µ=1)").unwrap_err();
     assert!(error.to_string().contains("(column 23 of"), "{error}");
-    assert_eq!(error.offset(), Some(23));
+    assert_eq!(offset_of(&error), Some(23));
 }
 
 #[test]

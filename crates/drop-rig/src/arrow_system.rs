@@ -125,7 +125,7 @@ impl Arrow {
     /// Normal matrix of the shared parameters with those of the records
     /// eliminated, and its right-hand side (minus the half gradient).
     ///
-    /// `None` where a record's own parameters cannot be told apart.
+    /// `None` where a record's own parameters are inseparable.
     pub fn reduced(&self, damping: f64) -> Option<([[f64; SHARED]; SHARED], [f64; SHARED])> {
         let mut matrix = [[0.0; SHARED]; SHARED];
         let mut right = self.prior_gradient.map(|value| -value);
@@ -195,7 +195,7 @@ impl Arrow {
     }
 
     /// Covariance of the shared parameters for unit weights; `None` where they
-    /// cannot be told apart. Parameters that are not in use get 1.
+    /// are inseparable. Parameters that are not in use get 1.
     pub fn covariance(&self) -> Option<[[f64; SHARED]; SHARED]> {
         let (matrix, _) = self.reduced(0.0)?;
         inverse(&matrix)

@@ -8,7 +8,8 @@
 use crate::dual::{derivatives, instant, product};
 use crate::event::{DropEvent, RigDuals};
 use windfall_contact::law::{ContactForce, ContactLaw, EndRule, SMALLEST_DISPLACEMENT};
-use windfall_identify::rig::contact_motion::{earlier, scaled_time, time_of};
+use windfall_identify::rig::contact_stop::earlier;
+use windfall_identify::rig::contact_time::{scaled_time, stretch, time_of};
 use windfall_numerics::ode::step::{Position, Step, StepError, System, dense_at, step};
 use windfall_numerics::real::{Lanes, Real};
 use windfall_numerics::root::bracketed_root;
@@ -22,9 +23,9 @@ const FIRST_STEP: f64 = 0.3;
 const FIRST_TIME: f64 = 1e-4;
 /// Event times are located to this fraction of a step.
 const EVENT_TOLERANCE: f64 = 1e-14;
-/// Where a contact that ends within its very first step is looked for from.
+/// Earliest end of a contact within its first step, as a fraction of the step.
 const EARLIEST_END: f64 = 1e-3;
-/// Points within a step at which the force's sign is looked at.
+/// Points within a step at which the force's sign is checked.
 const SIGN_POINTS: usize = 4;
 /// A contact this many times longer than the way to its first maximum lasts:
 /// the fruit has come to rest on the plate. Only asked where time has no end.
@@ -107,7 +108,7 @@ pub(crate) enum ContactStop {
     ForceZero,
     /// The gap opened.
     Opened,
-    /// The contact goes on and on.
+    /// The contact does not end.
     Lasting,
     /// Time ran out.
     Until,
@@ -182,11 +183,7 @@ pub(crate) fn force_dual<L: ContactLaw<N>, const N: usize, const W: usize>(
 impl<L: ContactLaw<N>, const N: usize, const W: usize> System<4, W> for Phase<'_, L, N, W> {
     #[inline(always)]
     fn derivative(&self, s: f64, state: &ContactState<W>) -> ContactState<W> {
-        let stretch = match self.power {
-            1 => 1.0,
-            2 => 2.0 * s,
-            _ => 4.0 * s * s * s,
-        };
+        let stretch = stretch(s, self.power);
         let memory = &self.memory;
         let (force, _) = force_dual(
             self.event,

@@ -98,12 +98,6 @@ impl LawCoordinates {
         self.of_values(&self.values)
     }
 
-    /// Coordinates of a law of this kind.
-    #[must_use]
-    pub fn of_law(&self, law: &Law) -> Vec<f64> {
-        self.of_values(&law.parameters())
-    }
-
     /// Coordinates of values of all parameters; SI.
     #[must_use]
     pub fn of_values(&self, values: &[f64]) -> Vec<f64> {
@@ -158,15 +152,6 @@ impl LawCoordinates {
                 false => *coordinate,
             })
             .collect()
-    }
-
-    /// Coordinate of a value that is written as [`LawCoordinates::written`] gives it.
-    #[must_use]
-    pub fn coordinate_of(&self, place: usize, written: f64) -> f64 {
-        match self.free[place].logarithmic {
-            true => written.ln(),
-            false => written,
-        }
     }
 
     /// Derivatives by the coordinates from those by the law's parameters, which

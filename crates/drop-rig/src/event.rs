@@ -1,4 +1,4 @@
-//! A drop as the integrator sees it: law, rig and what is free.
+//! A drop as the integrator sees it: law, rig and free parameters.
 
 use crate::dual::{fixed, inverse, mapped, product};
 use crate::plate_ringing::Ringing;

@@ -1,4 +1,4 @@
-//! The next experiment: which further drop tells most about a law.
+//! The next experiment: which further drop is most informative about a law.
 
 use crate::coordinates::LawCoordinates;
 use crate::feature_problem::{FeatureProblem, MeasuredDrop, MeasuredFeature, linearise, nuisances};
@@ -32,7 +32,7 @@ pub enum Choice {
 /// What a candidate would bring.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Expected {
-    /// What all drops together would tell.
+    /// Information of all drops together.
     pub information: Information,
     /// Standard uncertainties of the free parameters, in their coordinates;
     /// infinite where still not determined.

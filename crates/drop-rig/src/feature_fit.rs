@@ -42,7 +42,7 @@ pub struct FeatureEstimate {
     pub value: f64,
     /// Standard uncertainty; infinite where the features do not determine it.
     pub sd: f64,
-    /// Ends of the profile interval, where asked for; infinite where there is none.
+    /// Ends of the profile interval, if requested; infinite where open.
     pub profile: Option<(f64, f64)>,
     /// −1, 0 or 1: at its lowest value, at none, at its highest.
     pub at_bound: i8,
@@ -70,7 +70,7 @@ pub struct FeatureFit {
     pub nuisances: Vec<NuisanceEstimate>,
     /// Nuisances in units of their uncertainty.
     pub shifts: Vec<f64>,
-    /// What the features tell.
+    /// Information of the features.
     pub information: Information,
     /// Factor by which uncertainties are wider than the features' own say, because
     /// they scatter more; 1 where they do not.

@@ -248,10 +248,7 @@ fn add_drop(
         }
         for (place, nuisance) in nuisances.iter().enumerate() {
             if concerns(nuisance, drop) {
-                let by = RigQuantity::ALL
-                    .iter()
-                    .position(|quantity| *quantity == nuisance.quantity);
-                let slope = by.map_or(0.0, |by| sensitivity.by_rig[index][by]);
+                let slope = sensitivity.by_rig[index][nuisance.quantity as usize];
                 found.by_nuisance[(row + index, place)] = slope * nuisance.known.sd / measured.sd;
             }
         }

@@ -58,15 +58,15 @@ pub trait DropSink<const W: usize> {
     /// A piece without contact force.
     fn flight(&mut self, piece: &FlightPiece<W>);
     /// The fruit has left the plate.
-    fn departure(&mut self, departure: &Departure<W>);
-    /// It touches the plate again after the last impact that was asked for.
+    fn departure(&mut self, _departure: &Departure<W>) {}
+    /// It touches the plate again after the last requested impact.
     fn beyond(&mut self, _touch: &Touch<W>) {}
 }
 
 /// How a drop that was followed ended.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum DropEnding {
-    /// All impacts that were asked for, and the flight after them.
+    /// All requested impacts, and the flight after them.
     Complete,
     /// The fruit stays on the plate.
     AtRest,

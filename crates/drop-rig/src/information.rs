@@ -13,11 +13,11 @@ const RANK: f64 = 1e-6;
 pub struct Direction {
     /// Unit vector in the coordinates, largest part positive.
     pub vector: Vec<f64>,
-    /// Standard uncertainty along it; infinite where nothing tells it.
+    /// Standard uncertainty along it; infinite where undetermined.
     pub sd: f64,
 }
 
-/// What is told about the free parameters, in their coordinates.
+/// Information on the free parameters, in their coordinates.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Information {
     /// The triangle R with information RᵀR.
@@ -55,7 +55,7 @@ fn root_of(linearised: &Linearised) -> DMatrix<f64> {
         .into_owned()
 }
 
-/// What a triangle R of the information says.
+/// Directions, rank and covariance of a triangle R of the information.
 #[must_use]
 pub fn information_of_root(root: DMatrix<f64>) -> Information {
     let free = root.ncols();

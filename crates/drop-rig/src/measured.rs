@@ -2,6 +2,7 @@
 //! simulated one has to say about each, with derivatives.
 
 use crate::rig::DropRig;
+pub use crate::sensitivity::RigQuantity;
 use crate::sensitivity::{DropQuantity, FEATURE_ACCURACY, drop_features};
 use crate::simulate::{DropSummary, simulate_drop_within};
 use windfall_contact::law::EndRule;
@@ -71,8 +72,7 @@ impl DropFeature {
 }
 
 /// Impacts that must be simulated for some features.
-#[must_use]
-pub fn impacts_of_features(features: &[DropFeature]) -> usize {
+fn impacts_of_features(features: &[DropFeature]) -> usize {
     let needed = features.iter().map(|feature| feature.impact + 1);
     needed.max().unwrap_or(0)
 }
@@ -99,59 +99,6 @@ pub fn feature_values(
         })
     });
     values.collect()
-}
-
-/// Quantities of the rig that features depend on.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum RigQuantity {
-    /// Mass of the fruit; kg.
-    Mass,
-    /// Drop height; m.
-    Height,
-    /// Effective mass factor; 1.
-    EffectiveMassFactor,
-    /// Mass of the plate; kg.
-    PlateMass,
-    /// Stiffness of its support; N/m.
-    PlateStiffness,
-    /// Damping of its support; N s/m.
-    PlateDamping,
-}
-
-impl RigQuantity {
-    /// All of them, in the order of derivatives.
-    pub const ALL: [Self; 6] = [
-        Self::Mass,
-        Self::Height,
-        Self::EffectiveMassFactor,
-        Self::PlateMass,
-        Self::PlateStiffness,
-        Self::PlateDamping,
-    ];
-
-    fn get(self, rig: &DropRig, height: f64) -> Option<f64> {
-        Some(match self {
-            Self::Mass => rig.mass,
-            Self::Height => height,
-            Self::EffectiveMassFactor => rig.effective_mass_factor,
-            Self::PlateMass => rig.plate?.mass,
-            Self::PlateStiffness => rig.plate?.stiffness,
-            Self::PlateDamping => rig.plate?.damping,
-        })
-    }
-
-    /// Replaces the value in a rig or height.
-    pub fn put(self, rig: &mut DropRig, height: &mut f64, value: f64) {
-        match (self, rig.plate.as_mut()) {
-            (Self::Mass, _) => rig.mass = value,
-            (Self::Height, _) => *height = value,
-            (Self::EffectiveMassFactor, _) => rig.effective_mass_factor = value,
-            (Self::PlateMass, Some(plate)) => plate.mass = value,
-            (Self::PlateStiffness, Some(plate)) => plate.stiffness = value,
-            (Self::PlateDamping, Some(plate)) => plate.damping = value,
-            (_, None) => {}
-        }
-    }
 }
 
 /// Values of features with their derivatives; SI.
@@ -184,15 +131,14 @@ pub fn feature_sensitivity(
 ) -> Result<FeatureSensitivity, Error> {
     let known = quantities.iter().copied();
     let known = known.filter(|quantity| quantity.get(rig, height).is_some());
-    let of_law = wanted.iter().map(|position| Quantity::Law(*position));
-    let free: Vec<Quantity> = of_law.chain(known.map(Quantity::Rig)).collect();
-    let asked: Vec<DropQuantity> = free.iter().map(Quantity::differentiated).collect();
+    let of_law = wanted.iter().map(|position| DropQuantity::Law(*position));
+    let free: Vec<DropQuantity> = of_law.chain(known.map(DropQuantity::Rig)).collect();
     let mut found = FeatureSensitivity {
         values: vec![0.0; features.len()],
         by_parameter: vec![vec![0.0; law.parameters().len()]; features.len()],
         by_rig: vec![[0.0; RigQuantity::ALL.len()]; features.len()],
     };
-    let exact = drop_features(law, rig, height, impacts_of_features(features), end, &asked)?;
+    let exact = drop_features(law, rig, height, impacts_of_features(features), end, &free)?;
     for (row, feature) in features.iter().enumerate() {
         let of_impact = exact.impacts.get(feature.impact);
         let own = match feature.kind {
@@ -208,41 +154,12 @@ pub fn feature_sensitivity(
         })?;
         found.values[row] = own.value;
         for (quantity, slope) in free.iter().zip(&own.by) {
-            found.put(row, *quantity, *slope);
-        }
-    }
-    Ok(found)
-}
-
-/// A parameter of the law, or a quantity of the rig.
-#[derive(Clone, Copy, Debug)]
-enum Quantity {
-    Law(usize),
-    Rig(RigQuantity),
-}
-
-impl Quantity {
-    fn differentiated(&self) -> DropQuantity {
-        match self {
-            Self::Law(position) => DropQuantity::Law(*position),
-            Self::Rig(RigQuantity::Mass) => DropQuantity::Mass,
-            Self::Rig(RigQuantity::Height) => DropQuantity::Height,
-            Self::Rig(RigQuantity::EffectiveMassFactor) => DropQuantity::EffectiveMassFactor,
-            Self::Rig(RigQuantity::PlateMass) => DropQuantity::PlateMass,
-            Self::Rig(RigQuantity::PlateStiffness) => DropQuantity::PlateStiffness,
-            Self::Rig(RigQuantity::PlateDamping) => DropQuantity::PlateDamping,
-        }
-    }
-}
-
-impl FeatureSensitivity {
-    fn put(&mut self, row: usize, quantity: Quantity, slope: f64) {
-        match quantity {
-            Quantity::Law(position) => self.by_parameter[row][position] = slope,
-            Quantity::Rig(quantity) => {
-                let own = RigQuantity::ALL.iter().position(|q| *q == quantity);
-                self.by_rig[row][own.unwrap_or_default()] = slope;
+            match *quantity {
+                DropQuantity::Law(position) => found.by_parameter[row][position] = *slope,
+                DropQuantity::Rig(quantity) => found.by_rig[row][quantity as usize] = *slope,
+                DropQuantity::Gravity => {}
             }
         }
     }
+    Ok(found)
 }

@@ -5,7 +5,7 @@ use crate::dual::{fixed, product};
 use crate::event::{DropEvent, RigDuals};
 use crate::flight::FlightPiece;
 use windfall_contact::law::{ContactLaw, EndRule};
-use windfall_identify::rig::contact_motion::{scaled_time, time_of};
+use windfall_identify::rig::contact_time::{scaled_time, time_of};
 use windfall_numerics::real::Lanes;
 
 /// Forces and motion at an instant; derivatives at fixed time of the piece.

@@ -1,6 +1,6 @@
 //! The drop rig: a fruit falls on a plate that rests on a spring and a damper.
 
-use windfall_identify::error::Error;
+use windfall_identify::error::{Error, check_not_negative, check_positive};
 
 /// Plate of the rig: a mass on a spring and a damper, about its static
 /// position, m_p x'' = −F − k x − c x'.
@@ -47,17 +47,11 @@ impl DropRig {
             positive.push(("plate mass", plate.mass));
             positive.push(("plate stiffness", plate.stiffness));
             // Zero damping is a plate that rings for ever: allowed.
-            if !(plate.damping.is_finite() && plate.damping >= 0.0) {
-                let (name, value) = ("plate damping", plate.damping);
-                return Err(Error::BadInput { name, value });
-            }
+            check_not_negative("plate damping", plate.damping)?;
         }
-        for (name, value) in positive {
-            if !(value.is_finite() && value > 0.0) {
-                return Err(Error::BadInput { name, value });
-            }
-        }
-        Ok(())
+        positive
+            .into_iter()
+            .try_for_each(|(name, value)| check_positive(name, value))
     }
 
     /// Speed of a fruit that has fallen from rest; m/s.

@@ -7,8 +7,7 @@ use crate::tally::ImpactTally;
 use windfall_contact::law::EndRule;
 use windfall_contact::laws::any_law::LARGEST_PARAMETERS;
 use windfall_contact::laws::kind::Law;
-use windfall_identify::error::Error;
-use windfall_identify::rig::simulate::check_positive;
+use windfall_identify::error::{Error, check_positive};
 use windfall_numerics::real::Lanes;
 
 /// Relative accuracy of the integration for features: far below what any bench
@@ -23,20 +22,63 @@ pub const MOST_FREE: usize = 11;
 pub enum DropQuantity {
     /// A parameter of the law, by its place.
     Law(usize),
-    /// Height of the drop.
-    Height,
-    /// Mass of the fruit.
-    Mass,
-    /// Effective mass factor.
-    EffectiveMassFactor,
     /// Acceleration between impacts.
     Gravity,
-    /// Mass of the plate.
+    /// A quantity of the rig.
+    Rig(RigQuantity),
+}
+
+/// Quantities of the rig that features depend on.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum RigQuantity {
+    /// Mass of the fruit; kg.
+    Mass,
+    /// Drop height; m.
+    Height,
+    /// Effective mass factor; 1.
+    EffectiveMassFactor,
+    /// Mass of the plate; kg.
     PlateMass,
-    /// Stiffness of the plate's support.
+    /// Stiffness of its support; N/m.
     PlateStiffness,
-    /// Damping of the plate's support.
+    /// Damping of its support; N s/m.
     PlateDamping,
+}
+
+impl RigQuantity {
+    /// All of them, in the order of derivatives.
+    pub const ALL: [Self; 6] = [
+        Self::Mass,
+        Self::Height,
+        Self::EffectiveMassFactor,
+        Self::PlateMass,
+        Self::PlateStiffness,
+        Self::PlateDamping,
+    ];
+
+    pub(crate) fn get(self, rig: &DropRig, height: f64) -> Option<f64> {
+        Some(match self {
+            Self::Mass => rig.mass,
+            Self::Height => height,
+            Self::EffectiveMassFactor => rig.effective_mass_factor,
+            Self::PlateMass => rig.plate?.mass,
+            Self::PlateStiffness => rig.plate?.stiffness,
+            Self::PlateDamping => rig.plate?.damping,
+        })
+    }
+
+    /// Replaces the value in a rig or height.
+    pub fn put(self, rig: &mut DropRig, height: &mut f64, value: f64) {
+        match (self, rig.plate.as_mut()) {
+            (Self::Mass, _) => rig.mass = value,
+            (Self::Height, _) => *height = value,
+            (Self::EffectiveMassFactor, _) => rig.effective_mass_factor = value,
+            (Self::PlateMass, Some(plate)) => plate.mass = value,
+            (Self::PlateStiffness, Some(plate)) => plate.stiffness = value,
+            (Self::PlateDamping, Some(plate)) => plate.damping = value,
+            (_, None) => {}
+        }
+    }
 }
 
 /// A value with its derivatives by the free quantities.
@@ -71,7 +113,7 @@ pub struct ImpactFeatures {
 /// The impacts of a drop with derivatives.
 #[derive(Clone, Debug, PartialEq)]
 pub struct DropFeatures {
-    /// In order of time; fewer than asked for where the fruit comes to rest.
+    /// In order of time; fewer than requested where the fruit comes to rest.
     pub impacts: Vec<ImpactFeatures>,
     /// From onset to onset, the last to the first touch after `impacts`; s.
     pub intervals: Vec<Differentiated>,
@@ -89,16 +131,18 @@ pub(crate) fn seeds_of<const W: usize>(
         let one = |slope: f64| Lanes::unit(i + 1, slope);
         match quantity {
             DropQuantity::Law(parameter) => seeds.parameters[parameter] += one(1.0),
-            DropQuantity::Height => seeds.velocity += one(rig.gravity / velocity),
-            DropQuantity::Mass => seeds.mass += one(1.0),
-            DropQuantity::EffectiveMassFactor => seeds.effective_mass_factor += one(1.0),
             DropQuantity::Gravity => {
                 seeds.gravity += one(1.0);
                 seeds.velocity += one(0.5 * velocity / rig.gravity);
             }
-            DropQuantity::PlateMass => seeds.plate_mass += one(1.0),
-            DropQuantity::PlateStiffness => seeds.plate_stiffness += one(1.0),
-            DropQuantity::PlateDamping => seeds.plate_damping += one(1.0),
+            DropQuantity::Rig(quantity) => match quantity {
+                RigQuantity::Height => seeds.velocity += one(rig.gravity / velocity),
+                RigQuantity::Mass => seeds.mass += one(1.0),
+                RigQuantity::EffectiveMassFactor => seeds.effective_mass_factor += one(1.0),
+                RigQuantity::PlateMass => seeds.plate_mass += one(1.0),
+                RigQuantity::PlateStiffness => seeds.plate_stiffness += one(1.0),
+                RigQuantity::PlateDamping => seeds.plate_damping += one(1.0),
+            },
         }
     }
     seeds
@@ -114,7 +158,7 @@ pub(crate) fn seeds_of<const W: usize>(
 /// The derivatives are integrated with the motion and carried over each event;
 /// a peak's derivative is that at fixed time, as its slope in time is zero.
 /// With [`EndRule::GapZero`] laws that start like √d have no derivatives at the
-/// end of contact, and the integration says so.
+/// end of contact, and the integration fails.
 pub fn drop_features(
     law: &Law,
     rig: &DropRig,
@@ -189,13 +233,13 @@ mod tests {
         DropQuantity::Law(0),
         DropQuantity::Law(1),
         DropQuantity::Law(2),
-        DropQuantity::Height,
-        DropQuantity::Mass,
-        DropQuantity::EffectiveMassFactor,
         DropQuantity::Gravity,
-        DropQuantity::PlateMass,
-        DropQuantity::PlateStiffness,
-        DropQuantity::PlateDamping,
+        DropQuantity::Rig(RigQuantity::Mass),
+        DropQuantity::Rig(RigQuantity::Height),
+        DropQuantity::Rig(RigQuantity::EffectiveMassFactor),
+        DropQuantity::Rig(RigQuantity::PlateMass),
+        DropQuantity::Rig(RigQuantity::PlateStiffness),
+        DropQuantity::Rig(RigQuantity::PlateDamping),
     ];
 
     /// Everything that a drop shows, as one row.
@@ -226,35 +270,26 @@ mod tests {
         by: f64,
     ) -> (Law, DropRig, f64) {
         let (mut law, mut rig, mut height) = (*law, *rig, height);
-        let plate = rig.plate.as_mut().unwrap();
         match quantity {
             DropQuantity::Law(i) => {
                 let mut values = law.parameters().to_vec();
                 values[i] *= 1.0 + by;
                 law = law.kind().with_parameters(&values).unwrap();
             }
-            DropQuantity::Height => height *= 1.0 + by,
-            DropQuantity::Mass => rig.mass *= 1.0 + by,
-            DropQuantity::EffectiveMassFactor => rig.effective_mass_factor *= 1.0 + by,
             DropQuantity::Gravity => rig.gravity *= 1.0 + by,
-            DropQuantity::PlateMass => plate.mass *= 1.0 + by,
-            DropQuantity::PlateStiffness => plate.stiffness *= 1.0 + by,
-            DropQuantity::PlateDamping => plate.damping *= 1.0 + by,
+            DropQuantity::Rig(quantity) => {
+                let value = quantity.get(&rig, height).unwrap() * (1.0 + by);
+                quantity.put(&mut rig, &mut height, value);
+            }
         }
         (law, rig, height)
     }
 
     fn value_of(law: &Law, rig: &DropRig, height: f64, quantity: DropQuantity) -> f64 {
-        let plate = rig.plate.unwrap();
         match quantity {
             DropQuantity::Law(i) => law.parameters()[i],
-            DropQuantity::Height => height,
-            DropQuantity::Mass => rig.mass,
-            DropQuantity::EffectiveMassFactor => rig.effective_mass_factor,
             DropQuantity::Gravity => rig.gravity,
-            DropQuantity::PlateMass => plate.mass,
-            DropQuantity::PlateStiffness => plate.stiffness,
-            DropQuantity::PlateDamping => plate.damping,
+            DropQuantity::Rig(quantity) => quantity.get(rig, height).unwrap(),
         }
     }
 
@@ -347,7 +382,7 @@ mod tests {
             gravity: 9.80665,
             plate: None,
         };
-        let free = [DropQuantity::Height; 12];
+        let free = [DropQuantity::Rig(RigQuantity::Height); 12];
         let error = drop_features(&law, &rig, 0.2, 3, EndRule::ForceZero, &free).unwrap_err();
         assert!(error.to_string().contains("12"), "{error}");
     }

@@ -3,21 +3,21 @@
 use crate::contact::ContactPiece;
 use crate::event::{DropEvent, DropSeeds, RigDuals, rig_duals};
 use crate::flight::FlightPiece;
-use crate::follow::{Departure, DropEnding, DropSink, Touch, follow_drop};
+use crate::follow::{DropEnding, DropSink, Touch, follow_drop};
 use crate::observe::{Observed, contact_at, flight_at, sigma_at};
 use crate::rig::DropRig;
 use crate::tally::{DropTally, ImpactTally, Tally};
 use windfall_contact::law::{ContactLaw, EndRule};
 use windfall_contact::laws::any_law::{AnyLaw, LARGEST_PARAMETERS};
 use windfall_contact::laws::kind::Law;
-use windfall_identify::error::Error;
-use windfall_identify::rig::simulate::{ACCURACY, check_positive};
+use windfall_identify::error::{Error, check_positive};
+use windfall_identify::rig::simulate::{ACCURACY, check_ascending};
 use windfall_numerics::ode::step::{StepError, Tolerance};
 
 /// Impacts of a drop whose motion is read; a fruit rests long before.
 const MOST_IMPACTS: usize = 100_000;
 
-/// What one impact of a drop comes to; SI, times from the release.
+/// Summary of one impact of a drop; SI, times from the release.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct DropImpact {
     /// First touch; s.
@@ -55,6 +55,27 @@ pub struct DropImpact {
     pub absorbed_energy: f64,
 }
 
+impl DropImpact {
+    /// An impact that has not ended: what belongs to its end is not a number.
+    pub(crate) const LASTING: Self = Self {
+        onset_time: 0.0,
+        impact_velocity: 0.0,
+        peak_contact_force: f64::NEG_INFINITY,
+        time_of_peak_contact_force: 0.0,
+        peak_support_force: f64::NEG_INFINITY,
+        time_of_peak_support_force: 0.0,
+        max_displacement: f64::NEG_INFINITY,
+        time_of_max_displacement: 0.0,
+        force_end_time: f64::NAN,
+        separation_time: f64::NAN,
+        separation_velocity: f64::NAN,
+        restitution: f64::NAN,
+        contact_restitution: f64::NAN,
+        impulse: 0.0,
+        absorbed_energy: f64::NAN,
+    };
+}
+
 /// The impacts of one drop.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct DropSummary {
@@ -65,7 +86,7 @@ pub struct DropSummary {
     /// First touch after the last of `impacts`; `None` where the fruit stays; s.
     pub next_onset: Option<f64>,
     /// The fruit stays on the plate in or after the last of `impacts`: there
-    /// may be fewer than were asked for. The separation of an impact without
+    /// may be fewer than requested. The separation of an impact without
     /// one is not a number.
     pub at_rest: bool,
 }
@@ -234,13 +255,8 @@ pub(crate) fn impact_of<const W: usize>(
         time_of_peak_support_force: fall + tally.support_force.time,
         max_displacement: tally.displacement.value.0[0],
         time_of_max_displacement: fall + tally.displacement.time,
-        force_end_time: f64::NAN,
-        separation_time: f64::NAN,
-        separation_velocity: f64::NAN,
-        restitution: f64::NAN,
-        contact_restitution: f64::NAN,
         impulse: tally.impulse,
-        absorbed_energy: f64::NAN,
+        ..DropImpact::LASTING
     };
     if let Some(left) = &tally.departure {
         let speed = left.velocity.0[0];
@@ -271,13 +287,7 @@ pub fn drop_trajectory(
 ) -> Result<DropTrajectory, Error> {
     rig.check()?;
     check_positive("height", height)?;
-    if let Some(i) = (1..times.len()).find(|&i| times[i] < times[i - 1]) {
-        return Err(Error::UnorderedTimes {
-            index: i,
-            time: times[i],
-            before: times[i - 1],
-        });
-    }
+    check_ascending(times)?;
     let velocity = rig.impact_velocity(height);
     let fall = velocity / rig.gravity;
     let event = drop_event::<1>(law, rig, velocity, end, (DropSeeds::NONE, ACCURACY));
@@ -386,6 +396,4 @@ impl<L: ContactLaw<N>, const N: usize> DropSink<1> for Reader<'_, L, N> {
             (flight_at(rig, piece, time), height.0[0], velocity.0[0])
         });
     }
-
-    fn departure(&mut self, _departure: &Departure<1>) {}
 }

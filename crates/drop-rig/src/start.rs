@@ -3,7 +3,7 @@
 
 use crate::coordinates::LawCoordinates;
 use crate::feature_problem::{FeatureProblem, linearise, nuisances};
-use windfall_contact::parameter::LawDescription;
+use windfall_contact::parameter::{Elastic, LawDescription, Power};
 
 /// Exponent of Hertz's contact of a sphere.
 const HERTZ_EXPONENT: f64 = 1.5;
@@ -31,9 +31,14 @@ pub fn stiffness_of_peak(force: f64, energy: f64, exponent: f64) -> f64 {
 /// Position of the exponent of a law's displacement; `None` where it is 1.5.
 #[must_use]
 pub fn exponent_position(description: &LawDescription) -> Option<usize> {
-    description
-        .index_of("n")
-        .or_else(|| description.index_of("e"))
+    match description.elastic {
+        Elastic::Power(Power::Parameter(name)) => description.index_of(name),
+        Elastic::Power(Power::Number(_)) | Elastic::Hertzian => None,
+        // The exponents of a user's law are known by name only.
+        Elastic::Other => ["n", "e"]
+            .into_iter()
+            .find_map(|name| description.index_of(name)),
+    }
 }
 
 /// Exponents, damping (in parts of the value at which a body is slowed at touch by
@@ -57,28 +62,21 @@ pub fn coarse_starts(
 ) -> Vec<Vec<f64>> {
     let description = coordinates.kind.describe();
     let energy = 0.5 * mass * speed * speed;
-    let given = coordinates.start();
-    let place_of = |name: &str| {
-        let position = description.index_of(name)?;
-        coordinates
-            .free
-            .iter()
-            .position(|free| free.position == position)
-    };
+    let is_free = |position: &usize| coordinates.free.iter().any(|f| f.position == *position);
     let exponent = exponent_position(description);
-    let exponent_place =
-        exponent.and_then(|p| coordinates.free.iter().position(|free| free.position == p));
-    let held = exponent.map_or(HERTZ_EXPONENT, |p| coordinates.values[p]);
-    let exponents = match exponent_place {
-        Some(_) => EXPONENTS.to_vec(),
-        None => vec![held],
+    let exponents = match exponent {
+        Some(position) if is_free(&position) => EXPONENTS.to_vec(),
+        held => vec![held.map_or(HERTZ_EXPONENT, |position| coordinates.values[position])],
     };
-    let damping_place = place_of("c").or_else(|| place_of("lambda"));
-    let damping = match damping_place {
+    let damped = description.damping.and_then(|(name, power)| {
+        let position = description.index_of(name).filter(is_free)?;
+        Some((position, power))
+    });
+    let damping = match damped {
         Some(_) => DAMPING.to_vec(),
         None => vec![0.0],
     };
-    let mut grid = vec![given.clone()];
+    let mut grid = vec![coordinates.start()];
     for n in &exponents {
         let stiffness = stiffness_of_peak(force, energy, *n);
         let depth = (force / stiffness).powf(1.0 / n);
@@ -91,33 +89,16 @@ pub fn coarse_starts(
                 if let Some(position) = description.index_of("k") {
                     values[position] = times * stiffness;
                 }
-                if let Some(place) = damping_place {
-                    let position = coordinates.free[place].position;
-                    values[position] =
-                        part * force / speed / depth.powf(damping_power(description, &values));
+                if let Some((position, power)) = damped {
+                    let known: Vec<_> = values.iter().copied().map(Some).collect();
+                    let power = description.exponent(power, &known).unwrap_or(0.0);
+                    values[position] = part * force / speed / depth.powf(power);
                 }
-                let mut at = given.clone();
-                let wanted = LawCoordinates {
-                    values,
-                    ..coordinates.clone()
-                };
-                at.clone_from_slice(&wanted.start());
-                grid.push(at);
+                grid.push(coordinates.of_values(&values));
             }
         }
     }
     best_of(problem, coordinates, grid)
-}
-
-/// Power of the displacement that a law's damping goes with.
-fn damping_power(description: &LawDescription, values: &[f64]) -> f64 {
-    let value = |name: &str| description.index_of(name).map(|position| values[position]);
-    match description.name {
-        "kuwabara-kono" => 0.5,
-        "hunt-crossley" => value("n").unwrap_or(HERTZ_EXPONENT),
-        "power-law" => value("p").unwrap_or(0.5),
-        _ => 0.0,
-    }
 }
 
 /// The given start first, then the best of the others.

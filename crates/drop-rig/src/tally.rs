@@ -7,7 +7,8 @@ use crate::flight::FlightPiece;
 use crate::follow::{Departure, DropEnding, DropSink, Touch};
 use crate::observe::{Observed, contact_at, flight_at, sigma_at};
 use windfall_contact::law::ContactLaw;
-use windfall_identify::rig::simulate::{GAUSS_NODES, GAUSS_WEIGHTS, highest};
+use windfall_identify::rig::simulate::highest;
+use windfall_numerics::quadrature::EIGHT_NODES;
 use windfall_numerics::real::Lanes;
 
 /// A value and the time at which it was reached, with derivatives: those of
@@ -37,7 +38,7 @@ pub struct ImpactTally<const W: usize> {
     pub departure: Option<Departure<W>>,
 }
 
-/// A quantity of what is seen: its value, and with derivatives.
+/// A quantity of an observation: its value, and with derivatives.
 type Value = fn(&Observed<1>) -> f64;
 type Full<const W: usize> = fn(&Observed<W>) -> Lanes<W>;
 
@@ -56,7 +57,7 @@ pub struct DropTally<const W: usize> {
 pub(crate) struct Tally<'a, L, const N: usize, const W: usize> {
     pub event: &'a DropEvent<L, N, W>,
     pub rig: &'a RigDuals<W>,
-    /// The same without derivatives: maxima are looked for with these.
+    /// The same without derivatives, to search for maxima.
     pub values: (&'a DropEvent<L, N, 1>, &'a RigDuals<1>),
     pub impacts: Vec<ImpactTally<W>>,
     /// First touch after the last of them.
@@ -129,7 +130,7 @@ impl<L: ContactLaw<N>, const N: usize, const W: usize> DropSink<W> for Tally<'_,
         );
         // ∫ F dt = ∫ F q s^(q−1) ds
         let (power, width) = (f64::from(piece.power), piece.step.width);
-        for (node, weight) in GAUSS_NODES.iter().zip(GAUSS_WEIGHTS) {
+        for (node, weight) in EIGHT_NODES {
             let sigma = 0.5 * end * (1.0 + node);
             let s = piece.step.start + sigma * width;
             let stretch = power * s.powi(piece.power as i32 - 1);

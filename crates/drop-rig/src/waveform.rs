@@ -126,7 +126,7 @@ pub struct RecordFit {
     pub samples: usize,
 }
 
-/// A direction in which the data say little.
+/// A poorly determined direction.
 #[derive(Clone, Debug, PartialEq)]
 pub struct WeakDirection {
     /// Standard deviation along it, in units of the estimate: of logarithms

@@ -68,7 +68,7 @@ fn check(problem: &WaveformProblem) -> Result<(), Error> {
             ("mass", record.mass.start()),
             ("noise", record.noise),
         ] {
-            windfall_identify::rig::simulate::check_positive(name, value)?;
+            windfall_identify::error::check_positive(name, value)?;
         }
     }
     Ok(())

@@ -4,7 +4,7 @@ use crate::arrow_system::{ALL, OWN, RecordEquations, SHARED};
 use crate::contact::ContactPiece;
 use crate::event::{DropEvent, RigDuals, rig_duals};
 use crate::flight::FlightPiece;
-use crate::follow::{Departure, DropSink, Touch, follow_drop};
+use crate::follow::{DropSink, Touch, follow_drop};
 use crate::observe::{Observed, contact_at, flight_at, sigma_at};
 use crate::simulate::tolerance;
 use crate::waveform::{DropRecord, Knowledge};
@@ -246,6 +246,4 @@ impl<L: ContactLaw<N>, const N: usize, const W: usize> DropSink<W> for Pass<'_, 
         let end = piece.start.0[0] + piece.duration;
         self.read(piece.start, end, |time| flight_at(rig, piece, time));
     }
-
-    fn departure(&mut self, _departure: &Departure<W>) {}
 }

@@ -26,7 +26,7 @@ pub(crate) struct Solution<'a> {
 
 type Square = [[f64; SHARED]; SHARED];
 
-/// Estimates, intervals and what is weak.
+/// Estimates, intervals and the weakest direction.
 pub(crate) fn report(solution: &Solution) -> Result<WaveformFit, Error> {
     let Solution {
         parameters, arrow, ..

@@ -1,7 +1,7 @@
 //! What the decks of both engines have in common.
 
 use crate::classes::{Classes, classes_of};
-use crate::law::{PairNumbers, granular_law};
+use crate::law::PairNumbers;
 use std::collections::BTreeSet;
 use windfall_files::found::FindingOutcome;
 use windfall_scene::scene::{Fruit, Scene};
@@ -174,7 +174,7 @@ impl<'a> Task<'a> {
         for (&(a, b), interaction) in &scene.interactions {
             let touches =
                 kinds.contains(&a) && with.contains(&b) || kinds.contains(&b) && with.contains(&a);
-            if let (true, Err(reason)) = (touches, granular_law(&interaction.law)) {
+            if let (true, Err(reason)) = (touches, interaction.law.granular()) {
                 let (a, b) = (&scene.materials[a], &scene.materials[b]);
                 reasons.push(format!("the law of {a} and {b}, {reason}"));
             }

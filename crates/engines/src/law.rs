@@ -1,96 +1,7 @@
 //! Force laws in the terms of engines for granular matter.
 
-use windfall_contact::laws::kind::{Law, LawKind};
+use windfall_contact::granular_law::{Damping, GranularLaw};
 use windfall_scene::interaction::Interaction;
-
-/// How a law damps, beside k d or k d^1.5.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Damping {
-    /// Not at all.
-    None,
-    /// c v; N s/m.
-    Constant(f64),
-    /// c √d v; N s/m^1.5.
-    Root(f64),
-    /// c d^¼ v; N s/m^1.25.
-    Quarter(f64),
-}
-
-/// A law that engines have.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct GranularLaw {
-    /// Whether the force is k d^1.5, rather than k d.
-    pub hertzian: bool,
-    /// k; N/m^1.5 or N/m.
-    pub k: f64,
-    /// Damping.
-    pub damping: Damping,
-}
-
-/// A law in the terms of engines.
-///
-/// # Errors
-/// Why it cannot be put so.
-pub fn granular_law(law: &Law) -> Result<GranularLaw, String> {
-    let name = law.kind().name();
-    let found = match *law {
-        Law::Hertz(own) => (true, own.k, Damping::None),
-        Law::KuwabaraKono(own) => (true, own.k, Damping::Root(own.c)),
-        Law::KelvinVoigt(own) => (false, own.k, Damping::Constant(own.c)),
-        Law::Tsuji(own) => {
-            let log = own.restitution.ln();
-            let pi = std::f64::consts::PI;
-            let ratio = -(5.0_f64.sqrt()) * log / (log * log + pi * pi).sqrt();
-            (
-                true,
-                own.k,
-                Damping::Quarter(ratio * (own.mass * own.k).sqrt()),
-            )
-        }
-        Law::PowerLaw(own) => {
-            let hertzian = match own.n {
-                1.0 => false,
-                1.5 => true,
-                n => {
-                    return Err(format!(
-                        "{name} with n = {n}: the exponents it has are n = 1 and n = 1.5"
-                    ));
-                }
-            };
-            let damping = match (hertzian, own.p) {
-                _ if own.c == 0.0 => Damping::None,
-                (_, 0.0) => Damping::Constant(own.c),
-                (true, 0.5) => Damping::Root(own.c),
-                (_, p) => {
-                    return Err(format!(
-                        "{name} with n = {} and p = {p}: of n = 1 it has p = 0, of n = 1.5 p = 0 \
-                         and p = 0.5",
-                        own.n
-                    ));
-                }
-            };
-            (hertzian, own.k, damping)
-        }
-        _ => return Err(format!("{name}: {}", why_not(law.kind()))),
-    };
-    let (hertzian, k, damping) = found;
-    Ok(GranularLaw {
-        hertzian,
-        k,
-        damping,
-    })
-}
-
-fn why_not(kind: LawKind) -> &'static str {
-    match kind {
-        LawKind::AdamsImpact => "it has no damping that comes in by a STEP of the penetration",
-        LawKind::WaltonBraun | LawKind::Thornton => {
-            "it has no force that remembers the largest displacement"
-        }
-        LawKind::User(_) => "it has no formulas or tables of the user",
-        _ => "it has no damping that grows as the elastic force does",
-    }
-}
 
 /// What engines need to know of the contact of two bodies; SI.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -107,9 +18,9 @@ impl PairNumbers {
     /// Of bodies with this R* and this effective mass.
     ///
     /// # Errors
-    /// See [`granular_law`].
+    /// See [`Law::granular`](windfall_contact::laws::kind::Law::granular).
     pub fn of(interaction: &Interaction, radius: f64, mass: f64) -> Result<Self, String> {
-        let mut law = granular_law(&interaction.law)?;
+        let mut law = interaction.law.granular()?;
         let scale = interaction.scale(radius);
         law.k *= scale;
         if let Damping::Root(c) = &mut law.damping {
@@ -157,7 +68,7 @@ impl PairNumbers {
     /// fruit of different sizes need coefficients of their own.
     #[must_use]
     pub fn by_size(interaction: &Interaction) -> bool {
-        granular_law(&interaction.law).is_ok_and(|law| {
+        interaction.law.granular().is_ok_and(|law| {
             let by_mass = matches!(law.damping, Damping::Root(_) | Damping::Quarter(_));
             by_mass || law.hertzian && !interaction.follows_radii()
         })
@@ -168,6 +79,7 @@ impl PairNumbers {
 mod tests {
     use super::*;
     use windfall_contact::expression::parse_law;
+    use windfall_contact::laws::kind::Law;
 
     fn law(text: &str) -> Law {
         parse_law(text).unwrap().complete().unwrap()
@@ -200,10 +112,12 @@ mod tests {
             ("adams-impact(k=1e6, e=1.5, c=10, d=0.0001)", "STEP"),
             ("hunt-crossley(k=1e6, n=1.5, lambda=1e5)", "damping"),
         ] {
-            let problem = granular_law(&law(text)).unwrap_err();
+            let problem = law(text).granular().unwrap_err();
             assert!(problem.contains(word), "{problem}");
         }
-        let same = granular_law(&law("power-law(k=1e6, n=1.5, c=30, p=0)")).unwrap();
+        let same = law("power-law(k=1e6, n=1.5, c=30, p=0)")
+            .granular()
+            .unwrap();
         assert_eq!(same.damping, Damping::Constant(30.0));
     }
 }

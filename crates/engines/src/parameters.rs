@@ -1,9 +1,9 @@
 //! The contacts of a scene in the terms of other engines, pair by pair of materials.
 
-use crate::law::{Damping, granular_law};
 use std::fmt::Write;
+use windfall_contact::granular_law::Damping;
 use windfall_contact::law::ContactLaw;
-use windfall_contact::laws::kind::{Law, LawKind};
+use windfall_contact::laws::kind::Law;
 use windfall_contact::with_law;
 use windfall_scene::interaction::{Draws, Interaction};
 use windfall_scene::scene::Scene;
@@ -158,28 +158,21 @@ fn nothing(pair: &Pair) -> Words {
 
 /// k and n of the elastic part of a law k d^n.
 fn elastic(law: &Law) -> Option<(f64, f64)> {
-    if let Ok(found) = granular_law(law) {
+    if let Ok(found) = law.granular() {
         return Some((found.k, if found.hertzian { 1.5 } else { 1.0 }));
     }
+    let description = law.kind().describe();
     let values = law.parameters();
-    let names = law.kind().describe().parameters;
-    let of = |name: &str| {
-        names
-            .iter()
-            .position(|own| own.name == name)
-            .map(|at| values[at])
-    };
-    match law.kind() {
-        LawKind::WaltonBraun | LawKind::Thornton | LawKind::User(_) => None,
-        _ => Some((of("k")?, of("n").or(of("e")).unwrap_or(1.5))),
-    }
+    let known: Vec<_> = values.iter().copied().map(Some).collect();
+    let exponent = description.elastic_exponent(&known)?;
+    Some((values[description.index_of("k")?], exponent))
 }
 
 fn adams(pair: &Pair) -> Words {
     let Some((k, n)) = elastic(&pair.law) else {
         return nothing(pair);
     };
-    let (c, depth, exact, approximate) = match (pair.law, granular_law(&pair.law)) {
+    let (c, depth, exact, approximate) = match (pair.law, pair.law.granular()) {
         (Law::AdamsImpact(own), _) => (own.c, own.d, true, String::new()),
         (Law::PowerLaw(own), _) if own.p == 0.0 || own.c == 0.0 => {
             (own.c, ABRUPT, true, String::new())
@@ -313,7 +306,7 @@ fn edem(pair: &Pair) -> Words {
 }
 
 fn chrono(pair: &Pair) -> Words {
-    let Ok(law) = granular_law(&pair.law) else {
+    let Ok(law) = pair.law.granular() else {
         return nothing(pair);
     };
     let (size, mass) = (pair.radius, pair.mass);
@@ -367,7 +360,7 @@ fn hertz(pair: &Pair) -> Option<(f64, f64, String, String)> {
         return None;
     }
     let modulus = 0.75 * k / pair.radius.sqrt();
-    let found = granular_law(&pair.law).map(|own| own.damping);
+    let found = pair.law.granular().map(|own| own.damping);
     let (e, exact, approximate) = match (pair.law, found) {
         (_, Ok(Damping::None)) => (1.0, "the normal force", String::new()),
         (Law::Tsuji(own), _) if (own.mass / pair.mass - 1.0).abs() < 0.01 => {

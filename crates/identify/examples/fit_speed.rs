@@ -113,7 +113,6 @@ fn problem<'a, const W: usize, const P: usize>(
     let motion = Motion::from(&rig);
     let setting = Setting {
         motion,
-        groups: std::slice::from_ref(group),
         end: EndRule::ForceZero,
         tolerance: Tolerance {
             relative: 1e-8,
@@ -131,7 +130,13 @@ fn problem<'a, const W: usize, const P: usize>(
         offset: 0.0,
     };
     BatchProblem {
-        estimator: Estimator::new(KuwabaraKono { k, c }, setting, &free[..P], base),
+        estimator: Estimator::new(
+            KuwabaraKono { k, c },
+            setting,
+            std::slice::from_ref(group),
+            &free[..P],
+            base,
+        ),
         from: None,
         options: Options {
             largest_step: [2.0; P],

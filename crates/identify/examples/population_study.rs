@@ -20,6 +20,7 @@ mod pendulum;
 use pendulum::{Bench, bench, on_threads, recorded, rig};
 use windfall_contact::expression::parse_law;
 use windfall_contact::laws::kind::LawKind;
+use windfall_identify::fit::interval::mixes;
 use windfall_identify::fit::problem::{FitOptions, LawProblem};
 use windfall_identify::population::fit::fit_population;
 use windfall_identify::population::likelihood::{
@@ -329,7 +330,7 @@ fn posterior(case: &(Bench, f64), seed: u64) -> (Vec<Pair>, usize, bool) {
             });
         }
     }
-    let mixed = found.ranges().all(|range| range.mixing.suffices());
+    let mixed = found.ranges().all(|range| mixes(&range.mixing));
     (pairs, found.divergences, mixed)
 }
 

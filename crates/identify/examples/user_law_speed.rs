@@ -93,7 +93,6 @@ fn fit<L: FreeLaw<N>, const N: usize, const W: usize, const P: usize>(
     let motion = Motion::from(&rig());
     let setting = Setting {
         motion,
-        groups: std::slice::from_ref(group),
         end: EndRule::ForceZero,
         tolerance: Tolerance {
             relative: 1e-8,
@@ -117,7 +116,8 @@ fn fit<L: FreeLaw<N>, const N: usize, const W: usize, const P: usize>(
         onset: 0.0,
         offset: 0.0,
     };
-    let mut estimator = Estimator::<L, N, W, P>::new(law, setting, &free, base);
+    let mut estimator =
+        Estimator::<L, N, W, P>::new(law, setting, std::slice::from_ref(group), &free, base);
     let minimum = estimator.minimise(&Options {
         largest_step: [2.0; P],
         ..Options::default()

@@ -12,7 +12,7 @@ pub enum Unusable {
     #[error("a parameter of its fit ended on a bound")]
     AtBound,
     /// The covariance is singular.
-    #[error("its fit cannot tell the free parameters apart")]
+    #[error("its fit cannot separate the free parameters")]
     Singular,
 }
 
@@ -29,36 +29,22 @@ pub enum Error {
         /// Impacts.
         impacts: usize,
     },
-    /// A quantity of the rig or the impact has no physical value.
-    #[error("{name} is {value}, but it must be a positive number")]
+    /// A quantity of the rig, the body or the impact has no physical value.
+    #[error("{name} is {value}, but it must be {range}")]
     BadInput {
         /// Which quantity.
         name: &'static str,
         /// Its value; SI.
         value: f64,
-    },
-    /// A quantity may be zero, but not negative.
-    #[error("{name} is {value}, but it must be zero or a positive number")]
-    Negative {
-        /// Which quantity.
-        name: &'static str,
-        /// Its value; SI.
-        value: f64,
-    },
-    /// An angle or velocity is no number.
-    #[error("{name} is {value}, but it must be a finite number")]
-    NotFinite {
-        /// Which quantity.
-        name: &'static str,
-        /// Its value; SI.
-        value: f64,
+        /// The values that it may have.
+        range: &'static str,
     },
     /// The centre of mass lies outside the disc.
     #[error(
         "the centre of mass is {offset} m from the centre of a disc of radius {radius} m: the offset must be smaller than the radius"
     )]
     OffsetOutsideDisc {
-        /// Distance asked for; m.
+        /// Distance; m.
         offset: f64,
         /// Radius; m.
         radius: f64,
@@ -68,7 +54,7 @@ pub enum Error {
         "a solid sphere of radius {radius} m has no moment of inertia left (2/5 m R² − m ε²) when its centre of mass is {offset} m from its centre; give the moment of inertia, or an offset below 0.63 R"
     )]
     NoMomentOfInertia {
-        /// Distance asked for; m.
+        /// Distance; m.
         offset: f64,
         /// Radius; m.
         radius: f64,
@@ -111,7 +97,7 @@ pub enum Error {
         "the impact has none of the quantities to fit ({wanted}); it has {present}. Choose others with `quantities` in [fit]"
     )]
     NoQuantities {
-        /// Quantities asked for.
+        /// Wanted quantities.
         wanted: String,
         /// Quantities of the impact.
         present: String,
@@ -135,14 +121,14 @@ pub enum Error {
     /// More free quantities than are carried at once.
     #[error("{asked} quantities are free, but at most {most} can be: hold some of them")]
     TooManyFree {
-        /// Quantities asked for.
+        /// Wanted quantities.
         asked: usize,
         /// Most that can be free.
         most: usize,
     },
-    /// Parameters that the recordings cannot tell apart.
+    /// Parameters that the recordings cannot separate.
     #[error(
-        "the recordings cannot tell the free parameters of {law} (and of the rig) apart: hold one of them, give what is known of the plate's mass, or add drops from another height"
+        "the recordings cannot separate the free parameters of {law} (and of the rig): hold one of them, give the plate's mass, or add drops from another height"
     )]
     Unidentified {
         /// Name of the law.
@@ -206,4 +192,29 @@ pub enum Error {
     /// The law refuses the values.
     #[error(transparent)]
     Law(#[from] windfall_contact::error::Error),
+}
+
+fn check(name: &'static str, value: f64, range: &'static str, inside: bool) -> Result<(), Error> {
+    match value.is_finite() && inside {
+        true => Ok(()),
+        false => Err(Error::BadInput { name, value, range }),
+    }
+}
+
+/// # Errors
+/// [`Error::BadInput`] where the value is not a finite number above zero.
+pub fn check_positive(name: &'static str, value: f64) -> Result<(), Error> {
+    check(name, value, "a positive number", value > 0.0)
+}
+
+/// # Errors
+/// [`Error::BadInput`] where the value is not a finite number at or above zero.
+pub fn check_not_negative(name: &'static str, value: f64) -> Result<(), Error> {
+    check(name, value, "zero or a positive number", value >= 0.0)
+}
+
+/// # Errors
+/// [`Error::BadInput`] where the value is not a finite number.
+pub fn check_finite(name: &'static str, value: f64) -> Result<(), Error> {
+    check(name, value, "a finite number", true)
 }

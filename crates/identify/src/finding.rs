@@ -1,4 +1,4 @@
-//! What a reader of a fit should know besides its numbers.
+//! Remarks on fits.
 
 /// A remark on one fit.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
@@ -13,7 +13,7 @@ pub enum Finding {
     },
     /// A parameter ended on its bound.
     #[error(
-        "{parameter} ended on its {side} bound {}: the data ask for a value beyond it, or say nothing about it",
+        "{parameter} ended on its {side} bound {}: the data call for a value beyond it, or do not determine it",
         Shown(*bound, unit)
     )]
     AtBound {
@@ -46,7 +46,7 @@ pub enum Finding {
     },
     /// Two parameters move together.
     #[error(
-        "{first} and {second} can hardly be told apart in this impact (correlation {correlation:.4})"
+        "{first} and {second} can hardly be separated in this impact (correlation {correlation:.4})"
     )]
     Correlated {
         /// One parameter.
@@ -57,9 +57,7 @@ pub enum Finding {
         correlation: f64,
     },
     /// The normal matrix is singular.
-    #[error(
-        "the data cannot tell the free parameters apart: standard deviations are not available"
-    )]
+    #[error("the data cannot separate the free parameters: standard deviations are not available")]
     Singular,
     /// The residuals of a channel are not random.
     #[error(
@@ -107,12 +105,12 @@ pub enum Finding {
         /// Length of a count; m.
         quantum: f64,
     },
-    /// A rate that was computed from the displacement says nothing beside it.
-    #[error("rate was computed from the displacement and took no part of its own")]
+    /// The rate was derived from the displacement.
+    #[error("velocity was derived from displacement, so it was not fitted separately")]
     ComputedRate,
-    /// A parameter is hard to tell from another.
+    /// A parameter is hard to separate from another.
     #[error(
-        "{quantities} alone hardly separate {parameter} from {partner}: {parameter} would be known {factor:.0} times better if {partner} were known; told least of all is {direction} together"
+        "{quantities} alone hardly separate {parameter} from {partner}: {parameter} would be known {factor:.0} times better if {partner} were known; the least determined combination is {direction}"
     )]
     WeakDirection {
         /// A parameter of the law.
@@ -128,7 +126,7 @@ pub enum Finding {
     },
     /// A profile has no end on one side.
     #[error(
-        "the {side} end of the interval of {parameter} is open: the data do not exclude any value on that side that was looked at"
+        "the {side} end of the interval of {parameter} is open: the data do not exclude any value tried on that side"
     )]
     OpenInterval {
         /// Name of the parameter.
@@ -158,7 +156,7 @@ pub enum Finding {
     },
     /// The chains of a posterior do not agree.
     #[error(
-        "the chains for {parameter} do not agree (R-hat {r_hat:.3}, {draws:.0} independent draws; 1.01 and 400 are asked for): more draws are needed, or the data do not tell it"
+        "the chains for {parameter} do not agree (R-hat {r_hat:.3}, {draws:.0} independent draws; 1.01 and 400 are required): draw more, or the data do not determine it"
     )]
     NotMixed {
         /// Name of the parameter.
@@ -170,7 +168,7 @@ pub enum Finding {
     },
     /// The wanted intervals could not be made.
     #[error(
-        "{method} intervals could not be made (no convergence, or parameters that cannot be told apart): those shown are estimate ± t standard deviations"
+        "{method} intervals could not be computed (no convergence, or inseparable parameters): those shown are estimate ± t standard deviations"
     )]
     IntervalsAsymptotic {
         /// The method.
@@ -263,7 +261,7 @@ mod tests {
         };
         assert_eq!(
             at_bound.to_string(),
-            "p ended on its upper bound 6: the data ask for a value beyond it, or say nothing about it"
+            "p ended on its upper bound 6: the data call for a value beyond it, or do not determine it"
         );
         let uncertain = Finding::UncertainMass {
             mass: 0.517_517_338_604_740_6,

@@ -6,6 +6,7 @@
 
 pub mod compare;
 pub mod compression_fit;
+mod compression_problem;
 pub mod error;
 pub mod finding;
 pub mod fit;

@@ -128,23 +128,11 @@ impl SampleGroup {
         self
     }
 
-    /// Correlation of the noise of successive samples; 1.
+    /// Weight of sample `index` of a quantity in the cost.
     #[must_use]
-    pub fn persistence(&self, quantity: Quantity) -> f64 {
-        self.persistence[quantity as usize]
-    }
-
-    /// Standard uncertainty of a quantity's zero; SI.
-    #[must_use]
-    pub fn zero_sd(&self, quantity: Quantity) -> f64 {
-        self.zero_sd[quantity as usize]
-    }
-
-    /// Weight of sample `index` relative to that of its quantity.
-    #[must_use]
-    pub fn relative_weight(&self, quantity: Quantity, index: usize) -> f64 {
+    pub fn weight_of(&self, quantity: Quantity, index: usize) -> f64 {
         let relative = &self.relative[quantity as usize];
-        relative.get(index).copied().unwrap_or(1.0)
+        self.weights[quantity as usize] * relative.get(index).copied().unwrap_or(1.0)
     }
 
     /// Samples of `quantity`; empty where it was not measured.
@@ -173,12 +161,6 @@ impl SampleGroup {
     #[must_use]
     pub fn holds(&self, quantity: Quantity) -> bool {
         !self.values[quantity as usize].is_empty()
-    }
-
-    /// Weight of a quantity in the cost.
-    #[must_use]
-    pub fn weight(&self, quantity: Quantity) -> f64 {
-        self.weights[quantity as usize]
     }
 
     /// Whether the noise of quantity `q` is independent from sample to sample.

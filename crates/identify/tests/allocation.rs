@@ -12,7 +12,7 @@ use windfall_identify::fit::model::{Columns, Model, Sampling};
 use windfall_identify::fit::problem::{FitOptions, LawProblem};
 use windfall_identify::fit::residual::evaluate;
 use windfall_identify::fit::result::fit_impact;
-use windfall_identify::rig::contact_motion::{ImpactEvent, Seeds};
+use windfall_identify::rig::impact_event::{ImpactEvent, Seeds};
 use windfall_identify::rig::motion::Motion;
 use windfall_identify::samples::SampleGroup;
 use windfall_numerics::ode::step::Tolerance;

@@ -70,10 +70,9 @@ struct Case {
 }
 
 impl Case {
-    fn setting<'a>(&self, groups: &'a [SampleGroup]) -> Setting<'a> {
+    fn setting(&self) -> Setting {
         Setting {
             motion: self.motion,
-            groups,
             end: self.end,
             tolerance: Tolerance {
                 relative: 1e-8,
@@ -155,7 +154,7 @@ fn recording<L: FreeLaw<N>, const N: usize>(
         ],
     )];
     let estimator =
-        Estimator::<L, N, 4, 2>::new(law, case.setting(&blank), &[], case.values(values));
+        Estimator::<L, N, 4, 2>::new(law, case.setting(), &blank, &[], case.values(values));
     let (_, rows) = estimator.rows(&[0.0; 2]).unwrap();
     let mut noise = noise(seed);
     let measured: Vec<Vec<f64>> = (0..3)
@@ -195,7 +194,7 @@ fn compare<L: BatchLaw<N>, const N: usize, const W: usize, const P: usize>(
         .iter()
         .zip(&groups)
         .map(|(case, groups)| BatchProblem {
-            estimator: Estimator::new(law, case.setting(groups), &free[..P], case.values(start)),
+            estimator: Estimator::new(law, case.setting(), groups, &free[..P], case.values(start)),
             from: None,
             options: options(),
         })

@@ -14,7 +14,7 @@ use windfall_identify::fit::model::{Columns, Model, Sampling};
 use windfall_identify::fit::problem::{FitOptions, LawProblem, NoiseModel, Quantities, Treatment};
 use windfall_identify::fit::residual::{Rows, evaluate};
 use windfall_identify::fit::result::{Fit, fit_impact};
-use windfall_identify::rig::contact_motion::{ImpactEvent, Seeds};
+use windfall_identify::rig::impact_event::{ImpactEvent, Seeds};
 use windfall_identify::rig::motion::Motion;
 use windfall_identify::samples::{Quantity, SampleGroup};
 use windfall_numerics::ode::step::Tolerance;

@@ -74,7 +74,6 @@ fn fit<const P: usize>(group: &SampleGroup, start: [f64; 2]) -> [f64; 4] {
     let motion = Motion::from(&rig);
     let setting = Setting {
         motion,
-        groups: std::slice::from_ref(group),
         end: EndRule::ForceZero,
         tolerance: Tolerance {
             relative: 1e-8,
@@ -100,7 +99,8 @@ fn fit<const P: usize>(group: &SampleGroup, start: [f64; 2]) -> [f64; 4] {
         k: start[0],
         c: start[1],
     };
-    let mut estimator = Estimator::<_, 2, 4, P>::new(law, setting, &free[..P], base);
+    let mut estimator =
+        Estimator::<_, 2, 4, P>::new(law, setting, std::slice::from_ref(group), &free[..P], base);
     let minimum = estimator.minimise(&Options {
         largest_step: [2.0; P],
         ..Options::default()

@@ -5,42 +5,7 @@
 //! allocated.
 
 use crate::box_quadratic::minimum_in_box;
-
-/// Cost, gradient and normal matrix of weighted least squares:
-///
-/// ```text
-/// cost = Σ w e²,   gradient = Σ w J e,   normal = Σ w J Jᵀ
-/// ```
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct NormalEquations<const P: usize> {
-    /// Weighted sum of squared residuals.
-    pub cost: f64,
-    /// Half the gradient of the cost.
-    pub gradient: [f64; P],
-    /// Gauss-Newton approximation of half the Hessian, symmetric.
-    pub normal: [[f64; P]; P],
-}
-
-impl<const P: usize> NormalEquations<P> {
-    /// Adds one residual with its derivatives.
-    pub fn add(&mut self, weight: f64, residual: f64, jacobian: &[f64; P]) {
-        self.cost += weight * residual * residual;
-        for i in 0..P {
-            let weighted = weight * jacobian[i];
-            self.gradient[i] += weighted * residual;
-            for j in 0..P {
-                self.normal[i][j] += weighted * jacobian[j];
-            }
-        }
-    }
-
-    /// No residuals yet.
-    pub const ZERO: Self = Self {
-        cost: 0.0,
-        gradient: [0.0; P],
-        normal: [[0.0; P]; P],
-    };
-}
+pub use crate::normal_equations::NormalEquations;
 
 /// A sum of squares to make small.
 ///
@@ -109,8 +74,8 @@ impl<const P: usize> Default for Options<P> {
 pub enum Stop {
     /// No step within the bounds lowers the cost noticeably: the full
     /// Gauss-Newton step gains less than `cost_tolerance`, or less than the
-    /// rounding of the parameters, or less than `roughness` and fails. A parameter that the data do not tell, at
-    /// this point, has no step to take: look at the normal matrix.
+    /// rounding of the parameters, or less than `roughness` and fails. A parameter that
+    /// the data do not determine has no step to take: see the normal matrix.
     Converged,
     /// The full step promises a gain, but shorter and shorter steps did not
     /// deliver it: the model is not smooth, or its derivatives are wrong.
@@ -224,7 +189,7 @@ pub struct Descent<const P: usize> {
     stop: Stop,
 }
 
-/// An evaluation that is asked for.
+/// A requested evaluation.
 #[derive(Clone, Copy, Debug)]
 enum Asked<const P: usize> {
     Start,
@@ -278,7 +243,7 @@ impl<const P: usize> Descent<P> {
     /// Takes the normal equations at the parameters last proposed, or `None` where
     /// the model cannot be evaluated; without a proposal, does nothing.
     pub fn take(&mut self, found: Option<NormalEquations<P>>) {
-        let found = found.filter(finite);
+        let found = found.filter(NormalEquations::is_finite);
         match (self.asked.take(), found) {
             (Some(Asked::Start), Some(equations)) => {
                 let start = point(self.here.parameters, equations, &self.bounds);
@@ -354,7 +319,7 @@ impl<const P: usize> Descent<P> {
                 None => self.damping.grow(),
                 Some(step) => {
                     let step = shortened(&step, &self.options);
-                    let (gain, _) = predicted_gain(&here.equations, &step);
+                    let (gain, _) = here.equations.predicted_gain(&step);
                     let to = moved(&here.parameters, &step, &self.bounds);
                     if to == here.parameters {
                         self.stop = Stop::Stuck;
@@ -410,7 +375,7 @@ struct Damping<const P: usize> {
 }
 
 impl<const P: usize> Damping<P> {
-    /// Less damping where the quadratic model foretold the gain, more where it
+    /// Less damping where the quadratic model predicted the gain, more where it
     /// promised too much.
     fn follow(&mut self, from: &Point<P>, to: &Point<P>, gain: f64) {
         let fall = from.equations.cost - to.equations.cost;
@@ -433,7 +398,7 @@ fn accepted<const P: usize>(from: &Point<P>, to: &Point<P>) -> bool {
     rise <= 0.0 || (rise <= noise(from) && to.left < from.left)
 }
 
-/// Change of the cost that says nothing.
+/// Change of the cost that is rounding.
 fn noise<const P: usize>(at: &Point<P>) -> f64 {
     let rounding = rounding_gain(at);
     NOISE * at.equations.cost + 2.0 * (at.equations.cost * rounding).sqrt() + rounding
@@ -463,17 +428,17 @@ fn point<const P: usize>(
     equations: NormalEquations<P>,
     bounds: &Bounds<P>,
 ) -> Point<P> {
-    // Parameters that cannot be told apart need the least damping that works.
+    // Inseparable parameters need the least damping that works.
     let least = std::array::from_fn(|i| SMALLEST_DAMPING * equations.normal[i][i]);
     let full = bounded_step(&equations, &parameters, bounds, &[0.0; P])
         .or_else(|| bounded_step(&equations, &parameters, bounds, &least))
         .unwrap_or([f64::NAN; P]);
-    let (gain, rounding) = predicted_gain(&equations, &full);
+    let (gain, size) = equations.predicted_gain(&full);
     Point {
         parameters,
         equations,
         full,
-        left: gain + rounding,
+        left: gain + ROUNDING * size,
     }
 }
 
@@ -491,12 +456,6 @@ fn shortened<const P: usize>(step: &[f64; P], options: &Options<P>) -> [f64; P] 
         .map(|i| step[i].abs() / options.largest_step[i])
         .fold(1.0, f64::max);
     step.map(|s| s / longest)
-}
-
-fn finite<const P: usize>(equations: &NormalEquations<P>) -> bool {
-    equations.cost.is_finite()
-        && equations.gradient.iter().all(|g| g.is_finite())
-        && equations.normal.iter().flatten().all(|n| n.is_finite())
 }
 
 fn clip<const P: usize>(parameters: &[f64; P], bounds: &Bounds<P>) -> [f64; P] {
@@ -531,22 +490,4 @@ fn bounded_step<const P: usize>(
     let lower = std::array::from_fn(|i| bounds.lower[i] - parameters[i]);
     let upper = std::array::from_fn(|i| bounds.upper[i] - parameters[i]);
     minimum_in_box(&matrix, &equations.gradient, &lower, &upper)
-}
-
-/// −(2 gᵀδ + δᵀNδ): by how much the quadratic model's cost falls; and how much
-/// of that may be rounding, which is all of it when the terms cancel.
-fn predicted_gain<const P: usize>(equations: &NormalEquations<P>, step: &[f64; P]) -> (f64, f64) {
-    let (mut gain, mut size) = (0.0, 0.0);
-    for i in 0..P {
-        let mut slope = 2.0 * equations.gradient[i];
-        let mut steepest = slope.abs();
-        for j in 0..P {
-            let curved = equations.normal[i][j] * step[j];
-            slope += curved;
-            steepest += curved.abs();
-        }
-        gain -= step[i] * slope;
-        size += step[i].abs() * steepest;
-    }
-    (gain, ROUNDING * size)
 }

@@ -1,4 +1,4 @@
-//! Memory asked for before it is needed.
+//! Memory requested before it is needed.
 
 /// Asks for the memory of a value, so that it is near when it is needed some hundred
 /// nanoseconds later; a word to the processor, which changes nothing else.

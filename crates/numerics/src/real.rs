@@ -171,38 +171,38 @@ impl<const W: usize> Lanes<W> {
     }
 }
 
-impl<const W: usize> Add for Lanes<W> {
-    type Output = Self;
-    #[inline(always)]
-    fn add(self, other: Self) -> Self {
-        self.zip(other, |a, b| a + b)
-    }
+/// An operator lane by lane, of two numbers or of a number and a constant.
+macro_rules! operator {
+    ($trait:ident, $method:ident, $operator:tt) => {
+        impl<const W: usize> $trait for Lanes<W> {
+            type Output = Self;
+            #[inline(always)]
+            fn $method(self, other: Self) -> Self {
+                self.zip(other, |a, b| a $operator b)
+            }
+        }
+    };
+    ($trait:ident, $method:ident, $operator:tt f64) => {
+        impl<const W: usize> $trait<f64> for Lanes<W> {
+            type Output = Self;
+            #[inline(always)]
+            fn $method(self, other: f64) -> Self {
+                self.map(|a| a $operator other)
+            }
+        }
+    };
 }
+operator!(Add, add, +);
+operator!(Sub, sub, -);
+operator!(Mul, mul, *);
+operator!(Div, div, /);
+operator!(Add, add, + f64);
+operator!(Mul, mul, *f64);
+
 impl<const W: usize> AddAssign for Lanes<W> {
     #[inline(always)]
     fn add_assign(&mut self, other: Self) {
         *self = *self + other;
-    }
-}
-impl<const W: usize> Sub for Lanes<W> {
-    type Output = Self;
-    #[inline(always)]
-    fn sub(self, other: Self) -> Self {
-        self.zip(other, |a, b| a - b)
-    }
-}
-impl<const W: usize> Mul for Lanes<W> {
-    type Output = Self;
-    #[inline(always)]
-    fn mul(self, other: Self) -> Self {
-        self.zip(other, |a, b| a * b)
-    }
-}
-impl<const W: usize> Div for Lanes<W> {
-    type Output = Self;
-    #[inline(always)]
-    fn div(self, other: Self) -> Self {
-        self.zip(other, |a, b| a / b)
     }
 }
 impl<const W: usize> Neg for Lanes<W> {
@@ -210,20 +210,6 @@ impl<const W: usize> Neg for Lanes<W> {
     #[inline(always)]
     fn neg(self) -> Self {
         self.map(|a| -a)
-    }
-}
-impl<const W: usize> Mul<f64> for Lanes<W> {
-    type Output = Self;
-    #[inline(always)]
-    fn mul(self, other: f64) -> Self {
-        self.map(|a| a * other)
-    }
-}
-impl<const W: usize> Add<f64> for Lanes<W> {
-    type Output = Self;
-    #[inline(always)]
-    fn add(self, other: f64) -> Self {
-        self.map(|a| a + other)
     }
 }
 

@@ -35,7 +35,7 @@ pub struct CovariatesFound {
     pub covariates: Vec<Covariate>,
     /// Positions of the impacts that have all of them.
     pub kept: Vec<usize>,
-    /// Positions of the others, with what is missing.
+    /// Positions of the others, with the missing values.
     pub left_out: Vec<(usize, String)>,
 }
 

@@ -2,6 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 use windfall_files::found::{FailureOutcome, FindingOutcome};
+use windfall_identify::fit::interval::independent_draws;
 use windfall_identify::population::model::{FixedEffect, PopulationFit, Spread, Variation};
 use windfall_identify::population::posterior::{PopulationPosterior, PosteriorRange};
 use windfall_identify::population::two_stage::TwoStage;
@@ -83,7 +84,7 @@ pub struct TwoStageOutcome {
     pub effects: Vec<PopulationEffect>,
 }
 
-/// The posterior, drawn beside the estimate.
+/// The posterior, next to the estimate.
 #[derive(Clone, Debug, PartialEq, Serialize, utoipa::ToSchema, Deserialize)]
 pub struct PopulationPosteriorOutcome {
     /// Medians of the parameters over fruit: median of the draws, interval between
@@ -151,7 +152,7 @@ pub struct CovariateEffect {
     pub sds: Vec<f64>,
 }
 
-/// What `windfall population` returns.
+/// The result of `windfall population`.
 #[derive(Clone, Debug, PartialEq, Serialize, utoipa::ToSchema, Deserialize)]
 pub struct PopulationOutcome {
     /// Version of windfall.
@@ -176,7 +177,7 @@ pub struct PopulationOutcome {
     pub effects: Vec<PopulationEffect>,
     /// The usual way beside it.
     pub two_stage: TwoStageOutcome,
-    /// The posterior, where it was asked for.
+    /// The posterior, if requested.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub posterior: Option<PopulationPosteriorOutcome>,
     /// Log-likelihood.
@@ -366,7 +367,7 @@ pub fn posterior_outcome(
         seed: posterior.drawing.seed,
         largest_r_hat: mixing().map(|m| m.r_hat).fold(1.0, f64::max),
         fewest_draws: mixing()
-            .map(|m| m.independent_draws())
+            .map(|m| independent_draws(&m))
             .fold(f64::INFINITY, f64::min),
         divergences: posterior.divergences,
     }

@@ -21,7 +21,6 @@ use windfall_files::found::{FailureOutcome, FindingOutcome};
 use windfall_files::on_threads::on_threads;
 use windfall_files::progress::{Progress, for_each};
 use windfall_files::provenance::VERSION;
-use windfall_identify::fit::interval::IntervalOptions;
 use windfall_identify::fit::problem::LawProblem;
 use windfall_identify::population::finding::PopulationFinding;
 use windfall_identify::population::fit::fit_population;
@@ -33,14 +32,13 @@ use windfall_identify::population::model::{
 };
 use windfall_identify::population::posterior::population_posterior;
 use windfall_identify::population::two_stage::two_stage;
-use windfall_identify::sampler::Drawing;
 
-/// What `population` is asked for.
+/// Inputs of [`population`].
 #[derive(Clone, Debug, Default)]
 pub struct PopulationRequest {
     /// The campaign directory.
     pub directory: PathBuf,
-    /// Law and fit options beyond what the campaign says, and threads.
+    /// Law and fit options that override the campaign's, and threads.
     pub fit: FitRequest,
     /// Covariates in place of those of the campaign; none keeps them.
     pub covariates: Vec<String>,
@@ -60,7 +58,7 @@ struct Member<'a> {
 
 /// Estimates the population of a campaign's fruit with the campaign's first law.
 ///
-/// Impacts whose fit says too little, or whose covariates are blank, are left
+/// Impacts whose fit is too uncertain, or whose covariates are blank, are left
 /// out and named in the outcome. The result has the same bits for any number of
 /// threads.
 ///
@@ -124,22 +122,12 @@ fn estimate(
     let posterior = match posterior {
         false => None,
         true => {
-            let IntervalOptions {
-                chains,
-                draws,
-                seed,
-                ..
-            } = campaign.fit.options.intervals;
-            let drawing = Drawing {
-                chains,
-                draws,
-                seed,
-            };
+            let drawing = campaign.fit.options.intervals.drawing();
             let expand = |points: &[Vec<f64>]| expand_beyond(DRAWN_REACH, points);
             // The sampler does not stop halfway: what it gave is then not used.
             let stopped = Cell::new(false);
-            let tell = |done, all| stopped.set(progress(done, all).is_break());
-            let found = population_posterior(&data, &fit, &expand, &options, &drawing, &tell);
+            let report = |done, all| stopped.set(progress(done, all).is_break());
+            let found = population_posterior(&data, &fit, &expand, &options, &drawing, &report);
             if stopped.get() {
                 return Err(Error::Cancelled);
             }

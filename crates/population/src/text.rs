@@ -11,8 +11,9 @@ use windfall_files::text::statistic::{number, probability};
 use windfall_files::text::table::findings_list;
 use windfall_files::text::table::{page_tables, paragraph};
 
-fn strings(words: &[&str]) -> Vec<String> {
-    words.iter().map(|word| (*word).to_owned()).collect()
+/// The columns of a table, separated by commas.
+fn columns(names: &str) -> Vec<String> {
+    names.split(',').map(str::to_owned).collect()
 }
 
 fn end(value: Option<f64>, factor: f64) -> String {
@@ -27,8 +28,7 @@ fn cells(range: &RangeOutcome, factor: f64) -> [String; 3] {
     ]
 }
 
-/// A population as text: the two-stage way stands beside every number that it
-/// has.
+/// A population as text, with the two-stage estimate next to each number.
 #[must_use]
 pub fn text_of_population(outcome: &PopulationOutcome) -> String {
     let mut text = format!("{}\n", outcome.campaign);
@@ -82,7 +82,7 @@ fn deviations_shown(parameter: &PopulationParameter) -> (f64, &'static str) {
 }
 
 fn spread_table(outcome: &PopulationOutcome) -> String {
-    let header = strings(&["", "estimate", "from", "to", "two-stage", "from", "to"]);
+    let header = columns(",estimate,from,to,two-stage,from,to");
     let mut rows = Vec::new();
     for (i, parameter) in outcome.parameters.iter().enumerate() {
         let (factor, unit) = deviations_shown(parameter);
@@ -95,7 +95,7 @@ fn spread_table(outcome: &PopulationOutcome) -> String {
             line.extend(cells(own, f));
             match other {
                 Some(other) => line.extend(cells(other, f)),
-                None => line.extend(strings(&["", "", ""])),
+                None => line.extend(columns(",,")),
             }
             rows.push(line);
         };
@@ -111,7 +111,7 @@ fn spread_table(outcome: &PopulationOutcome) -> String {
 
 /// The posterior beside the estimate.
 fn posterior_table(outcome: &PopulationOutcome, posterior: &PopulationPosteriorOutcome) -> String {
-    let header = strings(&["", "estimate", "from", "to", "posterior", "from", "to"]);
+    let header = columns(",estimate,from,to,posterior,from,to");
     let rows = posterior_rows(outcome, posterior).into_iter();
     let rows = rows.map(|row| {
         let mut line = vec![row.label];
@@ -210,18 +210,13 @@ fn posterior_rows(
 }
 
 fn correlation_table(outcome: &PopulationOutcome) -> String {
-    let header = strings(&["", "estimate", "from", "to", "two-stage"]);
+    let header = columns(",estimate,from,to,two-stage");
     let mut rows = Vec::new();
     for (i, pair) in outcome.correlations.iter().enumerate() {
         let mut row = vec![format!("{}, {} between fruit", pair.first, pair.second)];
         row.extend(cells(&pair.between, 1.0));
-        row.push(
-            outcome
-                .two_stage
-                .correlations
-                .get(i)
-                .map_or_else(String::new, |c| plain(*c)),
-        );
+        let stages = outcome.two_stage.correlations.get(i);
+        row.push(stages.map_or_else(String::new, |c| plain(*c)));
         rows.push(row);
         let mut row = vec![format!("{}, {} within fruit", pair.first, pair.second)];
         row.extend(cells(&pair.within, 1.0));
@@ -232,19 +227,7 @@ fn correlation_table(outcome: &PopulationOutcome) -> String {
 }
 
 fn effect_table(effects: &[PopulationEffect], stages: &[PopulationEffect]) -> String {
-    let header = strings(&[
-        "covariate",
-        "centre",
-        "on",
-        "effect",
-        "from",
-        "to",
-        "df",
-        "p",
-        "two-stage",
-        "from",
-        "to",
-    ]);
+    let header = columns("covariate,centre,on,effect,from,to,df,p,two-stage,from,to");
     let rows = effects.iter().map(|effect| {
         let mut row = vec![
             effect.covariate.clone(),
@@ -261,7 +244,7 @@ fn effect_table(effects: &[PopulationEffect], stages: &[PopulationEffect]) -> St
         };
         match stages.iter().find(same) {
             Some(other) => row.extend([other.effect, other.low, other.high].map(number)),
-            None => row.extend(strings(&["", "", ""])),
+            None => row.extend(columns(",,")),
         }
         row
     });
@@ -273,15 +256,7 @@ fn effect_table(effects: &[PopulationEffect], stages: &[PopulationEffect]) -> St
 /// # Errors
 /// The rows cannot be written.
 pub fn csv_of_population(outcome: &PopulationOutcome) -> Result<String, Error> {
-    let header = strings(&[
-        "method",
-        "quantity",
-        "parameter",
-        "covariate",
-        "value",
-        "low",
-        "high",
-    ]);
+    let header = columns("method,quantity,parameter,covariate,value,low,high");
     let text = |value: Option<f64>| value.map_or_else(String::new, |v| v.to_string());
     let row = |method: &str, quantity: &str, parameter: &str, range: &RangeOutcome| {
         vec![
@@ -300,18 +275,9 @@ pub fn csv_of_population(outcome: &PopulationOutcome) -> Result<String, Error> {
         rows.push(row("mixed", "median", name, &parameter.median));
         rows.push(row("mixed", "sd_between", name, &parameter.between));
         rows.push(row("mixed", "sd_within", name, &parameter.within));
-        rows.push(row(
-            "two-stage",
-            "median",
-            name,
-            &outcome.two_stage.medians[i],
-        ));
-        rows.push(row(
-            "two-stage",
-            "sd_between",
-            name,
-            &outcome.two_stage.between[i],
-        ));
+        let stages = &outcome.two_stage;
+        rows.push(row("two-stage", "median", name, &stages.medians[i]));
+        rows.push(row("two-stage", "sd_between", name, &stages.between[i]));
     }
     for pair in &outcome.correlations {
         let name = format!("{} {}", pair.first, pair.second);

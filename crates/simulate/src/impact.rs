@@ -6,7 +6,6 @@ use windfall_cards::law_use::{LawUse, findings_of_use};
 use windfall_contact::expression::LawExpression;
 use windfall_contact::law::EndRule;
 use windfall_contact::laws::kind::Law;
-use windfall_contact::restitution::nominal_restitution;
 use windfall_files::error::Error;
 use windfall_files::found::FindingOutcome;
 use windfall_identify::rig::kind::Rig;
@@ -154,7 +153,7 @@ fn simulated(
         final_displacement: summary.final_displacement,
         separation_velocity: summary.separation_velocity,
         restitution: summary.restitution,
-        nominal_restitution: nominal_restitution(law),
+        nominal_restitution: law.nominal_restitution(),
         absorbed_energy: summary.absorbed_energy,
         impulse: summary.impulse,
         findings: Vec::new(),

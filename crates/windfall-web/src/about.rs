@@ -69,7 +69,7 @@ pub(crate) async fn about(State(app): State<App>) -> Answer<About> {
     })
 }
 
-fn law_about(law: &LawCardText) -> LawAbout {
+fn law_about(LawCardText { law, .. }: &LawCardText) -> LawAbout {
     let parameters = law.parameters.iter().map(|parameter| ParameterAbout {
         name: parameter.name,
         unit: parameter.unit,

@@ -9,7 +9,7 @@ use crate::recording::read::recording_path;
 use crate::settings::model::ImpactEntry;
 use windfall_contact::apparent_modulus::{PressedContact, PrincipalRadii, stiffness_per_modulus};
 use windfall_contact::expression::LawExpression;
-use windfall_contact::laws::kind::LawKind;
+use windfall_contact::parameter::Elastic;
 use windfall_files::error::Error;
 use windfall_files::found::FindingOutcome;
 use windfall_files::named::Named;
@@ -264,7 +264,7 @@ fn modulus(
     fit: &CompressionFit,
     radii: PrincipalRadii,
 ) -> Option<Vec<(String, MeasuredValue)>> {
-    if !matches!(fit.law.kind(), LawKind::Hertz | LawKind::KuwabaraKono) {
+    if fit.law.kind().describe().elastic != Elastic::Hertzian {
         return None;
     }
     let contact = PressedContact {

@@ -4,7 +4,6 @@ use crate::result::interval_outcome::interval_outcome;
 use crate::result::outcome::ImpactOutcome;
 use crate::result::quantity::{FittedMotion, QUANTITIES, Quantity};
 use crate::settings::model::ImpactEntry;
-use windfall_contact::restitution::nominal_restitution;
 use windfall_files::found::{EstimateOutcome, FindingOutcome};
 use windfall_files::named::Named;
 use windfall_identify::fit::problem::LawProblem;
@@ -29,7 +28,7 @@ pub fn impact_outcome(
         mass: rig.effective_mass(),
     });
     let (derived, derived_sd, derived_from) = derived_values(&impact.measured, &fitted);
-    let nominal = nominal_restitution(&fit.law);
+    let nominal = fit.law.nominal_restitution();
     fitted
         .0
         .extend(nominal.map(|value| ("nominal_restitution".to_owned(), Some(value))));

@@ -1,6 +1,6 @@
-//! What stands in the library of published values (`data/library.toml`).
+//! The library of published values as it is on disk (`data/library.toml`).
 
-use serde::Deserialize;
+use serde::{Deserialize, Serialize};
 
 /// The file.
 #[derive(Clone, Debug, Deserialize)]
@@ -55,10 +55,10 @@ pub struct EntryFile {
     pub value: Vec<ValueFile>,
     /// Variables of the models.
     #[serde(default)]
-    pub variable: Vec<VariableFile>,
+    pub variable: Vec<LibraryVariable>,
     /// Models.
     #[serde(default)]
-    pub model: Vec<ModelFile>,
+    pub model: Vec<LibraryModel>,
 }
 
 /// One value.
@@ -79,42 +79,45 @@ pub struct ValueFile {
     pub r#where: Option<String>,
 }
 
-/// A variable of a regression.
-#[derive(Clone, Debug, Deserialize)]
+/// A published regression: a sum of terms.
+#[derive(Clone, Debug, PartialEq, Deserialize, Serialize)]
 #[serde(deny_unknown_fields)]
-pub struct VariableFile {
-    /// Its symbol.
-    pub name: String,
-    /// What it is.
-    pub meaning: String,
-    /// SI unit.
-    pub unit: String,
-    /// Smallest value measured; SI.
-    pub seen_from: f64,
-    /// Largest; SI.
-    pub seen_to: f64,
-}
-
-/// A regression: a sum of terms.
-#[derive(Clone, Debug, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct ModelFile {
+pub struct LibraryModel {
     /// What it gives.
     pub quantity: String,
     /// SI unit of that.
     pub unit: String,
     /// Coefficient of determination, as printed.
     pub r_squared: f64,
+    /// The equation as text, written from its terms.
+    #[serde(skip_deserializing)]
+    pub formula: String,
     /// Its terms.
-    pub terms: Vec<TermFile>,
+    pub terms: Vec<LibraryTerm>,
 }
 
 /// A coefficient and the variables it multiplies.
-#[derive(Clone, Debug, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Deserialize, Serialize)]
 #[serde(deny_unknown_fields)]
-pub struct TermFile {
+pub struct LibraryTerm {
     /// The coefficient; SI.
     pub coefficient: f64,
     /// Symbols of the variables; none for the constant.
     pub of: Vec<String>,
+}
+
+/// A variable of a regression.
+#[derive(Clone, Debug, PartialEq, Deserialize, Serialize)]
+#[serde(deny_unknown_fields)]
+pub struct LibraryVariable {
+    /// Its symbol.
+    pub name: String,
+    /// What it is.
+    pub meaning: String,
+    /// SI unit.
+    pub unit: String,
+    /// Smallest value it was measured at; SI.
+    pub seen_from: f64,
+    /// Largest; SI.
+    pub seen_to: f64,
 }

@@ -5,45 +5,21 @@ use serde::Serialize;
 use std::fmt::Write;
 use std::path::Path;
 use windfall_contact::laws::kind::LawKind;
+use windfall_contact::parameter::LawDescription;
 use windfall_files::error::Error;
+use windfall_files::option_value::unusable;
 use windfall_files::table::write::csv_text;
 use windfall_files::text::table::table_text;
 
 /// A force law, as JSON shows it.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct LawCardText {
-    /// Name in law expressions.
-    pub name: &'static str,
-    /// Formula.
-    pub formula: &'static str,
-    /// Force and slope at first touch.
-    pub first_touch: &'static str,
-    /// Where the formula comes from.
-    pub source: &'static str,
-    /// Parameters.
-    pub parameters: Vec<ParameterText>,
+    /// Description of the law.
+    #[serde(flatten)]
+    pub law: &'static LawDescription,
     /// What the user of an own law should know.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub findings: Vec<String>,
-}
-
-/// A parameter of a force law, as JSON shows it.
-#[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct ParameterText {
-    /// Name in law expressions.
-    pub name: &'static str,
-    /// What it is.
-    pub meaning: &'static str,
-    /// SI unit.
-    pub unit: &'static str,
-    /// Smallest legal value.
-    pub lower: f64,
-    /// Largest legal value; `None` where there is no bound.
-    pub upper: Option<f64>,
-    /// Typical value for fruit.
-    pub typical: f64,
-    /// Value when an expression leaves it out.
-    pub default: Option<f64>,
 }
 
 /// All laws, or the one that is named; with a file of laws, those of it, or the
@@ -53,40 +29,20 @@ pub struct ParameterText {
 /// There is no law of that name; names the nearest ones.
 pub fn law_cards(name: Option<&str>, laws: Option<&Path>) -> Result<Vec<LawCardText>, Error> {
     let own = laws_of_option(laws)?;
-    let kinds =
-        match name {
-            None if laws.is_some() => own,
-            None => LawKind::ALL.to_vec(),
-            Some(name) => vec![LawKind::from_name_among(name, &own).map_err(|error| {
-                Error::OptionInvalid {
-                    option: format!("--law {name}"),
-                    problem: error.to_string(),
-                }
-            })?],
-        };
+    let kinds = match name {
+        None if laws.is_some() => own,
+        None => LawKind::ALL.to_vec(),
+        Some(name) => {
+            let found = LawKind::from_name_among(name, &own);
+            vec![found.map_err(|error| unusable(format!("--law {name}"), error.to_string()))?]
+        }
+    };
     Ok(kinds.into_iter().map(card_of).collect())
 }
 
-/// Bounds from here on only keep the arithmetic finite.
-const NO_BOUND: f64 = 1e20;
-
 fn card_of(kind: LawKind) -> LawCardText {
-    let law = kind.describe();
-    let parameter = |p: &windfall_contact::parameter::ParameterDescription| ParameterText {
-        name: p.name,
-        meaning: p.meaning,
-        unit: p.unit,
-        lower: p.lower,
-        upper: (p.upper < NO_BOUND).then_some(p.upper),
-        typical: p.typical,
-        default: p.default,
-    };
     LawCardText {
-        name: law.name,
-        formula: law.formula,
-        first_touch: law.first_touch,
-        source: law.source,
-        parameters: law.parameters.iter().map(parameter).collect(),
+        law: kind.describe(),
         findings: match kind {
             LawKind::User(user) => user.findings().iter().map(ToString::to_string).collect(),
             _ => Vec::new(),
@@ -98,14 +54,14 @@ fn card_of(kind: LawKind) -> LawCardText {
 #[must_use]
 pub fn text_of_laws(laws: &[LawCardText]) -> String {
     let mut text = String::new();
-    for law in laws {
+    for LawCardText { law, findings } in laws {
         let _ = writeln!(text, "{}", expression(law));
         let _ = writeln!(text, "  formula:     {}", law.formula);
         let _ = writeln!(text, "  first touch: {}", law.first_touch);
         let _ = writeln!(text, "  source:      {}", law.source);
         let header = ["parameter", "unit", "bounds", "typical", "meaning"].map(str::to_owned);
         let rows = law.parameters.iter().map(|p| {
-            let upper = p.upper.map_or_else(|| "∞".to_owned(), short);
+            let upper = p.bound_above().map_or_else(|| "∞".to_owned(), short);
             let bounds = format!("{} … {upper}", short(p.lower));
             let usual = p
                 .default
@@ -117,7 +73,7 @@ pub fn text_of_laws(laws: &[LawCardText]) -> String {
         for line in table_text(&header, rows, &[0, 1, 4]).lines() {
             let _ = writeln!(text, "  {line}");
         }
-        for finding in &law.findings {
+        for finding in findings {
             let _ = writeln!(text, "  finding: {finding}");
         }
         text.push('\n');
@@ -134,7 +90,7 @@ fn short(value: f64) -> String {
 }
 
 /// "power-law(k, n=1.5, c, p=0.5)".
-fn expression(law: &LawCardText) -> String {
+fn expression(law: &LawDescription) -> String {
     let parameters: Vec<String> = law
         .parameters
         .iter()
@@ -164,7 +120,7 @@ pub fn csv_of_laws(laws: &[LawCardText]) -> Result<String, Error> {
         "meaning",
     ];
     let number = |value: Option<f64>| value.map_or_else(String::new, |value| value.to_string());
-    let rows = laws.iter().flat_map(|law| {
+    let rows = laws.iter().flat_map(|LawCardText { law, .. }| {
         law.parameters.iter().map(|p| {
             vec![
                 law.name.to_owned(),
@@ -173,7 +129,7 @@ pub fn csv_of_laws(laws: &[LawCardText]) -> Result<String, Error> {
                 p.name.to_owned(),
                 p.unit.to_owned(),
                 p.lower.to_string(),
-                number(p.upper),
+                number(p.bound_above()),
                 p.typical.to_string(),
                 number(p.default),
                 p.meaning.to_owned(),

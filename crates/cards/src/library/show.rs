@@ -23,7 +23,7 @@ pub struct LibraryRequest {
 pub struct LibraryOutcome {
     /// The entries.
     pub entries: Vec<LibraryEntry>,
-    /// Values of the entries' regressions, where they were asked for.
+    /// Values of the entries' regressions, if requested.
     pub evaluated: Vec<Evaluated>,
 }
 
@@ -53,7 +53,7 @@ pub struct NamedValue {
     pub unit: String,
 }
 
-/// The entries that were asked for.
+/// The requested entries.
 ///
 /// # Errors
 /// No entry of that name or fruit (names the nearest); a place that cannot be
@@ -64,8 +64,10 @@ pub fn show_library(request: &LibraryRequest) -> Result<LibraryOutcome, Error> {
         .iter()
         .filter(|entry| request.name.as_ref().is_none_or(|name| *name == entry.name))
         .filter(|entry| {
-            let wanted = request.fruit.as_ref();
-            wanted.is_none_or(|fruit| is_of(entry, fruit))
+            request
+                .fruit
+                .as_ref()
+                .is_none_or(|fruit| is_of(entry, fruit))
         })
         .cloned()
         .collect();
@@ -141,11 +143,7 @@ fn evaluate(entry: &LibraryEntry, text: &str) -> Result<Evaluated, Error> {
             )
         })?;
         let name = name.trim();
-        let variable = entry
-            .variables
-            .iter()
-            .find(|variable| variable.name == name);
-        let variable = variable.ok_or_else(|| {
+        let variable = entry.variable(name).ok_or_else(|| {
             let known: Vec<&str> = entry.variables.iter().map(|v| v.name.as_str()).collect();
             unusable(
                 "--at",
@@ -180,7 +178,7 @@ fn evaluate(entry: &LibraryEntry, text: &str) -> Result<Evaluated, Error> {
         at: at
             .into_iter()
             .map(|(name, value)| {
-                let variable = entry.variables.iter().find(|v| v.name == name);
+                let variable = entry.variable(&name);
                 let unit = variable.map_or_else(String::new, |v| v.unit.clone());
                 NamedValue { name, value, unit }
             })
@@ -227,7 +225,7 @@ fn law_of(entry: &LibraryEntry, values: &[NamedValue]) -> (Option<String>, Vec<S
 
 fn outside(entry: &LibraryEntry, at: &[(String, f64)]) -> Vec<String> {
     let beyond = |(name, value): &(String, f64)| {
-        let variable = entry.variables.iter().find(|v| v.name == *name)?;
+        let variable = entry.variable(name)?;
         (*value < variable.seen_from || *value > variable.seen_to).then(|| {
             format!(
                 "{name} = {value} {unit} is outside the {from} to {to} {unit} that were measured",

@@ -9,6 +9,9 @@ use windfall_files::text::table::{page_tables, paragraph};
 
 /// From this many entries on, a list is shown instead of each in full.
 const LIST_FROM: usize = 4;
+/// Columns of the CSV.
+const HEADER: &str = "name,body,variety,counterpart,quantity,value_SI,deviation_SI,unit_SI,printed,\
+                      law,conditions,source,doi,place,seen,cautions";
 
 /// A list of entries, or each in full where there are few.
 #[must_use]
@@ -135,24 +138,6 @@ fn write_evaluated(text: &mut String, evaluated: &Evaluated) {
 /// # Errors
 /// None in practice: the text is written to memory.
 pub fn csv_of_library(outcome: &LibraryOutcome) -> Result<String, Error> {
-    let header = [
-        "name",
-        "body",
-        "variety",
-        "counterpart",
-        "quantity",
-        "value_SI",
-        "deviation_SI",
-        "unit_SI",
-        "printed",
-        "law",
-        "conditions",
-        "source",
-        "doi",
-        "place",
-        "seen",
-        "cautions",
-    ];
     let rows = outcome.entries.iter().flat_map(|entry| {
         let evaluated = outcome.evaluated.iter().find(|e| e.entry == entry.name);
         let values = entry.values.iter().map(|value| Cells {
@@ -178,7 +163,8 @@ pub fn csv_of_library(outcome: &LibraryOutcome) -> Result<String, Error> {
         });
         values.chain(models).map(|cells| row_of(entry, cells))
     });
-    csv_text(&header.map(str::to_owned), rows)
+    let header: Vec<String> = HEADER.split(',').map(str::to_owned).collect();
+    csv_text(&header, rows)
 }
 
 /// The cells of a row that differ within an entry.

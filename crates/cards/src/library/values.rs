@@ -1,14 +1,17 @@
 //! Published values and models of fruit contacts, each with its source and what
 //! to beware of.
 
-use crate::library::file::{EntryFile, LibraryFile, ModelFile, SourceFile, ValueFile};
+use crate::library::file::{
+    EntryFile, LibraryFile, LibraryModel, LibraryTerm, LibraryVariable, SourceFile, ValueFile,
+};
 use serde::Serialize;
 use std::path::Path;
 use windfall_files::error::Error;
+use windfall_files::option_value;
 use windfall_files::text::toml_source::{TomlSource, parse_source};
 use windfall_numerics::unit::quantity::{parse_as, parse_quantity, parse_unit};
 
-/// What one publication says of one body.
+/// One publication's values for one body.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct LibraryEntry {
     /// Name to ask for it.
@@ -42,6 +45,13 @@ pub struct LibraryEntry {
     pub cautions: Vec<String>,
 }
 
+impl LibraryEntry {
+    /// The variable of a name.
+    pub(crate) fn variable(&self, name: &str) -> Option<&LibraryVariable> {
+        self.variables.iter().find(|variable| variable.name == name)
+    }
+}
+
 /// One published value.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct LibraryValue {
@@ -61,45 +71,6 @@ pub struct LibraryValue {
     pub place: Option<String>,
 }
 
-/// A published regression.
-#[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct LibraryModel {
-    /// What it gives.
-    pub quantity: String,
-    /// Unit of that.
-    pub unit: String,
-    /// Coefficient of determination, as printed.
-    pub r_squared: f64,
-    /// The equation as text.
-    pub formula: String,
-    /// Its terms.
-    pub terms: Vec<LibraryTerm>,
-}
-
-/// A coefficient and the variables it multiplies.
-#[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct LibraryTerm {
-    /// The coefficient; SI.
-    pub coefficient: f64,
-    /// Symbols of the variables; none for the constant.
-    pub of: Vec<String>,
-}
-
-/// A variable of a regression.
-#[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct LibraryVariable {
-    /// Its symbol.
-    pub name: String,
-    /// What it is.
-    pub meaning: String,
-    /// SI unit.
-    pub unit: String,
-    /// Smallest value it was measured at; SI.
-    pub seen_from: f64,
-    /// Largest; SI.
-    pub seen_to: f64,
-}
-
 /// All published values and models that come with windfall.
 ///
 /// # Errors
@@ -110,45 +81,33 @@ pub fn library() -> Result<Vec<LibraryEntry>, Error> {
         text: include_str!("../../data/library.toml").to_owned(),
     };
     let file: LibraryFile = parse_source(&source)?;
-    file.entry
-        .iter()
-        .map(|entry| entry_of(entry, &file.source))
-        .collect()
+    let entries = file.entry.into_iter();
+    entries.map(|entry| entry_of(entry, &file.source)).collect()
 }
 
 fn unusable(entry: &EntryFile, problem: impl std::fmt::Display) -> Error {
-    Error::OptionInvalid {
-        option: format!("library entry {}", entry.name),
-        problem: problem.to_string(),
-    }
+    option_value::unusable(format!("library entry {}", entry.name), problem.to_string())
 }
 
-fn entry_of(entry: &EntryFile, sources: &[SourceFile]) -> Result<LibraryEntry, Error> {
+fn entry_of(entry: EntryFile, sources: &[SourceFile]) -> Result<LibraryEntry, Error> {
     let source = sources.iter().find(|source| source.key == entry.source);
-    let source = source.ok_or_else(|| unusable(entry, format!("no source {}", entry.source)))?;
-    let values = entry.value.iter().map(|value| value_of(entry, value));
-    let variables = entry.variable.iter().map(|variable| LibraryVariable {
-        name: variable.name.clone(),
-        meaning: variable.meaning.clone(),
-        unit: variable.unit.clone(),
-        seen_from: variable.seen_from,
-        seen_to: variable.seen_to,
-    });
+    let source = source.ok_or_else(|| unusable(&entry, format!("no source {}", entry.source)))?;
+    let values = entry.value.iter().map(|value| value_of(&entry, value));
     Ok(LibraryEntry {
-        name: entry.name.clone(),
-        body: entry.body.clone(),
-        variety: entry.variety.clone(),
-        counterpart: entry.counterpart.clone(),
-        conditions: entry.conditions.clone(),
         values: values.collect::<Result<_, Error>>()?,
-        models: entry.model.iter().map(model_of).collect(),
-        variables: variables.collect(),
-        law: entry.law.clone(),
+        name: entry.name,
+        body: entry.body,
+        variety: entry.variety,
+        counterpart: entry.counterpart,
+        conditions: entry.conditions,
+        models: entry.model.into_iter().map(with_formula).collect(),
+        variables: entry.variable,
+        law: entry.law,
         citation: source.citation.clone(),
         doi: source.doi.clone(),
-        place: entry.r#where.clone(),
-        seen: entry.seen.clone(),
-        cautions: entry.cautions.clone(),
+        place: entry.r#where,
+        seen: entry.seen,
+        cautions: entry.cautions,
     })
 }
 
@@ -186,21 +145,10 @@ fn si_unit(printed: &str, dimension: &str) -> String {
     }
 }
 
-fn model_of(model: &ModelFile) -> LibraryModel {
-    let terms: Vec<LibraryTerm> = model
-        .terms
-        .iter()
-        .map(|term| LibraryTerm {
-            coefficient: term.coefficient,
-            of: term.of.clone(),
-        })
-        .collect();
+fn with_formula(model: LibraryModel) -> LibraryModel {
     LibraryModel {
-        quantity: model.quantity.clone(),
-        unit: model.unit.clone(),
-        r_squared: model.r_squared,
-        formula: formula_of(&model.quantity, &terms),
-        terms,
+        formula: formula_of(&model.quantity, &model.terms),
+        ..model
     }
 }
 

@@ -40,7 +40,7 @@ pub fn read_laws(path: &Path) -> Result<Vec<LawKind>, Error> {
 
 /// The laws of tables.
 ///
-/// * `directory`: where files of tables are looked for
+/// * `directory`: of the files of tables
 ///
 /// # Errors
 /// A law cannot be used; the message names file, line and what is wrong.
@@ -159,38 +159,23 @@ fn read_table(
     directory: &Path,
 ) -> Result<ForceTable, Error> {
     let path = directory.join(file.get_ref());
-    let wrong = |problem: String| {
-        invalid(
-            source,
-            &file.span(),
-            (table, "table"),
-            file.get_ref(),
-            problem,
-        )
-    };
+    let place = (table, "table");
+    let wrong = |problem: String| invalid(source, &file.span(), place, file.get_ref(), problem);
     let text = std::fs::read_to_string(&path)
         .map_err(|error| wrong(format!("{} cannot be read: {error}", path.display())))?;
     let mut lines = text.lines().enumerate().filter(|(_, line)| {
         let line = line.trim();
         !(line.is_empty() || line.starts_with('#'))
     });
-    let header: Vec<&str> = lines
-        .next()
-        .map(|(_, line)| {
-            line.trim_start_matches('\u{feff}')
-                .split(',')
-                .map(str::trim)
-                .collect()
-        })
-        .unwrap_or_default();
+    let first = lines.next().map_or("", |(_, line)| line);
+    let first = first.trim_start_matches('\u{feff}').split(',');
+    let header: Vec<&str> = first.map(str::trim).collect();
     let place = |name: &str| header.iter().position(|column| *column == name);
     let (Some(x), Some(force)) = (place(COLUMNS[0]), place(COLUMNS[1])) else {
+        let [x, force, damping] = COLUMNS;
         return Err(wrong(format!(
-            "expected a CSV file whose first line names the columns {}, {} and, if there is \
-             damping, {}; found {}",
-            COLUMNS[0],
-            COLUMNS[1],
-            COLUMNS[2],
+            "expected a CSV file whose first line names the columns {x}, {force} and, if there is \
+             damping, {damping}; found {}",
             header.join(", ")
         )));
     };

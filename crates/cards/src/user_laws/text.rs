@@ -3,9 +3,7 @@
 use std::fmt::Write;
 use windfall_contact::laws::kind::LawKind;
 use windfall_contact::laws::user::UserForce;
-
-/// Bounds from here on are none.
-const NO_BOUND: f64 = 1e20;
+use windfall_contact::parameter::NO_BOUND;
 
 /// The table of a user's law, as [`crate::user_laws::read`] reads it; nothing for a
 /// built-in law.

@@ -1,5 +1,6 @@
 //! Formulas of user-defined laws: parsed, differentiated, compiled.
 
+pub(crate) mod compile;
 pub mod error;
 pub(crate) mod graph;
 pub(crate) mod program;

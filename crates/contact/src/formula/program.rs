@@ -1,25 +1,24 @@
 //! A graph as a flat list of operations on registers, evaluated for one number
 //! or for several side by side, without allocating.
 
-use crate::formula::error::FormulaError;
-use crate::formula::graph::{Graph, Id, Node, apply};
+use crate::formula::graph::apply;
 use crate::formula::syntax::Function;
 use windfall_numerics::real::Real;
 
 /// Constants of a law: its parameters and what follows from them alone.
 pub(crate) const CONSTANTS: usize = 24;
 /// Registers of a short formula, and of any.
-const FEW_REGISTERS: usize = 16;
-const REGISTERS: usize = 64;
+pub(crate) const FEW_REGISTERS: usize = 16;
+pub(crate) const REGISTERS: usize = 64;
 /// Operands from here on are constants.
-const FIRST_CONSTANT: u8 = 128;
+pub(crate) const FIRST_CONSTANT: u8 = 128;
 /// Registers that hold x and v at the start.
-const DISPLACEMENT: u8 = 0;
-const RATE: u8 = 1;
+pub(crate) const DISPLACEMENT: u8 = 0;
+pub(crate) const RATE: u8 = 1;
 
 /// What an instruction does with a (and b, c); registers unless said otherwise.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
-enum Operation {
+pub(crate) enum Operation {
     /// Constant `a` in every lane.
     Constant,
     /// Literal `a` in every lane.
@@ -50,25 +49,23 @@ enum Operation {
 }
 
 #[derive(Clone, Copy, Debug, PartialEq)]
-struct Instruction {
-    operation: Operation,
-    target: u8,
-    a: u8,
-    b: u8,
-    c: u8,
+pub(crate) struct Instruction {
+    pub operation: Operation,
+    pub target: u8,
+    pub a: u8,
+    pub b: u8,
+    pub c: u8,
 }
-
-/// Where a value is found: a register, or a constant from
-/// [`FIRST_CONSTANT`] on.
-type Operand = u8;
 
 /// Operations in the order of their evaluation.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Program {
-    instructions: Vec<Instruction>,
-    literals: Vec<f64>,
-    outputs: Vec<Operand>,
-    few: bool,
+    pub instructions: Vec<Instruction>,
+    pub literals: Vec<f64>,
+    /// Registers, or constants from [`FIRST_CONSTANT`] on.
+    pub outputs: Vec<u8>,
+    /// Whether [`FEW_REGISTERS`] suffice.
+    pub few: bool,
 }
 
 impl Program {
@@ -162,344 +159,4 @@ fn call<R: Real>(function: Function, a: R) -> R {
 #[inline(never)]
 fn power_of<R: Real>(a: R, b: R) -> R {
     (a.ln() * b).map(f64::exp)
-}
-
-/// The program of a law's force and derivatives, with the program of the
-/// constants that it needs.
-#[derive(Clone, Debug, PartialEq)]
-pub(crate) struct Compiled {
-    /// Of force and derivatives, with all constants.
-    pub main: Program,
-    /// Of the constants behind the parameters, with the parameters alone.
-    pub prelude: Program,
-    /// Nodes whose values are constants, in their order behind the parameters.
-    pub hoisted: Vec<Id>,
-}
-
-/// Compiles the nodes `roots`; `wanted` are invariant nodes whose values are
-/// wanted as constants besides.
-pub(crate) fn compile(
-    graph: &Graph,
-    roots: &[Id],
-    wanted: &[Id],
-    parameters: usize,
-) -> Result<Compiled, FormulaError> {
-    let mut main = Lowering::new(graph, parameters, CONSTANTS - parameters);
-    for id in wanted {
-        main.hoist(*id);
-    }
-    let main_program = main.program(roots)?;
-    let hoisted = main.hoisted;
-    let prelude = Lowering::new(graph, parameters, 0).program(&hoisted)?;
-    Ok(Compiled {
-        main: main_program,
-        prelude,
-        hoisted,
-    })
-}
-
-/// A value that is computed, before registers are given out.
-type Value = usize;
-
-/// What an operand is before registers are given out.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
-enum Place {
-    Value(Value),
-    Constant(u8),
-}
-
-struct Lowering<'a> {
-    graph: &'a Graph,
-    parameters: usize,
-    /// Constants that may be hoisted, and those that are.
-    room: usize,
-    hoisted: Vec<Id>,
-    /// Operation and operands of each value; values 0 and 1 are x and v.
-    steps: Vec<(Operation, [Option<Place>; 3])>,
-    literals: Vec<f64>,
-    places: Vec<Option<Place>>,
-}
-
-impl<'a> Lowering<'a> {
-    fn new(graph: &'a Graph, parameters: usize, room: usize) -> Self {
-        Self {
-            graph,
-            parameters,
-            room,
-            hoisted: Vec::new(),
-            steps: vec![(Operation::Constant, [None; 3]); 2],
-            literals: Vec::new(),
-            places: vec![None; graph.nodes.len()],
-        }
-    }
-
-    /// The constant of an invariant node, while there is room for one.
-    fn hoist(&mut self, id: Id) -> Option<Place> {
-        let slot = match self.hoisted.iter().position(|known| *known == id) {
-            Some(slot) => slot,
-            None if self.hoisted.len() < self.room => {
-                self.hoisted.push(id);
-                self.hoisted.len() - 1
-            }
-            None => return None,
-        };
-        Some(Place::Constant((self.parameters + slot) as u8))
-    }
-
-    /// The value of an operation; the same operation is done once.
-    fn step(&mut self, operation: Operation, operands: &[Place]) -> Place {
-        let mut padded = [None; 3];
-        for (cell, operand) in padded.iter_mut().zip(operands) {
-            *cell = Some(*operand);
-        }
-        let known = self.steps[2..]
-            .iter()
-            .position(|s| *s == (operation, padded));
-        if let Some(known) = known {
-            return Place::Value(known + 2);
-        }
-        self.steps.push((operation, padded));
-        Place::Value(self.steps.len() - 1)
-    }
-
-    fn place(&mut self, id: Id) -> Place {
-        if let Some(place) = self.places[id] {
-            return place;
-        }
-        let hoisted = match self.graph.nodes[id] {
-            Node::Parameter(index) => Some(Place::Constant(index as u8)),
-            _ if self.graph.invariant[id] => self.hoist(id),
-            _ => None,
-        };
-        let place = hoisted.unwrap_or_else(|| self.computed(id));
-        self.places[id] = Some(place);
-        place
-    }
-
-    /// An operand that must be in a register.
-    fn value(&mut self, id: Id) -> Place {
-        match self.place(id) {
-            Place::Constant(slot) => self.step(Operation::Constant, &[Place::Constant(slot)]),
-            value => value,
-        }
-    }
-
-    fn computed(&mut self, id: Id) -> Place {
-        match self.graph.nodes[id] {
-            Node::Displacement => Place::Value(0),
-            Node::Rate => Place::Value(1),
-            Node::Parameter(index) => Place::Constant(index as u8),
-            Node::Number(bits) => {
-                let value = f64::from_bits(bits);
-                let same = self.literals.iter().position(|l| l.to_bits() == bits);
-                let index = same.unwrap_or_else(|| {
-                    self.literals.push(value);
-                    self.literals.len() - 1
-                });
-                self.step(Operation::Literal, &[Place::Constant(index as u8)])
-            }
-            Node::Sum(a, b) => self.sum(a, b),
-            Node::Difference(a, b) => {
-                let (a, b) = (self.place(a), self.place(b));
-                self.pair(
-                    a,
-                    b,
-                    [
-                        Operation::Difference,
-                        Operation::Lowered,
-                        Operation::Complement,
-                    ],
-                )
-            }
-            Node::Product(a, b) => {
-                let (a, b) = (self.place(a), self.place(b));
-                match (a, b) {
-                    (Place::Constant(_), _) => self.pair(
-                        b,
-                        a,
-                        [Operation::Product, Operation::Scaled, Operation::Scaled],
-                    ),
-                    _ => self.pair(
-                        a,
-                        b,
-                        [Operation::Product, Operation::Scaled, Operation::Scaled],
-                    ),
-                }
-            }
-            Node::Quotient(a, b) => self.quotient(a, b),
-            Node::Negative(a) => {
-                let a = self.value(a);
-                self.step(Operation::Negative, &[a])
-            }
-            Node::Power(a, b) => self.power(a, b),
-            Node::Call(function, a) => {
-                let a = self.value(a);
-                self.step(Operation::Call(function), &[a])
-            }
-            Node::Choice(c, a, b) => {
-                let operands = [self.value(a), self.value(b), self.value(c)];
-                self.step(Operation::Choice, &operands)
-            }
-        }
-    }
-
-    fn sum(&mut self, a: Id, b: Id) -> Place {
-        let (a, b) = (self.place(a), self.place(b));
-        match (a, b) {
-            (Place::Constant(_), _) => self.pair(
-                b,
-                a,
-                [Operation::Sum, Operation::Shifted, Operation::Shifted],
-            ),
-            _ => self.pair(
-                a,
-                b,
-                [Operation::Sum, Operation::Shifted, Operation::Shifted],
-            ),
-        }
-    }
-
-    fn quotient(&mut self, a: Id, b: Id) -> Place {
-        if self.graph.value(a) == Some(1.0) {
-            let b = self.value(b);
-            return self.step(Operation::Reciprocal, &[b]);
-        }
-        let (a, b) = (self.place(a), self.value(b));
-        let operation = match a {
-            Place::Value(_) => Operation::Quotient,
-            Place::Constant(_) => Operation::Over,
-        };
-        self.step(operation, &[a, b])
-    }
-
-    /// An operation of two operands: `[both in registers, second constant,
-    /// first constant]`.
-    fn pair(&mut self, a: Place, b: Place, operations: [Operation; 3]) -> Place {
-        match (a, b) {
-            (Place::Value(_), Place::Value(_)) => self.step(operations[0], &[a, b]),
-            (Place::Value(_), Place::Constant(_)) => self.step(operations[1], &[a, b]),
-            (Place::Constant(_), Place::Value(_)) => self.step(operations[2], &[a, b]),
-            (Place::Constant(_), Place::Constant(_)) => {
-                let a = self.step(Operation::Constant, &[a]);
-                self.pair(a, b, operations)
-            }
-        }
-    }
-
-    /// Roots and products for powers that are quarters, else by logarithm.
-    fn power(&mut self, a: Id, b: Id) -> Place {
-        let base = self.value(a);
-        if let Some(exponent) = self.graph.value(b)
-            && (4.0 * exponent).fract() == 0.0
-            && exponent.abs() <= 8.0
-        {
-            return self.quarters(base, (4.0 * exponent) as i32);
-        }
-        match self.place(b) {
-            Place::Constant(slot) => self.step(Operation::Power, &[base, Place::Constant(slot)]),
-            // Not hoisted for lack of room, or it varies.
-            exponent => self.step(Operation::PowerOf, &[base, exponent]),
-        }
-    }
-
-    fn quarters(&mut self, base: Place, quarters: i32) -> Place {
-        if quarters < 0 {
-            let positive = self.quarters(base, -quarters);
-            return self.step(Operation::Reciprocal, &[positive]);
-        }
-        let (whole, rest) = (quarters / 4, quarters % 4);
-        let mut factors = Vec::new();
-        let mut square = base;
-        let mut left = whole;
-        while left > 0 {
-            if left % 2 == 1 {
-                factors.push(square);
-            }
-            left /= 2;
-            if left > 0 {
-                square = self.step(Operation::Product, &[square, square]);
-            }
-        }
-        if rest > 0 {
-            let root = self.step(Operation::Root, &[base]);
-            if rest >= 2 {
-                factors.push(root);
-            }
-            if rest % 2 == 1 {
-                factors.push(self.step(Operation::Root, &[root]));
-            }
-        }
-        let mut factors = factors.into_iter();
-        let first = factors.next().unwrap_or(base);
-        factors.fold(first, |product, factor| {
-            self.step(Operation::Product, &[product, factor])
-        })
-    }
-
-    /// Gives out registers.
-    fn program(&mut self, roots: &[Id]) -> Result<Program, FormulaError> {
-        let outputs: Vec<Place> = roots.iter().map(|id| self.output(*id)).collect();
-        let mut last = vec![0; self.steps.len()];
-        for (index, (_, operands)) in self.steps.iter().enumerate() {
-            for operand in operands.iter().flatten() {
-                if let Place::Value(value) = operand {
-                    last[*value] = index;
-                }
-            }
-        }
-        for output in &outputs {
-            if let Place::Value(value) = output {
-                last[*value] = usize::MAX;
-            }
-        }
-        let too_long = FormulaError::TooLong { limit: REGISTERS };
-        if self.literals.len() > usize::from(u8::MAX) {
-            return Err(too_long);
-        }
-        // x and v begin in the first two registers.
-        let mut registers: Vec<u8> = vec![DISPLACEMENT, RATE];
-        let mut holder: Vec<Option<Value>> = vec![Some(0), Some(1)];
-        let mut instructions = Vec::new();
-        for (index, (operation, operands)) in self.steps.iter().enumerate().skip(2) {
-            let code = |operand: Option<Place>, registers: &[u8]| match operand {
-                None => 0,
-                Some(Place::Value(value)) => registers[value],
-                Some(Place::Constant(slot)) => slot,
-            };
-            let [a, b, c] = operands.map(|operand| code(operand, &registers));
-            let free = holder
-                .iter()
-                .position(|held| held.is_none_or(|value| last[value] <= index));
-            let register = free.unwrap_or(holder.len());
-            if register == holder.len() {
-                holder.push(None);
-            }
-            if register >= REGISTERS {
-                return Err(too_long);
-            }
-            holder[register] = Some(index);
-            registers.push(register as u8);
-            instructions.push(Instruction {
-                operation: *operation,
-                target: register as u8,
-                a,
-                b,
-                c,
-            });
-        }
-        let outputs = outputs.iter().map(|output| match output {
-            Place::Value(value) => registers[*value],
-            Place::Constant(slot) => FIRST_CONSTANT + slot,
-        });
-        Ok(Program {
-            outputs: outputs.collect(),
-            instructions,
-            literals: std::mem::take(&mut self.literals),
-            few: holder.len() <= FEW_REGISTERS,
-        })
-    }
-
-    fn output(&mut self, id: Id) -> Place {
-        self.place(id)
-    }
 }

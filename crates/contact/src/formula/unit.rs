@@ -3,7 +3,9 @@
 use crate::formula::error::{FormulaError, FormulaPlace};
 use crate::formula::syntax::{Function, Operator, Term, What};
 use crate::formula::value::term_value;
-use windfall_numerics::unit::quantity::{Dimension, EXPONENT_TOLERANCE, exponent_text, parse_unit};
+use windfall_numerics::unit::quantity::{
+    Dimension, EXPONENT_TOLERANCE, UnitError, exponent_text, parse_unit,
+};
 
 /// Base units m, kg and s in [`Dimension::exponents`]; rad.
 const METRE: usize = 0;
@@ -21,17 +23,11 @@ pub(crate) struct Units<'a> {
     pub values: &'a [f64],
 }
 
-/// Unit of a number: any for a zero, which may stand beside every unit.
-#[derive(Clone, Copy)]
-enum Found {
-    Any,
-    Of(Dimension),
-}
+/// Unit of a term; `None` for a zero, which fits every unit.
+type Found = Option<Dimension>;
 
 /// The dimension of a unit without a factor; `Err(None)` for one with a factor.
-pub(crate) fn si_dimension(
-    unit: &str,
-) -> Result<Dimension, Option<windfall_numerics::unit::quantity::UnitError>> {
+pub(crate) fn si_dimension(unit: &str) -> Result<Dimension, Option<UnitError>> {
     let unit = parse_unit(unit).map_err(Some)?;
     match unit.multiply == 1.0 && unit.divide == 1.0 {
         true => Ok(unit.dimension),
@@ -39,36 +35,29 @@ pub(crate) fn si_dimension(
     }
 }
 
-/// Whether the force comes out in newtons.
-pub(crate) fn check_units(term: &Term, units: &Units) -> Result<(), FormulaError> {
-    check_force(term, units)
+fn dimension(powers: &[(usize, f64)]) -> Dimension {
+    let mut dimension = Dimension::default();
+    for (base, power) in powers {
+        dimension.exponents[*base] = *power;
+    }
+    dimension
 }
 
 fn newton() -> Dimension {
-    let mut exponents = [0.0; 8];
-    exponents[METRE] = 1.0;
-    exponents[KILOGRAM] = 1.0;
-    exponents[SECOND] = -2.0;
-    Dimension { exponents }
+    dimension(&[(METRE, 1.0), (KILOGRAM, 1.0), (SECOND, -2.0)])
 }
 
-fn base(index: usize) -> Dimension {
-    let mut exponents = [0.0; 8];
-    exponents[index] = 1.0;
-    Dimension { exponents }
-}
-
-/// Every term of a sum of forces must be a force; the message names the one
-/// that is not.
-fn check_force(term: &Term, units: &Units) -> Result<(), FormulaError> {
+/// Whether the force comes out in newtons: every term of a sum of forces must be a force, and
+/// the message names the one that is not.
+pub(crate) fn check_units(term: &Term, units: &Units) -> Result<(), FormulaError> {
     match &term.what {
         What::Binary(Operator::Plus | Operator::Minus, a, b)
         | What::Smaller(a, b)
         | What::Larger(a, b) => {
-            check_force(a, units)?;
-            check_force(b, units)
+            check_units(a, units)?;
+            check_units(b, units)
         }
-        What::Negative(a) | What::Call(Function::Abs, a) => check_force(a, units),
+        What::Negative(a) | What::Call(Function::Abs, a) => check_units(a, units),
         What::If {
             left,
             right,
@@ -77,13 +66,12 @@ fn check_force(term: &Term, units: &Units) -> Result<(), FormulaError> {
             ..
         } => {
             units.same(left, right)?;
-            check_force(then, units)?;
-            check_force(otherwise, units)
+            check_units(then, units)?;
+            check_units(otherwise, units)
         }
         _ => match units.of(term)? {
-            Found::Any => Ok(()),
-            Found::Of(found) if found.matches(&newton()) => Ok(()),
-            Found::Of(found) => Err(units.not_a_force(term, &found)),
+            Some(found) if !found.matches(&newton()) => Err(units.not_a_force(term, &found)),
+            _ => Ok(()),
         },
     }
 }
@@ -131,17 +119,13 @@ impl Units<'_> {
     }
 
     fn of(&self, term: &Term) -> Result<Found, FormulaError> {
-        let plain = Found::Of(Dimension::default());
+        let plain = Some(Dimension::default());
         Ok(match &term.what {
-            What::Number(0.0) => Found::Any,
+            What::Number(0.0) => None,
             What::Number(_) => plain,
-            What::Displacement => Found::Of(base(METRE)),
-            What::Rate => {
-                let mut rate = base(METRE);
-                rate.exponents[SECOND] = -1.0;
-                Found::Of(rate)
-            }
-            What::Parameter(index) => Found::Of(self.dimensions[*index]),
+            What::Displacement => Some(dimension(&[(METRE, 1.0)])),
+            What::Rate => Some(dimension(&[(METRE, 1.0), (SECOND, -1.0)])),
+            What::Parameter(index) => Some(self.dimensions[*index]),
             What::Negative(a) | What::Call(Function::Abs, a) => self.of(a)?,
             What::Call(Function::Sqrt, a) => scaled(self.of(a)?, 0.5),
             What::Call(function, a) => {
@@ -170,9 +154,9 @@ impl Units<'_> {
     /// Two terms that are added or compared.
     fn same(&self, a: &Term, b: &Term) -> Result<Found, FormulaError> {
         match (self.of(a)?, self.of(b)?) {
-            (Found::Any, other) | (other, Found::Any) => Ok(other),
-            (Found::Of(first), Found::Of(second)) if first.matches(&second) => Ok(Found::Of(first)),
-            (Found::Of(first), Found::Of(second)) => {
+            (None, other) | (other, None) => Ok(other),
+            (Some(first), Some(second)) if first.matches(&second) => Ok(Some(first)),
+            (Some(first), Some(second)) => {
                 let expected = format!("{}, the unit of `{}`,", unit_text(&first), self.text(a));
                 Err(self.wrong(b, &second, expected, String::new()))
             }
@@ -181,7 +165,7 @@ impl Units<'_> {
 
     /// The argument of a function: a plain number, or an angle.
     fn plain(&self, a: &Term, function: Function) -> Result<(), FormulaError> {
-        let Found::Of(mut found) = self.of(a)? else {
+        let Some(mut found) = self.of(a)? else {
             return Ok(());
         };
         if matches!(function, Function::Sin | Function::Cos | Function::Tan) {
@@ -199,7 +183,7 @@ impl Units<'_> {
     }
 
     fn power(&self, a: &Term, b: &Term) -> Result<Found, FormulaError> {
-        if let Found::Of(found) = self.of(b)?
+        if let Some(found) = self.of(b)?
             && !found.matches(&Dimension::default())
         {
             return Err(self.wrong(b, &found, "a plain number".into(), String::new()));
@@ -209,7 +193,7 @@ impl Units<'_> {
             return Ok(scaled(base, term_value(b, self.values, 0.0, 0.0)));
         }
         match base {
-            Found::Of(found) if !found.matches(&Dimension::default()) => Err(self.wrong(
+            Some(found) if !found.matches(&Dimension::default()) => Err(self.wrong(
                 a,
                 &found,
                 "a plain number".into(),
@@ -249,26 +233,17 @@ fn factor(term: &Term) -> Option<usize> {
 }
 
 fn scaled(unit: Found, power: f64) -> Found {
-    match unit {
-        Found::Any => Found::Any,
-        Found::Of(unit) => Found::Of(Dimension {
-            exponents: unit.exponents.map(|exponent| exponent * power),
-        }),
-    }
+    let exponents = unit?.exponents.map(|exponent| exponent * power);
+    Some(Dimension { exponents })
 }
 
+/// The unit of a product; zero times anything is a zero.
 fn product(a: Found, b: Found, power: f64) -> Found {
-    match (a, scaled(b, power)) {
-        (Found::Of(a), Found::Of(b)) => {
-            let mut exponents = a.exponents;
-            for (sum, term) in exponents.iter_mut().zip(b.exponents) {
-                *sum += term;
-            }
-            Found::Of(Dimension { exponents })
-        }
-        // Zero times anything is a zero.
-        _ => Found::Any,
+    let (mut product, factor) = (a?, scaled(b, power)?);
+    for (sum, term) in product.exponents.iter_mut().zip(factor.exponents) {
+        *sum += term;
     }
+    Some(product)
 }
 
 /// A unit with the newton in place of the kilogram: "N s/m^1.5".

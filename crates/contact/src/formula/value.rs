@@ -1,4 +1,4 @@
-//! Values of a formula's parts one by one, to tell which of them fails.
+//! Values of a formula's parts one by one, to find the one that fails.
 
 use crate::formula::graph::{Graph, Node, apply};
 use crate::formula::syntax::{Function, Operator, Term, What};

@@ -1,19 +1,12 @@
 //! ADAMS IMPACT: power-law spring with damping that grows over a depth.
 
+use crate::granular_law::GranularLaw;
 use crate::impact_law::{Given, ImpactLaw, ImpactScales};
-use crate::law::{ContactForce, ContactLaw};
-use crate::parameter::{Elastic, LawDescription, ParameterDescription};
+use crate::law::{ContactForce, ContactLaw, from_values};
+use crate::parameter::{EXPONENTS, Elastic, FROM_ZERO, LawDescription, POSITIVE, Power, parameter};
 use windfall_numerics::real::Real;
 
 /// F = k x^e + c STEP(x; 0, d) v, STEP = w^2 (3 - 2 w), w = min(x/d, 1).
-///
-/// * `k`: stiffness; N/m^e
-/// * `e`: exponent of the displacement; 1
-/// * `c`: damping beyond the depth d; N s/m
-/// * `d`: depth at which the damping is full; m
-///
-/// At first touch force and slope are zero, but with a small d the force is
-/// nearly c v0 at once.
 ///
 /// # Source
 /// MSC Adams function reference, IMPACT and (cubic) STEP; x is the
@@ -30,65 +23,31 @@ pub struct AdamsImpact {
     pub d: f64,
 }
 
-/// What the law says about itself.
+/// Description of the law.
 pub const DESCRIPTION: LawDescription = LawDescription {
     name: "adams-impact",
     formula: "F = k x^e + c STEP(x; 0, d) v, STEP = w^2 (3 - 2 w), w = min(x/d, 1)",
     first_touch: "force and slope are zero, but with a small d the force is nearly c v0 at once",
     source: "MSC Adams function reference, IMPACT and (cubic) STEP; x is the indentation",
-    elastic: Elastic::Parameter("e"),
+    elastic: Elastic::Power(Power::Parameter("e")),
+    damping: Some(("c", Power::Number(0.0))),
+    linear: &["k", "c"],
     from_compression: false,
     parameters: &[
-        ParameterDescription {
-            name: "k",
-            meaning: "stiffness",
-            unit: "N/m^e",
-            lower: 1e-9,
-            upper: 1e30,
-            typical: 753_599.0,
-            default: None,
-        },
-        ParameterDescription {
-            name: "e",
-            meaning: "exponent of the displacement",
-            unit: "1",
-            lower: 0.5,
-            upper: 6.0,
-            typical: 1.5,
-            default: None,
-        },
-        ParameterDescription {
-            name: "c",
-            meaning: "damping beyond the depth d",
-            unit: "N s/m",
-            lower: 0.0,
-            upper: 1e30,
-            typical: 40.0,
-            default: None,
-        },
-        ParameterDescription {
-            name: "d",
-            meaning: "depth at which the damping is full",
-            unit: "m",
-            lower: 1e-9,
-            upper: 1.0,
-            typical: 1e-4,
-            default: None,
-        },
+        parameter("k", "N/m^e", "stiffness", POSITIVE, 753_599.0),
+        parameter("e", "1", "exponent of the displacement", EXPONENTS, 1.5),
+        parameter("c", "N s/m", "damping beyond the depth d", FROM_ZERO, 40.0),
+        parameter(
+            "d",
+            "m",
+            "depth at which the damping is full",
+            [1e-9, 1.0],
+            1e-4,
+        ),
     ],
 };
 
-impl From<[f64; 4]> for AdamsImpact {
-    fn from([k, e, c, d]: [f64; 4]) -> Self {
-        Self { k, e, c, d }
-    }
-}
-
-impl From<AdamsImpact> for [f64; 4] {
-    fn from(law: AdamsImpact) -> Self {
-        [law.k, law.e, law.c, law.d]
-    }
-}
+from_values!(AdamsImpact [k, e, c, d]);
 
 impl ContactLaw<4> for AdamsImpact {
     #[inline(always)]
@@ -119,14 +78,6 @@ impl ContactLaw<4> for AdamsImpact {
 }
 
 impl ImpactLaw for AdamsImpact {
-    fn nominal_restitution(&self) -> Option<f64> {
-        None
-    }
-
-    fn closed_form_restitution(&self, _mass: f64, _velocity: f64) -> Option<f64> {
-        None
-    }
-
     fn start(scales: &ImpactScales, given: &Given) -> Vec<(&'static str, f64)> {
         let e = given("e").unwrap_or(1.5);
         vec![
@@ -135,5 +86,9 @@ impl ImpactLaw for AdamsImpact {
             ("c", scales.damping(0.0)),
             ("d", 0.1 * scales.displacement),
         ]
+    }
+
+    fn granular(&self) -> Result<GranularLaw, String> {
+        Err(": it has no damping that comes in by a STEP of the penetration".to_owned())
     }
 }

@@ -10,7 +10,7 @@ pub use crate::laws::any_law_size::LARGEST_PARAMETERS;
 /// Any law of the registry as one type; derivatives by parameters that it does
 /// not have are zero.
 ///
-/// Each evaluation chooses the law anew. That costs a few nanoseconds, and
+/// Each evaluation dispatches on the law. That costs a few nanoseconds, and
 /// saves compiling the integrator and the residuals once per law.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct AnyLaw(pub Law);

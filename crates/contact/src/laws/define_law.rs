@@ -1,9 +1,9 @@
 //! A user's definition → a law like any other.
 
 use crate::error::Error;
+use crate::formula::compile::compile;
 use crate::formula::error::FormulaError;
 use crate::formula::graph::{Graph, Id, Node, Variable};
-use crate::formula::program::compile;
 use crate::formula::syntax::{Term, is_reserved, parse_formula};
 use crate::formula::unit::{Units, check_units, si_dimension};
 use crate::formula::value::node_values;
@@ -15,13 +15,11 @@ use crate::laws::user::{
 };
 use crate::laws::user_check::{Looked, check_force};
 use crate::laws::user_finding::UserLawFinding;
-use crate::parameter::{Elastic, LawDescription, ParameterDescription};
+use crate::parameter::{Elastic, LawDescription, NO_BOUND, ParameterDescription, Power, parameter};
 use std::sync::{Mutex, PoisonError};
 use windfall_numerics::unit::quantity::Dimension;
 
-/// Bounds from here on only keep the arithmetic finite.
-const NO_BOUND: f64 = 1e20;
-/// Change of an exponent by which units are looked at again.
+/// Change of an exponent with which units are checked again.
 const OTHER_EXPONENT: f64 = 0.125;
 
 /// The definitions of this run of the program. They are few, and a law must be
@@ -122,7 +120,7 @@ fn described(parameter: &UserParameter) -> ParameterDescription {
     }
 }
 
-/// A value at which a law can be looked at.
+/// A value at which a law is checked.
 fn usual(parameter: &UserParameter) -> f64 {
     let (lower, upper) = (parameter.lower, parameter.upper);
     let between = match (lower > 0.0, upper < NO_BOUND) {
@@ -173,7 +171,7 @@ fn check_parameters(parameters: &[UserParameter]) -> Result<(), FormulaError> {
 fn check_bounds(parameter: &UserParameter) -> Result<(), FormulaError> {
     let (lower, upper) = (parameter.lower, parameter.upper);
     let name = || parameter.name.clone();
-    // Also refuses what is no number.
+    // Also refuses NaN.
     if !matches!(lower.partial_cmp(&upper), Some(std::cmp::Ordering::Less)) {
         return Err(FormulaError::EmptyBounds {
             parameter: name(),
@@ -217,12 +215,19 @@ fn make_formula(
     let values: Vec<f64> = parameters.iter().map(usual).collect();
     let descriptions: &'static [ParameterDescription] =
         Box::leak(parameters.iter().map(described).collect());
+    // By their names alone, as the built-in laws have them.
+    let damping = ["c", "lambda"].into_iter().find_map(|usual| {
+        let named = |p: &&ParameterDescription| p.name.to_lowercase() == usual;
+        descriptions.iter().find(named)
+    });
     let description = LawDescription {
         name: leaked(name),
         formula: leaked(formula.trim()),
         first_touch: "as the formula says",
         source: "the user's own formula",
         elastic: Elastic::Other,
+        damping: damping.map(|p| (p.name, Power::Number(0.0))),
+        linear: &[],
         from_compression: false,
         parameters: descriptions,
     };
@@ -454,16 +459,8 @@ fn make_table(
     table: &ForceTable,
 ) -> Result<Known, FormulaError> {
     check_table(table)?;
-    let parameter = |name, meaning| ParameterDescription {
-        name,
-        meaning,
-        unit: "1",
-        lower: 0.0,
-        upper: 1e6,
-        typical: 1.0,
-        default: None,
-    };
-    let mut parameters = vec![parameter("scale", "factor of the table's force")];
+    let factor = |name, meaning| parameter(name, "1", meaning, [0.0, 1e6], 1.0);
+    let mut parameters = vec![factor("scale", "factor of the table's force")];
     let cubic = |values: &[f64]| MonotoneCubic::new(&table.displacement, values);
     let damping = table.damping.as_deref().map(cubic);
     let formula = match damping {
@@ -471,7 +468,7 @@ fn make_table(
         None => "F = scale f(d)",
     };
     if damping.is_some() {
-        parameters.push(parameter("damping_scale", "factor of the table's damping"));
+        parameters.push(factor("damping_scale", "factor of the table's damping"));
     }
     let count = parameters.len();
     Ok(Known {
@@ -485,6 +482,8 @@ fn make_table(
             first_touch: "the force is zero and its slope finite",
             source: "the user's own table",
             elastic: Elastic::Other,
+            damping: None,
+            linear: &[],
             from_compression: false,
             parameters: Box::leak(parameters.into_boxed_slice()),
         },

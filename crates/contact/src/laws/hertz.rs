@@ -1,15 +1,12 @@
 //! Hertz: elastic spheres.
 
+use crate::granular_law::{Damping, GranularLaw};
 use crate::impact_law::{Given, ImpactLaw, ImpactScales};
-use crate::law::{ContactForce, ContactLaw};
-use crate::parameter::{Elastic, LawDescription, ParameterDescription};
+use crate::law::{ContactForce, ContactLaw, from_values};
+use crate::parameter::{Elastic, LawDescription, POSITIVE, parameter};
 use windfall_numerics::real::Real;
 
 /// F = k d^1.5.
-///
-/// * `k`: stiffness, (4/3) E* √R*; N/m^1.5
-///
-/// At first touch force and slope are zero.
 ///
 /// # Source
 /// Hertz (1881); Johnson (1985), Contact Mechanics, eq. (4.23).
@@ -19,36 +16,26 @@ pub struct Hertz {
     pub k: f64,
 }
 
-/// What the law says about itself.
+/// Description of the law.
 pub const DESCRIPTION: LawDescription = LawDescription {
     name: "hertz",
     formula: "F = k d^1.5",
     first_touch: "force and slope are zero",
     source: "Hertz (1881); Johnson (1985), Contact Mechanics, eq. (4.23)",
     elastic: Elastic::Hertzian,
+    damping: None,
+    linear: &["k"],
     from_compression: true,
-    parameters: &[ParameterDescription {
-        name: "k",
-        meaning: "stiffness, (4/3) E* √R*",
-        unit: "N/m^1.5",
-        lower: 1e-9,
-        upper: 1e30,
-        typical: 753_599.0,
-        default: None,
-    }],
+    parameters: &[parameter(
+        "k",
+        "N/m^1.5",
+        "stiffness, (4/3) E* √R*",
+        POSITIVE,
+        753_599.0,
+    )],
 };
 
-impl From<[f64; 1]> for Hertz {
-    fn from([k]: [f64; 1]) -> Self {
-        Self { k }
-    }
-}
-
-impl From<Hertz> for [f64; 1] {
-    fn from(law: Hertz) -> Self {
-        [law.k]
-    }
-}
+from_values!(Hertz[k]);
 
 impl ContactLaw<1> for Hertz {
     #[inline(always)]
@@ -65,15 +52,15 @@ impl ContactLaw<1> for Hertz {
 }
 
 impl ImpactLaw for Hertz {
-    fn nominal_restitution(&self) -> Option<f64> {
-        None
-    }
-
-    fn closed_form_restitution(&self, _mass: f64, _velocity: f64) -> Option<f64> {
-        Some(1.0)
-    }
-
     fn start(scales: &ImpactScales, _given: &Given) -> Vec<(&'static str, f64)> {
         vec![("k", scales.stiffness(1.5))]
+    }
+
+    fn granular(&self) -> Result<GranularLaw, String> {
+        Ok(GranularLaw {
+            hertzian: true,
+            k: self.k,
+            damping: Damping::None,
+        })
     }
 }

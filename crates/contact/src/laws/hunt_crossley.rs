@@ -1,19 +1,13 @@
 //! Hunt-Crossley: damping in proportion to the elastic force.
 
-use crate::closed_collision::{damped_power_restitution, damping_for_restitution};
+use crate::granular_law::{GROWING_DAMPING, GranularLaw};
 use crate::impact_law::{Given, ImpactLaw, ImpactScales};
-use crate::law::{ContactForce, ContactLaw};
-use crate::parameter::{Elastic, LawDescription, ParameterDescription};
+use crate::law::{ContactForce, ContactLaw, from_values};
+use crate::parameter::{EXPONENTS, Elastic, FROM_ZERO, LawDescription, POSITIVE, Power, parameter};
+use crate::restitution::damping_for_restitution;
 use windfall_numerics::real::Real;
 
 /// F = k d^n + lambda d^n v.
-///
-/// * `k`: stiffness; N/m^n
-/// * `lambda`: damping; N s/m^(n+1)
-/// * `n`: exponent of the displacement; 1
-///
-/// At first touch force and slope are zero for n > 1; the force never changes
-/// sign before d = 0.
 ///
 /// # Source
 /// Hunt and Crossley (1975), J. Appl. Mech. 42, 440.
@@ -27,56 +21,24 @@ pub struct HuntCrossley {
     pub n: f64,
 }
 
-/// What the law says about itself.
+/// Description of the law.
 pub const DESCRIPTION: LawDescription = LawDescription {
     name: "hunt-crossley",
     formula: "F = k d^n + lambda d^n v",
     first_touch: "force and slope are zero for n > 1; the force never changes sign before d = 0",
     source: "Hunt and Crossley (1975), J. Appl. Mech. 42, 440",
-    elastic: Elastic::Parameter("n"),
+    elastic: Elastic::Power(Power::Parameter("n")),
+    damping: Some(("lambda", Power::Parameter("n"))),
+    linear: &["k", "lambda"],
     from_compression: false,
     parameters: &[
-        ParameterDescription {
-            name: "k",
-            meaning: "stiffness",
-            unit: "N/m^n",
-            lower: 1e-9,
-            upper: 1e30,
-            typical: 753_599.0,
-            default: None,
-        },
-        ParameterDescription {
-            name: "lambda",
-            meaning: "damping",
-            unit: "N s/m^(n+1)",
-            lower: 0.0,
-            upper: 1e30,
-            typical: 678_239.0,
-            default: None,
-        },
-        ParameterDescription {
-            name: "n",
-            meaning: "exponent of the displacement",
-            unit: "1",
-            lower: 0.5,
-            upper: 6.0,
-            typical: 1.5,
-            default: Some(1.5),
-        },
+        parameter("k", "N/m^n", "stiffness", POSITIVE, 753_599.0),
+        parameter("lambda", "N s/m^(n+1)", "damping", FROM_ZERO, 678_239.0),
+        parameter("n", "1", "exponent of the displacement", EXPONENTS, 1.5).held(),
     ],
 };
 
-impl From<[f64; 3]> for HuntCrossley {
-    fn from([k, lambda, n]: [f64; 3]) -> Self {
-        Self { k, lambda, n }
-    }
-}
-
-impl From<HuntCrossley> for [f64; 3] {
-    fn from(law: HuntCrossley) -> Self {
-        [law.k, law.lambda, law.n]
-    }
-}
+from_values!(HuntCrossley [k, lambda, n]);
 
 impl ContactLaw<3> for HuntCrossley {
     #[inline(always)]
@@ -95,19 +57,15 @@ impl ContactLaw<3> for HuntCrossley {
 }
 
 impl ImpactLaw for HuntCrossley {
-    fn nominal_restitution(&self) -> Option<f64> {
-        None
-    }
-
-    fn closed_form_restitution(&self, _mass: f64, velocity: f64) -> Option<f64> {
-        Some(damped_power_restitution(self.lambda / self.k * velocity))
-    }
-
     fn start(scales: &ImpactScales, given: &Given) -> Vec<(&'static str, f64)> {
         let n = given("n").unwrap_or(1.5);
         let factor = damping_for_restitution(scales.restitution, scales.velocity);
         let factor = factor.unwrap_or(1.5 * (1.0 - scales.restitution) / scales.velocity);
         let k = scales.stiffness(n);
         vec![("k", k), ("lambda", factor * k), ("n", n)]
+    }
+
+    fn granular(&self) -> Result<GranularLaw, String> {
+        Err(GROWING_DAMPING.to_owned())
     }
 }

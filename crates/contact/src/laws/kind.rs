@@ -1,9 +1,11 @@
 //! The registry: every law by kind and by value.
 
 use crate::error::Error;
+use crate::granular_law::GranularLaw;
+use crate::impact_law::ImpactLaw;
 use crate::law::ContactLaw;
 use crate::laws::user::{UserKind, UserLaw};
-use crate::parameter::LawDescription;
+use crate::parameter::{LawDescription, RESTITUTION};
 use windfall_numerics::unit::nearest_name::nearest_names;
 
 /// Declares the registry from one list: variant and module, which hold a type
@@ -229,9 +231,25 @@ impl Law {
         unit.unwrap_or_default()
     }
 
-    /// Whether the force depends on the largest displacement so far.
+    /// The restitution that the law takes as a parameter; 1. `None` for laws without, and for
+    /// the user's. What the law delivers differs.
     #[must_use]
-    pub fn has_history(&self) -> bool {
-        with_law!(self, law => law.history())
+    pub fn nominal_restitution(&self) -> Option<f64> {
+        match self {
+            Self::User(_) => None,
+            _ => {
+                let index = self.kind().describe().index_of(RESTITUTION)?;
+                self.parameters().get(index).copied()
+            }
+        }
+    }
+
+    /// The law in the terms of engines for granular matter.
+    ///
+    /// # Errors
+    /// Why it cannot be put so.
+    pub fn granular(&self) -> Result<GranularLaw, String> {
+        let found = with_law!(self, law => law.granular());
+        found.map_err(|why| format!("{}{why}", self.kind().name()))
     }
 }

@@ -1,18 +1,14 @@
 //! Kuwabara-Kono: viscoelastic spheres.
 
-use crate::closed_collision::kuwabara_kono_pade;
+use crate::granular_law::{Damping, GranularLaw};
 use crate::impact_law::{Given, ImpactLaw, ImpactScales};
-use crate::law::{ContactForce, ContactLaw};
-use crate::parameter::{Elastic, LawDescription, ParameterDescription};
+use crate::law::{ContactForce, ContactLaw, from_values};
+use crate::parameter::{Elastic, FROM_ZERO, LawDescription, POSITIVE, Power, parameter};
+use crate::restitution::kuwabara_kono_pade;
 use windfall_numerics::real::Real;
 use windfall_numerics::root::bracketed_root;
 
 /// F = k d^1.5 + c d^0.5 v.
-///
-/// * `k`: stiffness, that of Hertz; N/m^1.5
-/// * `c`: damping, (3/2) A k with the dissipative time A; N s/m^1.5
-///
-/// At first touch the force is zero and its slope in d infinite.
 ///
 /// # Source
 /// Kuwabara and Kono (1987); Brilliantov et al. (1996); eq. (5) of the 2003
@@ -25,47 +21,35 @@ pub struct KuwabaraKono {
     pub c: f64,
 }
 
-/// What the law says about itself.
+/// Description of the law.
 pub const DESCRIPTION: LawDescription = LawDescription {
     name: "kuwabara-kono",
     formula: "F = k d^1.5 + c d^0.5 v",
     first_touch: "the force is zero and its slope in d infinite",
     source: "Kuwabara and Kono (1987); Brilliantov et al. (1996); eq. (5) of the 2003 pendulum study",
     elastic: Elastic::Hertzian,
+    damping: Some(("c", Power::Number(0.5))),
+    linear: &["k", "c"],
     from_compression: true,
     parameters: &[
-        ParameterDescription {
-            name: "k",
-            meaning: "stiffness, that of Hertz",
-            unit: "N/m^1.5",
-            lower: 1e-9,
-            upper: 1e30,
-            typical: 753_599.0,
-            default: None,
-        },
-        ParameterDescription {
-            name: "c",
-            meaning: "damping, (3/2) A k with the dissipative time A",
-            unit: "N s/m^1.5",
-            lower: 0.0,
-            upper: 1e30,
-            typical: 1524.0,
-            default: None,
-        },
+        parameter(
+            "k",
+            "N/m^1.5",
+            "stiffness, that of Hertz",
+            POSITIVE,
+            753_599.0,
+        ),
+        parameter(
+            "c",
+            "N s/m^1.5",
+            "damping, (3/2) A k with the dissipative time A",
+            FROM_ZERO,
+            1524.0,
+        ),
     ],
 };
 
-impl From<[f64; 2]> for KuwabaraKono {
-    fn from([k, c]: [f64; 2]) -> Self {
-        Self { k, c }
-    }
-}
-
-impl From<KuwabaraKono> for [f64; 2] {
-    fn from(law: KuwabaraKono) -> Self {
-        [law.k, law.c]
-    }
-}
+from_values!(KuwabaraKono [k, c]);
 
 impl ContactLaw<2> for KuwabaraKono {
     #[inline(always)]
@@ -83,14 +67,6 @@ impl ContactLaw<2> for KuwabaraKono {
 }
 
 impl ImpactLaw for KuwabaraKono {
-    fn nominal_restitution(&self) -> Option<f64> {
-        None
-    }
-
-    fn closed_form_restitution(&self, _mass: f64, _velocity: f64) -> Option<f64> {
-        None
-    }
-
     fn start(scales: &ImpactScales, _given: &Given) -> Vec<(&'static str, f64)> {
         let k = scales.stiffness(1.5);
         let group = bracketed_root(0.0, LARGEST_GROUP, 1e-6, |group| {
@@ -98,6 +74,14 @@ impl ImpactLaw for KuwabaraKono {
         });
         let c = group * scales.mass * (k / scales.mass).powf(0.6) / scales.velocity.powf(0.2);
         vec![("k", k), ("c", c)]
+    }
+
+    fn granular(&self) -> Result<GranularLaw, String> {
+        Ok(GranularLaw {
+            hertzian: true,
+            k: self.k,
+            damping: Damping::Root(self.c),
+        })
     }
 }
 

@@ -1,19 +1,12 @@
 //! General power law: spring and dashpot with free exponents.
 
+use crate::granular_law::{Damping, GranularLaw};
 use crate::impact_law::{Given, ImpactLaw, ImpactScales};
-use crate::law::{ContactForce, ContactLaw};
-use crate::parameter::{Elastic, LawDescription, ParameterDescription};
+use crate::law::{ContactForce, ContactLaw, from_values};
+use crate::parameter::{EXPONENTS, Elastic, FROM_ZERO, LawDescription, POSITIVE, Power, parameter};
 use windfall_numerics::real::Real;
 
 /// F = k d^n + c d^p v.
-///
-/// * `k`: stiffness; N/m^n
-/// * `n`: exponent of the displacement; 1
-/// * `c`: damping; N s/m^(p+1)
-/// * `p`: exponent of the displacement in the damping; 1
-///
-/// At first touch the force is zero for p > 0; its slope in d is infinite for
-/// p < 1.
 ///
 /// # Source
 /// general form of Hertz (n = 1.5, c = 0), Kelvin-Voigt (n = 1, p = 0),
@@ -30,65 +23,32 @@ pub struct PowerLaw {
     pub p: f64,
 }
 
-/// What the law says about itself.
+/// Description of the law.
 pub const DESCRIPTION: LawDescription = LawDescription {
     name: "power-law",
     formula: "F = k d^n + c d^p v",
     first_touch: "the force is zero for p > 0; its slope in d is infinite for p < 1",
     source: "general form of Hertz (n = 1.5, c = 0), Kelvin-Voigt (n = 1, p = 0), Kuwabara-Kono (n = 1.5, p = 0.5) and Hunt-Crossley (p = n)",
-    elastic: Elastic::Parameter("n"),
+    elastic: Elastic::Power(Power::Parameter("n")),
+    damping: Some(("c", Power::Parameter("p"))),
+    linear: &["k", "c"],
     from_compression: true,
     parameters: &[
-        ParameterDescription {
-            name: "k",
-            meaning: "stiffness",
-            unit: "N/m^n",
-            lower: 1e-9,
-            upper: 1e30,
-            typical: 753_599.0,
-            default: None,
-        },
-        ParameterDescription {
-            name: "n",
-            meaning: "exponent of the displacement",
-            unit: "1",
-            lower: 0.5,
-            upper: 6.0,
-            typical: 1.5,
-            default: Some(1.5),
-        },
-        ParameterDescription {
-            name: "c",
-            meaning: "damping",
-            unit: "N s/m^(p+1)",
-            lower: 0.0,
-            upper: 1e30,
-            typical: 1524.0,
-            default: None,
-        },
-        ParameterDescription {
-            name: "p",
-            meaning: "exponent of the displacement in the damping",
-            unit: "1",
-            lower: 0.0,
-            upper: 6.0,
-            typical: 0.5,
-            default: Some(0.5),
-        },
+        parameter("k", "N/m^n", "stiffness", POSITIVE, 753_599.0),
+        parameter("n", "1", "exponent of the displacement", EXPONENTS, 1.5).held(),
+        parameter("c", "N s/m^(p+1)", "damping", FROM_ZERO, 1524.0),
+        parameter(
+            "p",
+            "1",
+            "exponent of the displacement in the damping",
+            [0.0, 6.0],
+            0.5,
+        )
+        .held(),
     ],
 };
 
-impl From<[f64; 4]> for PowerLaw {
-    fn from([k, n, c, p]: [f64; 4]) -> Self {
-        Self { k, n, c, p }
-    }
-}
-
-impl From<PowerLaw> for [f64; 4] {
-    fn from(law: PowerLaw) -> Self {
-        [law.k, law.n, law.c, law.p]
-    }
-}
+from_values!(PowerLaw [k, n, c, p]);
 
 impl ContactLaw<4> for PowerLaw {
     #[inline(always)]
@@ -113,18 +73,38 @@ impl ContactLaw<4> for PowerLaw {
 }
 
 impl ImpactLaw for PowerLaw {
-    fn nominal_restitution(&self) -> Option<f64> {
-        None
-    }
-
-    fn closed_form_restitution(&self, _mass: f64, _velocity: f64) -> Option<f64> {
-        None
-    }
-
     fn start(scales: &ImpactScales, given: &Given) -> Vec<(&'static str, f64)> {
         let n = given("n").unwrap_or(1.5);
         let p = given("p").unwrap_or(0.5);
         let (k, c) = (scales.stiffness(n), scales.damping(p));
         vec![("k", k), ("n", n), ("c", c), ("p", p)]
+    }
+
+    fn granular(&self) -> Result<GranularLaw, String> {
+        let hertzian = match self.n {
+            1.0 => false,
+            1.5 => true,
+            n => {
+                return Err(format!(
+                    " with n = {n}: the exponents it has are n = 1 and n = 1.5"
+                ));
+            }
+        };
+        let damping = match (hertzian, self.p) {
+            _ if self.c == 0.0 => Damping::None,
+            (_, 0.0) => Damping::Constant(self.c),
+            (true, 0.5) => Damping::Root(self.c),
+            (_, p) => {
+                return Err(format!(
+                    " with n = {} and p = {p}: of n = 1 it has p = 0, of n = 1.5 p = 0 and p = 0.5",
+                    self.n
+                ));
+            }
+        };
+        Ok(GranularLaw {
+            hertzian,
+            k: self.k,
+            damping,
+        })
     }
 }

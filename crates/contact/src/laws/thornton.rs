@@ -1,18 +1,13 @@
 //! Thornton: elastic spheres with a limiting contact pressure.
 
+use crate::granular_law::{GranularLaw, MEMORY};
 use crate::impact_law::{Given, ImpactLaw, ImpactScales};
-use crate::law::{ContactForce, ContactLaw};
-use crate::parameter::{Elastic, LawDescription, ParameterDescription};
+use crate::law::{ContactForce, ContactLaw, from_values};
+use crate::parameter::{Elastic, LawDescription, parameter};
 use std::f64::consts::PI;
 use windfall_numerics::real::Real;
 
 /// F = (4/3) E* sqrt(R*) d^1.5 up to yield, then F_y + pi p_y R* (d - d_y); unloading (4/3) E* sqrt(R_p) (d - d_p)^1.5.
-///
-/// * `modulus`: effective modulus, E*; Pa
-/// * `radius`: effective radius, R*; m
-/// * `yield_pressure`: limiting contact pressure, p_y; Pa
-///
-/// At first touch force and slope are zero.
 ///
 /// # Source
 /// Thornton (1997), J. Appl. Mech. 64, 383.
@@ -26,60 +21,30 @@ pub struct Thornton {
     pub yield_pressure: f64,
 }
 
-/// What the law says about itself.
+/// Description of the law.
 pub const DESCRIPTION: LawDescription = LawDescription {
     name: "thornton",
     formula: "F = (4/3) E* sqrt(R*) d^1.5 up to yield, then F_y + pi p_y R* (d - d_y); unloading (4/3) E* sqrt(R_p) (d - d_p)^1.5",
     first_touch: "force and slope are zero",
     source: "Thornton (1997), J. Appl. Mech. 64, 383",
     elastic: Elastic::Other,
+    damping: None,
+    linear: &[],
     from_compression: false,
     parameters: &[
-        ParameterDescription {
-            name: "E_star",
-            meaning: "effective modulus, E*",
-            unit: "Pa",
-            lower: 1.0,
-            upper: 1e15,
-            typical: 5e6,
-            default: None,
-        },
-        ParameterDescription {
-            name: "R_star",
-            meaning: "effective radius, R*",
-            unit: "m",
-            lower: 1e-6,
-            upper: 1e4,
-            typical: 0.04,
-            default: None,
-        },
-        ParameterDescription {
-            name: "yield_pressure",
-            meaning: "limiting contact pressure, p_y",
-            unit: "Pa",
-            lower: 1.0,
-            upper: 1e15,
-            typical: 3e5,
-            default: None,
-        },
+        parameter("E_star", "Pa", "effective modulus, E*", [1.0, 1e15], 5e6),
+        parameter("R_star", "m", "effective radius, R*", [1e-6, 1e4], 0.04),
+        parameter(
+            "yield_pressure",
+            "Pa",
+            "limiting contact pressure, p_y",
+            [1.0, 1e15],
+            3e5,
+        ),
     ],
 };
 
-impl From<[f64; 3]> for Thornton {
-    fn from([modulus, radius, yield_pressure]: [f64; 3]) -> Self {
-        Self {
-            modulus,
-            radius,
-            yield_pressure,
-        }
-    }
-}
-
-impl From<Thornton> for [f64; 3] {
-    fn from(law: Thornton) -> Self {
-        [law.modulus, law.radius, law.yield_pressure]
-    }
-}
+from_values!(Thornton [modulus, radius, yield_pressure]);
 
 /// A force with its derivatives by displacement and by E*, R*, p_y.
 #[derive(Clone, Copy)]
@@ -234,14 +199,6 @@ impl ContactLaw<3> for Thornton {
 }
 
 impl ImpactLaw for Thornton {
-    fn nominal_restitution(&self) -> Option<f64> {
-        None
-    }
-
-    fn closed_form_restitution(&self, mass: f64, velocity: f64) -> Option<f64> {
-        Some(thornton_restitution(self, mass, velocity))
-    }
-
     fn start(scales: &ImpactScales, given: &Given) -> Vec<(&'static str, f64)> {
         let radius = given("R_star").unwrap_or(0.02);
         let modulus = 1.5 * scales.stiffness(1.5) / radius.sqrt();
@@ -253,31 +210,8 @@ impl ImpactLaw for Thornton {
             ("yield_pressure", pressure),
         ]
     }
-}
 
-/// Restitution of Thornton's law; 1 below the yield velocity.
-///
-/// ```text
-/// r = v_y/v0,  e = √(6√3/5) √(1 − r²/6) [r/(r + 2 √(6/5 − r²/5))]^¼
-/// ```
-///
-/// # Source
-/// Thornton (1997), J. Appl. Mech. 64, 383, eq. for the unloading with the
-/// radius R_p.
-fn thornton_restitution(law: &Thornton, mass: f64, velocity: f64) -> f64 {
-    let r = thornton_yield_velocity(law, mass) / velocity;
-    if r >= 1.0 {
-        return 1.0;
+    fn granular(&self) -> Result<GranularLaw, String> {
+        Err(MEMORY.to_owned())
     }
-    let square = r * r;
-    let ratio = r / (r + 2.0 * (1.2 - square / 5.0).sqrt());
-    (6.0 * 3.0_f64.sqrt() / 5.0).sqrt() * (1.0 - square / 6.0).sqrt() * ratio.sqrt().sqrt()
-}
-
-/// Velocity above which Thornton's law yields: m v²/2 = (2/5) F_y d_y; m/s.
-///
-/// * `mass`: effective mass; kg
-#[must_use]
-pub fn thornton_yield_velocity(law: &Thornton, mass: f64) -> f64 {
-    (0.8 * law.yield_force() * law.yield_displacement() / mass).sqrt()
 }

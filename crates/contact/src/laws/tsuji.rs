@@ -1,18 +1,13 @@
 //! Tsuji: damping that gives one restitution at every velocity.
 
+use crate::granular_law::{Damping, GranularLaw};
 use crate::impact_law::{Given, ImpactLaw, ImpactScales};
-use crate::law::{ContactForce, ContactLaw};
-use crate::parameter::{Elastic, LawDescription, ParameterDescription};
+use crate::law::{ContactForce, ContactLaw, from_values};
+use crate::parameter::{Elastic, LawDescription, POSITIVE, Power, parameter};
 use std::f64::consts::PI;
 use windfall_numerics::real::Real;
 
 /// F = k d^1.5 + alpha sqrt(m k) d^0.25 v, alpha = -sqrt(5) ln e/sqrt((ln e)^2 + pi^2).
-///
-/// * `k`: stiffness; N/m^1.5
-/// * `restitution`: nominal coefficient of restitution; 1
-/// * `mass`: effective mass of the collision; kg
-///
-/// At first touch the force is zero and its slope in d infinite.
 ///
 /// # Source
 /// Tsuji, Tanaka and Ishida (1992), Powder Technol. 71, 239; alpha in closed
@@ -28,60 +23,36 @@ pub struct Tsuji {
     pub mass: f64,
 }
 
-/// What the law says about itself.
+/// Description of the law.
 pub const DESCRIPTION: LawDescription = LawDescription {
     name: "tsuji",
     formula: "F = k d^1.5 + alpha sqrt(m k) d^0.25 v, alpha = -sqrt(5) ln e/sqrt((ln e)^2 + pi^2)",
     first_touch: "the force is zero and its slope in d infinite",
     source: "Tsuji, Tanaka and Ishida (1992), Powder Technol. 71, 239; alpha in closed form: the restitution is e exactly where contact ends with the gap (gap-zero)",
-    elastic: Elastic::Power(1.5),
+    elastic: Elastic::Power(Power::Number(1.5)),
+    damping: None,
+    linear: &[],
     from_compression: false,
     parameters: &[
-        ParameterDescription {
-            name: "k",
-            meaning: "stiffness",
-            unit: "N/m^1.5",
-            lower: 1e-9,
-            upper: 1e30,
-            typical: 753_599.0,
-            default: None,
-        },
-        ParameterDescription {
-            name: "restitution",
-            meaning: "nominal coefficient of restitution, e",
-            unit: "1",
-            lower: 1e-3,
-            upper: 1.0,
-            typical: 0.5,
-            default: None,
-        },
-        ParameterDescription {
-            name: "mass",
-            meaning: "effective mass of the collision, m",
-            unit: "kg",
-            lower: 1e-9,
-            upper: 1e6,
-            typical: 0.2,
-            default: None,
-        },
+        parameter("k", "N/m^1.5", "stiffness", POSITIVE, 753_599.0),
+        parameter(
+            "restitution",
+            "1",
+            "nominal coefficient of restitution, e",
+            [1e-3, 1.0],
+            0.5,
+        ),
+        parameter(
+            "mass",
+            "kg",
+            "effective mass of the collision, m",
+            [1e-9, 1e6],
+            0.2,
+        ),
     ],
 };
 
-impl From<[f64; 3]> for Tsuji {
-    fn from([k, restitution, mass]: [f64; 3]) -> Self {
-        Self {
-            k,
-            restitution,
-            mass,
-        }
-    }
-}
-
-impl From<Tsuji> for [f64; 3] {
-    fn from(law: Tsuji) -> Self {
-        [law.k, law.restitution, law.mass]
-    }
-}
+from_values!(Tsuji [k, restitution, mass]);
 
 impl Tsuji {
     /// α and dα/de.
@@ -120,18 +91,19 @@ impl ContactLaw<3> for Tsuji {
 }
 
 impl ImpactLaw for Tsuji {
-    fn nominal_restitution(&self) -> Option<f64> {
-        Some(self.restitution)
-    }
-
-    fn closed_form_restitution(&self, _mass: f64, _velocity: f64) -> Option<f64> {
-        None
-    }
-
     fn start(scales: &ImpactScales, _given: &Given) -> Vec<(&'static str, f64)> {
         vec![
             ("k", scales.stiffness(1.5)),
             ("restitution", scales.restitution),
         ]
+    }
+
+    fn granular(&self) -> Result<GranularLaw, String> {
+        let (ratio, _) = self.damping_ratio();
+        Ok(GranularLaw {
+            hertzian: true,
+            k: self.k,
+            damping: Damping::Quarter(ratio * (self.mass * self.k).sqrt()),
+        })
     }
 }

@@ -1,6 +1,7 @@
 //! A law that the user wrote: a compiled formula, or a table.
 
 use crate::formula::program::{CONSTANTS, Program};
+use crate::granular_law::GranularLaw;
 use crate::law::{ContactForce, ContactLaw};
 use crate::laws::any_law_size::LARGEST_PARAMETERS;
 use crate::laws::force_table::{ForceTable, MonotoneCubic};
@@ -97,7 +98,7 @@ pub(crate) struct FormulaBody {
 pub struct UserKind(pub(crate) &'static Known);
 
 impl UserKind {
-    /// What the law says about itself.
+    /// Description of the law.
     #[must_use]
     pub fn description(self) -> &'static LawDescription {
         &self.0.description
@@ -285,14 +286,8 @@ impl ContactLaw<LARGEST_PARAMETERS> for UserLaw {
 }
 
 impl UserLaw {
-    /// None: a formula tells nothing of restitution.
-    pub(crate) fn nominal_restitution(&self) -> Option<f64> {
-        None
-    }
-
-    /// None, as [`nominal_restitution`](Self::nominal_restitution).
-    pub(crate) fn closed_form_restitution(&self, _mass: f64, _velocity: f64) -> Option<f64> {
-        None
+    pub(crate) fn granular(&self) -> Result<GranularLaw, String> {
+        Err(": it has no formulas or tables of the user".to_owned())
     }
 }
 

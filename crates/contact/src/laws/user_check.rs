@@ -9,9 +9,9 @@ use crate::law::SMALLEST_DISPLACEMENT;
 use crate::laws::user_finding::UserLawFinding;
 use crate::parameter::number_text;
 
-/// Rates that are looked at; m/s. Fruit meet at up to a few metres per second.
+/// Rates checked; m/s. Fruit meet at up to a few metres per second.
 const RATES: [f64; 7] = [2.0, 0.5, 0.05, 0.0, -0.05, -0.5, -2.0];
-/// Displacements that are looked at, smallest and largest; m.
+/// Smallest and largest displacement checked; m.
 const DISPLACEMENTS: (f64, f64) = (1e-7, 1e-2);
 /// How many.
 const STEPS: usize = 60;
@@ -21,7 +21,7 @@ const MUST: f64 = 1e-3;
 /// more than this force.
 const JUMP: (f64, f64) = (1e-6, 1e-9);
 
-/// A formula to be looked at.
+/// A formula to check.
 pub(crate) struct Looked<'a> {
     pub formula: &'a str,
     pub term: &'a Term,
@@ -30,7 +30,7 @@ pub(crate) struct Looked<'a> {
     pub force: Id,
     /// Slopes in x, v and the parameters.
     pub slopes: &'a [Id],
-    /// Values at which it is looked at; SI.
+    /// Values at which it is checked; SI.
     pub values: &'a [f64],
 }
 

@@ -1,16 +1,12 @@
 //! Walton-Braun: linear loading, steeper linear unloading.
 
+use crate::granular_law::{GranularLaw, MEMORY};
 use crate::impact_law::{Given, ImpactLaw, ImpactScales};
-use crate::law::{ContactForce, ContactLaw};
-use crate::parameter::{Elastic, LawDescription, ParameterDescription};
+use crate::law::{ContactForce, ContactLaw, from_values};
+use crate::parameter::{Elastic, LawDescription, POSITIVE, Power, parameter};
 use windfall_numerics::real::Real;
 
 /// F = k1 d while loading; k1 d_peak + k2 (d - d_peak) below the largest displacement d_peak.
-///
-/// * `k1`: stiffness while loading; N/m
-/// * `k2`: stiffness while unloading and reloading, at least k1; N/m
-///
-/// At first touch the force is zero and its slope k1.
 ///
 /// # Source
 /// Walton and Braun (1986), J. Rheol. 30, 949.
@@ -22,47 +18,29 @@ pub struct WaltonBraun {
     pub k2: f64,
 }
 
-/// What the law says about itself.
+/// Description of the law.
 pub const DESCRIPTION: LawDescription = LawDescription {
     name: "walton-braun",
     formula: "F = k1 d while loading; k1 d_peak + k2 (d - d_peak) below the largest displacement d_peak",
     first_touch: "the force is zero and its slope k1",
     source: "Walton and Braun (1986), J. Rheol. 30, 949",
-    elastic: Elastic::Power(1.0),
+    elastic: Elastic::Power(Power::Number(1.0)),
+    damping: None,
+    linear: &[],
     from_compression: false,
     parameters: &[
-        ParameterDescription {
-            name: "k1",
-            meaning: "stiffness while loading",
-            unit: "N/m",
-            lower: 1e-9,
-            upper: 1e30,
-            typical: 40_000.0,
-            default: None,
-        },
-        ParameterDescription {
-            name: "k2",
-            meaning: "stiffness while unloading and reloading, at least k1",
-            unit: "N/m",
-            lower: 1e-9,
-            upper: 1e30,
-            typical: 111_000.0,
-            default: None,
-        },
+        parameter("k1", "N/m", "stiffness while loading", POSITIVE, 40_000.0),
+        parameter(
+            "k2",
+            "N/m",
+            "stiffness while unloading and reloading, at least k1",
+            POSITIVE,
+            111_000.0,
+        ),
     ],
 };
 
-impl From<[f64; 2]> for WaltonBraun {
-    fn from([k1, k2]: [f64; 2]) -> Self {
-        Self { k1, k2 }
-    }
-}
-
-impl From<WaltonBraun> for [f64; 2] {
-    fn from(law: WaltonBraun) -> Self {
-        [law.k1, law.k2]
-    }
-}
+from_values!(WaltonBraun [k1, k2]);
 
 /// Unloading is never softer than loading: a `k2` below `k1` acts as `k1`, so
 /// that no parameters make a contact that returns more energy than it got.
@@ -89,16 +67,12 @@ impl ContactLaw<2> for WaltonBraun {
 }
 
 impl ImpactLaw for WaltonBraun {
-    fn nominal_restitution(&self) -> Option<f64> {
-        None
-    }
-
-    fn closed_form_restitution(&self, _mass: f64, _velocity: f64) -> Option<f64> {
-        Some((self.k1 / self.k2).sqrt().min(1.0))
-    }
-
     fn start(scales: &ImpactScales, _given: &Given) -> Vec<(&'static str, f64)> {
         let k1 = scales.force / scales.displacement;
         vec![("k1", k1), ("k2", k1 / scales.restitution.powi(2))]
+    }
+
+    fn granular(&self) -> Result<GranularLaw, String> {
+        Err(MEMORY.to_owned())
     }
 }

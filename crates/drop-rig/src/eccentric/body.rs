@@ -2,7 +2,7 @@
 
 use crate::eccentric::shape::{LowestPoint, Shape, effective_mass_factor};
 use crate::rig::Plate;
-use windfall_identify::error::Error;
+use windfall_identify::error::{Error, check_finite, check_not_negative, check_positive};
 
 /// A planar rigid body that falls on the plate.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -53,19 +53,19 @@ impl EccentricBody {
     /// # Errors
     /// An error that names the first quantity without a physical value.
     pub(crate) fn check(&self) -> Result<(), Error> {
-        positive("mass", self.mass)?;
-        not_negative("friction", self.friction)?;
-        finite("angular velocity", self.angular_velocity)?;
-        finite("tangential velocity", self.tangential_velocity)?;
+        check_positive("mass", self.mass)?;
+        check_not_negative("friction", self.friction)?;
+        check_finite("angular velocity", self.angular_velocity)?;
+        check_finite("tangential velocity", self.tangential_velocity)?;
         match self.shape {
             Shape::OffsetDisc {
                 radius,
                 offset,
                 angle,
             } => {
-                positive("radius", radius)?;
-                not_negative("offset", offset)?;
-                finite("angle", angle)?;
+                check_positive("radius", radius)?;
+                check_not_negative("offset", offset)?;
+                check_finite("angle", angle)?;
                 if offset >= radius {
                     return Err(Error::OffsetOutsideDisc { offset, radius });
                 }
@@ -77,40 +77,16 @@ impl EccentricBody {
                 semi_axes: [a, b],
                 tilt,
             } => {
-                positive("first semi-axis", a)?;
-                positive("second semi-axis", b)?;
-                finite("tilt", tilt)?;
+                check_positive("first semi-axis", a)?;
+                check_positive("second semi-axis", b)?;
+                check_finite("tilt", tilt)?;
             }
         }
-        positive("moment of inertia", self.moment_of_inertia())
+        check_positive("moment of inertia", self.moment_of_inertia())
     }
 }
 
-pub(crate) fn positive(name: &'static str, value: f64) -> Result<(), Error> {
-    if value.is_finite() && value > 0.0 {
-        Ok(())
-    } else {
-        Err(Error::BadInput { name, value })
-    }
-}
-
-fn not_negative(name: &'static str, value: f64) -> Result<(), Error> {
-    if value.is_finite() && value >= 0.0 {
-        Ok(())
-    } else {
-        Err(Error::Negative { name, value })
-    }
-}
-
-fn finite(name: &'static str, value: f64) -> Result<(), Error> {
-    if value.is_finite() {
-        Ok(())
-    } else {
-        Err(Error::NotFinite { name, value })
-    }
-}
-
-/// Body, plate and gravity, with what is needed again and again.
+/// Body, plate and gravity.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Planar {
     pub shape: Shape,

@@ -8,17 +8,18 @@ use windfall_contact::laws::any_law::AnyLaw;
 use windfall_identify::error::Error;
 use windfall_identify::rig::simulate::ACCURACY;
 use windfall_numerics::ode::step::{Position, Step, Tolerance, step};
+use windfall_numerics::quadrature::FOUR_NODES;
 use windfall_numerics::root::bracketed_root;
 
 /// Steps before a contact is given up: an impact takes about ten.
 const LARGEST_STEPS: usize = 50_000;
 /// First step; s.
 const FIRST_STEP: f64 = 1e-4;
-/// Pieces of a step in each of which events are looked for.
+/// Parts of a step searched for events.
 const SEARCH_PIECES: usize = 8;
 /// Event times are located to this fraction of a step.
 const EVENT_TOLERANCE: f64 = 1e-14;
-/// Where a contact that ends within its very first step is looked for from.
+/// Earliest end of a contact within its first step, as a fraction of the step.
 const EARLIEST_END: f64 = 1e-3;
 /// Sliding slower than this part of the impact velocity is a sign lost in
 /// rounding.
@@ -26,14 +27,6 @@ const SLIDING_TOLERANCE: f64 = 1e-12;
 /// A contact this many times longer than the way to its first maximum lasts:
 /// the body lies, rolls or rocks on the plate.
 const LONGEST_CONTACT: f64 = 100.0;
-/// Gauss-Legendre nodes and weights on [0, 1] (Abramowitz and Stegun 1964,
-/// table 25.4, n = 4), for the energy that a contact stores at most.
-const GAUSS: [(f64, f64); 4] = [
-    (0.069_431_844_202_973_71, 0.173_927_422_568_726_93),
-    (0.330_009_478_207_571_87, 0.326_072_577_431_273_07),
-    (0.669_990_521_792_428_1, 0.326_072_577_431_273_07),
-    (0.930_568_155_797_026_3, 0.173_927_422_568_726_93),
-];
 
 /// A piece of the contact: dense output from the start of the step to `to`.
 #[derive(Clone, Copy, Debug)]
@@ -353,7 +346,7 @@ fn cannot_leave(phase: &Phase, state: &State) -> bool {
         return false;
     }
     let d = state.displacement.max(0.0);
-    let stored: f64 = GAUSS
+    let stored: f64 = FOUR_NODES
         .iter()
         .map(|(node, weight)| weight * d * phase.law_at(node * d, 0.0).force.max(0.0))
         .sum();

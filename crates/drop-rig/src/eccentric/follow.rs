@@ -13,11 +13,11 @@ pub(crate) trait EccentricSink {
     /// Free flight for `duration` (s).
     fn flight(&mut self, start: f64, flight: &Flight, duration: f64);
     /// First touch.
-    fn touch(&mut self, time: f64, state: &State);
+    fn touch(&mut self, _time: f64, _state: &State) {}
     /// A piece of a contact that began at `start`.
     fn contact(&mut self, start: f64, piece: &Piece);
     /// The body has left the plate, or stays on it.
-    fn ending(&mut self, start: f64, ending: &Ending);
+    fn ending(&mut self, _start: f64, _ending: &Ending) {}
 }
 
 /// What falls, on what, under which law.

@@ -2,7 +2,7 @@
 
 use crate::simulate::DropImpact;
 
-/// What one impact of a planar body comes to; SI.
+/// Summary of one impact of a planar body; SI.
 ///
 /// Energies balance: kinetic before + `height_energy` = kinetic after +
 /// `contact_energy` + `sliding_energy` + `support_energy` +
@@ -58,23 +58,7 @@ pub struct EccentricImpact {
 impl EccentricImpact {
     /// An impact that has not ended: what belongs to its end is not a number.
     pub(crate) const LASTING: Self = Self {
-        impact: DropImpact {
-            onset_time: 0.0,
-            impact_velocity: 0.0,
-            peak_contact_force: 0.0,
-            time_of_peak_contact_force: 0.0,
-            peak_support_force: 0.0,
-            time_of_peak_support_force: 0.0,
-            max_displacement: 0.0,
-            time_of_max_displacement: 0.0,
-            force_end_time: f64::NAN,
-            separation_time: f64::NAN,
-            separation_velocity: f64::NAN,
-            restitution: f64::NAN,
-            contact_restitution: f64::NAN,
-            impulse: 0.0,
-            absorbed_energy: f64::NAN,
-        },
+        impact: DropImpact::LASTING,
         rotation: 0.0,
         lever_arm: 0.0,
         effective_mass_factor: 1.0,
@@ -104,7 +88,7 @@ pub struct EccentricSummary {
     /// From onset to onset; s.
     pub intervals: Vec<f64>,
     /// The body stays on the plate in the last of `impacts` (lying, rolling or
-    /// rocking): there may be fewer than were asked for. What belongs to the
+    /// rocking): there may be fewer than requested. What belongs to the
     /// separation of such an impact is not a number.
     pub at_rest: bool,
     /// Moment of inertia about the centre of mass; kg m².

@@ -15,6 +15,7 @@
 use crate::eccentric::body::{Planar, State};
 use windfall_contact::law::{ContactForce, ContactLaw, EndRule, SMALLEST_DISPLACEMENT};
 use windfall_contact::laws::any_law::{AnyLaw, LARGEST_PARAMETERS};
+use windfall_identify::rig::contact_time::stretch;
 use windfall_numerics::ode::step::System;
 use windfall_numerics::real::Lanes;
 
@@ -226,11 +227,7 @@ impl System<SIZE, 1> for Phase<'_> {
     fn derivative(&self, s: f64, packed: &[Lanes<1>; SIZE]) -> [Lanes<1>; SIZE] {
         let state = Touching::unpack(packed).state;
         let forces = self.forces(&state);
-        let stretch = match self.power {
-            1 => 1.0,
-            2 => 2.0 * s,
-            _ => 4.0 * s * s * s,
-        };
+        let stretch = stretch(s, self.power);
         let support = self.planar.plate.map_or(0.0, |plate| {
             plate.damping * state.plate_velocity * state.plate_velocity
         });

@@ -4,8 +4,8 @@
 //! The equations and the choices are in `docs/guide/src/made/eccentric_contact.md` and at
 //! [`EccentricBody`].
 
-use crate::eccentric::body::{EccentricBody, Planar, State, positive};
-use crate::eccentric::contact::{Ending, Piece};
+use crate::eccentric::body::{EccentricBody, Planar, State};
+use crate::eccentric::contact::Piece;
 use crate::eccentric::flight::Flight;
 use crate::eccentric::follow::{EccentricEvent, EccentricSink, follow_eccentric};
 use crate::eccentric::impact::{EccentricImpact, EccentricSummary};
@@ -14,7 +14,8 @@ use crate::rig::{DropRig, Plate};
 use windfall_contact::law::EndRule;
 use windfall_contact::laws::any_law::AnyLaw;
 use windfall_contact::laws::kind::Law;
-use windfall_identify::error::Error;
+use windfall_identify::error::{Error, check_positive};
+use windfall_identify::rig::simulate::check_ascending;
 
 /// Motion and forces of a planar body at given times from the release; SI.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -53,9 +54,8 @@ pub struct EccentricTrajectory {
 /// * `impacts`: how many to follow
 ///
 /// # Errors
-/// [`Error::BadInput`], [`Error::Negative`], [`Error::NotFinite`],
-/// [`Error::OffsetOutsideDisc`] or [`Error::NoMomentOfInertia`] for a quantity
-/// without a physical value; [`Error::Integration`] and
+/// [`Error::BadInput`], [`Error::OffsetOutsideDisc`] or
+/// [`Error::NoMomentOfInertia`] for a quantity without a physical value; [`Error::Integration`] and
 /// [`Error::EndlessContact`] when a contact cannot be integrated.
 ///
 /// # Numerics
@@ -123,13 +123,7 @@ pub fn eccentric_trajectory(
     times: &[f64],
     end: EndRule,
 ) -> Result<EccentricTrajectory, Error> {
-    if let Some(i) = (1..times.len()).find(|&i| times[i] < times[i - 1]) {
-        return Err(Error::UnorderedTimes {
-            index: i,
-            time: times[i],
-            before: times[i - 1],
-        });
-    }
+    check_ascending(times)?;
     let event = release(law, body, plate, gravity, height, end)?;
     let mut reader = Reader {
         planar: &event.planar,
@@ -156,7 +150,7 @@ fn release(
     end: EndRule,
 ) -> Result<EccentricEvent, Error> {
     body.check()?;
-    positive("height", height)?;
+    check_positive("height", height)?;
     let rig = DropRig {
         mass: body.mass,
         effective_mass_factor: 1.0,
@@ -244,8 +238,6 @@ impl EccentricSink for Reader<'_> {
         self.read(start, start + duration, |time| (flight.at(time), [0.0; 2]));
     }
 
-    fn touch(&mut self, _time: f64, _state: &State) {}
-
     fn contact(&mut self, start: f64, piece: &Piece) {
         self.read(start, start + piece.time_at(piece.to), |time| {
             let state = piece.at(piece.sigma_of(time)).state;
@@ -253,6 +245,4 @@ impl EccentricSink for Reader<'_> {
             (state, [forces.normal, forces.tangential])
         });
     }
-
-    fn ending(&mut self, _start: f64, _ending: &Ending) {}
 }

@@ -70,16 +70,7 @@ impl EccentricSink for EccentricTally<'_> {
             impact: DropImpact {
                 onset_time: time,
                 impact_velocity: planar.rate(state, &lowest),
-                peak_contact_force: f64::NEG_INFINITY,
-                peak_support_force: f64::NEG_INFINITY,
-                max_displacement: f64::NEG_INFINITY,
-                force_end_time: f64::NAN,
-                separation_time: f64::NAN,
-                separation_velocity: f64::NAN,
-                restitution: f64::NAN,
-                contact_restitution: f64::NAN,
-                absorbed_energy: f64::NAN,
-                ..DropImpact::default()
+                ..DropImpact::LASTING
             },
             rotation: state.rotation,
             lever_arm: -lowest.slope,

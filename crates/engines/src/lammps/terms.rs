@@ -1,8 +1,9 @@
 //! Contacts in the words of LAMMPS.
 
 use crate::deck::Task;
-use crate::law::{Damping, PairNumbers};
+use crate::law::PairNumbers;
 use std::fmt::Write;
+use windfall_contact::granular_law::Damping;
 use windfall_scene::interaction::Interaction;
 
 /// Coefficients of a contact as `pair_style granular` and `fix wall/gran` take them.

@@ -1,11 +1,12 @@
 //! A scene as a deck for LIGGGHTS.
 
 use crate::deck::{Deck, FRAMES, Task, comment, density, triple};
-use crate::law::{Damping, PairNumbers};
+use crate::law::PairNumbers;
 use crate::liggghts::model::{Model, Types, model_of, words};
 use crate::liggghts::walls::{Walls, walls};
 use std::collections::BTreeSet;
 use std::fmt::Write;
+use windfall_contact::granular_law::Damping;
 
 /// A deck for LIGGGHTS-PUBLIC 3.8.
 ///

@@ -1,6 +1,7 @@
 //! Contacts and types in the words of LIGGGHTS.
 
-use crate::law::{Damping, PairNumbers};
+use crate::law::PairNumbers;
+use windfall_contact::granular_law::Damping;
 use windfall_scene::interaction::Interaction;
 
 /// A form of the normal force that LIGGGHTS has.

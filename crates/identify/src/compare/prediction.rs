@@ -1,4 +1,4 @@
-//! Impacts of one velocity foretold from those of the others.
+//! Prediction of the impacts of one velocity from those of the others.
 
 use crate::fit::problem::{FitOptions, LawProblem};
 use crate::fit::result::Fit;
@@ -15,9 +15,9 @@ pub(crate) struct Example<'a> {
     pub level: usize,
 }
 
-/// Root mean square over the impacts of what is foretold less what is measured,
-/// relative to the peak and without the sensor's noise, and its standard error; `None` when nothing can be
-/// foretold.
+/// Root mean square over the impacts of predicted less measured values, relative to the
+/// peak and without the sensor's noise, and its standard error; `None` with fewer than
+/// two predictions.
 ///
 /// For each velocity level, the law's parameters are the median of those fitted
 /// at the other levels (of the logarithm where they are scales); velocity and
@@ -33,7 +33,7 @@ pub(crate) fn prediction_error(
         .filter_map(|example| {
             let others = examples.iter().filter(|e| e.level != example.level);
             let known: Vec<&Fit> = others.map(|e| e.fit).collect();
-            foretold(example, &known, problem, rig, options)
+            predicted(example, &known, problem, rig, options)
         })
         .collect();
     let n = errors.len() as f64;
@@ -50,7 +50,7 @@ pub(crate) fn prediction_error(
 }
 
 /// Relative root mean square error of one impact.
-fn foretold(
+fn predicted(
     example: &Example,
     known: &[&Fit],
     problem: &LawProblem,

@@ -1,8 +1,8 @@
-//! Which law the impacts of a campaign obey, and how sure that is.
+//! Which law fits best, and how certain the ranking is.
 //!
 //! Each law is fitted to each impact by itself, all with the same noise, so that
-//! their likelihoods can be compared; then each law is asked to foretell the
-//! impacts of a velocity that it has not seen.
+//! their likelihoods can be compared; then each law predicts the impacts of a
+//! held-out velocity.
 
 use crate::compare::correlated_scores::student;
 use crate::compare::prediction::{Example, prediction_error};
@@ -14,7 +14,7 @@ use windfall_contact::laws::kind::LawKind;
 use windfall_signal::impact::Impact;
 use windfall_signal::noise::gaussian::{noise_source, uniform};
 
-/// Resampled campaigns that tell how sure the first place is.
+/// Resampled campaigns behind the share of first places.
 const RESAMPLED: usize = 2000;
 /// Share of resampled campaigns that makes a first place sure; 1.
 const SURE: f64 = 0.95;
@@ -28,14 +28,7 @@ pub struct LeveledImpact {
     pub level: usize,
 }
 
-/// One law on one impact.
-#[derive(Clone, Debug)]
-pub struct ImpactFit {
-    /// The fit; `None` where there is none.
-    pub fit: Option<Fit>,
-}
-
-/// What the impacts say about one law.
+/// Evidence for one law.
 #[derive(Clone, Debug, PartialEq)]
 pub struct LawEvidence {
     /// The law.
@@ -63,9 +56,8 @@ pub struct LawEvidence {
     pub bic: f64,
     /// Share of campaigns of resampled impacts in which it has the least AICc; 1.
     pub first_share: f64,
-    /// Root mean square of force (or displacement) foretold for a velocity level
-    /// that the law has not seen less that measured, over the peak; 1. `None`
-    /// with a single level.
+    /// Root mean square of predicted less measured force (or displacement) at a
+    /// held-out velocity level, over the peak; 1. `None` with a single level.
     pub prediction: Option<f64>,
     /// Its standard error over the impacts; 1.
     pub prediction_error: Option<f64>,
@@ -101,7 +93,7 @@ pub enum Verdict {
         /// Whether it describes them to their noise.
         to_noise: bool,
     },
-    /// The data cannot tell these apart.
+    /// The data cannot separate these.
     Undecided {
         /// The first.
         first: LawKind,
@@ -129,8 +121,8 @@ const NOISE_RATIO: f64 = 1.1;
 /// # Numerics
 /// The noise of an impact is that of its best law, for all laws. AICc and BIC
 /// add up over the impacts, each of which has parameters of its own, so that
-/// parameters that vary from spot to spot do not count against a law. How sure
-/// the first place is, is told by drawing the impacts anew with replacement.
+/// parameters that vary from spot to spot do not count against a law. The share of
+/// first places is that among campaigns of resampled impacts.
 ///
 /// # Source
 /// Hurvich and Tsai (1989), Biometrika 76:297 (AICc); Schwarz (1978), Ann.
@@ -138,13 +130,13 @@ const NOISE_RATIO: f64 = 1.1;
 /// resampling the first place.
 pub fn rank_laws(
     impacts: &[LeveledImpact],
-    fits: &[Vec<ImpactFit>],
+    fits: &[Vec<Option<Fit>>],
     rig: &Rig,
     problems: &[LawProblem],
     options: &FitOptions,
 ) -> Result<LawRanking, Error> {
     let failed: Vec<usize> = (0..problems.len())
-        .map(|law| fits.iter().filter(|of| of[law].fit.is_none()).count())
+        .map(|law| fits.iter().filter(|of| of[law].is_none()).count())
         .collect();
     // A law that fails on half of the impacts is no candidate; the others are
     // compared where all of them could be fitted.
@@ -152,7 +144,7 @@ pub fn rank_laws(
         .filter(|&law| 2 * failed[law] <= impacts.len())
         .collect();
     let common: Vec<usize> = (0..impacts.len())
-        .filter(|&i| candidates.iter().all(|&law| fits[i][law].fit.is_some()))
+        .filter(|&i| candidates.iter().all(|&law| fits[i][law].is_some()))
         .collect();
     if candidates.len() < 2 || common.is_empty() {
         return Err(Error::NothingToCompare {
@@ -168,7 +160,7 @@ pub fn rank_laws(
     let criteria: Vec<Vec<f64>> = candidates
         .iter()
         .map(|&law| {
-            let of = common.iter().filter_map(|&i| fits[i][law].fit.as_ref());
+            let of = common.iter().filter_map(|&i| fits[i][law].as_ref());
             of.map(corrected_akaike).collect()
         })
         .collect();
@@ -177,7 +169,7 @@ pub fn rank_laws(
     for (place, &law) in candidates.iter().enumerate() {
         let own: Vec<(&LeveledImpact, &Fit)> = common
             .iter()
-            .filter_map(|&i| Some((&impacts[i], fits[i][law].fit.as_ref()?)))
+            .filter_map(|&i| Some((&impacts[i], fits[i][law].as_ref()?)))
             .collect();
         let predicted = (distinct.len() > 1)
             .then(|| predicted(&own, &problems[law], rig, options))
@@ -269,12 +261,10 @@ pub fn fits_of_impact(
     rig: &Rig,
     problems: &[LawProblem],
     options: &FitOptions,
-) -> Vec<ImpactFit> {
+) -> Vec<Option<Fit>> {
     let fits = fit_laws(impact, rig, problems, options);
     let usable = |fit: Result<Fit, Error>| fit.ok().filter(|fit| fit.cost.is_finite());
-    fits.into_iter()
-        .map(|fit| ImpactFit { fit: usable(fit) })
-        .collect()
+    fits.into_iter().map(usable).collect()
 }
 
 /// Velocity levels of impacts by their velocities: a new one wherever the sorted
@@ -362,7 +352,7 @@ fn verdict(laws: &[LawEvidence]) -> Verdict {
             second: second.kind,
         };
     }
-    // Another law that foretells clearly better speaks against the first.
+    // Another law that predicts clearly better speaks against the first.
     let better = laws[1..].iter().find(|law| {
         match (law.prediction, law.prediction_error, first.prediction) {
             (Some(own), Some(error), Some(of_first)) => own + 2.0 * error < of_first,

@@ -5,10 +5,10 @@
 //! [`follow`](crate::rig::contact_motion::follow) does, to the bit.
 
 use crate::fit::batch_law::{BatchLaw, IMPACTS, PackedLaw, PerImpact};
-use crate::fit::residual_pack::Piece;
-use crate::rig::contact_motion::{
-    ImpactEvent, LARGEST_STEPS, Segment, first_width, scaled_time, separation, time_of, touch_state,
-};
+use crate::rig::contact_motion::{LARGEST_STEPS, Piece, Segment, first_width};
+use crate::rig::contact_stop::separation;
+use crate::rig::contact_time::{scaled_time, time_of};
+use crate::rig::impact_event::ImpactEvent;
 use crate::rig::motion::acceleration_with;
 use windfall_contact::law::SMALLEST_DISPLACEMENT;
 use windfall_numerics::ode::dense::DenseStep;
@@ -194,7 +194,7 @@ impl Way {
             steps: 0,
         };
         let first = if before < 0.0 {
-            Some(flight(event, touch_state(event), 0.0, before))
+            Some(flight(event, event.touch_state(), 0.0, before))
         } else {
             way.contact(event)
         };
@@ -212,7 +212,7 @@ impl Way {
             touching: true,
             beginning: Beginning {
                 s: 0.0,
-                state: touch_state(event),
+                state: event.touch_state(),
                 width: first_width(limit, &event.tolerance),
                 limit,
                 tolerance: event.tolerance,
@@ -248,7 +248,7 @@ impl Way {
         position: f64,
     ) -> (Segment<W>, Piece, Next<W>) {
         let end = done.start + done.width;
-        let segment = segment(done, 1, done.start.min(end), done.start.max(end));
+        let segment = Segment::without_peak(done, 1, done.start.min(end), done.start.max(end));
         let limit = match self.leg {
             Leg::Before => self.before,
             _ => self.after,
@@ -294,7 +294,8 @@ impl Way {
             None if position == limit => Next::End,
             None => Next::Step,
         };
-        (segment(done, power, from, until), Piece::Contact, next)
+        let segment = Segment::without_peak(done, power, from, until);
+        (segment, Piece::Contact, next)
     }
 }
 
@@ -315,17 +316,5 @@ fn flight<L, const N: usize, const W: usize>(
             limit: to,
             tolerance: event.tolerance,
         },
-    }
-}
-
-#[inline(always)]
-fn segment<const W: usize>(step: DenseStep<2, W>, power: u32, from: f64, to: f64) -> Segment<W> {
-    Segment {
-        step,
-        power,
-        from,
-        to,
-        peak: 0.0,
-        peak_lanes: Lanes::ZERO,
     }
 }

@@ -4,12 +4,13 @@
 use crate::fit::batch::{BatchProblem, minimise_batch};
 use crate::fit::batch_law::BatchLaw;
 use crate::fit::estimator::Estimator;
-use crate::fit::interval::{Bootstrap, FreeIntervals, IntervalDetail, deviation, quantile};
+use crate::fit::interval::{
+    Bootstrap, FreeIntervals, IntervalDetail, IntervalOptions, IntervalPlan, deviation, quantile,
+};
 use crate::fit::residual::Rows;
 use crate::fit::uncertainty::{inflation, standardised, whitened_derivatives, whitened_zero};
 use crate::noise::whitening::unit_shift;
 use crate::samples::{Quantity, SampleGroup};
-use windfall_numerics::cholesky;
 use windfall_numerics::least_squares::{Minimum, Options, Stop};
 use windfall_signal::noise::gaussian::{NoiseSource, noise_source, normal, uniform};
 use windfall_statistics::distribution::tail::{normal_lower, normal_quantile};
@@ -21,13 +22,6 @@ const GAIN_LEFT: f64 = 1e-4;
 /// Refits that are prepared together, so that the vector lanes are rarely idle at
 /// their end.
 const TOGETHER: usize = 32;
-
-/// What a bootstrap is made with.
-pub(crate) struct BootstrapPlan {
-    pub replicates: usize,
-    pub seed: u64,
-    pub confidence: f64,
-}
 
 /// Residuals of one channel, independent and of variance 1.
 struct Channel<const P: usize> {
@@ -52,45 +46,46 @@ struct Channel<const P: usize> {
 /// # Numerics
 /// Residuals are made independent by each channel's noise model, drawn one by one
 /// or, where they are still correlated, in blocks of n^⅓, and coloured again; the
-/// channel's zero is drawn anew. The first Gauss-Newton step of a refit needs no
-/// evaluation, since all that it needs is known at the
-/// estimate; one or two evaluations follow, of several replicates side by side.
-/// No samples are allocated per replicate. Replicate i has stream i of the seed.
+/// channel's zero is resampled. The first Gauss-Newton step of a refit needs no
+/// evaluation, since everything it needs is known at the estimate; one or two
+/// evaluations follow, of several replicates side by side. No samples are allocated
+/// per replicate. Replicate i has stream i of the seed.
 ///
 /// # Source
 /// Künsch (1989), Ann. Statist. 17:1217, for the blocks; Efron (1981), Canad. J.
 /// Statist. 9:139, for the correction of the percentiles.
-pub(crate) fn bootstrap_intervals<L, const N: usize, const W: usize, const P: usize>(
+pub(crate) fn bootstrap_intervals<
+    L: BatchLaw<N>,
+    const N: usize,
+    const W: usize,
+    const P: usize,
+>(
     estimator: &Estimator<L, N, W, P>,
     minimum: &Minimum<P>,
     rows: &Rows,
-    plan: &BootstrapPlan,
+    plan: &IntervalPlan,
     options: &Options<P>,
-) -> Option<FreeIntervals>
-where
-    L: BatchLaw<N>,
-{
+) -> Option<FreeIntervals> {
+    let IntervalOptions {
+        replicates, seed, ..
+    } = plan.options;
     let free = estimator.free();
     let count = free.len();
     let channels = channels::<P>(estimator.groups(), rows, count);
-    let mut normal = minimum.equations.normal;
-    for i in count..P {
-        normal[i][i] = 1.0;
-    }
-    let inverse = cholesky::inverse(&normal)?;
+    let inverse = minimum.equations.inverse(count)?;
     let options = Options {
         cost_tolerance: GAIN_LEFT / minimum.equations.cost.max(1.0),
         ..*options
     };
-    let mut recordings = vec![estimator.groups().to_vec(); TOGETHER.min(plan.replicates)];
+    let mut recordings = vec![estimator.groups().to_vec(); TOGETHER.min(replicates)];
     let mut starts = vec![[0.0; P]; recordings.len()];
     let mut minima = vec![*minimum; recordings.len()];
-    let mut estimates = vec![Vec::with_capacity(plan.replicates); count];
+    let mut estimates = vec![Vec::with_capacity(replicates); count];
     let mut failed = 0;
-    for first in (0..plan.replicates).step_by(TOGETHER) {
-        let together = TOGETHER.min(plan.replicates - first);
+    for first in (0..replicates).step_by(TOGETHER) {
+        let together = TOGETHER.min(replicates - first);
         for (i, groups) in recordings[..together].iter_mut().enumerate() {
-            let mut source = noise_source(plan.seed, (first + i) as u64);
+            let mut source = noise_source(seed, (first + i) as u64);
             let gradient = resample(&channels, groups, &mut source);
             starts[i] = stepped(&minimum.parameters, &inverse, &gradient, count);
         }
@@ -121,24 +116,23 @@ where
     if estimates[0].len() < 2 {
         return None;
     }
-    let mut intervals = FreeIntervals {
-        low: Vec::new(),
-        high: Vec::new(),
+    let ends = free.iter().zip(&estimates).enumerate();
+    let (low, high) = ends
+        .map(|(i, (parameter, estimates))| {
+            let estimate = parameter.coordinate.value(minimum.parameters[i]);
+            corrected_percentiles(estimates, estimate, plan.confidence)
+        })
+        .unzip();
+    Some(FreeIntervals {
+        low,
+        high,
         sd: Some(estimates.iter().map(|e| deviation(e)).collect()),
-        detail: IntervalDetail::Asymptotic,
-    };
-    for (i, parameter) in free.iter().enumerate() {
-        let estimate = parameter.coordinate.value(minimum.parameters[i]);
-        let (low, high) = corrected_percentiles(&estimates[i], estimate, plan.confidence);
-        intervals.low.push(low);
-        intervals.high.push(high);
-    }
-    intervals.detail = IntervalDetail::Bootstrap(Bootstrap {
-        replicates: plan.replicates,
-        failed,
-        estimates,
-    });
-    Some(intervals)
+        detail: IntervalDetail::Bootstrap(Bootstrap {
+            replicates,
+            failed,
+            estimates,
+        }),
+    })
 }
 
 /// `from` less the first `count` components of `inverse` · `gradient`.
@@ -162,8 +156,7 @@ fn channels<const P: usize>(
     rows: &Rows,
     parameters: usize,
 ) -> Vec<Channel<P>> {
-    let total: usize = rows.residuals.iter().flatten().map(Vec::len).sum();
-    let freedom = total as f64 / total.saturating_sub(parameters).max(1) as f64;
+    let freedom = rows.freedom_lost(parameters);
     let mut out = Vec::new();
     for (g, group) in groups.iter().enumerate() {
         for quantity in Quantity::ALL {
@@ -191,11 +184,7 @@ fn channels<const P: usize>(
                     .map(|i| group.values(quantity)[i] + residuals[i])
                     .collect(),
                 scale: (0..n)
-                    .map(|i| {
-                        (group.weight(quantity) * group.relative_weight(quantity, i))
-                            .sqrt()
-                            .recip()
-                    })
+                    .map(|i| group.weight_of(quantity, i).sqrt().recip())
                     .collect(),
                 block: block_of(&pool),
                 zero: ([0.0; P], 0.0),

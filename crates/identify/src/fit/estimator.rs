@@ -5,7 +5,7 @@ use crate::fit::model::{Columns, Model, Sampling};
 use crate::fit::residual::{Rows, evaluate, evaluate_some};
 pub use crate::fit::search::FORESIGHT;
 use crate::fit::search::{Search, seen};
-use crate::rig::contact_motion::{ImpactEvent, Seeds};
+use crate::rig::impact_event::{ImpactEvent, Seeds};
 use crate::rig::motion::Motion;
 use crate::samples::SampleGroup;
 use windfall_contact::law::{ContactLaw, EndRule};
@@ -162,11 +162,9 @@ impl FreeLaw<LARGEST_PARAMETERS> for UserLaw {
 
 /// What a fit holds constant.
 #[derive(Clone, Copy, Debug)]
-pub struct Setting<'a> {
+pub struct Setting {
     /// Equation of motion; its mass gives way to that of [`Values`].
     pub motion: Motion,
-    /// Samples.
-    pub groups: &'a [SampleGroup],
     /// End of contact.
     pub end: EndRule,
     /// Accuracy of the integration.
@@ -181,7 +179,8 @@ pub struct Setting<'a> {
 /// The problem in the minimiser's coordinates.
 #[derive(Clone)]
 pub struct Estimator<'a, L, const N: usize, const W: usize, const P: usize> {
-    setting: Setting<'a>,
+    setting: Setting,
+    groups: &'a [SampleGroup],
     free: &'a [FreeParameter],
     base: Values<N>,
     law: L,
@@ -189,13 +188,20 @@ pub struct Estimator<'a, L, const N: usize, const W: usize, const P: usize> {
 
 impl<'a, L: FreeLaw<N>, const N: usize, const W: usize, const P: usize> Estimator<'a, L, N, W, P> {
     /// Problem of `law` (its parameters do not matter) with `free` parameters,
-    /// everything else as in `base`. At most
-    /// `P` parameters, of which at most `W − 1` move the motion.
+    /// everything else as in `base`. At most `P` parameters, of which at most `W − 1`
+    /// move the motion.
     #[must_use]
-    pub fn new(law: L, setting: Setting<'a>, free: &'a [FreeParameter], base: Values<N>) -> Self {
+    pub fn new(
+        law: L,
+        setting: Setting,
+        groups: &'a [SampleGroup],
+        free: &'a [FreeParameter],
+        base: Values<N>,
+    ) -> Self {
         debug_assert!(free.len() <= P);
         Self {
             setting,
+            groups,
             free,
             base,
             law,
@@ -216,21 +222,13 @@ impl<'a, L: FreeLaw<N>, const N: usize, const W: usize, const P: usize> Estimato
     /// The samples.
     #[must_use]
     pub fn groups(&self) -> &'a [SampleGroup] {
-        self.setting.groups
+        self.groups
     }
 
     /// The same problem with other samples.
     #[must_use]
     pub fn with_groups<'b>(&'b self, groups: &'b [SampleGroup]) -> Estimator<'b, L, N, W, P> {
-        Estimator {
-            setting: Setting {
-                groups,
-                ..self.setting
-            },
-            free: self.free,
-            base: self.base,
-            law: self.law,
-        }
+        Estimator { groups, ..*self }
     }
 
     /// Bounds of the coordinates.
@@ -311,9 +309,11 @@ impl<'a, L: FreeLaw<N>, const N: usize, const W: usize, const P: usize> Estimato
     /// The same problem with force samples understood otherwise.
     #[must_use]
     pub fn with_sampling(&self, sampling: Sampling) -> Self {
-        let mut other = self.clone();
-        other.setting.sampling = sampling;
-        other
+        let setting = Setting {
+            sampling,
+            ..self.setting
+        };
+        Self { setting, ..*self }
     }
 
     /// Whether force samples near first touch are averages.
@@ -352,7 +352,7 @@ impl<'a, L: FreeLaw<N>, const N: usize, const W: usize, const P: usize> Estimato
     /// Of how many packs of samples one shows the way, if so few do. A free onset
     /// has many minima, one beside each sample: there all samples decide.
     fn share(&self) -> Option<usize> {
-        let samples = self.setting.groups.iter().map(|g| g.times().len()).max()?;
+        let samples = self.groups.iter().map(|g| g.times().len()).max()?;
         let stride = (samples / APPROACH_SAMPLES).min(LARGEST_STRIDE);
         let onset = self.free.iter().any(|p| p.target == Target::Onset);
         (stride >= 2 && !onset).then_some(stride)
@@ -371,7 +371,7 @@ impl<'a, L: FreeLaw<N>, const N: usize, const W: usize, const P: usize> Estimato
     /// Normal equations at coordinates `u` of one in `stride` packs of samples.
     pub(crate) fn evaluate_share(&self, u: &[f64; P], stride: usize) -> Option<NormalEquations<P>> {
         let model = self.model_for(u, stride);
-        let groups = self.setting.groups;
+        let groups = self.groups;
         match stride {
             1 => evaluate(&model, groups, None).ok(),
             _ => evaluate_some(&model, groups, stride).ok(),
@@ -388,7 +388,7 @@ impl<'a, L: FreeLaw<N>, const N: usize, const W: usize, const P: usize> Estimato
     #[must_use]
     pub fn rows(&self, u: &[f64; P]) -> Option<(NormalEquations<P>, Rows)> {
         let mut rows = Rows::default();
-        let equations = evaluate(&self.model(u), self.setting.groups, Some(&mut rows)).ok()?;
+        let equations = evaluate(&self.model(u), self.groups, Some(&mut rows)).ok()?;
         Some((equations, rows))
     }
 }
@@ -397,6 +397,6 @@ impl<L: FreeLaw<N>, const N: usize, const W: usize, const P: usize> LeastSquares
     for Estimator<'_, L, N, W, P>
 {
     fn evaluate(&mut self, u: &[f64; P]) -> Option<NormalEquations<P>> {
-        evaluate(&self.model(u), self.setting.groups, None).ok()
+        evaluate(&self.model(u), self.groups, None).ok()
     }
 }

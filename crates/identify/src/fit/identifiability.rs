@@ -1,11 +1,11 @@
-//! Which parameters the data can tell apart, in words.
+//! Which parameters the data can separate, in words.
 
 use nalgebra::{DMatrix, SymmetricEigen};
 
 /// Shares of a direction smaller than this are not worth a word; of its largest.
 const WORTH_A_WORD: f64 = 0.25;
 
-/// What a fit says about one combination of its parameters.
+/// Uncertainty along one combination of a fit's parameters.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Direction {
     /// Change of each parameter along it that changes −2 ln of the likelihood by
@@ -27,8 +27,7 @@ pub struct Trade {
     pub factor: f64,
 }
 
-/// Directions of a covariance matrix, the weakest first; empty where it is not
-/// that of parameters that the data tell.
+/// Directions of a covariance matrix, the weakest first; empty where it is singular.
 #[must_use]
 pub fn directions(covariance: &[Vec<f64>]) -> Vec<Direction> {
     let n = covariance.len();
@@ -77,7 +76,7 @@ pub fn trade(covariance: &[Vec<f64>], parameter: usize) -> Option<Trade> {
 }
 
 /// A direction in words: "k -0.9 %, c +4.1 %, onset -3.5e-5 s". Parameters with
-/// `relative` are told in % of their value.
+/// `relative` are given in % of their value.
 #[must_use]
 pub fn in_words(
     direction: &Direction,

@@ -1,7 +1,8 @@
-//! Intervals that follow the likelihood: what they are asked for with, and what
-//! is told besides their ends.
+//! Methods of intervals, their options and what they report besides the ends.
 
+use crate::sampler::Drawing;
 use serde::Serialize;
+use windfall_statistics::chain_diagnostics::ChainDiagnostics;
 
 /// How intervals are made.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default, Serialize)]
@@ -58,6 +59,18 @@ pub struct IntervalOptions {
     pub seed: u64,
 }
 
+impl IntervalOptions {
+    /// The draws of a posterior.
+    #[must_use]
+    pub fn drawing(&self) -> Drawing {
+        Drawing {
+            chains: self.chains,
+            draws: self.draws,
+            seed: self.seed,
+        }
+    }
+}
+
 impl Default for IntervalOptions {
     fn default() -> Self {
         Self {
@@ -70,8 +83,8 @@ impl Default for IntervalOptions {
     }
 }
 
-/// What is told of intervals besides their ends. Lists run over the free
-/// parameters: those of the law, then the nuisances.
+/// Details of the intervals. Lists run over the free parameters: those of the law, then
+/// the nuisances.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub enum IntervalDetail {
     /// Nothing more.
@@ -88,12 +101,11 @@ pub enum IntervalDetail {
 /// Likelihood of one parameter, maximal over the others.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct ProfileCurve {
-    /// Values looked at, ascending; SI.
+    /// Values tried, ascending; SI.
     pub values: Vec<f64>,
     /// −2 ln of the likelihood relative to its maximum.
     pub rises: Vec<f64>,
-    /// Whether no lower end was found: the data do not exclude the smallest
-    /// value that was looked at.
+    /// Whether no lower end was found: the data do not exclude the smallest value tried.
     pub open_below: bool,
     /// Whether no upper end was found.
     pub open_above: bool,
@@ -120,38 +132,35 @@ pub struct Posterior {
     /// Draws at which the integration of the sampler broke down, after tuning.
     pub divergences: usize,
     /// How well the chains agree, for each parameter.
-    pub mixing: Vec<Mixing>,
+    pub mixing: Vec<ChainDiagnostics>,
 }
 
-/// How well the chains of one parameter agree.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Mixing {
-    /// Spread of all chains over that within chains: 1 when they agree.
-    pub r_hat: f64,
-    /// Independent draws that would tell the centre as well.
-    pub bulk_draws: f64,
-    /// Independent draws that would tell the ends as well.
-    pub tail_draws: f64,
-}
-
-/// Largest R-hat and fewest independent draws of chains that say something.
+/// Largest R-hat and fewest independent draws of chains that agree and are long enough
+/// (Vehtari et al. 2021, Bayesian Anal. 16:667).
 const MIXED: (f64, f64) = (1.01, 400.0);
 
-impl Mixing {
-    /// The fewer of both independent draws.
-    #[must_use]
-    pub fn independent_draws(&self) -> f64 {
-        self.bulk_draws.min(self.tail_draws)
-    }
+/// The fewer of a parameter's independent draws, for the centre and for the tails.
+#[must_use]
+pub fn independent_draws(mixing: &ChainDiagnostics) -> f64 {
+    mixing.bulk_draws.min(mixing.tail_draws)
+}
 
-    /// Whether the chains agree and are long enough.
-    ///
-    /// # Source
-    /// Vehtari et al. (2021), Bayesian Anal. 16:667.
-    #[must_use]
-    pub fn suffices(&self) -> bool {
-        self.r_hat <= MIXED.0 && self.independent_draws() >= MIXED.1
-    }
+/// Whether the chains agree and are long enough.
+#[must_use]
+pub fn mixes(mixing: &ChainDiagnostics) -> bool {
+    mixing.r_hat <= MIXED.0 && independent_draws(mixing) >= MIXED.1
+}
+
+/// Method and inputs of the intervals of one fit.
+#[derive(Clone, Debug)]
+pub(crate) struct IntervalPlan {
+    pub options: IntervalOptions,
+    pub confidence: f64,
+    /// Student's quantile of the confidence.
+    pub quantile: f64,
+    /// Normal priors of the free parameters' coordinates: mean and standard deviation;
+    /// flat where `None`.
+    pub priors: Vec<Option<(f64, f64)>>,
 }
 
 /// Intervals of the free parameters in their order, in the minimiser's

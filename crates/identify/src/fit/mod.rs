@@ -19,6 +19,7 @@ mod report;
 pub mod residual;
 mod residual_noise;
 mod residual_pack;
+mod residual_sums;
 pub mod result;
 mod search;
 pub(crate) mod solve;

@@ -1,6 +1,6 @@
 //! A model of one impact to compare with samples.
 
-use crate::rig::contact_motion::ImpactEvent;
+use crate::rig::impact_event::ImpactEvent;
 
 /// How the columns of the Jacobian come from the motion's lanes.
 #[derive(Clone, Copy, Debug)]

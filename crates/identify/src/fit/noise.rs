@@ -11,13 +11,12 @@ use crate::samples::{QUANTITIES, Quantity, SampleGroup};
 use windfall_signal::impact::{Impact, Series};
 use windfall_signal::noise::colour::persistence;
 
-/// A channel's noise is not believed to be smaller than this part of what the
-/// recording showed, nor its correlation read off residuals that are smaller:
-/// those of a simulation without noise are not random; 1.
+/// Least variance of a channel's residuals over that of its recorded noise; below it
+/// they are not random, as in a simulation without noise; 1.
 const LEAST_VARIANCE_RATIO: f64 = 0.25;
 
-/// Fewer edges do not tell their own variance.
-const TELLING_EDGES: usize = 50;
+/// Fewer edges do not determine their own variance.
+const ENOUGH_EDGES: usize = 50;
 
 /// Samples of an impact in groups, with what their noise is known to be.
 #[derive(Clone, Debug)]
@@ -26,7 +25,7 @@ pub(crate) struct NoisePlan {
     pub groups: Vec<SampleGroup>,
     /// The displacement's edges, where these took the place of its samples.
     pub edges: Option<EdgeSamples>,
-    /// Noise of what is fitted (a sample, a mean of a block, an edge) by the
+    /// Noise of a fitted value (a sample, a mean of a block, an edge) by the
     /// recording alone; SI.
     pub noise: [f64; QUANTITIES],
     /// Correlation of the noise of successive samples as they were recorded; 1.
@@ -201,8 +200,8 @@ struct Coloured {
 
 impl NoisePlan {
     /// The same samples with the noise that a fit's residuals show: the variance
-    /// of each channel, the correlation where the recording did not tell it, and
-    /// the widening by what correlation is left.
+    /// of each channel, the correlation where the recording did not show it, and
+    /// the widening by the correlation left.
     ///
     /// * `rows`: residuals of the fit
     /// * `speeds`: the fitted model's speed at each edge; m/s
@@ -216,9 +215,7 @@ impl NoisePlan {
     ) -> Self {
         let mut plan = self.clone();
         plan.groups.clear();
-        let total: usize = rows.residuals.iter().flatten().map(Vec::len).sum();
-        // Degrees of freedom that the parameters used up, shared by all channels.
-        let freedom = total as f64 / total.saturating_sub(parameters).max(1) as f64;
+        let freedom = rows.freedom_lost(parameters);
         for (group, residuals) in self.groups.iter().zip(&rows.residuals) {
             let mut group = group.clone();
             for quantity in Quantity::ALL {
@@ -232,7 +229,7 @@ impl NoisePlan {
                     let jitter = edges.jitter(residuals, speeds, parameters);
                     let variances = edges.variances(speeds, jitter);
                     group = edge_group(edges, &variances, impact.onset);
-                    if residuals.len() >= TELLING_EDGES {
+                    if residuals.len() >= ENOUGH_EDGES {
                         group = rescaled(group, quantity, residuals, freedom);
                     }
                 } else if let Some(blocks) = self.coloured(impact, quantity, &group, residuals) {
@@ -253,9 +250,8 @@ impl NoisePlan {
         plan
     }
 
-    /// Blocks of a quantity whose recording did not tell its persistence, where
-    /// the residuals show one; with the noise of a block by the recording, and the
-    /// residuals of the blocks.
+    /// Blocks of a quantity whose persistence only the residuals show, with the noise
+    /// of a block by the recording and the residuals of the blocks.
     fn coloured(
         &self,
         impact: &Impact,
@@ -268,7 +264,7 @@ impl NoisePlan {
             return None;
         }
         let square = residuals.iter().map(|r| r * r).sum::<f64>() / residuals.len() as f64;
-        if square * group.weight(quantity) < LEAST_VARIANCE_RATIO {
+        if square * group.weights[quantity as usize] < LEAST_VARIANCE_RATIO {
             return None;
         }
         let persistence = persistence(residuals)?;

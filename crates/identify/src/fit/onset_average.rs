@@ -3,18 +3,11 @@
 use crate::fit::model::{Model, Sampling};
 use crate::samples::{Quantity, SampleGroup};
 use windfall_contact::law::{ContactForce, ContactLaw, SMALLEST_DISPLACEMENT};
+use windfall_numerics::quadrature::FOUR_NODES;
 
 /// Samples later than this many intervals are taken at their instant; between
 /// one interval and this the mean fades into the instantaneous force.
 const FADE_END: f64 = 2.0;
-/// Gauss-Legendre nodes and weights on [0, 1] (Abramowitz and Stegun 1964,
-/// table 25.4).
-const NODES: [(f64, f64); 4] = [
-    (0.069_431_844_202_973_71, 0.173_927_422_568_726_93),
-    (0.330_009_478_207_571_87, 0.326_072_577_431_273_07),
-    (0.669_990_521_792_428_1, 0.326_072_577_431_273_07),
-    (0.930_568_155_797_026_3, 0.173_927_422_568_726_93),
-];
 
 /// What to add to the instantaneous force and to its derivatives.
 pub trait OnsetCorrection<const P: usize> {
@@ -81,7 +74,7 @@ impl<'a, L: ContactLaw<N>, const N: usize, const W: usize, const P: usize>
         // With t = u⁴ the rule is exact for a force that starts like a constant,
         // t^¼, √t or t.
         let (from, to) = (low.sqrt().sqrt(), high.sqrt().sqrt());
-        for (node, weight) in NODES {
+        for (node, weight) in FOUR_NODES {
             let u = from + (to - from) * node;
             let time = (u * u) * (u * u);
             let measure = weight * (to - from) * 4.0 * u * u * u / self.interval;

@@ -1,19 +1,19 @@
 //! Everything that is decided before the minimiser runs: samples and weights,
 //! free parameters, starting points.
 
-use crate::error::Error;
+use crate::error::{Error, check_positive};
 use crate::finding::Finding;
 use crate::fit::estimator::{Coordinate, FreeParameter, Setting, Target};
-use crate::fit::interval::IntervalMethod;
+use crate::fit::interval::{IntervalMethod, IntervalPlan};
 use crate::fit::model::Sampling;
 use crate::fit::noise::{NoisePlan, noise_plan, series};
 use crate::fit::problem::{FitOptions, LawProblem, NoiseModel, Treatment, Weighting};
 use crate::fit::regression::{RegressionEstimate, regress};
-use crate::fit::solve::{IntervalPlan, Limits, Solution, solve};
+use crate::fit::solve::{Limits, Solution, Start, solve};
 use crate::fit::starting_values::impact_scales;
 use crate::rig::kind::Rig;
 use crate::rig::motion::Motion;
-use crate::rig::simulate::{check_positive, trajectory};
+use crate::rig::simulate::trajectory;
 use crate::samples::{Quantity, SampleGroup};
 use windfall_contact::impact_law::ImpactScales;
 use windfall_contact::laws::kind::LawKind;
@@ -90,7 +90,7 @@ pub(crate) fn sample_count(group: &SampleGroup) -> usize {
     quantities * group.times().len()
 }
 
-/// Samples with their noise, and findings for what is missing.
+/// Samples with their noise, and findings for missing quantities.
 fn samples(impact: &Impact, options: &FitOptions) -> Result<(NoisePlan, Vec<Finding>), Error> {
     let mut findings = Vec::new();
     let missing = Quantity::ALL
@@ -178,24 +178,23 @@ fn free_parameters(
         .free_positions()
         .map(|i| {
             let parameter = &description.parameters[i];
-            let scale = is_scale(problem.kind, i, start[i]);
+            let (coordinate, lower, upper) = match is_scale(problem.kind, i, start[i]) {
+                true => (
+                    Coordinate::Logarithm,
+                    parameter.lower.max(start[i] / SEARCH_FACTOR),
+                    parameter.upper.min(start[i] * SEARCH_FACTOR),
+                ),
+                false => (
+                    Coordinate::Linear(linear_scale(problem.kind, i, start[i])),
+                    parameter.lower,
+                    parameter.upper,
+                ),
+            };
             FreeParameter {
                 target: Target::Law(i),
-                coordinate: if scale {
-                    Coordinate::Logarithm
-                } else {
-                    Coordinate::Linear(linear_scale(problem.kind, i, start[i]))
-                },
-                lower: if scale {
-                    parameter.lower.max(start[i] / SEARCH_FACTOR)
-                } else {
-                    parameter.lower
-                },
-                upper: if scale {
-                    parameter.upper.min(start[i] * SEARCH_FACTOR)
-                } else {
-                    parameter.upper
-                },
+                coordinate,
+                lower,
+                upper,
             }
         })
         .collect();
@@ -256,12 +255,9 @@ fn nuisances(
             "the quantities in the cost say little about it, and the motion before contact was measured",
         )),
         Treatment::Fixed if !measured => return Err(Error::UnknownVelocity),
-        Treatment::Fixed => findings.push(held(
-            "initial_velocity",
-            features.velocity,
-            "m/s",
-            "as asked",
-        )),
+        Treatment::Fixed => {
+            findings.push(held("initial_velocity", features.velocity, "m/s", "as asked"));
+        }
     }
     let onset = FreeParameter {
         target: Target::Onset,
@@ -302,13 +298,7 @@ impl Plan<'_> {
 
     /// Solves from the planned starts with the noise as it is planned.
     pub(crate) fn solve_once(&self, rig: &Rig) -> Result<Solution, Error> {
-        let mass = rig.effective_mass();
-        let velocity = self.features.velocity;
-        let starts = self
-            .starts
-            .iter()
-            .map(|law| (law.clone(), [velocity, mass, 0.0, 0.0]));
-        self.solve_from(&starts.collect::<Vec<_>>(), None)
+        self.solve_with_mass(rig.effective_mass(), &self.starts)
     }
 
     /// The noise that the residuals of `first` show, where it is modelled.
@@ -391,7 +381,7 @@ impl Plan<'_> {
     }
 
     /// What the minimiser holds constant.
-    pub(crate) fn setting(&self) -> Setting<'_> {
+    pub(crate) fn setting(&self) -> Setting {
         let description = self.problem.kind.describe();
         let tied_velocity = description
             .parameters
@@ -401,7 +391,6 @@ impl Plan<'_> {
         let accuracy = self.options.accuracy;
         Setting {
             motion: self.motion,
-            groups: &self.noise.groups,
             end: self.options.end,
             tolerance: Tolerance {
                 relative: accuracy,
@@ -421,14 +410,13 @@ impl Plan<'_> {
 
     fn solve_from(
         &self,
-        starts: &[(Vec<f64>, [f64; 4])],
+        starts: &[Start],
         intervals: Option<IntervalPlan>,
     ) -> Result<Solution, Error> {
         let description = self.problem.kind.describe();
         let no_start = Error::NoStart {
             law: description.name,
         };
-        let setting = self.setting();
         let limits = Limits {
             cost_tolerance: self.options.cost_tolerance,
             max_evaluations: self.options.max_evaluations,
@@ -440,6 +428,7 @@ impl Plan<'_> {
             intervals,
         };
         let law = self.problem.kind.with_parameters(&starts[0].0)?;
-        solve(&law, &setting, &self.free, starts, &limits).ok_or(no_start)
+        let samples = (self.setting(), &self.noise.groups[..]);
+        solve(&law, samples, &self.free, starts, &limits).ok_or(no_start)
     }
 }

@@ -1,25 +1,16 @@
 //! Posterior distribution of one impact's parameters, by the no-U-turn sampler.
 
 use crate::fit::estimator::{Estimator, FreeLaw};
-use crate::fit::interval::{FreeIntervals, IntervalDetail, Mixing, Posterior, deviation, quantile};
+use crate::fit::interval::{
+    FreeIntervals, IntervalDetail, IntervalPlan, Posterior, deviation, quantile,
+};
 use crate::fit::residual::evaluate;
-use crate::sampler::Drawing;
-use crate::sampler::LogDensity;
-use crate::sampler::draw_chains;
+use crate::sampler::{Drawing, LogDensity, draw_chains};
 use windfall_numerics::least_squares::Minimum;
-use windfall_statistics::chain_diagnostics::chain_diagnostics;
+use windfall_statistics::chain_diagnostics::{ChainDiagnostics, chain_diagnostics};
 
 /// Chains start this many standard deviations around the estimate.
 const START_SPREAD: f64 = 1.0;
-
-/// What a posterior is made with.
-pub(crate) struct PosteriorPlan<'a> {
-    pub drawing: Drawing,
-    pub confidence: f64,
-    /// Normal priors of the coordinates: mean and standard deviation; flat where
-    /// there is none.
-    pub priors: &'a [Option<(f64, f64)>],
-}
 
 /// The density in coordinates in which the posterior is nearly a standard
 /// normal distribution: u = û + L z, L Lᵀ the covariance.
@@ -81,24 +72,22 @@ impl<L: FreeLaw<N>, const N: usize, const W: usize, const P: usize> LogDensity
 /// * `factor`: lower factor of the covariance of the coordinates
 ///
 /// `None` when no chain can be started.
-pub(crate) fn posterior_intervals<L, const N: usize, const W: usize, const P: usize>(
+pub(crate) fn posterior_intervals<L: FreeLaw<N>, const N: usize, const W: usize, const P: usize>(
     estimator: &Estimator<L, N, W, P>,
     minimum: &Minimum<P>,
     factor: &[[f64; P]; P],
-    plan: &PosteriorPlan,
-) -> Option<FreeIntervals>
-where
-    L: FreeLaw<N>,
-{
+    plan: &IntervalPlan,
+) -> Option<FreeIntervals> {
     let count = estimator.free().len();
     let density = Density {
         estimator,
         minimum,
         factor,
-        priors: plan.priors,
+        priors: &plan.priors,
         count,
     };
-    let Drawing { chains, draws, .. } = plan.drawing;
+    let drawing = plan.options.drawing();
+    let Drawing { chains, draws, .. } = drawing;
     let start = |chain: usize| {
         let sign = if chain.is_multiple_of(2) { 1.0 } else { -1.0 };
         let at = |i: usize| match i % chains.max(1) == chain / 2 {
@@ -108,7 +97,7 @@ where
         (0..count).map(at).collect()
     };
     let mut drawn = vec![Vec::with_capacity(chains * draws); count];
-    let divergences = draw_chains(&density, &plan.drawing, &start, &mut |z| {
+    let divergences = draw_chains(&density, &drawing, &start, &mut |z| {
         let u = density.coordinates(z);
         for (i, parameter) in estimator.free().iter().enumerate() {
             drawn[i].push(parameter.coordinate.value(u[i]));
@@ -117,7 +106,7 @@ where
     Some(summarised(drawn, divergences, plan))
 }
 
-fn summarised(draws: Vec<Vec<f64>>, divergences: usize, plan: &PosteriorPlan) -> FreeIntervals {
+fn summarised(draws: Vec<Vec<f64>>, divergences: usize, plan: &IntervalPlan) -> FreeIntervals {
     let tail = 0.5 * (1.0 - plan.confidence);
     let ends = |level: f64| {
         draws
@@ -125,13 +114,13 @@ fn summarised(draws: Vec<Vec<f64>>, divergences: usize, plan: &PosteriorPlan) ->
             .map(|d| quantile(&mut d.clone(), level))
             .collect()
     };
-    let mixing = draws.iter().map(|d| mixing(d, plan.drawing.draws));
+    let mixing = draws.iter().map(|d| mixing(d, plan.options.draws));
     FreeIntervals {
         low: ends(tail),
         high: ends(1.0 - tail),
         sd: Some(draws.iter().map(|d| deviation(d)).collect()),
         detail: IntervalDetail::Posterior(Posterior {
-            chains: plan.drawing.chains,
+            chains: plan.options.chains,
             divergences,
             mixing: mixing.collect(),
             draws,
@@ -139,19 +128,12 @@ fn summarised(draws: Vec<Vec<f64>>, divergences: usize, plan: &PosteriorPlan) ->
     }
 }
 
-/// How well the chains of `draws` each, one after the other, mix.
-pub(crate) fn mixing(all: &[f64], draws: usize) -> Mixing {
+/// How well chains of `draws` each, one after the other, mix.
+pub(crate) fn mixing(all: &[f64], draws: usize) -> ChainDiagnostics {
     let chains: Vec<&[f64]> = all.chunks_exact(draws.max(1)).collect();
-    match chain_diagnostics(&chains) {
-        Some(found) => Mixing {
-            r_hat: found.r_hat,
-            bulk_draws: found.bulk_draws,
-            tail_draws: found.tail_draws,
-        },
-        None => Mixing {
-            r_hat: f64::INFINITY,
-            bulk_draws: 0.0,
-            tail_draws: 0.0,
-        },
-    }
+    chain_diagnostics(&chains).unwrap_or(ChainDiagnostics {
+        r_hat: f64::INFINITY,
+        bulk_draws: 0.0,
+        tail_draws: 0.0,
+    })
 }

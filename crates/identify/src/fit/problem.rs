@@ -1,5 +1,5 @@
 //! What to fit and how: the law with its free parameters, the quantities, the
-//! weights and the treatment of what is not of interest.
+//! weights and the treatment of nuisances.
 
 use crate::fit::interval::IntervalOptions;
 use crate::samples::{QUANTITIES, Quantity};
@@ -18,8 +18,7 @@ pub struct LawProblem {
     pub values: Vec<Option<f64>>,
     /// Which parameters are estimated.
     pub free: Vec<bool>,
-    /// What is known of them beforehand; only posteriors use it. `None` says
-    /// nothing.
+    /// Their priors, which only posteriors use; flat where `None`.
     pub priors: Vec<Option<Prior>>,
 }
 
@@ -81,7 +80,7 @@ pub enum Weighting {
     InverseMean,
 }
 
-/// What is taken for the noise of each channel when weights are 1/σ².
+/// Noise model of each channel when weights are 1/σ².
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum NoiseModel {
@@ -98,7 +97,7 @@ pub enum NoiseModel {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Treatment {
-    /// Free where the data can tell, held otherwise; a finding says which.
+    /// Free where the data determine it, else held; a finding names it.
     #[default]
     Auto,
     /// Estimated.

@@ -2,7 +2,7 @@
 
 use crate::fit::estimator::{Estimator, FreeLaw};
 use crate::fit::interval::{FreeIntervals, IntervalDetail, ProfileCurve};
-use windfall_numerics::least_squares::{Bounds, Minimum, Options, Stop, minimise};
+use windfall_numerics::least_squares::{Minimum, Options, Stop, minimise};
 
 /// Accuracy of an end, as a part of the way to it; 1.
 const END_ACCURACY: f64 = 2e-3;
@@ -36,16 +36,13 @@ enum Side {
 /// # Source
 /// Venzon and Moolgavkar (1988), Appl. Statist. 37:87; Bates and Watts (1988),
 /// Nonlinear Regression Analysis, sec. 6.1, for the statistic.
-pub(crate) fn profile_intervals<L, const N: usize, const W: usize, const P: usize>(
+pub(crate) fn profile_intervals<L: FreeLaw<N>, const N: usize, const W: usize, const P: usize>(
     estimator: &Estimator<L, N, W, P>,
     minimum: &Minimum<P>,
     covariance: &[[f64; P]; P],
     quantile: f64,
     options: &Options<P>,
-) -> FreeIntervals
-where
-    L: FreeLaw<N>,
-{
+) -> FreeIntervals {
     let count = estimator.free().len();
     let mut intervals = FreeIntervals {
         low: Vec::new(),
@@ -124,7 +121,9 @@ impl<L: FreeLaw<N>, const N: usize, const W: usize, const P: usize> Search<'_, '
         let (mut short, mut long) = ((0.0, 0.0), (f64::INFINITY, f64::INFINITY));
         for _ in 0..MOST_TRIALS {
             let Some(rise) = self.rise(centre + sign * length) else {
-                long = long.min_length(length);
+                if length < long.0 {
+                    long = (length, f64::INFINITY);
+                }
                 length = short.0 + PULL_BACK * (length - short.0);
                 continue;
             };
@@ -159,23 +158,9 @@ impl<L: FreeLaw<N>, const N: usize, const W: usize, const P: usize> Search<'_, '
         }
         start[self.index] = value;
         (bounds.lower[self.index], bounds.upper[self.index]) = (value, value);
-        let held = minimise_within(self.estimator, &start, &bounds, self.options);
+        let held = minimise(&mut self.estimator.clone(), &start, &bounds, self.options);
         let usable = matches!(held.stop, Stop::Converged | Stop::Stuck);
         usable.then_some(held.equations.cost - self.minimum.equations.cost)
-    }
-}
-
-trait Shorter {
-    fn min_length(self, length: f64) -> Self;
-}
-
-impl Shorter for (f64, f64) {
-    fn min_length(self, length: f64) -> Self {
-        if length < self.0 {
-            (length, f64::INFINITY)
-        } else {
-            self
-        }
     }
 }
 
@@ -195,16 +180,4 @@ fn next_length(short: (f64, f64), long: (f64, f64), quantile: f64) -> f64 {
         f64::INFINITY
     };
     (short.0 * stretch).min(longest)
-}
-
-fn minimise_within<L, const N: usize, const W: usize, const P: usize>(
-    estimator: &Estimator<L, N, W, P>,
-    start: &[f64; P],
-    bounds: &Bounds<P>,
-    options: &Options<P>,
-) -> Minimum<P>
-where
-    L: FreeLaw<N>,
-{
-    minimise(&mut estimator.clone(), start, bounds, options)
 }

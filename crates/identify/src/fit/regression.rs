@@ -27,20 +27,13 @@ pub struct RegressionEstimate {
 
 /// Parameters that the force is linear in, by position.
 fn linear_positions(law: &Law) -> Vec<usize> {
-    let kind = law.kind();
-    if let LawKind::User(user) = kind {
+    if let LawKind::User(user) = law.kind() {
         return terms_of_user(law, user);
     }
-    let linear = |name: &str| match kind {
-        LawKind::Hertz | LawKind::KelvinVoigt | LawKind::KuwabaraKono => true,
-        LawKind::PowerLaw | LawKind::AdamsImpact => name == "k" || name == "c",
-        LawKind::HuntCrossley => name == "k" || name == "lambda",
-        _ => false,
-    };
-    let parameters = kind.describe().parameters.iter().enumerate();
-    parameters
-        .filter(|(_, p)| linear(p.name))
-        .map(|(i, _)| i)
+    let description = law.kind().describe();
+    let linear = description.linear.iter();
+    linear
+        .filter_map(|name| description.index_of(name))
         .collect()
 }
 

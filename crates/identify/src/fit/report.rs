@@ -4,7 +4,7 @@ use crate::error::Error;
 use crate::finding::Finding;
 use crate::fit::estimator::{Coordinate, Target};
 use crate::fit::identifiability::{directions, in_words, trade};
-use crate::fit::interval::{IntervalDetail, IntervalMethod};
+use crate::fit::interval::{IntervalDetail, IntervalMethod, independent_draws, mixes};
 use crate::fit::plan::{Plan, nuisance_name, sample_count};
 use crate::fit::solve::Solution;
 use crate::fit::types::{Estimate, Fit, QuantityFit};
@@ -13,7 +13,6 @@ use crate::rig::kind::Rig;
 use crate::rig::simulate::simulate_rig;
 use crate::samples::Quantity;
 use windfall_contact::laws::kind::Law;
-use windfall_contact::restitution::nominal_restitution;
 use windfall_numerics::least_squares::Stop;
 use windfall_statistics::distribution::tail::t_upper_quantile;
 
@@ -98,7 +97,7 @@ impl Plan<'_> {
                     .covariance
                     .get(i)
                     .map_or(f64::INFINITY, |row| row[i].max(0.0).sqrt());
-                // The onset is told on the recording's clock.
+                // The onset is on the recording's clock.
                 let clock = match parameter.target {
                     Target::Onset => self.impact.onset,
                     _ => 0.0,
@@ -170,7 +169,7 @@ impl Plan<'_> {
                 out.push(QuantityFit {
                     quantity,
                     samples: residuals.len(),
-                    weight: group.weight(quantity),
+                    weight: group.weights[quantity as usize],
                     noise: self.noise.noise[quantity as usize],
                     persistence: self.noise.persistence[quantity as usize],
                     rms_residual: (square / residuals.len().max(1) as f64).sqrt(),
@@ -189,7 +188,7 @@ impl Plan<'_> {
         let z = standardised(group, quantity, residuals);
         let square = z.iter().map(|z| z * z).sum::<f64>() / z.len().max(1) as f64;
         let noise = self.noise.noise[quantity as usize];
-        (square / (group.weight(quantity) * noise * noise)).sqrt()
+        (square / (group.weights[quantity as usize] * noise * noise)).sqrt()
     }
 
     /// A law's parameter that would be known much better if another one were.
@@ -283,7 +282,7 @@ impl Plan<'_> {
         }
         out.extend(self.weak_direction(solution, fit));
         out.extend(fit.quantities.iter().flat_map(quantity_remarks));
-        if let Some(nominal) = nominal_restitution(&fit.law) {
+        if let Some(nominal) = fit.law.nominal_restitution() {
             out.push(Finding::NominalRestitution {
                 nominal,
                 delivered: fit.simulated.restitution,
@@ -328,11 +327,11 @@ fn interval_remarks(detail: &IntervalDetail, estimates: &[&Estimate]) -> Vec<Fin
                 });
             }
             for (i, mixing) in found.mixing.iter().enumerate() {
-                if !mixing.suffices() {
+                if !mixes(mixing) {
                     out.push(Finding::NotMixed {
                         parameter: name(i),
                         r_hat: mixing.r_hat,
-                        draws: mixing.independent_draws(),
+                        draws: independent_draws(mixing),
                     });
                 }
             }

@@ -4,8 +4,9 @@
 use crate::fit::model::Model;
 use crate::fit::onset_average::{OnsetAverage, OnsetCorrection};
 use crate::fit::residual_noise::Noise;
-use crate::fit::residual_pack::{Pack, PackModel, Piece, PieceModel, load};
-use crate::rig::contact_motion::{Segment, Sink, follow};
+use crate::fit::residual_pack::{Pack, PackModel, PieceModel, load};
+use crate::fit::residual_sums::Sums;
+use crate::rig::contact_motion::{Piece, Segment, follow};
 use crate::samples::{PACK, QUANTITIES, Quantity, SampleGroup};
 use windfall_contact::law::ContactLaw;
 use windfall_numerics::least_squares::NormalEquations;
@@ -22,6 +23,14 @@ pub struct Rows {
     pub jacobian: Vec<[Vec<f64>; QUANTITIES]>,
 }
 
+impl Rows {
+    /// Residuals over degrees of freedom, which all channels share.
+    pub(crate) fn freedom_lost(&self, parameters: usize) -> f64 {
+        let total: usize = self.residuals.iter().flatten().map(Vec::len).sum();
+        total as f64 / total.saturating_sub(parameters).max(1) as f64
+    }
+}
+
 /// Normal equations of `model` against `groups`; with `rows`, residuals and
 /// derivatives of each sample too.
 ///
@@ -32,14 +41,11 @@ pub struct Rows {
 /// One integration with sensitivities; the samples read its dense output in
 /// packs. Sums run in the order of time, so they do not depend on threads.
 /// Nothing is allocated (except in `rows`).
-pub fn evaluate<L, const N: usize, const W: usize, const P: usize>(
+pub fn evaluate<L: ContactLaw<N>, const N: usize, const W: usize, const P: usize>(
     model: &Model<L, N, W, P>,
     groups: &[SampleGroup],
     rows: Option<&mut Rows>,
-) -> Result<NormalEquations<P>, StepError>
-where
-    L: ContactLaw<N>,
-{
+) -> Result<NormalEquations<P>, StepError> {
     pass(model, groups, rows, 1)
 }
 
@@ -49,28 +55,22 @@ where
 ///
 /// # Errors
 /// [`StepError`] when the motion cannot be integrated.
-pub(crate) fn evaluate_some<L, const N: usize, const W: usize, const P: usize>(
+pub(crate) fn evaluate_some<L: ContactLaw<N>, const N: usize, const W: usize, const P: usize>(
     model: &Model<L, N, W, P>,
     groups: &[SampleGroup],
     stride: usize,
-) -> Result<NormalEquations<P>, StepError>
-where
-    L: ContactLaw<N>,
-{
+) -> Result<NormalEquations<P>, StepError> {
     pass(model, groups, None, stride)
 }
 
 /// Compiled once for every share of the samples: it holds the whole integrator.
 #[inline(never)]
-fn pass<L, const N: usize, const W: usize, const P: usize>(
+fn pass<L: ContactLaw<N>, const N: usize, const W: usize, const P: usize>(
     model: &Model<L, N, W, P>,
     groups: &[SampleGroup],
     rows: Option<&mut Rows>,
     stride: usize,
-) -> Result<NormalEquations<P>, StepError>
-where
-    L: ContactLaw<N>,
-{
+) -> Result<NormalEquations<P>, StepError> {
     pulp::Arch::new().dispatch(Pass {
         model,
         groups,
@@ -87,9 +87,8 @@ struct Pass<'a, L, const N: usize, const W: usize, const P: usize> {
     stride: usize,
 }
 
-impl<L, const N: usize, const W: usize, const P: usize> pulp::WithSimd for Pass<'_, L, N, W, P>
-where
-    L: ContactLaw<N>,
+impl<L: ContactLaw<N>, const N: usize, const W: usize, const P: usize> pulp::WithSimd
+    for Pass<'_, L, N, W, P>
 {
     type Output = Result<NormalEquations<P>, StepError>;
 
@@ -111,7 +110,9 @@ where
             stride,
             tally: &mut tally,
         };
-        follow(&model.event, before, after, &mut reading)?;
+        follow(&model.event, before, after, &mut |segment, piece| {
+            reading.read(segment, piece);
+        })?;
         Ok(tally.total(groups, stride))
     }
 }
@@ -184,25 +185,7 @@ struct Reading<'a, L, const N: usize, const W: usize, const P: usize> {
     tally: &'a mut Tally<P>,
 }
 
-impl<L, const N: usize, const W: usize, const P: usize> Sink<W> for Reading<'_, L, N, W, P>
-where
-    L: ContactLaw<N>,
-{
-    #[inline(always)]
-    fn contact(&mut self, segment: &Segment<W>) {
-        self.read(segment, Piece::Contact);
-    }
-
-    #[inline(always)]
-    fn flight(&mut self, segment: &Segment<W>) {
-        self.read(segment, Piece::Flight);
-    }
-}
-
-impl<L, const N: usize, const W: usize, const P: usize> Reading<'_, L, N, W, P>
-where
-    L: ContactLaw<N>,
-{
+impl<L: ContactLaw<N>, const N: usize, const W: usize, const P: usize> Reading<'_, L, N, W, P> {
     #[inline(never)]
     fn read(&mut self, segment: &Segment<W>, piece: Piece) {
         with_four_lanes(ReadPiece {
@@ -220,9 +203,8 @@ struct ReadPiece<'a, 'b, L, const N: usize, const W: usize, const P: usize> {
     piece: Piece,
 }
 
-impl<L, const N: usize, const W: usize, const P: usize> FourLanes for ReadPiece<'_, '_, L, N, W, P>
-where
-    L: ContactLaw<N>,
+impl<L: ContactLaw<N>, const N: usize, const W: usize, const P: usize> FourLanes
+    for ReadPiece<'_, '_, L, N, W, P>
 {
     type Output = ();
 
@@ -258,79 +240,6 @@ where
                 average: average.as_ref().map(|a| a as &dyn OnsetCorrection<P>),
             };
             share.read(tally, &mut rows);
-        }
-    }
-}
-
-/// Running sums, one lane per sample of a pack.
-#[derive(Clone, Copy)]
-struct Sums<R, const P: usize> {
-    cost: R,
-    gradient: [R; P],
-    normal: [[R; P]; P],
-}
-
-impl<const P: usize> Sums<Pack, P> {
-    const ZERO: Self = Self {
-        cost: Pack::ZERO,
-        gradient: [Pack::ZERO; P],
-        normal: [[Pack::ZERO; P]; P],
-    };
-
-    fn total(&self) -> NormalEquations<P> {
-        let mut normal = [[0.0; P]; P];
-        for i in 0..P {
-            for j in 0..=i {
-                normal[i][j] = self.normal[i][j].sum();
-                normal[j][i] = normal[i][j];
-            }
-        }
-        NormalEquations {
-            cost: self.cost.sum(),
-            gradient: self.gradient.map(|g| g.sum()),
-            normal,
-        }
-    }
-}
-
-impl<R: Real, const P: usize> Sums<R, P> {
-    /// The sums so far, as numbers like `zero`.
-    #[inline(always)]
-    fn with_plain(sums: &Sums<R::Plain, P>, zero: R) -> Self {
-        let mut normal = [[zero; P]; P];
-        for i in 0..P {
-            normal[i] = zero.with_each_plain(sums.normal[i]);
-        }
-        Self {
-            cost: zero.with_plain(sums.cost),
-            gradient: zero.with_each_plain(sums.gradient),
-            normal,
-        }
-    }
-
-    #[inline(always)]
-    fn plain(&self) -> Sums<R::Plain, P> {
-        let zero = self.cost;
-        let mut normal = [[zero.plain(); P]; P];
-        for i in 0..P {
-            normal[i] = zero.each_plain(self.normal[i]);
-        }
-        Sums {
-            cost: zero.plain(),
-            gradient: zero.each_plain(self.gradient),
-            normal,
-        }
-    }
-
-    #[inline(always)]
-    fn add(&mut self, weight: R, residual: R, jacobian: &[R; P]) {
-        self.cost = (weight * residual).mul_add(residual, self.cost);
-        for i in 0..P {
-            let weighted = weight * jacobian[i];
-            self.gradient[i] = weighted.mul_add(residual, self.gradient[i]);
-            for j in 0..=i {
-                self.normal[i][j] = weighted.mul_add(jacobian[j], self.normal[i][j]);
-            }
         }
     }
 }

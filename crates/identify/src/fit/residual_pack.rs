@@ -11,13 +11,6 @@ use windfall_numerics::real::{Lanes, Real};
 /// Samples evaluated side by side.
 pub(crate) type Pack = Lanes<PACK>;
 
-/// Whether the bodies touch during a piece of the motion.
-#[derive(Clone, Copy, PartialEq)]
-pub(crate) enum Piece {
-    Contact,
-    Flight,
-}
-
 /// Model of a pack of samples.
 pub(crate) struct PackModel<R, const P: usize> {
     /// Of each quantity.
@@ -46,9 +39,8 @@ pub(crate) struct PieceModel<'a, L, const N: usize, const W: usize, const P: usi
     attractive: f64,
 }
 
-impl<'a, L, const N: usize, const W: usize, const P: usize> PieceModel<'a, L, N, W, P>
-where
-    L: ContactLaw<N>,
+impl<'a, L: ContactLaw<N>, const N: usize, const W: usize, const P: usize>
+    PieceModel<'a, L, N, W, P>
 {
     /// The model during `segment`; the acceleration only where it is `accelerated`.
     #[inline(always)]

@@ -23,8 +23,7 @@ enum Stage {
     Alone,
 }
 
-/// A minimisation that asks for evaluations with a share of the samples or with
-/// all of them.
+/// A minimisation whose evaluations use a share of the samples first, then all.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Search<const P: usize> {
     stage: Stage,
@@ -89,7 +88,7 @@ impl<const P: usize> Search<P> {
         self.descent.propose().map(|at| (at, stride))
     }
 
-    /// Takes the normal equations last asked for; `None` where there are none.
+    /// Takes the normal equations at the last proposal; `None` where there are none.
     pub(crate) fn take(&mut self, found: Option<NormalEquations<P>>) {
         self.descent.take(found);
         self.turn();
@@ -102,7 +101,7 @@ impl<const P: usize> Search<P> {
         minimum
     }
 
-    /// Goes on to the next stage where one is over.
+    /// Enters the next stage where one has ended.
     fn turn(&mut self) {
         while self.descent.propose().is_none() {
             let found = self.descent.minimum();

@@ -2,17 +2,16 @@
 //! knows the law's concrete type.
 
 use crate::fit::batch_law::BatchLaw;
-use crate::fit::bootstrap::{BootstrapPlan, bootstrap_intervals};
+use crate::fit::bootstrap::bootstrap_intervals;
 use crate::fit::estimator::{
     Coordinate, Estimator, FORESIGHT, FreeLaw, FreeParameter, Setting, Target, Values,
 };
-use crate::fit::interval::{FreeIntervals, IntervalMethod, IntervalOptions};
+use crate::fit::interval::{FreeIntervals, IntervalMethod, IntervalPlan};
 use crate::fit::model::Sampling;
-use crate::fit::posterior::{PosteriorPlan, posterior_intervals};
+use crate::fit::posterior::posterior_intervals;
 use crate::fit::profile::profile_intervals;
 use crate::fit::residual::Rows;
 use crate::fit::uncertainty::covariance;
-use crate::sampler::Drawing;
 use crate::samples::{QUANTITIES, SampleGroup};
 use windfall_contact::laws::any_law::{AnyLaw, LARGEST_PARAMETERS};
 use windfall_contact::laws::kind::Law;
@@ -24,9 +23,9 @@ const LONGEST_STEP: (f64, f64) = (2.0, 0.5);
 /// Gain, in units of the residual variance, that may be lost to the kinks that
 /// samples leave at separation: a tenth of a standard deviation.
 const ROUGHNESS: f64 = 0.01;
-/// How far another minimum is looked for; blocks of samples.
+/// Step of the search for another minimum; blocks of samples.
 const ONSET_SHIFT: f64 = 1.5;
-/// How often it is looked for on either side.
+/// Steps of that search to either side.
 const MOST_SHIFTS: usize = 4;
 /// A minimum is another one if it is lower by this; units of χ².
 const LOWER_BY: f64 = 1e-3;
@@ -62,11 +61,11 @@ pub(crate) struct Solution {
     pub at_bound: Vec<i8>,
     /// Residuals and derivatives.
     pub rows: Rows,
-    /// Intervals that are more than estimate ± deviation, where asked for.
+    /// Intervals other than estimate ± deviation, if requested.
     pub intervals: Option<FreeIntervals>,
 }
 
-/// Limits of the minimiser and of what is known.
+/// Limits of the minimiser, and known uncertainties.
 #[derive(Clone, Debug)]
 pub(crate) struct Limits {
     /// Relative change of the cost at convergence.
@@ -82,87 +81,65 @@ pub(crate) struct Limits {
     pub intervals: Option<IntervalPlan>,
 }
 
-/// What intervals are made with.
-#[derive(Clone, Debug)]
-pub(crate) struct IntervalPlan {
-    pub options: IntervalOptions,
-    pub confidence: f64,
-    /// Student's quantile of the confidence.
-    pub quantile: f64,
-    /// Normal priors of the free parameters' coordinates: mean, deviation.
-    pub priors: Vec<Option<(f64, f64)>>,
-}
-
 /// Solves from each start in turn until one converges inside the bounds, and
 /// returns the best; `None` when the model cannot be evaluated at any.
 pub(crate) fn solve(
     law: &Law,
-    setting: &Setting,
+    samples: (Setting, &[SampleGroup]),
     free: &[FreeParameter],
-    starts: &[(Vec<f64>, [f64; 4])],
+    starts: &[Start],
     limits: &Limits,
 ) -> Option<Solution> {
     // The narrowest arrays that hold the free parameters; the field's usual
     // law and those of the user are compiled for themselves, the others share
     // their code.
-    let count = starts.first()?.0.len();
     let lanes = free.iter().filter(|p| p.target.needs_lane()).count();
     match (law, free.len(), lanes) {
         (Law::KuwabaraKono(law), ..=2, _) => {
-            best_of::<_, 2, 4, 2>(*law, setting, free, &values(starts), count, limits)
+            best_of::<_, 2, 4, 2>(*law, samples, free, starts, limits)
         }
         (Law::KuwabaraKono(law), ..=5, ..=3) => {
-            best_of::<_, 2, 4, 5>(*law, setting, free, &values(starts), count, limits)
+            best_of::<_, 2, 4, 5>(*law, samples, free, starts, limits)
         }
-        (Law::User(law), ..=5, ..=3) => best_of::<_, LARGEST_PARAMETERS, 4, 5>(
-            *law,
-            setting,
-            free,
-            &values(starts),
-            count,
-            limits,
-        ),
-        (law, _, _) => best_of::<_, LARGEST_PARAMETERS, 8, LARGEST_FREE>(
-            AnyLaw(*law),
-            setting,
-            free,
-            &values(starts),
-            count,
-            limits,
-        ),
+        (Law::User(law), ..=5, ..=3) => {
+            best_of::<_, LARGEST_PARAMETERS, 4, 5>(*law, samples, free, starts, limits)
+        }
+        (law, _, _) => {
+            let law = AnyLaw(*law);
+            best_of::<_, LARGEST_PARAMETERS, 8, LARGEST_FREE>(law, samples, free, starts, limits)
+        }
     }
 }
 
-fn values<const N: usize>(starts: &[(Vec<f64>, [f64; 4])]) -> Vec<Values<N>> {
-    let value = |(law, [velocity, mass, onset, offset]): &(Vec<f64>, [f64; 4])| {
-        let mut parameters = [0.0; N];
-        parameters[..law.len()].copy_from_slice(law);
-        Values {
-            law: parameters,
-            velocity: *velocity,
-            inverse_mass: 1.0 / mass,
-            onset: *onset,
-            offset: *offset,
-        }
-    };
-    starts.iter().map(value).collect()
+/// Where a fit begins: the law's parameters; velocity, mass, onset and offset.
+pub(crate) type Start = (Vec<f64>, [f64; 4]);
+
+/// [`Start`] in the arrays of an estimator.
+pub(crate) fn values<const N: usize>((law, [velocity, mass, onset, offset]): &Start) -> Values<N> {
+    let mut parameters = [0.0; N];
+    parameters[..law.len()].copy_from_slice(law);
+    Values {
+        law: parameters,
+        velocity: *velocity,
+        inverse_mass: 1.0 / mass,
+        onset: *onset,
+        offset: *offset,
+    }
 }
 
-fn best_of<L, const N: usize, const W: usize, const P: usize>(
+fn best_of<L: BatchLaw<N>, const N: usize, const W: usize, const P: usize>(
     law: L,
-    setting: &Setting,
+    samples: (Setting, &[SampleGroup]),
     free: &[FreeParameter],
-    starts: &[Values<N>],
-    law_count: usize,
+    starts: &[Start],
     limits: &Limits,
-) -> Option<Solution>
-where
-    L: BatchLaw<N>,
-{
+) -> Option<Solution> {
+    let law_count = starts.first()?.0.len();
     let mut best: Option<(Estimator<L, N, W, P>, Minimum<P>)> = None;
     let mut evaluations = 0;
     for start in starts {
-        let mut estimator = Estimator::<L, N, W, P>::new(law, *setting, free, *start);
+        let mut estimator =
+            Estimator::<L, N, W, P>::new(law, samples.0, samples.1, free, values(start));
         let minimum = estimator.minimise(&options(free, limits));
         evaluations += minimum.evaluations;
         if minimum.stop == Stop::BadStart {
@@ -170,7 +147,10 @@ where
         }
         let inside = minimum.at_bound.iter().all(|side| *side == 0);
         let good = minimum.stop == Stop::Converged && inside;
-        if best.as_ref().is_none_or(|(_, b)| better(&minimum, b)) {
+        if best
+            .as_ref()
+            .is_none_or(|(_, b)| minimum.equations.cost < b.equations.cost)
+        {
             best = Some((estimator, minimum));
         }
         if good {
@@ -178,20 +158,13 @@ where
         }
     }
     let (estimator, minimum) = best?;
-    let (minimum, spent) = over_onsets(&estimator, minimum, free, &options(free, limits));
+    let (minimum, spent) = over_onsets(&estimator, minimum, &options(free, limits));
     evaluations += spent;
     let smooth = minimum;
     let (minimum, spent) = polished(&estimator, minimum, &options(free, limits));
     evaluations += spent;
-    let mut solution = complete(
-        law_count,
-        &estimator,
-        &minimum,
-        setting.groups,
-        free,
-        limits,
-        evaluations,
-    )?;
+    let mut solution = complete(law_count, &estimator, &minimum, &limits.offsets)?;
+    solution.evaluations += evaluations;
     if let Some(plan) = &limits.intervals
         && minimum.stop == Stop::Converged
     {
@@ -202,15 +175,12 @@ where
 
 /// Intervals around the smooth minimum, which follows the data without the cusps
 /// of instantaneous samples.
-fn intervals<L, const N: usize, const W: usize, const P: usize>(
+fn intervals<L: BatchLaw<N>, const N: usize, const W: usize, const P: usize>(
     estimator: &Estimator<L, N, W, P>,
     minimum: &Minimum<P>,
     plan: &IntervalPlan,
     options: &Options<P>,
-) -> Option<FreeIntervals>
-where
-    L: BatchLaw<N>,
-{
+) -> Option<FreeIntervals> {
     let count = estimator.free().len();
     if plan.options.method == IntervalMethod::Asymptotic {
         return None;
@@ -220,20 +190,7 @@ where
         equations,
         ..*minimum
     };
-    let mut normal = equations.normal;
-    for i in count..P {
-        normal[i][i] = 1.0;
-    }
-    let covariance = cholesky::inverse(&normal)?;
-    let IntervalOptions {
-        replicates,
-        draws,
-        chains,
-        seed,
-        ..
-    } = plan.options;
-    let confidence = plan.confidence;
-    let priors = plan.priors.clone();
+    let covariance = equations.inverse(count)?;
     match plan.options.method {
         IntervalMethod::Asymptotic => None,
         IntervalMethod::Profile => Some(profile_intervals(
@@ -243,41 +200,22 @@ where
             plan.quantile,
             options,
         )),
-        IntervalMethod::Bootstrap => {
-            let plan = BootstrapPlan {
-                replicates,
-                seed,
-                confidence,
-            };
-            bootstrap_intervals(estimator, &minimum, &rows, &plan, options)
-        }
+        IntervalMethod::Bootstrap => bootstrap_intervals(estimator, &minimum, &rows, plan, options),
         IntervalMethod::Posterior => {
-            let plan = PosteriorPlan {
-                drawing: Drawing {
-                    chains,
-                    draws,
-                    seed,
-                },
-                confidence,
-                priors: &priors,
-            };
             let factor = cholesky::lower(&covariance)?;
-            posterior_intervals(estimator, &minimum, &factor, &plan)
+            posterior_intervals(estimator, &minimum, &factor, plan)
         }
     }
 }
 
 /// The lowest of the minima that lie a block of samples before or after: where
 /// noise is persistent the cost is wavy in the onset.
-fn over_onsets<L, const N: usize, const W: usize, const P: usize>(
+fn over_onsets<L: FreeLaw<N>, const N: usize, const W: usize, const P: usize>(
     estimator: &Estimator<L, N, W, P>,
     minimum: Minimum<P>,
-    free: &[FreeParameter],
     options: &Options<P>,
-) -> (Minimum<P>, usize)
-where
-    L: FreeLaw<N>,
-{
+) -> (Minimum<P>, usize) {
+    let free = estimator.free();
     let blocks = estimator.groups().iter().filter(|group| group.means);
     let interval = blocks.map(SampleGroup::interval).fold(0.0, f64::max);
     let onset = free.iter().position(|p| p.target == Target::Onset);
@@ -307,14 +245,11 @@ where
 /// The minimum for instantaneous samples nearest to that for averaged ones: the
 /// averaging only made the way there smooth. Where a cusp is in the way, or where
 /// averages describe the samples better, the smooth minimum stays.
-fn polished<L, const N: usize, const W: usize, const P: usize>(
+fn polished<L: FreeLaw<N>, const N: usize, const W: usize, const P: usize>(
     estimator: &Estimator<L, N, W, P>,
     minimum: Minimum<P>,
     options: &Options<P>,
-) -> (Minimum<P>, usize)
-where
-    L: FreeLaw<N>,
-{
+) -> (Minimum<P>, usize) {
     let means = estimator.groups().iter().any(|group| group.means);
     if minimum.stop != Stop::Converged || !estimator.averages() || means {
         return (minimum, 0);
@@ -327,10 +262,6 @@ where
         && exact.equations.cost <= minimum.equations.cost;
     let spent = exact.evaluations;
     (if good { exact } else { minimum }, spent)
-}
-
-fn better<const P: usize>(one: &Minimum<P>, other: &Minimum<P>) -> bool {
-    one.equations.cost < other.equations.cost
 }
 
 fn options<const P: usize>(free: &[FreeParameter], limits: &Limits) -> Options<P> {
@@ -351,25 +282,20 @@ fn options<const P: usize>(free: &[FreeParameter], limits: &Limits) -> Options<P
     }
 }
 
-fn complete<L, const N: usize, const W: usize, const P: usize>(
+fn complete<L: FreeLaw<N>, const N: usize, const W: usize, const P: usize>(
     law_count: usize,
     estimator: &Estimator<L, N, W, P>,
     minimum: &Minimum<P>,
-    groups: &[SampleGroup],
-    free: &[FreeParameter],
-    limits: &Limits,
-    evaluations: usize,
-) -> Option<Solution>
-where
-    L: FreeLaw<N>,
-{
+    offsets: &[f64; QUANTITIES],
+) -> Option<Solution> {
     let (equations, rows) = estimator.rows(&minimum.parameters)?;
     let values = estimator.values(&minimum.parameters);
+    let free = estimator.free();
     let at: Vec<f64> = free.iter().map(|p| values.get(p.target)).collect();
     let slope = |i: usize| free[i].coordinate.slope(at[i]);
     let count = free.len();
     let covariance =
-        covariance(&equations, &rows, groups, &limits.offsets, count).map_or(vec![], |c| {
+        covariance(&equations, &rows, estimator.groups(), offsets, count).map_or(vec![], |c| {
             (0..count)
                 .map(|i| (0..count).map(|j| c[i][j] * slope(i) * slope(j)).collect())
                 .collect()
@@ -384,7 +310,7 @@ where
         // Of the samples as they were taken in the end, not of the averages that
         // the covariance is made with.
         cost: minimum.equations.cost,
-        evaluations: evaluations + 1,
+        evaluations: 1,
         stop: minimum.stop,
         at_bound: minimum.at_bound[..count].to_vec(),
         rows,

@@ -4,7 +4,7 @@ use std::f64::consts::PI;
 use windfall_contact::impact_law::ImpactScales;
 use windfall_signal::impact::Impact;
 
-/// Restitution assumed when the signals do not tell.
+/// Restitution assumed when the signals do not show it.
 const USUAL_RESTITUTION: f64 = 0.5;
 /// Restitutions outside this range are not believed for a start.
 const RESTITUTIONS: (f64, f64) = (0.05, 0.95);

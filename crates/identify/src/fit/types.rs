@@ -15,8 +15,7 @@ pub struct Estimate {
     pub name: String,
     /// Estimate; SI.
     pub value: f64,
-    /// Standard deviation; SI. NaN never: a parameter without one is reported
-    /// with [`Finding::Singular`] and an infinite deviation.
+    /// Standard deviation; SI. Infinite, with [`Finding::Singular`], where it is unknown.
     pub sd: f64,
     /// Lower end of the interval; SI.
     pub low: f64,
@@ -83,11 +82,11 @@ pub struct Fit {
     pub onset: f64,
     /// Displacement offset; m.
     pub offset: f64,
-    /// Combinations of parameters and nuisances, in their order, from what the
-    /// data tell least to what they tell best; empty where they cannot be told.
+    /// Combinations of parameters and nuisances, in their order, from the least to the
+    /// best determined; empty where the covariance is singular.
     pub directions: Vec<Direction>,
     /// How the intervals came about.
     pub intervals: IntervalDetail,
-    /// What a reader should know.
+    /// Remarks.
     pub findings: Vec<Finding>,
 }

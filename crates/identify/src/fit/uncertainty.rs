@@ -4,21 +4,19 @@
 use crate::fit::residual::Rows;
 use crate::noise::whitening::unit_shift;
 use crate::samples::{QUANTITIES, Quantity, SampleGroup};
-use windfall_numerics::cholesky;
 use windfall_numerics::least_squares::NormalEquations;
 
-/// Lags beyond this fraction of the series are not looked at: their
-/// correlations are noise.
+/// Lags beyond this fraction of the series are ignored: their correlations are
+/// noise.
 const LARGEST_LAG_FRACTION: f64 = 0.25;
 /// Lags in a row that must be insignificant for the correlation to be over.
 const QUIET_LAGS: usize = 5;
 /// A correlation below this many times √(log₁₀ n / n) is insignificant.
 const SIGNIFICANT: f64 = 2.0;
-/// Smallest inflation of the variance that is believed. The errors of rounded
-/// samples nearly cancel while the impactor moves, but not where it turns
-/// around, so a cancellation seen on the whole is not counted on: the intervals
-/// err to the wide side (up to twofold for c, with the encoder of the 2003
-/// study).
+/// Smallest inflation of the variance. The errors of rounded samples nearly cancel
+/// while the impactor moves, but not where it turns around: cancellation is ignored,
+/// so that intervals err on the wide side (up to twofold for c, with the encoder of
+/// the 2003 study).
 const SMALLEST_INFLATION: f64 = 1.0;
 
 /// Covariance of weighted least-squares estimates whose weights need not be
@@ -57,14 +55,8 @@ pub fn covariance<const P: usize>(
     offsets: &[f64; QUANTITIES],
     parameters: usize,
 ) -> Option<[[f64; P]; P]> {
-    let mut normal = equations.normal;
-    for i in parameters..P {
-        normal[i][i] = 1.0;
-    }
-    let bread = cholesky::inverse(&normal)?;
-    let total: usize = rows.residuals.iter().flatten().map(Vec::len).sum();
-    // Degrees of freedom that the parameters used up, shared by all channels.
-    let freedom = total as f64 / total.saturating_sub(parameters).max(1) as f64;
+    let bread = equations.inverse(parameters)?;
+    let freedom = rows.freedom_lost(parameters);
     let mut meat = [[0.0; P]; P];
     for (g, group) in groups.iter().enumerate() {
         for quantity in Quantity::ALL {
@@ -86,8 +78,7 @@ pub fn covariance<const P: usize>(
 /// persistence says: of variance 1 if the weights are right.
 #[must_use]
 pub fn standardised(group: &SampleGroup, quantity: Quantity, residuals: &[f64]) -> Vec<f64> {
-    let weight = group.weight(quantity);
-    let persistence = group.persistence(quantity);
+    let persistence = group.persistence[quantity as usize];
     let scale = 1.0 / (1.0 - persistence * persistence).sqrt();
     (0..residuals.len())
         .map(|i| {
@@ -96,7 +87,7 @@ pub fn standardised(group: &SampleGroup, quantity: Quantity, residuals: &[f64]) 
                 _ if persistence == 0.0 => residuals[i],
                 _ => (residuals[i] - persistence * residuals[i - 1]) * scale,
             };
-            white * (weight * group.relative_weight(quantity, i)).sqrt()
+            white * group.weight_of(quantity, i).sqrt()
         })
         .collect()
 }
@@ -111,13 +102,13 @@ pub fn whitened_derivatives<const P: usize>(
     quantity: Quantity,
     jacobian: &[f64],
 ) -> Vec<[f64; P]> {
-    let persistence = group.persistence(quantity);
+    let persistence = group.persistence[quantity as usize];
     let scale = 1.0 / (1.0 - persistence * persistence).sqrt();
     let mut before = [0.0; P];
     let rows = jacobian.chunks_exact(P).enumerate();
     rows.map(|(i, row)| {
         let row: [f64; P] = std::array::from_fn(|p| row[p]);
-        let root = (group.weight(quantity) * group.relative_weight(quantity, i)).sqrt();
+        let root = group.weight_of(quantity, i).sqrt();
         let white = std::array::from_fn(|p| match i {
             _ if i == 0 || persistence == 0.0 => row[p] * root,
             _ => (row[p] - persistence * before[p]) * scale * root,
@@ -133,9 +124,9 @@ pub(crate) fn whitened_zero(
     group: &SampleGroup,
     quantity: Quantity,
 ) -> impl Iterator<Item = f64> + '_ {
-    let shift = unit_shift(group.persistence(quantity));
+    let shift = unit_shift(group.persistence[quantity as usize]);
     (0..group.times().len()).map(move |i| {
-        let root = (group.weight(quantity) * group.relative_weight(quantity, i)).sqrt();
+        let root = group.weight_of(quantity, i).sqrt();
         if i == 0 { root } else { shift * root }
     })
 }
@@ -235,7 +226,7 @@ fn add_meat<const P: usize>(
             meat[p][q] += offset * offset * total[p] * total[q];
         }
     }
-    let sd = group.zero_sd(quantity);
+    let sd = group.zero_sd[quantity as usize];
     if sd > 0.0 {
         let pivot = variance / (square + 1.0 / (sd * sd));
         for p in 0..P {

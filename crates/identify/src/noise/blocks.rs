@@ -1,7 +1,7 @@
 //! Samples of persistent noise, taken together in blocks.
 //!
 //! From sample to sample noise of persistence φ hardly changes: 1/(1 − φ)
-//! samples say little more than their mean. What differences between neighbours
+//! samples hold little more information than their mean. What differences between neighbours
 //! say beyond that rests on the noise being a first-order autoregression to its
 //! highest frequencies, and on the law being right to the sample at first touch,
 //! where a force that begins like √t changes fastest. Neither is so in a

@@ -1,6 +1,6 @@
 //! A counted displacement at the instants where its count changes.
 //!
-//! Between changes an encoder says nothing new: its error is a sawtooth, neither
+//! Between changes an encoder adds no information: its error is a sawtooth, neither
 //! small nor independent from sample to sample. Where the count changes, the
 //! displacement is known exactly, at a time known to one sampling interval Δt:
 //! an error of displacement uniform over v Δt, independent from edge to edge.
@@ -39,7 +39,7 @@ pub(crate) struct EdgeSamples {
     pub quantum: f64,
 }
 
-/// The edges of a displacement, if it is counted and they say all that it does.
+/// The edges of a displacement, if it is counted and they hold all its information.
 pub(crate) fn edge_samples(series: &Series) -> Option<EdgeSamples> {
     let quantum = series.quantum?;
     let (times, values) = (&series.times, &series.values);

@@ -145,7 +145,7 @@ pub(crate) fn unit_shift(persistence: f64) -> f64 {
     ((1.0 - persistence) / (1.0 + persistence)).sqrt()
 }
 
-/// Sums over one channel that tell its zero: Σ w o r, Σ w o J, Σ w o².
+/// Sums over one channel that determine its zero: Σ w o r, Σ w o J, Σ w o².
 #[derive(Clone, Copy)]
 pub(crate) struct ZeroSums<const P: usize> {
     residual: Pack,

@@ -1,4 +1,4 @@
-//! Columns of the design: covariates that can be told apart.
+//! Columns of the design: linearly independent covariates.
 
 use crate::population::finding::PopulationFinding;
 use crate::population::model::PopulationData;
@@ -11,7 +11,7 @@ const DEPENDENT: f64 = 1e-8;
 pub(crate) struct Design {
     /// Columns of a row; the first is 1.
     pub columns: usize,
-    /// Rows in the order asked for.
+    /// Rows in the given order.
     pub rows: Vec<f64>,
     /// Covariates in the model: name and centre.
     pub covariates: Vec<(String, f64)>,

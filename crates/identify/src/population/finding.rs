@@ -1,4 +1,4 @@
-//! What a reader of a population should know besides its numbers.
+//! Remarks on populations.
 
 /// A remark on a population.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
@@ -30,7 +30,7 @@ pub enum PopulationFinding {
     },
     /// A correlation is ±1.
     #[error(
-        "the correlation of {first} and {second} {level} fruit ended at {value:.3}: the data cannot tell their variations apart"
+        "the correlation of {first} and {second} {level} fruit ended at {value:.3}: the data cannot separate their variations"
     )]
     CorrelationAtBound {
         /// One parameter.
@@ -52,7 +52,7 @@ pub enum PopulationFinding {
     },
     /// A covariate follows from others.
     #[error(
-        "the covariate {covariate} follows from {others} and was left out: their effects cannot be told apart"
+        "the covariate {covariate} follows from {others} and was left out: their effects cannot be separated"
     )]
     CollinearCovariate {
         /// Its name.
@@ -103,7 +103,7 @@ pub enum PopulationFinding {
     },
     /// The chains of the posterior do not agree.
     #[error(
-        "the chains of the posterior do not agree for {quantities} of its numbers (largest R-hat {r_hat:.3}, fewest independent draws {draws:.0}; 1.01 and 400 are asked for): ask for more --draws"
+        "the chains of the posterior do not agree for {quantities} of its numbers (largest R-hat {r_hat:.3}, fewest independent draws {draws:.0}; 1.01 and 400 are required): raise --draws"
     )]
     NotMixed {
         /// Numbers concerned.

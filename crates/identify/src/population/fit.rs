@@ -24,7 +24,7 @@ const REACH: f64 = 5.0;
 /// Smallest standard deviation at the start, in units of the overall one.
 const LEAST: f64 = 1e-3;
 /// Smallest variance of a mode, as a share of the impact's own, over which the
-/// change of its expansion is looked at.
+/// change of its expansion is measured.
 const SHORTEST: f64 = 1e-4;
 
 /// Estimates the population of which `data` are members.
@@ -328,7 +328,7 @@ fn iterate<const Q: usize>(
 }
 
 /// Shifts the observations by what the determinants' dependence on the modes
-/// asks for, and estimates anew.
+/// requires, and estimates again.
 fn second_order<const Q: usize>(state: &mut State<Q>, looker: &Looker<Q>) -> Option<()> {
     let mut slopes = vec![SVector::<f64, Q>::zeros(); state.modes.len()];
     for k in 0..Q {

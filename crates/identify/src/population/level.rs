@@ -12,20 +12,20 @@ const LEAST: f64 = 0.3;
 pub(crate) struct Level {
     size: usize,
     full: bool,
-    /// Whether the members differ by more than their noise. Then they are drawn
-    /// themselves, else their deviations in units of L: either way the coordinates
-    /// hardly depend on each other.
-    told: bool,
+    /// Whether the members differ by more than their noise: then they are drawn
+    /// themselves, else their deviations in units of L, so that coordinates are nearly
+    /// independent.
+    resolved: bool,
     /// Standard deviations of the fit.
     scale: Vec<f64>,
     /// L of the fit.
     pub(crate) centre: DMatrix<f64>,
-    /// Members, whose number tells how well deviations are known.
+    /// Number of members.
     members: f64,
 }
 
 impl Level {
-    /// `noise`: variances of what tells the members apart.
+    /// `noise`: variances of the members' own estimates.
     pub fn new(
         variation: &Variation,
         structure: Structure,
@@ -41,7 +41,7 @@ impl Level {
             .clone()
             .map(|(sd, noise)| sd.value.max(LEAST * noise.sqrt()))
             .collect();
-        let told = sds.into_iter().all(|(sd, noise)| sd.value > noise.sqrt());
+        let resolved = sds.into_iter().all(|(sd, noise)| sd.value > noise.sqrt());
         // Where the fit ends at a bound its matrix is singular: less correlated,
         // it is a place to start from.
         let covariance = DMatrix::from_fn(size, size, |i, j| match i == j {
@@ -51,7 +51,7 @@ impl Level {
         Some(Self {
             size,
             full: structure == Structure::Full,
-            told,
+            resolved,
             centre: covariance.cholesky()?.l(),
             scale,
             members: members as f64,
@@ -125,7 +125,7 @@ impl Level {
     }
 
     /// Standard deviations and correlations.
-    pub(crate) fn told(&self, root: &DMatrix<f64>) -> Vec<f64> {
+    pub(crate) fn spreads(&self, root: &DMatrix<f64>) -> Vec<f64> {
         let covariance = root * root.transpose();
         let sd = |i: usize| covariance[(i, i)].sqrt();
         let mut out: Vec<f64> = (0..self.size).map(sd).collect();
@@ -140,7 +140,7 @@ impl Level {
 /// Log-density of deviations of which each is N(0, L Lᵀ), with what its
 /// derivatives are made of.
 pub(crate) struct Normal<'a> {
-    told: bool,
+    resolved: bool,
     root: &'a DMatrix<f64>,
     pub(crate) by_root: DMatrix<f64>,
     pub(crate) density: f64,
@@ -149,7 +149,7 @@ pub(crate) struct Normal<'a> {
 impl<'a> Normal<'a> {
     pub fn new(level: &Level, root: &'a DMatrix<f64>) -> Self {
         Self {
-            told: level.told,
+            resolved: level.resolved,
             root,
             by_root: DMatrix::zeros(root.nrows(), root.ncols()),
             density: 0.0,
@@ -165,7 +165,7 @@ impl<'a> Normal<'a> {
         z: &[f64],
     ) -> DVector<f64> {
         let z = DVector::from_column_slice(z);
-        match self.told {
+        match self.resolved {
             true => DVector::from_column_slice(centre) + unit * z,
             false => expected + self.root * z,
         }
@@ -181,7 +181,7 @@ impl<'a> Normal<'a> {
         (unit, z): (&DMatrix<f64>, &[f64]),
         gradient: &mut [f64],
     ) -> Option<DVector<f64>> {
-        if !self.told {
+        if !self.resolved {
             let z = DVector::from_column_slice(z);
             self.density -= 0.5 * z.dot(&z);
             self.by_root += &slope * z.transpose();

@@ -2,21 +2,17 @@
 //! impact at its best.
 
 use crate::error::{Error, Unusable};
-use crate::fit::estimator::{Estimator, FreeLaw, FreeParameter, Setting, Target, Values};
-use crate::fit::model::Sampling;
+use crate::fit::estimator::{Estimator, FreeLaw, FreeParameter, Setting};
 use crate::fit::plan::{Plan, plan};
 use crate::fit::problem::{FitOptions, LawProblem};
-use crate::fit::solve::{LARGEST_FREE, Solution};
+use crate::fit::solve::{LARGEST_FREE, Solution, Start, values};
 use crate::population::model::Expansion;
 use crate::rig::kind::Rig;
-use crate::rig::motion::Motion;
 use crate::samples::SampleGroup;
 use nalgebra::{DMatrix, DVector};
-use windfall_contact::law::EndRule;
 use windfall_contact::laws::any_law::{AnyLaw, LARGEST_PARAMETERS};
 use windfall_contact::laws::kind::Law;
 use windfall_numerics::least_squares::{LeastSquares, NormalEquations, Stop};
-use windfall_numerics::ode::step::Tolerance;
 use windfall_signal::impact::Impact;
 
 /// Standard errors around a fit in which it counts as a normal observation.
@@ -50,13 +46,10 @@ const SETTLED: f64 = 1e-6;
 #[derive(Clone, Debug)]
 pub struct ImpactLikelihood {
     law: Law,
-    motion: Motion,
+    setting: Setting,
     groups: Vec<SampleGroup>,
-    end: EndRule,
-    tolerance: Tolerance<2>,
-    tied_velocity: Option<usize>,
     free: Vec<FreeParameter>,
-    base: (Vec<f64>, [f64; 4]),
+    base: Start,
     law_count: usize,
     /// φ̂.
     estimate: DVector<f64>,
@@ -80,7 +73,7 @@ struct Equations {
 ///
 /// # Errors
 /// As [`fit_impact`](crate::fit::result::fit_impact); [`Error::NotAMember`] where the
-/// fit says too little for a likelihood.
+/// fit does not determine a likelihood.
 pub fn impact_likelihood(
     impact: &Impact,
     rig: &Rig,
@@ -104,7 +97,6 @@ fn likelihood_of(plan: Plan, solution: &Solution, rig: &Rig) -> Result<ImpactLik
     if solution.covariance.is_empty() {
         return Err(Unusable::Singular);
     }
-    let setting = plan.setting();
     let coordinates = plan.free.iter().zip(&solution.free);
     let coordinates = coordinates.map(|(p, value)| p.coordinate.of(*value));
     let estimate = DVector::from_vec(coordinates.collect());
@@ -115,10 +107,7 @@ fn likelihood_of(plan: Plan, solution: &Solution, rig: &Rig) -> Result<ImpactLik
     let law = plan.problem.kind.with_parameters(&solution.law);
     let mut out = ImpactLikelihood {
         law: law.map_err(|_| Unusable::NoConvergence)?,
-        motion: setting.motion,
-        end: setting.end,
-        tolerance: setting.tolerance,
-        tied_velocity: setting.tied_velocity,
+        setting: plan.setting(),
         base: (
             solution.law.clone(),
             [
@@ -167,8 +156,10 @@ impl ImpactLikelihood {
         let (_, curvature) = self.profiled(&equations)?;
         // Half the second derivatives of C are those of −ℓ.
         let shape = curvature.cholesky()?;
-        let told = self.covariance.clone().cholesky()?.inverse().cholesky()?;
-        self.adjustment = shape.l().tr_solve_lower_triangular(&told.l().transpose())?;
+        let information = self.covariance.clone().cholesky()?.inverse().cholesky()?;
+        self.adjustment = shape
+            .l()
+            .tr_solve_lower_triangular(&information.l().transpose())?;
         self.lowest = equations.cost;
         self.smooth = at;
         Some(())
@@ -292,29 +283,9 @@ impl ImpactLikelihood {
     where
         L: FreeLaw<N>,
     {
-        let averaged = self.free.iter().any(|p| p.target == Target::Onset);
-        let setting = Setting {
-            motion: self.motion,
-            groups: &self.groups,
-            end: self.end,
-            tolerance: self.tolerance,
-            tied_velocity: self.tied_velocity,
-            sampling: match averaged {
-                true => Sampling::Averaged,
-                false => Sampling::Instantaneous,
-            },
-        };
-        let (values, [velocity, mass, onset, offset]) = &self.base;
-        let mut parameters = [0.0; N];
-        parameters[..values.len()].copy_from_slice(values);
-        let base = Values {
-            law: parameters,
-            velocity: *velocity,
-            inverse_mass: 1.0 / mass,
-            onset: *onset,
-            offset: *offset,
-        };
-        let mut estimator = Estimator::<L, N, W, P>::new(law, setting, &self.free, base);
+        let base = values(&self.base);
+        let mut estimator =
+            Estimator::<L, N, W, P>::new(law, self.setting, &self.groups, &self.free, base);
         let mut at = [0.0; P];
         at[..u.len()].copy_from_slice(u.as_slice());
         let NormalEquations {

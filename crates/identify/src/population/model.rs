@@ -1,4 +1,4 @@
-//! A population of fruit: what is given and what is returned.
+//! A population of fruit: inputs and results.
 
 use crate::population::finding::PopulationFinding;
 pub use crate::population::linear::Likelihood;
@@ -150,7 +150,7 @@ pub struct PopulationFit {
     pub fruit: Vec<Vec<f64>>,
     /// Most probable φ of each impact.
     pub impacts: Vec<Vec<f64>>,
-    /// Log-likelihood (Laplace) of the kind that was asked for; a constant of
+    /// Log-likelihood (Laplace) of the chosen kind; a constant of
     /// the impacts is such that it is that of the fits as normal observations
     /// where the impacts' likelihoods are quadratic.
     pub log_likelihood: f64,
@@ -166,6 +166,6 @@ pub struct PopulationFit {
     pub iterations: usize,
     /// Whether the estimates settled.
     pub converged: bool,
-    /// What a reader should know.
+    /// Remarks.
     pub findings: Vec<PopulationFinding>,
 }

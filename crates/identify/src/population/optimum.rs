@@ -9,7 +9,7 @@ use nalgebra::{DMatrix, DVector, SMatrix, SymmetricEigen};
 /// Step of differences by a variance parameter.
 const STEP: f64 = 1e-3;
 /// Curvature of the deviance below this (in units where a parameter is a
-/// standard deviation over its scale) says that the parameter is not known.
+/// standard deviation over its scale) means that the parameter is unknown.
 const UNKNOWN: f64 = 1e-4;
 
 /// Best variances and effects.
@@ -58,7 +58,7 @@ pub(crate) fn optimise<const Q: usize>(
 
 impl<const Q: usize> Optimum<Q> {
     /// Covariance of the variance parameters: twice the inverse Hessian of the
-    /// deviance, without directions that the data do not tell.
+    /// deviance, without undetermined directions.
     fn uncertainty(&self) -> DMatrix<f64> {
         let n = self.minimum.at.len();
         let mut out = DMatrix::zeros(n, n);

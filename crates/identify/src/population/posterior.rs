@@ -2,20 +2,19 @@
 //! what [`fit_population`](crate::population::fit::fit_population) approximates.
 
 use crate::error::Error;
-use crate::fit::interval::{Mixing, quantile};
+use crate::fit::interval::{independent_draws, mixes, quantile};
 use crate::fit::posterior::mixing;
 use crate::population::finding::PopulationFinding;
 use crate::population::level::{Level, Normal};
 use crate::population::model::{
     Expand, Expansion, PopulationData, PopulationFit, PopulationOptions,
 };
-use crate::sampler::Drawing;
-use crate::sampler::LogDensity;
-use crate::sampler::draw_chains;
+use crate::sampler::{Drawing, LogDensity, draw_chains};
 use nalgebra::{DMatrix, DVector};
 use std::cell::{Cell, RefCell};
+use windfall_statistics::chain_diagnostics::ChainDiagnostics;
 
-/// A quantity as its draws tell it.
+/// Summary of a quantity's draws.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PosteriorRange {
     /// Median.
@@ -25,7 +24,7 @@ pub struct PosteriorRange {
     /// Upper end.
     pub high: f64,
     /// How well the chains mix.
-    pub mixing: Mixing,
+    pub mixing: ChainDiagnostics,
 }
 
 /// Variation at one level.
@@ -58,7 +57,7 @@ pub struct PopulationPosterior {
 }
 
 impl PopulationPosterior {
-    /// What a reader should know besides its numbers.
+    /// Remarks.
     #[must_use]
     pub fn findings(&self) -> Vec<PopulationFinding> {
         let mut out = Vec::new();
@@ -74,9 +73,9 @@ impl PopulationPosterior {
             });
         }
         let all = self.ranges().map(|range| range.mixing);
-        let poor: Vec<Mixing> = all.filter(|mixing| !mixing.suffices()).collect();
+        let poor: Vec<ChainDiagnostics> = all.filter(|mixing| !mixes(mixing)).collect();
         if !poor.is_empty() {
-            let draws = poor.iter().map(Mixing::independent_draws);
+            let draws = poor.iter().map(independent_draws);
             out.push(PopulationFinding::NotMixed {
                 quantities: poor.len(),
                 r_hat: poor.iter().map(|mixing| mixing.r_hat).fold(1.0, f64::max),
@@ -106,11 +105,11 @@ impl PopulationPosterior {
 /// the correlation matrices.
 ///
 /// * `expand`: as for the fit
-/// * `progress`: told the draws made and all of them
+/// * `progress`: called with the draws made and their total
 ///
 /// # Errors
-/// [`Error::NoPopulation`] where a level is told not to vary, or where no chain can
-/// be started.
+/// [`Error::NoPopulation`] where `options` exclude variation at a level, or where no
+/// chain can be started.
 ///
 /// # Source
 /// Gelman (2006), Bayesian Anal. 1:515, for flat standard deviations; Joe (2006),
@@ -136,7 +135,7 @@ pub fn population_posterior(
         (0..hierarchy.size()).map(at).collect()
     };
     let divergences = draw_chains(&hierarchy, drawing, &start, &mut |z| {
-        for (all, value) in drawn.iter_mut().zip(hierarchy.told(z)) {
+        for (all, value) in drawn.iter_mut().zip(hierarchy.quantities_at(z)) {
             all.push(value);
         }
     });
@@ -231,10 +230,9 @@ impl<'a, 'b> Hierarchy<'a, 'b> {
         let between = Level::new(&fit.between, options.between, fruits, &own)?;
         let unit = |information: DMatrix<f64>| Some(information.try_inverse()?.cholesky()?.l());
         let between_information = (&between.centre * between.centre.transpose()).try_inverse()?;
-        let mut told = vec![between_information; fruits];
+        let mut information_on_fruit = vec![between_information; fruits];
         for (&fruit, noise) in data.fruit.iter().zip(&noise) {
-            // What an impact tells of its fruit.
-            told[fruit] += (&spread + noise).try_inverse()?;
+            information_on_fruit[fruit] += (&spread + noise).try_inverse()?;
         }
         let impact_unit: Option<Vec<_>> = match within {
             Some(_) => {
@@ -257,7 +255,10 @@ impl<'a, 'b> Hierarchy<'a, 'b> {
             known,
             fruit: &data.fruit,
             covariates: covariates.collect::<Option<Vec<Vec<f64>>>>()?,
-            fruit_unit: told.into_iter().map(unit).collect::<Option<_>>()?,
+            fruit_unit: information_on_fruit
+                .into_iter()
+                .map(unit)
+                .collect::<Option<_>>()?,
             impact_unit: impact_unit?,
             fruit_from: fit.effects.len() + matrices,
             between,
@@ -299,14 +300,14 @@ impl<'a, 'b> Hierarchy<'a, 'b> {
         (between, within.as_ref().map(|level| level.root(z)))
     }
 
-    fn told(&self, z: &[f64]) -> Vec<f64> {
+    fn quantities_at(&self, z: &[f64]) -> Vec<f64> {
         let (between, within) = self.roots(z);
         let mut out: Vec<f64> = (0..self.fit.effects.len())
             .map(|at| self.effect(z, at))
             .collect();
-        out.extend(self.between.told(&between));
+        out.extend(self.between.spreads(&between));
         if let (Some(level), Some(root)) = (&self.within, &within) {
-            out.extend(level.told(root));
+            out.extend(level.spreads(root));
         }
         out
     }

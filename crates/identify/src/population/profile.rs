@@ -3,7 +3,7 @@
 use crate::population::linear::LinearProblem;
 use crate::population::newton::minimise;
 use crate::population::optimum::{Optimum, deviance};
-use crate::population::variance::{Variances, order_with};
+use crate::population::variance::{Level, Variances, order_with};
 use nalgebra::{DMatrix, DVector};
 
 /// Smallest standard deviation in a start, in units of its scale.
@@ -21,27 +21,10 @@ const MOST: usize = 40;
 /// What an interval is made for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Quantity {
-    /// Standard deviation of a parameter between fruit.
-    BetweenSd(usize),
-    /// Standard deviation of a parameter within fruit.
-    WithinSd(usize),
-    /// Correlation of two parameters between fruit.
-    BetweenCorrelation(usize, usize),
-    /// Correlation of two parameters within fruit.
-    WithinCorrelation(usize, usize),
-}
-
-impl Quantity {
-    fn is_within(self) -> bool {
-        matches!(self, Self::WithinSd(_) | Self::WithinCorrelation(..))
-    }
-
-    fn leading(self) -> Vec<usize> {
-        match self {
-            Self::BetweenSd(k) | Self::WithinSd(k) => vec![k],
-            Self::BetweenCorrelation(k, l) | Self::WithinCorrelation(k, l) => vec![k, l],
-        }
-    }
+    /// Standard deviation of a parameter.
+    Sd(usize),
+    /// Correlation of two parameters.
+    Correlation(usize, usize),
 }
 
 /// The likelihood with one quantity held, everything else at its best.
@@ -131,20 +114,23 @@ impl<const Q: usize> Profile<'_, Q> {
 pub(crate) fn interval<const Q: usize>(
     problem: &LinearProblem<Q>,
     optimum: &Optimum<Q>,
-    quantity: Quantity,
+    (level, quantity): (Level, Quantity),
     threshold: f64,
 ) -> Option<(f64, f64)> {
     let mut variances = optimum.variances;
-    let factor = match quantity.is_within() {
-        true => &mut variances.within,
-        false => &mut variances.between,
+    let factor = match level {
+        Level::Between => &mut variances.between,
+        Level::Within => &mut variances.within,
     };
-    factor.order = order_with(&quantity.leading());
+    factor.order = match quantity {
+        Quantity::Sd(k) => order_with(&[k]),
+        Quantity::Correlation(k, l) => order_with(&[k, l]),
+    };
     let scale = factor.scale;
     let best = variances.parameters(&optimum.between, &optimum.within, LEAST);
-    let block = match quantity.is_within() {
-        true => variances.between.count(),
-        false => 0,
+    let block = match level {
+        Level::Between => 0,
+        Level::Within => variances.between.count(),
     };
     let mut profile = Profile {
         problem,
@@ -155,7 +141,7 @@ pub(crate) fn interval<const Q: usize>(
         correlation: false,
     };
     match quantity {
-        Quantity::BetweenSd(k) | Quantity::WithinSd(k) => {
+        Quantity::Sd(k) => {
             let estimate = profile.best[block].abs();
             profile.best[block] = estimate;
             let low = profile.end(estimate, 0.0, threshold)?;
@@ -168,7 +154,7 @@ pub(crate) fn interval<const Q: usize>(
             let high = if high >= edge { f64::INFINITY } else { high };
             Some((scale[k] * low, scale[k] * high))
         }
-        Quantity::BetweenCorrelation(..) | Quantity::WithinCorrelation(..) => {
+        Quantity::Correlation(..) => {
             profile.correlation = true;
             let second = (profile.best[block + 1], profile.best[block + 2]);
             let length = second.0.hypot(second.1);

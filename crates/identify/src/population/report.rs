@@ -7,7 +7,7 @@ use crate::population::model::{
 };
 use crate::population::profile::{Quantity, interval};
 use crate::population::state::{State, iteration_findings};
-use crate::population::variance::Structure;
+use crate::population::variance::{Level, Structure};
 use nalgebra::{SMatrix, SVector};
 use windfall_statistics::distribution::tail::{
     chi_squared_upper_quantile, t_two_sided, t_upper_quantile,
@@ -22,8 +22,8 @@ const BOUND: f64 = 0.9995;
 /// Shift, in standard errors, that is remarked on.
 const SHIFT: f64 = 0.2;
 
-/// The estimates; `first_order`: the problem without the second-order shifts,
-/// in which the likelihood is told.
+/// The estimates; `first_order`: the problem without the second-order shifts, whose
+/// likelihood is reported.
 pub(crate) fn report<const Q: usize>(
     data: &PopulationData,
     state: &State<Q>,
@@ -119,43 +119,6 @@ fn fixed_effects<const Q: usize>(
     (0..value.effects.len()).map(effect).collect()
 }
 
-#[derive(Clone, Copy, PartialEq, Eq)]
-enum Level {
-    Between,
-    Within,
-}
-
-impl Level {
-    fn name(self) -> &'static str {
-        match self {
-            Self::Between => "between",
-            Self::Within => "within",
-        }
-    }
-
-    fn sd(self, k: usize) -> Quantity {
-        match self {
-            Self::Between => Quantity::BetweenSd(k),
-            Self::Within => Quantity::WithinSd(k),
-        }
-    }
-
-    fn correlation(self, k: usize, l: usize) -> Quantity {
-        match self {
-            Self::Between => Quantity::BetweenCorrelation(k, l),
-            Self::Within => Quantity::WithinCorrelation(k, l),
-        }
-    }
-
-    fn structure<const Q: usize>(self, state: &State<Q>) -> Structure {
-        let variances = &state.optimum.variances;
-        match self {
-            Self::Between => variances.between.structure,
-            Self::Within => variances.within.structure,
-        }
-    }
-}
-
 fn pairs<const Q: usize>() -> impl Iterator<Item = (usize, usize)> {
     (0..Q).flat_map(|k| (k + 1..Q).map(move |l| (k, l)))
 }
@@ -167,20 +130,20 @@ fn variation<const Q: usize>(
     options: &PopulationOptions,
 ) -> Variation {
     let threshold = chi_squared_upper_quantile(1.0 - options.confidence, 1.0);
-    let structure = level.structure(state);
+    let structure = state.optimum.variances.of(level).structure;
     let of = |quantity| match structure {
         Structure::Zero => None,
-        _ => interval(&state.problem, &state.optimum, quantity, threshold),
+        _ => interval(&state.problem, &state.optimum, (level, quantity), threshold),
     };
     let sd = |k: usize| covariance[(k, k)].max(0.0).sqrt();
     let sds = (0..Q).map(|k| Spread {
         value: sd(k),
-        interval: of(level.sd(k)),
+        interval: of(Quantity::Sd(k)),
     });
     let correlations = pairs::<Q>().map(|(k, l)| Spread {
         value: covariance[(k, l)] / (sd(k) * sd(l)).max(f64::MIN_POSITIVE),
         interval: match structure {
-            Structure::Full => of(level.correlation(k, l)),
+            Structure::Full => of(Quantity::Correlation(k, l)),
             _ => None,
         },
     });
@@ -208,7 +171,7 @@ fn findings<const Q: usize>(data: &PopulationData, state: &State<Q>) -> Vec<Popu
         (Level::Between, &optimum.between),
         (Level::Within, &optimum.within),
     ] {
-        if level.structure(state) == Structure::Zero {
+        if optimum.variances.of(level).structure == Structure::Zero {
             continue;
         }
         let scale = optimum.variances.between.scale;

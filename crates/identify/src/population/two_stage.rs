@@ -10,7 +10,7 @@ use windfall_statistics::distribution::tail::{
     chi_squared_upper_quantile, t_two_sided, t_upper_quantile,
 };
 
-/// What the usual way says.
+/// Results of the two-stage estimate.
 #[derive(Clone, Debug, PartialEq)]
 pub struct TwoStage {
     /// Mean of the fruit's averages of φ, with the t interval, by parameter.

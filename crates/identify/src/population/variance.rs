@@ -96,6 +96,25 @@ impl<const Q: usize> Factor<Q> {
     }
 }
 
+/// A level of variation.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Level {
+    /// Between fruit.
+    Between,
+    /// Between the impacts of one fruit.
+    Within,
+}
+
+impl Level {
+    /// Name in messages.
+    pub(crate) fn name(self) -> &'static str {
+        match self {
+            Self::Between => "between",
+            Self::Within => "within",
+        }
+    }
+}
+
 /// Both covariance matrices, that between fruit first.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Variances<const Q: usize> {
@@ -104,6 +123,14 @@ pub(crate) struct Variances<const Q: usize> {
 }
 
 impl<const Q: usize> Variances<Q> {
+    /// The matrix of a level.
+    pub(crate) fn of(&self, level: Level) -> &Factor<Q> {
+        match level {
+            Level::Between => &self.between,
+            Level::Within => &self.within,
+        }
+    }
+
     /// R of both.
     pub(crate) fn roots(&self, theta: &DVector<f64>) -> [SMatrix<f64, Q, Q>; 2] {
         let (first, second) = theta.as_slice().split_at(self.between.count());

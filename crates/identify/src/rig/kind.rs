@@ -1,6 +1,6 @@
 //! Rigs: how the impactor moves between contacts and under the contact force.
 
-use crate::error::Error;
+use crate::error::{Error, check_positive};
 
 /// Pendulum arm that strikes a fruit fixed to an anvil at the arm's lowest
 /// point: I θ'' = −m g l sin θ − F r cos θ, x = r sin θ.
@@ -59,12 +59,9 @@ impl Rig {
             ],
             Self::Carriage(c) => vec![("mass", c.mass)],
         };
-        for (name, value) in quantities {
-            if !(value.is_finite() && value > 0.0) {
-                return Err(Error::BadInput { name, value });
-            }
-        }
-        Ok(())
+        quantities
+            .into_iter()
+            .try_for_each(|(name, value)| check_positive(name, value))
     }
 
     /// Mass that the contact feels: I/r² of a pendulum, m of a carriage; kg.

@@ -1,51 +1,29 @@
-//! Forward: one impact under a force law, summed up or sampled.
+//! Simulation of one impact under a force law: its summary, or its samples.
 
-use crate::error::Error;
-use crate::rig::contact_motion::{
-    ImpactEvent, Seeds, Segment, Separation, Sink, follow, scaled_time,
-};
+use crate::error::{Error, check_positive};
+use crate::rig::contact_motion::{Piece, Segment, Separation, follow};
+use crate::rig::contact_time::scaled_time;
+use crate::rig::impact_event::{ImpactEvent, Seeds};
 use crate::rig::kind::{Carriage, Rig};
 use crate::rig::motion::Motion;
 use windfall_contact::law::{ContactLaw, EndRule, SMALLEST_DISPLACEMENT};
-use windfall_contact::laws::any_law::AnyLaw;
+use windfall_contact::laws::any_law::{AnyLaw, LARGEST_PARAMETERS};
 use windfall_contact::laws::kind::Law;
 use windfall_numerics::ode::step::Tolerance;
+use windfall_numerics::quadrature::EIGHT_NODES;
 use windfall_numerics::root::bracketed_root;
 
-/// Relative accuracy of simulations; the reference tables ask for 1e-8.
+/// Relative accuracy of simulations; the reference tables require 1e-8.
 pub const ACCURACY: f64 = 1e-12;
-/// Points per piece of the motion among which a maximum is looked for.
+/// Points per piece of the motion among which a maximum is searched.
 const SEARCH_POINTS: usize = 16;
 /// A peak is located to this fraction of a piece.
 const PEAK_TOLERANCE: f64 = 1e-13;
 /// First guess of the longest contact, and how often it may be doubled; s.
 const FIRST_DURATION: f64 = 0.02;
 const LARGEST_DOUBLINGS: usize = 10;
-/// Gauss-Legendre nodes and weights on [−1, 1], for the impulse (Abramowitz and
-/// Stegun 1964, table 25.4).
-pub const GAUSS_NODES: [f64; 8] = [
-    -0.960_289_856_497_536_2,
-    -0.796_666_477_413_626_7,
-    -0.525_532_409_916_329,
-    -0.183_434_642_495_649_8,
-    0.183_434_642_495_649_8,
-    0.525_532_409_916_329,
-    0.796_666_477_413_626_7,
-    0.960_289_856_497_536_2,
-];
-/// Weights of the nodes.
-pub const GAUSS_WEIGHTS: [f64; 8] = [
-    0.101_228_536_290_376_26,
-    0.222_381_034_453_374_48,
-    0.313_706_645_877_887_3,
-    0.362_683_783_378_362,
-    0.362_683_783_378_362,
-    0.313_706_645_877_887_3,
-    0.222_381_034_453_374_48,
-    0.101_228_536_290_376_26,
-];
 
-/// What one impact comes to; SI.
+/// Summary of one impact; SI.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct ImpactSummary {
     /// Largest contact force; N.
@@ -118,17 +96,30 @@ pub fn simulate_rig(
     velocity: f64,
     end: EndRule,
 ) -> Result<ImpactSummary, Error> {
-    rig.check()?;
-    check_positive("velocity", velocity)?;
-    summarise(AnyLaw(*law), rig, velocity, end)
+    let event = event(law, rig, velocity, end)?;
+    let mut duration = FIRST_DURATION;
+    for _ in 0..LARGEST_DOUBLINGS {
+        let mut summary = ImpactSummary::default();
+        let separation = follow(&event, 0.0, duration, &mut |segment, piece| {
+            if piece == Piece::Contact {
+                tally(&event, segment, &mut summary);
+            }
+        })?;
+        if let Some(separation) = separation {
+            return Ok(complete(summary, &separation, rig, velocity));
+        }
+        duration *= 2.0;
+    }
+    Err(Error::EndlessContact {
+        duration: duration * 0.5,
+    })
 }
 
 /// Motion of the impactor of `rig` at `times` (ascending, from first touch;
 /// negative before it).
 ///
 /// # Errors
-/// As [`simulate_impact`]; a contact that goes on past the last time is no
-/// error here.
+/// As [`simulate_impact`]; a contact may last beyond the last time.
 pub fn trajectory(
     law: &Law,
     rig: &Rig,
@@ -136,29 +127,45 @@ pub fn trajectory(
     times: &[f64],
     end: EndRule,
 ) -> Result<Trajectory, Error> {
-    rig.check()?;
-    check_positive("velocity", velocity)?;
-    sample(AnyLaw(*law), rig, velocity, times, end)
+    let event = event(law, rig, velocity, end)?;
+    let (Some(&first), Some(&last)) = (times.first(), times.last()) else {
+        return Ok(Trajectory::default());
+    };
+    check_ascending(times)?;
+    let zeros = vec![0.0; times.len()];
+    let mut out = Trajectory {
+        times: times.to_vec(),
+        displacement: zeros.clone(),
+        rate: zeros.clone(),
+        force: zeros.clone(),
+        acceleration: zeros,
+    };
+    follow(&event, first.min(0.0), last, &mut |segment, piece| {
+        read(&event, segment, piece, last, &mut out);
+    })?;
+    Ok(out)
 }
 
 /// # Errors
-/// The value is not a finite number above zero.
-pub fn check_positive(name: &'static str, value: f64) -> Result<(), Error> {
-    if value.is_finite() && value > 0.0 {
-        Ok(())
-    } else {
-        Err(Error::BadInput { name, value })
+/// [`Error::UnorderedTimes`] where a time is before the one in front of it.
+pub fn check_ascending(times: &[f64]) -> Result<(), Error> {
+    match (1..times.len()).find(|&i| times[i] < times[i - 1]) {
+        Some(i) => Err(Error::UnorderedTimes {
+            index: i,
+            time: times[i],
+            before: times[i - 1],
+        }),
+        None => Ok(()),
     }
 }
 
-fn event<L, const N: usize>(
-    law: L,
-    rig: &Rig,
-    velocity: f64,
-    end: EndRule,
-) -> ImpactEvent<L, N, 1> {
-    ImpactEvent {
-        law,
+type Event = ImpactEvent<AnyLaw, LARGEST_PARAMETERS, 1>;
+
+fn event(law: &Law, rig: &Rig, velocity: f64, end: EndRule) -> Result<Event, Error> {
+    rig.check()?;
+    check_positive("velocity", velocity)?;
+    Ok(ImpactEvent {
+        law: AnyLaw(*law),
         motion: Motion::from(rig),
         velocity,
         end,
@@ -167,29 +174,6 @@ fn event<L, const N: usize>(
             relative: ACCURACY,
             absolute: [ACCURACY * 1e-6, ACCURACY * velocity],
         },
-    }
-}
-
-fn summarise<L: ContactLaw<N>, const N: usize>(
-    law: L,
-    rig: &Rig,
-    velocity: f64,
-    end: EndRule,
-) -> Result<ImpactSummary, Error> {
-    let event = event(law, rig, velocity, end);
-    let mut duration = FIRST_DURATION;
-    for _ in 0..LARGEST_DOUBLINGS {
-        let mut tally = Tally {
-            event: &event,
-            summary: ImpactSummary::default(),
-        };
-        if let Some(separation) = follow(&event, 0.0, duration, &mut tally)? {
-            return Ok(complete(tally.summary, &separation, rig, velocity));
-        }
-        duration *= 2.0;
-    }
-    Err(Error::EndlessContact {
-        duration: duration * 0.5,
     })
 }
 
@@ -222,11 +206,7 @@ struct State {
     force_rate: f64,
 }
 
-fn state_at<L: ContactLaw<N>, const N: usize>(
-    event: &ImpactEvent<L, N, 1>,
-    segment: &Segment<1>,
-    sigma: f64,
-) -> State {
+fn state_at(event: &Event, segment: &Segment<1>, sigma: f64) -> State {
     let [x, v] = segment.step.at(sigma).map(|lanes| lanes.0[0]);
     let law = event
         .law
@@ -248,46 +228,37 @@ fn state_at<L: ContactLaw<N>, const N: usize>(
     }
 }
 
-/// Peaks and impulse, piece by piece.
-struct Tally<'a, L, const N: usize> {
-    event: &'a ImpactEvent<L, N, 1>,
-    summary: ImpactSummary,
-}
+/// Adds the peaks and the impulse of a piece of the contact.
+fn tally(event: &Event, segment: &Segment<1>, summary: &mut ImpactSummary) {
+    let end = sigma_of(segment, segment.to);
+    let state = |sigma: f64| state_at(event, segment, sigma);
 
-impl<L: ContactLaw<N>, const N: usize> Sink<1> for Tally<'_, L, N> {
-    fn contact(&mut self, segment: &Segment<1>) {
-        let end = sigma_of(segment, segment.to);
-        let state = |sigma: f64| state_at(self.event, segment, sigma);
-
-        // The force's maximum may be at first touch, where some laws jump.
-        let force = highest(
-            end,
-            |sigma| state(sigma).force,
-            |sigma| state(sigma).force_rate,
-        );
-        let peak = state(force);
-        if peak.force > self.summary.peak_force {
-            self.summary.peak_force = peak.force;
-            self.summary.time_of_peak_force = peak.time;
-        }
-        let deepest = state(highest(end, |sigma| state(sigma).x, |sigma| state(sigma).v));
-        if deepest.x > self.summary.max_displacement {
-            self.summary.max_displacement = deepest.x;
-            self.summary.time_of_max_displacement = deepest.time;
-            self.summary.force_at_max_displacement = deepest.force;
-        }
-
-        // ∫ F dt = ∫ F q s^(q−1) ds
-        let (power, width) = (f64::from(segment.power), segment.step.width);
-        for (node, weight) in GAUSS_NODES.iter().zip(GAUSS_WEIGHTS) {
-            let sigma = 0.5 * end * (1.0 + node);
-            let s = segment.step.start + sigma * width;
-            let stretch = power * s.powi(segment.power as i32 - 1);
-            self.summary.impulse += 0.5 * end * width * weight * stretch * state(sigma).force;
-        }
+    // The force's maximum may be at first touch, where some laws jump.
+    let force = highest(
+        end,
+        |sigma| state(sigma).force,
+        |sigma| state(sigma).force_rate,
+    );
+    let peak = state(force);
+    if peak.force > summary.peak_force {
+        summary.peak_force = peak.force;
+        summary.time_of_peak_force = peak.time;
+    }
+    let deepest = state(highest(end, |sigma| state(sigma).x, |sigma| state(sigma).v));
+    if deepest.x > summary.max_displacement {
+        summary.max_displacement = deepest.x;
+        summary.time_of_max_displacement = deepest.time;
+        summary.force_at_max_displacement = deepest.force;
     }
 
-    fn flight(&mut self, _segment: &Segment<1>) {}
+    // ∫ F dt = ∫ F q s^(q−1) ds
+    let (power, width) = (f64::from(segment.power), segment.step.width);
+    for (node, weight) in EIGHT_NODES {
+        let sigma = 0.5 * end * (1.0 + node);
+        let s = segment.step.start + sigma * width;
+        let stretch = power * s.powi(segment.power as i32 - 1);
+        summary.impulse += 0.5 * end * width * weight * stretch * state(sigma).force;
+    }
 }
 
 fn sigma_of(segment: &Segment<1>, time: f64) -> f64 {
@@ -316,79 +287,25 @@ pub fn highest(end: f64, value: impl Fn(f64) -> f64, slope: impl Fn(f64) -> f64)
     }
 }
 
-/// Reads the motion at given times.
-struct Sampler<'a, L, const N: usize> {
-    event: &'a ImpactEvent<L, N, 1>,
-    times: &'a [f64],
-    out: Trajectory,
-    last: f64,
-}
-
-impl<L: ContactLaw<N>, const N: usize> Sampler<'_, L, N> {
-    fn read(&mut self, segment: &Segment<1>, touching: bool) {
-        for (i, &time) in self.times.iter().enumerate() {
-            let ends = segment.to >= self.last && time <= segment.to;
-            if time < segment.from || !(time < segment.to || ends) {
-                continue;
-            }
-            let sigma = sigma_of(segment, time);
-            let (x, v, force, acceleration) = if touching {
-                let s = state_at(self.event, segment, sigma);
-                (s.x, s.v, s.force, s.acceleration)
-            } else {
-                let [x, v] = segment.step.at(sigma).map(|lanes| lanes.0[0]);
-                let a = self.event.motion.acceleration(x, v, 0.0).value;
-                (x, v, 0.0, a)
-            };
-            self.out.displacement[i] = x;
-            self.out.rate[i] = v;
-            self.out.force[i] = force;
-            self.out.acceleration[i] = acceleration;
+/// Reads those of the times that lie in a piece of the motion; `last` is the last time.
+fn read(event: &Event, segment: &Segment<1>, piece: Piece, last: f64, out: &mut Trajectory) {
+    for (i, &time) in out.times.iter().enumerate() {
+        let ends = segment.to >= last && time <= segment.to;
+        if time < segment.from || !(time < segment.to || ends) {
+            continue;
         }
+        let sigma = sigma_of(segment, time);
+        let (x, v, force, acceleration) = if piece == Piece::Contact {
+            let s = state_at(event, segment, sigma);
+            (s.x, s.v, s.force, s.acceleration)
+        } else {
+            let [x, v] = segment.step.at(sigma).map(|lanes| lanes.0[0]);
+            let a = event.motion.acceleration(x, v, 0.0).value;
+            (x, v, 0.0, a)
+        };
+        out.displacement[i] = x;
+        out.rate[i] = v;
+        out.force[i] = force;
+        out.acceleration[i] = acceleration;
     }
-}
-
-impl<L: ContactLaw<N>, const N: usize> Sink<1> for Sampler<'_, L, N> {
-    fn contact(&mut self, segment: &Segment<1>) {
-        self.read(segment, true);
-    }
-
-    fn flight(&mut self, segment: &Segment<1>) {
-        self.read(segment, false);
-    }
-}
-
-fn sample<L: ContactLaw<N>, const N: usize>(
-    law: L,
-    rig: &Rig,
-    velocity: f64,
-    times: &[f64],
-    end: EndRule,
-) -> Result<Trajectory, Error> {
-    let (Some(&first), Some(&last)) = (times.first(), times.last()) else {
-        return Ok(Trajectory::default());
-    };
-    if let Some(i) = (1..times.len()).find(|&i| times[i] < times[i - 1]) {
-        return Err(Error::UnorderedTimes {
-            index: i,
-            time: times[i],
-            before: times[i - 1],
-        });
-    }
-    let event = event(law, rig, velocity, end);
-    let zeros = vec![0.0; times.len()];
-    let mut sampler = Sampler {
-        event: &event,
-        times,
-        out: Trajectory {
-            times: times.to_vec(),
-            displacement: zeros.clone(),
-            rate: zeros.clone(),
-            force: zeros.clone(),
-            acceleration: zeros,
-        },
-        last,
-    };
-    follow(&event, first.min(0.0), last, &mut sampler)?;
-    Ok(sampler.out)
 }

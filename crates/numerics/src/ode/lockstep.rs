@@ -80,7 +80,7 @@ impl<const D: usize, const W: usize, const B: usize> Lockstep<D, W, B> {
         let zero = [[Lanes::ZERO; W]; D];
         Self {
             s: Lanes::ZERO,
-            // What idle lanes compute is not looked at; these are numbers.
+            // Results of idle lanes are ignored; these are numbers.
             width: Lanes([1.0; B]),
             limit: Lanes([1.0; B]),
             relative: Lanes([1.0; B]),

@@ -1,5 +1,5 @@
 //! A comparison of laws as a figure: how much worse than the best each law is, over
-//! the campaign and on each impact, and how well it foretells unseen velocities.
+//! the campaign and on each impact, and how well it predicts held-out velocities.
 
 use crate::ranking::outcome::{LawEvidenceOutcome, LawsOutcome};
 use windfall_draw::axis::{Axis, axis};
@@ -28,7 +28,7 @@ const SPREAD: f64 = 0.62;
 const NO_SUPPORT: f64 = 10.0;
 
 /// The comparison: ΔAICc of each law over the campaign with its interval, ΔAICc on each
-/// impact, and the error of what it foretells.
+/// impact, and its prediction error.
 ///
 /// # Errors
 /// None in practice: the data are written to memory.
@@ -36,9 +36,8 @@ pub fn laws_painting(outcome: &LawsOutcome) -> Result<Painting, Error> {
     Ok(Painting {
         name: "laws".to_owned(),
         caption: "AICc of each law above that of the best one, over all impacts with 95 % \
-                  intervals (impacts taken as independent) and on each impact; error of the \
-                  forces that a law foretells for velocities it has not seen, ± one standard \
-                  error. Beyond the broken line a law has next to no support."
+                  intervals (impacts taken as independent) and on each impact; \
+                  prediction error of the force at held-out velocities, ± one standard error. Beyond the broken line a law has next to no support."
             .to_owned(),
         drawing: drawing_of(outcome),
         csv: csv_of(outcome)?,
@@ -115,8 +114,8 @@ fn squeezed_axis(values: impl Iterator<Item = f64>) -> Axis {
 fn drawing_of(outcome: &LawsOutcome) -> Drawing {
     let laws = &outcome.laws;
     let height = ROW * laws.len().max(1) as f64;
-    let foretold = laws.iter().any(|law| law.prediction.is_some());
-    let panels = if foretold { 3.0 } else { 2.0 };
+    let predicted = laws.iter().any(|law| law.prediction.is_some());
+    let panels = if predicted { 3.0 } else { 2.0 };
     let width = LEFT + panels * WIDTH + (panels - 1.0) * BETWEEN + RIGHT;
     let mut drawing = Drawing::new(width, TOP + height + BELOW);
     let title = format!("{} laws on {} impacts", laws.len(), outcome.impacts);
@@ -172,7 +171,7 @@ fn drawing_of(outcome: &LawsOutcome) -> Drawing {
         }
     }
 
-    if foretold {
+    if predicted {
         let reach = |law: &LawEvidenceOutcome| {
             Some(100.0 * (law.prediction? + law.prediction_sd.unwrap_or(0.0)))
         };

@@ -1,9 +1,9 @@
-//! What `windfall laws` gives, as JSON shows it.
+//! The result of `windfall laws`, as JSON shows it.
 
 use serde::Serialize;
 use windfall_files::found::{FailureOutcome, FindingOutcome};
 
-/// What `windfall laws` gives.
+/// The result of `windfall laws`.
 #[derive(Clone, Debug, PartialEq, Serialize, utoipa::ToSchema)]
 pub struct LawsOutcome {
     /// Version of windfall.
@@ -64,7 +64,7 @@ pub struct LawEvidenceOutcome {
     pub bic: f64,
     /// Share of resampled campaigns in which it is first.
     pub first_share: f64,
-    /// Error of forces foretold for unseen velocities, over the peak.
+    /// Prediction error at held-out velocities, over the peak.
     pub prediction: Option<f64>,
     /// Its standard error.
     pub prediction_sd: Option<f64>,

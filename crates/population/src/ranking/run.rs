@@ -22,11 +22,11 @@ use windfall_files::on_threads::on_threads;
 use windfall_files::progress::{Progress, for_each};
 use windfall_files::provenance::VERSION;
 use windfall_identify::compare::ranking::{
-    ImpactFit, LawEvidence, LawRanking, LeveledImpact, Verdict, fits_of_impact, rank_laws,
-    velocity_levels,
+    LawEvidence, LawRanking, LeveledImpact, Verdict, fits_of_impact, rank_laws, velocity_levels,
 };
 use windfall_identify::error::Error as IdentifyError;
 use windfall_identify::fit::problem::LawProblem;
+use windfall_identify::fit::result::Fit;
 
 /// Laws that are compared when none are named: one of each form.
 pub const COMPARED: [&str; 6] = [
@@ -40,7 +40,7 @@ pub const COMPARED: [&str; 6] = [
 /// Column of impacts.csv with the velocity level.
 const LEVEL_COLUMN: &str = "level";
 /// Velocities that differ by more than this part belong to different levels,
-/// where no column says so; 1.
+/// where no column gives levels; 1.
 const LEVEL_GAP: f64 = 0.08;
 
 /// Ranks laws over the impacts of a campaign: those of the request, those of the
@@ -75,7 +75,7 @@ pub fn rank_campaign(
 }
 
 /// What one recording gives: the impact, its fits, or why there are none.
-type Fitted = Result<(windfall_signal::impact::Impact, Vec<ImpactFit>), FailureOutcome>;
+type Fitted = Result<(windfall_signal::impact::Impact, Vec<Option<Fit>>), FailureOutcome>;
 
 fn rank(
     campaign: &ImpactCampaign,
@@ -105,7 +105,7 @@ fn rank(
     }
     let mut findings = rig.findings.clone();
     set_levels(&mut impacts, &entries, &fitted, &mut findings);
-    let compare = |impacts: &[LeveledImpact], fits: &[Vec<ImpactFit>]| {
+    let compare = |impacts: &[LeveledImpact], fits: &[Vec<Option<Fit>>]| {
         rank_laws(impacts, fits, &rig.rig, &problems, &campaign.fit.options)
     };
     let ranking = compare(&impacts, &fitted).map_err(|source| Error::Identify {
@@ -130,9 +130,9 @@ fn rank(
 }
 
 /// Of the impacts that are compared the one with the middle velocity.
-fn middle_impact(compared: &[usize], fits: &[Vec<ImpactFit>]) -> Option<usize> {
+fn middle_impact(compared: &[usize], fits: &[Vec<Option<Fit>>]) -> Option<usize> {
     let velocity = |place: usize| {
-        let fit = fits[place].iter().find_map(|fit| fit.fit.as_ref());
+        let fit = fits[place].iter().find_map(Option::as_ref);
         fit.map_or(f64::NAN, |fit| fit.velocity)
     };
     let mut order = compared.to_vec();
@@ -154,7 +154,7 @@ fn draw_impact(
     let fits = fits_of_impact(&impact, &rig.rig, problems, &campaign.fit.options);
     let ranked = outcome.laws.iter().filter_map(|law| {
         let place = problems.iter().position(|p| p.kind.name() == law.law)?;
-        let fit = fits[place].fit.as_ref()?;
+        let fit = fits[place].as_ref()?;
         Some(impact_outcome(
             entry,
             &impact,
@@ -183,7 +183,7 @@ fn fits(
     let (impact, _) = extract_recording(campaign, entry, mass)
         .map_err(|error| failure(entry, None, error.to_string()))?;
     let fits = fits_of_impact(&impact, &rig.rig, problems, &campaign.fit.options);
-    if fits.iter().all(|fit| fit.fit.is_none()) {
+    if fits.iter().all(Option::is_none) {
         let message = "none of the laws could be fitted".to_owned();
         return Err(failure(entry, None, message));
     }
@@ -194,7 +194,7 @@ fn fits(
 fn set_levels(
     impacts: &mut [LeveledImpact],
     entries: &[&ImpactEntry],
-    fits: &[Vec<ImpactFit>],
+    fits: &[Vec<Option<Fit>>],
     findings: &mut Vec<FindingOutcome>,
 ) {
     let cell = |entry: &ImpactEntry| {
@@ -219,7 +219,7 @@ fn set_levels(
             let velocities: Vec<f64> = fits
                 .iter()
                 .map(|fits| {
-                    let fit = fits.iter().find_map(|fit| fit.fit.as_ref());
+                    let fit = fits.iter().find_map(Option::as_ref);
                     fit.map_or(f64::NAN, |fit| fit.velocity)
                 })
                 .collect();
@@ -232,8 +232,8 @@ fn set_levels(
     if levels.iter().all(|level| *level == 0) {
         findings.push(FindingOutcome {
             code: "one-level".to_owned(),
-            message: "all impacts have one velocity: whether a law foretells others cannot be \
-                      told; laws that differ in velocity only look alike"
+            message: "all impacts have the same velocity, so prediction at other velocities \
+                      cannot be tested; laws that differ only in velocity look alike"
                 .to_owned(),
         });
     }
@@ -241,12 +241,12 @@ fn set_levels(
 
 /// Ranks the laws over some of the impacts.
 type Compare<'a> =
-    dyn Fn(&[LeveledImpact], &[Vec<ImpactFit>]) -> Result<LawRanking, IdentifyError> + 'a;
+    dyn Fn(&[LeveledImpact], &[Vec<Option<Fit>>]) -> Result<LawRanking, IdentifyError> + 'a;
 
 /// For how many specimens each law of the ranking is first.
 fn firsts(
     impacts: &[LeveledImpact],
-    fits: &[Vec<ImpactFit>],
+    fits: &[Vec<Option<Fit>>],
     entries: &[&ImpactEntry],
     ranking: &LawRanking,
     compare: &Compare,
@@ -258,7 +258,7 @@ fn firsts(
     let mut counts = vec![0; ranking.laws.len()];
     for indices in by_specimen.values() {
         let own: Vec<LeveledImpact> = indices.iter().map(|&i| impacts[i].clone()).collect();
-        let own_fits: Vec<Vec<ImpactFit>> = indices.iter().map(|&i| fits[i].clone()).collect();
+        let own_fits: Vec<Vec<Option<Fit>>> = indices.iter().map(|&i| fits[i].clone()).collect();
         let first = compare(&own, &own_fits).ok().map(|r| r.laws[0].kind);
         if let Some(place) = ranking.laws.iter().position(|law| Some(law.kind) == first) {
             counts[place] += 1;
@@ -340,7 +340,7 @@ fn words(verdict: &Verdict) -> (&'static str, String) {
         Verdict::Undecided { first, second } => (
             "undecided",
             format!(
-                "these impacts cannot tell {} from {}: another sample of them would rank them otherwise",
+                "these impacts cannot separate {} from {}: another sample might rank them differently",
                 first.name(),
                 second.name()
             ),
@@ -351,7 +351,7 @@ fn words(verdict: &Verdict) -> (&'static str, String) {
         } => (
             "divided",
             format!(
-                "{} describes each impact best, but {} foretells other velocities better: the \
+                "{} describes each impact best, but {} predicts other velocities better: the \
                  parameters of the first change with velocity",
                 likelihood.name(),
                 prediction.name()

@@ -7,6 +7,10 @@ use windfall_files::table::write::csv_text;
 use windfall_files::text::number::plain;
 use windfall_files::text::table::{page_tables, paragraph};
 
+/// Columns of the CSV.
+const HEADER: &str = "law,delta_aicc,delta_bic,first_share,specimens_first,prediction_error,\
+                      prediction_error_sd,residual_ratio,runs_z,parameters_per_impact,failed";
+
 /// The comparison as text for a terminal.
 #[must_use]
 pub fn text_of_laws(outcome: &LawsOutcome) -> String {
@@ -38,7 +42,7 @@ pub fn text_of_laws(outcome: &LawsOutcome) -> String {
         .iter()
         .zip(&outcome.specimens_first)
         .map(|(law, first)| {
-            let foretold = match (law.prediction, law.prediction_sd) {
+            let predicted = match (law.prediction, law.prediction_sd) {
                 (Some(value), Some(sd)) => format!("{:.2} ± {:.2}", 100.0 * value, 100.0 * sd),
                 _ => "-".to_owned(),
             };
@@ -48,7 +52,7 @@ pub fn text_of_laws(outcome: &LawsOutcome) -> String {
                 format!("{:.1}", law.bic),
                 format!("{:.1}", 100.0 * law.first_share),
                 first.to_string(),
-                foretold,
+                predicted,
                 plain(law.residual_ratio),
                 format!("{:.1}", law.runs_z),
             ]
@@ -57,9 +61,9 @@ pub fn text_of_laws(outcome: &LawsOutcome) -> String {
     let header = header.map(str::to_owned);
     let _ = writeln!(text, "{}\n", page_tables(&header, &rows, &[0]));
     let _ = writeln!(text, "{}", paragraph(&outcome.meaning, 0));
-    text += "first in: share of campaigns of impacts drawn anew; specimens: how many it is first for;\n\
-             unseen velocity: error of the force at a level left out of the fit; runs z: structure of\n\
-             the residuals along the loop, none above -2.\n";
+    text += "first in: share of bootstrap resamples in which the law ranks first; specimens: how many\n\
+             it ranks first for; unseen velocity: prediction error of the force at a held-out level;\n\
+             runs z: structure of the residuals along the loop, none above -2.\n";
     for law in outcome.laws.iter().filter(|law| law.failed > 0) {
         let _ = writeln!(
             text,
@@ -83,19 +87,6 @@ pub fn text_of_laws(outcome: &LawsOutcome) -> String {
 /// # Errors
 /// A cell cannot be written.
 pub fn csv_of_laws(outcome: &LawsOutcome) -> Result<String, Error> {
-    let header = [
-        "law",
-        "delta_aicc",
-        "delta_bic",
-        "first_share",
-        "specimens_first",
-        "prediction_error",
-        "prediction_error_sd",
-        "residual_ratio",
-        "runs_z",
-        "parameters_per_impact",
-        "failed",
-    ];
     let optional = |value: Option<f64>| value.map_or_else(String::new, |v| v.to_string());
     let rows = outcome
         .laws
@@ -116,5 +107,6 @@ pub fn csv_of_laws(outcome: &LawsOutcome) -> Result<String, Error> {
                 law.failed.to_string(),
             ]
         });
-    csv_text(&header.map(str::to_owned), rows)
+    let header: Vec<String> = HEADER.split(',').map(str::to_owned).collect();
+    csv_text(&header, rows)
 }
