@@ -23,7 +23,6 @@ pub struct GranularLaw {
     pub hertzian: bool,
     /// k; N/m^1.5 or N/m.
     pub k: f64,
-    /// Damping.
     pub damping: Damping,
 }
 
@@ -105,9 +104,6 @@ pub struct PairNumbers {
 
 impl PairNumbers {
     /// Of bodies with this R* and this effective mass.
-    ///
-    /// # Errors
-    /// See [`granular_law`].
     pub fn of(interaction: &Interaction, radius: f64, mass: f64) -> Result<Self, String> {
         let mut law = granular_law(&interaction.law)?;
         let scale = interaction.scale(radius);
@@ -120,7 +116,6 @@ impl PairNumbers {
 
     /// Stiffness in the terms of LAMMPS and LIGGGHTS, where the force of Hertz's contact is
     /// K √(R* d) d; N/m² or N/m.
-    #[must_use]
     pub fn stiffness(&self) -> f64 {
         match self.law.hertzian {
             true => self.law.k / self.radius.sqrt(),
@@ -130,7 +125,6 @@ impl PairNumbers {
 
     /// Tangential stiffness, to be multiplied by √(R* d) for Hertz's contact: `ratio` times
     /// ∂F/∂d; N/m² or N/m.
-    #[must_use]
     pub fn tangential(&self, ratio: f64) -> f64 {
         match self.law.hertzian {
             true => 1.5 * ratio * self.stiffness(),
@@ -139,13 +133,11 @@ impl PairNumbers {
     }
 
     /// γ of a damping γ m_eff √(R* d) v; 1/(m s).
-    #[must_use]
     pub fn viscoelastic(&self, c: f64) -> f64 {
         c / (self.radius.sqrt() * self.mass)
     }
 
     /// ∂F/∂d where the elastic force has this size; N/m.
-    #[must_use]
     pub fn stiffness_at(&self, force: f64) -> f64 {
         match self.law.hertzian {
             true => 1.5 * self.law.k.powf(2.0 / 3.0) * force.cbrt(),
@@ -155,7 +147,6 @@ impl PairNumbers {
 
     /// Whether a coefficient depends on the mass or the radius of who touches, so that
     /// fruit of different sizes need coefficients of their own.
-    #[must_use]
     pub fn by_size(interaction: &Interaction) -> bool {
         granular_law(&interaction.law).is_ok_and(|law| {
             let by_mass = matches!(law.damping, Damping::Root(_) | Damping::Quarter(_));
