@@ -23,6 +23,12 @@ const EVENT_COLUMNS: &str = "fruit,partner,partner_fruit,time_s,duration_s,lasti
 spot_x,spot_y,spot_z,partner_spot_x,partner_spot_y,partner_spot_z,normal_speed_m_s,\
 tangential_speed_m_s,peak_force_N,largest_displacement_m,absorbed_energy_J,friction_energy_J,static";
 
+/// Columns of fruit.csv.
+const FRUIT_COLUMNS: &str = "fruit,material,diameter_m,mass_kg,released_s,left_s,sink,x_m,y_m,\
+z_m,contacts,largest_peak_force_N,partner_of_it,time_of_it_s,impact_speed_of_it_m_s,\
+largest_absorbed_energy_J,absorbed_energy_J,bruises,largest_bruise_mm3,static_loads,\
+largest_static_force_N";
+
 /// A table of contacts that grows with the scene; it has its name when it is whole.
 pub struct EventFile {
     file: GrowingFile,
@@ -143,6 +149,10 @@ fn quoted(name: &str) -> String {
     }
 }
 
+fn columns(names: &str) -> Vec<String> {
+    names.split(',').map(str::to_owned).collect()
+}
+
 /// One row per fruit: what it is, what it went through, where it is.
 pub fn fruit_table(
     plan: &ScenePlan,
@@ -150,29 +160,6 @@ pub fn fruit_table(
     states: &[FruitState],
     bruises: Option<&[Vec<Bruise>]>,
 ) -> Result<String, Error> {
-    let header = [
-        "fruit",
-        "material",
-        "diameter_m",
-        "mass_kg",
-        "released_s",
-        "left_s",
-        "sink",
-        "x_m",
-        "y_m",
-        "z_m",
-        "contacts",
-        "largest_peak_force_N",
-        "partner_of_it",
-        "time_of_it_s",
-        "impact_speed_of_it_m_s",
-        "largest_absorbed_energy_J",
-        "absorbed_energy_J",
-        "bruises",
-        "largest_bruise_mm3",
-        "static_loads",
-        "largest_static_force_N",
-    ];
     let scene = &plan.scene;
     let mut states = states.iter().peekable();
     let rows = scene
@@ -224,8 +211,12 @@ pub fn fruit_table(
             ]
         });
     let rows: Vec<Vec<String>> = rows.collect();
-    csv_text(&header.map(str::to_owned), rows)
+    csv_text(&columns(FRUIT_COLUMNS), rows)
 }
+
+/// Columns of contacts by what was touched.
+const PARTNER_COLUMNS: &str = "touched,impacts,fruit,peak force (N),95 %,largest,\
+impact speed (m/s),95 %,largest,absorbed (mJ),95 %,largest,static loads,largest (N)";
 
 /// Results of a scene, for a terminal.
 #[must_use]
@@ -253,22 +244,6 @@ pub fn text_of_scene(outcome: &SceneOutcome) -> String {
     if outcome.engine != Engine::Windfall.title() {
         text += &format!("Moved by {}.\n\n", outcome.engine);
     }
-    let header = [
-        "touched",
-        "impacts",
-        "fruit",
-        "peak force (N)",
-        "95 %",
-        "largest",
-        "impact speed (m/s)",
-        "95 %",
-        "largest",
-        "absorbed (mJ)",
-        "95 %",
-        "largest",
-        "static loads",
-        "largest (N)",
-    ];
     let rows = outcome.partners.iter().map(|own| {
         let mut row = vec![
             own.name.clone(),
@@ -285,7 +260,7 @@ pub fn text_of_scene(outcome: &SceneOutcome) -> String {
         row
     });
     let rows: Vec<Vec<String>> = rows.collect();
-    text += &page_tables(&header.map(str::to_owned), &rows, &[0]);
+    text += &page_tables(&columns(PARTNER_COLUMNS), &rows, &[0]);
     if let Some(bruise) = &outcome.bruise {
         text += &text_of_bruises(bruise);
     }

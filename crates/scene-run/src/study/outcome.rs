@@ -30,7 +30,7 @@ pub struct StudyOutcome {
 }
 
 /// One combination of levels.
-#[derive(Clone, Debug, Serialize)]
+#[derive(Clone, Debug, Default, Serialize)]
 pub struct VariantOutcome {
     pub name: String,
     /// Its directory in that of the study.
@@ -100,14 +100,7 @@ pub fn variant(
     let mut outcome = VariantOutcome {
         name: name.to_owned(),
         directory,
-        failed: None,
-        fruit: 0,
-        contacts: 0.0,
-        waiting: 0,
-        left: 0,
-        limits: Vec::new(),
-        mean_largest: 0.0,
-        places: Vec::new(),
+        ..VariantOutcome::default()
     };
     let replicates = match runs {
         Ok(replicates) => replicates,

@@ -37,21 +37,21 @@ pub struct DropRequest {
     #[arg(long, value_name = "QUANTITY", help_heading = PLATE)]
     pub plate_damping: Option<String>,
     /// Part of its mass that the contact of the fruit feels; 1 for a central impact
-    #[arg(long, default_value_t = 1.0, value_name = "PART")]
+    #[arg(long, default_value_t = 1.0, value_name = "PART", help_heading = PLATE)]
     pub effective_mass_factor: f64,
     /// Acceleration of gravity
-    #[arg(long, default_value = "9.80665 m/s^2")]
+    #[arg(long, default_value = "9.80665 m/s^2", help_heading = PLATE)]
     pub gravity: String,
     /// Impacts to follow
-    #[arg(long, default_value_t = 2)]
+    #[arg(long, default_value_t = 2, help_heading = PLATE)]
     pub impacts: usize,
     /// When a contact is over
-    #[arg(long, default_value = "force-zero", value_parser = ends())]
+    #[arg(long, default_value = "force-zero", value_parser = ends(), help_heading = PLATE)]
     pub end: String,
 }
 
-/// The plate is rigid where none of its options is given.
-const PLATE: &str = "Plate (rigid if left out)";
+/// Heading of the options of the plate and of those behind them.
+pub const PLATE: &str = "Plate (rigid if left out)";
 
 /// A fruit that falls on a plate; SI.
 #[derive(Clone, Debug, PartialEq)]

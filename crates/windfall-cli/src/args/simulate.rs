@@ -6,7 +6,7 @@ use std::path::PathBuf;
 use windfall_simulate::compression::SimulateCompressionRequest;
 use windfall_simulate::drops::SimulateDropsRequest;
 use windfall_simulate::repeats::SimulateRepeatsRequest;
-use windfall_simulate::request::drop::DropRequest;
+use windfall_simulate::request::drop::{DropRequest, PLATE};
 use windfall_simulate::request::eccentric::EccentricRequest;
 use windfall_simulate::request::impact::{CarriageRequest, ImpactRequest, PendulumRequest};
 use windfall_simulate::taps::SimulateTapsRequest;
@@ -168,11 +168,11 @@ pub struct SimulateDropArguments {
     pub drop: DropRequest,
     /// Sampling rate: of the motion, which is shown then in csv and json; of the recordings of a
     /// campaign, 10 kHz if left out
-    #[arg(long)]
+    #[arg(long, help_heading = PLATE)]
     pub sampling_rate: Option<String>,
     /// Length of the motion, to a little after the last impact if left out; of each recording of a
     /// campaign, 1.5 s if left out
-    #[arg(long)]
+    #[arg(long, help_heading = PLATE)]
     pub duration: Option<String>,
     #[command(flatten)]
     pub eccentric: EccentricRequest,
