@@ -40,6 +40,7 @@ pub struct Classes {
 /// Error of damping coefficients that classes are chosen for; 1.
 const WANTED: f64 = 0.02;
 /// Default limit of the classes of one material.
+#[cfg(any(test, feature = "clap"))]
 pub const MOST: usize = 12;
 
 /// Sorts the fruit of a scene into classes: equal steps of the logarithm of the mass, as

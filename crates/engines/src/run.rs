@@ -1,6 +1,5 @@
 //! A scene on another engine: its deck, its run and its results.
 
-use crate::classes::MOST;
 use crate::deck::{Deck, Task};
 use crate::lammps::deck::lammps_deck;
 use crate::liggghts::deck::liggghts_deck;
@@ -50,7 +49,7 @@ pub struct EngineRequest {
 pub struct DeckRequest {
     /// For LAMMPS and LIGGGHTS: classes of size of one material at most, each with coefficients of
     /// its own
-    #[cfg_attr(feature = "clap", arg(long, value_name = "N", default_value_t = MOST))]
+    #[cfg_attr(feature = "clap", arg(long, value_name = "N", default_value_t = crate::classes::MOST))]
     pub classes: usize,
     /// For LAMMPS and LIGGGHTS: steps between frames, of which contacts are made; a contact lasts 80
     /// frames at least if left out
