@@ -1,5 +1,7 @@
 //! Lines of equal height of values on a grid, and the areas above them.
 
+use std::collections::BTreeMap;
+
 /// Values on a rectangular grid; the first coordinate varies fastest.
 #[derive(Clone, Copy, Debug)]
 pub struct Field<'a> {
@@ -32,36 +34,6 @@ type Side = (usize, usize, bool);
 /// W. E. Lorensen, H. E. Cline (1987), Computer Graphics 21:163, in two dimensions.
 #[must_use]
 pub fn contours(field: &Field, level: f64) -> Vec<Contour> {
-    chained(field, level)
-}
-
-/// Closed lines around all that is at or above a value; what an odd number of them
-/// encloses is above.
-#[must_use]
-pub fn area_above(field: &Field, level: f64) -> Vec<Vec<(f64, f64)>> {
-    // A rim of nothing in the same places: every line closes along the border.
-    let padded = |coordinates: &[f64]| -> Vec<f64> {
-        let ends = (coordinates.first(), coordinates.last());
-        let ends = (ends.0.copied(), ends.1.copied());
-        let inner = coordinates.iter().copied();
-        ends.0.into_iter().chain(inner).chain(ends.1).collect()
-    };
-    let (x, y) = (padded(field.x), padded(field.y));
-    let mut values = vec![f64::NEG_INFINITY; x.len() * y.len()];
-    for (row, own) in field.values.chunks_exact(field.x.len()).enumerate() {
-        let from = (row + 1) * x.len() + 1;
-        values[from..from + own.len()].copy_from_slice(own);
-    }
-    let rimmed = Field {
-        x: &x,
-        y: &y,
-        values: &values,
-    };
-    let lines = chained(&rimmed, level).into_iter();
-    lines.map(|line| line.points).collect()
-}
-
-fn chained(field: &Field, level: f64) -> Vec<Contour> {
     let mut links = links(field, level);
     let mut lines = Vec::new();
     // Lines that begin at the border first: what is left is closed.
@@ -99,12 +71,37 @@ fn chained(field: &Field, level: f64) -> Vec<Contour> {
     }
     lines
 }
+/// Closed lines around all that is at or above a value; what an odd number of them
+/// encloses is above.
+#[must_use]
+pub fn area_above(field: &Field, level: f64) -> Vec<Vec<(f64, f64)>> {
+    // A rim of nothing in the same places: every line closes along the border.
+    let padded = |coordinates: &[f64]| -> Vec<f64> {
+        let ends = (coordinates.first(), coordinates.last());
+        let ends = (ends.0.copied(), ends.1.copied());
+        let inner = coordinates.iter().copied();
+        ends.0.into_iter().chain(inner).chain(ends.1).collect()
+    };
+    let (x, y) = (padded(field.x), padded(field.y));
+    let mut values = vec![f64::NEG_INFINITY; x.len() * y.len()];
+    for (row, own) in field.values.chunks_exact(field.x.len()).enumerate() {
+        let from = (row + 1) * x.len() + 1;
+        values[from..from + own.len()].copy_from_slice(own);
+    }
+    let rimmed = Field {
+        x: &x,
+        y: &y,
+        values: &values,
+    };
+    let lines = contours(&rimmed, level).into_iter();
+    lines.map(|line| line.points).collect()
+}
 
 /// Which crossed sides are joined to which.
-fn links(field: &Field, level: f64) -> std::collections::BTreeMap<Side, Vec<Side>> {
+fn links(field: &Field, level: f64) -> BTreeMap<Side, Vec<Side>> {
     let (columns, rows) = (field.x.len(), field.y.len());
     let value = |i: usize, j: usize| field.values[j * columns + i];
-    let mut links: std::collections::BTreeMap<Side, Vec<Side>> = std::collections::BTreeMap::new();
+    let mut links: BTreeMap<Side, Vec<Side>> = BTreeMap::new();
     for j in 0..rows.saturating_sub(1) {
         for i in 0..columns.saturating_sub(1) {
             let corners = [(i, j), (i + 1, j), (i + 1, j + 1), (i, j + 1)];

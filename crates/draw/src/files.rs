@@ -58,9 +58,6 @@ pub struct Painting {
 /// * `name`: id of the recording; what file names cannot hold becomes "_"
 ///
 /// Returns the files: data, dots, vectors.
-///
-/// # Errors
-/// The directory or a file cannot be written.
 pub fn write_figure(
     folder: &FigureFolder,
     name: &str,
@@ -75,9 +72,6 @@ pub fn write_figure(
 }
 
 /// [`write_figure`] of several, on all threads; files in the order of the figures.
-///
-/// # Errors
-/// The directory or a file cannot be written.
 pub fn write_figures(
     folder: &FigureFolder,
     figures: &[&NamedFigure],
@@ -88,9 +82,6 @@ pub fn write_figures(
 }
 
 /// Writes what is drawn already, as [`write_figures`] does.
-///
-/// # Errors
-/// The directory or a file cannot be written.
 pub fn write_paintings(
     folder: &FigureFolder,
     paintings: &[Painting],

@@ -55,7 +55,7 @@ pub struct Frame {
 }
 
 impl Frame {
-    /// Where a point of the data stands in the drawing.
+    /// Position of a data point in the drawing.
     #[must_use]
     pub fn place(&self, (x, y): (f64, f64)) -> (f64, f64) {
         let (across, up, within) = (&self.across, &self.up, &self.within);

@@ -100,28 +100,29 @@ impl Drawing {
 
     /// A line through points.
     pub fn polyline(&mut self, points: &[(f64, f64)], ink: Ink, width: f64) {
-        let ink = ink.mark();
-        self.body += r#"<polyline points=""#;
-        for (x, y) in points {
-            let _ = write!(self.body, "{x:.2},{y:.2} ");
-        }
-        let _ = writeln!(
-            self.body,
-            r#"" fill="none" stroke="{ink}" stroke-width="{width}" stroke-linejoin="round"/>"#
-        );
+        self.line(points, "", ink, width);
     }
 
     /// A dashed line through points.
     pub fn dashed(&mut self, points: &[(f64, f64)], ink: Ink, width: f64) {
-        let ink = ink.mark();
-        self.body += r#"<polyline points=""#;
-        for (x, y) in points {
-            let _ = write!(self.body, "{x:.2},{y:.2} ");
-        }
-        let _ = writeln!(
-            self.body,
-            r#"" fill="none" stroke-dasharray="5 3" stroke="{ink}" stroke-width="{width}" stroke-linejoin="round"/>"#
+        self.line(points, r#" stroke-dasharray="5 3""#, ink, width);
+    }
+
+    fn line(&mut self, points: &[(f64, f64)], dashes: &str, ink: Ink, width: f64) {
+        let look = format!(
+            r#"fill="none"{dashes} stroke="{}" stroke-width="{width}" stroke-linejoin="round""#,
+            ink.mark()
         );
+        self.through("polyline", points, 2, &look);
+    }
+
+    /// An element with points, each with so many decimals.
+    fn through(&mut self, element: &str, points: &[(f64, f64)], decimals: usize, look: &str) {
+        let _ = write!(self.body, r#"<{element} points=""#);
+        for (x, y) in points {
+            let _ = write!(self.body, "{x:.decimals$},{y:.decimals$} ");
+        }
+        let _ = writeln!(self.body, r#"" {look}/>"#);
     }
 
     /// A tinted rectangle.
@@ -184,12 +185,7 @@ impl Drawing {
 
     /// A tinted shape with corners at points.
     pub fn tinted_shape(&mut self, points: &[(f64, f64)], ink: Ink) {
-        let ink = ink.mark();
-        self.body += r#"<polygon points=""#;
-        for (x, y) in points {
-            let _ = write!(self.body, "{x:.2},{y:.2} ");
-        }
-        let _ = writeln!(self.body, r#"" fill="{ink}" fill-opacity="0.16"/>"#);
+        self.veil(points, ink, 0.16);
     }
 
     /// A filled area that closed lines enclose: what lies within an odd number of
@@ -209,15 +205,12 @@ impl Drawing {
 
     /// A filled shape with corners at points, within a thin line.
     pub fn facet(&mut self, points: &[(f64, f64)], fill: Ink, edge: Ink) {
-        let (fill, edge) = (fill.mark(), edge.mark());
-        self.body += r#"<polygon points=""#;
-        for (x, y) in points {
-            let _ = write!(self.body, "{x:.1},{y:.1} ");
-        }
-        let _ = writeln!(
-            self.body,
-            r#"" fill="{fill}" stroke="{edge}" stroke-width="0.5" stroke-linejoin="round"/>"#
+        let look = format!(
+            r#"fill="{}" stroke="{}" stroke-width="0.5" stroke-linejoin="round""#,
+            fill.mark(),
+            edge.mark()
         );
+        self.through("polygon", points, 1, &look);
     }
 
     /// A filled circle within a line of the background's colour, which sets it off
@@ -260,17 +253,13 @@ impl Drawing {
         );
     }
 
-    /// A shape that one sees through, with corners at points.
+    /// A translucent shape with corners at points.
     pub fn veil(&mut self, points: &[(f64, f64)], ink: Ink, opacity: f64) {
-        let ink = ink.mark();
-        self.body += r#"<polygon points=""#;
-        for (x, y) in points {
-            let _ = write!(self.body, "{x:.2},{y:.2} ");
-        }
-        let _ = writeln!(self.body, r#"" fill="{ink}" fill-opacity="{opacity}"/>"#);
+        let look = format!(r#"fill="{}" fill-opacity="{opacity}""#, ink.mark());
+        self.through("polygon", points, 2, &look);
     }
 
-    /// A thin line that one sees through.
+    /// A thin translucent line.
     pub fn faint_line(&mut self, [from, to]: [(f64, f64); 2], ink: Ink, opacity: f64) {
         let ink = ink.mark();
         let _ = writeln!(
@@ -356,7 +345,7 @@ fn shading(colour: Rgb) -> String {
     text + "</radialGradient>\n"
 }
 
-/// Text as it stands in XML; control characters, which XML cannot hold, become
+/// Text escaped for XML; control characters, which XML cannot hold, become
 /// blanks, and so do those that stand for colours.
 fn escaped(text: &str) -> String {
     let mut whole = String::with_capacity(text.len());

@@ -1,5 +1,5 @@
 //! Colours of figures: light for paper, dark for a dark screen, and those of the
-//! page that a figure stands in.
+//! page that contains a figure.
 
 /// Series that have colours of their own.
 pub const SERIES: usize = 7;
@@ -27,6 +27,7 @@ pub struct Theme {
 
 /// Colours of the files of figures.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[cfg_attr(feature = "clap", derive(clap::ValueEnum))]
 pub enum FigureTheme {
     /// For paper.
     #[default]

@@ -253,7 +253,7 @@ fn draw_panel(drawing: &mut Drawing, panel: &Panel, top: f64) {
             Side::AboveLeft => (at.0 - 9.0, at.1 - 7.0, Anchor::End),
             Side::BelowRight => (at.0 + 9.0, at.1 + 13.0, Anchor::Start),
         };
-        // A label that would leave the panel stands on the other side.
+        // A label that would leave the panel moves to the other side.
         let length = CHARACTER * mark.label.chars().count() as f64;
         let (x, anchor) = match anchor {
             Anchor::End if x - length < left => (at.0 + 9.0, Anchor::Start),
@@ -342,9 +342,6 @@ fn extremes(stretch: &[(f64, f64)]) -> [(f64, f64); 2] {
 }
 
 /// What the figure shows, as CSV: one row per point.
-///
-/// # Errors
-/// None in practice: the text is written to memory.
 pub fn csv_of_figure(figure: &Figure) -> Result<String, Error> {
     let header = ["panel", "series", "x", "x_unit", "y", "y_unit"];
     let mut rows = Vec::new();

@@ -18,7 +18,7 @@ use windfall_numerics::ode::step::{StepError, Tolerance};
 const MOST_IMPACTS: usize = 100_000;
 
 /// Summary of one impact of a drop; SI, times from the release.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, serde::Serialize)]
 pub struct DropImpact {
     /// First touch; s.
     pub onset_time: f64,

@@ -15,10 +15,19 @@ pub struct Class {
     pub mass: f64,
 }
 
+impl Class {
+    /// R* and effective mass of a contact with another; m, kg.
+    pub(crate) fn effective(&self, other: &Self) -> (f64, f64) {
+        (
+            self.radius * other.radius / (self.radius + other.radius),
+            self.mass * other.mass / (self.mass + other.mass),
+        )
+    }
+}
+
 /// All classes of a scene.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Classes {
-    /// The classes.
     pub classes: Vec<Class>,
     /// The class of each fruit, by number.
     pub of_fruit: Vec<usize>,
@@ -30,7 +39,8 @@ pub struct Classes {
 
 /// Error of damping coefficients that classes are chosen for; 1.
 const WANTED: f64 = 0.02;
-/// Classes of one material at most, where nothing else is asked for.
+/// Default limit of the classes of one material.
+#[cfg(any(test, feature = "clap"))]
 pub const MOST: usize = 12;
 
 /// Sorts the fruit of a scene into classes: equal steps of the logarithm of the mass, as
@@ -38,7 +48,6 @@ pub const MOST: usize = 12;
 /// its lightest and heaviest fruit.
 ///
 /// * `most`: classes of one material at most
-#[must_use]
 pub fn classes_of(scene: &Scene, most: usize) -> Classes {
     let mut found = Classes {
         classes: Vec::new(),

@@ -6,6 +6,7 @@ use std::path::{Path, PathBuf};
 use windfall_files::error::Error;
 use windfall_files::write_file::write_whole;
 use windfall_scene_run::file::read::read_scene;
+use windfall_scene_run::file_error::make_directory;
 
 /// Contacts that were written.
 #[derive(Clone, Debug, Serialize)]
@@ -36,11 +37,7 @@ pub fn export_contacts(
     let (name, _) = other.file();
     let file = match out {
         Some(out) => {
-            std::fs::create_dir_all(out).map_err(|source| Error::FileAccess {
-                path: out.to_path_buf(),
-                action: "create",
-                source,
-            })?;
+            make_directory(out)?;
             out.join(name)
         }
         None => path.with_file_name(name),

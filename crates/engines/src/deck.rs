@@ -4,11 +4,13 @@ use crate::classes::{Classes, classes_of};
 use crate::law::PairNumbers;
 use std::collections::BTreeSet;
 use windfall_files::found::FindingOutcome;
+use windfall_scene::interaction::Interaction;
 use windfall_scene::scene::{Fruit, Scene};
-use windfall_scene::shape::wall::Shape;
+use windfall_scene::shape::mesh::bounds;
+use windfall_scene::shape::wall::Wall;
 use windfall_scene::vector::{Vector, length, scaled};
 
-/// A deck: files in one directory, and what is to be known of them.
+/// A deck: files in one directory, and findings.
 #[derive(Clone, Debug)]
 pub struct Deck {
     /// Names and contents; the first is the one that the engine is given.
@@ -23,7 +25,6 @@ pub struct Deck {
 pub struct Task<'a> {
     /// The scene, its fruit in the order in which they come.
     pub scene: &'a Scene,
-    /// Its title.
     pub title: &'a str,
     /// Classes of fruit.
     pub classes: Classes,
@@ -50,7 +51,6 @@ const LOADED: f64 = 5.0;
 
 impl<'a> Task<'a> {
     /// * `most`: classes of one material at most
-    #[must_use]
     pub fn new(
         scene: &'a Scene,
         title: &'a str,
@@ -71,7 +71,6 @@ impl<'a> Task<'a> {
     }
 
     /// Fruit that are there from the beginning; those behind them come later.
-    #[must_use]
     pub fn first(&self) -> usize {
         self.scene
             .fruit
@@ -81,19 +80,16 @@ impl<'a> Task<'a> {
     }
 
     /// The first step at which a fruit may come.
-    #[must_use]
     pub fn step_of(&self, time: f64) -> u64 {
         (time / self.scene.time_step).ceil() as u64
     }
 
     /// Steps that a fruit waits.
-    #[must_use]
     pub fn wait(&self) -> u64 {
         (WAIT / self.scene.time_step).round().max(1.0) as u64
     }
 
     /// Largest radius; m.
-    #[must_use]
     pub fn largest(&self) -> f64 {
         self.scene
             .fruit
@@ -103,66 +99,34 @@ impl<'a> Task<'a> {
     }
 
     /// Skin of the list of neighbours; m.
-    #[must_use]
     pub fn skin(&self) -> f64 {
         let sum = self.scene.fruit.iter().map(|own| own.radius).sum::<f64>();
         SKIN * sum / self.scene.fruit.len().max(1) as f64
     }
 
     /// Steps between looks at the list of neighbours.
-    #[must_use]
     pub fn looks(&self) -> u64 {
         let way = self.speed * self.scene.time_step;
         ((LOOK * self.skin() / way) as u64).clamp(1, 20)
     }
 
     /// Elastic force at which the stiffness against rolling is right; N.
-    #[must_use]
     pub fn load(&self, mass: f64) -> f64 {
         LOADED * mass * length(self.scene.gravity).max(1.0)
     }
 
     /// A box around all that is there from the beginning, and where fruit come; m.
-    #[must_use]
     pub fn bounds(&self) -> [Vector; 2] {
-        let mut low = [f64::INFINITY; 3];
-        let mut high = [f64::NEG_INFINITY; 3];
-        let mut take = |place: Vector| {
-            for axis in 0..3 {
-                low[axis] = low[axis].min(place[axis]);
-                high[axis] = high[axis].max(place[axis]);
-            }
-        };
-        for fruit in &self.scene.fruit {
-            take(fruit.place);
-            fruit.elsewhere.iter().flatten().for_each(|own| take(*own));
-        }
-        for wall in &self.scene.walls {
-            match &wall.shape {
-                Shape::Plane { .. } => {}
-                Shape::Plates(plates) => {
-                    plates
-                        .iter()
-                        .flat_map(|own| own.corners())
-                        .for_each(&mut take);
-                }
-                Shape::Cylinder { start, end, radius } => {
-                    for own in [start, end] {
-                        take(own.map(|own| own - radius));
-                        take(own.map(|own| own + radius));
-                    }
-                }
-                Shape::Mesh { triangles } => {
-                    triangles.iter().flatten().for_each(|own| take(*own));
-                }
-            }
-        }
+        let fruit = self.scene.fruit.iter();
+        let places = fruit.flat_map(|own| own.elsewhere.into_iter().flatten().chain([own.place]));
+        let walls = self.scene.walls.iter();
+        let walls = walls.flat_map(|wall| wall.shape.corners());
+        let (low, high) = bounds(places.chain(walls));
         let margin = 2.0 * self.largest();
         [low.map(|own| own - margin), high.map(|own| own + margin)]
     }
 
-    /// Why laws of contacts that can be cannot be put into an engine's terms.
-    #[must_use]
+    /// Laws of possible contacts that no engine has, each with its reason.
     pub fn lawless(&self) -> Vec<String> {
         let scene = self.scene;
         let kinds: BTreeSet<usize> = scene.fruit.iter().map(|own| own.material).collect();
@@ -180,14 +144,16 @@ impl<'a> Task<'a> {
             }
         }
         for wall in &scene.walls {
-            let tube = matches!(wall.shape, Shape::Cylinder { .. });
+            let Some(curved) = wall.shape.curved() else {
+                continue;
+            };
             for &kind in &kinds {
                 let Ok(interaction) = scene.interaction(kind, wall.material) else {
                     continue;
                 };
-                if tube && PairNumbers::by_size(interaction) && !interaction.follows_radii() {
+                if PairNumbers::by_size(interaction) && !interaction.follows_radii() {
                     reasons.push(format!(
-                        "the cylinder \"{}\" under a law that does not follow the radii: give its \
+                        "the {curved} \"{}\" under a law that does not follow the radii: give its \
                          effective_radius",
                         wall.name
                     ));
@@ -198,7 +164,6 @@ impl<'a> Task<'a> {
     }
 
     /// What classes do to the coefficients.
-    #[must_use]
     pub fn finding_of_classes(&self) -> Option<FindingOutcome> {
         let classes = &self.classes;
         (classes.damping_error > 0.0 || classes.stiffness_error > 0.0).then(|| FindingOutcome {
@@ -213,8 +178,7 @@ impl<'a> Task<'a> {
         })
     }
 
-    /// Gravity and the drag of the air, in words that both engines have.
-    #[must_use]
+    /// Commands for gravity and air drag, the same in both engines.
     pub fn fields(&self) -> String {
         let mut text = String::new();
         let size = length(self.scene.gravity);
@@ -235,8 +199,104 @@ impl<'a> Task<'a> {
         text
     }
 
+    /// The box of the scene, or where the fruit are read from that are in it.
+    pub(crate) fn space(&self, [low, high]: [Vector; 2], types: usize) -> String {
+        match self.first() > 0 {
+            true => "read_data fruit.data".to_owned(),
+            false => format!(
+                "region scene block {} units box\ncreate_box {types} scene",
+                sides(low, high)
+            ),
+        }
+    }
+
+    /// The region of a sink.
+    pub(crate) fn sink(&self, number: usize) -> String {
+        let sink = &self.scene.sinks[number];
+        format!(
+            "# sink: {}\nregion sink{number} block {} units box\n",
+            comment(&sink.name),
+            sides(sink.low, sink.high)
+        )
+    }
+
+    /// Neighbours, the time step, and what is printed.
+    pub(crate) fn stepping(&self) -> String {
+        format!(
+            "neighbor {} bin\nneigh_modify delay 0 every {} check yes\ntimestep {}\n\
+             thermo_style custom step atoms\nthermo {}\nthermo_modify lost error\n",
+            self.skin(),
+            self.looks(),
+            self.scene.time_step,
+            (self.steps / 20).max(1),
+        )
+    }
+
+    /// Fruit that come before the end, with their numbers.
+    pub(crate) fn coming(&self) -> impl Iterator<Item = (usize, &Fruit)> {
+        let coming = self.scene.fruit.iter().enumerate().skip(self.first());
+        coming.filter(|(_, own)| self.step_of(own.time) < self.steps)
+    }
+
+    /// fruit.data: those that are there from the beginning.
+    ///
+    /// * `walls`: types of atoms before those of fruit
+    /// * `atoms`: the title of their table
+    pub(crate) fn data(&self, [low, high]: [Vector; 2], walls: usize, atoms: &str) -> String {
+        let first = self.first();
+        let mut text = format!(
+            "fruit of a scene of windfall\n\n{first} atoms\n{} atom types\n\n",
+            walls + self.classes.classes.len()
+        );
+        for (axis, name) in ["x", "y", "z"].iter().enumerate() {
+            text += &format!("{} {} {name}lo {name}hi\n", low[axis], high[axis]);
+        }
+        text += &format!("\n{atoms}\n\n");
+        for (number, fruit) in self.scene.fruit[..first].iter().enumerate() {
+            text += &format!(
+                "{} {} {} {} {}\n",
+                number + 1,
+                walls + self.classes.of_fruit[number] + 1,
+                2.0 * fruit.radius,
+                density(fruit),
+                triple(fruit.place)
+            );
+        }
+        text += "\nVelocities\n\n";
+        for (number, fruit) in self.scene.fruit[..first].iter().enumerate() {
+            let (velocity, spin) = (triple(fruit.velocity), triple(fruit.spin));
+            text += &format!("{} {velocity} {spin}\n", number + 1);
+        }
+        text
+    }
+
+    /// How two materials interact.
+    pub(crate) fn interaction(&self, a: usize, b: usize) -> Result<&Interaction, String> {
+        let found = self.scene.interaction(a, b);
+        found.map_err(|problem| problem.to_string())
+    }
+
+    /// What every wall makes of a deck.
+    ///
+    /// # Errors
+    /// Walls that the engine cannot represent, each with its reason.
+    pub(crate) fn each_wall(
+        &self,
+        mut one: impl FnMut(usize, &Wall) -> Result<(), String>,
+    ) -> Result<(), Vec<String>> {
+        let walls = self.scene.walls.iter().enumerate();
+        let reasons = walls.filter_map(|(number, wall)| {
+            let reason = one(number, wall).err()?;
+            Some(format!("the wall \"{}\": {reason}", wall.name))
+        });
+        let reasons: Vec<String> = reasons.collect();
+        match reasons.is_empty() {
+            true => Ok(()),
+            false => Err(reasons),
+        }
+    }
+
     /// Whether some contact resists rolling.
-    #[must_use]
     pub fn rolls(&self) -> bool {
         let mut all = self.scene.interactions.values();
         all.any(|own| own.rolling > 0.0 && own.friction > 0.0)
@@ -244,7 +304,6 @@ impl<'a> Task<'a> {
 }
 
 /// Text as a comment of a deck: nothing that an engine would act on.
-#[must_use]
 pub fn comment(text: &str) -> String {
     let plain = |own: char| match own {
         '&' | '"' | '\'' | '$' => '_',
@@ -255,13 +314,28 @@ pub fn comment(text: &str) -> String {
 }
 
 /// Density of a fruit as a sphere; kg/m³.
-#[must_use]
 pub fn density(fruit: &Fruit) -> f64 {
     fruit.mass / (4.0 / 3.0 * std::f64::consts::PI * fruit.radius.powi(3))
 }
 
+/// Vectors as variables of a deck, by their names.
+pub(crate) fn variables(vectors: &[(&str, Vector)]) -> String {
+    let axes = ["x", "y", "z"];
+    let each = vectors.iter().flat_map(|(name, vector)| {
+        let parts = axes.iter().zip(vector);
+        parts.map(move |(axis, value)| format!("variable {name}{axis} string {value}\n"))
+    });
+    each.collect()
+}
+
+/// Opposite corners as a block of a deck.
+pub(crate) fn sides(low: Vector, high: Vector) -> String {
+    let ends = low.iter().zip(high);
+    let ends: Vec<String> = ends.map(|(low, high)| format!("{low} {high}")).collect();
+    ends.join(" ")
+}
+
 /// Three numbers of a deck.
-#[must_use]
 pub fn triple([x, y, z]: Vector) -> String {
     format!("{x} {y} {z}")
 }

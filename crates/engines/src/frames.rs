@@ -7,7 +7,6 @@ use windfall_scene::vector::UNTURNED;
 /// One frame: where all fruit are.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Frame {
-    /// Step.
     pub step: u64,
     /// Fruit, in the order of the file.
     pub fruit: Vec<FruitState>,

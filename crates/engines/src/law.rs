@@ -31,7 +31,6 @@ impl PairNumbers {
 
     /// Stiffness in the terms of LAMMPS and LIGGGHTS, where the force of Hertz's contact is
     /// K √(R* d) d; N/m² or N/m.
-    #[must_use]
     pub fn stiffness(&self) -> f64 {
         match self.law.hertzian {
             true => self.law.k / self.radius.sqrt(),
@@ -41,7 +40,6 @@ impl PairNumbers {
 
     /// Tangential stiffness, to be multiplied by √(R* d) for Hertz's contact: `ratio` times
     /// ∂F/∂d; N/m² or N/m.
-    #[must_use]
     pub fn tangential(&self, ratio: f64) -> f64 {
         match self.law.hertzian {
             true => 1.5 * ratio * self.stiffness(),
@@ -50,13 +48,11 @@ impl PairNumbers {
     }
 
     /// γ of a damping γ m_eff √(R* d) v; 1/(m s).
-    #[must_use]
     pub fn viscoelastic(&self, c: f64) -> f64 {
         c / (self.radius.sqrt() * self.mass)
     }
 
     /// ∂F/∂d where the elastic force has this size; N/m.
-    #[must_use]
     pub fn stiffness_at(&self, force: f64) -> f64 {
         match self.law.hertzian {
             true => 1.5 * self.law.k.powf(2.0 / 3.0) * force.cbrt(),
@@ -66,7 +62,6 @@ impl PairNumbers {
 
     /// Whether a coefficient depends on the mass or the radius of who touches, so that
     /// fruit of different sizes need coefficients of their own.
-    #[must_use]
     pub fn by_size(interaction: &Interaction) -> bool {
         interaction.law.granular().is_ok_and(|law| {
             let by_mass = matches!(law.damping, Damping::Root(_) | Damping::Quarter(_));

@@ -1,15 +1,15 @@
 //! Scenes on other engines: decks, runs, and laws in their terms.
 
-pub mod classes;
+mod classes;
 pub mod contacts;
-pub mod deck;
-pub mod frames;
-pub mod lammps;
-pub mod law;
-pub mod liggghts;
-pub mod motion;
+mod deck;
+mod frames;
+mod lammps;
+mod law;
+mod liggghts;
+mod motion;
 pub mod parameters;
-pub mod program;
+mod program;
 pub mod run;
 pub mod text;
-pub mod walls;
+mod walls;

@@ -14,6 +14,7 @@ use windfall_scene::energy::Energy;
 use windfall_scene::follow::Followed;
 use windfall_scene::motion::simulation::Simulation;
 use windfall_scene_run::file::engine_kind::Engine;
+use windfall_scene_run::file_error::access;
 use windfall_scene_run::run::advance::{Mover, stopped_scene as stopped};
 
 /// Frames of an engine, while it runs or from a file of an earlier run.
@@ -60,13 +61,10 @@ impl Frames {
                            export` by hand and give its frames with --frames";
             return Err(wrong(engine, problem.to_owned()));
         }
-        let failed = |source| Error::FileAccess {
-            path: directory.join(SCREEN),
-            action: "write",
-            source,
-        };
-        let screen = File::create(directory.join(SCREEN)).map_err(failed)?;
-        let errors = screen.try_clone().map_err(failed)?;
+        let screen = directory.join(SCREEN);
+        let failed = access(&screen, "write");
+        let screen = File::create(&screen).map_err(&failed)?;
+        let errors = screen.try_clone().map_err(&failed)?;
         let mut command = program.command(launch, deck, directory);
         command
             .stdout(Stdio::from(screen))
@@ -89,7 +87,6 @@ impl Frames {
     }
 
     /// Frames of an earlier run of the scene's deck.
-    #[must_use]
     pub fn of_file(engine: Engine, path: &Path, fruit: usize, frame_steps: u64) -> Self {
         Self {
             engine,

@@ -229,7 +229,6 @@ impl Program {
     }
 
     /// The command that runs a deck in a directory.
-    #[must_use]
     pub fn command(&self, launch: &Launch, deck: &str, directory: &Path) -> Command {
         let mut command = Command::new(&launch.command[0]);
         command

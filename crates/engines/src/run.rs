@@ -1,6 +1,5 @@
-//! A scene on another engine: its deck, its run, and what came of it.
+//! A scene on another engine: its deck, its run and its results.
 
-use crate::classes::MOST;
 use crate::deck::{Deck, Task};
 use crate::lammps::deck::lammps_deck;
 use crate::liggghts::deck::liggghts_deck;
@@ -15,40 +14,47 @@ use windfall_files::progress::Progress;
 use windfall_files::write_file::write_whole;
 use windfall_scene_run::file::engine_kind::Engine;
 use windfall_scene_run::file::read::{ScenePlan, read_scene};
+use windfall_scene_run::file_error::make_directory;
 use windfall_scene_run::run::advance::SceneStart;
 use windfall_scene_run::run::outcome::{SceneOutcome, StepOutcome};
 use windfall_scene_run::run::workflow::{
     Moved, SceneRequest, directory_of, run_moved, run_scene, time_step,
 };
 
-/// What may be asked of another engine.
+/// Another engine, and how it runs.
 #[derive(Clone, Debug)]
+#[cfg_attr(feature = "clap", derive(clap::Args))]
 pub struct EngineRequest {
-    /// The engine.
+    /// The engine that moves the fruit
+    #[cfg_attr(feature = "clap", arg(long, value_enum, default_value_t))]
     pub engine: Engine,
-    /// Its program, where it is not on the path.
-    pub program: Option<PathBuf>,
-    /// Ranks of MPI.
+    /// For LAMMPS and LIGGGHTS: ranks of MPI
+    #[cfg_attr(feature = "clap", arg(long, value_name = "N", default_value_t = 1))]
     pub ranks: usize,
-    /// Classes of size of one material at most.
-    pub classes: usize,
-    /// Steps between frames; from the contact duration where it is left out.
-    pub frame_steps: Option<u64>,
-    /// Frames of an earlier run, to be followed instead of a new one.
+    /// For LAMMPS and LIGGGHTS: the program, if it is not on the path as lmp or liggghts
+    #[cfg_attr(feature = "clap", arg(long, value_name = "FILE", value_hint = clap::ValueHint::FilePath))]
+    pub engine_program: Option<PathBuf>,
+    /// For LAMMPS and LIGGGHTS: frames that an earlier run of the scene's deck wrote, instead of a new
+    /// run
+    #[cfg_attr(feature = "clap", arg(long, value_name = "FILE", value_hint = clap::ValueHint::FilePath))]
     pub frames: Option<PathBuf>,
+    /// Its deck.
+    #[cfg_attr(feature = "clap", command(flatten))]
+    pub deck: DeckRequest,
 }
 
-impl Default for EngineRequest {
-    fn default() -> Self {
-        Self {
-            engine: Engine::default(),
-            program: None,
-            ranks: 1,
-            classes: MOST,
-            frame_steps: None,
-            frames: None,
-        }
-    }
+/// Options of a deck.
+#[derive(Clone, Debug)]
+#[cfg_attr(feature = "clap", derive(clap::Args))]
+pub struct DeckRequest {
+    /// For LAMMPS and LIGGGHTS: classes of size of one material at most, each with coefficients of
+    /// its own
+    #[cfg_attr(feature = "clap", arg(long, value_name = "N", default_value_t = crate::classes::MOST))]
+    pub classes: usize,
+    /// For LAMMPS and LIGGGHTS: steps between frames, of which contacts are made; a contact lasts 80
+    /// frames at least if left out
+    #[cfg_attr(feature = "clap", arg(long, value_name = "N"))]
+    pub frame_steps: Option<u64>,
 }
 
 /// A deck that was written.
@@ -81,10 +87,9 @@ struct Ready {
     frame_steps: u64,
 }
 
-fn ready(path: &Path, request: &EngineRequest) -> Result<Ready, Error> {
+fn ready(path: &Path, engine: Engine, request: &DeckRequest) -> Result<Ready, Error> {
     let mut plan = read_scene(path)?;
     let step = time_step(&mut plan)?;
-    let engine = request.engine;
     if plan.scene.fruit.iter().any(|fruit| fruit.clump.is_some()) {
         let problem = "it cannot represent this scene (--engine windfall can): its ovate fruit touch \
                        a partner once, where the deepest of their spheres does, and the engine's \
@@ -124,7 +129,7 @@ fn ready(path: &Path, request: &EngineRequest) -> Result<Ready, Error> {
     })
 }
 
-/// Leaves out what no other engine has; says so.
+/// Drops what no other engine has, with findings.
 fn simplified(plan: &mut ScenePlan, engine: Engine) -> Vec<FindingOutcome> {
     let mut findings = Vec::new();
     let (mut spread, mut annuli) = (Vec::new(), 1);
@@ -163,11 +168,7 @@ fn simplified(plan: &mut ScenePlan, engine: Engine) -> Vec<FindingOutcome> {
 }
 
 fn write_deck(deck: &Deck, directory: &Path) -> Result<Vec<PathBuf>, Error> {
-    std::fs::create_dir_all(directory).map_err(|source| Error::FileAccess {
-        path: directory.to_path_buf(),
-        action: "create",
-        source,
-    })?;
+    make_directory(directory)?;
     let mut files = Vec::new();
     for (name, text) in &deck.files {
         let path = directory.join(name);
@@ -185,14 +186,15 @@ fn write_deck(deck: &Deck, directory: &Path) -> Result<Vec<PathBuf>, Error> {
 /// The scene cannot be used, or not on this engine; the directory cannot be written.
 pub fn export_deck(
     path: &Path,
-    request: &EngineRequest,
+    engine: Engine,
+    request: &DeckRequest,
     out: Option<&Path>,
 ) -> Result<DeckOutcome, Error> {
-    let ready = ready(path, request)?;
-    let beside = path.with_extension(request.engine.name());
+    let ready = ready(path, engine, request)?;
+    let beside = path.with_extension(engine.name());
     let files = write_deck(&ready.deck, out.unwrap_or(&beside))?;
     Ok(DeckOutcome {
-        engine: request.engine.title().to_owned(),
+        engine: engine.title().to_owned(),
         files,
         steps: ready.deck.steps,
         time_step: ready.step.time_step,
@@ -215,7 +217,7 @@ pub fn run_on_engine(
     if own.engine == Engine::Windfall {
         return run_scene(path, request, progress);
     }
-    let ready = ready(path, own)?;
+    let ready = ready(path, own.engine, &own.deck)?;
     let mut plan = ready.plan;
     let fruit = plan.scene.fruit.len();
     let out = directory_of(path, request);
@@ -241,7 +243,7 @@ pub fn run_on_engine(
             )
         }
         None => {
-            let program = find_program(own.engine, own.program.as_deref())?;
+            let program = find_program(own.engine, own.engine_program.as_deref())?;
             let launch = program.launch(own.ranks.max(1))?;
             let directory = out.join("engine");
             write_deck(&ready.deck, &directory)?;

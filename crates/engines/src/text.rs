@@ -4,6 +4,7 @@ use crate::contacts::ContactsOutcome;
 use crate::run::DeckOutcome;
 use windfall_files::text::statistic::number;
 use windfall_scene_run::file::engine_kind::Engine;
+use windfall_scene_run::run::tables::text_of_files;
 
 /// What was written, and what to do with it.
 #[must_use]
@@ -29,16 +30,10 @@ pub fn text_of_deck(outcome: &DeckOutcome) -> String {
     let start = start.map_or(String::new(), |name| name.to_string_lossy().into_owned());
     text += &format!(
         "\nThere: {program} -in {start}, on one machine or on many. It writes frames.bin, of which\n\
-         `windfall scene run FILE --engine {} --frames frames.bin` makes contacts, fruit and bruises.\n\
-         \nWritten: ",
+         `windfall scene run FILE --engine {} --frames frames.bin` makes contacts, fruit and bruises.\n",
         outcome.engine.to_lowercase()
     );
-    let files: Vec<String> = outcome
-        .files
-        .iter()
-        .map(|file| file.display().to_string())
-        .collect();
-    text + &files.join(", ") + "\n"
+    text + &text_of_files(&outcome.files)
 }
 
 /// Contacts in another engine's terms: what is exact, and what is not.

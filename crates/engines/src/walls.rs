@@ -1,6 +1,8 @@
-//! Walls in the terms of engines: blocks with open faces, cylinders, planes.
+//! Shapes of walls in the terms of engines: regions for LAMMPS, triangles for LIGGGHTS.
 
-use windfall_scene::shape::wall::{Plate, Shape, Wall};
+use crate::deck::{sides, triple};
+use windfall_scene::shape::surface::{Plate, Shape};
+use windfall_scene::shape::wall::Wall;
 use windfall_scene::vector::{Vector, cross, dot, length, scaled, subtract};
 
 /// The surface of a wall as a region of space.
@@ -73,6 +75,67 @@ pub fn region_of(wall: &Wall) -> Result<Region, String> {
         Shape::Cylinder { start, end, radius } => Ok(of_cylinder(*start, *end, *radius)),
         Shape::Mesh { .. } => Err("a mesh of triangles".to_owned()),
     }
+}
+
+impl Region {
+    /// How it is turned.
+    pub fn tilt(&self) -> Option<Tilt> {
+        match self {
+            Self::Plane { .. } => None,
+            Self::Block { tilt, .. } | Self::Cylinder { tilt, .. } => *tilt,
+        }
+    }
+
+    /// Its words in a deck for LAMMPS, without its motion.
+    pub fn words(&self) -> String {
+        match self {
+            Self::Plane { point, normal } => {
+                format!("plane {} {} side in", triple(*point), triple(*normal))
+            }
+            Self::Block {
+                low, high, open, ..
+            } => {
+                let open = open.iter().enumerate().filter(|(_, open)| **open);
+                let open: String = open
+                    .map(|(face, _)| format!(" open {}", face + 1))
+                    .collect();
+                format!("block {}{open}", sides(*low, *high))
+            }
+            Self::Cylinder {
+                axis,
+                centre,
+                radius,
+                ends: [low, high],
+                ..
+            } => {
+                let across = (0..3).filter(|other| other != axis);
+                let across: String = across.map(|other| format!("{} ", centre[other])).collect();
+                let axis = ["x", "y", "z"][*axis];
+                format!("cylinder {axis} {across}{radius} {low} {high} open 1 open 2")
+            }
+        }
+    }
+}
+
+/// A surface as triangles, for LIGGGHTS; endless planes are its primitives.
+///
+/// # Errors
+/// Why it cannot be triangles.
+pub fn triangles_of(shape: &Shape) -> Result<Vec<[Vector; 3]>, String> {
+    match shape {
+        Shape::Plates(plates) => Ok(plates.iter().flat_map(halves).collect()),
+        Shape::Mesh { triangles } => Ok(triangles.clone()),
+        Shape::Plane { .. } => Err("no mesh".to_owned()),
+        Shape::Cylinder { .. } => {
+            Err("a cylinder: as a mesh it would have edges that fruit touch twice".to_owned())
+        }
+    }
+}
+
+/// A plate as two triangles.
+fn halves(plate: &Plate) -> [[Vector; 3]; 2] {
+    let [a, b, c, d] = plate.corners();
+    [[a, b, d], [a, d, c]]
 }
 
 /// The axis along which a vector goes, if it goes along one.

@@ -1,7 +1,38 @@
-//! What can be wrong with what is kept of a scene.
+//! Errors in the stored results of a scene.
 
-use std::path::PathBuf;
-use windfall_files::error::Fault;
+use serde::Serialize;
+use std::path::{Path, PathBuf};
+use windfall_files::error::{Error, Fault};
+use windfall_files::write_file::write_whole;
+
+/// What a system's error becomes: the file, and what was done with it.
+pub fn access(path: &Path, action: &'static str) -> impl Fn(std::io::Error) -> Error {
+    let path = path.to_path_buf();
+    move |source| Error::FileAccess {
+        path: path.clone(),
+        action,
+        source,
+    }
+}
+
+/// Writes a result as indented JSON.
+///
+/// * `title`: of the result, for messages
+///
+/// # Errors
+/// The file cannot be written, or the result is no JSON.
+pub(crate) fn write_json(path: &Path, title: &str, result: &impl Serialize) -> Result<(), Error> {
+    let json = serde_json::to_string_pretty(result).map_err(|error| Error::ResultUnwritable {
+        item: title.to_owned(),
+        detail: error.to_string(),
+    })?;
+    write_whole(path, (json + "\n").as_bytes())
+}
+
+/// Makes a directory, with those above it.
+pub fn make_directory(path: &Path) -> Result<(), Error> {
+    std::fs::create_dir_all(path).map_err(access(path, "create"))
+}
 
 impl Fault for SceneFileError {
     fn is_request(&self) -> bool {
@@ -16,7 +47,7 @@ impl Fault for SceneFileError {
     }
 }
 
-/// What can be wrong with what is kept of a scene.
+/// Errors in the stored results of a scene.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum SceneFileError {
     /// Nothing was recorded.
@@ -38,7 +69,7 @@ pub enum SceneFileError {
         path: PathBuf,
         /// Where.
         byte: u64,
-        /// What is wrong.
+        /// The problem.
         problem: &'static str,
     },
     /// A file of frames of a newer windfall.
@@ -75,7 +106,7 @@ pub enum SceneFileError {
         path: PathBuf,
         /// Its line.
         line: u64,
-        /// What is wrong.
+        /// The problem.
         problem: String,
     },
 }

@@ -2,17 +2,9 @@
 
 use serde::{Deserialize, Serialize};
 use windfall_scene::scene::Scene;
-use windfall_scene::shape::wall::{Shape, Wall};
-use windfall_scene::vector::{
-    Vector, add, cross, dot, length, plus_scaled, scaled, subtract, unit,
-};
-
-/// Faces around a cylinder.
-const SIDES: usize = 48;
-
-/// Width of the rectangle that stands for an endless plane, over that of the rest of the
-/// scene; 1.
-const PLANE_REACH: f64 = 1.15;
+use windfall_scene::shape::surface::{Faces, Shape};
+use windfall_scene::shape::wall::Wall;
+use windfall_scene::vector::{Vector, add, dot, length, plus_scaled, scaled, subtract};
 
 /// A wall as faces, at rest.
 #[derive(Clone, Debug, PartialEq)]
@@ -57,7 +49,6 @@ pub struct Bounds {
 
 impl Bounds {
     /// The smallest box around points; one of no size at the origin where there are none.
-    #[must_use]
     pub fn around(points: impl IntoIterator<Item = Vector>) -> Self {
         let empty = ([f64::INFINITY; 3], [f64::NEG_INFINITY; 3]);
         let (low, high) = points.into_iter().fold(empty, |(low, high), point| {
@@ -76,26 +67,16 @@ impl Bounds {
     }
 
     /// Its middle; m.
-    #[must_use]
     pub fn middle(&self) -> Vector {
         scaled(add(self.low, self.high), 0.5)
     }
 
     /// Its diagonal; m.
-    #[must_use]
     pub fn diagonal(&self) -> f64 {
         length(subtract(self.high, self.low))
     }
 
-    /// Its width along a direction of length 1; m.
-    #[must_use]
-    pub fn width(&self, along: Vector) -> f64 {
-        let sides = subtract(self.high, self.low);
-        (0..3).map(|k| (sides[k] * along[k]).abs()).sum()
-    }
-
     /// Whether a point lies inside the box widened by `beyond` (m) on every side.
-    #[must_use]
     pub fn holds(&self, point: Vector, beyond: f64) -> bool {
         (0..3).all(|k| point[k] >= self.low[k] - beyond && point[k] <= self.high[k] + beyond)
     }
@@ -103,7 +84,6 @@ impl Bounds {
 
 /// The walls of a scene as faces, and the box around all that has an end: walls at rest, and
 /// the places at which fruit come.
-#[must_use]
 pub fn geometry_of(scene: &Scene) -> (Vec<WallGeometry>, Bounds) {
     let mut points: Vec<Vector> = Vec::new();
     for fruit in &scene.fruit {
@@ -120,7 +100,7 @@ pub fn geometry_of(scene: &Scene) -> (Vec<WallGeometry>, Bounds) {
             });
             points = points.iter().copied().chain(feet).collect();
         } else {
-            points.extend(faces_of(&wall.shape, None).0);
+            points.extend(wall.shape.faces([[0.0; 3]; 2]).vertices);
         }
     }
     let bounds = Bounds::around(points);
@@ -130,7 +110,11 @@ pub fn geometry_of(scene: &Scene) -> (Vec<WallGeometry>, Bounds) {
 }
 
 fn geometry(scene: &Scene, wall: &Wall, bounds: &Bounds) -> WallGeometry {
-    let (vertices, faces, corners) = faces_of(&wall.shape, Some(bounds));
+    let Faces {
+        vertices,
+        faces,
+        corners,
+    } = wall.shape.faces([bounds.low, bounds.high]);
     WallGeometry {
         about: WallAbout {
             name: wall.name.clone(),
@@ -146,75 +130,17 @@ fn geometry(scene: &Scene, wall: &Wall, bounds: &Bounds) -> WallGeometry {
     }
 }
 
-/// Vertices, faces, and vertices of each face.
-///
-/// * `bounds`: what the rectangle for an endless plane is to reach around
-fn faces_of(shape: &Shape, bounds: Option<&Bounds>) -> (Vec<Vector>, Vec<u32>, usize) {
-    match shape {
-        Shape::Plane { point, normal } => {
-            let middle = bounds.map_or(*point, Bounds::middle);
-            let height = dot(subtract(middle, *point), *normal);
-            let foot = plus_scaled(middle, *normal, -height);
-            let (a, b) = across(*normal);
-            let half = [a, b].map(|axis| {
-                let width = bounds.map_or(1.0, |own| own.width(axis));
-                0.5 * PLANE_REACH * width.max(f64::MIN_POSITIVE)
-            });
-            let corners = [(-1.0, -1.0), (1.0, -1.0), (1.0, 1.0), (-1.0, 1.0)];
-            let corners = corners.map(|(s, t)| {
-                let along = plus_scaled(foot, a, s * half[0]);
-                plus_scaled(along, b, t * half[1])
-            });
-            (corners.to_vec(), vec![0, 1, 2, 3], 4)
-        }
-        Shape::Plates(plates) => {
-            let mut vertices = Vec::new();
-            let mut faces = Vec::new();
-            for plate in plates {
-                let first = vertices.len() as u32;
-                vertices.extend(plate.corners());
-                faces.extend([0, 1, 3, 2].map(|own| first + own));
-            }
-            (vertices, faces, 4)
-        }
-        Shape::Cylinder { start, end, radius } => {
-            let along = unit(subtract(*end, *start)).unwrap_or([0.0, 0.0, 1.0]);
-            let (a, b) = across(along);
-            let mut vertices = Vec::new();
-            for side in 0..SIDES {
-                let angle = std::f64::consts::TAU * side as f64 / SIDES as f64;
-                let out = plus_scaled(scaled(a, radius * angle.cos()), b, radius * angle.sin());
-                vertices.extend([add(*start, out), add(*end, out)]);
-            }
-            let all = 2 * SIDES as u32;
-            let faces = (0..SIDES as u32).flat_map(|side| {
-                let own = 2 * side;
-                [own, own + 1, (own + 3) % all, (own + 2) % all]
-            });
-            (vertices, faces.collect(), 4)
-        }
-        Shape::Mesh { triangles } => {
-            let vertices: Vec<Vector> = triangles.iter().flatten().copied().collect();
-            let faces = (0..vertices.len() as u32).collect();
-            (vertices, faces, 3)
-        }
-    }
-}
-
-/// Two directions across a direction of length 1.
-fn across(along: Vector) -> (Vector, Vector) {
-    let least = (0..3).min_by(|a, b| along[*a].abs().total_cmp(&along[*b].abs()));
-    let mut axis = [0.0; 3];
-    axis[least.unwrap_or(0)] = 1.0;
-    let a = unit(cross(along, axis)).unwrap_or([1.0, 0.0, 0.0]);
-    (a, cross(along, a))
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
+    use windfall_scene::vector::{cross, unit};
 
-    fn area(vertices: &[Vector], faces: &[u32], corners: usize) -> f64 {
+    fn area(shape: &Shape) -> f64 {
+        let Faces {
+            vertices,
+            faces,
+            corners,
+        } = shape.faces([[0.0; 3]; 2]);
         let at = |own: u32| vertices[own as usize];
         let face = |own: &[u32]| {
             let fan = (1..corners - 1).map(|k| {
@@ -233,16 +159,14 @@ mod tests {
             end: [1.1, 0.2, 0.3],
             radius: 0.5,
         };
-        let (vertices, faces, corners) = faces_of(&cylinder, None);
         // A prism of 48 sides: its girth is 2 n r sin(π/n).
         let girth = 48.0 * (std::f64::consts::PI / 48.0).sin();
-        assert!((area(&vertices, &faces, corners) - girth).abs() < 1e-12);
-        let plate = windfall_scene::shape::wall::Plate {
+        assert!((area(&cylinder) - girth).abs() < 1e-12);
+        let plate = windfall_scene::shape::surface::Plate {
             corner: [0.0; 3],
             edges: [[2.0, 0.0, 0.0], [0.5, 3.0, 0.0]],
         };
-        let (vertices, faces, corners) = faces_of(&Shape::Plates(vec![plate; 2]), None);
-        assert!((area(&vertices, &faces, corners) - 12.0).abs() < 1e-12);
+        assert!((area(&Shape::Plates(vec![plate; 2])) - 12.0).abs() < 1e-12);
     }
 
     #[test]
@@ -251,7 +175,8 @@ mod tests {
         assert!((bounds.diagonal() - 3.0).abs() < 1e-15);
         let normal = unit([1.0, 0.0, 2.0]).unwrap();
         let point = [0.0, 0.0, -1.0];
-        let (vertices, _, _) = faces_of(&Shape::Plane { point, normal }, Some(&bounds));
+        let plane = Shape::Plane { point, normal };
+        let vertices = plane.faces([bounds.low, bounds.high]).vertices;
         for vertex in &vertices {
             assert!(dot(subtract(*vertex, point), normal).abs() < 1e-12);
         }

@@ -1,10 +1,11 @@
 //! Scenes of many fruit: their files, runs, frames, bruises and studies.
 
+mod base64;
 pub mod bruise;
 pub mod file;
 pub mod file_error;
 pub mod frames;
-pub mod geometry;
+mod geometry;
 pub mod run;
-pub mod run_error;
+mod run_error;
 pub mod study;

@@ -1,4 +1,4 @@
-//! What can come between the beginning of a scene's run and its end.
+//! Errors of a scene's run.
 
 use std::path::PathBuf;
 use windfall_files::error::Fault;
@@ -6,23 +6,22 @@ use windfall_files::error::Fault;
 /// Version of windfall.
 const VERSION: &str = env!("CARGO_PKG_VERSION");
 
-/// Why a run does not begin, or does not go on.
+/// Why a run does not start or stops.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum SceneRunError {
-    /// There is one that could go on.
+    /// A stopped run could be resumed.
     #[error(
         "{directory} holds a run that was stopped{}: with --resume it goes on from there; with \
          --restart the scene begins anew, and what that run did is lost",
         at_of(*.at), directory = directory.display()
     )]
     Unfinished {
-        /// Where results go.
         directory: PathBuf,
         /// Time of its checkpoint, and when the scene ends; s.
         at: Option<[f64; 2]>,
     },
-    /// Somebody else is at it.
+    /// Another process is running it.
     #[error(
         "{path}: another windfall is running this scene; wait until it is done, or write into \
          another directory with --out", path = path.display()
@@ -31,53 +30,39 @@ pub enum SceneRunError {
         /// The table that it writes.
         path: PathBuf,
     },
-    /// There is none.
+    /// There is no stopped run.
     #[error(
         "{directory} holds no run that was stopped; without --resume the scene begins anew",
         directory = directory.display()
     )]
-    NothingToResume {
-        /// Where results go.
-        directory: PathBuf,
-    },
-    /// The scene is another one.
+    NothingToResume { directory: PathBuf },
+    /// The scene has changed.
     #[error(
         "{path}: the scene has changed since the run was stopped, and a run cannot go on with \
          another scene; changed: {changed}. Put the scene back as it was, or begin anew with \
          --restart", path = path.display(), changed = changed.join(", ")
     )]
     Changed {
-        /// The checkpoint.
         path: PathBuf,
         /// What differs.
         changed: Vec<String>,
     },
-    /// Not what was written.
+    /// The file is damaged.
     #[error(
         "{path}: {problem}; the run cannot go on from there, and nothing was changed: put the file \
          back from a copy, or begin anew with --restart", path = path.display()
     )]
-    Damaged {
-        /// The checkpoint, or the table.
-        path: PathBuf,
-        /// What is wrong with it.
-        problem: String,
-    },
+    Damaged { path: PathBuf, problem: String },
     /// Written by another windfall.
     #[error(
         "{path}: the checkpoint was written by windfall {version}, this is {VERSION}: go on with \
          that version, or begin anew with --restart", path = path.display()
     )]
-    Version {
-        /// The checkpoint.
-        path: PathBuf,
-        /// Of the other.
-        version: String,
-    },
+    Version { path: PathBuf, version: String },
     /// The scene's results would mean nothing from there on.
     #[error("the scene was stopped: {0}")]
     Failed(windfall_scene::error::Error),
-    /// Somebody stopped it.
+    /// It was cancelled.
     #[error(
         "stopped at {now:.6} s of {end} s; what was done up to {kept:.6} s is kept: the same command \
          with --resume goes on from there"
@@ -90,12 +75,10 @@ pub enum SceneRunError {
         /// Time of the last checkpoint; s.
         kept: f64,
     },
-    /// A disk that is full, or a directory that is not to be written.
+    /// A full disk, or a read-only directory.
     #[error("{path}: cannot write: {source}. {}", kept_of(*.kept), path = path.display())]
     Unwritable {
-        /// The file.
         path: PathBuf,
-        /// What the system said.
         source: std::io::Error,
         /// Time of the last checkpoint, where there is one; s.
         kept: Option<f64>,

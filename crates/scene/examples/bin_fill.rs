@@ -16,7 +16,8 @@ use windfall_scene::error::Error;
 use windfall_scene::interaction::{Interaction, mindlin_ratio};
 use windfall_scene::motion::simulation::Simulation;
 use windfall_scene::scene::{Fruit, Scene};
-use windfall_scene::shape::wall::{Motion, Shape, Wall};
+use windfall_scene::shape::surface::Shape;
+use windfall_scene::shape::wall::{Motion, Wall};
 use windfall_scene::state::State;
 
 /// Steps after which contacts that ended are taken.
@@ -97,7 +98,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
 }
 
 fn fill(simulation: &mut Simulation, steps: u64) -> Result<(), Error> {
-    let count = simulation.scene().fruit.len();
+    let count = simulation.scene.fruit.len();
     let mut events = 0;
     for part in 0..10 {
         let (wall, used) = (std::time::Instant::now(), processor_time());

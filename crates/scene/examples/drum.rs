@@ -13,7 +13,8 @@ use windfall_contact::expression::parse_law;
 use windfall_scene::interaction::{Interaction, mindlin_ratio};
 use windfall_scene::motion::simulation::Simulation;
 use windfall_scene::scene::{Fruit, Scene};
-use windfall_scene::shape::wall::{Motion, Shape, Turning, Wall};
+use windfall_scene::shape::surface::Shape;
+use windfall_scene::shape::wall::{Motion, Turning, Wall};
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
     let arguments: Vec<String> = std::env::args().collect();

@@ -7,9 +7,6 @@ use std::io::{Error, ErrorKind, Read, Result, Write};
 /// A value that goes into bytes and comes back with the same bits.
 pub trait Binary: Sized {
     /// Writes the value.
-    ///
-    /// # Errors
-    /// Those of the writer.
     fn write(&self, to: &mut dyn Write) -> Result<()>;
 
     /// Reads a value that [`Binary::write`] wrote.
@@ -88,7 +85,7 @@ impl<T: Binary> Binary for Vec<T> {
     }
 
     fn read(from: &mut dyn Read) -> Result<Self> {
-        // A length that is none runs into the end of the bytes before it takes memory.
+        // A corrupt length hits the end of the bytes before it allocates much.
         (0..usize::read(from)?).map(|_| T::read(from)).collect()
     }
 }

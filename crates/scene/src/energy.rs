@@ -11,7 +11,8 @@ pub(crate) struct Account {
 }
 
 /// Energies of a scene; J.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, serde::Serialize, utoipa::ToSchema)]
+#[schema(as = EnergyOutcome)]
 pub struct Energy {
     /// Of translation.
     pub kinetic: f64,
@@ -32,6 +33,7 @@ pub struct Energy {
     /// Done by moving walls.
     pub done_by_walls: f64,
     /// Of fruit that came less that of fruit that left.
+    #[serde(skip)]
     pub brought: f64,
 }
 

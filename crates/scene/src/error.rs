@@ -1,8 +1,8 @@
-//! What can be wrong with a scene, or go wrong in it.
+//! Errors of a scene and of its run.
 
 use crate::vector::Vector;
 
-/// What is wrong.
+/// The problem.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum Error {
@@ -16,7 +16,7 @@ pub enum Error {
         what: &'static str,
         /// The number.
         value: f64,
-        /// What is wrong with it.
+        /// The problem.
         problem: &'static str,
     },
     /// Two materials meet, and nothing says what then happens.
@@ -72,7 +72,7 @@ pub enum Error {
     /// A state that belongs to another scene, or to none.
     #[error("the saved state cannot be taken up: {problem}")]
     StateUnfit {
-        /// What is wrong with it.
+        /// The problem.
         problem: String,
     },
     /// A fruit is released where another one or a wall is.

@@ -1,4 +1,4 @@
-//! A scene whose fruit are moved by something else: another engine.
+//! A scene whose fruit another engine moves.
 //!
 //! Its frames say where the fruit are; the contacts, with their forces, work and events, are
 //! computed here, by the same code as in a scene of its own.
@@ -51,7 +51,7 @@ impl Simulation {
         self.push(true)
     }
 
-    /// Takes out fruit that are there no more.
+    /// Removes fruit that are missing in a frame.
     fn leave(&mut self, next: &[Option<FruitState>], followed: &Followed) -> Result<(), Error> {
         let (gravity, time) = (self.scene.gravity, self.time());
         let mut keep = Vec::with_capacity(self.bodies.len());
@@ -85,7 +85,7 @@ impl Simulation {
         Ok(())
     }
 
-    /// Lets in fruit that were not there.
+    /// Adds fruit that are new in a frame.
     fn come(&mut self, next: &[Option<FruitState>], followed: &Followed) {
         let (gravity, step) = (self.scene.gravity, self.scene.time_step);
         let mut there = vec![false; next.len()];
@@ -112,7 +112,7 @@ impl Simulation {
         }
     }
 
-    /// Moves all bodies to where they are said to be.
+    /// Moves all bodies to their places in the frame.
     fn go(&mut self, next: &mut [Option<FruitState>], followed: &Followed) {
         let step = self.scene.time_step;
         let mut moved = 0.0_f64;

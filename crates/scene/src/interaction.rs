@@ -1,4 +1,4 @@
-//! What two materials do to each other where they touch.
+//! Contacts between two materials.
 
 use crate::error::Error;
 use windfall_contact::laws::any_law::LARGEST_PARAMETERS;

@@ -18,7 +18,7 @@ pub struct FruitKind {
     /// Mean radius; m.
     pub radius: f64,
     /// Standard deviation of the radius between fruit; m. Draws beyond three of them are
-    /// drawn anew.
+    /// rejected.
     pub radius_sd: f64,
     /// Of ovate fruit how they differ from spheres; the radius is that across the axis.
     pub ovate: Option<Ovate>,
@@ -84,7 +84,7 @@ pub enum Source {
     },
 }
 
-/// Draws beyond so many standard deviations are drawn anew.
+/// Draws beyond this many standard deviations are rejected.
 const FARTHEST: f64 = 3.0;
 /// Pitch of the lattice over the largest diameter; 1.
 const PITCH: f64 = 1.03;
@@ -205,7 +205,7 @@ pub(crate) fn normal_of_two(a: f64, b: f64) -> f64 {
     (-2.0 * (1.0 - a).ln()).sqrt() * (2.0 * std::f64::consts::PI * b).cos()
 }
 
-/// A random place of a box for a fruit that is to be wholly inside.
+/// A random place at which a fruit lies wholly inside a box.
 fn somewhere(
     low: Vector,
     high: Vector,

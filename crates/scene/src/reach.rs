@@ -3,7 +3,7 @@
 use crate::contacts::wall_contacts::WallState;
 use crate::scene::{Scene, Sink};
 use crate::shape::mesh::bounds;
-use crate::shape::wall::{Shape, Wall};
+use crate::shape::wall::Wall;
 use crate::vector::{Vector, add, length, scaled, subtract};
 use std::collections::BinaryHeap;
 
@@ -28,7 +28,7 @@ const AROUND: f64 = 4.0;
 pub fn reaches_a_sink(scene: &Scene, radius: f64, starts: &[Vector]) -> Option<bool> {
     let walls = scene.walls.iter().filter(|wall| wall.motion.stays());
     let walls: Vec<Wall> = walls.cloned().collect();
-    let corners = walls.iter().flat_map(corners_of);
+    let corners = walls.iter().flat_map(|wall| wall.shape.corners());
     // Around the walls everything is free: who gets there gets to every sink beyond.
     let (low, high) = bounds(corners.chain(starts.iter().copied()));
     let margin = [AROUND * radius; 3];
@@ -51,19 +51,6 @@ pub fn reaches_a_sink(scene: &Scene, radius: f64, starts: &[Vector]) -> Option<b
         }),
     };
     Some(grid.search(&WallState::new(&walls), radius, starts, &scene.sinks))
-}
-
-/// Corners of the box around a wall; none of a plane, which has no end.
-fn corners_of(wall: &Wall) -> Vec<Vector> {
-    match &wall.shape {
-        Shape::Plane { .. } => Vec::new(),
-        Shape::Plates(plates) => plates.iter().flat_map(|own| own.corners()).collect(),
-        Shape::Cylinder { start, end, radius } => [start, end]
-            .into_iter()
-            .flat_map(|own| [own.map(|at| at - radius), own.map(|at| at + radius)])
-            .collect(),
-        Shape::Mesh { triangles } => triangles.iter().flatten().copied().collect(),
-    }
 }
 
 /// Cells in a box.
@@ -160,7 +147,8 @@ fn distance(sink: &Sink, place: Vector) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::shape::wall::{Motion, Plate};
+    use crate::shape::surface::{Plate, Shape};
+    use crate::shape::wall::Motion;
 
     /// A closed box of 1 m with a square hole in its floor, above a sink.
     fn hopper(hole: f64) -> Scene {

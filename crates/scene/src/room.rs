@@ -3,8 +3,9 @@
 
 use crate::contacts::wall_contacts::WallState;
 use crate::scene::Scene;
-use crate::shape::wall::{Facet, Shape, Wall};
-use crate::vector::{Vector, any_normal, cross, dot, length, plus_scaled, scaled, subtract};
+use crate::shape::surface::{Facet, Shape};
+use crate::shape::wall::Wall;
+use crate::vector::{Vector, cross, dot, length, plus_scaled, subtract};
 
 /// A fruit that comes in where a wall is.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -56,8 +57,6 @@ pub fn first_in_wall(scene: &Scene) -> Option<InWall> {
 const APART: f64 = 0.01;
 /// ... where the angle of their normals has a sine below this.
 const PARALLEL: f64 = 0.01;
-/// Places looked at along each edge of a plate, around and along a cylinder.
-const PLACES: usize = 12;
 
 /// The first two walls that lie on each other at the beginning: a fruit there would feel
 /// both, as if the wall were twice as stiff.
@@ -76,7 +75,7 @@ pub fn first_doubled(scene: &Scene) -> Option<Doubled> {
     walls.move_to(&scene.walls, 0.0, 0.0);
     let mut near = Vec::new();
     for (number, wall) in scene.walls.iter().enumerate() {
-        for (place, normal) in places(wall) {
+        for (place, normal) in wall.shape.facets().iter().flat_map(Facet::places) {
             // From a little above: the other must lie as far below.
             let height = 0.25 * smallest;
             let (place, normal) = walls.moved(number, place, normal);
@@ -143,51 +142,12 @@ fn doubled_planes(walls: &[Wall], apart: f64) -> Option<Doubled> {
     None
 }
 
-/// Places all over a wall at rest, with the normals there.
-fn places(wall: &Wall) -> Vec<(Vector, Vector)> {
-    let shares = || (0..PLACES).map(|place| (place as f64 + 0.5) / PLACES as f64);
-    let mut all = Vec::new();
-    for facet in wall.shape.facets() {
-        match facet {
-            Facet::Plane { .. } => {}
-            Facet::Plate(plate) => {
-                let [a, b] = plate.edges;
-                let across = cross(a, b);
-                let normal = scaled(across, 1.0 / length(across));
-                for s in shares() {
-                    let from = plus_scaled(plate.corner, a, s);
-                    all.extend(shares().map(|t| (plus_scaled(from, b, t), normal)));
-                }
-            }
-            Facet::Cylinder {
-                start,
-                along,
-                radius,
-            } => {
-                let out = any_normal(along);
-                let other = scaled(cross(along, out), 1.0 / length(along));
-                for turn in shares() {
-                    let (s, c) = (std::f64::consts::TAU * turn).sin_cos();
-                    let normal = plus_scaled(scaled(out, c), other, s);
-                    let from = plus_scaled(start, normal, radius);
-                    all.extend(shares().map(|t| (plus_scaled(from, along, t), normal)));
-                }
-            }
-            Facet::Triangle([a, b, c]) => {
-                let across = cross(subtract(b, a), subtract(c, a));
-                let middle = [0, 1, 2].map(|axis| (a[axis] + b[axis] + c[axis]) / 3.0);
-                all.push((middle, scaled(across, 1.0 / length(across))));
-            }
-        }
-    }
-    all
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
     use crate::scene::Fruit;
-    use crate::shape::wall::{Motion, Plate};
+    use crate::shape::surface::Plate;
+    use crate::shape::wall::Motion;
 
     fn scene(shapes: Vec<Shape>) -> Scene {
         let wall = |shape| Wall {

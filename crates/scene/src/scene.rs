@@ -2,6 +2,7 @@
 
 use crate::annuli::MOST_ANNULI;
 use crate::error::Error;
+use crate::event::{Event, Partner};
 use crate::interaction::{Draws, Interaction};
 use crate::shape::clump::Clump;
 use crate::shape::wall::Wall;
@@ -13,7 +14,7 @@ use std::collections::BTreeMap;
 pub struct Scene {
     /// Names of the materials, of fruit and of walls.
     pub materials: Vec<String>,
-    /// What pairs of materials do to each other; the lower number first.
+    /// Interactions of pairs of materials; the lower number first.
     pub interactions: BTreeMap<(usize, usize), Interaction>,
     /// Walls.
     pub walls: Vec<Wall>,
@@ -105,13 +106,6 @@ impl Fruit {
         2.0 * across.unwrap_or(self.radius)
     }
 
-    /// Length along its axis, of a sphere the diameter; m.
-    #[must_use]
-    pub fn length(&self) -> f64 {
-        let along = self.clump.as_ref().map(|own| own.semi_axes(self.mass)[0]);
-        2.0 * along.unwrap_or(self.radius)
-    }
-
     /// Radius of the sphere with the same volume; m.
     #[must_use]
     pub fn mean_radius(&self) -> f64 {
@@ -134,7 +128,7 @@ impl Fruit {
 }
 
 impl Scene {
-    /// What two materials do to each other.
+    /// The interaction of two materials.
     ///
     /// # Errors
     /// [`Error::InteractionMissing`].
@@ -147,6 +141,17 @@ impl Scene {
                 second: name(key.1),
             }
         })
+    }
+
+    /// The materials that met in a contact, the lower number first.
+    #[must_use]
+    pub fn materials_of(&self, event: &Event) -> (usize, usize) {
+        let own = self.fruit[event.fruit as usize].material;
+        let other = match event.partner {
+            Partner::Fruit(other) => self.fruit[other as usize].material,
+            Partner::Wall(wall) => self.walls[wall as usize].material,
+        };
+        (own.min(other), own.max(other))
     }
 
     /// R* (m) and effective mass (kg) of the mean fruit of two materials, or of a material
@@ -166,10 +171,7 @@ impl Scene {
         }
     }
 
-    /// Whether its numbers can be.
-    ///
-    /// # Errors
-    /// The first that cannot.
+    /// Checks its numbers.
     pub fn check(&self) -> Result<(), Error> {
         let positive = |what, value: f64| match value > 0.0 && value.is_finite() {
             true => Ok(()),

@@ -1,4 +1,4 @@
-//! The state of a scene that runs: saved, and taken up again with the same bits.
+//! The state of a running scene: saved, and resumed with the same bits.
 
 use crate::binary;
 use crate::binary::{Binary, no_value};
@@ -19,7 +19,7 @@ use std::io::{Read, Result as IoResult, Write};
 use windfall_contact::laws::any_law::LARGEST_PARAMETERS;
 use windfall_contact::laws::kind::{Law, LawKind};
 
-/// All that a scene remembers from step to step; bytes by [`Binary`].
+/// Everything a scene carries from step to step, stored as [`Binary`].
 #[derive(Clone, Debug)]
 pub struct State {
     steps: u64,
@@ -177,12 +177,6 @@ impl Binary for Partner {
 }
 
 impl State {
-    /// Steps that were done.
-    #[must_use]
-    pub fn steps(&self) -> u64 {
-        self.steps
-    }
-
     /// Whether it is one of this scene.
     fn check(&self, scene: &Scene, facets: usize) -> IoResult<()> {
         let released = self.entered.len();
@@ -237,9 +231,6 @@ pub struct Saved<'a>(&'a Simulation);
 
 impl Saved<'_> {
     /// Writes it.
-    ///
-    /// # Errors
-    /// Those of the writer.
     pub fn write(&self, to: &mut dyn Write) -> IoResult<()> {
         let own = self.0;
         let fruit = own.fruit();
@@ -337,7 +328,7 @@ impl Simulation {
         Saved(self)
     }
 
-    /// A scene that goes on from a state.
+    /// Resumes a scene from a state.
     ///
     /// # Errors
     /// The scene cannot be, see [`Scene::check`]; the state is of another scene.
@@ -363,7 +354,7 @@ impl Simulation {
         body_of
     }
 
-    /// Goes on from a state with a list of neighbours that knows no other past.
+    /// Takes up a state, with a neighbour list built from it alone.
     fn take_up(&mut self, state: &State) -> Result<(), Error> {
         let unfit = |problem: std::io::Error| Error::StateUnfit {
             problem: problem.to_string(),

@@ -67,7 +67,7 @@ pub fn unit(a: Vector) -> Option<Vector> {
 
 /// A direction of length 1 across another.
 #[must_use]
-pub(crate) fn any_normal(along: Vector) -> Vector {
+pub fn any_normal(along: Vector) -> Vector {
     let [x, y, z] = along.map(f64::abs);
     let least = if x <= y && x <= z {
         [1.0, 0.0, 0.0]

@@ -7,7 +7,8 @@ use common::{STEEL, ball, floor, law, scene};
 use windfall_scene::interaction::{Interaction, mindlin_ratio};
 use windfall_scene::motion::simulation::Simulation;
 use windfall_scene::scene::Scene;
-use windfall_scene::shape::wall::{Motion, Plate, Shape, Wall};
+use windfall_scene::shape::surface::{Plate, Shape};
+use windfall_scene::shape::wall::{Motion, Wall};
 
 /// Slope of the logarithms of errors over those of steps, by least squares.
 fn order(points: &[(f64, f64)]) -> f64 {

@@ -8,7 +8,8 @@ use windfall_scene::event::{Event, Partner};
 use windfall_scene::interaction::{Interaction, mindlin_ratio};
 use windfall_scene::motion::simulation::{FruitState, Simulation};
 use windfall_scene::scene::{Fruit, Scene};
-use windfall_scene::shape::wall::{Motion, Plate, Shape, Wall};
+use windfall_scene::shape::surface::{Plate, Shape};
+use windfall_scene::shape::wall::{Motion, Wall};
 
 fn apples() -> Interaction {
     Interaction {

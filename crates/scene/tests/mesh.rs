@@ -8,7 +8,8 @@ use windfall_scene::event::Event;
 use windfall_scene::interaction::{Interaction, mindlin_ratio};
 use windfall_scene::motion::simulation::{FruitState, Simulation};
 use windfall_scene::scene::Scene;
-use windfall_scene::shape::wall::{Motion, Plate, Shape, Turning, Vibration, Wall};
+use windfall_scene::shape::surface::{Plate, Shape};
+use windfall_scene::shape::wall::{Motion, Turning, Vibration, Wall};
 use windfall_scene::vector::Vector;
 
 fn apple() -> Interaction {

@@ -11,7 +11,8 @@ use windfall_scene::event::Event;
 use windfall_scene::interaction::{Interaction, Spread, mindlin_ratio};
 use windfall_scene::motion::simulation::{FruitState, Leaving, Simulation};
 use windfall_scene::scene::{Scene, Sink};
-use windfall_scene::shape::wall::{Motion, Shape, Turning, Vibration, Wall};
+use windfall_scene::shape::surface::Shape;
+use windfall_scene::shape::wall::{Motion, Turning, Vibration, Wall};
 use windfall_scene::state::State;
 
 /// Numbers as good as random, the same everywhere; -0.5 to 0.5.

@@ -1,17 +1,15 @@
 //! A whole simulated campaign: recordings as the instrument would have written
 //! them, with tables, campaign.toml and the parameters that were drawn.
 
-use crate::files::{SimulatedFile, campaign_text, recording_text};
+use crate::files::{SimulatedCampaign, campaign_text, rates, recording_text};
+use crate::impact::failed;
+use crate::new_campaign::NewCampaign;
 use std::path::{Path, PathBuf};
-use windfall_campaign::settings::template::{create_directory, write_file};
 use windfall_contact::expression::LawExpression;
-use windfall_contact::law::EndRule;
-use windfall_contact::laws::kind::Law;
+use windfall_contact::laws::kind::{Law, LawKind};
 use windfall_files::error::Error;
-use windfall_files::table::write::csv_text;
-use windfall_identify::rig::kind::Rig;
 use windfall_identify::rig::simulate::{simulate_rig, trajectory};
-use windfall_signal::instrument::{Instrument, Trajectory, record};
+use windfall_signal::instrument::{Trajectory, record};
 use windfall_signal::noise::gaussian::{NoiseSource, noise_source, normal, uniform};
 
 /// Recorded before first touch and after separation; s.
@@ -44,37 +42,6 @@ pub struct Batch {
     pub repeats: usize,
 }
 
-/// Whether campaign.toml gives the mass of a carriage.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum Weighed {
-    /// It does.
-    #[default]
-    Given,
-    /// It says "from impulse".
-    FromImpulse,
-}
-
-/// What is common to all recordings.
-#[derive(Clone, Debug, PartialEq)]
-pub struct SimulatedCampaign {
-    /// Title of the campaign.
-    pub title: String,
-    /// Label that marks all results as simulated.
-    pub label: String,
-    /// The rig.
-    pub rig: Rig,
-    /// Whether the campaign knows the mass.
-    pub weighed: Weighed,
-    /// Impact velocity; m/s.
-    pub velocity: f64,
-    /// End of contact.
-    pub end: EndRule,
-    /// What records.
-    pub instrument: Instrument,
-    /// Seed of specimens, noise and encoder positions.
-    pub seed: u64,
-}
-
 /// Writes a campaign of simulated recordings into a new directory.
 ///
 /// Every impact has its own seed, so that adding specimens at the end leaves
@@ -88,10 +55,8 @@ pub fn write_simulated_campaign(
     campaign: &SimulatedCampaign,
     batches: &[Batch],
 ) -> Result<usize, Error> {
-    create_directory(directory)?;
-    let raw = directory.join("raw");
-    create_directory(&raw)?;
-    let mut tables = Tables::default();
+    let mut new = NewCampaign::create(directory)?;
+    let (mut specimens, mut impacts, mut truth) = (vec![], vec![], vec![]);
     let mut specimen_number = 0;
     let mut recordings = 0;
     for batch in batches {
@@ -100,9 +65,7 @@ pub fn write_simulated_campaign(
             let id = format!("{}-{:02}", batch.variety.replace(' ', "-"), specimen + 1);
             let mut source = noise_source(campaign.seed, SPECIMEN_STREAM + specimen_number);
             let law = drawn(batch, &mut source)?;
-            tables
-                .specimens
-                .push(vec![id.clone(), batch.variety.clone()]);
+            specimens.push(vec![id.clone(), batch.variety.clone()]);
             for repeat in 0..batch.repeats {
                 let impact = match batch.repeats {
                     1 => id.clone(),
@@ -111,48 +74,21 @@ pub fn write_simulated_campaign(
                 let file = format!("{impact}.csv");
                 let seed = seed_of(campaign.seed, specimen_number, repeat as u64);
                 let text = recording(campaign, &law, &mut source, seed)?;
-                write_file(&raw.join(&file), text.as_bytes())?;
-                tables.impacts.push(vec![impact.clone(), id.clone(), file]);
-                tables.truth.push(vec![
-                    impact,
-                    id.clone(),
-                    LawExpression::from(law).to_string(),
-                ]);
+                new.file(&format!("raw/{file}"), text)?;
+                impacts.push(vec![impact.clone(), id.clone(), file]);
+                let law = LawExpression::from(law).to_string();
+                truth.push(vec![impact, id.clone(), law]);
                 recordings += 1;
             }
         }
     }
-    write_tables(directory, &tables)?;
-    let toml = campaign_text(&SimulatedFile {
-        title: &campaign.title,
-        label: &campaign.label,
-        rig: &campaign.rig,
-        mass_given: campaign.weighed == Weighed::Given,
-        instrument: &campaign.instrument,
-        law: batches.first().map(|batch| batch.law.kind()),
-        end: campaign.end,
-    });
-    write_file(&directory.join("campaign.toml"), toml.as_bytes())?;
+    new.table("specimens.csv", &["id", "variety"], specimens)?;
+    new.table("impacts.csv", &["id", "specimen", "file"], impacts)?;
+    new.table("truth.csv", &["id", "specimen", "law"], truth)?;
+    let law = batches.first().map(|batch| batch.law.kind());
+    let toml = campaign_text(campaign, law.unwrap_or(LawKind::KuwabaraKono));
+    new.file("campaign.toml", toml)?;
     Ok(recordings)
-}
-
-#[derive(Default)]
-struct Tables {
-    specimens: Vec<Vec<String>>,
-    impacts: Vec<Vec<String>>,
-    truth: Vec<Vec<String>>,
-}
-
-fn write_tables(directory: &Path, tables: &Tables) -> Result<(), Error> {
-    let write = |name: &str, header: &[&str], rows: &[Vec<String>]| {
-        let header: Vec<String> = header.iter().map(|name| (*name).to_owned()).collect();
-        let text = csv_text(&header, rows.iter().cloned())?;
-        let path: PathBuf = directory.join(name);
-        write_file(&path, text.as_bytes())
-    };
-    write("specimens.csv", &["id", "variety"], &tables.specimens)?;
-    write("impacts.csv", &["id", "specimen", "file"], &tables.impacts)?;
-    write("truth.csv", &["id", "specimen", "law"], &tables.truth)
 }
 
 /// A seed per impact (splitmix64 of Steele, Lea and Flood 2014, chained).
@@ -206,13 +142,10 @@ fn recording(
     seed: u64,
 ) -> Result<String, Error> {
     let rig = &campaign.rig;
-    let failed = |source| Error::Identify {
-        subject: LawExpression::from(*law).to_string(),
-        source: Box::new(source),
-    };
+    let failed = |source| failed(law, source);
     let summary = simulate_rig(law, rig, campaign.velocity, campaign.end).map_err(failed)?;
     let duration = summary.contact_duration;
-    let rates = sampling_rates(&campaign.instrument);
+    let rates = rates(&campaign.instrument);
     let fastest = rates.iter().copied().fold(0.0, f64::max);
     let slowest = rates.iter().copied().fold(f64::INFINITY, f64::min);
     let lead = LEAD.max(LEAD_SAMPLES / slowest);
@@ -234,17 +167,4 @@ fn recording(
         source: Box::new(source),
     })?;
     Ok(recording_text(&channels))
-}
-
-/// Sampling rates of the sensors that an instrument has; Hz.
-fn sampling_rates(instrument: &Instrument) -> Vec<f64> {
-    let sensors = [
-        instrument.force,
-        instrument.displacement,
-        instrument.rate,
-        instrument.acceleration,
-    ];
-    let encoder = instrument.encoder.map(|sensor| sensor.sampling_rate);
-    let sensors = sensors.iter().flatten().map(|sensor| sensor.sampling_rate);
-    encoder.into_iter().chain(sensors).collect()
 }

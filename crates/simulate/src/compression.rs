@@ -1,8 +1,9 @@
 //! `windfall simulate compression`: a campaign of slow compressions by a known
 //! law, to try the program and to check it.
 
+use crate::new_campaign::NewCampaign;
+use clap::{Args, ValueHint};
 use std::path::{Path, PathBuf};
-use windfall_campaign::settings::template::{create_directory, write_file};
 use windfall_cards::law_use::chosen_law;
 use windfall_contact::laws::kind::Law;
 use windfall_files::error::Error;
@@ -11,32 +12,43 @@ use windfall_files::table::write::csv_text;
 use windfall_signal::noise::gaussian::{noise_source, normal};
 
 /// What is simulated; texts with units.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Args)]
 pub struct SimulateCompressionRequest {
-    /// Law with all its parameters, for the whole travel of the crosshead, or a
-    /// law card.
+    /// Force law of the crosshead's travel, with its parameters
+    #[arg(long)]
     pub law: String,
-    /// A file of the user's own laws.
+    /// File of own laws ([laws.NAME] tables, as in campaign.toml) that --law can name
+    #[arg(long, value_name = "FILE", value_hint = ValueHint::FilePath)]
     pub laws: Option<PathBuf>,
-    /// Rates of deformation; every fruit is compressed at each.
+    /// Rate of deformation; may be repeated: every fruit is compressed at each
+    #[arg(long = "rate", default_value = "1 mm/s")]
     pub rates: Vec<String>,
-    /// Largest deformation.
+    /// Largest deformation
+    #[arg(long, default_value = "2 mm")]
     pub deformation: String,
-    /// Radius of the fruit, for specimens.csv.
+    /// Radius of the fruit
+    #[arg(long, default_value = "38 mm")]
     pub radius: String,
-    /// Plates that deform the fruit, for campaign.toml.
+    /// Plates that deform the fruit: 1 or 2
+    #[arg(long, default_value_t = 2)]
     pub plates: u32,
-    /// Force at which the tissue yields; never if left out.
+    /// Force at which the tissue yields; never if left out
+    #[arg(long)]
     pub yield_force: Option<String>,
-    /// Number of fruit.
+    /// Number of fruit
+    #[arg(long, default_value_t = 3)]
     pub fruit: usize,
-    /// Spread of the law's parameters between fruit; 1.
+    /// Spread of stiffness and damping between fruit, as a part
+    #[arg(long, default_value_t = 0.0)]
     pub spread: f64,
-    /// Standard deviation of the noise of force.
+    /// Standard deviation of the noise of force
+    #[arg(long, default_value = "0.02 N")]
     pub force_noise: String,
-    /// Sampling rate.
+    /// Sampling rate
+    #[arg(long, default_value = "1 kHz")]
     pub sampling_rate: String,
-    /// Seed of the noise.
+    /// Seed of noise and spread
+    #[arg(long, default_value_t = 1)]
     pub seed: u64,
 }
 
@@ -59,21 +71,14 @@ const AFTER_YIELD: f64 = -0.3;
 const BEFORE: f64 = 0.1;
 
 /// Writes a campaign directory with its recordings; the files written.
-///
-/// # Errors
-/// A value cannot be used, or the directory cannot be written.
 pub fn simulate_compression(
     directory: &Path,
     request: &SimulateCompressionRequest,
 ) -> Result<Vec<PathBuf>, Error> {
     let plan = plan(request)?;
     let radius = positive("--radius", &request.radius, "m")?;
-    create_directory(directory)?;
-    let raw = directory.join("raw");
-    create_directory(&raw)?;
-    let mut written = Vec::new();
-    let mut specimens = vec![];
-    let mut rows = vec![];
+    let mut new = NewCampaign::create(directory)?;
+    let (mut specimens, mut rows) = (vec![], vec![]);
     for fruit in 0..request.fruit {
         let id = format!("fruit-{}", fruit + 1);
         let law = fruit_law(&plan.law, request, fruit);
@@ -82,34 +87,18 @@ pub fn simulate_compression(
             let name = format!("{id}-{}.csv", index + 1);
             let stream = (fruit * plan.rates.len() + index) as u64;
             let text = recording(&plan, &law, *rate, (request.seed, stream + 1000))?;
-            let path = raw.join(&name);
-            write_file(&path, text.as_bytes())?;
-            written.push(path);
+            new.file(&format!("raw/{name}"), text)?;
             let number = format!("{id}-{}", index + 1);
             rows.push(vec![number, id.clone(), name, (1e3 * rate).to_string()]);
         }
     }
-    let header = |names: &[&str]| names.iter().map(|n| (*n).to_owned()).collect::<Vec<_>>();
     let label = format!("{} at seed {}", request.law, request.seed);
-    let plates = request.plates;
     let law = plan.law.kind().name();
-    let tables = [
-        ("campaign.toml", campaign(&label, plates, law)),
-        (
-            "specimens.csv",
-            csv_text(&header(&["id", "radius_mm"]), specimens)?,
-        ),
-        (
-            "impacts.csv",
-            csv_text(&header(&["id", "specimen", "file", "rate_mm_s"]), rows)?,
-        ),
-    ];
-    for (name, text) in tables {
-        let path = directory.join(name);
-        write_file(&path, text.as_bytes())?;
-        written.push(path);
-    }
-    Ok(written)
+    new.file("campaign.toml", campaign(&label, request.plates, law))?;
+    new.table("specimens.csv", &["id", "radius_mm"], specimens)?;
+    let header = ["id", "specimen", "file", "rate_mm_s"];
+    new.table("impacts.csv", &header, rows)?;
+    Ok(new.written)
 }
 
 fn plan(request: &SimulateCompressionRequest) -> Result<Plan, Error> {

@@ -1,44 +1,47 @@
 //! Simulated drops and their motions as text, CSV and JSON.
 
-use crate::drop::{PlateOutcome, SimulatedBounce, SimulatedDrop, SimulatedDropMotion};
-use crate::text::{findings_text, six_digits};
+use crate::drop::{SimulatedDrop, SimulatedDropMotion};
+use crate::text::{
+    Column, column, findings_text, motion_csv, number_or_blank, six_digits, with_motion,
+};
+use windfall_drop_rig::rig::Plate;
+use windfall_drop_rig::simulate::DropImpact;
 use windfall_files::error::Error;
-use windfall_files::named::Named;
 use windfall_files::table::write::csv_text;
 use windfall_files::text::table::table_text;
 
-/// A value of an impact: name, value, unit.
-pub(crate) type Row = (&'static str, Option<f64>, &'static str);
+/// A value of an impact: name, value (NaN where there is none), unit.
+pub(crate) type Row = (&'static str, f64, &'static str);
 
-pub(crate) fn rows(impact: &SimulatedBounce) -> Vec<Row> {
+pub(crate) fn rows(own: &DropImpact) -> Vec<Row> {
     vec![
-        ("onset_time", Some(impact.onset_time), "s"),
-        ("impact_velocity", Some(impact.impact_velocity), "m/s"),
-        ("peak_contact_force", Some(impact.peak_contact_force), "N"),
+        ("onset_time", own.onset_time, "s"),
+        ("impact_velocity", own.impact_velocity, "m/s"),
+        ("peak_contact_force", own.peak_contact_force, "N"),
         (
             "time_of_peak_contact_force",
-            Some(impact.time_of_peak_contact_force),
+            own.time_of_peak_contact_force,
             "s",
         ),
-        ("peak_support_force", Some(impact.peak_support_force), "N"),
+        ("peak_support_force", own.peak_support_force, "N"),
         (
             "time_of_peak_support_force",
-            Some(impact.time_of_peak_support_force),
+            own.time_of_peak_support_force,
             "s",
         ),
-        ("max_displacement", Some(impact.max_displacement), "m"),
+        ("max_displacement", own.max_displacement, "m"),
         (
             "time_of_max_displacement",
-            Some(impact.time_of_max_displacement),
+            own.time_of_max_displacement,
             "s",
         ),
-        ("force_end_time", impact.force_end_time, "s"),
-        ("separation_time", impact.separation_time, "s"),
-        ("separation_velocity", impact.separation_velocity, "m/s"),
-        ("restitution", impact.restitution, "1"),
-        ("contact_restitution", impact.contact_restitution, "1"),
-        ("impulse", Some(impact.impulse), "N s"),
-        ("absorbed_energy", impact.absorbed_energy, "J"),
+        ("force_end_time", own.force_end_time, "s"),
+        ("separation_time", own.separation_time, "s"),
+        ("separation_velocity", own.separation_velocity, "m/s"),
+        ("restitution", own.restitution, "1"),
+        ("contact_restitution", own.contact_restitution, "1"),
+        ("impulse", own.impulse, "N s"),
+        ("absorbed_energy", own.absorbed_energy, "J"),
     ]
 }
 
@@ -68,7 +71,7 @@ pub fn text_of_drop(drop: &SimulatedDrop) -> String {
 }
 
 /// "plate 0.2 kg on 645800 N/m and 52.47 N s/m".
-pub(crate) fn plate_text(plate: Option<&PlateOutcome>) -> String {
+pub(crate) fn plate_text(plate: Option<&Plate>) -> String {
     match plate {
         None => "rigid plate".to_owned(),
         Some(plate) => format!(
@@ -85,8 +88,11 @@ pub(crate) fn impact_table(columns: &[Vec<Row>], intervals: &[f64]) -> String {
     let mut header = vec!["quantity".to_owned()];
     header.extend((1..=columns.len()).map(|number| format!("impact {number}")));
     header.push("unit".to_owned());
-    let shown = |value: Option<f64>| value.map_or_else(|| "-".to_owned(), six_digits);
-    let line = |name: &str, values: Vec<Option<f64>>, unit: &str| {
+    let shown = |value: f64| match value.is_finite() {
+        true => six_digits(value),
+        false => "-".to_owned(),
+    };
+    let line = |name: &str, values: Vec<f64>, unit: &str| {
         let mut line = vec![name.replace('_', " ")];
         line.extend(values.into_iter().map(shown));
         line.push(unit.to_owned());
@@ -97,8 +103,8 @@ pub(crate) fn impact_table(columns: &[Vec<Row>], intervals: &[f64]) -> String {
         let values = columns.iter().map(|column| column[index].1).collect();
         lines.push(line(name, values, unit));
     }
-    let mut intervals: Vec<Option<f64>> = intervals.iter().copied().map(Some).collect();
-    intervals.resize(columns.len(), None);
+    let mut intervals = intervals.to_vec();
+    intervals.resize(columns.len(), f64::NAN);
     lines.push(line("interval to the next onset", intervals, "s"));
     table_text(&header, lines, &[0, header.len() - 1])
 }
@@ -112,18 +118,7 @@ pub(crate) fn given(value: f64) -> String {
     }
 }
 
-/// "peak_force_N"; no unit for a pure number.
-pub(crate) fn column(name: &str, unit: &str) -> String {
-    match unit {
-        "1" => name.to_owned(),
-        unit => format!("{name}_{}", unit.replace(['/', ' '], "_")),
-    }
-}
-
 /// A simulated drop as CSV, one row per impact, units in the header.
-///
-/// # Errors
-/// None in practice: the text is written to memory.
 pub fn csv_of_drop(drop: &SimulatedDrop) -> Result<String, Error> {
     let columns: Vec<Vec<Row>> = drop.impacts.iter().map(rows).collect();
     impact_csv(&columns, &drop.intervals)
@@ -131,22 +126,21 @@ pub fn csv_of_drop(drop: &SimulatedDrop) -> Result<String, Error> {
 
 /// Impacts as CSV with a row for each.
 pub(crate) fn impact_csv(columns: &[Vec<Row>], intervals: &[f64]) -> Result<String, Error> {
-    let number = |value: Option<f64>| value.map_or_else(String::new, |value| value.to_string());
     let mut header = vec!["impact".to_owned()];
     let names = columns.first().into_iter().flatten();
     header.extend(names.map(|(name, _, unit)| column(name, unit)));
     header.push("interval_s".to_owned());
     let lines = columns.iter().enumerate().map(|(index, values)| {
         let mut line = vec![(index + 1).to_string()];
-        line.extend(values.iter().map(|(_, value, _)| number(*value)));
-        line.push(number(intervals.get(index).copied()));
+        line.extend(values.iter().map(|(_, value, _)| number_or_blank(*value)));
+        let interval = intervals.get(index).copied();
+        line.push(number_or_blank(interval.unwrap_or(f64::NAN)));
         line
     });
     csv_text(&header, lines)
 }
 
-/// Columns of a motion: name, unit, values.
-fn motion_columns(motion: &SimulatedDropMotion) -> [(&'static str, &'static str, &[f64]); 7] {
+fn motion_columns(motion: &SimulatedDropMotion) -> [Column<'_>; 7] {
     let t = &motion.trajectory;
     [
         ("time", "s", &t.times),
@@ -160,25 +154,12 @@ fn motion_columns(motion: &SimulatedDropMotion) -> [(&'static str, &'static str,
 }
 
 /// The motion of a drop as CSV.
-///
-/// # Errors
-/// None in practice: the text is written to memory.
 pub fn csv_of_drop_motion(motion: &SimulatedDropMotion) -> Result<String, Error> {
-    let columns = motion_columns(motion);
-    let header = columns.map(|(name, unit, _)| column(name, unit));
-    let samples = motion.trajectory.times.len();
-    let rows = (0..samples).map(|i| columns.map(|(_, _, values)| values[i].to_string()).to_vec());
-    csv_text(&header, rows)
+    motion_csv(&motion_columns(motion))
 }
 
 /// A drop and its motion as JSON: the keys of the drop, and `motion`.
 #[must_use]
 pub fn json_of_drop_motion(motion: &SimulatedDropMotion) -> serde_json::Value {
-    let mut value = serde_json::json!(motion.drop);
-    let columns = motion_columns(motion).map(|(name, _, values)| (name.to_owned(), values));
-    if let Some(keys) = value.as_object_mut() {
-        let columns = serde_json::json!(Named(columns.to_vec()));
-        keys.insert("motion".to_owned(), columns);
-    }
-    value
+    with_motion(serde_json::json!(motion.drop), &motion_columns(motion))
 }

@@ -3,10 +3,12 @@
 
 use crate::campaign::{Batch, drawn, seed_of};
 use crate::files::recording_text;
+use crate::impact::failed;
+use crate::new_campaign::NewCampaign;
 use crate::request::drop::DropPlan;
 use crate::request::recordings::spread;
+use clap::Args;
 use std::path::{Path, PathBuf};
-use windfall_campaign::settings::template::{create_directory, write_file};
 use windfall_cards::law_use::end_name;
 use windfall_cards::user_laws::text::law_table;
 use windfall_contact::expression::LawExpression;
@@ -15,7 +17,6 @@ use windfall_drop_rig::rig::DropRig;
 use windfall_drop_rig::simulate::{DropSummary, drop_trajectory, simulate_drop};
 use windfall_files::error::Error;
 use windfall_files::option_value::{at_least_zero, positive, quantity, unusable};
-use windfall_files::table::write::csv_text;
 use windfall_signal::instrument::{Converter, Instrument, Sensor, Trajectory, record};
 use windfall_signal::noise::gaussian::{NoiseSource, noise_source, normal, uniform};
 
@@ -25,7 +26,7 @@ const FRUIT_STREAM: u64 = 100;
 /// Recorded before the release: from here to twice of it; s.
 const LEAD: f64 = 0.05;
 
-/// Bounces that truth.csv tells.
+/// Bounces listed in truth.csv.
 const TOLD: usize = 3;
 
 /// Most samples of a recording.
@@ -35,35 +36,52 @@ const MOST_SAMPLES: f64 = 5e6;
 const MOST_BITS: u32 = 32;
 
 /// A campaign of drops; texts with units.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Args)]
+#[command(next_help_heading = "A campaign of recordings")]
 pub struct SimulateDropsRequest {
-    /// Drops from each height, of a fresh fruit each.
+    /// Drops from each height, of a fresh fruit each
+    #[arg(long, default_value_t = 5, value_name = "NUMBER")]
     pub drops: usize,
-    /// Spread of mass between fruit; 1.
+    /// Spread of mass between fruit, as a part
+    #[arg(long, default_value_t = 0.06, value_name = "PART")]
     pub mass_spread: f64,
-    /// Standard deviation of the weighing.
+    /// Standard deviation of the weighing
+    #[arg(long, default_value = "0.02 g", value_name = "QUANTITY")]
     pub mass_sd: String,
-    /// Standard deviation of the setting of a height.
+    /// Standard deviation of the setting of a height
+    #[arg(long, default_value = "1 mm", value_name = "QUANTITY")]
     pub height_sd: String,
-    /// Standard deviations of parameters between fruit: "c=0.05".
+    /// Standard deviation of a parameter between fruit, such as c=0.05; repeated
+    #[arg(long, value_name = "NAME=SD")]
     pub spread: Vec<String>,
-    /// Parameters that campaign.toml gives.
+    /// Parameter that campaign.toml gives, so that it is not estimated; repeated. The depth d of
+    /// adams-impact if left out
+    #[arg(long, value_name = "NAME")]
     pub hold: Vec<String>,
-    /// Sensitivity of load cell and transmitter.
+    /// Sensitivity of load cell and transmitter
+    #[arg(long, default_value = "0.1 V/N", value_name = "QUANTITY")]
     pub sensitivity: String,
-    /// Standard deviation of the noise of force.
+    /// Standard deviation of the noise of force
+    #[arg(long, default_value = "0.03 N", value_name = "QUANTITY")]
     pub noise: String,
-    /// Resolution of the converter; 0 for none.
+    /// Resolution of the analogue-to-digital converter; 0 for no rounding
+    #[arg(long, default_value_t = 12, value_name = "NUMBER")]
     pub bits: u32,
-    /// Its largest voltage.
+    /// Largest voltage of the converter
+    #[arg(long, default_value = "5 V", value_name = "QUANTITY")]
     pub range: String,
-    /// Its lowest voltage; minus the largest if left out.
+    /// Its lowest voltage; minus the largest if left out. At "0 V" the downward swings of a
+    /// ringing plate are cut off
+    #[arg(long, value_name = "QUANTITY", allow_hyphen_values = true)]
     pub lowest: Option<String>,
-    /// Sampling rate.
+    /// Sampling rate; that of the motion is an option of its own
+    #[arg(skip = "10 kHz")]
     pub sampling_rate: String,
-    /// Length of each recording.
+    /// Length of each recording; that of the motion is an option of its own
+    #[arg(skip = "1.5 s")]
     pub duration: String,
-    /// Seed of fruit, heights, trigger and noise.
+    /// Seed of fruit, heights, trigger and noise
+    #[arg(long, default_value_t = 1)]
     pub seed: u64,
 }
 
@@ -96,18 +114,13 @@ struct TrueDrop {
 /// level at rest is the weight of the plate. Masses are as weighed, heights as
 /// they were to be set; what they truly were is in truth.csv. Every drop has
 /// its own seed, so that another height leaves the others as they are.
-///
-/// # Errors
-/// A value cannot be used, or the directory cannot be written.
 pub fn simulate_drops(
     directory: &Path,
     plan: &DropPlan,
     request: &SimulateDropsRequest,
 ) -> Result<usize, Error> {
     let bench = bench(plan, request)?;
-    create_directory(directory)?;
-    let raw = directory.join("raw");
-    create_directory(&raw)?;
+    let mut new = NewCampaign::create(directory)?;
     let (mut specimens, mut impacts, mut truth) = (vec![], vec![], vec![]);
     for (level, height) in plan.heights.iter().enumerate() {
         for repeat in 0..bench.drops {
@@ -122,24 +135,19 @@ pub fn simulate_drops(
                 format!("fruit-{number:02}"),
                 format!("drop-{}-{}", round(millimetres, 1), repeat + 1),
             );
-            write_file(&raw.join(format!("{id}.csv")), text.as_bytes())?;
-            specimens.push(vec![fruit.clone(), round(1e3 * weighed, 3)]);
             let file = format!("{id}.csv");
+            new.file(&format!("raw/{file}"), text)?;
+            specimens.push(vec![fruit.clone(), round(1e3 * weighed, 3)]);
             impacts.push(vec![id.clone(), fruit.clone(), file, round(millimetres, 6)]);
             truth.push(truth_row(&[id, fruit], &drop));
         }
     }
-    let table = |name: &str, header: &[&str], rows: Vec<Vec<String>>| {
-        let header: Vec<String> = header.iter().map(|n| (*n).to_owned()).collect();
-        write_file(&directory.join(name), csv_text(&header, rows)?.as_bytes())
-    };
     let recordings = impacts.len();
-    table("specimens.csv", &["id", "mass_g"], specimens)?;
+    new.table("specimens.csv", &["id", "mass_g"], specimens)?;
     let header = ["id", "specimen", "file", "drop_height_mm"];
-    table("impacts.csv", &header, impacts)?;
-    table("truth.csv", &TRUTH, truth)?;
-    let toml = campaign_text(&bench);
-    write_file(&directory.join("campaign.toml"), toml.as_bytes())?;
+    new.table("impacts.csv", &header, impacts)?;
+    new.table("truth.csv", &TRUTH, truth)?;
+    new.file("campaign.toml", campaign_text(&bench))?;
     Ok(recordings)
 }
 
@@ -256,13 +264,6 @@ fn true_drop(bench: &Bench, height: f64, source: &mut NoiseSource) -> Result<Tru
         release,
         summary,
     })
-}
-
-fn failed(law: &Law, source: windfall_identify::error::Error) -> Error {
-    Error::Identify {
-        subject: LawExpression::from(*law).to_string(),
-        source: Box::new(source),
-    }
 }
 
 /// What the load cell writes: the force on the plate's support, in volts.

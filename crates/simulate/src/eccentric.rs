@@ -1,7 +1,8 @@
 //! `windfall simulate drop` of a body whose contact is not below its centre of
 //! mass.
 
-use crate::drop::{PlateOutcome, SimulatedBounce, bounce, failed, motion_times, plate_outcome};
+use crate::drop::motion_times;
+use crate::impact::failed;
 use crate::request::drop::{DropPlan, one_height};
 use serde::Serialize;
 use windfall_cards::law_use::end_name;
@@ -12,47 +13,9 @@ use windfall_drop_rig::eccentric::shape::Shape;
 use windfall_drop_rig::eccentric::simulate::{
     EccentricTrajectory, eccentric_trajectory, simulate_eccentric_drop,
 };
+use windfall_drop_rig::rig::Plate;
 use windfall_files::error::Error;
 use windfall_files::option_value::unusable;
-
-/// One impact of a planar body; SI. The keys of a central impact, and these.
-#[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct SimulatedEccentricBounce {
-    /// As for a central impact: restitution and absorbed energy are those of
-    /// the centre of mass along the normal.
-    #[serde(flatten)]
-    pub bounce: SimulatedBounce,
-    /// Rotation from release to onset, anticlockwise; rad.
-    pub rotation: f64,
-    /// From the centre of mass to the point of contact, to the right; m.
-    pub lever_arm: f64,
-    /// Part of the mass that the contact would feel without friction; 1.
-    pub effective_mass_factor: f64,
-    /// Angular velocity at onset, anticlockwise; rad/s.
-    pub angular_velocity_before: f64,
-    /// Angular velocity at separation; rad/s.
-    pub angular_velocity: Option<f64>,
-    /// Velocity of the centre of mass to the right at onset; m/s.
-    pub tangential_velocity_before: f64,
-    /// Velocity of the centre of mass to the right at separation; m/s.
-    pub tangential_velocity: Option<f64>,
-    /// Integral of the friction force on the body, to the right; N s.
-    pub friction_impulse: f64,
-    /// Kinetic energy of the centre of mass at onset; J.
-    pub translation_energy_before: f64,
-    /// Kinetic energy of the rotation at onset; J.
-    pub rotation_energy_before: f64,
-    /// Kinetic energy of the centre of mass at separation; J.
-    pub translation_energy: Option<f64>,
-    /// Kinetic energy of the rotation at separation; J.
-    pub rotation_energy: Option<f64>,
-    /// Energy that the contact took; J.
-    pub contact_energy: f64,
-    /// Energy that sliding took; J.
-    pub sliding_energy: f64,
-    /// Energy that the damper of the plate took; J.
-    pub support_energy: f64,
-}
 
 /// The body in results; SI.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
@@ -97,11 +60,11 @@ pub struct SimulatedEccentricDrop {
     /// Acceleration of gravity; m/s².
     pub gravity: f64,
     /// The plate; `None` where it is rigid.
-    pub plate: Option<PlateOutcome>,
+    pub plate: Option<Plate>,
     /// End of contact.
     pub end: &'static str,
     /// Impacts in order of time.
-    pub impacts: Vec<SimulatedEccentricBounce>,
+    pub impacts: Vec<EccentricImpact>,
     /// From onset to onset; s.
     pub intervals: Vec<f64>,
     /// Whether the fruit comes to stay on the plate before the next impact.
@@ -116,12 +79,8 @@ pub struct SimulatedEccentricDrop {
 pub fn simulate_one_eccentric_drop(
     plan: &DropPlan,
     body: &EccentricBody,
-    impacts: usize,
 ) -> Result<SimulatedEccentricDrop, Error> {
     let height = one_height(plan)?;
-    if impacts == 0 {
-        return Err(unusable("--impacts", "expected 1 or more"));
-    }
     let rig = &plan.rig;
     if rig.effective_mass_factor != 1.0 {
         let problem = "it stands for the rotation of a body; expected without --offset and \
@@ -129,8 +88,16 @@ pub fn simulate_one_eccentric_drop(
         return Err(unusable("--effective-mass-factor", problem));
     }
     let (law, gravity) = (&plan.law, rig.gravity);
-    let found = simulate_eccentric_drop(law, body, rig.plate, gravity, height, impacts, plan.end)
-        .map_err(|source| failed(law, source))?;
+    let found = simulate_eccentric_drop(
+        law,
+        body,
+        rig.plate,
+        gravity,
+        height,
+        plan.impacts,
+        plan.end,
+    )
+    .map_err(|source| failed(law, source))?;
     Ok(SimulatedEccentricDrop {
         law: LawExpression::from(*law).to_string(),
         mass: body.mass,
@@ -138,9 +105,9 @@ pub fn simulate_one_eccentric_drop(
         body: body_outcome(body),
         height,
         gravity,
-        plate: rig.plate.map(plate_outcome),
+        plate: rig.plate,
         end: end_name(plan.end),
-        impacts: found.impacts.iter().map(eccentric_bounce).collect(),
+        impacts: found.impacts,
         intervals: found.intervals,
         at_rest: found.at_rest,
     })
@@ -161,7 +128,7 @@ pub fn eccentric_motion(
     rate: &str,
     duration: Option<&str>,
 ) -> Result<EccentricTrajectory, Error> {
-    let last = drop.impacts.last().map(|impact| &impact.bounce);
+    let last = drop.impacts.last().map(|own| &own.impact);
     let times = motion_times(rate, duration, last)?;
     let (rig, law) = (&plan.rig, &plan.law);
     eccentric_trajectory(
@@ -205,27 +172,5 @@ fn body_outcome(body: &EccentricBody) -> BodyOutcome {
             angle: tilt,
             ..outcome
         },
-    }
-}
-
-fn eccentric_bounce(found: &EccentricImpact) -> SimulatedEccentricBounce {
-    let known = |value: f64| value.is_finite().then_some(value);
-    SimulatedEccentricBounce {
-        bounce: bounce(&found.impact),
-        rotation: found.rotation,
-        lever_arm: found.lever_arm,
-        effective_mass_factor: found.effective_mass_factor,
-        angular_velocity_before: found.angular_velocity_before,
-        angular_velocity: known(found.angular_velocity),
-        tangential_velocity_before: found.tangential_velocity_before,
-        tangential_velocity: known(found.tangential_velocity),
-        friction_impulse: found.friction_impulse,
-        translation_energy_before: found.translation_energy_before,
-        rotation_energy_before: found.rotation_energy_before,
-        translation_energy: known(found.translation_energy),
-        rotation_energy: known(found.rotation_energy),
-        contact_energy: found.contact_energy,
-        sliding_energy: found.sliding_energy,
-        support_energy: found.support_energy,
     }
 }

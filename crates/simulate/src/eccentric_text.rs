@@ -1,50 +1,42 @@
 //! Simulated drops of planar bodies and their motions as text, CSV and JSON.
 
-use crate::drop_text::{Row, column, given, impact_csv, impact_table, plate_text, rows};
-use crate::eccentric::{BodyOutcome, SimulatedEccentricBounce, SimulatedEccentricDrop};
+use crate::drop_text::{Row, given, impact_csv, impact_table, plate_text, rows};
+use crate::eccentric::{BodyOutcome, SimulatedEccentricDrop};
+use crate::text::{Column, motion_csv, with_motion};
+use windfall_drop_rig::eccentric::impact::EccentricImpact;
 use windfall_drop_rig::eccentric::simulate::EccentricTrajectory;
 use windfall_files::error::Error;
-use windfall_files::named::Named;
-use windfall_files::table::write::csv_text;
 
-fn eccentric_rows(impact: &SimulatedEccentricBounce) -> Vec<Row> {
-    let mut out = rows(&impact.bounce);
+fn eccentric_rows(own: &EccentricImpact) -> Vec<Row> {
+    let mut out = rows(&own.impact);
     out.extend([
-        ("rotation", Some(impact.rotation), "rad"),
-        ("lever_arm", Some(impact.lever_arm), "m"),
-        (
-            "effective_mass_factor",
-            Some(impact.effective_mass_factor),
-            "1",
-        ),
+        ("rotation", own.rotation, "rad"),
+        ("lever_arm", own.lever_arm, "m"),
+        ("effective_mass_factor", own.effective_mass_factor, "1"),
         (
             "angular_velocity_before",
-            Some(impact.angular_velocity_before),
+            own.angular_velocity_before,
             "rad/s",
         ),
-        ("angular_velocity", impact.angular_velocity, "rad/s"),
+        ("angular_velocity", own.angular_velocity, "rad/s"),
         (
             "tangential_velocity_before",
-            Some(impact.tangential_velocity_before),
+            own.tangential_velocity_before,
             "m/s",
         ),
-        ("tangential_velocity", impact.tangential_velocity, "m/s"),
-        ("friction_impulse", Some(impact.friction_impulse), "N s"),
+        ("tangential_velocity", own.tangential_velocity, "m/s"),
+        ("friction_impulse", own.friction_impulse, "N s"),
         (
             "translation_energy_before",
-            Some(impact.translation_energy_before),
+            own.translation_energy_before,
             "J",
         ),
-        (
-            "rotation_energy_before",
-            Some(impact.rotation_energy_before),
-            "J",
-        ),
-        ("translation_energy", impact.translation_energy, "J"),
-        ("rotation_energy", impact.rotation_energy, "J"),
-        ("contact_energy", Some(impact.contact_energy), "J"),
-        ("sliding_energy", Some(impact.sliding_energy), "J"),
-        ("support_energy", Some(impact.support_energy), "J"),
+        ("rotation_energy_before", own.rotation_energy_before, "J"),
+        ("translation_energy", own.translation_energy, "J"),
+        ("rotation_energy", own.rotation_energy, "J"),
+        ("contact_energy", own.contact_energy, "J"),
+        ("sliding_energy", own.sliding_energy, "J"),
+        ("support_energy", own.support_energy, "J"),
     ]);
     out
 }
@@ -97,15 +89,11 @@ fn shape_text(body: &BodyOutcome) -> String {
 
 /// A simulated drop of a planar body as CSV, one row per impact, units in the
 /// header.
-///
-/// # Errors
-/// None in practice: the text is written to memory.
 pub fn csv_of_eccentric_drop(drop: &SimulatedEccentricDrop) -> Result<String, Error> {
     impact_csv(&columns(drop), &drop.intervals)
 }
 
-/// Columns of a motion: name, unit, values.
-fn motion_columns(motion: &EccentricTrajectory) -> [(&'static str, &'static str, &[f64]); 12] {
+fn motion_columns(motion: &EccentricTrajectory) -> [Column<'_>; 12] {
     [
         ("time", "s", &motion.times),
         ("contact_force", "N", &motion.contact_force),
@@ -126,20 +114,9 @@ fn motion_columns(motion: &EccentricTrajectory) -> [(&'static str, &'static str,
     ]
 }
 
-/// The motion of a planar body as CSV; empty after it has come to stay.
-///
-/// # Errors
-/// None in practice: the text is written to memory.
+/// The motion of a planar body as CSV; blank after it has come to stay.
 pub fn csv_of_eccentric_motion(motion: &EccentricTrajectory) -> Result<String, Error> {
-    let columns = motion_columns(motion);
-    let header = columns.map(|(name, unit, _)| column(name, unit));
-    let number = |value: f64| match value.is_finite() {
-        true => value.to_string(),
-        false => String::new(),
-    };
-    let rows =
-        (0..motion.times.len()).map(|i| columns.map(|(_, _, values)| number(values[i])).to_vec());
-    csv_text(&header, rows)
+    motion_csv(&motion_columns(motion))
 }
 
 /// A drop and its motion as JSON: the keys of the drop, and `motion`.
@@ -148,11 +125,5 @@ pub fn json_of_eccentric_motion(
     drop: &SimulatedEccentricDrop,
     motion: &EccentricTrajectory,
 ) -> serde_json::Value {
-    let mut value = serde_json::json!(drop);
-    let columns = motion_columns(motion).map(|(name, _, values)| (name.to_owned(), values));
-    if let Some(keys) = value.as_object_mut() {
-        let columns = serde_json::json!(Named(columns.to_vec()));
-        keys.insert("motion".to_owned(), columns);
-    }
-    value
+    with_motion(serde_json::json!(drop), &motion_columns(motion))
 }

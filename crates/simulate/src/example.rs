@@ -1,6 +1,7 @@
 //! The example campaign: the materials of the 2003 pendulum study, simulated.
 
-use crate::campaign::{Batch, SimulatedCampaign, Weighed, write_simulated_campaign};
+use crate::campaign::{Batch, write_simulated_campaign};
+use crate::files::{SimulatedCampaign, Weighed};
 use std::path::Path;
 use windfall_campaign::settings::rig::STANDARD_GRAVITY;
 use windfall_contact::law::EndRule;

@@ -108,10 +108,10 @@ fn loop_of(motion: &SimulatedMotion) -> [Vec<(f64, f64)>; 2] {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::request::event::{CarriageRequest, carriage_event};
+    use crate::request::impact::{ImpactRequest, impact_event};
 
     fn event(law: &str) -> Event {
-        carriage_event(&CarriageRequest {
+        impact_event(&ImpactRequest {
             law: law.to_owned(),
             laws: None,
             mass: "0.2 kg".to_owned(),

@@ -18,28 +18,39 @@ const VOLT_DECIMALS: usize = 6;
 /// Digits of a time in the file; s.
 const TIME_DECIMALS: usize = 9;
 
-/// What campaign.toml says.
-#[derive(Clone, Copy, Debug)]
-pub struct SimulatedFile<'a> {
+/// Whether campaign.toml gives the mass of a carriage.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Weighed {
+    /// It does.
+    #[default]
+    Given,
+    /// It says "from impulse".
+    FromImpulse,
+}
+
+/// What is common to all recordings.
+#[derive(Clone, Debug, PartialEq)]
+pub struct SimulatedCampaign {
     /// Title of the campaign.
-    pub title: &'a str,
+    pub title: String,
     /// Label that marks all results as simulated.
-    pub label: &'a str,
+    pub label: String,
     /// The rig.
-    pub rig: &'a Rig,
-    /// Whether the mass of a carriage is given, or to be found from impulse.
-    pub mass_given: bool,
-    /// What records.
-    pub instrument: &'a Instrument,
-    /// The law that is to be fitted.
-    pub law: Option<LawKind>,
+    pub rig: Rig,
+    /// Whether the campaign knows the mass.
+    pub weighed: Weighed,
+    /// Impact velocity; m/s.
+    pub velocity: f64,
     /// End of contact.
     pub end: EndRule,
+    /// What records.
+    pub instrument: Instrument,
+    /// Seed of specimens, noise and encoder positions.
+    pub seed: u64,
 }
 
 /// A recording as CSV: volts, logic levels, counts. Channels of one rate share
 /// their rows and no time is written; else each has a column of times.
-#[must_use]
 pub fn recording_text(channels: &[RawChannel]) -> String {
     let timed = intervals_differ(channels.iter().map(|channel| channel.interval));
     let mut names = Vec::new();
@@ -110,10 +121,8 @@ fn time_column(quantity: Quantity) -> String {
 }
 
 /// campaign.toml that reads the recordings back.
-#[must_use]
-pub fn campaign_text(file: &SimulatedFile) -> String {
-    let instrument = file.instrument;
-    let law = file.law.unwrap_or(LawKind::KuwabaraKono);
+pub fn campaign_text(campaign: &SimulatedCampaign, law: LawKind) -> String {
+    let instrument = &campaign.instrument;
     let rates = rates(instrument);
     let timed = intervals_differ(rates.iter().map(|rate| 1.0 / rate));
     let times = match (timed, rates.first()) {
@@ -124,7 +133,7 @@ pub fn campaign_text(file: &SimulatedFile) -> String {
         .iter()
         .map(|name| format!("\"{name}\""))
         .collect();
-    let threshold = match file.rig {
+    let threshold = match campaign.rig {
         Rig::Pendulum(_) => r#""1 N"                     # that of the 2003 pendulum study"#,
         Rig::Carriage(_) => r#""auto""#,
     };
@@ -153,9 +162,9 @@ end = "{end}"
 [summary]
 group = "variety"
 {own}"#,
-        title = file.title,
-        label = file.label,
-        rig = rig_text(file.rig, file.mass_given),
+        title = campaign.title,
+        label = campaign.label,
+        rig = rig_text(&campaign.rig, campaign.weighed),
         channels = channels_text(instrument, timed),
         law = law.name(),
         own = match law_table(law) {
@@ -163,11 +172,11 @@ group = "variety"
             table => format!("\n{table}"),
         },
         quantities = quantities.join(", "),
-        end = end_name(file.end),
+        end = end_name(campaign.end),
     )
 }
 
-fn rig_text(rig: &Rig, mass_given: bool) -> String {
+fn rig_text(rig: &Rig, weighed: Weighed) -> String {
     match rig {
         Rig::Pendulum(rig) => format!(
             r#"[rig]
@@ -186,9 +195,9 @@ kind = "carriage"
 mass = "{}"
 driving_acceleration = "{} m/s^2"
 "#,
-            match mass_given {
-                true => format!("{} kg", rig.mass),
-                false => FROM_IMPULSE.to_owned(),
+            match weighed {
+                Weighed::Given => format!("{} kg", rig.mass),
+                Weighed::FromImpulse => FROM_IMPULSE.to_owned(),
             },
             rig.driving_acceleration
         ),
@@ -209,7 +218,7 @@ fn sensors(instrument: &Instrument) -> Vec<(Quantity, Sensor)> {
 }
 
 /// Sampling rates of all channels; Hz.
-fn rates(instrument: &Instrument) -> Vec<f64> {
+pub(crate) fn rates(instrument: &Instrument) -> Vec<f64> {
     let encoder = instrument.encoder.map(|encoder| encoder.sampling_rate);
     let sensors = sensors(instrument).into_iter();
     let sensors = sensors.map(|(_, sensor)| sensor.sampling_rate);

@@ -90,9 +90,6 @@ pub fn simulate_one(
 /// little before contact to a little after.
 ///
 /// * `rate`: samples per second; Hz
-///
-/// # Errors
-/// As [`simulate_one`].
 pub fn simulate_motion(
     law: &Law,
     rig: &Rig,
@@ -113,9 +110,6 @@ pub fn simulate_motion(
 /// The motion of one impact of a rig at given times.
 ///
 /// * `times`: from first touch, ascending; s
-///
-/// # Errors
-/// As [`simulate_one`].
 pub fn motion_at(
     law: &Law,
     rig: &Rig,
@@ -126,7 +120,8 @@ pub fn motion_at(
     trajectory(law, rig, velocity, times, end).map_err(|source| failed(law, source))
 }
 
-fn failed(law: &Law, source: windfall_identify::error::Error) -> Error {
+/// The error of a law that cannot be simulated.
+pub(crate) fn failed(law: &Law, source: windfall_identify::error::Error) -> Error {
     Error::Identify {
         subject: LawExpression::from(*law).to_string(),
         source: Box::new(source),

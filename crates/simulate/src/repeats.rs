@@ -1,10 +1,12 @@
 //! `windfall simulate repeats`: drops repeated on one spot of fruit with a known
 //! critical energy, to try the program and to check it.
 
+use crate::new_campaign::NewCampaign;
+use clap::Args;
+use clap::builder::{PossibleValuesParser, TypedValueParser};
 use std::f64::consts::PI;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use windfall_campaign::settings::rig::STANDARD_GRAVITY;
-use windfall_campaign::settings::template::{create_directory, write_file};
 use windfall_contact::law::EndRule;
 use windfall_contact::laws::kind::{Law, LawKind};
 use windfall_contact::laws::thornton::Thornton;
@@ -45,30 +47,48 @@ pub enum Spots {
 }
 
 /// What is simulated; texts with units.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Args)]
 pub struct SimulateRepeatsRequest {
-    /// Number of fruit.
+    /// Number of fruit; an elastic ball is added as reference
+    #[arg(long, default_value_t = 12)]
     pub fruit: usize,
-    /// Impact energies, rising.
+    /// Impact energy; may be repeated
+    #[arg(long = "energy", default_values = ["0.04 J", "0.056 J", "0.08 J", "0.11 J", "0.16 J", "0.22 J", "0.31 J"])]
     pub energies: Vec<String>,
-    /// Impacts on the spot at each energy.
+    /// Impacts on the spot at each energy
+    #[arg(long, default_value_t = 2)]
     pub repeats: usize,
-    /// Where the impacts of the next energy fall.
+    /// Where the impacts of the next energy fall: on the same spot, or on a fresh one
+    #[arg(long, default_value = "same", value_parser = spots())]
     pub spots: Spots,
-    /// Median critical energy of the fruit.
+    /// Median critical energy of the fruit
+    #[arg(long, default_value = "0.12 J")]
     pub critical_energy: String,
-    /// Standard deviation of its logarithm between fruit; 1.
+    /// Standard deviation of the logarithm of the critical energy between fruit
+    #[arg(long, default_value_t = 0.3)]
     pub spread: f64,
-    /// Mass that falls.
+    /// Mass that falls
+    #[arg(long, default_value = "200 g")]
     pub mass: String,
-    /// Standard deviation of the noise of force.
+    /// Standard deviation of the noise of force
+    #[arg(long, default_value = "0.3 N")]
     pub force_noise: String,
-    /// Relative standard deviation of the impact velocity; 1.
+    /// Relative standard deviation of the impact velocity from drop to drop
+    #[arg(long, default_value_t = 0.003)]
     pub velocity_scatter: f64,
-    /// Sampling rate.
+    /// Sampling rate
+    #[arg(long, default_value = "50 kHz")]
     pub sampling_rate: String,
-    /// Seed of fruit and noise.
+    /// Seed of fruit and noise
+    #[arg(long, default_value_t = 1)]
     pub seed: u64,
+}
+
+fn spots() -> impl TypedValueParser<Value = Spots> {
+    PossibleValuesParser::new(["same", "fresh"]).map(|word| match word.as_str() {
+        "fresh" => Spots::Fresh,
+        _ => Spots::Same,
+    })
 }
 
 struct Plan {
@@ -99,18 +119,13 @@ struct Body {
 /// yields where it was last unloaded, so that it is stiffer in the next impact.
 /// An elastic ball takes the same drops, as reference. Critical energies are in
 /// truth.csv.
-///
-/// # Errors
-/// A value cannot be used, or the directory cannot be written.
 pub fn simulate_repeats(
     directory: &Path,
     request: &SimulateRepeatsRequest,
 ) -> Result<usize, Error> {
     let plan = plan(request)?;
     let critical = positive("--critical-energy", &request.critical_energy, "J")?;
-    create_directory(directory)?;
-    let raw = directory.join("raw");
-    create_directory(&raw)?;
+    let mut new = NewCampaign::create(directory)?;
     let mut bodies = vec![Body {
         id: "ball".to_owned(),
         role: REFERENCE,
@@ -145,7 +160,7 @@ pub fn simulate_repeats(
             for repeat in 1..=plan.repeats + extra {
                 let id = format!("{}-{}-{repeat}", body.id, level + 1);
                 let text = drop_on(body, *energy, &plan, &mut source)?;
-                write_file(&raw.join(format!("{id}.csv")), text.as_bytes())?;
+                new.file(&format!("raw/{id}.csv"), text)?;
                 let height = energy / (plan.mass * STANDARD_GRAVITY);
                 let cells = [
                     id.clone(),
@@ -158,7 +173,7 @@ pub fn simulate_repeats(
         }
     }
     let recordings = rows.len();
-    write_tables(directory, &bodies, rows, request, &plan)?;
+    write_tables(&mut new, &bodies, rows, request, &plan)?;
     Ok(recordings)
 }
 
@@ -276,28 +291,20 @@ fn drop_on(
 }
 
 fn write_tables(
-    directory: &Path,
+    new: &mut NewCampaign,
     bodies: &[Body],
     rows: Vec<Vec<String>>,
     request: &SimulateRepeatsRequest,
     plan: &Plan,
 ) -> Result<(), Error> {
-    let table = |name: &str, header: &[&str], rows: Vec<Vec<String>>| {
-        let header: Vec<String> = header.iter().map(|n| (*n).to_owned()).collect();
-        let path: PathBuf = directory.join(name);
-        write_file(&path, csv_text(&header, rows)?.as_bytes())
-    };
     let roles = bodies.iter().map(|b| vec![b.id.clone(), b.role.to_owned()]);
-    table("specimens.csv", &["id", "role"], roles.collect())?;
+    new.table("specimens.csv", &["id", "role"], roles.collect())?;
     let header = ["id", "specimen", "file", "spot", "drop_height_m", "repeat"];
-    table("impacts.csv", &header, rows)?;
+    new.table("impacts.csv", &header, rows)?;
     let fruit = bodies.iter().filter(|body| body.critical.is_finite());
     let truth = fruit.map(|body| vec![body.id.clone(), body.critical.to_string()]);
-    table(
-        "truth.csv",
-        &["specimen", "critical_energy_J"],
-        truth.collect(),
-    )?;
+    let header = ["specimen", "critical_energy_J"];
+    new.table("truth.csv", &header, truth.collect())?;
     let label = format!(
         "median critical energy {} (spread of its logarithm {}), seed {}",
         request.critical_energy, request.spread, plan.seed
@@ -312,5 +319,5 @@ fn write_tables(
             &format!("simulated = \"{}\" #", label.replace('"', "'")),
         )
         .replace("mass = \"200 g\"", &format!("mass = \"{} kg\"", plan.mass));
-    write_file(&directory.join("campaign.toml"), text.as_bytes())
+    new.file("campaign.toml", text)
 }

@@ -1,40 +1,51 @@
 //! `windfall simulate tap`: a campaign of taps on fruit of known frequency, to
 //! try the program and to check it.
 
+use crate::new_campaign::NewCampaign;
 use crate::wav::wav_bytes;
+use clap::Args;
 use std::f64::consts::{PI, TAU};
 use std::path::{Path, PathBuf};
-use windfall_campaign::settings::template::{create_directory, write_file};
 use windfall_files::error::Error;
 use windfall_files::option_value::{chosen, positive, unusable};
 use windfall_files::table::write::csv_text;
 use windfall_signal::noise::gaussian::{NoiseSource, noise_source, normal, uniform};
 
 /// What is simulated; texts with units.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Args)]
 pub struct SimulateTapsRequest {
-    /// Frequency of the first mode of the mean fruit.
+    /// Frequency of the first mode
+    #[arg(long, default_value = "800 Hz")]
     pub frequency: String,
-    /// Its quality.
+    /// Its quality: frequency over width of the peak
+    #[arg(long, default_value_t = 20.0)]
     pub quality: f64,
-    /// Mass of the mean fruit.
+    /// Mass of a fruit
+    #[arg(long, default_value = "0.2 kg")]
     pub mass: String,
-    /// Number of fruit.
+    /// Number of fruit
+    #[arg(long, default_value_t = 6)]
     pub fruit: usize,
-    /// Taps in a recording; each fruit has a recording at each of two places.
+    /// Taps in a recording; each fruit has a recording at each of two places
+    #[arg(long, default_value_t = 2)]
     pub taps: usize,
-    /// Spread of frequency and of mass between fruit; 1.
+    /// Spread of frequency and mass between fruit, as a part
+    #[arg(long, default_value_t = 0.08)]
     pub spread: f64,
-    /// Distance of the two frequencies of a split mode, as a part; 0 for spheres.
+    /// Distance of the two frequencies of a split mode, as a part; 0 for spheres
+    #[arg(long, default_value_t = 0.0)]
     pub split: f64,
-    /// Signal over noise in power, the signal as mean square of the first 50 ms
-    /// of a tap; dB.
+    /// Signal over noise, in power over the first 50 ms of a tap; dB
+    #[arg(long, default_value_t = 30.0, allow_hyphen_values = true)]
     pub signal_to_noise: f64,
-    /// "wav" or "csv".
+    /// Format of the recordings: wav or csv
+    #[arg(long, default_value = "wav")]
     pub file: String,
-    /// Sampling rate.
+    /// Sampling rate
+    #[arg(long, default_value = "44100 Hz")]
     pub sampling_rate: String,
-    /// Seed of noise and spread.
+    /// Seed of noise and spread
+    #[arg(long, default_value_t = 1)]
     pub seed: u64,
 }
 
@@ -67,18 +78,13 @@ const POWER_TIME: f64 = 0.05;
 const PLACES: [&str; 2] = ["stem up", "quarter turn"];
 
 /// Writes a campaign directory with its recordings; the files written.
-///
-/// # Errors
-/// A value cannot be used, or the directory cannot be written.
 pub fn simulate_taps(
     directory: &Path,
     request: &SimulateTapsRequest,
 ) -> Result<Vec<PathBuf>, Error> {
     let plan = plan(request)?;
-    create_directory(directory)?;
-    let raw = directory.join("raw");
-    create_directory(&raw)?;
-    let (mut written, mut specimens, mut rows) = (vec![], vec![], vec![]);
+    let mut new = NewCampaign::create(directory)?;
+    let (mut specimens, mut rows) = (vec![], vec![]);
     for fruit in 0..request.fruit {
         let id = format!("fruit-{}", fruit + 1);
         let mut source = noise_source(request.seed, 2 * fruit as u64);
@@ -98,33 +104,16 @@ pub fn simulate_taps(
             };
             let number = format!("{id}-{}", place + 1);
             let name = format!("{number}.{ending}");
-            let path = raw.join(&name);
-            write_file(&path, &bytes)?;
-            written.push(path);
+            new.file(&format!("raw/{name}"), bytes)?;
             rows.push(vec![number, id.clone(), name, (*orientation).to_owned()]);
         }
     }
-    let header = |names: &[&str]| names.iter().map(|n| (*n).to_owned()).collect::<Vec<_>>();
-    let tables = [
-        ("campaign.toml", campaign(&plan, request)),
-        (
-            "specimens.csv",
-            csv_text(
-                &header(&["id", "mass_g", "simulated_frequency_Hz"]),
-                specimens,
-            )?,
-        ),
-        (
-            "impacts.csv",
-            csv_text(&header(&["id", "specimen", "file", "orientation"]), rows)?,
-        ),
-    ];
-    for (name, text) in tables {
-        let path = directory.join(name);
-        write_file(&path, text.as_bytes())?;
-        written.push(path);
-    }
-    Ok(written)
+    new.file("campaign.toml", campaign(&plan, request))?;
+    let header = ["id", "mass_g", "simulated_frequency_Hz"];
+    new.table("specimens.csv", &header, specimens)?;
+    let header = ["id", "specimen", "file", "orientation"];
+    new.table("impacts.csv", &header, rows)?;
+    Ok(new.written)
 }
 
 fn plan(request: &SimulateTapsRequest) -> Result<Plan, Error> {

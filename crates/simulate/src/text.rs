@@ -85,9 +85,6 @@ pub fn six_digits(value: f64) -> String {
 }
 
 /// A simulated impact as CSV, one row, units in the header.
-///
-/// # Errors
-/// None in practice: the text is written to memory.
 pub fn csv_of_simulation(impact: &SimulatedImpact) -> Result<String, Error> {
     let rows = rows(impact);
     let header: Vec<String> = rows
@@ -101,55 +98,70 @@ pub fn csv_of_simulation(impact: &SimulatedImpact) -> Result<String, Error> {
 }
 
 /// "peak_force_N"; no unit for a pure number.
-fn column(name: &str, unit: &str) -> String {
+pub(crate) fn column(name: &str, unit: &str) -> String {
     match unit {
         "1" => name.to_owned(),
         unit => format!("{name}_{}", unit.replace(['/', ' '], "_")),
     }
 }
 
-/// A simulated motion as CSV.
-///
-/// # Errors
-/// None in practice: the text is written to memory.
-pub fn csv_of_motion(motion: &SimulatedMotion) -> Result<String, Error> {
-    let header = [
-        "time_s",
-        "displacement_m",
-        "rate_m_s",
-        "force_N",
-        "acceleration_m_s2",
-    ];
+/// A column of a motion: name, unit, values.
+pub(crate) type Column<'a> = (&'static str, &'static str, &'a [f64]);
+
+fn motion_columns(motion: &SimulatedMotion) -> [Column<'_>; 5] {
     let t = &motion.trajectory;
-    let rows = (0..t.times.len()).map(|i| {
-        [
-            t.times[i],
-            t.displacement[i],
-            t.rate[i],
-            t.force[i],
-            t.acceleration[i],
-        ]
-        .map(|value| value.to_string())
-        .to_vec()
-    });
-    csv_text(&header.map(str::to_owned), rows)
+    [
+        ("time", "s", &t.times),
+        ("displacement", "m", &t.displacement),
+        ("rate", "m/s", &t.rate),
+        ("force", "N", &t.force),
+        ("acceleration", "m/s2", &t.acceleration),
+    ]
+}
+
+/// A simulated motion as CSV.
+pub fn csv_of_motion(motion: &SimulatedMotion) -> Result<String, Error> {
+    motion_csv(&motion_columns(motion))
 }
 
 /// A simulated motion with its summary as JSON.
 #[must_use]
 pub fn json_of_motion(motion: &SimulatedMotion) -> serde_json::Value {
-    let t = &motion.trajectory;
-    let columns = [
-        ("time", &t.times),
-        ("displacement", &t.displacement),
-        ("rate", &t.rate),
-        ("force", &t.force),
-        ("acceleration", &t.acceleration),
-    ];
-    let columns = Named(
+    let impact = serde_json::json!({ "simulated": true, "impact": motion.impact });
+    with_motion(impact, &motion_columns(motion))
+}
+
+/// A cell of a table; blank where there is no value.
+pub(crate) fn number_or_blank(value: f64) -> String {
+    match value.is_finite() {
+        true => value.to_string(),
+        false => String::new(),
+    }
+}
+
+/// A motion as CSV, with blank cells where there is no value.
+pub(crate) fn motion_csv(columns: &[Column]) -> Result<String, Error> {
+    let header: Vec<String> = columns
+        .iter()
+        .map(|(name, unit, _)| column(name, unit))
+        .collect();
+    let samples = columns.first().map_or(0, |(_, _, times)| times.len());
+    let row = |i: usize| {
         columns
-            .map(|(name, values)| (name.to_owned(), values))
-            .to_vec(),
-    );
-    serde_json::json!({ "simulated": true, "impact": motion.impact, "motion": columns })
+            .iter()
+            .map(move |(_, _, values)| number_or_blank(values[i]))
+    };
+    csv_text(&header, (0..samples).map(|i| row(i).collect()))
+}
+
+/// The keys of a drop, and `motion`.
+pub(crate) fn with_motion(mut drop: serde_json::Value, columns: &[Column]) -> serde_json::Value {
+    let columns = columns
+        .iter()
+        .map(|(name, _, values)| ((*name).to_owned(), *values));
+    if let Some(keys) = drop.as_object_mut() {
+        let columns = serde_json::json!(Named(columns.collect()));
+        keys.insert("motion".to_owned(), columns);
+    }
+    drop
 }

@@ -11,7 +11,6 @@ const FULL_SCALE: f64 = 32_767.0;
 /// # Source
 /// IBM and Microsoft (1991), Multimedia Programming Interface and Data
 /// Specifications 1.0, "Waveform Audio File Format".
-#[must_use]
 pub fn wav_bytes(samples: &[f64], rate: u32) -> Vec<u8> {
     let data = 2 * samples.len() as u32;
     let mut bytes = Vec::with_capacity(44 + data as usize);

@@ -4,6 +4,7 @@ use crate::args::format::Format;
 use std::io::{ErrorKind, Write};
 use std::path::Path;
 use windfall_files::error::Error;
+use windfall_files::found::FailureOutcome;
 
 /// Writes a result. A reader that has heard enough (`| head`) is no error.
 pub fn write_result(text: &str) -> anyhow::Result<()> {
@@ -19,12 +20,42 @@ pub fn write_json<T: serde::Serialize>(value: &T) -> anyhow::Result<()> {
     write_result(&(serde_json::to_string_pretty(value)? + "\n"))
 }
 
-/// Writes a line to standard error; when that is closed there is no one to tell.
+/// Writes a result in the form that was chosen.
+pub fn show<T: serde::Serialize>(
+    format: Format,
+    outcome: &T,
+    text: impl Fn(&T) -> String,
+    csv: impl Fn(&T) -> Result<String, Error>,
+) -> anyhow::Result<()> {
+    match format {
+        Format::Json => write_json(outcome),
+        Format::Csv => write_result(&csv(outcome)?),
+        Format::Text => write_result(&text(outcome)),
+    }
+}
+
+/// Writes a motion: as text only its summary.
+pub fn show_motion(
+    format: Format,
+    (summary, samples): (String, usize),
+    json: impl Fn() -> serde_json::Value,
+    csv: impl Fn() -> Result<String, Error>,
+) -> anyhow::Result<()> {
+    match format {
+        Format::Json => write_json(&json()),
+        Format::Csv => write_result(&csv()?),
+        Format::Text => write_result(&format!(
+            "{summary}\nThe motion, {samples} samples: --format csv or json.\n"
+        )),
+    }
+}
+
+/// Writes a line to standard error, if it is open.
 pub fn message(text: &str) {
     let _ = writeln!(std::io::stderr(), "{text}");
 }
 
-/// An error with its causes, each told once: many say their cause themselves.
+/// An error with its causes, each once: many messages contain their cause.
 pub fn with_causes(error: &anyhow::Error) -> String {
     let mut text = error.to_string();
     for cause in error.chain().skip(1).map(ToString::to_string) {
@@ -48,6 +79,15 @@ pub fn written(directory: &Path, recordings: usize, format: Format) -> anyhow::R
         Format::Text => write_result(&format!(
             "{recordings} simulated recordings in {directory}\n\nNext:\n  windfall fit {directory}\n"
         )),
+    }
+}
+
+/// Says what was not used; the text shows that itself.
+pub fn tell_unused(format: Format, failed: &[FailureOutcome]) {
+    if format != Format::Text {
+        for failure in failed {
+            message(&format!("not used: {}: {}", failure.id, failure.message));
+        }
     }
 }
 

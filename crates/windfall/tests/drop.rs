@@ -251,6 +251,7 @@ fn study(heights: &[&str]) -> DropRequest {
         plate_damping: Some("52.47 N s/m".to_owned()),
         effective_mass_factor: 1.0,
         gravity: "9.80665 m/s^2".to_owned(),
+        impacts: 2,
         end: "force-zero".to_owned(),
     }
 }

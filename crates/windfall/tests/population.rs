@@ -12,7 +12,8 @@ use windfall_population::outcome::PopulationOutcome;
 use windfall_population::run::{PopulationRequest, population};
 use windfall_population::text::{csv_of_population, text_of_population};
 use windfall_signal::instrument::pendulum_instrument;
-use windfall_simulate::campaign::{Batch, SimulatedCampaign, Weighed, write_simulated_campaign};
+use windfall_simulate::campaign::{Batch, write_simulated_campaign};
+use windfall_simulate::files::{SimulatedCampaign, Weighed};
 
 const K: f64 = 394_931.0;
 const C: f64 = 681.0;

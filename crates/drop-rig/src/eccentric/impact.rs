@@ -7,11 +7,12 @@ use crate::simulate::DropImpact;
 /// Energies balance: kinetic before + `height_energy` = kinetic after +
 /// `contact_energy` + `sliding_energy` + `support_energy` +
 /// `plate_energy_change`.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, serde::Serialize)]
 pub struct EccentricImpact {
     /// As for a central impact; velocities, restitution and absorbed energy
     /// are those of the centre of mass along the normal, the impact velocity
     /// and `contact_restitution` those of the point of contact.
+    #[serde(flatten)]
     pub impact: DropImpact,
     /// Rotation from release to onset, anticlockwise; rad.
     pub rotation: f64,
@@ -22,6 +23,7 @@ pub struct EccentricImpact {
     /// at onset; 1.
     pub effective_mass_factor: f64,
     /// Velocity of the centre of mass at onset, up positive; m/s.
+    #[serde(skip)]
     pub velocity_before: f64,
     /// Angular velocity at onset, anticlockwise; rad/s.
     pub angular_velocity_before: f64,
@@ -49,9 +51,11 @@ pub struct EccentricImpact {
     /// Energy that the damper of the plate took from onset to separation; J.
     pub support_energy: f64,
     /// Energy of the vibrating plate at separation, less that at onset; J.
+    #[serde(skip)]
     pub plate_energy_change: f64,
     /// Energy from the height that the centre of mass lost from onset to
     /// separation; J.
+    #[serde(skip)]
     pub height_energy: f64,
 }
 

@@ -1,6 +1,6 @@
 //! A scene as a deck for LAMMPS.
 
-use crate::deck::{Deck, FRAMES, Task, comment, density, triple};
+use crate::deck::{Deck, FRAMES, Task, comment, variables};
 use crate::lammps::terms::terms;
 use crate::lammps::walls::walls;
 use std::fmt::Write;
@@ -30,13 +30,14 @@ pub fn lammps_deck(task: &Task) -> Result<Deck, Vec<String>> {
     };
     let first = task.first();
     let mut files = vec![("in.scene".to_owned(), {
-        let mut text = head(task, first > 0);
+        let mut text = head(task);
         text += &format!("{pairs}\n{walls}\n{}", forces(task));
         text += &run(task);
         text
     })];
     if first > 0 {
-        files.push(("fruit.data".to_owned(), data(task, first)));
+        let data = task.data(task.bounds(), 0, "Atoms # sphere");
+        files.push(("fruit.data".to_owned(), data));
     }
     if first < task.scene.fruit.len() {
         files.push(("come.in".to_owned(), COME.to_owned()));
@@ -57,10 +58,8 @@ pub fn lammps_deck(task: &Task) -> Result<Deck, Vec<String>> {
     })
 }
 
-fn head(task: &Task, with_data: bool) -> String {
+fn head(task: &Task) -> String {
     let scene = task.scene;
-    let types = task.classes.classes.len();
-    let [low, high] = task.bounds();
     let down = (0..3).max_by(|&a, &b| scene.gravity[a].abs().total_cmp(&scene.gravity[b].abs()));
     let processors = match down {
         Some(0) => "1 * *",
@@ -68,19 +67,13 @@ fn head(task: &Task, with_data: bool) -> String {
         _ => "* * 1",
     };
     let reach = 2.0 * task.largest() + task.skin();
-    let box_of = match with_data {
-        true => "read_data fruit.data".to_owned(),
-        false => format!(
-            "region scene block {} {} {} {} {} {} units box\ncreate_box {types} scene",
-            low[0], high[0], low[1], high[1], low[2], high[2]
-        ),
-    };
+    let space = task.space(task.bounds(), task.classes.classes.len());
     let mut text = format!(
         "# {}\n# A scene of windfall for LAMMPS of 29 September 2021 and newer: lmp -in in.scene\n\
          # Frames go to {FRAMES} every {} steps: `windfall scene run FILE --engine lammps --frames \
          {FRAMES}`\n# makes contacts, fruit and bruises of them.\n\
          units si\natom_style sphere\natom_modify map hash sort 1000 {}\nboundary m m m\n\
-         newton off\ncomm_modify vel yes cutoff {reach}\nprocessors {processors}\n{box_of}\n\
+         newton off\ncomm_modify vel yes cutoff {reach}\nprocessors {processors}\n{space}\n\
          fix fruit all property/atom i_fruit\nvariable id atom id\nset group all i_fruit v_id\n\
          group old empty\ngroup new empty\n",
         comment(task.title),
@@ -97,8 +90,8 @@ fn head(task: &Task, with_data: bool) -> String {
             class.mass
         );
     }
-    if !with_data {
-        // Of an empty box there is nobody to number.
+    if task.first() == 0 {
+        // An empty box has no fruit to number.
         text = text.replace("variable id atom id\nset group all i_fruit v_id\n", "");
     }
     text
@@ -109,10 +102,8 @@ fn pairs(task: &Task) -> Result<String, String> {
     let mut text = "pair_style granular\n".to_owned();
     for (first, a) in classes.iter().enumerate() {
         for (second, b) in classes.iter().enumerate().skip(first) {
-            let radius = a.radius * b.radius / (a.radius + b.radius);
-            let mass = a.mass * b.mass / (a.mass + b.mass);
-            let interaction = task.scene.interaction(a.material, b.material);
-            let interaction = interaction.map_err(|problem| problem.to_string())?;
+            let (radius, mass) = a.effective(b);
+            let interaction = task.interaction(a.material, b.material)?;
             let terms = terms(task, interaction, radius, mass)?;
             let _ = writeln!(text, "pair_coeff {} {} {terms}", first + 1, second + 1);
         }
@@ -122,16 +113,12 @@ fn pairs(task: &Task) -> Result<String, String> {
 
 /// Gravity, air, sinks; how fruit move.
 fn forces(task: &Task) -> String {
-    let scene = task.scene;
     let mut text = task.fields();
-    for (number, sink) in scene.sinks.iter().enumerate() {
-        let name = comment(&sink.name);
-        let (low, high) = (sink.low, sink.high);
+    for number in 0..task.scene.sinks.len() {
         let _ = writeln!(
             text,
-            "# sink: {name}\nregion sink{number} block {} {} {} {} {} {} units box\n\
-             fix sink{number} all evaporate {SINK_STEPS} 1000000000 sink{number} 1",
-            low[0], high[0], low[1], high[1], low[2], high[2]
+            "{}fix sink{number} all evaporate {SINK_STEPS} 1000000000 sink{number} 1",
+            task.sink(number)
         );
     }
     text + "fix move all nve/sphere\n"
@@ -141,21 +128,14 @@ fn forces(task: &Task) -> String {
 const SINK_STEPS: u64 = 32;
 
 fn run(task: &Task) -> String {
-    let (scene, steps) = (task.scene, task.steps);
+    let steps = task.steps;
     let mut text = format!(
-        "neighbor {} bin\nneigh_modify delay 0 every {} check yes\ntimestep {}\n\
-         thermo_style custom step atoms\nthermo {}\nthermo_modify lost error\n\
-         compute_modify thermo_temp dynamic/dof yes\n\
+        "{}compute_modify thermo_temp dynamic/dof yes\n\
          dump frames all custom {} {FRAMES} i_fruit x y z vx vy vz omegax omegay omegaz\n",
-        task.skin(),
-        task.looks(),
-        scene.time_step,
-        (steps / 20).max(1),
+        task.stepping(),
         task.frame_steps,
     );
-    let coming = scene.fruit.iter().enumerate().skip(task.first());
-    let coming = coming.filter(|(_, own)| task.step_of(own.time) < steps);
-    for (place, (number, fruit)) in coming.enumerate() {
+    for (place, (number, fruit)) in task.coming().enumerate() {
         if place == 0 {
             let _ = writeln!(
                 text,
@@ -164,68 +144,23 @@ fn run(task: &Task) -> String {
                 task.wait()
             );
         }
-        let kind = task.classes.of_fruit[number] + 1;
-        let mut lines = vec![
-            ("at", task.step_of(fruit.time).to_string()),
-            ("fruit", (number + 1).to_string()),
-            ("type", kind.to_string()),
-            ("diameter", (2.0 * fruit.radius).to_string()),
-            ("mass", fruit.mass.to_string()),
-        ];
-        for (name, vector) in [("", fruit.place), ("v", fruit.velocity)] {
-            for (axis, value) in ["x", "y", "z"].iter().zip(vector) {
-                lines.push(("", format!("{name}{axis} string {value}")));
-            }
-        }
-        lines.push((
-            "attempts",
-            if fruit.elsewhere.is_some() { "8" } else { "0" }.to_owned(),
-        ));
         let [low, high] = fruit.elsewhere.unwrap_or([fruit.place; 2]);
-        for (name, vector) in [("l", low), ("h", high)] {
-            for (axis, value) in ["x", "y", "z"].iter().zip(vector) {
-                lines.push(("", format!("{name}{axis} string {value}")));
-            }
-        }
-        for (name, value) in lines {
-            let _ = match name {
-                "" => writeln!(text, "variable {value}"),
-                name => writeln!(text, "variable {name} string {value}"),
-            };
-        }
-        text += "include come.in\n";
-    }
-    text + &format!("if \"$(step) < {steps}\" then \"run {steps} upto\"\n")
-}
-
-/// Fruit that are there from the beginning.
-fn data(task: &Task, first: usize) -> String {
-    let [low, high] = task.bounds();
-    let mut text = format!(
-        "fruit of a scene of windfall\n\n{first} atoms\n{} atom types\n\n",
-        task.classes.classes.len()
-    );
-    for (axis, name) in ["x", "y", "z"].iter().enumerate() {
-        let _ = writeln!(text, "{} {} {name}lo {name}hi", low[axis], high[axis]);
-    }
-    text += "\nAtoms # sphere\n\n";
-    for (number, fruit) in task.scene.fruit.iter().take(first).enumerate() {
-        let density = density(fruit);
-        let _ = writeln!(
+        let _ = write!(
             text,
-            "{} {} {} {density} {}",
+            "variable at string {}\nvariable fruit string {}\nvariable type string {}\n\
+             variable diameter string {}\nvariable mass string {}\n{}\
+             variable attempts string {}\n{}include come.in\n",
+            task.step_of(fruit.time),
             number + 1,
             task.classes.of_fruit[number] + 1,
             2.0 * fruit.radius,
-            triple(fruit.place)
+            fruit.mass,
+            variables(&[("", fruit.place), ("v", fruit.velocity)]),
+            if fruit.elsewhere.is_some() { "8" } else { "0" },
+            variables(&[("l", low), ("h", high)])
         );
     }
-    text += "\nVelocities\n\n";
-    for (number, fruit) in task.scene.fruit.iter().take(first).enumerate() {
-        let (velocity, spin) = (triple(fruit.velocity), triple(fruit.spin));
-        let _ = writeln!(text, "{} {velocity} {spin}", number + 1);
-    }
-    text
+    text + &format!("if \"$(step) < {steps}\" then \"run {steps} upto\"\n")
 }
 
 /// How a fruit comes: at its step; where its place is taken elsewhere in its box, on places

@@ -1,5 +1,5 @@
 //! LAMMPS.
 
-pub mod deck;
+pub(crate) mod deck;
 mod terms;
-pub mod walls;
+pub(crate) mod walls;

@@ -14,29 +14,22 @@ use windfall_scene::vector::{Vector, add, dot, plus_scaled};
 /// Walls that it cannot represent, each with its reason.
 pub(crate) fn walls(task: &Task) -> Result<String, Vec<String>> {
     let mut text = String::new();
-    let mut reasons = Vec::new();
-    for (number, wall) in task.scene.walls.iter().enumerate() {
-        match one(task, number, wall) {
-            Ok(own) => text += &own,
-            Err(reason) => reasons.push(format!("the wall \"{}\": {reason}", wall.name)),
-        }
-    }
-    match reasons.is_empty() {
-        true => Ok(text),
-        false => Err(reasons),
-    }
+    task.each_wall(|number, wall| {
+        text += &one(task, number, wall)?;
+        Ok(())
+    })?;
+    Ok(text)
 }
 
 fn one(task: &Task, number: usize, wall: &Wall) -> Result<String, String> {
     let region = region_of(wall)?;
     let (variables, moves) = motion(number, wall, &region)?;
-    let region = words(&region);
+    let region = region.words();
     let mut text = format!("# {}\n{variables}", comment(&wall.name));
     let classes = &task.classes.classes;
     let mut done = Vec::new();
     for (class, own) in classes.iter().enumerate() {
-        let interaction = task.scene.interaction(own.material, wall.material);
-        let interaction = interaction.map_err(|problem| problem.to_string())?;
+        let interaction = task.interaction(own.material, wall.material)?;
         // One for all where size makes no difference.
         let one_for_all = !PairNumbers::by_size(interaction)
             && classes.iter().all(|a| a.material == own.material);
@@ -47,7 +40,7 @@ fn one(task: &Task, number: usize, wall: &Wall) -> Result<String, String> {
             true => "all".to_owned(),
             false => format!("t{}", class + 1),
         };
-        // A region that moves tells its velocity once in a step: each fix has its own.
+        // A moving region reports its velocity once per step, so each fix needs its own.
         let shared = moves.is_empty();
         let id = match shared {
             true => format!("w{number}"),
@@ -66,47 +59,6 @@ fn one(task: &Task, number: usize, wall: &Wall) -> Result<String, String> {
     Ok(text)
 }
 
-/// A region without its motion.
-fn words(region: &Region) -> String {
-    let faces = |open: &[bool]| {
-        let open = open.iter().enumerate().filter(|(_, open)| **open);
-        open.map(|(face, _)| format!(" open {}", face + 1))
-            .collect::<String>()
-    };
-    match region {
-        Region::Plane { point, normal } => {
-            format!("plane {} {} side in", triple(*point), triple(*normal))
-        }
-        Region::Block {
-            low, high, open, ..
-        } => format!(
-            "block {} {} {} {} {} {}{}",
-            low[0],
-            high[0],
-            low[1],
-            high[1],
-            low[2],
-            high[2],
-            faces(open)
-        ),
-        Region::Cylinder {
-            axis,
-            centre,
-            radius,
-            ends: [low, high],
-            ..
-        } => {
-            let across: Vec<String> = (0..3)
-                .filter(|other| other != axis)
-                .map(|other| centre[other].to_string())
-                .collect();
-            let axis = ["x", "y", "z"][*axis];
-            let across = across.join(" ");
-            format!("cylinder {axis} {across} {radius} {low} {high} open 1 open 2")
-        }
-    }
-}
-
 /// Variables of a wall's motion, and the words of its region that use them.
 fn motion(number: usize, wall: &Wall, region: &Region) -> Result<(String, String), String> {
     let motion = &wall.motion;
@@ -123,11 +75,7 @@ fn motion(number: usize, wall: &Wall, region: &Region) -> Result<(String, String
             let _ = write!(words, " v_w{number}{axis}");
         }
     }
-    let tilt = match region {
-        Region::Plane { .. } => None,
-        Region::Block { tilt, .. } | Region::Cylinder { tilt, .. } => *tilt,
-    };
-    let turn = match (tilt, motion.rotation) {
+    let turn = match (region.tilt(), motion.rotation) {
         (None, None) => return Ok((text, words)),
         (Some(Tilt { point, axis, angle }), None) => (point, axis, angle.to_string()),
         (None, Some(own)) => (

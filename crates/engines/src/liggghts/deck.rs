@@ -1,6 +1,6 @@
 //! A scene as a deck for LIGGGHTS.
 
-use crate::deck::{Deck, FRAMES, Task, comment, density, triple};
+use crate::deck::{Deck, FRAMES, Task, comment, density, variables};
 use crate::law::PairNumbers;
 use crate::liggghts::model::{Model, Types, model_of, words};
 use crate::liggghts::walls::{Walls, walls};
@@ -34,10 +34,11 @@ pub fn liggghts_deck(task: &Task) -> Result<Deck, Vec<String>> {
         return Err(reasons);
     };
     let first = task.first();
-    let text = head(task, &types, first) + &coefficients + &forces(task, model, &walls);
+    let text = head(task, &types) + &coefficients + &forces(task, model, &walls);
     let mut files = vec![("in.scene".to_owned(), text + &run(task, &types))];
     if first > 0 {
-        files.push(("fruit.data".to_owned(), data(task, &types, first)));
+        let data = task.data(bounds(task), types.walls.len(), "Atoms");
+        files.push(("fruit.data".to_owned(), data));
     }
     files.push(("go.in".to_owned(), go(task)));
     if first < scene.fruit.len() {
@@ -57,8 +58,7 @@ fn fruit_model(task: &Task) -> Result<Model, String> {
     let mut found = None;
     for a in classes {
         for b in classes {
-            let interaction = task.scene.interaction(a.material, b.material);
-            let interaction = interaction.map_err(|problem| problem.to_string())?;
+            let interaction = task.interaction(a.material, b.material)?;
             let model = model_of(interaction).map_err(|reason| format!("fruit: {reason}"))?;
             if *found.get_or_insert(model) != model {
                 return Err(
@@ -70,22 +70,15 @@ fn fruit_model(task: &Task) -> Result<Model, String> {
     found.ok_or_else(|| "there are no fruit".to_owned())
 }
 
-fn head(task: &Task, types: &Types, first: usize) -> String {
+fn head(task: &Task, types: &Types) -> String {
     let count = types.walls.len() + task.classes.classes.len();
-    let [low, high] = bounds(task);
-    let place = match first > 0 {
-        true => "read_data fruit.data".to_owned(),
-        false => format!(
-            "region scene block {} {} {} {} {} {} units box\ncreate_box {count} scene",
-            low[0], high[0], low[1], high[1], low[2], high[2]
-        ),
-    };
+    let space = task.space(bounds(task), count);
     let mut text = format!(
         "# {}\n# A scene of windfall for LIGGGHTS-PUBLIC 3.8: liggghts -in in.scene\n\
          # Frames go to {FRAMES} every {} steps: `windfall scene run FILE --engine liggghts\n\
          # --frames {FRAMES}` makes contacts, fruit and bruises of them.\n\
          units si\natom_style granular\natom_modify map array sort 1000 {}\nboundary f f f\n\
-         newton off\ncommunicate single vel yes\nprocessors * * 1\n{place}\n\
+         newton off\ncommunicate single vel yes\nprocessors * * 1\n{space}\n\
          fix fruit all property/atom fruit scalar yes no no 0.0\n",
         comment(task.title),
         task.frame_steps,
@@ -142,8 +135,7 @@ fn coefficients(task: &Task, types: &Types) -> Result<String, String> {
                 }
                 (Some(a), Some(b)) => {
                     let (a, b) = (classes[a], classes[b]);
-                    let radius = a.radius * b.radius / (a.radius + b.radius);
-                    let mass = a.mass * b.mass / (a.mass + b.mass);
+                    let (radius, mass) = a.effective(&b);
                     of_pair(task, (a.material, b.material), radius, mass)?
                 }
             };
@@ -174,8 +166,7 @@ fn of_pair(
     radius: f64,
     mass: f64,
 ) -> Result<[f64; 8], String> {
-    let interaction = task.scene.interaction(a, b);
-    let interaction = interaction.map_err(|problem| problem.to_string())?;
+    let interaction = task.interaction(a, b)?;
     let pair = PairNumbers::of(interaction, radius, mass)?;
     let (relative, absolute) = match pair.law.damping {
         Damping::Root(c) => (pair.viscoelastic(c), 0.0),
@@ -196,26 +187,14 @@ fn of_pair(
 }
 
 fn forces(task: &Task, model: Model, walls: &Walls) -> String {
-    let scene = task.scene;
     let (form, options) = words(model, task.rolls());
     let mut text = format!(
         "pair_style gran {form} {options}\npair_coeff * *\n{}",
         walls.text
     );
     text += &task.fields();
-    for (number, sink) in scene.sinks.iter().enumerate() {
-        let (low, high) = (sink.low, sink.high);
-        let _ = writeln!(
-            text,
-            "# sink: {}\nregion sink{number} block {} {} {} {} {} {} units box",
-            comment(&sink.name),
-            low[0],
-            high[0],
-            low[1],
-            high[1],
-            low[2],
-            high[2]
-        );
+    for number in 0..task.scene.sinks.len() {
+        text += &task.sink(number);
     }
     text + "fix move all nve/sphere\n"
 }
@@ -236,87 +215,45 @@ fn go(task: &Task) -> String {
 }
 
 fn run(task: &Task, types: &Types) -> String {
-    let (scene, steps) = (task.scene, task.steps);
+    let steps = task.steps;
     // It sets properties only after a run.
     let mut numbers = "run 0\n".to_owned();
     for number in 1..=task.first() {
         let _ = writeln!(numbers, "set atom {number} property/atom fruit {number}");
     }
     let mut text = format!(
-        "neighbor {} bin\nneigh_modify delay 0 every {} check yes\ntimestep {}\n\
-         thermo_style custom step atoms\nthermo {}\nthermo_modify lost error\n\
-         {numbers}dump frames all custom {} {FRAMES} f_fruit x y z vx vy vz omegax omegay omegaz\n\
+        "{}{numbers}dump frames all custom {} {FRAMES} f_fruit x y z vx vy vz omegax omegay omegaz\n\
          variable reach equal {}\nvariable wait equal {}\nvariable end equal {steps}\n",
-        task.skin(),
-        task.looks(),
-        scene.time_step,
-        (steps / 20).max(1),
+        task.stepping(),
         task.frame_steps,
         2.0 * task.largest(),
         task.wait()
     );
-    let coming = scene.fruit.iter().enumerate().skip(task.first());
-    for (number, fruit) in coming.filter(|(_, own)| task.step_of(own.time) < steps) {
-        let kind = types.walls.len() + task.classes.of_fruit[number] + 1;
-        let density = density(fruit);
+    for (number, fruit) in task.coming() {
         let [low, high] = fruit.elsewhere.unwrap_or([fruit.place; 2]);
-        let attempts = if fruit.elsewhere.is_some() { 8 } else { 0 };
         let _ = write!(
             text,
-            "variable to string {}\nvariable fruit string {}\nvariable type string {kind}\n\
-             variable diameter string {}\nvariable density string {density}\n\
-             variable attempts string {attempts}\n",
+            "variable to string {}\nvariable fruit string {}\nvariable type string {}\n\
+             variable diameter string {}\nvariable density string {}\n\
+             variable attempts string {}\n{}include come.in\n",
             task.step_of(fruit.time),
             number + 1,
-            2.0 * fruit.radius
+            types.walls.len() + task.classes.of_fruit[number] + 1,
+            2.0 * fruit.radius,
+            density(fruit),
+            if fruit.elsewhere.is_some() { 8 } else { 0 },
+            variables(&[
+                ("", fruit.place),
+                ("v", fruit.velocity),
+                ("l", low),
+                ("h", high)
+            ])
         );
-        let vectors = [
-            ("", fruit.place),
-            ("v", fruit.velocity),
-            ("l", low),
-            ("h", high),
-        ];
-        for (name, vector) in vectors {
-            for (axis, value) in ["x", "y", "z"].iter().zip(vector) {
-                let _ = writeln!(text, "variable {name}{axis} string {value}");
-            }
-        }
-        text += "include come.in\n";
     }
     text + &format!(
         "variable now equal step\nvariable to string {steps}\n\
          if \"${{now}} >= ${{to}}\" then \"jump SELF over\"\ninclude go.in\nlabel over\n"
     )
-}
-
-fn data(task: &Task, types: &Types, first: usize) -> String {
-    let [low, high] = bounds(task);
-    let walls = types.walls.len();
-    let mut text = format!(
-        "fruit of a scene of windfall\n\n{first} atoms\n{} atom types\n\n",
-        walls + task.classes.classes.len()
-    );
-    for (axis, name) in ["x", "y", "z"].iter().enumerate() {
-        let _ = writeln!(text, "{} {} {name}lo {name}hi", low[axis], high[axis]);
-    }
-    text += "\nAtoms\n\n";
-    for (number, fruit) in task.scene.fruit.iter().take(first).enumerate() {
-        let density = density(fruit);
-        let _ = writeln!(
-            text,
-            "{} {} {} {density} {}",
-            number + 1,
-            walls + task.classes.of_fruit[number] + 1,
-            2.0 * fruit.radius,
-            triple(fruit.place)
-        );
-    }
-    text += "\nVelocities\n\n";
-    for (number, fruit) in task.scene.fruit.iter().take(first).enumerate() {
-        let (velocity, spin) = (triple(fruit.velocity), triple(fruit.spin));
-        let _ = writeln!(text, "{} {velocity} {spin}", number + 1);
-    }
-    text
 }
 
 /// How a fruit comes, as in the deck for LAMMPS.

@@ -1,5 +1,5 @@
 //! LIGGGHTS.
 
-pub mod deck;
+pub(crate) mod deck;
 mod model;
-pub mod walls;
+pub(crate) mod walls;

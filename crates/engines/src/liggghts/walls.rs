@@ -2,8 +2,10 @@
 
 use crate::deck::{Task, comment, triple};
 use crate::liggghts::model::{Model, Types, model_of, words};
+use crate::walls::triangles_of;
 use std::fmt::Write;
-use windfall_scene::shape::wall::{Plate, Shape, Wall};
+use windfall_scene::shape::surface::Shape;
+use windfall_scene::shape::wall::Wall;
 use windfall_scene::vector::{Vector, cross, length, scaled, subtract};
 
 /// Walls of a deck.
@@ -23,28 +25,24 @@ pub(crate) fn walls(task: &Task, types: &Types) -> Result<Walls, Vec<String>> {
         text: String::new(),
         meshes: Vec::new(),
     };
-    let (mut reasons, mut names, mut form) = (Vec::new(), Vec::new(), None);
-    for (number, wall) in task.scene.walls.iter().enumerate() {
-        let own = model(task, wall).and_then(|model| {
-            if let Shape::Plane { point, normal } = &wall.shape {
-                found.text += &plane(task, types, (number, wall), (*point, *normal), model)?;
-                return Ok(());
-            }
-            if *form.get_or_insert(model) != model {
-                return Err(
-                    "all walls but endless planes need one form of law, k d or k d^1.5".to_owned(),
-                );
-            }
-            let (text, stl) = mesh(types, number, wall)?;
-            found.text += &text;
-            found.meshes.push((format!("wall{number}.stl"), stl));
-            names.push(format!("wall{number}"));
-            Ok(())
-        });
-        if let Err(reason) = own {
-            reasons.push(format!("the wall \"{}\": {reason}", wall.name));
+    let (mut names, mut form) = (Vec::new(), None);
+    task.each_wall(|number, wall| {
+        let model = model(task, wall)?;
+        if let Shape::Plane { point, normal } = wall.shape {
+            found.text += &plane(task, types, (number, wall), (point, normal), model)?;
+            return Ok(());
         }
-    }
+        if *form.get_or_insert(model) != model {
+            return Err(
+                "all walls but endless planes need one form of law, k d or k d^1.5".to_owned(),
+            );
+        }
+        let (text, stl) = mesh(types, number, wall)?;
+        found.text += &text;
+        found.meshes.push((format!("wall{number}.stl"), stl));
+        names.push(format!("wall{number}"));
+        Ok(())
+    })?;
     if let Some(model) = form {
         let (form, options) = words(model, task.rolls());
         let _ = writeln!(
@@ -54,18 +52,14 @@ pub(crate) fn walls(task: &Task, types: &Types) -> Result<Walls, Vec<String>> {
             names.join(" ")
         );
     }
-    match reasons.is_empty() {
-        true => Ok(found),
-        false => Err(reasons),
-    }
+    Ok(found)
 }
 
 /// The form of the law that all fruit have with a wall.
 fn model(task: &Task, wall: &Wall) -> Result<Model, String> {
     let mut found = None;
     for class in &task.classes.classes {
-        let interaction = task.scene.interaction(class.material, wall.material);
-        let model = model_of(interaction.map_err(|problem| problem.to_string())?)?;
+        let model = model_of(task.interaction(class.material, wall.material)?)?;
         if *found.get_or_insert(model) != model {
             return Err("its contacts with all fruit need one form of law".to_owned());
         }
@@ -96,16 +90,7 @@ fn plane(
 }
 
 fn mesh(types: &Types, number: usize, wall: &Wall) -> Result<(String, String), String> {
-    let triangles = match &wall.shape {
-        Shape::Plates(plates) => plates.iter().flat_map(halves).collect(),
-        Shape::Mesh { triangles } => triangles.clone(),
-        Shape::Plane { .. } => return Err("no mesh".to_owned()),
-        Shape::Cylinder { .. } => {
-            return Err(
-                "a cylinder: as a mesh it would have edges that fruit touch twice".to_owned(),
-            );
-        }
-    };
+    let triangles = triangles_of(&wall.shape)?;
     let motion = &wall.motion;
     let belt = match motion.surface_velocity {
         own if own == [0.0; 3] => String::new(),
@@ -143,12 +128,6 @@ fn mesh(types: &Types, number: usize, wall: &Wall) -> Result<(String, String), S
         );
     }
     Ok((text, stl(&triangles)))
-}
-
-/// A plate as two triangles.
-fn halves(plate: &Plate) -> [[Vector; 3]; 2] {
-    let [a, b, c, d] = plate.corners();
-    [[a, b, d], [a, d, c]]
 }
 
 /// Triangles as STL text.

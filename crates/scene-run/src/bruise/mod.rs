@@ -1,4 +1,4 @@
 //! Bruises from contacts, and from what one measures of them.
 
-pub mod scene;
+pub(crate) mod scene;
 pub mod volumes;

@@ -10,16 +10,12 @@ use windfall_scene::binary::{Binary, no_value};
 use windfall_scene::bruise::damage::{Blow, Bruise};
 use windfall_scene::draws::{normal_of, normals};
 use windfall_scene::event::{Event, Partner};
-use windfall_scene::scene::{Fruit, Scene};
+use windfall_scene::scene::Scene;
 
 /// Contacts that may bruise, of each fruit, as they come.
 #[derive(Clone, Debug)]
 pub struct Blows {
     plan: BruisePlan,
-    radii: Vec<f64>,
-    masses: Vec<f64>,
-    materials: Vec<usize>,
-    wall_materials: Vec<usize>,
     shares: BTreeMap<(usize, usize), f64>,
     /// How each fruit differs.
     draws: Vec<(f64, f64)>,
@@ -81,7 +77,6 @@ const STREAM: u64 = 1 << 33;
 const LEVEL: f64 = 0.95;
 
 /// That contacts were more than are kept.
-#[must_use]
 pub fn finding_of_blows(blows: &Blows) -> Option<FindingOutcome> {
     let crowded = blows.crowded();
     (crowded > 0).then(|| FindingOutcome {
@@ -95,21 +90,16 @@ pub fn finding_of_blows(blows: &Blows) -> Option<FindingOutcome> {
 }
 
 impl Blows {
-    /// None yet.
+    /// Empty.
     ///
     /// * `shares`: part of the absorbed energy that a fruit takes, by the pair of materials;
     ///   half of it where two fruit meet, all of it on a wall, where nothing is said
-    #[must_use]
     pub fn new(plan: &BruisePlan, scene: &Scene, shares: &BTreeMap<(usize, usize), f64>) -> Self {
         let count = scene.fruit.len();
         let draws = [0, 1].map(|place| normals(plan.seed, STREAM + place, count));
         let [thresholds, volumes] = draws;
         Self {
             plan: plan.clone(),
-            radii: scene.fruit.iter().map(Fruit::mean_radius).collect(),
-            masses: scene.fruit.iter().map(|fruit| fruit.mass).collect(),
-            materials: scene.fruit.iter().map(|fruit| fruit.material).collect(),
-            wall_materials: scene.walls.iter().map(|wall| wall.material).collect(),
             shares: shares.clone(),
             draws: thresholds.into_iter().zip(volumes).collect(),
             of: vec![Vec::new(); count],
@@ -120,40 +110,37 @@ impl Blows {
         }
     }
 
-    /// One contact more.
-    pub fn count(&mut self, event: &Event) {
-        let own = event.fruit as usize;
-        let (place, with, usual, mass) = match event.partner {
+    /// Counts a contact.
+    pub fn count(&mut self, scene: &Scene, event: &Event) {
+        let mass = |fruit: u32| scene.fruit[fruit as usize].mass;
+        let own = mass(event.fruit);
+        let (place, usual, mass) = match event.partner {
             Partner::Fruit(other) => {
-                let (a, b) = (self.masses[own], self.masses[other as usize]);
-                let with = self.materials[other as usize];
-                (self.wall_materials.len(), with, 0.5, a * b / (a + b))
+                let other = mass(other);
+                (scene.walls.len(), 0.5, own * other / (own + other))
             }
-            Partner::Wall(wall) => (
-                wall as usize,
-                self.wall_materials[wall as usize],
-                1.0,
-                self.masses[own],
-            ),
+            Partner::Wall(wall) => (wall as usize, 1.0, own),
         };
-        let with = (self.materials[own].min(with), self.materials[own].max(with));
-        let share = self.shares.get(&with).copied().unwrap_or(usual);
+        let share = self.shares.get(&scene.materials_of(event));
+        let share = share.copied().unwrap_or(usual);
         let impact_energy = 0.5 * mass * event.normal_speed * event.normal_speed;
         let felt = (share, impact_energy, place);
-        self.strike(event, (event.fruit, false), felt);
+        self.strike(scene, event, (event.fruit, false), felt);
         if let Partner::Fruit(other) = event.partner {
-            self.strike(event, (other, true), felt);
+            self.strike(scene, event, (other, true), felt);
         }
     }
 
     fn strike(
         &mut self,
+        scene: &Scene,
         event: &Event,
         (fruit, other): (u32, bool),
         (share, impact_energy, place): (f64, f64, usize),
     ) {
         let number = fruit as usize;
-        let mut blow = Blow::of(event, self.radii[number], other, share);
+        let (radius, mass) = (scene.fruit[number].mean_radius(), scene.fruit[number].mass);
+        let mut blow = Blow::of(event, radius, other, share);
         let (threshold, volume) = self.draws[number];
         blow.fruit_draws = [threshold, volume];
         let mut outside = false;
@@ -165,9 +152,9 @@ impl Blows {
                 event.normal_speed,
                 event.duration,
                 event.largest_displacement,
-                self.radii[number],
-                2.0 * self.radii[number],
-                self.masses[number],
+                radius,
+                2.0 * radius,
+                mass,
             ];
             let columns = regression.columns_of(&contact, &self.plan.properties[number]);
             outside = regression.is_outside(&columns);
@@ -202,15 +189,11 @@ impl Blows {
 
     /// Contacts above the threshold that are not kept: of a fruit that has more than
     /// [`MOST_BLOWS`] the weakest.
-    #[must_use]
     pub fn crowded(&self) -> u64 {
         self.crowded
     }
 
     /// Writes what was counted.
-    ///
-    /// # Errors
-    /// Those of the writer.
     pub fn save(&self, to: &mut dyn Write) -> IoResult<()> {
         self.of.write(to)?;
         self.with.write(to)?;
@@ -223,7 +206,7 @@ impl Blows {
     /// # Errors
     /// Those of the reader; it is of another scene.
     pub fn take_up(&mut self, from: &mut dyn Read) -> IoResult<()> {
-        let fruit = self.radii.len();
+        let fruit = self.draws.len();
         self.of = Binary::read(from)?;
         self.with = Binary::read(from)?;
         self.outside = Binary::read(from)?;
@@ -238,14 +221,12 @@ impl Blows {
 
     /// How many fruit have a bruise above each limit, by the model as it is and by drawn ones:
     /// the same models for every scene of the same file.
-    #[must_use]
     pub fn counts_above(&self, draws: (usize, u64)) -> Vec<Vec<usize>> {
         let (model, limits) = (&self.plan.model, &self.plan.limits);
         model.counts_above(&self.of, limits, draws)
     }
 
     /// A regression used outside of what it was of.
-    #[must_use]
     pub fn finding_of_range(&self) -> Option<FindingOutcome> {
         let [outside, all] = self.outside;
         (outside > 0).then(|| FindingOutcome {
@@ -259,13 +240,11 @@ impl Blows {
     }
 
     /// Bruises of each fruit, by the model as it is.
-    #[must_use]
     pub fn bruises(&self, plan: &BruisePlan) -> Vec<Vec<Bruise>> {
         self.of.iter().map(|own| plan.model.bruises(own)).collect()
     }
 
-    /// What came of it.
-    #[must_use]
+    /// The result.
     pub fn outcome(&self, plan: &BruisePlan, scene: &Scene) -> BruiseOutcome {
         let shares = plan
             .model

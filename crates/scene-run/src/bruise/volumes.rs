@@ -124,14 +124,7 @@ pub fn table_of_volumes(path: &Path) -> Result<String, Error> {
         }
         let found = volumes_of([first[row], second[row]], depth[row], radius);
         let found = found.ok_or_else(|| wrong(format!("line {line}: {WIDER}")))?;
-        let text =
-            |volume: Option<f64>| volume.map_or(String::new(), |own| (1e9 * own).to_string());
-        let volumes = [
-            Some(found.cap),
-            found.cap_with_bulge,
-            Some(found.half_ellipsoid),
-        ];
-        cells.extend(volumes.map(text));
+        cells.extend(cells_of(&found));
         rows.push(cells);
     }
     let names = table.columns.iter().map(|own| own.name.clone());
@@ -186,14 +179,17 @@ pub fn text_of_volumes(outcome: &BruiseVolumes) -> String {
 /// Volumes as CSV.
 #[must_use]
 pub fn csv_of_volumes(outcome: &BruiseVolumes) -> String {
+    format!("{}\n{}\n", ADDED.join(","), cells_of(outcome).join(","))
+}
+
+/// Cells of the columns of [`ADDED`]; mm³.
+fn cells_of(outcome: &BruiseVolumes) -> [String; 3] {
     let bulge = outcome.cap_with_bulge;
-    let bulge = bulge.map_or(String::new(), |own| (1e9 * own).to_string());
-    format!(
-        "{}\n{},{bulge},{}\n",
-        ADDED.join(","),
-        1e9 * outcome.cap,
-        1e9 * outcome.half_ellipsoid
-    )
+    [
+        (1e9 * outcome.cap).to_string(),
+        bulge.map_or(String::new(), |own| (1e9 * own).to_string()),
+        (1e9 * outcome.half_ellipsoid).to_string(),
+    ]
 }
 
 #[cfg(test)]

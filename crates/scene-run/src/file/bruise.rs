@@ -1,20 +1,16 @@
 //! `[bruise]` of scene.toml.
 
-use crate::file::key::needed;
+use crate::file::key::Section;
 use crate::file::regression::{RegressionPlan, read_regression};
 use crate::file::scene::{BruiseFile, FruitFile};
-use std::ops::Range;
 use toml::Spanned;
 use windfall_files::error::Error;
-use windfall_files::text::toml_source::{
-    Needed, TomlSource, choice, invalid, missing, needed_quantity, optional_quantity,
-};
+use windfall_files::text::toml_source::{TomlSource, choice, invalid};
 use windfall_scene::bruise::damage::{BruiseModel, Predictor, SameSpot, VolumeLaw};
 
 /// How contacts bruise, and what counts as bruised.
 #[derive(Clone, Debug)]
 pub struct BruisePlan {
-    /// The model.
     pub model: BruiseModel,
     /// Volumes above which a fruit counts as bruised; m³.
     pub limits: Vec<f64>,
@@ -31,20 +27,22 @@ const TABLE: &str = "[bruise]";
 const LEAST_PART: f64 = 0.01;
 
 /// The model of `[bruise]`, without the properties of the fruit.
-///
-/// # Errors
-/// Something is missing or cannot be.
 pub fn bruise_of(
     source: &TomlSource,
     bruise: &Spanned<BruiseFile>,
     fruit: &[Spanned<FruitFile>],
     seed: u64,
 ) -> Result<BruisePlan, Error> {
-    let (file, at) = (bruise.get_ref(), bruise.span());
-    let predictor = predictor_of(source, file, &at)?;
-    let limits = limits_of(source, file, &at)?;
+    let file = bruise.get_ref();
+    let table = Section {
+        source,
+        name: TABLE,
+        at: bruise.span(),
+    };
+    let predictor = predictor_of(&table, file)?;
+    let limits = limits_of(&table, file)?;
     let smallest = limits.iter().copied().fold(f64::INFINITY, f64::min);
-    let mut model = threshold_of(source, file, &at, predictor)?;
+    let mut model = threshold_of(&table, file, predictor)?;
     let spots = [("largest", SameSpot::Largest), ("sum", SameSpot::Sum)];
     let key = (TABLE, "same_spot");
     model.same_spot =
@@ -54,14 +52,7 @@ pub fn bruise_of(
         model.law = VolumeLaw::Regression(own.regression.clone());
         model.least_volume = LEAST_PART * smallest;
     }
-    let least = needed(
-        TABLE,
-        "least_volume",
-        "a volume",
-        "m^3",
-        "least_volume = \"1 mm^3\"",
-    );
-    if let Some(volume) = optional_quantity(source, file.least_volume.as_ref(), &least)? {
+    if let Some(volume) = table.optional(&file.least_volume, "least_volume", "m^3")? {
         model.least_volume = volume;
     }
     Ok(BruisePlan {
@@ -73,44 +64,35 @@ pub fn bruise_of(
     })
 }
 
-fn predictor_of(
-    source: &TomlSource,
-    file: &BruiseFile,
-    at: &Range<usize>,
-) -> Result<Predictor, Error> {
+fn predictor_of(table: &Section, file: &BruiseFile) -> Result<Predictor, Error> {
     let predictors = [
         ("absorbed energy", Predictor::AbsorbedEnergy),
         ("peak force", Predictor::PeakForce),
     ];
     let key = (TABLE, "predictor");
-    match choice(source, file.predictor.as_ref(), key, &predictors)? {
+    match choice(table.source, file.predictor.as_ref(), key, &predictors)? {
         Some(predictor) => Ok(predictor),
-        // A regression knows its columns; without a threshold nothing else is asked for.
+        // A regression knows its columns; without a threshold there is nothing to predict with.
         None if file.regression.is_some() && file.threshold.is_none() => {
             Ok(Predictor::AbsorbedEnergy)
         }
         None => {
             let meaning = "what of a contact tells its bruise";
-            let example = "predictor = \"absorbed energy\"";
-            let key = needed(TABLE, "predictor", meaning, "", example);
-            Err(missing(source, at, &key, TABLE.to_owned()))
+            Err(table.lacks("predictor", meaning, "predictor = \"absorbed energy\""))
         }
     }
 }
 
-fn limits_of(source: &TomlSource, file: &BruiseFile, at: &Range<usize>) -> Result<Vec<f64>, Error> {
-    let volume = needed(
-        TABLE,
-        "limits",
-        "a volume",
-        "m^3",
-        "limits = [\"100 mm^3\", \"500 mm^3\"]",
-    );
+fn limits_of(table: &Section, file: &BruiseFile) -> Result<Vec<f64>, Error> {
     let limits = file.limits.iter();
-    let limits = limits.map(|limit| needed_quantity(source, at, Some(limit), &volume));
+    let limits = limits.map(|limit| table.given(limit, "limits", "m^3"));
     let limits: Vec<f64> = limits.collect::<Result<_, _>>()?;
     match limits.is_empty() {
-        true => Err(missing(source, at, &volume, TABLE.to_owned())),
+        true => Err(table.lacks(
+            "limits",
+            "a volume",
+            "limits = [\"100 mm^3\", \"500 mm^3\"]",
+        )),
         false => Ok(limits),
     }
 }
@@ -118,9 +100,8 @@ fn limits_of(source: &TomlSource, file: &BruiseFile, at: &Range<usize>) -> Resul
 /// Threshold and susceptibility; with a regression the threshold may be left out, and there
 /// is no susceptibility.
 fn threshold_of(
-    source: &TomlSource,
+    table: &Section,
     file: &BruiseFile,
-    at: &Range<usize>,
     predictor: Predictor,
 ) -> Result<BruiseModel, Error> {
     let (unit, per, threshold, volume) = match predictor {
@@ -137,11 +118,6 @@ fn threshold_of(
             "susceptibility = \"5 mm^3/N\"",
         ),
     };
-    let key = |key, unit, example| needed(TABLE, key, "a coefficient of the bruise", unit, example);
-    let own = |value, needed: &Needed| needed_quantity(source, at, value, needed);
-    let or_none = |value, needed: &Needed| {
-        Ok::<f64, Error>(optional_quantity(source, value, needed)?.unwrap_or(0.0))
-    };
     let by_regression = file.regression.is_some();
     let given = file
         .susceptibility
@@ -149,42 +125,34 @@ fn threshold_of(
         .or(file.susceptibility_sd.as_ref());
     if let (true, Some(given)) = (by_regression, given) {
         let problem = "a regression says the volumes: leave out the susceptibility or the \
-                       regression"
-            .to_owned();
-        let key = (TABLE, "susceptibility");
-        return Err(invalid(
-            source,
-            &given.span(),
-            key,
-            &given.get_ref().0,
-            problem,
-        ));
+                       regression";
+        let text = &given.get_ref().0;
+        return Err(table.refused(&given.span(), "susceptibility", text, problem));
     }
-    let threshold_key = key("threshold", unit, threshold);
-    let susceptibility_key = key("susceptibility", per, volume);
+    let or_none =
+        |value, key, unit| Ok::<f64, Error>(table.optional(value, key, unit)?.unwrap_or(0.0));
+    let meaning = "a coefficient of the bruise";
     let model = BruiseModel {
         predictor,
         threshold: match by_regression {
-            true => or_none(file.threshold.as_ref(), &threshold_key)?,
-            false => own(file.threshold.as_ref(), &threshold_key)?,
+            true => or_none(&file.threshold, "threshold", unit)?,
+            false => table.needed(&file.threshold, ("threshold", unit), meaning, threshold)?,
         },
-        threshold_sd: or_none(
-            file.threshold_sd.as_ref(),
-            &key("threshold_sd", unit, threshold),
-        )?,
+        threshold_sd: or_none(&file.threshold_sd, "threshold_sd", unit)?,
         threshold_between_fruit: or_none(
-            file.threshold_between_fruit.as_ref(),
-            &key("threshold_between_fruit", unit, threshold),
+            &file.threshold_between_fruit,
+            "threshold_between_fruit",
+            unit,
         )?,
         law: VolumeLaw::Proportional {
             susceptibility: match by_regression {
                 true => 0.0,
-                false => own(file.susceptibility.as_ref(), &susceptibility_key)?,
+                false => {
+                    let key = ("susceptibility", per);
+                    table.needed(&file.susceptibility, key, meaning, volume)?
+                }
             },
-            sd: or_none(
-                file.susceptibility_sd.as_ref(),
-                &key("susceptibility_sd", per, volume),
-            )?,
+            sd: or_none(&file.susceptibility_sd, "susceptibility_sd", per)?,
         },
         same_spot: SameSpot::Largest,
         least_volume: 0.0,
@@ -198,9 +166,8 @@ fn threshold_of(
         numbers.extend([susceptibility, sd]);
     }
     if numbers.iter().any(|own| !(*own >= 0.0 && own.is_finite())) {
-        let problem = "coefficients of bruises must be at or above zero".to_owned();
-        let key = (TABLE, "threshold");
-        return Err(invalid(source, at, key, &format!("{numbers:?}"), problem));
+        let problem = "coefficients of bruises must be at or above zero";
+        return Err(table.refused(&table.at, "threshold", format!("{numbers:?}"), problem));
     }
     Ok(model)
 }

@@ -6,7 +6,6 @@ use windfall_statistics::model::formula_syntax::{Kind, Node, Operator, parse, sp
 /// A calculation with the columns of one row.
 #[derive(Clone, Debug)]
 pub enum Expression {
-    /// A number.
     Number(f64),
     /// A column, by its place.
     Column(usize),
@@ -33,7 +32,6 @@ pub enum Join {
 
 impl Expression {
     /// Its value for a row.
-    #[must_use]
     pub fn value(&self, columns: &[f64]) -> f64 {
         match self {
             Self::Number(number) => *number,

@@ -1,4 +1,4 @@
-//! How fruit differ, from a law card.
+//! Differences between fruit, from a law card.
 
 use std::path::Path;
 use windfall_cards::law_card::LawCard;
@@ -7,7 +7,7 @@ use windfall_files::error::Error;
 use windfall_files::option_value::unusable;
 use windfall_scene::interaction::Spread;
 
-/// The spread between fruit that a card tells; none where it tells none.
+/// The spread between fruit that a card states, if any.
 ///
 /// # Errors
 /// It varies what the law does not have, or its covariance is none.

@@ -2,13 +2,14 @@
 
 /// An engine.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[cfg_attr(feature = "clap", derive(clap::ValueEnum))]
 pub enum Engine {
-    /// The one of this program.
+    /// The engine of this program
     #[default]
     Windfall,
-    /// LAMMPS.
+    /// LAMMPS of 29 Sep 2021 or newer
     Lammps,
-    /// LIGGGHTS.
+    /// LIGGGHTS-PUBLIC 3.8
     Liggghts,
 }
 

@@ -1,51 +1,120 @@
-//! What readers of scene.toml and writers of what came of it share.
+//! What readers of scene.toml and writers of its results share.
 
 use std::ops::Range;
+use toml::Spanned;
 use windfall_files::error::Error;
-use windfall_files::text::toml_source::{Needed, TomlSource, invalid, suggestion};
+use windfall_files::text::file_quantity::QuantityText;
+use windfall_files::text::toml_source::{TomlSource, invalid, place_at, suggestion};
+use windfall_numerics::unit::quantity::parse_as;
+use windfall_scene::vector::Vector;
 
 /// What contacts of fruit with fruit are called.
 pub const FRUIT: &str = "fruit";
 
-/// A value that must stand in a table.
-#[must_use]
-pub const fn needed(
-    table: &'static str,
-    key: &'static str,
-    meaning: &'static str,
-    unit: &'static str,
-    example: &'static str,
-) -> Needed {
-    Needed {
-        table,
-        key,
-        meaning,
-        unit,
-        example,
-    }
-}
-
 /// A number in a sentence, to four digits.
-#[must_use]
 pub fn short(value: f64) -> String {
     let rounded = format!("{value:.3e}").parse::<f64>();
     rounded.unwrap_or(value).to_string()
 }
 
-/// The number of a material.
-///
-/// # Errors
-/// There is none of that name.
-pub fn material(
-    source: &TomlSource,
-    span: &Range<usize>,
-    (table, key): (&str, &str),
-    name: &str,
-    materials: &[String],
-) -> Result<usize, Error> {
-    materials.iter().position(|own| own == name).ok_or_else(|| {
-        let near = suggestion(name, materials.iter().map(String::as_str));
-        let problem = format!("there is no such material in `materials`{near}");
-        invalid(source, span, (table, key), name, problem)
-    })
+/// A place in a sentence.
+pub fn short_place(place: Vector) -> String {
+    format!("[{}]", place.map(short).join(", "))
+}
+
+/// A table of a scene while it is read.
+#[derive(Clone)]
+pub struct Section<'a> {
+    /// The text that it stands in.
+    pub source: &'a TomlSource,
+    /// Its name, with brackets.
+    pub name: &'static str,
+    /// Where it stands.
+    pub at: Range<usize>,
+}
+
+impl Section<'_> {
+    /// A quantity in SI.
+    ///
+    /// # Errors
+    /// The text is no quantity of the unit.
+    pub fn given(
+        &self,
+        value: &Spanned<QuantityText>,
+        key: &str,
+        unit: &str,
+    ) -> Result<f64, Error> {
+        let text = &value.get_ref().0;
+        parse_as(text, unit)
+            .map_err(|error| self.refused(&value.span(), key, text, error.to_string()))
+    }
+
+    /// A quantity that may be left out; in SI.
+    pub fn optional(
+        &self,
+        value: &Option<Spanned<QuantityText>>,
+        key: &str,
+        unit: &str,
+    ) -> Result<Option<f64>, Error> {
+        let given = value.as_ref().map(|own| self.given(own, key, unit));
+        given.transpose()
+    }
+
+    /// A quantity that must be there; in SI.
+    ///
+    /// * `meaning`, `example`: for the message where it is left out
+    ///
+    /// # Errors
+    /// It is left out, or as [`Section::given`].
+    pub fn needed(
+        &self,
+        value: &Option<Spanned<QuantityText>>,
+        (key, unit): (&'static str, &str),
+        meaning: &'static str,
+        example: &'static str,
+    ) -> Result<f64, Error> {
+        let found = self.optional(value, key, unit)?;
+        found.ok_or_else(|| self.lacks(key, meaning, example))
+    }
+
+    /// The error of a value that is left out.
+    pub fn lacks(&self, key: &'static str, meaning: &'static str, example: &'static str) -> Error {
+        Error::ValueMissing {
+            place: place_at(self.source, &self.at),
+            table: self.name.to_owned(),
+            key,
+            meaning,
+            example,
+        }
+    }
+
+    /// The error of a value that cannot be used.
+    pub fn refused(
+        &self,
+        at: &Range<usize>,
+        key: &str,
+        text: impl ToString,
+        problem: impl Into<String>,
+    ) -> Error {
+        let key = (self.name, key);
+        invalid(self.source, at, key, &text.to_string(), problem.into())
+    }
+
+    /// The number of a material.
+    ///
+    /// # Errors
+    /// There is none of that name.
+    pub fn material(
+        &self,
+        at: &Range<usize>,
+        key: &str,
+        name: &str,
+        materials: &[String],
+    ) -> Result<usize, Error> {
+        materials.iter().position(|own| own == name).ok_or_else(|| {
+            let near = suggestion(name, materials.iter().map(String::as_str));
+            let problem = format!("there is no such material in `materials`{near}");
+            self.refused(at, key, name, problem)
+        })
+    }
 }

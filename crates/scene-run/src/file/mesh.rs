@@ -1,18 +1,42 @@
 //! `mesh` of a wall in scene.toml.
 
-use crate::file::key::{needed, short};
-use crate::file::scene::{MeshFile, TurnFile};
+use crate::file::key::{Section, short, short_place};
 use crate::file::stl::read_stl;
+use serde::Deserialize;
 use toml::Spanned;
 use windfall_files::error::Error;
 use windfall_files::found::FindingOutcome;
-use windfall_files::text::toml_source::{TomlSource, invalid, missing, needed_quantity};
+use windfall_files::text::file_quantity::QuantityText;
 use windfall_numerics::unit::quantity::parse_as;
 use windfall_scene::shape::mesh::{Flaws, bounds, welded};
-use windfall_scene::shape::wall::Shape;
+use windfall_scene::shape::surface::Shape;
 use windfall_scene::vector::{Vector, add, length, scaled, subtract, turn_about, turned, unit};
 
-const TABLE: &str = "[[walls]]";
+/// `mesh`
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct MeshFile {
+    /// An STL file, beside the scene.
+    pub file: Spanned<String>,
+    /// Unit of length of its coordinates: STL files do not say it.
+    pub unit: Option<Spanned<String>>,
+    /// Turned about an axis through its origin.
+    pub turn: Option<Spanned<TurnFile>>,
+    /// Then moved by; m.
+    #[serde(default, rename = "move")]
+    pub shift: [f64; 3],
+    /// Whether it must be closed, or is open on purpose.
+    pub closed: Option<bool>,
+}
+
+/// `turn`
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct TurnFile {
+    /// Direction of the axis.
+    pub axis: [f64; 3],
+    pub angle: Spanned<QuantityText>,
+}
 
 /// Extent above which the file is probably in mm; m.
 const LARGEST: f64 = 100.0;
@@ -25,22 +49,21 @@ const SMALLEST: f64 = 2e-3;
 /// The file cannot be read, is damaged, is open where it must be closed, or is of a size
 /// that no machine has.
 pub fn mesh_of(
-    source: &TomlSource,
+    table: &Section,
     mesh: &Spanned<MeshFile>,
     wall: &str,
     findings: &mut Vec<FindingOutcome>,
 ) -> Result<Shape, Error> {
     let file = mesh.get_ref();
     let name = file.file.get_ref();
-    let refused = |key: &'static str, problem: String| {
-        invalid(source, &file.file.span(), (TABLE, key), name, problem)
-    };
-    let unit = unit_of(source, mesh)?;
+    let refused =
+        |key: &'static str, problem: String| table.refused(&file.file.span(), key, name, problem);
+    let unit = unit_of(table, mesh)?;
     let turn = match &file.turn {
-        Some(turn) => turn_of(source, turn)?,
+        Some(turn) => turn_of(table, turn)?,
         None => turn_about([0.0, 0.0, 1.0], 0.0),
     };
-    let read = read_stl(&source.path.with_file_name(name))?;
+    let read = read_stl(&table.source.path.with_file_name(name))?;
     let mut triangles = read.map_err(|problem| refused("mesh file", problem.to_string()))?;
     triangles
         .as_flattened_mut()
@@ -79,41 +102,32 @@ pub fn mesh_of(
 }
 
 /// Metres in the unit of an STL file.
-fn unit_of(source: &TomlSource, mesh: &Spanned<MeshFile>) -> Result<f64, Error> {
-    let key = "mesh unit";
+fn unit_of(table: &Section, mesh: &Spanned<MeshFile>) -> Result<f64, Error> {
     let Some(unit) = &mesh.get_ref().unit else {
         let meaning = "the unit of length of its coordinates, which STL files do not say";
-        let key = needed(TABLE, key, meaning, "", "unit = \"mm\"");
-        return Err(missing(source, &mesh.span(), &key, TABLE.to_owned()));
+        let at = mesh.span();
+        let table = Section {
+            at,
+            ..table.clone()
+        };
+        return Err(table.lacks("mesh unit", meaning, "unit = \"mm\""));
     };
     let own = unit.get_ref();
-    let refused = |problem| invalid(source, &unit.span(), (TABLE, key), own, problem);
     let metres = parse_as(&format!("1 {own}"), "m");
-    metres.map_err(|error| refused(error.to_string()))
+    metres.map_err(|error| table.refused(&unit.span(), "mesh unit", own, error.to_string()))
 }
 
-fn turn_of(source: &TomlSource, turn: &Spanned<TurnFile>) -> Result<[f64; 4], Error> {
+fn turn_of(table: &Section, turn: &Spanned<TurnFile>) -> Result<[f64; 4], Error> {
     let file = turn.get_ref();
     let axis = unit(file.axis).ok_or_else(|| {
-        let problem = "an axis must have a length".to_owned();
         let text = format!("{:?}", file.axis);
-        invalid(
-            source,
-            &turn.span(),
-            (TABLE, "mesh turn axis"),
-            &text,
-            problem,
-        )
+        let problem = "an axis must have a length";
+        table.refused(&turn.span(), "mesh turn axis", text, problem)
     })?;
-    let key = needed(
-        TABLE,
-        "mesh turn angle",
-        "angle",
-        "rad",
-        "angle = \"90 deg\"",
-    );
-    let angle = needed_quantity(source, &turn.span(), Some(&file.angle), &key)?;
-    Ok(turn_about(axis, angle))
+    Ok(turn_about(
+        axis,
+        table.given(&file.angle, "mesh turn angle", "rad")?,
+    ))
 }
 
 /// Where a surface is open, in the file's own place.
@@ -128,16 +142,12 @@ fn openness(flaws: &Flaws) -> Option<String> {
         "{edges} edges belong to one triangle only: {rims}, the longest of {} m from {} to {} m, \
          before `turn` and `move`",
         short(longest.length),
-        text_of(longest.low),
-        text_of(longest.high),
+        short_place(longest.low),
+        short_place(longest.high),
     ))
 }
 
-fn text_of(place: Vector) -> String {
-    format!("[{}]", place.map(short).join(", "))
-}
-
-/// What is to be known of a mesh that is used.
+/// Findings about a usable mesh.
 fn findings_of(flaws: &Flaws, wall: &str, file: &str, closed: Option<bool>) -> Vec<FindingOutcome> {
     let mut findings = Vec::new();
     let mut tell = |code: &str, message: String| {
@@ -184,7 +194,7 @@ fn findings_of(flaws: &Flaws, wall: &str, file: &str, closed: Option<bool>) -> V
                 "{} edges, one of them at {} m, belong to more than two triangles, as where bodies \
                  run into each other: fruit feel all of them",
                 flaws.branching.len(),
-                text_of(*a),
+                short_place(*a),
             ),
         );
     }
@@ -195,7 +205,7 @@ fn findings_of(flaws: &Flaws, wall: &str, file: &str, closed: Option<bool>) -> V
                 "the triangles at {} edges, one of them at {} m, are wound contrary to each other; \
                  walls are felt from both sides here, other programs may mind",
                 flaws.contrary.len(),
-                text_of(*a),
+                short_place(*a),
             ),
         );
     }

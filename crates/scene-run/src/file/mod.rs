@@ -1,18 +1,19 @@
 //! scene.toml and the files that it names.
 
-pub mod bruise;
-pub mod bruise_expression;
-pub mod card;
+pub(crate) mod bruise;
+pub(crate) mod bruise_expression;
+pub(crate) mod card;
+mod contacts;
 pub mod engine_kind;
-pub mod fruit;
-pub mod key;
-pub mod mesh;
-pub mod properties;
+pub(crate) mod fruit;
+pub(crate) mod key;
+pub(crate) mod mesh;
+pub(crate) mod properties;
 pub mod read;
-pub mod record;
-pub mod regression;
-pub mod room;
-pub mod scene;
-pub mod step;
-pub mod stl;
-pub mod walls;
+pub(crate) mod record;
+pub(crate) mod regression;
+pub(crate) mod room;
+pub(crate) mod scene;
+pub(crate) mod step;
+pub(crate) mod stl;
+pub(crate) mod walls;

@@ -12,7 +12,6 @@ use windfall_scene::scene::Fruit;
 const STREAM: u64 = 1 << 32;
 
 /// Fruit in the order in which they come, and the kind of each.
-#[must_use]
 pub fn in_order(fruit: Vec<Fruit>, kinds: &[FruitKind]) -> (Vec<Fruit>, Vec<usize>) {
     let kind_of = kinds.iter().enumerate();
     let kind_of = kind_of.flat_map(|(kind, own)| std::iter::repeat_n(kind, own.count));

@@ -1,13 +1,13 @@
 //! scene.toml → a scene.
 
 use crate::file::bruise::{BruisePlan, bruise_of};
-use crate::file::card::spread_of_card;
+use crate::file::contacts::contacts_of;
 use crate::file::fruit::fruit_of;
-use crate::file::key::{material, needed};
+use crate::file::key::Section;
 use crate::file::properties::{in_order, with_properties};
 use crate::file::record::{RecordPlan, record_of};
 use crate::file::room::{check_room, drawn_fruit};
-use crate::file::scene::{AirFile, ContactFile, GravityFile, SceneFile};
+use crate::file::scene::{AirFile, GravityFile, SceneFile};
 use crate::file::walls::wall_of;
 use std::collections::BTreeMap;
 use std::path::Path;
@@ -15,15 +15,9 @@ use toml::Spanned;
 use windfall_campaign::settings::files::check_format;
 use windfall_campaign::settings::rig::STANDARD_GRAVITY;
 use windfall_cards::law_card::LawCard;
-use windfall_cards::law_use::complete_law_among;
-use windfall_cards::read_card::{law_of_card, read_card};
 use windfall_files::error::{Error, Place};
 use windfall_files::found::FindingOutcome;
-use windfall_files::text::toml_source::{
-    TomlSource, invalid, missing, optional_quantity, parse_source, place_at, read_source,
-};
-use windfall_scene::annuli::MOST_ANNULI;
-use windfall_scene::interaction::{Interaction, mindlin_ratio};
+use windfall_files::text::toml_source::{TomlSource, parse_source, place_at, read_source};
 use windfall_scene::scene::{Air, Scene, Sink};
 use windfall_scene::shape::wall::Wall;
 use windfall_scene::vector::{Vector, scaled};
@@ -48,13 +42,13 @@ pub struct ScenePlan {
     pub end: f64,
     /// Contacts with a smaller peak force are counted, not written; N.
     pub least_peak_force: f64,
-    /// What is kept to be seen.
+    /// Recorded frames.
     pub record: RecordPlan,
     /// How contacts bruise, where the file says so.
     pub bruise: Option<BruisePlan>,
-    /// Where the file gives a time step, and what stands there.
+    /// The time step of the file, and its place.
     pub given_step: Option<(Place, String)>,
-    /// What is to be known of the scene before it runs.
+    /// Findings before the run.
     pub findings: Vec<FindingOutcome>,
     /// Time of the scene between checkpoints, where there are any; s.
     pub checkpoint: Option<f64>,
@@ -75,14 +69,12 @@ pub fn read_scene(path: &Path) -> Result<ScenePlan, Error> {
 }
 
 /// [`read_scene`] of a text; files that it names lie beside its path.
-///
-/// # Errors
-/// As [`read_scene`].
 pub fn scene_of(source: &TomlSource) -> Result<ScenePlan, Error> {
     let file: SceneFile = parse_source(source)?;
     check_format(source, file.format.as_ref())?;
-    let materials = materials(source, &file)?;
-    let contacts = contacts(source, &file, &materials)?;
+    let whole = section(source, "the file");
+    let materials = materials(&whole, &file)?;
+    let contacts = contacts_of(source, &file.contacts, &materials)?;
     let mut kinds = Vec::new();
     let mut names = Vec::new();
     for fruit in &file.fruit {
@@ -91,14 +83,7 @@ pub fn scene_of(source: &TomlSource) -> Result<ScenePlan, Error> {
         kinds.push(kind);
     }
     if kinds.is_empty() {
-        let fruit = needed(
-            "the file",
-            "[[fruit]]",
-            "which fruit come, and how",
-            "",
-            "[[fruit]]",
-        );
-        return Err(missing(source, &(0..0), &fruit, fruit.table.to_owned()));
+        return Err(whole.lacks("[[fruit]]", "which fruit come, and how", "[[fruit]]"));
     }
     let walls = file.walls.iter();
     let mut findings = Vec::new();
@@ -108,23 +93,20 @@ pub fn scene_of(source: &TomlSource) -> Result<ScenePlan, Error> {
     let fruit = drawn_fruit(source, &file, &kinds, seed)?;
     // In the order in which they come, which is that of their numbers.
     let (fruit, kind_of) = in_order(fruit, &kinds);
-    let timing = timing(source, &file)?;
-    let bruise = file
-        .bruise
-        .as_ref()
-        .map(|bruise| bruise_of(source, bruise, &file.fruit, seed))
-        .transpose()?;
-    let bruise = match bruise {
-        Some(plan) => Some(with_properties(source, &file, plan, &kind_of)?),
-        None => None,
-    };
+    let table = section(source, "[scene]");
+    let timing = timing(&table, &file)?;
+    let bruise = file.bruise.as_ref().map(|bruise| {
+        let plan = bruise_of(source, bruise, &file.fruit, seed)?;
+        with_properties(source, &file, plan, &kind_of)
+    });
+    let bruise = bruise.transpose()?;
     let scene = Scene {
         materials,
         interactions: contacts.interactions,
         walls,
         fruit,
         sinks: sinks(&file),
-        gravity: gravity(source, file.scene.gravity.as_ref())?,
+        gravity: gravity(&table, file.scene.gravity.as_ref())?,
         air: file
             .air
             .as_ref()
@@ -137,16 +119,14 @@ pub fn scene_of(source: &TomlSource) -> Result<ScenePlan, Error> {
         time_step: if timing.step == 0.0 { 1.0 } else { timing.step },
         ..scene.clone()
     };
-    checked
-        .check()
-        .map_err(|problem| scene_error(source, &file, &problem))?;
+    checked.check().map_err(|problem| Error::Refused {
+        place: place_at(source, &file.materials.span()),
+        problem: problem.to_string(),
+    })?;
     check_room(source, &file, &scene, &names)?;
+    let title = file.scene.title.clone();
     Ok(ScenePlan {
-        title: file
-            .scene
-            .title
-            .clone()
-            .unwrap_or_else(|| source.path.display().to_string()),
+        title: title.unwrap_or_else(|| source.path.display().to_string()),
         scene,
         kinds: names,
         cards: contacts.cards,
@@ -158,15 +138,21 @@ pub fn scene_of(source: &TomlSource) -> Result<ScenePlan, Error> {
         bruise,
         given_step: timing.given,
         findings,
-        checkpoint: checkpoint(source, &file)?,
+        checkpoint: checkpoint(&table, &file)?,
         seed,
     })
+}
+
+/// A table of which there is one; messages name the beginning of the file.
+fn section<'a>(source: &'a TomlSource, name: &'static str) -> Section<'a> {
+    let at = 0..0;
+    Section { source, name, at }
 }
 
 /// Time between checkpoints where the file does not say; s.
 const DEFAULT_CHECKPOINT: f64 = 0.5;
 
-fn checkpoint(source: &TomlSource, file: &SceneFile) -> Result<Option<f64>, Error> {
+fn checkpoint(table: &Section, file: &SceneFile) -> Result<Option<f64>, Error> {
     let Some(value) = &file.scene.checkpoint else {
         return Ok(Some(DEFAULT_CHECKPOINT));
     };
@@ -174,70 +160,14 @@ fn checkpoint(source: &TomlSource, file: &SceneFile) -> Result<Option<f64>, Erro
     if text == "never" {
         return Ok(None);
     }
-    let key = needed(
-        "[scene]",
-        "checkpoint",
-        "time of the scene between checkpoints",
-        "s",
-        "checkpoint = \"0.5 s\"   or   \"never\"",
-    );
-    let time = optional_quantity(source, Some(value), &key)?;
-    match time.filter(|time| *time > 0.0 && time.is_finite()) {
-        Some(time) => Ok(Some(time)),
-        None => {
-            let problem = "it must be a time above zero, or \"never\"".to_owned();
-            let key = ("[scene]", "checkpoint");
-            Err(invalid(source, &value.span(), key, text, problem))
+    let time = table.given(value, "checkpoint", "s")?;
+    match time > 0.0 && time.is_finite() {
+        true => Ok(Some(time)),
+        false => {
+            let problem = "it must be a time above zero, or \"never\"";
+            Err(table.refused(&value.span(), "checkpoint", text, problem))
         }
     }
-}
-
-/// What `[[contacts]]` say, by the pair of materials.
-#[derive(Default)]
-struct Contacts {
-    interactions: BTreeMap<(usize, usize), Interaction>,
-    cards: BTreeMap<(usize, usize), LawCard>,
-    fruit_shares: BTreeMap<(usize, usize), f64>,
-}
-
-fn contacts(
-    source: &TomlSource,
-    file: &SceneFile,
-    materials: &[String],
-) -> Result<Contacts, Error> {
-    let mut all = Contacts::default();
-    for contact in &file.contacts {
-        let (pair, interaction, card) = contact_of(source, contact, materials)?;
-        if all.interactions.insert(pair, interaction).is_some() {
-            let problem = "these two materials stand in more than one [[contacts]]".to_owned();
-            let names = format!("{}, {}", materials[pair.0], materials[pair.1]);
-            let at = contact.span();
-            return Err(invalid(
-                source,
-                &at,
-                ("[[contacts]]", "between"),
-                &names,
-                problem,
-            ));
-        }
-        all.cards.extend(card.map(|card| (pair, card)));
-        if let Some(share) = &contact.get_ref().fruit_share {
-            let value = *share.get_ref();
-            if !(0.0..=1.0).contains(&value) {
-                let problem = "a share lies between 0 and 1".to_owned();
-                let key = ("[[contacts]]", "fruit_share");
-                return Err(invalid(
-                    source,
-                    &share.span(),
-                    key,
-                    &value.to_string(),
-                    problem,
-                ));
-            }
-            all.fruit_shares.insert(pair, value);
-        }
-    }
-    Ok(all)
 }
 
 /// When a scene ends, its step, and what is written.
@@ -251,57 +181,21 @@ struct Timing {
     least_peak_force: f64,
 }
 
-fn timing(source: &TomlSource, file: &SceneFile) -> Result<Timing, Error> {
-    let time = |value, key, meaning, example| {
-        optional_quantity(
-            source,
-            value,
-            &needed("[scene]", key, meaning, "s", example),
-        )
-    };
-    let automatic = |step: &&Spanned<_>| {
-        let step: &Spanned<windfall_files::text::file_quantity::QuantityText> = step;
-        step.get_ref().0.trim() == "auto"
-    };
-    let step = file
-        .scene
-        .time_step
-        .as_ref()
-        .filter(|step| !automatic(step));
+fn timing(table: &Section, file: &SceneFile) -> Result<Timing, Error> {
+    let source = table.source;
+    let step = file.scene.time_step.as_ref();
+    let step = step.filter(|step| step.get_ref().0.trim() != "auto");
     let given = step.map(|own| (place_at(source, &own.span()), own.get_ref().0.clone()));
-    let step = time(step, "time_step", "time step", "time_step = \"20 us\"")?.unwrap_or(0.0);
-    let end = time(
-        file.scene.end.as_ref(),
-        "end",
-        "when the scene ends",
-        "end = \"3 s\"",
-    )?;
+    let step = step.map(|own| table.given(own, "time_step", "s"));
+    let step = step.transpose()?.unwrap_or(0.0);
+    let end = table.optional(&file.scene.end, "end", "s")?;
     let Some(end) = end.filter(|end| *end > 0.0 && end.is_finite()) else {
-        let key = needed(
-            "[scene]",
-            "end",
-            "when the scene ends, above zero",
-            "s",
-            "end = \"3 s\"",
-        );
-        return Err(missing(source, &(0..0), &key, key.table.to_owned()));
+        let meaning = "when the scene ends, above zero";
+        return Err(table.lacks("end", meaning, "end = \"3 s\""));
     };
-    let share = needed(
-        "[scene]",
-        "time_step_error",
-        "error",
-        "1",
-        "time_step_error = \"0.2 %\"",
-    );
-    let error = optional_quantity(source, file.scene.time_step_error.as_ref(), &share)?;
-    let force = needed(
-        "[events]",
-        "least_peak_force",
-        "force",
-        "N",
-        "least_peak_force = \"1 N\"",
-    );
-    let least = optional_quantity(source, file.events.least_peak_force.as_ref(), &force)?;
+    let error = table.optional(&file.scene.time_step_error, "time_step_error", "1")?;
+    let least = &file.events.least_peak_force;
+    let least = section(source, "[events]").optional(least, "least_peak_force", "N")?;
     Ok(Timing {
         step,
         given,
@@ -314,143 +208,18 @@ fn timing(source: &TomlSource, file: &SceneFile) -> Result<Timing, Error> {
 /// Error that an automatic time step may make where the file does not say; 1.
 const DEFAULT_ERROR: f64 = 2e-3;
 
-/// What is wrong with the scene as a whole, told of the file.
-fn scene_error(
-    source: &TomlSource,
-    file: &SceneFile,
-    problem: &windfall_scene::error::Error,
-) -> Error {
-    Error::Refused {
-        place: place_at(source, &file.materials.span()),
-        problem: problem.to_string(),
-    }
-}
-
-fn materials(source: &TomlSource, file: &SceneFile) -> Result<Vec<String>, Error> {
+fn materials(whole: &Section, file: &SceneFile) -> Result<Vec<String>, Error> {
     let mut names: Vec<String> = Vec::new();
     for name in file.materials.get_ref() {
-        if names.contains(name.get_ref()) {
-            let problem = "this name stands there twice".to_owned();
-            let at = name.span();
-            return Err(invalid(
-                source,
-                &at,
-                ("the file", "materials"),
-                name.get_ref(),
-                problem,
-            ));
+        let own = name.get_ref();
+        if names.contains(own) {
+            let problem = "this name stands there twice";
+            return Err(whole.refused(&name.span(), "materials", own, problem));
         }
-        names.push(name.get_ref().clone());
+        names.push(own.clone());
     }
     Ok(names)
 }
-
-type Found = ((usize, usize), Interaction, Option<LawCard>);
-
-fn contact_of(
-    source: &TomlSource,
-    contact: &Spanned<ContactFile>,
-    materials: &[String],
-) -> Result<Found, Error> {
-    const TABLE: &str = "[[contacts]]";
-    let (file, at) = (contact.get_ref(), contact.span());
-    let Some(between) = &file.between else {
-        let key = needed(
-            TABLE,
-            "between",
-            "the two materials",
-            "",
-            "between = [\"apple\", \"steel\"]",
-        );
-        return Err(missing(source, &at, &key, TABLE.to_owned()));
-    };
-    let [a, b] = between.get_ref();
-    let own = |name| material(source, &between.span(), (TABLE, "between"), name, materials);
-    let (a, b) = (own(a)?, own(b)?);
-    let radius = needed(
-        TABLE,
-        "effective_radius",
-        "R*",
-        "m",
-        "effective_radius = \"37.5 mm\"",
-    );
-    let mut seen = optional_quantity(source, file.effective_radius.as_ref(), &radius)?;
-    let mut card = None;
-    let mut spread = None;
-    let law = match (&file.card, &file.law) {
-        (Some(name), None) => {
-            let path = source.path.with_file_name(name.get_ref());
-            let own = read_card(&path)?;
-            let law = law_of_card(&own, &path)?;
-            seen = seen.or(own.contact.as_ref().map(|contact| contact.effective_radius));
-            spread = spread_of_card(&own, &law, &path)?;
-            card = Some(own);
-            law
-        }
-        (None, Some(law)) => complete_law_among(law.get_ref(), &[]).map_err(|error| {
-            invalid(
-                source,
-                &law.span(),
-                (TABLE, "law"),
-                law.get_ref(),
-                error.to_string(),
-            )
-        })?,
-        _ => {
-            let example = "card = \"apple.toml\"   or   law = \"kuwabara-kono(k=753599, c=1524)\"";
-            let key = needed(TABLE, "card", "a law card, or a law", "", example);
-            return Err(missing(source, &at, &key, TABLE.to_owned()));
-        }
-    };
-    let number = |value: &Option<Spanned<f64>>| value.as_ref().map(|own| *own.get_ref());
-    let ratio = match (number(&file.tangential_ratio), number(&file.poisson)) {
-        (Some(ratio), None) => ratio,
-        (None, Some(poisson)) => mindlin_ratio(poisson),
-        (None, None) => mindlin_ratio(DEFAULT_POISSON),
-        (Some(_), Some(poisson)) => {
-            let problem = "poisson and tangential_ratio say the same: leave one out".to_owned();
-            return Err(invalid(
-                source,
-                &at,
-                (TABLE, "poisson"),
-                &poisson.to_string(),
-                problem,
-            ));
-        }
-    };
-    let interaction = Interaction {
-        law,
-        effective_radius: seen,
-        spread,
-        friction: number(&file.friction).unwrap_or(0.0),
-        tangential_ratio: ratio,
-        tangential_damping: number(&file.tangential_damping).unwrap_or(1.0),
-        annuli: annuli(source, file)?,
-        rolling: number(&file.rolling).unwrap_or(0.0),
-    };
-    Ok(((a.min(b), a.max(b)), interaction, card))
-}
-
-fn annuli(source: &TomlSource, file: &ContactFile) -> Result<usize, Error> {
-    let Some(annuli) = &file.annuli else {
-        return Ok(DEFAULT_ANNULI);
-    };
-    match *annuli.get_ref() {
-        own @ 1..=MOST_ANNULI => Ok(own),
-        own => Err(invalid(
-            source,
-            &annuli.span(),
-            ("[[contacts]]", "annuli"),
-            &own.to_string(),
-            format!("annuli of a contact area are 1 to {MOST_ANNULI}"),
-        )),
-    }
-}
-
-/// Annuli of a contact area where their number is not given.
-const DEFAULT_ANNULI: usize = 4;
-/// Poisson's ratio where none is given; 1.
-const DEFAULT_POISSON: f64 = 0.3;
 
 fn sinks(file: &SceneFile) -> Vec<Sink> {
     let sink = |(number, sink): (usize, &Spanned<crate::file::scene::SinkFile>)| {
@@ -467,41 +236,24 @@ fn sinks(file: &SceneFile) -> Vec<Sink> {
     file.sinks.iter().enumerate().map(sink).collect()
 }
 
-fn gravity(source: &TomlSource, file: Option<&Spanned<GravityFile>>) -> Result<Vector, Error> {
+fn gravity(table: &Section, file: Option<&Spanned<GravityFile>>) -> Result<Vector, Error> {
     let Some(file) = file else {
         return Ok([0.0, 0.0, -STANDARD_GRAVITY]);
     };
     match file.get_ref() {
         GravityFile::Vector(own) => Ok(*own),
         GravityFile::Down(text) => {
-            let key = needed(
-                "[scene]",
-                "gravity",
-                "gravity",
-                "m/s^2",
-                "gravity = \"9.81 m/s^2\"",
-            );
             let text = Spanned::new(file.span(), text.clone());
-            let size = optional_quantity(source, Some(&text), &key)?.unwrap_or(0.0);
+            let size = table.given(&text, "gravity", "m/s^2")?;
             Ok(scaled([0.0, 0.0, -1.0], size))
         }
     }
 }
 
 fn air_of(source: &TomlSource, air: &Spanned<AirFile>) -> Result<Air, Error> {
-    let density = needed(
-        "[air]",
-        "density",
-        "density of the air",
-        "kg/m^3",
-        "density = \"1.2 kg/m^3\"",
-    );
-    let density = optional_quantity(source, air.get_ref().density.as_ref(), &density)?;
-    let drag = air
-        .get_ref()
-        .drag_coefficient
-        .as_ref()
-        .map(|own| *own.get_ref());
+    let file = air.get_ref();
+    let density = section(source, "[air]").optional(&file.density, "density", "kg/m^3")?;
+    let drag = file.drag_coefficient.as_ref().map(|own| *own.get_ref());
     Ok(Air {
         density: density.unwrap_or(1.2),
         drag_coefficient: drag.unwrap_or(0.47),

@@ -14,7 +14,7 @@ use windfall_numerics::unit::quantity::{parse_as, parse_unit};
 use windfall_scene::bruise::regression::{Regression, Response};
 use windfall_statistics::model::formula_syntax::{Kind, Node, Operator, parse, spelling};
 
-/// What a contact tells; the order in which a contact's values are listed.
+/// Quantities of a contact, in the order in which its values are listed.
 pub const CONTACT_QUANTITIES: [(&str, &str); 9] = [
     ("absorbed energy", "J"),
     ("impact energy", "J"),
@@ -41,7 +41,6 @@ pub struct RegressionPlan {
 /// A column of a regression.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ColumnPlan {
-    /// Its name.
     pub name: String,
     /// What a scene takes for it.
     pub source: ColumnSource,
@@ -64,7 +63,6 @@ impl RegressionPlan {
     ///
     /// * `contact`: in the order of [`CONTACT_QUANTITIES`]; SI
     /// * `properties`: of the fruit, in the order of [`RegressionPlan::properties`]
-    #[must_use]
     pub fn columns_of(&self, contact: &[f64; 9], properties: &[f64]) -> Vec<f64> {
         let mut properties = properties.iter();
         let value = |column: &ColumnPlan| match &column.source {
@@ -75,13 +73,11 @@ impl RegressionPlan {
     }
 
     /// Values of the terms.
-    #[must_use]
     pub fn terms_of(&self, columns: &[f64]) -> Vec<f64> {
         self.terms.iter().map(|own| own.value(columns)).collect()
     }
 
     /// Names of the properties of fruit that it needs.
-    #[must_use]
     pub fn properties(&self) -> Vec<String> {
         let named = |column: &ColumnPlan| match &column.source {
             ColumnSource::Property(name) => Some(name.clone()),
@@ -91,7 +87,6 @@ impl RegressionPlan {
     }
 
     /// Whether a contact lies outside of what the regression was of.
-    #[must_use]
     pub fn is_outside(&self, columns: &[f64]) -> bool {
         let outside = |(column, value): (&ColumnPlan, &f64)| {
             column

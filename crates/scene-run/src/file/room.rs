@@ -1,6 +1,6 @@
-//! Whether the fruit and the walls of scene.toml have room beside each other, before it runs.
+//! Checks, before a run, that fruit and walls of scene.toml have room.
 
-use crate::file::key::short;
+use crate::file::key::{short, short_place};
 use crate::file::scene::SceneFile;
 use std::ops::Range;
 use windfall_files::error::Error;
@@ -42,7 +42,7 @@ pub fn drawn_fruit(
     })
 }
 
-/// Looks at walls, sources and sinks.
+/// Checks walls, sources and sinks.
 ///
 /// * `kinds`: name and number of fruit of each kind
 ///
@@ -64,7 +64,7 @@ pub fn check_room(
              wall \"{}\" by {} m: move the place where fruit come in, or the wall",
             kinds[kind].0,
             short(2.0 * fruit.radius),
-            text_of(fruit.place),
+            short_place(fruit.place),
             short(fruit.time),
             wall.name,
             short(found.overlap),
@@ -95,7 +95,7 @@ fn check_walls(source: &TomlSource, file: &SceneFile, scene: &Scene) -> Result<(
     let problem = format!(
         "[[walls]]: \"{a}\" and \"{b}\" lie on each other at {} m: fruit would feel both, as one \
          wall of twice the stiffness. Leave one out there (`open` of a box), or move it away",
-        text_of(found.place)
+        short_place(found.place)
     );
     Err(refused(source, &file.walls[found.walls[1]].span(), problem))
 }
@@ -136,8 +136,4 @@ fn kind_of(kinds: &[(String, usize)], fruit: usize) -> usize {
         fruit < last
     });
     found.unwrap_or(0)
-}
-
-fn text_of(place: Vector) -> String {
-    format!("[{}]", place.map(short).join(", "))
 }

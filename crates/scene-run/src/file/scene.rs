@@ -1,4 +1,4 @@
-//! scene.toml as it stands on disk, version 1.
+//! The schema of scene.toml, version 1.
 
 use serde::Deserialize;
 use std::collections::BTreeMap;
@@ -24,16 +24,15 @@ pub struct SceneFile {
     pub fruit: Vec<Spanned<FruitFile>>,
     /// Walls.
     #[serde(default)]
-    pub walls: Vec<Spanned<WallFile>>,
+    pub walls: Vec<Spanned<crate::file::walls::WallFile>>,
     /// Where fruit leave.
     #[serde(default)]
     pub sinks: Vec<Spanned<SinkFile>>,
-    /// Air.
     pub air: Option<Spanned<AirFile>>,
     /// What is recorded.
     #[serde(default)]
     pub events: EventsFile,
-    /// What is kept to be seen.
+    /// Recorded frames.
     #[serde(default)]
     pub record: crate::file::record::RecordFile,
     /// How contacts bruise.
@@ -44,7 +43,6 @@ pub struct SceneFile {
 #[derive(Debug, Default, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct SceneSection {
-    /// Title.
     pub title: Option<String>,
     /// Seed of all draws.
     pub seed: Option<u64>,
@@ -104,7 +102,6 @@ pub struct ContactFile {
 pub struct FruitFile {
     /// Name of the kind.
     pub name: Option<Spanned<String>>,
-    /// Material.
     pub material: Option<Spanned<String>>,
     /// How many.
     pub count: Option<Spanned<usize>>,
@@ -116,7 +113,6 @@ pub struct FruitFile {
     pub spheres: Option<Spanned<usize>>,
     /// Standard deviation of the diameter between fruit.
     pub diameter_sd: Option<Spanned<QuantityText>>,
-    /// Density.
     pub density: Option<Spanned<QuantityText>>,
     /// All there at the beginning, on a lattice in a box.
     pub lattice: Option<Spanned<LatticeFile>>,
@@ -135,7 +131,6 @@ pub struct FruitFile {
 #[derive(Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct PropertyFile {
-    /// Its mean.
     pub mean: f64,
     /// Its standard deviation between fruit.
     #[serde(default)]
@@ -199,134 +194,10 @@ pub struct TreeFile {
     pub over: Option<Spanned<QuantityText>>,
 }
 
-/// `[[walls]]`
-#[derive(Debug, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct WallFile {
-    /// Name.
-    pub name: Option<Spanned<String>>,
-    /// Material.
-    pub material: Option<Spanned<String>>,
-    /// An endless plane.
-    pub plane: Option<Spanned<PlaneFile>>,
-    /// A parallelogram.
-    pub plate: Option<Spanned<PlateFile>>,
-    /// A box.
-    #[serde(rename = "box")]
-    pub bin: Option<Spanned<BoxFile>>,
-    /// The side of a cylinder.
-    pub cylinder: Option<Spanned<CylinderFile>>,
-    /// Triangles of an STL file.
-    pub mesh: Option<Spanned<MeshFile>>,
-    /// Steady velocity; m/s.
-    pub velocity: Option<Spanned<[f64; 3]>>,
-    /// Velocity of a belt's surface; m/s.
-    pub belt: Option<Spanned<[f64; 3]>>,
-    /// A vibration.
-    pub vibration: Option<Spanned<VibrationFile>>,
-    /// A rotation.
-    pub rotation: Option<Spanned<RotationFile>>,
-}
-
-/// `plane`
-#[derive(Debug, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct PlaneFile {
-    /// A point of it; m.
-    pub point: [f64; 3],
-    /// Towards the free side.
-    pub normal: [f64; 3],
-}
-
-/// `plate`
-#[derive(Debug, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct PlateFile {
-    /// A corner; m.
-    pub corner: [f64; 3],
-    /// Edges from it; m.
-    pub edges: [[f64; 3]; 2],
-}
-
-/// `box`
-#[derive(Debug, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct BoxFile {
-    /// Lowest corner; m.
-    pub low: [f64; 3],
-    /// Highest corner; m.
-    pub high: [f64; 3],
-    /// Sides that are open: "top", "bottom", "left", "right", "front", "back".
-    #[serde(default)]
-    pub open: Vec<String>,
-}
-
-/// `cylinder`
-#[derive(Debug, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct CylinderFile {
-    /// Centre of one end; m.
-    pub start: [f64; 3],
-    /// Centre of the other; m.
-    pub end: [f64; 3],
-    /// Diameter.
-    pub diameter: Spanned<QuantityText>,
-}
-
-/// `mesh`
-#[derive(Debug, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct MeshFile {
-    /// An STL file, beside the scene.
-    pub file: Spanned<String>,
-    /// Unit of length of its coordinates: STL files do not say it.
-    pub unit: Option<Spanned<String>>,
-    /// Turned about an axis through its origin.
-    pub turn: Option<Spanned<TurnFile>>,
-    /// Then moved by; m.
-    #[serde(default, rename = "move")]
-    pub shift: [f64; 3],
-    /// Whether it must be closed, or is open on purpose.
-    pub closed: Option<bool>,
-}
-
-/// `turn`
-#[derive(Debug, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct TurnFile {
-    /// Direction of the axis.
-    pub axis: [f64; 3],
-    /// Angle.
-    pub angle: Spanned<QuantityText>,
-}
-
-/// `vibration`
-#[derive(Debug, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct VibrationFile {
-    /// Amplitude and direction; m.
-    pub amplitude: [f64; 3],
-    /// Frequency.
-    pub frequency: Spanned<QuantityText>,
-}
-
-/// `rotation`
-#[derive(Debug, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct RotationFile {
-    /// A point of the axis; m.
-    pub point: [f64; 3],
-    /// Its direction.
-    pub axis: [f64; 3],
-    /// Angular velocity.
-    pub angular_velocity: Spanned<QuantityText>,
-}
-
 /// `[[sinks]]`
 #[derive(Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct SinkFile {
-    /// Name.
     pub name: Option<String>,
     /// Lowest corner; m.
     pub low: [f64; 3],
@@ -338,7 +209,6 @@ pub struct SinkFile {
 #[derive(Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct AirFile {
-    /// Density.
     pub density: Option<Spanned<QuantityText>>,
     /// Drag coefficient of a sphere.
     pub drag_coefficient: Option<Spanned<f64>>,

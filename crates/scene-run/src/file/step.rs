@@ -1,4 +1,4 @@
-//! A time step that a scene's file gives, looked at before it runs.
+//! Checks the time step of a scene's file before the run.
 
 use crate::file::key::short;
 use crate::file::read::ScenePlan;

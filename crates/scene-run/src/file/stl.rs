@@ -3,6 +3,7 @@
 //! Coordinates of text files keep double precision, and faults are located by byte or
 //! line and triangle; `stl_io` does neither.
 
+use crate::file_error::access;
 use std::path::Path;
 use windfall_files::error::Error;
 use windfall_scene::vector::Vector;
@@ -56,7 +57,6 @@ pub enum StlProblem {
         triangle: usize,
         /// Offset of the coordinate.
         byte: usize,
-        /// Its value.
         value: f32,
     },
     /// Unexpected word in a text file.
@@ -83,11 +83,7 @@ pub fn read_stl(path: &Path) -> Result<Result<Vec<[Vector; 3]>, StlProblem>, Err
             path: path.to_path_buf(),
             advice: "`mesh = { file = … }` names an STL file beside the scene".to_owned(),
         },
-        _ => Error::FileAccess {
-            path: path.to_path_buf(),
-            action: "read",
-            source,
-        },
+        _ => access(path, "read")(source),
     })?;
     Ok(triangles_of(&bytes))
 }

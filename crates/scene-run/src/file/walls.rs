@@ -1,175 +1,233 @@
 //! `[[walls]]` of scene.toml.
 
-use crate::file::key::{material, needed};
-use crate::file::mesh::mesh_of;
-use crate::file::scene::{BoxFile, WallFile};
-use std::ops::Range;
+use crate::file::key::Section;
+use crate::file::mesh::{MeshFile, mesh_of};
+use serde::Deserialize;
 use toml::Spanned;
 use windfall_files::error::Error;
 use windfall_files::found::FindingOutcome;
-use windfall_files::text::toml_source::{
-    TomlSource, invalid, missing, needed_quantity, suggestion,
-};
-use windfall_scene::shape::wall::{Motion, Plate, Shape, Turning, Vibration, Wall};
+use windfall_files::text::file_quantity::QuantityText;
+use windfall_files::text::toml_source::{TomlSource, suggestion};
+use windfall_scene::shape::surface::{Plate, Shape};
+use windfall_scene::shape::wall::{Motion, Turning, Vibration, Wall};
 use windfall_scene::vector::{Vector, cross, length, unit};
 
-/// A wall; what is to be known of it is added to the findings.
-///
-/// # Errors
-/// Something is missing or cannot be.
+/// `[[walls]]`
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct WallFile {
+    pub name: Option<Spanned<String>>,
+    pub material: Option<Spanned<String>>,
+    /// An endless plane.
+    pub plane: Option<Spanned<PlaneFile>>,
+    /// A parallelogram.
+    pub plate: Option<Spanned<PlateFile>>,
+    /// A box.
+    #[serde(rename = "box")]
+    pub bin: Option<Spanned<BoxFile>>,
+    /// The side of a cylinder.
+    pub cylinder: Option<Spanned<CylinderFile>>,
+    /// Triangles of an STL file.
+    pub mesh: Option<Spanned<MeshFile>>,
+    /// Steady velocity; m/s.
+    pub velocity: Option<Spanned<[f64; 3]>>,
+    /// Velocity of a belt's surface; m/s.
+    pub belt: Option<Spanned<[f64; 3]>>,
+    pub vibration: Option<Spanned<VibrationFile>>,
+    pub rotation: Option<Spanned<RotationFile>>,
+}
+
+/// `plane`
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct PlaneFile {
+    /// A point of it; m.
+    pub point: [f64; 3],
+    /// Towards the free side.
+    pub normal: [f64; 3],
+}
+
+/// `plate`
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct PlateFile {
+    /// A corner; m.
+    pub corner: [f64; 3],
+    /// Edges from it; m.
+    pub edges: [[f64; 3]; 2],
+}
+
+/// `box`
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct BoxFile {
+    /// Lowest corner; m.
+    pub low: [f64; 3],
+    /// Highest corner; m.
+    pub high: [f64; 3],
+    /// Sides that are open: "top", "bottom", "left", "right", "front", "back".
+    #[serde(default)]
+    pub open: Vec<String>,
+}
+
+/// `cylinder`
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct CylinderFile {
+    /// Centre of one end; m.
+    pub start: [f64; 3],
+    /// Centre of the other; m.
+    pub end: [f64; 3],
+    pub diameter: Spanned<QuantityText>,
+}
+
+/// `vibration`
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct VibrationFile {
+    /// Amplitude and direction; m.
+    pub amplitude: [f64; 3],
+    pub frequency: Spanned<QuantityText>,
+}
+
+/// `rotation`
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct RotationFile {
+    /// A point of the axis; m.
+    pub point: [f64; 3],
+    /// Its direction.
+    pub axis: [f64; 3],
+    pub angular_velocity: Spanned<QuantityText>,
+}
+
+/// Places in the tables of a wall, which can be moved: a table and its keys.
+pub const PLACES: [(&str, &[&str]); 5] = [
+    ("plane", &["point"]),
+    ("plate", &["corner"]),
+    ("box", &["low", "high"]),
+    ("cylinder", &["start", "end"]),
+    ("rotation", &["point"]),
+];
+
+/// A wall; adds findings about its shape.
 pub fn wall_of(
     source: &TomlSource,
     wall: &Spanned<WallFile>,
     materials: &[String],
     findings: &mut Vec<FindingOutcome>,
 ) -> Result<Wall, Error> {
-    const TABLE: &str = "[[walls]]";
-    let (file, at) = (wall.get_ref(), wall.span());
-    let lacks = |key, meaning, example| {
-        let key = needed(TABLE, key, meaning, "", example);
-        missing(source, &at, &key, TABLE.to_owned())
+    let file = wall.get_ref();
+    let table = Section {
+        source,
+        name: "[[walls]]",
+        at: wall.span(),
     };
     let name = file.name.as_ref();
-    let name = name.ok_or_else(|| lacks("name", "its name", "name = \"chute\""))?;
-    let of = file.material.as_ref();
-    let of = of.ok_or_else(|| lacks("material", "its material", "material = \"steel\""))?;
-    let own = material(
-        source,
-        &of.span(),
-        (TABLE, "material"),
-        of.get_ref(),
-        materials,
-    )?;
-    let flat = |key: &str, at: &Range<usize>| {
-        let problem = "it must have a length, and edges must not be parallel".to_owned();
-        invalid(source, at, (TABLE, key), name.get_ref(), problem)
-    };
-    let shape = match (
-        &file.plane,
-        &file.plate,
-        &file.bin,
-        &file.cylinder,
-        &file.mesh,
-    ) {
-        (Some(plane), None, None, None, None) => Shape::Plane {
-            point: plane.get_ref().point,
-            normal: unit(plane.get_ref().normal)
-                .ok_or_else(|| flat("plane normal", &plane.span()))?,
-        },
-        (None, Some(plate), None, None, None) => {
-            let edges = plate.get_ref().edges;
-            let area = length(cross(edges[0], edges[1]));
-            let spans = area > FLAT * length(edges[0]) * length(edges[1]);
-            if !spans {
-                return Err(flat("plate edges", &plate.span()));
-            }
-            Shape::Plates(vec![Plate {
-                corner: plate.get_ref().corner,
-                edges,
-            }])
-        }
-        (None, None, Some(bin), None, None) => {
-            let sides = sides_of(bin.get_ref());
-            let sides = sides.map_err(|problem| {
-                let text = bin.get_ref().open.join(", ");
-                invalid(source, &bin.span(), (TABLE, "box"), &text, problem)
-            })?;
-            Shape::Plates(sides)
-        }
-        (None, None, None, Some(tube), None) => {
-            let (file, at) = (tube.get_ref(), tube.span());
-            let key = needed(
-                TABLE,
-                "cylinder diameter",
-                "diameter",
-                "m",
-                "diameter = \"0.5 m\"",
-            );
-            let diameter = needed_quantity(source, &at, Some(&file.diameter), &key)?;
-            if diameter <= 0.0 || file.start == file.end {
-                return Err(flat("cylinder", &at));
-            }
-            Shape::Cylinder {
-                start: file.start,
-                end: file.end,
-                radius: 0.5 * diameter,
-            }
-        }
-        (None, None, None, None, Some(mesh)) => mesh_of(source, mesh, name.get_ref(), findings)?,
-        _ => {
-            let meaning = "one of plane, plate, box, cylinder, mesh";
-            let example = "plane = { point = [0, 0, 0], normal = [0, 0, 1] }";
-            return Err(lacks(
-                "plane, plate, box, cylinder or mesh",
-                meaning,
-                example,
-            ));
-        }
+    let name = name.ok_or_else(|| table.lacks("name", "its name", "name = \"chute\""))?;
+    let name = name.get_ref();
+    let own = file.material.as_ref();
+    let own = own.ok_or_else(|| table.lacks("material", "its material", "material = \"steel\""))?;
+    let material = table.material(&own.span(), "material", own.get_ref(), materials)?;
+    let shapes = [
+        file.plane.as_ref().map(|own| plane_of(&table, own, name)),
+        file.plate.as_ref().map(|own| plate_of(&table, own, name)),
+        file.bin.as_ref().map(|own| box_of(&table, own)),
+        file.cylinder
+            .as_ref()
+            .map(|own| cylinder_of(&table, own, name)),
+        file.mesh
+            .as_ref()
+            .map(|own| mesh_of(&table, own, name, findings)),
+    ];
+    let mut shapes = shapes.into_iter().flatten();
+    let (Some(shape), None) = (shapes.next(), shapes.next()) else {
+        let key = "plane, plate, box, cylinder or mesh";
+        let meaning = "one of plane, plate, box, cylinder, mesh";
+        let example = "plane = { point = [0, 0, 0], normal = [0, 0, 1] }";
+        return Err(table.lacks(key, meaning, example));
     };
     Ok(Wall {
-        name: name.get_ref().clone(),
-        material: own,
-        shape,
-        motion: motion_of(source, file)?,
+        name: name.clone(),
+        material,
+        shape: shape?,
+        motion: motion_of(&table, file)?,
     })
+}
+
+/// The error of a shape that has no extent.
+fn flat(table: &Section, shape: &Spanned<impl Sized>, key: &str, wall: &str) -> Error {
+    let problem = "it must have a length, and edges must not be parallel";
+    table.refused(&shape.span(), key, wall, problem)
+}
+
+fn plane_of(table: &Section, plane: &Spanned<PlaneFile>, wall: &str) -> Result<Shape, Error> {
+    let PlaneFile { point, normal } = *plane.get_ref();
+    let normal = unit(normal).ok_or_else(|| flat(table, plane, "plane normal", wall))?;
+    Ok(Shape::Plane { point, normal })
 }
 
 /// Sine of the angle of edges below which they are parallel; 1.
 const FLAT: f64 = 1e-9;
 
-fn motion_of(source: &TomlSource, file: &WallFile) -> Result<Motion, Error> {
-    const TABLE: &str = "[[walls]]";
-    let vibration = match &file.vibration {
-        Some(own) => {
-            let key = needed(
-                TABLE,
-                "vibration frequency",
-                "frequency",
-                "Hz",
-                "frequency = \"20 Hz\"",
-            );
-            let frequency = Some(&own.get_ref().frequency);
-            Some(Vibration {
-                amplitude: own.get_ref().amplitude,
-                frequency: needed_quantity(source, &own.span(), frequency, &key)?,
-            })
-        }
-        None => None,
+fn plate_of(table: &Section, plate: &Spanned<PlateFile>, wall: &str) -> Result<Shape, Error> {
+    let PlateFile { corner, edges } = *plate.get_ref();
+    let [a, b] = edges;
+    match length(cross(a, b)) > FLAT * length(a) * length(b) {
+        true => Ok(Shape::Plates(vec![Plate { corner, edges }])),
+        false => Err(flat(table, plate, "plate edges", wall)),
+    }
+}
+
+fn box_of(table: &Section, bin: &Spanned<BoxFile>) -> Result<Shape, Error> {
+    let sides = sides_of(bin.get_ref());
+    sides.map(Shape::Plates).map_err(|problem| {
+        let open = bin.get_ref().open.join(", ");
+        table.refused(&bin.span(), "box", open, problem)
+    })
+}
+
+fn cylinder_of(table: &Section, tube: &Spanned<CylinderFile>, wall: &str) -> Result<Shape, Error> {
+    let file = tube.get_ref();
+    let (start, end) = (file.start, file.end);
+    let diameter = table.given(&file.diameter, "cylinder diameter", "m")?;
+    if diameter <= 0.0 || start == end {
+        return Err(flat(table, tube, "cylinder", wall));
+    }
+    Ok(Shape::Cylinder {
+        start,
+        end,
+        radius: 0.5 * diameter,
+    })
+}
+
+fn motion_of(table: &Section, file: &WallFile) -> Result<Motion, Error> {
+    let vibration = |own: &VibrationFile| {
+        Ok::<_, Error>(Vibration {
+            amplitude: own.amplitude,
+            frequency: table.given(&own.frequency, "vibration frequency", "Hz")?,
+        })
     };
-    let rotation = match &file.rotation {
-        Some(own) => {
-            let key = needed(
-                TABLE,
-                "rotation angular_velocity",
-                "angular velocity",
-                "rad/s",
-                "angular_velocity = \"1 rad/s\"",
-            );
-            let spin = Some(&own.get_ref().angular_velocity);
-            let axis = unit(own.get_ref().axis).ok_or_else(|| {
-                let problem = "an axis must have a length".to_owned();
-                invalid(
-                    source,
-                    &own.span(),
-                    (TABLE, "rotation axis"),
-                    "[0, 0, 0]",
-                    problem,
-                )
-            })?;
-            Some(Turning {
-                point: own.get_ref().point,
-                axis,
-                angular_velocity: needed_quantity(source, &own.span(), spin, &key)?,
-            })
-        }
-        None => None,
+    let rotation = |turn: &Spanned<RotationFile>| {
+        let own = turn.get_ref();
+        let no_axis = || {
+            let problem = "an axis must have a length";
+            table.refused(&turn.span(), "rotation axis", "[0, 0, 0]", problem)
+        };
+        let spin = &own.angular_velocity;
+        Ok::<_, Error>(Turning {
+            point: own.point,
+            axis: unit(own.axis).ok_or_else(no_axis)?,
+            angular_velocity: table.given(spin, "rotation angular_velocity", "rad/s")?,
+        })
     };
+    let vibrating = file.vibration.as_ref().map(Spanned::get_ref);
     let vector =
         |own: &Option<Spanned<Vector>>| own.as_ref().map_or([0.0; 3], |own| *own.get_ref());
     Ok(Motion {
         velocity: vector(&file.velocity),
-        vibration,
-        rotation,
+        vibration: vibrating.map(vibration).transpose()?,
+        rotation: file.rotation.as_ref().map(rotation).transpose()?,
         surface_velocity: vector(&file.belt),
     })
 }

@@ -1,4 +1,4 @@
-//! How a scene is looked at: a camera with perspective that sees the whole of it.
+//! A perspective camera that sees the whole scene.
 
 use windfall_scene::vector::{Vector, add, cross, dot, plus_scaled, scaled, subtract, unit};
 
@@ -12,7 +12,6 @@ const ROUNDS: usize = 12;
 /// A part of a drawing; px.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Pane {
-    /// Its middle.
     pub middle: (f64, f64),
     /// Half of its width and height.
     pub half: (f64, f64),
@@ -48,7 +47,6 @@ impl Camera {
     ///
     /// * `from`: where it stands as seen from the scene: azimuth from x towards y, elevation
     ///   above the ground; rad
-    #[must_use]
     pub fn around(points: &[Vector], from: [f64; 2], pane: Pane) -> Self {
         let [(sa, ca), (se, ce)] = from.map(f64::sin_cos);
         let forward = scaled([ca * ce, sa * ce, se], -1.0);
@@ -99,7 +97,6 @@ impl Camera {
     }
 
     /// A point as it is seen.
-    #[must_use]
     pub fn see(&self, point: Vector) -> Seen {
         let from = subtract(point, self.eye);
         let depth = dot(from, self.forward);
@@ -114,21 +111,18 @@ impl Camera {
     }
 
     /// Radius of a ball in the drawing; px.
-    #[must_use]
     pub fn radius(&self, radius: f64, depth: f64) -> f64 {
         let beyond = (depth * depth - radius * radius).max(f64::MIN_POSITIVE);
         self.focal * radius / beyond.sqrt()
     }
 
     /// A direction of space in the drawing, as if seen from far away; px of a length of 1.
-    #[must_use]
     pub fn direction(&self, along: Vector) -> (f64, f64) {
         (dot(along, self.right), -dot(along, self.up))
     }
 }
 
 /// A point that a wall's pose turns and shifts.
-#[must_use]
 pub fn posed(point: [f32; 3], pose: &crate::run::frame_format::WallFrame) -> Vector {
     let turn = pose.turn.map(f64::from);
     let shift = pose.shift.map(f64::from);

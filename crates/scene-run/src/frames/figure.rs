@@ -1,4 +1,4 @@
-//! A scene as a picture: walls that one sees through, fruit coloured by their largest impact.
+//! A scene as a picture: translucent walls, fruit coloured by their largest impact.
 
 use crate::frames::camera::{Camera, Pane, posed};
 use crate::frames::order::{Ball, Next, Pane3, middle_of, order};
@@ -33,8 +33,8 @@ const STEPS: usize = 64;
 /// Faces that meet at a smaller angle are one surface; cosine of 25°.
 const SMOOTH: f64 = 0.906;
 
-/// Opacity of a face, of one with fruit behind it, whose colours are to be read, and of edges;
-/// 1.
+/// Opacity of a face, of one with fruit behind it (whose colours must stay readable), and of
+/// edges; 1.
 const FACE: f64 = 0.10;
 const FRONT: f64 = 0.035;
 const PLANE: f64 = 0.06;
@@ -54,9 +54,6 @@ pub const FROM: [f64; 2] = [
 ///
 /// * `from`: where the eye stands: azimuth from x towards y, elevation; rad
 /// * `most`: force of the last colour; N
-///
-/// # Errors
-/// None in practice: the data are written to memory.
 pub fn scene_painting(
     frames: &SceneFrames,
     frame: &Frame,

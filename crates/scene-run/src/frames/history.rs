@@ -1,13 +1,14 @@
-//! What one fruit went through, and which were hit hardest.
+//! The contacts of one fruit, and which fruit were hit hardest.
 
-use crate::file_error::SceneFileError;
+use crate::file_error::{SceneFileError, access};
 use csv::{Reader, StringRecord};
-use serde::Serialize;
+use serde::de::DeserializeOwned;
+use serde::{Deserialize, Serialize};
 use std::fs::File;
 use std::path::{Path, PathBuf};
 use windfall_files::error::Error;
 
-/// Most contacts of a fruit that are told; the hardest ones where there are more.
+/// Most contacts of a fruit that are listed; the hardest ones where there are more.
 const MOST: usize = 2000;
 
 /// A contact of a fruit.
@@ -36,14 +37,14 @@ pub struct ContactView {
     pub absorbed_energy: f64,
 }
 
-/// What one fruit went through.
+/// The contacts of one fruit.
 #[derive(Clone, Debug, PartialEq, Serialize, utoipa::ToSchema)]
 pub struct FruitHistory {
     /// Its number.
     pub fruit: u64,
     /// Contacts that were written.
     pub contacts: usize,
-    /// Those of them that are told, in the order of time; the hardest where there are many.
+    /// Those of them that are listed, in the order of time; the hardest where there are many.
     pub told: Vec<ContactView>,
 }
 
@@ -66,7 +67,73 @@ pub struct HardestFruit {
     pub absorbed_energy: f64,
 }
 
-/// A table whose columns are known by their names.
+/// A row of events.csv.
+#[derive(Deserialize)]
+struct EventRow {
+    fruit: u64,
+    partner: String,
+    partner_fruit: Option<u64>,
+    time_s: f64,
+    duration_s: f64,
+    lasting: bool,
+    spot_x: f64,
+    spot_y: f64,
+    spot_z: f64,
+    partner_spot_x: f64,
+    partner_spot_y: f64,
+    partner_spot_z: f64,
+    normal_speed_m_s: f64,
+    tangential_speed_m_s: f64,
+    #[serde(rename = "peak_force_N")]
+    peak_force: f64,
+    #[serde(rename = "absorbed_energy_J")]
+    absorbed_energy: f64,
+}
+
+impl EventRow {
+    /// The contact as the first or the second of its fruit sees it.
+    fn seen_by(self, second: bool) -> ContactView {
+        let (partner_fruit, spot) = match second {
+            false => (self.partner_fruit, [self.spot_x, self.spot_y, self.spot_z]),
+            true => {
+                let spot = [
+                    self.partner_spot_x,
+                    self.partner_spot_y,
+                    self.partner_spot_z,
+                ];
+                (Some(self.fruit), spot)
+            }
+        };
+        ContactView {
+            time: self.time_s,
+            duration: self.duration_s,
+            lasting: self.lasting,
+            partner: self.partner,
+            partner_fruit,
+            spot,
+            normal_speed: self.normal_speed_m_s,
+            tangential_speed: self.tangential_speed_m_s,
+            peak_force: self.peak_force,
+            absorbed_energy: self.absorbed_energy,
+        }
+    }
+}
+
+/// A row of fruit.csv.
+#[derive(Deserialize)]
+struct FruitRow {
+    fruit: u64,
+    contacts: u64,
+    partner_of_it: String,
+    #[serde(rename = "largest_peak_force_N")]
+    peak_force: Option<f64>,
+    time_of_it_s: Option<f64>,
+    impact_speed_of_it_m_s: Option<f64>,
+    #[serde(rename = "absorbed_energy_J")]
+    absorbed_energy: f64,
+}
+
+/// A table that a run wrote, row by row.
 struct Table {
     path: PathBuf,
     reader: Reader<File>,
@@ -76,78 +143,42 @@ struct Table {
 
 impl Table {
     fn open(path: PathBuf) -> Result<Self, Error> {
-        let file = File::open(&path).map_err(|source| Error::FileAccess {
-            path: path.clone(),
-            action: "read",
-            source,
-        })?;
-        let mut reader = csv::ReaderBuilder::new()
-            .comment(Some(b'#'))
-            .from_reader(file);
+        let file = File::open(&path).map_err(access(&path, "read"))?;
+        let mut reader = csv::ReaderBuilder::new();
+        let mut reader = reader.comment(Some(b'#')).from_reader(file);
         let header = reader.headers().cloned();
-        let header = header.map_err(|error| damaged(&path, 1, error.to_string()))?;
         Ok(Self {
+            header: header.map_err(|error| damaged(&path, 1, &error))?,
             path,
             reader,
-            header,
             row: StringRecord::new(),
         })
-    }
-
-    /// The number of a column.
-    fn column(&self, name: &str) -> Result<usize, Error> {
-        let found = self.header.iter().position(|own| own == name);
-        found.ok_or_else(|| damaged(&self.path, 1, format!("there is no column {name}")))
     }
 
     /// Whether there is another row.
     fn next(&mut self) -> Result<bool, Error> {
         let read = self.reader.read_record(&mut self.row);
-        read.map_err(|error| damaged(&self.path, self.reader.position().line(), error.to_string()))
+        read.map_err(|error| damaged(&self.path, self.reader.position().line(), &error))
     }
 
-    fn cell(&self, column: usize) -> &str {
-        self.row.get(column).unwrap_or_default()
+    /// Whether the row has this text in a column.
+    fn is(&self, column: Option<usize>, text: &str) -> bool {
+        column.and_then(|own| self.row.get(own)) == Some(text)
     }
 
-    /// A number, or nothing where the cell is blank.
-    fn optional(&self, column: usize) -> Result<Option<f64>, Error> {
-        match self.cell(column) {
-            "" => Ok(None),
-            _ => self.number(column).map(Some),
-        }
-    }
-
-    fn number(&self, column: usize) -> Result<f64, Error> {
-        let number = self
-            .cell(column)
-            .parse()
-            .ok()
-            .filter(|own: &f64| own.is_finite());
-        number.ok_or_else(|| self.no_number(column))
-    }
-
-    fn whole(&self, column: usize) -> Result<u64, Error> {
-        let number = self.cell(column).parse().ok();
-        number.ok_or_else(|| self.no_number(column))
-    }
-
-    fn no_number(&self, column: usize) -> Error {
-        let name = self.header.get(column).unwrap_or_default();
+    /// The row.
+    fn read<T: DeserializeOwned>(&self) -> Result<T, Error> {
         let line = self.row.position().map_or(0, csv::Position::line);
-        damaged(
-            &self.path,
-            line,
-            format!("{name} is no number: \"{}\"", self.cell(column)),
-        )
+        let read = self.row.deserialize(Some(&self.header));
+        read.map_err(|error| damaged(&self.path, line, &error))
     }
 }
 
-fn damaged(path: &Path, line: u64, problem: String) -> Error {
+fn damaged(path: &Path, line: u64, problem: &csv::Error) -> Error {
     Error::from(SceneFileError::TableDamaged {
         path: path.to_path_buf(),
         line,
-        problem,
+        problem: problem.to_string(),
     })
 }
 
@@ -163,16 +194,17 @@ pub fn fruit_history(directory: &Path, fruit: u64, count: usize) -> Result<Fruit
         return Err(Error::from(SceneFileError::FruitUnknown { fruit, count }));
     }
     let mut table = Table::open(directory.join("events.csv"))?;
-    let columns = EventColumns::of(&table)?;
+    let column = |name| table.header.iter().position(|own| own == name);
+    let columns = [column("fruit"), column("partner_fruit")];
     let (mut told, mut contacts) = (Vec::new(), 0);
     let text = fruit.to_string();
     while table.next()? {
-        let second = table.cell(columns.partner_fruit) == text;
-        if !second && table.cell(columns.fruit) != text {
+        let [first, second] = columns.map(|own| table.is(own, &text));
+        if !first && !second {
             continue;
         }
         contacts += 1;
-        told.push(columns.contact(&table, second)?);
+        told.push(table.read::<EventRow>()?.seen_by(second));
         if told.len() >= 2 * MOST {
             keep_hardest(&mut told);
         }
@@ -191,96 +223,21 @@ fn keep_hardest(told: &mut Vec<ContactView>) {
     told.truncate(MOST);
 }
 
-/// Where what is told stands in events.csv.
-struct EventColumns {
-    fruit: usize,
-    partner: usize,
-    partner_fruit: usize,
-    time: usize,
-    duration: usize,
-    lasting: usize,
-    spots: [[usize; 3]; 2],
-    normal_speed: usize,
-    tangential_speed: usize,
-    peak_force: usize,
-    absorbed_energy: usize,
-}
-
-impl EventColumns {
-    fn of(table: &Table) -> Result<Self, Error> {
-        let own = |name| table.column(name);
-        Ok(Self {
-            fruit: own("fruit")?,
-            partner: own("partner")?,
-            partner_fruit: own("partner_fruit")?,
-            time: own("time_s")?,
-            duration: own("duration_s")?,
-            lasting: own("lasting")?,
-            spots: [
-                [own("spot_x")?, own("spot_y")?, own("spot_z")?],
-                [
-                    own("partner_spot_x")?,
-                    own("partner_spot_y")?,
-                    own("partner_spot_z")?,
-                ],
-            ],
-            normal_speed: own("normal_speed_m_s")?,
-            tangential_speed: own("tangential_speed_m_s")?,
-            peak_force: own("peak_force_N")?,
-            absorbed_energy: own("absorbed_energy_J")?,
-        })
-    }
-
-    /// The contact of a row, as the first or the second of its fruit sees it.
-    fn contact(&self, table: &Table, second: bool) -> Result<ContactView, Error> {
-        let other = if second {
-            self.fruit
-        } else {
-            self.partner_fruit
-        };
-        let [x, y, z] = self.spots[usize::from(second)];
-        Ok(ContactView {
-            time: table.number(self.time)?,
-            duration: table.number(self.duration)?,
-            lasting: table.cell(self.lasting) == "true",
-            partner: table.cell(self.partner).to_owned(),
-            partner_fruit: match table.cell(other) {
-                "" => None,
-                _ => Some(table.whole(other)?),
-            },
-            spot: [table.number(x)?, table.number(y)?, table.number(z)?],
-            normal_speed: table.number(self.normal_speed)?,
-            tangential_speed: table.number(self.tangential_speed)?,
-            peak_force: table.number(self.peak_force)?,
-            absorbed_energy: table.number(self.absorbed_energy)?,
-        })
-    }
-}
-
 /// The fruit with the largest peak forces, the hardest hit first, from fruit.csv.
-///
-/// # Errors
-/// The table cannot be read.
 pub fn hardest_fruit(directory: &Path, most: usize) -> Result<Vec<HardestFruit>, Error> {
     let mut table = Table::open(directory.join("fruit.csv"))?;
-    let own = |name| table.column(name);
-    let (fruit, contacts, partner) = (own("fruit")?, own("contacts")?, own("partner_of_it")?);
-    let (force, time) = (own("largest_peak_force_N")?, own("time_of_it_s")?);
-    let (speed, absorbed) = (own("impact_speed_of_it_m_s")?, own("absorbed_energy_J")?);
     let mut all = Vec::new();
     while table.next()? {
-        let Some(peak_force) = table.optional(force)? else {
-            continue;
-        };
-        all.push(HardestFruit {
-            fruit: table.whole(fruit)?,
-            contacts: table.whole(contacts)?,
+        let row: FruitRow = table.read()?;
+        all.extend(row.peak_force.map(|peak_force| HardestFruit {
+            fruit: row.fruit,
+            contacts: row.contacts,
             peak_force,
-            partner: table.cell(partner).to_owned(),
-            time: table.optional(time)?,
-            impact_speed: table.optional(speed)?,
-            absorbed_energy: table.number(absorbed)?,
-        });
+            partner: row.partner_of_it,
+            time: row.time_of_it_s,
+            impact_speed: row.impact_speed_of_it_m_s,
+            absorbed_energy: row.absorbed_energy,
+        }));
     }
     all.sort_by(|a, b| b.peak_force.total_cmp(&a.peak_force));
     all.truncate(most);

@@ -1,9 +1,9 @@
 //! Frames of a scene that has run: pictures, histories, files for ParaView.
 
-pub mod camera;
-pub mod figure;
+pub(crate) mod camera;
+pub(crate) mod figure;
 pub mod history;
-pub mod order;
+pub(crate) mod order;
 pub mod read;
 pub mod view;
-pub mod vtk;
+pub(crate) mod vtk;

@@ -1,4 +1,4 @@
-//! What is drawn after what, so that what is nearer hides what is behind it.
+//! Drawing order: near things hide those behind them.
 
 use crate::frames::camera::Camera;
 use windfall_scene::vector::{Vector, add, cross, dot, length, scaled, subtract};
@@ -51,7 +51,6 @@ const SMALL: f64 = 4.0;
 
 /// The order in which balls and faces are drawn: far ones first. Of a large face its side
 /// tells which balls are behind it.
-#[must_use]
 pub fn order(balls: &[Ball], faces: &mut [Pane3], camera: &Camera) -> Vec<Next> {
     let mut sorted: Vec<usize> = (0..balls.len()).collect();
     sorted.sort_by(|a, b| balls[*b].away.total_cmp(&balls[*a].away));
@@ -132,7 +131,6 @@ fn covers(face: &Pane3, ball: &Ball) -> bool {
 }
 
 /// The middle of points.
-#[must_use]
 pub fn middle_of(points: &[Vector]) -> Vector {
     let sum = points.iter().fold([0.0; 3], |sum, own| add(sum, *own));
     scaled(sum, 1.0 / points.len().max(1) as f64)

@@ -1,6 +1,6 @@
 //! frames.bin, frame by frame.
 
-use crate::file_error::SceneFileError;
+use crate::file_error::{SceneFileError, access};
 use crate::geometry::WallGeometry;
 use crate::run::frame_format::{
     FRAME_HEADER, FRAMES_FILE, Frame, FramesAbout, MAGIC, VERSION, decode_frame,
@@ -14,7 +14,7 @@ use windfall_files::error::Error;
 /// Longest JSON that is read; bytes.
 const MOST_ABOUT: u64 = 1 << 26;
 
-/// Where a frame stands in its file.
+/// Position of a frame in its file.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct FrameEntry {
     /// First byte.
@@ -42,9 +42,6 @@ pub struct SceneFrames {
 }
 
 /// The file of frames of a run: the whole one, or the one that is being written.
-///
-/// # Errors
-/// There is none.
 pub fn frames_file(directory: &Path) -> Result<PathBuf, Error> {
     let whole = directory.join(FRAMES_FILE);
     if whole.is_file() {
@@ -67,11 +64,8 @@ impl SceneFrames {
     /// # Errors
     /// It cannot be read, is no file of frames, or is damaged.
     pub fn open(path: &Path) -> Result<Self, Error> {
-        let file = File::open(path).map_err(|source| access(path, source))?;
-        let length = file
-            .metadata()
-            .map_err(|source| access(path, source))?
-            .len();
+        let file = File::open(path).map_err(access(path, "read"))?;
+        let length = file.metadata().map_err(access(path, "read"))?.len();
         let mut start = Start {
             path,
             file: BufReader::new(file),
@@ -165,7 +159,7 @@ impl SceneFrames {
         self.file
             .seek(SeekFrom::Start(at))
             .and_then(|_| self.file.read_exact(bytes))
-            .map_err(|source| access(&self.path, source))
+            .map_err(access(&self.path, "read"))
     }
 
     /// A frame by its number, from 0.
@@ -185,9 +179,6 @@ impl SceneFrames {
 
     /// The bytes of frames from a number on: the first of them, and as many more as `most`
     /// bytes hold.
-    ///
-    /// # Errors
-    /// They cannot be read.
     pub fn bytes(&mut self, from: usize, most: u64) -> Result<Vec<u8>, Error> {
         let Some(first) = self.frames.get(from).copied() else {
             return Ok(Vec::new());
@@ -250,24 +241,13 @@ impl Start<'_> {
             return Err(ends());
         }
         let mut bytes = vec![0; count as usize];
-        self.file.read_exact(&mut bytes).map_err(|source| {
-            let short = source.kind() == ErrorKind::UnexpectedEof;
-            if short {
-                ends()
-            } else {
-                access(self.path, source)
-            }
+        let read = self.file.read_exact(&mut bytes);
+        read.map_err(|source| match source.kind() {
+            ErrorKind::UnexpectedEof => ends(),
+            _ => access(self.path, "read")(source),
         })?;
         self.at += count;
         Ok(bytes)
-    }
-}
-
-fn access(path: &Path, source: std::io::Error) -> Error {
-    Error::FileAccess {
-        path: path.to_path_buf(),
-        action: "read",
-        source,
     }
 }
 

@@ -12,7 +12,7 @@ use windfall_files::option_value::unusable;
 use windfall_files::progress::Progress;
 use windfall_files::write_file::write_whole;
 
-/// How a scene is to be drawn.
+/// Options of a picture.
 #[derive(Clone, Debug, Default)]
 pub struct PictureRequest {
     /// When; the end where it is left out; s.
@@ -135,14 +135,11 @@ pub fn draw_scene(path: &Path, request: &PictureRequest) -> Result<PictureOutcom
     })
 }
 
-/// Frames that are looked at for the largest force, beside the last.
+/// Frames sampled for the largest force, besides the last.
 const LOOKS: usize = 16;
 
 /// The largest force of a fruit in the scene; N. Forces only grow, but fruit leave: some
 /// frames between are looked at as well.
-///
-/// # Errors
-/// The frames cannot be read.
 pub fn largest_force(frames: &mut SceneFrames) -> Result<f64, Error> {
     let count = frames.frames.len();
     let mut most: f64 = 0.0;

@@ -1,5 +1,7 @@
 //! Frames of a scene for ParaView: VTK's XML files of poly data, and their times.
 
+use crate::base64::base64;
+use crate::file_error::make_directory;
 use crate::frames::camera::posed;
 use crate::frames::read::SceneFrames;
 use crate::run::frame_format::{Frame, WallFrame};
@@ -17,17 +19,13 @@ pub const COLLECTION: &str = "scene.pvd";
 /// Returns the list and the number of files beside it.
 ///
 /// # Errors
-/// A frame cannot be read, or a file cannot be written; somebody stopped it.
+/// A frame cannot be read, or a file cannot be written; it was cancelled.
 pub fn write_vtk(
     frames: &mut SceneFrames,
     directory: &Path,
     progress: Progress,
 ) -> Result<(PathBuf, usize), Error> {
-    std::fs::create_dir_all(directory).map_err(|source| Error::FileAccess {
-        path: directory.to_path_buf(),
-        action: "create",
-        source,
-    })?;
+    make_directory(directory)?;
     let moves = frames.walls.iter().any(|wall| wall.about.moves);
     let all = frames.frames.len();
     let mut sets = String::new();
@@ -184,45 +182,4 @@ fn string_array<'a>(name: &str, texts: impl Iterator<Item = &'a str>) -> String 
          format=\"ascii\">{}</Array>\n    </FieldData>\n",
         codes.trim_end()
     )
-}
-
-/// Bytes as text (RFC 4648).
-fn base64(bytes: &[u8]) -> String {
-    const LETTERS: &[u8; 64] = b"ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
-    let mut text = String::with_capacity(bytes.len().div_ceil(3) * 4);
-    for group in bytes.chunks(3) {
-        let at = |k: usize| u32::from(group.get(k).copied().unwrap_or(0));
-        let word = at(0) << 16 | at(1) << 8 | at(2);
-        for k in 0..4 {
-            let letter = LETTERS[(word >> (18 - 6 * k) & 63) as usize];
-            text.push(if k <= group.len() {
-                char::from(letter)
-            } else {
-                '='
-            });
-        }
-    }
-    text
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    /// RFC 4648, section 10.
-    #[test]
-    fn reference_base64() {
-        for (bytes, text) in [
-            ("", ""),
-            ("f", "Zg=="),
-            ("fo", "Zm8="),
-            ("foo", "Zm9v"),
-            ("foob", "Zm9vYg=="),
-            ("fooba", "Zm9vYmE="),
-            ("foobar", "Zm9vYmFy"),
-        ] {
-            assert_eq!(base64(bytes.as_bytes()), text);
-        }
-        assert_eq!(base64(&[0xfb, 0xff, 0xfe]), "+//+");
-    }
 }

@@ -2,6 +2,7 @@
 
 use crate::bruise::scene::Blows;
 use crate::file::read::ScenePlan;
+use crate::file_error::access;
 use crate::run::checkpoint::{
     CheckpointHead, Parts, changed_parts, checkpoint_head, checkpoint_path, damaged, parts_of,
     read_checkpoint, write_checkpoint,
@@ -20,15 +21,15 @@ use windfall_scene::event::Event;
 use windfall_scene::motion::simulation::Simulation;
 use windfall_scene::state::State;
 
-/// What is to be done where a run was stopped.
+/// How to treat a run that was stopped.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum SceneStart {
-    /// Nothing: it is not to be lost unasked.
+    /// Refuse to overwrite it.
     #[default]
     Fresh,
-    /// Go on from its checkpoint.
+    /// Resume from its checkpoint.
     Resume,
-    /// Begin anew.
+    /// Start over.
     Restart,
 }
 
@@ -45,7 +46,7 @@ pub trait Mover: Send {
     /// Its own time steps in one.
     fn steps(&self) -> u64;
 
-    /// Whether it can go on from a checkpoint.
+    /// Whether it can resume from a checkpoint.
     fn goes_on(&self) -> bool;
 }
 
@@ -79,7 +80,7 @@ pub struct SceneRun {
     pub simulation: Simulation,
     /// Every contact.
     pub table: EventFile,
-    /// What is kept to be seen.
+    /// Recorded frames.
     pub frames: SceneRecorder,
     /// What happened.
     pub tally: Tally,
@@ -98,7 +99,7 @@ pub struct SceneRun {
 }
 
 impl SceneRun {
-    /// A run that begins, or goes on.
+    /// Begins or resumes a run.
     ///
     /// * `plan`: with its time step, and with fruit in the order in which they come
     ///
@@ -137,11 +138,7 @@ impl SceneRun {
         }
         let simulation = Simulation::new(plan.scene.clone()).map_err(stopped_scene)?;
         if checkpoint.exists() {
-            std::fs::remove_file(&checkpoint).map_err(|source| Error::FileAccess {
-                path: checkpoint.clone(),
-                action: "remove",
-                source,
-            })?;
+            std::fs::remove_file(&checkpoint).map_err(access(&checkpoint, "remove"))?;
         }
         let table = EventFile::create(&events, &plan.scene, plan.least_peak_force)?;
         let frames = SceneRecorder::create(plan, directory)?;
@@ -222,7 +219,7 @@ impl SceneRun {
     /// Steps up to the end; contacts that last are not counted.
     ///
     /// # Errors
-    /// The result would mean nothing from there on; somebody stopped it; a file cannot be
+    /// The result would mean nothing from there on; it was cancelled; a file cannot be
     /// written. What was done up to the last checkpoint is kept in the latter two.
     pub(crate) fn run_to_end(
         &mut self,
@@ -265,14 +262,12 @@ impl SceneRun {
         Ok(())
     }
 
-    /// One contact more.
-    ///
-    /// # Errors
-    /// The table cannot be written.
+    /// Counts a contact.
     pub fn count(&mut self, event: &Event) -> Result<(), Error> {
-        let lasted = self.tally.count(event);
+        let scene = &self.simulation.scene;
+        let lasted = self.tally.count(scene, event);
         if let Some(blows) = &mut self.blows {
-            blows.count(event);
+            blows.count(scene, event);
         }
         self.table.write(event, lasted)
     }
@@ -325,10 +320,7 @@ impl SceneRun {
         }
     }
 
-    /// Ends the run: the table gets its name, and there is nothing to go on from.
-    ///
-    /// # Errors
-    /// It cannot be renamed.
+    /// Ends the run: renames the table and removes the checkpoint.
     pub fn finish(self) -> Result<(), Error> {
         self.table.finish()?;
         // One that is left without its table is taken for what it is: of a run that is over.

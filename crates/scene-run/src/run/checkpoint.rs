@@ -5,6 +5,7 @@
 //! follows as [`Binary`] values; SHA-256 of all that ends it.
 
 use crate::file::read::ScenePlan;
+use crate::file_error::access;
 use crate::run_error::SceneRunError;
 use sha2::{Digest, Sha256};
 use std::fs::File;
@@ -41,7 +42,6 @@ pub struct CheckpointHead {
 }
 
 /// Where the checkpoint of a directory lies.
-#[must_use]
 pub fn checkpoint_path(directory: &Path) -> PathBuf {
     directory.join(NAME)
 }
@@ -50,7 +50,6 @@ pub fn checkpoint_path(directory: &Path) -> PathBuf {
 ///
 /// Digests are of the values that were read, with cards and meshes, not of the text: comments
 /// and the order of keys do not count.
-#[must_use]
 pub fn parts_of(plan: &ScenePlan) -> Parts {
     // All fields are named, so that one more is not forgotten.
     let ScenePlan {
@@ -129,7 +128,6 @@ fn part(name: &str, value: &dyn std::fmt::Debug) -> (String, String) {
 }
 
 /// Names of what differs between two scenes.
-#[must_use]
 pub fn changed_parts(then: &Parts, now: &Parts) -> Vec<String> {
     let lacks = |own: &&(String, String), other: &Parts| !other.contains(own);
     let gone = then.iter().filter(|own| lacks(own, now));
@@ -159,11 +157,7 @@ pub fn write_checkpoint(
     let _ = directory.map(|own| own.sync_all());
     written.map_err(|source| {
         let _ = std::fs::remove_file(&partial);
-        Error::FileAccess {
-            path: path.to_path_buf(),
-            action: "write",
-            source,
-        }
+        access(path, "write")(source)
     })
 }
 
@@ -203,7 +197,7 @@ pub fn read_checkpoint<T>(
         damaged(format!("the checkpoint ends early or is none ({source})"))
     };
     let file = open(path)?;
-    let length = file.metadata().map_err(|error| access(path, error))?.len();
+    let length = file.metadata().map_err(access(path, "read"))?.len();
     let mut from = BufReader::new(file);
     version_of(path, &mut from)?;
     // First whether it is what was written, then what it says.
@@ -212,11 +206,10 @@ pub fn read_checkpoint<T>(
         inner: std::io::sink(),
         digest: Sha256::new(),
     };
-    std::io::copy(&mut from, &mut digesting).map_err(|error| access(path, error))?;
+    std::io::copy(&mut from, &mut digesting).map_err(access(path, "read"))?;
     let mut end = Vec::new();
     let mut rest = from.into_inner();
-    rest.read_to_end(&mut end)
-        .map_err(|error| access(path, error))?;
+    rest.read_to_end(&mut end).map_err(access(path, "read"))?;
     if end != digesting.digest.finalize()[..] {
         return Err(damaged(
             "the checkpoint is damaged: its digest is another one".to_owned(),
@@ -234,8 +227,7 @@ pub fn read_checkpoint<T>(
     }
 }
 
-/// The beginning of a checkpoint; `None` where there is none that can be read.
-#[must_use]
+/// The header of a checkpoint, if it can be read.
 pub fn checkpoint_head(path: &Path) -> Option<CheckpointHead> {
     let mut from = BufReader::new(File::open(path).ok()?);
     version_of(path, &mut from).ok()?;
@@ -274,23 +266,14 @@ fn version_of(path: &Path, mut from: &mut dyn Read) -> Result<(), Error> {
     Err(Error::from(SceneRunError::Version { path, version }))
 }
 
-/// What is wrong with a file that a run was to go on from.
-#[must_use]
+/// The error of a file that a run cannot resume from.
 pub fn damaged(path: &Path, problem: String) -> Error {
     let path = path.to_path_buf();
     Error::from(SceneRunError::Damaged { path, problem })
 }
 
 fn open(path: &Path) -> Result<File, Error> {
-    File::open(path).map_err(|source| access(path, source))
-}
-
-fn access(path: &Path, source: std::io::Error) -> Error {
-    Error::FileAccess {
-        path: path.to_path_buf(),
-        action: "read",
-        source,
-    }
+    File::open(path).map_err(access(path, "read"))
 }
 
 /// A writer that digests what goes through it.
@@ -326,7 +309,7 @@ mod tests {
     fn read(path: &Path) -> Result<Vec<f64>, String> {
         let body = |head: &CheckpointHead, from: &mut dyn Read| {
             assert_eq!(head.time, 0.5);
-            Vec::read(from).map_err(|error| access(path, error))
+            Vec::read(from).map_err(access(path, "read"))
         };
         read_checkpoint(path, body).map_err(|error| error.to_string())
     }

@@ -104,26 +104,19 @@ pub fn encode_frame(frame: &Frame, bytes: &mut Vec<u8>) {
     bytes.extend(FRAME);
     bytes.extend((frame.fruit.len() as u32).to_le_bytes());
     bytes.extend(frame.time.to_le_bytes());
-    let mut put = |values: &[f32]| {
-        values
-            .iter()
-            .for_each(|own| bytes.extend(own.to_le_bytes()))
+    let put = |bytes: &mut Vec<u8>, values: &[f32]| {
+        bytes.extend(values.iter().flat_map(|own| own.to_le_bytes()));
     };
     for wall in &frame.walls {
-        put(&wall.turn);
-        put(&wall.shift);
+        put(bytes, &wall.turn);
+        put(bytes, &wall.shift);
     }
     for own in &frame.fruit {
         bytes.extend(own.fruit.to_le_bytes());
-        let mut put = |values: &[f32]| {
-            values
-                .iter()
-                .for_each(|own| bytes.extend(own.to_le_bytes()))
-        };
-        put(&own.place);
-        put(&own.turn);
-        put(&own.velocity);
-        put(&[own.peak_force]);
+        put(bytes, &own.place);
+        put(bytes, &own.turn);
+        put(bytes, &own.velocity);
+        put(bytes, &[own.peak_force]);
     }
 }
 

@@ -1,10 +1,10 @@
-//! How fruit of a scene are distributed over what they suffered.
+//! Distributions over fruit of the loads of a scene.
 
 use serde::Serialize;
 use windfall_draw::axis::axis;
 use windfall_draw::xy::{Figure, Panel, Series, Style};
 
-/// Counts of fruit over the values of a quantity.
+/// A histogram of fruit over a quantity.
 #[derive(Clone, Debug, PartialEq, Serialize, utoipa::ToSchema)]
 pub struct HistogramOutcome {
     /// The quantity, of each fruit the largest.
@@ -21,7 +21,6 @@ pub struct HistogramOutcome {
 const BINS: usize = 25;
 
 /// Bins of round width from zero to the largest value; `None` without values.
-#[must_use]
 pub fn histogram(quantity: &str, unit: &'static str, values: &[f64]) -> Option<HistogramOutcome> {
     let finite = values.iter().copied().filter(|own| own.is_finite());
     let largest = finite.clone().fold(f64::NEG_INFINITY, f64::max);
@@ -48,7 +47,6 @@ pub fn histogram(quantity: &str, unit: &'static str, values: &[f64]) -> Option<H
 
 /// The histograms, one panel each.
 ///
-#[must_use]
 pub fn figure_of_histograms(title: &str, histograms: &[HistogramOutcome]) -> Figure {
     let panel = |own: &HistogramOutcome| {
         let (unit, scale) = shown(own.unit);

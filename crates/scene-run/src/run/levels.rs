@@ -27,7 +27,7 @@ const UNSEEN: u32 = 11;
 const SIGN: u32 = 1 << 31;
 
 impl Levels {
-    /// One number more.
+    /// Adds a number.
     pub fn add(&mut self, number: f64) {
         // Bits in the order of the numbers.
         let bits = (number as f32).to_bits();
@@ -41,7 +41,6 @@ impl Levels {
     }
 
     /// The smallest number that a share of all do not exceed; NaN where there are none.
-    #[must_use]
     pub fn level(&self, share: f64) -> f64 {
         let rank = ((share * self.count as f64).ceil() as u64).clamp(1, self.count.max(1));
         if rank == self.count {

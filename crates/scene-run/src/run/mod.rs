@@ -1,12 +1,13 @@
 //! A run of a scene: checkpoints, frames, tables, results.
 
 pub mod advance;
-pub mod checkpoint;
+pub(crate) mod checkpoint;
 pub mod frame_format;
-pub mod frames;
-pub mod histogram;
-pub mod levels;
+pub(crate) mod frames;
+mod growing;
+pub(crate) mod histogram;
+pub(crate) mod levels;
 pub mod outcome;
-pub mod static_load;
+pub(crate) mod static_load;
 pub mod tables;
 pub mod workflow;

@@ -1,4 +1,4 @@
-//! What came of a scene.
+//! Results of a scene.
 
 use crate::bruise::scene::BruiseOutcome;
 use crate::file::key::FRUIT;
@@ -18,7 +18,7 @@ use windfall_scene::event::{Event, Partner};
 use windfall_scene::motion::simulation::Leaving;
 use windfall_scene::scene::Scene;
 
-/// What came of a scene; SI throughout.
+/// Results of a scene; SI throughout.
 #[derive(Clone, Debug, Serialize, utoipa::ToSchema)]
 pub struct SceneOutcome {
     /// Title.
@@ -48,10 +48,10 @@ pub struct SceneOutcome {
     /// How many fruit are bruised, and where; where the scene says what bruises.
     pub bruise: Option<BruiseOutcome>,
     /// Energies at the end.
-    pub energy: EnergyOutcome,
+    pub energy: Energy,
     /// What the energy account lacks, over what was lost in contacts; 1.
     pub energy_closure: f64,
-    /// What is to be known of the result.
+    /// Findings.
     pub findings: Vec<FindingOutcome>,
     /// Files written.
     #[schema(value_type = Vec<String>)]
@@ -99,46 +99,7 @@ pub struct PartnerOutcome {
     pub absorbed_energy: [f64; 3],
 }
 
-/// Energies; J.
-#[derive(Clone, Copy, Debug, Serialize, utoipa::ToSchema)]
-pub struct EnergyOutcome {
-    /// Of translation.
-    pub kinetic: f64,
-    /// Of rotation.
-    pub rotational: f64,
-    /// In gravity.
-    pub potential: f64,
-    /// Held or lost in contacts that last.
-    pub in_contacts: f64,
-    /// Held or lost by friction of contacts that last.
-    pub in_friction: f64,
-    /// Lost in contacts that are over.
-    pub lost_in_contacts: f64,
-    /// Lost by friction and rolling.
-    pub lost_by_friction: f64,
-    /// Lost by drag.
-    pub lost_by_drag: f64,
-    /// Done by moving walls.
-    pub done_by_walls: f64,
-}
-
-impl From<&Energy> for EnergyOutcome {
-    fn from(own: &Energy) -> Self {
-        Self {
-            kinetic: own.kinetic,
-            rotational: own.rotational,
-            potential: own.potential,
-            in_contacts: own.in_contacts,
-            in_friction: own.in_friction,
-            lost_in_contacts: own.lost_in_contacts,
-            lost_by_friction: own.lost_by_friction,
-            lost_by_drag: own.lost_by_drag,
-            done_by_walls: own.done_by_walls,
-        }
-    }
-}
-
-/// What one fruit went through.
+/// Contacts of one fruit, counted.
 #[derive(Clone, Debug, Default)]
 pub struct FruitTally {
     /// Contacts.
@@ -165,31 +126,18 @@ binary!(FruitTally {
 });
 
 /// Numbers of fruit, a bit for each.
-#[derive(Clone, Debug, Default)]
-struct FruitSet(Vec<u64>);
+type FruitSet = Vec<u64>;
 
-impl FruitSet {
-    fn insert(&mut self, fruit: u32) {
-        let (word, bit) = (fruit as usize / 64, fruit % 64);
-        if self.0.len() <= word {
-            self.0.resize(word + 1, 0);
-        }
-        self.0[word] |= 1 << bit;
+fn insert(set: &mut FruitSet, fruit: u32) {
+    let (word, bit) = (fruit as usize / 64, fruit % 64);
+    if set.len() <= word {
+        set.resize(word + 1, 0);
     }
-
-    fn count(&self) -> usize {
-        self.0.iter().map(|own| own.count_ones() as usize).sum()
-    }
+    set[word] |= 1 << bit;
 }
 
-impl Binary for FruitSet {
-    fn write(&self, to: &mut dyn Write) -> IoResult<()> {
-        self.0.write(to)
-    }
-
-    fn read(from: &mut dyn Read) -> IoResult<Self> {
-        Ok(Self(Binary::read(from)?))
-    }
+fn count(set: &FruitSet) -> usize {
+    set.iter().map(|own| own.count_ones() as usize).sum()
 }
 
 /// Contacts with one wall, or of fruit with fruit, in memory that does not grow with them.
@@ -228,19 +176,19 @@ impl PartnerTally {
     fn count(&mut self, event: &Event, lasted: bool) {
         if lasted {
             self.static_loads += 1;
-            self.static_fruit.insert(event.fruit);
+            insert(&mut self.static_fruit, event.fruit);
             self.largest_static_force = self.largest_static_force.max(event.peak_force);
             return;
         }
         self.contacts += 1;
-        self.fruit.insert(event.fruit);
+        insert(&mut self.fruit, event.fruit);
         self.peak_force.add(event.peak_force);
         self.impact_speed.add(event.normal_speed);
         self.absorbed_energy.add(event.absorbed_energy);
     }
 }
 
-/// What happened, counted as it happens.
+/// Running counts of a scene.
 #[derive(Clone, Debug)]
 pub struct Tally {
     /// Of each fruit.
@@ -254,12 +202,10 @@ pub struct Tally {
     seen: BTreeMap<(usize, usize), f64>,
     /// Contacts of these pairs, and those of them that were faster.
     speeds: BTreeMap<(usize, usize), (u64, u64)>,
-    materials: Vec<usize>,
-    walls: Vec<usize>,
 }
 
 impl Tally {
-    /// Nothing yet.
+    /// Empty counts.
     #[must_use]
     pub fn new(plan: &ScenePlan) -> Self {
         let scene = &plan.scene;
@@ -272,26 +218,23 @@ impl Tally {
             loads: StaticLoads::of(scene),
             seen: cards.map(|(pair, card)| (*pair, fastest(card))).collect(),
             speeds: BTreeMap::new(),
-            materials: scene.fruit.iter().map(|fruit| fruit.material).collect(),
-            walls: scene.walls.iter().map(|wall| wall.material).collect(),
         }
     }
 
-    /// One contact more; whether it was a static load.
-    pub fn count(&mut self, event: &Event) -> bool {
+    /// Counts a contact; whether it was a static load.
+    pub fn count(&mut self, scene: &Scene, event: &Event) -> bool {
         self.contacts += 1;
-        let lasted = self.loads.is_static(event);
+        let lasted = self.loads.is_static(scene, event);
         self.suffer(event.fruit, event, lasted);
-        let (place, other) = match event.partner {
+        let place = match event.partner {
             Partner::Fruit(other) => {
                 self.suffer(other, event, lasted);
-                (self.walls.len(), self.materials[other as usize])
+                scene.walls.len()
             }
-            Partner::Wall(wall) => (wall as usize, self.walls[wall as usize]),
+            Partner::Wall(wall) => wall as usize,
         };
         self.partners[place].count(event, lasted);
-        let own = self.materials[event.fruit as usize];
-        let pair = (own.min(other), own.max(other));
+        let pair = scene.materials_of(event);
         if let Some(fastest) = self.seen.get(&pair) {
             let (all, beyond) = self.speeds.entry(pair).or_default();
             *all += 1;
@@ -317,15 +260,12 @@ impl Tally {
         own.absorbed[1] += event.absorbed_energy;
     }
 
-    /// One fruit left.
+    /// Counts a fruit that left.
     pub fn leave(&mut self, leaving: &Leaving) {
         self.fruit[leaving.fruit as usize].left = Some(*leaving);
     }
 
     /// Writes what was counted.
-    ///
-    /// # Errors
-    /// Those of the writer.
     pub fn save(&self, to: &mut dyn Write) -> IoResult<()> {
         self.fruit.write(to)?;
         self.contacts.write(to)?;
@@ -373,9 +313,9 @@ impl PartnerOutcome {
             Self {
                 name,
                 contacts: own.contacts as usize,
-                fruit: own.fruit.count(),
+                fruit: count(&own.fruit),
                 static_loads: own.static_loads as usize,
-                static_fruit: own.static_fruit.count(),
+                static_fruit: count(&own.static_fruit),
                 largest_static_force: own.largest_static_force,
                 peak_force: levels(&own.peak_force),
                 impact_speed: levels(&own.impact_speed),

@@ -1,9 +1,9 @@
-//! Which contacts of a scene are loads that last, and not impacts.
+//! Which contacts of a scene are static loads rather than impacts.
 
 use std::collections::BTreeMap;
 use windfall_contact::law::EndRule;
 use windfall_identify::rig::simulate::simulate_impact;
-use windfall_scene::event::{Event, Partner};
+use windfall_scene::event::Event;
 use windfall_scene::interaction::{Draws, Interaction};
 use windfall_scene::scene::Scene;
 
@@ -17,36 +17,25 @@ const SPEEDS: (f64, f64, usize) = (1e-3, 2.0, 14);
 pub struct StaticLoads {
     /// At the speeds of [`SPEEDS`]; s. Endless where the bodies stay together.
     durations: BTreeMap<(usize, usize), Vec<f64>>,
-    fruit: Vec<usize>,
-    walls: Vec<usize>,
 }
 
 impl StaticLoads {
     /// For the mean fruit of each material.
-    #[must_use]
     pub fn of(scene: &Scene) -> Self {
         let durations = scene.interactions.iter();
         let durations = durations.map(|(&pair, own)| (pair, durations_of(scene, pair, own)));
         Self {
             durations: durations.collect(),
-            fruit: scene.fruit.iter().map(|fruit| fruit.material).collect(),
-            walls: scene.walls.iter().map(|wall| wall.material).collect(),
         }
     }
 
     /// Whether a contact is a static load: it was still there at the end, or lasted more than
     /// ten times a single impact of its speed.
-    #[must_use]
-    pub fn is_static(&self, event: &Event) -> bool {
+    pub fn is_static(&self, scene: &Scene, event: &Event) -> bool {
         if event.lasting {
             return true;
         }
-        let own = self.fruit[event.fruit as usize];
-        let other = match event.partner {
-            Partner::Fruit(other) => self.fruit[other as usize],
-            Partner::Wall(wall) => self.walls[wall as usize],
-        };
-        let durations = self.durations.get(&(own.min(other), own.max(other)));
+        let durations = self.durations.get(&scene.materials_of(event));
         let (first, factor, _) = SPEEDS;
         // Between two speeds the slower one, which lasts longer.
         let place = (event.normal_speed.max(first) / first).log2() / factor.log2();
@@ -76,8 +65,10 @@ fn durations_of(scene: &Scene, pair: (usize, usize), own: &Interaction) -> Vec<f
 mod tests {
     use super::*;
     use windfall_contact::laws::kind::LawKind;
+    use windfall_scene::event::Partner;
     use windfall_scene::scene::Fruit;
-    use windfall_scene::shape::wall::{Motion, Shape, Wall};
+    use windfall_scene::shape::surface::Shape;
+    use windfall_scene::shape::wall::{Motion, Wall};
 
     /// A spring and a mass: half a period, π √(m/k), at any speed.
     #[test]
@@ -121,14 +112,14 @@ mod tests {
         };
         for speed in [0.0, 1e-3, 0.3, 50.0] {
             assert!(
-                !loads.is_static(&event(speed, 9.99 * single, false)),
+                !loads.is_static(&scene, &event(speed, 9.99 * single, false)),
                 "{speed}"
             );
             assert!(
-                loads.is_static(&event(speed, 10.01 * single, false)),
+                loads.is_static(&scene, &event(speed, 10.01 * single, false)),
                 "{speed}"
             );
         }
-        assert!(loads.is_static(&event(1.0, 0.0, true)));
+        assert!(loads.is_static(&scene, &event(1.0, 0.0, true)));
     }
 }

@@ -1,19 +1,18 @@
 //! Contacts and fruit of a scene as tables.
 
-use crate::bruise::scene::BruiseOutcome;
+use crate::bruise::scene::{BruiseOutcome, PlaceOutcome};
 use crate::file::engine_kind::Engine;
 use crate::file::key::FRUIT;
 use crate::file::read::ScenePlan;
-use crate::run::checkpoint::damaged;
+use crate::run::growing::{GrowingFile, partial_of};
 use crate::run::outcome::{SceneOutcome, Tally};
 use crate::run_error::SceneRunError;
 use std::fs::{File, TryLockError};
-use std::io::{BufWriter, Seek, SeekFrom, Write};
 use std::path::{Path, PathBuf};
 use windfall_files::error::Error;
 use windfall_files::table::write::csv_text;
 use windfall_files::text::statistic::number;
-use windfall_files::text::table::page_tables;
+use windfall_files::text::table::{Cells, page_tables};
 use windfall_scene::bruise::damage::Bruise;
 use windfall_scene::event::{Event, Partner};
 use windfall_scene::motion::simulation::FruitState;
@@ -24,24 +23,21 @@ const EVENT_COLUMNS: &str = "fruit,partner,partner_fruit,time_s,duration_s,lasti
 spot_x,spot_y,spot_z,partner_spot_x,partner_spot_y,partner_spot_z,normal_speed_m_s,\
 tangential_speed_m_s,peak_force_N,largest_displacement_m,absorbed_energy_J,friction_energy_J,static";
 
+/// Columns of fruit.csv.
+const FRUIT_COLUMNS: &str = "fruit,material,diameter_m,mass_kg,released_s,left_s,sink,x_m,y_m,\
+z_m,contacts,largest_peak_force_N,partner_of_it,time_of_it_s,impact_speed_of_it_m_s,\
+largest_absorbed_energy_J,absorbed_energy_J,bruises,largest_bruise_mm3,static_loads,\
+largest_static_force_N";
+
 /// A table of contacts that grows with the scene; it has its name when it is whole.
 pub struct EventFile {
-    path: PathBuf,
-    partial: PathBuf,
-    file: BufWriter<File>,
+    file: GrowingFile,
     walls: Vec<String>,
     least: f64,
     written: u64,
-    /// Whether what is not finished stays: a checkpoint goes on from it.
-    keep: bool,
 }
 
-/// Where a table stands until it is whole.
-fn partial_of(path: &Path) -> PathBuf {
-    path.with_extension("csv.partial")
-}
-
-/// Whether a table was begun and not finished, and whether somebody is at it now.
+/// State of a partial table: whether a program is writing it; `None` where there is none.
 #[must_use]
 pub fn is_written(path: &Path) -> Option<bool> {
     let file = File::options().write(true).open(partial_of(path)).ok()?;
@@ -52,17 +48,13 @@ impl EventFile {
     /// A table without rows.
     ///
     /// * `least`: contacts with a smaller peak force are left out; N
-    ///
-    /// # Errors
-    /// It cannot be written.
     pub fn create(path: &Path, scene: &Scene, least: f64) -> Result<Self, Error> {
         let mut own = Self::open(path, scene, least, (0, 0))?;
-        own.keep = false;
-        writeln!(own.file, "{EVENT_COLUMNS}").map_err(|source| access(path, source))?;
+        own.file.write(format!("{EVENT_COLUMNS}\n"))?;
         Ok(own)
     }
 
-    /// A table that goes on.
+    /// A resumed table.
     ///
     /// * `length`, `written`: bytes and rows of it that count; what is behind is cut off
     ///
@@ -74,14 +66,7 @@ impl EventFile {
         least: f64,
         (length, written): (u64, u64),
     ) -> Result<Self, Error> {
-        let partial = partial_of(path);
-        let there = std::fs::metadata(&partial).map_or(0, |own| own.len());
-        if there < length {
-            let problem = format!(
-                "the table has {there} bytes, and the checkpoint goes on behind {length} of them"
-            );
-            return Err(damaged(&partial, problem));
-        }
+        GrowingFile::check_length(path, "the table", length)?;
         Self::open(path, scene, least, (length, written))
     }
 
@@ -91,44 +76,24 @@ impl EventFile {
         least: f64,
         (length, written): (u64, u64),
     ) -> Result<Self, Error> {
-        let partial = partial_of(path);
-        let failed = |source| access(path, source);
-        let options = File::options()
-            .create(true)
-            .write(true)
-            .truncate(false)
-            .clone();
-        let mut file = options.open(&partial).map_err(failed)?;
-        // Two at once would mix their rows; a system without locks does without.
-        if let Err(TryLockError::WouldBlock) = file.try_lock() {
+        let mut file = GrowingFile::open(path)?;
+        // Two programs would mix their rows.
+        if file.is_busy() {
             let path = path.to_path_buf();
             return Err(Error::from(SceneRunError::Busy { path }));
         }
-        file.set_len(length)
-            .and_then(|()| file.seek(SeekFrom::Start(length)))
-            .map_err(failed)?;
+        file.cut(length)?;
         Ok(Self {
-            path: path.to_path_buf(),
-            partial,
-            file: BufWriter::new(file),
+            file,
             walls: scene.walls.iter().map(|wall| quoted(&wall.name)).collect(),
             least,
             written,
-            keep: true,
         })
     }
 
     /// Brings all rows so far to the disk; the bytes of the table.
-    ///
-    /// # Errors
-    /// It cannot be written, such as where the disk is full.
     pub fn sync(&mut self) -> Result<u64, Error> {
-        let path = &self.path;
-        self.file
-            .flush()
-            .and_then(|()| self.file.get_ref().sync_all())
-            .and_then(|()| self.file.stream_position())
-            .map_err(|source| access(path, source))
+        self.file.sync()
     }
 
     /// Rows so far.
@@ -139,15 +104,12 @@ impl EventFile {
 
     /// Whether the rows so far stay where the table is not finished.
     pub fn keep(&mut self, keep: bool) {
-        self.keep = keep;
+        self.file.keep = keep;
     }
 
-    /// One contact more.
+    /// Adds a contact.
     ///
     /// * `lasted`: whether it was a static load
-    ///
-    /// # Errors
-    /// It cannot be written, such as where the disk is full.
     pub fn write(&mut self, event: &Event, lasted: bool) -> Result<(), Error> {
         if event.peak_force < self.least {
             return Ok(());
@@ -158,9 +120,8 @@ impl EventFile {
             Partner::Wall(wall) => (self.walls[wall as usize].as_str(), String::new()),
         };
         let ([x, y, z], [a, b, c], [d, e, f]) = (event.place, event.spot, event.other_spot);
-        writeln!(
-            self.file,
-            "{},{partner},{number},{},{},{},{x},{y},{z},{a},{b},{c},{d},{e},{f},{},{},{},{},{},{},{lasted}",
+        self.file.write(format!(
+            "{},{partner},{number},{},{},{},{x},{y},{z},{a},{b},{c},{d},{e},{f},{},{},{},{},{},{},{lasted}\n",
             event.fruit + 1,
             event.time,
             event.duration,
@@ -171,37 +132,12 @@ impl EventFile {
             event.largest_displacement,
             event.absorbed_energy,
             event.friction_energy,
-        )
-        .map_err(|source| access(&self.path, source))
+        ))
     }
 
-    /// Gives the table its name; the number of its rows.
-    ///
-    /// # Errors
-    /// It cannot be written.
-    pub fn finish(mut self) -> Result<u64, Error> {
-        self.sync()?;
-        std::fs::rename(&self.partial, &self.path).map_err(|source| access(&self.path, source))?;
-        // There is nothing under the other name any more.
-        self.keep = true;
-        Ok(self.written)
-    }
-}
-
-/// What was not finished leaves nothing behind, but for a checkpoint.
-impl Drop for EventFile {
-    fn drop(&mut self) {
-        if !self.keep {
-            let _ = std::fs::remove_file(&self.partial);
-        }
-    }
-}
-
-fn access(path: &Path, source: std::io::Error) -> Error {
-    Error::FileAccess {
-        path: path.to_path_buf(),
-        action: "write",
-        source,
+    /// Gives the table its name.
+    pub fn finish(mut self) -> Result<(), Error> {
+        self.file.finish().map(|_| ())
     }
 }
 
@@ -213,39 +149,17 @@ fn quoted(name: &str) -> String {
     }
 }
 
+fn columns(names: &str) -> Vec<String> {
+    names.split(',').map(str::to_owned).collect()
+}
+
 /// One row per fruit: what it is, what it went through, where it is.
-///
-/// # Errors
-/// None in practice: the text is written to memory.
 pub fn fruit_table(
     plan: &ScenePlan,
     tally: &Tally,
     states: &[FruitState],
     bruises: Option<&[Vec<Bruise>]>,
 ) -> Result<String, Error> {
-    let header = [
-        "fruit",
-        "material",
-        "diameter_m",
-        "mass_kg",
-        "released_s",
-        "left_s",
-        "sink",
-        "x_m",
-        "y_m",
-        "z_m",
-        "contacts",
-        "largest_peak_force_N",
-        "partner_of_it",
-        "time_of_it_s",
-        "impact_speed_of_it_m_s",
-        "largest_absorbed_energy_J",
-        "absorbed_energy_J",
-        "bruises",
-        "largest_bruise_mm3",
-        "static_loads",
-        "largest_static_force_N",
-    ];
     let scene = &plan.scene;
     let mut states = states.iter().peekable();
     let rows = scene
@@ -297,10 +211,14 @@ pub fn fruit_table(
             ]
         });
     let rows: Vec<Vec<String>> = rows.collect();
-    csv_text(&header.map(str::to_owned), rows)
+    csv_text(&columns(FRUIT_COLUMNS), rows)
 }
 
-/// What came of a scene, for a terminal.
+/// Columns of contacts by what was touched.
+const PARTNER_COLUMNS: &str = "touched,impacts,fruit,peak force (N),95 %,largest,\
+impact speed (m/s),95 %,largest,absorbed (mJ),95 %,largest,static loads,largest (N)";
+
+/// Results of a scene, for a terminal.
 #[must_use]
 pub fn text_of_scene(outcome: &SceneOutcome) -> String {
     let step = &outcome.step;
@@ -326,22 +244,6 @@ pub fn text_of_scene(outcome: &SceneOutcome) -> String {
     if outcome.engine != Engine::Windfall.title() {
         text += &format!("Moved by {}.\n\n", outcome.engine);
     }
-    let header = [
-        "touched",
-        "impacts",
-        "fruit",
-        "peak force (N)",
-        "95 %",
-        "largest",
-        "impact speed (m/s)",
-        "95 %",
-        "largest",
-        "absorbed (mJ)",
-        "95 %",
-        "largest",
-        "static loads",
-        "largest (N)",
-    ];
     let rows = outcome.partners.iter().map(|own| {
         let mut row = vec![
             own.name.clone(),
@@ -358,23 +260,17 @@ pub fn text_of_scene(outcome: &SceneOutcome) -> String {
         row
     });
     let rows: Vec<Vec<String>> = rows.collect();
-    text += &page_tables(&header.map(str::to_owned), &rows, &[0]);
+    text += &page_tables(&columns(PARTNER_COLUMNS), &rows, &[0]);
     if let Some(bruise) = &outcome.bruise {
         text += &text_of_bruises(bruise);
     }
     for finding in &outcome.findings {
         text += &format!("\n{}: {}\n", finding.code, finding.message);
     }
-    text += "\n\nWritten: ";
-    let files: Vec<String> = outcome
-        .files
-        .iter()
-        .map(|file| file.display().to_string())
-        .collect();
-    text + &files.join(", ") + "\n"
+    text + "\n" + &text_of_files(&outcome.files)
 }
 
-/// Who is bruised, and by what.
+/// Bruised fruit, and what bruised them.
 fn text_of_bruises(bruise: &BruiseOutcome) -> String {
     let header = ["largest bruise above (mm³)", "fruit (%)", "95 % interval"];
     let rows = bruise.limits.iter().map(|own| {
@@ -387,29 +283,41 @@ fn text_of_bruises(bruise: &BruiseOutcome) -> String {
     });
     let rows: Vec<Vec<String>> = rows.collect();
     let limits = page_tables(&header.map(str::to_owned), &rows, &[]);
+    let places = cells_of_places(&bruise.places);
+    let places = page_tables(&places.header, &places.rows, &[0]);
+    format!("\n\n{limits}\n\n{places}\n")
+}
+
+/// What bruised, the worst first.
+pub(crate) fn cells_of_places(places: &[PlaceOutcome]) -> Cells {
     let header = [
         "bruised by",
         "bruises",
         "the largest of so many fruit",
         "largest (mm³)",
     ];
-    let rows = bruise.places.iter().map(|own| {
+    let row = |own: &PlaceOutcome| {
         vec![
             own.name.clone(),
             own.bruises.to_string(),
             own.fruit.to_string(),
             number(1e9 * own.largest),
         ]
-    });
-    let rows: Vec<Vec<String>> = rows.collect();
-    let places = page_tables(&header.map(str::to_owned), &rows, &[0]);
-    format!("\n\n{limits}\n\n{places}\n")
+    };
+    Cells {
+        header: header.map(str::to_owned).to_vec(),
+        rows: places.iter().map(row).collect(),
+    }
+}
+
+/// The end of a text: files that were written.
+#[must_use]
+pub fn text_of_files(files: &[PathBuf]) -> String {
+    let files: Vec<String> = files.iter().map(|own| own.display().to_string()).collect();
+    format!("\nWritten: {}\n", files.join(", "))
 }
 
 /// Contacts by what was touched, as CSV.
-///
-/// # Errors
-/// None in practice: the text is written to memory.
 pub fn csv_of_scene(outcome: &SceneOutcome) -> Result<String, Error> {
     let levels = ["median", "p95", "max"];
     let mut header = ["touched", "impacts", "fruit"].map(str::to_owned).to_vec();

@@ -4,6 +4,7 @@ use crate::bruise::scene::{Blows, finding_of_blows};
 use crate::file::engine_kind::Engine;
 use crate::file::read::{ScenePlan, read_scene};
 use crate::file::step::checked_step;
+use crate::file_error::{make_directory, write_json};
 use crate::run::advance::{Mover, Own, SceneRun, SceneStart, stopped_scene as stopped};
 use crate::run::histogram::{HistogramOutcome, figure_of_histograms, histogram};
 use crate::run::outcome::{PartnerOutcome, SceneOutcome, StepOutcome, Tally, findings_of_range};
@@ -19,21 +20,24 @@ use windfall_scene::bruise::damage::Bruise;
 use windfall_scene::energy::Energy;
 use windfall_scene::motion::time_step::Impact;
 use windfall_scene::scene::Scene;
-use windfall_scene::shape::wall::Shape;
 use windfall_scene::vector::{add, dot, length};
 
-/// What may be asked for besides the file.
+/// Options of a run besides the file.
 #[derive(Clone, Debug, Default)]
+#[cfg_attr(feature = "clap", derive(clap::Args))]
 pub struct SceneRequest {
-    /// Directory to write into; beside the file where it is left out.
+    /// Directory to write into
+    #[cfg_attr(feature = "clap", arg(long, value_name = "DIR", value_hint = clap::ValueHint::DirPath))]
     pub out: Option<PathBuf>,
-    /// Number of threads; all cores where it is left out.
+    /// Number of threads; all cores if left out. It never changes a result
+    #[cfg_attr(feature = "clap", arg(long, value_name = "N"))]
     pub threads: Option<usize>,
-    /// What is to be done with a run that was stopped.
+    /// What to do with a run that was stopped
+    #[cfg_attr(feature = "clap", arg(skip))]
     pub start: SceneStart,
 }
 
-/// What moves the fruit, and what is to be said of it.
+/// What moves the fruit, and what to report about it.
 pub struct Moved<'a> {
     /// The engine.
     pub mover: &'a mut dyn Mover,
@@ -49,7 +53,7 @@ pub struct Moved<'a> {
 
 /// Runs a scene and writes the contacts and the fruit into a directory.
 ///
-/// * `progress`: steps done, and all; where it does not go on the last checkpoint is kept
+/// * `progress`: steps done, and all; when it cancels, the last checkpoint is kept
 ///
 /// # Errors
 /// The file cannot be used; the result would mean nothing; the directory cannot be written,
@@ -72,9 +76,9 @@ pub fn directory_of(path: &Path, request: &SceneRequest) -> PathBuf {
     out.unwrap_or_else(|| path.with_extension("run"))
 }
 
-/// What came of a scene, with the contacts that bruise.
+/// Results of a scene, with the contacts that bruise.
 pub struct RunOfScene {
-    /// What came of it.
+    /// The result.
     pub outcome: SceneOutcome,
     /// Contacts that bruise, where the scene says what does.
     pub blows: Option<Blows>,
@@ -83,9 +87,6 @@ pub struct RunOfScene {
 /// Runs a scene that is read already, and writes what comes of it.
 ///
 /// * `out`: directory to write into
-///
-/// # Errors
-/// As [`run_scene`].
 pub fn run_plan(
     mut plan: ScenePlan,
     out: &Path,
@@ -111,11 +112,7 @@ pub fn run_moved(
     start: SceneStart,
     progress: Progress,
 ) -> Result<RunOfScene, Error> {
-    std::fs::create_dir_all(out).map_err(|source| Error::FileAccess {
-        path: out.to_path_buf(),
-        action: "create",
-        source,
-    })?;
+    make_directory(out)?;
     let mut run = SceneRun::begin(plan, out, start, moved.mover)?;
     run.run_to_end(moved.mover, progress)?;
     let last = moved.mover.step(&mut run.simulation)?;
@@ -168,20 +165,16 @@ fn write_results(
         partners: PartnerOutcome::of(&plan.scene, tally),
         histograms,
         bruise: bruised.map(|(bruise, blows)| blows.outcome(bruise, &plan.scene)),
-        energy: last.into(),
+        energy: *last,
         energy_closure,
         findings: findings_of(plan, run, moved, energy_closure),
         files,
     };
-    let json = serde_json::to_string_pretty(&outcome).map_err(|error| Error::ResultUnwritable {
-        item: plan.title.clone(),
-        detail: error.to_string(),
-    })?;
-    write_whole(&summary, (json + "\n").as_bytes())?;
+    write_json(&summary, &plan.title, &outcome)?;
     Ok(outcome)
 }
 
-/// All that is to be doubted of a run.
+/// All findings of a run.
 fn findings_of(
     plan: &ScenePlan,
     run: &SceneRun,
@@ -318,27 +311,8 @@ fn fastest(scene: &Scene) -> f64 {
     let height = |place: [f64; 3]| -dot(scene.gravity, place) / gravity.max(f64::MIN_POSITIVE);
     let top = scene.fruit.iter().map(|fruit| height(fruit.place));
     let top = top.fold(f64::NEG_INFINITY, f64::max);
-    let mut bottom = f64::INFINITY;
-    for wall in &scene.walls {
-        match &wall.shape {
-            Shape::Plane { point, .. } => bottom = bottom.min(height(*point)),
-            Shape::Plates(plates) => {
-                for plate in plates {
-                    for corner in plate.corners() {
-                        bottom = bottom.min(height(corner));
-                    }
-                }
-            }
-            Shape::Cylinder { start, end, .. } => {
-                bottom = bottom.min(height(*start)).min(height(*end));
-            }
-            Shape::Mesh { triangles } => {
-                for corner in triangles.iter().flatten() {
-                    bottom = bottom.min(height(*corner));
-                }
-            }
-        }
-    }
+    let lowest = scene.walls.iter().flat_map(|wall| wall.shape.skeleton().0);
+    let bottom = lowest.map(height).fold(f64::INFINITY, f64::min);
     let fall = match (top - bottom).is_finite() {
         true => (2.0 * gravity * (top - bottom).max(0.0)).sqrt(),
         false => 0.0,

@@ -1,6 +1,7 @@
 //! Changes of a scene's text: a value by the path of its key, a wall or a source to another
 //! place. Comments and order stay.
 
+use crate::file::walls::PLACES;
 use toml_edit::{Array, DocumentMut, Item, Table, TableLike, Value};
 use windfall_files::text::toml_source::suggestion;
 
@@ -92,13 +93,8 @@ fn name_of(list: &str, table: &Table) -> String {
     }
 }
 
-/// Where walls, sources and sinks have places: a table in them and its keys.
-const PLACES: [(&str, &[&str]); 9] = [
-    ("plane", &["point"]),
-    ("plate", &["corner"]),
-    ("box", &["low", "high"]),
-    ("cylinder", &["start", "end"]),
-    ("rotation", &["point"]),
+/// Where sources have places: a table in them and its keys.
+const SOURCES: [(&str, &[&str]); 4] = [
     ("lattice", &["low", "high"]),
     ("pour", &["low", "high"]),
     ("tree", &["low", "high"]),
@@ -126,7 +122,7 @@ pub fn move_named(document: &mut DocumentMut, name: &str, by: [f64; 3]) -> Resul
             }
             let moved = match list {
                 "sinks" => moved_keys(table, &["low", "high"], by),
-                _ => PLACES.iter().fold(0, |moved, (key, keys)| {
+                _ => PLACES.iter().chain(&SOURCES).fold(0, |moved, (key, keys)| {
                     let inner = table.get_mut(key).and_then(Item::as_table_like_mut);
                     moved + inner.map_or(0, |inner| moved_keys(inner, keys, by))
                 }),
@@ -160,7 +156,7 @@ fn moved_place(place: &mut Array, by: [f64; 3]) -> bool {
     if numbers.len() != 3 || place.len() != 3 {
         return false;
     }
-    // Sums such as 0.3 + 0.1 are to be read as they are meant.
+    // Sums such as 0.3 + 0.1 lose their rounding error.
     let sums = numbers.iter().zip(by).map(|(own, by)| rounded(own + by));
     *place = sums.collect();
     true

@@ -5,7 +5,6 @@ use windfall_draw::files::NamedFigure;
 use windfall_draw::xy::{Figure, Mark, Panel, Series, Side, Style};
 
 /// Shares with their intervals, a panel for each limit; `None` where no variant has any.
-#[must_use]
 pub fn figure_of_study(outcome: &StudyOutcome) -> Option<NamedFigure> {
     let known: Vec<&VariantOutcome> = outcome
         .variants

@@ -1,4 +1,4 @@
-//! A study of a scene as it stands on disk, version 1.
+//! The schema of a study, version 1.
 
 use serde::Deserialize;
 use std::collections::BTreeMap;
@@ -12,9 +12,8 @@ pub struct StudyFile {
     pub format: Option<Spanned<i64>>,
     /// The scene, beside this file.
     pub scene: Spanned<String>,
-    /// Title.
     pub title: Option<String>,
-    /// How often each variant is run, with other seeds and laws drawn anew.
+    /// Runs of each variant, with other seeds and resampled laws.
     pub replicates: Option<Spanned<usize>>,
     /// What is varied.
     #[serde(default)]
@@ -35,7 +34,6 @@ pub struct VaryFile {
 #[derive(Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct LevelFile {
-    /// Its name.
     pub name: String,
     /// New values, by the path of their key.
     #[serde(default)]

@@ -33,11 +33,10 @@ pub struct Estimate {
 /// `half² = max(t² s² (1 + 1/R), z² b) + z² c`
 ///
 /// s²: variance of q between replicates, R of them, which have other fruit, other places and
-/// laws drawn anew; t: Student's quantile with R − 1 degrees of freedom; b: variance of q that
+/// resampled laws; t: Student's quantile with R − 1 degrees of freedom; b: variance of q that
 /// chance alone gives to one batch; c: variance of q between bruise models drawn from the
 /// uncertainty of their coefficients; z: the normal quantile. Of one replicate only b and c
 /// are known.
-#[must_use]
 pub fn share(counts: &Counts) -> Estimate {
     let n = counts.fruit as f64;
     let scale = |above: usize| {
@@ -71,7 +70,6 @@ pub fn share(counts: &Counts) -> Estimate {
 /// do to both alike is no uncertainty of the difference.
 ///
 /// * `pairs`: the variants compared, the second less the first
-#[must_use]
 pub fn difference(pairs: &[(&Counts, &Counts)]) -> Option<Estimate> {
     let (first, _) = pairs.first()?;
     let share = |own: &Counts, replicate: usize, model: usize| {

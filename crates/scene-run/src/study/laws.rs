@@ -1,4 +1,4 @@
-//! Laws of a scene drawn anew from the uncertainty that their cards state.
+//! Laws of a scene, resampled from the uncertainty that their cards state.
 
 use crate::file::card::lower_factor;
 use crate::file::read::ScenePlan;
@@ -64,7 +64,6 @@ pub fn draw_laws(plan: &mut ScenePlan, seed: u64) -> Result<(), Error> {
 }
 
 /// Pairs of materials whose law is taken as certain: no card, or one without covariance.
-#[must_use]
 pub fn certain_laws(plan: &ScenePlan) -> Vec<String> {
     let certain = plan.scene.interactions.keys().filter(|pair| {
         let card = plan.cards.get(pair);

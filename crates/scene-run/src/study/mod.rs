@@ -1,11 +1,11 @@
 //! `windfall scene study`: variants of a scene side by side.
 
-pub mod change;
-pub mod figure;
-pub mod file;
-pub mod interval;
-pub mod laws;
-pub mod outcome;
-pub mod read;
+pub(crate) mod change;
+pub(crate) mod figure;
+pub(crate) mod file;
+pub(crate) mod interval;
+pub(crate) mod laws;
+pub(crate) mod outcome;
+pub(crate) mod read;
 pub mod run;
 pub mod text;

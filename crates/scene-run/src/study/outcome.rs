@@ -1,16 +1,16 @@
-//! What came of a study.
+//! Results of a study.
 
 use crate::bruise::scene::{LimitOutcome, PlaceOutcome};
+use crate::run::outcome::SceneOutcome;
 use crate::study::interval::{Counts, difference, share};
-use crate::study::read::StudyPlan;
+use crate::study::read::{Factor, StudyPlan, VariantPlan};
 use serde::Serialize;
 use std::path::PathBuf;
 use windfall_files::found::FindingOutcome;
 
-/// What came of a study; SI throughout.
+/// Results of a study; SI throughout.
 #[derive(Clone, Debug, Serialize)]
 pub struct StudyOutcome {
-    /// Title.
     pub title: String,
     /// Version of windfall, and when it ran, UTC.
     pub made: [String; 2],
@@ -19,30 +19,19 @@ pub struct StudyOutcome {
     /// Runs of each variant.
     pub replicates: usize,
     /// What was varied.
-    pub factors: Vec<FactorOutcome>,
+    pub factors: Vec<Factor>,
     /// Every combination of levels.
     pub variants: Vec<VariantOutcome>,
     /// What the levels change, against the first of each factor.
     pub effects: Vec<EffectOutcome>,
-    /// What is to be known of the result.
     pub findings: Vec<FindingOutcome>,
     /// Files written.
     pub files: Vec<PathBuf>,
 }
 
-/// What was varied.
-#[derive(Clone, Debug, Serialize)]
-pub struct FactorOutcome {
-    /// Its name.
-    pub name: String,
-    /// Its levels.
-    pub levels: Vec<String>,
-}
-
 /// One combination of levels.
-#[derive(Clone, Debug, Serialize)]
+#[derive(Clone, Debug, Default, Serialize)]
 pub struct VariantOutcome {
-    /// Its name.
     pub name: String,
     /// Its directory in that of the study.
     pub directory: PathBuf,
@@ -69,7 +58,6 @@ pub struct VariantOutcome {
 pub struct EffectOutcome {
     /// What was varied.
     pub factor: String,
-    /// The level.
     pub level: String,
     /// The level that it is compared with.
     pub against: String,
@@ -83,27 +71,15 @@ pub struct EffectOutcome {
     pub interval: [f64; 2],
 }
 
-/// What one run came to.
+/// One run of a variant.
 #[derive(Clone, Debug)]
 pub struct Replicate {
     /// Fruit above each limit: by models, then limits.
     pub above: Vec<Vec<usize>>,
     /// Limits; m³.
     pub limits: Vec<f64>,
-    /// Fruit.
-    pub fruit: usize,
-    /// Contacts.
-    pub contacts: u64,
-    /// Fruit that had no room.
-    pub waiting: usize,
-    /// Fruit that left.
-    pub left: usize,
-    /// Mean volume of the largest bruise; m³.
-    pub mean_largest: f64,
-    /// What bruised.
-    pub places: Vec<PlaceOutcome>,
-    /// Findings of the run.
-    pub findings: Vec<FindingOutcome>,
+    /// Its results.
+    pub scene: SceneOutcome,
 }
 
 /// Fruit above a limit in the replicates of a variant.
@@ -111,12 +87,11 @@ fn counts(replicates: &[Replicate], limit: usize) -> Counts {
     let of = |own: &Replicate| own.above.iter().map(|model| model[limit]).collect();
     Counts {
         above: replicates.iter().map(of).collect(),
-        fruit: replicates.first().map_or(0, |own| own.fruit),
+        fruit: replicates.first().map_or(0, |own| own.scene.fruit),
     }
 }
 
 /// A variant from its runs.
-#[must_use]
 pub fn variant(
     name: &str,
     directory: PathBuf,
@@ -125,14 +100,7 @@ pub fn variant(
     let mut outcome = VariantOutcome {
         name: name.to_owned(),
         directory,
-        failed: None,
-        fruit: 0,
-        contacts: 0.0,
-        waiting: 0,
-        left: 0,
-        limits: Vec::new(),
-        mean_largest: 0.0,
-        places: Vec::new(),
+        ..VariantOutcome::default()
     };
     let replicates = match runs {
         Ok(replicates) => replicates,
@@ -152,22 +120,24 @@ pub fn variant(
         }
     });
     outcome.limits = limits.collect();
-    outcome.fruit = replicates.first().map_or(0, |own| own.fruit);
-    outcome.contacts = replicates
-        .iter()
-        .map(|own| own.contacts as f64)
-        .sum::<f64>()
-        / count;
-    outcome.mean_largest = replicates.iter().map(|own| own.mean_largest).sum::<f64>() / count;
-    outcome.waiting = replicates.iter().map(|own| own.waiting).sum();
-    outcome.left = replicates.iter().map(|own| own.left).sum();
+    let sum =
+        |of: fn(&SceneOutcome) -> f64| replicates.iter().map(|own| of(&own.scene)).sum::<f64>();
+    outcome.fruit = replicates.first().map_or(0, |own| own.scene.fruit);
+    outcome.contacts = sum(|own| own.contacts as f64) / count;
+    outcome.mean_largest =
+        sum(|own| own.bruise.as_ref().map_or(0.0, |own| own.mean_largest)) / count;
+    outcome.waiting = replicates.iter().map(|own| own.scene.waiting).sum();
+    outcome.left = replicates.iter().map(|own| own.scene.left).sum();
     outcome.places = pooled(replicates);
     outcome
 }
 
 fn pooled(replicates: &[Replicate]) -> Vec<PlaceOutcome> {
     let mut all: Vec<PlaceOutcome> = Vec::new();
-    for place in replicates.iter().flat_map(|own| &own.places) {
+    let bruises = replicates
+        .iter()
+        .filter_map(|own| own.scene.bruise.as_ref());
+    for place in bruises.flat_map(|own| &own.places) {
         match all.iter_mut().find(|own| own.name == place.name) {
             Some(own) => {
                 own.bruises += place.bruises;
@@ -182,12 +152,11 @@ fn pooled(replicates: &[Replicate]) -> Vec<PlaceOutcome> {
 }
 
 /// What each level changes, over all pairs of variants that differ in it alone.
-#[must_use]
 pub fn effects(plan: &StudyPlan, runs: &[Result<Vec<Replicate>, String>]) -> Vec<EffectOutcome> {
     let mut all = Vec::new();
     let limits = runs.iter().find_map(|own| own.as_ref().ok()?.first());
     let limits = limits.map_or_else(Vec::new, |own| own.limits.clone());
-    for (factor, (name, levels)) in plan.factors.iter().enumerate() {
+    for (factor, Factor { name, levels }) in plan.factors.iter().enumerate() {
         for level in 1..levels.len() {
             for (place, &limit) in limits.iter().enumerate() {
                 let pairs = pairs_of(plan, runs, (factor, level), place);
@@ -218,10 +187,7 @@ fn pairs_of(
 ) -> Vec<(Counts, Counts)> {
     let second = plan.variants.iter().zip(runs);
     let second = second.filter(|(own, _)| own.levels[factor] == level);
-    let pair = |(own, run): (
-        &crate::study::read::VariantPlan,
-        &Result<Vec<Replicate>, String>,
-    )| {
+    let pair = |(own, run): (&VariantPlan, &Result<Vec<Replicate>, String>)| {
         let mut levels = own.levels.clone();
         levels[factor] = 0;
         let first = plan

@@ -1,28 +1,35 @@
 //! A study's file → the scenes of its variants.
 
-use crate::file::key::needed;
+use crate::file::key::Section;
 use crate::study::change::{move_named, set_value};
 use crate::study::file::{LevelFile, StudyFile, VaryFile};
+use serde::Serialize;
 use std::path::{Path, PathBuf};
 use toml::Spanned;
 use toml_edit::DocumentMut;
 use windfall_campaign::settings::files::check_format;
 use windfall_files::error::Error;
-use windfall_files::text::toml_source::{TomlSource, invalid, missing, parse_source, read_source};
+use windfall_files::text::toml_source::{TomlSource, invalid, parse_source, read_source};
 
 /// A study, ready to run.
 #[derive(Clone, Debug)]
 pub struct StudyPlan {
-    /// Title.
     pub title: String,
     /// The scene's file.
     pub scene: PathBuf,
     /// How often each variant is run.
     pub replicates: usize,
     /// What is varied, and its levels.
-    pub factors: Vec<(String, Vec<String>)>,
+    pub factors: Vec<Factor>,
     /// Every combination of levels.
     pub variants: Vec<VariantPlan>,
+}
+
+/// What is varied.
+#[derive(Clone, Debug, Serialize)]
+pub struct Factor {
+    pub name: String,
+    pub levels: Vec<String>,
 }
 
 /// One combination of levels.
@@ -55,13 +62,8 @@ pub fn read_study(path: &Path) -> Result<StudyPlan, Error> {
     let document: DocumentMut = base.text.parse().map_err(|error: toml_edit::TomlError| {
         let problem = error.message().to_owned();
         let key = ("the file", "scene");
-        invalid(
-            &source,
-            &file.scene.span(),
-            key,
-            file.scene.get_ref(),
-            problem,
-        )
+        let name = file.scene.get_ref();
+        invalid(&source, &file.scene.span(), key, name, problem)
     })?;
     let replicates = match &file.replicates {
         Some(own) if *own.get_ref() == 0 => {
@@ -72,7 +74,7 @@ pub fn read_study(path: &Path) -> Result<StudyPlan, Error> {
         own => own.as_ref().map_or(REPLICATES, |own| *own.get_ref()),
     };
     let factors = factors_of(&source, &file.vary)?;
-    let all = factors.iter().map(|(_, levels)| levels.len());
+    let all = factors.iter().map(|own| own.levels.len());
     let count = all.fold(1_usize, usize::saturating_mul);
     if count > MOST {
         let problem = format!("{count} combinations of levels are more than {MOST}");
@@ -92,29 +94,31 @@ pub fn read_study(path: &Path) -> Result<StudyPlan, Error> {
     })
 }
 
-fn factors_of(
-    source: &TomlSource,
-    vary: &[Spanned<VaryFile>],
-) -> Result<Vec<(String, Vec<String>)>, Error> {
-    let example = "levels = [{ name = \"steel\", set = { \"walls.pad.material\" = \"steel\" } }]";
-    let mut factors: Vec<(String, Vec<String>)> = Vec::new();
+fn factors_of(source: &TomlSource, vary: &[Spanned<VaryFile>]) -> Result<Vec<Factor>, Error> {
+    let mut factors = Vec::new();
     for own in vary {
-        let (file, at) = (own.get_ref(), own.span());
+        let file = own.get_ref();
+        let table = Section {
+            source,
+            name: TABLE,
+            at: own.span(),
+        };
         if file.levels.is_empty() {
-            let key = needed(TABLE, "levels", "at least one level", "", example);
-            return Err(missing(source, &at, &key, TABLE.to_owned()));
+            let example =
+                "levels = [{ name = \"steel\", set = { \"walls.pad.material\" = \"steel\" } }]";
+            return Err(table.lacks("levels", "at least one level", example));
         }
         let mut levels: Vec<String> = Vec::new();
         for level in &file.levels {
             let name = &level.get_ref().name;
             if levels.contains(name) {
-                let problem = "this level stands there twice".to_owned();
-                let key = (TABLE, "levels name");
-                return Err(invalid(source, &level.span(), key, name, problem));
+                let problem = "this level stands there twice";
+                return Err(table.refused(&level.span(), "levels name", name, problem));
             }
             levels.push(name.clone());
         }
-        factors.push((file.name.get_ref().clone(), levels));
+        let name = file.name.get_ref().clone();
+        factors.push(Factor { name, levels });
     }
     Ok(factors)
 }

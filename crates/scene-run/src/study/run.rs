@@ -1,11 +1,12 @@
 //! `windfall scene study`: variants of a scene, run several times each, side by side.
 
 use crate::file::read::scene_of;
+use crate::file_error::{access, make_directory, write_json};
 use crate::frames::view::{PictureRequest, draw_scene, open_frames};
 use crate::run::advance::SceneStart;
 use crate::run::workflow::run_plan;
 use crate::study::laws::{certain_laws, draw_laws};
-use crate::study::outcome::{FactorOutcome, Replicate, StudyOutcome, effects, variant};
+use crate::study::outcome::{Replicate, StudyOutcome, effects, variant};
 use crate::study::read::{StudyPlan, read_study};
 use crate::study::text::{csv_of_study, write_page};
 use std::ops::ControlFlow;
@@ -22,12 +23,15 @@ use windfall_files::provenance::{VERSION, digest_file, time_now};
 use windfall_files::text::toml_source::TomlSource;
 use windfall_files::write_file::write_whole;
 
-/// What may be asked for besides the file.
+/// Options of a study besides the file.
 #[derive(Clone, Debug, Default)]
+#[cfg_attr(feature = "clap", derive(clap::Args))]
 pub struct StudyRequest {
-    /// Directory to write into; beside the file where it is left out.
+    /// Directory to write into
+    #[cfg_attr(feature = "clap", arg(long, value_name = "DIR", value_hint = clap::ValueHint::DirPath))]
     pub out: Option<PathBuf>,
-    /// Number of threads; all cores where it is left out.
+    /// Number of threads, over which runs are spread; all cores if left out. It never changes a result
+    #[cfg_attr(feature = "clap", arg(long, value_name = "N"))]
     pub threads: Option<usize>,
 }
 
@@ -38,7 +42,7 @@ const MARK: &str = "made_by_a_study.txt";
 /// Bruise models drawn from the uncertainty of their coefficients, and their seed: the same
 /// for all runs.
 const MODELS: (usize, u64) = (200, 1);
-/// Parts in which the progress of a run is told.
+/// Steps in which the progress of a run is reported.
 const PARTS: usize = 100;
 
 /// Runs every variant of a study several times, and writes each run, a table, a page and a
@@ -75,14 +79,7 @@ pub fn run_study(
         made: [VERSION.to_owned(), time_now()],
         digests: [digest_file(path)?, digest_file(&plan.scene)?],
         replicates: plan.replicates,
-        factors: plan
-            .factors
-            .iter()
-            .map(|(name, levels)| FactorOutcome {
-                name: name.clone(),
-                levels: levels.clone(),
-            })
-            .collect(),
+        factors: plan.factors.clone(),
         variants: variants.collect(),
         effects: effects(&plan, &runs),
         findings: findings(&plan, &runs),
@@ -96,11 +93,7 @@ pub fn run_study(
     }
     outcome.files.extend(write_page(&outcome, &out)?);
     write_whole(&out.join("study.csv"), csv_of_study(&outcome)?.as_bytes())?;
-    let json = serde_json::to_string_pretty(&outcome).map_err(|error| Error::ResultUnwritable {
-        item: outcome.title.clone(),
-        detail: error.to_string(),
-    })?;
-    write_whole(&out.join("study.json"), (json + "\n").as_bytes())?;
+    write_json(&out.join("study.json"), &outcome.title, &outcome)?;
     Ok(outcome)
 }
 
@@ -124,8 +117,8 @@ fn draw_run(run: &Path) -> Result<(), Error> {
     draw_scene(run, &request).map(|_| ())
 }
 
-/// Takes away what an earlier run of a study left: nothing of it is to be taken for new. A
-/// directory of runs that no study made is refused.
+/// Removes the results of an earlier study. A directory of runs that no study made is
+/// refused.
 fn clear(out: &Path) -> Result<(), Error> {
     let absent = |error: &std::io::Error| error.kind() == std::io::ErrorKind::NotFound;
     let variants = out.join(VARIANTS);
@@ -136,27 +129,19 @@ fn clear(out: &Path) -> Result<(), Error> {
     for name in ["study.json", "study.csv", "study.html"] {
         let path = out.join(name);
         match std::fs::remove_file(&path) {
-            Err(error) if !absent(&error) => return Err(failed(&path, "replace", error)),
+            Err(error) if !absent(&error) => return Err(access(&path, "replace")(error)),
             _ => {}
         }
     }
     match std::fs::remove_dir_all(&variants) {
-        Err(error) if !absent(&error) => return Err(failed(&variants, "replace", error)),
+        Err(error) if !absent(&error) => return Err(access(&variants, "replace")(error)),
         _ => {}
     }
-    std::fs::create_dir_all(&variants).map_err(|error| failed(&variants, "create", error))?;
+    make_directory(&variants)?;
     write_whole(
         &mark,
         b"Runs of windfall scene study; the next one replaces them.\n",
     )
-}
-
-fn failed(path: &Path, action: &'static str, source: std::io::Error) -> Error {
-    Error::FileAccess {
-        path: path.to_path_buf(),
-        action,
-        source,
-    }
 }
 
 fn directory_of(number: usize, name: &str) -> String {
@@ -230,7 +215,7 @@ fn run_all(
     }
 }
 
-/// One run: a variant with another seed, and its laws drawn anew where there are several.
+/// One run: a variant with another seed, and with resampled laws where there are several.
 fn run_one(
     plan: &StudyPlan,
     out: &Path,
@@ -241,7 +226,7 @@ fn run_one(
     let own = &plan.variants[number];
     let folder = out.join(VARIANTS).join(directory_of(number, &own.name));
     let folder = folder.join(replicate_name(replicate));
-    std::fs::create_dir_all(&folder).map_err(|error| failed(&folder, "create", error))?;
+    make_directory(&folder)?;
     let text = with_seed(&own.text, replicate as u64);
     write_whole(&folder.join("scene.toml"), text.as_bytes())?;
     let mut scene = scene_of(&TomlSource {
@@ -253,20 +238,13 @@ fn run_one(
     }
     let limits = scene.bruise.as_ref().map(|own| own.limits.clone());
     let run = run_plan(scene, &folder, SceneStart::Restart, progress)?;
-    let bruise = run.outcome.bruise.as_ref();
     Ok(Replicate {
         above: run.blows.as_ref().map_or_else(
             || vec![Vec::new(); MODELS.0 + 1],
             |blows| blows.counts_above(MODELS),
         ),
         limits: limits.unwrap_or_default(),
-        fruit: run.outcome.fruit,
-        contacts: run.outcome.contacts,
-        waiting: run.outcome.waiting,
-        left: run.outcome.left,
-        mean_largest: bruise.map_or(0.0, |own| own.mean_largest),
-        places: bruise.map_or_else(Vec::new, |own| own.places.clone()),
-        findings: run.outcome.findings,
+        scene: run.outcome,
     })
 }
 
@@ -296,7 +274,7 @@ fn findings(plan: &StudyPlan, runs: &[Result<Vec<Replicate>, String>]) -> Vec<Fi
             Err(problem) => all.push(tell("variant-failed", format!("{}: {problem}", own.name))),
             Ok(replicates) => {
                 let first = replicates.first();
-                for of in first.into_iter().flat_map(|own| &own.findings) {
+                for of in first.into_iter().flat_map(|own| &own.scene.findings) {
                     // Each code once, of the first variant that has it; the runs have all.
                     if all.iter().any(|known| known.code == of.code) {
                         continue;

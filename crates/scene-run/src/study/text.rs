@@ -1,5 +1,7 @@
 //! A study for people: words, tables, a page.
 
+use crate::base64::base64;
+use crate::run::tables::{cells_of_places, text_of_files};
 use crate::study::figure::figure_of_study;
 use crate::study::outcome::{StudyOutcome, VariantOutcome};
 use std::path::{Path, PathBuf};
@@ -86,28 +88,7 @@ fn effects(outcome: &StudyOutcome) -> Cells {
     }
 }
 
-fn places(own: &VariantOutcome) -> Cells {
-    let header = [
-        "bruised by",
-        "bruises",
-        "the largest of so many fruit",
-        "largest (mm³)",
-    ];
-    let rows = own.places.iter().map(|own| {
-        vec![
-            own.name.clone(),
-            own.bruises.to_string(),
-            own.fruit.to_string(),
-            number(1e9 * own.largest),
-        ]
-    });
-    Cells {
-        header: header.map(str::to_owned).to_vec(),
-        rows: rows.collect(),
-    }
-}
-
-/// What came of a study, for a terminal.
+/// Results of a study, for a terminal.
 #[must_use]
 pub fn text_of_study(outcome: &StudyOutcome) -> String {
     let table = |cells: &Cells, left: &[usize]| page_tables(&cells.header, &cells.rows, left);
@@ -124,18 +105,10 @@ pub fn text_of_study(outcome: &StudyOutcome) -> String {
     for finding in &outcome.findings {
         text += &format!("\n{}: {}\n", finding.code, finding.message);
     }
-    let files: Vec<String> = outcome
-        .files
-        .iter()
-        .map(|file| file.display().to_string())
-        .collect();
-    text + "\nWritten: " + &files.join(", ") + "\n"
+    text + &text_of_files(&outcome.files)
 }
 
 /// The variants as CSV.
-///
-/// # Errors
-/// None in practice: the text is written to memory.
 pub fn csv_of_study(outcome: &StudyOutcome) -> Result<String, Error> {
     let mut header: Vec<String> = vec!["variant".to_owned()];
     header.extend(outcome.factors.iter().map(|own| own.name.clone()));
@@ -192,9 +165,6 @@ pub fn csv_of_study(outcome: &StudyOutcome) -> Result<String, Error> {
 ///
 /// A picture.svg or picture.png in the directory of the study, or of its first run, stands on
 /// the page.
-///
-/// # Errors
-/// A file cannot be written.
 pub fn write_page(outcome: &StudyOutcome, out: &Path) -> Result<Vec<PathBuf>, Error> {
     let figures: Vec<_> = figure_of_study(outcome).into_iter().collect();
     let references: Vec<_> = figures.iter().collect();
@@ -220,7 +190,7 @@ pub fn write_page(outcome: &StudyOutcome, out: &Path) -> Result<Vec<PathBuf>, Er
     }
     let table = |own: &VariantOutcome| CaptionedTable {
         caption: own.name.clone(),
-        cells: places(own),
+        cells: cells_of_places(&own.places),
     };
     let bruised = outcome.variants.iter().filter(|own| !own.places.is_empty());
     sections.push(Section {
@@ -278,43 +248,4 @@ fn picture(outcome: &StudyOutcome, out: &Path) -> Option<String> {
         }
     }
     None
-}
-
-/// Bytes in base 64.
-///
-/// # Source
-/// RFC 4648, section 4.
-fn base64(bytes: &[u8]) -> String {
-    const SIGNS: &[u8; 64] = b"ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
-    let mut text = String::with_capacity(bytes.len().div_ceil(3) * 4);
-    for three in bytes.chunks(3) {
-        let byte = |place: usize| u32::from(three.get(place).copied().unwrap_or(0));
-        let word = byte(0) << 16 | byte(1) << 8 | byte(2);
-        for place in 0..4 {
-            match place <= three.len() {
-                true => text.push(SIGNS[(word >> (18 - 6 * place) & 63) as usize] as char),
-                false => text.push('='),
-            }
-        }
-    }
-    text
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    /// The vectors of RFC 4648, section 10.
-    #[test]
-    fn reference_base64_of_its_standard() {
-        for (bytes, text) in [
-            ("", ""),
-            ("f", "Zg=="),
-            ("fo", "Zm8="),
-            ("foo", "Zm9v"),
-            ("foobar", "Zm9vYmFy"),
-        ] {
-            assert_eq!(base64(bytes.as_bytes()), text);
-        }
-    }
 }

@@ -43,7 +43,7 @@ pub fn half_ellipsoid_volume(widths: [f64; 2], depth: f64) -> f64 {
     PI * widths[0] * widths[1] * depth / 6.0
 }
 
-/// What of a contact tells its bruise.
+/// The quantity of a contact that predicts its bruise.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Predictor {
     /// Energy that the normal contact kept; J.
@@ -322,7 +322,7 @@ impl BruiseModel {
     /// Shares of fruit whose largest bruise exceeds limits, with the ends of their intervals.
     ///
     /// The interval has in it that other fruit would have come (Jeffreys' distribution of a
-    /// binomial share), and the uncertainty of the coefficients, drawn anew.
+    /// binomial share), and the uncertainty of the coefficients, resampled.
     ///
     /// * `blows`: contacts of each fruit
     /// * `limits`: m³

@@ -16,8 +16,8 @@ pub enum Response {
 
 /// A regression g(V/unit) = Σ bᵢ xᵢ + between fruit + residual.
 ///
-/// What is between fruit and what is left are normal. A regression of logarithms then tells
-/// the median: the mean volume is larger.
+/// Differences between fruit and residuals are normal. A regression of logarithms then
+/// predicts the median; the mean volume is larger.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Regression {
     /// g.

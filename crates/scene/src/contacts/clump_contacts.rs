@@ -11,14 +11,12 @@ use crate::contacts::neighbours::Bodies;
 use crate::contacts::pair_contacts::LARGEST_OVERLAP;
 use crate::contacts::react::{Clock, Remembered, Touch, given, normal_of, react, surface_velocity};
 use crate::contacts::store::Load;
-use crate::contacts::wall_contacts::{
-    DEEPEST, NearPart, SAME_CONTACT, WallState, effective_radius as radius_at, find_hits,
-};
+use crate::contacts::wall_contacts::{DEEPEST, NearPart, SAME_CONTACT, WallState, find_hits};
 use crate::error::{Error, fruit_name};
 use crate::event::Partner;
 use crate::interaction::Interaction;
 use crate::line::HalfLine;
-use crate::shape::wall::Closest;
+use crate::shape::surface::Closest;
 use crate::vector::{Vector, add, dot, length, plus_scaled, scaled, subtract};
 use crate::vector_of::cross;
 use std::collections::BTreeMap;
@@ -388,7 +386,9 @@ impl Hit {
             displacement: self.depth,
             velocity: surface_velocity(relative, scaled(spin, arm), normal),
             spin,
-            radius: radius_at(&walls.facets[self.facet as usize].1, radius, at),
+            radius: walls.facets[self.facet as usize]
+                .1
+                .effective_radius(radius, at),
         };
         (touch, wall_velocity)
     }

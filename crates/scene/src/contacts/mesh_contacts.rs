@@ -1,6 +1,6 @@
 //! Which of the triangles of a mesh that overlap a fruit it is felt at.
 
-use crate::shape::wall::{Closest, Facet};
+use crate::shape::surface::{Closest, Facet};
 use crate::vector::{Vector, dot};
 
 /// Contacts with one mesh whose normals have a larger cosine are one; 1. It is where a

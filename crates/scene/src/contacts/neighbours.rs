@@ -1,4 +1,4 @@
-//! Which fruit may touch before the list is made anew: cells, and pairs within a skin.
+//! Which fruit may touch before the neighbour list is rebuilt: cells, and pairs within a skin.
 
 use crate::contacts::store::NONE;
 use crate::contacts::wall_contacts::Lifted;
@@ -18,7 +18,6 @@ pub(crate) struct Bodies {
     pub turn: Vec<Rotation>,
     /// Number of the fruit in the scene.
     pub fruit: Vec<u32>,
-    /// Its material.
     pub material: Vec<u32>,
     /// The clump that a sphere belongs to, by its number among the clumps, or [`NONE`].
     pub clump: Vec<u32>,
@@ -26,7 +25,7 @@ pub(crate) struct Bodies {
     pub sphere: Vec<u32>,
     /// Where in its clump: from the centre, in the clump's own axes; m.
     pub offset: Vec<Vector>,
-    /// Contacts with walls, while the list is made anew.
+    /// Contacts with walls, while the list is rebuilt.
     pub lifted: Vec<Vec<Lifted>>,
 }
 
@@ -176,7 +175,7 @@ pub(crate) fn sort_into_cells(bodies: &mut Bodies, skin: f64) -> (Cells, Vec<u32
     (Cells { start, ..cells }, order)
 }
 
-/// A grid of cells; bodies of a cell stand one after the other.
+/// A grid of cells; the bodies of a cell are contiguous.
 #[derive(Clone, Debug)]
 pub(crate) struct Cells {
     low: Vector,

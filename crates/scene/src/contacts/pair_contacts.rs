@@ -54,7 +54,7 @@ struct Awake {
     pair: [u32; 2],
 }
 
-/// Entries between the one that is looked at and the one whose memory is asked for.
+/// How many entries ahead memory is prefetched.
 const AHEAD: usize = 16;
 
 /// Overlap over the smaller radius above which a law of two spheres means nothing.

@@ -10,7 +10,7 @@ use windfall_numerics::prefetch::prefetch;
 use windfall_numerics::real::Lanes;
 use windfall_numerics::real_vector::{FourLanes, FourNumbers, LANES};
 
-/// Groups between the one that is worked through and the one whose memory is asked for.
+/// How many groups ahead memory is prefetched.
 const AHEAD: usize = 24;
 
 /// The bodies of a contact, from the first of the block on, and its number among those that

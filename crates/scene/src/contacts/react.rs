@@ -60,7 +60,7 @@ pub struct Peaks<R> {
     pub displacement: R,
     /// Largest normal force; N.
     pub force: R,
-    /// When there was a force last, while there is none; s.
+    /// Last time with a force, while there is none; s.
     pub ended: R,
 }
 

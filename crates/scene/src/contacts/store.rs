@@ -183,7 +183,7 @@ impl Store {
         }
     }
 
-    /// What the law is asked for a group of four.
+    /// Arguments of the law for a group of four.
     #[inline(always)]
     pub(crate) fn given<R: FourNumbers>(&self, group: usize, touch: &Touch<R>, zero: R) -> Given {
         let Quad { history, peaks, .. } = &self.quads[group];

@@ -9,8 +9,9 @@ use crate::error::Error;
 use crate::event::Partner;
 use crate::interaction::Interaction;
 use crate::shape::facet_tree::FacetTree;
-use crate::shape::wall::{Closest, Facet, Placed, Shape, Wall};
-use crate::vector::{Rotation, Vector, length, plus_scaled, scaled, subtract};
+use crate::shape::surface::{Closest, Facet, Shape};
+use crate::shape::wall::{Placed, Wall};
+use crate::vector::{Rotation, Vector, length, scaled, subtract};
 use crate::vector_of::dot;
 use std::ops::Range;
 use windfall_contact::laws::kind::Law;
@@ -23,7 +24,7 @@ pub(crate) struct NearPart {
     pub slot: u32,
 }
 
-/// A contact with a wall while the list is made anew.
+/// A contact with a wall while the neighbour list is rebuilt.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Lifted {
     pub facet: u32,
@@ -57,19 +58,15 @@ impl WallState {
         let mut facets = Vec::new();
         let (mut single, mut trees) = (Vec::new(), Vec::new());
         for (number, wall) in walls.iter().enumerate() {
-            let first = facets.len() as u32;
+            let (number, first) = (number as u32, facets.len() as u32);
+            let own = wall.shape.facets();
             match &wall.shape {
                 Shape::Mesh { triangles } => {
-                    trees.push((number as u32, first, FacetTree::new(triangles)));
+                    trees.push((number, first, FacetTree::new(triangles)));
                 }
-                other => single.extend(first..first + other.facets().len() as u32),
+                _ => single.extend(first..first + own.len() as u32),
             }
-            facets.extend(
-                wall.shape
-                    .facets()
-                    .into_iter()
-                    .map(|facet| (number as u32, facet)),
-            );
+            facets.extend(own.into_iter().map(|facet| (number, facet)));
         }
         let belt = |wall: &Wall| {
             let runs = wall.motion.surface_velocity != [0.0; 3];
@@ -119,7 +116,7 @@ impl WallState {
             let own = placed.map_or(place, |(now, _)| now.inward(place));
             tree.near(own, reach, |triangle| {
                 let facet = start + triangle;
-                if self.facets[facet as usize].1.closest(None, own).distance < reach {
+                if self.facets[facet as usize].1.closest_at_rest(own).distance < reach {
                     near.push(facet);
                 }
             });
@@ -204,7 +201,7 @@ pub(crate) fn aim<'a>(
             displacement,
             velocity: surface_velocity(relative, scaled(body.spin, arm), closest.normal),
             spin: body.spin,
-            radius: effective_radius(part, radius, centre),
+            radius: part.effective_radius(radius, centre),
         };
         let Some(place) = around
             .near
@@ -369,21 +366,4 @@ fn begin(
     encounter.spot = spot(*body.turn, offset, body.radius, touch.normal);
     let parcel = Parcel::begin(surface.scale(touch.radius), now.clock, encounter);
     Ok((surface.law_of(touch.radius, draws, None)?, parcel))
-}
-
-/// R* of a fruit on a part of a wall; m. Edges count as flat.
-pub(crate) fn effective_radius(facet: &Facet, radius: f64, centre: Vector) -> f64 {
-    let Facet::Cylinder {
-        start,
-        along,
-        radius: tube,
-    } = facet
-    else {
-        return radius;
-    };
-    let from = subtract(centre, *start);
-    let out = plus_scaled(from, *along, -dot(from, *along) / dot(*along, *along));
-    // Of a sphere against a cylinder, by the mean of the two curvatures.
-    let sign = if length(out) < *tube { -1.0 } else { 1.0 };
-    1.0 / (1.0 / radius + sign * 0.5 / tube)
 }

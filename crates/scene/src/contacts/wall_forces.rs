@@ -27,7 +27,6 @@ impl WallMeeting {
         ])
     }
 
-    /// Its rows.
     pub(crate) fn rows(&self) -> [[f64; 4]; 4] {
         self.0.map(|Lanes(row)| row)
     }

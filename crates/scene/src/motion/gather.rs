@@ -19,7 +19,7 @@ use windfall_numerics::real_vector::{FourLanes, FourNumbers, LANES, with_four_la
 /// Way in one step over the radius above which contacts are missed; 1.
 const LONGEST_WAY: f64 = 0.2;
 
-/// Loads between the one that is added and the one whose memory is asked for.
+/// How many loads ahead memory is prefetched.
 const AHEAD: usize = 16;
 
 /// Inverse mass (and inertia) of a sphere that moves with its clump.

@@ -1,4 +1,4 @@
-//! The list of neighbours made anew, and what goes over into it.
+//! Rebuilds the neighbour list, carrying contacts over.
 
 use crate::contacts::contact::Parcel;
 use crate::contacts::neighbours::{PairTable, sort_into_cells};

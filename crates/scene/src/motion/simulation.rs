@@ -180,12 +180,6 @@ impl Simulation {
         self.steps
     }
 
-    /// The scene.
-    #[must_use]
-    pub fn scene(&self) -> &Scene {
-        &self.scene
-    }
-
     /// How often the list of neighbours was made.
     #[must_use]
     pub fn rebuilds(&self) -> u64 {
@@ -237,12 +231,12 @@ impl Simulation {
         all
     }
 
-    /// Contacts that ended since this was last asked, in the order of steps.
+    /// Contacts that ended since the last call, in the order of steps.
     pub fn take_events(&mut self) -> Vec<Event> {
         std::mem::take(&mut self.events)
     }
 
-    /// Fruit that left since this was last asked.
+    /// Fruit that left since the last call.
     pub fn take_leavings(&mut self) -> Vec<Leaving> {
         std::mem::take(&mut self.taken)
     }
@@ -278,7 +272,7 @@ impl Simulation {
         events
     }
 
-    /// One time step on.
+    /// Advances by one time step.
     ///
     /// # Errors
     /// The result would mean nothing: bodies overlap or move too much.
@@ -286,18 +280,12 @@ impl Simulation {
         self.advance(false).map(|_| ())
     }
 
-    /// So many time steps on.
-    ///
-    /// # Errors
-    /// See [`Simulation::step`].
+    /// Advances by several time steps.
     pub fn run(&mut self, steps: u64) -> Result<(), Error> {
         (0..steps).try_for_each(|_| self.step())
     }
 
-    /// One time step on; answers the energies at its beginning.
-    ///
-    /// # Errors
-    /// See [`Simulation::step`].
+    /// Advances by one time step; returns the energies at its beginning.
     pub fn step_with_energy(&mut self) -> Result<Energy, Error> {
         self.advance(true)
     }
@@ -312,7 +300,7 @@ impl Simulation {
         self.push(with_energy)
     }
 
-    /// Forces on all bodies where they are now, and where they take them.
+    /// Sums forces and integrates the motion of all bodies.
     pub(crate) fn push(&mut self, with_energy: bool) -> Result<Energy, Error> {
         if self.approach > self.skin || self.moved + self.wall_way > self.skin {
             self.rebuild();
@@ -329,7 +317,7 @@ impl Simulation {
         Ok(energy)
     }
 
-    /// Takes in what a step brought about.
+    /// Collects the results of a step.
     fn take_in(&mut self, swept: Swept, with_energy: bool) -> Result<Energy, Error> {
         swept.pairs.into_iter().try_for_each(|own| self.end(own))?;
         let mut energy = Energy::default();
@@ -393,7 +381,7 @@ impl Simulation {
         outcome
     }
 
-    /// Takes in what contacts brought about.
+    /// Collects the results of contacts.
     fn end(&mut self, outcome: Outcome) -> Result<(), Error> {
         if let Some(problem) = outcome.problem {
             return Err(problem);

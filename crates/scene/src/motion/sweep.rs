@@ -189,7 +189,7 @@ enum Task<'a> {
     Bodies(BlockBodies<'a>),
 }
 
-/// What came of it.
+/// The result.
 enum Done {
     Pairs(Outcome),
     Bodies((Outcome, Sums)),

@@ -4,7 +4,8 @@ use crate::error::Error;
 use crate::interaction::Interaction;
 use crate::motion::simulation::Simulation;
 use crate::scene::{Fruit, Scene};
-use crate::shape::wall::{Motion, Shape, Wall};
+use crate::shape::surface::Shape;
+use crate::shape::wall::{Motion, Wall};
 use std::collections::BTreeMap;
 
 /// What a time step does to one impact.
@@ -49,9 +50,6 @@ const SHORTEST: f64 = 1.0 / 1000.0;
 
 impl Impact<'_> {
     /// What a step does to this impact, by the very code of scenes.
-    ///
-    /// # Errors
-    /// The law cannot be used.
     pub fn error_of(&self, step: f64) -> Result<StepError, Error> {
         self.error_beside(&self.measured(FINE * self.duration()?)?, step)
     }
@@ -71,9 +69,6 @@ impl Impact<'_> {
 
     /// The longest step that errs by no more than `error` in peak force and energy, with
     /// what it does.
-    ///
-    /// # Errors
-    /// The law cannot be used.
     pub fn step_for(&self, error: f64) -> Result<(f64, StepError), Error> {
         let duration = self.duration()?;
         let fine = self.measured(FINE * duration)?;

@@ -31,7 +31,7 @@ impl Simulation {
         next.is_some_and(|fruit| fruit.time <= self.time())
     }
 
-    /// Lets in fruit whose time has come.
+    /// Releases the fruit that are due.
     pub(crate) fn release(&mut self) -> Result<(), Error> {
         let (step, gravity) = (self.scene.time_step, self.scene.gravity);
         let mut came = false;
@@ -144,8 +144,7 @@ impl Simulation {
         None
     }
 
-    /// Whether a fruit stands where one is to be released. Those of the beginning are there
-    /// at once, and are looked at together.
+    /// Whether a fruit occupies a release place. Those of the beginning are checked together.
     fn in_the_way(&self, fruit: &Fruit) -> bool {
         let overlaps = |&HalfLine([x, y, z, radius]): &HalfLine| {
             length(subtract([x, y, z], fruit.place)) < radius + fruit.radius
@@ -153,7 +152,7 @@ impl Simulation {
         self.steps > 0 && self.bodies.place.iter().any(overlaps)
     }
 
-    /// Takes out fruit that are in a sink.
+    /// Removes fruit that are in a sink.
     pub(crate) fn sink(&mut self) {
         let time = self.time();
         let gravity = self.scene.gravity;
@@ -174,7 +173,7 @@ impl Simulation {
                 keep.push(body);
                 continue;
             };
-            // Of several spheres the first one tells of the fruit.
+            // Each clump counts once, by its first sphere.
             if self.bodies.sphere[body] > 0 {
                 continue;
             }

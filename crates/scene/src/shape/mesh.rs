@@ -1,4 +1,4 @@
-//! Triangles that were read from somewhere → a surface of a wall, and what is wrong with it.
+//! Triangles of a file → a surface of a wall, and its flaws.
 
 use crate::vector::{Vector, cross, length, subtract};
 use std::collections::BTreeMap;
@@ -8,11 +8,11 @@ use std::collections::BTreeMap;
 pub struct Surface {
     /// Corners of each triangle that has an area, once; m.
     pub triangles: Vec<[Vector; 3]>,
-    /// What is to be known of it.
+    /// Flaws to report.
     pub flaws: Flaws,
 }
 
-/// What is to be known of a surface.
+/// Flaws of a surface.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Flaws {
     /// Corners closer than this are one; m.

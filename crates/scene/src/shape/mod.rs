@@ -3,4 +3,5 @@
 pub mod clump;
 pub(crate) mod facet_tree;
 pub mod mesh;
+pub mod surface;
 pub mod wall;

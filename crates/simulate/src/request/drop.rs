@@ -1,5 +1,7 @@
-//! One simulated drop as it is asked for: texts with units → SI.
+//! One simulated drop: options with units → SI.
 
+use crate::request::event::ends;
+use clap::{Args, ValueHint};
 use std::path::PathBuf;
 use windfall_campaign::settings::fit::ENDS;
 use windfall_cards::law_card::CardRange;
@@ -11,29 +13,45 @@ use windfall_files::error::Error;
 use windfall_files::option_value::{at_least_zero, chosen, positive, unusable};
 
 /// A fruit that falls on a plate; texts with units.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Args)]
 pub struct DropRequest {
-    /// Law expression with all parameters, or a law card.
+    /// Force law with its parameters, or a law card (FILE.toml)
+    #[arg(long)]
     pub law: String,
-    /// A file of the user's own laws.
+    /// File of own laws ([laws.NAME] tables, as in campaign.toml) that --law can name
+    #[arg(long, value_name = "FILE", value_hint = ValueHint::FilePath)]
     pub laws: Option<PathBuf>,
-    /// Mass of the fruit.
+    /// Mass of the fruit, such as "4.8 g"
+    #[arg(long)]
     pub mass: String,
-    /// Drop heights: one for an event, several for a campaign.
+    /// Height of its lowest point above the plate, such as "500 mm"; for a campaign, repeated
+    #[arg(long = "height", required = true)]
     pub heights: Vec<String>,
-    /// Mass of the plate; with stiffness and damping, or rigid without all.
+    /// Mass of the plate and of what moves with it
+    #[arg(long, value_name = "QUANTITY", help_heading = PLATE)]
     pub plate_mass: Option<String>,
-    /// Stiffness under the plate.
+    /// Stiffness under the plate
+    #[arg(long, value_name = "QUANTITY", help_heading = PLATE)]
     pub plate_stiffness: Option<String>,
-    /// Damping under the plate.
+    /// Damping under the plate
+    #[arg(long, value_name = "QUANTITY", help_heading = PLATE)]
     pub plate_damping: Option<String>,
-    /// Part of its mass that the contact of the fruit feels; 1.
+    /// Part of its mass that the contact of the fruit feels; 1 for a central impact
+    #[arg(long, default_value_t = 1.0, value_name = "PART", help_heading = PLATE)]
     pub effective_mass_factor: f64,
-    /// Acceleration of gravity.
+    /// Acceleration of gravity
+    #[arg(long, default_value = "9.80665 m/s^2", help_heading = PLATE)]
     pub gravity: String,
-    /// "force-zero" or "gap-zero".
+    /// Impacts to follow
+    #[arg(long, default_value_t = 2, help_heading = PLATE)]
+    pub impacts: usize,
+    /// When a contact is over
+    #[arg(long, default_value = "force-zero", value_parser = ends(), help_heading = PLATE)]
     pub end: String,
 }
+
+/// Heading of the options of the plate and of those behind them.
+pub const PLATE: &str = "Plate (rigid if left out)";
 
 /// A fruit that falls on a plate; SI.
 #[derive(Clone, Debug, PartialEq)]
@@ -46,6 +64,8 @@ pub struct DropPlan {
     pub rig: DropRig,
     /// Drop heights, at least one; m.
     pub heights: Vec<f64>,
+    /// Impacts that are followed.
+    pub impacts: usize,
     /// End of contact.
     pub end: EndRule,
 }
@@ -77,6 +97,7 @@ pub fn drop_plan(request: &DropRequest) -> Result<DropPlan, Error> {
             plate: plate(request)?,
         },
         heights,
+        impacts: request.impacts,
         end: chosen("--end", &request.end, &ENDS)?,
     })
 }
@@ -104,9 +125,10 @@ fn plate(request: &DropRequest) -> Result<Option<Plate>, Error> {
 /// The one height of an event; m.
 ///
 /// # Errors
-/// There are several.
+/// There are several, or no impact is to be followed.
 pub fn one_height(plan: &DropPlan) -> Result<f64, Error> {
     match plan.heights[..] {
+        [_] if plan.impacts == 0 => Err(unusable("--impacts", "expected 1 or more")),
         [height] => Ok(height),
         _ => Err(unusable(
             "--height",

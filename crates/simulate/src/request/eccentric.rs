@@ -1,30 +1,73 @@
-//! A planar body as it is asked for: texts with units → SI.
+//! A planar body: options with units → SI.
 
+use clap::Args;
 use windfall_drop_rig::eccentric::body::EccentricBody;
 use windfall_drop_rig::eccentric::shape::Shape;
 use windfall_files::error::Error;
 use windfall_files::option_value::{at_least_zero, positive, quantity, unusable};
 
-/// A body whose contact is not below its centre of mass; texts with units.
-#[derive(Clone, Debug)]
+/// A body whose contact is not below its centre of mass; a central impact where neither
+/// offset nor semi-axes are given. Texts with units.
+#[derive(Clone, Debug, Args)]
+#[command(next_help_heading = "Eccentric contact (central if left out)")]
 pub struct EccentricRequest {
-    /// Distance of the centre of mass from the centre of a disc.
+    /// Distance of the centre of mass from the centre of the fruit, such as "3.8 mm"; with --radius
+    #[arg(
+        long,
+        value_name = "QUANTITY",
+        requires = "radius",
+        conflicts_with = "semi_axes"
+    )]
     pub offset: Option<String>,
-    /// Radius of the disc.
+    /// Radius of the fruit
+    #[arg(long, value_name = "QUANTITY", requires = "offset")]
     pub radius: Option<String>,
-    /// Direction from its centre to the centre of mass, from straight down.
+    /// Direction of the offset at release, from straight down
+    #[arg(
+        long,
+        default_value = "90 deg",
+        value_name = "QUANTITY",
+        allow_hyphen_values = true
+    )]
     pub offset_angle: String,
-    /// Semi-axes of an ellipse, with a comma between them.
+    /// Semi-axes of an ellipse instead, such as "12 mm,9 mm"
+    #[arg(long, value_name = "QUANTITY,QUANTITY")]
     pub semi_axes: Option<String>,
-    /// From the horizontal to its first axis.
+    /// Tilt of its first axis at release, from the horizontal
+    #[arg(
+        long,
+        default_value = "0 deg",
+        value_name = "QUANTITY",
+        allow_hyphen_values = true
+    )]
     pub tilt: String,
-    /// Moment of inertia about the centre of mass; that of a solid if left out.
+    /// Moment of inertia about the centre of mass, such as "1.92e-7 kg m^2"; that of a solid ball
+    /// or ellipsoid if left out
+    #[arg(long, value_name = "QUANTITY")]
     pub inertia: Option<String>,
-    /// Coulomb's coefficient; 1.
+    /// Coefficient of friction between fruit and plate
+    #[arg(
+        long,
+        default_value_t = 0.0,
+        value_name = "NUMBER",
+        allow_hyphen_values = true
+    )]
     pub friction: f64,
-    /// Angular velocity at release.
-    pub angular_velocity: String,
-    /// Horizontal velocity at release.
+    /// Angular velocity at release, anticlockwise
+    #[arg(
+        long,
+        default_value = "0 rad/s",
+        value_name = "QUANTITY",
+        allow_hyphen_values = true
+    )]
+    pub spin: String,
+    /// Horizontal velocity at release
+    #[arg(
+        long,
+        default_value = "0 m/s",
+        value_name = "QUANTITY",
+        allow_hyphen_values = true
+    )]
     pub tangential_velocity: String,
 }
 
@@ -43,7 +86,7 @@ pub fn eccentric_body(request: &EccentricRequest, mass: f64) -> Result<Eccentric
         mass,
         inertia: inertia.transpose()?,
         friction: request.friction,
-        angular_velocity: quantity("--spin", &request.angular_velocity, "rad/s")?,
+        angular_velocity: quantity("--spin", &request.spin, "rad/s")?,
         tangential_velocity: quantity(
             "--tangential-velocity",
             &request.tangential_velocity,

@@ -1,6 +1,7 @@
-//! Instruments of simulated rigs as they are asked for: texts with units → SI.
+//! Instruments of simulated rigs: options with units → SI.
 
 use crate::request::event::Event;
+use clap::Args;
 use windfall_campaign::settings::channels::{KINDS, Kind};
 use windfall_files::error::Error;
 use windfall_files::option_value::{at_least_zero, chosen, positive, quantity, unusable};
@@ -13,21 +14,28 @@ use windfall_signal::kinematics::Encoder;
 use windfall_signal::recording::Quantity;
 
 /// Encoder and force sensor of a pendulum; texts with units.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Args)]
 pub struct PendulumInstrument {
-    /// Sampling rate.
+    /// Sampling rate
+    #[arg(long, default_value = "200 kHz")]
     pub rate: String,
-    /// "phases" or "counts".
+    /// What the encoder writes into the recordings: phases A and B, or decoded counts
+    #[arg(long, default_value = "phases", value_parser = ["phases", "counts"])]
     pub encoder: String,
-    /// Counts per revolution after ×4 decoding.
+    /// Resolution of the encoder after x4 decoding
+    #[arg(long, default_value_t = 360_000.0, value_name = "NUMBER")]
     pub counts_per_revolution: f64,
-    /// Sensitivity of the force sensor.
+    /// Sensitivity of the force sensor
+    #[arg(long, default_value = "11 mV/N")]
     pub sensitivity: String,
-    /// Standard deviation of the force noise.
+    /// Standard deviation of the force noise of the recordings
+    #[arg(long, default_value = "1 N")]
     pub noise: String,
-    /// Resolution of the converter; no converter when left out.
+    /// Resolution of the analogue-to-digital converter; no rounding if left out
+    #[arg(long, value_name = "NUMBER")]
     pub bits: Option<u32>,
-    /// Largest voltage of the converter, of either sign.
+    /// Largest voltage of the converter, of either sign; beyond it the force is clipped
+    #[arg(long, default_value = "10 V")]
     pub range: String,
 }
 
@@ -52,9 +60,6 @@ const SENSORS: [(Quantity, f64, f64); 4] = [
 const LEVELS: (f64, f64) = (0.0, 5.0);
 
 /// The instrument of a simulated pendulum on the rig of that event.
-///
-/// # Errors
-/// An option cannot be read.
 pub fn instrument_of_pendulum(
     request: &PendulumInstrument,
     event: &Event,

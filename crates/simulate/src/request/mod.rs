@@ -1,7 +1,8 @@
-//! What is to be simulated: texts with units, read as SI.
+//! Options of simulations: texts with units, read as SI.
 
 pub mod drop;
 pub mod eccentric;
 pub mod event;
+pub mod impact;
 pub mod instrument;
 pub mod recordings;

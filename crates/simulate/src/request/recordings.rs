@@ -1,7 +1,9 @@
-//! A campaign of simulated recordings as it is asked for: texts with units → SI.
+//! A campaign of simulated recordings: options with units → SI.
 
-use crate::campaign::{Batch, SimulatedCampaign, Weighed, write_simulated_campaign};
+use crate::campaign::{Batch, write_simulated_campaign};
+use crate::files::{SimulatedCampaign, Weighed};
 use crate::request::event::Event;
+use clap::Args;
 use std::path::Path;
 use windfall_contact::expression::LawExpression;
 use windfall_contact::laws::kind::Law;
@@ -12,18 +14,17 @@ use windfall_identify::rig::kind::Rig;
 use windfall_signal::instrument::Instrument;
 
 /// Specimens of a simulated campaign.
-#[derive(Clone, Debug)]
-pub struct RecordingsRequest {
-    /// Standard deviations between specimens: "k=133165".
-    pub spread: Vec<String>,
-    /// Number of specimens.
+#[derive(Clone, Debug, Args)]
+pub struct SpecimenRequest {
+    /// Number of specimens of the campaign
+    #[arg(long, default_value_t = 20)]
     pub specimens: usize,
-    /// Impacts on each specimen.
+    /// Impacts on each specimen
+    #[arg(long, default_value_t = 1)]
     pub repeats: usize,
-    /// Whether campaign.toml gives the mass of a carriage.
-    pub weighed: Weighed,
-    /// Seed of specimens and noise.
-    pub seed: u64,
+    /// Standard deviation of a parameter between specimens, such as k=133165
+    #[arg(long, value_name = "NAME=SD")]
+    pub spread: Vec<String>,
 }
 
 /// Writes a campaign of simulated recordings; returns how many.
@@ -33,7 +34,8 @@ pub struct RecordingsRequest {
 pub fn simulate_recordings(
     event: &Event,
     instrument: Instrument,
-    request: &RecordingsRequest,
+    request: &SpecimenRequest,
+    (weighed, seed): (Weighed, u64),
     directory: &Path,
 ) -> Result<usize, Error> {
     let rig = match event.rig {
@@ -44,13 +46,13 @@ pub fn simulate_recordings(
     let law = LawExpression::from(event.law).to_string().replace('"', "'");
     let campaign = SimulatedCampaign {
         title: format!("Simulated {rig} campaign"),
-        label: format!("windfall simulate {rig}, {law}, seed {}", request.seed),
+        label: format!("windfall simulate {rig}, {law}, seed {seed}"),
         rig: event.rig,
-        weighed: request.weighed,
+        weighed,
         velocity: event.velocity,
         end: event.end,
         instrument,
-        seed: request.seed,
+        seed,
     };
     let batch = Batch {
         variety: "specimen".to_owned(),

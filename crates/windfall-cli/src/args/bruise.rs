@@ -1,4 +1,4 @@
-//! `windfall bruise`: what may be asked for.
+//! `windfall bruise`: arguments.
 
 use crate::args::format::Format;
 use clap::{Args, ValueHint};

@@ -1,4 +1,4 @@
-//! `windfall calibrate`: what may be asked for.
+//! `windfall calibrate`: arguments.
 
 use crate::args::figures::FigureArguments;
 use crate::args::format::Format;

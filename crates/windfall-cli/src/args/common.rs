@@ -1,4 +1,4 @@
-//! The command line: what may be written, and its help.
+//! The command line and its help.
 
 use crate::args::bruise::BruiseArguments;
 use crate::args::calibrate::CalibrateArguments;

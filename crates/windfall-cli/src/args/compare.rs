@@ -1,4 +1,4 @@
-//! `windfall summary` and `windfall compare`: what may be asked for.
+//! `windfall summary` and `windfall compare`: arguments.
 
 use crate::args::format::Format;
 use clap::{Args, ValueEnum, ValueHint};

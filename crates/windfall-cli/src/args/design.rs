@@ -1,4 +1,4 @@
-//! `windfall design`: what may be asked for.
+//! `windfall design`: arguments.
 
 use crate::args::format::Format;
 use clap::{Args, Subcommand, ValueEnum, ValueHint};

@@ -1,6 +1,6 @@
 //! Where figures go and which colours they have, for every command that draws.
 
-use clap::{Args, ValueEnum, ValueHint};
+use clap::{Args, ValueHint};
 use std::path::PathBuf;
 use windfall_draw::files::FigureFolder;
 use windfall_draw::theme::FigureTheme;
@@ -12,33 +12,15 @@ pub struct FigureArguments {
     #[arg(long, value_name = "DIR", value_hint = ValueHint::DirPath)]
     pub figures: Option<PathBuf>,
     /// Colours of the figures
-    #[arg(long, value_enum, default_value_t = Theme::Light, requires = "figures")]
-    pub theme: Theme,
+    #[arg(long, value_enum, default_value_t = FigureTheme::Light, requires = "figures")]
+    pub theme: FigureTheme,
 }
 
 impl FigureArguments {
-    /// As the workflows take it; `None` where no figures were asked for.
+    /// The folder, if figures were requested.
     pub fn folder(&self) -> Option<FigureFolder> {
         let directory = self.figures.clone()?;
-        let theme = self.theme.into();
+        let theme = self.theme;
         Some(FigureFolder { directory, theme })
-    }
-}
-
-/// Colours of figures.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-pub enum Theme {
-    /// For paper
-    Light,
-    /// For dark screens and slides
-    Dark,
-}
-
-impl From<Theme> for FigureTheme {
-    fn from(theme: Theme) -> Self {
-        match theme {
-            Theme::Light => Self::Light,
-            Theme::Dark => Self::Dark,
-        }
     }
 }

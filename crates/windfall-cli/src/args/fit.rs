@@ -1,4 +1,4 @@
-//! `windfall fit`: what may be asked for.
+//! `windfall fit`: arguments.
 
 use crate::args::figures::FigureArguments;
 use crate::args::format::Format;

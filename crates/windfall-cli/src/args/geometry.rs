@@ -1,4 +1,4 @@
-//! `windfall radius` and `windfall card transfer`: what may be asked for.
+//! `windfall radius` and `windfall card transfer`: arguments.
 
 use crate::args::format::Format;
 use clap::{Args, ValueHint};

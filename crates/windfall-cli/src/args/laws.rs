@@ -1,4 +1,4 @@
-//! `windfall laws`: what may be asked for.
+//! `windfall laws`: arguments.
 
 use crate::args::figures::FigureArguments;
 use crate::args::format::Format;

@@ -1,4 +1,4 @@
-//! `windfall population`: what may be asked for.
+//! `windfall population`: arguments.
 
 use crate::args::format::Format;
 use clap::{Args, ValueHint};

@@ -1,4 +1,4 @@
-//! `windfall regress`: what may be asked for.
+//! `windfall regress`: arguments.
 
 use crate::args::format::Format;
 use clap::{Args, ValueEnum, ValueHint};

@@ -1,9 +1,9 @@
-//! `windfall report`: what may be asked for.
+//! `windfall report`: arguments.
 
-use crate::args::figures::Theme;
 use crate::args::format::Format;
 use clap::{Args, ValueHint};
 use std::path::PathBuf;
+use windfall_draw::theme::FigureTheme;
 
 /// `windfall report`
 #[derive(Debug, Args)]
@@ -26,8 +26,8 @@ pub struct ReportArguments {
     #[arg(long, value_name = "DIR", value_hint = ValueHint::DirPath)]
     pub out: Option<PathBuf>,
     /// Colours of the files of figures; the page follows the reader's setting
-    #[arg(long, value_enum, default_value_t = Theme::Light)]
-    pub theme: Theme,
+    #[arg(long, value_enum, default_value_t = FigureTheme::Light)]
+    pub theme: FigureTheme,
     /// Law to fit in place of those of the campaign; may be repeated
     #[arg(long = "law", value_name = "LAW")]
     pub laws: Vec<String>,

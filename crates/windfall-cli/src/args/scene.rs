@@ -1,10 +1,12 @@
-//! `windfall scene`: what may be asked for.
+//! `windfall scene`: arguments.
 
 use crate::args::format::Format;
 use crate::args::scene_view::{ScenePictureArguments, SceneVtkArguments};
 use clap::{Args, Subcommand, ValueEnum, ValueHint};
 use std::path::PathBuf;
-use windfall_engines::classes::MOST;
+use windfall_engines::run::{DeckRequest, EngineRequest};
+use windfall_scene_run::run::workflow::SceneRequest;
+use windfall_scene_run::study::run::StudyRequest;
 
 /// `windfall scene …`
 #[derive(Debug, Subcommand)]
@@ -19,31 +21,6 @@ pub enum SceneCommand {
     Vtk(SceneVtkArguments),
     /// Write a scene as a complete deck for LAMMPS or LIGGGHTS, or its contacts for others
     Export(SceneExportArguments),
-}
-
-/// An engine that a scene runs on.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum)]
-pub enum EngineName {
-    /// The engine of this program
-    #[default]
-    Windfall,
-    /// LAMMPS of 29 Sep 2021 or newer
-    Lammps,
-    /// LIGGGHTS-PUBLIC 3.8
-    Liggghts,
-}
-
-/// What is asked of another engine.
-#[derive(Debug, Args)]
-pub struct EngineArguments {
-    /// For LAMMPS and LIGGGHTS: classes of size of one material at most, each with coefficients of
-    /// its own
-    #[arg(long, value_name = "N", default_value_t = MOST)]
-    pub classes: usize,
-    /// For LAMMPS and LIGGGHTS: steps between frames, of which contacts are made; a contact lasts 80
-    /// frames at least if left out
-    #[arg(long, value_name = "N")]
-    pub frame_steps: Option<u64>,
 }
 
 /// An engine that a scene, or its contacts, are written for.
@@ -92,7 +69,7 @@ pub struct SceneExportArguments {
     #[arg(long, value_name = "DIR", value_hint = ValueHint::DirPath)]
     pub out: Option<PathBuf>,
     #[command(flatten)]
-    pub of_engine: EngineArguments,
+    pub deck: DeckRequest,
     /// How the result is shown
     #[arg(long, value_enum, default_value_t)]
     pub format: Format,
@@ -120,33 +97,16 @@ pub struct SceneRunArguments {
     /// The scene
     #[arg(value_name = "FILE", value_hint = ValueHint::FilePath)]
     pub file: PathBuf,
-    /// Directory to write into
-    #[arg(long, value_name = "DIR", value_hint = ValueHint::DirPath)]
-    pub out: Option<PathBuf>,
-    /// Number of threads; all cores if left out. It never changes a result
-    #[arg(long, value_name = "N")]
-    pub threads: Option<usize>,
+    #[command(flatten)]
+    pub request: SceneRequest,
     /// Go on with a run that was stopped, from its last checkpoint
     #[arg(long, conflicts_with = "restart")]
     pub resume: bool,
     /// Begin anew where a run was stopped
     #[arg(long)]
     pub restart: bool,
-    /// The engine that moves the fruit
-    #[arg(long, value_enum, default_value_t)]
-    pub engine: EngineName,
-    /// For LAMMPS and LIGGGHTS: ranks of MPI
-    #[arg(long, value_name = "N", default_value_t = 1)]
-    pub ranks: usize,
-    /// For LAMMPS and LIGGGHTS: the program, if it is not on the path as lmp or liggghts
-    #[arg(long, value_name = "FILE", value_hint = ValueHint::FilePath)]
-    pub engine_program: Option<PathBuf>,
-    /// For LAMMPS and LIGGGHTS: frames that an earlier run of the scene's deck wrote, instead of a new
-    /// run
-    #[arg(long, value_name = "FILE", value_hint = ValueHint::FilePath)]
-    pub frames: Option<PathBuf>,
     #[command(flatten)]
-    pub of_engine: EngineArguments,
+    pub engine: EngineRequest,
     /// How the result is shown
     #[arg(long, value_enum, default_value_t)]
     pub format: Format,
@@ -170,12 +130,8 @@ pub struct SceneStudyArguments {
     /// The study
     #[arg(value_name = "FILE", value_hint = ValueHint::FilePath)]
     pub file: PathBuf,
-    /// Directory to write into
-    #[arg(long, value_name = "DIR", value_hint = ValueHint::DirPath)]
-    pub out: Option<PathBuf>,
-    /// Number of threads, over which runs are spread; all cores if left out. It never changes a result
-    #[arg(long, value_name = "N")]
-    pub threads: Option<usize>,
+    #[command(flatten)]
+    pub request: StudyRequest,
     /// How the result is shown
     #[arg(long, value_enum, default_value_t)]
     pub format: Format,

@@ -1,9 +1,9 @@
-//! `windfall scene picture` and `windfall scene vtk`: what may be asked for.
+//! `windfall scene picture` and `windfall scene vtk`: arguments.
 
-use crate::args::figures::Theme;
 use crate::args::format::Format;
 use clap::{Args, ValueHint};
 use std::path::PathBuf;
+use windfall_draw::theme::FigureTheme;
 
 /// `windfall scene picture`
 #[derive(Debug, Args)]
@@ -30,8 +30,8 @@ pub struct ScenePictureArguments {
     #[arg(long, value_name = "FORCE")]
     pub largest_force: Option<String>,
     /// Colours
-    #[arg(long, value_enum, default_value_t = Theme::Light)]
-    pub theme: Theme,
+    #[arg(long, value_enum, default_value_t = FigureTheme::Light)]
+    pub theme: FigureTheme,
     /// An .svg or .png (300 dots per inch); picture.svg and picture.png in RUN if left out
     #[arg(long, value_name = "FILE", value_hint = ValueHint::FilePath)]
     pub out: Option<PathBuf>,

@@ -1,4 +1,4 @@
-//! `windfall serve`: what may be asked for.
+//! `windfall serve`: arguments.
 
 use clap::{Args, ValueHint};
 use std::net::{IpAddr, Ipv4Addr};

@@ -1,10 +1,15 @@
-//! `windfall simulate`: what may be asked for.
+//! `windfall simulate`: arguments.
 
-use crate::args::end::End;
 use crate::args::format::Format;
-use crate::args::simulate_drop::SimulateDropArguments;
 use clap::{Args, Subcommand, ValueHint};
 use std::path::PathBuf;
+use windfall_simulate::compression::SimulateCompressionRequest;
+use windfall_simulate::drops::SimulateDropsRequest;
+use windfall_simulate::repeats::SimulateRepeatsRequest;
+use windfall_simulate::request::drop::{DropRequest, PLATE};
+use windfall_simulate::request::eccentric::EccentricRequest;
+use windfall_simulate::request::impact::{CarriageRequest, ImpactRequest, PendulumRequest};
+use windfall_simulate::taps::SimulateTapsRequest;
 
 /// `windfall simulate`
 #[derive(Debug, Args)]
@@ -43,39 +48,8 @@ pub struct SimulateTapArguments {
     /// Directory of the campaign to make; it must not exist or be empty
     #[arg(value_hint = ValueHint::DirPath)]
     pub directory: PathBuf,
-    /// Frequency of the first mode
-    #[arg(long, default_value = "800 Hz")]
-    pub frequency: String,
-    /// Its quality: frequency over width of the peak
-    #[arg(long, default_value_t = 20.0)]
-    pub quality: f64,
-    /// Mass of a fruit
-    #[arg(long, default_value = "0.2 kg")]
-    pub mass: String,
-    /// Number of fruit
-    #[arg(long, default_value_t = 6)]
-    pub fruit: usize,
-    /// Taps in a recording; each fruit has a recording at each of two places
-    #[arg(long, default_value_t = 2)]
-    pub taps: usize,
-    /// Spread of frequency and mass between fruit, as a part
-    #[arg(long, default_value_t = 0.08)]
-    pub spread: f64,
-    /// Distance of the two frequencies of a split mode, as a part; 0 for spheres
-    #[arg(long, default_value_t = 0.0)]
-    pub split: f64,
-    /// Signal over noise, in power over the first 50 ms of a tap; dB
-    #[arg(long, default_value_t = 30.0, allow_hyphen_values = true)]
-    pub signal_to_noise: f64,
-    /// Format of the recordings: wav or csv
-    #[arg(long, default_value = "wav")]
-    pub file: String,
-    /// Sampling rate
-    #[arg(long, default_value = "44100 Hz")]
-    pub sampling_rate: String,
-    /// Seed of noise and spread
-    #[arg(long, default_value_t = 1)]
-    pub seed: u64,
+    #[command(flatten)]
+    pub request: SimulateTapsRequest,
 }
 
 /// `windfall simulate compression`
@@ -88,42 +62,8 @@ pub struct SimulateCompressionArguments {
     /// Directory of the campaign to make; it must not exist or be empty
     #[arg(value_hint = ValueHint::DirPath)]
     pub directory: PathBuf,
-    /// Force law of the crosshead's travel, with its parameters
-    #[arg(long)]
-    pub law: String,
-    /// File of own laws ([laws.NAME] tables, as in campaign.toml) that --law can name
-    #[arg(long, value_name = "FILE", value_hint = ValueHint::FilePath)]
-    pub laws: Option<PathBuf>,
-    /// Rate of deformation; may be repeated: every fruit is compressed at each
-    #[arg(long = "rate", default_value = "1 mm/s")]
-    pub rates: Vec<String>,
-    /// Largest deformation
-    #[arg(long, default_value = "2 mm")]
-    pub deformation: String,
-    /// Radius of the fruit
-    #[arg(long, default_value = "38 mm")]
-    pub radius: String,
-    /// Plates that deform the fruit: 1 or 2
-    #[arg(long, default_value_t = 2)]
-    pub plates: u32,
-    /// Force at which the tissue yields; never if left out
-    #[arg(long)]
-    pub yield_force: Option<String>,
-    /// Number of fruit
-    #[arg(long, default_value_t = 3)]
-    pub fruit: usize,
-    /// Spread of stiffness and damping between fruit, as a part
-    #[arg(long, default_value_t = 0.0)]
-    pub spread: f64,
-    /// Standard deviation of the noise of force
-    #[arg(long, default_value = "0.02 N")]
-    pub force_noise: String,
-    /// Sampling rate
-    #[arg(long, default_value = "1 kHz")]
-    pub sampling_rate: String,
-    /// Seed of noise and spread
-    #[arg(long, default_value_t = 1)]
-    pub seed: u64,
+    #[command(flatten)]
+    pub request: SimulateCompressionRequest,
 }
 
 /// `windfall simulate repeats`
@@ -135,39 +75,8 @@ pub struct SimulateRepeatsArguments {
     /// Directory of the campaign to make; it must not exist or be empty
     #[arg(value_hint = ValueHint::DirPath)]
     pub directory: PathBuf,
-    /// Number of fruit; an elastic ball is added as reference
-    #[arg(long, default_value_t = 12)]
-    pub fruit: usize,
-    /// Impact energy; may be repeated
-    #[arg(long = "energy", default_values = ["0.04 J", "0.056 J", "0.08 J", "0.11 J", "0.16 J", "0.22 J", "0.31 J"])]
-    pub energies: Vec<String>,
-    /// Impacts on the spot at each energy
-    #[arg(long, default_value_t = 2)]
-    pub repeats: usize,
-    /// Where the impacts of the next energy fall: on the same spot, or on a fresh one
-    #[arg(long, default_value = "same", value_parser = ["same", "fresh"])]
-    pub spots: String,
-    /// Median critical energy of the fruit
-    #[arg(long, default_value = "0.12 J")]
-    pub critical_energy: String,
-    /// Standard deviation of the logarithm of the critical energy between fruit
-    #[arg(long, default_value_t = 0.3)]
-    pub spread: f64,
-    /// Mass that falls
-    #[arg(long, default_value = "200 g")]
-    pub mass: String,
-    /// Standard deviation of the noise of force
-    #[arg(long, default_value = "0.3 N")]
-    pub force_noise: String,
-    /// Relative standard deviation of the impact velocity from drop to drop
-    #[arg(long, default_value_t = 0.003)]
-    pub velocity_scatter: f64,
-    /// Sampling rate
-    #[arg(long, default_value = "50 kHz")]
-    pub sampling_rate: String,
-    /// Seed of fruit and noise
-    #[arg(long, default_value_t = 1)]
-    pub seed: u64,
+    #[command(flatten)]
+    pub request: SimulateRepeatsRequest,
     /// How the result is shown
     #[arg(long, value_enum, default_value_t)]
     pub format: Format,
@@ -181,24 +90,8 @@ pub struct SimulateRepeatsArguments {
   windfall simulate impact --law 'adams-impact(k=\"0.868 N/mm^1.91\", e=1.91, c=\"5.56e-4 N s/mm\", d=\"0.001 mm\")' \\
       --mass '4.8 g' --velocity '3.13 m/s' --format json")]
 pub struct SimulateImpactArguments {
-    /// Force law with its parameters, or a law card (FILE.toml)
-    #[arg(long)]
-    pub law: String,
-    /// File of own laws ([laws.NAME] tables, as in campaign.toml) that --law can name
-    #[arg(long, value_name = "FILE", value_hint = ValueHint::FilePath)]
-    pub laws: Option<PathBuf>,
-    /// Effective mass, such as "0.2 kg"
-    #[arg(long)]
-    pub mass: String,
-    /// Impact velocity, such as "0.5 m/s"
-    #[arg(long)]
-    pub velocity: String,
-    /// Acceleration towards the fruit during contact, such as "9.81 m/s^2"
-    #[arg(long, default_value = "0 m/s^2")]
-    pub driving_acceleration: String,
-    /// When the contact is over
-    #[arg(long, value_enum, default_value_t)]
-    pub end: End,
+    #[command(flatten)]
+    pub request: ImpactRequest,
     /// Write a figure of the impact, loop and force over time (SVG or PNG, by its ending), and its
     /// data (CSV, same name)
     #[arg(long, value_name = "FILE.svg|FILE.png", value_hint = ValueHint::FilePath)]
@@ -222,69 +115,8 @@ pub struct SimulateImpactArguments {
       --encoder counts --counts-per-revolution 20000 --rate '50 kHz' --bits 12 --range '5 V'
       a coarser instrument: decoded counts of 0.018°, force through a 12-bit converter of ±5 V")]
 pub struct SimulatePendulumArguments {
-    /// Force law with its parameters, or a law card (FILE.toml)
-    #[arg(long, required_unless_present = "example")]
-    pub law: Option<String>,
-    /// File of own laws ([laws.NAME] tables, as in campaign.toml) that --law can name
-    #[arg(long, value_name = "FILE", value_hint = ValueHint::FilePath)]
-    pub laws: Option<PathBuf>,
-    /// Write the example campaign into this directory
-    #[arg(long, value_name = "DIR", conflicts_with_all = ["law", "recordings"], value_hint = ValueHint::DirPath)]
-    pub example: Option<PathBuf>,
-    /// Write a campaign of recordings into this directory
-    #[arg(long, value_name = "DIR", value_hint = ValueHint::DirPath)]
-    pub recordings: Option<PathBuf>,
-    /// Number of specimens of the campaign
-    #[arg(long, default_value_t = 20)]
-    pub specimens: usize,
-    /// Impacts on each specimen
-    #[arg(long, default_value_t = 1)]
-    pub repeats: usize,
-    /// Standard deviation of a parameter between specimens, such as k=133165
-    #[arg(long, value_name = "NAME=SD")]
-    pub spread: Vec<String>,
-    /// Moment of inertia about the pivot
-    #[arg(long, default_value = "0.01435 kg m^2")]
-    pub inertia: String,
-    /// Pivot to point of contact
-    #[arg(long, default_value = "0.505 m")]
-    pub arm: String,
-    /// Mass of arm and impactor
-    #[arg(long, default_value = "0.11 kg")]
-    pub mass: String,
-    /// Pivot to centre of mass
-    #[arg(long, default_value = "0.3 m")]
-    pub centre_of_mass: String,
-    /// Impact velocity
-    #[arg(long, default_value = "0.388 m/s")]
-    pub velocity: String,
-    /// Sampling rate
-    #[arg(long, default_value = "200 kHz")]
-    pub rate: String,
-    /// What the encoder writes into the recordings: phases A and B, or decoded counts
-    #[arg(long, default_value = "phases", value_parser = ["phases", "counts"])]
-    pub encoder: String,
-    /// Resolution of the encoder after x4 decoding
-    #[arg(long, default_value_t = 360_000.0, value_name = "NUMBER")]
-    pub counts_per_revolution: f64,
-    /// Sensitivity of the force sensor
-    #[arg(long, default_value = "11 mV/N")]
-    pub sensitivity: String,
-    /// Standard deviation of the force noise of the recordings
-    #[arg(long, default_value = "1 N")]
-    pub noise: String,
-    /// Resolution of the analogue-to-digital converter; no rounding if left out
-    #[arg(long, value_name = "NUMBER")]
-    pub bits: Option<u32>,
-    /// Largest voltage of the converter, of either sign; beyond it the force is clipped
-    #[arg(long, default_value = "10 V")]
-    pub range: String,
-    /// When the contact is over
-    #[arg(long, value_enum, default_value_t)]
-    pub end: End,
-    /// Seed of specimens and noise
-    #[arg(long, default_value_t = 1)]
-    pub seed: u64,
+    #[command(flatten)]
+    pub request: PendulumRequest,
     /// How the result is shown
     #[arg(long, value_enum, default_value_t)]
     pub format: Format,
@@ -301,54 +133,51 @@ pub struct SimulatePendulumArguments {
       --sensor 'position: rate=100 Hz, noise=0.05 mm, bits=12, range=10 V' --unweighed
       a campaign of recordings, each sensor at its own rate; the mass is left to be found")]
 pub struct SimulateCarriageArguments {
-    /// Force law with its parameters, or a law card (FILE.toml)
-    #[arg(long)]
-    pub law: String,
-    /// File of own laws ([laws.NAME] tables, as in campaign.toml) that --law can name
-    #[arg(long, value_name = "FILE", value_hint = ValueHint::FilePath)]
-    pub laws: Option<PathBuf>,
-    /// Mass of the body
-    #[arg(long)]
-    pub mass: String,
-    /// Impact velocity
-    #[arg(long)]
-    pub velocity: String,
-    /// Acceleration towards the fruit
-    #[arg(long, default_value = "0 m/s^2", allow_hyphen_values = true)]
-    pub driving_acceleration: String,
-    /// Sampling rate of the motion; recordings have the rates of their sensors
-    #[arg(long, default_value = "200 kHz")]
-    pub rate: String,
-    /// Write a campaign of recordings into this directory
-    #[arg(long, value_name = "DIR", value_hint = ValueHint::DirPath)]
-    pub recordings: Option<PathBuf>,
-    /// A sensor of the recordings: force, position, velocity or acceleration, then after a colon
-    /// any of rate, noise, sensitivity, offset, bits, range; or an encoder, count or phases, with
-    /// length and rate; repeated. Force and position at 10 kHz if left out
-    #[arg(
-        long = "sensor",
-        value_name = "NAME[: KEY=VALUE, …]",
-        requires = "recordings"
-    )]
-    pub sensors: Vec<String>,
-    /// Leave the mass out of the campaign, so that fit finds it from impulse
-    #[arg(long, requires = "recordings")]
-    pub unweighed: bool,
-    /// Number of specimens of the campaign
-    #[arg(long, default_value_t = 20)]
-    pub specimens: usize,
-    /// Impacts on each specimen
-    #[arg(long, default_value_t = 1)]
-    pub repeats: usize,
-    /// Standard deviation of a parameter between specimens, such as k=133165
-    #[arg(long, value_name = "NAME=SD")]
-    pub spread: Vec<String>,
-    /// Seed of specimens and noise
-    #[arg(long, default_value_t = 1)]
-    pub seed: u64,
-    /// When the contact is over
+    #[command(flatten)]
+    pub request: CarriageRequest,
+    /// How the result is shown
     #[arg(long, value_enum, default_value_t)]
-    pub end: End,
+    pub format: Format,
+}
+
+/// `windfall simulate drop`
+#[derive(Debug, Args)]
+#[command(
+    after_help = "Examples, with the rig and the law of the Cerasus humilis study (2023):
+  windfall simulate drop --law 'adams-impact(k=\"0.868 N/mm^1.91\", e=1.91, c=\"5.56e-4 N s/mm\", d=\"0.001 mm\")' \\
+      --mass '4.8 g' --height '500 mm' --plate-mass '0.2 kg' --plate-stiffness '645.8 N/mm' \\
+      --plate-damping '0.05247 N s/mm'
+      peaks of contact and support force, separations, intervals of the first two impacts
+  windfall simulate drop --law 'hertz(k=170000)' --mass '4.8 g' --height '500 mm' \\
+      --sampling-rate '100 kHz' --format csv
+      the motion on a rigid plate
+  windfall simulate drop --law 'hertz(k=170000)' --mass '4.8 g' --height '500 mm' \\
+      --offset '3.8 mm' --radius '10 mm' --friction 0.3
+      a ball whose centre of mass is beside its centre: it turns
+  windfall simulate drop my-campaign --law 'adams-impact(…)' --mass '4.8 g' --height '100 mm' \\
+      --height '300 mm' --height '500 mm' --plate-mass '0.2 kg' --plate-stiffness '645.8 N/mm' \\
+      --plate-damping '0.05247 N s/mm'
+      a campaign of recordings in volts, five drops from each height"
+)]
+pub struct SimulateDropArguments {
+    /// Directory of a campaign of recordings to make; it must not exist or be empty. Without it,
+    /// one drop is simulated and shown
+    #[arg(value_name = "DIR", value_hint = ValueHint::DirPath)]
+    pub directory: Option<PathBuf>,
+    #[command(flatten)]
+    pub drop: DropRequest,
+    /// Sampling rate: of the motion, which is shown then in csv and json; of the recordings of a
+    /// campaign, 10 kHz if left out
+    #[arg(long, help_heading = PLATE)]
+    pub sampling_rate: Option<String>,
+    /// Length of the motion, to a little after the last impact if left out; of each recording of a
+    /// campaign, 1.5 s if left out
+    #[arg(long, help_heading = PLATE)]
+    pub duration: Option<String>,
+    #[command(flatten)]
+    pub eccentric: EccentricRequest,
+    #[command(flatten)]
+    pub recordings: SimulateDropsRequest,
     /// How the result is shown
     #[arg(long, value_enum, default_value_t)]
     pub format: Format,

@@ -1,4 +1,4 @@
-//! `windfall surface`: what may be asked for.
+//! `windfall surface`: arguments.
 
 use crate::args::figures::FigureArguments;
 use crate::args::format::Format;

@@ -3,7 +3,7 @@
 use crate::args::common::{CardAction, CardArguments};
 use crate::args::format::Format;
 use crate::command::geometry::run_transfer;
-use crate::show::{write_json, write_result};
+use crate::show::{show, write_json, write_result};
 use windfall_cards::card_text::{csv_of_card, text_of_card};
 use windfall_cards::library::laws::{csv_of_laws, law_cards, text_of_laws};
 use windfall_cards::library::show::{LibraryRequest, show_library};
@@ -34,11 +34,7 @@ pub fn run(arguments: &CardArguments) -> anyhow::Result<()> {
             ..
         } => {
             let card = read_card(file)?;
-            return match format {
-                Format::Json => write_json(&card),
-                Format::Csv => write_result(&csv_of_card(&card)?),
-                Format::Text => write_result(&text_of_card(&card)),
-            };
+            return show(*format, &card, text_of_card, csv_of_card);
         }
         CardAction::Show {
             laws, law, format, ..
@@ -55,9 +51,5 @@ pub fn run(arguments: &CardArguments) -> anyhow::Result<()> {
 /// Shows published values and models.
 fn run_library(request: &LibraryRequest, format: Format) -> anyhow::Result<()> {
     let outcome = show_library(request)?;
-    match format {
-        Format::Json => write_json(&outcome),
-        Format::Csv => write_result(&csv_of_library(&outcome)?),
-        Format::Text => write_result(&text_of_library(&outcome)),
-    }
+    show(format, &outcome, text_of_library, csv_of_library)
 }

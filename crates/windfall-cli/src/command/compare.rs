@@ -1,8 +1,7 @@
 //! `windfall summary` and `windfall compare`
 
 use crate::args::compare::{CompareArguments, Pairs, SummaryArguments};
-use crate::args::format::Format;
-use crate::show::{write_json, write_result};
+use crate::show::show;
 use windfall_tables::compare::agreement::{AgreementRequest, agreement};
 use windfall_tables::compare::pairs::PairMethod;
 use windfall_tables::compare::run::{CompareRequest, compare_groups};
@@ -20,11 +19,7 @@ pub fn run_summary(arguments: &SummaryArguments) -> anyhow::Result<()> {
         values: arguments.values.clone(),
         confidence: arguments.confidence,
     })?;
-    match arguments.format {
-        Format::Json => write_json(&outcome),
-        Format::Csv => write_result(&csv_of_summary(&outcome)?),
-        Format::Text => write_result(&text_of_summary(&outcome)),
-    }
+    show(arguments.format, &outcome, text_of_summary, csv_of_summary)
 }
 
 /// Compares groups, or predictions with what was measured.
@@ -36,11 +31,12 @@ pub fn run_compare(arguments: &CompareArguments) -> anyhow::Result<()> {
             predicted: predicted.clone(),
             parameters: arguments.parameters,
         })?;
-        return match arguments.format {
-            Format::Json => write_json(&outcome),
-            Format::Csv => write_result(&csv_of_agreement(&outcome)?),
-            Format::Text => write_result(&text_of_agreement(&outcome)),
-        };
+        return show(
+            arguments.format,
+            &outcome,
+            text_of_agreement,
+            csv_of_agreement,
+        );
     }
     let outcome = compare_groups(&CompareRequest {
         table: arguments.table.clone(),
@@ -55,11 +51,7 @@ pub fn run_compare(arguments: &CompareArguments) -> anyhow::Result<()> {
         },
         confidence: arguments.confidence,
     })?;
-    match arguments.format {
-        Format::Json => write_json(&outcome),
-        Format::Csv => write_result(&csv_of_compare(&outcome)?),
-        Format::Text => write_result(&text_of_compare(&outcome)),
-    }
+    show(arguments.format, &outcome, text_of_compare, csv_of_compare)
 }
 
 fn names(by: &[String]) -> Vec<String> {

@@ -2,7 +2,7 @@
 
 use crate::args::fit::{FitArguments, RecordingArguments};
 use crate::args::format::Format;
-use crate::show::{message, write_json, write_result};
+use crate::show::{message, show};
 use indicatif::{ProgressBar, ProgressStyle};
 use std::io::IsTerminal;
 use std::ops::ControlFlow;
@@ -11,27 +11,20 @@ use windfall_campaign::measure::any_outcome::AnyOutcome;
 use windfall_campaign::pipeline::request::{FitRequest, Reuse};
 use windfall_campaign::recording::request::RecordingRequest;
 use windfall_files::error::Error;
+use windfall_files::progress::Progress;
 use windfall_report::any_text::{csv_of_any, text_of_any};
 use windfall_report::fit_any::fit_any;
 
 /// Fits a campaign and shows the result.
 pub fn run(arguments: &FitArguments) -> anyhow::Result<()> {
     let request = fit_request(arguments);
-    let bar = progress_bar();
-    let progress = moving(&bar);
     let path = &arguments.directory;
-    let outcome = match recording_request(&arguments.recording) {
-        Some(recording) => fit_recording(path, &recording, &request, &progress)
+    let outcome = with_bar(|progress| match recording_request(&arguments.recording) {
+        Some(recording) => fit_recording(path, &recording, &request, progress)
             .map(|outcome| AnyOutcome::Impacts(Box::new(outcome))),
-        None => fit_any(path, &request, &progress),
-    };
-    bar.finish_and_clear();
-    let outcome = outcome?;
-    match arguments.format {
-        Format::Json => write_json(&outcome)?,
-        Format::Csv => write_result(&csv_of_any(&outcome)?)?,
-        Format::Text => write_result(&text_of_any(&outcome))?,
-    }
+        None => fit_any(path, &request, progress),
+    })?;
+    show(arguments.format, &outcome, text_of_any, csv_of_any)?;
     // The text shows failures itself, beside the results.
     let told = if arguments.format == Format::Text {
         &[][..]
@@ -117,24 +110,21 @@ fn status_line(status: &windfall_campaign::result::outcome::StatusOutcome) -> St
     )
 }
 
-/// A bar on a terminal, nothing elsewhere.
-pub(crate) fn progress_bar() -> ProgressBar {
-    if !std::io::stderr().is_terminal() {
-        return ProgressBar::hidden();
-    }
+/// Does work under a progress bar on a terminal; Ctrl-C interrupts the program.
+pub(crate) fn with_bar<T>(work: impl FnOnce(Progress) -> T) -> T {
+    let mut bar = ProgressBar::hidden();
     let style = ProgressStyle::with_template("{bar:40} {pos}/{len} recordings, {eta} left");
-    let bar = ProgressBar::new(0);
-    match style {
-        Ok(style) => bar.with_style(style),
-        Err(_) => bar,
+    if std::io::stderr().is_terminal() {
+        bar = ProgressBar::new(0);
+        if let Ok(style) = style {
+            bar.set_style(style);
+        }
     }
-}
-
-/// Moves the bar as the work goes on; who wants it to stop interrupts the program.
-pub(crate) fn moving(bar: &ProgressBar) -> impl Fn(usize, usize) -> ControlFlow<()> + Sync {
-    |done, all| {
+    let done = work(&|done, all| {
         bar.set_length(all as u64);
         bar.set_position(done as u64);
         ControlFlow::Continue(())
-    }
+    });
+    bar.finish_and_clear();
+    done
 }

@@ -19,5 +19,4 @@ pub(crate) mod scene_view;
 pub(crate) mod serve;
 pub(crate) mod simulate;
 pub(crate) mod simulate_drop;
-pub(crate) mod simulate_eccentric;
 pub(crate) mod surface;

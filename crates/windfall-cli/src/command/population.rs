@@ -2,7 +2,7 @@
 
 use crate::args::format::Format;
 use crate::args::population::PopulationArguments;
-use crate::command::fit::{moving, progress_bar};
+use crate::command::fit::with_bar;
 use crate::show::{message, tell_failures, write_json, write_result};
 use windfall_campaign::pipeline::request::FitRequest;
 use windfall_cards::read_card::write_card;
@@ -26,11 +26,7 @@ pub fn run(arguments: &PopulationArguments) -> anyhow::Result<()> {
         posterior: arguments.posterior,
         card: arguments.card.clone(),
     };
-    let bar = progress_bar();
-    let progress = moving(&bar);
-    let outcome = population(&request, &progress);
-    bar.finish_and_clear();
-    let outcome = outcome.map_err(tell_failures)?;
+    let outcome = with_bar(|progress| population(&request, progress)).map_err(tell_failures)?;
     if let Some(path) = &request.card {
         write_card(
             path,

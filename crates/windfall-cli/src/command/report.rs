@@ -2,15 +2,13 @@
 
 use crate::args::format::Format;
 use crate::args::report::ReportArguments;
-use crate::command::fit::{moving, progress_bar};
+use crate::command::fit::with_bar;
 use crate::show::{tell_failures, write_json, write_result};
 use windfall_campaign::pipeline::request::FitRequest;
 use windfall_report::run::{ReportRequest, report_campaign};
 
 /// Writes the report of a campaign and says which files it is.
 pub fn run(arguments: &ReportArguments) -> anyhow::Result<()> {
-    let bar = progress_bar();
-    let progress = moving(&bar);
     let request = ReportRequest {
         fit: FitRequest {
             laws: arguments.laws.clone(),
@@ -21,10 +19,9 @@ pub fn run(arguments: &ReportArguments) -> anyhow::Result<()> {
             ..FitRequest::default()
         },
         out: arguments.out.clone(),
-        theme: arguments.theme.into(),
+        theme: arguments.theme,
     };
-    let outcome = report_campaign(&arguments.directory, &request, &progress);
-    bar.finish_and_clear();
+    let outcome = with_bar(|progress| report_campaign(&arguments.directory, &request, progress));
     let outcome = outcome.map_err(tell_failures)?;
     let lines = outcome.files.iter().map(|f| format!("{}\n", f.display()));
     match arguments.format {

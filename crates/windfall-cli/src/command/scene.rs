@@ -2,23 +2,22 @@
 
 use crate::args::format::Format;
 use crate::args::scene::{
-    EngineName, ExportName, SceneCommand, SceneExportArguments, SceneRunArguments,
-    SceneStudyArguments,
+    ExportName, SceneCommand, SceneExportArguments, SceneRunArguments, SceneStudyArguments,
 };
-use crate::command::fit::{moving, progress_bar};
+use crate::command::fit::with_bar;
 use crate::command::scene_view;
-use crate::show::{write_json, write_result};
+use crate::show::{show, write_json, write_result};
 use std::ops::ControlFlow;
 use std::sync::atomic::Ordering;
 use windfall_engines::contacts::export_contacts;
 use windfall_engines::parameters::Other;
-use windfall_engines::run::{EngineRequest, export_deck, run_on_engine};
+use windfall_engines::run::{export_deck, run_on_engine};
 use windfall_engines::text::{text_of_contacts, text_of_deck};
 use windfall_scene_run::file::engine_kind::Engine;
 use windfall_scene_run::run::advance::SceneStart;
 use windfall_scene_run::run::tables::{csv_of_scene, text_of_scene};
 use windfall_scene_run::run::workflow::SceneRequest;
-use windfall_scene_run::study::run::{StudyRequest, run_study};
+use windfall_scene_run::study::run::run_study;
 use windfall_scene_run::study::text::{csv_of_study, text_of_study};
 use windfall_web::interrupt::interruption;
 
@@ -30,14 +29,6 @@ pub fn run(command: &SceneCommand) -> anyhow::Result<()> {
         SceneCommand::Picture(arguments) => scene_view::picture(arguments),
         SceneCommand::Vtk(arguments) => scene_view::vtk(arguments),
         SceneCommand::Export(arguments) => export(arguments),
-    }
-}
-
-fn engine(name: EngineName) -> Engine {
-    match name {
-        EngineName::Windfall => Engine::Windfall,
-        EngineName::Lammps => Engine::Lammps,
-        EngineName::Liggghts => Engine::Liggghts,
     }
 }
 
@@ -64,13 +55,8 @@ fn export(arguments: &SceneExportArguments) -> anyhow::Result<()> {
 }
 
 fn deck(arguments: &SceneExportArguments, engine: Engine) -> anyhow::Result<()> {
-    let request = EngineRequest {
-        engine,
-        classes: arguments.of_engine.classes,
-        frame_steps: arguments.of_engine.frame_steps,
-        ..EngineRequest::default()
-    };
-    let outcome = export_deck(&arguments.file, &request, arguments.out.as_deref())?;
+    let (file, out) = (&arguments.file, arguments.out.as_deref());
+    let outcome = export_deck(file, engine, &arguments.deck, out)?;
     match arguments.format {
         Format::Json => write_json(&outcome),
         _ => write_result(&text_of_deck(&outcome)),
@@ -78,52 +64,27 @@ fn deck(arguments: &SceneExportArguments, engine: Engine) -> anyhow::Result<()> 
 }
 
 fn run_one(arguments: &SceneRunArguments) -> anyhow::Result<()> {
-    let bar = progress_bar();
-    let (shown, interrupted) = (moving(&bar), interruption());
-    let progress = |done, all| match interrupted.load(Ordering::Relaxed) {
-        true => ControlFlow::Break(()),
-        false => shown(done, all),
-    };
     let request = SceneRequest {
-        out: arguments.out.clone(),
-        threads: arguments.threads,
         start: match (arguments.resume, arguments.restart) {
             (true, _) => SceneStart::Resume,
             (false, true) => SceneStart::Restart,
             (false, false) => SceneStart::Fresh,
         },
+        ..arguments.request.clone()
     };
-    let own = EngineRequest {
-        engine: engine(arguments.engine),
-        program: arguments.engine_program.clone(),
-        ranks: arguments.ranks,
-        classes: arguments.of_engine.classes,
-        frame_steps: arguments.of_engine.frame_steps,
-        frames: arguments.frames.clone(),
-    };
-    let outcome = run_on_engine(&arguments.file, &request, &own, &progress);
-    bar.finish_and_clear();
-    let outcome = outcome?;
-    match arguments.format {
-        Format::Json => write_json(&outcome),
-        Format::Csv => write_result(&csv_of_scene(&outcome)?),
-        Format::Text => write_result(&text_of_scene(&outcome)),
-    }
+    let interrupted = interruption();
+    let outcome = with_bar(|shown| {
+        let progress = |done, all| match interrupted.load(Ordering::Relaxed) {
+            true => ControlFlow::Break(()),
+            false => shown(done, all),
+        };
+        run_on_engine(&arguments.file, &request, &arguments.engine, &progress)
+    })?;
+    show(arguments.format, &outcome, text_of_scene, csv_of_scene)
 }
 
 fn run_variants(arguments: &SceneStudyArguments) -> anyhow::Result<()> {
-    let bar = progress_bar();
-    let progress = moving(&bar);
-    let request = StudyRequest {
-        out: arguments.out.clone(),
-        threads: arguments.threads,
-    };
-    let outcome = run_study(&arguments.file, &request, &progress);
-    bar.finish_and_clear();
-    let outcome = outcome?;
-    match arguments.format {
-        Format::Json => write_json(&outcome),
-        Format::Csv => write_result(&csv_of_study(&outcome)?),
-        Format::Text => write_result(&text_of_study(&outcome)),
-    }
+    let (file, request) = (&arguments.file, &arguments.request);
+    let outcome = with_bar(|progress| run_study(file, request, progress))?;
+    show(arguments.format, &outcome, text_of_study, csv_of_study)
 }

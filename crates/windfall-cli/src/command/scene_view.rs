@@ -2,7 +2,7 @@
 
 use crate::args::format::Format;
 use crate::args::scene_view::{ScenePictureArguments, SceneVtkArguments};
-use crate::command::fit::{moving, progress_bar};
+use crate::command::fit::with_bar;
 use crate::show::{write_json, write_result};
 use windfall_files::option_value::{positive, quantity, unusable};
 use windfall_scene_run::frames::view::{PictureRequest, draw_scene, vtk_of_scene};
@@ -17,7 +17,7 @@ pub fn picture(arguments: &ScenePictureArguments) -> anyhow::Result<()> {
         most: most
             .map(|text| positive("--largest-force", text, "N"))
             .transpose()?,
-        theme: arguments.theme.into(),
+        theme: arguments.theme,
         out: arguments.out.clone(),
     };
     let outcome = draw_scene(&arguments.run, &request)?;
@@ -52,11 +52,8 @@ fn angles(text: &str) -> Result<[f64; 2], windfall_files::error::Error> {
 
 /// Writes files for ParaView.
 pub fn vtk(arguments: &SceneVtkArguments) -> anyhow::Result<()> {
-    let bar = progress_bar();
-    let progress = moving(&bar);
-    let outcome = vtk_of_scene(&arguments.run, arguments.out.as_deref(), &progress);
-    bar.finish_and_clear();
-    let outcome = outcome?;
+    let out = arguments.out.as_deref();
+    let outcome = with_bar(|progress| vtk_of_scene(&arguments.run, out, progress))?;
     match arguments.format {
         Format::Json => write_json(&outcome),
         Format::Csv => write_result(&format!("file\n{}\n", outcome.collection.display())),

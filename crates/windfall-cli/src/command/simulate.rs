@@ -1,28 +1,23 @@
 //! `windfall simulate`
 
-use crate::args::end::end_text;
 use crate::args::format::Format;
 use crate::args::simulate::{
     SimulateArguments, SimulateCarriageArguments, SimulateCompressionArguments, SimulateEvent,
     SimulateImpactArguments, SimulatePendulumArguments, SimulateRepeatsArguments,
     SimulateTapArguments,
 };
-use crate::show::{message, write_json, write_result, written};
-use windfall_simulate::campaign::Weighed;
-use windfall_simulate::compression::{SimulateCompressionRequest, simulate_compression};
+use crate::show::{message, show, show_motion, write_result, written};
+use std::path::Path;
+use windfall_simulate::compression::simulate_compression;
 use windfall_simulate::example::write_example;
 use windfall_simulate::figure::write_impact_figure;
-use windfall_simulate::impact::SimulatedMotion;
-use windfall_simulate::repeats::{SimulateRepeatsRequest, Spots, simulate_repeats};
-use windfall_simulate::request::event::{
-    CarriageRequest, PendulumRequest, carriage_event, impact_of_event, motion_of_event,
-    pendulum_event,
-};
-use windfall_simulate::request::instrument::{
-    PendulumInstrument, instrument_of_carriage, instrument_of_pendulum,
-};
-use windfall_simulate::request::recordings::{RecordingsRequest, simulate_recordings};
-use windfall_simulate::taps::{SimulateTapsRequest, simulate_taps};
+use windfall_simulate::files::Weighed;
+use windfall_simulate::repeats::simulate_repeats;
+use windfall_simulate::request::event::{Event, impact_of_event, motion_of_event};
+use windfall_simulate::request::impact::{carriage_event, impact_event, pendulum_event};
+use windfall_simulate::request::instrument::{instrument_of_carriage, instrument_of_pendulum};
+use windfall_simulate::request::recordings::simulate_recordings;
+use windfall_simulate::taps::simulate_taps;
 use windfall_simulate::text::{
     csv_of_motion, csv_of_simulation, json_of_motion, text_of_simulation,
 };
@@ -41,171 +36,88 @@ pub fn run(arguments: &SimulateArguments) -> anyhow::Result<()> {
 }
 
 fn compression(arguments: &SimulateCompressionArguments) -> anyhow::Result<()> {
-    let request = SimulateCompressionRequest {
-        law: arguments.law.clone(),
-        laws: arguments.laws.clone(),
-        rates: arguments.rates.clone(),
-        deformation: arguments.deformation.clone(),
-        radius: arguments.radius.clone(),
-        plates: arguments.plates,
-        yield_force: arguments.yield_force.clone(),
-        fruit: arguments.fruit,
-        spread: arguments.spread,
-        force_noise: arguments.force_noise.clone(),
-        sampling_rate: arguments.sampling_rate.clone(),
-        seed: arguments.seed,
-    };
-    let written = simulate_compression(&arguments.directory, &request)?;
-    write_result(&format!(
-        "{} files in {directory}\n\nNext:\n  windfall fit {directory}\n",
-        written.len(),
-        directory = arguments.directory.display()
-    ))
+    let files = simulate_compression(&arguments.directory, &arguments.request)?;
+    next(&arguments.directory, files.len())
 }
 
 fn tap(arguments: &SimulateTapArguments) -> anyhow::Result<()> {
-    let request = SimulateTapsRequest {
-        frequency: arguments.frequency.clone(),
-        quality: arguments.quality,
-        mass: arguments.mass.clone(),
-        fruit: arguments.fruit,
-        taps: arguments.taps,
-        spread: arguments.spread,
-        split: arguments.split,
-        signal_to_noise: arguments.signal_to_noise,
-        file: arguments.file.clone(),
-        sampling_rate: arguments.sampling_rate.clone(),
-        seed: arguments.seed,
-    };
-    let written = simulate_taps(&arguments.directory, &request)?;
+    let files = simulate_taps(&arguments.directory, &arguments.request)?;
+    next(&arguments.directory, files.len())
+}
+
+fn next(directory: &Path, files: usize) -> anyhow::Result<()> {
+    let directory = directory.display();
     write_result(&format!(
-        "{} files in {directory}\n\nNext:\n  windfall fit {directory}\n",
-        written.len(),
-        directory = arguments.directory.display()
+        "{files} files in {directory}\n\nNext:\n  windfall fit {directory}\n"
     ))
 }
 
 fn repeats(arguments: &SimulateRepeatsArguments) -> anyhow::Result<()> {
-    let request = SimulateRepeatsRequest {
-        fruit: arguments.fruit,
-        energies: arguments.energies.clone(),
-        repeats: arguments.repeats,
-        spots: match arguments.spots.as_str() {
-            "fresh" => Spots::Fresh,
-            _ => Spots::Same,
-        },
-        critical_energy: arguments.critical_energy.clone(),
-        spread: arguments.spread,
-        mass: arguments.mass.clone(),
-        force_noise: arguments.force_noise.clone(),
-        velocity_scatter: arguments.velocity_scatter,
-        sampling_rate: arguments.sampling_rate.clone(),
-        seed: arguments.seed,
-    };
-    let recordings = simulate_repeats(&arguments.directory, &request)?;
+    let recordings = simulate_repeats(&arguments.directory, &arguments.request)?;
     written(&arguments.directory, recordings, arguments.format)
 }
 
 fn impact(arguments: &SimulateImpactArguments) -> anyhow::Result<()> {
-    let event = carriage_event(&CarriageRequest {
-        law: arguments.law.clone(),
-        laws: arguments.laws.clone(),
-        mass: arguments.mass.clone(),
-        velocity: arguments.velocity.clone(),
-        driving_acceleration: arguments.driving_acceleration.clone(),
-        end: end_text(arguments.end),
-    })?;
+    let event = impact_event(&arguments.request)?;
     let impact = impact_of_event(&event)?;
     if let Some(path) = &arguments.plot {
         for written in write_impact_figure(path, &event)? {
             message(&format!("written: {}", written.display()));
         }
     }
-    match arguments.format {
-        Format::Json => write_json(&impact),
-        Format::Csv => write_result(&csv_of_simulation(&impact)?),
-        Format::Text => write_result(&text_of_simulation(&impact)),
-    }
+    show(
+        arguments.format,
+        &impact,
+        text_of_simulation,
+        csv_of_simulation,
+    )
 }
 
 fn carriage(arguments: &SimulateCarriageArguments) -> anyhow::Result<()> {
-    let event = carriage_event(&CarriageRequest {
-        law: arguments.law.clone(),
-        laws: arguments.laws.clone(),
-        mass: arguments.mass.clone(),
-        velocity: arguments.velocity.clone(),
-        driving_acceleration: arguments.driving_acceleration.clone(),
-        end: end_text(arguments.end),
-    })?;
-    let Some(directory) = &arguments.recordings else {
-        return show_motion(&motion_of_event(&event, &arguments.rate)?, arguments.format);
+    let request = &arguments.request;
+    let event = carriage_event(request)?;
+    let Some(directory) = &request.recordings else {
+        return motion(&event, &request.rate, arguments.format);
     };
-    let mut sensors = arguments.sensors.clone();
+    let mut sensors = request.sensors.clone();
     if sensors.is_empty() {
         sensors = ["force", "position"].map(str::to_owned).to_vec();
     }
     let instrument = instrument_of_carriage(&sensors)?;
-    let request = RecordingsRequest {
-        spread: arguments.spread.clone(),
-        specimens: arguments.specimens,
-        repeats: arguments.repeats,
-        weighed: match arguments.unweighed {
-            true => Weighed::FromImpulse,
-            false => Weighed::Given,
-        },
-        seed: arguments.seed,
+    let weighed = match request.unweighed {
+        true => Weighed::FromImpulse,
+        false => Weighed::Given,
     };
-    let count = simulate_recordings(&event, instrument, &request, directory)?;
+    let (specimens, drawn) = (&request.specimens, (weighed, request.seed));
+    let count = simulate_recordings(&event, instrument, specimens, drawn, directory)?;
     written(directory, count, arguments.format)
 }
 
 fn pendulum(arguments: &SimulatePendulumArguments) -> anyhow::Result<()> {
-    if let Some(directory) = &arguments.example {
-        let recordings = write_example(directory, arguments.seed)?;
+    let request = &arguments.request;
+    if let Some(directory) = &request.example {
+        let recordings = write_example(directory, request.seed)?;
         return written(directory, recordings, arguments.format);
     }
-    let event = pendulum_event(&PendulumRequest {
-        law: arguments.law.clone().unwrap_or_default(),
-        laws: arguments.laws.clone(),
-        inertia: arguments.inertia.clone(),
-        arm: arguments.arm.clone(),
-        mass: arguments.mass.clone(),
-        centre_of_mass: arguments.centre_of_mass.clone(),
-        velocity: arguments.velocity.clone(),
-        end: end_text(arguments.end),
-    })?;
-    let Some(directory) = &arguments.recordings else {
-        return show_motion(&motion_of_event(&event, &arguments.rate)?, arguments.format);
+    let event = pendulum_event(request)?;
+    let Some(directory) = &request.recordings else {
+        return motion(&event, &request.instrument.rate, arguments.format);
     };
-    let instrument = PendulumInstrument {
-        rate: arguments.rate.clone(),
-        encoder: arguments.encoder.clone(),
-        counts_per_revolution: arguments.counts_per_revolution,
-        sensitivity: arguments.sensitivity.clone(),
-        noise: arguments.noise.clone(),
-        bits: arguments.bits,
-        range: arguments.range.clone(),
-    };
-    let request = RecordingsRequest {
-        spread: arguments.spread.clone(),
-        specimens: arguments.specimens,
-        repeats: arguments.repeats,
-        weighed: Weighed::Given,
-        seed: arguments.seed,
-    };
-    let instrument = instrument_of_pendulum(&instrument, &event)?;
-    let count = simulate_recordings(&event, instrument, &request, directory)?;
+    let instrument = instrument_of_pendulum(&request.instrument, &event)?;
+    let (specimens, drawn) = (&request.specimens, (Weighed::Given, request.seed));
+    let count = simulate_recordings(&event, instrument, specimens, drawn, directory)?;
     written(directory, count, arguments.format)
 }
 
-fn show_motion(motion: &SimulatedMotion, format: Format) -> anyhow::Result<()> {
-    match format {
-        Format::Json => write_json(&json_of_motion(motion)),
-        Format::Csv => write_result(&csv_of_motion(motion)?),
-        Format::Text => write_result(&format!(
-            "{}\nThe motion, {} samples: --format csv or json.\n",
+fn motion(event: &Event, rate: &str, format: Format) -> anyhow::Result<()> {
+    let motion = motion_of_event(event, rate)?;
+    show_motion(
+        format,
+        (
             text_of_simulation(&motion.impact),
-            motion.trajectory.times.len()
-        )),
-    }
+            motion.trajectory.times.len(),
+        ),
+        || json_of_motion(&motion),
+        || csv_of_motion(&motion),
+    )
 }

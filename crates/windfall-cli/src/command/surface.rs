@@ -1,8 +1,7 @@
 //! `windfall surface`
 
-use crate::args::format::Format;
 use crate::args::surface::SurfaceArguments;
-use crate::show::{write_json, write_result};
+use crate::show::show;
 use windfall_files::option_value::unusable;
 use windfall_tables::surface::run::{AnovaType, SurfaceRequest, surface};
 use windfall_tables::surface::text::{csv_of_surface, text_of_surface};
@@ -41,9 +40,5 @@ pub fn run(arguments: &SurfaceArguments) -> anyhow::Result<()> {
         grid_points: arguments.grid_points,
         figures: arguments.drawn.folder(),
     })?;
-    match arguments.format {
-        Format::Json => write_json(&outcome),
-        Format::Csv => write_result(&csv_of_surface(&outcome)?),
-        Format::Text => write_result(&text_of_surface(&outcome)),
-    }
+    show(arguments.format, &outcome, text_of_surface, csv_of_surface)
 }
