@@ -104,14 +104,18 @@ fn write_drawing(
         source,
     })?;
     let svg = drawing.svg(folder.theme.colours());
-    let png = png_of_svg(&svg, PRINT)?;
+    let png = match cfg!(feature = "png") {
+        true => Some(png_of_svg(&svg, PRINT)?),
+        false => None,
+    };
     let name = file_name(name);
     let mut files = Vec::new();
     for (ending, contents) in [
-        ("csv", csv.as_bytes()),
-        ("png", &png[..]),
-        ("svg", svg.as_bytes()),
+        ("csv", Some(csv.as_bytes())),
+        ("png", png.as_deref()),
+        ("svg", Some(svg.as_bytes())),
     ] {
+        let Some(contents) = contents else { continue };
         let path = directory.join(format!("{name}.{ending}"));
         write_whole(&path, contents)?;
         files.push(path);

@@ -189,6 +189,12 @@ pub enum Error {
         "the likelihood of the population cannot be computed: an impact's likelihood does not determine all parameters of the law; leave out the impacts whose fit found parameters inseparable, or hold a parameter"
     )]
     NoPopulation,
+    /// Posteriors are not part of this build.
+    #[error(
+        "this build of windfall draws no posteriors (its cargo feature `sampler` is off): choose \
+         other intervals, or build it with the feature"
+    )]
+    NoSampler,
     /// The law refuses the values.
     #[error(transparent)]
     Law(#[from] windfall_contact::error::Error),

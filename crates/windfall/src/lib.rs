@@ -32,6 +32,10 @@
 //! assert!(impact.restitution < 1.0 && impact.peak_force > 0.0);
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
+//!
+//! Two cargo features, both on by default, bring most of the crates below windfall: `png`
+//! draws figures as PNG beside SVG, `sampler` draws posteriors. Without them windfall says
+//! what is missing when it is asked for.
 
 /// What another program needs.
 pub mod prelude {

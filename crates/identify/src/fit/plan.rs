@@ -14,6 +14,7 @@ use crate::fit::starting_values::impact_scales;
 use crate::rig::kind::Rig;
 use crate::rig::motion::Motion;
 use crate::rig::simulate::trajectory;
+use crate::sampler::check_sampler;
 use crate::samples::{Quantity, SampleGroup};
 use windfall_contact::impact_law::ImpactScales;
 use windfall_contact::laws::kind::LawKind;
@@ -49,6 +50,9 @@ pub(crate) fn plan<'a>(
     problem: &'a LawProblem,
     options: &'a FitOptions,
 ) -> Result<Plan<'a>, Error> {
+    if options.intervals.method == IntervalMethod::Posterior {
+        check_sampler()?;
+    }
     let description = problem.kind.describe();
     if problem.free_positions().next().is_none() {
         return Err(Error::NothingToFit {

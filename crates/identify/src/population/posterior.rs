@@ -9,7 +9,7 @@ use crate::population::level::{Level, Normal};
 use crate::population::model::{
     Expand, Expansion, PopulationData, PopulationFit, PopulationOptions,
 };
-use crate::sampler::{Drawing, LogDensity, draw_chains};
+use crate::sampler::{Drawing, LogDensity, check_sampler, draw_chains};
 use nalgebra::{DMatrix, DVector};
 use std::cell::{Cell, RefCell};
 use windfall_statistics::chain_diagnostics::ChainDiagnostics;
@@ -122,6 +122,7 @@ pub fn population_posterior(
     drawing: &Drawing,
     progress: &dyn Fn(usize, usize),
 ) -> Result<PopulationPosterior, Error> {
+    check_sampler()?;
     let model = (expand, progress);
     let hierarchy = Hierarchy::new(data, fit, model, options).ok_or(Error::NoPopulation)?;
     let mut drawn = vec![Vec::new(); hierarchy.quantities()];
