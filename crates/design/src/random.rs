@@ -25,12 +25,6 @@ pub fn below(generator: &mut ChaCha8Rng, bound: usize) -> usize {
     }
 }
 
-/// A number from −1 to 1, uniform.
-pub fn coordinate(generator: &mut ChaCha8Rng) -> f64 {
-    let unit = (generator.next_u64() >> 11) as f64 / (1_u64 << 53) as f64;
-    2.0 * unit - 1.0
-}
-
 /// Puts items into a random order (Fisher and Yates).
 pub fn shuffle<T>(generator: &mut ChaCha8Rng, items: &mut [T]) {
     for last in (1..items.len()).rev() {

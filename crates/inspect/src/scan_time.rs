@@ -102,7 +102,7 @@ impl TimeScan {
         {
             return Some(last);
         }
-        let (stride, kept) = (self.times.stride(), self.times.kept());
+        let (stride, kept) = (self.times.stride, &self.times.kept);
         let place = (row / stride) as usize;
         let known = |at: usize| {
             let time = kept.get(at).copied().filter(|time| time.is_finite())?;

@@ -39,10 +39,7 @@ pub fn free_acceleration(times: &[f64], values: &[f64], place: &Surroundings) ->
     let n = free.len() as f64;
     let mean = free.iter().sum::<f64>() / n;
     let squares: f64 = free.iter().map(|a| (a - mean).powi(2)).sum();
-    Some(Uncertain {
-        value: mean,
-        sd: (squares / (n - 1.0) / n).sqrt(),
-    })
+    Some(Uncertain::new(mean, (squares / (n - 1.0) / n).sqrt()))
 }
 
 /// Compares a force with the acceleration of the mass that it slows down.

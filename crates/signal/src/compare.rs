@@ -60,10 +60,7 @@ pub(crate) fn compare(
     };
     if let (Some(force), Some(mass)) = (&signals.force, options.effective_mass) {
         let free = free_acceleration(&acceleration.times, &acceleration.values, place);
-        let free = free.unwrap_or(Uncertain {
-            value: options.driving_acceleration,
-            sd: 0.0,
-        });
+        let free = free.unwrap_or(Uncertain::new(options.driving_acceleration, 0.0));
         let (force, motion) = (pair(force), pair(acceleration));
         if let Some(check) = check_force(force, motion, window, mass, free.value) {
             let sd = ratio_deviations(&measured, signals, place, free.sd, mass);

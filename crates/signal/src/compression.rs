@@ -118,41 +118,25 @@ pub struct CompressionCurve {
 
 /// What a curve cannot be made of.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[allow(missing_docs, reason = "each message names its fields")]
 pub enum CompressionError {
-    /// Too few samples.
     #[error("{samples} samples of force and position; at least {least} are needed")]
-    TooFewSamples {
-        /// Samples.
-        samples: usize,
-        /// Samples needed.
-        least: usize,
-    },
-    /// The force never rises.
+    TooFewSamples { samples: usize, least: usize },
     #[error(
         "the largest force is {largest:.4} N and the fruit counts as touched from {threshold:.4} N; \
          if force is recorded as negative in compression, set sign = -1 in [channels.force]; or \
          lower `touch_force` in [compression]"
     )]
-    NoTouch {
-        /// Largest force; N.
-        largest: f64,
-        /// Force of touch; N.
-        threshold: f64,
-    },
-    /// Hardly any loading.
+    NoTouch { largest: f64, threshold: f64 },
     #[error(
         "only {samples} samples lie between touch (at {time:.3} s) and the end of the loading; at \
          least {least} are needed. Check the channels, or the time range in impacts.csv"
     )]
     NoLoading {
-        /// Samples of the loading.
         samples: usize,
-        /// Time of touch; s.
         time: f64,
-        /// Samples needed.
         least: usize,
     },
-    /// The position does not move.
     #[error("the position does not change while the force rises; check its column")]
     NoMotion,
 }

@@ -200,12 +200,12 @@ pub(crate) fn add_tip_force(
             force.noise *= factor;
         }
         (None, _) => {
-            return Err(Error::BadOption {
-                option: "tip mass",
-                value: tip,
-                expected: "a mass below the effective mass of the rig, which must be given (not \
+            return Err(Error::bad_option(
+                "tip mass",
+                tip,
+                "a mass below the effective mass of the rig, which must be given (not \
                            found from impulse) where no acceleration was measured",
-            });
+            ));
         }
     }
     findings.push(Finding::TipMass {

@@ -229,12 +229,8 @@ fn contacts(
     };
     let scale = tracks.position.as_ref().and_then(|p| p.arm).unwrap_or(1.0);
     let values: Vec<f64> = track.values.iter().map(|v| v * scale).collect();
-    let found =
-        deceleration(&track.times, &values, motion).ok_or_else(|| Error::TooFewSamples {
-            channel: track.name.clone(),
-            samples: track.values.len(),
-            least: 3,
-        })?;
+    let found = deceleration(&track.times, &values, motion)
+        .ok_or_else(|| Error::too_few_samples(track.name.clone(), track.values.len(), 3))?;
     let contacts = find_contacts(
         &signal(track, "m/s²", &found.times, &found.values),
         &trigger,

@@ -79,12 +79,6 @@ pub fn rate_quantum(count_length: f64, interval: f64) -> f64 {
     count_length / (2.0 * interval)
 }
 
-/// Sampling rate above which no state of the encoder is missed, v/q; Hz.
-#[must_use]
-pub fn least_sampling_rate(speed: f64, count_length: f64) -> f64 {
-    speed.abs() / count_length
-}
-
 /// Odd number of samples that spans about a tenth of the contact, and is long
 /// enough for a local cubic.
 #[must_use]
@@ -120,8 +114,6 @@ mod tests {
         assert!((q / 8.813912723e-6 - 1.0).abs() < 1e-9);
         assert!((rate_quantum(q, 5e-6) / 0.8813912723 - 1.0).abs() < 1e-9);
         assert!((0.001109922 / q / 125.9284103 - 1.0).abs() < 1e-6);
-        // The sampling rate is the limit exactly at the largest speed.
-        assert!((least_sampling_rate(1.762782545, q) / 200e3 - 1.0).abs() < 1e-9);
         let q = count_length(20_000.0, 0.577);
         assert!((q / 0.0001812698961 - 1.0).abs() < 1e-9);
     }

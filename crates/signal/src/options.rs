@@ -98,13 +98,7 @@ impl Default for ExtractOptions {
 }
 
 pub(crate) fn check_options(options: &ExtractOptions) -> Result<(), Error> {
-    let bad = |option, value, expected| {
-        Err(Error::BadOption {
-            option,
-            value,
-            expected,
-        })
-    };
+    let bad = |option, value, expected| Err(Error::bad_option(option, value, expected));
     for (option, margin) in [
         ("margin before contact", options.margin_before),
         ("margin after contact", options.margin_after),

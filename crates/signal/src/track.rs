@@ -1,7 +1,7 @@
 //! Channels of a recording, checked and turned into what an impact consists of.
 
 use crate::encoder::quadrature::{Decoded, ILLEGAL_SHARE, IllegalTransition, decode_quadrature};
-use crate::error::Error;
+use crate::error::{Error, positive};
 use crate::finding::Finding;
 use crate::kinematics::{Encoder, count_length};
 use crate::noise::estimate::quantum;
@@ -242,17 +242,6 @@ fn positive_arm(channel: &str, quantity: Quantity, geometry: &Geometry) -> Resul
             needed: "the length of the arm, for example arm = \"0.505 m\"",
         }),
     }
-}
-
-fn positive(option: &'static str, value: f64) -> Result<f64, Error> {
-    if value > 0.0 && value.is_finite() {
-        return Ok(value);
-    }
-    Err(Error::BadOption {
-        option,
-        value,
-        expected: "a positive number",
-    })
 }
 
 /// Mean time between samples; 0 of one sample; s.

@@ -64,21 +64,6 @@ pub fn standard_deviation(values: &[f64]) -> f64 {
     variance(values).sqrt()
 }
 
-/// Autocorrelation at lag one, r₁ = Σ (yᵢ - ȳ)(yᵢ₊₁ - ȳ) / Σ (yᵢ - ȳ)².
-/// NaN where the values do not vary.
-#[must_use]
-pub fn lag_one_autocorrelation(values: &[f64]) -> f64 {
-    let centre = mean(values);
-    let read = reading_of(values);
-    let deviation = |value: f64| read(value) - centre;
-    let products = values
-        .windows(2)
-        .fold(DoubleDouble::default(), |sum, pair| {
-            sum + deviation(pair[0]) * deviation(pair[1])
-        });
-    products.value() / squares_about(values, centre).value()
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -96,7 +81,5 @@ mod tests {
         let shift = 2f64.powi(40);
         let values = [shift + 1.0, shift + 2.0, shift + 3.0, shift + 4.0];
         assert_eq!(variance(&values), 5.0 / 3.0);
-        // r₁ = (0.75 - 0.25 + 0.75) / 5
-        assert_eq!(lag_one_autocorrelation(&values), 0.25);
     }
 }

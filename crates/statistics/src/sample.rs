@@ -15,11 +15,7 @@ pub fn check_sample(what: &str, values: &[f64], needed: usize) -> Result<(), Sam
         });
     }
     if values.len() < needed {
-        return Err(SampleError::TooFewValues {
-            what: what.to_owned(),
-            found: values.len(),
-            needed,
-        });
+        return Err(SampleError::too_few(what, values.len(), needed));
     }
     Ok(())
 }
@@ -35,11 +31,7 @@ pub fn check_pairs(
     needed: usize,
 ) -> Result<(), SampleError> {
     if first.len() != second.len() {
-        return Err(SampleError::LengthsDiffer {
-            what: what.to_owned(),
-            first: first.len(),
-            second: second.len(),
-        });
+        return Err(SampleError::lengths(what, first.len(), second.len()));
     }
     check_sample(what, first, needed)?;
     check_sample(what, second, needed)

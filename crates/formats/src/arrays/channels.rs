@@ -113,11 +113,9 @@ fn add_channels(at: usize, array: &Array, name: &str, tree: &mut Tree, listing: 
 /// The first of the last `many` channels is the time of the others.
 fn first_is_time(name: &str, many: usize, tree: &mut Tree, listing: &mut Listing) {
     let first = listing.channels.len() - many;
-    tree.notes.push(Note::Assumed {
-        what: format!(
-            "the first column of \"{name}\" rises evenly and is taken as the time in seconds"
-        ),
-    });
+    tree.notes.push(Note::Assumed(format!(
+        "the first column of \"{name}\" rises evenly and is taken as the time in seconds"
+    )));
     for channel in &mut listing.channels[first + 1..] {
         channel.time = TimeBase::Channel(first);
     }
@@ -150,14 +148,12 @@ fn place_of(mut k: u64, others: &[Extent]) -> (String, u64) {
 
 fn rows_are_channels(array: &Array, samples: u64) -> Note {
     let shape: Vec<String> = array.extents.iter().map(|e| e.length.to_string()).collect();
-    Note::Assumed {
-        what: format!(
-            "\"{}\" is {}: the extent of {samples} is taken as the samples; transpose it before \
+    Note::Assumed(format!(
+        "\"{}\" is {}: the extent of {samples} is taken as the samples; transpose it before \
              it is saved if that is wrong",
-            array.path.join("/"),
-            shape.join(" × "),
-        ),
-    }
+        array.path.join("/"),
+        shape.join(" × "),
+    ))
 }
 
 /// A text named "unit" beside a single array gives its unit.

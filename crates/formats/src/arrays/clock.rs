@@ -95,11 +95,11 @@ pub(crate) fn time_bases(tree: &Tree, listing: &mut Listing) -> Vec<Note> {
             None => assumed.push((by, 1)),
         }
     }
-    let note = |(by, channels): (String, usize)| Note::Assumed {
-        what: format!(
+    let note = |(by, channels): (String, usize)| {
+        Note::Assumed(format!(
             "{by} of {channels} {}, because of its name",
             if channels == 1 { "channel" } else { "channels" }
-        ),
+        ))
     };
     assumed.into_iter().map(note).collect()
 }

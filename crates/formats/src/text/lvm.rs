@@ -387,9 +387,9 @@ fn add_channels(
     }
     for cells in &segment.header {
         if cells[0] == "Notes" && cells.len() > 1 && !cells[1].is_empty() {
-            contents.notes.push(Note::Odd {
-                what: format!("the file says: {}", cells[1]),
-            });
+            contents
+                .notes
+                .push(Note::Odd(format!("the file says: {}", cells[1])));
         }
     }
     Ok(columns)

@@ -94,8 +94,8 @@ pub fn find_bounces(channel: &Channel, options: &BounceOptions) -> Result<Bounce
     let ringing = match options.plate {
         PlateRinging::Find => pooled(&rings),
         _ => plate.map(|(period, damping_ratio)| PooledRinging {
-            period: exact(period),
-            damping_ratio: exact(damping_ratio),
+            period: Uncertain::exact(period),
+            damping_ratio: Uncertain::exact(damping_ratio),
             bounces: 0,
         }),
     };
@@ -154,10 +154,6 @@ pub fn find_bounces(channel: &Channel, options: &BounceOptions) -> Result<Bounce
     })
 }
 
-fn exact(value: f64) -> Uncertain {
-    Uncertain { value, sd: 0.0 }
-}
-
 fn interval(times: &[f64]) -> f64 {
     (times[times.len() - 1] - times[0]) / (times.len() - 1) as f64
 }
@@ -170,19 +166,13 @@ fn is_even(times: &[f64]) -> bool {
 
 fn check(channel: &Channel, options: &BounceOptions) -> Result<(), Error> {
     if channel.samples.len() < LEAST_RECORDING {
-        return Err(Error::TooFewSamples {
-            channel: channel.name.clone(),
-            samples: channel.samples.len(),
-            least: LEAST_RECORDING,
-        });
+        return Err(Error::too_few_samples(
+            channel.name.clone(),
+            channel.samples.len(),
+            LEAST_RECORDING,
+        ));
     }
-    let bad = |option, value, expected| {
-        Err(Error::BadOption {
-            option,
-            value,
-            expected,
-        })
-    };
+    let bad = |option, value, expected| Err(Error::bad_option(option, value, expected));
     let level = match options.threshold {
         Threshold::Fixed(force) => force,
         Threshold::Automatic { deviations, .. } => deviations,
@@ -236,12 +226,11 @@ fn levelled(samples: &[f64], options: &BounceOptions) -> Levelled {
         before.level.value = found;
     }
     let level = match options.static_level {
-        StaticLevel::Given(value) => exact(value),
+        StaticLevel::Given(value) => Uncertain::exact(value),
         StaticLevel::BeforeFirst => before.level,
-        StaticLevel::Follow => Uncertain {
-            value: before.level.value,
-            sd: before.noise / (block as f64).sqrt(),
-        },
+        StaticLevel::Follow => {
+            Uncertain::new(before.level.value, before.noise / (block as f64).sqrt())
+        }
     };
     let follow = options.static_level == StaticLevel::Follow || moves(&quiet, before.noise);
     let levels = match follow {
@@ -319,14 +308,7 @@ fn contacts(
         contact = smoothed(smoothing);
     }
     let own = noise * contact.noise_gain;
-    let on = match options.threshold {
-        Threshold::Fixed(force) => force,
-        Threshold::Automatic {
-            deviations,
-            least,
-            share,
-        } => (deviations * own).max(least).max(share * largest(&contact)),
-    };
+    let on = options.threshold.level(own, largest(&contact));
     let hysteresis = Hysteresis {
         on,
         off: options.release * on,
@@ -419,7 +401,7 @@ fn measured(
         bounces.push(Bounce {
             onset: onset.time,
             onset_shape: onset.shape,
-            end: end.unwrap_or(exact(signals.times[n - 1])),
+            end: end.unwrap_or(Uncertain::exact(signals.times[n - 1])),
             peak: largest.force,
             peak_time: largest.time,
             first_peak: first.force,
@@ -474,14 +456,16 @@ fn window(
 fn intervals(bounces: &[Bounce]) -> Vec<Uncertain> {
     bounces
         .windows(2)
-        .map(|pair| Uncertain {
-            value: pair[1].onset.value - pair[0].onset.value,
-            sd: pair[0]
-                .onset
-                .sd
-                .hypot(pair[1].onset.sd)
-                .hypot(pair[1].onset_shape - pair[0].onset_shape)
-                .hypot(OWN_SHAPE * pair[0].onset_shape.max(pair[1].onset_shape)),
+        .map(|pair| {
+            Uncertain::new(
+                pair[1].onset.value - pair[0].onset.value,
+                pair[0]
+                    .onset
+                    .sd
+                    .hypot(pair[1].onset.sd)
+                    .hypot(pair[1].onset_shape - pair[0].onset_shape)
+                    .hypot(OWN_SHAPE * pair[0].onset_shape.max(pair[1].onset_shape)),
+            )
         })
         .collect()
 }

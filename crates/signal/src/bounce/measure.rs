@@ -187,10 +187,7 @@ pub fn onset(signals: &Signals, alone: &Alone, peak: usize) -> Onset {
     let found = crossing(high, peak).and_then(|high| Some((crossing(low, high.0 + 1)?, high)));
     let Some(((first, low_time, slope), (last, high_time, _))) = found else {
         return Onset {
-            time: Uncertain {
-                value: times[0],
-                sd: signals.interval,
-            },
+            time: Uncertain::new(times[0], signals.interval),
             shape: 0.0,
             seen: false,
         };
@@ -203,10 +200,7 @@ pub fn onset(signals: &Signals, alone: &Alone, peak: usize) -> Onset {
     let coarse = if last - first < 2 { 1.0 } else { f64::INFINITY };
     let back = (0.5 * (short + long)).min(coarse * signals.interval);
     Onset {
-        time: Uncertain {
-            value: low_time - back,
-            sd: (signals.noise / slope).hypot(drawn),
-        },
+        time: Uncertain::new(low_time - back, (signals.noise / slope).hypot(drawn)),
         shape: ((long - short) / 12f64.sqrt()).min(coarse * signals.interval),
         seen: true,
     }
@@ -235,10 +229,10 @@ pub fn end(signals: &Signals, segment: Segment, until: usize) -> Option<Uncertai
     let (sample, high) = crossing(END_LEVELS.0 * force[top], top)?;
     let (_, low) = crossing(END_LEVELS.1 * force[top], sample)?;
     let rest = (low - high) * END_LEVELS.1 / (END_LEVELS.0 - END_LEVELS.1);
-    Some(Uncertain {
-        value: low + rest,
-        sd: (0.5 * rest).hypot(0.3 * signals.interval),
-    })
+    Some(Uncertain::new(
+        low + rest,
+        (0.5 * rest).hypot(0.3 * signals.interval),
+    ))
 }
 
 /// Impulse of the contact force between two samples outside the contact:
@@ -260,10 +254,10 @@ pub fn impulse(signals: &Signals, first: usize, last: usize) -> Uncertain {
     let level = signals.level_sd * (times[last] - times[first]);
     let begin = momentum(signals, first);
     let end = momentum(signals, last);
-    Uncertain {
-        value: area + end.value - begin.value,
-        sd: white.hypot(level).hypot(begin.sd).hypot(end.sd),
-    }
+    Uncertain::new(
+        area + end.value - begin.value,
+        white.hypot(level).hypot(begin.sd).hypot(end.sd),
+    )
 }
 
 /// Momentum of the plate at a sample, as far as its support force tells.
@@ -279,11 +273,10 @@ fn momentum(signals: &Signals, at: usize) -> Uncertain {
     let fit = fit_polynomial(times, &signals.force[first..=last], signals.times[at], 3);
     fit.map_or(Uncertain::default(), |fit| {
         let weights = (2.0 * damping_ratio / natural, 1.0 / (natural * natural));
-        Uncertain {
-            value: weights.0 * fit.derivatives[0] + weights.1 * fit.derivatives[1],
-            sd: signals.noise
-                * (weights.0 * fit.noise_gains[0]).hypot(weights.1 * fit.noise_gains[1]),
-        }
+        Uncertain::new(
+            weights.0 * fit.derivatives[0] + weights.1 * fit.derivatives[1],
+            signals.noise * (weights.0 * fit.noise_gains[0]).hypot(weights.1 * fit.noise_gains[1]),
+        )
     })
 }
 

@@ -67,10 +67,7 @@ pub fn before_contact(values: &[f64]) -> Before {
         .find(|v| (**v - level).abs() > 0.3 * largest)
         .is_some_and(|v| *v < level);
     Before {
-        level: Uncertain {
-            value: level,
-            sd: mean_sd(quiet, noise),
-        },
+        level: Uncertain::new(level, mean_sd(quiet, noise)),
         noise,
         samples,
         largest,

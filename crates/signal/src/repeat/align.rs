@@ -165,13 +165,7 @@ pub fn features(series: &Series, options: &AlignOptions) -> Result<Features, Err
 }
 
 fn check_options(options: &AlignOptions) -> Result<(), Error> {
-    let bad = |option, value, expected| {
-        Err(Error::BadOption {
-            option,
-            value,
-            expected,
-        })
-    };
+    let bad = |option, value, expected| Err(Error::bad_option(option, value, expected));
     let (low, high) = options.rise;
     if !(options.crossing > 0.0 && options.crossing < 0.5) {
         return bad("crossing", options.crossing, "a part between 0 and 0.5");

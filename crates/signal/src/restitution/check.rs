@@ -78,11 +78,11 @@ fn force_scale(
             let factor = due(bounce, other.restitution.value)?;
             let whole = 1.0 + by_impulse.restitution.value.max(-0.9);
             let own = without_mass(by_impulse, mass);
-            Some(Uncertain {
-                value: factor,
-                sd: factor
+            Some(Uncertain::new(
+                factor,
+                factor
                     * (own / whole).hypot(other.restitution.sd / (1.0 + other.restitution.value)),
-            })
+            ))
         })
         .collect();
     if let Some(mean) = mean_mass(&factors) {
@@ -91,10 +91,7 @@ fn force_scale(
         let off = (mean.value - 1.0).abs();
         return (off > SIGNIFICANT * sd && off > MATERIAL).then_some(
             RestitutionFinding::ForceScale {
-                factor: Uncertain {
-                    value: mean.value,
-                    sd,
-                },
+                factor: Uncertain::new(mean.value, sd),
                 impacts: factors.len(),
             },
         );

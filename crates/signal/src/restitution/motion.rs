@@ -111,9 +111,11 @@ fn velocity(
     };
     let fit = fit_polynomial(&times[first..last], &positions[first..last], at, order)?;
     let noise = fit.residual_deviation.max(options.least_noise);
-    let of = |derivative: usize| Uncertain {
-        value: fit.derivatives[derivative],
-        sd: noise * fit.noise_gains[derivative],
+    let of = |derivative: usize| {
+        Uncertain::new(
+            fit.derivatives[derivative],
+            noise * fit.noise_gains[derivative],
+        )
     };
     Some((of(1), (order == 2).then(|| of(2))))
 }
@@ -148,14 +150,11 @@ pub fn restitution_from_impulse_and_motion(
             Some(Restitution {
                 bounce: motion.bounce,
                 method: RestitutionMethod::Impulse,
-                impact_speed: Uncertain {
-                    value: speed,
-                    sd: motion.before.sd,
-                },
-                restitution: Uncertain {
-                    value: ratio - 1.0,
-                    sd: of_change.hypot(ratio * motion.before.sd / speed),
-                },
+                impact_speed: Uncertain::new(speed, motion.before.sd),
+                restitution: Uncertain::new(
+                    ratio - 1.0,
+                    of_change.hypot(ratio * motion.before.sd / speed),
+                ),
             })
         })
         .collect()
@@ -174,14 +173,8 @@ pub fn restitution_from_motion(motions: &[ContactMotion]) -> Vec<Restitution> {
             Restitution {
                 bounce: motion.bounce,
                 method: RestitutionMethod::Velocities,
-                impact_speed: Uncertain {
-                    value: motion.before.value.abs(),
-                    sd: motion.before.sd,
-                },
-                restitution: Uncertain {
-                    value,
-                    sd: of_after.hypot(of_before),
-                },
+                impact_speed: Uncertain::new(motion.before.value.abs(), motion.before.sd),
+                restitution: Uncertain::new(value, of_after.hypot(of_before)),
             }
         })
         .collect()

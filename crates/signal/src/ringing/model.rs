@@ -93,17 +93,17 @@ pub fn fit_ringing(
     let square: f64 = rest.iter().map(|r| (r - mean).powi(2)).sum();
     // ζ = λ/√(λ² + ω_d²) with Q = ω_d/2λ.
     let below = 1.0 + 4.0 * mode.quality * mode.quality;
-    let damping_ratio = Uncertain {
-        value: 1.0 / below.sqrt(),
-        sd: 4.0 * mode.quality * mode.quality_sd / below.powf(1.5),
-    };
+    let damping_ratio = Uncertain::new(
+        1.0 / below.sqrt(),
+        4.0 * mode.quality * mode.quality_sd / below.powf(1.5),
+    );
     Some(Ringing {
         from,
         to: from + (n - 1.0) * interval,
-        period: Uncertain {
-            value: 1.0 / mode.frequency,
-            sd: mode.frequency_sd / mode.frequency.powi(2),
-        },
+        period: Uncertain::new(
+            1.0 / mode.frequency,
+            mode.frequency_sd / mode.frequency.powi(2),
+        ),
         damping_ratio,
         amplitude: mode.amplitude,
         phase: mode.phase,

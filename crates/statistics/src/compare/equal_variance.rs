@@ -55,15 +55,15 @@ fn of_distances<G: AsRef<[f64]>>(
         })
         .collect();
     let found = one_way_anova(&distances).map_err(|error| match error {
-        SampleError::NoSpread { .. } => SampleError::NoSpread {
-            what: "the distances of the values from the centres of their groups".to_owned(),
-        },
+        SampleError::NoSpread(_) => SampleError::NoSpread(
+            "the distances of the values from the centres of their groups".to_owned(),
+        ),
         other => other,
     })?;
     Ok(FTest {
         f: found.f,
-        df_above: found.between_df,
-        df_below: found.within_df,
+        df1: found.between_df,
+        df2: found.within_df,
         p: found.p,
     })
 }
@@ -87,9 +87,7 @@ pub fn bartlett<G: AsRef<[f64]>>(groups: &[G]) -> Result<ChiSquaredTest, SampleE
         let df = values.len() as f64 - 1.0;
         let variance = variance(values);
         if variance <= 0.0 {
-            return Err(SampleError::NoSpread {
-                what: format!("group {}", place + 1),
-            });
+            return Err(SampleError::NoSpread(format!("group {}", place + 1)));
         }
         pooled += df * variance;
         logarithms += df * variance.ln();

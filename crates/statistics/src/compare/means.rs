@@ -157,9 +157,7 @@ fn difference_of(
         unit,
     } = spread;
     if squared_error <= 0.0 {
-        return Err(SampleError::NoSpread {
-            what: "the samples compared".to_owned(),
-        });
+        return Err(SampleError::NoSpread("the samples compared".to_owned()));
     }
     let standard_error = squared_error.sqrt();
     let t = difference / standard_error;

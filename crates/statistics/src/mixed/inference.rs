@@ -9,6 +9,7 @@ use crate::mixed::fit::{MixedFit, MixedMethod};
 use crate::mixed::minimise::{FLAT, differences};
 use crate::mixed::term::{check_finite, check_length};
 use crate::mixed::theta::{blocks_of, entries_from};
+use crate::model::linear_model::Coefficient;
 use nalgebra::{DMatrix, DVector};
 
 /// Eigenvalues of a contrast's covariance below this share of the largest count as
@@ -28,27 +29,6 @@ pub struct VarianceUncertainty {
     pub(crate) slopes: Vec<DMatrix<f64>>,
     /// What the reader should know.
     pub findings: Vec<MixedFinding>,
-}
-
-/// Test of one coefficient or of one combination of coefficients.
-#[derive(Clone, Debug, PartialEq)]
-pub struct CoefficientTest {
-    /// Name of the coefficient.
-    pub name: String,
-    /// Estimate.
-    pub estimate: f64,
-    /// Standard error.
-    pub se: f64,
-    /// Degrees of freedom.
-    pub df: f64,
-    /// Estimate over standard error.
-    pub t: f64,
-    /// Two-sided p-value.
-    pub p: f64,
-    /// Lower end of the confidence interval.
-    pub low: f64,
-    /// Upper end.
-    pub high: f64,
 }
 
 /// Test that several combinations of coefficients are all zero.
@@ -225,7 +205,7 @@ pub fn coefficient_tests(
     fit: &MixedFit,
     uncertainty: &VarianceUncertainty,
     confidence: f64,
-) -> Vec<CoefficientTest> {
+) -> Vec<Coefficient> {
     let p = fit.model.coefficients();
     let tests = (0..p).map(|k| {
         let weights = DVector::from_fn(p, |i, _| f64::from(u8::from(i == k)));
@@ -242,32 +222,6 @@ pub fn coefficient_tests(
     tests.collect()
 }
 
-/// Test of one combination of coefficients.
-///
-/// # Errors
-/// [`MixedError::WrongLength`] unless there is a weight per coefficient.
-pub fn combination_test(
-    fit: &MixedFit,
-    uncertainty: &VarianceUncertainty,
-    name: &str,
-    weights: &[f64],
-    confidence: f64,
-) -> Result<CoefficientTest, MixedError> {
-    let what = format!("weights of {name}");
-    check_length(&what, weights.len(), fit.model.coefficients())?;
-    check_finite(&what, weights)?;
-    let weights = DVector::from_column_slice(weights);
-    let df = contrast_df(uncertainty, &fit.covariance, &weights);
-    Ok(test_of(
-        fit,
-        &fit.covariance,
-        name,
-        &weights,
-        df,
-        confidence,
-    ))
-}
-
 /// t, p and interval with these degrees of freedom.
 pub(crate) fn test_of(
     fit: &MixedFit,
@@ -276,12 +230,12 @@ pub(crate) fn test_of(
     weights: &DVector<f64>,
     df: f64,
     confidence: f64,
-) -> CoefficientTest {
+) -> Coefficient {
     let estimate = weights.dot(&DVector::from_column_slice(&fit.coefficients));
     let se = (weights.transpose() * covariance * weights)[(0, 0)].sqrt();
     let t = estimate / se;
     let half = half_width(confidence, df) * se;
-    CoefficientTest {
+    Coefficient {
         name: name.to_owned(),
         estimate,
         se,

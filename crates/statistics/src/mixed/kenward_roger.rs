@@ -15,8 +15,9 @@
 use crate::distribution::tail::f_upper;
 use crate::mixed::error::MixedError;
 use crate::mixed::fit::{MixedFit, MixedMethod};
-use crate::mixed::inference::{CoefficientTest, FTest, check_contrast, test_of};
+use crate::mixed::inference::{FTest, check_contrast, test_of};
 use crate::mixed::theta::Entry;
+use crate::model::linear_model::Coefficient;
 use nalgebra::{DMatrix, DVector};
 
 /// Random effects of crossed factors at most: their matrices are dense, and this
@@ -335,7 +336,7 @@ pub fn kenward_roger_tests(
     fit: &MixedFit,
     adjusted: &KenwardRoger,
     confidence: f64,
-) -> Vec<CoefficientTest> {
+) -> Vec<Coefficient> {
     let p = fit.model.coefficients();
     let tests = (0..p).map(|k| {
         let weights = DVector::from_fn(p, |i, _| f64::from(u8::from(i == k)));

@@ -4,7 +4,8 @@
 //! choice (Harrell, Regression Modeling Strategies, 2nd ed., §4.3). Cross-validation
 //! with the selection inside tells what it costs.
 
-use crate::model::linear_model::{fisher_upper, log_likelihood, small_sample};
+use crate::distribution::tail::f_upper;
+use crate::model::linear_model::{log_likelihood, small_sample};
 use crate::model::model_frame::ModelFrame;
 use crate::model::reduced::Reduced;
 use crate::model::term_order::{divides, powers_of_terms};
@@ -206,7 +207,7 @@ impl Search<'_> {
         let p = if df == 0.0 {
             1.0
         } else {
-            fisher_upper(f, df, residual_df)
+            f_upper(f, df, residual_df)
         };
         Change { term, f, p, after }
     }

@@ -1,7 +1,8 @@
 //! Which terms contain which.
 
+use crate::model::encoding::Encoding;
 use crate::model::formula_syntax::{Kind, Node, Operator};
-use crate::model::model_frame::{Encoding, ModelFrame};
+use crate::model::model_frame::ModelFrame;
 
 /// Powers of what a term is a product of: `V^2:R` is V twice and R once.
 pub type Powers = Vec<(String, f64)>;

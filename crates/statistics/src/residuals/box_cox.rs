@@ -32,7 +32,8 @@ impl Default for BoxCoxOptions {
 }
 
 /// The profile of the power λ.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, serde::Serialize, utoipa::ToSchema)]
+#[schema(as = BoxCoxOutcome)]
 pub struct BoxCox {
     /// The most likely power: 1 no transform, 0.5 root, 0 logarithm, -1 inverse.
     pub lambda: f64,
@@ -42,8 +43,10 @@ pub struct BoxCox {
     /// Upper end; `None` where it goes on above the highest.
     pub high: Option<f64>,
     /// Log-likelihood at the most likely power, up to a constant.
+    #[serde(skip)]
     pub log_likelihood: f64,
     /// Log-likelihood at equal steps of the power.
+    #[serde(skip)]
     pub profile: Vec<(f64, f64)>,
 }
 
@@ -63,11 +66,11 @@ pub fn box_cox(
     options: &BoxCoxOptions,
 ) -> Result<BoxCox, SampleError> {
     if design.nrows() != response.len() {
-        return Err(SampleError::LengthsDiffer {
-            what: "responses and rows of the design".to_owned(),
-            first: response.len(),
-            second: design.nrows(),
-        });
+        return Err(SampleError::lengths(
+            "responses and rows of the design",
+            response.len(),
+            design.nrows(),
+        ));
     }
     let basis = orthonormal_basis(design);
     check_sample("the response", response, basis.len() + 1)?;

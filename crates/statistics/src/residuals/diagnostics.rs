@@ -3,36 +3,47 @@
 use crate::model::linear_model::{Coefficient, LinearFit, coefficient, student_quantile};
 use crate::model::model_frame::ModelFrame;
 use nalgebra::DMatrix;
+use serde::Serialize;
 
 /// What a row does to a fit.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, utoipa::ToSchema)]
 pub struct RowInfluence {
-    /// Observed less predicted.
+    /// What was observed.
+    pub observed: f64,
+    /// What the model predicts.
+    pub fitted: f64,
+    /// Observed less fitted.
     pub residual: f64,
     /// Diagonal of the hat matrix: 1 where the row alone decides.
     pub leverage: f64,
     /// Residual over its standard error.
     pub standardised: f64,
     /// The same with the variance of the other rows: Student's t of the row.
+    #[schema(value_type = Option<f64>)]
     pub studentised: f64,
     /// Cook's distance (Cook 1977, Technometrics 19, 15-18).
+    #[schema(value_type = Option<f64>)]
     pub cook: f64,
     /// Change of the prediction in its standard errors when the row is left out.
     pub dffits: f64,
 }
 
 /// Influence of each row.
+///
+/// * `y`: the response
 #[must_use]
-pub fn influence(fit: &LinearFit) -> Vec<RowInfluence> {
+pub fn influence(fit: &LinearFit, y: &[f64]) -> Vec<RowInfluence> {
     let (variance, df) = (fit.variance(), fit.residual_df as f64);
     let count = fit.columns.len() as f64;
-    let rows = fit.residuals.iter().zip(&fit.leverages);
-    rows.map(|(residual, leverage)| {
+    let rows = fit.residuals.iter().zip(&fit.leverages).zip(y);
+    rows.map(|((residual, leverage), observed)| {
         let left = 1.0 - leverage;
         let standardised = residual / (variance * left).sqrt();
         let without = (variance * df - residual * residual / left) / (df - 1.0);
         let studentised = residual / (without * left).sqrt();
         RowInfluence {
+            observed: *observed,
+            fitted: observed - residual,
             residual: *residual,
             leverage: *leverage,
             standardised,
@@ -45,7 +56,8 @@ pub fn influence(fit: &LinearFit) -> Vec<RowInfluence> {
 }
 
 /// Variance inflation of a term.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize, utoipa::ToSchema)]
+#[schema(as = InflationOutcome)]
 pub struct Inflation {
     /// The term.
     pub term: String,

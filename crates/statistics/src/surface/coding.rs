@@ -39,6 +39,24 @@ pub struct CodedFactors {
     pub recognised: Recognised,
 }
 
+impl CodedFactors {
+    /// Lowest and highest coded value of a factor.
+    #[must_use]
+    pub fn range(&self, factor: usize) -> (f64, f64) {
+        let values = self.values[factor].iter();
+        values.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), value| {
+            (low.min(*value), high.max(*value))
+        })
+    }
+
+    /// Actual settings of a coded point.
+    #[must_use]
+    pub fn actual(&self, coded: &[f64]) -> Vec<f64> {
+        let pairs = self.factors.iter().zip(coded);
+        pairs.map(|(factor, value)| factor.actual(*value)).collect()
+    }
+}
+
 /// What the levels of a table look like.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Recognised {

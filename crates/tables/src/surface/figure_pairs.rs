@@ -2,7 +2,7 @@
 
 use crate::surface::figure_heights::Heights;
 use crate::surface::fitted::{
-    FittedSurfaces, Shown, SurfaceGrid, pairs_of_factors, surface_grid, value_of,
+    FittedSurfaces, Shown, SurfaceGrid, desirability_at, pairs_of_factors, surface_grid,
 };
 use crate::surface::outcome::SurfaceOutcome;
 use windfall_draw::axis::unit_label;
@@ -194,7 +194,7 @@ pub fn csv_of_pairs(
 pub fn height_at_reference(fitted: &FittedSurfaces, own: &SurfacePairs) -> Option<f64> {
     let response = fitted.responses.iter().find(|r| r.name == own.name);
     match response {
-        Some(response) => Some(value_of(response, &fitted.reference).mean),
-        None => crate::surface::fitted::desirability_at(fitted, &fitted.reference),
+        Some(response) => Some(response.surface.value(&fitted.reference)),
+        None => desirability_at(fitted, &fitted.reference),
     }
 }
