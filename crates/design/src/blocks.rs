@@ -14,9 +14,7 @@ type Counts = [u32; COUNTED_ORDER];
 
 /// Words whose signs divide a two-level design into `blocks` blocks.
 ///
-/// Among all choices the one that mixes the fewest effects of low order with
-/// differences between blocks: first no main effect, then the fewest two-factor
-/// interactions, then three-factor interactions, and so on.
+/// The choice that mixes the fewest effects with blocks, those of low order first.
 ///
 /// # Errors
 /// [`DesignError::BlocksImpossible`] unless the number is a power of two and a

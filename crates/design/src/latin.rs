@@ -126,8 +126,7 @@ impl Search {
         }
     }
 
-    /// Exchanges levels of two random runs while that is an improvement, until
-    /// as many exchanges as there are have been tried in vain.
+    /// Exchanges levels of random runs until as many exchanges as there are failed in a row.
     fn improve(&mut self, generator: &mut ChaCha8Rng, work: &mut usize) {
         let exchanges = self.cells.len() * self.runs * (self.runs - 1) / 2;
         let mut in_vain = 0;
@@ -159,8 +158,7 @@ impl Search {
         change
     }
 
-    /// Change of the squared distance of `first` from another run; that of
-    /// `second` changes by as much the other way.
+    /// Change of the squared distance of `first` from another run, minus that of `second`.
     fn shift(&self, levels: &[i32], first: usize, second: usize, other: usize) -> i32 {
         (levels[second] - levels[other]).pow(2) - (levels[first] - levels[other]).pow(2)
     }

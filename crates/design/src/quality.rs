@@ -2,12 +2,10 @@
 
 use nalgebra::DMatrix;
 
-/// Diagonal elements of R below this part of the largest mean that terms cannot
-/// be told apart; 1.
+/// Diagonal elements of R below this part of the largest mean aliased terms; 1.
 pub const RANK_TOLERANCE: f64 = 1e-9;
 
-/// Figures of a design for a model; variances are in units of the variance of
-/// one run.
+/// Figures of a design for a model; variances in units of that of one run.
 #[derive(Clone, Debug, PartialEq, serde::Serialize)]
 pub struct DesignQuality {
     /// Runs, n.

@@ -12,8 +12,6 @@ pub fn generator(seed: u64, stream: u64) -> ChaCha8Rng {
 }
 
 /// A whole number from 0 below `bound`, all equally likely; 0 for a bound of 0.
-///
-/// Draws that would favour small numbers are thrown away.
 pub fn below(generator: &mut ChaCha8Rng, bound: usize) -> usize {
     let bound = bound.max(1) as u64;
     let favoured = u64::MAX - u64::MAX % bound;

@@ -1,7 +1,6 @@
 //! Products of two-level factors: generators, defining relation, aliases.
 //!
-//! Factors are A, B, C … without I, which is the identity; after Z follow a, b,
-//! c … without i.
+//! Factors are A, B, C … without I, the identity; after Z follow a, b, c … without i.
 
 use crate::error::DesignError;
 use std::collections::BTreeMap;
@@ -161,10 +160,6 @@ impl fmt::Display for AliasChain {
 }
 
 /// Reads a generator, such as `D=ABC` or `E=-AB`.
-///
-/// # Errors
-/// [`DesignError::GeneratorSyntax`], [`DesignError::GeneratorLetter`],
-/// [`DesignError::GeneratorRepeats`].
 pub fn parse_generator(text: &str, names: &[&str]) -> Result<Generator, DesignError> {
     let owned = || text.trim().to_owned();
     let syntax = || DesignError::GeneratorSyntax { text: owned() };
@@ -277,8 +272,7 @@ fn check_chain(generators: &[Generator]) -> Result<(), DesignError> {
     Ok(())
 }
 
-/// Chains of effects of up to `order` factors that cannot be told apart; only
-/// those of two or more effects.
+/// Chains of two or more aliased effects of up to `order` factors.
 #[must_use]
 pub fn aliases(fraction: &Fraction, order: usize) -> Vec<AliasChain> {
     // Effects with the same column in base factors are aliased.

@@ -21,6 +21,26 @@ pub enum Format {
     Sigrok,
 }
 
+impl Format {
+    /// Every format with its name on the command line and in campaigns.
+    pub const NAMES: [(&'static str, Self); 8] = [
+        ("text", Self::Text),
+        ("lvm", Self::Lvm),
+        ("tdms", Self::Tdms),
+        ("mat", Self::Mat),
+        ("hdf5", Self::Hdf5),
+        ("wav", Self::Wav),
+        ("uff58", Self::Uff58),
+        ("sigrok", Self::Sigrok),
+    ];
+
+    /// Whether cells may be blank, which means that there is no sample.
+    #[must_use]
+    pub fn has_blank_cells(self) -> bool {
+        matches!(self, Self::Text | Self::Lvm)
+    }
+}
+
 impl std::fmt::Display for Format {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         f.write_str(match self {
@@ -55,8 +75,7 @@ pub enum TimeBase {
 /// One channel of a file.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ChannelContents {
-    /// Name used in campaigns; unique within the file. Groups and nested objects are
-    /// joined by "/".
+    /// Name used in campaigns, unique within the file; groups are joined by "/".
     pub name: String,
     /// Unit as written in the file.
     pub unit: Option<String>,

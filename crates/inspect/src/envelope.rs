@@ -18,10 +18,8 @@ pub struct Bucket {
     pub largest: f64,
 }
 
-/// The outline of a channel: every extreme is kept, however long it is.
-///
-/// A channel of up to 4096 rows is kept sample by sample. What comes out does
-/// not depend on how the samples are cut into blocks.
+/// The outline of a channel of any length with all extremes; up to 4096 rows it keeps
+/// every sample. It does not depend on how samples are cut into blocks.
 #[derive(Clone, Debug)]
 pub struct Envelope {
     /// Rows in a bucket.

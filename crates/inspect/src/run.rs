@@ -61,8 +61,7 @@ pub struct ColumnInspection {
     pub smallest: Option<f64>,
     /// Largest value; unit of the channel.
     pub largest: Option<f64>,
-    /// Sampling rate, from the file or the median interval of its times, counting
-    /// only rows in which this channel has a sample; Hz.
+    /// Sampling rate, from the file or the median interval between samples; Hz.
     pub rate: Option<f64>,
     /// From the first to the last sample; s.
     pub length: Option<f64>,
@@ -90,9 +89,6 @@ pub fn inspect_recording(path: &Path, request: &InspectRequest) -> Result<Inspec
 }
 
 /// [`inspect_recording`] of a file that is read as its campaign says.
-///
-/// # Errors
-/// As [`inspect_recording`].
 pub fn inspect_opened(
     path: &Path,
     options: &OpenOptions,

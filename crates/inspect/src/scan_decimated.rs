@@ -3,8 +3,7 @@
 /// Most values that are kept.
 const MOST: usize = 1 << 16;
 
-/// Every value of a stream while it is short, then every second, fourth, …:
-/// which ones does not depend on how the stream is cut into blocks.
+/// Every value of a stream while it is short, then every second, fourth, ….
 #[derive(Clone, Debug)]
 pub struct Decimated {
     /// The values kept; value `i` was number `i · stride` of the stream.

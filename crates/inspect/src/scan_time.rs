@@ -93,8 +93,7 @@ impl TimeScan {
         (off(&worst) > IRREGULAR * median).then_some(worst)
     }
 
-    /// The time of a row: as recorded, or between recorded ones in a channel too
-    /// long to remember each.
+    /// The time of a row, interpolated in channels too long to remember each.
     #[must_use]
     pub fn at(&self, row: u64) -> Option<f64> {
         if let Some((last_row, last)) = self.last

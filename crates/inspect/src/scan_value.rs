@@ -25,8 +25,7 @@ const SPIKE: f64 = 10.0;
 /// Most samples that are remembered as standing out.
 const MOST_SPIKES: usize = 4096;
 
-/// What one pass over a channel has found so far. Samples without a value are
-/// passed over.
+/// What one pass over a channel has found so far; missing samples are skipped.
 #[derive(Clone, Debug, Default)]
 pub struct ValueScan {
     /// Rows, with and without a sample.

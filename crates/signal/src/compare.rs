@@ -1,5 +1,4 @@
-//! What channels say of one another: the loop of force over displacement beside
-//! the velocities, an accelerometer beside force and displacement.
+//! Force, displacement and acceleration checked against each other.
 
 use crate::accelerometer::{check_force, displacement_error, double_integral, free_acceleration};
 use crate::filter::butterworth::Band;
@@ -20,8 +19,7 @@ const SIGNIFICANT: f64 = 3.0;
 /// Disagreement of energies that is told, as a part of the impact energy; 1.
 const MISMATCH: f64 = 0.1;
 
-/// Part of the contact's duration on either side of it that belongs to the loop,
-/// where the force is below the threshold; 1.
+/// Margin of the force loop on either side of the contact; part of the contact's duration.
 const GUARD: f64 = 0.05;
 
 /// Adds what the channels say of one another, and tells where they disagree.

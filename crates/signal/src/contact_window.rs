@@ -64,8 +64,7 @@ pub(crate) fn windows(
     joined
 }
 
-/// First and last sample at or above the threshold of each excursion, which is
-/// over below the release level.
+/// First and last sample at or above the threshold of each excursion above `release`.
 fn spans(smooth: &[f64], threshold: f64, release: f64) -> Vec<(usize, usize)> {
     let mut spans = Vec::new();
     let mut open: Option<(usize, usize)> = None;

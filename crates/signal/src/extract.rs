@@ -238,8 +238,8 @@ fn contacts(
     Ok((contacts, Some(window_finding(track, found.resolution))))
 }
 
-/// Contacts of a force whose zero drifts: after a first line is taken off, unless
-/// the recording seems to begin or end in contact then.
+/// Contacts of a force whose zero drifts, after a first line is subtracted unless the
+/// recording then seems to begin or end in contact.
 fn drifting_windows(force: &Track, trigger: &TriggerOptions) -> Result<Vec<ContactWindow>, Error> {
     let whole = |contacts: &Contacts| {
         let ends = contacts.windows.first().zip(contacts.windows.last());
@@ -373,9 +373,8 @@ fn velocity(
     from(&signals.displacement, Motion::Displacement).or_else(|| from(&signals.rate, Motion::Rate))
 }
 
-/// Largest force of the contact. The largest of many noisy samples lies above
-/// the peak by some deviations of their noise; where that matters, the peak is
-/// that of a local quadratic over a tenth of the contact.
+/// Largest force of the contact; with much noise, that of a local quadratic over a
+/// tenth of the contact.
 fn peak_force(track: &Track, place: &Surroundings) -> Option<f64> {
     let first = track.times.partition_point(|&t| t < place.onset);
     let last = track.times.partition_point(|&t| t <= place.end);

@@ -70,8 +70,7 @@ pub struct EncoderSensor {
     pub phase: InitialPhase,
     /// Voltages of logic low and high; V.
     pub levels: (f64, f64),
-    /// Standard deviation of where a line is from where it should be, drawn with
-    /// the seed; counts.
+    /// Standard deviation of the positions of the lines, drawn with the seed; counts.
     pub line_error: f64,
     /// Standard deviation of white Gaussian noise on the phases; V.
     pub noise: f64,
@@ -177,8 +176,7 @@ pub fn record(
     Ok(channels)
 }
 
-/// The recording that a reader makes of raw channels with the instrument's own
-/// calibration: volts divided by the sensitivity, less the offset.
+/// Raw channels with the instrument's own calibration: (volts − offset)/sensitivity.
 #[must_use]
 pub fn calibrated(name: &str, channels: &[RawChannel], instrument: &Instrument) -> Recording {
     let sensor = |quantity| match quantity {

@@ -79,8 +79,7 @@ pub fn rate_quantum(count_length: f64, interval: f64) -> f64 {
     count_length / (2.0 * interval)
 }
 
-/// Odd number of samples that spans about a tenth of the contact, and is long
-/// enough for a local cubic.
+/// Odd number of samples over about a tenth of the contact, enough for a local cubic.
 #[must_use]
 pub fn smoothing_window(contact_duration: f64, interval: f64) -> usize {
     let samples = (contact_duration / (10.0 * interval)).round().max(5.0) as usize;

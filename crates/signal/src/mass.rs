@@ -53,12 +53,9 @@ pub fn mass_from_impulse(measured: &Measured, driving: Uncertain) -> Result<Unce
     Ok(Uncertain::new(mass, variance.sqrt()))
 }
 
-/// Mean of several estimates of one mass, weighted by 1/u², with the larger of
-/// the standard error expected from the u and the one seen in their scatter.
-///
-/// For independent uncertainties only: what the estimates share (the driving
-/// acceleration, the calibration of the force) must be left out of the u and be
-/// added to the mean. `None` of nothing.
+/// Mean of independent estimates of one mass, weighted by 1/u², with the larger of the
+/// standard errors from the u and from their scatter. What the estimates share must be
+/// left out of the u and added to the mean. `None` of nothing.
 #[must_use]
 pub fn mean_mass(masses: &[Uncertain]) -> Option<Uncertain> {
     let weight = |mass: &Uncertain| 1.0 / (mass.sd * mass.sd).max(f64::MIN_POSITIVE);
@@ -76,11 +73,8 @@ pub fn mean_mass(masses: &[Uncertain]) -> Option<Uncertain> {
     Some(Uncertain::new(mean, (excess / total).sqrt()))
 }
 
-/// One mass from several impacts: the mean of [`mass_from_impulse`] with the
-/// scatter that is each impact's own, and the uncertainty of the driving
-/// acceleration, which all share, added to the mean.
-///
-/// Impacts that do not show the mass are left out; `None` if none does.
+/// One mass from several impacts: [`mean_mass`] with the scatter of each impact, plus
+/// the shared uncertainty of the driving acceleration. `None` if no impact shows a mass.
 #[must_use]
 pub fn mass_from_impulses(impacts: &[Measured], driving: Uncertain) -> Option<Uncertain> {
     let mean = |acceleration: f64| {

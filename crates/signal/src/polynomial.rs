@@ -3,8 +3,7 @@
 /// Highest order that the routines of this module take.
 pub const MAX_ORDER: usize = 4;
 
-/// Intervals that differ by less than this part count as equal; 1. Times
-/// written with few decimals differ by rounding only.
+/// Intervals that differ by less than this part are equal: rounding of printed times.
 const EVEN_SPACING: f64 = 1e-6;
 
 type Square = [[f64; MAX_ORDER + 1]; MAX_ORDER + 1];
@@ -14,8 +13,7 @@ type Square = [[f64; MAX_ORDER + 1]; MAX_ORDER + 1];
 pub struct PolynomialFit {
     /// Derivatives 0, 1, … at the origin asked for.
     pub derivatives: Vec<f64>,
-    /// Standard deviation of each derivative, from the residuals; NaN if there
-    /// are no residual degrees of freedom.
+    /// Standard deviation of each derivative; NaN without residual degrees of freedom.
     pub standard_deviations: Vec<f64>,
     /// √(Σ residual² / (n − order − 1)).
     pub residual_deviation: f64,
@@ -149,14 +147,10 @@ pub fn local_polynomial(
     Some(filtered)
 }
 
-/// Standard deviation of the filter's output for white noise of unit standard
-/// deviation at its input, in the middle of the signal:
+/// Standard deviation √(Σ wᵢ²) of the filter's output in the middle of the signal, for
+/// white noise of unit standard deviation; s to the power −`derivative`.
 ///
-/// ```text
-/// g = √(Σ wᵢ²)
-/// ```
-///
-/// Unit: s to the power −`derivative`. `interval`: time between samples; s.
+/// * `interval`: time between samples; s
 #[must_use]
 pub fn noise_gain(interval: f64, window: usize, order: usize, derivative: usize) -> Option<f64> {
     let times: Vec<f64> = (0..window).map(|i| i as f64 * interval).collect();

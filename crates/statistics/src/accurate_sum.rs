@@ -1,9 +1,7 @@
 //! Sums in twice the precision of `f64`.
 //!
-//! Means and sums of squares of values that share many leading digits lose
-//! those digits in plain arithmetic. Here every sum is carried as a pair of
-//! numbers, and values that share digits are read as the decimals they were
-//! written as, so that what the table holds is what the result holds.
+//! Values that share many leading digits lose them in plain arithmetic: here sums are
+//! pairs of numbers, and such values are read as the decimals they were written as.
 
 use crate::as_written::as_written;
 use windfall_numerics::double_double::DoubleDouble;
@@ -16,8 +14,7 @@ pub fn sum(values: &[f64]) -> DoubleDouble {
     values.iter().fold(zero, |sum, value| sum + read(*value))
 }
 
-/// Values whose range is below this part of their size are read as decimals:
-/// there the last place of a double begins to matter.
+/// Values whose range is below this part of their size are read as decimals.
 const SHARED_DIGITS: f64 = 0.01;
 
 /// How values are read: as decimals where they share leading digits.

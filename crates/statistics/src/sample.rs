@@ -54,10 +54,7 @@ pub fn check_groups<G: AsRef<[f64]>>(groups: &[G], needed: usize) -> Result<(), 
     Ok(())
 }
 
-/// A probability strictly between zero and one.
-///
-/// # Errors
-/// [`SampleError::OutOfRange`].
+/// A probability strictly between zero and one, or [`SampleError::OutOfRange`].
 pub fn check_probability(quantity: &'static str, value: f64) -> Result<(), SampleError> {
     match value > 0.0 && value < 1.0 {
         true => Ok(()),

@@ -4,13 +4,14 @@
 use crate::error::CampaignError;
 use crate::settings::file::{FORMAT, FilesFile};
 use crate::settings::model::{ChannelPlan, FilePlan, ImpactEntry, Specimen, TimePlan};
-use crate::settings::open_options::{DECIMALS, ENCODINGS, FORMATS, SEPARATORS, THOUSANDS};
+use crate::settings::open_options::{DECIMALS, ENCODINGS, SEPARATORS, THOUSANDS};
 use crate::settings::template::is_template_file;
 use std::path::{Path, PathBuf};
 use toml::Spanned;
 use windfall_files::error::{Error, Place};
 use windfall_files::text::toml_source::{Needed, TomlSource, choice, invalid, missing, place_at};
 use windfall_files::text::toml_source::{optional_quantity, suggestion};
+use windfall_formats::contents::Format;
 use windfall_formats::open::OpenOptions;
 use windfall_formats::text::options::TextOptions;
 use windfall_numerics::unit::quantity::parse_unit;
@@ -75,7 +76,7 @@ fn open_plan(source: &TomlSource, files: &FilesFile) -> Result<OpenOptions, Erro
         comment: files.comment.as_ref().map(|text| text.get_ref().clone()),
     };
     Ok(OpenOptions {
-        format: named(source, files.format.as_ref(), "format", &FORMATS)?,
+        format: named(source, files.format.as_ref(), "format", &Format::NAMES)?,
         text,
     })
 }

@@ -6,8 +6,7 @@ use crate::contents::{ChannelContents, Note, TimeBase};
 use crate::names::Names;
 use crate::text::number::rises_evenly;
 
-/// Most channels made from one array. Larger arrays are pictures or matrices of a
-/// calculation.
+/// Most channels made from one array; larger ones are pictures or matrices.
 const MOST_SERIES: u64 = 4096;
 
 /// Most channels of a file.
@@ -132,8 +131,7 @@ fn sample_extent(wide: &[Extent]) -> usize {
     best
 }
 
-/// Name suffix and first element of the `k`th series; the last dimension varies
-/// fastest.
+/// Name suffix and first element of the `k`th series, last dimension fastest.
 fn place_of(mut k: u64, others: &[Extent]) -> (String, u64) {
     let mut suffix = String::new();
     let mut start = 0_u64;

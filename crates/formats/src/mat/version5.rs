@@ -58,8 +58,7 @@ pub(crate) fn read_header(source: &Source) -> Result<Header, Error> {
     })
 }
 
-/// Lists the arrays of a file, and whether any variable is compressed. A file
-/// cut off after its first array is noted, not refused.
+/// Lists the arrays of a file, and whether any is compressed; notes a file cut off.
 pub(crate) fn list(source: &Source, header: &Header) -> Result<(MatTree, bool), Error> {
     let mut walk = Walk::default();
     let mut any_compressed = false;

@@ -17,8 +17,7 @@ const BLOCK: u64 = 1 << 16;
 /// Most channels of a file.
 const MOST_CHANNELS: u16 = 4096;
 
-/// Unknown size: the file was still being written, or gives its size elsewhere
-/// (RF64).
+/// Unknown size: still being written, or given elsewhere (RF64).
 const NO_SIZE: u32 = u32::MAX;
 
 /// Coding of samples.

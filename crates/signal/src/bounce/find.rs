@@ -25,11 +25,9 @@ use crate::validate::checked_times;
 
 /// Fewest samples of a recording.
 const LEAST_RECORDING: usize = 30;
-/// Departure of a sampling time from even spacing up to which the ringing is
-/// taken out; intervals.
+/// The ringing is removed up to this departure from even spacing; intervals.
 const UNEVEN: f64 = 0.1;
-/// Part of the ringing that taking it out may leave: it is known to a part in
-/// a hundred, and plates have further modes; 1.
+/// Part of the ringing that its removal may leave, mostly of further modes; 1.
 const LEAVES: f64 = 0.05;
 /// The contact force is averaged over this part of the period, or of a rigid
 /// support's pulse, at least and at most; 1.
@@ -42,13 +40,11 @@ const LEVEL_WIDTHS: usize = 4;
 const ROUNDS: usize = 2;
 /// The impulse is taken over at most this many periods after the contact.
 const MOST_CYCLES: usize = 5;
-/// Bounces with less than this part of the largest impulse are the swinging of
-/// a mount that cannot be told to be its ringing; 1.
+/// Bounces below this part of the largest impulse are taken for a swinging mount; 1.
 const LEAST_IMPULSE: f64 = 0.02;
 /// An onset is visible above this many standard deviations of the noise; 1.
 const VISIBLE: f64 = 6.0;
-/// Part of an onset's uncertainty of shape that the next onset does not share: a
-/// weaker impact is seen at another part of its rise; 1.
+/// Part of an onset's shape uncertainty that the next, weaker impact does not share; 1.
 const OWN_SHAPE: f64 = 0.4;
 /// Ringing is over when the force scatters by this many times the noise; 1.
 const DECAYED: f64 = 1.5;
@@ -59,14 +55,12 @@ const DECAYED: f64 = 1.5;
 ///
 /// # Errors
 /// Samples or times that are no numbers, too few of them, or thresholds in the
-/// wrong order. A recording without a bounce is no error but a finding.
+/// wrong order. A recording without a bounce gives a finding.
 ///
 /// # Numerics
-/// A plate that rings makes a support force that goes negative and comes back
-/// many times after one impact. Its ringing is identified from the recording
-/// itself ([`find_ringing`]) and taken out by the recurrence that it obeys
-/// ([`contact_force`]); contacts are found by hysteresis in what is left, so
-/// that ringing is no bounce and a bounce during ringing is one.
+/// The plate's ringing is identified from the recording ([`find_ringing`]) and
+/// removed by the recurrence that it obeys ([`contact_force`]); contacts are found by
+/// hysteresis in what is left.
 pub fn find_bounces(channel: &Channel, options: &BounceOptions) -> Result<BounceTrain, Error> {
     let (times, _) = checked_times(channel)?;
     check(channel, options)?;
@@ -418,8 +412,8 @@ fn measured(
     bounces
 }
 
-/// Samples between which the impulse is taken: from before the contact until
-/// the force is quiet, or the next contact begins; and whether it got quiet.
+/// Samples of the impulse, from before the contact until quiet or the next contact;
+/// and whether it became quiet.
 fn window(
     signals: &Signals,
     segment: Segment,
@@ -451,8 +445,7 @@ fn window(
     }
 }
 
-/// Times from onset to onset. What the shape of the rise does to both onsets
-/// alike drops out.
+/// Times from onset to onset, free of what the shape of the rise does to both.
 fn intervals(bounces: &[Bounce]) -> Vec<Uncertain> {
     bounces
         .windows(2)

@@ -56,8 +56,7 @@ pub struct Peak {
     pub sd: f64,
 }
 
-/// Exponents between which contact forces begin, F ∝ t^p: Kuwabara-Kono 1/2,
-/// Hertz 3/2, ADAMS IMPACT up to 2 and above.
+/// Exponents p of early contact forces, F ∝ t^p: Kuwabara-Kono 1/2, Hertz 3/2, ADAMS IMPACT 2.
 const RISE: (f64, f64) = (0.5, 2.0);
 /// Second level of the rise over the first; 1.
 const LEVELS: f64 = 8.0;
@@ -159,16 +158,14 @@ fn refined(times: &[f64], force: &[f64], top: usize, noise: f64) -> Peak {
     }
 }
 
-/// First touch before a peak, by two levels of the rise: it began where a power
-/// of time through both begins,
+/// First touch before a peak, extrapolated from two levels of the rise as a power of time:
 ///
 /// ```text
 /// F = K (t − t₀)^q   ⟹   t_a − t₀ = (t_b − t_a) / ((b/a)^(1/q) − 1)
 /// ```
 ///
-/// with q in the middle of what contact laws do, and the rest of their range in
-/// `shape`. Behind a plate the support force is what the plate makes of it
-/// ([`time_before`]).
+/// q is in the middle of [`RISE`], the rest of which is in `shape`. Behind a plate:
+/// [`time_before`].
 ///
 /// * `peak`: sample of the first peak
 #[must_use]
@@ -206,8 +203,7 @@ pub fn onset(signals: &Signals, alone: &Alone, peak: usize) -> Onset {
     }
 }
 
-/// End of a contact, by two levels of the fall of the contact force and a line
-/// through them; `None` if the recording ends before.
+/// End of a contact, by a line through two levels of the fall; `None` if it was not recorded.
 #[must_use]
 pub fn end(signals: &Signals, segment: Segment, until: usize) -> Option<Uncertain> {
     let force = signals.contact_force;
@@ -241,8 +237,7 @@ pub fn end(signals: &Signals, segment: Segment, until: usize) -> Option<Uncertai
 /// ∫F_c dt = ∫F_s dt + [(2ζ/ω_n) F_s + F_s′/ω_n²]   from begin to end
 /// ```
 ///
-/// The plate's momentum at both ends is what the bracket holds; it vanishes
-/// where the plate is quiet.
+/// The bracket is the plate's momentum; it vanishes where the plate is quiet.
 #[must_use]
 pub fn impulse(signals: &Signals, first: usize, last: usize) -> Uncertain {
     let (times, force) = (signals.times, signals.force);
@@ -280,8 +275,7 @@ fn momentum(signals: &Signals, at: usize) -> Uncertain {
     })
 }
 
-/// Root mean square of the support force over the samples before one, about
-/// their level.
+/// Root mean square of the support force about its mean, over the samples before one.
 #[must_use]
 pub fn movement(signals: &Signals, until: usize, samples: usize) -> f64 {
     let part = &signals.level_force[until.saturating_sub(samples)..until];

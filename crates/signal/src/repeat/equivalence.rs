@@ -45,8 +45,7 @@ pub struct Equivalence {
     pub p_change: f64,
     /// Margin; unit of the changes.
     pub margin: f64,
-    /// Unchanged where the interval is inside the margin; else changed where
-    /// `p_change` is at most the level; else undecided.
+    /// Unchanged: interval within the margin; else changed: `p_change` up to the level.
     pub verdict: Verdict,
 }
 

@@ -10,9 +10,7 @@ use crate::uncertain::Uncertain;
 const SIGNIFICANT: f64 = 3.0;
 /// … if they are larger than this; 1. Smaller ones change no conclusion.
 const MATERIAL: f64 = 0.02;
-/// A rebound weaker than the one before by this is suspicious; 1. A law with a
-/// damping that does not fall with the speed loses up to half as much from one
-/// bounce to the next.
+/// Drop of the restitution from one bounce to the next that is suspicious; 1.
 const WEAK: f64 = 0.2;
 
 /// Findings about restitutions of one drop.

@@ -1,5 +1,4 @@
-//! Coefficient of restitution of bounces: by drop height, by flights, by impulse
-//! and by measured velocities, each with its standard uncertainty.
+//! Restitution of bounces by drop height, flights, impulse and velocities.
 
 use crate::bounce::train::Bounce;
 use crate::uncertain::Uncertain;
@@ -7,8 +6,7 @@ use crate::uncertain::Uncertain;
 /// How a restitution was found.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum RestitutionMethod {
-    /// Speed after the first impact, from the flight that follows, over the
-    /// speed of a fall from the drop height.
+    /// Speed after the first impact over that of a fall from the drop height.
     DropHeight,
     /// A flight over the flight before.
     Flights,
@@ -81,12 +79,8 @@ impl Default for DropConditions {
     }
 }
 
-/// Time in the air after a bounce; `None` after the last, or if its contact or
-/// the next one was not recorded in full; s.
-///
-/// ```text
-/// flight = onset of the next − end of this
-/// ```
+/// Time in the air, from the end of a bounce to the onset of the next; s. `None` after the
+/// last, or if either contact was not recorded in full.
 #[must_use]
 pub fn flight(bounces: &[Bounce], bounce: usize) -> Option<Uncertain> {
     let (here, next) = (bounces.get(bounce)?, bounces.get(bounce + 1)?);
@@ -110,8 +104,7 @@ pub fn flight_speed(flight: Uncertain, gravity: Uncertain) -> Uncertain {
     )
 }
 
-/// Speed of approach of a bounce: of the first from the drop height, of a later
-/// one from the flight before it.
+/// Speed of approach, of the first bounce from the drop height, later from the flight before.
 #[must_use]
 pub fn impact_speed(
     bounces: &[Bounce],
@@ -221,11 +214,7 @@ pub fn restitution_from_impulse(
         .collect()
 }
 
-/// Restitution from apex heights, of the drop and after each impact:
-///
-/// ```text
-/// e = √(h_(n+1)/h_n)
-/// ```
+/// Restitution from apex heights, of the drop and after each impact: e = √(h_(n+1)/h_n).
 ///
 /// * `heights`: above where contact begins, the drop height first; m
 /// * `gravity`: for the speeds; m/s²

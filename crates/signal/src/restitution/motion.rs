@@ -1,5 +1,4 @@
-//! Coefficient of restitution from the impactor's own position: velocities just
-//! before and just after each contact.
+//! Restitution from the impactor's velocities just before and after each contact.
 
 use crate::bounce::train::Bounce;
 use crate::polynomial::fit_polynomial;
@@ -11,13 +10,11 @@ use crate::uncertain::Uncertain;
 pub struct MotionOptions {
     /// Longest stretch of free flight that is fitted; s.
     pub longest: f64,
-    /// Longest part of a flight between two contacts that is fitted on either
-    /// side; 1. A half where friction turns round with the motion.
+    /// Longest part of a flight that is fitted on either side; 1 (½ with friction).
     pub part: f64,
     /// Left out at both ends of a contact; s.
     pub clearance: f64,
-    /// Least standard deviation of a position: what the fit of a few counted
-    /// positions does not show; m.
+    /// Least standard deviation of a position; m.
     pub least_noise: f64,
 }
 

@@ -1,5 +1,4 @@
-//! The free ringing of a plate after an impact: damped period and damping ratio
-//! by a damped cosine fitted to the force.
+//! Free ringing of a plate after an impact, as a damped cosine.
 
 use crate::tap::damped_mode::{ModeStart, Transformed, fit_modes, mode_samples};
 use crate::tap::spectrum::transform;
@@ -25,8 +24,7 @@ pub struct Ringing {
     pub amplitude: f64,
     /// Phase at `from`; rad.
     pub phase: f64,
-    /// Residual over noise, root mean square; near 1 if the plate rings in one
-    /// mode and nothing touches it.
+    /// Residual over noise, root mean square; near 1 for a single mode.
     pub misfit: f64,
 }
 

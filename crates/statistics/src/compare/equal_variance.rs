@@ -30,14 +30,10 @@ pub fn levene<G: AsRef<[f64]>>(groups: &[G]) -> Result<FTest, SampleError> {
 }
 
 /// The Brown-Forsythe test: analysis of variance of the distances from the group
-/// medians, which holds its level for skewed values too.
-///
-/// # Errors
-/// As [`levene`].
+/// medians, which holds its level for skewed values too; errors as in [`levene`].
 ///
 /// # Source
-/// Brown and Forsythe (1974), Robust tests for the equality of variances, JASA
-/// 69.
+/// Brown and Forsythe (1974), Robust tests for the equality of variances, JASA 69.
 pub fn brown_forsythe<G: AsRef<[f64]>>(groups: &[G]) -> Result<FTest, SampleError> {
     of_distances(groups, median)
 }

@@ -1,7 +1,6 @@
 //! p-values of several tests, adjusted for their number.
 
-/// Bonferroni: n p, at most 1. The chance of any false finding stays below the
-/// level.
+/// Bonferroni: n p, at most 1, which keeps the chance of any false finding.
 #[must_use]
 pub fn bonferroni(p: &[f64]) -> Vec<f64> {
     let n = p.len() as f64;

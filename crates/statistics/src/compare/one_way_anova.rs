@@ -1,5 +1,4 @@
-//! Analysis of variance of groups: the classic one, and Welch's for groups of
-//! unequal variance.
+//! One-way analysis of variance: the classic one, and Welch's for unequal variances.
 
 use crate::accurate_sum::{mean, squares_about, sum, variance};
 use crate::distribution::tail::f_upper;
@@ -50,9 +49,7 @@ pub struct FTest {
 /// values, or no spread within groups.
 ///
 /// # Numerics
-/// Means and squares are summed in twice the precision of `f64`, and values
-/// that share leading digits are read as the decimals they were written as:
-/// data with thirteen digits in common keep the rest.
+/// Sums in twice the precision of `f64` ([`crate::accurate_sum`]).
 pub fn one_way_anova<G: AsRef<[f64]>>(groups: &[G]) -> Result<OneWayAnova, SampleError> {
     check_groups(groups, 1)?;
     let count: usize = groups.iter().map(|group| group.as_ref().len()).sum();

@@ -1,5 +1,4 @@
-//! Every pair of groups compared, at one level for all: Tukey's honest
-//! significant difference, and Games and Howell's for unequal variances.
+//! All pairs of groups at one level: Tukey's, and Games and Howell's for unequal variances.
 
 use crate::accurate_sum::{mean, variance};
 use crate::compare::one_way_anova::one_way_anova;
@@ -61,8 +60,7 @@ pub fn tukey_kramer<G: AsRef<[f64]>>(
     Ok(all_pairs(groups, error))
 }
 
-/// Games and Howell's comparison of all pairs: each with its own variances and
-/// degrees of freedom, as in Welch's test.
+/// Games and Howell's comparison of all pairs, each with its own variances and freedom.
 ///
 /// # Errors
 /// Fewer than two groups, a group of fewer than two values, missing values, two

@@ -19,8 +19,7 @@ pub(crate) struct Factor {
     pub groups: usize,
     /// Group of each row.
     pub group: Vec<usize>,
-    /// Scaled design columns, one after another in each row; the columns of a
-    /// correlated term are orthogonal, with mean square 1.
+    /// Scaled design columns row by row; those of a correlated term are orthonormal.
     pub design: Vec<f64>,
     /// Upper triangle that gives the columns of the terms: terms = design · basis.
     pub basis: DMatrix<f64>,
@@ -37,8 +36,7 @@ pub(crate) struct TermPlace {
     pub width: usize,
 }
 
-/// Cross-products of the leaf factor. Fixed columns are the orthonormal ones of
-/// the model and last the response.
+/// Cross-products of the leaf factor, with the orthonormal fixed columns and the response.
 #[derive(Clone, Debug)]
 pub(crate) struct Leaf {
     /// Columns of the factor.
@@ -190,8 +188,7 @@ pub(crate) fn trunk_of(factors: &[Factor], fixed: &[&[f64]]) -> Trunk {
     trunk
 }
 
-/// Envelope of what couples once the leaf is eliminated: all trunk columns that
-/// one leaf group meets.
+/// Envelope of the trunk columns that one leaf group couples.
 fn envelope_of(factors: &[Factor], trunk: &Trunk, columns: usize) -> Envelope {
     let mut first: Vec<usize> = vec![0; columns];
     for block in &trunk.blocks {

@@ -13,8 +13,7 @@ use crate::mixed::theta::{Entry, blocks_of, place_of, relative_covariance, semid
 use nalgebra::DMatrix;
 use std::f64::consts::TAU;
 
-/// Diagonal entries start no smaller than this: at zero the search would be on a
-/// ridge.
+/// Least starting value of diagonal entries: zero lies on a ridge.
 const LEAST_START: f64 = 0.05;
 
 /// A standard deviation or correlation of a mixed model.

@@ -179,8 +179,7 @@ impl Envelope {
         }
     }
 
-    /// The entries of (L Lᵀ)⁻¹ inside the envelope, by the recursion of Takahashi,
-    /// Fagan and Chin (1973), last column first.
+    /// (L Lᵀ)⁻¹ inside the envelope, last column first (Takahashi, Fagan and Chin 1973).
     pub(crate) fn inverse(&self, factor: &[f64]) -> Vec<f64> {
         let rows = self.rows();
         let mut inverse = vec![0.0; self.entries()];

@@ -206,8 +206,7 @@ pub(crate) fn solve_upper(factor: &[f64], q: usize, matrix: &mut [f64], wide: us
     }
 }
 
-/// Takes the squares of an eliminated group from what is left. Of `fixed` only the
-/// upper triangle.
+/// Subtracts an eliminated group; of `fixed` only the upper triangle.
 fn subtract_leaf(
     model: &MixedModel,
     group: usize,
@@ -294,8 +293,7 @@ pub(crate) fn between_blocks(
     product
 }
 
-/// One matrix per factor, from any of its blocks; empty where a factor has none in
-/// the trunk.
+/// One matrix per factor, from any of its blocks; empty without trunk blocks.
 fn by_factor(model: &MixedModel, of: impl Fn(&TrunkBlock) -> DMatrix<f64>) -> Vec<DMatrix<f64>> {
     let factors = 0..model.factors.len();
     factors

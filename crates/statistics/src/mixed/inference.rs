@@ -12,8 +12,7 @@ use crate::mixed::theta::{blocks_of, entries_from};
 use crate::model::linear_model::Coefficient;
 use nalgebra::{DMatrix, DVector};
 
-/// Eigenvalues of a contrast's covariance below this share of the largest count as
-/// zero: the contrast's rows follow from each other.
+/// Eigenvalues of a contrast's covariance below this share of the largest are zero.
 const RANK: f64 = 1e-10;
 
 /// Covariance of the variance parameters, and how the coefficients' covariance
@@ -22,8 +21,7 @@ const RANK: f64 = 1e-10;
 /// The parameters are the free entries of the relative covariance factors, then σ.
 #[derive(Clone, Debug)]
 pub struct VarianceUncertainty {
-    /// Covariance of the parameters: twice the inverse of the second derivative of
-    /// -2 log likelihood, without flat directions.
+    /// Covariance of the parameters, without flat directions.
     pub(crate) covariance: DMatrix<f64>,
     /// Derivative of the coefficients' covariance by each parameter.
     pub(crate) slopes: Vec<DMatrix<f64>>,
@@ -142,9 +140,8 @@ fn covariance_of(fit: &MixedFit, state: &State) -> DMatrix<f64> {
     &inverse * &state.covariance * inverse.transpose()
 }
 
-/// Twice the inverse of a second derivative over its curved directions, and the
-/// number of flat ones. Scaled to a unit diagonal first, so that flatness does not
-/// depend on units.
+/// Twice the inverse of a second derivative over its curved directions, after scaling to
+/// a unit diagonal, and the number of flat ones.
 fn covariance_from(second: DMatrix<f64>) -> (DMatrix<f64>, usize) {
     let n = second.nrows();
     let largest = second.diagonal().amax();
@@ -175,8 +172,7 @@ fn covariance_from(second: DMatrix<f64>) -> (DMatrix<f64>, usize) {
     (covariance, flat)
 }
 
-/// Satterthwaite's degrees of freedom of a variance with this derivative by the
-/// variance parameters: 2 v² / (g' A g).
+/// Satterthwaite's degrees of freedom 2 v² / (g' A g) of a variance with derivative g.
 pub(crate) fn degrees_of_freedom(
     uncertainty: &VarianceUncertainty,
     variance: f64,
@@ -328,8 +324,7 @@ pub fn picking_contrast(coefficients: usize, picked: &[usize]) -> DMatrix<f64> {
     })
 }
 
-/// Half width of an interval of this confidence in standard errors; NaN where the
-/// confidence is none.
+/// Half width of an interval in standard errors; NaN for an invalid confidence.
 pub(crate) fn half_width(confidence: f64, df: f64) -> f64 {
     if confidence > 0.0 && confidence < 1.0 {
         t_upper_quantile((1.0 - confidence) / 2.0, df)

@@ -20,8 +20,7 @@ use crate::mixed::theta::Entry;
 use crate::model::linear_model::Coefficient;
 use nalgebra::{DMatrix, DVector};
 
-/// Random effects of crossed factors at most: their matrices are dense, and this
-/// many take about a second.
+/// Most random effects of crossed factors: their matrices are dense.
 pub const MOST_CROSSED_EFFECTS: usize = 1500;
 
 /// Kenward and Roger's adjustment of a fit.
@@ -384,8 +383,7 @@ fn denominator(
     contrast: &DMatrix<f64>,
     q: usize,
 ) -> (f64, f64) {
-    /// Below these, quotients of the formulas are zero by zero, which balanced
-    /// designs reach (as in pbkrtest).
+    /// Below these, quotients of the formulas are 0/0, as in balanced designs (pbkrtest).
     const NOUGHT: (f64, f64) = (1e-10, 1e-14);
     let q = q as f64;
     let phi = &fit.state.covariance;

@@ -26,8 +26,7 @@ pub struct NewRows {
 pub struct NewTerm {
     /// Its columns.
     pub columns: Vec<Vec<f64>>,
-    /// The group of each row; `None` for a group that was not measured, whose effect
-    /// is zero on average and varies like those of the others.
+    /// The group of each row; `None` for a new group, whose effect is zero on average.
     pub group: Vec<Option<usize>>,
 }
 
@@ -38,8 +37,7 @@ pub struct MixedPrediction {
     pub population: f64,
     /// Fixed effects and the effects of the row's groups; `population` for an unknown group.
     pub predicted: f64,
-    /// Standard error of `predicted` as the mean of repeated measurements in these groups,
-    /// with the uncertainty of coefficients and of effects.
+    /// Standard error of `predicted` as a mean, from coefficients and effects.
     pub se: f64,
     /// Degrees of freedom of `se`.
     #[serde(skip)]

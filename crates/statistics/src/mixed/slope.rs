@@ -28,8 +28,7 @@ pub(crate) struct Slopes {
     pub squares: Vec<DMatrix<f64>>,
 }
 
-/// Z'V⁻¹[X, residual] of each factor: per group the factor's columns, each a row of
-/// p + 1 numbers. X are the orthonormal columns.
+/// Z'V⁻¹[X, residual] of each factor: rows of p + 1 numbers per group and column.
 pub(crate) type Projections = Vec<Vec<f64>>;
 
 /// Derivatives, and the projections they came from.

@@ -13,8 +13,7 @@ pub enum AnovaType {
     Sequential,
     /// Each term after all that do not contain it.
     Hierarchical,
-    /// Each term after all others, as the columns are coded: sum contrasts for
-    /// categories and centred numbers make it mean something.
+    /// Each term after all others; needs sum contrasts and centred numbers.
     Partial,
 }
 
@@ -150,10 +149,8 @@ pub struct LackOfFit {
     pub pure_error: SumOfSquares,
 }
 
-/// Splits the residuals into lack of fit and pure error; `None` without repeated
-/// rows or without anything left over.
-///
-/// * `settings`: columns that tell equal settings
+/// Splits the residuals into lack of fit and pure error of rows with equal `settings`;
+/// `None` without repeated rows or without degrees of freedom.
 #[must_use]
 pub fn lack_of_fit(
     settings: &DMatrix<f64>,

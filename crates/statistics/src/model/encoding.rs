@@ -12,8 +12,7 @@ use crate::table::{Categories, Cells, Table};
 pub enum Coding {
     /// As numbers, or categories by their contrast.
     Contrast,
-    /// Categories by a column for each level, since the term without them is
-    /// not in the model.
+    /// Categories by a column for each level.
     Full,
 }
 

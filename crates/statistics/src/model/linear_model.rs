@@ -86,9 +86,6 @@ pub fn fit_linear(
 }
 
 /// As [`fit_linear`], with rows that are reduced already.
-///
-/// # Errors
-/// As [`fit_linear`].
 pub fn fit_reduced(
     frame: &ModelFrame,
     x: &DMatrix<f64>,
@@ -300,8 +297,7 @@ pub struct Quality {
     pub r2_adjusted: f64,
     /// Part of the total that predictions of each row by a fit without it describe.
     pub r2_predicted: f64,
-    /// Sum of squares of these predictions' errors; infinite where a row decides a
-    /// coefficient alone.
+    /// Sum of squares of these errors; infinite where a row decides a coefficient alone.
     pub press: f64,
     /// Range of predictions over their mean standard error; more than 4 is wanted.
     pub adequate_precision: f64,

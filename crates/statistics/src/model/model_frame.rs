@@ -88,10 +88,7 @@ pub fn model_rows(
     })
 }
 
-/// Rows of a table that is to be predicted from.
-///
-/// # Errors
-/// As [`model_rows`]; a level the frame has not seen; a missing cell.
+/// Model matrix of other rows; errors as in [`model_rows`], and for new levels.
 pub fn prediction_rows(frame: &ModelFrame, table: &Table) -> Result<DMatrix<f64>, Error> {
     matrix(frame, table)
 }
@@ -118,9 +115,6 @@ pub fn chosen_rows(table: &Table, rows: &[usize]) -> Table {
 pub type Completeness = (Vec<usize>, Vec<(usize, String)>);
 
 /// Rows in which no column of a formula is missing.
-///
-/// # Errors
-/// An unknown column.
 pub fn complete_rows(
     formula: &Formula,
     table: &Table,

@@ -46,8 +46,7 @@ fn power_of(node: &Node, name: &str) -> (String, f64) {
     }
 }
 
-/// Whether a term divides another one: then a hierarchical model with the other
-/// keeps it.
+/// Whether a term divides another, so that a hierarchical model with that keeps it.
 #[must_use]
 pub fn divides(inner: &Powers, outer: &Powers) -> bool {
     inner.iter().all(|(name, power)| {

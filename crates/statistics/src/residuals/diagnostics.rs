@@ -28,9 +28,7 @@ pub struct RowInfluence {
     pub dffits: f64,
 }
 
-/// Influence of each row.
-///
-/// * `y`: the response
+/// Influence of each row; `y` is the response.
 #[must_use]
 pub fn influence(fit: &LinearFit, y: &[f64]) -> Vec<RowInfluence> {
     let (variance, df) = (fit.variance(), fit.residual_df as f64);
@@ -63,14 +61,12 @@ pub struct Inflation {
     pub term: String,
     /// Columns of it.
     pub df: usize,
-    /// Factor by which correlation with the other terms inflates the variance of
-    /// its estimates: for one column 1/(1 - R²), for several the generalised one
-    /// (Fox & Monette 1992, J. Am. Stat. Assoc. 87, 178-183).
+    /// 1/(1 - R²) for one column, for several the generalised factor (Fox & Monette 1992,
+    /// J. Am. Stat. Assoc. 87, 178-183).
     pub factor: f64,
 }
 
-/// Variance inflation of the terms of a model with an intercept; empty without it
-/// or with a single term.
+/// Variance inflation; empty without intercept or with a single term.
 #[must_use]
 pub fn inflation(frame: &ModelFrame, fit: &LinearFit) -> Vec<Inflation> {
     let places = |columns: &std::ops::Range<usize>| -> Vec<usize> {
@@ -129,12 +125,7 @@ pub fn robust_coefficients(fit: &LinearFit, x: &DMatrix<f64>) -> Vec<Coefficient
         .collect()
 }
 
-/// Covariance of the estimates that holds for unequal variances (HC3); rows.
-///
-/// * `x`: model matrix of the fit
-///
-/// # Source
-/// As [`robust_coefficients`].
+/// Rows of the HC3 covariance of the estimates; `x` is the model matrix.
 #[must_use]
 pub fn robust_covariance_rows(fit: &LinearFit, x: &DMatrix<f64>) -> Vec<Vec<f64>> {
     let matrix = robust_covariance(fit, x);

@@ -7,11 +7,13 @@ use crate::sample::check_sample;
 use crate::sample_error::SampleError;
 use nalgebra::DMatrix;
 
-/// Koenker's form of the Breusch-Pagan test, n R², which holds its level for
-/// residuals that are not normal: the one to use.
+/// Koenker's form n R² of the Breusch-Pagan test, which holds its level for residuals
+/// that are not normal.
+///
+/// * `regressors`: n × p, along which the variance may change; an intercept is added
 ///
 /// # Errors
-/// As [`breusch_pagan`].
+/// Missing values, lengths that differ, too few residuals, no spread.
 ///
 /// # Source
 /// Koenker (1981), A note on studentizing a test for heteroscedasticity,

@@ -1,5 +1,4 @@
-//! Whether residuals follow each other: in the order of the runs, or along a
-//! regressor when they are sorted by it.
+//! Whether successive residuals are correlated.
 
 use crate::distribution::tail::beta_lower;
 use crate::orthonormal::{dot, orthonormal_basis, take_out};
@@ -11,11 +10,9 @@ use std::f64::consts::PI;
 /// The Durbin-Watson statistic.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct DurbinWatson {
-    /// Σ (eᵢ - eᵢ₋₁)² / Σ eᵢ²: 2 where neighbours are independent, below where
-    /// they are alike, above where they alternate.
+    /// Σ (eᵢ - eᵢ₋₁)² / Σ eᵢ²: 2 if independent, less if neighbours are alike.
     pub statistic: f64,
-    /// Probability of a smaller statistic of independent residuals: small where
-    /// neighbours are alike.
+    /// Probability of a smaller statistic of independent residuals.
     pub p_alike: f64,
     /// Probability of a larger one: small where they alternate.
     pub p_alternating: f64,
@@ -23,8 +20,7 @@ pub struct DurbinWatson {
     pub p: f64,
 }
 
-/// Most residuals for which the p-value of Durbin and Watson is exact: it needs
-/// the eigenvalues of a matrix of that size.
+/// Most residuals with an exact p-value, which needs as many eigenvalues.
 pub const EXACT_UP_TO: usize = 200;
 
 /// The Durbin-Watson statistic of residuals of a linear model.
@@ -86,8 +82,7 @@ pub fn durbin_watson(
     })
 }
 
-/// P(D < d) = P(Σ (λᵢ - d) zᵢ² < 0), with the eigenvalues λ of MAM that belong
-/// to residuals, by Imhof's integral over the logarithm of its variable.
+/// P(D < d) = P(Σ (λᵢ - d) zᵢ² < 0) with eigenvalues λ of MAM, by Imhof's integral.
 fn smaller_exact(d: f64, basis: &[Vec<f64>], n: usize) -> f64 {
     let differences = |mut v: Vec<f64>| {
         take_out(basis, &mut v);
@@ -128,8 +123,7 @@ fn smaller_beta(d: f64, (mean, variance): (f64, f64)) -> (f64, f64) {
     (beta_lower(x, a, b), beta_lower(1.0 - x, b, a))
 }
 
-/// Mean and variance of the statistic: traces of (MA) and (MA)², where A takes
-/// second differences and M leaves the residuals.
+/// Mean and variance of the statistic: traces of (MA) and (MA)².
 fn moments(basis: &[Vec<f64>], n: f64, df: f64) -> (f64, f64) {
     let differences: Vec<Vec<f64>> = basis.iter().map(|v| second_differences(v)).collect();
     let mut once = 2.0 * (n - 1.0);

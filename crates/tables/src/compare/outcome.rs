@@ -28,8 +28,7 @@ pub struct CompareOutcome {
     pub brown_forsythe: Option<FTest>,
     /// Bartlett's.
     pub bartlett: Option<StatisticTest>,
-    /// Shapiro and Wilk's test of the values less their group's mean, or of the
-    /// differences of pairs.
+    /// Shapiro and Wilk's test of residuals, or of the differences of pairs.
     pub shapiro_wilk: Option<StatisticTest>,
     /// How pairs of groups are compared.
     pub method: &'static str,

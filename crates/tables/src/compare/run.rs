@@ -28,8 +28,7 @@ pub struct CompareRequest {
     pub by: Vec<String>,
     /// Column of specimens that were measured in every group.
     pub paired: Option<String>,
-    /// Column of specimens measured several times within a group: their means
-    /// are compared.
+    /// Column of specimens measured several times within a group, which are averaged.
     pub specimen: Option<String>,
     /// How pairs of groups are compared.
     pub method: PairMethod,

@@ -67,9 +67,6 @@ pub fn text_of_summary(outcome: &SummaryOutcome) -> String {
 }
 
 /// Group summaries as CSV: one row per value and group.
-///
-/// # Errors
-/// None in practice: the text is written to memory.
 pub fn csv_of_summary(outcome: &SummaryOutcome) -> Result<String, Error> {
     let mut header = strings(&["value"]);
     header.extend(outcome.by.clone());
@@ -215,9 +212,6 @@ fn pairs_text(outcome: &CompareOutcome) -> String {
 }
 
 /// A comparison as CSV: one row per pair of groups.
-///
-/// # Errors
-/// None in practice: the text is written to memory.
 pub fn csv_of_compare(outcome: &CompareOutcome) -> Result<String, Error> {
     let pairs: Vec<_> = outcome.pairs.iter().map(|pair| (outcome, pair)).collect();
     let columns: [Column<(&CompareOutcome, &PairOutcome)>; 13] = [
@@ -278,9 +272,6 @@ pub fn text_of_agreement(outcome: &AgreementOutcome) -> String {
 }
 
 /// An agreement as CSV.
-///
-/// # Errors
-/// None in practice: the text is written to memory.
 pub fn csv_of_agreement(outcome: &AgreementOutcome) -> Result<String, Error> {
     let rows = agreement_rows(outcome);
     let header: Vec<String> = ["measured", "predicted", "n"]

@@ -299,9 +299,7 @@ fn infer(
     })
 }
 
-/// F tests of the terms after all others.
-///
-/// * `inference`: with contrasts of categories that sum to zero
+/// F tests of the terms after all others, from a fit with sum contrasts.
 fn term_tests(inference: &Inference) -> Result<Vec<MixedTest>, Error> {
     let Inference {
         fitted,
@@ -389,27 +387,22 @@ fn variances(
 }
 
 fn effects(fitted: &Fitted) -> Vec<EffectOutcome> {
-    let pairs = fitted.terms.iter().zip(&fitted.fit.effects);
-    pairs
-        .flat_map(|(framed, effects)| {
-            let term = &framed.term;
-            term.group_names
-                .iter()
-                .enumerate()
-                .flat_map(move |(group, name)| {
-                    term.column_names
-                        .iter()
-                        .enumerate()
-                        .map(move |(column, of)| EffectOutcome {
-                            by: term.name.clone(),
-                            group: name.clone(),
-                            of: of.clone(),
-                            value: effects.values[group][column],
-                            sd: effects.sds[group][column],
-                        })
-                })
-        })
-        .collect()
+    let mut found = Vec::new();
+    for (framed, effects) in fitted.terms.iter().zip(&fitted.fit.effects) {
+        let term = &framed.term;
+        for (group, name) in term.group_names.iter().enumerate() {
+            for (column, of) in term.column_names.iter().enumerate() {
+                found.push(EffectOutcome {
+                    by: term.name.clone(),
+                    group: name.clone(),
+                    of: of.clone(),
+                    value: effects.values[group][column],
+                    sd: effects.sds[group][column],
+                });
+            }
+        }
+    }
+    found
 }
 
 fn predictions(

@@ -102,9 +102,6 @@ pub fn text_of_mixed(outcome: &MixedOutcome) -> String {
 }
 
 /// A mixed model as CSV: fixed effects, or predictions where they were asked for.
-///
-/// # Errors
-/// None in practice: the text is written to memory.
 pub fn csv_of_mixed(outcome: &MixedOutcome) -> Result<String, Error> {
     match outcome.predictions.is_empty() {
         true => csv_of_terms(&outcome.terms),

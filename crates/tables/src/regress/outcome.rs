@@ -36,9 +36,7 @@ pub struct RangeOutcome {
     pub high: f64,
 }
 
-/// Ranges of the numeric columns on the right side of a formula.
-///
-/// * `kept`: rows that were used
+/// Ranges of the numeric columns on the right side of a formula, in the rows `kept`.
 #[must_use]
 pub fn ranges_of(formula: &Formula, table: &Table, kept: &[usize]) -> Vec<RangeOutcome> {
     let atoms = formula.atoms.iter();
@@ -80,9 +78,7 @@ pub struct PredictionOutcome {
     pub prediction: Prediction,
 }
 
-/// Rows with their influence.
-///
-/// * `lines`: lines of the rows in the file
+/// Rows with their influence and their lines in the file.
 #[must_use]
 pub fn rows_of(influence: Vec<RowInfluence>, lines: &[usize]) -> Vec<RowOutcome> {
     let rows = influence.into_iter().zip(lines);

@@ -84,9 +84,7 @@ pub enum ModelText {
 }
 
 impl ModelText {
-    /// `response ~ terms`; the name of a column is taken as it is.
-    ///
-    /// * `columns`: names of the columns
+    /// `response ~ terms`; the name of one of the `columns` is taken as it is.
     #[must_use]
     pub fn formula(&self, columns: &[String]) -> String {
         match self {

@@ -1,5 +1,4 @@
-//! Tests of the residuals of a linear model, and indices of its distance from
-//! what was measured.
+//! Tests of the residuals of a linear model, and goodness indices.
 
 use crate::columns::given;
 use crate::regress::findings::finding;

@@ -181,9 +181,6 @@ fn steps_text(steps: &[StepOutcome]) -> String {
 }
 
 /// A model as CSV: estimates, or predictions where they were asked for.
-///
-/// # Errors
-/// None in practice: the text is written to memory.
 pub fn csv_of_regress(outcome: &RegressOutcome) -> Result<String, Error> {
     match outcome.predictions.is_empty() {
         true => csv_of_terms(&outcome.terms),

@@ -23,8 +23,7 @@ fn drawn(label: &str, style: Style, colour: usize, points: Vec<(f64, f64)>) -> S
     }
 }
 
-/// Each response as one factor after the other leaves the reference, in coded units,
-/// so that factors of different kinds can be compared: the steepest line matters most.
+/// Each response along one factor at a time from the reference, in coded units.
 #[must_use]
 pub fn figure_of_perturbation(fitted: &FittedSurfaces) -> NamedFigure {
     let panels = fitted.responses.iter().map(|response| {
@@ -64,8 +63,7 @@ pub fn figure_of_perturbation(fitted: &FittedSurfaces) -> NamedFigure {
     }
 }
 
-/// Desirability of each response and of all, over each factor; `None` where nothing is
-/// wanted.
+/// Desirability of each response and of all, over each factor; `None` without goals.
 #[must_use]
 pub fn figure_of_desirability(fitted: &FittedSurfaces) -> Option<NamedFigure> {
     desirability_at(fitted, &fitted.reference)?;
@@ -117,9 +115,8 @@ pub fn figure_of_desirability(fitted: &FittedSurfaces) -> Option<NamedFigure> {
     })
 }
 
-/// How well the model of each response meets the runs: fitted against measured,
-/// studentised residuals over the fitted value and in the order of the table, and
-/// against normal scores.
+/// Fitted against measured, and studentised residuals over the fitted value, in the order
+/// of the table and against normal scores, for each response.
 #[must_use]
 pub fn figures_of_models(outcome: &SurfaceOutcome, confidence: f64) -> Vec<NamedFigure> {
     let models = outcome.responses.iter();

@@ -22,8 +22,8 @@ pub struct FittedSurfaces {
     pub coded: CodedFactors,
     /// Responses in the order in which they were asked for.
     pub responses: Vec<ResponseSurface>,
-    /// Where the factors are that a figure does not vary, coded: the optimum where
-    /// goals are met, else the centre with factors held where they are held.
+    /// Coded settings of the factors that a figure does not vary: the optimum, or the centre
+    /// with held factors.
     pub reference: Vec<f64>,
     /// Whether `reference` is the optimum.
     pub at_optimum: bool,
@@ -64,11 +64,8 @@ pub enum Shown {
     Desirability,
 }
 
-/// Values over the range of the runs of two factors.
-///
-/// * `points`: along each factor, at least 2
-///
-/// The desirability is 0 where nothing is wanted.
+/// Values over the range of the runs of two factors, at least 2 `points` along each; the
+/// desirability is 0 without goals.
 #[must_use]
 pub fn surface_grid(
     fitted: &FittedSurfaces,
@@ -118,8 +115,7 @@ pub fn surface_grid(
     }
 }
 
-/// Coded settings along one factor, from its lowest to its highest run, the others at
-/// the reference.
+/// Coded settings over the range of one factor, the others at the reference.
 #[must_use]
 pub fn settings_along(fitted: &FittedSurfaces, factor: usize, points: usize) -> Vec<Vec<f64>> {
     let (low, high) = fitted.coded.range(factor);

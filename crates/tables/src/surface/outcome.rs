@@ -196,8 +196,7 @@ pub struct SurfaceOutcome {
 /// Predictions over two factors, for contours and surfaces.
 #[derive(Clone, Debug, PartialEq, Serialize, utoipa::ToSchema)]
 pub struct GridOutcome {
-    /// Names of all factors, then of the responses with the standard errors of
-    /// their means.
+    /// Names of all factors, then of the responses, each with its standard error.
     pub columns: Vec<String>,
     /// One for each point, the first factor varying fastest.
     pub rows: Vec<Vec<f64>>,

@@ -1,5 +1,4 @@
-//! `windfall surface`: a table of runs → response surfaces, their analysis and
-//! the settings that are best for all responses.
+//! `windfall surface`: a table of runs → response surfaces and the best settings.
 
 use crate::design::coding::number_factors;
 use crate::regress::findings::{aliased_findings, finding, fit_findings, left_out_finding};
@@ -103,8 +102,7 @@ pub fn surface(request: &SurfaceRequest) -> Result<SurfaceOutcome, Error> {
     Ok(outcome)
 }
 
-/// [`surface`] without figures, with the surfaces themselves: for those who look at
-/// them at settings of their own (`surface_fitted`).
+/// [`surface`] without figures, with the surfaces themselves.
 ///
 /// # Errors
 /// The table, a model or an option cannot be used.

@@ -129,9 +129,6 @@ fn settings_text(outcome: &SurfaceOutcome, settings: &[SettingOutcome]) -> Strin
 }
 
 /// Surfaces as CSV: the grid where one was asked for, else the terms.
-///
-/// # Errors
-/// None in practice: the text is written to memory.
 pub fn csv_of_surface(outcome: &SurfaceOutcome) -> Result<String, Error> {
     if let Some(grid) = &outcome.grid {
         let rows = grid.rows.iter();
