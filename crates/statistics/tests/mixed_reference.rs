@@ -2,7 +2,7 @@
 
 use crate::mixed_cases;
 
-use mixed_cases::{assert_near, fitted, fitted_case, numbers, reference, rows};
+use mixed_cases::{assert_near, fitted_case, numbers, reference, rows};
 use windfall_statistics::mixed::finding::MixedFinding;
 use windfall_statistics::mixed::fit::MixedMethod;
 use windfall_statistics::mixed::inference::{

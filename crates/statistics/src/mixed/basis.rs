@@ -39,9 +39,7 @@ pub(crate) fn orthonormal_basis(columns: &[&[f64]]) -> Result<Basis, Dependent> 
             for (i, earlier) in q.iter().enumerate() {
                 let share = dot(earlier, &rest);
                 r[(i, j)] += share;
-                for (value, e) in rest.iter_mut().zip(earlier) {
-                    *value -= share * e;
-                }
+                add_scaled(&mut rest, -share, earlier);
             }
         }
         let left = norm(&rest);
@@ -82,6 +80,13 @@ pub(crate) fn dot(a: &[f64], b: &[f64]) -> f64 {
     }
     let halves = [0, 1, 2, 3].map(|lane| sums[lane] + sums[lane + 4]);
     (halves[0] + halves[1]) + (halves[2] + halves[3]) + rest
+}
+
+/// Adds a multiple of values to sums.
+pub(crate) fn add_scaled(sums: &mut [f64], factor: f64, values: &[f64]) {
+    for (sum, value) in sums.iter_mut().zip(values) {
+        *sum += factor * value;
+    }
 }
 
 /// Length of a column, without overflow of squares for ordinary data.

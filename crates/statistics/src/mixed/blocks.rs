@@ -4,7 +4,7 @@
 //! eliminated one by one in small blocks. What remains of the other factors, the
 //! trunk, is one symmetric matrix inside an envelope.
 
-use crate::mixed::basis::dot;
+use crate::mixed::basis::{add_scaled, dot};
 use crate::mixed::envelope::Envelope;
 use nalgebra::DMatrix;
 
@@ -108,19 +108,13 @@ pub(crate) fn leaf_of(factors: &[Factor], trunk: &Trunk, fixed: &[&[f64]]) -> Le
             let z = &factor.design[row * width..(row + 1) * width];
             for a in 0..width {
                 let square = &mut leaf.square[(group * width + a) * width..][..width];
-                square
-                    .iter_mut()
-                    .zip(z)
-                    .for_each(|(sum, b)| *sum += z[a] * b);
+                add_scaled(square, z[a], z);
                 let cross = &mut leaf.cross[begin + a * wide..][..wide];
                 for (index, other) in factors[1..].iter().enumerate() {
                     let design = &other.design[row * other.width..(row + 1) * other.width];
                     let column = trunk.offsets[index] + other.group[*row] * other.width;
                     let cross = &mut cross[place[column]..][..other.width];
-                    cross
-                        .iter_mut()
-                        .zip(design)
-                        .for_each(|(sum, b)| *sum += z[a] * b);
+                    add_scaled(cross, z[a], design);
                 }
                 let cross = &mut cross[met.len()..];
                 cross

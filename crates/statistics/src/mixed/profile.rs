@@ -97,8 +97,7 @@ fn parameters_of(fit: &MixedFit) -> Vec<VarianceParameter> {
                 parameters.extend((first + 1..given.columns.len()).map(|second| {
                     VarianceParameter::Correlation {
                         term,
-                        first,
-                        second,
+                        columns: [first, second],
                     }
                 }));
             }

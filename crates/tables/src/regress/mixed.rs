@@ -352,12 +352,9 @@ fn variances(
                     own.sds[*column],
                 )
             }
-            VarianceParameter::Correlation {
-                term,
-                first,
-                second,
-            } => {
+            VarianceParameter::Correlation { term, columns } => {
                 let own = &fit.variances[*term];
+                let [first, second] = columns;
                 let of = format!("{}, {}", own.columns[*first], own.columns[*second]);
                 (
                     own.term.clone(),
