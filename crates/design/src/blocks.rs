@@ -14,9 +14,7 @@ type Counts = [u32; COUNTED_ORDER];
 
 /// Words whose signs divide a two-level design into `blocks` blocks.
 ///
-/// Among all choices the one that mixes the fewest effects of low order with
-/// differences between blocks: first no main effect, then the fewest two-factor
-/// interactions, then three-factor interactions, and so on.
+/// The choice that mixes the fewest effects with blocks, those of low order first.
 ///
 /// # Errors
 /// [`DesignError::BlocksImpossible`] unless the number is a power of two and a
@@ -88,13 +86,7 @@ fn column_counts(fraction: &Fraction, base: &[usize]) -> Vec<Counts> {
     let mut counts = vec![[0; COUNTED_ORDER]; 1 << base.len()];
     // Compact column of each factor, then of all products of up to four.
     let columns: Vec<usize> = (0..fraction.factors)
-        .map(|factor| {
-            let own = Word {
-                letters: 1 << factor,
-                negative: false,
-            };
-            compact(fraction.in_base(own), base)
-        })
+        .map(|factor| compact(fraction.in_base(Word::of(1 << factor)), base))
         .collect();
     let mut last = vec![(0, 0)];
     for order in 0..COUNTED_ORDER.min(fraction.factors) {
@@ -122,10 +114,7 @@ fn spread(column: usize, base: &[usize]) -> Word {
     let letters = bits
         .map(|(bit, factor)| ((column >> bit & 1) as u64) << factor)
         .sum();
-    Word {
-        letters,
-        negative: false,
-    }
+    Word::of(letters)
 }
 
 /// Search over all sets of independent columns.

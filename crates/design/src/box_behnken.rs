@@ -6,51 +6,15 @@ use crate::kind::{
     Design, Factor, Point, add_centres, check_factors, check_numbers, design_of, number_by_block,
 };
 
-/// Factors, the sets of factors that change together, and the number of blocks
-/// that the design divides into.
+/// Factors, and the sets of factors that change together.
 ///
 /// Source: Box and Behnken (1960), Technometrics 2, 455-475, table 4.
-const SETS: [(usize, &[&[usize]]); 5] = [
-    (3, &[&[0, 1], &[0, 2], &[1, 2]]),
-    (4, &[&[0, 1], &[2, 3], &[0, 3], &[1, 2], &[0, 2], &[1, 3]]),
-    (
-        5,
-        &[
-            &[0, 1],
-            &[2, 3],
-            &[1, 4],
-            &[0, 2],
-            &[3, 4],
-            &[1, 2],
-            &[0, 3],
-            &[2, 4],
-            &[0, 4],
-            &[1, 3],
-        ],
-    ),
-    (
-        6,
-        &[
-            &[0, 1, 3],
-            &[1, 2, 4],
-            &[2, 3, 5],
-            &[0, 3, 4],
-            &[1, 4, 5],
-            &[0, 2, 5],
-        ],
-    ),
-    (
-        7,
-        &[
-            &[3, 4, 5],
-            &[0, 5, 6],
-            &[1, 4, 6],
-            &[0, 1, 3],
-            &[2, 3, 6],
-            &[0, 2, 4],
-            &[1, 2, 5],
-        ],
-    ),
+const SETS: [(usize, &str); 5] = [
+    (3, "AB AC BC"),
+    (4, "AB CD AD BC AC BD"),
+    (5, "AB CD BE AC DE BC AD CE AE BD"),
+    (6, "ABD BCE CDF ADE BEF ACF"),
+    (7, "DEF AFG BEG ABD CDG ACE BCF"),
 ];
 
 /// How a Box-Behnken design is laid out.
@@ -60,15 +24,6 @@ pub struct BoxBehnkenOptions {
     pub centre: usize,
     /// Blocks: 1; or 3 for four factors, 2 for five to seven.
     pub blocks: usize,
-}
-
-impl Default for BoxBehnkenOptions {
-    fn default() -> Self {
-        Self {
-            centre: 5,
-            blocks: 1,
-        }
-    }
 }
 
 /// A Box-Behnken design of 3 to 7 factors.
@@ -94,13 +49,14 @@ pub fn box_behnken(
         found: count,
     })?;
     check_blocks(count, options.blocks)?;
+    let sets: Vec<&str> = sets.split(' ').collect();
     let mut points = Vec::new();
     let mut blocks = Vec::new();
     for (place, set) in sets.iter().enumerate() {
         for signs in 0..1_usize << set.len() {
             let mut coded = vec![0.0; count];
-            for (bit, factor) in set.iter().enumerate() {
-                coded[*factor] = if signs >> bit & 1 == 1 { 1.0 } else { -1.0 };
+            for (bit, letter) in set.bytes().enumerate() {
+                coded[usize::from(letter - b'A')] = if signs >> bit & 1 == 1 { 1.0 } else { -1.0 };
             }
             points.push((Point::Edge, coded));
             let by_set = place * options.blocks / sets.len();

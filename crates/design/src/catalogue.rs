@@ -87,10 +87,7 @@ pub fn catalogued(factors: usize, runs: usize) -> Result<Vec<Generator>, DesignE
         .enumerate()
         .map(|(place, &letters)| Generator {
             factor: base + place,
-            word: Word {
-                letters,
-                negative: false,
-            },
+            word: Word::of(letters),
         });
     Ok(generators.collect())
 }
@@ -145,7 +142,8 @@ mod tests {
             let generators = catalogued(factors, runs).unwrap();
             let found = fraction_of(&generators, factors).unwrap();
             assert_eq!(found.runs(), runs as f64);
-            let lengths = &found.word_lengths()[3..3 + expected.len()];
+            let of_length = |n: usize| found.defining.iter().filter(|w| w.length() == n).count();
+            let lengths: Vec<usize> = (3..3 + expected.len()).map(of_length).collect();
             assert_eq!(lengths, expected, "{factors} factors in {runs} runs");
         }
     }

@@ -49,8 +49,7 @@ pub struct CompositeOptions {
     pub ends: Ends,
     /// Generators, where the cube is a fraction.
     pub generators: Vec<Generator>,
-    /// Blocks: 1, or 1 + a power of two (the axial points and the parts of the
-    /// cube).
+    /// Blocks: 1, or 1 (axial points) + a power of two (parts of the cube).
     pub blocks: usize,
     /// Centre points; with blocks, in each part of the cube.
     pub centre: usize,

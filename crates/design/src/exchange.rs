@@ -4,8 +4,7 @@ use crate::random::{below, generator};
 use nalgebra::{DMatrix, DVector};
 use rand_chacha::ChaCha8Rng;
 
-/// Added to the diagonal of X'X, relative to its mean, so that a start in which
-/// terms cannot be told apart can be improved; too little to move the optimum.
+/// Added to the diagonal of X'X, relative to its mean, so that singular starts improve.
 const RIDGE: f64 = 1e-10;
 
 /// Improvements below this are rounding, relative; 1.
@@ -30,8 +29,7 @@ pub enum Criterion {
 pub struct Exchange<'a> {
     /// Model rows of the candidates, or of what candidates make.
     pub rows: &'a (dyn Fn(&[usize]) -> Vec<f64> + Sync),
-    /// Alternatives of each coordinate of a run: one coordinate that numbers the
-    /// candidates of a list, or one per factor that numbers its levels.
+    /// Alternatives of each coordinate: candidates of a list, or levels of each factor.
     pub choices: &'a [usize],
     /// Model rows of runs that are kept.
     pub kept: &'a [Vec<f64>],
@@ -146,8 +144,7 @@ impl<'a> State<'a> {
         };
     }
 
-    /// Replaces a run by its best alternative in one coordinate; whether any
-    /// was better.
+    /// Replaces a run by its best alternative in one coordinate; whether any was better.
     fn improve(&mut self, run: usize, coordinate: usize) -> bool {
         let old = &self.rows[run];
         let projected = &self.inverse * old;
@@ -190,8 +187,7 @@ impl<'a> State<'a> {
         }
     }
 
-    /// How much the cost falls when `old` is replaced by `new`, by the formula
-    /// of Sherman, Morrison and Woodbury for two rows.
+    /// Decrease of the cost for a replacement (Sherman, Morrison and Woodbury).
     fn lowered(
         &self,
         new: &DVector<f64>,

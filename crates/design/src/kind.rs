@@ -8,8 +8,7 @@ use crate::finding::DesignFinding;
 use crate::random::{generator, shuffle};
 use crate::word::Fraction;
 
-/// Most runs of a design: more cannot be meant for a laboratory, and a slip of
-/// a digit should not fill the memory.
+/// Most runs of a design.
 pub const MOST_RUNS: usize = 1_000_000;
 
 /// Most factors of any design.
@@ -19,7 +18,7 @@ pub const MOST_FACTORS: usize = 256;
 const ORDER_STREAM: u64 = 1;
 
 /// A factor with its coding: actual = centre + half · coded.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, serde::Serialize)]
 pub struct Factor {
     /// Its name.
     pub name: String,
@@ -29,20 +28,14 @@ pub struct Factor {
     pub centre: f64,
     /// Exact half-range: actual step from coded 0 to 1; unit of the factor.
     pub half: f64,
-    /// Decimals to which settings are printed; `None` for all digits. The
-    /// coded values stay exact.
+    /// Decimals of printed settings, `None` for all; coded values stay exact.
     pub decimals: Option<usize>,
-    /// Categories in the order of their coded values, evenly from −1 to 1;
-    /// empty for a number.
+    /// Categories, coded evenly from −1 to 1; empty for a number.
     pub categories: Vec<String>,
 }
 
 impl Factor {
-    /// A factor whose coded values −1 and 1 are `low` and `high`.
-    ///
-    /// # Errors
-    /// [`DesignError::RangeEmpty`] unless low < high;
-    /// [`DesignError::LevelNotFinite`].
+    /// A factor whose coded values −1 and 1 are `low` and `high`, finite and in order.
     pub fn between(name: &str, unit: &str, low: f64, high: f64) -> Result<Self, DesignError> {
         let name = name.to_owned();
         if let Some(&value) = [low, high, high - low].iter().find(|v| !v.is_finite()) {
@@ -61,10 +54,7 @@ impl Factor {
         })
     }
 
-    /// A factor of categories.
-    ///
-    /// # Errors
-    /// [`DesignError::LevelsTooFew`] for fewer than two different ones.
+    /// A factor of at least two different categories.
     pub fn of_categories(name: &str, categories: &[String]) -> Result<Self, DesignError> {
         let mut different = categories.to_vec();
         different.sort_unstable();
@@ -95,8 +85,7 @@ impl Factor {
         (actual - self.centre) / self.half
     }
 
-    /// What is set on the rig: the actual value rounded to the printed
-    /// decimals; unit of the factor.
+    /// The actual value rounded to the printed decimals; unit of the factor.
     #[must_use]
     pub fn setting(&self, coded: f64) -> f64 {
         let actual = self.actual(coded);
@@ -251,8 +240,7 @@ pub fn number_by_block(design: &mut Design) {
     }
 }
 
-/// The design in a random order of runs, drawn within each block; blocks stay
-/// in their order.
+/// The design with its runs in random order within each block.
 #[must_use]
 pub fn randomised(mut design: Design, seed: u64) -> Design {
     let mut generator = generator(seed, ORDER_STREAM);
@@ -269,12 +257,7 @@ pub fn randomised(mut design: Design, seed: u64) -> Design {
     design
 }
 
-/// Checks what all kinds ask of their factors: enough of them, and names that
-/// differ.
-///
-/// # Errors
-/// [`DesignError::FactorCount`], [`DesignError::FactorsTooMany`],
-/// [`DesignError::FactorRepeated`].
+/// Checks the number of factors, and that their names differ.
 pub fn check_factors(
     kind: &'static str,
     factors: &[Factor],
@@ -301,9 +284,6 @@ pub fn check_factors(
 }
 
 /// Checks that all factors are numbers.
-///
-/// # Errors
-/// [`DesignError::Categories`].
 pub fn check_numbers(kind: &'static str, factors: &[Factor]) -> Result<(), DesignError> {
     match factors.iter().find(|factor| !factor.categories.is_empty()) {
         Some(factor) => Err(DesignError::Categories {
@@ -315,9 +295,6 @@ pub fn check_numbers(kind: &'static str, factors: &[Factor]) -> Result<(), Desig
 }
 
 /// Checks that all factors have two levels.
-///
-/// # Errors
-/// [`DesignError::LevelsTooMany`].
 pub fn check_two_levels(kind: &'static str, factors: &[Factor]) -> Result<(), DesignError> {
     match factors.iter().find(|factor| factor.categories.len() > 2) {
         Some(factor) => Err(DesignError::LevelsTooMany {
@@ -330,9 +307,6 @@ pub fn check_two_levels(kind: &'static str, factors: &[Factor]) -> Result<(), De
 }
 
 /// Checks the number of runs; given as `f64` so that no product overflows.
-///
-/// # Errors
-/// [`DesignError::RunsTooMany`].
 pub fn check_runs(runs: f64) -> Result<(), DesignError> {
     let most = MOST_RUNS;
     match runs <= most as f64 {

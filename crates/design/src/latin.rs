@@ -70,20 +70,6 @@ pub fn latin_hypercube(
     Ok(design)
 }
 
-/// Least distance between two points, in coded units; 0 for fewer than two.
-#[must_use]
-pub fn least_distance(points: &[&[f64]]) -> f64 {
-    let pairs = points.iter().enumerate();
-    let least = pairs
-        .flat_map(|(i, a)| points[i + 1..].iter().map(move |b| squared(a, b)))
-        .fold(f64::INFINITY, f64::min);
-    if least.is_finite() { least.sqrt() } else { 0.0 }
-}
-
-fn squared(a: &[f64], b: &[f64]) -> f64 {
-    a.iter().zip(b).map(|(a, b)| (a - b) * (a - b)).sum()
-}
-
 /// A random Latin hypercube.
 fn drawn(generator: &mut ChaCha8Rng, factors: usize, runs: usize) -> Cells {
     (0..factors)
@@ -140,8 +126,7 @@ impl Search {
         }
     }
 
-    /// Exchanges levels of two random runs while that is an improvement, until
-    /// as many exchanges as there are have been tried in vain.
+    /// Exchanges levels of random runs until as many exchanges as there are failed in a row.
     fn improve(&mut self, generator: &mut ChaCha8Rng, work: &mut usize) {
         let exchanges = self.cells.len() * self.runs * (self.runs - 1) / 2;
         let mut in_vain = 0;
@@ -173,8 +158,7 @@ impl Search {
         change
     }
 
-    /// Change of the squared distance of `first` from another run; that of
-    /// `second` changes by as much the other way.
+    /// Change of the squared distance of `first` from another run, minus that of `second`.
     fn shift(&self, levels: &[i32], first: usize, second: usize, other: usize) -> i32 {
         (levels[second] - levels[other]).pow(2) - (levels[first] - levels[other]).pow(2)
     }
@@ -213,6 +197,19 @@ mod tests {
     fn factors(count: usize) -> Vec<Factor> {
         let name = |i: usize| Factor::between(&format!("x{i}"), "", 0.0, 1.0).unwrap();
         (0..count).map(name).collect()
+    }
+
+    fn squared(a: &[f64], b: &[f64]) -> f64 {
+        a.iter().zip(b).map(|(a, b)| (a - b) * (a - b)).sum()
+    }
+
+    /// Least distance between two points, in coded units; 0 for fewer than two.
+    fn least_distance(points: &[&[f64]]) -> f64 {
+        let pairs = points.iter().enumerate();
+        let least = pairs
+            .flat_map(|(i, a)| points[i + 1..].iter().map(move |b| squared(a, b)))
+            .fold(f64::INFINITY, f64::min);
+        if least.is_finite() { least.sqrt() } else { 0.0 }
     }
 
     fn distance(count: usize, runs: usize, seed: u64) -> f64 {

@@ -34,8 +34,7 @@ impl DesignModel {
     }
 }
 
-/// Terms of a model, in the order of its row: 1, A, B, AB, A^2; a factor of
-/// more than two categories has several columns, C1, C2.
+/// Terms of a model in the order of its row: 1, A, B, AB, A^2; categories C1, C2.
 #[must_use]
 pub fn model_terms(factors: &[Factor], model: DesignModel) -> Vec<String> {
     let mains: Vec<Vec<String>> = (0..factors.len())
@@ -64,8 +63,7 @@ fn factor_symbol(place: usize) -> String {
     }
 }
 
-/// Row of the model matrix at a point; categories are coded so that their
-/// effects sum to zero.
+/// Row of the model matrix at a point, with sum contrasts for categories.
 #[must_use]
 pub fn model_row(factors: &[Factor], model: DesignModel, coded: &[f64]) -> Vec<f64> {
     let mains: Vec<Vec<f64>> = factors
@@ -150,8 +148,8 @@ pub fn region_points(factors: &[Factor]) -> Vec<(f64, Vec<f64>)> {
     points
 }
 
-/// Ends and middles of all factors, or their ends alone, where the variance of
-/// prediction is largest; none where even those are more than 20 000 points.
+/// Ends and middles of all factors, or only ends, up to 20 000 points: here the variance
+/// of prediction is largest.
 #[must_use]
 pub fn extreme_points(factors: &[Factor]) -> Vec<Vec<f64>> {
     let levels = |middle: bool| -> Vec<Vec<f64>> {

@@ -14,15 +14,13 @@ pub type ModelRow<'a> = dyn Fn(&[f64]) -> Vec<f64> + Sync + 'a;
 /// Most candidates of a list.
 pub const MOST_CANDIDATES: usize = 100_000;
 
-/// A grid of no more points is searched as a list: whole runs are exchanged,
-/// which ends in fewer poor optima than one coordinate after the other.
+/// Grids up to this size are searched as a list, which ends in fewer poor optima.
 const LISTED_GRID: usize = 500;
 
 /// Most terms of a model: with more, one start takes many minutes.
 pub const MOST_TERMS: usize = 250;
 
-/// Multiplications that the starts may take, and passes over the runs that one
-/// start is reckoned to take.
+/// Multiplications of all starts, and passes over the runs per start.
 const WORK: f64 = 1e9;
 const PASSES: f64 = 10.0;
 
@@ -42,8 +40,7 @@ pub struct OptimalOptions {
     pub runs: usize,
     /// What is made good.
     pub criterion: Criterion,
-    /// Random starts; `None` for as many as the size lets finish in seconds, 2
-    /// to 1000.
+    /// Random starts; `None` for 2 to 1000, as many as finish in seconds.
     pub starts: Option<usize>,
     /// Their seed.
     pub seed: u64,

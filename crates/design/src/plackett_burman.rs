@@ -81,11 +81,8 @@ pub fn plackett_burman(
     Ok(design)
 }
 
-/// N rows of N − 1 signs with orthogonal columns that each sum to zero; `None`
-/// where no construction here gives them.
-///
-/// Rows are the shifts of the first and a last one of −1, where there is a
-/// cyclic construction.
+/// N rows of N − 1 signs with orthogonal columns that sum to zero, cyclic where possible;
+/// `None` without a construction.
 #[must_use]
 pub fn signs(runs: usize) -> Option<Vec<Vec<i8>>> {
     if runs < 4 || !runs.is_multiple_of(4) || runs > MOST_RUNS {

@@ -2,18 +2,20 @@
 
 use nalgebra::DMatrix;
 
-/// Diagonal elements of R below this part of the largest mean that terms cannot
-/// be told apart; 1.
+/// Diagonal elements of R below this part of the largest mean aliased terms; 1.
 pub const RANK_TOLERANCE: f64 = 1e-9;
 
-/// Figures of a design for a model; variances are in units of the variance of
-/// one run.
-#[derive(Clone, Debug, PartialEq)]
+/// Figures of a design for a model; variances in units of that of one run.
+#[derive(Clone, Debug, PartialEq, serde::Serialize)]
 pub struct DesignQuality {
     /// Runs, n.
+    #[serde(skip)]
     pub runs: usize,
     /// Columns of the model matrix, p.
+    #[serde(skip)]
     pub terms: usize,
+    /// Variance of each coefficient.
+    pub variances: Vec<f64>,
     /// |X'X|^(1/p) / n; 1 for an orthogonal design of ±1 levels.
     pub d_efficiency: f64,
     /// Largest leverage of a run.
@@ -22,8 +24,6 @@ pub struct DesignQuality {
     pub mean_variance: f64,
     /// Largest variance of prediction at the points of the region and the runs.
     pub max_variance: f64,
-    /// Variance of each coefficient.
-    pub variances: Vec<f64>,
 }
 
 /// Figures of a model matrix; `None` where its terms cannot be told apart.

@@ -12,8 +12,6 @@ pub fn generator(seed: u64, stream: u64) -> ChaCha8Rng {
 }
 
 /// A whole number from 0 below `bound`, all equally likely; 0 for a bound of 0.
-///
-/// Draws that would favour small numbers are thrown away.
 pub fn below(generator: &mut ChaCha8Rng, bound: usize) -> usize {
     let bound = bound.max(1) as u64;
     let favoured = u64::MAX - u64::MAX % bound;
@@ -23,12 +21,6 @@ pub fn below(generator: &mut ChaCha8Rng, bound: usize) -> usize {
             return (draw % bound) as usize;
         }
     }
-}
-
-/// A number from −1 to 1, uniform.
-pub fn coordinate(generator: &mut ChaCha8Rng) -> f64 {
-    let unit = (generator.next_u64() >> 11) as f64 / (1_u64 << 53) as f64;
-    2.0 * unit - 1.0
 }
 
 /// Puts items into a random order (Fisher and Yates).

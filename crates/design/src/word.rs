@@ -1,7 +1,6 @@
 //! Products of two-level factors: generators, defining relation, aliases.
 //!
-//! Factors are A, B, C … without I, which is the identity; after Z follow a, b,
-//! c … without i.
+//! Factors are A, B, C … without I, the identity; after Z follow a, b, c … without i.
 
 use crate::error::DesignError;
 use std::collections::BTreeMap;
@@ -31,6 +30,15 @@ pub struct Word {
 }
 
 impl Word {
+    /// The positive product of some factors.
+    #[must_use]
+    pub fn of(letters: u64) -> Self {
+        Self {
+            letters,
+            negative: false,
+        }
+    }
+
     /// The product of two words; squares of factors are 1.
     #[must_use]
     pub fn times(self, other: Self) -> Self {
@@ -116,16 +124,6 @@ impl Fraction {
         2_f64.powi(self.factors as i32 - self.generators.len() as i32)
     }
 
-    /// Number of defining words of each length, from 0.
-    #[must_use]
-    pub fn word_lengths(&self) -> Vec<usize> {
-        let mut counts = vec![0; self.factors + 1];
-        for word in &self.defining {
-            counts[word.length()] += 1;
-        }
-        counts
-    }
-
     /// Factors that are not generated.
     #[must_use]
     pub fn base(&self) -> Vec<usize> {
@@ -138,10 +136,7 @@ impl Fraction {
     pub fn in_base(&self, word: Word) -> Word {
         let involved = self.generators.iter();
         let involved = involved.filter(|g| word.letters >> g.factor & 1 == 1);
-        let own = |g: &Generator| Word {
-            letters: 1 << g.factor,
-            negative: false,
-        };
+        let own = |g: &Generator| Word::of(1 << g.factor);
         involved.fold(word, |word, g| word.times(own(g)).times(g.word))
     }
 }
@@ -165,10 +160,6 @@ impl fmt::Display for AliasChain {
 }
 
 /// Reads a generator, such as `D=ABC` or `E=-AB`.
-///
-/// # Errors
-/// [`DesignError::GeneratorSyntax`], [`DesignError::GeneratorLetter`],
-/// [`DesignError::GeneratorRepeats`].
 pub fn parse_generator(text: &str, names: &[&str]) -> Result<Generator, DesignError> {
     let owned = || text.trim().to_owned();
     let syntax = || DesignError::GeneratorSyntax { text: owned() };
@@ -240,11 +231,7 @@ pub fn fraction_of(generators: &[Generator], factors: usize) -> Result<Fraction,
     // All products of the words that are I.
     let mut defining = vec![Word::default()];
     for generator in generators {
-        let word = Word {
-            letters: 1 << generator.factor,
-            negative: false,
-        }
-        .times(generator.word);
+        let word = Word::of(1 << generator.factor).times(generator.word);
         let more: Vec<Word> = defining.iter().map(|known| known.times(word)).collect();
         defining.extend(more);
     }
@@ -285,8 +272,7 @@ fn check_chain(generators: &[Generator]) -> Result<(), DesignError> {
     Ok(())
 }
 
-/// Chains of effects of up to `order` factors that cannot be told apart; only
-/// those of two or more effects.
+/// Chains of two or more aliased effects of up to `order` factors.
 #[must_use]
 pub fn aliases(fraction: &Fraction, order: usize) -> Vec<AliasChain> {
     // Effects with the same column in base factors are aliased.
@@ -385,7 +371,8 @@ mod tests {
     fn reference_sixteenth_of_seven_factors() {
         let found = fraction(&["D=AB", "E=AC", "F=BC", "G=ABC"], 7);
         assert_eq!(found.defining.len(), 15);
-        assert_eq!(found.word_lengths()[3..], [7, 7, 0, 0, 1]);
+        let of_length = |n: usize| found.defining.iter().filter(|w| w.length() == n).count();
+        assert_eq!((3..8).map(of_length).collect::<Vec<_>>(), [7, 7, 0, 0, 1]);
         let chains = words(&aliases(&found, 2));
         assert_eq!(chains[0], "A = BD = CE = FG");
         assert_eq!(chains[6], "G = AF = BE = CD");

@@ -21,6 +21,26 @@ pub enum Format {
     Sigrok,
 }
 
+impl Format {
+    /// Every format with its name on the command line and in campaigns.
+    pub const NAMES: [(&'static str, Self); 8] = [
+        ("text", Self::Text),
+        ("lvm", Self::Lvm),
+        ("tdms", Self::Tdms),
+        ("mat", Self::Mat),
+        ("hdf5", Self::Hdf5),
+        ("wav", Self::Wav),
+        ("uff58", Self::Uff58),
+        ("sigrok", Self::Sigrok),
+    ];
+
+    /// Whether cells may be blank, which means that there is no sample.
+    #[must_use]
+    pub fn has_blank_cells(self) -> bool {
+        matches!(self, Self::Text | Self::Lvm)
+    }
+}
+
 impl std::fmt::Display for Format {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         f.write_str(match self {
@@ -55,8 +75,7 @@ pub enum TimeBase {
 /// One channel of a file.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ChannelContents {
-    /// Name used in campaigns; unique within the file. Groups and nested objects are
-    /// joined by "/".
+    /// Name used in campaigns, unique within the file; groups are joined by "/".
     pub name: String,
     /// Unit as written in the file.
     pub unit: Option<String>,
@@ -71,30 +90,21 @@ pub struct ChannelContents {
 }
 
 /// Something the user should know about the file; not an error.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum Note {
-    /// A part of the file that is not numeric or not supported.
-    LeftOut {
-        /// The part.
-        what: String,
-        /// The reason.
-        why: String,
-    },
-    /// The file is truncated; what is complete is read.
-    CutOff {
-        /// What is missing.
-        missing: String,
-    },
-    /// Something not stated in the file was assumed.
-    Assumed {
-        /// The assumption, and how to override it.
-        what: String,
-    },
-    /// The file contradicts itself or its format.
-    Odd {
-        /// The contradiction, and how it was resolved.
-        what: String,
-    },
+    /// A part of the file that is not numeric or not supported, and why.
+    #[error("{what} is left out: {why}")]
+    #[allow(missing_docs)]
+    LeftOut { what: String, why: String },
+    /// The file is truncated here; what is complete is read.
+    #[error("the file is cut off: {0}")]
+    CutOff(String),
+    /// Something not stated in the file was assumed: what, and how to override it.
+    #[error("{0}")]
+    Assumed(String),
+    /// The file contradicts itself or its format: how, and how that was resolved.
+    #[error("{0}")]
+    Odd(String),
 }
 
 impl Note {
@@ -103,19 +113,9 @@ impl Note {
     pub fn code(&self) -> &'static str {
         match self {
             Self::LeftOut { .. } => "left-out",
-            Self::CutOff { .. } => "cut-off",
-            Self::Assumed { .. } => "assumed",
-            Self::Odd { .. } => "odd-file",
-        }
-    }
-}
-
-impl std::fmt::Display for Note {
-    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        match self {
-            Self::LeftOut { what, why } => write!(f, "{what} is left out: {why}"),
-            Self::CutOff { missing } => write!(f, "the file is cut off: {missing}"),
-            Self::Assumed { what } | Self::Odd { what } => f.write_str(what),
+            Self::CutOff(_) => "cut-off",
+            Self::Assumed(_) => "assumed",
+            Self::Odd(_) => "odd-file",
         }
     }
 }

@@ -58,10 +58,7 @@ pub fn open(path: &Path, options: &OpenOptions) -> Result<Box<dyn Reader>, Error
     open_source(Source::open(path)?, options)
 }
 
-/// Opens bytes with the reader for their format.
-///
-/// # Errors
-/// As [`open`].
+/// Opens bytes with the reader for their format; errors as in [`open`].
 pub fn open_source(source: Source, options: &OpenOptions) -> Result<Box<dyn Reader>, Error> {
     let format = match options.format {
         Some(format) => format,

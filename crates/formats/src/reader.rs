@@ -5,17 +5,12 @@ use crate::error::Error;
 
 /// Receives samples as they are read.
 pub trait Sink {
-    /// The next samples of the channel `wanted[position]`, in file order. Missing
-    /// samples (blank cells) are NaN.
-    ///
-    /// # Errors
-    /// Returning an error stops the reading.
+    /// The next samples of the channel `wanted[position]`, NaN where missing; an error stops the
+    /// reading.
     fn take(&mut self, position: usize, samples: &[f64]) -> Result<(), Error>;
 
-    /// A sample that cannot be read; it becomes NaN if reading continues.
-    ///
-    /// # Errors
-    /// Returning an error stops the reading; the default returns the fault.
+    /// A sample that cannot be read. By default an error, which stops the reading; `Ok` makes
+    /// the sample NaN.
     fn fault(&mut self, fault: Error) -> Result<(), Error> {
         Err(fault)
     }
@@ -35,10 +30,7 @@ pub trait Reader: Send {
     /// The file cannot be read, is malformed, or `sink` returned an error.
     fn read(&mut self, wanted: &[usize], sink: &mut dyn Sink) -> Result<(), Error>;
 
-    /// Reads all samples of some channels.
-    ///
-    /// # Errors
-    /// As [`Reader::read`].
+    /// Reads all samples of some channels; errors as in [`Reader::read`].
     fn read_whole(&mut self, wanted: &[usize]) -> Result<Vec<Vec<f64>>, Error> {
         let mut collected = Collected(vec![Vec::new(); wanted.len()]);
         self.read(wanted, &mut collected)?;

@@ -3,8 +3,7 @@
 /// Samples from which large pages are requested; 4 MB.
 const MANY: usize = 1 << 19;
 
-/// Zeros, on large pages where the system supports them: faulting in small pages
-/// costs as much time as reading the samples.
+/// Zeros, on large pages where the system supports them: faulting in small ones is slow.
 pub(crate) fn zeros(count: usize) -> Vec<f64> {
     let zeros = vec![0.0; count];
     if count >= MANY {

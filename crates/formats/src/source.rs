@@ -4,9 +4,7 @@ use crate::error::{Error, Place};
 use std::fs::File;
 use std::path::{Path, PathBuf};
 
-/// The bytes of a file.
-///
-/// Reads have no shared position, so threads can share it.
+/// The bytes of a file, which threads can read at once.
 #[derive(Debug)]
 pub struct Source {
     path: PathBuf,
@@ -102,10 +100,7 @@ impl Source {
         }
     }
 
-    /// `count` bytes from `offset`; checked against the length before allocating.
-    ///
-    /// # Errors
-    /// As [`Source::read_at`].
+    /// `count` bytes from `offset`, checked before allocating; errors as in [`Source::read_at`].
     pub fn bytes_at(&self, offset: u64, count: u64) -> Result<Vec<u8>, Error> {
         if count > self.length.saturating_sub(offset) {
             return Err(self.truncated(offset, "the data here", count));
@@ -116,9 +111,6 @@ impl Source {
     }
 
     /// The first `count` bytes, or fewer if the file is shorter.
-    ///
-    /// # Errors
-    /// [`Error::Access`].
     pub fn head(&self, count: u64) -> Result<Vec<u8>, Error> {
         self.bytes_at(0, count.min(self.length))
     }

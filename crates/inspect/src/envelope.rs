@@ -18,13 +18,12 @@ pub struct Bucket {
     pub largest: f64,
 }
 
-/// The outline of a channel: every extreme is kept, however long it is.
-///
-/// A channel of up to 4096 rows is kept sample by sample. What comes out does
-/// not depend on how the samples are cut into blocks.
+/// The outline of a channel of any length with all extremes; up to 4096 rows it keeps
+/// every sample. It does not depend on how samples are cut into blocks.
 #[derive(Clone, Debug)]
 pub struct Envelope {
-    rows_per_bucket: u64,
+    /// Rows in a bucket.
+    pub rows_per_bucket: u64,
     rows: u64,
     // One per stretch of rows; `None` where no row has a sample.
     buckets: Vec<Option<Bucket>>,
@@ -81,12 +80,6 @@ impl Envelope {
     pub fn buckets(&self) -> impl Iterator<Item = Bucket> + '_ {
         self.buckets.iter().flatten().copied()
     }
-
-    /// Rows in a stretch.
-    #[must_use]
-    pub fn rows_per_bucket(&self) -> u64 {
-        self.rows_per_bucket
-    }
 }
 
 fn joined(a: Option<Bucket>, b: Option<Bucket>) -> Option<Bucket> {
@@ -132,9 +125,9 @@ mod tests {
         envelope.take(&[1.0, f64::NAN, 3.0]);
         let rows: Vec<(u64, f64)> = envelope.buckets().map(|b| (b.row, b.first)).collect();
         assert_eq!(rows, [(0, 1.0), (2, 3.0)]);
-        assert_eq!(envelope.rows_per_bucket(), 1);
+        assert_eq!(envelope.rows_per_bucket, 1);
         envelope.take(&vec![f64::NAN; 3 * MOST]);
         assert_eq!(envelope.buckets().count(), 2);
-        assert_eq!(envelope.rows_per_bucket(), 1);
+        assert_eq!(envelope.rows_per_bucket, 1);
     }
 }

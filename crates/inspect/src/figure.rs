@@ -19,8 +19,7 @@ const PANEL: f64 = 118.0;
 const GAP: f64 = 30.0;
 const BOTTOM: f64 = 46.0;
 
-/// A recording that begins later than this many times its length has its times
-/// counted from a round beginning.
+/// Times beyond this many lengths of the recording are counted from a round beginning.
 const FAR: f64 = 100.0;
 
 /// Up to this many points are drawn as dots as well.
@@ -196,8 +195,7 @@ fn panel(drawing: &mut Drawing, curve: &Curve, time: &TimeAxis, top: f64, ink: I
     }
 }
 
-/// A line through first, smallest, largest and last of each column of pixels:
-/// it looks like one through all samples, and loses no extreme.
+/// A line through first, smallest, largest and last of each column of pixels.
 fn outline(
     points: &[CurvePoint],
     place_x: impl Fn(f64) -> f64,
@@ -232,9 +230,6 @@ fn outline(
 }
 
 /// What the figure shows, as CSV: one row per stretch of a channel.
-///
-/// # Errors
-/// None in practice: the text is written to memory.
 pub fn csv_of_curves(curves: &[Curve]) -> Result<String, Error> {
     let header = ["channel", "time_s", "first", "smallest", "largest", "last"];
     let rows = curves.iter().take(MOST_PANELS).flat_map(|curve| {

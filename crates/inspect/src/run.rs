@@ -61,8 +61,7 @@ pub struct ColumnInspection {
     pub smallest: Option<f64>,
     /// Largest value; unit of the channel.
     pub largest: Option<f64>,
-    /// Sampling rate, from the file or the median interval of its times, counting
-    /// only rows in which this channel has a sample; Hz.
+    /// Sampling rate, from the file or the median interval between samples; Hz.
     pub rate: Option<f64>,
     /// From the first to the last sample; s.
     pub length: Option<f64>,
@@ -90,9 +89,6 @@ pub fn inspect_recording(path: &Path, request: &InspectRequest) -> Result<Inspec
 }
 
 /// [`inspect_recording`] of a file that is read as its campaign says.
-///
-/// # Errors
-/// As [`inspect_recording`].
 pub fn inspect_opened(
     path: &Path,
     options: &OpenOptions,
@@ -136,7 +132,7 @@ pub fn inspect_opened(
                        column of times in campaign.toml: [files] rate = \"200 kHz\"";
         findings.push(finding("no-time", message.to_owned()));
     }
-    let rows = scans.channels.iter().map(|scan| scan.values.rows()).max();
+    let rows = scans.channels.iter().map(|scan| scan.values.rows).max();
     Ok(Inspection {
         file: path.display().to_string(),
         format: format!("{} {}", contents.format, contents.variant)
@@ -316,9 +312,9 @@ fn column_inspection(
         unit,
         role,
         stored_as: channel.stored_as.clone(),
-        samples: scan.values.samples(),
-        smallest: scan.values.smallest(),
-        largest: scan.values.largest(),
+        samples: scan.values.samples,
+        smallest: scan.values.smallest,
+        largest: scan.values.largest,
         rate: interval.filter(|interval| *interval > 0.0).map(f64::recip),
         length: start.zip(end).map(|(start, end)| end - start),
         start,
@@ -363,8 +359,8 @@ fn time_findings(name: &str, times: &TimeScan) -> Vec<FindingOutcome> {
 
 fn value_findings(name: &str, values: &ValueScan) -> Vec<FindingOutcome> {
     let mut findings = Vec::new();
-    if values.infinite() > 0 {
-        let message = format!("\"{name}\": {} samples are infinite", values.infinite());
+    if values.infinite > 0 {
+        let message = format!("\"{name}\": {} samples are infinite", values.infinite);
         findings.push(finding("infinite", message));
     }
     if let Some((limit, run)) = values.clipped() {

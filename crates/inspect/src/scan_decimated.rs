@@ -3,13 +3,15 @@
 /// Most values that are kept.
 const MOST: usize = 1 << 16;
 
-/// Every value of a stream while it is short, then every second, fourth, …:
-/// which ones does not depend on how the stream is cut into blocks.
+/// Every value of a stream while it is short, then every second, fourth, ….
 #[derive(Clone, Debug)]
 pub struct Decimated {
-    kept: Vec<f64>,
-    stride: u64,
-    seen: u64,
+    /// The values kept; value `i` was number `i · stride` of the stream.
+    pub kept: Vec<f64>,
+    /// Values of the stream per value kept.
+    pub stride: u64,
+    /// Values of the stream so far.
+    pub seen: u64,
 }
 
 impl Default for Decimated {
@@ -37,24 +39,6 @@ impl Decimated {
         self.seen += 1;
     }
 
-    /// The values kept; value `i` was number `i · stride` of the stream.
-    #[must_use]
-    pub fn kept(&self) -> &[f64] {
-        &self.kept
-    }
-
-    /// Values of the stream per value kept.
-    #[must_use]
-    pub fn stride(&self) -> u64 {
-        self.stride
-    }
-
-    /// Values of the stream so far.
-    #[must_use]
-    pub fn seen(&self) -> u64 {
-        self.seen
-    }
-
     /// The kept value of that rank in rising order, a part of their number; 1.
     ///
     /// * `from_above`: how far the rank stays below the number kept at least
@@ -78,16 +62,16 @@ mod tests {
     fn closed_form_every_value_then_every_second() {
         let mut decimated = Decimated::default();
         (0..MOST).for_each(|i| decimated.push(i as f64));
-        assert_eq!((decimated.kept().len(), decimated.stride()), (MOST, 1));
+        assert_eq!((decimated.kept.len(), decimated.stride), (MOST, 1));
         (MOST..2 * MOST + 1).for_each(|i| decimated.push(i as f64));
-        let stride = decimated.stride();
+        let stride = decimated.stride;
         assert_eq!(stride, 4);
         let expected: Vec<f64> = (0..2 * MOST as u64 + 1)
             .step_by(stride as usize)
             .map(|i| i as f64)
             .collect();
-        assert_eq!(decimated.kept(), expected);
-        assert_eq!(decimated.seen(), 2 * MOST as u64 + 1);
+        assert_eq!(decimated.kept, expected);
+        assert_eq!(decimated.seen, 2 * MOST as u64 + 1);
     }
 
     #[test]

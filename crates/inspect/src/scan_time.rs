@@ -93,8 +93,7 @@ impl TimeScan {
         (off(&worst) > IRREGULAR * median).then_some(worst)
     }
 
-    /// The time of a row: as recorded, or between recorded ones in a channel too
-    /// long to remember each.
+    /// The time of a row, interpolated in channels too long to remember each.
     #[must_use]
     pub fn at(&self, row: u64) -> Option<f64> {
         if let Some((last_row, last)) = self.last
@@ -102,7 +101,7 @@ impl TimeScan {
         {
             return Some(last);
         }
-        let (stride, kept) = (self.times.stride(), self.times.kept());
+        let (stride, kept) = (self.times.stride, &self.times.kept);
         let place = (row / stride) as usize;
         let known = |at: usize| {
             let time = kept.get(at).copied().filter(|time| time.is_finite())?;

@@ -25,17 +25,21 @@ const SPIKE: f64 = 10.0;
 /// Most samples that are remembered as standing out.
 const MOST_SPIKES: usize = 4096;
 
-/// What one pass over a channel has found so far. Samples without a value are
-/// passed over.
+/// What one pass over a channel has found so far; missing samples are skipped.
 #[derive(Clone, Debug, Default)]
 pub struct ValueScan {
-    rows: u64,
-    samples: u64,
-    infinite: u64,
+    /// Rows, with and without a sample.
+    pub rows: u64,
+    /// Rows with a finite sample.
+    pub samples: u64,
+    /// Samples that are infinite.
+    pub infinite: u64,
     first: Option<u64>,
     last: Option<u64>,
-    smallest: Option<f64>,
-    largest: Option<f64>,
+    /// Smallest sample.
+    pub smallest: Option<f64>,
+    /// Largest sample.
+    pub largest: Option<f64>,
     run: u64,
     run_at_smallest: u64,
     run_at_largest: u64,
@@ -161,36 +165,6 @@ impl ValueScan {
         }
     }
 
-    /// Rows, with and without a sample.
-    #[must_use]
-    pub fn rows(&self) -> u64 {
-        self.rows
-    }
-
-    /// Rows with a finite sample.
-    #[must_use]
-    pub fn samples(&self) -> u64 {
-        self.samples
-    }
-
-    /// Samples that are infinite.
-    #[must_use]
-    pub fn infinite(&self) -> u64 {
-        self.infinite
-    }
-
-    /// Smallest sample.
-    #[must_use]
-    pub fn smallest(&self) -> Option<f64> {
-        self.smallest
-    }
-
-    /// Largest sample.
-    #[must_use]
-    pub fn largest(&self) -> Option<f64> {
-        self.largest
-    }
-
     /// First and last row with a sample.
     #[must_use]
     pub fn span(&self) -> Option<(u64, u64)> {
@@ -280,8 +254,8 @@ mod tests {
         let blank = f64::NAN;
         let values = [blank, 1.0, blank, 2.0, blank, 3.0, 4.0, f64::INFINITY];
         let scan = scan(&values, 3);
-        assert_eq!((scan.rows(), scan.samples(), scan.infinite()), (8, 4, 1));
+        assert_eq!((scan.rows, scan.samples, scan.infinite), (8, 4, 1));
         assert_eq!((scan.span(), scan.usual_gap()), (Some((1, 6)), Some(2)));
-        assert_eq!((scan.smallest(), scan.largest()), (Some(1.0), Some(4.0)));
+        assert_eq!((scan.smallest, scan.largest), (Some(1.0), Some(4.0)));
     }
 }

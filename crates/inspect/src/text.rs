@@ -76,9 +76,6 @@ pub fn text_of_inspection(inspection: &Inspection, columns: usize) -> String {
 }
 
 /// Inspections as CSV, one row per column of each file.
-///
-/// # Errors
-/// None in practice: the text is written to memory.
 pub fn csv_of_inspections(inspections: &[Inspection]) -> Result<String, Error> {
     let header = [
         "file", "column", "unit", "could_be", "samples", "rate_Hz", "length_s", "smallest",

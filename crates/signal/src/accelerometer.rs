@@ -25,9 +25,8 @@ const GUARD: f64 = 0.05;
 /// Samples before contact from which a zero is known.
 const LEAST_ZERO: usize = 5;
 
-/// What an accelerometer shows in free motion before contact: its mean and the
-/// standard uncertainty of that; m/s². A constant acceleration of the motion is in
-/// it. `None` with fewer than 5 samples.
+/// Mean acceleration in free motion before contact and its standard uncertainty, with any
+/// constant acceleration of the motion; m/s². `None` with fewer than 5 samples.
 #[must_use]
 pub fn free_acceleration(times: &[f64], values: &[f64], place: &Surroundings) -> Option<Uncertain> {
     let last = times.partition_point(|&t| t <= place.onset - GUARD * place.duration());
@@ -39,10 +38,7 @@ pub fn free_acceleration(times: &[f64], values: &[f64], place: &Surroundings) ->
     let n = free.len() as f64;
     let mean = free.iter().sum::<f64>() / n;
     let squares: f64 = free.iter().map(|a| (a - mean).powi(2)).sum();
-    Some(Uncertain {
-        value: mean,
-        sd: (squares / (n - 1.0) / n).sqrt(),
-    })
+    Some(Uncertain::new(mean, (squares / (n - 1.0) / n).sqrt()))
 }
 
 /// Compares a force with the acceleration of the mass that it slows down.

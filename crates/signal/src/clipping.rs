@@ -9,8 +9,7 @@ const LEAST_SUCCESSIVE: usize = 3;
 /// Fewest samples on either side that are continued over the top.
 const LEAST_FLANK: usize = 4;
 
-/// The flanks must continue above the limit by more than this part of it; 1.
-/// Less does not matter to peak and impulse.
+/// The flanks must extrapolate above the limit by more than this part of it; 1.
 const EXCESS: f64 = 0.02;
 
 /// … and by more than this many standard deviations of the continuation; 1.

@@ -1,5 +1,4 @@
-//! What channels say of one another: the loop of force over displacement beside
-//! the velocities, an accelerometer beside force and displacement.
+//! Force, displacement and acceleration checked against each other.
 
 use crate::accelerometer::{check_force, displacement_error, double_integral, free_acceleration};
 use crate::filter::butterworth::Band;
@@ -20,8 +19,7 @@ const SIGNIFICANT: f64 = 3.0;
 /// Disagreement of energies that is told, as a part of the impact energy; 1.
 const MISMATCH: f64 = 0.1;
 
-/// Part of the contact's duration on either side of it that belongs to the loop,
-/// where the force is below the threshold; 1.
+/// Margin of the force loop on either side of the contact; part of the contact's duration.
 const GUARD: f64 = 0.05;
 
 /// Adds what the channels say of one another, and tells where they disagree.
@@ -60,10 +58,7 @@ pub(crate) fn compare(
     };
     if let (Some(force), Some(mass)) = (&signals.force, options.effective_mass) {
         let free = free_acceleration(&acceleration.times, &acceleration.values, place);
-        let free = free.unwrap_or(Uncertain {
-            value: options.driving_acceleration,
-            sd: 0.0,
-        });
+        let free = free.unwrap_or(Uncertain::new(options.driving_acceleration, 0.0));
         let (force, motion) = (pair(force), pair(acceleration));
         if let Some(check) = check_force(force, motion, window, mass, free.value) {
             let sd = ratio_deviations(&measured, signals, place, free.sd, mass);

@@ -11,31 +11,24 @@ use crate::straight_line::{Slope, Window};
 pub struct CompressionOptions {
     /// Force above which the fruit is touched; N. From the noise when `None`.
     pub touch_force: Option<f64>,
-    /// Stiffness of machine, load cell and pads in series with the fruit; N/m.
-    /// Infinite for a rigid machine.
+    /// Stiffness of machine, load cell and pads in series with the fruit; N/m. May be infinite.
     pub machine_stiffness: f64,
-    /// Length over which the force must not increase at a yield, as a part of
-    /// the deformation so far; 1.
+    /// Length without an increase of force at a yield, as a part of the deformation; 1.
     pub yield_window: f64,
-    /// Rise of the force over which the local stiffness is taken, as a part of
-    /// the force; 1.
+    /// Rise of the force over which the local stiffness is taken, as a part of it; 1.
     pub stiffness_window: f64,
-    /// The tissue has softened where the local stiffness has fallen to this
-    /// part of the largest before; 1.
+    /// The tissue has softened below this part of the largest stiffness so far; 1.
     pub softening: f64,
-    /// A fall of the force below this part of its largest value so far is a
-    /// rupture; 1.
+    /// A fall of the force below this part of its largest so far is a rupture; 1.
     pub rupture: f64,
 }
 
 /// Where the range of a curve that is fitted ends.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum FitRange {
-    /// At the largest local stiffness: from there on the curve bends down, and
-    /// no law of an elastic contact does.
+    /// At the largest local stiffness, where the curve begins to bend down.
     LargestStiffness,
-    /// At this part of the bioyield force, or of the largest force where there
-    /// is no yield; 1.
+    /// At this part of the bioyield force, or without yield of the largest force; 1.
     PartOfYield(f64),
     /// At this deformation after the first sample of the curve; m.
     Deformation(f64),
@@ -89,8 +82,7 @@ pub struct CompressionCurve {
     pub deformation: Vec<f64>,
     /// Force; N.
     pub force: Vec<f64>,
-    /// Whether force was there from the first sample on, so that the first
-    /// touch was not recorded.
+    /// Whether the first touch was missed: there was force from the first sample on.
     pub began_in_contact: bool,
     /// Standard deviation of a force sample's noise; N.
     pub force_noise: f64,
@@ -100,8 +92,7 @@ pub struct CompressionCurve {
     pub loading_end: CurvePoint,
     /// Why it is the last.
     pub ended_by: LoadingEnd,
-    /// The bioyield point: the first from which force does not increase with
-    /// deformation (ASAE S368).
+    /// The bioyield point: the first without an increase of force (ASAE S368).
     pub bioyield: Option<CurvePoint>,
     /// Where the local stiffness fell to a part of the largest before.
     pub softening: Option<CurvePoint>,
@@ -111,48 +102,31 @@ pub struct CompressionCurve {
     pub stiffness: Slope,
     /// Last sample of the window with the largest stiffness.
     pub stiffness_end: usize,
-    /// Work done from the first sample to the end of the loading, by the
-    /// trapezoidal rule; J.
+    /// Work from the first sample to the end of the loading, by the trapezoidal rule; J.
     pub energy: f64,
 }
 
 /// What a curve cannot be made of.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[allow(missing_docs, reason = "each message names its fields")]
 pub enum CompressionError {
-    /// Too few samples.
     #[error("{samples} samples of force and position; at least {least} are needed")]
-    TooFewSamples {
-        /// Samples.
-        samples: usize,
-        /// Samples needed.
-        least: usize,
-    },
-    /// The force never rises.
+    TooFewSamples { samples: usize, least: usize },
     #[error(
         "the largest force is {largest:.4} N and the fruit counts as touched from {threshold:.4} N; \
          if force is recorded as negative in compression, set sign = -1 in [channels.force]; or \
          lower `touch_force` in [compression]"
     )]
-    NoTouch {
-        /// Largest force; N.
-        largest: f64,
-        /// Force of touch; N.
-        threshold: f64,
-    },
-    /// Hardly any loading.
+    NoTouch { largest: f64, threshold: f64 },
     #[error(
         "only {samples} samples lie between touch (at {time:.3} s) and the end of the loading; at \
          least {least} are needed. Check the channels, or the time range in impacts.csv"
     )]
     NoLoading {
-        /// Samples of the loading.
         samples: usize,
-        /// Time of touch; s.
         time: f64,
-        /// Samples needed.
         least: usize,
     },
-    /// The position does not move.
     #[error("the position does not change while the force rises; check its column")]
     NoMotion,
 }
@@ -169,12 +143,10 @@ const TOUCH: f64 = 5.0;
 /// The fitted range begins at this part of the force at its end; 1.
 const CERTAIN: f64 = 0.02;
 
-/// A local stiffness is judged from a rise of the force by so many times its
-/// noise on, and by [`PRELOADS`] of the force at the first sample.
+/// Least rise of the force for a local stiffness, in noise; [`PRELOADS`] comes on top.
 const JUDGED: f64 = 20.0;
 
-/// Times the noise of force by which force would have risen at the largest
-/// stiffness where a yield is judged.
+/// Least rise of the force at the largest stiffness for a yield to be judged, in noise.
 const SEEN: f64 = 10.0;
 
 /// Preloads by which the force must have risen.
@@ -260,8 +232,7 @@ pub fn compression_curve(
     })
 }
 
-/// First and last sample of the range that laws are fitted to: from where the
-/// force is there for certain to where `range` says, not beyond the loading.
+/// First and last sample of the range that laws are fitted to, within the loading.
 #[must_use]
 pub fn fitted_range(curve: &CompressionCurve, range: FitRange) -> (usize, usize) {
     let end = curve.loading_end.index;
@@ -307,8 +278,7 @@ fn direction(position: &[f64], force: &[f64]) -> Result<f64, CompressionError> {
     Ok(travel.signum())
 }
 
-/// Standard deviation of white noise on a smooth signal, from the median of the
-/// second differences; a few wild samples do not matter.
+/// Standard deviation of white noise, from the median of the second differences.
 fn second_difference_noise(values: &[f64]) -> f64 {
     let mut differences: Vec<f64> = values
         .windows(3)

@@ -1,5 +1,4 @@
-//! What is done to channels before anything is read off them: filters, drift,
-//! and the mass of the tip ahead of a force sensor.
+//! Filters, drift and the tip ahead of a force sensor, before anything is measured.
 
 use crate::accelerometer::free_acceleration;
 use crate::error::Error;
@@ -104,9 +103,8 @@ fn filter_track(
     Ok(())
 }
 
-/// A force less the line through the medians of its first and last samples: good
-/// enough to find contacts by, and to be replaced by [`remove_drift`]. `None`
-/// with too few samples.
+/// A force less the line through the medians of its first and last samples, for a first
+/// search for contacts. `None` with too few samples.
 pub(crate) fn less_pilot_line(track: &Track) -> Option<Vec<f64>> {
     let n = track.times.len();
     let part = ((PILOT_SHARE * n as f64) as usize).max(LEAST_QUIET);
@@ -124,8 +122,7 @@ pub(crate) fn less_pilot_line(track: &Track) -> Option<Vec<f64>> {
     Some(pairs.map(|(t, v)| v - low - slope * (t - from)).collect())
 }
 
-/// Takes a straight line through the quiet stretches before and after all
-/// contacts off a force.
+/// Subtracts the straight line through the quiet stretches around all contacts.
 pub(crate) fn remove_drift(
     track: &mut Track,
     windows: &[ContactWindow],
@@ -170,8 +167,7 @@ pub(crate) fn remove_drift(
 /// F = F_s m_eff/(m_eff − m_tip) from the rig's own motion, m_eff x'' = −F
 /// ```
 ///
-/// x₀'' is what the accelerometer shows in free motion, where the zero of the
-/// force was taken.
+/// x₀'' is the accelerometer's reading in free motion.
 pub(crate) fn add_tip_force(
     force: &mut Track,
     acceleration: Option<&Track>,
@@ -200,12 +196,12 @@ pub(crate) fn add_tip_force(
             force.noise *= factor;
         }
         (None, _) => {
-            return Err(Error::BadOption {
-                option: "tip mass",
-                value: tip,
-                expected: "a mass below the effective mass of the rig, which must be given (not \
+            return Err(Error::bad_option(
+                "tip mass",
+                tip,
+                "a mass below the effective mass of the rig, which must be given (not \
                            found from impulse) where no acceleration was measured",
-            });
+            ));
         }
     }
     findings.push(Finding::TipMass {

@@ -3,9 +3,8 @@
 use crate::kinematics::{Motion, value_at};
 use crate::polynomial::evenly_spaced;
 
-/// The block is halved until halving raises the largest deceleration by less
-/// than this factor. It is 2 for a block much longer than the contact, and
-/// tends to 1 for a block much shorter.
+/// The block is halved until halving raises the largest deceleration by less than
+/// this factor: 2 for a block much longer than the contact, 1 for a much shorter one.
 const SATURATION: f64 = 1.25;
 
 /// Blocks that the recording is first divided into.

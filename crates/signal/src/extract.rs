@@ -229,12 +229,8 @@ fn contacts(
     };
     let scale = tracks.position.as_ref().and_then(|p| p.arm).unwrap_or(1.0);
     let values: Vec<f64> = track.values.iter().map(|v| v * scale).collect();
-    let found =
-        deceleration(&track.times, &values, motion).ok_or_else(|| Error::TooFewSamples {
-            channel: track.name.clone(),
-            samples: track.values.len(),
-            least: 3,
-        })?;
+    let found = deceleration(&track.times, &values, motion)
+        .ok_or_else(|| Error::too_few_samples(track.name.clone(), track.values.len(), 3))?;
     let contacts = find_contacts(
         &signal(track, "m/s²", &found.times, &found.values),
         &trigger,
@@ -242,8 +238,8 @@ fn contacts(
     Ok((contacts, Some(window_finding(track, found.resolution))))
 }
 
-/// Contacts of a force whose zero drifts: after a first line is taken off, unless
-/// the recording seems to begin or end in contact then.
+/// Contacts of a force whose zero drifts, after a first line is subtracted unless the
+/// recording then seems to begin or end in contact.
 fn drifting_windows(force: &Track, trigger: &TriggerOptions) -> Result<Vec<ContactWindow>, Error> {
     let whole = |contacts: &Contacts| {
         let ends = contacts.windows.first().zip(contacts.windows.last());
@@ -377,9 +373,8 @@ fn velocity(
     from(&signals.displacement, Motion::Displacement).or_else(|| from(&signals.rate, Motion::Rate))
 }
 
-/// Largest force of the contact. The largest of many noisy samples lies above
-/// the peak by some deviations of their noise; where that matters, the peak is
-/// that of a local quadratic over a tenth of the contact.
+/// Largest force of the contact; with much noise, that of a local quadratic over a
+/// tenth of the contact.
 fn peak_force(track: &Track, place: &Surroundings) -> Option<f64> {
     let first = track.times.partition_point(|&t| t < place.onset);
     let last = track.times.partition_point(|&t| t <= place.end);

@@ -5,27 +5,21 @@
 pub struct Series {
     /// Sampling times on the clock of the recording, strictly increasing; s.
     pub times: Vec<f64>,
-    /// Samples, positive into the fruit (displacement, rate, acceleration) or
-    /// pushing the bodies apart (force); SI.
+    /// Samples, positive into the fruit, forces positive in repulsion; SI.
     pub values: Vec<f64>,
-    /// Standard deviation of the noise of one sample, found from the recording
-    /// itself; SI.
+    /// Standard deviation of the noise of one sample; SI.
     pub noise: f64,
-    /// Standard uncertainty of the zero, shared by all samples: that of the
-    /// baseline that has been subtracted from a force, 0 where nothing was; SI.
+    /// Standard uncertainty of the zero that was subtracted, shared by all samples; SI.
     pub zero_sd: f64,
-    /// Correlation φ of the noise of successive samples, seen before contact; 1.
-    /// `None` where the recording does not tell it.
+    /// Correlation φ of the noise of successive samples before contact, if known; 1.
     pub persistence: Option<f64>,
     /// Step of the samples, where they are quantised; SI.
     pub quantum: Option<f64>,
-    /// Whether it was computed from another series, so that it says nothing of
-    /// its own.
+    /// Whether it was computed from another series.
     pub derived: bool,
 }
 
-/// What can be read off the signals without a law. `None` where the channels
-/// needed are missing.
+/// Measured without a law; `None` where the channels needed are missing.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Measured {
     /// Velocity just before contact; m/s.
@@ -56,8 +50,7 @@ pub struct Measured {
     pub acceleration_impulse_ratio: Option<f64>,
     /// Largest force over the largest mass times acceleration; 1.
     pub acceleration_peak_ratio: Option<f64>,
-    /// Largest departure of the acceleration, integrated twice from just before
-    /// contact, from the measured displacement; m.
+    /// Largest departure of the twice integrated acceleration from the displacement; m.
     pub integrated_displacement_error: Option<f64>,
     /// Root mean square of that departure over the contact; m.
     pub integrated_displacement_rms: Option<f64>,
@@ -67,13 +60,11 @@ pub struct Measured {
     pub acceleration_impulse_ratio_sd: Option<f64>,
     /// Standard uncertainty of the ratio of the peaks, from noise and zeros; 1.
     pub acceleration_peak_ratio_sd: Option<f64>,
-    /// Standard uncertainty of the impact velocity, from the scatter about the
-    /// fitted line; m/s.
+    /// Standard uncertainty of the impact velocity, from the scatter about the line; m/s.
     pub impact_velocity_sd: Option<f64>,
     /// Standard uncertainty of the speed of rebound, likewise; m/s.
     pub rebound_velocity_sd: Option<f64>,
-    /// Standard uncertainty of the impulse, from the noise of the force and of
-    /// its offset; N s.
+    /// Standard uncertainty of the impulse, from noise and offset of the force; N s.
     pub impulse_sd: Option<f64>,
 }
 

@@ -1,24 +1,12 @@
 //! The other way round: what an instrument writes of a known motion.
 
-use crate::error::Error;
+use crate::error::{Error, positive};
 use crate::kinematics::Encoder;
 use crate::noise::gaussian::{NoiseSource, noise_source, normal, uniform};
 use crate::recording::{Channel, Quantity, Recording, Times};
+use crate::trajectory::{check_trajectory, cubic, linear, sampling_times};
 
-/// A motion and the force that goes with it, at increasing times.
-#[derive(Clone, Debug, Default, PartialEq)]
-pub struct Trajectory {
-    /// Times; s.
-    pub times: Vec<f64>,
-    /// Displacement, zero at first contact, positive into the fruit; m.
-    pub displacement: Vec<f64>,
-    /// Displacement rate; m/s.
-    pub rate: Vec<f64>,
-    /// Contact force, repulsive positive; N.
-    pub force: Vec<f64>,
-    /// Acceleration; m/s².
-    pub acceleration: Vec<f64>,
-}
+pub use crate::trajectory::Trajectory;
 
 /// Analogue-to-digital converter.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -82,8 +70,7 @@ pub struct EncoderSensor {
     pub phase: InitialPhase,
     /// Voltages of logic low and high; V.
     pub levels: (f64, f64),
-    /// Standard deviation of where a line is from where it should be, drawn with
-    /// the seed; counts.
+    /// Standard deviation of the positions of the lines, drawn with the seed; counts.
     pub line_error: f64,
     /// Standard deviation of white Gaussian noise on the phases; V.
     pub noise: f64,
@@ -189,8 +176,7 @@ pub fn record(
     Ok(channels)
 }
 
-/// The recording that a reader makes of raw channels with the instrument's own
-/// calibration: volts divided by the sensitivity, less the offset.
+/// Raw channels with the instrument's own calibration: (volts − offset)/sensitivity.
 #[must_use]
 pub fn calibrated(name: &str, channels: &[RawChannel], instrument: &Instrument) -> Recording {
     let sensor = |quantity| match quantity {
@@ -223,93 +209,6 @@ pub fn calibrated(name: &str, channels: &[RawChannel], instrument: &Instrument) 
         name: name.to_owned(),
         channels,
     }
-}
-
-fn check_trajectory(trajectory: &Trajectory) -> Result<(), Error> {
-    let n = trajectory.times.len();
-    for (name, values) in [
-        ("displacement", &trajectory.displacement),
-        ("rate", &trajectory.rate),
-        ("force", &trajectory.force),
-        ("acceleration", &trajectory.acceleration),
-    ] {
-        if values.len() != n {
-            return Err(Error::UnequalLengths {
-                channel: format!("trajectory {name}"),
-                samples: values.len(),
-                times: n,
-            });
-        }
-    }
-    if n < 2 {
-        return Err(Error::TooFewSamples {
-            channel: "trajectory".to_owned(),
-            samples: n,
-            least: 2,
-        });
-    }
-    let times = &trajectory.times;
-    let backwards = |pair: &[f64]| pair[1] <= pair[0] || !(pair[1] - pair[0]).is_finite();
-    match times.windows(2).position(backwards) {
-        Some(i) => Err(Error::TimeNotIncreasing {
-            channel: "trajectory".to_owned(),
-            sample: i + 1,
-            before: times[i],
-            time: times[i + 1],
-        }),
-        None => Ok(()),
-    }
-}
-
-fn positive(option: &'static str, value: f64) -> Result<f64, Error> {
-    if value > 0.0 && value.is_finite() {
-        return Ok(value);
-    }
-    Err(Error::BadOption {
-        option,
-        value,
-        expected: "a positive number",
-    })
-}
-
-/// Sampling times of a rate over the trajectory.
-fn sampling_times(trajectory: &Trajectory, rate: f64) -> Result<Vec<f64>, Error> {
-    let rate = positive("sampling rate", rate)?;
-    let times = &trajectory.times;
-    let start = times[0];
-    // A sample that falls on the last time up to rounding is taken.
-    let count = ((times[times.len() - 1] - start) * rate * (1.0 + 1e-12) + 1e-9).floor() as usize;
-    Ok((0..=count).map(|i| start + i as f64 / rate).collect())
-}
-
-/// Values at sampling times by cubics through values and their derivatives.
-fn cubic(trajectory: &Trajectory, values: &[f64], slopes: &[f64], at: &[f64]) -> Vec<f64> {
-    each_interval(&trajectory.times, at, |i, u, h| {
-        let rise = values[i + 1] - values[i];
-        let a = slopes[i] * h - rise;
-        let b = -slopes[i + 1] * h + rise;
-        values[i] + u * rise + u * (1.0 - u) * ((1.0 - u) * a + u * b)
-    })
-}
-
-fn linear(trajectory: &Trajectory, values: &[f64], at: &[f64]) -> Vec<f64> {
-    each_interval(&trajectory.times, at, |i, u, _| {
-        values[i] + u * (values[i + 1] - values[i])
-    })
-}
-
-/// For each time the interval it lies in, its place there (0 to 1), the length.
-fn each_interval(times: &[f64], at: &[f64], value: impl Fn(usize, f64, f64) -> f64) -> Vec<f64> {
-    let mut i = 0;
-    at.iter()
-        .map(|&t| {
-            while i + 2 < times.len() && times[i + 1] <= t {
-                i += 1;
-            }
-            let h = times[i + 1] - times[i];
-            value(i, ((t - times[i]) / h).clamp(0.0, 1.0), h)
-        })
-        .collect()
 }
 
 fn encoder_channels(
@@ -405,11 +304,11 @@ fn exact_counts(x: &[f64], sensor: &EncoderSensor) -> Result<Vec<f64>, Error> {
             let arm = positive("arm", sensor.arm)?;
             let reach = x.iter().map(|x| x.abs()).fold(0.0, f64::max);
             if reach > arm {
-                return Err(Error::BadOption {
-                    option: "arm",
-                    value: arm,
-                    expected: "an arm longer than the largest displacement",
-                });
+                return Err(Error::bad_option(
+                    "arm",
+                    arm,
+                    "an arm longer than the largest displacement",
+                ));
             }
             let per_radian = counts / std::f64::consts::TAU;
             Ok(x.iter().map(|x| (x / arm).asin() * per_radian).collect())
@@ -442,11 +341,11 @@ fn sensor_channel(
     };
     let step = sensor.converter.map(converter_step).transpose()?;
     if sensor.persistence.is_nan() || sensor.persistence.abs() >= 1.0 {
-        return Err(Error::BadOption {
-            option: "persistence",
-            value: sensor.persistence,
-            expected: "a correlation between -1 and 1",
-        });
+        return Err(Error::bad_option(
+            "persistence",
+            sensor.persistence,
+            "a correlation between -1 and 1",
+        ));
     }
     let mut noise = coloured(sensor, source);
     let samples = values
@@ -491,11 +390,11 @@ fn coloured(sensor: &Sensor, source: &mut NoiseSource) -> impl FnMut() -> f64 {
 /// Volts of one step of the converter.
 fn converter_step(converter: Converter) -> Result<f64, Error> {
     if !(1..=32).contains(&converter.bits) {
-        return Err(Error::BadOption {
-            option: "converter bits",
-            value: f64::from(converter.bits),
-            expected: "1 to 32",
-        });
+        return Err(Error::bad_option(
+            "converter bits",
+            f64::from(converter.bits),
+            "1 to 32",
+        ));
     }
     let range = positive("converter range", converter.high - converter.low)?;
     Ok(range / 2f64.powi(converter.bits as i32))

@@ -79,14 +79,7 @@ pub fn rate_quantum(count_length: f64, interval: f64) -> f64 {
     count_length / (2.0 * interval)
 }
 
-/// Sampling rate above which no state of the encoder is missed, v/q; Hz.
-#[must_use]
-pub fn least_sampling_rate(speed: f64, count_length: f64) -> f64 {
-    speed.abs() / count_length
-}
-
-/// Odd number of samples that spans about a tenth of the contact, and is long
-/// enough for a local cubic.
+/// Odd number of samples over about a tenth of the contact, enough for a local cubic.
 #[must_use]
 pub fn smoothing_window(contact_duration: f64, interval: f64) -> usize {
     let samples = (contact_duration / (10.0 * interval)).round().max(5.0) as usize;
@@ -120,8 +113,6 @@ mod tests {
         assert!((q / 8.813912723e-6 - 1.0).abs() < 1e-9);
         assert!((rate_quantum(q, 5e-6) / 0.8813912723 - 1.0).abs() < 1e-9);
         assert!((0.001109922 / q / 125.9284103 - 1.0).abs() < 1e-6);
-        // The sampling rate is the limit exactly at the largest speed.
-        assert!((least_sampling_rate(1.762782545, q) / 200e3 - 1.0).abs() < 1e-9);
         let q = count_length(20_000.0, 0.577);
         assert!((q / 0.0001812698961 - 1.0).abs() < 1e-9);
     }

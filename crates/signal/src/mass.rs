@@ -50,18 +50,12 @@ pub fn mass_from_impulse(measured: &Measured, driving: Uncertain) -> Result<Unce
         + (duration * driving.sd).powi(2);
     let variance =
         square(measured.impulse_sd) / (change * change) + (mass / change).powi(2) * change_variance;
-    Ok(Uncertain {
-        value: mass,
-        sd: variance.sqrt(),
-    })
+    Ok(Uncertain::new(mass, variance.sqrt()))
 }
 
-/// Mean of several estimates of one mass, weighted by 1/u², with the larger of
-/// the standard error expected from the u and the one seen in their scatter.
-///
-/// For independent uncertainties only: what the estimates share (the driving
-/// acceleration, the calibration of the force) must be left out of the u and be
-/// added to the mean. `None` of nothing.
+/// Mean of independent estimates of one mass, weighted by 1/u², with the larger of the
+/// standard errors from the u and from their scatter. What the estimates share must be
+/// left out of the u and added to the mean. `None` of nothing.
 #[must_use]
 pub fn mean_mass(masses: &[Uncertain]) -> Option<Uncertain> {
     let weight = |mass: &Uncertain| 1.0 / (mass.sd * mass.sd).max(f64::MIN_POSITIVE);
@@ -76,24 +70,15 @@ pub fn mean_mass(masses: &[Uncertain]) -> Option<Uncertain> {
         .sum();
     let freedom = masses.len().saturating_sub(1).max(1) as f64;
     let excess = (chi_square / freedom).max(1.0);
-    Some(Uncertain {
-        value: mean,
-        sd: (excess / total).sqrt(),
-    })
+    Some(Uncertain::new(mean, (excess / total).sqrt()))
 }
 
-/// One mass from several impacts: the mean of [`mass_from_impulse`] with the
-/// scatter that is each impact's own, and the uncertainty of the driving
-/// acceleration, which all share, added to the mean.
-///
-/// Impacts that do not show the mass are left out; `None` if none does.
+/// One mass from several impacts: [`mean_mass`] with the scatter of each impact, plus
+/// the shared uncertainty of the driving acceleration. `None` if no impact shows a mass.
 #[must_use]
 pub fn mass_from_impulses(impacts: &[Measured], driving: Uncertain) -> Option<Uncertain> {
     let mean = |acceleration: f64| {
-        let exact = Uncertain {
-            value: acceleration,
-            sd: 0.0,
-        };
+        let exact = Uncertain::new(acceleration, 0.0);
         let masses: Vec<Uncertain> = impacts
             .iter()
             .filter_map(|measured| mass_from_impulse(measured, exact).ok())
@@ -102,10 +87,10 @@ pub fn mass_from_impulses(impacts: &[Measured], driving: Uncertain) -> Option<Un
     };
     let mass = mean(driving.value)?;
     let shifted = mean(driving.value + driving.sd)?;
-    Some(Uncertain {
-        value: mass.value,
-        sd: mass.sd.hypot(shifted.value - mass.value),
-    })
+    Some(Uncertain::new(
+        mass.value,
+        mass.sd.hypot(shifted.value - mass.value),
+    ))
 }
 
 #[cfg(test)]
@@ -126,10 +111,7 @@ mod tests {
     #[test]
     fn closed_form_mass_under_a_driving_acceleration() {
         // 0.9 N s over 1.0 + 0.7 + 0.4 · 0.25 = 1.8 m/s.
-        let driving = Uncertain {
-            value: 0.4,
-            sd: 0.0,
-        };
+        let driving = Uncertain::new(0.4, 0.0);
         let mass = mass_from_impulse(&measured(), driving).unwrap();
         assert!((mass.value - 0.5).abs() < 1e-15 && (mass.sd - 0.005).abs() < 1e-15);
     }
@@ -137,10 +119,7 @@ mod tests {
     #[test]
     fn closed_form_uncertainties_add_in_squares() {
         // 1 % of J, 3 % of D by a velocity, 4 % of D by the driving acceleration.
-        let driving = Uncertain {
-            value: 0.4,
-            sd: 0.04 * 1.8 / 0.25,
-        };
+        let driving = Uncertain::new(0.4, 0.04 * 1.8 / 0.25);
         let mut measured = measured();
         measured.rebound_velocity_sd = Some(0.03 * 1.8);
         let mass = mass_from_impulse(&measured, driving).unwrap();
@@ -150,7 +129,7 @@ mod tests {
     #[test]
     fn closed_form_mean_of_two_that_disagree() {
         // 0.4 and 0.6 with u = 0.01: mean 0.5, standard error 0.1, not 0.007.
-        let one = |value| Uncertain { value, sd: 0.01 };
+        let one = |value| Uncertain::new(value, 0.01);
         let mean = mean_mass(&[one(0.4), one(0.6)]).unwrap();
         assert!((mean.value - 0.5).abs() < 1e-12 && (mean.sd - 0.1).abs() < 1e-12);
     }
@@ -159,10 +138,7 @@ mod tests {
     fn closed_form_what_impacts_share_does_not_average_out() {
         // 100 equal impacts: the 1 % of J becomes 0.1 %, the driving
         // acceleration stays: 0.9/(1.7 + 0.25 · 0.44) − 0.9/(1.7 + 0.25 · 0.4).
-        let driving = Uncertain {
-            value: 0.4,
-            sd: 0.04,
-        };
+        let driving = Uncertain::new(0.4, 0.04);
         let mass = mass_from_impulses(&[measured(); 100], driving).unwrap();
         let shared: f64 = 0.9 / 1.81 - 0.5;
         assert!((mass.value - 0.5).abs() < 1e-12);

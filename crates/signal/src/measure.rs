@@ -4,8 +4,7 @@ use crate::impact::Measured;
 use crate::kinematics::Motion;
 use crate::polynomial::{PolynomialFit, fit_polynomial};
 
-/// Part of the contact's duration next to onset and end that is left out of the
-/// velocity fits, where a force below the threshold may act already; 1.
+/// Margin of the velocity fits next to onset and end; part of the contact's duration.
 const GUARD: f64 = 0.05;
 
 /// Samples wanted for a velocity fit, where the recording has them.
@@ -17,16 +16,14 @@ const CURVATURE_SAMPLES: usize = 10;
 /// A curvature is fitted if it exceeds this many of its standard deviations; 1.
 const SIGNIFICANT: f64 = 4.0;
 
-/// Free motion with more samples than this is not searched for a glitch: one
-/// wrong sample hardly matters there.
+/// Free motion with more samples than this is not searched for a glitch.
 const GLITCH_SAMPLES: usize = 50;
 
-/// Leaving out a glitch lowers the scatter of the others by this factor; 1. Of
-/// five samples with Gaussian noise this happens by chance to less than 1 in 100.
+/// A glitch is a sample without which the scatter falls by this factor; 1. Among five
+/// Gaussian samples that happens by chance in less than 1 of 100.
 const GLITCH_FACTOR: f64 = 10.0;
 
-/// Half the length of the stretch around the largest displacement through which
-/// a parabola is fitted, as a part of the contact's duration; 1.
+/// Half-width of the parabola at the largest displacement; part of the contact's duration.
 const TOP_SHARE: f64 = 0.05;
 
 /// Contact window and the time for which its surroundings are free motion.
@@ -55,8 +52,7 @@ impl Surroundings {
 pub struct Velocity {
     /// Velocity, positive into the fruit; m/s.
     pub value: f64,
-    /// Standard uncertainty from the scatter about the fit, or from `noise`
-    /// where that is larger; m/s.
+    /// Standard uncertainty, from the larger of the scatter and `noise`; m/s.
     pub sd: f64,
 }
 
@@ -110,8 +106,7 @@ pub fn free_velocity(
     })
 }
 
-/// Index of a sample of the free motion next to the contact that does not belong
-/// to it: without it the others lie on a line (a constant, of a rate) far better.
+/// Index of the sample of the free motion next to the contact that does not fit it.
 #[must_use]
 pub fn glitch(
     samples: (&[f64], &[f64], Motion),

@@ -16,8 +16,8 @@ const NOISE_BLOCKS: usize = 10;
 /// Fewest samples before contact that tell the noise of the force.
 const LEAST_BASELINE: usize = 5;
 
-/// Scatter about parabolas through blocks of samples, within the contact if it
-/// has enough of them, else before it; at least the rounding of a quantum.
+/// Scatter about parabolas through blocks of samples, in the contact or before it; at
+/// least the rounding of a quantum.
 pub(crate) fn noise_of(track: &Track, place: &Surroundings, findings: &mut Vec<Finding>) -> f64 {
     let first = track.times.partition_point(|&t| t < place.onset);
     let last = track.times.partition_point(|&t| t <= place.end);
@@ -47,8 +47,7 @@ pub(crate) fn force_noise(
     stated(track, Some(contacts.deviation), &(first..last), findings)
 }
 
-/// Correlation of the noise of a force before contact. Noise that is mostly
-/// rounding does not tell it.
+/// Correlation of a force's noise before contact; `None` where it is mostly rounding.
 pub(crate) fn baseline_persistence(track: &Track, contacts: &Contacts) -> Option<f64> {
     let rounding = track.quantum.map_or(0.0, |q| q / 12f64.sqrt());
     let before = contacts.baseline_samples.min(track.values.len());

@@ -12,22 +12,18 @@ use serde::Serialize;
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum RateMethod {
-    /// The measured channel if there is one, else the central difference of the
-    /// displacement if that is sampled evenly, else none.
+    /// The measured channel, else the central difference of an evenly sampled displacement.
     #[default]
     Automatic,
     /// The measured channel or none.
     Measured,
     /// The central difference of the displacement, even if a channel was measured.
     CentralDifference,
-    /// The derivative of a smoothing spline of the displacement, its penalty
-    /// found by cross-validation; of a counted displacement through its edges.
+    /// The derivative of a cross-validated smoothing spline, through the edges of counts.
     SmoothingSpline,
-    /// Length of a count over the time between its edges, for counted
-    /// displacements; over longer times by [`ExtractOptions::edge_window`].
+    /// Length of a count over the time between edges ([`ExtractOptions::edge_window`]).
     EdgeTimes,
-    /// The derivative of local polynomials (Savitzky-Golay) of the displacement.
-    /// Smooth, for display; neighbouring samples share their noise.
+    /// Local polynomials (Savitzky-Golay): smooth, but neighbouring samples share noise.
     LocalPolynomial {
         /// Order of the polynomial, 1 to 4; 2 or 3 are usual.
         order: usize,
@@ -57,8 +53,7 @@ pub struct ExtractOptions {
     pub arm: Option<f64>,
     /// How the series of the displacement rate is made.
     pub rate: RateMethod,
-    /// Least time between the two edges of a rate; s. 0: neighbours. Only for
-    /// [`RateMethod::EdgeTimes`].
+    /// Least time between the edges of a rate for [`RateMethod::EdgeTimes`]; s. 0: neighbours.
     pub edge_window: f64,
     /// What the times beside counts mean.
     pub count_times: CountTimes,
@@ -98,13 +93,7 @@ impl Default for ExtractOptions {
 }
 
 pub(crate) fn check_options(options: &ExtractOptions) -> Result<(), Error> {
-    let bad = |option, value, expected| {
-        Err(Error::BadOption {
-            option,
-            value,
-            expected,
-        })
-    };
+    let bad = |option, value, expected| Err(Error::bad_option(option, value, expected));
     for (option, margin) in [
         ("margin before contact", options.margin_before),
         ("margin after contact", options.margin_after),

@@ -42,8 +42,7 @@ pub(crate) fn oriented_force(
     track
 }
 
-/// Standard uncertainty of the mean before contact, whose samples may be
-/// correlated.
+/// Standard uncertainty of the mean before contact, with correlated samples.
 pub(crate) fn offset_sd(contacts: &Contacts, persistence: Option<f64>) -> f64 {
     let inflation = mean_inflation(persistence.unwrap_or(0.0)).max(1.0);
     contacts.deviation * (inflation / contacts.baseline_samples.max(1) as f64).sqrt()
@@ -91,8 +90,7 @@ pub(crate) fn oriented_displacement(
     track
 }
 
-/// Mean of the samples in a span of time, or the interpolated value in its
-/// middle if there is none.
+/// Mean of the samples in a span of time; interpolated if there is none.
 pub(crate) fn mean_between(track: &Track, from: f64, to: f64) -> f64 {
     let first = track.times.partition_point(|&t| t < from);
     let last = track.times.partition_point(|&t| t <= to);
@@ -102,8 +100,7 @@ pub(crate) fn mean_between(track: &Track, from: f64, to: f64) -> f64 {
     track.values[first..last].iter().sum::<f64>() / (last - first) as f64
 }
 
-/// Leaves out at most one sample on either side of the contact that does not
-/// fit the free motion there.
+/// Removes at most one misfitting sample on either side of the contact.
 pub(crate) fn leave_out_glitches(
     track: &mut Track,
     motion: Motion,

@@ -3,8 +3,7 @@
 /// Highest order that the routines of this module take.
 pub const MAX_ORDER: usize = 4;
 
-/// Intervals that differ by less than this part count as equal; 1. Times
-/// written with few decimals differ by rounding only.
+/// Intervals that differ by less than this part are equal: rounding of printed times.
 const EVEN_SPACING: f64 = 1e-6;
 
 type Square = [[f64; MAX_ORDER + 1]; MAX_ORDER + 1];
@@ -14,8 +13,7 @@ type Square = [[f64; MAX_ORDER + 1]; MAX_ORDER + 1];
 pub struct PolynomialFit {
     /// Derivatives 0, 1, … at the origin asked for.
     pub derivatives: Vec<f64>,
-    /// Standard deviation of each derivative, from the residuals; NaN if there
-    /// are no residual degrees of freedom.
+    /// Standard deviation of each derivative; NaN without residual degrees of freedom.
     pub standard_deviations: Vec<f64>,
     /// √(Σ residual² / (n − order − 1)).
     pub residual_deviation: f64,
@@ -147,21 +145,6 @@ pub fn local_polynomial(
         });
     }
     Some(filtered)
-}
-
-/// Standard deviation of the filter's output for white noise of unit standard
-/// deviation at its input, in the middle of the signal:
-///
-/// ```text
-/// g = √(Σ wᵢ²)
-/// ```
-///
-/// Unit: s to the power −`derivative`. `interval`: time between samples; s.
-#[must_use]
-pub fn noise_gain(interval: f64, window: usize, order: usize, derivative: usize) -> Option<f64> {
-    let times: Vec<f64> = (0..window).map(|i| i as f64 * interval).collect();
-    let weights = weights(&times, times[window / 2], order, derivative)?;
-    Some(weights.iter().map(|w| w * w).sum::<f64>().sqrt())
 }
 
 /// True if all intervals are equal but for rounding.
@@ -319,7 +302,10 @@ mod tests {
         let bend = [start, start, start, start, a, b, c, end, end, end, end];
         check(7, 2, 2, bend);
         // √Σ savgol_coeffs(7, 2, deriv=1, delta=0.5)².
-        assert!((noise_gain(0.5, 7, 2, 1).unwrap() - 0.3779644730092273).abs() < 1e-14);
+        let times = [0.0, 0.5, 1.0, 1.5, 2.0, 2.5, 3.0];
+        let weights = weights(&times, times[3], 2, 1).unwrap();
+        let gain = weights.iter().map(|w| w * w).sum::<f64>().sqrt();
+        assert!((gain - 0.3779644730092273).abs() < 1e-14);
     }
 
     #[test]

@@ -8,8 +8,7 @@ use crate::options::{ExtractOptions, RateMethod};
 use crate::polynomial::{evenly_spaced, local_polynomial};
 use crate::track::{Track, mean_interval};
 
-/// The rate of a displacement by the method asked for; `None` if that is the
-/// measured channel, or if there are too few samples.
+/// The rate of a displacement; `None` if it was measured or there are too few samples.
 pub(crate) fn derived_rate(
     displacement: &Track,
     options: &ExtractOptions,
@@ -62,12 +61,10 @@ fn polynomial_rate(
 /// Most knots of a spline; more samples are averaged in blocks.
 const MOST_KNOTS: usize = 4000;
 
-/// Samples per count from which a counted displacement is taken at its edges:
-/// below, its steps are hardly correlated.
+/// From so many samples per count on a displacement is taken at its edges.
 const SAMPLES_PER_COUNT: usize = 3;
 
-/// Derivative of a smoothing spline around the contact; through the edges where
-/// the displacement is counted and changes seldom.
+/// Derivative of a smoothing spline, through the edges of slowly changing counts.
 fn spline_rate(track: &Track, count_times: CountTimes, place: &Surroundings) -> Option<Track> {
     let around = place.duration();
     let first = track.times.partition_point(|t| *t < place.onset - around);

@@ -1,7 +1,7 @@
 //! Channels of a recording, checked and turned into what an impact consists of.
 
-use crate::encoder::quadrature::{Decoded, ILLEGAL_SHARE, IllegalTransition, decode_quadrature};
-use crate::error::Error;
+use crate::encoder::quadrature::{ILLEGAL_SHARE, IllegalTransition, Tally, decode_quadrature};
+use crate::error::{Error, positive};
 use crate::finding::Finding;
 use crate::kinematics::{Encoder, count_length};
 use crate::noise::estimate::quantum;
@@ -179,7 +179,7 @@ fn decoded_track(
     findings.extend(finding);
     let decoded = decode_quadrature((&a.name, &a.samples), (&b.name, &b.samples), illegal)?;
     let name = format!("{} and {}", a.name, b.name);
-    findings.extend(illegal_finding(&name, &times, &decoded));
+    findings.extend(illegal_finding(&name, &times, &decoded.tally));
     Ok(Track {
         name,
         times,
@@ -190,16 +190,16 @@ fn decoded_track(
     })
 }
 
-fn illegal_finding(name: &str, times: &[f64], decoded: &Decoded) -> Option<Finding> {
-    let first = decoded.first_illegal?;
+fn illegal_finding(name: &str, times: &[f64], tally: &Tally) -> Option<Finding> {
+    let first = tally.first_illegal?;
     let n = times.len();
-    (decoded.illegal_share() > ILLEGAL_SHARE).then(|| Finding::IllegalTransitions {
+    (tally.illegal_share() > ILLEGAL_SHARE).then(|| Finding::IllegalTransitions {
         channels: name.to_owned(),
-        illegal: decoded.illegal,
-        transitions: decoded.transitions,
+        illegal: tally.illegal,
+        transitions: tally.transitions,
         first: times[first],
         sampling_rate: (n - 1) as f64 / (times[n - 1] - times[0]),
-        added: decoded.added,
+        added: tally.added,
     })
 }
 
@@ -242,17 +242,6 @@ fn positive_arm(channel: &str, quantity: Quantity, geometry: &Geometry) -> Resul
             needed: "the length of the arm, for example arm = \"0.505 m\"",
         }),
     }
-}
-
-fn positive(option: &'static str, value: f64) -> Result<f64, Error> {
-    if value > 0.0 && value.is_finite() {
-        return Ok(value);
-    }
-    Err(Error::BadOption {
-        option,
-        value,
-        expected: "a positive number",
-    })
 }
 
 /// Mean time between samples; 0 of one sample; s.

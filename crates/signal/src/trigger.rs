@@ -1,10 +1,13 @@
 //! Contact windows: when the force is above a threshold.
 
+use crate::contact_window::{LEAST_SAMPLES, RINGING_PEAK, windows};
 use crate::error::{Error, Times};
 use crate::noise::estimate::{baseline, median};
 use crate::polynomial::fit_polynomial;
 use crate::trigger_scale::{Level, PulseScale, moving_mean, pulse_scale, white_noise};
 use serde::Serialize;
+
+pub use crate::contact_window::ContactWindow;
 
 /// Samples from which the baseline is first guessed, as a part of the signal; 1.
 const PILOT_SHARE: f64 = 0.05;
@@ -19,21 +22,9 @@ const BASELINE_GUARD: f64 = 0.1;
 /// more than its own scatter explains, is the begin of a contact; 1.
 const BASELINE_RISE: f64 = 0.01;
 
-/// Excursions with a smaller peak, relative to the largest, are ringing; 1.
-const RINGING_PEAK: f64 = 0.05;
-
-/// Excursions that are shorter, relative to the longest, are ringing; 1.
-const RINGING_DURATION: f64 = 0.1;
-
-/// Default of [`TriggerOptions::minimum_gap`] as a part of the longest contact; 1.
-const DEFAULT_GAP: f64 = 0.1;
-
 /// The noise of the averaged signal is measured where this many independent
 /// averages lie before contact.
 const LEAST_AVERAGES: usize = 40;
-
-/// Fewest successive smoothed samples of a contact.
-const LEAST_SAMPLES: usize = 3;
 
 /// Above what a force counts as contact.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
@@ -58,6 +49,28 @@ impl Default for Threshold {
             deviations: 5.0,
             least: 0.0,
             share: 0.01,
+        }
+    }
+}
+
+impl Threshold {
+    /// The force that counts as contact, for this noise and largest force; N.
+    pub(crate) fn level(self, noise: f64, largest: f64) -> f64 {
+        match self {
+            Self::Fixed(force) => force,
+            Self::Automatic {
+                deviations,
+                least,
+                share,
+            } => (deviations * noise).max(least).max(share * largest),
+        }
+    }
+
+    /// Standard deviations between noise and threshold; 0 for a fixed one.
+    fn deviations(self) -> f64 {
+        match self {
+            Self::Fixed(_) => 0.0,
+            Self::Automatic { deviations, .. } => deviations,
         }
     }
 }
@@ -130,21 +143,6 @@ impl Default for TriggerOptions {
             choice: ContactChoice::default(),
         }
     }
-}
-
-/// One contact.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct ContactWindow {
-    /// First upward crossing of the threshold; s.
-    pub onset: f64,
-    /// Last downward crossing of the threshold; s.
-    pub end: f64,
-    /// Largest smoothed force; N.
-    pub peak: f64,
-    /// False if the recording begins in this contact.
-    pub onset_seen: bool,
-    /// False if the recording ends in this contact.
-    pub end_seen: bool,
 }
 
 /// The contacts of a recording and what they were found with.
@@ -231,11 +229,11 @@ pub fn find_contacts(signal: &Signal, options: &TriggerOptions) -> Result<Contac
     check_options(options)?;
     let n = signal.values.len();
     if n < LEAST_SAMPLES {
-        return Err(Error::TooFewSamples {
-            channel: signal.name.to_owned(),
-            samples: n,
-            least: LEAST_SAMPLES,
-        });
+        return Err(Error::too_few_samples(
+            signal.name.to_owned(),
+            n,
+            LEAST_SAMPLES,
+        ));
     }
 
     // A first guess of zero and sign.
@@ -257,7 +255,7 @@ pub fn find_contacts(signal: &Signal, options: &TriggerOptions) -> Result<Contac
             samples: pilot_samples(n),
         },
         sample_noise,
-        deviations(&options.threshold),
+        options.threshold.deviations(),
     );
     let sign = if reversed { -1.0 } else { 1.0 };
     let averaged = moving_mean(signal.values, smoothing);
@@ -296,8 +294,16 @@ pub fn find_contacts(signal: &Signal, options: &TriggerOptions) -> Result<Contac
         let smooth = moving_mean(&raised, smoothing);
         let largest = smooth.iter().copied().fold(f64::NEG_INFINITY, f64::max);
         let noise = smoothed_noise(&averaged[..before], deviation.max(sample_noise), smoothing);
-        contacts.threshold = threshold(&options.threshold, noise, largest);
-        contacts.windows = windows(signal.times, &smooth, contacts.threshold, options);
+        let level = options.threshold.level(noise, largest);
+        contacts.threshold = level.max(f64::MIN_POSITIVE);
+        let release = options.release * contacts.threshold;
+        contacts.windows = windows(
+            signal.times,
+            &smooth,
+            contacts.threshold,
+            release,
+            options.minimum_gap,
+        );
         let Some(first) = contacts.windows.first() else {
             return Err(Error::NoContact {
                 channel: signal.name.to_owned(),
@@ -313,13 +319,7 @@ pub fn find_contacts(signal: &Signal, options: &TriggerOptions) -> Result<Contac
 }
 
 fn check_options(options: &TriggerOptions) -> Result<(), Error> {
-    let bad = |option, value, expected| {
-        Err(Error::BadOption {
-            option,
-            value,
-            expected,
-        })
-    };
+    let bad = |option, value, expected| Err(Error::bad_option(option, value, expected));
     match options.threshold {
         Threshold::Fixed(force) if !(force > 0.0 && force.is_finite()) => {
             return bad("contact threshold", force, "a positive force");
@@ -344,15 +344,6 @@ fn check_options(options: &TriggerOptions) -> Result<(), Error> {
     Ok(())
 }
 
-/// Standard deviations that are to lie between noise and threshold; 0 for a
-/// threshold that does not come from the noise.
-fn deviations(threshold: &Threshold) -> f64 {
-    match *threshold {
-        Threshold::Fixed(_) => 0.0,
-        Threshold::Automatic { deviations, .. } => deviations,
-    }
-}
-
 /// Noise of the averaged signal: that of white noise, or what is seen before
 /// contact if that is more (noise that is correlated averages out less) and if
 /// there is enough to see it in.
@@ -365,20 +356,6 @@ fn smoothed_noise(averaged: &[f64], noise: f64, smoothing: usize) -> f64 {
         return white;
     }
     baseline(averaged).map_or(white, |(_, seen)| seen.max(white))
-}
-
-fn threshold(threshold: &Threshold, noise: f64, largest: f64) -> f64 {
-    match *threshold {
-        Threshold::Fixed(force) => force,
-        Threshold::Automatic {
-            deviations,
-            least,
-            share,
-        } => (deviations * noise)
-            .max(least)
-            .max(share * largest)
-            .max(f64::MIN_POSITIVE),
-    }
 }
 
 /// Level of the signal outside contact, and whether it comes from the end: that
@@ -434,86 +411,5 @@ fn flat_part(signal: &Signal, before: usize, largest: f64) -> usize {
         0
     } else {
         before
-    }
-}
-
-/// Windows above the threshold, without ringing, joined over small gaps.
-fn windows(
-    times: &[f64],
-    smooth: &[f64],
-    threshold: f64,
-    options: &TriggerOptions,
-) -> Vec<ContactWindow> {
-    let mut found = spans(smooth, threshold, options.release * threshold)
-        .into_iter()
-        .filter(|span| span.1 - span.0 + 1 >= LEAST_SAMPLES)
-        .map(|(first, last)| window(times, smooth, threshold, first, last))
-        .collect::<Vec<_>>();
-
-    let peak = found.iter().map(|w| w.peak).fold(0.0, f64::max);
-    let longest = found.iter().map(|w| w.end - w.onset).fold(0.0, f64::max);
-    found
-        .retain(|w| w.peak >= RINGING_PEAK * peak && w.end - w.onset >= RINGING_DURATION * longest);
-
-    let gap = options.minimum_gap.unwrap_or(DEFAULT_GAP * longest);
-    let mut joined: Vec<ContactWindow> = Vec::with_capacity(found.len());
-    for next in found {
-        match joined.last_mut() {
-            Some(last) if next.onset - last.end < gap => {
-                last.end = next.end;
-                last.end_seen = next.end_seen;
-                last.peak = last.peak.max(next.peak);
-            }
-            _ => joined.push(next),
-        }
-    }
-    joined
-}
-
-/// First and last sample at or above the threshold of each excursion, which is
-/// over below the release level.
-fn spans(smooth: &[f64], threshold: f64, release: f64) -> Vec<(usize, usize)> {
-    let mut spans = Vec::new();
-    let mut open: Option<(usize, usize)> = None;
-    for (i, &value) in smooth.iter().enumerate() {
-        if value >= threshold {
-            open = Some(open.map_or((i, i), |(first, _)| (first, i)));
-        } else if value < release {
-            spans.extend(open.take());
-        }
-    }
-    spans.extend(open);
-    spans
-}
-
-fn window(
-    times: &[f64],
-    smooth: &[f64],
-    threshold: f64,
-    first: usize,
-    last: usize,
-) -> ContactWindow {
-    let crossing = |outside: usize, inside: usize| {
-        let part = (threshold - smooth[outside]) / (smooth[inside] - smooth[outside]);
-        times[outside] + part * (times[inside] - times[outside])
-    };
-    let end_seen = last + 1 < smooth.len();
-    ContactWindow {
-        onset: if first > 0 {
-            crossing(first - 1, first)
-        } else {
-            times[first]
-        },
-        end: if end_seen {
-            crossing(last + 1, last)
-        } else {
-            times[last]
-        },
-        peak: smooth[first..=last]
-            .iter()
-            .copied()
-            .fold(f64::NEG_INFINITY, f64::max),
-        onset_seen: first > 0,
-        end_seen,
     }
 }

@@ -18,11 +18,7 @@ pub fn checked_times(channel: &Channel) -> Result<(Vec<f64>, Option<Finding>), E
     let name = || channel.name.clone();
     let n = channel.samples.len();
     if n == 0 {
-        return Err(Error::TooFewSamples {
-            channel: name(),
-            samples: 0,
-            least: 1,
-        });
+        return Err(Error::too_few_samples(name(), 0, 1));
     }
     let times = match &channel.times {
         Times::Uniform { start, interval } => {

@@ -37,7 +37,11 @@ fn reference_rotary_ramp() {
     // few lines that shares nothing with windfall.
     assert_eq!(decoded.counts.last(), Some(&12_732));
     assert_eq!(
-        (decoded.transitions, decoded.illegal, decoded.glitch_pairs),
+        (
+            decoded.tally.transitions,
+            decoded.tally.illegal,
+            decoded.tally.glitch_pairs
+        ),
         (12_732, 0, 0)
     );
     // The bytes of the capture as they are.
@@ -48,5 +52,5 @@ fn reference_rotary_ramp() {
     let slow = |phase: &[f64]| phase.iter().copied().step_by(60).collect::<Vec<_>>();
     let (a, b) = (slow(&a), slow(&b));
     let decoded = decode_quadrature(("A", &a), ("B", &b), IllegalTransition::AddNothing).unwrap();
-    assert!(decoded.illegal_share() > 0.1);
+    assert!(decoded.tally.illegal_share() > 0.1);
 }

@@ -28,8 +28,8 @@ fn decode(bytes: &[u8], illegal: IllegalTransition) -> Decoded {
     let decoded = decode_quadrature(("A", &volts(0)), ("B", &volts(1)), illegal).unwrap();
     let edges = decode_bytes(bytes, 0, 1, illegal);
     assert_eq!(counts_at_samples(&edges), decoded.counts);
-    assert_eq!(edges.tally.glitch_pairs, decoded.glitch_pairs);
-    assert_eq!(edges.tally.illegal, decoded.illegal);
+    assert_eq!(edges.tally.glitch_pairs, decoded.tally.glitch_pairs);
+    assert_eq!(edges.tally.illegal, decoded.tally.illegal);
     decoded
 }
 
@@ -72,16 +72,16 @@ proptest! {
     fn conserves_any_motion_below_one_count_per_sample(counts in motion()) {
         let decoded = decode(&bytes_of(&counts), IllegalTransition::AddNothing);
         prop_assert_eq!(&decoded.counts, &counts);
-        prop_assert_eq!(decoded.illegal, 0);
+        prop_assert_eq!(decoded.tally.illegal, 0);
         let moves = counts.windows(2).filter(|c| c[0] != c[1]).count();
-        prop_assert_eq!(decoded.transitions, moves);
+        prop_assert_eq!(decoded.tally.transitions, moves);
     }
 
     #[test]
     fn conserves_any_swing_below_the_speed_limit(counts in swing()) {
         let decoded = decode(&bytes_of(&counts), IllegalTransition::AddNothing);
         prop_assert_eq!(&decoded.counts, &counts);
-        prop_assert_eq!(decoded.illegal, 0);
+        prop_assert_eq!(decoded.tally.illegal, 0);
     }
 
     // One phase flips for one sample while the encoder rests: a pair of steps
@@ -104,8 +104,8 @@ proptest! {
             bytes[at] ^= 1 << phase;
         }
         let decoded = decode(&bytes, IllegalTransition::AddNothing);
-        prop_assert_eq!(decoded.glitch_pairs, flips.len());
-        prop_assert_eq!(decoded.illegal, 0);
+        prop_assert_eq!(decoded.tally.glitch_pairs, flips.len());
+        prop_assert_eq!(decoded.tally.illegal, 0);
         for (i, (found, truth)) in decoded.counts.iter().zip(&counts).enumerate() {
             let glitch = flips.iter().any(|&(at, _)| at == i);
             prop_assert_eq!((found - truth).abs(), i64::from(glitch));
@@ -129,11 +129,11 @@ proptest! {
         counts.push(counts[counts.len() - 1] + step);
         let bytes = bytes_of(&counts);
         let plain = decode(&bytes, IllegalTransition::AddNothing);
-        prop_assert_eq!(plain.illegal, gaps.len());
+        prop_assert_eq!(plain.tally.illegal, gaps.len());
         let lost = counts[counts.len() - 1] - plain.counts[counts.len() - 1];
         prop_assert_eq!(lost, 2 * step * gaps.len() as i64);
         let repaired = decode(&bytes, IllegalTransition::FollowDirection);
         prop_assert_eq!(&repaired.counts, &counts);
-        prop_assert_eq!(repaired.added, 2 * gaps.len() as i64);
+        prop_assert_eq!(repaired.tally.added, 2 * gaps.len() as i64);
     }
 }

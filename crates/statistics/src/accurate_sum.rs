@@ -1,9 +1,7 @@
 //! Sums in twice the precision of `f64`.
 //!
-//! Means and sums of squares of values that share many leading digits lose
-//! those digits in plain arithmetic. Here every sum is carried as a pair of
-//! numbers, and values that share digits are read as the decimals they were
-//! written as, so that what the table holds is what the result holds.
+//! Values that share many leading digits lose them in plain arithmetic: here sums are
+//! pairs of numbers, and such values are read as the decimals they were written as.
 
 use crate::as_written::as_written;
 use windfall_numerics::double_double::DoubleDouble;
@@ -16,8 +14,7 @@ pub fn sum(values: &[f64]) -> DoubleDouble {
     values.iter().fold(zero, |sum, value| sum + read(*value))
 }
 
-/// Values whose range is below this part of their size are read as decimals:
-/// there the last place of a double begins to matter.
+/// Values whose range is below this part of their size are read as decimals.
 const SHARED_DIGITS: f64 = 0.01;
 
 /// How values are read: as decimals where they share leading digits.
@@ -64,21 +61,6 @@ pub fn standard_deviation(values: &[f64]) -> f64 {
     variance(values).sqrt()
 }
 
-/// Autocorrelation at lag one, r₁ = Σ (yᵢ - ȳ)(yᵢ₊₁ - ȳ) / Σ (yᵢ - ȳ)².
-/// NaN where the values do not vary.
-#[must_use]
-pub fn lag_one_autocorrelation(values: &[f64]) -> f64 {
-    let centre = mean(values);
-    let read = reading_of(values);
-    let deviation = |value: f64| read(value) - centre;
-    let products = values
-        .windows(2)
-        .fold(DoubleDouble::default(), |sum, pair| {
-            sum + deviation(pair[0]) * deviation(pair[1])
-        });
-    products.value() / squares_about(values, centre).value()
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -96,7 +78,5 @@ mod tests {
         let shift = 2f64.powi(40);
         let values = [shift + 1.0, shift + 2.0, shift + 3.0, shift + 4.0];
         assert_eq!(variance(&values), 5.0 / 3.0);
-        // r₁ = (0.75 - 0.25 + 0.75) / 5
-        assert_eq!(lag_one_autocorrelation(&values), 0.25);
     }
 }

@@ -5,10 +5,7 @@ use windfall_numerics::double_double::{DoubleDouble, two_sum};
 /// The shortest decimal number that reads as this double: "1000000000000.4"
 /// where the double is 1000000000000.4000244.
 ///
-/// Instruments and tables write decimal numbers; of values that share many
-/// leading digits, reading them as doubles moves the last. Any decimal within
-/// half a unit of the last place stands for the double as well as the double
-/// itself does, and the shortest is the one that somebody wrote.
+/// Of values that share many leading digits, reading them as doubles moves the last.
 #[must_use]
 pub fn as_written(value: f64) -> DoubleDouble {
     decimal(value).unwrap_or_else(|| value.into())

@@ -4,8 +4,7 @@
 
 use crate::distribution::tail::normal_quantile;
 
-/// A variance within chains below this part of that of all is rounding: chains
-/// that stand still; 1.
+/// Variance within chains, relative to that of all, below which they do not move; 1.
 const STILL: f64 = 1e-20;
 
 /// Levels whose estimates tell how well the ends of an interval are known; 1.
@@ -14,8 +13,7 @@ const TAILS: [f64; 2] = [0.05, 0.95];
 /// How well the chains of one parameter agree.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ChainDiagnostics {
-    /// Spread of all chains over that within chains, in centre and in width:
-    /// 1 when they agree, below 1.01 when they can be used.
+    /// Spread of all chains over that within: 1 when they agree, usable below 1.01.
     pub r_hat: f64,
     /// Independent draws that would tell the centre as well.
     pub bulk_draws: f64,
@@ -90,8 +88,7 @@ fn quantile(values: &[f64], level: f64) -> f64 {
     sorted[below] + (place - below as f64) * (sorted[above] - sorted[below])
 }
 
-/// Ranks over all chains (ties share their mean), as normal scores by Blom's
-/// formula.
+/// Ranks over all chains (ties share their mean), as Blom's normal scores.
 fn rank_normalised(chains: &[Vec<f64>]) -> Vec<Vec<f64>> {
     let length = chains[0].len();
     let all: Vec<f64> = chains.concat();

@@ -1,18 +1,13 @@
-//! An orthonormal basis of the columns of a matrix, and what a regression on
-//! them leaves.
+//! An orthonormal basis of the columns of a matrix, and residuals of a regression on it.
 
 use nalgebra::DMatrix;
 
-/// Columns below this part of their length after projection are taken as sums
-/// of those before.
+/// Columns that projection shortens below this part are dependent.
 const RANK_TOLERANCE: f64 = 1e-10;
 
-/// An orthonormal basis of the span of columns; fewer than the columns where
-/// some are sums of others.
+/// An orthonormal basis of the span of columns.
 ///
-/// # Numerics
-/// Gram-Schmidt, each column twice, which is orthogonal to rounding (Giraud,
-/// Langou and Rozložník 2005).
+/// Gram-Schmidt, each column twice (Giraud, Langou and Rozložník 2005).
 #[must_use]
 pub fn orthonormal_basis(columns: &DMatrix<f64>) -> Vec<Vec<f64>> {
     let mut basis: Vec<Vec<f64>> = Vec::with_capacity(columns.ncols());
@@ -31,8 +26,7 @@ pub fn orthonormal_basis(columns: &DMatrix<f64>) -> Vec<Vec<f64>> {
     basis
 }
 
-/// Takes what the basis explains out of values: what is left are the residuals
-/// of a regression.
+/// Subtracts the part in the span of the basis, which leaves the residuals.
 pub fn take_out(basis: &[Vec<f64>], values: &mut [f64]) {
     for vector in basis {
         let share = dot(vector, values);

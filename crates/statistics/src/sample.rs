@@ -15,11 +15,7 @@ pub fn check_sample(what: &str, values: &[f64], needed: usize) -> Result<(), Sam
         });
     }
     if values.len() < needed {
-        return Err(SampleError::TooFewValues {
-            what: what.to_owned(),
-            found: values.len(),
-            needed,
-        });
+        return Err(SampleError::too_few(what, values.len(), needed));
     }
     Ok(())
 }
@@ -35,11 +31,7 @@ pub fn check_pairs(
     needed: usize,
 ) -> Result<(), SampleError> {
     if first.len() != second.len() {
-        return Err(SampleError::LengthsDiffer {
-            what: what.to_owned(),
-            first: first.len(),
-            second: second.len(),
-        });
+        return Err(SampleError::lengths(what, first.len(), second.len()));
     }
     check_sample(what, first, needed)?;
     check_sample(what, second, needed)
@@ -62,10 +54,7 @@ pub fn check_groups<G: AsRef<[f64]>>(groups: &[G], needed: usize) -> Result<(), 
     Ok(())
 }
 
-/// A probability strictly between zero and one.
-///
-/// # Errors
-/// [`SampleError::OutOfRange`].
+/// A probability strictly between zero and one, or [`SampleError::OutOfRange`].
 pub fn check_probability(quantity: &'static str, value: f64) -> Result<(), SampleError> {
     match value > 0.0 && value < 1.0 {
         true => Ok(()),

@@ -86,14 +86,14 @@ fn closed_form_effect_sizes() {
 #[test]
 fn reference_analysis_of_variance() {
     let found = one_way_anova(&groups()).unwrap();
-    check(found.between, 15.44318796992483200);
-    check(found.within, 88.70628571428575526);
+    check(found.between_ss, 15.44318796992483200);
+    check(found.within_ss, 88.70628571428575526);
     check(found.f, 1.39274801965360839);
     check(found.p, 0.27693543112293412);
-    check(found.residual_deviation, 5.54414285714285970_f64.sqrt());
+    check(found.residual_sd, 5.54414285714285970_f64.sqrt());
     let found = welch_anova(&groups()).unwrap();
     check(found.f, 2.8473256769037265);
-    check(found.df_below, 7.790141166014668);
+    check(found.df2, 7.790141166014668);
     check(found.p, 0.11798011218317775);
 }
 
@@ -106,7 +106,7 @@ fn closed_form_two_groups_have_f_of_t_squared() {
     let t = welch(&A, &D, 0.95).unwrap();
     let f = welch_anova(&[A.to_vec(), D.to_vec()]).unwrap();
     check(f.f, t.t * t.t);
-    check(f.df_below, t.df);
+    check(f.df2, t.df);
 }
 
 #[test]

@@ -119,9 +119,9 @@ fn reference_table_4() {
         "adequate precision",
     );
     close(quality.sigma, 0.5291811685809974, "s");
-    let (f, p) = force.fit.whole_test();
-    close(f, 161.5711733534192, "F");
-    close(p, 2.240485760012386e-09, "p");
+    let whole = force.fit.whole();
+    close(whole.f, 161.5711733534192, "F");
+    close(whole.p, 2.240485760012386e-09, "p");
 }
 
 #[test]
@@ -159,7 +159,7 @@ fn reference_table_5() {
     );
     close(interval.fit.model_ss(), 19252.27988733777, "model");
     close(interval.fit.residual_ss, 121.72011266223006, "residual");
-    close(interval.fit.whole_test().0, 158.16843631062284, "F");
+    close(interval.fit.whole().f, 158.16843631062284, "F");
     // The printed equation in actual units lost its term of k; recovered to the digits
     // it is given with.
     let printed = [

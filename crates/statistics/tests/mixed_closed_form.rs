@@ -152,7 +152,7 @@ fn closed_form_predictions_of_a_balanced_one_way() {
     let known = variance * (1.0 - shrink) + (1.0 - shrink).powi(2) * of_mean;
     assert_near(
         "known group",
-        &[found[0].value, found[0].se],
+        &[found[0].predicted, found[0].se],
         &[value, known.sqrt()],
         1e-10,
     );
@@ -172,12 +172,12 @@ fn closed_form_predictions_of_a_balanced_one_way() {
     let df = new * new / (a * a / (groups - 1.0) + b * b / (groups * (each - 1.0)));
     assert_near(
         "new group",
-        &[found[1].value, found[1].se],
+        &[found[1].predicted, found[1].se],
         &[data.mean, new.sqrt()],
         1e-10,
     );
     assert_near("its df", &[found[1].df], &[df], 1e-8);
-    assert!(found[0].single_high - found[0].high > data.within.sqrt());
+    assert!(found[0].high - found[0].mean_high > data.within.sqrt());
 }
 
 #[test]
@@ -223,7 +223,7 @@ fn closed_form_prediction_errors_of_crossed_groups_by_dense_matrices() {
         let near = format!("row {row}");
         assert_near(
             &near,
-            &[found.value, found.se],
+            &[found.predicted, found.se],
             &[expected.0, expected.1],
             1e-8,
         );

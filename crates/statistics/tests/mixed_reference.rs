@@ -2,7 +2,7 @@
 
 use crate::mixed_cases;
 
-use mixed_cases::{assert_near, fitted, fitted_case, numbers, reference, rows};
+use mixed_cases::{assert_near, fitted_case, numbers, reference, rows};
 use windfall_statistics::mixed::finding::MixedFinding;
 use windfall_statistics::mixed::fit::MixedMethod;
 use windfall_statistics::mixed::inference::{
@@ -12,7 +12,7 @@ use windfall_statistics::mixed::kenward_roger::{
     kenward_roger, kenward_roger_f, kenward_roger_tests,
 };
 use windfall_statistics::mixed::profile::profile_variances;
-use windfall_statistics::mixed::summary::{likelihood_ratio, variance_shares};
+use windfall_statistics::mixed::summary::variance_shares;
 
 #[test]
 fn reference_estimates_of_lme4() {
@@ -92,7 +92,7 @@ fn reference_satterthwaite_of_lmer_test() {
         let uncertainty = variance_uncertainty(&fit).unwrap();
         let tests = coefficient_tests(&fit, &uncertainty, 0.95);
         let name = format!("{} {}", case["formula"], case["method"]);
-        type Column = fn(&windfall_statistics::mixed::inference::CoefficientTest) -> f64;
+        type Column = fn(&windfall_statistics::model::linear_model::Coefficient) -> f64;
         let columns: [(&str, Column, f64); 4] = [
             ("se", |t| t.se, 1e-7),
             ("df", |t| t.df, 1e-5),
@@ -196,25 +196,6 @@ fn reference_profile_intervals_of_lme4() {
         }
     }
     assert!(compared >= 15, "{compared}");
-}
-
-#[test]
-fn reference_likelihood_ratio_of_lme4() {
-    let fit = |formula| fitted("apple", formula, MixedMethod::MaximumLikelihood);
-    let small = fit("k ~ velocity + (1 | fruit)");
-    let large = fit("k ~ velocity + radius + (1 | fruit)");
-    let found = likelihood_ratio(&small, &large).unwrap();
-    let expected = &reference()["comparison"];
-    assert_eq!(found.df, 1);
-    assert_near(
-        "chi-square",
-        &[found.chi_square],
-        &numbers(&expected["chi_square"]),
-        1e-6,
-    );
-    assert_near("p", &[found.p], &numbers(&expected["p"]), 1e-6);
-    assert_eq!(found.findings, []);
-    likelihood_ratio(&large, &small).unwrap_err();
 }
 
 #[test]

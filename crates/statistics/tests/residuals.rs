@@ -4,9 +4,9 @@
 
 use nalgebra::DMatrix;
 use windfall_statistics::residuals::box_cox::{BoxCoxOptions, box_cox};
-use windfall_statistics::residuals::heteroscedasticity::{breusch_pagan, koenker, white};
-use windfall_statistics::residuals::normality::{anderson_darling, jarque_bera, shapiro_wilk};
-use windfall_statistics::residuals::order::{durbin_watson, runs_test};
+use windfall_statistics::residuals::heteroscedasticity::koenker;
+use windfall_statistics::residuals::normality::{anderson_darling, shapiro_wilk};
+use windfall_statistics::residuals::order::durbin_watson;
 
 const Y: [f64; 12] = [2.1, 3.7, 2.9, 8.4, 5.5, 4.4, 3.9, 2.2, 12.6, 6.1, 3.3, 4.8];
 const Z: [f64; 12] = [3.0, 1.0, 4.0, 1.0, 5.0, 9.0, 2.0, 6.0, 5.0, 3.0, 5.0, 8.0];
@@ -68,35 +68,24 @@ fn reference_shapiro_wilk() {
     assert!((found.statistic - 1.0).abs() < 1e-12 && (found.p - 1.0).abs() < 1e-6);
 }
 
-/// Expected: statsmodels 0.15, normal_ad; SciPy 1.17, jarque_bera.
+/// Expected: statsmodels 0.15, normal_ad.
 #[test]
 fn reference_normality_by_other_tests() {
     let found = anderson_darling(&Y).unwrap();
     check(found.statistic, 0.7295841336981663, 1e-11);
     check(found.p, 0.04136195891371575, 1e-9);
-    let found = jarque_bera(&Y).unwrap();
-    check(found.statistic, 5.776337766280406, 1e-12);
-    check(found.p, 0.05567807238150951, 1e-11);
 }
 
-/// Expected: statsmodels 0.15, het_breuschpagan (robust and not) and het_white.
+/// Expected: statsmodels 0.15, het_breuschpagan (robust).
 #[test]
 fn reference_heteroscedasticity() {
     let found = koenker(&RESIDUALS, &design()).unwrap();
     assert_eq!(found.df, 2.0);
     check(found.statistic, 0.8125155197430645, 1e-11);
     check(found.p, 0.6661384415347027, 1e-11);
-    let found = breusch_pagan(&RESIDUALS, &design()).unwrap();
-    check(found.statistic, 1.3364281153975845, 1e-11);
-    check(found.p, 0.512623276337794, 1e-11);
-    let found = white(&RESIDUALS, &design()).unwrap();
-    assert_eq!(found.df, 5.0);
-    check(found.statistic, 2.9552150983400898, 1e-11);
-    check(found.p, 0.7068903992097098, 1e-11);
 }
 
-/// Expected: statsmodels 0.15 for the statistics, runstest_1samp(correction=False);
-/// the p-value of Durbin-Watson by four million simulated residuals of this
+/// Expected: statsmodels 0.15 for the statistic; the p-value of Durbin-Watson by four million simulated residuals of this
 /// design in NumPy: 0.55245 ± 0.00025.
 #[test]
 fn reference_order_of_residuals() {
@@ -104,9 +93,6 @@ fn reference_order_of_residuals() {
     check(found.statistic, 2.2262242671940307, 1e-12);
     assert!((found.p_alike - 0.55245).abs() < 0.001, "{found:?}");
     assert!((found.p_alike + found.p_alternating - 1.0).abs() < 1e-9);
-    let found = runs_test(&RESIDUALS).unwrap();
-    check(found.z, -0.9198662110077996, 1e-12);
-    check(found.p, 0.3576426779932925, 1e-12);
 }
 
 /// Expected: R 4.2.2, the profile of MASS::boxcox, its maximum and interval by
@@ -168,7 +154,6 @@ fn rejects_samples_that_say_nothing() {
     assert!(shapiro_wilk(&[1.0, 1.0, 1.0]).is_err());
     assert!(shapiro_wilk(&vec![1.0; 6000]).is_err());
     assert!(koenker(&[1.0, -1.0, 1.0, -1.0], &DMatrix::zeros(4, 1)).is_err());
-    assert!(runs_test(&[1.0, 2.0, 3.0, 4.0]).is_err());
     let mut response = Y;
     response[4] = 0.0;
     let message = box_cox(&response, &design(), &BoxCoxOptions::default()).unwrap_err();

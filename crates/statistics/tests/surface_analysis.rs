@@ -169,10 +169,10 @@ fn rows() -> ModelRows {
 fn closed_form_pure_error_of_repeated_settings() {
     let settings = nalgebra::DMatrix::from_row_slice(5, 1, &[0.0, -0.0, 0.0, 1.0, 2.0]);
     let found = lack_of_fit(&settings, &[1.0, 2.0, 3.0, 9.0, 5.0], 30.0, 3).unwrap();
-    assert_eq!((found.pure_ss, found.pure_df), (2.0, 2));
+    assert_eq!((found.pure_error.ss, found.pure_error.df), (2.0, 2.0));
     assert_eq!(
         (found.lack.ss, found.lack.df, found.lack.f),
-        (28.0, 1, 28.0)
+        (28.0, 1.0, 28.0)
     );
 }
 

@@ -1,5 +1,6 @@
 //! Statistics of tables: designs, regression, response surfaces, comparison of groups.
 
+mod columns;
 pub mod compare;
 pub mod design;
 pub mod regress;

@@ -212,8 +212,8 @@ fn line_and_band(points: &[(f64, f64)]) -> Option<(Line, Line)> {
         let values = places.iter().zip(&found);
         values.map(|(x, p)| (*x, pick(p))).collect::<Line>()
     };
-    let mut band = at(|p| p.mean_interval.1);
-    band.extend(at(|p| p.mean_interval.0).into_iter().rev());
+    let mut band = at(|p| p.mean_high);
+    band.extend(at(|p| p.mean_low).into_iter().rev());
     Some((at(|p| p.mean), band))
 }
 

@@ -8,7 +8,7 @@ use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 use windfall_files::error::{Error, Place};
 use windfall_files::text::column_role::seconds_per_unit;
-use windfall_formats::contents::{Contents, Format, TimeBase};
+use windfall_formats::contents::{Contents, TimeBase};
 use windfall_formats::open::open;
 use windfall_signal::recording::{Channel, Recording, Times};
 
@@ -205,7 +205,7 @@ fn check_finite(
     index: usize,
     path: &Path,
 ) -> Result<(), Error> {
-    let blank = matches!(contents.format, Format::Text | Format::Lvm);
+    let blank = contents.format.has_blank_cells();
     let bad = |cell: &f64| cell.is_infinite() || (cell.is_nan() && !blank);
     match cells.iter().position(bad) {
         None => Ok(()),

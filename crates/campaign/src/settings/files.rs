@@ -4,7 +4,7 @@
 use crate::error::CampaignError;
 use crate::settings::file::{FORMAT, FilesFile};
 use crate::settings::model::{ChannelPlan, FilePlan, ImpactEntry, Specimen, TimePlan};
-use crate::settings::open_options::{DECIMALS, ENCODINGS, FORMATS, SEPARATORS, THOUSANDS};
+use crate::settings::open_options::{DECIMALS, ENCODINGS, SEPARATORS, THOUSANDS};
 use crate::settings::template::is_template_file;
 use std::path::{Path, PathBuf};
 use toml::Spanned;
@@ -12,6 +12,7 @@ use windfall_files::error::{Error, Place};
 use windfall_files::text::toml_source::{
     Needed, TomlSource, choice, missing, place_at, positive_quantity, refused, suggestion,
 };
+use windfall_formats::contents::Format;
 use windfall_formats::open::OpenOptions;
 use windfall_formats::text::options::TextOptions;
 use windfall_numerics::unit::quantity::parse_unit;
@@ -76,7 +77,7 @@ fn open_plan(source: &TomlSource, files: &FilesFile) -> Result<OpenOptions, Erro
         comment: files.comment.as_ref().map(|text| text.get_ref().clone()),
     };
     Ok(OpenOptions {
-        format: named(source, files.format.as_ref(), "format", &FORMATS)?,
+        format: named(source, files.format.as_ref(), "format", &Format::NAMES)?,
         text,
     })
 }

@@ -9,18 +9,6 @@ use windfall_formats::text::encoding::Encoding;
 use windfall_formats::text::options::TextOptions;
 use windfall_formats::text::rows::Separator;
 
-/// Formats by name.
-pub const FORMATS: [(&str, Format); 8] = [
-    ("text", Format::Text),
-    ("lvm", Format::Lvm),
-    ("tdms", Format::Tdms),
-    ("mat", Format::Mat),
-    ("hdf5", Format::Hdf5),
-    ("wav", Format::Wav),
-    ("uff58", Format::Uff58),
-    ("sigrok", Format::Sigrok),
-];
-
 /// Separators of tables in text by name.
 pub const SEPARATORS: [(&str, Separator); 5] = [
     ("comma", Separator::Mark(b',')),
@@ -52,7 +40,7 @@ pub const ENCODINGS: [(&str, Encoding); 4] = [
 /// How files are to be read; what is left out is found out.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct OpenRequest {
-    /// A name of [`FORMATS`].
+    /// A name of [`Format::NAMES`].
     pub format: Option<String>,
     /// A name of [`SEPARATORS`].
     pub separator: Option<String>,
@@ -94,7 +82,7 @@ pub fn open_options(request: &OpenRequest) -> Result<OpenOptions, Error> {
         ));
     }
     Ok(OpenOptions {
-        format: named("--file-format", request.format.as_ref(), &FORMATS)?,
+        format: named("--file-format", request.format.as_ref(), &Format::NAMES)?,
         text: TextOptions {
             separator,
             decimal,

@@ -30,7 +30,6 @@ use windfall_statistics::surface::desirability::{
 };
 use windfall_statistics::surface::terms::{letter, monomial_name, surface_terms};
 use windfall_tables::regress::findings::finding;
-use windfall_tables::regress::outcome::{AnovaOutcome, whole_of};
 
 /// Responses of the design.
 pub(crate) const RESPONSES: [DropFeature; 2] = [PEAK, INTERVAL];
@@ -424,7 +423,6 @@ fn surface_outcomes(surfaces: &[Surface], runs: &[DesignRunOutcome]) -> Vec<Desi
         let every: Vec<usize> = (0..surface.terms.monomials.len()).collect();
         let table = anova(&surface.frame, &surface.reduced, &every, AnovaType::Partial);
         let quality = surface.fit.quality(&y);
-        let whole = whole_of(&surface.fit);
         let names: Vec<String> = surface.factors.iter().map(|f| f.name.clone()).collect();
         let terms = surface.actual.iter().map(|(powers, actual)| {
             let own = surface.terms.monomials.iter().position(|m| m == powers);
@@ -446,14 +444,8 @@ fn surface_outcomes(surfaces: &[Surface], runs: &[DesignRunOutcome]) -> Vec<Desi
             unit: RESPONSES[place].unit().to_owned(),
             model: letters.join(" + "),
             terms: terms.collect(),
-            whole: AnovaOutcome {
-                term: "model".to_owned(),
-                ss: whole.ss,
-                df: whole.df,
-                f: whole.f,
-                p: whole.p,
-            },
-            anova: rows_of_anova(&table),
+            whole: surface.fit.whole().row(),
+            anova: table.rows,
             residual_ss: surface.fit.residual_ss,
             residual_df: surface.fit.residual_df as f64,
             total_ss: surface.fit.total_ss,
@@ -464,17 +456,6 @@ fn surface_outcomes(surfaces: &[Surface], runs: &[DesignRunOutcome]) -> Vec<Desi
         }
     };
     surfaces.iter().enumerate().map(outcome).collect()
-}
-
-fn rows_of_anova(table: &windfall_statistics::model::anova::Anova) -> Vec<AnovaOutcome> {
-    let rows = table.rows.iter().map(|row| AnovaOutcome {
-        term: row.term.clone(),
-        ss: row.ss,
-        df: row.df as f64,
-        f: row.f,
-        p: row.p,
-    });
-    rows.collect()
 }
 
 fn verification_findings(outcome: &DesignWayOutcome, tolerance: f64) -> Vec<FindingOutcome> {

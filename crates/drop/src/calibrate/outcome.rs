@@ -5,7 +5,7 @@ use serde::Serialize;
 use windfall_campaign::measure::measured::MeasuredValue;
 use windfall_files::found::{FailureOutcome, FindingOutcome};
 use windfall_files::named::Named;
-use windfall_tables::regress::outcome::AnovaOutcome;
+use windfall_statistics::model::anova::AnovaRow;
 
 /// Everything that a calibration gives.
 #[derive(Clone, Debug, Serialize, utoipa::ToSchema)]
@@ -295,9 +295,9 @@ pub struct DesignSurfaceOutcome {
     /// Terms with their coefficients in coded units and levels.
     pub terms: Vec<DesignTerm>,
     /// The whole model.
-    pub whole: AnovaOutcome,
+    pub whole: AnovaRow,
     /// Its terms.
-    pub anova: Vec<AnovaOutcome>,
+    pub anova: Vec<AnovaRow>,
     /// Residual sum of squares.
     pub residual_ss: f64,
     /// Its degrees of freedom.

@@ -5,7 +5,7 @@ use crate::calibrate::outcome::{
     CalibrateOutcome, DesignSurfaceOutcome, DesignWayOutcome, HeightFeatures, VerifiedResponse,
 };
 use crate::calibrate::target::same_height;
-use windfall_tables::regress::outcome::AnovaOutcome;
+use windfall_statistics::model::anova::AnovaRow;
 
 /// A cell.
 #[derive(Clone, Debug, PartialEq)]
@@ -172,7 +172,7 @@ fn run_table(design: &DesignWayOutcome) -> CalibrateTable {
 fn anova_table(surface: &DesignSurfaceOutcome, name: &'static str) -> CalibrateTable {
     // Squares of milliseconds, as the study has them.
     let squared = shown(1.0, &surface.unit).powi(2);
-    let row = |row: &AnovaOutcome| {
+    let row = |row: &AnovaRow| {
         vec![
             word(&row.term),
             Cell::Number(squared * row.ss),

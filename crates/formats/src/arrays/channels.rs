@@ -6,8 +6,7 @@ use crate::contents::{ChannelContents, Note, TimeBase};
 use crate::names::Names;
 use crate::text::number::rises_evenly;
 
-/// Most channels made from one array. Larger arrays are pictures or matrices of a
-/// calculation.
+/// Most channels made from one array; larger ones are pictures or matrices.
 const MOST_SERIES: u64 = 4096;
 
 /// Most channels of a file.
@@ -113,11 +112,9 @@ fn add_channels(at: usize, array: &Array, name: &str, tree: &mut Tree, listing: 
 /// The first of the last `many` channels is the time of the others.
 fn first_is_time(name: &str, many: usize, tree: &mut Tree, listing: &mut Listing) {
     let first = listing.channels.len() - many;
-    tree.notes.push(Note::Assumed {
-        what: format!(
-            "the first column of \"{name}\" rises evenly and is taken as the time in seconds"
-        ),
-    });
+    tree.notes.push(Note::Assumed(format!(
+        "the first column of \"{name}\" rises evenly and is taken as the time in seconds"
+    )));
     for channel in &mut listing.channels[first + 1..] {
         channel.time = TimeBase::Channel(first);
     }
@@ -134,8 +131,7 @@ fn sample_extent(wide: &[Extent]) -> usize {
     best
 }
 
-/// Name suffix and first element of the `k`th series; the last dimension varies
-/// fastest.
+/// Name suffix and first element of the `k`th series, last dimension fastest.
 fn place_of(mut k: u64, others: &[Extent]) -> (String, u64) {
     let mut suffix = String::new();
     let mut start = 0_u64;
@@ -150,14 +146,12 @@ fn place_of(mut k: u64, others: &[Extent]) -> (String, u64) {
 
 fn rows_are_channels(array: &Array, samples: u64) -> Note {
     let shape: Vec<String> = array.extents.iter().map(|e| e.length.to_string()).collect();
-    Note::Assumed {
-        what: format!(
-            "\"{}\" is {}: the extent of {samples} is taken as the samples; transpose it before \
+    Note::Assumed(format!(
+        "\"{}\" is {}: the extent of {samples} is taken as the samples; transpose it before \
              it is saved if that is wrong",
-            array.path.join("/"),
-            shape.join(" × "),
-        ),
-    }
+        array.path.join("/"),
+        shape.join(" × "),
+    ))
 }
 
 /// A text named "unit" beside a single array gives its unit.

@@ -1,5 +1,4 @@
-//! Sampling times of arrays, from the names beside them: a vector "time" of the same
-//! length, or a scalar "fs" or "dt".
+//! Sampling times of arrays: a vector "time" of the same length, or a scalar "fs" or "dt".
 
 use crate::arrays::tree::{Listing, Scalar, Tree, count};
 use crate::contents::{Note, TimeBase};
@@ -73,8 +72,7 @@ struct Clock {
     start: f64,
 }
 
-/// Assigns to each channel the nearest time base, on its own level or above.
-/// Returns what was assumed.
+/// Assigns the nearest time base, on its own level or above, and returns assumptions.
 pub(crate) fn time_bases(tree: &Tree, listing: &mut Listing) -> Vec<Note> {
     let clocks = find_clocks(tree, listing);
     let mut assumed: Vec<(String, usize)> = Vec::new();
@@ -95,11 +93,11 @@ pub(crate) fn time_bases(tree: &Tree, listing: &mut Listing) -> Vec<Note> {
             None => assumed.push((by, 1)),
         }
     }
-    let note = |(by, channels): (String, usize)| Note::Assumed {
-        what: format!(
+    let note = |(by, channels): (String, usize)| {
+        Note::Assumed(format!(
             "{by} of {channels} {}, because of its name",
             if channels == 1 { "channel" } else { "channels" }
-        ),
+        ))
     };
     assumed.into_iter().map(note).collect()
 }

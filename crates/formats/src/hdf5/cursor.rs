@@ -7,8 +7,8 @@ use std::borrow::Cow;
 /// Why a part of an HDF5 file cannot be read.
 #[derive(Debug)]
 pub(crate) enum Problem {
-    /// The file is damaged.
-    Damaged { at: u64, what: String },
+    /// The file is damaged at this byte; how.
+    Damaged(u64, String),
     /// An unsupported part of the format.
     Unsupported(String),
     /// The bytes cannot be read.
@@ -68,10 +68,7 @@ impl<'a> Cursor<'a> {
 
     /// Error: the file is damaged here.
     pub fn damaged(&self, what: &str) -> Problem {
-        Problem::Damaged {
-            at: self.at(),
-            what: what.to_owned(),
-        }
+        Problem::Damaged(self.at(), what.to_owned())
     }
 
     pub fn take(&mut self, count: usize) -> Result<&[u8], Problem> {
@@ -141,10 +138,10 @@ impl<'a> Cursor<'a> {
             return Ok(());
         }
         let name = String::from_utf8_lossy(expected);
-        Err(Problem::Damaged {
-            at: self.at() - 4,
-            what: format!("expected a structure \"{name}\""),
-        })
+        Err(Problem::Damaged(
+            self.at() - 4,
+            format!("expected a structure \"{name}\""),
+        ))
     }
 
     /// Reads a version and checks that it is supported.

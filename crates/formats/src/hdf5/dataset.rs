@@ -211,10 +211,12 @@ impl Dataset {
         }
         let packed = file.bytes(chunk.address, chunk.size.unwrap_or(size))?;
         let unpacked = undo_filters(packed, &self.filters, chunk.skipped, size as usize);
-        let unpacked = unpacked.ok_or_else(|| Problem::Damaged {
-            at: file.base.saturating_add(chunk.address),
-            what: "the chunk that begins here cannot be unpacked, or its checksum is wrong"
-                .to_owned(),
+        let unpacked = unpacked.ok_or_else(|| {
+            Problem::Damaged(
+                file.base.saturating_add(chunk.address),
+                "the chunk that begins here cannot be unpacked, or its checksum is wrong"
+                    .to_owned(),
+            )
         })?;
         let kept: usize = self.kept.iter().map(|(_, bytes)| bytes.len()).sum();
         if kept + unpacked.len() > KEPT {
@@ -241,10 +243,7 @@ fn read_fill_value(file: &Hdf5File, header: &Header) -> Result<Vec<u8>, Problem>
 }
 
 fn too_short() -> Problem {
-    Problem::Damaged {
-        at: 0,
-        what: "its data are shorter than its extents".to_owned(),
-    }
+    Problem::Damaged(0, "its data are shorter than its extents".to_owned())
 }
 
 /// Copies the overlap of a chunk and a box of elements.

@@ -57,10 +57,10 @@ impl Hdf5File {
     pub fn bytes(&self, address: u64, count: u64) -> Result<Vec<u8>, Problem> {
         let at = self.base.saturating_add(address);
         if count > self.source.length().saturating_sub(at) {
-            return Err(Problem::Damaged {
+            return Err(Problem::Damaged(
                 at,
-                what: format!("{count} bytes are declared here, beyond the end of the file"),
-            });
+                format!("{count} bytes are declared here, beyond the end of the file"),
+            ));
         }
         if count > LARGEST {
             let what = format!("pieces of {count} bytes");
@@ -102,10 +102,8 @@ impl Hdf5File {
 
     /// Verifies the checksum in the last four bytes.
     pub fn check(&self, bytes: &[u8], address: u64) -> Result<(), Problem> {
-        let problem = |what: &str| Problem::Damaged {
-            at: self.base.saturating_add(address),
-            what: what.to_owned(),
-        };
+        let problem =
+            |what: &str| Problem::Damaged(self.base.saturating_add(address), what.to_owned());
         let split = bytes.len().checked_sub(4);
         let (body, sum) = bytes.split_at(split.ok_or_else(|| problem("a checksum is missing"))?);
         match lookup3(body).to_le_bytes() == sum {
@@ -193,7 +191,7 @@ fn error_of(path: &std::path::Path, object: Option<&str>, problem: Problem) -> E
     let path = path.to_path_buf();
     match problem {
         Problem::Source(error) => error,
-        Problem::Damaged { at, what } => Error::Malformed {
+        Problem::Damaged(at, what) => Error::Malformed {
             path,
             place: Place::Byte(at),
             problem: match object {
@@ -214,7 +212,7 @@ fn error_of(path: &std::path::Path, object: Option<&str>, problem: Problem) -> E
 /// Describes a problem as the reason for leaving something out.
 pub(crate) fn reason(problem: &Problem) -> String {
     match problem {
-        Problem::Damaged { at, what } => format!("it is damaged: {what} (byte {at})"),
+        Problem::Damaged(at, what) => format!("it is damaged: {what} (byte {at})"),
         Problem::Unsupported(what) => format!("windfall does not read {what}"),
         Problem::Source(error) => format!("it cannot be read: {error}"),
     }

@@ -118,8 +118,7 @@ fn inflate(bytes: &[u8], most: usize) -> Option<Vec<u8>> {
     (inflated.len() <= most).then_some(inflated)
 }
 
-/// Shuffled data have the first bytes of all elements, then the second ones, and so
-/// on. A remainder after the last whole element is not shuffled.
+/// Shuffled data have the first bytes of all whole elements, then the second ones, ….
 fn unshuffle(bytes: &[u8], element: usize) -> Vec<u8> {
     let count = bytes.len() / element;
     if element < 2 || count < 2 {

@@ -164,10 +164,7 @@ impl<'a> FractalHeap<'a> {
 
     /// Converts a heap offset to an address.
     fn locate(&self, mut offset: u64) -> Result<u64, Problem> {
-        let nowhere = || Problem::Damaged {
-            at: 0,
-            what: "an attribute or link is not in its heap".to_owned(),
-        };
+        let nowhere = || Problem::Damaged(0, "an attribute or link is not in its heap".to_owned());
         let mut block = self.root.ok_or_else(nowhere)?;
         let mut rows = self.rows;
         for _ in 0..DEEPEST {

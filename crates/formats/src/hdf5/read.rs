@@ -40,9 +40,10 @@ impl Hdf5Reader {
         }
         let mut found = found?;
         if file.end > length {
-            found.tree.notes.push(Note::CutOff {
-                missing: format!("{} bytes were written, {length} are there", file.end),
-            });
+            found.tree.notes.push(Note::CutOff(format!(
+                "{} bytes were written, {length} are there",
+                file.end
+            )));
         }
         let mut properties = Vec::new();
         let head = file.source.head(116)?;

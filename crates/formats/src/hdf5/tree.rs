@@ -391,13 +391,13 @@ impl Walk<'_> {
 }
 
 fn too_much(dataset: &Dataset) -> Problem {
-    Problem::Damaged {
-        at: 0,
-        what: format!(
+    Problem::Damaged(
+        0,
+        format!(
             "it declares {} elements, more than the file can hold",
             dataset.space.count()
         ),
-    }
+    )
 }
 
 /// Numeric MATLAB classes.

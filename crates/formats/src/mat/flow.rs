@@ -68,8 +68,7 @@ impl<'a> Flow<'a> {
         }
     }
 
-    /// Fills `buffer` with (decompressed) bytes from `at`, which for compressed data
-    /// must not lie before the end of the last read.
+    /// Fills `buffer` with bytes from `at`; compressed data can only be read forwards.
     pub fn read_at(&mut self, at: u64, buffer: &mut [u8]) -> Result<(), Error> {
         let (source, region) = (self.source, self.region);
         let Some(inflater) = &mut self.inflater else {
@@ -103,8 +102,7 @@ impl<'a> Flow<'a> {
         Ok(())
     }
 
-    /// Reads the few bytes after the last number, which verifies the checksum of
-    /// compressed data.
+    /// Reads the last bytes, which verifies the checksum of compressed data.
     pub fn finish(&mut self) -> Result<(), Error> {
         let mut rest = [0; 8];
         let (source, start) = (self.source, self.region.start);

@@ -84,7 +84,7 @@ pub(crate) fn list(source: &Source) -> Result<MatTree, Error> {
         match list_matrix(source, at, &mut found) {
             Ok(next) => at = next,
             Err(Error::Truncated { what, .. }) if !found.stored.is_empty() => {
-                found.tree.notes.push(Note::CutOff { missing: what });
+                found.tree.notes.push(Note::CutOff(what));
                 break;
             }
             Err(error) => return Err(error),

@@ -58,8 +58,7 @@ pub(crate) fn read_header(source: &Source) -> Result<Header, Error> {
     })
 }
 
-/// Lists the arrays of a file, and whether any variable is compressed. A file
-/// cut off after its first array is noted, not refused.
+/// Lists the arrays of a file, and whether any is compressed; notes a file cut off.
 pub(crate) fn list(source: &Source, header: &Header) -> Result<(MatTree, bool), Error> {
     let mut walk = Walk::default();
     let mut any_compressed = false;
@@ -99,9 +98,9 @@ pub(crate) fn list(source: &Source, header: &Header) -> Result<(MatTree, bool), 
             };
             list_variable(&mut elements, &mut walk)?;
         } else {
-            walk.found.tree.notes.push(Note::Odd {
-                what: format!("the data element of type {kind} at byte {at} is skipped"),
-            });
+            walk.found.tree.notes.push(Note::Odd(format!(
+                "the data element of type {kind} at byte {at} is skipped"
+            )));
         }
         let end = at + 8 + length;
         at = match compressed {
@@ -130,11 +129,9 @@ fn cut_off(
     if walk.found.stored.is_empty() && walk.found.tree.texts.is_empty() {
         return Err(error);
     }
-    walk.found.tree.notes.push(Note::CutOff {
-        missing: format!(
-            "{what} at byte {at} needs {needed} bytes, {} are left",
-            source.length().saturating_sub(at)
-        ),
-    });
+    walk.found.tree.notes.push(Note::CutOff(format!(
+        "{what} at byte {at} needs {needed} bytes, {} are left",
+        source.length().saturating_sub(at)
+    )));
     Ok(())
 }

@@ -54,8 +54,7 @@ pub struct Flags {
     pub big_endian: bool,
 }
 
-/// The layout and size in bytes of a chunk; `None` if the objects cannot be
-/// combined.
+/// The layout and size in bytes of a chunk; `None` if the objects cannot be combined.
 pub fn chunk(active: &[Active], flags: Flags) -> Option<(Vec<Region>, u64)> {
     let daqmx = active
         .iter()

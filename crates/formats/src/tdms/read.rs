@@ -218,8 +218,7 @@ struct Window<'a> {
 }
 
 impl TdmsReader {
-    /// Calls `take` with the windows of all regions that contain a requested
-    /// object, in file order.
+    /// Calls `take` with the windows of all requested regions, in file order.
     fn windows<'a>(
         &'a self,
         places: &[Option<usize>],

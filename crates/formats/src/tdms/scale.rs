@@ -73,8 +73,7 @@ impl Scales {
         }
     }
 
-    /// Whether evaluation ends in a sensible number of steps: damaged scales may
-    /// form cycles or grow exponentially.
+    /// Whether evaluation ends: damaged scales may form cycles or grow exponentially.
     pub fn ends(&self) -> bool {
         let mut budget = MOST_STEPS;
         self.within(self.last(), &mut budget)

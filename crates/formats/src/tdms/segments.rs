@@ -67,7 +67,7 @@ pub fn read_segments(source: &Source) -> Result<Found, Error> {
         if source.length() - at < LEAD_IN {
             let left = source.length() - at;
             let missing = format!("{left} bytes after the last segment are not a whole segment");
-            found.notes.push(Note::CutOff { missing });
+            found.notes.push(Note::CutOff(missing));
             break;
         }
         let lead_in = read_lead_in(source, at)?;
@@ -139,9 +139,7 @@ fn read_segment(
     let begin = at + LEAD_IN;
     if lead_in.next.is_none() {
         let missing = "its last segment was not finished; the complete part of it is read";
-        found.notes.push(Note::CutOff {
-            missing: missing.to_owned(),
-        });
+        found.notes.push(Note::CutOff(missing.to_owned()));
     }
     if lead_in.metadata {
         let left = source.length() - begin;
@@ -161,7 +159,7 @@ fn read_segment(
             Ok(objects) => update(source, begin, lead_in, objects, found)?,
             Err(fault) if fault.ended && lead_in.metadata_length >= left => {
                 let missing = "the metadata of its last segment".to_owned();
-                found.notes.push(Note::CutOff { missing });
+                found.notes.push(Note::CutOff(missing));
                 return Ok(false);
             }
             Err(fault) => return Err(malformed(source, begin + fault.at as u64, fault.problem)),
@@ -285,9 +283,7 @@ fn add_data(
         let kept = Arc::new(cut(&regions, rest));
         add_group(found, at + chunks * size, 1, rest, &kept);
         if lead_in.next.is_some() && !lead_in.flags.interleaved {
-            found.notes.push(Note::Odd {
-                what: format!("the raw data at byte {at} are no whole number of chunks; what is complete in the last is read"),
-            });
+            found.notes.push(Note::Odd(format!("the raw data at byte {at} are no whole number of chunks; what is complete in the last is read")));
         }
     }
     Ok(())

@@ -23,8 +23,7 @@ pub fn cells(line: &str, separator: Separator) -> Vec<&str> {
     }
 }
 
-/// The cells of a line if it has one per column of the table, or one blank cell
-/// more.
+/// The cells of a line with one per column, or one blank cell more.
 pub fn row(line: &str, separator: Separator, count: usize) -> Option<Vec<&str>> {
     let mut cells = cells(line, separator);
     if cells.len() == count + 1 && cells[count].trim().is_empty() {

@@ -121,12 +121,10 @@ pub fn find_dialect(lines: &[&str], options: &TextOptions) -> Result<Dialect, us
             b',' => ("comma", "\",\" as thousands separator"),
             _ => ("point", "\".\" as thousands separator"),
         };
-        dialect.notes.push(Note::Assumed {
-            what: format!(
-                "the decimal mark is taken to be a {mark}; if the file has {other}, say so with \
+        dialect.notes.push(Note::Assumed(format!(
+            "the decimal mark is taken to be a {mark}; if the file has {other}, say so with \
                  the settings decimal and thousands"
-            ),
-        });
+        )));
     }
     Ok(dialect)
 }

@@ -51,13 +51,11 @@ pub fn name_columns(dialect: &mut Dialect, lines: &[&str], data: &[usize], optio
                 }
                 // Two full rows and nothing above: names and remarks.
                 Some(names) if header.len() == 2 && filled(&names) && filled(&last) => {
-                    dialect.notes.push(Note::Odd {
-                        what: format!(
-                            "there are two rows above the numbers; the names are taken from the first, \
+                    dialect.notes.push(Note::Odd(format!(
+                        "there are two rows above the numbers; the names are taken from the first, \
                              the second says: {}",
-                            last.join(", ")
-                        ),
-                    });
+                        last.join(", ")
+                    )));
                     dialect.names = names;
                     used -= 1;
                 }
@@ -69,14 +67,12 @@ pub fn name_columns(dialect: &mut Dialect, lines: &[&str], data: &[usize], optio
             if let Some(names) = commented_header(lines, dialect, count) {
                 dialect.names = names;
             } else if let Some(names) = more {
-                dialect.notes.push(Note::Odd {
-                    what: format!(
-                        "there are {} names above {count} columns; they are taken in order, and \
+                dialect.notes.push(Note::Odd(format!(
+                    "there are {} names above {count} columns; they are taken in order, and \
                          \"{}\" has no column",
-                        names.len(),
-                        names[count..].join("\", \"")
-                    ),
-                });
+                    names.len(),
+                    names[count..].join("\", \"")
+                )));
                 dialect.names = names[..count].to_vec();
             }
         }

@@ -30,15 +30,13 @@ pub fn stretches(lines: &Lines) -> u64 {
     lines.end.saturating_sub(lines.start).div_ceil(STRETCH)
 }
 
-/// The lines that begin in stretch `index`, as UTF-8 or single bytes. Each line
-/// belongs to exactly one stretch.
+/// The lines that begin in stretch `index`; each line belongs to one stretch.
 pub fn stretch(source: &Source, lines: &Lines, index: u64) -> Result<Vec<u8>, Error> {
     let mut buffer = Vec::new();
     Ok(stretch_in(source, lines, index, &mut buffer)?.to_vec())
 }
 
-/// Like [`stretch`], with a reusable buffer: allocating one per stretch would cost
-/// as much time as the reading.
+/// [`stretch`] with a reusable buffer.
 pub fn stretch_in<'a>(
     source: &Source,
     lines: &Lines,

@@ -26,8 +26,7 @@ const LONGEST_HEADER: u64 = 1 << 20;
 /// Most segments of a file.
 const MOST_SEGMENTS: usize = 10_000;
 
-/// Tolerance between printed times and the spacing in the header, in steps; times
-/// are printed with six decimals.
+/// Tolerance between printed times and the spacing in the header, in steps.
 const EVEN: f64 = 0.1;
 
 /// Rows compared with the spacing in the header.
@@ -242,8 +241,7 @@ fn find_segments(source: &Source, file: &FileHeader, marks: &[u64]) -> Result<Ve
     Ok(segments)
 }
 
-/// Start of the last blank line in `bytes`, and the start of the header after it.
-/// Lines of nothing but separators count as blank.
+/// Start of the last blank line in `bytes`, and of the header after it.
 fn header_begin(bytes: &[u8], separator: char) -> (usize, usize) {
     let blank = |line: &[u8]| {
         line.iter()
@@ -387,9 +385,9 @@ fn add_channels(
     }
     for cells in &segment.header {
         if cells[0] == "Notes" && cells.len() > 1 && !cells[1].is_empty() {
-            contents.notes.push(Note::Odd {
-                what: format!("the file says: {}", cells[1]),
-            });
+            contents
+                .notes
+                .push(Note::Odd(format!("the file says: {}", cells[1])));
         }
     }
     Ok(columns)

@@ -109,8 +109,7 @@ fn zeros_before(bytes: &[u8], decimal: u8, count: usize) -> usize {
     leading.filter(|b| **b == b'0').count()
 }
 
-/// Appends the digits from `at` to `mantissa` and returns where they end. Beyond 19
-/// digits the mantissa is meaningless.
+/// Appends the digits from `at` to `mantissa` (at most 19 count); returns where they end.
 #[inline]
 fn digits(bytes: &[u8], mut at: usize, mantissa: &mut u64) -> usize {
     // Up to eight digits at a time, shifted up so that zeros precede them.
@@ -244,8 +243,7 @@ pub fn number(text: &str, marks: Marks) -> Option<f64> {
     }
 }
 
-/// Whether values rise in even steps, within some jitter. Steps of one are row
-/// numbers and do not count.
+/// Whether values rise in even steps, other than row numbers.
 pub fn rises_evenly(values: &[f64]) -> bool {
     if values.len() < 3 {
         return false;
@@ -264,8 +262,7 @@ pub fn bare(text: &str) -> &str {
     inner.map_or(text, str::trim)
 }
 
-/// Removes thousands separators; `None` unless they separate groups of three
-/// digits.
+/// Removes thousands separators; `None` unless they separate groups of three digits.
 pub fn without_groups(text: &str, mark: char, decimal: char) -> Option<String> {
     let (integer, rest) = match text.find([decimal, 'e', 'E']) {
         Some(at) => text.split_at(at),

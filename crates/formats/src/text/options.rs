@@ -38,8 +38,7 @@ pub(crate) struct Dialect {
     pub kinds: Vec<ColumnKind>,
     /// Index of the first row among the lines inspected.
     pub first_row: usize,
-    /// Whether there are no names and the first column rises evenly, so that it
-    /// is most likely the time.
+    /// Whether there are no names and the first column, rising evenly, is likely the time.
     pub rising_first: bool,
     /// Lines above the header: name and value.
     pub preamble: Vec<(String, String)>,

@@ -5,8 +5,7 @@ use std::sync::LazyLock;
 /// Largest power of ten in the table; the standard library handles the rest.
 const LARGEST_POWER: i32 = 80;
 
-/// The leading 128 bits of 5^q for q ≥ −[`LARGEST_POWER`]: truncated for q ≥ 0,
-/// rounded up for q < 0.
+/// The leading 128 bits of 5^q for q ≥ −[`LARGEST_POWER`], rounded away from 1.
 static FIVES: LazyLock<Vec<u128>> = LazyLock::new(|| {
     (-LARGEST_POWER..=LARGEST_POWER)
         .map(|q| match q < 0 {

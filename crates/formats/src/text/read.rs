@@ -164,12 +164,10 @@ fn contents(dialect: &Dialect, encoding: Encoding) -> (Contents, Vec<usize>, Vec
     let mut time = columns.iter().position(|&column| is_time(column));
     if time.is_none() && dialect.rising_first {
         time = Some(0);
-        notes.push(Note::Assumed {
-            what: format!(
-                "\"{}\" rises evenly and is taken as the time in seconds",
-                names[columns[0]]
-            ),
-        });
+        notes.push(Note::Assumed(format!(
+            "\"{}\" rises evenly and is taken as the time in seconds",
+            names[columns[0]]
+        )));
     }
     let mut channels = Vec::new();
     for (place, &column) in columns.iter().enumerate() {
@@ -193,12 +191,10 @@ fn contents(dialect: &Dialect, encoding: Encoding) -> (Contents, Vec<usize>, Vec
             properties: Vec::new(),
         });
         if moments {
-            notes.push(Note::Assumed {
-                what: format!(
-                    "\"{}\" holds dates or times of day; it is read as seconds since the first row",
-                    names[column]
-                ),
-            });
+            notes.push(Note::Assumed(format!(
+                "\"{}\" holds dates or times of day; it is read as seconds since the first row",
+                names[column]
+            )));
         }
     }
     let separator = match dialect.separator {
@@ -234,12 +230,10 @@ fn unique_names(dialect: &Dialect, notes: &mut Vec<Note>) -> Vec<String> {
         };
         let unique = names.unique(&wanted);
         if unique != wanted {
-            notes.push(Note::Odd {
-                what: format!(
+            notes.push(Note::Odd(format!(
                     "the name \"{wanted}\" stands above several columns; column {} is called \"{unique}\"",
                     column + 1
-                ),
-            });
+                )));
         }
         named.push(unique);
     }
@@ -314,12 +308,10 @@ impl TextReader {
             return;
         };
         let expected = self.table.plan.columns.len();
-        let note = Note::CutOff {
-            missing: format!(
-                "its last line, {}, has {} of {expected} cells and is left out",
-                cut.line, cut.found
-            ),
-        };
+        let note = Note::CutOff(format!(
+            "its last line, {}, has {} of {expected} cells and is left out",
+            cut.line, cut.found
+        ));
         if !self.contents.notes.contains(&note) {
             self.contents.notes.push(note);
         }

@@ -94,8 +94,7 @@ pub(crate) struct Ragged {
     pub last: bool,
 }
 
-/// Upper bound on the rows of a stretch: one per line, and no more than its bytes
-/// allow, so that memory is bounded whatever the file contains.
+/// Upper bound on the rows of a stretch, from its lines and bytes.
 pub(crate) fn most_rows(bytes: &[u8], plan: &RowPlan) -> usize {
     let ends = memchr::memchr_iter(plan.newline, bytes).count();
     let lines = ends + usize::from(bytes.last().is_some_and(|last| *last != plan.newline));
@@ -160,8 +159,8 @@ pub(crate) fn read_rows(
     rows
 }
 
-/// Fast path: parses a line of plain numbers and blank cells; returns the start of
-/// the next line. `None` for any other line; columns may then have surplus samples.
+/// Parses a line of plain numbers and blank cells and returns the start of the next;
+/// `None` for any other line (columns may then have surplus samples).
 #[inline]
 fn bare_row(
     bytes: &[u8],

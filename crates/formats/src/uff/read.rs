@@ -166,7 +166,7 @@ fn read_function(
             }
             if !closed {
                 let missing = format!("the end of the function \"{}\"", header.name);
-                found.contents.notes.push(Note::CutOff { missing });
+                found.contents.notes.push(Note::CutOff(missing));
             }
             (Coding::Text, end)
         }
@@ -232,12 +232,10 @@ fn binary_data(
         }
     };
     if bytes > left {
-        found.contents.notes.push(Note::CutOff {
-            missing: format!(
-                "the function \"{}\" needs {bytes} bytes, {left} are left",
-                header.name
-            ),
-        });
+        found.contents.notes.push(Note::CutOff(format!(
+            "the function \"{}\" needs {bytes} bytes, {left} are left",
+            header.name
+        )));
     }
     let end = lines.offset() + needed.unwrap_or(bytes).min(left);
     lines.seek(lines.offset() + bytes.min(left));
@@ -381,7 +379,7 @@ impl Reader for UffReader {
             collector.finish()?;
             if missing > 0 {
                 let missing = format!("{missing} numbers of the function \"{}\"", record.name);
-                let note = Note::CutOff { missing };
+                let note = Note::CutOff(missing);
                 if !self.contents.notes.contains(&note) {
                     self.contents.notes.push(note);
                 }

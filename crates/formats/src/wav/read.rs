@@ -17,8 +17,7 @@ const BLOCK: u64 = 1 << 16;
 /// Most channels of a file.
 const MOST_CHANNELS: u16 = 4096;
 
-/// Unknown size: the file was still being written, or gives its size elsewhere
-/// (RF64).
+/// Unknown size: still being written, or given elsewhere (RF64).
 const NO_SIZE: u32 = u32::MAX;
 
 /// Coding of samples.
@@ -114,18 +113,16 @@ impl WavReader {
         })?;
         let frame = u64::from(shape.container) * u64::from(shape.channels);
         if declared > left {
-            notes.push(Note::CutOff {
-                missing: format!("{declared} bytes of samples are declared, {left} are there"),
-            });
+            notes.push(Note::CutOff(format!(
+                "{declared} bytes of samples are declared, {left} are there"
+            )));
         }
         let bytes = declared.min(left);
         if bytes % frame != 0 {
-            notes.push(Note::Odd {
-                what: format!(
-                    "{} bytes after the last whole frame are left out",
-                    bytes % frame
-                ),
-            });
+            notes.push(Note::Odd(format!(
+                "{} bytes after the last whole frame are left out",
+                bytes % frame
+            )));
         }
         let frames = bytes / frame;
         let contents = contents(&head, shape, frames, properties, notes);

@@ -25,11 +25,9 @@ use crate::validate::checked_times;
 
 /// Fewest samples of a recording.
 const LEAST_RECORDING: usize = 30;
-/// Departure of a sampling time from even spacing up to which the ringing is
-/// taken out; intervals.
+/// The ringing is removed up to this departure from even spacing; intervals.
 const UNEVEN: f64 = 0.1;
-/// Part of the ringing that taking it out may leave: it is known to a part in
-/// a hundred, and plates have further modes; 1.
+/// Part of the ringing that its removal may leave, mostly of further modes; 1.
 const LEAVES: f64 = 0.05;
 /// The contact force is averaged over this part of the period, or of a rigid
 /// support's pulse, at least and at most; 1.
@@ -42,13 +40,11 @@ const LEVEL_WIDTHS: usize = 4;
 const ROUNDS: usize = 2;
 /// The impulse is taken over at most this many periods after the contact.
 const MOST_CYCLES: usize = 5;
-/// Bounces with less than this part of the largest impulse are the swinging of
-/// a mount that cannot be told to be its ringing; 1.
+/// Bounces below this part of the largest impulse are taken for a swinging mount; 1.
 const LEAST_IMPULSE: f64 = 0.02;
 /// An onset is visible above this many standard deviations of the noise; 1.
 const VISIBLE: f64 = 6.0;
-/// Part of an onset's uncertainty of shape that the next onset does not share: a
-/// weaker impact is seen at another part of its rise; 1.
+/// Part of an onset's shape uncertainty that the next, weaker impact does not share; 1.
 const OWN_SHAPE: f64 = 0.4;
 /// Ringing is over when the force scatters by this many times the noise; 1.
 const DECAYED: f64 = 1.5;
@@ -59,14 +55,12 @@ const DECAYED: f64 = 1.5;
 ///
 /// # Errors
 /// Samples or times that are no numbers, too few of them, or thresholds in the
-/// wrong order. A recording without a bounce is no error but a finding.
+/// wrong order. A recording without a bounce gives a finding.
 ///
 /// # Numerics
-/// A plate that rings makes a support force that goes negative and comes back
-/// many times after one impact. Its ringing is identified from the recording
-/// itself ([`find_ringing`]) and taken out by the recurrence that it obeys
-/// ([`contact_force`]); contacts are found by hysteresis in what is left, so
-/// that ringing is no bounce and a bounce during ringing is one.
+/// The plate's ringing is identified from the recording ([`find_ringing`]) and
+/// removed by the recurrence that it obeys ([`contact_force`]); contacts are found by
+/// hysteresis in what is left.
 pub fn find_bounces(channel: &Channel, options: &BounceOptions) -> Result<BounceTrain, Error> {
     let (times, _) = checked_times(channel)?;
     check(channel, options)?;
@@ -94,8 +88,8 @@ pub fn find_bounces(channel: &Channel, options: &BounceOptions) -> Result<Bounce
     let ringing = match options.plate {
         PlateRinging::Find => pooled(&rings),
         _ => plate.map(|(period, damping_ratio)| PooledRinging {
-            period: exact(period),
-            damping_ratio: exact(damping_ratio),
+            period: Uncertain::exact(period),
+            damping_ratio: Uncertain::exact(damping_ratio),
             bounces: 0,
         }),
     };
@@ -154,10 +148,6 @@ pub fn find_bounces(channel: &Channel, options: &BounceOptions) -> Result<Bounce
     })
 }
 
-fn exact(value: f64) -> Uncertain {
-    Uncertain { value, sd: 0.0 }
-}
-
 fn interval(times: &[f64]) -> f64 {
     (times[times.len() - 1] - times[0]) / (times.len() - 1) as f64
 }
@@ -170,19 +160,13 @@ fn is_even(times: &[f64]) -> bool {
 
 fn check(channel: &Channel, options: &BounceOptions) -> Result<(), Error> {
     if channel.samples.len() < LEAST_RECORDING {
-        return Err(Error::TooFewSamples {
-            channel: channel.name.clone(),
-            samples: channel.samples.len(),
-            least: LEAST_RECORDING,
-        });
+        return Err(Error::too_few_samples(
+            channel.name.clone(),
+            channel.samples.len(),
+            LEAST_RECORDING,
+        ));
     }
-    let bad = |option, value, expected| {
-        Err(Error::BadOption {
-            option,
-            value,
-            expected,
-        })
-    };
+    let bad = |option, value, expected| Err(Error::bad_option(option, value, expected));
     let level = match options.threshold {
         Threshold::Fixed(force) => force,
         Threshold::Automatic { deviations, .. } => deviations,
@@ -236,12 +220,11 @@ fn levelled(samples: &[f64], options: &BounceOptions) -> Levelled {
         before.level.value = found;
     }
     let level = match options.static_level {
-        StaticLevel::Given(value) => exact(value),
+        StaticLevel::Given(value) => Uncertain::exact(value),
         StaticLevel::BeforeFirst => before.level,
-        StaticLevel::Follow => Uncertain {
-            value: before.level.value,
-            sd: before.noise / (block as f64).sqrt(),
-        },
+        StaticLevel::Follow => {
+            Uncertain::new(before.level.value, before.noise / (block as f64).sqrt())
+        }
     };
     let follow = options.static_level == StaticLevel::Follow || moves(&quiet, before.noise);
     let levels = match follow {
@@ -319,14 +302,7 @@ fn contacts(
         contact = smoothed(smoothing);
     }
     let own = noise * contact.noise_gain;
-    let on = match options.threshold {
-        Threshold::Fixed(force) => force,
-        Threshold::Automatic {
-            deviations,
-            least,
-            share,
-        } => (deviations * own).max(least).max(share * largest(&contact)),
-    };
+    let on = options.threshold.level(own, largest(&contact));
     let hysteresis = Hysteresis {
         on,
         off: options.release * on,
@@ -419,7 +395,7 @@ fn measured(
         bounces.push(Bounce {
             onset: onset.time,
             onset_shape: onset.shape,
-            end: end.unwrap_or(exact(signals.times[n - 1])),
+            end: end.unwrap_or(Uncertain::exact(signals.times[n - 1])),
             peak: largest.force,
             peak_time: largest.time,
             first_peak: first.force,
@@ -436,8 +412,8 @@ fn measured(
     bounces
 }
 
-/// Samples between which the impulse is taken: from before the contact until
-/// the force is quiet, or the next contact begins; and whether it got quiet.
+/// Samples of the impulse, from before the contact until quiet or the next contact;
+/// and whether it became quiet.
 fn window(
     signals: &Signals,
     segment: Segment,
@@ -469,19 +445,20 @@ fn window(
     }
 }
 
-/// Times from onset to onset. What the shape of the rise does to both onsets
-/// alike drops out.
+/// Times from onset to onset, free of what the shape of the rise does to both.
 fn intervals(bounces: &[Bounce]) -> Vec<Uncertain> {
     bounces
         .windows(2)
-        .map(|pair| Uncertain {
-            value: pair[1].onset.value - pair[0].onset.value,
-            sd: pair[0]
-                .onset
-                .sd
-                .hypot(pair[1].onset.sd)
-                .hypot(pair[1].onset_shape - pair[0].onset_shape)
-                .hypot(OWN_SHAPE * pair[0].onset_shape.max(pair[1].onset_shape)),
+        .map(|pair| {
+            Uncertain::new(
+                pair[1].onset.value - pair[0].onset.value,
+                pair[0]
+                    .onset
+                    .sd
+                    .hypot(pair[1].onset.sd)
+                    .hypot(pair[1].onset_shape - pair[0].onset_shape)
+                    .hypot(OWN_SHAPE * pair[0].onset_shape.max(pair[1].onset_shape)),
+            )
         })
         .collect()
 }

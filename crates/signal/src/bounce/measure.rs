@@ -56,8 +56,7 @@ pub struct Peak {
     pub sd: f64,
 }
 
-/// Exponents between which contact forces begin, F ∝ t^p: Kuwabara-Kono 1/2,
-/// Hertz 3/2, ADAMS IMPACT up to 2 and above.
+/// Exponents p of early contact forces, F ∝ t^p: Kuwabara-Kono 1/2, Hertz 3/2, ADAMS IMPACT 2.
 const RISE: (f64, f64) = (0.5, 2.0);
 /// Second level of the rise over the first; 1.
 const LEVELS: f64 = 8.0;
@@ -159,16 +158,14 @@ fn refined(times: &[f64], force: &[f64], top: usize, noise: f64) -> Peak {
     }
 }
 
-/// First touch before a peak, by two levels of the rise: it began where a power
-/// of time through both begins,
+/// First touch before a peak, extrapolated from two levels of the rise as a power of time:
 ///
 /// ```text
 /// F = K (t − t₀)^q   ⟹   t_a − t₀ = (t_b − t_a) / ((b/a)^(1/q) − 1)
 /// ```
 ///
-/// with q in the middle of what contact laws do, and the rest of their range in
-/// `shape`. Behind a plate the support force is what the plate makes of it
-/// ([`time_before`]).
+/// q is in the middle of [`RISE`], the rest of which is in `shape`. Behind a plate:
+/// [`time_before`].
 ///
 /// * `peak`: sample of the first peak
 #[must_use]
@@ -187,10 +184,7 @@ pub fn onset(signals: &Signals, alone: &Alone, peak: usize) -> Onset {
     let found = crossing(high, peak).and_then(|high| Some((crossing(low, high.0 + 1)?, high)));
     let Some(((first, low_time, slope), (last, high_time, _))) = found else {
         return Onset {
-            time: Uncertain {
-                value: times[0],
-                sd: signals.interval,
-            },
+            time: Uncertain::new(times[0], signals.interval),
             shape: 0.0,
             seen: false,
         };
@@ -203,17 +197,13 @@ pub fn onset(signals: &Signals, alone: &Alone, peak: usize) -> Onset {
     let coarse = if last - first < 2 { 1.0 } else { f64::INFINITY };
     let back = (0.5 * (short + long)).min(coarse * signals.interval);
     Onset {
-        time: Uncertain {
-            value: low_time - back,
-            sd: (signals.noise / slope).hypot(drawn),
-        },
+        time: Uncertain::new(low_time - back, (signals.noise / slope).hypot(drawn)),
         shape: ((long - short) / 12f64.sqrt()).min(coarse * signals.interval),
         seen: true,
     }
 }
 
-/// End of a contact, by two levels of the fall of the contact force and a line
-/// through them; `None` if the recording ends before.
+/// End of a contact, by a line through two levels of the fall; `None` if it was not recorded.
 #[must_use]
 pub fn end(signals: &Signals, segment: Segment, until: usize) -> Option<Uncertain> {
     let force = signals.contact_force;
@@ -235,10 +225,10 @@ pub fn end(signals: &Signals, segment: Segment, until: usize) -> Option<Uncertai
     let (sample, high) = crossing(END_LEVELS.0 * force[top], top)?;
     let (_, low) = crossing(END_LEVELS.1 * force[top], sample)?;
     let rest = (low - high) * END_LEVELS.1 / (END_LEVELS.0 - END_LEVELS.1);
-    Some(Uncertain {
-        value: low + rest,
-        sd: (0.5 * rest).hypot(0.3 * signals.interval),
-    })
+    Some(Uncertain::new(
+        low + rest,
+        (0.5 * rest).hypot(0.3 * signals.interval),
+    ))
 }
 
 /// Impulse of the contact force between two samples outside the contact:
@@ -247,8 +237,7 @@ pub fn end(signals: &Signals, segment: Segment, until: usize) -> Option<Uncertai
 /// ∫F_c dt = ∫F_s dt + [(2ζ/ω_n) F_s + F_s′/ω_n²]   from begin to end
 /// ```
 ///
-/// The plate's momentum at both ends is what the bracket holds; it vanishes
-/// where the plate is quiet.
+/// The bracket is the plate's momentum; it vanishes where the plate is quiet.
 #[must_use]
 pub fn impulse(signals: &Signals, first: usize, last: usize) -> Uncertain {
     let (times, force) = (signals.times, signals.force);
@@ -260,10 +249,10 @@ pub fn impulse(signals: &Signals, first: usize, last: usize) -> Uncertain {
     let level = signals.level_sd * (times[last] - times[first]);
     let begin = momentum(signals, first);
     let end = momentum(signals, last);
-    Uncertain {
-        value: area + end.value - begin.value,
-        sd: white.hypot(level).hypot(begin.sd).hypot(end.sd),
-    }
+    Uncertain::new(
+        area + end.value - begin.value,
+        white.hypot(level).hypot(begin.sd).hypot(end.sd),
+    )
 }
 
 /// Momentum of the plate at a sample, as far as its support force tells.
@@ -279,16 +268,14 @@ fn momentum(signals: &Signals, at: usize) -> Uncertain {
     let fit = fit_polynomial(times, &signals.force[first..=last], signals.times[at], 3);
     fit.map_or(Uncertain::default(), |fit| {
         let weights = (2.0 * damping_ratio / natural, 1.0 / (natural * natural));
-        Uncertain {
-            value: weights.0 * fit.derivatives[0] + weights.1 * fit.derivatives[1],
-            sd: signals.noise
-                * (weights.0 * fit.noise_gains[0]).hypot(weights.1 * fit.noise_gains[1]),
-        }
+        Uncertain::new(
+            weights.0 * fit.derivatives[0] + weights.1 * fit.derivatives[1],
+            signals.noise * (weights.0 * fit.noise_gains[0]).hypot(weights.1 * fit.noise_gains[1]),
+        )
     })
 }
 
-/// Root mean square of the support force over the samples before one, about
-/// their level.
+/// Root mean square of the support force about its mean, over the samples before one.
 #[must_use]
 pub fn movement(signals: &Signals, until: usize, samples: usize) -> f64 {
     let part = &signals.level_force[until.saturating_sub(samples)..until];

@@ -99,8 +99,7 @@ fn ringing_findings(signals: &Signals, bounces: &[Bounce]) -> Vec<BounceFinding>
     found
 }
 
-/// The largest difference between the quiet level before the first bounce and
-/// that of a later flight, if it matters.
+/// The largest change of the quiet level after the first bounce, if it matters.
 fn drift(signals: &Signals, quiet: &[QuietBlock], bounces: &[Bounce]) -> Option<BounceFinding> {
     let level = |from: usize, to: usize| {
         let inside: Vec<&QuietBlock> = quiet

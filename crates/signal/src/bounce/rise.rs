@@ -1,5 +1,4 @@
-//! How long before a visible force a contact began: the rise of the force from
-//! first touch, directly or behind a plate.
+//! Time from first touch to the first visible force, directly or behind a plate.
 
 use crate::ringing::model::decay_rate;
 use std::f64::consts::TAU;
@@ -8,8 +7,7 @@ use std::f64::consts::TAU;
 const NODES: usize = 32;
 /// Halvings of the interval that holds the beginning.
 const HALVINGS: usize = 40;
-/// A contact begins at most this many periods before its force is seen behind a
-/// plate; 1.
+/// Longest time from first touch to a visible force behind a plate; periods.
 const LONGEST: f64 = 2.0;
 
 /// Time from first touch to the lower of two levels of a rising force; s.

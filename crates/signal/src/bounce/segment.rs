@@ -1,5 +1,4 @@
-//! Stretches of a contact force in which there is contact: hysteresis above
-//! noise, and above what an imperfectly known ringing leaves.
+//! Contacts in a force: hysteresis above the noise and the remains of the ringing.
 
 /// A stretch in contact: first sample, and the one behind the last.
 pub type Segment = (usize, usize);
@@ -15,8 +14,7 @@ pub struct Hysteresis {
     pub leaves: f64,
 }
 
-/// Amplitude that the support force had shortly before each sample, and that
-/// has decayed since.
+/// Decaying amplitude of the support force before each sample.
 ///
 /// * `lag`: samples by which it is late, so that a contact's own rise is not in it
 /// * `decay`: of the ringing, per sample

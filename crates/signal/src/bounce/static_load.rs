@@ -67,10 +67,7 @@ pub fn before_contact(values: &[f64]) -> Before {
         .find(|v| (**v - level).abs() > 0.3 * largest)
         .is_some_and(|v| *v < level);
     Before {
-        level: Uncertain {
-            value: level,
-            sd: mean_sd(quiet, noise),
-        },
+        level: Uncertain::new(level, mean_sd(quiet, noise)),
         noise,
         samples,
         largest,
@@ -78,8 +75,7 @@ pub fn before_contact(values: &[f64]) -> Before {
     }
 }
 
-/// Standard deviation of the mean of a stretch: of its samples as if they were
-/// independent, or of the means of its blocks, whichever is larger.
+/// Standard deviation of a mean: the larger of those from samples and from block means.
 fn mean_sd(values: &[f64], noise: f64) -> f64 {
     let n = values.len();
     if n < LEAST_SAMPLES {
@@ -160,8 +156,7 @@ pub fn followed_level(blocks: &[QuietBlock], samples: usize, otherwise: f64) -> 
         .collect()
 }
 
-/// Whether the level of quiet blocks moves by more than their noise, and enough
-/// to matter to thresholds.
+/// Whether the level of quiet blocks moves enough to matter to thresholds.
 #[must_use]
 pub fn moves(blocks: &[QuietBlock], noise: f64) -> bool {
     let means: Vec<f64> = blocks.iter().map(|b| b.mean).collect();

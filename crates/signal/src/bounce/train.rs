@@ -32,8 +32,7 @@ pub struct BounceOptions {
     pub release: f64,
     /// Contacts closer than this are one; s. `None`: a tenth of the longest.
     pub smallest_gap: Option<f64>,
-    /// Bounces with less impulse are none; N s. `None`: six times its standard
-    /// deviation from noise, and a fiftieth of the largest.
+    /// Least impulse of a bounce; N s. `None`: 6 of its standard deviations, and 1/50 of the largest.
     pub smallest_impulse: Option<f64>,
     /// Ringing of the plate is looked for and taken out.
     pub plate: PlateRinging,
@@ -74,14 +73,12 @@ impl Default for BounceOptions {
     }
 }
 
-/// One impact of a train. Forces are those of the support, from the static
-/// level, positive while the impactor presses.
+/// One impact of a train; support forces are positive in compression, from the static level.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Bounce {
     /// First touch, between samples; s. `sd` is that by noise and sampling.
     pub onset: Uncertain,
-    /// How far `onset` may be off because the rise before the first visible
-    /// force has an unknown shape: alike for all bounces of a train; s.
+    /// Uncertainty of `onset` from the unknown shape of the rise, common to a train; s.
     pub onset_shape: f64,
     /// End of the contact; s.
     pub end: Uncertain,
@@ -89,8 +86,7 @@ pub struct Bounce {
     pub peak: f64,
     /// Its time; s.
     pub peak_time: f64,
-    /// First local maximum of the support force without the ringing of the
-    /// bounce before, which is the impact's own; N.
+    /// First maximum of the support force without the ringing of the bounce before; N.
     pub first_peak: f64,
     /// Its time; s.
     pub first_peak_time: f64,
@@ -100,8 +96,7 @@ pub struct Bounce {
     pub impulse: Uncertain,
     /// Ringing of the plate after the contact.
     pub ringing: Option<Ringing>,
-    /// Whether the ringing was over, in the noise, at the next bounce or at
-    /// the end of the recording.
+    /// Whether the ringing had decayed into the noise by the next bounce or the end.
     pub decayed: bool,
     /// Whether the force stands at the limit of the instrument.
     pub clipped: bool,
@@ -118,11 +113,9 @@ pub struct BounceTrain {
     pub channel: String,
     /// Times of the samples; s.
     pub times: Vec<f64>,
-    /// Support force from the static level, positive while the impactor
-    /// presses; N.
+    /// Support force from the static level, positive in compression; N.
     pub force: Vec<f64>,
-    /// Contact force that the support force tells of, smoothed over
-    /// `smoothing`: the support force itself where nothing rings; N.
+    /// Contact force, smoothed over `smoothing`; the support force where nothing rings; N.
     pub contact_force: Vec<f64>,
     /// Length of the moving mean, taken twice, in `contact_force`; s.
     pub smoothing: f64,

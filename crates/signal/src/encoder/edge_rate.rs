@@ -13,8 +13,7 @@ pub enum CountTimes {
     Events,
 }
 
-/// Where a count changed: the displacement there is known exactly, the time to
-/// half a sampling interval.
+/// Where a count changed: the displacement is exact, the time known to half an interval.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Edges {
     /// Times of the edges; s.
@@ -30,8 +29,7 @@ pub struct EdgeRate {
     pub times: Vec<f64>,
     /// Rates there; m/s.
     pub values: Vec<f64>,
-    /// After the last edge no count was passed until the recording ended: the
-    /// speed there is below this, on average; m/s. `None` without any edge.
+    /// Largest mean speed after the last edge; m/s. `None` without any edge.
     pub bound_after: Option<f64>,
 }
 
@@ -57,8 +55,7 @@ pub fn edges(times: &[f64], values: &[f64], count_times: CountTimes) -> Edges {
     edges
 }
 
-/// Rate between edges, v = Δx/(t_j − t_i), at the middle of each pair. At a
-/// reversal the same edge is passed twice, and the rate is zero.
+/// Rate between edges, v = Δx/(t_j − t_i), at the middle of each pair; 0 at a reversal.
 ///
 /// * `window`: j is the first edge at least this long after i; s. 0: the next one.
 ///   The times of two edges are each known to a sampling interval; over a longer

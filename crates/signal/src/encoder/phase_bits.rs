@@ -1,6 +1,4 @@
-//! Phases of an encoder as one bit per sample, 64 to a word.
-//!
-//! Decoding then handles 64 samples at a time.
+//! Phases of an encoder as one bit per sample, decoded 64 samples at a time.
 
 use crate::error::Error;
 
@@ -8,8 +6,7 @@ use crate::error::Error;
 /// levels; 1. A level must cross 30 % (falling) or 70 % (rising) to switch.
 const HYSTERESIS: f64 = 0.2;
 
-/// Two levels are distinct if they lie this many of their own standard
-/// deviations apart; 1. Splitting one noisy level in two gives 2.6.
+/// Least distance of two levels, in their own standard deviations (one noisy level split: 2.6).
 const DISTINCT_LEVELS: f64 = 5.0;
 
 /// Rounds that move the levels from the extremes to the means, at most.
@@ -27,8 +24,7 @@ pub struct PhaseBits {
     pub samples: usize,
 }
 
-/// A phase out of the bytes of a logic capture, each of which holds several
-/// channels.
+/// A phase out of the bytes of a logic capture.
 ///
 /// * `bit`: which bit of a byte, 0 to 7; higher ones are taken modulo 8
 #[must_use]
@@ -63,8 +59,7 @@ pub fn phase_of_bytes(bytes: &[u8], bit: u32) -> PhaseBits {
     }
 }
 
-/// A phase out of volts (or logic levels), with a switching band midway between
-/// its two levels.
+/// A phase out of volts or logic levels, switching midway between its two levels.
 ///
 /// * `name`: of the channel, for messages
 ///

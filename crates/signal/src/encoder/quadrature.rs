@@ -19,8 +19,7 @@ pub enum IllegalTransition {
     /// Nothing: the displacement then misses two counts.
     #[default]
     AddNothing,
-    /// Two counts in the direction of the nearest legal steps on both sides, if
-    /// these agree; nothing otherwise.
+    /// Adds two counts in the direction of the neighbouring steps, if these agree.
     FollowDirection,
 }
 
@@ -53,8 +52,7 @@ pub struct Tally {
 pub struct DecodedEdges {
     /// Samples decoded; the count at the first is 0.
     pub samples: usize,
-    /// Where the state changes, in order. An illegal transition is among them,
-    /// with the count as it was unless counts were added.
+    /// Where the state changes, in order; illegal transitions included.
     pub edges: Vec<CountEdge>,
     /// How it went.
     pub tally: Tally,
@@ -65,19 +63,11 @@ pub struct DecodedEdges {
 pub struct Decoded {
     /// Count at each sample, 0 at the first.
     pub counts: Vec<i64>,
-    /// Samples in which the state changed, legal or not.
-    pub transitions: usize,
-    /// Samples in which both phases changed.
-    pub illegal: usize,
-    /// Index of the first of these.
-    pub first_illegal: Option<usize>,
-    /// A step immediately undone by the next sample: noise at an edge.
-    pub glitch_pairs: usize,
-    /// Counts added for illegal transitions, whatever their sign.
-    pub added: i64,
+    /// How it went.
+    pub tally: Tally,
 }
 
-impl Decoded {
+impl Tally {
     /// Illegal over all transitions; 1.
     #[must_use]
     pub fn illegal_share(&self) -> f64 {
@@ -99,20 +89,9 @@ pub fn decode_quadrature(
     illegal: IllegalTransition,
 ) -> Result<Decoded, Error> {
     let decoded = decode_volts(a, b, illegal)?;
-    let Tally {
-        transitions,
-        illegal,
-        first_illegal,
-        glitch_pairs,
-        added,
-    } = decoded.tally;
     Ok(Decoded {
         counts: counts_at_samples(&decoded),
-        transitions,
-        illegal,
-        first_illegal,
-        glitch_pairs,
-        added,
+        tally: decoded.tally,
     })
 }
 
@@ -157,8 +136,7 @@ pub fn counts_at_samples(decoded: &DecodedEdges) -> Vec<i64> {
     counts
 }
 
-/// The count at each sample into memory that is there already, as many as it
-/// takes.
+/// Writes the count at each sample.
 pub fn fill_counts(decoded: &DecodedEdges, counts: &mut [i64]) {
     let (mut from, mut count) = (0, 0);
     for edge in &decoded.edges {
@@ -172,8 +150,7 @@ pub fn fill_counts(decoded: &DecodedEdges, counts: &mut [i64]) {
     }
 }
 
-/// Edges of the counts from phases as bits. Both should have as many samples;
-/// what one has more is left out.
+/// Edges of the counts from phases as bits, up to the shorter one.
 ///
 /// With the old and new state as bits a, b, 64 samples at a time: a step is legal
 /// if one of them changes, and counts up if (A changes) = (a ≠ b).
@@ -364,7 +341,7 @@ mod tests {
         backward.reverse();
         let decoded = decode(&backward, IllegalTransition::AddNothing);
         assert_eq!(decoded.counts, [0, -1, -1, -2, -3, -4, -5]);
-        assert_eq!((decoded.transitions, decoded.illegal), (5, 0));
+        assert_eq!((decoded.tally.transitions, decoded.tally.illegal), (5, 0));
     }
 
     #[test]
@@ -372,11 +349,11 @@ mod tests {
         // 01 → 10 skips a state while moving forward.
         let decoded = decode(&[0, 1, 2, 0, 1], IllegalTransition::AddNothing);
         assert_eq!(decoded.counts, [0, 1, 1, 2, 3]);
-        assert_eq!((decoded.illegal, decoded.transitions), (1, 4));
-        assert_eq!(decoded.first_illegal, Some(2));
+        assert_eq!((decoded.tally.illegal, decoded.tally.transitions), (1, 4));
+        assert_eq!(decoded.tally.first_illegal, Some(2));
         let decoded = decode(&[0, 1, 2, 0, 1], IllegalTransition::FollowDirection);
         assert_eq!(decoded.counts, [0, 1, 3, 4, 5]);
-        assert_eq!(decoded.added, 2);
+        assert_eq!(decoded.tally.added, 2);
     }
 
     #[test]
@@ -384,14 +361,14 @@ mod tests {
         // Forward, a missed state, then backward: the direction is not known.
         let decoded = decode(&[0, 1, 2, 3], IllegalTransition::FollowDirection);
         assert_eq!(decoded.counts, [0, 1, 1, 0]);
-        assert_eq!(decoded.added, 0);
+        assert_eq!(decoded.tally.added, 0);
     }
 
     #[test]
     fn closed_form_glitch_pairs() {
         let decoded = decode(&[0, 1, 0, 1, 3], IllegalTransition::AddNothing);
         assert_eq!(decoded.counts, [0, 1, 0, 1, 2]);
-        assert_eq!(decoded.glitch_pairs, 2);
+        assert_eq!(decoded.tally.glitch_pairs, 2);
     }
 
     #[test]

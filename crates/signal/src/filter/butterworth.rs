@@ -34,46 +34,22 @@ pub const MAX_ORDER: usize = 10;
 
 /// Why there is no such filter.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
+#[allow(missing_docs, reason = "each message names its fields")]
 pub enum FilterError {
-    /// A frequency that the sampling cannot show.
     #[error(
         "a cut-off of {cutoff} Hz: expected a frequency above 0 and below {limit} Hz, half the \
          sampling rate of {rate} Hz"
     )]
-    Cutoff {
-        /// The frequency; Hz.
-        cutoff: f64,
-        /// Half the sampling rate; Hz.
-        limit: f64,
-        /// The sampling rate; Hz.
-        rate: f64,
-    },
-    /// A pass band whose ends are exchanged.
+    Cutoff { cutoff: f64, limit: f64, rate: f64 },
     #[error("a pass band from {low} Hz to {high} Hz: the first must be below the second")]
-    BandReversed {
-        /// Lower end; Hz.
-        low: f64,
-        /// Upper end; Hz.
-        high: f64,
-    },
-    /// An order out of range.
+    BandReversed { low: f64, high: f64 },
     #[error("a filter of order {order}: expected 1 to 10")]
-    Order {
-        /// The order.
-        order: usize,
-    },
-    /// Fewer samples than the ends of the filter take.
+    Order { order: usize },
     #[error(
         "{samples} samples are too few for this filter, which needs more than {least}; lower its \
          order"
     )]
-    TooFewSamples {
-        /// Samples.
-        samples: usize,
-        /// Samples that are too few.
-        least: usize,
-    },
-    /// Uneven times.
+    TooFewSamples { samples: usize, least: usize },
     #[error(
         "the samples are not evenly spaced in time, as a filter needs; resample the recording, or \
          use a smoothing spline"

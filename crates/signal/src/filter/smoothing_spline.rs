@@ -11,8 +11,7 @@ pub struct SmoothingSpline {
     pub curvatures: Vec<f64>,
     /// Weight of the curvature; s³.
     pub penalty: f64,
-    /// Equivalent number of parameters: the trace of the matrix that turns
-    /// samples into values.
+    /// Equivalent number of parameters: the trace of the smoothing matrix.
     pub parameters: f64,
 }
 

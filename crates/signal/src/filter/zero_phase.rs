@@ -47,11 +47,8 @@ pub fn padding(sections: &[Section]) -> usize {
     3 * (2 * sections.len() + 1 - short)
 }
 
-/// One section in place (direct form II transposed), starting as if its first
-/// sample had always been there.
-///
-/// Section after section, each start state is that of the constant which the
-/// sections before it make of the first sample.
+/// One section in place (direct form II transposed), in the steady state of the
+/// constant that the sections before it make of the first sample.
 fn pass(section: &Section, signal: &mut [f64]) {
     let [b0, b1, b2] = section.forward;
     let [a1, a2] = section.back;

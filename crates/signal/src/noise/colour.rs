@@ -1,5 +1,4 @@
-//! Correlation of a channel's noise in time, from samples in which nothing
-//! happens.
+//! Correlation of a channel's noise in time, from quiet samples.
 
 /// Fewest samples that tell it.
 const LEAST_SAMPLES: usize = 50;
@@ -40,8 +39,7 @@ pub fn persistence(values: &[f64]) -> Option<f64> {
     Some((first + (1.0 + 4.0 * first) / n as f64).clamp(-LARGEST, LARGEST))
 }
 
-/// By how much noise of persistence `persistence` widens the variance of a mean
-/// over many samples: (1 + φ)/(1 − φ).
+/// Factor on the variance of a mean over many samples: (1 + φ)/(1 − φ).
 #[must_use]
 pub fn mean_inflation(persistence: f64) -> f64 {
     (1.0 + persistence) / (1.0 - persistence)

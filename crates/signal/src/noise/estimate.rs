@@ -5,19 +5,16 @@ use crate::polynomial::fit_polynomial;
 /// Samples looked at to find the quantum; more would not change it.
 const QUANTUM_SAMPLES: usize = 20_000;
 
-/// A difference is a multiple of the quantum if it departs from one by less
-/// than this part of it; 1. Room for decimals and for the cosine of an arm.
+/// Departure of a difference from a multiple of the quantum, for decimals and the arm's cosine; 1.
 const MULTIPLE_TOLERANCE: f64 = 0.1;
 
 /// Share of differences that must be multiples; 1.
 const MULTIPLE_SHARE: f64 = 0.98;
 
-/// Samples farther from the mean than this many standard deviations are not
-/// counted as noise; 1. Of Gaussian noise this leaves out 1 in 16,000.
+/// Samples farther from the mean are no noise; standard deviations (1 in 16,000 if Gaussian).
 const CLIP: f64 = 4.0;
 
-/// Floor of a noise relative to the largest sample where neither scatter nor
-/// quantum is seen (noise-free simulations); 1.
+/// Floor of the noise relative to the largest sample, for noise-free simulations; 1.
 pub const RELATIVE_FLOOR: f64 = 1e-6;
 
 /// How a noise was found.
@@ -65,8 +62,7 @@ pub fn combined_noise(scatter: Option<f64>, quantum: Option<f64>, largest: f64) 
     }
 }
 
-/// Step between neighbouring values of a quantised signal; `None` if the
-/// values are not multiples of a step.
+/// Step between neighbouring values of a quantised signal; `None` without one.
 #[must_use]
 pub fn quantum(values: &[f64]) -> Option<f64> {
     // Spread the samples looked at over the whole recording.

@@ -10,8 +10,7 @@ pub struct NoiseSource {
     spare: Option<f64>,
 }
 
-/// A source for a seed. Different `stream`s of one seed are independent, so
-/// that one channel's noise does not depend on whether another is recorded.
+/// A source for a seed; different `stream`s of one seed are independent.
 #[must_use]
 pub fn noise_source(seed: u64, stream: u64) -> NoiseSource {
     let mut generator = ChaCha8Rng::seed_from_u64(seed);

@@ -25,8 +25,7 @@ pub enum Alignment {
     /// Where both cross the same force.
     #[default]
     Crossing,
-    /// Where their rises differ least, by least squares. Part of a change of
-    /// stiffness is taken for a shift.
+    /// Least squares of the rises. Part of a change of stiffness becomes a shift.
     Rise,
 }
 
@@ -35,8 +34,7 @@ pub enum Alignment {
 pub struct AlignOptions {
     /// What is laid over what.
     pub alignment: Alignment,
-    /// Force of the crossing, as a part of the peak of the first impact; 1.
-    /// Raised to eight standard deviations of the noise where it is less.
+    /// Force of the crossing, a part of the first peak; at least 8 deviations of noise; 1.
     pub crossing: f64,
     /// The rise is between these parts of the peak of the first impact; 1.
     pub rise: (f64, f64),
@@ -155,23 +153,14 @@ pub fn align_pair(
     })
 }
 
-/// What is read off one impact at forces that are parts of its own peak.
-///
-/// # Errors
-/// As [`align_pair`].
+/// Features of one impact at parts of its own peak; errors as in [`align_pair`].
 pub fn features(series: &Series, options: &AlignOptions) -> Result<Features, Error> {
     check_options(options)?;
     features_at(series, peak_force(series), series.noise, options)
 }
 
 fn check_options(options: &AlignOptions) -> Result<(), Error> {
-    let bad = |option, value, expected| {
-        Err(Error::BadOption {
-            option,
-            value,
-            expected,
-        })
-    };
+    let bad = |option, value, expected| Err(Error::bad_option(option, value, expected));
     let (low, high) = options.rise;
     if !(options.crossing > 0.0 && options.crossing < 0.5) {
         return bad("crossing", options.crossing, "a part between 0 and 0.5");
@@ -216,8 +205,7 @@ fn top_index(series: &Series) -> usize {
     (0..values.len()).fold(0, |top, i| if values[i] > values[top] { i } else { top })
 }
 
-/// Largest force: of a parabola through the samples above nine tenths of the
-/// largest, or the largest sample where they are too few.
+/// Largest force, of a parabola through the samples above nine tenths of it if possible.
 #[must_use]
 pub fn peak_force(series: &Series) -> f64 {
     let top = top_index(series);
@@ -311,8 +299,7 @@ fn rise_slope(series: &Series, peak: f64, options: &AlignOptions) -> Option<f64>
     Some(fit.derivatives[1])
 }
 
-/// Time of the second series that stands for the crossing of the first, where
-/// the rises differ least: Gauss-Newton on the shift.
+/// Time shift at which the rises differ least: Gauss-Newton.
 fn zero_of_rise(
     first: &Series,
     second: &Series,
@@ -345,8 +332,7 @@ fn zero_of_rise(
     zero_first + shift
 }
 
-/// Mean of the samples within half a width of a time; between two samples where
-/// there are fewer than two.
+/// Mean of the samples within half a width of a time, or interpolated.
 fn local_mean(series: &Series, time: f64, width: f64) -> f64 {
     let from = series.times.partition_point(|&t| t < time - 0.5 * width);
     let until = series.times.partition_point(|&t| t < time + 0.5 * width);

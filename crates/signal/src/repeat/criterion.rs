@@ -3,8 +3,7 @@
 use crate::error::Error;
 use crate::repeat::equivalence::{Verdict, check_level, t_quantile};
 
-/// Blocks into which a difference curve is averaged: enough for its shape, few
-/// enough that testing each of them costs little.
+/// Blocks into which a difference curve is averaged.
 const BLOCKS: usize = 14;
 
 /// Fewest reference differences.
@@ -21,8 +20,7 @@ pub struct Repeatability {
     pub changes: [f64; 3],
 }
 
-/// One difference: curve as a part of the peak, and changes of peak, duration
-/// and rise slope; 1.
+/// One difference: curve, peak, duration and rise slope, each relative; 1.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Difference {
     /// At the instants of the pair.
@@ -140,8 +138,7 @@ pub fn decide(
     })
 }
 
-/// Value that the largest ratio of any of some differences exceeds with a
-/// probability of at most `level`, if nothing changes.
+/// Ratio that the largest of some differences exceeds with probability `level` by chance.
 #[must_use]
 pub fn critical_ratio(reference: &Repeatability, decisions: usize, level: f64) -> f64 {
     let tests = (reference.curve.len() * decisions.max(1)) as f64;

@@ -45,8 +45,7 @@ pub struct Equivalence {
     pub p_change: f64,
     /// Margin; unit of the changes.
     pub margin: f64,
-    /// Unchanged where the interval is inside the margin; else changed where
-    /// `p_change` is at most the level; else undecided.
+    /// Unchanged: interval within the margin; else changed: `p_change` up to the level.
     pub verdict: Verdict,
 }
 
@@ -65,11 +64,7 @@ pub fn equivalence(changes: &[f64], margin: f64, level: f64) -> Result<Equivalen
         return Err(Error::TooFewFruit { fruit: n, least: 2 });
     }
     if !(margin > 0.0 && margin.is_finite()) {
-        return Err(Error::BadOption {
-            option: "margin",
-            value: margin,
-            expected: "a positive number",
-        });
+        return Err(Error::bad_option("margin", margin, "a positive number"));
     }
     check_level(level)?;
     let count = n as f64;
@@ -109,11 +104,11 @@ pub fn equivalence(changes: &[f64], margin: f64, level: f64) -> Result<Equivalen
 pub(crate) fn check_level(level: f64) -> Result<(), Error> {
     match level > 0.0 && level < 0.5 {
         true => Ok(()),
-        false => Err(Error::BadOption {
-            option: "level",
-            value: level,
-            expected: "a probability between 0 and 0.5",
-        }),
+        false => Err(Error::bad_option(
+            "level",
+            level,
+            "a probability between 0 and 0.5",
+        )),
     }
 }
 

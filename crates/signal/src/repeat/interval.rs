@@ -5,8 +5,7 @@ use crate::repeat::equivalence::Verdict;
 /// Where the critical energy of a fruit lies: above `low` and not above `high`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct EnergyInterval {
-    /// Largest energy at which nothing changed, below `high`; 0 where there is
-    /// none; J.
+    /// Largest energy below `high` at which nothing changed, or 0; J.
     pub low: f64,
     /// Least energy at which something changed; infinite where nothing did; J.
     pub high: f64,

@@ -1,5 +1,4 @@
-//! Whether curves change from one impact to the next, over all fruit: signs of
-//! the differences flipped.
+//! Sign-flip test of whether curves change from one impact to the next, over all fruit.
 
 use crate::error::Error;
 use crate::noise::gaussian::{noise_source, uniform};
@@ -21,8 +20,7 @@ pub struct SignFlipOptions {
     pub seed: u64,
     /// Level of the critical values; 1.
     pub level: f64,
-    /// Standard deviations below this part of their typical size are raised, so
-    /// that no instant decides because its few differences happen to agree; 1.
+    /// Floor of standard deviations relative to their typical size; 1.
     pub floor: f64,
 }
 
@@ -38,8 +36,7 @@ impl Default for SignFlipOptions {
     }
 }
 
-/// One comparison: for each fruit its difference curve, or none where the fruit
-/// was not in it. The fruit are the same, in the same order, in all comparisons.
+/// One comparison: the difference curve of each fruit, in one order; `None` if missing.
 pub type Differences = Vec<Option<Vec<f64>>>;
 
 /// What the test says of one comparison.
@@ -53,8 +50,7 @@ pub struct ComparedCurves {
     pub sd: Vec<f64>,
     /// Studentised mean; 1.
     pub statistic: Vec<f64>,
-    /// Probability of so large a value at any instant of any comparison, if
-    /// nothing changes; 1.
+    /// Family-wise probability of so large a value if nothing changes; 1.
     pub adjusted_p: Vec<f64>,
     /// Index of the largest |statistic|.
     pub largest: usize,
@@ -71,8 +67,7 @@ pub struct ComparedCurves {
 pub struct SignFlipTest {
     /// Each comparison, in their order.
     pub comparisons: Vec<ComparedCurves>,
-    /// Level above which |statistic| is significant at any instant of any
-    /// comparison; `None` where there are too few fruit for that.
+    /// Critical |statistic| over all comparisons; `None` with too few fruit.
     pub critical: Option<f64>,
     /// Sign patterns that were evaluated; a pattern and its opposite are one.
     pub patterns: usize,

@@ -40,8 +40,7 @@ pub struct Threshold {
     pub median: ProfiledValue,
     /// Energy at which a tenth of the fruit is damaged; J.
     pub tenth: ProfiledValue,
-    /// Spread σ of ln energy: the standard deviation of it for the log-normal,
-    /// 1/shape for the Weibull; 1.
+    /// Spread σ of ln energy: log-normal deviation, or 1/shape for the Weibull; 1.
     pub spread: ProfiledValue,
     /// ln of the largest likelihood; 1.
     pub ln_likelihood: f64,

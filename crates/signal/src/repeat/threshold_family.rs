@@ -23,8 +23,8 @@ impl Family {
     }
 }
 
-/// ln of the probability between two standardised values and the densities at
-/// both over that probability. The ends may be infinite.
+/// ln of the probability between two standardised values, which may be infinite, and the
+/// densities at both over it.
 pub(crate) fn interval_terms(family: Family, low: f64, high: f64) -> (f64, f64, f64) {
     let ln_probability = match family {
         Family::LogNormal => ln_normal_between(low, high),

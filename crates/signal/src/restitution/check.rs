@@ -10,9 +10,7 @@ use crate::uncertain::Uncertain;
 const SIGNIFICANT: f64 = 3.0;
 /// … if they are larger than this; 1. Smaller ones change no conclusion.
 const MATERIAL: f64 = 0.02;
-/// A rebound weaker than the one before by this is suspicious; 1. A law with a
-/// damping that does not fall with the speed loses up to half as much from one
-/// bounce to the next.
+/// Drop of the restitution from one bounce to the next that is suspicious; 1.
 const WEAK: f64 = 0.2;
 
 /// Findings about restitutions of one drop.
@@ -78,11 +76,11 @@ fn force_scale(
             let factor = due(bounce, other.restitution.value)?;
             let whole = 1.0 + by_impulse.restitution.value.max(-0.9);
             let own = without_mass(by_impulse, mass);
-            Some(Uncertain {
-                value: factor,
-                sd: factor
+            Some(Uncertain::new(
+                factor,
+                factor
                     * (own / whole).hypot(other.restitution.sd / (1.0 + other.restitution.value)),
-            })
+            ))
         })
         .collect();
     if let Some(mean) = mean_mass(&factors) {
@@ -91,10 +89,7 @@ fn force_scale(
         let off = (mean.value - 1.0).abs();
         return (off > SIGNIFICANT * sd && off > MATERIAL).then_some(
             RestitutionFinding::ForceScale {
-                factor: Uncertain {
-                    value: mean.value,
-                    sd,
-                },
+                factor: Uncertain::new(mean.value, sd),
                 impacts: factors.len(),
             },
         );

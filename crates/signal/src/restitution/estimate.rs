@@ -1,5 +1,4 @@
-//! Coefficient of restitution of bounces: by drop height, by flights, by impulse
-//! and by measured velocities, each with its standard uncertainty.
+//! Restitution of bounces by drop height, flights, impulse and velocities.
 
 use crate::bounce::train::Bounce;
 use crate::uncertain::Uncertain;
@@ -7,8 +6,7 @@ use crate::uncertain::Uncertain;
 /// How a restitution was found.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum RestitutionMethod {
-    /// Speed after the first impact, from the flight that follows, over the
-    /// speed of a fall from the drop height.
+    /// Speed after the first impact over that of a fall from the drop height.
     DropHeight,
     /// A flight over the flight before.
     Flights,
@@ -76,28 +74,23 @@ impl Default for DropConditions {
         Self {
             height: None,
             mass: None,
-            gravity: Uncertain {
-                value: 9.80665,
-                sd: 0.0,
-            },
+            gravity: Uncertain::new(9.80665, 0.0),
         }
     }
 }
 
-/// Time in the air after a bounce; `None` after the last, or if its contact or
-/// the next one was not recorded in full; s.
-///
-/// ```text
-/// flight = onset of the next − end of this
-/// ```
+/// Time in the air, from the end of a bounce to the onset of the next; s. `None` after the
+/// last, or if either contact was not recorded in full.
 #[must_use]
 pub fn flight(bounces: &[Bounce], bounce: usize) -> Option<Uncertain> {
     let (here, next) = (bounces.get(bounce)?, bounces.get(bounce + 1)?);
     let end_seen = here.complete || bounce == 0;
     let value = next.onset.value - here.end.value;
-    (end_seen && value > 0.0).then(|| Uncertain {
-        value,
-        sd: here.end.sd.hypot(next.onset.sd).hypot(next.onset_shape),
+    (end_seen && value > 0.0).then(|| {
+        Uncertain::new(
+            value,
+            here.end.sd.hypot(next.onset.sd).hypot(next.onset_shape),
+        )
     })
 }
 
@@ -105,14 +98,13 @@ pub fn flight(bounces: &[Bounce], bounce: usize) -> Option<Uncertain> {
 #[must_use]
 pub fn flight_speed(flight: Uncertain, gravity: Uncertain) -> Uncertain {
     let value = 0.5 * gravity.value * flight.value;
-    Uncertain {
+    Uncertain::new(
         value,
-        sd: value * (flight.sd / flight.value).hypot(gravity.sd / gravity.value),
-    }
+        value * (flight.sd / flight.value).hypot(gravity.sd / gravity.value),
+    )
 }
 
-/// Speed of approach of a bounce: of the first from the drop height, of a later
-/// one from the flight before it.
+/// Speed of approach, of the first bounce from the drop height, later from the flight before.
 #[must_use]
 pub fn impact_speed(
     bounces: &[Bounce],
@@ -125,10 +117,7 @@ pub fn impact_speed(
         None => conditions.height.map(|height| {
             let value = (2.0 * gravity.value * height.value).sqrt();
             let relative = (gravity.sd / gravity.value).hypot(height.sd / height.value);
-            Uncertain {
-                value,
-                sd: 0.5 * value * relative,
-            }
+            Uncertain::new(value, 0.5 * value * relative)
         }),
     }
 }
@@ -177,10 +166,7 @@ pub fn restitution_from_time(bounces: &[Bounce], conditions: &DropConditions) ->
                 bounce,
                 method,
                 impact_speed: speed,
-                restitution: Uncertain {
-                    value,
-                    sd: value * relative,
-                },
+                restitution: Uncertain::new(value, value * relative),
             })
         })
         .collect()
@@ -219,20 +205,16 @@ pub fn restitution_from_impulse(
                 bounce,
                 method: RestitutionMethod::Impulse,
                 impact_speed: speed,
-                restitution: Uncertain {
-                    value: ratio - 1.0,
-                    sd: (spread / speed.value).hypot(ratio * speed.sd / speed.value),
-                },
+                restitution: Uncertain::new(
+                    ratio - 1.0,
+                    (spread / speed.value).hypot(ratio * speed.sd / speed.value),
+                ),
             })
         })
         .collect()
 }
 
-/// Restitution from apex heights, of the drop and after each impact:
-///
-/// ```text
-/// e = √(h_(n+1)/h_n)
-/// ```
+/// Restitution from apex heights, of the drop and after each impact: e = √(h_(n+1)/h_n).
 ///
 /// * `heights`: above where contact begins, the drop height first; m
 /// * `gravity`: for the speeds; m/s²
@@ -251,14 +233,11 @@ pub fn restitution_from_heights(heights: &[Uncertain], gravity: Uncertain) -> Ve
             Restitution {
                 bounce,
                 method: RestitutionMethod::Heights,
-                impact_speed: Uncertain {
-                    value: speed,
-                    sd: 0.5 * speed * of_drop.hypot(gravity.sd / gravity.value),
-                },
-                restitution: Uncertain {
-                    value,
-                    sd: 0.5 * value * of_drop.hypot(of_rebound),
-                },
+                impact_speed: Uncertain::new(
+                    speed,
+                    0.5 * speed * of_drop.hypot(gravity.sd / gravity.value),
+                ),
+                restitution: Uncertain::new(value, 0.5 * value * of_drop.hypot(of_rebound)),
             }
         })
         .collect()
@@ -269,7 +248,7 @@ mod tests {
     use super::*;
 
     fn exact(value: f64) -> Uncertain {
-        Uncertain { value, sd: 0.0 }
+        Uncertain::new(value, 0.0)
     }
 
     #[test]
@@ -281,10 +260,7 @@ mod tests {
         assert!((found[0].impact_speed.value - 4.0).abs() < 1e-15);
         assert!((found[1].impact_speed.value - 2.0).abs() < 1e-15);
         // 1 % and 2 % of heights: half of √5 % of e.
-        let one = |value: f64, part: f64| Uncertain {
-            value,
-            sd: part * value,
-        };
+        let one = |value: f64, part: f64| Uncertain::new(value, part * value);
         let found = restitution_from_heights(&[one(0.8, 0.01), one(0.2, 0.02)], gravity);
         let relative = found[0].restitution.sd / found[0].restitution.value;
         assert!((relative - 0.005 * 5f64.sqrt()).abs() < 1e-15);

@@ -1,5 +1,4 @@
-//! Coefficient of restitution from the impactor's own position: velocities just
-//! before and just after each contact.
+//! Restitution from the impactor's velocities just before and after each contact.
 
 use crate::bounce::train::Bounce;
 use crate::polynomial::fit_polynomial;
@@ -11,13 +10,11 @@ use crate::uncertain::Uncertain;
 pub struct MotionOptions {
     /// Longest stretch of free flight that is fitted; s.
     pub longest: f64,
-    /// Longest part of a flight between two contacts that is fitted on either
-    /// side; 1. A half where friction turns round with the motion.
+    /// Longest part of a flight that is fitted on either side; 1 (½ with friction).
     pub part: f64,
     /// Left out at both ends of a contact; s.
     pub clearance: f64,
-    /// Least standard deviation of a position: what the fit of a few counted
-    /// positions does not show; m.
+    /// Least standard deviation of a position; m.
     pub least_noise: f64,
 }
 
@@ -111,9 +108,11 @@ fn velocity(
     };
     let fit = fit_polynomial(&times[first..last], &positions[first..last], at, order)?;
     let noise = fit.residual_deviation.max(options.least_noise);
-    let of = |derivative: usize| Uncertain {
-        value: fit.derivatives[derivative],
-        sd: noise * fit.noise_gains[derivative],
+    let of = |derivative: usize| {
+        Uncertain::new(
+            fit.derivatives[derivative],
+            noise * fit.noise_gains[derivative],
+        )
     };
     Some((of(1), (order == 2).then(|| of(2))))
 }
@@ -148,14 +147,11 @@ pub fn restitution_from_impulse_and_motion(
             Some(Restitution {
                 bounce: motion.bounce,
                 method: RestitutionMethod::Impulse,
-                impact_speed: Uncertain {
-                    value: speed,
-                    sd: motion.before.sd,
-                },
-                restitution: Uncertain {
-                    value: ratio - 1.0,
-                    sd: of_change.hypot(ratio * motion.before.sd / speed),
-                },
+                impact_speed: Uncertain::new(speed, motion.before.sd),
+                restitution: Uncertain::new(
+                    ratio - 1.0,
+                    of_change.hypot(ratio * motion.before.sd / speed),
+                ),
             })
         })
         .collect()
@@ -174,14 +170,8 @@ pub fn restitution_from_motion(motions: &[ContactMotion]) -> Vec<Restitution> {
             Restitution {
                 bounce: motion.bounce,
                 method: RestitutionMethod::Velocities,
-                impact_speed: Uncertain {
-                    value: motion.before.value.abs(),
-                    sd: motion.before.sd,
-                },
-                restitution: Uncertain {
-                    value,
-                    sd: of_after.hypot(of_before),
-                },
+                impact_speed: Uncertain::new(motion.before.value.abs(), motion.before.sd),
+                restitution: Uncertain::new(value, of_after.hypot(of_before)),
             }
         })
         .collect()

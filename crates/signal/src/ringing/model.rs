@@ -1,5 +1,4 @@
-//! The free ringing of a plate after an impact: damped period and damping ratio
-//! by a damped cosine fitted to the force.
+//! Free ringing of a plate after an impact, as a damped cosine.
 
 use crate::tap::damped_mode::{ModeStart, Transformed, fit_modes, mode_samples};
 use crate::tap::spectrum::transform;
@@ -25,8 +24,7 @@ pub struct Ringing {
     pub amplitude: f64,
     /// Phase at `from`; rad.
     pub phase: f64,
-    /// Residual over noise, root mean square; near 1 if the plate rings in one
-    /// mode and nothing touches it.
+    /// Residual over noise, root mean square; near 1 for a single mode.
     pub misfit: f64,
 }
 
@@ -93,17 +91,17 @@ pub fn fit_ringing(
     let square: f64 = rest.iter().map(|r| (r - mean).powi(2)).sum();
     // ζ = λ/√(λ² + ω_d²) with Q = ω_d/2λ.
     let below = 1.0 + 4.0 * mode.quality * mode.quality;
-    let damping_ratio = Uncertain {
-        value: 1.0 / below.sqrt(),
-        sd: 4.0 * mode.quality * mode.quality_sd / below.powf(1.5),
-    };
+    let damping_ratio = Uncertain::new(
+        1.0 / below.sqrt(),
+        4.0 * mode.quality * mode.quality_sd / below.powf(1.5),
+    );
     Some(Ringing {
         from,
         to: from + (n - 1.0) * interval,
-        period: Uncertain {
-            value: 1.0 / mode.frequency,
-            sd: mode.frequency_sd / mode.frequency.powi(2),
-        },
+        period: Uncertain::new(
+            1.0 / mode.frequency,
+            mode.frequency_sd / mode.frequency.powi(2),
+        ),
         damping_ratio,
         amplitude: mode.amplitude,
         phase: mode.phase,

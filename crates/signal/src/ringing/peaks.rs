@@ -77,10 +77,7 @@ pub fn logarithmic_decrement(ringing: &FreeRinging, cycles: Option<usize>) -> Op
         let noise = (a.sd / a.value).hypot(b.sd / b.value);
         // A wrong level moves both peaks by the same amount.
         let level = ringing.level_sd * (1.0 / b.value - 1.0 / a.value);
-        Uncertain {
-            value: (a.value / b.value).ln() / count,
-            sd: noise.hypot(level) / count,
-        }
+        Uncertain::new((a.value / b.value).ln() / count, noise.hypot(level) / count)
     };
     let cycles = match cycles {
         Some(n) => Some(n).filter(|n| *n > 0 && *n < peaks.len()),
@@ -88,10 +85,10 @@ pub fn logarithmic_decrement(ringing: &FreeRinging, cycles: Option<usize>) -> Op
     }?;
     let decrement = by(cycles);
     let (start, end) = (first.time, peaks[cycles].time);
-    let period = Uncertain {
-        value: (end.value - start.value) / cycles as f64,
-        sd: start.sd.hypot(end.sd) / cycles as f64,
-    };
+    let period = Uncertain::new(
+        (end.value - start.value) / cycles as f64,
+        start.sd.hypot(end.sd) / cycles as f64,
+    );
     Some(Decrement {
         damping_ratio: damping_from_decrement(decrement),
         peaks,
@@ -105,10 +102,10 @@ pub fn logarithmic_decrement(ringing: &FreeRinging, cycles: Option<usize>) -> Op
 #[must_use]
 pub fn damping_from_decrement(decrement: Uncertain) -> Uncertain {
     let square = 4.0 * PI * PI + decrement.value * decrement.value;
-    Uncertain {
-        value: decrement.value / square.sqrt(),
-        sd: decrement.sd * 4.0 * PI * PI / square.powf(1.5),
-    }
+    Uncertain::new(
+        decrement.value / square.sqrt(),
+        decrement.sd * 4.0 * PI * PI / square.powf(1.5),
+    )
 }
 
 /// Positive peaks, one a period, as long as they stand out of the noise.
@@ -155,14 +152,14 @@ fn refined(ringing: &FreeRinging, top: usize) -> Option<RingingPeak> {
         return None;
     }
     Some(RingingPeak {
-        time: Uncertain {
-            value: centre + shift,
-            sd: ringing.noise * fit.noise_gains[1] / d[2].abs(),
-        },
-        height: Uncertain {
-            value: d[0] - 0.5 * d[1] * d[1] / d[2],
-            sd: ringing.noise * fit.noise_gains[0],
-        },
+        time: Uncertain::new(
+            centre + shift,
+            ringing.noise * fit.noise_gains[1] / d[2].abs(),
+        ),
+        height: Uncertain::new(
+            d[0] - 0.5 * d[1] * d[1] / d[2],
+            ringing.noise * fit.noise_gains[0],
+        ),
     })
 }
 
@@ -209,10 +206,7 @@ mod tests {
     #[test]
     fn reference_one_cycle_of_the_study() {
         // ζ = 0.073 needs A₂/A₃ = exp(2π 0.073/√(1 − 0.073²)) = 1.583915.
-        let decrement = Uncertain {
-            value: 1.583_914_899_f64.ln(),
-            sd: 0.0,
-        };
+        let decrement = Uncertain::new(1.583_914_899_f64.ln(), 0.0);
         assert!((damping_from_decrement(decrement).value - 0.073).abs() < 1e-9);
     }
 }

@@ -50,10 +50,7 @@ pub fn plate_dynamics(
     } else {
         0.0
     };
-    let uncertain = |value: f64, relative: f64| Uncertain {
-        value,
-        sd: value * relative,
-    };
+    let uncertain = |value: f64, relative: f64| Uncertain::new(value, value * relative);
     PlateDynamics {
         damped_frequency: uncertain(damped, of_period),
         natural_frequency: uncertain(natural, of_period.hypot(by_ratio)),
@@ -158,7 +155,7 @@ mod tests {
     use super::*;
 
     fn exact(value: f64) -> Uncertain {
-        Uncertain { value, sd: 0.0 }
+        Uncertain::new(value, 0.0)
     }
 
     #[test]
@@ -182,7 +179,7 @@ mod tests {
         let at = |t: f64, z: f64, m: f64| plate_dynamics(exact(t), exact(z), exact(m));
         let (t, z, m) = (3.5e-3, 0.3, 0.2);
         let with = |u: [f64; 3]| {
-            let uncertain = |value, sd| Uncertain { value, sd };
+            let uncertain = |value, sd| Uncertain::new(value, sd);
             plate_dynamics(uncertain(t, u[0]), uncertain(z, u[1]), uncertain(m, u[2]))
         };
         let h = 1e-6;

@@ -25,10 +25,7 @@ pub fn acoustic_stiffness(frequency: Uncertain, mass: Uncertain) -> Uncertain {
     let value = frequency.value.powi(2) * mass.value.powf(2.0 / 3.0);
     let of_frequency = 2.0 * frequency.sd / frequency.value;
     let of_mass = 2.0 / 3.0 * mass.sd / mass.value;
-    Uncertain {
-        value,
-        sd: value * of_frequency.hypot(of_mass),
-    }
+    Uncertain::new(value, value * of_frequency.hypot(of_mass))
 }
 
 /// Stiffness with the density; Pa.
@@ -45,10 +42,10 @@ pub fn acoustic_stiffness(frequency: Uncertain, mass: Uncertain) -> Uncertain {
 pub fn acoustic_stiffness_with_density(stiffness: Uncertain, density: Uncertain) -> Uncertain {
     let value = stiffness.value * density.value.cbrt();
     let of_density = density.sd / density.value / 3.0;
-    Uncertain {
+    Uncertain::new(
         value,
-        sd: value * (stiffness.sd / stiffness.value).hypot(of_density),
-    }
+        value * (stiffness.sd / stiffness.value).hypot(of_density),
+    )
 }
 
 /// Mean of values that differ by more than their uncertainties, as taps do:
@@ -87,10 +84,7 @@ pub fn mean_of_differing(values: &[Uncertain]) -> Option<Uncertain> {
         0.0
     };
     let (value, sum) = weighted(between);
-    Some(Uncertain {
-        value,
-        sd: sum.sqrt().recip(),
-    })
+    Some(Uncertain::new(value, sum.sqrt().recip()))
 }
 
 #[cfg(test)]
@@ -98,7 +92,7 @@ mod tests {
     use super::*;
 
     const fn exact(value: f64) -> Uncertain {
-        Uncertain { value, sd: 0.0 }
+        Uncertain::new(value, 0.0)
     }
 
     #[test]
@@ -116,16 +110,7 @@ mod tests {
 
     #[test]
     fn derivative_of_the_stiffness_gives_its_uncertainty() {
-        let (f, m) = (
-            Uncertain {
-                value: 800.0,
-                sd: 2.0,
-            },
-            Uncertain {
-                value: 0.2,
-                sd: 0.001,
-            },
-        );
+        let (f, m) = (Uncertain::new(800.0, 2.0), Uncertain::new(0.2, 0.001));
         let at = |f: f64, m: f64| acoustic_stiffness(exact(f), exact(m)).value;
         let by_f = (at(800.01, 0.2) - at(799.99, 0.2)) / 0.02 * 2.0;
         let by_m = (at(800.0, 0.200_01) - at(800.0, 0.199_99)) / 0.000_02 * 0.001;
@@ -136,21 +121,12 @@ mod tests {
     #[test]
     fn closed_form_means_of_equal_weights() {
         // Far apart: the plain mean, with the standard error of the mean.
-        let values = [100.0, 102.0, 104.0].map(|value| Uncertain { value, sd: 0.01 });
+        let values = [100.0, 102.0, 104.0].map(|value| Uncertain::new(value, 0.01));
         let mean = mean_of_differing(&values).unwrap();
         assert!((mean.value - 102.0).abs() < 1e-9);
         assert!((mean.sd - 2.0 / 3.0_f64.sqrt()).abs() < 1e-4);
         // Equal: the weighted mean with the uncertainties alone.
-        let values = [
-            Uncertain {
-                value: 5.0,
-                sd: 3.0,
-            },
-            Uncertain {
-                value: 5.0,
-                sd: 4.0,
-            },
-        ];
+        let values = [Uncertain::new(5.0, 3.0), Uncertain::new(5.0, 4.0)];
         let mean = mean_of_differing(&values).unwrap();
         assert!((mean.sd - 2.4).abs() < 1e-12 && mean.value == 5.0);
         let one = mean_of_differing(&values[..1]).unwrap();

@@ -142,11 +142,7 @@ fn even_interval(channel: &Channel) -> Result<f64, Error> {
         Times::Uniform { interval, .. } => return Ok(*interval),
         Times::Listed(times) => times,
     };
-    let few = Error::TooFewSamples {
-        channel: channel.name.clone(),
-        samples: times.len(),
-        least: 2,
-    };
+    let few = Error::too_few_samples(channel.name.clone(), times.len(), 2);
     let (Some(first), Some(last), true) = (times.first(), times.last(), times.len() > 1) else {
         return Err(few);
     };
@@ -169,13 +165,7 @@ fn even_interval(channel: &Channel) -> Result<f64, Error> {
 }
 
 fn check(channel: &Channel, interval: f64, options: &TapOptions) -> Result<(), Error> {
-    let bad = |option, value, expected| {
-        Err(Error::BadOption {
-            option,
-            value,
-            expected,
-        })
-    };
+    let bad = |option, value, expected| Err(Error::bad_option(option, value, expected));
     if !(interval > 0.0 && interval.is_finite()) {
         return Err(Error::BadInterval {
             channel: channel.name.clone(),
@@ -199,11 +189,11 @@ fn check(channel: &Channel, interval: f64, options: &TapOptions) -> Result<(), E
     }
     let least = ((options.shortest + options.hit) / interval).ceil() as usize;
     if channel.samples.len() < least.max(100) {
-        return Err(Error::TooFewSamples {
-            channel: channel.name.clone(),
-            samples: channel.samples.len(),
-            least: least.max(100),
-        });
+        return Err(Error::too_few_samples(
+            channel.name.clone(),
+            channel.samples.len(),
+            least.max(100),
+        ));
     }
     match channel.samples.iter().position(|value| !value.is_finite()) {
         None => Ok(()),

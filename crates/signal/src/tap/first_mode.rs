@@ -190,10 +190,7 @@ fn summary(group: &[(usize, &Resonance)], taps: &[TapModes]) -> Option<Persisten
     let n = group.len() as f64;
     let frequencies: Vec<Uncertain> = group
         .iter()
-        .map(|(_, resonance)| Uncertain {
-            value: resonance.mode.frequency,
-            sd: resonance.mode.frequency_sd,
-        })
+        .map(|(_, resonance)| Uncertain::new(resonance.mode.frequency, resonance.mode.frequency_sd))
         .collect();
     let mean = |of: &dyn Fn(&Resonance) -> f64| group.iter().map(|(_, r)| of(r)).sum::<f64>() / n;
     let mut orientations: Vec<&str> = group
@@ -306,10 +303,10 @@ fn accepted(first: &Persistent, partner: Option<&Persistent>) -> FirstMode {
     let (a, b) = (first.frequency, second.frequency);
     let half = 0.5 * (b.value - a.value);
     FirstMode {
-        frequency: Uncertain {
-            value: 0.5 * (a.value + b.value),
-            sd: (0.5 * a.sd.hypot(b.sd)).hypot(half / 3.0_f64.sqrt()),
-        },
+        frequency: Uncertain::new(
+            0.5 * (a.value + b.value),
+            (0.5 * a.sd.hypot(b.sd)).hypot(half / 3.0_f64.sqrt()),
+        ),
         quality: 0.5 * (first.quality + second.quality),
         taps: first.taps.min(second.taps),
         doublet: Some((a.value, b.value)),

@@ -150,11 +150,7 @@ fn check(
     overlap: usize,
     length: usize,
 ) -> Result<(), Error> {
-    let bad = |option, value, expected| Error::BadOption {
-        option,
-        value,
-        expected,
-    };
+    let bad = |option, value, expected| Error::bad_option(option, value, expected);
     if !(interval > 0.0 && interval.is_finite()) {
         let expected = "a sampling interval above zero, in s";
         return Err(bad("interval", interval, expected));

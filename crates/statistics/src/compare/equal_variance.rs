@@ -30,14 +30,10 @@ pub fn levene<G: AsRef<[f64]>>(groups: &[G]) -> Result<FTest, SampleError> {
 }
 
 /// The Brown-Forsythe test: analysis of variance of the distances from the group
-/// medians, which holds its level for skewed values too.
-///
-/// # Errors
-/// As [`levene`].
+/// medians, which holds its level for skewed values too; errors as in [`levene`].
 ///
 /// # Source
-/// Brown and Forsythe (1974), Robust tests for the equality of variances, JASA
-/// 69.
+/// Brown and Forsythe (1974), Robust tests for the equality of variances, JASA 69.
 pub fn brown_forsythe<G: AsRef<[f64]>>(groups: &[G]) -> Result<FTest, SampleError> {
     of_distances(groups, median)
 }
@@ -55,15 +51,15 @@ fn of_distances<G: AsRef<[f64]>>(
         })
         .collect();
     let found = one_way_anova(&distances).map_err(|error| match error {
-        SampleError::NoSpread { .. } => SampleError::NoSpread {
-            what: "the distances of the values from the centres of their groups".to_owned(),
-        },
+        SampleError::NoSpread(_) => SampleError::NoSpread(
+            "the distances of the values from the centres of their groups".to_owned(),
+        ),
         other => other,
     })?;
     Ok(FTest {
         f: found.f,
-        df_above: found.between_df,
-        df_below: found.within_df,
+        df1: found.between_df,
+        df2: found.within_df,
         p: found.p,
     })
 }
@@ -87,9 +83,7 @@ pub fn bartlett<G: AsRef<[f64]>>(groups: &[G]) -> Result<ChiSquaredTest, SampleE
         let df = values.len() as f64 - 1.0;
         let variance = variance(values);
         if variance <= 0.0 {
-            return Err(SampleError::NoSpread {
-                what: format!("group {}", place + 1),
-            });
+            return Err(SampleError::NoSpread(format!("group {}", place + 1)));
         }
         pooled += df * variance;
         logarithms += df * variance.ln();

@@ -14,26 +14,21 @@ pub const CHI_SQUARED_CAVEAT: &str = "the chi-square here is an index of distanc
 pub struct GoodnessIndex {
     /// Number of values.
     pub n: usize,
-    /// Σ (O - P)² / P; unit of the values. `None` where a prediction is not
-    /// positive.
+    /// Σ (O - P)² / P; unit of the values. `None` with a prediction that is not positive.
     pub chi_squared: Option<f64>,
-    /// Σ (O - P)² / (N - p), as the drying and firmness literature reduces it;
-    /// squared unit of the values. `None` where no degrees of freedom are left.
+    /// Σ (O - P)² / (N - p); squared unit of the values. `None` without degrees of freedom.
     pub reduced_chi_squared: Option<f64>,
     /// √(Σ (O - P)² / N); unit of the values.
     pub root_mean_square: f64,
-    /// Mean of P - O: above zero where predictions are too large; unit of the
-    /// values.
+    /// Mean of P - O; unit of the values.
     pub bias: f64,
     /// Mean of |O - P|; unit of the values.
     pub mean_absolute: f64,
     /// Mean of |O - P| / |O|; a fraction. `None` where a measured value is zero.
     pub mean_absolute_relative: Option<f64>,
-    /// 1 - Σ (O - P)² / Σ (O - Ō)²: below zero where the mean of the measured
-    /// values predicts better. `None` where these do not vary.
+    /// 1 - Σ (O - P)² / Σ (O - Ō)². `None` where the measured values do not vary.
     pub r_squared: Option<f64>,
-    /// Square of the correlation of O and P, which says nothing of bias or
-    /// scale. `None` where either does not vary.
+    /// Squared correlation of O and P. `None` where either does not vary.
     pub correlation_squared: Option<f64>,
 }
 

@@ -30,8 +30,10 @@ pub struct Groups {
 }
 
 /// What the values of a group look like.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, serde::Serialize)]
 pub struct GroupSummary {
+    /// The levels in one text; "all" without grouping columns.
+    pub group: String,
     /// Level of each grouping column.
     pub levels: Vec<String>,
     /// Number of values.
@@ -41,25 +43,25 @@ pub struct GroupSummary {
     /// Mean; NaN without values, as all below.
     pub mean: f64,
     /// Standard deviation (n - 1); NaN for fewer than two values.
-    pub standard_deviation: f64,
+    pub sd: f64,
     /// Standard deviation over |mean|: the coefficient of variation; a fraction.
-    pub coefficient_of_variation: f64,
+    pub cv: f64,
     /// Standard error of the mean.
-    pub standard_error: f64,
+    pub se: f64,
     /// Lower end of the mean's interval, by Student's t.
     pub low: f64,
     /// Upper end.
     pub high: f64,
     /// Smallest value.
-    pub smallest: f64,
+    pub min: f64,
     /// First quartile, as [`quantile`].
-    pub first_quartile: f64,
+    pub q1: f64,
     /// Median.
     pub median: f64,
     /// Third quartile.
-    pub third_quartile: f64,
+    pub q3: f64,
     /// Largest value.
-    pub largest: f64,
+    pub max: f64,
 }
 
 /// The values of a column, by the levels of others.
@@ -124,23 +126,6 @@ fn categories_of(cells: &Cells) -> Categories {
     }
 }
 
-/// What the values of a column look like, by the levels of others.
-///
-/// # Errors
-/// As [`split_groups`], or a confidence outside (0, 1).
-pub fn summarize_groups(
-    table: &Table,
-    by: &[&str],
-    value: &str,
-    confidence: f64,
-) -> Result<Vec<GroupSummary>, Error> {
-    let groups = split_groups(table, by, value)?.groups;
-    groups
-        .iter()
-        .map(|group| summarize(group, confidence))
-        .collect()
-}
-
 /// What the values of one group look like.
 ///
 /// # Errors
@@ -157,20 +142,24 @@ pub fn summarize(group: &Group, confidence: f64) -> Result<GroupSummary, Error> 
         _ => error * t_upper_quantile(0.5 * (1.0 - confidence), n as f64 - 1.0),
     };
     Ok(GroupSummary {
+        group: match &group.levels[..] {
+            [] => "all".to_owned(),
+            levels => levels.join(", "),
+        },
         levels: group.levels.clone(),
         n,
         missing: group.missing,
         mean,
-        standard_deviation: deviation,
-        coefficient_of_variation: deviation / mean.abs(),
-        standard_error: error,
+        sd: deviation,
+        cv: deviation / mean.abs(),
+        se: error,
         low: mean - reach,
         high: mean + reach,
-        smallest: quantile(values, 0.0),
-        first_quartile: quantile(values, 0.25),
+        min: quantile(values, 0.0),
+        q1: quantile(values, 0.25),
         median: quantile(values, 0.5),
-        third_quartile: quantile(values, 0.75),
-        largest: quantile(values, 1.0),
+        q3: quantile(values, 0.75),
+        max: quantile(values, 1.0),
     })
 }
 
@@ -211,18 +200,24 @@ mod tests {
         assert_eq!(found.ungrouped, [3]);
     }
 
+    fn summaries(by: &[&str], confidence: f64) -> Vec<GroupSummary> {
+        let groups = split_groups(&table(), by, "k").unwrap().groups;
+        let described = groups.iter().map(|group| summarize(group, confidence));
+        described.collect::<Result<_, _>>().unwrap()
+    }
+
     #[test]
     fn closed_form_summary() {
-        let found = summarize_groups(&table(), &["variety"], "k", 0.5).unwrap();
+        let found = summaries(&["variety"], 0.5);
         let red = &found[1];
         assert_eq!((red.n, red.missing), (2, 1));
         assert_eq!(red.mean, 3.0);
-        assert_eq!(red.standard_deviation, 2f64.sqrt());
-        assert!((red.standard_error - 1.0).abs() < 1e-15);
+        assert_eq!(red.sd, 2f64.sqrt());
+        assert!((red.se - 1.0).abs() < 1e-15);
         // Student's t of one degree at 1/4 is 1
         assert!((red.low - 2.0).abs() < 1e-14 && (red.high - 4.0).abs() < 1e-14);
-        assert_eq!([red.first_quartile, red.median], [2.5, 3.0]);
-        let all = summarize_groups(&table(), &[], "k", 0.95).unwrap();
+        assert_eq!([red.q1, red.median], [2.5, 3.0]);
+        let all = summaries(&[], 0.95);
         assert_eq!((all.len(), all[0].n, all[0].missing), (1, 5, 1));
     }
 

@@ -24,8 +24,7 @@ pub struct MeanDifference {
     pub high: f64,
     /// Confidence of the interval.
     pub confidence: f64,
-    /// Cohen's d: the difference in standard deviations. Of the differences for
-    /// pairs, pooled for a common variance, √((s₁² + s₂²)/2) for Welch's.
+    /// Cohen's d, in standard deviations: of differences, pooled, or √((s₁² + s₂²)/2) (Welch).
     pub cohen_d: f64,
     /// Hedges' g: d without its bias in small samples.
     pub hedges_g: f64,
@@ -53,8 +52,7 @@ pub fn one_sample(
     difference_of(difference, spread, confidence)
 }
 
-/// Paired comparison: the same specimens under two conditions, or halves of one
-/// fruit.
+/// Paired comparison: the same specimens under two conditions, or halves of one fruit.
 ///
 /// # Errors
 /// Unequal lengths, missing values, fewer than two pairs, equal differences, or
@@ -99,11 +97,7 @@ pub fn pooled(
     difference_of((mean(first) - mean(second)).value(), spread, confidence)
 }
 
-/// Two samples with variances of their own (Welch), the safer choice where
-/// nothing is known of the variances.
-///
-/// # Errors
-/// As [`pooled`].
+/// Two samples with variances of their own (Welch); errors as in [`pooled`].
 ///
 /// # Source
 /// Welch (1947), The generalization of Student's problem when several different
@@ -157,9 +151,7 @@ fn difference_of(
         unit,
     } = spread;
     if squared_error <= 0.0 {
-        return Err(SampleError::NoSpread {
-            what: "the samples compared".to_owned(),
-        });
+        return Err(SampleError::NoSpread("the samples compared".to_owned()));
     }
     let standard_error = squared_error.sqrt();
     let t = difference / standard_error;

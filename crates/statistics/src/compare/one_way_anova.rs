@@ -1,5 +1,4 @@
-//! Analysis of variance of groups: the classic one, and Welch's for groups of
-//! unequal variance.
+//! One-way analysis of variance: the classic one, and Welch's for unequal variances.
 
 use crate::accurate_sum::{mean, squares_about, sum, variance};
 use crate::distribution::tail::f_upper;
@@ -8,14 +7,14 @@ use crate::sample_error::SampleError;
 use windfall_numerics::double_double::DoubleDouble;
 
 /// One-way analysis of variance.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, serde::Serialize)]
 pub struct OneWayAnova {
     /// Sum of squares between groups; squared unit of the values.
-    pub between: f64,
+    pub between_ss: f64,
     /// Degrees of freedom between groups.
     pub between_df: f64,
     /// Sum of squares within groups; squared unit of the values.
-    pub within: f64,
+    pub within_ss: f64,
     /// Degrees of freedom within groups.
     pub within_df: f64,
     /// Ratio of the mean squares.
@@ -27,18 +26,18 @@ pub struct OneWayAnova {
     /// The same without its bias, ω²; below zero where groups explain nothing.
     pub omega_squared: f64,
     /// Standard deviation within groups; unit of the values.
-    pub residual_deviation: f64,
+    pub residual_sd: f64,
 }
 
 /// A ratio of variances and its probability.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, serde::Serialize)]
 pub struct FTest {
     /// The ratio.
     pub f: f64,
     /// Degrees of freedom above.
-    pub df_above: f64,
+    pub df1: f64,
     /// Degrees of freedom below.
-    pub df_below: f64,
+    pub df2: f64,
     /// P(F ≥ f).
     pub p: f64,
 }
@@ -50,20 +49,18 @@ pub struct FTest {
 /// values, or no spread within groups.
 ///
 /// # Numerics
-/// Means and squares are summed in twice the precision of `f64`, and values
-/// that share leading digits are read as the decimals they were written as:
-/// data with thirteen digits in common keep the rest.
+/// Sums in twice the precision of `f64` ([`crate::accurate_sum`]).
 pub fn one_way_anova<G: AsRef<[f64]>>(groups: &[G]) -> Result<OneWayAnova, SampleError> {
     check_groups(groups, 1)?;
     let count: usize = groups.iter().map(|group| group.as_ref().len()).sum();
     let within_df = (count - groups.len()) as f64;
     let between_df = (groups.len() - 1) as f64;
     if within_df == 0.0 {
-        return Err(SampleError::TooFewValues {
-            what: "groups of one value each".to_owned(),
-            found: count,
-            needed: count + 1,
-        });
+        return Err(SampleError::too_few(
+            "groups of one value each",
+            count,
+            count + 1,
+        ));
     }
     let grand = groups.iter().fold(DoubleDouble::default(), |all, group| {
         all + sum(group.as_ref())
@@ -78,22 +75,22 @@ pub fn one_way_anova<G: AsRef<[f64]>>(groups: &[G]) -> Result<OneWayAnova, Sampl
     }
     let (between, within) = (between.value(), within.value());
     if within <= 0.0 {
-        return Err(SampleError::NoSpread {
-            what: "the values within each group".to_owned(),
-        });
+        return Err(SampleError::NoSpread(
+            "the values within each group".to_owned(),
+        ));
     }
     let noise = within / within_df;
     let f = between / between_df / noise;
     Ok(OneWayAnova {
-        between,
+        between_ss: between,
         between_df,
-        within,
+        within_ss: within,
         within_df,
         f,
         p: f_upper(f, between_df, within_df),
         eta_squared: between / (between + within),
         omega_squared: (between - between_df * noise) / (between + within + noise),
-        residual_deviation: noise.sqrt(),
+        residual_sd: noise.sqrt(),
     })
 }
 
@@ -112,9 +109,7 @@ pub fn welch_anova<G: AsRef<[f64]>>(groups: &[G]) -> Result<FTest, SampleError> 
     for (place, values) in groups.iter().map(AsRef::as_ref).enumerate() {
         let variance = variance(values);
         if variance <= 0.0 {
-            return Err(SampleError::NoSpread {
-                what: format!("group {}", place + 1),
-            });
+            return Err(SampleError::NoSpread(format!("group {}", place + 1)));
         }
         weights.push(values.len() as f64 / variance);
     }
@@ -134,13 +129,13 @@ pub fn welch_anova<G: AsRef<[f64]>>(groups: &[G]) -> Result<FTest, SampleError> 
         .sum();
     let k = groups.len() as f64;
     let lambda = unevenness / (k * k - 1.0);
-    let df_above = k - 1.0;
-    let df_below = 1.0 / (3.0 * lambda);
-    let f = between / df_above / (1.0 + 2.0 * (k - 2.0) * lambda);
+    let df1 = k - 1.0;
+    let df2 = 1.0 / (3.0 * lambda);
+    let f = between / df1 / (1.0 + 2.0 * (k - 2.0) * lambda);
     Ok(FTest {
         f,
-        df_above,
-        df_below,
-        p: f_upper(f, df_above, df_below),
+        df1,
+        df2,
+        p: f_upper(f, df1, df2),
     })
 }

@@ -1,5 +1,4 @@
-//! Every pair of groups compared, at one level for all: Tukey's honest
-//! significant difference, and Games and Howell's for unequal variances.
+//! All pairs of groups at one level: Tukey's, and Games and Howell's for unequal variances.
 
 use crate::accurate_sum::{mean, variance};
 use crate::compare::one_way_anova::one_way_anova;
@@ -49,7 +48,7 @@ pub fn tukey_kramer<G: AsRef<[f64]>>(
 ) -> Result<Vec<PairDifference>, SampleError> {
     check_probability("the confidence", confidence)?;
     let anova = one_way_anova(groups)?;
-    let noise = anova.within / anova.within_df;
+    let noise = anova.within_ss / anova.within_df;
     let critical =
         studentized_range_upper_quantile(1.0 - confidence, groups.len(), anova.within_df);
     let size = |place: usize| groups[place].as_ref().len() as f64;
@@ -61,8 +60,7 @@ pub fn tukey_kramer<G: AsRef<[f64]>>(
     Ok(all_pairs(groups, error))
 }
 
-/// Games and Howell's comparison of all pairs: each with its own variances and
-/// degrees of freedom, as in Welch's test.
+/// Games and Howell's comparison of all pairs, each with its own variances and freedom.
 ///
 /// # Errors
 /// Fewer than two groups, a group of fewer than two values, missing values, two
@@ -83,9 +81,9 @@ pub fn games_howell<G: AsRef<[f64]>>(
         .map(|values| (variance(values) / values.len() as f64, values.len() as f64))
         .collect();
     if parts.iter().filter(|part| part.0 <= 0.0).count() > 1 {
-        return Err(SampleError::NoSpread {
-            what: "two or more of the groups".to_owned(),
-        });
+        return Err(SampleError::NoSpread(
+            "two or more of the groups".to_owned(),
+        ));
     }
     let error = |first: usize, second: usize| {
         let ((a, n), (b, m)) = (parts[first], parts[second]);

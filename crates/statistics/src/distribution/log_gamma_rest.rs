@@ -1,5 +1,4 @@
-//! What is left of ln Γ after Stirling's formula, and the deviance: together
-//! they give densities of beta and gamma type without cancellation.
+//! The rest of ln Γ after Stirling's formula, and the deviance, for densities without cancellation.
 
 use std::f64::consts::PI;
 

@@ -1,6 +1,5 @@
-//! The distribution of the studentised range: the largest difference among
-//! `means` normal values, in units of a standard deviation estimated with `df`
-//! degrees of freedom.
+//! The studentised range: the largest difference among `means` normal values, over a
+//! standard deviation estimated with `df` degrees of freedom.
 
 use crate::distribution::log_gamma_rest::stirling_rest;
 use crate::distribution::tail::{normal_lower, upper_quantile_positive};

@@ -1,9 +1,5 @@
-//! Tail probabilities and quantiles of the normal, Student's t, F and χ²
-//! distributions, accurate in relative terms far out in the tails and for
-//! degrees of freedom in the millions.
-//!
-//! Probabilities of large values are computed as such and never as 1 - P, so
-//! that 1e-60 is as good as 0.05.
+//! Tail probabilities and quantiles of the normal, Student's t, F and χ² distributions,
+//! accurate in relative terms far out in the tails: never computed as 1 - P.
 
 use crate::distribution::incomplete_beta::{BetaParts, beta_parts};
 use crate::distribution::incomplete_gamma::upper_gamma;
@@ -65,8 +61,7 @@ pub fn t_upper(t: f64, df: f64) -> f64 {
     if t >= 0.0 { half } else { 1.0 - half }
 }
 
-/// The t with P(T > t) = `probability`: for a two-sided interval of confidence
-/// 0.95, the probability is 0.025.
+/// The t with P(T > t) = `probability`, 0.025 for a two-sided interval of 0.95.
 #[must_use]
 pub fn t_upper_quantile(probability: f64, df: f64) -> f64 {
     upper_quantile_on_line(probability, |t| t_upper(t, df))
@@ -135,11 +130,8 @@ fn upper_quantile_on_line(probability: f64, upper: impl Fn(f64) -> f64) -> f64 {
     upper_quantile_positive(probability, upper)
 }
 
-/// Quantile of a distribution on positive numbers: bracketed in steps of its
-/// logarithm, then narrowed to neighbouring numbers.
-///
-/// The probability is compared in logarithms, in which a tail is close to a
-/// straight line over any number of decades.
+/// Quantile of a distribution on positive numbers: bracketed in steps of its logarithm,
+/// comparing logarithms of the probability, in which tails are close to straight lines.
 pub(crate) fn upper_quantile_positive(probability: f64, upper: impl Fn(f64) -> f64) -> f64 {
     if !(0.0..=1.0).contains(&probability) || upper(1.0).is_nan() {
         return f64::NAN;

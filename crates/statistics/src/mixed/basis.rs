@@ -2,13 +2,11 @@
 
 use nalgebra::DMatrix;
 
-/// A column whose part orthogonal to those before it is shorter than this share
-/// of its length counts as their combination. R's `lm` takes 1e-7; columns here
-/// are orthogonalised twice, which leaves rounding far below.
+/// Least length of a column's orthogonal part, relative to it (R's `lm` takes 1e-7; here
+/// columns are orthogonalised twice).
 const DEPENDENCE: f64 = 1e-10;
 
-/// Share of a column's length below which a coefficient is not named among those
-/// it depends on.
+/// Least part of a column's length for a coefficient to be named in a dependence.
 const NAMED: f64 = 1e-6;
 
 /// Orthonormal columns q and upper triangular r with columns = q r.
@@ -29,8 +27,7 @@ pub(crate) struct Dependent {
     pub on: Vec<usize>,
 }
 
-/// Gram-Schmidt, each column twice ("twice is enough", Giraud, Langou and
-/// Rozložník 2005), which leaves the columns orthogonal to rounding.
+/// Gram-Schmidt, each column twice (Giraud, Langou and Rozložník 2005).
 pub(crate) fn orthonormal_basis(columns: &[&[f64]]) -> Result<Basis, Dependent> {
     let p = columns.len();
     let mut r = DMatrix::zeros(p, p);
@@ -42,9 +39,7 @@ pub(crate) fn orthonormal_basis(columns: &[&[f64]]) -> Result<Basis, Dependent> 
             for (i, earlier) in q.iter().enumerate() {
                 let share = dot(earlier, &rest);
                 r[(i, j)] += share;
-                for (value, e) in rest.iter_mut().zip(earlier) {
-                    *value -= share * e;
-                }
+                add_scaled(&mut rest, -share, earlier);
             }
         }
         let left = norm(&rest);
@@ -85,6 +80,13 @@ pub(crate) fn dot(a: &[f64], b: &[f64]) -> f64 {
     }
     let halves = [0, 1, 2, 3].map(|lane| sums[lane] + sums[lane + 4]);
     (halves[0] + halves[1]) + (halves[2] + halves[3]) + rest
+}
+
+/// Adds a multiple of values to sums.
+pub(crate) fn add_scaled(sums: &mut [f64], factor: f64, values: &[f64]) {
+    for (sum, value) in sums.iter_mut().zip(values) {
+        *sum += factor * value;
+    }
 }
 
 /// Length of a column, without overflow of squares for ordinary data.

@@ -4,7 +4,7 @@
 //! eliminated one by one in small blocks. What remains of the other factors, the
 //! trunk, is one symmetric matrix inside an envelope.
 
-use crate::mixed::basis::dot;
+use crate::mixed::basis::{add_scaled, dot};
 use crate::mixed::envelope::Envelope;
 use nalgebra::DMatrix;
 
@@ -19,8 +19,7 @@ pub(crate) struct Factor {
     pub groups: usize,
     /// Group of each row.
     pub group: Vec<usize>,
-    /// Scaled design columns, one after another in each row; the columns of a
-    /// correlated term are orthogonal, with mean square 1.
+    /// Scaled design columns row by row; those of a correlated term are orthonormal.
     pub design: Vec<f64>,
     /// Upper triangle that gives the columns of the terms: terms = design · basis.
     pub basis: DMatrix<f64>,
@@ -37,8 +36,7 @@ pub(crate) struct TermPlace {
     pub width: usize,
 }
 
-/// Cross-products of the leaf factor. Fixed columns are the orthonormal ones of
-/// the model and last the response.
+/// Cross-products of the leaf factor, with the orthonormal fixed columns and the response.
 #[derive(Clone, Debug)]
 pub(crate) struct Leaf {
     /// Columns of the factor.
@@ -110,19 +108,13 @@ pub(crate) fn leaf_of(factors: &[Factor], trunk: &Trunk, fixed: &[&[f64]]) -> Le
             let z = &factor.design[row * width..(row + 1) * width];
             for a in 0..width {
                 let square = &mut leaf.square[(group * width + a) * width..][..width];
-                square
-                    .iter_mut()
-                    .zip(z)
-                    .for_each(|(sum, b)| *sum += z[a] * b);
+                add_scaled(square, z[a], z);
                 let cross = &mut leaf.cross[begin + a * wide..][..wide];
                 for (index, other) in factors[1..].iter().enumerate() {
                     let design = &other.design[row * other.width..(row + 1) * other.width];
                     let column = trunk.offsets[index] + other.group[*row] * other.width;
                     let cross = &mut cross[place[column]..][..other.width];
-                    cross
-                        .iter_mut()
-                        .zip(design)
-                        .for_each(|(sum, b)| *sum += z[a] * b);
+                    add_scaled(cross, z[a], design);
                 }
                 let cross = &mut cross[met.len()..];
                 cross
@@ -190,8 +182,7 @@ pub(crate) fn trunk_of(factors: &[Factor], fixed: &[&[f64]]) -> Trunk {
     trunk
 }
 
-/// Envelope of what couples once the leaf is eliminated: all trunk columns that
-/// one leaf group meets.
+/// Envelope of the trunk columns that one leaf group couples.
 fn envelope_of(factors: &[Factor], trunk: &Trunk, columns: usize) -> Envelope {
     let mut first: Vec<usize> = vec![0; columns];
     for block in &trunk.blocks {

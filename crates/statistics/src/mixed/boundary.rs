@@ -1,5 +1,4 @@
-//! The profiled criterion, its minimum, and whether that lies on the edge of what
-//! covariances can be.
+//! The profiled criterion, its minimum, and whether that lies on the boundary.
 
 use crate::mixed::evaluate::{State, evaluate};
 use crate::mixed::minimise::{Minimum, Sloped, minimise};
@@ -11,16 +10,13 @@ use crate::mixed::theta::{
 use nalgebra::DMatrix;
 use std::f64::consts::TAU;
 
-/// Diagonal entries below this are tried at zero. Columns have mean square 1, so
-/// that such an effect is a twentieth of the residual.
+/// Diagonal entries below this are tried at zero; parts of the residual deviation.
 const NEAR_ZERO: f64 = 0.05;
 
-/// By how much, absolute and as a share, the criterion may be higher at zero: its
-/// rounding.
+/// Tolerance of the criterion at zero, absolute and relative.
 const SAME: (f64, f64) = (1e-9, 1e-12);
 
-/// The profiled criterion of a model: -2 log likelihood at the best coefficients
-/// and residual variance.
+/// The profiled criterion: -2 log likelihood at the best coefficients and residual variance.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Criterion {
     /// Whether the likelihood is restricted.
@@ -86,8 +82,7 @@ pub(crate) struct Estimate {
     pub flat: usize,
 }
 
-/// Minimises the criterion. Entries may have any sign, which leaves it smooth where
-/// a variance is zero.
+/// Minimises the criterion, smooth at zero variances as entries may have any sign.
 pub(crate) fn estimate(model: &MixedModel, criterion: &Criterion) -> Option<(Estimate, State)> {
     let entries = entries_of(model);
     let first = from_start(model, criterion, &entries, 1.0)?;
@@ -146,8 +141,7 @@ fn search(
     Some(found)
 }
 
-/// Tries small diagonal entries at zero, and keeps those at which the criterion is
-/// no higher.
+/// Keeps small diagonal entries at zero where the criterion is no higher.
 fn to_edge(
     model: &MixedModel,
     criterion: &Criterion,
@@ -197,8 +191,7 @@ fn allowance(value: f64) -> f64 {
     SAME.0 + SAME.1 * value.abs()
 }
 
-/// The same covariances with one diagonal entry at zero: what stood below it goes
-/// to later columns.
+/// The same covariances with one diagonal entry at zero.
 fn without_column(model: &MixedModel, entries: &[Entry], theta: &[f64], zero: Entry) -> Vec<f64> {
     let mut blocks = blocks_of(model, entries, theta);
     let block = &mut blocks[zero.factor];

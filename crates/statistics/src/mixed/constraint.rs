@@ -13,8 +13,7 @@ use crate::mixed::theta::{Entry, blocks_of, place_of, relative_covariance, semid
 use nalgebra::DMatrix;
 use std::f64::consts::TAU;
 
-/// Diagonal entries start no smaller than this: at zero the search would be on a
-/// ridge.
+/// Least starting value of diagonal entries: zero lies on a ridge.
 const LEAST_START: f64 = 0.05;
 
 /// A standard deviation or correlation of a mixed model.
@@ -31,10 +30,8 @@ pub enum VarianceParameter {
     Correlation {
         /// Index of the term.
         term: usize,
-        /// Index of one column.
-        first: usize,
-        /// Index of the other.
-        second: usize,
+        /// Indices of the two columns.
+        columns: [usize; 2],
     },
     /// Residual standard deviation.
     ResidualSd,
@@ -81,11 +78,7 @@ impl<'a> Constrained<'a> {
     pub fn of(fit: &'a MixedFit, parameter: VarianceParameter) -> Self {
         let (term, order) = match parameter {
             VarianceParameter::Sd { term, column } => (Some(term), vec![column]),
-            VarianceParameter::Correlation {
-                term,
-                first,
-                second,
-            } => (Some(term), vec![first, second]),
+            VarianceParameter::Correlation { term, columns } => (Some(term), columns.to_vec()),
             VarianceParameter::ResidualSd => (None, Vec::new()),
         };
         let (others, others_start) = fit
@@ -114,12 +107,9 @@ impl<'a> Constrained<'a> {
                 let given = &terms[term];
                 format!("sd of {}, {}", given.column_names[column], given.name)
             }
-            VarianceParameter::Correlation {
-                term,
-                first,
-                second,
-            } => {
+            VarianceParameter::Correlation { term, columns } => {
                 let given = &terms[term];
+                let [first, second] = columns;
                 let names = &given.column_names;
                 format!(
                     "correlation of {} and {}, {}",
@@ -263,11 +253,9 @@ fn at_least(value: f64, diagonal: bool) -> f64 {
 fn estimate_of(fit: &MixedFit, parameter: VarianceParameter) -> f64 {
     match parameter {
         VarianceParameter::Sd { term, column } => fit.variances[term].sds[column],
-        VarianceParameter::Correlation {
-            term,
-            first,
-            second,
-        } => fit.variances[term].correlations[(first, second)],
+        VarianceParameter::Correlation { term, columns } => {
+            fit.variances[term].correlations[(columns[0], columns[1])]
+        }
         VarianceParameter::ResidualSd => fit.residual_sd,
     }
 }

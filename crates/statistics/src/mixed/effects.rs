@@ -1,5 +1,4 @@
-//! Conditional modes of random effects (best linear unbiased predictions) and their
-//! standard deviations.
+//! Conditional modes of random effects (BLUPs) and their standard deviations.
 
 use crate::mixed::evaluate::{LeafScratch, State, eliminate, solve_upper};
 use crate::mixed::model::MixedModel;
@@ -12,11 +11,9 @@ use nalgebra::{DMatrix, DVector};
 pub struct RandomEffects {
     /// The term.
     pub term: String,
-    /// Conditional modes: per group one number per column. Zero for groups without
-    /// rows.
+    /// Conditional modes per group and column; zero for groups without rows.
     pub values: Vec<Vec<f64>>,
-    /// Conditional standard deviations, fixed effects and variances taken as known
-    /// (lme4's `condVar`).
+    /// Conditional standard deviations (lme4's `condVar`).
     pub sds: Vec<Vec<f64>>,
 }
 

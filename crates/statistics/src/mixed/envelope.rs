@@ -5,7 +5,7 @@
 //! Computer Solution of Large Sparse Positive Definite Systems, ch. 4). Groups
 //! nested in groups give a narrow envelope, crossed groups a full one.
 
-use crate::mixed::basis::dot;
+use crate::mixed::basis::{add_scaled, dot};
 
 /// Where the rows of a lower triangle begin.
 #[derive(Clone, Debug, Default)]
@@ -88,9 +88,7 @@ impl Envelope {
             let row = &mut rest[..width];
             for j in self.first[i]..i {
                 let l = factor[self.place(i, j)];
-                for (value, b) in row.iter_mut().zip(&before[j * width..(j + 1) * width]) {
-                    *value -= l * b;
-                }
+                add_scaled(row, -l, &before[j * width..(j + 1) * width]);
             }
             let pivot = factor[self.place(i, i)];
             row.iter_mut().for_each(|value| *value /= pivot);
@@ -106,9 +104,7 @@ impl Envelope {
             row.iter_mut().for_each(|value| *value /= pivot);
             for j in self.first[i]..i {
                 let l = factor[self.place(i, j)];
-                for (value, b) in before[j * width..(j + 1) * width].iter_mut().zip(&*row) {
-                    *value -= l * b;
-                }
+                add_scaled(&mut before[j * width..(j + 1) * width], -l, row);
             }
         }
     }
@@ -137,9 +133,7 @@ impl Envelope {
             if together {
                 let from = self.place(*i, at[0]);
                 let row = &mut values[from..=from + a];
-                row.iter_mut()
-                    .zip(vector)
-                    .for_each(|(sum, y)| *sum -= x * y);
+                add_scaled(row, -*x, vector);
             } else {
                 for (j, y) in at[..=a].iter().zip(vector) {
                     values[self.place(*i, *j)] -= x * y;
@@ -164,10 +158,7 @@ impl Envelope {
             if together {
                 let row = self.part(values, *i, at[0], *i + 1);
                 rest[0] += dot(row, &vector[..=a]);
-                before
-                    .iter_mut()
-                    .zip(row)
-                    .for_each(|(sum, value)| *sum += value * x);
+                add_scaled(before, *x, row);
             } else {
                 for (b, j) in at[..a].iter().enumerate() {
                     let value = values[self.place(*i, *j)];
@@ -179,8 +170,7 @@ impl Envelope {
         }
     }
 
-    /// The entries of (L Lᵀ)⁻¹ inside the envelope, by the recursion of Takahashi,
-    /// Fagan and Chin (1973), last column first.
+    /// (L Lᵀ)⁻¹ inside the envelope, last column first (Takahashi, Fagan and Chin 1973).
     pub(crate) fn inverse(&self, factor: &[f64]) -> Vec<f64> {
         let rows = self.rows();
         let mut inverse = vec![0.0; self.entries()];

@@ -6,6 +6,7 @@
 //! with the sparse factorisation replaced by elimination of the leaf's groups and
 //! an envelope factor of the rest.
 
+use crate::mixed::basis::add_scaled;
 use crate::mixed::blocks::{Leaf, TrunkBlock};
 use crate::mixed::model::MixedModel;
 use nalgebra::{DMatrix, DVector};
@@ -164,9 +165,7 @@ fn transposed_times(block: &DMatrix<f64>, matrix: &[f64], wide: usize, product: 
             let l = block[(k, i)];
             if l != 0.0 {
                 let from = &matrix[k * wide..(k + 1) * wide];
-                row.iter_mut()
-                    .zip(from)
-                    .for_each(|(sum, value)| *sum += l * value);
+                add_scaled(row, l, from);
             }
         }
     }
@@ -180,9 +179,7 @@ pub(crate) fn solve_lower(factor: &[f64], q: usize, matrix: &mut [f64], wide: us
         for k in 0..i {
             let l = factor[i * q + k];
             let from = &before[k * wide..(k + 1) * wide];
-            row.iter_mut()
-                .zip(from)
-                .for_each(|(sum, value)| *sum -= l * value);
+            add_scaled(row, -l, from);
         }
         let pivot = factor[i * q + i];
         row.iter_mut().for_each(|value| *value /= pivot);
@@ -199,15 +196,12 @@ pub(crate) fn solve_upper(factor: &[f64], q: usize, matrix: &mut [f64], wide: us
         for k in 0..i {
             let l = factor[i * q + k];
             let to = &mut before[k * wide..(k + 1) * wide];
-            to.iter_mut()
-                .zip(&*row)
-                .for_each(|(sum, value)| *sum -= l * value);
+            add_scaled(to, -l, row);
         }
     }
 }
 
-/// Takes the squares of an eliminated group from what is left. Of `fixed` only the
-/// upper triangle.
+/// Subtracts an eliminated group; of `fixed` only the upper triangle.
 fn subtract_leaf(
     model: &MixedModel,
     group: usize,
@@ -224,15 +218,11 @@ fn subtract_leaf(
         envelope.subtract_square(trunk, met, in_trunk);
         for (i, value) in met.iter().zip(in_trunk) {
             let sums = &mut trunk_fixed[i * m..(i + 1) * m];
-            sums.iter_mut()
-                .zip(in_fixed)
-                .for_each(|(sum, other)| *sum -= value * other);
+            add_scaled(sums, -*value, in_fixed);
         }
         for (a, value) in in_fixed.iter().enumerate() {
             let sums = &mut fixed[a * m + a..(a + 1) * m];
-            sums.iter_mut()
-                .zip(&in_fixed[a..])
-                .for_each(|(sum, other)| *sum -= value * other);
+            add_scaled(sums, -*value, &in_fixed[a..]);
         }
     }
 }
@@ -294,8 +284,7 @@ pub(crate) fn between_blocks(
     product
 }
 
-/// One matrix per factor, from any of its blocks; empty where a factor has none in
-/// the trunk.
+/// One matrix per factor, from any of its blocks; empty without trunk blocks.
 fn by_factor(model: &MixedModel, of: impl Fn(&TrunkBlock) -> DMatrix<f64>) -> Vec<DMatrix<f64>> {
     let factors = 0..model.factors.len();
     factors
@@ -336,9 +325,7 @@ pub(crate) fn times_blocks(
                 };
                 let from = &rows[(block.offset + k) * m..(block.offset + k + 1) * m];
                 let to = &mut product[(block.offset + i) * m..(block.offset + i + 1) * m];
-                to.iter_mut()
-                    .zip(from)
-                    .for_each(|(sum, value)| *sum += l * value);
+                add_scaled(to, l, from);
             }
         }
     }

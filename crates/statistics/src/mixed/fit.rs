@@ -14,8 +14,7 @@ use nalgebra::{DMatrix, DVector};
 /// What is maximised.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum MixedMethod {
-    /// Restricted maximum likelihood: variances without the bias of estimated fixed
-    /// effects.
+    /// Restricted maximum likelihood.
     #[default]
     Reml,
     /// Maximum likelihood: for comparing models with different fixed effects.
@@ -40,8 +39,7 @@ pub struct TermVariance {
     pub groups: usize,
     /// Standard deviation of each column's effect.
     pub sds: Vec<f64>,
-    /// Correlations of the effects; NaN with an effect of no variance, and zero
-    /// between effects that the model takes as uncorrelated.
+    /// Correlations of the effects; NaN without variance, zero where uncorrelated.
     pub correlations: DMatrix<f64>,
     /// Covariance of the effects.
     pub covariance: DMatrix<f64>,
@@ -62,8 +60,7 @@ pub struct MixedFit {
     pub residual_sd: f64,
     /// Variances of each random term.
     pub variances: Vec<TermVariance>,
-    /// Lower triangles (or diagonals) of the relative covariance factors, in lme4's
-    /// order.
+    /// Lower triangles (or diagonals) of the relative covariance factors, as in lme4.
     pub theta: Vec<f64>,
     /// -2 log of the (restricted) likelihood.
     pub criterion: f64,
@@ -143,10 +140,7 @@ pub fn fit_mixed(
     fit_mixed_model(prepare_mixed(y, x, x_names, terms)?, options)
 }
 
-/// Fits a model that is made ready.
-///
-/// # Errors
-/// [`MixedError::NoCriterion`] if its criterion is not finite.
+/// Fits a prepared model, or returns [`MixedError::NoCriterion`].
 pub fn fit_mixed_model(model: MixedModel, options: &MixedOptions) -> Result<MixedFit, MixedError> {
     let criterion = Criterion::of_model(&model, options.method == MixedMethod::Reml);
     let (estimate, state) = estimate(&model, &criterion).ok_or(MixedError::NoCriterion)?;

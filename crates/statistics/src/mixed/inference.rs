@@ -9,10 +9,10 @@ use crate::mixed::fit::{MixedFit, MixedMethod};
 use crate::mixed::minimise::{FLAT, differences};
 use crate::mixed::term::{check_finite, check_length};
 use crate::mixed::theta::{blocks_of, entries_from};
+use crate::model::linear_model::Coefficient;
 use nalgebra::{DMatrix, DVector};
 
-/// Eigenvalues of a contrast's covariance below this share of the largest count as
-/// zero: the contrast's rows follow from each other.
+/// Eigenvalues of a contrast's covariance below this share of the largest are zero.
 const RANK: f64 = 1e-10;
 
 /// Covariance of the variance parameters, and how the coefficients' covariance
@@ -21,34 +21,12 @@ const RANK: f64 = 1e-10;
 /// The parameters are the free entries of the relative covariance factors, then σ.
 #[derive(Clone, Debug)]
 pub struct VarianceUncertainty {
-    /// Covariance of the parameters: twice the inverse of the second derivative of
-    /// -2 log likelihood, without flat directions.
+    /// Covariance of the parameters, without flat directions.
     pub(crate) covariance: DMatrix<f64>,
     /// Derivative of the coefficients' covariance by each parameter.
     pub(crate) slopes: Vec<DMatrix<f64>>,
     /// What the reader should know.
     pub findings: Vec<MixedFinding>,
-}
-
-/// Test of one coefficient or of one combination of coefficients.
-#[derive(Clone, Debug, PartialEq)]
-pub struct CoefficientTest {
-    /// Name of the coefficient.
-    pub name: String,
-    /// Estimate.
-    pub estimate: f64,
-    /// Standard error.
-    pub se: f64,
-    /// Degrees of freedom.
-    pub df: f64,
-    /// Estimate over standard error.
-    pub t: f64,
-    /// Two-sided p-value.
-    pub p: f64,
-    /// Lower end of the confidence interval.
-    pub low: f64,
-    /// Upper end.
-    pub high: f64,
 }
 
 /// Test that several combinations of coefficients are all zero.
@@ -162,9 +140,8 @@ fn covariance_of(fit: &MixedFit, state: &State) -> DMatrix<f64> {
     &inverse * &state.covariance * inverse.transpose()
 }
 
-/// Twice the inverse of a second derivative over its curved directions, and the
-/// number of flat ones. Scaled to a unit diagonal first, so that flatness does not
-/// depend on units.
+/// Twice the inverse of a second derivative over its curved directions, after scaling to
+/// a unit diagonal, and the number of flat ones.
 fn covariance_from(second: DMatrix<f64>) -> (DMatrix<f64>, usize) {
     let n = second.nrows();
     let largest = second.diagonal().amax();
@@ -195,8 +172,7 @@ fn covariance_from(second: DMatrix<f64>) -> (DMatrix<f64>, usize) {
     (covariance, flat)
 }
 
-/// Satterthwaite's degrees of freedom of a variance with this derivative by the
-/// variance parameters: 2 v² / (g' A g).
+/// Satterthwaite's degrees of freedom 2 v² / (g' A g) of a variance with derivative g.
 pub(crate) fn degrees_of_freedom(
     uncertainty: &VarianceUncertainty,
     variance: f64,
@@ -225,7 +201,7 @@ pub fn coefficient_tests(
     fit: &MixedFit,
     uncertainty: &VarianceUncertainty,
     confidence: f64,
-) -> Vec<CoefficientTest> {
+) -> Vec<Coefficient> {
     let p = fit.model.coefficients();
     let tests = (0..p).map(|k| {
         let weights = DVector::from_fn(p, |i, _| f64::from(u8::from(i == k)));
@@ -242,32 +218,6 @@ pub fn coefficient_tests(
     tests.collect()
 }
 
-/// Test of one combination of coefficients.
-///
-/// # Errors
-/// [`MixedError::WrongLength`] unless there is a weight per coefficient.
-pub fn combination_test(
-    fit: &MixedFit,
-    uncertainty: &VarianceUncertainty,
-    name: &str,
-    weights: &[f64],
-    confidence: f64,
-) -> Result<CoefficientTest, MixedError> {
-    let what = format!("weights of {name}");
-    check_length(&what, weights.len(), fit.model.coefficients())?;
-    check_finite(&what, weights)?;
-    let weights = DVector::from_column_slice(weights);
-    let df = contrast_df(uncertainty, &fit.covariance, &weights);
-    Ok(test_of(
-        fit,
-        &fit.covariance,
-        name,
-        &weights,
-        df,
-        confidence,
-    ))
-}
-
 /// t, p and interval with these degrees of freedom.
 pub(crate) fn test_of(
     fit: &MixedFit,
@@ -276,12 +226,12 @@ pub(crate) fn test_of(
     weights: &DVector<f64>,
     df: f64,
     confidence: f64,
-) -> CoefficientTest {
+) -> Coefficient {
     let estimate = weights.dot(&DVector::from_column_slice(&fit.coefficients));
     let se = (weights.transpose() * covariance * weights)[(0, 0)].sqrt();
     let t = estimate / se;
     let half = half_width(confidence, df) * se;
-    CoefficientTest {
+    Coefficient {
         name: name.to_owned(),
         estimate,
         se,
@@ -374,8 +324,7 @@ pub fn picking_contrast(coefficients: usize, picked: &[usize]) -> DMatrix<f64> {
     })
 }
 
-/// Half width of an interval of this confidence in standard errors; NaN where the
-/// confidence is none.
+/// Half width of an interval in standard errors; NaN for an invalid confidence.
 pub(crate) fn half_width(confidence: f64, df: f64) -> f64 {
     if confidence > 0.0 && confidence < 1.0 {
         t_upper_quantile((1.0 - confidence) / 2.0, df)

@@ -15,12 +15,12 @@
 use crate::distribution::tail::f_upper;
 use crate::mixed::error::MixedError;
 use crate::mixed::fit::{MixedFit, MixedMethod};
-use crate::mixed::inference::{CoefficientTest, FTest, check_contrast, test_of};
+use crate::mixed::inference::{FTest, check_contrast, test_of};
 use crate::mixed::theta::Entry;
+use crate::model::linear_model::Coefficient;
 use nalgebra::{DMatrix, DVector};
 
-/// Random effects of crossed factors at most: their matrices are dense, and this
-/// many take about a second.
+/// Most random effects of crossed factors: their matrices are dense.
 pub const MOST_CROSSED_EFFECTS: usize = 1500;
 
 /// Kenward and Roger's adjustment of a fit.
@@ -335,7 +335,7 @@ pub fn kenward_roger_tests(
     fit: &MixedFit,
     adjusted: &KenwardRoger,
     confidence: f64,
-) -> Vec<CoefficientTest> {
+) -> Vec<Coefficient> {
     let p = fit.model.coefficients();
     let tests = (0..p).map(|k| {
         let weights = DVector::from_fn(p, |i, _| f64::from(u8::from(i == k)));
@@ -383,8 +383,7 @@ fn denominator(
     contrast: &DMatrix<f64>,
     q: usize,
 ) -> (f64, f64) {
-    /// Below these, quotients of the formulas are zero by zero, which balanced
-    /// designs reach (as in pbkrtest).
+    /// Below these, quotients of the formulas are 0/0, as in balanced designs (pbkrtest).
     const NOUGHT: (f64, f64) = (1e-10, 1e-14);
     let q = q as f64;
     let phi = &fit.state.covariance;

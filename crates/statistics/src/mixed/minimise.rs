@@ -6,8 +6,7 @@ use nalgebra::{DMatrix, DVector, Dyn, SymmetricEigen};
 /// Steps of the quasi-Newton search at most.
 const MOST_STEPS: usize = 500;
 
-/// The search ends when a step can lower the value by no more than this share
-/// of it.
+/// The search ends when a step can lower the value by less than this share.
 const DECREASE: f64 = 1e-13;
 
 /// Steps in a row that do not lower the value before the search ends.
@@ -16,16 +15,13 @@ const MOST_IDLE: usize = 4;
 /// Steps of Newton's method at the end, at most.
 const MOST_POLISHES: usize = 8;
 
-/// Newton's steps end when one can lower the value by no more than this share of it:
-/// the point is then good to about 1e-11.
+/// Newton's steps end when one can lower the value by less than this share.
 const SETTLED: f64 = 1e-24;
 
-/// Eigenvalues of the second derivative below this share of the largest are flat
-/// directions.
+/// Eigenvalues of the second derivative below this share of the largest are flat.
 pub(crate) const FLAT: f64 = 1e-9;
 
-/// Curvature of a deviance below which it says nothing about a coordinate: its
-/// standard deviation is then hundreds of times the coordinate's size.
+/// Curvature of a deviance below which a coordinate is undetermined.
 const LEVEL: f64 = 1e-5;
 
 /// Coordinates are taken to be at least of this size.
@@ -45,8 +41,7 @@ pub(crate) struct Minimum {
     pub evaluations: usize,
     /// Whether the gradient vanishes there to rounding.
     pub converged: bool,
-    /// Directions in which the function is level, coordinates taken in shares of their
-    /// size.
+    /// Directions without curvature, in coordinates scaled by their size.
     pub flat: usize,
 }
 
@@ -61,10 +56,7 @@ pub(crate) struct Step {
     pub gradient: Vec<f64>,
 }
 
-/// Minimum good to rounding: `descend`, then Newton steps with the second derivative
-/// by differences.
-///
-/// `None` if the function has no value at the start.
+/// Minimum good to rounding: `descend`, then Newton; `None` without a value at the start.
 pub(crate) fn minimise(objective: &dyn Fn(&[f64]) -> Sloped, start: Vec<f64>) -> Option<Minimum> {
     let (found, evaluations) = descend(objective, start)?;
     if found.point.is_empty() {
@@ -79,9 +71,8 @@ pub(crate) fn minimise(objective: &dyn Fn(&[f64]) -> Sloped, start: Vec<f64>) ->
     Some(polish(objective, found, evaluations))
 }
 
-/// Quasi-Newton steps: BFGS with a weak Wolfe search by bisection (Lewis and Overton
-/// 2013), until a step can lower the value by no more than its rounding. Also gives
-/// the number of evaluations.
+/// BFGS with a weak Wolfe search by bisection (Lewis and Overton 2013) to rounding;
+/// also the number of evaluations.
 pub(crate) fn descend(
     objective: &dyn Fn(&[f64]) -> Sloped,
     start: Vec<f64>,
@@ -198,8 +189,7 @@ fn update(inverse: &mut DMatrix<f64>, change: &DVector<f64>, turn: &DVector<f64>
     *inverse += scale * change * change.transpose() - &cross - cross.transpose();
 }
 
-/// Newton's method, with the second derivative where it begins, as long as the
-/// gradient shrinks.
+/// Newton's method with the initial second derivative while the gradient shrinks.
 fn polish(objective: &dyn Fn(&[f64]) -> Sloped, start: Step, evaluations: usize) -> Minimum {
     let Step {
         mut point,
@@ -250,8 +240,7 @@ fn flat_directions(second: &DMatrix<f64>, point: &[f64]) -> usize {
     eigenvalues.iter().filter(|value| **value < LEVEL).count()
 }
 
-/// Newton's step in the directions that are not flat; downhill where curved
-/// down.
+/// Newton's step in the directions that are not flat, always downhill.
 fn newton_step(eigen: &SymmetricEigen<f64, Dyn>, slope: &DVector<f64>) -> DVector<f64> {
     let largest = eigen.eigenvalues.amax();
     let mut step = DVector::zeros(slope.len());
@@ -267,8 +256,7 @@ fn newton_step(eigen: &SymmetricEigen<f64, Dyn>, slope: &DVector<f64>) -> DVecto
     step
 }
 
-/// Second derivative by central differences of the gradient, made symmetric; good
-/// enough to step by.
+/// Second derivative by central differences of the gradient, symmetrised.
 fn second_derivative(
     gradient: &dyn Fn(&[f64]) -> Option<Vec<f64>>,
     point: &[f64],
@@ -292,11 +280,8 @@ fn second_derivative(
         .then(|| (&rows + rows.transpose()) * 0.5)
 }
 
-/// Derivative of each output by each coordinate, by central differences of fourth
-/// order: a row of outputs per coordinate.
-///
-/// With steps of a thousandth the truncation is near 1e-12 of the value and
-/// rounding near 1e-13.
+/// Derivatives of outputs (columns) by coordinates (rows), by central differences of
+/// fourth order with steps of a thousandth.
 pub(crate) fn differences(
     outputs: &dyn Fn(&[f64]) -> Option<Vec<f64>>,
     point: &[f64],

@@ -145,8 +145,7 @@ fn dependent_error(model: &str, names: &[String], found: &Dependent) -> MixedErr
     }
 }
 
-/// Coefficients of the orthonormal columns and what they leave, orthogonal to them
-/// to rounding.
+/// Coefficients of the orthonormal columns, and the residual.
 fn ordinary_residual(y: &[f64], basis: &Basis) -> Result<(DVector<f64>, Vec<f64>), MixedError> {
     let mut residual = y.to_vec();
     let mut ordinary = DVector::zeros(basis.q.len());
@@ -249,8 +248,7 @@ fn factor_of(
     })
 }
 
-/// Columns of mean square 1, those of a correlated term orthogonal, and the
-/// triangle that gives the columns back.
+/// Columns of mean square 1, orthogonal in a correlated term, and the triangle back.
 fn scaled_columns(term: &RandomTerm) -> Result<(Vec<Vec<f64>>, DMatrix<f64>), MixedError> {
     let root = (term.group.len() as f64).sqrt();
     let scaled = |basis: Basis| {
@@ -282,8 +280,7 @@ fn scaled_columns(term: &RandomTerm) -> Result<(Vec<Vec<f64>>, DMatrix<f64>), Mi
     Ok((all, triangle))
 }
 
-/// Columns of all terms of one factor must differ, or their variances cannot be
-/// told apart.
+/// Columns of all terms of one factor must be independent.
 fn check_independent(terms: &[RandomTerm], members: &[usize]) -> Result<(), MixedError> {
     let members: Vec<&RandomTerm> = members.iter().map(|index| &terms[*index]).collect();
     let columns: Vec<&[f64]> = members

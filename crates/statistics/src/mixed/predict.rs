@@ -26,31 +26,30 @@ pub struct NewRows {
 pub struct NewTerm {
     /// Its columns.
     pub columns: Vec<Vec<f64>>,
-    /// The group of each row; `None` for a group that was not measured, whose effect
-    /// is zero on average and varies like those of the others.
+    /// The group of each row; `None` for a new group, whose effect is zero on average.
     pub group: Vec<Option<usize>>,
 }
 
 /// Prediction of one row.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, serde::Serialize, utoipa::ToSchema)]
 pub struct MixedPrediction {
     /// Fixed effects alone.
     pub population: f64,
-    /// Fixed effects and the effects of the row's groups.
-    pub value: f64,
-    /// Standard error of `value` as the mean of repeated measurements in these groups,
-    /// with the uncertainty of coefficients and of effects.
+    /// Fixed effects and the effects of the row's groups; `population` for an unknown group.
+    pub predicted: f64,
+    /// Standard error of `predicted` as a mean, from coefficients and effects.
     pub se: f64,
     /// Degrees of freedom of `se`.
+    #[serde(skip)]
     pub df: f64,
     /// Lower end of the interval of that mean.
+    pub mean_low: f64,
+    /// Upper end.
+    pub mean_high: f64,
+    /// Lower end of the interval of one new measurement.
     pub low: f64,
     /// Upper end.
     pub high: f64,
-    /// Lower end of the interval of one new measurement.
-    pub single_low: f64,
-    /// Upper end.
-    pub single_high: f64,
 }
 
 /// Predicts at new rows, with intervals of this confidence.
@@ -110,13 +109,13 @@ pub fn predict_mixed(
         let (_, _, single) = half(variances[row] + 1.0);
         MixedPrediction {
             population,
-            value,
+            predicted: value,
             se,
             df,
-            low: value - mean,
-            high: value + mean,
-            single_low: value - single,
-            single_high: value + single,
+            mean_low: value - mean,
+            mean_high: value + mean,
+            low: value - single,
+            high: value + single,
         }
     });
     Ok(predictions.collect())

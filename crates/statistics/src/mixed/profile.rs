@@ -8,8 +8,7 @@ use crate::mixed::fit::{MixedFit, MixedMethod, MixedOptions, fit_mixed_model};
 use rayon::prelude::*;
 use windfall_numerics::root::bracketed_root;
 
-/// Width of the bracket around the end of an interval, as a share of its distance
-/// from zero or from the estimate.
+/// Relative width of the bracket around the end of an interval.
 const END_TOLERANCE: f64 = 1e-7;
 
 /// Doublings of the distance from the estimate before an upper end is given up.
@@ -98,8 +97,7 @@ fn parameters_of(fit: &MixedFit) -> Vec<VarianceParameter> {
                 parameters.extend((first + 1..given.columns.len()).map(|second| {
                     VarianceParameter::Correlation {
                         term,
-                        first,
-                        second,
+                        columns: [first, second],
                     }
                 }));
             }

@@ -12,7 +12,7 @@
 //! They follow from ∂V = Z (∂Λ Λ' + Λ ∂Λ') Z' and, for the squares, from their
 //! being a minimum.
 
-use crate::mixed::basis::dot;
+use crate::mixed::basis::{add_scaled, dot};
 use crate::mixed::evaluate::{LeafScratch, State, between_blocks, eliminate, solve_upper};
 use crate::mixed::model::MixedModel;
 use nalgebra::DMatrix;
@@ -28,8 +28,7 @@ pub(crate) struct Slopes {
     pub squares: Vec<DMatrix<f64>>,
 }
 
-/// Z'V⁻¹[X, residual] of each factor: per group the factor's columns, each a row of
-/// p + 1 numbers. X are the orthonormal columns.
+/// Z'V⁻¹[X, residual] of each factor: rows of p + 1 numbers per group and column.
 pub(crate) type Projections = Vec<Vec<f64>>;
 
 /// Derivatives, and the projections they came from.
@@ -105,9 +104,7 @@ fn leaf_projection(
                 let s = scratch.square[k * q + a];
                 let from = &scratch.cross[k * wide..(k + 1) * wide];
                 let to = &mut left[a * wide..(a + 1) * wide];
-                to.iter_mut()
-                    .zip(from)
-                    .for_each(|(sum, value)| *sum -= s * value);
+                add_scaled(to, -s, from);
             }
         }
         for a in 0..q {
@@ -116,9 +113,7 @@ fn leaf_projection(
             for (place, column) in met.iter().enumerate() {
                 let e = left[a * wide + place];
                 let solved = &state.trunk_solved[column * m..(column + 1) * m];
-                row.iter_mut()
-                    .zip(solved)
-                    .for_each(|(sum, value)| *sum -= e * value);
+                add_scaled(row, -e, solved);
             }
         }
 
@@ -227,9 +222,7 @@ fn outer_products(
                     let other = &group[b * m..b * m + p];
                     let sums = &mut cross[(a * q + b) * p * p..(a * q + b + 1) * p * p];
                     for (sums, value) in sums.chunks_exact_mut(p).zip(row) {
-                        sums.iter_mut()
-                            .zip(other)
-                            .for_each(|(sum, b)| *sum += value * b);
+                        add_scaled(sums, *value, other);
                     }
                 }
             }

@@ -1,13 +1,7 @@
-//! Shares of variance, and the comparison of two models.
+//! Shares of variance.
 
-use crate::distribution::tail::chi_squared_upper;
-use crate::mixed::error::MixedError;
-use crate::mixed::finding::MixedFinding;
-use crate::mixed::fit::{MixedFit, MixedMethod};
+use crate::mixed::fit::MixedFit;
 use nalgebra::DVector;
-
-/// Responses of two fits that differ by more than this share are not the same.
-const SAME_RESPONSE: f64 = 1e-9;
 
 /// Where the variance of the response comes from.
 #[derive(Clone, Debug, PartialEq)]
@@ -66,65 +60,4 @@ pub fn variance_shares(fit: &MixedFit) -> VarianceShares {
         random,
         residual,
     }
-}
-
-/// Likelihood ratio test of two nested models.
-#[derive(Clone, Debug, PartialEq)]
-pub struct LikelihoodRatio {
-    /// Twice the difference of log likelihoods.
-    pub chi_square: f64,
-    /// Difference in parameters.
-    pub df: usize,
-    /// p-value of chi-square.
-    pub p: f64,
-    /// What the reader should know.
-    pub findings: Vec<MixedFinding>,
-}
-
-/// Tests `small` against `large`, of which it must be a special case; that is the
-/// caller's to know.
-///
-/// # Errors
-/// [`MixedError::NotComparable`] unless both are fits by maximum likelihood (or by
-/// restricted likelihood with the same fixed effects) of the same response and
-/// `large` has more parameters.
-pub fn likelihood_ratio(small: &MixedFit, large: &MixedFit) -> Result<LikelihoodRatio, MixedError> {
-    let refuse = |reason: &'static str| Err(MixedError::NotComparable { reason });
-    if small.method != large.method {
-        return refuse("one is fitted by REML and the other by maximum likelihood");
-    }
-    let same_fixed = small.model.x == large.model.x;
-    if small.method == MixedMethod::Reml && !same_fixed {
-        return refuse(
-            "their fixed effects differ, and restricted likelihoods then do not compare; fit both by maximum likelihood",
-        );
-    }
-    let size = small
-        .model
-        .y
-        .iter()
-        .fold(0.0_f64, |size, y| size.max(y.abs()));
-    let mut pairs = small.model.y.iter().zip(&large.model.y);
-    if small.model.rows() != large.model.rows()
-        || pairs.any(|(a, b)| (a - b).abs() > SAME_RESPONSE * size)
-    {
-        return refuse("their responses differ");
-    }
-    if large.parameters <= small.parameters {
-        return refuse("the second has no more parameters than the first");
-    }
-    let df = large.parameters - small.parameters;
-    let chi_square = (small.criterion - large.criterion).max(0.0);
-    let p = chi_squared_upper(chi_square, df as f64);
-    let findings = if small.theta.len() == large.theta.len() {
-        Vec::new()
-    } else {
-        vec![MixedFinding::VarianceOnEdge]
-    };
-    Ok(LikelihoodRatio {
-        chi_square,
-        df,
-        p,
-        findings,
-    })
 }

@@ -21,8 +21,7 @@ pub struct RandomTerm {
     pub groups: usize,
     /// Names of the groups.
     pub group_names: Vec<String>,
-    /// Whether the effects of one group are correlated: `(1 + V | fruit)`; without,
-    /// `(1 + V || fruit)`.
+    /// Whether the effects of a group are correlated: `(1 + V | fruit)`, not `||`.
     pub correlated: bool,
 }
 

@@ -3,8 +3,7 @@
 use crate::mixed::model::MixedModel;
 use nalgebra::DMatrix;
 
-/// One free entry: of a lower triangle for a correlated term, of the diagonal
-/// otherwise.
+/// One free entry of a lower triangle or, uncorrelated, of the diagonal.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct Entry {
     /// The factor.
@@ -100,8 +99,7 @@ pub(crate) fn relative_covariance(
     &root * root.transpose()
 }
 
-/// Lower triangle of a positive semidefinite matrix, with zero columns where it
-/// is singular.
+/// Lower triangle of a positive semidefinite matrix; zero columns where singular.
 pub(crate) fn semidefinite_root(matrix: &DMatrix<f64>) -> DMatrix<f64> {
     /// A pivot below this share of its diagonal is rounding.
     const ZERO: f64 = 1e-14;

@@ -1,9 +1,10 @@
 //! Analysis of variance of linear models.
 
-use crate::model::linear_model::fisher_upper;
+use crate::distribution::tail::f_upper;
 use crate::model::model_frame::ModelFrame;
 use crate::model::reduced::Reduced;
 use nalgebra::DMatrix;
+use serde::Serialize;
 
 /// Which models a term is tested between.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -12,20 +13,33 @@ pub enum AnovaType {
     Sequential,
     /// Each term after all that do not contain it.
     Hierarchical,
-    /// Each term after all others, as the columns are coded: sum contrasts for
-    /// categories and centred numbers make it mean something.
+    /// Each term after all others; needs sum contrasts and centred numbers.
     Partial,
 }
 
+impl AnovaType {
+    /// "I", "II" or "III".
+    #[must_use]
+    pub fn roman(self) -> &'static str {
+        match self {
+            Self::Sequential => "I",
+            Self::Hierarchical => "II",
+            Self::Partial => "III",
+        }
+    }
+}
+
 /// A row of an analysis of variance.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize, utoipa::ToSchema)]
+#[schema(as = AnovaOutcome)]
 pub struct AnovaRow {
     /// The term.
     pub term: String,
-    /// Its sum of squares.
+    /// Its sum of squares; NaN in a mixed model.
+    #[schema(value_type = Option<f64>)]
     pub ss: f64,
-    /// Its degrees of freedom; zero for a term that is aliased.
-    pub df: usize,
+    /// Its degrees of freedom; zero for an aliased term.
+    pub df: f64,
     /// Its mean square over that of the residuals.
     pub f: f64,
     /// Probability of F or more without the term.
@@ -110,27 +124,33 @@ fn row(term: &str, ss: f64, df: usize, (residual_ss, residual_df): (f64, usize))
     AnovaRow {
         term: term.to_owned(),
         ss,
-        df,
+        df: df as f64,
         f,
-        p: fisher_upper(f, df as f64, residual_df as f64),
+        p: f_upper(f, df as f64, residual_df as f64),
     }
 }
 
-/// How far the residuals exceed what repeated rows scatter.
-#[derive(Clone, Debug, PartialEq)]
+/// A sum of squares with its degrees of freedom.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, utoipa::ToSchema)]
+pub struct SumOfSquares {
+    /// Sum of squares.
+    pub ss: f64,
+    /// Degrees of freedom.
+    pub df: f64,
+}
+
+/// Lack of fit against pure error.
+#[derive(Clone, Debug, PartialEq, Serialize, utoipa::ToSchema)]
+#[schema(as = LackOfFitOutcome)]
 pub struct LackOfFit {
     /// What the model misses.
     pub lack: AnovaRow,
-    /// Scatter of rows with equal settings: sum of squares.
-    pub pure_ss: f64,
-    /// Its degrees of freedom.
-    pub pure_df: usize,
+    /// Scatter of rows with equal settings.
+    pub pure_error: SumOfSquares,
 }
 
-/// Splits the residuals into lack of fit and pure error; `None` without repeated
-/// rows or without anything left over.
-///
-/// * `settings`: columns that tell equal settings
+/// Splits the residuals into lack of fit and pure error of rows with equal `settings`;
+/// `None` without repeated rows or without degrees of freedom.
 #[must_use]
 pub fn lack_of_fit(
     settings: &DMatrix<f64>,
@@ -163,7 +183,9 @@ pub fn lack_of_fit(
     let ss = (residual_ss - pure_ss).max(0.0);
     Some(LackOfFit {
         lack: row("lack of fit", ss, residual_df - pure_df, (pure_ss, pure_df)),
-        pure_ss,
-        pure_df,
+        pure_error: SumOfSquares {
+            ss: pure_ss,
+            df: pure_df as f64,
+        },
     })
 }

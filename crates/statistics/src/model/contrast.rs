@@ -37,9 +37,7 @@ impl Contrast {
         ("full", Self::Full),
     ];
 
-    /// Its matrix for some levels.
-    ///
-    /// * `reference`: level that others are compared with, for treatment contrasts
+    /// Its matrix; `reference` is the level that treatment contrasts compare with.
     #[must_use]
     pub fn matrix(self, levels: &[String], reference: usize) -> ContrastMatrix {
         let count = levels.len();
@@ -97,8 +95,7 @@ impl Contrast {
     }
 }
 
-/// Polynomials that are orthonormal over given points, by their three-term
-/// recurrence (Forsythe, G. E. (1957), J. SIAM 5, 74-88).
+/// Orthonormal polynomials over given points (Forsythe (1957), J. SIAM 5, 74-88).
 #[derive(Clone, Debug, PartialEq)]
 pub struct PolynomialBasis {
     /// Centre of each degree's recurrence.

@@ -35,8 +35,7 @@ pub fn function_of(name: &str) -> Option<fn(f64) -> f64> {
     known.map(|(_, function)| *function)
 }
 
-/// Values of an arithmetic expression, one for each row; NaN where a cell is
-/// missing.
+/// Values of an arithmetic expression per row; NaN where a cell is missing.
 ///
 /// # Errors
 /// Unknown columns or functions; columns of categories; a value that is infinite
@@ -126,8 +125,7 @@ fn evaluate(node: &Node, table: &Table) -> Result<Vec<f64>, Error> {
     }
 }
 
-/// Whole powers rounded once: high powers of a column are nearly dependent on
-/// the lower ones, and every digit counts.
+/// Whole powers rounded once, since high powers are nearly dependent on lower ones.
 fn power(base: f64, exponent: f64) -> f64 {
     match exponent.fract() == 0.0 && (0.0..=64.0).contains(&exponent) && base.is_finite() {
         true => DoubleDouble::from(base).powi(exponent as u32).value(),

@@ -66,6 +66,22 @@ pub enum Operator {
     Power,
 }
 
+impl Operator {
+    /// How it is written, and how strongly it binds.
+    fn sign(self) -> (&'static str, usize) {
+        match self {
+            Self::Modelled => (" ~ ", 0),
+            Self::Within => (" | ", 1),
+            Self::Plus => (" + ", 2),
+            Self::Minus => (" - ", 2),
+            Self::Star => (" * ", 3),
+            Self::Slash => (" / ", 3),
+            Self::Colon => (":", 4),
+            Self::Power => ("^", 6),
+        }
+    }
+}
+
 /// How strongly operators bind, loosest first.
 const LEVELS: [&[(char, Operator)]; 5] = [
     &[('~', Operator::Modelled)],
@@ -88,10 +104,7 @@ struct Parser<'a> {
     depth: usize,
 }
 
-/// Parses a formula.
-///
-/// # Errors
-/// [`Error::FormulaSyntax`] with the place.
+/// Parses a formula, or returns [`Error::FormulaSyntax`] with the place.
 pub fn parse(text: &str) -> Result<Node, Error> {
     let mut parser = Parser {
         text,
@@ -377,16 +390,7 @@ pub fn spelling(node: &Node) -> String {
             format!("{function}({})", inner.join(", "))
         }
         Kind::Binary(operator, left, right) => {
-            let (sign, level) = match operator {
-                Operator::Modelled => (" ~ ", 0),
-                Operator::Within => (" | ", 1),
-                Operator::Plus => (" + ", 2),
-                Operator::Minus => (" - ", 2),
-                Operator::Star => (" * ", 3),
-                Operator::Slash => (" / ", 3),
-                Operator::Colon => (":", 4),
-                Operator::Power => ("^", 6),
-            };
+            let (sign, level) = operator.sign();
             // The right side of - and / needs its parentheses kept.
             format!("{}{sign}{}", within(left, level), within(right, level + 1))
         }
@@ -402,14 +406,7 @@ fn plain(name: &str) -> bool {
 
 fn within(node: &Node, level: usize) -> String {
     let own = match &node.kind {
-        Kind::Binary(operator, ..) => match operator {
-            Operator::Modelled => 0,
-            Operator::Within => 1,
-            Operator::Plus | Operator::Minus => 2,
-            Operator::Star | Operator::Slash => 3,
-            Operator::Colon => 4,
-            Operator::Power => 6,
-        },
+        Kind::Binary(operator, ..) => operator.sign().1,
         Kind::Negative(_) => 3,
         _ => 9,
     };

@@ -2,10 +2,12 @@
 
 use crate::distribution::tail::{f_upper, t_two_sided, t_upper_quantile};
 use crate::error::Error;
+use crate::model::anova::{AnovaRow, SumOfSquares};
 use crate::model::model_frame::ModelFrame;
 use crate::model::reduced::{Aliased, Reduced, Solved, reduce};
 use nalgebra::DMatrix;
 use rayon::prelude::*;
+use serde::Serialize;
 use windfall_numerics::double_double::DoubleDouble;
 
 /// A fitted linear model.
@@ -42,9 +44,11 @@ pub struct LinearFit {
 }
 
 /// An estimate. What needs residual degrees of freedom is NaN where there are none.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize, utoipa::ToSchema)]
+#[schema(as = TermOutcome)]
 pub struct Coefficient {
     /// Its column.
+    #[serde(rename = "term")]
     pub name: String,
     /// Its value.
     pub estimate: f64,
@@ -58,6 +62,8 @@ pub struct Coefficient {
     pub low: f64,
     /// Upper end.
     pub high: f64,
+    /// Degrees of freedom of t.
+    pub df: f64,
 }
 
 /// Fits a linear model by least squares.
@@ -80,9 +86,6 @@ pub fn fit_linear(
 }
 
 /// As [`fit_linear`], with rows that are reduced already.
-///
-/// # Errors
-/// As [`fit_linear`].
 pub fn fit_reduced(
     frame: &ModelFrame,
     x: &DMatrix<f64>,
@@ -163,9 +166,10 @@ pub(crate) fn coefficient(
         estimate,
         se,
         t,
-        p: student_two_sided(t, df),
+        p: t_two_sided(t, df),
         low: estimate - quantile * se,
         high: estimate + quantile * se,
+        df,
     }
 }
 
@@ -250,36 +254,51 @@ fn leverages(x: &DMatrix<f64>, solved: &Solved, rows: std::ops::Range<usize>) ->
     found.iter().map(|h| h.min(1.0)).collect()
 }
 
-/// Two-sided probability of Student's t; NaN without degrees of freedom.
-#[must_use]
-pub fn student_two_sided(t: f64, df: f64) -> f64 {
-    t_two_sided(t, df)
-}
-
 /// Quantile of Student's t; NaN without degrees of freedom.
 #[must_use]
 pub fn student_quantile(probability: f64, df: f64) -> f64 {
     -t_upper_quantile(probability, df)
 }
 
-/// Probability of F or more; NaN without degrees of freedom.
-#[must_use]
-pub fn fisher_upper(f: f64, df: f64, residual_df: f64) -> f64 {
-    f_upper(f, df, residual_df)
+/// The whole model against none.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, utoipa::ToSchema)]
+pub struct WholeModel {
+    /// Sum of squares.
+    pub ss: f64,
+    /// Degrees of freedom, without the intercept.
+    pub df: f64,
+    /// Mean square over that of the residuals.
+    pub f: f64,
+    /// Probability of F or more without the model.
+    pub p: f64,
+}
+
+impl WholeModel {
+    /// As a row of an analysis of variance.
+    #[must_use]
+    pub fn row(&self) -> AnovaRow {
+        AnovaRow {
+            term: "model".to_owned(),
+            ss: self.ss,
+            df: self.df,
+            f: self.f,
+            p: self.p,
+        }
+    }
 }
 
 /// How well a model describes what it was fitted to, and what it was not.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, utoipa::ToSchema)]
+#[schema(as = QualityOutcome)]
 pub struct Quality {
     /// Part of the total sum of squares that is described.
     pub r2: f64,
     /// The same per degree of freedom.
     pub r2_adjusted: f64,
-    /// Sum of squares of predictions of each row by a fit without it; infinite
-    /// where a row decides a coefficient alone.
-    pub press: f64,
-    /// Part of the total that these predictions describe.
+    /// Part of the total that predictions of each row by a fit without it describe.
     pub r2_predicted: f64,
+    /// Sum of squares of these errors; infinite where a row decides a coefficient alone.
+    pub press: f64,
     /// Range of predictions over their mean standard error; more than 4 is wanted.
     pub adequate_precision: f64,
     /// Residual standard deviation.
@@ -325,12 +344,35 @@ impl LinearFit {
         }
     }
 
-    /// F of the whole model and its probability.
+    /// The model against none.
     #[must_use]
-    pub fn whole_test(&self) -> (f64, f64) {
-        let df = self.model_df() as f64;
-        let f = self.model_ss() / df / self.variance();
-        (f, fisher_upper(f, df, self.residual_df as f64))
+    pub fn whole(&self) -> WholeModel {
+        let (ss, df) = (self.model_ss(), self.model_df() as f64);
+        let f = ss / df / self.variance();
+        WholeModel {
+            ss,
+            df,
+            f,
+            p: f_upper(f, df, self.residual_df as f64),
+        }
+    }
+
+    /// The residuals.
+    #[must_use]
+    pub fn residual(&self) -> SumOfSquares {
+        SumOfSquares {
+            ss: self.residual_ss,
+            df: self.residual_df as f64,
+        }
+    }
+
+    /// The response.
+    #[must_use]
+    pub fn total(&self) -> SumOfSquares {
+        SumOfSquares {
+            ss: self.total_ss,
+            df: (self.residual_df + self.model_df()) as f64,
+        }
     }
 
     /// Predictions of the rows it was fitted to.
@@ -396,16 +438,21 @@ fn press(residuals: &[f64], leverages: &[f64]) -> f64 {
 }
 
 /// A prediction with its intervals.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, utoipa::ToSchema)]
 pub struct Prediction {
     /// The mean at this place.
+    #[serde(rename = "predicted")]
     pub mean: f64,
     /// Its standard error.
     pub se: f64,
     /// Interval of the mean.
-    pub mean_interval: (f64, f64),
+    pub mean_low: f64,
+    /// Its upper end.
+    pub mean_high: f64,
     /// Interval of one further observation.
-    pub interval: (f64, f64),
+    pub low: f64,
+    /// Its upper end.
+    pub high: f64,
 }
 
 /// Predictions at rows of a model matrix with the columns of the fitted one.
@@ -434,8 +481,10 @@ pub fn predict(fit: &LinearFit, x: &DMatrix<f64>) -> Vec<Prediction> {
         Prediction {
             mean,
             se,
-            mean_interval: (mean - near, mean + near),
-            interval: (mean - far, mean + far),
+            mean_low: mean - near,
+            mean_high: mean + near,
+            low: mean - far,
+            high: mean + far,
         }
     };
     (0..x.nrows()).map(row).collect()

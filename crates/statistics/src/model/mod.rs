@@ -2,6 +2,7 @@
 
 pub mod anova;
 pub mod contrast;
+pub mod encoding;
 pub mod expression;
 pub mod formula;
 pub mod formula_syntax;

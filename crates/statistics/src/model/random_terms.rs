@@ -19,10 +19,7 @@ pub struct FramedTerm {
     pub frame: ModelFrame,
 }
 
-/// Evaluates the random parts of a formula on rows without missing cells.
-///
-/// # Errors
-/// As [`model_rows`].
+/// Evaluates the random parts of a formula; errors as in [`model_rows`].
 pub fn random_terms(
     formula: &Formula,
     table: &Table,
@@ -98,10 +95,7 @@ fn labels(table: &Table, groups: &[String]) -> Result<Vec<String>, Error> {
     Ok((0..table.rows()).map(label).collect())
 }
 
-/// Random terms at new rows; a group that was not measured is none of the known.
-///
-/// # Errors
-/// As [`prediction_rows`].
+/// Random terms at new rows; errors as in [`prediction_rows`].
 pub fn new_terms(terms: &[FramedTerm], table: &Table) -> Result<Vec<NewTerm>, Error> {
     let found = terms.iter().map(|framed| {
         let x = prediction_rows(&framed.frame, table)?;

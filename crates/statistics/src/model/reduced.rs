@@ -1,11 +1,9 @@
 //! Rows of a least-squares problem → its triangle.
 //!
-//! QR by Householder reflections. All that estimation and the comparison of models
-//! need of the rows is the triangle R and Q'y: every submodel is a submodel of
-//! these (Golub & Van Loan, Matrix Computations, 4th ed., §5.2-5.3). Problems of
-//! ordinary size are reduced in twice the precision of doubles, larger ones block
-//! by block on all cores; the blocks, and so the bits, do not depend on the number
-//! of threads.
+//! QR by Householder reflections: every submodel follows from the triangle R and Q'y
+//! (Golub & Van Loan, Matrix Computations, 4th ed., §5.2-5.3). Ordinary problems are
+//! reduced in twice the precision of doubles, larger ones in parallel blocks that do not
+//! depend on the number of threads.
 
 use nalgebra::DMatrix;
 use rayon::prelude::*;
@@ -17,8 +15,7 @@ const ORDINARY: usize = 2_000_000;
 /// Rows reduced at once, beyond that.
 const BLOCK: usize = 512;
 
-/// A column of which less is left than this part of its length, once those before
-/// it are taken off, depends on them.
+/// Least part of a column's length that those before it must leave.
 const DEPENDENT: f64 = 1e-12;
 
 /// The triangle of a least-squares problem.
@@ -49,8 +46,7 @@ pub struct Solved {
     pub sequential: Vec<f64>,
     /// Residual sum of squares.
     pub residual: DoubleDouble,
-    /// Largest over smallest extent of the columns at length one, a bound from
-    /// below of the condition of the problem.
+    /// Largest over smallest extent of the scaled columns, a lower bound of the condition.
     pub condition: f64,
 }
 
@@ -221,8 +217,7 @@ impl Reduced {
         self.triangle.len()
     }
 
-    /// Solves for some of the columns. One that depends on those before it is
-    /// left out and named.
+    /// Solves for some of the columns; one that depends on others is reported as aliased.
     #[must_use]
     pub fn solve(&self, wanted: &[usize]) -> Solved {
         let mut work: Vec<Vec<DoubleDouble>> = Vec::with_capacity(wanted.len() + 1);

@@ -1,10 +1,10 @@
 //! Selection of the terms of a linear model, with its trail.
 //!
-//! The p-values of what remains are optimistic: they take no account of the
-//! choice (Harrell, Regression Modeling Strategies, 2nd ed., §4.3). Cross-validation
-//! with the selection inside tells what it costs.
+//! The p-values of what remains are optimistic (Harrell, Regression Modeling Strategies,
+//! 2nd ed., §4.3); cross-validation with the selection inside shows what it costs.
 
-use crate::model::linear_model::{fisher_upper, log_likelihood, small_sample};
+use crate::distribution::tail::f_upper;
+use crate::model::linear_model::{log_likelihood, small_sample};
 use crate::model::model_frame::ModelFrame;
 use crate::model::reduced::Reduced;
 use crate::model::term_order::{divides, powers_of_terms};
@@ -23,8 +23,7 @@ pub enum Direction {
 /// What decides.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Criterion {
-    /// A term enters below one probability of its F test and leaves at or above
-    /// another.
+    /// Terms enter and leave by the probability of their F test.
     Probability {
         /// Below this it enters.
         enter: f64,
@@ -44,8 +43,7 @@ pub struct SelectionOptions {
     pub direction: Direction,
     /// What decides.
     pub criterion: Criterion,
-    /// Whether a term stays while one that it divides is in the model, and enters
-    /// only after its divisors; SPSS does not ask for this.
+    /// Whether terms stay and enter only with their divisors (not so in SPSS).
     pub hierarchy: bool,
 }
 
@@ -206,7 +204,7 @@ impl Search<'_> {
         let p = if df == 0.0 {
             1.0
         } else {
-            fisher_upper(f, df, residual_df)
+            f_upper(f, df, residual_df)
         };
         Change { term, f, p, after }
     }

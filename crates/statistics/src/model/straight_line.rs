@@ -63,7 +63,7 @@ mod tests {
         let found = line_at(&line, &[3.0, 5.0]);
         for (found, leverage) in found.iter().zip([0.2, 0.6]) {
             let half = 3.182_446_305_284 * (variance * leverage).sqrt();
-            let (low, high) = found.mean_interval;
+            let (low, high) = (found.mean_low, found.mean_high);
             assert!((0.5 * (high - low) - half).abs() < 1e-9, "{low} {high}");
         }
     }

@@ -1,7 +1,8 @@
 //! Which terms contain which.
 
+use crate::model::encoding::Encoding;
 use crate::model::formula_syntax::{Kind, Node, Operator};
-use crate::model::model_frame::{Encoding, ModelFrame};
+use crate::model::model_frame::ModelFrame;
 
 /// Powers of what a term is a product of: `V^2:R` is V twice and R once.
 pub type Powers = Vec<(String, f64)>;
@@ -45,8 +46,7 @@ fn power_of(node: &Node, name: &str) -> (String, f64) {
     }
 }
 
-/// Whether a term divides another one: then a hierarchical model with the other
-/// keeps it.
+/// Whether a term divides another, so that a hierarchical model with that keeps it.
 #[must_use]
 pub fn divides(inner: &Powers, outer: &Powers) -> bool {
     inner.iter().all(|(name, power)| {

@@ -1,5 +1,4 @@
-//! Which power of the response makes the residuals of a linear model normal and
-//! of equal variance.
+//! The power of the response that makes residuals normal and of equal variance.
 
 use crate::distribution::tail::chi_squared_upper_quantile;
 use crate::orthonormal::{dot, orthonormal_basis, take_out};
@@ -32,18 +31,20 @@ impl Default for BoxCoxOptions {
 }
 
 /// The profile of the power λ.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, serde::Serialize, utoipa::ToSchema)]
+#[schema(as = BoxCoxOutcome)]
 pub struct BoxCox {
     /// The most likely power: 1 no transform, 0.5 root, 0 logarithm, -1 inverse.
     pub lambda: f64,
-    /// Lower end of its interval; `None` where the interval goes on below the
-    /// lowest power looked at.
+    /// Lower end of its interval; `None` if below the lowest power searched.
     pub low: Option<f64>,
     /// Upper end; `None` where it goes on above the highest.
     pub high: Option<f64>,
     /// Log-likelihood at the most likely power, up to a constant.
+    #[serde(skip)]
     pub log_likelihood: f64,
     /// Log-likelihood at equal steps of the power.
+    #[serde(skip)]
     pub profile: Vec<(f64, f64)>,
 }
 
@@ -63,34 +64,20 @@ pub fn box_cox(
     options: &BoxCoxOptions,
 ) -> Result<BoxCox, SampleError> {
     if design.nrows() != response.len() {
-        return Err(SampleError::LengthsDiffer {
-            what: "responses and rows of the design".to_owned(),
-            first: response.len(),
-            second: design.nrows(),
-        });
+        return Err(SampleError::lengths(
+            "responses and rows of the design",
+            response.len(),
+            design.nrows(),
+        ));
     }
     let basis = orthonormal_basis(design);
-    check_sample("the response", response, basis.len() + 1)?;
-    box_cox_profile(response, options, |transformed| {
+    check_sample("the response", response, (basis.len() + 1).max(2))?;
+    let residual_squares = |transformed: &[f64]| {
         let mut rest = transformed.to_vec();
         take_out(&basis, &mut rest);
         dot(&rest, &rest)
-    })
-}
-
-/// Box and Cox's profile of any model.
-///
-/// * `residual_squares`: the sum of squared residuals of a transformed response
-///
-/// # Errors
-/// A response that is not positive, missing values, residuals of zero.
-pub fn box_cox_profile(
-    response: &[f64],
-    options: &BoxCoxOptions,
-    residual_squares: impl Fn(&[f64]) -> f64,
-) -> Result<BoxCox, SampleError> {
+    };
     check_probability("the confidence", options.confidence)?;
-    check_sample("the response", response, 2)?;
     if let Some(place) = response.iter().position(|y| *y <= 0.0) {
         return Err(SampleError::NotPositive {
             what: "a response with powers of it".to_owned(),

@@ -3,36 +3,45 @@
 use crate::model::linear_model::{Coefficient, LinearFit, coefficient, student_quantile};
 use crate::model::model_frame::ModelFrame;
 use nalgebra::DMatrix;
+use serde::Serialize;
 
 /// What a row does to a fit.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, utoipa::ToSchema)]
 pub struct RowInfluence {
-    /// Observed less predicted.
+    /// What was observed.
+    pub observed: f64,
+    /// What the model predicts.
+    pub fitted: f64,
+    /// Observed less fitted.
     pub residual: f64,
     /// Diagonal of the hat matrix: 1 where the row alone decides.
     pub leverage: f64,
     /// Residual over its standard error.
     pub standardised: f64,
     /// The same with the variance of the other rows: Student's t of the row.
+    #[schema(value_type = Option<f64>)]
     pub studentised: f64,
     /// Cook's distance (Cook 1977, Technometrics 19, 15-18).
+    #[schema(value_type = Option<f64>)]
     pub cook: f64,
     /// Change of the prediction in its standard errors when the row is left out.
     pub dffits: f64,
 }
 
-/// Influence of each row.
+/// Influence of each row; `y` is the response.
 #[must_use]
-pub fn influence(fit: &LinearFit) -> Vec<RowInfluence> {
+pub fn influence(fit: &LinearFit, y: &[f64]) -> Vec<RowInfluence> {
     let (variance, df) = (fit.variance(), fit.residual_df as f64);
     let count = fit.columns.len() as f64;
-    let rows = fit.residuals.iter().zip(&fit.leverages);
-    rows.map(|(residual, leverage)| {
+    let rows = fit.residuals.iter().zip(&fit.leverages).zip(y);
+    rows.map(|((residual, leverage), observed)| {
         let left = 1.0 - leverage;
         let standardised = residual / (variance * left).sqrt();
         let without = (variance * df - residual * residual / left) / (df - 1.0);
         let studentised = residual / (without * left).sqrt();
         RowInfluence {
+            observed: *observed,
+            fitted: observed - residual,
             residual: *residual,
             leverage: *leverage,
             standardised,
@@ -45,20 +54,19 @@ pub fn influence(fit: &LinearFit) -> Vec<RowInfluence> {
 }
 
 /// Variance inflation of a term.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize, utoipa::ToSchema)]
+#[schema(as = InflationOutcome)]
 pub struct Inflation {
     /// The term.
     pub term: String,
     /// Columns of it.
     pub df: usize,
-    /// Factor by which correlation with the other terms inflates the variance of
-    /// its estimates: for one column 1/(1 - R²), for several the generalised one
-    /// (Fox & Monette 1992, J. Am. Stat. Assoc. 87, 178-183).
+    /// 1/(1 - R²) for one column, for several the generalised factor (Fox & Monette 1992,
+    /// J. Am. Stat. Assoc. 87, 178-183).
     pub factor: f64,
 }
 
-/// Variance inflation of the terms of a model with an intercept; empty without it
-/// or with a single term.
+/// Variance inflation; empty without intercept or with a single term.
 #[must_use]
 pub fn inflation(frame: &ModelFrame, fit: &LinearFit) -> Vec<Inflation> {
     let places = |columns: &std::ops::Range<usize>| -> Vec<usize> {
@@ -117,12 +125,7 @@ pub fn robust_coefficients(fit: &LinearFit, x: &DMatrix<f64>) -> Vec<Coefficient
         .collect()
 }
 
-/// Covariance of the estimates that holds for unequal variances (HC3); rows.
-///
-/// * `x`: model matrix of the fit
-///
-/// # Source
-/// As [`robust_coefficients`].
+/// Rows of the HC3 covariance of the estimates; `x` is the model matrix.
 #[must_use]
 pub fn robust_covariance_rows(fit: &LinearFit, x: &DMatrix<f64>) -> Vec<Vec<f64>> {
     let matrix = robust_covariance(fit, x);

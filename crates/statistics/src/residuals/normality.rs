@@ -1,7 +1,7 @@
 //! Whether values, or residuals, look normal.
 
 use crate::accurate_sum::{mean, squares_about, standard_deviation};
-use crate::distribution::tail::{chi_squared_upper, normal_lower, normal_quantile, normal_upper};
+use crate::distribution::tail::{normal_lower, normal_quantile, normal_upper};
 use crate::sample::check_sample;
 use crate::sample_error::SampleError;
 
@@ -161,38 +161,6 @@ fn stephens_p(a: f64) -> f64 {
     }
 }
 
-/// The Jarque-Bera test of skewness and kurtosis, for large samples: its
-/// distribution is χ² only from some hundred values on.
-///
-/// # Errors
-/// Fewer than 4 values, missing values, or no spread.
-///
-/// # Source
-/// Jarque and Bera (1987), A test for normality of observations and regression
-/// residuals, Int. Stat. Rev. 55.
-pub fn jarque_bera(values: &[f64]) -> Result<NormalityTest, SampleError> {
-    check_sample("the sample", values, 4)?;
-    let centre = mean(values).value();
-    let n = values.len() as f64;
-    let moment = |power: i32| {
-        let powers = values.iter().map(|y| (y - centre).powi(power));
-        powers.sum::<f64>() / n
-    };
-    let variance = moment(2);
-    if variance <= 0.0 {
-        return Err(no_spread());
-    }
-    let skewness = moment(3) / variance.powf(1.5);
-    let excess = moment(4) / (variance * variance) - 3.0;
-    let statistic = n / 6.0 * (skewness * skewness + 0.25 * excess * excess);
-    Ok(NormalityTest {
-        statistic,
-        p: chi_squared_upper(statistic, 2.0),
-    })
-}
-
 fn no_spread() -> SampleError {
-    SampleError::NoSpread {
-        what: "the sample".to_owned(),
-    }
+    SampleError::NoSpread("the sample".to_owned())
 }

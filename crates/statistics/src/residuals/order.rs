@@ -1,7 +1,6 @@
-//! Whether residuals follow each other: in the order of the runs, or along a
-//! regressor when they are sorted by it.
+//! Whether successive residuals are correlated.
 
-use crate::distribution::tail::{beta_lower, normal_upper};
+use crate::distribution::tail::beta_lower;
 use crate::orthonormal::{dot, orthonormal_basis, take_out};
 use crate::sample::check_sample;
 use crate::sample_error::SampleError;
@@ -11,11 +10,9 @@ use std::f64::consts::PI;
 /// The Durbin-Watson statistic.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct DurbinWatson {
-    /// Σ (eᵢ - eᵢ₋₁)² / Σ eᵢ²: 2 where neighbours are independent, below where
-    /// they are alike, above where they alternate.
+    /// Σ (eᵢ - eᵢ₋₁)² / Σ eᵢ²: 2 if independent, less if neighbours are alike.
     pub statistic: f64,
-    /// Probability of a smaller statistic of independent residuals: small where
-    /// neighbours are alike.
+    /// Probability of a smaller statistic of independent residuals.
     pub p_alike: f64,
     /// Probability of a larger one: small where they alternate.
     pub p_alternating: f64,
@@ -23,8 +20,7 @@ pub struct DurbinWatson {
     pub p: f64,
 }
 
-/// Most residuals for which the p-value of Durbin and Watson is exact: it needs
-/// the eigenvalues of a matrix of that size.
+/// Most residuals with an exact p-value, which needs as many eigenvalues.
 pub const EXACT_UP_TO: usize = 200;
 
 /// The Durbin-Watson statistic of residuals of a linear model.
@@ -50,26 +46,24 @@ pub fn durbin_watson(
 ) -> Result<DurbinWatson, SampleError> {
     check_sample("the residuals", residuals, 3)?;
     if design.nrows() != residuals.len() {
-        return Err(SampleError::LengthsDiffer {
-            what: "residuals and rows of the design".to_owned(),
-            first: residuals.len(),
-            second: design.nrows(),
-        });
+        return Err(SampleError::lengths(
+            "residuals and rows of the design",
+            residuals.len(),
+            design.nrows(),
+        ));
     }
     let basis = orthonormal_basis(design);
     let df = residuals.len() as f64 - basis.len() as f64;
     if df < 3.0 {
-        return Err(SampleError::TooFewValues {
-            what: "the residuals".to_owned(),
-            found: residuals.len(),
-            needed: basis.len() + 3,
-        });
+        return Err(SampleError::too_few(
+            "the residuals",
+            residuals.len(),
+            basis.len() + 3,
+        ));
     }
     let squares = dot(residuals, residuals);
     if squares <= 0.0 {
-        return Err(SampleError::NoSpread {
-            what: "the residuals".to_owned(),
-        });
+        return Err(SampleError::NoSpread("the residuals".to_owned()));
     }
     let steps = residuals.windows(2).map(|pair| pair[1] - pair[0]);
     let statistic = steps.map(|step| step * step).sum::<f64>() / squares;
@@ -88,8 +82,7 @@ pub fn durbin_watson(
     })
 }
 
-/// P(D < d) = P(Σ (λᵢ - d) zᵢ² < 0), with the eigenvalues λ of MAM that belong
-/// to residuals, by Imhof's integral over the logarithm of its variable.
+/// P(D < d) = P(Σ (λᵢ - d) zᵢ² < 0) with eigenvalues λ of MAM, by Imhof's integral.
 fn smaller_exact(d: f64, basis: &[Vec<f64>], n: usize) -> f64 {
     let differences = |mut v: Vec<f64>| {
         take_out(basis, &mut v);
@@ -130,8 +123,7 @@ fn smaller_beta(d: f64, (mean, variance): (f64, f64)) -> (f64, f64) {
     (beta_lower(x, a, b), beta_lower(1.0 - x, b, a))
 }
 
-/// Mean and variance of the statistic: traces of (MA) and (MA)², where A takes
-/// second differences and M leaves the residuals.
+/// Mean and variance of the statistic: traces of (MA) and (MA)².
 fn moments(basis: &[Vec<f64>], n: f64, df: f64) -> (f64, f64) {
     let differences: Vec<Vec<f64>> = basis.iter().map(|v| second_differences(v)).collect();
     let mut once = 2.0 * (n - 1.0);
@@ -157,62 +149,6 @@ fn second_differences(v: &[f64]) -> Vec<f64> {
             before + after
         })
         .collect()
-}
-
-/// Runs of one sign.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct RunsTest {
-    /// Number of runs.
-    pub runs: usize,
-    /// Number expected of independent signs.
-    pub expected: f64,
-    /// (runs - expected) / deviation: below zero where neighbours are alike.
-    pub z: f64,
-    /// P(|Z| ≥ |z|).
-    pub p: f64,
-}
-
-/// Wald and Wolfowitz's test of runs of residuals above and below zero; zeros
-/// are left out.
-///
-/// # Errors
-/// Missing values, or fewer than two residuals on either side.
-///
-/// # Numerics
-/// Normal approximation without continuity correction; good from about ten on
-/// each side.
-///
-/// # Source
-/// Wald and Wolfowitz (1940), On a test whether two samples are from the same
-/// population, Ann. Math. Stat. 11.
-pub fn runs_test(residuals: &[f64]) -> Result<RunsTest, SampleError> {
-    check_sample("the residuals", residuals, 4)?;
-    let signs: Vec<bool> = residuals
-        .iter()
-        .filter(|e| **e != 0.0)
-        .map(|e| *e > 0.0)
-        .collect();
-    let above = signs.iter().filter(|sign| **sign).count();
-    let below = signs.len() - above;
-    if above.min(below) < 2 {
-        return Err(SampleError::TooFewValues {
-            what: "residuals on either side of zero".to_owned(),
-            found: above.min(below),
-            needed: 2,
-        });
-    }
-    let runs = 1 + signs.windows(2).filter(|pair| pair[0] != pair[1]).count();
-    let (a, b) = (above as f64, below as f64);
-    let n = a + b;
-    let expected = 1.0 + 2.0 * a * b / n;
-    let variance = 2.0 * a * b * (2.0 * a * b - n) / (n * n * (n - 1.0));
-    let z = (runs as f64 - expected) / variance.sqrt();
-    Ok(RunsTest {
-        runs,
-        expected,
-        z,
-        p: 2.0 * normal_upper(z.abs()),
-    })
 }
 
 #[cfg(test)]

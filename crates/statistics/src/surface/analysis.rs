@@ -187,8 +187,7 @@ impl Surface {
     }
 }
 
-/// Splits the residuals of a surface into lack of fit and pure error of runs with
-/// equal settings; `None` where no run is repeated.
+/// Lack of fit and pure error; `None` where no run is repeated.
 #[must_use]
 pub fn surface_lack_of_fit(surface: &Surface, coded: &[Vec<f64>], y: &[f64]) -> Option<LackOfFit> {
     let settings = DMatrix::from_fn(y.len(), coded.len(), |row, factor| coded[factor][row]);
@@ -204,8 +203,7 @@ pub fn surface_lack_of_fit(surface: &Surface, coded: &[Vec<f64>], y: &[f64]) -> 
 /// Response Surfaces, Mixtures, and Ridge Analyses, 2nd ed., ch. 10).
 #[derive(Clone, Debug, PartialEq)]
 pub struct Canonical {
-    /// The stationary point in coded units; with least distance from the centre
-    /// where there is a line of them.
+    /// The stationary point in coded units, the one nearest to the centre of a line.
     pub stationary: Vec<f64>,
     /// Its distance from the centre in coded units.
     pub distance: f64,
@@ -235,8 +233,7 @@ pub enum Shape {
 /// Curvature below this part of the largest is none.
 const FLAT: f64 = 1e-3;
 
-/// Analyses a surface of second degree; `None` for one without curvature or of
-/// higher degree.
+/// Analyses a surface of second degree; `None` without curvature or of higher degree.
 #[must_use]
 pub fn canonical(surface: &Surface) -> Option<Canonical> {
     let (slopes, curvature) = quadratic_form(surface)?;

@@ -39,6 +39,24 @@ pub struct CodedFactors {
     pub recognised: Recognised,
 }
 
+impl CodedFactors {
+    /// Lowest and highest coded value of a factor.
+    #[must_use]
+    pub fn range(&self, factor: usize) -> (f64, f64) {
+        let values = self.values[factor].iter();
+        values.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), value| {
+            (low.min(*value), high.max(*value))
+        })
+    }
+
+    /// Actual settings of a coded point.
+    #[must_use]
+    pub fn actual(&self, coded: &[f64]) -> Vec<f64> {
+        let pairs = self.factors.iter().zip(coded);
+        pairs.map(|(factor, value)| factor.actual(*value)).collect()
+    }
+}
+
 /// What the levels of a table look like.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Recognised {
@@ -48,14 +66,12 @@ pub enum Recognised {
     CentralComposite {
         /// Distance of its axial points in coded units.
         alpha: f64,
-        /// Factors of which the printed levels are rounded, with the largest
-        /// difference from the exact ones in coded units.
+        /// Factors with rounded levels, and the largest difference in coded units.
         rounded: Vec<(String, f64)>,
     },
     /// The coding stands in the header of the design.
     Design {
-        /// Factors of which the settings are rounded, with the largest difference
-        /// from the exact levels in coded units.
+        /// Factors with rounded settings, and the largest difference in coded units.
         rounded: Vec<(String, f64)>,
         /// Factors with settings that are not the planned levels, and the lines.
         changed: Vec<(String, Vec<usize>)>,
@@ -73,10 +89,8 @@ fn levels(values: &[f64]) -> Vec<f64> {
     sorted
 }
 
-/// Codes a table of which nothing more is known. A central composite design is
-/// recognised by its points, also where its levels were rounded for print: then
-/// the exact levels are taken, since coefficients of terms in coded units suffer
-/// from the rounding.
+/// Codes a table without a header. A central composite design is recognised by its
+/// points, also with levels rounded for print, and gets its exact levels.
 ///
 /// * `columns`: name and values of each factor, which is not constant
 #[must_use]

@@ -51,8 +51,7 @@ pub fn desirability(goal: &Goal, value: f64) -> f64 {
     }
 }
 
-/// Desirability of all responses: their geometric mean weighted by importance;
-/// 0 if any is 0.
+/// Overall desirability: the geometric mean weighted by importance; 0 if any is 0.
 #[must_use]
 pub fn overall(goals: &[Goal], values: &[f64]) -> f64 {
     let (mut sum, mut weights) = (0.0, 0.0);
@@ -136,8 +135,7 @@ impl Search<'_> {
         }
     }
 
-    /// How far the responses are from where they are desirable at all, so that a
-    /// search can climb where the desirability is zero.
+    /// Distance of the responses from desirable values, to climb where the product is zero.
     fn shortfall(&self, optimum: &Optimum) -> f64 {
         let pairs = self.goals.iter().zip(&optimum.values);
         pairs
@@ -160,8 +158,7 @@ impl Search<'_> {
         }
     }
 
-    /// Tries steps along every factor and every pair of them, halving them when
-    /// none helps: slow but sure on a function with kinks.
+    /// Tries steps along factors and pairs of them, halving when none helps.
     fn climb(&self, start: Optimum, finest: f64) -> Optimum {
         let free = self.region.free();
         let mut best = start;
@@ -192,8 +189,7 @@ impl Search<'_> {
         best
     }
 
-    /// Goes on to where every target is met to the last digit, if that is within
-    /// reach: Gauss-Newton steps of least length.
+    /// Gauss-Newton steps of least length to where every target is met, if within reach.
     fn polish(&self, start: &Optimum) -> Optimum {
         let free = self.region.free();
         let targets: Vec<(usize, f64)> = self
@@ -246,8 +242,7 @@ impl Search<'_> {
         }
     }
 
-    /// Points spread over the region: van der Corput sequences in prime bases
-    /// (Halton 1960), and its centre.
+    /// Points spread over the region by van der Corput sequences (Halton 1960).
     fn starts(&self, count: usize) -> Vec<Vec<f64>> {
         const PRIMES: [u32; 12] = [2, 3, 5, 7, 11, 13, 17, 19, 23, 29, 31, 37];
         let corput = |mut index: usize, base: u32| {

@@ -169,8 +169,7 @@ fn unknown(name: &str, factors: &[String]) -> Error {
     }
 }
 
-/// All products up to a degree, no factor to more than a power; linear terms
-/// first, squares behind products.
+/// All products up to a degree and power; linear terms first, squares after products.
 #[must_use]
 pub fn all_monomials(factors: usize, degree: u32, power: u32) -> Vec<Monomial> {
     let mut found: Vec<Monomial> = vec![vec![0; factors]];

@@ -1,5 +1,4 @@
-//! `windfall compare --measured … --predicted …`: how far predictions lie from
-//! what was measured.
+//! `windfall compare --measured … --predicted …`: predicted against measured.
 
 use crate::compare::group_outcome::statistics_error;
 use crate::regress::findings::{finding, lines_text};
@@ -54,11 +53,10 @@ pub struct AgreementOutcome {
     pub findings: Vec<FindingOutcome>,
 }
 
-/// How far predictions lie from what was measured.
+/// Compares predictions with measured values.
 ///
 /// # Errors
-/// The table cannot be read, a column is not there or holds text, or no row has
-/// both values.
+/// The table cannot be read, a column is missing or holds text, or no row has both values.
 pub fn agreement(request: &AgreementRequest) -> Result<AgreementOutcome, Error> {
     let data = read_data(&request.table)?;
     let column = |name: &str| data.table.numbers(name).map_err(Error::Statistics);

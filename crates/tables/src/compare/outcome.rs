@@ -1,8 +1,9 @@
 //! What a comparison of groups finds.
 
-use crate::compare::group_outcome::GroupOutcome;
 use serde::Serialize;
 use windfall_files::found::FindingOutcome;
+use windfall_statistics::compare::group_summary::GroupSummary;
+use windfall_statistics::compare::one_way_anova::{FTest, OneWayAnova};
 
 /// Groups compared.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -18,17 +19,16 @@ pub struct CompareOutcome {
     /// The groups.
     pub groups: Vec<LetteredGroup>,
     /// Analysis of variance, for groups that are not paired.
-    pub anova: Option<AnovaTable>,
+    pub anova: Option<OneWayAnova>,
     /// Welch's analysis of variance.
-    pub welch: Option<RatioTest>,
+    pub welch: Option<FTest>,
     /// Levene's test of equal variances (about means).
-    pub levene: Option<RatioTest>,
+    pub levene: Option<FTest>,
     /// Brown and Forsythe's (about medians).
-    pub brown_forsythe: Option<RatioTest>,
+    pub brown_forsythe: Option<FTest>,
     /// Bartlett's.
     pub bartlett: Option<StatisticTest>,
-    /// Shapiro and Wilk's test of the values less their group's mean, or of the
-    /// differences of pairs.
+    /// Shapiro and Wilk's test of residuals, or of the differences of pairs.
     pub shapiro_wilk: Option<StatisticTest>,
     /// How pairs of groups are compared.
     pub method: &'static str,
@@ -43,45 +43,9 @@ pub struct CompareOutcome {
 pub struct LetteredGroup {
     /// What its values look like.
     #[serde(flatten)]
-    pub group: GroupOutcome,
+    pub group: GroupSummary,
     /// Groups that share a letter do not differ.
     pub letters: String,
-}
-
-/// A one-way analysis of variance.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
-pub struct AnovaTable {
-    /// Sum of squares between groups.
-    pub between_ss: f64,
-    /// Its degrees of freedom.
-    pub between_df: f64,
-    /// Sum of squares within groups.
-    pub within_ss: f64,
-    /// Its degrees of freedom.
-    pub within_df: f64,
-    /// Ratio of mean squares.
-    pub f: f64,
-    /// Its probability.
-    pub p: f64,
-    /// Share between groups, η².
-    pub eta_squared: f64,
-    /// The same without bias, ω².
-    pub omega_squared: f64,
-    /// Standard deviation within groups.
-    pub residual_sd: f64,
-}
-
-/// A ratio and its probability.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
-pub struct RatioTest {
-    /// F.
-    pub f: f64,
-    /// Degrees of freedom above.
-    pub df1: f64,
-    /// Degrees of freedom below.
-    pub df2: f64,
-    /// Its probability.
-    pub p: f64,
 }
 
 /// A statistic and its probability.

@@ -170,8 +170,7 @@ fn by_places(
     Ok(found)
 }
 
-/// Probabilities adjusted by Holm: never larger than Bonferroni's, which the
-/// intervals follow.
+/// Probabilities adjusted by Holm: never larger than Bonferroni's of the intervals.
 fn adjusted(mut pairs: Vec<PairOutcome>) -> Vec<PairOutcome> {
     let p: Vec<f64> = pairs.iter().map(|pair| pair.p).collect();
     debug_assert!(holm(&p).iter().zip(bonferroni(&p)).all(|(h, b)| *h <= b));

@@ -1,9 +1,7 @@
 //! `windfall compare`: groups of a table against each other.
 
-use crate::compare::group_outcome::{group_outcomes, missing_findings, statistics_error};
-use crate::compare::outcome::{
-    AnovaTable, CompareOutcome, LetteredGroup, PairOutcome, RatioTest, StatisticTest,
-};
+use crate::compare::group_outcome::{missing_findings, statistics_error, summaries};
+use crate::compare::outcome::{CompareOutcome, LetteredGroup, PairOutcome, StatisticTest};
 use crate::compare::pairs::{PairMethod, compare_paired, compare_pairs, shared};
 use crate::compare::summary::check_confidence;
 use crate::regress::findings::finding;
@@ -15,7 +13,7 @@ use windfall_files::table::data::{Data, read_data};
 use windfall_statistics::accurate_sum::mean;
 use windfall_statistics::compare::compact_letters::compact_letters;
 use windfall_statistics::compare::equal_variance::{bartlett, brown_forsythe, levene};
-use windfall_statistics::compare::group_summary::{Group, Groups, split_groups};
+use windfall_statistics::compare::group_summary::{Group, GroupSummary, Groups, split_groups};
 use windfall_statistics::compare::one_way_anova::{FTest, one_way_anova, welch_anova};
 use windfall_statistics::residuals::normality::shapiro_wilk;
 
@@ -30,8 +28,7 @@ pub struct CompareRequest {
     pub by: Vec<String>,
     /// Column of specimens that were measured in every group.
     pub paired: Option<String>,
-    /// Column of specimens measured several times within a group: their means
-    /// are compared.
+    /// Column of specimens measured several times within a group, which are averaged.
     pub specimen: Option<String>,
     /// How pairs of groups are compared.
     pub method: PairMethod,
@@ -106,7 +103,7 @@ fn unpaired_outcome(
     groups: &[Group],
     mut findings: Vec<FindingOutcome>,
 ) -> Result<CompareOutcome, Error> {
-    let described = group_outcomes(groups, request.confidence)?;
+    let described = summaries(groups, request.confidence)?;
     let names: Vec<String> = described.iter().map(|group| group.group.clone()).collect();
     let values: Vec<Vec<f64>> = groups.iter().map(|group| group.values.clone()).collect();
     let anova = one_way_anova(&values).map_err(statistics_error)?;
@@ -118,7 +115,7 @@ fn unpaired_outcome(
             group.iter().map(move |value| value - centre)
         })
         .collect();
-    let brown_forsythe = brown_forsythe(&values).ok().map(ratio);
+    let brown_forsythe = brown_forsythe(&values).ok();
     let shapiro_wilk = shapiro_of(&residuals);
     findings.extend(variance_finding(brown_forsythe, request));
     findings.extend(normality_finding(
@@ -133,19 +130,9 @@ fn unpaired_outcome(
         paired: None,
         confidence: request.confidence,
         groups: lettered(described, letters),
-        anova: Some(AnovaTable {
-            between_ss: anova.between,
-            between_df: anova.between_df,
-            within_ss: anova.within,
-            within_df: anova.within_df,
-            f: anova.f,
-            p: anova.p,
-            eta_squared: anova.eta_squared,
-            omega_squared: anova.omega_squared,
-            residual_sd: anova.residual_deviation,
-        }),
-        welch: welch_anova(&values).ok().map(ratio),
-        levene: levene(&values).ok().map(ratio),
+        anova: Some(anova),
+        welch: welch_anova(&values).ok(),
+        levene: levene(&values).ok(),
         brown_forsythe,
         bartlett: bartlett(&values).ok().map(|test| StatisticTest {
             statistic: test.statistic,
@@ -167,7 +154,7 @@ fn paired_outcome(
     column: &str,
     mut findings: Vec<FindingOutcome>,
 ) -> Result<CompareOutcome, Error> {
-    let described = group_outcomes(&groups.groups, request.confidence)?;
+    let described = summaries(&groups.groups, request.confidence)?;
     let names: Vec<String> = described.iter().map(|group| group.group.clone()).collect();
     let means = specimen_means(data, groups, column)?;
     findings.extend(averaged_finding(groups, &means, column));
@@ -334,7 +321,7 @@ fn repeated_finding(data: &Data, groups: &Groups) -> Result<Option<FindingOutcom
 /// p below which a test of an assumption is worth a word.
 const NOTABLE: f64 = 0.05;
 
-fn variance_finding(test: Option<RatioTest>, request: &CompareRequest) -> Option<FindingOutcome> {
+fn variance_finding(test: Option<FTest>, request: &CompareRequest) -> Option<FindingOutcome> {
     let p = test.map(|test| test.p).filter(|p| *p < NOTABLE)?;
     let advice = match request.method {
         PairMethod::Tukey => "read Welch's test and --pairs games-howell",
@@ -380,15 +367,6 @@ fn shapiro_of(values: &[f64]) -> Option<StatisticTest> {
     })
 }
 
-fn ratio(test: FTest) -> RatioTest {
-    RatioTest {
-        f: test.f,
-        df1: test.df_above,
-        df2: test.df_below,
-        p: test.p,
-    }
-}
-
 fn letters_of(
     names: &[String],
     groups: &[Group],
@@ -405,10 +383,7 @@ fn letters_of(
     compact_letters(&means, &differ)
 }
 
-fn lettered(
-    groups: Vec<crate::compare::group_outcome::GroupOutcome>,
-    letters: Vec<String>,
-) -> Vec<LetteredGroup> {
+fn lettered(groups: Vec<GroupSummary>, letters: Vec<String>) -> Vec<LetteredGroup> {
     let both = groups.into_iter().zip(letters);
     both.map(|(group, letters)| LetteredGroup { group, letters })
         .collect()

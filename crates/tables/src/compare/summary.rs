@@ -1,15 +1,13 @@
 //! `windfall summary`: what the values of a table look like, group by group.
 
-use crate::compare::group_outcome::{
-    GroupOutcome, group_outcomes, missing_findings, statistics_error,
-};
+use crate::compare::group_outcome::{missing_findings, statistics_error, summaries};
 use serde::Serialize;
 use std::path::PathBuf;
 use windfall_files::error::Error;
 use windfall_files::found::FindingOutcome;
 use windfall_files::option_value::unusable;
 use windfall_files::table::data::{Data, read_data};
-use windfall_statistics::compare::group_summary::split_groups;
+use windfall_statistics::compare::group_summary::{GroupSummary, split_groups};
 use windfall_statistics::table::Cells;
 
 /// What `windfall summary` is asked.
@@ -44,7 +42,7 @@ pub struct ValueSummary {
     /// The column.
     pub value: String,
     /// Its groups.
-    pub groups: Vec<GroupOutcome>,
+    pub groups: Vec<GroupSummary>,
 }
 
 /// Describes the values of a table, group by group.
@@ -71,7 +69,7 @@ pub fn summarize_table(request: &SummaryRequest) -> Result<SummaryOutcome, Error
             }
         }
         outcome.values.push(ValueSummary {
-            groups: group_outcomes(&groups.groups, request.confidence)?,
+            groups: summaries(&groups.groups, request.confidence)?,
             value,
         });
     }

@@ -1,19 +1,16 @@
 //! Group summaries and comparisons as text and CSV.
 
+use crate::columns::{Column, csv_of_rows, given, strings, text_of_rows};
 use crate::compare::agreement::AgreementOutcome;
-use crate::compare::group_outcome::GroupOutcome;
-use crate::compare::outcome::{CompareOutcome, RatioTest, StatisticTest};
+use crate::compare::outcome::{CompareOutcome, PairOutcome, StatisticTest};
 use crate::compare::summary::SummaryOutcome;
 use windfall_files::error::Error;
 use windfall_files::table::write::csv_text;
 use windfall_files::text::number::plain;
 use windfall_files::text::statistic::{freedom, number, probability};
-use windfall_files::text::table::findings_list;
-use windfall_files::text::table::page_tables;
-
-fn strings(words: &[&str]) -> Vec<String> {
-    words.iter().map(|word| (*word).to_owned()).collect()
-}
+use windfall_files::text::table::{findings_list, page_tables};
+use windfall_statistics::compare::group_summary::GroupSummary;
+use windfall_statistics::compare::one_way_anova::FTest;
 
 /// "95 %".
 fn percent(part: f64) -> String {
@@ -25,7 +22,7 @@ fn percent(part: f64) -> String {
 }
 
 /// Mean and spread of a group.
-fn group_cells(group: &GroupOutcome) -> Vec<String> {
+fn group_cells(group: &GroupSummary) -> Vec<String> {
     let cv = match group.cv.is_finite() {
         true => format!("{:.1} %", 100.0 * group.cv),
         false => "-".to_owned(),
@@ -37,7 +34,7 @@ fn group_cells(group: &GroupOutcome) -> Vec<String> {
 }
 
 /// Order statistics of a group.
-fn order_cells(group: &GroupOutcome) -> Vec<String> {
+fn order_cells(group: &GroupSummary) -> Vec<String> {
     let mut cells = vec![group.group.clone(), group.missing.to_string()];
     let ordered = [group.min, group.q1, group.median, group.q3, group.max];
     cells.extend(ordered.map(number));
@@ -70,9 +67,6 @@ pub fn text_of_summary(outcome: &SummaryOutcome) -> String {
 }
 
 /// Group summaries as CSV: one row per value and group.
-///
-/// # Errors
-/// None in practice: the text is written to memory.
 pub fn csv_of_summary(outcome: &SummaryOutcome) -> Result<String, Error> {
     let mut header = strings(&["value"]);
     header.extend(outcome.by.clone());
@@ -136,7 +130,7 @@ pub fn text_of_compare(outcome: &CompareOutcome) -> String {
 
 /// Analysis of variance and tests of what it assumes.
 fn tests_text(outcome: &CompareOutcome) -> String {
-    let ratio = |name: &str, what: &str, test: &RatioTest| {
+    let ratio = |name: &str, what: &str, test: &FTest| {
         let df = format!("{} and {}", freedom(test.df1), freedom(test.df2));
         vec![
             name.to_owned(),
@@ -158,7 +152,7 @@ fn tests_text(outcome: &CompareOutcome) -> String {
     let mut rows = Vec::new();
     let mut share = String::new();
     if let Some(anova) = &outcome.anova {
-        let test = RatioTest {
+        let test = FTest {
             f: anova.f,
             df1: anova.between_df,
             df2: anova.within_df,
@@ -203,125 +197,71 @@ fn pairs_text(outcome: &CompareOutcome) -> String {
         true => "t",
         false => "q",
     };
-    let header = strings(&[
-        "pair",
-        "difference",
-        "SE",
-        symbol,
-        "df",
-        "p",
-        "from",
-        "to",
-        "g",
-    ]);
-    let rows = outcome.pairs.iter().map(|pair| {
-        vec![
-            format!("{} - {}", pair.second, pair.first),
-            number(pair.difference),
-            number(pair.se),
-            number(pair.statistic),
-            freedom(pair.df),
-            probability(pair.p),
-            number(pair.low),
-            number(pair.high),
-            number(pair.hedges_g),
-        ]
-    });
-    page_tables(&header, &rows.collect::<Vec<_>>(), &[0])
+    let columns: [Column<PairOutcome>; 9] = [
+        ("pair", |pair| format!("{} - {}", pair.second, pair.first)),
+        ("difference", |pair| number(pair.difference)),
+        ("SE", |pair| number(pair.se)),
+        (symbol, |pair| number(pair.statistic)),
+        ("df", |pair| freedom(pair.df)),
+        ("p", |pair| probability(pair.p)),
+        ("from", |pair| number(pair.low)),
+        ("to", |pair| number(pair.high)),
+        ("g", |pair| number(pair.hedges_g)),
+    ];
+    text_of_rows(&outcome.pairs, &columns, &[0])
 }
 
 /// A comparison as CSV: one row per pair of groups.
-///
-/// # Errors
-/// None in practice: the text is written to memory.
 pub fn csv_of_compare(outcome: &CompareOutcome) -> Result<String, Error> {
-    let header = strings(&[
-        "value",
-        "first",
-        "second",
-        "difference",
-        "se",
-        "statistic",
-        "df",
-        "p",
-        "low",
-        "high",
-        "hedges_g",
-        "pairs",
-        "method",
-    ]);
-    let rows = outcome.pairs.iter().map(|pair| {
-        let mut row = strings(&[&outcome.value, &pair.first, &pair.second]);
-        let numbers = [
-            pair.difference,
-            pair.se,
-            pair.statistic,
-            pair.df,
-            pair.p,
-            pair.low,
-            pair.high,
-            pair.hedges_g,
-        ];
-        row.extend(numbers.map(cell));
-        row.push(pair.n_pairs.map_or_else(String::new, |n| n.to_string()));
-        row.push(outcome.method.to_owned());
-        row
-    });
-    csv_text(&header, rows)
+    let pairs: Vec<_> = outcome.pairs.iter().map(|pair| (outcome, pair)).collect();
+    let columns: [Column<(&CompareOutcome, &PairOutcome)>; 13] = [
+        ("value", |row| row.0.value.clone()),
+        ("first", |row| row.1.first.clone()),
+        ("second", |row| row.1.second.clone()),
+        ("difference", |row| cell(row.1.difference)),
+        ("se", |row| cell(row.1.se)),
+        ("statistic", |row| cell(row.1.statistic)),
+        ("df", |row| cell(row.1.df)),
+        ("p", |row| cell(row.1.p)),
+        ("low", |row| cell(row.1.low)),
+        ("high", |row| cell(row.1.high)),
+        ("hedges_g", |row| cell(row.1.hedges_g)),
+        ("pairs", |row| {
+            row.1.n_pairs.map_or_else(String::new, |n| n.to_string())
+        }),
+        ("method", |row| row.0.method.to_owned()),
+    ];
+    csv_of_rows(&pairs, &columns)
 }
 
-/// Rows of an agreement: name, number, in words.
-fn agreement_rows(outcome: &AgreementOutcome) -> Vec<(&'static str, Option<f64>, &'static str)> {
-    vec![
-        (
-            "bias",
-            Some(outcome.bias),
-            "mean of predicted less measured",
-        ),
-        ("RMSE", Some(outcome.rmse), "root mean square difference"),
-        ("MAE", Some(outcome.mae), "mean absolute difference"),
-        (
-            "MAPE",
-            outcome.mape,
-            "mean absolute relative difference, a fraction",
-        ),
-        (
-            "R2",
-            outcome.r2,
-            "1 - Σ(O-P)²/Σ(O-Ō)²; below 0: worse than the mean",
-        ),
-        (
-            "r2",
-            outcome.correlation_squared,
-            "squared correlation, blind to bias and scale",
-        ),
-        (
-            "chi_squared",
-            outcome.chi_squared,
-            "Σ(O-P)²/P: an index, not a test",
-        ),
-        (
-            "reduced_chi_squared",
-            outcome.reduced_chi_squared,
-            "Σ(O-P)²/(N-p): an index, not a test",
-        ),
+/// Rows of an agreement: name, number, meaning.
+fn agreement_rows(found: &AgreementOutcome) -> [(&'static str, Option<f64>, &'static str); 8] {
+    let mean_relative = "mean absolute relative difference, a fraction";
+    let r2 = "1 - Σ(O-P)²/Σ(O-Ō)²; below 0: worse than the mean";
+    let correlation = "squared correlation, blind to bias and scale";
+    let chi_squared = "Σ(O-P)²/P: an index, not a test";
+    let reduced = "Σ(O-P)²/(N-p): an index, not a test";
+    [
+        ("bias", Some(found.bias), "mean of predicted less measured"),
+        ("RMSE", Some(found.rmse), "root mean square difference"),
+        ("MAE", Some(found.mae), "mean absolute difference"),
+        ("MAPE", found.mape, mean_relative),
+        ("R2", found.r2, r2),
+        ("r2", found.correlation_squared, correlation),
+        ("chi_squared", found.chi_squared, chi_squared),
+        ("reduced_chi_squared", found.reduced_chi_squared, reduced),
     ]
 }
 
 /// An agreement as text.
 #[must_use]
 pub fn text_of_agreement(outcome: &AgreementOutcome) -> String {
-    let rows = agreement_rows(outcome)
-        .into_iter()
-        .map(|(name, value, words)| {
-            vec![
-                name.to_owned(),
-                value.map_or_else(|| "-".to_owned(), number),
-                words.to_owned(),
-            ]
-        });
-    let header = strings(&["index", "value", "meaning"]);
-    let table = page_tables(&header, &rows.collect::<Vec<_>>(), &[0, 2]);
+    let columns: [Column<(&str, Option<f64>, &str)>; 3] = [
+        ("index", |row| row.0.to_owned()),
+        ("value", |row| given(row.1, number)),
+        ("meaning", |row| row.2.to_owned()),
+    ];
+    let table = text_of_rows(&agreement_rows(outcome), &columns, &[0, 2]);
     format!(
         "{} (predicted) against {} (measured), {} rows\n\n{table}\n{}",
         outcome.predicted,
@@ -332,9 +272,6 @@ pub fn text_of_agreement(outcome: &AgreementOutcome) -> String {
 }
 
 /// An agreement as CSV.
-///
-/// # Errors
-/// None in practice: the text is written to memory.
 pub fn csv_of_agreement(outcome: &AgreementOutcome) -> Result<String, Error> {
     let rows = agreement_rows(outcome);
     let header: Vec<String> = ["measured", "predicted", "n"]

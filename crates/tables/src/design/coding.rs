@@ -9,12 +9,10 @@ use windfall_statistics::surface::coding::{
     CodedFactors, FactorCoding, Recognised, code_by_levels,
 };
 
-/// Differences of settings from exact levels that are rounding of the last
-/// bits, in half-ranges.
+/// Rounding of settings in the last bits, in half-ranges.
 const SAME: f64 = 1e-9;
 
-/// The factors of a design's header that are numbers; none if the table is no
-/// design or its header is damaged.
+/// The numeric factors of a design's header; none without a valid one.
 #[must_use]
 pub fn number_factors(data: &Data) -> Vec<String> {
     let factors = read_coding(&data.comments)
@@ -30,9 +28,8 @@ pub fn number_factors(data: &Data) -> Vec<String> {
 /// Coded values of a table with the header of a design; `None` where it has
 /// none of these factors.
 ///
-/// Where the exact coded value stands beside the setting and the setting is that
-/// level, rounded as the header says, the coded value is taken; where another
-/// setting stands, a level that was run instead of the planned one, the setting.
+/// A setting that is the planned level up to its printed decimals takes the exact coded
+/// value; another setting, run instead of the planned one, is coded itself.
 ///
 /// * `columns`: name and values of each factor
 ///

@@ -2,9 +2,12 @@
 
 use crate::design::factor::fifteen_digits;
 use crate::design::run::DesignOutcome;
+use crate::regress::findings::finding;
 use serde::Serialize;
 use windfall_design::kind::{Design, Factor};
+use windfall_design::quality::DesignQuality;
 use windfall_design::word::{AliasChain, Fraction, aliases, letter};
+use windfall_files::found::FindingOutcome;
 
 /// Effects of up to so many factors are shown in aliases.
 pub const ALIAS_ORDER: usize = 2;
@@ -31,26 +34,17 @@ pub struct DesignDocument {
     /// Its figures; null where no model can be estimated.
     pub quality: Option<QualityDocument>,
     /// What to know.
-    pub findings: Vec<DesignNote>,
+    pub findings: Vec<FindingOutcome>,
 }
 
-/// A factor: actual = centre + half · coded.
+/// A factor with its letter.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct FactorDocument {
     /// Its letter in models.
     pub letter: String,
-    /// Its name.
-    pub name: String,
-    /// Unit of its levels.
-    pub unit: String,
-    /// Actual value at coded 0.
-    pub centre: f64,
-    /// Exact half-range.
-    pub half: f64,
-    /// Decimals of printed settings.
-    pub decimals: Option<usize>,
-    /// Categories; empty for a number.
-    pub categories: Vec<String>,
+    /// Name, unit and coding.
+    #[serde(flatten)]
+    pub factor: Factor,
 }
 
 /// A run.
@@ -98,27 +92,11 @@ pub struct FractionDocument {
 pub struct QualityDocument {
     /// Columns of the model.
     pub terms: Vec<String>,
-    /// Variance of each coefficient, coded.
-    pub variances: Vec<f64>,
-    /// |X'X|^(1/p) / n.
-    pub d_efficiency: f64,
-    /// Largest leverage of a run.
-    pub max_leverage: f64,
-    /// Mean variance of prediction over the region −1 … 1.
-    pub mean_variance: f64,
-    /// Largest variance of prediction at points of the region and the runs.
-    pub max_variance: f64,
+    /// Its figures over the region −1 … 1.
+    #[serde(flatten)]
+    pub quality: DesignQuality,
     /// Degrees of freedom left for error.
     pub residual_df: usize,
-}
-
-/// Something to know.
-#[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct DesignNote {
-    /// Short name.
-    pub code: String,
-    /// What it says.
-    pub message: String,
 }
 
 /// A design for scripts.
@@ -140,17 +118,11 @@ pub fn design_document(outcome: &DesignOutcome) -> DesignDocument {
     });
     let quality = outcome.quality.as_ref().map(|quality| QualityDocument {
         terms: outcome.terms.clone(),
-        variances: quality.variances.clone(),
-        d_efficiency: quality.d_efficiency,
-        max_leverage: quality.max_leverage,
-        mean_variance: quality.mean_variance,
-        max_variance: quality.max_variance,
+        quality: quality.clone(),
         residual_df: quality.runs - quality.terms,
     });
-    let notes = design.findings.iter().map(|finding| DesignNote {
-        code: finding.code().to_owned(),
-        message: finding.to_string(),
-    });
+    let findings = design.findings.iter();
+    let findings = findings.map(|found| finding(found.code(), found.to_string()));
     DesignDocument {
         kind: design.kind.clone(),
         factors: factor_documents(&design.factors),
@@ -161,7 +133,7 @@ pub fn design_document(outcome: &DesignOutcome) -> DesignDocument {
         fraction,
         model: outcome.model.clone(),
         quality,
-        findings: notes.collect(),
+        findings: findings.collect(),
     }
 }
 
@@ -181,12 +153,7 @@ pub fn alias_chains(fraction: &Fraction) -> Vec<AliasChain> {
 fn factor_documents(factors: &[Factor]) -> Vec<FactorDocument> {
     let document = |(place, factor): (usize, &Factor)| FactorDocument {
         letter: letter(place).to_string(),
-        name: factor.name.clone(),
-        unit: factor.unit.clone(),
-        centre: factor.centre,
-        half: factor.half,
-        decimals: factor.decimals,
-        categories: factor.categories.clone(),
+        factor: factor.clone(),
     };
     factors.iter().enumerate().map(document).collect()
 }

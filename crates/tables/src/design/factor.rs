@@ -80,8 +80,7 @@ fn range(name: &str, low: &str, high: &str) -> Result<DesignFactor, String> {
     })
 }
 
-/// A factor whose centre and half-range are those of the decimal numbers, free
-/// of the rounding of their sum and difference.
+/// A factor with the centre and half-range of the decimal numbers, without rounding.
 fn decimal_factor(name: &str, unit: &str, low: f64, high: f64) -> Result<Factor, String> {
     let mut factor = Factor::between(name, unit, low, high).map_err(said)?;
     factor.centre = fifteen_digits(factor.centre);
@@ -140,8 +139,7 @@ fn numbers_of<'a>(items: &[&'a str]) -> Option<(Vec<f64>, &'a str)> {
         .then_some((numbers, unit))
 }
 
-/// "0.86 N/mm" or "0.86N/mm": the longest beginning that is a number, and the
-/// rest.
+/// "0.86 N/mm" or "0.86N/mm": the longest number, and the rest.
 fn number_and_unit(text: &str) -> Result<(f64, &str), String> {
     let text = text.trim();
     let ends = text.char_indices().map(|(at, c)| at + c.len_utf8()).rev();

@@ -10,10 +10,9 @@
 //! # factor B: variety = one of Fuji | Gala
 //! ```
 //!
-//! No comma, semicolon or quote stands in these lines, so that spreadsheets
-//! bring them back as they were, but for separators at their ends. Then follow
-//! the columns `run`, `standard_order`, `block`, `point`, one per factor with its
-//! settings, and one per number with its exact coded values (`k_coded`).
+//! These lines hold no comma, semicolon or quote, so that spreadsheets preserve them but
+//! for separators at their ends. The columns are `run`, `standard_order`, `block`, `point`,
+//! the setting of each factor, and the exact coded value of each number (`k_coded`).
 
 use crate::design::factor::{CODED, fifteen_digits};
 use std::io::Write;
@@ -33,9 +32,6 @@ const ONE_OF: &str = "one of ";
 /// A design as CSV.
 ///
 /// * `about`: lines of the header beside those of the design itself
-///
-/// # Errors
-/// None in practice: the text is written to memory.
 pub fn write_design(design: &Design, about: &[String]) -> Result<String, Error> {
     let mut header: Vec<String> = ["run", "standard_order", "block", "point"]
         .map(str::to_owned)
@@ -83,8 +79,7 @@ pub fn save_design(path: &Path, design: &Design, about: &[String]) -> Result<(),
     file.write_all(text.as_bytes()).map_err(access)
 }
 
-/// The setting of a factor: its category, the number to the printed decimals, or
-/// the number in 15 digits, which hides the rounding of the last bit.
+/// The setting of a factor: its category, or the number to its decimals or to 15 digits.
 #[must_use]
 pub fn setting_text(factor: &Factor, coded: f64) -> String {
     if let Some(category) = factor.category(coded) {
@@ -153,12 +148,10 @@ fn unseparated(line: &str) -> String {
         .replace('"', "'")
 }
 
-/// The factors of a design from the lines of its header, with or without their
-/// `#`; `None` where no line gives one: the table is no design.
+/// The factors of a design from its header, with or without `#`; `None` without any.
 ///
 /// # Errors
-/// A line of a factor that cannot be read: it says the coding, and another
-/// coding would be wrong without a sign of it.
+/// A factor's line that cannot be read, as the coding would then be wrong.
 pub fn read_coding(comments: &[String]) -> Result<Option<Vec<Factor>>, Error> {
     let mut factors = Vec::new();
     for (index, comment) in comments.iter().enumerate() {

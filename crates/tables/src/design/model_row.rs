@@ -101,8 +101,7 @@ pub fn terms_of(model: &RowModel, factors: &[Factor]) -> Vec<String> {
     }
 }
 
-/// A table of coded values under the names and under the letters of the factors.
-/// A name that is also another factor's letter stands for the name.
+/// A table of coded values under names and letters of the factors; names win.
 fn coded_table(factors: &[Factor], points: &[Vec<f64>]) -> Table {
     let column = |name: String, place: usize| {
         let factor = &factors[place];

@@ -1,5 +1,4 @@
-//! Optimal designs from texts: their model, levels, candidates and runs already
-//! made.
+//! Optimal designs from texts: model, levels, candidates and existing runs.
 
 use crate::design::factor::{CODED, DesignFactor, parse_factor};
 use crate::design::file::read_coding;
@@ -115,8 +114,7 @@ fn factors_of_header<'a>(
     Err(unusable("--factor", problem))
 }
 
-/// Coded points of a table: from the exact coded columns where its header has
-/// the same coding, else from the settings.
+/// Coded points of a table: exact columns if its header has the same coding, else settings.
 fn points_of(path: &Path, data: &Data, factors: &[Factor]) -> Result<Vec<Vec<f64>>, Error> {
     let header = read_coding(&data.comments)?.unwrap_or_default();
     let mut columns = Vec::new();
@@ -157,8 +155,7 @@ fn points_of(path: &Path, data: &Data, factors: &[Factor]) -> Result<Vec<Vec<f64
     }
 }
 
-/// A coded value without the rounding that the subtraction leaves, so that the
-/// ends of a range are −1 and 1.
+/// A coded value without rounding, so that the ends of a range are −1 and 1.
 fn recoded(factor: &Factor, setting: f64) -> f64 {
     (factor.coded(setting) * CODED_STEPS).round() / CODED_STEPS
 }

@@ -55,15 +55,14 @@ pub enum DesignKind {
     },
     /// Central composite.
     Composite {
-        /// "rotatable", "face", "spherical", "orthogonal", "blocks" or a number;
-        /// left out: rotatable, or blocks where there are blocks.
+        /// "rotatable", "face", "spherical", "orthogonal", "blocks" or a number; by default
+        /// rotatable, or blocks where there are any.
         alpha: Option<String>,
         /// What the ends of the ranges are: "factorial" or "axial".
         levels: String,
         /// Fraction of the cube, as for factorials.
         fraction: Option<String>,
-        /// Centre points: "5", or "4,2" for each part of the cube and the axial
-        /// block.
+        /// Centre points: "5", or "4,2" for each part of the cube and the axial block.
         centre: Option<String>,
         /// Blocks.
         blocks: usize,

@@ -87,9 +87,6 @@ pub fn make_design(request: &DesignRequest) -> Result<DesignOutcome, Error> {
 }
 
 /// Factors of the command line.
-///
-/// # Errors
-/// A text that is no factor.
 pub fn factors_of(texts: &[String]) -> Result<Vec<DesignFactor>, Error> {
     texts.iter().map(|text| parse_factor(text)).collect()
 }
@@ -106,27 +103,61 @@ fn design_of_kind(kind: &DesignKind, given: Vec<DesignFactor>, seed: u64) -> Res
     }
     let factors: Vec<Factor> = given.iter().map(|given| given.factor.clone()).collect();
     let made = match kind {
-        DesignKind::Factorial { .. } => return factorial(kind, given),
-        DesignKind::Composite { .. } => return composite(kind, factors),
+        DesignKind::Factorial {
+            points,
+            fraction,
+            runs,
+            replicates,
+            centre,
+            blocks,
+        } => {
+            let options = FactorialOptions {
+                replicates: *replicates,
+                centre: *centre,
+                blocks: *blocks,
+            };
+            if fraction.is_some() || runs.is_some() {
+                check_ranges(&given)?;
+                let generators = generators_of(fraction.as_deref(), *runs, &factors)?;
+                two_level(factors, &generators, &options)
+            } else if *points < 2 {
+                return Err(unusable("--points", "expected at least 2 levels"));
+            } else {
+                let levels = given.into_iter();
+                let levels = levels.map(|given| given.levels.unwrap_or_else(|| evenly(*points)));
+                full_factorial(factors, &levels.collect::<Vec<_>>(), &options)
+            }
+        }
+        DesignKind::Composite {
+            alpha,
+            levels,
+            fraction,
+            centre,
+            blocks,
+        } => {
+            let ends = [("factorial", Ends::Factorial), ("axial", Ends::Axial)];
+            let (centre, centre_axial) = centres_of(centre.as_deref(), *blocks)?;
+            let options = CompositeOptions {
+                alpha: alpha_of(alpha.as_deref(), *blocks)?,
+                ends: chosen("--levels", levels, &ends)?,
+                generators: generators_of(fraction.as_deref(), None, &factors)?,
+                blocks: *blocks,
+                centre,
+                centre_axial,
+            };
+            central_composite(factors, &options)
+        }
         DesignKind::PlackettBurman { runs, centre } => plackett_burman(factors, *runs, *centre),
         DesignKind::BoxBehnken { centre, blocks } => {
-            let usual = if *blocks > 1 { 2 } else { 5 };
-            let centre = centre.unwrap_or(usual);
-            box_behnken(
-                factors,
-                &BoxBehnkenOptions {
-                    centre,
-                    blocks: *blocks,
-                },
-            )
+            let blocks = *blocks;
+            let centre = centre.unwrap_or(if blocks > 1 { 2 } else { 5 });
+            box_behnken(factors, &BoxBehnkenOptions { centre, blocks })
         }
         DesignKind::LatinHypercube { runs } => latin_hypercube(factors, *runs, seed),
         DesignKind::Sobol { runs } => sobol(factors, *runs),
         DesignKind::Optimal(_) => {
-            return Err(unusable(
-                "windfall design",
-                "an optimal design is made by exchange",
-            ));
+            let problem = "an optimal design is made by exchange";
+            return Err(unusable("windfall design", problem));
         }
     };
     made.map_err(impossible)
@@ -144,39 +175,6 @@ fn check_ranges(given: &[DesignFactor]) -> Result<(), Error> {
         )),
         None => Ok(()),
     }
-}
-
-fn factorial(kind: &DesignKind, given: Vec<DesignFactor>) -> Result<Design, Error> {
-    let DesignKind::Factorial {
-        points,
-        fraction,
-        runs,
-        replicates,
-        centre,
-        blocks,
-    } = kind
-    else {
-        return Err(unusable("windfall design", "expected a factorial"));
-    };
-    let options = FactorialOptions {
-        replicates: *replicates,
-        centre: *centre,
-        blocks: *blocks,
-    };
-    let factors: Vec<Factor> = given.iter().map(|given| given.factor.clone()).collect();
-    if fraction.is_some() || runs.is_some() {
-        check_ranges(&given)?;
-        let generators = generators_of(fraction.as_deref(), *runs, &factors)?;
-        return two_level(factors, &generators, &options).map_err(impossible);
-    }
-    if *points < 2 {
-        return Err(unusable("--points", "expected at least 2 levels"));
-    }
-    let levels: Vec<Vec<f64>> = given
-        .into_iter()
-        .map(|given| given.levels.unwrap_or_else(|| evenly(*points)))
-        .collect();
-    full_factorial(factors, &levels, &options).map_err(impossible)
 }
 
 /// Generators from "D=AB, E=AC", from "1/2", or from the number of runs.
@@ -219,33 +217,6 @@ fn generators_of(
         }
     };
     catalogued(factors.len(), runs).map_err(impossible)
-}
-
-fn composite(kind: &DesignKind, factors: Vec<Factor>) -> Result<Design, Error> {
-    let DesignKind::Composite {
-        alpha,
-        levels,
-        fraction,
-        centre,
-        blocks,
-    } = kind
-    else {
-        return Err(unusable(
-            "windfall design",
-            "expected a central composite design",
-        ));
-    };
-    let ends = [("factorial", Ends::Factorial), ("axial", Ends::Axial)];
-    let (centre, centre_axial) = centres_of(centre.as_deref(), *blocks)?;
-    let options = CompositeOptions {
-        alpha: alpha_of(alpha.as_deref(), *blocks)?,
-        ends: chosen("--levels", levels, &ends)?,
-        generators: generators_of(fraction.as_deref(), None, &factors)?,
-        blocks: *blocks,
-        centre,
-        centre_axial,
-    };
-    central_composite(factors, &options).map_err(impossible)
 }
 
 fn alpha_of(text: Option<&str>, blocks: usize) -> Result<Alpha, Error> {
@@ -359,10 +330,7 @@ fn largest_model(design: &Design) -> (String, Vec<String>, Option<DesignQuality>
     }
 }
 
-/// Figures for a model, with an effect for each block but the last.
-///
-/// Runs that were made before an augmentation count as one block with the new
-/// ones: that is the model they were chosen for.
+/// Figures for a model with block effects; existing runs count as one block with new ones.
 fn quality_of(design: &Design, model: &RowModel) -> Option<DesignQuality> {
     let blocks = block_effects(design);
     let terms = terms_of(model, &design.factors).len() + blocks;

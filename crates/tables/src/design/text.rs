@@ -1,5 +1,6 @@
 //! A design for people: its factors, runs and what it can tell.
 
+use crate::columns::strings;
 use crate::design::document::{alias_chains, generated};
 use crate::design::file::setting_text;
 use crate::design::run::DesignOutcome;
@@ -49,12 +50,8 @@ pub fn text_of_design(outcome: &DesignOutcome) -> String {
     text.trim_end().to_owned() + "\n"
 }
 
-fn texts<const N: usize>(cells: [&str; N]) -> Vec<String> {
-    cells.map(str::to_owned).to_vec()
-}
-
 fn factor_table(factors: &[Factor]) -> String {
-    let header = texts([
+    let header = strings(&[
         "",
         "factor",
         "unit or categories",
@@ -89,7 +86,7 @@ fn factor_table(factors: &[Factor]) -> String {
 
 fn run_table(design: &Design) -> String {
     let blocks = design.blocks() > 1;
-    let mut header = texts(["run", "std"]);
+    let mut header = strings(&["run", "std"]);
     header.extend(blocks.then(|| "block".to_owned()));
     header.push("point".to_owned());
     header.extend(design.factors.iter().map(|factor| factor.name.clone()));

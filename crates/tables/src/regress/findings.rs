@@ -8,8 +8,7 @@ use windfall_statistics::model::model_frame::ModelFrame;
 use windfall_statistics::model::reduced::Aliased;
 use windfall_statistics::residuals::diagnostics::{Inflation, RowInfluence};
 
-/// Variance inflation that is worth a word (Montgomery, Peck & Vining,
-/// Introduction to Linear Regression Analysis, 5th ed., §9.4.2).
+/// Variance inflation that is reported (Montgomery, Peck & Vining, Linear Regression, §9.4.2).
 const INFLATED: f64 = 10.0;
 
 /// Condition beyond which digits are lost.

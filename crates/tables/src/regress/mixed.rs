@@ -1,27 +1,29 @@
 //! `windfall regress` with random effects: a linear mixed model.
 
 use crate::regress::findings::{aliased_findings, finding, left_out_finding};
-use crate::regress::outcome::{AnovaOutcome, RangeOutcome, TermOutcome, ranges_of};
+use crate::regress::outcome::{RangeOutcome, ranges_of};
 use crate::regress::request::{FreedomMethod, RegressRequest};
 use serde::Serialize;
 use windfall_files::error::Error;
 use windfall_files::found::FindingOutcome;
+use windfall_files::option_value::unusable;
 use windfall_files::table::data::{Data, read_data};
 use windfall_statistics::error::Error as StatisticsError;
 use windfall_statistics::mixed::fit::{MixedFit, MixedMethod, MixedOptions, fit_mixed};
 use windfall_statistics::mixed::inference::{
-    CoefficientTest, FTest, VarianceUncertainty, coefficient_tests, f_test, picking_contrast,
-    variance_uncertainty,
+    FTest, VarianceUncertainty, coefficient_tests, f_test, picking_contrast, variance_uncertainty,
 };
 use windfall_statistics::mixed::kenward_roger::{
     KenwardRoger, kenward_roger, kenward_roger_f, kenward_roger_tests,
 };
-use windfall_statistics::mixed::predict::{NewRows, predict_mixed};
+use windfall_statistics::mixed::predict::{MixedPrediction, NewRows, predict_mixed};
 use windfall_statistics::mixed::profile::profile_variances;
 use windfall_statistics::mixed::summary::variance_shares;
+use windfall_statistics::model::anova::AnovaRow;
 use windfall_statistics::model::contrast::Contrast;
 use windfall_statistics::model::formula::Formula;
 use windfall_statistics::model::formula_syntax::spelling;
+use windfall_statistics::model::linear_model::Coefficient;
 use windfall_statistics::model::model_frame::{
     ModelRows, chosen_rows, complete_rows, model_rows, prediction_rows,
 };
@@ -67,20 +69,9 @@ pub struct EffectOutcome {
 pub struct MixedPredictionOutcome {
     /// Line of the file that asks for it.
     pub line: usize,
-    /// Mean over all groups.
-    pub population: f64,
-    /// Mean in the group, the same where it is not known.
-    pub predicted: f64,
-    /// Its standard error.
-    pub se: f64,
-    /// Interval of the mean in the group.
-    pub mean_low: f64,
-    /// Its upper end.
-    pub mean_high: f64,
-    /// Interval of one further observation.
-    pub low: f64,
-    /// Its upper end.
-    pub high: f64,
+    /// Means and intervals.
+    #[serde(flatten)]
+    pub prediction: MixedPrediction,
 }
 
 /// A fitted mixed model.
@@ -101,7 +92,7 @@ pub struct MixedOutcome {
     /// Groups of each random term.
     pub groups: Vec<(String, usize)>,
     /// Fixed effects.
-    pub terms: Vec<TermOutcome>,
+    pub terms: Vec<Coefficient>,
     /// Covariance of the fixed effects, in the order of `terms`.
     pub covariance: Vec<Vec<f64>>,
     /// In which ranges the columns of the model were.
@@ -143,7 +134,7 @@ pub struct MixedOutcome {
 pub struct MixedTest {
     /// F with the degrees of freedom of the term; no sum of squares is defined.
     #[serde(flatten)]
-    pub test: AnovaOutcome,
+    pub test: AnovaRow,
     /// Degrees of freedom of the denominator.
     pub df_denominator: f64,
 }
@@ -171,12 +162,12 @@ pub fn regress_mixed(
     if request.selection.is_some() {
         let problem = "terms of mixed models are not selected here: compare models fitted by \
                        --likelihood ml by their criteria";
-        return Err(windfall_files::option_value::unusable("--select", problem));
+        return Err(unusable("--select", problem));
     }
     if request.robust {
         let problem = "there are no HC3 errors of mixed models: the random effects are what makes \
                        their errors right";
-        return Err(windfall_files::option_value::unusable("--robust", problem));
+        return Err(unusable("--robust", problem));
     }
     let (kept, left_out) = complete_rows(formula, &data.table, &[]).map_err(Error::Statistics)?;
     let table = chosen_rows(&data.table, &kept);
@@ -196,7 +187,7 @@ pub fn regress_mixed(
         uncertainty,
         adjusted,
     } = inference;
-    let tests = match &adjusted {
+    let terms = match &adjusted {
         None => coefficient_tests(&fitted.fit, &uncertainty, request.confidence),
         Some(adjusted) => kenward_roger_tests(&fitted.fit, adjusted, request.confidence),
     };
@@ -226,7 +217,7 @@ pub fn regress_mixed(
             .iter()
             .map(|t| (t.term.name.clone(), t.term.groups))
             .collect(),
-        terms: tests.iter().map(term_outcome).collect(),
+        terms,
         covariance: fit.covariance_rows(),
         ranges: ranges_of(formula, &data.table, &kept),
         anova,
@@ -284,19 +275,6 @@ fn fit(
     })
 }
 
-fn term_outcome(test: &CoefficientTest) -> TermOutcome {
-    TermOutcome {
-        term: test.name.clone(),
-        estimate: test.estimate,
-        se: test.se,
-        t: test.t,
-        p: test.p,
-        low: test.low,
-        high: test.high,
-        df: test.df,
-    }
-}
-
 /// A fit with what its tests need.
 struct Inference {
     fitted: Fitted,
@@ -321,9 +299,7 @@ fn infer(
     })
 }
 
-/// F tests of the terms after all others.
-///
-/// * `inference`: with contrasts of categories that sum to zero
+/// F tests of the terms after all others, from a fit with sum contrasts.
 fn term_tests(inference: &Inference) -> Result<Vec<MixedTest>, Error> {
     let Inference {
         fitted,
@@ -345,7 +321,7 @@ fn term_tests(inference: &Inference) -> Result<Vec<MixedTest>, Error> {
             Some(adjusted) => kenward_roger_f(&fitted.fit, adjusted, &contrast).map_err(mixed)?,
         };
         tests.push(MixedTest {
-            test: AnovaOutcome {
+            test: AnovaRow {
                 term: term.name.clone(),
                 ss: f64::NAN,
                 df: test.numerator as f64,
@@ -376,12 +352,9 @@ fn variances(
                     own.sds[*column],
                 )
             }
-            VarianceParameter::Correlation {
-                term,
-                first,
-                second,
-            } => {
+            VarianceParameter::Correlation { term, columns } => {
                 let own = &fit.variances[*term];
+                let [first, second] = columns;
                 let of = format!("{}, {}", own.columns[*first], own.columns[*second]);
                 (
                     own.term.clone(),
@@ -411,27 +384,22 @@ fn variances(
 }
 
 fn effects(fitted: &Fitted) -> Vec<EffectOutcome> {
-    let pairs = fitted.terms.iter().zip(&fitted.fit.effects);
-    pairs
-        .flat_map(|(framed, effects)| {
-            let term = &framed.term;
-            term.group_names
-                .iter()
-                .enumerate()
-                .flat_map(move |(group, name)| {
-                    term.column_names
-                        .iter()
-                        .enumerate()
-                        .map(move |(column, of)| EffectOutcome {
-                            by: term.name.clone(),
-                            group: name.clone(),
-                            of: of.clone(),
-                            value: effects.values[group][column],
-                            sd: effects.sds[group][column],
-                        })
-                })
-        })
-        .collect()
+    let mut found = Vec::new();
+    for (framed, effects) in fitted.terms.iter().zip(&fitted.fit.effects) {
+        let term = &framed.term;
+        for (group, name) in term.group_names.iter().enumerate() {
+            for (column, of) in term.column_names.iter().enumerate() {
+                found.push(EffectOutcome {
+                    by: term.name.clone(),
+                    group: name.clone(),
+                    of: of.clone(),
+                    value: effects.values[group][column],
+                    sd: effects.sds[group][column],
+                });
+            }
+        }
+    }
+    found
 }
 
 fn predictions(
@@ -452,15 +420,6 @@ fn predictions(
     let found = found.map_err(mixed)?;
     let shown = found.iter().zip(&asked.lines);
     Ok(shown
-        .map(|(prediction, line)| MixedPredictionOutcome {
-            line: *line,
-            population: prediction.population,
-            predicted: prediction.value,
-            se: prediction.se,
-            mean_low: prediction.low,
-            mean_high: prediction.high,
-            low: prediction.single_low,
-            high: prediction.single_high,
-        })
+        .map(|(&prediction, &line)| MixedPredictionOutcome { line, prediction })
         .collect())
 }

@@ -1,17 +1,63 @@
 //! A mixed model as text and CSV.
 
-use crate::regress::mixed::MixedOutcome;
+use crate::columns::{Column, csv_of_rows, text_of_rows};
+use crate::regress::mixed::{MixedOutcome, MixedPredictionOutcome, MixedTest, VarianceOutcome};
 use crate::regress::text::csv_of_terms;
 use windfall_files::error::Error;
-use windfall_files::table::write::csv_text;
 use windfall_files::text::number::plain;
 use windfall_files::text::statistic::{freedom, number, probability};
 use windfall_files::text::table::findings_list;
-use windfall_files::text::table::page_tables;
+use windfall_statistics::model::linear_model::Coefficient;
 
-fn strings(words: &[&str]) -> Vec<String> {
-    words.iter().map(|word| (*word).to_owned()).collect()
-}
+const TERMS: [Column<Coefficient>; 8] = [
+    ("term", |term| term.name.clone()),
+    ("estimate", |term| number(term.estimate)),
+    ("se", |term| number(term.se)),
+    ("df", |term| number(term.df)),
+    ("t", |term| number(term.t)),
+    ("p", |term| probability(term.p)),
+    ("from", |term| number(term.low)),
+    ("to", |term| number(term.high)),
+];
+
+const TESTS: [Column<MixedTest>; 5] = [
+    ("term", |row| row.test.term.clone()),
+    ("F", |row| number(row.test.f)),
+    ("df", |row| freedom(row.test.df)),
+    ("residual df", |row| number(row.df_denominator)),
+    ("p", |row| probability(row.test.p)),
+];
+
+const VARIANCES: [Column<VarianceOutcome>; 6] = [
+    ("between", |row| row.group.clone()),
+    ("", |row| row.kind.to_owned()),
+    ("of", |row| row.of.clone()),
+    ("value", |row| number(row.value)),
+    ("from", |row| number(row.low)),
+    ("to", |row| number(row.high)),
+];
+
+const PREDICTIONS: [Column<MixedPredictionOutcome>; 8] = [
+    ("line", |row| row.line.to_string()),
+    ("mean over groups", |row| number(row.prediction.population)),
+    ("predicted", |row| number(row.prediction.predicted)),
+    ("se", |row| number(row.prediction.se)),
+    ("mean from", |row| number(row.prediction.mean_low)),
+    ("to", |row| number(row.prediction.mean_high)),
+    ("observation from", |row| number(row.prediction.low)),
+    ("to ", |row| number(row.prediction.high)),
+];
+
+const PREDICTIONS_CSV: [Column<MixedPredictionOutcome>; 8] = [
+    ("line", |row| row.line.to_string()),
+    ("population", |row| row.prediction.population.to_string()),
+    ("predicted", |row| row.prediction.predicted.to_string()),
+    ("se", |row| row.prediction.se.to_string()),
+    ("mean_low", |row| row.prediction.mean_low.to_string()),
+    ("mean_high", |row| row.prediction.mean_high.to_string()),
+    ("low", |row| row.prediction.low.to_string()),
+    ("high", |row| row.prediction.high.to_string()),
+];
 
 /// A mixed model as text.
 #[must_use]
@@ -20,61 +66,27 @@ pub fn text_of_mixed(outcome: &MixedOutcome) -> String {
     let groups: Vec<String> = groups
         .map(|(name, count)| format!("{count} of {name}"))
         .collect();
+    let left_out = match outcome.left_out {
+        0 => String::new(),
+        n => format!(", {n} left out"),
+    };
     let mut text = format!(
-        "{}\n{} rows{}; groups: {}; {}\n\n",
+        "{}\n{} rows{left_out}; groups: {}; {}\n\n",
         outcome.formula,
         outcome.rows,
-        match outcome.left_out {
-            0 => String::new(),
-            n => format!(", {n} left out"),
-        },
         groups.join(", "),
         outcome.method
     );
-    let header = strings(&["term", "estimate", "se", "df", "t", "p", "from", "to"]);
-    let rows = outcome.terms.iter().map(|term| {
-        vec![
-            term.term.clone(),
-            number(term.estimate),
-            number(term.se),
-            number(term.df),
-            number(term.t),
-            probability(term.p),
-            number(term.low),
-            number(term.high),
-        ]
-    });
-    text += &page_tables(&header, &rows.collect::<Vec<_>>(), &[0]);
     text += &format!(
-        "\n\nTests of the terms, each after all others ({}):\n",
-        outcome.df_method
+        "{}\n\nTests of the terms, each after all others ({}):\n{}\n\n\
+         Standard deviations and correlations, with profile intervals of the same likelihood:\n{}\n\n",
+        text_of_rows(&outcome.terms, &TERMS, &[0]),
+        outcome.df_method,
+        text_of_rows(&outcome.anova, &TESTS, &[0]),
+        text_of_rows(&outcome.variances, &VARIANCES, &[0, 1, 2])
     );
-    let header = strings(&["term", "F", "df", "residual df", "p"]);
-    let rows = outcome.anova.iter().map(|row| {
-        vec![
-            row.test.term.clone(),
-            number(row.test.f),
-            freedom(row.test.df),
-            number(row.df_denominator),
-            probability(row.test.p),
-        ]
-    });
-    text += &page_tables(&header, &rows.collect::<Vec<_>>(), &[0]);
-    text += "\n\nStandard deviations and correlations, with profile intervals of the same likelihood:\n";
-    let header = strings(&["between", "", "of", "value", "from", "to"]);
-    let rows = outcome.variances.iter().map(|row| {
-        vec![
-            row.group.clone(),
-            row.kind.to_owned(),
-            row.of.clone(),
-            number(row.value),
-            number(row.low),
-            number(row.high),
-        ]
-    });
-    text += &page_tables(&header, &rows.collect::<Vec<_>>(), &[0, 1, 2]);
     text += &format!(
-        "\n\nR² of the fixed effects {}, with the random effects {}\nAIC {}, AICc {}, BIC {}, log-likelihood {}\n",
+        "R² of the fixed effects {}, with the random effects {}\nAIC {}, AICc {}, BIC {}, log-likelihood {}\n",
         plain(outcome.r2),
         plain(outcome.r2_conditional),
         number(outcome.aic),
@@ -83,59 +95,16 @@ pub fn text_of_mixed(outcome: &MixedOutcome) -> String {
         number(outcome.log_likelihood),
     );
     if !outcome.predictions.is_empty() {
-        let header = strings(&[
-            "line",
-            "mean over groups",
-            "predicted",
-            "se",
-            "mean from",
-            "to",
-            "observation from",
-            "to ",
-        ]);
-        let rows = prediction_rows(outcome, &number);
-        text += &format!("\n{}\n", page_tables(&header, &rows, &[]));
+        let table = text_of_rows(&outcome.predictions, &PREDICTIONS, &[]);
+        text += &format!("\n{table}\n");
     }
     text + &findings_list(&outcome.findings)
 }
 
-fn prediction_rows(outcome: &MixedOutcome, write: &dyn Fn(f64) -> String) -> Vec<Vec<String>> {
-    let rows = outcome.predictions.iter().map(|row| {
-        let numbers = [
-            row.population,
-            row.predicted,
-            row.se,
-            row.mean_low,
-            row.mean_high,
-            row.low,
-            row.high,
-        ];
-        let cells = numbers.into_iter().map(write);
-        std::iter::once(row.line.to_string()).chain(cells).collect()
-    });
-    rows.collect()
-}
-
 /// A mixed model as CSV: fixed effects, or predictions where they were asked for.
-///
-/// # Errors
-/// None in practice: the text is written to memory.
 pub fn csv_of_mixed(outcome: &MixedOutcome) -> Result<String, Error> {
-    if outcome.predictions.is_empty() {
-        return csv_of_terms(&outcome.terms);
+    match outcome.predictions.is_empty() {
+        true => csv_of_terms(&outcome.terms),
+        false => csv_of_rows(&outcome.predictions, &PREDICTIONS_CSV),
     }
-    let header = strings(&[
-        "line",
-        "population",
-        "predicted",
-        "se",
-        "mean_low",
-        "mean_high",
-        "low",
-        "high",
-    ]);
-    csv_text(
-        &header,
-        prediction_rows(outcome, &|value| value.to_string()),
-    )
 }

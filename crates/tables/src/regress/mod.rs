@@ -2,7 +2,6 @@
 
 pub mod findings;
 pub mod mixed;
-mod mixed_choice;
 pub mod mixed_text;
 pub mod outcome;
 pub mod request;

@@ -2,7 +2,6 @@
 
 use std::path::PathBuf;
 
-pub use crate::regress::mixed_choice::{FreedomMethod, MixedChoice};
 pub use windfall_statistics::model::anova::AnovaType;
 pub use windfall_statistics::model::contrast::Contrast;
 pub use windfall_statistics::model::selection::{Criterion, Direction, SelectionOptions};
@@ -44,10 +43,7 @@ impl RegressRequest {
             table,
             model,
             random: Vec::new(),
-            mixed: MixedChoice {
-                maximum_likelihood: false,
-                freedom: FreedomMethod::Satterthwaite,
-            },
+            mixed: MixedChoice::default(),
             contrast: Contrast::Treatment,
             anova: AnovaType::Hierarchical,
             selection: None,
@@ -88,9 +84,7 @@ pub enum ModelText {
 }
 
 impl ModelText {
-    /// `response ~ terms`; the name of a column is taken as it is.
-    ///
-    /// * `columns`: names of the columns
+    /// `response ~ terms`; the name of one of the `columns` is taken as it is.
     #[must_use]
     pub fn formula(&self, columns: &[String]) -> String {
         match self {
@@ -101,4 +95,23 @@ impl ModelText {
             Self::Parts { response, terms } => format!("{response} ~ {terms}"),
         }
     }
+}
+
+/// How degrees of freedom are found.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum FreedomMethod {
+    /// Satterthwaite's.
+    #[default]
+    Satterthwaite,
+    /// Kenward and Roger's, with their standard errors.
+    KenwardRoger,
+}
+
+/// What is asked of a mixed model.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct MixedChoice {
+    /// Whether plain maximum likelihood is wanted, not restricted.
+    pub maximum_likelihood: bool,
+    /// How degrees of freedom are found.
+    pub freedom: FreedomMethod,
 }

@@ -1,6 +1,6 @@
-//! Tests of the residuals of a linear model, and indices of its distance from
-//! what was measured.
+//! Tests of the residuals of a linear model, and goodness indices.
 
+use crate::columns::given;
 use crate::regress::findings::finding;
 use windfall_files::found::FindingOutcome;
 use windfall_files::text::number::plain;
@@ -10,7 +10,7 @@ use serde::Serialize;
 use windfall_statistics::compare::goodness_index::{CHI_SQUARED_CAVEAT, goodness_index};
 use windfall_statistics::model::linear_model::LinearFit;
 use windfall_statistics::model::model_frame::ModelRows;
-use windfall_statistics::residuals::box_cox::{BoxCoxOptions, box_cox};
+use windfall_statistics::residuals::box_cox::{BoxCox, BoxCoxOptions, box_cox};
 use windfall_statistics::residuals::heteroscedasticity::koenker;
 use windfall_statistics::residuals::normality::{
     SHAPIRO_WILK_LARGEST, anderson_darling, shapiro_wilk,
@@ -32,17 +32,6 @@ pub struct TestOutcome {
     pub statistic: f64,
     /// Its probability.
     pub p: f64,
-}
-
-/// The power of the response that suits the model best.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, utoipa::ToSchema)]
-pub struct BoxCoxOutcome {
-    /// 1 no transform, 0.5 root, 0 logarithm, -1 inverse.
-    pub lambda: f64,
-    /// Lower end of its interval.
-    pub low: Option<f64>,
-    /// Upper end.
-    pub high: Option<f64>,
 }
 
 /// How far predictions are from what was measured.
@@ -69,7 +58,7 @@ pub struct ResidualOutcome {
     /// Normality, equal variance, order.
     pub tests: Vec<TestOutcome>,
     /// Where the response is positive.
-    pub box_cox: Option<BoxCoxOutcome>,
+    pub box_cox: Option<BoxCox>,
     /// Indices.
     pub goodness: Option<GoodnessOutcome>,
 }
@@ -96,38 +85,36 @@ pub fn residual_tests(rows: &ModelRows, fit: &LinearFit) -> ResidualOutcome {
     }
     let x = rows.x.select_columns(&fit.columns);
     let residuals = &fit.residuals;
-    let normal = match residuals.len() <= SHAPIRO_WILK_LARGEST {
-        true => shapiro_wilk(residuals).map(|t| ("normal (Shapiro-Wilk)", t)),
-        false => anderson_darling(residuals).map(|t| ("normal (Anderson-Darling)", t)),
+    let (normality, normal) = match residuals.len() <= SHAPIRO_WILK_LARGEST {
+        true => ("normal (Shapiro-Wilk)", shapiro_wilk(residuals)),
+        false => ("normal (Anderson-Darling)", anderson_darling(residuals)),
     };
-    let normal = normal.map(|(test, t)| TestOutcome {
-        test,
-        statistic: t.statistic,
-        p: t.p,
-    });
-    let variance = koenker(residuals, &x).map(|t| TestOutcome {
-        test: "equal variance (Breusch-Pagan, Koenker's form)",
-        statistic: t.statistic,
-        p: t.p,
-    });
-    let order = durbin_watson(residuals, &x).map(|t| TestOutcome {
-        test: "independent of the order of rows (Durbin-Watson)",
-        statistic: t.statistic,
-        p: t.p,
-    });
-    // A test that these rows cannot feed (too few, no spread) is left out.
-    outcome.tests = [normal, variance, order].into_iter().flatten().collect();
+    let variance = "equal variance (Breusch-Pagan, Koenker's form)";
+    let order = "independent of the order of rows (Durbin-Watson)";
+    // Tests without enough rows or spread are left out.
+    let tests = [
+        (normality, normal.ok().map(|t| (t.statistic, t.p))),
+        (
+            variance,
+            koenker(residuals, &x).ok().map(|t| (t.statistic, t.p)),
+        ),
+        (
+            order,
+            durbin_watson(residuals, &x)
+                .ok()
+                .map(|t| (t.statistic, t.p)),
+        ),
+    ];
+    let done = |(test, found): (&'static str, Option<(f64, f64)>)| {
+        let (statistic, p) = found?;
+        Some(TestOutcome { test, statistic, p })
+    };
+    outcome.tests = tests.into_iter().filter_map(done).collect();
     let options = BoxCoxOptions {
         confidence: fit.confidence,
         ..BoxCoxOptions::default()
     };
-    outcome.box_cox = box_cox(&rows.y, &x, &options)
-        .ok()
-        .map(|found| BoxCoxOutcome {
-            lambda: found.lambda,
-            low: found.low,
-            high: found.high,
-        });
+    outcome.box_cox = box_cox(&rows.y, &x, &options).ok();
     outcome
 }
 
@@ -182,11 +169,10 @@ pub fn residuals_text(outcome: &ResidualOutcome) -> String {
         );
     }
     if let Some(goodness) = &outcome.goodness {
-        let given = |value: Option<f64>| value.map_or_else(|| "-".to_owned(), plain);
         text += &format!(
             "  chi-square index {}, per degree of freedom {}: not a test, both depend on the unit\n",
-            given(goodness.chi_squared),
-            given(goodness.reduced_chi_squared),
+            given(goodness.chi_squared, plain),
+            given(goodness.reduced_chi_squared, plain),
         );
     }
     text

@@ -3,9 +3,7 @@
 use crate::regress::findings::{aliased_findings, finding, fit_findings, left_out_finding};
 use crate::regress::mixed::{MixedOutcome, regress_mixed};
 use crate::regress::outcome::{
-    AnovaOutcome, InflationOutcome, LackOfFitOutcome, PredictionOutcome, QualityOutcome,
-    RangeOutcome, RowOutcome, StepOutcome, SumOfSquares, TermOutcome, WholeModel, anova_of,
-    inflation_of, lack_of, predictions_of, ranges_of, roman, rows_of, terms_of, whole_of,
+    PredictionOutcome, RangeOutcome, RowOutcome, StepOutcome, ranges_of, rows_of,
 };
 use crate::regress::request::{AnovaType, Contrast, Criterion, Direction, RegressRequest};
 use crate::regress::residuals::{ResidualOutcome, residual_findings, residual_tests};
@@ -14,28 +12,19 @@ use windfall_files::error::Error;
 use windfall_files::found::FindingOutcome;
 use windfall_files::option_value::unusable;
 use windfall_files::table::data::{Data, read_data};
-use windfall_statistics::model::anova::{anova, lack_of_fit};
+use windfall_statistics::model::anova::{AnovaRow, LackOfFit, SumOfSquares, anova, lack_of_fit};
 use windfall_statistics::model::formula::{Formula, formula};
 use windfall_statistics::model::formula_syntax::spelling;
-use windfall_statistics::model::linear_model::{LinearFit, fit_reduced, predict};
+use windfall_statistics::model::linear_model::{
+    Coefficient, LinearFit, Quality, WholeModel, fit_reduced, predict,
+};
 use windfall_statistics::model::model_frame::{ModelRows, model_rows, prediction_rows};
 use windfall_statistics::model::reduced::{Reduced, reduce};
 use windfall_statistics::model::selection::{Selection, select};
-use windfall_statistics::residuals::cross_validation::cross_validate;
+use windfall_statistics::residuals::cross_validation::{CrossValidation, cross_validate};
 use windfall_statistics::residuals::diagnostics::{
-    inflation, influence, robust_coefficients, robust_covariance_rows,
+    Inflation, inflation, influence, robust_coefficients, robust_covariance_rows,
 };
-
-/// Quality of predictions of rows left out in parts.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, utoipa::ToSchema)]
-pub struct CrossValidationOutcome {
-    /// Parts.
-    pub folds: usize,
-    /// Root mean square error of prediction.
-    pub rms: f64,
-    /// Part of the variation that is predicted.
-    pub r2: f64,
-}
 
 /// A fitted linear model.
 #[derive(Clone, Debug, PartialEq, Serialize, utoipa::ToSchema)]
@@ -49,7 +38,7 @@ pub struct RegressOutcome {
     /// Rows that were left out for missing cells.
     pub left_out: usize,
     /// Estimates.
-    pub terms: Vec<TermOutcome>,
+    pub terms: Vec<Coefficient>,
     /// Whether their standard errors are HC3.
     pub robust: bool,
     /// Covariance of the estimates, in the order of `terms`.
@@ -58,7 +47,7 @@ pub struct RegressOutcome {
     pub ranges: Vec<RangeOutcome>,
     /// How good the model is.
     #[serde(flatten)]
-    pub quality: QualityOutcome,
+    pub quality: Quality,
     /// The model against none.
     pub model: WholeModel,
     /// Residuals.
@@ -68,17 +57,17 @@ pub struct RegressOutcome {
     /// "I", "II" or "III".
     pub anova_type: &'static str,
     /// Analysis of variance.
-    pub anova: Vec<AnovaOutcome>,
+    pub anova: Vec<AnovaRow>,
     /// Lack of fit, where rows are repeated.
-    pub lack_of_fit: Option<LackOfFitOutcome>,
+    pub lack_of_fit: Option<LackOfFit>,
     /// Variance inflation.
-    pub vif: Vec<InflationOutcome>,
+    pub vif: Vec<Inflation>,
     /// Terms that were removed, in order.
     pub removed: Vec<StepOutcome>,
     /// Every step of the selection.
     pub steps: Vec<StepOutcome>,
     /// How the model predicts rows it was not fitted to.
-    pub cross_validation: Option<CrossValidationOutcome>,
+    pub cross_validation: Option<CrossValidation>,
     /// Tests of the residuals.
     pub residuals: ResidualOutcome,
     /// Rows with their influence.
@@ -162,13 +151,13 @@ fn regress_linear(
 }
 
 fn check(request: &RegressRequest) -> Result<(), Error> {
-    part("--confidence", request.confidence)?;
+    check_part("--confidence", request.confidence)?;
     let Some(selection) = &request.selection else {
         return Ok(());
     };
     if let Criterion::Probability { enter, remove } = selection.criterion {
-        part("--p-enter", enter)?;
-        part("--p-remove", remove)?;
+        check_part("--p-enter", enter)?;
+        check_part("--p-remove", remove)?;
         if selection.direction == Direction::Stepwise && enter > remove {
             let problem = "terms must not enter at a probability at which they leave: give \
                            --p-enter no larger than --p-remove";
@@ -178,7 +167,8 @@ fn check(request: &RegressRequest) -> Result<(), Error> {
     Ok(())
 }
 
-fn part(option: &str, value: f64) -> Result<(), Error> {
+/// Checks that an option's value lies between 0 and 1.
+pub(crate) fn check_part(option: &str, value: f64) -> Result<(), Error> {
     match value > 0.0 && value < 1.0 {
         true => Ok(()),
         false => Err(unusable(option, format!("{value} is not between 0 and 1"))),
@@ -205,11 +195,10 @@ fn outcome(
 ) -> Result<RegressOutcome, Error> {
     let settings = rows.x.select_columns(&fit.columns);
     let lines: Vec<usize> = rows.kept.iter().map(|row| data.lines[*row]).collect();
-    let influence = influence(fit);
+    let influence = influence(fit, &rows.y);
     let vif = inflation(&rows.frame, fit);
     let steps = steps_of(rows, selection);
-    let df = fit.residual_df as f64;
-    let coefficients = match request.robust {
+    let terms = match request.robust {
         true => robust_coefficients(fit, &rows.x),
         false => fit.coefficients.clone(),
     };
@@ -244,42 +233,30 @@ fn outcome(
         response: formula.response.as_ref().map(spelling).unwrap_or_default(),
         rows: fit.rows,
         left_out: rows.left_out.len(),
-        terms: terms_of(&coefficients, df),
+        terms,
         robust: request.robust,
         covariance: match request.robust {
             true => robust_covariance_rows(fit, &rows.x),
             false => fit.covariance_rows(),
         },
         ranges: ranges_of(formula, &data.table, &rows.kept),
-        quality: fit.quality(&rows.y).into(),
-        model: whole_of(fit),
-        residual: SumOfSquares {
-            ss: fit.residual_ss,
-            df,
-        },
-        total: SumOfSquares {
-            ss: fit.total_ss,
-            df: df + fit.model_df() as f64,
-        },
-        anova_type: roman(request.anova),
+        quality: fit.quality(&rows.y),
+        model: fit.whole(),
+        residual: fit.residual(),
+        total: fit.total(),
+        anova_type: request.anova.roman(),
         anova: variance_of(request, data, formula, rows, reduced, selection)?,
-        lack_of_fit: lack_of_fit(&settings, &rows.y, fit.residual_ss, fit.residual_df)
-            .as_ref()
-            .map(lack_of),
-        vif: inflation_of(&vif),
+        lack_of_fit: lack_of_fit(&settings, &rows.y, fit.residual_ss, fit.residual_df),
+        vif,
         removed: steps
             .iter()
             .filter(|s| s.action == "removed")
             .cloned()
             .collect(),
         steps,
-        cross_validation: validation.map(|found| CrossValidationOutcome {
-            folds: found.folds,
-            rms: found.rms,
-            r2: found.r2,
-        }),
+        cross_validation: validation,
         residuals,
-        influence: rows_of(&influence, &rows.y, &lines),
+        influence: rows_of(influence, &lines),
         predictions: predictions(request, rows, fit)?,
         findings,
     })
@@ -293,20 +270,15 @@ fn variance_of(
     rows: &ModelRows,
     reduced: &Reduced,
     selection: &Selection,
-) -> Result<Vec<AnovaOutcome>, Error> {
-    let terms = &selection.terms;
-    if request.anova == AnovaType::Partial && rows.frame.has_categories() {
+) -> Result<Vec<AnovaRow>, Error> {
+    let (terms, kind) = (&selection.terms, request.anova);
+    if kind == AnovaType::Partial && rows.frame.has_categories() {
         let summed = model_rows(formula, &data.table, Contrast::Sum, &[]);
         let summed = summed.map_err(Error::Statistics)?;
         let reduced = reduce(&summed.x, &summed.y);
-        return Ok(anova_of(&anova(
-            &summed.frame,
-            &reduced,
-            terms,
-            request.anova,
-        )));
+        return Ok(anova(&summed.frame, &reduced, terms, kind).rows);
     }
-    Ok(anova_of(&anova(&rows.frame, reduced, terms, request.anova)))
+    Ok(anova(&rows.frame, reduced, terms, kind).rows)
 }
 
 fn steps_of(rows: &ModelRows, selection: &Selection) -> Vec<StepOutcome> {
@@ -342,5 +314,8 @@ fn predictions(
     };
     let asked = read_data(path)?;
     let x = prediction_rows(&rows.frame, &asked.table).map_err(Error::Statistics)?;
-    Ok(predictions_of(&predict(fit, &x), &asked.lines))
+    let found = predict(fit, &x).into_iter().zip(&asked.lines);
+    Ok(found
+        .map(|(prediction, &line)| PredictionOutcome { line, prediction })
+        .collect())
 }

@@ -1,61 +1,108 @@
 //! A linear model as text and CSV.
 
-use crate::regress::outcome::{AnovaOutcome, TermOutcome};
+use crate::columns::{Column, csv_of_rows, given, text_of_rows};
+use crate::regress::outcome::{PredictionOutcome, StepOutcome};
 use crate::regress::residuals::residuals_text;
 use crate::regress::run::RegressOutcome;
 use windfall_files::error::Error;
-use windfall_files::table::write::csv_text;
 use windfall_files::text::statistic::{freedom, number, probability};
-use windfall_files::text::table::findings_list;
-use windfall_files::text::table::{page_tables, paragraph};
+use windfall_files::text::table::{findings_list, page_tables, paragraph};
+use windfall_statistics::model::anova::{AnovaRow, LackOfFit, SumOfSquares};
+use windfall_statistics::model::linear_model::{Coefficient, Quality};
 
-fn strings(words: &[&str]) -> Vec<String> {
-    words.iter().map(|word| (*word).to_owned()).collect()
+const TERMS: [Column<Coefficient>; 7] = [
+    ("term", |term| term.name.clone()),
+    ("estimate", |term| number(term.estimate)),
+    ("se", |term| number(term.se)),
+    ("t", |term| number(term.t)),
+    ("p", |term| probability(term.p)),
+    ("from", |term| number(term.low)),
+    ("to", |term| number(term.high)),
+];
+
+const TERMS_CSV: [Column<Coefficient>; 8] = [
+    ("term", |term| term.name.clone()),
+    ("estimate", |term| term.estimate.to_string()),
+    ("se", |term| term.se.to_string()),
+    ("t", |term| term.t.to_string()),
+    ("df", |term| term.df.to_string()),
+    ("p", |term| term.p.to_string()),
+    ("low", |term| term.low.to_string()),
+    ("high", |term| term.high.to_string()),
+];
+
+const PREDICTIONS: [Column<PredictionOutcome>; 7] = [
+    ("line", |row| row.line.to_string()),
+    ("predicted", |row| number(row.prediction.mean)),
+    ("se", |row| number(row.prediction.se)),
+    ("mean from", |row| number(row.prediction.mean_low)),
+    ("to", |row| number(row.prediction.mean_high)),
+    ("observation from", |row| number(row.prediction.low)),
+    ("to ", |row| number(row.prediction.high)),
+];
+
+const PREDICTIONS_CSV: [Column<PredictionOutcome>; 7] = [
+    ("line", |row| row.line.to_string()),
+    ("predicted", |row| row.prediction.mean.to_string()),
+    ("se", |row| row.prediction.se.to_string()),
+    ("mean_low", |row| row.prediction.mean_low.to_string()),
+    ("mean_high", |row| row.prediction.mean_high.to_string()),
+    ("low", |row| row.prediction.low.to_string()),
+    ("high", |row| row.prediction.high.to_string()),
+];
+
+/// An analysis of variance as a table: terms, residual with lack of fit, total.
+pub(crate) fn anova_text(
+    rows: &[AnovaRow],
+    residual: SumOfSquares,
+    lack_of_fit: Option<&LackOfFit>,
+    total: SumOfSquares,
+) -> String {
+    let header = ["source", "SS", "df", "mean square", "F", "p"].map(str::to_owned);
+    let cells = |name: &str, sum: SumOfSquares, test: [String; 2]| {
+        let [f, p] = test;
+        let (ss, df) = (number(sum.ss), freedom(sum.df));
+        vec![name.to_owned(), ss, df, number(sum.ss / sum.df), f, p]
+    };
+    let sum = |row: &AnovaRow| SumOfSquares {
+        ss: row.ss,
+        df: row.df,
+    };
+    let untested = || [String::new(), String::new()];
+    let tested = |row: &AnovaRow| cells(&row.term, sum(row), [number(row.f), probability(row.p)]);
+    let mut table: Vec<Vec<String>> = rows.iter().map(tested).collect();
+    table.push(cells("residual", residual, untested()));
+    if let Some(found) = lack_of_fit {
+        table.push(cells("  lack of fit", sum(&found.lack), untested()));
+        table.push(cells("  pure error", found.pure_error, untested()));
+    }
+    table.push(cells("total", total, untested()));
+    page_tables(&header, &table, &[0])
 }
 
-/// Estimates as a table.
-#[must_use]
-pub fn terms_text(terms: &[TermOutcome]) -> String {
-    let header = strings(&["term", "estimate", "se", "t", "p", "from", "to"]);
-    let rows = terms.iter().map(|term| {
-        vec![
-            term.term.clone(),
-            number(term.estimate),
-            number(term.se),
-            number(term.t),
-            probability(term.p),
-            number(term.low),
-            number(term.high),
-        ]
-    });
-    page_tables(&header, &rows.collect::<Vec<_>>(), &[0])
+/// R² in its three forms, and PRESS.
+pub(crate) fn r2_text(quality: &Quality) -> String {
+    format!(
+        "R² {}, adjusted {}, predicted {} (PRESS {})",
+        number(quality.r2),
+        number(quality.r2_adjusted),
+        number(quality.r2_predicted),
+        number(quality.press),
+    )
 }
 
-/// An analysis of variance as a table.
-#[must_use]
-pub fn anova_text(rows: &[AnovaOutcome], rest: &[(&str, f64, f64)]) -> String {
-    let header = strings(&["source", "SS", "df", "mean square", "F", "p"]);
-    let own = rows.iter().map(|row| {
-        vec![
-            row.term.clone(),
-            number(row.ss),
-            freedom(row.df),
-            number(row.ss / row.df),
-            number(row.f),
-            probability(row.p),
-        ]
-    });
-    let rest = rest.iter().map(|(name, ss, df)| {
-        vec![
-            (*name).to_owned(),
-            number(*ss),
-            freedom(*df),
-            number(ss / df),
-            String::new(),
-            String::new(),
-        ]
-    });
-    page_tables(&header, &own.chain(rest).collect::<Vec<_>>(), &[0])
+/// The test of lack of fit.
+pub(crate) fn lack_of_fit_text(lack_of_fit: Option<&LackOfFit>, unrepeated: &str) -> String {
+    let Some(LackOfFit { lack, pure_error }) = lack_of_fit else {
+        return format!("lack of fit: {unrepeated}, so there is no pure error to test against\n");
+    };
+    format!(
+        "lack of fit: F {} on {} and {}, p {}\n",
+        number(lack.f),
+        freedom(lack.df),
+        freedom(pure_error.df),
+        probability(lack.p)
+    )
 }
 
 /// A model as text.
@@ -68,20 +115,16 @@ pub fn text_of_regress(outcome: &RegressOutcome) -> String {
     }
     text += "\n\n";
     if !outcome.steps.is_empty() {
-        text += &steps_text(outcome);
-        text += "\n";
+        text += &(steps_text(&outcome.steps) + "\n\n");
     }
-    text += &terms_text(&outcome.terms);
+    text += &text_of_rows(&outcome.terms, &TERMS, &[0]);
     if outcome.robust {
         text += "\nStandard errors that hold for unequal variances (HC3).\n";
     }
     text += &format!(
-        "\n\nR² {}, adjusted {}, predicted {} (PRESS {})\nresidual standard deviation {} on {} degrees of freedom\n\
+        "\n\n{}\nresidual standard deviation {} on {} degrees of freedom\n\
          model F {} on {} and {}, p {}\nAICc {}, BIC {}, adequate precision {}\n",
-        number(quality.r2),
-        number(quality.r2_adjusted),
-        number(quality.r2_predicted),
-        number(quality.press),
+        r2_text(quality),
         number(quality.sigma),
         outcome.residual.df,
         number(outcome.model.f),
@@ -100,131 +143,52 @@ pub fn text_of_regress(outcome: &RegressOutcome) -> String {
             number(validation.rms)
         );
     }
-    text += &format!("\nAnalysis of variance, type {}:\n", outcome.anova_type);
-    let mut rest = vec![("residual", outcome.residual.ss, outcome.residual.df)];
-    if let Some(lack) = &outcome.lack_of_fit {
-        rest.push(("  lack of fit", lack.lack.ss, lack.lack.df));
-        rest.push(("  pure error", lack.pure_error.ss, lack.pure_error.df));
-    }
-    rest.push(("total", outcome.total.ss, outcome.total.df));
-    text += &anova_text(&outcome.anova, &rest);
-    text += "\n";
-    match &outcome.lack_of_fit {
-        Some(lack) => {
-            text += &format!(
-                "lack of fit: F {} on {} and {}, p {}\n",
-                number(lack.lack.f),
-                lack.lack.df,
-                lack.pure_error.df,
-                probability(lack.lack.p)
-            );
-        }
-        None => {
-            text += "lack of fit: no rows are repeated, so there is no pure error to test against\n"
-        }
-    }
+    let lack_of_fit = outcome.lack_of_fit.as_ref();
+    text += &format!(
+        "\nAnalysis of variance, type {}:\n{}\n{}",
+        outcome.anova_type,
+        anova_text(&outcome.anova, outcome.residual, lack_of_fit, outcome.total),
+        lack_of_fit_text(lack_of_fit, "no rows are repeated")
+    );
     if !outcome.vif.is_empty() {
-        let factors = outcome
-            .vif
-            .iter()
-            .map(|v| format!("{} {}", v.term, number(v.factor)));
-        let line = format!(
-            "variance inflation: {}",
-            factors.collect::<Vec<_>>().join(", ")
-        );
+        let factors = outcome.vif.iter();
+        let factors: Vec<String> = factors
+            .map(|v| format!("{} {}", v.term, number(v.factor)))
+            .collect();
+        let line = format!("variance inflation: {}", factors.join(", "));
         text += &(paragraph(&line, 2) + "\n");
     }
     text += &residuals_text(&outcome.residuals);
     if !outcome.predictions.is_empty() {
-        text += &format!("\n{}\n", predictions_text(outcome));
+        let table = text_of_rows(&outcome.predictions, &PREDICTIONS, &[]);
+        text += &format!("\n{table}\n");
     }
     text + &findings_list(&outcome.findings)
 }
 
-fn steps_text(outcome: &RegressOutcome) -> String {
-    let header = strings(&["step", "", "term", "F", "p", "criterion", "R² then"]);
-    let rows = outcome.steps.iter().enumerate().map(|(place, step)| {
-        vec![
-            (place + 1).to_string(),
-            step.action.to_owned(),
-            step.term.clone(),
-            number(step.f),
-            probability(step.p),
-            step.criterion.map_or_else(|| "-".to_owned(), number),
-            number(step.r2),
-        ]
-    });
-    page_tables(&header, &rows.collect::<Vec<_>>(), &[1, 2]) + "\n"
-}
-
-fn predictions_text(outcome: &RegressOutcome) -> String {
-    let header = strings(&[
-        "line",
-        "predicted",
-        "se",
-        "mean from",
-        "to",
-        "observation from",
-        "to ",
-    ]);
-    page_tables(&header, &prediction_rows(outcome, &number), &[])
-}
-
-fn prediction_rows(outcome: &RegressOutcome, write: &dyn Fn(f64) -> String) -> Vec<Vec<String>> {
-    let rows = outcome.predictions.iter().map(|row| {
-        let numbers = [
-            row.predicted,
-            row.se,
-            row.mean_low,
-            row.mean_high,
-            row.low,
-            row.high,
-        ];
-        let cells = numbers.into_iter().map(write);
-        std::iter::once(row.line.to_string()).chain(cells).collect()
-    });
-    rows.collect()
+fn steps_text(steps: &[StepOutcome]) -> String {
+    let rows: Vec<(usize, &StepOutcome)> = (1..).zip(steps).collect();
+    let columns: [Column<(usize, &StepOutcome)>; 7] = [
+        ("step", |row| row.0.to_string()),
+        ("", |row| row.1.action.to_owned()),
+        ("term", |row| row.1.term.clone()),
+        ("F", |row| number(row.1.f)),
+        ("p", |row| probability(row.1.p)),
+        ("criterion", |row| given(row.1.criterion, number)),
+        ("R² then", |row| number(row.1.r2)),
+    ];
+    text_of_rows(&rows, &columns, &[1, 2])
 }
 
 /// A model as CSV: estimates, or predictions where they were asked for.
-///
-/// # Errors
-/// None in practice: the text is written to memory.
 pub fn csv_of_regress(outcome: &RegressOutcome) -> Result<String, Error> {
-    if !outcome.predictions.is_empty() {
-        let header = strings(&[
-            "line",
-            "predicted",
-            "se",
-            "mean_low",
-            "mean_high",
-            "low",
-            "high",
-        ]);
-        let rows = prediction_rows(outcome, &|value| value.to_string());
-        return csv_text(&header, rows);
+    match outcome.predictions.is_empty() {
+        true => csv_of_terms(&outcome.terms),
+        false => csv_of_rows(&outcome.predictions, &PREDICTIONS_CSV),
     }
-    csv_of_terms(&outcome.terms)
 }
 
 /// Estimates as CSV.
-///
-/// # Errors
-/// None in practice: the text is written to memory.
-pub fn csv_of_terms(terms: &[TermOutcome]) -> Result<String, Error> {
-    let header = strings(&["term", "estimate", "se", "t", "df", "p", "low", "high"]);
-    let rows = terms.iter().map(|term| {
-        let numbers = [
-            term.estimate,
-            term.se,
-            term.t,
-            term.df,
-            term.p,
-            term.low,
-            term.high,
-        ];
-        let cells = numbers.iter().map(f64::to_string);
-        std::iter::once(term.term.clone()).chain(cells).collect()
-    });
-    csv_text(&header, rows)
+pub(crate) fn csv_of_terms(terms: &[Coefficient]) -> Result<String, Error> {
+    csv_of_rows(terms, &TERMS_CSV)
 }

@@ -11,8 +11,7 @@ use windfall_statistics::surface::coding::{
     CodedFactors, FactorCoding, Recognised, code_by_levels, code_with,
 };
 
-/// Codes the factors: by given ranges, by what the file says of the design, else
-/// by their levels.
+/// Codes the factors by given ranges, by the header of a design, or by their levels.
 ///
 /// # Errors
 /// A factor is unknown, no number or constant; a range cannot be used.

@@ -34,20 +34,15 @@ const BESIDE_BAR: f64 = 76.0;
 /// Panels side by side.
 const COLUMNS: usize = 2;
 
-/// Labels of lines are as far from each other, and no line shorter than this has
-/// one; px.
+/// Least distance between labels, and least length of a labelled line; px.
 const LABEL_ROOM: f64 = 30.0;
 const LEAST_LABELLED: f64 = 46.0;
 
 /// Colour of the optimum and its family.
 const BEST: Ink = Ink::Series(1);
 
-/// Contours of each response over every pair of factors, and of the desirability where
-/// something is wanted: bands between round levels, the runs, the most desirable
-/// settings and those that are as good.
-///
-/// # Errors
-/// None in practice: the data are written to memory.
+/// Contours of each response, and of the desirability if there are goals, over every pair
+/// of factors, with the runs, the optimum and settings as good.
 pub fn contour_paintings(
     fitted: &FittedSurfaces,
     outcome: &SurfaceOutcome,
@@ -179,8 +174,7 @@ fn draw_panel(
     );
 }
 
-/// Where the label of a line stands: near its middle, away from the border, other
-/// labels and what is marked.
+/// Place of a line's label: near its middle, away from border, labels and marks.
 fn label_place(
     points: &[(f64, f64)],
     within: &Rectangle,

@@ -77,8 +77,7 @@ pub fn effects_of(model: &SurfaceModel, confidence: f64) -> Option<Effects> {
     })
 }
 
-/// Half-normal scores of the terms, in the order of [`Effects::terms`]: where |t| of
-/// the i-th smallest of m lies if no term matters.
+/// Expected |t| of the terms if none matters, largest first.
 #[must_use]
 pub fn half_normal_scores(count: usize) -> Vec<f64> {
     let m = count as f64;
@@ -89,9 +88,6 @@ pub fn half_normal_scores(count: usize) -> Vec<f64> {
 }
 
 /// Pareto and half-normal plot of a response; `None` as in [`effects_of`].
-///
-/// # Errors
-/// None in practice: the data are written to memory.
 pub fn effects_painting(model: &SurfaceModel, confidence: f64) -> Result<Option<Painting>, Error> {
     let Some(effects) = effects_of(model, confidence) else {
         return Ok(None);

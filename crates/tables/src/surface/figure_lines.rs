@@ -2,12 +2,14 @@
 
 use crate::regress::outcome::RowOutcome;
 use crate::surface::figure_pairs::{factor_title, reference_words};
-use crate::surface::fitted::{FittedSurfaces, desirability_at, settings_along, value_of};
+use crate::surface::fitted::{FittedSurfaces, desirability_at, settings_along};
 use crate::surface::outcome::{SurfaceModel, SurfaceOutcome};
 use windfall_draw::files::{NamedFigure, file_name};
 use windfall_draw::xy::{Figure, Mark, Panel, Series, Side, Style};
 use windfall_files::text::column_title::column_title;
 use windfall_statistics::distribution::tail::{normal_quantile, t_upper_quantile};
+use windfall_statistics::residuals::diagnostics::RowInfluence;
+use windfall_statistics::surface::desirability::desirability;
 
 /// Points of a line.
 const POINTS: usize = 81;
@@ -21,8 +23,7 @@ fn drawn(label: &str, style: Style, colour: usize, points: Vec<(f64, f64)>) -> S
     }
 }
 
-/// Each response as one factor after the other leaves the reference, in coded units,
-/// so that factors of different kinds can be compared: the steepest line matters most.
+/// Each response along one factor at a time from the reference, in coded units.
 #[must_use]
 pub fn figure_of_perturbation(fitted: &FittedSurfaces) -> NamedFigure {
     let panels = fitted.responses.iter().map(|response| {
@@ -62,8 +63,7 @@ pub fn figure_of_perturbation(fitted: &FittedSurfaces) -> NamedFigure {
     }
 }
 
-/// Desirability of each response and of all, over each factor; `None` where nothing is
-/// wanted.
+/// Desirability of each response and of all, over each factor; `None` without goals.
 #[must_use]
 pub fn figure_of_desirability(fitted: &FittedSurfaces) -> Option<NamedFigure> {
     desirability_at(fitted, &fitted.reference)?;
@@ -77,9 +77,9 @@ pub fn figure_of_desirability(fitted: &FittedSurfaces) -> Option<NamedFigure> {
         };
         let mut series = Vec::new();
         for (place, response) in fitted.responses.iter().enumerate() {
-            if response.goal.is_some() {
+            if let Some(goal) = &response.goal {
                 let (name, _) = column_title(&response.name);
-                let points = over(&|p| value_of(response, p).desirability);
+                let points = over(&|p| Some(desirability(goal, response.surface.value(p))));
                 series.push(drawn(&name, Style::Line, place, points));
             }
         }
@@ -115,9 +115,8 @@ pub fn figure_of_desirability(fitted: &FittedSurfaces) -> Option<NamedFigure> {
     })
 }
 
-/// How well the model of each response meets the runs: fitted against measured,
-/// studentised residuals over the fitted value and in the order of the table, and
-/// against normal scores.
+/// Fitted against measured, and studentised residuals over the fitted value, in the order
+/// of the table and against normal scores, for each response.
 #[must_use]
 pub fn figures_of_models(outcome: &SurfaceOutcome, confidence: f64) -> Vec<NamedFigure> {
     let models = outcome.responses.iter();
@@ -129,10 +128,14 @@ pub fn figures_of_models(outcome: &SurfaceOutcome, confidence: f64) -> Vec<Named
 fn figure_of_model(model: &SurfaceModel, confidence: f64) -> NamedFigure {
     let (name, unit) = column_title(&model.response);
     let rows = &model.influence;
-    let points = |x: fn(&RowOutcome) -> f64, y: fn(&RowOutcome) -> f64| -> Vec<(f64, f64)> {
-        rows.iter().map(|row| (x(row), y(row))).collect()
+    let points = |x: fn(&RowInfluence) -> f64, y: fn(&RowInfluence) -> f64| {
+        let rows = rows
+            .iter()
+            .map(|row| (x(&row.influence), y(&row.influence)));
+        rows.collect::<Vec<(f64, f64)>>()
     };
-    let ends = rows.iter().flat_map(|row| [row.observed, row.fitted]);
+    let ends = rows.iter();
+    let ends = ends.flat_map(|row| [row.influence.observed, row.influence.fitted]);
     let (low, high) = ends.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), v| {
         (low.min(v), high.max(v))
     });
@@ -178,7 +181,9 @@ fn figure_of_model(model: &SurfaceModel, confidence: f64) -> NamedFigure {
     over(
         "line of the table".to_owned(),
         "",
-        points(|r| r.line as f64, |r| r.studentised),
+        rows.iter()
+            .map(|r| (r.line as f64, r.influence.studentised))
+            .collect(),
     );
     panels.push(normal_panel(rows));
     NamedFigure {
@@ -196,7 +201,7 @@ fn figure_of_model(model: &SurfaceModel, confidence: f64) -> NamedFigure {
 
 /// Studentised residuals against normal scores (Blom 1958: (i − 3/8)/(n + 1/4)).
 fn normal_panel(rows: &[RowOutcome]) -> Panel {
-    let finite = rows.iter().map(|row| row.studentised);
+    let finite = rows.iter().map(|row| row.influence.studentised);
     let mut sorted: Vec<f64> = finite.filter(|value| value.is_finite()).collect();
     sorted.sort_by(f64::total_cmp);
     let n = sorted.len() as f64;

@@ -2,7 +2,7 @@
 
 use crate::surface::figure_heights::Heights;
 use crate::surface::fitted::{
-    FittedSurfaces, Shown, SurfaceGrid, pairs_of_factors, surface_grid, value_of,
+    FittedSurfaces, Shown, SurfaceGrid, desirability_at, pairs_of_factors, surface_grid,
 };
 use crate::surface::outcome::SurfaceOutcome;
 use windfall_draw::axis::unit_label;
@@ -29,10 +29,8 @@ pub struct SurfacePairs {
     pub heights: Heights,
 }
 
-/// Each response, then the desirability where something is wanted, over every pair of
-/// factors.
-///
-/// * `points`: of a grid along each factor
+/// Each response, and the desirability if there are goals, on a grid of `points` along
+/// every pair of factors.
 #[must_use]
 pub fn surface_pairs(fitted: &FittedSurfaces, points: usize) -> Vec<SurfacePairs> {
     let mut pairs = pairs_of_factors(fitted);
@@ -141,11 +139,7 @@ pub fn places_of(
     }
 }
 
-/// Everything that the figures over pairs show: grids with the standard errors of
-/// means and their intervals, then runs, optimum and family.
-///
-/// # Errors
-/// None in practice: the text is written to memory.
+/// Grids with standard errors of the means, runs, optimum and family as CSV.
 pub fn csv_of_pairs(
     fitted: &FittedSurfaces,
     outcome: &SurfaceOutcome,
@@ -194,7 +188,7 @@ pub fn csv_of_pairs(
 pub fn height_at_reference(fitted: &FittedSurfaces, own: &SurfacePairs) -> Option<f64> {
     let response = fitted.responses.iter().find(|r| r.name == own.name);
     match response {
-        Some(response) => Some(value_of(response, &fitted.reference).mean),
-        None => crate::surface::fitted::desirability_at(fitted, &fitted.reference),
+        Some(response) => Some(response.surface.value(&fitted.reference)),
+        None => desirability_at(fitted, &fitted.reference),
     }
 }

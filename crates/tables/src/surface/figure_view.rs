@@ -34,11 +34,7 @@ const COLUMNS: usize = 2;
 const TOP: f64 = 36.0;
 const BESIDE: f64 = 92.0;
 
-/// Each response over every pair of factors as a surface in space, with its contours
-/// on the floor and the most desirable settings.
-///
-/// # Errors
-/// None in practice: the data are written to memory.
+/// Each response as a surface over every pair of factors, with contours and optimum.
 pub fn view_paintings(
     fitted: &FittedSurfaces,
     outcome: &SurfaceOutcome,
@@ -134,8 +130,7 @@ fn scene_of(own: &SurfacePairs, grid: &SurfaceGrid, middle: (f64, f64)) -> Scene
 }
 
 impl Scene {
-    /// Where a point of the data stands in the drawing: seen from far away, so that
-    /// parallels stay parallel.
+    /// Place of a point of the data in the drawing, in parallel projection.
     fn place(&self, x: f64, y: f64, z: f64) -> (f64, f64) {
         let part = |value: f64, axis: &Axis| (value - axis.low) / (axis.high - axis.low);
         let x = 2.0 * part(x, &self.across) - 1.0;
@@ -170,47 +165,20 @@ impl Scene {
             );
             drawing.rule(ends.0, ends.1, ink);
         };
-        for at in &x.ticks {
-            line(
-                drawing,
-                [*at, y.low, z.low],
-                [*at, y.high, z.low],
-                Ink::Grid,
-            );
-            line(
-                drawing,
-                [*at, y.high, z.low],
-                [*at, y.high, z.high],
-                Ink::Grid,
-            );
+        for &at in &x.ticks {
+            let corner = [at, y.high, z.low];
+            line(drawing, [at, y.low, z.low], corner, Ink::Grid);
+            line(drawing, corner, [at, y.high, z.high], Ink::Grid);
         }
-        for at in &y.ticks {
-            line(
-                drawing,
-                [x.low, *at, z.low],
-                [x.high, *at, z.low],
-                Ink::Grid,
-            );
-            line(
-                drawing,
-                [x.high, *at, z.low],
-                [x.high, *at, z.high],
-                Ink::Grid,
-            );
+        for &at in &y.ticks {
+            let corner = [x.high, at, z.low];
+            line(drawing, [x.low, at, z.low], corner, Ink::Grid);
+            line(drawing, corner, [x.high, at, z.high], Ink::Grid);
         }
-        for at in &z.ticks {
-            line(
-                drawing,
-                [x.low, y.high, *at],
-                [x.high, y.high, *at],
-                Ink::Grid,
-            );
-            line(
-                drawing,
-                [x.high, y.low, *at],
-                [x.high, y.high, *at],
-                Ink::Grid,
-            );
+        for &at in &z.ticks {
+            let corner = [x.high, y.high, at];
+            line(drawing, [x.low, y.high, at], corner, Ink::Grid);
+            line(drawing, [x.high, y.low, at], corner, Ink::Grid);
         }
         for (from, to) in [
             ([x.low, y.low, z.low], [x.high, y.low, z.low]),

@@ -1,12 +1,8 @@
-//! Fitted response surfaces to be looked at: their values with intervals at any
-//! settings, over two factors, and along one.
+//! Fitted response surfaces: their values over two factors and along one.
 
-use serde::Serialize;
-use windfall_files::error::Error;
-use windfall_files::option_value::unusable;
 use windfall_statistics::surface::analysis::Surface;
 use windfall_statistics::surface::coding::CodedFactors;
-use windfall_statistics::surface::desirability::{Goal, desirability, overall};
+use windfall_statistics::surface::desirability::{Goal, overall};
 
 /// A response with its surface.
 #[derive(Clone, Debug)]
@@ -26,113 +22,11 @@ pub struct FittedSurfaces {
     pub coded: CodedFactors,
     /// Responses in the order in which they were asked for.
     pub responses: Vec<ResponseSurface>,
-    /// Where the factors are that a figure does not vary, coded: the optimum where
-    /// goals are met, else the centre with factors held where they are held.
+    /// Coded settings of the factors that a figure does not vary: the optimum, or the centre
+    /// with held factors.
     pub reference: Vec<f64>,
     /// Whether `reference` is the optimum.
     pub at_optimum: bool,
-}
-
-/// A response at some settings.
-#[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct SurfaceValue {
-    /// The response.
-    pub response: String,
-    /// Its mean there, in its own unit.
-    pub mean: f64,
-    /// Standard error of the mean.
-    pub se: f64,
-    /// Confidence interval of the mean.
-    pub mean_low: f64,
-    /// Its upper end.
-    pub mean_high: f64,
-    /// Interval of one further observation.
-    pub low: f64,
-    /// Its upper end.
-    pub high: f64,
-    /// Desirability of this response alone, where something is wanted of it.
-    pub desirability: Option<f64>,
-}
-
-/// All responses at some settings.
-#[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct SettingsValue {
-    /// Actual settings.
-    pub actual: Vec<f64>,
-    /// The same in coded units.
-    pub coded: Vec<f64>,
-    /// The responses.
-    pub responses: Vec<SurfaceValue>,
-    /// Desirability of all responses, where something is wanted of one.
-    pub desirability: Option<f64>,
-    /// Factors that are outside the range of the runs: values there are guesses.
-    pub outside: Vec<String>,
-}
-
-/// All responses at actual settings, in the order of the factors.
-///
-/// # Errors
-/// There are more or fewer settings than factors, or one is no finite number.
-///
-/// # Example
-/// ```no_run
-/// # fn example(request: &windfall_tables::surface::run::SurfaceRequest) -> Result<(), windfall_files::error::Error> {
-/// let (_, fitted) = windfall_tables::surface::run::fitted_surfaces(request)?;
-/// let there = windfall_tables::surface::fitted::values_at(&fitted, &[0.868, 1.91, 5.56e-4])?;
-/// let (low, high) = (there.responses[0].mean_low, there.responses[0].mean_high);
-/// # Ok(()) }
-/// ```
-pub fn values_at(fitted: &FittedSurfaces, actual: &[f64]) -> Result<SettingsValue, Error> {
-    let factors = &fitted.coded.factors;
-    if actual.len() != factors.len() || actual.iter().any(|value| !value.is_finite()) {
-        let names: Vec<&str> = factors.iter().map(|f| f.name.as_str()).collect();
-        let problem = format!(
-            "expected {} finite settings: {}",
-            factors.len(),
-            names.join(", ")
-        );
-        return Err(unusable(format!("settings {actual:?}"), problem));
-    }
-    let pairs = factors.iter().zip(actual);
-    let coded: Vec<f64> = pairs.map(|(factor, value)| factor.coded(*value)).collect();
-    let outside = (0..factors.len()).filter(|place| {
-        let (low, high) = coded_range(fitted, *place);
-        let room = 1e-9 * (high - low);
-        coded[*place] < low - room || coded[*place] > high + room
-    });
-    Ok(SettingsValue {
-        actual: actual.to_vec(),
-        outside: outside.map(|place| factors[place].name.clone()).collect(),
-        responses: fitted
-            .responses
-            .iter()
-            .map(|response| value_of(response, &coded))
-            .collect(),
-        desirability: desirability_at(fitted, &coded),
-        coded,
-    })
-}
-
-/// A response at coded settings.
-#[must_use]
-pub fn value_of(response: &ResponseSurface, coded: &[f64]) -> SurfaceValue {
-    let point = coded.to_vec();
-    let found = response.surface.predict(std::slice::from_ref(&point));
-    let value = response.surface.value(coded);
-    let (mean, se, own, one) = found.first().map_or(
-        (value, f64::NAN, (f64::NAN, f64::NAN), (f64::NAN, f64::NAN)),
-        |p| (p.mean, p.se, p.mean_interval, p.interval),
-    );
-    SurfaceValue {
-        response: response.name.clone(),
-        mean,
-        se,
-        mean_low: own.0,
-        mean_high: own.1,
-        low: one.0,
-        high: one.1,
-        desirability: response.goal.as_ref().map(|goal| desirability(goal, value)),
-    }
 }
 
 /// Desirability of all responses at coded settings; `None` where nothing is wanted.
@@ -144,15 +38,6 @@ pub fn desirability_at(fitted: &FittedSurfaces, coded: &[f64]) -> Option<f64> {
     });
     let (goals, values): (Vec<Goal>, Vec<f64>) = wanted.unzip();
     (!goals.is_empty()).then(|| overall(&goals, &values))
-}
-
-/// Lowest and highest coded value of a factor among the runs.
-#[must_use]
-pub fn coded_range(fitted: &FittedSurfaces, factor: usize) -> (f64, f64) {
-    let values = fitted.coded.values[factor].iter().copied();
-    values.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), value| {
-        (low.min(value), high.max(value))
-    })
 }
 
 /// Values over two factors, the others at the reference.
@@ -179,11 +64,8 @@ pub enum Shown {
     Desirability,
 }
 
-/// Values over the range of the runs of two factors.
-///
-/// * `points`: along each factor, at least 2
-///
-/// The desirability is 0 where nothing is wanted.
+/// Values over the range of the runs of two factors, at least 2 `points` along each; the
+/// desirability is 0 without goals.
 #[must_use]
 pub fn surface_grid(
     fitted: &FittedSurfaces,
@@ -193,7 +75,7 @@ pub fn surface_grid(
 ) -> SurfaceGrid {
     let points = points.max(2);
     let along = |factor: usize| -> Vec<f64> {
-        let (low, high) = coded_range(fitted, factor);
+        let (low, high) = fitted.coded.range(factor);
         let part = |i: usize| i as f64 / (points - 1) as f64;
         (0..points)
             .map(|i| low * (1.0 - part(i)) + high * part(i))
@@ -233,11 +115,10 @@ pub fn surface_grid(
     }
 }
 
-/// Coded settings along one factor, from its lowest to its highest run, the others at
-/// the reference.
+/// Coded settings over the range of one factor, the others at the reference.
 #[must_use]
 pub fn settings_along(fitted: &FittedSurfaces, factor: usize, points: usize) -> Vec<Vec<f64>> {
-    let (low, high) = coded_range(fitted, factor);
+    let (low, high) = fitted.coded.range(factor);
     let last = points.max(2) - 1;
     (0..=last)
         .map(|i| {
@@ -296,31 +177,6 @@ mod tests {
             centre,
             half,
         }
-    }
-
-    /// y = 2.1, 3.9, 6.2, 7.8, 10.1 at 1 to 5: the line 0.05 + 1.99 x leaves s² =
-    /// 0.107/3, so that the mean at 3 is 6.02 ± s/√5 and at 5 10.00 ± s √0.6, with
-    /// Student's 3.182446 for 3 degrees of freedom.
-    #[test]
-    fn reference_a_line_with_its_intervals() {
-        let coded: Vec<f64> = (1..=5).map(|x| (f64::from(x) - 3.0) / 2.0).collect();
-        let y = [2.1, 3.9, 6.2, 7.8, 10.1];
-        let line = fitted(vec![coding("x", 3.0, 2.0)], vec![coded], "A", &y);
-        let s = (0.107_f64 / 3.0).sqrt();
-        for (x, mean, part) in [(3.0, 6.02, 0.2_f64), (5.0, 10.0, 0.6)] {
-            let there = values_at(&line, &[x]).unwrap();
-            let own = &there.responses[0];
-            assert!((own.mean - mean).abs() < 1e-12, "{own:?}");
-            assert!((own.se - s * part.sqrt()).abs() < 1e-12);
-            let reach = 3.182_446 * s * part.sqrt();
-            assert!((own.mean_high - own.mean - reach).abs() < 1e-5);
-            let reach = 3.182_446 * s * (1.0 + part).sqrt();
-            assert!((own.mean - own.low - reach).abs() < 1e-5);
-            assert!(there.outside.is_empty() && there.desirability.is_none());
-        }
-        assert_eq!(values_at(&line, &[5.1]).unwrap().outside, ["x"]);
-        assert!(values_at(&line, &[1.0, 2.0]).is_err());
-        assert!(values_at(&line, &[f64::NAN]).is_err());
     }
 
     /// On a 3 × 3 factorial y = 10 + 2a − 3b + a² + ab/2 in coded units

@@ -37,7 +37,7 @@ pub fn goal(
         weight_high: 1.0,
         importance: 3.0,
     };
-    let mut said = false;
+    let mut wanted = None;
     for wish in wishes.split(',') {
         let (key, value) = wish.trim().split_once(' ').unwrap_or((wish.trim(), ""));
         let number = || {
@@ -51,48 +51,29 @@ pub fn goal(
                 false => Err(wrong(format!("{key:?} must be positive"))),
             })
         };
-        let wanted = match key {
-            "target" => Some(Wanted::Target(number()?)),
-            "maximum" | "max" => Some(Wanted::Maximum),
-            "minimum" | "min" => Some(Wanted::Minimum),
-            "range" => Some(Wanted::Range),
-            "low" => {
-                goal.low = number()?;
-                None
-            }
-            "high" => {
-                goal.high = number()?;
-                None
-            }
+        match key {
+            "target" => wanted = Some(Wanted::Target(number()?)),
+            "maximum" | "max" => wanted = Some(Wanted::Maximum),
+            "minimum" | "min" => wanted = Some(Wanted::Minimum),
+            "range" => wanted = Some(Wanted::Range),
+            "low" => goal.low = number()?,
+            "high" => goal.high = number()?,
             "weight" => {
                 goal.weight_low = positive()?;
                 goal.weight_high = goal.weight_low;
-                None
             }
-            "weight_low" => {
-                goal.weight_low = positive()?;
-                None
-            }
-            "weight_high" => {
-                goal.weight_high = positive()?;
-                None
-            }
-            "importance" => {
-                goal.importance = positive()?;
-                None
-            }
+            "weight_low" => goal.weight_low = positive()?,
+            "weight_high" => goal.weight_high = positive()?,
+            "importance" => goal.importance = positive()?,
             other => return Err(wrong(format!("{other:?} is not known"))),
-        };
-        if let Some(wanted) = wanted {
-            goal.wanted = wanted;
-            said = true;
         }
     }
-    if !said {
+    let Some(wanted) = wanted else {
         return Err(wrong(
             "say what is wanted: target and a number, maximum, minimum or range".to_owned(),
         ));
-    }
+    };
+    goal.wanted = wanted;
     let (low, high) = (goal.low, goal.high);
     match goal.wanted {
         Wanted::Target(target) if !(low < target && target < high) => Err(wrong(format!(

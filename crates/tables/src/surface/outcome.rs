@@ -1,10 +1,10 @@
 //! Fitted response surfaces as JSON shows them.
 
-use crate::regress::outcome::{
-    LackOfFitOutcome, QualityOutcome, RowOutcome, SumOfSquares, WholeModel,
-};
+use crate::regress::outcome::RowOutcome;
 use serde::Serialize;
 use windfall_files::found::FindingOutcome;
+use windfall_statistics::model::anova::{LackOfFit, SumOfSquares};
+use windfall_statistics::model::linear_model::{Quality, WholeModel};
 
 /// A term of a surface.
 #[derive(Clone, Debug, PartialEq, Serialize, utoipa::ToSchema)]
@@ -112,13 +112,13 @@ pub struct SurfaceModel {
     pub total: SumOfSquares,
     /// How good it is.
     #[serde(flatten)]
-    pub quality: QualityOutcome,
+    pub quality: Quality,
     /// Residual standard deviation in percent of the mean.
     pub cv_percent: f64,
     /// "I", "II" or "III".
     pub anova_type: &'static str,
     /// Lack of fit, where runs are repeated.
-    pub lack_of_fit: Option<LackOfFitOutcome>,
+    pub lack_of_fit: Option<LackOfFit>,
     /// Stationary point of a quadratic surface.
     pub canonical: Option<CanonicalOutcome>,
     /// Best points at distances from the centre.
@@ -196,8 +196,7 @@ pub struct SurfaceOutcome {
 /// Predictions over two factors, for contours and surfaces.
 #[derive(Clone, Debug, PartialEq, Serialize, utoipa::ToSchema)]
 pub struct GridOutcome {
-    /// Names of all factors, then of the responses with the standard errors of
-    /// their means.
+    /// Names of all factors, then of the responses, each with its standard error.
     pub columns: Vec<String>,
     /// One for each point, the first factor varying fastest.
     pub rows: Vec<Vec<f64>>,

@@ -1,9 +1,9 @@
-//! `windfall surface`: a table of runs → response surfaces, their analysis and
-//! the settings that are best for all responses.
+//! `windfall surface`: a table of runs → response surfaces and the best settings.
 
 use crate::design::coding::number_factors;
-use crate::regress::findings::{aliased_findings, fit_findings, left_out_finding};
-use crate::regress::outcome::{SumOfSquares, lack_of, roman, rows_of, whole_of};
+use crate::regress::findings::{aliased_findings, finding, fit_findings, left_out_finding};
+use crate::regress::outcome::rows_of;
+use crate::regress::run::check_part;
 use crate::surface::factors::{coded_factors, coding_findings, coding_text};
 use crate::surface::figure_contour::contour_paintings;
 use crate::surface::figure_effects::effects_painting;
@@ -17,7 +17,7 @@ use crate::surface::outcome::{
     ActualTerm, CanonicalOutcome, FactorOutcome, RidgeOutcome, SurfaceModel, SurfaceOutcome,
     SurfaceTerm,
 };
-use crate::surface::settings::{SettingsRequest, grid_of, held, settings};
+use crate::surface::settings::{SettingsRequest, grid_of, settings};
 use std::path::PathBuf;
 use windfall_draw::files::{FigureFolder, NamedFigure, write_figures, write_paintings};
 use windfall_files::error::Error;
@@ -102,18 +102,14 @@ pub fn surface(request: &SurfaceRequest) -> Result<SurfaceOutcome, Error> {
     Ok(outcome)
 }
 
-/// [`surface`] without figures, with the surfaces themselves: for those who look at
-/// them at settings of their own (`surface_fitted`).
+/// [`surface`] without figures, with the surfaces themselves.
 ///
 /// # Errors
 /// The table, a model or an option cannot be used.
 pub fn fitted_surfaces(
     request: &SurfaceRequest,
 ) -> Result<(SurfaceOutcome, FittedSurfaces), Error> {
-    if !(request.confidence > 0.0 && request.confidence < 1.0) {
-        let problem = format!("{} is not between 0 and 1", request.confidence);
-        return Err(unusable("--confidence", problem));
-    }
+    check_part("--confidence", request.confidence)?;
     let mut data = read_data(&request.table)?;
     let factors = factor_names(request, &data)?;
     let mut findings = keep_complete(request, &factors, &mut data)?;
@@ -153,16 +149,10 @@ pub fn fitted_surfaces(
     };
     let (optimum, family, found) = settings(&asked, &surfaces, &coded)?;
     findings.extend(found);
-    let grid = match &request.grid {
-        Some(pair) => Some(grid_of(
-            &asked,
-            pair,
-            request.grid_points,
-            &surfaces,
-            &coded,
-        )?),
-        None => None,
-    };
+    let points = request.grid_points;
+    let grid = request.grid.as_ref();
+    let grid = grid.map(|pair| grid_of(&asked, pair, points, &surfaces, &coded));
+    let grid = grid.transpose()?;
     let outcome = SurfaceOutcome {
         factors: factor_outcomes(&factors, &coded, &data)?,
         coding: coding_text(&coded),
@@ -175,13 +165,10 @@ pub fn fitted_surfaces(
     };
     let best = outcome.optimum.as_ref().filter(|o| o.desirability > 0.0);
     let at_optimum = best.is_some();
-    let mut reference = vec![0.0; coded.factors.len()];
-    for (place, value) in held(&asked, &coded)? {
-        reference[place] = value;
-    }
-    if let Some(best) = best {
-        reference.clone_from(&best.coded);
-    }
+    let reference = match best {
+        Some(best) => best.coded.clone(),
+        None => asked.centre(&coded)?,
+    };
     let named = request.responses.iter().zip(surfaces).zip(&asked.goals);
     let responses = named.map(|(((name, _), surface), goal)| ResponseSurface {
         name: name.clone(),
@@ -248,12 +235,7 @@ fn keep_complete(
 ) -> Result<Vec<FindingOutcome>, Error> {
     let mut names = factors.to_vec();
     for (response, _) in &request.responses {
-        if data
-            .table
-            .columns
-            .iter()
-            .any(|column| column.name == *response)
-        {
+        if has_column(data, response) {
             names.push(response.clone());
         }
     }
@@ -280,13 +262,12 @@ fn keep_complete(
     }
 }
 
+fn has_column(data: &Data, name: &str) -> bool {
+    data.table.columns.iter().any(|column| column.name == name)
+}
+
 fn response_values(response: &str, data: &Data) -> Result<Vec<f64>, Error> {
-    if data
-        .table
-        .columns
-        .iter()
-        .any(|column| column.name == response)
-    {
+    if has_column(data, response) {
         let numbers = data.table.numbers(response).map_err(Error::Statistics)?;
         return Ok(numbers.to_vec());
     }
@@ -344,16 +325,15 @@ fn model_of(
     let fit = &surface.fit;
     let every: Vec<usize> = (0..surface.terms.monomials.len()).collect();
     let variance = anova(&surface.frame, &surface.reduced, &every, request.anova);
-    let influence = influence(fit);
+    let influence = influence(fit, y);
     let vif = inflation(&surface.frame, fit);
-    let df = fit.residual_df as f64;
     let mean = y.iter().sum::<f64>() / y.len() as f64;
     let quality = fit.quality(y);
     let names: Vec<String> = surface.factors.iter().map(|f| f.name.clone()).collect();
     let mut findings = aliased_findings(&surface.frame, &fit.aliased);
     findings.extend(fit_findings(fit, &influence, &vif, &data.lines, &[]));
     if !is_hierarchical(&surface.terms.monomials) {
-        findings.push(crate::regress::findings::finding(
+        findings.push(finding(
             "not-hierarchical",
             "the model has a term without the terms that it is made of: what it says depends on \
              the coding, and the equation in actual units has terms beside the model's"
@@ -374,24 +354,16 @@ fn model_of(
                 coefficient: *coefficient,
             })
             .collect(),
-        model: whole_of(fit),
-        residual: SumOfSquares {
-            ss: fit.residual_ss,
-            df,
-        },
-        total: SumOfSquares {
-            ss: fit.total_ss,
-            df: df + fit.model_df() as f64,
-        },
+        model: fit.whole(),
+        residual: fit.residual(),
+        total: fit.total(),
         cv_percent: 100.0 * quality.sigma / mean,
-        quality: quality.into(),
-        anova_type: roman(request.anova),
-        lack_of_fit: surface_lack_of_fit(surface, &coded.values, y)
-            .as_ref()
-            .map(lack_of),
+        quality,
+        anova_type: request.anova.roman(),
+        lack_of_fit: surface_lack_of_fit(surface, &coded.values, y),
         canonical: canonical_of(surface, coded),
         ridge: ridge_of(surface, coded),
-        influence: rows_of(&influence, y, &data.lines),
+        influence: rows_of(influence, &data.lines),
     };
     (outcome, findings)
 }
@@ -421,7 +393,7 @@ fn terms_of(
                 high: own.map_or(f64::NAN, |c| c.high),
                 actual: actual.map_or(f64::NAN, |(_, value)| *value),
                 ss: row.map(|row| row.ss),
-                df: row.map(|row| row.df as f64),
+                df: row.map(|row| row.df),
                 f: row.map(|row| row.f),
                 p: row.map(|row| row.p),
                 vif: vif.iter().find(|v| v.term == *term).map(|v| v.factor),
@@ -430,22 +402,12 @@ fn terms_of(
         .collect()
 }
 
-fn actual_point(surface: &Surface, coded: &[f64]) -> Vec<f64> {
-    let pairs = surface.factors.iter().zip(coded);
-    pairs.map(|(factor, value)| factor.actual(*value)).collect()
-}
-
 fn canonical_of(surface: &Surface, coded: &CodedFactors) -> Option<CanonicalOutcome> {
     let found = canonical(surface)?;
-    let inside = found
-        .stationary
-        .iter()
-        .zip(&coded.values)
-        .all(|(value, seen)| {
-            let low = seen.iter().copied().fold(f64::INFINITY, f64::min);
-            let high = seen.iter().copied().fold(f64::NEG_INFINITY, f64::max);
-            (low..=high).contains(value)
-        });
+    let inside = (0..coded.factors.len()).all(|factor| {
+        let (low, high) = coded.range(factor);
+        (low..=high).contains(&found.stationary[factor])
+    });
     Some(CanonicalOutcome {
         shape: match found.shape {
             Shape::Maximum => "maximum",
@@ -453,7 +415,7 @@ fn canonical_of(surface: &Surface, coded: &CodedFactors) -> Option<CanonicalOutc
             Shape::Saddle => "saddle",
             Shape::Ridge => "ridge",
         },
-        actual: actual_point(surface, &found.stationary),
+        actual: coded.actual(&found.stationary),
         coded: found.stationary,
         distance: found.distance,
         inside,
@@ -485,7 +447,7 @@ fn ridge_of(surface: &Surface, coded: &CodedFactors) -> Vec<RidgeOutcome> {
         .map(|(of, point)| RidgeOutcome {
             of,
             radius: point.radius,
-            actual: actual_point(surface, &point.point),
+            actual: coded.actual(&point.point),
             value: point.value,
         })
         .collect()

@@ -29,6 +29,17 @@ pub(crate) struct SettingsRequest<'a> {
     pub members: usize,
 }
 
+impl SettingsRequest<'_> {
+    /// The centre in coded units, with held factors where they are held.
+    pub fn centre(&self, coded: &CodedFactors) -> Result<Vec<f64>, Error> {
+        let mut centre = vec![0.0; coded.factors.len()];
+        for (place, value) in held(self, coded)? {
+            centre[place] = value;
+        }
+        Ok(centre)
+    }
+}
+
 /// An optimum, its family and what is to be said of them.
 pub(crate) type Settings = (
     Option<SettingOutcome>,
@@ -69,10 +80,8 @@ pub(crate) fn settings(
             findings,
         ));
     }
-    let along = match request.along {
-        Some(name) => Some(place_of(name, coded, "--along")?),
-        None => None,
-    };
+    let along = request.along.map(|name| place_of(name, coded, "--along"));
+    let along = along.transpose()?;
     let family = equally_good(&own, &goals, &region, &best, along, request.members);
     let family = family.map(|family| {
         let factor = &coded.factors[family.along];
@@ -115,16 +124,15 @@ fn setting(
         PredictedResponse {
             response: request.names[place].clone(),
             predicted: predicted.mean,
-            low: predicted.interval.0,
-            high: predicted.interval.1,
+            low: predicted.low,
+            high: predicted.high,
             desirability: request.goals[place].as_ref().map_or(f64::NAN, |goal| {
                 desirability(goal, surface.value(&optimum.point))
             }),
         }
     });
-    let pairs = coded.factors.iter().zip(&optimum.point);
     SettingOutcome {
-        actual: pairs.map(|(factor, value)| factor.actual(*value)).collect(),
+        actual: coded.actual(&optimum.point),
         coded: optimum.point.clone(),
         responses: responses.collect(),
         desirability: optimum.desirability,
@@ -145,20 +153,11 @@ fn place_of(name: &str, coded: &CodedFactors, option: &str) -> Result<usize, Err
 
 /// The ranges of the runs, with held factors where they are held.
 fn region(request: &SettingsRequest, coded: &CodedFactors) -> Result<Region, Error> {
-    let fold = |values: &[f64], start: f64, pick: fn(f64, f64) -> f64| {
-        values.iter().copied().fold(start, pick)
-    };
+    let ranges = (0..coded.factors.len()).map(|factor| coded.range(factor));
+    let (low, high) = ranges.unzip();
     let mut region = Region {
-        low: coded
-            .values
-            .iter()
-            .map(|v| fold(v, f64::INFINITY, f64::min))
-            .collect(),
-        high: coded
-            .values
-            .iter()
-            .map(|v| fold(v, f64::NEG_INFINITY, f64::max))
-            .collect(),
+        low,
+        high,
         radius: None,
     };
     for (place, value) in held(request, coded)? {
@@ -168,10 +167,7 @@ fn region(request: &SettingsRequest, coded: &CodedFactors) -> Result<Region, Err
 }
 
 /// Held factors with their coded values.
-pub(crate) fn held(
-    request: &SettingsRequest,
-    coded: &CodedFactors,
-) -> Result<Vec<(usize, f64)>, Error> {
+fn held(request: &SettingsRequest, coded: &CodedFactors) -> Result<Vec<(usize, f64)>, Error> {
     let parsed = request.hold.iter().map(|text| {
         let expected = || unusable(format!("--hold {text}"), "expected FACTOR=VALUE");
         let (name, value) = text.split_once('=').ok_or_else(expected)?;
@@ -216,14 +212,9 @@ pub(crate) fn grid_of(
             "expected two different factors",
         ));
     }
-    let mut base = vec![0.0; coded.factors.len()];
-    for (place, value) in held(request, coded)? {
-        base[place] = value;
-    }
+    let base = request.centre(coded)?;
     let at = |place: usize, step: usize| {
-        let values = &coded.values[place];
-        let low = values.iter().copied().fold(f64::INFINITY, f64::min);
-        let high = values.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+        let (low, high) = coded.range(place);
         low + (high - low) * step as f64 / (points - 1) as f64
     };
     let settings: Vec<Vec<f64>> = (0..points * points)
@@ -236,12 +227,10 @@ pub(crate) fn grid_of(
         .collect();
     let predicted: Vec<_> = surfaces.iter().map(|s| s.predict(&settings)).collect();
     let rows = settings.iter().enumerate().map(|(row, point)| {
-        let pairs = coded.factors.iter().zip(point);
-        let actual = pairs.map(|(factor, value)| factor.actual(*value));
         let responses = predicted
             .iter()
             .flat_map(|own| [own[row].mean, own[row].se]);
-        actual.chain(responses).collect()
+        coded.actual(point).into_iter().chain(responses).collect()
     });
     let factors = coded.factors.iter().map(|factor| factor.name.clone());
     let responses = request.names.iter();

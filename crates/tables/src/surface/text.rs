@@ -1,34 +1,41 @@
 //! Response surfaces as text and CSV.
 
-use crate::regress::outcome::AnovaOutcome;
-use crate::regress::text::anova_text;
-use crate::surface::outcome::{SettingOutcome, SurfaceModel, SurfaceOutcome};
+use crate::columns::{Column, strings, text_of_rows};
+use crate::regress::text::{anova_text, lack_of_fit_text, r2_text};
+use crate::surface::outcome::{
+    FactorOutcome, SettingOutcome, SurfaceModel, SurfaceOutcome, SurfaceTerm,
+};
 use windfall_files::error::Error;
 use windfall_files::table::write::csv_text;
 use windfall_files::text::number::plain;
-use windfall_files::text::statistic::{freedom, number, probability};
-use windfall_files::text::table::findings_list;
-use windfall_files::text::table::page_tables;
+use windfall_files::text::statistic::number;
+use windfall_files::text::table::{findings_list, page_tables};
+use windfall_statistics::model::anova::AnovaRow;
 
-fn strings(words: &[&str]) -> Vec<String> {
-    words.iter().map(|word| (*word).to_owned()).collect()
-}
+const FACTORS: [Column<FactorOutcome>; 6] = [
+    ("", |factor| factor.letter.clone()),
+    ("factor", |factor| factor.name.clone()),
+    ("coded 0", |factor| plain(factor.centre)),
+    ("coded 1 is +", |factor| plain(factor.half_range)),
+    ("lowest", |factor| plain(factor.lowest)),
+    ("highest", |factor| plain(factor.highest)),
+];
+
+const TERMS: [Column<SurfaceTerm>; 5] = [
+    ("term", |term| term.term.clone()),
+    ("", |term| match term.name == term.term {
+        true => String::new(),
+        false => term.name.clone(),
+    }),
+    ("coded", |term| number(term.coded)),
+    ("se", |term| number(term.se)),
+    ("actual", |term| number(term.actual)),
+];
 
 /// Surfaces as text.
 #[must_use]
 pub fn text_of_surface(outcome: &SurfaceOutcome) -> String {
-    let header = strings(&["", "factor", "coded 0", "coded 1 is +", "lowest", "highest"]);
-    let rows = outcome.factors.iter().map(|factor| {
-        vec![
-            factor.letter.clone(),
-            factor.name.clone(),
-            plain(factor.centre),
-            plain(factor.half_range),
-            plain(factor.lowest),
-            plain(factor.highest),
-        ]
-    });
-    let mut text = page_tables(&header, &rows.collect::<Vec<_>>(), &[0, 1]);
+    let mut text = text_of_rows(&outcome.factors, &FACTORS, &[0, 1]);
     text += &format!("\nCoding: {}\n", outcome.coding);
     for model in &outcome.responses {
         text += &model_text(outcome, model);
@@ -53,28 +60,8 @@ pub fn text_of_surface(outcome: &SurfaceOutcome) -> String {
 
 fn model_text(outcome: &SurfaceOutcome, model: &SurfaceModel) -> String {
     let quality = &model.quality;
-    let header = strings(&["term", "", "coded", "se", "actual"]);
-    let rows = model.terms.iter().map(|term| {
-        vec![
-            term.term.clone(),
-            if term.name == term.term {
-                String::new()
-            } else {
-                term.name.clone()
-            },
-            number(term.coded),
-            number(term.se),
-            number(term.actual),
-        ]
-    });
-    let mut text = format!(
-        "\n{}\n{}\n\nAnalysis of variance, type {}, in coded units:\n",
-        model.response,
-        page_tables(&header, &rows.collect::<Vec<_>>(), &[0, 1]),
-        model.anova_type
-    );
     let own = model.terms.iter().filter_map(|term| {
-        Some(AnovaOutcome {
+        Some(AnovaRow {
             term: term.term.clone(),
             ss: term.ss?,
             df: term.df?,
@@ -82,44 +69,22 @@ fn model_text(outcome: &SurfaceOutcome, model: &SurfaceModel) -> String {
             p: term.p?,
         })
     });
-    let whole = AnovaOutcome {
-        term: "model".to_owned(),
-        ss: model.model.ss,
-        df: model.model.df,
-        f: model.model.f,
-        p: model.model.p,
-    };
-    let mut rest = vec![("residual", model.residual.ss, model.residual.df)];
-    if let Some(lack) = &model.lack_of_fit {
-        rest.push(("  lack of fit", lack.lack.ss, lack.lack.df));
-        rest.push(("  pure error", lack.pure_error.ss, lack.pure_error.df));
-    }
-    rest.push(("total", model.total.ss, model.total.df));
-    let rows: Vec<AnovaOutcome> = std::iter::once(whole).chain(own).collect();
-    text += &anova_text(&rows, &rest);
-    text += &format!(
-        "\n\nR² {}, adjusted {}, predicted {} (PRESS {})\nresidual standard deviation {} ({} % of the mean), \
-         adequate precision {}\n",
-        number(quality.r2),
-        number(quality.r2_adjusted),
-        number(quality.r2_predicted),
-        number(quality.press),
+    let rows: Vec<AnovaRow> = std::iter::once(model.model.row()).chain(own).collect();
+    let lack_of_fit = model.lack_of_fit.as_ref();
+    format!(
+        "\n{}\n{}\n\nAnalysis of variance, type {}, in coded units:\n{}\n\n{}\n\
+         residual standard deviation {} ({} % of the mean), adequate precision {}\n{}{}",
+        model.response,
+        text_of_rows(&model.terms, &TERMS, &[0, 1]),
+        model.anova_type,
+        anova_text(&rows, model.residual, lack_of_fit, model.total),
+        r2_text(quality),
         number(quality.sigma),
         number(model.cv_percent),
         number(quality.adequate_precision),
-    );
-    text += &match &model.lack_of_fit {
-        Some(lack) => format!(
-            "lack of fit: F {} on {} and {}, p {}\n",
-            number(lack.lack.f),
-            freedom(lack.lack.df),
-            freedom(lack.pure_error.df),
-            probability(lack.lack.p)
-        ),
-        None => "lack of fit: no run is repeated, so there is no pure error to test against\n"
-            .to_owned(),
-    };
-    text + &canonical_text(outcome, model)
+        lack_of_fit_text(lack_of_fit, "no run is repeated"),
+        canonical_text(outcome, model)
+    )
 }
 
 fn canonical_text(outcome: &SurfaceOutcome, model: &SurfaceModel) -> String {
@@ -164,9 +129,6 @@ fn settings_text(outcome: &SurfaceOutcome, settings: &[SettingOutcome]) -> Strin
 }
 
 /// Surfaces as CSV: the grid where one was asked for, else the terms.
-///
-/// # Errors
-/// None in practice: the text is written to memory.
 pub fn csv_of_surface(outcome: &SurfaceOutcome) -> Result<String, Error> {
     if let Some(grid) = &outcome.grid {
         let rows = grid.rows.iter();

@@ -221,10 +221,10 @@ export interface MixedOutcome {
   log_likelihood: number; criterion: number; aic: number; aicc: number; bic: number; removed: string[];
   effects: EffectOutcome[]; predictions: MixedPredictionOutcome[]; findings: FindingOutcome[];
 }
-export interface MixedPredictionOutcome {
-  line: number; population: number; predicted: number; se: number; mean_low: number; mean_high: number; low: number;
-  high: number;
+export interface MixedPrediction {
+  population: number; predicted: number; se: number; mean_low: number; mean_high: number; low: number; high: number;
 }
+export type MixedPredictionOutcome = MixedPrediction & { line: number; };
 export type MixedTest = AnovaOutcome & { df_denominator: number; };
 export interface MixingOutcome { r_hat: number | null; bulk_draws: number; tail_draws: number; }
 export interface ModelRange { column: string; low: number; high: number; }
@@ -277,9 +277,10 @@ export interface PopulationPosteriorOutcome {
 export interface PredictedResponse {
   response: string; predicted: number; low: number; high: number; desirability: number | null;
 }
-export interface PredictionOutcome {
-  line: number; predicted: number; se: number; mean_low: number; mean_high: number; low: number; high: number;
+export interface Prediction {
+  predicted: number; se: number; mean_low: number; mean_high: number; low: number; high: number;
 }
+export type PredictionOutcome = Prediction & { line: number; };
 export interface Problem { title: string; status: number; detail: string; code: string; }
 export interface ProfileOutcome { values: number[]; rises: number[]; open?: string | null; }
 export interface QualityOutcome {
@@ -311,10 +312,11 @@ export interface ResidualOutcome {
 export interface ResponseGiven { name: string; model: string; }
 export interface ResponseMap { response: string; map: ContourMap; errors: number[]; }
 export interface RidgeOutcome { of: string; radius: number; actual: number[]; value: number; }
-export interface RowOutcome {
-  line: number; observed: number; fitted: number; residual: number; leverage: number; standardised: number;
+export interface RowInfluence {
+  observed: number; fitted: number; residual: number; leverage: number; standardised: number;
   studentised: number | null; cook: number | null; dffits: number;
 }
+export type RowOutcome = RowInfluence & { line: number; };
 export interface RunView { time: string; results: number; failures: number; }
 export interface SceneEntry {
   id: string; title: string; fruit: number | null; contacts: number | null; end: number | null; frames: boolean;
