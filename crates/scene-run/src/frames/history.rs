@@ -169,6 +169,16 @@ impl Table {
     /// The row.
     fn read<T: DeserializeOwned>(&self) -> Result<T, Error> {
         let line = self.row.position().map_or(0, csv::Position::line);
+        let mut cells = self.header.iter().zip(&self.row);
+        let endless = |cell: &str| cell.parse().is_ok_and(|number: f64| !number.is_finite());
+        let odd = cells.find(|(name, cell)| !name.starts_with("partner") && endless(cell));
+        if let Some((name, cell)) = odd {
+            return Err(Error::from(SceneFileError::TableDamaged {
+                path: self.path.clone(),
+                line,
+                problem: format!("{cell} in column {name} is no finite number"),
+            }));
+        }
         let read = self.row.deserialize(Some(&self.header));
         read.map_err(|error| damaged(&self.path, line, &error))
     }
@@ -242,4 +252,30 @@ pub fn hardest_fruit(directory: &Path, most: usize) -> Result<Vec<HardestFruit>,
     all.sort_by(|a, b| b.peak_force.total_cmp(&a.peak_force));
     all.truncate(most);
     Ok(all)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// The column and the line are named; a wall may be called "inf".
+    #[test]
+    fn rejects_numbers_that_are_not_finite() {
+        let folder = tempfile::tempdir().unwrap();
+        let header = "fruit,partner,partner_fruit,time_s,duration_s,lasting,spot_x,spot_y,spot_z,\
+                      partner_spot_x,partner_spot_y,partner_spot_z,normal_speed_m_s,\
+                      tangential_speed_m_s,peak_force_N,absorbed_energy_J";
+        let history = |force: &str| {
+            let row = format!("1,inf,,0.1,0.002,false,0,0,1,0,0,1,0.5,0,{force},0.01");
+            let text = format!("# contacts\n{header}\n{row}\n");
+            std::fs::write(folder.path().join("events.csv"), text).unwrap();
+            fruit_history(folder.path(), 1, 1)
+        };
+        assert_eq!(history("12.5").unwrap().told[0].peak_force, 12.5);
+        let error = history("NaN").unwrap_err().to_string();
+        assert!(
+            error.contains("line 3") && error.contains("peak_force_N"),
+            "{error}"
+        );
+    }
 }
