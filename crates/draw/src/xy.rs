@@ -72,6 +72,26 @@ pub struct Series {
     pub points: Vec<(f64, f64)>,
 }
 
+impl Series {
+    /// A series in the colour of its place among the series.
+    #[must_use]
+    pub fn new(label: impl Into<String>, style: Style, points: Vec<(f64, f64)>) -> Self {
+        Self {
+            label: label.into(),
+            style,
+            colour: None,
+            points,
+        }
+    }
+
+    /// The series in a colour of its own.
+    #[must_use]
+    pub fn coloured(self, colour: usize) -> Self {
+        let colour = Some(colour);
+        Self { colour, ..self }
+    }
+}
+
 /// A place that is named.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Mark {
@@ -107,6 +127,22 @@ pub struct Panel {
     pub series: Vec<Series>,
     /// Named places.
     pub marks: Vec<Mark>,
+}
+
+impl Panel {
+    /// A panel without marks, from name and unit of each axis; the unit "1" is not shown.
+    #[must_use]
+    pub fn new(x: (&str, &str), y: (&str, &str), series: Vec<Series>) -> Self {
+        let shown = |unit: &str| if unit == "1" { "" } else { unit }.to_owned();
+        Self {
+            x: x.0.to_owned(),
+            x_unit: shown(x.1),
+            y: y.0.to_owned(),
+            y_unit: shown(y.1),
+            series,
+            marks: Vec::new(),
+        }
+    }
 }
 
 /// A figure of one or more panels, one below the other.

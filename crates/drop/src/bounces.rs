@@ -10,16 +10,14 @@ use windfall_files::text::toml_source::{
 use windfall_signal::bounce::train::{BounceOptions, StaticLevel};
 use windfall_signal::trigger::Threshold;
 
-/// How bounces are told from noise and from the ringing of the plate.
+/// How bounces are separated from noise and ringing of the plate.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct BouncePlan {
     /// How bounces are found.
     pub options: BounceOptions,
-    /// Least impulse of a bounce, as a part of m v of the drop; from the noise
-    /// where there is none. 1.
+    /// Least impulse of a bounce, as a part of m v; from the noise if `None`. 1.
     pub least_impulse: Option<f64>,
-    /// Cycles over which the logarithmic decrement is taken; the number with the
-    /// smallest uncertainty where there is none.
+    /// Cycles of the logarithmic decrement; those with the least uncertainty if `None`.
     pub ringing_cycles: Option<usize>,
 }
 
@@ -103,21 +101,16 @@ fn part(
     value: Option<&Spanned<f64>>,
     key: &'static str,
 ) -> Result<Option<f64>, Error> {
-    let fits = |part| part > 0.0 && part < 1.0;
-    number_that(
-        source,
-        value,
-        (TABLE, key),
-        fits,
+    let (fits, expected) = (
+        |part| part > 0.0 && part < 1.0,
         "a part above 0 and below 1",
-    )
+    );
+    number_that(source, value, (TABLE, key), fits, expected)
 }
 
 fn cycles(source: &TomlSource, value: Option<&Spanned<u32>>) -> Result<Option<usize>, Error> {
-    let (key, fits) = ((TABLE, "ringing_cycles"), |n| {
-        (1..=MOST_CYCLES).contains(&n)
-    });
+    let fits = |n| (1..=MOST_CYCLES).contains(&n);
     let expected = format!("a whole number from 1 to {MOST_CYCLES}");
-    let cycles = number_that(source, value, key, fits, &expected)?;
+    let cycles = number_that(source, value, (TABLE, "ringing_cycles"), fits, &expected)?;
     Ok(cycles.map(|cycles| cycles as usize))
 }

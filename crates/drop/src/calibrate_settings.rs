@@ -19,8 +19,7 @@ use windfall_numerics::unit::quantity::{parse_as, parse_unit};
 pub struct DropLaw {
     /// The law with the values that were given.
     pub law: LawExpression,
-    /// Positions of the parameters that are estimated: those without a value
-    /// and a default, and those freed by name.
+    /// Positions of the estimated parameters: those without a value, or freed by name.
     pub free: Vec<usize>,
     /// End of contact.
     pub end: EndRule,

@@ -1,16 +1,16 @@
 //! One drop: its bounces, their restitution, the ringing of the plate.
 
-use crate::read::{Drop, DropCampaign, PlatePlan, drop_of};
-use serde::{Deserialize, Deserializer, Serialize};
+use crate::measured::{
+    Known, MeasuredBounce, MeasuredDecrement, MeasuredDrop, MeasuredRestitution, MeasuredRinging,
+};
+use crate::read::{DropCampaign, PlatePlan, drop_of};
 use std::f64::consts::TAU;
 use windfall_campaign::measure::measured::{
-    MeasuredItem, MeasuredItems, MeasuredValue, plain_value, value_with_sd,
+    MeasuredItem, MeasuredValue, plain_value, value_with_sd,
 };
-use windfall_campaign::pipeline::evaluate::Document;
 use windfall_campaign::recording::channel::channel_samples;
 use windfall_campaign::recording::read::recording_path;
 use windfall_campaign::settings::model::ImpactEntry;
-use windfall_campaign::store::documents::StoredValue;
 use windfall_files::error::Error;
 use windfall_files::found::FindingOutcome;
 use windfall_files::named::Named;
@@ -33,126 +33,6 @@ pub const DROP: &str = "drop";
 /// Results on single bounces.
 pub const BOUNCE: &str = "bounce";
 
-/// A value with its standard uncertainty, as it is kept; SI.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Known {
-    /// Value; not a number where there is none.
-    #[serde(deserialize_with = "number_or_none")]
-    pub value: f64,
-    /// Standard uncertainty; not a number where it is not known.
-    #[serde(deserialize_with = "number_or_none")]
-    pub sd: f64,
-}
-
-impl From<Uncertain> for Known {
-    fn from(from: Uncertain) -> Self {
-        let finite = |value: f64| if value.is_finite() { value } else { f64::NAN };
-        Self {
-            value: finite(from.value),
-            sd: finite(from.sd),
-        }
-    }
-}
-
-/// JSON has no "not a number": it is written as null.
-fn number_or_none<'de, D: Deserializer<'de>>(deserializer: D) -> Result<f64, D::Error> {
-    Ok(Option::<f64>::deserialize(deserializer)?.unwrap_or(f64::NAN))
-}
-
-/// One bounce of a drop; SI.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct MeasuredBounce {
-    /// First touch; s.
-    pub onset: Known,
-    /// How far all onsets of the drop may be off together; s.
-    pub onset_shape: f64,
-    /// End of the contact; s.
-    pub end: Known,
-    /// Largest support force until the next bounce; N.
-    pub peak: Known,
-    /// When; s.
-    pub peak_time: f64,
-    /// First local maximum of the support force; N.
-    pub first_peak: f64,
-    /// Impulse of the contact; N s.
-    pub impulse: Known,
-    /// Whether the force stands at the limit of the instrument.
-    pub clipped: bool,
-    /// Whether the contact was recorded from before its onset to after its end.
-    pub complete: bool,
-    /// Speed of approach, where it is known; m/s.
-    pub impact_velocity: Option<Known>,
-    /// Restitution by every method that applies.
-    pub restitutions: Vec<MeasuredRestitution>,
-}
-
-/// Restitution of a bounce by one method.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct MeasuredRestitution {
-    /// Name of the method: "drop_height", "flights", "impulse", "velocities".
-    pub method: String,
-    /// Speed of approach; m/s.
-    pub impact_velocity: Known,
-    /// Coefficient of restitution; 1.
-    pub restitution: Known,
-}
-
-/// Logarithmic decrement after the first bounce.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-pub struct MeasuredDecrement {
-    /// Per cycle; 1.
-    pub decrement: Known,
-    /// Cycles between the two peaks.
-    pub cycles: usize,
-    /// Damping ratio; 1.
-    pub damping_ratio: Known,
-    /// Damped period; s.
-    pub period: Known,
-}
-
-/// Ringing of the plate after the bounces of one drop.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-pub struct MeasuredRinging {
-    /// Damped period; s.
-    pub period: Known,
-    /// Damping ratio; 1.
-    pub damping_ratio: Known,
-    /// Bounces that it comes from.
-    pub bounces: usize,
-}
-
-/// What one recording gives.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct MeasuredDrop {
-    /// Values of the drop, for tables.
-    pub item: MeasuredItem,
-    /// Values of each bounce, for tables.
-    pub parts: Vec<MeasuredItem>,
-    /// Mass of the fruit; kg.
-    pub mass: Known,
-    /// Drop height; m.
-    pub height: Known,
-    /// Its bounces.
-    pub bounces: Vec<MeasuredBounce>,
-    /// From onset to onset; s.
-    pub intervals: Vec<Known>,
-    /// Ringing of the plate, where it was heard.
-    pub ringing: Option<MeasuredRinging>,
-    /// Its logarithmic decrement after the first bounce.
-    pub decrement: Option<MeasuredDecrement>,
-    /// Static level before the first contact; N.
-    pub static_level: Known,
-    /// Standard deviation of the noise of a sample; N.
-    pub noise: f64,
-}
-
-impl Document for MeasuredDrop {
-    fn values(&self) -> Vec<StoredValue> {
-        let items = vec![self.item.clone()];
-        MeasuredItems { items }.values()
-    }
-}
-
 /// The bounces of a recording of a campaign.
 ///
 /// # Errors
@@ -163,10 +43,8 @@ pub fn bounce_train(
     recording: &Recording,
 ) -> Result<BounceTrain, Error> {
     let force = force_channel(entry, recording)?;
-    find_bounces(&force, &bounce_options(campaign, entry)?).map_err(|source| Error::Signal {
-        path: recording_path(&campaign.shared.files, entry),
-        source: Box::new(source),
-    })
+    let bounces = find_bounces(&force, &bounce_options(campaign, entry)?);
+    bounces.map_err(|source| Error::signal(recording_path(&campaign.shared.files, entry), source))
 }
 
 /// The force channel within the range of an entry.
@@ -211,8 +89,7 @@ pub fn bounce_options(
     })
 }
 
-/// Damped period and damping ratio of a plate, ζ = c/(2 √(k m)); one that creeps
-/// back does not ring.
+/// Damped period and damping ratio ζ = c/(2 √(k m)) of a plate; none if overdamped.
 fn known_ringing(mass: f64, stiffness: f64, damping: f64) -> PlateRinging {
     let damping_ratio = damping / (2.0 * (stiffness * mass).sqrt());
     if damping_ratio >= 1.0 {
@@ -252,9 +129,12 @@ pub fn evaluate_drop(
         .map(|number| measured_bounce(&train.bounces, number, &conditions, &restitutions))
         .collect();
     let ringing = train.ringing.filter(|ringing| ringing.bounces > 0);
+    let mut item = MeasuredItem::of(&campaign.shared, entry, DROP);
+    // A mean over heights would mean nothing.
+    item.group = item.group.or(Some(height_text(drop.height.value)));
     let mut measured = MeasuredDrop {
         parts: Vec::new(),
-        item: blank_item(campaign, entry, &drop),
+        item,
         mass: drop.mass.into(),
         height: drop.height.into(),
         intervals: train.intervals.iter().map(|i| (*i).into()).collect(),
@@ -268,45 +148,17 @@ pub fn evaluate_drop(
         static_level: train.static_level.into(),
         noise: train.noise,
     };
-    let mut findings: Vec<FindingOutcome> = train
-        .findings
-        .iter()
-        .map(|finding| outcome(finding.code(), finding))
-        .collect();
-    findings.extend(
-        checked
-            .iter()
-            .map(|finding| outcome(finding.code(), finding)),
-    );
-    measured.item.derived = Named(drop_values(&measured));
+    measured.item.derived = drop_values(&measured);
     let bounces = measured.bounces.len().to_string();
-    measured.item.words = Named(vec![("bounces".to_owned(), bounces)]);
+    measured.item.words = Named::of([("bounces", bounces)]);
     measured.parts = bounce_items(&measured);
-    measured.item.findings = findings;
+    let of_signal = train.findings.iter();
+    let of_signal = of_signal.map(|f| FindingOutcome::new(f.code(), f.to_string()));
+    let of_restitution = checked
+        .iter()
+        .map(|f| FindingOutcome::new(f.code(), f.to_string()));
+    measured.item.findings = of_signal.chain(of_restitution).collect();
     Ok(measured)
-}
-
-fn outcome(code: &str, finding: &dyn std::fmt::Display) -> FindingOutcome {
-    FindingOutcome {
-        code: code.to_owned(),
-        message: finding.to_string(),
-    }
-}
-
-fn blank_item(campaign: &DropCampaign, entry: &ImpactEntry, drop: &Drop) -> MeasuredItem {
-    let height = height_text(drop.height.value);
-    MeasuredItem {
-        id: entry.id.clone(),
-        specimen: entry.specimen.clone(),
-        // A mean over heights would mean nothing.
-        group: campaign.shared.group_of(entry).or(Some(height)),
-        file: entry.file.clone(),
-        law: DROP.to_owned(),
-        words: Named(Vec::new()),
-        parameters: Named(Vec::new()),
-        derived: Named(Vec::new()),
-        findings: Vec::new(),
-    }
 }
 
 /// Restitution by measured positions, where there is such a channel: a cart's.
@@ -321,12 +173,8 @@ fn from_motion(
     let contacts = train.bounces.iter();
     let contacts: Vec<(f64, f64)> = contacts.map(|b| (b.onset.value, b.end.value)).collect();
     let options = MotionOptions::default();
-    restitution_from_motion(&contact_motions(
-        &position.times,
-        &position.values,
-        &contacts,
-        &options,
-    ))
+    let (times, values) = (&position.times, &position.values);
+    restitution_from_motion(&contact_motions(times, values, &contacts, &options))
 }
 
 /// Logarithmic decrement of the free ringing after the first bounce.
@@ -351,43 +199,33 @@ fn decrement(campaign: &DropCampaign, train: &BounceTrain) -> Option<MeasuredDec
 }
 
 /// Values of a drop, those of later bounces with their number.
-fn drop_values(drop: &MeasuredDrop) -> Vec<(String, MeasuredValue)> {
-    let mut values = vec![
-        ("drop_height".to_owned(), kept(drop.height, "m")),
-        ("mass".to_owned(), kept(drop.mass, "kg")),
-        (
-            "bounces".to_owned(),
-            plain_value(drop.bounces.len() as f64, "1"),
-        ),
-    ];
+fn drop_values(drop: &MeasuredDrop) -> Named<MeasuredValue> {
+    let mut values = Named::of([
+        ("drop_height", drop.height.shown("m")),
+        ("mass", drop.mass.shown("kg")),
+        ("bounces", plain_value(drop.bounces.len() as f64, "1")),
+    ]);
     for (number, bounce) in drop.bounces.iter().enumerate() {
-        let of_bounce = bounce_values(bounce, drop.mass);
-        let interval = drop.intervals.get(number);
-        let interval = interval.map(|interval| ("interval".to_owned(), kept(*interval, "s")));
-        let named = of_bounce.into_iter().chain(interval);
-        values.extend(named.map(|(name, value)| (numbered(&name, number), value)));
+        for (name, value) in bounce_values(bounce, drop.mass).0 {
+            values.push(numbered(&name, number), value);
+        }
+        if let Some(interval) = drop.intervals.get(number) {
+            values.push(numbered("interval", number), interval.shown("s"));
+        }
     }
     if let Some(ringing) = &drop.ringing {
-        values.push(("damped_period".to_owned(), kept(ringing.period, "s")));
-        let ratio = kept(ringing.damping_ratio, "1");
-        values.push(("damping_ratio".to_owned(), ratio));
+        values.push("damped_period", ringing.period.shown("s"));
+        values.push("damping_ratio", ringing.damping_ratio.shown("1"));
     }
-    if let Some(decrement) = &drop.decrement {
-        let mut push = |name: &str, value| values.push((name.to_owned(), value));
-        push("logarithmic_decrement", kept(decrement.decrement, "1"));
-        push(
-            "decrement_cycles",
-            plain_value(decrement.cycles as f64, "1"),
-        );
-        push(
-            "damping_ratio_by_decrement",
-            kept(decrement.damping_ratio, "1"),
-        );
-        push("damped_period_by_peaks", kept(decrement.period, "s"));
+    if let Some(found) = &drop.decrement {
+        values.push("logarithmic_decrement", found.decrement.shown("1"));
+        values.push("decrement_cycles", plain_value(found.cycles as f64, "1"));
+        values.push("damping_ratio_by_decrement", found.damping_ratio.shown("1"));
+        values.push("damped_period_by_peaks", found.period.shown("s"));
     }
-    values.push(("static_level".to_owned(), kept(drop.static_level, "N")));
-    values.push(("force_noise".to_owned(), plain_value(drop.noise, "N")));
-    values.retain(|(_, value)| value.value.is_finite());
+    values.push("static_level", drop.static_level.shown("N"));
+    values.push("force_noise", plain_value(drop.noise, "N"));
+    values.0.retain(|(_, value)| value.value.is_finite());
     values
 }
 
@@ -414,47 +252,44 @@ fn absorbed(mass: Known, before: Known, after: Known) -> Known {
 /// Values of one bounce. `restitution` is that by time: by flight and drop
 /// height of the first, by flights of later ones; by velocities where there is
 /// none by time.
-fn bounce_values(bounce: &MeasuredBounce, mass: Known) -> Vec<(String, MeasuredValue)> {
-    let mut values = Vec::new();
-    let mut push = |name: &str, value| values.push((name.to_owned(), value));
+fn bounce_values(bounce: &MeasuredBounce, mass: Known) -> Named<MeasuredValue> {
+    let mut values = Named::default();
     if let Some(speed) = bounce.impact_velocity {
-        push("impact_velocity", kept(speed, "m/s"));
+        values.push("impact_velocity", speed.shown("m/s"));
         let energy = 0.5 * mass.value * speed.value * speed.value;
         let relative = (mass.sd / mass.value).hypot(2.0 * speed.sd / speed.value);
-        push(
+        values.push(
             "impact_energy",
             value_with_sd(energy, energy * relative, "J"),
         );
     }
-    let by = |methods: &[RestitutionMethod]| {
-        let code = |method: &RestitutionMethod| method.code();
-        let mut found = methods.iter().map(code).filter_map(|code| {
-            let mut all = bounce.restitutions.iter();
-            all.find(|restitution| restitution.method == code)
-        });
-        found.next()
-    };
-    let best = by(&[
+    let methods = [
         RestitutionMethod::DropHeight,
         RestitutionMethod::Flights,
         RestitutionMethod::Velocities,
-    ]);
+    ];
+    let best = methods.iter().find_map(|method| {
+        let mut all = bounce.restitutions.iter();
+        all.find(|restitution| restitution.method == method.code())
+    });
     if let Some(best) = best {
         let (e, speed) = (best.restitution, best.impact_velocity);
-        push("restitution", kept(e, "1"));
+        values.push("restitution", e.shown("1"));
         let rebound = rebound(e, speed);
-        push("rebound_velocity", kept(rebound, "m/s"));
-        push("absorbed_energy", kept(absorbed(mass, speed, rebound), "J"));
+        values.push("rebound_velocity", rebound.shown("m/s"));
+        values.push("absorbed_energy", absorbed(mass, speed, rebound).shown("J"));
     }
     for one in &bounce.restitutions {
-        let name = format!("restitution_by_{}", one.method);
-        push(&name, kept(one.restitution, "1"));
+        values.push(
+            format!("restitution_by_{}", one.method),
+            one.restitution.shown("1"),
+        );
     }
-    push("peak_force", kept(bounce.peak, "N"));
-    push("first_peak_force", plain_value(bounce.first_peak, "N"));
-    push("contact_duration", contact_duration(bounce));
-    push("impulse", kept(bounce.impulse, "N s"));
-    values.retain(|(_, value): &(String, MeasuredValue)| value.value.is_finite());
+    values.push("peak_force", bounce.peak.shown("N"));
+    values.push("first_peak_force", plain_value(bounce.first_peak, "N"));
+    values.push("contact_duration", contact_duration(bounce));
+    values.push("impulse", bounce.impulse.shown("N s"));
+    values.0.retain(|(_, value)| value.value.is_finite());
     values
 }
 
@@ -473,17 +308,10 @@ fn numbered(name: &str, number: usize) -> String {
     }
 }
 
-fn kept(value: Known, unit: &str) -> MeasuredValue {
-    value_with_sd(value.value, value.sd, unit)
-}
-
 fn contact_duration(bounce: &MeasuredBounce) -> MeasuredValue {
-    let sd = bounce
-        .onset
-        .sd
-        .hypot(bounce.end.sd)
-        .hypot(bounce.onset_shape);
-    value_with_sd(bounce.end.value - bounce.onset.value, sd, "s")
+    let (onset, end) = (bounce.onset, bounce.end);
+    let sd = onset.sd.hypot(end.sd).hypot(bounce.onset_shape);
+    value_with_sd(end.value - onset.value, sd, "s")
 }
 
 fn measured_bounce(
@@ -523,13 +351,13 @@ fn measured_bounce(
 /// An item for each bounce of a drop.
 fn bounce_items(drop: &MeasuredDrop) -> Vec<MeasuredItem> {
     let item = |(number, bounce): (usize, &MeasuredBounce)| {
-        let onset = ("onset".to_owned(), kept(bounce.onset, "s"));
-        let values = [onset].into_iter().chain(bounce_values(bounce, drop.mass));
+        let mut derived = Named::of([("onset", bounce.onset.shown("s"))]);
+        derived.0.extend(bounce_values(bounce, drop.mass).0);
         MeasuredItem {
             id: format!("{}, bounce {}", drop.item.id, number + 1),
             law: BOUNCE.to_owned(),
-            words: Named(Vec::new()),
-            derived: Named(values.collect()),
+            words: Named::default(),
+            derived,
             ..drop.item.clone()
         }
     };

@@ -7,15 +7,13 @@ use windfall_files::text::number::plain;
 use windfall_signal::bounce::train::{Bounce, BounceTrain};
 use windfall_signal::ringing::model::{Ringing, amplitude_at, ringing_at};
 
-/// The force that contacts are found in is cut off at this many times the
-/// threshold, so that the threshold is seen; 1.
+/// Multiple of the threshold at which the contact force is cut off; 1.
 const CUT: f64 = 12.0;
 
 /// Shown before the first touch, as a part of the contact; 1.
 const BEFORE: f64 = 0.5;
 
-/// Shown after a contact, in periods of the ringing, and in contacts where
-/// nothing rings; 1.
+/// Shown after a contact, in periods of the ringing, or in contacts without ringing; 1.
 const PERIODS: f64 = 9.0;
 const CONTACTS: f64 = 3.0;
 
@@ -38,26 +36,6 @@ pub fn figure_of_drop(id: &str, drop: &Drop, train: &BounceTrain) -> Figure {
             plain(1e3 * drop.height.value)
         ),
         panels,
-    }
-}
-
-fn series(label: &str, style: Style, points: Vec<(f64, f64)>) -> Series {
-    Series {
-        label: label.to_owned(),
-        style,
-        colour: None,
-        points,
-    }
-}
-
-fn panel(x: &str, y: &str, series: Vec<Series>, marks: Vec<Mark>) -> Panel {
-    Panel {
-        x: x.to_owned(),
-        x_unit: "ms".to_owned(),
-        y: y.to_owned(),
-        y_unit: "N".to_owned(),
-        series,
-        marks,
     }
 }
 
@@ -90,49 +68,43 @@ fn points(
 const ALL: (f64, f64) = (f64::NEG_INFINITY, f64::INFINITY);
 
 fn overview(train: &BounceTrain) -> Panel {
+    let force = points(train, &train.force, 0.0, ALL);
     let all = vec![
-        series(
-            "support force from its static level",
-            Style::Line,
-            points(train, &train.force, 0.0, ALL),
-        ),
-        series("contact", Style::Shade, contacts(train, 0.0)),
+        Series::new("support force from its static level", Style::Line, force),
+        Series::new("contact", Style::Shade, contacts(train, 0.0)),
     ];
     let mark = |(number, bounce): (usize, &Bounce)| Mark {
         label: format!("{}: {:.3} N", number + 1, bounce.peak),
         at: (1e3 * bounce.peak_time, bounce.peak),
         side: Side::BelowRight,
     };
-    let marks = train.bounces.iter().enumerate().map(mark).collect();
-    panel("time", "force", all, marks)
+    Panel {
+        marks: train.bounces.iter().enumerate().map(mark).collect(),
+        ..Panel::new(("time", "ms"), ("force", "N"), all)
+    }
 }
 
 fn detection(train: &BounceTrain) -> Panel {
     let (on, off) = train.thresholds;
     let cut = CUT * on;
-    let force: Vec<f64> = train
+    let force = train
         .contact_force
         .iter()
-        .map(|force| force.clamp(-cut, cut))
-        .collect();
+        .map(|force| force.clamp(-cut, cut));
+    let force = points(train, &force.collect::<Vec<f64>>(), 0.0, ALL);
+    let smoothed = format!(
+        "contact force, smoothed over {:.2} ms",
+        1e3 * train.smoothing
+    );
+    let limits = format!("a contact begins above {on:.2} N, is over below {off:.2} N");
     let at = train.times.first().map_or(0.0, |time| 1e3 * time);
     let all = vec![
-        series(
-            &format!(
-                "contact force, smoothed over {:.2} ms",
-                1e3 * train.smoothing
-            ),
-            Style::Line,
-            points(train, &force, 0.0, ALL),
-        ),
-        series("onset", Style::Upright, onsets(train)),
-        series(
-            &format!("a contact begins above {on:.2} N, is over below {off:.2} N"),
-            Style::Level,
-            vec![(at, on), (at, off)],
-        ),
+        Series::new(smoothed, Style::Line, force),
+        Series::new("onset", Style::Upright, onsets(train)),
+        Series::new(limits, Style::Level, vec![(at, on), (at, off)]),
     ];
-    panel("time", &format!("force, cut at ±{cut:.2}"), all, Vec::new())
+    let force = format!("force, cut at ±{cut:.2}");
+    Panel::new(("time", "ms"), (&force, "N"), all)
 }
 
 fn first(train: &BounceTrain, bounce: &Bounce) -> Panel {
@@ -141,32 +113,21 @@ fn first(train: &BounceTrain, bounce: &Bounce) -> Panel {
     let shown = bounce
         .ringing
         .map_or(CONTACTS * contact, |ringing| PERIODS * ringing.period.value);
-    let next = train
-        .bounces
-        .get(1)
-        .map_or(f64::INFINITY, |next| next.onset.value);
-    let range = (
-        zero - BEFORE * contact,
-        (bounce.end.value + shown).min(next),
-    );
-    let contact = &contacts(train, zero)[..2];
+    let next = train.bounces.get(1);
+    let next = next.map_or(f64::INFINITY, |next| next.onset.value);
+    let to = (bounce.end.value + shown).min(next);
+    let points = |values| points(train, values, zero, (zero - BEFORE * contact, to));
+    let (support, behind) = (points(&train.force), points(&train.contact_force));
+    let contact = contacts(train, zero)[..2].to_vec();
     let mut all = vec![
-        series(
-            "support force",
-            Style::Dots,
-            points(train, &train.force, zero, range),
-        ),
-        series("contact", Style::Shade, contact.to_vec()),
-        series(
-            "contact force behind it, smoothed",
-            Style::Line,
-            points(train, &train.contact_force, zero, range),
-        ),
+        Series::new("support force", Style::Dots, support),
+        Series::new("contact", Style::Shade, contact),
+        Series::new("contact force behind it, smoothed", Style::Line, behind),
     ];
     if let Some(ringing) = &bounce.ringing {
-        all.extend(ringing_series(ringing, zero, range.1));
+        all.extend(ringing_series(ringing, zero, to));
     }
-    panel("time from the first touch", "force", all, Vec::new())
+    Panel::new(("time from the first touch", "ms"), ("force", "N"), all)
 }
 
 fn ringing_series(ringing: &Ringing, zero: f64, to: f64) -> Vec<Series> {
@@ -190,12 +151,9 @@ fn ringing_series(ringing: &Ringing, zero: f64, to: f64) -> Vec<Series> {
         1e3 * ringing.period.value,
         ringing.damping_ratio.value
     );
+    let line = curve(&|time| ringing_at(ringing, time));
     vec![
-        series(
-            &label,
-            Style::Line,
-            curve(&|time| ringing_at(ringing, time)),
-        ),
-        series("its envelope", Style::Dashed, envelope),
+        Series::new(label, Style::Line, line),
+        Series::new("its envelope", Style::Dashed, envelope),
     ]
 }

@@ -12,7 +12,7 @@ use windfall_campaign::settings::files::check_format;
 use windfall_campaign::settings::kind::{CAMPAIGN_FILE, CampaignKind};
 use windfall_campaign::settings::model::{Campaign, ImpactEntry};
 use windfall_campaign::settings::rig::STANDARD_GRAVITY;
-use windfall_campaign::settings::shared::{SharedFile, read_shared};
+use windfall_campaign::settings::shared::read_shared;
 use windfall_cards::user_laws::read::user_laws;
 use windfall_files::error::{DropQuantity, Error, Place};
 use windfall_files::text::cell_quantity::cell_quantity;
@@ -108,11 +108,7 @@ pub fn read_drop(directory: &Path) -> Result<DropCampaign, Error> {
     check_format(&source, file.format.as_ref())?;
     let channels = channel_plans(&source, file.channels.as_ref())?;
     refuse_filters(&source, file.channels.as_ref())?;
-    let shared = SharedFile {
-        campaign: &file.campaign,
-        files: &file.files,
-        summary: &file.summary,
-    };
+    let shared = (&file.campaign, &file.files, &file.summary);
     let kind = CampaignKind::Drop;
     let campaign = DropCampaign {
         rig: rig_plan(&source, &file.rig)?,
@@ -123,7 +119,7 @@ pub fn read_drop(directory: &Path) -> Result<DropCampaign, Error> {
             &file.calibrate,
             user_laws(&source, &file.laws, directory)?,
         )?,
-        shared: read_shared(&source, directory, kind, &shared, channels)?,
+        shared: read_shared(&source, directory, kind, shared, channels)?,
     };
     for entry in &campaign.shared.entries {
         drop_of(&campaign, entry)?;
@@ -271,17 +267,10 @@ fn rig_plan(source: &TomlSource, file: &Spanned<DropRigFile>) -> Result<DropRigP
 }
 
 fn effective_mass_factor(source: &TomlSource, rig: &DropRigFile) -> Result<f64, Error> {
-    let (key, fits) = ((TABLE, "effective_mass_factor"), |factor| {
-        factor > 0.0 && factor <= 1.0
-    });
+    let (value, key) = (rig.effective_mass_factor.as_ref(), "effective_mass_factor");
+    let fits = |factor| factor > 0.0 && factor <= 1.0;
     let expected = "a number above 0 and up to 1, which is a central impact";
-    let factor = number_that(
-        source,
-        rig.effective_mass_factor.as_ref(),
-        key,
-        fits,
-        expected,
-    )?;
+    let factor = number_that(source, value, (TABLE, key), fits, expected)?;
     Ok(factor.unwrap_or(1.0))
 }
 
@@ -299,16 +288,13 @@ fn plate_plan(source: &TomlSource, file: &Spanned<DropRigFile>) -> Result<PlateP
         (&rig.plate_damping_sd, "plate_damping_sd"),
     ];
     if let Some(rigid) = rigid {
-        return match values
+        let mut given = values
             .iter()
-            .find_map(|(value, key)| Some((value.as_ref()?, key)))
-        {
-            None => Ok(rigid),
-            Some((value, key)) => {
-                let problem = "a rigid plate has no such value; remove the line";
-                Err(refused(source, value, (TABLE, *key), problem))
-            }
-        };
+            .filter_map(|(value, key)| Some((value.as_ref()?, key)));
+        return given.next().map_or(Ok(rigid), |(value, key)| {
+            let problem = "a rigid plate has no such value; remove the line";
+            Err(refused(source, value, (TABLE, key), problem))
+        });
     }
     let mass = needed(
         "plate_mass",

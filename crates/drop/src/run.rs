@@ -1,7 +1,8 @@
 //! Drops as a measurement: bounces of each drop, and the ringing of the plate.
 
-use crate::evaluate::{MeasuredDrop, bounce_options, bounce_train, evaluate_drop};
+use crate::evaluate::{bounce_options, bounce_train, evaluate_drop};
 use crate::figure::figure_of_drop;
+use crate::measured::MeasuredDrop;
 use crate::methods::methods_of_drops;
 use crate::plate_ringing::plate_items;
 use crate::read::{DropCampaign, drop_of, read_drop};

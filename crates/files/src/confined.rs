@@ -1,4 +1,4 @@
-//! Files named by somebody else, kept inside one directory.
+//! Files named from outside, confined to one directory.
 
 use crate::error::Error;
 use std::fs::File;
@@ -73,8 +73,7 @@ pub fn discard(path: &Path) {
     let _ = std::fs::remove_file(path);
 }
 
-/// A file that comes in pieces: it takes its name when the last has come, and leaves
-/// nothing behind when it does not.
+/// A file that comes in pieces: it gets its name when complete, or leaves nothing behind.
 pub struct Arriving {
     path: PathBuf,
     partial: PathBuf,
@@ -157,11 +156,7 @@ fn unique() -> usize {
 }
 
 fn failed(path: &Path, action: &'static str, source: std::io::Error) -> Error {
-    Error::FileAccess {
-        path: path.to_path_buf(),
-        action,
-        source,
-    }
+    Error::access(path, action, source)
 }
 
 #[cfg(test)]

@@ -2,7 +2,7 @@
 
 use crate::error_words::{nearest_columns, why_nothing};
 use crate::found::FailureOutcome;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 pub use crate::place::{DropQuantity, Place};
 
@@ -10,7 +10,7 @@ pub use crate::place::{DropQuantity, Place};
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum Error {
-    /// Somebody stopped the work.
+    /// The work was cancelled.
     #[error("stopped before it was done; nothing of it was kept")]
     Cancelled,
     /// What a file asks for cannot be.
@@ -55,7 +55,7 @@ pub enum Error {
         /// The name.
         id: String,
     },
-    /// Somebody else has changed the campaign meanwhile.
+    /// The campaign was changed concurrently.
     #[error(
         "the files of the campaign have changed since they were read; nothing was written. Read them again and repeat the change"
     )]
@@ -126,7 +126,7 @@ pub enum Error {
         /// What one row stands for.
         row_is: &'static str,
     },
-    /// A column that is asked for is not in the header.
+    /// A requested column is not in the header.
     #[error(
         "{path}: there is no column \"{column}\"{asked_by}; {nearest}",
         path = path.display(),
@@ -135,7 +135,7 @@ pub enum Error {
     ColumnMissing {
         /// The file.
         path: PathBuf,
-        /// The column asked for.
+        /// The requested column.
         column: String,
         /// Who asks, for the message: " (asked for by [channels.force])" or "".
         asked_by: String,
@@ -348,8 +348,7 @@ pub enum Error {
 }
 
 impl Error {
-    /// Whether the request (options, campaign files) is wrong, rather than the
-    /// work having failed.
+    /// Whether the request (options, campaign files) is wrong, not the work.
     #[must_use]
     pub fn is_request(&self) -> bool {
         if let Self::Room(fault) = self {
@@ -367,6 +366,50 @@ impl Error {
 }
 
 impl Error {
+    /// A file that the system does not let us "read", "write" or "create".
+    #[must_use]
+    pub fn access(path: &Path, action: &'static str, source: std::io::Error) -> Self {
+        Self::FileAccess {
+            path: path.to_path_buf(),
+            action,
+            source,
+        }
+    }
+
+    /// A result that cannot be written, and what the writer said.
+    pub fn unwritable(item: &str, detail: impl ToString) -> Self {
+        Self::ResultUnwritable {
+            item: item.to_owned(),
+            detail: detail.to_string(),
+        }
+    }
+
+    /// A value that a result needs, and what would tell it.
+    pub fn not_known(item: &str, missing: impl Into<String>, advice: impl Into<String>) -> Self {
+        Self::ValueNotKnown {
+            item: item.to_owned(),
+            missing: missing.into(),
+            advice: advice.into(),
+        }
+    }
+
+    /// A recording whose signals could not be used.
+    pub fn signal(path: PathBuf, source: impl std::error::Error + Send + Sync + 'static) -> Self {
+        let source = Box::new(source);
+        Self::Signal { path, source }
+    }
+
+    /// A fit or a simulation that failed.
+    pub fn identify(
+        subject: impl Into<String>,
+        source: impl std::error::Error + Send + Sync + 'static,
+    ) -> Self {
+        Self::Identify {
+            subject: subject.into(),
+            source: Box::new(source),
+        }
+    }
+
     /// The error of a room, where this is one of type `T`.
     #[must_use]
     pub fn of_room<T: Fault>(&self) -> Option<&T> {
@@ -387,7 +430,7 @@ pub trait Fault: std::error::Error + Send + Sync + 'static {
     /// Whether the request is wrong, rather than the work having failed.
     fn is_request(&self) -> bool;
 
-    /// Whether what was asked for is not there.
+    /// Whether the requested thing does not exist.
     fn is_absence(&self) -> bool {
         false
     }

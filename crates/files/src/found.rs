@@ -3,6 +3,7 @@
 //! The names of the fields are the keys of the JSON that scripts rely on.
 //! All numbers are SI.
 
+use crate::named::{Named, grouped};
 use serde::{Deserialize, Serialize};
 
 /// One estimated or held value.
@@ -38,6 +39,17 @@ pub struct FindingOutcome {
     pub code: String,
     /// A sentence.
     pub message: String,
+}
+
+impl FindingOutcome {
+    /// A finding under its code.
+    #[must_use]
+    pub fn new(code: &str, message: impl Into<String>) -> Self {
+        Self {
+            code: code.to_owned(),
+            message: message.into(),
+        }
+    }
 }
 
 /// An impact that could not be fitted.
@@ -86,6 +98,15 @@ pub fn spread(values: &[f64]) -> Option<SpreadOutcome> {
     let sd = (n > 1).then(|| (squares / (n - 1) as f64).sqrt());
     let cv = sd.filter(|_| mean != 0.0).map(|sd| sd / mean.abs());
     Some(SpreadOutcome { mean, sd, n, cv })
+}
+
+/// Spread of the values under each name, names in the order of their first appearance.
+#[must_use]
+pub fn spreads<'a>(values: impl IntoIterator<Item = (&'a str, f64)>) -> Named<SpreadOutcome> {
+    let groups = grouped(values).into_iter();
+    groups
+        .filter_map(|(name, values)| Some((name, spread(&values)?)))
+        .collect()
 }
 
 #[cfg(test)]

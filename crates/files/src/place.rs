@@ -1,6 +1,6 @@
 //! Where something is wrong, or what is missing: parts of errors.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 /// A line in a file.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -9,6 +9,15 @@ pub struct Place {
     pub file: PathBuf,
     /// Line, counted from 1; 0 when the fault is in the file as a whole.
     pub line: usize,
+}
+
+impl Place {
+    /// A line of a file; 0 for the file as a whole.
+    #[must_use]
+    pub fn at(file: &Path, line: usize) -> Self {
+        let file = file.to_path_buf();
+        Self { file, line }
+    }
 }
 
 impl std::fmt::Display for Place {

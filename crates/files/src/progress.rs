@@ -5,17 +5,15 @@ use rayon::prelude::*;
 use std::ops::ControlFlow;
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 
-/// Called from any thread with the number of items done and of all items; its answer
-/// says whether the work goes on.
+/// Called from any thread with the items done and all items; tells whether to continue.
 pub type Progress<'a> = &'a (dyn Fn(usize, usize) -> ControlFlow<()> + Sync);
 
-/// Goes on, and tells nobody.
+/// No-op progress; never cancels.
 pub fn quiet(_done: usize, _all: usize) -> ControlFlow<()> {
     ControlFlow::Continue(())
 }
 
-/// Does `work` for each of the numbers below `all`, on all cores; the results are in
-/// their order.
+/// Does `work` for each number below `all`, on all cores; results are in order.
 ///
 /// # Errors
 /// [`Error::Cancelled`] when `progress` does not go on; items that are being worked

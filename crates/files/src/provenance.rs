@@ -33,11 +33,7 @@ pub fn digest_text(text: &str) -> String {
 /// # Errors
 /// The file cannot be read.
 pub fn digest_file(path: &Path) -> Result<String, Error> {
-    let failed = |source| Error::FileAccess {
-        path: path.to_path_buf(),
-        action: "read",
-        source,
-    };
+    let failed = |source| Error::access(path, "read", source);
     let mut file = File::open(path).map_err(failed)?;
     let mut digest = Sha256::new();
     let mut chunk = vec![0; CHUNK];

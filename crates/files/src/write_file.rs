@@ -19,11 +19,7 @@ pub fn write_whole(path: &Path, contents: &[u8]) -> Result<(), Error> {
         .and_then(|()| std::fs::rename(&partial, path));
     written.map_err(|source| {
         let _ = std::fs::remove_file(&partial);
-        Error::FileAccess {
-            path: path.to_path_buf(),
-            action: "write",
-            source,
-        }
+        Error::access(path, "write", source)
     })
 }
 

@@ -9,7 +9,6 @@ pub(crate) fn integer(bytes: &[u8], big_endian: bool) -> u64 {
     }
 }
 
-/// A type of numbers.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Number {
     I8,
@@ -45,7 +44,6 @@ impl Number {
         }
     }
 
-    /// The layout of densely packed numbers.
     pub fn packed(self, big_endian: bool) -> Layout {
         Layout {
             offset: 0,
@@ -54,7 +52,6 @@ impl Number {
         }
     }
 
-    /// Decodes all numbers in `bytes`.
     pub fn decode_all(self, bytes: &[u8], big_endian: bool) -> Vec<f64> {
         let mut numbers = vec![0.0; bytes.len() / self.size() as usize];
         self.decode(bytes, self.packed(big_endian), &mut numbers);

@@ -127,7 +127,6 @@ impl Source {
         }
     }
 
-    /// Error: the file violates its format.
     pub(crate) fn malformed(
         &self,
         place: Place,

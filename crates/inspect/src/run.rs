@@ -193,7 +193,6 @@ fn finding(code: &str, message: String) -> FindingOutcome {
 struct ChannelScan {
     values: ValueScan,
     envelope: Envelope,
-    /// For a channel of times.
     times: Option<TimeScan>,
 }
 

@@ -32,7 +32,20 @@ pub struct SourceFile {
     pub paths: Vec<NamedPath>,
     /// Macros called outside test code, in order.
     pub macros: Vec<MacroCall>,
+    /// Functions with a body outside test code.
+    pub functions: Vec<Function>,
     /// Lines outside test code.
+    pub lines: usize,
+}
+
+/// A function with a body.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Function {
+    /// Its name.
+    pub name: String,
+    /// Line, from 1.
+    pub line: usize,
+    /// Lines from `fn` to the closing brace.
     pub lines: usize,
 }
 
@@ -91,6 +104,8 @@ pub fn read_source(
     paths.extend(spliced_words(&shipped));
     let mut macros = Vec::new();
     collect_macros(&shipped, &mut macros);
+    let mut functions = Vec::new();
+    collect_functions(&shipped, &mut functions);
     Ok(SourceFile {
         path: path.to_path_buf(),
         package: package.to_owned(),
@@ -98,6 +113,7 @@ pub fn read_source(
         role: role_of(within),
         paths,
         macros,
+        functions,
         lines: text.lines().count() - test_lines,
     })
 }
@@ -260,6 +276,30 @@ fn collect_paths(tokens: &[TokenTree], found: &mut Vec<NamedPath>) {
                 i += 1;
             }
             _ => i += 1,
+        }
+    }
+}
+
+fn collect_functions(tokens: &[TokenTree], found: &mut Vec<Function>) {
+    for (i, token) in tokens.iter().enumerate() {
+        match token {
+            TokenTree::Ident(word) if word == "fn" => {
+                let end = end_of_item(tokens, i);
+                if let (Some(name), TokenTree::Group(_)) =
+                    (ident(tokens.get(i + 1)), &tokens[end - 1])
+                {
+                    found.push(Function {
+                        name,
+                        line: word.span().start().line,
+                        lines: lines_between(token, &tokens[end - 1]),
+                    });
+                }
+            }
+            TokenTree::Group(group) => {
+                let inside: Vec<TokenTree> = group.stream().into_iter().collect();
+                collect_functions(&inside, found);
+            }
+            _ => {}
         }
     }
 }

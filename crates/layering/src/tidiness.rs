@@ -1,4 +1,4 @@
-//! Length of files, unfinished code, and what holds on one machine only.
+//! Length of files and functions, unfinished code, and what holds on one machine only.
 
 use crate::error::Error;
 use crate::source::{Role, SourceFile, tokens_of};
@@ -7,9 +7,11 @@ use proc_macro2::{TokenStream, TokenTree};
 use std::collections::BTreeMap;
 use std::path::Path;
 
-/// Most lines of a source file outside tests. Files are split near 500; the
-/// rest is room for the change that shows it is time.
-pub const LONGEST_FILE: usize = 600;
+/// Most lines of a source file outside tests.
+pub const LONGEST_FILE: usize = 500;
+
+/// Most lines of a function outside tests.
+pub const LONGEST_FUNCTION: usize = 100;
 
 /// Most source files in one folder.
 pub const MOST_FILES: usize = 40;
@@ -47,6 +49,21 @@ pub fn check_length(file: &SourceFile) -> Option<Violation> {
         path: file.path.clone(),
         lines: file.lines,
         limit: LONGEST_FILE,
+    })
+}
+
+/// Functions of a shipped source file that are too long.
+pub fn check_functions(file: &SourceFile) -> impl Iterator<Item = Violation> + '_ {
+    let functions = file.functions.iter().filter(|_| file.role == Role::Shipped);
+    let long = functions.filter(|function| function.lines > LONGEST_FUNCTION);
+    long.map(|function| Violation::LongFunction {
+        place: Place {
+            path: file.path.clone(),
+            line: function.line,
+        },
+        name: function.name.clone(),
+        lines: function.lines,
+        limit: LONGEST_FUNCTION,
     })
 }
 
@@ -232,6 +249,18 @@ mod tests {
         let tests = format!("fn f() {{}}\n#[cfg(test)]\nmod tests {{\n{long}}}\n");
         assert_eq!(read(&tests).lines, 1);
         assert!(check_length(&read(&tests)).is_none());
+    }
+
+    #[test]
+    fn rejects_a_function_that_is_too_long() {
+        let lines = |count: usize| {
+            let body = "    g();\n".repeat(count - 2);
+            let text = format!("trait T {{ fn a(&self); }}\nimpl T {{\nfn f() {{\n{body}}}\n}}\n");
+            let path = Path::new("src/a.rs");
+            check_functions(&read_source(path, path, "a", &text).unwrap()).count()
+        };
+        assert_eq!(lines(LONGEST_FUNCTION), 0);
+        assert_eq!(lines(LONGEST_FUNCTION + 1), 1);
     }
 
     #[test]

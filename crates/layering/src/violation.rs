@@ -76,6 +76,17 @@ pub enum Violation {
         /// Most lines allowed.
         limit: usize,
     },
+    /// A function is too long.
+    LongFunction {
+        /// Where it begins.
+        place: Place,
+        /// Its name.
+        name: String,
+        /// Its lines.
+        lines: usize,
+        /// Most lines allowed.
+        limit: usize,
+    },
     /// A folder holds too many source files.
     CrowdedFolder {
         /// Folder.
@@ -141,6 +152,15 @@ impl fmt::Display for Violation {
                 f,
                 "{}: {lines} lines outside tests, at most {limit}: split it",
                 path.display()
+            ),
+            Self::LongFunction {
+                place,
+                name,
+                lines,
+                limit,
+            } => write!(
+                f,
+                "{place}: `{name}` has {lines} lines, at most {limit}: split it by meaning"
             ),
             Self::CrowdedFolder { path, files, limit } => write!(
                 f,

@@ -8,7 +8,9 @@ use windfall_layering::error::Error;
 use windfall_layering::forbidden::{check_front_end, check_inner};
 use windfall_layering::module_cycle::{check_folder_cycles, check_module_cycles};
 use windfall_layering::source::SourceFile;
-use windfall_layering::tidiness::{check_crowding, check_length, check_local, check_unfinished};
+use windfall_layering::tidiness::{
+    check_crowding, check_functions, check_length, check_local, check_unfinished,
+};
 use windfall_layering::violation::Violation;
 use windfall_layering::workspace::{Workspace, read_workspace};
 
@@ -111,6 +113,7 @@ fn rejects_long_files_and_unfinished_code() -> Result<(), Error> {
     let workspace = workspace()?;
     let mut violations: Vec<Violation> =
         workspace.sources.iter().filter_map(check_length).collect();
+    violations.extend(workspace.sources.iter().flat_map(check_functions));
     violations.extend(check_crowding(&workspace.sources));
     for file in &workspace.texts {
         if file

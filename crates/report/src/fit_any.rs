@@ -48,8 +48,7 @@ pub fn measurement_of(kind: CampaignKind) -> Option<MeasurementWork> {
     }
 }
 
-/// Evaluates a campaign directory, or one recording of a campaign of impacts,
-/// and keeps the results in its store.
+/// Evaluates a campaign, or one recording of a campaign of impacts, and stores results.
 ///
 /// # Errors
 /// The campaign or the request is wrong, or the store cannot be used.

@@ -20,6 +20,7 @@ use windfall_campaign::result::quantity::quantities_named;
 use windfall_campaign::settings::model::ImpactCampaign;
 use windfall_draw::files::{NamedFigure, file_name};
 use windfall_draw::page::{CaptionedTable, Section};
+use windfall_draw::xy::Figure;
 use windfall_files::error::Error;
 use windfall_files::text::number::{plain, value_and_sd};
 use windfall_files::text::table::Cells;
@@ -47,16 +48,14 @@ pub fn sections_of_campaign(
     ];
     for law in laws_of(outcome) {
         let impacts: Vec<&ImpactOutcome> = of_law(outcome, law);
-        let mut figures: Vec<NamedFigure> = Vec::new();
-        figures.extend(figure_of_pairs(law, &impacts));
-        let covariates = covariates_of(campaign, &impacts);
-        let over = covariates
-            .iter()
-            .filter_map(|c| figure_of_covariate(law, &impacts, c));
-        figures.extend(over);
-        figures.extend(figure_of_predictions(law, &impacts));
+        let covariates = covariates_of(campaign, &impacts).into_iter();
+        let over = covariates.filter_map(|c| figure_of_covariate(law, &impacts, &c));
+        let pairs = figure_of_pairs(law, &impacts).into_iter();
+        let figures = pairs
+            .chain(over)
+            .chain(figure_of_predictions(law, &impacts));
         sections.push(Section {
-            figures,
+            figures: figures.collect(),
             ..Section::of_words(&format!("Figures: {law}"), Vec::new())
         });
     }
@@ -137,13 +136,13 @@ fn impact_cells(impacts: &[&ImpactOutcome]) -> Cells {
                 continue;
             };
             row.push(value_and_sd(found.value, found.sd));
-            row.push(match (found.low, found.high) {
-                (Some(low), Some(high)) => format!("{} to {}", plain(low), plain(high)),
-                _ => "-".to_owned(),
+            row.push(match found.interval() {
+                Some((low, high)) => format!("{} to {}", plain(low), plain(high)),
+                None => "-".to_owned(),
             });
         }
         row.extend(columns.iter().map(|column| {
-            let value = impact.derived.get(column.name).copied().flatten();
+            let value = impact.derived(column.name);
             value.map_or_else(|| "-".to_owned(), |value| plain(value * column.factor))
         }));
         row.push(own_codes(impact, &shared));
@@ -155,29 +154,22 @@ fn impact_cells(impacts: &[&ImpactOutcome]) -> Cells {
     }
 }
 
-/// Of each group the impact with the middle first parameter, and of all the one that
-/// its law describes worst.
+/// Of each group the impact with the middle first parameter, and the worst fitted of all.
 fn shown_impacts<'a>(impacts: &[&'a ImpactOutcome]) -> Vec<(&'a ImpactOutcome, &'static str)> {
     let mut shown: Vec<(&ImpactOutcome, &str)> = Vec::new();
     for (_, mut members) in groups_of_impacts(impacts) {
         let first = |impact: &&ImpactOutcome| {
-            let (_, estimate) = impact.parameters.0.first()?;
-            Some(estimate.value)
+            let parameter = impact.parameters.0.first();
+            parameter.map_or(f64::NAN, |(_, estimate)| estimate.value)
         };
-        members.sort_by(|a, b| {
-            let (a, b) = (first(a).unwrap_or(f64::NAN), first(b).unwrap_or(f64::NAN));
-            a.total_cmp(&b)
-        });
+        members.sort_by(|a, b| first(a).total_cmp(&first(b)));
         shown.push((members[members.len() / 2], "the middle one of its group"));
     }
     let worst = impacts
         .iter()
         .max_by(|a, b| misfit(a).total_cmp(&misfit(b)));
-    if let Some(worst) = worst
-        && shown
-            .iter()
-            .all(|(impact, _)| !std::ptr::eq(*impact, *worst))
-    {
+    let new = |worst: &&&ImpactOutcome| shown.iter().all(|(own, _)| !std::ptr::eq(*own, **worst));
+    if let Some(worst) = worst.filter(new) {
         shown.push((worst, "the one that the law describes worst"));
     }
     shown
@@ -209,40 +201,41 @@ fn examples(
         let own: Vec<&ImpactOutcome> = outcome.impacts.iter().filter(|i| i.id == *id).collect();
         let group = shown.group.as_deref().unwrap_or_default();
         let title = format!("{id} {group}").trim_end().to_owned();
-        figures.push(NamedFigure {
-            name: file_name(&format!("impact-{id}")),
-            caption: format!(
-                "Impact {id}, {why}: signals with the contact window, fitted motion, and loop of \
-                 force over displacement."
-            ),
-            figure: figure_of_impact(&title, &impact, &own, used),
-        });
-        figures.extend(
-            figure_of_residuals(&title, &impact, shown, used).map(|figure| NamedFigure {
-                name: file_name(&format!("impact-{id}-residuals")),
-                caption: format!(
-                    "Impact {id}: what {first} leaves of the signals, beside the noise of a \
-                     sample, and how it goes together from sample to sample."
-                ),
+        let mut add = |what: &str, caption: String, figure: Option<Figure>| {
+            figures.extend(figure.map(|figure| NamedFigure {
+                name: file_name(&format!("impact-{id}{what}")),
+                caption,
                 figure,
-            }),
+            }));
+        };
+        let caption = format!(
+            "Impact {id}, {why}: signals with the contact window, fitted motion, and loop of force \
+             over displacement."
         );
-        figures.extend(figure_of_profiles(&title, shown).map(|figure| NamedFigure {
-            name: file_name(&format!("impact-{id}-profiles")),
-            caption: format!(
-                "Impact {id}: profile of the likelihood, maximal over all other parameters. Where it \
-                 leaves the broken parabola, estimate ± standard deviation does not tell all."
-            ),
-            figure,
-        }));
-        figures.extend(figure_of_posterior(&title, shown).map(|figure| NamedFigure {
-            name: file_name(&format!("impact-{id}-posterior")),
-            caption: format!(
-                "Impact {id}: how probable each value of a parameter is after the recording, with \
-                 the 95 % interval, and draws of the parameters of the law against each other."
-            ),
-            figure,
-        }));
+        add(
+            "",
+            caption,
+            Some(figure_of_impact(&title, &impact, &own, used)),
+        );
+        let caption = format!(
+            "Impact {id}: what {first} leaves of the signals, beside the noise of a sample, and \
+             how it goes together from sample to sample."
+        );
+        add(
+            "-residuals",
+            caption,
+            figure_of_residuals(&title, &impact, shown, used),
+        );
+        let caption = format!(
+            "Impact {id}: profile of the likelihood, maximal over all other parameters. Where it \
+             leaves the broken parabola, estimate ± standard deviation does not tell all."
+        );
+        add("-profiles", caption, figure_of_profiles(&title, shown));
+        let caption = format!(
+            "Impact {id}: how probable each value of a parameter is after the recording, with the \
+             95 % interval, and draws of the parameters of the law against each other."
+        );
+        add("-posterior", caption, figure_of_posterior(&title, shown));
     }
     Ok(Section {
         figures,

@@ -2,7 +2,7 @@
 
 use windfall_campaign::measure::measured::{MeasuredItem, MeasuredOutcome, ShownValue, laws_of};
 use windfall_campaign::measure::run::ReportedItems;
-use windfall_campaign::measure::text::{groups_cells, items_cells, of_law, of_taps};
+use windfall_campaign::measure::text::{groups_cells, items_cells, of_law, spread_items};
 use windfall_draw::page::{CaptionedTable, Section};
 
 /// More rows than this stand in impacts.csv alone.
@@ -29,12 +29,8 @@ pub fn sections_of_items(reported: &ReportedItems) -> Vec<Section> {
 /// The whole campaign, its groups, its specimens.
 fn results(outcome: &MeasuredOutcome) -> Section {
     let mut tables = Vec::new();
+    let (shown, items) = spread_items(outcome);
     for law in laws_of(&outcome.impacts) {
-        // A tap is no fruit: groups of fruit have a spread.
-        let (shown, items) = match of_taps(outcome) {
-            true => (outcome.shown.specimens, &outcome.specimens),
-            false => (outcome.shown.items, &outcome.impacts),
-        };
         if of_law(items, law).len() > 1 {
             let cells = groups_cells(outcome, law, (shown, items));
             tables.extend((cells.header.len() > 2).then(|| CaptionedTable {
@@ -44,18 +40,9 @@ fn results(outcome: &MeasuredOutcome) -> Section {
         }
     }
     let shown = outcome.shown.specimens;
-    tables.extend(tables_of(
-        "campaign",
-        "Over the campaign",
-        &outcome.whole,
-        shown,
-    ));
-    tables.extend(tables_of(
-        "specimen",
-        "Each fruit",
-        &outcome.specimens,
-        shown,
-    ));
+    let (whole, specimens) = (&outcome.whole, &outcome.specimens);
+    tables.extend(tables_of("campaign", "Over the campaign", whole, shown));
+    tables.extend(tables_of("specimen", "Each fruit", specimens, shown));
     Section {
         tables,
         ..Section::of_words("Results", Vec::new())
@@ -64,14 +51,14 @@ fn results(outcome: &MeasuredOutcome) -> Section {
 
 /// Every recording and every part of one.
 fn every_item(outcome: &MeasuredOutcome) -> Section {
-    let mut tables = tables_of(
-        "recording",
-        "Each recording",
-        &outcome.impacts,
-        outcome.shown.items,
-    );
-    let parts = outcome.shown.parts;
-    tables.extend(tables_of("part", "Each bounce", &outcome.parts, parts));
+    let shown = outcome.shown;
+    let mut tables = tables_of("recording", "Each recording", &outcome.impacts, shown.items);
+    tables.extend(tables_of(
+        "part",
+        "Each bounce",
+        &outcome.parts,
+        shown.parts,
+    ));
     let words = match outcome.impacts.len().max(outcome.parts.len()) > LISTED {
         true => vec![format!(
             "Tables of more than {LISTED} rows are left to impacts.csv and results.json."

@@ -31,7 +31,7 @@ use windfall_files::write_file::write_whole;
 /// Directory of the report in a campaign directory.
 pub const REPORT_DIRECTORY: &str = "report";
 
-/// What is asked of a report.
+/// Options of a report.
 #[derive(Clone, Debug, Default)]
 pub struct ReportRequest {
     /// How impacts are fitted; what is unchanged comes from the store.
@@ -55,8 +55,7 @@ pub struct ReportOutcome {
     pub failed: usize,
 }
 
-/// Evaluates a campaign of any kind, as far as its results are not in its store, and writes figures,
-/// tables and a page that holds all of it.
+/// Evaluates a campaign as far as needed, and writes figures, tables and the page.
 ///
 /// Each file is written whole or not at all; files of other names are left alone.
 ///
@@ -97,12 +96,8 @@ fn report_impacts(request: &ReportRequest, fitted: FittedCampaign) -> Result<Rep
         failed: outcome.failed.clone(),
         sections,
     };
-    write(
-        request,
-        &source,
-        report,
-        &AnyOutcome::Impacts(Box::new(outcome)),
-    )
+    let any = AnyOutcome::Impacts(Box::new(outcome));
+    write(request, &source, report, &any)
 }
 
 fn report_items(request: &ReportRequest, reported: ReportedItems) -> Result<ReportOutcome, Error> {
@@ -180,10 +175,8 @@ fn write(
         theme: request.theme,
     };
     let mut files = write_figures(&folder, &drawn)?;
-    let json = serde_json::to_string_pretty(outcome).map_err(|error| Error::ResultUnwritable {
-        item: report.title.clone(),
-        detail: error.to_string(),
-    })?;
+    let json = serde_json::to_string_pretty(outcome)
+        .map_err(|error| Error::unwritable(&report.title, error))?;
     let page = out.join("report.html");
     let others = [
         ("impacts.csv", csv_of_any(outcome)?),
@@ -191,7 +184,7 @@ fn write(
         ("inputs.csv", csv_of_inputs(&source.inputs)?),
         ("windfall.bib", bibtex()),
         ("CITATION.cff", citation_file()),
-        // Last: whoever sees the page finds all that it names.
+        // Last, so that all it refers to exists.
         ("report.html", html_of_report(&report)),
     ];
     for (name, contents) in others {
@@ -207,31 +200,25 @@ fn write(
     })
 }
 
-/// Recordings outside the campaign directory by their names within the directory of
-/// recordings: a report is given away, and where files lie on a machine is not its
-/// reader's business.
+/// Names of recordings outside the campaign directory without their path on this machine,
+/// because a report is given away.
 fn shown_names(files: &FilePlan, inputs: Vec<(String, String)>) -> Vec<(String, String)> {
     let shown = |name: String| {
         let path = Path::new(&name);
         let within = path.strip_prefix(&files.directory);
         within.map_or(name.clone(), |within| within.display().to_string())
     };
-    let named = inputs
-        .into_iter()
-        .map(|(name, digest)| (shown(name), digest));
-    named.collect()
+    let inputs = inputs.into_iter();
+    inputs.map(|(name, digest)| (shown(name), digest)).collect()
 }
 
 /// Where the results come from.
 fn origin(inputs: &[(String, String)], options: &str) -> Section {
-    let rows = inputs
-        .iter()
-        .map(|(name, digest)| vec![name.clone(), digest.clone()]);
     let table = CaptionedTable {
         caption: "SHA-256 of every file that was read".to_owned(),
         cells: Cells {
             header: ["file", "SHA-256"].map(str::to_owned).to_vec(),
-            rows: rows.collect(),
+            rows: rows_of(inputs).collect(),
         },
     };
     Section {
@@ -295,8 +282,10 @@ fn citation_file() -> String {
 }
 
 fn csv_of_inputs(inputs: &[(String, String)]) -> Result<String, Error> {
-    let rows = inputs
-        .iter()
-        .map(|(name, digest)| vec![name.clone(), digest.clone()]);
-    csv_text(&["file", "sha256"].map(str::to_owned), rows)
+    csv_text(&["file", "sha256"].map(str::to_owned), rows_of(inputs))
+}
+
+fn rows_of(inputs: &[(String, String)]) -> impl Iterator<Item = Vec<String>> {
+    let inputs = inputs.iter();
+    inputs.map(|(name, digest)| vec![name.clone(), digest.clone()])
 }

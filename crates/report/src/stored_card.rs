@@ -8,9 +8,10 @@ use windfall_campaign::pipeline::request::{FitRequest, Reuse};
 use windfall_campaign::settings::kind::{CampaignKind, campaign_kind};
 use windfall_cards::read_card::card_text;
 use windfall_files::error::Error;
+use windfall_files::option_value::unusable;
 use windfall_files::progress::quiet;
 
-/// Where a calibration asked for in a page leaves its card, in the campaign directory.
+/// Law card of a calibration started from the page, in the campaign directory.
 pub const CARD_FILE: &str = "law.toml";
 
 /// The law card as text: the median fruit of the stored results for a campaign of
@@ -36,9 +37,9 @@ pub fn stored_card(directory: &Path, law: &str) -> Result<String, Error> {
                 advice: "calibrate the campaign first; that writes it".to_owned(),
             })
         }
-        kind => Err(Error::OptionInvalid {
-            option: "law card".to_owned(),
-            problem: format!("a campaign of kind \"{}\" has none", kind.name()),
-        }),
+        kind => {
+            let problem = format!("a campaign of kind \"{}\" has none", kind.name());
+            Err(unusable("law card", problem))
+        }
     }
 }

@@ -2,6 +2,7 @@
 //!
 //! Chains are slices of equal length, one parameter at a time.
 
+use crate::distribution::quantile::{median, quantile};
 use crate::distribution::tail::normal_quantile;
 
 /// Variance within chains, relative to that of all, below which they do not move; 1.
@@ -73,19 +74,6 @@ fn split(chains: &[&[f64]]) -> Vec<Vec<f64>> {
         .iter()
         .flat_map(|chain| [&chain[..half], &chain[chain.len() - half..]]);
     parts.map(<[f64]>::to_vec).collect()
-}
-
-fn median(values: &[f64]) -> f64 {
-    quantile(values, 0.5)
-}
-
-fn quantile(values: &[f64], level: f64) -> f64 {
-    let mut sorted = values.to_vec();
-    sorted.sort_unstable_by(f64::total_cmp);
-    let place = level * (sorted.len() - 1) as f64;
-    let below = place.floor() as usize;
-    let above = (below + 1).min(sorted.len() - 1);
-    sorted[below] + (place - below as f64) * (sorted[above] - sorted[below])
 }
 
 /// Ranks over all chains (ties share their mean), as Blom's normal scores.

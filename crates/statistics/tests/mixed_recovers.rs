@@ -7,12 +7,12 @@ use nalgebra::{DMatrix, DVector};
 use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::{RngCore, SeedableRng};
 use statrs::distribution::{ContinuousCDF, Normal, StudentsT};
+use windfall_statistics::coefficient::Coefficient;
 use windfall_statistics::mixed::fit::{MixedMethod, MixedOptions, fit_mixed};
 use windfall_statistics::mixed::inference::{coefficient_tests, variance_uncertainty};
 use windfall_statistics::mixed::kenward_roger::{kenward_roger, kenward_roger_tests};
 use windfall_statistics::mixed::profile::profile_variances;
 use windfall_statistics::mixed::term::random_intercept;
-use windfall_statistics::model::linear_model::Coefficient;
 
 const STUDIES: usize = 1000;
 const PROFILED: usize = 400;

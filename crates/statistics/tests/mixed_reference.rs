@@ -92,7 +92,7 @@ fn reference_satterthwaite_of_lmer_test() {
         let uncertainty = variance_uncertainty(&fit).unwrap();
         let tests = coefficient_tests(&fit, &uncertainty, 0.95);
         let name = format!("{} {}", case["formula"], case["method"]);
-        type Column = fn(&windfall_statistics::model::linear_model::Coefficient) -> f64;
+        type Column = fn(&windfall_statistics::coefficient::Coefficient) -> f64;
         let columns: [(&str, Column, f64); 4] = [
             ("se", |t| t.se, 1e-7),
             ("df", |t| t.df, 1e-5),

@@ -14,7 +14,6 @@ pub(crate) fn text_of_rows<T>(rows: &[T], columns: &[Column<T>], left: &[usize])
     page_tables(&titles(columns), &cells(rows, columns), left)
 }
 
-/// Rows as CSV.
 pub(crate) fn csv_of_rows<T>(rows: &[T], columns: &[Column<T>]) -> Result<String, Error> {
     csv_text(&titles(columns), cells(rows, columns))
 }
@@ -24,7 +23,6 @@ pub(crate) fn given(value: Option<f64>, write: fn(f64) -> String) -> String {
     value.map_or_else(|| "-".to_owned(), write)
 }
 
-/// Texts that are owned.
 pub(crate) fn strings(texts: &[&str]) -> Vec<String> {
     texts.iter().map(|text| (*text).to_owned()).collect()
 }

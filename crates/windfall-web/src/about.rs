@@ -4,18 +4,9 @@ use crate::app::{Answer, App};
 use axum::extract::State;
 use serde::Serialize;
 use utoipa::ToSchema;
+use windfall_campaign::settings::template::TEMPLATES;
 use windfall_cards::library::laws::{LawCardText, law_cards};
 use windfall_files::provenance::VERSION;
-
-/// Kinds of campaigns that can be created, as `new` names them.
-pub(crate) const KINDS: [&str; 6] = [
-    "pendulum",
-    "carriage",
-    "drop",
-    "compression",
-    "acoustic",
-    "repeats",
-];
 
 /// What the page needs before it opens a campaign.
 #[derive(Debug, Serialize, ToSchema)]
@@ -64,7 +55,7 @@ pub(crate) async fn about(State(app): State<App>) -> Answer<About> {
         directory: app.workspace.name(),
         creates: !app.workspace.is_campaign(),
         upload_limit: app.upload_limit,
-        kinds: KINDS,
+        kinds: TEMPLATES.map(|(name, _)| name),
         laws: laws.iter().map(law_about).collect(),
     })
 }

@@ -22,8 +22,7 @@ pub(crate) async fn interrupted() {
     let _ = tokio::signal::ctrl_c().await;
 }
 
-/// A flag that is set when the user interrupts the program or the system asks it to end; a
-/// second interruption ends it at once.
+/// A flag set by the first interruption; a second one ends the program at once.
 ///
 /// Where the system gives no thread or no signal the flag stays as it is, and an interruption
 /// ends the program at once.

@@ -102,8 +102,7 @@ impl Server {
         }
     }
 
-    /// Serves until the program is interrupted; running jobs are then cancelled, and
-    /// nothing half-written remains.
+    /// Serves until interrupted; running jobs are then cancelled and leave nothing half-written.
     ///
     /// # Errors
     /// The system gives no threads, or takes the address away.

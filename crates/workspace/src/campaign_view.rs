@@ -1,9 +1,8 @@
-//! A campaign as it is shown to somebody who works on it: what its files say, whatever
-//! it measures.
+//! A campaign as the page shows it, whatever it measures.
 
 use crate::equal_command::command;
 use serde::Serialize;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use std::time::SystemTime;
 use windfall_campaign::pipeline::evaluate::STORE_FILE;
 use windfall_campaign::recording::digests::campaign_text;
@@ -140,8 +139,7 @@ pub fn file_plan_of(directory: &Path) -> Result<FilePlan, Error> {
 /// # Errors
 /// A file of the campaign is missing or does not say what it must.
 pub fn view_campaign(directory: &Path) -> Result<CampaignView, Error> {
-    // The version of what is read below, or of something older: then whoever writes
-    // with it is told that the campaign has changed.
+    // Taken first: a change during the reading makes this version outdated, never wrong.
     let version = campaign_version(directory)?;
     let (campaign, impacts) = read_any(directory)?;
     let text = campaign_text(directory)?;
@@ -190,13 +188,7 @@ pub fn campaign_version(directory: &Path) -> Result<String, Error> {
         let bytes = match std::fs::read(&path) {
             Ok(bytes) => bytes,
             Err(error) if error.kind() == std::io::ErrorKind::NotFound => Vec::new(),
-            Err(source) => {
-                return Err(Error::FileAccess {
-                    path,
-                    action: "read",
-                    source,
-                });
-            }
+            Err(source) => return Err(Error::access(&path, "read", source)),
         };
         let text = String::from_utf8_lossy(&bytes);
         all += &format!("{name} {}\n{text}\n", bytes.len());
@@ -248,13 +240,9 @@ fn laws_written(tables: &toml::Table) -> Vec<String> {
 
 fn options_of(campaign: &ImpactCampaign) -> FitOptionsView {
     let options: &FitOptions = &campaign.fit.options;
+    let quantities = options.quantities.names().into_iter();
     FitOptionsView {
-        quantities: options
-            .quantities
-            .names()
-            .into_iter()
-            .map(str::to_owned)
-            .collect(),
+        quantities: quantities.map(str::to_owned).collect(),
         weights: word_of(&WEIGHTS, options.weighting),
         noise: word_of(&NOISES, options.noise),
         intervals: word_of(&INTERVALS, options.intervals.method),
@@ -276,9 +264,8 @@ fn table_of<'a>(rows: impl Iterator<Item = &'a Vec<(String, String)>>) -> TableV
         if table.columns.is_empty() {
             table.columns = cells.iter().map(|(name, _)| name.clone()).collect();
         }
-        table
-            .rows
-            .push(cells.iter().map(|(_, cell)| cell.clone()).collect());
+        let row = cells.iter().map(|(_, cell)| cell.clone());
+        table.rows.push(row.collect());
     }
     table
 }
@@ -350,17 +337,12 @@ fn tables_of(directory: &Path) -> Result<Vec<String>, Error> {
     Ok(found)
 }
 
-/// Names of the plain files in a directory, sorted; none where there is no such
-/// directory.
+/// Sorted names of the plain files in a directory; none without a directory.
 ///
 /// # Errors
 /// It cannot be read.
 pub(crate) fn names_in(folder: &Path) -> Result<Vec<String>, Error> {
-    let unreadable = |source| Error::FileAccess {
-        path: PathBuf::from(folder),
-        action: "read",
-        source,
-    };
+    let unreadable = |source| Error::access(folder, "read", source);
     let entries = match std::fs::read_dir(folder) {
         Ok(entries) => entries,
         Err(error) if error.kind() == std::io::ErrorKind::NotFound => return Ok(Vec::new()),

@@ -1,6 +1,6 @@
-//! Changes of a campaign's files on behalf of somebody who sees them: comments and
-//! layout stay, the campaign that results is checked before it takes the place of the
-//! one before, and a change on the ground of an older version is refused.
+//! Changes of a campaign's files from the page: comments and layout stay, the resulting
+//! campaign is checked before it replaces the old one, and a change based on an outdated
+//! version is refused.
 
 use crate::campaign_view::{
     CAMPAIGN_FILES, CampaignView, campaign_version, check_campaign, file_plan_of, signed_unit,
@@ -8,6 +8,8 @@ use crate::campaign_view::{
 };
 use crate::edit_table::{add_rows, set_cells};
 use crate::workspace::recordings_inside;
+use itertools::Itertools;
+use serde::Deserialize;
 use std::collections::BTreeMap;
 use std::path::{Component, Path};
 use std::sync::{Mutex, PoisonError};
@@ -18,12 +20,12 @@ use windfall_campaign::settings::kind::CAMPAIGN_FILE;
 use windfall_campaign::settings::tables::read_specimens;
 use windfall_campaign::settings::template::is_template_file;
 use windfall_files::confined::path_inside;
-use windfall_files::error::Error;
+use windfall_files::error::{Error, Place};
+use windfall_files::option_value::unusable;
 use windfall_files::text::column_role::unit_of;
 use windfall_files::write_file::write_whole;
 
-/// One change at a time, so that of two on the ground of one version the second is
-/// refused.
+/// Serialises changes: of two based on the same version, the second is refused.
 static CHANGING: Mutex<()> = Mutex::new(());
 
 /// What is changed.
@@ -44,7 +46,7 @@ pub enum Change {
     Options(OptionsChange),
     /// Where the channels are in the files.
     Channels(ChannelsChange),
-    /// Further impacts.
+    /// Further impacts; their specimens are added where specimens.csv lacks them.
     Impacts(Vec<NewImpact>),
 }
 
@@ -59,27 +61,45 @@ pub struct OptionsChange {
     pub group: Option<String>,
 }
 
-/// Where the channels are.
-#[derive(Clone, Debug, Default)]
+/// The columns of the channels.
+#[derive(Clone, Debug, Default, Deserialize, utoipa::ToSchema)]
+#[serde(deny_unknown_fields)]
+#[schema(as = ChannelsGiven)]
 pub struct ChannelsChange {
-    /// Quantity, column, and the unit of the column or the sensitivity of its sensor.
-    pub channels: Vec<(String, String, String)>,
+    /// Channels.
+    pub channels: Vec<ChannelChange>,
     /// Column of times.
     pub time: Option<String>,
     /// Sampling rate.
     pub rate: Option<String>,
 }
 
+/// A channel.
+#[derive(Clone, Debug, Deserialize, utoipa::ToSchema)]
+#[serde(deny_unknown_fields)]
+#[schema(as = ChannelGiven)]
+pub struct ChannelChange {
+    /// "force", "position", …
+    pub quantity: String,
+    /// Column in the files.
+    pub column: String,
+    /// Its unit, or the sensitivity of its sensor.
+    pub unit: String,
+}
+
 /// A row of impacts.csv.
-#[derive(Clone, Debug, Default)]
+#[derive(Clone, Debug, Default, Deserialize, utoipa::ToSchema)]
+#[serde(deny_unknown_fields)]
+#[schema(as = ImpactGiven)]
 pub struct NewImpact {
     /// Id.
     pub id: String,
-    /// Specimen; it is added to specimens.csv if it is not there.
+    /// Specimen.
     pub specimen: String,
-    /// Recording, below the directory of recordings.
+    /// Recording.
     pub file: String,
     /// Other columns.
+    #[serde(default)]
     pub cells: BTreeMap<String, String>,
 }
 
@@ -137,11 +157,9 @@ fn document(directory: &Path) -> Result<DocumentMut, Error> {
         let line = error.span().map_or(0, |span| {
             1 + text[..span.start].bytes().filter(|b| *b == b'\n').count()
         });
+        let file = directory.join(CAMPAIGN_FILE);
         Error::CampaignSyntax {
-            place: windfall_files::error::Place {
-                file: directory.join(CAMPAIGN_FILE),
-                line,
-            },
+            place: Place { file, line },
             message: error.message().to_owned(),
         }
     })
@@ -150,7 +168,7 @@ fn document(directory: &Path) -> Result<DocumentMut, Error> {
 /// The table of that name, made where it is not there.
 ///
 /// # Errors
-/// Something else stands there.
+/// The key is no table.
 fn table<'a>(document: &'a mut Table, name: &str) -> Result<&'a mut Table, Error> {
     let item = document
         .entry(name)
@@ -202,27 +220,23 @@ fn change_options(document: &mut DocumentMut, options: &OptionsChange) -> Result
 
 fn change_channels(document: &mut DocumentMut, change: &ChannelsChange) -> Result<(), Error> {
     let known = |name: &str| KINDS.iter().any(|kind| kind.name() == name);
-    if let Some((quantity, ..)) = change.channels.iter().find(|(name, ..)| !known(name)) {
+    let mut channels = change.channels.iter();
+    if let Some(ChannelChange { quantity, .. }) = channels.find(|c| !known(&c.quantity)) {
         let names: Vec<&str> = KINDS.iter().map(|kind| kind.name()).collect();
-        return Err(Error::OptionInvalid {
-            option: format!("channel {quantity}"),
-            problem: format!("expected one of {}", names.join(", ")),
-        });
+        let problem = format!("expected one of {}", names.join(", "));
+        return Err(unusable(format!("channel {quantity}"), problem));
     }
     let channels = table(document, "channels")?;
     channels.set_implicit(true);
     for kind in &KINDS {
-        let wanted = change
-            .channels
-            .iter()
-            .find(|(name, ..)| name == kind.name());
-        let Some((_, column, unit)) = wanted else {
+        let mut wanted = change.channels.iter();
+        let Some(wanted) = wanted.find(|channel| channel.quantity == kind.name()) else {
             channels.remove(kind.name());
             continue;
         };
         let channel = table(channels, kind.name())?;
-        set(channel, "column", value(column.as_str()));
-        set_unit(channel, kind.unit, unit);
+        set(channel, "column", value(wanted.column.as_str()));
+        set_unit(channel, kind.unit, &wanted.unit);
     }
     let files = table(document, "files")?;
     let before = files.get("time").and_then(Item::as_str);
@@ -246,8 +260,7 @@ fn change_channels(document: &mut DocumentMut, change: &ChannelsChange) -> Resul
     Ok(())
 }
 
-/// A unit of the quantity itself is the unit of the column, another one the
-/// sensitivity of a sensor. The sign is in it.
+/// Sets unit, or sensitivity if the unit is not that of the quantity, with the sign in it.
 fn set_unit(channel: &mut Table, quantity: &str, unit: &str) {
     let own = |key: &str| channel.get(key).and_then(Item::as_str);
     let before = own("sensitivity")
@@ -302,13 +315,12 @@ fn new_impacts(directory: &Path, rows: &[NewImpact]) -> Result<Vec<(&'static str
             true => Vec::new(),
             false => read_specimens(&specimens)?,
         };
-        let mut new: Vec<BTreeMap<String, String>> = Vec::new();
-        for row in rows {
-            let cells = BTreeMap::from([("id".to_owned(), row.specimen.clone())]);
-            if known.iter().all(|s| s.id != row.specimen) && !new.contains(&cells) {
-                new.push(cells);
-            }
-        }
+        let ids = rows.iter().map(|row| &row.specimen);
+        let new = ids.filter(|id| known.iter().all(|specimen| specimen.id != **id));
+        let cells = new
+            .unique()
+            .map(|id| BTreeMap::from([("id".to_owned(), id.clone())]));
+        let new: Vec<_> = cells.collect();
         if !new.is_empty() {
             files.push(("specimens.csv", add_rows(&specimens, &new)?));
         }
@@ -318,47 +330,33 @@ fn new_impacts(directory: &Path, rows: &[NewImpact]) -> Result<Vec<(&'static str
 
 /// Reads the campaign as it will be, beside the one that is there.
 fn check_changed(directory: &Path, files: &[(&'static str, String)]) -> Result<(), Error> {
-    let scratch = tempfile::Builder::new()
-        .prefix("windfall-")
-        .tempdir()
-        .map_err(|source| Error::FileAccess {
-            path: std::env::temp_dir(),
-            action: "write",
-            source,
-        })?;
-    let failed = |path: &Path| {
-        let path = path.to_path_buf();
-        move |source| Error::FileAccess {
-            path,
-            action: "check",
-            source,
-        }
-    };
+    let scratch = tempfile::Builder::new().prefix("windfall-").tempdir();
+    let scratch =
+        scratch.map_err(|source| Error::access(&std::env::temp_dir(), "write", source))?;
     for (name, text) in files {
         let path = scratch.path().join(name);
-        std::fs::write(&path, text).map_err(failed(&path))?;
+        std::fs::write(&path, text).map_err(|source| Error::access(&path, "check", source))?;
     }
     // The rest as it is: laws may be tables in files of their own.
-    for entry in std::fs::read_dir(directory).map_err(failed(directory))? {
-        let entry = entry.map_err(failed(directory))?;
+    let failed = |source| Error::access(directory, "check", source);
+    for entry in std::fs::read_dir(directory).map_err(failed)? {
+        let entry = entry.map_err(failed)?;
         let name = entry.file_name();
         let place = scratch.path().join(&name);
         let own = CAMPAIGN_FILES.iter().any(|known| name == *known);
         let plain = entry.file_type().is_ok_and(|kind| kind.is_file());
         if !place.exists() && (own || plain && small(&entry)) {
-            std::fs::copy(entry.path(), &place).map_err(failed(&place))?;
+            std::fs::copy(entry.path(), &place).map_err(failed)?;
         }
     }
+    let own = format!("{}/", scratch.path().display());
     check_campaign(scratch.path()).map_err(|error| Error::ChangeRefused {
-        problem: error
-            .to_string()
-            .replace(&format!("{}/", scratch.path().display()), ""),
+        problem: error.to_string().replace(&own, ""),
     })?;
     stays_inside(directory, scratch.path())
 }
 
-/// Whoever may change a campaign may not make it read files elsewhere; one that does so
-/// already may go on.
+/// Refuses a change that makes the campaign read files elsewhere, unless it did before.
 fn stays_inside(directory: &Path, changed: &Path) -> Result<(), Error> {
     let new = file_plan_of(changed)?.directory;
     let plain = |path: &Path| path.components().all(|c| c != Component::ParentDir);
@@ -388,8 +386,10 @@ mod tests {
         let folder = tempfile::tempdir().unwrap();
         let directory = folder.path().join("campaign");
         write_template(TemplateKind::Carriage, &directory).unwrap();
-        let channel = |quantity: &str, column: &str, unit: &str| {
-            (quantity.to_owned(), column.to_owned(), unit.to_owned())
+        let channel = |quantity: &str, column: &str, unit: &str| ChannelChange {
+            quantity: quantity.to_owned(),
+            column: column.to_owned(),
+            unit: unit.to_owned(),
         };
         let channels = |time: &str| {
             Change::Channels(ChannelsChange {
@@ -423,8 +423,10 @@ mod tests {
         write_template(TemplateKind::Carriage, &directory).unwrap();
         let path = directory.join(CAMPAIGN_FILE);
         let change = |force: &str| {
-            let channel = |quantity: &str, unit: &str| {
-                (quantity.to_owned(), quantity.to_owned(), unit.to_owned())
+            let channel = |quantity: &str, unit: &str| ChannelChange {
+                quantity: quantity.to_owned(),
+                column: quantity.to_owned(),
+                unit: unit.to_owned(),
             };
             let change = ChannelsChange {
                 channels: vec![channel("force", force), channel("position", "0.17 mm")],

@@ -21,10 +21,10 @@ pub fn set_cells(path: &Path, id: &str, cells: &[(&str, String)]) -> Result<Stri
     };
     // A column that would be blank in every row is not added.
     let present = |name: &str| text.columns.iter().any(|column| column == name);
-    let new: Vec<&(&str, String)> = cells
+    let new = cells
         .iter()
-        .filter(|(name, cell)| present(name) || !cell.is_empty())
-        .collect();
+        .filter(|(name, cell)| present(name) || !cell.is_empty());
+    let new: Vec<&(&str, String)> = new.collect();
     for (name, cell) in new {
         let column = text.column(name);
         text.rows[row].resize(text.columns.len(), String::new());
@@ -68,11 +68,8 @@ struct Text {
 impl Text {
     fn read(path: &Path) -> Result<Self, Error> {
         let table = read_table(path)?;
-        let text = std::fs::read_to_string(path).map_err(|source| Error::FileAccess {
-            path: path.to_path_buf(),
-            action: "read",
-            source,
-        })?;
+        let text =
+            std::fs::read_to_string(path).map_err(|source| Error::access(path, "read", source))?;
         let text = text.trim_start_matches('\u{feff}');
         let comments: String = text
             .split_inclusive('\n')
@@ -106,20 +103,13 @@ impl Text {
         for row in &mut self.rows {
             row.resize(width, String::new());
         }
-        let unwritable = |error: csv::Error| Error::ResultUnwritable {
-            item: "table".to_owned(),
-            detail: error.to_string(),
-        };
+        let unwritable = |error: csv::Error| Error::unwritable("table", error);
         writer.write_record(&self.columns).map_err(unwritable)?;
         for row in &self.rows {
             writer.write_record(row).map_err(unwritable)?;
         }
-        let bytes = writer
-            .into_inner()
-            .map_err(|error| Error::ResultUnwritable {
-                item: "table".to_owned(),
-                detail: error.to_string(),
-            })?;
+        let bytes = writer.into_inner();
+        let bytes = bytes.map_err(|error| Error::unwritable("table", error))?;
         Ok(String::from_utf8_lossy(&bytes).into_owned())
     }
 }

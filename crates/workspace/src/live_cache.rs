@@ -1,4 +1,4 @@
-//! Recordings that somebody looks at, kept in memory while there is room.
+//! Recordings being viewed, cached in memory while there is room.
 
 use crate::campaign_view::campaign_version;
 use crate::live_fit::{LiveCampaign, LiveImpact};
@@ -27,8 +27,7 @@ impl<T> Default for Kept<T> {
 }
 
 impl<T> Kept<T> {
-    /// What is kept under a key, or is made for it. Two who ask at once may both make
-    /// it; one of them is kept.
+    /// The value under a key, made if absent. Two concurrent callers may both make it.
     fn get(
         &self,
         key: &str,
@@ -48,7 +47,7 @@ impl<T> Kept<T> {
         let value = Arc::new(make()?);
         let size = bytes(&value);
         let mut entries = lock();
-        // Somebody else may have made it meanwhile.
+        // A concurrent caller may have made it meanwhile.
         entries.retain(|(known, ..)| known != key);
         entries.insert(0, (key.to_owned(), value.clone(), size));
         let mut held = 0;
@@ -61,7 +60,7 @@ impl<T> Kept<T> {
     }
 }
 
-/// Recordings and campaigns in memory; what changes on disk is read anew.
+/// Recordings and campaigns in memory; what changes on disk is read again.
 #[derive(Default)]
 pub struct LiveCache {
     campaigns: Kept<LiveCampaign>,
@@ -97,12 +96,8 @@ impl LiveCache {
         channel: &str,
     ) -> Result<Arc<OutlinedChannel>, Error> {
         let (path, plan) = recording_inside(directory, file)?;
-        let key = format!(
-            "{} {} {channel} {:?}",
-            path.display(),
-            stamp(&path),
-            plan.time
-        );
+        let (shown, stamp) = (path.display(), stamp(&path));
+        let key = format!("{shown} {stamp} {channel} {:?}", plan.time);
         let make = || OutlinedChannel::read(&path, &plan, channel);
         self.channels.get(&key, make, OutlinedChannel::bytes)
     }

@@ -1,5 +1,5 @@
-//! One impact, fitted again and again while somebody tries windows, laws and
-//! options: the recording is read once, and nothing is kept.
+//! One impact, fitted repeatedly while windows, laws and options change: the recording is
+//! read once, and nothing is kept.
 
 use crate::equal_command::command_of_fit;
 use serde::Serialize;
@@ -19,6 +19,7 @@ use windfall_files::found::FindingOutcome;
 use windfall_files::named::Named;
 use windfall_identify::fit::interval::IntervalMethod;
 use windfall_identify::rig::simulate::Trajectory;
+use windfall_signal::Finding;
 use windfall_signal::impact::{Impact, Series};
 use windfall_signal::recording::Recording;
 
@@ -41,11 +42,10 @@ pub struct LiveImpact {
     recording: Recording,
 }
 
-/// What a live fit is asked.
+/// Options of a live fit.
 #[derive(Clone, Debug, Default)]
 pub struct LiveRequest {
-    /// Begin of the part of the recording that is used, in place of that in
-    /// impacts.csv; s.
+    /// Begin of the part of the recording that is used, overriding impacts.csv; s.
     pub from: Option<f64>,
     /// Its end; s.
     pub to: Option<f64>,
@@ -133,12 +133,8 @@ impl LiveCampaign {
     }
 
     fn entry(&self, id: &str) -> Result<&ImpactEntry, Error> {
-        let entry = self
-            .campaign
-            .shared
-            .entries
-            .iter()
-            .find(|entry| entry.id == id);
+        let mut entries = self.campaign.shared.entries.iter();
+        let entry = entries.find(|entry| entry.id == id);
         entry.ok_or_else(|| Error::ImpactUnknown { id: id.to_owned() })
     }
 
@@ -191,10 +187,7 @@ impl LiveImpact {
         apply_request(&mut campaign, &request.fit)?;
         // What resamples or draws takes long, and is for the whole campaign.
         let method = &mut campaign.fit.options.intervals.method;
-        if matches!(
-            method,
-            IntervalMethod::Bootstrap | IntervalMethod::Posterior
-        ) {
+        if let IntervalMethod::Bootstrap | IntervalMethod::Posterior = method {
             *method = IntervalMethod::Asymptotic;
         }
         let mut entry = campaign.shared.entries[0].clone();
@@ -203,15 +196,12 @@ impl LiveImpact {
         let mass = self.rig.rig.effective_mass();
         let (impact, findings) = extract_entry(&campaign, &entry, &self.recording, Some(mass))?;
         let laws = campaign.fit.laws.iter().map(|law| {
-            let fitted = fit_law(
-                (&campaign, &self.rig.rig),
-                &entry,
-                (&impact, &findings),
-                law,
-            );
+            let own = (&campaign, &self.rig.rig);
+            let fitted = fit_law(own, &entry, (&impact, &findings), law);
             self.live_law(&campaign, &impact, law.kind.name(), fitted, request.series)
         });
         let laws = laws.collect();
+        let told = |finding: &Finding| FindingOutcome::new(finding.code(), finding.to_string());
         let (start, stop) = ends(&self.recording);
         Ok(LiveOutcome {
             impact: entry.id.clone(),
@@ -223,16 +213,10 @@ impl LiveImpact {
             end: impact.end,
             measured: match request.series {
                 true => measured(&impact),
-                false => Named(Vec::new()),
+                false => Named::default(),
             },
             laws,
-            findings: findings
-                .iter()
-                .map(|finding| FindingOutcome {
-                    code: finding.code().to_owned(),
-                    message: finding.to_string(),
-                })
-                .collect(),
+            findings: findings.iter().map(told).collect(),
             command: equal_command(&campaign, &entry, shown, &request.fit),
             seconds: begin.elapsed().as_secs_f64(),
         })
@@ -251,7 +235,7 @@ impl LiveImpact {
             outcome: None,
             problem: None,
             motion: None,
-            residuals: Named(Vec::new()),
+            residuals: Named::default(),
         };
         let outcome = match fitted {
             Ok(outcome) => outcome,
@@ -260,16 +244,13 @@ impl LiveImpact {
                 return shown;
             }
         };
-        let used = (
-            &self.rig.rig,
-            campaign.fit.options.end,
-            &campaign.fit.user[..],
-        );
+        let fit = &campaign.fit;
+        let used = (&self.rig.rig, fit.options.end, &fit.user[..]);
         shown.motion = line_of_law(impact, &outcome, used).map(|motion| shown_motion(&motion));
         if let (true, Some(fitted)) = (series, FittedImpact::of(impact, &outcome, used)) {
             for (name, _) in &outcome.residuals.0 {
                 if let Some(left) = residuals(&fitted, impact, name) {
-                    shown.residuals.0.push((name.clone(), left));
+                    shown.residuals.push(name, left);
                 }
             }
         }
@@ -284,14 +265,9 @@ fn equal_command(
     shown: &str,
     request: &FitRequest,
 ) -> String {
-    let folder = campaign
-        .shared
-        .files
-        .directory
-        .strip_prefix(&campaign.shared.directory);
-    let path = folder
-        .unwrap_or(&campaign.shared.files.directory)
-        .join(&entry.file);
+    let directory = &campaign.shared.files.directory;
+    let folder = directory.strip_prefix(&campaign.shared.directory);
+    let path = folder.unwrap_or(directory).join(&entry.file);
     let path = Path::new(shown).join(path).display().to_string();
     command_of_fit(&["fit", &path], request)
 }
@@ -315,19 +291,17 @@ fn named_series(impact: &Impact) -> [(&'static str, Option<&Series>); 4] {
 }
 
 fn measured(impact: &Impact) -> Named<ShownSamples> {
-    let mut shown = Vec::new();
+    let mut shown = Named::default();
     for (name, series) in named_series(impact) {
         if let (Some(series), true) = (series, name != "rate") {
-            let samples = shown_samples(&series.times, &series.values);
-            shown.push((name.to_owned(), samples));
+            shown.push(name, shown_samples(&series.times, &series.values));
         }
     }
     // Differences of neighbouring counts would be nothing or a whole count.
     if let Some((_, rate)) = shown_rate(impact) {
-        let samples = shown_samples(&rate.times, &rate.values);
-        shown.push(("rate".to_owned(), samples));
+        shown.push("rate", shown_samples(&rate.times, &rate.values));
     }
-    Named(shown)
+    shown
 }
 
 /// Every n-th sample, so that few enough are left.

@@ -237,8 +237,7 @@ fn tell_times(contents: &mut Contents, index: usize, plan: &FilePlan) {
     contents.channels[index].time = told.unwrap_or(TimeBase::Unknown);
 }
 
-/// Times in seconds where they increase; numbers of samples where they do not, as
-/// `inspect` says of the file.
+/// Times in seconds if they increase, otherwise numbers of samples, as in `inspect`.
 fn increasing(mut times: Vec<f64>, samples: usize, scale: f64) -> Clock {
     times.truncate(samples);
     let usable = times.len() == samples && times.windows(2).all(|pair| pair[0] < pair[1]);
@@ -266,8 +265,7 @@ fn levels(samples: &[f64]) -> Vec<Vec<Extremes>> {
     levels
 }
 
-/// `f64::min` and `f64::max` pass over NaN, which is a blank cell; infinities, which
-/// no screen shows, are taken as blank too.
+/// `f64::min` and `f64::max` skip NaN, a blank cell; infinities count as blank too.
 fn joined(a: Extremes, b: Extremes) -> Extremes {
     let finite = |value: f64| if value.is_finite() { value } else { f64::NAN };
     [finite(b[0]).min(a[0]), finite(b[1]).max(a[1])]

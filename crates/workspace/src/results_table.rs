@@ -14,8 +14,7 @@ use windfall_report::any_text::csv_of_any;
 /// Name of the table in a campaign directory.
 pub const RESULTS_TABLE: &str = "tables/results.csv";
 
-/// Writes the results of a campaign, one line each, with the columns of impacts.csv and
-/// specimens.csv behind them.
+/// Writes results, one line each, joined with impacts.csv and specimens.csv.
 ///
 /// # Errors
 /// The campaign cannot be read, or the table cannot be written.
@@ -24,21 +23,14 @@ pub fn write_results_table(directory: &Path, outcome: &AnyOutcome) -> Result<(),
     let text = joined_table(&view, &csv_of_any(outcome)?)?;
     let path = path_inside(directory, RESULTS_TABLE)?;
     let folder = directory.join(TABLES_DIRECTORY);
-    std::fs::create_dir_all(&folder).map_err(|source| Error::FileAccess {
-        path: folder.clone(),
-        action: "create",
-        source,
-    })?;
+    std::fs::create_dir_all(&folder).map_err(|source| Error::access(&folder, "create", source))?;
     write_whole(&path, text.as_bytes())
 }
 
 /// Results in CSV with further columns, where they have no column of the same name.
 fn joined_table(view: &CampaignView, results: &str) -> Result<String, Error> {
     let mut reader = csv::Reader::from_reader(results.as_bytes());
-    let damaged = |error: csv::Error| Error::ResultUnwritable {
-        item: "table".to_owned(),
-        detail: error.to_string(),
-    };
+    let damaged = |error: csv::Error| Error::unwritable("table", error);
     let header = reader.headers().map_err(damaged)?.clone();
     let mut columns: Vec<String> = header.iter().map(str::to_owned).collect();
     let id = columns.iter().position(|name| name == "id");

@@ -2,6 +2,7 @@
 
 use crate::campaign_view::name_of;
 use crate::workspace::Workspace;
+use itertools::Itertools;
 use serde::Serialize;
 use serde_json::Value;
 use std::path::{Path, PathBuf};
@@ -70,8 +71,7 @@ pub struct SceneView {
     pub outcome: Option<Value>,
 }
 
-/// Directories with results of scenes: the one that is served, those in it, and those in its
-/// directories.
+/// Scene results in the served directory, in those in it, and one level below.
 ///
 /// # Errors
 /// The directory cannot be read.
@@ -112,11 +112,7 @@ pub fn scene_run(workspace: &Workspace, id: &str) -> Result<PathBuf, Error> {
     }
     // A name that is refused is that of no scene.
     let path = path_inside(root, id).map_err(|_| unknown())?;
-    if is_run(&path) {
-        Ok(path)
-    } else {
-        Err(unknown())
-    }
+    is_run(&path).then_some(path).ok_or_else(unknown)
 }
 
 fn is_run(path: &Path) -> bool {
@@ -129,19 +125,12 @@ fn holds_run(path: &Path) -> bool {
 
 /// Directories in a directory that are named plainly, by name.
 fn folders(directory: &Path) -> Result<Vec<String>, Error> {
-    let failed = |source| Error::FileAccess {
-        path: directory.to_path_buf(),
-        action: "read",
-        source,
-    };
+    let failed = |source| Error::access(directory, "read", source);
     let entries = std::fs::read_dir(directory).map_err(failed)?.flatten();
     let own = entries.filter(|entry| entry.file_type().is_ok_and(|kind| kind.is_dir()));
     let names = own.filter_map(|entry| entry.file_name().into_string().ok());
-    let mut names: Vec<String> = names
-        .filter(|name| path_inside(directory, name).is_ok())
-        .collect();
-    names.sort();
-    Ok(names)
+    let plain = names.filter(|name| path_inside(directory, name).is_ok());
+    Ok(plain.sorted().collect())
 }
 
 fn entry_of(path: &Path, id: String) -> SceneEntry {
@@ -176,13 +165,11 @@ pub fn scene_view(directory: &Path, id: String) -> Result<SceneView, Error> {
     let mut frames = SceneFrames::open(&frames_file(directory)?)?;
     let most = largest_force(&mut frames)?;
     let step = |k: usize| css(colour_of(k as f64 / (COLOURS - 1) as f64));
+    let walls = frames.walls.iter();
+    let vertices = walls.map(|wall| wall.vertices.as_flattened().to_vec());
     Ok(SceneView {
         id,
-        vertices: frames
-            .walls
-            .iter()
-            .map(|wall| wall.vertices.as_flattened().to_vec())
-            .collect(),
+        vertices: vertices.collect(),
         faces: frames.walls.iter().map(|wall| wall.faces.clone()).collect(),
         times: frames.frames.iter().map(|own| own.time).collect(),
         counts: frames.frames.iter().map(|own| own.fruit).collect(),
@@ -194,8 +181,7 @@ pub fn scene_view(directory: &Path, id: String) -> Result<SceneView, Error> {
     })
 }
 
-/// Bytes of whole frames from a number on: as many as a piece holds, one at least; none
-/// behind the last.
+/// Bytes of whole frames from a number on: at least one, unless behind the last.
 ///
 /// # Errors
 /// They cannot be read.

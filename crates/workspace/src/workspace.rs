@@ -2,6 +2,7 @@
 //! state.
 
 use crate::campaign_view::{CAMPAIGN_FILES, file_plan_of, name_of, names_in, view_campaign};
+use itertools::Itertools;
 use serde::Serialize;
 use std::path::{Path, PathBuf};
 use windfall_campaign::measure::any_outcome::AnyOutcome;
@@ -9,9 +10,10 @@ use windfall_campaign::pipeline::evaluate::STORE_FILE;
 use windfall_campaign::pipeline::request::{FitRequest, PENDING, Reuse};
 use windfall_campaign::settings::kind::CAMPAIGN_FILE;
 use windfall_campaign::settings::model::FilePlan;
-use windfall_campaign::store::runs::latest_run;
+use windfall_campaign::store::runs::{RunIdentity, latest_run};
 use windfall_files::confined::path_inside;
 use windfall_files::error::Error;
+use windfall_files::option_value::unusable;
 use windfall_files::progress::quiet;
 use windfall_report::fit_any::fit_any;
 
@@ -72,11 +74,8 @@ impl Workspace {
             advice: "give a campaign directory, or a directory with campaigns in it".to_owned(),
         })?;
         if !root.is_dir() {
-            return Err(Error::OptionInvalid {
-                option: directory.display().to_string(),
-                problem: "is a file; give a campaign directory, or one with campaigns in it"
-                    .to_owned(),
-            });
+            let problem = "is a file; give a campaign directory, or one with campaigns in it";
+            return Err(unusable(directory.display().to_string(), problem));
         }
         let single = root.join(CAMPAIGN_FILE).is_file();
         Ok(Self { root, single })
@@ -106,18 +105,12 @@ impl Workspace {
     /// The name is refused, or there is no campaign of this name.
     pub fn campaign(&self, id: &str) -> Result<PathBuf, Error> {
         let directory = match self.single {
-            true if id == self.name() => self.root.clone(),
-            true => return Err(Error::CampaignUnknown { id: id.to_owned() }),
+            true => (id == self.name()).then(|| self.root.clone()),
             // A name that is refused is that of no campaign.
-            false => match self.place(id) {
-                Ok(place) => place,
-                Err(_) => return Err(Error::CampaignUnknown { id: id.to_owned() }),
-            },
+            false => self.place(id).ok(),
         };
-        match directory.join(CAMPAIGN_FILE).is_file() {
-            true => Ok(directory),
-            false => Err(Error::CampaignUnknown { id: id.to_owned() }),
-        }
+        let directory = directory.filter(|own| own.join(CAMPAIGN_FILE).is_file());
+        directory.ok_or_else(|| Error::CampaignUnknown { id: id.to_owned() })
     }
 
     /// Where a campaign of that name is or would be.
@@ -138,7 +131,7 @@ impl Workspace {
         path_inside(&self.root, id)
     }
 
-    /// A text without the path of the workspace, which is nobody's business elsewhere.
+    /// A text without the path of the workspace on this machine.
     #[must_use]
     pub fn without_path(&self, text: &str) -> String {
         let root = self.root.display().to_string();
@@ -163,11 +156,7 @@ impl Workspace {
         if self.single {
             return Ok(vec![entry_of(&self.root)]);
         }
-        let failed = |source| Error::FileAccess {
-            path: self.root.clone(),
-            action: "read",
-            source,
-        };
+        let failed = |source| Error::access(&self.root, "read", source);
         let mut directories = Vec::new();
         for entry in std::fs::read_dir(&self.root).map_err(failed)? {
             let entry = entry.map_err(failed)?;
@@ -192,14 +181,13 @@ fn entry_of(directory: &Path) -> CampaignEntry {
         run: None,
         problem: None,
     };
+    let shown = |run: RunIdentity| RunView {
+        time: run.time,
+        results: run.keys.len(),
+        failures: run.failures.len(),
+    };
     match run {
-        Ok(run) => {
-            entry.run = run.map(|run| RunView {
-                time: run.time,
-                results: run.keys.len(),
-                failures: run.failures.len(),
-            });
-        }
+        Ok(run) => entry.run = run.map(shown),
         Err(error) => entry.problem = Some(error.to_string()),
     }
     match view_campaign(directory) {
@@ -238,7 +226,7 @@ pub fn stored_results(directory: &Path) -> Result<StoredResults, Error> {
     let all = failed.len();
     failed.retain(|failure| failure.message != PENDING);
     let mut pending = all - failed.len();
-    // What the newest run could not fit is told with its reasons.
+    // Failures of the newest run are listed with their reasons.
     for failure in run.failures {
         if pending > 0 && !failed.iter().any(|known| known.id == failure.id) {
             pending -= 1;
@@ -319,10 +307,9 @@ pub fn recordings_of(directory: &Path) -> Result<Vec<RecordingEntry>, Error> {
 fn folders_in(raw: &Path) -> Vec<String> {
     let entries = std::fs::read_dir(raw).into_iter().flatten().flatten();
     let folders = entries.filter(|entry| entry.file_type().is_ok_and(|kind| kind.is_dir()));
-    let mut names: Vec<String> = folders
-        .filter_map(|entry| entry.file_name().into_string().ok())
-        .filter(|name| !name.starts_with('.'))
-        .collect();
-    names.sort();
+    let names = folders.filter_map(|entry| entry.file_name().into_string().ok());
     names
+        .filter(|name| !name.starts_with('.'))
+        .sorted()
+        .collect()
 }

@@ -18,7 +18,7 @@ use windfall_identify::compression_fit::{
     CompressionEstimate, CompressionFit, LoadingCurve, fit_compression,
 };
 use windfall_signal::compression::{
-    CompressionCurve, CurvePoint, FitRange, LoadingEnd, compression_curve, fitted_range,
+    CompressionCurve, FitRange, LoadingEnd, compression_curve, fitted_range,
 };
 use windfall_signal::kinematics::value_at;
 use windfall_signal::polynomial::local_polynomial;
@@ -54,8 +54,7 @@ pub fn loading_curve(
     )
 }
 
-/// The part of a curve that a law is fitted to, with its rate, averaged to a
-/// few thousand points.
+/// The part of a curve that a law is fitted to, with its rate, averaged to few points.
 ///
 /// Where the campaign does not say otherwise, a law without damping is fitted up
 /// to the largest stiffness; a damped one, whose force rises steepest at touch,
@@ -152,39 +151,30 @@ fn item(
         LoadingEnd::RecordingEnd => "end of recording",
     };
     let mut derived = curve_values(curve, fit, part);
-    let modulus = radii.and_then(|radii| modulus(campaign, fit, radii));
-    derived.extend(modulus.into_iter().flatten());
+    if let Some(radii) = radii {
+        push_modulus(&mut derived, campaign, fit, radii);
+    }
     MeasuredItem {
-        id: entry.id.clone(),
-        specimen: entry.specimen.clone(),
-        group: campaign.shared.group_of(entry),
-        file: entry.file.clone(),
-        law: fit.law.kind().name().to_owned(),
-        words: Named(vec![("loading_ended_by".to_owned(), ended.to_owned())]),
+        words: Named::of([("loading_ended_by", ended.to_owned())]),
         parameters: parameters_of(fit),
-        derived: Named(derived),
+        derived,
         findings: findings(curve, part, fit, radii),
+        ..MeasuredItem::of(&campaign.shared, entry, fit.law.kind().name())
     }
 }
 
 /// Parameters of a fitted law with their uncertainties; held ones too.
 #[must_use]
 pub fn parameters_of(fit: &CompressionFit) -> Named<MeasuredValue> {
-    let description = fit.law.kind().describe();
     let values = fit.law.parameters();
-    let named = description
-        .parameters
-        .iter()
-        .enumerate()
-        .map(|(i, parameter)| {
-            let unit = fit.law.unit_of(i);
-            let value = match &fit.parameters[i] {
-                Some(estimate) => measured(estimate, &unit),
-                None => plain_value(values[i], &unit),
-            };
-            (parameter.name.to_owned(), value)
-        });
-    Named(named.collect())
+    let parameters = fit.law.kind().describe().parameters.iter().enumerate();
+    let value = |i: usize| match &fit.parameters[i] {
+        Some(estimate) => measured(estimate, &fit.law.unit_of(i)),
+        None => plain_value(values[i], &fit.law.unit_of(i)),
+    };
+    parameters
+        .map(|(i, parameter)| (parameter.name, value(i)))
+        .collect()
 }
 
 fn measured(estimate: &CompressionEstimate, unit: &str) -> MeasuredValue {
@@ -202,52 +192,42 @@ fn curve_values(
     curve: &CompressionCurve,
     fit: &CompressionFit,
     part: &LoadingCurve,
-) -> Vec<(String, MeasuredValue)> {
+) -> Named<MeasuredValue> {
     let touch = fit.touches[0].value;
-    let mut values = Vec::new();
-    let mut push = |name: &str, value: MeasuredValue| values.push((name.to_owned(), value));
-    let mut point = |name: &str, point: &Option<CurvePoint>| {
+    let mut values = Named::default();
+    for (name, point) in [
+        ("bioyield", &curve.bioyield),
+        ("softening", &curve.softening),
+        ("rupture", &curve.rupture),
+    ] {
         if let Some(point) = point {
-            let deformation = point.deformation - touch;
-            push(&format!("{name}_force"), plain_value(point.force, "N"));
-            push(
-                &format!("{name}_deformation"),
-                plain_value(deformation, "m"),
-            );
+            let deformation = plain_value(point.deformation - touch, "m");
+            values.push(format!("{name}_force"), plain_value(point.force, "N"));
+            values.push(format!("{name}_deformation"), deformation);
         }
-    };
-    point("bioyield", &curve.bioyield);
-    point("softening", &curve.softening);
-    point("rupture", &curve.rupture);
-    let end = &curve.loading_end;
-    push("loading_force", plain_value(end.force, "N"));
-    push(
-        "loading_deformation",
-        plain_value(end.deformation - touch, "m"),
-    );
-    push("loading_energy", plain_value(curve.energy, "J"));
-    if curve.bioyield.is_some() {
-        push("energy_to_yield", plain_value(curve.energy, "J"));
     }
-    let stiffness = curve.stiffness;
-    push(
-        "stiffness",
-        value_with_sd(stiffness.value, stiffness.sd, "N/m"),
-    );
-    let secant = end.force / (end.deformation - touch);
-    push("secant_stiffness", plain_value(secant, "N/m"));
+    let end = &curve.loading_end;
+    let deformed = end.deformation - touch;
+    let mut push = |name: &str, value, unit| values.push(name, plain_value(value, unit));
+    push("loading_force", end.force, "N");
+    push("loading_deformation", deformed, "m");
+    push("loading_energy", curve.energy, "J");
+    if curve.bioyield.is_some() {
+        push("energy_to_yield", curve.energy, "J");
+    }
+    let (stiffness, sd) = (curve.stiffness.value, curve.stiffness.sd);
+    values.push("stiffness", value_with_sd(stiffness, sd, "N/m"));
+    let mut push = |name: &str, value, unit| values.push(name, plain_value(value, unit));
+    push("secant_stiffness", end.force / deformed, "N/m");
     let (rate, variation) = mean_and_variation(&part.rate);
-    push("deformation_rate", plain_value(rate, "m/s"));
-    push("rate_variation", plain_value(variation, "1"));
-    push(
-        "fitted_force",
-        plain_value(part.force[part.force.len() - 1], "N"),
-    );
+    push("deformation_rate", rate, "m/s");
+    push("rate_variation", variation, "1");
+    push("fitted_force", part.force[part.force.len() - 1], "N");
     let fitted = part.deformation[part.deformation.len() - 1] - touch;
-    push("fitted_deformation", plain_value(fitted, "m"));
-    push("touch", measured(&fit.touches[0], "m"));
-    push("residual_rms", plain_value(fit.rms, "N"));
-    push("force_noise", plain_value(curve.force_noise, "N"));
+    push("fitted_deformation", fitted, "m");
+    values.push("touch", measured(&fit.touches[0], "m"));
+    values.push("residual_rms", plain_value(fit.rms, "N"));
+    values.push("force_noise", plain_value(curve.force_noise, "N"));
     values
 }
 
@@ -258,14 +238,15 @@ fn mean_and_variation(values: &[f64]) -> (f64, f64) {
     (mean, (squares / n).sqrt() / mean.abs())
 }
 
-/// Apparent modulus and k/√R* of a law of Hertz's contact.
-fn modulus(
+/// Adds the apparent modulus and the radii it rests on, for laws of Hertz's contact.
+fn push_modulus(
+    values: &mut Named<MeasuredValue>,
     campaign: &CompressionCampaign,
     fit: &CompressionFit,
     radii: PrincipalRadii,
-) -> Option<Vec<(String, MeasuredValue)>> {
+) {
     if fit.law.kind().describe().elastic != Elastic::Hertzian {
-        return None;
+        return;
     }
     let contact = PressedContact {
         fruit: radii,
@@ -275,12 +256,12 @@ fn modulus(
     let k = fit.law.parameters()[0];
     let sd = fit.parameters[0].map_or(0.0, |estimate| estimate.sd);
     let factor = (1.0 - campaign.poisson_ratio.powi(2)) / per_modulus;
-    let modulus = value_with_sd(k * factor, sd * factor, "Pa");
-    Some(vec![
-        ("apparent_modulus".to_owned(), modulus),
-        ("radius".to_owned(), plain_value(radii.first, "m")),
-        ("radius_2".to_owned(), plain_value(radii.second, "m")),
-    ])
+    values.push(
+        "apparent_modulus",
+        value_with_sd(k * factor, sd * factor, "Pa"),
+    );
+    values.push("radius", plain_value(radii.first, "m"));
+    values.push("radius_2", plain_value(radii.second, "m"));
 }
 
 fn findings(
@@ -291,10 +272,7 @@ fn findings(
 ) -> Vec<FindingOutcome> {
     let mut findings = Vec::new();
     let mut tell = |code: &str, message: String| {
-        findings.push(FindingOutcome {
-            code: code.to_owned(),
-            message,
-        });
+        findings.push(FindingOutcome::new(code, message));
     };
     if curve.began_in_contact {
         let touch = plain(1e3 * fit.touches[0].value);

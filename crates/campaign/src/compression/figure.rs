@@ -4,8 +4,7 @@ use windfall_draw::xy::{Figure, Mark, Panel, Series, Side, Style};
 use windfall_identify::compression_fit::{CompressionFit, LoadingCurve};
 use windfall_signal::compression::{CompressionCurve, CurvePoint};
 
-/// The loading curve with the fitted range, the laws over it and beyond, the
-/// yield and the softening.
+/// The loading curve with the fitted range, the laws, the yield and the softening.
 ///
 /// * `fits`: the laws, each with the part of the curve that it was fitted to
 #[must_use]
@@ -25,15 +24,9 @@ pub fn figure_of_compression(
         (0.0..=1.3e3 * limit.deformation).contains(d) && (0.0..=1.3 * limit.force).contains(f)
     };
     let after = points(end + 1..curve.force.len()).into_iter().filter(near);
-    let series = |label: &str, style: Style, points: Vec<(f64, f64)>| Series {
-        label: label.to_owned(),
-        style,
-        colour: None,
-        points,
-    };
     let mut all = vec![
-        series("loading", Style::Dots, points(0..end + 1)),
-        series("after it (not used)", Style::Dots, after.collect()),
+        Series::new("loading", Style::Dots, points(0..end + 1)),
+        Series::new("after it (not used)", Style::Dots, after.collect()),
     ];
     let mut marks: Vec<Mark> = Vec::new();
     for (part, fit) in fits {
@@ -57,11 +50,8 @@ pub fn figure_of_compression(
         let before = (0..20).map(|i| touch + 0.05 * f64::from(i) * (first - touch));
         line.splice(0..0, before.map(|d| force(d, part.rate[0])));
         line.retain(|(_, force)| *force <= 1.3 * curve.loading_end.force);
-        all.push(series(
-            &format!("{}, fitted up to the ring", fit.law.kind().name()),
-            Style::Line,
-            line,
-        ));
+        let label = format!("{}, fitted up to the ring", fit.law.kind().name());
+        all.push(Series::new(label, Style::Line, line));
     }
     let mark = |label: &str, point: &CurvePoint| Mark {
         label: label.to_owned(),
@@ -72,15 +62,10 @@ pub fn figure_of_compression(
     if curve.bioyield.is_none() {
         marks.extend(curve.softening.iter().map(|point| mark("softening", point)));
     }
+    let axis = ("deformation since the first sample", "mm");
+    let panel = Panel::new(axis, ("force", "N"), all);
     Figure {
         title: title.to_owned(),
-        panels: vec![Panel {
-            x: "deformation since the first sample".to_owned(),
-            x_unit: "mm".to_owned(),
-            y: "force".to_owned(),
-            y_unit: "N".to_owned(),
-            series: all,
-            marks,
-        }],
+        panels: vec![Panel { marks, ..panel }],
     }
 }

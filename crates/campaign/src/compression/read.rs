@@ -7,7 +7,7 @@ use crate::settings::files::check_format;
 use crate::settings::fit::{LawKeys, free_names, law_expressions};
 use crate::settings::kind::{CAMPAIGN_FILE, CampaignKind};
 use crate::settings::model::Campaign;
-use crate::settings::shared::{SharedFile, read_shared};
+use crate::settings::shared::read_shared;
 use std::path::Path;
 use toml::Spanned;
 use windfall_contact::apparent_modulus::PrincipalRadii;
@@ -70,16 +70,12 @@ pub fn read_compression(directory: &Path) -> Result<CompressionCampaign, Error> 
         }
     }
     let channels = channel_plans(&source, file.channels.as_ref())?;
-    let shared = SharedFile {
-        campaign: &file.campaign,
-        files: &file.files,
-        summary: &file.summary,
-    };
+    let shared = (&file.campaign, &file.files, &file.summary);
     let kind = CampaignKind::Compression;
     Ok(CompressionCampaign {
         fit_to: fit_range(&source, file.compression.fit_to.as_ref())?,
         options: options(&source, &file.compression, file.rig.get_ref())?,
-        shared: read_shared(&source, directory, kind, &shared, channels)?,
+        shared: read_shared(&source, directory, kind, shared, channels)?,
         plates,
         poisson_ratio,
         indenter,

@@ -13,12 +13,11 @@ use crate::measure::measured::{
 use crate::pipeline::request::{FitRequest, apply_request_to_measurement, laws_and_free};
 use crate::recording::read::read_recording;
 use crate::settings::model::{Campaign, ImpactEntry};
-use itertools::Itertools;
 use std::path::Path;
 use windfall_draw::files::{NamedFigure, file_name};
 use windfall_files::error::Error;
 use windfall_files::found::FindingOutcome;
-use windfall_files::named::Named;
+use windfall_files::named::{Named, grouped};
 use windfall_identify::compression_fit::fit_compression;
 use windfall_signal::recording::Recording;
 
@@ -121,31 +120,20 @@ impl Measurement for CompressionCampaign {
     }
 }
 
-/// Specimens with several compressions: one law for all of them, so that
-/// different rates tell its damping.
+/// One law for all compressions of a specimen, so that different rates tell its damping.
 fn joint_fits(campaign: &CompressionCampaign) -> Vec<MeasuredItem> {
-    let specimens: Vec<&str> = campaign
-        .shared
-        .entries
-        .iter()
-        .map(|entry| entry.specimen.as_str())
-        .unique()
-        .collect();
+    let entries = campaign.shared.entries.iter();
     let mut items = Vec::new();
-    for specimen in specimens {
-        let all = campaign.shared.entries.iter();
-        let entries: Vec<&ImpactEntry> = all.filter(|e| e.specimen == specimen).collect();
+    for (specimen, entries) in grouped(entries.map(|entry| (entry.specimen.as_str(), entry))) {
         if entries.len() < 2 {
             continue;
         }
         // One that cannot be read is reported with its recording.
-        let curves: Vec<_> = entries
-            .iter()
-            .filter_map(|entry| {
-                let recording = read_recording(&campaign.shared.files, entry).ok()?;
-                loading_curve(campaign, entry, &recording).ok()
-            })
-            .collect();
+        let curve = |entry: &&ImpactEntry| {
+            let recording = read_recording(&campaign.shared.files, entry).ok()?;
+            loading_curve(campaign, entry, &recording).ok()
+        };
+        let curves: Vec<_> = entries.iter().filter_map(curve).collect();
         if curves.len() < 2 {
             continue;
         }
@@ -157,21 +145,16 @@ fn joint_fits(campaign: &CompressionCampaign) -> Vec<MeasuredItem> {
             };
             let mut findings = Vec::new();
             if !fit.converged {
-                findings.push(FindingOutcome {
-                    code: "fit_not_converged".to_owned(),
-                    message: "the fit of all curves together did not converge".to_owned(),
-                });
+                let message = "the fit of all curves together did not converge";
+                findings.push(FindingOutcome::new("fit_not_converged", message));
             }
             items.push(MeasuredItem {
-                id: specimen.to_owned(),
-                specimen: specimen.to_owned(),
-                group: None,
                 file: format!("{} recordings together", curves.len()),
-                law: law.kind.name().to_owned(),
-                words: Named(vec![("recordings".to_owned(), curves.len().to_string())]),
+                words: Named::of([("recordings", curves.len().to_string())]),
                 parameters: parameters_of(&fit),
-                derived: Named(vec![("residual_rms".to_owned(), plain_value(fit.rms, "N"))]),
+                derived: Named::of([("residual_rms", plain_value(fit.rms, "N"))]),
                 findings,
+                ..MeasuredItem::named(specimen, law.kind.name())
             });
         }
     }

@@ -3,7 +3,7 @@
 
 use crate::impacts::two_stage::{Estimates, Population, two_stage};
 use crate::result::outcome::{CampaignOutcome, ImpactOutcome};
-use crate::settings::model::ImpactCampaign;
+use crate::settings::model::{ImpactCampaign, RigPlan};
 use std::collections::BTreeMap;
 use std::path::Path;
 use windfall_cards::law_card::{
@@ -15,6 +15,7 @@ use windfall_cards::read_card::card_definition;
 use windfall_contact::expression::LawExpression;
 use windfall_contact::laws::kind::Law;
 use windfall_files::error::Error;
+use windfall_files::named::grouped;
 use windfall_files::provenance::{VERSION, digest_file, time_now};
 
 /// Files whose digests a card carries.
@@ -27,11 +28,12 @@ const QUANTILE: f64 = 1.96;
 /// # Errors
 /// More than one law was fitted, or no impact was fitted with success.
 pub fn card_of_fit(campaign: &ImpactCampaign, outcome: &CampaignOutcome) -> Result<LawCard, Error> {
+    let unknown = |missing: &str, advice| Error::not_known(&campaign.shared.title, missing, advice);
     let [asked] = &campaign.fit.laws[..] else {
+        let advice = "name one, as in `windfall fit DIR --law kuwabara-kono --card FILE`";
         return Err(unknown(
-            campaign,
-            "a card is of one law, and several were fitted".to_owned(),
-            "name one, as in `windfall fit DIR --law kuwabara-kono --card FILE`",
+            "a card is of one law, and several were fitted",
+            advice,
         ));
     };
     let kind = asked.kind;
@@ -39,11 +41,8 @@ pub fn card_of_fit(campaign: &ImpactCampaign, outcome: &CampaignOutcome) -> Resu
     let all = impacts.len();
     impacts.retain(|impact| impact.converged);
     if impacts.is_empty() {
-        return Err(unknown(
-            campaign,
-            "no impact was fitted with success".to_owned(),
-            "see the findings of `windfall fit DIR`",
-        ));
+        let advice = "see the findings of `windfall fit DIR`";
+        return Err(unknown("no impact was fitted with success", advice));
     }
     let estimates = estimates_of(&impacts);
     let population = two_stage(&estimates);
@@ -89,59 +88,38 @@ pub fn card_of_fit(campaign: &ImpactCampaign, outcome: &CampaignOutcome) -> Resu
     })
 }
 
-fn unknown(campaign: &ImpactCampaign, missing: String, advice: &str) -> Error {
-    Error::ValueNotKnown {
-        item: campaign.shared.title.clone(),
-        missing,
-        advice: advice.to_owned(),
-    }
-}
-
 fn impactor(campaign: &ImpactCampaign) -> &'static str {
     match campaign.rig {
-        crate::settings::model::RigPlan::Pendulum(_) => "impactor of a pendulum",
-        crate::settings::model::RigPlan::Carriage { .. } => "impactor on a line",
+        RigPlan::Pendulum(_) => "impactor of a pendulum",
+        RigPlan::Carriage { .. } => "impactor on a line",
     }
 }
 
 /// What was estimated on each impact, by fruit; positive scales as logarithms.
 fn estimates_of(impacts: &[&ImpactOutcome]) -> Estimates {
-    let free: Vec<&String> = impacts[0]
-        .parameters
-        .0
-        .iter()
-        .filter(|(_, estimate)| !estimate.held)
-        .map(|(name, _)| name)
-        .collect();
+    let estimated = impacts[0].parameters.0.iter();
+    let estimated: Vec<_> = estimated.filter(|(_, estimate)| !estimate.held).collect();
     let value = |impact: &ImpactOutcome, name: &str| {
         impact.parameters.get(name).map_or(f64::NAN, |e| e.value)
     };
-    let logarithmic: Vec<bool> = free
+    let positive = |name: &str| impacts.iter().all(|impact| value(impact, name) > 0.0);
+    let logarithmic = estimated
         .iter()
-        .map(|name| {
-            let plain = impacts[0]
-                .parameters
-                .get(name)
-                .is_none_or(|e| e.unit == "1");
-            !plain && impacts.iter().all(|impact| value(impact, name) > 0.0)
-        })
-        .collect();
-    let mut fruit: Vec<(String, Vec<Vec<f64>>)> = Vec::new();
-    for impact in impacts {
-        let row = free.iter().zip(&logarithmic).map(|(name, logarithmic)| {
-            let value = value(impact, name);
-            if *logarithmic { value.ln() } else { value }
-        });
-        let row: Vec<f64> = row.collect();
-        match fruit.iter_mut().find(|(id, _)| *id == impact.specimen) {
-            Some((_, rows)) => rows.push(row),
-            None => fruit.push((impact.specimen.clone(), vec![row])),
-        }
-    }
+        .map(|(name, e)| e.unit != "1" && positive(name));
+    let logarithmic: Vec<bool> = logarithmic.collect();
+    let row = |impact: &ImpactOutcome| -> Vec<f64> {
+        let values = estimated.iter().map(|(name, _)| value(impact, name));
+        let pairs = values.zip(&logarithmic);
+        pairs
+            .map(|(value, logarithmic)| if *logarithmic { value.ln() } else { value })
+            .collect()
+    };
+    let rows = impacts.iter().map(|impact| (&impact.specimen, row(impact)));
+    let fruit = grouped(rows).into_iter().map(|(_, rows)| rows);
     Estimates {
-        names: free.into_iter().cloned().collect(),
+        fruit: fruit.collect(),
         logarithmic,
-        fruit: fruit.into_iter().map(|(_, rows)| rows).collect(),
+        names: estimated.iter().map(|(name, _)| name.clone()).collect(),
     }
 }
 
@@ -173,11 +151,9 @@ fn law_of(
         })
         .collect();
     kind.with_parameters(&values).map_err(|error| {
-        unknown(
-            campaign,
-            format!("the median of its parameters is no law ({error})"),
-            "look at the impacts one by one: `windfall fit DIR`",
-        )
+        let missing = format!("the median of its parameters is no law ({error})");
+        let advice = "look at the impacts one by one: `windfall fit DIR`";
+        Error::not_known(&campaign.shared.title, missing, advice)
     })
 }
 
@@ -236,10 +212,9 @@ fn card_population(
 /// In what the law was seen: the motions under the fitted laws.
 fn range_of(outcome: &CampaignOutcome, impacts: &[&ImpactOutcome]) -> CardRange {
     let of = |name: &str| {
-        let values = impacts.iter().filter_map(|impact| {
-            let fitted = impact.fitted.get(name).copied().flatten();
-            fitted.or_else(|| impact.derived.get(name).copied().flatten())
-        });
+        let values = impacts
+            .iter()
+            .filter_map(|impact| impact.fitted(name).or_else(|| impact.derived(name)));
         values.fold([f64::INFINITY, f64::NEG_INFINITY], |range, value| {
             [range[0].min(value), range[1].max(value)]
         })

@@ -13,9 +13,6 @@ const ALWAYS: usize = 12;
 ///
 /// Parameters carry their unit in a column beside them, because it depends on
 /// the law. Simulated recordings are marked in every row.
-///
-/// # Errors
-/// None in practice: the text is written to memory.
 pub fn csv_of_campaign(outcome: &CampaignOutcome) -> Result<String, Error> {
     let names = parameter_names(outcome);
     let mut header: Vec<String> = ["id", "specimen", "group", "file", "law"]
@@ -73,7 +70,7 @@ fn row_of(impact: &ImpactOutcome, names: &[&str], outcome: &CampaignOutcome) -> 
     row.extend(always.iter().map(|quantity| derived(impact, quantity)));
     // What the fitted law gives, beside what it takes as a parameter.
     for name in ["restitution", "nominal_restitution"] {
-        row.push(number(impact.fitted.get(name).copied().flatten()));
+        row.push(number(impact.fitted(name)));
     }
     let codes: Vec<&str> = impact
         .findings
@@ -91,7 +88,7 @@ fn row_of(impact: &ImpactOutcome, names: &[&str], outcome: &CampaignOutcome) -> 
 }
 
 fn derived(impact: &ImpactOutcome, quantity: &Quantity) -> String {
-    number(impact.derived.get(quantity.name).copied().flatten())
+    number(impact.derived(quantity.name))
 }
 
 fn number(value: Option<f64>) -> String {
@@ -99,12 +96,7 @@ fn number(value: Option<f64>) -> String {
 }
 
 fn parameter_names(outcome: &CampaignOutcome) -> Vec<&str> {
-    let names: Vec<&str> = outcome
-        .impacts
-        .iter()
-        .flat_map(|impact| &impact.parameters.0)
-        .map(|(name, _)| name.as_str())
-        .unique()
-        .collect();
-    names
+    let impacts = outcome.impacts.iter();
+    let names = impacts.flat_map(|impact| impact.parameters.names());
+    names.unique().collect()
 }

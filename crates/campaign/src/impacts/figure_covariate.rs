@@ -3,6 +3,7 @@
 use crate::impacts::figure_parameters::{estimated_parameters, groups_of_impacts};
 use crate::result::outcome::ImpactOutcome;
 use crate::settings::model::ImpactCampaign;
+use itertools::Itertools;
 use windfall_draw::files::{NamedFigure, file_name};
 use windfall_draw::xy::{Figure, Panel, Series, Style};
 use windfall_files::text::column_title::column_title;
@@ -17,8 +18,7 @@ const POINTS: usize = 60;
 /// Columns with fewer different values than this show no course.
 const FEWEST_VALUES: usize = 3;
 
-/// A covariate whose values span less than this part of the largest shows the noise
-/// of its measurement, not a course; 1.
+/// Covariates with a relative span below this show measurement noise, not a course; 1.
 const LEAST_SPAN: f64 = 0.01;
 
 /// Columns that say where in a recording an impact is.
@@ -39,38 +39,25 @@ pub struct Covariate {
 /// that hold numbers of which at least three differ.
 #[must_use]
 pub fn covariates_of(campaign: &ImpactCampaign, impacts: &[&ImpactOutcome]) -> Vec<Covariate> {
-    let velocity =
-        |impact: &&ImpactOutcome| impact.fitted.get("impact_velocity").copied().flatten();
+    let velocity = |impact: &&ImpactOutcome| impact.fitted("impact_velocity");
     let mut found = vec![Covariate {
         name: "impact velocity".to_owned(),
         unit: "m/s".to_owned(),
         values: impacts.iter().map(velocity).collect(),
     }];
-    let mut names: Vec<&String> = Vec::new();
-    let columns = campaign
-        .shared
-        .entries
-        .iter()
-        .flat_map(|entry| &entry.cells);
-    let of_specimens = campaign.shared.specimens.iter().flat_map(|s| &s.cells);
-    for (name, _) in columns.chain(of_specimens) {
-        if !names.contains(&name) && !PLACES.contains(&name.as_str()) {
-            names.push(name);
-        }
-    }
-    for name in names {
-        let cells: Vec<Option<&str>> = impacts
-            .iter()
-            .map(|impact| cell(campaign, impact, name))
-            .collect();
-        let filled = || {
-            cells
-                .iter()
-                .flatten()
-                .filter(|cell| !cell.trim().is_empty())
-        };
+    let shared = &campaign.shared;
+    let columns = shared.entries.iter().flat_map(|entry| &entry.cells);
+    let of_specimens = shared.specimens.iter().flat_map(|s| &s.cells);
+    let names = columns.chain(of_specimens).map(|(name, _)| name).unique();
+    for name in names.filter(|name| !PLACES.contains(&name.as_str())) {
+        let cells = impacts.iter().map(|impact| cell(campaign, impact, name));
+        let cells: Vec<Option<&str>> = cells.collect();
         let number = |text: &str| text.trim().parse::<f64>().ok().filter(|v| v.is_finite());
-        if filled().any(|cell| number(cell).is_none()) {
+        let mut filled = cells
+            .iter()
+            .flatten()
+            .filter(|cell| !cell.trim().is_empty());
+        if filled.any(|cell| number(cell).is_none()) {
             continue;
         }
         found.push(Covariate {
@@ -85,16 +72,9 @@ pub fn covariates_of(campaign: &ImpactCampaign, impacts: &[&ImpactOutcome]) -> V
 
 /// The cell of an impact's row, or of its specimen's.
 fn cell<'a>(campaign: &'a ImpactCampaign, impact: &ImpactOutcome, column: &str) -> Option<&'a str> {
-    let entry = campaign
-        .shared
-        .entries
-        .iter()
-        .find(|entry| entry.id == impact.id)?;
-    let specimen = campaign
-        .shared
-        .specimens
-        .iter()
-        .find(|s| s.id == entry.specimen);
+    let mut entries = campaign.shared.entries.iter();
+    let entry = entries.find(|entry| entry.id == impact.id)?;
+    let specimen = campaign.shared.specimen_of(entry);
     let of_specimen = specimen.map_or(&[][..], |s| &s.cells);
     let mut cells = entry.cells.iter().chain(of_specimen);
     let found = cells.find(|(name, _)| name == column)?;
@@ -112,9 +92,8 @@ fn varies(values: &[Option<f64>]) -> bool {
     sorted.len() >= FEWEST_VALUES && high - low >= LEAST_SPAN * low.abs().max(high.abs())
 }
 
-/// Each estimated parameter against a covariate, with the 95 % interval of each
-/// impact and the straight line through each group with its 95 % band; `None` where
-/// nothing was estimated.
+/// Each estimated parameter against a covariate: impacts with their 95 % intervals, and a line
+/// through each group with its 95 % band; `None` where nothing was estimated.
 #[must_use]
 pub fn figure_of_covariate(
     law: &str,
@@ -157,7 +136,6 @@ fn panel(
     };
     let mut series = Vec::new();
     for (index, (group, members)) in groups_of_impacts(impacts).into_iter().enumerate() {
-        let colour = Some(index);
         let (mut points, mut bars) = (Vec::new(), Vec::new());
         for impact in &members {
             let (Some(x), Some(estimate)) = (value_of(impact), impact.parameters.get(&name)) else {
@@ -168,12 +146,7 @@ fn panel(
                 bars.extend([(x, low), (x, high)]);
             }
         }
-        let drawn = |label: &str, style, points| Series {
-            label: label.to_owned(),
-            style,
-            colour,
-            points,
-        };
+        let drawn = |label: &str, style, points| Series::new(label, style, points).coloured(index);
         if let Some((line, band)) = line_and_band(&points) {
             series.push(drawn("", Style::Band, band));
             series.push(drawn("", Style::Line, line));
@@ -185,14 +158,7 @@ fn panel(
         "" => column_title(&covariate.name),
         unit => (covariate.name.clone(), unit.to_owned()),
     };
-    Panel {
-        x,
-        x_unit,
-        y: name,
-        y_unit: unit,
-        series,
-        marks: Vec::new(),
-    }
+    Panel::new((&x, &x_unit), (&name, &unit), series)
 }
 
 type Line = Vec<(f64, f64)>;
@@ -202,8 +168,7 @@ fn line_and_band(points: &[(f64, f64)]) -> Option<(Line, Line)> {
     let (x, y): (Vec<f64>, Vec<f64>) = points.iter().copied().unzip();
     // On two points the band would be the whole plane.
     let fit = fit_straight_line(&x, &y, CONFIDENCE).ok()?;
-    let low = x.iter().copied().fold(f64::INFINITY, f64::min);
-    let high = x.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+    let (&low, &high) = x.iter().minmax_by(|a, b| a.total_cmp(b)).into_option()?;
     let places: Vec<f64> = (0..POINTS)
         .map(|i| low + (high - low) * i as f64 / (POINTS - 1) as f64)
         .collect();

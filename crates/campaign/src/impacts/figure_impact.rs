@@ -10,8 +10,7 @@ use windfall_identify::rig::simulate::{Trajectory, trajectory};
 use windfall_signal::impact::{Impact, Series as Samples};
 use windfall_signal::kinematics::value_at;
 
-/// Time over which differences of the displacement are shown as its rate, as a part
-/// of the contact's duration; 1.
+/// Time over which displacements are differenced, as a part of the contact's duration; 1.
 const RATE_SPAN: f64 = 0.05;
 
 /// Colour of the contact window, which no law has before the fourth.
@@ -35,37 +34,21 @@ pub fn figure_of_impact(
         .iter()
         .filter_map(|outcome| fitted_motion(impact, outcome, used))
         .collect();
+    let over_time = |name, unit, measured: &Samples, pick: fn(&Trajectory) -> &Vec<f64>| {
+        over_time(impact, (name, unit), measured, &laws, pick)
+    };
     let mut panels = Vec::new();
     if let Some(force) = &impact.force {
-        panels.push(over_time(
-            impact,
-            "contact force",
-            ("N", 1.0),
-            force,
-            &laws,
-            |m| &m.force,
-        ));
+        panels.push(over_time("contact force", ("N", 1.0), force, |m| &m.force));
     }
     if let Some(displacement) = &impact.displacement {
         let unit = ("mm", 1e3);
-        panels.push(over_time(
-            impact,
-            "displacement",
-            unit,
-            displacement,
-            &laws,
-            |m| &m.displacement,
-        ));
+        panels.push(over_time("displacement", unit, displacement, |m| {
+            &m.displacement
+        }));
     }
     if let (Some((label, rate)), true) = (shown_rate(impact), !panels.is_empty()) {
-        let mut panel = over_time(
-            impact,
-            "displacement rate",
-            ("m/s", 1.0),
-            &rate,
-            &laws,
-            |m| &m.rate,
-        );
+        let mut panel = over_time("displacement rate", ("m/s", 1.0), &rate, |m| &m.rate);
         panel.series[1].label = label;
         panels.push(panel);
     }
@@ -78,9 +61,8 @@ pub fn figure_of_impact(
             ("acceleration", "m/s²", &impact.acceleration),
         ] {
             if let Some(series) = series {
-                panels.push(over_time(impact, name, (unit, 1.0), series, &[], |m| {
-                    &m.force
-                }));
+                let quantity = (name, (unit, 1.0));
+                panels.push(self::over_time(impact, quantity, series, &[], |m| &m.force));
             }
         }
     }
@@ -114,7 +96,7 @@ impl<'a> FittedImpact<'a> {
             law: kind.with_parameters(&values).ok()?,
             rig,
             end,
-            velocity: outcome.fitted.get("impact_velocity").copied().flatten()?,
+            velocity: outcome.fitted("impact_velocity")?,
             onset: nuisance("onset").unwrap_or(impact.onset),
             offset: nuisance("displacement_offset").unwrap_or(0.0),
         })
@@ -125,14 +107,8 @@ impl<'a> FittedImpact<'a> {
 /// displacement as the recording counts it; `None` where it cannot be followed.
 pub fn motion_at(fitted: &FittedImpact, times: &[f64]) -> Option<Trajectory> {
     let since: Vec<f64> = times.iter().map(|t| t - fitted.onset).collect();
-    let FittedImpact {
-        law,
-        rig,
-        end,
-        velocity,
-        ..
-    } = fitted;
-    let mut motion = trajectory(law, rig, *velocity, &since, *end).ok()?;
+    let (law, rig) = (&fitted.law, fitted.rig);
+    let mut motion = trajectory(law, rig, fitted.velocity, &since, fitted.end).ok()?;
     motion.times = times.to_vec();
     for displacement in &mut motion.displacement {
         *displacement += fitted.offset;
@@ -157,8 +133,7 @@ fn fitted_motion(
     })
 }
 
-/// The motion under a fitted law at even times over all that is shown of an impact;
-/// `None` where it cannot be followed.
+/// The motion under a fitted law over all that is shown of an impact, where it can be followed.
 pub fn line_of_law(
     impact: &Impact,
     outcome: &ImpactOutcome,
@@ -185,9 +160,8 @@ fn range(impact: &Impact) -> Option<(f64, f64)> {
     ends.reduce(|a, b| (a.0.min(b.0), a.1.max(b.1)))
 }
 
-/// The displacement rate as people can read it, with how it came about. Differences
-/// between neighbouring counts of an encoder are nothing or a whole count: those over
-/// a longer time are shown.
+/// The displacement rate and how it came about. Without a measured one, differences are taken
+/// over several samples: those of neighbouring encoder counts are nothing or a whole count.
 pub fn shown_rate(impact: &Impact) -> Option<(String, Samples)> {
     if let Some(rate) = impact.rate.as_ref().filter(|rate| !rate.derived) {
         return Some(("measured".to_owned(), rate.clone()));
@@ -211,55 +185,32 @@ pub fn shown_rate(impact: &Impact) -> Option<(String, Samples)> {
 
 fn over_time(
     impact: &Impact,
-    name: &str,
-    (unit, scale): (&str, f64),
+    (name, (unit, scale)): (&str, (&str, f64)),
     measured: &Samples,
     laws: &[FittedMotion],
     pick: impl Fn(&Trajectory) -> &Vec<f64>,
 ) -> Panel {
     let point = |(t, value): (&f64, &f64)| (1e3 * (t - impact.onset), scale * value);
     let window = [impact.onset, impact.end].map(|t| (1e3 * (t - impact.onset), 0.0));
+    let dots = measured.times.iter().zip(&measured.values).map(point);
     let mut series = vec![
-        Series {
-            label: "contact (force threshold)".to_owned(),
-            style: Style::Shade,
-            colour: Some(WINDOW),
-            points: window.to_vec(),
-        },
-        Series {
-            label: "measured".to_owned(),
-            style: Style::Dots,
-            colour: Some(0),
-            points: measured
-                .times
-                .iter()
-                .zip(&measured.values)
-                .map(point)
-                .collect(),
-        },
+        Series::new("contact (force threshold)", Style::Shade, window.to_vec()).coloured(WINDOW),
+        Series::new("measured", Style::Dots, dots.collect()).coloured(0),
     ];
-    series.extend(laws.iter().enumerate().map(|(index, motion)| {
-        Series {
-            label: motion.law.clone(),
-            style: Style::Line,
-            colour: Some(1 + index),
-            points: motion
-                .motion
-                .times
-                .iter()
-                .zip(pick(&motion.motion))
-                .map(point)
-                .collect(),
-        }
+    series.extend(laws.iter().enumerate().map(|(index, fitted)| {
+        let line = fitted
+            .motion
+            .times
+            .iter()
+            .zip(pick(&fitted.motion))
+            .map(point);
+        Series::new(&fitted.law, Style::Line, line.collect()).coloured(1 + index)
     }));
-    Panel {
-        x: "time since the force threshold".to_owned(),
-        x_unit: "ms".to_owned(),
-        y: name.to_owned(),
-        y_unit: unit.to_owned(),
+    Panel::new(
+        ("time since the force threshold", "ms"),
+        (name, unit),
         series,
-        marks: Vec::new(),
-    }
+    )
 }
 
 fn force_loop(
@@ -274,42 +225,22 @@ fn force_loop(
         false => &displacement.times,
     };
     let guard = 0.05 * (impact.end - impact.onset);
-    let inside = times
-        .iter()
-        .filter(|t| (impact.onset - guard..=impact.end + guard).contains(t));
-    let points = inside.map(|t| {
+    let shown = impact.onset - guard..=impact.end + guard;
+    let points = times.iter().filter(|t| shown.contains(t)).map(|t| {
         let x = value_at(&displacement.times, &displacement.values, *t);
         (1e3 * x, value_at(&force.times, &force.values, *t))
     });
-    let mut series = vec![Series {
-        label: "measured".to_owned(),
-        style: Style::Dots,
-        colour: None,
-        points: points.collect(),
-    }];
-    series.extend(laws.iter().enumerate().map(|(index, motion)| {
-        let Trajectory {
-            times,
-            displacement,
-            force,
-            ..
-        } = &motion.motion;
-        let inside = times.iter().zip(displacement.iter().zip(force));
-        let inside =
-            inside.filter(|(t, _)| (impact.onset - guard..=impact.end + guard).contains(t));
-        Series {
-            label: motion.law.clone(),
-            style: Style::Line,
-            colour: Some(1 + index),
-            points: inside.map(|(_, (x, f))| (1e3 * x, *f)).collect(),
-        }
+    let mut series = vec![Series::new("measured", Style::Dots, points.collect())];
+    series.extend(laws.iter().enumerate().map(|(index, fitted)| {
+        let motion = &fitted.motion;
+        let points = motion.displacement.iter().zip(&motion.force);
+        let inside = motion
+            .times
+            .iter()
+            .zip(points)
+            .filter(|(t, _)| shown.contains(t));
+        let line = inside.map(|(_, (x, f))| (1e3 * x, *f)).collect();
+        Series::new(&fitted.law, Style::Line, line).coloured(1 + index)
     }));
-    Panel {
-        x: "displacement".to_owned(),
-        x_unit: "mm".to_owned(),
-        y: "force".to_owned(),
-        y_unit: "N".to_owned(),
-        series,
-        marks: Vec::new(),
-    }
+    Panel::new(("displacement", "mm"), ("force", "N"), series)
 }

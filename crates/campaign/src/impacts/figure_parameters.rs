@@ -1,11 +1,12 @@
 //! A fitted campaign as figures: parameters against each other, and what the law
-//! foretells against what the signals show.
+//! predicts against what the signals show.
 
 use crate::result::outcome::ImpactOutcome;
 use crate::result::quantity::{Quantity, quantities_named};
 use std::f64::consts::TAU;
 use windfall_draw::files::NamedFigure;
 use windfall_draw::xy::{Figure, Panel, Series, Style};
+use windfall_files::named::grouped;
 use windfall_statistics::distribution::tail::{chi_squared_upper_quantile, f_upper_quantile};
 
 /// Probability that an ellipse leaves outside.
@@ -30,15 +31,8 @@ const PREDICTED: [&str; 4] = [
 pub fn groups_of_impacts<'a>(
     impacts: &[&'a ImpactOutcome],
 ) -> Vec<(String, Vec<&'a ImpactOutcome>)> {
-    let mut groups: Vec<(String, Vec<&ImpactOutcome>)> = Vec::new();
-    for impact in impacts {
-        let name = impact.group.clone().unwrap_or_else(|| "impacts".to_owned());
-        match groups.iter_mut().find(|(known, _)| *known == name) {
-            Some((_, members)) => members.push(impact),
-            None => groups.push((name, vec![impact])),
-        }
-    }
-    groups
+    let name = |impact: &ImpactOutcome| impact.group.clone().unwrap_or("impacts".to_owned());
+    grouped(impacts.iter().map(|impact| (name(impact), *impact)))
 }
 
 /// Names of the parameters that were estimated, with their units; "SI" where the unit
@@ -100,7 +94,7 @@ fn pair_panel(
 ) -> Panel {
     let mut series = Vec::new();
     for (index, (group, members)) in groups_of_impacts(impacts).into_iter().enumerate() {
-        let colour = Some(index);
+        let drawn = |label: &str, style, points| Series::new(label, style, points).coloured(index);
         let points: Vec<(f64, f64)> = members
             .iter()
             .filter_map(|i| Some((i.parameters.get(x)?.value, i.parameters.get(y)?.value)))
@@ -109,36 +103,13 @@ fn pair_panel(
             let ellipses = members
                 .iter()
                 .filter_map(|impact| own_ellipse(impact, x, y));
-            series.extend(ellipses.map(|points| Series {
-                label: String::new(),
-                style: Style::Line,
-                colour,
-                points,
-            }));
+            series.extend(ellipses.map(|ellipse| drawn("", Style::Line, ellipse)));
         }
-        if let Some(points) = ellipse_of_further(&points) {
-            series.push(Series {
-                label: String::new(),
-                style: Style::Dashed,
-                colour,
-                points,
-            });
-        }
-        series.push(Series {
-            label: group,
-            style: Style::Dots,
-            colour,
-            points,
-        });
+        let further = ellipse_of_further(&points);
+        series.extend(further.map(|ellipse| drawn("", Style::Dashed, ellipse)));
+        series.push(drawn(&group, Style::Dots, points));
     }
-    Panel {
-        x: x.clone(),
-        x_unit: x_unit.clone(),
-        y: y.clone(),
-        y_unit: y_unit.clone(),
-        series,
-        marks: Vec::new(),
-    }
+    Panel::new((x, x_unit), (y, y_unit), series)
 }
 
 /// The 95 % ellipse of the estimates of one impact.
@@ -171,8 +142,7 @@ fn ellipse_of_further(points: &[(f64, f64)]) -> Option<Vec<(f64, f64)>> {
     ellipse((mean_x, mean_y), covariance, reach)
 }
 
-/// The closed line (p − centre)ᵀ C⁻¹ (p − centre) = `reach`; `None` where C is not
-/// positive definite.
+/// The ellipse (p − centre)ᵀ C⁻¹ (p − centre) = `reach`, where C is positive definite.
 fn ellipse((x, y): (f64, f64), [xx, xy, yy]: [f64; 3], reach: f64) -> Option<Vec<(f64, f64)>> {
     // Cholesky factor of C.
     let first = xx.sqrt();
@@ -188,8 +158,7 @@ fn ellipse((x, y): (f64, f64), [xx, xy, yy]: [f64; 3], reach: f64) -> Option<Vec
     usable.then(|| (0..=CORNERS).map(corner).collect())
 }
 
-/// What the fitted law foretells against what the signals show without it; `None`
-/// where the signals show nothing of it.
+/// What the fitted law predicts against what the signals show on their own, if anything.
 #[must_use]
 pub fn figure_of_predictions(law: &str, impacts: &[&ImpactOutcome]) -> Option<NamedFigure> {
     let panels: Vec<Panel> = quantities_named(&PREDICTED)
@@ -216,18 +185,13 @@ fn prediction_panel(impacts: &[&ImpactOutcome], quantity: &Quantity) -> Option<P
     let heading = quantity.label.to_lowercase();
     let pair = |impact: &&ImpactOutcome| {
         let seen = impact.derived_from.get(name)? == "signal";
-        let measured = impact.derived.get(name).copied().flatten()?;
-        let fitted = impact.fitted.get(name).copied().flatten()?;
+        let (measured, fitted) = (impact.derived(name)?, impact.fitted(name)?);
         seen.then_some((factor * measured, factor * fitted))
     };
     let mut series = Vec::new();
     for (index, (group, members)) in groups_of_impacts(impacts).into_iter().enumerate() {
-        series.push(Series {
-            label: group,
-            style: Style::Dots,
-            colour: Some(index),
-            points: members.iter().filter_map(pair).collect(),
-        });
+        let points = members.iter().filter_map(pair).collect();
+        series.push(Series::new(group, Style::Dots, points).coloured(index));
     }
     let points = || series.iter().flat_map(|s| &s.points);
     let values = || points().flat_map(|(a, b)| [*a, *b]);
@@ -236,23 +200,11 @@ fn prediction_panel(impacts: &[&ImpactOutcome], quantity: &Quantity) -> Option<P
     if low >= high || low.is_nan() {
         return None;
     }
-    series.insert(
-        0,
-        Series {
-            label: String::new(),
-            style: Style::Dashed,
-            colour: Some(6),
-            points: vec![(low, low), (high, high)],
-        },
-    );
-    Some(Panel {
-        x: format!("measured {heading}"),
-        x_unit: quantity.shown_unit.to_owned(),
-        y: format!("fitted {heading}"),
-        y_unit: quantity.shown_unit.to_owned(),
-        series,
-        marks: Vec::new(),
-    })
+    let equal = vec![(low, low), (high, high)];
+    series.insert(0, Series::new("", Style::Dashed, equal).coloured(6));
+    let (x, y) = (format!("measured {heading}"), format!("fitted {heading}"));
+    let unit = quantity.shown_unit;
+    Some(Panel::new((&x, unit), (&y, unit), series))
 }
 
 #[cfg(test)]

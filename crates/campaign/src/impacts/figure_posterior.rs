@@ -13,9 +13,8 @@ const POINTS: usize = 161;
 /// Parameters of a law that are shown.
 const MOST_SHOWN: usize = 4;
 
-/// Densities of the parameters of the law with their intervals, and the draws of each pair
-/// of them with the ellipse that estimate and standard deviation stand for; `None`
-/// where the intervals were not drawn.
+/// Densities of the parameters with their intervals, and the draws of each pair with the
+/// ellipse of their standard deviations; `None` where the intervals were not drawn.
 #[must_use]
 pub fn figure_of_posterior(title: &str, outcome: &ImpactOutcome) -> Option<Figure> {
     let drawn = &outcome.intervals.drawn.0;
@@ -39,20 +38,8 @@ pub fn figure_of_posterior(title: &str, outcome: &ImpactOutcome) -> Option<Figur
     })
 }
 
-fn unit_of(estimate: Option<&EstimateOutcome>) -> String {
-    match estimate.map_or("1", |e| e.unit.as_str()) {
-        "1" => String::new(),
-        unit => unit.to_owned(),
-    }
-}
-
-fn series(label: &str, style: Style, colour: usize, points: Vec<(f64, f64)>) -> Series {
-    Series {
-        label: label.to_owned(),
-        style,
-        colour: Some(colour),
-        points,
-    }
+fn unit_of(estimate: Option<&EstimateOutcome>) -> &str {
+    estimate.map_or("1", |estimate| &estimate.unit)
 }
 
 fn marginal(name: &str, estimate: &EstimateOutcome, draws: &[f64]) -> Option<Panel> {
@@ -69,36 +56,28 @@ fn marginal(name: &str, estimate: &EstimateOutcome, draws: &[f64]) -> Option<Pan
         _ => Vec::new(),
     };
     let mut all = vec![
-        series("95 % interval", Style::Band, 0, within),
-        series("posterior", Style::Line, 0, line.clone()),
-        series("best fit", Style::Upright, 1, vec![(estimate.value, 0.0)]),
+        Series::new("95 % interval", Style::Band, within).coloured(0),
+        Series::new("posterior", Style::Line, line.clone()).coloured(0),
+        Series::new("best fit", Style::Upright, vec![(estimate.value, 0.0)]).coloured(1),
     ];
     if let Some(sd) = estimate.sd {
         let normal = line.iter().map(|(x, _)| {
             let z = (x - estimate.value) / sd;
             (*x, (-0.5 * z * z).exp() / (sd * TAU.sqrt()))
         });
-        let normal: Vec<(f64, f64)> = normal.collect();
-        all.push(series(
-            "normal of the same standard deviation",
-            Style::Dashed,
-            6,
-            normal,
-        ));
+        let label = "normal of the same standard deviation";
+        all.push(Series::new(label, Style::Dashed, normal.collect()).coloured(6));
     }
-    let unit = unit_of(Some(estimate));
-    Some(Panel {
-        x: name.to_owned(),
-        x_unit: unit.clone(),
-        y: "probability density".to_owned(),
-        y_unit: if unit.is_empty() {
-            unit
-        } else {
-            format!("1/({unit})")
-        },
-        series: all,
-        marks: Vec::new(),
-    })
+    let unit = estimate.unit.as_str();
+    let per_unit = match unit {
+        "1" => String::new(),
+        unit => format!("1/({unit})"),
+    };
+    Some(Panel::new(
+        (name, unit),
+        ("probability density", &per_unit),
+        all,
+    ))
 }
 
 /// Density of draws: Gaussian kernels; `None` where they do not differ.
@@ -132,34 +111,15 @@ fn density(draws: &[f64]) -> Option<Vec<(f64, f64)>> {
 
 fn pair(outcome: &ImpactOutcome, x: &(String, Vec<f64>), y: &(String, Vec<f64>)) -> Panel {
     let points = x.1.iter().copied().zip(y.1.iter().copied()).collect();
-    let mut all = vec![series("draws", Style::Dots, 0, points)];
+    let mut all = vec![Series::new("draws", Style::Dots, points).coloured(0)];
     if let Some(ellipse) = own_ellipse(outcome, &x.0, &y.0) {
-        all.push(series(
-            "95 % ellipse of the standard deviations",
-            Style::Dashed,
-            6,
-            ellipse,
-        ));
+        let label = "95 % ellipse of the standard deviations";
+        all.push(Series::new(label, Style::Dashed, ellipse).coloured(6));
     }
-    let best = outcome
-        .parameters
-        .get(&x.0)
-        .zip(outcome.parameters.get(&y.0));
-    let best = best.map(|(a, b)| (a.value, b.value));
-    all.push(series(
-        "best fit",
-        Style::Dots,
-        1,
-        best.into_iter().collect(),
-    ));
-    Panel {
-        x: x.0.clone(),
-        x_unit: unit_of(outcome.parameters.get(&x.0)),
-        y: y.0.clone(),
-        y_unit: unit_of(outcome.parameters.get(&y.0)),
-        series: all,
-        marks: Vec::new(),
-    }
+    let [of_x, of_y] = [&x.0, &y.0].map(|name| outcome.parameters.get(name));
+    let best = of_x.zip(of_y).map(|(x, y)| (x.value, y.value));
+    all.push(Series::new("best fit", Style::Dots, best.into_iter().collect()).coloured(1));
+    Panel::new((&x.0, unit_of(of_x)), (&y.0, unit_of(of_y)), all)
 }
 
 #[cfg(test)]

@@ -1,5 +1,6 @@
 //! How the likelihood falls on either side of each estimate.
 
+use crate::result::interval_outcome::ProfileOutcome;
 use crate::result::outcome::ImpactOutcome;
 use windfall_draw::xy::{Figure, Panel, Series, Style};
 use windfall_files::found::EstimateOutcome;
@@ -12,26 +13,16 @@ const POINTS: usize = 81;
 /// `None` where the intervals were not made by profiles.
 #[must_use]
 pub fn figure_of_profiles(title: &str, outcome: &ImpactOutcome) -> Option<Figure> {
-    let panels: Vec<Panel> = outcome
-        .intervals
-        .profiles
-        .0
-        .iter()
-        .filter_map(|(name, profile)| {
-            let estimate = outcome
-                .parameters
-                .get(name)
-                .or_else(|| outcome.nuisances.get(name))?;
-            let mut points: Vec<(f64, f64)> = profile
-                .values
-                .iter()
-                .copied()
-                .zip(profile.rises.iter().copied())
-                .collect();
-            points.sort_by(|a, b| a.0.total_cmp(&b.0));
-            (!points.is_empty()).then(|| panel(name, estimate, points))
-        })
-        .collect();
+    let profiles = outcome.intervals.profiles.0.iter();
+    let panel = |(name, profile): &(String, ProfileOutcome)| {
+        let parameter = outcome.parameters.get(name);
+        let estimate = parameter.or_else(|| outcome.nuisances.get(name))?;
+        let rises = profile.rises.iter().copied();
+        let mut points: Vec<_> = profile.values.iter().copied().zip(rises).collect();
+        points.sort_by(|a, b| a.0.total_cmp(&b.0));
+        (!points.is_empty()).then(|| panel(name, estimate, points))
+    };
+    let panels: Vec<Panel> = profiles.filter_map(panel).collect();
     (!panels.is_empty()).then(|| Figure {
         title: format!("{title}: profile likelihood, {}", outcome.law),
         panels,
@@ -39,15 +30,9 @@ pub fn figure_of_profiles(title: &str, outcome: &ImpactOutcome) -> Option<Figure
 }
 
 fn panel(name: &str, estimate: &EstimateOutcome, points: Vec<(f64, f64)>) -> Panel {
-    let drawn = |label: &str, style, colour, points| Series {
-        label: label.to_owned(),
-        style,
-        colour: Some(colour),
-        points,
-    };
     let ends = [estimate.low, estimate.high].into_iter().flatten();
     let ends = ends.map(|end| (end, 0.0)).collect();
-    let mut series = vec![drawn("95 % interval", Style::Upright, 1, ends)];
+    let mut series = vec![Series::new("95 % interval", Style::Upright, ends).coloured(1)];
     if let (Some(sd), Some(first), Some(last)) = (estimate.sd, points.first(), points.last()) {
         let highest = points.iter().map(|p| p.1).fold(0.0, f64::max);
         let parabola = (0..POINTS).map(|i| {
@@ -57,28 +42,14 @@ fn panel(name: &str, estimate: &EstimateOutcome, points: Vec<(f64, f64)>) -> Pan
         let within = parabola
             .filter(|(_, rise)| *rise <= 1.2 * highest)
             .collect();
-        series.push(drawn(
-            "parabola of the standard deviation",
-            Style::Dashed,
-            6,
-            within,
-        ));
+        let label = "parabola of the standard deviation";
+        series.push(Series::new(label, Style::Dashed, within).coloured(6));
     }
     let line = between(&points, estimate.value);
-    series.push(drawn("profile", Style::Line, 0, line));
-    series.push(drawn("", Style::Dots, 0, points));
-    let unit = match estimate.unit.as_str() {
-        "1" => "",
-        unit => unit,
-    };
-    Panel {
-        x: name.to_owned(),
-        x_unit: unit.to_owned(),
-        y: "−2 ln of the likelihood, above its least".to_owned(),
-        y_unit: String::new(),
-        series,
-        marks: Vec::new(),
-    }
+    series.push(Series::new("profile", Style::Line, line).coloured(0));
+    series.push(Series::new("", Style::Dots, points).coloured(0));
+    let rise = ("−2 ln of the likelihood, above its least", "");
+    Panel::new((name, &estimate.unit), rise, series)
 }
 
 /// The profile between the points at which it was found: straight in the root of the

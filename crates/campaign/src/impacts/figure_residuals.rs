@@ -49,12 +49,8 @@ pub fn figure_of_residuals(
             // for noise of samples, but takes the instants at which the count changes.
             Some(quantum) if quantum > residual.noise => {
                 let label = "half a step of the encoder".to_owned();
-                panels.push(over_time(
-                    impact,
-                    &shown,
-                    &left,
-                    (0.5 * scale * quantum, label),
-                ));
+                let reach = 0.5 * scale * quantum;
+                panels.push(over_time(impact, &shown, &left, (reach, label)));
             }
             _ => {
                 let label = format!("{NORMAL_95} standard deviations of the noise");
@@ -115,18 +111,14 @@ fn over_time(
     let window = vec![(0.0, 0.0), (ms(impact.end), 0.0)];
     let begin = points.first().map_or(0.0, |p| p.0);
     let levels = vec![(begin, reach), (begin, -reach)];
-    Panel {
-        x: "time since the force threshold".to_owned(),
-        x_unit: "ms".to_owned(),
-        y: format!("{}, measured less fitted", shown.name),
-        y_unit: shown.unit.to_owned(),
-        series: vec![
-            drawn("contact (force threshold)", Style::Shade, WINDOW, window),
-            drawn("samples", Style::Dots, 0, points),
-            drawn(&label, Style::Level, 1, levels),
-        ],
-        marks: Vec::new(),
-    }
+    let series = vec![
+        Series::new("contact (force threshold)", Style::Shade, window).coloured(WINDOW),
+        Series::new("samples", Style::Dots, points).coloured(0),
+        Series::new(label, Style::Level, levels).coloured(1),
+    ];
+    let residual = format!("{}, measured less fitted", shown.name);
+    let time = ("time since the force threshold", "ms");
+    Panel::new(time, (&residual, shown.unit), series)
 }
 
 fn autocorrelations(name: &str, left: &[(f64, f64)]) -> Option<Panel> {
@@ -140,36 +132,19 @@ fn autocorrelations(name: &str, left: &[(f64, f64)]) -> Option<Panel> {
         [(lag, 0.0), (lag, *r)]
     });
     let reach = NORMAL_95 / (values.len() as f64).sqrt();
-    Some(Panel {
-        x: "lag in samples".to_owned(),
-        x_unit: String::new(),
-        y: format!("{name}: autocorrelation"),
-        y_unit: String::new(),
-        series: vec![
-            drawn(
-                "autocorrelation of the residuals",
-                Style::Bars,
-                0,
-                bars.collect(),
-            ),
-            drawn(
-                "95 % of those of independent residuals",
-                Style::Level,
-                1,
-                vec![(0.0, reach), (0.0, -reach)],
-            ),
-        ],
-        marks: Vec::new(),
-    })
-}
-
-fn drawn(label: &str, style: Style, colour: usize, points: Vec<(f64, f64)>) -> Series {
-    Series {
-        label: label.to_owned(),
-        style,
-        colour: Some(colour),
-        points,
-    }
+    let levels = vec![(0.0, reach), (0.0, -reach)];
+    let own = "autocorrelation of the residuals";
+    let white = "95 % of those of independent residuals";
+    let series = vec![
+        Series::new(own, Style::Bars, bars.collect()).coloured(0),
+        Series::new(white, Style::Level, levels).coloured(1),
+    ];
+    let correlation = format!("{name}: autocorrelation");
+    Some(Panel::new(
+        ("lag in samples", ""),
+        (&correlation, ""),
+        series,
+    ))
 }
 
 /// Autocorrelation at lags 0 to `most`, about the mean.

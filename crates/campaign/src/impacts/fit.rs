@@ -92,10 +92,8 @@ pub fn fit_law(
     let mut options = campaign.fit.options;
     // Each impact its own chance, whatever the others are.
     options.intervals.seed = seed_of_name(options.intervals.seed, &entry.id);
-    let fit = fit_impact(impact, rig, &problem, &options).map_err(|source| Error::Identify {
-        subject: law.kind.name().to_owned(),
-        source: Box::new(source),
-    })?;
+    let fit = fit_impact(impact, rig, &problem, &options)
+        .map_err(|source| Error::identify(law.kind.name(), source))?;
     let mut outcome = impact_outcome(entry, impact, findings, &fit, &problem, rig);
     add_angles(campaign, entry, &mut outcome)?;
     Ok(outcome)

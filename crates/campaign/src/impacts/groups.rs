@@ -3,9 +3,7 @@
 use crate::result::outcome::{CampaignOutcome, GroupOutcome, ImpactOutcome};
 use crate::result::quantity::{Quantity, quantities_named};
 use itertools::Itertools;
-use windfall_files::found::SpreadOutcome;
-use windfall_files::found::spread;
-use windfall_files::named::Named;
+use windfall_files::found::{SpreadOutcome, spread};
 use windfall_files::text::number::{plain, spread_percent, spread_text};
 use windfall_files::text::table::{Cells, page_tables, paragraph};
 
@@ -82,14 +80,15 @@ pub fn parameter_cells(groups: &[&GroupOutcome], impacts: &[&ImpactOutcome]) -> 
 /// Velocities, peaks and energies per group, all of them.
 #[must_use]
 pub fn derived_cells(groups: &[&GroupOutcome]) -> [Cells; 2] {
-    [SIGNALS, ENERGIES].map(|names| {
-        let columns = quantities_named(&names);
-        let mut header = vec!["group".to_owned(), "n".to_owned()];
-        header.extend(columns.iter().map(|column| column.title()));
-        let rows = groups.iter().map(|group| derived_row(group, &columns));
-        let rows = rows.collect();
-        Cells { header, rows }
-    })
+    [SIGNALS, ENERGIES].map(|names| cells_of(groups, &quantities_named(&names)))
+}
+
+fn cells_of(groups: &[&GroupOutcome], columns: &[&Quantity]) -> Cells {
+    let mut header = vec!["group".to_owned(), "n".to_owned()];
+    header.extend(columns.iter().map(|column| column.title()));
+    let rows = groups.iter().map(|group| derived_row(group, columns));
+    let rows = rows.collect();
+    Cells { header, rows }
 }
 
 /// Velocities, peaks and energies per group, as Table 3 of the same study. They
@@ -107,11 +106,8 @@ pub fn derived_tables(groups: &[&GroupOutcome]) -> String {
         if columns.is_empty() {
             continue;
         }
-        let mut header = vec!["group".to_owned(), "n".to_owned()];
-        header.extend(columns.iter().map(|column| column.title()));
-        let rows = groups.iter().map(|group| derived_row(group, &columns));
-        text += &page_tables(&header, &rows.collect::<Vec<_>>(), &[0]);
-        text += "\n\n";
+        let Cells { header, rows } = cells_of(groups, &columns);
+        text += &(page_tables(&header, &rows, &[0]) + "\n\n");
     }
     let said: Vec<String> = quantities_named(&alike)
         .into_iter()
@@ -161,8 +157,7 @@ fn alike(groups: &[&GroupOutcome], name: &str) -> bool {
         })
 }
 
-/// What a law with a restitution promises, what it gives once fitted, and what
-/// the signals show; empty for other laws.
+/// Nominal, delivered and measured restitution; empty for laws without a nominal one.
 #[must_use]
 pub fn restitution_table(impacts: &[&ImpactOutcome]) -> String {
     let promised = |impact: &&ImpactOutcome| impact.fitted.get("nominal_restitution").is_some();
@@ -179,20 +174,18 @@ pub fn restitution_table(impacts: &[&ImpactOutcome]) -> String {
             let values: Vec<f64> = members.iter().filter_map(|impact| value(impact)).collect();
             spread(&values).map_or_else(dash, |s| spread_percent(s.mean, s.cv))
         };
-        let of = |values: &Named<Option<f64>>, name: &str| values.get(name).copied().flatten();
         vec![
             group_name(group),
-            cell(&|impact| of(&impact.fitted, "nominal_restitution")),
-            cell(&|impact| of(&impact.fitted, "restitution")),
-            cell(&|impact| of(&impact.derived, "restitution")),
+            cell(&|impact| impact.fitted("nominal_restitution")),
+            cell(&|impact| impact.fitted("restitution")),
+            cell(&|impact| impact.derived("restitution")),
         ]
     });
     let table = page_tables(&header, &rows.collect::<Vec<_>>(), &[0]);
     format!("\nRestitution, nominal beside delivered (mean ± SD in %):\n{table}\n")
 }
 
-/// How several laws describe the same impacts: residuals over noise per
-/// quantity, root mean square over impacts.
+/// Residuals over noise per law and quantity, root mean square over impacts.
 #[must_use]
 pub fn law_table(outcome: &CampaignOutcome, laws: &[&str]) -> String {
     let cells = law_cells(outcome, laws);
@@ -202,13 +195,8 @@ pub fn law_table(outcome: &CampaignOutcome, laws: &[&str]) -> String {
 /// The cells of [`law_table`].
 #[must_use]
 pub fn law_cells(outcome: &CampaignOutcome, laws: &[&str]) -> Cells {
-    let quantities: Vec<&str> = outcome
-        .impacts
-        .iter()
-        .flat_map(|i| &i.residuals.0)
-        .map(|(name, _)| name.as_str())
-        .unique()
-        .collect();
+    let quantities = outcome.impacts.iter().flat_map(|i| i.residuals.names());
+    let quantities: Vec<&str> = quantities.unique().collect();
     let mut header = ["law", "group", "estimated", "impacts", "converged"]
         .map(str::to_owned)
         .to_vec();
@@ -225,10 +213,11 @@ pub fn law_cells(outcome: &CampaignOutcome, laws: &[&str]) -> Cells {
         let converged = impacts.iter().filter(|i| i.converged).count();
         let mut row = vec![law.to_owned(), group_name(group)];
         row.extend([estimated, impacts.len(), converged].map(|n| n.to_string()));
-        let misfits = quantities
-            .iter()
-            .map(|name| residual_over_noise(&impacts, name));
-        row.extend(misfits);
+        row.extend(
+            quantities
+                .iter()
+                .map(|name| residual_over_noise(&impacts, name)),
+        );
         row
     });
     let rows = rows.collect();
@@ -236,12 +225,8 @@ pub fn law_cells(outcome: &CampaignOutcome, laws: &[&str]) -> Cells {
 }
 
 fn group_names<'a>(impacts: &[&'a ImpactOutcome]) -> Vec<Option<&'a str>> {
-    let names: Vec<Option<&str>> = impacts
-        .iter()
-        .map(|impact| impact.group.as_deref())
-        .unique()
-        .collect();
-    names
+    let groups = impacts.iter().map(|impact| impact.group.as_deref());
+    groups.unique().collect()
 }
 
 fn estimated_count(impact: &ImpactOutcome) -> usize {
@@ -263,13 +248,8 @@ fn residual_over_noise(impacts: &[&ImpactOutcome], quantity: &str) -> String {
 }
 
 fn parameter_names<'a>(groups: &[&'a GroupOutcome]) -> Vec<&'a str> {
-    let names: Vec<&str> = groups
-        .iter()
-        .flat_map(|group| &group.parameters.0)
-        .map(|(name, _)| name.as_str())
-        .unique()
-        .collect();
-    names
+    let names = groups.iter().flat_map(|group| group.parameters.names());
+    names.unique().collect()
 }
 
 fn group_name(group: Option<&str>) -> String {

@@ -2,6 +2,7 @@
 
 use crate::error::CampaignError;
 use crate::recording::extract::extract_recording;
+use crate::recording::read::recording_path;
 use crate::result::outcome::MassOutcome;
 use crate::settings::model::{ImpactCampaign, ImpactEntry, MassPlan, RigPlan};
 use rayon::prelude::*;
@@ -99,10 +100,7 @@ fn from_impulse(campaign: &ImpactCampaign, driving: Uncertain) -> Result<RigFoun
         .filter_map(|(entry, measured)| {
             let problem = measured.as_ref().err()?;
             let message = format!("{} took no part in finding the mass: {problem}", entry.id);
-            Some(FindingOutcome {
-                code: "no-mass".to_owned(),
-                message,
-            })
+            Some(FindingOutcome::new("no-mass", message))
         })
         .collect();
     let rig = Rig::Carriage(Carriage {
@@ -131,8 +129,5 @@ fn measured(
     let (impact, _) = extract_recording(campaign, entry, None)?;
     mass_from_impulse(&impact.measured, driving)
         .map(|_| impact.measured)
-        .map_err(|source| Error::Signal {
-            path: crate::recording::read::recording_path(&campaign.shared.files, entry),
-            source: Box::new(source),
-        })
+        .map_err(|source| Error::signal(recording_path(&campaign.shared.files, entry), source))
 }

@@ -24,6 +24,7 @@ use windfall_draw::files::{FigureFolder, write_figure};
 use windfall_files::error::Error;
 use windfall_files::found::FindingOutcome;
 use windfall_files::on_threads::on_threads;
+use windfall_files::option_value::unusable;
 use windfall_files::progress::Progress;
 use windfall_files::provenance::VERSION;
 
@@ -99,16 +100,12 @@ fn campaign_of_recording(file: &Path) -> Result<ImpactCampaign, Error> {
         .ancestors()
         .skip(1)
         .find(|directory| directory.join(CAMPAIGN_FILE).is_file());
-    let unusable = |problem: String| Error::OptionInvalid {
-        option: file.display().to_string(),
-        problem,
-    };
+    let unusable = |problem: &str| unusable(file.display().to_string(), problem);
     let directory = above.ok_or_else(|| {
         unusable(
             "no campaign.toml above this recording says what rig and channels it has; \
              say it with --rig, --law, --channel … (`windfall fit --help` has an example), or \
-             write a template with `windfall new pendulum DIR` and put the recording into DIR/raw"
-                .to_owned(),
+             write a template with `windfall new pendulum DIR` and put the recording into DIR/raw",
         )
     })?;
     let mut campaign = read_campaign(directory)?;
@@ -118,11 +115,9 @@ fn campaign_of_recording(file: &Path) -> Result<ImpactCampaign, Error> {
         .entries
         .retain(|impact| real(&recording_path(&files, impact)) == file);
     if campaign.shared.entries.is_empty() {
-        let list = directory.join("impacts.csv");
-        return Err(unusable(format!(
-            "{} has no line with this recording; add one",
-            list.display()
-        )));
+        let list = directory.join("impacts.csv").display().to_string();
+        let problem = format!("{list} has no line with this recording; add one");
+        return Err(unusable(&problem));
     }
     Ok(campaign)
 }
@@ -164,22 +159,15 @@ fn draw(
 ) -> Result<(), Error> {
     let end = campaign.fit.options.end;
     campaign.shared.entries.par_iter().try_for_each(|entry| {
-        let own = outcome
-            .impacts
-            .iter()
-            .filter(|impact| impact.id == entry.id);
+        let own = outcome.impacts.iter().filter(|i| i.id == entry.id);
         let own: Vec<&ImpactOutcome> = own.collect();
         if own.is_empty() {
             return Ok(());
         }
         let mass = Some(rig.rig.effective_mass());
         let (impact, _) = extract_recording(campaign, entry, mass)?;
-        let figure = figure_of_impact(
-            &entry.id,
-            &impact,
-            &own,
-            (&rig.rig, end, &campaign.fit.user),
-        );
+        let used = (&rig.rig, end, &campaign.fit.user[..]);
+        let figure = figure_of_impact(&entry.id, &impact, &own, used);
         write_figure(folder, &entry.id, &figure).map(|_| ())
     })
 }
@@ -221,10 +209,7 @@ fn law_findings(campaign: &ImpactCampaign, impacts: &[ImpactOutcome]) -> Vec<Fin
         let Ok(typical) = typical(law.kind).complete() else {
             continue;
         };
-        let known = |impact: &ImpactOutcome, name: &str| {
-            let found = impact.fitted.get(name).copied().flatten();
-            found.unwrap_or(f64::NAN)
-        };
+        let known = |impact: &ImpactOutcome, name: &str| impact.fitted(name).unwrap_or(f64::NAN);
         let used: Vec<LawUse> = impacts
             .iter()
             .filter(|impact| impact.law == law.kind.name())

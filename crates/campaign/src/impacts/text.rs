@@ -84,13 +84,8 @@ pub fn mass_line(outcome: &CampaignOutcome) -> String {
 
 /// Laws in order of first appearance.
 pub fn laws_of(outcome: &CampaignOutcome) -> Vec<&str> {
-    let laws: Vec<&str> = outcome
-        .impacts
-        .iter()
-        .map(|impact| impact.law.as_str())
-        .unique()
-        .collect();
-    laws
+    let laws = outcome.impacts.iter().map(|impact| impact.law.as_str());
+    laws.unique().collect()
 }
 
 fn impact_table(impacts: &[&ImpactOutcome]) -> String {
@@ -115,7 +110,7 @@ fn impact_table(impacts: &[&ImpactOutcome]) -> String {
             true => format!("{} held", plain(e.value)),
         }));
         row.extend(columns.iter().map(|column| {
-            let value = impact.derived.get(column.name).copied().flatten();
+            let value = impact.derived(column.name);
             value.map_or_else(|| "-".to_owned(), |value| plain(value * column.factor))
         }));
         let codes = own_codes(impact, &shared);
@@ -165,16 +160,11 @@ fn interval_table(impacts: &[&ImpactOutcome]) -> String {
         .iter()
         .map(|impact| {
             let mut row = vec![impact.id.clone()];
-            row.extend(
-                impact
-                    .parameters
-                    .0
-                    .iter()
-                    .map(|(_, e)| match (e.low, e.high) {
-                        (Some(low), Some(high)) => format!("{} to {}", plain(low), plain(high)),
-                        _ => "held".to_owned(),
-                    }),
-            );
+            let parameters = impact.parameters.0.iter();
+            row.extend(parameters.map(|(_, estimate)| match estimate.interval() {
+                Some((low, high)) => format!("{} to {}", plain(low), plain(high)),
+                None => "held".to_owned(),
+            }));
             if sampled {
                 row.extend(mixing_cells(impact));
             }
@@ -197,17 +187,14 @@ fn mixing_cells(impact: &ImpactOutcome) -> [String; 3] {
 
 /// Codes of an impact's findings that not all share, each once.
 pub fn own_codes(impact: &ImpactOutcome, shared: &[&str]) -> String {
-    let mut codes: Vec<&str> = Vec::new();
-    for code in impact.findings.iter().map(|finding| finding.code.as_str()) {
-        if !shared.contains(&code) && !codes.contains(&code) {
-            codes.push(code);
-        }
-    }
-    codes.join(" ")
+    let codes = impact.findings.iter().map(|finding| finding.code.as_str());
+    codes
+        .filter(|code| !shared.contains(code))
+        .unique()
+        .join(" ")
 }
 
-/// Codes of findings that every impact has: said once below the tables, they
-/// tell nothing in a row.
+/// Codes of findings that every impact has: a column of them would say nothing.
 pub fn shared_codes<'a>(impacts: &[&'a ImpactOutcome]) -> Vec<&'a str> {
     let Some((first, rest)) = impacts.split_first() else {
         return Vec::new();
@@ -220,10 +207,9 @@ pub fn shared_codes<'a>(impacts: &[&'a ImpactOutcome]) -> Vec<&'a str> {
 }
 
 fn parameter_headings(impacts: &[&ImpactOutcome]) -> Vec<String> {
-    let first = impacts.first().map(|impact| &impact.parameters.0);
-    first
+    let names = impacts
+        .first()
         .into_iter()
-        .flatten()
-        .map(|(name, _)| heading_of(impacts, name))
-        .collect()
+        .flat_map(|i| i.parameters.names());
+    names.map(|name| heading_of(impacts, name)).collect()
 }

@@ -3,11 +3,11 @@
 
 use crate::pipeline::evaluate::Document;
 use crate::result::outcome::StatusOutcome;
+use crate::settings::model::{Campaign, ImpactEntry};
 use crate::store::documents::StoredValue;
 use itertools::Itertools;
 use serde::{Deserialize, Serialize};
-use windfall_files::found::spread;
-use windfall_files::found::{FailureOutcome, FindingOutcome, SpreadOutcome};
+use windfall_files::found::{FailureOutcome, FindingOutcome, SpreadOutcome, spreads};
 use windfall_files::named::Named;
 
 /// One value; SI.
@@ -67,6 +67,32 @@ pub struct MeasuredItem {
     pub derived: Named<MeasuredValue>,
     /// What a reader must know.
     pub findings: Vec<FindingOutcome>,
+}
+
+impl MeasuredItem {
+    /// An item of an entry, without values yet.
+    #[must_use]
+    pub fn of(campaign: &Campaign, entry: &ImpactEntry, law: &str) -> Self {
+        Self {
+            id: entry.id.clone(),
+            specimen: entry.specimen.clone(),
+            group: campaign.group_of(entry),
+            file: entry.file.clone(),
+            law: law.to_owned(),
+            ..Self::default()
+        }
+    }
+
+    /// An item of no single recording, without values yet.
+    #[must_use]
+    pub fn named(id: &str, law: &str) -> Self {
+        Self {
+            id: id.to_owned(),
+            specimen: id.to_owned(),
+            law: law.to_owned(),
+            ..Self::default()
+        }
+    }
 }
 
 /// Results on one recording: one for each law.
@@ -187,12 +213,8 @@ pub fn value_of<'a>(item: &'a MeasuredItem, name: &str) -> Option<&'a MeasuredVa
 /// Laws or methods in order of first appearance.
 #[must_use]
 pub fn laws_of(items: &[MeasuredItem]) -> Vec<&str> {
-    let laws: Vec<&str> = items
-        .iter()
-        .map(|item| item.law.as_str())
-        .unique()
-        .collect();
-    laws
+    let laws = items.iter().map(|item| item.law.as_str());
+    laws.unique().collect()
 }
 
 /// Spread of each value over the items of a law, and of a group where one is
@@ -203,26 +225,14 @@ pub fn spread_of(items: &[MeasuredItem], law: &str, group: Option<&str>) -> Meas
         .iter()
         .filter(|item| item.law == law && (group.is_none() || item.group.as_deref() == group))
         .collect();
-    let mut gathered: Vec<(&str, Vec<f64>)> = Vec::new();
-    for item in &members {
-        for (name, value) in item.parameters.0.iter().chain(&item.derived.0) {
-            match gathered
-                .iter_mut()
-                .find(|(known, _)| *known == name.as_str())
-            {
-                Some((_, list)) => list.push(value.value),
-                None => gathered.push((name, vec![value.value])),
-            }
-        }
-    }
-    let values = gathered
-        .into_iter()
-        .filter_map(|(name, list)| Some((name.to_owned(), spread(&list)?)));
+    let values = members
+        .iter()
+        .flat_map(|item| item.parameters.0.iter().chain(&item.derived.0));
     MeasuredGroup {
         group: group.map(str::to_owned),
         law: law.to_owned(),
         recordings: members.len(),
-        values: Named(values.collect()),
+        values: spreads(values.map(|(name, value)| (name.as_str(), value.value))),
     }
 }
 

@@ -9,11 +9,13 @@ use crate::recording::read::read_recording;
 use crate::result::outcome::StatusOutcome;
 use crate::settings::files::fill_placeholders;
 use crate::settings::model::{Campaign, ImpactEntry, TimePlan};
+use itertools::Itertools;
 use serde_json::json;
 use std::path::Path;
 use windfall_draw::files::{NamedFigure, write_figure, write_figures};
 use windfall_files::error::Error;
 use windfall_files::found::FailureOutcome;
+use windfall_files::named::grouped;
 use windfall_files::on_threads::on_threads;
 use windfall_files::progress::Progress;
 use windfall_files::provenance::{REVISION, VERSION, digest_text};
@@ -198,36 +200,21 @@ impl<K: Measurement> Measured<K> {
         figures.flatten().collect()
     }
 
-    /// Recordings for a report: of those with a result the middle one of each group, then
-    /// some spread evenly over the table.
+    /// Recordings for a report: the middle one of each group, and some evenly over the table.
     fn shown_entries(&self) -> Vec<&ImpactEntry> {
         let campaign = self.campaign.shared();
         let items = self.evaluated.items.iter();
         let entries: Vec<&ImpactEntry> = items.map(|(p, _)| &campaign.entries[*p]).collect();
-        let mut groups: Vec<(Option<String>, Vec<usize>)> = Vec::new();
-        for (place, entry) in entries.iter().enumerate() {
-            let group = campaign.group_of(entry);
-            match groups.iter_mut().find(|(known, _)| *known == group) {
-                Some((_, members)) => members.push(place),
-                None => groups.push((group, vec![place])),
-            }
-        }
-        let mut chosen: Vec<usize> = groups
-            .iter()
-            .map(|(_, members)| members[members.len() / 2])
-            .collect();
+        let places = entries.iter().enumerate();
+        let groups = grouped(places.map(|(place, entry)| (campaign.group_of(entry), place)));
         let most = SHOWN.min(entries.len());
-        for part in 0..most {
-            if chosen.len() >= most {
-                break;
-            }
-            let place = part * entries.len() / most;
-            if !chosen.contains(&place) {
-                chosen.push(place);
-            }
-        }
-        chosen.sort_unstable();
-        chosen.into_iter().map(|place| entries[place]).collect()
+        let middle = groups.iter().map(|(_, members)| members[members.len() / 2]);
+        let spread = (0..most).map(|part| part * entries.len() / most);
+        let chosen = middle.chain(spread).unique().take(most.max(groups.len()));
+        chosen
+            .sorted_unstable()
+            .map(|place| entries[place])
+            .collect()
     }
 
     /// Says which recordings the figures show.

@@ -7,10 +7,11 @@ use crate::settings::kind::CampaignKind;
 use itertools::Itertools;
 use std::fmt::Write;
 use windfall_files::error::Error;
-use windfall_files::found::{FailureOutcome, FindingOutcome};
+use windfall_files::found::FindingOutcome;
+use windfall_files::named::grouped;
 use windfall_files::table::write::csv_text;
 use windfall_files::text::number::{spread_percent, value_and_sd};
-use windfall_files::text::table::{Cells, page_tables, paragraph};
+use windfall_files::text::table::{Cells, findings_list, page_tables, paragraph};
 
 /// Indentation of the second line of a finding; characters.
 const INDENT: usize = 4;
@@ -29,32 +30,23 @@ pub fn text_of_measured(outcome: &MeasuredOutcome) -> String {
     let of_specimens = outcome.shown.specimens;
     for law in laws_of(&outcome.impacts) {
         let items = of_law(&outcome.impacts, law);
-        // A recording holds several taps; groups of fruit, not of taps, have a spread.
-        let (each, over, shown, spread) = match of_taps(outcome) {
-            true => ("tap", "fruit", of_specimens, &outcome.specimens),
-            false => (
-                "recording",
-                "recordings",
-                outcome.shown.items,
-                &outcome.impacts,
+        let (each, over) = match of_taps(outcome) {
+            true => ("tap", "fruit"),
+            false => ("recording", "recordings"),
+        };
+        text += &match items.len() {
+            n if n > LISTED => format!("\n{law}: {n} results; each: --format csv or json.\n"),
+            _ => format!(
+                "\n{law}: each {each} (± standard deviation of the estimate)\n{}\n",
+                items_table(each, &items, outcome.shown.items)
             ),
         };
-        match items.len() {
-            n if n > LISTED => {
-                let _ = writeln!(text, "\n{law}: {n} results; each: --format csv or json.");
-            }
-            _ => {
-                let _ = writeln!(
-                    text,
-                    "\n{law}: each {each} (± standard deviation of the estimate)"
-                );
-                let _ = writeln!(text, "{}", items_table(each, &items, outcome.shown.items));
-            }
-        }
+        let (shown, spread) = spread_items(outcome);
         if of_law(spread, law).len() > 1 {
-            let _ = writeln!(text, "\nMean ± SD over the {over} (SD in % of the mean):");
-            let table = groups_table(outcome, law, (shown, spread));
-            let _ = writeln!(text, "{table}");
+            let Cells { header, rows } = groups_cells(outcome, law, (shown, spread));
+            let table = page_tables(&header, &rows, &[0]);
+            let title = format!("Mean ± SD over the {over} (SD in % of the mean)");
+            let _ = writeln!(text, "\n{title}:\n{table}");
         }
     }
     for (what, items, shown) in [
@@ -64,15 +56,15 @@ pub fn text_of_measured(outcome: &MeasuredOutcome) -> String {
     ] {
         for law in laws_of(items) {
             let items = of_law(items, law);
-            match items.len() {
+            text += &match items.len() {
                 n if n > LISTED && what == "part" => {
-                    let _ = writeln!(text, "\n{law}: {n} results; each: --format json.");
+                    format!("\n{law}: {n} results; each: --format json.\n")
                 }
                 _ => {
-                    let _ = writeln!(text, "\n{law}, for each {what}:");
-                    let _ = writeln!(text, "{}", items_table(what, &items, shown));
+                    let table = items_table(what, &items, shown);
+                    format!("\n{law}, for each {what}:\n{table}\n")
                 }
-            }
+            };
         }
     }
     text + &findings_text(outcome)
@@ -101,8 +93,8 @@ fn items_table(what: &str, items: &[&MeasuredItem], shown: &[ShownValue]) -> Str
 
 /// Names of the words that items have.
 fn words_of<'a>(items: impl IntoIterator<Item = &'a MeasuredItem>) -> Vec<&'a str> {
-    let words = items.into_iter().flat_map(|item| &item.words.0);
-    words.map(|(name, _)| name.as_str()).unique().collect()
+    let words = items.into_iter().flat_map(|item| item.words.names());
+    words.unique().collect()
 }
 
 /// Whether items have a name beside that of their specimen.
@@ -145,18 +137,17 @@ pub fn items_cells(what: &str, items: &[&MeasuredItem], shown: &[ShownValue]) ->
     Cells { header, rows }
 }
 
-/// Whether a recording holds several taps, so that groups of fruit have a spread.
-pub fn of_taps(outcome: &MeasuredOutcome) -> bool {
+fn of_taps(outcome: &MeasuredOutcome) -> bool {
     outcome.kind == CampaignKind::Acoustic.name()
 }
 
-fn groups_table(
-    outcome: &MeasuredOutcome,
-    law: &str,
-    of: (&[ShownValue], &[MeasuredItem]),
-) -> String {
-    let cells = groups_cells(outcome, law, of);
-    page_tables(&cells.header, &cells.rows, &[0])
+/// The items whose groups have a spread (of taps: the fruit), with the values shown.
+#[must_use]
+pub fn spread_items(outcome: &MeasuredOutcome) -> (&'static [ShownValue], &[MeasuredItem]) {
+    match of_taps(outcome) {
+        true => (outcome.shown.specimens, &outcome.specimens),
+        false => (outcome.shown.items, &outcome.impacts),
+    }
 }
 
 /// Mean and spread of the values that are shown, for each group and for all.
@@ -200,21 +191,15 @@ pub fn groups_cells(
 
 /// Each kind of finding once, with how many share it, and what failed.
 fn findings_text(outcome: &MeasuredOutcome) -> String {
-    let found = findings_of_measured(outcome);
-    let mut text = match found.is_empty() {
-        true => String::new(),
-        false => "\nFindings:\n".to_owned(),
-    };
-    let found = found.iter().map(|f| format!("  {}: {}", f.code, f.message));
-    for line in found.chain(outcome.failed.iter().map(failure_line)) {
-        text += &paragraph(&line, INDENT);
-        text.push('\n');
+    let mut text = findings_list(&findings_of_measured(outcome));
+    for failure in &outcome.failed {
+        let line = format!("not evaluated: {}: {}", failure.id, failure.message);
+        text += &(paragraph(&line, INDENT) + "\n");
     }
     text
 }
 
-/// Findings of the whole, then each kind of those of its items once, with the first
-/// item that has it and how many share it.
+/// Findings of the whole, then one of each kind on items, with how many share it.
 #[must_use]
 pub fn findings_of_measured(outcome: &MeasuredOutcome) -> Vec<FindingOutcome> {
     let mut found = outcome.findings.clone();
@@ -224,51 +209,32 @@ pub fn findings_of_measured(outcome: &MeasuredOutcome) -> Vec<FindingOutcome> {
         .chain(&outcome.parts)
         .chain(&outcome.specimens)
         .chain(&outcome.whole);
-    let mut seen: Vec<(&FindingOutcome, &str, Vec<&str>)> = Vec::new();
-    for item in items {
-        for finding in &item.findings {
-            match seen
-                .iter_mut()
-                .find(|(first, _, _)| first.code == finding.code)
-            {
-                Some((_, _, ids)) if ids.contains(&item.id.as_str()) => {}
-                Some((_, _, ids)) => ids.push(&item.id),
-                None => seen.push((finding, &item.id, vec![&item.id])),
-            }
-        }
-    }
-    for (finding, first, ids) in &seen {
-        let more = match ids.len() {
-            1 => String::new(),
-            2..=6 => format!(" (also {})", ids[1..].join(", ")),
-            n => format!(" (and {} more of this kind)", n - 1),
+    let all = items.flat_map(|item| {
+        let findings = item.findings.iter();
+        findings.map(|finding| (&finding.code, (finding, item.id.as_str())))
+    });
+    for (_, kind) in grouped(all) {
+        let (finding, first) = kind[0];
+        let others: Vec<&str> = kind.iter().map(|(_, id)| *id).unique().skip(1).collect();
+        let more = match others.len() {
+            0 => String::new(),
+            1..=5 => format!(" (also {})", others.join(", ")),
+            n => format!(" (and {n} more of this kind)"),
         };
-        found.push(FindingOutcome {
-            code: finding.code.clone(),
-            message: format!("{first}: {}{more}", finding.message),
-        });
+        found.push(FindingOutcome::new(
+            &finding.code,
+            format!("{first}: {}{more}", finding.message),
+        ));
     }
     found
 }
 
-fn failure_line(failure: &FailureOutcome) -> String {
-    format!("not evaluated: {}: {}", failure.id, failure.message)
-}
-
-/// One row per recording and law; of specimens where there are results on them
-/// and `specimens` asks for it.
-///
-/// # Errors
-/// None in practice: the text is written to memory.
+/// One row per recording and law.
 pub fn csv_of_measured(outcome: &MeasuredOutcome) -> Result<String, Error> {
     csv_of_items(&outcome.impacts, outcome.simulated.as_deref())
 }
 
-/// One row per item: its values with unit in the name of the column, where all
-/// have the same, and beside it otherwise.
-///
-/// # Errors
-/// None in practice: the text is written to memory.
+/// One row per item; units stand in the headings where all items share them.
 pub fn csv_of_items(items: &[MeasuredItem], simulated: Option<&str>) -> Result<String, Error> {
     let columns = columns_of(items);
     let mut header: Vec<String> = ["id", "specimen", "group", "file", "law"]

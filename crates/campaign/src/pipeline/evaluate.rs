@@ -37,8 +37,7 @@ pub trait Evaluation: Sync {
         1
     }
 
-    /// Digest of everything that the result of a part depends on: equal keys mean equal
-    /// results.
+    /// Digest of everything that the result of a part depends on.
     ///
     /// * `recording`: SHA-256 of the recording
     fn key(&self, entry: &ImpactEntry, part: usize, recording: &str) -> String;
@@ -103,12 +102,9 @@ impl Stored for ImpactOutcome {
 impl<T: Document> Stored for T {
     fn find(store: &Path, keys: &[String]) -> Result<Vec<Option<Self>>, Error> {
         let read = |text: String| {
-            serde_json::from_str(&text).map_err(|error| {
-                Error::from(StoreError::Damaged {
-                    path: store.to_path_buf(),
-                    detail: format!("a result cannot be read: {error}"),
-                })
-            })
+            let damaged = |error| format!("a result cannot be read: {error}");
+            serde_json::from_str(&text)
+                .map_err(|error: serde_json::Error| StoreError::damaged(store, damaged(error)))
         };
         let found = find_documents(store, keys)?;
         found.into_iter().map(|t| t.map(read).transpose()).collect()
@@ -121,10 +117,8 @@ impl<T: Document> Stored for T {
         entry: &ImpactEntry,
         key: String,
     ) -> Result<(), Error> {
-        let document = serde_json::to_string(self).map_err(|error| Error::ResultUnwritable {
-            item: entry.id.clone(),
-            detail: error.to_string(),
-        })?;
+        let document =
+            serde_json::to_string(self).map_err(|error| Error::unwritable(&entry.id, error))?;
         run.documents.push(DocumentRecord {
             key,
             kind: campaign.kind.name().to_owned(),

@@ -1,4 +1,4 @@
-//! The pipeline of every campaign: what is asked for → each recording evaluated → store.
+//! The pipeline of every campaign: options → each recording evaluated → store.
 
 pub mod evaluate;
 pub mod request;

@@ -16,15 +16,14 @@ use windfall_files::option_value::{chosen, unusable};
 use windfall_files::text::toml_source::suggestion;
 use windfall_identify::fit::problem::FitOptions;
 
-/// What `fit` is asked for beyond what the campaign says.
+/// Options of `fit`, which override the campaign's settings.
 #[derive(Clone, Debug, Default)]
 pub struct FitRequest {
     /// Laws in place of those of the campaign; none keeps them.
     pub laws: Vec<String>,
     /// A file of the user's own laws, besides those of the campaign.
     pub laws_file: Option<PathBuf>,
-    /// Parameters to estimate although they have a value; none keeps those of
-    /// the campaign.
+    /// Parameters to estimate although they have a value; none keeps the campaign's.
     pub free: Vec<String>,
     /// Quantities in place of those of the campaign; none keeps them.
     pub quantities: Vec<String>,
@@ -40,8 +39,7 @@ pub struct FitRequest {
     pub draws: Option<usize>,
     /// Seed of bootstrap and posterior.
     pub seed: Option<u64>,
-    /// Treatment of the velocity at first touch: a word of [`TREATMENTS`], or the
-    /// velocity to hold it at.
+    /// Velocity at first touch: a word of [`TREATMENTS`], or the value to hold it at.
     pub initial_velocity: Option<String>,
     /// Treatment of the time of first touch.
     pub onset: Option<String>,
@@ -72,8 +70,7 @@ pub enum Reuse {
     Unchanged,
     /// Every impact is fitted again.
     Nothing,
-    /// Nothing is fitted or written: what is not in the store is told as a failure with
-    /// the message [`PENDING`].
+    /// Nothing is fitted or written; results that are missing are failures, [`PENDING`].
     Only,
 }
 
@@ -89,8 +86,7 @@ pub fn apply_request(campaign: &mut ImpactCampaign, request: &FitRequest) -> Res
     apply_group(&mut campaign.shared, request)
 }
 
-/// The laws of the campaign and of the file that is asked for; of the same name,
-/// that of the file.
+/// The user's laws of the campaign, overridden by those of the file of the same name.
 fn merged(campaign: &[LawKind], request: &FitRequest) -> Result<Vec<LawKind>, Error> {
     let mut laws = laws_of_option(request.laws_file.as_deref())?;
     let asked = laws.len();

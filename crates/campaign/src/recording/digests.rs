@@ -105,9 +105,5 @@ pub fn run_origin(
 /// It can no longer be read.
 pub fn campaign_text(directory: &Path) -> Result<String, Error> {
     let path = directory.join(CAMPAIGN_FILE);
-    std::fs::read_to_string(&path).map_err(|source| Error::FileAccess {
-        path,
-        action: "read",
-        source,
-    })
+    std::fs::read_to_string(&path).map_err(|source| Error::access(&path, "read", source))
 }

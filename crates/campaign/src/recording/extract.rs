@@ -41,8 +41,6 @@ pub fn extract_entry(
             to: entry.to.unwrap_or(f64::INFINITY),
         };
     }
-    extract_impact(recording, &options).map_err(|source| Error::Signal {
-        path: recording_path(&campaign.shared.files, entry),
-        source: Box::new(source),
-    })
+    extract_impact(recording, &options)
+        .map_err(|source| Error::signal(recording_path(&campaign.shared.files, entry), source))
 }

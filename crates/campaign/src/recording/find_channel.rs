@@ -5,8 +5,7 @@ use windfall_files::error::Error;
 use windfall_formats::contents::Contents;
 use windfall_numerics::unit::nearest_name::nearest_names;
 
-/// Position of a channel: by its whole name, or by the part behind the last "/"
-/// where only one channel has it.
+/// Position of a channel by its whole name, or by the part behind "/" if that is unique.
 ///
 /// * `asked_by`: who asks, in brackets with a blank before, for the message
 ///

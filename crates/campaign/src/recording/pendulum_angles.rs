@@ -8,11 +8,10 @@ use windfall_files::found::FindingOutcome;
 use windfall_files::text::cell_quantity::cell_quantity;
 use windfall_signal::energy_angles::{pendulum_energy, speed_of_energy};
 
-/// Velocities that differ by more than this are told; 1.
+/// Relative difference of velocities from which they disagree; 1.
 const DISAGREES: f64 = 0.05;
 
-/// Angles of release and rebound from the vertical; rad. `None` where impacts.csv
-/// has no such column.
+/// Angles of release and rebound from the vertical, where impacts.csv has them; rad.
 ///
 /// # Errors
 /// A cell is no positive number.
@@ -40,49 +39,38 @@ pub fn add_angles(
     };
     let mass = rig.inertia / (rig.arm * rig.arm);
     let energy = |angle| pendulum_energy(rig.mass, rig.gravity, rig.centre_of_mass, angle);
+    let speed = |angle| speed_of_energy(energy(angle), mass);
     let mut push = |name: &str, value: f64| {
-        outcome.derived.0.push((name.to_owned(), Some(value)));
-        outcome
-            .derived_from
-            .0
-            .push((name.to_owned(), "angles".to_owned()));
+        outcome.derived.push(name, Some(value));
+        outcome.derived_from.push(name, "angles".to_owned());
     };
     if let Some(angle) = release {
         push("impact_energy_from_angle", energy(angle));
-        push(
-            "impact_velocity_from_angle",
-            speed_of_energy(energy(angle), mass),
-        );
+        push("impact_velocity_from_angle", speed(angle));
     }
     if let Some(angle) = rebound {
         push("elastic_energy_from_angle", energy(angle));
-        push(
-            "rebound_velocity_from_angle",
-            speed_of_energy(energy(angle), mass),
-        );
+        push("rebound_velocity_from_angle", speed(angle));
     }
     if let (Some(release), Some(rebound)) = (release, rebound) {
-        push(
-            "absorbed_energy_from_angles",
-            energy(release) - energy(rebound),
-        );
+        let absorbed = energy(release) - energy(rebound);
+        push("absorbed_energy_from_angles", absorbed);
     }
     for (velocity, angle) in [("impact_velocity", release), ("rebound_velocity", rebound)] {
-        let read = outcome.derived.get(velocity).copied().flatten();
-        let (Some(read), Some(angle)) = (read, angle) else {
+        let (Some(read), Some(angle)) = (outcome.derived(velocity), angle) else {
             continue;
         };
-        let expected = speed_of_energy(energy(angle), mass);
+        let expected = speed(angle);
         if (read / expected - 1.0).abs() > DISAGREES {
-            outcome.findings.push(FindingOutcome {
-                code: "angle-disagrees".to_owned(),
-                message: format!(
-                    "the {} of {read:.4} m/s and the angle of {:.2}°, which gives {expected:.4} m/s, \
+            let message = format!(
+                "the {} of {read:.4} m/s and the angle of {:.2}°, which gives {expected:.4} m/s, \
                      disagree; check angle, mass, centre of mass and inertia, and friction of the pivot",
-                    velocity.replace('_', " "),
-                    angle.to_degrees()
-                ),
-            });
+                velocity.replace('_', " "),
+                angle.to_degrees()
+            );
+            outcome
+                .findings
+                .push(FindingOutcome::new("angle-disagrees", message));
         }
     }
     Ok(())

@@ -18,8 +18,7 @@ pub fn recording_path(files: &FilePlan, impact: &ImpactEntry) -> PathBuf {
     files.directory.join(&impact.file)
 }
 
-/// Reads the recording of an impact: the channels of the campaign out of a file
-/// of any format.
+/// Reads the campaign's channels of an impact, out of a file of any format.
 ///
 /// A blank cell means that its channel has no sample in that row; so do NaN at
 /// the end of a channel of another format, which programs write to fill up
@@ -86,10 +85,7 @@ fn source_of<'a>(
     let fill = |text: &str| {
         fill_placeholders(text, &impact.cells).map_err(|name| {
             Error::from(CampaignError::PlaceholderUnknown {
-                place: Place {
-                    file: path.to_path_buf(),
-                    line: 0,
-                },
+                place: Place::at(path, 0),
                 text: text.to_owned(),
                 name,
             })
@@ -158,10 +154,7 @@ fn channel_of<'a>(
             let listed = present().map(|(row, _)| match times.get(row) {
                 Some(time) if !time.is_nan() => Ok(time * scale - plan.delay),
                 _ => Err(Error::from(CampaignError::SampleWithoutTime {
-                    place: Place {
-                        file: path.to_path_buf(),
-                        line: 0,
-                    },
+                    place: Place::at(path, 0),
                     sample: row,
                     column: name.clone(),
                     time: contents.channels[index].name.clone(),
@@ -197,8 +190,7 @@ fn without_filling(cells: &[f64]) -> &[f64] {
     &cells[..last.map_or(0, |last| last + 1)]
 }
 
-/// In a text file a blank cell is no sample; in another NaN and infinity are
-/// samples that nobody can use.
+/// Refuses NaN and infinity; in a text file NaN is a blank cell.
 fn check_finite(
     cells: &[f64],
     contents: &Contents,

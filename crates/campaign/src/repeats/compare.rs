@@ -84,10 +84,7 @@ pub fn compare_repeats(campaign: &RepeatsCampaign, pairs: &Pairs) -> Compared {
 }
 
 fn finding(compared: &mut Compared, code: &str, message: String) {
-    compared.findings.push(FindingOutcome {
-        code: code.to_owned(),
-        message,
-    });
+    compared.findings.push(FindingOutcome::new(code, message));
 }
 
 /// Scatter of the reference, and the margins.
@@ -128,14 +125,8 @@ fn reference(campaign: &RepeatsCampaign, pairs: &Pairs, compared: &mut Compared)
 
 /// Specimens that can be damaged, in order of first appearance.
 fn fruit_of(pairs: &Pairs) -> Vec<String> {
-    let fruit: Vec<String> = pairs
-        .pairs
-        .iter()
-        .filter(|pair| !pair.reference)
-        .map(|pair| pair.specimen.clone())
-        .unique()
-        .collect();
-    fruit
+    let pairs = pairs.pairs.iter().filter(|pair| !pair.reference);
+    pairs.map(|pair| pair.specimen.clone()).unique().collect()
 }
 
 /// Fruit and their differences, per energy and position.

@@ -78,10 +78,7 @@ pub fn evaluate_impact(
             to: entry.to.unwrap_or(f64::INFINITY),
         };
     }
-    let signal = |source| Error::Signal {
-        path: recording_path(&campaign.shared.files, entry),
-        source: Box::new(source),
-    };
+    let signal = |source| Error::signal(recording_path(&campaign.shared.files, entry), source);
     let (impact, findings) = extract_impact(recording, &options).map_err(signal)?;
     let force = impact.force.ok_or_else(|| {
         Error::from(CampaignError::ChannelNotMapped {
@@ -95,44 +92,32 @@ pub fn evaluate_impact(
     let reference = cell_of(campaign, entry, column) == value;
     let spot = cell_of(campaign, entry, "spot").to_owned();
     let repeat = cell_of(campaign, entry, "repeat").parse().ok();
-    let impulse = impact
-        .measured
-        .impulse
-        .map(|value| match impact.measured.impulse_sd {
-            Some(sd) => value_with_sd(value, sd, "N s"),
-            None => plain_value(value, "N s"),
-        });
-    let mut derived = vec![
-        ("energy".to_owned(), plain_value(energy, "J")),
-        ("peak_force".to_owned(), plain_value(read.peak, "N")),
-        (
-            "contact_duration".to_owned(),
-            plain_value(read.duration, "s"),
-        ),
-        ("rise_slope".to_owned(), plain_value(read.rise_slope, "N/s")),
-        ("force_noise".to_owned(), plain_value(force.noise, "N")),
-    ];
-    derived.extend(impulse.map(|value| ("impulse".to_owned(), value)));
+    let mut derived = Named::of([
+        ("energy", plain_value(energy, "J")),
+        ("peak_force", plain_value(read.peak, "N")),
+        ("contact_duration", plain_value(read.duration, "s")),
+        ("rise_slope", plain_value(read.rise_slope, "N/s")),
+        ("force_noise", plain_value(force.noise, "N")),
+    ]);
+    if let Some(value) = impact.measured.impulse {
+        let sd = impact.measured.impulse_sd.unwrap_or(f64::NAN);
+        derived.push("impulse", value_with_sd(value, sd, "N s"));
+    }
     let number = cell_of(campaign, entry, "repeat");
     let role = if reference { "reference, " } else { "" };
-    let mut words = vec![("repeat".to_owned(), number.to_owned())];
-    words.extend((!spot.is_empty()).then(|| ("spot".to_owned(), spot.clone())));
+    let mut words = Named::of([("repeat", number.to_owned())]);
+    if !spot.is_empty() {
+        words.push("spot", spot.clone());
+    }
     let item = MeasuredItem {
-        id: entry.id.clone(),
-        specimen: entry.specimen.clone(),
         group: Some(format!("{role}{energy:.4} J, impact {number}")),
-        file: entry.file.clone(),
-        law: IMPACT.to_owned(),
-        words: Named(words),
-        parameters: Named(Vec::new()),
-        derived: Named(derived),
+        words,
+        derived,
         findings: findings
             .iter()
-            .map(|finding| FindingOutcome {
-                code: finding.code().to_owned(),
-                message: finding.to_string(),
-            })
+            .map(|finding| FindingOutcome::new(finding.code(), finding.to_string()))
             .collect(),
+        ..MeasuredItem::of(&campaign.shared, entry, IMPACT)
     };
     Ok(RepeatImpact {
         item,

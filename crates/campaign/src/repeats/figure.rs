@@ -44,16 +44,15 @@ pub fn figure_of_comparison(
         (0..instants.len()).map(at).collect()
     };
     let (first, second) = (comparison.order + 1, comparison.order + 2);
+    let line = |label: &str, values: &[f64]| Series::new(label, Style::Line, points(values));
     let curves = vec![
-        series(
+        line(
             &format!("impact {first}, mean"),
-            Style::Line,
-            points(&mean(&|pair| &pair.aligned.first)),
+            &mean(&|pair| &pair.aligned.first),
         ),
-        series(
+        line(
             &format!("impact {second}, mean"),
-            Style::Line,
-            points(&mean(&|pair| &pair.aligned.second)),
+            &mean(&|pair| &pair.aligned.second),
         ),
     ];
     let percent = |values: &[f64]| values.iter().map(|v| 100.0 * v).collect::<Vec<f64>>();
@@ -61,26 +60,20 @@ pub fn figure_of_comparison(
         .iter()
         .flat_map(|p| points(&percent(&p.aligned.difference())));
     let differences = vec![
-        series("each fruit", Style::Dots, every.collect()),
-        series(
-            "mean",
-            Style::Line,
-            points(&percent(&comparison.curves.mean)),
-        ),
+        Series::new("each fruit", Style::Dots, every.collect()),
+        line("mean", &percent(&comparison.curves.mean)),
     ];
-    let mut statistic = vec![series(
+    let mut statistic = vec![line(
         "studentised mean difference",
-        Style::Line,
-        points(&comparison.curves.statistic),
+        &comparison.curves.statistic,
     )];
     if let Some(critical) = compared.test.as_ref().and_then(|test| test.critical) {
         let from = instants.first().copied().unwrap_or(0.0);
-        statistic.push(series(
-            "critical level over all instants and energies",
-            Style::Level,
-            vec![(from, critical), (from, -critical)],
-        ));
+        let levels = vec![(from, critical), (from, -critical)];
+        let label = "critical level over all instants and energies";
+        statistic.push(Series::new(label, Style::Level, levels));
     }
+    let axis = ("time from the crossing, in contact durations", "");
     Figure {
         title: format!(
             "{title}: {}, p = {:.4}",
@@ -88,29 +81,9 @@ pub fn figure_of_comparison(
             comparison.curves.p
         ),
         panels: vec![
-            panel("force / first peak", "%", curves),
-            panel("difference / first peak", "%", differences),
-            panel("statistic", "", statistic),
+            Panel::new(axis, ("force / first peak", "%"), curves),
+            Panel::new(axis, ("difference / first peak", "%"), differences),
+            Panel::new(axis, ("statistic", ""), statistic),
         ],
-    }
-}
-
-fn series(label: &str, style: Style, points: Vec<(f64, f64)>) -> Series {
-    Series {
-        label: label.to_owned(),
-        style,
-        colour: None,
-        points,
-    }
-}
-
-fn panel(y: &str, unit: &str, series: Vec<Series>) -> Panel {
-    Panel {
-        x: "time from the crossing, in contact durations".to_owned(),
-        x_unit: String::new(),
-        y: y.to_owned(),
-        y_unit: unit.to_owned(),
-        series,
-        marks: Vec::new(),
     }
 }

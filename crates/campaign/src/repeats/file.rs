@@ -46,7 +46,7 @@ pub struct RepeatsRigFile {
 pub struct ComparisonFile {
     /// Column of specimens.csv or impacts.csv that marks the reference.
     pub reference_column: Option<String>,
-    /// What stands there for a specimen that cannot be damaged.
+    /// Value of that column for a specimen that cannot be damaged.
     pub reference_value: Option<String>,
     /// Change of peak, duration and rise slope that does not matter; a part.
     pub margin: Option<Spanned<f64>>,

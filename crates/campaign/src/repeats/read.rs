@@ -9,7 +9,7 @@ use crate::settings::kind::{CAMPAIGN_FILE, CampaignKind};
 use crate::settings::model::Campaign;
 use crate::settings::model::ImpactEntry;
 use crate::settings::rig::STANDARD_GRAVITY;
-use crate::settings::shared::{SharedFile, read_shared};
+use crate::settings::shared::read_shared;
 use std::path::Path;
 use toml::Spanned;
 use windfall_files::error::{Error, Place};
@@ -78,11 +78,7 @@ pub fn read_repeats(directory: &Path) -> Result<RepeatsCampaign, Error> {
     );
     let rig = file.rig.get_ref();
     let channels = channel_plans(&source, file.channels.as_ref())?;
-    let shared = SharedFile {
-        campaign: &file.campaign,
-        files: &file.files,
-        summary: &file.summary,
-    };
+    let shared = (&file.campaign, &file.files, &file.summary);
     let kind = CampaignKind::Repeats;
     let campaign = RepeatsCampaign {
         mass: optional_quantity(&source, rig.mass.as_ref(), &mass)?,
@@ -97,7 +93,7 @@ pub fn read_repeats(directory: &Path) -> Result<RepeatsCampaign, Error> {
         align: align(&source, &file.repeats)?,
         test: test(&source, &file.repeats)?,
         family: family(&source, &file.repeats)?,
-        shared: read_shared(&source, directory, kind, &shared, channels)?,
+        shared: read_shared(&source, directory, kind, shared, channels)?,
     };
     for entry in &campaign.shared.entries {
         energy_of(&campaign, entry)?;

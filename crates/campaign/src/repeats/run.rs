@@ -18,7 +18,9 @@ use windfall_files::found::FindingOutcome;
 use windfall_files::named::Named;
 use windfall_signal::recording::Recording;
 use windfall_signal::repeat::align::CHANGES;
+use windfall_signal::repeat::criterion::Decision;
 use windfall_signal::repeat::equivalence::Verdict;
+use windfall_signal::repeat::interval::{EnergyInterval, energy_interval};
 use windfall_signal::repeat::threshold::{ProfiledValue, Threshold};
 use windfall_signal::repeat::turnbull::quantile_of;
 
@@ -96,13 +98,9 @@ impl Measurement for RepeatsCampaign {
         let items: Vec<MeasuredItem> = impacts.into_iter().map(|impact| impact.item).collect();
         let mut findings = compared.findings.clone();
         if !pairs.alone.is_empty() {
-            findings.push(FindingOutcome {
-                code: "impact-alone".to_owned(),
-                message: format!(
-                    "no second impact on the same spot at the same energy: {}",
-                    pairs.alone.join(", ")
-                ),
-            });
+            let alone = pairs.alone.join(", ");
+            let message = format!("no second impact on the same spot at the same energy: {alone}");
+            findings.push(FindingOutcome::new("impact-alone", message));
         }
         let mut whole: Vec<MeasuredItem> = compared.comparisons.iter().map(over_fruit).collect();
         whole.extend(critical(self, &compared));
@@ -110,7 +108,7 @@ impl Measurement for RepeatsCampaign {
             failed: pairs.failed,
             specimens: compared.fruit.iter().map(on_fruit).collect(),
             whole,
-            summary: Named(Vec::new()),
+            summary: Named::default(),
             findings,
             figures: Some(("Every energy, over all fruit.".to_owned(), figures)),
             ..MeasuredResults::of(items)
@@ -131,16 +129,6 @@ impl Measurement for RepeatsCampaign {
     }
 }
 
-/// An item of no recording.
-fn blank_item(id: String, law: &str) -> MeasuredItem {
-    MeasuredItem {
-        specimen: id.clone(),
-        id,
-        law: law.to_owned(),
-        ..MeasuredItem::default()
-    }
-}
-
 /// "0.1200 J, impacts 1 and 2".
 fn name_of(energy: f64, order: usize) -> String {
     format!("{energy:.4} J, impacts {} and {}", order + 1, order + 2)
@@ -153,30 +141,28 @@ fn percent(part: f64) -> String {
 /// One comparison over all fruit.
 fn over_fruit(comparison: &Comparison) -> MeasuredItem {
     let name = name_of(comparison.energy, comparison.order);
-    let mut found = blank_item(name, "change from one impact to the next, over fruit");
+    let mut found = MeasuredItem::named(&name, "change from one impact to the next, over fruit");
     found.file = format!("{} fruit", comparison.curves.fruit);
     let curves = &comparison.curves;
-    let mut derived = vec![
-        ("energy".to_owned(), plain_value(comparison.energy, "J")),
-        ("p".to_owned(), plain_value(curves.p, "1")),
-        ("p_alone".to_owned(), plain_value(curves.p_alone, "1")),
-        ("least_p".to_owned(), plain_value(curves.least_p, "1")),
-        (
-            "largest_statistic".to_owned(),
-            plain_value(
-                curves.statistic.get(curves.largest).copied().unwrap_or(0.0),
-                "1",
-            ),
-        ),
-    ];
-    let mut words = vec![("verdict".to_owned(), comparison.verdict.word().to_owned())];
+    let largest = curves.statistic.get(curves.largest).copied().unwrap_or(0.0);
+    let mut derived = Named::of([
+        ("energy", plain_value(comparison.energy, "J")),
+        ("p", plain_value(curves.p, "1")),
+        ("p_alone", plain_value(curves.p_alone, "1")),
+        ("least_p", plain_value(curves.least_p, "1")),
+        ("largest_statistic", plain_value(largest, "1")),
+    ]);
+    let mut words = Named::of([("verdict", comparison.verdict.word().to_owned())]);
     for (name, change) in CHANGES.iter().zip(&comparison.changes) {
-        let put = |end: &str, value: f64| (format!("{name}_change{end}"), plain_value(value, "1"));
-        derived.push(put("", change.mean));
-        derived.push(put("_low_90", change.low));
-        derived.push(put("_high_90", change.high));
-        derived.push(put("_margin", change.margin));
-        derived.push(put("_p_equivalence", change.p_equivalence));
+        for (end, value) in [
+            ("", change.mean),
+            ("_low_90", change.low),
+            ("_high_90", change.high),
+            ("_margin", change.margin),
+            ("_p_equivalence", change.p_equivalence),
+        ] {
+            derived.push(format!("{name}_change{end}"), plain_value(value, "1"));
+        }
         let word = match change.verdict {
             Verdict::Unchanged => format!("unchanged within ±{}", percent(change.margin)),
             Verdict::Changed => format!("changed by {}", percent(change.mean)),
@@ -186,11 +172,21 @@ fn over_fruit(comparison: &Comparison) -> MeasuredItem {
                 percent(change.high)
             ),
         };
-        words.push((name.replace('_', " "), word));
+        words.push(name.replace('_', " "), word);
     }
-    found.derived = Named(derived);
-    found.words = Named(words);
-    found
+    MeasuredItem {
+        derived,
+        words,
+        ..found
+    }
+}
+
+/// The ends of an interval of energies, as far as they are known; J.
+fn push_ends(values: &mut Named<MeasuredValue>, ends: [(&str, f64); 2]) {
+    let known = |energy: f64| energy > 0.0 && energy.is_finite();
+    for (name, energy) in ends.into_iter().filter(|(_, energy)| known(*energy)) {
+        values.push(name, plain_value(energy, "J"));
+    }
 }
 
 fn between(low: f64, high: f64) -> String {
@@ -204,19 +200,14 @@ fn between(low: f64, high: f64) -> String {
 
 /// One fruit by the reference.
 fn on_fruit(result: &FruitResult) -> MeasuredItem {
-    let mut found = blank_item(
-        result.specimen.clone(),
-        "critical energy by the repeatability of the reference",
-    );
+    let law = "critical energy by the repeatability of the reference";
+    let mut found = MeasuredItem::named(&result.specimen, law);
     found.file = format!("{} comparisons", result.decisions.len());
     let (low, high) = (result.interval.low, result.interval.high);
-    let mut derived = Vec::new();
-    if low > 0.0 {
-        derived.push(("unchanged_up_to".to_owned(), plain_value(low, "J")));
-    }
-    if high.is_finite() {
-        derived.push(("changed_at".to_owned(), plain_value(high, "J")));
-    }
+    push_ends(
+        &mut found.derived,
+        [("unchanged_up_to", low), ("changed_at", high)],
+    );
     let energies = |verdict: Verdict| {
         let at = result
             .decisions
@@ -225,20 +216,15 @@ fn on_fruit(result: &FruitResult) -> MeasuredItem {
         let at: Vec<String> = at.map(|(energy, _, _)| format!("{energy:.4}")).collect();
         at.join(" ")
     };
-    let largest = result.decisions.iter().map(|(_, _, d)| d.largest);
-    derived.push((
-        "largest_ratio".to_owned(),
-        plain_value(largest.fold(0.0, f64::max), "1"),
-    ));
-    let critical = result.decisions.iter().map(|(_, _, d)| d.critical);
-    derived.push((
-        "critical_ratio".to_owned(),
-        plain_value(critical.fold(0.0, f64::max), "1"),
-    ));
-    found.derived = Named(derived);
-    found.words = Named(vec![
-        ("critical energy".to_owned(), between(low, high)),
-        ("undecided at (J)".to_owned(), energies(Verdict::Undecided)),
+    let most = |of: fn(&Decision) -> f64| {
+        let values = result.decisions.iter().map(|(_, _, decision)| of(decision));
+        plain_value(values.fold(0.0, f64::max), "1")
+    };
+    found.derived.push("largest_ratio", most(|d| d.largest));
+    found.derived.push("critical_ratio", most(|d| d.critical));
+    found.words = Named::of([
+        ("critical energy", between(low, high)),
+        ("undecided at (J)", energies(Verdict::Undecided)),
     ]);
     found
 }
@@ -251,62 +237,42 @@ fn critical(campaign: &RepeatsCampaign, compared: &Compared) -> Vec<MeasuredItem
         items.push(parametric(threshold, campaign.test.level, law));
     }
     if let Some(median) = quantile_of(&compared.masses, 0.5) {
-        let mut found = blank_item("Turnbull, of single fruit".to_owned(), law);
-        let mut derived = Vec::new();
-        if median.low > 0.0 {
-            derived.push(("median_low".to_owned(), plain_value(median.low, "J")));
-        }
-        if median.high.is_finite() {
-            derived.push(("median_high".to_owned(), plain_value(median.high, "J")));
-        }
-        found.derived = Named(derived);
-        found.words = Named(vec![(
-            "median".to_owned(),
-            between(median.low, median.high),
-        )]);
-        items.push(found);
-    }
-    for mass in compared
-        .masses
-        .iter()
-        .filter(|mass| mass.share > LEAST_SHARE)
-    {
-        let mut found = blank_item(
-            between(mass.low, mass.high),
-            "share of fruit by critical energy (Turnbull)",
+        let mut found = MeasuredItem::named("Turnbull, of single fruit", law);
+        let (low, high) = (median.low, median.high);
+        push_ends(
+            &mut found.derived,
+            [("median_low", low), ("median_high", high)],
         );
-        let mut derived = vec![("share".to_owned(), plain_value(mass.share, "1"))];
-        derived.extend((mass.low > 0.0).then(|| ("from".to_owned(), plain_value(mass.low, "J"))));
-        let finite = mass.high.is_finite();
-        derived.extend(finite.then(|| ("to".to_owned(), plain_value(mass.high, "J"))));
-        found.derived = Named(derived);
+        found.words = Named::of([("median", between(low, high))]);
         items.push(found);
     }
-    let verdicts: Vec<(f64, Verdict)> = compared
-        .comparisons
-        .iter()
-        .map(|c| (c.energy, c.verdict))
-        .collect();
+    let masses = compared.masses.iter();
+    for mass in masses.filter(|mass| mass.share > LEAST_SHARE) {
+        let (low, high) = (mass.low, mass.high);
+        let law = "share of fruit by critical energy (Turnbull)";
+        let mut found = MeasuredItem::named(&between(low, high), law);
+        found.derived.push("share", plain_value(mass.share, "1"));
+        push_ends(&mut found.derived, [("from", low), ("to", high)]);
+        items.push(found);
+    }
+    let verdicts = compared.comparisons.iter().map(|c| (c.energy, c.verdict));
+    let verdicts: Vec<(f64, Verdict)> = verdicts.collect();
     if !verdicts.is_empty() {
-        let (interval, _) = windfall_signal::repeat::interval::energy_interval(&verdicts);
-        let mut found = blank_item("least energy with a change over fruit".to_owned(), law);
-        let text = between(interval.low, interval.high);
-        let mut derived = Vec::new();
-        if interval.high.is_finite() {
-            derived.push(("changed_at".to_owned(), plain_value(interval.high, "J")));
-        }
-        if interval.low > 0.0 {
-            derived.push(("unchanged_up_to".to_owned(), plain_value(interval.low, "J")));
-        }
-        found.derived = Named(derived);
-        found.words = Named(vec![("median".to_owned(), text)]);
+        let (EnergyInterval { low, high }, _) = energy_interval(&verdicts);
+        let mut found = MeasuredItem::named("least energy with a change over fruit", law);
+        push_ends(
+            &mut found.derived,
+            [("changed_at", high), ("unchanged_up_to", low)],
+        );
+        found.words = Named::of([("median", between(low, high))]);
         items.push(found);
     }
     items
 }
 
 fn parametric(threshold: &Threshold, level: f64, law: &str) -> MeasuredItem {
-    let mut found = blank_item(format!("{}, of single fruit", threshold.family.name()), law);
+    let name = format!("{}, of single fruit", threshold.family.name());
+    let mut found = MeasuredItem::named(&name, law);
     let value = |profiled: ProfiledValue, unit: &str| MeasuredValue {
         low: profiled.low,
         high: profiled.high,
@@ -318,28 +284,16 @@ fn parametric(threshold: &Threshold, level: f64, law: &str) -> MeasuredItem {
             profiled.high.unwrap_or(f64::INFINITY),
         )
     };
-    let mut derived = vec![
-        ("critical_energy".to_owned(), value(threshold.median, "J")),
-        ("energy_of_a_tenth".to_owned(), value(threshold.tenth, "J")),
-    ];
+    let (median, tenth) = (threshold.median, threshold.tenth);
+    found.derived.push("critical_energy", value(median, "J"));
+    found.derived.push("energy_of_a_tenth", value(tenth, "J"));
     if !threshold.spread_at_bound {
-        derived.push(("spread".to_owned(), value(threshold.spread, "1")));
+        found.derived.push("spread", value(threshold.spread, "1"));
     }
-    found.derived = Named(derived);
     let confidence = 100.0 * (1.0 - level);
-    found.words = Named(vec![
-        (
-            "median".to_owned(),
-            format!(
-                "{:.4} J ({confidence} %: {})",
-                threshold.median.value,
-                ends(threshold.median)
-            ),
-        ),
-        (
-            "a tenth of the fruit".to_owned(),
-            format!("{:.4} J ({})", threshold.tenth.value, ends(threshold.tenth)),
-        ),
-    ]);
+    let shown = format!("{:.4} J ({confidence} %: {})", median.value, ends(median));
+    found.words.push("median", shown);
+    let shown = format!("{:.4} J ({})", tenth.value, ends(tenth));
+    found.words.push("a tenth of the fruit", shown);
     found
 }

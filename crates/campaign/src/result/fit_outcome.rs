@@ -187,13 +187,12 @@ fn derived_values(measured: &Measured, fitted: &Named<Option<f64>>) -> Derived {
 }
 
 fn findings(signal: &[Finding], fit: &Fit) -> Vec<FindingOutcome> {
-    let signal = signal.iter().map(|f| FindingOutcome {
-        code: f.code().to_owned(),
-        message: f.to_string(),
-    });
-    let fit = fit.findings.iter().map(|f| FindingOutcome {
-        code: f.code().to_owned(),
-        message: f.to_string(),
-    });
+    let signal = signal
+        .iter()
+        .map(|f| FindingOutcome::new(f.code(), f.to_string()));
+    let fit = fit
+        .findings
+        .iter()
+        .map(|f| FindingOutcome::new(f.code(), f.to_string()));
     signal.chain(fit).collect()
 }

@@ -64,7 +64,7 @@ pub struct ProfileOutcome {
 }
 
 fn nothing<T>() -> Named<T> {
-    Named(Vec::new())
+    Named::default()
 }
 
 fn is_empty<T>(named: &Named<T>) -> bool {

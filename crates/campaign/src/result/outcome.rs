@@ -84,6 +84,20 @@ pub struct ImpactOutcome {
     pub findings: Vec<FindingOutcome>,
 }
 
+impl ImpactOutcome {
+    /// A derived quantity, where it is known.
+    #[must_use]
+    pub fn derived(&self, name: &str) -> Option<f64> {
+        self.derived.get(name).copied().flatten()
+    }
+
+    /// A quantity in the motion under the fitted law, where it is known.
+    #[must_use]
+    pub fn fitted(&self, name: &str) -> Option<f64> {
+        self.fitted.get(name).copied().flatten()
+    }
+}
+
 /// Spread of parameters and derived quantities over the impacts of a group.
 #[derive(Clone, Debug, PartialEq, Serialize, utoipa::ToSchema, Deserialize)]
 pub struct GroupOutcome {

@@ -23,6 +23,16 @@ pub struct Kind {
 }
 
 impl Kind {
+    /// A channel by its table, what it holds and its SI unit.
+    #[must_use]
+    pub const fn new(table: &'static str, quantity: Quantity, unit: &'static str) -> Self {
+        Self {
+            table,
+            quantity,
+            unit,
+        }
+    }
+
     /// Name of the channel: that of its table without "channels".
     #[must_use]
     pub fn name(&self) -> &'static str {
@@ -43,46 +53,14 @@ impl Kind {
 
 /// The channels that a campaign may have.
 pub const KINDS: [Kind; 8] = [
-    Kind {
-        table: "[channels.force]",
-        quantity: Quantity::Force,
-        unit: "N",
-    },
-    Kind {
-        table: "[channels.position]",
-        quantity: Quantity::Displacement,
-        unit: "m",
-    },
-    Kind {
-        table: "[channels.velocity]",
-        quantity: Quantity::Rate,
-        unit: "m/s",
-    },
-    Kind {
-        table: "[channels.acceleration]",
-        quantity: Quantity::Acceleration,
-        unit: "m/s^2",
-    },
-    Kind {
-        table: "[channels.angle]",
-        quantity: Quantity::Angle,
-        unit: "rad",
-    },
-    Kind {
-        table: "[channels.count]",
-        quantity: Quantity::EncoderCount,
-        unit: "",
-    },
-    Kind {
-        table: "[channels.phase_a]",
-        quantity: Quantity::PhaseA,
-        unit: "",
-    },
-    Kind {
-        table: "[channels.phase_b]",
-        quantity: Quantity::PhaseB,
-        unit: "",
-    },
+    Kind::new("[channels.force]", Quantity::Force, "N"),
+    Kind::new("[channels.position]", Quantity::Displacement, "m"),
+    Kind::new("[channels.velocity]", Quantity::Rate, "m/s"),
+    Kind::new("[channels.acceleration]", Quantity::Acceleration, "m/s^2"),
+    Kind::new("[channels.angle]", Quantity::Angle, "rad"),
+    Kind::new("[channels.count]", Quantity::EncoderCount, ""),
+    Kind::new("[channels.phase_a]", Quantity::PhaseA, ""),
+    Kind::new("[channels.phase_b]", Quantity::PhaseB, ""),
 ];
 
 /// The channels of a campaign.
@@ -175,24 +153,10 @@ fn calibration(
     let Some(sensitivity) = &file.sensitivity else {
         return direct_calibration(source, kind, channel);
     };
-    let needed = Needed {
-        table: kind.table,
-        key: "sensitivity",
-        meaning: "output per unit",
-        unit: "",
-        example: "sensitivity = \"11 mV/N\"",
-    };
-    let per_unit = sensitivity_value(source, kind, sensitivity, &needed)?;
-    let (key, fits) = ((kind.table, "gain"), |gain: f64| {
-        gain != 0.0 && gain.is_finite()
-    });
-    let gain = number_that(
-        source,
-        file.gain.as_ref(),
-        key,
-        fits,
-        "a number other than zero",
-    )?;
+    let per_unit = sensitivity_value(source, kind, sensitivity)?;
+    let (key, expected) = ((kind.table, "gain"), "a number other than zero");
+    let fits = |gain: f64| gain != 0.0 && gain.is_finite();
+    let gain = number_that(source, file.gain.as_ref(), key, fits, expected)?;
     let gain = gain.unwrap_or(1.0);
     let cell = column_unit(source, kind, file, "V")?;
     let offset = offset_value(source, kind, file, "V")?;
@@ -203,26 +167,12 @@ fn sensitivity_value(
     source: &TomlSource,
     kind: &Kind,
     text: &Spanned<QuantityText>,
-    needed: &Needed,
 ) -> Result<f64, Error> {
-    let value = parse_as(&text.get_ref().0, &kind.sensitivity_unit())
-        .map_err(|error| bad_unit(source, text, needed, &error))?;
-    if value == 0.0 {
-        let problem = "a sensitivity cannot be zero".to_owned();
-        let at = (kind.table, needed.key);
-        return Err(refused(source, text, at, problem));
+    let wrong = |problem: String| refused(source, text, (kind.table, "sensitivity"), problem);
+    match parse_as(&text.get_ref().0, &kind.sensitivity_unit()) {
+        Ok(0.0) => Err(wrong("a sensitivity cannot be zero".to_owned())),
+        value => value.map_err(|error| wrong(error.to_string())),
     }
-    Ok(value)
-}
-
-fn bad_unit(
-    source: &TomlSource,
-    text: &Spanned<QuantityText>,
-    needed: &Needed,
-    error: &UnitError,
-) -> Error {
-    let at = (needed.table, needed.key);
-    refused(source, text, at, error.to_string())
 }
 
 /// A column in units of the quantity itself.
@@ -240,12 +190,8 @@ fn direct_calibration(
             unit: "",
             example: "unit = \"mm\"   or   sensitivity = \"11 mV/N\"",
         };
-        return Err(missing(
-            source,
-            &channel.span(),
-            &needed,
-            kind.table.to_owned(),
-        ));
+        let (at, table) = (channel.span(), kind.table.to_owned());
+        return Err(missing(source, &at, &needed, table));
     }
     let cell = column_unit(source, kind, file, kind.unit)?;
     let offset = offset_value(source, kind, file, kind.unit)?;
@@ -274,8 +220,7 @@ fn column_unit(
     }
 }
 
-/// SI units per unit of a column, from a unit ("mm") or what one unit of the column
-/// stands for ("-1 N", "0.17 mm").
+/// SI units per unit of a column: from "mm", or from what one unit stands for, "0.17 mm".
 ///
 /// # Errors
 /// What is wrong with the text, or that its dimension is not that of `expected`.
@@ -341,10 +286,9 @@ pub fn encoder_plan(source: &TomlSource, file: &CampaignFile) -> Result<Option<E
         example: "counts_per_revolution = 360000   or   count_length = \"0.17 mm\"",
     };
     let Some(encoder) = &file.encoder else {
-        return if counts {
-            Err(missing(source, &(0..0), &needed, needed.table.to_owned()))
-        } else {
-            Ok(None)
+        return match counts {
+            true => Err(missing(source, &(0..0), &needed, needed.table.to_owned())),
+            false => Ok(None),
         };
     };
     let (at, encoder) = (encoder.span(), encoder.get_ref());
@@ -355,12 +299,15 @@ pub fn encoder_plan(source: &TomlSource, file: &CampaignFile) -> Result<Option<E
     let length = optional_quantity(source, encoder.count_length.as_ref(), &length_key)?;
     let per_revolution = encoder.counts_per_revolution.as_ref().map(|c| *c.get_ref());
     match (per_revolution, length) {
-        (Some(counts), None) if counts > 0.0 => Ok(Some(Encoder::Rotary {
-            counts_per_revolution: counts,
-        })),
-        (None, Some(length)) if length > 0.0 => Ok(Some(Encoder::Linear {
-            count_length: length,
-        })),
+        (Some(counts_per_revolution), None) if counts_per_revolution > 0.0 => {
+            let encoder = Encoder::Rotary {
+                counts_per_revolution,
+            };
+            Ok(Some(encoder))
+        }
+        (None, Some(count_length)) if count_length > 0.0 => {
+            Ok(Some(Encoder::Linear { count_length }))
+        }
         (None, None) => Err(missing(source, &at, &needed, needed.table.to_owned())),
         (counts, _) => {
             let text = counts.map_or_else(String::new, |counts| counts.to_string());

@@ -37,38 +37,25 @@ pub fn contact_plan(
         ("drift", Baseline::Drift),
         ("keep", Baseline::Keep),
     ];
-    if let Some(baseline) = choice(
-        source,
-        contact.baseline.as_ref(),
-        (TABLE, "baseline"),
-        &baselines,
-    )? {
-        options.trigger.baseline = baseline;
-    }
+    let (word, key) = (contact.baseline.as_ref(), (TABLE, "baseline"));
+    let baseline = choice(source, word, key, &baselines)?;
+    options.trigger.baseline = baseline.unwrap_or(options.trigger.baseline);
     let contacts = [
         ("first", ContactChoice::First),
         ("strongest", ContactChoice::Strongest),
     ];
-    if let Some(chosen) = choice(
-        source,
-        contact.contact.as_ref(),
-        (TABLE, "contact"),
-        &contacts,
-    )? {
-        options.trigger.choice = chosen;
-    }
+    let (word, key) = (contact.contact.as_ref(), (TABLE, "contact"));
+    let chosen = choice(source, word, key, &contacts)?;
+    options.trigger.choice = chosen.unwrap_or(options.trigger.choice);
     let expected = "a part of the contact's duration from 0 to 100, such as 0.2";
     let margin = |value: &Option<Spanned<f64>>, key, default| {
         let fits = |part| (0.0..=100.0).contains(&part);
         let margin = number_that(source, value.as_ref(), (TABLE, key), fits, expected)?;
         Ok::<f64, Error>(margin.unwrap_or(default))
     };
-    options.margin_before = margin(
-        &contact.margin_before,
-        "margin_before",
-        options.margin_before,
-    )?;
-    options.margin_after = margin(&contact.margin_after, "margin_after", options.margin_after)?;
+    let (before, after) = (options.margin_before, options.margin_after);
+    options.margin_before = margin(&contact.margin_before, "margin_before", before)?;
+    options.margin_after = margin(&contact.margin_after, "margin_after", after)?;
     let (key, fits) = ((TABLE, "release"), |part| part > 0.0 && part <= 1.0);
     let expected = "a part of the threshold above 0, at most 1, such as 0.5";
     let release = number_that(source, contact.release.as_ref(), key, fits, expected)?;
@@ -128,12 +115,10 @@ fn span_of_time(
 ) -> Result<Option<f64>, Error> {
     let needed = Needed::of(TABLE, key, meaning, "s", example);
     match (value, optional_quantity(source, value, &needed)?) {
-        (Some(value), Some(time)) if time < 0.0 => Err(refused(
-            source,
-            value,
-            (TABLE, key),
-            "must not be below zero",
-        )),
+        (Some(value), Some(time)) if time < 0.0 => {
+            let problem = "must not be below zero";
+            Err(refused(source, value, (TABLE, key), problem))
+        }
         (_, time) => Ok(time),
     }
 }
@@ -187,15 +172,14 @@ fn check_encoder(
     else {
         return Ok(());
     };
-    let problem = "a carriage has no arm; give the length of one count: \
-                   count_length = \"0.17 mm\""
-        .to_owned();
-    let at = ("[encoder]", "counts_per_revolution");
+    let problem = "a carriage has no arm; give the length of one count: count_length = \"0.17 mm\"";
+    let key = ("[encoder]", "counts_per_revolution");
+    let counts = counts_per_revolution.to_string();
     Err(invalid(
         source,
         &table.span(),
-        at,
-        &counts_per_revolution.to_string(),
-        problem,
+        key,
+        &counts,
+        problem.to_owned(),
     ))
 }

@@ -174,10 +174,8 @@ pub fn check_group(
     let specimen_cells = specimens.first().map_or(&[][..], |s| &s.cells);
     let impact_cells = entries.first().map_or(&[][..], |i| &i.cells);
     let names = || {
-        specimen_cells
-            .iter()
-            .chain(impact_cells)
-            .map(|(name, _)| name.as_str())
+        let cells = specimen_cells.iter().chain(impact_cells);
+        cells.map(|(name, _)| name.as_str())
     };
     if names().any(|name| name == group.get_ref()) {
         return Ok(());
@@ -213,10 +211,7 @@ pub fn check_placeholders(
         {
             fill_placeholders(text, &first.cells).map_err(|name| {
                 Error::from(CampaignError::PlaceholderUnknown {
-                    place: Place {
-                        file: source.path.clone(),
-                        line: channel.line,
-                    },
+                    place: Place::at(&source.path, channel.line),
                     text: text.clone(),
                     name,
                 })

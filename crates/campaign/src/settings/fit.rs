@@ -68,16 +68,13 @@ pub fn fit_plan(source: &TomlSource, file: &FitFile, user: Vec<LawKind>) -> Resu
     if let Some(words) = &file.quantities {
         options.quantities = quantities(source, words)?;
     }
-    if let Some(weights) = choice(source, file.weights.as_ref(), (TABLE, "weights"), &WEIGHTS)? {
-        options.weighting = weights;
-    }
-    if let Some(noise) = choice(source, file.noise.as_ref(), (TABLE, "noise"), &NOISES)? {
-        options.noise = noise;
-    }
+    let weights = choice(source, file.weights.as_ref(), (TABLE, "weights"), &WEIGHTS)?;
+    options.weighting = weights.unwrap_or(options.weighting);
+    let noise = choice(source, file.noise.as_ref(), (TABLE, "noise"), &NOISES)?;
+    options.noise = noise.unwrap_or(options.noise);
     interval_options(source, file, &mut options.intervals)?;
-    if let Some(end) = choice(source, file.end.as_ref(), (TABLE, "end"), &ENDS)? {
-        options.end = end;
-    }
+    let end = choice(source, file.end.as_ref(), (TABLE, "end"), &ENDS)?;
+    options.end = end.unwrap_or(options.end);
     let treatment = |value: Option<&Spanned<String>>, key| -> Result<Treatment, Error> {
         Ok(choice(source, value, (TABLE, key), &TREATMENTS)?.unwrap_or(Treatment::Auto))
     };
@@ -97,8 +94,7 @@ pub fn fit_plan(source: &TomlSource, file: &FitFile, user: Vec<LawKind>) -> Resu
     })
 }
 
-/// Fewest resampled recordings, draws and chains that an interval can be read
-/// from.
+/// Fewest replicates, draws and chains that an interval can be read from.
 pub const LEAST_WORK: [(&str, usize); 3] = [("replicates", 100), ("draws", 100), ("chains", 2)];
 
 /// Whether there is enough work for an interval; what was expected, if not.
@@ -121,9 +117,8 @@ fn interval_options(
     options: &mut IntervalOptions,
 ) -> Result<(), Error> {
     let place = (TABLE, "intervals");
-    if let Some(method) = choice(source, file.intervals.as_ref(), place, &INTERVALS)? {
-        options.method = method;
-    }
+    let method = choice(source, file.intervals.as_ref(), place, &INTERVALS)?;
+    options.method = method.unwrap_or(options.method);
     let numbers = [
         ("replicates", &file.replicates, &mut options.replicates),
         ("draws", &file.draws, &mut options.draws),
@@ -142,8 +137,7 @@ fn interval_options(
     Ok(())
 }
 
-/// A velocity given in place of a treatment: "0.35 m/s". Its unit tells it from
-/// a word.
+/// A velocity given in place of a treatment, told from a word by its unit: "0.35 m/s".
 #[must_use]
 pub fn known_velocity(text: &str) -> Option<f64> {
     let value = parse_as(text, "m/s").ok()?;
@@ -164,40 +158,28 @@ pub fn quantities_named<'a>(
     words: impl IntoIterator<Item = &'a str>,
 ) -> Result<Quantities, (String, String)> {
     let names = Quantity::ALL.map(Quantity::name);
-    let mut chosen = Vec::new();
-    for word in words {
-        let found = Quantity::ALL
-            .into_iter()
-            .find(|quantity| quantity.name() == word);
-        chosen.push(found.ok_or_else(|| {
+    let known = names.join(", ");
+    let quantity = |word: &str| {
+        let found = Quantity::ALL.into_iter().find(|own| own.name() == word);
+        found.ok_or_else(|| {
             let hint = suggestion(word, names);
-            (
-                word.to_owned(),
-                format!("expected any of {}{hint}", names.join(", ")),
-            )
-        })?);
-    }
+            (word.to_owned(), format!("expected any of {known}{hint}"))
+        })
+    };
+    let chosen: Vec<Quantity> = words.into_iter().map(quantity).collect::<Result<_, _>>()?;
     match chosen.is_empty() {
         false => Ok(Quantities::of(&chosen)),
-        true => Err((
-            String::new(),
-            format!("expected at least one of {}", names.join(", ")),
-        )),
+        true => Err((String::new(), format!("expected at least one of {known}"))),
     }
 }
 
-/// The first of `free` that is a parameter of none of the laws, with what was
-/// expected.
+/// The first of `free` that is a parameter of none of the laws, and what was expected.
 #[must_use]
 pub fn unknown_parameter(free: &[String], laws: &[LawExpression]) -> Option<(usize, String)> {
-    let names: Vec<&str> = laws
-        .iter()
-        .flat_map(|law| law.kind.describe().parameters)
-        .map(|p| p.name)
-        .collect();
-    let index = free
-        .iter()
-        .position(|name| !names.contains(&name.as_str()))?;
+    let parameters = laws.iter().flat_map(|law| law.kind.describe().parameters);
+    let names: Vec<&str> = parameters.map(|parameter| parameter.name).collect();
+    let mut free_names = free.iter();
+    let index = free_names.position(|name| !names.contains(&name.as_str()))?;
     let known = names.join(", ");
     let problem = format!(
         "no law here has a parameter of that name{}; they have: {known}",
@@ -208,10 +190,8 @@ pub fn unknown_parameter(free: &[String], laws: &[LawExpression]) -> Option<(usi
 
 fn quantities(source: &TomlSource, words: &[Spanned<String>]) -> Result<Quantities, Error> {
     quantities_named(words.iter().map(|word| word.get_ref().as_str())).map_err(|(text, problem)| {
-        let at = words
-            .iter()
-            .find(|word| *word.get_ref() == text)
-            .map_or(0..0, Spanned::span);
+        let word = words.iter().find(|word| *word.get_ref() == text);
+        let at = word.map_or(0..0, Spanned::span);
         invalid(source, &at, (TABLE, "quantities"), &text, problem)
     })
 }

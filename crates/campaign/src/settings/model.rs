@@ -58,8 +58,7 @@ pub struct ImpactCampaign {
     pub shared: Campaign,
     /// The rig.
     pub rig: RigPlan,
-    /// How contacts are found and impacts cut out; the mass of the rig and the
-    /// time range of an impact are filled in later.
+    /// How impacts are cut out; mass and time range of an impact are filled in later.
     pub contact: ExtractOptions,
     /// What is fitted.
     pub fit: FitPlan,

@@ -8,7 +8,7 @@ use crate::settings::fit::fit_plan;
 use crate::settings::kind::{CAMPAIGN_FILE, CampaignKind};
 use crate::settings::model::ImpactCampaign;
 use crate::settings::rig::rig_plan;
-use crate::settings::shared::{SharedFile, read_shared};
+use crate::settings::shared::read_shared;
 use std::path::Path;
 use windfall_cards::user_laws::read::user_laws;
 use windfall_files::error::Error;
@@ -33,14 +33,10 @@ pub fn read_campaign(directory: &Path) -> Result<ImpactCampaign, Error> {
     let contact = contact_plan(&source, &file, &rig)?;
     let user = user_laws(&source, &file.laws, directory)?;
     let fit = fit_plan(&source, &file.fit, user)?;
-    let shared = SharedFile {
-        campaign: &file.campaign,
-        files: &file.files,
-        summary: &file.summary,
-    };
+    let shared = (&file.campaign, &file.files, &file.summary);
     let kind = CampaignKind::Impacts;
     Ok(ImpactCampaign {
-        shared: read_shared(&source, directory, kind, &shared, channels)?,
+        shared: read_shared(&source, directory, kind, shared, channels)?,
         rig,
         contact,
         fit,

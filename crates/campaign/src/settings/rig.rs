@@ -145,16 +145,11 @@ fn carriage(source: &TomlSource, at: &Range<usize>, rig: &RigFile) -> Result<Rig
         (rig.gravity.as_ref(), "gravity"),
     ];
     refuse(source, strangers, "a carriage")?;
-    let from_impulse = rig
-        .mass
-        .as_ref()
-        .is_some_and(|mass| mass.get_ref().0 == FROM_IMPULSE);
+    let mass = rig.mass.as_ref();
+    let from_impulse = mass.is_some_and(|mass| mass.get_ref().0 == FROM_IMPULSE);
     let mass = if from_impulse {
-        refuse(
-            source,
-            [(rig.mass_sd.as_ref(), "mass_sd")],
-            "a mass from impulse",
-        )?;
+        let sd = (rig.mass_sd.as_ref(), "mass_sd");
+        refuse(source, [sd], "a mass from impulse")?;
         MassPlan::FromImpulse
     } else {
         let sd = optional_quantity(source, rig.mass_sd.as_ref(), &MASS_SD)?;

@@ -9,15 +9,8 @@ use std::path::Path;
 use windfall_files::error::Error;
 use windfall_files::text::toml_source::TomlSource;
 
-/// Tables of campaign.toml that all kinds share.
-pub struct SharedFile<'a> {
-    /// `[campaign]`
-    pub campaign: &'a TitleFile,
-    /// `[files]`
-    pub files: &'a FilesFile,
-    /// `[summary]`
-    pub summary: &'a SummaryFile,
-}
+/// `[campaign]`, `[files]` and `[summary]`, which all kinds share.
+pub type SharedFile<'a> = (&'a TitleFile, &'a FilesFile, &'a SummaryFile);
 
 /// Reads what all kinds share, with specimens.csv and impacts.csv.
 ///
@@ -27,10 +20,10 @@ pub fn read_shared(
     source: &TomlSource,
     directory: &Path,
     kind: CampaignKind,
-    shared: &SharedFile,
+    (titles, files, summary): SharedFile,
     channels: Vec<ChannelPlan>,
 ) -> Result<Campaign, Error> {
-    let files = file_plan(source, directory, shared.files, channels)?;
+    let files = file_plan(source, directory, files, channels)?;
     let specimens_file = directory.join("specimens.csv");
     let specimens = match specimens_file.exists() {
         true => Some(read_specimens(&specimens_file)?),
@@ -38,15 +31,15 @@ pub fn read_shared(
     };
     let entries = read_impacts(&directory.join("impacts.csv"), specimens.as_deref())?;
     let specimens = specimens.unwrap_or_default();
-    let group = shared.summary.group.as_ref();
+    let group = summary.group.as_ref();
     check_group(source, group, &specimens, &entries)?;
     check_placeholders(source, &files, &entries)?;
-    let title = shared.campaign.title.clone();
+    let title = titles.title.clone();
     Ok(Campaign {
         directory: directory.to_path_buf(),
         kind,
         title: title.unwrap_or_else(|| directory.display().to_string()),
-        simulated: shared.campaign.simulated.clone(),
+        simulated: titles.simulated.clone(),
         files,
         group: group.map(|group| group.get_ref().clone()),
         specimens,

@@ -18,15 +18,12 @@ pub fn read_specimens(path: &Path) -> Result<Vec<Specimen>, Error> {
     let table = read_table(path)?;
     let id = column_index(&table, "id")?;
     check_ids(&table, id, "specimen")?;
-    Ok(table
-        .rows
-        .iter()
-        .map(|row| Specimen {
-            id: row.cells[id].clone(),
-            line: row.line,
-            cells: named_cells(&table, row),
-        })
-        .collect())
+    let specimen = |row: &Row| Specimen {
+        id: row.cells[id].clone(),
+        line: row.line,
+        cells: named_cells(&table, row),
+    };
+    Ok(table.rows.iter().map(specimen).collect())
 }
 
 /// Reads impacts.csv; `specimens` are those of specimens.csv, if there is one.
@@ -80,10 +77,8 @@ fn check_ids(table: &Table, column: usize, what: &'static str) -> Result<(), Err
         filled(table, row, column)?;
     }
     rows.sort_by_key(|row| &row.cells[column]);
-    match rows
-        .windows(2)
-        .find(|pair| pair[0].cells[column] == pair[1].cells[column])
-    {
+    let same = |pair: &&[&Row]| pair[0].cells[column] == pair[1].cells[column];
+    match rows.windows(2).find(same) {
         None => Ok(()),
         Some(pair) => Err(Error::from(CampaignError::IdRepeated {
             place: place(table, pair[1]),
@@ -122,19 +117,12 @@ fn optional_number(table: &Table, row: &Row, column: &str) -> Result<Option<f64>
 }
 
 fn named_cells(table: &Table, row: &Row) -> Vec<(String, String)> {
-    table
-        .columns
-        .iter()
-        .cloned()
-        .zip(row.cells.iter().cloned())
-        .collect()
+    let columns = table.columns.iter().cloned();
+    columns.zip(row.cells.iter().cloned()).collect()
 }
 
 fn place(table: &Table, row: &Row) -> Place {
-    Place {
-        file: table.path.clone(),
-        line: row.line,
-    }
+    Place::at(&table.path, row.line)
 }
 
 #[cfg(test)]

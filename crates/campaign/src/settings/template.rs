@@ -20,6 +20,16 @@ pub enum TemplateKind {
     Drop,
 }
 
+/// Words for the templates of campaigns.
+pub const TEMPLATES: [(&str, TemplateKind); 6] = [
+    ("pendulum", TemplateKind::Pendulum),
+    ("carriage", TemplateKind::Carriage),
+    ("drop", TemplateKind::Drop),
+    ("compression", TemplateKind::Compression),
+    ("acoustic", TemplateKind::Acoustic),
+    ("repeats", TemplateKind::Repeats),
+];
+
 /// Table of specimens of a template.
 const SPECIMENS: &str = "id,variety,mass_g\nfruit-1,Golden,182\nfruit-2,Golden,175\n";
 
@@ -54,7 +64,7 @@ const HEIGHTS: &str = "id,specimen,file,drop_height_mm\n\
                        c-100-1,fruit-1,c-100-1.csv,100\n\
                        c-500-1,fruit-2,c-500-1.csv,500\n";
 
-/// Whether a file is a table of a template that nobody has touched.
+/// Whether a file is an unchanged table of a template.
 #[must_use]
 pub fn is_template_file(path: &Path) -> bool {
     let tables = [
@@ -101,12 +111,7 @@ pub fn write_template(kind: TemplateKind, directory: &Path) -> Result<Vec<PathBu
         ("specimens.csv", specimens),
         ("impacts.csv", impacts),
     ];
-    let mut written = Vec::new();
-    for (name, text) in files {
-        let path = directory.join(name);
-        write_file(&path, text.as_bytes())?;
-        written.push(path);
-    }
+    let mut written = write_files(directory, files)?;
     let raw = directory.join("raw");
     std::fs::create_dir(&raw).map_err(|source| create_error(&raw, source))?;
     written.push(raw);
@@ -119,9 +124,8 @@ pub fn write_template(kind: TemplateKind, directory: &Path) -> Result<Vec<PathBu
 /// There is something in the directory already, or it cannot be written.
 pub fn write_scene_template(directory: &Path) -> Result<Vec<PathBuf>, Error> {
     create_directory(directory)?;
-    let path = directory.join("scene.toml");
-    write_file(&path, include_str!("../../templates/scene.toml").as_bytes())?;
-    Ok(vec![path])
+    let scene = include_str!("../../templates/scene.toml");
+    write_files(directory, [("scene.toml", scene)])
 }
 
 /// Writes the example of a study into a directory that does not exist yet, or is empty: the
@@ -131,35 +135,30 @@ pub fn write_scene_template(directory: &Path) -> Result<Vec<PathBuf>, Error> {
 /// There is something in the directory already, or it cannot be written.
 pub fn write_study_template(directory: &Path) -> Result<Vec<PathBuf>, Error> {
     create_directory(directory)?;
+    let study = include_str!("../../templates/study/study.toml");
+    let scene = include_str!("../../templates/study/scene.toml");
+    let bruise = include_str!("../../templates/study/bruise.toml");
+    let apples = include_str!("../../templates/study/apple-apple.toml");
+    let steel = include_str!("../../templates/study/apple-steel.toml");
     let files = [
-        (
-            "study.toml",
-            include_str!("../../templates/study/study.toml"),
-        ),
-        (
-            "scene.toml",
-            include_str!("../../templates/study/scene.toml"),
-        ),
-        (
-            "bruise.toml",
-            include_str!("../../templates/study/bruise.toml"),
-        ),
-        (
-            "apple-apple.toml",
-            include_str!("../../templates/study/apple-apple.toml"),
-        ),
-        (
-            "apple-steel.toml",
-            include_str!("../../templates/study/apple-steel.toml"),
-        ),
+        ("study.toml", study),
+        ("scene.toml", scene),
+        ("bruise.toml", bruise),
+        ("apple-apple.toml", apples),
+        ("apple-steel.toml", steel),
     ];
-    let mut written = Vec::new();
-    for (name, text) in files {
+    write_files(directory, files)
+}
+
+fn write_files<const N: usize>(
+    directory: &Path,
+    files: [(&str, &str); N],
+) -> Result<Vec<PathBuf>, Error> {
+    let write = |(name, text): (&str, &str)| {
         let path = directory.join(name);
-        write_file(&path, text.as_bytes())?;
-        written.push(path);
-    }
-    Ok(written)
+        write_file(&path, text.as_bytes()).map(|()| path)
+    };
+    files.into_iter().map(write).collect()
 }
 
 /// Creates a directory that is to be filled; one that holds files is refused.
@@ -188,21 +187,14 @@ pub fn create_directory(directory: &Path) -> Result<(), Error> {
 pub fn write_file(path: &Path, bytes: &[u8]) -> Result<(), Error> {
     use std::io::Write;
     let mut file = std::fs::File::create_new(path).map_err(|source| create_error(path, source))?;
-    file.write_all(bytes).map_err(|source| Error::FileAccess {
-        path: path.to_path_buf(),
-        action: "write",
-        source,
-    })
+    file.write_all(bytes)
+        .map_err(|source| Error::access(path, "write", source))
 }
 
 fn create_error(path: &Path, source: std::io::Error) -> Error {
     let path = path.to_path_buf();
     match source.kind() {
         std::io::ErrorKind::AlreadyExists => Error::AlreadyThere { path },
-        _ => Error::FileAccess {
-            path,
-            action: "create",
-            source,
-        },
+        _ => Error::access(&path, "create", source),
     }
 }

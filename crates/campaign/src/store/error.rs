@@ -1,7 +1,7 @@
 //! What can be wrong with results.sqlite.
 
-use std::path::PathBuf;
-use windfall_files::error::Fault;
+use std::path::{Path, PathBuf};
+use windfall_files::error::{Error, Fault};
 
 /// What can be wrong with results.sqlite; nothing was written where it is.
 #[derive(Debug, thiserror::Error)]
@@ -56,6 +56,14 @@ pub enum StoreError {
         /// What SQLite said.
         source: rusqlite::Error,
     },
+}
+
+impl StoreError {
+    /// A results file that cannot be read, and why.
+    pub(crate) fn damaged(path: &Path, detail: String) -> Error {
+        let path = path.to_path_buf();
+        Self::Damaged { path, detail }.into()
+    }
 }
 
 impl Fault for StoreError {

@@ -65,10 +65,7 @@ fn check_integrity(connection: &Connection, path: &Path) -> Result<(), Error> {
         return Ok(());
     }
     let detail = verdict.lines().next().unwrap_or_default().to_owned();
-    Err(Error::from(StoreError::Damaged {
-        path: path.to_path_buf(),
-        detail,
-    }))
+    Err(StoreError::damaged(path, detail))
 }
 
 /// What the database said, in our words.
@@ -76,10 +73,7 @@ pub(crate) fn store_error(path: &Path, action: &'static str, source: rusqlite::E
     let path = path.to_path_buf();
     match source.sqlite_error_code() {
         Some(ErrorCode::NotADatabase | ErrorCode::DatabaseCorrupt) => {
-            Error::from(StoreError::Damaged {
-                path,
-                detail: source.to_string(),
-            })
+            StoreError::damaged(&path, source.to_string())
         }
         _ => Error::from(StoreError::Refused {
             path,

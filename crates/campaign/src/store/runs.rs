@@ -21,7 +21,7 @@ pub struct RunRecord {
     pub time: String,
     /// Version of windfall.
     pub windfall: String,
-    /// Everything that was asked for, as JSON.
+    /// All options, as JSON.
     pub options: String,
     /// Seed, where chance played a part.
     pub seed: Option<i64>,
@@ -60,23 +60,16 @@ pub fn find_results(path: &Path, keys: &[String]) -> Result<Vec<Option<ImpactOut
     let mut query = connection
         .prepare("SELECT document FROM results WHERE key = ?1")
         .map_err(failed)?;
-    keys.iter()
-        .map(|key| {
-            let text: Option<String> = query
-                .query_row([key], |row| row.get(0))
-                .optional()
-                .map_err(failed)?;
-            text.map(|text| {
-                serde_json::from_str(&text).map_err(|error| {
-                    Error::from(StoreError::Damaged {
-                        path: path.to_path_buf(),
-                        detail: format!("the result {key} cannot be read: {error}"),
-                    })
-                })
-            })
-            .transpose()
+    let mut find = |key: &String| -> Result<Option<ImpactOutcome>, Error> {
+        let text = query.query_row([key], |row| row.get::<_, String>(0));
+        let text = text.optional().map_err(failed)?;
+        let result = text.map(|text| serde_json::from_str(&text)).transpose();
+        result.map_err(|error| {
+            let detail = format!("the result {key} cannot be read: {error}");
+            StoreError::damaged(path, detail)
         })
-        .collect()
+    };
+    keys.iter().map(&mut find).collect()
 }
 
 /// The newest run, if there is one.
@@ -115,15 +108,15 @@ pub fn write_run(path: &Path, run: &RunRecord) -> Result<(), Error> {
     let mut connection = Connection::open(path).map_err(failed)?;
     connection.busy_timeout(PATIENCE).map_err(failed)?;
     // A rollback journal and full synchronisation: a committed run is on disk.
-    connection
-        .pragma_update(None, "journal_mode", "DELETE")
-        .map_err(failed)?;
-    connection
-        .pragma_update(None, "synchronous", "FULL")
-        .map_err(failed)?;
-    connection
-        .pragma_update(None, "foreign_keys", true)
-        .map_err(failed)?;
+    for (name, value) in [
+        ("journal_mode", "DELETE"),
+        ("synchronous", "FULL"),
+        ("foreign_keys", "ON"),
+    ] {
+        connection
+            .pragma_update(None, name, value)
+            .map_err(failed)?;
+    }
     let transaction = connection
         .transaction_with_behavior(rusqlite::TransactionBehavior::Immediate)
         .map_err(failed)?;
@@ -295,25 +288,22 @@ mod tests {
                 ("k".to_owned(), estimate.clone()),
                 ("c".to_owned(), estimate),
             ]),
-            nuisances: Named(Vec::new()),
-            correlations: Named(Vec::new()),
+            nuisances: Named::default(),
+            correlations: Named::default(),
             cost: 2.0 / 3.0,
             samples: 1111,
             evaluations: 5,
             converged: true,
             residual_norm: 0.8,
-            residuals: Named(Vec::new()),
-            regression: Named(Vec::new()),
+            residuals: Named::default(),
+            regression: Named::default(),
             derived: Named(vec![("restitution".to_owned(), Some(0.47))]),
-            derived_sd: Named(Vec::new()),
+            derived_sd: Named::default(),
             derived_from: Named(vec![("restitution".to_owned(), "signal".to_owned())]),
-            fitted: Named(Vec::new()),
+            fitted: Named::default(),
             directions: Vec::new(),
             intervals: crate::result::interval_outcome::IntervalOutcome::default(),
-            findings: vec![FindingOutcome {
-                code: "x".to_owned(),
-                message: "y".to_owned(),
-            }],
+            findings: vec![FindingOutcome::new("x", "y")],
         }
     }
 

@@ -4,7 +4,6 @@ use crate::pipeline::evaluate::Document;
 use crate::store::documents::StoredValue;
 use serde::{Deserialize, Serialize};
 use windfall_files::found::FindingOutcome;
-use windfall_signal::tap::damped_mode::Mode;
 use windfall_signal::tap::resonance::Resonance;
 
 /// Taps of one recording.
@@ -24,96 +23,42 @@ pub struct TapDocument {
     /// Largest sound in the band; unit of the file.
     pub peak: f64,
     /// Resonances in order of frequency.
-    pub resonances: Vec<ResonanceDocument>,
-}
-
-/// One resonance of a tap.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-pub struct ResonanceDocument {
-    /// Frequency; Hz.
-    pub frequency: f64,
-    /// Its standard error; `None` where the data cannot tell.
-    pub frequency_sd: Option<f64>,
-    /// Quality; 1.
-    pub quality: f64,
-    /// Its standard error.
-    pub quality_sd: Option<f64>,
-    /// Amplitude at the end of the hit; unit of the file.
-    pub amplitude: f64,
-    /// Its standard error.
-    pub amplitude_sd: Option<f64>,
-    /// Phase at the end of the hit; rad.
-    pub phase: f64,
-    /// Whether the fit reached a minimum.
-    pub converged: bool,
-    /// Height as a part of the highest peak; 1.
-    pub level: f64,
-    /// Power over that of the noise; 1.
-    pub over_noise: f64,
-    /// Whether the quiet before the taps shows it too.
-    pub in_quiet: bool,
+    pub resonances: Vec<Resonance>,
 }
 
 impl Document for TapsDocument {
     fn values(&self) -> Vec<StoredValue> {
         let mut values = Vec::new();
         for (tap, of_tap) in self.taps.iter().enumerate() {
-            for (number, resonance) in of_tap.resonances.iter().enumerate() {
+            for (number, Resonance { mode, level, .. }) in of_tap.resonances.iter().enumerate() {
                 let name = |what: &str| format!("tap {} resonance {} {what}", tap + 1, number + 1);
-                let value = |what, value, sd, unit: &str| StoredValue {
+                let value = |what, value, sd: f64, unit: &str| StoredValue {
                     name: name(what),
                     value,
-                    sd,
+                    sd: sd.is_finite().then_some(sd),
                     unit: unit.to_owned(),
                 };
-                let (f, q) = (resonance.frequency, resonance.quality);
-                values.push(value("frequency", f, resonance.frequency_sd, "Hz"));
-                values.push(value("quality", q, resonance.quality_sd, "1"));
-                values.push(value("level", resonance.level, None, "1"));
+                values.push(value("frequency", mode.frequency, mode.frequency_sd, "Hz"));
+                values.push(value("quality", mode.quality, mode.quality_sd, "1"));
+                values.push(value("level", *level, f64::INFINITY, "1"));
             }
         }
         values
     }
 }
 
-/// A resonance as it is kept.
+/// A resonance as it is read back from the store: standard errors that are not known are
+/// infinite, and JSON has no infinity for a recording without noise, which is simulated.
 #[must_use]
-pub fn document_of(resonance: &Resonance) -> ResonanceDocument {
-    let finite = |sd: f64| sd.is_finite().then_some(sd);
-    let mode = &resonance.mode;
-    ResonanceDocument {
-        frequency: mode.frequency,
-        frequency_sd: finite(mode.frequency_sd),
-        quality: mode.quality,
-        quality_sd: finite(mode.quality_sd),
-        amplitude: mode.amplitude,
-        amplitude_sd: finite(mode.amplitude_sd),
-        phase: mode.phase,
-        converged: mode.converged,
-        level: resonance.level,
-        // A recording without any noise is simulated; JSON holds no infinity.
-        over_noise: resonance.over_noise.min(f64::MAX),
-        in_quiet: resonance.in_quiet,
+pub fn kept(mut resonance: Resonance) -> Resonance {
+    let mode = &mut resonance.mode;
+    for sd in [
+        &mut mode.frequency_sd,
+        &mut mode.quality_sd,
+        &mut mode.amplitude_sd,
+    ] {
+        *sd = if sd.is_finite() { *sd } else { f64::INFINITY };
     }
-}
-
-/// A resonance as it was.
-#[must_use]
-pub fn resonance_of(document: &ResonanceDocument) -> Resonance {
-    let sd = |sd: Option<f64>| sd.unwrap_or(f64::INFINITY);
-    Resonance {
-        mode: Mode {
-            frequency: document.frequency,
-            frequency_sd: sd(document.frequency_sd),
-            quality: document.quality,
-            quality_sd: sd(document.quality_sd),
-            amplitude: document.amplitude,
-            amplitude_sd: sd(document.amplitude_sd),
-            phase: document.phase,
-            converged: document.converged,
-        },
-        level: document.level,
-        over_noise: document.over_noise,
-        in_quiet: document.in_quiet,
-    }
+    resonance.over_noise = resonance.over_noise.min(f64::MAX);
+    resonance
 }

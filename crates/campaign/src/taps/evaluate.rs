@@ -3,7 +3,7 @@
 use crate::recording::channel::channel_samples;
 use crate::recording::read::recording_path;
 use crate::settings::model::ImpactEntry;
-use crate::taps::document::{TapDocument, TapsDocument, document_of};
+use crate::taps::document::{TapDocument, TapsDocument, kept};
 use crate::taps::read::AcousticCampaign;
 use windfall_files::error::Error;
 use windfall_files::found::FindingOutcome;
@@ -46,13 +46,8 @@ pub fn evaluate_taps(
 ) -> Result<TapsDocument, Error> {
     let (channel, taps) = taps_of_entry(campaign, entry, recording)?;
     let failed = |error| failed(campaign, entry, error);
-    let quiet = match &taps.quiet {
-        Some(range) => Some(quiet_spectrum(
-            &channel.samples[range.clone()],
-            taps.interval,
-        )),
-        None => None,
-    };
+    let quiet = taps.quiet.clone().map(|range| &channel.samples[range]);
+    let quiet = quiet.map(|samples| quiet_spectrum(samples, taps.interval));
     let quiet = quiet.transpose().map_err(failed)?;
     let mut findings = taps.findings.clone();
     let mut documents = Vec::new();
@@ -66,13 +61,10 @@ pub fn evaluate_taps(
         documents.push(TapDocument {
             onset: tap.onset,
             peak: tap.peak,
-            resonances: found.iter().map(document_of).collect(),
+            resonances: found.into_iter().map(kept).collect(),
         });
     }
-    let told = |finding: &TapFinding| FindingOutcome {
-        code: finding.code().to_owned(),
-        message: finding.to_string(),
-    };
+    let told = |finding: &TapFinding| FindingOutcome::new(finding.code(), finding.to_string());
     Ok(TapsDocument {
         taps: documents,
         findings: findings.iter().map(told).collect(),
@@ -84,8 +76,5 @@ fn failed(
     entry: &ImpactEntry,
     source: windfall_signal::Error,
 ) -> Error {
-    Error::Signal {
-        path: recording_path(&campaign.shared.files, entry),
-        source: Box::new(source),
-    }
+    Error::signal(recording_path(&campaign.shared.files, entry), source)
 }

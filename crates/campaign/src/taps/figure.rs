@@ -1,6 +1,6 @@
 //! Taps as a figure: spectrum of each with the fitted modes.
 
-use crate::taps::document::{TapsDocument, resonance_of};
+use crate::taps::document::TapsDocument;
 use windfall_draw::xy::{Figure, Mark, Panel, Series, Side, Style};
 use windfall_signal::tap::damped_mode::mode_samples;
 use windfall_signal::tap::resonance::tap_spectrum;
@@ -8,8 +8,7 @@ use windfall_signal::tap::resonance::tap_spectrum;
 /// Most taps of a recording that are drawn.
 const MOST_TAPS: usize = 4;
 
-/// The spectra of the taps of a recording, each over its highest value in the
-/// band, with those of the fitted modes.
+/// Spectra of taps, each over its highest value in the band, with the fitted modes.
 ///
 /// * `sounds`: samples of each tap from the end of the hit on
 /// * `interval`: sampling interval; s
@@ -29,8 +28,7 @@ pub fn figure_of_taps(
         let centred: Vec<f64> = sound.iter().map(|x| x - mean).collect();
         let mut fitted = vec![0.0; sound.len()];
         for resonance in &tap.resonances {
-            let mode = resonance_of(resonance).mode;
-            let all = mode_samples(&mode, interval, sound.len());
+            let all = mode_samples(&resonance.mode, interval, sound.len());
             fitted.iter_mut().zip(all).for_each(|(sum, x)| *sum += x);
         }
         let measured = amplitudes(&centred, interval, band);
@@ -52,27 +50,14 @@ pub fn figure_of_taps(
             at: (frequency, near(frequency)),
             side: Side::BelowRight,
         };
-        panels.push(Panel {
-            x: "frequency".to_owned(),
-            x_unit: "Hz".to_owned(),
-            y: format!("amplitude of tap {}", number + 1),
-            y_unit: String::new(),
-            marks: accepted.into_iter().map(mark).collect(),
-            series: vec![
-                Series {
-                    label: "measured".to_owned(),
-                    style: Style::Broad,
-                    colour: None,
-                    points: scaled(measured),
-                },
-                Series {
-                    label: "fitted modes".to_owned(),
-                    style: Style::Line,
-                    colour: None,
-                    points: fitted,
-                },
-            ],
-        });
+        let marks = accepted.into_iter().map(mark).collect();
+        let amplitude = format!("amplitude of tap {}", number + 1);
+        let series = vec![
+            Series::new("measured", Style::Broad, scaled(measured)),
+            Series::new("fitted modes", Style::Line, fitted),
+        ];
+        let panel = Panel::new(("frequency", "Hz"), (&amplitude, ""), series);
+        panels.push(Panel { marks, ..panel });
     }
     Figure {
         title: title.to_owned(),

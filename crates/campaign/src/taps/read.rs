@@ -4,7 +4,7 @@ use crate::settings::channels::{Kind, channel_plan};
 use crate::settings::files::check_format;
 use crate::settings::kind::{CAMPAIGN_FILE, CampaignKind};
 use crate::settings::model::Campaign;
-use crate::settings::shared::{SharedFile, read_shared};
+use crate::settings::shared::read_shared;
 use crate::taps::file::{AcousticFile, ResonanceFile, SoundFile};
 use std::path::Path;
 use toml::Spanned;
@@ -54,11 +54,7 @@ pub enum Common {
 const ADVICE: &str = "`windfall new acoustic DIR` writes a template";
 
 /// The channel of a campaign of taps.
-const SOUND: Kind = Kind {
-    table: "[channels.sound]",
-    quantity: Quantity::Sound,
-    unit: "",
-};
+const SOUND: Kind = Kind::new("[channels.sound]", Quantity::Sound, "");
 
 const MASS_SD: Needed = Needed::of(
     "[rig]",
@@ -95,11 +91,7 @@ pub fn read_acoustic(directory: &Path) -> Result<AcousticCampaign, Error> {
     let settings = &file.acoustic;
     let (low, high) = band(&source, settings)?;
     let channel = channel(&source, file.channels.as_ref())?;
-    let shared = SharedFile {
-        campaign: &file.campaign,
-        files: &file.files,
-        summary: &file.summary,
-    };
+    let shared = (&file.campaign, &file.files, &file.summary);
     let kind = CampaignKind::Acoustic;
     let common = [("reject", Common::Reject), ("keep", Common::Keep)];
     let key = ("[acoustic]", "shared");
@@ -121,7 +113,7 @@ pub fn read_acoustic(directory: &Path) -> Result<AcousticCampaign, Error> {
         },
         first_mode: first_mode_options(&source, settings)?,
         common: choice(&source, settings.shared.as_ref(), key, &common)?.unwrap_or_default(),
-        shared: read_shared(&source, directory, kind, &shared, vec![channel])?,
+        shared: read_shared(&source, directory, kind, shared, vec![channel])?,
     })
 }
 

@@ -62,13 +62,9 @@ impl Measurement for AcousticCampaign {
     }
 
     fn results(&self, found: &FoundItems<Self>) -> Result<MeasuredResults, Error> {
-        let entries = found.iter().map(|(position, taps)| {
-            let entry = &self.shared.entries[*position];
-            TapsOfEntry {
-                entry,
-                group: self.shared.group_of(entry),
-                taps,
-            }
+        let entries = found.iter().map(|(position, taps)| TapsOfEntry {
+            entry: &self.shared.entries[*position],
+            taps,
         });
         let results = acoustic_results(self, &entries.collect::<Vec<_>>())?;
         // A tap is no fruit: fruit have a spread.

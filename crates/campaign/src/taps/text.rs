@@ -6,9 +6,6 @@ use windfall_files::table::write::csv_text;
 use windfall_signal::tap::acoustic_stiffness::MEGAHERTZ_GRAM;
 
 /// One row per fruit.
-///
-/// # Errors
-/// None in practice: the text is written to memory.
 pub fn csv_of_acoustic(outcome: &MeasuredOutcome) -> Result<String, Error> {
     let with = "acoustic_stiffness_with_density";
     let dense = outcome
@@ -42,13 +39,7 @@ pub fn csv_of_acoustic(outcome: &MeasuredOutcome) -> Result<String, Error> {
         }
         let word = |name: &str| item.words.get(name).cloned().unwrap_or_default();
         // "3/4": of the taps that were evaluated, those that show the mode.
-        row.push(
-            word("taps")
-                .split('/')
-                .next()
-                .unwrap_or_default()
-                .to_owned(),
-        );
+        row.extend(word("taps").split('/').next().map(str::to_owned));
         row.push(word("confidence"));
         row.extend(outcome.simulated.clone());
         row

@@ -1,9 +1,9 @@
 //! The law card of a calibration.
 
-use crate::calibrate::outcome::CalibrateOutcome;
+use crate::calibrate::outcome::{CalibrateOutcome, CalibratedParameter};
 use crate::calibrate::waveform_outcome::WaveformOutcome;
 use crate::read::{DropCampaign, PlatePlan};
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use windfall_cards::law_card::{
     CARD_FORMAT, CardBodies, CardCovariance, CardOrigin, CardParameter, CardRange, LawCard,
 };
@@ -20,8 +20,7 @@ use windfall_files::provenance::{VERSION, digest_file, time_now};
 /// Files whose digests a card carries.
 const FILES: [&str; 3] = ["campaign.toml", "impacts.csv", "specimens.csv"];
 
-/// The law of a calibration as a card: that of the waveforms, or else that of
-/// the features.
+/// The law of a calibration as a card: by waveforms, or else by features.
 ///
 /// # Errors
 /// There is no single law: the features leave a family, or neither way was
@@ -34,38 +33,20 @@ pub fn card_of_calibration(
         (Some(waveform), _) => from_waveform(waveform),
         (None, Some(features)) if features.rank == features.parameters.len() => Found {
             expression: features.law.clone(),
-            parameters: features
-                .parameters
-                .iter()
-                .map(|p| {
-                    let parameter = CardParameter {
-                        value: p.value,
-                        unit: p.unit.clone(),
-                        sd: p.sd,
-                        interval: None,
-                    };
-                    (p.name.clone(), parameter)
-                })
-                .collect(),
+            parameters: features.parameters.iter().map(card_parameter).collect(),
             covariance: None,
             method: "features of drops (peaks and intervals)",
         },
         _ => {
-            return Err(Error::ValueNotKnown {
-                item: campaign.shared.title.clone(),
-                missing: "there is no one law for a card: what was measured leaves a family"
-                    .to_owned(),
-                advice: "calibrate on waveforms (--way waveform), or add drops from another height"
-                    .to_owned(),
-            });
+            let missing = "there is no one law for a card: what was measured leaves a family";
+            let advice =
+                "calibrate on waveforms (--way waveform), or add drops from another height";
+            return Err(Error::not_known(&campaign.shared.title, missing, advice));
         }
     };
     let law = complete_law_among(&found.expression, &campaign.calibrate.user)?;
-    let end = campaign
-        .calibrate
-        .law
-        .as_ref()
-        .map_or(EndRule::ForceZero, |law| law.end);
+    let own = campaign.calibrate.law.as_ref();
+    let end = own.map_or(EndRule::ForceZero, |law| law.end);
     let mut origin_digests = BTreeMap::new();
     for file in FILES {
         let path = campaign.shared.directory.join(file);
@@ -73,20 +54,14 @@ pub fn card_of_calibration(
             origin_digests.insert(file.to_owned(), digest_file(&path)?);
         }
     }
-    let mut specimens: Vec<&str> = outcome.drops.iter().map(|d| d.specimen.as_str()).collect();
-    specimens.sort_unstable();
-    specimens.dedup();
+    let specimens: BTreeSet<&str> = outcome.drops.iter().map(|d| d.specimen.as_str()).collect();
     Ok(LawCard {
         format: CARD_FORMAT,
         title: campaign.shared.title.clone(),
         law: law.kind().name().to_owned(),
         expression: found.expression,
         end: end_name(end).to_owned(),
-        cautions: outcome
-            .findings
-            .iter()
-            .map(|finding| finding.message.clone())
-            .collect(),
+        cautions: outcome.findings.iter().map(|f| f.message.clone()).collect(),
         parameters: all_parameters(&law, &found.parameters),
         covariance: found.covariance,
         range: range_of(campaign, outcome, &law, end),
@@ -113,6 +88,16 @@ pub fn card_of_calibration(
         population: None,
         definition: card_definition(law.kind()),
     })
+}
+
+fn card_parameter(parameter: &CalibratedParameter) -> (String, CardParameter) {
+    let card = CardParameter {
+        value: parameter.value,
+        unit: parameter.unit.clone(),
+        sd: parameter.sd,
+        interval: None,
+    };
+    (parameter.name.clone(), card)
 }
 
 /// A law with what is known of its free parameters.
@@ -160,12 +145,8 @@ fn all_parameters(
     law: &Law,
     found: &BTreeMap<String, CardParameter>,
 ) -> BTreeMap<String, CardParameter> {
-    let description = law.kind().describe();
-    let parameters = description
-        .parameters
-        .iter()
-        .zip(law.parameters())
-        .enumerate();
+    let parameters = law.kind().describe().parameters.iter();
+    let parameters = parameters.zip(law.parameters()).enumerate();
     parameters
         .map(|(place, (parameter, value))| {
             let card = found.get(parameter.name).cloned().unwrap_or(CardParameter {

@@ -2,7 +2,7 @@
 //! parameters, the simulator at each point, response surfaces, the settings that
 //! meet the targets, and the simulator there.
 
-use crate::calibrate::features::height_features;
+use crate::calibrate::features::{height_features, telling_heights};
 use crate::calibrate::law::{FreeLaw, law_error};
 use crate::calibrate::outcome::{
     DepthOutcome, DesignFactorOutcome, DesignHeight, DesignMember, DesignOptimum, DesignRunOutcome,
@@ -21,6 +21,7 @@ use windfall_drop_rig::measured::{DropFeature, feature_values};
 use windfall_drop_rig::rig::DropRig;
 use windfall_files::error::Error;
 use windfall_files::found::FindingOutcome;
+use windfall_files::option_value::unusable;
 use windfall_files::text::number::plain;
 use windfall_statistics::model::anova::{AnovaType, anova};
 use windfall_statistics::surface::analysis::{Surface, fit_surface};
@@ -65,10 +66,7 @@ pub struct DesignSetting<'a> {
 /// # Errors
 /// A parameter has no range, or there are fewer than two.
 pub fn design_of_law(law: &FreeLaw) -> Result<Design, Error> {
-    let unusable = |problem: String| Error::OptionInvalid {
-        option: "[calibrate] ways = [\"design\"]".to_owned(),
-        problem,
-    };
+    let unusable = |problem: String| unusable("[calibrate] ways = [\"design\"]", problem);
     let names = law.names();
     let mut factors = Vec::new();
     for (place, range) in law.ranges.iter().enumerate() {
@@ -105,14 +103,11 @@ pub fn run_design(
     end: EndRule,
 ) -> Result<Vec<DesignRunOutcome>, Error> {
     let run = |coded: &Vec<f64>| {
-        let pairs = design.factors.iter().zip(coded);
-        let levels: Vec<f64> = pairs.map(|(factor, x)| factor.actual(*x)).collect();
+        let levels = levels_of(design, coded);
         let own = law.law_of_levels(&levels)?;
         let responses = feature_values(&own, rig, height, &RESPONSES, end).map_err(|source| {
-            Error::Identify {
-                subject: format!("run of the design at {}", LawExpression::from(own)),
-                source: Box::new(source),
-            }
+            let subject = format!("run of the design at {}", LawExpression::from(own));
+            Error::identify(subject, source)
         })?;
         Ok(DesignRunOutcome {
             coded: coded.clone(),
@@ -120,26 +115,22 @@ pub fn run_design(
             responses,
         })
     };
-    let points: Vec<&Vec<f64>> = design.runs.iter().map(|run| &run.coded).collect();
-    points.into_par_iter().map(run).collect()
+    let points = design.runs.par_iter().map(|run| &run.coded);
+    points.map(run).collect()
 }
 
-/// Surfaces of responses, quadratic with terms that explain nothing taken out, the
-/// hierarchy kept.
+/// Quadratic surfaces of the responses without insignificant terms; the hierarchy is kept.
 ///
 /// # Errors
 /// Too few runs, or a response that does not change.
 pub fn design_surfaces(design: &Design, runs: &[DesignRunOutcome]) -> Result<Vec<Surface>, Error> {
     let names: Vec<String> = design.factors.iter().map(|f| f.name.clone()).collect();
-    let codings: Vec<FactorCoding> = design
-        .factors
-        .iter()
-        .map(|factor| FactorCoding {
-            name: factor.name.clone(),
-            centre: factor.centre,
-            half: factor.half,
-        })
-        .collect();
+    let codings = design.factors.iter().map(|factor| FactorCoding {
+        name: factor.name.clone(),
+        centre: factor.centre,
+        half: factor.half,
+    });
+    let codings: Vec<FactorCoding> = codings.collect();
     let columns: Vec<Vec<f64>> = (0..names.len())
         .map(|factor| runs.iter().map(|run| run.coded[factor]).collect())
         .collect();
@@ -159,8 +150,7 @@ pub fn design_surfaces(design: &Design, runs: &[DesignRunOutcome]) -> Result<Vec
     surfaces.map_err(Error::Statistics)
 }
 
-/// The term that explains least, if it explains next to nothing and no other is
-/// made of it.
+/// The least significant term, if it may go and no higher term needs it.
 fn leaving(surface: &Surface) -> Option<usize> {
     let monomials = &surface.terms.monomials;
     // A model of one term says something; none has no test.
@@ -194,11 +184,9 @@ pub fn calibrate_by_design(
     let height = setting.target.height.value;
     let runs = run_design(&design, setting.law, &rig, height, setting.end)?;
     let surfaces = design_surfaces(&design, &runs)?;
-    let goals: Vec<Goal> = setting
-        .target
-        .features
-        .iter()
-        .map(|feature| goal(feature.value, setting.tolerance))
+    let features = setting.target.features.iter();
+    let goals: Vec<Goal> = features
+        .map(|own| goal(own.value, setting.tolerance))
         .collect();
     let alpha = design.alpha.unwrap_or(1.0);
     let count = design.factors.len();
@@ -259,17 +247,15 @@ fn one_of_a_family(design: &Design, dimension: usize, members: &[DesignMember]) 
         let words = pairs.map(|(factor, level)| format!("{} = {}", factor.name, plain(*level)));
         words.collect::<Vec<_>>().join(", ")
     });
-    finding(
-        "one-of-a-family",
-        format!(
-            "the optimum is one of a family: {dimension} direction(s) of the settings are open, \
-             and ({}) to ({}) meet the targets as well on these surfaces; two responses do not \
-             determine {} parameters",
-            ends[0],
-            ends[1],
-            design.factors.len()
-        ),
-    )
+    let message = format!(
+        "the optimum is one of a family: {dimension} direction(s) of the settings are open, and \
+         ({}) to ({}) meet the targets as well on these surfaces; two responses do not determine \
+         {} parameters",
+        ends[0],
+        ends[1],
+        design.factors.len()
+    );
+    finding("one-of-a-family", message)
 }
 
 fn levels_of(design: &Design, coded: &[f64]) -> Vec<f64> {
@@ -326,12 +312,10 @@ fn member_outcome(
     let levels = levels_of(design, &member.point);
     let law = setting.law.law_of_levels(&levels)?;
     let own = setting.target.height.value;
-    let heights = crate::calibrate::features::telling_heights(&heights_of(setting.drops), own);
-    let shown = heights.iter();
+    let heights = telling_heights(&heights_of(setting.drops), own).into_iter();
+    let shown = heights.map(|height| height_features(&law, rig, height, setting.end));
     Ok(DesignMember {
-        heights: shown
-            .map(|height| height_features(&law, rig, *height, setting.end))
-            .collect(),
+        heights: shown.collect(),
         desirability: member.desirability,
         levels,
     })
@@ -340,11 +324,9 @@ fn member_outcome(
 /// The optimum against the drops from every height.
 fn other_heights(setting: &DesignSetting, law: &Law) -> Vec<DesignHeight> {
     let of = |height: f64| {
-        let own: Vec<&DropData> = setting
-            .drops
-            .iter()
-            .filter(|drop| same_height(drop.height.value, height))
-            .collect();
+        let drops = setting.drops.iter();
+        let own = drops.filter(|drop| same_height(drop.height.value, height));
+        let own: Vec<&DropData> = own.collect();
         let mut rig = setting.rig.rig;
         rig.mass = own.iter().map(|drop| drop.mass.value).sum::<f64>() / own.len() as f64;
         let simulated = feature_values(law, &rig, height, &RESPONSES, setting.end).ok();
@@ -368,29 +350,27 @@ fn depth_outcome(setting: &DesignSetting, rig: &DropRig) -> Option<DepthOutcome>
     let position = start.kind().describe().index_of("d")?;
     let values = start.parameters();
     let height = setting.target.height.value;
-    let rows: Vec<(f64, Vec<f64>)> = DEPTHS
-        .iter()
-        .filter_map(|times| {
-            let mut values = values.clone();
-            values[position] *= times;
-            let law = start.kind().with_parameters(&values).ok()?;
-            let responses = feature_values(&law, rig, height, &RESPONSES, setting.end).ok()?;
-            Some((values[position], responses))
-        })
-        .collect();
+    let row = |times: f64| {
+        let mut values = values.clone();
+        values[position] *= times;
+        let law = start.kind().with_parameters(&values).ok()?;
+        let responses = feature_values(&law, rig, height, &RESPONSES, setting.end).ok()?;
+        Some((values[position], responses))
+    };
+    let rows: Vec<(f64, Vec<f64>)> = DEPTHS.into_iter().filter_map(row).collect();
     let count = rows.len() as f64;
     if rows.len() < 2 {
         return None;
     }
-    let mean: Vec<f64> = (0..RESPONSES.len())
-        .map(|place| rows.iter().map(|(_, r)| r[place]).sum::<f64>() / count)
-        .collect();
-    let sd: Vec<f64> = (0..RESPONSES.len())
-        .map(|place| {
-            let squares = rows.iter().map(|(_, r)| (r[place] - mean[place]).powi(2));
-            (squares.sum::<f64>() / count).sqrt()
-        })
-        .collect();
+    let places = 0..RESPONSES.len();
+    let of = |place: usize| rows.iter().map(move |(_, responses)| responses[place]);
+    let mean = |place| of(place).sum::<f64>() / count;
+    let mean: Vec<f64> = places.clone().map(mean).collect();
+    let sd = |place| {
+        let squares = of(place).map(|response| (response - mean[place]).powi(2));
+        (squares.sum::<f64>() / count).sqrt()
+    };
+    let sd: Vec<f64> = places.map(sd).collect();
     Some(DepthOutcome {
         law: LawExpression::from(start).to_string(),
         cv: sd.iter().zip(&mean).map(|(sd, mean)| sd / mean).collect(),
@@ -466,30 +446,26 @@ fn verification_findings(outcome: &DesignWayOutcome, tolerance: f64) -> Vec<Find
         };
         let off = simulated / response.predicted - 1.0;
         if off.abs() > 0.5 * tolerance {
-            findings.push(finding(
-                "surface-off",
-                format!(
-                    "{}: the simulator at the optimum differs by {:+.1} % from its surface; the \
-                     way \"features\" needs no surface",
-                    response.response,
-                    100.0 * off
-                ),
-            ));
+            let message = format!(
+                "{}: the simulator at the optimum differs by {:+.1} % from its surface; the way \
+                 \"features\" needs no surface",
+                response.response,
+                100.0 * off
+            );
+            findings.push(finding("surface-off", message));
         }
     }
     for at in &outcome.heights {
         for response in &at.responses {
             let off = response.difference.filter(|off| off.abs() > tolerance);
             if let Some(off) = off {
-                findings.push(finding(
-                    "other-height-off",
-                    format!(
-                        "{} from {} m: the optimum differs by {:+.1} % from what was measured",
-                        response.response,
-                        plain(at.height),
-                        100.0 * off
-                    ),
-                ));
+                let message = format!(
+                    "{} from {} m: the optimum differs by {:+.1} % from what was measured",
+                    response.response,
+                    plain(at.height),
+                    100.0 * off
+                );
+                findings.push(finding("other-height-off", message));
             }
         }
     }

@@ -2,9 +2,9 @@
 //! has read them off already, and the rig that they fell on.
 
 use crate::calibrate::target::{CalibrateRig, DropData};
-use crate::evaluate::{Known, MeasuredDrop};
+use crate::measured::{Known, MeasuredDrop};
 use crate::plate_ringing::PlateEstimate;
-use crate::read::{DropCampaign, drop_of};
+use crate::read::{Drop, DropCampaign, drop_of};
 use windfall_campaign::settings::model::ImpactEntry;
 use windfall_drop_rig::feature_problem::{MeasuredFeature, RigUncertainty};
 use windfall_drop_rig::measured::{DropFeature, FeatureKind};
@@ -20,8 +20,7 @@ const COLUMNS: [(&str, FeatureKind); 3] = [
     ("contact_duration", FeatureKind::ContactDuration),
 ];
 
-/// Features in the columns of an entry, of as many impacts as are used; none where
-/// there are no such columns.
+/// Features of the impacts that are used, from the columns of an entry; none without them.
 ///
 /// One without a standard uncertainty ("peak_force_1_sd_N") gets half of the
 /// tolerance of the targets.
@@ -62,18 +61,17 @@ pub fn drop_data(
     entry: &ImpactEntry,
     features: Vec<MeasuredFeature>,
 ) -> Result<DropData, Error> {
-    let drop = drop_of(campaign, entry)?;
+    let Drop { mass, height } = drop_of(campaign, entry)?;
     Ok(DropData {
         id: entry.id.clone(),
         specimen: entry.specimen.clone(),
-        mass: drop.mass,
-        height: drop.height,
+        mass,
+        height,
         features,
     })
 }
 
-/// Features of a recorded drop: peaks, and intervals between onsets, of as many
-/// bounces as are used.
+/// Peaks and intervals between onsets of the bounces of a recorded drop that are used.
 #[must_use]
 pub fn recorded_features(drop: &MeasuredDrop, bounces: usize) -> Vec<MeasuredFeature> {
     let mut features = Vec::new();

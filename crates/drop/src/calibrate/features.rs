@@ -13,16 +13,17 @@ use windfall_campaign::measure::measured::value_with_sd;
 use windfall_contact::expression::LawExpression;
 use windfall_contact::law::EndRule;
 use windfall_contact::laws::kind::Law;
-use windfall_drop_rig::family::{FamilyOptions, family_point, trace_family};
+use windfall_drop_rig::family::{FamilyModel, FamilyOptions, family_point, trace_family};
 use windfall_drop_rig::feature_fit::{FeatureFit, FeatureFitOptions, fit_features};
-use windfall_drop_rig::feature_problem::{FeatureProblem, Nuisance, linearise};
+use windfall_drop_rig::feature_problem::{
+    FeatureProblem, MeasuredDrop, Nuisance, RigUncertainty, linearise,
+};
 use windfall_drop_rig::information::Direction;
 use windfall_drop_rig::measured::{DropFeature, FeatureKind, RigQuantity, feature_values};
 use windfall_drop_rig::rig::DropRig;
 use windfall_drop_rig::start::coarse_starts;
 use windfall_files::error::Error;
 use windfall_files::found::FindingOutcome;
-use windfall_files::named::Named;
 use windfall_files::text::number::plain;
 use windfall_tables::regress::findings::finding;
 
@@ -113,13 +114,12 @@ fn correlations(fit: &FeatureFit) -> Vec<Vec<f64>> {
     };
     let sd = |place: usize| covariance[(place, place)].sqrt();
     let places = 0..covariance.ncols();
-    places
-        .clone()
-        .map(|i| {
-            let row = places.clone().map(|j| covariance[(i, j)] / (sd(i) * sd(j)));
-            row.collect()
-        })
-        .collect()
+    let row = |i| {
+        places
+            .clone()
+            .map(move |j| covariance[(i, j)] / (sd(i) * sd(j)))
+    };
+    places.clone().map(|i| row(i).collect()).collect()
 }
 
 /// The free parameters with their uncertainties, in SI and in the units of ranges.
@@ -186,13 +186,13 @@ fn direction_outcome(law: &FreeLaw, direction: &Direction, widened: f64) -> Dire
     let parts = names.iter().cloned().zip(direction.vector.iter().copied());
     let sd = direction.sd.is_finite().then_some(widened * direction.sd);
     DirectionOutcome {
-        parts: Named(parts.collect()),
-        words: match sd {
-            None => format!(
-                "{}: nothing tells",
-                direction_words(law, &direction.vector, 0.1)
-            ),
-            Some(sd) => format!("± {}", direction_words(law, &direction.vector, sd)),
+        parts: parts.collect(),
+        words: match (
+            sd,
+            direction_words(law, &direction.vector, sd.unwrap_or(0.1)),
+        ) {
+            (None, words) => format!("{words}: nothing tells"),
+            (Some(_), words) => format!("± {words}"),
         },
         sd,
     }
@@ -213,7 +213,7 @@ pub fn direction_words(law: &FreeLaw, vector: &[f64], length: f64) -> String {
 }
 
 fn nuisance_name(nuisance: &Nuisance, drops: &[DropData], problem: &FeatureProblem) -> String {
-    let drop = |pick: fn(&windfall_drop_rig::feature_problem::MeasuredDrop) -> usize| {
+    let drop = |pick: fn(&MeasuredDrop) -> usize| {
         let place = problem.drops.iter().position(|d| pick(d) == nuisance.index);
         place.and_then(|place| drops.get(place))
     };
@@ -249,37 +249,30 @@ fn findings_of(law: &FreeLaw, outcome: &FeaturesOutcome) -> Vec<FindingOutcome> 
         findings.push(finding("no-convergence", message.to_owned()));
     }
     if outcome.rank < count {
-        findings.push(finding(
-            "one-of-a-family",
-            format!(
-                "the features determine {} of {count} directions in ({}): the law above is one \
-                 of a family that fits as well, and not the answer",
-                outcome.rank,
-                law.names().join(", ")
-            ),
-        ));
+        let message = format!(
+            "the features determine {} of {count} directions in ({}): the law above is one of a \
+             family that fits as well, and not the answer",
+            outcome.rank,
+            law.names().join(", ")
+        );
+        findings.push(finding("one-of-a-family", message));
     }
-    let weak = outcome
-        .directions
-        .iter()
-        .filter(|d| d.sd.is_some_and(|sd| sd > OPEN));
-    for direction in weak {
+    let directions = outcome.directions.iter();
+    for direction in directions.filter(|d| d.sd.is_some_and(|sd| sd > OPEN)) {
         let words = &direction.words;
         let message = format!("hardly determined, {words}: other laws fit nearly as well");
         findings.push(finding("weakly-determined", message));
     }
     if let (Some(p), true) = (outcome.p, outcome.widened > 1.0) {
-        findings.push(finding(
-            "scatter",
-            format!(
-                "the features scatter more than their uncertainties say (χ² {} on {}, p {p:.2e}): \
-                 fruit differ, or the law misses something; the standard uncertainties were \
-                 widened {} times",
-                plain(outcome.chi_square),
-                outcome.freedom,
-                plain(outcome.widened)
-            ),
-        ));
+        let message = format!(
+            "the features scatter more than their uncertainties say (χ² {} on {}, p {p:.2e}): \
+             fruit differ, or the law misses something; the standard uncertainties were widened \
+             {} times",
+            plain(outcome.chi_square),
+            outcome.freedom,
+            plain(outcome.widened)
+        );
+        findings.push(finding("scatter", message));
     }
     for parameter in outcome.parameters.iter().filter(|p| p.at_limit) {
         let message = format!("{} ended at a limit of the law", parameter.name);
@@ -303,8 +296,7 @@ fn findings_of(law: &FreeLaw, outcome: &FeaturesOutcome) -> Vec<FindingOutcome> 
     findings
 }
 
-/// Heights at which the members of a line are told apart: those of the campaign,
-/// or a part and a multiple of the only one.
+/// Heights that tell the members of a line apart: the campaign's, or multiples of its only one.
 #[must_use]
 pub fn telling_heights(heights: &[f64], target: f64) -> Vec<f64> {
     match heights.len() {
@@ -313,8 +305,7 @@ pub fn telling_heights(heights: &[f64], target: f64) -> Vec<f64> {
     }
 }
 
-/// The line of laws that have the target's first peak and interval; `None` where
-/// there is no line.
+/// The line of laws with the target's first peak and interval, if there is one.
 ///
 /// # Errors
 /// The law cannot be simulated at the target.
@@ -333,7 +324,7 @@ pub fn family_line(
     problem.rig.mass = target.mass.value;
     problem.fruits[0].sd = 0.0;
     problem.heights[0].sd = 0.0;
-    problem.rig_sd = windfall_drop_rig::feature_problem::RigUncertainty::default();
+    problem.rig_sd = RigUncertainty::default();
     let start = fit(law, &problem, target, false)?;
     let dimension = law.count() - start.information.rank;
     let (low, high) = law.limits(&start.at);
@@ -358,18 +349,17 @@ pub fn family_line(
             1 => "no law within the ranges has both features of the target".to_owned(),
             n => format!("{n} directions are open: more than a line"),
         };
+        let members = Vec::new();
         return Ok(Some(FamilyLine {
             dimension,
             words,
-            members: Vec::new(),
+            members,
         }));
     };
     let line = trace_family(&mut model, &entry, &options).map_err(law_error)?;
-    let chosen = chosen_points(&line, &mut model, &options);
-    let members: Vec<FamilyMember> = chosen
-        .iter()
-        .filter_map(|at| member(law, &problem.rig, at, heights, end).ok())
-        .collect();
+    let chosen = chosen_points(&line, &mut model, &options).into_iter();
+    let members = chosen.filter_map(|at| member(law, &problem.rig, &at, heights, end).ok());
+    let members: Vec<FamilyMember> = members.collect();
     let words = line_words(law, &members);
     Ok(Some(FamilyLine {
         dimension,
@@ -384,11 +374,7 @@ fn within(at: &[f64], low: &[f64], high: &[f64]) -> bool {
 }
 
 /// A point of the line within the limits, from one beyond.
-fn enter(
-    model: &mut windfall_drop_rig::family::FamilyModel,
-    from: &[f64],
-    options: &FamilyOptions,
-) -> Option<Vec<f64>> {
+fn enter(model: &mut FamilyModel, from: &[f64], options: &FamilyOptions) -> Option<Vec<f64>> {
     let parts = [0.5, 0.25, 0.75, 0.05, 0.95];
     for place in 0..from.len() {
         for part in parts {
@@ -406,7 +392,7 @@ fn enter(
 /// Points evenly over the first coordinate that changes much, exact on the line.
 fn chosen_points(
     line: &[Vec<f64>],
-    model: &mut windfall_drop_rig::family::FamilyModel,
+    model: &mut FamilyModel,
     options: &FamilyOptions,
 ) -> Vec<Vec<f64>> {
     let (first, last) = (&line[0], &line[line.len() - 1]);
@@ -437,11 +423,11 @@ fn member(
     end: EndRule,
 ) -> Result<FamilyMember, Error> {
     let own = law.coordinates.law_at(at).map_err(law_error)?;
+    let heights = heights.iter();
     Ok(FamilyMember {
         parameters: law.levels(at),
         law: LawExpression::from(own).to_string(),
         heights: heights
-            .iter()
             .map(|height| height_features(&own, rig, *height, end))
             .collect(),
     })
@@ -463,7 +449,7 @@ pub fn height_features(law: &Law, rig: &DropRig, height: f64, end: EndRule) -> H
     let named = shown.iter().map(DropFeature::name).zip(values);
     HeightFeatures {
         height,
-        features: Named(named.collect()),
+        features: named.collect(),
     }
 }
 
@@ -474,13 +460,11 @@ fn line_words(law: &FreeLaw, members: &[FamilyMember]) -> String {
     let text = |member: &FamilyMember| {
         let pairs = law.names().into_iter().zip(&member.parameters);
         let words = pairs.enumerate().map(|(place, (name, value))| {
-            let unit = law.level_unit(place);
-            let unit = if unit == "1" {
-                String::new()
-            } else {
-                format!(" {unit}")
-            };
-            format!("{name} = {}{unit}", plain(*value))
+            let value = plain(*value);
+            match law.level_unit(place).as_str() {
+                "1" => format!("{name} = {value}"),
+                unit => format!("{name} = {value} {unit}"),
+            }
         });
         words.collect::<Vec<_>>().join(", ")
     };

@@ -23,50 +23,11 @@ pub fn write_calibrate_figures(
     Ok(())
 }
 
-fn series(label: &str, style: Style, points: Vec<(f64, f64)>) -> Series {
-    Series {
-        label: label.to_owned(),
-        style,
-        colour: None,
-        points,
-    }
-}
-
-fn panel(x: (&str, &str), y: (&str, &str), series: Vec<Series>) -> Panel {
-    // What has no unit shows none.
-    let unit = |unit: &str| {
-        if unit == "1" {
-            String::new()
-        } else {
-            unit.to_owned()
-        }
-    };
-    Panel {
-        x: x.0.to_owned(),
-        x_unit: unit(x.1),
-        y: y.0.to_owned(),
-        y_unit: unit(y.1),
-        series,
-        marks: Vec::new(),
-    }
-}
-
-fn units(outcome: &CalibrateOutcome) -> Vec<String> {
-    match (&outcome.features, &outcome.design) {
-        (Some(features), _) => {
-            let parameters = features.parameters.iter();
-            parameters.map(|p| p.written.unit.clone()).collect()
-        }
-        (None, Some(design)) => design.factors.iter().map(|f| f.unit.clone()).collect(),
-        (None, None) => vec![String::new(); outcome.free.len()],
-    }
-}
-
 /// The line in the planes of the first parameter and each other, then the peak at
 /// every height over the first parameter, as parts of that of the first member.
 #[must_use]
 pub fn figure_of_family(outcome: &CalibrateOutcome, family: &FamilyLine) -> Figure {
-    let units = units(outcome);
+    let units = outcome.parameter_units();
     let first = (outcome.free[0].as_str(), units[0].as_str());
     let mut panels: Vec<Panel> = (1..outcome.free.len())
         .map(|place| {
@@ -75,32 +36,25 @@ pub fn figure_of_family(outcome: &CalibrateOutcome, family: &FamilyLine) -> Figu
                 .map(|m| (m.parameters[0], m.parameters[place]))
                 .collect();
             let mut all = vec![
-                series("same first peak and interval", Style::Line, points.clone()),
-                series("", Style::Dots, points),
+                Series::new("same first peak and interval", Style::Line, points.clone()),
+                Series::new("", Style::Dots, points),
             ];
             let line = outcome.design.iter().flat_map(|design| &design.family);
-            let on_surfaces: Vec<(f64, f64)> =
-                line.map(|m| (m.levels[0], m.levels[place])).collect();
-            if !on_surfaces.is_empty() {
-                all.push(series(
-                    "the same by the surfaces",
-                    Style::Dashed,
-                    on_surfaces,
-                ));
+            let line: Vec<_> = line.map(|m| (m.levels[0], m.levels[place])).collect();
+            if !line.is_empty() {
+                all.push(Series::new("the same by the surfaces", Style::Dashed, line));
             }
-            let mut panel = panel(first, (&outcome.free[place], &units[place]), all);
+            let mut panel = Panel::new(first, (&outcome.free[place], &units[place]), all);
             panel.marks.extend(fitted_mark(outcome, place));
             panel
         })
         .collect();
     for (name, title) in [
-        (
-            "peak_support_force_1",
-            "first peak, over that of the first law",
-        ),
-        ("interval_1", "interval, over that of the first law"),
+        ("peak_support_force_1", "first peak"),
+        ("interval_1", "interval"),
     ] {
-        panels.push(panel(first, (title, ""), ratios(family, name)));
+        let title = format!("{title}, over that of the first law");
+        panels.push(Panel::new(first, (&title, ""), ratios(family, name)));
     }
     Figure {
         title: "Laws that one height cannot tell apart, and what other heights say".to_owned(),
@@ -132,34 +86,28 @@ fn ratios(family: &FamilyLine, name: &str) -> Vec<Series> {
             let points = family.members.iter().enumerate();
             let points = points.map(|(i, m)| (m.parameters[0], value(i) / value(0)));
             let height = 1e3 * family.members[0].heights[place].height;
-            series(&format!("{height:.0} mm"), Style::Line, points.collect())
+            Series::new(format!("{height:.0} mm"), Style::Line, points.collect())
         })
         .collect()
 }
 
-/// What the surfaces say of the runs: predicted by the surface over simulated, and
-/// the runs over each factor.
+/// Each surface along each factor, with the simulated runs and the measured value.
 #[must_use]
 pub fn figure_of_design(outcome: &CalibrateOutcome, design: &DesignWayOutcome) -> Figure {
     let mut panels = Vec::new();
     for (place, surface) in design.surfaces.iter().enumerate() {
-        let scale = if surface.unit == "s" { 1e3 } else { 1.0 };
-        let unit = if surface.unit == "s" {
-            "ms"
-        } else {
-            &surface.unit
+        let (scale, unit) = match surface.unit.as_str() {
+            "s" => (1e3, "ms"),
+            unit => (1.0, unit),
         };
-        let mut all: Vec<Series> = design
-            .factors
-            .iter()
-            .enumerate()
-            .map(|(factor, own)| {
-                let points = curve(design, place, factor);
-                let points = points.into_iter().map(|(x, y)| (x, scale * y));
-                let name = format!("{} ({}), the others at their centre", own.letter, own.name);
-                series(&name, Style::Line, points.collect())
-            })
-            .collect();
+        let factors = design.factors.iter().enumerate();
+        let curves = factors.map(|(factor, own)| {
+            let points = curve(design, place, factor);
+            let points = points.into_iter().map(|(x, y)| (x, scale * y));
+            let name = format!("{} ({}), the others at their centre", own.letter, own.name);
+            Series::new(name, Style::Line, points.collect())
+        });
+        let mut all: Vec<Series> = curves.collect();
         // Runs on the axis of a factor, where its curve should pass.
         let on_axis = (0..design.factors.len()).flat_map(|factor| {
             let own = design.runs.iter().filter(move |run| {
@@ -168,13 +116,17 @@ pub fn figure_of_design(outcome: &CalibrateOutcome, design: &DesignWayOutcome) -
             });
             own.map(move |run| (run.coded[factor], scale * run.responses[place]))
         });
-        all.push(series("simulated", Style::Dots, on_axis.collect()));
+        all.push(Series::new("simulated", Style::Dots, on_axis.collect()));
         let target = outcome.target.features.get(&surface.response);
         if let Some(target) = target {
             let level = vec![(0.0, scale * target.value)];
-            all.push(series("measured", Style::Level, level));
+            all.push(Series::new("measured", Style::Level, level));
         }
-        panels.push(panel(("coded level", ""), (&surface.response, unit), all));
+        panels.push(Panel::new(
+            ("coded level", ""),
+            (&surface.response, unit),
+            all,
+        ));
     }
     Figure {
         title: "Responses over the factors of the design: surfaces and simulator".to_owned(),

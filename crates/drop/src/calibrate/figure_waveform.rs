@@ -66,77 +66,39 @@ fn figure(
     let mut panels = Vec::new();
     for (number, bounce) in train.bounces.iter().take(impacts).enumerate() {
         let shown = (bounce.onset.value - BEFORE)..=(bounce.end.value + AFTER);
-        let samples: Vec<(f64, f64)> = train
-            .times
-            .iter()
-            .copied()
-            .zip(train.force.iter().copied())
-            .filter(|(time, _)| shown.contains(time))
-            .collect();
+        let samples = train.times.iter().copied().zip(train.force.iter().copied());
+        let samples = samples.filter(|(time, _)| shown.contains(time));
+        let (times, force): (Vec<f64>, Vec<f64>) = samples.unzip();
         let onset = fitted.onset.value;
-        let times: Vec<f64> = samples
-            .iter()
-            .map(|(time, _)| time - onset + fall)
-            .collect();
-        let model =
-            drop_trajectory(law, &rig, height, &times, end).map_err(|source| Error::Identify {
-                subject: fitted.id.clone(),
-                source: Box::new(source),
-            })?;
-        let level = fitted.level.value;
-        let zero = bounce.onset.value;
-        let at = |i: usize, value: f64| (1e3 * (samples[i].0 - zero), value);
-        let all = 0..samples.len();
-        let line = |label: &str, style, points: Vec<(f64, f64)>| Series {
-            label: label.to_owned(),
-            style,
-            colour: None,
-            points,
+        let since: Vec<f64> = times.iter().map(|time| time - onset + fall).collect();
+        let model = drop_trajectory(law, &rig, height, &since, end)
+            .map_err(|source| Error::identify(&fitted.id, source))?;
+        let (level, zero) = (fitted.level.value, bounce.onset.value);
+        let series = |label, style, value: &dyn Fn(usize) -> f64| {
+            let points = times.iter().enumerate();
+            let points = points.map(|(i, time)| (1e3 * (time - zero), value(i)));
+            Series::new(label, style, points.collect())
         };
         let support = |i: usize| level + model.support_force[i];
-        panels.push(Panel {
-            x: format!("time from bounce {}", number + 1),
-            x_unit: "ms".to_owned(),
-            y: "force".to_owned(),
-            y_unit: "N".to_owned(),
-            series: vec![
-                line(
-                    "support force, recorded",
-                    Style::Dots,
-                    all.clone().map(|i| at(i, samples[i].1)).collect(),
-                ),
-                line(
-                    "support force, fitted",
-                    Style::Line,
-                    all.clone().map(|i| at(i, support(i))).collect(),
-                ),
-                line(
-                    "contact force, fitted",
-                    Style::Dashed,
-                    all.clone().map(|i| at(i, model.contact_force[i])).collect(),
-                ),
-            ],
-            marks: Vec::new(),
-        });
-        panels.push(Panel {
-            x: format!("time from bounce {}", number + 1),
-            x_unit: "ms".to_owned(),
-            y: "recorded less fitted".to_owned(),
-            y_unit: "N".to_owned(),
-            series: vec![line(
-                "residual",
-                Style::Dots,
-                all.map(|i| at(i, samples[i].1 - support(i))).collect(),
-            )],
-            marks: Vec::new(),
-        });
+        let time = format!("time from bounce {}", number + 1);
+        let forces = vec![
+            series("support force, recorded", Style::Dots, &|i| force[i]),
+            series("support force, fitted", Style::Line, &support),
+            series("contact force, fitted", Style::Dashed, &|i| {
+                model.contact_force[i]
+            }),
+        ];
+        panels.push(Panel::new((&time, "ms"), ("force", "N"), forces));
+        let residual = vec![series("residual", Style::Dots, &|i| force[i] - support(i))];
+        panels.push(Panel::new(
+            (&time, "ms"),
+            ("recorded less fitted", "N"),
+            residual,
+        ));
     }
+    let misfit = plain(fitted.misfit);
     Ok(Figure {
-        title: format!(
-            "{}: waveform, χ² {} per sample",
-            fitted.id,
-            plain(fitted.misfit)
-        ),
+        title: format!("{}: waveform, χ² {misfit} per sample", fitted.id),
         panels,
     })
 }

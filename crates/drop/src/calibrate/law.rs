@@ -9,6 +9,7 @@ use windfall_contact::laws::kind::Law;
 use windfall_drop_rig::coordinates::{LawCoordinates, law_coordinates};
 use windfall_drop_rig::start::{exponent_position, stiffness_of_equal_peak};
 use windfall_files::error::Error;
+use windfall_files::option_value::unusable;
 
 /// Unit of length of a stiffness without a range: indentations are millimetres.
 const MILLIMETRE: f64 = 1e-3;
@@ -81,8 +82,7 @@ fn start_law(
     let mut values = law.law.values.clone();
     let mut rules: Vec<String> = Vec::new();
     let mut take = |values: &mut Vec<Option<f64>>, position: usize, value: f64, rule: &str| {
-        let held = values[position].is_some() && !law.free.contains(&position);
-        if !held && values[position].is_none() {
+        if values[position].is_none() {
             values[position] = Some(value);
             rules.push(format!("{} {rule}", description.parameters[position].name));
         }
@@ -90,12 +90,8 @@ fn start_law(
     if let Some(start) = &settings.start {
         for (position, value) in start.values.iter().enumerate() {
             if let Some(value) = value {
-                take(
-                    &mut values,
-                    position,
-                    *value,
-                    "as given in [calibrate] start",
-                );
+                let rule = "as given in [calibrate] start";
+                take(&mut values, position, *value, rule);
             }
         }
     }
@@ -146,10 +142,7 @@ fn start_law(
     };
     let start = expression
         .complete()
-        .map_err(|error| Error::OptionInvalid {
-            option: format!("[fit] law = {}", law.law),
-            problem: error.to_string(),
-        })?;
+        .map_err(|error| unusable(format!("[fit] law = {}", law.law), error.to_string()))?;
     let outcome = StartOutcome {
         law: LawExpression::from(start).to_string(),
         rule: rules.join("; "),
@@ -185,12 +178,6 @@ impl FreeLaw {
             }
         }
         values
-    }
-
-    /// Coordinates of levels.
-    #[must_use]
-    pub fn coordinates_of_levels(&self, levels: &[f64]) -> Vec<f64> {
-        self.coordinates.of_values(&self.values_of_levels(levels))
     }
 
     /// The law at levels in the units of the ranges.
@@ -267,8 +254,5 @@ impl FreeLaw {
 
 /// An error of the simulator in a calibration.
 pub(crate) fn law_error(source: windfall_identify::error::Error) -> Error {
-    Error::Identify {
-        subject: "calibration".to_owned(),
-        source: Box::new(source),
-    }
+    Error::identify("calibration", source)
 }

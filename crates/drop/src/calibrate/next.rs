@@ -9,15 +9,16 @@ use crate::calibrate::target::{
 use crate::calibrate_settings::CalibrateSettings;
 use windfall_contact::law::EndRule;
 use windfall_drop_rig::experiment::{Candidate, Choice, expected, ranked};
-use windfall_drop_rig::feature_problem::{CoordinatePrior, FeatureProblem, linearise, nuisances};
+use windfall_drop_rig::feature_problem::{
+    CoordinatePrior, FeatureProblem, MeasuredFeature, linearise, nuisances,
+};
 use windfall_drop_rig::information::{Information, information};
 use windfall_drop_rig::measured::{DropFeature, FeatureKind};
 use windfall_files::error::Error;
 use windfall_files::text::number::plain;
 use windfall_signal::uncertain::Uncertain;
 
-/// How well Hertz's contact with a modulus from elsewhere is believed to tell a
-/// stiffness: moduli of fruit vary by a third.
+/// Relative uncertainty of a stiffness by Hertz's contact: moduli of fruit vary by a third.
 const HERTZ_SD: f64 = 0.3;
 
 /// Candidates that are shown.
@@ -26,7 +27,7 @@ const SHOWN: usize = 10;
 /// Drops of a candidate.
 const DROPS: usize = 5;
 
-/// What is asked besides the law.
+/// What candidates are compared on.
 pub struct NextSetting<'a> {
     /// The law.
     pub law: &'a FreeLaw,
@@ -52,12 +53,10 @@ fn told(law: &FreeLaw, problem: &FeatureProblem, at: &[f64]) -> Result<Informati
 }
 
 fn sds(information: &Information) -> Vec<Option<f64>> {
+    let covariance = information.covariance.as_ref();
     let places = 0..information.root.ncols();
     places
-        .map(|place| {
-            let covariance = information.covariance.as_ref()?;
-            Some(covariance[(place, place)].sqrt())
-        })
+        .map(|place| Some(covariance?[(place, place)].sqrt()))
         .collect()
 }
 
@@ -88,13 +87,10 @@ pub fn closing(setting: &NextSetting, at: &[f64]) -> Result<Vec<ClosingOutcome>,
     let further = |kind: FeatureKind, impact: usize, sd: f64| {
         let mut problem = one.clone();
         let feature = DropFeature { kind, impact };
+        let value = 0.0;
         problem.drops[0]
             .features
-            .push(windfall_drop_rig::feature_problem::MeasuredFeature {
-                feature,
-                value: 0.0,
-                sd,
-            });
+            .push(MeasuredFeature { feature, value, sd });
         problem
     };
     let features = &setting.target.features;
@@ -122,10 +118,8 @@ pub fn closing(setting: &NextSetting, at: &[f64]) -> Result<Vec<ClosingOutcome>,
             sd: HERTZ_SD,
         });
         let percent = 100.0 * HERTZ_SD;
-        add(
-            format!("with k known to {percent} % from Hertz's contact"),
-            &problem,
-        );
+        let with = format!("with k known to {percent} % from Hertz's contact");
+        add(with, &problem);
     }
     if setting.drops.len() > setting.target.outcome.drops
         || setting.drops.iter().any(|drop| drop.features.len() > 2)
@@ -146,10 +140,7 @@ fn stiffness_place(law: &FreeLaw) -> Option<usize> {
 pub fn next_experiment(setting: &NextSetting, at: &[f64]) -> Result<NextOutcome, Error> {
     let law = setting.law;
     let places = candidates(setting);
-    let all: Vec<Candidate> = places
-        .iter()
-        .map(|(candidate, ..)| candidate.clone())
-        .collect();
+    let all: Vec<Candidate> = places.iter().map(|(own, ..)| own.clone()).collect();
     let (now, outcomes) =
         expected(setting.problem, &law.coordinates, at, &all).map_err(law_error)?;
     // The stiffness is what a simulation needs most, unless it is held.
@@ -165,11 +156,7 @@ pub fn next_experiment(setting: &NextSetting, at: &[f64]) -> Result<NextOutcome,
                 Choice::Same(_) => "as before".to_owned(),
                 Choice::New(_) => "another".to_owned(),
             },
-            impacts: candidate
-                .features
-                .iter()
-                .filter(|(feature, _)| feature.kind == FeatureKind::PeakSupportForce)
-                .count(),
+            impacts: peaks(candidate),
             drops: candidate.drops,
             sds: outcome.sds.iter().map(|sd| finite(*sd)).collect(),
             gain: outcome.gain.and_then(finite),
@@ -184,18 +171,20 @@ pub fn next_experiment(setting: &NextSetting, at: &[f64]) -> Result<NextOutcome,
     })
 }
 
-/// Heights about those that there are, the fruit as before or of another mass, one
-/// impact recorded or more.
+fn peaks(candidate: &Candidate) -> usize {
+    let features = candidate.features.iter();
+    features
+        .filter(|(feature, _)| feature.kind == FeatureKind::PeakSupportForce)
+        .count()
+}
+
+/// Heights around the target's, the same fruit or other masses, two impacts or three.
 fn candidates(setting: &NextSetting) -> Vec<(Candidate, f64, f64)> {
     let target = setting.target;
     let fruit = setting.problem.drops.len().checked_sub(1);
-    let place = setting
-        .drops
-        .iter()
-        .position(|drop| same_height(drop.height.value, target.height.value));
-    let own = place
-        .or(fruit)
-        .map_or(0, |place| setting.problem.drops[place].fruit);
+    let at_target = |drop: &DropData| same_height(drop.height.value, target.height.value);
+    let place = setting.drops.iter().position(at_target).or(fruit);
+    let own = place.map_or(0, |place| setting.problem.drops[place].fruit);
     let known = setting.problem.fruits[own];
     let scaled = |times: f64| Uncertain {
         value: times * known.value,

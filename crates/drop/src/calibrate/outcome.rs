@@ -46,6 +46,21 @@ pub struct CalibrateOutcome {
     pub findings: Vec<FindingOutcome>,
 }
 
+impl CalibrateOutcome {
+    /// Units in which the free parameters are written.
+    #[must_use]
+    pub fn parameter_units(&self) -> Vec<String> {
+        match (&self.features, &self.design) {
+            (Some(features), _) => {
+                let parameters = features.parameters.iter();
+                parameters.map(|p| p.written.unit.clone()).collect()
+            }
+            (None, Some(design)) => design.factors.iter().map(|f| f.unit.clone()).collect(),
+            (None, None) => vec![String::new(); self.free.len()],
+        }
+    }
+}
+
 /// Features of one drop.
 #[derive(Clone, Debug, PartialEq, Serialize, utoipa::ToSchema)]
 pub struct DropOutcome {

@@ -19,12 +19,13 @@ use crate::calibrate::target::{
 use crate::calibrate::waveform::waveform_outcome;
 use crate::calibrate::waveform_drops::recorded_drops;
 use crate::calibrate_settings::{DropLaw, Way};
-use crate::evaluate::MeasuredDrop;
+use crate::measured::MeasuredDrop;
 use crate::plate_ringing::{PlateEstimate, plate_of};
 use crate::read::{DropCampaign, read_drop};
 use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
 use windfall_campaign::measure::run::measure_recordings;
+use windfall_campaign::pipeline::evaluate::failure;
 use windfall_campaign::pipeline::request::Reuse;
 use windfall_cards::read_card::write_card;
 use windfall_draw::files::FigureFolder;
@@ -35,7 +36,7 @@ use windfall_files::progress::Progress;
 use windfall_files::provenance::VERSION;
 use windfall_tables::regress::findings::finding;
 
-/// What a calibration is asked.
+/// Options of a calibration.
 #[derive(Clone, Debug, Default)]
 pub struct CalibrateRequest {
     /// Ways in place of the campaign's.
@@ -46,8 +47,7 @@ pub struct CalibrateRequest {
     pub tables: Option<PathBuf>,
     /// Where the law card goes, if anywhere.
     pub card: Option<PathBuf>,
-    /// Whether intervals are those of the profile, which takes longer, in place of
-    /// ±1.96 standard uncertainties.
+    /// Whether intervals come from profiles, which take longer, not ±1.96 deviations.
     pub profile: bool,
     /// Threads; all cores if `None`.
     pub threads: Option<usize>,
@@ -105,8 +105,7 @@ struct Seen {
     recorded: bool,
 }
 
-/// Features of every drop: those that stand in impacts.csv, and otherwise those of
-/// its recording.
+/// Features of every drop, from impacts.csv or otherwise from its recording.
 fn feature_drops(campaign: &DropCampaign, progress: Progress) -> Result<Seen, Error> {
     let entries = &campaign.shared.entries;
     let written: Vec<_> = entries
@@ -134,14 +133,10 @@ fn feature_drops(campaign: &DropCampaign, progress: Progress) -> Result<Seen, Er
         };
         match features.is_empty() {
             false => drops.push(drop_data(campaign, entry, features)?),
-            true => failed.push(FailureOutcome {
-                id: entry.id.clone(),
-                specimen: entry.specimen.clone(),
-                file: entry.file.clone(),
-                law: None,
-                message: "no bounce of it is complete and below the limit of the instrument"
-                    .to_owned(),
-            }),
+            true => {
+                let message = "no bounce of it is complete and below the limit of the instrument";
+                failed.push(failure(entry, None, message.to_owned()));
+            }
         }
     }
     let measured: Vec<MeasuredDrop> = recorded.into_iter().map(|(_, drop)| drop).collect();
@@ -166,11 +161,9 @@ fn calibrated(
         recorded,
     } = seen;
     let Some(own) = &campaign.calibrate.law else {
-        return Err(Error::ValueNotKnown {
-            item: campaign.shared.title.clone(),
-            missing: "there is no law to calibrate".to_owned(),
-            advice: "in campaign.toml: [fit] law = 'adams-impact(d=\"0.001 mm\")'".to_owned(),
-        });
+        let advice = "in campaign.toml: [fit] law = 'adams-impact(d=\"0.001 mm\")'";
+        let missing = "there is no law to calibrate";
+        return Err(Error::not_known(&campaign.shared.title, missing, advice));
     };
     let rig = calibrate_rig(campaign, plate.as_ref());
     let (target, mut findings) = target_condition(&campaign.calibrate, &drops)?;
@@ -258,14 +251,9 @@ fn by_features(
         let rig = &work.rig.rig;
         let (waveform, found) = waveform_outcome(work.campaign, law, end, rig, &drops)?;
         if let Some(figures) = &request.figures {
-            let impacts = work.campaign.calibrate.bounces;
-            write_waveform_figures(
-                figures,
-                &waveform,
-                (rig, end, impacts),
-                &drops,
-                &work.campaign.calibrate.user,
-            )?;
+            let settings = &work.campaign.calibrate;
+            let setting = (rig, end, settings.bounces);
+            write_waveform_figures(figures, &waveform, setting, &drops, &settings.user)?;
         }
         outcome.waveform = Some(waveform);
         outcome.findings.extend(of_way("waveform", found));
@@ -304,7 +292,7 @@ fn one_of_each_height(drops: &[DropData]) -> Vec<DropData> {
     chosen
 }
 
-/// The ways that are asked for, or all that apply.
+/// The requested ways, or all that apply.
 fn ways(
     campaign: &DropCampaign,
     request: &CalibrateRequest,
@@ -322,23 +310,17 @@ fn ways(
         true => vec![Way::Waveform, Way::Features],
         false => vec![Way::Features],
     };
-    let unranged: Vec<String> = law
-        .names()
-        .into_iter()
-        .zip(&law.ranges)
-        .filter(|(_, range)| range.is_none())
-        .map(|(name, _)| name)
-        .collect();
-    match unranged.is_empty() && law.count() > 1 {
-        true => ways.push(Way::Design),
-        false if law.count() > 1 => findings.push(finding(
-            "no-design",
-            format!(
-                "no design and surface: [calibrate] ranges has none for {}",
-                unranged.join(", ")
-            ),
-        )),
-        false => {}
+    if law.count() > 1 {
+        let names = law.names().into_iter().zip(&law.ranges);
+        let unranged = names.filter(|(_, range)| range.is_none());
+        let unranged: Vec<String> = unranged.map(|(name, _)| name).collect();
+        if unranged.is_empty() {
+            ways.push(Way::Design);
+        } else {
+            let names = unranged.join(", ");
+            let message = format!("no design and surface: [calibrate] ranges has none for {names}");
+            findings.push(finding("no-design", message));
+        }
     }
     ways
 }

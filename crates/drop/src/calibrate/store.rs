@@ -17,10 +17,8 @@ use windfall_files::provenance::{REVISION, VERSION, digest_text, time_now};
 /// The store cannot be used.
 pub fn keep_calibration(campaign: &DropCampaign, outcome: &CalibrateOutcome) -> Result<(), Error> {
     let shared = &campaign.shared;
-    let document = serde_json::to_string(outcome).map_err(|error| Error::ResultUnwritable {
-        item: "calibration".to_owned(),
-        detail: error.to_string(),
-    })?;
+    let document =
+        serde_json::to_string(outcome).map_err(|error| Error::unwritable("calibration", error))?;
     let text = campaign_text(&shared.directory)?;
     // What it depends on is in the document: drops, rig, law.
     let key = digest_text(&json!([REVISION, "calibration", text, document]).to_string());

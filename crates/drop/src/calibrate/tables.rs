@@ -5,6 +5,7 @@ use crate::calibrate::outcome::{
     CalibrateOutcome, DesignSurfaceOutcome, DesignWayOutcome, HeightFeatures, VerifiedResponse,
 };
 use crate::calibrate::target::same_height;
+use windfall_files::text::number::plain;
 use windfall_statistics::model::anova::AnovaRow;
 
 /// A cell.
@@ -172,34 +173,25 @@ fn run_table(design: &DesignWayOutcome) -> CalibrateTable {
 fn anova_table(surface: &DesignSurfaceOutcome, name: &'static str) -> CalibrateTable {
     // Squares of milliseconds, as the study has them.
     let squared = shown(1.0, &surface.unit).powi(2);
+    let sums = |term: &str, ss: f64, df: f64| {
+        vec![word(term), Cell::Number(squared * ss), Cell::Number(df)]
+    };
+    let mean = |ss: f64, df: f64| Cell::Number(squared * ss / df);
     let row = |row: &AnovaRow| {
-        vec![
-            word(&row.term),
-            Cell::Number(squared * row.ss),
-            Cell::Number(row.df),
-            Cell::Number(squared * row.ss / row.df),
+        let tested = [
+            mean(row.ss, row.df),
             Cell::Number(row.f),
             Cell::Probability(row.p),
-        ]
+        ];
+        [sums(&row.term, row.ss, row.df), tested.to_vec()].concat()
     };
     let mut rows = vec![row(&surface.whole)];
     rows.extend(surface.anova.iter().map(row));
-    rows.push(vec![
-        word("residual"),
-        Cell::Number(squared * surface.residual_ss),
-        Cell::Number(surface.residual_df),
-        Cell::Number(squared * surface.residual_ss / surface.residual_df),
-        Cell::Blank,
-        Cell::Blank,
-    ]);
-    rows.push(vec![
-        word("total"),
-        Cell::Number(squared * surface.total_ss),
-        Cell::Number(surface.residual_df + surface.whole.df),
-        Cell::Blank,
-        Cell::Blank,
-        Cell::Blank,
-    ]);
+    let (ss, df) = (surface.residual_ss, surface.residual_df);
+    let untested = vec![mean(ss, df), Cell::Blank, Cell::Blank];
+    rows.push([sums("residual", ss, df), untested].concat());
+    let total = sums("total", surface.total_ss, df + surface.whole.df);
+    rows.push([total, vec![Cell::Blank; 3]].concat());
     let place = if name.contains('4') { 4 } else { 5 };
     CalibrateTable {
         name,
@@ -247,13 +239,7 @@ fn verified_row(first: Vec<Cell>, response: &VerifiedResponse, with_surface: boo
 fn optimum_table(design: &DesignWayOutcome) -> CalibrateTable {
     let rows = design.optimum.responses.iter();
     let levels = design.factors.iter().zip(&design.optimum.levels);
-    let levels = levels.map(|(factor, level)| {
-        format!(
-            "{} = {}",
-            factor.name,
-            windfall_files::text::number::plain(*level)
-        )
-    });
+    let levels = levels.map(|(factor, level)| format!("{} = {}", factor.name, plain(*level)));
     CalibrateTable {
         name: "table_6_optimum",
         title: format!(
@@ -344,7 +330,7 @@ fn family_table(design: &DesignWayOutcome, target: f64) -> CalibrateTable {
 #[must_use]
 pub fn line_table(outcome: &CalibrateOutcome) -> Option<CalibrateTable> {
     let family = outcome.family.as_ref().filter(|f| !f.members.is_empty())?;
-    let units = parameter_units(outcome);
+    let units = outcome.parameter_units();
     let names = outcome.free.iter().zip(&units);
     let (headings, _) = height_cells(&family.members[0].heights, outcome.target.height);
     let rows = family.members.iter().map(|member| {
@@ -365,18 +351,6 @@ pub fn line_table(outcome: &CalibrateOutcome) -> Option<CalibrateTable> {
             .collect(),
         rows: rows.collect(),
     })
-}
-
-/// Units in which free parameters are written.
-fn parameter_units(outcome: &CalibrateOutcome) -> Vec<String> {
-    if let Some(features) = &outcome.features {
-        let parameters = features.parameters.iter();
-        return parameters.map(|p| p.written.unit.clone()).collect();
-    }
-    match &outcome.design {
-        Some(design) => design.factors.iter().map(|f| f.unit.clone()).collect(),
-        None => vec![String::new(); outcome.free.len()],
-    }
 }
 
 /// What each kind of knowledge makes of the uncertainties.

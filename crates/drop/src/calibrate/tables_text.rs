@@ -14,13 +14,11 @@ use windfall_files::text::table::{page_tables, paragraph};
 /// All tables of a calibration.
 #[must_use]
 pub fn tables_of(outcome: &CalibrateOutcome) -> Vec<CalibrateTable> {
-    let design = design_tables(outcome);
-    line_table(outcome)
-        .into_iter()
+    let line = line_table(outcome).into_iter();
+    let others = line
         .chain([closing_table(outcome)])
-        .chain(next_table(outcome))
-        .chain(design)
-        .collect()
+        .chain(next_table(outcome));
+    others.chain(design_tables(outcome)).collect()
 }
 
 /// A table with its title, for people.
@@ -53,9 +51,6 @@ pub fn text_of_table(table: &CalibrateTable) -> String {
 }
 
 /// A table as CSV, with all digits.
-///
-/// # Errors
-/// None in practice: the text is written to memory.
 pub fn csv_of_table(table: &CalibrateTable) -> Result<String, Error> {
     let cell = |cell: &Cell| match cell {
         Cell::Word(text) => text.clone(),
@@ -71,20 +66,15 @@ pub fn csv_of_table(table: &CalibrateTable) -> Result<String, Error> {
 /// # Errors
 /// The directory or a file cannot be written.
 pub fn write_calibrate_tables(directory: &Path, outcome: &CalibrateOutcome) -> Result<(), Error> {
-    let failed = |path: &Path| {
-        let path = path.to_path_buf();
-        move |source| Error::FileAccess {
-            path,
-            action: "write",
-            source,
-        }
+    let write = |path: &Path, text: String| {
+        std::fs::write(path, text).map_err(|source| Error::access(path, "write", source))
     };
-    std::fs::create_dir_all(directory).map_err(failed(directory))?;
+    std::fs::create_dir_all(directory)
+        .map_err(|source| Error::access(directory, "write", source))?;
     for table in tables_of(outcome) {
-        let path = directory.join(format!("{}.csv", table.name));
-        std::fs::write(&path, csv_of_table(&table)?).map_err(failed(&path))?;
-        let path = directory.join(format!("{}.txt", table.name));
-        std::fs::write(&path, text_of_table(&table)).map_err(failed(&path))?;
+        let path = directory.join(table.name);
+        write(&path.with_extension("csv"), csv_of_table(&table)?)?;
+        write(&path.with_extension("txt"), text_of_table(&table))?;
     }
     Ok(())
 }

@@ -3,7 +3,7 @@
 
 use crate::calibrate::outcome::{DropOutcome, TargetOutcome};
 use crate::calibrate_settings::{CalibrateSettings, Target};
-use windfall_campaign::measure::measured::{MeasuredValue, plain_value, value_with_sd};
+use windfall_campaign::measure::measured::{MeasuredValue, value_with_sd};
 use windfall_contact::law::EndRule;
 use windfall_drop_rig::feature_problem::{
     FeatureProblem, MeasuredDrop, MeasuredFeature, RigUncertainty,
@@ -95,50 +95,38 @@ pub fn target_condition(
     let mut findings = Vec::new();
     let heights = heights_of(drops);
     let highest = heights.last().copied().unwrap_or(0.0);
+    let from = |height: f64| {
+        let own = drops
+            .iter()
+            .filter(|drop| same_height(drop.height.value, height));
+        (own.collect(), format!("drops from {} m", plain(height)))
+    };
     let (own, of): (Vec<&DropData>, String) = match &settings.target {
-        Target::Drop(id) => (
-            drops.iter().filter(|drop| drop.id == *id).collect(),
-            format!("drop {id}"),
-        ),
-        Target::Height(height) => (
-            drops
-                .iter()
-                .filter(|drop| same_height(drop.height.value, *height))
-                .collect(),
-            format!("drops from {} m", plain(*height)),
-        ),
+        Target::Drop(id) => {
+            let own = drops.iter().filter(|drop| drop.id == *id);
+            (own.collect(), format!("drop {id}"))
+        }
+        Target::Height(height) => from(*height),
         Target::All => {
             if heights.len() > 1 {
-                findings.push(finding(
-                    "target-chosen",
-                    format!(
-                        "one height is the target of design and family: {} m, the largest; \
-                         another: [calibrate] target_height",
-                        plain(highest)
-                    ),
-                ));
+                let message = format!(
+                    "one height is the target of design and family: {} m, the largest; another: \
+                     [calibrate] target_height",
+                    plain(highest)
+                );
+                findings.push(finding("target-chosen", message));
             }
-            (
-                drops
-                    .iter()
-                    .filter(|drop| same_height(drop.height.value, highest))
-                    .collect(),
-                format!("drops from {} m", plain(highest)),
-            )
+            from(highest)
         }
     };
-    let features: Vec<MeasuredFeature> = [PEAK, INTERVAL]
-        .iter()
-        .filter_map(|feature| mean_feature(&own, *feature))
-        .collect();
+    let features = [PEAK, INTERVAL].into_iter();
+    let features = features.filter_map(|feature| mean_feature(&own, feature));
+    let features: Vec<MeasuredFeature> = features.collect();
     if features.len() < 2 {
-        return Err(Error::ValueNotKnown {
-            item: "[calibrate]".to_owned(),
-            missing: format!("no first peak and interval could be read off the {of}"),
-            advice: "recordings of such drops with two impacts or more, or name others with \
-                     target_height or target_drop"
-                .to_owned(),
-        });
+        let missing = format!("no first peak and interval could be read off the {of}");
+        let advice = "recordings of such drops with two impacts or more, or name others with \
+                      target_height or target_drop";
+        return Err(Error::not_known("[calibrate]", missing, advice));
     }
     let mass = mean_known(own.iter().map(|drop| drop.mass));
     let height = mean_known(own.iter().map(|drop| drop.height));
@@ -168,8 +156,7 @@ fn mean_known(values: impl Iterator<Item = Uncertain>) -> Uncertain {
     }
 }
 
-/// Mean of a feature over drops; its uncertainty from their scatter, or from their
-/// own where that is larger.
+/// Mean of a feature over drops; the larger of scatter and own uncertainty is its own.
 #[must_use]
 pub fn mean_feature(drops: &[&DropData], feature: DropFeature) -> Option<MeasuredFeature> {
     let all: Vec<&MeasuredFeature> = drops
@@ -206,7 +193,7 @@ pub fn named_features(features: &[MeasuredFeature]) -> Named<MeasuredValue> {
         let value = value_with_sd(measured.value, measured.sd, feature.unit());
         (feature.name(), value)
     });
-    Named(named.collect())
+    named.collect()
 }
 
 /// Drops as JSON shows them.
@@ -225,13 +212,10 @@ pub fn drop_outcomes(drops: &[DropData]) -> Vec<DropOutcome> {
 /// The plate as JSON shows it; empty for one that does not move.
 #[must_use]
 pub fn plate_outcome(rig: &CalibrateRig) -> Named<MeasuredValue> {
-    let mut values = Vec::new();
+    let mut values = Named::default();
     let mut add = |name: &str, value: f64, sd: f64, unit: &str| {
-        let shown = match sd > 0.0 {
-            true => value_with_sd(value, sd, unit),
-            false => plain_value(value, unit),
-        };
-        values.push((name.to_owned(), shown));
+        let sd = if sd > 0.0 { sd } else { f64::NAN };
+        values.push(name, value_with_sd(value, sd, unit));
     };
     if let Some(plate) = &rig.rig.plate {
         add("mass", plate.mass, rig.sd.plate_mass, "kg");
@@ -239,15 +223,10 @@ pub fn plate_outcome(rig: &CalibrateRig) -> Named<MeasuredValue> {
         add("damping", plate.damping, rig.sd.plate_damping, "N s/m");
     }
     if rig.rig.effective_mass_factor != 1.0 {
-        let factor = rig.rig.effective_mass_factor;
-        add(
-            "effective_mass_factor",
-            factor,
-            rig.sd.effective_mass_factor,
-            "1",
-        );
+        let (factor, sd) = (rig.rig.effective_mass_factor, rig.sd.effective_mass_factor);
+        add("effective_mass_factor", factor, sd, "1");
     }
-    Named(values)
+    values
 }
 
 /// All drops as one least-squares problem: drops of one specimen share the error of

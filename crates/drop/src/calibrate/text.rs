@@ -1,15 +1,14 @@
 //! A calibration as text and CSV.
 
 use crate::calibrate::outcome::{CalibrateOutcome, FeaturesOutcome, TargetOutcome};
-use crate::calibrate::tables::{closing_table, design_tables, line_table, next_table};
-use crate::calibrate::tables_text::text_of_table;
+use crate::calibrate::tables_text::{tables_of, text_of_table};
 use crate::calibrate::waveform_text::{shown_value, text_of_waveform};
 use std::fmt::Write;
+use windfall_campaign::measure::measured::MeasuredValue;
 use windfall_files::error::Error;
 use windfall_files::table::write::csv_text;
 use windfall_files::text::number::{plain, value_and_sd};
-use windfall_files::text::table::findings_list;
-use windfall_files::text::table::{page_tables, paragraph};
+use windfall_files::text::table::{findings_list, page_tables, paragraph};
 
 /// Features of the fit that are listed each.
 const LISTED: usize = 24;
@@ -43,14 +42,7 @@ pub fn text_of_calibration(outcome: &CalibrateOutcome) -> String {
     if let Some(family) = &outcome.family {
         let _ = writeln!(text, "\n{}", paragraph(&family.words, 0));
     }
-    if let Some(table) = line_table(outcome) {
-        let _ = write!(text, "\n{}", text_of_table(&table));
-    }
-    let _ = write!(text, "\n{}", text_of_table(&closing_table(outcome)));
-    if let Some(table) = next_table(outcome) {
-        let _ = write!(text, "\n{}", text_of_table(&table));
-    }
-    for table in design_tables(outcome) {
+    for table in tables_of(outcome) {
         let _ = write!(text, "\n{}", text_of_table(&table));
     }
     for failure in &outcome.failed {
@@ -62,11 +54,7 @@ pub fn text_of_calibration(outcome: &CalibrateOutcome) -> String {
 
 fn target_text(target: &TargetOutcome) -> String {
     let features = target.features.0.iter().map(|(name, value)| {
-        let (scale, unit) = match value.unit.as_str() {
-            "s" => (1e3, "ms"),
-            unit => (1.0, unit),
-        };
-        let shown = value_and_sd(scale * value.value, value.sd.map(|sd| scale * sd));
+        let (shown, _, unit) = in_milliseconds(value);
         format!("{name} {shown} {unit}")
     });
     let line = format!(
@@ -82,6 +70,16 @@ fn target_text(target: &TargetOutcome) -> String {
     paragraph(&line, 2)
 }
 
+/// A value with its uncertainty, the scale and the unit; times in milliseconds.
+fn in_milliseconds(value: &MeasuredValue) -> (String, f64, &str) {
+    let (scale, unit) = match value.unit.as_str() {
+        "s" => (1e3, "ms"),
+        unit => (1.0, unit),
+    };
+    let text = value_and_sd(scale * value.value, value.sd.map(|sd| scale * sd));
+    (text, scale, unit)
+}
+
 fn features_text(features: &FeaturesOutcome) -> String {
     let strings = |words: &[&str]| words.iter().map(|w| (*w).to_owned()).collect::<Vec<_>>();
     let mut text = format!("\nBy features: {}\n", features.law);
@@ -93,9 +91,7 @@ fn features_text(features: &FeaturesOutcome) -> String {
         } else {
             &written.unit
         };
-        let sd = written
-            .sd
-            .map_or_else(|| "not determined".to_owned(), plain);
+        let sd = written.sd.map_or("not determined".to_owned(), plain);
         vec![
             parameter.name.clone(),
             plain(written.value),
@@ -124,15 +120,11 @@ fn features_text(features: &FeaturesOutcome) -> String {
     if features.fitted.len() <= LISTED {
         let header = strings(&["drop", "feature", "measured", "fitted", "difference / sd"]);
         let rows = features.fitted.iter().map(|fitted| {
-            let (scale, unit) = match fitted.measured.unit.as_str() {
-                "s" => (1e3, "ms"),
-                unit => (1.0, unit),
-            };
-            let measured = &fitted.measured;
+            let (measured, scale, unit) = in_milliseconds(&fitted.measured);
             vec![
                 fitted.drop.clone(),
                 format!("{} ({unit})", fitted.feature),
-                value_and_sd(scale * measured.value, measured.sd.map(|sd| scale * sd)),
+                measured,
                 plain(scale * fitted.fitted),
                 format!("{:+.2}", fitted.standardised),
             ]
@@ -144,9 +136,6 @@ fn features_text(features: &FeaturesOutcome) -> String {
 }
 
 /// The estimates as CSV: a row per way and parameter.
-///
-/// # Errors
-/// None in practice: the text is written to memory.
 pub fn csv_of_calibration(outcome: &CalibrateOutcome) -> Result<String, Error> {
     let header = [
         "way",
@@ -164,36 +153,20 @@ pub fn csv_of_calibration(outcome: &CalibrateOutcome) -> Result<String, Error> {
     let number = |value: Option<f64>| value.map_or_else(String::new, |value| value.to_string());
     let mut rows = Vec::new();
     for parameter in outcome.waveform.iter().flat_map(|w| &w.parameters) {
-        let (value, shown) = (&parameter.value, shown_value(parameter));
-        rows.push(vec![
-            "waveform".to_owned(),
-            parameter.name.clone(),
-            value.value.to_string(),
-            number(value.sd),
-            value.unit.clone(),
-            shown.value.to_string(),
-            number(shown.sd),
-            number(shown.low),
-            number(shown.high),
-            shown.unit.clone(),
-            true.to_string(),
-        ]);
+        let (own, shown) = (&parameter.value, shown_value(parameter));
+        let mut row = vec!["waveform".to_owned(), parameter.name.clone()];
+        row.extend([own.value.to_string(), number(own.sd), own.unit.clone()]);
+        row.extend([Some(shown.value), shown.sd, shown.low, shown.high].map(number));
+        row.extend([shown.unit.clone(), true.to_string()]);
+        rows.push(row);
     }
-    for parameter in outcome.features.iter().flat_map(|f| &f.parameters) {
-        let written = &parameter.written;
-        rows.push(vec![
-            "features".to_owned(),
-            parameter.name.clone(),
-            parameter.value.to_string(),
-            number(parameter.sd),
-            parameter.unit.clone(),
-            written.value.to_string(),
-            number(written.sd),
-            number(written.low),
-            number(written.high),
-            written.unit.clone(),
-            parameter.sd.is_some().to_string(),
-        ]);
+    for own in outcome.features.iter().flat_map(|f| &f.parameters) {
+        let shown = &own.written;
+        let mut row = vec!["features".to_owned(), own.name.clone()];
+        row.extend([own.value.to_string(), number(own.sd), own.unit.clone()]);
+        row.extend([Some(shown.value), shown.sd, shown.low, shown.high].map(number));
+        row.extend([shown.unit.clone(), own.sd.is_some().to_string()]);
+        rows.push(row);
     }
     if let Some(design) = &outcome.design {
         for (factor, level) in design.factors.iter().zip(&design.optimum.levels) {

@@ -16,13 +16,11 @@ use windfall_drop_rig::waveform::{
 use windfall_drop_rig::waveform_fit::calibrate_waveform;
 use windfall_files::error::Error;
 use windfall_files::found::FindingOutcome;
-use windfall_files::named::Named;
 use windfall_signal::bounce::train::BounceTrain;
 use windfall_signal::uncertain::Uncertain;
 use windfall_tables::regress::findings::finding;
 
-/// Samples are used from this much before the first visible force, which the
-/// plate delays; s.
+/// Samples before the first visible force that are used, for the plate delays it; s.
 const LEAD: f64 = 2e-3;
 /// Ringing is followed down to this part of the noise; 1.
 const SILENCE: f64 = 0.3;
@@ -32,8 +30,7 @@ const AFTER: f64 = 0.5;
 const MISFIT: f64 = 1.2;
 /// A parameter less certain than this is said; 1.
 const WEAK: f64 = 0.2;
-/// Standard deviations at which what was measured of a drop and what its
-/// waveform tells disagree.
+/// Measured mass and velocity contradict the waveform at this many deviations; 1.
 const DISAGREE: f64 = 4.0;
 
 /// A drop with its recording.
@@ -75,18 +72,16 @@ pub fn waveform_outcome(
                 used.push(drop);
                 records.push(record);
             }
-            Err(reason) => findings.push(finding(
-                "waveform-left-out",
-                format!("{} is left out: {reason}", drop.id),
-            )),
+            Err(reason) => {
+                let message = format!("{} is left out: {reason}", drop.id);
+                findings.push(finding("waveform-left-out", message));
+            }
         }
     }
     if records.is_empty() {
-        return Err(Error::ValueNotKnown {
-            item: campaign.shared.title.clone(),
-            missing: "no drop has a waveform that can be fitted".to_owned(),
-            advice: "`windfall fit` says what is wrong with each recording".to_owned(),
-        });
+        let missing = "no drop has a waveform that can be fitted";
+        let advice = "`windfall fit` says what is wrong with each recording";
+        return Err(Error::not_known(&campaign.shared.title, missing, advice));
     }
     let problem = WaveformProblem {
         law: *law,
@@ -99,12 +94,13 @@ pub fn waveform_outcome(
         },
         records,
     };
-    let fit = calibrate_waveform(&problem).map_err(|source| Error::Identify {
-        subject: format!("waveforms of {} drops", used.len()),
-        source: Box::new(source),
+    let fit = calibrate_waveform(&problem).map_err(|source| {
+        let subject = format!("waveforms of {} drops", used.len());
+        Error::identify(subject, source)
     })?;
     findings.extend(said(&fit));
     let impacts = problem.records.iter().map(|r| r.windows.len());
+    let drops = used.iter().zip(&fit.records);
     let outcome = WaveformOutcome {
         law: LawExpression::from(fit.law).to_string(),
         parameters: parameters(&fit),
@@ -115,16 +111,14 @@ pub fn waveform_outcome(
             let shares = fit.names.iter().cloned().zip(weak.shares.iter().copied());
             WeakOutcome {
                 sd: weak.sd,
-                shares: Named(shares.collect()),
+                shares: shares.collect(),
             }
         }),
         by_scatter: fit.by_records,
         misfit: fit.misfit,
         samples: fit.samples,
         impacts: impacts.sum(),
-        drops: used
-            .iter()
-            .zip(&fit.records)
+        drops: drops
             .map(|(drop, record)| drop_outcome(drop, record))
             .collect(),
         converged: fit.converged,
@@ -160,10 +154,9 @@ fn plate_of(plan: &PlatePlan, start: windfall_drop_rig::rig::Plate) -> WaveformP
 /// A drop as the fit takes it, or why it cannot be taken.
 fn record_of(campaign: &DropCampaign, drop: &RecordedDrop) -> Result<DropRecord, String> {
     let train = &drop.train;
-    let whole =
-        |bounce: &&windfall_signal::bounce::train::Bounce| bounce.complete && !bounce.clipped;
-    let usable: Vec<_> = train.bounces.iter().take_while(whole).collect();
-    let used = usable.len().min(campaign.calibrate.bounces);
+    let bounces = train.bounces.iter();
+    let usable = bounces.take_while(|bounce| bounce.complete && !bounce.clipped);
+    let used = usable.count().min(campaign.calibrate.bounces);
     if used == 0 {
         return Err(match train.bounces.first() {
             None => "it has no bounce".to_owned(),
@@ -187,22 +180,23 @@ fn record_of(campaign: &DropCampaign, drop: &RecordedDrop) -> Result<DropRecord,
         let from = bounce.onset.value - LEAD;
         (from, (bounce.end.value + heard).min(last))
     });
-    let speed = (2.0 * campaign.rig.gravity * drop.height.value).sqrt();
+    let onsets = train.bounces[..used].iter().map(|b| b.onset.value);
     Ok(DropRecord {
         windows: windows.collect(),
-        onsets: train.bounces[..used]
-            .iter()
-            .map(|b| b.onset.value)
-            .collect(),
+        onsets: onsets.collect(),
         times: train.times.clone(),
         force: train.force.clone(),
         noise: train.noise,
-        velocity: Knowledge::measured(Uncertain {
-            value: speed,
-            sd: 0.5 * speed * drop.height.sd / drop.height.value,
-        }),
+        velocity: Knowledge::measured(touch_velocity(campaign, drop)),
         mass: Knowledge::measured(drop.mass),
     })
+}
+
+/// Velocity at first touch by the drop height, v = √(2 g h); m/s.
+fn touch_velocity(campaign: &DropCampaign, drop: &RecordedDrop) -> Uncertain {
+    let value = (2.0 * campaign.rig.gravity * drop.height.value).sqrt();
+    let sd = 0.5 * value * drop.height.sd / drop.height.value;
+    Uncertain { value, sd }
 }
 
 fn parameters(fit: &WaveformFit) -> Vec<WaveformParameter> {
@@ -220,12 +214,10 @@ fn parameters(fit: &WaveformFit) -> Vec<WaveformParameter> {
         WaveformParameter {
             name: name.clone(),
             value: measured(estimate, &units(name, place)),
-            sd_of_noise: fit.sd_of_noise[i]
-                * if fit.logarithmic[i] {
-                    estimate.value
-                } else {
-                    1.0
-                },
+            sd_of_noise: match fit.logarithmic[i] {
+                true => fit.sd_of_noise[i] * estimate.value,
+                false => fit.sd_of_noise[i],
+            },
             per_millimetre: per_millimetre(fit, i),
         }
     })
@@ -276,13 +268,13 @@ fn measured(estimate: &Estimate, unit: &str) -> MeasuredValue {
 
 fn correlations(covariance: &[Vec<f64>]) -> Vec<Vec<f64>> {
     let sd = |i: usize| covariance[i][i].sqrt();
-    (0..covariance.len())
-        .map(|i| {
-            (0..covariance.len())
-                .map(|j| covariance[i][j] / (sd(i) * sd(j)))
-                .collect()
-        })
-        .collect()
+    let places = 0..covariance.len();
+    let row = |i: usize| {
+        places
+            .clone()
+            .map(move |j| covariance[i][j] / (sd(i) * sd(j)))
+    };
+    places.clone().map(|i| row(i).collect()).collect()
 }
 
 fn drop_outcome(drop: &RecordedDrop, record: &RecordFit) -> WaveformDropOutcome {
@@ -303,50 +295,39 @@ fn drop_outcome(drop: &RecordedDrop, record: &RecordFit) -> WaveformDropOutcome 
 fn said(fit: &WaveformFit) -> Vec<FindingOutcome> {
     let mut findings = Vec::new();
     if !fit.converged {
-        findings.push(finding(
-            "waveform-not-converged",
-            "the search gave up before the minimum: give [calibrate] start, or hold a parameter"
-                .to_owned(),
-        ));
+        let message =
+            "the search gave up before the minimum: give [calibrate] start, or hold a parameter";
+        findings.push(finding("waveform-not-converged", message.to_owned()));
     }
     if fit.misfit > MISFIT {
-        findings.push(finding(
-            "waveform-misfit",
-            format!(
-                "chi-square is {:.1} times the number of samples: beyond the noise, law and rig do \
-                 not follow the waveforms; uncertainties are widened by {:.1}, which is no more than \
-                 a stopgap. Look at the residuals: another law, an effective mass factor, or fruit \
-                 that differ",
-                fit.misfit,
-                fit.misfit.sqrt()
-            ),
-        ));
+        let message = format!(
+            "chi-square is {:.1} times the number of samples: beyond the noise, law and rig do not \
+             follow the waveforms; uncertainties are widened by {:.1}, which is no more than a \
+             stopgap. Look at the residuals: another law, an effective mass factor, or fruit that \
+             differ",
+            fit.misfit,
+            fit.misfit.sqrt()
+        );
+        findings.push(finding("waveform-misfit", message));
     }
     if fit.by_records {
-        findings.push(finding(
-            "waveform-drops-differ",
-            "the drops differ by more than noise: uncertainties are those of the scatter from drop \
-             to drop, and the law is that of their mean"
-                .to_owned(),
-        ));
+        let message = "the drops differ by more than noise: uncertainties are those of the scatter \
+                       from drop to drop, and the law is that of their mean";
+        findings.push(finding("waveform-drops-differ", message.to_owned()));
     }
     if let Some(weak) = fit.weakest.as_ref().filter(|weak| weak.sd > WEAK) {
-        let parts: Vec<String> = fit
-            .names
-            .iter()
-            .zip(&weak.shares)
-            .filter(|(_, share)| share.abs() > 0.1)
+        let shares = fit.names.iter().zip(&weak.shares);
+        let large = shares.filter(|(_, share)| share.abs() > 0.1);
+        let parts: Vec<_> = large
             .map(|(name, share)| format!("{share:+.2} {name}"))
             .collect();
-        findings.push(finding(
-            "waveform-weak",
-            format!(
-                "these drops hardly tell the combination {} (standard uncertainty {:.2}): drops from \
-                 another height, a heavier fruit or a prior tell more",
-                parts.join(" "),
-                weak.sd
-            ),
-        ));
+        let message = format!(
+            "these drops hardly tell the combination {} (standard uncertainty {:.2}): drops from \
+             another height, a heavier fruit or a prior tell more",
+            parts.join(" "),
+            weak.sd
+        );
+        findings.push(finding("waveform-weak", message));
     }
     findings
 }
@@ -359,38 +340,25 @@ fn of_drops(
 ) -> Vec<FindingOutcome> {
     let mut findings = Vec::new();
     for (drop, record) in drops.iter().zip(&fit.records) {
-        let speed = (2.0 * campaign.rig.gravity * drop.height.value).sqrt();
-        let speed_sd = 0.5 * speed * drop.height.sd / drop.height.value;
-        for (what, unit, known, sd, found) in [
+        let touch = touch_velocity(campaign, drop);
+        for (what, given, unit, known, estimate) in [
             (
                 "velocity at first touch",
+                "the height",
                 "m/s",
-                speed,
-                speed_sd,
-                record.velocity.value,
+                touch,
+                &record.velocity,
             ),
-            (
-                "mass",
-                "kg",
-                drop.mass.value,
-                drop.mass.sd,
-                record.mass.value,
-            ),
+            ("mass", "the mass", "kg", drop.mass, &record.mass),
         ] {
-            if sd > 0.0 && (found - known).abs() > DISAGREE * sd {
-                findings.push(finding(
-                    "waveform-contradicts",
-                    format!(
-                        "{}: its {what} is {known:.4} {unit} ± {sd:.4} as measured, but {found:.4} \
-                         {unit} by its waveform: volts per newton, {} or the law is wrong",
-                        drop.id,
-                        if unit == "kg" {
-                            "the mass"
-                        } else {
-                            "the height"
-                        }
-                    ),
-                ));
+            let (value, sd, found) = (known.value, known.sd, estimate.value);
+            if sd > 0.0 && (found - value).abs() > DISAGREE * sd {
+                let message = format!(
+                    "{}: its {what} is {value:.4} {unit} ± {sd:.4} as measured, but {found:.4} \
+                     {unit} by its waveform: volts per newton, {given} or the law is wrong",
+                    drop.id
+                );
+                findings.push(finding("waveform-contradicts", message));
             }
         }
     }

@@ -7,8 +7,7 @@ use rayon::prelude::*;
 use windfall_campaign::recording::read::read_recording;
 use windfall_files::error::Error;
 
-/// Bounces with their force of every drop that has a recording that can be read;
-/// others are told of where bounces are looked for.
+/// Force and bounces of every readable recording; failures are reported by the evaluation.
 ///
 /// # Errors
 /// Mass or height of a drop is not known.

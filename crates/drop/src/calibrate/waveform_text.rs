@@ -10,10 +10,8 @@ use windfall_files::text::table::page_tables;
 /// A stiffness with its exponent per millimetre, others in SI.
 #[must_use]
 pub fn shown_value(parameter: &WaveformParameter) -> &MeasuredValue {
-    parameter
-        .per_millimetre
-        .as_ref()
-        .unwrap_or(&parameter.value)
+    let per_millimetre = parameter.per_millimetre.as_ref();
+    per_millimetre.unwrap_or(&parameter.value)
 }
 
 /// Estimates, and what each drop tells.

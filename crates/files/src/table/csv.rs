@@ -169,10 +169,7 @@ pub(crate) fn next_row(open: &mut Open, record: &mut csv::StringRecord) -> Resul
             continue;
         }
         return Err(Error::RowRagged {
-            place: Place {
-                file: open.path.clone(),
-                line: line_of(open, record),
-            },
+            place: Place::at(&open.path, line_of(open, record)),
             expected: open.columns.len(),
             found: record.len(),
             separator: open.separator,
@@ -211,11 +208,7 @@ fn access(path: &Path, source: std::io::Error) -> Error {
             advice: "check the name and the directory".to_owned(),
         };
     }
-    Error::FileAccess {
-        path,
-        action: "read",
-        source,
-    }
+    Error::access(&path, "read", source)
 }
 
 fn csv_error(path: &Path, error: &csv::Error) -> Error {

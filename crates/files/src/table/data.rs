@@ -19,8 +19,7 @@ pub struct Data {
     pub lines: Vec<usize>,
 }
 
-/// Reads a table: a column of which every cell is a number or missing holds
-/// numbers, any other categories.
+/// Reads a table: columns of numbers and missing cells are numeric, others categories.
 ///
 /// Separated by commas, semicolons or tabs; with semicolons or tabs, numbers may
 /// have a decimal comma. Missing cells are blank, `NA`, `NaN`, `N/A`, `null`,

@@ -4,9 +4,6 @@ use crate::error::Error;
 use std::path::Path;
 
 /// CSV text from a header and rows.
-///
-/// # Errors
-/// None in practice: the text is written to memory.
 pub fn csv_text(
     header: &[String],
     rows: impl IntoIterator<Item = Vec<String>>,

@@ -5,8 +5,7 @@ use crate::error::{Error, Place};
 use std::path::Path;
 use windfall_numerics::unit::quantity::parse_as;
 
-/// The quantity `name` among the cells of a row; SI. `None` where there is no
-/// such column or its cell is blank.
+/// The quantity `name` of a row; SI. `None` where column or cell is blank.
 ///
 /// * `unit`: SI unit; a column counts when what follows its name is a unit of
 ///   the same kind
@@ -36,10 +35,7 @@ pub fn cell_quantity(
         return match cell.parse::<f64>() {
             Ok(value) if value.is_finite() && value > 0.0 => Ok(Some(value * scale)),
             _ => Err(Error::CellNotPositive {
-                place: Place {
-                    file: file.to_path_buf(),
-                    line: 0,
-                },
+                place: Place::at(file, 0),
                 column: column.clone(),
                 text: cell.clone(),
             }),

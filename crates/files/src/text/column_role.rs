@@ -44,8 +44,7 @@ const ROLES: [(&str, &str); 18] = [
     ("zeit", "time"),
 ];
 
-/// What a channel seems to be: "time", or the channel of a campaign that it
-/// could feed.
+/// What a channel seems to be: "time", or the campaign channel that it could feed.
 #[must_use]
 pub fn role_of(name: &str) -> Option<&'static str> {
     let lower = name.to_lowercase();

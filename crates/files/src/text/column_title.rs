@@ -16,8 +16,7 @@ pub fn column_title(column: &str) -> (String, String) {
     (column.replace('_', " "), String::new())
 }
 
-/// A unit as it stands in the name of a column, if it is one: one symbol, or a
-/// quotient of two.
+/// A unit in the name of a column: one symbol, or a quotient of two.
 fn unit_text(written: &str) -> Option<String> {
     let mut text = written.replacen("_per_", "/", 1);
     if text == written {

@@ -66,11 +66,7 @@ pub fn read_source(path: &Path, advice: &str) -> Result<TomlSource, Error> {
             path: path.to_path_buf(),
             advice: advice.to_owned(),
         }),
-        Err(source) => Err(Error::FileAccess {
-            path: path.to_path_buf(),
-            action: "read",
-            source,
-        }),
+        Err(source) => Err(Error::access(path, "read", source)),
     }
 }
 

@@ -9,7 +9,6 @@ use crate::text::number::rises_evenly;
 /// Most channels made from one array; larger ones are pictures or matrices.
 const MOST_SERIES: u64 = 4096;
 
-/// Most channels of a file.
 const MOST_CHANNELS: usize = 1 << 16;
 
 /// A later dimension must be longer than this to be taken as the samples.

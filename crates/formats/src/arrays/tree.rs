@@ -59,7 +59,6 @@ pub(crate) struct Tree {
 /// The samples of one channel within an array.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct Series {
-    /// Index of the array.
     pub array: usize,
     /// First element in storage order.
     pub start: u64,

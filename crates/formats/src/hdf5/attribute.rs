@@ -17,7 +17,6 @@ const MOST_VALUES: u64 = 16;
 /// Longest attribute text kept; characters.
 const LONGEST_TEXT: usize = 4096;
 
-/// Most attributes of one object.
 const MOST_ATTRIBUTES: usize = 65_536;
 
 /// Attributes for internal use of other programs.
@@ -32,7 +31,6 @@ const INTERNAL: [&str; 8] = [
     "_Netcdf4Coordinates",
 ];
 
-/// Value of an attribute.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) enum Value {
     Number(f64),
@@ -71,7 +69,6 @@ impl Attributes {
         Self(values)
     }
 
-    /// The text of an attribute.
     pub fn text(&self, name: &str) -> Option<&str> {
         self.0.iter().find_map(|(n, value)| match value {
             Value::Text(text) if n == name => Some(text.as_str()),
@@ -103,7 +100,6 @@ impl Attributes {
     }
 }
 
-/// Attributes in dense storage.
 fn read_dense(
     file: &Hdf5File,
     cursor: &mut Cursor<'_>,

@@ -61,12 +61,10 @@ impl<'a> Cursor<'a> {
         self.place
     }
 
-    /// Number of bytes left.
     pub fn left(&self) -> usize {
         self.bytes.len() - self.place
     }
 
-    /// Error: the file is damaged here.
     pub fn damaged(&self, what: &str) -> Problem {
         Problem::Damaged(self.at(), what.to_owned())
     }
@@ -79,7 +77,6 @@ impl<'a> Cursor<'a> {
         Ok(&self.bytes[self.place - count..self.place])
     }
 
-    /// The remaining bytes.
     pub fn rest(&self) -> &[u8] {
         &self.bytes[self.place..]
     }
@@ -132,7 +129,6 @@ impl<'a> Cursor<'a> {
         Ok((address != undefined).then_some(address))
     }
 
-    /// Checks for a signature.
     pub fn signature(&mut self, expected: &[u8; 4]) -> Result<(), Problem> {
         if self.take(4)? == expected {
             return Ok(());

@@ -18,14 +18,12 @@ const LARGEST_CHUNK: u64 = 256 << 20;
 /// Cache of unpacked chunks; bytes.
 const KEPT: usize = 64 << 20;
 
-/// A dataset.
 #[derive(Debug)]
 pub(crate) struct Dataset {
     pub space: Space,
     pub datatype: Datatype,
     pub layout: Layout,
     pub filters: Vec<Filter>,
-    /// Fill value.
     fill: Vec<u8>,
     chunks: Option<Chunks>,
     /// Cache of unpacked chunks: number and bytes.
@@ -198,7 +196,6 @@ impl Dataset {
         }
     }
 
-    /// The unpacked bytes of a chunk.
     fn unpack(
         &mut self,
         file: &Hdf5File,

@@ -16,16 +16,13 @@ const SIGNATURE: &[u8; 8] = b"\x89HDF\r\n\x1a\n";
 /// Largest single read; bytes.
 const LARGEST: u64 = 256 << 20;
 
-/// An HDF5 file.
 #[derive(Debug)]
 pub(crate) struct Hdf5File {
     pub source: Source,
     /// Offset of address 0 in the file.
     pub base: u64,
     pub widths: Widths,
-    /// Version of the superblock.
     pub version: u8,
-    /// Address of the root group.
     pub root: u64,
     /// Length of the file when it was closed.
     pub end: u64,
@@ -53,7 +50,6 @@ impl Hdf5File {
         read_superblock(source, at).map_err(|problem| error_of(&path, None, problem))
     }
 
-    /// Bytes at an address.
     pub fn bytes(&self, address: u64, count: u64) -> Result<Vec<u8>, Problem> {
         let at = self.base.saturating_add(address);
         if count > self.source.length().saturating_sub(at) {

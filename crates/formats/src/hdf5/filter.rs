@@ -9,7 +9,6 @@ use std::io::Read;
 /// Most filters of a dataset; HDF5 has 32.
 const MOST_FILTERS: u8 = 32;
 
-/// A filter.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Filter {
     Deflate,

@@ -7,10 +7,8 @@ use crate::hdf5::file::Hdf5File;
 use crate::hdf5::heap::{FractalHeap, LocalHeap};
 use crate::hdf5::object::{Header, LINK, LINK_INFO, SYMBOL_TABLE};
 
-/// Most members of one group.
 const MOST_MEMBERS: usize = 200_000;
 
-/// A member of a group.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(crate) struct Member {
     pub name: String,

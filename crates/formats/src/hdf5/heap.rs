@@ -91,7 +91,6 @@ pub(crate) struct FractalHeap<'a> {
 const DEEPEST: usize = 16;
 
 impl<'a> FractalHeap<'a> {
-    /// Reads the header of a heap.
     pub fn read(file: &'a Hdf5File, address: u64) -> Result<Self, Problem> {
         let widths = file.widths;
         let size = 26 + 12 * widths.length + 3 * widths.address;
@@ -198,7 +197,6 @@ impl<'a> FractalHeap<'a> {
         Err(nowhere())
     }
 
-    /// Number of rows of direct blocks.
     fn direct_rows(&self) -> u64 {
         u64::from(self.largest.ilog2() - self.first.ilog2()) + 2
     }

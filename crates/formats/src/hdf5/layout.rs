@@ -36,7 +36,6 @@ pub(crate) enum Layout {
     Chunked(Chunked),
 }
 
-/// A chunked layout.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(crate) struct Chunked {
     /// Extents of a chunk.
@@ -94,7 +93,6 @@ pub(crate) fn read_space(cursor: &mut Cursor<'_>) -> Result<Space, Problem> {
     })
 }
 
-/// Reads the storage layout.
 pub(crate) fn read_layout(
     cursor: &mut Cursor<'_>,
     elements: u64,

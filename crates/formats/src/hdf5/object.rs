@@ -18,20 +18,17 @@ pub(crate) const SYMBOL_TABLE: u16 = 0x11;
 pub(crate) const ATTRIBUTE_INFO: u16 = 0x15;
 const CONTINUATION: u16 = 0x10;
 
-/// Most blocks of a header.
 const MOST_BLOCKS: usize = 4096;
 
 /// Most bytes of a header.
 const LARGEST: u64 = 16 << 20;
 
-/// A message.
 #[derive(Clone, Debug)]
 pub(crate) struct Message {
     pub kind: u16,
     /// Whether it only refers to the message.
     pub shared: bool,
     pub bytes: Vec<u8>,
-    /// Its address.
     pub address: u64,
 }
 
@@ -42,7 +39,6 @@ pub(crate) struct Header {
 }
 
 impl Header {
-    /// The first message of a type.
     pub fn message(&self, kind: u16) -> Option<&Message> {
         self.messages.iter().find(|m| m.kind == kind)
     }
@@ -77,7 +73,6 @@ enum Form {
     },
 }
 
-/// Reads the header at an address.
 pub(crate) fn read_header(file: &Hdf5File, address: u64) -> Result<Header, Problem> {
     let mut cursor = file.cursor(file.bytes_up_to(address, 64)?, address);
     let mut blocks = Blocks::default();

@@ -13,7 +13,6 @@ use crate::hdf5::tree::{Stored, list};
 use crate::reader::{Reader, Sink};
 use crate::source::Source;
 
-/// An HDF5 file.
 #[derive(Debug)]
 pub struct Hdf5Reader {
     file: Hdf5File,

@@ -38,13 +38,11 @@ const LARGEST_UNWRITTEN: u64 = 1 << 16;
 /// Location of the numbers of an array.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Stored {
-    /// Index of the dataset.
     pub dataset: usize,
     /// Which number within its elements.
     pub number: Number,
 }
 
-/// Contents of an HDF5 file.
 #[derive(Default, Debug)]
 pub(crate) struct Hdf5Tree {
     pub tree: Tree,
@@ -53,7 +51,6 @@ pub(crate) struct Hdf5Tree {
     pub datasets: Vec<Dataset>,
     /// Attributes of groups.
     pub properties: Vec<(String, String)>,
-    /// Whether MATLAB wrote the file.
     pub by_matlab: bool,
 }
 

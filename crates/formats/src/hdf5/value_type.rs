@@ -5,13 +5,11 @@ use crate::hdf5::cursor::{Cursor, Problem};
 /// Deepest nesting of datatypes.
 const DEEPEST: usize = 16;
 
-/// Most members of a compound.
 const MOST_MEMBERS: u16 = 4096;
 
 /// Most dimensions of an array datatype.
 const MOST_EXTENTS: u8 = 32;
 
-/// A datatype.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Datatype {
     /// Bytes per element.
@@ -57,7 +55,6 @@ pub(crate) struct Member {
 
 const ODD: &str = "its numbers have padding bits, or are floats of an unusual form";
 
-/// Reads a datatype.
 pub(crate) fn read_type(cursor: &mut Cursor<'_>) -> Result<Datatype, Problem> {
     read_nested(cursor, 0)
 }

@@ -5,10 +5,8 @@ use crate::mat::flow::{ADVICE, Flow, Region};
 use crate::number::integer;
 use crate::source::Source;
 
-/// Type of matrix elements.
 pub(crate) const MATRIX: u32 = 14;
 
-/// Type of compressed elements.
 pub(crate) const COMPRESSED: u32 = 15;
 
 /// A data element.
@@ -105,7 +103,6 @@ impl Elements<'_> {
         integer(bytes, self.big_endian) as u32
     }
 
-    /// Error: the variable is malformed.
     pub fn malformed(&self, problem: &str) -> Error {
         self.source.malformed(
             Place::Byte(self.start),

@@ -43,7 +43,6 @@ struct Matrix {
     end: u64,
 }
 
-/// Lists the contents of a variable.
 pub(crate) fn list_variable(elements: &mut Elements<'_>, walk: &mut Walk) -> Result<(), Error> {
     // The decompressed length is only known from the first tag.
     let end = match elements.region.compressed {

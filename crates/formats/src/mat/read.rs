@@ -29,7 +29,6 @@ pub(crate) fn begins(head: &[u8]) -> bool {
 }
 
 impl MatReader {
-    /// Lists the contents of a file.
     pub fn open(source: Source) -> Result<Self, Error> {
         let mut properties = Vec::new();
         let head = source.head(128)?;

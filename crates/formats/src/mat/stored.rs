@@ -18,7 +18,6 @@ pub(crate) struct Stored {
     pub closes: bool,
 }
 
-/// Contents of a MAT file.
 #[derive(Debug, Default)]
 pub(crate) struct MatTree {
     pub tree: Tree,

@@ -21,7 +21,6 @@ const LONGEST_NAME: u32 = 256;
 /// Longest text kept.
 const LONGEST_TEXT: u64 = 4096;
 
-/// The header of a matrix.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Header {
     machine: u32,
@@ -76,7 +75,6 @@ fn read_header(bytes: &[u8]) -> Option<Header> {
     })
 }
 
-/// Lists the matrices of a file.
 pub(crate) fn list(source: &Source) -> Result<MatTree, Error> {
     let mut found = MatTree::default();
     let mut at = 0;

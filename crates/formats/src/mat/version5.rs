@@ -16,7 +16,6 @@ use crate::source::Source;
 /// Bytes of the header of a file.
 const HEADER: u64 = 128;
 
-/// The header of a file.
 #[derive(Clone, Debug)]
 pub(crate) struct Header {
     /// Text written by the program that made the file.
@@ -31,7 +30,6 @@ pub(crate) fn begins(head: &[u8]) -> bool {
     matches!(head.get(126..128), Some(b"IM" | b"MI")) && head[..4].iter().all(|c| *c != 0)
 }
 
-/// The header of a file.
 pub(crate) fn read_header(source: &Source) -> Result<Header, Error> {
     if source.length() < HEADER {
         return Err(source.truncated(0, "the header of a MAT file", HEADER));

@@ -14,7 +14,6 @@ use std::io::Read;
 /// Longest metadata of a capture; bytes.
 const LONGEST_METADATA: u64 = 1 << 20;
 
-/// Most probes.
 const MOST_PROBES: usize = 512;
 
 /// Samples decoded at a time.
@@ -45,7 +44,6 @@ struct Metadata {
 }
 
 impl SigrokReader {
-    /// Reads the metadata of a capture.
     pub fn open(source: Source) -> Result<Self, Error> {
         let (archive, entries) = open_archive(source)?;
         let Some(description) = entries.iter().find(|entry| entry.name == "metadata") else {

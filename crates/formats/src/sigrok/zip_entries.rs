@@ -6,10 +6,8 @@ use flate2::read::DeflateDecoder;
 use rawzip::{CompressionMethod, ReaderAt, ZipArchive, ZipArchiveEntryWayfinder, ZipLocator};
 use std::io::{BufReader, Read};
 
-/// Most entries that are listed.
 const MOST_ENTRIES: usize = 1 << 18;
 
-/// An entry of an archive.
 #[derive(Clone, Debug)]
 pub struct Entry {
     pub name: String,

@@ -32,7 +32,6 @@ pub struct Region {
 pub struct Group {
     /// Offset of the first chunk.
     pub offset: u64,
-    /// Number of chunks.
     pub chunks: u64,
     /// Bytes per chunk.
     pub size: u64,

@@ -13,7 +13,6 @@ const TO_UNIX: i64 = 2_082_844_800;
 /// Most scalers or raw buffers of an NI-DAQmx channel.
 const MOST_SCALERS: u32 = 1 << 12;
 
-/// The value of a property.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Property {
     Number(f64),
@@ -43,7 +42,6 @@ pub enum Index {
     Nothing,
     /// Same as in the previous segment.
     Same,
-    /// Values of one type.
     Values {
         value: ValueType,
         /// Values per chunk.
@@ -93,7 +91,6 @@ pub struct Cursor<'a> {
     big_endian: bool,
 }
 
-/// A fault in the metadata.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Fault {
     /// Offset in the metadata.
@@ -148,7 +145,6 @@ impl<'a> Cursor<'a> {
     }
 }
 
-/// Reads the objects of a segment.
 pub fn read_objects(cursor: &mut Cursor) -> Result<Vec<ObjectEntry>, Fault> {
     let count = cursor.u32()?;
     let mut objects = Vec::new();

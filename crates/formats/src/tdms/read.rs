@@ -22,7 +22,6 @@ use std::sync::Arc;
 /// Bytes read and decoded at a time, small enough for the processor's cache.
 const WINDOW: u64 = 1 << 18;
 
-/// A TDMS file.
 #[derive(Debug)]
 pub struct TdmsReader {
     source: Source,
@@ -31,7 +30,6 @@ pub struct TdmsReader {
     groups: Vec<Group>,
 }
 
-/// A numeric channel.
 #[derive(Debug)]
 struct Channel {
     /// Index of the object in the file.
@@ -45,7 +43,6 @@ struct Channel {
 }
 
 impl TdmsReader {
-    /// Reads the metadata of all segments.
     pub fn open(source: Source) -> Result<Self, Error> {
         let found = read_segments(&source)?;
         let version = source.bytes_at(4, 8)?;

@@ -10,7 +10,6 @@ use std::collections::BTreeMap;
 /// Input number that denotes the raw values.
 pub const RAW: u32 = u32::MAX;
 
-/// Most scales of a channel.
 const MOST_SCALES: u32 = 1000;
 
 /// Most steps to evaluate the last scale.

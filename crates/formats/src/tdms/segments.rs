@@ -25,13 +25,11 @@ pub struct Object {
     index: Option<Index>,
     /// Number of samples.
     pub length: u64,
-    /// Types of the values.
     pub types: Vec<ValueType>,
     /// Offset of the first value, and whether it is big-endian.
     pub first: Option<(u64, bool)>,
 }
 
-/// Lead-in of a segment.
 struct LeadIn {
     metadata: bool,
     new_list: bool,
@@ -47,19 +45,16 @@ struct LeadIn {
 pub struct Found {
     /// Objects in order of appearance.
     pub objects: Vec<Object>,
-    /// Indices of the objects by path.
     pub by_path: BTreeMap<String, usize>,
     active: Vec<Active>,
     /// Raw data in file order.
     pub groups: Vec<Group>,
     pub notes: Vec<Note>,
-    /// Number of segments.
     pub segments: u64,
     /// Chunk layout of the previous segment, reused without new metadata.
     last_chunk: Option<(Flags, Arc<Vec<Region>>, u64)>,
 }
 
-/// Reads the metadata of all segments.
 pub fn read_segments(source: &Source) -> Result<Found, Error> {
     let mut found = Found::default();
     let mut at = 0;

@@ -2,7 +2,6 @@
 
 use crate::number::{self, Number, integer};
 
-/// A value type.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ValueType {
     Number(Number),

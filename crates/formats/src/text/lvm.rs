@@ -14,7 +14,6 @@ use crate::text::number::{Marks, number};
 use crate::text::rows::{ColumnKind, RowPlan, Separator};
 use crate::text::table::{Table, read_table};
 
-/// The line that ends a header.
 const END_OF_HEADER: &[u8] = b"***End_of_Header***";
 
 /// Bytes searched at a time.
@@ -23,7 +22,6 @@ const BLOCK: u64 = 1 << 20;
 /// Longest header of a segment; bytes.
 const LONGEST_HEADER: u64 = 1 << 20;
 
-/// Most segments of a file.
 const MOST_SEGMENTS: usize = 10_000;
 
 /// Tolerance between printed times and the spacing in the header, in steps.
@@ -45,7 +43,6 @@ pub struct LvmReader {
     places: Vec<(usize, usize)>,
 }
 
-/// The header of the file.
 struct FileHeader {
     separator: char,
     marks: Marks,
@@ -54,7 +51,6 @@ struct FileHeader {
     properties: Vec<(String, String)>,
 }
 
-/// Which time columns exist.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum XColumns {
     No,

@@ -25,9 +25,7 @@ pub struct TextOptions {
 /// Detected columns and notation.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Dialect {
-    /// Separator between cells.
     pub separator: Separator,
-    /// Decimal and thousands marks.
     pub marks: Marks,
     /// Prefixes of comment lines.
     pub comments: Vec<String>,

@@ -13,10 +13,8 @@ pub enum Separator {
     Blanks,
 }
 
-/// Kind of a column.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum ColumnKind {
-    /// Numbers.
     Numbers,
     /// Dates or times, converted to seconds since this one.
     Moments(Moment),
@@ -27,9 +25,7 @@ pub(crate) enum ColumnKind {
 /// How to parse lines.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct RowPlan {
-    /// Separator between cells.
     pub separator: Separator,
-    /// Decimal and thousands marks.
     pub marks: Marks,
     pub encoding: Encoding,
     pub newline: u8,

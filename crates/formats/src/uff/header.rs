@@ -12,7 +12,6 @@ pub struct Header {
     pub complex: bool,
     /// Whether the abscissa is evenly spaced.
     pub even: bool,
-    /// Number of points.
     pub points: u64,
     /// First value of the abscissa.
     pub start: f64,
@@ -33,7 +32,6 @@ pub struct Axis {
 /// Code of time; s.
 pub const TIME: u32 = 17;
 
-/// Error: a line is malformed.
 pub fn malformed(source: &Source, line: u64, problem: &str) -> Error {
     source.malformed(
         Place::Line(line),

@@ -21,7 +21,6 @@ pub struct LineReader {
     begin: u64,
 }
 
-/// A line.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Line {
     /// Text without the line break.

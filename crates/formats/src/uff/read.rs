@@ -13,16 +13,13 @@ use crate::text::number::{Cell, Marks, cell};
 use crate::uff::header::{Header, TIME, malformed, parse_header};
 use crate::uff::lines::LineReader;
 
-/// Header lines of a function.
 const HEADER_LINES: usize = 11;
 
 /// Numbers passed on at a time.
 const BLOCK: usize = 1 << 15;
 
-/// Most data sets of a file.
 const MOST_SETS: u64 = 1_000_000;
 
-/// A universal file.
 #[derive(Debug)]
 pub struct UffReader {
     source: Source,
@@ -55,7 +52,6 @@ enum Coding {
 }
 
 impl UffReader {
-    /// Finds the functions of a file.
     pub fn open(source: Source) -> Result<Self, Error> {
         let mut found = Self {
             contents: Contents {

@@ -14,13 +14,11 @@ use crate::source::Source;
 /// Samples read at a time, over all channels.
 const BLOCK: u64 = 1 << 16;
 
-/// Most channels of a file.
 const MOST_CHANNELS: u16 = 4096;
 
 /// Unknown size: still being written, or given elsewhere (RF64).
 const NO_SIZE: u32 = u32::MAX;
 
-/// Coding of samples.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Coding {
     /// Two's complement; offset binary up to eight bits.
@@ -30,7 +28,6 @@ enum Coding {
     ALaw,
 }
 
-/// A WAVE file.
 #[derive(Debug)]
 pub struct WavReader {
     source: Source,
@@ -54,7 +51,6 @@ struct Shape {
 }
 
 impl WavReader {
-    /// Reads the chunks of a file.
     pub fn open(source: Source) -> Result<Self, Error> {
         let head = source.bytes_at(0, 12.min(source.length()))?;
         let big_endian = head.starts_with(b"RIFX");

@@ -327,7 +327,6 @@ fn contacts(
     }
 }
 
-/// Ringing after each contact.
 fn ringing_of(times: &[f64], levelled: &Levelled, segments: &[Segment]) -> Vec<Option<Ringing>> {
     let force = &levelled.followed;
     (0..segments.len())

@@ -13,24 +13,33 @@ use windfall_numerics::least_squares::{
 /// ```text
 /// x(t) = amplitude · exp(−π f t / Q) · cos(2π f t − phase)
 /// ```
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct Mode {
     /// Frequency of the oscillation, f; Hz.
     pub frequency: f64,
     /// Its standard error; Hz.
+    #[serde(deserialize_with = "number_or_infinity")]
     pub frequency_sd: f64,
     /// Quality Q; the width at half power is f/Q.
     pub quality: f64,
     /// Its standard error.
+    #[serde(deserialize_with = "number_or_infinity")]
     pub quality_sd: f64,
     /// Amplitude at the first sample; unit of the samples.
     pub amplitude: f64,
     /// Its standard error.
+    #[serde(deserialize_with = "number_or_infinity")]
     pub amplitude_sd: f64,
     /// Phase at the first sample; rad.
     pub phase: f64,
     /// Whether a minimum was reached, away from the bounds.
     pub converged: bool,
+}
+
+/// A standard error that is not known is `null` in JSON, which has no infinity.
+fn number_or_infinity<'de, D: serde::Deserializer<'de>>(deserializer: D) -> Result<f64, D::Error> {
+    let number = serde::Deserialize::deserialize(deserializer);
+    number.map(|number: Option<f64>| number.unwrap_or(f64::INFINITY))
 }
 
 /// Samples of a mode from the first on.
@@ -192,7 +201,6 @@ fn band(transformed: &Transformed, starts: &[ModeStart]) -> (usize, usize) {
     )
 }
 
-/// Fit of one band.
 struct BandFit<const P: usize> {
     parameters: [f64; P],
     covariance: Option<[[f64; P]; P]>,

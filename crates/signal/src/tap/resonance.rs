@@ -34,9 +34,10 @@ impl Default for ResonanceOptions {
 }
 
 /// A resonance in one tap.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct Resonance {
     /// The fitted mode.
+    #[serde(flatten)]
     pub mode: Mode,
     /// Height of its peak as a part of the highest in the band, in amplitude.
     pub level: f64,

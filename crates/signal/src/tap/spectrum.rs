@@ -170,7 +170,6 @@ fn check(
     Ok(())
 }
 
-/// Weights of a periodic window.
 fn window_weights(window: Window, length: usize) -> Vec<f64> {
     let terms: &[f64] = match window {
         Window::Rectangular => &[1.0],

@@ -18,10 +18,18 @@ pub(crate) struct Basis {
     pub r: DMatrix<f64>,
 }
 
+impl Basis {
+    /// Inverse of the triangle.
+    pub fn inverse(&self) -> DMatrix<f64> {
+        let p = self.r.nrows();
+        let inverse = self.r.solve_upper_triangular(&DMatrix::identity(p, p));
+        inverse.unwrap_or_else(|| DMatrix::zeros(p, p))
+    }
+}
+
 /// A column that is a combination of columns before it.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(crate) struct Dependent {
-    /// The column.
     pub column: usize,
     /// The columns it is made of; none when it is zero.
     pub on: Vec<usize>,

@@ -41,7 +41,6 @@ pub(crate) struct TermPlace {
 pub(crate) struct Leaf {
     /// Columns of the factor.
     pub width: usize,
-    /// Its groups.
     pub groups: usize,
     /// Zⱼ'Zⱼ of each group, one after another.
     pub square: Vec<f64>,
@@ -58,7 +57,6 @@ pub(crate) struct Leaf {
 /// Random effects of one group in the trunk.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct TrunkBlock {
-    /// Index of the factor.
     pub factor: usize,
     /// First column in the trunk.
     pub offset: usize,
@@ -69,7 +67,6 @@ pub(crate) struct TrunkBlock {
 /// Cross-products of all other factors.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Trunk {
-    /// One block per group.
     pub blocks: Vec<TrunkBlock>,
     /// First column of each factor's first group.
     pub offsets: Vec<usize>,
@@ -130,7 +127,6 @@ pub(crate) fn leaf_of(factors: &[Factor], trunk: &Trunk, fixed: &[&[f64]]) -> Le
     leaf
 }
 
-/// Rows of each group.
 fn rows_by_group(factor: &Factor) -> Vec<Vec<usize>> {
     let mut counts = vec![0; factor.groups];
     factor.group.iter().for_each(|group| counts[*group] += 1);

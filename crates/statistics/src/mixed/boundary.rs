@@ -19,7 +19,6 @@ const SAME: (f64, f64) = (1e-9, 1e-12);
 /// The profiled criterion: -2 log likelihood at the best coefficients and residual variance.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Criterion {
-    /// Whether the likelihood is restricted.
     pub restricted: bool,
     /// n, or n - p.
     pub denominator: f64,
@@ -74,7 +73,6 @@ pub(crate) struct Estimate {
     pub at_zero: Vec<usize>,
     /// The criterion.
     pub value: f64,
-    /// Evaluations of it.
     pub evaluations: usize,
     /// Whether its gradient vanishes.
     pub converged: bool,

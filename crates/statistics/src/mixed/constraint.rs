@@ -41,7 +41,6 @@ pub enum VarianceParameter {
 pub(crate) struct Constrained<'a> {
     fit: &'a MixedFit,
     parameter: VarianceParameter,
-    /// Estimate of the parameter.
     pub estimate: f64,
     /// Entries of terms whose covariance is free.
     others: Vec<Entry>,

@@ -17,7 +17,6 @@ pub struct RandomEffects {
     pub sds: Vec<Vec<f64>>,
 }
 
-/// Effects of all terms.
 pub(crate) fn random_effects(
     model: &MixedModel,
     state: &State,

@@ -28,12 +28,10 @@ impl Envelope {
         Self { first, start }
     }
 
-    /// Number of rows.
     pub(crate) fn rows(&self) -> usize {
         self.first.len()
     }
 
-    /// Number of entries inside.
     pub(crate) fn entries(&self) -> usize {
         self.start[self.rows()]
     }

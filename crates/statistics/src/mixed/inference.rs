@@ -1,15 +1,15 @@
 //! Tests of fixed effects with Satterthwaite's degrees of freedom.
 
+use crate::coefficient::Coefficient;
 use crate::distribution::tail::{f_upper, t_two_sided, t_upper_quantile};
 use crate::mixed::boundary::Criterion;
 use crate::mixed::error::MixedError;
 use crate::mixed::evaluate::{State, evaluate};
 use crate::mixed::finding::MixedFinding;
 use crate::mixed::fit::{MixedFit, MixedMethod};
-use crate::mixed::minimise::{FLAT, differences};
+use crate::mixed::minimise::{FLAT, differences, directions};
 use crate::mixed::term::{check_finite, check_length};
 use crate::mixed::theta::{blocks_of, entries_from};
-use crate::model::linear_model::Coefficient;
 use nalgebra::{DMatrix, DVector};
 
 /// Eigenvalues of a contrast's covariance below this share of the largest are zero.
@@ -130,13 +130,7 @@ fn squares_slope(fit: &MixedFit, state: &State) -> Vec<f64> {
 
 /// Covariance of the coefficients over σ², in the columns as given.
 fn covariance_of(fit: &MixedFit, state: &State) -> DMatrix<f64> {
-    let p = fit.model.coefficients();
-    let inverse = fit
-        .model
-        .basis
-        .r
-        .solve_upper_triangular(&DMatrix::identity(p, p));
-    let inverse = inverse.unwrap_or_else(|| DMatrix::zeros(p, p));
+    let inverse = fit.model.basis.inverse();
     &inverse * &state.covariance * inverse.transpose()
 }
 
@@ -157,11 +151,7 @@ fn covariance_from(second: DMatrix<f64>) -> (DMatrix<f64>, usize) {
     let eigen = scaled.symmetric_eigen();
     let mut inverse = DMatrix::zeros(n, n);
     let mut flat = 0;
-    for (value, vector) in eigen
-        .eigenvalues
-        .iter()
-        .zip(eigen.eigenvectors.column_iter())
-    {
+    for (value, vector) in directions(&eigen) {
         if *value > FLAT {
             inverse += vector * vector.transpose() * (2.0 / value);
         } else {
@@ -267,11 +257,7 @@ pub fn f_test(
     let beta = DVector::from_column_slice(&fit.coefficients);
     let mut sum = 0.0;
     let mut dfs = Vec::new();
-    for (value, vector) in eigen
-        .eigenvalues
-        .iter()
-        .zip(eigen.eigenvectors.column_iter())
-    {
+    for (value, vector) in directions(&eigen) {
         if *value <= RANK * largest || *value <= 0.0 {
             continue;
         }

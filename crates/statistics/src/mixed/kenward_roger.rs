@@ -12,12 +12,13 @@
 //! X'V⁻³X = X'V⁻²X - (Z'V⁻²X)'D B
 //! ```
 
+use crate::coefficient::Coefficient;
 use crate::distribution::tail::f_upper;
 use crate::mixed::error::MixedError;
 use crate::mixed::fit::{MixedFit, MixedMethod};
 use crate::mixed::inference::{FTest, check_contrast, test_of};
+use crate::mixed::minimise::directions;
 use crate::mixed::theta::Entry;
-use crate::model::linear_model::Coefficient;
 use nalgebra::{DMatrix, DVector};
 
 /// Most random effects of crossed factors: their matrices are dense.
@@ -67,7 +68,7 @@ pub fn kenward_roger(fit: &MixedFit) -> Result<KenwardRoger, MixedError> {
         }
     }
     let adjusted = phi + phi * middle * phi * 2.0;
-    let basis = inverse_basis(fit);
+    let basis = fit.model.basis.inverse();
     let mut covariance = &basis * adjusted * basis.transpose() * fit.residual_sd.powi(2);
     covariance = (&covariance + covariance.transpose()) * 0.5;
     Ok(KenwardRoger {
@@ -75,16 +76,6 @@ pub fn kenward_roger(fit: &MixedFit) -> Result<KenwardRoger, MixedError> {
         weights,
         slopes: sums.slopes,
     })
-}
-
-fn inverse_basis(fit: &MixedFit) -> DMatrix<f64> {
-    let p = fit.model.coefficients();
-    let inverse = fit
-        .model
-        .basis
-        .r
-        .solve_upper_triangular(&DMatrix::identity(p, p));
-    inverse.unwrap_or_else(|| DMatrix::zeros(p, p))
 }
 
 /// Inverse of the information, scaled to a unit diagonal first.
@@ -106,11 +97,7 @@ fn inverse(information: DMatrix<f64>) -> Result<DMatrix<f64>, MixedError> {
         return Err(MixedError::SingularInformation);
     }
     let mut inverse = DMatrix::zeros(n, n);
-    for (value, vector) in eigen
-        .eigenvalues
-        .iter()
-        .zip(eigen.eigenvectors.column_iter())
-    {
+    for (value, vector) in directions(&eigen) {
         inverse += vector * vector.transpose() / *value;
     }
     Ok(DMatrix::from_fn(n, n, |i, j| {
@@ -387,7 +374,7 @@ fn denominator(
     const NOUGHT: (f64, f64) = (1e-10, 1e-14);
     let q = q as f64;
     let phi = &fit.state.covariance;
-    let contrast = contrast * inverse_basis(fit);
+    let contrast = contrast * fit.model.basis.inverse();
     let inner = &contrast * phi * contrast.transpose();
     let Some(inner) = inner.try_inverse() else {
         return (f64::NAN, f64::NAN);

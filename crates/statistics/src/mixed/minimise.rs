@@ -1,7 +1,7 @@
 //! Minimum of a smooth function with known gradient.
 
 use crate::mixed::basis::dot;
-use nalgebra::{DMatrix, DVector, Dyn, SymmetricEigen};
+use nalgebra::{DMatrix, DVector, DVectorView, Dyn, SymmetricEigen};
 
 /// Steps of the quasi-Newton search at most.
 const MOST_STEPS: usize = 500;
@@ -33,11 +33,8 @@ pub(crate) type Sloped = Option<(f64, Vec<f64>)>;
 /// Where a search ended.
 #[derive(Clone, Debug)]
 pub(crate) struct Minimum {
-    /// The point.
     pub point: Vec<f64>,
-    /// The value there.
     pub value: f64,
-    /// Evaluations.
     pub evaluations: usize,
     /// Whether the gradient vanishes there to rounding.
     pub converged: bool,
@@ -48,11 +45,8 @@ pub(crate) struct Minimum {
 /// A point with its value and gradient.
 #[derive(Clone, Debug)]
 pub(crate) struct Step {
-    /// The point.
     pub point: Vec<f64>,
-    /// The value there.
     pub value: f64,
-    /// The gradient there.
     pub gradient: Vec<f64>,
 }
 
@@ -240,15 +234,21 @@ fn flat_directions(second: &DMatrix<f64>, point: &[f64]) -> usize {
     eigenvalues.iter().filter(|value| **value < LEVEL).count()
 }
 
+/// Each eigenvalue with its vector.
+pub(crate) fn directions(
+    eigen: &SymmetricEigen<f64, Dyn>,
+) -> impl Iterator<Item = (&f64, DVectorView<'_, f64>)> {
+    eigen
+        .eigenvalues
+        .iter()
+        .zip(eigen.eigenvectors.column_iter())
+}
+
 /// Newton's step in the directions that are not flat, always downhill.
 fn newton_step(eigen: &SymmetricEigen<f64, Dyn>, slope: &DVector<f64>) -> DVector<f64> {
     let largest = eigen.eigenvalues.amax();
     let mut step = DVector::zeros(slope.len());
-    for (value, vector) in eigen
-        .eigenvalues
-        .iter()
-        .zip(eigen.eigenvectors.column_iter())
-    {
+    for (value, vector) in directions(eigen) {
         if value.abs() > FLAT * largest {
             step -= vector * (vector.dot(slope) / value.abs());
         }

@@ -18,7 +18,6 @@ const NO_RESIDUAL: f64 = 1e-12;
 pub struct MixedModel {
     /// The response.
     pub(crate) y: Vec<f64>,
-    /// Names of the fixed coefficients.
     pub(crate) x_names: Vec<String>,
     /// Fixed columns as given.
     pub(crate) x: DMatrix<f64>,

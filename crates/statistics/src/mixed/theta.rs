@@ -6,9 +6,7 @@ use nalgebra::DMatrix;
 /// One free entry of a lower triangle or, uncorrelated, of the diagonal.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct Entry {
-    /// The factor.
     pub factor: usize,
-    /// The term.
     pub term: usize,
     /// Row in the factor's block.
     pub row: usize,

@@ -7,7 +7,6 @@ use windfall_numerics::double_double::DoubleDouble;
 
 type Function = (&'static str, fn(f64) -> f64);
 
-/// Functions of one number.
 const FUNCTIONS: [Function; 9] = [
     ("log", f64::ln),
     ("log2", f64::log2),

@@ -7,7 +7,6 @@
 use crate::error::Error;
 use crate::model::formula_syntax::{Kind, Node, Operator, parse, spelling};
 
-/// Most terms of a formula.
 const MOST_TERMS: usize = 2000;
 
 /// A formula with its terms multiplied out.

@@ -1,5 +1,6 @@
 //! Linear models: estimates with their errors, and how good they are.
 
+use crate::coefficient::Coefficient;
 use crate::distribution::tail::{f_upper, t_two_sided, t_upper_quantile};
 use crate::error::Error;
 use crate::model::anova::{AnovaRow, SumOfSquares};
@@ -41,29 +42,6 @@ pub struct LinearFit {
     pub residuals: Vec<f64>,
     /// Leverages: diagonal of the hat matrix.
     pub leverages: Vec<f64>,
-}
-
-/// An estimate. What needs residual degrees of freedom is NaN where there are none.
-#[derive(Clone, Debug, PartialEq, Serialize, utoipa::ToSchema)]
-#[schema(as = TermOutcome)]
-pub struct Coefficient {
-    /// Its column.
-    #[serde(rename = "term")]
-    pub name: String,
-    /// Its value.
-    pub estimate: f64,
-    /// Its standard error.
-    pub se: f64,
-    /// Estimate over standard error.
-    pub t: f64,
-    /// Probability of |t| or more if the coefficient were zero.
-    pub p: f64,
-    /// Lower end of its interval.
-    pub low: f64,
-    /// Upper end.
-    pub high: f64,
-    /// Degrees of freedom of t.
-    pub df: f64,
 }
 
 /// Fits a linear model by least squares.

@@ -132,6 +132,11 @@ pub fn complete_rows(
             names.push(name);
         }
     }
+    rows_with_all(table, &names)
+}
+
+/// Rows in which none of these columns is missing.
+pub fn rows_with_all(table: &Table, names: &[String]) -> Result<Completeness, Error> {
     let columns = names.iter().map(|name| table.column(name));
     let columns: Vec<_> = columns.collect::<Result<_, _>>()?;
     let (mut kept, mut left_out) = (Vec::new(), Vec::new());

@@ -1,6 +1,7 @@
 //! Rows and columns that a linear model hangs on.
 
-use crate::model::linear_model::{Coefficient, LinearFit, coefficient, student_quantile};
+use crate::coefficient::Coefficient;
+use crate::model::linear_model::{LinearFit, coefficient, student_quantile};
 use crate::model::model_frame::ModelFrame;
 use nalgebra::DMatrix;
 use serde::Serialize;

@@ -74,7 +74,6 @@ pub fn coding_of_design(
     Ok(Some(coded))
 }
 
-/// Coded values of one factor.
 struct FactorValues {
     values: Vec<f64>,
     /// Largest difference between a setting and its exact level; half-ranges.

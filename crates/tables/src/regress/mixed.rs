@@ -8,6 +8,7 @@ use windfall_files::error::Error;
 use windfall_files::found::FindingOutcome;
 use windfall_files::option_value::unusable;
 use windfall_files::table::data::{Data, read_data};
+use windfall_statistics::coefficient::Coefficient;
 use windfall_statistics::error::Error as StatisticsError;
 use windfall_statistics::mixed::fit::{MixedFit, MixedMethod, MixedOptions, fit_mixed};
 use windfall_statistics::mixed::inference::{
@@ -23,7 +24,6 @@ use windfall_statistics::model::anova::AnovaRow;
 use windfall_statistics::model::contrast::Contrast;
 use windfall_statistics::model::formula::Formula;
 use windfall_statistics::model::formula_syntax::spelling;
-use windfall_statistics::model::linear_model::Coefficient;
 use windfall_statistics::model::model_frame::{
     ModelRows, chosen_rows, complete_rows, model_rows, prediction_rows,
 };

@@ -7,7 +7,7 @@ use windfall_files::error::Error;
 use windfall_files::text::number::plain;
 use windfall_files::text::statistic::{freedom, number, probability};
 use windfall_files::text::table::findings_list;
-use windfall_statistics::model::linear_model::Coefficient;
+use windfall_statistics::coefficient::Coefficient;
 
 const TERMS: [Column<Coefficient>; 8] = [
     ("term", |term| term.name.clone()),

@@ -12,11 +12,12 @@ use windfall_files::error::Error;
 use windfall_files::found::FindingOutcome;
 use windfall_files::option_value::unusable;
 use windfall_files::table::data::{Data, read_data};
+use windfall_statistics::coefficient::Coefficient;
 use windfall_statistics::model::anova::{AnovaRow, LackOfFit, SumOfSquares, anova, lack_of_fit};
 use windfall_statistics::model::formula::{Formula, formula};
 use windfall_statistics::model::formula_syntax::spelling;
 use windfall_statistics::model::linear_model::{
-    Coefficient, LinearFit, Quality, WholeModel, fit_reduced, predict,
+    LinearFit, Quality, WholeModel, fit_reduced, predict,
 };
 use windfall_statistics::model::model_frame::{ModelRows, model_rows, prediction_rows};
 use windfall_statistics::model::reduced::{Reduced, reduce};

@@ -7,8 +7,9 @@ use crate::regress::run::RegressOutcome;
 use windfall_files::error::Error;
 use windfall_files::text::statistic::{freedom, number, probability};
 use windfall_files::text::table::{findings_list, page_tables, paragraph};
+use windfall_statistics::coefficient::Coefficient;
 use windfall_statistics::model::anova::{AnovaRow, LackOfFit, SumOfSquares};
-use windfall_statistics::model::linear_model::{Coefficient, Quality};
+use windfall_statistics::model::linear_model::Quality;
 
 const TERMS: [Column<Coefficient>; 7] = [
     ("term", |term| term.name.clone()),
@@ -91,7 +92,6 @@ pub(crate) fn r2_text(quality: &Quality) -> String {
     )
 }
 
-/// The test of lack of fit.
 pub(crate) fn lack_of_fit_text(lack_of_fit: Option<&LackOfFit>, unrepeated: &str) -> String {
     let Some(LackOfFit { lack, pure_error }) = lack_of_fit else {
         return format!("lack of fit: {unrepeated}, so there is no pure error to test against\n");
@@ -188,7 +188,6 @@ pub fn csv_of_regress(outcome: &RegressOutcome) -> Result<String, Error> {
     }
 }
 
-/// Estimates as CSV.
 pub(crate) fn csv_of_terms(terms: &[Coefficient]) -> Result<String, Error> {
     csv_of_rows(terms, &TERMS_CSV)
 }

@@ -11,7 +11,6 @@ use windfall_statistics::distribution::tail::{normal_quantile, t_upper_quantile}
 use windfall_statistics::residuals::diagnostics::RowInfluence;
 use windfall_statistics::surface::desirability::desirability;
 
-/// Points of a line.
 const POINTS: usize = 81;
 
 fn drawn(label: &str, style: Style, colour: usize, points: Vec<(f64, f64)>) -> Series {

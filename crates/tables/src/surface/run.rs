@@ -27,6 +27,7 @@ use windfall_files::table::data::{Data, read_data};
 use windfall_statistics::model::anova::{Anova, anova};
 use windfall_statistics::model::expression::values;
 use windfall_statistics::model::formula_syntax::parse;
+use windfall_statistics::model::model_frame::{chosen_rows, rows_with_all};
 use windfall_statistics::residuals::diagnostics::{inflation, influence};
 use windfall_statistics::surface::analysis::{
     Shape, Surface, canonical, fit_surface, ridge, surface_lack_of_fit,
@@ -184,7 +185,6 @@ pub fn fitted_surfaces(
     Ok((outcome, fitted))
 }
 
-/// Every figure of the surfaces.
 fn draw(
     folder: &FigureFolder,
     confidence: f64,
@@ -239,19 +239,9 @@ fn keep_complete(
             names.push(response.clone());
         }
     }
-    let columns = names.iter().map(|name| data.table.column(name));
-    let columns: Vec<_> = columns
-        .collect::<Result<_, _>>()
-        .map_err(Error::Statistics)?;
-    let (mut kept, mut left_out) = (Vec::new(), Vec::new());
-    for row in 0..data.table.rows() {
-        match columns.iter().find(|column| column.cells.is_missing(row)) {
-            None => kept.push(row),
-            Some(column) => left_out.push((row, column.name.clone())),
-        }
-    }
+    let (kept, left_out) = rows_with_all(&data.table, &names).map_err(Error::Statistics)?;
     let findings = left_out_finding(&left_out, &data.lines);
-    data.table = windfall_statistics::model::model_frame::chosen_rows(&data.table, &kept);
+    data.table = chosen_rows(&data.table, &kept);
     data.lines = kept.iter().map(|row| data.lines[*row]).collect();
     match kept.is_empty() {
         true => Err(Error::TableWithoutRows {

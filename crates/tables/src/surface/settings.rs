@@ -17,11 +17,9 @@ const MOST_POINTS: usize = 1001;
 
 /// What is wanted.
 pub(crate) struct SettingsRequest<'a> {
-    /// Names of the responses.
     pub names: Vec<String>,
     /// What is wanted of each.
     pub goals: Vec<Option<Goal>>,
-    /// Factors that are held.
     pub hold: &'a [String],
     /// Factor at whose values equally good settings are given.
     pub along: Option<&'a str>,

@@ -1,6 +1,5 @@
 //! Campaigns: the list, their files, their stored results.
 
-use crate::about::KINDS;
 use crate::app::{Answer, App};
 use crate::described::{QuestionProblems, RequestProblems};
 use crate::given::Given;
@@ -11,7 +10,7 @@ use axum::http::{HeaderMap, HeaderValue, StatusCode, header};
 use axum::response::{IntoResponse, Response};
 use serde::Deserialize;
 use utoipa::ToSchema;
-use windfall_campaign::settings::template::{TemplateKind, write_template};
+use windfall_campaign::settings::template::{TEMPLATES, write_template};
 use windfall_workspace::campaign_view::{CampaignView, view_campaign};
 use windfall_workspace::workspace::{CampaignEntry, StoredResults, stored_results};
 
@@ -40,12 +39,9 @@ pub(crate) async fn create(
     State(app): State<App>,
     Given(new): Given<NewCampaign>,
 ) -> Result<Response, Problem> {
-    let Some(kind) = template_kind(&new.kind) else {
-        let detail = format!(
-            "kind \"{}\": expected one of {}",
-            new.kind,
-            KINDS.join(", ")
-        );
+    let Some(&(_, kind)) = TEMPLATES.iter().find(|(name, _)| *name == new.kind) else {
+        let known = TEMPLATES.map(|(name, _)| name).join(", ");
+        let detail = format!("kind \"{}\": expected one of {known}", new.kind);
         return Err(Problem::request(detail));
     };
     let view = app.work(move |app| {
@@ -55,18 +51,6 @@ pub(crate) async fn create(
     });
     let view = view.await?;
     Ok((StatusCode::CREATED, with_version(view)).into_response())
-}
-
-fn template_kind(word: &str) -> Option<TemplateKind> {
-    match word {
-        "pendulum" => Some(TemplateKind::Pendulum),
-        "carriage" => Some(TemplateKind::Carriage),
-        "drop" => Some(TemplateKind::Drop),
-        "compression" => Some(TemplateKind::Compression),
-        "acoustic" => Some(TemplateKind::Acoustic),
-        "repeats" => Some(TemplateKind::Repeats),
-        _ => None,
-    }
 }
 
 /// A campaign as its files describe it; its version is the ETag.

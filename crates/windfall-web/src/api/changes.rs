@@ -53,51 +53,12 @@ pub(crate) struct OptionsGiven {
     group: Option<String>,
 }
 
-/// The columns of the channels.
-#[derive(Debug, Deserialize, ToSchema)]
-#[serde(deny_unknown_fields)]
-pub(crate) struct ChannelsGiven {
-    /// Channels.
-    channels: Vec<ChannelGiven>,
-    /// Column of times.
-    time: Option<String>,
-    /// Sampling rate.
-    rate: Option<String>,
-}
-
-/// A channel.
-#[derive(Debug, Deserialize, ToSchema)]
-#[serde(deny_unknown_fields)]
-pub(crate) struct ChannelGiven {
-    /// "force", "position", …
-    quantity: String,
-    /// Column in the files.
-    column: String,
-    /// Its unit, or the sensitivity of its sensor.
-    unit: String,
-}
-
 /// Further impacts.
 #[derive(Debug, Deserialize, ToSchema)]
 #[serde(deny_unknown_fields)]
 pub(crate) struct ImpactsGiven {
     /// Rows of impacts.csv.
-    impacts: Vec<ImpactGiven>,
-}
-
-/// A row of impacts.csv.
-#[derive(Debug, Deserialize, ToSchema)]
-#[serde(deny_unknown_fields)]
-pub(crate) struct ImpactGiven {
-    /// Id.
-    id: String,
-    /// Specimen.
-    specimen: String,
-    /// Recording.
-    file: String,
-    /// Other columns.
-    #[serde(default)]
-    cells: BTreeMap<String, String>,
+    impacts: Vec<NewImpact>,
 }
 
 async fn changed(
@@ -191,22 +152,16 @@ fn present<T, const N: usize>(pairs: [(&str, Option<T>); N]) -> BTreeMap<String,
 
 /// Sets the columns of the channels.
 #[utoipa::path(
-    put, path = "/api/campaigns/{id}/channels", request_body = ChannelsGiven,
+    put, path = "/api/campaigns/{id}/channels", request_body = ChannelsChange,
     params(("id" = String, Path, example = "bench"), ("If-Match" = String, Header, example = "*")),
     responses((status = 200, body = CampaignView), ChangeProblems))]
 pub(crate) async fn channels(
     State(app): State<App>,
     Path(id): Path<String>,
     Version(version): Version,
-    Given(given): Given<ChannelsGiven>,
+    Given(given): Given<ChannelsChange>,
 ) -> Result<Response, Problem> {
-    let own = given.channels.into_iter();
-    let change = ChannelsChange {
-        channels: own.map(|c| (c.quantity, c.column, c.unit)).collect(),
-        time: given.time,
-        rate: given.rate,
-    };
-    changed(app, id, version, Change::Channels(change)).await
+    changed(app, id, version, Change::Channels(given)).await
 }
 
 /// Adds impacts, and specimens that are new.
@@ -220,11 +175,5 @@ pub(crate) async fn impacts(
     Version(version): Version,
     Given(given): Given<ImpactsGiven>,
 ) -> Result<Response, Problem> {
-    let rows = given.impacts.into_iter().map(|row| NewImpact {
-        id: row.id,
-        specimen: row.specimen,
-        file: row.file,
-        cells: row.cells,
-    });
-    changed(app, id, version, Change::Impacts(rows.collect())).await
+    changed(app, id, version, Change::Impacts(given.impacts)).await
 }

@@ -60,12 +60,10 @@ impl JobGiven {
                 let words: Vec<&str> = ["population", shown].into_iter().chain(pairs).collect();
                 command(&words)
             }
-            Work::Calibrate => command(&[
-                "calibrate",
-                shown,
-                "--card",
-                &format!("{shown}/{CARD_FILE}"),
-            ]),
+            Work::Calibrate => {
+                let card = format!("{shown}/{CARD_FILE}");
+                command(&["calibrate", shown, "--card", &card])
+            }
         }
     }
 

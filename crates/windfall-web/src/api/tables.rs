@@ -197,10 +197,7 @@ pub(crate) async fn regression(
         let shown = format!("{}/{}", name_of(directory), given.table);
         let mut words = vec!["regress", &shown, "--response", &given.response];
         words.extend(["--terms", &given.terms]);
-        given
-            .random
-            .iter()
-            .for_each(|r| words.extend(["--random", r]));
+        words.extend(given.random.iter().flat_map(|random| ["--random", random]));
         if given.select {
             words.extend(["--select", "backward"]);
         }
@@ -255,9 +252,7 @@ fn fitted_surface(directory: &FilePath, given: SurfaceGiven) -> Result<SurfaceAn
         ("--hold", &given.hold),
     ];
     for (option, values) in lists {
-        values
-            .iter()
-            .for_each(|value| words.extend([option, value]));
+        words.extend(values.iter().flat_map(|value| [option, value]));
     }
     let members = given.members.to_string();
     if let Some(along) = &given.along {

@@ -1,0 +1,26 @@
+//! A coefficient of a model with its test and interval.
+
+use serde::Serialize;
+
+/// An estimate. What needs residual degrees of freedom is NaN where there are none.
+#[derive(Clone, Debug, PartialEq, Serialize, utoipa::ToSchema)]
+#[schema(as = TermOutcome)]
+pub struct Coefficient {
+    /// Its column.
+    #[serde(rename = "term")]
+    pub name: String,
+    /// Its value.
+    pub estimate: f64,
+    /// Its standard error.
+    pub se: f64,
+    /// Estimate over standard error.
+    pub t: f64,
+    /// Probability of |t| or more if the coefficient were zero.
+    pub p: f64,
+    /// Lower end of its interval.
+    pub low: f64,
+    /// Upper end.
+    pub high: f64,
+    /// Degrees of freedom of t.
+    pub df: f64,
+}
