@@ -304,7 +304,7 @@ fn codes(source: &str) -> BTreeSet<String> {
         let arms = body.split("=>").skip(1);
         found.extend(arms.filter_map(|arm| quoted(arm.trim_start().trim_start_matches('{'))));
     }
-    for call in ["finding(", "tell(", "code:"] {
+    for call in ["finding(", "tell(", "FindingOutcome::new(", "code:"] {
         for given in source.split(call).skip(1) {
             // Some calls have the outcome that the finding goes into first.
             let given = given.trim_start();
