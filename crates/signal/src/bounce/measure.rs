@@ -164,7 +164,7 @@ fn refined(times: &[f64], force: &[f64], top: usize, noise: f64) -> Peak {
 /// F = K (t − t₀)^q   ⟹   t_a − t₀ = (t_b − t_a) / ((b/a)^(1/q) − 1)
 /// ```
 ///
-/// q is in the middle of [`RISE`], the rest of which is in `shape`. Behind a plate:
+/// q is in the middle of `RISE`, the rest of which is in `shape`. Behind a plate:
 /// [`time_before`].
 ///
 /// * `peak`: sample of the first peak
