@@ -3,12 +3,11 @@
 use crate::law_card::{CardCovariate, CardPopulation, LawCard};
 use std::fmt::Write;
 use windfall_files::error::Error;
-use windfall_files::table::write::csv_text;
+use windfall_files::table::write::{csv_text, number_cell};
 use windfall_files::text::statistic::number;
 use windfall_files::text::table::table_text;
 
 /// A card as a table with what must be known beside it.
-#[must_use]
 pub fn text_of_card(card: &LawCard) -> String {
     let mut text = format!(
         "{}\n\n{}\ncontact ends at {}\n\n",
@@ -150,14 +149,13 @@ fn effect_text(effect: &CardCovariate) -> String {
 /// None in practice: the text is written to memory.
 pub fn csv_of_card(card: &LawCard) -> Result<String, Error> {
     let header = ["parameter", "value", "sd", "low", "high", "unit"];
-    let text = |value: Option<f64>| value.map_or_else(String::new, |value| value.to_string());
     let rows = card.parameters.iter().map(|(name, parameter)| {
         vec![
             name.clone(),
             parameter.value.to_string(),
-            text(parameter.sd),
-            text(parameter.interval.map(|[low, _]| low)),
-            text(parameter.interval.map(|[_, high]| high)),
+            number_cell(parameter.sd),
+            number_cell(parameter.interval.map(|[low, _]| low)),
+            number_cell(parameter.interval.map(|[_, high]| high)),
             parameter.unit.clone(),
         ]
     });

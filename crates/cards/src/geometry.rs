@@ -9,14 +9,19 @@ use windfall_files::text::number::plain;
 
 /// What `windfall radius` is asked; texts with units.
 #[derive(Clone, Debug, Default)]
+#[cfg_attr(feature = "clap", derive(clap::Args))]
 pub struct RadiusRequest {
-    /// Chord of a gauge.
+    /// Distance between the feet of a chord gauge
+    #[cfg_attr(feature = "clap", arg(long, value_name = "LENGTH"))]
     pub chord: Option<String>,
-    /// Height of the surface above the chord.
+    /// Height of the surface above the chord
+    #[cfg_attr(feature = "clap", arg(long, value_name = "LENGTH"))]
     pub sagitta: Option<String>,
-    /// Three diameters, the first along the axis that is struck or pressed.
+    /// Three diameters; the first along the axis that is struck or pressed
+    #[cfg_attr(feature = "clap", arg(long, value_name = "A, B, C"))]
     pub diameters: Option<String>,
-    /// Radius of the other body, or "plane".
+    /// Radius of the other body, or "plane": gives R*
+    #[cfg_attr(feature = "clap", arg(long, value_name = "LENGTH"))]
     pub against: Option<String>,
 }
 
@@ -81,7 +86,6 @@ pub fn radius(request: &RadiusRequest) -> Result<RadiusOutcome, Error> {
 }
 
 /// Radii for people.
-#[must_use]
 pub fn text_of_radius(outcome: &RadiusOutcome) -> String {
     let mm = |value: f64| format!("{} mm", plain(1e3 * value));
     let mut text = match outcome.radius == outcome.radius_2 {

@@ -163,6 +163,15 @@ pub struct CardCovariance {
     pub of_what: String,
 }
 
+/// What a covariance or a population is of: "ln k", "e".
+pub fn labels_of(names: &[String], logarithmic: &[bool]) -> Vec<String> {
+    let label = |(name, logarithmic): (&String, &bool)| match logarithmic {
+        true => format!("ln {name}"),
+        false => name.clone(),
+    };
+    names.iter().zip(logarithmic).map(label).collect()
+}
+
 /// Range in which a law was seen; SI.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
@@ -175,6 +184,14 @@ pub struct CardRange {
     pub displacement: [f64; 2],
     /// Masses that struck; kg.
     pub mass: [f64; 2],
+}
+
+/// Lowest and highest of some values.
+pub fn range_of_values(values: impl IntoIterator<Item = f64>) -> [f64; 2] {
+    let nothing = [f64::INFINITY, f64::NEG_INFINITY];
+    values.into_iter().fold(nothing, |range, value| {
+        [range[0].min(value), range[1].max(value)]
+    })
 }
 
 /// Bodies of a card.

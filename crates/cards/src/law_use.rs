@@ -90,7 +90,6 @@ pub enum LawUseFinding {
 
 impl LawUseFinding {
     /// Stable name for scripts.
-    #[must_use]
     pub fn code(&self) -> &'static str {
         match self {
             Self::OutsideRange { .. } => "outside-card-range",
@@ -133,7 +132,6 @@ pub struct LawUse {
 
 /// Remarks on the use of a law: on its formula, its table's end and its card's
 /// range.
-#[must_use]
 pub fn findings_of_use(
     law: &Law,
     range: Option<&CardRange>,
@@ -141,10 +139,11 @@ pub fn findings_of_use(
 ) -> Vec<FindingOutcome> {
     let mut findings = Vec::new();
     if let LawKind::User(user) = law.kind() {
-        findings.extend(user.findings().iter().map(|finding| FindingOutcome {
-            code: finding.code().to_owned(),
-            message: finding.to_string(),
-        }));
+        findings.extend(
+            user.findings()
+                .iter()
+                .map(|finding| FindingOutcome::new(finding.code(), finding.to_string())),
+        );
         let deepest = used
             .iter()
             .map(|used| used.displacement)
@@ -163,10 +162,7 @@ pub fn findings_of_use(
 }
 
 fn outcome(finding: &LawUseFinding) -> FindingOutcome {
-    FindingOutcome {
-        code: finding.code().to_owned(),
-        message: finding.to_string(),
-    }
+    FindingOutcome::new(finding.code(), finding.to_string())
 }
 
 /// Of each quantity the value that is farthest above and below its range.
@@ -209,7 +205,6 @@ fn outside(range: &CardRange, used: &[LawUse]) -> Vec<LawUseFinding> {
 }
 
 /// Name of an end rule in files and results.
-#[must_use]
 pub fn end_name(end: EndRule) -> &'static str {
     match end {
         EndRule::ForceZero => "force-zero",

@@ -11,6 +11,7 @@ use windfall_contact::parameter::NO_BOUND;
 use windfall_files::error::Error;
 use windfall_files::option_value::unusable;
 use windfall_files::text::toml_source::{TomlSource, parse_source, read_source};
+use windfall_files::write_file::write_whole;
 
 /// Ending of a card in JSON; any other is TOML.
 const JSON: &str = "json";
@@ -54,11 +55,7 @@ pub fn write_card(path: &Path, card: &LawCard) -> Result<(), Error> {
             .map_err(|error| unwritable(error.to_string()))?,
         false => card_text(card)?,
     };
-    std::fs::write(path, text).map_err(|source| Error::FileAccess {
-        path: path.to_path_buf(),
-        action: "write",
-        source,
-    })
+    write_whole(path, text.as_bytes())
 }
 
 /// What is read of a card first.
@@ -177,7 +174,6 @@ fn defined(name: &str, card: &CardDefinition) -> UserLawDefinition {
 }
 
 /// The definition that a card carries; none for a built-in law.
-#[must_use]
 pub fn card_definition(kind: LawKind) -> Option<CardDefinition> {
     let LawKind::User(user) = kind else {
         return None;

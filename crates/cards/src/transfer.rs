@@ -17,24 +17,43 @@ use windfall_files::text::number::plain;
 
 /// Inputs of `windfall card transfer`; texts with units.
 #[derive(Clone, Debug, Default)]
+#[cfg_attr(feature = "clap", derive(clap::Args))]
 pub struct TransferRequest {
-    /// The law with its parameters; none where a card is given.
+    /// The law with its parameters, as it was found
+    #[cfg_attr(
+        feature = "clap",
+        arg(long, required_unless_present = "file", conflicts_with = "file")
+    )]
     pub law: Option<String>,
-    /// A law card.
+    /// The law card of the law as it was found
+    #[cfg_attr(feature = "clap", arg(long, value_name = "FILE", value_hint = clap::ValueHint::FilePath))]
     pub file: Option<PathBuf>,
-    /// Radii in the geometry where it was found: "41.5 mm, plane".
+    /// Where it was found: radius of the fruit, radius of the other body or "plane"
+    #[cfg_attr(feature = "clap", arg(long, value_name = "RADIUS, RADIUS"))]
     pub from: String,
-    /// Plates that deformed the fruit there.
+    /// Plates that deformed the fruit where it was found: 1 or 2
+    #[cfg_attr(feature = "clap", arg(long, default_value_t = 1, value_name = "N"))]
     pub from_plates: usize,
-    /// The other body there: "rigid", "fruit", or its modulus and Poisson's ratio.
+    /// The other body where it was found: rigid, fruit, or its modulus and Poisson's ratio
+    #[cfg_attr(feature = "clap", arg(long, value_name = "BODY"))]
     pub from_other: Option<String>,
-    /// Radii in the geometry where it is wanted: "41.5 mm, 25 mm".
+    /// Where it is wanted: radius of the fruit, radius of the other body or "plane"
+    #[cfg_attr(feature = "clap", arg(long, value_name = "RADIUS, RADIUS"))]
     pub to: String,
-    /// Plates that deform the fruit there.
+    /// Plates that deform the fruit where it is wanted: 1 or 2
+    #[cfg_attr(feature = "clap", arg(long, default_value_t = 1, value_name = "N"))]
     pub to_plates: usize,
-    /// The other body there.
+    /// The other body where it is wanted: rigid, fruit, or its modulus and Poisson's ratio
+    #[cfg_attr(
+        feature = "clap",
+        arg(long, value_name = "BODY", conflicts_with = "to_fruit")
+    )]
     pub to_other: Option<String>,
-    /// Where the card of the law in its new geometry is written.
+    /// Where it is wanted, the other body is a fruit of the same modulus
+    #[cfg_attr(feature = "clap", arg(long))]
+    pub to_fruit: bool,
+    /// Write the law card of the law where it is wanted
+    #[cfg_attr(feature = "clap", arg(long, value_name = "FILE", value_hint = clap::ValueHint::FilePath, requires = "file"))]
     pub card: Option<PathBuf>,
 }
 
@@ -61,7 +80,11 @@ pub fn transfer_law(request: &TransferRequest) -> Result<TransferOutcome, Error>
     let (law, option, card) = found_law(request)?;
     let (from_plates, from_other) = (request.from_plates, &request.from_other);
     let here = side("--from", &request.from, from_plates, from_other)?;
-    let there = side("--to", &request.to, request.to_plates, &request.to_other)?;
+    let to_other = match request.to_fruit {
+        true => &Some("fruit".to_owned()),
+        false => &request.to_other,
+    };
+    let there = side("--to", &request.to, request.to_plates, to_other)?;
     // Only laws of Hertz's contact have a k that gives the modulus.
     let plain = transfer(law, &here.geometry, &there.geometry)
         .map_err(|error| unusable(option.clone(), error.to_string()))?;
@@ -320,7 +343,6 @@ fn scale(matrix: &mut [Vec<f64>], of: &[String], ratio: f64) {
 }
 
 /// A transferred law for people.
-#[must_use]
 pub fn text_of_transfer(outcome: &TransferOutcome) -> String {
     let contact = |contact: &CardContact| {
         format!(

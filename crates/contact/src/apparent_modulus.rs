@@ -14,7 +14,6 @@ pub struct PrincipalRadii {
 
 impl PrincipalRadii {
     /// A sphere.
-    #[must_use]
     pub fn sphere(radius: f64) -> Self {
         Self {
             first: radius,
@@ -56,7 +55,6 @@ fn length(contact: &PressedContact) -> f64 {
 ///
 /// One sphere on a plate gives (4/3)√R, between two plates 2^(−1.5) of it.
 /// Unit: m^0.5.
-#[must_use]
 pub fn stiffness_per_modulus(contacts: &[PressedContact]) -> f64 {
     contacts.iter().map(length).sum::<f64>().powf(-1.5)
 }
@@ -90,7 +88,6 @@ pub fn stiffness_per_modulus(contacts: &[PressedContact]) -> f64 {
 /// let two = apparent_modulus(1e6, 0.3, &[contact, contact]);
 /// assert!((two / one - 8.0_f64.sqrt()).abs() < 1e-12);
 /// ```
-#[must_use]
 pub fn apparent_modulus(stiffness: f64, poisson: f64, contacts: &[PressedContact]) -> f64 {
     (1.0 - poisson * poisson) * stiffness / stiffness_per_modulus(contacts)
 }

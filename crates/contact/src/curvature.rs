@@ -21,7 +21,6 @@ use crate::apparent_modulus::PrincipalRadii;
 /// let r = windfall_contact::curvature::radius_from_chord(8e-3, 2e-3);
 /// assert!((r - 5e-3).abs() < 1e-15);
 /// ```
-#[must_use]
 pub fn radius_from_chord(chord: f64, sagitta: f64) -> f64 {
     chord * chord / (8.0 * sagitta) + 0.5 * sagitta
 }
@@ -41,7 +40,6 @@ pub fn radius_from_chord(chord: f64, sagitta: f64) -> f64 {
 /// let radii = windfall_contact::curvature::radii_of_ellipsoid(0.08, 0.08, 0.06);
 /// assert!((radii.first - 0.04).abs() < 1e-15 && (radii.second - 0.0225).abs() < 1e-15);
 /// ```
-#[must_use]
 pub fn radii_of_ellipsoid(pressed: f64, second: f64, third: f64) -> PrincipalRadii {
     PrincipalRadii {
         first: second * second / (2.0 * pressed),
@@ -53,7 +51,6 @@ pub fn radii_of_ellipsoid(pressed: f64, second: f64, third: f64) -> PrincipalRad
 ///
 /// Where radii differ little it stands for both: the stiffness of Hertz's
 /// contact differs in second order only.
-#[must_use]
 pub fn mean_radius(radii: PrincipalRadii) -> f64 {
     2.0 / (1.0 / radii.first + 1.0 / radii.second)
 }

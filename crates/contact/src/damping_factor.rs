@@ -28,21 +28,18 @@ fn divided(shape: f64, slope: f64, impact_velocity: f64) -> DampingFactor {
 
 /// a = 0.75 (1 − e²)/v0, Lankarani and Nikravesh (1990).
 #[inline(always)]
-#[must_use]
 pub fn lankarani_nikravesh(e: f64, v0: f64) -> DampingFactor {
     divided(0.75 * (1.0 - e * e), -1.5 * e, v0)
 }
 
 /// a = 8 (1 − e)/(5 e v0), Flores et al. (2011).
 #[inline(always)]
-#[must_use]
 pub fn flores(e: f64, v0: f64) -> DampingFactor {
     divided(1.6 * (1.0 - e) / e, -1.6 / (e * e), v0)
 }
 
 /// a = 6 (1 − e)/(((2e − 1)² + 3) v0), Herbert and McWhannell (1977).
 #[inline(always)]
-#[must_use]
 pub fn herbert_mcwhannell(e: f64, v0: f64) -> DampingFactor {
     let below = (2.0 * e - 1.0) * (2.0 * e - 1.0) + 3.0;
     let below_slope = 4.0 * (2.0 * e - 1.0);

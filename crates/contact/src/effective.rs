@@ -4,7 +4,6 @@
 ///
 /// # Source
 /// Johnson (1985), Contact Mechanics, section 11.4.
-#[must_use]
 pub fn effective_mass(first: f64, second: f64) -> f64 {
     1.0 / (1.0 / first + 1.0 / second)
 }
@@ -13,7 +12,6 @@ pub fn effective_mass(first: f64, second: f64) -> f64 {
 ///
 /// # Source
 /// Johnson (1985), Contact Mechanics, eq. (4.19).
-#[must_use]
 pub fn effective_radius(first: f64, second: f64) -> f64 {
     1.0 / (1.0 / first + 1.0 / second)
 }
@@ -31,7 +29,6 @@ pub struct Elastic {
 ///
 /// # Source
 /// Johnson (1985), Contact Mechanics, eq. (4.20).
-#[must_use]
 pub fn effective_modulus(first: Elastic, second: Elastic) -> f64 {
     let compliance = |body: Elastic| (1.0 - body.poisson * body.poisson) / body.modulus;
     1.0 / (compliance(first) + compliance(second))
@@ -50,7 +47,6 @@ pub fn effective_modulus(first: Elastic, second: Elastic) -> f64 {
 /// use windfall_contact::effective::hertz_stiffness;
 /// assert_eq!(hertz_stiffness(3e6, 0.04), 4e6 * 0.2);
 /// ```
-#[must_use]
 pub fn hertz_stiffness(modulus: f64, radius: f64) -> f64 {
     4.0 / 3.0 * modulus * radius.sqrt()
 }

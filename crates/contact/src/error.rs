@@ -16,7 +16,6 @@ pub struct Place {
 
 impl Place {
     /// Column for people: characters from 1.
-    #[must_use]
     pub fn column(&self) -> usize {
         self.text
             .char_indices()

@@ -50,7 +50,6 @@ impl LawExpression {
     }
 
     /// The values given, and the defaults of those that were not.
-    #[must_use]
     pub fn values_or_defaults(&self) -> Vec<Option<f64>> {
         let parameters = self.kind.describe().parameters.iter();
         parameters
@@ -64,7 +63,6 @@ impl LawExpression {
 }
 
 /// The law with a typical value for every parameter.
-#[must_use]
 pub fn typical(kind: LawKind) -> LawExpression {
     let parameters = kind.describe().parameters.iter();
     LawExpression {

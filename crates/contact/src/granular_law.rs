@@ -24,6 +24,7 @@ pub struct GranularLaw {
     pub damping: Damping,
 }
 
-/// What engines lack for laws that have it, after the law's name.
-pub(crate) const GROWING_DAMPING: &str = ": it has no damping that grows as the elastic force does";
-pub(crate) const MEMORY: &str = ": it has no force that remembers the largest displacement";
+/// Why laws with such a force have no counterpart, after "LAW: ".
+pub(crate) const GROWING_DAMPING: &str =
+    "the engine has no damping that grows with the elastic force";
+pub(crate) const MEMORY: &str = "the engine has no force that remembers the largest displacement";

@@ -11,7 +11,6 @@ use std::f64::consts::FRAC_PI_2;
 ///
 /// # Source
 /// Abramowitz and Stegun (1964), 17.6.
-#[must_use]
 pub fn elliptic_integrals(eccentricity: f64) -> (f64, f64) {
     let (mut a, mut b) = (1.0, (1.0 - eccentricity * eccentricity).sqrt());
     let (mut sum, mut power) = (eccentricity * eccentricity / 2.0, 0.5);
@@ -49,7 +48,6 @@ pub fn elliptic_integrals(eccentricity: f64) -> (f64, f64) {
 /// let sphere = approach_length(25.0, 25.0);
 /// assert!((sphere - (9.0 / 16.0 * 25.0_f64).cbrt()).abs() < 1e-12);
 /// ```
-#[must_use]
 pub fn approach_length(curvature: f64, other: f64) -> f64 {
     let small = 0.5 * curvature.min(other);
     let large = 0.5 * curvature.max(other);

@@ -14,7 +14,7 @@ pub trait ImpactLaw: Sized {
     /// The law in the terms of engines for granular matter.
     ///
     /// # Errors
-    /// Why it cannot be put so, after the law's name.
+    /// Why it has no counterpart there; the caller names the law.
     fn granular(&self) -> Result<GranularLaw, String>;
 }
 
@@ -37,20 +37,17 @@ pub struct ImpactScales {
 
 impl ImpactScales {
     /// Energy lost; J.
-    #[must_use]
     pub fn loss(&self) -> f64 {
         0.5 * self.mass * self.velocity.powi(2) * (1.0 - self.restitution.powi(2))
     }
 
     /// k of an elastic force k d^n; N/m^n.
-    #[must_use]
     pub fn stiffness(&self, n: f64) -> f64 {
         // A damped force peaks before the displacement does.
         0.9 * self.force / self.displacement.powf(n)
     }
 
     /// c of a damping c d^p v; N s/m^(p+1).
-    #[must_use]
     pub fn damping(&self, p: f64) -> f64 {
         // ∮ c d^p v dd over loading and unloading, with v falling to zero halfway.
         self.loss() * (p + 1.5) / (1.3 * self.velocity * self.displacement.powf(p + 1.0))

@@ -1,4 +1,3 @@
-#![cfg_attr(not(test), warn(clippy::disallowed_methods, clippy::disallowed_types))]
 //! Normal contact-force laws of fruit: formulas with exact derivatives, their
 //! registry and the expression language that names them.
 //!

@@ -62,7 +62,6 @@ fn bound<S: Serializer>(upper: &f64, serializer: S) -> Result<S::Ok, S::Error> {
 
 impl ParameterDescription {
     /// Largest legal value; SI. `None` where there is no bound.
-    #[must_use]
     pub fn bound_above(&self) -> Option<f64> {
         Some(self.upper).filter(|upper| *upper < NO_BOUND)
     }
@@ -146,7 +145,6 @@ impl LawDescription {
     ///
     /// * `values`: of the law's parameters; SI. An exponent that is `None` takes its
     ///   default
-    #[must_use]
     pub fn elastic_exponent(&self, values: &[Option<f64>]) -> Option<f64> {
         match self.elastic {
             Elastic::Hertzian => Some(1.5),
@@ -156,7 +154,6 @@ impl LawDescription {
     }
 
     /// Name of the parameter that is the exponent of the force at rest.
-    #[must_use]
     pub fn exponent_name(&self) -> Option<&'static str> {
         match self.elastic {
             Elastic::Power(Power::Parameter(name)) => Some(name),
@@ -165,7 +162,6 @@ impl LawDescription {
     }
 
     /// Exponent of a power; 1. `None` where its parameter has neither value nor default.
-    #[must_use]
     pub fn exponent(&self, power: Power, values: &[Option<f64>]) -> Option<f64> {
         match power {
             Power::Number(exponent) => Some(exponent),
@@ -174,7 +170,6 @@ impl LawDescription {
     }
 
     /// Position of the parameter `name`; case and `-` or `_` do not count.
-    #[must_use]
     pub fn index_of(&self, name: &str) -> Option<usize> {
         let folded = |name: &str| name.to_lowercase().replace('-', "_");
         let name = folded(name);
@@ -190,7 +185,6 @@ impl LawDescription {
     ///
     /// Returns `None` when an exponent in the unit has neither value nor
     /// default, or when there is no parameter `index`.
-    #[must_use]
     pub fn unit_of(&self, index: usize, values: &[Option<f64>]) -> Option<String> {
         let mut pieces = self.parameters.get(index)?.unit.split('^');
         let mut unit = pieces.next()?.to_string();

@@ -13,7 +13,6 @@ use crate::error::Error;
 /// # Numerics
 /// With w = e z the equation is −w − ln(1 − w) = z − ln(1 + z); the left side
 /// is convex, so Newton's method from the right converges without overshoot.
-#[must_use]
 pub fn damped_power_restitution(z: f64) -> f64 {
     if z < SMALLEST_DAMPING {
         return 1.0 - 2.0 / 3.0 * z;
@@ -98,7 +97,6 @@ pub fn damping_for_restitution(restitution: f64, velocity: f64) -> Result<f64, E
 ///
 /// # Source
 /// Mueller and Poeschel (2011), Phys. Rev. E 84, 021302, approximant \[1/4\].
-#[must_use]
 pub fn kuwabara_kono_pade(group: f64) -> f64 {
     let s = group.sqrt();
     let above = 1.0 + 0.501086 * s;

@@ -13,7 +13,6 @@ use crate::parameter::{IMPACT_VELOCITY, MASS};
 /// # Source
 /// Peaks and durations of Hertz impacts (Johnson 1985, sec. 11.4); the damping
 /// from the energy lost over one loading and unloading.
-#[must_use]
 pub fn starting_values(kind: LawKind, scales: &ImpactScales, given: &[Option<f64>]) -> Vec<f64> {
     let start = start(kind, scales, given);
     let parameters = kind.describe().parameters.iter().zip(given);

@@ -73,7 +73,6 @@ pub fn block_words(
 }
 
 /// Block, from 1, of a point of ±1 levels.
-#[must_use]
 pub fn block_of(words: &[Word], coded: &[f64]) -> usize {
     let bits = words.iter().enumerate();
     1 + bits

@@ -56,7 +56,6 @@ pub struct Exchanged {
 /// # Source
 /// Fedorov (1972), Theory of Optimal Experiments, for a list of candidates;
 /// Meyer and Nachtsheim (1995), Technometrics 37, 60-69, by coordinates.
-#[must_use]
 pub fn exchange(problem: &Exchange, seed: u64, start: u64) -> Exchanged {
     let mut generator = generator(seed, STREAM + start);
     let mut state = State::of(problem, random_places(problem, &mut generator));

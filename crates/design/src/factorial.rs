@@ -120,7 +120,6 @@ pub fn two_level(
 }
 
 /// Points of ±1 in standard order of the base factors: the first changes fastest.
-#[must_use]
 pub fn two_level_points(fraction: &Fraction) -> Vec<Vec<f64>> {
     let base = fraction.base();
     (0..1_usize << base.len())
@@ -138,7 +137,6 @@ pub fn two_level_points(fraction: &Fraction) -> Vec<Vec<f64>> {
 }
 
 /// A resolution in Roman numerals, as is the custom.
-#[must_use]
 pub fn roman(resolution: usize) -> String {
     let tens = "X".repeat(resolution / 10);
     let units = ["", "I", "II", "III", "IV", "V", "VI", "VII", "VIII", "IX"];

@@ -36,7 +36,6 @@ pub enum DesignFinding {
 
 impl DesignFinding {
     /// Short name for tables and JSON.
-    #[must_use]
     pub fn code(&self) -> &'static str {
         match self {
             Self::LowResolution { .. } => "low-resolution",

@@ -74,19 +74,16 @@ impl Factor {
     }
 
     /// Actual value of a coded one, exact; unit of the factor.
-    #[must_use]
     pub fn actual(&self, coded: f64) -> f64 {
         self.centre + self.half * coded
     }
 
     /// Coded value of an actual one.
-    #[must_use]
     pub fn coded(&self, actual: f64) -> f64 {
         (actual - self.centre) / self.half
     }
 
     /// The actual value rounded to the printed decimals; unit of the factor.
-    #[must_use]
     pub fn setting(&self, coded: f64) -> f64 {
         let actual = self.actual(coded);
         match self.decimals {
@@ -97,28 +94,24 @@ impl Factor {
     }
 
     /// Category of a coded value; `None` for a number.
-    #[must_use]
     pub fn category(&self, coded: f64) -> Option<&str> {
         let place = self.category_place(coded)?;
         self.categories.get(place).map(String::as_str)
     }
 
     /// Place of the category of a coded value; `None` for a number.
-    #[must_use]
     pub fn category_place(&self, coded: f64) -> Option<usize> {
         let last = self.categories.len().checked_sub(1)?;
         Some((0.5 * (coded + 1.0) * last as f64).round() as usize)
     }
 
     /// Coded values of the categories, or −1 and 1 for a number.
-    #[must_use]
     pub fn ends(&self) -> Vec<f64> {
         evenly(self.categories.len().max(2))
     }
 }
 
 /// `count` coded values evenly from −1 to 1.
-#[must_use]
 pub fn evenly(count: usize) -> Vec<f64> {
     let last = count.saturating_sub(1).max(1) as f64;
     (0..count).map(|i| 2.0 * i as f64 / last - 1.0).collect()
@@ -145,7 +138,6 @@ pub enum Point {
 
 impl Point {
     /// Its name in tables.
-    #[must_use]
     pub fn name(self) -> &'static str {
         match self {
             Self::Factorial => "factorial",
@@ -193,14 +185,12 @@ pub struct Design {
 
 impl Design {
     /// Number of blocks.
-    #[must_use]
     pub fn blocks(&self) -> usize {
         self.runs.iter().map(|run| run.block).max().unwrap_or(0)
     }
 }
 
 /// A design of coded points in standard order, all in block 1.
-#[must_use]
 pub fn design_of(kind: String, factors: Vec<Factor>, points: Vec<(Point, Vec<f64>)>) -> Design {
     let runs = points.into_iter().enumerate();
     let runs = runs.map(|(index, (point, coded))| Run {
@@ -241,7 +231,6 @@ pub fn number_by_block(design: &mut Design) {
 }
 
 /// The design with its runs in random order within each block.
-#[must_use]
 pub fn randomised(mut design: Design, seed: u64) -> Design {
     let mut generator = generator(seed, ORDER_STREAM);
     design

@@ -1,4 +1,3 @@
-#![cfg_attr(not(test), warn(clippy::disallowed_methods, clippy::disallowed_types))]
 //! Designs of experiments.
 
 pub mod blocks;

@@ -24,7 +24,6 @@ pub enum DesignModel {
 
 impl DesignModel {
     /// Its name.
-    #[must_use]
     pub fn name(self) -> &'static str {
         match self {
             Self::Linear => "linear",
@@ -35,7 +34,6 @@ impl DesignModel {
 }
 
 /// Terms of a model in the order of its row: 1, A, B, AB, A^2; categories C1, C2.
-#[must_use]
 pub fn model_terms(factors: &[Factor], model: DesignModel) -> Vec<String> {
     let mains: Vec<Vec<String>> = (0..factors.len())
         .map(|place| {
@@ -64,7 +62,6 @@ fn factor_symbol(place: usize) -> String {
 }
 
 /// Row of the model matrix at a point, with sum contrasts for categories.
-#[must_use]
 pub fn model_row(factors: &[Factor], model: DesignModel, coded: &[f64]) -> Vec<f64> {
     let mains: Vec<Vec<f64>> = factors
         .iter()
@@ -119,7 +116,6 @@ fn expanded<T: Clone>(
 /// Gauss-Legendre points in each number, exact for products of rows with powers
 /// up to 2 (3 in up to 7 factors, 4 in up to 6), and all categories; where that
 /// is more than 20 000 points, Sobol points.
-#[must_use]
 pub fn region_points(factors: &[Factor]) -> Vec<(f64, Vec<f64>)> {
     let levels = |count: usize| -> Vec<Vec<(f64, f64)>> {
         factors
@@ -150,7 +146,6 @@ pub fn region_points(factors: &[Factor]) -> Vec<(f64, Vec<f64>)> {
 
 /// Ends and middles of all factors, or only ends, up to 20 000 points: here the variance
 /// of prediction is largest.
-#[must_use]
 pub fn extreme_points(factors: &[Factor]) -> Vec<Vec<f64>> {
     let levels = |middle: bool| -> Vec<Vec<f64>> {
         let of = |factor: &Factor| match factor.categories.is_empty() && middle {

@@ -83,7 +83,6 @@ pub fn plackett_burman(
 
 /// N rows of N − 1 signs with orthogonal columns that sum to zero, cyclic where possible;
 /// `None` without a construction.
-#[must_use]
 pub fn signs(runs: usize) -> Option<Vec<Vec<i8>>> {
     if runs < 4 || !runs.is_multiple_of(4) || runs > MOST_RUNS {
         return None;

@@ -31,7 +31,6 @@ pub struct DesignQuality {
 /// * `rows`: model rows of the runs
 /// * `region`: weights and model rows of the region, weights summing to 1; rows
 ///   of weight 0 count for the largest variance alone
-#[must_use]
 pub fn design_quality(rows: &[Vec<f64>], region: &[(f64, Vec<f64>)]) -> Option<DesignQuality> {
     let (runs, terms) = (rows.len(), rows.first()?.len());
     if runs < terms {

@@ -49,7 +49,6 @@ pub fn sobol(factors: Vec<Factor>, runs: usize) -> Result<Design, DesignError> {
 /// # Source
 /// Sobol (1967), USSR Computational Mathematics and Mathematical Physics 7,
 /// 86-112; Antonov and Saleev (1979) for the order.
-#[must_use]
 pub fn unit_points(dimensions: usize, count: usize) -> Vec<Vec<f64>> {
     let directions: Vec<[u32; BITS]> = (0..dimensions.min(DIMENSIONS)).map(directions).collect();
     let mut state = vec![0_u32; directions.len()];

@@ -15,7 +15,6 @@ pub const MOST_GENERATORS: usize = 16;
 const LETTERS: &[u8; MOST_LETTERS] = b"ABCDEFGHJKLMNOPQRSTUVWXYZabcdefghjklmnopqrstuvwxyz";
 
 /// Letter of a factor; '?' beyond [`MOST_LETTERS`].
-#[must_use]
 pub fn letter(factor: usize) -> char {
     LETTERS.get(factor).map_or('?', |byte| char::from(*byte))
 }
@@ -31,7 +30,6 @@ pub struct Word {
 
 impl Word {
     /// The positive product of some factors.
-    #[must_use]
     pub fn of(letters: u64) -> Self {
         Self {
             letters,
@@ -49,13 +47,11 @@ impl Word {
     }
 
     /// Number of letters.
-    #[must_use]
     pub fn length(self) -> usize {
         self.letters.count_ones() as usize
     }
 
     /// Value at a point of ±1 levels.
-    #[must_use]
     pub fn value(self, coded: &[f64]) -> f64 {
         let factors = coded.iter().enumerate();
         let product: f64 = factors
@@ -113,26 +109,22 @@ pub struct Fraction {
 
 impl Fraction {
     /// Length of the shortest defining word; `None` for the full factorial.
-    #[must_use]
     pub fn resolution(&self) -> Option<usize> {
         self.defining.first().map(|word| word.length())
     }
 
     /// Number of runs, 2^(k − p).
-    #[must_use]
     pub fn runs(&self) -> f64 {
         2_f64.powi(self.factors as i32 - self.generators.len() as i32)
     }
 
     /// Factors that are not generated.
-    #[must_use]
     pub fn base(&self) -> Vec<usize> {
         let generated = |factor: &usize| self.generators.iter().any(|g| g.factor == *factor);
         (0..self.factors).filter(|f| !generated(f)).collect()
     }
 
     /// A word written with base factors only.
-    #[must_use]
     pub fn in_base(&self, word: Word) -> Word {
         let involved = self.generators.iter();
         let involved = involved.filter(|g| word.letters >> g.factor & 1 == 1);
@@ -273,7 +265,6 @@ fn check_chain(generators: &[Generator]) -> Result<(), DesignError> {
 }
 
 /// Chains of two or more aliased effects of up to `order` factors.
-#[must_use]
 pub fn aliases(fraction: &Fraction, order: usize) -> Vec<AliasChain> {
     // Effects with the same column in base factors are aliased.
     let mut columns: BTreeMap<u64, Vec<Word>> = BTreeMap::new();

@@ -25,7 +25,6 @@ pub struct Axis {
 ///
 /// Ticks are 1, 2 or 5 times a power of ten apart. Data of one value gets a
 /// range around it.
-#[must_use]
 pub fn axis(low: f64, high: f64, count: usize) -> Axis {
     let (low, high) = widened(low, high);
     let step = round_step((high - low) / count.max(1) as f64);
@@ -64,7 +63,6 @@ fn label(value: f64, decimals: usize) -> String {
 }
 
 /// " (unit)", " (10⁻³ unit)", or nothing.
-#[must_use]
 pub fn unit_label(unit: &str, power: i32) -> String {
     let factor = match power {
         0 => String::new(),

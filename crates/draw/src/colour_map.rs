@@ -20,7 +20,6 @@ const ANCHORS: [[u8; 3]; 9] = [
 pub type Rgb = [u8; 3];
 
 /// Colour of a part between 0 and 1; what lies beyond gets the colour of the end.
-#[must_use]
 pub fn colour_of(part: f64) -> Rgb {
     let last = ANCHORS.len() - 1;
     let at = part.clamp(0.0, 1.0) * last as f64;
@@ -31,7 +30,6 @@ pub fn colour_of(part: f64) -> Rgb {
 }
 
 /// The colour a part of the way from one to another.
-#[must_use]
 pub fn mixed(from: Rgb, to: Rgb, part: f64) -> Rgb {
     std::array::from_fn(|k| {
         let (a, b) = (f64::from(from[k]), f64::from(to[k]));
@@ -40,7 +38,6 @@ pub fn mixed(from: Rgb, to: Rgb, part: f64) -> Rgb {
 }
 
 /// A colour as CSS writes it.
-#[must_use]
 pub fn css([r, g, b]: Rgb) -> String {
     format!("#{r:02x}{g:02x}{b:02x}")
 }

@@ -32,7 +32,6 @@ type Side = (usize, usize, bool);
 ///
 /// # Source
 /// W. E. Lorensen, H. E. Cline (1987), Computer Graphics 21:163, in two dimensions.
-#[must_use]
 pub fn contours(field: &Field, level: f64) -> Vec<Contour> {
     let mut links = links(field, level);
     let mut lines = Vec::new();
@@ -73,7 +72,6 @@ pub fn contours(field: &Field, level: f64) -> Vec<Contour> {
 }
 /// Closed lines around all that is at or above a value; what an odd number of them
 /// encloses is above.
-#[must_use]
 pub fn area_above(field: &Field, level: f64) -> Vec<Vec<(f64, f64)>> {
     // A rim of nothing in the same places: every line closes along the border.
     let padded = |coordinates: &[f64]| -> Vec<f64> {

@@ -7,20 +7,25 @@ use crate::xy::{Figure, csv_of_figure, drawing_of_figure};
 use rayon::prelude::*;
 use std::path::{Path, PathBuf};
 use windfall_files::error::Error;
-use windfall_files::write_file::write_whole;
+use windfall_files::write_file::{make_directory, write_whole};
 
 /// Where figures go and which colours they have.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
+#[cfg_attr(feature = "clap", derive(clap::Args))]
 pub struct FigureFolder {
-    /// The directory; it is made where it is missing.
+    /// Write figures into this directory: each as SVG, PNG (300 dots per inch) and its data as CSV
+    #[cfg_attr(feature = "clap", arg(id = "figures", long, required = false, value_name = "DIR", value_hint = clap::ValueHint::DirPath))]
     pub directory: PathBuf,
-    /// Colours of the files.
+    /// Colours of the figures
+    #[cfg_attr(
+        feature = "clap",
+        arg(long, value_enum, default_value_t, requires = "figures")
+    )]
     pub theme: FigureTheme,
 }
 
 impl FigureFolder {
     /// A directory for figures on paper.
-    #[must_use]
     pub fn of(directory: &Path) -> Self {
         Self {
             directory: directory.to_path_buf(),
@@ -98,11 +103,7 @@ fn write_drawing(
     csv: &str,
 ) -> Result<Vec<PathBuf>, Error> {
     let directory = &folder.directory;
-    std::fs::create_dir_all(directory).map_err(|source| Error::FileAccess {
-        path: directory.clone(),
-        action: "write",
-        source,
-    })?;
+    make_directory(directory)?;
     let svg = drawing.svg(folder.theme.colours());
     let png = match cfg!(feature = "png") {
         true => Some(png_of_svg(&svg, PRINT)?),
@@ -124,7 +125,6 @@ fn write_drawing(
 }
 
 /// A name for a file: what file names cannot hold becomes "_".
-#[must_use]
 pub fn file_name(name: &str) -> String {
     let kept = |c: char| c.is_alphanumeric() || "-_.".contains(c);
     let filled = name.chars().map(|c| if kept(c) { c } else { '_' });

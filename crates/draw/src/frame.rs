@@ -22,19 +22,16 @@ pub struct Rectangle {
 
 impl Rectangle {
     /// Right end.
-    #[must_use]
     pub fn right(&self) -> f64 {
         self.left + self.width
     }
 
     /// Lower end.
-    #[must_use]
     pub fn bottom(&self) -> f64 {
         self.top + self.height
     }
 
     /// Whether a place lies within, and this far from every side.
-    #[must_use]
     pub fn holds(&self, (x, y): (f64, f64), room: f64) -> bool {
         x >= self.left + room
             && x <= self.right() - room
@@ -56,7 +53,6 @@ pub struct Frame {
 
 impl Frame {
     /// Position of a data point in the drawing.
-    #[must_use]
     pub fn place(&self, (x, y): (f64, f64)) -> (f64, f64) {
         let (across, up, within) = (&self.across, &self.up, &self.within);
         (

@@ -33,7 +33,6 @@ pub struct Section {
 
 impl Section {
     /// A section of paragraphs only.
-    #[must_use]
     pub fn of_words(heading: &str, paragraphs: Vec<String>) -> Self {
         Self {
             heading: heading.to_owned(),
@@ -94,7 +93,6 @@ code { font-size: 0.85em; overflow-wrap: anywhere; }
 ";
 
 /// The report as an HTML file.
-#[must_use]
 pub fn html_of_report(report: &Report) -> String {
     let colours = format!(
         ":root {{ color-scheme: light dark; {} }}\n\

@@ -3,6 +3,7 @@
 use crate::png::{PRINT, png_of_svg};
 use std::path::{Path, PathBuf};
 use windfall_files::error::Error;
+use windfall_files::option_value::unusable;
 use windfall_files::write_file::write_whole;
 
 /// Writes a figure as SVG or PNG, by the ending of the name, and what it shows
@@ -19,10 +20,7 @@ pub fn write_plot(
     csv: &str,
     inputs: &[(&Path, &str)],
 ) -> Result<[PathBuf; 2], Error> {
-    let unusable = |problem: String| Error::OptionInvalid {
-        option: format!("--plot {}", path.display()),
-        problem,
-    };
+    let unusable = |problem: String| unusable(format!("--plot {}", path.display()), problem);
     let dots = match path.extension().and_then(|extension| extension.to_str()) {
         Some("svg") => false,
         Some("png") => true,

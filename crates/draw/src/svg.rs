@@ -78,7 +78,6 @@ pub struct Drawing {
 
 impl Drawing {
     /// An empty drawing.
-    #[must_use]
     pub fn new(width: f64, height: f64) -> Self {
         Self {
             width,
@@ -287,7 +286,6 @@ impl Drawing {
     }
 
     /// The whole as an SVG file.
-    #[must_use]
     pub fn svg(&self, theme: &Theme) -> String {
         format!(
             "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n{}",
@@ -297,7 +295,6 @@ impl Drawing {
 
     /// The whole as an element of a page, described by `label` for those who do not
     /// see it; "" for a picture that is described elsewhere.
-    #[must_use]
     pub fn element(&self, theme: &Theme, label: &str) -> String {
         let (width, height) = (self.width, self.height);
         let described = match label {

@@ -17,7 +17,6 @@ const LABEL: usize = 11;
 ///
 /// * `columns`: width of the terminal; characters
 /// * `rows`: height of the plot; characters
-#[must_use]
 pub fn terminal_plot(curve: &Curve, columns: usize, rows: usize) -> String {
     let width = columns.saturating_sub(LABEL + 1).clamp(10, 200);
     let unit = curve.unit.as_deref().filter(|unit| {

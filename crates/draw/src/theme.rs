@@ -38,7 +38,6 @@ pub enum FigureTheme {
 
 impl FigureTheme {
     /// The colours.
-    #[must_use]
     pub fn colours(self) -> &'static Theme {
         match self {
             Self::Light => &LIGHT,
@@ -112,7 +111,6 @@ pub const PAGE: Theme = Theme {
 };
 
 /// The variables of [`PAGE`] with the colours of a theme, as declarations of CSS.
-#[must_use]
 pub fn declarations(theme: &Theme) -> String {
     let named = [
         ("figure-background", theme.background),

@@ -74,7 +74,6 @@ pub struct Series {
 
 impl Series {
     /// A series in the colour of its place among the series.
-    #[must_use]
     pub fn new(label: impl Into<String>, style: Style, points: Vec<(f64, f64)>) -> Self {
         Self {
             label: label.into(),
@@ -131,7 +130,6 @@ pub struct Panel {
 
 impl Panel {
     /// A panel without marks, from name and unit of each axis; the unit "1" is not shown.
-    #[must_use]
     pub fn new(x: (&str, &str), y: (&str, &str), series: Vec<Series>) -> Self {
         let shown = |unit: &str| if unit == "1" { "" } else { unit }.to_owned();
         Self {
@@ -154,20 +152,25 @@ pub struct Figure {
     pub panels: Vec<Panel>,
 }
 
+impl Figure {
+    /// A figure of some panels.
+    pub fn new(title: impl Into<String>, panels: Vec<Panel>) -> Self {
+        let title = title.into();
+        Self { title, panels }
+    }
+}
+
 /// Draws a figure as an SVG file.
-#[must_use]
 pub fn svg_of_figure(figure: &Figure, theme: &Theme) -> String {
     drawing_of_figure(figure).svg(theme)
 }
 
 /// Draws a figure as an element of a page; its title describes it.
-#[must_use]
 pub fn element_of_figure(figure: &Figure, theme: &Theme) -> String {
     drawing_of_figure(figure).element(theme, &figure.title)
 }
 
 /// Draws a figure, whose colours a theme names later.
-#[must_use]
 pub fn drawing_of_figure(figure: &Figure) -> Drawing {
     let rows: Vec<f64> = figure.panels.iter().map(legend_height).collect();
     let room = |legend: &f64| legend + HEIGHT + BOTTOM + 8.0;

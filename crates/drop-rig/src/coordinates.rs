@@ -93,13 +93,11 @@ fn named_exponents(description: &LawDescription, position: usize) -> Vec<usize> 
 
 impl LawCoordinates {
     /// Coordinates of the start.
-    #[must_use]
     pub fn start(&self) -> Vec<f64> {
         self.of_values(&self.values)
     }
 
     /// Coordinates of values of all parameters; SI.
-    #[must_use]
     pub fn of_values(&self, values: &[f64]) -> Vec<f64> {
         let typical = self.kind.describe().parameters;
         let coordinate = |free: &LawCoordinate| match free.logarithmic {
@@ -118,7 +116,6 @@ impl LawCoordinates {
     }
 
     /// Values of all parameters at coordinates; SI.
-    #[must_use]
     pub fn values_at(&self, coordinates: &[f64]) -> Vec<f64> {
         let mut values = self.values.clone();
         let pairs = || self.free.iter().zip(coordinates);
@@ -143,7 +140,6 @@ impl LawCoordinates {
 
     /// Values of the free parameters at coordinates, with the reference length as
     /// the unit of length where a unit names an exponent.
-    #[must_use]
     pub fn written(&self, coordinates: &[f64]) -> Vec<f64> {
         let pairs = self.free.iter().zip(coordinates);
         pairs
@@ -156,7 +152,6 @@ impl LawCoordinates {
 
     /// Derivatives by the coordinates from those by the law's parameters, which
     /// are `values`.
-    #[must_use]
     pub fn chain(&self, by_parameter: &[f64], values: &[f64]) -> Vec<f64> {
         let slope = |free: &LawCoordinate| match free.logarithmic {
             true => by_parameter[free.position] * values[free.position],
@@ -178,7 +173,6 @@ impl LawCoordinates {
     }
 
     /// Standard uncertainty of a value from that of its coordinate.
-    #[must_use]
     pub fn sd_of_value(&self, place: usize, value: f64, sd: f64) -> f64 {
         match self.free[place].logarithmic {
             true => value * sd,
@@ -187,7 +181,6 @@ impl LawCoordinates {
     }
 
     /// Names of the free parameters.
-    #[must_use]
     pub fn names(&self) -> Vec<&'static str> {
         let parameters = self.kind.describe().parameters;
         let free = self.free.iter();

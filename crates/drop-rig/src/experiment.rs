@@ -84,7 +84,6 @@ fn informed(
 }
 
 /// A problem with the drops of a candidate, measured at no value in particular.
-#[must_use]
 pub fn with_candidate(problem: &FeatureProblem, candidate: &Candidate) -> FeatureProblem {
     let mut further = problem.clone();
     let place = |list: &mut Vec<Uncertain>, choice: Choice| match choice {
@@ -135,7 +134,6 @@ fn compare(now: &Information, told: Information) -> Expected {
 
 /// Places of the candidates from the best to the worst: first those that leave
 /// nothing open, by determinant.
-#[must_use]
 pub fn ranked(outcomes: &[Option<Expected>]) -> Vec<usize> {
     let key = |place: usize| match &outcomes[place] {
         Some(expected) => (

@@ -87,7 +87,6 @@ pub struct Nuisance {
 }
 
 /// Quantities that are known with error.
-#[must_use]
 pub fn nuisances(problem: &FeatureProblem) -> Vec<Nuisance> {
     let used = |pick: fn(&MeasuredDrop) -> usize, index: usize| {
         problem.drops.iter().any(|drop| pick(drop) == index)

@@ -33,7 +33,6 @@ pub struct FlightPiece<const W: usize> {
 impl<const W: usize> FlightPiece<W> {
     /// Height (m) and velocity (m/s) of the fruit at a time since the start (s).
     #[inline(always)]
-    #[must_use]
     pub fn fruit(&self, time: f64) -> (Lanes<W>, Lanes<W>) {
         let height = self.height + self.velocity * time + self.gravity * (-0.5 * time * time);
         (height, self.velocity + self.gravity * (-time))
@@ -42,7 +41,6 @@ impl<const W: usize> FlightPiece<W> {
     /// Displacement (m) and velocity (m/s) of the plate at a time since the
     /// start (s).
     #[inline(always)]
-    #[must_use]
     pub fn plate(&self, time: f64) -> (Lanes<W>, Lanes<W>) {
         self.plate
             .as_ref()
@@ -76,7 +74,6 @@ impl<const W: usize> FlightPiece<W> {
     /// When fruit and plate next touch, after their gap has been open; s.
     ///
     /// `None` where they never do.
-    #[must_use]
     pub fn next_touch(&self) -> Option<f64> {
         let Some(plate) = &self.plate else {
             let time = self.falls_to(0.0);

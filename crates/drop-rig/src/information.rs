@@ -33,7 +33,6 @@ pub struct Information {
 }
 
 /// Information on the law's coordinates, with nuisances estimated along.
-#[must_use]
 pub fn information(linearised: &Linearised) -> Information {
     information_of_root(root_of(linearised))
 }
@@ -56,7 +55,6 @@ fn root_of(linearised: &Linearised) -> DMatrix<f64> {
 }
 
 /// Directions, rank and covariance of a triangle R of the information.
-#[must_use]
 pub fn information_of_root(root: DMatrix<f64>) -> Information {
     let free = root.ncols();
     let decomposed = root.clone().svd(false, true);

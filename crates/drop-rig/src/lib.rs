@@ -1,4 +1,3 @@
-#![cfg_attr(not(test), warn(clippy::disallowed_methods, clippy::disallowed_types))]
 //! Drop rigs: fruit that bounces on a sprung plate, simulated and calibrated.
 
 mod arrow_system;

@@ -34,7 +34,6 @@ pub struct DropFeature {
 
 impl DropFeature {
     /// Its name: "peak_force_1", "interval_1", counted from 1.
-    #[must_use]
     pub fn name(&self) -> String {
         let kind = match self.kind {
             FeatureKind::PeakSupportForce => "peak_support_force",
@@ -46,7 +45,6 @@ impl DropFeature {
     }
 
     /// SI unit.
-    #[must_use]
     pub fn unit(&self) -> &'static str {
         match self.kind {
             FeatureKind::PeakSupportForce | FeatureKind::PeakContactForce => "N",
@@ -55,7 +53,6 @@ impl DropFeature {
     }
 
     /// Value in a simulated drop; SI. `None` where the drop does not get so far.
-    #[must_use]
     pub fn of(&self, summary: &DropSummary) -> Option<f64> {
         let impact = summary.impacts.get(self.impact);
         match self.kind {

@@ -59,7 +59,6 @@ fn oscillation(b: f64, q: f64, t: f64) -> (f64, f64, f64) {
 impl<const W: usize> Ringing<W> {
     /// Displacement (m) and velocity (m/s) at a time (s).
     #[inline(always)]
-    #[must_use]
     pub fn at(&self, time: f64) -> (Lanes<W>, Lanes<W>) {
         let (b, q) = (self.decay, self.frequency_squared);
         let (c, s, s_by_q) = oscillation(b.0[0], q.0[0], time);
@@ -87,7 +86,6 @@ impl<const W: usize> Ringing<W> {
 
     /// Displacement and velocity at a time, values alone.
     #[inline(always)]
-    #[must_use]
     pub fn values_at(&self, time: f64) -> (f64, f64) {
         let (b, q) = (self.decay.0[0], self.frequency_squared.0[0]);
         let (c, s, _) = oscillation(b, q, time);
@@ -97,7 +95,6 @@ impl<const W: usize> Ringing<W> {
     }
 
     /// A bound of |x| from time zero on: (R, λ) of R e^(−λt); m and 1/s.
-    #[must_use]
     pub fn bound(&self) -> (f64, f64) {
         let (b, q) = (self.decay.0[0], self.frequency_squared.0[0]);
         let (x0, u0) = (self.displacement.0[0], self.velocity.0[0]);
@@ -111,7 +108,6 @@ impl<const W: usize> Ringing<W> {
     }
 
     /// A time in which the motion changes little: part of its period; s.
-    #[must_use]
     pub fn short_time(&self) -> f64 {
         let (b, q) = (self.decay.0[0], self.frequency_squared.0[0]);
         std::f64::consts::TAU / (b * b + q.abs()).sqrt() / 32.0

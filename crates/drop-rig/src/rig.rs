@@ -57,7 +57,6 @@ impl DropRig {
     /// Speed of a fruit that has fallen from rest; m/s.
     ///
     /// * `height`: of its lowest point above the plate; m
-    #[must_use]
     pub fn impact_velocity(&self, height: f64) -> f64 {
         (2.0 * self.gravity * height).sqrt()
     }

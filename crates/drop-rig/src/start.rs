@@ -15,7 +15,6 @@ const HERTZ_EXPONENT: f64 = 1.5;
 ///
 /// * `hertz`: Hertz's stiffness; N/m^1.5
 /// * `energy`: of the impact; J
-#[must_use]
 pub fn stiffness_of_equal_peak(hertz: f64, energy: f64, exponent: f64) -> f64 {
     let depth = ((HERTZ_EXPONENT + 1.0) * energy / hertz).powf(1.0 / (HERTZ_EXPONENT + 1.0));
     let force = hertz * depth.powf(HERTZ_EXPONENT);
@@ -23,13 +22,11 @@ pub fn stiffness_of_equal_peak(hertz: f64, energy: f64, exponent: f64) -> f64 {
 }
 
 /// Stiffness of F = k xⁿ at which a body of some energy meets a peak force; N/mⁿ.
-#[must_use]
 pub fn stiffness_of_peak(force: f64, energy: f64, exponent: f64) -> f64 {
     force / ((exponent + 1.0) * energy / force).powf(exponent)
 }
 
 /// Position of the exponent of a law's displacement; `None` where it is 1.5.
-#[must_use]
 pub fn exponent_position(description: &LawDescription) -> Option<usize> {
     match description.elastic {
         Elastic::Power(Power::Parameter(name)) => description.index_of(name),
@@ -54,7 +51,6 @@ const KEPT: usize = 3;
 ///
 /// * `force`: peak of the first impact; N
 /// * `mass`, `speed`: of that impact; kg, m/s
-#[must_use]
 pub fn coarse_starts(
     problem: &FeatureProblem,
     coordinates: &LawCoordinates,

@@ -18,7 +18,6 @@ pub enum Knowledge {
 
 impl Knowledge {
     /// The value to begin with.
-    #[must_use]
     pub fn start(self) -> f64 {
         match self {
             Self::Fixed(value) | Self::Free(value) => value,
@@ -27,7 +26,6 @@ impl Knowledge {
     }
 
     /// A measured value: exact where its uncertainty is zero.
-    #[must_use]
     pub fn measured(known: Uncertain) -> Self {
         if known.sd > 0.0 {
             Self::Prior(known)

@@ -104,7 +104,6 @@ impl ParameterRange {
     /// SI value of a value in the unit of this range.
     ///
     /// * `law`: values of all parameters, for the exponent
-    #[must_use]
     pub fn si(&self, value: f64, law: &[f64]) -> f64 {
         match &self.unit {
             RangeUnit::Si => value,

@@ -116,10 +116,7 @@ pub fn evaluate_drop(
     let conditions = DropConditions {
         height: Some(drop.height),
         mass: Some(drop.mass),
-        gravity: Uncertain {
-            value: campaign.rig.gravity,
-            sd: 0.0,
-        },
+        gravity: Uncertain::exact(campaign.rig.gravity),
     };
     let mut restitutions = restitution_from_time(&train.bounces, &conditions);
     restitutions.extend(restitution_from_impulse(&train.bounces, &conditions));
@@ -294,7 +291,6 @@ fn bounce_values(bounce: &MeasuredBounce, mass: Known) -> Named<MeasuredValue> {
 }
 
 /// A drop height for people: "500 mm".
-#[must_use]
 pub fn height_text(height: f64) -> String {
     let text = format!("{:.3}", 1e3 * height);
     format!("{} mm", text.trim_end_matches('0').trim_end_matches('.'))

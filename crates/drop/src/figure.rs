@@ -21,7 +21,6 @@ const CONTACTS: f64 = 3.0;
 const POINTS: f64 = 40.0;
 
 /// A drop with its bounces.
-#[must_use]
 pub fn figure_of_drop(id: &str, drop: &Drop, train: &BounceTrain) -> Figure {
     let bounces = match train.bounces.len() {
         1 => "1 bounce".to_owned(),

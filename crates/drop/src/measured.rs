@@ -21,7 +21,6 @@ pub struct Known {
 
 impl Known {
     /// The value as results show it.
-    #[must_use]
     pub fn shown(self, unit: &str) -> MeasuredValue {
         value_with_sd(self.value, self.sd, unit)
     }

@@ -5,7 +5,6 @@ use windfall_campaign::measure::words::{SPREAD, percent, plain, threshold_text};
 use windfall_signal::bounce::train::StaticLevel;
 
 /// Drops on a plate.
-#[must_use]
 pub fn methods_of_drops(campaign: &DropCampaign) -> Vec<String> {
     let options = &campaign.bounces.options;
     let level = match options.static_level {

@@ -90,7 +90,6 @@ fn dynamics(pooled: &PooledPlate, mass: Uncertain) -> PlateDynamics {
 }
 
 /// Mean over the drops with its standard error; of one drop its own uncertainty.
-#[must_use]
 pub fn pooled(drops: &[MeasuredDrop]) -> Option<PooledPlate> {
     let rings: Vec<_> = drops.iter().filter_map(|drop| drop.ringing).collect();
     let mean = |of: fn(&MeasuredRinging) -> Known| -> Uncertain {
@@ -112,7 +111,6 @@ pub fn pooled(drops: &[MeasuredDrop]) -> Option<PooledPlate> {
 }
 
 /// Ringing by drop height (Kang et al. 2023, Table 1), and the plate's stiffness and damping.
-#[must_use]
 pub fn plate_items(campaign: &DropCampaign, drops: &[MeasuredDrop]) -> Vec<MeasuredItem> {
     let PlatePlan::Sprung {
         mass,

@@ -7,7 +7,7 @@ use std::path::Path;
 use toml::Spanned;
 use windfall_campaign::settings::channels::channel_plans;
 use windfall_campaign::settings::conditioning::refuse_conditioning;
-use windfall_campaign::settings::file::{ChannelsFile, QuantityText};
+use windfall_campaign::settings::file::QuantityText;
 use windfall_campaign::settings::files::check_format;
 use windfall_campaign::settings::kind::{CAMPAIGN_FILE, CampaignKind};
 use windfall_campaign::settings::model::{Campaign, ImpactEntry};
@@ -107,7 +107,10 @@ pub fn read_drop(directory: &Path) -> Result<DropCampaign, Error> {
     let file: DropFile = parse_source(&source)?;
     check_format(&source, file.format.as_ref())?;
     let channels = channel_plans(&source, file.channels.as_ref())?;
-    refuse_filters(&source, file.channels.as_ref())?;
+    // A filter would take the ringing for noise, or smear one impact into the next.
+    let measured = ["force", "position", "velocity", "acceleration"];
+    let why = "bounces and ringing are taken from the channel as it was recorded";
+    refuse_conditioning(&source, file.channels.as_ref(), &measured, why)?;
     let shared = (&file.campaign, &file.files, &file.summary);
     let kind = CampaignKind::Drop;
     let campaign = DropCampaign {
@@ -128,26 +131,6 @@ pub fn read_drop(directory: &Path) -> Result<DropCampaign, Error> {
     Ok(campaign)
 }
 
-/// A filter would take the ringing for noise, or smear one impact into the next.
-fn refuse_filters(
-    source: &TomlSource,
-    channels: Option<&Spanned<ChannelsFile>>,
-) -> Result<(), Error> {
-    let Some(channels) = channels.map(Spanned::get_ref) else {
-        return Ok(());
-    };
-    let why = "bounces and ringing are taken from the channel as it was recorded";
-    for (table, channel) in [
-        ("[channels.force]", &channels.force),
-        ("[channels.position]", &channels.position),
-        ("[channels.velocity]", &channels.velocity),
-        ("[channels.acceleration]", &channels.acceleration),
-    ] {
-        refuse_conditioning(source, table, channel.as_ref(), why)?;
-    }
-    Ok(())
-}
-
 /// Mass and height of a drop.
 ///
 /// A mass stands in impacts.csv or specimens.csv ("mass_g", its uncertainty
@@ -159,10 +142,7 @@ fn refuse_filters(
 pub fn drop_of(campaign: &DropCampaign, entry: &ImpactEntry) -> Result<Drop, Error> {
     let rig = &campaign.rig;
     let directory = &campaign.shared.directory;
-    let place = |file: &str, line| Place {
-        file: directory.join(file),
-        line,
-    };
+    let place = |file: &str, line| Place::at(&directory.join(file), line);
     let of_entry = (place("impacts.csv", entry.line), &entry.cells[..]);
     let specimen = campaign.shared.specimen_of(entry);
     let of_specimen = specimen.map(|s| (place("specimens.csv", s.line), &s.cells[..]));
@@ -170,10 +150,7 @@ pub fn drop_of(campaign: &DropCampaign, entry: &ImpactEntry) -> Result<Drop, Err
     if let (None, Some(row)) = (mass, &of_specimen) {
         mass = measured(row, "mass", "kg", (None, rig.mass_sd))?;
     }
-    let given = rig.mass.map(|value| Uncertain {
-        value,
-        sd: rig.mass_sd,
-    });
+    let given = rig.mass.map(|value| Uncertain::new(value, rig.mass_sd));
     let unknown = |needed: &'static DropQuantity| {
         let rows = of_specimen.iter().chain([&of_entry]);
         let mut columns = rows.flat_map(|(_, cells)| cells.iter().map(|(column, _)| column));
@@ -215,10 +192,7 @@ fn measured(
     };
     let value = cell(name)?.or(usual.0);
     let sd = cell(&format!("{name}_sd"))?;
-    Ok(value.map(|value| Uncertain {
-        value,
-        sd: sd.unwrap_or(usual.1),
-    }))
+    Ok(value.map(|value| Uncertain::new(value, sd.unwrap_or(usual.1))))
 }
 
 const fn needed(
@@ -311,10 +285,7 @@ fn plate_plan(source: &TomlSource, file: &Spanned<DropRigFile>) -> Result<PlateP
         "plate_mass_sd = \"1 g\"",
     );
     Ok(PlatePlan::Sprung {
-        mass: Uncertain {
-            value,
-            sd: uncertainty(source, rig.plate_mass_sd.as_ref(), &sd)?,
-        },
+        mass: Uncertain::new(value, uncertainty(source, rig.plate_mass_sd.as_ref(), &sd)?),
         stiffness: plate_value(
             source,
             (
@@ -357,10 +328,7 @@ fn plate_value(
             let problem = format!("an uncertainty without its value: {}", needed.example);
             Err(refused(source, sd, (TABLE, needed.key), problem))
         }
-        (number, _) => Ok(number.map(|value| Uncertain {
-            value,
-            sd: deviation,
-        })),
+        (number, _) => Ok(number.map(|value| Uncertain::new(value, deviation))),
     }
 }
 

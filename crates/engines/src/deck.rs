@@ -166,15 +166,15 @@ impl<'a> Task<'a> {
     /// What classes do to the coefficients.
     pub fn finding_of_classes(&self) -> Option<FindingOutcome> {
         let classes = &self.classes;
-        (classes.damping_error > 0.0 || classes.stiffness_error > 0.0).then(|| FindingOutcome {
-            code: "engine-classes".to_owned(),
-            message: format!(
+        (classes.damping_error > 0.0 || classes.stiffness_error > 0.0).then(|| {
+            let message = format!(
                 "the engine has coefficients for {} classes of size: damping coefficients of single \
                  fruit are off by up to {:.1} %, stiffnesses by up to {:.1} %; --classes makes more",
                 classes.classes.len(),
                 100.0 * classes.damping_error,
                 100.0 * classes.stiffness_error
-            ),
+            );
+            FindingOutcome::new("engine-classes", message)
         })
     }
 
@@ -303,14 +303,17 @@ impl<'a> Task<'a> {
     }
 }
 
-/// Text as a comment of a deck: nothing that an engine would act on.
+/// Text as a comment of a deck or a program: nothing that would be acted on, and nothing at
+/// its end that draws the next line into the comment (`&` of LAMMPS, `\` and the trigraph
+/// `??/` of C++).
 pub fn comment(text: &str) -> String {
     let plain = |own: char| match own {
-        '&' | '"' | '\'' | '$' => '_',
-        own if own.is_control() => ' ',
+        '&' | '"' | '\'' | '$' | '\\' => '_',
+        own if own.is_control() || matches!(own, '\u{2028}' | '\u{2029}') => ' ',
         own => own,
     };
-    text.chars().map(plain).collect()
+    let text: String = text.chars().map(plain).collect();
+    text.replace("??/", "??_")
 }
 
 /// Density of a fruit as a sphere; kg/m³.

@@ -1,5 +1,6 @@
 //! The contacts of a scene in the terms of other engines, pair by pair of materials.
 
+use crate::deck::comment as comment_text;
 use std::fmt::Write;
 use windfall_contact::granular_law::Damping;
 use windfall_contact::law::ContactLaw;
@@ -52,7 +53,6 @@ struct Pair<'a> {
 
 impl Other {
     /// Its name, for people.
-    #[must_use]
     pub fn title(self) -> &'static str {
         match self {
             Self::Adams => "Adams",
@@ -64,7 +64,6 @@ impl Other {
     }
 
     /// Name of the file that is written, and what begins a comment in it.
-    #[must_use]
     pub fn file(self) -> (&'static str, &'static str) {
         match self {
             Self::Adams => ("contacts.adm", "! "),
@@ -79,7 +78,6 @@ impl Other {
 /// Contacts that fruit of a scene can have, in the terms of an engine.
 ///
 /// * `speed`: impact speed at which damping that is not the law's takes the same energy; m/s
-#[must_use]
 pub fn contact_terms(other: Other, scene: &Scene, speed: f64) -> Vec<ContactTerms> {
     let mut all = Vec::new();
     for (&(a, b), interaction) in &scene.interactions {
@@ -123,20 +121,23 @@ pub fn contact_terms(other: Other, scene: &Scene, speed: f64) -> Vec<ContactTerm
 }
 
 /// Contacts as the text of a file, with what is exact and what is not in its comments.
-#[must_use]
 pub fn text_of_terms(other: Other, title: &str, terms: &[ContactTerms]) -> String {
     let (_, comment) = other.file();
     let mut text = format!(
         "{comment}{}\n{comment}Contacts for {}, written by windfall. SI where no unit is named.\n",
-        crate::deck::comment(title),
+        comment_text(title),
         other.title()
     );
     for own in terms {
         let [a, b] = &own.between;
         let _ = write!(
             text,
-            "\n{comment}{a} and {b}\n{comment}exact: {}\n{comment}approximate: {}\n{}\n",
-            own.exact, own.approximate, own.given
+            "\n{comment}{} and {}\n{comment}exact: {}\n{comment}approximate: {}\n{}\n",
+            comment_text(a),
+            comment_text(b),
+            own.exact,
+            own.approximate,
+            own.given
         );
     }
     text
@@ -216,13 +217,18 @@ const ABRUPT: f64 = 1e-8;
 /// The same where damping grows with the penetration, over the largest one; 1.
 const RAMP: f64 = 0.5;
 
+/// A text as Python writes one; its escapes are those of JSON.
+fn python_text(text: &str) -> String {
+    serde_json::Value::from(text).to_string()
+}
+
 fn yade(pair: &Pair) -> Words {
-    let [a, b] = pair.names;
+    let [a, b] = pair.names.map(python_text);
     if let Law::KelvinVoigt(own) = pair.law {
         let share = pair.interaction.tangential_ratio;
         // Of two materials the coefficients are in series.
         let given = format!(
-            "viscoelastic[({a:?}, {b:?})] = dict(kn={}, ks={}, cn={}, cs={}, frictionAngle={})",
+            "viscoelastic[({a}, {b})] = dict(kn={}, ks={}, cn={}, cs={}, frictionAngle={})",
             2.0 * own.k,
             2.0 * share * own.k,
             2.0 * own.c,
@@ -238,7 +244,7 @@ fn yade(pair: &Pair) -> Words {
     };
     let nu = poisson(pair);
     let given = format!(
-        "hertz[({a:?}, {b:?})] = dict(young={}, poisson={nu}, en={e}, frictionAngle={})",
+        "hertz[({a}, {b})] = dict(young={}, poisson={nu}, en={e}, frictionAngle={})",
         2.0 * modulus * (1.0 - nu * nu),
         pair.interaction.friction.atan()
     );
@@ -256,7 +262,8 @@ fn yade(pair: &Pair) -> Words {
 fn mercury(pair: &Pair) -> Words {
     let of = format!(
         "{{ // {} and {}\n    auto s = speciesHandler.getMixedObject(SPECIES);\n",
-        pair.names[0], pair.names[1]
+        comment_text(pair.names[0]),
+        comment_text(pair.names[1])
     );
     let friction = pair.interaction.friction;
     if let Law::KelvinVoigt(own) = pair.law {
@@ -336,8 +343,8 @@ fn chrono(pair: &Pair) -> Words {
         "{{ // {} and {}: UseMaterialProperties(false), SetContactForceModel({model})\n    \
          auto m = chrono_types::make_shared<ChContactMaterialSMC>();\n    m->SetKn({kn});\n    m->SetGn({gn});\n    \
          m->SetKt({});\n    m->SetGt({});\n    m->SetFriction({});\n}}",
-        pair.names[0],
-        pair.names[1],
+        comment_text(pair.names[0]),
+        comment_text(pair.names[1]),
         pair.interaction.tangential_ratio * if law.hertzian { 1.5 } else { 1.0 } * kn,
         pair.interaction.tangential_damping * gn,
         pair.interaction.friction
@@ -513,6 +520,50 @@ mod tests {
     fn numbers(text: &str) -> Vec<f64> {
         let parts = text.split([',', '(', ')', ' ', '=', ';', '\t', '\n']);
         parts.filter_map(|own| own.parse().ok()).collect()
+    }
+
+    /// Names that would end a comment or a text, or draw the next line into one.
+    #[test]
+    fn rejects_names_that_would_be_code() {
+        let hostile = [
+            "a\\",
+            "a??/",
+            "a &",
+            "a */ system(0); /*",
+            "a\"); import os; (\"",
+            "a', 'b",
+            "a\u{2028}b",
+            "\u{200b}a",
+            "a\\\"",
+            "🍎\"\\",
+        ];
+        for other in [
+            Other::Adams,
+            Other::Yade,
+            Other::MercuryDpm,
+            Other::Edem,
+            Other::Chrono,
+        ] {
+            let text = |name: &str| {
+                let mut scene = scene("kuwabara-kono(k=753599, c=1524)");
+                scene.materials[0] = name.to_owned();
+                text_of_terms(other, name, &contact_terms(other, &scene, 0.5))
+            };
+            let plain = text("apple");
+            for name in hostile {
+                let text = text(name);
+                assert_eq!(text.lines().count(), plain.lines().count(), "{text}");
+                for (line, wanted) in text.lines().zip(plain.lines()) {
+                    let drawn_on = line.ends_with(['\\', '&']) || line.contains("??/");
+                    assert!(other == Other::Yade || !drawn_on, "{line}");
+                    // The same commands stand before and behind the name.
+                    let literal = serde_json::Value::from(name).to_string();
+                    let back = line.replace(&literal, "\"apple\"");
+                    let back = back.replace(&comment_text(name), "apple");
+                    assert_eq!(back, wanted, "{other:?} {name:?}");
+                }
+            }
+        }
     }
 
     #[test]

@@ -3,6 +3,7 @@
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output, Stdio};
 use windfall_files::error::Error;
+use windfall_files::write_file::write_whole;
 use windfall_scene_run::file::engine_kind::Engine;
 
 /// An engine that is installed.
@@ -215,7 +216,7 @@ impl Program {
             }
             _ => "atom_style sphere\nregion r block 0 8 0 8 0 8\ncreate_box 1 r\n",
         };
-        std::fs::write(&deck, text).map_err(|error| error.to_string())?;
+        write_whole(&deck, text.as_bytes()).map_err(|error| error.to_string())?;
         let output = self.command(launch, "in.try", folder.path()).output();
         let text = text_of(&output.map_err(|error| error.to_string())?);
         let grid = text

@@ -144,25 +144,21 @@ fn simplified(plan: &mut ScenePlan, engine: Engine) -> Vec<FindingOutcome> {
         interaction.annuli = 1;
     }
     if !spread.is_empty() {
-        findings.push(FindingOutcome {
-            code: "engine-spread".to_owned(),
-            message: format!(
-                "{} has one law for all fruit of a class: the spread of the law between fruit ({}) \
-                 is left out, all are like the median",
-                engine.title(),
-                spread.join("; ")
-            ),
-        });
+        let message = format!(
+            "{} has one law for all fruit of a class: the spread of the law between fruit ({}) \
+             is left out, all are like the median",
+            engine.title(),
+            spread.join("; ")
+        );
+        findings.push(FindingOutcome::new("engine-spread", message));
     }
     if annuli > 1 {
-        findings.push(FindingOutcome {
-            code: "engine-annuli".to_owned(),
-            message: format!(
-                "{} follows friction by one spring for a contact area, not by {annuli} annuli: fruit \
-                 come off oblique impacts otherwise, normal forces stay",
-                engine.title()
-            ),
-        });
+        let message = format!(
+            "{} follows friction by one spring for a contact area, not by {annuli} annuli: fruit \
+             come off oblique impacts otherwise, normal forces stay",
+            engine.title()
+        );
+        findings.push(FindingOutcome::new("engine-annuli", message));
     }
     findings
 }
@@ -231,10 +227,7 @@ pub fn run_on_engine(
             if !file.is_file() {
                 let advice = "--frames takes the frames that the deck of `windfall scene export` \
                               has written";
-                return Err(Error::FileAbsent {
-                    path: file.clone(),
-                    advice: advice.to_owned(),
-                });
+                return Err(Error::absent(file, advice));
             }
             let frames = Frames::of_file(own.engine, file, fruit, steps);
             (

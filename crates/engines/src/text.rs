@@ -7,7 +7,6 @@ use windfall_scene_run::file::engine_kind::Engine;
 use windfall_scene_run::run::tables::text_of_files;
 
 /// What was written, and what to do with it.
-#[must_use]
 pub fn text_of_deck(outcome: &DeckOutcome) -> String {
     let mut text = format!(
         "A deck for {}: {} steps of {} µs, a frame every {}.\n",
@@ -37,7 +36,6 @@ pub fn text_of_deck(outcome: &DeckOutcome) -> String {
 }
 
 /// Contacts in another engine's terms: what is exact, and what is not.
-#[must_use]
 pub fn text_of_contacts(outcome: &ContactsOutcome) -> String {
     let mut text = format!("Contacts for {}.\n", outcome.engine);
     for own in &outcome.contacts {

@@ -266,6 +266,28 @@ pub enum Error {
         /// The file or directory.
         path: PathBuf,
     },
+    /// A pipe, socket or device where a file is read.
+    #[error("{path}: this is not a regular file but a pipe, a socket or a device; put the file itself there", path = path.display())]
+    NotRegular {
+        /// What was named.
+        path: PathBuf,
+    },
+    /// A file that would replace an input of the command.
+    #[error("{path}: this is an input ({input}) and is not replaced; choose another name", path = path.display(), input = input.display())]
+    WouldReplaceInput {
+        /// The file to be written.
+        path: PathBuf,
+        /// The input, as it was named.
+        input: PathBuf,
+    },
+    /// A file that would lie among the recordings of a campaign.
+    #[error("{path}: {folder} holds recordings, and nothing else may be written there; choose another directory", path = path.display(), folder = folder.display())]
+    AmongRecordings {
+        /// The file to be written.
+        path: PathBuf,
+        /// The folder of the recordings.
+        folder: PathBuf,
+    },
     /// Not one impact of a campaign could be fitted.
     #[error("{path}: nothing could be fitted{}", why_nothing(failures), path = path.display())]
     NothingFitted {
@@ -349,7 +371,6 @@ pub enum Error {
 
 impl Error {
     /// Whether the request (options, campaign files) is wrong, not the work.
-    #[must_use]
     pub fn is_request(&self) -> bool {
         if let Self::Room(fault) = self {
             return fault.is_request();
@@ -367,12 +388,19 @@ impl Error {
 
 impl Error {
     /// A file that the system does not let us "read", "write" or "create".
-    #[must_use]
     pub fn access(path: &Path, action: &'static str, source: std::io::Error) -> Self {
         Self::FileAccess {
             path: path.to_path_buf(),
             action,
             source,
+        }
+    }
+
+    /// A file that is not there, and what to do.
+    pub fn absent(path: impl Into<PathBuf>, advice: impl Into<String>) -> Self {
+        Self::FileAbsent {
+            path: path.into(),
+            advice: advice.into(),
         }
     }
 
@@ -411,7 +439,6 @@ impl Error {
     }
 
     /// The error of a room, where this is one of type `T`.
-    #[must_use]
     pub fn of_room<T: Fault>(&self) -> Option<&T> {
         let Self::Room(fault) = self else { return None };
         let fault: &dyn std::error::Error = &**fault;

@@ -26,7 +26,6 @@ pub struct EstimateOutcome {
 
 impl EstimateOutcome {
     /// The 95 % interval, where the data can tell one.
-    #[must_use]
     pub fn interval(&self) -> Option<(f64, f64)> {
         self.low.zip(self.high)
     }
@@ -43,7 +42,6 @@ pub struct FindingOutcome {
 
 impl FindingOutcome {
     /// A finding under its code.
-    #[must_use]
     pub fn new(code: &str, message: impl Into<String>) -> Self {
         Self {
             code: code.to_owned(),
@@ -87,7 +85,6 @@ pub struct SpreadOutcome {
 /// ```
 ///
 /// The sums run in the order of the values.
-#[must_use]
 pub fn spread(values: &[f64]) -> Option<SpreadOutcome> {
     if values.is_empty() {
         return None;
@@ -101,7 +98,6 @@ pub fn spread(values: &[f64]) -> Option<SpreadOutcome> {
 }
 
 /// Spread of the values under each name, names in the order of their first appearance.
-#[must_use]
 pub fn spreads<'a>(values: impl IntoIterator<Item = (&'a str, f64)>) -> Named<SpreadOutcome> {
     let groups = grouped(values).into_iter();
     groups

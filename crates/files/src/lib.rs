@@ -4,6 +4,7 @@ pub mod confined;
 pub mod error;
 mod error_words;
 pub mod found;
+pub mod inputs;
 pub mod named;
 pub mod on_threads;
 pub mod option_value;

@@ -37,7 +37,6 @@ pub fn grouped<K: PartialEq, T>(pairs: impl IntoIterator<Item = (K, T)>) -> Vec<
 
 impl<T> Named<T> {
     /// Values under the names of an array.
-    #[must_use]
     pub fn of<const N: usize>(pairs: [(&str, T); N]) -> Self {
         pairs.into_iter().collect()
     }
@@ -53,7 +52,6 @@ impl<T> Named<T> {
     }
 
     /// The value of that name.
-    #[must_use]
     pub fn get(&self, name: &str) -> Option<&T> {
         self.0
             .iter()

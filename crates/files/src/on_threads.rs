@@ -1,6 +1,7 @@
 //! Work on a given number of threads.
 
 use crate::error::Error;
+use crate::option_value::unusable;
 
 /// Does `work` on that many threads; on all cores when `None`.
 ///
@@ -12,9 +13,6 @@ pub fn on_threads<T: Send>(
 ) -> Result<T, Error> {
     let threads = threads.unwrap_or(0);
     let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build();
-    let pool = pool.map_err(|error| Error::OptionInvalid {
-        option: format!("--threads {threads}"),
-        problem: error.to_string(),
-    })?;
+    let pool = pool.map_err(|error| unusable(format!("--threads {threads}"), error.to_string()))?;
     pool.install(work)
 }

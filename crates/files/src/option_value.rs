@@ -5,7 +5,6 @@ use crate::text::toml_source::suggestion;
 use windfall_numerics::unit::quantity::parse_as;
 
 /// The error of an option that cannot be used.
-#[must_use]
 pub fn unusable(option: impl Into<String>, problem: impl Into<String>) -> Error {
     Error::OptionInvalid {
         option: option.into(),
@@ -62,7 +61,6 @@ pub fn chosen<T: Copy>(option: &str, word: &str, choices: &[(&str, T)]) -> Resul
     })
 }
 /// The word for a value; empty for one that has no word.
-#[must_use]
 pub fn word_of<T: Copy + PartialEq>(choices: &[(&str, T)], value: T) -> String {
     let found = choices.iter().find(|(_, known)| *known == value);
     found.map_or_else(String::new, |(word, _)| (*word).to_owned())

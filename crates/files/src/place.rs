@@ -13,7 +13,6 @@ pub struct Place {
 
 impl Place {
     /// A line of a file; 0 for the file as a whole.
-    #[must_use]
     pub fn at(file: &Path, line: usize) -> Self {
         let file = file.to_path_buf();
         Self { file, line }

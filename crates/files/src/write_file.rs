@@ -1,6 +1,7 @@
-//! Files that are there whole or not at all.
+//! The one way out: files that are there whole or not at all, and replace no input.
 
 use crate::error::Error;
+use crate::inputs::check_output;
 use std::fs::File;
 use std::io::Write;
 use std::path::Path;
@@ -9,8 +10,10 @@ use std::path::Path;
 /// stops the writing, the file of before or the whole new one is there.
 ///
 /// # Errors
-/// The directory cannot be written, or is full; the file of before is as it was.
+/// It would replace an input; the directory cannot be written, or is full. The file of
+/// before is as it was.
 pub fn write_whole(path: &Path, contents: &[u8]) -> Result<(), Error> {
+    check_output(path)?;
     let mut name = path.file_name().unwrap_or_default().to_owned();
     name.push(format!(".{}.partial", std::process::id()));
     let partial = path.with_file_name(name);
@@ -21,6 +24,35 @@ pub fn write_whole(path: &Path, contents: &[u8]) -> Result<(), Error> {
         let _ = std::fs::remove_file(&partial);
         Error::access(path, "write", source)
     })
+}
+
+/// Makes a directory for results, with those above it.
+///
+/// # Errors
+/// It would lie among recordings, or cannot be made.
+pub fn make_directory(path: &Path) -> Result<(), Error> {
+    check_output(path)?;
+    std::fs::create_dir_all(path).map_err(|source| Error::access(path, "write", source))
+}
+
+/// Writes a file that does not exist yet.
+///
+/// # Errors
+/// It exists already, or cannot be written.
+pub fn write_new(path: &Path, contents: &[u8]) -> Result<(), Error> {
+    let mut file = File::create_new(path).map_err(|source| create_error(path, source))?;
+    file.write_all(contents)
+        .map_err(|source| Error::access(path, "write", source))
+}
+
+/// Why a file or directory could not be made.
+pub fn create_error(path: &Path, source: std::io::Error) -> Error {
+    match source.kind() {
+        std::io::ErrorKind::AlreadyExists => Error::AlreadyThere {
+            path: path.to_path_buf(),
+        },
+        _ => Error::access(path, "create", source),
+    }
 }
 
 #[cfg(test)]

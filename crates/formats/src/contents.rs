@@ -35,7 +35,6 @@ impl Format {
     ];
 
     /// Whether cells may be blank, which means that there is no sample.
-    #[must_use]
     pub fn has_blank_cells(self) -> bool {
         matches!(self, Self::Text | Self::Lvm)
     }
@@ -109,7 +108,6 @@ pub enum Note {
 
 impl Note {
     /// Short code for scripts.
-    #[must_use]
     pub fn code(&self) -> &'static str {
         match self {
             Self::LeftOut { .. } => "left-out",

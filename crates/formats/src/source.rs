@@ -50,7 +50,6 @@ impl Source {
     }
 
     /// Wraps bytes in memory, with a name for messages.
-    #[must_use]
     pub fn from_bytes(name: &str, bytes: Vec<u8>) -> Self {
         Self {
             path: PathBuf::from(name),
@@ -60,13 +59,11 @@ impl Source {
     }
 
     /// The file, for messages.
-    #[must_use]
     pub fn path(&self) -> &Path {
         &self.path
     }
 
     /// Number of bytes.
-    #[must_use]
     pub fn length(&self) -> u64 {
         self.length
     }
@@ -116,7 +113,6 @@ impl Source {
     }
 
     /// Error: `what`, at `offset`, extends beyond the end of the file.
-    #[must_use]
     pub fn truncated(&self, offset: u64, what: &str, needed: u64) -> Error {
         Error::Truncated {
             path: self.path.clone(),

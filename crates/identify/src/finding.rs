@@ -194,7 +194,6 @@ pub enum Finding {
 
 impl Finding {
     /// Stable name for scripts.
-    #[must_use]
     pub fn code(&self) -> &'static str {
         match self {
             Self::NoConvergence { .. } => "no-convergence",

@@ -1,4 +1,3 @@
-#![cfg_attr(not(test), warn(clippy::disallowed_methods, clippy::disallowed_types))]
 //! Rigs forward and backward: simulate an impact under a force law, and
 //! estimate the law's parameters from a measured impact.
 //!

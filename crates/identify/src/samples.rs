@@ -28,7 +28,6 @@ impl Quantity {
     ];
 
     /// Name in campaign files and results.
-    #[must_use]
     pub fn name(self) -> &'static str {
         match self {
             Self::Displacement => "displacement",
@@ -64,7 +63,6 @@ pub struct SampleGroup {
 impl SampleGroup {
     /// Samples at `times`, with a weight per quantity. All slices are as long
     /// as `times`; a quantity that was not measured is `None`.
-    #[must_use]
     pub fn new(times: &[f64], values: [Option<(&[f64], f64)>; QUANTITIES]) -> Self {
         let padded = |slice: &[f64]| {
             let mut out = Vec::with_capacity(slice.len() + PACK);
@@ -129,27 +127,23 @@ impl SampleGroup {
     }
 
     /// Weight of sample `index` of a quantity in the cost.
-    #[must_use]
     pub fn weight_of(&self, quantity: Quantity, index: usize) -> f64 {
         let relative = &self.relative[quantity as usize];
         self.weights[quantity as usize] * relative.get(index).copied().unwrap_or(1.0)
     }
 
     /// Samples of `quantity`; empty where it was not measured.
-    #[must_use]
     pub fn values(&self, quantity: Quantity) -> &[f64] {
         let values = &self.values[quantity as usize];
         &values[..self.len.min(values.len())]
     }
 
     /// Sampling times; s.
-    #[must_use]
     pub fn times(&self) -> &[f64] {
         &self.times[..self.len]
     }
 
     /// Mean time between samples; s. Zero for a single sample.
-    #[must_use]
     pub fn interval(&self) -> f64 {
         match self.times() {
             [first, .., last] => (last - first) / (self.len - 1) as f64,
@@ -158,7 +152,6 @@ impl SampleGroup {
     }
 
     /// Whether it holds samples of `quantity`.
-    #[must_use]
     pub fn holds(&self, quantity: Quantity) -> bool {
         !self.values[quantity as usize].is_empty()
     }

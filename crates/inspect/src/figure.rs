@@ -28,7 +28,6 @@ const DOTS: usize = 150;
 /// Draws the channels of a recording, at most [`MOST_PANELS`] of them.
 ///
 /// Channels that overlap in time share an axis; others have their own.
-#[must_use]
 pub fn svg_of_curves(title: &str, curves: &[Curve], theme: &Theme) -> String {
     let shown = &curves[..curves.len().min(MOST_PANELS)];
     let groups: Vec<&[Curve]> = shown

@@ -15,7 +15,9 @@ use windfall_draw::plot::write_plot;
 use windfall_draw::theme::LIGHT;
 use windfall_files::error::Error;
 use windfall_files::found::FindingOutcome;
+use windfall_files::inputs::protect;
 use windfall_files::named::Named;
+use windfall_files::option_value::unusable;
 use windfall_files::text::column_role::{role_of, role_of_unit, seconds_per_unit, unit_in};
 use windfall_formats::contents::{ChannelContents, Contents, TimeBase};
 use windfall_formats::open::{OpenOptions, open};
@@ -94,6 +96,7 @@ pub fn inspect_opened(
     options: &OpenOptions,
     channels: &[String],
 ) -> Result<Inspection, Error> {
+    protect(path);
     let mut reader = open(path, options).map_err(Error::Format)?;
     let contents = reader.contents().clone();
     let shown = shown_channels(&contents, channels, path)?;
@@ -103,7 +106,7 @@ pub fn inspect_opened(
     // What reading itself has found out is in the notes by now.
     let notes = reader.contents().notes.iter();
     let mut findings: Vec<FindingOutcome> = notes
-        .map(|note| finding(note.code(), note.to_string()))
+        .map(|note| FindingOutcome::new(note.code(), note.to_string()))
         .collect();
     findings.append(&mut scans.fault_findings());
 
@@ -130,7 +133,7 @@ pub fn inspect_opened(
     {
         let message = "nothing says when the samples were taken; give the sampling rate or the \
                        column of times in campaign.toml: [files] rate = \"200 kHz\"";
-        findings.push(finding("no-time", message.to_owned()));
+        findings.push(FindingOutcome::new("no-time", message.to_owned()));
     }
     let rows = scans.channels.iter().map(|scan| scan.values.rows).max();
     Ok(Inspection {
@@ -165,10 +168,8 @@ fn shown_channels(
 /// There is not exactly one recording, its name ends neither in ".svg" nor in ".png",
 /// or a file cannot be written.
 pub fn write_figure(path: &Path, inspections: &[Inspection]) -> Result<[PathBuf; 2], Error> {
-    let unusable = |problem: &str| Error::OptionInvalid {
-        option: format!("--plot {}", path.display()),
-        problem: problem.to_owned(),
-    };
+    let unusable =
+        |problem: &str| unusable(format!("--plot {}", path.display()), problem.to_owned());
     let [inspection] = inspections else {
         return Err(unusable(
             "a figure shows one recording; name one that can be read",
@@ -180,13 +181,6 @@ pub fn write_figure(path: &Path, inspections: &[Inspection]) -> Result<[PathBuf;
     let data = csv_of_curves(&inspection.curves)?;
     let input = Path::new(&inspection.file);
     write_plot(path, svg, &data, &[(input, "the recording")])
-}
-
-fn finding(code: &str, message: String) -> FindingOutcome {
-    FindingOutcome {
-        code: code.to_owned(),
-        message,
-    }
 }
 
 /// What one pass over a channel has found.
@@ -223,10 +217,12 @@ impl Scans {
 
     fn fault_findings(&mut self) -> Vec<FindingOutcome> {
         let faults = self.faults.drain(..);
-        let mut findings: Vec<_> = faults.map(|fault| finding("cell", fault)).collect();
+        let mut findings: Vec<_> = faults
+            .map(|fault| FindingOutcome::new("cell", fault))
+            .collect();
         if self.more_faults > 0 {
             let message = format!("{} more cells are no finite numbers", self.more_faults);
-            findings.push(finding("cell", message));
+            findings.push(FindingOutcome::new("cell", message));
         }
         findings
     }
@@ -343,7 +339,7 @@ fn time_findings(name: &str, times: &TimeScan) -> Vec<FindingOutcome> {
              split the recording there, or give a sampling rate in place of the time column",
             step.row, step.time, step.before
         );
-        return vec![finding("time-backwards", message)];
+        return vec![FindingOutcome::new("time-backwards", message)];
     }
     let (Some(median), Some(worst)) = (times.median_interval(), times.irregular()) else {
         return Vec::new();
@@ -353,21 +349,21 @@ fn time_findings(name: &str, times: &TimeScan) -> Vec<FindingOutcome> {
         worst.interval(),
         worst.before
     );
-    vec![finding("irregular-sampling", message)]
+    vec![FindingOutcome::new("irregular-sampling", message)]
 }
 
 fn value_findings(name: &str, values: &ValueScan) -> Vec<FindingOutcome> {
     let mut findings = Vec::new();
     if values.infinite > 0 {
         let message = format!("\"{name}\": {} samples are infinite", values.infinite);
-        findings.push(finding("infinite", message));
+        findings.push(FindingOutcome::new("infinite", message));
     }
     if let Some((limit, run)) = values.clipped() {
         let message = format!(
             "\"{name}\": {run} successive samples stand at the extreme value {limit}; \
              the channel may be clipped"
         );
-        findings.push(finding("clipped", message));
+        findings.push(FindingOutcome::new("clipped", message));
     }
     if let Some(spikes) = values.spikes() {
         let [before, value, after] = spikes.first.values;
@@ -379,7 +375,7 @@ fn value_findings(name: &str, values: &ValueScan) -> Vec<FindingOutcome> {
             spikes.count,
             spikes.first.sample
         );
-        findings.push(finding("spike", message));
+        findings.push(FindingOutcome::new("spike", message));
     }
     findings
 }

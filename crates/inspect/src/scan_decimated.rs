@@ -42,7 +42,6 @@ impl Decimated {
     /// The kept value of that rank in rising order, a part of their number; 1.
     ///
     /// * `from_above`: how far the rank stays below the number kept at least
-    #[must_use]
     pub fn quantile(&self, part: f64, from_above: usize) -> Option<f64> {
         let mut values = self.kept.clone();
         let last = values.len().checked_sub(from_above)?;

@@ -32,7 +32,6 @@ pub struct Step {
 
 impl Step {
     /// From the one to the other.
-    #[must_use]
     pub fn interval(&self) -> f64 {
         self.time - self.before
     }
@@ -71,19 +70,16 @@ impl TimeScan {
     }
 
     /// Where time first stands still or goes back.
-    #[must_use]
     pub fn backwards(&self) -> Option<Step> {
         self.backwards
     }
 
     /// The median interval; of a long channel, of a choice of its intervals.
-    #[must_use]
     pub fn median_interval(&self) -> Option<f64> {
         self.intervals.quantile(0.5, 1)
     }
 
     /// The interval that departs most from the median, if that is much.
-    #[must_use]
     pub fn irregular(&self) -> Option<Step> {
         let median = self.median_interval()?;
         let off = |step: &Step| (step.interval() - median).abs();
@@ -94,7 +90,6 @@ impl TimeScan {
     }
 
     /// The time of a row, interpolated in channels too long to remember each.
-    #[must_use]
     pub fn at(&self, row: u64) -> Option<f64> {
         if let Some((last_row, last)) = self.last
             && row >= last_row

@@ -166,13 +166,11 @@ impl ValueScan {
     }
 
     /// First and last row with a sample.
-    #[must_use]
     pub fn span(&self) -> Option<(u64, u64)> {
         self.first.zip(self.last)
     }
 
     /// Usual number of rows from one sample to the next: the median.
-    #[must_use]
     pub fn usual_gap(&self) -> Option<u64> {
         let total: u64 = self.gaps.iter().sum();
         let mut counted = 0;
@@ -184,7 +182,6 @@ impl ValueScan {
     }
 
     /// An extreme value at which the channel stands, and for how many samples.
-    #[must_use]
     pub fn clipped(&self) -> Option<(f64, u64)> {
         if self.levels.len() <= LOGIC_LEVELS {
             return None;
@@ -195,7 +192,6 @@ impl ValueScan {
     }
 
     /// Samples far from both neighbours, against what the channel usually does.
-    #[must_use]
     pub fn spikes(&self) -> Option<Spikes> {
         if self.samples < LEAST_FOR_SPIKES {
             return None;

@@ -4,7 +4,7 @@ use crate::run::{ColumnInspection, Inspection};
 use std::fmt::Write;
 use windfall_draw::terminal_plot::terminal_plot;
 use windfall_files::error::Error;
-use windfall_files::table::write::csv_text;
+use windfall_files::table::write::{csv_text, number_cell};
 use windfall_files::text::number::plain;
 use windfall_files::text::table::table_text;
 
@@ -20,7 +20,6 @@ const PLOT_ROWS: usize = 6;
 /// An inspection as text: a table of channels, small plots, what looks wrong.
 ///
 /// * `columns`: width of the terminal; characters
-#[must_use]
 pub fn text_of_inspection(inspection: &Inspection, columns: usize) -> String {
     let header = [
         "channel",
@@ -81,7 +80,6 @@ pub fn csv_of_inspections(inspections: &[Inspection]) -> Result<String, Error> {
         "file", "column", "unit", "could_be", "samples", "rate_Hz", "length_s", "smallest",
         "largest", "findings",
     ];
-    let number = |value: Option<f64>| value.map_or_else(String::new, |value| value.to_string());
     let row = |inspection: &Inspection, column: &ColumnInspection| {
         let named = format!("\"{}\"", column.column);
         let codes: Vec<&str> = inspection
@@ -96,10 +94,10 @@ pub fn csv_of_inspections(inspections: &[Inspection]) -> Result<String, Error> {
             column.unit.clone().unwrap_or_default(),
             column.role.unwrap_or_default().to_owned(),
             column.samples.to_string(),
-            number(column.rate),
-            number(column.length),
-            number(column.smallest),
-            number(column.largest),
+            number_cell(column.rate),
+            number_cell(column.length),
+            number_cell(column.smallest),
+            number_cell(column.largest),
             codes.join(" "),
         ]
     };

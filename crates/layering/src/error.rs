@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 
 /// Why the checks could not be made; a broken rule is not an error but a
-/// [`Violation`](crate::violation::Violation).
+/// text.
 #[derive(Debug, thiserror::Error)]
 pub enum Error {
     /// A source file is not Rust.

@@ -2,7 +2,6 @@
 //! and the files that front ends leave to the crate windfall.
 
 use crate::source::{Mention, NamedPath, Role, SourceFile};
-use crate::violation::{Place, Violation};
 
 /// Parts of the standard library that reach outside, and why they are not for
 /// inner crates.
@@ -48,50 +47,80 @@ const FRONT_END_PATHS: &[(&str, &str)] = &[(
     "only the crate windfall opens files: call one of its workflows",
 )];
 
+/// Ends of paths that make, replace or rename a file.
+const WRITERS: &[[&str; 2]] = &[
+    ["fs", "write"],
+    ["fs", "rename"],
+    ["fs", "copy"],
+    ["fs", "hard_link"],
+    ["File", "create"],
+    ["File", "create_new"],
+    ["File", "options"],
+    ["OpenOptions", "new"],
+];
+
+/// Source files that may do so: the writer itself, uploads in pieces, and files that grow
+/// while a scene or an engine runs.
+const WAY_OUT: &[&str] = &[
+    "crates/files/src/write_file.rs",
+    "crates/files/src/confined.rs",
+    "crates/scene-run/src/run/growing.rs",
+    "crates/scene-run/src/run/checkpoint.rs",
+    "crates/scene-run/src/run/frames.rs",
+    "crates/scene-run/src/run/tables.rs",
+    "crates/engines/src/motion.rs",
+];
+
 /// Macros that print.
 const MACROS: &[&str] = &["print", "println", "eprint", "eprintln", "dbg"];
 
 /// Uses of the outside world in the shipped code of an inner crate.
-#[must_use]
-pub fn check_inner(file: &SourceFile) -> Vec<Violation> {
+pub fn check_inner(file: &SourceFile) -> Vec<String> {
     let mut violations = reaching(file, PATHS);
     let printing = file
         .macros
         .iter()
         .filter(|call| file.role == Role::Shipped && MACROS.contains(&call.name.as_str()));
-    violations.extend(printing.map(|call| Violation::Forbidden {
-        place: place(file, call.line),
-        found: format!("{}!", call.name),
-        reason: "inner crates print nothing: return a value or a finding",
+    violations.extend(printing.map(|call| {
+        let reason = "inner crates print nothing: return a value or a finding";
+        format!("{}: {}!: {reason}", file.place(call.line), call.name)
     }));
     violations
 }
 
 /// Files opened in the shipped code of a front end.
-#[must_use]
-pub fn check_front_end(file: &SourceFile) -> Vec<Violation> {
+pub fn check_front_end(file: &SourceFile) -> Vec<String> {
     reaching(file, FRONT_END_PATHS)
 }
 
-fn reaching(file: &SourceFile, forbidden: &[(&str, &'static str)]) -> Vec<Violation> {
+/// Code that creates or replaces files without the writer that protects inputs.
+pub fn check_writing(file: &SourceFile) -> Vec<String> {
+    let free = WAY_OUT
+        .iter()
+        .any(|own| file.path == std::path::Path::new(own));
+    let shipped = file.role == Role::Shipped && !free && file.package != "windfall-test-data";
+    let paths = file.paths.iter().filter(|_| shipped);
+    let writes = paths.filter(|path| {
+        let segments: Vec<&str> = path.segments.iter().map(String::as_str).collect();
+        WRITERS.iter().any(|writer| segments.ends_with(writer))
+    });
+    let message = |path: &NamedPath| {
+        let found = path.segments.join("::");
+        let place = file.place(path.line);
+        format!("{place}: {found}: use windfall_files::write_file, which never replaces an input")
+    };
+    writes.map(message).collect()
+}
+
+fn reaching(file: &SourceFile, forbidden: &[(&str, &'static str)]) -> Vec<String> {
     let shipped = file.paths.iter().filter(|_| file.role == Role::Shipped);
     shipped
         .filter_map(|path| {
             let (_, reason) = forbidden.iter().find(|(part, _)| reaches(path, part))?;
-            Some(Violation::Forbidden {
-                place: place(file, path.line),
-                found: path.segments.join("::"),
-                reason,
-            })
+            let found = path.segments.join("::");
+            Some(format!("{}: {found}: {reason}", file.place(path.line)))
         })
         .collect()
-}
-
-fn place(file: &SourceFile, line: usize) -> Place {
-    Place {
-        path: file.path.clone(),
-        line,
-    }
 }
 
 /// Whether the path is inside `forbidden`, or imports a module or a glob that
@@ -116,20 +145,16 @@ mod tests {
     use crate::source::read_source;
     use std::path::Path;
 
+    /// Line and name of what is found.
     fn found_in(within: &str, text: &str) -> Vec<String> {
-        let file = read_source(
-            Path::new(within),
-            Path::new(within),
-            "windfall-signal",
-            text,
-        );
-        check_inner(&file.unwrap())
-            .iter()
-            .map(|violation| match violation {
-                Violation::Forbidden { found, place, .. } => format!("{}:{found}", place.line),
-                other => panic!("{other}"),
-            })
-            .collect()
+        let path = Path::new(within);
+        let file = read_source(path, path, "windfall-signal", text);
+        let found = check_inner(&file.unwrap()).into_iter().map(|violation| {
+            let rest = violation.strip_prefix(&format!("{within}:")).unwrap();
+            let (line, what) = rest.split_once(": ").unwrap();
+            format!("{line}:{}", what.split_once(": ").unwrap().0)
+        });
+        found.collect()
     }
 
     fn found(text: &str) -> Vec<String> {
@@ -177,9 +202,28 @@ mod tests {
             text,
         );
         let found = check_front_end(&file.unwrap());
-        assert!(
-            matches!(&found[..], [Violation::Forbidden { found, .. }] if found == "std::fs"),
-            "{found:?}"
+        assert_eq!(found.len(), 1, "{found:?}");
+        assert!(found[0].contains(": std::fs: "), "{found:?}");
+    }
+
+    #[test]
+    fn rejects_files_written_outside_of_the_one_way_out() {
+        let found = |path: &str, text: &str| {
+            let path = Path::new(path);
+            check_writing(&read_source(path, Path::new("src/a.rs"), "a", text).unwrap()).len()
+        };
+        for text in [
+            "fn f() { std::fs::write(p, t); }",
+            "fn f() { File::create(p); }",
+            "use std::fs::{rename, write};",
+            "fn f() { std::fs::OpenOptions::new(); }",
+        ] {
+            assert!(found("crates/a/src/a.rs", text) > 0, "{text}");
+            assert_eq!(found(WAY_OUT[0], text), 0, "{text}");
+        }
+        assert_eq!(
+            found("crates/a/src/a.rs", "fn f() { std::fs::read(p); }"),
+            0
         );
     }
 

@@ -1,7 +1,6 @@
 //! Modules of one crate that import each other.
 
 use crate::source::{Mention, NamedPath, Role, SourceFile};
-use crate::violation::Violation;
 use std::collections::{BTreeMap, BTreeSet};
 
 /// A module path inside a crate; empty for the root.
@@ -13,26 +12,18 @@ type Module = Vec<String>;
 /// out. A re-export (`pub use`) is no import of its own: it is followed to
 /// where the name comes from. A module that names an item of the crate's root
 /// imports the root.
-#[must_use]
-pub fn check_module_cycles(package: &str, files: &[&SourceFile]) -> Vec<Violation> {
+pub fn check_module_cycles(package: &str, files: &[&SourceFile]) -> Vec<String> {
     let shipped: Vec<&SourceFile> = files
         .iter()
         .copied()
         .filter(|file| file.role == Role::Shipped)
         .collect();
-    cycles(&import_graph(&shipped))
-        .into_iter()
-        .map(|cycle| Violation::ModuleCycle {
-            package: package.to_owned(),
-            modules: cycle.iter().map(name_of).collect(),
-        })
-        .collect()
+    messages(package, &import_graph(&shipped))
 }
 
 /// Cycles among the folders of one crate: a folder, or a file that lies in none, counts
 /// as one, and what the crate's root declares as nothing.
-#[must_use]
-pub fn check_folder_cycles(package: &str, files: &[&SourceFile]) -> Vec<Violation> {
+pub fn check_folder_cycles(package: &str, files: &[&SourceFile]) -> Vec<String> {
     let shipped: Vec<&SourceFile> = files
         .iter()
         .copied()
@@ -45,16 +36,22 @@ pub fn check_folder_cycles(package: &str, files: &[&SourceFile]) -> Vec<Violatio
         let to = imported.iter().map(folder).filter(|to| *to != from);
         graph.entry(from.clone()).or_default().extend(to);
     }
-    cycles(&graph)
-        .into_iter()
-        .map(|cycle| Violation::ModuleCycle {
-            package: package.to_owned(),
-            modules: cycle.iter().map(name_of).collect(),
-        })
-        .collect()
+    messages(package, &graph)
 }
 
-fn name_of(module: &&Module) -> String {
+fn messages(package: &str, graph: &BTreeMap<Module, BTreeSet<Module>>) -> Vec<String> {
+    let one = |cycle: Vec<&Module>| {
+        let first = cycle.first().copied();
+        let names: Vec<String> = cycle.into_iter().chain(first).map(name_of).collect();
+        format!(
+            "{package}: modules import each other: {}; move what both need to a third",
+            names.join(" → ")
+        )
+    };
+    cycles(graph).into_iter().map(one).collect()
+}
+
+fn name_of(module: &Module) -> String {
     if module.is_empty() {
         "the crate root".to_owned()
     } else {
@@ -214,39 +211,43 @@ mod tests {
     use crate::source::read_source;
     use std::path::Path;
 
+    fn read(files: &[(&str, &str)]) -> Vec<SourceFile> {
+        let one = |(path, text): &(&str, &str)| {
+            read_source(Path::new(path), Path::new(path), "a", text).unwrap()
+        };
+        files.iter().map(one).collect()
+    }
+
     fn check(files: &[(&str, &str)]) -> Vec<Vec<String>> {
-        let files: Vec<SourceFile> = files
-            .iter()
-            .map(|(path, text)| read_source(Path::new(path), Path::new(path), "a", text).unwrap())
-            .collect();
-        check_module_cycles("a", &files.iter().collect::<Vec<_>>())
-            .into_iter()
-            .map(|violation| match violation {
-                Violation::ModuleCycle { modules, .. } => modules,
-                other => panic!("{other}"),
-            })
-            .collect()
+        let files = read(files);
+        let found = check_module_cycles("a", &files.iter().collect::<Vec<_>>());
+        found.iter().map(|violation| cycle(violation)).collect()
+    }
+
+    /// The modules of a cycle, each once.
+    fn cycle(violation: &str) -> Vec<String> {
+        let cycle = violation.strip_prefix("a: modules import each other: ");
+        let cycle = cycle.unwrap().split(';').next().unwrap();
+        let mut names: Vec<String> = cycle.split(" → ").map(str::to_owned).collect();
+        assert_eq!(names.first(), names.last());
+        names.pop();
+        names
     }
 
     #[test]
     fn rejects_folders_that_import_each_other() {
-        let files: Vec<SourceFile> = [
+        let files = read(&[
             ("src/lib.rs", "pub mod fit;\npub mod rig;"),
             ("src/fit/mod.rs", "pub mod plan;\npub mod run;"),
             ("src/fit/plan.rs", "use crate::rig::Rig;"),
             ("src/fit/run.rs", "pub fn run() {}"),
             ("src/rig.rs", "use crate::fit::run::run;"),
-        ]
-        .iter()
-        .map(|(path, text)| read_source(Path::new(path), Path::new(path), "a", text).unwrap())
-        .collect();
+        ]);
         let all: Vec<&SourceFile> = files.iter().collect();
-        assert_eq!(check_module_cycles("a", &all), []);
+        assert_eq!(check_module_cycles("a", &all), [] as [&str; 0]);
         let found = check_folder_cycles("a", &all);
-        assert!(
-            matches!(&found[..], [Violation::ModuleCycle { modules, .. }] if modules == &["fit", "rig"]),
-            "{found:?}"
-        );
+        assert_eq!(found.len(), 1, "{found:?}");
+        assert_eq!(cycle(&found[0]), ["fit", "rig"]);
     }
 
     #[test]

@@ -38,6 +38,13 @@ pub struct SourceFile {
     pub lines: usize,
 }
 
+impl SourceFile {
+    /// `path:line`.
+    pub(crate) fn place(&self, line: usize) -> String {
+        format!("{}:{line}", self.path.display())
+    }
+}
+
 /// A function with a body.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Function {
@@ -228,7 +235,7 @@ fn end_of_item(tokens: &[TokenTree], start: usize) -> usize {
         .map_or(tokens.len(), |offset| start + offset + 1)
 }
 
-fn is_punct(token: Option<&TokenTree>, sign: char) -> bool {
+pub(crate) fn is_punct(token: Option<&TokenTree>, sign: char) -> bool {
     matches!(token, Some(TokenTree::Punct(p)) if p.as_char() == sign)
 }
 

@@ -1,8 +1,7 @@
 //! Length of files and functions, unfinished code, and what holds on one machine only.
 
 use crate::error::Error;
-use crate::source::{Role, SourceFile, tokens_of};
-use crate::violation::{Place, Violation};
+use crate::source::{Function, Role, SourceFile, is_punct, tokens_of};
 use proc_macro2::{TokenStream, TokenTree};
 use std::collections::BTreeMap;
 use std::path::Path;
@@ -43,33 +42,26 @@ const FOREIGN_REGISTRIES: &[(&str, &str)] = &[
 const PUBLIC_REGISTRY: &str = "registry+https://github.com/rust-lang/crates.io-index";
 
 /// A shipped source file that is too long.
-#[must_use]
-pub fn check_length(file: &SourceFile) -> Option<Violation> {
-    (file.role == Role::Shipped && file.lines > LONGEST_FILE).then(|| Violation::LongFile {
-        path: file.path.clone(),
-        lines: file.lines,
-        limit: LONGEST_FILE,
-    })
+pub fn check_length(file: &SourceFile) -> Option<String> {
+    let (path, lines) = (file.path.display(), file.lines);
+    (file.role == Role::Shipped && lines > LONGEST_FILE)
+        .then(|| format!("{path}: {lines} lines outside tests, at most {LONGEST_FILE}: split it"))
 }
 
 /// Functions of a shipped source file that are too long.
-pub fn check_functions(file: &SourceFile) -> impl Iterator<Item = Violation> + '_ {
+pub fn check_functions(file: &SourceFile) -> impl Iterator<Item = String> + '_ {
     let functions = file.functions.iter().filter(|_| file.role == Role::Shipped);
     let long = functions.filter(|function| function.lines > LONGEST_FUNCTION);
-    long.map(|function| Violation::LongFunction {
-        place: Place {
-            path: file.path.clone(),
-            line: function.line,
-        },
-        name: function.name.clone(),
-        lines: function.lines,
-        limit: LONGEST_FUNCTION,
+    long.map(|Function { name, line, lines }| {
+        let place = file.place(*line);
+        format!(
+            "{place}: `{name}` has {lines} lines, at most {LONGEST_FUNCTION}: split it by meaning"
+        )
     })
 }
 
 /// Folders with too many source files, and crates with too many lines.
-#[must_use]
-pub fn check_crowding(sources: &[SourceFile]) -> Vec<Violation> {
+pub fn check_crowding(sources: &[SourceFile]) -> Vec<String> {
     let mut folders: BTreeMap<&Path, usize> = BTreeMap::new();
     let mut crates: BTreeMap<&str, usize> = BTreeMap::new();
     for file in sources.iter().filter(|file| file.role == Role::Shipped) {
@@ -82,37 +74,28 @@ pub fn check_crowding(sources: &[SourceFile]) -> Vec<Violation> {
     let large = crates
         .into_iter()
         .filter(|(_, lines)| *lines > LARGEST_CRATE);
-    crowded
-        .map(|(folder, files)| Violation::CrowdedFolder {
-            path: folder.to_path_buf(),
-            files,
-            limit: MOST_FILES,
-        })
-        .chain(large.map(|(package, lines)| Violation::LargeCrate {
-            package: package.to_owned(),
-            lines,
-            limit: LARGEST_CRATE,
-        }))
-        .collect()
+    let folder = |(folder, files): (&Path, usize)| {
+        let folder = folder.display();
+        format!("{folder}: {files} source files, at most {MOST_FILES}: make folders by subject")
+    };
+    let package = |(package, lines)| {
+        format!("{package}: {lines} lines outside tests, at most {LARGEST_CRATE}: split it")
+    };
+    crowded.map(folder).chain(large.map(package)).collect()
 }
 
 /// Tests that are switched off and code that is not written yet, in Rust text.
 ///
 /// # Errors
 /// [`Error::Source`] if the text is not made of Rust tokens.
-pub fn check_unfinished(path: &Path, text: &str) -> Result<Vec<Violation>, Error> {
+pub fn check_unfinished(path: &Path, text: &str) -> Result<Vec<String>, Error> {
     let mut found = Vec::new();
     collect_unfinished(tokens_of(path, text)?, &mut found);
-    Ok(found
-        .into_iter()
-        .map(|(line, found)| Violation::Unfinished {
-            place: Place {
-                path: path.to_path_buf(),
-                line,
-            },
-            found,
-        })
-        .collect())
+    let message = |(line, found)| {
+        let place = format!("{}:{line}", path.display());
+        format!("{place}: {found}: finish it, or gate a slow test by an environment variable")
+    };
+    Ok(found.into_iter().map(message).collect())
 }
 
 fn collect_unfinished(tokens: TokenStream, found: &mut Vec<(usize, &'static str)>) {
@@ -153,27 +136,15 @@ fn names_ignore(attribute: TokenStream) -> bool {
     }
 }
 
-fn is_punct(token: Option<&TokenTree>, sign: char) -> bool {
-    matches!(token, Some(TokenTree::Punct(p)) if p.as_char() == sign)
-}
-
 /// Paths of one machine and package hosts of one network, in any text file.
-#[must_use]
-pub fn check_local(path: &Path, text: &str) -> Vec<Violation> {
-    let mut violations = Vec::new();
-    for (i, line) in text.lines().enumerate() {
-        let place = || Place {
-            path: path.to_path_buf(),
-            line: i + 1,
-        };
-        if let Some(found) = local_part(path, line) {
-            violations.push(Violation::Local {
-                place: place(),
-                found,
-            });
-        }
-    }
-    violations
+pub fn check_local(path: &Path, text: &str) -> Vec<String> {
+    let lines = text.lines().zip(1..);
+    let found = lines.filter_map(|(line, number)| {
+        let found = local_part(path, line)?;
+        let place = format!("{}:{number}", path.display());
+        Some(format!("{place}: `{found}` holds on one machine only"))
+    });
+    found.collect()
 }
 
 fn local_part(path: &Path, line: &str) -> Option<String> {
@@ -209,15 +180,15 @@ mod tests {
     use super::*;
     use crate::source::read_source;
 
+    /// Line and name of what is found.
     fn unfinished(text: &str) -> Vec<String> {
-        check_unfinished(Path::new("a.rs"), text)
-            .unwrap()
-            .iter()
-            .map(|violation| match violation {
-                Violation::Unfinished { place, found } => format!("{}:{found}", place.line),
-                other => panic!("{other}"),
-            })
-            .collect()
+        let found = check_unfinished(Path::new("a.rs"), text).unwrap();
+        let short = |violation: String| {
+            let rest = violation.strip_prefix("a.rs:").unwrap().to_owned();
+            let end = rest.find(": finish").unwrap();
+            rest[..end].replacen(": ", ":", 1)
+        };
+        found.into_iter().map(short).collect()
     }
 
     #[test]
@@ -273,17 +244,13 @@ mod tests {
                 .map(|i| read(format!("src/f{i}.rs"), text))
                 .collect()
         };
-        assert_eq!(check_crowding(&files(MOST_FILES, "")), []);
-        assert!(matches!(
-            check_crowding(&files(MOST_FILES + 1, ""))[..],
-            [Violation::CrowdedFolder { .. }]
-        ));
+        assert_eq!(check_crowding(&files(MOST_FILES, "")), [] as [&str; 0]);
+        let crowded = check_crowding(&files(MOST_FILES + 1, ""));
+        assert!(crowded.len() == 1 && crowded[0].contains("41 source files"));
         let half = "fn f() {}\n".repeat(LARGEST_CRATE / 2);
-        assert_eq!(check_crowding(&files(2, &half)), []);
-        assert!(matches!(
-            check_crowding(&files(3, &half))[..],
-            [Violation::LargeCrate { .. }]
-        ));
+        assert_eq!(check_crowding(&files(2, &half)), [] as [&str; 0]);
+        let large = check_crowding(&files(3, &half));
+        assert!(large.len() == 1 && large[0].contains("22500 lines"));
     }
 
     #[test]

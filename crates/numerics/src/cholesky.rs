@@ -32,7 +32,6 @@ fn factor<const P: usize>(matrix: &[[f64; P]; P]) -> Option<([[f64; P]; P], [f64
 }
 
 /// Lower factor L of A = L Lᵀ; `None` when A is not positive definite.
-#[must_use]
 pub fn lower<const P: usize>(matrix: &[[f64; P]; P]) -> Option<[[f64; P]; P]> {
     let (mut lower, scale) = factor(matrix)?;
     for i in 0..P {
@@ -50,7 +49,6 @@ pub fn lower<const P: usize>(matrix: &[[f64; P]; P]) -> Option<[[f64; P]; P]> {
 /// let x = windfall_numerics::cholesky::solve(&[[4.0, 2.0], [2.0, 3.0]], &[2.0, 5.0]).unwrap();
 /// assert!((x[0] + 0.5).abs() < 1e-15 && (x[1] - 2.0).abs() < 1e-15);
 /// ```
-#[must_use]
 pub fn solve<const P: usize>(matrix: &[[f64; P]; P], right: &[f64; P]) -> Option<[f64; P]> {
     let (lower, scale) = factor(matrix)?;
     let mut x: [f64; P] = std::array::from_fn(|i| right[i] / scale[i]);
@@ -70,7 +68,6 @@ pub fn solve<const P: usize>(matrix: &[[f64; P]; P], right: &[f64; P]) -> Option
 }
 
 /// Inverse of a symmetric positive definite matrix; `None` when it is not.
-#[must_use]
 pub fn inverse<const P: usize>(matrix: &[[f64; P]; P]) -> Option<[[f64; P]; P]> {
     let mut out = [[0.0; P]; P];
     for j in 0..P {

@@ -15,7 +15,6 @@ pub struct DoubleDouble {
 
 /// The sum of two doubles and its rounding error, exactly (Knuth).
 #[inline]
-#[must_use]
 pub fn two_sum(a: f64, b: f64) -> (f64, f64) {
     let sum = a + b;
     let part = sum - a;
@@ -24,7 +23,6 @@ pub fn two_sum(a: f64, b: f64) -> (f64, f64) {
 
 /// The product of two doubles and its rounding error, exactly.
 #[inline]
-#[must_use]
 pub fn two_product(a: f64, b: f64) -> (f64, f64) {
     let product = a * b;
     (product, a.mul_add(b, -product))
@@ -53,7 +51,6 @@ impl DoubleDouble {
 
     /// The nearest double.
     #[inline]
-    #[must_use]
     pub fn value(self) -> f64 {
         self.high
     }

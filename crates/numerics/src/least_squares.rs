@@ -198,7 +198,6 @@ enum Asked<const P: usize> {
 
 impl<const P: usize> Descent<P> {
     /// A minimisation from `start` within `bounds`.
-    #[must_use]
     pub fn new(start: &[f64; P], bounds: &Bounds<P>, options: &Options<P>) -> Self {
         let legal = (0..P).all(|i| !start[i].is_nan() && bounds.lower[i] <= bounds.upper[i]);
         let parameters = if legal { clip(start, bounds) } else { *start };
@@ -224,7 +223,6 @@ impl<const P: usize> Descent<P> {
 
     /// A minimisation from where `other` stopped, of a cost of the same shape (more
     /// samples of the same model): the damping is what it was there.
-    #[must_use]
     pub fn resumed(other: &Self, bounds: &Bounds<P>, options: &Options<P>) -> Self {
         let mut resumed = Self::new(&other.here.parameters, bounds, options);
         resumed.damping.relative = other.damping.relative;
@@ -232,7 +230,6 @@ impl<const P: usize> Descent<P> {
     }
 
     /// Where the problem is to be evaluated next; `None` when the end is reached.
-    #[must_use]
     pub fn propose(&self) -> Option<[f64; P]> {
         self.asked.map(|asked| match asked {
             Asked::Start => self.here.parameters,
@@ -267,7 +264,6 @@ impl<const P: usize> Descent<P> {
     }
 
     /// Where the minimisation stopped, or stands.
-    #[must_use]
     pub fn minimum(&self) -> Minimum<P> {
         let parameters = self.here.parameters;
         let at_bound = |i: usize| {

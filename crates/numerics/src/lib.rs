@@ -1,4 +1,3 @@
-#![cfg_attr(not(test), warn(clippy::disallowed_methods, clippy::disallowed_types))]
 //! Numerical routines of windfall: an explicit Runge-Kutta integrator with
 //! dense output whose state carries first-order sensitivities, bounded
 //! least squares with covariance, and physical units at the boundary.

@@ -39,7 +39,6 @@ impl<const P: usize> NormalEquations<P> {
 
     /// Inverse of the normal matrix of the first `count` parameters, the only ones;
     /// `None` where it is singular.
-    #[must_use]
     pub fn inverse(&self, count: usize) -> Option<[[f64; P]; P]> {
         let mut normal = self.normal;
         for i in count..P {

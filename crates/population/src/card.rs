@@ -3,12 +3,12 @@
 
 use crate::outcome::{Population, PopulationOutcome, PopulationParameter};
 use crate::run::PopulationRequest;
-use windfall_campaign::impacts::card::card_of_fit;
+use windfall_campaign::impacts::card::{card_of_fit, law_of_medians};
 use windfall_campaign::impacts::run::fit_campaign;
 use windfall_campaign::pipeline::request::apply_request;
 use windfall_campaign::settings::read::read_campaign;
 use windfall_cards::law_card::{
-    CardCovariance, CardCovariate, CardParameter, CardPopulation, LawCard,
+    CardCovariance, CardCovariate, CardParameter, CardPopulation, LawCard, labels_of,
 };
 use windfall_contact::expression::LawExpression;
 use windfall_files::error::Error;
@@ -47,13 +47,7 @@ pub fn card_of_population(
                 .insert(described.name.to_owned(), card_parameter(parameter));
         }
     }
-    let law = kind
-        .with_parameters(&values)
-        .map_err(|error| Error::ValueNotKnown {
-            item: campaign.shared.title.clone(),
-            missing: format!("the median of its parameters is no law ({error})"),
-            advice: "look at the impacts one by one: `windfall fit DIR`".to_owned(),
-        })?;
+    let law = law_of_medians(&campaign, kind, &values)?;
     card.expression = LawExpression::from(law).to_string();
     card.covariance = Some(median_covariance(&outcome.population));
     card.cautions = outcome.findings.iter().map(|f| f.message.clone()).collect();
@@ -78,24 +72,14 @@ fn card_parameter(parameter: &PopulationParameter) -> CardParameter {
 /// Covariance of the medians on the scale of the deviations.
 fn median_covariance(population: &Population) -> CardCovariance {
     CardCovariance {
-        of: labels(population),
+        of: labels_of(&population.parameters, &population.logarithmic),
         matrix: population.median_covariance.clone(),
         of_what: "the median fruit".to_owned(),
     }
 }
 
-fn labels(population: &Population) -> Vec<String> {
-    let pairs = population.parameters.iter().zip(&population.logarithmic);
-    pairs
-        .map(|(name, logarithmic)| match logarithmic {
-            true => format!("ln {name}"),
-            false => name.clone(),
-        })
-        .collect()
-}
-
 fn card_population(population: &Population) -> CardPopulation {
-    let labels = labels(population);
+    let labels = labels_of(&population.parameters, &population.logarithmic);
     let covariates = population.covariates.iter().flat_map(|covariate| {
         let effects = covariate.effects.iter().zip(&covariate.sds);
         effects

@@ -1,7 +1,6 @@
 //! Covariates of a population from the columns of impacts.csv and
 //! specimens.csv.
 
-use std::path::PathBuf;
 use windfall_campaign::settings::model::{ImpactCampaign, ImpactEntry};
 use windfall_files::error::{Error, Place};
 use windfall_files::option_value::unusable;
@@ -193,10 +192,7 @@ fn cell<'a>(
         let found = cells.iter().find(|(name, _)| name == column);
         found.map(|(_, cell)| cell.trim())
     };
-    let place = |file: &str, line: usize| Place {
-        file: campaign.shared.directory.join(PathBuf::from(file)),
-        line,
-    };
+    let place = |file: &str, line| Place::at(&campaign.shared.directory.join(file), line);
     if let Some(found) = find(&entry.cells) {
         return Some((found, place("impacts.csv", entry.line)));
     }

@@ -222,7 +222,6 @@ pub struct Varying {
 
 impl Varying {
     /// Its value at φ.
-    #[must_use]
     pub fn value(&self, phi: f64) -> f64 {
         match self.logarithmic {
             true => phi.exp(),
@@ -252,7 +251,6 @@ fn range(spread: &Spread) -> RangeOutcome {
 }
 
 /// The parameters, their correlations and the effects on them.
-#[must_use]
 pub fn parameters_of(fit: &PopulationFit, varying: &[Varying]) -> Vec<PopulationParameter> {
     let medians: Vec<&FixedEffect> = fit
         .effects
@@ -275,7 +273,6 @@ pub fn parameters_of(fit: &PopulationFit, varying: &[Varying]) -> Vec<Population
 }
 
 /// Correlations of all pairs.
-#[must_use]
 pub fn correlations_of(fit: &PopulationFit) -> Vec<PopulationCorrelation> {
     let size = fit.parameters.len();
     let pairs = (0..size).flat_map(|k| (k + 1..size).map(move |l| (k, l)));
@@ -292,7 +289,6 @@ pub fn correlations_of(fit: &PopulationFit) -> Vec<PopulationCorrelation> {
 }
 
 /// Effects of covariates, with their centres.
-#[must_use]
 pub fn effects_of(effects: &[FixedEffect], covariates: &[(String, f64)]) -> Vec<PopulationEffect> {
     let of = |effect: &FixedEffect| {
         let name = effect.covariate.as_ref()?;
@@ -313,7 +309,6 @@ pub fn effects_of(effects: &[FixedEffect], covariates: &[(String, f64)]) -> Vec<
 }
 
 /// The usual way, on the scales of people.
-#[must_use]
 pub fn two_stage_outcome(
     stages: &TwoStage,
     varying: &[Varying],
@@ -334,7 +329,6 @@ pub fn two_stage_outcome(
 }
 
 /// The posterior on the scales of people.
-#[must_use]
 pub fn posterior_outcome(
     posterior: &PopulationPosterior,
     fit: &PopulationFit,
@@ -374,7 +368,6 @@ pub fn posterior_outcome(
 }
 
 /// The population in numbers alone.
-#[must_use]
 pub fn population_of(fit: &PopulationFit, varying: &[Varying], method: &str) -> Population {
     let of = |name: Option<&String>| {
         let own = fit

@@ -11,6 +11,7 @@ use std::cell::Cell;
 use std::path::PathBuf;
 use windfall_campaign::impacts::fit::law_problem;
 use windfall_campaign::impacts::mass::{RigFound, find_rig};
+use windfall_campaign::pipeline::evaluate::failure;
 use windfall_campaign::pipeline::request::{FitRequest, apply_request};
 use windfall_campaign::recording::extract::extract_recording;
 use windfall_campaign::settings::model::{ImpactCampaign, ImpactEntry};
@@ -97,7 +98,7 @@ fn estimate(
     let velocities: Vec<f64> = members.iter().map(|member| member.velocity).collect();
     let found = find_covariates(campaign, &entries, &velocities, &campaign.covariates)?;
     for (i, reason) in &found.left_out {
-        failed.push(failure(entries[*i], reason.clone()));
+        failed.push(failure(entries[*i], None, reason.clone()));
     }
     let members: Vec<&Member> = found.kept.iter().map(|&i| &members[i]).collect();
     let varying = varying(law, &problem);
@@ -113,10 +114,7 @@ fn estimate(
         confidence: campaign.fit.options.confidence,
         ..PopulationOptions::default()
     };
-    let subject = |source| Error::Identify {
-        subject: format!("population of {}", law.kind.name()),
-        source: Box::new(source),
-    };
+    let subject = |source| Error::identify(format!("population of {}", law.kind.name()), source);
     let fit = fit_population(&data, &starts, &expand, &options).map_err(subject)?;
     let stages = two_stage(&data, &starts, options.confidence).map_err(subject)?;
     let posterior = match posterior {
@@ -171,7 +169,8 @@ fn members<'a>(
 ) -> Result<(Vec<Member<'a>>, Vec<FailureOutcome>), Error> {
     let found = for_each(progress, campaign.shared.entries.len(), |item| {
         let entry = &campaign.shared.entries[item];
-        member(campaign, rig, problem, entry).map_err(|error| failure(entry, error.to_string()))
+        member(campaign, rig, problem, entry)
+            .map_err(|error| failure(entry, None, error.to_string()))
     })?;
     let (mut members, mut failed) = (Vec::new(), Vec::new());
     for result in found {
@@ -192,10 +191,7 @@ fn member<'a>(
     let (impact, _) = extract_recording(campaign, entry, Some(rig.rig.effective_mass()))?;
     let options = &campaign.fit.options;
     let likelihood = impact_likelihood(&impact, &rig.rig, problem, options);
-    let likelihood = likelihood.map_err(|source| Error::Identify {
-        subject: problem.kind.name().to_owned(),
-        source: Box::new(source),
-    })?;
+    let likelihood = likelihood.map_err(|source| Error::identify(problem.kind.name(), source))?;
     Ok(Member {
         entry,
         velocity: impact
@@ -204,16 +200,6 @@ fn member<'a>(
             .unwrap_or(likelihood.velocity()),
         likelihood,
     })
-}
-
-fn failure(entry: &ImpactEntry, message: String) -> FailureOutcome {
-    FailureOutcome {
-        id: entry.id.clone(),
-        specimen: entry.specimen.clone(),
-        file: entry.file.clone(),
-        law: None,
-        message,
-    }
 }
 
 fn varying(law: &LawExpression, problem: &LawProblem) -> Vec<Varying> {
@@ -301,28 +287,21 @@ fn findings(
     lost.dedup();
     lost.retain(|id| !specimens.iter().any(|known| known == id));
     if !lost.is_empty() {
-        out.push(FindingOutcome {
-            code: "fruit-left-out".to_owned(),
-            message: format!("no usable impact: {}", lost.join(", ")),
-        });
+        let message = format!("no usable impact: {}", lost.join(", "));
+        out.push(FindingOutcome::new("fruit-left-out", message));
     }
     if campaign.fit.laws.len() > 1 {
-        out.push(FindingOutcome {
-            code: "first-law".to_owned(),
-            message: format!(
-                "the campaign fits {} laws; the population is that of the first, {} (choose with --law)",
-                campaign.fit.laws.len(),
-                campaign.fit.laws[0].kind.name()
-            ),
-        });
+        let message = format!(
+            "the campaign fits {} laws; the population is that of the first, {} (choose with --law)",
+            campaign.fit.laws.len(),
+            campaign.fit.laws[0].kind.name()
+        );
+        out.push(FindingOutcome::new("first-law", message));
     }
     out.extend(fit.findings.iter().map(population_finding));
     out
 }
 
 fn population_finding(finding: &PopulationFinding) -> FindingOutcome {
-    FindingOutcome {
-        code: finding.code().to_owned(),
-        message: finding.to_string(),
-    }
+    FindingOutcome::new(finding.code(), finding.to_string())
 }

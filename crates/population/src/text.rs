@@ -5,11 +5,10 @@ use crate::outcome::{
     RangeOutcome,
 };
 use windfall_files::error::Error;
-use windfall_files::table::write::csv_text;
+use windfall_files::table::write::{csv_text, number_cell};
 use windfall_files::text::number::plain;
 use windfall_files::text::statistic::{number, probability};
-use windfall_files::text::table::findings_list;
-use windfall_files::text::table::{page_tables, paragraph};
+use windfall_files::text::table::{failures_list, findings_list, page_tables, paragraph};
 
 /// The columns of a table, separated by commas.
 fn columns(names: &str) -> Vec<String> {
@@ -29,7 +28,6 @@ fn cells(range: &RangeOutcome, factor: f64) -> [String; 3] {
 }
 
 /// A population as text, with the two-stage estimate next to each number.
-#[must_use]
 pub fn text_of_population(outcome: &PopulationOutcome) -> String {
     let mut text = format!("{}\n", outcome.campaign);
     if let Some(label) = &outcome.simulated {
@@ -66,11 +64,7 @@ pub fn text_of_population(outcome: &PopulationOutcome) -> String {
                 effects by least squares over all impacts as if they were independent.";
     text += &(paragraph(note, 0) + "\n");
     text += &findings_list(&outcome.findings);
-    for failure in &outcome.failed {
-        let line = format!("left out: {}: {}", failure.id, failure.message);
-        text += &(paragraph(&line, 4) + "\n");
-    }
-    text
+    text + &failures_list("left out", &outcome.failed, 4)
 }
 
 /// Factor and unit that deviations of a parameter are shown with.
@@ -257,7 +251,6 @@ fn effect_table(effects: &[PopulationEffect], stages: &[PopulationEffect]) -> St
 /// The rows cannot be written.
 pub fn csv_of_population(outcome: &PopulationOutcome) -> Result<String, Error> {
     let header = columns("method,quantity,parameter,covariate,value,low,high");
-    let text = |value: Option<f64>| value.map_or_else(String::new, |v| v.to_string());
     let row = |method: &str, quantity: &str, parameter: &str, range: &RangeOutcome| {
         vec![
             method.to_owned(),
@@ -265,8 +258,8 @@ pub fn csv_of_population(outcome: &PopulationOutcome) -> Result<String, Error> {
             parameter.to_owned(),
             String::new(),
             range.value.to_string(),
-            text(range.low),
-            text(range.high),
+            number_cell(range.low),
+            number_cell(range.high),
         ]
     };
     let mut rows = Vec::new();

@@ -9,7 +9,6 @@ use windfall_campaign::taps::text::csv_of_acoustic;
 use windfall_files::error::Error;
 
 /// Tables for people.
-#[must_use]
 pub fn text_of_any(outcome: &AnyOutcome) -> String {
     match outcome {
         AnyOutcome::Impacts(outcome) => text_of_campaign(outcome),

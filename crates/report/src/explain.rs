@@ -23,7 +23,6 @@ pub struct Explanation {
 }
 
 /// Every finding, in the order of the page.
-#[must_use]
 pub fn all_explanations() -> Vec<Explanation> {
     let mut section = "";
     let mut found = Vec::new();
@@ -76,7 +75,6 @@ pub fn explain(codes: &[String]) -> Result<Vec<Explanation>, Error> {
 }
 
 /// Explanations for a terminal.
-#[must_use]
 pub fn text_of_explanations(explanations: &[Explanation]) -> String {
     let mut text = String::new();
     let mut section = "";

@@ -37,7 +37,6 @@ impl MeasurementWork {
 }
 
 /// The measurement of a kind; `None` where single impacts are fitted.
-#[must_use]
 pub fn measurement_of(kind: CampaignKind) -> Option<MeasurementWork> {
     match kind {
         CampaignKind::Impacts => None,

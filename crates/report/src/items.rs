@@ -9,7 +9,6 @@ use windfall_draw::page::{CaptionedTable, Section};
 const LISTED: usize = 400;
 
 /// Sections on such a campaign.
-#[must_use]
 pub fn sections_of_items(reported: &ReportedItems) -> Vec<Section> {
     let outcome = &reported.outcome;
     let mut sections = vec![

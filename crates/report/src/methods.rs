@@ -11,7 +11,6 @@ use windfall_signal::options::RateMethod;
 use windfall_signal::trigger::{Baseline, Orientation};
 
 /// Paragraphs that say exactly how the results came about.
-#[must_use]
 pub fn methods(campaign: &ImpactCampaign, outcome: &CampaignOutcome) -> Vec<String> {
     let mut paragraphs = vec![rig(campaign, outcome), signals(campaign)];
     paragraphs.extend(laws_text(&campaign.fit.laws, &campaign.fit.free));

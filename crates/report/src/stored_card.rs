@@ -32,10 +32,8 @@ pub fn stored_card(directory: &Path, law: &str) -> Result<String, Error> {
         }
         CampaignKind::Drop => {
             let path = directory.join(CARD_FILE);
-            std::fs::read_to_string(&path).map_err(|_| Error::FileAbsent {
-                path,
-                advice: "calibrate the campaign first; that writes it".to_owned(),
-            })
+            std::fs::read_to_string(&path)
+                .map_err(|_| Error::absent(path, "calibrate the campaign first; that writes it"))
         }
         kind => {
             let problem = format!("a campaign of kind \"{}\" has none", kind.name());

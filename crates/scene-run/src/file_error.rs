@@ -3,6 +3,7 @@
 use serde::Serialize;
 use std::path::{Path, PathBuf};
 use windfall_files::error::{Error, Fault};
+use windfall_files::inputs::check_output;
 use windfall_files::write_file::write_whole;
 
 /// What a system's error becomes: the file, and what was done with it.
@@ -31,6 +32,7 @@ pub(crate) fn write_json(path: &Path, title: &str, result: &impl Serialize) -> R
 
 /// Makes a directory, with those above it.
 pub fn make_directory(path: &Path) -> Result<(), Error> {
+    check_output(path)?;
     std::fs::create_dir_all(path).map_err(access(path, "create"))
 }
 

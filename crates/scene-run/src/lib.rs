@@ -1,6 +1,5 @@
 //! Scenes of many fruit: their files, runs, frames, bruises and studies.
 
-mod base64;
 pub mod bruise;
 pub mod file;
 pub mod file_error;

@@ -11,8 +11,7 @@
 //! Reduction in Contact Mechanics and Friction, chapter 5.
 
 use crate::binary::{Binary, no_value};
-use crate::vector::Vector;
-use crate::vector_of::{Of, add, dot, into_plane, less, stretch_into_plane, times};
+use crate::vector::{Of, Vector, add, dot, into_plane, less, scaled, stretch_into_plane};
 use std::io::{Read, Result as IoResult, Write};
 use windfall_numerics::real::Real;
 
@@ -131,11 +130,11 @@ fn slide_over<R: Real>(
             Some(next) => {
                 let next = into_plane(zero.with_each_plain(*next), normal, longer);
                 let moved = moved.min(one) * 0.5;
-                let sum = times(add(next, here), moved);
+                let sum = scaled(add(next, here), moved);
                 let change = less(next, here, one);
-                (next, add(sum, times(change, moved * moved * 2.0)))
+                (next, add(sum, scaled(change, moved * moved * 2.0)))
             }
-            None => ([zero; 3], times(here, moved.min(zero))),
+            None => ([zero; 3], scaled(here, moved.min(zero))),
         };
         let carried = less(add(here, inward), flown, one);
         let elastic = less(carried, slip, stretch);
@@ -143,7 +142,7 @@ fn slide_over<R: Real>(
         let limit = shear.limit * loads[own];
         let square = dot(sticking, sticking);
         let beyond = square - limit * limit;
-        let capped = times(sticking, beyond.select(limit / square.sqrt(), one));
+        let capped = scaled(sticking, beyond.select(limit / square.sqrt(), one));
         whole = add(whole, capped);
         let mut kept = elastic;
         for axis in 0..3 {

@@ -17,7 +17,6 @@ pub trait Binary: Sized {
 }
 
 /// Bytes that are no such value.
-#[must_use]
 pub fn no_value(what: &str) -> Error {
     Error::new(ErrorKind::InvalidData, format!("no {what}"))
 }

@@ -5,7 +5,6 @@ use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
 
 /// Standard normal numbers of a stream of a seed.
-#[must_use]
 pub fn normals(seed: u64, stream: u64, count: usize) -> Vec<f64> {
     let mut generator = ChaCha8Rng::seed_from_u64(seed);
     generator.set_stream(stream);
@@ -13,7 +12,6 @@ pub fn normals(seed: u64, stream: u64, count: usize) -> Vec<f64> {
 }
 
 /// A standard normal number of some words, whatever was drawn before: of one contact, say.
-#[must_use]
 pub fn normal_of(words: &[u64]) -> f64 {
     let mixed = words.iter().fold(0, |state, word| scrambled(state ^ word));
     let unit = |word: u64| (word >> 11) as f64 / (1_u64 << 53) as f64;

@@ -39,7 +39,6 @@ pub struct Energy {
 
 impl Energy {
     /// What the account lacks: zero but for the errors of the time step; J.
-    #[must_use]
     pub fn closure(&self) -> f64 {
         self.kinetic
             + self.rotational
@@ -54,7 +53,6 @@ impl Energy {
     }
 
     /// What was lost or is held in contacts, by all mechanisms; J.
-    #[must_use]
     pub fn lost(&self) -> f64 {
         self.in_contacts
             + self.in_friction

@@ -48,14 +48,12 @@ pub struct Interaction {
 ///
 /// # Source
 /// Mindlin (1949), J. Appl. Mech. 16, 259.
-#[must_use]
 pub fn mindlin_ratio(poisson: f64) -> f64 {
     2.0 * (1.0 - poisson) / (2.0 - poisson)
 }
 
 impl Interaction {
     /// A law without friction.
-    #[must_use]
     pub fn frictionless(law: Law) -> Self {
         Self {
             law,
@@ -75,14 +73,12 @@ impl Interaction {
     }
 
     /// Whether the law follows the radii of what touches.
-    #[must_use]
     pub fn follows_radii(&self) -> bool {
         let hertzian = self.law.kind().describe().elastic == Elastic::Hertzian;
         hertzian && self.effective_radius.is_some()
     }
 
     /// What radii multiply the force by: √(R*/R* of the law), or 1; 1.
-    #[must_use]
     pub fn scale(&self, radius: f64) -> f64 {
         match self.effective_radius {
             Some(seen) if self.follows_radii() => (radius / seen).sqrt(),

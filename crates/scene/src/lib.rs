@@ -1,4 +1,3 @@
-#![cfg_attr(not(test), warn(clippy::disallowed_methods, clippy::disallowed_types))]
 //! Many fruit at once: spheres that fall, roll and strike each other and walls, under the
 //! very force law that was fitted.
 //!
@@ -27,4 +26,3 @@ pub mod scene;
 pub mod shape;
 pub mod state;
 pub mod vector;
-mod vector_of;

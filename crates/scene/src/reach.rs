@@ -24,7 +24,6 @@ const AROUND: f64 = 4.0;
 /// Cells of a grid count as free where any of their points may be, so that "no" is certain,
 /// and gaps a little narrower than the sphere pass for wide enough: "yes" is not. Walls that
 /// move, and gravity, are left out.
-#[must_use]
 pub fn reaches_a_sink(scene: &Scene, radius: f64, starts: &[Vector]) -> Option<bool> {
     let walls = scene.walls.iter().filter(|wall| wall.motion.stays());
     let walls: Vec<Wall> = walls.cloned().collect();

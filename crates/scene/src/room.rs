@@ -31,7 +31,6 @@ pub struct Doubled {
 const ROOM: f64 = 0.01;
 
 /// The first fruit that comes in where a wall is at that time.
-#[must_use]
 pub fn first_in_wall(scene: &Scene) -> Option<InWall> {
     let mut walls = WallState::new(&scene.walls);
     let mut near = Vec::new();
@@ -64,7 +63,6 @@ const PARALLEL: f64 = 0.01;
 /// Plates and cylinders are looked at in a grid of places, meshes in the middle of each
 /// triangle: walls that overlap by less than that are not found. Faces that no fruit can
 /// touch, as where two solid parts are joined, do not count.
-#[must_use]
 pub fn first_doubled(scene: &Scene) -> Option<Doubled> {
     let radii = scene.fruit.iter().map(|fruit| fruit.radius);
     let smallest = radii.fold(f64::INFINITY, f64::min);

@@ -77,7 +77,6 @@ pub struct Air {
 
 impl Fruit {
     /// A fruit of homogeneous density that is released at time zero, at rest.
-    #[must_use]
     pub fn sphere(material: usize, radius: f64, density: f64, place: Vector) -> Self {
         Self {
             material,
@@ -94,20 +93,17 @@ impl Fruit {
     }
 
     /// Moment of inertia of a homogeneous sphere; kg m².
-    #[must_use]
     pub fn inertia(&self) -> f64 {
         0.4 * self.mass * self.radius * self.radius
     }
 
     /// Largest diameter across its axis; m.
-    #[must_use]
     pub fn diameter(&self) -> f64 {
         let across = self.clump.as_ref().map(|own| own.semi_axes(self.mass)[1]);
         2.0 * across.unwrap_or(self.radius)
     }
 
     /// Radius of the sphere with the same volume; m.
-    #[must_use]
     pub fn mean_radius(&self) -> f64 {
         let axes = self.clump.as_ref().map(|own| own.semi_axes(self.mass));
         axes.map_or(self.radius, |[a, b, c]| (a * b * c).cbrt())
@@ -115,7 +111,6 @@ impl Fruit {
 
     /// The least mass that a contact of the fruit feels: of a clump that is struck at its end
     /// it turns away; kg.
-    #[must_use]
     pub fn least_felt_mass(&self) -> f64 {
         self.clump.as_ref().map_or(self.mass, |own| {
             // An end lies off the axes of the largest moment.
@@ -144,7 +139,6 @@ impl Scene {
     }
 
     /// The materials that met in a contact, the lower number first.
-    #[must_use]
     pub fn materials_of(&self, event: &Event) -> (usize, usize) {
         let own = self.fruit[event.fruit as usize].material;
         let other = match event.partner {
@@ -156,7 +150,6 @@ impl Scene {
 
     /// R* (m) and effective mass (kg) of the mean fruit of two materials, or of a material
     /// and a wall.
-    #[must_use]
     pub fn mean_contact(&self, (first, second): (usize, usize)) -> Option<(f64, f64)> {
         let mean = |material: usize| {
             let fruit = self.fruit.iter().filter(|own| own.material == material);

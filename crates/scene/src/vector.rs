@@ -1,49 +1,46 @@
-//! Vectors of three numbers.
+//! Vectors of three numbers: of one body, or of several side by side.
 
 use windfall_numerics::real::Real;
 
+/// A vector of numbers of any kind.
+pub type Of<R> = [R; 3];
+
 /// A vector in space.
-pub type Vector = [f64; 3];
+pub type Vector = Of<f64>;
 
 /// Sum.
 #[inline(always)]
-#[must_use]
-pub fn add(a: Vector, b: Vector) -> Vector {
+pub fn add<R: Real>(a: Of<R>, b: Of<R>) -> Of<R> {
     [a[0] + b[0], a[1] + b[1], a[2] + b[2]]
 }
 
 /// Difference.
 #[inline(always)]
-#[must_use]
-pub fn subtract(a: Vector, b: Vector) -> Vector {
+pub fn subtract<R: Real>(a: Of<R>, b: Of<R>) -> Of<R> {
     [a[0] - b[0], a[1] - b[1], a[2] - b[2]]
 }
 
 /// Vector times number.
 #[inline(always)]
-#[must_use]
-pub fn scaled(a: Vector, by: f64) -> Vector {
+pub fn scaled<R: Real>(a: Of<R>, by: R) -> Of<R> {
     [a[0] * by, a[1] * by, a[2] * by]
 }
 
 /// a + b times `by`.
 #[inline(always)]
-#[must_use]
-pub fn plus_scaled(a: Vector, b: Vector, by: f64) -> Vector {
+pub fn plus_scaled<R: Real>(a: Of<R>, b: Of<R>, by: R) -> Of<R> {
     [a[0] + b[0] * by, a[1] + b[1] * by, a[2] + b[2] * by]
 }
 
 /// Scalar product.
 #[inline(always)]
-#[must_use]
-pub fn dot(a: Vector, b: Vector) -> f64 {
+pub fn dot<R: Real>(a: Of<R>, b: Of<R>) -> R {
     a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
 }
 
 /// Vector product.
 #[inline(always)]
-#[must_use]
-pub fn cross(a: Vector, b: Vector) -> Vector {
+pub fn cross<R: Real>(a: Of<R>, b: Of<R>) -> Of<R> {
     [
         a[1] * b[2] - a[2] * b[1],
         a[2] * b[0] - a[0] * b[2],
@@ -53,20 +50,17 @@ pub fn cross(a: Vector, b: Vector) -> Vector {
 
 /// Length.
 #[inline(always)]
-#[must_use]
 pub fn length(a: Vector) -> f64 {
     dot(a, a).sqrt()
 }
 
 /// The vector of length 1 in its direction; `None` for one of no length.
-#[must_use]
 pub fn unit(a: Vector) -> Option<Vector> {
     let size = length(a);
     (size > 0.0 && size.is_finite()).then(|| scaled(a, 1.0 / size))
 }
 
 /// A direction of length 1 across another.
-#[must_use]
 pub fn any_normal(along: Vector) -> Vector {
     let [x, y, z] = along.map(f64::abs);
     let least = if x <= y && x <= z {
@@ -80,6 +74,30 @@ pub fn any_normal(along: Vector) -> Vector {
     scaled(out, 1.0 / length(out))
 }
 
+/// a - b times `by`.
+#[inline(always)]
+pub(crate) fn less<R: Real>(a: Of<R>, b: Of<R>, by: R) -> Of<R> {
+    [a[0] - b[0] * by, a[1] - b[1] * by, a[2] - b[2] * by]
+}
+
+/// What a vector that turns with the plane of contact is longer than its shadow on the plane,
+/// to second order; 1.
+#[inline(always)]
+pub(crate) fn stretch_into_plane<R: Real>(a: Of<R>, normal: Of<R>) -> R {
+    let out = dot(a, normal);
+    let inside = less(a, normal, out);
+    let square = dot(inside, inside);
+    square.select(out * out / square, out.constant(0.0)) * 0.5 + 1.0
+}
+
+/// A vector turned with the plane of contact.
+///
+/// * `stretch`: as [`stretch_into_plane`] says
+#[inline(always)]
+pub(crate) fn into_plane<R: Real>(a: Of<R>, normal: Of<R>, stretch: R) -> Of<R> {
+    scaled(less(a, normal, dot(a, normal)), stretch)
+}
+
 /// A rotation as a quaternion of length 1: w, x, y, z.
 pub type Rotation = [f64; 4];
 
@@ -88,7 +106,6 @@ pub const UNTURNED: Rotation = [1.0, 0.0, 0.0, 0.0];
 
 /// The vector turned by the rotation.
 #[inline(always)]
-#[must_use]
 pub fn turned(q: Rotation, a: Vector) -> Vector {
     let axis = [q[1], q[2], q[3]];
     let twice = scaled(cross(axis, a), 2.0);
@@ -97,7 +114,6 @@ pub fn turned(q: Rotation, a: Vector) -> Vector {
 
 /// The vector turned back by the rotation.
 #[inline(always)]
-#[must_use]
 pub fn turned_back(q: Rotation, a: Vector) -> Vector {
     turned([q[0], -q[1], -q[2], -q[3]], a)
 }
@@ -105,8 +121,7 @@ pub fn turned_back(q: Rotation, a: Vector) -> Vector {
 /// The rotation followed by a turn with `spin` (rad/s) over a time; of length 1 again. For
 /// one rotation or several side by side.
 #[inline(always)]
-#[must_use]
-pub fn turned_on<R: Real>(q: [R; 4], spin: [R; 3], time: f64) -> [R; 4] {
+pub fn turned_on<R: Real>(q: [R; 4], spin: Of<R>, time: f64) -> [R; 4] {
     let half = [
         spin[0] * (0.5 * time),
         spin[1] * (0.5 * time),
@@ -135,7 +150,6 @@ pub fn turned_on<R: Real>(q: [R; 4], spin: [R; 3], time: f64) -> [R; 4] {
 }
 
 /// The turn about an axis of length 1 by an angle; rad.
-#[must_use]
 pub fn turn_about(axis: Vector, angle: f64) -> Rotation {
     let (s, c) = (0.5 * angle).sin_cos();
     [c, axis[0] * s, axis[1] * s, axis[2] * s]

@@ -27,7 +27,6 @@ const LEAST_ZERO: usize = 5;
 
 /// Mean acceleration in free motion before contact and its standard uncertainty, with any
 /// constant acceleration of the motion; m/s². `None` with fewer than 5 samples.
-#[must_use]
 pub fn free_acceleration(times: &[f64], values: &[f64], place: &Surroundings) -> Option<Uncertain> {
     let last = times.partition_point(|&t| t <= place.onset - GUARD * place.duration());
     let first = times.partition_point(|&t| t <= place.from);
@@ -49,7 +48,6 @@ pub fn free_acceleration(times: &[f64], values: &[f64], place: &Surroundings) ->
 /// * `free`: what the accelerometer shows without contact; m/s²
 ///
 /// `None` where the acceleration does not cover the contact or has no impulse.
-#[must_use]
 pub fn check_force(
     force: (&[f64], &[f64]),
     acceleration: (&[f64], &[f64]),
@@ -155,7 +153,6 @@ pub struct DisplacementError {
 }
 
 /// Compares an integrated displacement with a measured one.
-#[must_use]
 pub fn displacement_error(
     integrated: (&[f64], &[f64]),
     measured: (&[f64], &[f64]),

@@ -23,7 +23,6 @@ const SIGNIFICANT: f64 = 3.0;
 ///
 /// * `window`: onset and end of the contact; s
 /// * `negative`: true if the signal is negative in contact
-#[must_use]
 pub fn clipping(
     name: &str,
     times: &[f64],

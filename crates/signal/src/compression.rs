@@ -86,8 +86,6 @@ pub struct CompressionCurve {
     pub began_in_contact: bool,
     /// Standard deviation of a force sample's noise; N.
     pub force_noise: f64,
-    /// Standard deviation of a position sample's noise; m.
-    pub position_noise: f64,
     /// Last sample of the loading.
     pub loading_end: CurvePoint,
     /// Why it is the last.
@@ -217,7 +215,6 @@ pub fn compression_curve(
     Ok(CompressionCurve {
         began_in_contact,
         force_noise,
-        position_noise,
         loading_end: point(end),
         ended_by: walk.ended_by,
         bioyield: walk.bioyield.map(point),
@@ -233,7 +230,6 @@ pub fn compression_curve(
 }
 
 /// First and last sample of the range that laws are fitted to, within the loading.
-#[must_use]
 pub fn fitted_range(curve: &CompressionCurve, range: FitRange) -> (usize, usize) {
     let end = curve.loading_end.index;
     let last = match range {

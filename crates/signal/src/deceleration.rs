@@ -34,7 +34,6 @@ pub struct Deceleration {
 /// * `times`: sampling times; s. Uneven ones are resampled at their mean interval.
 ///
 /// `None` if there are fewer than 3 samples.
-#[must_use]
 pub fn deceleration(times: &[f64], values: &[f64], motion: Motion) -> Option<Deceleration> {
     let n = values.len();
     if n < 3 {

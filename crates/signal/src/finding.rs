@@ -157,7 +157,6 @@ pub enum Finding {
 
 impl Finding {
     /// Stable short name, for tables and JSON.
-    #[must_use]
     pub fn code(&self) -> &'static str {
         match self {
             Self::IllegalTransitions { .. } => "illegal-transitions",

@@ -20,7 +20,6 @@ pub struct ForceLoop {
 ///   both are taken at the times of both.
 ///
 /// `None` with fewer than three samples in contact.
-#[must_use]
 pub fn force_loop(
     force: (&[f64], &[f64]),
     displacement: (&[f64], &[f64]),

@@ -96,7 +96,6 @@ pub struct Instrument {
 /// The instrument of the 2003 pendulum study: encoder of 360,000 counts per
 /// revolution on a 0.505 m arm, force sensor of 11 mV/N with 1 N of noise,
 /// all at 200 kHz.
-#[must_use]
 pub fn pendulum_instrument() -> Instrument {
     let sampling_rate = 200e3;
     Instrument {
@@ -177,7 +176,6 @@ pub fn record(
 }
 
 /// Raw channels with the instrument's own calibration: (volts − offset)/sensitivity.
-#[must_use]
 pub fn calibrated(name: &str, channels: &[RawChannel], instrument: &Instrument) -> Recording {
     let sensor = |quantity| match quantity {
         Quantity::Force => instrument.force,

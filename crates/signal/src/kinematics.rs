@@ -34,7 +34,6 @@ pub enum Encoder {
 /// let q = windfall_signal::kinematics::count_length(360_000.0, 0.505);
 /// assert!((q - 8.813912723e-6).abs() < 1e-15);
 /// ```
-#[must_use]
 pub fn count_length(counts_per_revolution: f64, arm: f64) -> f64 {
     std::f64::consts::TAU * arm / counts_per_revolution
 }
@@ -44,7 +43,6 @@ pub fn count_length(counts_per_revolution: f64, arm: f64) -> f64 {
 /// * `angles`: θ; rad
 /// * `angle_at_contact`: θ₀, where the arm is perpendicular to the displacement; rad
 /// * `arm`: r; m
-#[must_use]
 pub fn displacement_from_angles(angles: &[f64], angle_at_contact: f64, arm: f64) -> Vec<f64> {
     angles
         .iter()
@@ -61,7 +59,6 @@ pub fn displacement_from_angles(angles: &[f64], angle_at_contact: f64, arm: f64)
 /// On even times this is eq. (1) of the 2003 pendulum study. A displacement in
 /// counts of length q gives a rate in steps of [`rate_quantum`]: at high
 /// sampling rates coarser than the rate itself.
-#[must_use]
 pub fn central_difference(times: &[f64], displacement: &[f64]) -> Vec<f64> {
     times
         .windows(3)
@@ -74,20 +71,17 @@ pub fn central_difference(times: &[f64], displacement: &[f64]) -> Vec<f64> {
 ///
 /// * `count_length`: q; m
 /// * `interval`: δt; s
-#[must_use]
 pub fn rate_quantum(count_length: f64, interval: f64) -> f64 {
     count_length / (2.0 * interval)
 }
 
 /// Odd number of samples over about a tenth of the contact, enough for a local cubic.
-#[must_use]
 pub fn smoothing_window(contact_duration: f64, interval: f64) -> usize {
     let samples = (contact_duration / (10.0 * interval)).round().max(5.0) as usize;
     samples | 1
 }
 
 /// Value at `time`, linear between samples and constant outside.
-#[must_use]
 pub fn value_at(times: &[f64], values: &[f64], time: f64) -> f64 {
     let after = times.partition_point(|&t| t < time);
     if after == 0 {

@@ -1,4 +1,3 @@
-#![cfg_attr(not(test), warn(clippy::disallowed_methods, clippy::disallowed_types))]
 //! Recording → Impact: decoding, contact windows, displacement rate, energies.
 //!
 //! [`recording::Recording`] is what a reader returns, in SI units;

@@ -56,7 +56,6 @@ pub fn mass_from_impulse(measured: &Measured, driving: Uncertain) -> Result<Unce
 /// Mean of independent estimates of one mass, weighted by 1/u², with the larger of the
 /// standard errors from the u and from their scatter. What the estimates share must be
 /// left out of the u and added to the mean. `None` of nothing.
-#[must_use]
 pub fn mean_mass(masses: &[Uncertain]) -> Option<Uncertain> {
     let weight = |mass: &Uncertain| 1.0 / (mass.sd * mass.sd).max(f64::MIN_POSITIVE);
     let total: f64 = masses.iter().map(weight).sum();
@@ -75,7 +74,6 @@ pub fn mean_mass(masses: &[Uncertain]) -> Option<Uncertain> {
 
 /// One mass from several impacts: [`mean_mass`] with the scatter of each impact, plus
 /// the shared uncertainty of the driving acceleration. `None` if no impact shows a mass.
-#[must_use]
 pub fn mass_from_impulses(impacts: &[Measured], driving: Uncertain) -> Option<Uncertain> {
     let mean = |acceleration: f64| {
         let exact = Uncertain::new(acceleration, 0.0);

@@ -41,7 +41,6 @@ pub struct Surroundings {
 
 impl Surroundings {
     /// `end − onset`; s.
-    #[must_use]
     pub fn duration(&self) -> f64 {
         self.end - self.onset
     }
@@ -76,7 +75,6 @@ pub enum Side {
 ///
 /// * `noise`: standard deviation of one sample; the smallest scatter believed
 /// * `driving`: acceleration of the free motion, positive into the fruit; m/s²
-#[must_use]
 pub fn free_velocity(
     samples: (&[f64], &[f64], Motion),
     noise: f64,
@@ -107,7 +105,6 @@ pub fn free_velocity(
 }
 
 /// Index of the sample of the free motion next to the contact that does not fit it.
-#[must_use]
 pub fn glitch(
     samples: (&[f64], &[f64], Motion),
     noise: f64,
@@ -192,7 +189,6 @@ fn free_samples(times: &[f64], place: &Surroundings, side: Side) -> (usize, usiz
 
 /// Largest displacement: the top of a parabola through the samples within 5 %
 /// of the contact's duration of the largest sample (at least one on each side).
-#[must_use]
 pub fn largest_displacement(times: &[f64], values: &[f64], place: &Surroundings) -> Option<f64> {
     let first = times.partition_point(|&t| t < place.onset);
     let last = times.partition_point(|&t| t <= place.end);
@@ -226,7 +222,6 @@ pub fn largest_displacement(times: &[f64], values: &[f64], place: &Surroundings)
 ///
 /// * `noise`: standard deviation of one sample; N
 /// * `offset_sd`: standard uncertainty of the zero of the force; N
-#[must_use]
 pub fn impulse(
     times: &[f64],
     force: &[f64],
@@ -275,7 +270,6 @@ fn trapezoid(times: &[f64], values: &[f64], first: usize) -> f64 {
 ///
 /// # Source
 /// 2003 pendulum study, eqs. (2) and (3).
-#[must_use]
 pub fn with_energies(measured: Measured, effective_mass: f64) -> Measured {
     let energy = |speed: f64| 0.5 * effective_mass * speed * speed;
     let impact = measured.impact_velocity.map(energy);

@@ -27,7 +27,6 @@ pub struct PolynomialFit {
 ///
 /// # Numerics
 /// Normal equations in time scaled to [−1, 1], Cholesky; orders are small.
-#[must_use]
 pub fn fit_polynomial(
     times: &[f64],
     values: &[f64],
@@ -99,7 +98,6 @@ pub fn fit_polynomial(
 ///
 /// # Source
 /// Savitzky and Golay (1964), Anal. Chem. 36, 1627.
-#[must_use]
 pub fn local_polynomial(
     times: &[f64],
     values: &[f64],
@@ -148,7 +146,6 @@ pub fn local_polynomial(
 }
 
 /// True if all intervals are equal but for rounding.
-#[must_use]
 pub fn evenly_spaced(times: &[f64]) -> bool {
     let n = times.len();
     if n < 3 {

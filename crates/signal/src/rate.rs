@@ -28,16 +28,26 @@ pub(crate) fn derived_rate(
 
 fn central_rate(track: &Track) -> Option<Track> {
     let n = track.values.len();
-    (n >= 3).then(|| Track {
+    (n >= 3).then(|| {
+        let rate = central_difference(&track.times, &track.values);
+        let quantum = track.quantum;
+        Track {
+            quantum: quantum.map(|q| rate_quantum(q, mean_interval(&track.times))),
+            ..rate_of(track, track.times[1..n - 1].to_vec(), rate)
+        }
+    })
+}
+
+/// A rate of a track whose noise is not known yet.
+fn rate_of(track: &Track, times: Vec<f64>, values: Vec<f64>) -> Track {
+    Track {
         name: format!("rate of {}", track.name),
-        times: track.times[1..n - 1].to_vec(),
-        values: central_difference(&track.times, &track.values),
-        quantum: track
-            .quantum
-            .map(|q| rate_quantum(q, mean_interval(&track.times))),
+        times,
+        values,
+        quantum: None,
         noise: 0.0,
         persistence: None,
-    })
+    }
 }
 
 fn polynomial_rate(
@@ -48,14 +58,8 @@ fn polynomial_rate(
 ) -> Option<Track> {
     let window =
         window.unwrap_or_else(|| smoothing_window(place.duration(), mean_interval(&track.times)));
-    Some(Track {
-        name: format!("rate of {}", track.name),
-        times: track.times.clone(),
-        values: local_polynomial(&track.times, &track.values, window, order, 1)?,
-        quantum: None,
-        noise: 0.0,
-        persistence: None,
-    })
+    let rate = local_polynomial(&track.times, &track.values, window, order, 1)?;
+    Some(rate_of(track, track.times.clone(), rate))
 }
 
 /// Most knots of a spline; more samples are averaged in blocks.
@@ -87,14 +91,7 @@ fn spline_rate(track: &Track, count_times: CountTimes, place: &Surroundings) -> 
         }
     };
     let spline = smoothing_spline_gcv(&times, &values)?;
-    Some(Track {
-        name: format!("rate of {}", track.name),
-        times,
-        values: spline.rates,
-        quantum: None,
-        noise: 0.0,
-        persistence: None,
-    })
+    Some(rate_of(track, times, spline.rates))
 }
 
 /// Rate between the edges of a counted displacement.
@@ -103,12 +100,5 @@ fn edge_track(track: &Track, options: &ExtractOptions) -> Option<Track> {
     let end = *track.times.last()?;
     let found = edges(&track.times, &track.values, options.count_times);
     let rate = edge_rate(&found, options.edge_window, quantum, end);
-    (rate.times.len() >= 3).then(|| Track {
-        name: format!("rate of {}", track.name),
-        times: rate.times,
-        values: rate.values,
-        quantum: None,
-        noise: 0.0,
-        persistence: None,
-    })
+    (rate.times.len() >= 3).then(|| rate_of(track, rate.times, rate.values))
 }

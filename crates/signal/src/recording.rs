@@ -55,7 +55,6 @@ pub enum Times {
 
 impl Times {
     /// Time of sample `index`; s.
-    #[must_use]
     pub fn at(&self, index: usize) -> f64 {
         match self {
             Self::Uniform { start, interval } => start + index as f64 * interval,

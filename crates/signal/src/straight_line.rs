@@ -20,7 +20,6 @@ pub struct Window<'a> {
 
 impl<'a> Window<'a> {
     /// No samples yet.
-    #[must_use]
     pub fn new(x: &'a [f64], y: &'a [f64]) -> Self {
         Self {
             x,
@@ -40,26 +39,22 @@ impl<'a> Window<'a> {
     }
 
     /// The sample in the middle.
-    #[must_use]
     pub fn middle(&self) -> usize {
         (self.first + self.end - 1) / 2
     }
 
     /// What the samples span.
-    #[must_use]
     pub fn length(&self) -> f64 {
         self.x[self.end - 1] - self.x[self.first]
     }
 
     /// Number of samples.
-    #[must_use]
     pub fn count(&self) -> usize {
         self.end - self.first
     }
 
     /// Slope of the straight line through the samples; `None` where there are
     /// too few of them or they do not differ.
-    #[must_use]
     pub fn slope(&self) -> Option<Slope> {
         let (x, y) = (&self.x[self.first..self.end], &self.y[self.first..self.end]);
         straight_line(x, y)
@@ -67,7 +62,6 @@ impl<'a> Window<'a> {
 }
 
 /// Slope of the straight line through some samples.
-#[must_use]
 pub fn straight_line(x: &[f64], y: &[f64]) -> Option<Slope> {
     let n = x.len() as f64;
     if x.len() < 3 {

@@ -5,7 +5,7 @@ use crate::error::{Error, positive};
 /// A motion and the force that goes with it, at increasing times.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Trajectory {
-    /// Times; s.
+    /// Times, from first touch where a law is simulated; s.
     pub times: Vec<f64>,
     /// Displacement, zero at first contact, positive into the fruit; m.
     pub displacement: Vec<f64>,

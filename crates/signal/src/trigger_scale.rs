@@ -52,7 +52,6 @@ pub struct Level {
 ///
 /// * `noise`: standard deviation of a sample; unit of the signal
 /// * `deviations`: standard deviations between noise and threshold; 1
-#[must_use]
 pub fn pulse_scale(values: &[f64], level: Level, noise: f64, deviations: f64) -> PulseScale {
     let (mut length, clear) = length_that_shows(values, level, noise);
     let centre = level.value;
@@ -94,7 +93,6 @@ pub fn pulse_scale(values: &[f64], level: Level, noise: f64, deviations: f64) ->
 /// the median magnitude of its second differences: √6 times the noise.
 ///
 /// Zero of fewer than 3 samples and of a signal that mostly does not change.
-#[must_use]
 pub fn white_noise(values: &[f64]) -> f64 {
     let bends: Vec<f64> = values
         .windows(3)
@@ -127,7 +125,6 @@ fn length_that_shows(values: &[f64], level: Level, noise: f64) -> (usize, f64) {
 }
 
 /// Index of the value of largest `measure`, the first of equals.
-#[must_use]
 pub fn index_of_largest(values: &[f64], measure: impl Fn(f64) -> f64) -> usize {
     (1..values.len()).fold(0, |best, i| {
         if measure(values[i]) > measure(values[best]) {
@@ -140,7 +137,6 @@ pub fn index_of_largest(values: &[f64], measure: impl Fn(f64) -> f64) -> usize {
 
 /// Centred mean over `length` samples (odd); at both ends over those that there
 /// are, at least half of them, so that noise is averaged there too.
-#[must_use]
 pub fn moving_mean(values: &[f64], length: usize) -> Vec<f64> {
     let half = length / 2;
     let n = values.len();

@@ -11,13 +11,11 @@ pub struct Uncertain {
 
 impl Uncertain {
     /// A value with its standard uncertainty.
-    #[must_use]
     pub const fn new(value: f64, sd: f64) -> Self {
         Self { value, sd }
     }
 
     /// A value without uncertainty.
-    #[must_use]
     pub const fn exact(value: f64) -> Self {
         Self::new(value, 0.0)
     }

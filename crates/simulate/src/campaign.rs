@@ -4,12 +4,13 @@
 use crate::files::{SimulatedCampaign, campaign_text, rates, recording_text};
 use crate::impact::failed;
 use crate::new_campaign::NewCampaign;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use windfall_contact::expression::LawExpression;
 use windfall_contact::laws::kind::{Law, LawKind};
 use windfall_files::error::Error;
+use windfall_files::option_value::unusable;
 use windfall_identify::rig::simulate::{simulate_rig, trajectory};
-use windfall_signal::instrument::{Trajectory, record};
+use windfall_signal::instrument::record;
 use windfall_signal::noise::gaussian::{NoiseSource, noise_source, normal, uniform};
 
 /// Recorded before first touch and after separation; s.
@@ -92,7 +93,6 @@ pub fn write_simulated_campaign(
 }
 
 /// A seed per impact (splitmix64 of Steele, Lea and Flood 2014, chained).
-#[must_use]
 pub fn seed_of(seed: u64, specimen: u64, repeat: u64) -> u64 {
     [specimen, repeat].into_iter().fold(seed, |state, part| {
         let mut z = state.wrapping_add(part.wrapping_add(1).wrapping_mul(0x9e37_79b9_7f4a_7c15));
@@ -124,14 +124,12 @@ pub fn drawn(batch: &Batch, source: &mut NoiseSource) -> Result<Law, Error> {
             return Ok(law);
         }
     }
-    Err(Error::OptionInvalid {
-        option: "--spread".to_owned(),
-        problem: format!(
-            "{MOST_DRAWS} draws around {} all fell outside the bounds of the law; \
-             give a smaller standard deviation",
-            LawExpression::from(batch.law)
-        ),
-    })
+    let problem = format!(
+        "{MOST_DRAWS} draws around {} all fell outside the bounds of the law; \
+         give a smaller standard deviation",
+        LawExpression::from(batch.law)
+    );
+    Err(unusable("--spread", problem))
 }
 
 /// One recording as the instrument would have written it.
@@ -155,16 +153,7 @@ fn recording(
     let count = ((duration + 2.0 * lead) * rate).ceil() as usize;
     let times: Vec<f64> = (0..count).map(|i| start + i as f64 / rate).collect();
     let motion = trajectory(law, rig, campaign.velocity, &times, campaign.end).map_err(failed)?;
-    let motion = Trajectory {
-        times: motion.times,
-        displacement: motion.displacement,
-        rate: motion.rate,
-        force: motion.force,
-        acceleration: motion.acceleration,
-    };
-    let channels = record(&motion, &campaign.instrument, seed).map_err(|source| Error::Signal {
-        path: PathBuf::from("the simulated recording"),
-        source: Box::new(source),
-    })?;
+    let channels = record(&motion, &campaign.instrument, seed)
+        .map_err(|source| Error::signal("the simulated recording".into(), source))?;
     Ok(recording_text(&channels))
 }

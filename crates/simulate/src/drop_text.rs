@@ -2,7 +2,7 @@
 
 use crate::drop::{SimulatedDrop, SimulatedDropMotion};
 use crate::text::{
-    Column, column, findings_text, motion_csv, number_or_blank, six_digits, with_motion,
+    Column, Row, column, findings_text, motion_csv, number_or_blank, rows, six_digits, with_motion,
 };
 use windfall_drop_rig::rig::Plate;
 use windfall_drop_rig::simulate::DropImpact;
@@ -10,46 +10,30 @@ use windfall_files::error::Error;
 use windfall_files::table::write::csv_text;
 use windfall_files::text::table::table_text;
 
-/// A value of an impact: name, value (NaN where there is none), unit.
-pub(crate) type Row = (&'static str, f64, &'static str);
-
-pub(crate) fn rows(own: &DropImpact) -> Vec<Row> {
-    vec![
-        ("onset_time", own.onset_time, "s"),
-        ("impact_velocity", own.impact_velocity, "m/s"),
-        ("peak_contact_force", own.peak_contact_force, "N"),
-        (
-            "time_of_peak_contact_force",
-            own.time_of_peak_contact_force,
-            "s",
-        ),
-        ("peak_support_force", own.peak_support_force, "N"),
-        (
-            "time_of_peak_support_force",
-            own.time_of_peak_support_force,
-            "s",
-        ),
-        ("max_displacement", own.max_displacement, "m"),
-        (
-            "time_of_max_displacement",
-            own.time_of_max_displacement,
-            "s",
-        ),
-        ("force_end_time", own.force_end_time, "s"),
-        ("separation_time", own.separation_time, "s"),
-        ("separation_velocity", own.separation_velocity, "m/s"),
-        ("restitution", own.restitution, "1"),
-        ("contact_restitution", own.contact_restitution, "1"),
-        ("impulse", own.impulse, "N s"),
-        ("absorbed_energy", own.absorbed_energy, "J"),
+pub(crate) fn rows_of(own: &DropImpact) -> Vec<Row> {
+    rows![of own:
+        onset_time "s",
+        impact_velocity "m/s",
+        peak_contact_force "N",
+        time_of_peak_contact_force "s",
+        peak_support_force "N",
+        time_of_peak_support_force "s",
+        max_displacement "m",
+        time_of_max_displacement "s",
+        force_end_time "s",
+        separation_time "s",
+        separation_velocity "m/s",
+        restitution "1",
+        contact_restitution "1",
+        impulse "N s",
+        absorbed_energy "J",
     ]
 }
 
 /// A simulated drop as text: a column for each impact.
-#[must_use]
 pub fn text_of_drop(drop: &SimulatedDrop) -> String {
     let plate = plate_text(drop.plate.as_ref());
-    let columns: Vec<Vec<Row>> = drop.impacts.iter().map(rows).collect();
+    let columns: Vec<Vec<Row>> = drop.impacts.iter().map(rows_of).collect();
     let factor = match drop.effective_mass_factor {
         1.0 => String::new(),
         factor => format!(", of which the contact feels {factor}"),
@@ -120,7 +104,7 @@ pub(crate) fn given(value: f64) -> String {
 
 /// A simulated drop as CSV, one row per impact, units in the header.
 pub fn csv_of_drop(drop: &SimulatedDrop) -> Result<String, Error> {
-    let columns: Vec<Vec<Row>> = drop.impacts.iter().map(rows).collect();
+    let columns: Vec<Vec<Row>> = drop.impacts.iter().map(rows_of).collect();
     impact_csv(&columns, &drop.intervals)
 }
 
@@ -159,7 +143,6 @@ pub fn csv_of_drop_motion(motion: &SimulatedDropMotion) -> Result<String, Error>
 }
 
 /// A drop and its motion as JSON: the keys of the drop, and `motion`.
-#[must_use]
 pub fn json_of_drop_motion(motion: &SimulatedDropMotion) -> serde_json::Value {
     with_motion(serde_json::json!(motion.drop), &motion_columns(motion))
 }

@@ -8,7 +8,7 @@ use crate::new_campaign::NewCampaign;
 use crate::request::drop::DropPlan;
 use crate::request::recordings::spread;
 use clap::Args;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use windfall_cards::law_use::end_name;
 use windfall_cards::user_laws::text::law_table;
 use windfall_contact::expression::LawExpression;
@@ -286,10 +286,8 @@ fn recording(bench: &Bench, drop: &TrueDrop, seed: u64) -> Result<String, Error>
         force: Some(bench.sensor),
         ..Instrument::default()
     };
-    let channels = record(&trajectory, &instrument, seed).map_err(|source| Error::Signal {
-        path: PathBuf::from("the simulated recording"),
-        source: Box::new(source),
-    })?;
+    let channels = record(&trajectory, &instrument, seed)
+        .map_err(|source| Error::signal("the simulated recording".into(), source))?;
     Ok(recording_text(&channels))
 }
 

@@ -1,42 +1,30 @@
 //! Simulated drops of planar bodies and their motions as text, CSV and JSON.
 
-use crate::drop_text::{Row, given, impact_csv, impact_table, plate_text, rows};
+use crate::drop_text::{given, impact_csv, impact_table, plate_text, rows_of};
 use crate::eccentric::{BodyOutcome, SimulatedEccentricDrop};
-use crate::text::{Column, motion_csv, with_motion};
+use crate::text::{Column, Row, motion_csv, rows, with_motion};
 use windfall_drop_rig::eccentric::impact::EccentricImpact;
 use windfall_drop_rig::eccentric::simulate::EccentricTrajectory;
 use windfall_files::error::Error;
 
 fn eccentric_rows(own: &EccentricImpact) -> Vec<Row> {
-    let mut out = rows(&own.impact);
-    out.extend([
-        ("rotation", own.rotation, "rad"),
-        ("lever_arm", own.lever_arm, "m"),
-        ("effective_mass_factor", own.effective_mass_factor, "1"),
-        (
-            "angular_velocity_before",
-            own.angular_velocity_before,
-            "rad/s",
-        ),
-        ("angular_velocity", own.angular_velocity, "rad/s"),
-        (
-            "tangential_velocity_before",
-            own.tangential_velocity_before,
-            "m/s",
-        ),
-        ("tangential_velocity", own.tangential_velocity, "m/s"),
-        ("friction_impulse", own.friction_impulse, "N s"),
-        (
-            "translation_energy_before",
-            own.translation_energy_before,
-            "J",
-        ),
-        ("rotation_energy_before", own.rotation_energy_before, "J"),
-        ("translation_energy", own.translation_energy, "J"),
-        ("rotation_energy", own.rotation_energy, "J"),
-        ("contact_energy", own.contact_energy, "J"),
-        ("sliding_energy", own.sliding_energy, "J"),
-        ("support_energy", own.support_energy, "J"),
+    let mut out = rows_of(&own.impact);
+    out.extend(rows![of own:
+        rotation "rad",
+        lever_arm "m",
+        effective_mass_factor "1",
+        angular_velocity_before "rad/s",
+        angular_velocity "rad/s",
+        tangential_velocity_before "m/s",
+        tangential_velocity "m/s",
+        friction_impulse "N s",
+        translation_energy_before "J",
+        rotation_energy_before "J",
+        translation_energy "J",
+        rotation_energy "J",
+        contact_energy "J",
+        sliding_energy "J",
+        support_energy "J",
     ]);
     out
 }
@@ -46,7 +34,6 @@ fn columns(drop: &SimulatedEccentricDrop) -> Vec<Vec<Row>> {
 }
 
 /// A simulated drop of a planar body as text: a column for each impact.
-#[must_use]
 pub fn text_of_eccentric_drop(drop: &SimulatedEccentricDrop) -> String {
     let rest = match drop.at_rest {
         true => "\nThe fruit then stays on the plate.\n",
@@ -120,7 +107,6 @@ pub fn csv_of_eccentric_motion(motion: &EccentricTrajectory) -> Result<String, E
 }
 
 /// A drop and its motion as JSON: the keys of the drop, and `motion`.
-#[must_use]
 pub fn json_of_eccentric_motion(
     drop: &SimulatedEccentricDrop,
     motion: &EccentricTrajectory,

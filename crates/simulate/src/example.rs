@@ -7,6 +7,7 @@ use windfall_campaign::settings::rig::STANDARD_GRAVITY;
 use windfall_contact::law::EndRule;
 use windfall_contact::laws::kind::LawKind;
 use windfall_files::error::Error;
+use windfall_files::option_value::unusable;
 use windfall_identify::rig::kind::{Pendulum, Rig};
 use windfall_signal::instrument::pendulum_instrument;
 
@@ -62,10 +63,7 @@ pub fn write_example(directory: &Path, seed: u64) -> Result<usize, Error> {
 fn batch(variety: &str, means: [f64; 2], spread: [f64; 2]) -> Result<Batch, Error> {
     let law = LawKind::KuwabaraKono
         .with_parameters(&means)
-        .map_err(|error| Error::OptionInvalid {
-            option: variety.to_owned(),
-            problem: error.to_string(),
-        })?;
+        .map_err(|error| unusable(variety, error.to_string()))?;
     let one = spread == [0.0, 0.0];
     Ok(Batch {
         variety: variety.to_owned(),

@@ -46,44 +46,24 @@ fn motion_of_figure(event: &Event) -> Result<SimulatedMotion, Error> {
 /// * `law`: its name, for the title
 fn figure_of_motion(law: &str, motion: &SimulatedMotion) -> Figure {
     let impact = &motion.impact;
-    let series = |label: &str, colour: usize, points: Vec<(f64, f64)>| Series {
-        label: label.to_owned(),
-        style: Style::Line,
-        colour: Some(colour),
-        points,
-    };
-    let panel = |x: &str, x_unit: &str, series: Vec<Series>| Panel {
-        x: x.to_owned(),
-        x_unit: x_unit.to_owned(),
-        y: "contact force".to_owned(),
-        y_unit: "N".to_owned(),
-        series,
-        marks: Vec::new(),
-    };
     let [loading, unloading] = loop_of(motion);
     let path = &motion.trajectory;
     let times = path.times.iter().map(|time| 1e3 * time);
-    Figure {
-        title: format!(
-            "{law}: {} kg at {} m/s",
-            impact.effective_mass, impact.impact_velocity
-        ),
-        panels: vec![
-            panel(
-                "displacement",
-                "mm",
-                vec![
-                    series("loading", 0, loading),
-                    series("unloading", 1, unloading),
-                ],
-            ),
-            panel(
-                "time from first touch",
-                "ms",
-                vec![series("", 0, times.zip(path.force.clone()).collect())],
-            ),
+    let over_time = times.zip(path.force.clone()).collect();
+    let force = ("contact force", "N");
+    let loops = vec![
+        Series::new("loading", Style::Line, loading).coloured(0),
+        Series::new("unloading", Style::Line, unloading).coloured(1),
+    ];
+    let course = vec![Series::new("", Style::Line, over_time).coloured(0)];
+    let (mass, velocity) = (impact.effective_mass, impact.impact_velocity);
+    Figure::new(
+        format!("{law}: {mass} kg at {velocity} m/s"),
+        vec![
+            Panel::new(("displacement", "mm"), force, loops),
+            Panel::new(("time from first touch", "ms"), force, course),
         ],
-    }
+    )
 }
 
 /// Force over displacement in mm, to the largest displacement and back.

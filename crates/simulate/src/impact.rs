@@ -122,10 +122,7 @@ pub fn motion_at(
 
 /// The error of a law that cannot be simulated.
 pub(crate) fn failed(law: &Law, source: windfall_identify::error::Error) -> Error {
-    Error::Identify {
-        subject: LawExpression::from(*law).to_string(),
-        source: Box::new(source),
-    }
+    Error::identify(LawExpression::from(*law).to_string(), source)
 }
 
 fn simulated(

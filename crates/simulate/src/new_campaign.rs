@@ -1,9 +1,10 @@
 //! A campaign directory that a simulation fills.
 
 use std::path::{Path, PathBuf};
-use windfall_campaign::settings::template::{create_directory, write_file};
+use windfall_campaign::settings::template::create_directory;
 use windfall_files::error::Error;
 use windfall_files::table::write::csv_text;
+use windfall_files::write_file::write_new;
 
 /// A new campaign directory, with `raw` in it.
 pub(crate) struct NewCampaign {
@@ -26,7 +27,7 @@ impl NewCampaign {
     /// Writes a file; recordings are "raw/NAME".
     pub fn file(&mut self, name: &str, contents: impl AsRef<[u8]>) -> Result<(), Error> {
         let path = self.directory.join(name);
-        write_file(&path, contents.as_ref())?;
+        write_new(&path, contents.as_ref())?;
         self.written.push(path);
         Ok(())
     }

@@ -263,10 +263,7 @@ fn drop_on(
         driving_acceleration: STANDARD_GRAVITY,
     });
     let velocity = (2.0 * energy / plan.mass).sqrt() * (1.0 + plan.scatter * normal(source));
-    let failed = |source| Error::Identify {
-        subject: "a simulated drop".to_owned(),
-        source: Box::new(source),
-    };
+    let failed = |source| Error::identify("a simulated drop", source);
     let summary = simulate_rig(&body.law, &rig, velocity, EndRule::ForceZero).map_err(failed)?;
     let start = -LEAD - uniform(source) / plan.rate;
     let count = ((summary.contact_duration + 2.0 * LEAD) * plan.rate).ceil() as usize;

@@ -7,37 +7,41 @@ use windfall_files::named::Named;
 use windfall_files::table::write::csv_text;
 use windfall_files::text::table::table_text;
 
-/// Rows of a summary: name, value, unit.
-fn rows(impact: &SimulatedImpact) -> Vec<(&'static str, f64, &'static str)> {
-    let mut rows = vec![
-        ("effective_mass", impact.effective_mass, "kg"),
-        ("impact_velocity", impact.impact_velocity, "m/s"),
-        ("peak_force", impact.peak_force, "N"),
-        ("time_of_peak_force", impact.time_of_peak_force, "s"),
-        ("max_displacement", impact.max_displacement, "m"),
-        (
-            "time_of_max_displacement",
-            impact.time_of_max_displacement,
-            "s",
-        ),
-        ("contact_duration", impact.contact_duration, "s"),
-        ("final_displacement", impact.final_displacement, "m"),
-        ("separation_velocity", impact.separation_velocity, "m/s"),
-        ("restitution", impact.restitution, "1"),
+/// A value of an impact: name, value (NaN where there is none), unit.
+pub(crate) type Row = (&'static str, f64, &'static str);
+
+/// Rows under the names of fields: `rows![of impact: peak_force "N", impulse "N s"]`.
+macro_rules! rows {
+    [of $impact:ident: $($field:ident $unit:literal),+ $(,)?] => {
+        vec![$((stringify!($field), $impact.$field, $unit)),+]
+    };
+}
+pub(crate) use rows;
+
+fn rows_of(impact: &SimulatedImpact) -> Vec<Row> {
+    let mut rows = rows![of impact:
+        effective_mass "kg",
+        impact_velocity "m/s",
+        peak_force "N",
+        time_of_peak_force "s",
+        max_displacement "m",
+        time_of_max_displacement "s",
+        contact_duration "s",
+        final_displacement "m",
+        separation_velocity "m/s",
+        restitution "1",
     ];
     if let Some(nominal) = impact.nominal_restitution {
         rows.push(("nominal_restitution", nominal, "1"));
     }
-    rows.push(("absorbed_energy", impact.absorbed_energy, "J"));
-    rows.push(("impulse", impact.impulse, "N s"));
+    rows.extend(rows![of impact: absorbed_energy "J", impulse "N s"]);
     rows
 }
 
 /// A simulated impact as text.
-#[must_use]
 pub fn text_of_simulation(impact: &SimulatedImpact) -> String {
     let header = ["quantity", "value", "unit"].map(str::to_owned);
-    let lines = rows(impact).into_iter().map(|(name, value, unit)| {
+    let lines = rows_of(impact).into_iter().map(|(name, value, unit)| {
         let name = match (name, impact.nominal_restitution) {
             ("restitution", Some(_)) => "restitution (delivered)".to_owned(),
             ("nominal_restitution", _) => "restitution (nominal, the parameter)".to_owned(),
@@ -55,7 +59,6 @@ pub fn text_of_simulation(impact: &SimulatedImpact) -> String {
 }
 
 /// A line for each finding, after an empty one; nothing without findings.
-#[must_use]
 pub fn findings_text(findings: &[FindingOutcome]) -> String {
     let lines = findings
         .iter()
@@ -71,7 +74,6 @@ pub fn findings_text(findings: &[FindingOutcome]) -> String {
 const ROUNDING: f64 = 1e-15;
 
 /// Six significant digits.
-#[must_use]
 pub fn six_digits(value: f64) -> String {
     let size = value.abs();
     if size < ROUNDING {
@@ -86,7 +88,7 @@ pub fn six_digits(value: f64) -> String {
 
 /// A simulated impact as CSV, one row, units in the header.
 pub fn csv_of_simulation(impact: &SimulatedImpact) -> Result<String, Error> {
-    let rows = rows(impact);
+    let rows = rows_of(impact);
     let header: Vec<String> = rows
         .iter()
         .map(|(name, _, unit)| column(name, unit))
@@ -125,7 +127,6 @@ pub fn csv_of_motion(motion: &SimulatedMotion) -> Result<String, Error> {
 }
 
 /// A simulated motion with its summary as JSON.
-#[must_use]
 pub fn json_of_motion(motion: &SimulatedMotion) -> serde_json::Value {
     let impact = serde_json::json!({ "simulated": true, "impact": motion.impact });
     with_motion(impact, &motion_columns(motion))

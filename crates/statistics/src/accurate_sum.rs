@@ -7,7 +7,6 @@ use crate::as_written::as_written;
 use windfall_numerics::double_double::DoubleDouble;
 
 /// Sum of values.
-#[must_use]
 pub fn sum(values: &[f64]) -> DoubleDouble {
     let read = reading_of(values);
     let zero = DoubleDouble::default();
@@ -30,13 +29,11 @@ fn reading_of(values: &[f64]) -> fn(f64) -> DoubleDouble {
 }
 
 /// Mean of values; NaN where there are none.
-#[must_use]
 pub fn mean(values: &[f64]) -> DoubleDouble {
     sum(values) / DoubleDouble::from(values.len() as f64)
 }
 
 /// Sum of squared deviations from a centre, Σ (y - centre)².
-#[must_use]
 pub fn squares_about(values: &[f64], centre: DoubleDouble) -> DoubleDouble {
     let read = reading_of(values);
     let zero = DoubleDouble::default();
@@ -47,7 +44,6 @@ pub fn squares_about(values: &[f64], centre: DoubleDouble) -> DoubleDouble {
 }
 
 /// Variance with n - 1 below; NaN for fewer than two values.
-#[must_use]
 pub fn variance(values: &[f64]) -> f64 {
     if values.len() < 2 {
         return f64::NAN;
@@ -56,7 +52,6 @@ pub fn variance(values: &[f64]) -> f64 {
 }
 
 /// Standard deviation with n - 1 below; NaN for fewer than two values.
-#[must_use]
 pub fn standard_deviation(values: &[f64]) -> f64 {
     variance(values).sqrt()
 }

@@ -6,7 +6,6 @@ use windfall_numerics::double_double::{DoubleDouble, two_sum};
 /// where the double is 1000000000000.4000244.
 ///
 /// Of values that share many leading digits, reading them as doubles moves the last.
-#[must_use]
 pub fn as_written(value: f64) -> DoubleDouble {
     decimal(value).unwrap_or_else(|| value.into())
 }

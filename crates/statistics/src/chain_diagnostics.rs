@@ -34,7 +34,6 @@ pub struct ChainDiagnostics {
 /// Vehtari, Gelman, Simpson, Carpenter and Bürkner (2021), Bayesian Analysis
 /// 16:667, eqs. (4), (10)-(14); Geyer (1992), Statist. Sci. 7:473, for where the
 /// sum of correlations ends.
-#[must_use]
 pub fn chain_diagnostics(chains: &[&[f64]]) -> Option<ChainDiagnostics> {
     let length = chains.first()?.len();
     let usable = length >= 4

@@ -1,4 +1,3 @@
-#![cfg_attr(not(test), warn(clippy::disallowed_methods, clippy::disallowed_types))]
 //! Designs of experiments, linear models, response surfaces and mixed models.
 //!
 //! A [`table::Table`] holds what was measured, columns of numbers or of

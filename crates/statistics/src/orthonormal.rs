@@ -8,7 +8,6 @@ const RANK_TOLERANCE: f64 = 1e-10;
 /// An orthonormal basis of the span of columns.
 ///
 /// Gram-Schmidt, each column twice (Giraud, Langou and Rozložník 2005).
-#[must_use]
 pub fn orthonormal_basis(columns: &DMatrix<f64>) -> Vec<Vec<f64>> {
     let mut basis: Vec<Vec<f64>> = Vec::with_capacity(columns.ncols());
     for column in columns.column_iter() {
@@ -37,7 +36,6 @@ pub fn take_out(basis: &[Vec<f64>], values: &mut [f64]) {
 }
 
 /// Scalar product.
-#[must_use]
 pub fn dot(a: &[f64], b: &[f64]) -> f64 {
     a.iter().zip(b).map(|(a, b)| a * b).sum()
 }

@@ -40,7 +40,6 @@ pub struct Categories {
 impl Categories {
     /// Categories of cells, levels in the order of numbers where all are numbers,
     /// else of the alphabet; a blank cell is missing.
-    #[must_use]
     pub fn of_cells(cells: &[String]) -> Self {
         let mut levels: Vec<String> = cells.iter().filter(|c| !c.is_empty()).cloned().collect();
         levels.sort_unstable();
@@ -61,7 +60,6 @@ impl Categories {
 
 impl Cells {
     /// Number of rows.
-    #[must_use]
     pub fn len(&self) -> usize {
         match self {
             Self::Numbers(numbers) => numbers.len(),
@@ -70,13 +68,11 @@ impl Cells {
     }
 
     /// Whether there are no rows.
-    #[must_use]
     pub fn is_empty(&self) -> bool {
         self.len() == 0
     }
 
     /// Whether the cell of a row is missing.
-    #[must_use]
     pub fn is_missing(&self, row: usize) -> bool {
         match self {
             Self::Numbers(numbers) => numbers[row].is_nan(),
@@ -87,7 +83,6 @@ impl Cells {
 
 impl Table {
     /// Number of rows.
-    #[must_use]
     pub fn rows(&self) -> usize {
         self.columns.first().map_or(0, |column| column.cells.len())
     }

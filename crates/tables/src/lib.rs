@@ -1,7 +1,8 @@
 //! Statistics of tables: designs, regression, response surfaces, comparison of groups.
 
-mod columns;
 pub mod compare;
 pub mod design;
+#[cfg(feature = "clap")]
+mod option_words;
 pub mod regress;
 pub mod surface;

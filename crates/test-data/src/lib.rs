@@ -10,7 +10,6 @@ use std::path::{Path, PathBuf};
 
 /// A file or folder of data, such as `nist/Norris.dat`; `None`, and a note, where it is
 /// not there.
-#[must_use]
 pub fn find(name: &str) -> Option<PathBuf> {
     let here = Path::new(env!("CARGO_MANIFEST_DIR")).join("data");
     let found = [here, recordings()].map(|folder| folder.join(name));
@@ -22,7 +21,6 @@ pub fn find(name: &str) -> Option<PathBuf> {
 }
 
 /// Folder of the recordings of other people, whether it is there or not.
-#[must_use]
 pub fn recordings() -> PathBuf {
     let default = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../../shared/data");
     std::env::var_os("WINDFALL_DATA").map_or(default, PathBuf::from)

@@ -11,10 +11,15 @@ use args::common::{Arguments, Command};
 use args::groups::grouped;
 use clap::{CommandFactory, FromArgMatches};
 use std::process::ExitCode;
+use windfall_files::inputs::guard_inputs;
 
 fn main() -> ExitCode {
     let matches = grouped(Arguments::command()).get_matches();
     let arguments = Arguments::from_arg_matches(&matches).unwrap_or_else(|error| error.exit());
+    // A server confines what it writes to its workspace.
+    if !matches!(arguments.command, Command::Serve(_)) {
+        guard_inputs();
+    }
     let outcome = match arguments.command {
         Command::New(arguments) => command::new::run(&arguments),
         Command::Inspect(arguments) => command::inspect::run(&arguments),

@@ -16,6 +16,7 @@ mod http;
 mod identification;
 mod kinds;
 mod library;
+mod outputs;
 mod page_quantities;
 mod regress;
 mod report;

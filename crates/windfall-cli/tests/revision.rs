@@ -126,7 +126,7 @@ fn pinned_numbers_are_those_of_the_revision() {
         digest(&drops, &[]),
     ];
     let expected = (
-        1,
+        2,
         [
             "cdf6db80b13ce43c",
             "0c81e42d4c05837a",

@@ -26,7 +26,6 @@ pub(crate) async fn interrupted() {
 ///
 /// Where the system gives no thread or no signal the flag stays as it is, and an interruption
 /// ends the program at once.
-#[must_use]
 pub fn interruption() -> Arc<AtomicBool> {
     let flag = Arc::new(AtomicBool::new(false));
     let set = Arc::clone(&flag);

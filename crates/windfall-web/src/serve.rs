@@ -89,7 +89,6 @@ impl Server {
     }
 
     /// The address to be opened, with its token where one is needed.
-    #[must_use]
     pub fn address(&self) -> String {
         let mut at = self.guard.address;
         // Bound to all addresses: loopback opens it here.

@@ -4,10 +4,10 @@ use crate::equal_command::command;
 use serde::Serialize;
 use std::path::Path;
 use std::time::SystemTime;
-use windfall_campaign::pipeline::evaluate::STORE_FILE;
 use windfall_campaign::recording::digests::campaign_text;
 use windfall_campaign::settings::fit::{ENDS, INTERVALS, NOISES, TREATMENTS, WEIGHTS};
 use windfall_campaign::settings::kind::CAMPAIGN_FILE;
+use windfall_campaign::settings::kind::STORE_FILE;
 use windfall_campaign::settings::kind::campaign_kind;
 use windfall_campaign::settings::model::{Campaign, FilePlan, ImpactCampaign};
 use windfall_campaign::settings::read::read_campaign;
@@ -218,7 +218,6 @@ pub fn campaign_stamp(directory: &Path) -> Result<CampaignStamp, Error> {
 }
 
 /// The last part of the path of a directory.
-#[must_use]
 pub fn name_of(directory: &Path) -> String {
     let name = directory.file_name().unwrap_or(directory.as_os_str());
     name.to_string_lossy().into_owned()

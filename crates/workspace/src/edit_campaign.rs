@@ -23,7 +23,7 @@ use windfall_files::confined::path_inside;
 use windfall_files::error::{Error, Place};
 use windfall_files::option_value::unusable;
 use windfall_files::text::column_role::unit_of;
-use windfall_files::write_file::write_whole;
+use windfall_files::write_file::{write_new, write_whole};
 
 /// Serialises changes: of two based on the same version, the second is refused.
 static CHANGING: Mutex<()> = Mutex::new(());
@@ -335,7 +335,7 @@ fn check_changed(directory: &Path, files: &[(&'static str, String)]) -> Result<(
         scratch.map_err(|source| Error::access(&std::env::temp_dir(), "write", source))?;
     for (name, text) in files {
         let path = scratch.path().join(name);
-        std::fs::write(&path, text).map_err(|source| Error::access(&path, "check", source))?;
+        write_new(&path, text.as_bytes())?;
     }
     // The rest as it is: laws may be tables in files of their own.
     let failed = |source| Error::access(directory, "check", source);
@@ -346,7 +346,7 @@ fn check_changed(directory: &Path, files: &[(&'static str, String)]) -> Result<(
         let own = CAMPAIGN_FILES.iter().any(|known| name == *known);
         let plain = entry.file_type().is_ok_and(|kind| kind.is_file());
         if !place.exists() && (own || plain && small(&entry)) {
-            std::fs::copy(entry.path(), &place).map_err(failed)?;
+            write_new(&place, &std::fs::read(entry.path()).map_err(failed)?)?;
         }
     }
     let own = format!("{}/", scratch.path().display());

@@ -12,7 +12,6 @@ fn quoted(word: &str) -> String {
 }
 
 /// `windfall WORD …`, with what a shell would take apart in quotes.
-#[must_use]
 pub fn command(words: &[&str]) -> String {
     let words = words.iter().map(|word| quoted(word));
     let all = std::iter::once("windfall".to_owned()).chain(words);
@@ -20,7 +19,6 @@ pub fn command(words: &[&str]) -> String {
 }
 
 /// The options of a command that fits, as far as the request says them.
-#[must_use]
 pub fn fit_options(request: &FitRequest) -> Vec<String> {
     let mut words = Vec::new();
     let mut add = |option: &str, value: &str| {
@@ -50,7 +48,6 @@ pub fn fit_options(request: &FitRequest) -> Vec<String> {
 }
 
 /// `windfall WORD … OPTION …`
-#[must_use]
 pub fn command_of_fit(words: &[&str], request: &FitRequest) -> String {
     let options = fit_options(request);
     let options = options.iter().map(String::as_str);

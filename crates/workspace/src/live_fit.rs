@@ -168,7 +168,6 @@ impl LiveCampaign {
 
 impl LiveImpact {
     /// Bytes that its recording takes in memory, about.
-    #[must_use]
     pub fn bytes(&self) -> usize {
         let channels = self.recording.channels.iter();
         channels.map(|channel| 16 * channel.samples.len()).sum()

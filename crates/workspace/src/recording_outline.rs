@@ -119,7 +119,6 @@ impl OutlinedChannel {
     }
 
     /// Bytes that it takes in memory.
-    #[must_use]
     pub fn bytes(&self) -> usize {
         let times = match &self.clock {
             Clock::Times(times) => times.len(),
@@ -133,7 +132,6 @@ impl OutlinedChannel {
     /// themselves where they are few, else extremes of stretches of equal length.
     ///
     /// * `from`, `to`: times; the ends of the channel if `None`
-    #[must_use]
     pub fn outline(&self, from: Option<f64>, to: Option<f64>, points: usize) -> Outline {
         let count = self.samples.len();
         let first = from.map_or(0, |from| self.before(|time| time < from));

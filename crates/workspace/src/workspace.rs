@@ -6,9 +6,9 @@ use itertools::Itertools;
 use serde::Serialize;
 use std::path::{Path, PathBuf};
 use windfall_campaign::measure::any_outcome::AnyOutcome;
-use windfall_campaign::pipeline::evaluate::STORE_FILE;
 use windfall_campaign::pipeline::request::{FitRequest, PENDING, Reuse};
 use windfall_campaign::settings::kind::CAMPAIGN_FILE;
+use windfall_campaign::settings::kind::STORE_FILE;
 use windfall_campaign::settings::model::FilePlan;
 use windfall_campaign::store::runs::{RunIdentity, latest_run};
 use windfall_files::confined::path_inside;
@@ -82,19 +82,16 @@ impl Workspace {
     }
 
     /// Name of the directory.
-    #[must_use]
     pub fn name(&self) -> String {
         name_of(&self.root)
     }
 
     /// The directory.
-    #[must_use]
     pub fn root(&self) -> &Path {
         &self.root
     }
 
     /// Whether the directory is a campaign itself.
-    #[must_use]
     pub fn is_campaign(&self) -> bool {
         self.single
     }
@@ -132,7 +129,6 @@ impl Workspace {
     }
 
     /// A text without the path of the workspace on this machine.
-    #[must_use]
     pub fn without_path(&self, text: &str) -> String {
         let root = self.root.display().to_string();
         let above = self.root.parent().map(|p| p.display().to_string());

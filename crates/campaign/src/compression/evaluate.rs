@@ -46,20 +46,26 @@ pub fn loading_curve(
     let position = channel_samples(recording, Quantity::Displacement, entry)?;
     let at_force = |time: &f64| value_at(&position.times, &position.values, *time);
     let positions: Vec<f64> = force.times.iter().map(at_force).collect();
-    compression_curve(&force.times, &positions, &force.values, &campaign.options).map_err(
-        |source| Error::Evaluation {
-            path: recording_path(&campaign.shared.files, entry),
-            source: Box::new(source),
-        },
-    )
+    compression_curve(&force.times, &positions, &force.values, &campaign.options)
+        .map_err(|source| failed(campaign, entry, source))
 }
 
-/// The part of a curve that a law is fitted to, with its rate, averaged to few points.
+fn failed(
+    campaign: &CompressionCampaign,
+    entry: &ImpactEntry,
+    source: impl std::error::Error + Send + Sync + 'static,
+) -> Error {
+    let path = recording_path(&campaign.shared.files, entry);
+    let source = Box::new(source);
+    Error::Evaluation { path, source }
+}
+
+/// The part of a curve that a law is fitted to, with its rate, averaged to at most a
+/// few thousand points.
 ///
 /// Where the campaign does not say otherwise, a law without damping is fitted up
 /// to the largest stiffness; a damped one, whose force rises steepest at touch,
 /// up to half of the yield force.
-#[must_use]
 pub fn fitted_part(
     campaign: &CompressionCampaign,
     curve: &CompressionCurve,
@@ -111,10 +117,7 @@ pub fn evaluate_compression(
     let items = campaign.laws.iter().map(|law| {
         let part = fitted_part(campaign, &curve, law);
         let fit = fit_compression(std::slice::from_ref(&part), law, &campaign.free);
-        let fit = fit.map_err(|source| Error::Evaluation {
-            path: recording_path(&campaign.shared.files, entry),
-            source: Box::new(source),
-        })?;
+        let fit = fit.map_err(|source| failed(campaign, entry, source))?;
         Ok(item(campaign, entry, (&curve, &part, &fit), radii))
     });
     Ok(MeasuredItems {
@@ -164,7 +167,6 @@ fn item(
 }
 
 /// Parameters of a fitted law with their uncertainties; held ones too.
-#[must_use]
 pub fn parameters_of(fit: &CompressionFit) -> Named<MeasuredValue> {
     let values = fit.law.parameters();
     let parameters = fit.law.kind().describe().parameters.iter().enumerate();

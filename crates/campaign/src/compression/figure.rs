@@ -7,7 +7,6 @@ use windfall_signal::compression::{CompressionCurve, CurvePoint};
 /// The loading curve with the fitted range, the laws, the yield and the softening.
 ///
 /// * `fits`: the laws, each with the part of the curve that it was fitted to
-#[must_use]
 pub fn figure_of_compression(
     title: &str,
     curve: &CompressionCurve,
@@ -64,8 +63,5 @@ pub fn figure_of_compression(
     }
     let axis = ("deformation since the first sample", "mm");
     let panel = Panel::new(axis, ("force", "N"), all);
-    Figure {
-        title: title.to_owned(),
-        panels: vec![Panel { marks, ..panel }],
-    }
+    Figure::new(title, vec![Panel { marks, ..panel }])
 }

@@ -5,7 +5,6 @@ use crate::measure::words::{SPREAD, laws_text, percent, plain};
 use windfall_signal::compression::FitRange;
 
 /// Slow compressions.
-#[must_use]
 pub fn methods_of_compression(campaign: &CompressionCampaign) -> Vec<String> {
     let options = &campaign.options;
     let ends = match campaign.plates {

@@ -60,15 +60,8 @@ pub fn read_compression(directory: &Path) -> Result<CompressionCampaign, Error> 
     };
     let laws = law_expressions(&source, &keys, &[])?;
     let free = free_names(&source, &keys, &laws)?;
-    if let Some(channels) = file.channels.as_ref().map(Spanned::get_ref) {
-        let why = "slow compressions are not filtered";
-        for (table, channel) in [
-            ("[channels.force]", &channels.force),
-            ("[channels.position]", &channels.position),
-        ] {
-            refuse_conditioning(&source, table, channel.as_ref(), why)?;
-        }
-    }
+    let (measured, why) = (["force", "position"], "slow compressions are not filtered");
+    refuse_conditioning(&source, file.channels.as_ref(), &measured, why)?;
     let channels = channel_plans(&source, file.channels.as_ref())?;
     let shared = (&file.campaign, &file.files, &file.summary);
     let kind = CampaignKind::Compression;

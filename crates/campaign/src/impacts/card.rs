@@ -3,17 +3,16 @@
 
 use crate::impacts::two_stage::{Estimates, Population, two_stage};
 use crate::result::outcome::{CampaignOutcome, ImpactOutcome};
-use crate::settings::model::{ImpactCampaign, RigPlan};
+use crate::settings::model::{Campaign, ImpactCampaign, RigPlan};
 use std::collections::BTreeMap;
-use std::path::Path;
 use windfall_cards::law_card::{
     CARD_FORMAT, CardBodies, CardCovariance, CardOrigin, CardParameter, CardPopulation, CardRange,
-    LawCard,
+    LawCard, labels_of, range_of_values,
 };
 use windfall_cards::law_use::end_name;
 use windfall_cards::read_card::card_definition;
 use windfall_contact::expression::LawExpression;
-use windfall_contact::laws::kind::Law;
+use windfall_contact::laws::kind::{Law, LawKind};
 use windfall_files::error::Error;
 use windfall_files::named::grouped;
 use windfall_files::provenance::{VERSION, digest_file, time_now};
@@ -67,7 +66,7 @@ pub fn card_of_fit(campaign: &ImpactCampaign, outcome: &CampaignOutcome) -> Resu
         cautions,
         parameters: parameters_of(&law, &estimates, &population),
         covariance: Some(CardCovariance {
-            of: estimates.labels(),
+            of: labels_of(&estimates.names, &estimates.logarithmic),
             matrix: population.of_mean.clone(),
             of_what: "the median fruit, by the scatter between fruit".to_owned(),
         })
@@ -81,7 +80,10 @@ pub fn card_of_fit(campaign: &ImpactCampaign, outcome: &CampaignOutcome) -> Resu
             recordings: impacts.len(),
             radius: None,
         },
-        origin: origin(campaign, outcome)?,
+        origin: card_origin(
+            &campaign.shared,
+            "each impact fitted, then the median over fruit",
+        )?,
         contact: None,
         population: card_population(&estimates, &population, impacts.len()),
         definition: card_definition(kind),
@@ -126,7 +128,7 @@ fn estimates_of(impacts: &[&ImpactOutcome]) -> Estimates {
 /// The law at the median of what was estimated; what was held as it was.
 fn law_of(
     campaign: &ImpactCampaign,
-    kind: windfall_contact::laws::kind::LawKind,
+    kind: LawKind,
     impacts: &[&ImpactOutcome],
     estimates: &Estimates,
     population: &Population,
@@ -150,7 +152,19 @@ fn law_of(
             }
         })
         .collect();
-    kind.with_parameters(&values).map_err(|error| {
+    law_of_medians(campaign, kind, &values)
+}
+
+/// The law with the medians of its parameters.
+///
+/// # Errors
+/// They make no law.
+pub fn law_of_medians(
+    campaign: &ImpactCampaign,
+    kind: LawKind,
+    values: &[f64],
+) -> Result<Law, Error> {
+    kind.with_parameters(values).map_err(|error| {
         let missing = format!("the median of its parameters is no law ({error})");
         let advice = "look at the impacts one by one: `windfall fit DIR`";
         Error::not_known(&campaign.shared.title, missing, advice)
@@ -198,7 +212,7 @@ fn card_population(
     impacts: usize,
 ) -> Option<CardPopulation> {
     Some(CardPopulation {
-        of: estimates.labels(),
+        of: labels_of(&estimates.names, &estimates.logarithmic),
         median: estimates.values(&population.mean),
         between_fruit: population.between.clone()?,
         within_fruit: population.within.clone(),
@@ -212,12 +226,8 @@ fn card_population(
 /// In what the law was seen: the motions under the fitted laws.
 fn range_of(outcome: &CampaignOutcome, impacts: &[&ImpactOutcome]) -> CardRange {
     let of = |name: &str| {
-        let values = impacts
-            .iter()
-            .filter_map(|impact| impact.fitted(name).or_else(|| impact.derived(name)));
-        values.fold([f64::INFINITY, f64::NEG_INFINITY], |range, value| {
-            [range[0].min(value), range[1].max(value)]
-        })
+        let values = impacts.iter();
+        range_of_values(values.filter_map(|i| i.fitted(name).or_else(|| i.derived(name))))
     };
     CardRange {
         impact_velocity: of("impact_velocity"),
@@ -227,18 +237,22 @@ fn range_of(outcome: &CampaignOutcome, impacts: &[&ImpactOutcome]) -> CardRange 
     }
 }
 
-fn origin(campaign: &ImpactCampaign, outcome: &CampaignOutcome) -> Result<CardOrigin, Error> {
+/// Where a card comes from, with the digests of the tables of its campaign.
+///
+/// # Errors
+/// A table can no longer be read.
+pub fn card_origin(campaign: &Campaign, method: &str) -> Result<CardOrigin, Error> {
     let mut digests = BTreeMap::new();
     for file in FILES {
-        let path: &Path = &campaign.shared.directory.join(file);
+        let path = campaign.directory.join(file);
         if path.is_file() {
-            digests.insert(file.to_owned(), digest_file(path)?);
+            digests.insert(file.to_owned(), digest_file(&path)?);
         }
     }
     Ok(CardOrigin {
-        campaign: campaign.shared.title.clone(),
-        method: "each impact fitted, then the median over fruit".to_owned(),
-        simulated: outcome.simulated.clone(),
+        campaign: campaign.title.clone(),
+        method: method.to_owned(),
+        simulated: campaign.simulated.clone(),
         digests,
         windfall: VERSION.to_owned(),
         date: time_now(),

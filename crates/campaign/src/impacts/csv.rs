@@ -4,7 +4,8 @@ use crate::result::outcome::{CampaignOutcome, ImpactOutcome};
 use crate::result::quantity::{QUANTITIES, Quantity};
 use itertools::Itertools;
 use windfall_files::error::Error;
-use windfall_files::table::write::csv_text;
+use windfall_files::table::write::{csv_text, number_cell};
+use windfall_files::text::table::header_of;
 
 /// Quantities that have a column even when no impact has a value.
 const ALWAYS: usize = 12;
@@ -15,9 +16,7 @@ const ALWAYS: usize = 12;
 /// the law. Simulated recordings are marked in every row.
 pub fn csv_of_campaign(outcome: &CampaignOutcome) -> Result<String, Error> {
     let names = parameter_names(outcome);
-    let mut header: Vec<String> = ["id", "specimen", "group", "file", "law"]
-        .map(str::to_owned)
-        .to_vec();
+    let mut header = header_of(&["id", "specimen", "group", "file", "law"]);
     for name in &names {
         header.extend(["", "_sd", "_low", "_high", "_unit"].map(|end| format!("{name}{end}")));
     }
@@ -39,7 +38,7 @@ pub fn csv_of_campaign(outcome: &CampaignOutcome) -> Result<String, Error> {
     let rows = outcome.impacts.iter().map(|impact| {
         let mut row = row_of(impact, &names, outcome);
         row.extend(others.iter().map(|quantity| derived(impact, quantity)));
-        let sd = |quantity: &&Quantity| number(impact.derived_sd.get(quantity.name).copied());
+        let sd = |quantity: &&Quantity| number_cell(impact.derived_sd.get(quantity.name).copied());
         row.extend(uncertain.iter().map(sd));
         row
     });
@@ -59,9 +58,9 @@ fn row_of(impact: &ImpactOutcome, names: &[&str], outcome: &CampaignOutcome) -> 
             None => row.extend(vec![String::new(); 5]),
             Some(estimate) => row.extend([
                 estimate.value.to_string(),
-                number(estimate.sd),
-                number(estimate.low),
-                number(estimate.high),
+                number_cell(estimate.sd),
+                number_cell(estimate.low),
+                number_cell(estimate.high),
                 estimate.unit.clone(),
             ]),
         }
@@ -70,7 +69,7 @@ fn row_of(impact: &ImpactOutcome, names: &[&str], outcome: &CampaignOutcome) -> 
     row.extend(always.iter().map(|quantity| derived(impact, quantity)));
     // What the fitted law gives, beside what it takes as a parameter.
     for name in ["restitution", "nominal_restitution"] {
-        row.push(number(impact.fitted(name)));
+        row.push(number_cell(impact.fitted(name)));
     }
     let codes: Vec<&str> = impact
         .findings
@@ -88,11 +87,7 @@ fn row_of(impact: &ImpactOutcome, names: &[&str], outcome: &CampaignOutcome) -> 
 }
 
 fn derived(impact: &ImpactOutcome, quantity: &Quantity) -> String {
-    number(impact.derived(quantity.name))
-}
-
-fn number(value: Option<f64>) -> String {
-    value.map_or_else(String::new, |value| value.to_string())
+    number_cell(impact.derived(quantity.name))
 }
 
 fn parameter_names(outcome: &CampaignOutcome) -> Vec<&str> {

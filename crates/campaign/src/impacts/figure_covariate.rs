@@ -37,7 +37,6 @@ pub struct Covariate {
 
 /// The velocity at first touch, then the columns of impacts.csv and specimens.csv
 /// that hold numbers of which at least three differ.
-#[must_use]
 pub fn covariates_of(campaign: &ImpactCampaign, impacts: &[&ImpactOutcome]) -> Vec<Covariate> {
     let velocity = |impact: &&ImpactOutcome| impact.fitted("impact_velocity");
     let mut found = vec![Covariate {
@@ -94,7 +93,6 @@ fn varies(values: &[Option<f64>]) -> bool {
 
 /// Each estimated parameter against a covariate: impacts with their 95 % intervals, and a line
 /// through each group with its 95 % band; `None` where nothing was estimated.
-#[must_use]
 pub fn figure_of_covariate(
     law: &str,
     impacts: &[&ImpactOutcome],
@@ -116,10 +114,7 @@ pub fn figure_of_covariate(
              several impacts on one fruit are taken as independent here, \
              `windfall population` does not do so."
         ),
-        figure: Figure {
-            title: format!("{law}: parameters over {name}"),
-            panels,
-        },
+        figure: Figure::new(format!("{law}: parameters over {name}"), panels),
     })
 }
 

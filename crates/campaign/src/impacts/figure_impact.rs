@@ -23,7 +23,6 @@ const POINTS: usize = 400;
 ///
 /// * `outcomes`: results of all laws on this impact
 /// * `used`: rig, end of contact, and the user's own laws
-#[must_use]
 pub fn figure_of_impact(
     title: &str,
     impact: &Impact,
@@ -66,10 +65,7 @@ pub fn figure_of_impact(
             }
         }
     }
-    Figure {
-        title: title.to_owned(),
-        panels,
-    }
+    Figure::new(title, panels)
 }
 
 /// A fitted law ready to be followed.

@@ -27,7 +27,6 @@ const PREDICTED: [&str; 4] = [
 ];
 
 /// Groups in order of first appearance; one of "impacts" where there are none.
-#[must_use]
 pub fn groups_of_impacts<'a>(
     impacts: &[&'a ImpactOutcome],
 ) -> Vec<(String, Vec<&'a ImpactOutcome>)> {
@@ -37,7 +36,6 @@ pub fn groups_of_impacts<'a>(
 
 /// Names of the parameters that were estimated, with their units; "SI" where the unit
 /// differs from impact to impact, as it does with an estimated exponent.
-#[must_use]
 pub fn estimated_parameters(impacts: &[&ImpactOutcome]) -> Vec<(String, String)> {
     let first = impacts.first().map_or(&[][..], |i| &i.parameters.0);
     let estimated = first.iter().filter(|(_, estimate)| !estimate.held);
@@ -62,7 +60,6 @@ pub fn estimated_parameters(impacts: &[&ImpactOutcome]) -> Vec<(String, String)>
 /// R. A. Johnson, D. W. Wichern, Applied Multivariate Statistical Analysis (6th
 /// ed., 2007), section 5.4 and exercise 5.9: a further observation of p = 2 normal
 /// values from n lies where (x − x̄)ᵀ S⁻¹ (x − x̄) ≤ (n + 1)(n − 1) 2 / (n (n − 2)) F(2, n − 2).
-#[must_use]
 pub fn figure_of_pairs(law: &str, impacts: &[&ImpactOutcome]) -> Option<NamedFigure> {
     let names = estimated_parameters(impacts);
     let mut panels = Vec::new();
@@ -80,10 +77,7 @@ pub fn figure_of_pairs(law: &str, impacts: &[&ImpactOutcome]) -> Option<NamedFig
                   estimates of one impact. Broken lines: ellipse in which a further fruit of the \
                   group lies with a probability of 95 %, if parameters are normal within a group."
             .to_owned(),
-        figure: Figure {
-            title: format!("{law}: parameters of each impact"),
-            panels,
-        },
+        figure: Figure::new(format!("{law}: parameters of each impact"), panels),
     })
 }
 
@@ -159,7 +153,6 @@ fn ellipse((x, y): (f64, f64), [xx, xy, yy]: [f64; 3], reach: f64) -> Option<Vec
 }
 
 /// What the fitted law predicts against what the signals show on their own, if anything.
-#[must_use]
 pub fn figure_of_predictions(law: &str, impacts: &[&ImpactOutcome]) -> Option<NamedFigure> {
     let panels: Vec<Panel> = quantities_named(&PREDICTED)
         .into_iter()
@@ -173,10 +166,7 @@ pub fn figure_of_predictions(law: &str, impacts: &[&ImpactOutcome]) -> Option<Na
         caption: "What the fitted law gives for each impact, against the same read off the \
                   signals without a law. On the broken line both agree."
             .to_owned(),
-        figure: Figure {
-            title: format!("{law}: fitted and measured"),
-            panels,
-        },
+        figure: Figure::new(format!("{law}: fitted and measured"), panels),
     })
 }
 

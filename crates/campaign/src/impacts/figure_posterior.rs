@@ -15,7 +15,6 @@ const MOST_SHOWN: usize = 4;
 
 /// Densities of the parameters with their intervals, and the draws of each pair with the
 /// ellipse of their standard deviations; `None` where the intervals were not drawn.
-#[must_use]
 pub fn figure_of_posterior(title: &str, outcome: &ImpactOutcome) -> Option<Figure> {
     let drawn = &outcome.intervals.drawn.0;
     let paired: Vec<&(String, Vec<f64>)> = drawn
@@ -32,10 +31,8 @@ pub fn figure_of_posterior(title: &str, outcome: &ImpactOutcome) -> Option<Figur
             panels.push(pair(outcome, x, y));
         }
     }
-    (!panels.is_empty()).then(|| Figure {
-        title: format!("{title}: posterior, {}", outcome.law),
-        panels,
-    })
+    (!panels.is_empty())
+        .then(|| Figure::new(format!("{title}: posterior, {}", outcome.law), panels))
 }
 
 fn unit_of(estimate: Option<&EstimateOutcome>) -> &str {

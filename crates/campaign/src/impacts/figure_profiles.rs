@@ -11,7 +11,6 @@ const POINTS: usize = 81;
 /// −2 ln of the profile likelihood of each parameter over its value, with the ends of
 /// the 95 % interval and the parabola that estimate and standard deviation stand for;
 /// `None` where the intervals were not made by profiles.
-#[must_use]
 pub fn figure_of_profiles(title: &str, outcome: &ImpactOutcome) -> Option<Figure> {
     let profiles = outcome.intervals.profiles.0.iter();
     let panel = |(name, profile): &(String, ProfileOutcome)| {

@@ -23,7 +23,6 @@ const NORMAL_95: f64 = 1.96;
 /// where the motion of the law cannot be followed.
 ///
 /// * `used`: rig, end of contact, and the user's own laws
-#[must_use]
 pub fn figure_of_residuals(
     title: &str,
     impact: &Impact,
@@ -60,10 +59,8 @@ pub fn figure_of_residuals(
             }
         }
     }
-    (!panels.is_empty()).then(|| Figure {
-        title: format!("{title}: residuals of {}", outcome.law),
-        panels,
-    })
+    (!panels.is_empty())
+        .then(|| Figure::new(format!("{title}: residuals of {}", outcome.law), panels))
 }
 
 /// How a quantity is shown.

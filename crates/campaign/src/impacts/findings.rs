@@ -4,24 +4,15 @@ use crate::result::outcome::CampaignOutcome;
 use itertools::Itertools;
 use windfall_files::found::FindingOutcome;
 use windfall_files::named::grouped;
-use windfall_files::text::table::{findings_list, paragraph};
-
-/// Indentation of the second line of a finding; characters.
-const INDENT: usize = 4;
+use windfall_files::text::table::{failures_list, findings_list};
 
 /// What a reader of the results must know, and what was left out.
-#[must_use]
 pub fn findings_text(outcome: &CampaignOutcome) -> String {
-    let mut text = findings_list(&findings_once(outcome));
-    for failure in &outcome.failed {
-        let line = format!("not fitted: {}: {}", failure.id, failure.message);
-        text += &(paragraph(&line, INDENT) + "\n");
-    }
-    text
+    let findings = findings_list(&findings_once(outcome));
+    findings + &failures_list("not fitted", &outcome.failed, 4)
 }
 
 /// Findings of the whole, then one of each kind on impacts, with how many share it.
-#[must_use]
 pub fn findings_once(outcome: &CampaignOutcome) -> Vec<FindingOutcome> {
     let mut findings = outcome.findings.clone();
     findings.extend(kinds(outcome).into_iter().map(|(finding, first, impacts)| {

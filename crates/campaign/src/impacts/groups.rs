@@ -5,7 +5,7 @@ use crate::result::quantity::{Quantity, quantities_named};
 use itertools::Itertools;
 use windfall_files::found::{SpreadOutcome, spread};
 use windfall_files::text::number::{plain, spread_percent, spread_text};
-use windfall_files::text::table::{Cells, page_tables, paragraph};
+use windfall_files::text::table::{Cells, header_of, page_tables, paragraph};
 
 /// Velocities and peaks.
 const SIGNALS: [&str; 4] = [
@@ -27,14 +27,12 @@ const ENERGIES: [&str; 4] = [
 const ALIKE: f64 = 1e-3;
 
 /// Groups of one law, in their order.
-#[must_use]
 pub fn groups_of<'a>(outcome: &'a CampaignOutcome, law: &str) -> Vec<&'a GroupOutcome> {
     let groups = outcome.groups.iter();
     groups.filter(|group| group.law == law).collect()
 }
 
 /// "k (N/m^1.5)", or the name alone where impacts differ in the unit.
-#[must_use]
 pub fn heading_of(impacts: &[&ImpactOutcome], name: &str) -> String {
     let mut units = impacts
         .iter()
@@ -47,18 +45,14 @@ pub fn heading_of(impacts: &[&ImpactOutcome], name: &str) -> String {
 }
 
 /// Parameters per group, as Table 2 of the 2003 pendulum study.
-#[must_use]
 pub fn parameter_table(groups: &[&GroupOutcome], impacts: &[&ImpactOutcome]) -> String {
     let cells = parameter_cells(groups, impacts);
     page_tables(&cells.header, &cells.rows, &[0])
 }
 
 /// The cells of [`parameter_table`].
-#[must_use]
 pub fn parameter_cells(groups: &[&GroupOutcome], impacts: &[&ImpactOutcome]) -> Cells {
-    let mut header = ["group", "impacts", "specimens"]
-        .map(str::to_owned)
-        .to_vec();
+    let mut header = header_of(&["group", "impacts", "specimens"]);
     let estimated: Vec<&str> = parameter_names(groups);
     header.extend(estimated.iter().map(|name| heading_of(impacts, name)));
     let rows = groups.iter().map(|group| {
@@ -78,7 +72,6 @@ pub fn parameter_cells(groups: &[&GroupOutcome], impacts: &[&ImpactOutcome]) -> 
 }
 
 /// Velocities, peaks and energies per group, all of them.
-#[must_use]
 pub fn derived_cells(groups: &[&GroupOutcome]) -> [Cells; 2] {
     [SIGNALS, ENERGIES].map(|names| cells_of(groups, &quantities_named(&names)))
 }
@@ -93,7 +86,6 @@ fn cells_of(groups: &[&GroupOutcome], columns: &[&Quantity]) -> Cells {
 
 /// Velocities, peaks and energies per group, as Table 3 of the same study. They
 /// are read off the signals and hardly depend on the law.
-#[must_use]
 pub fn derived_tables(groups: &[&GroupOutcome]) -> String {
     let (alike, varied): (Vec<&str>, Vec<&str>) = SIGNALS
         .into_iter()
@@ -158,7 +150,6 @@ fn alike(groups: &[&GroupOutcome], name: &str) -> bool {
 }
 
 /// Nominal, delivered and measured restitution; empty for laws without a nominal one.
-#[must_use]
 pub fn restitution_table(impacts: &[&ImpactOutcome]) -> String {
     let promised = |impact: &&ImpactOutcome| impact.fitted.get("nominal_restitution").is_some();
     if !impacts.iter().any(promised) {
@@ -186,20 +177,16 @@ pub fn restitution_table(impacts: &[&ImpactOutcome]) -> String {
 }
 
 /// Residuals over noise per law and quantity, root mean square over impacts.
-#[must_use]
 pub fn law_table(outcome: &CampaignOutcome, laws: &[&str]) -> String {
     let cells = law_cells(outcome, laws);
     page_tables(&cells.header, &cells.rows, &[0, 1])
 }
 
 /// The cells of [`law_table`].
-#[must_use]
 pub fn law_cells(outcome: &CampaignOutcome, laws: &[&str]) -> Cells {
     let quantities = outcome.impacts.iter().flat_map(|i| i.residuals.names());
     let quantities: Vec<&str> = quantities.unique().collect();
-    let mut header = ["law", "group", "estimated", "impacts", "converged"]
-        .map(str::to_owned)
-        .to_vec();
+    let mut header = header_of(&["law", "group", "estimated", "impacts", "converged"]);
     header.extend(quantities.iter().map(|name| (*name).to_owned()));
     let all: Vec<&ImpactOutcome> = outcome.impacts.iter().collect();
     let groups = group_names(&all);

@@ -14,7 +14,6 @@ use windfall_identify::rig::kind::Rig;
 ///
 /// Numbers enter with all their digits. Titles, groups and other columns of the
 /// tables do not enter: changing them keeps the results.
-#[must_use]
 pub fn impact_key(
     campaign: &ImpactCampaign,
     entry: &ImpactEntry,
@@ -73,7 +72,6 @@ pub fn impact_key(
 }
 
 /// Options of a run beside campaign.toml: what was fitted in the end.
-#[must_use]
 pub fn run_options(campaign: &ImpactCampaign) -> Map<String, Value> {
     let fit = &campaign.fit;
     let laws: Vec<String> = fit.laws.iter().map(ToString::to_string).collect();

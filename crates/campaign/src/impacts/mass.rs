@@ -51,10 +51,7 @@ pub fn find_rig(campaign: &ImpactCampaign) -> Result<RigFound, Error> {
             driving_acceleration,
             driving_acceleration_sd,
         } => {
-            let driving = Uncertain {
-                value: driving_acceleration,
-                sd: driving_acceleration_sd,
-            };
+            let driving = Uncertain::new(driving_acceleration, driving_acceleration_sd);
             from_impulse(campaign, driving)
         }
     }

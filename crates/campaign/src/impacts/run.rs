@@ -128,6 +128,7 @@ fn fit(
     request: &FitRequest,
     progress: Progress,
 ) -> Result<FittedCampaign, Error> {
+    request.check_outputs()?;
     let rig = find_rig(&campaign)?;
     let fits = Fits {
         campaign: &campaign,

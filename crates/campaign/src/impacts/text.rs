@@ -9,7 +9,7 @@ use crate::result::quantity::quantities_named;
 use itertools::Itertools;
 use std::fmt::Write;
 use windfall_files::text::number::{plain, value_and_sd};
-use windfall_files::text::table::{page_tables, paragraph};
+use windfall_files::text::table::{page_tables, title_lines};
 
 /// More impacts than this are shown as groups only.
 const LISTED_IMPACTS: usize = 40;
@@ -18,13 +18,8 @@ const LISTED_IMPACTS: usize = 40;
 const OF_IMPACTS: [&str; 3] = ["impact_velocity", "restitution", "absorbed_energy"];
 
 /// A campaign's results: impacts, groups, what was left out, findings.
-#[must_use]
 pub fn text_of_campaign(outcome: &CampaignOutcome) -> String {
-    let mut text = format!("{}\n", paragraph(&outcome.campaign, 2));
-    if let Some(label) = &outcome.simulated {
-        let label = format!("SIMULATED recordings: {label}");
-        let _ = writeln!(text, "{}", paragraph(&label, 2));
-    }
+    let mut text = title_lines(&outcome.campaign, outcome.simulated.as_deref());
     let _ = writeln!(text, "{}", mass_line(outcome));
     let laws = laws_of(outcome);
     for law in &laws {

@@ -14,20 +14,7 @@ pub struct Estimates {
 }
 
 impl Estimates {
-    /// "ln k", "n".
-    #[must_use]
-    pub fn labels(&self) -> Vec<String> {
-        let named = self.names.iter().zip(&self.logarithmic);
-        named
-            .map(|(name, logarithmic)| match logarithmic {
-                true => format!("ln {name}"),
-                false => name.clone(),
-            })
-            .collect()
-    }
-
     /// Values of the parameters at a row.
-    #[must_use]
     pub fn values(&self, row: &[f64]) -> Vec<f64> {
         let pairs = row.iter().zip(&self.logarithmic);
         pairs
@@ -69,7 +56,6 @@ const PARTS: [f64; 4] = [1.0, 0.5, 0.25, 0.0];
 /// # Source
 /// Moment estimator of the one-way random model; Searle, Casella and McCulloch
 /// (1992), Variance Components, ch. 3, for unweighted means.
-#[must_use]
 pub fn two_stage(estimates: &Estimates) -> Population {
     let size = estimates.names.len();
     let count = estimates.fruit.len();

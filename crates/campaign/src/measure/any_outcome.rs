@@ -20,7 +20,6 @@ pub enum AnyOutcome {
 
 impl AnyOutcome {
     /// How the results came about.
-    #[must_use]
     pub fn status(&self) -> &StatusOutcome {
         match self {
             Self::Impacts(outcome) => &outcome.status,
@@ -29,7 +28,6 @@ impl AnyOutcome {
     }
 
     /// What could not be evaluated.
-    #[must_use]
     pub fn failed(&self) -> &[FailureOutcome] {
         match self {
             Self::Impacts(outcome) => &outcome.failed,
@@ -38,7 +36,6 @@ impl AnyOutcome {
     }
 
     /// Number of results.
-    #[must_use]
     pub fn results(&self) -> usize {
         match self {
             Self::Impacts(outcome) => outcome.impacts.len(),

@@ -103,7 +103,6 @@ pub struct MeasuredResults {
 
 impl MeasuredResults {
     /// Results of recordings with their spread.
-    #[must_use]
     pub fn of(items: Vec<MeasuredItem>) -> Self {
         let law = laws_of(&items).first().map_or("", |law| *law).to_owned();
         Self {

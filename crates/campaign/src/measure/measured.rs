@@ -25,8 +25,19 @@ pub struct MeasuredValue {
     pub unit: String,
 }
 
+impl MeasuredValue {
+    /// The value as the store keeps it, under a name.
+    pub fn stored(&self, name: String) -> StoredValue {
+        StoredValue {
+            name,
+            value: self.value,
+            sd: self.sd,
+            unit: self.unit.clone(),
+        }
+    }
+}
+
 /// A value without uncertainty.
-#[must_use]
 pub fn plain_value(value: f64, unit: &str) -> MeasuredValue {
     MeasuredValue {
         value,
@@ -38,7 +49,6 @@ pub fn plain_value(value: f64, unit: &str) -> MeasuredValue {
 }
 
 /// A value with its standard uncertainty, where that is finite.
-#[must_use]
 pub fn value_with_sd(value: f64, sd: f64, unit: &str) -> MeasuredValue {
     MeasuredValue {
         sd: sd.is_finite().then_some(sd),
@@ -71,7 +81,6 @@ pub struct MeasuredItem {
 
 impl MeasuredItem {
     /// An item of an entry, without values yet.
-    #[must_use]
     pub fn of(campaign: &Campaign, entry: &ImpactEntry, law: &str) -> Self {
         Self {
             id: entry.id.clone(),
@@ -84,7 +93,6 @@ impl MeasuredItem {
     }
 
     /// An item of no single recording, without values yet.
-    #[must_use]
     pub fn named(id: &str, law: &str) -> Self {
         Self {
             id: id.to_owned(),
@@ -112,12 +120,7 @@ impl Document for MeasuredItems {
                     true => format!("{} {name}", item.law),
                     false => name.clone(),
                 };
-                values.push(StoredValue {
-                    name,
-                    value: value.value,
-                    sd: value.sd,
-                    unit: value.unit.clone(),
-                });
+                values.push(value.stored(name));
             }
         }
         values
@@ -195,7 +198,6 @@ pub struct MeasuredOutcome {
 }
 
 /// A column of the tables that people read.
-#[must_use]
 pub const fn shown(name: &'static str, heading: &'static str, factor: f64) -> ShownValue {
     ShownValue {
         name,
@@ -205,13 +207,11 @@ pub const fn shown(name: &'static str, heading: &'static str, factor: f64) -> Sh
 }
 
 /// A value of an item by its name.
-#[must_use]
 pub fn value_of<'a>(item: &'a MeasuredItem, name: &str) -> Option<&'a MeasuredValue> {
     item.parameters.get(name).or_else(|| item.derived.get(name))
 }
 
 /// Laws or methods in order of first appearance.
-#[must_use]
 pub fn laws_of(items: &[MeasuredItem]) -> Vec<&str> {
     let laws = items.iter().map(|item| item.law.as_str());
     laws.unique().collect()
@@ -219,7 +219,6 @@ pub fn laws_of(items: &[MeasuredItem]) -> Vec<&str> {
 
 /// Spread of each value over the items of a law, and of a group where one is
 /// named.
-#[must_use]
 pub fn spread_of(items: &[MeasuredItem], law: &str, group: Option<&str>) -> MeasuredGroup {
     let members: Vec<&MeasuredItem> = items
         .iter()
@@ -237,7 +236,6 @@ pub fn spread_of(items: &[MeasuredItem], law: &str, group: Option<&str>) -> Meas
 }
 
 /// Spread per law and group, in order of first appearance.
-#[must_use]
 pub fn groups_of(items: &[MeasuredItem]) -> Vec<MeasuredGroup> {
     let names: Vec<&str> = items
         .iter()

@@ -161,6 +161,7 @@ pub fn reported_campaign<K: Measurement>(
 fn requested<K: Measurement>(directory: &Path, request: &FitRequest) -> Result<K, Error> {
     let mut campaign = K::read(directory)?;
     campaign.apply(request)?;
+    request.check_outputs()?;
     Ok(campaign)
 }
 

@@ -9,24 +9,18 @@ use std::fmt::Write;
 use windfall_files::error::Error;
 use windfall_files::found::FindingOutcome;
 use windfall_files::named::grouped;
-use windfall_files::table::write::csv_text;
+use windfall_files::table::write::{csv_text, number_cell};
 use windfall_files::text::number::{spread_percent, value_and_sd};
-use windfall_files::text::table::{Cells, findings_list, page_tables, paragraph};
-
-/// Indentation of the second line of a finding; characters.
-const INDENT: usize = 4;
+use windfall_files::text::table::{
+    Cells, failures_list, findings_list, header_of, page_tables, title_lines,
+};
 
 /// More results than this are shown as groups only.
 const LISTED: usize = 40;
 
 /// Tables for people: recordings, specimens, the whole, findings.
-#[must_use]
 pub fn text_of_measured(outcome: &MeasuredOutcome) -> String {
-    let mut text = format!("{}\n", paragraph(&outcome.campaign, 2));
-    if let Some(label) = &outcome.simulated {
-        let label = format!("SIMULATED recordings: {label}");
-        let _ = writeln!(text, "{}", paragraph(&label, 2));
-    }
+    let mut text = title_lines(&outcome.campaign, outcome.simulated.as_deref());
     let of_specimens = outcome.shown.specimens;
     for law in laws_of(&outcome.impacts) {
         let items = of_law(&outcome.impacts, law);
@@ -71,7 +65,6 @@ pub fn text_of_measured(outcome: &MeasuredOutcome) -> String {
 }
 
 /// Items of a law or method.
-#[must_use]
 pub fn of_law<'a>(items: &'a [MeasuredItem], law: &str) -> Vec<&'a MeasuredItem> {
     items.iter().filter(|item| item.law == law).collect()
 }
@@ -105,7 +98,6 @@ fn is_named(what: &str, items: &[&MeasuredItem]) -> bool {
 /// Items with the values that are shown and their words, row by row.
 ///
 /// * `what`: "recording", "tap", "part", "specimen" or "campaign"
-#[must_use]
 pub fn items_cells(what: &str, items: &[&MeasuredItem], shown: &[ShownValue]) -> Cells {
     let present: Vec<&ShownValue> = shown
         .iter()
@@ -142,7 +134,6 @@ fn of_taps(outcome: &MeasuredOutcome) -> bool {
 }
 
 /// The items whose groups have a spread (of taps: the fruit), with the values shown.
-#[must_use]
 pub fn spread_items(outcome: &MeasuredOutcome) -> (&'static [ShownValue], &[MeasuredItem]) {
     match of_taps(outcome) {
         true => (outcome.shown.specimens, &outcome.specimens),
@@ -151,7 +142,6 @@ pub fn spread_items(outcome: &MeasuredOutcome) -> (&'static [ShownValue], &[Meas
 }
 
 /// Mean and spread of the values that are shown, for each group and for all.
-#[must_use]
 pub fn groups_cells(
     outcome: &MeasuredOutcome,
     law: &str,
@@ -191,16 +181,11 @@ pub fn groups_cells(
 
 /// Each kind of finding once, with how many share it, and what failed.
 fn findings_text(outcome: &MeasuredOutcome) -> String {
-    let mut text = findings_list(&findings_of_measured(outcome));
-    for failure in &outcome.failed {
-        let line = format!("not evaluated: {}: {}", failure.id, failure.message);
-        text += &(paragraph(&line, INDENT) + "\n");
-    }
-    text
+    let findings = findings_list(&findings_of_measured(outcome));
+    findings + &failures_list("not evaluated", &outcome.failed, 4)
 }
 
 /// Findings of the whole, then one of each kind on items, with how many share it.
-#[must_use]
 pub fn findings_of_measured(outcome: &MeasuredOutcome) -> Vec<FindingOutcome> {
     let mut found = outcome.findings.clone();
     let items = outcome
@@ -237,9 +222,7 @@ pub fn csv_of_measured(outcome: &MeasuredOutcome) -> Result<String, Error> {
 /// One row per item; units stand in the headings where all items share them.
 pub fn csv_of_items(items: &[MeasuredItem], simulated: Option<&str>) -> Result<String, Error> {
     let columns = columns_of(items);
-    let mut header: Vec<String> = ["id", "specimen", "group", "file", "law"]
-        .map(str::to_owned)
-        .to_vec();
+    let mut header = header_of(&["id", "specimen", "group", "file", "law"]);
     for column in &columns {
         header.push(column.heading.clone());
         header.extend(column.sd.then(|| format!("{}_sd", column.name)));
@@ -267,11 +250,11 @@ pub fn csv_of_items(items: &[MeasuredItem], simulated: Option<&str>) -> Result<S
         ];
         for column in &columns {
             let value = value_of(item, column.name);
-            row.push(number(value.map(|v| v.value)));
-            row.extend(column.sd.then(|| number(value.and_then(|v| v.sd))));
+            row.push(number_cell(value.map(|v| v.value)));
+            row.extend(column.sd.then(|| number_cell(value.and_then(|v| v.sd))));
             if column.interval {
-                row.push(number(value.and_then(|v| v.low)));
-                row.push(number(value.and_then(|v| v.high)));
+                row.push(number_cell(value.and_then(|v| v.low)));
+                row.push(number_cell(value.and_then(|v| v.high)));
             }
             let unit = || value.map_or_else(String::new, |v| v.unit.clone());
             row.extend(column.unit.then(unit));
@@ -327,7 +310,6 @@ fn columns_of(items: &[MeasuredItem]) -> Vec<Column<'_>> {
 }
 
 /// "bioyield_force_N": the unit as it can stand in the name of a column.
-#[must_use]
 pub fn heading(name: &str, unit: &str) -> String {
     match unit {
         "1" | "" => name.to_owned(),
@@ -336,8 +318,4 @@ pub fn heading(name: &str, unit: &str) -> String {
             unit.replace(['/', ' '], "_").replace(['^', '(', ')'], "")
         ),
     }
-}
-
-fn number(value: Option<f64>) -> String {
-    value.map_or_else(String::new, |value| value.to_string())
 }

@@ -10,19 +10,16 @@ pub const SPREAD: &str = "Values are given ± their standard uncertainty; means 
      recordings or fruit (n − 1).";
 
 /// A setting as it was given, without what binary numbers add to it.
-#[must_use]
 pub fn plain(value: f64) -> String {
     format!("{}", (value * 1e9).round() / 1e9)
 }
 
 /// A part as a percentage.
-#[must_use]
 pub fn percent(part: f64) -> String {
     format!("{} %", plain(100.0 * part))
 }
 
 /// "exceeded 1 N".
-#[must_use]
 pub fn threshold_text(threshold: &Threshold) -> String {
     match *threshold {
         Threshold::Fixed(force) => format!("exceeded {} N", force),
@@ -39,7 +36,6 @@ pub fn threshold_text(threshold: &Threshold) -> String {
 }
 
 /// Which channels were filtered, and how.
-#[must_use]
 pub fn filters_text(conditioning: &Conditioning) -> String {
     let filters = [
         ("force", conditioning.force),
@@ -70,7 +66,6 @@ fn filter_text(filter: &ChannelFilter) -> String {
 }
 
 /// A sentence on each law.
-#[must_use]
 pub fn laws_text(laws: &[LawExpression], free: &[String]) -> Vec<String> {
     let of = |law: &LawExpression| {
         let about = law.kind.describe();
@@ -89,7 +84,6 @@ pub fn laws_text(laws: &[LawExpression], free: &[String]) -> Vec<String> {
 }
 
 /// "a, b and c".
-#[must_use]
 pub fn listed(names: &[&str]) -> String {
     match names {
         [] => String::new(),

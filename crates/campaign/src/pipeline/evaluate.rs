@@ -5,6 +5,7 @@ use crate::pipeline::request::{PENDING, Reuse};
 use crate::recording::digests::{Digests, recording_digests, run_origin};
 use crate::recording::read::recording_path;
 use crate::result::outcome::{ImpactOutcome, StatusOutcome};
+use crate::settings::kind::STORE_FILE;
 use crate::settings::model::{Campaign, ImpactEntry};
 use crate::store::documents::{DocumentRecord, StoredValue, find_documents};
 use crate::store::error::StoreError;
@@ -17,10 +18,6 @@ use std::path::Path;
 use windfall_files::error::Error;
 use windfall_files::found::FailureOutcome;
 use windfall_files::progress::{Progress, for_each};
-use windfall_files::provenance::{VERSION, time_now};
-
-/// Name of the store in a campaign directory.
-pub const STORE_FILE: &str = "results.sqlite";
 
 /// How the recordings of a campaign are evaluated.
 ///
@@ -238,7 +235,6 @@ pub fn evaluate<E: Evaluation>(
 }
 
 /// An entry, or one law on it, that could not be evaluated.
-#[must_use]
 pub fn failure(entry: &ImpactEntry, law: Option<&str>, message: String) -> FailureOutcome {
     FailureOutcome {
         id: entry.id.clone(),
@@ -289,16 +285,7 @@ fn keep<E: Evaluation>(
     }
     let campaign = evaluation.campaign();
     let origin = run_origin(campaign, &evaluated.digests, evaluation.options())?;
-    let mut run = RunRecord {
-        time: time_now(),
-        windfall: VERSION.to_owned(),
-        options: origin.options,
-        seed: None,
-        inputs: origin.inputs,
-        results: Vec::new(),
-        documents: Vec::new(),
-        failures: evaluated.failed.clone(),
-    };
+    let mut run = RunRecord::new(origin, evaluated.failed.clone());
     for ((position, item), key) in evaluated.items.iter().zip(keys) {
         item.add(&mut run, campaign, &campaign.entries[*position], key)?;
     }

@@ -12,51 +12,90 @@ use windfall_contact::expression::{LawExpression, parse_law_among};
 use windfall_contact::laws::kind::LawKind;
 use windfall_draw::files::FigureFolder;
 use windfall_files::error::Error;
+use windfall_files::inputs::check_output;
 use windfall_files::option_value::{chosen, unusable};
 use windfall_files::text::toml_source::suggestion;
 use windfall_identify::fit::problem::FitOptions;
 
 /// Options of `fit`, which override the campaign's settings.
 #[derive(Clone, Debug, Default)]
+#[cfg_attr(feature = "clap", derive(clap::Args))]
 pub struct FitRequest {
-    /// Laws in place of those of the campaign; none keeps them.
+    /// Law to fit in place of those of the campaign; may be repeated
+    #[cfg_attr(feature = "clap", arg(long = "law", value_name = "LAW"))]
     pub laws: Vec<String>,
-    /// A file of the user's own laws, besides those of the campaign.
+    /// File of own laws ([laws.NAME] tables) that --law can name, besides those of the campaign
+    #[cfg_attr(feature = "clap", arg(long = "laws", value_name = "FILE", value_hint = clap::ValueHint::FilePath))]
     pub laws_file: Option<PathBuf>,
-    /// Parameters to estimate although they have a value; none keeps the campaign's.
+    /// Parameter to estimate although it has a value, such as an exponent; may be repeated
+    #[cfg_attr(feature = "clap", arg(long, value_name = "NAME"))]
     pub free: Vec<String>,
-    /// Quantities in place of those of the campaign; none keeps them.
+    /// Quantities of the cost function: displacement, rate, force, acceleration
+    #[cfg_attr(
+        feature = "clap",
+        arg(long, value_delimiter = ',', value_name = "NAME,…")
+    )]
     pub quantities: Vec<String>,
-    /// Weights in place of the campaign's: a word of [`WEIGHTS`].
+    /// Weights of the cost function: by each channel's noise, or 1/mean as in the 2003 study
+    #[cfg_attr(feature = "clap", arg(long, value_parser = ["inverse-variance", "inverse-mean"], value_name = "WEIGHTS"))]
     pub weights: Option<String>,
-    /// What is taken for the channels' noise: a word of [`NOISES`].
+    /// Noise of the channels: as the recording shows it, or white sample by sample
+    #[cfg_attr(feature = "clap", arg(long, value_parser = ["automatic", "white"], value_name = "NOISE"))]
     pub noise: Option<String>,
-    /// How intervals are made: a word of [`INTERVALS`].
+    /// How the 95 % intervals are made
+    #[cfg_attr(feature = "clap", arg(long, value_parser = ["asymptotic", "profile", "bootstrap", "posterior"], value_name = "HOW"))]
     pub intervals: Option<String>,
-    /// Resampled recordings of a bootstrap.
+    /// Resampled recordings of each impact for --intervals bootstrap (1000)
+    #[cfg_attr(feature = "clap", arg(long, value_name = "N"))]
     pub replicates: Option<usize>,
-    /// Draws of each chain of a posterior.
+    /// Draws of each of four chains for --intervals posterior (1000)
+    #[cfg_attr(feature = "clap", arg(long, value_name = "N"))]
     pub draws: Option<usize>,
-    /// Seed of bootstrap and posterior.
+    /// Seed of bootstrap and posterior (1)
+    #[cfg_attr(feature = "clap", arg(long, value_name = "N"))]
     pub seed: Option<u64>,
-    /// Velocity at first touch: a word of [`TREATMENTS`], or the value to hold it at.
-    pub initial_velocity: Option<String>,
-    /// Treatment of the time of first touch.
+    /// Time of first touch: fixed where the force passes its threshold, free, or as the data can tell
+    #[cfg_attr(feature = "clap", arg(long, value_parser = ["auto", "free", "fixed"], value_name = "HOW"))]
     pub onset: Option<String>,
-    /// Treatment of the zero of the displacement.
+    /// Velocity at first touch: auto, free, fixed (as measured), or held at a value ("0.35 m/s")
+    #[cfg_attr(feature = "clap", arg(long, value_name = "HOW"))]
+    pub initial_velocity: Option<String>,
+    /// Zero of the displacement
+    #[cfg_attr(feature = "clap", arg(long, value_parser = ["auto", "free", "fixed"], value_name = "HOW"))]
     pub displacement_offset: Option<String>,
-    /// End of contact in place of the campaign's: a word of [`ENDS`].
+    /// When the contact is over
+    #[cfg_attr(feature = "clap", arg(long, value_parser = ["force-zero", "gap-zero"], value_name = "END"))]
     pub end: Option<String>,
-    /// Column to group by in place of the campaign's.
+    /// Column of specimens.csv or impacts.csv by which results are grouped
+    #[cfg_attr(feature = "clap", arg(long, value_name = "COLUMN"))]
     pub group: Option<String>,
-    /// What becomes of results in the store.
+    /// Fit every impact again, even where nothing has changed
+    #[cfg_attr(feature = "clap", arg(id = "refit", long, action = clap::ArgAction::SetTrue, value_parser = refit()))]
     pub reuse: Reuse,
-    /// Where a figure of each recording goes, with its data as CSV.
+    /// A figure of each recording
+    #[cfg_attr(feature = "clap", command(flatten))]
     pub figures: Option<FigureFolder>,
-    /// Where the law is written as a law card.
+    /// Write the law as a law card: the median fruit, how fruit differ, and in what it was seen
+    #[cfg_attr(feature = "clap", arg(long, value_name = "FILE", value_hint = clap::ValueHint::FilePath, conflicts_with = "rig"))]
     pub card: Option<PathBuf>,
-    /// Number of threads; all cores when `None`. It never changes a result.
+    /// Number of threads; all cores if left out. It never changes a result
+    #[cfg_attr(feature = "clap", arg(long, value_name = "N"))]
     pub threads: Option<usize>,
+}
+
+impl FitRequest {
+    /// Refuses outputs that would replace an input, before any work is done.
+    ///
+    /// # Errors
+    /// The law card would replace an input, or figures would lie among recordings.
+    pub fn check_outputs(&self) -> Result<(), Error> {
+        let figure = self
+            .figures
+            .as_ref()
+            .map(|own| own.directory.join("figure.csv"));
+        let mut outputs = figure.iter().chain(&self.card);
+        outputs.try_for_each(|path| check_output(path))
+    }
 }
 
 /// Why an impact has no result where nothing is fitted ([`Reuse::Only`]).
@@ -72,6 +111,16 @@ pub enum Reuse {
     Nothing,
     /// Nothing is fitted or written; results that are missing are failures, [`PENDING`].
     Only,
+}
+
+/// Whether --refit was given.
+#[cfg(feature = "clap")]
+fn refit() -> impl clap::builder::TypedValueParser<Value = Reuse> {
+    use clap::builder::{BoolValueParser, TypedValueParser};
+    BoolValueParser::new().map(|refit| match refit {
+        true => Reuse::Nothing,
+        false => Reuse::Unchanged,
+    })
 }
 
 /// Overrides settings of a campaign of impacts with options.

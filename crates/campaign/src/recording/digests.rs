@@ -16,7 +16,6 @@ pub type Digests = BTreeMap<PathBuf, Result<String, String>>;
 /// SHA-256 of each recording once; a message where it cannot be read.
 ///
 /// * `directory`: of the campaign, for messages
-#[must_use]
 pub fn recording_digests(directory: &Path, files: &FilePlan, entries: &[ImpactEntry]) -> Digests {
     let mut first: BTreeMap<PathBuf, &ImpactEntry> = BTreeMap::new();
     for entry in entries {
@@ -50,11 +49,7 @@ fn absent(directory: &Path, entry: &ImpactEntry, path: &Path) -> String {
         list.display(),
         entry.line
     );
-    Error::FileAbsent {
-        path: path.to_path_buf(),
-        advice,
-    }
-    .to_string()
+    Error::absent(path, advice).to_string()
 }
 
 /// What the results of a run rest on.

@@ -7,13 +7,13 @@ use crate::settings::model::{ChannelPlan, FilePlan, ImpactEntry, TimePlan};
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 use windfall_files::error::{Error, Place};
+use windfall_files::inputs::protect;
 use windfall_files::text::column_role::seconds_per_unit;
 use windfall_formats::contents::{Contents, TimeBase};
 use windfall_formats::open::open;
 use windfall_signal::recording::{Channel, Recording, Times};
 
 /// Where the recording of an impact is.
-#[must_use]
 pub fn recording_path(files: &FilePlan, impact: &ImpactEntry) -> PathBuf {
     files.directory.join(&impact.file)
 }
@@ -29,6 +29,7 @@ pub fn recording_path(files: &FilePlan, impact: &ImpactEntry) -> PathBuf {
 /// finite or has no time, or nothing says when samples were taken.
 pub fn read_recording(files: &FilePlan, impact: &ImpactEntry) -> Result<Recording, Error> {
     let path = recording_path(files, impact);
+    protect(&path);
     let mut reader = open(&path, &files.open).map_err(Error::Format)?;
     let contents = reader.contents().clone();
     let sources = files

@@ -20,32 +20,78 @@ use windfall_signal::trigger::Threshold;
 
 /// What campaign.toml would say of rig, channels and contact; texts with units.
 #[derive(Clone, Debug, Default)]
+#[cfg_attr(feature = "clap", derive(clap::Args))]
+#[cfg_attr(
+    feature = "clap",
+    command(next_help_heading = "One recording without a campaign")
+)]
 pub struct RecordingRequest {
-    /// "pendulum" or "carriage".
+    /// The rig that the recording comes from
+    #[cfg_attr(feature = "clap", arg(long, value_parser = ["pendulum", "carriage"], value_name = "RIG", requires = "laws", required = false))]
     pub rig: String,
-    /// Moment of inertia about the pivot.
+    /// Pendulum: moment of inertia about the pivot, such as "0.01435 kg m^2"
+    #[cfg_attr(feature = "clap", arg(long, requires = "rig", value_name = "QUANTITY"))]
     pub inertia: Option<String>,
-    /// Pivot to point of contact.
+    /// Pendulum: pivot to point of contact, such as "0.505 m"
+    #[cfg_attr(feature = "clap", arg(long, requires = "rig", value_name = "QUANTITY"))]
     pub arm: Option<String>,
-    /// Mass of arm and impactor, or of the carriage; or "from impulse".
+    /// Mass of arm and impactor, or of the carriage: "0.11 kg", or "from impulse" for a carriage
+    #[cfg_attr(feature = "clap", arg(long, requires = "rig", value_name = "QUANTITY"))]
     pub mass: Option<String>,
-    /// Pivot to centre of mass.
+    /// Pendulum: pivot to centre of mass, such as "0.3 m"
+    #[cfg_attr(feature = "clap", arg(long, requires = "rig", value_name = "QUANTITY"))]
     pub centre_of_mass: Option<String>,
-    /// Acceleration of gravity.
+    /// Pendulum: acceleration of gravity; 9.80665 m/s^2 if left out
+    #[cfg_attr(feature = "clap", arg(long, requires = "rig", value_name = "QUANTITY"))]
     pub gravity: Option<String>,
-    /// Acceleration of the free carriage towards the fruit.
+    /// Carriage: acceleration towards the fruit when nothing touches; 0 if left out
+    #[cfg_attr(
+        feature = "clap",
+        arg(
+            long,
+            requires = "rig",
+            value_name = "QUANTITY",
+            allow_hyphen_values = true
+        )
+    )]
     pub driving_acceleration: Option<String>,
-    /// Channels: "force=F:N", "position=x", "force=force_V:11 mV/N".
+    /// A channel: force, position, velocity, acceleration, angle, count, phase_a or phase_b, its
+    /// column, and after a colon the unit of the column (SI if left out), what one unit of it
+    /// stands for ("-1 N"), or the sensitivity of a sensor ("11 mV/N"); repeated
+    #[cfg_attr(
+        feature = "clap",
+        arg(
+            long = "channel",
+            requires = "rig",
+            value_name = "CHANNEL=COLUMN[:UNIT]"
+        )
+    )]
     pub channels: Vec<String>,
-    /// Column of times: "t" or "t:ms".
+    /// Column of times, in s unless a unit follows a colon
+    #[cfg_attr(
+        feature = "clap",
+        arg(long, requires = "rig", value_name = "COLUMN[:UNIT]")
+    )]
     pub time: Option<String>,
-    /// Sampling rate, where there is no such column.
+    /// Sampling rate, where there is no column of times
+    #[cfg_attr(
+        feature = "clap",
+        arg(
+            long,
+            requires = "rig",
+            value_name = "QUANTITY",
+            conflicts_with = "time"
+        )
+    )]
     pub sampling_rate: Option<String>,
-    /// Counts per revolution of a rotary encoder, after ×4 decoding.
+    /// Counts per revolution of a rotary encoder, after x4 decoding
+    #[cfg_attr(feature = "clap", arg(long, requires = "rig", value_name = "NUMBER"))]
     pub counts_per_revolution: Option<f64>,
-    /// Displacement per count of a linear one.
+    /// Displacement per count of a linear encoder, such as "0.17 mm"
+    #[cfg_attr(feature = "clap", arg(long, requires = "rig", value_name = "QUANTITY"))]
     pub count_length: Option<String>,
-    /// Force above which there is contact, or "auto".
+    /// Force above which there is contact: "1 N", or "auto" (from the noise before contact)
+    #[cfg_attr(feature = "clap", arg(long, requires = "rig", value_name = "QUANTITY"))]
     pub threshold: Option<String>,
 }
 

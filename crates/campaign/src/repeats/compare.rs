@@ -71,7 +71,6 @@ pub struct Compared {
 }
 
 /// Compares all pairs.
-#[must_use]
 pub fn compare_repeats(campaign: &RepeatsCampaign, pairs: &Pairs) -> Compared {
     let mut compared = Compared::default();
     reference(campaign, pairs, &mut compared);

@@ -49,7 +49,6 @@ impl Document for RepeatImpact {
 }
 
 /// The force of an impact as the comparisons take it.
-#[must_use]
 pub fn series_of(impact: &RepeatImpact) -> Series {
     Series {
         times: impact.times.clone(),

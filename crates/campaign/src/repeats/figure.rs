@@ -6,7 +6,6 @@ use crate::repeats::pairs::{Pair, Pairs};
 use windfall_draw::xy::{Figure, Panel, Series, Style};
 
 /// One comparison of a campaign.
-#[must_use]
 pub fn figure_of_comparison(
     title: &str,
     pairs: &Pairs,

@@ -5,7 +5,6 @@ use crate::repeats::read::{Margin, RepeatsCampaign};
 use windfall_signal::repeat::align::Alignment;
 
 /// Impacts repeated on one spot.
-#[must_use]
 pub fn methods_of_repeats(campaign: &RepeatsCampaign) -> Vec<String> {
     let align = &campaign.align;
     let laid = match align.alignment {

@@ -37,7 +37,6 @@ pub struct Pairs {
 }
 
 /// The pairs of all impacts.
-#[must_use]
 pub fn pairs_of(impacts: &[RepeatImpact], options: &AlignOptions) -> Pairs {
     let energies = levels(impacts);
     let mut found = Pairs {
@@ -128,7 +127,6 @@ fn level_of(levels: &[f64], energy: f64) -> usize {
 }
 
 /// The difference of a fruit at one energy and position: mean over its spots.
-#[must_use]
 pub fn difference_of(pairs: &[&Pair]) -> Option<Difference> {
     let first = pairs.first()?;
     let n = pairs.len() as f64;

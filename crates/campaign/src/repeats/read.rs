@@ -198,7 +198,6 @@ pub fn energy_of(campaign: &RepeatsCampaign, entry: &ImpactEntry) -> Result<f64,
 }
 
 /// A cell of an entry or of its specimen; empty where there is none.
-#[must_use]
 pub fn cell_of<'a>(campaign: &'a RepeatsCampaign, entry: &'a ImpactEntry, name: &str) -> &'a str {
     let specimen = campaign.shared.specimen_of(entry);
     let cells = specimen.map_or(&[][..], |specimen| &specimen.cells);

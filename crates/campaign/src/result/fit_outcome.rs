@@ -1,19 +1,18 @@
 //! A fit as it is saved and shown.
 
 use crate::result::interval_outcome::interval_outcome;
-use crate::result::outcome::ImpactOutcome;
+use crate::result::outcome::{ImpactOutcome, ResidualOutcome};
 use crate::result::quantity::{FittedMotion, QUANTITIES, Quantity};
 use crate::settings::model::ImpactEntry;
 use windfall_files::found::{EstimateOutcome, FindingOutcome};
 use windfall_files::named::Named;
 use windfall_identify::fit::problem::LawProblem;
-use windfall_identify::fit::result::{Estimate, Fit};
+use windfall_identify::fit::result::{Estimate, Fit, QuantityFit};
 use windfall_identify::rig::kind::Rig;
 use windfall_signal::Finding;
 use windfall_signal::impact::{Impact, Measured};
 
 /// Saves what one law on one impact gave.
-#[must_use]
 pub fn impact_outcome(
     entry: &ImpactEntry,
     impact: &Impact,
@@ -77,12 +76,8 @@ fn estimate(estimate: &Estimate) -> EstimateOutcome {
 }
 
 fn named(estimates: &[Estimate]) -> Named<EstimateOutcome> {
-    Named(
-        estimates
-            .iter()
-            .map(|e| (e.name.clone(), estimate(e)))
-            .collect(),
-    )
+    let named = estimates.iter().map(|e| (e.name.clone(), estimate(e)));
+    named.collect()
 }
 
 /// All parameters in the order of the law, estimated or held.
@@ -107,26 +102,21 @@ fn parameters(fit: &Fit, problem: &LawProblem) -> Named<EstimateOutcome> {
     Named(outcome.collect())
 }
 
+/// Parameters, then nuisances: the order of directions, correlations and intervals.
+pub(crate) fn estimates(fit: &Fit) -> impl Iterator<Item = &Estimate> {
+    fit.parameters.iter().chain(&fit.nuisances)
+}
+
 /// Each direction by the names of the estimates.
 fn directions(fit: &Fit) -> Vec<Named<f64>> {
-    let names = || {
-        fit.parameters
-            .iter()
-            .chain(&fit.nuisances)
-            .map(|e| e.name.clone())
-    };
+    let names = || estimates(fit).map(|e| e.name.clone());
     let of = |change: &[f64]| Named(names().zip(change.iter().copied()).collect());
     fit.directions.iter().map(|d| of(&d.change)).collect()
 }
 
 /// "k, c" → correlation, of all pairs of estimates.
 fn correlations(fit: &Fit) -> Named<f64> {
-    let names: Vec<&str> = fit
-        .parameters
-        .iter()
-        .chain(&fit.nuisances)
-        .map(|e| e.name.as_str())
-        .collect();
+    let names: Vec<&str> = estimates(fit).map(|e| e.name.as_str()).collect();
     let mut pairs = Vec::new();
     for (i, row) in fit.correlations.iter().enumerate() {
         for (j, value) in row.iter().enumerate().skip(i + 1) {
@@ -138,22 +128,17 @@ fn correlations(fit: &Fit) -> Named<f64> {
     Named(pairs)
 }
 
-fn residuals(fit: &Fit) -> Named<crate::result::outcome::ResidualOutcome> {
-    let of =
-        |q: &windfall_identify::fit::result::QuantityFit| crate::result::outcome::ResidualOutcome {
-            samples: q.samples,
-            weight: q.weight,
-            noise: q.noise,
-            persistence: q.persistence,
-            rms: q.rms_residual,
-            runs_z: q.runs.map(|runs| runs.z).filter(|z| z.is_finite()),
-        };
-    Named(
-        fit.quantities
-            .iter()
-            .map(|q| (q.quantity.name().to_owned(), of(q)))
-            .collect(),
-    )
+fn residuals(fit: &Fit) -> Named<ResidualOutcome> {
+    let of = |q: &QuantityFit| ResidualOutcome {
+        samples: q.samples,
+        weight: q.weight,
+        noise: q.noise,
+        persistence: q.persistence,
+        rms: q.rms_residual,
+        runs_z: q.runs.map(|runs| runs.z).filter(|z| z.is_finite()),
+    };
+    let quantities = fit.quantities.iter();
+    quantities.map(|q| (q.quantity.name(), of(q))).collect()
 }
 
 /// The derived quantities in the motion under the fitted law.
@@ -187,12 +172,9 @@ fn derived_values(measured: &Measured, fitted: &Named<Option<f64>>) -> Derived {
 }
 
 fn findings(signal: &[Finding], fit: &Fit) -> Vec<FindingOutcome> {
-    let signal = signal
-        .iter()
-        .map(|f| FindingOutcome::new(f.code(), f.to_string()));
-    let fit = fit
-        .findings
-        .iter()
-        .map(|f| FindingOutcome::new(f.code(), f.to_string()));
-    signal.chain(fit).collect()
+    let signal = signal.iter().map(|f| (f.code(), f.to_string()));
+    let fit = fit.findings.iter().map(|f| (f.code(), f.to_string()));
+    let all = signal.chain(fit);
+    all.map(|(code, message)| FindingOutcome::new(code, message))
+        .collect()
 }

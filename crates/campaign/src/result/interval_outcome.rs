@@ -72,7 +72,6 @@ fn is_empty<T>(named: &Named<T>) -> bool {
 }
 
 /// How the intervals of `fit` came about.
-#[must_use]
 pub fn interval_outcome(fit: &Fit) -> IntervalOutcome {
     let names = || {
         fit.parameters

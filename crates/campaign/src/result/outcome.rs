@@ -86,13 +86,11 @@ pub struct ImpactOutcome {
 
 impl ImpactOutcome {
     /// A derived quantity, where it is known.
-    #[must_use]
     pub fn derived(&self, name: &str) -> Option<f64> {
         self.derived.get(name).copied().flatten()
     }
 
     /// A quantity in the motion under the fitted law, where it is known.
-    #[must_use]
     pub fn fitted(&self, name: &str) -> Option<f64> {
         self.fitted.get(name).copied().flatten()
     }

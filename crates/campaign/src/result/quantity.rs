@@ -100,13 +100,11 @@ impl Quantity {
     }
 
     /// Name of its column in CSV, with the unit: `peak_force_N`.
-    #[must_use]
     pub fn column(&self) -> String {
         self.column_of("")
     }
 
     /// Name of the column of its standard uncertainty: `impulse_sd_N_s`.
-    #[must_use]
     pub fn sd_column(&self) -> String {
         self.column_of("_sd")
     }
@@ -118,7 +116,6 @@ impl Quantity {
     }
 
     /// "peak force (N)".
-    #[must_use]
     pub fn title(&self) -> String {
         match self.shown_unit {
             "" => self.heading.to_owned(),
@@ -127,13 +124,11 @@ impl Quantity {
     }
 
     /// As [`Self::title`], for tables with a row for each impact: "absorbed (mJ)".
-    #[must_use]
     pub fn narrow_title(&self) -> String {
         self.title().replace("absorbed energy", "absorbed")
     }
 
     /// Value read off the signals and its standard uncertainty, where they are finite.
-    #[must_use]
     pub fn measured(&self, signals: &Measured) -> (Option<f64>, Option<f64>) {
         match self.source {
             Source::SignalOrLaw { measured, sd, .. } | Source::Signal { measured, sd } => {
@@ -145,7 +140,6 @@ impl Quantity {
     }
 
     /// Value in the motion under the fitted law, where it has one.
-    #[must_use]
     pub fn fitted(&self, motion: &FittedMotion) -> Option<f64> {
         match self.source {
             Source::SignalOrLaw { fitted, .. } => Some(fitted(motion)),
@@ -320,14 +314,12 @@ pub const QUANTITIES: [Quantity; 22] = [
 ];
 
 /// A quantity by its name.
-#[must_use]
 pub fn quantity_named(name: &str) -> Option<&'static Quantity> {
     const ALL: &[Quantity] = &QUANTITIES;
     ALL.iter().find(|quantity| quantity.name == name)
 }
 
 /// Those named, in the order given; a name that is none is left out.
-#[must_use]
 pub fn quantities_named(names: &[&str]) -> Vec<&'static Quantity> {
     names
         .iter()

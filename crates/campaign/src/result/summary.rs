@@ -6,7 +6,6 @@ use windfall_files::found::spreads;
 use windfall_files::named::grouped;
 
 /// Spread of the impacts of each group and law, in order of first appearance.
-#[must_use]
 pub fn summarise_groups(impacts: &[ImpactOutcome]) -> Vec<GroupOutcome> {
     let laws = grouped(impacts.iter().map(|impact| (impact.law.as_str(), impact)));
     let groups = laws.into_iter().flat_map(|(law, impacts)| {
@@ -19,7 +18,6 @@ pub fn summarise_groups(impacts: &[ImpactOutcome]) -> Vec<GroupOutcome> {
 }
 
 /// Spread of parameters and derived quantities over some impacts of one law.
-#[must_use]
 pub fn summarise(law: &str, group: Option<&str>, impacts: &[&ImpactOutcome]) -> GroupOutcome {
     let parameters = impacts.iter().flat_map(|impact| &impact.parameters.0);
     let estimated = parameters.filter(|(_, estimate)| !estimate.held);

@@ -24,7 +24,6 @@ pub struct Kind {
 
 impl Kind {
     /// A channel by its table, what it holds and its SI unit.
-    #[must_use]
     pub const fn new(table: &'static str, quantity: Quantity, unit: &'static str) -> Self {
         Self {
             table,
@@ -34,14 +33,12 @@ impl Kind {
     }
 
     /// Name of the channel: that of its table without "channels".
-    #[must_use]
     pub fn name(&self) -> &'static str {
         let (_, name) = self.table.rsplit_once('.').unwrap_or_default();
         name.trim_end_matches(']')
     }
 
     /// SI unit of the sensitivity of a sensor of this quantity.
-    #[must_use]
     pub fn sensitivity_unit(&self) -> String {
         match self.unit {
             "m/s" => "V s/m".to_owned(),
@@ -63,16 +60,11 @@ pub const KINDS: [Kind; 8] = [
     Kind::new("[channels.phase_b]", Quantity::PhaseB, ""),
 ];
 
-/// The channels of a campaign.
-///
-/// # Errors
-/// There is none, or one cannot be scaled to SI.
-pub fn channel_plans(
-    source: &TomlSource,
-    channels: Option<&Spanned<ChannelsFile>>,
-) -> Result<Vec<ChannelPlan>, Error> {
-    let empty = ChannelsFile::default();
-    let file = channels.map_or(&empty, |channels| channels.get_ref());
+/// The channels that a file has.
+pub(crate) fn channels_of(
+    file: &ChannelsFile,
+) -> impl Iterator<Item = (&'static Kind, &Spanned<ChannelFile>)> {
+    const ALL: &[Kind] = &KINDS;
     let all = [
         &file.force,
         &file.position,
@@ -83,12 +75,23 @@ pub fn channel_plans(
         &file.phase_a,
         &file.phase_b,
     ];
-    let plans = KINDS
-        .iter()
-        .zip(all)
-        .filter_map(|(kind, channel)| Some((kind, channel.as_ref()?)))
-        .map(|(kind, channel)| channel_plan(source, kind, channel))
-        .collect::<Result<Vec<_>, _>>()?;
+    let all = ALL.iter().zip(all);
+    all.filter_map(|(kind, channel)| Some((kind, channel.as_ref()?)))
+}
+
+/// The channels of a campaign.
+///
+/// # Errors
+/// There is none, or one cannot be scaled to SI.
+pub fn channel_plans(
+    source: &TomlSource,
+    channels: Option<&Spanned<ChannelsFile>>,
+) -> Result<Vec<ChannelPlan>, Error> {
+    let all = channels
+        .into_iter()
+        .flat_map(|file| channels_of(file.get_ref()));
+    let plans = all.map(|(kind, channel)| channel_plan(source, kind, channel));
+    let plans = plans.collect::<Result<Vec<_>, _>>()?;
     if plans.is_empty() {
         let needed = Needed {
             table: "[channels]",

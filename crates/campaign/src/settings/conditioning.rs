@@ -1,5 +1,6 @@
 //! Filters and the tip of `[channels.*]`, and how the rate is made.
 
+use crate::settings::channels::channels_of;
 use crate::settings::file::{ChannelFile, ChannelsFile, QuantityText};
 use toml::Spanned;
 use windfall_files::error::Error;
@@ -9,6 +10,7 @@ use windfall_files::text::toml_source::{
 use windfall_signal::conditioning::{ChannelFilter, Conditioning, USUAL_ORDER};
 use windfall_signal::filter::butterworth::{Band, MAX_ORDER};
 use windfall_signal::options::RateMethod;
+use windfall_signal::recording::Quantity;
 
 /// What is done to the channels of a campaign before they are used.
 ///
@@ -18,16 +20,11 @@ pub fn conditioning_plan(
     source: &TomlSource,
     channels: Option<&Spanned<ChannelsFile>>,
 ) -> Result<Conditioning, Error> {
+    let counts = ["count", "phase_a", "phase_b"];
+    refuse_conditioning(source, channels, &counts, "counts are never filtered")?;
     let Some(channels) = channels.map(Spanned::get_ref) else {
         return Ok(Conditioning::default());
     };
-    for (table, channel) in [
-        ("[channels.count]", &channels.count),
-        ("[channels.phase_a]", &channels.phase_a),
-        ("[channels.phase_b]", &channels.phase_b),
-    ] {
-        refuse_conditioning(source, table, channel.as_ref(), "counts are never filtered")?;
-    }
     let of = |table: &'static str, channel: &Option<Spanned<ChannelFile>>| match channel {
         Some(channel) => filter_of(source, table, channel.get_ref()),
         None => Ok(None),
@@ -36,19 +33,14 @@ pub fn conditioning_plan(
         None => of("[channels.angle]", &channels.angle)?,
         filter => filter,
     };
-    let tip = channels
-        .force
-        .as_ref()
-        .and_then(|force| force.get_ref().tip_mass.as_ref());
-    for (table, channel) in [
-        ("[channels.position]", &channels.position),
-        ("[channels.velocity]", &channels.velocity),
-        ("[channels.acceleration]", &channels.acceleration),
-        ("[channels.angle]", &channels.angle),
-    ] {
-        if let Some(tip) = channel.as_ref().and_then(|c| c.get_ref().tip_mass.as_ref()) {
-            let problem = "a tip stands ahead of a force sensor: put it under [channels.force]";
-            return Err(refused(source, tip, (table, "tip_mass"), problem));
+    let mut force_tip = None;
+    for (kind, channel) in channels_of(channels) {
+        match &channel.get_ref().tip_mass {
+            Some(tip) if kind.quantity != Quantity::Force => {
+                let problem = "a tip stands ahead of a force sensor: put it under [channels.force]";
+                return Err(refused(source, tip, (kind.table, "tip_mass"), problem));
+            }
+            tip => force_tip = force_tip.or(tip.as_ref()),
         }
     }
     let needed = Needed {
@@ -63,31 +55,36 @@ pub fn conditioning_plan(
         position,
         rate: of("[channels.velocity]", &channels.velocity)?,
         acceleration: of("[channels.acceleration]", &channels.acceleration)?,
-        tip_mass: positive_quantity(source, tip, &needed)?,
+        tip_mass: positive_quantity(source, force_tip, &needed)?,
     })
 }
 
-/// Refuses the keys of filters and tip on a channel that has none of them.
+/// Refuses the keys of filters and tip on channels that have none of them.
+///
+/// * `names`: of the channels: "force"
 ///
 /// # Errors
 /// One of them is there.
 pub fn refuse_conditioning(
     source: &TomlSource,
-    table: &str,
-    channel: Option<&Spanned<ChannelFile>>,
+    channels: Option<&Spanned<ChannelsFile>>,
+    names: &[&str],
     why: &str,
 ) -> Result<(), Error> {
-    let Some(channel) = channel.map(Spanned::get_ref) else {
-        return Ok(());
-    };
-    for (key, value) in [
-        ("low_pass", &channel.low_pass),
-        ("high_pass", &channel.high_pass),
-        ("tip_mass", &channel.tip_mass),
-    ] {
-        if let Some(value) = value {
-            let problem = format!("{why}; remove the line");
-            return Err(refused(source, value, (table, key), problem));
+    let all = channels
+        .into_iter()
+        .flat_map(|file| channels_of(file.get_ref()));
+    for (kind, channel) in all.filter(|(kind, _)| names.contains(&kind.name())) {
+        let channel = channel.get_ref();
+        for (key, value) in [
+            ("low_pass", &channel.low_pass),
+            ("high_pass", &channel.high_pass),
+            ("tip_mass", &channel.tip_mass),
+        ] {
+            if let Some(value) = value {
+                let problem = format!("{why}; remove the line");
+                return Err(refused(source, value, (kind.table, key), problem));
+            }
         }
     }
     Ok(())

@@ -138,7 +138,6 @@ fn interval_options(
 }
 
 /// A velocity given in place of a treatment, told from a word by its unit: "0.35 m/s".
-#[must_use]
 pub fn known_velocity(text: &str) -> Option<f64> {
     let value = parse_as(text, "m/s").ok()?;
     (value.is_finite() && value > 0.0).then_some(value)
@@ -174,7 +173,6 @@ pub fn quantities_named<'a>(
 }
 
 /// The first of `free` that is a parameter of none of the laws, and what was expected.
-#[must_use]
 pub fn unknown_parameter(free: &[String], laws: &[LawExpression]) -> Option<(usize, String)> {
     let parameters = laws.iter().flat_map(|law| law.kind.describe().parameters);
     let names: Vec<&str> = parameters.map(|parameter| parameter.name).collect();

@@ -8,6 +8,9 @@ use windfall_files::text::toml_source::{parse_source, read_source};
 /// Name of the campaign file.
 pub const CAMPAIGN_FILE: &str = "campaign.toml";
 
+/// Name of the store in a campaign directory.
+pub const STORE_FILE: &str = "results.sqlite";
+
 /// What a campaign measures.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum CampaignKind {
@@ -26,7 +29,6 @@ pub enum CampaignKind {
 
 impl CampaignKind {
     /// The word in `[rig] kind`.
-    #[must_use]
     pub fn name(self) -> &'static str {
         match self {
             Self::Impacts => "impacts",

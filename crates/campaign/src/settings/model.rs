@@ -33,14 +33,12 @@ pub struct Campaign {
 
 impl Campaign {
     /// The specimen of an entry, where specimens.csv has it.
-    #[must_use]
     pub fn specimen_of(&self, entry: &ImpactEntry) -> Option<&Specimen> {
         let mut specimens = self.specimens.iter();
         specimens.find(|specimen| specimen.id == entry.specimen)
     }
 
     /// The group of an entry, where the campaign has groups.
-    #[must_use]
     pub fn group_of(&self, entry: &ImpactEntry) -> Option<String> {
         let column = self.group.as_ref()?;
         let specimen = self.specimen_of(entry);

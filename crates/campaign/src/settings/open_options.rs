@@ -39,20 +39,32 @@ pub const ENCODINGS: [(&str, Encoding); 4] = [
 
 /// How files are to be read; what is left out is found out.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
+#[cfg_attr(feature = "clap", derive(clap::Args))]
+#[cfg_attr(
+    feature = "clap",
+    command(next_help_heading = "Reading unusual files (found out if left out)")
+)]
 pub struct OpenRequest {
-    /// A name of [`Format::NAMES`].
+    /// Format, whatever the first bytes say: text, lvm, tdms, mat, hdf5, wav, uff58, sigrok
+    #[cfg_attr(feature = "clap", arg(id = "file-format", long, value_name = "FORMAT"))]
     pub format: Option<String>,
-    /// A name of [`SEPARATORS`].
+    /// Between the cells of a text: comma, semicolon, tab, bar or blanks
+    #[cfg_attr(feature = "clap", arg(long, value_name = "NAME"))]
     pub separator: Option<String>,
-    /// A name of [`DECIMALS`].
+    /// Before decimals: point or comma
+    #[cfg_attr(feature = "clap", arg(long, value_name = "NAME"))]
     pub decimal: Option<String>,
-    /// A name of [`THOUSANDS`].
+    /// Between groups of three digits: point, comma, apostrophe or space
+    #[cfg_attr(feature = "clap", arg(long, value_name = "NAME"))]
     pub thousands: Option<String>,
-    /// A name of [`ENCODINGS`].
+    /// Encoding of a text: utf-8, windows-1252, utf-16le or utf-16be
+    #[cfg_attr(feature = "clap", arg(long, value_name = "NAME"))]
     pub encoding: Option<String>,
-    /// Line with the names of the columns, from 1; 0 for none.
+    /// Line with the names of the columns, from 1; 0 if there is none
+    #[cfg_attr(feature = "clap", arg(long, value_name = "LINE"))]
     pub header_line: Option<u64>,
-    /// Beginning of lines that are passed over.
+    /// Beginning of lines that are passed over
+    #[cfg_attr(feature = "clap", arg(long, value_name = "TEXT"))]
     pub comment: Option<String>,
 }
 

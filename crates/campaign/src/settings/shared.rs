@@ -2,12 +2,23 @@
 
 use crate::settings::file::{FilesFile, SummaryFile, TitleFile};
 use crate::settings::files::{check_group, check_placeholders, file_plan};
-use crate::settings::kind::CampaignKind;
+use crate::settings::kind::{CAMPAIGN_FILE, CampaignKind, STORE_FILE};
 use crate::settings::model::{Campaign, ChannelPlan};
 use crate::settings::tables::{read_impacts, read_specimens};
 use std::path::Path;
 use windfall_files::error::Error;
+use windfall_files::inputs::{protect, protect_campaign};
 use windfall_files::text::toml_source::TomlSource;
+
+/// Files of a campaign that no result may replace, whether they are there or not.
+const OWN_FILES: [&str; 6] = [
+    CAMPAIGN_FILE,
+    "specimens.csv",
+    "impacts.csv",
+    STORE_FILE,
+    "results.sqlite-journal",
+    "results.sqlite-wal",
+];
 
 /// `[campaign]`, `[files]` and `[summary]`, which all kinds share.
 pub type SharedFile<'a> = (&'a TitleFile, &'a FilesFile, &'a SummaryFile);
@@ -24,6 +35,8 @@ pub fn read_shared(
     channels: Vec<ChannelPlan>,
 ) -> Result<Campaign, Error> {
     let files = file_plan(source, directory, files, channels)?;
+    protect(&directory.join(STORE_FILE));
+    protect_campaign(directory, &OWN_FILES, &files.directory);
     let specimens_file = directory.join("specimens.csv");
     let specimens = match specimens_file.exists() {
         true => Some(read_specimens(&specimens_file)?),

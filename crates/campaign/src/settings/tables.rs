@@ -4,6 +4,7 @@ use crate::error::CampaignError;
 use crate::settings::model::{ImpactEntry, Specimen};
 use std::path::Path;
 use windfall_files::error::{Error, Place};
+use windfall_files::inputs::check_regular;
 use windfall_files::table::csv::{Row, Table, column_index, read_table};
 use windfall_files::text::toml_source::suggestion;
 
@@ -15,6 +16,7 @@ const RANGE_COLUMNS: [&str; 2] = ["from_s", "to_s"];
 /// # Errors
 /// The file cannot be read, has no column `id`, a blank id, or an id twice.
 pub fn read_specimens(path: &Path) -> Result<Vec<Specimen>, Error> {
+    check_regular(path)?;
     let table = read_table(path)?;
     let id = column_index(&table, "id")?;
     check_ids(&table, id, "specimen")?;
@@ -35,6 +37,7 @@ pub fn read_impacts(
     path: &Path,
     specimens: Option<&[Specimen]>,
 ) -> Result<Vec<ImpactEntry>, Error> {
+    check_regular(path)?;
     let table = read_table(path)?;
     let [id, specimen, file] = ["id", "specimen", "file"].map(|name| column_index(&table, name));
     let (id, specimen, file) = (id?, specimen?, file?);

@@ -2,6 +2,7 @@
 
 use std::path::{Path, PathBuf};
 use windfall_files::error::Error;
+use windfall_files::write_file::{create_error, write_new};
 
 /// Rig of a template.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -65,7 +66,6 @@ const HEIGHTS: &str = "id,specimen,file,drop_height_mm\n\
                        c-500-1,fruit-2,c-500-1.csv,500\n";
 
 /// Whether a file is an unchanged table of a template.
-#[must_use]
 pub fn is_template_file(path: &Path) -> bool {
     let tables = [
         SPECIMENS, IMPACTS, COMPRESSED, TAPPED, STRUCK, DROPS, FRUIT, HEIGHTS,
@@ -85,7 +85,6 @@ fn tables(kind: TemplateKind) -> (&'static str, &'static str) {
 }
 
 /// The commented campaign.toml of a rig.
-#[must_use]
 pub fn template(kind: TemplateKind) -> &'static str {
     match kind {
         TemplateKind::Pendulum => include_str!("../../templates/pendulum.toml"),
@@ -156,7 +155,7 @@ fn write_files<const N: usize>(
 ) -> Result<Vec<PathBuf>, Error> {
     let write = |(name, text): (&str, &str)| {
         let path = directory.join(name);
-        write_file(&path, text.as_bytes()).map(|()| path)
+        write_new(&path, text.as_bytes()).map(|()| path)
     };
     files.into_iter().map(write).collect()
 }
@@ -177,24 +176,5 @@ pub fn create_directory(directory: &Path) -> Result<(), Error> {
             std::fs::create_dir_all(directory).map_err(|source| create_error(directory, source))
         }
         Err(source) => Err(create_error(directory, source)),
-    }
-}
-
-/// Writes a file that does not exist yet.
-///
-/// # Errors
-/// It exists already or cannot be written.
-pub fn write_file(path: &Path, bytes: &[u8]) -> Result<(), Error> {
-    use std::io::Write;
-    let mut file = std::fs::File::create_new(path).map_err(|source| create_error(path, source))?;
-    file.write_all(bytes)
-        .map_err(|source| Error::access(path, "write", source))
-}
-
-fn create_error(path: &Path, source: std::io::Error) -> Error {
-    let path = path.to_path_buf();
-    match source.kind() {
-        std::io::ErrorKind::AlreadyExists => Error::AlreadyThere { path },
-        _ => Error::access(&path, "create", source),
     }
 }

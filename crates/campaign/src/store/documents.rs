@@ -1,9 +1,11 @@
 //! Results of campaigns that fit no impacts, as documents in results.sqlite.
 
+use crate::store::error::StoreError;
 use crate::store::file::{open_existing, store_error};
-use rusqlite::{Connection, OptionalExtension, Transaction, params};
+use rusqlite::{Connection, OptionalExtension, Row, Transaction, params};
 use std::path::Path;
 use windfall_files::error::Error;
+use windfall_files::provenance::digest_text;
 
 /// One number of a document, for people with a database browser.
 #[derive(Clone, Debug, PartialEq)]
@@ -42,21 +44,65 @@ pub struct DocumentRecord {
 /// # Errors
 /// The file is damaged, foreign, newer, or cannot be read.
 pub fn find_documents(path: &Path, keys: &[String]) -> Result<Vec<Option<String>>, Error> {
+    find_texts(path, keys, ("documents", "item"))
+}
+
+/// What a document and the key that it stands under are known by.
+pub(crate) fn document_digest(key: &str, document: &str) -> String {
+    digest_text(&format!("{key}\n{document}"))
+}
+
+/// Puts a document in the place of one that is not what was written.
+pub(crate) fn mend_document(
+    transaction: &Transaction,
+    table: &str,
+    (key, document, sha256): (&str, &str, &str),
+) -> rusqlite::Result<()> {
+    let change = format!(
+        "UPDATE {table} SET document = ?2, sha256 = ?3 \
+         WHERE key = ?1 AND (document IS NOT ?2 OR sha256 IS NOT ?3)"
+    );
+    transaction.execute(&change, params![key, document, sha256])?;
+    Ok(())
+}
+
+/// Documents under some keys of a table; a store that does not exist yet holds none.
+///
+/// * `item`: the column that names them
+pub(crate) fn find_texts(
+    path: &Path,
+    keys: &[String],
+    (table, item): (&str, &str),
+) -> Result<Vec<Option<String>>, Error> {
     let nothing = Ok(vec![None; keys.len()]);
     let Some(connection) = open_existing(path)? else {
         return nothing;
     };
     let failed = |source| store_error(path, "read", source);
-    if !has_documents(&connection).map_err(failed)? {
+    // Older stores have no digests to compare with.
+    if version_of(&connection).map_err(failed)? < 3 {
         return nothing;
     }
-    let mut query = connection
-        .prepare("SELECT document FROM documents WHERE key = ?1")
-        .map_err(failed)?;
-    keys.iter()
-        .map(|key| query.query_row([key], |row| row.get(0)).optional())
-        .collect::<rusqlite::Result<_>>()
-        .map_err(failed)
+    let query = format!("SELECT document, sha256, {item} FROM {table} WHERE key = ?1");
+    let mut query = connection.prepare(&query).map_err(failed)?;
+    let mut find = |key: &String| -> Result<Option<String>, Error> {
+        let row = |row: &Row| Ok((row.get(0)?, row.get(1)?, row.get(2)?));
+        let found: Option<(String, Option<String>, String)> =
+            query.query_row([key], row).optional().map_err(failed)?;
+        match found {
+            Some((document, Some(sha256), item)) => match document_digest(key, &document) == sha256
+            {
+                true => Ok(Some(document)),
+                false => Err(StoreError::Altered {
+                    path: path.to_path_buf(),
+                    item,
+                }
+                .into()),
+            },
+            _ => Ok(None),
+        }
+    };
+    keys.iter().map(&mut find).collect()
 }
 
 /// Adds a document to a run; one that an earlier run has added is only named.
@@ -66,19 +112,28 @@ pub(crate) fn insert_document(
     position: usize,
     record: &DocumentRecord,
 ) -> rusqlite::Result<()> {
+    let sha256 = document_digest(&record.key, &record.document);
     let added = transaction.execute(
-        "INSERT OR IGNORE INTO documents (key, kind, item, specimen, file, document) \
-         VALUES (?1, ?2, ?3, ?4, ?5, ?6)",
+        "INSERT OR IGNORE INTO documents (key, kind, item, specimen, file, document, sha256) \
+         VALUES (?1, ?2, ?3, ?4, ?5, ?6, ?7)",
         params![
             record.key,
             record.kind,
             record.item,
             record.specimen,
             record.file,
-            record.document
+            record.document,
+            sha256
         ],
     )?;
-    if added > 0 {
+    if added == 0 {
+        let document = (
+            record.key.as_str(),
+            record.document.as_str(),
+            sha256.as_str(),
+        );
+        mend_document(transaction, "documents", document)?;
+    } else {
         for (place, value) in record.values.iter().enumerate() {
             transaction.execute(
                 "INSERT INTO document_values (key, position, name, value, sd, unit) \
@@ -103,7 +158,7 @@ pub(crate) fn insert_document(
 
 /// Keys of the documents of a run, in order.
 pub(crate) fn document_keys(connection: &Connection, run: i64) -> rusqlite::Result<Vec<String>> {
-    if !has_documents(connection)? {
+    if version_of(connection)? < 2 {
         return Ok(Vec::new());
     }
     let mut query =
@@ -111,9 +166,7 @@ pub(crate) fn document_keys(connection: &Connection, run: i64) -> rusqlite::Resu
     query.query_map([run], |row| row.get(0))?.collect()
 }
 
-/// Whether the store has tables for documents; version 1 has none.
-fn has_documents(connection: &Connection) -> rusqlite::Result<bool> {
-    connection
-        .pragma_query_value(None, "user_version", |row| row.get::<_, i64>(0))
-        .map(|version| version >= 2)
+/// Version of the store's tables; those for documents came with the second.
+fn version_of(connection: &Connection) -> rusqlite::Result<i64> {
+    connection.pragma_query_value(None, "user_version", |row| row.get(0))
 }

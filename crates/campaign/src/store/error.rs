@@ -43,6 +43,17 @@ pub enum StoreError {
         /// Newest version that this windfall knows.
         known: i64,
     },
+    /// A stored document that is not what was written.
+    #[error(
+        "{path}: the stored result of {item} is not what was written (its digest differs); \
+         `--refit` fits it anew", path = path.display()
+    )]
+    Altered {
+        /// The file.
+        path: PathBuf,
+        /// Which result.
+        item: String,
+    },
     /// The database refused an operation.
     #[error(
         "{path}: cannot {action} the results: {source}{}", after_refusal(action),

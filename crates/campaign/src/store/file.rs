@@ -10,7 +10,7 @@ use windfall_files::error::Error;
 const APPLICATION_ID: i64 = 0x7766_616c;
 
 /// Version of the schema that this windfall writes.
-const STORE_VERSION: i64 = 2;
+const STORE_VERSION: i64 = 3;
 
 /// How long to wait for another windfall that is writing.
 pub(crate) const PATIENCE: Duration = Duration::from_secs(20);
@@ -93,6 +93,10 @@ pub(crate) fn create_schema(transaction: &Transaction) -> rusqlite::Result<()> {
     // Version 2 adds documents; what version 1 holds stays as it is.
     if version < 2 {
         transaction.execute_batch(include_str!("store_schema_2.sql"))?;
+    }
+    // Version 3 adds digests; documents without one are not answered from.
+    if version < STORE_VERSION {
+        transaction.execute_batch(include_str!("store_schema_3.sql"))?;
         transaction.pragma_update(None, "user_version", STORE_VERSION)?;
     }
     Ok(())

@@ -5,14 +5,18 @@
 //! earlier results as they were. A file that is not ours, is damaged or comes
 //! from a newer windfall is refused and left alone.
 
+use crate::recording::digests::RunOrigin;
 use crate::result::outcome::ImpactOutcome;
-use crate::store::documents::{DocumentRecord, document_keys, insert_document};
+use crate::store::documents::{
+    DocumentRecord, document_digest, document_keys, find_texts, insert_document, mend_document,
+};
 use crate::store::error::StoreError;
 use crate::store::file::{PATIENCE, create_schema, open_existing, store_error};
 use rusqlite::{Connection, OptionalExtension, Transaction, params};
 use std::path::Path;
 use windfall_files::error::Error;
 use windfall_files::found::FailureOutcome;
+use windfall_files::provenance::{VERSION, time_now};
 
 /// One run, as it goes into the store.
 #[derive(Clone, Debug)]
@@ -23,8 +27,6 @@ pub struct RunRecord {
     pub windfall: String,
     /// All options, as JSON.
     pub options: String,
-    /// Seed, where chance played a part.
-    pub seed: Option<i64>,
     /// Files read: name and SHA-256.
     pub inputs: Vec<(String, String)>,
     /// Keys and results, in the order of the campaign.
@@ -33,6 +35,21 @@ pub struct RunRecord {
     pub documents: Vec<DocumentRecord>,
     /// What could not be fitted.
     pub failures: Vec<FailureOutcome>,
+}
+
+impl RunRecord {
+    /// A run of now and of this windfall, without results yet.
+    pub fn new(origin: RunOrigin, failures: Vec<FailureOutcome>) -> Self {
+        Self {
+            time: time_now(),
+            windfall: VERSION.to_owned(),
+            options: origin.options,
+            inputs: origin.inputs,
+            results: Vec::new(),
+            documents: Vec::new(),
+            failures,
+        }
+    }
 }
 
 /// What the store knows of the newest run.
@@ -53,23 +70,17 @@ pub struct RunIdentity {
 /// # Errors
 /// The file is damaged, foreign, newer, or cannot be read.
 pub fn find_results(path: &Path, keys: &[String]) -> Result<Vec<Option<ImpactOutcome>>, Error> {
-    let Some(connection) = open_existing(path)? else {
-        return Ok(vec![None; keys.len()]);
-    };
-    let failed = |source| store_error(path, "read", source);
-    let mut query = connection
-        .prepare("SELECT document FROM results WHERE key = ?1")
-        .map_err(failed)?;
-    let mut find = |key: &String| -> Result<Option<ImpactOutcome>, Error> {
-        let text = query.query_row([key], |row| row.get::<_, String>(0));
-        let text = text.optional().map_err(failed)?;
+    let texts = find_texts(path, keys, ("results", "impact"))?
+        .into_iter()
+        .zip(keys);
+    let read = |(text, key): (Option<String>, &String)| {
         let result = text.map(|text| serde_json::from_str(&text)).transpose();
         result.map_err(|error| {
             let detail = format!("the result {key} cannot be read: {error}");
             StoreError::damaged(path, detail)
         })
     };
-    keys.iter().map(&mut find).collect()
+    texts.map(read).collect()
 }
 
 /// The newest run, if there is one.
@@ -127,8 +138,8 @@ pub fn write_run(path: &Path, run: &RunRecord) -> Result<(), Error> {
 
 fn insert_run(transaction: &Transaction, run: &RunRecord) -> rusqlite::Result<()> {
     transaction.execute(
-        "INSERT INTO runs (time, windfall, options, seed) VALUES (?1, ?2, ?3, ?4)",
-        params![run.time, run.windfall, run.options, run.seed],
+        "INSERT INTO runs (time, windfall, options) VALUES (?1, ?2, ?3)",
+        params![run.time, run.windfall, run.options],
     )?;
     let id = transaction.last_insert_rowid();
     for (path, sha256) in &run.inputs {
@@ -173,10 +184,11 @@ fn insert_result(
 ) -> rusqlite::Result<()> {
     let document = serde_json::to_string(result)
         .map_err(|error| rusqlite::Error::ToSqlConversionFailure(Box::new(error)))?;
+    let sha256 = document_digest(key, &document);
     let added = transaction.execute(
         "INSERT OR IGNORE INTO results \
-         (key, impact, specimen, file, law, cost, samples, converged, document) \
-         VALUES (?1, ?2, ?3, ?4, ?5, ?6, ?7, ?8, ?9)",
+         (key, impact, specimen, file, law, cost, samples, converged, document, sha256) \
+         VALUES (?1, ?2, ?3, ?4, ?5, ?6, ?7, ?8, ?9, ?10)",
         params![
             key,
             result.id,
@@ -186,11 +198,12 @@ fn insert_result(
             result.cost,
             result.samples as i64,
             result.converged,
-            document
+            document,
+            sha256
         ],
     )?;
     if added == 0 {
-        return Ok(());
+        return mend_document(transaction, "results", (key, &document, &sha256));
     }
     for (position, (name, estimate)) in result.parameters.0.iter().enumerate() {
         transaction.execute(
@@ -312,7 +325,6 @@ mod tests {
             time: "2026-11-20T00:00:00Z".to_owned(),
             windfall: "0.1.0".to_owned(),
             options: "{}".to_owned(),
-            seed: None,
             inputs: vec![("r.csv".to_owned(), "00".to_owned())],
             results: ids
                 .iter()
@@ -336,6 +348,32 @@ mod tests {
         let found = find_results(&path, &keys(&["b", "c"])).unwrap();
         assert_eq!(found, [Some(outcome("b")), None]);
         assert_eq!(latest_run(&path).unwrap().unwrap().keys, keys(&["a", "b"]));
+    }
+
+    #[test]
+    fn rejects_a_result_that_is_not_what_was_written_and_mends_it() {
+        let dir = tempfile::tempdir().unwrap();
+        let path = dir.path().join("results.sqlite");
+        write_run(&path, &run(&["a", "b"])).unwrap();
+        let change = "UPDATE results SET document = replace(document, '1111', '1112')";
+        let connection = Connection::open(&path).unwrap();
+        let changed = connection.execute(&format!("{change} WHERE impact = 'a'"), []);
+        assert_eq!(changed.unwrap(), 1);
+        drop(connection);
+        let error = find_results(&path, &keys(&["a"])).unwrap_err().to_string();
+        assert!(
+            error.contains("result of a is not what was written"),
+            "{error}"
+        );
+        assert_eq!(
+            find_results(&path, &keys(&["b"])).unwrap(),
+            [Some(outcome("b"))]
+        );
+        write_run(&path, &run(&["a"])).unwrap();
+        assert_eq!(
+            find_results(&path, &keys(&["a"])).unwrap(),
+            [Some(outcome("a"))]
+        );
     }
 
     #[test]
@@ -426,7 +464,7 @@ mod tests {
             .unwrap();
         check(
             "newer",
-            "these results were written by a newer windfall (store version 99, this one knows 2)",
+            "these results were written by a newer windfall (store version 99, this one knows 3)",
         );
 
         let cut = dir.path().join("cut");

@@ -1,5 +1,6 @@
 //! What the store keeps of a recording of taps.
 
+use crate::measure::measured::value_with_sd;
 use crate::pipeline::evaluate::Document;
 use crate::store::documents::StoredValue;
 use serde::{Deserialize, Serialize};
@@ -32,12 +33,8 @@ impl Document for TapsDocument {
         for (tap, of_tap) in self.taps.iter().enumerate() {
             for (number, Resonance { mode, level, .. }) in of_tap.resonances.iter().enumerate() {
                 let name = |what: &str| format!("tap {} resonance {} {what}", tap + 1, number + 1);
-                let value = |what, value, sd: f64, unit: &str| StoredValue {
-                    name: name(what),
-                    value,
-                    sd: sd.is_finite().then_some(sd),
-                    unit: unit.to_owned(),
-                };
+                let value =
+                    |what, value, sd, unit| value_with_sd(value, sd, unit).stored(name(what));
                 values.push(value("frequency", mode.frequency, mode.frequency_sd, "Hz"));
                 values.push(value("quality", mode.quality, mode.quality_sd, "1"));
                 values.push(value("level", *level, f64::INFINITY, "1"));
@@ -49,7 +46,6 @@ impl Document for TapsDocument {
 
 /// A resonance as it is read back from the store: standard errors that are not known are
 /// infinite, and JSON has no infinity for a recording without noise, which is simulated.
-#[must_use]
 pub fn kept(mut resonance: Resonance) -> Resonance {
     let mode = &mut resonance.mode;
     for sd in [

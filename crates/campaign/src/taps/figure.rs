@@ -14,7 +14,6 @@ const MOST_TAPS: usize = 4;
 /// * `interval`: sampling interval; s
 /// * `band`: lowest and highest frequency; Hz
 /// * `accepted`: frequency of the first mode, where one is accepted; Hz
-#[must_use]
 pub fn figure_of_taps(
     title: &str,
     sounds: &[&[f64]],
@@ -59,10 +58,7 @@ pub fn figure_of_taps(
         let panel = Panel::new(("frequency", "Hz"), (&amplitude, ""), series);
         panels.push(Panel { marks, ..panel });
     }
-    Figure {
-        title: title.to_owned(),
-        panels,
-    }
+    Figure::new(title, panels)
 }
 
 /// Amplitude spectrum in the band.

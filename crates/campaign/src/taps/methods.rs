@@ -4,7 +4,6 @@ use crate::measure::words::{SPREAD, percent, plain};
 use crate::taps::read::{AcousticCampaign, Common};
 
 /// Taps.
-#[must_use]
 pub fn methods_of_taps(campaign: &AcousticCampaign) -> Vec<String> {
     let (taps, modes) = (&campaign.taps, &campaign.first_mode);
     let shared = match campaign.common {

@@ -118,12 +118,9 @@ pub fn read_acoustic(directory: &Path) -> Result<AcousticCampaign, Error> {
 }
 
 /// Density of a fruit with its uncertainty, where it is known; kg/m³.
-#[must_use]
 pub fn density_of(campaign: &AcousticCampaign, own: Option<f64>) -> Option<Uncertain> {
-    own.or(campaign.density).map(|value| Uncertain {
-        value,
-        sd: campaign.density_sd,
-    })
+    own.or(campaign.density)
+        .map(|value| Uncertain::new(value, campaign.density_sd))
 }
 
 fn channel(

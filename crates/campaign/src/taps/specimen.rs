@@ -149,10 +149,7 @@ fn specimen_item(
     if let Some(mode) = &decision.accepted {
         push("acoustic_frequency", mode.frequency, "Hz");
         if let Some(mass) = mass {
-            let mass = Uncertain {
-                value: mass,
-                sd: campaign.mass_sd,
-            };
+            let mass = Uncertain::new(mass, campaign.mass_sd);
             let stiffness = acoustic_stiffness(mode.frequency, mass);
             push("acoustic_stiffness", stiffness, STIFFNESS_UNIT);
             if let Some(density) = density {

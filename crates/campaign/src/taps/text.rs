@@ -2,7 +2,7 @@
 
 use crate::measure::measured::{MeasuredItem, MeasuredOutcome};
 use windfall_files::error::Error;
-use windfall_files::table::write::csv_text;
+use windfall_files::table::write::{csv_text, number_cell};
 use windfall_signal::tap::acoustic_stiffness::MEGAHERTZ_GRAM;
 
 /// One row per fruit.
@@ -33,7 +33,9 @@ pub fn csv_of_acoustic(outcome: &MeasuredOutcome) -> Result<String, Error> {
         row.extend(value_and_sd(item, "acoustic_frequency"));
         row.extend(value_and_sd(item, "acoustic_stiffness"));
         let stiffness = item.derived.get("acoustic_stiffness");
-        row.push(number(stiffness.map(|value| value.value * MEGAHERTZ_GRAM)));
+        row.push(number_cell(
+            stiffness.map(|value| value.value * MEGAHERTZ_GRAM),
+        ));
         if dense {
             row.extend(value_and_sd(item, with));
         }
@@ -50,11 +52,7 @@ pub fn csv_of_acoustic(outcome: &MeasuredOutcome) -> Result<String, Error> {
 fn value_and_sd(item: &MeasuredItem, name: &str) -> [String; 2] {
     let value = item.derived.get(name);
     [
-        number(value.map(|value| value.value)),
-        number(value.and_then(|value| value.sd)),
+        number_cell(value.map(|value| value.value)),
+        number_cell(value.and_then(|value| value.sd)),
     ]
-}
-
-fn number(value: Option<f64>) -> String {
-    value.map_or_else(String::new, |value| value.to_string())
 }

@@ -8,7 +8,7 @@ use windfall_contact::laws::kind::LawKind;
 use windfall_contact::parameter::LawDescription;
 use windfall_files::error::Error;
 use windfall_files::option_value::unusable;
-use windfall_files::table::write::csv_text;
+use windfall_files::table::write::{csv_text, number_cell};
 use windfall_files::text::table::table_text;
 
 /// A force law, as JSON shows it.
@@ -51,7 +51,6 @@ fn card_of(kind: LawKind) -> LawCardText {
 }
 
 /// Laws as text: each with formula, source and a table of its parameters.
-#[must_use]
 pub fn text_of_laws(laws: &[LawCardText]) -> String {
     let mut text = String::new();
     for LawCardText { law, findings } in laws {
@@ -119,7 +118,6 @@ pub fn csv_of_laws(laws: &[LawCardText]) -> Result<String, Error> {
         "default",
         "meaning",
     ];
-    let number = |value: Option<f64>| value.map_or_else(String::new, |value| value.to_string());
     let rows = laws.iter().flat_map(|LawCardText { law, .. }| {
         law.parameters.iter().map(|p| {
             vec![
@@ -129,9 +127,9 @@ pub fn csv_of_laws(laws: &[LawCardText]) -> Result<String, Error> {
                 p.name.to_owned(),
                 p.unit.to_owned(),
                 p.lower.to_string(),
-                number(p.bound_above()),
+                number_cell(p.bound_above()),
                 p.typical.to_string(),
-                number(p.default),
+                number_cell(p.default),
                 p.meaning.to_owned(),
             ]
         })

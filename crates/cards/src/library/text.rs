@@ -14,7 +14,6 @@ const HEADER: &str = "name,body,variety,counterpart,quantity,value_SI,deviation_
                       law,conditions,source,doi,place,seen,cautions";
 
 /// A list of entries, or each in full where there are few.
-#[must_use]
 pub fn text_of_library(outcome: &LibraryOutcome) -> String {
     if outcome.entries.len() >= LIST_FROM {
         return list(&outcome.entries);

@@ -175,7 +175,6 @@ fn formula_of(quantity: &str, terms: &[LibraryTerm]) -> String {
 /// * `at`: symbol and value of every variable; SI
 ///
 /// `None` where a variable has no value.
-#[must_use]
 pub fn evaluate_model(model: &LibraryModel, at: &[(String, f64)]) -> Option<f64> {
     let value_of = |name: &String| at.iter().find(|(known, _)| known == name).map(|(_, v)| v);
     model

@@ -8,6 +8,7 @@ use windfall_contact::laws::force_table::ForceTable;
 use windfall_contact::laws::kind::LawKind;
 use windfall_contact::laws::user::{UserForce, UserLawDefinition, UserParameter};
 use windfall_files::error::Error;
+use windfall_files::inputs::protect;
 use windfall_files::option_value::unusable;
 use windfall_files::text::file_quantity::QuantityText;
 use windfall_files::text::toml_source::{TomlSource, invalid, parse_source, read_source};
@@ -149,6 +150,9 @@ fn user_parameter(
     })
 }
 
+/// Largest file of a table of forces; bytes.
+const LARGEST_TABLE: u64 = 10_000_000;
+
 /// Columns of a table's file.
 const COLUMNS: [&str; 3] = ["displacement_m", "force_N", "damping_N_s_m"];
 
@@ -161,8 +165,22 @@ fn read_table(
     let path = directory.join(file.get_ref());
     let place = (table, "table");
     let wrong = |problem: String| invalid(source, &file.span(), place, file.get_ref(), problem);
+    let shown = path.display();
+    let found = std::fs::metadata(&path);
+    let found = found.map_err(|error| wrong(format!("{shown} cannot be read: {error}")))?;
+    // A device or a pipe may have no end.
+    if !found.is_file() {
+        return Err(wrong(format!("{shown} is not a regular file")));
+    }
+    if found.len() > LARGEST_TABLE {
+        let size = found.len();
+        return Err(wrong(format!(
+            "{shown} has {size} bytes; a table of forces has at most {LARGEST_TABLE}"
+        )));
+    }
+    protect(&path);
     let text = std::fs::read_to_string(&path)
-        .map_err(|error| wrong(format!("{} cannot be read: {error}", path.display())))?;
+        .map_err(|error| wrong(format!("{shown} cannot be read: {error}")))?;
     let mut lines = text.lines().enumerate().filter(|(_, line)| {
         let line = line.trim();
         !(line.is_empty() || line.starts_with('#'))

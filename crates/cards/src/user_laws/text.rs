@@ -7,7 +7,6 @@ use windfall_contact::parameter::NO_BOUND;
 
 /// The table of a user's law, as [`crate::user_laws::read`] reads it; nothing for a
 /// built-in law.
-#[must_use]
 pub fn law_table(kind: LawKind) -> String {
     let LawKind::User(user) = kind else {
         return String::new();

@@ -16,7 +16,6 @@ pub struct FormulaPlace {
 
 impl FormulaPlace {
     /// Place of a byte offset.
-    #[must_use]
     pub fn new(formula: &str, offset: usize) -> Self {
         let offset = offset.min(formula.len());
         let start = formula[..offset].rfind('\n').map_or(0, |at| at + 1);

@@ -89,6 +89,6 @@ impl ImpactLaw for AdamsImpact {
     }
 
     fn granular(&self) -> Result<GranularLaw, String> {
-        Err(": it has no damping that comes in by a STEP of the penetration".to_owned())
+        Err("the engine has no damping that sets in by a STEP of the penetration".to_owned())
     }
 }

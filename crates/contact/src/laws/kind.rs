@@ -35,7 +35,6 @@ macro_rules! registry {
             pub const ALL: [Self; [$(stringify!($variant)),*].len()] = [$(Self::$variant),*];
 
             /// Formula, parameters, behaviour at first touch and source.
-            #[must_use]
             pub fn describe(self) -> &'static LawDescription {
                 match self {
                     $(Self::$variant => &crate::laws::$module::DESCRIPTION,)*
@@ -45,7 +44,6 @@ macro_rules! registry {
 
             /// The law of these parameters without a check of their bounds;
             /// `None` when there are too many or too few.
-            #[must_use]
             pub fn from_values(self, values: &[f64]) -> Option<Law> {
                 Some(match self {
                     $(Self::$variant => Law::$variant($variant::from(<[f64; _]>::try_from(values).ok()?)),)*
@@ -56,7 +54,6 @@ macro_rules! registry {
 
         impl Law {
             /// Which law it is.
-            #[must_use]
             pub fn kind(&self) -> LawKind {
                 match self {
                     $(Self::$variant(_) => LawKind::$variant,)*
@@ -68,7 +65,6 @@ macro_rules! registry {
             ///
             /// Code that must not allocate converts the concrete law of
             /// [`with_law!`](crate::with_law) into `[f64; N]`.
-            #[must_use]
             pub fn parameters(&self) -> Vec<f64> {
                 match *self {
                     $(Self::$variant(law) => <[f64; _]>::from(law).to_vec(),)*
@@ -139,7 +135,6 @@ macro_rules! with_law_arms {
 
 impl LawKind {
     /// Name in law expressions.
-    #[must_use]
     pub fn name(self) -> &'static str {
         self.describe().name
     }
@@ -218,13 +213,11 @@ impl LawKind {
 impl Law {
     /// Force before it is clamped to be repulsive; N. See [`ContactLaw`] for the
     /// arguments.
-    #[must_use]
     pub fn force(&self, displacement: f64, rate: f64, peak: f64) -> f64 {
         with_law!(self, law => law.evaluate(displacement, rate, peak).force)
     }
 
     /// SI unit of parameter `index`, with numbers for the exponents: "N/m^1.91".
-    #[must_use]
     pub fn unit_of(&self, index: usize) -> String {
         let values: Vec<_> = self.parameters().into_iter().map(Some).collect();
         let unit = self.kind().describe().unit_of(index, &values);
@@ -233,7 +226,6 @@ impl Law {
 
     /// The restitution that the law takes as a parameter; 1. `None` for laws without, and for
     /// the user's. What the law delivers differs.
-    #[must_use]
     pub fn nominal_restitution(&self) -> Option<f64> {
         match self {
             Self::User(_) => None,
@@ -247,9 +239,9 @@ impl Law {
     /// The law in the terms of engines for granular matter.
     ///
     /// # Errors
-    /// Why it cannot be put so.
+    /// The law's name, and why it has no counterpart there.
     pub fn granular(&self) -> Result<GranularLaw, String> {
         let found = with_law!(self, law => law.granular());
-        found.map_err(|why| format!("{}{why}", self.kind().name()))
+        found.map_err(|why| format!("{}: {why}", self.kind().name()))
     }
 }

@@ -86,7 +86,7 @@ impl ImpactLaw for PowerLaw {
             1.5 => true,
             n => {
                 return Err(format!(
-                    " with n = {n}: the exponents it has are n = 1 and n = 1.5"
+                    "with n = {n}; the engine has n = 1 and n = 1.5 only"
                 ));
             }
         };
@@ -96,7 +96,7 @@ impl ImpactLaw for PowerLaw {
             (true, 0.5) => Damping::Root(self.c),
             (_, p) => {
                 return Err(format!(
-                    " with n = {} and p = {p}: of n = 1 it has p = 0, of n = 1.5 p = 0 and p = 0.5",
+                    "with n = {} and p = {p}; the engine has p = 0 for n = 1, and p = 0 or 0.5 for n = 1.5",
                     self.n
                 ));
             }

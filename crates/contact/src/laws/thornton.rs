@@ -56,14 +56,12 @@ struct Branch<R> {
 
 impl Thornton {
     /// Displacement at yield, d_y = R* (π p_y/(2 E*))²; m.
-    #[must_use]
     pub fn yield_displacement(&self) -> f64 {
         let ratio = PI * self.yield_pressure / (2.0 * self.modulus);
         self.radius * ratio * ratio
     }
 
     /// Force at yield, F_y = (2/3) π p_y R* d_y; N.
-    #[must_use]
     pub fn yield_force(&self) -> f64 {
         2.0 / 3.0 * PI * self.yield_pressure * self.radius * self.yield_displacement()
     }

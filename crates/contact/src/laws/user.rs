@@ -99,44 +99,37 @@ pub struct UserKind(pub(crate) &'static Known);
 
 impl UserKind {
     /// Description of the law.
-    #[must_use]
     pub fn description(self) -> &'static LawDescription {
         &self.0.description
     }
 
     /// The definition that it was made from.
-    #[must_use]
     pub fn definition(self) -> &'static UserLawDefinition {
         &self.0.definition
     }
 
     /// What a reader of its results should know.
-    #[must_use]
     pub fn findings(self) -> &'static [UserLawFinding] {
         &self.0.findings
     }
 
     /// Where a fit begins, by parameter; SI.
-    #[must_use]
     pub fn starts(self) -> &'static [Option<f64>] {
         &self.0.starts
     }
 
     /// Parameters that the force is linear in and that carry it at rest.
-    #[must_use]
     pub fn linear_at_rest(self) -> &'static [usize] {
         &self.0.linear.0
     }
 
     /// Parameters that the force is linear in and that carry only what depends
     /// on the rate.
-    #[must_use]
     pub fn linear_in_rate(self) -> &'static [usize] {
         &self.0.linear.1
     }
 
     /// Displacement at which a table ends, and its force becomes linear; m.
-    #[must_use]
     pub fn table_end(self) -> Option<f64> {
         match &self.0.body {
             Body::Formula(_) => None,
@@ -191,7 +184,6 @@ pub struct UserLaw {
 impl UserLaw {
     /// The law of these parameters without a check of their bounds; `None` when
     /// there are too many or too few.
-    #[must_use]
     #[inline]
     pub fn new(kind: UserKind, values: &[f64]) -> Option<Self> {
         let count = kind.0.description.parameters.len();
@@ -222,13 +214,11 @@ impl UserLaw {
     }
 
     /// Which law it is.
-    #[must_use]
     pub fn kind(&self) -> UserKind {
         self.kind
     }
 
     /// Its parameters in the order of the description; SI.
-    #[must_use]
     pub fn parameters(&self) -> &[f64] {
         &self.constants[..self.kind.0.description.parameters.len()]
     }
@@ -287,7 +277,7 @@ impl ContactLaw<LARGEST_PARAMETERS> for UserLaw {
 
 impl UserLaw {
     pub(crate) fn granular(&self) -> Result<GranularLaw, String> {
-        Err(": it has no formulas or tables of the user".to_owned())
+        Err("the engine has no formulas or tables of the user".to_owned())
     }
 }
 

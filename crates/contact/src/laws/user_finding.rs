@@ -57,7 +57,6 @@ pub enum UserLawFinding {
 
 impl UserLawFinding {
     /// Stable name for scripts.
-    #[must_use]
     pub fn code(&self) -> &'static str {
         match self {
             Self::KinkNotLocated { .. } => "kink-not-located",

@@ -25,7 +25,6 @@ pub struct EccentricBody {
 impl EccentricBody {
     /// A body of a solid's moment of inertia, released at rest, without
     /// friction.
-    #[must_use]
     pub fn at_rest(shape: Shape, mass: f64) -> Self {
         Self {
             shape,
@@ -38,14 +37,12 @@ impl EccentricBody {
     }
 
     /// Moment of inertia about the centre of mass; kg m².
-    #[must_use]
     pub fn moment_of_inertia(&self) -> f64 {
         self.inertia
             .unwrap_or_else(|| self.shape.solid_inertia(self.mass))
     }
 
     /// [`effective_mass_factor`] of the body in its attitude at release.
-    #[must_use]
     pub fn effective_mass_factor(&self) -> f64 {
         effective_mass_factor(self.mass, self.shape.lever_arm(), self.moment_of_inertia())
     }

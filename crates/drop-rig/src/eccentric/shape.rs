@@ -45,7 +45,6 @@ pub struct LowestPoint {
 
 impl Shape {
     /// Lowest point when the body has turned by `rotation` (rad) since release.
-    #[must_use]
     pub fn lowest_point(&self, rotation: f64) -> LowestPoint {
         match *self {
             Self::OffsetDisc {
@@ -80,7 +79,6 @@ impl Shape {
 
     /// Horizontal distance of the lowest point from the centre of mass at
     /// release, positive to the right; m.
-    #[must_use]
     pub fn lever_arm(&self) -> f64 {
         -self.lowest_point(0.0).slope
     }
@@ -93,7 +91,6 @@ impl Shape {
     /// axes): the material that moved the centre of mass is taken to leave the
     /// moment about the geometric centre as it was. Not positive when the
     /// offset exceeds √(2/5) R.
-    #[must_use]
     pub fn solid_inertia(&self, mass: f64) -> f64 {
         match *self {
             Self::OffsetDisc { radius, offset, .. } => {
@@ -150,7 +147,6 @@ impl Shape {
 /// let factor = effective_mass_factor(2.0, 0.5, 2.0 / 12.0);
 /// assert!((factor - 0.25).abs() < 1e-15);
 /// ```
-#[must_use]
 pub fn effective_mass_factor(mass: f64, lever_arm: f64, inertia: f64) -> f64 {
     1.0 / (1.0 + mass * lever_arm * lever_arm / inertia)
 }

@@ -4,21 +4,18 @@ use crate::calibrate::outcome::{CalibrateOutcome, CalibratedParameter};
 use crate::calibrate::waveform_outcome::WaveformOutcome;
 use crate::read::{DropCampaign, PlatePlan};
 use std::collections::{BTreeMap, BTreeSet};
+use windfall_campaign::impacts::card::card_origin;
 use windfall_cards::law_card::{
-    CARD_FORMAT, CardBodies, CardCovariance, CardOrigin, CardParameter, CardRange, LawCard,
+    CARD_FORMAT, CardBodies, CardCovariance, CardParameter, CardRange, LawCard, labels_of,
+    range_of_values,
 };
-use windfall_cards::law_use::complete_law_among;
-use windfall_cards::law_use::end_name;
+use windfall_cards::law_use::{complete_law_among, end_name};
 use windfall_cards::read_card::card_definition;
 use windfall_contact::law::EndRule;
 use windfall_contact::laws::kind::Law;
 use windfall_drop_rig::rig::{DropRig, Plate};
-use windfall_drop_rig::simulate::simulate_drop;
+use windfall_drop_rig::simulate::{DropImpact, simulate_drop};
 use windfall_files::error::Error;
-use windfall_files::provenance::{VERSION, digest_file, time_now};
-
-/// Files whose digests a card carries.
-const FILES: [&str; 3] = ["campaign.toml", "impacts.csv", "specimens.csv"];
 
 /// The law of a calibration as a card: by waveforms, or else by features.
 ///
@@ -47,13 +44,6 @@ pub fn card_of_calibration(
     let law = complete_law_among(&found.expression, &campaign.calibrate.user)?;
     let own = campaign.calibrate.law.as_ref();
     let end = own.map_or(EndRule::ForceZero, |law| law.end);
-    let mut origin_digests = BTreeMap::new();
-    for file in FILES {
-        let path = campaign.shared.directory.join(file);
-        if path.is_file() {
-            origin_digests.insert(file.to_owned(), digest_file(&path)?);
-        }
-    }
     let specimens: BTreeSet<&str> = outcome.drops.iter().map(|d| d.specimen.as_str()).collect();
     Ok(LawCard {
         format: CARD_FORMAT,
@@ -76,14 +66,7 @@ pub fn card_of_calibration(
             recordings: outcome.drops.len(),
             radius: campaign.calibrate.hertz.map(|hertz| hertz.radius),
         },
-        origin: CardOrigin {
-            campaign: campaign.shared.title.clone(),
-            method: found.method.to_owned(),
-            simulated: outcome.simulated.clone(),
-            digests: origin_digests,
-            windfall: VERSION.to_owned(),
-            date: time_now(),
-        },
+        origin: card_origin(&campaign.shared, found.method)?,
         contact: None,
         population: None,
         definition: card_definition(law.kind()),
@@ -119,17 +102,13 @@ fn from_waveform(waveform: &WaveformOutcome) -> Found {
         };
         (parameter.name.clone(), card)
     });
-    let names = waveform.parameters.iter().zip(&waveform.logarithmic);
+    let names = waveform.parameters.iter().map(|p| p.name.clone());
+    let names: Vec<String> = names.collect();
     Found {
         expression: waveform.law.clone(),
         parameters: parameters.collect(),
         covariance: Some(CardCovariance {
-            of: names
-                .map(|(parameter, logarithmic)| match logarithmic {
-                    true => format!("ln {}", parameter.name),
-                    false => parameter.name.clone(),
-                })
-                .collect(),
+            of: labels_of(&names, &waveform.logarithmic),
             matrix: waveform.covariance.clone(),
             of_what: match waveform.by_scatter {
                 true => "the mean, by the scatter from drop to drop".to_owned(),
@@ -176,16 +155,7 @@ fn range_of(
         }),
         _ => None,
     };
-    let nothing = [f64::INFINITY, f64::NEG_INFINITY];
-    let mut range = CardRange {
-        impact_velocity: nothing,
-        peak_force: nothing,
-        displacement: nothing,
-        mass: nothing,
-    };
-    let widen = |range: &mut [f64; 2], value: f64| {
-        *range = [range[0].min(value), range[1].max(value)];
-    };
+    let mut impacts = Vec::new();
     for drop in &outcome.drops {
         let rig = DropRig {
             mass: drop.mass.value,
@@ -193,16 +163,16 @@ fn range_of(
             gravity: campaign.rig.gravity,
             plate,
         };
-        widen(&mut range.mass, drop.mass.value);
-        let impacts = campaign.calibrate.bounces;
-        let Ok(simulated) = simulate_drop(law, &rig, drop.height.value, impacts, end) else {
-            continue;
-        };
-        for impact in &simulated.impacts {
-            widen(&mut range.impact_velocity, impact.impact_velocity);
-            widen(&mut range.peak_force, impact.peak_contact_force);
-            widen(&mut range.displacement, impact.max_displacement);
+        let bounces = campaign.calibrate.bounces;
+        if let Ok(simulated) = simulate_drop(law, &rig, drop.height.value, bounces, end) {
+            impacts.extend(simulated.impacts);
         }
     }
-    range
+    let range = |of: fn(&DropImpact) -> f64| range_of_values(impacts.iter().map(of));
+    CardRange {
+        impact_velocity: range(|impact| impact.impact_velocity),
+        peak_force: range(|impact| impact.peak_contact_force),
+        displacement: range(|impact| impact.max_displacement),
+        mass: range_of_values(outcome.drops.iter().map(|drop| drop.mass.value)),
+    }
 }

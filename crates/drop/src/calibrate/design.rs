@@ -3,14 +3,12 @@
 //! meet the targets, and the simulator there.
 
 use crate::calibrate::features::{height_features, telling_heights};
-use crate::calibrate::law::{FreeLaw, law_error};
+use crate::calibrate::law::{FreeLaw, Setting, law_error};
 use crate::calibrate::outcome::{
     DepthOutcome, DesignFactorOutcome, DesignHeight, DesignMember, DesignOptimum, DesignRunOutcome,
     DesignSurfaceOutcome, DesignTerm, DesignWayOutcome, VerifiedResponse,
 };
-use crate::calibrate::target::{
-    CalibrateRig, DropData, INTERVAL, PEAK, TargetCondition, heights_of, mean_feature, same_height,
-};
+use crate::calibrate::target::{DropData, INTERVAL, PEAK, heights_of, mean_feature, same_height};
 use rayon::prelude::*;
 use windfall_contact::expression::LawExpression;
 use windfall_contact::law::EndRule;
@@ -44,22 +42,6 @@ const MEMBERS: usize = 9;
 
 /// Shares of the depth of full damping at which the responses are compared.
 const DEPTHS: [f64; 3] = [100.0, 10.0, 1.0];
-
-/// What the design way works on.
-pub struct DesignSetting<'a> {
-    /// The law.
-    pub law: &'a FreeLaw,
-    /// The rig.
-    pub rig: &'a CalibrateRig,
-    /// What is to be met.
-    pub target: &'a TargetCondition,
-    /// The drops.
-    pub drops: &'a [DropData],
-    /// Width of the targets, as a part of them.
-    pub tolerance: f64,
-    /// End of contact.
-    pub end: EndRule,
-}
 
 /// The design over the free parameters.
 ///
@@ -176,7 +158,7 @@ fn leaving(surface: &Surface) -> Option<usize> {
 /// # Errors
 /// A range is missing, or a point of the design cannot be simulated.
 pub fn calibrate_by_design(
-    setting: &DesignSetting,
+    setting: &Setting,
 ) -> Result<(DesignWayOutcome, Vec<FindingOutcome>), Error> {
     let design = design_of_law(setting.law)?;
     let mut rig = setting.rig.rig;
@@ -186,7 +168,7 @@ pub fn calibrate_by_design(
     let surfaces = design_surfaces(&design, &runs)?;
     let features = setting.target.features.iter();
     let goals: Vec<Goal> = features
-        .map(|own| goal(own.value, setting.tolerance))
+        .map(|own| goal(own.value, setting.settings.tolerance))
         .collect();
     let alpha = design.alpha.unwrap_or(1.0);
     let count = design.factors.len();
@@ -206,7 +188,7 @@ pub fn calibrate_by_design(
     if best.desirability == 0.0 {
         let message = format!(
             "no settings within the ranges come within {} % of both targets on the surfaces",
-            plain(100.0 * setting.tolerance)
+            plain(100.0 * setting.settings.tolerance)
         );
         findings.push(finding("targets-out-of-reach", message));
     }
@@ -225,7 +207,7 @@ pub fn calibrate_by_design(
         optimum,
         family: members,
     };
-    findings.extend(verification_findings(&outcome, setting.tolerance));
+    findings.extend(verification_findings(&outcome, setting.settings.tolerance));
     Ok((outcome, findings))
 }
 
@@ -264,7 +246,7 @@ fn levels_of(design: &Design, coded: &[f64]) -> Vec<f64> {
 }
 
 fn optimum_outcome(
-    setting: &DesignSetting,
+    setting: &Setting,
     design: &Design,
     rig: &DropRig,
     best: &Optimum,
@@ -304,7 +286,7 @@ fn verified(
 }
 
 fn member_outcome(
-    setting: &DesignSetting,
+    setting: &Setting,
     design: &Design,
     rig: &DropRig,
     member: &Optimum,
@@ -322,7 +304,7 @@ fn member_outcome(
 }
 
 /// The optimum against the drops from every height.
-fn other_heights(setting: &DesignSetting, law: &Law) -> Vec<DesignHeight> {
+fn other_heights(setting: &Setting, law: &Law) -> Vec<DesignHeight> {
     let of = |height: f64| {
         let drops = setting.drops.iter();
         let own = drops.filter(|drop| same_height(drop.height.value, height));
@@ -345,7 +327,7 @@ fn other_heights(setting: &DesignSetting, law: &Law) -> Vec<DesignHeight> {
 }
 
 /// Responses over the depth of full damping at the start law, where it has one.
-fn depth_outcome(setting: &DesignSetting, rig: &DropRig) -> Option<DepthOutcome> {
+fn depth_outcome(setting: &Setting, rig: &DropRig) -> Option<DepthOutcome> {
     let start = setting.law.start;
     let position = start.kind().describe().index_of("d")?;
     let values = start.parameters();

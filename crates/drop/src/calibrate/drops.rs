@@ -72,7 +72,6 @@ pub fn drop_data(
 }
 
 /// Peaks and intervals between onsets of the bounces of a recorded drop that are used.
-#[must_use]
 pub fn recorded_features(drop: &MeasuredDrop, bounces: usize) -> Vec<MeasuredFeature> {
     let mut features = Vec::new();
     let mut add = |kind, impact, value: &Known| {
@@ -99,7 +98,6 @@ pub fn recorded_features(drop: &MeasuredDrop, bounces: usize) -> Vec<MeasuredFea
 }
 
 /// The rig of a campaign with its plate.
-#[must_use]
 pub fn calibrate_rig(campaign: &DropCampaign, plate: Option<&PlateEstimate>) -> CalibrateRig {
     let plan = &campaign.rig;
     let sd = |of: fn(&PlateEstimate) -> Uncertain| plate.map_or(0.0, |plate| of(plate).sd);

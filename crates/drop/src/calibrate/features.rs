@@ -56,7 +56,6 @@ pub fn fit(
 }
 
 /// A fit as JSON shows it, and what is to be said of it.
-#[must_use]
 pub fn features_outcome(
     law: &FreeLaw,
     drops: &[DropData],
@@ -92,7 +91,12 @@ pub fn features_outcome(
     let outcome = FeaturesOutcome {
         law: LawExpression::from(fit.law).to_string(),
         parameters: parameters_of(law, fit),
-        correlations: correlations(fit),
+        correlations: information
+            .covariance
+            .as_ref()
+            .map_or_else(Vec::new, |own| {
+                correlations(own.ncols(), |i, j| own[(i, j)])
+            }),
         rank: information.rank,
         fitted: fitted.collect(),
         along: along.collect(),
@@ -108,18 +112,12 @@ pub fn features_outcome(
     (outcome, findings)
 }
 
-fn correlations(fit: &FeatureFit) -> Vec<Vec<f64>> {
-    let Some(covariance) = &fit.information.covariance else {
-        return Vec::new();
-    };
-    let sd = |place: usize| covariance[(place, place)].sqrt();
-    let places = 0..covariance.ncols();
-    let row = |i| {
-        places
-            .clone()
-            .map(move |j| covariance[(i, j)] / (sd(i) * sd(j)))
-    };
-    places.clone().map(|i| row(i).collect()).collect()
+/// Correlations from a covariance.
+pub(crate) fn correlations(size: usize, covariance: impl Fn(usize, usize) -> f64) -> Vec<Vec<f64>> {
+    let sd = |place: usize| covariance(place, place).sqrt();
+    let correlation = |i, j| covariance(i, j) / (sd(i) * sd(j));
+    let row = |i| (0..size).map(|j| correlation(i, j)).collect();
+    (0..size).map(row).collect()
 }
 
 /// The free parameters with their uncertainties, in SI and in the units of ranges.
@@ -199,7 +197,6 @@ fn direction_outcome(law: &FreeLaw, direction: &Direction, widened: f64) -> Dire
 }
 
 /// Changes along a direction of a length.
-#[must_use]
 pub fn direction_words(law: &FreeLaw, vector: &[f64], length: f64) -> String {
     let free = law.coordinates.free.iter().zip(law.names()).zip(vector);
     let words = free.map(|((free, name), part)| {
@@ -297,7 +294,6 @@ fn findings_of(law: &FreeLaw, outcome: &FeaturesOutcome) -> Vec<FindingOutcome> 
 }
 
 /// Heights that tell the members of a line apart: the campaign's, or multiples of its only one.
-#[must_use]
 pub fn telling_heights(heights: &[f64], target: f64) -> Vec<f64> {
     match heights.len() {
         0 | 1 => vec![0.2 * target, 0.5 * target, target, 2.0 * target],
@@ -434,7 +430,6 @@ fn member(
 }
 
 /// First peak, interval, second peak and first contact at a height.
-#[must_use]
 pub fn height_features(law: &Law, rig: &DropRig, height: f64, end: EndRule) -> HeightFeatures {
     let shown = [
         PEAK,

@@ -25,7 +25,6 @@ pub fn write_calibrate_figures(
 
 /// The line in the planes of the first parameter and each other, then the peak at
 /// every height over the first parameter, as parts of that of the first member.
-#[must_use]
 pub fn figure_of_family(outcome: &CalibrateOutcome, family: &FamilyLine) -> Figure {
     let units = outcome.parameter_units();
     let first = (outcome.free[0].as_str(), units[0].as_str());
@@ -92,7 +91,6 @@ fn ratios(family: &FamilyLine, name: &str) -> Vec<Series> {
 }
 
 /// Each surface along each factor, with the simulated runs and the measured value.
-#[must_use]
 pub fn figure_of_design(outcome: &CalibrateOutcome, design: &DesignWayOutcome) -> Figure {
     let mut panels = Vec::new();
     for (place, surface) in design.surfaces.iter().enumerate() {

@@ -2,11 +2,14 @@
 //! their ranges, and where the search starts.
 
 use crate::calibrate::outcome::StartOutcome;
+use crate::calibrate::target::{CalibrateRig, DropData, TargetCondition};
 use crate::calibrate_settings::{CalibrateSettings, DropLaw, ParameterRange, RangeUnit};
 use windfall_contact::effective::{Elastic, effective_modulus, effective_radius, hertz_stiffness};
 use windfall_contact::expression::LawExpression;
+use windfall_contact::law::EndRule;
 use windfall_contact::laws::kind::Law;
 use windfall_drop_rig::coordinates::{LawCoordinates, law_coordinates};
+use windfall_drop_rig::feature_problem::FeatureProblem;
 use windfall_drop_rig::start::{exponent_position, stiffness_of_equal_peak};
 use windfall_files::error::Error;
 use windfall_files::option_value::unusable;
@@ -58,7 +61,6 @@ pub fn free_law(
 }
 
 /// Hertz's stiffness of the fruit on a rigid plane; N/m^1.5.
-#[must_use]
 pub fn hertz_of(settings: &CalibrateSettings) -> Option<f64> {
     let hertz = settings.hertz?;
     let fruit = Elastic {
@@ -151,22 +153,37 @@ fn start_law(
     Ok((start, outcome))
 }
 
+/// What the ways of a calibration work on.
+pub struct Setting<'a> {
+    /// The law.
+    pub law: &'a FreeLaw,
+    /// How it is calibrated.
+    pub settings: &'a CalibrateSettings,
+    /// The rig.
+    pub rig: &'a CalibrateRig,
+    /// What is to be met.
+    pub target: &'a TargetCondition,
+    /// The drops.
+    pub drops: &'a [DropData],
+    /// All of them as a problem.
+    pub problem: &'a FeatureProblem,
+    /// End of contact.
+    pub end: EndRule,
+}
+
 impl FreeLaw {
     /// Number of free parameters.
-    #[must_use]
     pub fn count(&self) -> usize {
         self.coordinates.free.len()
     }
 
     /// Names of the free parameters.
-    #[must_use]
     pub fn names(&self) -> Vec<String> {
         let names = self.coordinates.names();
         names.into_iter().map(str::to_owned).collect()
     }
 
     /// Values of all parameters at levels in the units of the ranges; SI.
-    #[must_use]
     pub fn values_of_levels(&self, levels: &[f64]) -> Vec<f64> {
         let mut values = self.coordinates.values.clone();
         // Exponents first: units depend on them.
@@ -191,7 +208,6 @@ impl FreeLaw {
     }
 
     /// Levels at coordinates.
-    #[must_use]
     pub fn levels(&self, at: &[f64]) -> Vec<f64> {
         let values = self.coordinates.values_at(at);
         let free = self.coordinates.free.iter().enumerate();
@@ -213,7 +229,6 @@ impl FreeLaw {
     }
 
     /// Unit of the levels of a parameter.
-    #[must_use]
     pub fn level_unit(&self, place: usize) -> String {
         let free = &self.coordinates.free[place];
         let unit = self.coordinates.kind.describe().parameters[free.position].unit;
@@ -226,7 +241,6 @@ impl FreeLaw {
     }
 
     /// Limits of the coordinates: the ranges, or a hundredfold about a point.
-    #[must_use]
     pub fn limits(&self, about: &[f64]) -> (Vec<f64>, Vec<f64>) {
         const FAR: f64 = 4.6;
         let values = self.coordinates.values_at(about);

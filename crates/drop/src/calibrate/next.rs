@@ -1,13 +1,9 @@
 //! What closes a family, in numbers, and the next experiment.
 
 use crate::calibrate::features::telling_heights;
-use crate::calibrate::law::{FreeLaw, hertz_of, law_error};
+use crate::calibrate::law::{FreeLaw, Setting, hertz_of, law_error};
 use crate::calibrate::outcome::{CandidateOutcome, ClosingOutcome, NextOutcome};
-use crate::calibrate::target::{
-    CalibrateRig, DropData, PEAK, TargetCondition, heights_of, same_height, target_problem,
-};
-use crate::calibrate_settings::CalibrateSettings;
-use windfall_contact::law::EndRule;
+use crate::calibrate::target::{DropData, PEAK, heights_of, same_height, target_problem};
 use windfall_drop_rig::experiment::{Candidate, Choice, expected, ranked};
 use windfall_drop_rig::feature_problem::{
     CoordinatePrior, FeatureProblem, MeasuredFeature, linearise, nuisances,
@@ -26,24 +22,6 @@ const SHOWN: usize = 10;
 
 /// Drops of a candidate.
 const DROPS: usize = 5;
-
-/// What candidates are compared on.
-pub struct NextSetting<'a> {
-    /// The law.
-    pub law: &'a FreeLaw,
-    /// How it is calibrated.
-    pub settings: &'a CalibrateSettings,
-    /// The rig.
-    pub rig: &'a CalibrateRig,
-    /// What is to be met.
-    pub target: &'a TargetCondition,
-    /// The drops.
-    pub drops: &'a [DropData],
-    /// All of them as a problem.
-    pub problem: &'a FeatureProblem,
-    /// End of contact.
-    pub end: EndRule,
-}
 
 fn told(law: &FreeLaw, problem: &FeatureProblem, at: &[f64]) -> Result<Information, Error> {
     let known = nuisances(problem);
@@ -72,7 +50,7 @@ fn row(with: String, information: &Information) -> ClosingOutcome {
 ///
 /// # Errors
 /// The law cannot be simulated.
-pub fn closing(setting: &NextSetting, at: &[f64]) -> Result<Vec<ClosingOutcome>, Error> {
+pub fn closing(setting: &Setting, at: &[f64]) -> Result<Vec<ClosingOutcome>, Error> {
     let law = setting.law;
     let one = target_problem(setting.rig, setting.target, setting.end);
     let height = setting.target.height;
@@ -101,10 +79,7 @@ pub fn closing(setting: &NextSetting, at: &[f64]) -> Result<Vec<ClosingOutcome>,
             continue;
         }
         let mut problem = one.clone();
-        problem.heights.push(Uncertain {
-            value: other,
-            sd: height.sd,
-        });
+        problem.heights.push(Uncertain::new(other, height.sd));
         let mut drop = problem.drops[0].clone();
         drop.height = 1;
         problem.drops.push(drop);
@@ -137,7 +112,7 @@ fn stiffness_place(law: &FreeLaw) -> Option<usize> {
 ///
 /// # Errors
 /// The law cannot be simulated at the drops already made.
-pub fn next_experiment(setting: &NextSetting, at: &[f64]) -> Result<NextOutcome, Error> {
+pub fn next_experiment(setting: &Setting, at: &[f64]) -> Result<NextOutcome, Error> {
     let law = setting.law;
     let places = candidates(setting);
     let all: Vec<Candidate> = places.iter().map(|(own, ..)| own.clone()).collect();
@@ -179,17 +154,14 @@ fn peaks(candidate: &Candidate) -> usize {
 }
 
 /// Heights around the target's, the same fruit or other masses, two impacts or three.
-fn candidates(setting: &NextSetting) -> Vec<(Candidate, f64, f64)> {
+fn candidates(setting: &Setting) -> Vec<(Candidate, f64, f64)> {
     let target = setting.target;
     let fruit = setting.problem.drops.len().checked_sub(1);
     let at_target = |drop: &DropData| same_height(drop.height.value, target.height.value);
     let place = setting.drops.iter().position(at_target).or(fruit);
     let own = place.map_or(0, |place| setting.problem.drops[place].fruit);
     let known = setting.problem.fruits[own];
-    let scaled = |times: f64| Uncertain {
-        value: times * known.value,
-        sd: known.sd,
-    };
+    let scaled = |times: f64| Uncertain::new(times * known.value, known.sd);
     let masses = [
         (Choice::Same(own), known.value),
         (Choice::New(scaled(0.6)), 0.6 * known.value),
@@ -202,10 +174,7 @@ fn candidates(setting: &NextSetting) -> Vec<(Candidate, f64, f64)> {
             for impacts in [2, 3] {
                 let candidate = Candidate {
                     mass: choice,
-                    height: Choice::New(Uncertain {
-                        value: height,
-                        sd: target.height.sd,
-                    }),
+                    height: Choice::New(Uncertain::new(height, target.height.sd)),
                     features: features(setting, impacts),
                     drops: DROPS,
                 };
@@ -217,7 +186,7 @@ fn candidates(setting: &NextSetting) -> Vec<(Candidate, f64, f64)> {
 }
 
 /// Peaks and intervals of some impacts, as uncertain as those of one drop so far.
-fn features(setting: &NextSetting, impacts: usize) -> Vec<(DropFeature, f64)> {
+fn features(setting: &Setting, impacts: usize) -> Vec<(DropFeature, f64)> {
     let drops = (setting.target.outcome.drops.max(1) as f64).sqrt();
     let [peak, interval] = [0, 1].map(|place| drops * setting.target.features[place].sd);
     let peaks = (0..impacts).map(|impact| (DropFeature { impact, ..PEAK }, peak));

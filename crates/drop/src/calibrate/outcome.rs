@@ -48,7 +48,6 @@ pub struct CalibrateOutcome {
 
 impl CalibrateOutcome {
     /// Units in which the free parameters are written.
-    #[must_use]
     pub fn parameter_units(&self) -> Vec<String> {
         match (&self.features, &self.design) {
             (Some(features), _) => {

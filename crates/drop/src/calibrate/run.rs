@@ -2,13 +2,13 @@
 //! closes that.
 
 use crate::calibrate::card::card_of_calibration;
-use crate::calibrate::design::{DesignSetting, calibrate_by_design};
+use crate::calibrate::design::calibrate_by_design;
 use crate::calibrate::drops::{calibrate_rig, drop_data, recorded_features, written_features};
 use crate::calibrate::features::{family_line, features_outcome, fit, telling_heights};
 use crate::calibrate::figure::write_calibrate_figures;
 use crate::calibrate::figure_waveform::write_waveform_figures;
-use crate::calibrate::law::{FreeLaw, free_law};
-use crate::calibrate::next::{NextSetting, closing, next_experiment};
+use crate::calibrate::law::{FreeLaw, Setting, free_law};
+use crate::calibrate::next::{closing, next_experiment};
 use crate::calibrate::outcome::CalibrateOutcome;
 use crate::calibrate::store::keep_calibration;
 use crate::calibrate::tables_text::write_calibrate_tables;
@@ -38,19 +38,36 @@ use windfall_tables::regress::findings::finding;
 
 /// Options of a calibration.
 #[derive(Clone, Debug, Default)]
+#[cfg_attr(feature = "clap", derive(clap::Args))]
 pub struct CalibrateRequest {
-    /// Ways in place of the campaign's.
+    /// Ways to calibrate in place of the campaign's; may be repeated
+    #[cfg_attr(feature = "clap", arg(long = "way", value_parser = way(), value_name = "WAY"))]
     pub ways: Vec<Way>,
-    /// Where figures go, if anywhere.
+    /// The fitted waveforms, the family of equally good laws and the surfaces
+    #[cfg_attr(feature = "clap", command(flatten))]
     pub figures: Option<FigureFolder>,
-    /// Where the tables of the study go, if anywhere.
+    /// Write all tables as CSV and text into this directory
+    #[cfg_attr(feature = "clap", arg(long, value_name = "DIR", value_hint = clap::ValueHint::DirPath))]
     pub tables: Option<PathBuf>,
-    /// Where the law card goes, if anywhere.
+    /// Write the calibrated law as a law card
+    #[cfg_attr(feature = "clap", arg(long, value_name = "FILE", value_hint = clap::ValueHint::FilePath))]
     pub card: Option<PathBuf>,
-    /// Whether intervals come from profiles, which take longer, not ±1.96 deviations.
+    /// Intervals from the profile of the sum of squares, which takes longer, in place of ±1.96 sd
+    #[cfg_attr(feature = "clap", arg(long))]
     pub profile: bool,
-    /// Threads; all cores if `None`.
+    /// Threads; all cores if left out
+    #[cfg_attr(feature = "clap", arg(long, value_name = "N"))]
     pub threads: Option<usize>,
+}
+
+/// The word of a way.
+#[cfg(feature = "clap")]
+fn way() -> impl clap::builder::TypedValueParser<Value = Way> {
+    use crate::calibrate_settings::WAYS;
+    use clap::builder::{PossibleValuesParser, TypedValueParser};
+    use windfall_files::option_value::chosen;
+    let words = PossibleValuesParser::new(WAYS.map(|(word, _)| word));
+    words.try_map(|word| chosen("--way", &word, &WAYS))
 }
 
 /// What a calibration works on.
@@ -63,6 +80,20 @@ struct Work<'a> {
     problem: FeatureProblem,
     target: TargetCondition,
     ways: Vec<Way>,
+}
+
+impl Work<'_> {
+    fn setting(&self) -> Setting<'_> {
+        Setting {
+            law: &self.law,
+            settings: &self.campaign.calibrate,
+            rig: &self.rig,
+            target: &self.target,
+            drops: &self.drops,
+            problem: &self.problem,
+            end: self.own.end,
+        }
+    }
 }
 
 /// Calibrates the law of a drop campaign and keeps the result in its store.
@@ -202,15 +233,7 @@ fn calibrated(
     by_features(&work, request, &mut outcome, progress)?;
     still_wanted(&work, progress)?;
     if work.ways.contains(&Way::Design) {
-        let setting = DesignSetting {
-            law: &work.law,
-            rig: &work.rig,
-            target: &work.target,
-            drops: &work.drops,
-            tolerance: campaign.calibrate.tolerance,
-            end: own.end,
-        };
-        let (design, found) = calibrate_by_design(&setting)?;
+        let (design, found) = calibrate_by_design(&work.setting())?;
         outcome.design = Some(design);
         outcome.findings.extend(of_way("design", found));
     }
@@ -266,15 +289,7 @@ fn by_features(
     }
     let heights = telling_heights(&heights_of(&work.drops), work.target.height.value);
     outcome.family = family_line(&work.law, &work.rig, &work.target, &heights, end)?;
-    let setting = NextSetting {
-        law: &work.law,
-        settings: &work.campaign.calibrate,
-        rig: &work.rig,
-        target: &work.target,
-        drops: &work.drops,
-        problem: &work.problem,
-        end,
-    };
+    let setting = work.setting();
     outcome.closing = closing(&setting, &fitted.at)?;
     outcome.next = Some(next_experiment(&setting, &fitted.at)?);
     Ok(())

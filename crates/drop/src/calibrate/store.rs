@@ -4,12 +4,13 @@
 use crate::calibrate::outcome::CalibrateOutcome;
 use crate::read::DropCampaign;
 use serde_json::json;
-use windfall_campaign::pipeline::evaluate::STORE_FILE;
+use windfall_campaign::measure::measured::plain_value;
 use windfall_campaign::recording::digests::{campaign_text, recording_digests, run_origin};
+use windfall_campaign::settings::kind::STORE_FILE;
 use windfall_campaign::store::documents::{DocumentRecord, StoredValue};
 use windfall_campaign::store::runs::{RunRecord, latest_run, write_run};
 use windfall_files::error::Error;
-use windfall_files::provenance::{REVISION, VERSION, digest_text, time_now};
+use windfall_files::provenance::{REVISION, digest_text};
 
 /// Keeps a calibration, unless the newest run in the store is the same.
 ///
@@ -37,28 +38,16 @@ pub fn keep_calibration(campaign: &DropCampaign, outcome: &CalibrateOutcome) -> 
         values: values_of(outcome),
         document,
     };
-    let run = RunRecord {
-        time: time_now(),
-        windfall: VERSION.to_owned(),
-        options: origin.options,
-        seed: None,
-        inputs: origin.inputs,
-        results: Vec::new(),
-        documents: vec![record],
-        failures: outcome.failed.clone(),
-    };
+    let mut run = RunRecord::new(origin, outcome.failed.clone());
+    run.documents.push(record);
     write_run(&store, &run)
 }
 
 fn values_of(outcome: &CalibrateOutcome) -> Vec<StoredValue> {
     let mut values = Vec::new();
     for parameter in outcome.waveform.iter().flat_map(|w| &w.parameters) {
-        values.push(StoredValue {
-            name: format!("waveform {}", parameter.name),
-            value: parameter.value.value,
-            sd: parameter.value.sd,
-            unit: parameter.value.unit.clone(),
-        });
+        let name = format!("waveform {}", parameter.name);
+        values.push(parameter.value.stored(name));
     }
     for parameter in outcome.features.iter().flat_map(|f| &f.parameters) {
         values.push(StoredValue {
@@ -70,12 +59,8 @@ fn values_of(outcome: &CalibrateOutcome) -> Vec<StoredValue> {
     }
     if let Some(design) = &outcome.design {
         for (factor, level) in design.factors.iter().zip(&design.optimum.levels) {
-            values.push(StoredValue {
-                name: format!("design {}, one of a family", factor.name),
-                value: *level,
-                sd: None,
-                unit: factor.unit.clone(),
-            });
+            let name = format!("design {}, one of a family", factor.name);
+            values.push(plain_value(*level, &factor.unit).stored(name));
         }
     }
     values

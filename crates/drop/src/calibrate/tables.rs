@@ -6,6 +6,7 @@ use crate::calibrate::outcome::{
 };
 use crate::calibrate::target::same_height;
 use windfall_files::text::number::plain;
+use windfall_files::text::table::header_of;
 use windfall_statistics::model::anova::AnovaRow;
 
 /// A cell.
@@ -44,10 +45,6 @@ fn maybe(value: Option<f64>) -> Cell {
     value.map_or(Cell::Blank, Cell::Number)
 }
 
-fn strings(words: &[&str]) -> Vec<String> {
-    words.iter().map(|word| (*word).to_owned()).collect()
-}
-
 /// Seconds as people read them in a bounce: milliseconds.
 fn shown(value: f64, unit: &str) -> f64 {
     match unit {
@@ -81,7 +78,6 @@ fn with_unit(name: &str, unit: &str) -> String {
 }
 
 /// Tables 2 to 6 of the study and what it had no space for.
-#[must_use]
 pub fn design_tables(outcome: &CalibrateOutcome) -> Vec<CalibrateTable> {
     let Some(design) = &outcome.design else {
         return Vec::new();
@@ -199,7 +195,7 @@ fn anova_table(surface: &DesignSurfaceOutcome, name: &'static str) -> CalibrateT
             "Table {place}: analysis of variance of {}, {}; R² {:.4}, adjusted {:.4}, predicted {:.4}",
             surface.response, surface.model, surface.r2, surface.r2_adjusted, surface.r2_predicted
         ),
-        header: strings(&["source", "SS", "df", "mean square", "F", "p"]),
+        header: header_of(&["source", "SS", "df", "mean square", "F", "p"]),
         rows,
     }
 }
@@ -218,7 +214,7 @@ fn equation_table(design: &DesignWayOutcome) -> CalibrateTable {
     CalibrateTable {
         name: "equations_14_15",
         title: "Equations 14 and 15: coefficients of the surfaces (N, ms)".to_owned(),
-        header: strings(&["response", "term", "coded", "actual"]),
+        header: header_of(&["response", "term", "coded", "actual"]),
         rows: rows.collect(),
     }
 }
@@ -248,7 +244,7 @@ fn optimum_table(design: &DesignWayOutcome) -> CalibrateTable {
             levels.collect::<Vec<_>>().join(", "),
             design.optimum.desirability
         ),
-        header: strings(&["response", "measured", "surface", "simulated", "difference"]),
+        header: header_of(&["response", "measured", "surface", "simulated", "difference"]),
         rows: rows
             .map(|response| verified_row(Vec::new(), response, true))
             .collect(),
@@ -265,7 +261,7 @@ fn heights_table(design: &DesignWayOutcome) -> CalibrateTable {
     CalibrateTable {
         name: "other_heights",
         title: "The optimum at every height of the campaign".to_owned(),
-        header: strings(&[
+        header: header_of(&[
             "height (mm)",
             "drops",
             "response",
@@ -327,7 +323,6 @@ fn family_table(design: &DesignWayOutcome, target: f64) -> CalibrateTable {
 }
 
 /// The line of laws that have the target, by the simulator itself.
-#[must_use]
 pub fn line_table(outcome: &CalibrateOutcome) -> Option<CalibrateTable> {
     let family = outcome.family.as_ref().filter(|f| !f.members.is_empty())?;
     let units = outcome.parameter_units();
@@ -354,7 +349,6 @@ pub fn line_table(outcome: &CalibrateOutcome) -> Option<CalibrateTable> {
 }
 
 /// What each kind of knowledge makes of the uncertainties.
-#[must_use]
 pub fn closing_table(outcome: &CalibrateOutcome) -> CalibrateTable {
     let sds = outcome.free.iter().map(|name| format!("sd of {name}"));
     let rows = outcome.closing.iter().map(|row| {
@@ -368,7 +362,7 @@ pub fn closing_table(outcome: &CalibrateOutcome) -> CalibrateTable {
         name: "what_closes",
         title: "What closes the family (standard uncertainties: relative, of exponents absolute)"
             .to_owned(),
-        header: strings(&["known", "determined"])
+        header: header_of(&["known", "determined"])
             .into_iter()
             .chain(sds)
             .collect(),
@@ -377,14 +371,13 @@ pub fn closing_table(outcome: &CalibrateOutcome) -> CalibrateTable {
 }
 
 /// The next experiment.
-#[must_use]
 pub fn next_table(outcome: &CalibrateOutcome) -> Option<CalibrateTable> {
     let next = outcome.next.as_ref()?;
     let sds = outcome.free.iter().map(|name| format!("sd of {name}"));
-    let header = strings(&["height (mm)", "mass (g)", "fruit", "drops", "impacts"])
+    let header = header_of(&["height (mm)", "mass (g)", "fruit", "drops", "impacts"])
         .into_iter()
         .chain(sds)
-        .chain(strings(&["gain"]))
+        .chain(header_of(&["gain"]))
         .chain([format!("gain of {}", next.interest)]);
     let rows = next.candidates.iter().map(|candidate| {
         let open = |sd: &Option<f64>| sd.map_or_else(|| word("open"), Cell::Number);

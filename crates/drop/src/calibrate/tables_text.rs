@@ -10,9 +10,9 @@ use windfall_files::table::write::csv_text;
 use windfall_files::text::number::plain;
 use windfall_files::text::statistic::probability;
 use windfall_files::text::table::{page_tables, paragraph};
+use windfall_files::write_file::{make_directory, write_whole};
 
 /// All tables of a calibration.
-#[must_use]
 pub fn tables_of(outcome: &CalibrateOutcome) -> Vec<CalibrateTable> {
     let line = line_table(outcome).into_iter();
     let others = line
@@ -22,7 +22,6 @@ pub fn tables_of(outcome: &CalibrateOutcome) -> Vec<CalibrateTable> {
 }
 
 /// A table with its title, for people.
-#[must_use]
 pub fn text_of_table(table: &CalibrateTable) -> String {
     let cell = |cell: &Cell| match cell {
         Cell::Word(text) => text.clone(),
@@ -66,15 +65,17 @@ pub fn csv_of_table(table: &CalibrateTable) -> Result<String, Error> {
 /// # Errors
 /// The directory or a file cannot be written.
 pub fn write_calibrate_tables(directory: &Path, outcome: &CalibrateOutcome) -> Result<(), Error> {
-    let write = |path: &Path, text: String| {
-        std::fs::write(path, text).map_err(|source| Error::access(path, "write", source))
-    };
-    std::fs::create_dir_all(directory)
-        .map_err(|source| Error::access(directory, "write", source))?;
+    make_directory(directory)?;
     for table in tables_of(outcome) {
         let path = directory.join(table.name);
-        write(&path.with_extension("csv"), csv_of_table(&table)?)?;
-        write(&path.with_extension("txt"), text_of_table(&table))?;
+        write_whole(
+            &path.with_extension("csv"),
+            csv_of_table(&table)?.as_bytes(),
+        )?;
+        write_whole(
+            &path.with_extension("txt"),
+            text_of_table(&table).as_bytes(),
+        )?;
     }
     Ok(())
 }

@@ -70,13 +70,11 @@ pub struct TargetCondition {
 const SAME_HEIGHT: f64 = 1e-6;
 
 /// Whether two heights are one.
-#[must_use]
 pub fn same_height(one: f64, other: f64) -> bool {
     (one - other).abs() <= SAME_HEIGHT * one.abs().max(other.abs())
 }
 
 /// Heights of the drops, lowest first.
-#[must_use]
 pub fn heights_of(drops: &[DropData]) -> Vec<f64> {
     let mut heights: Vec<f64> = drops.iter().map(|drop| drop.height.value).collect();
     heights.sort_by(f64::total_cmp);
@@ -157,7 +155,6 @@ fn mean_known(values: impl Iterator<Item = Uncertain>) -> Uncertain {
 }
 
 /// Mean of a feature over drops; the larger of scatter and own uncertainty is its own.
-#[must_use]
 pub fn mean_feature(drops: &[&DropData], feature: DropFeature) -> Option<MeasuredFeature> {
     let all: Vec<&MeasuredFeature> = drops
         .iter()
@@ -186,7 +183,6 @@ pub fn mean_feature(drops: &[&DropData], feature: DropFeature) -> Option<Measure
 }
 
 /// Features under their names.
-#[must_use]
 pub fn named_features(features: &[MeasuredFeature]) -> Named<MeasuredValue> {
     let named = features.iter().map(|measured| {
         let feature = measured.feature;
@@ -197,7 +193,6 @@ pub fn named_features(features: &[MeasuredFeature]) -> Named<MeasuredValue> {
 }
 
 /// Drops as JSON shows them.
-#[must_use]
 pub fn drop_outcomes(drops: &[DropData]) -> Vec<DropOutcome> {
     let outcome = |drop: &DropData| DropOutcome {
         id: drop.id.clone(),
@@ -210,7 +205,6 @@ pub fn drop_outcomes(drops: &[DropData]) -> Vec<DropOutcome> {
 }
 
 /// The plate as JSON shows it; empty for one that does not move.
-#[must_use]
 pub fn plate_outcome(rig: &CalibrateRig) -> Named<MeasuredValue> {
     let mut values = Named::default();
     let mut add = |name: &str, value: f64, sd: f64, unit: &str| {
@@ -231,7 +225,6 @@ pub fn plate_outcome(rig: &CalibrateRig) -> Named<MeasuredValue> {
 
 /// All drops as one least-squares problem: drops of one specimen share the error of
 /// its mass, drops from one height that of its setting.
-#[must_use]
 pub fn problem_of(rig: &CalibrateRig, drops: &[DropData], end: EndRule) -> FeatureProblem {
     let mut fruits: Vec<(&str, Uncertain)> = Vec::new();
     let mut heights: Vec<Uncertain> = Vec::new();
@@ -269,7 +262,6 @@ pub fn problem_of(rig: &CalibrateRig, drops: &[DropData], end: EndRule) -> Featu
 }
 
 /// The target alone as a least-squares problem.
-#[must_use]
 pub fn target_problem(
     rig: &CalibrateRig,
     target: &TargetCondition,

@@ -6,21 +6,18 @@ use crate::calibrate::waveform_text::{shown_value, text_of_waveform};
 use std::fmt::Write;
 use windfall_campaign::measure::measured::MeasuredValue;
 use windfall_files::error::Error;
-use windfall_files::table::write::csv_text;
+use windfall_files::table::write::{csv_text, number_cell};
 use windfall_files::text::number::{plain, value_and_sd};
-use windfall_files::text::table::{findings_list, page_tables, paragraph};
+use windfall_files::text::table::{
+    failures_list, findings_list, header_of, page_tables, paragraph, title_lines,
+};
 
 /// Features of the fit that are listed each.
 const LISTED: usize = 24;
 
 /// A calibration for people.
-#[must_use]
 pub fn text_of_calibration(outcome: &CalibrateOutcome) -> String {
-    let mut text = format!("{}\n", paragraph(&outcome.campaign, 2));
-    if let Some(label) = &outcome.simulated {
-        let label = format!("SIMULATED recordings: {label}");
-        let _ = writeln!(text, "{}", paragraph(&label, 2));
-    }
+    let mut text = title_lines(&outcome.campaign, outcome.simulated.as_deref());
     let line = format!("law: {}, free: {}", outcome.law, outcome.free.join(", "));
     let _ = writeln!(text, "{}", paragraph(&line, 2));
     let start = match outcome.start.rule.is_empty() {
@@ -45,10 +42,7 @@ pub fn text_of_calibration(outcome: &CalibrateOutcome) -> String {
     for table in tables_of(outcome) {
         let _ = write!(text, "\n{}", text_of_table(&table));
     }
-    for failure in &outcome.failed {
-        let line = format!("not used: {}: {}", failure.id, failure.message);
-        let _ = writeln!(text, "{}", paragraph(&line, 2));
-    }
+    text += &failures_list("not used", &outcome.failed, 2);
     text + &findings_list(&outcome.findings)
 }
 
@@ -81,7 +75,6 @@ fn in_milliseconds(value: &MeasuredValue) -> (String, f64, &str) {
 }
 
 fn features_text(features: &FeaturesOutcome) -> String {
-    let strings = |words: &[&str]| words.iter().map(|w| (*w).to_owned()).collect::<Vec<_>>();
     let mut text = format!("\nBy features: {}\n", features.law);
     let rows = features.parameters.iter().map(|parameter| {
         let written = &parameter.written;
@@ -101,7 +94,7 @@ fn features_text(features: &FeaturesOutcome) -> String {
             unit.to_owned(),
         ]
     });
-    let header = strings(&["parameter", "value", "sd", "95 % from", "to", "unit"]);
+    let header = header_of(&["parameter", "value", "sd", "95 % from", "to", "unit"]);
     text += &page_tables(&header, &rows.collect::<Vec<_>>(), &[0, 5]);
     let p = features
         .p
@@ -118,7 +111,7 @@ fn features_text(features: &FeaturesOutcome) -> String {
         let _ = writeln!(text, "  {}", direction.words);
     }
     if features.fitted.len() <= LISTED {
-        let header = strings(&["drop", "feature", "measured", "fitted", "difference / sd"]);
+        let header = header_of(&["drop", "feature", "measured", "fitted", "difference / sd"]);
         let rows = features.fitted.iter().map(|fitted| {
             let (measured, scale, unit) = in_milliseconds(&fitted.measured);
             vec![
@@ -150,21 +143,20 @@ pub fn csv_of_calibration(outcome: &CalibrateOutcome) -> Result<String, Error> {
         "unit",
         "determined",
     ];
-    let number = |value: Option<f64>| value.map_or_else(String::new, |value| value.to_string());
     let mut rows = Vec::new();
     for parameter in outcome.waveform.iter().flat_map(|w| &w.parameters) {
         let (own, shown) = (&parameter.value, shown_value(parameter));
         let mut row = vec!["waveform".to_owned(), parameter.name.clone()];
-        row.extend([own.value.to_string(), number(own.sd), own.unit.clone()]);
-        row.extend([Some(shown.value), shown.sd, shown.low, shown.high].map(number));
+        row.extend([own.value.to_string(), number_cell(own.sd), own.unit.clone()]);
+        row.extend([Some(shown.value), shown.sd, shown.low, shown.high].map(number_cell));
         row.extend([shown.unit.clone(), true.to_string()]);
         rows.push(row);
     }
     for own in outcome.features.iter().flat_map(|f| &f.parameters) {
         let shown = &own.written;
         let mut row = vec!["features".to_owned(), own.name.clone()];
-        row.extend([own.value.to_string(), number(own.sd), own.unit.clone()]);
-        row.extend([Some(shown.value), shown.sd, shown.low, shown.high].map(number));
+        row.extend([own.value.to_string(), number_cell(own.sd), own.unit.clone()]);
+        row.extend([Some(shown.value), shown.sd, shown.low, shown.high].map(number_cell));
         row.extend([shown.unit.clone(), own.sd.is_some().to_string()]);
         rows.push(row);
     }

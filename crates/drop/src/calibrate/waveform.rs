@@ -1,5 +1,6 @@
 //! Calibration of a law on the recorded waveforms of the drops of a campaign.
 
+use crate::calibrate::features::correlations;
 use crate::calibrate::waveform_outcome::{
     WaveformDropOutcome, WaveformOutcome, WaveformParameter, WeakOutcome,
 };
@@ -106,7 +107,7 @@ pub fn waveform_outcome(
         parameters: parameters(&fit),
         covariance: fit.covariance.clone(),
         logarithmic: fit.logarithmic.clone(),
-        correlations: correlations(&fit.covariance),
+        correlations: correlations(fit.covariance.len(), |i, j| fit.covariance[i][j]),
         weakest: fit.weakest.as_ref().map(|weak| {
             let shares = fit.names.iter().cloned().zip(weak.shares.iter().copied());
             WeakOutcome {
@@ -264,17 +265,6 @@ fn measured(estimate: &Estimate, unit: &str) -> MeasuredValue {
         high: Some(estimate.high),
         unit: unit.to_owned(),
     }
-}
-
-fn correlations(covariance: &[Vec<f64>]) -> Vec<Vec<f64>> {
-    let sd = |i: usize| covariance[i][i].sqrt();
-    let places = 0..covariance.len();
-    let row = |i: usize| {
-        places
-            .clone()
-            .map(move |j| covariance[i][j] / (sd(i) * sd(j)))
-    };
-    places.clone().map(|i| row(i).collect()).collect()
 }
 
 fn drop_outcome(drop: &RecordedDrop, record: &RecordFit) -> WaveformDropOutcome {

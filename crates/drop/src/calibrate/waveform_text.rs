@@ -5,19 +5,16 @@ use std::fmt::Write;
 use windfall_campaign::measure::measured::MeasuredValue;
 use windfall_files::text::number::{plain, value_and_sd};
 use windfall_files::text::statistic::number;
-use windfall_files::text::table::page_tables;
+use windfall_files::text::table::{header_of, page_tables};
 
 /// A stiffness with its exponent per millimetre, others in SI.
-#[must_use]
 pub fn shown_value(parameter: &WaveformParameter) -> &MeasuredValue {
     let per_millimetre = parameter.per_millimetre.as_ref();
     per_millimetre.unwrap_or(&parameter.value)
 }
 
 /// Estimates, and what each drop tells.
-#[must_use]
 pub fn text_of_waveform(waveform: &WaveformOutcome) -> String {
-    let strings = |words: &[&str]| words.iter().map(|w| (*w).to_owned()).collect::<Vec<_>>();
     let mut text = format!(
         "\nBy waveforms ({} impacts of {} drops): {}\n",
         waveform.impacts,
@@ -36,7 +33,7 @@ pub fn text_of_waveform(waveform: &WaveformOutcome) -> String {
             unit.to_owned(),
         ]
     });
-    let header = strings(&["parameter", "value ± sd", "95 % from", "to", "unit"]);
+    let header = header_of(&["parameter", "value ± sd", "95 % from", "to", "unit"]);
     text += &page_tables(&header, &rows.collect::<Vec<_>>(), &[0, 4]);
     let _ = writeln!(
         text,
@@ -58,7 +55,7 @@ pub fn text_of_waveform(waveform: &WaveformOutcome) -> String {
             plain(drop.misfit),
         ]
     });
-    let header = strings(&[
+    let header = header_of(&[
         "drop",
         "height (mm)",
         "velocity (m/s)",

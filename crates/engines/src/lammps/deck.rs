@@ -44,12 +44,11 @@ pub fn lammps_deck(task: &Task) -> Result<Deck, Vec<String>> {
     }
     let mut findings: Vec<FindingOutcome> = task.finding_of_classes().into_iter().collect();
     if task.rolls() {
-        findings.push(FindingOutcome {
-            code: "engine-rolling".to_owned(),
-            message: "LAMMPS resists rolling with one stiffness at any load: the limit of the \
-                      moment is the scene's, its stiffness is right at five times the weight"
-                .to_owned(),
-        });
+        findings.push(FindingOutcome::new(
+            "engine-rolling",
+            "LAMMPS resists rolling with one stiffness at any load: the limit of the \
+             moment is the scene's, its stiffness is right at five times the weight",
+        ));
     }
     Ok(Deck {
         files,

@@ -4,6 +4,7 @@
 //! order mark is passed over; names may be quoted and hold commas and units.
 
 use crate::error::{Error, Place};
+use crate::inputs::protect;
 use std::fs::File;
 use std::io::{BufRead, BufReader, Read};
 use std::path::{Path, PathBuf};
@@ -81,6 +82,7 @@ pub(crate) struct Open {
 /// # Errors
 /// As [`read_table`].
 pub(crate) fn open(path: &Path) -> Result<Open, Error> {
+    protect(path);
     let file = File::open(path).map_err(|source| access(path, source))?;
     let mut reader = BufReader::with_capacity(1 << 16, file);
     let start = reader.fill_buf().map_err(|source| access(path, source))?;
@@ -203,10 +205,7 @@ fn index_of(path: &Path, columns: &[String], column: &str, by: &str) -> Result<u
 fn access(path: &Path, source: std::io::Error) -> Error {
     let path = path.to_path_buf();
     if source.kind() == std::io::ErrorKind::NotFound {
-        return Error::FileAbsent {
-            path,
-            advice: "check the name and the directory".to_owned(),
-        };
+        return Error::absent(path, "check the name and the directory");
     }
     Error::access(&path, "read", source)
 }

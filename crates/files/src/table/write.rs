@@ -3,6 +3,11 @@
 use crate::error::Error;
 use std::path::Path;
 
+/// A number as a cell of CSV, with all digits; blank where there is none.
+pub fn number_cell(value: Option<f64>) -> String {
+    value.map_or_else(String::new, |value| value.to_string())
+}
+
 /// CSV text from a header and rows.
 pub fn csv_text(
     header: &[String],

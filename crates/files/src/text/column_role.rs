@@ -4,7 +4,6 @@ use windfall_formats::contents::ChannelContents;
 use windfall_numerics::unit::quantity::parse_unit;
 
 /// The unit in "Force (N)", "force_N", `Force [N]` or "Force in N".
-#[must_use]
 pub fn unit_of(name: &str) -> Option<String> {
     let bracketed = [('(', ')'), ('[', ']')]
         .into_iter()
@@ -45,7 +44,6 @@ const ROLES: [(&str, &str); 18] = [
 ];
 
 /// What a channel seems to be: "time", or the campaign channel that it could feed.
-#[must_use]
 pub fn role_of(name: &str) -> Option<&'static str> {
     let lower = name.to_lowercase();
     if matches!(lower.as_str(), "t" | "t_s" | "t (s)" | "t_ms" | "t [s]") {
@@ -60,7 +58,6 @@ pub fn role_of(name: &str) -> Option<&'static str> {
 }
 
 /// What a unit alone says of a channel.
-#[must_use]
 pub fn role_of_unit(unit: &str) -> Option<&'static str> {
     let same = |known: &str| match (parse_unit(unit), parse_unit(known)) {
         (Ok(unit), Ok(known)) => unit.dimension.matches(&known.dimension),
@@ -78,13 +75,11 @@ pub fn role_of_unit(unit: &str) -> Option<&'static str> {
 }
 
 /// The unit of a channel: from the file, else from its name.
-#[must_use]
 pub fn unit_in(channel: &ChannelContents) -> Option<String> {
     channel.unit.clone().or_else(|| unit_of(&channel.name))
 }
 
 /// Seconds per unit of a channel of times; 1 where its unit is not known.
-#[must_use]
 pub fn seconds_per_unit(channel: &ChannelContents) -> f64 {
     let unit = unit_in(channel).and_then(|unit| parse_unit(&unit).ok());
     let second = parse_unit("s").ok();

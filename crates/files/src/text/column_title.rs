@@ -4,7 +4,6 @@ use windfall_numerics::unit::quantity::parse_unit;
 
 /// Name and unit of a column as an axis shows them: what follows an underscore and is
 /// a unit becomes the unit, `density_kg_m3` in kg/m³; "" where the name says none.
-#[must_use]
 pub fn column_title(column: &str) -> (String, String) {
     let underscores = column.match_indices('_').map(|(place, _)| place);
     for place in underscores {

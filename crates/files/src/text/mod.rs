@@ -3,6 +3,7 @@
 pub mod cell_quantity;
 pub mod column_role;
 pub mod column_title;
+pub mod columns;
 pub mod file_quantity;
 pub mod number;
 pub mod statistic;

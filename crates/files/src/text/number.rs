@@ -7,7 +7,6 @@ const SD_DIGITS: i32 = 2;
 const PLAIN_DIGITS: i32 = 4;
 
 /// "753599 ± 133165": both with the decimals that give the second two digits.
-#[must_use]
 pub fn value_and_sd(value: f64, sd: Option<f64>) -> String {
     match sd {
         Some(sd) if sd > 0.0 && sd.is_finite() => {
@@ -19,7 +18,6 @@ pub fn value_and_sd(value: f64, sd: Option<f64>) -> String {
 }
 
 /// "753599 ± 133165 (18 %)".
-#[must_use]
 pub fn spread_text(mean: f64, sd: Option<f64>, cv: Option<f64>) -> String {
     match cv {
         Some(cv) if cv.is_finite() => format!("{} ({} %)", value_and_sd(mean, sd), percent(cv)),
@@ -28,7 +26,6 @@ pub fn spread_text(mean: f64, sd: Option<f64>, cv: Option<f64>) -> String {
 }
 
 /// "11.35 ± 3.5 %": the standard deviation in percent of the mean.
-#[must_use]
 pub fn spread_percent(mean: f64, cv: Option<f64>) -> String {
     match cv {
         // Less is the rounding of equal values.
@@ -42,7 +39,6 @@ pub fn spread_percent(mean: f64, cv: Option<f64>) -> String {
 }
 
 /// A number with four significant digits, never fewer than its whole digits.
-#[must_use]
 pub fn plain(value: f64) -> String {
     let size = value.abs();
     if value != 0.0 && !(1e-4..1e9).contains(&size) {

@@ -4,7 +4,6 @@
 use crate::text::number::plain;
 
 /// A probability as people read it.
-#[must_use]
 pub fn probability(p: f64) -> String {
     match p {
         p if p.is_nan() => "-".to_owned(),
@@ -14,7 +13,6 @@ pub fn probability(p: f64) -> String {
 }
 
 /// A number, or a dash where there is none.
-#[must_use]
 pub fn number(value: f64) -> String {
     match value.is_finite() {
         true => plain(value),
@@ -23,7 +21,6 @@ pub fn number(value: f64) -> String {
 }
 
 /// Degrees of freedom: whole where they are.
-#[must_use]
 pub fn freedom(df: f64) -> String {
     match df.fract() == 0.0 {
         true => df.to_string(),

@@ -1,6 +1,6 @@
 //! Aligned tables for a terminal, none wider than a page.
 
-use crate::found::FindingOutcome;
+use crate::found::{FailureOutcome, FindingOutcome};
 use comfy_table::{CellAlignment, ContentArrangement, LineStyle, Table, TableStyle};
 
 /// Widest line of a table or a paragraph; characters.
@@ -19,7 +19,6 @@ pub struct Cells {
 }
 
 /// An aligned table; columns not in `left` are set flush right.
-#[must_use]
 pub fn table_text(
     header: &[String],
     rows: impl IntoIterator<Item = Vec<String>>,
@@ -43,7 +42,6 @@ pub fn table_text(
 
 /// A table as [`table_text`], in as many parts as it takes to stay within a
 /// page. Every part begins with the first column.
-#[must_use]
 pub fn page_tables(header: &[String], rows: &[Vec<String>], left: &[usize]) -> String {
     let width = |column: usize| {
         let cells = rows.iter().map(|row| row[column].chars().count());
@@ -75,7 +73,6 @@ pub fn page_tables(header: &[String], rows: &[Vec<String>], left: &[usize]) -> S
 }
 
 /// A paragraph broken into lines of a page, all but the first indented.
-#[must_use]
 pub fn paragraph(text: &str, indent: usize) -> String {
     let mut lines: Vec<String> = Vec::new();
     for word in text.split(' ') {
@@ -91,8 +88,26 @@ pub fn paragraph(text: &str, indent: usize) -> String {
     lines.join("\n")
 }
 
+/// Words as the header of a table.
+pub fn header_of(words: &[&str]) -> Vec<String> {
+    words.iter().map(|word| (*word).to_owned()).collect()
+}
+
+/// First lines of results: the campaign, and that its recordings are simulated.
+pub fn title_lines(campaign: &str, simulated: Option<&str>) -> String {
+    let label = simulated.map(|label| format!("SIMULATED recordings: {label}"));
+    let lines = [Some(campaign), label.as_deref()].into_iter().flatten();
+    lines.map(|line| paragraph(line, 2) + "\n").collect()
+}
+
+/// A line for each recording that has no result, and why.
+pub fn failures_list(what: &str, failures: &[FailureOutcome], indent: usize) -> String {
+    let line = |failure: &FailureOutcome| format!("{what}: {}: {}", failure.id, failure.message);
+    let lines = failures.iter().map(line);
+    lines.map(|line| paragraph(&line, indent) + "\n").collect()
+}
+
 /// Findings as a list.
-#[must_use]
 pub fn findings_list(findings: &[FindingOutcome]) -> String {
     if findings.is_empty() {
         return String::new();

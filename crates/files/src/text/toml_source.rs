@@ -1,6 +1,7 @@
 //! A TOML text and the places in it, so that messages name file, line and key.
 
 use crate::error::{Error, Place};
+use crate::inputs::{check_piped, protect};
 use crate::text::file_quantity::QuantityText;
 use std::fmt::Display;
 use std::ops::Range;
@@ -34,7 +35,6 @@ pub struct Needed {
 
 impl Needed {
     /// A value of a table, with its meaning, SI unit and a line that would do.
-    #[must_use]
     pub const fn of(
         table: &'static str,
         key: &'static str,
@@ -57,15 +57,16 @@ impl Needed {
 /// # Errors
 /// The file is absent or unreadable or not UTF-8.
 pub fn read_source(path: &Path, advice: &str) -> Result<TomlSource, Error> {
+    check_piped(path)?;
+    protect(path);
     match std::fs::read_to_string(path) {
         Ok(text) => Ok(TomlSource {
             path: path.to_path_buf(),
             text,
         }),
-        Err(error) if error.kind() == std::io::ErrorKind::NotFound => Err(Error::FileAbsent {
-            path: path.to_path_buf(),
-            advice: advice.to_owned(),
-        }),
+        Err(error) if error.kind() == std::io::ErrorKind::NotFound => {
+            Err(Error::absent(path, advice))
+        }
         Err(source) => Err(Error::access(path, "read", source)),
     }
 }
@@ -90,7 +91,6 @@ pub fn parse_source<T: serde::de::DeserializeOwned>(source: &TomlSource) -> Resu
 }
 
 /// Line of a place in the text.
-#[must_use]
 pub fn place_at(source: &TomlSource, span: &Range<usize>) -> Place {
     let before = &source.text.as_bytes()[..span.start.min(source.text.len())];
     let line = 1 + before.iter().filter(|&&byte| byte == b'\n').count();
@@ -203,7 +203,6 @@ pub fn number_that<T: Copy + Display>(
 }
 
 /// The error of a value that is left out.
-#[must_use]
 pub fn missing(
     source: &TomlSource,
     table_at: &Range<usize>,
@@ -220,7 +219,6 @@ pub fn missing(
 }
 
 /// The error of a value that cannot be used.
-#[must_use]
 pub fn refused<T: Display>(
     source: &TomlSource,
     value: &Spanned<T>,
@@ -232,7 +230,6 @@ pub fn refused<T: Display>(
 }
 
 /// The error of a value that cannot be used.
-#[must_use]
 pub fn invalid(
     source: &TomlSource,
     span: &Range<usize>,
@@ -279,7 +276,6 @@ pub fn choice<T: Copy>(
 }
 
 /// " (did you mean \"arm\"?)", or nothing when no candidate is similar.
-#[must_use]
 pub fn suggestion<'a>(name: &str, candidates: impl IntoIterator<Item = &'a str>) -> String {
     match nearest_names(name, candidates).first() {
         Some(best) => format!(" (did you mean \"{best}\"?)"),

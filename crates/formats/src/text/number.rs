@@ -272,21 +272,24 @@ pub fn without_groups(text: &str, mark: char, decimal: char) -> Option<String> {
         Some(digits) => (&integer[..1], digits),
         None => ("", integer),
     };
-    let mut groups = digits.split(|c| c == mark || (mark == '\u{a0}' && c == '\u{202f}'));
+    let is_mark = |c| c == mark || (mark == '\u{a0}' && c == '\u{202f}');
+    // Most cells have none.
+    if !digits.contains(is_mark) {
+        return None;
+    }
+    let mut groups = digits.split(is_mark);
     let first = groups.next()?;
     let is_digits = |group: &str| group.bytes().all(|b| b.is_ascii_digit());
     let first_fits = (1..=3).contains(&first.len()) && is_digits(first) && first != "0";
     let mut plain = format!("{sign}{first}");
-    let mut more = 0;
     for group in groups {
         if group.len() != 3 || !is_digits(group) {
             return None;
         }
         plain += group;
-        more += 1;
     }
     plain += rest;
-    (first_fits && more > 0).then_some(plain)
+    first_fits.then_some(plain)
 }
 
 #[cfg(test)]

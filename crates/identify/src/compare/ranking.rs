@@ -255,7 +255,6 @@ fn predicted(
 }
 
 /// All laws on one impact, with one noise.
-#[must_use]
 pub fn fits_of_impact(
     impact: &Impact,
     rig: &Rig,
@@ -269,7 +268,6 @@ pub fn fits_of_impact(
 
 /// Velocity levels of impacts by their velocities: a new one wherever the sorted
 /// velocities jump by more than `gap` of the lower.
-#[must_use]
 pub fn velocity_levels(velocities: &[f64], gap: f64) -> Vec<usize> {
     let mut order: Vec<usize> = (0..velocities.len()).collect();
     order.sort_by(|a, b| velocities[*a].total_cmp(&velocities[*b]));

@@ -55,7 +55,6 @@ pub enum Coordinate {
 
 impl Coordinate {
     /// Parameter at coordinate `u`.
-    #[must_use]
     pub fn value(self, u: f64) -> f64 {
         match self {
             Self::Logarithm => u.exp(),
@@ -64,7 +63,6 @@ impl Coordinate {
     }
 
     /// Coordinate of a parameter.
-    #[must_use]
     pub fn of(self, value: f64) -> f64 {
         match self {
             Self::Logarithm => value.ln(),
@@ -73,7 +71,6 @@ impl Coordinate {
     }
 
     /// dp/du at parameter `value`.
-    #[must_use]
     pub fn slope(self, value: f64) -> f64 {
         match self {
             Self::Logarithm => value,
@@ -112,7 +109,6 @@ pub struct Values<const N: usize> {
 
 impl<const N: usize> Values<N> {
     /// Value of one target.
-    #[must_use]
     pub fn get(&self, target: Target) -> f64 {
         match target {
             Target::Law(i) => self.law[i],
@@ -135,7 +131,6 @@ impl<const N: usize> Values<N> {
 /// A law whose parameters a fit can replace.
 pub trait FreeLaw<const N: usize>: ContactLaw<N> {
     /// The same law with other parameters.
-    #[must_use]
     fn with_values(&self, values: [f64; N]) -> Self;
 }
 
@@ -190,7 +185,6 @@ impl<'a, L: FreeLaw<N>, const N: usize, const W: usize, const P: usize> Estimato
     /// Problem of `law` (its parameters do not matter) with `free` parameters,
     /// everything else as in `base`. At most `P` parameters, of which at most `W − 1`
     /// move the motion.
-    #[must_use]
     pub fn new(
         law: L,
         setting: Setting,
@@ -209,7 +203,6 @@ impl<'a, L: FreeLaw<N>, const N: usize, const W: usize, const P: usize> Estimato
     }
 
     /// The free parameters.
-    #[must_use]
     pub fn free(&self) -> &'a [FreeParameter] {
         self.free
     }
@@ -220,19 +213,16 @@ impl<'a, L: FreeLaw<N>, const N: usize, const W: usize, const P: usize> Estimato
     }
 
     /// The samples.
-    #[must_use]
     pub fn groups(&self) -> &'a [SampleGroup] {
         self.groups
     }
 
     /// The same problem with other samples.
-    #[must_use]
     pub fn with_groups<'b>(&'b self, groups: &'b [SampleGroup]) -> Estimator<'b, L, N, W, P> {
         Estimator { groups, ..*self }
     }
 
     /// Bounds of the coordinates.
-    #[must_use]
     pub fn bounds(&self) -> Bounds<P> {
         let mut bounds = Bounds::NONE;
         for (i, parameter) in self.free.iter().enumerate() {
@@ -244,7 +234,6 @@ impl<'a, L: FreeLaw<N>, const N: usize, const W: usize, const P: usize> Estimato
     }
 
     /// Values of everything at coordinates `u`.
-    #[must_use]
     pub fn values(&self, u: &[f64; P]) -> Values<N> {
         let mut values = self.base;
         for (parameter, &u) in self.free.iter().zip(u) {
@@ -257,7 +246,6 @@ impl<'a, L: FreeLaw<N>, const N: usize, const W: usize, const P: usize> Estimato
     }
 
     /// The model at coordinates `u`.
-    #[must_use]
     pub fn model(&self, u: &[f64; P]) -> Model<L, N, W, P> {
         let values = self.values(u);
         let mut seeds = Seeds::NONE;
@@ -307,7 +295,6 @@ impl<'a, L: FreeLaw<N>, const N: usize, const W: usize, const P: usize> Estimato
     }
 
     /// The same problem with force samples understood otherwise.
-    #[must_use]
     pub fn with_sampling(&self, sampling: Sampling) -> Self {
         let setting = Setting {
             sampling,
@@ -317,7 +304,6 @@ impl<'a, L: FreeLaw<N>, const N: usize, const W: usize, const P: usize> Estimato
     }
 
     /// Whether force samples near first touch are averages.
-    #[must_use]
     pub fn averages(&self) -> bool {
         self.setting.sampling == Sampling::Averaged
     }
@@ -385,7 +371,6 @@ impl<'a, L: FreeLaw<N>, const N: usize, const W: usize, const P: usize> Estimato
     }
 
     /// Residuals and derivatives of each sample at coordinates `u`.
-    #[must_use]
     pub fn rows(&self, u: &[f64; P]) -> Option<(NormalEquations<P>, Rows)> {
         let mut rows = Rows::default();
         let equations = evaluate(&self.model(u), self.groups, Some(&mut rows)).ok()?;

@@ -28,7 +28,6 @@ pub struct Trade {
 }
 
 /// Directions of a covariance matrix, the weakest first; empty where it is singular.
-#[must_use]
 pub fn directions(covariance: &[Vec<f64>]) -> Vec<Direction> {
     let n = covariance.len();
     let sd: Vec<f64> = (0..n).map(|i| covariance[i][i].sqrt()).collect();
@@ -58,7 +57,6 @@ pub fn directions(covariance: &[Vec<f64>]) -> Vec<Direction> {
 }
 
 /// For parameter `parameter`, the other one whose knowledge would sharpen it most.
-#[must_use]
 pub fn trade(covariance: &[Vec<f64>], parameter: usize) -> Option<Trade> {
     let own = covariance[parameter][parameter];
     let left = |other: usize| {
@@ -77,7 +75,6 @@ pub fn trade(covariance: &[Vec<f64>], parameter: usize) -> Option<Trade> {
 
 /// A direction in words: "k -0.9 %, c +4.1 %, onset -3.5e-5 s". Parameters with
 /// `relative` are given in % of their value.
-#[must_use]
 pub fn in_words(
     direction: &Direction,
     covariance: &[Vec<f64>],

@@ -32,7 +32,6 @@ impl IntervalMethod {
     ];
 
     /// Name in options and results.
-    #[must_use]
     pub fn name(self) -> &'static str {
         match self {
             Self::Asymptotic => "asymptotic",
@@ -61,7 +60,6 @@ pub struct IntervalOptions {
 
 impl IntervalOptions {
     /// The draws of a posterior.
-    #[must_use]
     pub fn drawing(&self) -> Drawing {
         Drawing {
             chains: self.chains,
@@ -140,13 +138,11 @@ pub struct Posterior {
 const MIXED: (f64, f64) = (1.01, 400.0);
 
 /// The fewer of a parameter's independent draws, for the centre and for the tails.
-#[must_use]
 pub fn independent_draws(mixing: &ChainDiagnostics) -> f64 {
     mixing.bulk_draws.min(mixing.tail_draws)
 }
 
 /// Whether the chains agree and are long enough.
-#[must_use]
 pub fn mixes(mixing: &ChainDiagnostics) -> bool {
     mixing.r_hat <= MIXED.0 && independent_draws(mixing) >= MIXED.1
 }

@@ -37,7 +37,6 @@ impl LawProblem {
     /// out are free, those that it gives and those with a default value are
     /// held. An impact velocity and a mass that the expression leaves out are
     /// taken from the impact and the rig.
-    #[must_use]
     pub fn from_expression(expression: &LawExpression) -> Self {
         let description = expression.kind.describe();
         let free: Vec<bool> = description
@@ -125,19 +124,16 @@ impl Default for Quantities {
 
 impl Quantities {
     /// The quantities listed.
-    #[must_use]
     pub fn of(list: &[Quantity]) -> Self {
         Self(Quantity::ALL.map(|q| list.contains(&q)))
     }
 
     /// Whether a quantity takes part.
-    #[must_use]
     pub fn holds(&self, quantity: Quantity) -> bool {
         self.0[quantity as usize]
     }
 
     /// Names of those that take part.
-    #[must_use]
     pub fn names(&self) -> Vec<&'static str> {
         let held = Quantity::ALL.into_iter().filter(|q| self.holds(*q));
         held.map(Quantity::name).collect()

@@ -71,7 +71,6 @@ fn terms_of_user(law: &Law, user: UserKind) -> Vec<usize> {
 ///
 /// # Source
 /// Eq. (9) of the 2003 pendulum study.
-#[must_use]
 pub fn regress(impact: &Impact, law: &Law) -> Option<Vec<RegressionEstimate>> {
     let positions = linear_positions(law);
     if positions.is_empty() {

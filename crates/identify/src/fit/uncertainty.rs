@@ -47,7 +47,6 @@ const SMALLEST_INFLATION: f64 = 1.0;
 /// # Source
 /// Gallant (1987), Nonlinear Statistical Models, secs. 2.1-2.2, for the
 /// sandwich with correlated errors.
-#[must_use]
 pub fn covariance<const P: usize>(
     equations: &NormalEquations<P>,
     rows: &Rows,
@@ -76,7 +75,6 @@ pub fn covariance<const P: usize>(
 
 /// Residuals over their standard deviation, made independent as the group's
 /// persistence says: of variance 1 if the weights are right.
-#[must_use]
 pub fn standardised(group: &SampleGroup, quantity: Quantity, residuals: &[f64]) -> Vec<f64> {
     let persistence = group.persistence[quantity as usize];
     let scale = 1.0 / (1.0 - persistence * persistence).sqrt();
@@ -96,7 +94,6 @@ pub fn standardised(group: &SampleGroup, quantity: Quantity, residuals: &[f64]) 
 /// [`standardised`] residuals.
 ///
 /// * `jacobian`: P derivatives per sample
-#[must_use]
 pub fn whitened_derivatives<const P: usize>(
     group: &SampleGroup,
     quantity: Quantity,
@@ -163,7 +160,6 @@ fn mean_square(values: &[f64]) -> f64 {
 /// # Source
 /// Politis (2003), Adaptive bandwidth choice, J. Nonparametric Statistics
 /// 15:517.
-#[must_use]
 pub fn inflation(residuals: &[f64]) -> f64 {
     let n = residuals.len();
     let power: f64 = residuals.iter().map(|r| r * r).sum();
@@ -253,7 +249,6 @@ pub struct RunsTest {
 ///
 /// # Source
 /// Wald and Wolfowitz (1940), Ann. Math. Statist. 11:147.
-#[must_use]
 pub fn runs_test(residuals: &[f64]) -> Option<RunsTest> {
     let signs: Vec<bool> = residuals
         .iter()

@@ -117,7 +117,6 @@ pub enum PopulationFinding {
 
 impl PopulationFinding {
     /// Short name, for machines.
-    #[must_use]
     pub fn code(&self) -> &'static str {
         match self {
             Self::FewFruit { .. } => "few-fruit",

@@ -132,20 +132,17 @@ fn likelihood_of(plan: Plan, solution: &Solution, rig: &Rig) -> Result<ImpactLik
 
 impl ImpactLikelihood {
     /// φ̂, the fit.
-    #[must_use]
     pub fn estimate(&self) -> Vec<f64> {
         self.estimate.as_slice()[..self.law_count].to_vec()
     }
 
     /// Σ, the covariance of φ̂.
-    #[must_use]
     pub fn covariance(&self) -> Vec<Vec<f64>> {
         let row = |i: usize| self.covariance.row(i).iter().copied().collect();
         (0..self.law_count).map(row).collect()
     }
 
     /// Velocity at first touch of the fit; m/s.
-    #[must_use]
     pub fn velocity(&self) -> f64 {
         self.base.1[0]
     }
@@ -167,7 +164,6 @@ impl ImpactLikelihood {
 
     /// The log-likelihood at φ with its gradient and curvature; `None` where the
     /// model cannot be evaluated or is not determined.
-    #[must_use]
     pub fn expand(&self, at: &[f64]) -> Option<Expansion> {
         let law = self.law_count;
         let way = DVector::from_fn(law, |i, _| at[i] - self.estimate[i]);
@@ -199,7 +195,6 @@ impl ImpactLikelihood {
     /// Samples that the onset passes leave kinks in the likelihood, which shift
     /// what it says by some tenths of a standard error from one point to the
     /// next (docs/guide/src/compared/onset.md); near the fit the fit knows better.
-    #[must_use]
     pub fn expand_beyond(&self, reach: f64, at: &[f64]) -> Option<Expansion> {
         let law = self.law_count;
         let way = DVector::from_fn(law, |i, _| at[i] - self.estimate[i]);

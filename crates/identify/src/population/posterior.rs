@@ -58,7 +58,6 @@ pub struct PopulationPosterior {
 
 impl PopulationPosterior {
     /// Remarks.
-    #[must_use]
     pub fn findings(&self) -> Vec<PopulationFinding> {
         let mut out = Vec::new();
         if self.not_followed > 0 {

@@ -65,7 +65,6 @@ impl Rig {
     }
 
     /// Mass that the contact feels: I/r² of a pendulum, m of a carriage; kg.
-    #[must_use]
     pub fn effective_mass(&self) -> f64 {
         match self {
             Self::Pendulum(rig) => rig.inertia / (rig.arm * rig.arm),

@@ -12,6 +12,7 @@ use windfall_contact::laws::kind::Law;
 use windfall_numerics::ode::step::Tolerance;
 use windfall_numerics::quadrature::EIGHT_NODES;
 use windfall_numerics::root::bracketed_root;
+pub use windfall_signal::instrument::Trajectory;
 
 /// Relative accuracy of simulations; the reference tables require 1e-8.
 pub const ACCURACY: f64 = 1e-12;
@@ -48,21 +49,6 @@ pub struct ImpactSummary {
     pub absorbed_energy: f64,
     /// Integral of the force over the contact; N s.
     pub impulse: f64,
-}
-
-/// Motion at given times.
-#[derive(Clone, Debug, Default, PartialEq)]
-pub struct Trajectory {
-    /// Times from first touch; s.
-    pub times: Vec<f64>,
-    /// Displacement; m.
-    pub displacement: Vec<f64>,
-    /// Displacement rate; m/s.
-    pub rate: Vec<f64>,
-    /// Contact force; N.
-    pub force: Vec<f64>,
-    /// Acceleration; m/s².
-    pub acceleration: Vec<f64>,
 }
 
 /// A free body of `mass` strikes at `velocity`; gravity or another driving

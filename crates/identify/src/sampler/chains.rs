@@ -1,12 +1,9 @@
 //! Chains of the no-U-turn sampler of `nuts-rs`.
 
 use crate::sampler::density::{Drawing, LogDensity};
-use nuts_rs::rand::SeedableRng;
-use nuts_rs::rand::rngs::StdRng;
-use nuts_rs::{
-    Chain, CpuLogpFunc, CpuMath, CpuMathError, DiagNutsSettings, HasDims, LogpError, Settings,
-};
-use std::collections::HashMap;
+use nuts_rs::{Chain, CpuLogpFunc, LogpError, SampleStats, SamplerArgs, new_sampler};
+use rand_chacha_sampler::ChaCha12Rng;
+use rand_chacha_sampler::rand_core::SeedableRng;
 
 /// Draws before the kept ones that tune a chain: as many as are kept, at most these.
 const MOST_TUNING: usize = 500;
@@ -27,21 +24,16 @@ pub(crate) fn draw_chains(
     keep: &mut dyn FnMut(&[f64]),
 ) -> Option<usize> {
     let tuning = drawing.draws.min(MOST_TUNING);
-    let settings = DiagNutsSettings {
+    let settings = SamplerArgs {
         num_tune: tuning as u64,
         num_draws: drawing.draws as u64,
-        num_chains: drawing.chains,
-        seed: drawing.seed,
-        ..DiagNutsSettings::default()
+        ..SamplerArgs::default()
     };
     let mut divergences = 0;
     for chain in 0..drawing.chains {
         let seed = drawing.seed ^ (chain as u64 + 1).rotate_left(32);
-        let mut generator = StdRng::seed_from_u64(seed);
-        let math = CpuMath::new(Sampled(density));
-        let mut sampler = settings
-            .new_chain(chain as u64, math, &mut generator)
-            .ok()?;
+        let mut generator = ChaCha12Rng::seed_from_u64(seed);
+        let mut sampler = new_sampler(Sampled(density), settings, chain as u64, &mut generator);
         sampler
             .set_position(&start(chain))
             .or_else(|_| sampler.set_position(&vec![NEAR_ZERO; density.size()]))
@@ -51,7 +43,7 @@ pub(crate) fn draw_chains(
             let (z, progress) = sampler.draw().ok()?;
             density.drawn(chain * each + step + 1, drawing.chains * each);
             if step >= tuning {
-                divergences += usize::from(progress.diverging);
+                divergences += usize::from(progress.divergence_info().is_some());
                 keep(&z);
             }
         }
@@ -73,16 +65,8 @@ impl LogpError for Outside {
     }
 }
 
-impl HasDims for Sampled<'_> {
-    fn dim_sizes(&self) -> HashMap<String, u64> {
-        HashMap::from([("unconstrained_parameter".to_owned(), self.0.size() as u64)])
-    }
-}
-
 impl CpuLogpFunc for Sampled<'_> {
-    type LogpError = Outside;
-    type FlowParameters = ();
-    type ExpandedVector = Vec<f64>;
+    type Err = Outside;
 
     fn dim(&self) -> usize {
         self.0.size()
@@ -92,12 +76,5 @@ impl CpuLogpFunc for Sampled<'_> {
         let found = self.0.evaluate(z, gradient).ok_or(Outside)?;
         let finite = found.is_finite() && gradient.iter().all(|g| g.is_finite());
         if finite { Ok(found) } else { Err(Outside) }
-    }
-
-    fn expand_vector<R>(&mut self, _: &mut R, z: &[f64]) -> Result<Vec<f64>, CpuMathError>
-    where
-        R: nuts_rs::rand::Rng + ?Sized,
-    {
-        Ok(z.to_vec())
     }
 }

@@ -20,7 +20,6 @@ pub struct DenseStep<const D: usize, const W: usize> {
 impl<const D: usize, const W: usize> DenseStep<D, W> {
     /// State at `sigma`, the fraction of the step from 0 to 1.
     #[inline(always)]
-    #[must_use]
     pub fn at(&self, sigma: f64) -> [Lanes<W>; D] {
         let mut out = [Lanes::ZERO; D];
         for d in 0..D {

@@ -132,28 +132,24 @@ impl<const D: usize, const W: usize, const B: usize> Lockstep<D, W, B> {
 
     /// What became of `lane` in the last attempt.
     #[inline(always)]
-    #[must_use]
     pub fn outcome(&self, lane: usize) -> Outcome {
         self.outcome[lane]
     }
 
     /// Where `lane` stands.
     #[inline(always)]
-    #[must_use]
     pub fn position(&self, lane: usize) -> f64 {
         self.s.0[lane]
     }
 
     /// Width that `lane` tries next.
     #[inline(always)]
-    #[must_use]
     pub fn width(&self, lane: usize) -> f64 {
         self.width.0[lane]
     }
 
     /// The step that `lane` made in the last attempt, if it was accepted.
     #[inline(always)]
-    #[must_use]
     pub fn step(&self, lane: usize) -> DenseStep<D, W> {
         let mut coefficients = [[[0.0; DENSE_COEFFICIENTS]; W]; D];
         let mut to = [0.0; D];

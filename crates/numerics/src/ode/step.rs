@@ -43,7 +43,6 @@ pub struct Tolerance<const D: usize> {
 
 impl<const D: usize> Tolerance<D> {
     /// The same tolerance, `factor` times as large.
-    #[must_use]
     pub fn loosened(&self, factor: f64) -> Self {
         Self {
             relative: self.relative * factor,
@@ -74,7 +73,6 @@ pub struct Step<const D: usize, const W: usize> {
 impl<const D: usize, const W: usize> Step<D, W> {
     /// State at `sigma`, the fraction of the step from 0 to 1.
     #[inline(always)]
-    #[must_use]
     pub fn at(&self, sigma: f64) -> [Lanes<W>; D] {
         let mut out = self.from;
         for (i, component) in out.iter_mut().enumerate() {
@@ -91,7 +89,6 @@ impl<const D: usize, const W: usize> Step<D, W> {
     /// Value and seven terms of one lane of one component, for evaluating
     /// many samples at once with [`dense_at`].
     #[inline(always)]
-    #[must_use]
     pub fn lane(&self, component: usize, lane: usize) -> [f64; DENSE_COEFFICIENTS] {
         let mut out = [self.from[component].0[lane]; DENSE_COEFFICIENTS];
         for (term, value) in out[1..].iter_mut().enumerate() {

@@ -17,7 +17,6 @@ pub struct Dimension {
 
 impl Dimension {
     /// Whether both are the same within [`EXPONENT_TOLERANCE`].
-    #[must_use]
     pub fn matches(&self, other: &Self) -> bool {
         self.exponents
             .iter()
@@ -47,7 +46,6 @@ impl fmt::Display for Dimension {
 
 /// An exponent without the noise of its last digits: `2.91`, not
 /// `2.9099999999999997`.
-#[must_use]
 pub fn exponent_text(exponent: f64) -> String {
     format!("{}", (exponent * 1e9).round() / 1e9)
 }
@@ -74,7 +72,6 @@ impl Unit {
     };
 
     /// SI value of `value` of these units.
-    #[must_use]
     pub fn si_from(&self, value: f64) -> f64 {
         value * self.multiply / self.divide
     }

@@ -19,6 +19,7 @@ use windfall_draw::files::{FigureFolder, file_name, write_figure, write_painting
 use windfall_files::error::Error;
 use windfall_files::found::{FailureOutcome, FindingOutcome};
 use windfall_files::on_threads::on_threads;
+use windfall_files::option_value::unusable;
 use windfall_files::progress::{Progress, for_each};
 use windfall_files::provenance::VERSION;
 use windfall_identify::compare::ranking::{
@@ -58,11 +59,10 @@ pub fn rank_campaign(
     apply_request(&mut campaign, request)?;
     if campaign.fit.laws.len() < 2 {
         if request.laws.len() == 1 {
-            return Err(Error::OptionInvalid {
-                option: format!("--law {}", request.laws[0]),
-                problem: "one law has nothing to be compared with; name at least two, or none"
-                    .to_owned(),
-            });
+            return Err(unusable(
+                format!("--law {}", request.laws[0]),
+                "one law has nothing to be compared with; name at least two, or none",
+            ));
         }
         campaign.fit.laws = COMPARED
             .iter()
@@ -108,10 +108,8 @@ fn rank(
     let compare = |impacts: &[LeveledImpact], fits: &[Vec<Option<Fit>>]| {
         rank_laws(impacts, fits, &rig.rig, &problems, &campaign.fit.options)
     };
-    let ranking = compare(&impacts, &fitted).map_err(|source| Error::Identify {
-        subject: campaign.shared.title.clone(),
-        source: Box::new(source),
-    })?;
+    let ranking = compare(&impacts, &fitted)
+        .map_err(|source| Error::identify(&campaign.shared.title, source))?;
     let specimens_first = firsts(&impacts, &fitted, &entries, &ranking, &compare);
     let ids: Vec<String> = ranking
         .compared
@@ -230,12 +228,11 @@ fn set_levels(
         impact.level = *level;
     }
     if levels.iter().all(|level| *level == 0) {
-        findings.push(FindingOutcome {
-            code: "one-level".to_owned(),
-            message: "all impacts have the same velocity, so prediction at other velocities \
-                      cannot be tested; laws that differ only in velocity look alike"
-                .to_owned(),
-        });
+        findings.push(FindingOutcome::new(
+            "one-level",
+            "all impacts have the same velocity, so prediction at other velocities \
+             cannot be tested; laws that differ only in velocity look alike",
+        ));
     }
 }
 

@@ -5,20 +5,15 @@ use std::fmt::Write;
 use windfall_files::error::Error;
 use windfall_files::table::write::csv_text;
 use windfall_files::text::number::plain;
-use windfall_files::text::table::{page_tables, paragraph};
+use windfall_files::text::table::{page_tables, paragraph, title_lines};
 
 /// Columns of the CSV.
 const HEADER: &str = "law,delta_aicc,delta_bic,first_share,specimens_first,prediction_error,\
                       prediction_error_sd,residual_ratio,runs_z,parameters_per_impact,failed";
 
 /// The comparison as text for a terminal.
-#[must_use]
 pub fn text_of_laws(outcome: &LawsOutcome) -> String {
-    let mut text = format!("{}\n", paragraph(&outcome.campaign, 2));
-    if let Some(label) = &outcome.simulated {
-        let label = format!("SIMULATED recordings: {label}");
-        let _ = writeln!(text, "{}", paragraph(&label, 2));
-    }
+    let mut text = title_lines(&outcome.campaign, outcome.simulated.as_deref());
     let _ = writeln!(
         text,
         "{} laws on {} impacts of {} velocity level{}, each impact with parameters of its own:\n",

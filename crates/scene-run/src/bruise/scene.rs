@@ -79,13 +79,15 @@ const LEVEL: f64 = 0.95;
 /// That contacts were more than are kept.
 pub fn finding_of_blows(blows: &Blows) -> Option<FindingOutcome> {
     let crowded = blows.crowded();
-    (crowded > 0).then(|| FindingOutcome {
-        code: "many-blows".to_owned(),
-        message: format!(
-            "of fruit with more than {MOST_BLOWS} contacts above the threshold only the \
+    (crowded > 0).then(|| {
+        FindingOutcome::new(
+            "many-blows",
+            format!(
+                "of fruit with more than {MOST_BLOWS} contacts above the threshold only the \
              {MOST_BLOWS} hardest count; {crowded} were left out. A larger threshold leaves out \
              what does not bruise"
-        ),
+            ),
+        )
     })
 }
 
@@ -229,13 +231,15 @@ impl Blows {
     /// A regression used outside of what it was of.
     pub fn finding_of_range(&self) -> Option<FindingOutcome> {
         let [outside, all] = self.outside;
-        (outside > 0).then(|| FindingOutcome {
-            code: "bruise-range".to_owned(),
-            message: format!(
-                "{outside} of {all} contacts that bruise ({:.1} %) lie outside of what the \
+        (outside > 0).then(|| {
+            FindingOutcome::new(
+                "bruise-range",
+                format!(
+                    "{outside} of {all} contacts that bruise ({:.1} %) lie outside of what the \
                  regression of bruises was of",
-                100.0 * outside as f64 / all as f64
-            ),
+                    100.0 * outside as f64 / all as f64
+                ),
+            )
         })
     }
 

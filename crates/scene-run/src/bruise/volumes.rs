@@ -163,7 +163,6 @@ fn cell(cells: &Cells, row: usize) -> String {
 }
 
 /// Volumes for people.
-#[must_use]
 pub fn text_of_volumes(outcome: &BruiseVolumes) -> String {
     let volume = |own: f64| format!("{} mm³", plain((1e10 * own).round() / 10.0));
     let mut text = format!("cap of a sphere         {}\n", volume(outcome.cap));
@@ -177,7 +176,6 @@ pub fn text_of_volumes(outcome: &BruiseVolumes) -> String {
 }
 
 /// Volumes as CSV.
-#[must_use]
 pub fn csv_of_volumes(outcome: &BruiseVolumes) -> String {
     format!("{}\n{}\n", ADDED.join(","), cells_of(outcome).join(","))
 }

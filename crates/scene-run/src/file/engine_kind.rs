@@ -15,7 +15,6 @@ pub enum Engine {
 
 impl Engine {
     /// Its name, for people.
-    #[must_use]
     pub fn title(self) -> &'static str {
         match self {
             Self::Windfall => "windfall",
@@ -25,7 +24,6 @@ impl Engine {
     }
 
     /// Its name on the command line.
-    #[must_use]
     pub fn name(self) -> &'static str {
         match self {
             Self::Windfall => "windfall",

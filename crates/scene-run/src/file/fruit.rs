@@ -7,6 +7,9 @@ use windfall_files::error::Error;
 use windfall_files::text::toml_source::TomlSource;
 use windfall_scene::population::{FruitKind, Ovate, Source};
 
+/// Most fruit of a kind: about 40 GB of memory.
+const MOST_FRUIT: usize = 10_000_000;
+
 /// A kind of fruit, and its name.
 pub fn fruit_of(
     source: &TomlSource,
@@ -25,6 +28,10 @@ pub fn fruit_of(
     let own = table.material(&name.span(), "material", name.get_ref(), materials)?;
     let count = file.count.as_ref();
     let count = count.ok_or_else(|| table.lacks("count", "how many there are", "count = 100"))?;
+    if *count.get_ref() > MOST_FRUIT {
+        let problem = format!("a scene has at most {MOST_FRUIT} fruit of a kind");
+        return Err(table.refused(&count.span(), "count", count.get_ref(), problem));
+    }
     let example = "diameter = \"75 mm\"";
     let diameter = table.needed(&file.diameter, ("diameter", "m"), "mean diameter", example)?;
     let sd = table

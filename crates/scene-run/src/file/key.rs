@@ -2,6 +2,7 @@
 
 use std::ops::Range;
 use toml::Spanned;
+use toml::de::{DeTable, DeValue};
 use windfall_files::error::Error;
 use windfall_files::text::file_quantity::QuantityText;
 use windfall_files::text::toml_source::{TomlSource, invalid, place_at, suggestion};
@@ -20,6 +21,57 @@ pub fn short(value: f64) -> String {
 /// A place in a sentence.
 pub fn short_place(place: Vector) -> String {
     format!("[{}]", place.map(short).join(", "))
+}
+
+/// Keys whose texts go into decks, tables and pages as they are.
+const ONE_LINE: [&str; 6] = ["title", "name", "material", "materials", "mesh", "file"];
+
+/// Refuses names that hold line breaks or other control characters: in a deck for another
+/// engine, what follows a line break would be a command.
+///
+/// # Errors
+/// A name holds one.
+pub fn check_names(source: &TomlSource) -> Result<(), Error> {
+    // That the text is TOML was checked when it was read.
+    match DeTable::parse(&source.text) {
+        Ok(table) => table
+            .get_ref()
+            .iter()
+            .try_for_each(|(key, value)| check_value(source, key.get_ref(), value)),
+        Err(_) => Ok(()),
+    }
+}
+
+fn check_value(source: &TomlSource, key: &str, value: &Spanned<DeValue>) -> Result<(), Error> {
+    match value.get_ref() {
+        DeValue::String(text) if ONE_LINE.contains(&key) => {
+            let breaks = |c: char| c.is_control() || matches!(c, '\u{2028}' | '\u{2029}');
+            match text.contains(breaks) {
+                true => {
+                    let text = text.escape_debug().to_string();
+                    let problem = "must be one line, without control characters";
+                    let key = ("the scene's", key);
+                    Err(invalid(
+                        source,
+                        &value.span(),
+                        key,
+                        &text,
+                        problem.to_owned(),
+                    ))
+                }
+                false => Ok(()),
+            }
+        }
+        DeValue::Array(values) => {
+            let mut values = values.iter();
+            values.try_for_each(|value| check_value(source, key, value))
+        }
+        DeValue::Table(table) => {
+            let mut entries = table.iter();
+            entries.try_for_each(|(key, value)| check_value(source, key.get_ref(), value))
+        }
+        _ => Ok(()),
+    }
 }
 
 /// A table of a scene while it is read.

@@ -151,10 +151,10 @@ fn openness(flaws: &Flaws) -> Option<String> {
 fn findings_of(flaws: &Flaws, wall: &str, file: &str, closed: Option<bool>) -> Vec<FindingOutcome> {
     let mut findings = Vec::new();
     let mut tell = |code: &str, message: String| {
-        findings.push(FindingOutcome {
-            code: code.to_owned(),
-            message: format!("\"{wall}\" ({file}): {message}"),
-        });
+        findings.push(FindingOutcome::new(
+            code,
+            format!("\"{wall}\" ({file}): {message}"),
+        ));
     };
     let first = |numbers: &[usize]| numbers.first().map_or(0, |own| own + 1);
     if closed.is_none()

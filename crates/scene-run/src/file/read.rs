@@ -3,7 +3,7 @@
 use crate::file::bruise::{BruisePlan, bruise_of};
 use crate::file::contacts::contacts_of;
 use crate::file::fruit::fruit_of;
-use crate::file::key::Section;
+use crate::file::key::{Section, check_names};
 use crate::file::properties::{in_order, with_properties};
 use crate::file::record::{RecordPlan, record_of};
 use crate::file::room::{check_room, drawn_fruit};
@@ -71,6 +71,7 @@ pub fn read_scene(path: &Path) -> Result<ScenePlan, Error> {
 /// [`read_scene`] of a text; files that it names lie beside its path.
 pub fn scene_of(source: &TomlSource) -> Result<ScenePlan, Error> {
     let file: SceneFile = parse_source(source)?;
+    check_names(source)?;
     check_format(source, file.format.as_ref())?;
     let whole = section(source, "the file");
     let materials = materials(&whole, &file)?;

@@ -6,6 +6,7 @@
 use crate::file_error::access;
 use std::path::Path;
 use windfall_files::error::Error;
+use windfall_files::inputs::{check_regular, protect};
 use windfall_scene::vector::Vector;
 
 /// Why a file is not a valid STL file.
@@ -78,6 +79,8 @@ pub enum StlProblem {
 /// # Errors
 /// The file cannot be read; the inner error says that it is not a complete STL file.
 pub fn read_stl(path: &Path) -> Result<Result<Vec<[Vector; 3]>, StlProblem>, Error> {
+    check_regular(path)?;
+    protect(path);
     let bytes = std::fs::read(path).map_err(|source| match source.kind() {
         std::io::ErrorKind::NotFound => Error::FileAbsent {
             path: path.to_path_buf(),

@@ -194,7 +194,6 @@ impl SceneFrames {
     }
 
     /// The number of the frame that is nearest to a time; `None` where there is no frame.
-    #[must_use]
     pub fn nearest(&self, time: f64) -> Option<usize> {
         let away = |own: &FrameEntry| (own.time - time).abs();
         let numbers = 0..self.frames.len();
@@ -202,7 +201,6 @@ impl SceneFrames {
     }
 
     /// Where the file lies.
-    #[must_use]
     pub fn path(&self) -> &Path {
         &self.path
     }

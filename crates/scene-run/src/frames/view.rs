@@ -52,7 +52,6 @@ pub struct VtkOutcome {
 }
 
 /// Where the results of a scene lie: in the directory that is given, or beside the scene file.
-#[must_use]
 pub fn run_directory(path: &Path) -> PathBuf {
     match path.extension().is_some_and(|ending| ending == "toml") {
         true => path.with_extension("run"),

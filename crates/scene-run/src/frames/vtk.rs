@@ -1,10 +1,11 @@
 //! Frames of a scene for ParaView: VTK's XML files of poly data, and their times.
 
-use crate::base64::base64;
 use crate::file_error::make_directory;
 use crate::frames::camera::posed;
 use crate::frames::read::SceneFrames;
 use crate::run::frame_format::{Frame, WallFrame};
+use base64::Engine;
+use base64::prelude::BASE64_STANDARD;
 use std::fmt::Write;
 use std::path::{Path, PathBuf};
 use windfall_files::error::Error;
@@ -163,7 +164,7 @@ fn data_array(kind: &str, name: &str, parts: usize, bytes: Vec<u8>) -> String {
     format!(
         "        <DataArray type=\"{kind}\" Name=\"{name}\" NumberOfComponents=\"{parts}\" \
          format=\"binary\">{}</DataArray>\n",
-        base64(&whole)
+        BASE64_STANDARD.encode(&whole)
     )
 }
 

@@ -308,7 +308,6 @@ impl SceneRun {
     }
 
     /// What went wrong, with what is kept.
-    #[must_use]
     pub fn told(&self, error: Error) -> Error {
         match error {
             Error::FileAccess { path, source, .. } => Error::from(SceneRunError::Unwritable {
@@ -337,7 +336,6 @@ impl SceneRun {
 }
 
 /// A scene whose result would mean nothing.
-#[must_use]
 pub fn stopped_scene(problem: windfall_scene::error::Error) -> Error {
     SceneRunError::Failed(problem).into()
 }

@@ -12,6 +12,7 @@ use std::fs::File;
 use std::io::{BufReader, BufWriter, Read, Result as IoResult, Write};
 use std::path::{Path, PathBuf};
 use windfall_files::error::Error;
+use windfall_files::inputs::check_output;
 use windfall_files::provenance::VERSION;
 use windfall_scene::binary::{Binary, no_value};
 use windfall_scene::scene::Scene;
@@ -150,6 +151,7 @@ pub fn write_checkpoint(
     head: &CheckpointHead,
     body: impl Fn(&mut dyn Write) -> IoResult<()>,
 ) -> Result<(), Error> {
+    check_output(path)?;
     let partial = path.with_extension("bin.partial");
     let written = write_to(&partial, head, body).and_then(|()| std::fs::rename(&partial, path));
     // That the name stands for the new file is to last as well, where the system can say so.

@@ -94,7 +94,6 @@ pub struct Frame {
 }
 
 /// Bytes of a frame.
-#[must_use]
 pub fn frame_size(walls: usize, fruit: usize) -> u64 {
     (FRAME_HEADER + walls * WALL_BYTES) as u64 + fruit as u64 * FRUIT_BYTES as u64
 }
@@ -121,7 +120,6 @@ pub fn encode_frame(frame: &Frame, bytes: &mut Vec<u8>) {
 }
 
 /// A frame from its bytes; `None` where they are not those of a frame of so many walls.
-#[must_use]
 pub fn decode_frame(bytes: &[u8], walls: usize) -> Option<Frame> {
     let (header, rest) = bytes.split_at_checked(FRAME_HEADER)?;
     let (count, time) = decode_frame_header(header.try_into().ok()?)?;
@@ -148,7 +146,6 @@ pub fn decode_frame(bytes: &[u8], walls: usize) -> Option<Frame> {
 }
 
 /// Number of fruit and time of a frame.
-#[must_use]
 pub fn decode_frame_header(bytes: [u8; FRAME_HEADER]) -> Option<(u32, f64)> {
     let time: [u8; 8] = bytes[8..].try_into().ok()?;
     let time = f64::from_le_bytes(time);

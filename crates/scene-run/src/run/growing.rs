@@ -6,6 +6,7 @@ use std::fs::{File, TryLockError};
 use std::io::{BufWriter, Seek, SeekFrom, Write};
 use std::path::{Path, PathBuf};
 use windfall_files::error::Error;
+use windfall_files::inputs::check_output;
 
 /// A growing file. Dropped before it is whole, it is removed unless a checkpoint needs it.
 pub(crate) struct GrowingFile {
@@ -25,6 +26,7 @@ pub(crate) fn partial_of(path: &Path) -> PathBuf {
 impl GrowingFile {
     /// Opens the file as it is.
     pub fn open(path: &Path) -> Result<Self, Error> {
+        check_output(path)?;
         let mut options = File::options();
         let file = options
             .create(true)

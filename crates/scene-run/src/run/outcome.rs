@@ -206,7 +206,6 @@ pub struct Tally {
 
 impl Tally {
     /// Empty counts.
-    #[must_use]
     pub fn new(plan: &ScenePlan) -> Self {
         let scene = &plan.scene;
         let fastest = |card: &windfall_cards::law_card::LawCard| card.range.impact_velocity[1];
@@ -290,7 +289,6 @@ impl Tally {
     }
 
     /// Fruit that left.
-    #[must_use]
     pub fn left(&self) -> usize {
         self.fruit.iter().filter(|own| own.left.is_some()).count()
     }
@@ -298,7 +296,6 @@ impl Tally {
 
 impl PartnerOutcome {
     /// Of every wall that was touched, and of fruit.
-    #[must_use]
     pub fn of(scene: &Scene, tally: &Tally) -> Vec<Self> {
         let names = scene.walls.iter().map(|wall| wall.name.clone());
         let names = names.chain([FRUIT.to_owned()]);
@@ -327,7 +324,6 @@ impl PartnerOutcome {
 }
 
 /// Laws used faster than they were seen, and fruit that found no room.
-#[must_use]
 pub fn findings_of_range(plan: &ScenePlan, tally: &Tally, waiting: usize) -> Vec<FindingOutcome> {
     let mut findings = Vec::new();
     for (pair, card) in &plan.cards {
@@ -338,21 +334,21 @@ pub fn findings_of_range(plan: &ScenePlan, tally: &Tally, waiting: usize) -> Vec
         if beyond > 0 {
             let share = 100.0 * beyond as f64 / all as f64;
             let names = [pair.0, pair.1].map(|own| plan.scene.materials[own].as_str());
-            findings.push(FindingOutcome {
-                code: "law-range".to_owned(),
-                message: format!(
+            findings.push(FindingOutcome::new(
+                "law-range",
+                format!(
                     "{beyond} contacts of {} and {} ({share:.1} %) are faster than {fastest} m/s, \
                      the fastest impact that the law was seen in",
                     names[0], names[1]
                 ),
-            });
+            ));
         }
     }
     if waiting > 0 {
-        findings.push(FindingOutcome {
-            code: "no-room".to_owned(),
-            message: format!("{waiting} fruit found no room where they were to come in"),
-        });
+        findings.push(FindingOutcome::new(
+            "no-room",
+            format!("{waiting} fruit found no room where they were to come in"),
+        ));
     }
     findings
 }

@@ -1,16 +1,17 @@
 //! Contacts and fruit of a scene as tables.
 
-use crate::bruise::scene::{BruiseOutcome, PlaceOutcome};
+use crate::bruise::scene::{BruiseOutcome, LimitOutcome, PlaceOutcome};
 use crate::file::engine_kind::Engine;
 use crate::file::key::FRUIT;
 use crate::file::read::ScenePlan;
 use crate::run::growing::{GrowingFile, partial_of};
-use crate::run::outcome::{SceneOutcome, Tally};
+use crate::run::outcome::{PartnerOutcome, SceneOutcome, Tally};
 use crate::run_error::SceneRunError;
 use std::fs::{File, TryLockError};
 use std::path::{Path, PathBuf};
 use windfall_files::error::Error;
 use windfall_files::table::write::csv_text;
+use windfall_files::text::columns::{Column, cells_of_rows, csv_of_rows, text_of_rows};
 use windfall_files::text::statistic::number;
 use windfall_files::text::table::{Cells, page_tables};
 use windfall_scene::bruise::damage::Bruise;
@@ -38,7 +39,6 @@ pub struct EventFile {
 }
 
 /// State of a partial table: whether a program is writing it; `None` where there is none.
-#[must_use]
 pub fn is_written(path: &Path) -> Option<bool> {
     let file = File::options().write(true).open(partial_of(path)).ok()?;
     Some(matches!(file.try_lock(), Err(TryLockError::WouldBlock)))
@@ -97,7 +97,6 @@ impl EventFile {
     }
 
     /// Rows so far.
-    #[must_use]
     pub fn written(&self) -> u64 {
         self.written
     }
@@ -214,12 +213,58 @@ pub fn fruit_table(
     csv_text(&columns(FRUIT_COLUMNS), rows)
 }
 
-/// Columns of contacts by what was touched.
-const PARTNER_COLUMNS: &str = "touched,impacts,fruit,peak force (N),95 %,largest,\
-impact speed (m/s),95 %,largest,absorbed (mJ),95 %,largest,static loads,largest (N)";
+/// Contacts by what was touched, for a terminal.
+const PARTNERS: [Column<PartnerOutcome>; 14] = [
+    ("touched", |own| own.name.clone()),
+    ("impacts", |own| own.contacts.to_string()),
+    ("fruit", |own| own.fruit.to_string()),
+    ("peak force (N)", |own| number(own.peak_force[0])),
+    ("95 %", |own| number(own.peak_force[1])),
+    ("largest", |own| number(own.peak_force[2])),
+    ("impact speed (m/s)", |own| number(own.impact_speed[0])),
+    ("95 %", |own| number(own.impact_speed[1])),
+    ("largest", |own| number(own.impact_speed[2])),
+    ("absorbed (mJ)", |own| number(1e3 * own.absorbed_energy[0])),
+    ("95 %", |own| number(1e3 * own.absorbed_energy[1])),
+    ("largest", |own| number(1e3 * own.absorbed_energy[2])),
+    ("static loads", |own| own.static_loads.to_string()),
+    ("largest (N)", |own| number(own.largest_static_force)),
+];
+
+/// The same as CSV.
+const PARTNERS_CSV: [Column<PartnerOutcome>; 15] = [
+    ("touched", |own| own.name.clone()),
+    ("impacts", |own| own.contacts.to_string()),
+    ("fruit", |own| own.fruit.to_string()),
+    ("peak_force_median_N", |own| own.peak_force[0].to_string()),
+    ("peak_force_p95_N", |own| own.peak_force[1].to_string()),
+    ("peak_force_max_N", |own| own.peak_force[2].to_string()),
+    ("impact_speed_median_m_s", |own| {
+        own.impact_speed[0].to_string()
+    }),
+    ("impact_speed_p95_m_s", |own| {
+        own.impact_speed[1].to_string()
+    }),
+    ("impact_speed_max_m_s", |own| {
+        own.impact_speed[2].to_string()
+    }),
+    ("absorbed_energy_median_J", |own| {
+        own.absorbed_energy[0].to_string()
+    }),
+    ("absorbed_energy_p95_J", |own| {
+        own.absorbed_energy[1].to_string()
+    }),
+    ("absorbed_energy_max_J", |own| {
+        own.absorbed_energy[2].to_string()
+    }),
+    ("static_loads", |own| own.static_loads.to_string()),
+    ("static_fruit", |own| own.static_fruit.to_string()),
+    ("largest_static_force_N", |own| {
+        own.largest_static_force.to_string()
+    }),
+];
 
 /// Results of a scene, for a terminal.
-#[must_use]
 pub fn text_of_scene(outcome: &SceneOutcome) -> String {
     let step = &outcome.step;
     let mut text = format!(
@@ -244,23 +289,7 @@ pub fn text_of_scene(outcome: &SceneOutcome) -> String {
     if outcome.engine != Engine::Windfall.title() {
         text += &format!("Moved by {}.\n\n", outcome.engine);
     }
-    let rows = outcome.partners.iter().map(|own| {
-        let mut row = vec![
-            own.name.clone(),
-            own.contacts.to_string(),
-            own.fruit.to_string(),
-        ];
-        row.extend(own.peak_force.map(number));
-        row.extend(own.impact_speed.map(number));
-        row.extend(own.absorbed_energy.map(|value| number(1e3 * value)));
-        row.extend([
-            own.static_loads.to_string(),
-            number(own.largest_static_force),
-        ]);
-        row
-    });
-    let rows: Vec<Vec<String>> = rows.collect();
-    text += &page_tables(&columns(PARTNER_COLUMNS), &rows, &[0]);
+    text += &text_of_rows(&outcome.partners, &PARTNERS, &[0]);
     if let Some(bruise) = &outcome.bruise {
         text += &text_of_bruises(bruise);
     }
@@ -272,17 +301,15 @@ pub fn text_of_scene(outcome: &SceneOutcome) -> String {
 
 /// Bruised fruit, and what bruised them.
 fn text_of_bruises(bruise: &BruiseOutcome) -> String {
-    let header = ["largest bruise above (mm³)", "fruit (%)", "95 % interval"];
-    let rows = bruise.limits.iter().map(|own| {
-        let [low, high] = own.interval.map(|end| number(100.0 * end));
-        vec![
-            number(1e9 * own.limit),
-            number(100.0 * own.share),
-            format!("{low} … {high}"),
-        ]
-    });
-    let rows: Vec<Vec<String>> = rows.collect();
-    let limits = page_tables(&header.map(str::to_owned), &rows, &[]);
+    let limits: [Column<LimitOutcome>; 3] = [
+        ("largest bruise above (mm³)", |own| number(1e9 * own.limit)),
+        ("fruit (%)", |own| number(100.0 * own.share)),
+        ("95 % interval", |own| {
+            let [low, high] = own.interval.map(|end| number(100.0 * end));
+            format!("{low} … {high}")
+        }),
+    ];
+    let limits = text_of_rows(&bruise.limits, &limits, &[]);
     let places = cells_of_places(&bruise.places);
     let places = page_tables(&places.header, &places.rows, &[0]);
     format!("\n\n{limits}\n\n{places}\n")
@@ -290,28 +317,16 @@ fn text_of_bruises(bruise: &BruiseOutcome) -> String {
 
 /// What bruised, the worst first.
 pub(crate) fn cells_of_places(places: &[PlaceOutcome]) -> Cells {
-    let header = [
-        "bruised by",
-        "bruises",
-        "the largest of so many fruit",
-        "largest (mm³)",
+    let columns: [Column<PlaceOutcome>; 4] = [
+        ("bruised by", |own| own.name.clone()),
+        ("bruises", |own| own.bruises.to_string()),
+        ("the largest of so many fruit", |own| own.fruit.to_string()),
+        ("largest (mm³)", |own| number(1e9 * own.largest)),
     ];
-    let row = |own: &PlaceOutcome| {
-        vec![
-            own.name.clone(),
-            own.bruises.to_string(),
-            own.fruit.to_string(),
-            number(1e9 * own.largest),
-        ]
-    };
-    Cells {
-        header: header.map(str::to_owned).to_vec(),
-        rows: places.iter().map(row).collect(),
-    }
+    cells_of_rows(places, &columns)
 }
 
 /// The end of a text: files that were written.
-#[must_use]
 pub fn text_of_files(files: &[PathBuf]) -> String {
     let files: Vec<String> = files.iter().map(|own| own.display().to_string()).collect();
     format!("\nWritten: {}\n", files.join(", "))
@@ -319,30 +334,5 @@ pub fn text_of_files(files: &[PathBuf]) -> String {
 
 /// Contacts by what was touched, as CSV.
 pub fn csv_of_scene(outcome: &SceneOutcome) -> Result<String, Error> {
-    let levels = ["median", "p95", "max"];
-    let mut header = ["touched", "impacts", "fruit"].map(str::to_owned).to_vec();
-    for (name, unit) in [
-        ("peak_force", "N"),
-        ("impact_speed", "m_s"),
-        ("absorbed_energy", "J"),
-    ] {
-        header.extend(levels.map(|level| format!("{name}_{level}_{unit}")));
-    }
-    header.extend(["static_loads", "static_fruit", "largest_static_force_N"].map(str::to_owned));
-    let rows = outcome.partners.iter().map(|own| {
-        let mut row = vec![
-            own.name.clone(),
-            own.contacts.to_string(),
-            own.fruit.to_string(),
-        ];
-        let numbers = [own.peak_force, own.impact_speed, own.absorbed_energy];
-        row.extend(numbers.as_flattened().iter().map(f64::to_string));
-        row.extend([
-            own.static_loads.to_string(),
-            own.static_fruit.to_string(),
-            own.largest_static_force.to_string(),
-        ]);
-        row
-    });
-    csv_text(&header, rows)
+    csv_of_rows(&outcome.partners, &PARTNERS_CSV)
 }

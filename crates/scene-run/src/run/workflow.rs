@@ -200,14 +200,14 @@ fn findings_of(
 
 /// What a large lack of the account of another engine means.
 fn account(closure: f64) -> FindingOutcome {
-    FindingOutcome {
-        code: "engine-account".to_owned(),
-        message: format!(
+    FindingOutcome::new(
+        "engine-account",
+        format!(
             "what the engine's motion lost and what the contacts took differ by {:.1} %: frames are \
              too far apart (--frame-steps), or the engine's contacts are not those of the scene",
             100.0 * closure.abs()
         ),
-    }
+    )
 }
 
 /// Of each fruit the hardest that it suffered.

@@ -265,10 +265,7 @@ fn with_seed(text: &str, replicate: u64) -> String {
 /// Findings of all runs, each code once for a variant, and those of the study.
 fn findings(plan: &StudyPlan, runs: &[Result<Vec<Replicate>, String>]) -> Vec<FindingOutcome> {
     let mut all: Vec<FindingOutcome> = Vec::new();
-    let tell = |code: &str, message: String| FindingOutcome {
-        code: code.to_owned(),
-        message,
-    };
+    let tell = |code: &str, message: String| FindingOutcome::new(code, message);
     for (own, run) in plan.variants.iter().zip(runs) {
         match run {
             Err(problem) => all.push(tell("variant-failed", format!("{}: {problem}", own.name))),

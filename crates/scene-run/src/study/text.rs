@@ -1,14 +1,16 @@
 //! A study for people: words, tables, a page.
 
-use crate::base64::base64;
 use crate::run::tables::{cells_of_places, text_of_files};
 use crate::study::figure::figure_of_study;
-use crate::study::outcome::{StudyOutcome, VariantOutcome};
+use crate::study::outcome::{EffectOutcome, StudyOutcome, VariantOutcome};
+use base64::Engine;
+use base64::prelude::BASE64_STANDARD;
 use std::path::{Path, PathBuf};
 use windfall_draw::files::{FigureFolder, write_figures};
 use windfall_draw::page::{CaptionedTable, Report, Section, html_of_report};
 use windfall_files::error::Error;
 use windfall_files::table::write::csv_text;
+use windfall_files::text::columns::{Column, cells_of_rows};
 use windfall_files::text::statistic::number;
 use windfall_files::text::table::{Cells, page_tables};
 use windfall_files::write_file::write_whole;
@@ -64,32 +66,20 @@ fn variants(outcome: &StudyOutcome) -> Cells {
 }
 
 fn effects(outcome: &StudyOutcome) -> Cells {
-    let header = [
-        "varied",
-        "level",
-        "against",
-        "bruise above (mm³)",
-        "change of the bruised share (percentage points)",
-        "pairs",
+    let columns: [Column<EffectOutcome>; 6] = [
+        ("varied", |own| own.factor.clone()),
+        ("level", |own| own.level.clone()),
+        ("against", |own| own.against.clone()),
+        ("bruise above (mm³)", |own| number(1e9 * own.limit)),
+        ("change of the bruised share (percentage points)", |own| {
+            percent(own.difference, own.interval)
+        }),
+        ("pairs", |own| own.pairs.to_string()),
     ];
-    let rows = outcome.effects.iter().map(|own| {
-        vec![
-            own.factor.clone(),
-            own.level.clone(),
-            own.against.clone(),
-            number(1e9 * own.limit),
-            percent(own.difference, own.interval),
-            own.pairs.to_string(),
-        ]
-    });
-    Cells {
-        header: header.map(str::to_owned).to_vec(),
-        rows: rows.collect(),
-    }
+    cells_of_rows(&outcome.effects, &columns)
 }
 
 /// Results of a study, for a terminal.
-#[must_use]
 pub fn text_of_study(outcome: &StudyOutcome) -> String {
     let table = |cells: &Cells, left: &[usize]| page_tables(&cells.header, &cells.rows, left);
     let mut text = format!(
@@ -242,7 +232,7 @@ fn picture(outcome: &StudyOutcome, out: &Path) -> Option<String> {
                 return Some(format!(
                     "<figure><img alt=\"The scene\" style=\"max-width:100%\" \
                      src=\"data:{kind};base64,{}\"></figure>",
-                    base64(&bytes)
+                    BASE64_STANDARD.encode(&bytes)
                 ));
             }
         }

@@ -17,7 +17,6 @@ use std::f64::consts::PI;
 ///
 /// # Source
 /// Geometry of a spherical cap; the elliptic form puts w₁w₂ in the place of w² (Mohsenin 1986).
-#[must_use]
 pub fn cap_volume(widths: [f64; 2], depth: f64) -> f64 {
     PI * depth * (3.0 * widths[0] * widths[1] + 4.0 * depth * depth) / 24.0
 }
@@ -28,7 +27,6 @@ pub fn cap_volume(widths: [f64; 2], depth: f64) -> f64 {
 /// * `radius`: of the fruit there; m
 ///
 /// Returns `None` where the bruise is wider than the fruit.
-#[must_use]
 pub fn cap_volume_with_bulge(widths: [f64; 2], depth: f64, radius: f64) -> Option<f64> {
     let square = radius * radius - 0.25 * widths[0] * widths[1];
     (square >= 0.0).then(|| {
@@ -38,7 +36,6 @@ pub fn cap_volume_with_bulge(widths: [f64; 2], depth: f64, radius: f64) -> Optio
 }
 
 /// Volume of half an ellipsoid, π w₁ w₂ d/6; m³.
-#[must_use]
 pub fn half_ellipsoid_volume(widths: [f64; 2], depth: f64) -> f64 {
     PI * widths[0] * widths[1] * depth / 6.0
 }
@@ -143,7 +140,6 @@ impl Blow {
     /// * `radius`: of this fruit; m
     /// * `other`: whether it was the partner in the event
     /// * `share`: part of the absorbed energy that this fruit takes; 1
-    #[must_use]
     pub fn of(event: &Event, radius: f64, other: bool, share: f64) -> Self {
         // a² = R* d with R* at most R.
         let area = (event.largest_displacement / radius).sqrt();
@@ -166,13 +162,11 @@ impl Blow {
 
 impl BruiseModel {
     /// Volume of the bruise of one contact; m³.
-    #[must_use]
     pub fn volume(&self, blow: &Blow) -> f64 {
         self.volume_within(0.0, blow)
     }
 
     /// Whether a contact bruises, with coefficients within [`REACH`] standard uncertainties.
-    #[must_use]
     pub fn may_bruise(&self, blow: &Blow) -> bool {
         self.volume_within(REACH, blow) > 0.0
     }
@@ -234,7 +228,6 @@ impl BruiseModel {
     }
 
     /// Bruises of a fruit. Contacts whose areas overlap are on one spot.
-    #[must_use]
     pub fn bruises(&self, blows: &[Blow]) -> Vec<Bruise> {
         let mut found: Vec<(Bruise, f64, f64)> = Vec::new();
         for (contact, blow) in blows.iter().enumerate() {
@@ -267,7 +260,6 @@ impl BruiseModel {
     }
 
     /// Volume of the largest bruise of a fruit; m³.
-    #[must_use]
     pub fn largest(&self, blows: &[Blow]) -> f64 {
         match (self.same_spot, &self.law) {
             // Where only the largest on a spot counts, spots make no difference; and a power
@@ -296,7 +288,6 @@ impl BruiseModel {
     /// * `blows`: contacts of each fruit
     /// * `limits`: m³
     /// * `draws`: models drawn, and their seed; the same seed draws the same models
-    #[must_use]
     pub fn counts_above(
         &self,
         blows: &[Vec<Blow>],
@@ -327,7 +318,6 @@ impl BruiseModel {
     /// * `blows`: contacts of each fruit
     /// * `limits`: m³
     /// * `level`: of the interval; 1
-    #[must_use]
     pub fn shares_above(
         &self,
         blows: &[Vec<Blow>],

@@ -39,14 +39,12 @@ impl Regression {
     ///
     /// * `terms`: x
     /// * `fruit`, `own`: how the fruit and this bruise differ; standard deviations
-    #[must_use]
     pub fn value(&self, terms: &[f64], fruit: f64, own: f64) -> f64 {
         let products = self.coefficients.iter().zip(terms).map(|(b, x)| b * x);
         products.sum::<f64>() + self.between_fruit * fruit + self.residual * own
     }
 
     /// The volume of which g has a value; m³. Not a number where g has no inverse.
-    #[must_use]
     pub fn volume(&self, value: f64) -> f64 {
         let volume = match self.response {
             Response::Volume => value,
@@ -58,7 +56,6 @@ impl Regression {
     }
 
     /// Whether a larger g is of a larger volume.
-    #[must_use]
     pub fn rises(&self) -> bool {
         match self.response {
             Response::Volume => true,
@@ -68,7 +65,6 @@ impl Regression {
     }
 
     /// Standard uncertainty of Σ bᵢ xᵢ.
-    #[must_use]
     pub fn sd(&self, terms: &[f64]) -> f64 {
         let column = |column: usize| {
             let rows = self.factor.iter().zip(terms);

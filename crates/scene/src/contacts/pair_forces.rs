@@ -5,7 +5,7 @@ use crate::contacts::neighbours::BodiesFrom;
 use crate::contacts::react::{Clock, Normal, Touch, surface_velocity};
 use crate::contacts::store::{CHUNK, Load, Store, add_load, loads};
 use crate::interaction::Interaction;
-use crate::vector_of::dot;
+use crate::vector::dot;
 use windfall_numerics::prefetch::prefetch;
 use windfall_numerics::real::Lanes;
 use windfall_numerics::real_vector::{FourLanes, FourNumbers, LANES};

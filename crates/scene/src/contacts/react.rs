@@ -3,7 +3,7 @@
 
 use crate::annuli::{Shear, slide};
 use crate::interaction::Interaction;
-use crate::vector_of::{Of, add, cross, dot, into_plane, less, stretch_into_plane, times};
+use crate::vector::{Of, add, cross, dot, into_plane, less, scaled, stretch_into_plane};
 use windfall_contact::law::ContactLaw;
 use windfall_numerics::real::{Lanes, Real};
 
@@ -352,7 +352,7 @@ pub(crate) fn react<R: Real>(
     peaks.displacement = peaks.displacement.max(displacement);
     peaks.force = peaks.force.max(force);
     let mut reaction = Reaction {
-        force: times(normal, -force),
+        force: scaled(normal, -force),
         rolling: [zero; 3],
     };
     if surface.friction > 0.0 {
@@ -395,7 +395,7 @@ fn roll<R: Real>(
     let square = dot(moment, moment);
     let beyond = square - limit * limit;
     let capped = beyond.select(limit / square.sqrt(), limit.constant(1.0));
-    let moment = times(moment, capped);
+    let moment = scaled(moment, capped);
     let both = add(before, moment);
     memory.friction_work = memory.friction_work - dot(both, rolling) * (0.5 * clock.step);
     *own = moment;

@@ -9,7 +9,7 @@ use crate::contacts::react::{
 use crate::event::Encounter;
 use crate::interaction::Interaction;
 use crate::line::Line;
-use crate::vector_of::{Of, cross};
+use crate::vector::{Of, cross};
 use std::ops::Range;
 use windfall_contact::laws::kind::Law;
 use windfall_numerics::prefetch::prefetch;

@@ -11,8 +11,7 @@ use crate::interaction::Interaction;
 use crate::shape::facet_tree::FacetTree;
 use crate::shape::surface::{Closest, Facet, Shape};
 use crate::shape::wall::{Placed, Wall};
-use crate::vector::{Rotation, Vector, length, scaled, subtract};
-use crate::vector_of::dot;
+use crate::vector::{Rotation, Vector, dot, length, scaled, subtract};
 use std::ops::Range;
 use windfall_contact::laws::kind::Law;
 

@@ -11,7 +11,6 @@ use crate::interaction::Interaction;
 use crate::line::{HalfLine, Line};
 use crate::scene::Scene;
 use crate::vector::{Rotation, Vector, dot, length, plus_scaled, turned_on};
-use crate::vector_of::dot as dot_of;
 use windfall_numerics::prefetch::prefetch;
 use windfall_numerics::real::Lanes;
 use windfall_numerics::real_vector::{FourLanes, FourNumbers, LANES, with_four_lanes};
@@ -303,11 +302,11 @@ impl FourLanes for Move<'_> {
                 from[axis] = place[axis] - listed[axis];
             }
             let turn = turned_on(zero.columns(rows[5]), [spin[0], spin[1], spin[2]], step);
-            let own = dot_of(from, from);
+            let own = dot(from, from);
             second = second.max(way.min(own));
             way = way.max(own);
             let velocities = [velocity[0], velocity[1], velocity[2]];
-            let own = dot_of(velocities, velocities) * (step * step) / (place[3] * place[3]);
+            let own = dot(velocities, velocities) * (step * step) / (place[3] * place[3]);
             share = share.max(own);
             // A largest one does not show what is no number.
             all = all + own;

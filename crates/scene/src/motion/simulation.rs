@@ -169,44 +169,37 @@ impl Simulation {
     }
 
     /// Time of the places; s.
-    #[must_use]
     pub fn time(&self) -> f64 {
         self.steps as f64 * self.scene.time_step
     }
 
     /// Steps so far.
-    #[must_use]
     pub fn steps(&self) -> u64 {
         self.steps
     }
 
     /// How often the list of neighbours was made.
-    #[must_use]
     pub fn rebuilds(&self) -> u64 {
         self.rebuilds
     }
 
     /// Fruit in the scene now.
-    #[must_use]
     pub fn count(&self) -> usize {
         self.clumps.len() + self.bodies.clump.iter().filter(|own| **own == NONE).count()
     }
 
     /// Fruit that are still to come.
-    #[must_use]
     pub fn waiting(&self) -> usize {
         self.scene.fruit.len() - self.released
     }
 
     /// Contacts of two fruit now.
-    #[must_use]
     pub fn pair_contacts(&self) -> usize {
         let spheres: usize = self.contacts.iter().flatten().map(|own| own.count()).sum();
         spheres + self.clump_contacts.pair_count()
     }
 
     /// Every fruit in the scene, by number.
-    #[must_use]
     pub fn fruit(&self) -> Vec<FruitState> {
         let state = |body: usize| {
             let (HalfLine([x, y, z, _]), m) = (self.bodies.place[body], self.bodies.motion[body]);
@@ -242,7 +235,6 @@ impl Simulation {
     }
 
     /// Contacts that are still there, as if they ended now.
-    #[must_use]
     pub fn lasting(&self) -> Vec<Event> {
         let mut events = Vec::new();
         let last = self.steps.saturating_sub(1) as f64 * self.scene.time_step;

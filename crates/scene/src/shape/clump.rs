@@ -25,7 +25,6 @@ impl Clump {
     /// * `count`: number of spheres, two or more
     ///
     /// Returns `None` where it is not longer than thick.
-    #[must_use]
     pub fn spheroid(length: f64, diameter: f64, mass: f64, count: usize) -> Option<Self> {
         let (a, b) = (0.5 * length, 0.5 * diameter);
         let long = a > b && b > 0.0 && a.is_finite() && count >= 2;
@@ -48,7 +47,6 @@ impl Clump {
     }
 
     /// Angular momentum; kg m²/s.
-    #[must_use]
     pub fn momentum(&self, turn: Rotation, spin: Vector) -> Vector {
         let inward = turned_back(turn, spin);
         turned(
@@ -58,7 +56,6 @@ impl Clump {
     }
 
     /// Angular velocity of an angular momentum; rad/s.
-    #[must_use]
     pub fn spin(&self, turn: Rotation, momentum: Vector) -> Vector {
         let inward = turned_back(turn, momentum);
         turned(
@@ -68,13 +65,11 @@ impl Clump {
     }
 
     /// Energy of rotation; J.
-    #[must_use]
     pub fn rotational(&self, turn: Rotation, spin: Vector) -> f64 {
         0.5 * dot(self.momentum(turn, spin), spin)
     }
 
     /// Semi-axes of the ellipsoid of the same moments; m.
-    #[must_use]
     pub fn semi_axes(&self, mass: f64) -> Vector {
         // Of an ellipsoid I = m (b² + c²)/5 about each axis.
         let [x, y, z] = self.moments.map(|moment| 2.5 * moment / mass);
@@ -82,7 +77,6 @@ impl Clump {
     }
 
     /// Volume of that ellipsoid; m³.
-    #[must_use]
     pub fn volume(&self, mass: f64) -> f64 {
         4.0 / 3.0 * PI * self.semi_axes(mass).iter().product::<f64>()
     }

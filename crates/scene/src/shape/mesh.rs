@@ -52,7 +52,6 @@ const STEPS: f64 = 4.0;
 ///
 /// Corners are one where they are closer than 10⁻⁶ of the diagonal of the whole, or than
 /// four steps of single precision at the largest coordinate.
-#[must_use]
 pub fn welded(triangles: &[[Vector; 3]]) -> Surface {
     let (low, high) = bounds(triangles.iter().flatten().copied());
     let largest = low
@@ -156,7 +155,6 @@ fn height([a, b, c]: [Vector; 3]) -> f64 {
 }
 
 /// The box around some places.
-#[must_use]
 pub fn bounds(places: impl Iterator<Item = Vector>) -> (Vector, Vector) {
     let (mut low, mut high) = ([f64::INFINITY; 3], [f64::NEG_INFINITY; 3]);
     for place in places {

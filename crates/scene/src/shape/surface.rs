@@ -106,7 +106,6 @@ impl Shape {
 
     /// Points that it lies around, and how far from them it reaches; m. Infinitely far for a
     /// plane.
-    #[must_use]
     pub fn skeleton(&self) -> (Vec<Vector>, f64) {
         match self {
             Self::Plane { point, .. } => (vec![*point], f64::INFINITY),
@@ -119,7 +118,6 @@ impl Shape {
     /// The surface as faces; of an endless plane a rectangle.
     ///
     /// * `around`: lowest and highest corner of the box that the rectangle reaches around; m
-    #[must_use]
     pub fn faces(&self, around: [Vector; 2]) -> Faces {
         let (vertices, faces, corners) = match self {
             Self::Plane { point, normal } => {
@@ -160,7 +158,6 @@ impl Shape {
     }
 
     /// What a curved surface is called: R* on it depends on its radius.
-    #[must_use]
     pub fn curved(&self) -> Option<&'static str> {
         match self {
             Self::Cylinder { .. } => Some("cylinder"),
@@ -169,7 +166,6 @@ impl Shape {
     }
 
     /// Corners of the box around it; none of a plane, which has no end.
-    #[must_use]
     pub fn corners(&self) -> Vec<Vector> {
         match self.skeleton() {
             (_, f64::INFINITY) => Vec::new(),
@@ -205,7 +201,6 @@ fn rectangle(point: Vector, normal: Vector, [low, high]: [Vector; 2]) -> Vec<Vec
 
 impl Plate {
     /// Its corners; m.
-    #[must_use]
     pub fn corners(&self) -> [Vector; 4] {
         let [a, b] = self.edges;
         let corner = self.corner;

@@ -67,7 +67,6 @@ pub(crate) struct Placed {
 
 impl Motion {
     /// Whether the wall stays where it is (its surface may run).
-    #[must_use]
     pub fn stays(&self) -> bool {
         self.velocity == [0.0; 3] && self.vibration.is_none() && self.rotation.is_none()
     }
@@ -76,7 +75,6 @@ impl Motion {
     /// rotation q and the shift t (m).
     ///
     /// * `time`: s
-    #[must_use]
     pub fn pose(&self, time: f64) -> (Rotation, Vector) {
         let placed = self.at(time);
         (placed.turn, placed.outward([0.0; 3]))

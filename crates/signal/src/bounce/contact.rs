@@ -35,7 +35,6 @@ pub struct ContactForce {
 ///
 /// # Source
 /// The equation of motion of the plate. Differences: none.
-#[must_use]
 pub fn contact_force(
     force: &[f64],
     (period, damping_ratio): (f64, f64),
@@ -59,7 +58,6 @@ pub fn contact_force(
 }
 
 /// The force itself, smoothed: of a support that does not ring.
-#[must_use]
 pub fn smoothed_force(force: &[f64], smoothing: usize) -> ContactForce {
     ContactForce {
         values: moving_mean(&moving_mean(force, smoothing), smoothing),

@@ -398,7 +398,6 @@ fn measured(
             peak: largest.force,
             peak_time: largest.time,
             first_peak: first.force,
-            first_peak_time: first.time,
             peak_sd: first.sd,
             impulse: impulse(signals, from, to),
             ringing: rings[k],

@@ -73,7 +73,6 @@ pub enum BounceFinding {
 
 impl BounceFinding {
     /// Stable short name, for tables and JSON.
-    #[must_use]
     pub fn code(&self) -> &'static str {
         match self {
             Self::NoBounce { .. } => "no_bounce",

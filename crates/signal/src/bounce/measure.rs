@@ -83,7 +83,6 @@ pub struct Alone {
 }
 
 /// Takes the ringing of the impact before out of a range of the support force.
-#[must_use]
 pub fn alone(signals: &Signals, range: (usize, usize), before: Option<&Ringing>) -> Alone {
     let rings = |i: usize| {
         let time = signals.times[i];
@@ -101,7 +100,6 @@ pub fn alone(signals: &Signals, range: (usize, usize), before: Option<&Ringing>)
 }
 
 /// First local maximum of the force of one impact from a sample on.
-#[must_use]
 pub fn first_peak(signals: &Signals, alone: &Alone, from: usize) -> Peak {
     let force = &alone.force;
     let (mut top, mut i) = (from - alone.first, from - alone.first);
@@ -122,7 +120,6 @@ pub fn first_peak(signals: &Signals, alone: &Alone, from: usize) -> Peak {
 }
 
 /// Largest support force in a range.
-#[must_use]
 pub fn largest_peak(signals: &Signals, from: usize, until: usize) -> Peak {
     let force = signals.force;
     let top = (from..until).fold(from, |top, i| if force[i] > force[top] { i } else { top });
@@ -168,7 +165,6 @@ fn refined(times: &[f64], force: &[f64], top: usize, noise: f64) -> Peak {
 /// [`time_before`].
 ///
 /// * `peak`: sample of the first peak
-#[must_use]
 pub fn onset(signals: &Signals, alone: &Alone, peak: usize) -> Onset {
     let (times, force) = (&alone.times, &alone.force);
     let peak = peak - alone.first;
@@ -204,7 +200,6 @@ pub fn onset(signals: &Signals, alone: &Alone, peak: usize) -> Onset {
 }
 
 /// End of a contact, by a line through two levels of the fall; `None` if it was not recorded.
-#[must_use]
 pub fn end(signals: &Signals, segment: Segment, until: usize) -> Option<Uncertain> {
     let force = signals.contact_force;
     let top = (segment.0..segment.1).fold(
@@ -238,7 +233,6 @@ pub fn end(signals: &Signals, segment: Segment, until: usize) -> Option<Uncertai
 /// ```
 ///
 /// The bracket is the plate's momentum; it vanishes where the plate is quiet.
-#[must_use]
 pub fn impulse(signals: &Signals, first: usize, last: usize) -> Uncertain {
     let (times, force) = (signals.times, signals.force);
     let area: f64 = (first..last)
@@ -276,7 +270,6 @@ fn momentum(signals: &Signals, at: usize) -> Uncertain {
 }
 
 /// Root mean square of the support force about its mean, over the samples before one.
-#[must_use]
 pub fn movement(signals: &Signals, until: usize, samples: usize) -> f64 {
     let part = &signals.level_force[until.saturating_sub(samples)..until];
     if part.is_empty() {

@@ -20,7 +20,6 @@ pub struct LevelSeen<'a> {
 }
 
 /// Findings about the bounces of a recording.
-#[must_use]
 pub fn quality(signals: &Signals, level: &LevelSeen, bounces: &[Bounce]) -> Vec<BounceFinding> {
     let mut found = Vec::new();
     let n = signals.times.len();

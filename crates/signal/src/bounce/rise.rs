@@ -22,7 +22,6 @@ const LONGEST: f64 = 2.0;
 /// K ∫ s^q h(t − t₀ − s) ds with h(t) = exp(−λ t) sin(ω_d t), which rises like
 /// t^(q+2) as long as the plate is inert and like t^q once it follows; the
 /// beginning is where the ratio of the two is that of the levels.
-#[must_use]
 pub fn time_before(rise: f64, ratio: f64, exponent: f64, plate: Option<(f64, f64)>) -> f64 {
     let Some((period, damping_ratio)) = plate else {
         return rise / (ratio.powf(1.0 / exponent) - 1.0);

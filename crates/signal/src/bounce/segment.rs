@@ -18,7 +18,6 @@ pub struct Hysteresis {
 ///
 /// * `lag`: samples by which it is late, so that a contact's own rise is not in it
 /// * `decay`: of the ringing, per sample
-#[must_use]
 pub fn envelope(force: &[f64], lag: usize, decay: f64) -> Vec<f64> {
     let keep = (-decay).exp();
     let mut amplitude = 0.0_f64;
@@ -36,7 +35,6 @@ pub fn envelope(force: &[f64], lag: usize, decay: f64) -> Vec<f64> {
 /// * `envelope`: amplitude of the ringing at each sample; zeros without
 /// * `smallest_gap`: contacts closer than this are one; samples; `None`: a tenth
 ///   of the longest
-#[must_use]
 pub fn segments(
     contact_force: &[f64],
     envelope: &[f64],

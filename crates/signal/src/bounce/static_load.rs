@@ -38,7 +38,6 @@ pub struct Before {
 }
 
 /// Level and noise before the first contact.
-#[must_use]
 pub fn before_contact(values: &[f64]) -> Before {
     let step = quantum(values);
     let pilot_samples = ((PILOT_SHARE * values.len() as f64) as usize).max(PILOT_SAMPLES);
@@ -110,7 +109,6 @@ pub struct QuietBlock {
 ///
 /// * `noise`: standard deviation of a sample
 /// * `block`: samples of a block; no shorter than the top of a pulse
-#[must_use]
 pub fn quiet_blocks(values: &[f64], noise: f64, block: usize) -> Vec<QuietBlock> {
     let half = (block / 2).max(1);
     let mean = |part: &[f64]| part.iter().sum::<f64>() / part.len() as f64;
@@ -134,7 +132,6 @@ pub fn quiet_blocks(values: &[f64], noise: f64, block: usize) -> Vec<QuietBlock>
 }
 
 /// Level of every sample by straight lines from quiet block to quiet block.
-#[must_use]
 pub fn followed_level(blocks: &[QuietBlock], samples: usize, otherwise: f64) -> Vec<f64> {
     let mut next = 0;
     (0..samples)
@@ -157,7 +154,6 @@ pub fn followed_level(blocks: &[QuietBlock], samples: usize, otherwise: f64) -> 
 }
 
 /// Whether the level of quiet blocks moves enough to matter to thresholds.
-#[must_use]
 pub fn moves(blocks: &[QuietBlock], noise: f64) -> bool {
     let means: Vec<f64> = blocks.iter().map(|b| b.mean).collect();
     let Some(centre) = median(&means) else {

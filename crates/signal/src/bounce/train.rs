@@ -88,8 +88,6 @@ pub struct Bounce {
     pub peak_time: f64,
     /// First maximum of the support force without the ringing of the bounce before; N.
     pub first_peak: f64,
-    /// Its time; s.
-    pub first_peak_time: f64,
     /// Standard deviation of a peak by noise; N.
     pub peak_sd: f64,
     /// Impulse of the contact force; N s.

@@ -39,7 +39,6 @@ pub struct EdgeRate {
 /// time is that of an event, the count changed at the time itself.
 ///
 /// A step of several counts within one interval is one edge, at its middle.
-#[must_use]
 pub fn edges(times: &[f64], values: &[f64], count_times: CountTimes) -> Edges {
     let mut edges = Edges::default();
     for i in 1..times.len().min(values.len()) {
@@ -62,7 +61,6 @@ pub fn edges(times: &[f64], values: &[f64], count_times: CountTimes) -> Edges {
 ///   time that matters less.
 /// * `quantum`: length of a count; m
 /// * `end`: when the recording ended; s
-#[must_use]
 pub fn edge_rate(edges: &Edges, window: f64, quantum: f64, end: f64) -> EdgeRate {
     let (mut times, mut values) = (Vec::new(), Vec::new());
     let mut j = 0;

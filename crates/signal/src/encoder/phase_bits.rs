@@ -27,7 +27,6 @@ pub struct PhaseBits {
 /// A phase out of the bytes of a logic capture.
 ///
 /// * `bit`: which bit of a byte, 0 to 7; higher ones are taken modulo 8
-#[must_use]
 pub fn phase_of_bytes(bytes: &[u8], bit: u32) -> PhaseBits {
     const ONES: u64 = 0x0101_0101_0101_0101;
     // Bits 0, 8, … 56 times this gather in the highest byte, in order.

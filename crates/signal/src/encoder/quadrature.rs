@@ -69,7 +69,6 @@ pub struct Decoded {
 
 impl Tally {
     /// Illegal over all transitions; 1.
-    #[must_use]
     pub fn illegal_share(&self) -> f64 {
         self.illegal as f64 / self.transitions.max(1) as f64
     }
@@ -117,7 +116,6 @@ pub fn decode_volts(
 /// Edges of the counts from the bytes of a logic capture, each with both phases.
 ///
 /// * `bit_a`, `bit_b`: which bits of a byte, 0 to 7
-#[must_use]
 pub fn decode_bytes(
     bytes: &[u8],
     bit_a: u32,
@@ -129,7 +127,6 @@ pub fn decode_bytes(
 }
 
 /// The count at each sample, 0 at the first.
-#[must_use]
 pub fn counts_at_samples(decoded: &DecodedEdges) -> Vec<i64> {
     let mut counts = vec![0; decoded.samples];
     fill_counts(decoded, &mut counts);
@@ -154,7 +151,6 @@ pub fn fill_counts(decoded: &DecodedEdges, counts: &mut [i64]) {
 ///
 /// With the old and new state as bits a, b, 64 samples at a time: a step is legal
 /// if one of them changes, and counts up if (A changes) = (a ≠ b).
-#[must_use]
 pub fn decode_bits(a: &PhaseBits, b: &PhaseBits, illegal: IllegalTransition) -> DecodedEdges {
     let samples = a.samples.min(b.samples);
     let (mut last_a, mut last_b) = match (a.words.first(), b.words.first()) {

@@ -170,7 +170,6 @@ fn section(forward: [f64; 3], poles: &[Complex<f64>]) -> Section {
 }
 
 /// Gain of a filter, passed once, at a frequency in Hz.
-#[must_use]
 pub fn gain(sections: &[Section], frequency: f64, rate: f64) -> f64 {
     let delay = Complex::from_polar(1.0, -2.0 * PI * frequency / rate);
     sections

@@ -41,7 +41,6 @@ const SECTIONS: usize = 60;
 /// # Source
 /// Reinsch (1967), Numer. Math. 10:177; Hutchinson and de Hoog (1985), Numer.
 /// Math. 47:99, for the trace.
-#[must_use]
 pub fn smoothing_spline(times: &[f64], values: &[f64], penalty: f64) -> Option<SmoothingSpline> {
     let system = System::new(times, values)?;
     let unit = system.unit;
@@ -60,7 +59,6 @@ pub fn smoothing_spline(times: &[f64], values: &[f64], penalty: f64) -> Option<S
 ///
 /// # Source
 /// Craven and Wahba (1979), Numer. Math. 31:377.
-#[must_use]
 pub fn smoothing_spline_gcv(times: &[f64], values: &[f64]) -> Option<SmoothingSpline> {
     let system = System::new(times, values)?;
     let score = |exponent: f64| {

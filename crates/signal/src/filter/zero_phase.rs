@@ -40,7 +40,6 @@ pub fn filter_zero_phase(sections: &[Section], signal: &[f64]) -> Result<Vec<f64
 }
 
 /// Samples by which either end is prolonged.
-#[must_use]
 pub fn padding(sections: &[Section]) -> usize {
     let plain = |pick: fn(&Section) -> f64| sections.iter().filter(|s| pick(s) == 0.0).count();
     let short = plain(|s| s.forward[2]).min(plain(|s| s.back[1]));

@@ -20,7 +20,6 @@ const LARGEST: f64 = 0.995;
 /// # Source
 /// Marriott and Pope (1954), Bias in the estimation of autocorrelations,
 /// Biometrika 41:390, with the missing product counted.
-#[must_use]
 pub fn persistence(values: &[f64]) -> Option<f64> {
     let n = values.len();
     if n < LEAST_SAMPLES {
@@ -40,7 +39,6 @@ pub fn persistence(values: &[f64]) -> Option<f64> {
 }
 
 /// Factor on the variance of a mean over many samples: (1 + φ)/(1 − φ).
-#[must_use]
 pub fn mean_inflation(persistence: f64) -> f64 {
     (1.0 + persistence) / (1.0 - persistence)
 }

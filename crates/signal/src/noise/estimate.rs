@@ -42,7 +42,6 @@ pub struct Noise {
 /// * `scatter`: standard deviation seen, if any; unit of the channel
 /// * `quantum`: step of the samples, if any; unit of the channel
 /// * `largest`: largest magnitude in the impact; unit of the channel
-#[must_use]
 pub fn combined_noise(scatter: Option<f64>, quantum: Option<f64>, largest: f64) -> Noise {
     let scatter = scatter.filter(|s| s.is_finite()).unwrap_or(0.0);
     let rounding = quantum.map_or(0.0, |q| q / 12f64.sqrt());
@@ -63,7 +62,6 @@ pub fn combined_noise(scatter: Option<f64>, quantum: Option<f64>, largest: f64) 
 }
 
 /// Step between neighbouring values of a quantised signal; `None` without one.
-#[must_use]
 pub fn quantum(values: &[f64]) -> Option<f64> {
     // Spread the samples looked at over the whole recording.
     let stride = values.len().div_ceil(QUANTUM_SAMPLES).max(1);
@@ -98,7 +96,6 @@ pub fn quantum(values: &[f64]) -> Option<f64> {
 
 /// Mean and standard deviation of a baseline, leaving out samples more than
 /// four standard deviations away. `None` if empty; deviation 0 of a single sample.
-#[must_use]
 pub fn baseline(values: &[f64]) -> Option<(f64, f64)> {
     let mut centre = median(values)?;
     let mut limit = f64::INFINITY;
@@ -129,7 +126,6 @@ pub fn baseline(values: &[f64]) -> Option<(f64, f64)> {
 /// Scatter about polynomials of `order` fitted to successive blocks of `block`
 /// samples: the median over the blocks, corrected for the median of χ². `None`
 /// if there is no full block.
-#[must_use]
 pub fn scatter_about_polynomial(
     times: &[f64],
     values: &[f64],
@@ -152,7 +148,6 @@ pub fn scatter_about_polynomial(
 }
 
 /// Median; `None` of nothing.
-#[must_use]
 pub fn median(values: &[f64]) -> Option<f64> {
     let mut sorted = values.to_vec();
     let middle = sorted.len() / 2;

@@ -11,7 +11,6 @@ pub struct NoiseSource {
 }
 
 /// A source for a seed; different `stream`s of one seed are independent.
-#[must_use]
 pub fn noise_source(seed: u64, stream: u64) -> NoiseSource {
     let mut generator = ChaCha8Rng::seed_from_u64(seed);
     generator.set_stream(stream);

@@ -86,7 +86,6 @@ pub struct AlignedPair {
 
 impl AlignedPair {
     /// Second less first, as a part of the peak of the first; 1.
-    #[must_use]
     pub fn difference(&self) -> Vec<f64> {
         let pairs = self.first.iter().zip(&self.second);
         let peak = self.first_features.peak;
@@ -96,7 +95,6 @@ impl AlignedPair {
     }
 
     /// Change of peak, duration and rise slope, as parts of the first; 1.
-    #[must_use]
     pub fn changes(&self) -> [f64; 3] {
         let (first, second) = (&self.first_features, &self.second_features);
         [
@@ -206,7 +204,6 @@ fn top_index(series: &Series) -> usize {
 }
 
 /// Largest force, of a parabola through the samples above nine tenths of it if possible.
-#[must_use]
 pub fn peak_force(series: &Series) -> f64 {
     let top = top_index(series);
     let Some(&largest) = series.values.get(top) else {

@@ -139,7 +139,6 @@ pub fn decide(
 }
 
 /// Ratio that the largest of some differences exceeds with probability `level` by chance.
-#[must_use]
 pub fn critical_ratio(reference: &Repeatability, decisions: usize, level: f64) -> f64 {
     let tests = (reference.curve.len() * decisions.max(1)) as f64;
     let each = -(f64::ln_1p(-level) / tests).exp_m1();

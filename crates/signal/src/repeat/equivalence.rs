@@ -16,7 +16,6 @@ pub enum Verdict {
 
 impl Verdict {
     /// The word for tables.
-    #[must_use]
     pub fn word(self) -> &'static str {
         match self {
             Self::Changed => "changed",
@@ -113,7 +112,6 @@ pub(crate) fn check_level(level: f64) -> Result<(), Error> {
 }
 
 /// Quantile of Student's t; infinite without degrees of freedom.
-#[must_use]
 pub fn t_quantile(probability: f64, freedom: f64) -> f64 {
     match freedom > 0.0 {
         true => -t_upper_quantile(probability, freedom),

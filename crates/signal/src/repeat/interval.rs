@@ -18,7 +18,6 @@ pub struct EnergyInterval {
 /// one energy count as changed where one of them does.
 ///
 /// * `verdicts`: energy and verdict, in any order; J
-#[must_use]
 pub fn energy_interval(verdicts: &[(f64, Verdict)]) -> (EnergyInterval, bool) {
     let of = |wanted: Verdict| {
         verdicts

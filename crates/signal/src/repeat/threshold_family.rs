@@ -14,7 +14,6 @@ pub enum Family {
 
 impl Family {
     /// Its name.
-    #[must_use]
     pub fn name(self) -> &'static str {
         match self {
             Self::LogNormal => "log-normal",

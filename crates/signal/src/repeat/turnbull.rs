@@ -63,7 +63,6 @@ pub fn turnbull(intervals: &[EnergyInterval]) -> Result<Vec<EnergyMass>, Error> 
 }
 
 /// Innermost interval in which the share of the fruit passes `probability`.
-#[must_use]
 pub fn quantile_of(masses: &[EnergyMass], probability: f64) -> Option<EnergyInterval> {
     let mut sum = 0.0;
     for mass in masses {

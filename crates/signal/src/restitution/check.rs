@@ -17,7 +17,6 @@ const WEAK: f64 = 0.2;
 ///
 /// * `bounces`: of the drop
 /// * `restitutions`: by any methods
-#[must_use]
 pub fn check_restitutions(
     bounces: &[Bounce],
     conditions: &DropConditions,

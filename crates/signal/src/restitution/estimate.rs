@@ -20,7 +20,6 @@ pub enum RestitutionMethod {
 
 impl RestitutionMethod {
     /// Stable short name, for tables and JSON.
-    #[must_use]
     pub fn code(self) -> &'static str {
         match self {
             Self::DropHeight => "drop_height",
@@ -81,7 +80,6 @@ impl Default for DropConditions {
 
 /// Time in the air, from the end of a bounce to the onset of the next; s. `None` after the
 /// last, or if either contact was not recorded in full.
-#[must_use]
 pub fn flight(bounces: &[Bounce], bounce: usize) -> Option<Uncertain> {
     let (here, next) = (bounces.get(bounce)?, bounces.get(bounce + 1)?);
     let end_seen = here.complete || bounce == 0;
@@ -95,7 +93,6 @@ pub fn flight(bounces: &[Bounce], bounce: usize) -> Option<Uncertain> {
 }
 
 /// Speed at both ends of a flight that begins and ends at one height, g t/2.
-#[must_use]
 pub fn flight_speed(flight: Uncertain, gravity: Uncertain) -> Uncertain {
     let value = 0.5 * gravity.value * flight.value;
     Uncertain::new(
@@ -105,7 +102,6 @@ pub fn flight_speed(flight: Uncertain, gravity: Uncertain) -> Uncertain {
 }
 
 /// Speed of approach, of the first bounce from the drop height, later from the flight before.
-#[must_use]
 pub fn impact_speed(
     bounces: &[Bounce],
     bounce: usize,
@@ -131,7 +127,6 @@ pub fn impact_speed(
 ///
 /// These are of the vertical velocity. A rebound that is slanted or takes up
 /// spin makes them smaller than the restitution of the contact.
-#[must_use]
 pub fn restitution_from_time(bounces: &[Bounce], conditions: &DropConditions) -> Vec<Restitution> {
     (0..bounces.len())
         .filter_map(|bounce| {
@@ -180,7 +175,6 @@ pub fn restitution_from_time(bounces: &[Bounce], conditions: &DropConditions) ->
 ///
 /// Needs the mass, and the scale of the force: unlike times, an impulse is
 /// wrong by as much as the volts per newton are.
-#[must_use]
 pub fn restitution_from_impulse(
     bounces: &[Bounce],
     conditions: &DropConditions,
@@ -218,7 +212,6 @@ pub fn restitution_from_impulse(
 ///
 /// * `heights`: above where contact begins, the drop height first; m
 /// * `gravity`: for the speeds; m/s²
-#[must_use]
 pub fn restitution_from_heights(heights: &[Uncertain], gravity: Uncertain) -> Vec<Restitution> {
     heights
         .windows(2)

@@ -60,7 +60,6 @@ pub enum RestitutionFinding {
 
 impl RestitutionFinding {
     /// Stable short name, for tables and JSON.
-    #[must_use]
     pub fn code(&self) -> &'static str {
         match self {
             Self::NoSecondImpact => "no_second_impact",

@@ -55,7 +55,6 @@ const LEAST_LINE: usize = 3;
 /// * `contacts`: onset and end of each; s
 ///
 /// Contacts without enough positions on either side are left out.
-#[must_use]
 pub fn contact_motions(
     times: &[f64],
     positions: &[f64],
@@ -125,7 +124,6 @@ fn velocity(
 /// ```
 ///
 /// * `mass`: kg; `driving`: a; m/s²
-#[must_use]
 pub fn restitution_from_impulse_and_motion(
     bounces: &[Bounce],
     motions: &[ContactMotion],
@@ -158,7 +156,6 @@ pub fn restitution_from_impulse_and_motion(
 }
 
 /// Restitution by velocities, e = −v_after/v_before.
-#[must_use]
 pub fn restitution_from_motion(motions: &[ContactMotion]) -> Vec<Restitution> {
     motions
         .iter()

@@ -29,13 +29,11 @@ pub struct Ringing {
 }
 
 /// Decay of the amplitude, λ = ζ ω_n; 1/s.
-#[must_use]
 pub fn decay_rate(period: f64, damping_ratio: f64) -> f64 {
     TAU / period * damping_ratio / (1.0 - damping_ratio * damping_ratio).sqrt()
 }
 
 /// Force of the ringing at a time, before or after the stretch too; N.
-#[must_use]
 pub fn ringing_at(ringing: &Ringing, time: f64) -> f64 {
     let t = time - ringing.from;
     let decay = decay_rate(ringing.period.value, ringing.damping_ratio.value);
@@ -43,7 +41,6 @@ pub fn ringing_at(ringing: &Ringing, time: f64) -> f64 {
 }
 
 /// Amplitude of the ringing at a time; N.
-#[must_use]
 pub fn amplitude_at(ringing: &Ringing, time: f64) -> f64 {
     let decay = decay_rate(ringing.period.value, ringing.damping_ratio.value);
     ringing.amplitude * (-decay * (time - ringing.from)).exp()
@@ -63,7 +60,6 @@ pub fn amplitude_at(ringing: &Ringing, time: f64) -> f64 {
 /// that is left in the force has no effect. Standard uncertainties are those of
 /// the fit with the variance of its own residuals; frequency and decay of a
 /// damped cosine hardly correlate.
-#[must_use]
 pub fn fit_ringing(
     from: f64,
     interval: f64,

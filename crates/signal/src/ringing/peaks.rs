@@ -66,7 +66,6 @@ pub struct FreeRinging<'a> {
 /// # Source
 /// Kang et al. (2023), INMATEH 71:763, eqs. 2 and 3. Differences: their eq. 2
 /// has the ratio the other way round; n cycles in place of one.
-#[must_use]
 pub fn logarithmic_decrement(ringing: &FreeRinging, cycles: Option<usize>) -> Option<Decrement> {
     let peaks = peaks(ringing);
     let first = *peaks.first()?;
@@ -99,7 +98,6 @@ pub fn logarithmic_decrement(ringing: &FreeRinging, cycles: Option<usize>) -> Op
 }
 
 /// Damping ratio of a logarithmic decrement, ζ = δ/√(4π² + δ²).
-#[must_use]
 pub fn damping_from_decrement(decrement: Uncertain) -> Uncertain {
     let square = 4.0 * PI * PI + decrement.value * decrement.value;
     Uncertain::new(

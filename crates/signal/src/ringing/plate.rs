@@ -30,7 +30,6 @@ pub struct PlateDynamics {
 /// # Source
 /// Kang et al. (2023), INMATEH 71:763, eqs. 4 to 6. Differences: they use ω_d in
 /// place of ω_n, which makes k smaller by ζ².
-#[must_use]
 pub fn plate_dynamics(
     period: Uncertain,
     damping_ratio: Uncertain,
@@ -102,7 +101,6 @@ pub struct HeightTable {
 ///
 /// The study's five printed means (0.069, 0.074, 0.075, 0.076, 0.068) average
 /// to 0.0724, where it prints 0.073.
-#[must_use]
 pub fn height_table(drops: &[(f64, f64)]) -> Option<HeightTable> {
     let mut sorted = drops.to_vec();
     sorted.sort_by(|a, b| a.0.total_cmp(&b.0));

@@ -44,7 +44,6 @@ struct Lobe {
 /// The stretch begins at the first lobe from which on a damped cosine leaves no
 /// more than noise, and one lobe later, in case the contact's last remainder
 /// hides in the noise; where none leaves so little, at the one that leaves least.
-#[must_use]
 pub fn find_ringing(
     times: &[f64],
     force: &[f64],

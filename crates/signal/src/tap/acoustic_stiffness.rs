@@ -20,7 +20,6 @@ pub const MEGAHERTZ_GRAM: f64 = 1e-4;
 /// # Source
 /// Cooke and Rand (1973), J. Agric. Eng. Res. 18:141, on the mode and the
 /// exponent 2/3. Uncertainties add in squares, relative: 2 u(f)/f and ⅔ u(m)/m.
-#[must_use]
 pub fn acoustic_stiffness(frequency: Uncertain, mass: Uncertain) -> Uncertain {
     let value = frequency.value.powi(2) * mass.value.powf(2.0 / 3.0);
     let of_frequency = 2.0 * frequency.sd / frequency.value;
@@ -38,7 +37,6 @@ pub fn acoustic_stiffness(frequency: Uncertain, mass: Uncertain) -> Uncertain {
 /// and Poisson's ratio.
 ///
 /// * `density`: kg/m³
-#[must_use]
 pub fn acoustic_stiffness_with_density(stiffness: Uncertain, density: Uncertain) -> Uncertain {
     let value = stiffness.value * density.value.cbrt();
     let of_density = density.sd / density.value / 3.0;
@@ -56,7 +54,6 @@ pub fn acoustic_stiffness_with_density(stiffness: Uncertain, density: Uncertain)
 ///
 /// # Source
 /// DerSimonian and Laird (1986), Control. Clin. Trials 7:177.
-#[must_use]
 pub fn mean_of_differing(values: &[Uncertain]) -> Option<Uncertain> {
     // A fit that claims to be exact is not.
     let variances: Vec<f64> = values

@@ -29,7 +29,6 @@ pub enum TapFinding {
 
 impl TapFinding {
     /// Stable short name, for tables and JSON.
-    #[must_use]
     pub fn code(&self) -> &'static str {
         match self {
             Self::BeginsInTap => "begins_in_tap",

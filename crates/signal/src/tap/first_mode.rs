@@ -60,7 +60,6 @@ pub enum Rejection {
 
 impl Rejection {
     /// What a reader is told.
-    #[must_use]
     pub fn reason(self) -> &'static str {
         match self {
             Self::Inconstant => "too few taps show it",
@@ -105,7 +104,6 @@ pub enum Confidence {
 
 impl Confidence {
     /// The word in tables.
-    #[must_use]
     pub fn word(self) -> &'static str {
         match self {
             Self::None => "none",
@@ -156,7 +154,6 @@ const TORSIONAL: std::ops::Range<f64> = 0.92..0.97;
 const SPREAD: f64 = 0.01;
 
 /// Resonances that the taps of a fruit share, in order of frequency.
-#[must_use]
 pub fn persistent(taps: &[TapModes], agreement: f64) -> Vec<Persistent> {
     let mut all: Vec<(usize, &Resonance)> = Vec::new();
     for (tap, modes) in taps.iter().enumerate() {
@@ -215,7 +212,6 @@ fn summary(group: &[(usize, &Resonance)], taps: &[TapModes]) -> Option<Persisten
 /// * `found`: from [`persistent`]
 /// * `taps`: taps evaluated; `orientations`: places of the fruit that were hit
 /// * `shared`: frequencies that all fruit show; Hz
-#[must_use]
 pub fn first_mode(
     found: &[Persistent],
     taps: usize,
@@ -340,7 +336,6 @@ fn confidence(
 /// and ripeness do not: those of support or microphone; Hz.
 ///
 /// Empty for fewer than four fruit.
-#[must_use]
 pub fn shared_frequencies(fruit: &[Vec<Persistent>], agreement: f64) -> Vec<f64> {
     if fruit.len() < FEWEST_FRUIT {
         return Vec::new();

@@ -66,7 +66,6 @@ pub struct Spectrum {
 
 impl Spectrum {
     /// Index of the ordinate nearest to a frequency.
-    #[must_use]
     pub fn nearest(&self, frequency: f64) -> usize {
         let index = (frequency / self.step).round().max(0.0) as usize;
         index.min(self.power.len().saturating_sub(1))
@@ -209,7 +208,6 @@ pub(crate) fn transform(samples: &[f64], length: usize) -> Vec<Complex<f64>> {
 ///
 /// * `interval`: sampling interval; s
 /// * `low`, `high`: ends of the band; Hz
-#[must_use]
 pub fn band_limited(samples: &[f64], interval: f64, low: f64, high: f64) -> Vec<f64> {
     let mean = samples.iter().sum::<f64>() / samples.len().max(1) as f64;
     let centred: Vec<f64> = samples.iter().map(|x| x - mean).collect();

@@ -19,7 +19,6 @@ pub struct Peak {
 /// # Source
 /// Results are those of scipy.signal.find_peaks, peak_prominences and
 /// peak_widths (rel_height = 0.5), with which a test compares.
-#[must_use]
 pub fn peaks(curve: &[f64]) -> Vec<Peak> {
     let mut found = Vec::new();
     let mut i = 1;
@@ -84,7 +83,6 @@ fn right_crossing(curve: &[f64], index: usize, base: usize, level: f64) -> f64 {
 
 /// Distance in steps from the highest ordinate to the vertex of the parabola
 /// through it and its neighbours; between −½ and ½.
-#[must_use]
 pub fn parabolic_offset(curve: &[f64], index: usize) -> f64 {
     if index == 0 || index + 1 >= curve.len() {
         return 0.0;

@@ -15,7 +15,6 @@
 /// // only the largest and the smallest differ
 /// assert_eq!(compact_letters(&[1.0, 3.0, 2.0], &[(0, 1)]), ["b", "a", "ab"]);
 /// ```
-#[must_use]
 pub fn compact_letters(means: &[f64], differ: &[(usize, usize)]) -> Vec<String> {
     // from large to small, so that the letters run along with the means
     let mut order: Vec<usize> = (0..means.len()).collect();

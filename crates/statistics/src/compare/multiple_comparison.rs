@@ -1,7 +1,6 @@
 //! p-values of several tests, adjusted for their number.
 
 /// Bonferroni: n p, at most 1, which keeps the chance of any false finding.
-#[must_use]
 pub fn bonferroni(p: &[f64]) -> Vec<f64> {
     let n = p.len() as f64;
     p.iter().map(|p| (n * p).min(1.0)).collect()
@@ -12,7 +11,6 @@ pub fn bonferroni(p: &[f64]) -> Vec<f64> {
 /// # Source
 /// Holm (1979), A simple sequentially rejective multiple test procedure, Scand.
 /// J. Stat. 6.
-#[must_use]
 pub fn holm(p: &[f64]) -> Vec<f64> {
     let mut adjusted = vec![0.0; p.len()];
     let mut largest = 0.0_f64;

@@ -24,7 +24,6 @@ pub struct BetaParts {
 /// # Source
 /// DLMF 8.17.22; Loader (2000), Fast and accurate computation of binomial
 /// probabilities.
-#[must_use]
 pub fn beta_parts(a: f64, b: f64, x: f64, y: f64) -> BetaParts {
     if x <= 0.0 || y >= 1.0 && x == 0.0 {
         return BetaParts {

@@ -11,7 +11,6 @@ use std::f64::consts::PI;
 ///
 /// # Source
 /// DLMF 8.7.1 and 8.9.2; Loader (2000).
-#[must_use]
 pub fn upper_gamma(a: f64, x: f64) -> f64 {
     if a.is_nan() || x.is_nan() {
         return f64::NAN;

@@ -7,7 +7,6 @@ use std::f64::consts::PI;
 /// # Source
 /// DLMF 5.11.1; Loader (2000), Fast and accurate computation of binomial
 /// probabilities.
-#[must_use]
 pub fn stirling_rest(x: f64) -> f64 {
     if x < 16.0 {
         let stirling = (x + 0.5) * x.ln() - x + 0.5 * (2.0 * PI).ln();
@@ -34,7 +33,6 @@ pub fn stirling_rest(x: f64) -> f64 {
 ///
 /// # Source
 /// Loader (2000), as above.
-#[must_use]
 pub fn deviance(x: f64, m: f64) -> f64 {
     let difference = x - m;
     if difference.abs() > 0.1 * (x + m) {

@@ -1,7 +1,6 @@
 //! Medians and quartiles.
 
 /// The median; NaN where there are no values.
-#[must_use]
 pub fn median(values: &[f64]) -> f64 {
     quantile(values, 0.5)
 }
@@ -9,7 +8,6 @@ pub fn median(values: &[f64]) -> f64 {
 /// The quantile at a probability, linear between the ordered values: place
 /// (n - 1) p of them, counted from zero (type 7 of Hyndman and Fan 1996, the
 /// default of R and NumPy). NaN where there are no values.
-#[must_use]
 pub fn quantile(values: &[f64], probability: f64) -> f64 {
     let mut sorted = values.to_vec();
     sorted.sort_by(f64::total_cmp);

@@ -21,7 +21,6 @@ use std::f64::consts::PI;
 /// # Source
 /// Hartley (1942), The range in random samples, Biometrika 32; definition in
 /// Copenhaver and Holland (1988), J. Stat. Comput. Simul. 30.
-#[must_use]
 pub fn studentized_range_upper(q: f64, means: usize, df: f64) -> f64 {
     if means < 2 || q.is_nan() || df.is_nan() || df <= 0.0 {
         return f64::NAN;
@@ -37,7 +36,6 @@ pub fn studentized_range_upper(q: f64, means: usize, df: f64) -> f64 {
 }
 
 /// The q with P(Q > q) = `probability`.
-#[must_use]
 pub fn studentized_range_upper_quantile(probability: f64, means: usize, df: f64) -> f64 {
     upper_quantile_positive(probability, |q| studentized_range_upper(q, means, df))
 }

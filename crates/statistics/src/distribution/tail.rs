@@ -6,19 +6,16 @@ use crate::distribution::incomplete_gamma::upper_gamma;
 use std::f64::consts::SQRT_2;
 
 /// P(Z > z) of the standard normal distribution.
-#[must_use]
 pub fn normal_upper(z: f64) -> f64 {
     0.5 * libm::erfc(z / SQRT_2)
 }
 
 /// P(Z ≤ z) of the standard normal distribution.
-#[must_use]
 pub fn normal_lower(z: f64) -> f64 {
     normal_upper(-z)
 }
 
 /// The z with P(Z ≤ z) = `probability`.
-#[must_use]
 pub fn normal_quantile(probability: f64) -> f64 {
     match probability > 0.5 {
         // 1 - p is exact here, and small tails keep their digits
@@ -28,7 +25,6 @@ pub fn normal_quantile(probability: f64) -> f64 {
 }
 
 /// The z with P(Z > z) = `probability`.
-#[must_use]
 pub fn normal_upper_quantile(probability: f64) -> f64 {
     upper_quantile_on_line(probability, normal_upper)
 }
@@ -39,7 +35,6 @@ fn has_freedom(df: f64) -> bool {
 }
 
 /// P(|T| > |t|) of Student's t: the two-sided p-value.
-#[must_use]
 pub fn t_two_sided(t: f64, df: f64) -> f64 {
     if t.is_nan() || !has_freedom(df) {
         return f64::NAN;
@@ -55,20 +50,17 @@ pub fn t_two_sided(t: f64, df: f64) -> f64 {
 }
 
 /// P(T > t) of Student's t.
-#[must_use]
 pub fn t_upper(t: f64, df: f64) -> f64 {
     let half = 0.5 * t_two_sided(t, df);
     if t >= 0.0 { half } else { 1.0 - half }
 }
 
 /// The t with P(T > t) = `probability`, 0.025 for a two-sided interval of 0.95.
-#[must_use]
 pub fn t_upper_quantile(probability: f64, df: f64) -> f64 {
     upper_quantile_on_line(probability, |t| t_upper(t, df))
 }
 
 /// P(F > f) of Fisher's F.
-#[must_use]
 pub fn f_upper(f: f64, df_above: f64, df_below: f64) -> f64 {
     if f.is_nan() || !has_freedom(df_above) || !has_freedom(df_below) {
         return f64::NAN;
@@ -88,13 +80,11 @@ pub fn f_upper(f: f64, df_above: f64, df_below: f64) -> f64 {
 }
 
 /// The f with P(F > f) = `probability`.
-#[must_use]
 pub fn f_upper_quantile(probability: f64, df_above: f64, df_below: f64) -> f64 {
     upper_quantile_positive(probability, |f| f_upper(f, df_above, df_below))
 }
 
 /// P(X > x) of χ².
-#[must_use]
 pub fn chi_squared_upper(x: f64, df: f64) -> f64 {
     match has_freedom(df) {
         true => upper_gamma(0.5 * df, 0.5 * x),
@@ -103,13 +93,11 @@ pub fn chi_squared_upper(x: f64, df: f64) -> f64 {
 }
 
 /// The x with P(X > x) = `probability` of χ².
-#[must_use]
 pub fn chi_squared_upper_quantile(probability: f64, df: f64) -> f64 {
     upper_quantile_positive(probability, |x| chi_squared_upper(x, df))
 }
 
 /// P(B ≤ x) of the beta distribution.
-#[must_use]
 pub fn beta_lower(x: f64, a: f64, b: f64) -> f64 {
     let BetaParts { lower, .. } = beta_parts(a, b, x, 1.0 - x);
     lower

@@ -33,7 +33,6 @@ pub enum MixedFinding {
 
 impl MixedFinding {
     /// A name for programs, which stays.
-    #[must_use]
     pub fn code(&self) -> &'static str {
         match self {
             Self::Singular { .. } => "singular",

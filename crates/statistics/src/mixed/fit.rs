@@ -207,7 +207,6 @@ fn check_residual(model: &MixedModel, state: &State) -> Result<(), MixedError> {
 
 impl MixedFit {
     /// Covariance of the coefficients; rows.
-    #[must_use]
     pub fn covariance_rows(&self) -> Vec<Vec<f64>> {
         let rows = self.covariance.row_iter();
         rows.map(|row| row.iter().copied().collect()).collect()

@@ -186,7 +186,6 @@ fn contrast_df(
 }
 
 /// Tests of every coefficient, with intervals of this confidence (as 0.95).
-#[must_use]
 pub fn coefficient_tests(
     fit: &MixedFit,
     uncertainty: &VarianceUncertainty,
@@ -303,7 +302,6 @@ fn joint_df(dfs: &[f64]) -> f64 {
 }
 
 /// Contrast that picks these coefficients.
-#[must_use]
 pub fn picking_contrast(coefficients: usize, picked: &[usize]) -> DMatrix<f64> {
     DMatrix::from_fn(picked.len(), coefficients, |i, j| {
         f64::from(u8::from(picked[i] == j))

@@ -317,7 +317,6 @@ fn apply(entry: &Entry, piece: &Piece, matrix: &DMatrix<f64>) -> DMatrix<f64> {
 }
 
 /// Tests of every coefficient with the adjusted standard errors.
-#[must_use]
 pub fn kenward_roger_tests(
     fit: &MixedFit,
     adjusted: &KenwardRoger,

@@ -41,25 +41,21 @@ pub struct MixedModel {
 
 impl MixedModel {
     /// Number of rows.
-    #[must_use]
     pub fn rows(&self) -> usize {
         self.y.len()
     }
 
     /// Number of fixed coefficients.
-    #[must_use]
     pub fn coefficients(&self) -> usize {
         self.x_names.len()
     }
 
     /// The random terms.
-    #[must_use]
     pub fn terms(&self) -> &[RandomTerm] {
         &self.terms
     }
 
     /// Names of the fixed coefficients.
-    #[must_use]
     pub fn names(&self) -> &[String] {
         &self.x_names
     }

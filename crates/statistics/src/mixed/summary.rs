@@ -25,7 +25,6 @@ pub struct VarianceShares {
 /// # Source
 /// Nakagawa and Schielzeth (2013), Methods Ecol. Evol. 4, 133-142; random slopes as
 /// in Johnson (2014), 5, 944-946.
-#[must_use]
 pub fn variance_shares(fit: &MixedFit) -> VarianceShares {
     let n = fit.model.rows() as f64;
     let expected = &fit.model.x * DVector::from_column_slice(&fit.coefficients);

@@ -26,7 +26,6 @@ pub struct RandomTerm {
 }
 
 /// A random intercept.
-#[must_use]
 pub fn random_intercept(name: &str, group: &[usize], group_names: &[String]) -> RandomTerm {
     RandomTerm {
         name: name.to_owned(),

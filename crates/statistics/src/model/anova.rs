@@ -19,7 +19,6 @@ pub enum AnovaType {
 
 impl AnovaType {
     /// "I", "II" or "III".
-    #[must_use]
     pub fn roman(self) -> &'static str {
         match self {
             Self::Sequential => "I",
@@ -62,7 +61,6 @@ pub struct Anova {
 /// Analyses the variance of a model.
 ///
 /// * `terms`: positions of the terms of the frame that are in the model
-#[must_use]
 pub fn anova(frame: &ModelFrame, reduced: &Reduced, terms: &[usize], kind: AnovaType) -> Anova {
     let base: Vec<usize> = if frame.intercept { vec![0] } else { Vec::new() };
     // What is aliased in the whole model is in none: else every column that it
@@ -151,7 +149,6 @@ pub struct LackOfFit {
 
 /// Splits the residuals into lack of fit and pure error of rows with equal `settings`;
 /// `None` without repeated rows or without degrees of freedom.
-#[must_use]
 pub fn lack_of_fit(
     settings: &DMatrix<f64>,
     y: &[f64],

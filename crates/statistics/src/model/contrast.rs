@@ -38,7 +38,6 @@ impl Contrast {
     ];
 
     /// Its matrix; `reference` is the level that treatment contrasts compare with.
-    #[must_use]
     pub fn matrix(self, levels: &[String], reference: usize) -> ContrastMatrix {
         let count = levels.len();
         let others: Vec<usize> = (0..count).filter(|level| *level != reference).collect();
@@ -106,7 +105,6 @@ pub struct PolynomialBasis {
 
 impl PolynomialBasis {
     /// Polynomials of degree 1 to `degree` over points.
-    #[must_use]
     pub fn new(points: &[f64], degree: usize) -> Self {
         let mut basis = Self {
             centres: Vec::new(),
@@ -134,7 +132,6 @@ impl PolynomialBasis {
     }
 
     /// Values at points, a column for each degree from 1.
-    #[must_use]
     pub fn values(&self, points: &[f64]) -> DMatrix<f64> {
         let degree = self.centres.len();
         let mut matrix = DMatrix::zeros(points.len(), degree);

@@ -20,7 +20,6 @@ const FUNCTIONS: [Function; 9] = [
 ];
 
 /// Functions that may stand in formulas, for messages.
-#[must_use]
 pub fn known_functions() -> String {
     let names = FUNCTIONS.iter().map(|(name, _)| *name);
     let names: Vec<&str> = names.chain(["I", "poly", "C", "center", "scale"]).collect();
@@ -28,7 +27,6 @@ pub fn known_functions() -> String {
 }
 
 /// A function of one number that may stand in formulas.
-#[must_use]
 pub fn function_of(name: &str) -> Option<fn(f64) -> f64> {
     let known = FUNCTIONS.iter().find(|(own, _)| *own == name);
     known.map(|(_, function)| *function)
@@ -62,7 +60,6 @@ fn missing_at(table: &Table, name: &str, row: usize) -> bool {
 }
 
 /// Names of the columns in an expression, each once.
-#[must_use]
 pub fn columns_of(node: &Node) -> Vec<String> {
     let mut found = Vec::new();
     collect(node, &mut found);

@@ -105,7 +105,6 @@ pub fn formula(text: &str, columns: &[String]) -> Result<Formula, Error> {
 }
 
 /// How a term is written.
-#[must_use]
 pub fn term_name(atoms: &[Atom], term: &[usize]) -> String {
     let names: Vec<&str> = term.iter().map(|atom| atoms[*atom].name.as_str()).collect();
     names.join(":")

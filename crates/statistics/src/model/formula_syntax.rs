@@ -367,7 +367,6 @@ impl Parser<'_> {
 }
 
 /// A part of a formula in one spelling, whatever blanks were written.
-#[must_use]
 pub fn spelling(node: &Node) -> String {
     match &node.kind {
         Kind::Number(number) => number.to_string(),

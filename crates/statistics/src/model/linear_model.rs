@@ -233,7 +233,6 @@ fn leverages(x: &DMatrix<f64>, solved: &Solved, rows: std::ops::Range<usize>) ->
 }
 
 /// Quantile of Student's t; NaN without degrees of freedom.
-#[must_use]
 pub fn student_quantile(probability: f64, df: f64) -> f64 {
     -t_upper_quantile(probability, df)
 }
@@ -253,7 +252,6 @@ pub struct WholeModel {
 
 impl WholeModel {
     /// As a row of an analysis of variance.
-    #[must_use]
     pub fn row(&self) -> AnovaRow {
         AnovaRow {
             term: "model".to_owned(),
@@ -293,7 +291,6 @@ pub struct Quality {
 
 impl LinearFit {
     /// Covariance of the estimates, for residuals of one variance; rows.
-    #[must_use]
     pub fn covariance_rows(&self) -> Vec<Vec<f64>> {
         let variance = self.residual_ss / self.residual_df as f64;
         let rows = self.unscaled_covariance.row_iter();
@@ -302,19 +299,16 @@ impl LinearFit {
     }
 
     /// Model sum of squares.
-    #[must_use]
     pub fn model_ss(&self) -> f64 {
         self.total_ss - self.residual_ss
     }
 
     /// Degrees of freedom of the model, without the intercept.
-    #[must_use]
     pub fn model_df(&self) -> usize {
         self.columns.len() - usize::from(self.intercept)
     }
 
     /// Residual variance; NaN without degrees of freedom.
-    #[must_use]
     pub fn variance(&self) -> f64 {
         match self.residual_df {
             0 => f64::NAN,
@@ -323,7 +317,6 @@ impl LinearFit {
     }
 
     /// The model against none.
-    #[must_use]
     pub fn whole(&self) -> WholeModel {
         let (ss, df) = (self.model_ss(), self.model_df() as f64);
         let f = ss / df / self.variance();
@@ -336,7 +329,6 @@ impl LinearFit {
     }
 
     /// The residuals.
-    #[must_use]
     pub fn residual(&self) -> SumOfSquares {
         SumOfSquares {
             ss: self.residual_ss,
@@ -345,7 +337,6 @@ impl LinearFit {
     }
 
     /// The response.
-    #[must_use]
     pub fn total(&self) -> SumOfSquares {
         SumOfSquares {
             ss: self.total_ss,
@@ -354,13 +345,11 @@ impl LinearFit {
     }
 
     /// Predictions of the rows it was fitted to.
-    #[must_use]
     pub fn fitted(&self, y: &[f64]) -> Vec<f64> {
         y.iter().zip(&self.residuals).map(|(y, e)| y - e).collect()
     }
 
     /// How good it is.
-    #[must_use]
     pub fn quality(&self, y: &[f64]) -> Quality {
         let (rows, count) = (self.rows as f64, self.columns.len() as f64);
         let total_df = rows - f64::from(u8::from(self.intercept));
@@ -434,7 +423,6 @@ pub struct Prediction {
 }
 
 /// Predictions at rows of a model matrix with the columns of the fitted one.
-#[must_use]
 pub fn predict(fit: &LinearFit, x: &DMatrix<f64>) -> Vec<Prediction> {
     let variance = fit.variance();
     let quantile = student_quantile(0.5 + 0.5 * fit.confidence, fit.residual_df as f64);

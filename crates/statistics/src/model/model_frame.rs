@@ -94,7 +94,6 @@ pub fn prediction_rows(frame: &ModelFrame, table: &Table) -> Result<DMatrix<f64>
 }
 
 /// Some rows of a table.
-#[must_use]
 pub fn chosen_rows(table: &Table, rows: &[usize]) -> Table {
     let mut chosen = table.clone();
     if rows.len() == table.rows() && rows.iter().enumerate().all(|(place, row)| place == *row) {
@@ -253,7 +252,6 @@ fn multiplied(a: &[f64], b: &[f64]) -> Vec<f64> {
 
 impl ModelFrame {
     /// Whether any term holds a category.
-    #[must_use]
     pub fn has_categories(&self) -> bool {
         let used = self.terms.iter().flat_map(|term| &term.atoms);
         let mut atoms = used.map(|(atom, _)| &self.atoms[*atom]);

@@ -63,7 +63,6 @@ pub struct Aliased {
 ///
 /// * `x`: model matrix, finite
 /// * `y`: response, as many
-#[must_use]
 pub fn reduce(x: &DMatrix<f64>, y: &[f64]) -> Reduced {
     let columns = x.ncols();
     match x.nrows() * (columns + 1) * (columns + 1) <= ORDINARY {
@@ -192,7 +191,6 @@ fn triangle_of(mut block: Block, width: usize) -> Vec<f64> {
 }
 
 /// A dot product in eight sums, which the compiler turns into vector registers.
-#[must_use]
 pub fn dot(a: &[f64], b: &[f64]) -> f64 {
     let mut sums = [0.0; 8];
     let (a_parts, b_parts) = (a.chunks_exact(8), b.chunks_exact(8));
@@ -212,13 +210,11 @@ pub fn dot(a: &[f64], b: &[f64]) -> f64 {
 
 impl Reduced {
     /// Number of columns.
-    #[must_use]
     pub fn columns(&self) -> usize {
         self.triangle.len()
     }
 
     /// Solves for some of the columns; one that depends on others is reported as aliased.
-    #[must_use]
     pub fn solve(&self, wanted: &[usize]) -> Solved {
         let mut work: Vec<Vec<DoubleDouble>> = Vec::with_capacity(wanted.len() + 1);
         let mut columns = Vec::new();

@@ -96,7 +96,6 @@ struct Change {
 }
 
 /// Selects terms.
-#[must_use]
 pub fn select(frame: &ModelFrame, reduced: &Reduced, options: &SelectionOptions) -> Selection {
     let base = Search {
         frame,

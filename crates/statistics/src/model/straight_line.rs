@@ -34,7 +34,6 @@ pub fn fit_straight_line(x: &[f64], y: &[f64], confidence: f64) -> Result<Linear
 }
 
 /// The line with its intervals at each of some x.
-#[must_use]
 pub fn line_at(line: &LinearFit, x: &[f64]) -> Vec<Prediction> {
     predict(line, &rows(x))
 }

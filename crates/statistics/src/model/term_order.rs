@@ -8,7 +8,6 @@ use crate::model::model_frame::ModelFrame;
 pub type Powers = Vec<(String, f64)>;
 
 /// Powers of the terms of a frame.
-#[must_use]
 pub fn powers_of_terms(frame: &ModelFrame) -> Vec<Powers> {
     let terms = frame.terms.iter();
     terms
@@ -47,7 +46,6 @@ fn power_of(node: &Node, name: &str) -> (String, f64) {
 }
 
 /// Whether a term divides another, so that a hierarchical model with that keeps it.
-#[must_use]
 pub fn divides(inner: &Powers, outer: &Powers) -> bool {
     inner.iter().all(|(name, power)| {
         let found = outer.iter().find(|(other, _)| other == name);

@@ -26,7 +26,6 @@ pub struct CrossValidation {
 ///   choosing costs
 ///
 /// `None` where some division leaves a column without an estimate.
-#[must_use]
 pub fn cross_validate(
     frame: &ModelFrame,
     x: &DMatrix<f64>,

@@ -30,7 +30,6 @@ pub struct RowInfluence {
 }
 
 /// Influence of each row; `y` is the response.
-#[must_use]
 pub fn influence(fit: &LinearFit, y: &[f64]) -> Vec<RowInfluence> {
     let (variance, df) = (fit.variance(), fit.residual_df as f64);
     let count = fit.columns.len() as f64;
@@ -68,7 +67,6 @@ pub struct Inflation {
 }
 
 /// Variance inflation; empty without intercept or with a single term.
-#[must_use]
 pub fn inflation(frame: &ModelFrame, fit: &LinearFit) -> Vec<Inflation> {
     let places = |columns: &std::ops::Range<usize>| -> Vec<usize> {
         let estimated = fit.columns.iter().enumerate();
@@ -112,7 +110,6 @@ pub fn inflation(frame: &ModelFrame, fit: &LinearFit) -> Vec<Inflation> {
 
 /// Coefficients with standard errors that hold for unequal variances: HC3
 /// (MacKinnon & White 1985, J. Econometrics 29, 305-325).
-#[must_use]
 pub fn robust_coefficients(fit: &LinearFit, x: &DMatrix<f64>) -> Vec<Coefficient> {
     let covariance = robust_covariance(fit, x);
     let df = fit.residual_df as f64;
@@ -127,7 +124,6 @@ pub fn robust_coefficients(fit: &LinearFit, x: &DMatrix<f64>) -> Vec<Coefficient
 }
 
 /// Rows of the HC3 covariance of the estimates; `x` is the model matrix.
-#[must_use]
 pub fn robust_covariance_rows(fit: &LinearFit, x: &DMatrix<f64>) -> Vec<Vec<f64>> {
     let matrix = robust_covariance(fit, x);
     let rows = matrix.row_iter();

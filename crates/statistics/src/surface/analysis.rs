@@ -149,7 +149,6 @@ fn actual_terms(
 
 impl Surface {
     /// Value at coded settings.
-    #[must_use]
     pub fn value(&self, point: &[f64]) -> f64 {
         let terms = self.terms.monomials.iter().zip(&self.coded[1..]);
         let terms = terms.map(|(monomial, b)| b * monomial_value(monomial, point));
@@ -157,7 +156,6 @@ impl Surface {
     }
 
     /// Slopes at coded settings, per coded unit.
-    #[must_use]
     pub fn slopes(&self, point: &[f64]) -> Vec<f64> {
         let slope = |place: usize| -> f64 {
             let terms = self.terms.monomials.iter().zip(&self.coded[1..]);
@@ -174,13 +172,11 @@ impl Surface {
     }
 
     /// Predictions at coded settings.
-    #[must_use]
     pub fn predict(&self, points: &[Vec<f64>]) -> Vec<Prediction> {
         predict(&self.fit, &rows_of(&self.terms.monomials, points))
     }
 
     /// Highest degree of its terms.
-    #[must_use]
     pub fn degree(&self) -> u32 {
         let degrees = self.terms.monomials.iter().map(|m| m.iter().sum::<u32>());
         degrees.max().unwrap_or(0)
@@ -188,7 +184,6 @@ impl Surface {
 }
 
 /// Lack of fit and pure error; `None` where no run is repeated.
-#[must_use]
 pub fn surface_lack_of_fit(surface: &Surface, coded: &[Vec<f64>], y: &[f64]) -> Option<LackOfFit> {
     let settings = DMatrix::from_fn(y.len(), coded.len(), |row, factor| coded[factor][row]);
     lack_of_fit(
@@ -234,7 +229,6 @@ pub enum Shape {
 const FLAT: f64 = 1e-3;
 
 /// Analyses a surface of second degree; `None` without curvature or of higher degree.
-#[must_use]
 pub fn canonical(surface: &Surface) -> Option<Canonical> {
     let (slopes, curvature) = quadratic_form(surface)?;
     let eigen = curvature.clone().symmetric_eigen();
@@ -331,7 +325,6 @@ pub struct RidgePoint {
 /// Technometrics 5, 469-479).
 ///
 /// * `maximum`: whether the best is the largest
-#[must_use]
 pub fn ridge(surface: &Surface, radii: &[f64], maximum: bool) -> Vec<RidgePoint> {
     let Some((slopes, curvature)) = quadratic_form(surface) else {
         return Vec::new();

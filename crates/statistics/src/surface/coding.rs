@@ -16,13 +16,11 @@ pub struct FactorCoding {
 
 impl FactorCoding {
     /// Coded value of an actual one.
-    #[must_use]
     pub fn coded(&self, actual: f64) -> f64 {
         (actual - self.centre) / self.half
     }
 
     /// Actual value of a coded one.
-    #[must_use]
     pub fn actual(&self, coded: f64) -> f64 {
         self.centre + self.half * coded
     }
@@ -41,7 +39,6 @@ pub struct CodedFactors {
 
 impl CodedFactors {
     /// Lowest and highest coded value of a factor.
-    #[must_use]
     pub fn range(&self, factor: usize) -> (f64, f64) {
         let values = self.values[factor].iter();
         values.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), value| {
@@ -50,7 +47,6 @@ impl CodedFactors {
     }
 
     /// Actual settings of a coded point.
-    #[must_use]
     pub fn actual(&self, coded: &[f64]) -> Vec<f64> {
         let pairs = self.factors.iter().zip(coded);
         pairs.map(|(factor, value)| factor.actual(*value)).collect()
@@ -93,7 +89,6 @@ fn levels(values: &[f64]) -> Vec<f64> {
 /// points, also with levels rounded for print, and gets its exact levels.
 ///
 /// * `columns`: name and values of each factor, which is not constant
-#[must_use]
 pub fn code_by_levels(columns: &[(String, &[f64])]) -> CodedFactors {
     central_composite(columns).unwrap_or_else(|| {
         let factors: Vec<FactorCoding> = columns
@@ -113,7 +108,6 @@ pub fn code_by_levels(columns: &[(String, &[f64])]) -> CodedFactors {
 }
 
 /// Codes a table by known codings, one for each column.
-#[must_use]
 pub fn code_with(
     factors: Vec<FactorCoding>,
     columns: &[(String, &[f64])],

@@ -34,7 +34,6 @@ pub enum Wanted {
 }
 
 /// Desirability of one response, from 0 to 1.
-#[must_use]
 pub fn desirability(goal: &Goal, value: f64) -> f64 {
     let part = |from: f64, to: f64, weight: f64| {
         ((value - from) / (to - from)).clamp(0.0, 1.0).powf(weight)
@@ -52,7 +51,6 @@ pub fn desirability(goal: &Goal, value: f64) -> f64 {
 }
 
 /// Overall desirability: the geometric mean weighted by importance; 0 if any is 0.
-#[must_use]
 pub fn overall(goals: &[Goal], values: &[f64]) -> f64 {
     let (mut sum, mut weights) = (0.0, 0.0);
     for (goal, value) in goals.iter().zip(values) {
@@ -281,7 +279,6 @@ struct Effort {
 ///
 /// * `surfaces`, `goals`: the responses with what is wanted of them, as many
 /// * `region`: where the factors may be
-#[must_use]
 pub fn best_settings(surfaces: &[Surface], goals: &[Goal], region: &Region) -> Optimum {
     let effort = Effort {
         starts: 2000,
@@ -347,7 +344,6 @@ const AS_GOOD: f64 = 1e-6;
 ///
 /// * `along`: factor at whose values members are given; found out if `None`
 /// * `count`: how many values
-#[must_use]
 pub fn equally_good(
     surfaces: &[Surface],
     goals: &[Goal],

@@ -21,7 +21,6 @@ pub struct SurfaceTerms {
 }
 
 /// The letter of a factor.
-#[must_use]
 pub fn letter(factor: usize) -> String {
     char::from_u32('A' as u32 + factor as u32).map_or_else(String::new, String::from)
 }
@@ -170,7 +169,6 @@ fn unknown(name: &str, factors: &[String]) -> Error {
 }
 
 /// All products up to a degree and power; linear terms first, squares after products.
-#[must_use]
 pub fn all_monomials(factors: usize, degree: u32, power: u32) -> Vec<Monomial> {
     let mut found: Vec<Monomial> = vec![vec![0; factors]];
     for place in 0..factors {
@@ -198,7 +196,6 @@ pub fn all_monomials(factors: usize, degree: u32, power: u32) -> Vec<Monomial> {
 }
 
 /// How a term is written: `AB`, `B^2` with letters, `k:e`, `e^2` with names.
-#[must_use]
 pub fn monomial_name(powers: &[u32], factors: &[String], letters: bool) -> String {
     let mut text = String::new();
     for (place, power) in powers.iter().enumerate().filter(|(_, power)| **power > 0) {
@@ -221,7 +218,6 @@ pub fn monomial_name(powers: &[u32], factors: &[String], letters: bool) -> Strin
 }
 
 /// Value of a product of powers.
-#[must_use]
 pub fn monomial_value(powers: &[u32], factors: &[f64]) -> f64 {
     let parts = powers.iter().zip(factors);
     parts
@@ -230,7 +226,6 @@ pub fn monomial_value(powers: &[u32], factors: &[f64]) -> f64 {
 }
 
 /// Whether every term's divisors are there.
-#[must_use]
 pub fn is_hierarchical(monomials: &[Monomial]) -> bool {
     monomials.iter().all(|powers| {
         (0..powers.len())

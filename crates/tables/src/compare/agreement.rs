@@ -3,7 +3,7 @@
 use crate::compare::group_outcome::statistics_error;
 use crate::regress::findings::{finding, lines_text};
 use serde::Serialize;
-use std::path::PathBuf;
+use std::path::Path;
 use windfall_files::error::Error;
 use windfall_files::found::FindingOutcome;
 use windfall_files::table::data::read_data;
@@ -11,14 +11,22 @@ use windfall_statistics::compare::goodness_index::{CHI_SQUARED_CAVEAT, goodness_
 
 /// What is asked.
 #[derive(Clone, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "clap", derive(clap::Args))]
 pub struct AgreementRequest {
-    /// The table.
-    pub table: PathBuf,
-    /// Column of measured values.
+    /// Column of measured values, to hold predictions against
+    #[cfg_attr(feature = "clap", arg(long, required = false, value_name = "COLUMN", requires = "predicted", conflicts_with_all = ["value", "by"]))]
     pub measured: String,
-    /// Column of predicted values.
+    /// Column of predicted values
+    #[cfg_attr(
+        feature = "clap",
+        arg(long, required = false, value_name = "COLUMN", requires = "measured")
+    )]
     pub predicted: String,
-    /// Parameters that were fitted to these values.
+    /// Parameters that were fitted to these values
+    #[cfg_attr(
+        feature = "clap",
+        arg(long, default_value_t = 0, value_name = "N", requires = "measured")
+    )]
     pub parameters: usize,
 }
 
@@ -53,12 +61,12 @@ pub struct AgreementOutcome {
     pub findings: Vec<FindingOutcome>,
 }
 
-/// Compares predictions with measured values.
+/// Compares predictions of a table with its measured values.
 ///
 /// # Errors
 /// The table cannot be read, a column is missing or holds text, or no row has both values.
-pub fn agreement(request: &AgreementRequest) -> Result<AgreementOutcome, Error> {
-    let data = read_data(&request.table)?;
+pub fn agreement(table: &Path, request: &AgreementRequest) -> Result<AgreementOutcome, Error> {
+    let data = read_data(table)?;
     let column = |name: &str| data.table.numbers(name).map_err(Error::Statistics);
     let (measured, predicted) = (column(&request.measured)?, column(&request.predicted)?);
     let whole = |row: &usize| !measured[*row].is_nan() && !predicted[*row].is_nan();

@@ -11,13 +11,14 @@ use windfall_statistics::sample_error::SampleError;
 
 /// How groups are compared in pairs.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[cfg_attr(feature = "clap", derive(clap::ValueEnum))]
 pub enum PairMethod {
-    /// Tukey's with a common variance (Kramer's for unequal sizes).
+    /// Tukey's honest significant difference, common variance
     #[default]
     Tukey,
-    /// Games and Howell's: variances of their own.
+    /// Each pair with its own variances
     GamesHowell,
-    /// Welch's t tests, adjusted by Holm.
+    /// Welch's t tests adjusted by Holm
     Holm,
 }
 

@@ -4,6 +4,8 @@ use crate::compare::group_outcome::{missing_findings, statistics_error, summarie
 use crate::compare::outcome::{CompareOutcome, LetteredGroup, PairOutcome, StatisticTest};
 use crate::compare::pairs::{PairMethod, compare_paired, compare_pairs, shared};
 use crate::compare::summary::check_confidence;
+#[cfg(feature = "clap")]
+use crate::option_words::trimmed;
 use crate::regress::findings::finding;
 use std::path::PathBuf;
 use windfall_files::error::Error;
@@ -19,20 +21,44 @@ use windfall_statistics::residuals::normality::shapiro_wilk;
 
 /// What `windfall compare` is asked.
 #[derive(Clone, Debug, PartialEq)]
+#[cfg_attr(feature = "clap", derive(clap::Args))]
 pub struct CompareRequest {
-    /// The table.
+    /// Table with a header line (CSV)
+    #[cfg_attr(feature = "clap", arg(value_hint = clap::ValueHint::FilePath))]
     pub table: PathBuf,
-    /// The column of values.
+    /// Column of values
+    #[cfg_attr(
+        feature = "clap",
+        arg(
+            long,
+            value_name = "COLUMN",
+            required_unless_present = "measured",
+            requires = "by",
+            default_value = "",
+            hide_default_value = true
+        )
+    )]
     pub value: String,
-    /// Columns that group the rows.
+    /// Columns that group the rows, separated by commas
+    #[cfg_attr(feature = "clap", arg(long, value_name = "COLUMNS", value_delimiter = ',', value_parser = trimmed))]
     pub by: Vec<String>,
-    /// Column of specimens that were measured in every group.
+    /// Column of specimens that were measured in every group
+    #[cfg_attr(feature = "clap", arg(long, value_name = "COLUMN", requires = "value", conflicts_with_all = ["specimen", "pairs"]))]
     pub paired: Option<String>,
-    /// Column of specimens measured several times within a group, which are averaged.
+    /// Column of specimens measured several times within a group: their means are compared
+    #[cfg_attr(feature = "clap", arg(long, value_name = "COLUMN", requires = "value"))]
     pub specimen: Option<String>,
-    /// How pairs of groups are compared.
-    pub method: PairMethod,
-    /// Confidence of all intervals.
+    /// How pairs of groups are compared
+    #[cfg_attr(
+        feature = "clap",
+        arg(long, value_enum, default_value_t, requires = "value")
+    )]
+    pub pairs: PairMethod,
+    /// Level of all intervals; letters say what differs at one less this
+    #[cfg_attr(
+        feature = "clap",
+        arg(long, default_value_t = 0.95, value_name = "LEVEL")
+    )]
     pub confidence: f64,
 }
 
@@ -107,7 +133,7 @@ fn unpaired_outcome(
     let names: Vec<String> = described.iter().map(|group| group.group.clone()).collect();
     let values: Vec<Vec<f64>> = groups.iter().map(|group| group.values.clone()).collect();
     let anova = one_way_anova(&values).map_err(statistics_error)?;
-    let (pairs, method) = compare_pairs(&names, &values, request.method, request.confidence)?;
+    let (pairs, method) = compare_pairs(&names, &values, request.pairs, request.confidence)?;
     let residuals: Vec<f64> = values
         .iter()
         .flat_map(|group| {
@@ -323,7 +349,7 @@ const NOTABLE: f64 = 0.05;
 
 fn variance_finding(test: Option<FTest>, request: &CompareRequest) -> Option<FindingOutcome> {
     let p = test.map(|test| test.p).filter(|p| *p < NOTABLE)?;
-    let advice = match request.method {
+    let advice = match request.pairs {
         PairMethod::Tukey => "read Welch's test and --pairs games-howell",
         _ => "read Welch's test rather than the analysis of variance",
     };

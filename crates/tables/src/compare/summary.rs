@@ -1,6 +1,8 @@
 //! `windfall summary`: what the values of a table look like, group by group.
 
 use crate::compare::group_outcome::{missing_findings, statistics_error, summaries};
+#[cfg(feature = "clap")]
+use crate::option_words::trimmed;
 use serde::Serialize;
 use std::path::PathBuf;
 use windfall_files::error::Error;
@@ -12,14 +14,22 @@ use windfall_statistics::table::Cells;
 
 /// What `windfall summary` is asked.
 #[derive(Clone, Debug, PartialEq)]
+#[cfg_attr(feature = "clap", derive(clap::Args))]
 pub struct SummaryRequest {
-    /// The table.
+    /// Table with a header line (CSV)
+    #[cfg_attr(feature = "clap", arg(value_hint = clap::ValueHint::FilePath))]
     pub table: PathBuf,
-    /// Columns that group the rows; all rows are one group without.
+    /// Columns that group the rows, separated by commas; all rows are one group if left out
+    #[cfg_attr(feature = "clap", arg(long, value_name = "COLUMNS", value_delimiter = ',', value_parser = trimmed))]
     pub by: Vec<String>,
-    /// Columns of values; all columns of numbers that do not group without.
+    /// Column of values; may be repeated; all columns of numbers if left out
+    #[cfg_attr(feature = "clap", arg(long = "value", value_name = "COLUMN"))]
     pub values: Vec<String>,
-    /// Confidence of the intervals of means.
+    /// Level of the intervals of means
+    #[cfg_attr(
+        feature = "clap",
+        arg(long, default_value_t = 0.95, value_name = "LEVEL")
+    )]
     pub confidence: f64,
 }
 

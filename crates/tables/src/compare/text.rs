@@ -1,11 +1,11 @@
 //! Group summaries and comparisons as text and CSV.
 
-use crate::columns::{Column, csv_of_rows, given, strings, text_of_rows};
 use crate::compare::agreement::AgreementOutcome;
 use crate::compare::outcome::{CompareOutcome, PairOutcome, StatisticTest};
 use crate::compare::summary::SummaryOutcome;
 use windfall_files::error::Error;
 use windfall_files::table::write::csv_text;
+use windfall_files::text::columns::{Column, csv_of_rows, given, strings, text_of_rows};
 use windfall_files::text::number::plain;
 use windfall_files::text::statistic::{freedom, number, probability};
 use windfall_files::text::table::{findings_list, page_tables};
@@ -42,7 +42,6 @@ fn order_cells(group: &GroupSummary) -> Vec<String> {
 }
 
 /// Group summaries as text.
-#[must_use]
 pub fn text_of_summary(outcome: &SummaryOutcome) -> String {
     let by = match outcome.by.is_empty() {
         true => "group".to_owned(),
@@ -107,7 +106,6 @@ fn cell(value: f64) -> String {
 }
 
 /// A comparison as text.
-#[must_use]
 pub fn text_of_compare(outcome: &CompareOutcome) -> String {
     let mut header = strings(&["n", "mean", "SD", "CV", "SE", "from", "to", "letters"]);
     header.insert(0, outcome.by.join(", "));
@@ -254,7 +252,6 @@ fn agreement_rows(found: &AgreementOutcome) -> [(&'static str, Option<f64>, &'st
 }
 
 /// An agreement as text.
-#[must_use]
 pub fn text_of_agreement(outcome: &AgreementOutcome) -> String {
     let columns: [Column<(&str, Option<f64>, &str)>; 3] = [
         ("index", |row| row.0.to_owned()),

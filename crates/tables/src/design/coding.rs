@@ -13,7 +13,6 @@ use windfall_statistics::surface::coding::{
 const SAME: f64 = 1e-9;
 
 /// The numeric factors of a design's header; none without a valid one.
-#[must_use]
 pub fn number_factors(data: &Data) -> Vec<String> {
     let factors = read_coding(&data.comments)
         .ok()

@@ -100,7 +100,6 @@ pub struct QualityDocument {
 }
 
 /// A design for scripts.
-#[must_use]
 pub fn design_document(outcome: &DesignOutcome) -> DesignDocument {
     let design = &outcome.design;
     let fraction = generated(design).map(|fraction| FractionDocument {
@@ -138,14 +137,12 @@ pub fn design_document(outcome: &DesignOutcome) -> DesignDocument {
 }
 
 /// The fraction of a design that has generators.
-#[must_use]
 pub fn generated(design: &Design) -> Option<&Fraction> {
     let fraction = design.fraction.as_ref()?;
     Some(fraction).filter(|fraction| !fraction.generators.is_empty())
 }
 
 /// Aliases among main effects and two-factor interactions.
-#[must_use]
 pub fn alias_chains(fraction: &Fraction) -> Vec<AliasChain> {
     aliases(fraction, ALIAS_ORDER)
 }

@@ -43,7 +43,6 @@ pub fn parse_factor(text: &str) -> Result<DesignFactor, Error> {
 }
 
 /// A number in the 15 decimal digits that a double always holds.
-#[must_use]
 pub fn fifteen_digits(value: f64) -> f64 {
     format!("{value:.14e}").parse().unwrap_or(value)
 }

@@ -15,13 +15,13 @@
 //! the setting of each factor, and the exact coded value of each number (`k_coded`).
 
 use crate::design::factor::{CODED, fifteen_digits};
-use std::io::Write;
 use std::path::Path;
 use windfall_design::kind::{Design, Factor};
 use windfall_design::word::letter;
 use windfall_files::error::Error;
 use windfall_files::option_value::unusable;
 use windfall_files::table::write::csv_text;
+use windfall_files::write_file::write_new;
 
 /// Beginning of the line of a factor.
 const FACTOR: &str = "factor ";
@@ -65,22 +65,10 @@ pub fn write_design(design: &Design, about: &[String]) -> Result<String, Error> 
 /// The file exists or cannot be written.
 pub fn save_design(path: &Path, design: &Design, about: &[String]) -> Result<(), Error> {
     let text = write_design(design, about)?;
-    let access = |source: std::io::Error| match source.kind() {
-        std::io::ErrorKind::AlreadyExists => Error::AlreadyThere {
-            path: path.to_path_buf(),
-        },
-        _ => Error::FileAccess {
-            path: path.to_path_buf(),
-            action: "create",
-            source,
-        },
-    };
-    let mut file = std::fs::File::create_new(path).map_err(access)?;
-    file.write_all(text.as_bytes()).map_err(access)
+    write_new(path, text.as_bytes())
 }
 
 /// The setting of a factor: its category, or the number to its decimals or to 15 digits.
-#[must_use]
 pub fn setting_text(factor: &Factor, coded: f64) -> String {
     if let Some(category) = factor.category(coded) {
         return category.to_owned();

@@ -78,7 +78,6 @@ pub fn row_model(text: &str, factors: &[Factor]) -> Result<RowModel, Error> {
 }
 
 /// The row of a model at coded values; not a number where it has no value.
-#[must_use]
 pub fn row_at(model: &RowModel, factors: &[Factor], coded: &[f64]) -> Vec<f64> {
     match model {
         RowModel::Named(named) => model_row(factors, *named, coded),
@@ -93,7 +92,6 @@ pub fn row_at(model: &RowModel, factors: &[Factor], coded: &[f64]) -> Vec<f64> {
 }
 
 /// Names of the columns of a model.
-#[must_use]
 pub fn terms_of(model: &RowModel, factors: &[Factor]) -> Vec<String> {
     match model {
         RowModel::Named(named) => model_terms(factors, *named),

@@ -3,7 +3,7 @@
 use crate::design::factor::{CODED, DesignFactor, parse_factor};
 use crate::design::file::read_coding;
 use crate::design::model_row::{RowModel, row_at, row_model};
-use crate::design::request::OptimalRequest;
+use crate::design::request::{Criterion, OptimalRequest};
 use std::path::Path;
 use windfall_design::error::DesignError;
 use windfall_design::kind::{Design, Factor, evenly};
@@ -25,7 +25,7 @@ const LEVELS_OF_FORMULAS: std::ops::RangeInclusive<usize> = 2..=5;
 /// # Errors
 /// Texts or tables that cannot be used, a design that cannot be.
 pub fn optimal_design(
-    request: &OptimalRequest,
+    (request, criterion): (&OptimalRequest, Criterion),
     factors: &[String],
     seed: u64,
 ) -> Result<(Design, RowModel), Error> {
@@ -51,7 +51,7 @@ pub fn optimal_design(
     let row = |coded: &[f64]| row_at(&model, &factors, coded);
     let options = OptimalOptions {
         runs: request.runs,
-        criterion: request.criterion,
+        criterion,
         starts: request.starts,
         seed,
     };

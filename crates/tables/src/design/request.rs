@@ -3,28 +3,33 @@
 use std::path::PathBuf;
 pub use windfall_design::exchange::Criterion;
 
-/// A design that is wanted.
+/// What all designs are asked.
 #[derive(Clone, Debug, PartialEq)]
+#[cfg_attr(feature = "clap", derive(clap::Args))]
 pub struct DesignRequest {
-    /// Its kind.
-    pub kind: DesignKind,
-    /// Factors: "k=0.3..1 N/mm".
+    /// 'NAME=LOW..HIGH UNIT', 'NAME=1, 2, 5 UNIT' or 'NAME=category, category'; A, B, C … in
+    /// this order
+    #[cfg_attr(feature = "clap", arg(long = "factor", value_name = "FACTOR"))]
     pub factors: Vec<String>,
-    /// Decimals of printed settings: "k=2".
+    /// Print the settings of a factor with so many decimals; coded values stay exact
+    #[cfg_attr(feature = "clap", arg(long = "decimals", value_name = "NAME=N"))]
     pub decimals: Vec<String>,
-    /// Seed of the run order and of all that is drawn.
+    /// Seed of the run order and of all that is drawn
+    #[cfg_attr(feature = "clap", arg(long, default_value_t = 1))]
     pub seed: u64,
-    /// How runs are ordered.
+    /// Order of the runs, within blocks
+    #[cfg_attr(feature = "clap", arg(long, value_enum, default_value_t))]
     pub order: Order,
 }
 
 /// How runs are ordered.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[cfg_attr(feature = "clap", derive(clap::ValueEnum))]
 pub enum Order {
-    /// At random within each block.
+    /// At random
     #[default]
     Random,
-    /// In standard order.
+    /// As in tables of designs
     Standard,
 }
 
@@ -32,77 +37,131 @@ pub enum Order {
 #[derive(Clone, Debug, PartialEq)]
 pub enum DesignKind {
     /// All combinations, or a fraction.
-    Factorial {
-        /// Levels of each range.
-        points: usize,
-        /// Generators "D=AB, E=AC", or "1/2" for the catalogue.
-        fraction: Option<String>,
-        /// Runs of a fraction of the catalogue.
-        runs: Option<usize>,
-        /// How often each combination is run.
-        replicates: usize,
-        /// Centre points in each block.
-        centre: usize,
-        /// Blocks.
-        blocks: usize,
-    },
+    Factorial(FactorialRequest),
     /// Plackett-Burman.
-    PlackettBurman {
-        /// Runs; the smallest number if left out.
-        runs: Option<usize>,
-        /// Centre points.
-        centre: usize,
-    },
+    PlackettBurman(PlackettBurmanRequest),
     /// Central composite.
-    Composite {
-        /// "rotatable", "face", "spherical", "orthogonal", "blocks" or a number; by default
-        /// rotatable, or blocks where there are any.
-        alpha: Option<String>,
-        /// What the ends of the ranges are: "factorial" or "axial".
-        levels: String,
-        /// Fraction of the cube, as for factorials.
-        fraction: Option<String>,
-        /// Centre points: "5", or "4,2" for each part of the cube and the axial block.
-        centre: Option<String>,
-        /// Blocks.
-        blocks: usize,
-    },
+    Composite(CompositeRequest),
     /// Box-Behnken.
-    BoxBehnken {
-        /// Centre points in each block; 5, or 2 with blocks, if left out.
-        centre: Option<usize>,
-        /// Blocks.
-        blocks: usize,
-    },
+    BoxBehnken(BoxBehnkenRequest),
     /// Latin hypercube.
-    LatinHypercube {
-        /// Runs.
-        runs: usize,
-    },
+    LatinHypercube(SpaceRequest),
     /// Sobol points.
-    Sobol {
-        /// Runs.
-        runs: usize,
-    },
-    /// D- or I-optimal.
-    Optimal(OptimalRequest),
+    Sobol(SpaceRequest),
+    /// The best for a model, by some criterion.
+    Optimal(Criterion, OptimalRequest),
+}
+
+/// What is asked of a factorial design.
+#[derive(Clone, Debug, PartialEq)]
+#[cfg_attr(feature = "clap", derive(clap::Args))]
+pub struct FactorialRequest {
+    /// Levels of each range
+    #[cfg_attr(feature = "clap", arg(long, default_value_t = 2, value_name = "N"))]
+    pub points: usize,
+    /// Generators 'D=AB, E=AC', or 1/2, 1/4 … for the fraction of least aberration
+    #[cfg_attr(feature = "clap", arg(long, value_name = "FRACTION"))]
+    pub fraction: Option<String>,
+    /// Runs of the fraction of least aberration, instead of --fraction
+    #[cfg_attr(feature = "clap", arg(long, value_name = "N"))]
+    pub runs: Option<usize>,
+    /// Runs of every combination
+    #[cfg_attr(feature = "clap", arg(long, default_value_t = 1, value_name = "N"))]
+    pub replicates: usize,
+    /// Centre points in each block
+    #[cfg_attr(feature = "clap", arg(long, default_value_t = 0, value_name = "N"))]
+    pub centre: usize,
+    /// Blocks of a two-level design: 2, 4, 8 …
+    #[cfg_attr(feature = "clap", arg(long, default_value_t = 1, value_name = "N"))]
+    pub blocks: usize,
+}
+
+/// What is asked of a Plackett-Burman design.
+#[derive(Clone, Debug, PartialEq)]
+#[cfg_attr(feature = "clap", derive(clap::Args))]
+pub struct PlackettBurmanRequest {
+    /// Runs, a multiple of 4; the smallest number if left out
+    #[cfg_attr(feature = "clap", arg(long, value_name = "N"))]
+    pub runs: Option<usize>,
+    /// Centre points
+    #[cfg_attr(feature = "clap", arg(long, default_value_t = 0, value_name = "N"))]
+    pub centre: usize,
+}
+
+/// What is asked of a central composite design.
+#[derive(Clone, Debug, PartialEq)]
+#[cfg_attr(feature = "clap", derive(clap::Args))]
+pub struct CompositeRequest {
+    /// rotatable, face, spherical, orthogonal, blocks, or a number of half-ranges; rotatable if
+    /// left out, with blocks the one that keeps them out of the model
+    #[cfg_attr(
+        feature = "clap",
+        arg(long, value_name = "ALPHA", allow_hyphen_values = true)
+    )]
+    pub alpha: Option<String>,
+    /// What LOW and HIGH of the factors are: corners of the cube (factorial) or axial points
+    /// (axial)
+    #[cfg_attr(
+        feature = "clap",
+        arg(long, default_value = "factorial", value_name = "WHERE")
+    )]
+    pub levels: String,
+    /// Fraction of the cube: 'E=ABCD', or 1/2
+    #[cfg_attr(feature = "clap", arg(long, value_name = "FRACTION"))]
+    pub fraction: Option<String>,
+    /// Centre points; with blocks in each, or 'CUBE,AXIAL'; 5 if left out, 2 in each block
+    #[cfg_attr(feature = "clap", arg(long, value_name = "N"))]
+    pub centre: Option<String>,
+    /// Blocks: 2 (cube, axial points), 3, 5 or 9 (the cube divided)
+    #[cfg_attr(feature = "clap", arg(long, default_value_t = 1, value_name = "N"))]
+    pub blocks: usize,
+}
+
+/// What is asked of a Box-Behnken design.
+#[derive(Clone, Debug, PartialEq)]
+#[cfg_attr(feature = "clap", derive(clap::Args))]
+pub struct BoxBehnkenRequest {
+    /// Centre points in each block; 5 if left out, 2 with blocks
+    #[cfg_attr(feature = "clap", arg(long, value_name = "N"))]
+    pub centre: Option<usize>,
+    /// Blocks: 3 for four factors, 2 for five to seven
+    #[cfg_attr(feature = "clap", arg(long, default_value_t = 1, value_name = "N"))]
+    pub blocks: usize,
+}
+
+/// What is asked of a design that fills the space.
+#[derive(Clone, Debug, PartialEq)]
+#[cfg_attr(feature = "clap", derive(clap::Args))]
+pub struct SpaceRequest {
+    /// Runs
+    #[cfg_attr(feature = "clap", arg(long, value_name = "N"))]
+    pub runs: usize,
 }
 
 /// What is asked of an optimal design.
 #[derive(Clone, Debug, PartialEq)]
+#[cfg_attr(feature = "clap", derive(clap::Args))]
 pub struct OptimalRequest {
-    /// What is made good.
-    pub criterion: Criterion,
-    /// New runs.
-    pub runs: usize,
-    /// "linear", "2fi", "quadratic" or a formula in letters or names, coded.
+    /// linear, 2fi, quadratic, or a formula in names or letters; factors stand for their coded
+    /// values
+    #[cfg_attr(
+        feature = "clap",
+        arg(long, default_value = "quadratic", value_name = "MODEL")
+    )]
     pub model: String,
-    /// Levels of each range; found from the model if left out.
+    /// New runs
+    #[cfg_attr(feature = "clap", arg(long, value_name = "N"))]
+    pub runs: usize,
+    /// Levels of each range to choose from; what the model needs if left out
+    #[cfg_attr(feature = "clap", arg(long, value_name = "N"))]
     pub points: Option<usize>,
-    /// Table of points that runs are chosen from.
+    /// Choose from the rows of this table, with a column for each factor
+    #[cfg_attr(feature = "clap", arg(long, value_name = "FILE.csv", value_hint = clap::ValueHint::FilePath, conflicts_with = "points"))]
     pub candidates: Option<PathBuf>,
-    /// Table of runs already made.
+    /// Runs already made, which are kept; a column for each factor
+    #[cfg_attr(feature = "clap", arg(long, value_name = "FILE.csv", value_hint = clap::ValueHint::FilePath))]
     pub augment: Option<PathBuf>,
-    /// Random starts.
+    /// Random starts; as many as take seconds if left out
+    #[cfg_attr(feature = "clap", arg(long, value_name = "N"))]
     pub starts: Option<usize>,
 }

@@ -45,10 +45,11 @@ pub struct DesignOutcome {
 ///
 /// # Errors
 /// A text that cannot be used, a design that cannot be.
-pub fn make_design(request: &DesignRequest) -> Result<DesignOutcome, Error> {
-    let (mut design, asked, about) = match &request.kind {
-        DesignKind::Optimal(optimal) => {
-            let (design, model) = optimal_design(optimal, &request.factors, request.seed)?;
+pub fn make_design(kind: &DesignKind, request: &DesignRequest) -> Result<DesignOutcome, Error> {
+    let (mut design, asked, about) = match kind {
+        DesignKind::Optimal(criterion, optimal) => {
+            let optimal_for = (optimal, *criterion);
+            let (design, model) = optimal_design(optimal_for, &request.factors, request.seed)?;
             let about = vec![
                 format!("model {}", optimal.model),
                 format!("search of seed {}", request.seed),
@@ -58,7 +59,7 @@ pub fn make_design(request: &DesignRequest) -> Result<DesignOutcome, Error> {
         kind => {
             let given = factors_of(&request.factors)?;
             let about = match kind {
-                DesignKind::LatinHypercube { .. } => {
+                DesignKind::LatinHypercube(_) => {
                     vec![format!("search of seed {}", request.seed)]
                 }
                 _ => Vec::new(),
@@ -92,70 +93,58 @@ pub fn factors_of(texts: &[String]) -> Result<Vec<DesignFactor>, Error> {
 }
 
 /// The error of a design that cannot be.
-#[must_use]
 pub fn impossible(error: DesignError) -> Error {
     unusable("windfall design", error.to_string())
 }
 
 fn design_of_kind(kind: &DesignKind, given: Vec<DesignFactor>, seed: u64) -> Result<Design, Error> {
-    if !matches!(kind, DesignKind::Factorial { .. }) {
+    if !matches!(kind, DesignKind::Factorial(_)) {
         check_ranges(&given)?;
     }
     let factors: Vec<Factor> = given.iter().map(|given| given.factor.clone()).collect();
     let made = match kind {
-        DesignKind::Factorial {
-            points,
-            fraction,
-            runs,
-            replicates,
-            centre,
-            blocks,
-        } => {
+        DesignKind::Factorial(asked) => {
             let options = FactorialOptions {
-                replicates: *replicates,
-                centre: *centre,
-                blocks: *blocks,
+                replicates: asked.replicates,
+                centre: asked.centre,
+                blocks: asked.blocks,
             };
-            if fraction.is_some() || runs.is_some() {
+            let points = asked.points;
+            if asked.fraction.is_some() || asked.runs.is_some() {
                 check_ranges(&given)?;
-                let generators = generators_of(fraction.as_deref(), *runs, &factors)?;
+                let generators = generators_of(asked.fraction.as_deref(), asked.runs, &factors)?;
                 two_level(factors, &generators, &options)
-            } else if *points < 2 {
+            } else if points < 2 {
                 return Err(unusable("--points", "expected at least 2 levels"));
             } else {
                 let levels = given.into_iter();
-                let levels = levels.map(|given| given.levels.unwrap_or_else(|| evenly(*points)));
+                let levels = levels.map(|given| given.levels.unwrap_or_else(|| evenly(points)));
                 full_factorial(factors, &levels.collect::<Vec<_>>(), &options)
             }
         }
-        DesignKind::Composite {
-            alpha,
-            levels,
-            fraction,
-            centre,
-            blocks,
-        } => {
+        DesignKind::Composite(asked) => {
             let ends = [("factorial", Ends::Factorial), ("axial", Ends::Axial)];
-            let (centre, centre_axial) = centres_of(centre.as_deref(), *blocks)?;
+            let blocks = asked.blocks;
+            let (centre, centre_axial) = centres_of(asked.centre.as_deref(), blocks)?;
             let options = CompositeOptions {
-                alpha: alpha_of(alpha.as_deref(), *blocks)?,
-                ends: chosen("--levels", levels, &ends)?,
-                generators: generators_of(fraction.as_deref(), None, &factors)?,
-                blocks: *blocks,
+                alpha: alpha_of(asked.alpha.as_deref(), blocks)?,
+                ends: chosen("--levels", &asked.levels, &ends)?,
+                generators: generators_of(asked.fraction.as_deref(), None, &factors)?,
+                blocks,
                 centre,
                 centre_axial,
             };
             central_composite(factors, &options)
         }
-        DesignKind::PlackettBurman { runs, centre } => plackett_burman(factors, *runs, *centre),
-        DesignKind::BoxBehnken { centre, blocks } => {
-            let blocks = *blocks;
-            let centre = centre.unwrap_or(if blocks > 1 { 2 } else { 5 });
+        DesignKind::PlackettBurman(asked) => plackett_burman(factors, asked.runs, asked.centre),
+        DesignKind::BoxBehnken(asked) => {
+            let blocks = asked.blocks;
+            let centre = asked.centre.unwrap_or(if blocks > 1 { 2 } else { 5 });
             box_behnken(factors, &BoxBehnkenOptions { centre, blocks })
         }
-        DesignKind::LatinHypercube { runs } => latin_hypercube(factors, *runs, seed),
-        DesignKind::Sobol { runs } => sobol(factors, *runs),
-        DesignKind::Optimal(_) => {
+        DesignKind::LatinHypercube(asked) => latin_hypercube(factors, asked.runs, seed),
+        DesignKind::Sobol(asked) => sobol(factors, asked.runs),
+        DesignKind::Optimal(..) => {
             let problem = "an optimal design is made by exchange";
             return Err(unusable("windfall design", problem));
         }

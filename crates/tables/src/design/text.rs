@@ -1,6 +1,5 @@
 //! A design for people: its factors, runs and what it can tell.
 
-use crate::columns::strings;
 use crate::design::document::{alias_chains, generated};
 use crate::design::file::setting_text;
 use crate::design::run::DesignOutcome;
@@ -8,6 +7,7 @@ use windfall_design::factorial::roman;
 use windfall_design::kind::{Design, Factor};
 use windfall_design::quality::DesignQuality;
 use windfall_design::word::{Fraction, letter};
+use windfall_files::text::columns::strings;
 use windfall_files::text::number::plain;
 use windfall_files::text::table::{page_tables, paragraph, table_text};
 
@@ -18,7 +18,6 @@ const MOST_ROWS: usize = 200;
 const MOST_WORDS: usize = 40;
 
 /// A design for people.
-#[must_use]
 pub fn text_of_design(outcome: &DesignOutcome) -> String {
     let design = &outcome.design;
     let blocks = match design.blocks() {

@@ -19,10 +19,7 @@ const NAMED: usize = 8;
 
 /// A finding.
 pub fn finding(code: &str, message: String) -> FindingOutcome {
-    FindingOutcome {
-        code: code.to_owned(),
-        message,
-    }
+    FindingOutcome::new(code, message)
 }
 
 /// Lines in words, not too many.

@@ -159,7 +159,7 @@ pub fn regress_mixed(
     formula: &Formula,
     text: &str,
 ) -> Result<MixedOutcome, Error> {
-    if request.selection.is_some() {
+    if request.select.is_some() {
         let problem = "terms of mixed models are not selected here: compare models fitted by \
                        --likelihood ml by their criteria";
         return Err(unusable("--select", problem));
@@ -176,7 +176,7 @@ pub fn regress_mixed(
         comments: Vec::new(),
         lines: kept.iter().map(|row| data.lines[*row]).collect(),
     };
-    let inference = infer(request, &chosen, formula, request.contrast)?;
+    let inference = infer(request, &chosen, formula, request.contrasts)?;
     let summed = match inference.fitted.rows.frame.has_categories() {
         true => Some(infer(request, &chosen, formula, Contrast::Sum)?),
         false => None,
@@ -259,10 +259,7 @@ fn fit(
         .collect();
     let numbers: Vec<_> = terms.iter().map(|framed| framed.term.clone()).collect();
     let options = MixedOptions {
-        method: match request.mixed.maximum_likelihood {
-            true => MixedMethod::MaximumLikelihood,
-            false => MixedMethod::Reml,
-        },
+        method: request.likelihood,
     };
     let x = rows.x.select_columns(&columns);
     let fit = fit_mixed(&rows.y, &x, &names, &numbers, &options).map_err(mixed)?;
@@ -291,7 +288,7 @@ fn infer(
     let fitted = fit(request, data, formula, contrast)?;
     Ok(Inference {
         uncertainty: variance_uncertainty(&fitted.fit).map_err(mixed)?,
-        adjusted: match request.mixed.freedom {
+        adjusted: match request.df {
             FreedomMethod::Satterthwaite => None,
             FreedomMethod::KenwardRoger => Some(kenward_roger(&fitted.fit).map_err(mixed)?),
         },

@@ -1,9 +1,9 @@
 //! A mixed model as text and CSV.
 
-use crate::columns::{Column, csv_of_rows, text_of_rows};
 use crate::regress::mixed::{MixedOutcome, MixedPredictionOutcome, MixedTest, VarianceOutcome};
 use crate::regress::text::csv_of_terms;
 use windfall_files::error::Error;
+use windfall_files::text::columns::{Column, csv_of_rows, text_of_rows};
 use windfall_files::text::number::plain;
 use windfall_files::text::statistic::{freedom, number, probability};
 use windfall_files::text::table::findings_list;
@@ -60,7 +60,6 @@ const PREDICTIONS_CSV: [Column<MixedPredictionOutcome>; 8] = [
 ];
 
 /// A mixed model as text.
-#[must_use]
 pub fn text_of_mixed(outcome: &MixedOutcome) -> String {
     let groups = outcome.groups.iter();
     let groups: Vec<String> = groups

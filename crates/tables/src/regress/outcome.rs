@@ -37,7 +37,6 @@ pub struct RangeOutcome {
 }
 
 /// Ranges of the numeric columns on the right side of a formula, in the rows `kept`.
-#[must_use]
 pub fn ranges_of(formula: &Formula, table: &Table, kept: &[usize]) -> Vec<RangeOutcome> {
     let atoms = formula.atoms.iter();
     let mut names: Vec<String> = atoms.flat_map(|atom| columns_of(&atom.node)).collect();
@@ -79,7 +78,6 @@ pub struct PredictionOutcome {
 }
 
 /// Rows with their influence and their lines in the file.
-#[must_use]
 pub fn rows_of(influence: Vec<RowInfluence>, lines: &[usize]) -> Vec<RowOutcome> {
     let rows = influence.into_iter().zip(lines);
     rows.map(|(influence, &line)| RowOutcome { line, influence })

@@ -1,117 +1,178 @@
 //! What `windfall regress` is asked.
 
+#[cfg(feature = "clap")]
+use crate::option_words::{anova_type, contrast, direction, likelihood};
 use std::path::PathBuf;
 
+pub use windfall_statistics::mixed::fit::MixedMethod;
 pub use windfall_statistics::model::anova::AnovaType;
 pub use windfall_statistics::model::contrast::Contrast;
 pub use windfall_statistics::model::selection::{Criterion, Direction, SelectionOptions};
 
 /// What `windfall regress` is asked.
 #[derive(Clone, Debug)]
+#[cfg_attr(feature = "clap", derive(clap::Args))]
 pub struct RegressRequest {
-    /// The table.
+    /// Table with a header line (CSV)
+    #[cfg_attr(feature = "clap", arg(value_hint = clap::ValueHint::FilePath))]
     pub table: PathBuf,
-    /// What is modelled, and by what.
-    pub model: ModelText,
-    /// What varies between groups: `specimen`, `1 + V | specimen`.
+    /// What is modelled: a column, or a function of one
+    #[cfg_attr(
+        feature = "clap",
+        arg(long, value_name = "COLUMN", required_unless_present = "formula")
+    )]
+    pub response: Option<String>,
+    /// What it is modelled by
+    #[cfg_attr(
+        feature = "clap",
+        arg(long, value_name = "TERMS", required_unless_present = "formula")
+    )]
+    pub terms: Option<String>,
+    /// Both at once: 'response ~ terms'
+    #[cfg_attr(feature = "clap", arg(long, conflicts_with_all = ["response", "terms"]))]
+    pub formula: Option<String>,
+    /// What varies between groups: 'specimen' (its mean), '1 + V | specimen' (its mean and its
+    /// slope), 'variety/fruit' (fruit within variety); makes the model a mixed one; may be repeated
+    #[cfg_attr(feature = "clap", arg(long = "random", value_name = "GROUPS"))]
     pub random: Vec<String>,
-    /// How a model with random effects is fitted.
-    pub mixed: MixedChoice,
-    /// Contrasts of categories.
-    pub contrast: Contrast,
-    /// Models that terms are tested between.
+    /// What is maximised where there are random effects
+    #[cfg_attr(feature = "clap", arg(long, default_value = "reml", value_parser = likelihood()))]
+    pub likelihood: MixedMethod,
+    /// How degrees of freedom are found where there are random effects
+    #[cfg_attr(
+        feature = "clap",
+        arg(long, value_enum, default_value_t, value_name = "METHOD")
+    )]
+    pub df: FreedomMethod,
+    /// Select terms
+    #[cfg_attr(feature = "clap", arg(long, value_name = "HOW", value_parser = direction()))]
+    pub select: Option<Direction>,
+    /// What decides on a term
+    #[cfg_attr(
+        feature = "clap",
+        arg(long, value_enum, default_value_t, requires = "select")
+    )]
+    pub criterion: SelectBy,
+    /// A term leaves at this probability or above
+    #[cfg_attr(
+        feature = "clap",
+        arg(long, default_value_t = 0.1, value_name = "P", requires = "select")
+    )]
+    pub p_remove: f64,
+    /// A term enters below this probability
+    #[cfg_attr(
+        feature = "clap",
+        arg(long, default_value_t = 0.05, value_name = "P", requires = "select")
+    )]
+    pub p_enter: f64,
+    /// Keep a term while one that contains it is in the model (SPSS does not)
+    #[cfg_attr(feature = "clap", arg(long, requires = "select"))]
+    pub hierarchy: bool,
+    /// Type of the analysis of variance: 1 in order, 2 after all that do not contain the term,
+    /// 3 after all others (categories by sum contrasts); with random effects always 3
+    #[cfg_attr(feature = "clap", arg(long, default_value = "2", value_name = "TYPE", value_parser = anova_type()))]
     pub anova: AnovaType,
-    /// How terms are selected, if they are.
-    pub selection: Option<SelectionOptions>,
-    /// Level of intervals.
-    pub confidence: f64,
-    /// Whether standard errors hold for unequal variances.
+    /// Contrasts of categories
+    #[cfg_attr(feature = "clap", arg(long, default_value = "treatment", value_parser = contrast()))]
+    pub contrasts: Contrast,
+    /// Standard errors that hold for unequal variances (HC3)
+    #[cfg_attr(feature = "clap", arg(long))]
     pub robust: bool,
-    /// Parts for cross-validation; none if zero.
+    /// Parts for cross-validation, without random effects; 0 for none
+    #[cfg_attr(
+        feature = "clap",
+        arg(long, default_value_t = 10, value_name = "PARTS")
+    )]
     pub folds: usize,
-    /// Seed of the division into parts.
+    /// Seed of the division into parts
+    #[cfg_attr(feature = "clap", arg(long, default_value_t = 1))]
     pub seed: u64,
-    /// A table to predict.
+    /// Level of the intervals
+    #[cfg_attr(
+        feature = "clap",
+        arg(long, default_value_t = 0.95, value_name = "LEVEL")
+    )]
+    pub confidence: f64,
+    /// Table with the columns of the model, to be predicted
+    #[cfg_attr(feature = "clap", arg(long, value_name = "TABLE", value_hint = clap::ValueHint::FilePath))]
     pub predict: Option<PathBuf>,
 }
 
 impl RegressRequest {
-    /// What is usual beside table and model.
-    #[must_use]
-    pub fn usual(table: PathBuf, model: ModelText) -> Self {
+    /// What is usual beside table, response and terms.
+    pub fn usual(table: PathBuf, response: String, terms: String) -> Self {
         Self {
             table,
-            model,
+            response: Some(response),
+            terms: Some(terms),
+            formula: None,
             random: Vec::new(),
-            mixed: MixedChoice::default(),
-            contrast: Contrast::Treatment,
+            likelihood: MixedMethod::Reml,
+            df: FreedomMethod::Satterthwaite,
+            select: None,
+            criterion: SelectBy::P,
+            p_remove: 0.1,
+            p_enter: 0.05,
+            hierarchy: false,
             anova: AnovaType::Hierarchical,
-            selection: None,
-            confidence: 0.95,
+            contrasts: Contrast::Treatment,
             robust: false,
             folds: 10,
             seed: 1,
+            confidence: 0.95,
             predict: None,
         }
     }
 
-    /// The usual selection: terms are removed while their probability is above 0.1.
-    #[must_use]
-    pub fn usual_selection() -> SelectionOptions {
-        SelectionOptions {
-            direction: Direction::Backward,
-            criterion: Criterion::Probability {
-                enter: 0.05,
-                remove: 0.1,
+    /// How terms are selected, if they are.
+    pub fn selection(&self) -> Option<SelectionOptions> {
+        Some(SelectionOptions {
+            direction: self.select?,
+            criterion: match self.criterion {
+                SelectBy::P => Criterion::Probability {
+                    enter: self.p_enter,
+                    remove: self.p_remove,
+                },
+                SelectBy::Aicc => Criterion::Aicc,
+                SelectBy::Bic => Criterion::Bic,
             },
-            hierarchy: false,
-        }
+            hierarchy: self.hierarchy,
+        })
     }
-}
 
-/// A model as it is written.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub enum ModelText {
-    /// `response ~ terms`.
-    Formula(String),
-    /// The two apart.
-    Parts {
-        /// A column, or a function of one.
-        response: String,
-        /// What it is modelled by.
-        terms: String,
-    },
-}
-
-impl ModelText {
-    /// `response ~ terms`; the name of one of the `columns` is taken as it is.
-    #[must_use]
+    /// `response ~ terms`; a response that is the name of one of the `columns` is taken as it is.
     pub fn formula(&self, columns: &[String]) -> String {
-        match self {
-            Self::Formula(text) => text.clone(),
-            Self::Parts { response, terms } if columns.contains(response) => {
+        let terms = self.terms.as_deref().unwrap_or_default();
+        match (&self.formula, &self.response) {
+            (Some(text), _) => text.clone(),
+            (None, Some(response)) if columns.contains(response) => {
                 format!("`{response}` ~ {terms}")
             }
-            Self::Parts { response, terms } => format!("{response} ~ {terms}"),
+            (None, response) => format!("{} ~ {terms}", response.as_deref().unwrap_or_default()),
         }
     }
 }
 
 /// How degrees of freedom are found.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[cfg_attr(feature = "clap", derive(clap::ValueEnum))]
 pub enum FreedomMethod {
-    /// Satterthwaite's.
+    /// Satterthwaite's
     #[default]
     Satterthwaite,
-    /// Kenward and Roger's, with their standard errors.
+    /// Kenward and Roger's, with their standard errors
     KenwardRoger,
 }
 
-/// What is asked of a mixed model.
+/// What decides on a term.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct MixedChoice {
-    /// Whether plain maximum likelihood is wanted, not restricted.
-    pub maximum_likelihood: bool,
-    /// How degrees of freedom are found.
-    pub freedom: FreedomMethod,
+#[cfg_attr(feature = "clap", derive(clap::ValueEnum))]
+pub enum SelectBy {
+    /// Probability of its F test
+    #[default]
+    P,
+    /// Akaike's criterion for small samples
+    Aicc,
+    /// Schwarz' criterion
+    Bic,
 }

@@ -1,8 +1,8 @@
 //! Tests of the residuals of a linear model, and goodness indices.
 
-use crate::columns::given;
 use crate::regress::findings::finding;
 use windfall_files::found::FindingOutcome;
+use windfall_files::text::columns::given;
 use windfall_files::text::number::plain;
 use windfall_files::text::statistic::{number, probability};
 
@@ -64,7 +64,6 @@ pub struct ResidualOutcome {
 }
 
 /// Tests the residuals of a model.
-#[must_use]
 pub fn residual_tests(rows: &ModelRows, fit: &LinearFit) -> ResidualOutcome {
     let goodness = goodness_index(&rows.y, &fit.fitted(&rows.y), fit.columns.len()).ok();
     let goodness = goodness.map(|index| GoodnessOutcome {
@@ -149,7 +148,6 @@ pub(crate) fn residual_findings(outcome: &ResidualOutcome) -> Vec<FindingOutcome
 }
 
 /// The tests as text.
-#[must_use]
 pub fn residuals_text(outcome: &ResidualOutcome) -> String {
     let mut text = String::new();
     if !outcome.tests.is_empty() {

@@ -97,7 +97,7 @@ pub fn regress(request: &RegressRequest) -> Result<AnyRegressOutcome, Error> {
     check(request)?;
     let data = read_data(&request.table)?;
     let names: Vec<String> = data.table.columns.iter().map(|c| c.name.clone()).collect();
-    let mut text = request.model.formula(&names);
+    let mut text = request.formula(&names);
     for random in &request.random {
         text += &match random.contains('|') {
             true => format!(" + ({random})"),
@@ -128,10 +128,10 @@ fn regress_linear(
     formula: &Formula,
 ) -> Result<RegressOutcome, Error> {
     let rows =
-        model_rows(formula, &data.table, request.contrast, &[]).map_err(Error::Statistics)?;
+        model_rows(formula, &data.table, request.contrasts, &[]).map_err(Error::Statistics)?;
     let reduced = reduce(&rows.x, &rows.y);
     let every: Vec<usize> = (0..rows.frame.terms.len()).collect();
-    let selection = match &request.selection {
+    let selection = match &request.selection() {
         Some(options) => select(&rows.frame, &reduced, options),
         None => Selection {
             terms: every,
@@ -153,7 +153,7 @@ fn regress_linear(
 
 fn check(request: &RegressRequest) -> Result<(), Error> {
     check_part("--confidence", request.confidence)?;
-    let Some(selection) = &request.selection else {
+    let Some(selection) = request.selection() else {
         return Ok(());
     };
     if let Criterion::Probability { enter, remove } = selection.criterion {
@@ -210,7 +210,7 @@ fn outcome(
                 &rows.x,
                 &rows.y,
                 &selection.terms,
-                request.selection.as_ref(),
+                request.selection().as_ref(),
                 request.folds,
                 request.seed,
             )

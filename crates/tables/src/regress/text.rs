@@ -1,10 +1,10 @@
 //! A linear model as text and CSV.
 
-use crate::columns::{Column, csv_of_rows, given, text_of_rows};
 use crate::regress::outcome::{PredictionOutcome, StepOutcome};
 use crate::regress::residuals::residuals_text;
 use crate::regress::run::RegressOutcome;
 use windfall_files::error::Error;
+use windfall_files::text::columns::{Column, csv_of_rows, given, text_of_rows};
 use windfall_files::text::statistic::{freedom, number, probability};
 use windfall_files::text::table::{findings_list, page_tables, paragraph};
 use windfall_statistics::coefficient::Coefficient;
@@ -106,7 +106,6 @@ pub(crate) fn lack_of_fit_text(lack_of_fit: Option<&LackOfFit>, unrepeated: &str
 }
 
 /// A model as text.
-#[must_use]
 pub fn text_of_regress(outcome: &RegressOutcome) -> String {
     let quality = &outcome.quality;
     let mut text = format!("{}\n{} rows", outcome.formula, outcome.rows);

@@ -71,7 +71,6 @@ fn range(text: &str, factors: &[String]) -> Result<FactorCoding, Error> {
 }
 
 /// Where the coding came from.
-#[must_use]
 pub fn coding_text(coded: &CodedFactors) -> String {
     match &coded.recognised {
         Recognised::Given => "given".to_owned(),
@@ -85,7 +84,6 @@ pub fn coding_text(coded: &CodedFactors) -> String {
 }
 
 /// What a reader must know of the coding.
-#[must_use]
 pub fn coding_findings(coded: &CodedFactors) -> Vec<FindingOutcome> {
     match &coded.recognised {
         Recognised::CentralComposite { alpha, rounded } if !rounded.is_empty() => {

@@ -54,7 +54,6 @@ pub struct Effects {
 /// # Source
 /// C. Daniel (1959), Technometrics 1:311 (half-normal plots); R. V. Lenth (1989)
 /// for why unreplicated two-level designs need other limits than these of t.
-#[must_use]
 pub fn effects_of(model: &SurfaceModel, confidence: f64) -> Option<Effects> {
     let terms = model.terms.iter().skip(1).filter_map(|term| {
         let t = term.coded / term.se;
@@ -78,7 +77,6 @@ pub fn effects_of(model: &SurfaceModel, confidence: f64) -> Option<Effects> {
 }
 
 /// Expected |t| of the terms if none matters, largest first.
-#[must_use]
 pub fn half_normal_scores(count: usize) -> Vec<f64> {
     let m = count as f64;
     (0..count)

@@ -17,7 +17,6 @@ pub struct Heights {
 
 impl Heights {
     /// Levels for values from `low` to `high`.
-    #[must_use]
     pub fn between(low: f64, high: f64) -> Self {
         Self {
             axis: axis(low, high, LEVELS),
@@ -25,7 +24,6 @@ impl Heights {
     }
 
     /// Levels for all these values; those that are no numbers are passed over.
-    #[must_use]
     pub fn of<'a>(values: impl Iterator<Item = &'a f64>) -> Self {
         let finite = values.copied().filter(|value| value.is_finite());
         let (low, high) = finite.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), v| {
@@ -38,7 +36,6 @@ impl Heights {
     }
 
     /// Colour of the band above so many levels.
-    #[must_use]
     pub fn ink(&self, levels: usize) -> Ink {
         let bands = self.axis.ticks.len();
         let step = (SCALE - 1) as f64 * levels as f64 / bands.max(1) as f64;
@@ -46,7 +43,6 @@ impl Heights {
     }
 
     /// Colour of a value.
-    #[must_use]
     pub fn ink_of(&self, value: f64) -> Ink {
         let below = self.axis.ticks.iter().filter(|level| **level <= value);
         self.ink(below.count())

@@ -23,7 +23,6 @@ fn drawn(label: &str, style: Style, colour: usize, points: Vec<(f64, f64)>) -> S
 }
 
 /// Each response along one factor at a time from the reference, in coded units.
-#[must_use]
 pub fn figure_of_perturbation(fitted: &FittedSurfaces) -> NamedFigure {
     let panels = fitted.responses.iter().map(|response| {
         let series = (0..fitted.coded.factors.len()).map(|factor| {
@@ -63,7 +62,6 @@ pub fn figure_of_perturbation(fitted: &FittedSurfaces) -> NamedFigure {
 }
 
 /// Desirability of each response and of all, over each factor; `None` without goals.
-#[must_use]
 pub fn figure_of_desirability(fitted: &FittedSurfaces) -> Option<NamedFigure> {
     desirability_at(fitted, &fitted.reference)?;
     let panels = (0..fitted.coded.factors.len()).map(|factor| {
@@ -116,7 +114,6 @@ pub fn figure_of_desirability(fitted: &FittedSurfaces) -> Option<NamedFigure> {
 
 /// Fitted against measured, and studentised residuals over the fitted value, in the order
 /// of the table and against normal scores, for each response.
-#[must_use]
 pub fn figures_of_models(outcome: &SurfaceOutcome, confidence: f64) -> Vec<NamedFigure> {
     let models = outcome.responses.iter();
     models

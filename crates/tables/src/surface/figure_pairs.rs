@@ -31,7 +31,6 @@ pub struct SurfacePairs {
 
 /// Each response, and the desirability if there are goals, on a grid of `points` along
 /// every pair of factors.
-#[must_use]
 pub fn surface_pairs(fitted: &FittedSurfaces, points: usize) -> Vec<SurfacePairs> {
     let mut pairs = pairs_of_factors(fitted);
     pairs.truncate(MOST_PAIRS);
@@ -72,7 +71,6 @@ pub fn surface_pairs(fitted: &FittedSurfaces, points: usize) -> Vec<SurfacePairs
 }
 
 /// Where the factors that a grid does not vary are: "c = 5.56e-4, …"; "" for none.
-#[must_use]
 pub fn others_of(fitted: &FittedSurfaces, grid: &SurfaceGrid) -> String {
     let factors = fitted.coded.factors.iter().enumerate();
     let others = factors.filter(|(place, _)| *place != grid.factors.0 && *place != grid.factors.1);
@@ -85,19 +83,16 @@ pub fn others_of(fitted: &FittedSurfaces, grid: &SurfaceGrid) -> String {
 }
 
 /// Title and unit of the factor at this place.
-#[must_use]
 pub fn factor_title(fitted: &FittedSurfaces, place: usize) -> (String, String) {
     column_title(&fitted.coded.factors[place].name)
 }
 
 /// Name with unit: "force (N)".
-#[must_use]
 pub fn with_unit((name, unit): &(String, String), power: i32) -> String {
     format!("{name}{}", unit_label(unit, power))
 }
 
 /// Where others stand, in words of a caption.
-#[must_use]
 pub fn reference_words(fitted: &FittedSurfaces) -> &'static str {
     match fitted.at_optimum {
         true => "the most desirable settings",
@@ -117,7 +112,6 @@ pub struct PairPlaces {
 }
 
 /// Runs, optimum and its family on a pair of factors, in actual units.
-#[must_use]
 pub fn places_of(
     fitted: &FittedSurfaces,
     outcome: &SurfaceOutcome,
@@ -184,7 +178,6 @@ pub fn csv_of_pairs(
 }
 
 /// Height of the quantity at the reference, for a mark on its surface.
-#[must_use]
 pub fn height_at_reference(fitted: &FittedSurfaces, own: &SurfacePairs) -> Option<f64> {
     let response = fitted.responses.iter().find(|r| r.name == own.name);
     match response {

@@ -30,7 +30,6 @@ pub struct FittedSurfaces {
 }
 
 /// Desirability of all responses at coded settings; `None` where nothing is wanted.
-#[must_use]
 pub fn desirability_at(fitted: &FittedSurfaces, coded: &[f64]) -> Option<f64> {
     let wanted = fitted.responses.iter().filter_map(|response| {
         let goal = response.goal?;
@@ -66,7 +65,6 @@ pub enum Shown {
 
 /// Values over the range of the runs of two factors, at least 2 `points` along each; the
 /// desirability is 0 without goals.
-#[must_use]
 pub fn surface_grid(
     fitted: &FittedSurfaces,
     shown: Shown,
@@ -116,7 +114,6 @@ pub fn surface_grid(
 }
 
 /// Coded settings over the range of one factor, the others at the reference.
-#[must_use]
 pub fn settings_along(fitted: &FittedSurfaces, factor: usize, points: usize) -> Vec<Vec<f64>> {
     let (low, high) = fitted.coded.range(factor);
     let last = points.max(2) - 1;
@@ -131,7 +128,6 @@ pub fn settings_along(fitted: &FittedSurfaces, factor: usize, points: usize) -> 
 }
 
 /// Every pair of factors, by their places.
-#[must_use]
 pub fn pairs_of_factors(fitted: &FittedSurfaces) -> Vec<(usize, usize)> {
     let count = fitted.coded.factors.len();
     (0..count)

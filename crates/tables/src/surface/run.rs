@@ -1,6 +1,8 @@
 //! `windfall surface`: a table of runs → response surfaces and the best settings.
 
 use crate::design::coding::number_factors;
+#[cfg(feature = "clap")]
+use crate::option_words::{anova_type, members};
 use crate::regress::findings::{aliased_findings, finding, fit_findings, left_out_finding};
 use crate::regress::outcome::rows_of;
 use crate::regress::run::check_part;
@@ -40,42 +42,68 @@ pub use windfall_statistics::model::anova::AnovaType;
 
 /// What `windfall surface` is asked.
 #[derive(Clone, Debug)]
+#[cfg_attr(feature = "clap", derive(clap::Args))]
 pub struct SurfaceRequest {
-    /// The table of runs.
+    /// Table of runs with a header line (CSV)
+    #[cfg_attr(feature = "clap", arg(value_hint = clap::ValueHint::FilePath))]
     pub table: PathBuf,
-    /// Responses with the models of each.
-    pub responses: Vec<(String, String)>,
-    /// Factors in the order of their letters; those of the design if empty.
+    /// A response: a column, or a function of columns; may be repeated, each with its --model
+    #[cfg_attr(
+        feature = "clap",
+        arg(long = "response", value_name = "COLUMN", required = true)
+    )]
+    pub responses: Vec<String>,
+    /// Its model; one for all responses, or one for each in their order
+    #[cfg_attr(
+        feature = "clap",
+        arg(long = "model", value_name = "MODEL", default_value = "quadratic")
+    )]
+    pub models: Vec<String>,
+    /// A factor; repeated in the order of the letters A, B, C …
+    #[cfg_attr(feature = "clap", arg(long = "factor", value_name = "COLUMN"))]
     pub factors: Vec<String>,
-    /// `k=0.44..0.86`: actual values of coded -1 and 1.
+    /// Actual values of coded -1 and 1 of a factor: k=0.44..0.86; may be repeated
+    #[cfg_attr(feature = "clap", arg(long = "range", value_name = "FACTOR=LOW..HIGH"))]
     pub ranges: Vec<String>,
-    /// Models that terms are tested between, in coded units.
+    /// Type of the analysis of variance, in coded units
+    #[cfg_attr(feature = "clap", arg(long, default_value = "3", value_name = "TYPE", value_parser = anova_type()))]
     pub anova: AnovaType,
-    /// Level of intervals.
+    /// Level of the intervals
+    #[cfg_attr(
+        feature = "clap",
+        arg(long, default_value_t = 0.95, value_name = "LEVEL")
+    )]
     pub confidence: f64,
-    /// What is wanted of responses.
+    /// What is wanted of a response; may be repeated
+    #[cfg_attr(feature = "clap", arg(long = "goal", value_name = "GOAL"))]
     pub goals: Vec<String>,
-    /// `k=0.868`: factors that are held.
+    /// Hold a factor at a value: k=0.868; may be repeated
+    #[cfg_attr(feature = "clap", arg(long = "hold", value_name = "FACTOR=VALUE"))]
     pub hold: Vec<String>,
-    /// Factor at whose values equally good settings are given.
+    /// Factor at whose values settings as good as the best are listed
+    #[cfg_attr(feature = "clap", arg(long, value_name = "FACTOR"))]
     pub along: Option<String>,
-    /// How many of these values.
+    /// How many of these values
+    #[cfg_attr(feature = "clap", arg(long, default_value_t = 15, value_name = "N", value_parser = members()))]
     pub members: usize,
-    /// Two factors for a grid of predictions.
+    /// Two factors for a grid of predictions: k,e (in --format json and csv)
+    #[cfg_attr(feature = "clap", arg(long, value_name = "FACTOR,FACTOR"))]
     pub grid: Option<String>,
-    /// Points of the grid along each.
+    /// Points of the grid along each factor
+    #[cfg_attr(feature = "clap", arg(long, default_value_t = 41, value_name = "N"))]
     pub grid_points: usize,
-    /// Where figures go, if anywhere.
+    /// Contours, surfaces, effects, perturbation, desirability, and model against runs
+    #[cfg_attr(feature = "clap", command(flatten))]
     pub figures: Option<FigureFolder>,
 }
 
 impl SurfaceRequest {
-    /// What is usual beside table and responses.
-    #[must_use]
-    pub fn usual(table: PathBuf, responses: Vec<(String, String)>) -> Self {
+    /// What is usual beside table, responses and their models.
+    pub fn usual(table: PathBuf, responses: Vec<String>, models: Vec<String>) -> Self {
         Self {
             table,
             responses,
+            models,
             factors: Vec::new(),
             ranges: Vec::new(),
             anova: AnovaType::Partial,
@@ -88,6 +116,20 @@ impl SurfaceRequest {
             grid_points: 41,
             figures: None,
         }
+    }
+
+    /// Responses with the model of each.
+    fn modelled(&self) -> Result<Vec<(&String, &String)>, Error> {
+        let (responses, models) = (&self.responses, &self.models);
+        if models.len() != 1 && models.len() != responses.len() {
+            let problem = format!(
+                "there are {} responses and {} models: give one model for all, or one for each",
+                responses.len(),
+                models.len()
+            );
+            return Err(unusable("--model", problem));
+        }
+        Ok(responses.iter().zip(models.iter().cycle()).collect())
     }
 }
 
@@ -110,6 +152,7 @@ pub fn surface(request: &SurfaceRequest) -> Result<SurfaceOutcome, Error> {
 pub fn fitted_surfaces(
     request: &SurfaceRequest,
 ) -> Result<(SurfaceOutcome, FittedSurfaces), Error> {
+    let modelled = request.modelled()?;
     check_part("--confidence", request.confidence)?;
     let mut data = read_data(&request.table)?;
     let factors = factor_names(request, &data)?;
@@ -119,7 +162,7 @@ pub fn fitted_surfaces(
     let mut surfaces = Vec::new();
     let mut models = Vec::new();
     let mut observed: Vec<Vec<f64>> = Vec::new();
-    for (response, model) in &request.responses {
+    for (response, model) in modelled {
         let y = response_values(response, &data)?;
         let terms = surface_terms(model, &factors).map_err(Error::Statistics)?;
         let fitted = fit_surface(
@@ -138,11 +181,7 @@ pub fn fitted_surfaces(
     }
     let goals = goals_of(request, &observed)?;
     let asked = SettingsRequest {
-        names: request
-            .responses
-            .iter()
-            .map(|(name, _)| name.clone())
-            .collect(),
+        names: &request.responses,
         goals,
         hold: &request.hold,
         along: request.along.as_deref(),
@@ -171,7 +210,7 @@ pub fn fitted_surfaces(
         None => asked.centre(&coded)?,
     };
     let named = request.responses.iter().zip(surfaces).zip(&asked.goals);
-    let responses = named.map(|(((name, _), surface), goal)| ResponseSurface {
+    let responses = named.map(|((name, surface), goal)| ResponseSurface {
         name: name.clone(),
         surface,
         goal: *goal,
@@ -234,7 +273,7 @@ fn keep_complete(
     data: &mut Data,
 ) -> Result<Vec<FindingOutcome>, Error> {
     let mut names = factors.to_vec();
-    for (response, _) in &request.responses {
+    for response in &request.responses {
         if has_column(data, response) {
             names.push(response.clone());
         }
@@ -267,7 +306,7 @@ fn response_values(response: &str, data: &Data) -> Result<Vec<f64>, Error> {
 
 fn goals_of(request: &SurfaceRequest, observed: &[Vec<f64>]) -> Result<Vec<Option<Goal>>, Error> {
     let mut goals: Vec<Option<Goal>> = vec![None; observed.len()];
-    let place_of = |name: &str| request.responses.iter().position(|(own, _)| own == name);
+    let place_of = |name: &str| request.responses.iter().position(|own| own == name);
     let range = |name: &str| {
         let values = &observed[place_of(name)?];
         let low = values.iter().copied().fold(f64::INFINITY, f64::min);

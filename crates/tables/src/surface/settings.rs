@@ -17,7 +17,7 @@ const MOST_POINTS: usize = 1001;
 
 /// What is wanted.
 pub(crate) struct SettingsRequest<'a> {
-    pub names: Vec<String>,
+    pub names: &'a [String],
     /// What is wanted of each.
     pub goals: Vec<Option<Goal>>,
     pub hold: &'a [String],

@@ -1,12 +1,12 @@
 //! Response surfaces as text and CSV.
 
-use crate::columns::{Column, strings, text_of_rows};
 use crate::regress::text::{anova_text, lack_of_fit_text, r2_text};
 use crate::surface::outcome::{
     FactorOutcome, SettingOutcome, SurfaceModel, SurfaceOutcome, SurfaceTerm,
 };
 use windfall_files::error::Error;
 use windfall_files::table::write::csv_text;
+use windfall_files::text::columns::{Column, strings, text_of_rows};
 use windfall_files::text::number::plain;
 use windfall_files::text::statistic::number;
 use windfall_files::text::table::{findings_list, page_tables};
@@ -33,7 +33,6 @@ const TERMS: [Column<SurfaceTerm>; 5] = [
 ];
 
 /// Surfaces as text.
-#[must_use]
 pub fn text_of_surface(outcome: &SurfaceOutcome) -> String {
     let mut text = text_of_rows(&outcome.factors, &FACTORS, &[0, 1]);
     text += &format!("\nCoding: {}\n", outcome.coding);

@@ -1,9 +1,9 @@
 //! `windfall calibrate`: arguments.
 
-use crate::args::figures::FigureArguments;
 use crate::args::format::Format;
 use clap::{Args, ValueHint};
 use std::path::PathBuf;
+use windfall_drop::calibrate::run::CalibrateRequest;
 
 /// `windfall calibrate`
 #[derive(Debug, Args)]
@@ -27,24 +27,8 @@ pub struct CalibrateArguments {
     /// The campaign directory
     #[arg(value_name = "DIR", value_hint = ValueHint::DirPath)]
     pub directory: PathBuf,
-    /// Ways to calibrate in place of the campaign's; may be repeated
-    #[arg(long = "way", value_parser = ["waveform", "features", "design"], value_name = "WAY")]
-    pub ways: Vec<String>,
-    /// The fitted waveforms, the family of equally good laws and the surfaces
     #[command(flatten)]
-    pub drawn: FigureArguments,
-    /// Write all tables as CSV and text into this directory
-    #[arg(long, value_name = "DIR", value_hint = ValueHint::DirPath)]
-    pub tables: Option<PathBuf>,
-    /// Write the calibrated law as a law card
-    #[arg(long, value_name = "FILE", value_hint = ValueHint::FilePath)]
-    pub card: Option<PathBuf>,
-    /// Intervals from the profile of the sum of squares, which takes longer, in place of ±1.96 sd
-    #[arg(long)]
-    pub profile: bool,
-    /// Threads; all cores if left out
-    #[arg(long, value_name = "N")]
-    pub threads: Option<usize>,
+    pub request: CalibrateRequest,
     /// Form of the result
     #[arg(long, value_enum, default_value_t = Format::Text)]
     pub format: Format,

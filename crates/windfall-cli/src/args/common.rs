@@ -17,6 +17,7 @@ use crate::args::simulate::SimulateArguments;
 use crate::args::surface::SurfaceArguments;
 use clap::{Args, Parser, Subcommand, ValueEnum, ValueHint};
 use std::path::PathBuf;
+use windfall_campaign::settings::open_options::OpenRequest;
 
 /// From recordings of fruit impacts to contact-force laws.
 #[derive(Debug, Parser)]
@@ -159,39 +160,11 @@ pub struct InspectArguments {
     /// Write a figure of the channels (SVG or PNG, by its ending) and its data (CSV, same name); one recording only
     #[arg(long, value_name = "FILE.svg|FILE.png", value_hint = ValueHint::FilePath)]
     pub plot: Option<PathBuf>,
-    /// How files are read that do not say it themselves
     #[command(flatten)]
-    pub open: OpenArguments,
+    pub open: OpenRequest,
     /// How the result is shown
     #[arg(long, value_enum, default_value_t)]
     pub format: Format,
-}
-
-/// How files are read that do not say it themselves; all is found out if left out.
-#[derive(Debug, Args)]
-#[command(next_help_heading = "Reading unusual files (found out if left out)")]
-pub struct OpenArguments {
-    /// Format, whatever the first bytes say: text, lvm, tdms, mat, hdf5, wav, uff58, sigrok
-    #[arg(long, value_name = "FORMAT")]
-    pub file_format: Option<String>,
-    /// Between the cells of a text: comma, semicolon, tab, bar or blanks
-    #[arg(long, value_name = "NAME")]
-    pub separator: Option<String>,
-    /// Before decimals: point or comma
-    #[arg(long, value_name = "NAME")]
-    pub decimal: Option<String>,
-    /// Between groups of three digits: point, comma, apostrophe or space
-    #[arg(long, value_name = "NAME")]
-    pub thousands: Option<String>,
-    /// Encoding of a text: utf-8, windows-1252, utf-16le or utf-16be
-    #[arg(long, value_name = "NAME")]
-    pub encoding: Option<String>,
-    /// Line with the names of the columns, from 1; 0 if there is none
-    #[arg(long, value_name = "LINE")]
-    pub header_line: Option<u64>,
-    /// Beginning of lines that are passed over
-    #[arg(long, value_name = "TEXT")]
-    pub comment: Option<String>,
 }
 
 /// `windfall card`

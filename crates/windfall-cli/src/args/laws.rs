@@ -1,9 +1,9 @@
 //! `windfall laws`: arguments.
 
-use crate::args::figures::FigureArguments;
 use crate::args::format::Format;
 use clap::{Args, ValueHint};
 use std::path::PathBuf;
+use windfall_draw::files::FigureFolder;
 
 /// `windfall laws`
 #[derive(Debug, Args)]
@@ -33,7 +33,7 @@ pub struct LawsArguments {
     pub quantities: Vec<String>,
     /// The comparison, and one impact with the best fit of each law
     #[command(flatten)]
-    pub drawn: FigureArguments,
+    pub figures: Option<FigureFolder>,
     /// Threads; all cores if left out
     #[arg(long, value_name = "N")]
     pub threads: Option<usize>,

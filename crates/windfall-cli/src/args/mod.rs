@@ -5,7 +5,6 @@ pub mod calibrate;
 pub(crate) mod common;
 pub mod compare;
 pub mod design;
-mod figures;
 pub mod fit;
 pub(crate) mod format;
 pub mod geometry;

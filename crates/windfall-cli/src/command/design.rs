@@ -1,32 +1,34 @@
 //! `windfall design`
 
-use crate::args::design::{
-    CompositeArguments, DesignArguments, DesignCommand, DesignOptions, FactorialArguments,
-    OptimalArguments, RunOrder,
-};
+use crate::args::design::{DesignArguments, DesignCommand};
 use crate::args::format::Format;
 use crate::show::{message, write_json, write_result};
 use windfall_tables::design::document::design_document;
 use windfall_tables::design::file::{save_design, write_design};
-use windfall_tables::design::request::{
-    Criterion, DesignKind, DesignRequest, OptimalRequest, Order,
-};
+use windfall_tables::design::request::{Criterion, DesignKind};
 use windfall_tables::design::run::make_design;
 use windfall_tables::design::text::text_of_design;
 
 /// A design of experiments.
 pub fn run(arguments: &DesignArguments) -> anyhow::Result<()> {
-    let (options, kind) = kind_of(&arguments.kind);
-    let outcome = make_design(&DesignRequest {
-        kind,
-        factors: options.factors.clone(),
-        decimals: options.decimals.clone(),
-        seed: options.seed,
-        order: match options.order {
-            RunOrder::Random => Order::Random,
-            RunOrder::Standard => Order::Standard,
-        },
-    })?;
+    use DesignCommand as Command;
+    let (options, kind) = match &arguments.kind {
+        Command::Factorial(own) => (&own.all, DesignKind::Factorial(own.kind.clone())),
+        Command::PlackettBurman(own) => (&own.all, DesignKind::PlackettBurman(own.kind.clone())),
+        Command::Ccd(own) => (&own.all, DesignKind::Composite(own.kind.clone())),
+        Command::BoxBehnken(own) => (&own.all, DesignKind::BoxBehnken(own.kind.clone())),
+        Command::LatinHypercube(own) => (&own.all, DesignKind::LatinHypercube(own.kind.clone())),
+        Command::Sobol(own) => (&own.all, DesignKind::Sobol(own.kind.clone())),
+        Command::DOptimal(own) => {
+            let kind = DesignKind::Optimal(Criterion::D, own.kind.clone());
+            (&own.all, kind)
+        }
+        Command::IOptimal(own) => {
+            let kind = DesignKind::Optimal(Criterion::I, own.kind.clone());
+            (&own.all, kind)
+        }
+    };
+    let outcome = make_design(&kind, &options.request)?;
     if let Some(path) = &options.out {
         save_design(path, &outcome.design, &outcome.about)?;
         message(&format!("written: {}", path.display()));
@@ -46,72 +48,4 @@ pub fn run(arguments: &DesignArguments) -> anyhow::Result<()> {
             write_result(&write_design(&outcome.design, &outcome.about)?)
         }
     }
-}
-
-fn kind_of(command: &DesignCommand) -> (&DesignOptions, DesignKind) {
-    match command {
-        DesignCommand::Factorial(arguments) => (&arguments.all, factorial(arguments)),
-        DesignCommand::Ccd(arguments) => (&arguments.all, composite(arguments)),
-        DesignCommand::PlackettBurman(arguments) => (
-            &arguments.all,
-            DesignKind::PlackettBurman {
-                runs: arguments.runs,
-                centre: arguments.centre,
-            },
-        ),
-        DesignCommand::BoxBehnken(arguments) => (
-            &arguments.all,
-            DesignKind::BoxBehnken {
-                centre: arguments.centre,
-                blocks: arguments.blocks,
-            },
-        ),
-        DesignCommand::LatinHypercube(arguments) => (
-            &arguments.all,
-            DesignKind::LatinHypercube {
-                runs: arguments.runs,
-            },
-        ),
-        DesignCommand::Sobol(arguments) => (
-            &arguments.all,
-            DesignKind::Sobol {
-                runs: arguments.runs,
-            },
-        ),
-        DesignCommand::DOptimal(arguments) => (&arguments.all, optimal(arguments, Criterion::D)),
-        DesignCommand::IOptimal(arguments) => (&arguments.all, optimal(arguments, Criterion::I)),
-    }
-}
-
-fn factorial(arguments: &FactorialArguments) -> DesignKind {
-    DesignKind::Factorial {
-        points: arguments.points,
-        fraction: arguments.fraction.clone(),
-        runs: arguments.runs,
-        replicates: arguments.replicates,
-        centre: arguments.centre,
-        blocks: arguments.blocks,
-    }
-}
-
-fn composite(arguments: &CompositeArguments) -> DesignKind {
-    DesignKind::Composite {
-        alpha: arguments.alpha.clone(),
-        levels: arguments.levels.clone(),
-        fraction: arguments.fraction.clone(),
-        centre: arguments.centre.clone(),
-        blocks: arguments.blocks,
-    }
-}
-
-fn optimal(arguments: &OptimalArguments, criterion: Criterion) -> DesignKind {
-    DesignKind::Optimal(OptimalRequest {
-        criterion,
-        runs: arguments.runs,
-        model: arguments.model.clone(),
-        points: arguments.points,
-        candidates: arguments.candidates.clone(),
-        augment: arguments.augment.clone(),
-        starts: arguments.starts,
-    })
 }

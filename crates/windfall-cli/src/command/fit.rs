@@ -1,6 +1,6 @@
 //! `windfall fit`
 
-use crate::args::fit::{FitArguments, RecordingArguments};
+use crate::args::fit::FitArguments;
 use crate::args::format::Format;
 use crate::show::{message, show};
 use indicatif::{ProgressBar, ProgressStyle};
@@ -8,8 +8,6 @@ use std::io::IsTerminal;
 use std::ops::ControlFlow;
 use windfall_campaign::impacts::run::fit_recording;
 use windfall_campaign::measure::any_outcome::AnyOutcome;
-use windfall_campaign::pipeline::request::{FitRequest, Reuse};
-use windfall_campaign::recording::request::RecordingRequest;
 use windfall_files::error::Error;
 use windfall_files::progress::Progress;
 use windfall_report::any_text::{csv_of_any, text_of_any};
@@ -17,12 +15,11 @@ use windfall_report::fit_any::fit_any;
 
 /// Fits a campaign and shows the result.
 pub fn run(arguments: &FitArguments) -> anyhow::Result<()> {
-    let request = fit_request(arguments);
-    let path = &arguments.directory;
-    let outcome = with_bar(|progress| match recording_request(&arguments.recording) {
-        Some(recording) => fit_recording(path, &recording, &request, progress)
+    let (path, request) = (&arguments.directory, &arguments.request);
+    let outcome = with_bar(|progress| match &arguments.recording {
+        Some(recording) => fit_recording(path, recording, request, progress)
             .map(|outcome| AnyOutcome::Impacts(Box::new(outcome))),
-        None => fit_any(path, &request, progress),
+        None => fit_any(path, request, progress),
     })?;
     show(arguments.format, &outcome, text_of_any, csv_of_any)?;
     // The text shows failures itself, beside the results.
@@ -42,55 +39,10 @@ pub fn run(arguments: &FitArguments) -> anyhow::Result<()> {
         }
         .into());
     }
-    if arguments.recording.rig.is_none() {
+    if arguments.recording.is_none() {
         message(&status_line(outcome.status()));
     }
     Ok(())
-}
-
-fn fit_request(arguments: &FitArguments) -> FitRequest {
-    FitRequest {
-        laws: arguments.laws.clone(),
-        laws_file: arguments.laws_file.clone(),
-        free: arguments.free.clone(),
-        quantities: arguments.quantities.clone(),
-        weights: arguments.weights.clone(),
-        noise: arguments.noise.clone(),
-        intervals: arguments.intervals.clone(),
-        replicates: arguments.replicates,
-        draws: arguments.draws,
-        seed: arguments.seed,
-        initial_velocity: arguments.initial_velocity.clone(),
-        onset: arguments.onset.clone(),
-        displacement_offset: arguments.displacement_offset.clone(),
-        end: arguments.end.clone(),
-        group: arguments.group.clone(),
-        reuse: match arguments.refit {
-            true => Reuse::Nothing,
-            false => Reuse::Unchanged,
-        },
-        figures: arguments.drawn.folder(),
-        card: arguments.card.clone(),
-        threads: arguments.threads,
-    }
-}
-
-fn recording_request(arguments: &RecordingArguments) -> Option<RecordingRequest> {
-    Some(RecordingRequest {
-        rig: arguments.rig.clone()?,
-        inertia: arguments.inertia.clone(),
-        arm: arguments.arm.clone(),
-        mass: arguments.mass.clone(),
-        centre_of_mass: arguments.centre_of_mass.clone(),
-        gravity: arguments.gravity.clone(),
-        driving_acceleration: arguments.driving_acceleration.clone(),
-        channels: arguments.channels.clone(),
-        time: arguments.time.clone(),
-        sampling_rate: arguments.sampling_rate.clone(),
-        counts_per_revolution: arguments.counts_per_revolution,
-        count_length: arguments.count_length.clone(),
-        threshold: arguments.threshold.clone(),
-    })
 }
 
 fn status_line(status: &windfall_campaign::result::outcome::StatusOutcome) -> String {

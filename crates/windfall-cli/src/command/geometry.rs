@@ -3,17 +3,12 @@
 use crate::args::format::Format;
 use crate::args::geometry::{RadiusArguments, TransferArguments};
 use crate::show::{write_json, write_result};
-use windfall_cards::geometry::{RadiusRequest, radius, text_of_radius};
-use windfall_cards::transfer::{TransferRequest, text_of_transfer, transfer_law};
+use windfall_cards::geometry::{radius, text_of_radius};
+use windfall_cards::transfer::{text_of_transfer, transfer_law};
 
 /// Radii of curvature.
 pub fn run_radius(arguments: &RadiusArguments) -> anyhow::Result<()> {
-    let outcome = radius(&RadiusRequest {
-        chord: arguments.chord.clone(),
-        sagitta: arguments.sagitta.clone(),
-        diameters: arguments.diameters.clone(),
-        against: arguments.against.clone(),
-    })?;
+    let outcome = radius(&arguments.request)?;
     match arguments.format {
         Format::Json => write_json(&outcome),
         Format::Csv => {
@@ -31,20 +26,7 @@ pub fn run_radius(arguments: &RadiusArguments) -> anyhow::Result<()> {
 
 /// A law in another geometry.
 pub fn run_transfer(arguments: &TransferArguments) -> anyhow::Result<()> {
-    let outcome = transfer_law(&TransferRequest {
-        law: arguments.law.clone(),
-        file: arguments.file.clone(),
-        from: arguments.from.clone(),
-        from_plates: arguments.from_plates,
-        from_other: arguments.from_other.clone(),
-        to: arguments.to.clone(),
-        to_plates: arguments.to_plates,
-        to_other: match arguments.to_fruit {
-            true => Some("fruit".to_owned()),
-            false => arguments.to_other.clone(),
-        },
-        card: arguments.card.clone(),
-    })?;
+    let outcome = transfer_law(&arguments.request)?;
     match arguments.format {
         Format::Json => write_json(&outcome),
         Format::Csv => write_result(&format!(

@@ -3,7 +3,6 @@
 use crate::args::common::InspectArguments;
 use crate::args::format::Format;
 use crate::show::{message, write_json, write_result};
-use windfall_campaign::settings::open_options::OpenRequest;
 use windfall_inspect::run::{InspectRequest, inspect_recording, write_figure};
 use windfall_inspect::text::{csv_of_inspections, text_of_inspection};
 
@@ -13,15 +12,7 @@ const COLUMNS: usize = 80;
 /// Looks through every file; one that cannot be read does not stop the others.
 pub fn run(arguments: &InspectArguments) -> anyhow::Result<()> {
     let request = InspectRequest {
-        open: OpenRequest {
-            format: arguments.open.file_format.clone(),
-            separator: arguments.open.separator.clone(),
-            decimal: arguments.open.decimal.clone(),
-            thousands: arguments.open.thousands.clone(),
-            encoding: arguments.open.encoding.clone(),
-            header_line: arguments.open.header_line,
-            comment: arguments.open.comment.clone(),
-        },
+        open: arguments.open.clone(),
         channels: arguments.channels.clone(),
     };
     let mut inspections = Vec::new();

@@ -13,7 +13,7 @@ pub fn run(arguments: &LawsArguments) -> anyhow::Result<()> {
         laws: arguments.laws.clone(),
         free: arguments.free.clone(),
         quantities: arguments.quantities.clone(),
-        figures: arguments.drawn.folder(),
+        figures: arguments.figures.clone(),
         threads: arguments.threads,
         ..FitRequest::default()
     };

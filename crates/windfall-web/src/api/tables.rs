@@ -13,7 +13,7 @@ use utoipa::ToSchema;
 use windfall_files::confined::path_inside;
 use windfall_files::error::Error;
 use windfall_files::table::csv::read_table;
-use windfall_tables::regress::request::{ModelText, RegressRequest};
+use windfall_tables::regress::request::{Direction, RegressRequest};
 use windfall_tables::regress::run::{AnyRegressOutcome, regress};
 use windfall_tables::surface::outcome::SurfaceOutcome;
 use windfall_tables::surface::run::{SurfaceRequest, surface};
@@ -202,15 +202,9 @@ pub(crate) async fn regression(
             words.extend(["--select", "backward"]);
         }
         let command = command(&words);
-        let model = ModelText::Parts {
-            response: given.response,
-            terms: given.terms,
-        };
-        let mut request = RegressRequest::usual(table, model);
+        let mut request = RegressRequest::usual(table, given.response, given.terms);
         request.random = given.random;
-        if given.select {
-            request.selection = Some(RegressRequest::usual_selection());
-        }
+        request.select = given.select.then_some(Direction::Backward);
         Ok(RegressAnswer {
             outcome: regress(&request)?,
             command,
@@ -260,8 +254,8 @@ fn fitted_surface(directory: &FilePath, given: SurfaceGiven) -> Result<SurfaceAn
     }
     let command = command(&words);
     let names: Vec<String> = given.responses.iter().map(|r| r.name.clone()).collect();
-    let responses = given.responses.into_iter().map(|r| (r.name, r.model));
-    let mut request = SurfaceRequest::usual(table, responses.collect());
+    let models = given.responses.into_iter().map(|r| r.model).collect();
+    let mut request = SurfaceRequest::usual(table, names.clone(), models);
     request.factors = given.factors;
     request.goals = given.goals;
     request.hold = given.hold;

@@ -1,0 +1,195 @@
+//! What a command reads, and may not replace.
+//!
+//! A command notes each input: [`protect`] a file, [`protect_campaign`] a campaign with the
+//! directory of its recordings. No output replaces an input, whatever it is called: files are
+//! known by device and inode, where the system has them. Only programs that run a single
+//! command turn this on ([`guard_inputs`]); a server confines its files in another way.
+
+use crate::error::Error;
+use std::collections::BTreeMap;
+use std::fs::Metadata;
+use std::path::{Path, PathBuf};
+use std::sync::{Mutex, OnceLock, PoisonError};
+
+/// What a file or folder is, whatever it is called.
+#[cfg(unix)]
+type Identity = (u64, u64);
+#[cfg(not(unix))]
+type Identity = PathBuf;
+
+/// Inputs of the command.
+#[derive(Default)]
+struct Inputs {
+    files: BTreeMap<Identity, PathBuf>,
+    /// Folders that hold recordings alone.
+    recordings: BTreeMap<Identity, PathBuf>,
+    /// Folders with the names in them that belong to a campaign.
+    campaigns: BTreeMap<Identity, &'static [&'static str]>,
+}
+
+static INPUTS: OnceLock<Mutex<Inputs>> = OnceLock::new();
+
+/// From now on this program replaces none of its inputs.
+pub fn guard_inputs() {
+    INPUTS.get_or_init(Mutex::default);
+}
+
+/// Notes an input.
+pub fn protect(path: &Path) {
+    note(path, |inputs, identity| {
+        inputs.files.insert(identity, path.to_path_buf());
+    });
+}
+
+/// Notes a campaign: names that are its own, and the folder of its recordings, in which
+/// nothing is written at all.
+pub fn protect_campaign(directory: &Path, own: &'static [&'static str], recordings: &Path) {
+    note(directory, |inputs, identity| {
+        inputs.campaigns.insert(identity, own);
+    });
+    // Recordings that lie beside campaign.toml share their folder with what is written.
+    let apart = match (directory.canonicalize(), recordings.canonicalize()) {
+        (Ok(directory), Ok(recordings)) => !directory.starts_with(&recordings),
+        _ => false,
+    };
+    if apart && INPUTS.get().is_some() {
+        // Also those that no impact names, which other names may lead to.
+        for entry in std::fs::read_dir(recordings)
+            .into_iter()
+            .flatten()
+            .flatten()
+        {
+            protect(&entry.path());
+        }
+        note(recordings, |inputs, identity| {
+            inputs.recordings.insert(identity, recordings.to_path_buf());
+        });
+    }
+}
+
+fn note(path: &Path, add: impl FnOnce(&mut Inputs, Identity)) {
+    if let Some(inputs) = INPUTS.get()
+        && let Some(identity) = identity_of(path)
+    {
+        add(
+            &mut inputs.lock().unwrap_or_else(PoisonError::into_inner),
+            identity,
+        );
+    }
+}
+
+#[cfg(unix)]
+fn identity(_: &Path, found: &Metadata) -> Option<Identity> {
+    use std::os::unix::fs::MetadataExt;
+    Some((found.dev(), found.ino()))
+}
+
+#[cfg(not(unix))]
+fn identity(path: &Path, _: &Metadata) -> Option<Identity> {
+    path.canonicalize().ok()
+}
+
+/// What is there, behind any symbolic links.
+fn identity_of(path: &Path) -> Option<Identity> {
+    identity(path, &std::fs::metadata(path).ok()?)
+}
+
+/// Refuses a file that would replace an input, or lie among recordings.
+///
+/// # Errors
+/// It would.
+pub fn check_output(path: &Path) -> Result<(), Error> {
+    let Some(inputs) = INPUTS.get() else {
+        return Ok(());
+    };
+    let inputs = inputs.lock().unwrap_or_else(PoisonError::into_inner);
+    let replaced = identity_of(path).and_then(|own| inputs.files.get(&own));
+    if let Some(input) = replaced {
+        return Err(Error::WouldReplaceInput {
+            path: path.to_path_buf(),
+            input: input.clone(),
+        });
+    }
+    let named = |folder: &Path| match folder.as_os_str().is_empty() {
+        true => PathBuf::from("."),
+        false => folder.to_path_buf(),
+    };
+    let name = path.file_name().unwrap_or_default();
+    let folder = path.parent().map(named).unwrap_or_default();
+    let own = identity_of(&folder).and_then(|folder| inputs.campaigns.get(&folder));
+    if own.is_some_and(|own| own.iter().any(|known| name.eq_ignore_ascii_case(known))) {
+        return Err(Error::WouldReplaceInput {
+            path: path.to_path_buf(),
+            input: folder.join(name),
+        });
+    }
+    // Folders that are not there yet will lie in one that is.
+    let above = path.ancestors().skip(1).map(named);
+    let there = above.filter_map(|folder| folder.canonicalize().ok()).next();
+    let there = there.unwrap_or_default();
+    let among = there
+        .ancestors()
+        .find_map(|above| inputs.recordings.get(&identity_of(above)?));
+    match among {
+        Some(folder) => Err(Error::AmongRecordings {
+            path: path.to_path_buf(),
+            folder: folder.clone(),
+        }),
+        None => Ok(()),
+    }
+}
+
+/// Refuses what has no end or no content of its own: pipes, sockets and devices. What is
+/// not there, or is a directory, is left to the reader, which says so.
+///
+/// # Errors
+/// It is none of a file, a directory, or nothing.
+pub fn check_regular(path: &Path) -> Result<(), Error> {
+    match std::fs::metadata(path) {
+        Ok(found) if !found.is_file() && !found.is_dir() => Err(Error::NotRegular {
+            path: path.to_path_buf(),
+        }),
+        _ => Ok(()),
+    }
+}
+
+/// [`check_regular`] of a file that a person may pipe in: `/dev/stdin`, `<(…)` and pipes pass.
+///
+/// # Errors
+/// It is a device or a socket.
+pub fn check_piped(path: &Path) -> Result<(), Error> {
+    #[cfg(unix)]
+    {
+        use std::os::unix::fs::FileTypeExt;
+        let piped = |found: std::fs::Metadata| found.file_type().is_fifo();
+        let standard = ["/dev/stdin", "/dev/fd", "/proc"];
+        let standard = standard.iter().any(|own| path.starts_with(own));
+        if standard || std::fs::metadata(path).is_ok_and(piped) {
+            return Ok(());
+        }
+    }
+    check_regular(path)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[cfg(unix)]
+    #[test]
+    fn rejects_devices_and_pipes_where_nobody_pipes() {
+        let folder = tempfile::tempdir().unwrap();
+        let zero = folder.path().join("zero");
+        std::os::unix::fs::symlink("/dev/zero", &zero).unwrap();
+        let pipe = folder.path().join("pipe");
+        let made = std::process::Command::new("mkfifo").arg(&pipe).status();
+        assert!(made.unwrap().success());
+        let told = check_regular(&zero).unwrap_err().to_string();
+        assert!(told.contains("not a regular file"), "{told}");
+        assert!(check_regular(&pipe).is_err() && check_piped(&zero).is_err());
+        assert!(check_piped(&pipe).is_ok() && check_piped(Path::new("/dev/stdin")).is_ok());
+        for path in [folder.path(), &folder.path().join("absent")] {
+            assert!(check_regular(path).is_ok());
+        }
+    }
+}
