@@ -292,7 +292,24 @@ test("the window goes by keys too, is saved, and found by the command line", asy
 
 test("a window without a contact is told, and nothing breaks", async () => {
   const end = page.getByLabel("End of the used part, ms");
+  // The answer of an earlier fit arrives while one types: what was typed stays.
+  let answer;
+  const held = new Promise((resolve) => (answer = resolve));
+  await page.route("**/refit", async (route) => {
+    await held;
+    await route.continue();
+  });
+  const before = await end.inputValue();
+  await page.getByRole("button", { name: "Whole", exact: true }).click();
+  await page.getByRole("button", { name: "Undo" }).first().click();
   await end.fill("1");
+  const answered = page.waitForResponse("**/refit");
+  answer();
+  await answered;
+  await page.unroute("**/refit");
+  await page.getByText("Fitting …").waitFor({ state: "detached" });
+  assert.notEqual(before, "1");
+  assert.equal(await end.inputValue(), "1");
   await end.press("Enter");
   await page.getByRole("alert").getByText("Not fitted").waitFor();
   await page.getByRole("button", { name: "Undo" }).first().click();
