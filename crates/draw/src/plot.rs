@@ -4,22 +4,14 @@ use crate::png::{PRINT, png_of_svg};
 use std::path::{Path, PathBuf};
 use windfall_files::error::Error;
 use windfall_files::option_value::unusable;
-use windfall_files::write_file::write_whole;
+use windfall_files::write_file::{check_outputs, write_whole};
 
 /// Writes a figure as SVG or PNG, by the ending of the name, and what it shows
 /// as CSV under the same name.
 ///
-/// * `inputs`: files that neither may replace, with what they are
-///
 /// # Errors
-/// The name has another ending, the data would replace an input, or a file
-/// cannot be written.
-pub fn write_plot(
-    path: &Path,
-    svg: String,
-    csv: &str,
-    inputs: &[(&Path, &str)],
-) -> Result<[PathBuf; 2], Error> {
+/// The name has another ending; one of the two may not be written, or cannot.
+pub fn write_plot(path: &Path, svg: String, csv: &str) -> Result<[PathBuf; 2], Error> {
     let unusable = |problem: String| unusable(format!("--plot {}", path.display()), problem);
     let dots = match path.extension().and_then(|extension| extension.to_str()) {
         Some("svg") => false,
@@ -32,11 +24,7 @@ pub fn write_plot(
         }
     };
     let data = path.with_extension("csv");
-    if let Some((_, what)) = inputs.iter().find(|(input, _)| *input == data) {
-        return Err(unusable(format!(
-            "its data would replace {what}; give another name"
-        )));
-    }
+    check_outputs([Some(path), Some(data.as_path())])?;
     let picture = match dots {
         true => png_of_svg(&svg, PRINT)?,
         false => svg.into_bytes(),

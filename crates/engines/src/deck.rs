@@ -39,6 +39,9 @@ pub struct Task<'a> {
 /// Name of the file of frames.
 pub const FRAMES: &str = "frames.bin";
 
+/// Its log, in the same place.
+pub const LOG: &str = "log.txt";
+
 /// Skin of the list of neighbours over the mean radius; 1.
 const SKIN: f64 = 0.16;
 /// Part of the skin that a fruit may go between looks at the list; 1.

@@ -1,6 +1,6 @@
 //! A running engine whose frames a scene follows.
 
-use crate::deck::FRAMES;
+use crate::deck::{FRAMES, LOG};
 use crate::frames::{Frame, FrameReader};
 use crate::program::{Launch, Program, last_lines, wrong};
 use std::fs::{File, OpenOptions};
@@ -10,6 +10,7 @@ use std::process::{Child, Command, Stdio};
 use std::sync::mpsc::{Receiver, RecvTimeoutError, sync_channel};
 use std::time::Duration;
 use windfall_files::error::Error;
+use windfall_files::written::{check_written, list_filled_by_others};
 use windfall_scene::energy::Energy;
 use windfall_scene::follow::Followed;
 use windfall_scene::motion::simulation::Simulation;
@@ -54,6 +55,11 @@ impl Frames {
     ) -> Result<Self, Error> {
         let engine = program.engine;
         let pipe = directory.join(FRAMES);
+        check_written(&pipe, None)?;
+        for name in [SCREEN, LOG] {
+            check_written(&directory.join(name), None)?;
+            list_filled_by_others(&directory.join(name))?;
+        }
         let _ = std::fs::remove_file(&pipe);
         let made = Command::new("mkfifo").arg(&pipe).status();
         if !made.is_ok_and(|status| status.success()) {

@@ -1,5 +1,6 @@
 //! Which engine is installed, what it can do, and how it runs on several ranks.
 
+use crate::deck::LOG;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output, Stdio};
 use windfall_files::error::Error;
@@ -234,7 +235,7 @@ impl Program {
         let mut command = Command::new(&launch.command[0]);
         command
             .args(&launch.command[1..])
-            .args(["-in", deck, "-log", "log.txt"])
+            .args(["-in", deck, "-log", LOG])
             .current_dir(directory)
             // Ranks share the cores; Open MPI does not start for root unasked.
             .env("OMP_NUM_THREADS", "1")

@@ -9,6 +9,7 @@ use serde::Serialize;
 use std::path::{Path, PathBuf};
 use windfall_files::error::Error;
 use windfall_files::found::FindingOutcome;
+use windfall_files::inputs::protect;
 use windfall_files::on_threads::on_threads;
 use windfall_files::progress::Progress;
 use windfall_files::write_file::write_whole;
@@ -229,6 +230,7 @@ pub fn run_on_engine(
                               has written";
                 return Err(Error::absent(file, advice));
             }
+            protect(file);
             let frames = Frames::of_file(own.engine, file, fruit, steps);
             (
                 frames,

@@ -1,6 +1,7 @@
 //! Files named from outside, confined to one directory.
 
 use crate::error::Error;
+use crate::write_file::{partial_of, sweep};
 use std::fs::File;
 use std::io::Write;
 use std::path::{Path, PathBuf};
@@ -92,9 +93,8 @@ impl Arriving {
         }
         let folder = path.parent().unwrap_or(directory);
         std::fs::create_dir_all(folder).map_err(|source| failed(folder, "create", source))?;
-        let own = format!(".{}.{}.partial", std::process::id(), unique());
-        let partial = folder.join(own);
-        let file = File::create_new(&partial).map_err(|source| failed(&path, "write", source))?;
+        sweep(&path);
+        let (partial, file) = partial_of(&path).map_err(|source| failed(&path, "write", source))?;
         Ok(Self {
             path,
             partial,
@@ -146,13 +146,6 @@ impl Drop for Arriving {
         self.file = None;
         let _ = std::fs::remove_file(&self.partial);
     }
-}
-
-/// A number that no other call in this program has given.
-fn unique() -> usize {
-    use std::sync::atomic::{AtomicUsize, Ordering};
-    static NEXT: AtomicUsize = AtomicUsize::new(0);
-    NEXT.fetch_add(1, Ordering::Relaxed)
 }
 
 fn failed(path: &Path, action: &'static str, source: std::io::Error) -> Error {

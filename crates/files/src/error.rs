@@ -1,5 +1,6 @@
 //! What can go wrong with files and campaigns, said so that it can be mended.
 
+use crate::error_words::what_to_do;
 use crate::error_words::{nearest_columns, why_nothing};
 use crate::found::FailureOutcome;
 use std::path::{Path, PathBuf};
@@ -97,7 +98,7 @@ pub enum Error {
         advice: String,
     },
     /// A file could not be read or written.
-    #[error("{path}: cannot {action}: {source}", path = path.display())]
+    #[error("{path}: cannot {action}: {source}{}", what_to_do(action, source), path = path.display())]
     FileAccess {
         /// The file.
         path: PathBuf,
@@ -264,6 +265,12 @@ pub enum Error {
     #[error("{path}: exists already and is not overwritten; choose another name or remove it first", path = path.display())]
     AlreadyThere {
         /// The file or directory.
+        path: PathBuf,
+    },
+    /// A file of the user's where a result should go.
+    #[error("{path}: this file was not written by windfall, or was changed since, and is not replaced; choose another name, move it away, or replace it with --force", path = path.display())]
+    NotWrittenHere {
+        /// The file.
         path: PathBuf,
     },
     /// A pipe, socket or device where a file is read.

@@ -11,6 +11,21 @@ pub(crate) fn why_nothing(failures: &[FailureOutcome]) -> String {
     }
 }
 
+/// What helps where the system refuses; empty where its own words say enough.
+pub(crate) fn what_to_do(action: &str, source: &std::io::Error) -> &'static str {
+    use std::io::ErrorKind::{PermissionDenied, QuotaExceeded, ReadOnlyFilesystem, StorageFull};
+    match (source.kind(), action) {
+        // Our own words.
+        _ if source.raw_os_error().is_none() => "",
+        (StorageFull | QuotaExceeded, _) => "; free some space, or write to another disk",
+        (PermissionDenied, "read") => "; you have no right to read it",
+        (PermissionDenied | ReadOnlyFilesystem, "write" | "create") => {
+            "; the directory is read-only for you: choose another place for what is written"
+        }
+        _ => "",
+    }
+}
+
 pub(crate) fn nearest_columns(nearest: &[String], columns: usize) -> String {
     match nearest {
         [] => format!("the header has {columns} columns"),

@@ -124,7 +124,8 @@ pub fn check_output(path: &Path) -> Result<(), Error> {
         });
     }
     // Folders that are not there yet will lie in one that is.
-    let above = path.ancestors().skip(1).map(named);
+    let above = path.ancestors().skip(usize::from(!path.is_dir()));
+    let above = above.map(named);
     let there = above.filter_map(|folder| folder.canonicalize().ok()).next();
     let there = there.unwrap_or_default();
     let among = there

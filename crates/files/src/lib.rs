@@ -14,3 +14,4 @@ pub mod provenance;
 pub mod table;
 pub mod text;
 pub mod write_file;
+pub mod written;

@@ -25,16 +25,26 @@ const CHUNK: usize = 1 << 16;
 /// # Source
 /// NIST FIPS 180-4.
 pub fn digest_text(text: &str) -> String {
-    hexadecimal(&Sha256::digest(text.as_bytes()))
+    digest_bytes(text.as_bytes())
 }
 
-/// SHA-256 of a file, as 64 hexadecimal digits, without holding it in memory.
+/// SHA-256 of bytes, as 64 hexadecimal digits.
+pub fn digest_bytes(bytes: &[u8]) -> String {
+    hexadecimal(&Sha256::digest(bytes))
+}
+
+/// SHA-256 of an input, as 64 hexadecimal digits, without holding it in memory.
 ///
 /// # Errors
 /// The file cannot be read.
 pub fn digest_file(path: &Path) -> Result<String, Error> {
     check_regular(path)?;
     protect(path);
+    digest_of_file(path)
+}
+
+/// [`digest_file`] of a file that is no input.
+pub(crate) fn digest_of_file(path: &Path) -> Result<String, Error> {
     let failed = |source| Error::access(path, "read", source);
     let mut file = File::open(path).map_err(failed)?;
     let mut digest = Sha256::new();

@@ -1,29 +1,165 @@
-//! The one way out: files that are there whole or not at all, and replace no input.
+//! The one way out: files that are there whole or not at all, and replace nothing of the user's.
 
 use crate::error::Error;
 use crate::inputs::check_output;
+use crate::written::{PARTIAL, check_written, list_written, list_written_as};
+use std::collections::BTreeSet;
 use std::fs::File;
-use std::io::Write;
-use std::path::Path;
+use std::io::{ErrorKind, Result as IoResult, Write};
+use std::path::{Path, PathBuf};
+use std::sync::atomic::{AtomicUsize, Ordering};
+use std::sync::{Mutex, PoisonError};
 
-/// Writes a file beside its place and moves it there: whoever reads it, and whatever
-/// stops the writing, the file of before or the whole new one is there.
+/// Refuses, before the work, a file or directory that may not be written or replaced.
 ///
 /// # Errors
-/// It would replace an input; the directory cannot be written, or is full. The file of
-/// before is as it was.
+/// It would replace an input or a file that windfall did not write, or lie among recordings.
+pub fn check_target(path: &Path) -> Result<(), Error> {
+    check_output(path)?;
+    check_written(&behind_links(path), None)
+}
+
+/// [`check_target`] of those files and directories that a command was given.
+///
+/// # Errors
+/// Those of [`check_target`].
+pub fn check_outputs<'a>(paths: impl IntoIterator<Item = Option<&'a Path>>) -> Result<(), Error> {
+    paths.into_iter().flatten().try_for_each(check_target)
+}
+
+/// Writes a result: the file of before or the whole new one is there, whatever stops the
+/// writing. A device or a pipe takes the contents as they are.
+///
+/// # Errors
+/// It would replace an input, or a file that windfall did not write; the directory cannot
+/// be written, or is full. The file of before is as it was.
 pub fn write_whole(path: &Path, contents: &[u8]) -> Result<(), Error> {
     check_output(path)?;
-    let mut name = path.file_name().unwrap_or_default().to_owned();
-    name.push(format!(".{}.partial", std::process::id()));
-    let partial = path.with_file_name(name);
-    let written = File::create(&partial)
-        .and_then(|mut file| file.write_all(contents).and_then(|()| file.sync_all()))
-        .and_then(|()| std::fs::rename(&partial, path));
-    written.map_err(|source| {
+    if is_stream(path) {
+        let stream = File::options().append(true).open(path);
+        let written = stream.and_then(|mut stream| stream.write_all(contents));
+        return written.map_err(|source| Error::access(path, "write", source));
+    }
+    let path = &behind_links(path);
+    check_written(path, Some(contents))?;
+    let written = |_: &Path| list_written(path, contents);
+    replace(path, |file| file.write_all(contents), written)
+}
+
+/// [`write_whole`] of a file that is too long for memory.
+///
+/// * `write`: writes all of it, and is called again if that has to be repeated
+///
+/// # Errors
+/// Those of [`write_whole`].
+pub fn write_streamed(
+    path: &Path,
+    write: impl FnMut(&mut File) -> IoResult<()>,
+) -> Result<(), Error> {
+    check_target(path)?;
+    let path = &behind_links(path);
+    replace(path, write, |partial| list_written_as(path, partial))
+}
+
+/// Replaces a file that the user has edited, or one that tells itself whose it is; it lasts
+/// from then on.
+///
+/// # Errors
+/// It would replace an input; it cannot be written. The file of before is as it was.
+pub fn replace_file(
+    path: &Path,
+    write: impl FnMut(&mut File) -> IoResult<()>,
+) -> Result<(), Error> {
+    check_output(path)?;
+    let path = &behind_links(path);
+    replace(path, write, |_| Ok(()))?;
+    // That the name stands for the new file is to last as well, where the system can say so.
+    let folder = path.parent().and_then(|own| File::open(own).ok());
+    let _ = folder.map(|own| own.sync_all());
+    Ok(())
+}
+
+fn replace(
+    path: &Path,
+    mut write: impl FnMut(&mut File) -> IoResult<()>,
+    written: impl Fn(&Path) -> Result<(), Error>,
+) -> Result<(), Error> {
+    let failed = |source| Error::access(path, "write", source);
+    let before = std::fs::metadata(path).ok();
+    if before
+        .as_ref()
+        .is_some_and(|own| own.permissions().readonly())
+    {
+        let told = "the file is read-only";
+        return Err(failed(std::io::Error::new(
+            ErrorKind::PermissionDenied,
+            told,
+        )));
+    }
+    sweep(path);
+    for attempt in 1.. {
+        let (partial, mut file) = partial_of(path).map_err(failed)?;
+        let filled = write(&mut file).and_then(|()| {
+            let permissions = before.as_ref().map(|own| own.permissions());
+            permissions.map_or(Ok(()), |own| file.set_permissions(own))?;
+            file.sync_all()
+        });
+        let moved = filled.map_err(failed).and_then(|()| {
+            written(&partial)?;
+            std::fs::rename(&partial, path).map_err(failed)
+        });
         let _ = std::fs::remove_file(&partial);
-        Error::access(path, "write", source)
-    })
+        match moved {
+            // Another program took it for what a killed one left.
+            Err(Error::FileAccess { source, .. })
+                if source.kind() == ErrorKind::NotFound && attempt < 4 => {}
+            other => return other,
+        }
+    }
+    Ok(())
+}
+
+/// A new file beside a place, locked for as long as it is open.
+pub(crate) fn partial_of(path: &Path) -> IoResult<(PathBuf, File)> {
+    static NEXT: AtomicUsize = AtomicUsize::new(0);
+    let (process, number) = (std::process::id(), NEXT.fetch_add(1, Ordering::Relaxed));
+    let partial = path.with_file_name(format!(".{process}-{number}{PARTIAL}"));
+    let file = File::create_new(&partial)?;
+    // A system without locks does without.
+    let _ = file.lock();
+    Ok((partial, file))
+}
+
+/// Removes, once for each folder, what killed programs left beside a place.
+pub(crate) fn sweep(path: &Path) {
+    static SWEPT: Mutex<BTreeSet<PathBuf>> = Mutex::new(BTreeSet::new());
+    let Some(folder) = path.with_file_name(".").canonicalize().ok() else {
+        return;
+    };
+    let mut swept = SWEPT.lock().unwrap_or_else(PoisonError::into_inner);
+    if !swept.insert(folder.clone()) {
+        return;
+    }
+    for entry in std::fs::read_dir(folder).into_iter().flatten().flatten() {
+        let left = entry.file_name().to_string_lossy().ends_with(PARTIAL);
+        let free = |file: File| file.try_lock().is_ok();
+        if left && File::open(entry.path()).is_ok_and(free) {
+            let _ = std::fs::remove_file(entry.path());
+        }
+    }
+}
+
+/// Where a file that is written lies: a link stays a link.
+fn behind_links(path: &Path) -> PathBuf {
+    let linked = std::fs::symlink_metadata(path).is_ok_and(|own| own.is_symlink());
+    let real = linked.then(|| path.canonicalize().ok()).flatten();
+    real.unwrap_or_else(|| path.to_path_buf())
+}
+
+/// Whether what is written there flows on, as into /dev/stdout.
+fn is_stream(path: &Path) -> bool {
+    let standard = path.starts_with("/dev") || path.starts_with("/proc");
+    std::fs::metadata(path).is_ok_and(|own| !own.is_dir() && (standard || !own.is_file()))
 }
 
 /// Makes a directory for results, with those above it.
@@ -48,7 +184,7 @@ pub fn write_new(path: &Path, contents: &[u8]) -> Result<(), Error> {
 /// Why a file or directory could not be made.
 pub fn create_error(path: &Path, source: std::io::Error) -> Error {
     match source.kind() {
-        std::io::ErrorKind::AlreadyExists => Error::AlreadyThere {
+        ErrorKind::AlreadyExists => Error::AlreadyThere {
             path: path.to_path_buf(),
         },
         _ => Error::access(path, "create", source),
@@ -73,6 +209,7 @@ mod tests {
         let error = write_whole(&taken, b"three").unwrap_err().to_string();
         assert!(error.contains("taken: cannot write"), "{error}");
         assert!(taken.join("kept").exists());
-        assert_eq!(std::fs::read_dir(directory.path()).unwrap().count(), 2);
+        // The report, the list of what was written, and the directory.
+        assert_eq!(std::fs::read_dir(directory.path()).unwrap().count(), 3);
     }
 }

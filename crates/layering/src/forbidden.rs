@@ -47,12 +47,14 @@ const FRONT_END_PATHS: &[(&str, &str)] = &[(
     "only the crate windfall opens files: call one of its workflows",
 )];
 
-/// Ends of paths that make, replace or rename a file.
+/// Ends of paths that make, replace, rename or remove a file.
 const WRITERS: &[[&str; 2]] = &[
     ["fs", "write"],
     ["fs", "rename"],
     ["fs", "copy"],
     ["fs", "hard_link"],
+    ["fs", "remove_file"],
+    ["fs", "remove_dir_all"],
     ["File", "create"],
     ["File", "create_new"],
     ["File", "options"],
@@ -63,11 +65,13 @@ const WRITERS: &[[&str; 2]] = &[
 /// while a scene or an engine runs.
 const WAY_OUT: &[&str] = &[
     "crates/files/src/write_file.rs",
+    "crates/files/src/written.rs",
     "crates/files/src/confined.rs",
     "crates/scene-run/src/run/growing.rs",
     "crates/scene-run/src/run/checkpoint.rs",
     "crates/scene-run/src/run/frames.rs",
     "crates/scene-run/src/run/tables.rs",
+    "crates/scene-run/src/study/run.rs",
     "crates/engines/src/motion.rs",
 ];
 

@@ -22,6 +22,7 @@ use windfall_files::found::{FailureOutcome, FindingOutcome};
 use windfall_files::on_threads::on_threads;
 use windfall_files::progress::{Progress, for_each};
 use windfall_files::provenance::VERSION;
+use windfall_files::write_file::check_outputs;
 use windfall_identify::fit::problem::LawProblem;
 use windfall_identify::population::finding::PopulationFinding;
 use windfall_identify::population::fit::fit_population;
@@ -70,6 +71,7 @@ pub fn population(
     progress: Progress,
 ) -> Result<PopulationOutcome, Error> {
     let mut campaign = read_campaign(&request.directory)?;
+    check_outputs([request.card.as_deref()])?;
     apply_request(&mut campaign, &request.fit)?;
     if !request.covariates.is_empty() {
         campaign.covariates.clone_from(&request.covariates);

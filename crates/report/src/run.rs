@@ -26,7 +26,7 @@ use windfall_files::progress::Progress;
 use windfall_files::provenance::{VERSION, time_now};
 use windfall_files::table::write::csv_text;
 use windfall_files::text::table::Cells;
-use windfall_files::write_file::write_whole;
+use windfall_files::write_file::{check_target, write_whole};
 
 /// Directory of the report in a campaign directory.
 pub const REPORT_DIRECTORY: &str = "report";
@@ -68,12 +68,20 @@ pub fn report_campaign(
     progress: Progress,
 ) -> Result<ReportOutcome, Error> {
     let fit = &request.fit;
+    let page = report_folder(request, directory).join("report.html");
+    check_target(&page)?;
     let Some(measurement) = measurement_of(campaign_kind(directory)?) else {
         let fitted = fitted_campaign(directory, fit, progress)?;
         return on_threads(fit.threads, || report_impacts(request, fitted));
     };
     let items = (measurement.report)(directory, fit, progress)?;
     on_threads(fit.threads, || report_items(request, items))
+}
+
+/// Where a report goes.
+fn report_folder(request: &ReportRequest, campaign: &Path) -> PathBuf {
+    let out = request.out.clone();
+    out.unwrap_or_else(|| campaign.join(REPORT_DIRECTORY))
 }
 
 fn report_impacts(request: &ReportRequest, fitted: FittedCampaign) -> Result<ReportOutcome, Error> {
@@ -167,8 +175,7 @@ fn write(
         .push(origin(&source.inputs, &source.options));
     report.sections.push(citation());
 
-    let out = request.out.clone();
-    let out = out.unwrap_or_else(|| source.directory.join(REPORT_DIRECTORY));
+    let out = report_folder(request, source.directory);
     let drawn: Vec<&NamedFigure> = report.sections.iter().flat_map(|s| &s.figures).collect();
     let folder = FigureFolder {
         directory: out.join("figures"),

@@ -21,13 +21,7 @@ const MARGIN: f64 = 0.1;
 pub fn write_impact_figure(path: &Path, event: &Event) -> Result<[PathBuf; 2], Error> {
     let figure = figure_of_motion(event.law.kind().name(), &motion_of_figure(event)?);
     let csv = csv_of_figure(&figure)?;
-    // A table of that name may be the user's own: the points of a law, say.
-    let data = path.with_extension("csv");
-    let other =
-        std::fs::read_to_string(&data).is_ok_and(|text| text.lines().next() != csv.lines().next());
-    let kept: &[(&Path, &str)] = &[(&data, "a table that is no figure's")];
-    let kept = if other { kept } else { &[] };
-    write_plot(path, svg_of_figure(&figure, &LIGHT), &csv, kept)
+    write_plot(path, svg_of_figure(&figure, &LIGHT), &csv)
 }
 
 /// The motion at instants that are close together after first touch, where a law
@@ -112,7 +106,10 @@ mod tests {
         std::fs::write(&table, "displacement_m,force_N\n0,0\n").unwrap();
         let law = event("hertz(k=753599)");
         let refused = write_impact_figure(&path, &law).unwrap_err().to_string();
-        assert!(refused.contains("its data would replace"), "{refused}");
+        assert!(
+            refused.contains("curve.csv: this file was not written by windfall"),
+            "{refused}"
+        );
         assert!(!path.exists());
         std::fs::remove_file(&table).unwrap();
         write_impact_figure(&path, &law).unwrap();

@@ -12,6 +12,7 @@ use args::groups::grouped;
 use clap::{CommandFactory, FromArgMatches};
 use std::process::ExitCode;
 use windfall_files::inputs::guard_inputs;
+use windfall_files::written::replace_files_of_others;
 
 fn main() -> ExitCode {
     let matches = grouped(Arguments::command()).get_matches();
@@ -19,6 +20,9 @@ fn main() -> ExitCode {
     // A server confines what it writes to its workspace.
     if !matches!(arguments.command, Command::Serve(_)) {
         guard_inputs();
+    }
+    if arguments.force {
+        replace_files_of_others();
     }
     let outcome = match arguments.command {
         Command::New(arguments) => command::new::run(&arguments),

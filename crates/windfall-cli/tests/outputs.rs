@@ -4,6 +4,7 @@ use assert_cmd::Command;
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use windfall_files::provenance::digest_file;
+use windfall_files::written::LIST;
 
 fn windfall(arguments: &[String], folder: &Path) -> (Option<i32>, String) {
     let mut command = Command::cargo_bin("windfall").unwrap();
@@ -20,24 +21,36 @@ fn typed(line: &str) -> Vec<String> {
     line.split(' ').map(str::to_owned).collect()
 }
 
-/// A folder with a fitted campaign, in which one recording is named by no impact, and a
-/// recording beside it.
+/// A folder with a fitted campaign, in which one recording is named by no impact, a
+/// recording beside it, a table, a law card, a scene that has run, and dropped fruit.
 fn laboratory() -> tempfile::TempDir {
     let folder = tempfile::tempdir().unwrap();
+    let path = folder.path();
     let law = "kuwabara-kono(k=753599,c=1524)";
+    let made = |line: &str| {
+        let (status, told) = windfall(&typed(line), path);
+        assert_eq!(status, Some(0), "{line}: {told}");
+    };
     let campaign = format!("simulate carriage --law {law} --mass 0.2kg --velocity 0.5m/s");
-    let campaign = typed(&format!("{campaign} --specimens 2 --recordings campaign"));
-    assert_eq!(windfall(&campaign, folder.path()).0, Some(0));
-    let recordings = names(&folder.path().join("campaign/raw"));
+    made(&format!("{campaign} --specimens 2 --recordings campaign"));
+    let recordings = names(&path.join("campaign/raw"));
     for copy in ["campaign/raw/unlisted.csv", "impact.csv"] {
-        std::fs::copy(&recordings[0], folder.path().join(copy)).unwrap();
+        std::fs::copy(&recordings[0], path.join(copy)).unwrap();
     }
-    assert_eq!(windfall(&typed("fit campaign"), folder.path()).0, Some(0));
+    made("fit campaign --card card.toml");
     std::fs::write(
-        folder.path().join("design.csv"),
-        "A,B,y\n0,0,1\n1,0,2\n0,1,3\n1,1,5\n",
+        path.join("design.csv"),
+        "A,B,y\n0,0,1\n1,0,2\n0,1,3\n1,1,5\n0,0.5,2\n1,0.5,4\n",
     )
     .unwrap();
+    made("new scene scene");
+    let scene = path.join("scene/scene.toml");
+    let text = std::fs::read_to_string(&scene).unwrap();
+    let text = text
+        .replace("count = 100", "count = 3")
+        .replace("end = \"4 s\"", "end = \"0.1 s\"");
+    std::fs::write(&scene, text).unwrap();
+    made("scene run scene/scene.toml");
     folder
 }
 
@@ -48,24 +61,25 @@ fn names(folder: &Path) -> Vec<PathBuf> {
     names
 }
 
-/// Inputs with their digests; the store, to which runs are added, as what it is.
-fn inputs(folder: &Path) -> BTreeMap<PathBuf, String> {
-    let mut files = names(&folder.join("campaign/raw"));
-    for name in ["campaign.toml", "specimens.csv", "impacts.csv"] {
-        files.push(folder.join("campaign").join(name));
+/// Every file below a folder with its digest; a store, to which runs are added, as what it is.
+fn files(folder: &Path) -> BTreeMap<PathBuf, String> {
+    let mut found = BTreeMap::new();
+    for path in names(folder) {
+        let name = path.file_name().unwrap_or_default();
+        if path.is_dir() {
+            found.extend(files(&path));
+        } else if name == "results.sqlite" {
+            let text = std::fs::read(&path).unwrap();
+            found.insert(path, String::from_utf8_lossy(&text[..15]).into_owned());
+        } else if name != LIST {
+            let digest = digest_file(&path).unwrap_or_default();
+            found.insert(path, digest);
+        }
     }
-    files.extend(["impact.csv", "design.csv"].map(|name| folder.join(name)));
-    let mut found: BTreeMap<PathBuf, String> = files
-        .into_iter()
-        .map(|path| (path.clone(), digest_file(&path).unwrap_or_default()))
-        .collect();
-    let store = folder.join("campaign/results.sqlite");
-    let kind = std::fs::read(&store).unwrap();
-    found.insert(store, String::from_utf8_lossy(&kind[..15]).into_owned());
     found
 }
 
-/// The same file under other names; links are made in `links`.
+/// The same file or folder under other names; links are made in `links`.
 fn spellings(target: &str, folder: &Path, links: &Path) -> Vec<String> {
     let whole = folder.join(target);
     let ending = whole.extension().unwrap_or_default().to_owned();
@@ -90,38 +104,42 @@ fn spellings(target: &str, folder: &Path, links: &Path) -> Vec<String> {
     out
 }
 
-/// Types a command with every spelling of every target, and compares all inputs.
-fn keeps_inputs(command: &str, targets: &[String]) {
-    let laboratory = laboratory();
-    let folder = laboratory.path();
-    let links = folder.join("links");
-    std::fs::create_dir(&links).unwrap();
-    let before = inputs(folder);
+/// Types a command with every spelling of every target, also with `--force`: nothing that
+/// was there is changed, and the command says so.
+fn keeps(folder: &Path, command: &str, targets: &[String], forces: &[&str]) {
+    let links = tempfile::tempdir_in(folder).unwrap();
+    let before = files(folder);
     for target in targets {
-        for spelling in spellings(target, folder, &links) {
-            let line = typed(command).into_iter();
-            let line: Vec<String> = line.map(|word| word.replace("{}", &spelling)).collect();
-            let (status, told) = windfall(&line, folder);
-            assert_eq!(inputs(folder), before, "{line:?}: {status:?} {told}");
-            assert_ne!(
-                status,
-                Some(0),
-                "{line:?} replaced nothing, and says so: {told}"
-            );
-            assert!(!told.contains("panicked"), "{told}");
+        for spelling in spellings(target, folder, links.path()) {
+            for force in forces {
+                let line = typed(&format!("{command}{force}")).into_iter();
+                // "{}.svg": a picture whose data would have that name.
+                let own = |word: String| match word.strip_prefix("{}.") {
+                    Some(ending) => Path::new(&spelling)
+                        .with_extension(ending)
+                        .display()
+                        .to_string(),
+                    None => word.replace("{}", &spelling),
+                };
+                let line: Vec<String> = line.map(own).collect();
+                let (status, told) = windfall(&line, folder);
+                assert_eq!(status, Some(2), "{line:?}: {told}");
+                let after = files(folder);
+                for (path, digest) in &before {
+                    assert_eq!(after.get(path), Some(digest), "{line:?}: {path:?}: {told}");
+                }
+            }
         }
     }
-    let strays = ["", "campaign", "campaign/raw"].map(|below| names(&folder.join(below)));
-    let partial = |path: &&PathBuf| path.display().to_string().contains(".partial");
-    assert_eq!(strays.iter().flatten().find(partial), None);
+    let mut strays = files(folder).into_keys();
+    let partial = |path: &PathBuf| path.display().to_string().contains("partial");
+    assert_eq!(strays.find(partial), None);
 }
 
-fn files() -> Vec<String> {
-    let first = {
-        let laboratory = laboratory();
-        let raw = names(&laboratory.path().join("campaign/raw"));
-        raw[0].file_name().unwrap().to_string_lossy().into_owned()
-    };
+/// Inputs and tables of a campaign, and its store.
+fn own_files(folder: &Path) -> Vec<String> {
+    let raw = names(&folder.join("campaign/raw"));
+    let first = raw[0].file_name().unwrap().to_string_lossy();
     let own = [
         "campaign.toml",
         "specimens.csv",
@@ -129,28 +147,135 @@ fn files() -> Vec<String> {
         "results.sqlite",
     ];
     let own = own.map(|name| format!("campaign/{name}"));
-    let raw = [first, "unlisted.csv".to_owned()].map(|name| format!("campaign/raw/{name}"));
+    let raw = [&first, "unlisted.csv"].map(|name| format!("campaign/raw/{name}"));
     own.into_iter().chain(raw).collect()
 }
 
+/// Commands that write one file, and the ending of its name.
+const FILE_COMMANDS: &[(&str, &str)] = &[
+    ("fit campaign --card {}", "toml"),
+    ("population campaign --card {}", "toml"),
+    (
+        "card transfer --file card.toml --from 40mm,plane --to 40mm,20mm --card {}",
+        "toml",
+    ),
+    (
+        "simulate impact --law hertz(k=9e5) --mass 0.2kg --velocity 1m/s --plot {}",
+        "svg",
+    ),
+    (
+        "simulate impact --law hertz(k=9e5) --mass 0.2kg --velocity 1m/s --plot {}",
+        "png",
+    ),
+    ("inspect impact.csv --plot {}", "svg"),
+    ("inspect impact.csv --plot {}", "png"),
+    ("scene picture scene/scene.run --out {}", "svg"),
+];
+
+/// Commands that write into a folder.
+const FOLDER_COMMANDS: &[&str] = &[
+    "fit campaign --figures {}",
+    "laws campaign --figures {}",
+    "report campaign --out {}",
+    "surface design.csv --factor A --factor B --response y --model A+B --figures {}",
+    "scene run scene/scene.toml --out {}",
+    "scene export scene/scene.toml --engine chrono --out {}",
+    "scene export scene/scene.toml --engine yade --out {}",
+    "scene vtk scene/scene.run --out {}",
+];
+
 #[test]
-fn rejects_a_card_in_the_place_of_an_input() {
-    keeps_inputs("fit campaign --card {}", &files());
-    keeps_inputs("fit campaign --refit --card {}", &files()[..1]);
+fn rejects_an_input_as_a_file_to_write() {
+    let laboratory = laboratory();
+    let folder = laboratory.path();
+    let own = own_files(folder);
+    for (command, ending) in FILE_COMMANDS {
+        let (command, targets) = match *ending {
+            "toml" if command.contains("--file") => {
+                ((*command).to_owned(), vec!["card.toml".to_owned()])
+            }
+            "toml" => ((*command).to_owned(), own.clone()),
+            _ if command.contains("inspect") => {
+                let picture = command.replace("{}", &format!("{{}}.{ending}"));
+                (picture, vec!["impact.csv".to_owned()])
+            }
+            _ => continue,
+        };
+        keeps(folder, &command, &targets, &["", " --force"]);
+    }
 }
 
 #[test]
-fn rejects_figures_among_recordings() {
-    let raw = ["campaign/raw".to_owned()];
-    keeps_inputs("fit campaign --figures {}", &raw);
-    keeps_inputs("fit campaign/raw/specimen-01.csv --figures {}", &raw);
-    keeps_inputs("laws campaign --figures {}", &raw);
-    keeps_inputs("report campaign --out {}", &raw);
+fn rejects_recordings_and_campaigns_as_folders_to_write_into() {
+    let laboratory = laboratory();
+    let folder = laboratory.path();
+    for command in FOLDER_COMMANDS {
+        let raw = ["campaign/raw".to_owned()];
+        // Recordings are inputs of the commands that read the campaign.
+        let reads = command.contains("campaign");
+        keeps(
+            folder,
+            command,
+            if reads { &raw } else { &[] },
+            &["", " --force"],
+        );
+    }
+    let campaign = ["campaign".to_owned()];
+    keeps(
+        folder,
+        "report campaign --out {}",
+        &campaign,
+        &["", " --force"],
+    );
 }
 
+/// Files of the names that a command writes, which somebody else made: they stay, unless
+/// `--force` is said.
 #[test]
-fn rejects_a_report_in_the_place_of_its_campaign() {
-    keeps_inputs("report campaign --out {}", &["campaign".to_owned()]);
+fn rejects_files_that_windfall_did_not_write() {
+    let laboratory = laboratory();
+    let folder = laboratory.path();
+    let written = |command: &str, place: &str| {
+        let line = typed(&command.replace("{}", place));
+        windfall(&line, folder)
+    };
+    let commands = FILE_COMMANDS.iter().map(|(command, ending)| {
+        let target = command.replace("{}", &format!("{{}}/x.{ending}"));
+        (target, true)
+    });
+    let folders = FOLDER_COMMANDS.iter().map(|own| ((*own).to_owned(), false));
+    for (number, (command, file)) in commands.chain(folders).enumerate() {
+        let [place, mine] = ["ours", "mine"].map(|name| format!("{name}{number}"));
+        std::fs::create_dir(folder.join(&place)).unwrap();
+        let (status, told) = written(&command, &place);
+        assert_eq!(status, Some(0), "{command}: {told}");
+        // What windfall wrote it replaces.
+        let again = command.replace("scene.toml", "scene.toml --restart");
+        let again = if command.contains("scene run") {
+            again
+        } else {
+            command.clone()
+        };
+        assert_eq!(written(&again, &place).0, Some(0), "{command}");
+        let names: Vec<PathBuf> = files(&folder.join(&place)).into_keys().collect();
+        for path in &names {
+            let same = Path::new(&mine).join(path.strip_prefix(folder.join(&place)).unwrap());
+            std::fs::create_dir_all(folder.join(&same).parent().unwrap()).unwrap();
+            std::fs::write(folder.join(same), "mine").unwrap();
+        }
+        assert!(!names.is_empty(), "{command}");
+        let before = files(&folder.join(&mine));
+        let (status, told) = written(&again, &mine);
+        assert_eq!(status, Some(2), "{command}: {told}");
+        assert!(told.contains("not written by windfall"), "{told}");
+        let after = files(&folder.join(&mine));
+        for (path, digest) in &before {
+            assert_eq!(after.get(path), Some(digest), "{command}: {path:?}");
+        }
+        let (status, told) = written(&format!("{again} --force"), &mine);
+        assert_eq!(status, Some(0), "{command}: {told}");
+        assert!(!file || files(&folder.join(&mine)) != before, "{command}");
+    }
 }
 
 /// What cannot be written is refused before an hour of fits.
@@ -166,32 +291,18 @@ fn rejects_outputs_before_the_work() {
     }
 }
 
-/// Figures of one recording of a campaign, and their data.
-#[test]
-fn rejects_a_plot_whose_data_would_replace_the_recording() {
-    let laboratory = laboratory();
-    let folder = laboratory.path();
-    let links = folder.join("links");
-    std::fs::create_dir(&links).unwrap();
-    let before = inputs(folder);
-    for spelling in spellings("impact.csv", folder, &links) {
-        for ending in ["svg", "png"] {
-            let plot = Path::new(&spelling).with_extension(ending);
-            let line = [
-                typed("inspect impact.csv --plot"),
-                vec![plot.display().to_string()],
-            ];
-            let (status, told) = windfall(&line.concat(), folder);
-            assert_eq!(inputs(folder), before, "{line:?}: {told}");
-            assert_eq!(status, Some(2), "{line:?}: {told}");
-        }
-    }
-}
-
 #[test]
 fn rejects_a_design_in_the_place_of_any_file() {
+    let laboratory = laboratory();
+    let folder = laboratory.path();
     let design = "design factorial --factor A=0..1 --factor B=0..1 --out {}";
-    keeps_inputs(design, &[files(), vec!["design.csv".to_owned()]].concat());
+    let table = vec!["design.csv".to_owned()];
+    keeps(
+        folder,
+        design,
+        &[own_files(folder), table].concat(),
+        &["", " --force"],
+    );
 }
 
 /// A new scene: its folder, its file and the text of it.

@@ -11,6 +11,7 @@ use crate::workspace::recordings_inside;
 use itertools::Itertools;
 use serde::Deserialize;
 use std::collections::BTreeMap;
+use std::io::Write;
 use std::path::{Component, Path};
 use std::sync::{Mutex, PoisonError};
 use toml_edit::{Array, DocumentMut, Item, Table, value};
@@ -23,7 +24,7 @@ use windfall_files::confined::path_inside;
 use windfall_files::error::{Error, Place};
 use windfall_files::option_value::unusable;
 use windfall_files::text::column_role::unit_of;
-use windfall_files::write_file::{write_new, write_whole};
+use windfall_files::write_file::{replace_file, write_new};
 
 /// Serialises changes: of two based on the same version, the second is refused.
 static CHANGING: Mutex<()> = Mutex::new(());
@@ -122,7 +123,8 @@ pub fn change_campaign(
     let files = changed_files(directory, change)?;
     check_changed(directory, &files)?;
     for (name, text) in &files {
-        write_whole(&directory.join(name), text.as_bytes())?;
+        let text = text.as_bytes();
+        replace_file(&directory.join(name), |file| file.write_all(text))?;
     }
     view_campaign(directory)
 }
@@ -308,7 +310,8 @@ fn new_impacts(directory: &Path, rows: &[NewImpact]) -> Result<Vec<(&'static str
     });
     let table: Vec<BTreeMap<String, String>> = table.collect();
     let impacts = add_rows(&directory.join("impacts.csv"), &table)?;
-    let mut files = vec![("impacts.csv", impacts)];
+    // Specimens first: stopped in between, the campaign still knows all that it names.
+    let mut files = Vec::new();
     let specimens = directory.join("specimens.csv");
     if specimens.exists() {
         let known = match is_template_file(&specimens) {
@@ -325,6 +328,7 @@ fn new_impacts(directory: &Path, rows: &[NewImpact]) -> Result<Vec<(&'static str
             files.push(("specimens.csv", add_rows(&specimens, &new)?));
         }
     }
+    files.push(("impacts.csv", impacts));
     Ok(files)
 }
 

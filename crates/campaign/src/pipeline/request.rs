@@ -12,9 +12,9 @@ use windfall_contact::expression::{LawExpression, parse_law_among};
 use windfall_contact::laws::kind::LawKind;
 use windfall_draw::files::FigureFolder;
 use windfall_files::error::Error;
-use windfall_files::inputs::check_output;
 use windfall_files::option_value::{chosen, unusable};
 use windfall_files::text::toml_source::suggestion;
+use windfall_files::write_file::check_outputs;
 use windfall_identify::fit::problem::FitOptions;
 
 /// Options of `fit`, which override the campaign's settings.
@@ -84,17 +84,13 @@ pub struct FitRequest {
 }
 
 impl FitRequest {
-    /// Refuses outputs that would replace an input, before any work is done.
+    /// Refuses outputs that may not be written, before any work is done.
     ///
     /// # Errors
-    /// The law card would replace an input, or figures would lie among recordings.
+    /// Those of [`check_outputs`].
     pub fn check_outputs(&self) -> Result<(), Error> {
-        let figure = self
-            .figures
-            .as_ref()
-            .map(|own| own.directory.join("figure.csv"));
-        let mut outputs = figure.iter().chain(&self.card);
-        outputs.try_for_each(|path| check_output(path))
+        let figures = self.figures.as_ref().map(|own| own.directory.as_path());
+        check_outputs([figures, self.card.as_deref()])
     }
 }
 

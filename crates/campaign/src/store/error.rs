@@ -1,5 +1,6 @@
 //! What can be wrong with results.sqlite.
 
+use rusqlite::ErrorCode;
 use std::path::{Path, PathBuf};
 use windfall_files::error::{Error, Fault};
 
@@ -56,7 +57,7 @@ pub enum StoreError {
     },
     /// The database refused an operation.
     #[error(
-        "{path}: cannot {action} the results: {source}{}", after_refusal(action),
+        "{path}: cannot {action} the results: {source}{}", after_refusal(action, source),
         path = path.display()
     )]
     Refused {
@@ -84,11 +85,15 @@ impl Fault for StoreError {
 }
 
 /// What holds after a database refused something, and what to do.
-fn after_refusal(action: &str) -> &'static str {
-    match action {
-        "write" => {
-            "; earlier results are as they were. If the disk is full, make room and run again"
+fn after_refusal(action: &str, source: &rusqlite::Error) -> &'static str {
+    match (action, source.sqlite_error_code()) {
+        ("write", Some(ErrorCode::DiskFull)) => {
+            "; earlier results are as they were: make room and run again"
         }
+        ("write", Some(ErrorCode::ReadOnly | ErrorCode::CannotOpen)) => {
+            "; the directory is read-only for you: copy the campaign to a place where you may write"
+        }
+        ("write", _) => "; earlier results are as they were",
         _ => "",
     }
 }

@@ -14,6 +14,7 @@ use crate::store::error::StoreError;
 use crate::store::file::{PATIENCE, create_schema, open_existing, store_error};
 use rusqlite::{Connection, OptionalExtension, Transaction, params};
 use std::path::Path;
+use windfall_files::confined::discard;
 use windfall_files::error::Error;
 use windfall_files::found::FailureOutcome;
 use windfall_files::provenance::{VERSION, time_now};
@@ -114,6 +115,16 @@ pub fn count_runs(path: &Path) -> Result<usize, Error> {
 /// The file is damaged, foreign, newer, or cannot be written; then it is as it
 /// was before.
 pub fn write_run(path: &Path, run: &RunRecord) -> Result<(), Error> {
+    let new = !path.exists();
+    let written = write_into(path, run);
+    // What a full disk leaves of a new store holds nothing.
+    if written.is_err() && new && path.metadata().is_ok_and(|own| own.len() == 0) {
+        discard(path);
+    }
+    written
+}
+
+fn write_into(path: &Path, run: &RunRecord) -> Result<(), Error> {
     let failed = |source| store_error(path, "write", source);
     drop(open_existing(path)?);
     let mut connection = Connection::open(path).map_err(failed)?;

@@ -34,6 +34,7 @@ use windfall_files::error::Error;
 use windfall_files::found::{FailureOutcome, FindingOutcome};
 use windfall_files::progress::Progress;
 use windfall_files::provenance::VERSION;
+use windfall_files::write_file::check_outputs;
 use windfall_tables::regress::findings::finding;
 
 /// Options of a calibration.
@@ -107,6 +108,9 @@ pub fn calibrate(
     progress: Progress,
 ) -> Result<CalibrateOutcome, Error> {
     let campaign = read_drop(directory)?;
+    let figures = request.figures.as_ref().map(|own| &own.directory);
+    let outputs = [figures, request.tables.as_ref(), request.card.as_ref()];
+    check_outputs(outputs.map(|own| own.map(PathBuf::as_path)))?;
     windfall_files::on_threads::on_threads(request.threads, || {
         let seen = feature_drops(&campaign, progress)?;
         let outcome = calibrated(&campaign, request, seen, progress)?;

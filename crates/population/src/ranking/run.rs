@@ -56,6 +56,7 @@ pub fn rank_campaign(
     progress: Progress,
 ) -> Result<LawsOutcome, Error> {
     let mut campaign = read_campaign(directory)?;
+    request.check_outputs()?;
     apply_request(&mut campaign, request)?;
     if campaign.fit.laws.len() < 2 {
         if request.laws.len() == 1 {

@@ -2,10 +2,9 @@
 
 use crate::bruise::scene::Blows;
 use crate::file::read::ScenePlan;
-use crate::file_error::access;
 use crate::run::checkpoint::{
     CheckpointHead, Parts, changed_parts, checkpoint_head, checkpoint_path, damaged, parts_of,
-    read_checkpoint, write_checkpoint,
+    read_checkpoint, remove_checkpoint, write_checkpoint,
 };
 use crate::run::frames::SceneRecorder;
 use crate::run::outcome::Tally;
@@ -137,9 +136,7 @@ impl SceneRun {
             return Self::resumed(plan, (checkpoint, &events), directory, parts);
         }
         let simulation = Simulation::new(plan.scene.clone()).map_err(stopped_scene)?;
-        if checkpoint.exists() {
-            std::fs::remove_file(&checkpoint).map_err(access(&checkpoint, "remove"))?;
-        }
+        remove_checkpoint(&checkpoint)?;
         let table = EventFile::create(&events, &plan.scene, plan.least_peak_force)?;
         let frames = SceneRecorder::create(plan, directory)?;
         let mut own = Self::new(plan, simulation, (table, frames), (checkpoint, parts));
@@ -323,14 +320,14 @@ impl SceneRun {
     pub fn finish(self) -> Result<(), Error> {
         self.table.finish()?;
         // One that is left without its table is taken for what it is: of a run that is over.
-        let _ = std::fs::remove_file(&self.checkpoint);
+        let _ = remove_checkpoint(&self.checkpoint);
         Ok(())
     }
 
     fn leave_nothing(&mut self) {
         self.table.keep(false);
         self.frames.keep(false);
-        let _ = std::fs::remove_file(&self.checkpoint);
+        let _ = remove_checkpoint(&self.checkpoint);
         self.kept = None;
     }
 }

@@ -9,11 +9,11 @@ use crate::file_error::access;
 use crate::run_error::SceneRunError;
 use sha2::{Digest, Sha256};
 use std::fs::File;
-use std::io::{BufReader, BufWriter, Read, Result as IoResult, Write};
+use std::io::{BufReader, BufWriter, ErrorKind, Read, Result as IoResult, Write};
 use std::path::{Path, PathBuf};
 use windfall_files::error::Error;
-use windfall_files::inputs::check_output;
 use windfall_files::provenance::VERSION;
+use windfall_files::write_file::replace_file;
 use windfall_scene::binary::{Binary, no_value};
 use windfall_scene::scene::Scene;
 
@@ -151,25 +151,45 @@ pub fn write_checkpoint(
     head: &CheckpointHead,
     body: impl Fn(&mut dyn Write) -> IoResult<()>,
 ) -> Result<(), Error> {
-    check_output(path)?;
-    let partial = path.with_extension("bin.partial");
-    let written = write_to(&partial, head, body).and_then(|()| std::fs::rename(&partial, path));
-    // That the name stands for the new file is to last as well, where the system can say so.
-    let directory = path.parent().and_then(|own| File::open(own).ok());
-    let _ = directory.map(|own| own.sync_all());
-    written.map_err(|source| {
-        let _ = std::fs::remove_file(&partial);
-        access(path, "write")(source)
-    })
+    check_checkpoint(path)?;
+    replace_file(path, |file| write_to(file, head, &body))
+}
+
+/// Removes a checkpoint, if there is one.
+///
+/// # Errors
+/// It is none, or cannot be removed.
+pub fn remove_checkpoint(path: &Path) -> Result<(), Error> {
+    check_checkpoint(path)?;
+    match std::fs::remove_file(path) {
+        Err(error) if error.kind() != ErrorKind::NotFound => Err(access(path, "remove")(error)),
+        _ => Ok(()),
+    }
+}
+
+/// Refuses a file of that name that is no checkpoint.
+///
+/// # Errors
+/// [`Error::NotWrittenHere`].
+pub fn check_checkpoint(path: &Path) -> Result<(), Error> {
+    let mut found = Vec::new();
+    let file = File::open(path);
+    let _ = file.and_then(|file| file.take(MAGIC.len() as u64).read_to_end(&mut found));
+    match !MAGIC.starts_with(&found) {
+        true => Err(Error::NotWrittenHere {
+            path: path.to_path_buf(),
+        }),
+        false => Ok(()),
+    }
 }
 
 fn write_to(
-    path: &Path,
+    file: &mut File,
     head: &CheckpointHead,
     body: impl Fn(&mut dyn Write) -> IoResult<()>,
 ) -> IoResult<()> {
     let mut to = Digesting {
-        inner: BufWriter::new(File::create(path)?),
+        inner: BufWriter::new(file),
         digest: Sha256::new(),
     };
     MAGIC.write(&mut to)?;
@@ -180,8 +200,7 @@ fn write_to(
     body(&mut to)?;
     let Digesting { mut inner, digest } = to;
     inner.write_all(&digest.finalize())?;
-    inner.flush()?;
-    inner.get_ref().sync_all()
+    inner.flush()
 }
 
 /// Reads a checkpoint.

@@ -6,7 +6,8 @@ use std::fs::{File, TryLockError};
 use std::io::{BufWriter, Seek, SeekFrom, Write};
 use std::path::{Path, PathBuf};
 use windfall_files::error::Error;
-use windfall_files::inputs::check_output;
+use windfall_files::write_file::check_target;
+use windfall_files::written::list_written_as;
 
 /// A growing file. Dropped before it is whole, it is removed unless a checkpoint needs it.
 pub(crate) struct GrowingFile {
@@ -26,7 +27,7 @@ pub(crate) fn partial_of(path: &Path) -> PathBuf {
 impl GrowingFile {
     /// Opens the file as it is.
     pub fn open(path: &Path) -> Result<Self, Error> {
-        check_output(path)?;
+        check_target(path)?;
         let mut options = File::options();
         let file = options
             .create(true)
@@ -96,7 +97,9 @@ impl GrowingFile {
     /// Gives the file its name; which it is.
     pub fn finish(&mut self) -> Result<PathBuf, Error> {
         self.sync()?;
-        let renamed = std::fs::rename(partial_of(&self.path), &self.path);
+        let partial = partial_of(&self.path);
+        list_written_as(&self.path, &partial)?;
+        let renamed = std::fs::rename(partial, &self.path);
         renamed.map_err(access(&self.path, "write"))?;
         // There is nothing under the other name any more.
         self.keep = true;

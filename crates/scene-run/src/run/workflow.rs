@@ -15,7 +15,7 @@ use windfall_files::error::Error;
 use windfall_files::found::FindingOutcome;
 use windfall_files::on_threads::on_threads;
 use windfall_files::progress::Progress;
-use windfall_files::write_file::write_whole;
+use windfall_files::write_file::{check_target, write_whole};
 use windfall_scene::bruise::damage::Bruise;
 use windfall_scene::energy::Energy;
 use windfall_scene::motion::time_step::Impact;
@@ -113,6 +113,15 @@ pub fn run_moved(
     progress: Progress,
 ) -> Result<RunOfScene, Error> {
     make_directory(out)?;
+    // Before an hour of steps.
+    for name in [
+        "fruit.csv",
+        "scene.json",
+        "histograms.csv",
+        "histograms.svg",
+    ] {
+        check_target(&out.join(name))?;
+    }
     let mut run = SceneRun::begin(plan, out, start, moved.mover)?;
     run.run_to_end(moved.mover, progress)?;
     let last = moved.mover.step(&mut run.simulation)?;

@@ -4,6 +4,7 @@ use crate::file::read::scene_of;
 use crate::file_error::{access, make_directory, write_json};
 use crate::frames::view::{PictureRequest, draw_scene, open_frames};
 use crate::run::advance::SceneStart;
+use crate::run::checkpoint::{check_checkpoint, checkpoint_path};
 use crate::run::workflow::run_plan;
 use crate::study::laws::{certain_laws, draw_laws};
 use crate::study::outcome::{Replicate, StudyOutcome, effects, variant};
@@ -22,6 +23,7 @@ use windfall_files::progress::Progress;
 use windfall_files::provenance::{VERSION, digest_file, time_now};
 use windfall_files::text::toml_source::TomlSource;
 use windfall_files::write_file::write_whole;
+use windfall_files::written::{check_written, is_own_file};
 
 /// Options of a study besides the file.
 #[derive(Clone, Debug, Default)]
@@ -117,19 +119,18 @@ fn draw_run(run: &Path) -> Result<(), Error> {
     draw_scene(run, &request).map(|_| ())
 }
 
-/// Removes the results of an earlier study. A directory of runs that no study made is
-/// refused.
+/// Removes the results of an earlier study. Files that windfall did not write are refused.
 fn clear(out: &Path) -> Result<(), Error> {
-    let absent = |error: &std::io::Error| error.kind() == std::io::ErrorKind::NotFound;
+    let results = ["study.json", "study.csv", "study.html"].map(|name| out.join(name));
     let variants = out.join(VARIANTS);
-    let mark = variants.join(MARK);
-    if variants.exists() && !mark.exists() {
-        return Err(Error::AlreadyThere { path: variants });
+    for path in &results {
+        check_written(path, None)?;
     }
-    for name in ["study.json", "study.csv", "study.html"] {
-        let path = out.join(name);
-        match std::fs::remove_file(&path) {
-            Err(error) if !absent(&error) => return Err(access(&path, "replace")(error)),
+    check_folder(&variants)?;
+    let absent = |error: &std::io::Error| error.kind() == std::io::ErrorKind::NotFound;
+    for path in &results {
+        match std::fs::remove_file(path) {
+            Err(error) if !absent(&error) => return Err(access(path, "replace")(error)),
             _ => {}
         }
     }
@@ -139,9 +140,28 @@ fn clear(out: &Path) -> Result<(), Error> {
     }
     make_directory(&variants)?;
     write_whole(
-        &mark,
+        &variants.join(MARK),
         b"Runs of windfall scene study; the next one replaces them.\n",
     )
+}
+
+/// Refuses a folder of runs in which somebody else put a file.
+fn check_folder(folder: &Path) -> Result<(), Error> {
+    let failed = |source| Error::access(folder, "read", source);
+    if !folder.exists() {
+        return Ok(());
+    }
+    for entry in std::fs::read_dir(folder).map_err(failed)? {
+        let path = entry.map_err(failed)?.path();
+        let unfinished = path.extension().is_some_and(|own| own == "partial");
+        match path.symlink_metadata().is_ok_and(|own| own.is_dir()) {
+            true => check_folder(&path)?,
+            false if unfinished || is_own_file(&path) => {}
+            false if path == checkpoint_path(folder) => check_checkpoint(&path)?,
+            false => check_written(&path, None)?,
+        }
+    }
+    Ok(())
 }
 
 fn directory_of(number: usize, name: &str) -> String {

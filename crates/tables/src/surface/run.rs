@@ -26,6 +26,7 @@ use windfall_files::error::Error;
 use windfall_files::found::FindingOutcome;
 use windfall_files::option_value::unusable;
 use windfall_files::table::data::{Data, read_data};
+use windfall_files::write_file::check_outputs;
 use windfall_statistics::model::anova::{Anova, anova};
 use windfall_statistics::model::expression::values;
 use windfall_statistics::model::formula_syntax::parse;
@@ -138,6 +139,8 @@ impl SurfaceRequest {
 /// # Errors
 /// The table, a model or an option cannot be used, or a figure cannot be written.
 pub fn surface(request: &SurfaceRequest) -> Result<SurfaceOutcome, Error> {
+    let figures = request.figures.as_ref().map(|own| own.directory.as_path());
+    check_outputs([figures])?;
     let (outcome, fitted) = fitted_surfaces(request)?;
     if let Some(folder) = &request.figures {
         draw(folder, request.confidence, &outcome, &fitted)?;

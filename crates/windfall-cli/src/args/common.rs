@@ -41,6 +41,9 @@ pub struct Arguments {
     /// What to do.
     #[command(subcommand)]
     pub command: Command,
+    /// Replace files that windfall did not write, or that were changed since; never an input
+    #[arg(long, global = true)]
+    pub force: bool,
 }
 
 /// The commands.
