@@ -344,6 +344,78 @@ fn rejects_every_way_out_of_the_directory() {
     assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), 3);
 }
 
+/// What the files of a campaign name is confined as well: who gets a directory from others
+/// did not write them.
+#[cfg(unix)]
+#[test]
+fn rejects_files_that_lead_out_of_the_campaign() {
+    use std::os::unix::fs::symlink;
+    let (folder, campaign) = bench("1");
+    let outside = tempfile::tempdir().unwrap();
+    let secret = outside.path().join("secret.csv");
+    std::fs::write(&secret, "time_s,force_N\n0,7777\n1,8\n").unwrap();
+    let running = serve(folder.path(), &[]);
+    let text = std::fs::read_to_string(campaign.join("campaign.toml")).unwrap();
+    let path = "/api/campaigns/bench/text";
+    let tables = [
+        "/dev/zero",
+        "/dev/stdin",
+        "../../secret.csv",
+        &secret.display().to_string(),
+    ];
+    for table in tables {
+        let text = format!("{text}\n[laws.own]\ntable = \"{table}\"\n");
+        let answer = running.page("PUT", path, Some("*"), &json!({ "text": text }));
+        assert!(
+            [400, 422].contains(&answer.status),
+            "{table}: {}",
+            answer.text()
+        );
+        assert!(!answer.text().contains("7777"), "{}", answer.text());
+    }
+    // The column "file" is checked, whatever the other columns are called.
+    let cells = json!({"file": secret.display().to_string()});
+    let row = json!({"id": "n", "specimen": "s", "file": "a.csv", "cells": cells});
+    let path = "/api/campaigns/bench/impacts";
+    running.page("POST", path, Some("*"), &json!({"impacts": [row]}));
+    let rows = std::fs::read_to_string(campaign.join("impacts.csv")).unwrap();
+    assert!(!rows.contains("secret"), "{rows}");
+
+    // Files that were put there otherwise: a recording elsewhere, an endless table, a store.
+    let rows = rows.replace("specimen-01-01.csv", &secret.display().to_string());
+    std::fs::write(campaign.join("impacts.csv"), rows).unwrap();
+    let body = json!({"impact": ids(&running)[0], "series": true});
+    let refit = running.page("POST", "/api/campaigns/bench/refit", None, &body);
+    assert_eq!(refit.json()["code"], "name", "{}", refit.text());
+    let job = running.work("bench", &json!({"work": "fit"}));
+    assert_eq!(job["state"], "failed", "{job}");
+    let refused = |name: &str, target: &Path| {
+        let own = campaign.join(name);
+        let kept = folder.path().join("kept");
+        let was = std::fs::rename(&own, &kept).is_ok();
+        symlink(target, &own).unwrap();
+        let answer = running.get("/api/campaigns/bench");
+        assert!(
+            (400..500).contains(&answer.status),
+            "{name}: {}",
+            answer.text()
+        );
+        assert_eq!(running.get("/api/campaigns").status, 200);
+        std::fs::remove_file(&own).unwrap();
+        if was {
+            std::fs::rename(&kept, &own).unwrap();
+        }
+    };
+    refused("specimens.csv", Path::new("/dev/zero"));
+    refused("campaign.toml", &secret);
+    refused("results.sqlite", &outside.path().join("other.sqlite"));
+    assert_eq!(running.get("/api/campaigns/bench").status, 200);
+    symlink(outside.path(), campaign.join("report")).unwrap();
+    let job = running.work("bench", &json!({"work": "report"}));
+    assert_eq!(job["state"], "failed", "{job}");
+    assert_eq!(std::fs::read_dir(outside.path()).unwrap().count(), 1);
+}
+
 #[test]
 fn tells_no_path_of_the_machine() {
     let (folder, campaign) = bench("1");

@@ -90,6 +90,8 @@ export async function serve(directory, port) {
     origin,
     address,
     port,
+    /** What programs send. */
+    admitted: { Authorization: `Bearer ${new URL(address).searchParams.get("token")}` },
     said: () => words,
     async stop() {
       child.kill("SIGTERM");
