@@ -17,8 +17,8 @@ interface Notice {
 /** Message of a failure for the user, or null if there is nothing to say. */
 export function wordsOf(error: unknown): string | null {
   if (error instanceof Failed) {
-    // A missing token is told above the page.
-    return error.problem.status === 401 ? null : error.problem.detail;
+    if (error.problem.status === 401) return "windfall needs its new token, as told above.";
+    return error.problem.detail;
   }
   if (error instanceof DOMException && error.name === "AbortError") return null;
   return error instanceof Error ? error.message : String(error);
