@@ -33,7 +33,7 @@ NAMES = [
     '"', "'", "`id`", "$(id)", "${HOME}", "~", "~root", "-rf", "--help", "x" * 121, "x" * 300, "y" * 5000,
     "a/" * 500 + "b", "é" * 60, "\u202e.csv", "\ufeff", "🍏.csv", " ", "a ", "a.", ".hidden", "link",
     "link/secret.csv", "zero.csv", "pipe.csv", "pipe", "zero", "secret-link.csv", "folder.csv", "bench",
-    "bench/raw", "impacts.csv", "campaign.toml", "results.sqlite", "specimen-01-01.csv", "tables/pipe.csv",
+    "bench/raw", "impacts.csv", "campaign.toml", "results.sqlite", "specimen-01.csv", "tables/pipe.csv",
     "tables/results.csv", "report.html", "figures", "law.toml", "scene.run", "pipe.run", "bench/../bench",
     "1", "0", "-1", "1e309", "9" * 400, "NaN", "undefined", "null", "[]", "{}", "\ud800",
 ]
@@ -112,7 +112,7 @@ def filled(description, schema, random, depth=0):
         return random.choice([0, 1, -1, 2**53, 1e300, 0.5, 10**30])
     if kind == "boolean":
         return random.random() < 0.5
-    return random.choice(NAMES + ["bench", "hertz", "fit", "quadratic", "specimen-01-01"])
+    return random.choice(NAMES + ["bench", "hertz", "fit", "quadratic", "specimen-01"])
 
 
 def texts(random, own):
