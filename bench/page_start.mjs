@@ -13,7 +13,9 @@ for (let start = 0; start < STARTS; start++) {
   const begin = performance.now();
   const server = spawn(process.argv[2], ["serve", directory, "--no-open", "--port", "0"]);
   const address = await new Promise((tell) => server.stdout.once("data", (line) => tell(`${line}`.trim())));
-  const answer = await fetch(address);
+  const { origin, searchParams } = new URL(address);
+  const headers = { Authorization: `Bearer ${searchParams.get("token")}` };
+  const answer = await fetch(origin, { headers });
   if (!answer.ok) throw new Error(`the page: ${answer.status}`);
   await answer.text();
   times.push(performance.now() - begin);

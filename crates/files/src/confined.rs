@@ -1,6 +1,7 @@
 //! Files named from outside, confined to one directory.
 
 use crate::error::Error;
+use crate::inputs::check_regular;
 use crate::write_file::{partial_of, sweep};
 use std::fs::File;
 use std::io::Write;
@@ -59,12 +60,33 @@ fn refused(name: &str, problem: &str) -> Error {
     }
 }
 
+/// Checks that what a file names lies below a directory, behind any symbolic links, and is a
+/// regular file. What is not there is left to its reader, which says so.
+///
+/// # Errors
+/// It lies elsewhere, or is a pipe, a socket or a device.
+pub fn check_inside(directory: &Path, path: &Path) -> Result<(), Error> {
+    check_regular(path)?;
+    match (directory.canonicalize(), path.canonicalize()) {
+        (Ok(directory), Ok(found)) if !found.starts_with(&directory) => {
+            let name = path.strip_prefix(directory).unwrap_or(path);
+            let problem = "lies outside of the directory that it belongs to; put the file there";
+            Err(refused(&name.display().to_string(), problem))
+        }
+        _ => Ok(()),
+    }
+}
+
 /// The content of a file below a directory.
 ///
 /// # Errors
-/// The name is refused, or the file cannot be read.
+/// The name is refused, is that of no regular file, or the file cannot be read.
 pub fn read_inside(directory: &Path, name: &str) -> Result<Vec<u8>, Error> {
     let path = path_inside(directory, name)?;
+    check_regular(&path)?;
+    if !path.is_file() {
+        return Err(Error::absent(path, "it may have been removed meanwhile"));
+    }
     std::fs::read(&path).map_err(|source| failed(&path, "read", source))
 }
 
@@ -201,6 +223,12 @@ mod tests {
         std::os::unix::fs::symlink("/etc", directory.path().join("link")).unwrap();
         let error = path_inside(directory.path(), "link/passwd").unwrap_err();
         assert!(error.to_string().contains("symbolic link"), "{error}");
+        let inside = |name: &str| check_inside(directory.path(), &directory.path().join(name));
+        for name in ["link/passwd", "/etc/passwd", "/dev/zero", ".."] {
+            assert!(inside(name).is_err(), "{name}");
+        }
+        std::fs::write(directory.path().join("12:30.csv"), "").unwrap();
+        assert!(inside("12:30.csv").is_ok() && inside("absent").is_ok());
     }
 
     #[test]

@@ -6,6 +6,7 @@ use crate::http;
 
 use http::{Running, break_off, serve};
 use serde_json::{Value, json};
+use std::io::{Read, Write};
 use std::path::Path;
 use std::time::{Duration, Instant};
 
@@ -127,18 +128,122 @@ fn rejects_strangers() {
 }
 
 #[test]
-fn asks_for_a_token_where_others_can_reach_it() {
+fn answers_only_those_who_have_the_token() {
     let (folder, _) = bench("1");
-    let running = serve(folder.path(), &["--host", "0.0.0.0"]);
-    // The first line that it prints has the token; without it nobody is answered.
-    assert_eq!(running.get("/api/campaigns").status, 401);
-    assert_eq!(running.get("/").status, 401);
-    assert_eq!(
-        running
-            .get("/?token=0123456789abcdef0123456789abcdef")
-            .status,
-        401
+    for options in [&[][..], &["--host", "0.0.0.0"]] {
+        let running = serve(folder.path(), options);
+        assert_eq!(running.token.len(), 32, "{}", running.token);
+        let body = json!({"id": "x", "kind": "pendulum"}).to_string();
+        let with = |method: &str, path: &str, head: &[(&str, &str)]| {
+            let head = [&[("X-Windfall", "page")], head].concat();
+            running.send(method, path, &head, body.as_bytes())
+        };
+        let none = ("Authorization", "none");
+        for path in [
+            "/",
+            "/api/campaigns",
+            "/nothing.js",
+            "/?token=",
+            "/?token=0123",
+        ] {
+            let answer = with("GET", path, &[none]);
+            assert_eq!(answer.status, 401, "{path}");
+            assert!(answer.text().contains("windfall serve"), "{path}");
+        }
+        let page = with("GET", "/", &[none, ("Accept", "text/html")]);
+        assert_eq!(
+            page.header("content-type"),
+            Some("text/html; charset=utf-8")
+        );
+        let entry = format!("/api/campaigns?token={}", running.token);
+        assert_eq!(with("POST", "/api/campaigns", &[none]).status, 401);
+        assert_eq!(with("POST", &entry, &[none]).status, 401);
+        assert!(!folder.path().join("x").exists());
+
+        // The address becomes a cookie of this server alone.
+        let entered = with("GET", &entry, &[none]);
+        let location = entered.header("location");
+        assert_eq!((entered.status, location), (303, Some("/api/campaigns")));
+        let cookie = entered.header("set-cookie").unwrap();
+        let name = format!("windfall-{}={}", running.address.port(), running.token);
+        let known = format!("{name}; HttpOnly; SameSite=Strict; Path=/");
+        assert_eq!(cookie, known);
+        let pair = [none, ("Cookie", name.as_str())];
+        assert_eq!(with("GET", "/api/campaigns", &pair).status, 200);
+        assert_eq!(running.get("/api/campaigns").status, 200);
+    }
+    let open = serve(folder.path(), &["--no-token"]);
+    assert_eq!(open.token, "");
+    assert_eq!(open.get("/api/campaigns").status, 200);
+    let directory = folder.path().display().to_string();
+    let both = [
+        "serve",
+        "--no-token",
+        "--host",
+        "0.0.0.0",
+        "--no-open",
+        &directory,
+    ];
+    let refused = windfall(&both).failure().get_output().stderr.clone();
+    let refused = String::from_utf8(refused).unwrap();
+    assert!(
+        refused.contains("--no-token with --host 0.0.0.0"),
+        "{refused}"
     );
+}
+
+/// Connections that say nothing, and requests that never end, keep nobody out.
+#[test]
+fn answers_while_others_hold_connections() {
+    let (folder, _) = bench("1");
+    let running = serve(folder.path(), &[]);
+    let begun = format!("GET / HTTP/1.1\r\nHost: {}\r\nX-", running.address);
+    let held: Vec<_> = (0..300)
+        .map(|number| {
+            let mut stream = running.connect();
+            if number % 2 == 0 {
+                // One that was given up meanwhile takes nothing.
+                let _ = stream.write_all(begun.as_bytes());
+            }
+            stream
+        })
+        .collect();
+    let begin = Instant::now();
+    assert_eq!(running.get("/api/campaigns").status, 200);
+    assert!(
+        begin.elapsed() < Duration::from_secs(5),
+        "{:?}",
+        begin.elapsed()
+    );
+    // The last one is let go when its time is over.
+    let mut last = held.last().unwrap();
+    let mut rest = Vec::new();
+    let _ = last.read_to_end(&mut rest);
+    let waited = begin.elapsed();
+    assert!(waited < Duration::from_secs(20), "{waited:?}");
+}
+
+#[test]
+fn compresses_what_gets_smaller() {
+    let (folder, _) = bench("1");
+    let running = serve(folder.path(), &[]);
+    let get = |path: &str| running.send("GET", path, &[("Accept-Encoding", "gzip")], b"");
+    let page = running.get("/").text();
+    let script = page.split('"').find(|part| part.ends_with(".js")).unwrap();
+    let script = format!("/{}", script.trim_start_matches(['.', '/']));
+    for path in ["/api/openapi.json", &script] {
+        let (small, large) = (get(path), running.get(path));
+        assert_eq!(small.header("content-encoding"), Some("gzip"), "{path}");
+        assert_eq!(large.header("content-encoding"), None, "{path}");
+        assert!(2 * small.body.len() < large.body.len(), "{path}");
+    }
+    let job = running.work("bench", &json!({"work": "fit"}));
+    let events = get(&format!(
+        "/api/jobs/{}/events",
+        job["job"].as_str().unwrap()
+    ));
+    assert_eq!(events.header("content-encoding"), None);
+    assert!(events.text().contains("event: end"), "{}", events.text());
 }
 
 #[test]
@@ -237,6 +342,78 @@ fn rejects_every_way_out_of_the_directory() {
     );
     assert_eq!(std::fs::read_dir(outside.path()).unwrap().count(), 1);
     assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), 3);
+}
+
+/// What the files of a campaign name is confined as well: who gets a directory from others
+/// did not write them.
+#[cfg(unix)]
+#[test]
+fn rejects_files_that_lead_out_of_the_campaign() {
+    use std::os::unix::fs::symlink;
+    let (folder, campaign) = bench("1");
+    let outside = tempfile::tempdir().unwrap();
+    let secret = outside.path().join("secret.csv");
+    std::fs::write(&secret, "time_s,force_N\n0,7777\n1,8\n").unwrap();
+    let running = serve(folder.path(), &[]);
+    let text = std::fs::read_to_string(campaign.join("campaign.toml")).unwrap();
+    let path = "/api/campaigns/bench/text";
+    let tables = [
+        "/dev/zero",
+        "/dev/stdin",
+        "../../secret.csv",
+        &secret.display().to_string(),
+    ];
+    for table in tables {
+        let text = format!("{text}\n[laws.own]\ntable = \"{table}\"\n");
+        let answer = running.page("PUT", path, Some("*"), &json!({ "text": text }));
+        assert!(
+            [400, 422].contains(&answer.status),
+            "{table}: {}",
+            answer.text()
+        );
+        assert!(!answer.text().contains("7777"), "{}", answer.text());
+    }
+    // The column "file" is checked, whatever the other columns are called.
+    let cells = json!({"file": secret.display().to_string()});
+    let row = json!({"id": "n", "specimen": "s", "file": "a.csv", "cells": cells});
+    let path = "/api/campaigns/bench/impacts";
+    running.page("POST", path, Some("*"), &json!({"impacts": [row]}));
+    let rows = std::fs::read_to_string(campaign.join("impacts.csv")).unwrap();
+    assert!(!rows.contains("secret"), "{rows}");
+
+    // Files that were put there otherwise: a recording elsewhere, an endless table, a store.
+    let rows = rows.replace("specimen-01-01.csv", &secret.display().to_string());
+    std::fs::write(campaign.join("impacts.csv"), rows).unwrap();
+    let body = json!({"impact": ids(&running)[0], "series": true});
+    let refit = running.page("POST", "/api/campaigns/bench/refit", None, &body);
+    assert_eq!(refit.json()["code"], "name", "{}", refit.text());
+    let job = running.work("bench", &json!({"work": "fit"}));
+    assert_eq!(job["state"], "failed", "{job}");
+    let refused = |name: &str, target: &Path| {
+        let own = campaign.join(name);
+        let kept = folder.path().join("kept");
+        let was = std::fs::rename(&own, &kept).is_ok();
+        symlink(target, &own).unwrap();
+        let answer = running.get("/api/campaigns/bench");
+        assert!(
+            (400..500).contains(&answer.status),
+            "{name}: {}",
+            answer.text()
+        );
+        assert_eq!(running.get("/api/campaigns").status, 200);
+        std::fs::remove_file(&own).unwrap();
+        if was {
+            std::fs::rename(&kept, &own).unwrap();
+        }
+    };
+    refused("specimens.csv", Path::new("/dev/zero"));
+    refused("campaign.toml", &secret);
+    refused("results.sqlite", &outside.path().join("other.sqlite"));
+    assert_eq!(running.get("/api/campaigns/bench").status, 200);
+    symlink(outside.path(), campaign.join("report")).unwrap();
+    let job = running.work("bench", &json!({"work": "report"}));
+    assert_eq!(job["state"], "failed", "{job}");
+    assert_eq!(std::fs::read_dir(outside.path()).unwrap().count(), 1);
 }
 
 #[test]

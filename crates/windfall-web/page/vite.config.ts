@@ -1,7 +1,7 @@
 import { svelte } from "@sveltejs/vite-plugin-svelte";
 import { defineConfig } from "vite";
 
-// `windfall serve` while the page is worked on.
+// `windfall serve --no-token` while the page is worked on.
 const server = "http://127.0.0.1:8417";
 
 export default defineConfig({

@@ -53,5 +53,6 @@ fn problems(statuses: &[u16]) -> BTreeMap<String, RefOr<Response>> {
             .build();
         (status.to_string(), RefOr::T(response))
     };
-    statuses.iter().map(problem).collect()
+    // Every request needs the token.
+    [401].iter().chain(statuses).map(problem).collect()
 }

@@ -2,7 +2,7 @@
 
 use crate::problem::Problem;
 use axum::Json;
-use axum::extract::rejection::{JsonRejection, QueryRejection};
+use axum::extract::rejection::QueryRejection;
 use axum::extract::{FromRequest, FromRequestParts, Query, Request};
 use axum::http::request::Parts;
 use axum::http::{StatusCode, header};
@@ -17,8 +17,8 @@ impl<S: Send + Sync, T: DeserializeOwned> FromRequest<S> for Given<T> {
     async fn from_request(request: Request, state: &S) -> Result<Self, Problem> {
         let found = Json::<T>::from_request(request, state).await;
         found.map(|Json(body)| Self(body)).map_err(|rejection| {
-            let code = match rejection {
-                JsonRejection::BytesRejection(_) => "too-large",
+            let code = match rejection.status() {
+                StatusCode::PAYLOAD_TOO_LARGE => "too-large",
                 _ => "request",
             };
             Problem::new(rejection.status(), code, rejection.body_text())

@@ -8,6 +8,7 @@ mod about;
 mod api;
 mod app;
 mod asset;
+mod connections;
 mod contour_map;
 mod described;
 mod given;

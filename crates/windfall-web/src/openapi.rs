@@ -4,6 +4,7 @@ use crate::api::events::CampaignChanged;
 use crate::problem::Problem;
 use axum::Json;
 use utoipa::openapi::schema::{AdditionalProperties, Object, Schema};
+use utoipa::openapi::security::{Http, HttpAuthScheme, SecurityScheme};
 use utoipa::openapi::{OpenApi as Description, Ref, RefOr};
 use utoipa::{Modify, OpenApi};
 
@@ -14,8 +15,10 @@ use utoipa::{Modify, OpenApi};
         title = "windfall",
         description = "What the page of `windfall serve` uses. All numbers are SI. Results have \
                        the keys of the commands' JSON. Requests that change something need the \
-                       header X-Windfall; changes to a campaign need its version in If-Match.",
+                       header X-Windfall; changes to a campaign need its version in If-Match. \
+                       The token is in the address that `windfall serve` prints.",
     ),
+    security(("token" = [])),
     paths(
         crate::about::about,
         crate::api::campaigns::campaigns,
@@ -52,9 +55,21 @@ use utoipa::{Modify, OpenApi};
         crate::api::scenes::history,
     ),
     components(schemas(Problem, CampaignChanged)),
-    modifiers(&NamedValues, &KeysOfAnswers)
+    modifiers(&NamedValues, &KeysOfAnswers, &Token)
 )]
 pub(crate) struct Interface;
+
+/// How programs send the token.
+struct Token;
+
+impl Modify for Token {
+    fn modify(&self, description: &mut Description) {
+        if let Some(components) = description.components.as_mut() {
+            let bearer = SecurityScheme::Http(Http::new(HttpAuthScheme::Bearer));
+            components.add_security_scheme("token", bearer);
+        }
+    }
+}
 
 /// Replaces the value schemas that utoipa inlines into maps by references.
 struct NamedValues;

@@ -2,6 +2,7 @@
 
 use crate::api::{campaigns, changes, events, files, jobs, live, recordings, scenes, tables};
 use crate::app::App;
+use crate::connections::accept;
 use crate::guard::{Guard, guarded};
 use crate::interrupt::interrupted;
 use crate::problem::Problem;
@@ -13,8 +14,11 @@ use axum::middleware::from_fn_with_state;
 use axum::routing::{get, post, put};
 use std::net::{IpAddr, Ipv4Addr, SocketAddr, TcpListener};
 use std::path::PathBuf;
-use std::sync::Arc;
+use std::sync::{Arc, Mutex, PoisonError};
 use std::time::Duration;
+use tower_http::CompressionLevel;
+use tower_http::compression::CompressionLayer;
+use tower_http::compression::predicate::{DefaultPredicate, NotForContentType, Predicate};
 use windfall_workspace::workspace::Workspace;
 
 /// Size limit of a body other than an upload; bytes.
@@ -37,6 +41,8 @@ pub struct ServeRequest {
     pub port: Option<u16>,
     /// Size limit of an upload; bytes.
     pub upload_limit: u64,
+    /// Whether requests need a token; only a server on loopback may do without.
+    pub token: bool,
 }
 
 /// Why the server cannot start.
@@ -54,6 +60,12 @@ pub enum ServeError {
         /// The system's error.
         source: std::io::Error,
     },
+    /// Others could reach a server that asks nobody for a token.
+    #[error(
+        "--no-token with --host {0}: everybody in the network could change your files; leave out \
+         one of them"
+    )]
+    Open(IpAddr),
     /// The system gives no randomness for a token, or no threads.
     #[error("cannot start: {0}")]
     System(String),
@@ -72,30 +84,46 @@ impl Server {
     /// # Errors
     /// As [`ServeError`] says.
     pub fn open(request: &ServeRequest) -> Result<Self, ServeError> {
+        if !request.token && !request.host.is_loopback() {
+            return Err(ServeError::Open(request.host));
+        }
         let workspace = Workspace::open(&request.directory)?;
         let listener = listener(request)?;
         let failed = |error: std::io::Error| ServeError::System(error.to_string());
         let address = listener.local_addr().map_err(failed)?;
         listener.set_nonblocking(true).map_err(failed)?;
-        let token = match address.ip().is_loopback() {
-            true => None,
-            false => Some(token()?),
+        let secret = || request.token.then(token).transpose();
+        let guard = Guard {
+            address,
+            token: secret()?,
+            once: Mutex::new(secret()?),
         };
         Ok(Self {
             app: App::new(workspace, request.upload_limit),
-            guard: Arc::new(Guard { address, token }),
+            guard: Arc::new(guard),
             listener,
         })
     }
 
-    /// The address to be opened, with its token where one is needed.
+    /// The address for people and programs, with its token where one is needed.
     pub fn address(&self) -> String {
+        self.address_with(self.guard.token.as_deref())
+    }
+
+    /// The address to open a browser with: others may see its command line, so that its
+    /// token is good for one visit.
+    pub fn opening_address(&self) -> String {
+        let once = self.guard.once.lock();
+        self.address_with(once.unwrap_or_else(PoisonError::into_inner).as_deref())
+    }
+
+    fn address_with(&self, token: Option<&str>) -> String {
         let mut at = self.guard.address;
         // Bound to all addresses: loopback opens it here.
         if at.ip().is_unspecified() {
             at.set_ip(IpAddr::V4(Ipv4Addr::LOCALHOST));
         }
-        match &self.guard.token {
+        match token {
             Some(token) => format!("http://{at}/?token={token}"),
             None => format!("http://{at}/"),
         }
@@ -115,11 +143,11 @@ impl Server {
         let routes = routes(self.app, self.guard);
         let served = runtime.block_on(async {
             let listener = tokio::net::TcpListener::from_std(self.listener)?;
-            let server = axum::serve(listener, routes);
             tokio::select! {
-                served = async { server.await } => served,
-                () = interrupted() => Ok(()),
+                () = accept(listener, routes) => {}
+                () = interrupted() => {}
             }
+            Ok(())
         });
         app.jobs.cancel_all();
         runtime.shutdown_timeout(GRACE);
@@ -196,7 +224,16 @@ fn routes(app: App, guard: Arc<Guard>) -> Router {
         .fallback(get(asset::asset))
         .layer(DefaultBodyLimit::max(MOST_BODY))
         .layer(from_fn_with_state(guard, guarded))
+        .layer(compression())
         .with_state(app)
+}
+
+/// Compression of answers: quick rather than strong, as most go to this machine. Event
+/// streams stay as they are, and so do pictures and the frames of scenes.
+fn compression() -> CompressionLayer<impl Predicate> {
+    let kinds = DefaultPredicate::new().and(NotForContentType::new("application/octet-stream"));
+    let layer = CompressionLayer::new().quality(CompressionLevel::Fastest);
+    layer.compress_when(kinds)
 }
 
 async fn unknown() -> Problem {

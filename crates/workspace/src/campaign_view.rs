@@ -11,12 +11,15 @@ use windfall_campaign::settings::kind::STORE_FILE;
 use windfall_campaign::settings::kind::campaign_kind;
 use windfall_campaign::settings::model::{Campaign, FilePlan, ImpactCampaign};
 use windfall_campaign::settings::read::read_campaign;
+use windfall_files::confined::{check_inside, path_inside};
 use windfall_files::error::Error;
+use windfall_files::inputs::check_regular;
 use windfall_files::option_value::word_of;
 use windfall_files::provenance::digest_text;
 use windfall_identify::fit::problem::FitOptions;
 use windfall_report::fit_any::measurement_of;
 use windfall_report::run::REPORT_DIRECTORY;
+use windfall_report::stored_card::CARD_FILE;
 
 /// Directory of tables for regressions and surfaces in a campaign directory.
 pub const TABLES_DIRECTORY: &str = "tables";
@@ -116,6 +119,45 @@ fn read_any(directory: &Path) -> Result<(Campaign, Option<ImpactCampaign>), Erro
     }
     let campaign = read_campaign(directory)?;
     Ok((campaign.shared.clone(), Some(campaign)))
+}
+
+/// Checks that the own files of a campaign and the tables of its laws lie in its directory.
+///
+/// # Errors
+/// One is a symbolic link, no regular file, or a table elsewhere.
+pub fn check_confined(directory: &Path) -> Result<(), Error> {
+    for name in CAMPAIGN_FILES.iter().chain(&[STORE_FILE, CARD_FILE]) {
+        check_regular(&path_inside(directory, name)?)?;
+    }
+    check_law_tables(directory, &campaign_text(directory)?)
+}
+
+/// Checks that the tables of laws in a campaign.toml lie in its directory.
+///
+/// # Errors
+/// One lies elsewhere, or is no regular file.
+pub(crate) fn check_law_tables(directory: &Path, text: &str) -> Result<(), Error> {
+    // Text that is no TOML is refused by its reader.
+    let tables: toml::Table = toml::from_str(text).unwrap_or_default();
+    let laws = tables.get("laws").and_then(toml::Value::as_table);
+    let mut files = laws
+        .into_iter()
+        .flatten()
+        .filter_map(|(_, law)| law.get("table")?.as_str());
+    files.try_for_each(|file| check_inside(directory, &directory.join(file)))
+}
+
+/// Checks what work on a campaign reads and writes besides the files of the campaign.
+///
+/// # Errors
+/// A recording lies outside of the directory of recordings, or results would be written
+/// through a symbolic link.
+pub fn check_work(directory: &Path) -> Result<(), Error> {
+    path_inside(directory, &format!("{REPORT_DIRECTORY}/figures"))?;
+    let (campaign, _) = read_any(directory)?;
+    let raw = &campaign.files.directory;
+    let mut files = campaign.entries.iter().map(|entry| raw.join(&entry.file));
+    files.try_for_each(|file| check_inside(raw, &file))
 }
 
 /// Whether the files of a campaign say what they must.

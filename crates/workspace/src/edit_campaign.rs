@@ -3,8 +3,8 @@
 //! version is refused.
 
 use crate::campaign_view::{
-    CAMPAIGN_FILES, CampaignView, campaign_version, check_campaign, file_plan_of, signed_unit,
-    view_campaign,
+    CAMPAIGN_FILES, CampaignView, campaign_version, check_campaign, check_law_tables, file_plan_of,
+    signed_unit, view_campaign,
 };
 use crate::edit_table::{add_rows, set_cells};
 use crate::workspace::recordings_inside;
@@ -306,7 +306,8 @@ fn new_impacts(directory: &Path, rows: &[NewImpact]) -> Result<Vec<(&'static str
             ("file", &row.file),
         ];
         let own = own.map(|(name, cell)| (name.to_owned(), cell.clone()));
-        own.into_iter().chain(row.cells.clone()).collect()
+        // What was checked stands, whatever the other columns are called.
+        row.cells.clone().into_iter().chain(own).collect()
     });
     let table: Vec<BTreeMap<String, String>> = table.collect();
     let impacts = add_rows(&directory.join("impacts.csv"), &table)?;
@@ -338,6 +339,9 @@ fn check_changed(directory: &Path, files: &[(&'static str, String)]) -> Result<(
     let scratch =
         scratch.map_err(|source| Error::access(&std::env::temp_dir(), "write", source))?;
     for (name, text) in files {
+        if *name == CAMPAIGN_FILE {
+            check_law_tables(directory, text)?;
+        }
         let path = scratch.path().join(name);
         write_new(&path, text.as_bytes())?;
     }

@@ -14,6 +14,7 @@ use windfall_campaign::recording::read::{read_recording, recording_path};
 use windfall_campaign::result::outcome::ImpactOutcome;
 use windfall_campaign::settings::model::{ImpactCampaign, ImpactEntry};
 use windfall_campaign::settings::read::read_campaign;
+use windfall_files::confined::check_inside;
 use windfall_files::error::Error;
 use windfall_files::found::FindingOutcome;
 use windfall_files::named::Named;
@@ -144,7 +145,10 @@ impl LiveCampaign {
     /// There is no such impact.
     pub fn recording(&self, id: &str) -> Result<PathBuf, Error> {
         let entry = self.entry(id)?;
-        Ok(recording_path(&self.campaign.shared.files, entry))
+        let files = &self.campaign.shared.files;
+        let path = recording_path(files, entry);
+        check_inside(&files.directory, &path)?;
+        Ok(path)
     }
 
     /// Reads the recording of one of its impacts.

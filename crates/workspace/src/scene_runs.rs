@@ -7,7 +7,7 @@ use serde::Serialize;
 use serde_json::Value;
 use std::path::{Path, PathBuf};
 use windfall_draw::colour_map::{colour_of, css};
-use windfall_files::confined::path_inside;
+use windfall_files::confined::{check_inside, path_inside, read_inside};
 use windfall_files::error::Error;
 use windfall_scene_run::file_error::SceneFileError;
 use windfall_scene_run::frames::read::{SceneFrames, frames_file};
@@ -112,7 +112,20 @@ pub fn scene_run(workspace: &Workspace, id: &str) -> Result<PathBuf, Error> {
     }
     // A name that is refused is that of no scene.
     let path = path_inside(root, id).map_err(|_| unknown())?;
-    is_run(&path).then_some(path).ok_or_else(unknown)
+    if !is_run(&path) {
+        return Err(unknown());
+    }
+    for file in ["events.csv", "fruit.csv"] {
+        path_inside(&path, file)?;
+    }
+    Ok(path)
+}
+
+/// The frames of a run, where they are in its directory.
+fn frames_of(directory: &Path) -> Result<PathBuf, Error> {
+    let file = frames_file(directory)?;
+    check_inside(directory, &file)?;
+    Ok(file)
 }
 
 fn is_run(path: &Path) -> bool {
@@ -134,7 +147,7 @@ fn folders(directory: &Path) -> Result<Vec<String>, Error> {
 }
 
 fn entry_of(path: &Path, id: String) -> SceneEntry {
-    let frames = frames_file(path).and_then(|file| SceneFrames::open(&file));
+    let frames = frames_of(path).and_then(|file| SceneFrames::open(&file));
     let result = result_of(path);
     let number = |key: &str| result.as_ref().and_then(|own| own[key].as_u64());
     let title = result.as_ref().and_then(|own| own["title"].as_str());
@@ -153,8 +166,7 @@ fn entry_of(path: &Path, id: String) -> SceneEntry {
 }
 
 fn result_of(path: &Path) -> Option<Value> {
-    let text = std::fs::read_to_string(path.join(RESULT)).ok()?;
-    serde_json::from_str(&text).ok()
+    serde_json::from_slice(&read_inside(path, RESULT).ok()?).ok()
 }
 
 /// A scene with its walls and the times of its frames.
@@ -162,7 +174,7 @@ fn result_of(path: &Path) -> Option<Value> {
 /// # Errors
 /// There are no frames, or they cannot be read.
 pub fn scene_view(directory: &Path, id: String) -> Result<SceneView, Error> {
-    let mut frames = SceneFrames::open(&frames_file(directory)?)?;
+    let mut frames = SceneFrames::open(&frames_of(directory)?)?;
     let most = largest_force(&mut frames)?;
     let step = |k: usize| css(colour_of(k as f64 / (COLOURS - 1) as f64));
     let walls = frames.walls.iter();
@@ -186,7 +198,7 @@ pub fn scene_view(directory: &Path, id: String) -> Result<SceneView, Error> {
 /// # Errors
 /// They cannot be read.
 pub fn scene_frames_from(directory: &Path, from: usize) -> Result<Vec<u8>, Error> {
-    SceneFrames::open(&frames_file(directory)?)?.bytes(from, PIECE)
+    SceneFrames::open(&frames_of(directory)?)?.bytes(from, PIECE)
 }
 
 /// Fruit of a scene in all.
@@ -197,6 +209,6 @@ pub fn scene_fruit_count(directory: &Path) -> Result<usize, Error> {
     let known = result_of(directory).and_then(|own| own["fruit"].as_u64());
     match known {
         Some(count) => Ok(count as usize),
-        None => Ok(SceneFrames::open(&frames_file(directory)?)?.about.fruit),
+        None => Ok(SceneFrames::open(&frames_of(directory)?)?.about.fruit),
     }
 }

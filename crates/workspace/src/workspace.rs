@@ -1,7 +1,9 @@
 //! A directory with campaigns in it, or a campaign itself: which there are, and in what
 //! state.
 
-use crate::campaign_view::{CAMPAIGN_FILES, file_plan_of, name_of, names_in, view_campaign};
+use crate::campaign_view::{
+    CAMPAIGN_FILES, check_confined, file_plan_of, name_of, names_in, view_campaign,
+};
 use itertools::Itertools;
 use serde::Serialize;
 use std::path::{Path, PathBuf};
@@ -99,7 +101,7 @@ impl Workspace {
     /// The directory of a campaign.
     ///
     /// # Errors
-    /// The name is refused, or there is no campaign of this name.
+    /// There is no campaign of this name, or its files lead out of its directory.
     pub fn campaign(&self, id: &str) -> Result<PathBuf, Error> {
         let directory = match self.single {
             true => (id == self.name()).then(|| self.root.clone()),
@@ -107,7 +109,9 @@ impl Workspace {
             false => self.place(id).ok(),
         };
         let directory = directory.filter(|own| own.join(CAMPAIGN_FILE).is_file());
-        directory.ok_or_else(|| Error::CampaignUnknown { id: id.to_owned() })
+        let directory = directory.ok_or_else(|| Error::CampaignUnknown { id: id.to_owned() })?;
+        check_confined(&directory)?;
+        Ok(directory)
     }
 
     /// Where a campaign of that name is or would be.
@@ -168,7 +172,8 @@ impl Workspace {
 }
 
 fn entry_of(directory: &Path) -> CampaignEntry {
-    let run = latest_run(&directory.join(STORE_FILE));
+    let confined = check_confined(directory);
+    let run = confined.and_then(|()| latest_run(&directory.join(STORE_FILE)));
     let mut entry = CampaignEntry {
         id: name_of(directory),
         title: name_of(directory),
@@ -184,7 +189,10 @@ fn entry_of(directory: &Path) -> CampaignEntry {
     };
     match run {
         Ok(run) => entry.run = run.map(shown),
-        Err(error) => entry.problem = Some(error.to_string()),
+        Err(error) => {
+            entry.problem = Some(error.to_string());
+            return entry;
+        }
     }
     match view_campaign(directory) {
         Ok(view) => {
@@ -257,7 +265,11 @@ pub fn recordings_inside(directory: &Path) -> Result<FilePlan, Error> {
     let place = plan.directory.canonicalize();
     let inside = match (&place, directory.canonicalize()) {
         (Ok(place), Ok(own)) => place.starts_with(own),
-        _ => !plan.directory.exists() && plan.directory.starts_with(directory),
+        _ => {
+            let name = plan.directory.strip_prefix(directory).ok();
+            let name = name.and_then(Path::to_str);
+            name.is_some_and(|name| path_inside(directory, name).is_ok())
+        }
     };
     match inside {
         true => Ok(plan),

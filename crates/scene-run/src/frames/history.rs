@@ -7,6 +7,7 @@ use serde::{Deserialize, Serialize};
 use std::fs::File;
 use std::path::{Path, PathBuf};
 use windfall_files::error::Error;
+use windfall_files::inputs::check_regular;
 
 /// Most contacts of a fruit that are listed; the hardest ones where there are more.
 const MOST: usize = 2000;
@@ -143,6 +144,7 @@ struct Table {
 
 impl Table {
     fn open(path: PathBuf) -> Result<Self, Error> {
+        check_regular(&path)?;
         let file = File::open(&path).map_err(access(&path, "read"))?;
         let mut reader = csv::ReaderBuilder::new();
         let mut reader = reader.comment(Some(b'#')).from_reader(file);

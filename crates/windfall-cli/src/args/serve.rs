@@ -7,12 +7,13 @@ use std::path::PathBuf;
 /// `windfall serve`
 #[derive(Debug, Args)]
 #[command(
-    after_help = "The server answers on this machine alone and only to its own page. What is done in \
-the page is done to the files of the campaign: every other command sees it. Ctrl-C ends it; work that \
+    after_help = "The server answers on this machine alone, and only those who have the token in the \
+address that it prints; each start has a new one. Programs send it as Authorization: Bearer TOKEN. \
+What is done in the page is done to the files of the campaign: every other command sees it. Ctrl-C ends it; work that \
 runs is stopped, and nothing half-written remains.
 
-With --host it can be reached from other machines; the address then carries a token, and nobody \
-without it is answered. The connection is not encrypted: do this in networks that you trust.
+With --host it can be reached from other machines. The connection is not encrypted: do this in \
+networks that you trust.
 
 Examples:
   windfall serve my-campaign
@@ -32,6 +33,9 @@ pub struct ServeArguments {
     /// Do not open the browser
     #[arg(long)]
     pub no_open: bool,
+    /// Answer every account and program on this machine, without a token
+    #[arg(long)]
+    pub no_token: bool,
     /// Largest file that the page may add, in MB
     #[arg(long, value_name = "MB", default_value_t = 2000)]
     pub upload_limit: u64,

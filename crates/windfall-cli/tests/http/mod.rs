@@ -12,6 +12,8 @@ pub struct Running {
     child: Child,
     /// Where it answers.
     pub address: SocketAddr,
+    /// What it asks of every request; empty without one.
+    pub token: String,
 }
 
 impl Drop for Running {
@@ -64,9 +66,13 @@ pub fn serve(directory: &Path, options: &[&str]) -> Running {
     BufReader::new(child.stdout.take().unwrap())
         .read_line(&mut line)
         .unwrap();
-    let address = line.trim().trim_start_matches("http://");
-    let address = address.split('/').next().unwrap().parse().unwrap();
-    Running { child, address }
+    let line = line.trim().trim_start_matches("http://");
+    let (address, token) = line.split_once('/').unwrap();
+    Running {
+        child,
+        address: address.parse().unwrap(),
+        token: token.trim_start_matches("?token=").to_owned(),
+    }
 }
 
 impl Running {
@@ -76,13 +82,14 @@ impl Running {
         let _ = self.child.wait();
     }
 
-    /// A request with any head.
+    /// A request with the token, and any head.
     pub fn send(&self, method: &str, path: &str, head: &[(&str, &str)], body: &[u8]) -> Answer {
         let mut stream = self.connect();
         let mut text = format!("{method} {path} HTTP/1.1\r\nConnection: close\r\n");
         let all = [("Content-Length", &*body.len().to_string())];
         let host = self.address.to_string();
-        let own = [("Host", host.as_str())];
+        let token = format!("Bearer {}", self.token);
+        let own = [("Host", host.as_str()), ("Authorization", &token)];
         let named = |name: &str| {
             head.iter()
                 .any(|(known, _)| known.eq_ignore_ascii_case(name))
@@ -148,8 +155,9 @@ impl Running {
 pub fn break_off(running: &Running, path: &str) {
     let mut stream = running.connect();
     let head = format!(
-        "PUT {path} HTTP/1.1\r\nHost: {}\r\nX-Windfall: page\r\nContent-Length: 1000000\r\n\r\n",
-        running.address
+        "PUT {path} HTTP/1.1\r\nHost: {}\r\nAuthorization: Bearer {}\r\nX-Windfall: page\r\n\
+         Content-Length: 1000000\r\n\r\n",
+        running.address, running.token
     );
     stream.write_all(head.as_bytes()).unwrap();
     stream.write_all(&[b'1'; 5000]).unwrap();

@@ -67,9 +67,10 @@ async function freePort() {
   return port;
 }
 
-/** `windfall serve` on a directory; waits until it answers. */
-export async function serve(directory) {
-  const port = await freePort();
+/** `windfall serve` on a directory; waits until it answers. `address` is the one that it
+ *  prints, with its token. */
+export async function serve(directory, port) {
+  port ??= await freePort();
   const origin = `http://127.0.0.1:${port}`;
   const child = spawn(PROGRAM, ["serve", directory, "--port", String(port), "--no-open"], {
     stdio: ["ignore", "pipe", "pipe"],
@@ -77,14 +78,20 @@ export async function serve(directory) {
   let words = "";
   for (const stream of [child.stdout, child.stderr]) stream.on("data", (part) => (words += part));
   const ended = new Promise((done) => child.once("exit", done));
+  let address;
   for (let tries = 0; ; tries++) {
-    const answer = await fetch(`${origin}/api/about`).catch(() => null);
-    if (answer?.ok) break;
+    // It listens before it prints where.
+    address = /^http:\S+\n/m.exec(words)?.[0].trim();
+    if (address) break;
     assert.ok(child.exitCode === null && tries < 200, `windfall serve does not answer: ${words}`);
     await new Promise((done) => setTimeout(done, 50));
   }
   return {
     origin,
+    address,
+    port,
+    /** What programs send. */
+    admitted: { Authorization: `Bearer ${new URL(address).searchParams.get("token")}` },
     said: () => words,
     async stop() {
       child.kill("SIGTERM");
@@ -124,7 +131,7 @@ export async function open(browser, server, options = {}) {
   page.on("requestfinished", (request) => {
     if (!new URL(request.url()).pathname.startsWith("/api/")) assets.push(request.sizes());
   });
-  await page.goto(`${server.origin}/${options.hash ?? ""}`);
+  await page.goto(`${server.address}${options.hash ?? ""}`);
   return {
     page,
     context,

@@ -391,3 +391,24 @@ test("a server that is gone is told, and nothing is lost", async () => {
   await page.getByRole("alert").getByText("windfall does not answer").first().waitFor();
   assert.match(await editor.inputValue(), /# more\n$/);
 });
+
+test("a server that was started again asks for its new token, and the page then continues", async () => {
+  server = await serve(place.directory, server.port);
+  const told = page.getByRole("alert").getByText("A new token is needed");
+  await told.waitFor({ timeout: 20_000 });
+  await pictures(page, "new-token");
+  await accessible(page, "a new token");
+  const other = await view.context.newPage();
+  const refused = await other.goto(server.origin);
+  assert.equal(refused.status(), 401);
+  await other.getByRole("heading", { name: "This address needs its token" }).waitFor();
+  await pictures(other, "no-token");
+  await accessible(other, "no token");
+  await other.goto(server.address);
+  assert.equal(other.url(), `${server.origin}/`);
+  await told.waitFor({ state: "detached", timeout: 20_000 });
+  await page.getByRole("button", { name: "Save campaign.toml" }).click();
+  await page.getByText("As on disk").waitFor();
+  const text = await readFile(join(place.directory, "apples", "campaign.toml"), "utf8");
+  assert.match(text, /# more\n$/);
+});

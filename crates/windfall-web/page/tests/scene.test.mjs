@@ -230,7 +230,8 @@ test("a number that no fruit has is told, and a scene that is not there", async 
 });
 
 test("what is asked wrongly is answered so", async () => {
-  const status = async (path) => (await fetch(`${server.origin}/api/scenes/${path}`)).status;
+  const asked = (path) => fetch(`${server.origin}/api/scenes/${path}`, { headers: server.admitted });
+  const status = async (path) => (await asked(path)).status;
   const id = encodeURIComponent("chute/scene.run");
   assert.equal(await status(`${id}/history?fruit=0`), 404);
   assert.equal(await status(`${id}/history?fruit=x`), 400);
@@ -239,7 +240,7 @@ test("what is asked wrongly is answered so", async () => {
   assert.equal(await status("chute"), 404);
   assert.equal(await status("still.run/frames"), 404);
   assert.equal(await status("broken.run/frames"), 422);
-  const beyond = await fetch(`${server.origin}/api/scenes/${id}/frames?from=100000`);
+  const beyond = await asked(`${id}/frames?from=100000`);
   assert.equal((await beyond.arrayBuffer()).byteLength, 0);
 });
 

@@ -21,7 +21,7 @@ use windfall_population::run::{PopulationRequest, population};
 use windfall_report::fit_any::fit_any;
 use windfall_report::run::{ReportRequest, report_campaign};
 use windfall_report::stored_card::CARD_FILE;
-use windfall_workspace::campaign_view::name_of;
+use windfall_workspace::campaign_view::{check_work, name_of};
 use windfall_workspace::equal_command::{command, command_of_fit};
 use windfall_workspace::results_table::write_results_table;
 
@@ -70,6 +70,7 @@ impl JobGiven {
     /// Does the work.
     fn run(&self, directory: PathBuf, job: &Job) -> Result<JobWork, Error> {
         let progress = |done: usize, all: usize| job.progress(done, all);
+        check_work(&directory)?;
         Ok(match self.work {
             Work::Fit => {
                 let outcome = fit_any(&directory, &self.fit(), &progress)?;

@@ -28,6 +28,9 @@ export class Failed extends Error {
   }
 }
 
+/** Told whenever the server answers: whether it refused for want of its token. */
+export const admission = { told: (_refused: boolean): void => {} };
+
 interface Options<K extends keyof Calls> {
   /** Behind "?". */
   query?: Calls[K]["query"];
@@ -67,6 +70,7 @@ async function call<K extends keyof Calls>(
       detail: "windfall does not answer; is `windfall serve` still running? Nothing was changed.",
     });
   }
+  admission.told(response.status === 401);
   if (!response.ok) {
     const problem = (await response.json().catch(() => null)) as Problem | null;
     throw new Failed(problem ?? {
@@ -153,11 +157,25 @@ export function watch(
   changed: (version: string) => void,
   connected: (there: boolean) => void,
 ): () => void {
-  const events = new EventSource(addressOf("/api/campaigns/{id}/events", [id]));
-  events.onopen = () => connected(true);
-  events.onerror = () => connected(false);
-  events.addEventListener("changed", (event) => {
-    changed((JSON.parse(event.data) as CampaignChanged).version);
-  });
-  return () => events.close();
+  let events: EventSource;
+  let again: ReturnType<typeof setTimeout> | undefined;
+  const connect = (): void => {
+    events = new EventSource(addressOf("/api/campaigns/{id}/events", [id]));
+    events.onopen = () => connected(true);
+    events.onerror = () => {
+      connected(false);
+      if (events.readyState !== EventSource.CLOSED) return;
+      // The browser tries again only where nobody answers. Here somebody did: a call tells why.
+      void api.about().catch(() => {});
+      again = setTimeout(connect, 2000);
+    };
+    events.addEventListener("changed", (event) => {
+      changed((JSON.parse(event.data) as CampaignChanged).version);
+    });
+  };
+  connect();
+  return () => {
+    clearTimeout(again);
+    events.close();
+  };
 }

@@ -1,4 +1,4 @@
-import { Failed } from "../api/calls";
+import { Failed, admission } from "../api/calls";
 import type { Problem } from "../api/types";
 
 /** Downloads an address under a name; throws on failure. */
@@ -6,6 +6,7 @@ export async function download(address: string, name: string): Promise<void> {
   const response = await fetch(address).catch(() => {
     throw new Error("windfall does not answer; is `windfall serve` still running?");
   });
+  admission.told(response.status === 401);
   if (!response.ok) {
     const problem = (await response.json().catch(() => null)) as Problem | null;
     throw problem ? new Failed(problem) : new Error(`the server answered ${response.status}`);

@@ -5,7 +5,7 @@
  * are reloaded whenever the files change on disk.
  */
 
-import { Failed, api, follow, watch } from "../api/calls";
+import { Failed, admission, api, follow, watch } from "../api/calls";
 import type { About, CampaignView, JobView, JobGiven, StoredResults } from "../api/types";
 
 interface Notice {
@@ -16,7 +16,10 @@ interface Notice {
 
 /** Message of a failure for the user, or null if there is nothing to say. */
 export function wordsOf(error: unknown): string | null {
-  if (error instanceof Failed) return error.problem.detail;
+  if (error instanceof Failed) {
+    if (error.problem.status === 401) return "windfall needs its new token, as told above.";
+    return error.problem.detail;
+  }
   if (error instanceof DOMException && error.name === "AbortError") return null;
   return error instanceof Error ? error.message : String(error);
 }
@@ -174,6 +177,8 @@ export function openCampaign(id: string): OpenCampaign {
 class Program {
   about = $state.raw<About | null>(null);
   problem = $state<string | null>(null);
+  /** Whether it refuses this window, because it has another token now. */
+  refused = $state(false);
 
   async load(): Promise<void> {
     try {
@@ -188,3 +193,6 @@ class Program {
 
 /** The program that answers: version, limits, kinds, laws. */
 export const program = new Program();
+admission.told = (refused) => {
+  program.refused = refused;
+};
