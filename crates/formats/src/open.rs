@@ -66,7 +66,7 @@ pub fn open_source(source: Source, options: &OpenOptions) -> Result<Box<dyn Read
     };
     match format {
         Format::Text => Ok(Box::new(TextReader::open(source, &options.text)?)),
-        Format::Lvm => Ok(Box::new(LvmReader::open(source)?)),
+        Format::Lvm => Ok(Box::new(LvmReader::open(source, &options.text)?)),
         Format::Wav => Ok(Box::new(WavReader::open(source)?)),
         Format::Tdms => Ok(Box::new(TdmsReader::open(source)?)),
         Format::Hdf5 => Ok(Box::new(Hdf5Reader::open(source)?)),

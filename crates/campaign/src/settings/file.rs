@@ -115,6 +115,12 @@ pub struct FilesFile {
     pub header_line: Option<Spanned<u64>>,
     /// Beginning of lines that are passed over.
     pub comment: Option<Spanned<String>>,
+    /// Words and numbers that stand for a missing sample, beside the usual words.
+    #[serde(default)]
+    pub missing: Vec<String>,
+    /// Number of lines at the end of a text that are not rows.
+    #[serde(default)]
+    pub footer: u64,
 }
 
 /// `[channels.*]`

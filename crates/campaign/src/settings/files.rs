@@ -75,6 +75,8 @@ fn open_plan(source: &TomlSource, files: &FilesFile) -> Result<OpenOptions, Erro
         encoding: named(source, files.encoding.as_ref(), "encoding", &ENCODINGS)?,
         header_line: files.header_line.as_ref().map(|line| *line.get_ref()),
         comment: files.comment.as_ref().map(|text| text.get_ref().clone()),
+        missing: files.missing.clone(),
+        footer: files.footer,
     };
     Ok(OpenOptions {
         format: named(source, files.format.as_ref(), "format", &Format::NAMES)?,

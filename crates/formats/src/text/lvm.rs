@@ -10,7 +10,9 @@ use crate::reader::{Reader, Sink};
 use crate::source::Source;
 use crate::text::encoding::{Encoding, tell_encoding};
 use crate::text::lines::Lines;
+use crate::text::missing::MissingWords;
 use crate::text::number::{Marks, number};
+use crate::text::options::TextOptions;
 use crate::text::rows::{ColumnKind, RowPlan, Separator};
 use crate::text::table::{Table, read_table};
 
@@ -69,7 +71,7 @@ struct Segment {
 
 impl LvmReader {
     /// Reads the headers of a file.
-    pub fn open(source: Source) -> Result<Self, Error> {
+    pub fn open(source: Source, options: &TextOptions) -> Result<Self, Error> {
         let (encoding, _) = tell_encoding(&source.head(1 << 16)?);
         let marks = header_ends(&source)?;
         let [first, rest @ ..] = marks.as_slice() else {
@@ -98,6 +100,7 @@ impl LvmReader {
             properties: file.properties.clone(),
             notes: Vec::new(),
         };
+        let missing = MissingWords::new(&options.missing);
         let mut places = Vec::new();
         let mut tables = Vec::new();
         let mut names = Names::default();
@@ -109,7 +112,7 @@ impl LvmReader {
             let columns =
                 add_channels(&source, &file, segment, &suffix, &mut names, &mut contents)?;
             places.extend(columns.into_iter().map(|column| (index, column)));
-            tables.push(table(&file, segment));
+            tables.push(table(&file, segment, &missing));
         }
         Ok(Self {
             source,
@@ -275,7 +278,7 @@ fn is_comment_column(segment: &Segment, column: usize) -> bool {
     column + 1 == segment.names.len() && segment.names[column] == "Comment"
 }
 
-fn table(file: &FileHeader, segment: &Segment) -> Table {
+fn table(file: &FileHeader, segment: &Segment, missing: &MissingWords) -> Table {
     let kind = |column| match is_comment_column(segment, column) {
         true => ColumnKind::Text,
         false => ColumnKind::Numbers,
@@ -288,6 +291,7 @@ fn table(file: &FileHeader, segment: &Segment) -> Table {
             newline: b'\n',
             comments: Vec::new(),
             columns: (0..segment.names.len()).map(kind).collect(),
+            missing: missing.clone(),
             short_rows: true,
         },
         lines: Lines {
@@ -439,7 +443,10 @@ impl Reader for LvmReader {
             let columns: Vec<(usize, usize)> = columns.collect();
             if !columns.is_empty() {
                 // Short rows are normal here, so nothing was truncated.
-                read_table(&self.source, table, &columns, sink)?;
+                let found = read_table(&self.source, table, &columns, sink)?;
+                let mut notes = found.notes(&table.names);
+                notes.retain(|note| !self.contents.notes.contains(note));
+                self.contents.notes.extend(notes);
             }
         }
         Ok(())

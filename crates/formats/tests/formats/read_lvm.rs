@@ -121,7 +121,7 @@ fn closed_form_two_segments() {
 #[test]
 fn rejects_files_without_headers_and_says_the_line_of_a_fault() {
     let only_file_header = HEADER.to_owned();
-    let bad = format!("{HEADER}{}", segment("0.25", "\t1\n\toverload\n\t3\n"));
+    let bad = format!("{HEADER}{}", segment("0.25", "\t1\n\tdefect\n\t3\n"));
     for (text, expected) in [
         (
             "LabVIEW Measurement\t\n".to_owned(),
@@ -133,7 +133,7 @@ fn rejects_files_without_headers_and_says_the_line_of_a_fault() {
         ),
         (
             bad,
-            "t.lvm, line 17, column \"F\": \"overload\" is not a number",
+            "t.lvm, line 17, column \"F\": \"defect\" is not a number",
         ),
     ] {
         let read = open_bytes("t.lvm", text.into_bytes(), Format::Lvm)
