@@ -95,8 +95,11 @@ pub fn find_dialect(lines: &[&str], options: &TextOptions) -> Result<Dialect, us
     if options.decimal.is_none() && options.thousands.is_none() {
         let below = rows.iter().filter(|&&at| at >= first_row);
         let below = below.filter_map(|&at| Some((at + 1, row(lines[at], separator, count)?)));
-        let doubt = doubtful_mark(below, marks.decimal, &dialect.kinds);
-        dialect.notes.extend(doubt.map(Note::DecimalOrThousands));
+        let other = if marks.decimal == b'.' { b',' } else { b'.' };
+        if may_be_decimal(lines, &data, separator, other) {
+            let doubt = doubtful_mark(below, marks.decimal, &dialect.kinds);
+            dialect.notes.extend(doubt.map(Note::DecimalOrThousands));
+        }
     }
     Ok(dialect)
 }
@@ -172,7 +175,7 @@ fn best_candidate(
     for separator in separators {
         for decimal in [b'.', b','] {
             let other = options.decimal.is_some_and(|d| d != char::from(decimal));
-            if other || separator == Separator::Mark(decimal) {
+            if other || !may_be_decimal(lines, data, separator, decimal) {
                 continue;
             }
             let notation = Notation {
@@ -198,6 +201,15 @@ fn best_candidate(
         best.marks.decimal = likelier_decimal(rows, best.separator);
     }
     Some(best)
+}
+
+/// Whether a mark can stand before decimals: where it separates cells, only in quoted ones.
+fn may_be_decimal(lines: &[&str], data: &[usize], separator: Separator, mark: u8) -> bool {
+    let quoted = |&at: &usize| {
+        let cells = cells(lines[at], separator);
+        cells.iter().any(|cell| cell.contains(char::from(mark)))
+    };
+    separator != Separator::Mark(mark) || data.iter().any(quoted)
 }
 
 fn candidate(

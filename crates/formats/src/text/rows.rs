@@ -39,6 +39,14 @@ pub(crate) struct RowPlan {
     pub short_rows: bool,
 }
 
+impl RowPlan {
+    /// Whether a number at the beginning of a cell is its sample: no number stands for a
+    /// missing one, and no separator can be taken for a decimal mark.
+    fn is_plain(&self) -> bool {
+        self.missing.keeps_numbers() && self.separator != Separator::Mark(self.marks.decimal)
+    }
+}
+
 /// Preallocated space for the samples of a column.
 #[derive(Debug)]
 pub(crate) struct Column<'a> {
@@ -122,7 +130,7 @@ pub(crate) fn read_rows(
     let (mut at, mut read) = (0, 0);
     while at < bytes.len() {
         if let Separator::Mark(mark) = plan.separator
-            && plan.missing.keeps_numbers()
+            && plan.is_plain()
             && let Some(end) = bare_row(bytes, at, mark, plan, places, columns)
         {
             read += 1;
@@ -261,7 +269,7 @@ fn marked_row(
         // The usual cell: a plain number up to the separator or the end of the line.
         if let Some(place) = place
             && plan.columns[column] == ColumnKind::Numbers
-            && plan.missing.keeps_numbers()
+            && plan.is_plain()
         {
             let start = at + blanks(&line[at..]);
             if let Some((value, used)) = leading_number(&line[start..], plan.marks.decimal) {
@@ -334,7 +342,7 @@ fn blank_row(
             let number = leading_number(cell, plan.marks.decimal);
             match (plan.columns[column], number) {
                 (ColumnKind::Numbers, Some((value, used)))
-                    if used == cell.len() && plan.missing.keeps_numbers() =>
+                    if used == cell.len() && plan.is_plain() =>
                 {
                     columns[place].push(value);
                 }
