@@ -10,6 +10,8 @@ mod header;
 mod lines;
 mod look;
 pub(crate) mod lvm;
+mod lvm_lines;
+mod measurements;
 mod midnight;
 mod missing;
 pub(crate) mod number;
