@@ -36,7 +36,7 @@ fn expanded_name(name: &Path) -> Result<Vec<PathBuf>, Error> {
     })?;
     let found: Vec<PathBuf> = paths
         .collect::<Result<_, _>>()
-        .map_err(|error| Error::access(&error.path().to_path_buf(), "read", error.into()))?;
+        .map_err(|error| Error::access(Path::new(pattern), "read", error.into()))?;
     match found.is_empty() {
         true => Err(unusable(
             pattern,

@@ -230,3 +230,69 @@ fn npy_header(names: &[String], rows: u64) -> Vec<u8> {
     header.extend(text.as_bytes());
     header
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// What is written of a file with these contents.
+    fn exported(name: &str, contents: &[u8], out: &str) -> Result<Vec<u8>, Error> {
+        let dir = tempfile::tempdir().unwrap();
+        let (file, path) = (dir.path().join(name), dir.path().join(out));
+        std::fs::write(&file, contents).unwrap();
+        let written = export_recording(&file, &path, &InspectRequest::default());
+        // Nothing but the whole file is left behind.
+        let files = std::fs::read_dir(dir.path()).unwrap().count();
+        assert_eq!(files, 1 + usize::from(written.is_ok()));
+        written.map(|()| std::fs::read(&path).unwrap())
+    }
+
+    #[test]
+    fn closed_form_csv_tells_blank_cells_from_missing_samples() {
+        let text = b"t;\"F, left\"\n[s];[N]\n0;1,5\n0,5;NaN\n1;\n1,5;1e-30\n";
+        let written = exported("r.txt", text, "r.csv").unwrap();
+        assert_eq!(
+            String::from_utf8(written).unwrap(),
+            "t [s],\"F, left [N]\"\n0.0,1.5\n0.5,NaN\n1.0,\n1.5,1e-30\n"
+        );
+    }
+
+    #[test]
+    fn closed_form_channels_of_a_sound_get_their_times() {
+        let mut sound = b"RIFF\x28\0\0\0WAVEfmt \x10\0\0\0\x01\0\x01\0\x02\0\0\0\x04\0\0\0\x02\0\x10\0data\x04\0\0\0".to_vec();
+        sound.extend(16_384_i16.to_le_bytes());
+        sound.extend((-8192_i16).to_le_bytes());
+        let written = exported("r.wav", &sound, "r.csv").unwrap();
+        assert_eq!(
+            String::from_utf8(written).unwrap(),
+            "time [s],channel 1\n0.0,0.5\n0.5,-0.25\n"
+        );
+        let written = exported("r.wav", &sound, "r.npy").unwrap();
+        let (header, data) = written.split_at(written.len() - 32);
+        assert!(header.starts_with(b"\x93NUMPY\x03\0") && header.len() % 64 == 0);
+        let text = String::from_utf8_lossy(&header[12..]);
+        let expected = "{'descr': [(\"time [s]\", '<f8'), (\"channel 1\", '<f8')], \
+                        'fortran_order': False, 'shape': (                   2,), }";
+        assert_eq!(text.trim_end(), expected);
+        let numbers: Vec<f64> = data
+            .chunks_exact(8)
+            .map(|bytes| f64::from_le_bytes(bytes.try_into().unwrap()))
+            .collect();
+        assert_eq!(numbers, [0.0, 0.5, 0.5, -0.25]);
+    }
+
+    #[test]
+    fn rejects_other_endings_and_cells_that_are_no_numbers() {
+        let told = exported("r.txt", b"t,F\n0,1\n", "r.xlsx")
+            .unwrap_err()
+            .to_string();
+        assert!(
+            told.contains("give a name that ends in \".csv\" or \".npy\""),
+            "{told}"
+        );
+        let told = exported("r.txt", b"t,F\n0,1\n1,x\n2,3\n", "r.csv")
+            .unwrap_err()
+            .to_string();
+        assert!(told.contains("line 3, column \"F\": \"x\""), "{told}");
+    }
+}
