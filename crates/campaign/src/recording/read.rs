@@ -12,7 +12,7 @@ use windfall_files::text::column_role::seconds_per_unit;
 use windfall_formats::contents::{Contents, Note, TimeBase};
 use windfall_formats::open::open;
 use windfall_formats::reader::is_missing;
-use windfall_signal::recording::{Channel, Missing, Recording, Times};
+use windfall_signal::recording::{Channel, Missing, Quantity, Recording, Times};
 
 /// Where the recording of an impact is.
 pub fn recording_path(files: &FilePlan, impact: &ImpactEntry) -> PathBuf {
@@ -91,7 +91,12 @@ pub fn read_with_gaps(files: &FilePlan, impact: &ImpactEntry) -> Result<Recordin
     let contents = reader.contents();
     let channels = sources
         .iter()
-        .map(|source| channel_of(source, column, contents, &path))
+        .map(|source| {
+            let other = other_phase(source.plan.quantity);
+            let other = sources.iter().find(|s| Some(s.plan.quantity) == other);
+            let other = other.map_or(&[][..], |other| column(other.index));
+            channel_of((source, other), column, contents, &path)
+        })
         .collect::<Result<Vec<_>, _>>()?;
     let (channels, missing): (Vec<_>, Vec<_>) = channels.into_iter().unzip();
     let doubts = contents.notes.iter().filter_map(|note| match note {
@@ -176,8 +181,18 @@ fn clock_in_file(contents: &Contents, index: usize, path: &Path) -> Result<Clock
     }
 }
 
+/// The phase of an encoder without which a sample of this one says nothing.
+fn other_phase(quantity: Quantity) -> Option<Quantity> {
+    match quantity {
+        Quantity::PhaseA => Some(Quantity::PhaseB),
+        Quantity::PhaseB => Some(Quantity::PhaseA),
+        _ => None,
+    }
+}
+
+/// * `other`: samples of the other phase of an encoder
 fn channel_of<'a>(
-    source: &Source,
+    (source, other): (&Source, &[f64]),
     column: impl Fn(usize) -> &'a [f64],
     contents: &Contents,
     path: &Path,
@@ -201,7 +216,8 @@ fn channel_of<'a>(
     let (mut samples, mut listed, mut lost) = (Vec::new(), Vec::new(), Vec::new());
     for (row, &cell) in cells.iter().enumerate() {
         let time_lost = times.get(row).is_some_and(|time| dirty(*time));
-        if dirty(cell) || (time_lost && !cell.is_nan()) {
+        let other_lost = other.get(row).is_some_and(|other| dirty(*other));
+        if dirty(cell) || ((time_lost || other_lost) && !cell.is_nan()) {
             lost.push(row);
             continue;
         }
@@ -273,8 +289,10 @@ fn first_missing(source: &Source, contents: &Contents, row: usize, cell: f64) ->
             _ => None,
         })
     });
-    told.next()
-        .unwrap_or_else(|| format!("{cell} as sample {row}"))
+    told.next().unwrap_or_else(|| match cell.is_finite() {
+        true => format!("its time or the other phase is missing at sample {row}"),
+        false => format!("{cell} as sample {row}"),
+    })
 }
 
 /// The samples up to the last that is a number, or should be one.
