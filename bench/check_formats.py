@@ -55,7 +55,11 @@ def read_lvm(path):
     columns = segment["data"]
     if segment["Channel names"][-1] == "Comment" and columns.shape[1] == len(segment["Channel names"]):
         columns = columns[:, :-1]
-    return [channel(None, columns[:, i]) for i in range(columns.shape[1])]
+    # Several measurements under one header are segments in windfall.
+    header = next(line for line in path.read_text("latin-1").splitlines() if line.startswith("Samples"))
+    rows = max(int(cell) for cell in header.split()[1:])
+    parts = 1 if rows < 2 or len(columns) % rows else len(columns) // rows
+    return [channel(None, part[:, i]) for part in np.split(columns, parts) for i in range(columns.shape[1])]
 
 
 def read_wav(path):

@@ -19,20 +19,31 @@ pub enum CampaignError {
         /// The channel.
         column: String,
     },
-    /// A sample of a binary file that is no number.
+    /// Samples that the instrument could not give.
     #[error(
-        "{path}: \"{column}\" is {value} at sample {sample}; choose a range of time without it \
-         (from_s and to_s in impacts.csv), or mend the recording", path = path.display()
+        "{path}: {samples} sample(s) of \"{column}\" are missing, the first at {at} s ({first}); \
+         choose a range of time without them (from_s and to_s in impacts.csv), or mend the \
+         recording", path = path.display()
     )]
-    SampleNotFinite {
+    SampleMissing {
         /// The file.
         path: PathBuf,
         /// The channel.
         column: String,
-        /// Number of the sample, from 0.
-        sample: usize,
-        /// What stands there.
-        value: f64,
+        /// How many.
+        samples: usize,
+        /// Time of the first; s.
+        at: f64,
+        /// What stands in its place, and where.
+        first: String,
+    },
+    /// Nothing shows whether a mark stands before decimals or between groups of digits.
+    #[error("{path}: {doubt}", path = path.display())]
+    DecimalOrThousands {
+        /// The file.
+        path: PathBuf,
+        /// Where, and how to settle it.
+        doubt: String,
     },
     /// A sample without its time.
     #[error(

@@ -3,6 +3,7 @@
 pub mod confined;
 pub mod error;
 mod error_words;
+pub mod expand;
 pub mod found;
 pub mod inputs;
 pub mod named;

@@ -162,6 +162,30 @@ fn is_stream(path: &Path) -> bool {
     std::fs::metadata(path).is_ok_and(|own| !own.is_dir() && (standard || !own.is_file()))
 }
 
+/// [`write_whole`] of contents that are too large for the memory: `write` writes them into
+/// the file beside the place.
+///
+/// # Errors
+/// As [`write_whole`], and those of `write`.
+pub fn write_streamed(
+    path: &Path,
+    write: impl FnOnce(&mut File) -> Result<(), Error>,
+) -> Result<(), Error> {
+    check_output(path)?;
+    let mut name = path.file_name().unwrap_or_default().to_owned();
+    name.push(format!(".{}.partial", std::process::id()));
+    let partial = path.with_file_name(name);
+    let failed = |source| Error::access(path, "write", source);
+    let written = File::create(&partial).map_err(failed).and_then(|mut file| {
+        write(&mut file)?;
+        file.sync_all().map_err(failed)?;
+        std::fs::rename(&partial, path).map_err(failed)
+    });
+    written.inspect_err(|_| {
+        let _ = std::fs::remove_file(&partial);
+    })
+}
+
 /// Makes a directory for results, with those above it.
 ///
 /// # Errors

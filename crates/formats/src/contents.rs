@@ -101,6 +101,21 @@ pub enum Note {
     /// Something not stated in the file was assumed: what, and how to override it.
     #[error("{0}")]
     Assumed(String),
+    /// Nothing shows whether a mark stands before decimals or between groups of three digits:
+    /// where, what was assumed, and how to settle it.
+    #[error("{0}")]
+    DecimalOrThousands(String),
+    /// Cells of a column that hold a word or number for a missing sample.
+    #[error(
+        "\"{column}\": {count} cell(s) taken as missing samples; the first is \"{word}\" in line {line}"
+    )]
+    #[allow(missing_docs)]
+    Missing {
+        column: String,
+        count: usize,
+        line: u64,
+        word: String,
+    },
     /// The file contradicts itself or its format: how, and how that was resolved.
     #[error("{0}")]
     Odd(String),
@@ -113,6 +128,8 @@ impl Note {
             Self::LeftOut { .. } => "left-out",
             Self::CutOff(_) => "cut-off",
             Self::Assumed(_) => "assumed",
+            Self::DecimalOrThousands(_) => "decimal-or-thousands",
+            Self::Missing { .. } => "missing-samples",
             Self::Odd(_) => "odd-file",
         }
     }

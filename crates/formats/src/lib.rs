@@ -13,6 +13,7 @@
 mod arrays;
 pub mod contents;
 pub mod error;
+mod foreign;
 mod hdf5;
 mod mat;
 mod names;

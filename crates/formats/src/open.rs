@@ -2,6 +2,7 @@
 
 use crate::contents::Format;
 use crate::error::Error;
+use crate::foreign::refuse_foreign;
 use crate::hdf5::read::Hdf5Reader;
 use crate::mat::read::MatReader;
 use crate::reader::Reader;
@@ -17,29 +18,6 @@ use std::path::Path;
 
 /// Bytes used to detect the format.
 const HEAD: u64 = 4096;
-
-/// Other files often found beside recordings: first bytes, description, advice.
-const OTHERS: [(&[u8], &str, &str); 7] = [
-    (
-        b"\x1aE\xdf\xa3",
-        "an EBML file, such as an enDAQ recording (.ide)",
-        "export the channels as CSV or MAT with the software of the recorder",
-    ),
-    (b"\x1f\x8b", "a gzip archive", "unpack it (gunzip)"),
-    (
-        b"\xd0\xcf\x11\xe0",
-        "an old Office file (.xls)",
-        "save the sheet as CSV",
-    ),
-    (b"%PDF", "a PDF", "name the recording itself"),
-    (b"\x89PNG", "a picture", "name the recording itself"),
-    (b"\xff\xd8\xff", "a picture", "name the recording itself"),
-    (
-        b"SQLite format 3",
-        "a database",
-        "name the recording itself",
-    ),
-];
 
 /// How to read a file where it does not say so itself.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -66,7 +44,7 @@ pub fn open_source(source: Source, options: &OpenOptions) -> Result<Box<dyn Read
     };
     match format {
         Format::Text => Ok(Box::new(TextReader::open(source, &options.text)?)),
-        Format::Lvm => Ok(Box::new(LvmReader::open(source)?)),
+        Format::Lvm => Ok(Box::new(LvmReader::open(source, &options.text)?)),
         Format::Wav => Ok(Box::new(WavReader::open(source)?)),
         Format::Tdms => Ok(Box::new(TdmsReader::open(source)?)),
         Format::Hdf5 => Ok(Box::new(Hdf5Reader::open(source)?)),
@@ -88,12 +66,7 @@ pub fn tell_format(source: &Source) -> Result<Format, Error> {
             expected: "a recording",
         });
     }
-    if let Some((_, what, advice)) = OTHERS.iter().find(|(magic, ..)| head.starts_with(magic)) {
-        return Err(source.unknown(
-            format!("this is {what}, which windfall does not read"),
-            advice,
-        ));
-    }
+    refuse_foreign(source, &head)?;
     if head.starts_with(b"PK\x03\x04") {
         return Ok(Format::Sigrok);
     }

@@ -3,10 +3,19 @@
 use crate::contents::Contents;
 use crate::error::Error;
 
+/// A sample that the instrument could not give, where a file says so: a NaN of its own,
+/// told from blank cells by its bits ([`is_missing`]), as R tells NA.
+pub const MISSING: f64 = f64::from_bits(0x7ff8_0000_0000_07a2);
+
+/// Whether a sample is [`MISSING`].
+pub fn is_missing(sample: f64) -> bool {
+    sample.to_bits() == MISSING.to_bits()
+}
+
 /// Receives samples as they are read.
 pub trait Sink {
-    /// The next samples of the channel `wanted[position]`, NaN where missing; an error stops the
-    /// reading.
+    /// The next samples of the channel `wanted[position]`: NaN where a cell is blank,
+    /// [`MISSING`] where it says that there is no sample. An error stops the reading.
     fn take(&mut self, position: usize, samples: &[f64]) -> Result<(), Error>;
 
     /// A sample that cannot be read. By default an error, which stops the reading; `Ok` makes

@@ -1,6 +1,7 @@
 //! `windfall inspect`: what a recording holds, and what looks wrong, in bounded memory.
 
 pub mod envelope;
+pub mod export;
 pub mod figure;
 pub mod run;
 pub mod scan_decimated;

@@ -149,7 +149,8 @@ pub fn inspect_opened(
     })
 }
 
-fn shown_channels(
+/// Channels by their names; all if none is named.
+pub(crate) fn shown_channels(
     contents: &Contents,
     wanted: &[String],
     path: &Path,

@@ -61,6 +61,8 @@ fn recording(quantum: f64, rate: f64) -> Recording {
             channel("x", Quantity::Displacement, counts.collect()),
             channel("F", Quantity::Force, force.collect()),
         ],
+        missing: Vec::new(),
+        doubts: Vec::new(),
     }
 }
 

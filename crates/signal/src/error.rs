@@ -40,6 +40,19 @@ pub enum Error {
         time: f64,
         value: f64,
     },
+    #[error(
+        "channel '{channel}': {samples} sample(s) are missing within the contact from {} s to {} s, the first at {} s ({first}); without them the contact cannot be fitted. If the channel was overloaded, enlarge its range; else leave this impact out",
+        Rounded(*onset), Rounded(*end), Rounded(*at)
+    )]
+    MissingInContact {
+        channel: String,
+        samples: usize,
+        onset: f64,
+        end: f64,
+        at: f64,
+        /// What stands in place of the first, and where.
+        first: String,
+    },
     #[error("channel '{channel}': the time of sample {sample} is {time}, not a finite number")]
     TimeNotFinite {
         channel: String,

@@ -67,6 +67,7 @@ pub fn extract_impact(
     // The contact, and the free motion around it.
     let (contacts, from_motion) = contacts(recording, &tracks, options)?;
     let place = choose(&contacts, options, from_motion, &mut findings)?;
+    missing_samples(recording, &place, &mut findings)?;
 
     // Signs, zeros and noise; then what they say, and the rate to be fitted.
     let mut signals = oriented(tracks, &contacts, &place, options, &mut findings);
@@ -103,6 +104,56 @@ pub fn extract_impact(
         measured,
     };
     Ok((impact, findings))
+}
+
+/// Reports samples that are missing outside of the contact, and what was assumed of others.
+///
+/// # Errors
+/// [`Error::MissingInContact`]: also next to it, where the first or last sample of the
+/// contact would be.
+fn missing_samples(
+    recording: &Recording,
+    place: &Surroundings,
+    findings: &mut Vec<Finding>,
+) -> Result<(), Error> {
+    for missing in &recording.missing {
+        let channel = recording
+            .channels
+            .iter()
+            .find(|c| c.name == missing.channel);
+        let times = || {
+            channel
+                .iter()
+                .flat_map(|c| (0..c.samples.len()).map(|i| c.times.at(i)))
+        };
+        let before = times().take_while(|time| *time < place.onset).last();
+        let after = times().find(|time| *time > place.end);
+        let from = before.unwrap_or(f64::NEG_INFINITY);
+        let until = after.unwrap_or(f64::INFINITY);
+        let mut inside = missing
+            .times
+            .iter()
+            .filter(|&&time| from < time && time < until);
+        if let Some(&at) = inside.next() {
+            return Err(Error::MissingInContact {
+                channel: missing.channel.clone(),
+                samples: 1 + inside.count(),
+                onset: place.onset,
+                end: place.end,
+                at,
+                first: missing.first.clone(),
+            });
+        }
+        findings.extend(missing.times.first().map(|&at| Finding::MissingSamples {
+            channel: missing.channel.clone(),
+            samples: missing.times.len(),
+            at,
+            first: missing.first.clone(),
+        }));
+    }
+    let doubts = recording.doubts.iter().cloned();
+    findings.extend(doubts.map(|doubt| Finding::DecimalOrThousands { doubt }));
+    Ok(())
 }
 
 fn oriented(

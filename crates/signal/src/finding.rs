@@ -153,6 +153,19 @@ pub enum Finding {
         "channel '{channel}' has only {samples} samples during contact: it says little about the shape of the force law"
     )]
     FewSamples { channel: String, samples: usize },
+    #[error(
+        "channel '{channel}': {samples} sample(s) outside of the contact are missing and left out, the first at {} s ({first})",
+        Rounded(*at)
+    )]
+    MissingSamples {
+        channel: String,
+        samples: usize,
+        at: f64,
+        /// What stands in place of the first, and where.
+        first: String,
+    },
+    #[error("{doubt}")]
+    DecimalOrThousands { doubt: String },
 }
 
 impl Finding {
@@ -178,6 +191,8 @@ impl Finding {
             Self::AccelerometerDisagrees { .. } => "accelerometer-disagrees",
             Self::EnergyMismatch { .. } => "energy-mismatch",
             Self::FewSamples { .. } => "few-samples",
+            Self::MissingSamples { .. } => "missing-samples",
+            Self::DecimalOrThousands { .. } => "decimal-or-thousands",
         }
     }
 }

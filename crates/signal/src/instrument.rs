@@ -206,6 +206,8 @@ pub fn calibrated(name: &str, channels: &[RawChannel], instrument: &Instrument) 
     Recording {
         name: name.to_owned(),
         channels,
+        missing: Vec::new(),
+        doubts: Vec::new(),
     }
 }
 

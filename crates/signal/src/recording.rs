@@ -83,4 +83,19 @@ pub struct Recording {
     pub name: String,
     /// Channels, each with its own sampling times.
     pub channels: Vec<Channel>,
+    /// Samples that the instrument could not give.
+    pub missing: Vec<Missing>,
+    /// What was assumed about the numbers themselves, in a sentence each.
+    pub doubts: Vec<String>,
+}
+
+/// Samples of a channel that the instrument could not give; the channel is without them.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Missing {
+    /// Name of the channel in the file.
+    pub channel: String,
+    /// When they would have been taken; s.
+    pub times: Vec<f64>,
+    /// What stands in place of the first, and where.
+    pub first: String,
 }

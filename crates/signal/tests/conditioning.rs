@@ -73,6 +73,8 @@ fn recording(force: impl FnMut(f64) -> f64, acceleration: bool) -> Recording {
     Recording {
         name: "impact".to_owned(),
         channels,
+        missing: Vec::new(),
+        doubts: Vec::new(),
     }
 }
 

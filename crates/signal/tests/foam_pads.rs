@@ -55,6 +55,8 @@ fn run(text: &str, number: usize) -> Recording {
             channel("Position", Quantity::Displacement),
             channel("Velocity", Quantity::Rate),
         ],
+        missing: Vec::new(),
+        doubts: Vec::new(),
     }
 }
 

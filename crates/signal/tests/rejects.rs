@@ -42,6 +42,8 @@ fn recording(channels: Vec<Channel>) -> Recording {
     Recording {
         name: "bad".to_owned(),
         channels,
+        missing: Vec::new(),
+        doubts: Vec::new(),
     }
 }
 

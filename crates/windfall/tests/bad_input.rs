@@ -93,7 +93,7 @@ fn rejects_every_fixture_with_its_own_message() {
         .map(|entry| entry.file_name().into_string().unwrap())
         .collect();
     names.sort();
-    assert_eq!(names.len(), 15, "{names:?}");
+    assert_eq!(names.len(), 16, "{names:?}");
     let wrong: Vec<String> = names
         .iter()
         .filter_map(|name| {

@@ -10,7 +10,7 @@ use windfall_campaign::impacts::fit::fit_law;
 use windfall_campaign::impacts::mass::{RigFound, find_rig};
 use windfall_campaign::pipeline::request::{FitRequest, apply_request};
 use windfall_campaign::recording::extract::extract_entry;
-use windfall_campaign::recording::read::{read_recording, recording_path};
+use windfall_campaign::recording::read::{read_with_gaps, recording_path};
 use windfall_campaign::result::outcome::ImpactOutcome;
 use windfall_campaign::settings::model::{ImpactCampaign, ImpactEntry};
 use windfall_campaign::settings::read::read_campaign;
@@ -157,7 +157,7 @@ impl LiveCampaign {
     /// There is no such impact, or its recording cannot be read.
     pub fn impact(&self, id: &str) -> Result<LiveImpact, Error> {
         let entry = self.entry(id)?.clone();
-        let recording = read_recording(&self.campaign.shared.files, &entry)?;
+        let recording = read_with_gaps(&self.campaign.shared.files, &entry)?;
         let mut campaign = self.campaign.clone();
         let specimens = &mut campaign.shared.specimens;
         specimens.retain(|specimen| specimen.id == entry.specimen);

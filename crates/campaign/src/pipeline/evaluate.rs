@@ -13,6 +13,7 @@ use crate::store::runs::{RunRecord, find_results, latest_run, write_run};
 use serde::Serialize;
 use serde::de::DeserializeOwned;
 use serde_json::{Map, Value};
+use std::borrow::Cow;
 use std::collections::BTreeMap;
 use std::path::Path;
 use windfall_files::error::Error;
@@ -64,9 +65,9 @@ pub trait Stored: Clone + Send + Sync {
     ///
     /// # Errors
     /// The result cannot be written.
-    fn add(
-        &self,
-        run: &mut RunRecord,
+    fn add<'a>(
+        &'a self,
+        run: &mut RunRecord<'a>,
         campaign: &Campaign,
         entry: &ImpactEntry,
         key: String,
@@ -84,14 +85,14 @@ impl Stored for ImpactOutcome {
         find_results(store, keys)
     }
 
-    fn add(
-        &self,
-        run: &mut RunRecord,
+    fn add<'a>(
+        &'a self,
+        run: &mut RunRecord<'a>,
         _: &Campaign,
         _: &ImpactEntry,
         key: String,
     ) -> Result<(), Error> {
-        run.results.push((key, self.clone()));
+        run.results.push((key, Cow::Borrowed(self)));
         Ok(())
     }
 }
@@ -107,9 +108,9 @@ impl<T: Document> Stored for T {
         found.into_iter().map(|t| t.map(read).transpose()).collect()
     }
 
-    fn add(
-        &self,
-        run: &mut RunRecord,
+    fn add<'a>(
+        &'a self,
+        run: &mut RunRecord<'a>,
         campaign: &Campaign,
         entry: &ImpactEntry,
         key: String,

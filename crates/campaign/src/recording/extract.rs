@@ -1,6 +1,6 @@
 //! One entry of impacts.csv → one impact.
 
-use crate::recording::read::{read_recording, recording_path};
+use crate::recording::read::{read_with_gaps, recording_path};
 use crate::settings::model::{ImpactCampaign, ImpactEntry};
 use windfall_files::error::Error;
 use windfall_signal::impact::Impact;
@@ -19,7 +19,7 @@ pub fn extract_recording(
     entry: &ImpactEntry,
     effective_mass: Option<f64>,
 ) -> Result<(Impact, Vec<Finding>), Error> {
-    let recording = read_recording(&campaign.shared.files, entry)?;
+    let recording = read_with_gaps(&campaign.shared.files, entry)?;
     extract_entry(campaign, entry, &recording, effective_mass)
 }
 

@@ -9,9 +9,10 @@ use std::path::{Path, PathBuf};
 use windfall_files::error::{Error, Place};
 use windfall_files::inputs::protect;
 use windfall_files::text::column_role::seconds_per_unit;
-use windfall_formats::contents::{Contents, TimeBase};
+use windfall_formats::contents::{Contents, Note, TimeBase};
 use windfall_formats::open::open;
-use windfall_signal::recording::{Channel, Recording, Times};
+use windfall_formats::reader::is_missing;
+use windfall_signal::recording::{Channel, Missing, Quantity, Recording, Times};
 
 /// Where the recording of an impact is.
 pub fn recording_path(files: &FilePlan, impact: &ImpactEntry) -> PathBuf {
@@ -25,9 +26,43 @@ pub fn recording_path(files: &FilePlan, impact: &ImpactEntry) -> PathBuf {
 /// channels of different lengths.
 ///
 /// # Errors
-/// The file cannot be read, one of the channels is not in it, a sample is not
-/// finite or has no time, or nothing says when samples were taken.
+/// As [`read_with_gaps`]; a sample in the range of the entry is missing; nothing shows
+/// whether a mark stands before decimals.
 pub fn read_recording(files: &FilePlan, impact: &ImpactEntry) -> Result<Recording, Error> {
+    let recording = read_with_gaps(files, impact)?;
+    let path = || recording_path(files, impact);
+    if let Some(doubt) = recording.doubts.first() {
+        return Err(Error::from(CampaignError::DecimalOrThousands {
+            path: path(),
+            doubt: doubt.clone(),
+        }));
+    }
+    let from = impact.from.unwrap_or(f64::NEG_INFINITY);
+    let to = impact.to.unwrap_or(f64::INFINITY);
+    for missing in &recording.missing {
+        let mut inside = missing
+            .times
+            .iter()
+            .filter(|time| (from..=to).contains(*time));
+        if let Some(&at) = inside.next() {
+            return Err(Error::from(CampaignError::SampleMissing {
+                path: path(),
+                column: missing.channel.clone(),
+                samples: 1 + inside.count(),
+                at,
+                first: missing.first.clone(),
+            }));
+        }
+    }
+    Ok(recording)
+}
+
+/// [`read_recording`] of which samples may be missing: it says when.
+///
+/// # Errors
+/// The file cannot be read, one of the channels is not in it, a sample has no time, or
+/// nothing says when samples were taken.
+pub fn read_with_gaps(files: &FilePlan, impact: &ImpactEntry) -> Result<Recording, Error> {
     let path = recording_path(files, impact);
     protect(&path);
     let mut reader = open(&path, &files.open).map_err(Error::Format)?;
@@ -52,13 +87,27 @@ pub fn read_recording(files: &FilePlan, impact: &ImpactEntry) -> Result<Recordin
         Ok(place) => columns[place].as_slice(),
         Err(_) => &[],
     };
+    // What reading itself has found out is in the notes by now.
+    let contents = reader.contents();
     let channels = sources
         .iter()
-        .map(|source| channel_of(source, column, &contents, &path))
+        .map(|source| {
+            let other = other_phase(source.plan.quantity);
+            let other = sources.iter().find(|s| Some(s.plan.quantity) == other);
+            let other = other.map_or(&[][..], |other| column(other.index));
+            channel_of((source, other), column, contents, &path)
+        })
         .collect::<Result<Vec<_>, _>>()?;
+    let (channels, missing): (Vec<_>, Vec<_>) = channels.into_iter().unzip();
+    let doubts = contents.notes.iter().filter_map(|note| match note {
+        Note::DecimalOrThousands(doubt) => Some(doubt.clone()),
+        _ => None,
+    });
     Ok(Recording {
         name: impact.file.clone(),
         channels,
+        missing: missing.into_iter().flatten().collect(),
+        doubts: doubts.collect(),
     })
 }
 
@@ -132,81 +181,124 @@ fn clock_in_file(contents: &Contents, index: usize, path: &Path) -> Result<Clock
     }
 }
 
+/// The phase of an encoder without which a sample of this one says nothing.
+fn other_phase(quantity: Quantity) -> Option<Quantity> {
+    match quantity {
+        Quantity::PhaseA => Some(Quantity::PhaseB),
+        Quantity::PhaseB => Some(Quantity::PhaseA),
+        _ => None,
+    }
+}
+
+/// * `other`: samples of the other phase of an encoder
 fn channel_of<'a>(
-    source: &Source,
+    (source, other): (&Source, &[f64]),
     column: impl Fn(usize) -> &'a [f64],
     contents: &Contents,
     path: &Path,
-) -> Result<Channel, Error> {
+) -> Result<(Channel, Option<Missing>), Error> {
     let plan = source.plan;
     let name = &contents.channels[source.index].name;
     let cells = without_filling(column(source.index));
-    if cells.iter().all(|cell| cell.is_nan()) {
+    // In a text file any other NaN is a blank cell.
+    let blanks = contents.format.has_blank_cells();
+    let dirty = |cell: f64| cell.is_infinite() || is_missing(cell) || (cell.is_nan() && !blanks);
+    let times = match source.clock {
+        Clock::Channel { index, .. } => column(index),
+        Clock::Uniform { .. } => &[],
+    };
+    let time_at = |row: usize| match source.clock {
+        Clock::Channel { scale, .. } => {
+            times.get(row).copied().unwrap_or(f64::NAN) * scale - plan.delay
+        }
+        Clock::Uniform { start, interval } => start - plan.delay + row as f64 * interval,
+    };
+    let (mut samples, mut listed, mut lost) = (Vec::new(), Vec::new(), Vec::new());
+    for (row, &cell) in cells.iter().enumerate() {
+        let time_lost = times.get(row).is_some_and(|time| dirty(*time));
+        let other_lost = other.get(row).is_some_and(|other| dirty(*other));
+        if dirty(cell) || ((time_lost || other_lost) && !cell.is_nan()) {
+            lost.push(row);
+            continue;
+        }
+        if cell.is_nan() {
+            continue;
+        }
+        let time = time_at(row);
+        if let Clock::Channel { index, .. } = source.clock
+            && time.is_nan()
+        {
+            return Err(Error::from(CampaignError::SampleWithoutTime {
+                place: Place::at(path, 0),
+                sample: row,
+                column: name.clone(),
+                time: contents.channels[index].name.clone(),
+            }));
+        }
+        listed.push(time);
+        samples.push(plan.scale * (cell - plan.offset));
+    }
+    if samples.is_empty() {
         return Err(Error::from(CampaignError::ColumnBlank {
             path: path.to_path_buf(),
             column: name.clone(),
         }));
     }
-    check_finite(cells, contents, source.index, path)?;
-    let present = || cells.iter().enumerate().filter(|(_, cell)| !cell.is_nan());
     let times = match source.clock {
-        Clock::Channel { index, scale } => {
-            let times = column(index);
-            let listed = present().map(|(row, _)| match times.get(row) {
-                Some(time) if !time.is_nan() => Ok(time * scale - plan.delay),
-                _ => Err(Error::from(CampaignError::SampleWithoutTime {
-                    place: Place::at(path, 0),
-                    sample: row,
-                    column: name.clone(),
-                    time: contents.channels[index].name.clone(),
-                })),
-            });
-            Times::Listed(listed.collect::<Result<_, _>>()?)
-        }
-        Clock::Uniform { start, interval } => {
-            let start = start - plan.delay;
-            match cells.iter().any(|cell| cell.is_nan()) {
-                // Rows without a sample leave a gap.
-                true => {
-                    let times = present().map(|(row, _)| start + row as f64 * interval);
-                    Times::Listed(times.collect())
-                }
-                false => Times::Uniform { start, interval },
-            }
-        }
+        Clock::Uniform { start, interval } if samples.len() == cells.len() => Times::Uniform {
+            start: start - plan.delay,
+            interval,
+        },
+        // Rows without a sample leave a gap.
+        _ => Times::Listed(listed),
     };
-    Ok(Channel {
+    let missing = (!lost.is_empty()).then(|| Missing {
+        channel: name.clone(),
+        times: lost.iter().map(|row| near_time(*row, time_at)).collect(),
+        first: first_missing(source, contents, lost[0], cells[lost[0]]),
+    });
+    let channel = Channel {
         name: name.clone(),
         quantity: plan.quantity,
         times,
-        samples: present()
-            .map(|(_, cell)| plan.scale * (cell - plan.offset))
-            .collect(),
+        samples,
+    };
+    Ok((channel, missing))
+}
+
+/// Time of a row; of one whose own time is missing, that of the row before.
+fn near_time(row: usize, time_at: impl Fn(usize) -> f64) -> f64 {
+    let mut times = (0..=row).rev().map(time_at);
+    times
+        .find(|time| time.is_finite())
+        .unwrap_or(f64::NEG_INFINITY)
+}
+
+/// What stands in place of the first missing sample of a channel, and where.
+fn first_missing(source: &Source, contents: &Contents, row: usize, cell: f64) -> String {
+    let mut columns = vec![source.index];
+    if let Clock::Channel { index, .. } = source.clock {
+        columns.push(index);
+    }
+    let names = columns.iter().map(|index| &contents.channels[*index].name);
+    let mut told = names.filter_map(|name| {
+        contents.notes.iter().find_map(|note| match note {
+            Note::Missing {
+                column, line, word, ..
+            } if column == name => Some(format!("\"{word}\" in line {line}")),
+            _ => None,
+        })
+    });
+    told.next().unwrap_or_else(|| match cell.is_finite() {
+        true => format!("its time or the other phase is missing at sample {row}"),
+        false => format!("{cell} as sample {row}"),
     })
 }
 
-/// The samples up to the last that is a number.
+/// The samples up to the last that is a number, or should be one.
 fn without_filling(cells: &[f64]) -> &[f64] {
-    let last = cells.iter().rposition(|cell| !cell.is_nan());
+    let last = cells
+        .iter()
+        .rposition(|cell| !cell.is_nan() || is_missing(*cell));
     &cells[..last.map_or(0, |last| last + 1)]
-}
-
-/// Refuses NaN and infinity; in a text file NaN is a blank cell.
-fn check_finite(
-    cells: &[f64],
-    contents: &Contents,
-    index: usize,
-    path: &Path,
-) -> Result<(), Error> {
-    let blank = contents.format.has_blank_cells();
-    let bad = |cell: &f64| cell.is_infinite() || (cell.is_nan() && !blank);
-    match cells.iter().position(bad) {
-        None => Ok(()),
-        Some(sample) => Err(Error::from(CampaignError::SampleNotFinite {
-            path: path.to_path_buf(),
-            column: contents.channels[index].name.clone(),
-            sample,
-            value: cells[sample],
-        })),
-    }
 }

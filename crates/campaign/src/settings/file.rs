@@ -115,6 +115,25 @@ pub struct FilesFile {
     pub header_line: Option<Spanned<u64>>,
     /// Beginning of lines that are passed over.
     pub comment: Option<Spanned<String>>,
+    /// Words and numbers that stand for a missing sample, beside the usual words.
+    #[serde(default)]
+    pub missing: Vec<MissingText>,
+    /// Number of lines at the end of a text that are not rows.
+    #[serde(default)]
+    pub footer: u64,
+}
+
+/// A word or number that stands for a missing sample.
+#[derive(Clone, Debug, Deserialize)]
+#[serde(
+    untagged,
+    expecting = "`missing` lists words and numbers, such as [\"OVLD\", 9999]"
+)]
+pub enum MissingText {
+    /// A word, or a number in quotes.
+    Word(String),
+    /// A number.
+    Number(f64),
 }
 
 /// `[channels.*]`

@@ -2,7 +2,7 @@
 //! placeholders in names of columns.
 
 use crate::error::CampaignError;
-use crate::settings::file::{FORMAT, FilesFile};
+use crate::settings::file::{FORMAT, FilesFile, MissingText};
 use crate::settings::model::{ChannelPlan, FilePlan, ImpactEntry, Specimen, TimePlan};
 use crate::settings::open_options::{DECIMALS, ENCODINGS, SEPARATORS, THOUSANDS};
 use crate::settings::template::is_template_file;
@@ -75,11 +75,20 @@ fn open_plan(source: &TomlSource, files: &FilesFile) -> Result<OpenOptions, Erro
         encoding: named(source, files.encoding.as_ref(), "encoding", &ENCODINGS)?,
         header_line: files.header_line.as_ref().map(|line| *line.get_ref()),
         comment: files.comment.as_ref().map(|text| text.get_ref().clone()),
+        missing: files.missing.iter().map(missing_word).collect(),
+        footer: files.footer,
     };
     Ok(OpenOptions {
         format: named(source, files.format.as_ref(), "format", &Format::NAMES)?,
         text,
     })
+}
+
+fn missing_word(text: &MissingText) -> String {
+    match text {
+        MissingText::Word(word) => word.clone(),
+        MissingText::Number(number) => number.to_string(),
+    }
 }
 
 fn named<T: Copy>(

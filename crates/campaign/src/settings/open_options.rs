@@ -66,6 +66,16 @@ pub struct OpenRequest {
     /// Beginning of lines that are passed over
     #[cfg_attr(feature = "clap", arg(long, value_name = "TEXT"))]
     pub comment: Option<String>,
+    /// A word or number that stands for a missing sample, beside the usual words (NaN, N/A, OVLD, …);
+    /// may be repeated
+    #[cfg_attr(
+        feature = "clap",
+        arg(long, value_name = "TEXT", allow_hyphen_values = true)
+    )]
+    pub missing: Vec<String>,
+    /// Lines at the end of a text that are not rows of numbers
+    #[cfg_attr(feature = "clap", arg(long, value_name = "LINES", default_value_t))]
+    pub footer: u64,
 }
 
 /// The options of the readers.
@@ -102,6 +112,8 @@ pub fn open_options(request: &OpenRequest) -> Result<OpenOptions, Error> {
             encoding: named("--encoding", request.encoding.as_ref(), &ENCODINGS)?,
             header_line: request.header_line,
             comment: request.comment.clone(),
+            missing: request.missing.clone(),
+            footer: request.footer,
         },
     })
 }

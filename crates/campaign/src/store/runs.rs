@@ -13,6 +13,7 @@ use crate::store::documents::{
 use crate::store::error::StoreError;
 use crate::store::file::{PATIENCE, create_schema, open_existing, store_error};
 use rusqlite::{Connection, OptionalExtension, Transaction, params};
+use std::borrow::Cow;
 use std::path::Path;
 use windfall_files::confined::discard;
 use windfall_files::error::Error;
@@ -21,7 +22,7 @@ use windfall_files::provenance::{VERSION, time_now};
 
 /// One run, as it goes into the store.
 #[derive(Clone, Debug)]
-pub struct RunRecord {
+pub struct RunRecord<'a> {
     /// When it was done; UTC.
     pub time: String,
     /// Version of windfall.
@@ -31,14 +32,14 @@ pub struct RunRecord {
     /// Files read: name and SHA-256.
     pub inputs: Vec<(String, String)>,
     /// Keys and results, in the order of the campaign.
-    pub results: Vec<(String, ImpactOutcome)>,
+    pub results: Vec<(String, Cow<'a, ImpactOutcome>)>,
     /// Results of campaigns that fit no impacts, in the order of the campaign.
     pub documents: Vec<DocumentRecord>,
     /// What could not be fitted.
     pub failures: Vec<FailureOutcome>,
 }
 
-impl RunRecord {
+impl RunRecord<'_> {
     /// A run of now and of this windfall, without results yet.
     pub fn new(origin: RunOrigin, failures: Vec<FailureOutcome>) -> Self {
         Self {
@@ -331,7 +332,7 @@ mod tests {
         }
     }
 
-    fn run(ids: &[&str]) -> RunRecord {
+    fn run(ids: &[&str]) -> RunRecord<'static> {
         RunRecord {
             time: "2026-11-20T00:00:00Z".to_owned(),
             windfall: "0.1.0".to_owned(),
@@ -339,7 +340,7 @@ mod tests {
             inputs: vec![("r.csv".to_owned(), "00".to_owned())],
             results: ids
                 .iter()
-                .map(|id| (format!("key-{id}"), outcome(id)))
+                .map(|id| (format!("key-{id}"), Cow::Owned(outcome(id))))
                 .collect(),
             documents: Vec::new(),
             failures: Vec::new(),

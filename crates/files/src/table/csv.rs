@@ -1,17 +1,16 @@
 //! Tables of text: specimens.csv and impacts.csv.
 //!
 //! The separator (comma, semicolon or tab) is found from the header; a byte
-//! order mark is passed over; names may be quoted and hold commas and units.
+//! order mark is passed over; names may be quoted and hold commas and units. UTF-16, as
+//! PowerShell writes it, is read like UTF-8.
 
 use crate::error::{Error, Place};
 use crate::inputs::protect;
 use std::fs::File;
-use std::io::{BufRead, BufReader, Read};
+use std::io::{BufRead, BufReader, Cursor, Read};
 use std::path::{Path, PathBuf};
+use windfall_formats::text::encoding::{Encoding, tell_encoding};
 use windfall_numerics::unit::nearest_name::nearest_names;
-
-/// Byte order mark of UTF-8.
-const MARK: &[u8] = b"\xef\xbb\xbf";
 
 /// A table of text, as specimens.csv and impacts.csv are.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -83,12 +82,7 @@ pub(crate) struct Open {
 /// As [`read_table`].
 pub(crate) fn open(path: &Path) -> Result<Open, Error> {
     protect(path);
-    let file = File::open(path).map_err(|source| access(path, source))?;
-    let mut reader = BufReader::with_capacity(1 << 16, file);
-    let start = reader.fill_buf().map_err(|source| access(path, source))?;
-    if start.starts_with(MARK) {
-        reader.consume(MARK.len());
-    }
+    let mut reader = utf8(path)?;
     // The header is read to its end, however long, before anything is decided.
     let (mut header, mut comments, mut before) = (Vec::new(), Vec::new(), 0);
     while header.iter().all(u8::is_ascii_whitespace) || header.starts_with(b"#") {
@@ -107,7 +101,9 @@ pub(crate) fn open(path: &Path) -> Result<Open, Error> {
         }
     }
     let (byte, separator) = separator_of(&header);
-    let whole: Box<dyn Read> = Box::new(std::io::Cursor::new(header).chain(reader));
+    // The csv crate counts a line at its line feed, which it reads with the row after it.
+    before += usize::from(header.ends_with(b"\r\n"));
+    let whole: Box<dyn Read> = Box::new(Cursor::new(header).chain(reader));
     let mut reader = csv::ReaderBuilder::new()
         .delimiter(byte)
         .flexible(true)
@@ -135,6 +131,23 @@ pub(crate) fn open(path: &Path) -> Result<Open, Error> {
         before,
         reader,
     })
+}
+
+/// The text of a file, without byte order mark.
+fn utf8(path: &Path) -> Result<Box<dyn BufRead>, Error> {
+    let file = File::open(path).map_err(|source| access(path, source))?;
+    let mut reader = BufReader::with_capacity(1 << 16, file);
+    let start = reader.fill_buf().map_err(|source| access(path, source))?;
+    let (encoding, mark) = tell_encoding(start);
+    reader.consume(mark);
+    if !matches!(encoding, Encoding::Utf16Le | Encoding::Utf16Be) {
+        return Ok(Box::new(reader));
+    }
+    let mut bytes = Vec::new();
+    let read = reader.read_to_end(&mut bytes);
+    read.map_err(|source| access(path, source))?;
+    let text = encoding.decode(&bytes).into_owned();
+    Ok(Box::new(Cursor::new(text.into_bytes())))
 }
 
 /// The separator that occurs most often outside quotes; a comma if none does.
@@ -250,6 +263,21 @@ mod tests {
             let table = read_table(&path).unwrap();
             assert_eq!(table.columns, ["id", "mass, wet"]);
             assert_eq!((table.rows[0].line, &table.rows[0].cells[0][..]), (2, "a"));
+        }
+    }
+
+    #[test]
+    fn closed_form_cells_of_utf_16() {
+        let text = "\u{feff}id;Sorte\r\n1;Jonagold rosé\r\n2;Ŝ\r\n";
+        for unit in [u16::to_le_bytes as fn(u16) -> [u8; 2], u16::to_be_bytes] {
+            let dir = tempfile::tempdir().unwrap();
+            let path = dir.path().join("r.csv");
+            let bytes: Vec<u8> = text.encode_utf16().flat_map(unit).collect();
+            std::fs::write(&path, bytes).unwrap();
+            let table = read_table(&path).unwrap();
+            assert_eq!(table.columns, ["id", "Sorte"]);
+            assert_eq!(table.rows[0].cells, ["1", "Jonagold rosé"]);
+            assert_eq!((table.rows[1].line, &table.rows[1].cells[1][..]), (3, "Ŝ"));
         }
     }
 

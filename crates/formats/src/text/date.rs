@@ -7,6 +7,8 @@ pub struct Moment {
     pub seconds: i64,
     /// Fraction of a second.
     pub fraction: f64,
+    /// Whether it has a date.
+    pub dated: bool,
 }
 
 impl Moment {
@@ -36,6 +38,7 @@ pub fn moment(text: &str) -> Option<Moment> {
     Some(Moment {
         seconds: days * 86_400 + seconds - offset,
         fraction,
+        dated: date.is_some(),
     })
 }
 

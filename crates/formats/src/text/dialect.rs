@@ -2,11 +2,11 @@
 
 use crate::contents::Note;
 use crate::text::cells::{cells, row};
-use crate::text::date::{Moment, moment};
+use crate::text::decimal::{doubtful_mark, likelier_decimal};
 use crate::text::header::name_columns;
-use crate::text::number::{
-    Cell, Marks, bare, cell, leading_number, number, rises_evenly, without_groups,
-};
+use crate::text::look::{Look, Notation, THOUSANDS};
+use crate::text::missing::MissingWords;
+use crate::text::number::{Marks, bare, leading_number, number, rises_evenly, without_groups};
 use crate::text::options::{Dialect, TextOptions};
 use crate::text::rows::{ColumnKind, Separator};
 use std::collections::{BTreeMap, BTreeSet};
@@ -23,45 +23,17 @@ const SEPARATORS: [Separator; 5] = [
     Separator::Blanks,
 ];
 
-/// Candidate thousands separators.
-const THOUSANDS: [char; 5] = ['.', ',', '\'', ' ', '\u{a0}'];
-
-/// What a cell looks like with given marks.
-#[derive(Clone, Copy, Debug, PartialEq)]
-enum Look {
-    Blank,
-    Number,
-    Moment(Moment),
-    Text,
-}
-
-fn look(text: &str, marks: Marks) -> Look {
-    // Most text is recognised by its first character.
-    let start = |c: char| c.is_ascii_digit() || matches!(c, '+' | '-' | '.' | ',' | '\u{2212}');
-    let text = bare(text);
-    if text.is_empty() {
-        return Look::Blank;
-    }
-    if !text.starts_with(start) {
-        return Look::Text;
-    }
-    match cell(text, marks) {
-        Cell::Blank => Look::Blank,
-        Cell::Number(_) => Look::Number,
-        Cell::Other => moment(bare(text)).map_or(Look::Text, Look::Moment),
-    }
-}
-
 /// Detects the dialect from the first lines of a file.
 ///
 /// On failure, the index of a line that is not a row of numbers.
 pub fn find_dialect(lines: &[&str], options: &TextOptions) -> Result<Dialect, usize> {
     let comments = comment_marks(lines, options);
+    let missing = MissingWords::new(&options.missing);
     let data: Vec<usize> = (0..lines.len())
         .filter(|&at| !lines[at].trim().is_empty() && !is_comment(lines[at], &comments))
         .collect();
     let nothing = || data.first().copied().unwrap_or(0);
-    let candidate = best_candidate(lines, &data, options).ok_or_else(nothing)?;
+    let candidate = best_candidate(lines, &data, &missing, options).ok_or_else(nothing)?;
     let Candidate {
         separator,
         mut marks,
@@ -70,7 +42,11 @@ pub fn find_dialect(lines: &[&str], options: &TextOptions) -> Result<Dialect, us
     } = candidate;
     marks.thousands = options
         .thousands
-        .or_else(|| thousands(lines, &data, &candidate));
+        .or_else(|| thousands(lines, &data, &candidate, &missing));
+    let notation = Notation {
+        marks,
+        missing: &missing,
+    };
 
     let rows: Vec<usize> = data
         .iter()
@@ -82,9 +58,9 @@ pub fn find_dialect(lines: &[&str], options: &TextOptions) -> Result<Dialect, us
         .copied()
         .filter(|&at| at >= candidate.first)
         .collect();
-    let kinds = column_kinds(lines, &below, separator, count, marks);
+    let kinds = column_kinds(lines, &below, separator, count, notation);
     let numeric = |at: usize| {
-        row(lines[at], separator, count).is_some_and(|cells| is_row(&cells, &kinds, marks))
+        row(lines[at], separator, count).is_some_and(|cells| is_row(&cells, &kinds, notation))
     };
     let first_row = match options.header_line {
         // Below the header line named by the user and any row of units.
@@ -107,7 +83,7 @@ pub fn find_dialect(lines: &[&str], options: &TextOptions) -> Result<Dialect, us
         comments,
         names: vec![String::new(); count],
         units: vec![None; count],
-        kinds: first_moments(lines, first_row, separator, count, marks, kinds),
+        kinds: first_moments(lines, first_row, separator, count, notation, kinds),
         first_row,
         rising_first: false,
         preamble: Vec::new(),
@@ -116,15 +92,14 @@ pub fn find_dialect(lines: &[&str], options: &TextOptions) -> Result<Dialect, us
     name_columns(&mut dialect, lines, &data, options);
     let unnamed = dialect.names.iter().all(String::is_empty);
     dialect.rising_first = unnamed && count > 1 && first_rises(lines, &rows, &dialect);
-    if candidate.ambiguous && options.decimal.is_none() {
-        let (mark, other) = match marks.decimal {
-            b',' => ("comma", "\",\" as thousands separator"),
-            _ => ("point", "\".\" as thousands separator"),
-        };
-        dialect.notes.push(Note::Assumed(format!(
-            "the decimal mark is taken to be a {mark}; if the file has {other}, say so with \
-                 the settings decimal and thousands"
-        )));
+    if options.decimal.is_none() && options.thousands.is_none() {
+        let below = rows.iter().filter(|&&at| at >= first_row);
+        let below = below.filter_map(|&at| Some((at + 1, row(lines[at], separator, count)?)));
+        let other = if marks.decimal == b'.' { b',' } else { b'.' };
+        if may_be_decimal(lines, &data, separator, other) {
+            let doubt = doubtful_mark(below, marks.decimal, &dialect.kinds);
+            dialect.notes.extend(doubt.map(Note::DecimalOrThousands));
+        }
     }
     Ok(dialect)
 }
@@ -162,10 +137,10 @@ fn is_comment(line: &str, comments: &[String]) -> bool {
         .any(|mark| line.trim_start().starts_with(mark.as_str()))
 }
 
-fn is_row(cells: &[&str], kinds: &[ColumnKind], marks: Marks) -> bool {
+fn is_row(cells: &[&str], kinds: &[ColumnKind], notation: Notation) -> bool {
     let mut numbers = 0;
     for (cell, kind) in cells.iter().zip(kinds) {
-        match (kind, look(cell, marks)) {
+        match (kind, notation.look(cell)) {
             (ColumnKind::Text, _) | (_, Look::Blank) => {}
             (_, Look::Text) => return false,
             _ => numbers += 1,
@@ -183,68 +158,72 @@ struct Candidate {
     /// First line that looks like a row of numbers.
     first: usize,
     score: f64,
-    /// Whether the other decimal mark fits equally well.
-    ambiguous: bool,
 }
 
-fn best_candidate(lines: &[&str], data: &[usize], options: &TextOptions) -> Option<Candidate> {
+fn best_candidate(
+    lines: &[&str],
+    data: &[usize],
+    missing: &MissingWords,
+    options: &TextOptions,
+) -> Option<Candidate> {
     let separators = SEPARATORS
         .into_iter()
         .filter(|separator| options.separator.is_none_or(|wanted| wanted == *separator))
         .chain(options.separator.filter(|s| !SEPARATORS.contains(s)));
     let mut best: Option<Candidate> = None;
+    let mut equal = false;
     for separator in separators {
         for decimal in [b'.', b','] {
             let other = options.decimal.is_some_and(|d| d != char::from(decimal));
-            if other || separator == Separator::Mark(decimal) {
+            if other || !may_be_decimal(lines, data, separator, decimal) {
                 continue;
             }
-            let Some(found) = candidate(lines, data, separator, decimal) else {
+            let notation = Notation {
+                marks: Marks::decimal(decimal),
+                missing,
+            };
+            let Some(found) = candidate(lines, data, separator, notation) else {
                 continue;
             };
-            match &mut best {
-                // Three digits after a mark are ambiguous; with semicolons between
-                // cells, commas are decimal marks.
+            match &best {
                 Some(best) if found.score == best.score && found.separator == best.separator => {
-                    let grouped = data.iter().any(|&at| lines[at].contains([',', '.']));
-                    best.ambiguous = grouped && has_marks(lines, data, separator);
+                    equal = true;
                 }
                 Some(best) if found.score <= best.score => {}
-                best => *best = Some(found),
+                _ => (best, equal) = (Some(found), false),
             }
         }
     }
-    let mut best = best?;
-    if best.ambiguous && best.separator == Separator::Mark(b';') {
-        best.marks.decimal = b',';
+    let mut best = best.filter(|best| best.score > 0.0)?;
+    if equal {
+        let data = data.iter().filter(|&&at| at >= best.first);
+        let rows = data.filter_map(|&at| row(lines[at], best.separator, best.count));
+        best.marks.decimal = likelier_decimal(rows, best.separator);
     }
-    (best.score > 0.0).then_some(best)
+    Some(best)
 }
 
-/// Whether any cell is a number with either decimal mark.
-fn has_marks(lines: &[&str], data: &[usize], separator: Separator) -> bool {
-    let either = |text: &str| {
-        let number =
-            |decimal| grouped_look(text, Marks::decimal(decimal), separator) == Look::Number;
-        text.contains([',', '.']) && number(b'.') && number(b',')
+/// Whether a mark can stand before decimals: where it separates cells, only in quoted ones.
+fn may_be_decimal(lines: &[&str], data: &[usize], separator: Separator, mark: u8) -> bool {
+    let quoted = |&at: &usize| {
+        let cells = cells(lines[at], separator);
+        cells.iter().any(|cell| cell.contains(char::from(mark)))
     };
-    data.iter()
-        .any(|&at| cells(lines[at], separator).iter().any(|c| either(c)))
+    separator != Separator::Mark(mark) || data.iter().any(quoted)
 }
 
 fn candidate(
     lines: &[&str],
     data: &[usize],
     separator: Separator,
-    decimal: u8,
+    notation: Notation,
 ) -> Option<Candidate> {
-    let count = usual_count(lines, data, separator, decimal)?;
-    let marks = Marks::decimal(decimal);
+    let count = usual_count(lines, data, separator, notation.marks.decimal)?;
     let tallies: Vec<(usize, f64, f64)> = data
         .iter()
         .filter_map(|&at| {
             let cells = row(lines[at], separator, count)?;
-            let (numbers, texts) = tally(&cells, marks, separator);
+            let (numbers, texts) = tally(&cells, notation, separator);
             Some((at, numbers, texts))
         })
         .collect();
@@ -262,48 +241,24 @@ fn candidate(
     let share = numbers / (numbers + texts);
     Some(Candidate {
         separator,
-        marks,
+        marks: notation.marks,
         count,
         first,
         score: numbers * share.powi(3) * if fits { 1.0 } else { 0.3 },
-        ambiguous: false,
     })
 }
 
 /// Counts cells that are numbers or times, and cells that are text.
-fn tally(cells: &[&str], marks: Marks, separator: Separator) -> (f64, f64) {
+fn tally(cells: &[&str], notation: Notation, separator: Separator) -> (f64, f64) {
     let (mut numbers, mut texts) = (0.0, 0.0);
     for cell in cells {
-        match grouped_look(cell, marks, separator) {
+        match notation.grouped_look(cell, separator) {
             Look::Blank => {}
             Look::Text => texts += 1.0,
             Look::Number | Look::Moment(_) => numbers += 1.0,
         }
     }
     (numbers, texts)
-}
-
-/// Like [`look`], but numbers with any thousands separator count as numbers.
-fn grouped_look(text: &str, marks: Marks, separator: Separator) -> Look {
-    let plain = look(text, marks);
-    if plain != Look::Text
-        || !bare(text).starts_with(|c: char| c.is_ascii_digit() || "+-".contains(c))
-    {
-        return plain;
-    }
-    let decimal = char::from(marks.decimal);
-    let usable = |mark: char| mark != decimal && !(mark == ' ' && separator == Separator::Blanks);
-    let grouped = THOUSANDS
-        .into_iter()
-        .filter(|mark| usable(*mark))
-        .any(|mark| {
-            let marks = Marks {
-                thousands: Some(mark),
-                ..marks
-            };
-            matches!(cell(text, marks), Cell::Number(_))
-        });
-    if grouped { Look::Number } else { Look::Text }
 }
 
 /// The most common number of cells in lines that contain a number.
@@ -337,7 +292,16 @@ fn usual_count(lines: &[&str], data: &[usize], separator: Separator, decimal: u8
 }
 
 /// The thousands separator, if cells use one.
-fn thousands(lines: &[&str], data: &[usize], candidate: &Candidate) -> Option<char> {
+fn thousands(
+    lines: &[&str],
+    data: &[usize],
+    candidate: &Candidate,
+    missing: &MissingWords,
+) -> Option<char> {
+    let notation = Notation {
+        marks: candidate.marks,
+        missing,
+    };
     let decimal = char::from(candidate.marks.decimal);
     // The cell separator itself may group digits within quotes.
     let usable = |mark: &char| *mark != decimal;
@@ -346,7 +310,7 @@ fn thousands(lines: &[&str], data: &[usize], candidate: &Candidate) -> Option<ch
             let row = row(lines[at], candidate.separator, candidate.count);
             row.is_some_and(|cells| {
                 cells.iter().any(|cell| {
-                    matches!(look(cell, candidate.marks), Look::Text)
+                    matches!(notation.look(cell), Look::Text)
                         && without_groups(bare(cell), mark, decimal).is_some()
                 })
             })
@@ -360,7 +324,7 @@ fn column_kinds(
     rows: &[usize],
     separator: Separator,
     count: usize,
-    marks: Marks,
+    notation: Notation,
 ) -> Vec<ColumnKind> {
     let mut tallies = vec![[0_usize; 3]; count];
     let mut starts = vec![None; count];
@@ -370,7 +334,7 @@ fn column_kinds(
             .iter()
             .enumerate()
         {
-            match look(cell, marks) {
+            match notation.look(cell) {
                 Look::Blank => {}
                 Look::Number => tallies[column][0] += 1,
                 Look::Moment(moment) => {
@@ -398,11 +362,11 @@ fn first_moments(
     first_row: usize,
     separator: Separator,
     count: usize,
-    marks: Marks,
+    notation: Notation,
     kinds: Vec<ColumnKind>,
 ) -> Vec<ColumnKind> {
     let cells = row(lines[first_row], separator, count).unwrap_or_default();
-    let start = |column: usize| match look(cells.get(column)?, marks) {
+    let start = |column: usize| match notation.look(cells.get(column)?) {
         Look::Moment(moment) => Some(ColumnKind::Moments(moment)),
         _ => None,
     };

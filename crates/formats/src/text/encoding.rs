@@ -43,7 +43,7 @@ impl Encoding {
     }
 
     /// Decodes bytes; invalid sequences become "\u{fffd}".
-    pub(crate) fn decode(self, bytes: &[u8]) -> Cow<'_, str> {
+    pub fn decode(self, bytes: &[u8]) -> Cow<'_, str> {
         match self {
             Self::Utf8 => String::from_utf8_lossy(bytes),
             Self::Windows1252 => match std::str::from_utf8(bytes) {
@@ -71,7 +71,7 @@ fn utf16(bytes: &[u8], unit: fn([u8; 2]) -> u16) -> Cow<'static, str> {
 }
 
 /// Detects the encoding from the first bytes; also the length of the byte order mark.
-pub(crate) fn tell_encoding(head: &[u8]) -> (Encoding, usize) {
+pub fn tell_encoding(head: &[u8]) -> (Encoding, usize) {
     if head.starts_with(b"\xef\xbb\xbf") {
         return (Encoding::Utf8, 3);
     }

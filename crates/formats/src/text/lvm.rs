@@ -10,7 +10,11 @@ use crate::reader::{Reader, Sink};
 use crate::source::Source;
 use crate::text::encoding::{Encoding, tell_encoding};
 use crate::text::lines::Lines;
+use crate::text::lvm_lines::{header_begin, split_lines};
+use crate::text::measurements::{Rows, starts_of_measurements};
+use crate::text::missing::MissingWords;
 use crate::text::number::{Marks, number};
+use crate::text::options::TextOptions;
 use crate::text::rows::{ColumnKind, RowPlan, Separator};
 use crate::text::table::{Table, read_table};
 
@@ -59,6 +63,7 @@ enum XColumns {
 }
 
 /// A segment: its header and the range of its rows.
+#[derive(Clone)]
 struct Segment {
     header: Vec<Vec<String>>,
     names: Vec<String>,
@@ -69,7 +74,7 @@ struct Segment {
 
 impl LvmReader {
     /// Reads the headers of a file.
-    pub fn open(source: Source) -> Result<Self, Error> {
+    pub fn open(source: Source, options: &TextOptions) -> Result<Self, Error> {
         let (encoding, _) = tell_encoding(&source.head(1 << 16)?);
         let marks = header_ends(&source)?;
         let [first, rest @ ..] = marks.as_slice() else {
@@ -90,14 +95,17 @@ impl LvmReader {
         let segments = find_segments(&source, &file, &marks)?;
         let mut contents = Contents {
             format: Format::Lvm,
-            variant: match segments.len() {
-                1 => "one segment".to_owned(),
-                count => format!("{count} segments"),
-            },
+            variant: String::new(),
             channels: Vec::new(),
             properties: file.properties.clone(),
             notes: Vec::new(),
         };
+        let segments = split_measurements(&source, &file, segments, &mut contents)?;
+        contents.variant = match segments.len() {
+            1 => "one segment".to_owned(),
+            count => format!("{count} segments"),
+        };
+        let missing = MissingWords::new(&options.missing);
         let mut places = Vec::new();
         let mut tables = Vec::new();
         let mut names = Names::default();
@@ -109,7 +117,7 @@ impl LvmReader {
             let columns =
                 add_channels(&source, &file, segment, &suffix, &mut names, &mut contents)?;
             places.extend(columns.into_iter().map(|column| (index, column)));
-            tables.push(table(&file, segment));
+            tables.push(table(&file, segment, &missing));
         }
         Ok(Self {
             source,
@@ -237,27 +245,68 @@ fn find_segments(source: &Source, file: &FileHeader, marks: &[u64]) -> Result<Ve
     Ok(segments)
 }
 
-/// Start of the last blank line in `bytes`, and of the header after it.
-fn header_begin(bytes: &[u8], separator: char) -> (usize, usize) {
-    let blank = |line: &[u8]| {
-        line.iter()
-            .all(|b| b.is_ascii_whitespace() || *b == separator as u8)
-    };
-    let mut end = bytes.len();
-    // The last line is that of the marker itself.
-    while let Some(newline) = memchr::memrchr(b'\n', &bytes[..end]) {
-        let line_begin = memchr::memrchr(b'\n', &bytes[..newline]).map_or(0, |at| at + 1);
-        if blank(&bytes[line_begin..newline]) {
-            return (line_begin, newline + 1);
+/// Splits segments that hold more rows than their header says: LabVIEW appends later
+/// measurements without a header of their own ("One header only").
+fn split_measurements(
+    source: &Source,
+    file: &FileHeader,
+    segments: Vec<Segment>,
+    contents: &mut Contents,
+) -> Result<Vec<Segment>, Error> {
+    let mut split = Vec::new();
+    for segment in segments {
+        let samples = segment.header.iter().find(|cells| cells[0] == "Samples");
+        let counts = samples.iter().flat_map(|cells| &cells[1..]);
+        let counts = counts.filter_map(|cell| cell.parse::<u64>().ok());
+        let Some(rows) = counts.max().filter(|rows| *rows > 1) else {
+            split.push(segment);
+            continue;
+        };
+        let place = Rows {
+            start: segment.start,
+            end: segment.end,
+            first_line: segment.first_line,
+        };
+        let mut starts = starts_of_measurements(source, &place, file.separator as u8, rows)?;
+        if file.x_columns != XColumns::No {
+            // Where times go on, so does the measurement.
+            let time = |at: u64| {
+                let text = source.bytes_at(at, line_end(source, at)? - at)?;
+                let cells = split_lines(&file.encoding.decode(&text), file.separator);
+                let first = cells.first().and_then(|cells| cells.first());
+                Ok(first.and_then(|cell| number(cell, file.marks)))
+            };
+            let begin = time(segment.start)?;
+            let mut again = Vec::new();
+            for start in starts {
+                if start.0 == segment.start || time(start.0)? <= begin {
+                    again.push(start);
+                }
+            }
+            starts = again;
         }
-        end = newline;
+        if starts.len() > 1 {
+            contents.notes.push(Note::Assumed(format!(
+                "line {}: the header speaks of {rows} samples and {} times as many follow; they are \
+                 taken as measurements one after the other, segment by segment. If they are one \
+                 measurement, read the file as text (format \"text\")",
+                segment.first_line,
+                starts.len()
+            )));
+        }
+        for (part, &(start, line)) in starts.iter().enumerate() {
+            if split.len() >= MOST_SEGMENTS {
+                return Err(malformed(source, line, "it has more than 10,000 segments"));
+            }
+            split.push(Segment {
+                start,
+                first_line: line,
+                end: starts.get(part + 1).map_or(segment.end, |next| next.0),
+                ..segment.clone()
+            });
+        }
     }
-    (0, 0)
-}
-
-fn split_lines(text: &str, separator: char) -> Vec<Vec<String>> {
-    let cells = |line: &str| line.split(separator).map(|c| c.trim().to_owned()).collect();
-    text.lines().map(cells).collect()
+    Ok(split)
 }
 
 fn count_lines(source: &Source, from: u64, to: u64) -> Result<u64, Error> {
@@ -275,7 +324,7 @@ fn is_comment_column(segment: &Segment, column: usize) -> bool {
     column + 1 == segment.names.len() && segment.names[column] == "Comment"
 }
 
-fn table(file: &FileHeader, segment: &Segment) -> Table {
+fn table(file: &FileHeader, segment: &Segment, missing: &MissingWords) -> Table {
     let kind = |column| match is_comment_column(segment, column) {
         true => ColumnKind::Text,
         false => ColumnKind::Numbers,
@@ -288,6 +337,7 @@ fn table(file: &FileHeader, segment: &Segment) -> Table {
             newline: b'\n',
             comments: Vec::new(),
             columns: (0..segment.names.len()).map(kind).collect(),
+            missing: missing.clone(),
             short_rows: true,
         },
         lines: Lines {
@@ -439,7 +489,10 @@ impl Reader for LvmReader {
             let columns: Vec<(usize, usize)> = columns.collect();
             if !columns.is_empty() {
                 // Short rows are normal here, so nothing was truncated.
-                read_table(&self.source, table, &columns, sink)?;
+                let found = read_table(&self.source, table, &columns, sink)?;
+                let mut notes = found.notes(&table.names);
+                notes.retain(|note| !self.contents.notes.contains(note));
+                self.contents.notes.extend(notes);
             }
         }
         Ok(())

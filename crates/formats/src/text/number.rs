@@ -265,6 +265,8 @@ pub fn bare(text: &str) -> &str {
 /// Removes thousands separators; `None` unless they separate groups of three digits.
 pub fn without_groups(text: &str, mark: char, decimal: char) -> Option<String> {
     let (integer, rest) = match text.find([decimal, 'e', 'E']) {
+        // Nobody writes groups before an exponent: "1.234e5" has decimals.
+        Some(at) if text[at..].starts_with(['e', 'E']) => return None,
         Some(at) => text.split_at(at),
         None => (text, ""),
     };

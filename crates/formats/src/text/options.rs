@@ -20,6 +20,10 @@ pub struct TextOptions {
     pub header_line: Option<u64>,
     /// Prefix of comment lines.
     pub comment: Option<String>,
+    /// Words and numbers that stand for a missing sample, beside the usual words.
+    pub missing: Vec<String>,
+    /// Number of lines at the end of the file that are not rows.
+    pub footer: u64,
 }
 
 /// Detected columns and notation.

@@ -7,10 +7,12 @@ use crate::reader::{Reader, Sink};
 use crate::source::Source;
 use crate::text::dialect::find_dialect;
 use crate::text::encoding::{Encoding, tell_encoding};
+use crate::text::ending::ending;
 use crate::text::lines::Lines;
+use crate::text::missing::MissingWords;
 use crate::text::options::{Dialect, TextOptions};
 use crate::text::rows::{ColumnKind, RowPlan, Separator};
-use crate::text::table::{CutOff, Table, read_table, read_whole_table, shortened};
+use crate::text::table::{Found, Table, read_table, read_whole_table, shortened};
 
 /// Bytes used to detect the dialect.
 const HEAD: u64 = 1 << 16;
@@ -34,22 +36,24 @@ impl TextReader {
         let head = source.head(HEAD)?;
         let (told, mark) = tell_encoding(&head);
         let encoding = options.encoding.unwrap_or(told);
+        let newline = match head.contains(&b'\n') {
+            true => b'\n',
+            false => b'\r',
+        };
+        let ending = ending(&source, encoding, newline, options.footer)?;
+        let head = &head[..head.len().min(ending.rows_end as usize)];
         let text = encoding.decode(&head[mark.min(head.len())..]);
-        if text
-            .trim_matches(|c: char| c.is_whitespace() || c == '\0')
-            .is_empty()
-        {
+        if text.trim().is_empty() {
             return Err(Error::Empty {
                 path: source.path().to_path_buf(),
                 expected: "a header line with column names, then one line per sample",
             });
         }
         check_text(&source, &text)?;
-        let newline = if text.contains('\n') { '\n' } else { '\r' };
-        let mut lines: Vec<&str> = text.split(newline).take(LINES).collect();
+        let mut lines: Vec<&str> = text.split(char::from(newline)).take(LINES).collect();
         // The last line may be incomplete, or empty after the last line break.
         if lines.len() > 1
-            && (source.length() > HEAD || lines.len() == LINES || lines[lines.len() - 1].is_empty())
+            && (ending.rows_end > HEAD || lines.len() == LINES || lines[lines.len() - 1].is_empty())
         {
             lines.pop();
         }
@@ -67,19 +71,21 @@ impl TextReader {
         let breaks = dialect.first_row * encoding.unit();
         let lines = Lines {
             start: (mark + before + breaks) as u64,
-            end: source.length(),
+            end: ending.rows_end,
             encoding,
-            newline: newline as u8,
+            newline,
         };
-        let (contents, columns, names) = contents(&dialect, encoding);
+        let (mut contents, columns, names) = contents(&dialect, encoding);
+        contents.notes.extend(ending.notes);
         let table = Table {
             plan: RowPlan {
                 separator: dialect.separator,
                 marks: dialect.marks,
                 encoding,
-                newline: newline as u8,
+                newline,
                 comments: dialect.comments,
                 columns: dialect.kinds,
+                missing: MissingWords::new(&options.missing),
                 short_rows: false,
             },
             lines,
@@ -286,8 +292,8 @@ impl Reader for TextReader {
     fn read(&mut self, wanted: &[usize], sink: &mut dyn Sink) -> Result<(), Error> {
         let columns = wanted.iter().map(|&channel| self.columns[channel]);
         let wanted: Vec<(usize, usize)> = columns.zip(0..).collect();
-        let cut = read_table(&self.source, &self.table, &wanted, sink)?;
-        self.note(cut);
+        let found = read_table(&self.source, &self.table, &wanted, sink)?;
+        self.note(found);
         Ok(())
     }
 
@@ -296,24 +302,23 @@ impl Reader for TextReader {
             .iter()
             .map(|&channel| self.columns[channel])
             .collect();
-        let (columns, cut) = read_whole_table(&self.source, &self.table, &wanted)?;
-        self.note(cut);
+        let (columns, found) = read_whole_table(&self.source, &self.table, &wanted)?;
+        self.note(found);
         Ok(columns)
     }
 }
 
 impl TextReader {
-    fn note(&mut self, cut: Option<CutOff>) {
-        let Some(cut) = cut else {
-            return;
-        };
+    fn note(&mut self, found: Found) {
         let expected = self.table.plan.columns.len();
-        let note = Note::CutOff(format!(
-            "its last line, {}, has {} of {expected} cells and is left out",
-            cut.line, cut.found
-        ));
-        if !self.contents.notes.contains(&note) {
-            self.contents.notes.push(note);
-        }
+        let mut notes = found.notes(&self.table.names);
+        notes.extend(found.cut_off.map(|cut| {
+            Note::CutOff(format!(
+                "its last line, {}, has {} of {expected} cells and is left out",
+                cut.line, cut.found
+            ))
+        }));
+        notes.retain(|note| !self.contents.notes.contains(note));
+        self.contents.notes.extend(notes);
     }
 }

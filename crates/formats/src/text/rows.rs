@@ -1,7 +1,9 @@
 //! Parses lines of cells into columns of numbers.
 
+use crate::reader::MISSING;
 use crate::text::date::{Moment, moment};
 use crate::text::encoding::Encoding;
+use crate::text::missing::{MissingCells, MissingWords, add_missing};
 use crate::text::number::{Cell, Marks, bare, cell, leading_number};
 
 /// Separator between cells.
@@ -32,8 +34,17 @@ pub(crate) struct RowPlan {
     /// Prefixes of comment lines.
     pub comments: Vec<String>,
     pub columns: Vec<ColumnKind>,
+    pub missing: MissingWords,
     /// Whether the last cells of a line may be missing.
     pub short_rows: bool,
+}
+
+impl RowPlan {
+    /// Whether a number at the beginning of a cell is its sample: no number stands for a
+    /// missing one, and no separator can be taken for a decimal mark.
+    fn is_plain(&self) -> bool {
+        self.missing.keeps_numbers() && self.separator != Separator::Mark(self.marks.decimal)
+    }
 }
 
 /// Preallocated space for the samples of a column.
@@ -66,6 +77,8 @@ pub(crate) struct Rows {
     pub lines: u64,
     /// Cells that are not numbers, in order.
     pub faults: Vec<Fault>,
+    /// Cells taken as missing samples; lines within the stretch, from 0.
+    pub missing: Vec<MissingCells>,
     /// A line with the wrong number of cells; nothing after it is read.
     pub ragged: Option<Ragged>,
 }
@@ -117,6 +130,7 @@ pub(crate) fn read_rows(
     let (mut at, mut read) = (0, 0);
     while at < bytes.len() {
         if let Separator::Mark(mark) = plan.separator
+            && plan.is_plain()
             && let Some(end) = bare_row(bytes, at, mark, plan, places, columns)
         {
             read += 1;
@@ -151,6 +165,7 @@ pub(crate) fn read_rows(
     rows.rows = read;
     if let Some(ragged) = rows.ragged {
         rows.faults.retain(|fault| fault.line < ragged.line);
+        rows.missing.retain(|cells| cells.line < ragged.line);
     }
     rows
 }
@@ -254,6 +269,7 @@ fn marked_row(
         // The usual cell: a plain number up to the separator or the end of the line.
         if let Some(place) = place
             && plan.columns[column] == ColumnKind::Numbers
+            && plan.is_plain()
         {
             let start = at + blanks(&line[at..]);
             if let Some((value, used)) = leading_number(&line[start..], plan.marks.decimal) {
@@ -325,7 +341,9 @@ fn blank_row(
         if let Some(place) = places.get(column).copied().flatten() {
             let number = leading_number(cell, plan.marks.decimal);
             match (plan.columns[column], number) {
-                (ColumnKind::Numbers, Some((value, used))) if used == cell.len() => {
+                (ColumnKind::Numbers, Some((value, used)))
+                    if used == cell.len() && plan.is_plain() =>
+                {
                     columns[place].push(value);
                 }
                 _ => slow_cell(cell, column, &mut columns[place], plan, rows),
@@ -343,24 +361,39 @@ fn slow_cell(bytes: &[u8], column: usize, out: &mut Column, plan: &RowPlan, rows
         // UTF-16 has been converted to UTF-8.
         _ => Encoding::Utf8.decode(bytes),
     };
+    let text = bare(&text);
     let found = match plan.columns[column] {
-        ColumnKind::Numbers => cell(&text, plan.marks),
-        ColumnKind::Moments(start) => match moment(bare(&text)) {
+        ColumnKind::Numbers => cell(text, plan.marks),
+        ColumnKind::Moments(start) => match moment(text) {
             Some(moment) => Cell::Number(moment.since(start)),
-            None if bare(&text).is_empty() => Cell::Blank,
+            None if text.is_empty() => Cell::Blank,
             None => Cell::Other,
         },
         ColumnKind::Text => Cell::Blank,
     };
+    let missing = match found {
+        Cell::Blank => false,
+        Cell::Number(value) => plan.missing.has_number(value),
+        Cell::Other => plan.missing.has(text),
+    };
     out.push(match found {
+        _ if missing => MISSING,
         Cell::Number(value) => value,
         Cell::Blank | Cell::Other => f64::NAN,
     });
-    if found == Cell::Other {
+    if missing {
+        let cells = MissingCells {
+            column,
+            count: 1,
+            line: rows.lines,
+            word: text.to_owned(),
+        };
+        add_missing(&mut rows.missing, cells);
+    } else if found == Cell::Other {
         rows.faults.push(Fault {
             line: rows.lines,
             column,
-            text: bare(&text).to_owned(),
+            text: text.to_owned(),
         });
     }
 }
@@ -377,6 +410,7 @@ mod tests {
             newline: b'\n',
             comments: vec!["#".to_owned()],
             columns: vec![ColumnKind::Numbers; columns],
+            missing: MissingWords::default(),
             short_rows: false,
         }
     }

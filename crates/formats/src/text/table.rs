@@ -1,10 +1,13 @@
 //! Reads the rows of a text table on all cores, in bounded memory.
 
+use crate::contents::Note;
 use crate::error::{Error, Place};
 use crate::reader::Sink;
 use crate::room::zeros;
 use crate::source::Source;
 use crate::text::lines::{Lines, stretch, stretch_in, stretches};
+use crate::text::midnight::Clock;
+use crate::text::missing::{MissingCells, add_missing};
 use crate::text::rows::{Column, Fault, RowPlan, Rows, most_rows, read_rows};
 use rayon::prelude::*;
 
@@ -34,23 +37,60 @@ pub struct CutOff {
     pub found: usize,
 }
 
+/// What reading a table has found besides its samples.
+#[derive(Debug, Default)]
+pub struct Found {
+    /// The last line, if it was truncated; it is left out.
+    pub cut_off: Option<CutOff>,
+    /// Cells taken as missing samples; lines of the file, from 1.
+    pub missing: Vec<MissingCells>,
+    /// Columns of times of day that pass midnight, and rows before that.
+    pub midnights: Vec<(usize, usize)>,
+}
+
+impl Found {
+    /// What the user should know, the end of the table aside.
+    pub fn notes(&self, names: &[String]) -> Vec<Note> {
+        let missing = self.missing.iter().map(|cells| Note::Missing {
+            column: names[cells.column].clone(),
+            count: cells.count,
+            line: cells.line,
+            word: shortened(&cells.word),
+        });
+        let midnights = self.midnights.iter().map(|(column, rows)| {
+            Note::Assumed(format!(
+                "the times of day in \"{}\" pass midnight after {rows} rows and go on from there",
+                names[*column]
+            ))
+        });
+        missing.chain(midnights).collect()
+    }
+}
+
 /// Samples of a stretch by column, and what else was found.
 type Read = (Vec<Vec<f64>>, Rows);
 
 /// Reads columns of a table in blocks.
 ///
 /// * `wanted`: file column and sink position
-///
-/// Returns the last line if it was truncated; it is left out.
 pub fn read_table(
     source: &Source,
     table: &Table,
     wanted: &[(usize, usize)],
     sink: &mut dyn Sink,
-) -> Result<Option<CutOff>, Error> {
+) -> Result<Found, Error> {
     let places = places(table, wanted.iter().map(|(column, _)| *column));
     let count = stretches(&table.lines);
     let batch = (AHEAD * rayon::current_num_threads()) as u64;
+    let mut clocks: Vec<Option<Clock>> = wanted
+        .iter()
+        .map(|(column, _)| Clock::of(table.plan.columns[*column]))
+        .collect();
+    let midnights = |clocks: &[Option<Clock>]| {
+        let passed = wanted.iter().zip(clocks);
+        let passed = passed.filter_map(|((column, _), c)| Some((*column, c.as_ref()?.midnight?)));
+        passed.collect()
+    };
     let mut course = Course::new(table);
     let mut start = 0;
     while start < count {
@@ -67,17 +107,24 @@ pub fn read_table(
             })
             .collect();
         for read in read {
-            let (columns, rows) = read?;
+            let (mut columns, rows) = read?;
             course.faults(source, table, &rows, sink)?;
-            for (column, (_, position)) in columns.iter().zip(wanted) {
+            let wanted = wanted.iter().zip(&mut clocks);
+            for (column, ((_, position), clock)) in columns.iter_mut().zip(wanted) {
+                if let Some(clock) = clock {
+                    clock.pass(&mut column[..rows.rows]);
+                }
                 sink.take(*position, &column[..rows.rows])?;
             }
-            if let Some(cut) = course.advance(source, table, &rows)? {
-                return Ok(Some(cut));
+            course.advance(source, table, rows)?;
+            if course.found.cut_off.is_some() {
+                course.found.midnights = midnights(&clocks);
+                return Ok(course.found);
             }
         }
         start = end;
     }
+    course.found.midnights = midnights(&clocks);
     course.end(source, table, wanted.is_empty())
 }
 
@@ -88,7 +135,7 @@ pub fn read_whole_table(
     source: &Source,
     table: &Table,
     wanted: &[usize],
-) -> Result<(Vec<Vec<f64>>, Option<CutOff>), Error> {
+) -> Result<(Vec<Vec<f64>>, Found), Error> {
     struct Strict;
     impl Sink for Strict {
         fn take(&mut self, _: usize, _: &[f64]) -> Result<(), Error> {
@@ -131,9 +178,8 @@ pub fn read_whole_table(
     // Close the gaps left by blank lines and comments.
     let (mut from, mut to) = (0, 0);
     let mut course = Course::new(table);
-    let mut cut = None;
-    for (rows, length) in read.iter().zip(&lengths) {
-        course.faults(source, table, rows, &mut Strict)?;
+    for (rows, length) in read.into_iter().zip(&lengths) {
+        course.faults(source, table, &rows, &mut Strict)?;
         if from != to {
             columns
                 .iter_mut()
@@ -141,16 +187,20 @@ pub fn read_whole_table(
         }
         from += length;
         to += rows.rows;
-        cut = course.advance(source, table, rows)?;
-        if cut.is_some() {
+        course.advance(source, table, rows)?;
+        if course.found.cut_off.is_some() {
             break;
         }
     }
     columns.iter_mut().for_each(|column| column.truncate(to));
-    if cut.is_none() {
-        course.end(source, table, wanted.is_empty())?;
+    for (column, index) in columns.iter_mut().zip(wanted) {
+        if let Some(mut clock) = Clock::of(table.plan.columns[*index]) {
+            clock.pass(column);
+            let midnight = clock.midnight.map(|rows| (*index, rows));
+            course.found.midnights.extend(midnight);
+        }
     }
-    Ok((columns, cut))
+    Ok((columns, course.end(source, table, wanted.is_empty())?))
 }
 
 fn places(table: &Table, wanted: impl Iterator<Item = usize>) -> Vec<Option<usize>> {
@@ -165,6 +215,7 @@ fn places(table: &Table, wanted: impl Iterator<Item = usize>) -> Vec<Option<usiz
 struct Course {
     line: u64,
     rows: usize,
+    found: Found,
 }
 
 impl Course {
@@ -172,6 +223,7 @@ impl Course {
         Self {
             line: table.first_line,
             rows: 0,
+            found: Found::default(),
         }
     }
 
@@ -188,41 +240,36 @@ impl Course {
             .try_for_each(|f| sink.fault(f))
     }
 
-    /// Moves past a stretch; returns a truncated last line.
-    fn advance(
-        &mut self,
-        source: &Source,
-        table: &Table,
-        rows: &Rows,
-    ) -> Result<Option<CutOff>, Error> {
+    /// Moves past a stretch; notes a truncated last line.
+    fn advance(&mut self, source: &Source, table: &Table, rows: Rows) -> Result<(), Error> {
         self.rows += rows.rows;
+        for cells in rows.missing {
+            let line = self.line + cells.line;
+            add_missing(&mut self.found.missing, MissingCells { line, ..cells });
+        }
         let Some(ragged) = rows.ragged else {
             self.line += rows.lines;
-            return Ok(None);
+            return Ok(());
         };
         let (line, found) = (self.line + ragged.line, ragged.found);
         let expected = table.plan.columns.len();
         if ragged.last && self.rows > 0 && found < expected {
-            return Ok(Some(CutOff { line, found }));
+            self.found.cut_off = Some(CutOff { line, found });
+            return Ok(());
         }
         let problem =
             format!("expected {expected} cells, as in the lines before, but found {found}");
         Err(malformed(source, line, problem))
     }
 
-    fn end(
-        &self,
-        source: &Source,
-        table: &Table,
-        nothing_wanted: bool,
-    ) -> Result<Option<CutOff>, Error> {
+    fn end(self, source: &Source, table: &Table, nothing_wanted: bool) -> Result<Found, Error> {
         match self.rows == 0 && !nothing_wanted {
             true => Err(malformed(
                 source,
                 table.first_line,
                 "there are no rows of numbers".to_owned(),
             )),
-            false => Ok(None),
+            false => Ok(self.found),
         }
     }
 }
@@ -231,8 +278,8 @@ fn malformed(source: &Source, line: u64, problem: String) -> Error {
     source.malformed(
         Place::Line(line),
         problem,
-        "mend the line, or say with the settings separator, decimal and header_line how \
-                 to read the file",
+        "mend the line, or say with the settings separator, decimal, header_line and footer \
+         how to read the file",
     )
 }
 
@@ -255,7 +302,8 @@ fn hint(table: &Table, text: &str) -> String {
     if text.contains(other) && swapped.replace(decimal, ".").parse::<f64>().is_ok() {
         return format!(" (the other cells have \"{decimal}\" before the decimals)");
     }
-    "; leave the cell blank where there is no sample".to_owned()
+    let advice = "; if it stands for a missing sample, name it: missing = ";
+    format!("{advice}[\"{}\"]", shortened(text))
 }
 
 /// Shortens a text for a message.

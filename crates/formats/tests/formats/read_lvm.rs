@@ -27,9 +27,43 @@ fn reference_real_files() {
         (
             "daq_formats/lvm/long_single_header_multi_ch.lvm",
             &[
-                ("F", 16384, 0x2603_72ab_2618_08fc, Some((0.0, 0.000977))),
-                ("m_1", 16384, 0x01df_6ad5_a079_bd7d, Some((0.0, 0.000977))),
-                ("m_2", 16384, 0x9e2c_5154_1aa7_a630, Some((0.0, 0.000977))),
+                // Twice the samples of its one header: by lvm_read, in halves.
+                (
+                    "F (segment 1)",
+                    8192,
+                    0x9ca0_b7b8_b288_bf1c,
+                    Some((0.0, 0.000977)),
+                ),
+                (
+                    "m_1 (segment 1)",
+                    8192,
+                    0x1166_19fe_4367_3e86,
+                    Some((0.0, 0.000977)),
+                ),
+                (
+                    "m_2 (segment 1)",
+                    8192,
+                    0xefcc_6015_dc83_7ed2,
+                    Some((0.0, 0.000977)),
+                ),
+                (
+                    "F (segment 2)",
+                    8192,
+                    0x093f_1c87_b9b6_c9e0,
+                    Some((0.0, 0.000977)),
+                ),
+                (
+                    "m_1 (segment 2)",
+                    8192,
+                    0xb02e_c75a_94df_bef7,
+                    Some((0.0, 0.000977)),
+                ),
+                (
+                    "m_2 (segment 2)",
+                    8192,
+                    0x5127_fdb1_e9f0_a75e,
+                    Some((0.0, 0.000977)),
+                ),
             ],
         ),
         (
@@ -118,10 +152,35 @@ fn closed_form_two_segments() {
     assert_eq!(found, [vec![1.0, 2.0, 3.0], vec![4.0, 5.0]]);
 }
 
+/// LabVIEW's "One header only": later measurements follow without a header.
+#[test]
+fn closed_form_three_measurements_under_one_header() {
+    let text = format!(
+        "{HEADER}{}",
+        segment("0.25", "\t1\n\t2\n\t3\n\t4\n\t5\n\t6\n\n\t7\n\t8\n\t9\n")
+    );
+    let mut reader = open_bytes("t.lvm", text.clone().into_bytes(), Format::Lvm).unwrap();
+    let channels = reader.contents().channels.clone();
+    let names: Vec<&str> = channels.iter().map(|c| c.name.as_str()).collect();
+    assert_eq!(names, ["F (segment 1)", "F (segment 2)", "F (segment 3)"]);
+    let time = TimeBase::Uniform {
+        start: 0.5,
+        interval: 0.25,
+    };
+    assert!(channels.iter().all(|channel| channel.time == time));
+    let found = samples(reader.as_mut());
+    assert_eq!(found, [[1.0, 2.0, 3.0], [4.0, 5.0, 6.0], [7.0, 8.0, 9.0]]);
+    // A fault is told by its line in the file.
+    let text = text.replace("\t8\n", "\tdefect\n");
+    let mut reader = open_bytes("t.lvm", text.into_bytes(), Format::Lvm).unwrap();
+    let told = reader.read_whole(&[2]).unwrap_err().to_string();
+    assert!(told.contains("line 24, column \"F\": \"defect\""), "{told}");
+}
+
 #[test]
 fn rejects_files_without_headers_and_says_the_line_of_a_fault() {
     let only_file_header = HEADER.to_owned();
-    let bad = format!("{HEADER}{}", segment("0.25", "\t1\n\toverload\n\t3\n"));
+    let bad = format!("{HEADER}{}", segment("0.25", "\t1\n\tdefect\n\t3\n"));
     for (text, expected) in [
         (
             "LabVIEW Measurement\t\n".to_owned(),
@@ -133,7 +192,7 @@ fn rejects_files_without_headers_and_says_the_line_of_a_fault() {
         ),
         (
             bad,
-            "t.lvm, line 17, column \"F\": \"overload\" is not a number",
+            "t.lvm, line 17, column \"F\": \"defect\" is not a number",
         ),
     ] {
         let read = open_bytes("t.lvm", text.into_bytes(), Format::Lvm)

@@ -1,9 +1,12 @@
 //! Tables in text: dialects, values of real files, faults.
 
 use crate::channels::{check_file, open_bytes, samples};
+use windfall_formats::Error;
 use windfall_formats::contents::{Format, TimeBase};
 use windfall_formats::open::{OpenOptions, open_source};
+use windfall_formats::reader::{Reader, is_missing};
 use windfall_formats::source::Source;
+use windfall_formats::text::encoding::Encoding;
 use windfall_formats::text::options::TextOptions;
 use windfall_formats::text::rows::Separator;
 
@@ -152,11 +155,9 @@ fn rejects_what_is_no_table_of_numbers_or_damaged() {
         ("Dear Sir,\nhow do you do?\n", format!("t.csv: {prose} \"Dear Sir,\")")),
         (
             "t,F\n0,1\n1,x2\n2,3\n",
-            "t.csv, line 3, column \"F\": \"x2\" is not a number; leave the cell blank".to_owned(),
-        ),
-        (
-            "t,F\n0,1\n1,nan\n2,3\n",
-            "t.csv, line 3, column \"F\": \"nan\" is not a number; leave the cell blank".to_owned(),
+            "t.csv, line 3, column \"F\": \"x2\" is not a number; if it stands for a missing sample, \
+             name it: missing = [\"x2\"]"
+                .to_owned(),
         ),
         (
             "t;F\n0;1,5\n1;2,5\n2;3.5\n",
@@ -178,6 +179,171 @@ fn rejects_what_is_no_table_of_numbers_or_damaged() {
         let message = read.unwrap_err().to_string();
         assert!(message.starts_with(&expected), "{text:?}: {message}");
     }
+}
+
+fn notes_of(reader: &dyn Reader) -> Vec<String> {
+    let notes = reader.contents().notes.iter();
+    notes
+        .map(|note| format!("{}: {note}", note.code()))
+        .collect()
+}
+
+/// Samples and notes of a text, read with settings.
+fn read_with(text: &[u8], settings: TextOptions) -> Result<(Vec<Vec<f64>>, Vec<String>), Error> {
+    let options = OpenOptions {
+        format: Some(Format::Text),
+        text: settings,
+    };
+    let source = Source::from_bytes("t.csv", text.to_vec());
+    let mut reader = open_source(source, &options)?;
+    let all: Vec<usize> = (0..reader.contents().channels.len()).collect();
+    let found = reader.read_whole(&all)?;
+    Ok((found, notes_of(reader.as_ref())))
+}
+
+#[test]
+fn closed_form_missing_samples_are_told_from_blank_cells_and_said() {
+    let words = [
+        "NaN", "nan", "NA", "N/A", "#N/A", "null", "NULL", "None", "-", "--", ".", "?", "OVLD",
+        "OVL", "OL", "OVERLOAD", "Over", "Inf", "#DIV/0!", "1.#QNAN", "-1.#IND", "\"n/a\"",
+    ];
+    for word in words {
+        let text = format!("t,F\n0,1\n1,{word}\n2,\n3,{word}\n4,5\n");
+        let (found, notes) = read_with(text.as_bytes(), TextOptions::default()).unwrap();
+        assert_eq!((found[1][0], found[1][4]), (1.0, 5.0), "{word}");
+        let missing: Vec<bool> = found[1].iter().map(|sample| is_missing(*sample)).collect();
+        assert_eq!(missing, [false, true, false, true, false], "{word}");
+        assert!(found[1][2].is_nan());
+        let word = word.trim_matches('"');
+        let expected = format!(
+            "missing-samples: \"F\": 2 cell(s) taken as missing samples; the first is \"{word}\" in \
+             line 3"
+        );
+        assert_eq!(notes, [expected]);
+    }
+    // Words and numbers of the user; a number however it is written.
+    let own = TextOptions {
+        missing: vec!["defect".to_owned(), "9999".to_owned()],
+        ..TextOptions::default()
+    };
+    for text in [
+        "t,F\n0,1\n1,defect\n2,9999.0\n3,4\n",
+        "t F\n0 1\n1 9.999e3\n2 9999\n3 4\n",
+    ] {
+        let (found, notes) = read_with(text.as_bytes(), own.clone()).unwrap();
+        assert!(is_missing(found[1][1]) && is_missing(found[1][2]), "{text}");
+        assert_eq!(
+            (found[0][3], found[1][3], notes.len()),
+            (3.0, 4.0, 1),
+            "{text}"
+        );
+    }
+}
+
+#[test]
+fn closed_form_footers_and_zeros_at_the_end_are_no_rows() {
+    let footer = |lines| TextOptions {
+        footer: lines,
+        ..TextOptions::default()
+    };
+    let text = "t;F\n0;1\n1;2\nMaximum;2\nEnd of file\n";
+    let utf16 = |unit: fn(u16) -> [u8; 2]| text.encode_utf16().flat_map(unit).collect::<Vec<u8>>();
+    let dialects = [
+        text.as_bytes().to_vec(),
+        text.trim_end().as_bytes().to_vec(),
+        text.replace('\n', "\r\n").into_bytes(),
+        text.replace('\n', "\r").into_bytes(),
+        utf16(u16::to_le_bytes),
+        utf16(u16::to_be_bytes),
+    ];
+    for (index, mut bytes) in dialects.into_iter().enumerate() {
+        for zeros in [0, 4096] {
+            bytes.extend(vec![0; zeros]);
+            let options = TextOptions {
+                encoding: match index {
+                    4 => Some(Encoding::Utf16Le),
+                    5 => Some(Encoding::Utf16Be),
+                    _ => None,
+                },
+                ..footer(2)
+            };
+            let (found, notes) = read_with(&bytes, options).unwrap();
+            assert_eq!(found, [[0.0, 1.0], [1.0, 2.0]], "{index} {zeros}");
+            assert_eq!(notes.len(), 1 + usize::from(zeros > 0), "{notes:?}");
+        }
+    }
+    let told = read_with(text.as_bytes(), footer(9))
+        .unwrap_err()
+        .to_string();
+    assert!(
+        told.contains("footer = 9 does not fit: the file has 5 lines"),
+        "{told}"
+    );
+    let told = read_with(text.as_bytes(), TextOptions::default())
+        .unwrap_err()
+        .to_string();
+    assert!(
+        told.contains("line 4, column \"t\"") || told.contains("footer"),
+        "{told}"
+    );
+    // Zeros elsewhere are no text.
+    assert!(read_with(b"t,F\n0,1\n1,\0\n2,3\n", TextOptions::default()).is_err());
+}
+
+#[test]
+fn closed_form_times_of_day_go_on_after_midnight() {
+    let text = b"clock,F\n23:59:59.5,1\n23:59:59.75,2\n00:00:00,3\n00:00:00.25,4\n";
+    let (found, notes) = read_with(text, TextOptions::default()).unwrap();
+    assert_eq!(found[0], [0.0, 0.25, 0.5, 0.75]);
+    let told =
+        "assumed: the times of day in \"clock\" pass midnight after 2 rows and go on from there";
+    assert!(notes.iter().any(|note| note == told), "{notes:?}");
+    // With dates nothing is added, and a clock that was set back a little is not midnight.
+    let text = b"clock,F\n2024-12-31 23:59:59.5,1\n2025-01-01 00:00:00,2\n";
+    assert_eq!(
+        read_with(text, TextOptions::default()).unwrap().0[0],
+        [0.0, 0.5]
+    );
+    let text = b"clock,F\n12:00:05,1\n12:00:03,2\n";
+    assert_eq!(
+        read_with(text, TextOptions::default()).unwrap().0[0],
+        [0.0, -2.0]
+    );
+}
+
+/// Whether three digits follow a decimal mark or a mark between groups: the likelier
+/// reading, and what says so.
+#[test]
+fn closed_form_marks_that_could_be_either_are_asked_about() {
+    for (text, first, asked) in [
+        ("20.123;21.456\n22.456;21.567\n", 20.123, true),
+        ("20,123;21,456\n22,456;21,567\n", 20.123, true),
+        ("20,123\t21,456\n22,456\t21,567\n", 20.123, true),
+        ("1,234\t5\n678\t6\n2,345\t7\n", 1234.0, true),
+        ("\"1,234\",5\n\"2,345\",6\n", 1.234, true),
+        ("\"1,234\",5\n\"2,34\",6\n", 1.234, false),
+        ("20.123,21.456\n22.456,21.567\n", 20.123, false),
+        ("0,5;1.234\n0,7;2.345\n", 0.5, true),
+        // One cell shows it.
+        ("20.123;0.5\n22.456;1.5\n", 20.123, false),
+        ("1.234,5;7\n2.345,6;8\n", 1234.5, false),
+        ("1.234.567;7\n2.345;8\n", 1_234_567.0, false),
+        ("1.234e0;7\n2.345e0;8\n", 1.234, false),
+    ] {
+        let (found, notes) = read_with(text.as_bytes(), TextOptions::default()).unwrap();
+        assert_eq!(found[0][0], first, "{text:?} {notes:?}");
+        let told = notes
+            .iter()
+            .any(|note| note.starts_with("decimal-or-thousands: \""));
+        assert_eq!(told, asked, "{text:?} {notes:?}");
+    }
+    let settled = TextOptions {
+        decimal: Some(','),
+        thousands: Some('.'),
+        ..TextOptions::default()
+    };
+    let (found, notes) = read_with(b"20.123;21.456\n22.456;21.567\n", settled).unwrap();
+    assert_eq!((found[0][0], notes.len()), (20_123.0, 0));
 }
 
 #[test]

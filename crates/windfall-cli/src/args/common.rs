@@ -150,6 +150,8 @@ pub struct ExplainArguments {
   windfall inspect impact.lvm --plot impact.svg
       a figure of all channels, with its data in impact.csv beside it
   windfall inspect tap.wav --channel 'channel 1' --format json
+  windfall inspect drop.tdms --export drop.csv
+      every sample, with names and units; .npy for numpy.load
 
 Formats: text (CSV and relatives), LVM, TDMS, MAT (4 to 7.3), HDF5, WAV, UFF58 and 58b, sigrok; \
 found out from the first bytes of the file.")]
@@ -163,6 +165,9 @@ pub struct InspectArguments {
     /// Write a figure of the channels (SVG or PNG, by its ending) and its data (CSV, same name); one recording only
     #[arg(long, value_name = "FILE.svg|FILE.png", value_hint = ValueHint::FilePath)]
     pub plot: Option<PathBuf>,
+    /// Write every sample as it was read, as CSV or NumPy array (by its ending); one recording only
+    #[arg(long, value_name = "FILE.csv|FILE.npy", value_hint = ValueHint::FilePath)]
+    pub export: Option<PathBuf>,
     #[command(flatten)]
     pub open: OpenRequest,
     /// How the result is shown

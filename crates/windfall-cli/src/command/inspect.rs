@@ -3,6 +3,9 @@
 use crate::args::common::InspectArguments;
 use crate::args::format::Format;
 use crate::show::{message, write_json, write_result};
+use windfall_files::expand::expanded;
+use windfall_files::option_value::unusable;
+use windfall_inspect::export::export_recording;
 use windfall_inspect::run::{InspectRequest, inspect_recording, write_figure};
 use windfall_inspect::text::{csv_of_inspections, text_of_inspection};
 
@@ -17,7 +20,8 @@ pub fn run(arguments: &InspectArguments) -> anyhow::Result<()> {
     };
     let mut inspections = Vec::new();
     let mut first_failure = None;
-    for file in &arguments.files {
+    let files = expanded(&arguments.files)?;
+    for file in &files {
         match inspect_recording(file, &request) {
             Ok(inspection) => inspections.push(inspection),
             Err(error) => {
@@ -32,6 +36,14 @@ pub fn run(arguments: &InspectArguments) -> anyhow::Result<()> {
         for written in write_figure(path, &inspections)? {
             message(&format!("written: {}", written.display()));
         }
+    }
+    if let Some(path) = &arguments.export {
+        let [file] = files.as_slice() else {
+            let problem = "it takes the samples of one recording; name one";
+            return Err(unusable(format!("--export {}", path.display()), problem).into());
+        };
+        export_recording(file, path, &request)?;
+        message(&format!("written: {}", path.display()));
     }
     match arguments.format {
         Format::Json => write_json(&serde_json::json!({ "files": inspections }))?,
