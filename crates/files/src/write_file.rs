@@ -43,7 +43,7 @@ pub fn write_whole(path: &Path, contents: &[u8]) -> Result<(), Error> {
     let path = &behind_links(path);
     check_written(path, Some(contents))?;
     let written = |_: &Path| list_written(path, contents);
-    replace(path, |file| file.write_all(contents), written)
+    replace(path, system(path, |file| file.write_all(contents)), written)
 }
 
 /// [`write_whole`] of a file that is too long for memory.
@@ -51,10 +51,10 @@ pub fn write_whole(path: &Path, contents: &[u8]) -> Result<(), Error> {
 /// * `write`: writes all of it, and is called again if that has to be repeated
 ///
 /// # Errors
-/// Those of [`write_whole`].
+/// Those of [`write_whole`], and those of `write`.
 pub fn write_streamed(
     path: &Path,
-    write: impl FnMut(&mut File) -> IoResult<()>,
+    write: impl FnMut(&mut File) -> Result<(), Error>,
 ) -> Result<(), Error> {
     check_target(path)?;
     let path = &behind_links(path);
@@ -72,16 +72,24 @@ pub fn replace_file(
 ) -> Result<(), Error> {
     check_output(path)?;
     let path = &behind_links(path);
-    replace(path, write, |_| Ok(()))?;
+    replace(path, system(path, write), |_| Ok(()))?;
     // That the name stands for the new file is to last as well, where the system can say so.
     let folder = path.parent().and_then(|own| File::open(own).ok());
     let _ = folder.map(|own| own.sync_all());
     Ok(())
 }
 
-fn replace(
+/// Says what a system's error belongs to.
+fn system(
     path: &Path,
     mut write: impl FnMut(&mut File) -> IoResult<()>,
+) -> impl FnMut(&mut File) -> Result<(), Error> {
+    move |file| write(file).map_err(|source| Error::access(path, "write", source))
+}
+
+fn replace(
+    path: &Path,
+    mut write: impl FnMut(&mut File) -> Result<(), Error>,
     written: impl Fn(&Path) -> Result<(), Error>,
 ) -> Result<(), Error> {
     let failed = |source| Error::access(path, "write", source);
@@ -99,12 +107,10 @@ fn replace(
     sweep(path);
     for attempt in 1.. {
         let (partial, mut file) = partial_of(path).map_err(failed)?;
-        let filled = write(&mut file).and_then(|()| {
+        let moved = write(&mut file).and_then(|()| {
             let permissions = before.as_ref().map(|own| own.permissions());
-            permissions.map_or(Ok(()), |own| file.set_permissions(own))?;
-            file.sync_all()
-        });
-        let moved = filled.map_err(failed).and_then(|()| {
+            let kept = permissions.map_or(Ok(()), |own| file.set_permissions(own));
+            kept.and_then(|()| file.sync_all()).map_err(failed)?;
             written(&partial)?;
             std::fs::rename(&partial, path).map_err(failed)
         });
@@ -131,7 +137,7 @@ pub(crate) fn partial_of(path: &Path) -> IoResult<(PathBuf, File)> {
 }
 
 /// Removes, once for each folder, what killed programs left beside a place.
-pub(crate) fn sweep(path: &Path) {
+pub fn sweep(path: &Path) {
     static SWEPT: Mutex<BTreeSet<PathBuf>> = Mutex::new(BTreeSet::new());
     let Some(folder) = path.with_file_name(".").canonicalize().ok() else {
         return;
@@ -160,30 +166,6 @@ fn behind_links(path: &Path) -> PathBuf {
 fn is_stream(path: &Path) -> bool {
     let standard = path.starts_with("/dev") || path.starts_with("/proc");
     std::fs::metadata(path).is_ok_and(|own| !own.is_dir() && (standard || !own.is_file()))
-}
-
-/// [`write_whole`] of contents that are too large for the memory: `write` writes them into
-/// the file beside the place.
-///
-/// # Errors
-/// As [`write_whole`], and those of `write`.
-pub fn write_streamed(
-    path: &Path,
-    write: impl FnOnce(&mut File) -> Result<(), Error>,
-) -> Result<(), Error> {
-    check_output(path)?;
-    let mut name = path.file_name().unwrap_or_default().to_owned();
-    name.push(format!(".{}.partial", std::process::id()));
-    let partial = path.with_file_name(name);
-    let failed = |source| Error::access(path, "write", source);
-    let written = File::create(&partial).map_err(failed).and_then(|mut file| {
-        write(&mut file)?;
-        file.sync_all().map_err(failed)?;
-        std::fs::rename(&partial, path).map_err(failed)
-    });
-    written.inspect_err(|_| {
-        let _ = std::fs::remove_file(&partial);
-    })
 }
 
 /// Makes a directory for results, with those above it.

@@ -68,8 +68,8 @@ pub fn export_recording(file: &Path, path: &Path, request: &InspectRequest) -> R
     wanted.extend(times.collect::<Vec<_>>());
     wanted.sort_unstable();
     wanted.dedup();
-    let (names, columns) = columns_of(contents, &wanted);
     write_streamed(path, |file| {
+        let (names, columns) = columns_of(reader.contents(), &wanted);
         let mut table = Table {
             kind,
             columns,

@@ -9,6 +9,7 @@ use std::path::Path;
 use windfall_files::error::Error;
 use windfall_files::inputs::{protect, protect_campaign};
 use windfall_files::text::toml_source::TomlSource;
+use windfall_files::write_file::sweep;
 
 /// Files of a campaign that no result may replace, whether they are there or not.
 const OWN_FILES: [&str; 6] = [
@@ -36,6 +37,9 @@ pub fn read_shared(
 ) -> Result<Campaign, Error> {
     let files = file_plan(source, directory, files, channels)?;
     protect(&directory.join(STORE_FILE));
+    for folder in [directory, &files.directory] {
+        sweep(&folder.join(STORE_FILE));
+    }
     protect_campaign(directory, &OWN_FILES, &files.directory);
     let specimens_file = directory.join("specimens.csv");
     let specimens = match specimens_file.exists() {
