@@ -43,7 +43,7 @@ fn check_figures(directory: &Path, background: &str) -> Vec<String> {
     let mut names: Vec<String> = Vec::new();
     for file in files {
         let path = file.unwrap().path();
-        if path.extension().unwrap() != "svg" {
+        if path.extension() != Some("svg".as_ref()) {
             continue;
         }
         let svg = read(&path);

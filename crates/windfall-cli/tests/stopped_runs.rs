@@ -5,6 +5,7 @@
 use std::path::Path;
 use std::process::{Child, Command, Output, Stdio};
 use std::time::{Duration, Instant};
+use windfall_files::written::LIST;
 
 const WINDFALL: &str = env!("CARGO_BIN_EXE_windfall");
 const TABLES: [&str; 7] = [
@@ -84,6 +85,7 @@ fn names(directory: &Path) -> Vec<String> {
     let mut names: Vec<String> = entries
         .map(|own| name(own).into_string().unwrap())
         .collect();
+    names.retain(|name| name != LIST);
     names.sort();
     names
 }

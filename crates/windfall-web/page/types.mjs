@@ -26,7 +26,8 @@ async function description() {
   const { directory, remove } = await scratch();
   const server = await serve(directory);
   try {
-    return await (await fetch(`${server.origin}/api/openapi.json`)).json();
+    const address = `${server.origin}/api/openapi.json`;
+    return await (await fetch(address, { headers: server.admitted })).json();
   } finally {
     await server.stop();
     await remove();

@@ -93,7 +93,9 @@ fn after_refusal(action: &str, source: &rusqlite::Error) -> &'static str {
         ("write", Some(ErrorCode::ReadOnly | ErrorCode::CannotOpen)) => {
             "; the directory is read-only for you: copy the campaign to a place where you may write"
         }
-        ("write", _) => "; earlier results are as they were",
+        ("write", _) => {
+            "; earlier results are as they were. If the disk is full, make room and run again"
+        }
         _ => "",
     }
 }

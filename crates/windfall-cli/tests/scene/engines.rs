@@ -5,6 +5,7 @@ use super::{said, windfall, windfall_command};
 use std::collections::BTreeMap;
 use std::os::unix::fs::PermissionsExt;
 use std::path::Path;
+use windfall_files::written::LIST;
 
 fn with_path(arguments: &[&str], directory: &Path, path: &str) -> (bool, String, String) {
     let mut command = windfall_command(arguments, directory);
@@ -422,6 +423,7 @@ fn rejects_engines_that_are_absent_old_or_fail() {
     let out = folder.path().join("scene.run");
     std::fs::create_dir(&out).unwrap();
     std::fs::write(out.join("events.csv"), "earlier").unwrap();
+    std::fs::write(out.join(LIST), "any  events.csv\n").unwrap();
     let good = help("29 Aug 2024", styles);
     fake(
         &programs,

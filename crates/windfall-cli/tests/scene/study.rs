@@ -3,6 +3,7 @@
 use super::{change, windfall};
 use std::collections::BTreeMap;
 use std::path::Path;
+use windfall_files::written::LIST;
 
 const REGRESSION: &str = "response = \"log(bruise_volume_mm3)\"
 terms = [
@@ -247,11 +248,8 @@ fn a_study_keeps_what_works_and_nothing_stale() {
     std::fs::write(&old, "{}").unwrap();
     // Runs that no study made are somebody's own.
     let (done, _, problem) = windfall(&["scene", "study", "s/study.toml"], folder.path());
-    assert!(!done && problem.contains("not overwritten") && old.exists());
-    let mark = folder
-        .path()
-        .join("s/study.study/variants/made_by_a_study.txt");
-    std::fs::write(mark, "").unwrap();
+    assert!(!done && problem.contains("not written by windfall") && old.exists());
+    std::fs::write(old.with_file_name(LIST), "any  scene.json\n").unwrap();
     let run = |threads: &str, out: &str| {
         let arguments = [
             "scene",
