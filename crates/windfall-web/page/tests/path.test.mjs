@@ -408,7 +408,7 @@ test("a server that was started again asks for its new token, and the page then 
   assert.equal(other.url(), `${server.origin}/`);
   await told.waitFor({ state: "detached", timeout: 20_000 });
   await page.getByRole("button", { name: "Save campaign.toml" }).click();
-  await page.getByText("As on disk").waitFor();
+  await page.locator("#text-state").getByText("As on disk").waitFor();
   const text = await readFile(join(place.directory, "apples", "campaign.toml"), "utf8");
   assert.match(text, /# more\n$/);
 });
