@@ -147,7 +147,8 @@ pub fn sweep(path: &Path) {
         return;
     }
     for entry in std::fs::read_dir(folder).into_iter().flatten().flatten() {
-        let left = entry.file_name().to_string_lossy().ends_with(PARTIAL);
+        let plain = entry.file_type().is_ok_and(|own| own.is_file());
+        let left = plain && entry.file_name().to_string_lossy().ends_with(PARTIAL);
         let free = |file: File| file.try_lock().is_ok();
         if left && File::open(entry.path()).is_ok_and(free) {
             let _ = std::fs::remove_file(entry.path());

@@ -43,11 +43,14 @@ pub fn check_written(path: &Path, contents: Option<&[u8]>) -> Result<(), Error> 
     if !replaced || FORCE.load(Ordering::Relaxed) {
         return Ok(());
     }
+    check_plain(&list_of(path))?;
     let name = name_of(path);
-    let digest = digest_of_file(path)?;
-    let same = contents.is_some_and(|own| digest_bytes(own) == digest);
     let listed = |digest: String| with_lines(path, |lines| lines.contains(&(digest, name.clone())));
-    match same || listed(digest) || listed(ANY.to_owned()) {
+    let digest = digest_of_file(path)?;
+    // Another program would fill what the link leads to.
+    let filled = || check_plain(path).is_ok() && listed(ANY.to_owned());
+    let same = contents.is_some_and(|own| digest_bytes(own) == digest);
+    match same || listed(digest) || filled() {
         true => Ok(()),
         false => Err(Error::NotWrittenHere {
             path: path.to_path_buf(),
@@ -85,7 +88,22 @@ pub fn list_filled_by_others(path: &Path) -> Result<(), Error> {
     add_line(path, ANY.to_owned())
 }
 
+/// Refuses a link, a pipe or a device where windfall keeps a file of its own: what is
+/// written there would go elsewhere. What is not there passes.
+///
+/// # Errors
+/// [`Error::NotRegular`].
+pub fn check_plain(path: &Path) -> Result<(), Error> {
+    match std::fs::symlink_metadata(path) {
+        Ok(found) if !found.is_file() => Err(Error::NotRegular {
+            path: path.to_path_buf(),
+        }),
+        _ => Ok(()),
+    }
+}
+
 fn add_line(path: &Path, digest: String) -> Result<(), Error> {
+    check_plain(&list_of(path))?;
     let line = (digest, name_of(path));
     with_lines(path, |lines| {
         if lines.contains(&line) {
@@ -159,6 +177,20 @@ mod tests {
         // What another program fills is windfall's all the same.
         list_filled_by_others(&path).unwrap();
         write_whole(&path, b"two").unwrap();
+        // A list that leads elsewhere is neither read nor added to.
+        #[cfg(unix)]
+        {
+            let (list, other) = (folder.path().join(LIST), folder.path().join("other"));
+            std::fs::rename(&list, &other).unwrap();
+            std::os::unix::fs::symlink(&other, &list).unwrap();
+            let before = std::fs::read(&other).unwrap();
+            for path in [&path, &folder.path().join("new.toml")] {
+                let told = write_whole(path, b"three").unwrap_err().to_string();
+                assert!(told.contains("not a regular file"), "{told}");
+            }
+            assert_eq!(std::fs::read(&other).unwrap(), before);
+            std::fs::rename(&other, &list).unwrap();
+        }
         // Without the list nothing is known.
         std::fs::remove_file(folder.path().join(LIST)).unwrap();
         assert!(write_whole(&path, b"three").is_err());

@@ -7,7 +7,7 @@ use std::io::{BufWriter, Seek, SeekFrom, Write};
 use std::path::{Path, PathBuf};
 use windfall_files::error::Error;
 use windfall_files::write_file::check_target;
-use windfall_files::written::list_written_as;
+use windfall_files::written::{check_plain, list_written_as};
 
 /// A growing file. Dropped before it is whole, it is removed unless a checkpoint needs it.
 pub(crate) struct GrowingFile {
@@ -28,6 +28,7 @@ impl GrowingFile {
     /// Opens the file as it is.
     pub fn open(path: &Path) -> Result<Self, Error> {
         check_target(path)?;
+        check_plain(&partial_of(path))?;
         let mut options = File::options();
         let file = options
             .create(true)
