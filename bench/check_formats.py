@@ -8,6 +8,7 @@ times and all bits of all samples are compared, by a checksum that depends on th
 order. Exit status 1 if anything differs.
 """
 
+import datetime
 import json
 import struct
 import subprocess
@@ -24,6 +25,7 @@ import pyuff
 import scipy.io
 import scipy.io.wavfile
 import soundfile
+import xlsxwriter
 
 
 def checksum(samples):
@@ -200,7 +202,113 @@ def make_hdf5(folder):
                 many[f"channel {i:02}"] = values[: 10 + i]
 
 
-PEERS = {".h5": read_hdf5, ".sr": read_sigrok, ".tdms": read_tdms, ".lvm": read_lvm, ".wav": read_wav, ".mat": read_mat, ".uff": read_uff}
+def add_table(channels, before, behind, table):
+    """Columns with numbers, as windfall names them; dates as seconds since the first."""
+    for name in table.columns:
+        values = table[name]
+        if values.dtype.kind == "M":
+            values = (values - values.iloc[0]) / datetime.timedelta(seconds=1)
+        numbers = pd.to_numeric(values, errors="coerce")
+        if numbers.notna().any():
+            channels.append(channel(f"{before}{name}{behind}", numbers.to_numpy(float)))
+
+
+def read_book(path):
+    """Sheets that begin with the names of their columns."""
+    sheets = pd.read_excel(path, sheet_name=None, engine="odf" if path.suffix == ".ods" else "openpyxl")
+    channels = []
+    for name, table in sheets.items():
+        add_table(channels, f"{name}/" if len(sheets) > 1 else "", "", table)
+    return channels
+
+
+def read_zip(path):
+    archive = zipfile.ZipFile(path)
+    names = [n for n in archive.namelist() if n.endswith(".csv") and not n.startswith("meta/")]
+    channels = []
+    for name in names:
+        with archive.open(name) as file:
+            table = pd.read_csv(file, float_precision="round_trip")
+        add_table(channels, f"{name[:-4]}/" if len(names) > 1 else "", "", table)
+    return channels
+
+
+def read_segments(path):
+    """Tables below each other, each below two lines of its own, with the rows told in the first."""
+    lines = path.read_text().splitlines()
+    channels, at, number = [], 0, 0
+    while at < len(lines):
+        number += 1
+        rows = int(lines[at].split()[-1])
+        table = pd.read_csv(path, skiprows=at + 1, nrows=rows, float_precision="round_trip")
+        add_table(channels, "", f" (segment {number})", table)
+        at += rows + 3
+    return channels
+
+
+def read_npy(path):
+    loaded = np.load(path)
+    arrays = {"array": loaded} if isinstance(loaded, np.ndarray) else dict(loaded)
+    channels = []
+    for name, values in arrays.items():
+        if values.dtype.names is None:
+            if values.size > 1:
+                add_matrix(channels, name, values)
+            continue
+        for field in values.dtype.names:
+            add_matrix(channels, field if name == "array" else f"{name}/{field}", values[field])
+    return channels
+
+
+def make_tables(folder):
+    """Spreadsheets by three programs, an archive as phyphox writes it, segments of a text."""
+    random = np.random.default_rng(3)
+    size = 20000
+    force = random.normal(size=size) * 10.0 ** random.integers(-300, 300, size)
+    table = pd.DataFrame({"Time (s)": np.arange(size) * 1e-4, "Force (N)": force, "count": random.integers(-9, 9, size)})
+    gaps = table.copy()
+    gaps.loc[gaps.index % 7 == 3, "Force (N)"] = np.nan
+    moments = table.head(50).assign(When=pd.date_range("2024-11-19 23:59:58", periods=50, freq="100ms"))
+    sheets = {"Run 1": table, "Run 2": gaps, "Clock": moments}
+    for engine in ("openpyxl", "xlsxwriter"):
+        with pd.ExcelWriter(folder / f"book_{engine}.xlsx", engine=engine) as writer:
+            for name, sheet in sheets.items():
+                sheet.to_excel(writer, sheet_name=name, index=False)
+    with pd.ExcelWriter(folder / "book.ods", engine="odf") as writer:
+        for name in ("Run 1", "Run 2"):
+            sheets[name].head(2000).to_excel(writer, sheet_name=name, index=False)
+    with xlsxwriter.Workbook(folder / "constant_memory.xlsx", {"constant_memory": True}) as book:
+        sheet = book.add_worksheet("only")
+        sheet.write_row(0, 0, ["Zeit (s)", "Kraft (N)"])
+        for i in range(size):
+            sheet.write_row(i + 1, 0, [i / 1024, float(np.float32(force[i] % 1))])
+    with zipfile.ZipFile(folder / "phyphox.zip", "w", zipfile.ZIP_DEFLATED) as archive:
+        archive.writestr("Accelerometer.csv", table.to_csv(index=False))
+        archive.writestr("Gyroscope.csv", gaps.to_csv(index=False))
+        archive.writestr("meta/device.csv", "property,value\nversion,1.2.0\n")
+    with open(folder / "segments.csv", "w") as file:
+        for rows in (300, 3, 1200):
+            part = table.head(rows) if rows != 1200 else table.head(rows)[["Time (s)", "Force (N)"]]
+            file.write(f"Test of {rows}\n{part.to_csv(index=False)}\n")
+
+
+def make_numpy(folder):
+    random = np.random.default_rng(4)
+    values = random.normal(size=5000)
+    record = np.zeros(5000, dtype=[("t", "<f8"), ("F", ">f4"), ("n", "<i2"), ("gap", "V3"), ("on", "?")])
+    record["t"], record["F"], record["n"] = np.arange(5000) / 7, values, values * 100
+    np.save(folder / "record.npy", record)
+    np.save(folder / "vector.npy", values.astype(">f8"))
+    np.save(folder / "columns.npy", values.reshape(-1, 4))
+    np.save(folder / "fortran.npy", np.asfortranarray(values.reshape(-1, 4)))
+    np.save(folder / "rows.npy", values.reshape(4, -1))
+    kinds = {kind: (values * 50).astype(kind) for kind in ("i1", "i4", ">i8", "f4", "c8", "c16", "?")}
+    kinds |= {kind: np.abs(values * 50).astype(kind) for kind in ("u1", "u2", "u4", ">u8")}
+    np.savez(folder / "stored.npz", **kinds)
+    np.savez_compressed(folder / "packed.npz", **{"run/F": values, "fs": 100.0, "record": record[["t", "F"]]})
+
+
+PEERS = {".xlsx": read_book, ".ods": read_book, ".zip": read_zip, ".npy": read_npy, ".npz": read_npy, ".h5": read_hdf5, ".sr": read_sigrok, ".tdms": read_tdms, ".lvm": read_lvm, ".wav": read_wav, ".mat": read_mat, ".uff": read_uff}
 
 TEXTS = {
     "2mps_sphere_1_100gPR_20kHz.csv": {},
@@ -225,6 +333,8 @@ TEXTS = {
 
 def peer_of(path):
     name = path.name
+    if name == "segments.csv":
+        return read_segments
     if name in TEXTS or name.startswith(("kiwi_", "mango_")):
         return lambda p: read_text(p, float_precision="round_trip", **TEXTS.get(name, {}))
     if path.suffix == ".mat" and h5py.is_hdf5(path):
@@ -346,6 +456,8 @@ def main():
     scratch.mkdir(parents=True, exist_ok=True)
     make_tdms(scratch)
     make_hdf5(scratch)
+    make_tables(scratch)
+    make_numpy(scratch)
     files = sorted(p for folder in (data, scratch) for p in folder.rglob("*") if p.is_file())
     lines = subprocess.run([dump, *map(str, files)], capture_output=True, text=True, check=True).stdout
     differences = 0

@@ -12,4 +12,4 @@ if [ ! -x "$venv/bin/pip" ]; then
     rm -rf "$venv"
     python3 -m venv "$venv" 2>/dev/null || { apt_install python3-venv && python3 -m venv "$venv"; }
 fi
-"$venv/bin/pip" install --quiet numpy scipy npTDMS h5py soundfile pyuff pandas polars lvm_read
+"$venv/bin/pip" install --quiet numpy scipy npTDMS h5py soundfile pyuff pandas polars lvm_read openpyxl XlsxWriter odfpy

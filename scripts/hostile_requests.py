@@ -3,9 +3,11 @@
 devices, bodies of wrong types, depths and sizes, wrong methods and content types.
 
     scripts/hostile_requests.py PROGRAM [NUMBER [SEED]]     2000 requests by default
+    scripts/hostile_requests.py --self-test [NUMBER]        the same of servers with faults
 
 No answer may be a failure of the server (status 500 and above) or come late, and nothing
-outside of the served directory may change or be told. Standard library only.
+outside of the served directory may change or be told. The self-test asks servers that do one
+of these each (faulty_server.py) and fails where that is not found. Standard library only.
 """
 
 import hashlib
@@ -21,7 +23,10 @@ import time
 from pathlib import Path
 from urllib.parse import quote
 
+import faulty_server
+
 PATIENCE = 20  # s
+ENOUGH = 10  # problems
 SECRET = "7391846520"
 
 # A name is put into paths, queries and bodies as it is and quoted.
@@ -49,7 +54,7 @@ def prepare(program, scratch):
     beside.mkdir(parents=True)
     for name in ["secret.csv", "laws.toml", "campaign.toml"]:
         (beside / name).write_text(f"displacement_m,force_N\n0,0\n1,{SECRET}\n")
-    run = lambda *words: subprocess.run([program, *map(str, words)], check=True, capture_output=True)
+    run = lambda *words: subprocess.run([*program, *map(str, words)], check=True, capture_output=True)
     bench = served / "bench"
     run("simulate", "pendulum", "--law", "kuwabara-kono(k=394931, c=681)", "--recordings", bench,
         "--specimens", 2, "--repeats", 1)
@@ -158,9 +163,11 @@ def request(description, own, random):
 
 
 class Server:
-    def __init__(self, program, served, log):
-        words = [program, "serve", str(served), "--no-open", "--port", "0", "--upload-limit", "1"]
-        self.process = subprocess.Popen(words, stdout=subprocess.PIPE, stderr=log)
+    def __init__(self, program, served, log, own):
+        words = [*program, "serve", str(served), "--no-open", "--port", "0", "--upload-limit", "1"]
+        home, temporary = own
+        self.process = subprocess.Popen(words, stdout=subprocess.PIPE, stderr=log, cwd=home,
+                                        env={**os.environ, "HOME": str(home), "TMPDIR": str(temporary)})
         line = self.process.stdout.readline().decode()
         found = re.match(r"http://127\.0\.0\.1:(\d+)/\?token=(\w+)", line)
         self.port, self.token = int(found[1]), found[2]
@@ -175,6 +182,8 @@ class Server:
             connection.request(method, target, body, headers)
             answer = connection.getresponse()
             return answer.status, answer.read()
+        except TimeoutError:
+            return "late", b""
         except (ConnectionError, http.client.HTTPException) as error:
             # Refused before all of the body was read.
             return 0, repr(error).encode()
@@ -182,48 +191,81 @@ class Server:
             connection.close()
 
 
-def main(program, number=2000, seed=1):
-    draw = random.Random(int(seed))
+def attack(program, number, seed):
+    """What is wrong with a server, and how often it answered with which status.
+
+    program: words of its command
+    """
+    draw = random.Random(seed)
     problems, statuses = [], {}
     with tempfile.TemporaryDirectory(prefix="windfall-hostile-") as scratch:
         served, beside = prepare(program, Path(scratch))
         original = (served / "bench" / "campaign.toml").read_text()
-        before = state(beside), sorted(os.listdir(scratch))
+        home, temporary = Path(scratch, "home"), Path(scratch, "temporary")
+        home.mkdir()
+        temporary.mkdir()
+        outside = lambda: ([state(own) for own in (beside, home, temporary)], sorted(os.listdir(scratch)))
+        before = outside()
         log = tempfile.TemporaryFile()
-        server = Server(program, served, log)
+        server = Server(program, served, log, (home, temporary))
         try:
             description = json.loads(server.ask("GET", "/api/openapi.json")[1])
-            for index in range(int(number)):
+            for index in range(number):
                 asked = request(description, original, draw)
                 begin = time.monotonic()
-                try:
-                    status, told = server.ask(*asked)
-                except TimeoutError:
-                    status, told = "late", b""
+                status, told = server.ask(*asked)
                 shown = f"{index}: {asked[0]} {asked[1][:200]} {(asked[3] or b'')[:200]}"
                 statuses[status] = statuses.get(status, 0) + 1
                 # 507 says that the disk is full.
-                if status == "late" or status >= 500 or SECRET.encode() in told or b"root:x:" in told:
+                if status == "late" or status >= 500:
                     problems.append(f"{status} {shown} {told[:300]}")
-                if time.monotonic() - begin > PATIENCE / 2:
+                elif SECRET.encode() in told or b"root:x:" in told:
+                    problems.append(f"told what lies outside of the directory: {shown}")
+                elif time.monotonic() - begin > PATIENCE / 2:
                     problems.append(f"slow {shown}")
                 if server.process.poll() is not None:
                     problems.append(f"the server has died: {shown}")
                     break
-            if server.ask("GET", "/api/campaigns")[0] != 200:
-                problems.append("the server does not list its campaigns any more")
+                if len(problems) >= ENOUGH:
+                    break
+            listed = server.ask("GET", "/api/campaigns")[0]
+            if listed != 200:
+                problems.append(f"the server does not list its campaigns any more: {listed}")
         finally:
             server.process.terminate()
             server.process.wait()
-        if (state(beside), sorted(os.listdir(scratch))) != before:
+        if outside() != before:
             problems.append("something outside of the served directory has changed")
         log.seek(0)
         problems += [line.decode() for line in log if b"panicked" in line]
-    print(f"{number} hostile requests; statuses {dict(sorted(statuses.items(), key=str))}")
+    return problems, statuses
+
+
+def main(program, number=2000, seed=1):
+    problems, statuses = attack([program], int(number), int(seed))
+    print(f"{sum(statuses.values())} hostile requests; statuses {dict(sorted(statuses.items(), key=str))}")
     for problem in problems:
         print(f"hostile_requests: {problem}", file=sys.stderr)
     return bool(problems)
 
 
+def self_test(number=2000):
+    """Whether each fault of faulty_server.py is found, and none in the server without a fault."""
+    global PATIENCE
+    PATIENCE = 1
+    missed = 0
+    for fault, sign in faulty_server.FAULTS.items():
+        faulty = [sys.executable, faulty_server.__file__, fault]
+        problems, _ = attack(faulty, int(number), 1)
+        found = [problem for problem in problems if sign in problem] if sign else problems
+        right = bool(found) == bool(sign)
+        missed += not right
+        print(f"{'as it should be' if right else 'WRONG':16}{fault or 'no fault':38}{len(problems)} problems; "
+              f"{(found or problems or ['none'])[0].strip()[:90]!r}")
+    return bool(missed)
+
+
 if __name__ == "__main__":
+    if sys.argv[1:2] == ["--self-test"]:
+        sys.exit(self_test(*sys.argv[2:]))
     sys.exit(main(*sys.argv[1:]))

@@ -10,7 +10,7 @@ use windfall_formats::open::{OpenOptions, open_source};
 use windfall_formats::reader::Sink;
 use windfall_formats::source::Source;
 
-const FORMATS: [(&str, Format); 8] = [
+const FORMATS: [(&str, Format); 12] = [
     ("text", Format::Text),
     ("lvm", Format::Lvm),
     ("tdms", Format::Tdms),
@@ -19,6 +19,10 @@ const FORMATS: [(&str, Format); 8] = [
     ("wav", Format::Wav),
     ("uff58", Format::Uff58),
     ("sigrok", Format::Sigrok),
+    ("xlsx", Format::Xlsx),
+    ("ods", Format::Ods),
+    ("npy", Format::Npy),
+    ("zip", Format::Zip),
 ];
 
 static FORMAT: OnceLock<Format> = OnceLock::new();

@@ -45,6 +45,16 @@ pub enum CampaignError {
         /// Where, and how to settle it.
         doubt: String,
     },
+    /// A recording that may not be read.
+    #[error("{place}: the recording \"{file}\" in column \"file\" is not read: {problem}")]
+    RecordingRefused {
+        /// The row that names it.
+        place: Place,
+        /// Its name.
+        file: String,
+        /// Why.
+        problem: String,
+    },
     /// A sample without its time.
     #[error(
         "{place}: sample {sample} of column \"{column}\" has no time, the cell in column \"{time}\" \

@@ -3,6 +3,7 @@
 use crate::law_card::{CARD_FORMAT, CardDefinedParameter, CardDefinition, LawCard};
 use serde::Deserialize;
 use std::path::Path;
+use windfall_contact::expression::{LawExpression, parse_law_among};
 use windfall_contact::laws::define_law::define_law;
 use windfall_contact::laws::force_table::ForceTable;
 use windfall_contact::laws::kind::{Law, LawKind};
@@ -10,7 +11,8 @@ use windfall_contact::laws::user::{UserForce, UserLawDefinition, UserParameter};
 use windfall_contact::parameter::NO_BOUND;
 use windfall_files::error::Error;
 use windfall_files::option_value::unusable;
-use windfall_files::text::toml_source::{TomlSource, parse_source, read_source};
+use windfall_files::text::toml_places::invalid_at;
+use windfall_files::text::toml_source::{TomlSource, parse_source, read_piped_source};
 use windfall_files::write_file::write_whole;
 
 /// Ending of a card in JSON; any other is TOML.
@@ -71,31 +73,89 @@ struct CardVersion {
 pub fn read_card(path: &Path) -> Result<LawCard, Error> {
     let advice = "a law card is written by `windfall fit DIR --card FILE` or \
                   `windfall calibrate DIR --card FILE`";
-    let source = read_source(path, advice)?;
+    let source = read_piped_source(path, advice)?;
     let version: CardVersion = parsed(path, &source)?;
     if !(1..=CARD_FORMAT).contains(&version.format) {
         let problem = format!(
-            "it has format {}, and this windfall reads formats 1 to {CARD_FORMAT}: use a newer \
-             windfall, or write the card again with this one",
-            version.format
+            "this windfall reads law cards of formats 1 to {CARD_FORMAT}: use a newer windfall, or \
+             write the card again with this one"
         );
-        return Err(wrong(path, problem));
+        return Err(invalid_at(&source, &["format"], problem));
     }
     let card: LawCard = parsed(path, &source)?;
-    law_of_card(&card, path)?;
-    check_sizes(&card, path)?;
+    let law = law_at(&card, &source)?;
+    check_texts(&card, law, &source)?;
+    check_signs(&card, &source)?;
+    check_sizes(&card, &source)?;
     Ok(card)
 }
 
+/// Relative difference of two values that are the same but for rounding.
+const ROUNDED: f64 = 1e-6;
+
+/// The expression says what the parameters say, and the end is known.
+fn check_texts(card: &LawCard, law: Law, source: &TomlSource) -> Result<(), Error> {
+    if !["force-zero", "gap-zero"].contains(&card.end.as_str()) {
+        let problem = "expected \"force-zero\" or \"gap-zero\"";
+        return Err(invalid_at(source, &["end"], problem));
+    }
+    let said = parse_law_among(&card.expression, &[law.kind()]).and_then(|own| own.complete());
+    let same = |said: Law| {
+        let mut pairs = said.parameters().into_iter().zip(law.parameters());
+        let close = |(a, b): (f64, f64)| (a - b).abs() <= ROUNDED * a.abs().max(b.abs());
+        said.kind() == law.kind() && pairs.all(close)
+    };
+    match said.is_ok_and(same) {
+        true => Ok(()),
+        false => {
+            let problem = format!("by [parameters] it is {}", LawExpression::from(law));
+            Err(invalid_at(source, &["expression"], problem))
+        }
+    }
+}
+
+/// Sizes of bodies are above zero, and uncertainties are not below it.
+fn check_signs(card: &LawCard, source: &TomlSource) -> Result<(), Error> {
+    let above = |keys: &[&str], value: f64| match value > 0.0 {
+        true => Ok(()),
+        false => Err(invalid_at(source, keys, "it must be above zero")),
+    };
+    if let Some(contact) = &card.contact {
+        above(&["contact", "effective_radius"], contact.effective_radius)?;
+        above(&["contact", "effective_modulus"], contact.effective_modulus)?;
+    }
+    let bodies = &card.bodies;
+    let factor = bodies.effective_mass_factor;
+    above(&["bodies", "effective_mass_factor"], factor)?;
+    above(&["bodies", "radius"], bodies.radius.unwrap_or(1.0))?;
+    for (name, parameter) in &card.parameters {
+        if parameter.sd.is_some_and(|sd| sd < 0.0) {
+            let keys = ["parameters", name, "sd"];
+            return Err(invalid_at(source, &keys, "it must not be below zero"));
+        }
+    }
+    Ok(())
+}
+
 /// Matrices must be as large as what they are of.
-fn check_sizes(card: &LawCard, path: &Path) -> Result<(), Error> {
+fn check_sizes(card: &LawCard, source: &TomlSource) -> Result<(), Error> {
     let square = |matrix: &[Vec<f64>], size: usize| {
         matrix.len() == size && matrix.iter().all(|row| row.len() == size)
     };
     let covariance = card.covariance.as_ref();
     let population = card.population.as_ref();
+    for (number, of) in population.iter().flat_map(|own| &own.of).enumerate() {
+        let name = of.strip_prefix("ln ").unwrap_or(of);
+        if !card.parameters.contains_key(name) {
+            let keys = ["population", "of", &number.to_string()];
+            let problem = format!("{} has no such parameter", card.law);
+            return Err(invalid_at(source, &keys, problem));
+        }
+    }
     let bad = match () {
-        () if covariance.is_some_and(|c| !square(&c.matrix, c.of.len())) => "[covariance]",
+        () if covariance.is_some_and(|c| !square(&c.matrix, c.of.len())) => {
+            ["covariance", "matrix"]
+        }
         () if population.is_some_and(|p| {
             let size = p.of.len();
             let within = p.within_fruit.as_ref();
@@ -104,12 +164,12 @@ fn check_sizes(card: &LawCard, path: &Path) -> Result<(), Error> {
                 || within.is_some_and(|within| !square(within, size))
         }) =>
         {
-            "[population]"
+            ["population", "of"]
         }
         () => return Ok(()),
     };
-    let problem = format!("the matrices of {bad} are not of the size of its list `of`");
-    Err(wrong(path, problem))
+    let problem = "the matrices of this table are not of the size of its list `of`";
+    Err(invalid_at(source, &bad, problem))
 }
 
 fn parsed<T: serde::de::DeserializeOwned>(path: &Path, source: &TomlSource) -> Result<T, Error> {
@@ -125,20 +185,41 @@ fn parsed<T: serde::de::DeserializeOwned>(path: &Path, source: &TomlSource) -> R
 /// The law is not known or cannot be used, a parameter is missing, or out of
 /// bounds.
 pub fn law_of_card(card: &LawCard, path: &Path) -> Result<Law, Error> {
-    let told = |error: windfall_contact::error::Error| wrong(path, error.to_string());
+    let path = path.to_path_buf();
+    // Of a card that was read before, what is wrong is nowhere in a text.
+    let text = String::new();
+    law_at(card, &TomlSource { path, text })
+}
+
+/// [`law_of_card`] whose errors name the place in its text.
+fn law_at(card: &LawCard, source: &TomlSource) -> Result<Law, Error> {
+    use windfall_contact::error::Error as LawError;
     let kind = match &card.definition {
-        Some(definition) => define_law(&defined(&card.law, definition)).map_err(told)?,
-        None => LawKind::from_name(&card.law).map_err(told)?,
+        Some(definition) => define_law(&defined(&card.law, definition)).map_err(|error| {
+            let key = match definition.force {
+                Some(_) => "force",
+                None => "displacement_m",
+            };
+            invalid_at(source, &["definition", key], error.to_string())
+        })?,
+        None => LawKind::from_name(&card.law)
+            .map_err(|error| invalid_at(source, &["law"], error.to_string()))?,
     };
     let values = kind.describe().parameters.iter().map(|parameter| {
         let found = card.parameters.get(parameter.name);
         found.map(|found| found.value).ok_or_else(|| {
-            let name = parameter.name;
-            wrong(path, format!("it has no [parameters.{name}]"))
+            let keys = ["parameters", parameter.name];
+            invalid_at(source, &keys, "this parameter of the law is missing")
         })
     });
     let values = values.collect::<Result<Vec<f64>, Error>>()?;
-    kind.with_parameters(&values).map_err(told)
+    kind.with_parameters(&values).map_err(|error| match error {
+        LawError::OutOfBounds { parameter, .. } => {
+            let keys = ["parameters", parameter, "value"];
+            invalid_at(source, &keys, error.to_string())
+        }
+        _ => invalid_at(source, &["parameters"], error.to_string()),
+    })
 }
 
 fn wrong(path: &Path, problem: String) -> Error {

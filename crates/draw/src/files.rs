@@ -7,6 +7,8 @@ use crate::xy::{Figure, csv_of_figure, drawing_of_figure};
 use rayon::prelude::*;
 use std::path::{Path, PathBuf};
 use windfall_files::error::Error;
+use windfall_files::inputs::check_output;
+use windfall_files::provenance::digest_text;
 use windfall_files::write_file::{make_directory, write_whole};
 
 /// Where figures go and which colours they have.
@@ -96,6 +98,9 @@ pub fn write_paintings(
     Ok(written?.into_iter().flatten().collect())
 }
 
+/// Endings of the files of a figure: data, dots, vectors.
+const ENDINGS: [&str; 3] = ["csv", "png", "svg"];
+
 fn write_drawing(
     folder: &FigureFolder,
     name: &str,
@@ -103,38 +108,71 @@ fn write_drawing(
     csv: &str,
 ) -> Result<Vec<PathBuf>, Error> {
     let directory = &folder.directory;
+    let name = file_name(name);
+    let path = |ending: &str| directory.join(format!("{name}.{ending}"));
+    // Before the dots, which take longest.
+    ENDINGS
+        .iter()
+        .try_for_each(|own| check_output(&path(own)))?;
     make_directory(directory)?;
     let svg = drawing.svg(folder.theme.colours());
     let png = match cfg!(feature = "png") {
         true => Some(png_of_svg(&svg, PRINT)?),
         false => None,
     };
-    let name = file_name(name);
+    let contents = [Some(csv.as_bytes()), png.as_deref(), Some(svg.as_bytes())];
     let mut files = Vec::new();
-    for (ending, contents) in [
-        ("csv", Some(csv.as_bytes())),
-        ("png", png.as_deref()),
-        ("svg", Some(svg.as_bytes())),
-    ] {
+    for (ending, contents) in ENDINGS.iter().zip(contents) {
         let Some(contents) = contents else { continue };
-        let path = directory.join(format!("{name}.{ending}"));
-        write_whole(&path, contents)?;
-        files.push(path);
+        write_whole(&path(ending), contents)?;
+        files.push(path(ending));
     }
     Ok(files)
 }
 
-/// A name for a file: what file names cannot hold becomes "_".
+/// Longest name of a file, without its ending; bytes.
+const LONGEST_NAME: usize = 100;
+
+/// A name for a file: what file names cannot hold becomes "_", and a long name is cut off.
+/// Names that would become the same differ in digits of their digest.
 pub fn file_name(name: &str) -> String {
     let kept = |c: char| c.is_alphanumeric() || "-_.".contains(c);
-    let filled = name.chars().map(|c| if kept(c) { c } else { '_' });
-    filled.collect()
+    if name.chars().all(kept) && name.len() <= LONGEST_NAME {
+        return name.to_owned();
+    }
+    let mut filled: String = name
+        .chars()
+        .map(|c| if kept(c) { c } else { '_' })
+        .collect();
+    let digits = &digest_text(name)[..DIGITS];
+    let mut length = DIGITS + 1;
+    filled.retain(|c| {
+        length += c.len_utf8();
+        length <= LONGEST_NAME
+    });
+    format!("{filled}-{digits}")
 }
+
+/// Digits of a digest in a name.
+const DIGITS: usize = 6;
 
 #[cfg(test)]
 mod tests {
     use super::*;
     use crate::theme::{DARK, LIGHT};
+
+    #[test]
+    fn rejects_one_file_for_two_names() {
+        let long = "🍏".repeat(99);
+        let names = ["a b", "a/b", "a_b", "a:b", &long, &format!("{long}b")];
+        let files = names.map(file_name);
+        for (place, file) in files.iter().enumerate() {
+            assert!(file.len() <= LONGEST_NAME && !files[..place].contains(file));
+            assert_eq!(&file_name(file), file);
+        }
+        assert_eq!(files[2], "a_b");
+        assert!(files[0].starts_with("a_b-"));
+    }
 
     /// Vectors, dots and data under one name, in the colours of the theme.
     #[test]
@@ -153,9 +191,10 @@ mod tests {
             };
             let files = write_paintings(&folder, &[painting]).unwrap();
             let names: Vec<_> = files.iter().map(|f| f.file_name().unwrap()).collect();
+            let name = file_name("force N/mm");
             assert_eq!(
                 names,
-                ["force_N_mm.csv", "force_N_mm.png", "force_N_mm.svg"]
+                ["csv", "png", "svg"].map(|own| std::ffi::OsString::from(format!("{name}.{own}")))
             );
             let svg = std::fs::read_to_string(&files[2]).unwrap();
             assert!(svg.contains(colours.background), "{svg}");

@@ -342,8 +342,8 @@ fn shading(colour: Rgb) -> String {
     text + "</radialGradient>\n"
 }
 
-/// Text escaped for XML; control characters, which XML cannot hold, become
-/// blanks, and so do those that stand for colours.
+/// Text escaped for XML; what XML cannot hold (control characters, U+FFFE and U+FFFF)
+/// becomes a blank, and so do characters that stand for colours.
 fn escaped(text: &str) -> String {
     let mut whole = String::with_capacity(text.len());
     for c in text.chars() {
@@ -353,6 +353,7 @@ fn escaped(text: &str) -> String {
             '>' => whole += "&gt;",
             '"' => whole += "&quot;",
             '\u{E000}'..='\u{F8FF}' => whole.push(' '),
+            '\u{FFFE}' | '\u{FFFF}' => whole.push(' '),
             c if c.is_control() => whole.push(' '),
             c => whole.push(c),
         }
@@ -429,6 +430,7 @@ fn set_text(text: &str, size: f64) -> String {
 mod tests {
     use super::*;
     use crate::theme::{DARK, LIGHT};
+    use proptest::prelude::Strategy;
 
     #[test]
     fn closed_form_text_is_escaped() {
@@ -448,6 +450,51 @@ mod tests {
             let stroke = format!(r#"stroke="{}""#, theme.series[1]);
             assert!(svg.contains(&stroke) && svg.contains("> a</text>"), "{svg}");
             assert!(!svg.contains('\u{E000}'));
+        }
+    }
+
+    /// An XML parser finds the drawing as it was drawn, whatever its words are.
+    fn check_words(words: &str) {
+        let mut drawing = Drawing::new(10.0, 10.0);
+        drawing.text((1.0, 2.0), Anchor::End, 9.0, words);
+        let svg = drawing.element(&LIGHT, words);
+        let document = roxmltree::Document::parse(&svg).unwrap();
+        let blank = |c: char| match c {
+            '\u{E000}'..='\u{F8FF}' | '\u{FFFE}' | '\u{FFFF}' => ' ',
+            c if c.is_control() => ' ',
+            c => c,
+        };
+        let expected: String = words.chars().map(blank).collect();
+        let names = document.descendants().filter(|own| own.is_element());
+        let names = names.map(|own| own.tag_name().name());
+        let names: Vec<_> = names.filter(|name| *name != "tspan").collect();
+        assert_eq!(names, ["svg", "rect", "text"], "{words:?}");
+        let root = document.root_element();
+        let label = root.attribute("aria-label").unwrap_or_default();
+        assert_eq!(label, expected);
+        let texts = root.descendants().filter(|own| own.is_text());
+        let written: String = texts.filter_map(|own| own.text()).collect();
+        let raised = |c: char| c == '^' || RAISED.iter().any(|(own, _)| *own == c);
+        if !words.contains(raised) {
+            assert_eq!(written, format!("\n\n{expected}\n"));
+        }
+    }
+
+    proptest::proptest! {
+        #![proptest_config(proptest::test_runner::Config::with_cases(2000))]
+        #[test]
+        fn repeats_any_words(pieces in proptest::collection::vec(
+            proptest::prop_oneof![
+                proptest::sample::select(vec![
+                    "<", ">", "&", "\"", "'", "]]>", "<![CDATA[", "<!--", "-->", "</text>", "</svg>", "<?xml",
+                    "<script>hit()</script>", "\" onload=\"hit()", "&amp;", "&#10;", "&lt", "\0", "\n", "\r",
+                    "\u{85}", "\u{2028}", "\u{E000}", "\u{FFFE}", "\u{FFFF}", "^2", "²", "🍏", "a",
+                ]).prop_map(str::to_owned),
+                proptest::prelude::any::<String>(),
+            ],
+            1..6,
+        )) {
+            check_words(&pieces.concat());
         }
     }
 

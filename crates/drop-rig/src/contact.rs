@@ -14,8 +14,9 @@ use windfall_numerics::ode::step::{Position, Step, StepError, System, dense_at, 
 use windfall_numerics::real::{Lanes, Real};
 use windfall_numerics::root::bracketed_root;
 
-/// Steps before an integration is given up: a contact takes about fifteen.
-const LARGEST_STEPS: usize = 500_000;
+/// Steps before an integration is given up: a contact takes about fifteen, and one that lasts
+/// while the plate rings some thousands.
+const LARGEST_STEPS: usize = 50_000;
 /// First step, as a part of the time in which the plate moves or the fruit
 /// would pass the law's kink.
 const FIRST_STEP: f64 = 0.3;

@@ -6,7 +6,7 @@ use crate::file::{DropFile, DropRigFile};
 use std::path::Path;
 use toml::Spanned;
 use windfall_campaign::settings::channels::channel_plans;
-use windfall_campaign::settings::conditioning::refuse_conditioning;
+use windfall_campaign::settings::conditioning::refuse_all_conditioning;
 use windfall_campaign::settings::file::QuantityText;
 use windfall_campaign::settings::files::check_format;
 use windfall_campaign::settings::kind::{CAMPAIGN_FILE, CampaignKind};
@@ -108,9 +108,8 @@ pub fn read_drop(directory: &Path) -> Result<DropCampaign, Error> {
     check_format(&source, file.format.as_ref())?;
     let channels = channel_plans(&source, file.channels.as_ref())?;
     // A filter would take the ringing for noise, or smear one impact into the next.
-    let measured = ["force", "position", "velocity", "acceleration"];
     let why = "bounces and ringing are taken from the channel as it was recorded";
-    refuse_conditioning(&source, file.channels.as_ref(), &measured, why)?;
+    refuse_all_conditioning(&source, file.channels.as_ref(), why)?;
     let shared = (&file.campaign, &file.files, &file.summary);
     let kind = CampaignKind::Drop;
     let campaign = DropCampaign {
@@ -180,16 +179,7 @@ fn measured(
     unit: &str,
     usual: (Option<f64>, f64),
 ) -> Result<Option<Uncertain>, Error> {
-    let cell = |name: &str| {
-        cell_quantity(cells, name, unit, &place.file).map_err(|error| match error {
-            Error::CellNotPositive { column, text, .. } => Error::CellNotPositive {
-                place: place.clone(),
-                column,
-                text,
-            },
-            other => other,
-        })
-    };
+    let cell = |name: &str| cell_quantity(cells, name, unit, place);
     let value = cell(name)?.or(usual.0);
     let sd = cell(&format!("{name}_sd"))?;
     Ok(value.map(|value| Uncertain::new(value, sd.unwrap_or(usual.1))))
@@ -288,45 +278,38 @@ fn plate_plan(source: &TomlSource, file: &Spanned<DropRigFile>) -> Result<PlateP
         mass: Uncertain::new(value, uncertainty(source, rig.plate_mass_sd.as_ref(), &sd)?),
         stiffness: plate_value(
             source,
-            (
-                rig.plate_stiffness.as_ref(),
-                rig.plate_stiffness_sd.as_ref(),
-            ),
-            &needed(
-                "plate_stiffness",
-                "stiffness under the plate",
-                "N/m",
-                "plate_stiffness = \"645.8 N/mm\"",
-            ),
+            [&rig.plate_stiffness, &rig.plate_stiffness_sd],
+            ["plate_stiffness", "plate_stiffness_sd"],
+            "N/m",
+            "plate_stiffness = \"645.8 N/mm\"",
         )?,
         damping: plate_value(
             source,
-            (rig.plate_damping.as_ref(), rig.plate_damping_sd.as_ref()),
-            &needed(
-                "plate_damping",
-                "damping under the plate",
-                "N s/m",
-                "plate_damping = \"0.05247 N s/mm\"",
-            ),
+            [&rig.plate_damping, &rig.plate_damping_sd],
+            ["plate_damping", "plate_damping_sd"],
+            "N s/m",
+            "plate_damping = \"0.05247 N s/mm\"",
         )?,
     })
 }
 
 /// A value of the plate that the ringing gives where it is left out.
+///
+/// * `keys`: of the value and of its uncertainty
 fn plate_value(
     source: &TomlSource,
-    (value, sd): (
-        Option<&Spanned<QuantityText>>,
-        Option<&Spanned<QuantityText>>,
-    ),
-    needed: &Needed,
+    [value, sd]: [&Option<Spanned<QuantityText>>; 2],
+    keys: [&'static str; 2],
+    unit: &'static str,
+    example: &'static str,
 ) -> Result<Option<Uncertain>, Error> {
-    let number = positive_quantity(source, value, needed)?;
-    let deviation = uncertainty(source, sd, needed)?;
+    let [own, of_sd] = keys.map(|key| needed(key, "", unit, example));
+    let number = positive_quantity(source, value.as_ref(), &own)?;
+    let deviation = uncertainty(source, sd.as_ref(), &of_sd)?;
     match (number, sd) {
         (None, Some(sd)) => {
-            let problem = format!("an uncertainty without its value: {}", needed.example);
-            Err(refused(source, sd, (TABLE, needed.key), problem))
+            let problem = format!("an uncertainty without its value: {example}");
+            Err(refused(source, sd, (TABLE, keys[1]), problem))
         }
         (number, _) => Ok(number.map(|value| Uncertain::new(value, deviation))),
     }

@@ -4,6 +4,7 @@ use crate::classes::{Classes, classes_of};
 use crate::law::PairNumbers;
 use std::collections::BTreeSet;
 use windfall_files::found::FindingOutcome;
+use windfall_files::text::quote::comment_text;
 use windfall_scene::interaction::Interaction;
 use windfall_scene::scene::{Fruit, Scene};
 use windfall_scene::shape::mesh::bounds;
@@ -218,7 +219,7 @@ impl<'a> Task<'a> {
         let sink = &self.scene.sinks[number];
         format!(
             "# sink: {}\nregion sink{number} block {} units box\n",
-            comment(&sink.name),
+            comment_text(&sink.name),
             sides(sink.low, sink.high)
         )
     }
@@ -304,19 +305,6 @@ impl<'a> Task<'a> {
         let mut all = self.scene.interactions.values();
         all.any(|own| own.rolling > 0.0 && own.friction > 0.0)
     }
-}
-
-/// Text as a comment of a deck or a program: nothing that would be acted on, and nothing at
-/// its end that draws the next line into the comment (`&` of LAMMPS, `\` and the trigraph
-/// `??/` of C++).
-pub fn comment(text: &str) -> String {
-    let plain = |own: char| match own {
-        '&' | '"' | '\'' | '$' | '\\' => '_',
-        own if own.is_control() || matches!(own, '\u{2028}' | '\u{2029}') => ' ',
-        own => own,
-    };
-    let text: String = text.chars().map(plain).collect();
-    text.replace("??/", "??_")
 }
 
 /// Density of a fruit as a sphere; kg/m³.

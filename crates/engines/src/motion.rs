@@ -4,12 +4,14 @@ use crate::deck::{FRAMES, LOG};
 use crate::frames::{Frame, FrameReader};
 use crate::program::{Launch, Program, last_lines, wrong};
 use std::fs::{File, OpenOptions};
-use std::io::BufReader;
+use std::io::{BufReader, Write};
 use std::path::{Path, PathBuf};
 use std::process::{Child, Command, Stdio};
+use std::sync::Arc;
 use std::sync::mpsc::{Receiver, RecvTimeoutError, sync_channel};
 use std::time::Duration;
 use windfall_files::error::Error;
+use windfall_files::scratch::Scratch;
 use windfall_files::written::{check_written, list_filled_by_others};
 use windfall_scene::energy::Energy;
 use windfall_scene::follow::Followed;
@@ -33,6 +35,10 @@ pub struct Frames {
 struct Running {
     child: Child,
     directory: PathBuf,
+    /// Ends the engine where this program is killed.
+    guard: Option<Child>,
+    /// Needed as long as the engine runs.
+    _scratch: Arc<Scratch>,
 }
 
 /// Frames that wait to be followed.
@@ -75,12 +81,19 @@ impl Frames {
         command
             .stdout(Stdio::from(screen))
             .stderr(Stdio::from(errors));
+        let mut guard = guard();
         let child = command.spawn();
         let child = child
             .map_err(|error| wrong(engine, format!("{} does not start: {error}", launch.name)))?;
+        if let Some(told) = guard.as_mut().and_then(|own| own.stdin.as_mut()) {
+            // Without a guard the engine runs as well.
+            let _ = writeln!(told, "{}", child.id());
+        }
         let running = Running {
             child,
+            guard,
             directory: directory.to_path_buf(),
+            _scratch: Arc::clone(&program.scratch),
         };
         Ok(Self {
             engine,
@@ -190,6 +203,18 @@ impl Mover for Frames {
     }
 }
 
+/// A process that waits until this one is gone, however it ends, and ends the engine then: an
+/// engine whose frames nobody reads would wait for ever. It is told the engine's number.
+fn guard() -> Option<Child> {
+    const WAIT: &str = "read -r engine; read -r end; [ -n \"$engine\" ] || exit; kill \"$engine\"; \
+                        for second in 1 2 3 4 5; do kill -0 \"$engine\" || exit; sleep 1; done; \
+                        kill -KILL \"$engine\"";
+    let mut command = Command::new("sh");
+    command.args(["-c", WAIT]).stdin(Stdio::piped());
+    command.stdout(Stdio::null()).stderr(Stdio::null());
+    command.spawn().ok()
+}
+
 /// Frames of a file or pipe, read ahead.
 fn received(path: PathBuf, fruit: usize) -> Receiver<Result<Frame, String>> {
     let (send, received) = sync_channel(WAITING);
@@ -229,6 +254,11 @@ impl Drop for Running {
         if !ended(&mut self.child) {
             let _ = self.child.kill();
             let _ = self.child.wait();
+        }
+        // It would take another program with this number for the engine.
+        if let Some(guard) = &mut self.guard {
+            let _ = guard.kill();
+            let _ = guard.wait();
         }
         let _ = std::fs::remove_file(self.directory.join(FRAMES));
     }

@@ -1,11 +1,11 @@
 //! The contacts of a scene in the terms of other engines, pair by pair of materials.
 
-use crate::deck::comment as comment_text;
 use std::fmt::Write;
 use windfall_contact::granular_law::Damping;
 use windfall_contact::law::ContactLaw;
 use windfall_contact::laws::kind::Law;
 use windfall_contact::with_law;
+use windfall_files::text::quote::{comment_text, string_text};
 use windfall_scene::interaction::{Draws, Interaction};
 use windfall_scene::scene::Scene;
 
@@ -123,8 +123,13 @@ pub fn contact_terms(other: Other, scene: &Scene, speed: f64) -> Vec<ContactTerm
 /// Contacts as the text of a file, with what is exact and what is not in its comments.
 pub fn text_of_terms(other: Other, title: &str, terms: &[ContactTerms]) -> String {
     let (_, comment) = other.file();
+    // Python would take the encoding from a title that names one.
+    let first = match other {
+        Other::Yade => "# -*- coding: utf-8 -*-\n",
+        _ => "",
+    };
     let mut text = format!(
-        "{comment}{}\n{comment}Contacts for {}, written by windfall. SI where no unit is named.\n",
+        "{first}{comment}{}\n{comment}Contacts for {}, written by windfall. SI where no unit is named.\n",
         comment_text(title),
         other.title()
     );
@@ -217,13 +222,8 @@ const ABRUPT: f64 = 1e-8;
 /// The same where damping grows with the penetration, over the largest one; 1.
 const RAMP: f64 = 0.5;
 
-/// A text as Python writes one; its escapes are those of JSON.
-fn python_text(text: &str) -> String {
-    serde_json::Value::from(text).to_string()
-}
-
 fn yade(pair: &Pair) -> Words {
-    let [a, b] = pair.names.map(python_text);
+    let [a, b] = pair.names.map(string_text);
     if let Law::KelvinVoigt(own) = pair.law {
         let share = pair.interaction.tangential_ratio;
         // Of two materials the coefficients are in series.
@@ -533,7 +533,7 @@ mod tests {
             "a\"); import os; (\"",
             "a', 'b",
             "a\u{2028}b",
-            "\u{200b}a",
+            "\u{200b}quince",
             "a\\\"",
             "🍎\"\\",
         ];
@@ -557,7 +557,7 @@ mod tests {
                     let drawn_on = line.ends_with(['\\', '&']) || line.contains("??/");
                     assert!(other == Other::Yade || !drawn_on, "{line}");
                     // The same commands stand before and behind the name.
-                    let literal = serde_json::Value::from(name).to_string();
+                    let literal = windfall_files::text::quote::string_text(name);
                     let back = line.replace(&literal, "\"apple\"");
                     let back = back.replace(&comment_text(name), "apple");
                     assert_eq!(back, wanted, "{other:?} {name:?}");

@@ -3,8 +3,9 @@
 use crate::deck::LOG;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output, Stdio};
+use std::sync::Arc;
 use windfall_files::error::Error;
-use windfall_files::write_file::write_whole;
+use windfall_files::scratch::Scratch;
 use windfall_scene_run::file::engine_kind::Engine;
 
 /// An engine that is installed.
@@ -20,6 +21,8 @@ pub struct Program {
     pub mpi: String,
     /// What it prints of itself.
     help: String,
+    /// Where it and its launcher put what does not last.
+    pub(crate) scratch: Arc<Scratch>,
 }
 
 /// A way to start an engine.
@@ -31,6 +34,8 @@ pub struct Launch {
     pub name: String,
 }
 
+/// Names the folder for temporary files to programs: Open MPI's stay where they are killed.
+const TEMPORARY: &str = "TMPDIR";
 /// Names under which engines are installed.
 const LAMMPS_NAMES: [&str; 3] = ["lmp", "lmp_mpi", "lammps"];
 const LIGGGHTS_NAMES: [&str; 2] = ["liggghts", "lmp_liggghts"];
@@ -80,7 +85,9 @@ pub fn find_program(engine: Engine, given: Option<&Path>) -> Result<Program, Err
             ))
         })?,
     };
+    let scratch = Scratch::temporary()?;
     let mut command = Command::new(&path);
+    command.env(TEMPORARY, scratch.path());
     if engine == Engine::Liggghts {
         // It would leave a log where the user stands.
         command.args(["-log", "none"]);
@@ -121,6 +128,7 @@ pub fn find_program(engine: Engine, given: Option<&Path>) -> Result<Program, Err
         version,
         mpi,
         help,
+        scratch: Arc::new(scratch),
     };
     if engine == Engine::Lammps {
         program.suits()?;
@@ -208,8 +216,6 @@ impl Program {
 
     /// On how many processes a launcher starts it, together.
     fn processes(&self, launch: &Launch) -> Result<usize, String> {
-        let folder = tempfile::tempdir().map_err(|error| error.to_string())?;
-        let deck = folder.path().join("in.try");
         let text = match self.engine {
             Engine::Liggghts => {
                 "atom_style granular\nboundary f f f\nregion r block 0 8 0 8 0 8 units box\n\
@@ -217,7 +223,9 @@ impl Program {
             }
             _ => "atom_style sphere\nregion r block 0 8 0 8 0 8\ncreate_box 1 r\n",
         };
-        write_whole(&deck, text.as_bytes()).map_err(|error| error.to_string())?;
+        let folder = Scratch::temporary().map_err(|error| error.to_string())?;
+        let written = folder.write(Path::new("in.try"), text.as_bytes());
+        written.map_err(|error| error.to_string())?;
         let output = self.command(launch, "in.try", folder.path()).output();
         let text = text_of(&output.map_err(|error| error.to_string())?);
         let grid = text
@@ -237,6 +245,7 @@ impl Program {
             .args(&launch.command[1..])
             .args(["-in", deck, "-log", LOG])
             .current_dir(directory)
+            .env(TEMPORARY, self.scratch.path())
             // Ranks share the cores; Open MPI does not start for root unasked.
             .env("OMP_NUM_THREADS", "1")
             .env("OMPI_ALLOW_RUN_AS_ROOT", "1")

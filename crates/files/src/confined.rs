@@ -2,10 +2,11 @@
 
 use crate::error::Error;
 use crate::inputs::check_regular;
-use crate::write_file::{partial_of, sweep};
+use crate::write_file::{give_new_name, partial_of, sweep};
 use std::fs::File;
 use std::io::Write;
 use std::path::{Path, PathBuf};
+use std::sync::OnceLock;
 
 /// Longest name of a file that is taken; bytes. Half of what file systems take, so
 /// that it can be written beside its place first.
@@ -77,6 +78,64 @@ pub fn check_inside(directory: &Path, path: &Path) -> Result<(), Error> {
     }
 }
 
+/// Directories that the user named, besides those where files that name others lie.
+static ALSO_READ: OnceLock<Vec<PathBuf>> = OnceLock::new();
+
+/// From now on files below these directories may be named by a campaign, scene, study or law.
+pub fn also_read(directories: Vec<PathBuf>) {
+    let _ = ALSO_READ.set(directories);
+}
+
+/// The file that another file names.
+///
+/// * `directory`: relative names start there
+/// * `within`: where the file must lie, behind any symbolic links
+///
+/// A file that is not there is left to its reader, which says so.
+///
+/// # Errors
+/// What is wrong with the name, for a message that says where it stands: the file lies neither
+/// in `within` nor in a directory that the user named ([`also_read`]), or is a pipe, a socket
+/// or a device.
+pub fn named_file(directory: &Path, name: &str, within: &Path) -> Result<PathBuf, String> {
+    let path = directory.join(name);
+    check_regular(&path).map_err(|error| error.to_string())?;
+    let Ok(found) = path.canonicalize() else {
+        return Ok(path);
+    };
+    let also = ALSO_READ.get().map_or(&[][..], Vec::as_slice);
+    let mut within = std::iter::once(within).chain(also.iter().map(PathBuf::as_path));
+    let inside = |folder: &Path| {
+        let folder = match folder.as_os_str().is_empty() {
+            true => Path::new("."),
+            false => folder,
+        };
+        folder
+            .canonicalize()
+            .is_ok_and(|folder| found.starts_with(folder))
+    };
+    if within.any(inside) {
+        return Ok(path);
+    }
+    let folder = found.parent().unwrap_or(&found).display();
+    Err(format!(
+        "it lies elsewhere, in {folder}, and files from other people may name files that are not \
+         meant to be read; put it beside the file that names it, or allow that directory: \
+         --also-read {folder}"
+    ))
+}
+
+/// [`named_file`] by a file whose own folder is where it must lie.
+///
+/// * `naming`: the file in which the name stands
+///
+/// # Errors
+/// Those of [`named_file`].
+pub fn named_beside(naming: &Path, name: &str) -> Result<PathBuf, String> {
+    let folder = naming.parent().unwrap_or(Path::new(""));
+    named_file(folder, name, folder)
+}
+
 /// The content of a file below a directory.
 ///
 /// # Errors
@@ -110,12 +169,13 @@ impl Arriving {
     /// The name is refused or taken, or the directory cannot be written.
     pub fn begin(directory: &Path, name: &str) -> Result<Self, Error> {
         let path = path_inside(directory, name)?;
+        // Also where the file is there: what is left may be its other name.
+        sweep(&path);
         if path.exists() {
             return Err(Error::AlreadyThere { path });
         }
         let folder = path.parent().unwrap_or(directory);
         std::fs::create_dir_all(folder).map_err(|source| failed(folder, "create", source))?;
-        sweep(&path);
         let (partial, file) = partial_of(&path).map_err(|source| failed(&path, "write", source))?;
         Ok(Self {
             path,
@@ -147,18 +207,14 @@ impl Arriving {
         let error = |source| failed(&self.path, "write", source);
         file.sync_all().map_err(error)?;
         drop(file);
-        // A hard link does not replace, where renaming would.
-        match std::fs::hard_link(&self.partial, &self.path) {
+        match give_new_name(&self.partial, &self.path) {
             Ok(()) => Ok(self.path.clone()),
             Err(source) if source.kind() == std::io::ErrorKind::AlreadyExists => {
                 Err(Error::AlreadyThere {
                     path: self.path.clone(),
                 })
             }
-            // Some file systems have no hard links.
-            Err(_) => std::fs::rename(&self.partial, &self.path)
-                .map(|()| self.path.clone())
-                .map_err(error),
+            Err(source) => Err(error(source)),
         }
     }
 }

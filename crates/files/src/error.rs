@@ -188,7 +188,7 @@ pub enum Error {
     },
     /// A cell that holds NaN or an infinity.
     #[error(
-        "{place}, column \"{column}\": the value is {text}, which is not a finite number; \
+        "{place}, column \"{column}\": the value is {text}, which is no finite number below 1e100; \
          leave the cell blank where there is no sample"
     )]
     CellNotFinite {

@@ -5,6 +5,7 @@
 
 use crate::named::{Named, grouped};
 use serde::{Deserialize, Serialize};
+use windfall_statistics::distribution::quantile::median;
 
 /// One estimated or held value.
 #[derive(Clone, Debug, PartialEq, Serialize, utoipa::ToSchema, Deserialize)]
@@ -76,12 +77,20 @@ pub struct SpreadOutcome {
     pub n: usize,
     /// Coefficient of variation, sd / |mean|.
     pub cv: Option<f64>,
+    /// Median.
+    #[serde(default)]
+    pub median: f64,
+    /// Median absolute deviation, scaled to the standard deviation of a normal distribution;
+    /// `None` for one impact.
+    #[serde(default)]
+    pub robust_sd: Option<f64>,
 }
 
 /// Spread of some values; `None` when there is none.
 ///
 /// ```text
 /// mean = Σx / n,   sd² = Σ(x − mean)² / (n − 1),   cv = sd / |mean|
+/// robust sd = 1.4826 median |x − median|
 /// ```
 ///
 /// The sums run in the order of the values.
@@ -94,8 +103,34 @@ pub fn spread(values: &[f64]) -> Option<SpreadOutcome> {
     let squares: f64 = values.iter().map(|x| (x - mean) * (x - mean)).sum();
     let sd = (n > 1).then(|| (squares / (n - 1) as f64).sqrt());
     let cv = sd.filter(|_| mean != 0.0).map(|sd| sd / mean.abs());
-    Some(SpreadOutcome { mean, sd, n, cv })
+    let (median, deviation) = robust_spread(values)?;
+    Some(SpreadOutcome {
+        mean,
+        sd,
+        n,
+        cv,
+        median,
+        robust_sd: (n > 1).then_some(deviation),
+    })
 }
+
+/// Median, and median absolute deviation scaled to the standard deviation of a normal
+/// distribution; `None` when there is no value.
+///
+/// # Source
+/// Rousseeuw, P. J., and Croux, C. (1993), Alternatives to the median absolute deviation,
+/// J. Am. Stat. Assoc. 88, 1273: 1/Φ⁻¹(3/4) = 1.4826.
+pub fn robust_spread(values: &[f64]) -> Option<(f64, f64)> {
+    if values.is_empty() {
+        return None;
+    }
+    let middle = median(values);
+    let apart: Vec<f64> = values.iter().map(|x| (x - middle).abs()).collect();
+    Some((middle, NORMAL_MAD * median(&apart)))
+}
+
+/// Standard deviation over median absolute deviation of a normal distribution; 1.
+const NORMAL_MAD: f64 = 1.482_602_218_505_602;
 
 /// Spread of the values under each name, names in the order of their first appearance.
 pub fn spreads<'a>(values: impl IntoIterator<Item = (&'a str, f64)>) -> Named<SpreadOutcome> {

@@ -10,6 +10,7 @@ use std::collections::BTreeMap;
 use std::fs::Metadata;
 use std::path::{Path, PathBuf};
 use std::sync::{Mutex, OnceLock, PoisonError};
+use windfall_formats::stream::STANDARD_INPUT;
 
 /// What a file or folder is, whatever it is called.
 #[cfg(unix)]
@@ -154,7 +155,8 @@ pub fn check_regular(path: &Path) -> Result<(), Error> {
     }
 }
 
-/// [`check_regular`] of a file that a person may pipe in: `/dev/stdin`, `<(…)` and pipes pass.
+/// [`check_regular`] of a file that a person may pipe in: `-`, `/dev/stdin`, `<(…)` and pipes
+/// pass.
 ///
 /// # Errors
 /// It is a device or a socket.
@@ -163,7 +165,7 @@ pub fn check_piped(path: &Path) -> Result<(), Error> {
     {
         use std::os::unix::fs::FileTypeExt;
         let piped = |found: std::fs::Metadata| found.file_type().is_fifo();
-        let standard = ["/dev/stdin", "/dev/fd", "/proc"];
+        let standard = [STANDARD_INPUT, "/dev/stdin", "/dev/fd", "/proc/self/fd"];
         let standard = standard.iter().any(|own| path.starts_with(own));
         if standard || std::fs::metadata(path).is_ok_and(piped) {
             return Ok(());

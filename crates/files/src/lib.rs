@@ -12,6 +12,7 @@ pub mod option_value;
 pub mod place;
 pub mod progress;
 pub mod provenance;
+pub mod scratch;
 pub mod table;
 pub mod text;
 pub mod write_file;

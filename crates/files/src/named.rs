@@ -3,12 +3,13 @@
 use serde::de::{MapAccess, Visitor};
 use serde::ser::SerializeMap;
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
+use smol_str::SmolStr;
 use std::marker::PhantomData;
 
 /// Values under names, in the order they were given.
 #[derive(Clone, Debug, PartialEq, utoipa::ToSchema)]
 #[schema(value_type = std::collections::BTreeMap<String, T>)]
-pub struct Named<T>(pub Vec<(String, T)>);
+pub struct Named<T>(pub Vec<(SmolStr, T)>);
 
 impl<T> Default for Named<T> {
     fn default() -> Self {
@@ -16,7 +17,7 @@ impl<T> Default for Named<T> {
     }
 }
 
-impl<N: Into<String>, T> FromIterator<(N, T)> for Named<T> {
+impl<N: Into<SmolStr>, T> FromIterator<(N, T)> for Named<T> {
     fn from_iter<I: IntoIterator<Item = (N, T)>>(pairs: I) -> Self {
         let pairs = pairs.into_iter();
         Self(pairs.map(|(name, value)| (name.into(), value)).collect())
@@ -42,13 +43,13 @@ impl<T> Named<T> {
     }
 
     /// Adds a value behind the others.
-    pub fn push(&mut self, name: impl Into<String>, value: T) {
+    pub fn push(&mut self, name: impl Into<SmolStr>, value: T) {
         self.0.push((name.into(), value));
     }
 
     /// The names, in order.
     pub fn names(&self) -> impl Iterator<Item = &str> {
-        self.0.iter().map(|(name, _)| name.as_str())
+        self.0.iter().map(|(name, _)| &**name)
     }
 
     /// The value of that name.
@@ -83,6 +84,7 @@ impl<'de, T: Deserialize<'de>> Deserialize<'de> for Named<T> {
                 while let Some(entry) = map.next_entry()? {
                     entries.push(entry);
                 }
+                entries.shrink_to_fit();
                 Ok(Named(entries))
             }
         }
@@ -96,7 +98,7 @@ mod tests {
 
     #[test]
     fn closed_form_order_survives_json() {
-        let named = Named(vec![("k".to_owned(), 0.1 + 0.2), ("c".to_owned(), 1e-300)]);
+        let named = Named(vec![("k".into(), 0.1 + 0.2), ("c".into(), 1e-300)]);
         let text = serde_json::to_string(&named).unwrap();
         assert_eq!(text, "{\"k\":0.30000000000000004,\"c\":1e-300}");
         assert_eq!(serde_json::from_str::<Named<f64>>(&text).unwrap(), named);

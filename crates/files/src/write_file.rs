@@ -48,13 +48,13 @@ pub fn write_whole(path: &Path, contents: &[u8]) -> Result<(), Error> {
 
 /// [`write_whole`] of a file that is too long for memory.
 ///
-/// * `write`: writes all of it, and is called again if that has to be repeated
+/// * `write`: writes all of it
 ///
 /// # Errors
 /// Those of [`write_whole`], and those of `write`.
 pub fn write_streamed(
     path: &Path,
-    write: impl FnMut(&mut File) -> Result<(), Error>,
+    write: impl FnOnce(&mut File) -> Result<(), Error>,
 ) -> Result<(), Error> {
     check_target(path)?;
     let path = &behind_links(path);
@@ -68,10 +68,22 @@ pub fn write_streamed(
 /// It would replace an input; it cannot be written. The file of before is as it was.
 pub fn replace_file(
     path: &Path,
-    write: impl FnMut(&mut File) -> IoResult<()>,
+    write: impl FnOnce(&mut File) -> IoResult<()>,
 ) -> Result<(), Error> {
     check_output(path)?;
-    let path = &behind_links(path);
+    lasting(&behind_links(path), write)
+}
+
+/// Writes back a table that the user asked to extend: the one output that may be an input.
+///
+/// # Errors
+/// It cannot be written. The file of before is as it was.
+pub fn edit_file(path: &Path, text: &str) -> Result<(), Error> {
+    lasting(&behind_links(path), |file| file.write_all(text.as_bytes()))
+}
+
+/// Replaces a file; the new one lasts from then on.
+fn lasting(path: &Path, write: impl FnOnce(&mut File) -> IoResult<()>) -> Result<(), Error> {
     replace(path, system(path, write), |_| Ok(()))?;
     // That the name stands for the new file is to last as well, where the system can say so.
     let folder = path.parent().and_then(|own| File::open(own).ok());
@@ -82,15 +94,15 @@ pub fn replace_file(
 /// Says what a system's error belongs to.
 fn system(
     path: &Path,
-    mut write: impl FnMut(&mut File) -> IoResult<()>,
-) -> impl FnMut(&mut File) -> Result<(), Error> {
+    write: impl FnOnce(&mut File) -> IoResult<()>,
+) -> impl FnOnce(&mut File) -> Result<(), Error> {
     move |file| write(file).map_err(|source| Error::access(path, "write", source))
 }
 
 fn replace(
     path: &Path,
-    mut write: impl FnMut(&mut File) -> Result<(), Error>,
-    written: impl Fn(&Path) -> Result<(), Error>,
+    write: impl FnOnce(&mut File) -> Result<(), Error>,
+    written: impl FnOnce(&Path) -> Result<(), Error>,
 ) -> Result<(), Error> {
     let failed = |source| Error::access(path, "write", source);
     let before = std::fs::metadata(path).ok();
@@ -105,35 +117,46 @@ fn replace(
         )));
     }
     sweep(path);
-    for attempt in 1.. {
-        let (partial, mut file) = partial_of(path).map_err(failed)?;
-        let moved = write(&mut file).and_then(|()| {
-            let permissions = before.as_ref().map(|own| own.permissions());
-            let kept = permissions.map_or(Ok(()), |own| file.set_permissions(own));
-            kept.and_then(|()| file.sync_all()).map_err(failed)?;
-            written(&partial)?;
-            std::fs::rename(&partial, path).map_err(failed)
-        });
+    let (partial, mut file) = partial_of(path).map_err(failed)?;
+    let moved = write(&mut file).and_then(|()| {
+        let permissions = before.as_ref().map(|own| own.permissions());
+        let kept = permissions.map_or(Ok(()), |own| file.set_permissions(own));
+        kept.and_then(|()| file.sync_all()).map_err(failed)?;
+        written(&partial)?;
+        std::fs::rename(&partial, path).map_err(failed)
+    });
+    if moved.is_err() {
         let _ = std::fs::remove_file(&partial);
-        match moved {
-            // Another program took it for what a killed one left.
-            Err(Error::FileAccess { source, .. })
-                if source.kind() == ErrorKind::NotFound && attempt < 4 => {}
-            other => return other,
-        }
     }
-    Ok(())
+    moved
 }
 
 /// A new file beside a place, locked for as long as it is open.
 pub(crate) fn partial_of(path: &Path) -> IoResult<(PathBuf, File)> {
     static NEXT: AtomicUsize = AtomicUsize::new(0);
-    let (process, number) = (std::process::id(), NEXT.fetch_add(1, Ordering::Relaxed));
-    let partial = path.with_file_name(format!(".{process}-{number}{PARTIAL}"));
-    let file = File::create_new(&partial)?;
-    // A system without locks does without.
-    let _ = file.lock();
-    Ok((partial, file))
+    loop {
+        let (process, number) = (std::process::id(), NEXT.fetch_add(1, Ordering::Relaxed));
+        let partial = path.with_file_name(format!(".{process}-{number}{PARTIAL}"));
+        let file = match File::create_new(&partial) {
+            // That of a program with the same number, on another machine or in a container.
+            Err(error) if error.kind() == ErrorKind::AlreadyExists => continue,
+            other => other?,
+        };
+        // A system without locks does without.
+        let _ = file.lock();
+        // Before it was locked, another program may have taken it for what a killed one left.
+        if partial.exists() {
+            return Ok((partial, file));
+        }
+    }
+}
+
+/// Ending of folders that do not last.
+pub(crate) const SCRATCH: &str = "windfall-scratch";
+
+/// The folder that belongs to a lock.
+pub(crate) fn folder_of(lock: &Path) -> PathBuf {
+    lock.with_extension(SCRATCH)
 }
 
 /// Removes, once for each folder, what killed programs left beside a place.
@@ -151,6 +174,8 @@ pub fn sweep(path: &Path) {
         let left = plain && entry.file_name().to_string_lossy().ends_with(PARTIAL);
         let free = |file: File| file.try_lock().is_ok();
         if left && File::open(entry.path()).is_ok_and(free) {
+            // First the folder, which nothing would point to otherwise.
+            let _ = std::fs::remove_dir_all(folder_of(&entry.path()));
             let _ = std::fs::remove_file(entry.path());
         }
     }
@@ -178,14 +203,31 @@ pub fn make_directory(path: &Path) -> Result<(), Error> {
     std::fs::create_dir_all(path).map_err(|source| Error::access(path, "write", source))
 }
 
-/// Writes a file that does not exist yet.
+/// Writes a file that does not exist yet; it is there whole or not at all.
 ///
 /// # Errors
 /// It exists already, or cannot be written.
 pub fn write_new(path: &Path, contents: &[u8]) -> Result<(), Error> {
-    let mut file = File::create_new(path).map_err(|source| create_error(path, source))?;
-    file.write_all(contents)
-        .map_err(|source| Error::access(path, "write", source))
+    let failed = |source| create_error(path, source);
+    sweep(path);
+    let (partial, mut file) = partial_of(path).map_err(failed)?;
+    let written = file.write_all(contents).and_then(|()| file.sync_all());
+    let named = written.and_then(|()| give_new_name(&partial, path));
+    let _ = std::fs::remove_file(&partial);
+    named.map_err(failed)
+}
+
+/// Gives a file a name that no other file has; it keeps its own.
+pub(crate) fn give_new_name(file: &Path, name: &Path) -> IoResult<()> {
+    // A hard link does not replace, where renaming would.
+    match std::fs::hard_link(file, name) {
+        // Some file systems have no hard links.
+        Err(error) if error.kind() != ErrorKind::AlreadyExists => match name.exists() {
+            true => Err(ErrorKind::AlreadyExists.into()),
+            false => std::fs::rename(file, name),
+        },
+        other => other,
+    }
 }
 
 /// Why a file or directory could not be made.

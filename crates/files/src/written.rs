@@ -8,7 +8,7 @@ use crate::error::Error;
 use crate::provenance::{digest_bytes, digest_of_file};
 use std::collections::{BTreeMap, BTreeSet};
 use std::fs::File;
-use std::io::Write;
+use std::io::{Read, Seek, SeekFrom, Write};
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Mutex, PoisonError};
@@ -112,11 +112,24 @@ fn add_line(path: &Path, digest: String) -> Result<(), Error> {
         let list = list_of(path);
         let mut options = File::options();
         let written = options.append(true).create(true).open(&list);
-        let text = format!("{}  {}\n", line.0, line.1);
+        // A program that was killed within its line.
+        let end = if ends_line(&list) { "" } else { "\n" };
+        let text = format!("{end}{}  {}\n", line.0, line.1);
         let written = written.and_then(|mut file| file.write_all(text.as_bytes()));
         lines.insert(line);
         written.map_err(|source| Error::access(&list, "write", source))
     })
+}
+
+/// Whether a list is empty or ends with a whole line.
+fn ends_line(list: &Path) -> bool {
+    let mut last = [b'\n'];
+    let read = File::open(list).and_then(|mut file| {
+        file.seek(SeekFrom::End(-1))?;
+        file.read_exact(&mut last)
+    });
+    // What cannot be read, or is empty, begins with a line of its own anyway.
+    read.is_err() || last == [b'\n']
 }
 
 /// Calls with the lines of the list of a file's folder, as they are now.
@@ -174,6 +187,14 @@ mod tests {
         // Changed since.
         std::fs::write(&path, "one, with a remark").unwrap();
         assert!(write_whole(&path, b"two").is_err());
+        // A list that ends within a line.
+        let mut text = std::fs::read(folder.path().join(LIST)).unwrap();
+        text.extend(b"0123  cut");
+        std::fs::write(folder.path().join(LIST), text).unwrap();
+        std::fs::remove_file(&path).unwrap();
+        write_whole(&path, b"three").unwrap();
+        write_whole(&path, b"four").unwrap();
+        std::fs::write(&path, "one, with a remark").unwrap();
         // What another program fills is windfall's all the same.
         list_filled_by_others(&path).unwrap();
         write_whole(&path, b"two").unwrap();

@@ -19,11 +19,19 @@ pub enum Format {
     Uff58,
     /// sigrok logic-analyser capture.
     Sigrok,
+    /// Workbook of Excel.
+    Xlsx,
+    /// Spreadsheet of OpenDocument.
+    Ods,
+    /// Arrays of NumPy, single or in an archive.
+    Npy,
+    /// Zip archive of tables of text.
+    Zip,
 }
 
 impl Format {
     /// Every format with its name on the command line and in campaigns.
-    pub const NAMES: [(&'static str, Self); 8] = [
+    pub const NAMES: [(&'static str, Self); 12] = [
         ("text", Self::Text),
         ("lvm", Self::Lvm),
         ("tdms", Self::Tdms),
@@ -32,11 +40,18 @@ impl Format {
         ("wav", Self::Wav),
         ("uff58", Self::Uff58),
         ("sigrok", Self::Sigrok),
+        ("xlsx", Self::Xlsx),
+        ("ods", Self::Ods),
+        ("npy", Self::Npy),
+        ("zip", Self::Zip),
     ];
 
     /// Whether cells may be blank, which means that there is no sample.
     pub fn has_blank_cells(self) -> bool {
-        matches!(self, Self::Text | Self::Lvm)
+        matches!(
+            self,
+            Self::Text | Self::Lvm | Self::Xlsx | Self::Ods | Self::Zip
+        )
     }
 }
 
@@ -51,6 +66,10 @@ impl std::fmt::Display for Format {
             Self::Wav => "WAV",
             Self::Uff58 => "UFF58",
             Self::Sigrok => "sigrok",
+            Self::Xlsx => "XLSX",
+            Self::Ods => "ODS",
+            Self::Npy => "NPY",
+            Self::Zip => "zip",
         })
     }
 }

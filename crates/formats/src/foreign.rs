@@ -3,7 +3,7 @@
 //!
 //! # Source
 //! The formats' own documents: ASAM MDF, RFC 9639 (FLAC), AIFF 1.3, Apache Parquet, Unidata
-//! netCDF classic, NumPy NEP 1, LeCroy template LECROY_2_3, Tektronix 077-0220 (.wfm), SoMat
+//! netCDF classic, LeCroy template LECROY_2_3, Tektronix 077-0220 (.wfm), SoMat
 //! SIE, imc2 (FAMOS); for the rest PRONOM of the National Archives (UK).
 
 use crate::error::Error;
@@ -20,7 +20,7 @@ const NOT_DATA: &str = "name the recording itself";
 const TO_SCOPE_CSV: &str = "save the waveform as CSV on the oscilloscope";
 const TO_WAV: &str = "convert it to WAV, for example: ffmpeg -i FILE recording.wav";
 const LOSSY: &str = "compressed sound has lost what a fit needs; record as WAV";
-const TO_CSV_OF_SHEET: &str = "save the sheet with the samples as CSV";
+const FROM_OLD_OFFICE: &str = "save it as .xlsx, or save the sheet with the samples as CSV";
 const FROM_MDF: &str = "convert it with asammdf (free; in Python: \
                         asammdf.MDF(\"FILE\").export(\"csv\", \"recording.csv\"), or \"mat\", \"hdf5\"), or \
                         export it as MAT or CSV in the program that recorded it";
@@ -93,13 +93,6 @@ const SIGNATURES: &[Signature] = &[
     ),
     (
         0,
-        b"\x93NUMPY",
-        "a NumPy array (.npy)",
-        "save it as CSV (numpy.savetxt with delimiter=\",\") or MAT \
-      (scipy.io.savemat)",
-    ),
-    (
-        0,
         b"CDF\x01",
         "a classic netCDF file",
         "convert it to netCDF-4, which is HDF5: nccopy -k nc4 FILE recording.nc",
@@ -120,8 +113,8 @@ const SIGNATURES: &[Signature] = &[
     (
         0,
         b"\xd0\xcf\x11\xe0",
-        "an old Office file (.xls)",
-        TO_CSV_OF_SHEET,
+        "an old or encrypted Office file (.xls)",
+        FROM_OLD_OFFICE,
     ),
     (0, b"%PDF", "a PDF", NOT_DATA),
     (0, b"\x89PNG", "a picture", NOT_DATA),
@@ -157,20 +150,20 @@ const WORDS: &[(&[u8], &[u8], &str, &str)] = &[
 
 /// Members of archives that are documents.
 const MEMBERS: &[(&[u8], &str, &str)] = &[
-    (b"xl/workbook", "an Excel workbook (.xlsx)", TO_CSV_OF_SHEET),
     (
-        b"opendocument.spreadsheet",
-        "a spreadsheet (.ods)",
-        TO_CSV_OF_SHEET,
+        b"xl/workbook.bin",
+        "a binary Excel workbook (.xlsb)",
+        "save it as .xlsx, or save the sheet with the samples as CSV",
     ),
     (b"word/document.xml", "a Word document", NOT_DATA),
     (b"ppt/presentation.xml", "a presentation", NOT_DATA),
-    (b"opendocument.", "an OpenDocument file", NOT_DATA),
+    (b"opendocument.text", "an OpenDocument file", NOT_DATA),
     (
-        b".npy",
-        "an archive of NumPy arrays (.npz)",
-        "save the arrays as MAT (scipy.io.savemat)",
+        b"opendocument.presentation",
+        "an OpenDocument file",
+        NOT_DATA,
     ),
+    (b"opendocument.graphics", "an OpenDocument file", NOT_DATA),
 ];
 
 /// Refuses what is known and not read.

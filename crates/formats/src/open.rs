@@ -5,15 +5,19 @@ use crate::error::Error;
 use crate::foreign::refuse_foreign;
 use crate::hdf5::read::Hdf5Reader;
 use crate::mat::read::MatReader;
+use crate::npy::read::NpyReader;
 use crate::reader::Reader;
+use crate::sheet::read::{open_ods, open_xlsx};
 use crate::sigrok::read::SigrokReader;
 use crate::source::Source;
+use crate::tables::stacked::open_text;
 use crate::tdms::read::TdmsReader;
 use crate::text::lvm::LvmReader;
 use crate::text::options::TextOptions;
-use crate::text::read::TextReader;
 use crate::uff::read::UffReader;
 use crate::wav::read::WavReader;
+use crate::zip::entries::open_archive;
+use crate::zip::texts::{is_text, open_zip};
 use std::path::Path;
 
 /// Bytes used to detect the format.
@@ -43,7 +47,7 @@ pub fn open_source(source: Source, options: &OpenOptions) -> Result<Box<dyn Read
         None => tell_format(&source)?,
     };
     match format {
-        Format::Text => Ok(Box::new(TextReader::open(source, &options.text)?)),
+        Format::Text => open_text(source, &options.text),
         Format::Lvm => Ok(Box::new(LvmReader::open(source, &options.text)?)),
         Format::Wav => Ok(Box::new(WavReader::open(source)?)),
         Format::Tdms => Ok(Box::new(TdmsReader::open(source)?)),
@@ -51,6 +55,10 @@ pub fn open_source(source: Source, options: &OpenOptions) -> Result<Box<dyn Read
         Format::Mat => Ok(Box::new(MatReader::open(source)?)),
         Format::Uff58 => Ok(Box::new(UffReader::open(source)?)),
         Format::Sigrok => Ok(Box::new(SigrokReader::open(source)?)),
+        Format::Xlsx => Ok(Box::new(open_xlsx(source, &options.text)?)),
+        Format::Ods => Ok(Box::new(open_ods(source, &options.text)?)),
+        Format::Npy => Ok(Box::new(NpyReader::open(source)?)),
+        Format::Zip => Ok(Box::new(open_zip(source, &options.text)?)),
     }
 }
 
@@ -68,7 +76,7 @@ pub fn tell_format(source: &Source) -> Result<Format, Error> {
     }
     refuse_foreign(source, &head)?;
     if head.starts_with(b"PK\x03\x04") {
-        return Ok(Format::Sigrok);
+        return tell_archive(source);
     }
     if head.starts_with(b"TDSm") || head.starts_with(b"TDSh") {
         return Ok(Format::Tdms);
@@ -85,6 +93,9 @@ pub fn tell_format(source: &Source) -> Result<Format, Error> {
     if crate::mat::read::begins(&head) {
         return Ok(Format::Mat);
     }
+    if crate::npy::read::begins(&head) {
+        return Ok(Format::Npy);
+    }
     if is_universal(&head) {
         return Ok(Format::Uff58);
     }
@@ -92,6 +103,25 @@ pub fn tell_format(source: &Source) -> Result<Format, Error> {
         return Ok(Format::Lvm);
     }
     Ok(Format::Text)
+}
+
+/// Detects the format of a zip archive from the names of its members.
+fn tell_archive(source: &Source) -> Result<Format, Error> {
+    let (_, entries) = open_archive(source.part(0, source.length()))?;
+    let has = |test: &dyn Fn(&str) -> bool| entries.iter().any(|entry| test(&entry.name));
+    if has(&|name| name == "xl/workbook.xml") {
+        return Ok(Format::Xlsx);
+    }
+    if has(&|name| name == "content.xml") {
+        return Ok(Format::Ods);
+    }
+    if has(&|name| name.ends_with(".npy")) {
+        return Ok(Format::Npy);
+    }
+    if !has(&|name| name == "metadata") && has(&is_text) {
+        return Ok(Format::Zip);
+    }
+    Ok(Format::Sigrok)
 }
 
 /// A universal file begins with "    -1" and, on the next line, a data set number.

@@ -1,25 +1,29 @@
 //! Random access to the bytes of a file.
 
 use crate::error::{Error, Place};
+use crate::stream::{is_stream, stream_bytes};
 use std::fs::File;
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 
 /// The bytes of a file, which threads can read at once.
 #[derive(Debug)]
 pub struct Source {
     path: PathBuf,
+    /// First byte of the part that this is; 0 for a whole file.
+    start: u64,
     length: u64,
     bytes: Bytes,
 }
 
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 enum Bytes {
-    File(File),
-    Memory(Vec<u8>),
+    File(Arc<File>),
+    Memory(Arc<[u8]>),
 }
 
 impl Source {
-    /// Opens a file.
+    /// Opens a file, or reads a stream to its end.
     ///
     /// # Errors
     /// It does not exist, is a directory, or cannot be opened.
@@ -33,6 +37,10 @@ impl Source {
                 source,
             },
         };
+        if is_stream(path) {
+            let bytes = stream_bytes(path).map_err(access)?;
+            return Ok(Self::of_bytes(path, bytes));
+        }
         let file = File::open(path).map_err(access)?;
         let metadata = file.metadata().map_err(access)?;
         if metadata.is_dir() {
@@ -44,17 +52,35 @@ impl Source {
         }
         Ok(Self {
             path: path.to_path_buf(),
+            start: 0,
             length: metadata.len(),
-            bytes: Bytes::File(file),
+            bytes: Bytes::File(Arc::new(file)),
         })
     }
 
     /// Wraps bytes in memory, with a name for messages.
     pub fn from_bytes(name: &str, bytes: Vec<u8>) -> Self {
+        Self::of_bytes(Path::new(name), bytes.into())
+    }
+
+    fn of_bytes(path: &Path, bytes: Arc<[u8]>) -> Self {
         Self {
-            path: PathBuf::from(name),
+            path: path.to_path_buf(),
+            start: 0,
             length: bytes.len() as u64,
             bytes: Bytes::Memory(bytes),
+        }
+    }
+
+    /// The bytes from `start` to `end` as a source of their own; what lies beyond the end of
+    /// this one is left off.
+    pub(crate) fn part(&self, start: u64, end: u64) -> Self {
+        let start = start.min(self.length);
+        Self {
+            path: self.path.clone(),
+            start: self.start + start,
+            length: end.min(self.length).saturating_sub(start),
+            bytes: self.bytes.clone(),
         }
     }
 
@@ -80,20 +106,22 @@ impl Source {
         }
         match &self.bytes {
             Bytes::Memory(bytes) => {
-                let start = offset as usize;
+                let start = (self.start + offset) as usize;
                 buffer.copy_from_slice(&bytes[start..start + buffer.len()]);
                 Ok(())
             }
-            Bytes::File(file) => read_exact_at(file, offset, buffer).map_err(|source| {
-                // The file has shrunk since it was opened.
-                if source.kind() == std::io::ErrorKind::UnexpectedEof {
-                    return self.truncated(offset, "the data here", needed);
-                }
-                Error::Access {
-                    path: self.path.clone(),
-                    source,
-                }
-            }),
+            Bytes::File(file) => {
+                read_exact_at(file, self.start + offset, buffer).map_err(|source| {
+                    // The file has shrunk since it was opened.
+                    if source.kind() == std::io::ErrorKind::UnexpectedEof {
+                        return self.truncated(offset, "the data here", needed);
+                    }
+                    Error::Access {
+                        path: self.path.clone(),
+                        source,
+                    }
+                })
+            }
         }
     }
 
@@ -116,7 +144,7 @@ impl Source {
     pub fn truncated(&self, offset: u64, what: &str, needed: u64) -> Error {
         Error::Truncated {
             path: self.path.clone(),
-            place: Place::Byte(offset),
+            place: Place::Byte(self.start.saturating_add(offset)),
             what: what.to_owned(),
             needed,
             left: self.length.saturating_sub(offset),
@@ -191,6 +219,12 @@ mod tests {
             assert_eq!(source.length(), 10);
             assert_eq!(source.bytes_at(3, 4).unwrap(), b"3456");
             assert_eq!(source.head(99).unwrap(), b"0123456789");
+            let part = source.part(2, 99).part(1, 4);
+            assert_eq!(part.length(), 3);
+            assert_eq!(part.head(99).unwrap(), b"345");
+            let beyond = part.bytes_at(2, 2).unwrap_err().to_string();
+            assert!(beyond.contains("at byte 5"), "{beyond}");
+            assert_eq!(source.part(11, 5).length(), 0);
         }
     }
 

@@ -12,6 +12,8 @@ use windfall_campaign::settings::open_options::open_options;
 use windfall_files::error::Error;
 use windfall_files::inputs::protect;
 use windfall_files::option_value::unusable;
+use windfall_files::table::write::csv_header;
+use windfall_files::text::quote::string_text;
 use windfall_files::write_file::write_streamed;
 use windfall_formats::contents::{Contents, TimeBase};
 use windfall_formats::open::open;
@@ -128,14 +130,8 @@ impl Table<'_> {
     fn begin(&mut self, names: &[String]) -> std::io::Result<()> {
         match self.kind {
             Kind::Csv => {
-                let quoted = names
-                    .iter()
-                    .map(|name| match name.contains(['"', ',', '\n', '\r']) {
-                        true => format!("\"{}\"", name.replace('"', "\"\"")),
-                        false => name.clone(),
-                    });
-                let header: Vec<String> = quoted.collect();
-                writeln!(self.out, "{}", header.join(","))
+                let header = csv_header(names).map_err(std::io::Error::other)?;
+                self.out.write_all(header.as_bytes())
             }
             // Its place is taken until the number of rows is known.
             Kind::Npy => self.out.write_all(&npy_header(names, 0)),
@@ -217,7 +213,9 @@ impl Sink for Table<'_> {
 /// # Source
 /// NumPy Enhancement Proposal 1, "A Simple File Format for NumPy Arrays", version 3.0.
 fn npy_header(names: &[String], rows: u64) -> Vec<u8> {
-    let fields = names.iter().map(|name| format!("({name:?}, '<f8')"));
+    let fields = names
+        .iter()
+        .map(|name| format!("({}, '<f8')", string_text(name)));
     let fields = fields.collect::<Vec<_>>().join(", ");
     let mut text =
         format!("{{'descr': [{fields}], 'fortran_order': False, 'shape': ({rows:>20},), }}");

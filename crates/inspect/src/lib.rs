@@ -3,6 +3,7 @@
 pub mod envelope;
 pub mod export;
 pub mod figure;
+pub mod gather;
 pub mod run;
 pub mod scan_decimated;
 pub mod scan_time;

@@ -15,7 +15,7 @@ use windfall_draw::plot::write_plot;
 use windfall_draw::theme::LIGHT;
 use windfall_files::error::Error;
 use windfall_files::found::FindingOutcome;
-use windfall_files::inputs::protect;
+use windfall_files::inputs::{check_piped, protect};
 use windfall_files::named::Named;
 use windfall_files::option_value::unusable;
 use windfall_files::text::column_role::{role_of, role_of_unit, seconds_per_unit, unit_in};
@@ -96,6 +96,7 @@ pub fn inspect_opened(
     options: &OpenOptions,
     channels: &[String],
 ) -> Result<Inspection, Error> {
+    check_piped(path)?;
     protect(path);
     let mut reader = open(path, options).map_err(Error::Format)?;
     let contents = reader.contents().clone();
@@ -143,7 +144,7 @@ pub fn inspect_opened(
             .to_owned(),
         rows: rows.unwrap_or(0),
         columns,
-        properties: Named(contents.properties),
+        properties: contents.properties.into_iter().collect(),
         findings,
         curves,
     })

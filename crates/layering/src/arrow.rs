@@ -20,7 +20,7 @@ const ARROWS: &[(&str, &str)] = &[
         "campaign",
         "cards draw files formats identify contact signal statistics numerics",
     ),
-    ("inspect", "campaign draw files formats"),
+    ("inspect", "campaign draw files formats numerics statistics"),
     (
         "simulate",
         "drop-rig campaign cards draw files identify contact signal",
@@ -56,7 +56,7 @@ const ARROWS: &[(&str, &str)] = &[
     ),
     (
         "cli",
-        "web engines scene-run report drop population simulate inspect campaign tables cards draw files",
+        "web workspace engines scene-run report drop population simulate inspect campaign tables cards draw files",
     ),
     ("python", "windfall"),
     ("test-data", ""),

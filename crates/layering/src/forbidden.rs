@@ -65,6 +65,7 @@ const WRITERS: &[[&str; 2]] = &[
 /// while a scene or an engine runs.
 const WAY_OUT: &[&str] = &[
     "crates/files/src/write_file.rs",
+    "crates/files/src/scratch.rs",
     "crates/files/src/written.rs",
     "crates/files/src/confined.rs",
     "crates/scene-run/src/run/growing.rs",
@@ -74,6 +75,13 @@ const WAY_OUT: &[&str] = &[
     "crates/scene-run/src/study/run.rs",
     "crates/engines/src/motion.rs",
 ];
+
+/// Ends of paths that write CSV.
+const CSV_WRITERS: &[[&str; 2]] = &[["csv", "Writer"], ["csv", "WriterBuilder"]];
+
+/// The one source file that does: there cells are quoted, also those that a spreadsheet
+/// would run.
+const CSV_WAY_OUT: &str = "crates/files/src/table/write.rs";
 
 /// Macros that print.
 const MACROS: &[&str] = &["print", "println", "eprint", "eprintln", "dbg"];
@@ -97,21 +105,32 @@ pub fn check_front_end(file: &SourceFile) -> Vec<String> {
     reaching(file, FRONT_END_PATHS)
 }
 
-/// Code that creates or replaces files without the writer that protects inputs.
+/// Code that creates or replaces files without the writer that protects inputs, and code that
+/// writes CSV without the writer that quotes formulas.
 pub fn check_writing(file: &SourceFile) -> Vec<String> {
-    let free = WAY_OUT
+    let reason = "use windfall_files::write_file, which never replaces an input";
+    let mut found = writing(file, WRITERS, WAY_OUT, reason);
+    let reason = "use windfall_files::table::write, which quotes formulas";
+    found.extend(writing(file, CSV_WRITERS, &[CSV_WAY_OUT], reason));
+    found
+}
+
+/// Uses of paths with these ends, outside of the files that may use them.
+fn writing(file: &SourceFile, ends: &[[&str; 2]], ways_out: &[&str], reason: &str) -> Vec<String> {
+    let free = ways_out
         .iter()
         .any(|own| file.path == std::path::Path::new(own));
     let shipped = file.role == Role::Shipped && !free && file.package != "windfall-test-data";
     let paths = file.paths.iter().filter(|_| shipped);
     let writes = paths.filter(|path| {
+        // `csv::Writer::from_writer` has its end within.
         let segments: Vec<&str> = path.segments.iter().map(String::as_str).collect();
-        WRITERS.iter().any(|writer| segments.ends_with(writer))
+        let within = |end: &[&str; 2]| segments.windows(2).any(|pair| pair == end);
+        ends.iter().any(within)
     });
     let message = |path: &NamedPath| {
         let found = path.segments.join("::");
-        let place = file.place(path.line);
-        format!("{place}: {found}: use windfall_files::write_file, which never replaces an input")
+        format!("{}: {found}: {reason}", file.place(path.line))
     };
     writes.map(message).collect()
 }
@@ -225,10 +244,15 @@ mod tests {
             assert!(found("crates/a/src/a.rs", text) > 0, "{text}");
             assert_eq!(found(WAY_OUT[0], text), 0, "{text}");
         }
-        assert_eq!(
-            found("crates/a/src/a.rs", "fn f() { std::fs::read(p); }"),
-            0
-        );
+        for text in [
+            "fn f() { csv::Writer::from_writer(w); }",
+            "use csv::{Reader, WriterBuilder};",
+        ] {
+            assert!(found("crates/a/src/a.rs", text) > 0, "{text}");
+            assert_eq!(found(CSV_WAY_OUT, text), 0, "{text}");
+        }
+        let reading = "fn f() { std::fs::read(p); csv::Reader::from_reader(r); }";
+        assert_eq!(found("crates/a/src/a.rs", reading), 0);
     }
 
     #[test]

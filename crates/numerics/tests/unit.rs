@@ -61,6 +61,29 @@ fn closed_form_conversions() {
 
 /// Prefixes divide rather than multiply by a rounded power of ten, so a value
 /// is the same double as its SI literal.
+/// NIST SP 811 (2008), appendix B.8, in which these are exact: the nearest doubles.
+#[test]
+fn reference_units_of_testing_machines() {
+    for (text, unit, expected) in [
+        ("1 lbf", "N", 4.4482216152605),
+        ("16 ozf", "N", 4.4482216152605),
+        ("1 ozf", "N", 0.278_013_850_953_781_2),
+        ("1 kgf", "N", 9.80665),
+        ("1 kp", "N", 9.80665),
+        ("1 gf", "N", 0.00980665),
+        ("1 in", "m", 0.0254),
+        ("1 \"", "m", 0.0254),
+        ("3 inches", "m", 0.0762),
+        ("1 mil", "m", 0.0000254),
+        ("1 thou", "m", 0.0000254),
+        ("1 ft", "m", 0.3048),
+        ("1 in/min", "m/s", 0.0254 / 60.0),
+        ("1 lbf/in", "N/m", 4.4482216152605 / 0.0254),
+    ] {
+        assert_eq!(parse_as(text, unit).unwrap(), expected, "{text}");
+    }
+}
+
 #[test]
 fn closed_form_decimal_prefixes_are_exact() {
     for i in 1..2000_u32 {
@@ -153,12 +176,12 @@ fn rejects_with_a_message_that_says_what_to_do() {
         (
             "1e999 N",
             "N",
-            "\"1e999 N\" is not a finite number in SI units",
+            "\"1e999 N\" is no number below 1e100 in SI units",
         ),
         (
             "1e308 km",
             "m",
-            "\"1e308 km\" is not a finite number in SI units",
+            "\"1e308 km\" is no number below 1e100 in SI units",
         ),
         (
             "0,505 m",
@@ -168,7 +191,7 @@ fn rejects_with_a_message_that_says_what_to_do() {
         (
             "3 mater",
             "m",
-            "unknown unit \"mater\" in \"3 mater\": known are m, g, s, min, h, N, J, W, Pa, V, A, C, Hz, K, degC, rad, deg, rev, rpm, count, line, g0, %, with SI prefixes p n u m c d h k M G",
+            "unknown unit \"mater\" in \"3 mater\": known are m, g, s, min, h, N, J, W, Pa, V, A, C, Hz, K, degC, rad, deg, rev, rpm, count, line, g0, %, with SI prefixes p n u m c d h k M G; gf, kgf, lbf, ozf, in, mil, ft",
         ),
         (
             "200 kHZ",
@@ -183,7 +206,7 @@ fn rejects_with_a_message_that_says_what_to_do() {
         (
             "3 kmin",
             "s",
-            "unknown unit \"kmin\" in \"3 kmin\": did you mean \"min\"?",
+            "unknown unit \"kmin\" in \"3 kmin\": did you mean \"km in\" (with a space) or \"min\"?",
         ),
         (
             "3 N/m s",

@@ -8,8 +8,9 @@ use crate::outcome::{
 };
 use rayon::prelude::*;
 use std::cell::Cell;
+use std::collections::BTreeSet;
 use std::path::PathBuf;
-use windfall_campaign::impacts::fit::law_problem;
+use windfall_campaign::impacts::fit::{impacts_left_out, law_problem};
 use windfall_campaign::impacts::mass::{RigFound, find_rig};
 use windfall_campaign::pipeline::evaluate::failure;
 use windfall_campaign::pipeline::request::{FitRequest, apply_request};
@@ -89,7 +90,17 @@ fn estimate(
     let rig = find_rig(campaign)?;
     let law = &campaign.fit.laws[0];
     let problem = law_problem(law, &campaign.fit.free);
-    let (members, mut failed) = members(campaign, &rig, &problem, progress)?;
+    let mut first = campaign.clone();
+    first.fit.laws.truncate(1);
+    let mut failed = impacts_left_out(&first, &rig, progress)?;
+    let left_out: BTreeSet<String> = failed.iter().map(|own| own.id.clone()).collect();
+    let entries = campaign.shared.entries.iter();
+    first.shared.entries = entries
+        .filter(|own| !left_out.contains(&own.id))
+        .cloned()
+        .collect();
+    let (members, unusable) = members(&first, &rig, &problem, progress)?;
+    failed.extend(unusable);
     if members.is_empty() {
         return Err(Error::NothingFitted {
             path: campaign.shared.directory.clone(),

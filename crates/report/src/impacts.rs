@@ -10,10 +10,12 @@ use windfall_campaign::impacts::figure_posterior::figure_of_posterior;
 use windfall_campaign::impacts::figure_profiles::figure_of_profiles;
 use windfall_campaign::impacts::figure_residuals::figure_of_residuals;
 use windfall_campaign::impacts::groups::{
-    derived_cells, groups_of, heading_of, law_cells, parameter_cells,
+    SOURCES, derived_cells, groups_of, heading_of, law_cells, parameter_cells,
 };
 use windfall_campaign::impacts::mass::RigFound;
-use windfall_campaign::impacts::text::{laws_of, mass_line, own_codes, shared_codes};
+use windfall_campaign::impacts::text::{
+    counted_line, derived_cell, laws_of, mass_line, own_codes, shared_codes,
+};
 use windfall_campaign::recording::extract::extract_recording;
 use windfall_campaign::result::outcome::{CampaignOutcome, ImpactOutcome};
 use windfall_campaign::result::quantity::quantities_named;
@@ -47,7 +49,7 @@ pub fn sections_of_campaign(
         results(outcome),
     ];
     for law in laws_of(outcome) {
-        let impacts: Vec<&ImpactOutcome> = of_law(outcome, law);
+        let impacts: Vec<&ImpactOutcome> = counted_of_law(outcome, law);
         let covariates = covariates_of(campaign, &impacts).into_iter();
         let over = covariates.filter_map(|c| figure_of_covariate(law, &impacts, &c));
         let pairs = figure_of_pairs(law, &impacts).into_iter();
@@ -68,6 +70,12 @@ fn of_law<'a>(outcome: &'a CampaignOutcome, law: &str) -> Vec<&'a ImpactOutcome>
     outcome.impacts.iter().filter(|i| i.law == law).collect()
 }
 
+/// Those that count.
+fn counted_of_law<'a>(outcome: &'a CampaignOutcome, law: &str) -> Vec<&'a ImpactOutcome> {
+    let all = of_law(outcome, law).into_iter();
+    all.filter(|impact| impact.counts()).collect()
+}
+
 /// Tables of groups.
 fn results(outcome: &CampaignOutcome) -> Section {
     let laws = laws_of(outcome);
@@ -79,13 +87,12 @@ fn results(outcome: &CampaignOutcome) -> Section {
         });
     }
     if let Some(first) = laws.first() {
-        let [signals, energies] = derived_cells(&groups_of(outcome, first));
-        let read = "read off the signals (from the fit where they do not show it), mean ± SD in %";
-        for (what, cells) in [("Velocities and peaks", signals), ("Energies", energies)] {
-            tables.push(CaptionedTable {
-                caption: format!("{what}, {read}"),
+        for (source, words) in SOURCES {
+            let cells = derived_cells(outcome, first, source).into_iter();
+            tables.extend(cells.map(|cells| CaptionedTable {
+                caption: format!("Velocities, peaks and energies {words}, mean ± SD in %"),
                 cells,
-            });
+            }));
         }
     }
     if laws.len() > 1 {
@@ -98,7 +105,14 @@ fn results(outcome: &CampaignOutcome) -> Section {
     }
     Section {
         tables,
-        ..Section::of_words("Results", vec![format!("{}.", mass_line(outcome))])
+        ..Section::of_words(
+            "Results",
+            vec![format!(
+                "{}. {}.",
+                counted_line(outcome),
+                mass_line(outcome)
+            )],
+        )
     }
 }
 
@@ -141,10 +155,7 @@ fn impact_cells(impacts: &[&ImpactOutcome]) -> Cells {
                 None => "-".to_owned(),
             });
         }
-        row.extend(columns.iter().map(|column| {
-            let value = impact.derived(column.name);
-            value.map_or_else(|| "-".to_owned(), |value| plain(value * column.factor))
-        }));
+        row.extend(columns.iter().map(|column| derived_cell(impact, column)));
         row.push(own_codes(impact, &shared));
         row
     };
@@ -191,7 +202,7 @@ fn examples(
     let first = laws.first().copied().unwrap_or_default();
     let used = (&rig.rig, campaign.fit.options.end, &campaign.fit.user[..]);
     let mut figures = Vec::new();
-    for (shown, why) in shown_impacts(&of_law(outcome, first)) {
+    for (shown, why) in shown_impacts(&counted_of_law(outcome, first)) {
         let id = &shown.id;
         let Some(entry) = campaign.shared.entries.iter().find(|entry| entry.id == *id) else {
             continue;

@@ -26,7 +26,7 @@ use windfall_files::progress::Progress;
 use windfall_files::provenance::{VERSION, time_now};
 use windfall_files::table::write::csv_text;
 use windfall_files::text::table::Cells;
-use windfall_files::write_file::{check_target, write_whole};
+use windfall_files::write_file::write_whole;
 
 /// Directory of the report in a campaign directory.
 pub const REPORT_DIRECTORY: &str = "report";
@@ -67,9 +67,12 @@ pub fn report_campaign(
     request: &ReportRequest,
     progress: Progress,
 ) -> Result<ReportOutcome, Error> {
-    let fit = &request.fit;
-    let page = report_folder(request, directory).join("report.html");
-    check_target(&page)?;
+    let out = report_folder(request, directory);
+    let files = FILES.iter().map(|name| out.join(name));
+    let fit = &FitRequest {
+        outputs: files.chain([out.join(FIGURES)]).collect(),
+        ..request.fit.clone()
+    };
     let Some(measurement) = measurement_of(campaign_kind(directory)?) else {
         let fitted = fitted_campaign(directory, fit, progress)?;
         return on_threads(fit.threads, || report_impacts(request, fitted));
@@ -77,6 +80,19 @@ pub fn report_campaign(
     let items = (measurement.report)(directory, fit, progress)?;
     on_threads(fit.threads, || report_items(request, items))
 }
+
+/// Files of a report. The page comes last, so that all it refers to exists.
+const FILES: [&str; 6] = [
+    "impacts.csv",
+    "results.json",
+    "inputs.csv",
+    "windfall.bib",
+    "CITATION.cff",
+    "report.html",
+];
+
+/// The folder of its figures.
+const FIGURES: &str = "figures";
 
 /// Where a report goes.
 fn report_folder(request: &ReportRequest, campaign: &Path) -> PathBuf {
@@ -178,23 +194,22 @@ fn write(
     let out = report_folder(request, source.directory);
     let drawn: Vec<&NamedFigure> = report.sections.iter().flat_map(|s| &s.figures).collect();
     let folder = FigureFolder {
-        directory: out.join("figures"),
+        directory: out.join(FIGURES),
         theme: request.theme,
     };
     let mut files = write_figures(&folder, &drawn)?;
     let json = serde_json::to_string_pretty(outcome)
         .map_err(|error| Error::unwritable(&report.title, error))?;
     let page = out.join("report.html");
-    let others = [
-        ("impacts.csv", csv_of_any(outcome)?),
-        ("results.json", json + "\n"),
-        ("inputs.csv", csv_of_inputs(&source.inputs)?),
-        ("windfall.bib", bibtex()),
-        ("CITATION.cff", citation_file()),
-        // Last, so that all it refers to exists.
-        ("report.html", html_of_report(&report)),
+    let contents = [
+        csv_of_any(outcome)?,
+        json + "\n",
+        csv_of_inputs(&source.inputs)?,
+        bibtex(),
+        citation_file(),
+        html_of_report(&report),
     ];
-    for (name, contents) in others {
+    for (name, contents) in FILES.iter().zip(contents) {
         let path = out.join(name);
         write_whole(&path, contents.as_bytes())?;
         files.push(path);

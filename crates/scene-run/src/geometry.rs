@@ -76,11 +76,24 @@ impl Bounds {
         length(subtract(self.high, self.low))
     }
 
+    fn corners(&self) -> Vec<Vector> {
+        let corner = |number: usize| {
+            std::array::from_fn(|k| match number >> k & 1 {
+                0 => self.low[k],
+                _ => self.high[k],
+            })
+        };
+        (0..8).map(corner).collect()
+    }
+
     /// Whether a point lies inside the box widened by `beyond` (m) on every side.
     pub fn holds(&self, point: Vector, beyond: f64) -> bool {
         (0..3).all(|k| point[k] >= self.low[k] - beyond && point[k] <= self.high[k] + beyond)
     }
 }
+
+/// Points that are followed one by one.
+const MOST_POINTS: usize = 1 << 16;
 
 /// The walls of a scene as faces, and the box around all that has an end: walls at rest, and
 /// the places at which fruit come.
@@ -93,6 +106,10 @@ pub fn geometry_of(scene: &Scene) -> (Vec<WallGeometry>, Bounds) {
     }
     for wall in &scene.walls {
         if let Shape::Plane { point, normal } = wall.shape {
+            // Every plane doubles the points: of many their box is enough.
+            if points.len() > MOST_POINTS {
+                points = Bounds::around(points).corners();
+            }
             // What falls on it lies on it in the end.
             let feet = points.iter().map(|own| {
                 let height = dot(subtract(*own, point), normal);
@@ -188,5 +205,29 @@ mod tests {
         let slope = 1.15 * 4.0 / 5.0_f64.sqrt();
         assert!((length(a) - slope).abs() < 1e-12 && (length(b) - 2.3).abs() < 1e-12);
         assert!(dot(a, b).abs() < 1e-12);
+    }
+
+    #[test]
+    fn closed_form_a_box_around_hundreds_of_planes() {
+        let plane = |number: usize| Wall {
+            name: "floor".into(),
+            material: 0,
+            shape: Shape::Plane {
+                point: [0.0, 0.0, -(number as f64)],
+                normal: [0.0, 0.0, 1.0],
+            },
+            motion: windfall_scene::shape::wall::Motion::default(),
+        };
+        let scene = Scene {
+            materials: vec!["steel".into()],
+            fruit: vec![windfall_scene::scene::Fruit::sphere(
+                0, 0.5, 1000.0, [0.0; 3],
+            )],
+            walls: (0..300).map(plane).collect(),
+            ..Scene::default()
+        };
+        let (walls, bounds) = geometry_of(&scene);
+        assert_eq!(walls.len(), 300);
+        assert_eq!((bounds.low, bounds.high), ([-0.5, -0.5, -299.0], [0.5; 3]));
     }
 }

@@ -89,6 +89,7 @@ pub fn write_simulated_campaign(
     let law = batches.first().map(|batch| batch.law.kind());
     let toml = campaign_text(campaign, law.unwrap_or(LawKind::KuwabaraKono));
     new.file("campaign.toml", toml)?;
+    new.end()?;
     Ok(recordings)
 }
 

@@ -9,6 +9,7 @@ use windfall_contact::laws::kind::Law;
 use windfall_files::error::Error;
 use windfall_files::option_value::{at_least_zero, positive, unusable};
 use windfall_files::table::write::csv_text;
+use windfall_files::text::quote::string_text;
 use windfall_signal::noise::gaussian::{noise_source, normal};
 
 /// What is simulated; texts with units.
@@ -98,7 +99,7 @@ pub fn simulate_compression(
     new.table("specimens.csv", &["id", "radius_mm"], specimens)?;
     let header = ["id", "specimen", "file", "rate_mm_s"];
     new.table("impacts.csv", &header, rows)?;
-    Ok(new.written)
+    new.end()
 }
 
 fn plan(request: &SimulateCompressionRequest) -> Result<Plan, Error> {
@@ -193,13 +194,13 @@ fn recording(plan: &Plan, law: &Law, rate: f64, seed: (u64, u64)) -> Result<Stri
 }
 
 fn campaign(label: &str, plates: u32, law: &str) -> String {
-    let label = label.replace('"', "'");
+    let [label, law] = [label, law].map(string_text);
     format!(
         "# Slow compressions made by windfall simulate compression.\n\
          format = 1\n\n\
          [campaign]\n\
          title = \"Simulated slow compressions\"\n\
-         simulated = \"{label}\"\n\n\
+         simulated = {label}\n\n\
          [rig]\n\
          kind = \"compression\"\n\
          plates = {plates}\n\
@@ -214,6 +215,6 @@ fn campaign(label: &str, plates: u32, law: &str) -> String {
          column = \"position_mm\"\n\
          unit = \"mm\"\n\n\
          [fit]\n\
-         laws = [\"{law}\"]\n"
+         laws = [{law}]\n"
     )
 }

@@ -17,6 +17,7 @@ use windfall_drop_rig::rig::DropRig;
 use windfall_drop_rig::simulate::{DropSummary, drop_trajectory, simulate_drop};
 use windfall_files::error::Error;
 use windfall_files::option_value::{at_least_zero, positive, quantity, unusable};
+use windfall_files::text::quote::string_text;
 use windfall_signal::instrument::{Converter, Instrument, Sensor, Trajectory, record};
 use windfall_signal::noise::gaussian::{NoiseSource, noise_source, normal, uniform};
 
@@ -148,6 +149,7 @@ pub fn simulate_drops(
     new.table("impacts.csv", &header, impacts)?;
     new.table("truth.csv", &TRUTH, truth)?;
     new.file("campaign.toml", campaign_text(&bench))?;
+    new.end()?;
     Ok(recordings)
 }
 
@@ -329,8 +331,8 @@ fn truth_row(ids: &[String], drop: &TrueDrop) -> Vec<String> {
 /// campaign.toml that reads the recordings back: it knows what the bench knows.
 fn campaign_text(bench: &Bench) -> String {
     let (plan, sensor) = (bench.plan, &bench.sensor);
-    // A quote would end the text in campaign.toml.
-    let truth = LawExpression::from(plan.law).to_string().replace('"', "'");
+    let truth = LawExpression::from(plan.law);
+    let label = format!("windfall simulate drop, {truth}, seed {}", bench.seed);
     let mut law = LawExpression::from(plan.law);
     for (position, value) in law.values.iter_mut().enumerate() {
         if !bench.held.contains(&position) {
@@ -356,7 +358,7 @@ format = 1
 
 [campaign]
 title = "Simulated drops"
-simulated = "windfall simulate drop, {truth}, seed {seed}"
+simulated = {label}
 
 [rig]
 kind = "drop"
@@ -375,14 +377,15 @@ column = "force_V"
 sensitivity = "{sensitivity} V/N"
 
 [fit]
-law = "{law}"
+law = {law}
 free = [{free}]
 end = "{end}"
 
 [calibrate]
 bounces = 2
 {own}"#,
-        seed = bench.seed,
+        label = string_text(&label),
+        law = string_text(&law.to_string()),
         gravity = plan.rig.gravity,
         mass_sd = bench.mass_sd,
         height_sd = bench.height_sd,

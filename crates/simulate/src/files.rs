@@ -7,6 +7,7 @@ use windfall_cards::law_use::end_name;
 use windfall_cards::user_laws::text::law_table;
 use windfall_contact::law::EndRule;
 use windfall_contact::laws::kind::LawKind;
+use windfall_files::text::quote::string_text;
 use windfall_identify::rig::kind::Rig;
 use windfall_signal::instrument::{EncoderOutput, Instrument, RawChannel, Sensor};
 use windfall_signal::kinematics::Encoder;
@@ -142,8 +143,8 @@ pub fn campaign_text(campaign: &SimulatedCampaign, law: LawKind) -> String {
 format = 1
 
 [campaign]
-title = "{title}"
-simulated = "{label}"
+title = {title}
+simulated = {label}
 
 {rig}
 [files]
@@ -155,18 +156,18 @@ directory = "raw"
 threshold = {threshold}
 
 [fit]
-laws = ["{law}"]
+laws = [{law}]
 quantities = [{quantities}]
 end = "{end}"
 
 [summary]
 group = "variety"
 {own}"#,
-        title = campaign.title,
-        label = campaign.label,
+        title = string_text(&campaign.title),
+        label = string_text(&campaign.label),
         rig = rig_text(&campaign.rig, campaign.weighed),
         channels = channels_text(instrument, timed),
-        law = law.name(),
+        law = string_text(law.name()),
         own = match law_table(law) {
             table if table.is_empty() => table,
             table => format!("\n{table}"),

@@ -1,35 +1,37 @@
 //! A campaign directory that a simulation fills.
 
 use std::path::{Path, PathBuf};
-use windfall_campaign::settings::template::create_directory;
+use windfall_campaign::settings::kind::CAMPAIGN_FILE;
 use windfall_files::error::Error;
+use windfall_files::scratch::NewDirectory;
 use windfall_files::table::write::csv_text;
-use windfall_files::write_file::write_new;
 
-/// A new campaign directory, with `raw` in it.
+/// A new campaign directory; it is there when all of it is.
 pub(crate) struct NewCampaign {
-    directory: PathBuf,
-    /// Files so far.
-    pub written: Vec<PathBuf>,
+    directory: NewDirectory,
+    written: Vec<PathBuf>,
 }
 
 impl NewCampaign {
-    /// Makes the directories.
+    /// Makes room for it.
     pub fn create(directory: &Path) -> Result<Self, Error> {
-        create_directory(directory)?;
-        create_directory(&directory.join("raw"))?;
         Ok(Self {
-            directory: directory.to_path_buf(),
+            directory: NewDirectory::begin(directory)?,
             written: Vec::new(),
         })
     }
 
     /// Writes a file; recordings are "raw/NAME".
     pub fn file(&mut self, name: &str, contents: impl AsRef<[u8]>) -> Result<(), Error> {
-        let path = self.directory.join(name);
-        write_new(&path, contents.as_ref())?;
+        let path = self.directory.write(name, contents.as_ref())?;
         self.written.push(path);
         Ok(())
+    }
+
+    /// Gives the directory its name; the files in it.
+    pub fn end(self) -> Result<Vec<PathBuf>, Error> {
+        self.directory.end(CAMPAIGN_FILE)?;
+        Ok(self.written)
     }
 
     /// Writes a table.

@@ -13,6 +13,7 @@ use windfall_contact::laws::thornton::Thornton;
 use windfall_files::error::Error;
 use windfall_files::option_value::{at_least_zero, positive, unusable};
 use windfall_files::table::write::csv_text;
+use windfall_files::text::quote::string_text;
 use windfall_identify::rig::kind::{Carriage, Rig};
 use windfall_identify::rig::simulate::{simulate_rig, trajectory};
 use windfall_signal::noise::gaussian::{NoiseSource, noise_source, normal, uniform};
@@ -174,6 +175,7 @@ pub fn simulate_repeats(
     }
     let recordings = rows.len();
     write_tables(&mut new, &bodies, rows, request, &plan)?;
+    new.end()?;
     Ok(recordings)
 }
 
@@ -313,7 +315,7 @@ fn write_tables(
         )
         .replace(
             "# simulated = \"made by a program\"",
-            &format!("simulated = \"{}\" #", label.replace('"', "'")),
+            &format!("simulated = {} #", string_text(&label)),
         )
         .replace("mass = \"200 g\"", &format!("mass = \"{} kg\"", plan.mass));
     new.file("campaign.toml", text)

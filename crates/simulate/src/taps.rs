@@ -113,7 +113,7 @@ pub fn simulate_taps(
     new.table("specimens.csv", &header, specimens)?;
     let header = ["id", "specimen", "file", "orientation"];
     new.table("impacts.csv", &header, rows)?;
-    Ok(new.written)
+    new.end()
 }
 
 fn plan(request: &SimulateTapsRequest) -> Result<Plan, Error> {

@@ -157,11 +157,9 @@ pub(crate) fn motion_csv(columns: &[Column]) -> Result<String, Error> {
 
 /// The keys of a drop, and `motion`.
 pub(crate) fn with_motion(mut drop: serde_json::Value, columns: &[Column]) -> serde_json::Value {
-    let columns = columns
-        .iter()
-        .map(|(name, _, values)| ((*name).to_owned(), *values));
+    let columns = columns.iter().map(|(name, _, values)| (*name, *values));
     if let Some(keys) = drop.as_object_mut() {
-        let columns = serde_json::json!(Named(columns.collect()));
+        let columns = serde_json::json!(columns.collect::<Named<_>>());
         keys.insert("motion".to_owned(), columns);
     }
     drop

@@ -64,6 +64,33 @@ pub enum Error {
     Sample(#[from] SampleError),
 }
 
+impl Error {
+    /// The row of the table that is to blame, from 1, where one is.
+    pub fn row(&self) -> Option<usize> {
+        self.clone().row_mut().copied()
+    }
+
+    fn row_mut(&mut self) -> Option<&mut usize> {
+        match self {
+            Self::NotNumbers { row, .. }
+            | Self::NumbersWithText { row, .. }
+            | Self::NotFinite { row, .. }
+            | Self::UnknownLevel { row, .. } => Some(row),
+            _ => None,
+        }
+    }
+
+    /// The error of some rows of a table, as one of the table.
+    ///
+    /// * `rows`: where they are in it, from 0
+    pub(crate) fn of_rows(mut self, rows: &[usize]) -> Self {
+        if let Some(row) = self.row_mut() {
+            *row = rows.get(*row - 1).map_or(*row, |whole| whole + 1);
+        }
+        self
+    }
+}
+
 fn nearest(suggestion: Option<&str>) -> String {
     suggestion.map_or_else(String::new, |name| format!("; did you mean {name:?}?"))
 }

@@ -11,6 +11,7 @@ use args::common::{Arguments, Command};
 use args::groups::grouped;
 use clap::{CommandFactory, FromArgMatches};
 use std::process::ExitCode;
+use windfall_files::confined::also_read;
 use windfall_files::inputs::guard_inputs;
 use windfall_files::written::replace_files_of_others;
 
@@ -24,8 +25,10 @@ fn main() -> ExitCode {
     if arguments.force {
         replace_files_of_others();
     }
+    also_read(arguments.also_read);
     let outcome = match arguments.command {
         Command::New(arguments) => command::new::run(&arguments),
+        Command::Add(arguments) => command::add::run(&arguments),
         Command::Inspect(arguments) => command::inspect::run(&arguments),
         Command::Design(arguments) => command::design::run(&arguments),
         Command::Fit(arguments) => command::fit::run(&arguments),
@@ -65,5 +68,55 @@ fn status_of(error: &anyhow::Error) -> u8 {
     match error.downcast_ref::<windfall_files::error::Error>() {
         Some(known) if known.is_request() => 2,
         _ => 1,
+    }
+}
+
+#[cfg(test)]
+#[path = "../tests/outputs/options.rs"]
+#[allow(dead_code)]
+mod options;
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::options::{READ, WRITTEN};
+    use clap::ValueHint;
+    use std::any::TypeId;
+    use std::collections::BTreeSet;
+    use std::path::PathBuf;
+
+    /// Arguments of a command, and of those below it, that are paths.
+    fn paths(command: &clap::Command, name: &str, found: &mut BTreeSet<(String, String)>) {
+        for own in command.get_arguments() {
+            let path = own.get_value_parser().type_id() == TypeId::of::<PathBuf>();
+            let hints = [ValueHint::FilePath, ValueHint::DirPath, ValueHint::AnyPath];
+            if path || hints.contains(&own.get_value_hint()) {
+                let long = own.get_long().map(|long| format!("--{long}"));
+                let long = long.unwrap_or_else(|| own.get_id().to_string());
+                assert!(found.insert((name.to_owned(), long)));
+            }
+        }
+        for own in command.get_subcommands() {
+            let name = format!("{name} {}", own.get_name());
+            paths(own, name.trim(), found);
+        }
+    }
+
+    /// An output option that the generated tests of outputs do not know fails here.
+    #[test]
+    fn reference_every_path_is_known_as_written_or_read() {
+        let mut found = BTreeSet::new();
+        paths(&Arguments::command(), "", &mut found);
+        let written = WRITTEN.iter().map(|own| (own.0, own.1));
+        let known = written.chain(READ.iter().copied());
+        let known = known.map(|(command, option)| (command.to_owned(), option.to_owned()));
+        let known: BTreeSet<_> = known.collect();
+        assert_eq!(known.len(), WRITTEN.len() + READ.len());
+        let new: Vec<_> = found.difference(&known).collect();
+        let gone: Vec<_> = known.difference(&found).collect();
+        assert!(
+            new.is_empty() && gone.is_empty(),
+            "tests/outputs/options.rs lacks {new:?}, and has too many {gone:?}"
+        );
     }
 }

@@ -5,6 +5,8 @@ use std::io::{ErrorKind, Write};
 use std::path::Path;
 use windfall_files::error::Error;
 use windfall_files::found::FailureOutcome;
+use windfall_files::table::write::csv_text;
+use windfall_files::text::quote::{command, path_word};
 
 /// Writes a result. A reader that has heard enough (`| head`) is no error.
 pub fn write_result(text: &str) -> anyhow::Result<()> {
@@ -68,18 +70,29 @@ pub fn with_causes(error: &anyhow::Error) -> String {
 
 /// Says what a simulation has written.
 pub fn written(directory: &Path, recordings: usize, format: Format) -> anyhow::Result<()> {
+    let word = path_word(directory);
     let directory = directory.display();
     match format {
         Format::Json => write_json(&serde_json::json!({
             "directory": directory.to_string(), "recordings": recordings, "simulated": true
         })),
-        Format::Csv => write_result(&format!(
-            "directory,recordings\n\"{directory}\",{recordings}\n"
-        )),
+        Format::Csv => {
+            let row = vec![directory.to_string(), recordings.to_string()];
+            write_result(&csv_text(&["directory", "recordings"], [row])?)
+        }
         Format::Text => write_result(&format!(
-            "{recordings} simulated recordings in {directory}\n\nNext:\n  windfall fit {directory}\n"
+            "{recordings} simulated recordings in {directory}\n\nNext:\n  {}\n",
+            command(&["fit", &word])
         )),
     }
+}
+
+/// Names of files as CSV.
+///
+/// * `column`: name of the column
+pub fn write_names(column: &str, names: &[String]) -> anyhow::Result<()> {
+    let rows = names.iter().map(|name| vec![name.clone()]);
+    write_result(&csv_text(&[column], rows)?)
 }
 
 /// Says what was not used; the text shows that itself.

@@ -126,14 +126,14 @@ fn pinned_numbers_are_those_of_the_revision() {
         digest(&drops, &[]),
     ];
     let expected = (
-        2,
+        3,
         [
-            "cdf6db80b13ce43c",
-            "0c81e42d4c05837a",
-            "1253325f53235364",
-            "1baeec52d83f17a4",
-            "aaa8b6c5ac056656",
-            "60d981a4239d54a3",
+            "7052e8dc0caa4786",
+            "35206247a11a39db",
+            "91551cac97612078",
+            "362e0649b943bd49",
+            "3e453baf43c8c589",
+            "73382ad8abe1acba",
         ]
         .map(str::to_owned),
     );

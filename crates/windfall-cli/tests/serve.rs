@@ -386,9 +386,12 @@ fn rejects_files_that_lead_out_of_the_campaign() {
     std::fs::write(campaign.join("impacts.csv"), rows).unwrap();
     let body = json!({"impact": ids(&running)[0], "series": true});
     let refit = running.page("POST", "/api/campaigns/bench/refit", None, &body);
-    assert_eq!(refit.json()["code"], "name", "{}", refit.text());
+    assert_eq!(refit.json()["code"], "unusable", "{}", refit.text());
+    assert!(refit.text().contains("lies elsewhere"), "{}", refit.text());
     let job = running.work("bench", &json!({"work": "fit"}));
-    assert_eq!(job["state"], "failed", "{job}");
+    assert_eq!(job["state"], "done", "{job}");
+    let told = job["result"]["failed"][0]["message"].as_str().unwrap();
+    assert!(told.contains("lies elsewhere"), "{job}");
     let refused = |name: &str, target: &Path| {
         let own = campaign.join(name);
         let kept = folder.path().join("kept");

@@ -419,6 +419,7 @@ fn a_run_that_is_killed_while_it_names_its_files_goes_on() {
     stopped(directory);
     // The frames have their name before the table of contacts has.
     let partial = results.join("frames.bin.partial");
+    windfall_files::written::list_written_as(&results.join("frames.bin"), &partial).unwrap();
     std::fs::rename(partial, results.join("frames.bin")).unwrap();
     let (done, problem) = run(directory, &["--resume"]);
     assert!(done, "{problem}");

@@ -402,7 +402,7 @@ fn rejects_what_is_no_law_or_card() {
         ),
         (
             "[laws.a]\nforce = \"k*x\"\ntable = \"a.csv\"",
-            "expected one of: force",
+            "`force` is given too",
         ),
         (
             "[laws.a]\ntable = \"absent.csv\"",
@@ -422,7 +422,7 @@ fn rejects_what_is_no_law_or_card() {
     std::fs::write(&card, "format = 3\nnew = 1\n").unwrap();
     let newer = refused(&["card", "show", "--file", card.to_str().unwrap()]);
     assert!(
-        newer.contains("it has format 3, and this windfall reads formats 1 to 2"),
+        newer.contains("this windfall reads law cards of formats 1 to 2"),
         "{newer}"
     );
     let unknown = refused(&[&IMPACT[..], &["--law", "my-law(k=1)"]].concat());

@@ -33,6 +33,7 @@ use utoipa::{Modify, OpenApi};
         crate::api::live::refit,
         crate::api::changes::text,
         crate::api::changes::window,
+        crate::api::changes::exclusion,
         crate::api::changes::options,
         crate::api::changes::channels,
         crate::api::changes::impacts,

@@ -194,6 +194,7 @@ fn routes(app: App, guard: Arc<Guard>) -> Router {
         .route("/refit", post(live::refit))
         .route("/text", put(changes::text))
         .route("/window", put(changes::window))
+        .route("/exclusion", put(changes::exclusion))
         .route("/options", put(changes::options))
         .route("/channels", put(changes::channels))
         .route("/impacts", post(changes::impacts))

@@ -131,13 +131,13 @@ fn rejects_what_campaign_toml_must_not_say() {
             Pendulum,
             "laws = [\"kuwabara-kono\"]",
             "laws = [\"kuwabara-kona\"]",
-            "[fit] law = \"kuwabara-kona\": ",
+            "[fit] laws = \"kuwabara-kona\": ",
         ),
         (
             Pendulum,
             "laws = [\"kuwabara-kono\"]",
             "laws = [\"hertz(k=1)\", \"hertz\"]",
-            "[fit] law = \"hertz\": this law is named twice",
+            "[fit] laws = \"hertz\": this law is named twice",
         ),
         (
             Pendulum,
@@ -231,13 +231,12 @@ fn faulty_line(toml: &str, to: &str, expected: &str) -> Option<usize> {
     if expected.starts_with("the file") {
         return Some(1);
     }
-    let table = match (to.is_empty(), to.starts_with("column")) {
-        (true, _) => expected
+    let table = match to.is_empty() {
+        true => expected
             .split(' ')
             .next()
             .filter(|word| word.starts_with('['))?,
-        (false, true) => "[channels.force]",
-        (false, false) => to,
+        false => to,
     };
     let at = toml.find(table).unwrap();
     Some(1 + toml[..at].matches('\n').count())

@@ -109,6 +109,7 @@ fn reference_kiwi_and_mango() {
         return;
     }
     let data = windfall_test_data::recordings();
+    windfall_files::confined::also_read(vec![data.clone()]);
     let example = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../examples/fruit_grip");
     let dir = tempfile::tempdir().unwrap();
     for name in ["campaign.toml", "specimens.csv", "impacts.csv"] {

@@ -29,6 +29,7 @@ fn recovers_cart_and_pads_from_real_recordings() {
         return;
     }
     let data = windfall_test_data::recordings();
+    windfall_files::confined::also_read(vec![data.clone()]);
     let scratch = tempfile::tempdir().unwrap();
     campaign_in(scratch.path(), &data);
     let request = FitRequest {

@@ -1,6 +1,5 @@
 //! A campaign as the page shows it, whatever it measures.
 
-use crate::equal_command::command;
 use serde::Serialize;
 use std::path::Path;
 use std::time::SystemTime;
@@ -11,11 +10,13 @@ use windfall_campaign::settings::kind::STORE_FILE;
 use windfall_campaign::settings::kind::campaign_kind;
 use windfall_campaign::settings::model::{Campaign, FilePlan, ImpactCampaign};
 use windfall_campaign::settings::read::read_campaign;
-use windfall_files::confined::{check_inside, path_inside};
+use windfall_files::confined::path_inside;
 use windfall_files::error::Error;
 use windfall_files::inputs::check_regular;
 use windfall_files::option_value::word_of;
 use windfall_files::provenance::digest_text;
+use windfall_files::text::quote::{command, path_word};
+use windfall_files::write_file::sweep;
 use windfall_identify::fit::problem::FitOptions;
 use windfall_report::fit_any::measurement_of;
 use windfall_report::run::REPORT_DIRECTORY;
@@ -121,43 +122,23 @@ fn read_any(directory: &Path) -> Result<(Campaign, Option<ImpactCampaign>), Erro
     Ok((campaign.shared.clone(), Some(campaign)))
 }
 
-/// Checks that the own files of a campaign and the tables of its laws lie in its directory.
+/// Checks that the own files of a campaign lie in its directory.
 ///
 /// # Errors
-/// One is a symbolic link, no regular file, or a table elsewhere.
+/// One is a symbolic link, or no regular file.
 pub fn check_confined(directory: &Path) -> Result<(), Error> {
     for name in CAMPAIGN_FILES.iter().chain(&[STORE_FILE, CARD_FILE]) {
         check_regular(&path_inside(directory, name)?)?;
     }
-    check_law_tables(directory, &campaign_text(directory)?)
+    Ok(())
 }
 
-/// Checks that the tables of laws in a campaign.toml lie in its directory.
+/// Checks where work on a campaign writes besides the files of the campaign.
 ///
 /// # Errors
-/// One lies elsewhere, or is no regular file.
-pub(crate) fn check_law_tables(directory: &Path, text: &str) -> Result<(), Error> {
-    // Text that is no TOML is refused by its reader.
-    let tables: toml::Table = toml::from_str(text).unwrap_or_default();
-    let laws = tables.get("laws").and_then(toml::Value::as_table);
-    let mut files = laws
-        .into_iter()
-        .flatten()
-        .filter_map(|(_, law)| law.get("table")?.as_str());
-    files.try_for_each(|file| check_inside(directory, &directory.join(file)))
-}
-
-/// Checks what work on a campaign reads and writes besides the files of the campaign.
-///
-/// # Errors
-/// A recording lies outside of the directory of recordings, or results would be written
-/// through a symbolic link.
+/// Results would be written through a symbolic link.
 pub fn check_work(directory: &Path) -> Result<(), Error> {
-    path_inside(directory, &format!("{REPORT_DIRECTORY}/figures"))?;
-    let (campaign, _) = read_any(directory)?;
-    let raw = &campaign.files.directory;
-    let mut files = campaign.entries.iter().map(|entry| raw.join(&entry.file));
-    files.try_for_each(|file| check_inside(raw, &file))
+    path_inside(directory, &format!("{REPORT_DIRECTORY}/figures")).map(|_| ())
 }
 
 /// Whether the files of a campaign say what they must.
@@ -214,7 +195,7 @@ pub fn view_campaign(directory: &Path) -> Result<CampaignView, Error> {
             .join(REPORT_DIRECTORY)
             .join("report.html")
             .is_file(),
-        command: command(&["fit", &id]),
+        command: command(&["fit", &path_word(&id)]),
         id,
     })
 }
@@ -369,6 +350,8 @@ fn tables_of(directory: &Path) -> Result<Vec<String>, Error> {
         ("", directory.to_path_buf()),
         ("tables/", directory.join(TABLES_DIRECTORY)),
     ] {
+        // What killed uploads have left.
+        sweep(&folder.join(TABLES_DIRECTORY));
         let own = names_in(&folder)?.into_iter().filter(|name| {
             let csv = name.to_lowercase().ends_with(".csv");
             csv && !(prefix.is_empty() && CAMPAIGN_FILES.contains(&name.as_str()))

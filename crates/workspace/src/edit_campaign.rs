@@ -3,10 +3,9 @@
 //! version is refused.
 
 use crate::campaign_view::{
-    CAMPAIGN_FILES, CampaignView, campaign_version, check_campaign, check_law_tables, file_plan_of,
-    signed_unit, view_campaign,
+    CAMPAIGN_FILES, CampaignView, campaign_version, check_campaign, file_plan_of, signed_unit,
+    view_campaign,
 };
-use crate::edit_table::{add_rows, set_cells};
 use crate::workspace::recordings_inside;
 use itertools::Itertools;
 use serde::Deserialize;
@@ -16,15 +15,19 @@ use std::path::{Component, Path};
 use std::sync::{Mutex, PoisonError};
 use toml_edit::{Array, DocumentMut, Item, Table, value};
 use windfall_campaign::recording::digests::campaign_text;
+use windfall_campaign::result::counted::NOTE_COLUMN;
 use windfall_campaign::settings::channels::{KINDS, parse_scale};
+use windfall_campaign::settings::edit_table::{add_rows, set_cells};
 use windfall_campaign::settings::kind::CAMPAIGN_FILE;
 use windfall_campaign::settings::tables::read_specimens;
 use windfall_campaign::settings::template::is_template_file;
 use windfall_files::confined::path_inside;
 use windfall_files::error::{Error, Place};
 use windfall_files::option_value::unusable;
+use windfall_files::scratch::Scratch;
+use windfall_files::table::data::EXCLUDE_COLUMN;
 use windfall_files::text::column_role::unit_of;
-use windfall_files::write_file::{replace_file, write_new};
+use windfall_files::write_file::replace_file;
 
 /// Serialises changes: of two based on the same version, the second is refused.
 static CHANGING: Mutex<()> = Mutex::new(());
@@ -42,6 +45,15 @@ pub enum Change {
         from: Option<f64>,
         /// Its end.
         to: Option<f64>,
+    },
+    /// Whether an impact counts.
+    Exclusion {
+        /// Id of the impact.
+        impact: String,
+        /// Whether it is left out.
+        excluded: bool,
+        /// Why; what there is stays where this is blank.
+        note: String,
     },
     /// Keys of `[fit]`, and the column to group by.
     Options(OptionsChange),
@@ -137,6 +149,20 @@ fn changed_files(directory: &Path, change: &Change) -> Result<Vec<(&'static str,
         Change::Window { impact, from, to } => {
             let cell = |time: &Option<f64>| time.map_or_else(String::new, |time| time.to_string());
             let cells = [("from_s", cell(from)), ("to_s", cell(to))];
+            Ok(vec![("impacts.csv", set_cells(&impacts, impact, &cells)?)])
+        }
+        Change::Exclusion {
+            impact,
+            excluded,
+            note,
+        } => {
+            let mut cells = vec![(
+                EXCLUDE_COLUMN,
+                if *excluded { "yes" } else { "" }.to_owned(),
+            )];
+            if !note.trim().is_empty() {
+                cells.push((NOTE_COLUMN, note.trim().to_owned()));
+            }
             Ok(vec![("impacts.csv", set_cells(&impacts, impact, &cells)?)])
         }
         Change::Options(options) => {
@@ -335,26 +361,23 @@ fn new_impacts(directory: &Path, rows: &[NewImpact]) -> Result<Vec<(&'static str
 
 /// Reads the campaign as it will be, beside the one that is there.
 fn check_changed(directory: &Path, files: &[(&'static str, String)]) -> Result<(), Error> {
-    let scratch = tempfile::Builder::new().prefix("windfall-").tempdir();
-    let scratch =
-        scratch.map_err(|source| Error::access(&std::env::temp_dir(), "write", source))?;
+    let scratch = Scratch::temporary()?;
+    let failed = |source| Error::access(directory, "check", source);
     for (name, text) in files {
-        if *name == CAMPAIGN_FILE {
-            check_law_tables(directory, text)?;
-        }
-        let path = scratch.path().join(name);
-        write_new(&path, text.as_bytes())?;
+        let written = scratch.write(Path::new(name), text.as_bytes());
+        written.map_err(failed)?;
     }
     // The rest as it is: laws may be tables in files of their own.
-    let failed = |source| Error::access(directory, "check", source);
     for entry in std::fs::read_dir(directory).map_err(failed)? {
         let entry = entry.map_err(failed)?;
         let name = entry.file_name();
-        let place = scratch.path().join(&name);
-        let own = CAMPAIGN_FILES.iter().any(|known| name == *known);
+        let name = Path::new(&name);
+        let there = scratch.path().join(name).exists();
+        let own = CAMPAIGN_FILES.iter().any(|known| name == Path::new(known));
         let plain = entry.file_type().is_ok_and(|kind| kind.is_file());
-        if !place.exists() && (own || plain && small(&entry)) {
-            write_new(&place, &std::fs::read(entry.path()).map_err(failed)?)?;
+        if !there && (own || plain && small(&entry)) {
+            let bytes = std::fs::read(entry.path()).map_err(failed)?;
+            scratch.write(name, &bytes).map_err(failed)?;
         }
     }
     let own = format!("{}/", scratch.path().display());

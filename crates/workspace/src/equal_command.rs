@@ -1,22 +1,7 @@
 //! The command line that does the same as a request.
 
 use windfall_campaign::pipeline::request::FitRequest;
-
-/// A word as a shell takes it.
-fn quoted(word: &str) -> String {
-    let plain = |c: char| c.is_ascii_alphanumeric() || "-_./=,:+@%".contains(c);
-    match !word.is_empty() && word.chars().all(plain) {
-        true => word.to_owned(),
-        false => format!("'{}'", word.replace('\'', r"'\''")),
-    }
-}
-
-/// `windfall WORD …`, with what a shell would take apart in quotes.
-pub fn command(words: &[&str]) -> String {
-    let words = words.iter().map(|word| quoted(word));
-    let all = std::iter::once("windfall".to_owned()).chain(words);
-    all.collect::<Vec<_>>().join(" ")
-}
+use windfall_files::text::quote::command;
 
 /// The options of a command that fits, as far as the request says them.
 pub fn fit_options(request: &FitRequest) -> Vec<String> {

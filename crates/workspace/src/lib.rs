@@ -2,7 +2,6 @@
 
 pub mod campaign_view;
 pub mod edit_campaign;
-pub mod edit_table;
 pub mod equal_command;
 pub mod live_cache;
 pub mod live_fit;

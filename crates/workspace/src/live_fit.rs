@@ -10,14 +10,14 @@ use windfall_campaign::impacts::fit::fit_law;
 use windfall_campaign::impacts::mass::{RigFound, find_rig};
 use windfall_campaign::pipeline::request::{FitRequest, apply_request};
 use windfall_campaign::recording::extract::extract_entry;
-use windfall_campaign::recording::read::{read_with_gaps, recording_path};
+use windfall_campaign::recording::read::{read_with_gaps, recording_file};
 use windfall_campaign::result::outcome::ImpactOutcome;
 use windfall_campaign::settings::model::{ImpactCampaign, ImpactEntry};
 use windfall_campaign::settings::read::read_campaign;
-use windfall_files::confined::check_inside;
 use windfall_files::error::Error;
 use windfall_files::found::FindingOutcome;
 use windfall_files::named::Named;
+use windfall_files::text::quote::path_word;
 use windfall_identify::fit::interval::IntervalMethod;
 use windfall_identify::rig::simulate::Trajectory;
 use windfall_signal::Finding;
@@ -146,9 +146,7 @@ impl LiveCampaign {
     pub fn recording(&self, id: &str) -> Result<PathBuf, Error> {
         let entry = self.entry(id)?;
         let files = &self.campaign.shared.files;
-        let path = recording_path(files, entry);
-        check_inside(&files.directory, &path)?;
-        Ok(path)
+        recording_file(files, entry)
     }
 
     /// Reads the recording of one of its impacts.
@@ -253,7 +251,7 @@ impl LiveImpact {
         if let (true, Some(fitted)) = (series, FittedImpact::of(impact, &outcome, used)) {
             for (name, _) in &outcome.residuals.0 {
                 if let Some(left) = residuals(&fitted, impact, name) {
-                    shown.residuals.push(name, left);
+                    shown.residuals.push(name.as_str(), left);
                 }
             }
         }
@@ -271,7 +269,7 @@ fn equal_command(
     let directory = &campaign.shared.files.directory;
     let folder = directory.strip_prefix(&campaign.shared.directory);
     let path = folder.unwrap_or(directory).join(&entry.file);
-    let path = Path::new(shown).join(path).display().to_string();
+    let path = path_word(Path::new(shown).join(path));
     command_of_fit(&["fit", &path], request)
 }
 

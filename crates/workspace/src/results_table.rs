@@ -7,7 +7,7 @@ use std::path::Path;
 use windfall_campaign::measure::any_outcome::AnyOutcome;
 use windfall_files::confined::path_inside;
 use windfall_files::error::Error;
-use windfall_files::table::write::csv_text;
+use windfall_files::table::write::{csv_text, unguarded};
 use windfall_files::write_file::write_whole;
 use windfall_report::any_text::csv_of_any;
 
@@ -32,7 +32,8 @@ fn joined_table(view: &CampaignView, results: &str) -> Result<String, Error> {
     let mut reader = csv::Reader::from_reader(results.as_bytes());
     let damaged = |error: csv::Error| Error::unwritable("table", error);
     let header = reader.headers().map_err(damaged)?.clone();
-    let mut columns: Vec<String> = header.iter().map(str::to_owned).collect();
+    let read = |cell: &str| unguarded(cell).to_owned();
+    let mut columns: Vec<String> = header.iter().map(read).collect();
     let id = columns.iter().position(|name| name == "id");
     let specimen = columns.iter().position(|name| name == "specimen");
     let joins = [(&view.impacts, id), (&view.specimens, specimen)].map(|(table, key)| {
@@ -42,6 +43,7 @@ fn joined_table(view: &CampaignView, results: &str) -> Result<String, Error> {
     let mut rows = Vec::new();
     for record in reader.records() {
         let record = record.map_err(damaged)?;
+        let record: csv::StringRecord = record.iter().map(unguarded).collect();
         let mut row: Vec<String> = record.iter().map(str::to_owned).collect();
         for (table, key, further) in &joins {
             let found = key.and_then(|key| table.get(record.get(key)?));

@@ -17,6 +17,8 @@ use windfall_files::confined::path_inside;
 use windfall_files::error::Error;
 use windfall_files::option_value::unusable;
 use windfall_files::progress::quiet;
+use windfall_files::scratch::sweep_temporary;
+use windfall_files::write_file::sweep;
 use windfall_report::fit_any::fit_any;
 
 /// A directory with campaigns in it, or a campaign.
@@ -79,6 +81,9 @@ impl Workspace {
             let problem = "is a file; give a campaign directory, or one with campaigns in it";
             return Err(unusable(directory.display().to_string(), problem));
         }
+        // What killed programs have left, here and in the folder for temporary files.
+        sweep(&root.join(STORE_FILE));
+        sweep_temporary();
         let single = root.join(CAMPAIGN_FILE).is_file();
         Ok(Self { root, single })
     }

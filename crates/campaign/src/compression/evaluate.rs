@@ -10,7 +10,7 @@ use crate::settings::model::ImpactEntry;
 use windfall_contact::apparent_modulus::{PressedContact, PrincipalRadii, stiffness_per_modulus};
 use windfall_contact::expression::LawExpression;
 use windfall_contact::parameter::Elastic;
-use windfall_files::error::Error;
+use windfall_files::error::{Error, Place};
 use windfall_files::found::FindingOutcome;
 use windfall_files::named::Named;
 use windfall_files::text::number::plain;
@@ -134,9 +134,12 @@ pub fn radii_of_entry(
     entry: &ImpactEntry,
 ) -> Result<Option<PrincipalRadii>, Error> {
     let directory = &campaign.shared.directory;
-    let own = specimen_radii(&entry.cells, &directory.join("impacts.csv"))?;
+    let place = |file, line| Place::at(&directory.join(file), line);
+    let own = specimen_radii(&entry.cells, &place("impacts.csv", entry.line))?;
     match (own, campaign.shared.specimen_of(entry)) {
-        (None, Some(specimen)) => specimen_radii(&specimen.cells, &directory.join("specimens.csv")),
+        (None, Some(specimen)) => {
+            specimen_radii(&specimen.cells, &place("specimens.csv", specimen.line))
+        }
         (own, _) => Ok(own),
     }
 }

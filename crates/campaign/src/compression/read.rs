@@ -2,7 +2,7 @@
 
 use crate::compression::file::{CompressionFile, CompressionRigFile, YieldFile};
 use crate::settings::channels::channel_plans;
-use crate::settings::conditioning::refuse_conditioning;
+use crate::settings::conditioning::refuse_all_conditioning;
 use crate::settings::files::check_format;
 use crate::settings::fit::{LawKeys, free_names, law_expressions};
 use crate::settings::kind::{CAMPAIGN_FILE, CampaignKind};
@@ -13,7 +13,7 @@ use toml::Spanned;
 use windfall_contact::apparent_modulus::PrincipalRadii;
 use windfall_contact::curvature::{radii_of_ellipsoid, radius_from_chord};
 use windfall_contact::expression::LawExpression;
-use windfall_files::error::Error;
+use windfall_files::error::{Error, Place};
 use windfall_files::text::cell_quantity::cell_quantity;
 use windfall_files::text::toml_source::{
     Needed, TomlSource, missing, number_that, parse_source, positive_quantity, read_source, refused,
@@ -60,8 +60,8 @@ pub fn read_compression(directory: &Path) -> Result<CompressionCampaign, Error> 
     };
     let laws = law_expressions(&source, &keys, &[])?;
     let free = free_names(&source, &keys, &laws)?;
-    let (measured, why) = (["force", "position"], "slow compressions are not filtered");
-    refuse_conditioning(&source, file.channels.as_ref(), &measured, why)?;
+    let why = "slow compressions are not filtered";
+    refuse_all_conditioning(&source, file.channels.as_ref(), why)?;
     let channels = channel_plans(&source, file.channels.as_ref())?;
     let shared = (&file.campaign, &file.files, &file.summary);
     let kind = CampaignKind::Compression;
@@ -202,9 +202,9 @@ fn fit_range(
 /// A cell is no positive number.
 pub fn specimen_radii(
     cells: &[(String, String)],
-    file: &Path,
+    place: &Place,
 ) -> Result<Option<PrincipalRadii>, Error> {
-    let length = |name: &str| cell_quantity(cells, name, "m", file);
+    let length = |name: &str| cell_quantity(cells, name, "m", place);
     if let Some(first) = length("radius")? {
         let second = length("radius_2")?.unwrap_or(first);
         return Ok(Some(PrincipalRadii { first, second }));

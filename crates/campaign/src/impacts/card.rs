@@ -2,6 +2,7 @@
 //! differ, and in what the law was seen.
 
 use crate::impacts::two_stage::{Estimates, Population, two_stage};
+use crate::result::counted::reasons_counted;
 use crate::result::outcome::{CampaignOutcome, ImpactOutcome};
 use crate::settings::model::{Campaign, ImpactCampaign, RigPlan};
 use std::collections::BTreeMap;
@@ -25,7 +26,7 @@ const QUANTILE: f64 = 1.96;
 /// The law of a campaign as a card: the median over its fruit.
 ///
 /// # Errors
-/// More than one law was fitted, or no impact was fitted with success.
+/// More than one law was fitted, or no impact counts.
 pub fn card_of_fit(campaign: &ImpactCampaign, outcome: &CampaignOutcome) -> Result<LawCard, Error> {
     let unknown = |missing: &str, advice| Error::not_known(&campaign.shared.title, missing, advice);
     let [asked] = &campaign.fit.laws[..] else {
@@ -38,10 +39,16 @@ pub fn card_of_fit(campaign: &ImpactCampaign, outcome: &CampaignOutcome) -> Resu
     let kind = asked.kind;
     let mut impacts: Vec<&ImpactOutcome> = outcome.impacts.iter().collect();
     let all = impacts.len();
-    impacts.retain(|impact| impact.converged);
+    if all == 0 {
+        return Err(Error::NothingFitted {
+            path: campaign.shared.directory.clone(),
+            failures: outcome.failed.clone(),
+        });
+    }
+    impacts.retain(|impact| impact.counts());
     if impacts.is_empty() {
-        let advice = "see the findings of `windfall fit DIR`";
-        return Err(unknown("no impact was fitted with success", advice));
+        let advice = "`windfall fit DIR` says why each is left out";
+        return Err(unknown("no impact counts, so there is no law", advice));
     }
     let estimates = estimates_of(&impacts);
     let population = two_stage(&estimates);
@@ -49,8 +56,9 @@ pub fn card_of_fit(campaign: &ImpactCampaign, outcome: &CampaignOutcome) -> Resu
     let mut cautions: Vec<String> = outcome.findings.iter().map(|f| f.message.clone()).collect();
     if impacts.len() < all {
         cautions.push(format!(
-            "{} of {all} impacts did not converge and are left out",
-            all - impacts.len()
+            "{} of {all} impacts do not count and are left out: {}",
+            all - impacts.len(),
+            reasons_counted(&outcome.impacts)
         ));
     }
     // What the method leaves out, where it leaves something out.
@@ -121,7 +129,7 @@ fn estimates_of(impacts: &[&ImpactOutcome]) -> Estimates {
     Estimates {
         fruit: fruit.collect(),
         logarithmic,
-        names: estimated.iter().map(|(name, _)| name.clone()).collect(),
+        names: estimated.iter().map(|(name, _)| name.to_string()).collect(),
     }
 }
 

@@ -4,6 +4,7 @@ use crate::result::outcome::{CampaignOutcome, ImpactOutcome};
 use crate::result::quantity::{QUANTITIES, Quantity};
 use itertools::Itertools;
 use windfall_files::error::Error;
+use windfall_files::table::data::LEFT_OUT_COLUMN;
 use windfall_files::table::write::{csv_text, number_cell};
 use windfall_files::text::table::header_of;
 
@@ -35,11 +36,14 @@ pub fn csv_of_campaign(outcome: &CampaignOutcome) -> Result<String, Error> {
         .collect();
     header.extend(others.iter().map(|quantity| quantity.column()));
     header.extend(uncertain.iter().map(|quantity| quantity.sd_column()));
+    header.push(LEFT_OUT_COLUMN.to_owned());
     let rows = outcome.impacts.iter().map(|impact| {
         let mut row = row_of(impact, &names, outcome);
         row.extend(others.iter().map(|quantity| derived(impact, quantity)));
         let sd = |quantity: &&Quantity| number_cell(impact.derived_sd.get(quantity.name).copied());
         row.extend(uncertain.iter().map(sd));
+        let reasons = impact.left_out.iter().map(|reason| reason.code.as_str());
+        row.push(reasons.unique().join(" "));
         row
     });
     csv_text(&header, rows)

@@ -48,7 +48,7 @@ pub fn estimated_parameters(impacts: &[&ImpactOutcome]) -> Vec<(String, String)>
         }
     };
     estimated
-        .map(|(name, estimate)| (name.clone(), unit(name, &estimate.unit)))
+        .map(|(name, estimate)| (name.to_string(), unit(name, &estimate.unit)))
         .collect()
 }
 

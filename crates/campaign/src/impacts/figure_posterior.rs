@@ -3,6 +3,7 @@
 
 use crate::impacts::figure_parameters::own_ellipse;
 use crate::result::outcome::ImpactOutcome;
+use smol_str::SmolStr;
 use std::f64::consts::TAU;
 use windfall_draw::xy::{Figure, Panel, Series, Style};
 use windfall_files::found::EstimateOutcome;
@@ -17,7 +18,7 @@ const MOST_SHOWN: usize = 4;
 /// ellipse of their standard deviations; `None` where the intervals were not drawn.
 pub fn figure_of_posterior(title: &str, outcome: &ImpactOutcome) -> Option<Figure> {
     let drawn = &outcome.intervals.drawn.0;
-    let paired: Vec<&(String, Vec<f64>)> = drawn
+    let paired: Vec<&(SmolStr, Vec<f64>)> = drawn
         .iter()
         .filter(|(name, _)| outcome.parameters.get(name).is_some())
         .take(MOST_SHOWN)
@@ -106,7 +107,7 @@ fn density(draws: &[f64]) -> Option<Vec<(f64, f64)>> {
     Some((0..POINTS).map(|i| (x(i), at(x(i)))).collect())
 }
 
-fn pair(outcome: &ImpactOutcome, x: &(String, Vec<f64>), y: &(String, Vec<f64>)) -> Panel {
+fn pair(outcome: &ImpactOutcome, x: &(SmolStr, Vec<f64>), y: &(SmolStr, Vec<f64>)) -> Panel {
     let points = x.1.iter().copied().zip(y.1.iter().copied()).collect();
     let mut all = vec![Series::new("draws", Style::Dots, points).coloured(0)];
     if let Some(ellipse) = own_ellipse(outcome, &x.0, &y.0) {

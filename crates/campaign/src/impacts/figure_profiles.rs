@@ -2,6 +2,7 @@
 
 use crate::result::interval_outcome::ProfileOutcome;
 use crate::result::outcome::ImpactOutcome;
+use smol_str::SmolStr;
 use windfall_draw::xy::{Figure, Panel, Series, Style};
 use windfall_files::found::EstimateOutcome;
 
@@ -13,7 +14,7 @@ const POINTS: usize = 81;
 /// `None` where the intervals were not made by profiles.
 pub fn figure_of_profiles(title: &str, outcome: &ImpactOutcome) -> Option<Figure> {
     let profiles = outcome.intervals.profiles.0.iter();
-    let panel = |(name, profile): &(String, ProfileOutcome)| {
+    let panel = |(name, profile): &(SmolStr, ProfileOutcome)| {
         let parameter = outcome.parameters.get(name);
         let estimate = parameter.or_else(|| outcome.nuisances.get(name))?;
         let rises = profile.rises.iter().copied();

@@ -29,7 +29,8 @@ pub fn findings_once(outcome: &CampaignOutcome) -> Vec<FindingOutcome> {
 /// The first finding of each kind, its impact, and how many impacts have one.
 fn kinds(outcome: &CampaignOutcome) -> Vec<(&FindingOutcome, &str, usize)> {
     let found = outcome.impacts.iter().flat_map(|impact| {
-        let own = impact.findings.iter().unique_by(|finding| &finding.code);
+        let all = impact.findings.iter().chain(&impact.left_out);
+        let own = all.unique_by(|finding| &finding.code);
         own.map(|finding| (&finding.code, (finding, impact.id.as_str())))
     });
     let kinds = grouped(found).into_iter();

@@ -2,9 +2,10 @@
 
 use crate::impacts::key::{impact_key, run_options};
 use crate::impacts::mass::RigFound;
-use crate::pipeline::evaluate::{Evaluation, failure};
+use crate::pipeline::evaluate::{Evaluation, evaluate, failure};
 use crate::recording::extract::extract_recording;
 use crate::recording::pendulum_angles::add_angles;
+use crate::result::counted::left_out_under_all_laws;
 use crate::result::fit_outcome::impact_outcome;
 use crate::result::outcome::ImpactOutcome;
 use crate::settings::model::{Campaign, ImpactCampaign, ImpactEntry};
@@ -12,6 +13,7 @@ use serde_json::{Map, Value};
 use windfall_contact::expression::LawExpression;
 use windfall_files::error::Error;
 use windfall_files::found::FailureOutcome;
+use windfall_files::progress::Progress;
 use windfall_identify::fit::problem::LawProblem;
 use windfall_identify::fit::result::fit_impact;
 use windfall_identify::rig::kind::Rig;
@@ -76,6 +78,23 @@ impl Evaluation for Fits<'_> {
     fn options(&self) -> Map<String, Value> {
         run_options(self.campaign)
     }
+}
+
+/// The impacts of a campaign that do not count under any of its laws, with the reasons.
+/// Nothing is stored.
+///
+/// # Errors
+/// `progress` stopped the work.
+pub fn impacts_left_out(
+    campaign: &ImpactCampaign,
+    rig: &RigFound,
+    progress: Progress,
+) -> Result<Vec<FailureOutcome>, Error> {
+    let evaluated = evaluate(&Fits { campaign, rig }, None, progress)?;
+    let items = evaluated.items.into_iter();
+    let mut impacts: Vec<ImpactOutcome> = items.map(|(_, impact)| impact).collect();
+    let shared = &campaign.shared;
+    Ok(left_out_under_all_laws(shared, &rig.rig, &mut impacts))
 }
 
 /// One law on one impact that has been cut out, with the options of its campaign.

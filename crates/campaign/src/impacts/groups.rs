@@ -71,9 +71,52 @@ pub fn parameter_cells(groups: &[&GroupOutcome], impacts: &[&ImpactOutcome]) -> 
     Cells { header, rows }
 }
 
-/// Velocities, peaks and energies per group, all of them.
-pub fn derived_cells(groups: &[&GroupOutcome]) -> [Cells; 2] {
-    [SIGNALS, ENERGIES].map(|names| cells_of(groups, &quantities_named(&names)))
+/// Where velocities, peaks and energies come from, with the words for it.
+pub const SOURCES: [(&str, &str); 2] = [
+    ("signal", "read off the signals"),
+    (
+        "fit",
+        "under the fitted law, where the signals do not show them",
+    ),
+];
+
+/// Velocities, peaks and energies per group that come from one of [`SOURCES`], in tables that
+/// are not empty.
+pub fn derived_cells(outcome: &CampaignOutcome, law: &str, source: &str) -> Vec<Cells> {
+    let groups = groups_of(outcome, law);
+    let tables = [SIGNALS, ENERGIES].map(|names| from_source(outcome, law, source, &names));
+    let tables = tables.iter().filter(|names| !names.is_empty());
+    tables
+        .map(|names| cells_of(&groups, &quantities_named(names)))
+        .collect()
+}
+
+/// Those of some quantities that come from one of [`SOURCES`] in the impacts that count. One
+/// that comes from the law in any of them comes from the law.
+fn from_source<'a>(
+    outcome: &CampaignOutcome,
+    law: &str,
+    source: &str,
+    names: &[&'a str],
+) -> Vec<&'a str> {
+    let impacts = || {
+        outcome
+            .impacts
+            .iter()
+            .filter(|i| i.law == law && i.counts())
+    };
+    let of = |name: &str| {
+        let mut sources = impacts().filter_map(|impact| impact.derived_from.get(name));
+        let first = sources.next()?;
+        Some(if first == "fit" || sources.any(|own| own == "fit") {
+            "fit"
+        } else {
+            "signal"
+        })
+    };
+    let mut names = names.to_vec();
+    names.retain(|name| of(name) == Some(source));
+    names
 }
 
 fn cells_of(groups: &[&GroupOutcome], columns: &[&Quantity]) -> Cells {
@@ -84,15 +127,16 @@ fn cells_of(groups: &[&GroupOutcome], columns: &[&Quantity]) -> Cells {
     Cells { header, rows }
 }
 
-/// Velocities, peaks and energies per group, as Table 3 of the same study. They
-/// are read off the signals and hardly depend on the law.
-pub fn derived_tables(groups: &[&GroupOutcome]) -> String {
-    let (alike, varied): (Vec<&str>, Vec<&str>) = SIGNALS
-        .into_iter()
-        .chain(ENERGIES)
-        .partition(|name| alike(groups, name));
+/// Velocities, peaks and energies per group that come from one of [`SOURCES`], as Table 3 of
+/// the same study; empty where there are none.
+pub fn derived_tables(outcome: &CampaignOutcome, law: &str, source: &str) -> String {
+    let groups = &groups_of(outcome, law)[..];
+    let [signals, energies] =
+        [SIGNALS, ENERGIES].map(|names| from_source(outcome, law, source, &names));
+    let all = signals.iter().chain(&energies).copied();
+    let (alike, varied): (Vec<&str>, Vec<&str>) = all.partition(|name| alike(groups, name));
     let mut text = String::new();
-    for mut names in [SIGNALS.to_vec(), ENERGIES.to_vec()] {
+    for mut names in [signals, energies] {
         names.retain(|name| varied.contains(name));
         let columns = quantities_named(&names);
         if columns.is_empty() {
@@ -120,7 +164,10 @@ pub fn derived_tables(groups: &[&GroupOutcome]) -> String {
         );
         text += &(paragraph(&line, 2) + "\n");
     }
-    text.trim_end().to_owned() + "\n"
+    match text.trim_end() {
+        "" => String::new(),
+        text => format!("{text}\n"),
+    }
 }
 
 fn derived_row(group: &GroupOutcome, columns: &[&Quantity]) -> Vec<String> {

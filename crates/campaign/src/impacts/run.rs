@@ -10,10 +10,11 @@ use crate::recording::digests::Digests;
 use crate::recording::extract::extract_recording;
 use crate::recording::read::recording_path;
 use crate::recording::request::{RecordingRequest, campaign_of_file};
-use crate::result::outcome::{CampaignOutcome, ImpactOutcome};
+use crate::result::counted::mark_left_out;
+use crate::result::outcome::{CampaignOutcome, GroupOutcome, ImpactOutcome};
 use crate::result::summary::{summarise, summarise_groups};
 use crate::settings::kind::CAMPAIGN_FILE;
-use crate::settings::model::ImpactCampaign;
+use crate::settings::model::{Campaign, ImpactCampaign, ImpactEntry};
 use crate::settings::read::read_campaign;
 use rayon::prelude::*;
 use std::path::Path;
@@ -23,10 +24,12 @@ use windfall_contact::expression::typical;
 use windfall_draw::files::{FigureFolder, write_figure};
 use windfall_files::error::Error;
 use windfall_files::found::FindingOutcome;
+use windfall_files::named::grouped;
 use windfall_files::on_threads::on_threads;
 use windfall_files::option_value::unusable;
 use windfall_files::progress::Progress;
 use windfall_files::provenance::VERSION;
+use windfall_files::text::number::plain;
 
 /// Fits the impacts of a campaign and keeps the results in its store.
 ///
@@ -135,8 +138,8 @@ fn fit(
         rig: &rig,
     };
     let mut evaluated = evaluate(&fits, reuse, progress)?;
-    let digests = std::mem::take(&mut evaluated.digests);
-    let outcome = outcome_of(&fits, evaluated);
+    let outcome = outcome_of(&fits, &mut evaluated);
+    let digests = evaluated.digests;
     if let Some(folder) = &request.figures {
         draw(&campaign, &rig, &outcome, folder)?;
     }
@@ -173,11 +176,79 @@ fn draw(
     })
 }
 
+/// Recordings of different fruit that are the same, byte by byte.
+fn same_recordings(campaign: &Campaign, digests: &Digests) -> Option<FindingOutcome> {
+    let digest = |entry: &ImpactEntry| {
+        digests
+            .get(&recording_path(&campaign.files, entry))?
+            .as_ref()
+            .ok()
+    };
+    let entries = campaign.entries.iter();
+    let by_content = grouped(entries.filter_map(|entry| Some((digest(entry)?, entry))));
+    let same: Vec<&Vec<&ImpactEntry>> = by_content
+        .iter()
+        .map(|(_, own)| own)
+        .filter(|own| {
+            own.iter()
+                .any(|entry| entry.specimen != own[0].specimen && entry.file != own[0].file)
+        })
+        .collect();
+    let first = same.first()?;
+    let other = first
+        .iter()
+        .find(|entry| entry.specimen != first[0].specimen)?;
+    let more = match same.len() {
+        1 => String::new(),
+        n => format!(" (and {} more)", n - 1),
+    };
+    let told = format!(
+        "{} of {} and {} of {} are the same recording, byte by byte{more}: one was copied under \
+         a wrong name",
+        first[0].file, first[0].specimen, other.file, other.specimen
+    );
+    Some(FindingOutcome::new("same-recording", told))
+}
+
+/// Fewest impacts of a group whose mean and median are compared.
+const COMPARED: usize = 8;
+
+/// Parameters whose mean is far from their median, in any group.
+fn skewed(groups: &[GroupOutcome]) -> Vec<FindingOutcome> {
+    let mut findings = Vec::new();
+    for group in groups {
+        for (name, spread) in &group.parameters.0 {
+            let (Some(deviation), true) = (spread.robust_sd, spread.n >= COMPARED) else {
+                continue;
+            };
+            let apart = (spread.mean - spread.median).abs();
+            // The median of a normal sample scatters 1.25 times as much as its mean.
+            let usual = 1.25 * deviation / (spread.n as f64).sqrt();
+            if apart > (5.0 * usual).max(0.02 * spread.median.abs()) {
+                let of = group
+                    .group
+                    .as_ref()
+                    .map_or_else(String::new, |own| format!("{own}: "));
+                let told = format!(
+                    "{of}{name} of {} has the mean {} and the median {}: a few impacts decide the \
+                     mean; look at the largest and the smallest",
+                    group.law,
+                    plain(spread.mean),
+                    plain(spread.median)
+                );
+                findings.push(FindingOutcome::new("mean-and-median-differ", told));
+            }
+        }
+    }
+    findings
+}
+
 /// Results with their summary.
-fn outcome_of(fits: &Fits, evaluated: Evaluated<ImpactOutcome>) -> CampaignOutcome {
+fn outcome_of(fits: &Fits, evaluated: &mut Evaluated<ImpactOutcome>) -> CampaignOutcome {
     let (campaign, rig) = (fits.campaign, fits.rig);
-    let items = evaluated.items.into_iter();
-    let impacts: Vec<ImpactOutcome> = items.map(|(_, impact)| impact).collect();
+    let items = std::mem::take(&mut evaluated.items).into_iter();
+    let mut impacts: Vec<ImpactOutcome> = items.map(|(_, impact)| impact).collect();
+    mark_left_out(&campaign.shared, &rig.rig, &mut impacts);
     let first_law: Vec<&ImpactOutcome> = impacts
         .iter()
         .filter(|i| Some(&i.law) == impacts.first().map(|first| &first.law))
@@ -189,6 +260,8 @@ fn outcome_of(fits: &Fits, evaluated: Evaluated<ImpactOutcome>) -> CampaignOutco
     let groups = summarise_groups(&impacts);
     let mut findings = rig.findings.clone();
     findings.extend(law_findings(campaign, &impacts));
+    findings.extend(same_recordings(&campaign.shared, &evaluated.digests));
+    findings.extend(skewed(&groups));
     CampaignOutcome {
         windfall: VERSION.to_owned(),
         campaign: campaign.shared.title.clone(),
@@ -196,7 +269,7 @@ fn outcome_of(fits: &Fits, evaluated: Evaluated<ImpactOutcome>) -> CampaignOutco
         effective_mass: rig.mass,
         status: evaluated.status,
         impacts,
-        failed: evaluated.failed,
+        failed: std::mem::take(&mut evaluated.failed),
         summary,
         groups,
         findings,

@@ -2,10 +2,11 @@
 
 use crate::impacts::findings::findings_text;
 use crate::impacts::groups::{
-    derived_tables, groups_of, heading_of, law_table, parameter_table, restitution_table,
+    SOURCES, derived_tables, groups_of, heading_of, law_table, parameter_table, restitution_table,
 };
+use crate::result::counted::reasons_counted;
 use crate::result::outcome::{CampaignOutcome, ImpactOutcome};
-use crate::result::quantity::quantities_named;
+use crate::result::quantity::{Quantity, quantities_named};
 use itertools::Itertools;
 use std::fmt::Write;
 use windfall_files::text::number::{plain, value_and_sd};
@@ -20,19 +21,26 @@ const OF_IMPACTS: [&str; 3] = ["impact_velocity", "restitution", "absorbed_energ
 /// A campaign's results: impacts, groups, what was left out, findings.
 pub fn text_of_campaign(outcome: &CampaignOutcome) -> String {
     let mut text = title_lines(&outcome.campaign, outcome.simulated.as_deref());
+    let _ = writeln!(text, "{}", counted_line(outcome));
     let _ = writeln!(text, "{}", mass_line(outcome));
     let laws = laws_of(outcome);
     for law in &laws {
         text += &law_text(outcome, law);
     }
     if let Some(first) = laws.first() {
-        text += match outcome.impacts.len() {
-            1 => "\nRead off the signals (from the fit where they do not show it):\n",
-            _ => {
-                "\nRead off the signals (from the fit where they do not show it), mean ± SD in %:\n"
+        for (source, words) in SOURCES {
+            let tables = derived_tables(outcome, first, source);
+            if tables.is_empty() {
+                continue;
             }
-        };
-        text += &derived_tables(&groups_of(outcome, first));
+            let (initial, rest) = words.split_at(1);
+            let spread = if outcome.impacts.len() > 1 {
+                ", mean ± SD in %"
+            } else {
+                ""
+            };
+            text += &format!("\n{}{rest}{spread}:\n{tables}", initial.to_uppercase());
+        }
         text += "Duration and displacement count from the force threshold; the fitted law's: --format json.\n";
     }
     if laws.len() > 1 {
@@ -63,6 +71,34 @@ fn law_text(outcome: &CampaignOutcome, law: &str) -> String {
         let _ = writeln!(text, "Each of the {n} impacts: --format csv or json.");
     }
     text
+}
+
+/// How many impacts count, of how many, and what becomes of the others.
+pub fn counted_line(outcome: &CampaignOutcome) -> String {
+    let first = outcome.impacts.first().map(|impact| &impact.law);
+    let fitted = outcome.impacts.iter().filter(|i| Some(&i.law) == first);
+    let fitted: Vec<&ImpactOutcome> = fitted.collect();
+    let failed = outcome.failed.iter().filter(|own| match &own.law {
+        Some(law) => Some(law) == first,
+        None => true,
+    });
+    let failed = failed.count();
+    let counted = fitted.iter().filter(|impact| impact.counts()).count();
+    let all = fitted.len() + failed;
+    if counted == all {
+        return match all {
+            1 => "1 impact, which counts".to_owned(),
+            _ => format!("All {all} impacts count"),
+        };
+    }
+    let mut rest = Vec::new();
+    if counted < fitted.len() {
+        rest.push(format!("left out: {}", reasons_counted(fitted)));
+    }
+    if failed > 0 {
+        rest.push(format!("{failed} could not be fitted"));
+    }
+    format!("{counted} of {all} impacts count; {}", rest.join("; "))
 }
 
 /// The effective mass and where it comes from.
@@ -104,10 +140,7 @@ fn impact_table(impacts: &[&ImpactOutcome]) -> String {
             false => value_and_sd(e.value, e.sd),
             true => format!("{} held", plain(e.value)),
         }));
-        row.extend(columns.iter().map(|column| {
-            let value = impact.derived(column.name);
-            value.map_or_else(|| "-".to_owned(), |value| plain(value * column.factor))
-        }));
+        row.extend(columns.iter().map(|column| derived_cell(impact, column)));
         let codes = own_codes(impact, &shared);
         remarks |= !codes.is_empty();
         row.push(codes);
@@ -121,6 +154,17 @@ fn impact_table(impacts: &[&ImpactOutcome]) -> String {
     }
     rows.iter_mut().for_each(|row| row.truncate(header.len()));
     page_tables(&header, &rows, &left)
+}
+
+/// A derived quantity with its deviation where that is known, in the unit for people.
+pub fn derived_cell(impact: &ImpactOutcome, quantity: &Quantity) -> String {
+    let sd = impact.derived_sd.get(quantity.name);
+    let sd = sd.map(|sd| sd * quantity.factor);
+    match impact.derived(quantity.name) {
+        Some(value) if sd.is_some() => value_and_sd(value * quantity.factor, sd),
+        Some(value) => plain(value * quantity.factor),
+        None => "-".to_owned(),
+    }
 }
 
 /// Intervals that are more than ± a multiple of the deviation.
@@ -180,13 +224,18 @@ fn mixing_cells(impact: &ImpactOutcome) -> [String; 3] {
     ]
 }
 
-/// Codes of an impact's findings that not all share, each once.
+/// Codes of an impact's findings that not all share, each once; why it does not count.
 pub fn own_codes(impact: &ImpactOutcome, shared: &[&str]) -> String {
     let codes = impact.findings.iter().map(|finding| finding.code.as_str());
-    codes
-        .filter(|code| !shared.contains(code))
-        .unique()
-        .join(" ")
+    let reasons = || impact.left_out.iter().map(|reason| reason.code.as_str());
+    let left_out = match impact.counts() {
+        true => String::new(),
+        false => format!("LEFT OUT: {}", reasons().unique().join(", ")),
+    };
+    let codes = codes.filter(|code| !shared.contains(code) && !reasons().contains(code));
+    let codes = codes.unique().map(str::to_owned);
+    let all = std::iter::once(left_out).chain(codes);
+    all.filter(|text| !text.is_empty()).join(" ")
 }
 
 /// Codes of findings that every impact has: a column of them would say nothing.

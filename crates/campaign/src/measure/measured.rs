@@ -118,7 +118,7 @@ impl Document for MeasuredItems {
             for (name, value) in item.parameters.0.iter().chain(&item.derived.0) {
                 let name = match several {
                     true => format!("{} {name}", item.law),
-                    false => name.clone(),
+                    false => name.to_string(),
                 };
                 values.push(value.stored(name));
             }

@@ -6,6 +6,7 @@ use crate::pipeline::evaluate::{Evaluated, Evaluation, evaluate, failure};
 use crate::pipeline::request::{FitRequest, Reuse};
 use crate::recording::digests::Digests;
 use crate::recording::read::read_recording;
+use crate::result::counted::excluded;
 use crate::result::outcome::StatusOutcome;
 use crate::settings::files::fill_placeholders;
 use crate::settings::model::{Campaign, ImpactEntry, TimePlan};
@@ -68,6 +69,9 @@ impl<K: Measurement> Evaluation for Recordings<'_, K> {
         entry: &ImpactEntry,
         known: Vec<Option<K::Found>>,
     ) -> Vec<Result<K::Found, FailureOutcome>> {
+        if let Some(reason) = excluded(entry) {
+            return vec![Err(failure(entry, None, reason.message)); known.len()];
+        }
         let work = || {
             read_recording(&self.0.shared().files, entry)
                 .and_then(|recording| self.0.evaluate(entry, &recording))

@@ -203,7 +203,7 @@ pub fn evaluate<E: Evaluation>(
     })?;
 
     let mut evaluated = Evaluated {
-        items: Vec::new(),
+        items: Vec::with_capacity(results.len() * evaluation.parts()),
         failed: Vec::new(),
         status: StatusOutcome::default(),
         digests,

@@ -78,6 +78,9 @@ pub struct FitRequest {
     /// Write the law as a law card: the median fruit, how fruit differ, and in what it was seen
     #[cfg_attr(feature = "clap", arg(long, value_name = "FILE", value_hint = clap::ValueHint::FilePath, conflicts_with = "rig"))]
     pub card: Option<PathBuf>,
+    /// What the caller will write of the results, besides.
+    #[cfg_attr(feature = "clap", arg(skip))]
+    pub outputs: Vec<PathBuf>,
     /// Number of threads; all cores if left out. It never changes a result
     #[cfg_attr(feature = "clap", arg(long, value_name = "N"))]
     pub threads: Option<usize>,
@@ -90,7 +93,8 @@ impl FitRequest {
     /// Those of [`check_outputs`].
     pub fn check_outputs(&self) -> Result<(), Error> {
         let figures = self.figures.as_ref().map(|own| own.directory.as_path());
-        check_outputs([figures, self.card.as_deref()])
+        let further = self.outputs.iter().map(|own| Some(own.as_path()));
+        check_outputs([figures, self.card.as_deref()].into_iter().chain(further))
     }
 }
 

@@ -1,13 +1,16 @@
 //! SHA-256 of the files of a campaign.
 
-use crate::recording::read::recording_path;
+use crate::recording::read::{recording_file, recording_path};
 use crate::settings::kind::CAMPAIGN_FILE;
 use crate::settings::model::{Campaign, FilePlan, ImpactEntry};
 use rayon::prelude::*;
 use serde_json::{Map, Value, json};
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
+use std::sync::{Mutex, PoisonError};
+use std::time::{Duration, SystemTime};
 use windfall_files::error::Error;
+use windfall_files::inputs::protect;
 use windfall_files::provenance::digest_file;
 
 /// SHA-256 of each recording; a message where it cannot be read.
@@ -25,7 +28,8 @@ pub fn recording_digests(directory: &Path, files: &FilePlan, entries: &[ImpactEn
     let digests: Vec<Result<String, String>> = paths
         .par_iter()
         .map(|(path, entry)| {
-            digest_file(path).map_err(|error| match error {
+            let digest = recording_file(files, entry).and_then(|path| digest_once(&path));
+            digest.map_err(|error| match error {
                 Error::FileAccess { source, .. }
                     if source.kind() == std::io::ErrorKind::NotFound =>
                 {
@@ -41,6 +45,36 @@ pub fn recording_digests(directory: &Path, files: &FilePlan, entries: &[ImpactEn
         .zip(digests)
         .collect()
 }
+
+/// Digests that this program has made, with size and time of the file then.
+static KNOWN: Mutex<BTreeMap<PathBuf, (u64, SystemTime, String)>> = Mutex::new(BTreeMap::new());
+
+/// [`digest_file`] of a file that is the same as at an earlier call, by size and time, without
+/// reading it again. A file that has just changed may change again within the same tick of the
+/// file system's clock, and is read.
+fn digest_once(path: &Path) -> Result<String, Error> {
+    let found = std::fs::metadata(path).ok();
+    let stamp = found.and_then(|own| Some((own.len(), own.modified().ok()?)));
+    let known = || KNOWN.lock().unwrap_or_else(PoisonError::into_inner);
+    let settled = stamp.filter(|(_, time)| time.elapsed().is_ok_and(|age| age > SETTLED));
+    let earlier = settled.and_then(|(size, time)| {
+        let known = known();
+        let (of_size, of_time, digest) = known.get(path)?;
+        (*of_size == size && *of_time == time).then(|| digest.clone())
+    });
+    if let Some(digest) = earlier {
+        protect(path);
+        return Ok(digest);
+    }
+    let digest = digest_file(path)?;
+    if let Some((size, time)) = stamp {
+        known().insert(path.to_path_buf(), (size, time, digest.clone()));
+    }
+    Ok(digest)
+}
+
+/// Age of a file whose time tells its content.
+const SETTLED: Duration = Duration::from_secs(2);
 
 fn absent(directory: &Path, entry: &ImpactEntry, path: &Path) -> String {
     let list = directory.join("impacts.csv");

@@ -3,7 +3,7 @@
 
 use crate::result::outcome::ImpactOutcome;
 use crate::settings::model::{ImpactCampaign, ImpactEntry, RigPlan};
-use windfall_files::error::Error;
+use windfall_files::error::{Error, Place};
 use windfall_files::found::FindingOutcome;
 use windfall_files::text::cell_quantity::cell_quantity;
 use windfall_signal::energy_angles::{pendulum_energy, speed_of_energy};
@@ -20,7 +20,8 @@ pub fn angles_of_entry(
     entry: &ImpactEntry,
 ) -> Result<[Option<f64>; 2], Error> {
     let file = campaign.shared.directory.join("impacts.csv");
-    let angle = |name| cell_quantity(&entry.cells, name, "rad", &file);
+    let place = Place::at(&file, entry.line);
+    let angle = |name| cell_quantity(&entry.cells, name, "rad", &place);
     Ok([angle("release_angle")?, angle("rebound_angle")?])
 }
 
@@ -42,7 +43,7 @@ pub fn add_angles(
     let speed = |angle| speed_of_energy(energy(angle), mass);
     let mut push = |name: &str, value: f64| {
         outcome.derived.push(name, Some(value));
-        outcome.derived_from.push(name, "angles".to_owned());
+        outcome.derived_from.push(name, "angles".into());
     };
     if let Some(angle) = release {
         push("impact_energy_from_angle", energy(angle));

@@ -6,6 +6,7 @@ use crate::settings::files::fill_placeholders;
 use crate::settings::model::{ChannelPlan, FilePlan, ImpactEntry, TimePlan};
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
+use windfall_files::confined::named_file;
 use windfall_files::error::{Error, Place};
 use windfall_files::inputs::protect;
 use windfall_files::text::column_role::seconds_per_unit;
@@ -17,6 +18,24 @@ use windfall_signal::recording::{Channel, Missing, Quantity, Recording, Times};
 /// Where the recording of an impact is.
 pub fn recording_path(files: &FilePlan, impact: &ImpactEntry) -> PathBuf {
     files.directory.join(&impact.file)
+}
+
+/// [`recording_path`] of a recording that may be read.
+///
+/// # Errors
+/// It lies outside of the campaign and of the directories that the user named, or is a pipe
+/// or a device.
+pub fn recording_file(files: &FilePlan, impact: &ImpactEntry) -> Result<PathBuf, Error> {
+    let Some(within) = &files.within else {
+        return Ok(recording_path(files, impact));
+    };
+    named_file(&files.directory, &impact.file, within).map_err(|problem| {
+        Error::from(CampaignError::RecordingRefused {
+            place: Place::at(Path::new("impacts.csv"), impact.line),
+            file: impact.file.clone(),
+            problem,
+        })
+    })
 }
 
 /// Reads the campaign's channels of an impact, out of a file of any format.
@@ -60,10 +79,10 @@ pub fn read_recording(files: &FilePlan, impact: &ImpactEntry) -> Result<Recordin
 /// [`read_recording`] of which samples may be missing: it says when.
 ///
 /// # Errors
-/// The file cannot be read, one of the channels is not in it, a sample has no time, or
-/// nothing says when samples were taken.
+/// The file may not or cannot be read, one of the channels is not in it, a sample has no time,
+/// or nothing says when samples were taken.
 pub fn read_with_gaps(files: &FilePlan, impact: &ImpactEntry) -> Result<Recording, Error> {
-    let path = recording_path(files, impact);
+    let path = recording_file(files, impact)?;
     protect(&path);
     let mut reader = open(&path, &files.open).map_err(Error::Format)?;
     let contents = reader.contents().clone();

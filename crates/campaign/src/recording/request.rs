@@ -9,9 +9,11 @@ use crate::settings::model::{
 use crate::settings::rig::{FROM_IMPULSE, STANDARD_GRAVITY};
 use std::path::Path;
 use windfall_files::error::Error;
+use windfall_files::inputs::check_piped;
 use windfall_files::option_value::{at_least_zero, chosen, positive, quantity, unusable};
 use windfall_files::text::toml_source::suggestion;
 use windfall_formats::open::OpenOptions;
+use windfall_formats::stream::is_stream;
 use windfall_identify::fit::problem::FitOptions;
 use windfall_identify::rig::kind::Pendulum;
 use windfall_signal::ExtractOptions;
@@ -100,7 +102,8 @@ pub struct RecordingRequest {
 /// # Errors
 /// An option is missing or cannot be used.
 pub fn campaign_of_file(file: &Path, request: &RecordingRequest) -> Result<ImpactCampaign, Error> {
-    if !file.is_file() {
+    check_piped(file)?;
+    if !file.is_file() && !is_stream(file) {
         let advice = "with --rig the argument is one recording; check its name";
         return Err(Error::FileAbsent {
             path: file.to_path_buf(),
@@ -116,6 +119,7 @@ pub fn campaign_of_file(file: &Path, request: &RecordingRequest) -> Result<Impac
     };
     let files = FilePlan {
         directory: directory.clone(),
+        within: None,
         open: OpenOptions::default(),
         time,
         time_scale,

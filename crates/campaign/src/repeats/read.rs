@@ -15,7 +15,8 @@ use toml::Spanned;
 use windfall_files::error::{Error, Place};
 use windfall_files::text::cell_quantity::cell_quantity;
 use windfall_files::text::toml_source::{
-    Needed, TomlSource, choice, number_that, optional_quantity, parse_source, read_source, refused,
+    Needed, TomlSource, choice, number_that, parse_source, positive_quantity, quantity_from_zero,
+    read_source, refused,
 };
 use windfall_signal::conditioning::Conditioning;
 use windfall_signal::repeat::align::{AlignOptions, Alignment};
@@ -81,8 +82,8 @@ pub fn read_repeats(directory: &Path) -> Result<RepeatsCampaign, Error> {
     let shared = (&file.campaign, &file.files, &file.summary);
     let kind = CampaignKind::Repeats;
     let campaign = RepeatsCampaign {
-        mass: optional_quantity(&source, rig.mass.as_ref(), &mass)?,
-        gravity: optional_quantity(&source, rig.gravity.as_ref(), &gravity)?
+        mass: positive_quantity(&source, rig.mass.as_ref(), &mass)?,
+        gravity: quantity_from_zero(&source, rig.gravity.as_ref(), &gravity)?
             .unwrap_or(STANDARD_GRAVITY),
         reference: (
             word(file.repeats.reference_column.as_ref(), "role"),
@@ -181,19 +182,15 @@ fn family(source: &TomlSource, file: &ComparisonFile) -> Result<Family, Error> {
 /// Neither is known, or a cell is no positive number.
 pub fn energy_of(campaign: &RepeatsCampaign, entry: &ImpactEntry) -> Result<f64, Error> {
     let file = campaign.shared.directory.join("impacts.csv");
-    let cell = |name, unit| cell_quantity(&entry.cells, name, unit, &file);
+    let place = Place::at(&file, entry.line);
+    let cell = |name, unit| cell_quantity(&entry.cells, name, unit, &place);
     if let Some(energy) = cell("energy", "J")? {
         return Ok(energy);
     }
     let mass = cell("mass", "kg")?.or(campaign.mass);
     match (cell("drop_height", "m")?, mass) {
         (Some(height), Some(mass)) => Ok(mass * campaign.gravity * height),
-        _ => Err(Error::from(CampaignError::EnergyUnknown {
-            place: Place {
-                file,
-                line: entry.line,
-            },
-        })),
+        _ => Err(Error::from(CampaignError::EnergyUnknown { place })),
     }
 }
 

@@ -4,6 +4,7 @@ use crate::result::interval_outcome::interval_outcome;
 use crate::result::outcome::{ImpactOutcome, ResidualOutcome};
 use crate::result::quantity::{FittedMotion, QUANTITIES, Quantity};
 use crate::settings::model::ImpactEntry;
+use smol_str::{SmolStr, format_smolstr};
 use windfall_files::found::{EstimateOutcome, FindingOutcome};
 use windfall_files::named::Named;
 use windfall_identify::fit::problem::LawProblem;
@@ -30,7 +31,7 @@ pub fn impact_outcome(
     let nominal = fit.law.nominal_restitution();
     fitted
         .0
-        .extend(nominal.map(|value| ("nominal_restitution".to_owned(), Some(value))));
+        .extend(nominal.map(|value| ("nominal_restitution".into(), Some(value))));
     ImpactOutcome {
         id: entry.id.clone(),
         specimen: entry.specimen.clone(),
@@ -59,6 +60,7 @@ pub fn impact_outcome(
         directions: directions(fit),
         intervals: interval_outcome(fit),
         findings: findings(signal_findings, fit),
+        left_out: Vec::new(),
     }
 }
 
@@ -97,9 +99,9 @@ fn parameters(fit: &Fit, problem: &LawProblem) -> Named<EstimateOutcome> {
                 held: true,
             },
         };
-        (description.name.to_owned(), outcome)
+        (description.name, outcome)
     });
-    Named(outcome.collect())
+    outcome.collect()
 }
 
 /// Parameters, then nuisances: the order of directions, correlations and intervals.
@@ -110,7 +112,7 @@ pub(crate) fn estimates(fit: &Fit) -> impl Iterator<Item = &Estimate> {
 /// Each direction by the names of the estimates.
 fn directions(fit: &Fit) -> Vec<Named<f64>> {
     let names = || estimates(fit).map(|e| e.name.clone());
-    let of = |change: &[f64]| Named(names().zip(change.iter().copied()).collect());
+    let of = |change: &[f64]| names().zip(change.iter().copied()).collect();
     fit.directions.iter().map(|d| of(&d.change)).collect()
 }
 
@@ -121,7 +123,7 @@ fn correlations(fit: &Fit) -> Named<f64> {
     for (i, row) in fit.correlations.iter().enumerate() {
         for (j, value) in row.iter().enumerate().skip(i + 1) {
             if value.is_finite() {
-                pairs.push((format!("{}, {}", names[i], names[j]), *value));
+                pairs.push((format_smolstr!("{}, {}", names[i], names[j]), *value));
             }
         }
     }
@@ -145,19 +147,19 @@ fn residuals(fit: &Fit) -> Named<ResidualOutcome> {
 fn fitted_values(motion: &FittedMotion) -> Named<Option<f64>> {
     let value = |quantity: &Quantity| {
         let value = quantity.fitted(motion)?;
-        Some((quantity.name.to_owned(), value.is_finite().then_some(value)))
+        Some((quantity.name, value.is_finite().then_some(value)))
     };
-    Named(QUANTITIES.iter().filter_map(value).collect())
+    QUANTITIES.iter().filter_map(value).collect()
 }
 
 /// Values of the derived quantities, their uncertainties, and where they come from: the
 /// signals where they show them, else the fitted law.
-type Derived = (Named<Option<f64>>, Named<f64>, Named<String>);
+type Derived = (Named<Option<f64>>, Named<f64>, Named<SmolStr>);
 
 fn derived_values(measured: &Measured, fitted: &Named<Option<f64>>) -> Derived {
     let (mut values, mut sds, mut sources) = (Vec::new(), Vec::new(), Vec::new());
     for quantity in &QUANTITIES {
-        let name = || quantity.name.to_owned();
+        let name = || SmolStr::new_static(quantity.name);
         let (value, sd) = quantity.measured(measured);
         sds.extend(sd.map(|sd| (name(), sd)));
         let (value, source) = match (value, fitted.get(quantity.name)) {
@@ -166,8 +168,12 @@ fn derived_values(measured: &Measured, fitted: &Named<Option<f64>>) -> Derived {
             (None, None) => continue,
         };
         values.push((name(), value));
-        sources.push((name(), source.to_owned()));
+        sources.push((name(), source.into()));
     }
+    // Thousands of results are held at once.
+    values.shrink_to_fit();
+    sds.shrink_to_fit();
+    sources.shrink_to_fit();
     (Named(values), Named(sds), Named(sources))
 }
 

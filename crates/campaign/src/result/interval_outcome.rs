@@ -86,7 +86,7 @@ pub fn interval_outcome(fit: &Fit) -> IntervalOutcome {
     match &fit.intervals {
         IntervalDetail::Asymptotic => method("asymptotic"),
         IntervalDetail::Profile(curves) => IntervalOutcome {
-            profiles: Named(names().zip(curves.iter().map(profile)).collect()),
+            profiles: names().zip(curves.iter().map(profile)).collect(),
             ..method("profile")
         },
         IntervalDetail::Bootstrap(found) => IntervalOutcome {
@@ -104,12 +104,10 @@ pub fn interval_outcome(fit: &Fit) -> IntervalOutcome {
                 chains: Some(found.chains),
                 draws: Some(found.draws.first().map_or(0, Vec::len)),
                 divergences: Some(found.divergences),
-                drawn: Named(
-                    names()
-                        .zip(found.draws.iter().map(|d| thinned(d)))
-                        .collect(),
-                ),
-                mixing: Named(names().zip(mixing).collect()),
+                drawn: names()
+                    .zip(found.draws.iter().map(|d| thinned(d)))
+                    .collect(),
+                mixing: names().zip(mixing).collect(),
                 ..method("posterior")
             }
         }

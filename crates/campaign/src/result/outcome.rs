@@ -5,6 +5,7 @@
 
 use crate::result::interval_outcome::IntervalOutcome;
 use serde::{Deserialize, Serialize};
+use smol_str::SmolStr;
 use windfall_files::found::{EstimateOutcome, FailureOutcome, FindingOutcome, SpreadOutcome};
 use windfall_files::named::Named;
 
@@ -68,7 +69,8 @@ pub struct ImpactOutcome {
     /// Standard uncertainties of those read off the signals, where known.
     pub derived_sd: Named<f64>,
     /// "signal" or "fit" for each entry of `derived`.
-    pub derived_from: Named<String>,
+    #[schema(value_type = Named<String>)]
+    pub derived_from: Named<SmolStr>,
     /// The same quantities in the motion under the fitted law; `restitution` is
     /// what the law delivers. A law that takes a restitution as a parameter has
     /// it here too, as `nominal_restitution`.
@@ -82,6 +84,9 @@ pub struct ImpactOutcome {
     pub intervals: IntervalOutcome,
     /// What a reader must know.
     pub findings: Vec<FindingOutcome>,
+    /// Why the impact does not count in means, cards and figures; nothing if it does.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub left_out: Vec<FindingOutcome>,
 }
 
 impl ImpactOutcome {
@@ -103,8 +108,11 @@ pub struct GroupOutcome {
     pub group: Option<String>,
     /// Name of the law.
     pub law: String,
-    /// Impacts fitted.
+    /// Impacts that count.
     pub impacts: usize,
+    /// Impacts that were fitted and do not count.
+    #[serde(default)]
+    pub left_out: usize,
     /// Specimens among them.
     pub specimens: usize,
     /// Parameters that were estimated.

@@ -69,6 +69,37 @@ const fn no_sd(_: &Measured) -> Option<f64> {
     None
 }
 
+/// Root of a sum of squares, of deviations that are all known.
+fn together(a: Option<f64>, b: Option<f64>) -> Option<f64> {
+    Some(a?.hypot(b?))
+}
+
+/// Standard uncertainty relative to the value.
+fn relative(sd: Option<f64>, value: Option<f64>) -> Option<f64> {
+    let (sd, value) = (sd?, value?);
+    (value != 0.0).then(|| sd / value.abs())
+}
+
+/// e = v₂/v₁, of velocities whose errors are independent.
+fn restitution_sd(s: &Measured) -> Option<f64> {
+    let (v1, s1) = (s.impact_velocity?, s.impact_velocity_sd?);
+    let (v2, s2) = (s.rebound_velocity?, s.rebound_velocity_sd?);
+    (v1 != 0.0).then(|| (s2 / v1).hypot(v2 * s1 / (v1 * v1)))
+}
+
+/// E = ½ m v² at a mass that is known: σ(E) = 2 E σ(v)/v.
+fn impact_energy_sd(s: &Measured) -> Option<f64> {
+    Some(2.0 * s.impact_energy? * relative(s.impact_velocity_sd, s.impact_velocity)?)
+}
+
+fn elastic_energy_sd(s: &Measured) -> Option<f64> {
+    Some(2.0 * s.elastic_energy? * relative(s.rebound_velocity_sd, s.rebound_velocity)?)
+}
+
+fn absorbed_energy_sd(s: &Measured) -> Option<f64> {
+    together(impact_energy_sd(s), elastic_energy_sd(s))
+}
+
 /// A quantity as it stands in tables under its own name, in its SI unit.
 const fn quantity(
     name: &'static str,
@@ -188,7 +219,7 @@ pub const QUANTITIES: [Quantity; 22] = [
     quantity(
         "restitution",
         ("Coefficient of restitution", "e", ""),
-        both!(restitution, no_sd, |m| m.summary.restitution),
+        both!(restitution, restitution_sd, |m| m.summary.restitution),
     )
     .headed("restitution"),
     quantity(
@@ -214,14 +245,14 @@ pub const QUANTITIES: [Quantity; 22] = [
     quantity(
         "impact_energy",
         ("Impact energy", "E₁", "J"),
-        both!(impact_energy, no_sd, |m| m.energy(m.velocity)),
+        both!(impact_energy, impact_energy_sd, |m| m.energy(m.velocity)),
     )
     .headed("impact energy")
     .shown_in("mJ", 1e3),
     quantity(
         "elastic_energy",
         ("Elastic energy", "E₂", "J"),
-        both!(elastic_energy, no_sd, |m| m
+        both!(elastic_energy, elastic_energy_sd, |m| m
             .energy(m.summary.separation_velocity)),
     )
     .headed("elastic energy")
@@ -229,7 +260,9 @@ pub const QUANTITIES: [Quantity; 22] = [
     quantity(
         "absorbed_energy",
         ("Absorbed energy", "Eₐ", "J"),
-        both!(absorbed_energy, no_sd, |m| m.summary.absorbed_energy),
+        both!(absorbed_energy, absorbed_energy_sd, |m| m
+            .summary
+            .absorbed_energy),
     )
     .headed("absorbed energy")
     .shown_in("mJ", 1e3),

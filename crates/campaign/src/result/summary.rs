@@ -17,8 +17,12 @@ pub fn summarise_groups(impacts: &[ImpactOutcome]) -> Vec<GroupOutcome> {
     groups.collect()
 }
 
-/// Spread of parameters and derived quantities over some impacts of one law.
+/// Spread of parameters and derived quantities over those of some impacts of one law that
+/// count.
 pub fn summarise(law: &str, group: Option<&str>, impacts: &[&ImpactOutcome]) -> GroupOutcome {
+    let all = impacts.len();
+    let counted: Vec<&ImpactOutcome> = impacts.iter().copied().filter(|i| i.counts()).collect();
+    let impacts = &counted[..];
     let parameters = impacts.iter().flat_map(|impact| &impact.parameters.0);
     let estimated = parameters.filter(|(_, estimate)| !estimate.held);
     let derived = impacts.iter().flat_map(|impact| &impact.derived.0);
@@ -26,6 +30,7 @@ pub fn summarise(law: &str, group: Option<&str>, impacts: &[&ImpactOutcome]) -> 
         group: group.map(str::to_owned),
         law: law.to_owned(),
         impacts: impacts.len(),
+        left_out: all - impacts.len(),
         specimens: impacts.iter().map(|i| &i.specimen).unique().count(),
         parameters: spreads(estimated.map(|(name, e)| (name.as_str(), e.value))),
         derived: spreads(derived.filter_map(|(name, value)| Some((name.as_str(), (*value)?)))),

@@ -5,7 +5,8 @@ use crate::settings::model::ChannelPlan;
 use toml::Spanned;
 use windfall_files::error::Error;
 use windfall_files::text::toml_source::{
-    Needed, TomlSource, invalid, missing, number_that, optional_quantity, place_at, refused,
+    Needed, TomlSource, missing, number_that, optional_quantity, place_at, positive_quantity,
+    refused,
 };
 use windfall_numerics::unit::quantity::{UnitError, parse_as, parse_unit};
 use windfall_signal::kinematics::Encoder;
@@ -130,7 +131,7 @@ pub fn channel_plan(
     let (scale, offset) = calibration(source, kind, channel)?;
     Ok(ChannelPlan {
         table: kind.table,
-        line: place_at(source, &at).line,
+        line: place_at(source, &column.span()).line,
         quantity: kind.quantity,
         column: column.get_ref().clone(),
         time: file.time.as_ref().map(|time| time.get_ref().clone()),
@@ -151,7 +152,7 @@ fn calibration(
 ) -> Result<(f64, f64), Error> {
     let file = channel.get_ref();
     if kind.unit.is_empty() {
-        return Ok((1.0, 0.0));
+        return as_it_is(source, kind, file);
     }
     let Some(sensitivity) = &file.sensitivity else {
         return direct_calibration(source, kind, channel);
@@ -164,6 +165,21 @@ fn calibration(
     let cell = column_unit(source, kind, file, "V")?;
     let offset = offset_value(source, kind, file, "V")?;
     Ok((cell / (per_unit * gain), offset / cell))
+}
+
+/// Counts and levels are taken as they are.
+fn as_it_is(source: &TomlSource, kind: &Kind, file: &ChannelFile) -> Result<(f64, f64), Error> {
+    let problem = "its samples are taken as they are; remove the line";
+    let refuse = |value: &Spanned<QuantityText>, key| {
+        Err(refused(source, value, (kind.table, key), problem))
+    };
+    match (&file.sensitivity, &file.offset, &file.gain, &file.unit) {
+        (Some(sensitivity), ..) => refuse(sensitivity, "sensitivity"),
+        (_, Some(offset), ..) => refuse(offset, "offset"),
+        (_, _, Some(gain), _) => Err(refused(source, gain, (kind.table, "gain"), problem)),
+        (.., Some(unit)) => Err(refused(source, unit, (kind.table, "unit"), problem)),
+        _ => Ok((1.0, 0.0)),
+    }
 }
 
 fn sensitivity_value(
@@ -299,24 +315,20 @@ pub fn encoder_plan(source: &TomlSource, file: &CampaignFile) -> Result<Option<E
         key: "count_length",
         ..needed
     };
-    let length = optional_quantity(source, encoder.count_length.as_ref(), &length_key)?;
-    let per_revolution = encoder.counts_per_revolution.as_ref().map(|c| *c.get_ref());
-    match (per_revolution, length) {
-        (Some(counts_per_revolution), None) if counts_per_revolution > 0.0 => {
-            let encoder = Encoder::Rotary {
-                counts_per_revolution,
-            };
-            Ok(Some(encoder))
+    let length = positive_quantity(source, encoder.count_length.as_ref(), &length_key)?;
+    let key = (needed.table, needed.key);
+    let given = encoder.counts_per_revolution.as_ref();
+    let expected = "a number above zero";
+    let per_revolution = number_that(source, given, key, |own| own > 0.0, expected)?;
+    match (per_revolution, length, given) {
+        (Some(_), Some(_), Some(given)) => {
+            let problem = "`count_length` is given too; keep one of them";
+            Err(refused(source, given, key, problem))
         }
-        (None, Some(count_length)) if count_length > 0.0 => {
-            Ok(Some(Encoder::Linear { count_length }))
-        }
-        (None, None) => Err(missing(source, &at, &needed, needed.table.to_owned())),
-        (counts, _) => {
-            let text = counts.map_or_else(String::new, |counts| counts.to_string());
-            let problem = "give one of `counts_per_revolution` and `count_length`, above zero";
-            let key = (needed.table, needed.key);
-            Err(invalid(source, &at, key, &text, problem.to_owned()))
-        }
+        (Some(counts_per_revolution), ..) => Ok(Some(Encoder::Rotary {
+            counts_per_revolution,
+        })),
+        (None, Some(count_length), _) => Ok(Some(Encoder::Linear { count_length })),
+        (None, None, _) => Err(missing(source, &at, &needed, needed.table.to_owned())),
     }
 }

@@ -20,11 +20,13 @@ pub fn conditioning_plan(
     source: &TomlSource,
     channels: Option<&Spanned<ChannelsFile>>,
 ) -> Result<Conditioning, Error> {
-    let counts = ["count", "phase_a", "phase_b"];
-    refuse_conditioning(source, channels, &counts, "counts are never filtered")?;
     let Some(channels) = channels.map(Spanned::get_ref) else {
         return Ok(Conditioning::default());
     };
+    for (kind, channel) in channels_of(channels).filter(|(kind, _)| kind.unit.is_empty()) {
+        let why = "counts are never filtered";
+        refuse_conditioning(source, kind.table, channel.get_ref(), why)?;
+    }
     let of = |table: &'static str, channel: &Option<Spanned<ChannelFile>>| match channel {
         Some(channel) => filter_of(source, table, channel.get_ref()),
         None => Ok(None),
@@ -59,35 +61,46 @@ pub fn conditioning_plan(
     })
 }
 
-/// Refuses the keys of filters and tip on channels that have none of them.
-///
-/// * `names`: of the channels: "force"
+/// Refuses the keys of filters and tip on a channel that has none of them.
 ///
 /// # Errors
 /// One of them is there.
 pub fn refuse_conditioning(
     source: &TomlSource,
-    channels: Option<&Spanned<ChannelsFile>>,
-    names: &[&str],
+    table: &str,
+    channel: &ChannelFile,
     why: &str,
 ) -> Result<(), Error> {
-    let all = channels
-        .into_iter()
-        .flat_map(|file| channels_of(file.get_ref()));
-    for (kind, channel) in all.filter(|(kind, _)| names.contains(&kind.name())) {
-        let channel = channel.get_ref();
-        for (key, value) in [
-            ("low_pass", &channel.low_pass),
-            ("high_pass", &channel.high_pass),
-            ("tip_mass", &channel.tip_mass),
-        ] {
-            if let Some(value) = value {
-                let problem = format!("{why}; remove the line");
-                return Err(refused(source, value, (kind.table, key), problem));
-            }
+    let problem = format!("{why}; remove the line");
+    for (key, value) in [
+        ("low_pass", &channel.low_pass),
+        ("high_pass", &channel.high_pass),
+        ("tip_mass", &channel.tip_mass),
+    ] {
+        if let Some(value) = value {
+            return Err(refused(source, value, (table, key), problem));
         }
     }
-    Ok(())
+    match &channel.filter_order {
+        Some(order) => Err(refused(source, order, (table, "filter_order"), problem)),
+        None => Ok(()),
+    }
+}
+
+/// [`refuse_conditioning`] of all channels.
+///
+/// # Errors
+/// One of the keys is there.
+pub fn refuse_all_conditioning(
+    source: &TomlSource,
+    channels: Option<&Spanned<ChannelsFile>>,
+    why: &str,
+) -> Result<(), Error> {
+    let all = channels.map(|file| channels_of(file.get_ref()));
+    let mut all = all.into_iter().flatten();
+    all.try_for_each(|(kind, channel)| {
+        refuse_conditioning(source, kind.table, channel.get_ref(), why)
+    })
 }
 
 fn filter_of(

@@ -95,6 +95,8 @@ pub struct RigFile {
 pub struct FilesFile {
     /// Directory of the recordings, relative to the campaign.
     pub directory: Option<Spanned<String>>,
+    /// Pattern of the names of recordings, by which further ones are listed.
+    pub names: Option<Spanned<String>>,
     /// Column with the times.
     pub time: Option<Spanned<String>>,
     /// Unit of the times.

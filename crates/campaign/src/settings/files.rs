@@ -8,6 +8,7 @@ use crate::settings::open_options::{DECIMALS, ENCODINGS, SEPARATORS, THOUSANDS};
 use crate::settings::template::is_template_file;
 use std::path::{Path, PathBuf};
 use toml::Spanned;
+use windfall_files::confined::named_file;
 use windfall_files::error::{Error, Place};
 use windfall_files::text::toml_source::{
     Needed, TomlSource, choice, missing, place_at, positive_quantity, refused, suggestion,
@@ -54,8 +55,19 @@ pub fn file_plan(
     files: &FilesFile,
     channels: Vec<ChannelPlan>,
 ) -> Result<FilePlan, Error> {
+    let (recordings, within) = recordings_directory(source, directory, files)?;
+    if let Some(names) = &files.names {
+        let text = names.get_ref();
+        if !text.contains('{') || text.chars().any(char::is_control) {
+            let problem = "a pattern has a placeholder for each part that varies, as in \
+                           \"{variety}_f{fruit}_{rep}.csv\""
+                .to_owned();
+            return Err(refused(source, names, ("[files]", "names"), problem));
+        }
+    }
     Ok(FilePlan {
-        directory: recordings_directory(source, directory, files)?,
+        directory: recordings,
+        within: Some(within),
         open: open_plan(source, files)?,
         time: match channels.iter().all(|channel| channel.time.is_some()) {
             true => TimePlan::OfChannels,
@@ -77,6 +89,7 @@ fn open_plan(source: &TomlSource, files: &FilesFile) -> Result<OpenOptions, Erro
         comment: files.comment.as_ref().map(|text| text.get_ref().clone()),
         missing: files.missing.iter().map(missing_word).collect(),
         footer: files.footer,
+        lines_above: 0,
     };
     Ok(OpenOptions {
         format: named(source, files.format.as_ref(), "format", &Format::NAMES)?,
@@ -100,15 +113,24 @@ fn named<T: Copy>(
     choice(source, value, ("[files]", key), known)
 }
 
+/// The directory of the recordings, and the one in which they must lie: that of the campaign,
+/// or what a variable of the environment names, which the user has set.
 fn recordings_directory(
     source: &TomlSource,
     directory: &Path,
     files: &FilesFile,
-) -> Result<PathBuf, Error> {
-    match &files.directory {
-        None => Ok(directory.join("raw")),
-        Some(text) => Ok(directory.join(with_variables(source, text)?)),
+) -> Result<(PathBuf, PathBuf), Error> {
+    let Some(text) = &files.directory else {
+        return Ok((directory.join("raw"), directory.to_path_buf()));
+    };
+    let name = with_variables(source, text)?;
+    if text.get_ref().starts_with("${") {
+        let recordings = directory.join(name);
+        return Ok((recordings.clone(), recordings));
     }
+    let recordings = named_file(directory, &name, directory)
+        .map_err(|problem| refused(source, text, ("[files]", "directory"), problem))?;
+    Ok((recordings, directory.to_path_buf()))
 }
 
 /// Replaces `${NAME}` by the environment variable NAME.

@@ -214,8 +214,10 @@ pub fn law_expressions(
     keys: &LawKeys,
     user: &[LawKind],
 ) -> Result<Vec<LawExpression>, Error> {
-    let several = keys.laws.unwrap_or_default();
-    let texts: Vec<&Spanned<String>> = keys.law.into_iter().chain(several).collect();
+    let one = keys.law.into_iter().map(|text| ("law", text));
+    let several = keys.laws.unwrap_or_default().iter();
+    let texts = one.chain(several.map(|text| ("laws", text)));
+    let texts: Vec<(&str, &Spanned<String>)> = texts.collect();
     if texts.is_empty() {
         let needed = Needed {
             table: TABLE,
@@ -227,12 +229,12 @@ pub fn law_expressions(
         return Err(missing(source, &(0..0), &needed, TABLE.to_owned()));
     }
     let mut laws: Vec<LawExpression> = Vec::new();
-    for text in texts {
+    for (key, text) in texts {
         let law = parse_law_among(text.get_ref(), user)
-            .map_err(|error| refused(source, text, (TABLE, "law"), error.to_string()))?;
+            .map_err(|error| refused(source, text, (TABLE, key), error.to_string()))?;
         if laws.iter().any(|known| known.kind == law.kind) {
             let problem = "this law is named twice; each law can be fitted once".to_owned();
-            return Err(refused(source, text, (TABLE, "law"), problem));
+            return Err(refused(source, text, (TABLE, key), problem));
         }
         laws.push(law);
     }

@@ -2,8 +2,9 @@
 
 use serde::Deserialize;
 use std::path::Path;
+use toml::Spanned;
 use windfall_files::error::Error;
-use windfall_files::text::toml_source::{parse_source, read_source};
+use windfall_files::text::toml_source::{choice, parse_source, read_source};
 
 /// Name of the campaign file.
 pub const CAMPAIGN_FILE: &str = "campaign.toml";
@@ -14,8 +15,8 @@ pub const STORE_FILE: &str = "results.sqlite";
 /// What a campaign measures.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum CampaignKind {
-    /// Single impacts, on a pendulum or a carriage; also every kind that is not
-    /// known, so that its reader can say what is wrong.
+    /// Single impacts, on a pendulum or a carriage; also where no kind is given, so that the
+    /// reader can say what is missing.
     Impacts,
     /// Slow compressions in a testing machine.
     Compression,
@@ -48,25 +49,29 @@ struct KindFile {
 
 #[derive(Deserialize)]
 struct RigKindFile {
-    kind: Option<String>,
+    kind: Option<Spanned<String>>,
 }
+
+/// Words of `[rig] kind`.
+const KINDS: [(&str, CampaignKind); 6] = [
+    ("pendulum", CampaignKind::Impacts),
+    ("carriage", CampaignKind::Impacts),
+    ("drop", CampaignKind::Drop),
+    ("compression", CampaignKind::Compression),
+    ("acoustic", CampaignKind::Acoustic),
+    ("repeats", CampaignKind::Repeats),
+];
 
 /// What the campaign in a directory measures.
 ///
 /// # Errors
-/// There is no campaign.toml, or it is no TOML.
+/// There is no campaign.toml, it is no TOML, or its kind is not known.
 pub fn campaign_kind(directory: &Path) -> Result<CampaignKind, Error> {
     let advice = "a campaign directory holds a campaign.toml; \
                   `windfall new pendulum DIR` writes a template (`windfall new --help` lists the kinds)";
     let source = read_source(&directory.join(CAMPAIGN_FILE), advice)?;
     let file: KindFile = parse_source(&source)?;
-    let kind = file.rig.and_then(|rig| rig.kind).unwrap_or_default();
-    let others = [
-        CampaignKind::Compression,
-        CampaignKind::Acoustic,
-        CampaignKind::Repeats,
-        CampaignKind::Drop,
-    ];
-    let known = others.into_iter().find(|other| other.name() == kind);
+    let kind = file.rig.and_then(|rig| rig.kind);
+    let known = choice(&source, kind.as_ref(), ("[rig]", "kind"), &KINDS)?;
     Ok(known.unwrap_or(CampaignKind::Impacts))
 }

@@ -3,6 +3,7 @@
 pub mod channels;
 pub mod conditioning;
 pub mod contact;
+pub mod edit_table;
 pub mod file;
 pub mod files;
 pub mod fit;

@@ -99,6 +99,9 @@ pub enum MassPlan {
 pub struct FilePlan {
     /// Directory of the recordings.
     pub directory: PathBuf,
+    /// Where recordings must lie, behind any links; anywhere, where the user named the
+    /// recording itself.
+    pub within: Option<PathBuf>,
     /// How files are read that do not say it themselves.
     pub open: OpenOptions,
     /// How samples are timed where a channel does not say otherwise.
@@ -127,7 +130,7 @@ pub enum TimePlan {
 pub struct ChannelPlan {
     /// Name of its table in campaign.toml, with brackets.
     pub table: &'static str,
-    /// Line of its table in campaign.toml; 0 where the command line gave it.
+    /// Line of its column in campaign.toml; 0 where the command line gave it.
     pub line: usize,
     /// What it holds.
     pub quantity: Quantity,

@@ -45,7 +45,8 @@ pub const ENCODINGS: [(&str, Encoding); 4] = [
     command(next_help_heading = "Reading unusual files (found out if left out)")
 )]
 pub struct OpenRequest {
-    /// Format, whatever the first bytes say: text, lvm, tdms, mat, hdf5, wav, uff58, sigrok
+    /// Format, whatever the first bytes say: text, lvm, tdms, mat, hdf5, wav, uff58, sigrok,
+    /// xlsx, ods, npy, zip
     #[cfg_attr(feature = "clap", arg(id = "file-format", long, value_name = "FORMAT"))]
     pub format: Option<String>,
     /// Between the cells of a text: comma, semicolon, tab, bar or blanks
@@ -114,6 +115,7 @@ pub fn open_options(request: &OpenRequest) -> Result<OpenOptions, Error> {
             comment: request.comment.clone(),
             missing: request.missing.clone(),
             footer: request.footer,
+            lines_above: 0,
         },
     })
 }

@@ -6,8 +6,8 @@ use std::ops::Range;
 use toml::Spanned;
 use windfall_files::error::Error;
 use windfall_files::text::toml_source::{
-    Needed, TomlSource, choice, missing, needed_quantity, optional_quantity, positive_quantity,
-    refused,
+    Needed, TomlSource, choice, missing, needed_quantity, positive_quantity, quantity_from_zero,
+    refused, uncertainty,
 };
 use windfall_identify::rig::kind::Pendulum;
 
@@ -127,7 +127,7 @@ fn pendulum(source: &TomlSource, at: &Range<usize>, rig: &RigFile) -> Result<Rig
         ),
     ];
     refuse(source, strangers, "a pendulum")?;
-    let gravity = optional_quantity(source, rig.gravity.as_ref(), &GRAVITY)?;
+    let gravity = quantity_from_zero(source, rig.gravity.as_ref(), &GRAVITY)?;
     Ok(RigPlan::Pendulum(Pendulum {
         inertia: positive(source, at, rig.inertia.as_ref(), &INERTIA)?,
         arm: positive(source, at, rig.arm.as_ref(), &ARM)?,
@@ -152,20 +152,19 @@ fn carriage(source: &TomlSource, at: &Range<usize>, rig: &RigFile) -> Result<Rig
         refuse(source, [sd], "a mass from impulse")?;
         MassPlan::FromImpulse
     } else {
-        let sd = optional_quantity(source, rig.mass_sd.as_ref(), &MASS_SD)?;
-        let value = positive(source, at, rig.mass.as_ref(), &CARRIAGE_MASS)?;
         MassPlan::Given {
-            value,
-            sd: sd.unwrap_or(0.0),
+            value: positive(source, at, rig.mass.as_ref(), &CARRIAGE_MASS)?,
+            sd: uncertainty(source, rig.mass_sd.as_ref(), &MASS_SD)?,
         }
     };
     let driving = rig.driving_acceleration.as_ref();
     let driving_acceleration = needed_quantity(source, at, driving, &DRIVING)?;
     let driving_sd = rig.driving_acceleration_sd.as_ref();
+    let driving_sd = uncertainty(source, driving_sd, &DRIVING_SD)?;
     Ok(RigPlan::Carriage {
         mass,
         driving_acceleration,
-        driving_acceleration_sd: optional_quantity(source, driving_sd, &DRIVING_SD)?.unwrap_or(0.0),
+        driving_acceleration_sd: driving_sd,
     })
 }
 

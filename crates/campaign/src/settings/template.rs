@@ -1,8 +1,9 @@
 //! `windfall new KIND DIR`: a commented template of a campaign or a scene.
 
+use crate::settings::kind::CAMPAIGN_FILE;
 use std::path::{Path, PathBuf};
 use windfall_files::error::Error;
-use windfall_files::write_file::{create_error, write_new};
+use windfall_files::scratch::NewDirectory;
 
 /// Rig of a template.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -103,17 +104,16 @@ pub fn template(kind: TemplateKind) -> &'static str {
 /// # Errors
 /// There is something in the directory already, or it cannot be written.
 pub fn write_template(kind: TemplateKind, directory: &Path) -> Result<Vec<PathBuf>, Error> {
-    create_directory(directory)?;
     let (specimens, impacts) = tables(kind);
+    let new = NewDirectory::begin(directory)?;
     let files = [
-        ("campaign.toml", template(kind)),
+        (CAMPAIGN_FILE, template(kind)),
         ("specimens.csv", specimens),
         ("impacts.csv", impacts),
     ];
-    let mut written = write_files(directory, files)?;
-    let raw = directory.join("raw");
-    std::fs::create_dir(&raw).map_err(|source| create_error(&raw, source))?;
-    written.push(raw);
+    let mut written = write_files(&new, files)?;
+    written.push(new.make_folder("raw")?);
+    new.end(CAMPAIGN_FILE)?;
     Ok(written)
 }
 
@@ -122,9 +122,11 @@ pub fn write_template(kind: TemplateKind, directory: &Path) -> Result<Vec<PathBu
 /// # Errors
 /// There is something in the directory already, or it cannot be written.
 pub fn write_scene_template(directory: &Path) -> Result<Vec<PathBuf>, Error> {
-    create_directory(directory)?;
     let scene = include_str!("../../templates/scene.toml");
-    write_files(directory, [("scene.toml", scene)])
+    let new = NewDirectory::begin(directory)?;
+    let written = write_files(&new, [("scene.toml", scene)])?;
+    new.end("scene.toml")?;
+    Ok(written)
 }
 
 /// Writes the example of a study into a directory that does not exist yet, or is empty: the
@@ -133,7 +135,6 @@ pub fn write_scene_template(directory: &Path) -> Result<Vec<PathBuf>, Error> {
 /// # Errors
 /// There is something in the directory already, or it cannot be written.
 pub fn write_study_template(directory: &Path) -> Result<Vec<PathBuf>, Error> {
-    create_directory(directory)?;
     let study = include_str!("../../templates/study/study.toml");
     let scene = include_str!("../../templates/study/scene.toml");
     let bruise = include_str!("../../templates/study/bruise.toml");
@@ -146,35 +147,16 @@ pub fn write_study_template(directory: &Path) -> Result<Vec<PathBuf>, Error> {
         ("apple-apple.toml", apples),
         ("apple-steel.toml", steel),
     ];
-    write_files(directory, files)
+    let new = NewDirectory::begin(directory)?;
+    let written = write_files(&new, files)?;
+    new.end("study.toml")?;
+    Ok(written)
 }
 
 fn write_files<const N: usize>(
-    directory: &Path,
+    new: &NewDirectory,
     files: [(&str, &str); N],
 ) -> Result<Vec<PathBuf>, Error> {
-    let write = |(name, text): (&str, &str)| {
-        let path = directory.join(name);
-        write_new(&path, text.as_bytes()).map(|()| path)
-    };
+    let write = |(name, text): (&str, &str)| new.write(name, text.as_bytes());
     files.into_iter().map(write).collect()
-}
-
-/// Creates a directory that is to be filled; one that holds files is refused.
-///
-/// # Errors
-/// Something is there already, or the directory cannot be made.
-pub fn create_directory(directory: &Path) -> Result<(), Error> {
-    match std::fs::read_dir(directory) {
-        Ok(mut entries) => match entries.next() {
-            Some(_) => Err(Error::AlreadyThere {
-                path: directory.to_path_buf(),
-            }),
-            None => Ok(()),
-        },
-        Err(error) if error.kind() == std::io::ErrorKind::NotFound => {
-            std::fs::create_dir_all(directory).map_err(|source| create_error(directory, source))
-        }
-        Err(source) => Err(create_error(directory, source)),
-    }
 }

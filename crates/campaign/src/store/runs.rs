@@ -13,6 +13,7 @@ use crate::store::documents::{
 use crate::store::error::StoreError;
 use crate::store::file::{PATIENCE, create_schema, open_existing, store_error};
 use rusqlite::{Connection, OptionalExtension, Transaction, params};
+use smol_str::SmolStr;
 use std::borrow::Cow;
 use std::path::Path;
 use windfall_files::confined::discard;
@@ -224,7 +225,7 @@ fn insert_result(
             params![
                 key,
                 position as i64,
-                name,
+                name.as_str(),
                 estimate.value,
                 estimate.sd,
                 estimate.low,
@@ -234,10 +235,10 @@ fn insert_result(
         )?;
     }
     for (name, value) in &result.derived.0 {
-        let from = result.derived_from.get(name).map_or("", String::as_str);
+        let from = result.derived_from.get(name).map_or("", SmolStr::as_str);
         transaction.execute(
             "INSERT INTO derived (key, name, value, value_from) VALUES (?1, ?2, ?3, ?4)",
-            params![key, name, value, from],
+            params![key, name.as_str(), value, from],
         )?;
     }
     for (position, finding) in result.findings.iter().enumerate() {
@@ -309,10 +310,7 @@ mod tests {
             file: "r.csv".to_owned(),
             law: "kuwabara-kono".to_owned(),
             quantities: vec!["force".to_owned()],
-            parameters: Named(vec![
-                ("k".to_owned(), estimate.clone()),
-                ("c".to_owned(), estimate),
-            ]),
+            parameters: Named::of([("k", estimate.clone()), ("c", estimate)]),
             nuisances: Named::default(),
             correlations: Named::default(),
             cost: 2.0 / 3.0,
@@ -322,13 +320,14 @@ mod tests {
             residual_norm: 0.8,
             residuals: Named::default(),
             regression: Named::default(),
-            derived: Named(vec![("restitution".to_owned(), Some(0.47))]),
+            derived: Named::of([("restitution", Some(0.47))]),
             derived_sd: Named::default(),
-            derived_from: Named(vec![("restitution".to_owned(), "signal".to_owned())]),
+            derived_from: Named::of([("restitution", "signal".into())]),
             fitted: Named::default(),
             directions: Vec::new(),
             intervals: crate::result::interval_outcome::IntervalOutcome::default(),
             findings: vec![FindingOutcome::new("x", "y")],
+            left_out: Vec::new(),
         }
     }
 

@@ -1,6 +1,7 @@
 //! campaign.toml of taps → [`AcousticCampaign`].
 
 use crate::settings::channels::{Kind, channel_plan};
+use crate::settings::conditioning::refuse_conditioning;
 use crate::settings::files::check_format;
 use crate::settings::kind::{CAMPAIGN_FILE, CampaignKind};
 use crate::settings::model::Campaign;
@@ -128,7 +129,11 @@ fn channel(
     channels: Option<&Spanned<SoundFile>>,
 ) -> Result<crate::settings::model::ChannelPlan, Error> {
     match channels.and_then(|channels| channels.get_ref().sound.as_ref()) {
-        Some(sound) => channel_plan(source, &SOUND, sound),
+        Some(sound) => {
+            let why = "taps are not filtered: `band` says where the first mode may be";
+            refuse_conditioning(source, SOUND.table, sound.get_ref(), why)?;
+            channel_plan(source, &SOUND, sound)
+        }
         None => {
             let needed = Needed {
                 table: "[channels]",

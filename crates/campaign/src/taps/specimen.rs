@@ -5,7 +5,7 @@ use crate::settings::model::{ImpactEntry, Specimen};
 use crate::taps::document::{TapDocument, TapsDocument};
 use crate::taps::read::{AcousticCampaign, Common, density_of};
 use itertools::Itertools;
-use windfall_files::error::Error;
+use windfall_files::error::{Error, Place};
 use windfall_files::found::FindingOutcome;
 use windfall_files::named::{Named, grouped};
 use windfall_files::text::cell_quantity::cell_quantity;
@@ -185,7 +185,8 @@ fn cell(
         return Ok(None);
     };
     let file = campaign.shared.directory.join("specimens.csv");
-    cell_quantity(&specimen.cells, name, unit, &file)
+    let place = Place::at(&file, specimen.line);
+    cell_quantity(&specimen.cells, name, unit, &place)
 }
 
 fn findings(decision: &Decision, weighed: bool, taps: usize, places: usize) -> Vec<FindingOutcome> {

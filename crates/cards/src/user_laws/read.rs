@@ -1,17 +1,19 @@
 //! Laws of the user: `[laws.NAME]` of a campaign.toml or a file of laws.
 
 use crate::user_laws::file::{LawFile, LawParameterFile, LawsFile, OnlyLaws};
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use toml::Spanned;
 use windfall_contact::laws::define_law::define_law;
-use windfall_contact::laws::force_table::ForceTable;
+use windfall_contact::laws::force_table::{COLUMNS, ForceTable};
 use windfall_contact::laws::kind::LawKind;
 use windfall_contact::laws::user::{UserForce, UserLawDefinition, UserParameter};
-use windfall_files::error::Error;
+use windfall_files::confined::named_file;
+use windfall_files::error::{Error, Place};
 use windfall_files::inputs::protect;
 use windfall_files::option_value::unusable;
 use windfall_files::text::file_quantity::QuantityText;
-use windfall_files::text::toml_source::{TomlSource, invalid, parse_source, read_source};
+use windfall_files::text::toml_places::invalid_at;
+use windfall_files::text::toml_source::{TomlSource, invalid, parse_source, read_piped_source};
 use windfall_numerics::unit::quantity::parse_as;
 
 /// The laws of `--laws FILE`; none without a file.
@@ -28,7 +30,7 @@ pub fn laws_of_option(file: Option<&Path>) -> Result<Vec<LawKind>, Error> {
 /// The file cannot be read, holds no law, or a law cannot be used.
 pub fn read_laws(path: &Path) -> Result<Vec<LawKind>, Error> {
     let advice = "a file of laws holds tables such as [laws.my-law] with force = \"k*x^1.5\"";
-    let source = read_source(path, advice)?;
+    let source = read_piped_source(path, advice)?;
     let file: OnlyLaws = parse_source(&source)?;
     if file.laws.is_empty() {
         let problem = "it holds no law: write tables such as [laws.my-law] with \
@@ -69,24 +71,26 @@ fn user_law(
     let wrong =
         |key: &str, problem: String| invalid(source, &file.span(), (&table, key), name, problem);
     let inline = law.displacement.is_some() || law.table_force.is_some();
-    let (force, key, at) = match (&law.force, &law.table, inline) {
-        (Some(formula), None, false) => (
-            UserForce::Formula(formula.get_ref().clone()),
-            "force",
-            formula,
-        ),
+    let mut lines = None;
+    let (force, key) = match (&law.force, &law.table, inline) {
+        (Some(formula), None, false) => (UserForce::Formula(formula.get_ref().clone()), "force"),
         (None, Some(file), false) => {
-            let table = read_table(source, &table, file, directory)?;
-            (UserForce::Table(table), "table", file)
+            let (own, found) = read_table(source, &table, file, directory)?;
+            lines = Some(found);
+            (UserForce::Table(own), "table")
         }
         (None, None, true) => {
-            let table = ForceTable {
+            let own = ForceTable {
                 displacement: law.displacement.clone().unwrap_or_default(),
                 force: law.table_force.clone().unwrap_or_default(),
                 damping: law.damping.clone(),
             };
-            return finished(name, UserForce::Table(table), Vec::new())
-                .map_err(|problem| wrong("displacement_m, force_N", problem));
+            (UserForce::Table(own), "displacement_m")
+        }
+        (Some(_), Some(file), _) => {
+            let problem = "`force` is given too; keep one of them".to_owned();
+            let key = (table.as_str(), "table");
+            return Err(invalid(source, &file.span(), key, file.get_ref(), problem));
         }
         _ => {
             let problem = "expected one of: force = \"a formula\"; table = \"FILE.csv\"; \
@@ -105,21 +109,49 @@ fn user_law(
         .into_iter()
         .map(|(parameter, file)| user_parameter(source, &table, parameter, file.get_ref()))
         .collect::<Result<Vec<_>, _>>()?;
-    finished(name, force, parameters)
-        .map_err(|problem| invalid(source, &at.span(), (&table, key), at.get_ref(), problem))
-}
-
-fn finished(
-    name: &str,
-    force: UserForce,
-    parameters: Vec<UserParameter>,
-) -> Result<LawKind, String> {
     let definition = UserLawDefinition {
         name: name.to_owned(),
         force,
         parameters,
     };
-    define_law(&definition).map_err(|error| error.to_string())
+    define_law(&definition).map_err(|error| placed(source, (name, key), lines.as_ref(), &error))
+}
+
+/// The error of a definition, at the value that is to blame.
+///
+/// * `key`: what says the force
+/// * `lines`: of the rows, where they are in a file of their own
+fn placed(
+    source: &TomlSource,
+    (law, key): (&str, &str),
+    lines: Option<&(PathBuf, Vec<usize>)>,
+    error: &windfall_contact::error::Error,
+) -> Error {
+    let problem = error.to_string();
+    let windfall_contact::error::Error::UserLaw { problem: of, .. } = error else {
+        return invalid_at(source, &["laws", law, key], problem);
+    };
+    match (of.parameter(), of.cell(), lines) {
+        (Some((parameter, "")), ..) => {
+            invalid_at(source, &["laws", law, "parameters", parameter], problem)
+        }
+        (Some((parameter, what)), ..) => {
+            let keys = ["laws", law, "parameters", parameter, what];
+            invalid_at(source, &keys, problem)
+        }
+        (None, Some((row, column)), Some((file, lines))) => {
+            let line = row.and_then(|row| lines.get(row)).copied();
+            Error::Refused {
+                place: Place::at(file, line.unwrap_or(0)),
+                problem: format!("{column}: {problem}"),
+            }
+        }
+        (None, Some((row, column)), None) => {
+            let row = row.unwrap_or(0).to_string();
+            invalid_at(source, &["laws", law, column, &row], problem)
+        }
+        _ => invalid_at(source, &["laws", law, key], problem),
+    }
 }
 
 fn user_parameter(
@@ -153,22 +185,21 @@ fn user_parameter(
 /// Largest file of a table of forces; bytes.
 const LARGEST_TABLE: u64 = 10_000_000;
 
-/// Columns of a table's file.
-const COLUMNS: [&str; 3] = ["displacement_m", "force_N", "damping_N_s_m"];
+/// A table of forces, with its file and the lines of its rows.
+type ReadTable = (ForceTable, (PathBuf, Vec<usize>));
 
 fn read_table(
     source: &TomlSource,
     table: &str,
     file: &Spanned<String>,
     directory: &Path,
-) -> Result<ForceTable, Error> {
-    let path = directory.join(file.get_ref());
+) -> Result<ReadTable, Error> {
     let place = (table, "table");
     let wrong = |problem: String| invalid(source, &file.span(), place, file.get_ref(), problem);
+    let path = named_file(directory, file.get_ref(), directory).map_err(wrong)?;
     let shown = path.display();
     let found = std::fs::metadata(&path);
     let found = found.map_err(|error| wrong(format!("{shown} cannot be read: {error}")))?;
-    // A device or a pipe may have no end.
     if !found.is_file() {
         return Err(wrong(format!("{shown} is not a regular file")));
     }
@@ -199,21 +230,25 @@ fn read_table(
     };
     let columns = [Some(x), Some(force), place(COLUMNS[2])];
     let mut values: [Vec<f64>; 3] = Default::default();
+    let mut rows = Vec::new();
     for (number, line) in lines {
         let cells: Vec<&str> = line.split(',').collect();
-        for (values, column) in values.iter_mut().zip(columns) {
-            let Some(column) = column else { continue };
+        let places = columns.iter().zip(COLUMNS);
+        for (values, (column, name)) in values.iter_mut().zip(places) {
+            let Some(column) = *column else { continue };
             let cell = cells.get(column).map_or("", |cell| cell.trim());
-            values.push(
-                cell.parse()
-                    .map_err(|_| wrong(format!("line {}: \"{cell}\" is no number", number + 1)))?,
-            );
+            values.push(cell.parse().map_err(|_| Error::Refused {
+                place: Place::at(&path, number + 1),
+                problem: format!("{name} = \"{cell}\" is no number"),
+            })?);
         }
+        rows.push(number + 1);
     }
     let [displacement, force, damping] = values;
-    Ok(ForceTable {
+    let table = ForceTable {
         displacement,
         force,
         damping: columns[2].map(|_| damping),
-    })
+    };
+    Ok((table, (path, rows)))
 }

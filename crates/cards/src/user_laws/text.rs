@@ -4,6 +4,7 @@ use std::fmt::Write;
 use windfall_contact::laws::kind::LawKind;
 use windfall_contact::laws::user::UserForce;
 use windfall_contact::parameter::NO_BOUND;
+use windfall_files::text::quote::string_text;
 
 /// The table of a user's law, as [`crate::user_laws::read`] reads it; nothing for a
 /// built-in law.
@@ -16,7 +17,7 @@ pub fn law_table(kind: LawKind) -> String {
     // Writing to a string cannot fail.
     match &definition.force {
         UserForce::Formula(formula) => {
-            let _ = writeln!(text, "force = {}", quoted(formula));
+            let _ = writeln!(text, "force = {}", string_text(formula));
         }
         UserForce::Table(table) => {
             let _ = writeln!(text, "displacement_m = {:?}", table.displacement);
@@ -27,7 +28,7 @@ pub fn law_table(kind: LawKind) -> String {
         }
     }
     for parameter in &definition.parameters {
-        let mut keys = format!("unit = {}", quoted(&parameter.unit));
+        let mut keys = format!("unit = {}", string_text(&parameter.unit));
         let values = [
             ("start", parameter.start),
             ("default", parameter.default),
@@ -40,14 +41,9 @@ pub fn law_table(kind: LawKind) -> String {
             }
         }
         if !parameter.meaning.is_empty() {
-            let _ = write!(keys, ", meaning = {}", quoted(&parameter.meaning));
+            let _ = write!(keys, ", meaning = {}", string_text(&parameter.meaning));
         }
         let _ = writeln!(text, "parameters.{} = {{ {keys} }}", parameter.name);
     }
     text
-}
-
-/// A TOML string on one line.
-fn quoted(text: &str) -> String {
-    toml::Value::String(text.replace(['\n', '\r'], " ")).to_string()
 }

@@ -239,13 +239,51 @@ pub enum FormulaError {
         values: String,
     },
     /// A table that cannot be used.
-    #[error("row {row} of the table: {reason}")]
+    #[error("{}the table: {reason}", of_row(*row))]
     Table {
         /// Row, from 1; 0 for the table as a whole.
         row: usize,
+        /// What is wrong in it: [`COLUMNS`](crate::laws::force_table::COLUMNS).
+        column: &'static str,
         /// What is wrong and what to do.
         reason: &'static str,
     },
+}
+
+impl FormulaError {
+    /// The parameter that is to blame, where it is one of the parameters, and what of it:
+    /// "unit", "start", "default", "upper", or nothing.
+    pub fn parameter(&self) -> Option<(&str, &'static str)> {
+        match self {
+            Self::UnusedParameter { parameter } | Self::RepeatedParameter { parameter } => {
+                Some((parameter, ""))
+            }
+            Self::BadUnit { parameter, .. } | Self::NotSi { parameter, .. } => {
+                Some((parameter, "unit"))
+            }
+            Self::StartOutOfBounds {
+                parameter, what, ..
+            } => Some((parameter, what)),
+            // An upper bound that is left out is above all others.
+            Self::EmptyBounds { parameter, .. } => Some((parameter, "upper")),
+            _ => None,
+        }
+    }
+
+    /// The column of the table that is to blame, and its row, from 0, where one row is.
+    pub fn cell(&self) -> Option<(Option<usize>, &'static str)> {
+        match self {
+            Self::Table { row, column, .. } => Some((row.checked_sub(1), column)),
+            _ => None,
+        }
+    }
+}
+
+fn of_row(row: usize) -> String {
+    match row {
+        0 => String::new(),
+        row => format!("row {row} of "),
+    }
 }
 
 fn known_names(nearest: &[String], known: &[String]) -> String {

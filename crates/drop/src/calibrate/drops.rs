@@ -9,7 +9,7 @@ use windfall_campaign::settings::model::ImpactEntry;
 use windfall_drop_rig::feature_problem::{MeasuredFeature, RigUncertainty};
 use windfall_drop_rig::measured::{DropFeature, FeatureKind};
 use windfall_drop_rig::rig::{DropRig, Plate};
-use windfall_files::error::Error;
+use windfall_files::error::{Error, Place};
 use windfall_files::text::cell_quantity::cell_quantity;
 use windfall_signal::uncertain::Uncertain;
 
@@ -32,12 +32,13 @@ pub fn written_features(
     entry: &ImpactEntry,
 ) -> Result<Vec<MeasuredFeature>, Error> {
     let file = campaign.shared.directory.join("impacts.csv");
+    let place = Place::at(&file, entry.line);
     let mut features = Vec::new();
     for (name, kind) in COLUMNS {
         for impact in 0..campaign.calibrate.bounces {
             let feature = DropFeature { kind, impact };
             let name = format!("{name}_{}", impact + 1);
-            let cell = |name: &str| cell_quantity(&entry.cells, name, feature.unit(), &file);
+            let cell = |name: &str| cell_quantity(&entry.cells, name, feature.unit(), &place);
             if let Some(value) = cell(&name)? {
                 let sd = cell(&format!("{name}_sd"))?;
                 let usual = 0.5 * campaign.calibrate.tolerance * value;

@@ -196,12 +196,17 @@ fn direction_outcome(law: &FreeLaw, direction: &Direction, widened: f64) -> Dire
     }
 }
 
+/// Logarithm of a change that is given by its order of magnitude; 1.
+const MANY: f64 = 10.0;
+
 /// Changes along a direction of a length.
 pub fn direction_words(law: &FreeLaw, vector: &[f64], length: f64) -> String {
     let free = law.coordinates.free.iter().zip(law.names()).zip(vector);
     let words = free.map(|((free, name), part)| {
         let change = length * part;
         match free.logarithmic {
+            // By orders of magnitude: nothing determines it.
+            true if change > MANY => format!("{name} × 1e{:.0}", change / std::f64::consts::LN_10),
             true => format!("{name} {:+.2} %", 100.0 * change.exp_m1()),
             false => format!("{name} {change:+.4}"),
         }

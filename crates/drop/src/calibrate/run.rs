@@ -174,6 +174,12 @@ fn feature_drops(campaign: &DropCampaign, progress: Progress) -> Result<Seen, Er
             }
         }
     }
+    if drops.is_empty() && !failed.is_empty() {
+        return Err(Error::NothingFitted {
+            path: campaign.shared.directory.clone(),
+            failures: failed,
+        });
+    }
     let measured: Vec<MeasuredDrop> = recorded.into_iter().map(|(_, drop)| drop).collect();
     Ok(Seen {
         drops,

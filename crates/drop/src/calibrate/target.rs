@@ -124,7 +124,11 @@ pub fn target_condition(
         let missing = format!("no first peak and interval could be read off the {of}");
         let advice = "recordings of such drops with two impacts or more, or name others with \
                       target_height or target_drop";
-        return Err(Error::not_known("[calibrate]", missing, advice));
+        return Err(Error::not_known(
+            "[calibrate] of campaign.toml",
+            missing,
+            advice,
+        ));
     }
     let mass = mean_known(own.iter().map(|drop| drop.mass));
     let height = mean_known(own.iter().map(|drop| drop.height));

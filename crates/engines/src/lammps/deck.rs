@@ -1,10 +1,11 @@
 //! A scene as a deck for LAMMPS.
 
-use crate::deck::{Deck, FRAMES, Task, comment, variables};
+use crate::deck::{Deck, FRAMES, Task, variables};
 use crate::lammps::terms::terms;
 use crate::lammps::walls::walls;
 use std::fmt::Write;
 use windfall_files::found::FindingOutcome;
+use windfall_files::text::quote::comment_text;
 
 /// Classes that LAMMPS can have at most: it has 32 groups.
 const MOST_CLASSES: usize = 28;
@@ -75,13 +76,13 @@ fn head(task: &Task) -> String {
          newton off\ncomm_modify vel yes cutoff {reach}\nprocessors {processors}\n{space}\n\
          fix fruit all property/atom i_fruit\nvariable id atom id\nset group all i_fruit v_id\n\
          group old empty\ngroup new empty\n",
-        comment(task.title),
+        comment_text(task.title),
         task.frame_steps,
         2.2 * task.largest(),
     );
     for (number, class) in task.classes.classes.iter().enumerate() {
         let kind = number + 1;
-        let material = comment(&scene.materials[class.material]);
+        let material = comment_text(&scene.materials[class.material]);
         let _ = writeln!(
             text,
             "# type {kind}: {material}, about {} m across, {} kg\ngroup t{kind} type {kind}",

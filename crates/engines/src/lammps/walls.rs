@@ -1,10 +1,11 @@
 //! Walls of a scene as regions of LAMMPS, with `fix wall/gran/region`.
 
-use crate::deck::{Task, comment, triple};
+use crate::deck::{Task, triple};
 use crate::lammps::terms::terms;
 use crate::law::PairNumbers;
 use crate::walls::{Region, Tilt, region_of};
 use std::fmt::Write;
+use windfall_files::text::quote::comment_text;
 use windfall_scene::shape::wall::{Motion, Wall};
 use windfall_scene::vector::{Vector, add, dot, plus_scaled};
 
@@ -25,7 +26,7 @@ fn one(task: &Task, number: usize, wall: &Wall) -> Result<String, String> {
     let region = region_of(wall)?;
     let (variables, moves) = motion(number, wall, &region)?;
     let region = region.words();
-    let mut text = format!("# {}\n{variables}", comment(&wall.name));
+    let mut text = format!("# {}\n{variables}", comment_text(&wall.name));
     let classes = &task.classes.classes;
     let mut done = Vec::new();
     for (class, own) in classes.iter().enumerate() {

@@ -1,12 +1,13 @@
 //! A scene as a deck for LIGGGHTS.
 
-use crate::deck::{Deck, FRAMES, Task, comment, density, variables};
+use crate::deck::{Deck, FRAMES, Task, density, variables};
 use crate::law::PairNumbers;
 use crate::liggghts::model::{Model, Types, model_of, words};
 use crate::liggghts::walls::{Walls, walls};
 use std::collections::BTreeSet;
 use std::fmt::Write;
 use windfall_contact::granular_law::Damping;
+use windfall_files::text::quote::comment_text;
 
 /// A deck for LIGGGHTS-PUBLIC 3.8.
 ///
@@ -80,16 +81,16 @@ fn head(task: &Task, types: &Types) -> String {
          units si\natom_style granular\natom_modify map array sort 1000 {}\nboundary f f f\n\
          newton off\ncommunicate single vel yes\nprocessors * * 1\n{space}\n\
          fix fruit all property/atom fruit scalar yes no no 0.0\n",
-        comment(task.title),
+        comment_text(task.title),
         task.frame_steps,
         2.2 * task.largest(),
     );
     for (number, material) in types.walls.iter().enumerate() {
-        let name = comment(&task.scene.materials[*material]);
+        let name = comment_text(&task.scene.materials[*material]);
         let _ = writeln!(text, "# type {}: {name} of walls", number + 1);
     }
     for (number, class) in task.classes.classes.iter().enumerate() {
-        let name = comment(&task.scene.materials[class.material]);
+        let name = comment_text(&task.scene.materials[class.material]);
         let _ = writeln!(
             text,
             "# type {}: {name}, about {} m across, {} kg",

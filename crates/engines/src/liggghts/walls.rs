@@ -1,9 +1,10 @@
 //! Walls of a scene for LIGGGHTS: meshes of triangles, and endless planes along the axes.
 
-use crate::deck::{Task, comment, triple};
+use crate::deck::{Task, triple};
 use crate::liggghts::model::{Model, Types, model_of, words};
 use crate::walls::triangles_of;
 use std::fmt::Write;
+use windfall_files::text::quote::comment_text;
 use windfall_scene::shape::surface::Shape;
 use windfall_scene::shape::wall::Wall;
 use windfall_scene::vector::{Vector, cross, length, scaled, subtract};
@@ -82,7 +83,7 @@ fn plane(
     let (form, options) = words(model, task.rolls());
     Ok(format!(
         "# {}\nfix plane{number} all wall/gran {form} primitive type {} {}plane {} {options}\n",
-        comment(&wall.name),
+        comment_text(&wall.name),
         types.of_wall(wall.material),
         ["x", "y", "z"][axis],
         point[axis]
@@ -98,7 +99,7 @@ fn mesh(types: &Types, number: usize, wall: &Wall) -> Result<(String, String), S
     };
     let mut text = format!(
         "# {}\nfix wall{number} all mesh/surface file wall{number}.stl type {}{belt}\n",
-        comment(&wall.name),
+        comment_text(&wall.name),
         types.of_wall(wall.material)
     );
     let mut moves = Vec::new();

@@ -2,13 +2,16 @@
 //!
 //! The separator (comma, semicolon or tab) is found from the header; a byte
 //! order mark is passed over; names may be quoted and hold commas and units. UTF-16, as
-//! PowerShell writes it, is read like UTF-8.
+//! PowerShell writes it, is read like UTF-8. The apostrophe that keeps a cell from being a
+//! formula is taken away.
 
 use crate::error::{Error, Place};
-use crate::inputs::protect;
+use crate::inputs::{check_piped, protect};
+use crate::table::write::plain_cell;
 use std::fs::File;
 use std::io::{BufRead, BufReader, Cursor, Read};
 use std::path::{Path, PathBuf};
+use windfall_formats::stream::{is_stream, stream_bytes};
 use windfall_formats::text::encoding::{Encoding, tell_encoding};
 use windfall_numerics::unit::nearest_name::nearest_names;
 
@@ -28,7 +31,7 @@ pub struct Table {
 pub struct Row {
     /// Line in the file, from 1.
     pub line: usize,
-    /// Cells, without surrounding blanks, one per column.
+    /// Cells, as [`plain_cell`] leaves them, one per column.
     pub cells: Vec<String>,
 }
 
@@ -42,7 +45,8 @@ pub fn read_table(path: &Path) -> Result<Table, Error> {
     let mut rows = Vec::new();
     let mut record = csv::StringRecord::new();
     while next_row(&mut open, &mut record)? {
-        let cells = record.iter().map(|cell| cell.trim().to_owned()).collect();
+        let cells = record.iter().map(|cell| plain_cell(cell).to_owned());
+        let cells = cells.collect();
         rows.push(Row {
             line: line_of(&open, &record),
             cells,
@@ -81,6 +85,7 @@ pub(crate) struct Open {
 /// # Errors
 /// As [`read_table`].
 pub(crate) fn open(path: &Path) -> Result<Open, Error> {
+    check_piped(path)?;
     protect(path);
     let mut reader = utf8(path)?;
     // The header is read to its end, however long, before anything is decided.
@@ -112,7 +117,7 @@ pub(crate) fn open(path: &Path) -> Result<Open, Error> {
         .headers()
         .map_err(|error| csv_error(path, &error))?
         .iter()
-        .map(|name| name.trim().to_owned())
+        .map(|name| plain_cell(name).to_owned())
         .collect();
     for (index, column) in columns.iter().enumerate() {
         if !column.is_empty() && columns[..index].contains(column) {
@@ -135,13 +140,19 @@ pub(crate) fn open(path: &Path) -> Result<Open, Error> {
 
 /// The text of a file, without byte order mark.
 fn utf8(path: &Path) -> Result<Box<dyn BufRead>, Error> {
-    let file = File::open(path).map_err(|source| access(path, source))?;
-    let mut reader = BufReader::with_capacity(1 << 16, file);
+    let failed = |source| access(path, source);
+    let mut reader: Box<dyn BufRead> = match is_stream(path) {
+        true => Box::new(Cursor::new(stream_bytes(path).map_err(failed)?)),
+        false => {
+            let file = File::open(path).map_err(failed)?;
+            Box::new(BufReader::with_capacity(1 << 16, file))
+        }
+    };
     let start = reader.fill_buf().map_err(|source| access(path, source))?;
     let (encoding, mark) = tell_encoding(start);
     reader.consume(mark);
     if !matches!(encoding, Encoding::Utf16Le | Encoding::Utf16Be) {
-        return Ok(Box::new(reader));
+        return Ok(reader);
     }
     let mut bytes = Vec::new();
     let read = reader.read_to_end(&mut bytes);
@@ -150,8 +161,8 @@ fn utf8(path: &Path) -> Result<Box<dyn BufRead>, Error> {
     Ok(Box::new(Cursor::new(text.into_bytes())))
 }
 
-/// The separator that occurs most often outside quotes; a comma if none does.
-fn separator_of(header: &[u8]) -> (u8, &'static str) {
+/// The separator that occurs most often outside quotes, and its name; a comma if none does.
+pub fn separator_of(header: &[u8]) -> (u8, &'static str) {
     let mut best = (b',', "commas");
     let mut most = 0;
     for (byte, name) in [(b',', "commas"), (b';', "semicolons"), (b'\t', "tabs")] {

@@ -1,8 +1,12 @@
 //! Tables for statistics: columns of numbers and of categories from CSV.
 
 use crate::error::{Error, Place};
+use crate::found::FindingOutcome;
 use crate::table::csv::{line_of, next_row, open};
-use std::path::Path;
+use crate::table::write::plain_cell;
+use std::path::{Path, PathBuf};
+use windfall_numerics::unit::quantity::LARGEST;
+use windfall_statistics::error::Error as StatisticsError;
 use windfall_statistics::table::{Categories, Cells, Column, Table};
 
 /// Cells that stand for a missing value, in lower case.
@@ -11,12 +15,84 @@ const MISSING: [&str; 7] = ["", "na", "nan", "n/a", "null", "none", "."];
 /// A table with what its file says beside it.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Data {
+    /// Its file.
+    pub path: PathBuf,
     /// The columns.
     pub table: Table,
     /// Lines before the header that begin with `#`, without it.
     pub comments: Vec<String>,
     /// Line of each row in the file, from 1.
     pub lines: Vec<usize>,
+    /// Rows that do not count: something stands in their column [`LEFT_OUT_COLUMN`] or
+    /// [`EXCLUDE_COLUMN`]. They are not in the table.
+    pub left_out: usize,
+}
+
+impl Data {
+    /// Says how many rows do not count, if any.
+    pub fn left_out_finding(&self) -> Option<FindingOutcome> {
+        let rows = match self.left_out {
+            0 => return None,
+            1 => "1 row does".to_owned(),
+            n => format!("{n} rows do"),
+        };
+        let told = format!(
+            "{rows} not count, as the columns {LEFT_OUT_COLUMN} or {EXCLUDE_COLUMN} say; empty \
+             these cells for rows that are to count"
+        );
+        Some(FindingOutcome::new("rows-left-out", told))
+    }
+}
+
+/// Column in which windfall says why an impact does not count.
+pub const LEFT_OUT_COLUMN: &str = "left_out";
+/// Column by which the user leaves a row out.
+pub const EXCLUDE_COLUMN: &str = "exclude";
+/// Cells of [`EXCLUDE_COLUMN`] that leave nothing out.
+const KEPT: [&str; 5] = ["", "0", "no", "false", "n"];
+
+/// Whether a cell of [`EXCLUDE_COLUMN`] leaves its row out.
+pub fn excludes(cell: &str) -> bool {
+    !KEPT.contains(&cell.trim().to_lowercase().as_str())
+}
+
+/// Whether a row counts.
+fn counts(columns: &[String], record: &csv::StringRecord) -> bool {
+    columns
+        .iter()
+        .zip(record)
+        .all(|(name, cell)| match name.as_str() {
+            LEFT_OUT_COLUMN => cell.trim().is_empty(),
+            EXCLUDE_COLUMN => !excludes(cell),
+            _ => true,
+        })
+}
+
+impl Data {
+    /// What statistics say about the table, with the file and the line that it is about.
+    pub fn told(&self, error: StatisticsError) -> Error {
+        let line = error.row().and_then(|row| self.lines.get(row - 1));
+        match line {
+            Some(line) => Error::Refused {
+                place: Place::at(&self.path, *line),
+                problem: error.to_string(),
+            },
+            None if is_of_request(&error) => Error::Statistics(error),
+            None => Error::Refused {
+                place: Place::at(&self.path, 0),
+                problem: error.to_string(),
+            },
+        }
+    }
+}
+
+/// Whether what was asked for is wrong, whatever the table.
+fn is_of_request(error: &StatisticsError) -> bool {
+    use StatisticsError::{FormulaSyntax, Request, UnknownFunction};
+    matches!(
+        error,
+        FormulaSyntax { .. } | UnknownFunction { .. } | Request { .. }
+    )
 }
 
 /// Reads a table: columns of numbers and missing cells are numeric, others categories.
@@ -26,27 +102,33 @@ pub struct Data {
 /// `none` or a single point.
 ///
 /// # Errors
-/// As [`crate::table::csv::read_table`]; there is no row; an infinite number.
+/// As [`crate::table::csv::read_table`]; there is no row; a number that is infinite or beyond
+/// 1e100.
 pub fn read_data(path: &Path) -> Result<Data, Error> {
     let mut open_file = open(path)?;
     let comma = open_file.separator != "commas";
     let columns = open_file.columns.clone();
     let mut numbers: Vec<Option<Vec<f64>>> = columns.iter().map(|_| Some(Vec::new())).collect();
     let mut lines = Vec::new();
-    let mut record = csv::StringRecord::new();
+    let (mut record, mut left_out) = (csv::StringRecord::new(), 0);
     while next_row(&mut open_file, &mut record)? {
+        if !counts(&columns, &record) {
+            left_out += 1;
+            continue;
+        }
         let line = line_of(&open_file, &record);
         for ((column, cell), name) in numbers.iter_mut().zip(&record).zip(&columns) {
             let Some(values) = column else { continue };
-            match number(cell.trim(), comma) {
-                Some(value) if value.is_infinite() => {
+            let cell = plain_cell(cell);
+            match number(cell, comma) {
+                Some(value) if value.abs() > LARGEST => {
                     return Err(Error::CellNotFinite {
                         place: Place {
                             file: path.to_path_buf(),
                             line,
                         },
                         column: name.clone(),
-                        text: cell.trim().to_owned(),
+                        text: cell.to_owned(),
                     });
                 }
                 Some(value) => values.push(value),
@@ -71,6 +153,7 @@ pub fn read_data(path: &Path) -> Result<Data, Error> {
     });
     let columns = columns.iter().zip(cells);
     Ok(Data {
+        path: path.to_path_buf(),
         table: Table {
             columns: columns
                 .filter(|(name, _)| !name.is_empty())
@@ -82,6 +165,7 @@ pub fn read_data(path: &Path) -> Result<Data, Error> {
         },
         comments,
         lines,
+        left_out,
     })
 }
 
@@ -94,8 +178,11 @@ fn read_categories(path: &Path, columns: &[usize]) -> Result<Vec<Categories>, Er
     let mut open_file = open(path)?;
     let mut record = csv::StringRecord::new();
     while next_row(&mut open_file, &mut record)? {
+        if !counts(&open_file.columns, &record) {
+            continue;
+        }
         for (place, column) in columns.iter().enumerate() {
-            let cell = record.get(*column).unwrap_or_default().trim();
+            let cell = plain_cell(record.get(*column).unwrap_or_default());
             cells[place].push(match is_missing(cell) {
                 true => String::new(),
                 false => cell.to_owned(),

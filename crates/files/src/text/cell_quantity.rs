@@ -2,14 +2,13 @@
 //! the column: "mass_g", "radius_mm", "density_kg_m3".
 
 use crate::error::{Error, Place};
-use std::path::Path;
-use windfall_numerics::unit::quantity::parse_as;
+use windfall_numerics::unit::quantity::{LARGEST, parse_as};
 
 /// The quantity `name` of a row; SI. `None` where column or cell is blank.
 ///
 /// * `unit`: SI unit; a column counts when what follows its name is a unit of
 ///   the same kind
-/// * `file`: for messages
+/// * `place`: of the row, for messages
 ///
 /// # Errors
 /// The cell is no positive number.
@@ -17,7 +16,7 @@ pub fn cell_quantity(
     cells: &[(String, String)],
     name: &str,
     unit: &str,
-    file: &Path,
+    place: &Place,
 ) -> Result<Option<f64>, Error> {
     for (column, cell) in cells {
         let Some(rest) = column.strip_prefix(name) else {
@@ -33,9 +32,9 @@ pub fn cell_quantity(
             return Ok(None);
         }
         return match cell.parse::<f64>() {
-            Ok(value) if value.is_finite() && value > 0.0 => Ok(Some(value * scale)),
+            Ok(value) if value > 0.0 && value <= LARGEST => Ok(Some(value * scale)),
             _ => Err(Error::CellNotPositive {
-                place: Place::at(file, 0),
+                place: place.clone(),
                 column: column.clone(),
                 text: cell.clone(),
             }),
@@ -63,11 +62,12 @@ fn unit_scale(written: &str, unit: &str) -> Option<f64> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use std::path::Path;
 
     fn find(column: &str, cell: &str, name: &str, unit: &str) -> Result<Option<f64>, String> {
         let cells = [(column.to_owned(), cell.to_owned())];
-        let file = Path::new("specimens.csv");
-        cell_quantity(&cells, name, unit, file).map_err(|error| error.to_string())
+        let place = Place::at(Path::new("specimens.csv"), 0);
+        cell_quantity(&cells, name, unit, &place).map_err(|error| error.to_string())
     }
 
     #[test]

@@ -3,26 +3,26 @@
 use windfall_formats::contents::ChannelContents;
 use windfall_numerics::unit::quantity::parse_unit;
 
-/// The unit in "Force (N)", "force_N", `Force [N]` or "Force in N".
+/// The unit in "Force (N)", "force_N", `Force [N]` or "Force in N", and in
+/// "Force (N) (segment 2)".
 pub fn unit_of(name: &str) -> Option<String> {
-    let bracketed = [('(', ')'), ('[', ']')]
-        .into_iter()
-        .find_map(|(open, close)| {
-            let (_, rest) = name.rsplit_once(open)?;
-            rest.split_once(close)
-                .map(|(unit, _)| unit.trim().to_owned())
-        });
-    let last = || {
-        let (_, last) = name.rsplit_once(['_', ' '])?;
-        Some(last.trim().to_owned())
-    };
-    bracketed
-        .or_else(last)
-        .filter(|unit| unit.starts_with(|c: char| !c.is_ascii_digit()) && parse_unit(unit).is_ok())
+    let is_unit =
+        |unit: &str| unit.starts_with(|c: char| !c.is_ascii_digit()) && parse_unit(unit).is_ok();
+    let brackets = name.rmatch_indices(['(', '[']);
+    let mut bracketed = brackets.filter_map(|(open, bracket)| {
+        let close = if bracket == "(" { ')' } else { ']' };
+        let (unit, _) = name[open + 1..].split_once(close)?;
+        Some(unit.trim())
+    });
+    let last = || name.rsplit_once(['_', ' ']).map(|(_, last)| last.trim());
+    let found = bracketed.find(|unit| is_unit(unit));
+    found
+        .or_else(|| last().filter(|unit| is_unit(unit)))
+        .map(str::to_owned)
 }
 
 /// Parts of names and what they usually stand for.
-const ROLES: [(&str, &str); 18] = [
+const ROLES: [(&str, &str); 17] = [
     ("time", "time"),
     ("x_value", "time"),
     ("phase_a", "phase_a"),
@@ -40,7 +40,25 @@ const ROLES: [(&str, &str); 18] = [
     ("position", "position"),
     ("pos", "position"),
     ("displacement", "position"),
+];
+
+/// Ends of words in German, French, Spanish and Italian, and what they stand for: what
+/// testing machines write there ("Standardkraft", "Prüfzeit").
+const FOREIGN: [(&str, &str); 14] = [
     ("zeit", "time"),
+    ("temps", "time"),
+    ("tiempo", "time"),
+    ("tempo", "time"),
+    ("kraft", "force"),
+    ("fuerza", "force"),
+    ("forza", "force"),
+    ("weg", "position"),
+    ("verschiebung", "position"),
+    ("déplacement", "position"),
+    ("deplacement", "position"),
+    ("desplazamiento", "position"),
+    ("spostamento", "position"),
+    ("geschwindigkeit", "velocity"),
 ];
 
 /// What a channel seems to be: "time", or the campaign channel that it could feed.
@@ -49,12 +67,17 @@ pub fn role_of(name: &str) -> Option<&'static str> {
     if matches!(lower.as_str(), "t" | "t_s" | "t (s)" | "t_ms" | "t [s]") {
         return Some("time");
     }
-    // "Run 1: Time (s)": what follows the last colon counts.
-    let part = lower.rsplit(':').next().unwrap_or(&lower);
-    ROLES
-        .iter()
-        .find(|(word, _)| part.contains(word))
-        .map(|(_, role)| *role)
+    // "Run 1: Time (s)", "Sheet 1/Time (s)": the name itself, before names above it.
+    let bare = lower.split(['(', '[']).next().unwrap_or(&lower);
+    let own = bare.rsplit([':', '/']).next().unwrap_or(bare);
+    role_in(own).or_else(|| role_in(&lower))
+}
+
+fn role_in(text: &str) -> Option<&'static str> {
+    let known = ROLES.iter().find(|(part, _)| text.contains(part));
+    let mut words = text.split(|c: char| !c.is_alphanumeric());
+    let foreign = || words.find_map(|word| FOREIGN.iter().find(|(end, _)| word.ends_with(end)));
+    known.or_else(foreign).map(|(_, role)| *role)
 }
 
 /// What a unit alone says of a channel.
@@ -103,6 +126,24 @@ mod tests {
             ("Acceleration (m/s²)", Some("m/s²"), Some("acceleration")),
             ("phase_a_V", Some("V"), Some("phase_a")),
             ("position_mm", Some("mm"), Some("position")),
+            ("Load (lbf)", Some("lbf"), Some("force")),
+            ("Extension [in]", Some("in"), None),
+            ("Kraft [N]", Some("N"), Some("force")),
+            ("Standardkraft in kgf", Some("kgf"), Some("force")),
+            ("Weg [mm]", Some("mm"), Some("position")),
+            ("Prüfzeit [s]", Some("s"), Some("time")),
+            ("Déplacement (mm)", Some("mm"), Some("position")),
+            ("Temps (s)", Some("s"), Some("time")),
+            ("Fuerza (N)", Some("N"), Some("force")),
+            ("Desplazamiento (mm)", Some("mm"), Some("position")),
+            ("Tiempo (s)", Some("s"), Some("time")),
+            (
+                "Time series/Load (kN) (segment 2)",
+                Some("kN"),
+                Some("force"),
+            ),
+            ("Force/Untitled", None, Some("force")),
+            ("Temperatur (°)", Some("°"), None),
             ("remarks", None, None),
             ("column_1", None, None),
         ] {

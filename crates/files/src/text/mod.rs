@@ -6,6 +6,8 @@ pub mod column_title;
 pub mod columns;
 pub mod file_quantity;
 pub mod number;
+pub mod quote;
 pub mod statistic;
 pub mod table;
+pub mod toml_places;
 pub mod toml_source;

@@ -1,14 +1,17 @@
 //! A TOML text and the places in it, so that messages name file, line and key.
 
 use crate::error::{Error, Place};
-use crate::inputs::{check_piped, protect};
+use crate::inputs::{check_piped, check_regular, protect};
 use crate::text::file_quantity::QuantityText;
 use std::fmt::Display;
+use std::io::ErrorKind;
 use std::ops::Range;
 use std::path::{Path, PathBuf};
 use toml::Spanned;
+use toml::de::{DeTable, DeValue};
+use windfall_formats::stream::{is_stream, stream_bytes};
 use windfall_numerics::unit::nearest_name::nearest_names;
-use windfall_numerics::unit::quantity::parse_as;
+use windfall_numerics::unit::quantity::{LARGEST, parse_as};
 
 /// A TOML file in memory.
 pub struct TomlSource {
@@ -55,18 +58,36 @@ impl Needed {
 /// Reads a TOML file as text.
 ///
 /// # Errors
-/// The file is absent or unreadable or not UTF-8.
+/// The file is absent or unreadable, no regular file, or not UTF-8.
 pub fn read_source(path: &Path, advice: &str) -> Result<TomlSource, Error> {
+    check_regular(path)?;
+    read_text(path, advice)
+}
+
+/// [`read_source`] of a file that the command line names, which may be a stream.
+///
+/// # Errors
+/// The file is absent or unreadable, a device, or not UTF-8.
+pub fn read_piped_source(path: &Path, advice: &str) -> Result<TomlSource, Error> {
     check_piped(path)?;
+    read_text(path, advice)
+}
+
+fn read_text(path: &Path, advice: &str) -> Result<TomlSource, Error> {
     protect(path);
-    match std::fs::read_to_string(path) {
+    let text = match is_stream(path) {
+        true => stream_bytes(path).and_then(|bytes| {
+            let told = |error| std::io::Error::new(ErrorKind::InvalidData, error);
+            String::from_utf8(bytes.to_vec()).map_err(told)
+        }),
+        false => std::fs::read_to_string(path),
+    };
+    match text {
         Ok(text) => Ok(TomlSource {
             path: path.to_path_buf(),
             text,
         }),
-        Err(error) if error.kind() == std::io::ErrorKind::NotFound => {
-            Err(Error::absent(path, advice))
-        }
+        Err(error) if error.kind() == ErrorKind::NotFound => Err(Error::absent(path, advice)),
         Err(source) => Err(Error::access(path, "read", source)),
     }
 }
@@ -74,20 +95,81 @@ pub fn read_source(path: &Path, advice: &str) -> Result<TomlSource, Error> {
 /// Reads the file struct out of the text.
 ///
 /// # Errors
-/// The text is no TOML, holds an unknown key, or a value of the wrong type.
+/// The text is no TOML, holds an unknown key, a value of the wrong type, or a number that is
+/// not finite.
 pub fn parse_source<T: serde::de::DeserializeOwned>(source: &TomlSource) -> Result<T, Error> {
-    toml::from_str(&source.text).map_err(|error| {
+    let file = toml::from_str(&source.text).map_err(|error| {
         let span = error.span().unwrap_or(0..0);
-        let place = place_at(source, &span);
-        let message = error.message();
-        if message.starts_with("unknown field") {
-            return key_unknown(source, &span, message, place);
-        }
-        Error::CampaignSyntax {
-            place,
-            message: syntax_message(source, &span, message),
-        }
+        syntax_error(source, &span, error.message())
+    })?;
+    check_values(source)?;
+    Ok(file)
+}
+
+fn syntax_error(source: &TomlSource, span: &Range<usize>, message: &str) -> Error {
+    let place = place_at(source, span);
+    // How a date looks from inside.
+    let date = message.contains("$__toml_private");
+    if message.starts_with("unknown field") && !date {
+        return key_unknown(source, span, message, place);
+    }
+    let message = match date {
+        true => "invalid type: date, expected a table",
+        false => message,
+    };
+    Error::CampaignSyntax {
+        place,
+        message: syntax_message(source, span, message),
+    }
+}
+
+/// Refuses numbers that are none, and dates: no key of any file takes them.
+///
+/// # Errors
+/// The first NaN, infinity, number beyond the largest, or date.
+pub(crate) fn check_values(source: &TomlSource) -> Result<(), Error> {
+    // That the text is TOML was found before.
+    DeTable::parse(&source.text).map_or(Ok(()), |table| {
+        let mut values = table.get_ref().iter();
+        values.try_for_each(|(key, value)| check_value(source, ("the file", key.get_ref()), value))
     })
+}
+
+/// * `key`: table and key of the value
+fn check_value(
+    source: &TomlSource,
+    (table, key): (&str, &str),
+    value: &Spanned<DeValue>,
+) -> Result<(), Error> {
+    match value.get_ref() {
+        DeValue::Float(number) => {
+            let text = number.as_str();
+            let found = text.replace('_', "").parse::<f64>();
+            if found.is_ok_and(|number| number.abs() <= LARGEST) {
+                return Ok(());
+            }
+            let problem = "expected a number below 1e100".to_owned();
+            Err(invalid(source, &value.span(), (table, key), text, problem))
+        }
+        DeValue::Datetime(date) => {
+            let text = date.to_string();
+            let problem = "no key takes a date; a text stands in quotes".to_owned();
+            Err(invalid(source, &value.span(), (table, key), &text, problem))
+        }
+        DeValue::Array(values) => values
+            .iter()
+            .try_for_each(|value| check_value(source, (table, key), value)),
+        DeValue::Table(inner) => {
+            let name = match table {
+                "the file" => format!("[{key}]"),
+                outer => format!("{}.{key}]", outer.trim_end_matches(']')),
+            };
+            inner
+                .iter()
+                .try_for_each(|(key, value)| check_value(source, (&name, key.get_ref()), value))
+        }
+        _ => Ok(()),
+    }
 }
 
 /// Line of a place in the text.
@@ -151,18 +233,29 @@ pub fn positive_quantity(
     )
 }
 
-/// A standard uncertainty, zero where it is left out; SI.
+/// A quantity at or above zero that may be left out; SI.
 ///
 /// # Errors
 /// The text is no quantity of the unit, or below zero.
+pub fn quantity_from_zero(
+    source: &TomlSource,
+    value: Option<&Spanned<QuantityText>>,
+    needed: &Needed,
+) -> Result<Option<f64>, Error> {
+    let fits = |number| number >= 0.0;
+    bounded(source, value, needed, fits, "not be below zero")
+}
+
+/// A standard uncertainty, zero where it is left out; SI.
+///
+/// # Errors
+/// Those of [`quantity_from_zero`].
 pub fn uncertainty(
     source: &TomlSource,
     value: Option<&Spanned<QuantityText>>,
     needed: &Needed,
 ) -> Result<f64, Error> {
-    let fits = |number| number >= 0.0;
-    let number = bounded(source, value, needed, fits, "not be below zero")?;
-    Ok(number.unwrap_or(0.0))
+    Ok(quantity_from_zero(source, value, needed)?.unwrap_or(0.0))
 }
 
 fn bounded(

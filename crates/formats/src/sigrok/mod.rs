@@ -1,4 +1,3 @@
 //! sigrok logic-analyser captures.
 
 pub mod read;
-pub mod zip_entries;

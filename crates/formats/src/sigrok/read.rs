@@ -6,8 +6,8 @@
 use crate::contents::{ChannelContents, Contents, Format, Note, TimeBase};
 use crate::error::{Error, Place};
 use crate::reader::{Reader, Sink};
-use crate::sigrok::zip_entries::{Entry, open_archive, open_entry};
 use crate::source::Source;
+use crate::zip::entries::{Entry, open_archive, open_entry};
 use rawzip::ZipArchive;
 use std::io::Read;
 

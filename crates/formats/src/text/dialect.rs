@@ -94,7 +94,12 @@ pub fn find_dialect(lines: &[&str], options: &TextOptions) -> Result<Dialect, us
     dialect.rising_first = unnamed && count > 1 && first_rises(lines, &rows, &dialect);
     if options.decimal.is_none() && options.thousands.is_none() {
         let below = rows.iter().filter(|&&at| at >= first_row);
-        let below = below.filter_map(|&at| Some((at + 1, row(lines[at], separator, count)?)));
+        let below = below.filter_map(|&at| {
+            Some((
+                at + 1 + options.lines_above as usize,
+                row(lines[at], separator, count)?,
+            ))
+        });
         let other = if marks.decimal == b'.' { b',' } else { b'.' };
         if may_be_decimal(lines, &data, separator, other) {
             let doubt = doubtful_mark(below, marks.decimal, &dialect.kinds);

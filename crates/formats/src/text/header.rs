@@ -5,6 +5,7 @@ use crate::text::cells::{cells, row};
 use crate::text::number::bare;
 use crate::text::options::{Dialect, TextOptions};
 use crate::text::rows::Separator;
+use crate::text::spreadsheet::unguarded;
 
 /// Most header rows below a header line named by the user.
 const MOST_HEADER_ROWS: usize = 2;
@@ -12,7 +13,7 @@ const MOST_HEADER_ROWS: usize = 2;
 /// Takes names and units from the lines above the first row.
 pub fn name_columns(dialect: &mut Dialect, lines: &[&str], data: &[usize], options: &TextOptions) {
     let count = dialect.names.len();
-    let clean = |cells: Vec<&str>| cells.iter().map(|c| bare(c).to_owned()).collect::<Vec<_>>();
+    let clean = |cells: Vec<&str>| cells.iter().map(|c| name(c)).collect::<Vec<_>>();
     let fitting = |at: usize| row(lines[at], dialect.separator, count).map(clean);
     let above: Vec<usize> = data
         .iter()
@@ -91,11 +92,16 @@ pub fn name_columns(dialect: &mut Dialect, lines: &[&str], data: &[usize], optio
     dialect.preamble = preamble.collect();
 }
 
+/// A name as it was before windfall, or another program, kept it from being a formula.
+fn name(cell: &str) -> String {
+    unguarded(bare(cell)).to_owned()
+}
+
 /// Names from a line with more cells than columns, all filled.
 fn more_names(line: &str, dialect: &Dialect) -> Option<Vec<String>> {
     let names: Vec<String> = cells(line, dialect.separator)
         .iter()
-        .map(|c| bare(c).to_owned())
+        .map(|c| name(c))
         .collect();
     let count = dialect.names.len();
     let names_only = names.iter().all(|name| !name.is_empty());
@@ -143,10 +149,11 @@ fn is_unit_row(cells: &[String]) -> bool {
 }
 
 /// Units recognised without brackets.
-const UNITS: [&str; 40] = [
+const UNITS: [&str; 51] = [
     "s", "ms", "us", "µs", "min", "h", "sec", "N", "mN", "kN", "g", "kg", "m", "mm", "cm", "um",
     "µm", "m/s", "mm/s", "mm/min", "m/s^2", "m/s²", "m/s2", "V", "mV", "A", "mA", "Pa", "kPa",
-    "MPa", "bar", "rad", "deg", "°", "°C", "C", "K", "%", "Hz", "-",
+    "MPa", "bar", "gf", "kgf", "kp", "lbf", "ozf", "in", "inch", "mil", "ft", "in/min", "sec.",
+    "rad", "deg", "°", "°C", "C", "K", "%", "Hz", "-",
 ];
 
 fn bare_unit(cell: &str) -> String {

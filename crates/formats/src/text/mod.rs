@@ -2,21 +2,22 @@
 
 mod cells;
 mod date;
-mod decimal;
+pub(crate) mod decimal;
 mod dialect;
 pub mod encoding;
 mod ending;
 mod header;
-mod lines;
+pub(crate) mod lines;
 mod look;
 pub(crate) mod lvm;
 mod lvm_lines;
 mod measurements;
 mod midnight;
-mod missing;
+pub(crate) mod missing;
 pub(crate) mod number;
 pub mod options;
 mod power;
 pub(crate) mod read;
 pub mod rows;
+pub mod spreadsheet;
 pub(crate) mod table;

@@ -24,6 +24,8 @@ pub struct TextOptions {
     pub missing: Vec<String>,
     /// Number of lines at the end of the file that are not rows.
     pub footer: u64,
+    /// Lines of the file above the first byte, where a part of it is read: for messages.
+    pub lines_above: u64,
 }
 
 /// Detected columns and notation.

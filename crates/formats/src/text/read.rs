@@ -10,6 +10,7 @@ use crate::text::encoding::{Encoding, tell_encoding};
 use crate::text::ending::ending;
 use crate::text::lines::Lines;
 use crate::text::missing::MissingWords;
+use crate::text::number::number;
 use crate::text::options::{Dialect, TextOptions};
 use crate::text::rows::{ColumnKind, RowPlan, Separator};
 use crate::text::table::{Found, Table, read_table, read_whole_table, shortened};
@@ -28,6 +29,8 @@ pub struct TextReader {
     table: Table,
     /// File column of each channel.
     columns: Vec<usize>,
+    /// Whether names stand above most columns, and no numbers.
+    pub(crate) headed: bool,
 }
 
 impl TextReader {
@@ -62,7 +65,8 @@ impl TextReader {
             .map(|line| line.trim_end_matches('\r'))
             .collect();
         check_header_line(&source, options, plain.len())?;
-        let dialect = find_dialect(&plain, options).map_err(|at| no_table(&source, &plain, at))?;
+        let dialect = find_dialect(&plain, options)
+            .map_err(|at| no_table(&source, &plain, at, options.lines_above))?;
 
         let before: usize = lines[..dialect.first_row]
             .iter()
@@ -75,6 +79,7 @@ impl TextReader {
             encoding,
             newline,
         };
+        let headed = is_headed(&dialect);
         let (mut contents, columns, names) = contents(&dialect, encoding);
         contents.notes.extend(ending.notes);
         let table = Table {
@@ -89,7 +94,7 @@ impl TextReader {
                 short_rows: false,
             },
             lines,
-            first_line: dialect.first_row as u64 + 1,
+            first_line: options.lines_above + dialect.first_row as u64 + 1,
             names,
         };
         Ok(Self {
@@ -97,7 +102,15 @@ impl TextReader {
             contents,
             table,
             columns,
+            headed,
         })
+    }
+}
+
+impl TextReader {
+    /// Number of columns of the file, also of those that are left out.
+    pub(crate) fn columns(&self) -> usize {
+        self.table.names.len()
     }
 }
 
@@ -138,17 +151,23 @@ fn check_header_line(source: &Source, options: &TextOptions, lines: usize) -> Re
     }
 }
 
-fn no_table(source: &Source, lines: &[&str], at: usize) -> Error {
+fn no_table(source: &Source, lines: &[&str], at: usize, above: u64) -> Error {
     let line = lines.get(at).copied().unwrap_or_default();
     source.unknown(
         format!(
             "no table of numbers found (line {} reads \"{}\")",
-            at + 1,
+            at as u64 + 1 + above,
             shortened(line.trim())
         ),
         "expected lines of numbers with commas, semicolons, tabs or blanks between them; \
                  the settings separator, decimal and header_line say how to read an unusual one",
     )
+}
+
+fn is_headed(dialect: &Dialect) -> bool {
+    let named = dialect.names.iter().filter(|name| !name.is_empty());
+    let numbers = |name: &String| number(name, dialect.marks).is_some();
+    2 * named.clone().count() > dialect.names.len() && !dialect.names.iter().any(numbers)
 }
 
 fn contents(dialect: &Dialect, encoding: Encoding) -> (Contents, Vec<usize>, Vec<String>) {
@@ -270,12 +289,13 @@ pub fn is_time_name(name: &str) -> bool {
         .next()
         .unwrap_or(part)
         .trim();
-    // "time_s" and "Zeit (ms)" match, "Temperatur" does not.
+    // "time_s", "Zeit (ms)" and "Prüfzeit" match, "Temperatur" does not.
     let words = |text: &str| {
         TIME_WORDS.iter().any(|word| {
             text.split(|c: char| !c.is_alphanumeric() && c != '_')
                 .any(|w| {
                     w == *word
+                        || (*word == "zeit" && w.ends_with(word))
                         || w.strip_prefix(word)
                             .is_some_and(|rest| rest.starts_with('_'))
                 })

@@ -45,9 +45,9 @@ fn read(format: Format, bytes: &[u8]) -> Result<usize, Error> {
     Ok(counter.samples)
 }
 
-fn check(name: &str, format: Format, bytes: &[u8]) {
+pub fn check(name: &str, format: Format, bytes: &[u8]) {
     let read = std::panic::catch_unwind(|| read(format, bytes));
-    let read = read.unwrap_or_else(|_| panic!("{name}: panic on {bytes:?}"));
+    let read = read.unwrap_or_else(|_| panic!("{name}: panic on {}", bytes.escape_ascii()));
     match read {
         Ok(samples) => assert!(
             samples <= PER_BYTE * bytes.len(),
@@ -101,7 +101,9 @@ fn rejects_or_reads_files_with_any_byte_changed() {
 
 #[test]
 fn rejects_or_reads_files_with_absurd_sizes() {
-    for (name, format, bytes) in seeds() {
+    // Spreadsheets are archives like "zip"; numbers in them are texts, see damage_members.
+    let binary = |format| !matches!(format, Format::Xlsx | Format::Ods);
+    for (name, format, bytes) in seeds().into_iter().filter(|seed| binary(seed.1)) {
         for at in 0..bytes.len().saturating_sub(8) {
             for value in [
                 u64::MAX,

@@ -14,6 +14,189 @@ pub fn seeds() -> Vec<(&'static str, Format, Vec<u8>)> {
         ("uff58", Format::Uff58, uff(false)),
         ("uff58b", Format::Uff58, uff(true)),
         ("sigrok", Format::Sigrok, sigrok()),
+        ("xlsx", Format::Xlsx, archive(&xlsx_parts())),
+        ("ods", Format::Ods, archive(&ods_parts())),
+        ("zip", Format::Zip, archive(&zip_parts())),
+        (
+            "npy",
+            Format::Npy,
+            npy("[('t', '<f8'), ('F', '>i2', (2,)), ('s', '<U1')]", "2,", 32),
+        ),
+        ("npz", Format::Npy, archive(&npz_parts())),
+    ]
+}
+
+/// Names and contents of the members of an archive.
+pub type Parts = Vec<(&'static str, Vec<u8>)>;
+
+/// A zip archive of members that are stored as they are, with their checksums.
+pub fn archive(parts: &[(&str, Vec<u8>)]) -> Vec<u8> {
+    let mut bytes = Vec::new();
+    let mut archive = rawzip::ZipArchiveWriter::new(&mut bytes);
+    for (name, contents) in parts {
+        let (mut entry, config) = archive.new_file(name).start().unwrap();
+        let mut writer = config.wrap(&mut entry);
+        std::io::Write::write_all(&mut writer, contents).unwrap();
+        let (_, descriptor) = writer.finish().unwrap();
+        entry.finish(descriptor).unwrap();
+    }
+    archive.finish().unwrap();
+    bytes
+}
+
+/// An array of zeros.
+fn npy(descr: &str, shape: &str, bytes: usize) -> Vec<u8> {
+    let descr = match descr.starts_with('[') {
+        true => descr.to_owned(),
+        false => format!("'{descr}'"),
+    };
+    let header = format!("{{'descr': {descr}, 'fortran_order': False, 'shape': ({shape}), }}\n");
+    let length = (header.len() as u16).to_le_bytes();
+    le(&[
+        b"\x93NUMPY\x01\x00",
+        &length,
+        header.as_bytes(),
+        &vec![0; bytes],
+    ])
+}
+
+pub fn npz_parts() -> Parts {
+    vec![
+        ("a/b.npy", npy("<c8", "2, 2", 32)),
+        ("fs.npy", npy("<i4", "", 4)),
+    ]
+}
+
+/// A zip archive of one deflated member that declares a size.
+pub fn packed(name: &str, packed: &[u8], size: u32) -> Vec<u8> {
+    let lengths = le(&[
+        &[0; 4],
+        &(packed.len() as u32).to_le_bytes(),
+        &size.to_le_bytes(),
+    ]);
+    let name_length = (name.len() as u16).to_le_bytes();
+    let method = [0, 0, 0, 0, 8, 0, 0, 0, 0, 0];
+    let local = le(&[
+        b"PK\x03\x04",
+        &method,
+        &lengths,
+        &name_length,
+        &[0; 2],
+        name.as_bytes(),
+        packed,
+    ]);
+    let rest = le(&[&name_length, &[0; 16]]);
+    let central = le(&[
+        b"PK\x01\x02",
+        &[0; 2],
+        &method,
+        &lengths,
+        &rest,
+        name.as_bytes(),
+    ]);
+    let place = le(&[
+        &(central.len() as u32).to_le_bytes(),
+        &(local.len() as u32).to_le_bytes(),
+    ]);
+    le(&[
+        &local,
+        &central,
+        b"PK\x05\x06",
+        &[0; 4],
+        &[1, 0, 1, 0],
+        &place,
+        &[0; 2],
+    ])
+}
+
+/// A sheet with shared and inline texts, a date, an error, a formula and blank cells.
+pub fn xlsx_parts() -> Parts {
+    let main = "http://schemas.openxmlformats.org/spreadsheetml/2006/main";
+    let of = "http://schemas.openxmlformats.org/officeDocument/2006/relationships";
+    let package = "http://schemas.openxmlformats.org/package/2006/relationships";
+    let workbook = format!(
+        "<workbook xmlns=\"{main}\" xmlns:r=\"{of}\"><sheets><sheet name=\"a\" sheetId=\"1\" \
+         r:id=\"rId1\"/></sheets></workbook>"
+    );
+    let relations = |kind: &str, target: &str| {
+        format!(
+            "<Relationships xmlns=\"{package}\"><Relationship Id=\"rId1\" \
+             Type=\"{of}/{kind}\" Target=\"{target}\"/></Relationships>"
+        )
+    };
+    let sheet = format!(
+        "<worksheet xmlns=\"{main}\"><dimension ref=\"A1:C5\"/><sheetData>\
+         <row r=\"1\"><c r=\"A1\" t=\"s\"><v>0</v></c>\
+         <c r=\"B1\" t=\"inlineStr\"><is><t>F (N)</t></is></c>\
+         <c r=\"C1\" t=\"str\"><v>When</v></c></row>\
+         <row r=\"2\"><c r=\"A2\"><v>0.5</v></c><c r=\"B2\"><v>-1e3</v></c>\
+         <c r=\"C2\" s=\"1\"><v>45615.25</v></c></row>\
+         <row r=\"3\"><c r=\"A3\"><f>A2+1</f><v>1.5</v></c><c r=\"B3\" t=\"e\"><v>#N/A</v></c>\
+         <c r=\"C3\" s=\"1\"><v>45615.5</v></c></row>\
+         <row r=\"4\"><c r=\"A4\" t=\"s\"><v>1</v></c></row>\
+         <row r=\"5\"><c r=\"B5\" t=\"b\"><v>1</v></c></row></sheetData></worksheet>"
+    );
+    let strings = format!(
+        "<sst xmlns=\"{main}\" count=\"2\" uniqueCount=\"2\"><si><t>Zeit</t></si>\
+         <si><r><t>2,</t></r><r><t>25</t></r></si></sst>"
+    );
+    let styles = format!(
+        "<styleSheet xmlns=\"{main}\"><cellXfs count=\"2\"><xf numFmtId=\"0\"/>\
+         <xf numFmtId=\"22\" applyNumberFormat=\"1\"/></cellXfs></styleSheet>"
+    );
+    let rest = format!(
+        "<Relationships xmlns=\"{package}\"><Relationship Id=\"rId1\" Type=\"{of}/worksheet\" \
+         Target=\"worksheets/sheet1.xml\"/></Relationships>"
+    );
+    vec![
+        (
+            "_rels/.rels",
+            relations("officeDocument", "xl/workbook.xml").into(),
+        ),
+        ("xl/workbook.xml", workbook.into()),
+        ("xl/_rels/workbook.xml.rels", rest.into()),
+        ("xl/worksheets/sheet1.xml", sheet.into()),
+        ("xl/sharedStrings.xml", strings.into()),
+        ("xl/styles.xml", styles.into()),
+    ]
+}
+
+/// Two sheets, with repeated and covered cells, a remark, a date and an entity.
+pub fn ods_parts() -> Parts {
+    let contents = "<office:document-content><office:body><office:spreadsheet>\
+        <table:table table:name=\"a\"><table:table-column/><table:table-row>\
+        <table:table-cell office:value-type=\"string\"><text:p>t<text:s/>&amp;</text:p>\
+        </table:table-cell><table:covered-table-cell table:number-columns-repeated=\"2\"/>\
+        <table:table-cell office:value-type=\"string\"><office:annotation><text:p>no</text:p>\
+        </office:annotation><text:p>F (N)</text:p></table:table-cell></table:table-row>\
+        <table:table-row table:number-rows-repeated=\"2\"><table:table-cell \
+        office:value-type=\"float\" office:value=\"0.5\"/><table:table-cell \
+        table:number-columns-repeated=\"2\"/><table:table-cell office:value-type=\"time\" \
+        office:time-value=\"PT01H00M00.5S\"/></table:table-row>\
+        <table:table-row table:number-rows-repeated=\"9\"><table:table-cell \
+        table:number-columns-repeated=\"9\"/></table:table-row></table:table>\
+        <table:table table:name=\"b\"><table:table-row><table:table-cell \
+        office:value-type=\"float\" office:value=\"1\" table:number-columns-repeated=\"2\"/>\
+        <table:table-cell office:value-type=\"date\" office:date-value=\"2024-11-19T20:00:00\"/>\
+        </table:table-row></table:table></office:spreadsheet></office:body>\
+        </office:document-content>";
+    let kind: &[u8] = b"application/vnd.oasis.opendocument.spreadsheet";
+    vec![
+        ("mimetype", kind.to_vec()),
+        ("content.xml", contents.into()),
+    ]
+}
+
+/// Two tables, one of two segments, and what is no table.
+pub fn zip_parts() -> Parts {
+    vec![
+        (
+            "a.csv",
+            b"t (s),F (N)\n0,1\n1,2\n2,3\nt (s),F (N)\n0,1\n1,2\n2,3\n".to_vec(),
+        ),
+        ("meta/device.csv", b"property,value\nversion,1\n".to_vec()),
+        ("b/c.txt", "x;y\n1,5;2\n2,5;3\n".into()),
+        ("readme.md", b"nothing".to_vec()),
     ]
 }
 

@@ -71,4 +71,16 @@ impl Rig {
             Self::Carriage(rig) => rig.mass,
         }
     }
+
+    /// Velocity at the contact after a fall from the highest point of a pendulum,
+    /// r (4 m g l / I)^½; m/s. `None` where it has no limit.
+    pub fn largest_velocity(&self) -> Option<f64> {
+        match self {
+            Self::Pendulum(rig) => {
+                let energy = 4.0 * rig.mass * rig.gravity * rig.centre_of_mass;
+                (energy > 0.0).then(|| rig.arm * (energy / rig.inertia).sqrt())
+            }
+            Self::Carriage(_) => None,
+        }
+    }
 }

@@ -20,7 +20,7 @@ pub enum UnitError {
         suggestion: String,
     },
     /// The number is too large, or not finite in SI units.
-    #[error("\"{text}\" is not a finite number in SI units")]
+    #[error("\"{text}\" is no number below 1e100 in SI units")]
     NotFinite {
         /// What was to be read.
         text: String,
@@ -103,7 +103,7 @@ fn nearest_text(nearest: &[String]) -> String {
     match nearest.is_empty() {
         true => {
             "known are m, g, s, min, h, N, J, W, Pa, V, A, C, Hz, K, degC, rad, deg, rev, rpm, \
-                 count, line, g0, %, with SI prefixes p n u m c d h k M G"
+                 count, line, g0, %, with SI prefixes p n u m c d h k M G; gf, kgf, lbf, ozf, in, mil, ft"
                 .into()
         }
         false => format!("did you mean {}?", nearest.join(" or ")),

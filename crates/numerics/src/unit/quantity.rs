@@ -55,11 +55,15 @@ pub fn parse_quantity(text: &str) -> Result<Quantity, UnitError> {
             dimension: unit.dimension,
         }
     };
-    match quantity.value.is_finite() {
+    match quantity.value.abs() <= LARGEST {
         true => Ok(quantity),
         false => Err(UnitError::NotFinite { text: text.into() }),
     }
 }
+
+/// The largest number of SI units that is read: what is beyond it is a slip, and its square
+/// would be infinite.
+pub const LARGEST: f64 = 1e100;
 
 /// Reads a quantity of the dimension of `unit` and returns its SI value.
 ///
@@ -151,7 +155,7 @@ fn parse_number(text: &str) -> Result<(f64, usize), UnitError> {
         .map_err(|_| UnitError::MissingNumber {
             text: text.trim().into(),
         })?;
-    match number.is_finite() {
+    match number.abs() <= LARGEST {
         true => Ok((number, end)),
         false => Err(UnitError::NotFinite {
             text: text.trim().into(),

@@ -53,11 +53,13 @@ const fn plain(
 
 const NONE: [i8; 8] = [0; 8];
 const TIME: [i8; 8] = [0, 0, 1, 0, 0, 0, 0, 0];
+const LENGTH: [i8; 8] = [1, 0, 0, 0, 0, 0, 0, 0];
+const FORCE: [i8; 8] = [1, 1, -2, 0, 0, 0, 0, 0];
 const ANGLE: [i8; 8] = [0, 0, 0, 0, 0, 1, 0, 0];
 
 /// Every unit that can be written. Spellings are looked up here before a prefix
 /// is split off, so "min" is a minute and "m" never milli alone.
-pub const UNIT_SYMBOLS: [UnitSymbol; 25] = [
+pub const UNIT_SYMBOLS: [UnitSymbol; 32] = [
     plain(&["kg"], 1.0, 1.0, [0, 1, 0, 0, 0, 0, 0, 0]),
     si(&["m"], [1, 0, 0, 0, 0, 0, 0, 0]),
     UnitSymbol {
@@ -106,6 +108,20 @@ pub const UNIT_SYMBOLS: [UnitSymbol; 25] = [
         1.0,
         [1, 0, -2, 0, 0, 0, 0, 0],
     ),
+    // Units of testing machines. Source: NIST SP 811 (2008), appendix B.8: all are exact, the
+    // pound-force as 0.45359237 kg times standard gravity.
+    plain(&["gf"], STANDARD_GRAVITY, 1000.0, FORCE),
+    plain(&["kgf", "kp"], STANDARD_GRAVITY, 1.0, FORCE),
+    plain(&["lbf"], 44_482_216_152_605.0, 1e13, FORCE),
+    plain(&["ozf"], 44_482_216_152_605.0, 16e13, FORCE),
+    plain(
+        &["in", "inch", "inches", "\"", "\u{2033}"],
+        127.0,
+        5000.0,
+        LENGTH,
+    ),
+    plain(&["mil", "mils", "thou"], 127.0, 5e6, LENGTH),
+    plain(&["ft", "foot", "feet"], 381.0, 1250.0, LENGTH),
     plain(&["bar"], 1e5, 1.0, [-1, 1, -2, 0, 0, 0, 0, 0]),
     plain(&["%", "percent"], 1.0, 100.0, NONE),
     plain(&["1"], 1.0, 1.0, NONE),

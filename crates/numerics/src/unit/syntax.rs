@@ -124,7 +124,7 @@ impl Cursor<'_> {
         if self.take_if(|c| c == '1').is_some() {
             return Ok(Unit::ONE);
         }
-        self.take_while(|c| c.is_alphabetic() || matches!(c, '%' | '°'));
+        self.take_while(|c| c.is_alphabetic() || matches!(c, '%' | '°' | '"' | '\u{2033}'));
         // The zero of g0 belongs to the symbol.
         if &self.text[offset..self.at] == "g" && self.text[self.at..].starts_with('0') {
             self.at += 1;

@@ -10,6 +10,7 @@ use windfall_campaign::impacts::mass::{RigFound, find_rig};
 use windfall_campaign::pipeline::evaluate::failure;
 use windfall_campaign::pipeline::request::{FitRequest, apply_request};
 use windfall_campaign::recording::extract::extract_recording;
+use windfall_campaign::result::counted::left_out_under_all_laws;
 use windfall_campaign::result::fit_outcome::impact_outcome;
 use windfall_campaign::result::outcome::ImpactOutcome;
 use windfall_campaign::settings::model::{ImpactCampaign, ImpactEntry};
@@ -28,6 +29,7 @@ use windfall_identify::compare::ranking::{
 use windfall_identify::error::Error as IdentifyError;
 use windfall_identify::fit::problem::LawProblem;
 use windfall_identify::fit::result::Fit;
+use windfall_signal::impact::Impact;
 
 /// Laws that are compared when none are named: one of each form.
 pub const COMPARED: [&str; 6] = [
@@ -75,8 +77,14 @@ pub fn rank_campaign(
     })
 }
 
-/// What one recording gives: the impact, its fits, or why there are none.
-type Fitted = Result<(windfall_signal::impact::Impact, Vec<Option<Fit>>), FailureOutcome>;
+/// What one recording gives.
+struct Fitted {
+    impact: Impact,
+    /// A fit for each law, where there is one.
+    fits: Vec<Option<Fit>>,
+    /// What they say, for the rule which impacts count.
+    outcomes: Vec<ImpactOutcome>,
+}
 
 fn rank(
     campaign: &ImpactCampaign,
@@ -94,14 +102,20 @@ fn rank(
         fits(campaign, &campaign.shared.entries[item], &rig, &problems)
     })?;
     let (mut impacts, mut fitted, mut entries, mut failed) = (vec![], vec![], vec![], vec![]);
+    let outcomes = results.iter().flatten().flat_map(|own| &own.outcomes);
+    let mut outcomes: Vec<ImpactOutcome> = outcomes.cloned().collect();
+    let left_out = left_out_under_all_laws(&campaign.shared, &rig.rig, &mut outcomes);
     for (entry, result) in campaign.shared.entries.iter().zip(results) {
-        match result {
-            Ok((impact, fits)) => {
+        let out = left_out.iter().find(|own| own.id == entry.id);
+        match (result, out) {
+            (Ok(own), None) => {
+                let impact = own.impact;
                 impacts.push(LeveledImpact { impact, level: 0 });
-                fitted.push(fits);
+                fitted.push(own.fits);
                 entries.push(entry);
             }
-            Err(failure) => failed.push(failure),
+            (Ok(_), Some(reasons)) => failed.push(reasons.clone()),
+            (Err(failure), _) => failed.push(failure),
         }
     }
     let mut findings = rig.findings.clone();
@@ -177,16 +191,26 @@ fn fits(
     entry: &ImpactEntry,
     rig: &RigFound,
     problems: &[LawProblem],
-) -> Fitted {
+) -> Result<Fitted, FailureOutcome> {
     let mass = Some(rig.rig.effective_mass());
-    let (impact, _) = extract_recording(campaign, entry, mass)
+    let (impact, findings) = extract_recording(campaign, entry, mass)
         .map_err(|error| failure(entry, None, error.to_string()))?;
     let fits = fits_of_impact(&impact, &rig.rig, problems, &campaign.fit.options);
     if fits.iter().all(Option::is_none) {
         let message = "none of the laws could be fitted".to_owned();
         return Err(failure(entry, None, message));
     }
-    Ok((impact, fits))
+    let of_law = problems.iter().zip(&fits).filter_map(|(problem, fit)| {
+        let outcome = impact_outcome(entry, &impact, &findings, fit.as_ref()?, problem, &rig.rig);
+        let group = campaign.shared.group_of(entry);
+        Some(ImpactOutcome { group, ..outcome })
+    });
+    let outcomes = of_law.collect();
+    Ok(Fitted {
+        impact,
+        fits,
+        outcomes,
+    })
 }
 
 /// Levels from the column of impacts.csv, else from the velocities.

@@ -176,8 +176,11 @@ pub fn text_of_volumes(outcome: &BruiseVolumes) -> String {
 }
 
 /// Volumes as CSV.
-pub fn csv_of_volumes(outcome: &BruiseVolumes) -> String {
-    format!("{}\n{}\n", ADDED.join(","), cells_of(outcome).join(","))
+///
+/// # Errors
+/// None in practice: every cell can be written.
+pub fn csv_of_volumes(outcome: &BruiseVolumes) -> Result<String, Error> {
+    csv_text(&ADDED, [cells_of(outcome).to_vec()])
 }
 
 /// Cells of the columns of [`ADDED`]; mm³.

@@ -52,7 +52,7 @@ pub fn bruise_of(
         model.law = VolumeLaw::Regression(own.regression.clone());
         model.least_volume = LEAST_PART * smallest;
     }
-    if let Some(volume) = table.optional(&file.least_volume, "least_volume", "m^3")? {
+    if let Some(volume) = table.at_least_zero(&file.least_volume, "least_volume", "m^3")? {
         model.least_volume = volume;
     }
     Ok(BruisePlan {
@@ -84,9 +84,10 @@ fn predictor_of(table: &Section, file: &BruiseFile) -> Result<Predictor, Error> 
 }
 
 fn limits_of(table: &Section, file: &BruiseFile) -> Result<Vec<f64>, Error> {
-    let limits = file.limits.iter();
-    let limits = limits.map(|limit| table.given(limit, "limits", "m^3"));
-    let limits: Vec<f64> = limits.collect::<Result<_, _>>()?;
+    let mut limits = Vec::new();
+    for limit in &file.limits {
+        limits.extend(table.at_least_zero(&Some(limit.clone()), "limits", "m^3")?);
+    }
     match limits.is_empty() {
         true => Err(table.lacks(
             "limits",
@@ -130,13 +131,16 @@ fn threshold_of(
         return Err(table.refused(&given.span(), "susceptibility", text, problem));
     }
     let or_none =
-        |value, key, unit| Ok::<f64, Error>(table.optional(value, key, unit)?.unwrap_or(0.0));
-    let meaning = "a coefficient of the bruise";
-    let model = BruiseModel {
+        |value, key, unit| Ok::<f64, Error>(table.at_least_zero(value, key, unit)?.unwrap_or(0.0));
+    let needed = |value, key, unit, example| {
+        let found = table.at_least_zero(value, key, unit)?;
+        found.ok_or_else(|| table.lacks(key, "a coefficient of the bruise", example))
+    };
+    Ok(BruiseModel {
         predictor,
         threshold: match by_regression {
             true => or_none(&file.threshold, "threshold", unit)?,
-            false => table.needed(&file.threshold, ("threshold", unit), meaning, threshold)?,
+            false => needed(&file.threshold, "threshold", unit, threshold)?,
         },
         threshold_sd: or_none(&file.threshold_sd, "threshold_sd", unit)?,
         threshold_between_fruit: or_none(
@@ -147,29 +151,13 @@ fn threshold_of(
         law: VolumeLaw::Proportional {
             susceptibility: match by_regression {
                 true => 0.0,
-                false => {
-                    let key = ("susceptibility", per);
-                    table.needed(&file.susceptibility, key, meaning, volume)?
-                }
+                false => needed(&file.susceptibility, "susceptibility", per, volume)?,
             },
             sd: or_none(&file.susceptibility_sd, "susceptibility_sd", per)?,
         },
         same_spot: SameSpot::Largest,
         least_volume: 0.0,
-    };
-    let mut numbers = vec![
-        model.threshold,
-        model.threshold_sd,
-        model.threshold_between_fruit,
-    ];
-    if let VolumeLaw::Proportional { susceptibility, sd } = model.law {
-        numbers.extend([susceptibility, sd]);
-    }
-    if numbers.iter().any(|own| !(*own >= 0.0 && own.is_finite())) {
-        let problem = "coefficients of bruises must be at or above zero";
-        return Err(table.refused(&table.at, "threshold", format!("{numbers:?}"), problem));
-    }
-    Ok(model)
+    })
 }
 
 fn regression_of(
@@ -184,7 +172,12 @@ fn regression_of(
     let mut known: Vec<String> = every.cloned().collect();
     known.sort();
     known.dedup();
-    let path = source.path.with_file_name(name.get_ref());
+    let table = Section {
+        source,
+        name: TABLE,
+        at: 0..0,
+    };
+    let path = table.named_file("regression", name)?;
     let plan = read_regression(&path, &file.columns, &known)?;
     for own in fruit {
         for property in plan.properties() {

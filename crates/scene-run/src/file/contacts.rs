@@ -69,12 +69,12 @@ fn contact_of(table: &Section, file: &ContactFile, materials: &[String]) -> Resu
     let [a, b] = between.get_ref();
     let own = |name| table.material(&between.span(), "between", name, materials);
     let (a, b) = (own(a)?, own(b)?);
-    let mut seen = table.optional(&file.effective_radius, "effective_radius", "m")?;
+    let mut seen = table.above_zero(&file.effective_radius, "effective_radius", "m")?;
     let mut card = None;
     let mut spread = None;
     let law = match (&file.card, &file.law) {
         (Some(name), None) => {
-            let path = table.source.path.with_file_name(name.get_ref());
+            let path = table.named_file("card", name)?;
             let own = read_card(&path)?;
             let law = law_of_card(&own, &path)?;
             seen = seen.or(own.contact.as_ref().map(|contact| contact.effective_radius));
@@ -92,26 +92,35 @@ fn contact_of(table: &Section, file: &ContactFile, materials: &[String]) -> Resu
             return Err(table.lacks("card", "a law card, or a law", example));
         }
     };
-    let number = |value: &Option<Spanned<f64>>| value.as_ref().map(|own| *own.get_ref());
-    let tangential_ratio = match (number(&file.tangential_ratio), number(&file.poisson)) {
-        (Some(ratio), None) => ratio,
-        (None, poisson) => mindlin_ratio(poisson.unwrap_or(DEFAULT_POISSON)),
-        (Some(_), Some(poisson)) => {
-            let problem = "poisson and tangential_ratio say the same: leave one out";
-            return Err(table.refused(&table.at, "poisson", poisson, problem));
-        }
+    let or = |value, key, usual: f64| {
+        Ok::<f64, Error>(table.number_from_zero(value, key)?.unwrap_or(usual))
     };
     let interaction = Interaction {
         law,
         effective_radius: seen,
         spread,
-        friction: number(&file.friction).unwrap_or(0.0),
-        tangential_ratio,
-        tangential_damping: number(&file.tangential_damping).unwrap_or(1.0),
+        friction: or(&file.friction, "friction", 0.0)?,
+        tangential_ratio: tangential_ratio(table, file)?,
+        tangential_damping: or(&file.tangential_damping, "tangential_damping", 1.0)?,
         annuli: annuli(table, file)?,
-        rolling: number(&file.rolling).unwrap_or(0.0),
+        rolling: or(&file.rolling, "rolling", 0.0)?,
     };
     Ok(((a.min(b), a.max(b)), interaction, card))
+}
+
+/// Tangential over normal stiffness, or what Poisson's ratio makes of it.
+fn tangential_ratio(table: &Section, file: &ContactFile) -> Result<f64, Error> {
+    let ratio = table.number_from_zero(&file.tangential_ratio, "tangential_ratio")?;
+    let Some(poisson) = &file.poisson else {
+        return Ok(ratio.unwrap_or_else(|| mindlin_ratio(DEFAULT_POISSON)));
+    };
+    let value = *poisson.get_ref();
+    let problem = match ratio {
+        Some(_) => "poisson and tangential_ratio say the same: leave one out",
+        None if (-1.0..=0.5).contains(&value) => return Ok(mindlin_ratio(value)),
+        None => "Poisson's ratio lies between -1 and 0.5",
+    };
+    Err(table.refused(&poisson.span(), "poisson", value, problem))
 }
 
 fn annuli(table: &Section, file: &ContactFile) -> Result<usize, Error> {

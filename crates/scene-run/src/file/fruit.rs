@@ -33,18 +33,17 @@ pub fn fruit_of(
         return Err(table.refused(&count.span(), "count", count.get_ref(), problem));
     }
     let example = "diameter = \"75 mm\"";
-    let diameter = table.needed(&file.diameter, ("diameter", "m"), "mean diameter", example)?;
-    let sd = table
-        .optional(&file.diameter_sd, "diameter_sd", "m")?
-        .unwrap_or(0.0);
-    let example = "density = \"840 kg/m^3\"";
-    let density = table.needed(&file.density, ("density", "kg/m^3"), "density", example)?;
-    if !(diameter > 3.0 * sd && sd >= 0.0 && density > 0.0) {
-        let problem = "diameter and density must be above zero, and diameter_sd less than a third \
-                       of the diameter";
-        let text = format!("{diameter} m, {sd} m, {density} kg/m^3");
-        return Err(table.refused(&table.at, "diameter", text, problem));
+    let diameter = table.above_zero(&file.diameter, "diameter", "m")?;
+    let diameter = diameter.ok_or_else(|| table.lacks("diameter", "mean diameter", example))?;
+    let sd = table.at_least_zero(&file.diameter_sd, "diameter_sd", "m")?;
+    let sd = sd.unwrap_or(0.0);
+    if let (Some(given), true) = (&file.diameter_sd, diameter <= 3.0 * sd) {
+        let problem = format!("it must be less than a third of the diameter, {diameter} m");
+        return Err(table.refused(&given.span(), "diameter_sd", given.get_ref(), problem));
     }
+    let example = "density = \"840 kg/m^3\"";
+    let density = table.above_zero(&file.density, "density", "kg/m^3")?;
+    let density = density.ok_or_else(|| table.lacks("density", "density", example))?;
     let kind = FruitKind {
         material: own,
         count: *count.get_ref(),
@@ -106,7 +105,8 @@ const MOST_SPHERES: usize = 99;
 
 /// How fruit of a kind come.
 fn source_of(table: &Section, file: &FruitFile) -> Result<Source, Error> {
-    let seconds = |value, key| Ok::<f64, Error>(table.optional(value, key, "s")?.unwrap_or(0.0));
+    let seconds =
+        |value, key| Ok::<f64, Error>(table.at_least_zero(value, key, "s")?.unwrap_or(0.0));
     Ok(match (&file.lattice, &file.pour, &file.drop, &file.tree) {
         (Some(own), None, None, None) => Source::Lattice {
             low: own.get_ref().low,

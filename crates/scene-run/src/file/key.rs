@@ -1,8 +1,11 @@
 //! What readers of scene.toml and writers of its results share.
 
+use std::fmt::Display;
 use std::ops::Range;
+use std::path::PathBuf;
 use toml::Spanned;
 use toml::de::{DeTable, DeValue};
+use windfall_files::confined::named_beside;
 use windfall_files::error::Error;
 use windfall_files::text::file_quantity::QuantityText;
 use windfall_files::text::toml_source::{TomlSource, invalid, place_at, suggestion};
@@ -74,6 +77,9 @@ fn check_value(source: &TomlSource, key: &str, value: &Spanned<DeValue>) -> Resu
     }
 }
 
+/// What is said of a number that may be zero.
+const BELOW_ZERO: &str = "it must not be below zero";
+
 /// A table of a scene while it is read.
 #[derive(Clone)]
 pub struct Section<'a> {
@@ -112,21 +118,56 @@ impl Section<'_> {
         given.transpose()
     }
 
-    /// A quantity that must be there; in SI.
-    ///
-    /// * `meaning`, `example`: for the message where it is left out
-    ///
-    /// # Errors
-    /// It is left out, or as [`Section::given`].
-    pub fn needed(
+    /// A quantity above zero that may be left out; in SI.
+    pub fn above_zero(
         &self,
         value: &Option<Spanned<QuantityText>>,
-        (key, unit): (&'static str, &str),
-        meaning: &'static str,
-        example: &'static str,
-    ) -> Result<f64, Error> {
+        key: &str,
+        unit: &str,
+    ) -> Result<Option<f64>, Error> {
         let found = self.optional(value, key, unit)?;
-        found.ok_or_else(|| self.lacks(key, meaning, example))
+        self.that(
+            value,
+            key,
+            (found, |own| own > 0.0),
+            "it must be above zero",
+        )
+    }
+
+    /// A quantity at or above zero that may be left out; in SI.
+    pub fn at_least_zero(
+        &self,
+        value: &Option<Spanned<QuantityText>>,
+        key: &str,
+        unit: &str,
+    ) -> Result<Option<f64>, Error> {
+        let found = self.optional(value, key, unit)?;
+        self.that(value, key, (found, |own| own >= 0.0), BELOW_ZERO)
+    }
+
+    /// A number at or above zero that may be left out.
+    pub fn number_from_zero(
+        &self,
+        value: &Option<Spanned<f64>>,
+        key: &str,
+    ) -> Result<Option<f64>, Error> {
+        let found = value.as_ref().map(|own| *own.get_ref());
+        self.that(value, key, (found, |own| own >= 0.0), BELOW_ZERO)
+    }
+
+    fn that<T: Display>(
+        &self,
+        value: &Option<Spanned<T>>,
+        key: &str,
+        (found, fits): (Option<f64>, fn(f64) -> bool),
+        problem: &str,
+    ) -> Result<Option<f64>, Error> {
+        match (value, found) {
+            (Some(value), Some(number)) if !fits(number) => {
+                Err(self.refused(&value.span(), key, value.get_ref(), problem))
+            }
+            _ => Ok(found),
+        }
     }
 
     /// The error of a value that is left out.
@@ -150,6 +191,20 @@ impl Section<'_> {
     ) -> Error {
         let key = (self.name, key);
         invalid(self.source, at, key, &text.to_string(), problem.into())
+    }
+
+    /// The path of a file that the table names, beside its own file.
+    ///
+    /// # Errors
+    /// It lies elsewhere, is not there, or is no regular file.
+    pub fn named_file(&self, key: &str, name: &Spanned<String>) -> Result<PathBuf, Error> {
+        let text = name.get_ref();
+        let wrong = |problem: String| self.refused(&name.span(), key, text, problem);
+        let path = named_beside(&self.source.path, text).map_err(wrong)?;
+        match path.exists() {
+            true => Ok(path),
+            false => Err(wrong(format!("there is no file {}", path.display()))),
+        }
     }
 
     /// The number of a material.

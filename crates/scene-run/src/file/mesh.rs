@@ -26,7 +26,7 @@ pub struct MeshFile {
     #[serde(default, rename = "move")]
     pub shift: [f64; 3],
     /// Whether it must be closed, or is open on purpose.
-    pub closed: Option<bool>,
+    pub closed: Option<Spanned<bool>>,
 }
 
 /// `turn`
@@ -63,7 +63,7 @@ pub fn mesh_of(
         Some(turn) => turn_of(table, turn)?,
         None => turn_about([0.0, 0.0, 1.0], 0.0),
     };
-    let read = read_stl(&table.source.path.with_file_name(name))?;
+    let read = read_stl(&table.named_file("mesh file", &file.file)?)?;
     let mut triangles = read.map_err(|problem| refused("mesh file", problem.to_string()))?;
     triangles
         .as_flattened_mut()
@@ -89,13 +89,15 @@ pub fn mesh_of(
         .as_flattened_mut()
         .iter_mut()
         .for_each(place);
-    if file.closed == Some(true)
+    let closed = file.closed.as_ref();
+    if let Some(asked) = closed.filter(|asked| *asked.get_ref())
         && let Some(open) = openness(&surface.flaws)
     {
         let problem = format!("it must be closed, but {open}");
-        return Err(refused("mesh closed", problem));
+        return Err(table.refused(&asked.span(), "mesh closed", true, problem));
     }
-    findings.extend(findings_of(&surface.flaws, wall, name, file.closed));
+    let closed = closed.map(|asked| *asked.get_ref());
+    findings.extend(findings_of(&surface.flaws, wall, name, closed));
     Ok(Shape::Mesh {
         triangles: surface.triangles,
     })

@@ -17,7 +17,7 @@ use windfall_campaign::settings::rig::STANDARD_GRAVITY;
 use windfall_cards::law_card::LawCard;
 use windfall_files::error::{Error, Place};
 use windfall_files::found::FindingOutcome;
-use windfall_files::text::toml_source::{TomlSource, parse_source, place_at, read_source};
+use windfall_files::text::toml_source::{TomlSource, parse_source, place_at, read_piped_source};
 use windfall_scene::scene::{Air, Scene, Sink};
 use windfall_scene::shape::wall::Wall;
 use windfall_scene::vector::{Vector, scaled};
@@ -62,7 +62,7 @@ pub struct ScenePlan {
 /// The file cannot be read, says something that cannot be, or lacks what is needed; the
 /// message names file, line and key.
 pub fn read_scene(path: &Path) -> Result<ScenePlan, Error> {
-    scene_of(&read_source(
+    scene_of(&read_piped_source(
         path,
         "`windfall new scene DIR` writes a template",
     )?)
@@ -187,16 +187,15 @@ fn timing(table: &Section, file: &SceneFile) -> Result<Timing, Error> {
     let step = file.scene.time_step.as_ref();
     let step = step.filter(|step| step.get_ref().0.trim() != "auto");
     let given = step.map(|own| (place_at(source, &own.span()), own.get_ref().0.clone()));
-    let step = step.map(|own| table.given(own, "time_step", "s"));
-    let step = step.transpose()?.unwrap_or(0.0);
-    let end = table.optional(&file.scene.end, "end", "s")?;
-    let Some(end) = end.filter(|end| *end > 0.0 && end.is_finite()) else {
-        let meaning = "when the scene ends, above zero";
-        return Err(table.lacks("end", meaning, "end = \"3 s\""));
+    let step = table
+        .above_zero(&step.cloned(), "time_step", "s")?
+        .unwrap_or(0.0);
+    let Some(end) = table.above_zero(&file.scene.end, "end", "s")? else {
+        return Err(table.lacks("end", "when the scene ends", "end = \"3 s\""));
     };
-    let error = table.optional(&file.scene.time_step_error, "time_step_error", "1")?;
+    let error = table.above_zero(&file.scene.time_step_error, "time_step_error", "1")?;
     let least = &file.events.least_peak_force;
-    let least = section(source, "[events]").optional(least, "least_peak_force", "N")?;
+    let least = section(source, "[events]").at_least_zero(least, "least_peak_force", "N")?;
     Ok(Timing {
         step,
         given,
@@ -244,17 +243,25 @@ fn gravity(table: &Section, file: Option<&Spanned<GravityFile>>) -> Result<Vecto
     match file.get_ref() {
         GravityFile::Vector(own) => Ok(*own),
         GravityFile::Down(text) => {
-            let text = Spanned::new(file.span(), text.clone());
-            let size = table.given(&text, "gravity", "m/s^2")?;
-            Ok(scaled([0.0, 0.0, -1.0], size))
+            let text = Some(Spanned::new(file.span(), text.clone()));
+            let size = table.optional(&text, "gravity", "m/s^2")?.unwrap_or(0.0);
+            match size >= 0.0 {
+                true => Ok(scaled([0.0, 0.0, -1.0], size)),
+                false => {
+                    let problem = "a number is the size of a gravity that points down; another \
+                                   direction is a vector, such as [0, 0, 9.8]";
+                    Err(table.refused(&file.span(), "gravity", size, problem))
+                }
+            }
         }
     }
 }
 
 fn air_of(source: &TomlSource, air: &Spanned<AirFile>) -> Result<Air, Error> {
     let file = air.get_ref();
-    let density = section(source, "[air]").optional(&file.density, "density", "kg/m^3")?;
-    let drag = file.drag_coefficient.as_ref().map(|own| *own.get_ref());
+    let table = section(source, "[air]");
+    let density = table.at_least_zero(&file.density, "density", "kg/m^3")?;
+    let drag = table.number_from_zero(&file.drag_coefficient, "drag_coefficient")?;
     Ok(Air {
         density: density.unwrap_or(1.2),
         drag_coefficient: drag.unwrap_or(0.47),

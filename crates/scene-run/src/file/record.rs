@@ -32,12 +32,6 @@ pub fn record_of(source: &TomlSource, record: &RecordFile) -> Result<RecordPlan,
         name: "[record]",
         at: 0..0,
     };
-    let interval = table.optional(&record.frames, "frames", "s")?;
-    if let (Some(value), Some(text)) = (interval, &record.frames)
-        && !(value > 0.0 && value.is_finite())
-    {
-        let problem = "it must be a time above zero, such as \"20 ms\"";
-        return Err(table.refused(&text.span(), "frames", &text.get_ref().0, problem));
-    }
-    Ok(RecordPlan { frames: interval })
+    let frames = table.above_zero(&record.frames, "frames", "s")?;
+    Ok(RecordPlan { frames })
 }

@@ -9,6 +9,7 @@ use std::path::Path;
 use windfall_files::error::Error;
 use windfall_files::option_value::unusable;
 use windfall_files::text::column_title::column_title;
+use windfall_files::text::toml_places::invalid_at;
 use windfall_files::text::toml_source::{TomlSource, parse_source, read_source, suggestion};
 use windfall_numerics::unit::quantity::{parse_as, parse_unit};
 use windfall_scene::bruise::regression::{Regression, Response};
@@ -151,38 +152,75 @@ pub fn read_regression(
     let advice = "write it with `windfall regress TABLE --formula … --format json`";
     let source = read_source(path, advice)?;
     let file = file_of(&source)?;
-    let wrong = |problem: String| unusable(path.display().to_string(), problem);
-    let mut columns = Vec::new();
+    let wrong = |keys: &[&str]| {
+        let keys: Vec<String> = keys.iter().map(|key| (*key).to_owned()).collect();
+        let source = &source;
+        move |problem: String| {
+            let keys: Vec<&str> = keys.iter().map(String::as_str).collect();
+            invalid_at(source, &keys, problem)
+        }
+    };
+    let mut names = Vec::new();
     let mut terms = Vec::new();
-    for term in &file.terms {
-        terms.push(expression_of(&term.term, &mut columns).map_err(wrong)?);
-    }
-    let (response, unit) = response_of(&file).map_err(wrong)?;
-    let (between_fruit, residual) = scatter_of(&file).map_err(wrong)?;
-    let columns: Result<Vec<ColumnPlan>, String> = columns
-        .into_iter()
-        .map(|name| {
-            let range = file.ranges.iter().find(|own| own.column == name);
-            let source = source_of(&name, named, properties)?;
-            Ok(ColumnPlan {
+    let mut columns = Vec::new();
+    for (number, term) in file.terms.iter().enumerate() {
+        let at = wrong(&["terms", &number.to_string(), "term"]);
+        terms.push(expression_of(&term.term, &mut names).map_err(&at)?);
+        for name in &names[columns.len()..] {
+            let range = file.ranges.iter().find(|own| own.column == *name);
+            columns.push(ColumnPlan {
                 range: range.map(|own| [own.low, own.high]),
-                name,
-                source,
-            })
-        })
-        .collect();
+                name: name.clone(),
+                source: source_of(name, named, properties).map_err(&at)?,
+            });
+        }
+    }
+    let said = match file.volume_unit {
+        Some(_) => "volume_unit",
+        None => "response",
+    };
+    let (response, unit) = response_of(&file).map_err(wrong(&[said]))?;
+    if file.sigma < 0.0 {
+        let problem = "a standard deviation is not below zero".to_owned();
+        return Err(wrong(&["sigma"])(problem));
+    }
+    let (between_fruit, residual) = scatter_of(&file).map_err(wrong(&["variances"]))?;
+    check_estimates(&source, &file)?;
     Ok(RegressionPlan {
         regression: Regression {
             response,
             unit,
             coefficients: file.terms.iter().map(|own| own.estimate).collect(),
-            factor: factor_of(&file).map_err(wrong)?,
+            factor: factor_of(&file).map_err(wrong(&["covariance"]))?,
             between_fruit,
             residual,
         },
         terms,
-        columns: columns.map_err(wrong)?,
+        columns,
     })
+}
+
+/// Estimates and their standard errors are numbers, and errors not below zero.
+fn check_estimates(source: &TomlSource, file: &RegressionFile) -> Result<(), Error> {
+    if file.terms.is_empty() {
+        return Err(invalid_at(
+            source,
+            &["terms"],
+            "at least one term is needed",
+        ));
+    }
+    for (number, term) in file.terms.iter().enumerate() {
+        let (key, problem) = match () {
+            () if !term.estimate.is_finite() => ("estimate", "expected a finite number"),
+            () if !(term.se >= 0.0 && term.se.is_finite()) => {
+                ("se", "expected a finite number, not below zero")
+            }
+            () => continue,
+        };
+        let keys = ["terms", &number.to_string(), key];
+        return Err(invalid_at(source, &keys, problem));
+    }
+    Ok(())
 }
 
 fn file_of(source: &TomlSource) -> Result<RegressionFile, Error> {
@@ -242,7 +280,11 @@ fn response_of(file: &RegressionFile) -> Result<(Response, f64), String> {
         Some(unit) => unit.clone(),
         None => column_title(&name).1,
     };
-    let size = parse_as(&format!("1 {unit}"), "m^3").ok();
+    let size = parse_as(&format!("1 {unit}"), "m^3");
+    if let (Some(_), Err(error)) = (&file.volume_unit, &size) {
+        return Err(error.to_string());
+    }
+    let size = size.ok();
     let size = size.filter(|_| !unit.is_empty());
     size.map(|size| (response, size)).ok_or_else(|| {
         format!(
@@ -279,21 +321,13 @@ fn scatter_of(file: &RegressionFile) -> Result<(f64, f64), String> {
 /// given.
 fn factor_of(file: &RegressionFile) -> Result<Vec<Vec<f64>>, String> {
     let count = file.terms.len();
-    let numbers = file.terms.iter().map(|own| (own.estimate, own.se));
-    if count == 0
-        || numbers
-            .clone()
-            .any(|(b, se)| !(b + se).is_finite() || se < 0.0)
-    {
-        return Err("its estimates and standard errors must be finite numbers".to_owned());
-    }
     if file.covariance.is_empty() {
-        let row = |(place, (_, se)): (usize, (f64, f64))| {
+        let row = |(place, own): (usize, &TermFile)| {
             let mut row = vec![0.0; count];
-            row[place] = se;
+            row[place] = own.se;
             row
         };
-        return Ok(numbers.enumerate().map(row).collect());
+        return Ok(file.terms.iter().enumerate().map(row).collect());
     }
     if file.covariance.len() != count {
         return Err(format!(

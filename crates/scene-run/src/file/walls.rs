@@ -191,7 +191,12 @@ fn cylinder_of(table: &Section, tube: &Spanned<CylinderFile>, wall: &str) -> Res
     let file = tube.get_ref();
     let (start, end) = (file.start, file.end);
     let diameter = table.given(&file.diameter, "cylinder diameter", "m")?;
-    if diameter <= 0.0 || start == end {
+    if diameter <= 0.0 {
+        let at = &file.diameter;
+        let problem = "it must be above zero";
+        return Err(table.refused(&at.span(), "cylinder diameter", at.get_ref(), problem));
+    }
+    if start == end {
         return Err(flat(table, tube, "cylinder", wall));
     }
     Ok(Shape::Cylinder {

@@ -8,6 +8,7 @@ use std::fs::File;
 use std::path::{Path, PathBuf};
 use windfall_files::error::Error;
 use windfall_files::inputs::check_regular;
+use windfall_files::table::write::unguarded;
 
 /// Most contacts of a fruit that are listed; the hardest ones where there are more.
 const MOST: usize = 2000;
@@ -160,7 +161,13 @@ impl Table {
     /// Whether there is another row.
     fn next(&mut self) -> Result<bool, Error> {
         let read = self.reader.read_record(&mut self.row);
-        read.map_err(|error| damaged(&self.path, self.reader.position().line(), &error))
+        let read = read.map_err(|error| damaged(&self.path, self.reader.position().line(), &error));
+        if self.row.iter().any(|cell| unguarded(cell) != cell) {
+            let place = self.row.position().cloned();
+            self.row = self.row.iter().map(unguarded).collect();
+            self.row.set_position(place);
+        }
+        read
     }
 
     /// Whether the row has this text in a column.

@@ -10,7 +10,7 @@ use std::fs::File;
 use std::io::{BufReader, ErrorKind, Read, Seek, SeekFrom};
 use std::path::{Path, PathBuf};
 use windfall_files::error::Error;
-use windfall_files::inputs::check_regular;
+use windfall_files::inputs::{check_regular, protect};
 
 /// Longest JSON that is read; bytes.
 const MOST_ABOUT: u64 = 1 << 26;
@@ -66,6 +66,7 @@ impl SceneFrames {
     /// It cannot be read, is no file of frames, or is damaged.
     pub fn open(path: &Path) -> Result<Self, Error> {
         check_regular(path)?;
+        protect(path);
         let file = File::open(path).map_err(access(path, "read"))?;
         let length = file.metadata().map_err(access(path, "read"))?.len();
         let mut start = Start {

@@ -8,8 +8,10 @@ use crate::run::frame_format::{
 };
 use crate::run::growing::{GrowingFile, partial_of};
 use crate::run::outcome::Tally;
+use std::io::ErrorKind;
 use std::path::{Path, PathBuf};
 use windfall_files::error::Error;
+use windfall_files::written::check_written;
 use windfall_scene::event::Partner;
 use windfall_scene::motion::simulation::Simulation;
 
@@ -101,6 +103,19 @@ impl SceneRecorder {
             own.write(simulation, tally)?;
         }
         own.file.finish().map(Some)
+    }
+}
+
+/// Removes the frames of an earlier run where this one has none.
+///
+/// # Errors
+/// They are not windfall's, or cannot be removed.
+pub fn remove_frames(out: &Path) -> Result<(), Error> {
+    let path = out.join(FRAMES_FILE);
+    check_written(&path, None)?;
+    match std::fs::remove_file(&path) {
+        Err(error) if error.kind() != ErrorKind::NotFound => Err(access(&path, "replace")(error)),
+        _ => Ok(()),
     }
 }
 

@@ -10,7 +10,7 @@ use crate::run_error::SceneRunError;
 use std::fs::{File, TryLockError};
 use std::path::{Path, PathBuf};
 use windfall_files::error::Error;
-use windfall_files::table::write::csv_text;
+use windfall_files::table::write::{csv_cell, csv_text};
 use windfall_files::text::columns::{Column, cells_of_rows, csv_of_rows, text_of_rows};
 use windfall_files::text::statistic::number;
 use windfall_files::text::table::{Cells, page_tables};
@@ -83,9 +83,12 @@ impl EventFile {
             return Err(Error::from(SceneRunError::Busy { path }));
         }
         file.cut(length)?;
+        let walls = scene.walls.iter();
         Ok(Self {
             file,
-            walls: scene.walls.iter().map(|wall| quoted(&wall.name)).collect(),
+            walls: walls
+                .map(|wall| csv_cell(&wall.name))
+                .collect::<Result<_, _>>()?,
             least,
             written,
         })
@@ -137,14 +140,6 @@ impl EventFile {
     /// Gives the table its name.
     pub fn finish(mut self) -> Result<(), Error> {
         self.file.finish().map(|_| ())
-    }
-}
-
-/// A name as a cell.
-fn quoted(name: &str) -> String {
-    match name.contains([',', '"', '\n', '\r']) {
-        true => format!("\"{}\"", name.replace('"', "\"\"")),
-        false => name.to_owned(),
     }
 }
 

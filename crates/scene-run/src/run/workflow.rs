@@ -6,6 +6,8 @@ use crate::file::read::{ScenePlan, read_scene};
 use crate::file::step::checked_step;
 use crate::file_error::{make_directory, write_json};
 use crate::run::advance::{Mover, Own, SceneRun, SceneStart, stopped_scene as stopped};
+use crate::run::frame_format::FRAMES_FILE;
+use crate::run::frames::remove_frames;
 use crate::run::histogram::{HistogramOutcome, figure_of_histograms, histogram};
 use crate::run::outcome::{PartnerOutcome, SceneOutcome, StepOutcome, Tally, findings_of_range};
 use crate::run::tables::fruit_table;
@@ -119,6 +121,7 @@ pub fn run_moved(
         "scene.json",
         "histograms.csv",
         "histograms.svg",
+        FRAMES_FILE,
     ] {
         check_target(&out.join(name))?;
     }
@@ -145,6 +148,9 @@ fn write_results(
 ) -> Result<SceneOutcome, Error> {
     run.table.sync()?;
     let frames = run.frames.whole(&run.simulation, &run.tally)?;
+    if frames.is_none() {
+        remove_frames(out)?;
+    }
     let (simulation, tally) = (&run.simulation, &run.tally);
     let bruised = plan.bruise.as_ref().zip(run.blows.as_ref());
     let bruises = bruised.map(|(bruise, blows)| blows.bruises(bruise));

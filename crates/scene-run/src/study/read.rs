@@ -1,6 +1,7 @@
 //! A study's file → the scenes of its variants.
 
 use crate::file::key::Section;
+use crate::file::scene::SceneFile;
 use crate::study::change::{move_named, set_value};
 use crate::study::file::{LevelFile, StudyFile, VaryFile};
 use serde::Serialize;
@@ -8,8 +9,11 @@ use std::path::{Path, PathBuf};
 use toml::Spanned;
 use toml_edit::DocumentMut;
 use windfall_campaign::settings::files::check_format;
+use windfall_files::confined::named_beside;
 use windfall_files::error::Error;
-use windfall_files::text::toml_source::{TomlSource, invalid, parse_source, read_source};
+use windfall_files::text::toml_source::{
+    TomlSource, invalid, parse_source, read_piped_source, read_source, refused,
+};
 
 /// A study, ready to run.
 #[derive(Clone, Debug)]
@@ -48,17 +52,33 @@ const TABLE: &str = "[[vary]]";
 const REPLICATES: usize = 4;
 /// More variants than this are a mistake.
 const MOST: usize = 1000;
+/// More replicates than this are one too.
+const MOST_REPLICATES: usize = 10_000;
 
 /// Reads a study and makes its variants.
 ///
 /// # Errors
 /// The file cannot be read, or a change cannot be made in its scene.
 pub fn read_study(path: &Path) -> Result<StudyPlan, Error> {
-    let source = read_source(path, "`windfall new scene-study DIR` writes an example")?;
+    let source = read_piped_source(path, "`windfall new scene-study DIR` writes an example")?;
     let file: StudyFile = parse_source(&source)?;
     check_format(&source, file.format.as_ref())?;
-    let scene = path.with_file_name(file.scene.get_ref());
+    let (name, span) = (file.scene.get_ref(), file.scene.span());
+    let scene = named_beside(path, name)
+        .map_err(|problem| invalid(&source, &span, ("the file", "scene"), name, problem))?;
+    if !scene.exists() {
+        let problem = "there is no such file beside the study".to_owned();
+        return Err(invalid(
+            &source,
+            &span,
+            ("the file", "scene"),
+            name,
+            problem,
+        ));
+    }
     let base = read_source(&scene, "`scene` in the study names it, beside the study")?;
+    // What is wrong in its own file is told there.
+    let _: SceneFile = parse_source(&base)?;
     let document: DocumentMut = base.text.parse().map_err(|error: toml_edit::TomlError| {
         let problem = error.message().to_owned();
         let key = ("the file", "scene");
@@ -66,10 +86,10 @@ pub fn read_study(path: &Path) -> Result<StudyPlan, Error> {
         invalid(&source, &file.scene.span(), key, name, problem)
     })?;
     let replicates = match &file.replicates {
-        Some(own) if *own.get_ref() == 0 => {
-            let problem = "each variant must run at least once".to_owned();
+        Some(own) if !(1..=MOST_REPLICATES).contains(own.get_ref()) => {
+            let problem = format!("each variant runs 1 to {MOST_REPLICATES} times");
             let key = ("the file", "replicates");
-            return Err(invalid(&source, &own.span(), key, "0", problem));
+            return Err(refused(&source, own, key, problem));
         }
         own => own.as_ref().map_or(REPLICATES, |own| *own.get_ref()),
     };

@@ -39,6 +39,10 @@ pub struct StudyRequest {
 
 /// Directory of the runs in that of the study.
 const VARIANTS: &str = "variants";
+/// Those of an earlier study, until all of this one are there.
+const EARLIER: &str = "variants.earlier";
+/// Those of an earlier study, once all of this one are there.
+const REPLACED: &str = "variants.replaced";
 /// File by which that directory is known as a study's.
 const MARK: &str = "made_by_a_study.txt";
 /// Bruise models drawn from the uncertainty of their coefficients, and their seed: the same
@@ -48,7 +52,8 @@ const MODELS: (usize, u64) = (200, 1);
 const PARTS: usize = 100;
 
 /// Runs every variant of a study several times, and writes each run, a table, a page and a
-/// figure. A variant that fails is reported and takes nothing from the others.
+/// figure. A variant that fails is reported and takes nothing from the others. Results of an
+/// earlier study stay until those of this one are there.
 ///
 /// * `progress`: parts of runs done, and all
 ///
@@ -62,12 +67,15 @@ pub fn run_study(
     let plan = read_study(path)?;
     let out = request.out.clone();
     let out = out.unwrap_or_else(|| path.with_extension("study"));
-    clear(&out)?;
-    let runs = run_all(&plan, &out, request.threads, progress)?;
-    if let Some(Err(first)) = runs.iter().all(Result::is_err).then(|| &runs[0]) {
+    set_aside(&out)?;
+    let runs = run_all(&plan, &out, request.threads, progress).and_then(|runs| {
+        let Some(Err(first)) = runs.iter().all(Result::is_err).then(|| &runs[0]) else {
+            return Ok(runs);
+        };
         let problem = format!("all {} variants failed; the first: {first}", runs.len());
-        return Err(unusable(path.display().to_string(), problem));
-    }
+        Err(unusable(path.display().to_string(), problem))
+    });
+    let runs = runs.inspect_err(|_| put_back(&out))?;
     let variants = plan.variants.iter().zip(&runs).enumerate();
     let variants = variants.map(|(number, (own, run))| {
         variant(
@@ -93,9 +101,14 @@ pub fn run_study(
     if let Some(first) = first.map(|own| out.join(&own.directory).join(replicate_name(0))) {
         draw_run(&first)?;
     }
+    let [earlier, replaced] = [EARLIER, REPLACED].map(|name| out.join(name));
+    if earlier.exists() {
+        std::fs::rename(&earlier, &replaced).map_err(access(&earlier, "replace"))?;
+    }
     outcome.files.extend(write_page(&outcome, &out)?);
     write_whole(&out.join("study.csv"), csv_of_study(&outcome)?.as_bytes())?;
     write_json(&out.join("study.json"), &outcome.title, &outcome)?;
+    remove(&replaced)?;
     Ok(outcome)
 }
 
@@ -119,30 +132,48 @@ fn draw_run(run: &Path) -> Result<(), Error> {
     draw_scene(run, &request).map(|_| ())
 }
 
-/// Removes the results of an earlier study. Files that windfall did not write are refused.
-fn clear(out: &Path) -> Result<(), Error> {
-    let results = ["study.json", "study.csv", "study.html"].map(|name| out.join(name));
-    let variants = out.join(VARIANTS);
-    for path in &results {
-        check_written(path, None)?;
+/// Sets the runs of an earlier study aside, and makes room for those of this one. Files that
+/// windfall did not write are refused.
+fn set_aside(out: &Path) -> Result<(), Error> {
+    for name in ["study.json", "study.csv", "study.html"] {
+        check_written(&out.join(name), None)?;
     }
-    check_folder(&variants)?;
-    let absent = |error: &std::io::Error| error.kind() == std::io::ErrorKind::NotFound;
-    for path in &results {
-        match std::fs::remove_file(path) {
-            Err(error) if !absent(&error) => return Err(access(path, "replace")(error)),
-            _ => {}
+    let [variants, earlier, replaced] = [VARIANTS, EARLIER, REPLACED].map(|name| out.join(name));
+    for folder in [&variants, &earlier, &replaced] {
+        check_folder(folder)?;
+    }
+    remove(&replaced)?;
+    // Beside whole ones that were set aside lie those of a study that was killed.
+    match earlier.exists() {
+        true => remove(&variants)?,
+        false if variants.exists() => {
+            std::fs::rename(&variants, &earlier).map_err(access(&variants, "replace"))?;
         }
-    }
-    match std::fs::remove_dir_all(&variants) {
-        Err(error) if !absent(&error) => return Err(access(&variants, "replace")(error)),
-        _ => {}
+        false => {}
     }
     make_directory(&variants)?;
     write_whole(
         &variants.join(MARK),
         b"Runs of windfall scene study; the next one replaces them.\n",
     )
+}
+
+/// Puts the runs of an earlier study back in the place of those that came to nothing.
+fn put_back(out: &Path) {
+    let [variants, earlier] = [VARIANTS, EARLIER].map(|name| out.join(name));
+    // What cannot be put back now is put aside by the next study.
+    if remove(&variants).is_ok() && earlier.exists() {
+        let _ = std::fs::rename(&earlier, &variants);
+    }
+}
+
+fn remove(folder: &Path) -> Result<(), Error> {
+    match std::fs::remove_dir_all(folder) {
+        Err(error) if error.kind() != std::io::ErrorKind::NotFound => {
+            Err(access(folder, "replace")(error))
+        }
+        _ => Ok(()),
+    }
 }
 
 /// Refuses a folder of runs in which somebody else put a file.

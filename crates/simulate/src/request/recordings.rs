@@ -42,8 +42,7 @@ pub fn simulate_recordings(
         Rig::Pendulum(_) => "pendulum",
         Rig::Carriage(_) => "carriage",
     };
-    // A quote would end the text in campaign.toml.
-    let law = LawExpression::from(event.law).to_string().replace('"', "'");
+    let law = LawExpression::from(event.law);
     let campaign = SimulatedCampaign {
         title: format!("Simulated {rig} campaign"),
         label: format!("windfall simulate {rig}, {law}, seed {seed}"),

@@ -69,16 +69,18 @@ pub fn model_rows(
         });
     }
     let table = &chosen_rows(table, &kept);
+    let told = |error: Error| error.of_rows(&kept);
     let y = match &formula.response {
-        Some(node) => values(node, table)?,
+        Some(node) => values(node, table).map_err(told)?,
         None => Vec::new(),
     };
     let atoms = formula.atoms.iter();
     let atoms: Vec<Encoding> = atoms
         .map(|atom| encoding(atom, table, contrast))
-        .collect::<Result<_, Error>>()?;
+        .collect::<Result<_, Error>>()
+        .map_err(told)?;
     let frame = frame_of(formula, atoms);
-    let x = matrix(&frame, table)?;
+    let x = matrix(&frame, table).map_err(told)?;
     Ok(ModelRows {
         frame,
         x,

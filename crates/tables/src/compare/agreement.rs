@@ -67,14 +67,14 @@ pub struct AgreementOutcome {
 /// The table cannot be read, a column is missing or holds text, or no row has both values.
 pub fn agreement(table: &Path, request: &AgreementRequest) -> Result<AgreementOutcome, Error> {
     let data = read_data(table)?;
-    let column = |name: &str| data.table.numbers(name).map_err(Error::Statistics);
+    let column = |name: &str| data.table.numbers(name).map_err(|error| data.told(error));
     let (measured, predicted) = (column(&request.measured)?, column(&request.predicted)?);
     let whole = |row: &usize| !measured[*row].is_nan() && !predicted[*row].is_nan();
     let (kept, left_out): (Vec<usize>, Vec<usize>) = (0..measured.len()).partition(whole);
     let of = |values: &[f64]| -> Vec<f64> { kept.iter().map(|row| values[*row]).collect() };
     let found = goodness_index(&of(measured), &of(predicted), request.parameters)
         .map_err(statistics_error)?;
-    let mut findings = Vec::new();
+    let mut findings: Vec<FindingOutcome> = data.left_out_finding().into_iter().collect();
     if !left_out.is_empty() {
         let lines: Vec<usize> = left_out.iter().map(|row| data.lines[*row]).collect();
         findings.push(finding(

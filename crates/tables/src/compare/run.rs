@@ -74,8 +74,10 @@ pub fn compare_groups(request: &CompareRequest) -> Result<CompareOutcome, Error>
     check_confidence(request.confidence)?;
     let data = read_data(&request.table)?;
     let by: Vec<&str> = request.by.iter().map(String::as_str).collect();
-    let mut groups = split_groups(&data.table, &by, &request.value).map_err(Error::Statistics)?;
+    let mut groups =
+        split_groups(&data.table, &by, &request.value).map_err(|error| data.told(error))?;
     let mut findings = missing_findings(&groups, &request.value, &request.by, &data.lines);
+    findings.extend(data.left_out_finding());
     findings.extend(drop_empty(&mut groups));
     if groups.groups.len() < 2 {
         let found = groups.groups.first().map(|group| group.levels.join(", "));
@@ -254,7 +256,10 @@ fn specimen_means(
 /// Specimen of each row; `None` where the cell is missing.
 fn specimen_names(data: &Data, column: &str) -> Result<Vec<Option<String>>, Error> {
     use windfall_statistics::table::Cells;
-    let column = data.table.column(column).map_err(Error::Statistics)?;
+    let column = data
+        .table
+        .column(column)
+        .map_err(|error| data.told(error))?;
     Ok(match &column.cells {
         Cells::Numbers(numbers) => numbers
             .iter()

@@ -67,10 +67,10 @@ pub fn summarize_table(request: &SummaryRequest) -> Result<SummaryOutcome, Error
         by: request.by.clone(),
         confidence: request.confidence,
         values: Vec::new(),
-        findings: Vec::new(),
+        findings: data.left_out_finding().into_iter().collect(),
     };
     for value in values_of(request, &data)? {
-        let groups = split_groups(&data.table, &by, &value).map_err(Error::Statistics)?;
+        let groups = split_groups(&data.table, &by, &value).map_err(|error| data.told(error))?;
         let found = missing_findings(&groups, &value, &request.by, &data.lines);
         for finding in found {
             // rows without a group are the same for every value

@@ -94,9 +94,12 @@ fn listed(name: &str, values: &str) -> Result<DesignFactor, String> {
     }
     let Some((numbers, unit)) = numbers_of(&items) else {
         let categories: Vec<String> = items.iter().map(|item| (*item).to_owned()).collect();
-        if let Some(unfit) = categories.iter().find(|c| c.contains(['|', '"', ';', '#'])) {
+        if let Some(unfit) = categories
+            .iter()
+            .find(|c| c.contains(['|', '"', ';', '#']) || c.contains(char::is_control))
+        {
             return Err(format!(
-                "the category \"{unfit}\" holds '|', ';', '#' or a quote"
+                "the category \"{unfit}\" holds '|', ';', '#', a quote or a control character"
             ));
         }
         let factor = Factor::of_categories(name, &categories).map_err(said)?;

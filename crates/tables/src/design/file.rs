@@ -133,6 +133,7 @@ fn coding_line(place: usize, factor: &Factor) -> String {
 fn unseparated(line: &str) -> String {
     line.replace(", ", " - ")
         .replace([',', ';'], " ")
+        .replace(char::is_control, " ")
         .replace('"', "'")
 }
 

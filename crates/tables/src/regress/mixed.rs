@@ -169,12 +169,15 @@ pub fn regress_mixed(
                        their errors right";
         return Err(unusable("--robust", problem));
     }
-    let (kept, left_out) = complete_rows(formula, &data.table, &[]).map_err(Error::Statistics)?;
+    let (kept, left_out) =
+        complete_rows(formula, &data.table, &[]).map_err(|error| data.told(error))?;
     let table = chosen_rows(&data.table, &kept);
     let chosen = Data {
+        path: data.path.clone(),
         table,
         comments: Vec::new(),
         lines: kept.iter().map(|row| data.lines[*row]).collect(),
+        left_out: data.left_out,
     };
     let inference = infer(request, &chosen, formula, request.contrasts)?;
     let summed = match inference.fitted.rows.frame.has_categories() {
@@ -193,6 +196,7 @@ pub fn regress_mixed(
     };
     let (variances, profile_findings) = variances(&fitted.fit, request.confidence)?;
     let mut findings = left_out_finding(&left_out, &data.lines);
+    findings.extend(data.left_out_finding());
     findings.extend(aliased_findings(&fitted.rows.frame, &fitted.aliased));
     let own = fitted.fit.findings.iter().chain(&uncertainty.findings);
     let own = own.map(|f| finding(f.code(), f.to_string()));
@@ -248,8 +252,9 @@ fn fit(
     formula: &Formula,
     contrast: Contrast,
 ) -> Result<Fitted, Error> {
-    let rows = model_rows(formula, &data.table, contrast, &[]).map_err(Error::Statistics)?;
-    let terms = random_terms(formula, &data.table, contrast).map_err(Error::Statistics)?;
+    let told = |error| data.told(error);
+    let rows = model_rows(formula, &data.table, contrast, &[]).map_err(told)?;
+    let terms = random_terms(formula, &data.table, contrast).map_err(told)?;
     let every: Vec<usize> = (0..rows.x.ncols()).collect();
     let solved = reduce(&rows.x, &rows.y).solve(&every);
     let (columns, aliased) = (solved.columns, solved.aliased);
@@ -262,7 +267,8 @@ fn fit(
         method: request.likelihood,
     };
     let x = rows.x.select_columns(&columns);
-    let fit = fit_mixed(&rows.y, &x, &names, &numbers, &options).map_err(mixed)?;
+    let fit = fit_mixed(&rows.y, &x, &names, &numbers, &options)
+        .map_err(|error| told(StatisticsError::Mixed(error)))?;
     Ok(Fitted {
         rows,
         aliased,
@@ -408,10 +414,10 @@ fn predictions(
         return Ok(Vec::new());
     };
     let asked = read_data(path)?;
-    let x = prediction_rows(&fitted.rows.frame, &asked.table).map_err(Error::Statistics)?;
+    let x = prediction_rows(&fitted.rows.frame, &asked.table).map_err(|error| asked.told(error))?;
     let rows = NewRows {
         x: x.select_columns(&fitted.columns),
-        terms: new_terms(&fitted.terms, &asked.table).map_err(Error::Statistics)?,
+        terms: new_terms(&fitted.terms, &asked.table).map_err(|error| asked.told(error))?,
     };
     let found = predict_mixed(&fitted.fit, uncertainty, &rows, request.confidence);
     let found = found.map_err(mixed)?;

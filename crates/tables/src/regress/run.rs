@@ -127,8 +127,8 @@ fn regress_linear(
     data: &Data,
     formula: &Formula,
 ) -> Result<RegressOutcome, Error> {
-    let rows =
-        model_rows(formula, &data.table, request.contrasts, &[]).map_err(Error::Statistics)?;
+    let rows = model_rows(formula, &data.table, request.contrasts, &[])
+        .map_err(|error| data.told(error))?;
     let reduced = reduce(&rows.x, &rows.y);
     let every: Vec<usize> = (0..rows.frame.terms.len()).collect();
     let selection = match &request.selection() {
@@ -217,6 +217,7 @@ fn outcome(
         })
         .flatten();
     let mut findings = left_out_finding(&rows.left_out, &data.lines);
+    findings.extend(data.left_out_finding());
     findings.extend(aliased_findings(&rows.frame, &fit.aliased));
     findings.extend(fit_findings(fit, &influence, &vif, &lines, &steps));
     if request.folds > 0 && validation.is_none() {
@@ -314,7 +315,7 @@ fn predictions(
         return Ok(Vec::new());
     };
     let asked = read_data(path)?;
-    let x = prediction_rows(&rows.frame, &asked.table).map_err(Error::Statistics)?;
+    let x = prediction_rows(&rows.frame, &asked.table).map_err(|error| asked.told(error))?;
     let found = predict(fit, &x).into_iter().zip(&asked.lines);
     Ok(found
         .map(|(prediction, &line)| PredictionOutcome { line, prediction })

@@ -22,12 +22,10 @@ pub fn coded_factors(
 ) -> Result<CodedFactors, Error> {
     let mut columns: Vec<(String, &[f64])> = Vec::new();
     for name in factors {
-        let values = data.table.numbers(name).map_err(Error::Statistics)?;
+        let values = data.table.numbers(name).map_err(|error| data.told(error))?;
         if values.iter().all(|value| *value == values[0]) {
             let name = name.clone();
-            return Err(Error::Statistics(
-                windfall_statistics::error::Error::Constant { name },
-            ));
+            return Err(data.told(windfall_statistics::error::Error::Constant { name }));
         }
         columns.push((name.clone(), values));
     }

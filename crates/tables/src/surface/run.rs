@@ -161,6 +161,7 @@ pub fn fitted_surfaces(
     let factors = factor_names(request, &data)?;
     let mut findings = keep_complete(request, &factors, &mut data)?;
     let coded = coded_factors(&data, &factors, &request.ranges)?;
+    findings.extend(data.left_out_finding());
     findings.extend(coding_findings(&coded));
     let mut surfaces = Vec::new();
     let mut models = Vec::new();
@@ -281,7 +282,7 @@ fn keep_complete(
             names.push(response.clone());
         }
     }
-    let (kept, left_out) = rows_with_all(&data.table, &names).map_err(Error::Statistics)?;
+    let (kept, left_out) = rows_with_all(&data.table, &names).map_err(|error| data.told(error))?;
     let findings = left_out_finding(&left_out, &data.lines);
     data.table = chosen_rows(&data.table, &kept);
     data.lines = kept.iter().map(|row| data.lines[*row]).collect();
@@ -300,11 +301,14 @@ fn has_column(data: &Data, name: &str) -> bool {
 
 fn response_values(response: &str, data: &Data) -> Result<Vec<f64>, Error> {
     if has_column(data, response) {
-        let numbers = data.table.numbers(response).map_err(Error::Statistics)?;
+        let numbers = data
+            .table
+            .numbers(response)
+            .map_err(|error| data.told(error))?;
         return Ok(numbers.to_vec());
     }
     let node = parse(response).map_err(Error::Statistics)?;
-    values(&node, &data.table).map_err(Error::Statistics)
+    values(&node, &data.table).map_err(|error| data.told(error))
 }
 
 fn goals_of(request: &SurfaceRequest, observed: &[Vec<f64>]) -> Result<Vec<Option<Goal>>, Error> {
@@ -333,7 +337,7 @@ fn factor_outcomes(
     let factors = names.iter().zip(&coded.factors).enumerate();
     factors
         .map(|(place, (name, coding))| {
-            let values = data.table.numbers(name).map_err(Error::Statistics)?;
+            let values = data.table.numbers(name).map_err(|error| data.told(error))?;
             Ok(FactorOutcome {
                 letter: letter(place),
                 name: name.clone(),

@@ -44,6 +44,10 @@ pub struct Arguments {
     /// Replace files that windfall did not write, or that were changed since; never an input
     #[arg(long, global = true)]
     pub force: bool,
+    /// Directory in which campaigns, scenes, studies and laws may name files, besides their own
+    /// (repeatable)
+    #[arg(long, global = true, value_name = "DIR", value_hint = ValueHint::DirPath)]
+    pub also_read: Vec<PathBuf>,
 }
 
 /// The commands.
@@ -51,6 +55,8 @@ pub struct Arguments {
 pub enum Command {
     /// Write a commented template of a campaign or a scene
     New(NewArguments),
+    /// List further recordings in a campaign
+    Add(AddArguments),
     /// Show what recordings hold and what looks wrong
     Inspect(InspectArguments),
     /// Fit force laws to the impacts of a campaign
@@ -97,14 +103,44 @@ pub enum Command {
 
 /// `windfall new`
 #[derive(Debug, Args)]
-#[command(after_help = "Example:\n  windfall new pendulum my-campaign")]
+#[command(after_help = "Examples:
+  windfall new pendulum my-campaign
+  windfall new pendulum my-campaign --from recordings --names '{variety}_f{fruit}_{height_mm}mm_{rep}.csv'
+      a campaign of recordings that are named by a rule")]
 pub struct NewArguments {
     /// Kind of rig
     pub kind: NewKind,
     /// Directory to make; it must not exist or be empty
     #[arg(value_hint = ValueHint::DirPath)]
     pub directory: PathBuf,
+    /// Folder of recordings, which are copied into the campaign: both tables and the channels
+    /// are filled from what they are called and hold
+    #[arg(long, value_name = "FOLDER", value_hint = ValueHint::DirPath)]
+    pub from: Option<PathBuf>,
+    /// What the names of the recordings say, such as '{variety}_f{fruit}_{height_mm}mm_{rep}.csv'
+    #[arg(long, value_name = "PATTERN", requires = "from")]
+    pub names: Option<String>,
     /// How the list of written files is shown
+    #[arg(long, value_enum, default_value_t)]
+    pub format: Format,
+}
+
+/// `windfall add`
+#[derive(Debug, Args)]
+#[command(after_help = "Examples:
+  windfall add my-campaign /media/stick/*.csv    copy them into my-campaign/raw and list them
+  windfall add my-campaign                       list what lies in my-campaign/raw already")]
+pub struct AddArguments {
+    /// The campaign directory
+    #[arg(value_hint = ValueHint::DirPath)]
+    pub directory: PathBuf,
+    /// Recordings to copy into the campaign; those that lie in its raw/ if left out
+    #[arg(value_hint = ValueHint::FilePath)]
+    pub files: Vec<PathBuf>,
+    /// What their names say, in place of [files] names of the campaign
+    #[arg(long, value_name = "PATTERN")]
+    pub names: Option<String>,
+    /// How the result is shown
     #[arg(long, value_enum, default_value_t)]
     pub format: Format,
 }
@@ -153,8 +189,8 @@ pub struct ExplainArguments {
   windfall inspect drop.tdms --export drop.csv
       every sample, with names and units; .npy for numpy.load
 
-Formats: text (CSV and relatives), LVM, TDMS, MAT (4 to 7.3), HDF5, WAV, UFF58 and 58b, sigrok; \
-found out from the first bytes of the file.")]
+Formats: text (CSV and relatives), LVM, TDMS, MAT (4 to 7.3), HDF5, WAV, UFF58 and 58b, sigrok, \
+xlsx, ods, npy and npz, zip of CSV; found out from the first bytes of the file.")]
 pub struct InspectArguments {
     /// Recordings of any format
     #[arg(required = true, value_hint = ValueHint::FilePath)]

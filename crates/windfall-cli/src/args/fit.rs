@@ -27,6 +27,8 @@ Examples:
       the cost function and the weights of the 2003 pendulum study
   windfall fit my-campaign --intervals profile
       intervals that follow the likelihood, in place of estimate ± t × deviation
+  windfall fit my-campaign --watch
+      while you measure: each new recording is listed by [files] names, fitted and shown
   windfall fit impact.csv --rig pendulum --inertia '0.01435 kg m^2' --arm '0.505 m' \\
       --mass '0.11 kg' --centre-of-mass '0.3 m' --time t --channel force=F:N \\
       --channel position=x:mm --law kuwabara-kono
@@ -41,6 +43,10 @@ pub struct FitArguments {
     /// How the result is shown
     #[arg(long, value_enum, default_value_t)]
     pub format: Format,
+    /// Fit each recording that lands in DIR/raw, as soon as it is closed, and show the mean so
+    /// far, until Ctrl-C
+    #[arg(long, conflicts_with_all = ["figures", "card", "rig"])]
+    pub watch: bool,
     /// Rig and channels of a recording without a campaign
     #[command(flatten)]
     pub recording: Option<RecordingRequest>,

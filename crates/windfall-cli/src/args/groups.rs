@@ -6,7 +6,7 @@ use clap::Command;
 const GROUPS: [(&str, &[&str]); 6] = [
     (
         "Recordings and campaigns",
-        &["new", "inspect", "fit", "report", "serve", "explain"],
+        &["new", "add", "inspect", "fit", "report", "serve", "explain"],
     ),
     (
         "Laws and fruit",

@@ -19,7 +19,7 @@ pub fn run(arguments: &BruiseArguments) -> anyhow::Result<()> {
     )?;
     match arguments.format {
         Format::Json => write_json(&outcome),
-        Format::Csv => write_result(&csv_of_volumes(&outcome)),
+        Format::Csv => write_result(&csv_of_volumes(&outcome)?),
         Format::Text => write_result(&text_of_volumes(&outcome)),
     }
 }

@@ -2,14 +2,15 @@
 
 use crate::args::calibrate::CalibrateArguments;
 use crate::command::fit::with_bar;
-use crate::show::{show, tell_unused};
+use crate::show::{show, tell_failures, tell_unused};
 use windfall_drop::calibrate::run::calibrate;
 use windfall_drop::calibrate::text::{csv_of_calibration, text_of_calibration};
 
 /// Calibrates the law of a drop campaign.
 pub fn run(arguments: &CalibrateArguments) -> anyhow::Result<()> {
     let (directory, request) = (&arguments.directory, &arguments.request);
-    let outcome = with_bar(|progress| calibrate(directory, request, progress))?;
+    let outcome = with_bar(|progress| calibrate(directory, request, progress));
+    let outcome = outcome.map_err(tell_failures)?;
     show(
         arguments.format,
         &outcome,

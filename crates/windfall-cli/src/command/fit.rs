@@ -2,7 +2,7 @@
 
 use crate::args::fit::FitArguments;
 use crate::args::format::Format;
-use crate::show::{message, show};
+use crate::show::{message, show, tell_failures, write_result};
 use indicatif::{ProgressBar, ProgressStyle};
 use std::io::IsTerminal;
 use std::ops::ControlFlow;
@@ -10,17 +10,43 @@ use windfall_campaign::impacts::run::fit_recording;
 use windfall_campaign::measure::any_outcome::AnyOutcome;
 use windfall_files::error::Error;
 use windfall_files::progress::Progress;
+use windfall_inspect::gather::text::text_of_watched;
+use windfall_inspect::gather::watch::watch;
 use windfall_report::any_text::{csv_of_any, text_of_any};
 use windfall_report::fit_any::fit_any;
 
 /// Fits a campaign and shows the result.
 pub fn run(arguments: &FitArguments) -> anyhow::Result<()> {
     let (path, request) = (&arguments.directory, &arguments.request);
+    if arguments.watch {
+        message(&format!("watching {}/raw; Ctrl-C ends it", path.display()));
+        watch(
+            path,
+            request,
+            &|_, _| ControlFlow::Continue(()),
+            &mut |told| {
+                let shown = match told {
+                    Ok(watched) => write_result(&text_of_watched(watched)),
+                    Err(error) => {
+                        message(&format!("error: {error}"));
+                        Ok(())
+                    }
+                };
+                // Nobody reads any more.
+                match shown {
+                    Ok(()) => ControlFlow::Continue(()),
+                    Err(_) => ControlFlow::Break(()),
+                }
+            },
+        )?;
+        return Ok(());
+    }
     let outcome = with_bar(|progress| match &arguments.recording {
         Some(recording) => fit_recording(path, recording, request, progress)
             .map(|outcome| AnyOutcome::Impacts(Box::new(outcome))),
         None => fit_any(path, request, progress),
-    })?;
+    });
+    let outcome = outcome.map_err(tell_failures)?;
     show(arguments.format, &outcome, text_of_any, csv_of_any)?;
     // The text shows failures itself, beside the results.
     let told = if arguments.format == Format::Text {

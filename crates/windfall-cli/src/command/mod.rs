@@ -1,5 +1,6 @@
 //! The commands: each calls one workflow and shows what it returns.
 
+pub(crate) mod add;
 pub(crate) mod bruise;
 pub(crate) mod calibrate;
 pub(crate) mod card;

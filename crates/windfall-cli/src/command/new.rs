@@ -2,10 +2,14 @@
 
 use crate::args::common::{NewArguments, NewKind};
 use crate::args::format::Format;
-use crate::show::{write_json, write_result};
+use crate::show::{write_json, write_names, write_result};
 use windfall_campaign::settings::template::{
     TemplateKind, write_scene_template, write_study_template, write_template,
 };
+use windfall_files::option_value::unusable;
+use windfall_files::text::quote::{command, path_word};
+use windfall_inspect::gather::new::gather;
+use windfall_inspect::gather::text::{csv_of_gathered, text_of_gathered};
 
 /// Writes a template and names the files.
 pub fn run(arguments: &NewArguments) -> anyhow::Result<()> {
@@ -19,28 +23,39 @@ pub fn run(arguments: &NewArguments) -> anyhow::Result<()> {
         NewKind::Drop => Some(TemplateKind::Drop),
         NewKind::Scene | NewKind::SceneStudy => None,
     };
+    if let Some(from) = &arguments.from {
+        let names = arguments.names.as_deref();
+        let Some(kind) = kind else {
+            let problem = "a scene has no recordings; name a kind of rig";
+            return Err(unusable(format!("--from {}", from.display()), problem).into());
+        };
+        let gathered = gather(kind, directory, from, names)?;
+        return match arguments.format {
+            Format::Json => write_json(&gathered),
+            Format::Csv => write_result(&csv_of_gathered(&gathered)?),
+            Format::Text => write_result(&text_of_gathered(&gathered, directory)),
+        };
+    }
     let study = matches!(arguments.kind, NewKind::SceneStudy);
+    let on_file = |word: &str, name: &str| {
+        let file = path_word(directory.join(name));
+        command(&["scene", word, &file])
+    };
     let (written, next) = match kind {
         Some(kind) => (
             write_template(kind, directory)?,
             format!(
-                "put the recordings into raw/, edit the files, then\n  windfall fit {}",
-                directory.display()
+                "put the recordings into raw/, edit the files, then\n  {}",
+                command(&["fit", &path_word(directory)])
             ),
         ),
         None if study => (
             write_study_template(directory)?,
-            format!(
-                "windfall scene study {}",
-                directory.join("study.toml").display()
-            ),
+            on_file("study", "study.toml"),
         ),
         None => (
             write_scene_template(directory)?,
-            format!(
-                "edit the file, then\n  windfall scene run {}",
-                directory.join("scene.toml").display()
-            ),
+            format!("edit the file, then\n  {}", on_file("run", "scene.toml")),
         ),
     };
     let names: Vec<String> = written
@@ -49,7 +64,7 @@ pub fn run(arguments: &NewArguments) -> anyhow::Result<()> {
         .collect();
     match arguments.format {
         Format::Json => write_json(&serde_json::json!({ "written": names })),
-        Format::Csv => write_result(&format!("written\n{}\n", names.join("\n"))),
+        Format::Csv => write_names("written", &names),
         Format::Text => write_result(&format!("{}\n\nNext: {next}\n", names.join("\n"))),
     }
 }

@@ -3,7 +3,7 @@
 use crate::args::format::Format;
 use crate::args::report::ReportArguments;
 use crate::command::fit::with_bar;
-use crate::show::{tell_failures, write_json, write_result};
+use crate::show::{tell_failures, write_json, write_names, write_result};
 use windfall_campaign::pipeline::request::FitRequest;
 use windfall_report::run::{ReportRequest, report_campaign};
 
@@ -23,10 +23,13 @@ pub fn run(arguments: &ReportArguments) -> anyhow::Result<()> {
     };
     let outcome = with_bar(|progress| report_campaign(&arguments.directory, &request, progress));
     let outcome = outcome.map_err(tell_failures)?;
-    let lines = outcome.files.iter().map(|f| format!("{}\n", f.display()));
     match arguments.format {
         Format::Json => write_json(&outcome),
-        Format::Csv => write_result(&("file\n".to_owned() + &lines.collect::<String>())),
+        Format::Csv => {
+            let files = outcome.files.iter();
+            let names: Vec<String> = files.map(|file| file.display().to_string()).collect();
+            write_names("file", &names)
+        }
         Format::Text => {
             let failed = match outcome.failed {
                 0 => String::new(),

@@ -3,7 +3,7 @@
 use crate::args::format::Format;
 use crate::args::scene_view::{ScenePictureArguments, SceneVtkArguments};
 use crate::command::fit::with_bar;
-use crate::show::{write_json, write_result};
+use crate::show::{write_json, write_names, write_result};
 use windfall_files::option_value::{positive, quantity, unusable};
 use windfall_scene_run::frames::view::{PictureRequest, draw_scene, vtk_of_scene};
 
@@ -28,7 +28,7 @@ pub fn picture(arguments: &ScenePictureArguments) -> anyhow::Result<()> {
         .collect();
     match arguments.format {
         Format::Json => write_json(&outcome),
-        Format::Csv => write_result(&format!("file\n{}\n", files.join("\n"))),
+        Format::Csv => write_names("file", &files),
         Format::Text => write_result(&format!(
             "{}\n\nWritten: {}\n",
             outcome.caption,
@@ -56,7 +56,7 @@ pub fn vtk(arguments: &SceneVtkArguments) -> anyhow::Result<()> {
     let outcome = with_bar(|progress| vtk_of_scene(&arguments.run, out, progress))?;
     match arguments.format {
         Format::Json => write_json(&outcome),
-        Format::Csv => write_result(&format!("file\n{}\n", outcome.collection.display())),
+        Format::Csv => write_names("file", &[outcome.collection.display().to_string()]),
         Format::Text => write_result(&format!(
             "{} frames. Open this one in ParaView; {} files lie beside it.\n\nWritten: {}\n",
             outcome.frames,

@@ -8,6 +8,7 @@ use crate::args::simulate::{
 };
 use crate::show::{message, show, show_motion, write_result, written};
 use std::path::Path;
+use windfall_files::text::quote::{command, path_word};
 use windfall_simulate::compression::simulate_compression;
 use windfall_simulate::example::write_example;
 use windfall_simulate::figure::write_impact_figure;
@@ -46,9 +47,11 @@ fn tap(arguments: &SimulateTapArguments) -> anyhow::Result<()> {
 }
 
 fn next(directory: &Path, files: usize) -> anyhow::Result<()> {
+    let word = path_word(directory);
     let directory = directory.display();
     write_result(&format!(
-        "{files} files in {directory}\n\nNext:\n  windfall fit {directory}\n"
+        "{files} files in {directory}\n\nNext:\n  {}\n",
+        command(&["fit", &word])
     ))
 }
 

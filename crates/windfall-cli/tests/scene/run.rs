@@ -91,7 +91,15 @@ fn a_law_card_brings_its_spread_and_its_range() {
             ("end = \"4 s\"", "end = \"1 s\""),
         ],
     );
-    let arguments = ["scene", "run", "s/scene.toml", "--format", "json"];
+    let arguments = [
+        "scene",
+        "run",
+        "s/scene.toml",
+        "--also-read",
+        ".",
+        "--format",
+        "json",
+    ];
     let (done, json, problem) = windfall(&arguments, folder.path());
     assert!(done, "{problem}");
     let json: serde_json::Value = serde_json::from_str(&json).unwrap();
@@ -300,7 +308,7 @@ fn bruises_follow_from_the_contacts() {
         (
             "threshold_sd = \"10 mJ\"",
             "threshold_sd = \"-10 mJ\"",
-            "at or above zero",
+            "must not be below zero",
         ),
     ] {
         let path = folder.path().join("s/scene.toml");

@@ -345,7 +345,7 @@ fn rejects_studies_that_cannot_be_with_their_line() {
             "\"conveyer\"",
             "did you mean \"conveyor\"",
         ),
-        ("replicates = 2", "replicates = 0", "at least once"),
+        ("replicates = 2", "replicates = 0", "1 to 10000 times"),
         ("scene = \"scene.toml\"", "scene = \"no.toml\"", "no.toml"),
         ("name = \"high\"", "name = \"low\"", "twice"),
         ("replicates", "replicate", "did you mean \"replicates\""),

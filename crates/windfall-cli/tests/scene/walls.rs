@@ -83,7 +83,15 @@ fn line(text: &str, of: &str) -> String {
 }
 
 fn run(directory: &Path) -> serde_json::Value {
-    let arguments = ["scene", "run", "s/scene.toml", "--format", "json"];
+    let arguments = [
+        "scene",
+        "run",
+        "s/scene.toml",
+        "--format",
+        "json",
+        "--also-read",
+        ".",
+    ];
     let (done, json, problem) = windfall(&arguments, directory);
     assert!(done, "{problem}");
     serde_json::from_str(&json).unwrap()

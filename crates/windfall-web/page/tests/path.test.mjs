@@ -290,6 +290,21 @@ test("the window goes by keys too, is saved, and found by the command line", asy
   await page.getByRole("button", { name: "Undo" }).first().click();
 });
 
+test("an impact is left out with a reason, and counts again", async () => {
+  await visit(page, "#/c/apples/impact/specimen-03");
+  await page.getByLabel("Why").fill("slipped");
+  await page.getByRole("button", { name: "Leave it out" }).click();
+  await page.getByText("specimen-03 is left out from the next fit on").waitFor();
+  await page.getByText("It is left out by impacts.csv: slipped").waitFor();
+  await inspect("impact-left-out");
+  const fitted = async () => JSON.parse(await windfall("fit", join(place.directory, "apples"), "--format", "json"));
+  const out = (await fitted()).impacts.filter((impact) => (impact.left_out ?? []).length > 0);
+  assert.deepEqual(out.map((impact) => [impact.id, impact.left_out[0].code]), [["specimen-03", "excluded"]]);
+  await page.getByRole("button", { name: "Count it again" }).click();
+  await page.getByText("specimen-03 counts again from the next fit on").waitFor();
+  assert.equal((await fitted()).groups[0].left_out, 0);
+});
+
 test("a window without a contact is told, and nothing breaks", async () => {
   const end = page.getByLabel("End of the used part, ms");
   // The answer of an earlier fit arrives while one types: what was typed stays.

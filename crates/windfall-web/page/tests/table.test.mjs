@@ -80,6 +80,18 @@ test("CSV has units, intervals, quotes, and no formulas for spreadsheets", () =>
   assert.equal(table.csvOf(columns, [row]), 'id,k (N/m^1.5),k sd,k low,k high,note\r\ni2,7,0.5,6,8,"\'=1+""a"", b"\r\n');
 });
 
+test("formulas in CSV get an apostrophe, numbers none", () => {
+  const column = made.columns.find((c) => c.key === "id");
+  for (const [cell, written] of [
+    ["=1+1", "'=1+1"], ["@SUM(A1)", "'@SUM(A1)"], ["-2+3", "'-2+3"], ["＝1", "'＝1"], [" =1", "' =1"],
+    ["\t=1", "\"'\t=1\""], ["'=1", "''=1"], ["-", "'-"], ["-1.5", "-1.5"], ["+3", "+3"], ["1e-3", "1e-3"],
+    ["-inf", "-inf"], ["'tis", "'tis"], ["'-1.5", "'-1.5"], ["a=b", "a=b"], ["a;b", '"a;b"'],
+  ]) {
+    const row = { ...made.rows[0], cells: new Map([["id", cell]]), spreads: new Map() };
+    assert.equal(table.csvOf([column], [row]), `${column.key}\r\n${written}\r\n`);
+  }
+});
+
 test("only whole numbers of text are numbers", () => {
   assert.equal(table.numberOf(" -1.5e-3 "), -0.0015);
   for (const text of ["", "1,5", "0x10", "Infinity", "1 2", "12a"]) assert.equal(table.numberOf(text), null);

@@ -35,6 +35,19 @@ pub(crate) struct WindowGiven {
     to: Option<f64>,
 }
 
+/// Whether an impact counts.
+#[derive(Debug, Deserialize, ToSchema)]
+#[serde(deny_unknown_fields)]
+pub(crate) struct ExclusionGiven {
+    /// Id of the impact.
+    impact: String,
+    /// Whether it is left out.
+    excluded: bool,
+    /// Why; what there is stays where this is blank.
+    #[serde(default)]
+    note: String,
+}
+
 /// Options of the fit; those left out are unchanged.
 #[derive(Debug, Default, Deserialize, ToSchema)]
 #[serde(default, deny_unknown_fields)]
@@ -106,6 +119,28 @@ pub(crate) async fn window(
         impact: given.impact,
         from: given.from,
         to: given.to,
+    };
+    changed(app, id, version, change).await
+}
+
+/// Leaves an impact out of means, cards and figures, or lets it count again.
+#[utoipa::path(
+    put, path = "/api/campaigns/{id}/exclusion", request_body = ExclusionGiven,
+    params(("id" = String, Path, example = "bench"), ("If-Match" = String, Header, example = "*")),
+    responses((status = 200, body = CampaignView), ChangeProblems))]
+pub(crate) async fn exclusion(
+    State(app): State<App>,
+    Path(id): Path<String>,
+    Version(version): Version,
+    Given(given): Given<ExclusionGiven>,
+) -> Result<Response, Problem> {
+    if given.note.chars().any(char::is_control) {
+        return Err(Problem::request("a note is one line"));
+    }
+    let change = Change::Exclusion {
+        impact: given.impact,
+        excluded: given.excluded,
+        note: given.note,
     };
     changed(app, id, version, change).await
 }

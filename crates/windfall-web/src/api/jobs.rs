@@ -16,13 +16,14 @@ use utoipa::ToSchema;
 use windfall_campaign::pipeline::request::FitRequest;
 use windfall_drop::calibrate::run::{CalibrateRequest, calibrate};
 use windfall_files::error::Error;
+use windfall_files::text::quote::{command, path_word};
 use windfall_population::ranking::run::rank_campaign;
 use windfall_population::run::{PopulationRequest, population};
 use windfall_report::fit_any::fit_any;
 use windfall_report::run::{ReportRequest, report_campaign};
 use windfall_report::stored_card::CARD_FILE;
 use windfall_workspace::campaign_view::{check_work, name_of};
-use windfall_workspace::equal_command::{command, command_of_fit};
+use windfall_workspace::equal_command::command_of_fit;
 use windfall_workspace::results_table::write_results_table;
 
 /// A job to start.
@@ -133,7 +134,7 @@ pub(crate) async fn start(
     let own = id.clone();
     let directory = app.on_campaign(id, |_, directory| Ok(directory.to_path_buf()));
     let directory = directory.await?;
-    let command = given.command(&name_of(&directory));
+    let command = given.command(&path_word(name_of(&directory)));
     let Some(job) = app.jobs.begin(&own, given.work, command) else {
         return Err(Problem::new(
             StatusCode::CONFLICT,

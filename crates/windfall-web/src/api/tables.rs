@@ -13,12 +13,12 @@ use utoipa::ToSchema;
 use windfall_files::confined::path_inside;
 use windfall_files::error::Error;
 use windfall_files::table::csv::read_table;
+use windfall_files::text::quote::{command, path_word};
 use windfall_tables::regress::request::{Direction, RegressRequest};
 use windfall_tables::regress::run::{AnyRegressOutcome, regress};
 use windfall_tables::surface::outcome::SurfaceOutcome;
 use windfall_tables::surface::run::{SurfaceRequest, surface};
 use windfall_workspace::campaign_view::name_of;
-use windfall_workspace::equal_command::command;
 
 /// Largest number of grid points along one factor.
 const MOST_GRID_POINTS: usize = 200;
@@ -194,7 +194,7 @@ pub(crate) async fn regression(
 ) -> Answer<RegressAnswer> {
     app.answer(id, move |_, directory| {
         let table = table_inside(directory, &given.table)?;
-        let shown = format!("{}/{}", name_of(directory), given.table);
+        let shown = path_word(format!("{}/{}", name_of(directory), given.table));
         let mut words = vec!["regress", &shown, "--response", &given.response];
         words.extend(["--terms", &given.terms]);
         words.extend(given.random.iter().flat_map(|random| ["--random", random]));
@@ -232,7 +232,7 @@ pub(crate) async fn surfaces(
 
 fn fitted_surface(directory: &FilePath, given: SurfaceGiven) -> Result<SurfaceAnswer, Error> {
     let table = table_inside(directory, &given.table)?;
-    let shown = format!("{}/{}", name_of(directory), given.table);
+    let shown = path_word(format!("{}/{}", name_of(directory), given.table));
     let mut words = vec!["surface", shown.as_str()];
     for response in &given.responses {
         words.extend(["--response", &response.name]);

@@ -6,6 +6,7 @@
  */
 
 import type {
+  ExclusionGiven,
   Calls,
   CampaignChanged,
   ChannelsGiven,
@@ -106,6 +107,8 @@ export const api = {
     call("POST /api/campaigns/{id}/refit", [id], { body, signal }),
   saveWindow: (id: string, version: string, body: WindowGiven) =>
     call("PUT /api/campaigns/{id}/window", [id], { body, version }),
+  saveExclusion: (id: string, version: string, body: ExclusionGiven) =>
+    call("PUT /api/campaigns/{id}/exclusion", [id], { body, version }),
   saveOptions: (id: string, version: string, body: OptionsGiven) =>
     call("PUT /api/campaigns/{id}/options", [id], { body, version }),
   saveText: (id: string, version: string, text: string) =>

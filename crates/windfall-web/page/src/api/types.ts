@@ -102,6 +102,7 @@ export interface EnergyOutcome {
 export interface EstimateOutcome {
   value: number; sd: number | null; low: number | null; high: number | null; unit: string; held: boolean;
 }
+export interface ExclusionGiven { impact: string; excluded: boolean; note?: string; }
 export interface FactorOutcome {
   letter: string; name: string; centre: number; half_range: number; lowest: number; highest: number;
 }
@@ -138,8 +139,8 @@ export interface GoodnessOutcome {
 export interface GridGiven { x: number[]; y: number[]; values: number[]; }
 export interface GridOutcome { columns: string[]; rows: number[][]; }
 export interface GroupOutcome {
-  group: string | null; law: string; impacts: number; specimens: number; parameters: Record<string, SpreadOutcome>;
-  derived: Record<string, SpreadOutcome>;
+  group: string | null; law: string; impacts: number; left_out: number; specimens: number;
+  parameters: Record<string, SpreadOutcome>; derived: Record<string, SpreadOutcome>;
 }
 export interface HardestFruit {
   fruit: number; contacts: number; peak_force: number; partner: string; time: number | null;
@@ -156,7 +157,7 @@ export interface ImpactOutcome {
   residual_norm: number; residuals: Record<string, ResidualOutcome>; regression: Record<string, EstimateOutcome>;
   derived: Record<string, null | number>; derived_sd: Record<string, number>; derived_from: Record<string, string>;
   fitted: Record<string, null | number>; directions: Record<string, number>[]; intervals: IntervalOutcome;
-  findings: FindingOutcome[];
+  findings: FindingOutcome[]; left_out: FindingOutcome[];
 }
 export interface ImpactsGiven { impacts: ImpactGiven[]; }
 export interface InflationOutcome { term: string; df: number; factor: number; }
@@ -341,7 +342,9 @@ export interface SettingOutcome {
 }
 export interface ShownMotion { time: number[]; displacement: number[]; rate: number[]; force: number[]; }
 export interface ShownSamples { time: number[]; value: number[]; }
-export interface SpreadOutcome { mean: number; sd: number | null; n: number; cv: number | null; }
+export interface SpreadOutcome {
+  mean: number; sd: number | null; n: number; cv: number | null; median: number; robust_sd: number | null;
+}
 export interface StartOutcome { law: string; rule: string; hertz_stiffness: number | null; }
 export interface StatusOutcome { fitted: number; stored: number; failed: number; up_to_date: boolean; }
 export interface StepOutcome {
@@ -426,6 +429,7 @@ export interface Calls {
   "GET /api/campaigns/{id}/card": Call<string, undefined, { law?: string }>;
   "PUT /api/campaigns/{id}/channels": Call<CampaignView, ChannelsGiven>;
   "GET /api/campaigns/{id}/events": Call<string>;
+  "PUT /api/campaigns/{id}/exclusion": Call<CampaignView, ExclusionGiven>;
   "POST /api/campaigns/{id}/impacts": Call<CampaignView, ImpactsGiven>;
   "POST /api/campaigns/{id}/jobs": Call<JobView, JobGiven>;
   "PUT /api/campaigns/{id}/options": Call<CampaignView, OptionsGiven>;

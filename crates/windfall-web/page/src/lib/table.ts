@@ -104,6 +104,11 @@ export function resultTable(campaign: CampaignView, results: StoredResults | nul
     }
     note("findings", "Findings", "", "result", false);
     row.cells.set("findings", item.findings.map((finding) => finding.code).join(", "));
+    const reasons = "left_out" in item ? (item.left_out ?? []) : [];
+    if (reasons.length > 0) {
+      note("left_out", "Left out", "", "result", false);
+      row.cells.set("left_out", reasons.map((reason) => reason.code).join(", "));
+    }
     specimens.put(row, item.specimen);
     impacts.put(row, item.id);
     return row;
@@ -254,10 +259,22 @@ export function csvOf(columns: Column[], rows: Row[]): string {
   return [header, ...lines].map((line) => line.map(quoted).join(",")).join("\r\n") + "\r\n";
 }
 
-/** Escapes text that a spreadsheet would take for a formula. */
+/** A cell as the program writes it: with an apostrophe before what a spreadsheet would
+ *  take for a formula. */
 function quoted(cell: Cell): string {
   if (cell === null) return "";
   if (typeof cell === "number") return String(cell);
-  const text = /^[=+\-@\t\r]/.test(cell) && numberOf(cell) === null ? `'${cell}` : cell;
-  return /[",\r\n]/.test(text) ? `"${text.replaceAll('"', '""')}"` : text;
+  const text = isFormula(cell) ? `'${cell}` : cell;
+  return /[",;#\t\r\n\uFEFF]/.test(text) ? `"${text.replaceAll('"', '""')}"` : text;
+}
+
+/** Whether a cell is a formula for a spreadsheet, or a formula behind apostrophes. The
+ *  program has the same in formats/src/text/spreadsheet.rs. */
+function isFormula(cell: string): boolean {
+  const end = cell.replace(/\p{White_Space}+$/u, "");
+  const rest = end.replace(/^['\p{White_Space}]+/u, "");
+  const before = end.slice(0, end.length - rest.length);
+  const begins = /^[=+\-@＝＋－＠]/.test(rest) || /[\t\r\n]/.test(before);
+  const number = /^[+-]?((\d+\.?\d*|\.\d+)(e[+-]?\d+)?|inf|infinity|nan)$/i.test(rest.replace(",", "."));
+  return begins && rest !== "" && !number;
 }

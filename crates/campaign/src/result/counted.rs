@@ -1,0 +1,257 @@
+//! Which impacts count: the one rule for tables, cards, populations, comparisons of laws,
+//! figures, reports and the page. An impact that does not count stays in the results, with
+//! the reasons.
+
+use crate::result::outcome::ImpactOutcome;
+use crate::settings::model::{Campaign, ImpactEntry};
+use itertools::Itertools;
+use windfall_files::found::{FailureOutcome, FindingOutcome, robust_spread};
+use windfall_files::named::grouped;
+use windfall_files::table::data::{EXCLUDE_COLUMN, excludes};
+use windfall_identify::rig::kind::Rig;
+
+/// Column of impacts.csv that says why.
+pub const NOTE_COLUMN: &str = "note";
+
+/// Findings after which the values of a fit are no estimates.
+const NO_ESTIMATES: [&str; 5] = [
+    "no-convergence",
+    "singular",
+    "at-bound",
+    "clipped",
+    "contact-at-start",
+];
+
+/// Deviations by which a quantity must pass its limit.
+const DEVIATIONS: f64 = 3.0;
+/// Part of a quantity that it may pass its limit by, whatever its deviation; 1.
+const SLACK: f64 = 0.05;
+/// Largest ratio of impulse to change of momentum, or its inverse, that a bench whose
+/// sensitivity or inertia is somewhat wrong may have; 1.
+const IMPULSE_RATIO: f64 = 1.25;
+/// Largest standard deviation of the stiffness, relative to it; 1.
+const UNCERTAIN: f64 = 0.5;
+/// Fewest impacts of a group with which each is compared.
+const FEWEST: usize = 8;
+/// Robust deviations from the median of its group at which an impact contradicts it.
+const FAR: f64 = 10.0;
+/// Smallest difference from the other impacts on a fruit that matters, as a logarithm; 1.
+const NEAR: f64 = 0.18;
+/// The same from those on other fruit, which differ by nature: a factor of 2.7.
+const SOFT: f64 = 1.0;
+
+impl ImpactOutcome {
+    /// Whether the impact counts in means, cards and figures.
+    pub fn counts(&self) -> bool {
+        self.left_out.is_empty()
+    }
+}
+
+/// Sets for each result why it does not count, if so.
+///
+/// Reasons are: what the user wrote in the column `exclude` of impacts.csv; findings after
+/// which values are no estimates; physics (a restitution above 1, an energy that is not
+/// absorbed but gained, an impulse that is not the change of momentum, a velocity that the
+/// rig cannot have), each beyond three deviations; a stiffness that is not determined; and a
+/// stiffness far from the others (ten robust deviations of its logarithm, and 20 % among
+/// impacts on one fruit or a factor of 2.7 among fruit: a soft fruit among hard ones counts, a
+/// failed fit does not).
+pub fn mark_left_out(campaign: &Campaign, rig: &Rig, impacts: &mut [ImpactOutcome]) {
+    for impact in impacts.iter_mut() {
+        let entry = campaign.entries.iter().find(|own| own.id == impact.id);
+        impact.left_out = entry.and_then(excluded).into_iter().collect();
+        let reasons = own_reasons(impact, rig);
+        impact.left_out.extend(reasons);
+    }
+    // Impacts on one fruit lie closer together than those of a group.
+    let fruit = |own: &ImpactOutcome| format!("fruit {}", own.specimen);
+    let group = |own: &ImpactOutcome| own.group.clone().unwrap_or_default();
+    for (index, reason) in strangers(impacts, fruit, ("fruit", NEAR)) {
+        impacts[index].left_out.push(reason);
+    }
+    for (index, reason) in strangers(impacts, group, ("group", SOFT)) {
+        impacts[index].left_out.push(reason);
+    }
+}
+
+/// Sets why results do not count ([`mark_left_out`]); the entries of which no result counts,
+/// under none of the laws, as failures.
+pub fn left_out_under_all_laws(
+    campaign: &Campaign,
+    rig: &Rig,
+    impacts: &mut [ImpactOutcome],
+) -> Vec<FailureOutcome> {
+    mark_left_out(campaign, rig, impacts);
+    let by_entry = grouped(impacts.iter().map(|impact| (impact.id.as_str(), impact)));
+    let out = by_entry
+        .into_iter()
+        .filter(|(_, own)| own.iter().all(|i| !i.counts()));
+    let failure = |impact: &ImpactOutcome| FailureOutcome {
+        id: impact.id.clone(),
+        specimen: impact.specimen.clone(),
+        file: impact.file.clone(),
+        law: None,
+        message: format!(
+            "does not count: {}",
+            impact
+                .left_out
+                .iter()
+                .map(|reason| &reason.message)
+                .join("; ")
+        ),
+    };
+    out.map(|(_, own)| failure(own[0])).collect()
+}
+
+/// "3 no-convergence, 1 excluded": how many impacts each reason leaves out.
+pub fn reasons_counted<'a>(impacts: impl IntoIterator<Item = &'a ImpactOutcome>) -> String {
+    let reasons = impacts.into_iter().flat_map(|impact| &impact.left_out);
+    let counted = grouped(reasons.map(|reason| (reason.code.as_str(), ())));
+    let counted = counted.into_iter();
+    let mut told = counted.map(|(code, all)| format!("{} {code}", all.len()));
+    told.join(", ")
+}
+
+/// Why the user leaves an entry out, if so.
+pub fn excluded(entry: &ImpactEntry) -> Option<FindingOutcome> {
+    let cell = |name: &str| {
+        let mut cells = entry.cells.iter();
+        cells
+            .find(|(column, _)| column == name)
+            .map(|own| own.1.trim())
+    };
+    if !excludes(cell(EXCLUDE_COLUMN)?) {
+        return None;
+    }
+    let note = cell(NOTE_COLUMN).filter(|note| !note.is_empty());
+    let note = note.map_or_else(String::new, |note| format!(": {note}"));
+    let told = format!("impacts.csv, line {}, excludes it{note}", entry.line);
+    Some(FindingOutcome::new("excluded", told))
+}
+
+/// What the impact itself says against it.
+fn own_reasons(impact: &ImpactOutcome, rig: &Rig) -> Vec<FindingOutcome> {
+    let mut reasons: Vec<FindingOutcome> = Vec::new();
+    for finding in &impact.findings {
+        let known = reasons.iter().any(|own| own.code == finding.code);
+        if NO_ESTIMATES.contains(&finding.code.as_str()) && !known {
+            reasons.push(finding.clone());
+        }
+    }
+    reasons.extend(impossible(impact, rig));
+    reasons.extend(undetermined(impact));
+    reasons
+}
+
+/// A quantity read off the signals, with its deviation.
+fn signal(impact: &ImpactOutcome, name: &str) -> Option<(f64, f64)> {
+    let source = impact.derived_from.get(name)?;
+    let sd = impact.derived_sd.get(name).copied().unwrap_or(0.0);
+    (source == "signal").then(|| impact.derived(name).map(|value| (value, sd)))?
+}
+
+/// What physics excludes.
+fn impossible(impact: &ImpactOutcome, rig: &Rig) -> Vec<FindingOutcome> {
+    let mut reasons = Vec::new();
+    let mut tell = |code: &str, told: String| reasons.push(FindingOutcome::new(code, told));
+    if let Some((e, sd)) = signal(impact, "restitution") {
+        let room = (DEVIATIONS * sd).max(SLACK);
+        if e > 1.0 + room || e < -room {
+            tell(
+                "impossible-restitution",
+                format!(
+                    "the restitution is {e:.3} ± {sd:.3}, and it lies between 0 and 1: the velocity \
+                     before or after contact is wrong, as by a drift, a glitch or a false trigger"
+                ),
+            );
+        }
+    }
+    if let (Some((lost, sd)), Some((before, _))) = (
+        signal(impact, "absorbed_energy"),
+        signal(impact, "impact_energy"),
+    ) && lost < -(DEVIATIONS * sd).max(SLACK * before)
+    {
+        let told = format!(
+            "the absorbed energy is {:.2} ± {:.2} mJ: fruit give no energy",
+            1e3 * lost,
+            1e3 * sd
+        );
+        tell("negative-absorbed-energy", told);
+    }
+    let momentum = ["impact_velocity", "rebound_velocity"].map(|name| signal(impact, name));
+    if let ([Some((v1, s1)), Some((v2, s2))], Some((impulse, sd))) =
+        (momentum, signal(impact, "impulse"))
+    {
+        let mass = rig.effective_mass();
+        let change = mass * (v1 + v2);
+        let room = DEVIATIONS * (sd * sd + mass * mass * (s1 * s1 + s2 * s2)).sqrt();
+        let ratio = impulse / change;
+        let off = !(1.0 / IMPULSE_RATIO..=IMPULSE_RATIO).contains(&ratio);
+        if off && (impulse - change).abs() > room {
+            tell(
+                "impulse-contradicts-momentum",
+                format!(
+                    "the force has the impulse {impulse:.4} N s where the momentum changes by \
+                     {change:.4} N s: the zero of the force, a false trigger, clipping, or a unit"
+                ),
+            );
+        }
+    }
+    if let (Some(most), Some((v1, sd))) =
+        (rig.largest_velocity(), signal(impact, "impact_velocity"))
+        && v1 > most + (DEVIATIONS * sd).max(SLACK * most)
+    {
+        let told = format!("the velocity is {v1:.3} m/s, and this pendulum reaches {most:.3} m/s");
+        tell("impossible-velocity", told);
+    }
+    reasons
+}
+
+/// A stiffness of which the data tell nothing.
+fn undetermined(impact: &ImpactOutcome) -> Option<FindingOutcome> {
+    let (name, estimate) = impact.parameters.0.iter().find(|(_, own)| !own.held)?;
+    let sd = estimate.sd?;
+    (sd > UNCERTAIN * estimate.value.abs()).then(|| {
+        let told = format!(
+            "{name} is {:.4e} ± {sd:.1e} {}: the signals do not determine it",
+            estimate.value, estimate.unit
+        );
+        FindingOutcome::new("undetermined", told)
+    })
+}
+
+/// Results that the others of their fruit or group contradict, by their place.
+fn strangers(
+    impacts: &[ImpactOutcome],
+    of: impl Fn(&ImpactOutcome) -> String,
+    (what, least): (&str, f64),
+) -> Vec<(usize, FindingOutcome)> {
+    let counted = impacts.iter().enumerate().filter(|(_, own)| own.counts());
+    let stiffness = counted.filter_map(|(index, impact)| {
+        let (name, estimate) = impact.parameters.0.iter().find(|(_, own)| !own.held)?;
+        let own = (index, name.as_str(), estimate.value.ln());
+        let group = (impact.law.as_str(), of(impact));
+        (estimate.value > 0.0).then_some((group, own))
+    });
+    let mut strange = Vec::new();
+    for (_, members) in grouped(stiffness) {
+        let values: Vec<f64> = members.iter().map(|own| own.2).collect();
+        let Some((median, deviation)) = robust_spread(&values) else {
+            continue;
+        };
+        let far = (FAR * deviation).max(least);
+        for (index, name, value) in members {
+            if values.len() < FEWEST || (value - median).abs() <= far {
+                continue;
+            }
+            let told = format!(
+                "{name} is {:.3} times the median of its {what}, in which {name} spreads by a factor \
+                 of {:.3} (one robust deviation): look at its signals",
+                (value - median).exp(),
+                deviation.exp()
+            );
+            strange.push((index, FindingOutcome::new("contradicts-others", told)));
+        }
+    }
+    strange
+}

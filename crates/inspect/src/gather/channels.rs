@@ -1,0 +1,202 @@
+//! campaign.toml of recordings that were looked at: the template of a rig, with the channels,
+//! times and units that the recordings have.
+
+use crate::run::{ColumnInspection, Inspection};
+use std::fmt::Write;
+use windfall_files::text::quote::string_text as quoted;
+use windfall_numerics::unit::quantity::{parse_as, parse_unit};
+
+/// Channels that a campaign of impacts takes, with the SI units of their quantities.
+const TAKEN: [(&str, &str); 7] = [
+    ("force", "N"),
+    ("position", "m"),
+    ("velocity", "m/s"),
+    ("acceleration", "m/s^2"),
+    ("angle", "rad"),
+    ("phase_a", ""),
+    ("phase_b", ""),
+];
+
+/// What was taken from the recordings, and what a person has to write.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct Guessed {
+    /// The text of campaign.toml.
+    pub text: String,
+    /// What was assumed.
+    pub assumed: Vec<String>,
+    /// What is missing.
+    pub missing: Vec<String>,
+}
+
+/// campaign.toml for recordings like one that was looked at.
+///
+/// * `template`: that of the rig, whose tables `[files]` and `[channels.…]` are replaced and
+///   whose values of `[rig]` are left for a person to write
+/// * `group`: the column to group by, if there is one
+/// * `names`: the pattern of file names
+pub fn campaign_text(
+    template: &str,
+    seen: &Inspection,
+    group: Option<&str>,
+    names: &str,
+) -> Guessed {
+    let mut guessed = Guessed::default();
+    let channels = channels_text(seen, &mut guessed);
+    let files = files_text(seen, names, &mut guessed);
+    let (mut text, mut section, mut waiting) = (String::new(), "", String::new());
+    for line in template.lines() {
+        let header = line
+            .split_once(']')
+            .map(|(name, _)| name.trim_start_matches('['));
+        if let (true, Some(name)) = (line.starts_with('['), header) {
+            if name == "files" {
+                text += &files;
+            }
+            let first = name.starts_with("channels.") && !section.starts_with("channels.");
+            if first {
+                text += &channels;
+            }
+            section = name;
+        }
+        let replaced =
+            section == "files" || section.starts_with("channels.") || section == "encoder";
+        // A remark before a table belongs to it.
+        if line.is_empty() || (line.starts_with('#') && !replaced) {
+            waiting += line;
+            waiting.push('\n');
+            continue;
+        }
+        if !replaced {
+            text += &waiting;
+            text += &line_of(line, section, group, &mut guessed);
+        }
+        waiting.clear();
+    }
+    guessed.text = text;
+    // The rig is what a person knows best.
+    guessed
+        .missing
+        .sort_by_key(|missing| !missing.starts_with("[rig]"));
+    guessed
+}
+
+/// A line of the template as it stands in the campaign.
+fn line_of(line: &str, section: &str, group: Option<&str>, guessed: &mut Guessed) -> String {
+    let key = line.split_once('=').map(|(key, _)| key.trim());
+    match (section, key) {
+        ("rig", Some(key)) if key != "kind" && !key.starts_with('#') => {
+            guessed.missing.push(format!("[rig] {key}"));
+            format!("# WRITE YOURS: {line}\n")
+        }
+        ("contact", Some("threshold")) => "threshold = \"auto\"\n".to_owned(),
+        ("summary", Some("group")) => match group {
+            Some(group) => format!("group = {}\n", quoted(group)),
+            None => format!("# {line}\n"),
+        },
+        _ => format!("{line}\n"),
+    }
+}
+
+fn files_text(seen: &Inspection, names: &str, guessed: &mut Guessed) -> String {
+    let mut text = "\n[files]\ndirectory = \"raw\"\n".to_owned();
+    let _ = writeln!(text, "names = {}", quoted(names));
+    let column = seen
+        .columns
+        .iter()
+        .find(|column| column.role == Some("time"));
+    let in_file = seen.columns.iter().any(|column| column.rate.is_some());
+    match column {
+        Some(time) => {
+            let _ = writeln!(text, "time = {}", quoted(&time.column));
+            let unit = time
+                .unit
+                .clone()
+                .filter(|unit| parse_as(&format!("1 {unit}"), "s").is_ok());
+            match unit {
+                Some(unit) => {
+                    let _ = writeln!(text, "time_unit = {}", quoted(&unit));
+                }
+                None => guessed.assumed.push(format!(
+                    "the times in \"{}\" are in seconds: nothing says their unit",
+                    time.column
+                )),
+            }
+        }
+        None if in_file => text += "# the recordings say themselves when samples were taken\n",
+        None => {
+            guessed.missing.push("[files] rate".to_owned());
+            text += "# WRITE YOURS: rate = \"200 kHz\"\n";
+        }
+    }
+    text
+}
+
+/// The tables of the channels that could be told.
+fn channels_text(seen: &Inspection, guessed: &mut Guessed) -> String {
+    let mut text = String::new();
+    let mut encoder = false;
+    for (role, quantity) in TAKEN.iter().chain(&[("count", "")]) {
+        let mut columns = seen
+            .columns
+            .iter()
+            .filter(|column| column.role == Some(role));
+        let Some(column) = columns.next() else {
+            continue;
+        };
+        let others = columns.count();
+        if others > 0 {
+            guessed.assumed.push(format!(
+                "{role} is \"{}\", the first of {} columns that could be",
+                column.column,
+                others + 1
+            ));
+        }
+        let _ = write!(
+            text,
+            "\n[channels.{role}]\ncolumn = {}\n",
+            quoted(&column.column)
+        );
+        text += &unit_text(column, role, quantity, guessed);
+        encoder |= ["phase_a", "count"].contains(role);
+    }
+    if encoder {
+        guessed
+            .missing
+            .push("[encoder] counts_per_revolution".to_owned());
+        text +=
+            "\n[encoder]\n# WRITE YOURS: counts_per_revolution = 360000    # after x4 decoding\n";
+    }
+    if text.is_empty() {
+        guessed.missing.push("[channels.force] column".to_owned());
+        text += "\n[channels.force]\n# WRITE YOURS: column = \"force_N\"\n";
+    }
+    text
+}
+
+fn unit_text(
+    column: &ColumnInspection,
+    role: &str,
+    quantity: &str,
+    guessed: &mut Guessed,
+) -> String {
+    if quantity.is_empty() {
+        return String::new();
+    }
+    let same = |unit: &str| match (parse_unit(unit), parse_unit(quantity)) {
+        (Ok(unit), Ok(quantity)) => unit.dimension.matches(&quantity.dimension),
+        _ => false,
+    };
+    match column.unit.as_deref() {
+        Some(unit) if same(unit) => format!("unit = {}\n", quoted(unit)),
+        Some("V" | "mV") => {
+            guessed
+                .missing
+                .push(format!("[channels.{role}] sensitivity"));
+            format!("# WRITE YOURS: sensitivity = \"11 mV/{quantity}\"\n")
+        }
+        _ => {
+            guessed.missing.push(format!("[channels.{role}] unit"));
+            format!("# WRITE YOURS: unit = \"{quantity}\"\n")
+        }
+    }
+}

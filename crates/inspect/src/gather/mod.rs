@@ -1,0 +1,9 @@
+//! A folder of recordings → a campaign: both tables filled from the names of the files, the
+//! channels from what the files hold.
+
+pub mod add;
+pub mod channels;
+pub mod names;
+pub mod new;
+pub mod text;
+pub mod watch;

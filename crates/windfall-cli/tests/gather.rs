@@ -1,0 +1,257 @@
+//! From a folder of recordings to a table of parameters: two commands and one edited file.
+
+use assert_cmd::Command;
+use serde_json::Value;
+use std::path::Path;
+
+fn windfall(line: &[&str], folder: &Path) -> (Option<i32>, String, String) {
+    let mut command = Command::cargo_bin("windfall").unwrap();
+    let output = command.args(line).current_dir(folder).output().unwrap();
+    let text = |bytes: &[u8]| String::from_utf8_lossy(bytes).into_owned();
+    (
+        output.status.code(),
+        text(&output.stdout),
+        text(&output.stderr),
+    )
+}
+
+/// Recordings of a pendulum under names of a laboratory, with their times and units.
+fn recordings(folder: &Path, specimens: usize) {
+    let law = "kuwabara-kono(k=753599,c=1524)";
+    let count = specimens.to_string();
+    let made = [
+        "simulate",
+        "pendulum",
+        "--law",
+        law,
+        "--specimens",
+        &count,
+        "--repeats",
+        "2",
+        "--recordings",
+        "made",
+    ];
+    let (status, _, told) = windfall(&made, folder);
+    assert_eq!(status, Some(0), "{told}");
+    std::fs::create_dir(folder.join("recordings")).unwrap();
+    let mut names: Vec<_> = std::fs::read_dir(folder.join("made/raw"))
+        .unwrap()
+        .map(|e| e.unwrap().path())
+        .collect();
+    names.sort();
+    for (place, path) in names.iter().enumerate() {
+        let variety = ["Golden", "Gala"][place / 2 % 2];
+        let name = format!("{variety}_f{:02}_50mm_{}.csv", place / 2, place % 2 + 1);
+        std::fs::copy(path, folder.join("recordings").join(name)).unwrap();
+    }
+}
+
+const NAMES: &str = "{variety}_f{fruit}_{height_mm}mm_{rep}.csv";
+
+#[test]
+fn recovers_the_law_from_a_folder_by_two_commands_and_one_edited_file() {
+    let laboratory = tempfile::tempdir().unwrap();
+    let folder = laboratory.path();
+    recordings(folder, 20);
+    std::fs::write(folder.join("recordings/notes.txt"), "warm day").unwrap();
+    let new = [
+        "new",
+        "pendulum",
+        "bench",
+        "--from",
+        "recordings",
+        "--names",
+        NAMES,
+        "--format",
+        "json",
+    ];
+    let (status, out, told) = windfall(&new, folder);
+    assert_eq!(status, Some(0), "{told}");
+    let gathered: Value = serde_json::from_str(&out).unwrap();
+    assert_eq!(
+        (&gathered["recordings"], &gathered["specimens"]),
+        (&40.into(), &20.into())
+    );
+    assert!(
+        gathered["left_out"][0]
+            .as_str()
+            .unwrap()
+            .starts_with("notes.txt")
+    );
+    // What is missing is said, line by line.
+    let (status, _, told) = windfall(&["fit", "bench"], folder);
+    assert_eq!(status, Some(2), "{told}");
+    assert!(
+        told.contains("campaign.toml, line") && told.contains("inertia"),
+        "{told}"
+    );
+    let file = folder.join("bench/campaign.toml");
+    let mut text = std::fs::read_to_string(&file).unwrap();
+    let missing = gathered["missing"].as_array().unwrap();
+    assert_eq!(
+        text.matches("# WRITE YOURS: ").count(),
+        missing.len(),
+        "{text}"
+    );
+    let made = std::fs::read_to_string(folder.join("made/campaign.toml")).unwrap();
+    for missing in missing {
+        let key = missing.as_str().unwrap().rsplit(' ').next().unwrap();
+        let starts = |line: &&str| line.starts_with(&format!("{key} ="));
+        let known = made.lines().find(starts).unwrap();
+        let line = text
+            .lines()
+            .find(|line| line.starts_with(&format!("# WRITE YOURS: {key} =")))
+            .unwrap()
+            .to_owned();
+        text = text.replace(&line, known);
+    }
+    std::fs::write(&file, text).unwrap();
+    let (status, out, told) = windfall(&["fit", "bench", "--format", "json"], folder);
+    assert_eq!(status, Some(0), "{told}");
+    let outcome: Value = serde_json::from_str(&out).unwrap();
+    assert_eq!(outcome["impacts"].as_array().unwrap().len(), 40);
+    assert_eq!(outcome["failed"].as_array().unwrap().len(), 0);
+    let groups: Vec<&str> = outcome["groups"]
+        .as_array()
+        .unwrap()
+        .iter()
+        .map(|g| g["group"].as_str().unwrap())
+        .collect();
+    assert_eq!(groups, ["Gala", "Golden"]);
+    let k = outcome["summary"]["k"]["mean"].as_f64().unwrap();
+    assert!((k / 753_599.0 - 1.0).abs() < 0.005, "{k}");
+}
+
+#[test]
+fn rejects_names_that_no_recording_has_and_writes_nothing() {
+    let laboratory = tempfile::tempdir().unwrap();
+    let folder = laboratory.path();
+    recordings(folder, 1);
+    let new = [
+        "new",
+        "pendulum",
+        "bench",
+        "--from",
+        "recordings",
+        "--names",
+        "apple-{fruit}.csv",
+    ];
+    let (status, _, told) = windfall(&new, folder);
+    assert_eq!(status, Some(2), "{told}");
+    assert!(
+        told.contains("Golden_f00_50mm_1.csv") && !folder.join("bench").exists(),
+        "{told}"
+    );
+}
+
+/// A campaign of which some recordings come later.
+fn begun(folder: &Path) -> Vec<std::path::PathBuf> {
+    recordings(folder, 4);
+    let raw = folder.join("made/raw");
+    let mut names: Vec<_> = std::fs::read_dir(&raw)
+        .unwrap()
+        .map(|e| e.unwrap().path())
+        .collect();
+    names.sort();
+    let late = names.split_off(6);
+    std::fs::create_dir(folder.join("late")).unwrap();
+    let moved = late
+        .iter()
+        .map(|path| folder.join("late").join(path.file_name().unwrap()));
+    let moved: Vec<_> = moved.collect();
+    for (from, to) in late.iter().zip(&moved) {
+        std::fs::rename(from, to).unwrap();
+    }
+    for table in ["impacts.csv", "specimens.csv"] {
+        let path = folder.join("made").join(table);
+        let text = std::fs::read_to_string(&path).unwrap();
+        let kept = text
+            .lines()
+            .filter(|line| !line.starts_with("specimen-4") && !line.starts_with("specimen-04"));
+        std::fs::write(
+            &path,
+            kept.map(|line| format!("{line}\n")).collect::<String>(),
+        )
+        .unwrap();
+    }
+    moved
+}
+
+#[test]
+fn recovers_recordings_that_are_added_later() {
+    let laboratory = tempfile::tempdir().unwrap();
+    let folder = laboratory.path();
+    let late = begun(folder);
+    let listed = std::fs::read_to_string(folder.join("made/impacts.csv")).unwrap();
+    let late: Vec<String> = late.iter().map(|path| path.display().to_string()).collect();
+    let words = [
+        &["add", "made"],
+        &late.iter().map(String::as_str).collect::<Vec<_>>()[..],
+    ]
+    .concat();
+    let (status, out, told) = windfall(&words, folder);
+    assert_eq!(status, Some(0), "{told}");
+    assert!(
+        out.starts_with(&format!("{} impacts added", late.len())),
+        "{out}"
+    );
+    let now = std::fs::read_to_string(folder.join("made/impacts.csv")).unwrap();
+    assert!(
+        now.starts_with(&listed) && now.lines().count() == 9,
+        "{now}"
+    );
+    // What is listed already, or would replace a recording, is left out.
+    let (status, out, _) = windfall(&words, folder);
+    assert_eq!(status, Some(0));
+    assert!(
+        out.starts_with("0 impacts added") && out.contains("exists already"),
+        "{out}"
+    );
+    let (status, out, told) = windfall(&["fit", "made", "--format", "json"], folder);
+    assert_eq!(status, Some(0), "{told}");
+    let outcome: Value = serde_json::from_str(&out).unwrap();
+    assert_eq!(outcome["impacts"].as_array().unwrap().len(), 8);
+}
+
+#[test]
+fn recovers_each_recording_that_lands_while_one_watches() {
+    use std::io::{BufRead, BufReader};
+    let laboratory = tempfile::tempdir().unwrap();
+    let folder = laboratory.path();
+    let late = begun(folder);
+    let mut child = std::process::Command::new(env!("CARGO_BIN_EXE_windfall"))
+        .args(["fit", "made", "--watch"])
+        .current_dir(folder)
+        .stdout(std::process::Stdio::piped())
+        .stderr(std::process::Stdio::null())
+        .spawn()
+        .unwrap();
+    let mut lines = BufReader::new(child.stdout.take().unwrap()).lines();
+    let mut until = |what: &str| loop {
+        let line = lines.next().unwrap().unwrap();
+        if line.contains(what) {
+            return line;
+        }
+    };
+    until("All 6 impacts count");
+    for (place, path) in late.iter().enumerate() {
+        std::fs::copy(
+            path,
+            folder.join("made/raw").join(path.file_name().unwrap()),
+        )
+        .unwrap();
+        let id = path.file_stem().unwrap().to_string_lossy().into_owned();
+        let line = until(&format!("{id}: k "));
+        assert!(line.contains("N/m^1.5"), "{line}");
+        until(&format!("All {} impacts count; mean k", 7 + place));
+    }
+    // A recording with nothing in it is said, and stops nothing.
+    std::fs::write(
+        folder.join("made/raw/empty.csv"),
+        "force_V,phase_a_V,phase_b_V\n",
+    )
+    .unwrap();
+    until("empty: NOT FITTED");
+    child.kill().unwrap();
+    child.wait().unwrap();
+}
