@@ -190,14 +190,14 @@ FAULTS = {
 # Findings that name the cause of each.
 NAMES = {
     "clean": set(),
-    "drift": {"drifting-zero", "drift-removed"},
-    "hum": {"drifting-zero", "hum"},
+    "drift": {"drift-removed", "zero-shift"},
+    "hum": {"hum-removed", "drift-removed"},
     "bump": {"bump", "several-contacts", "drifting-zero"},
     "double hit": {"several-contacts"},
     "start in contact": {"contact-at-start"},
     "clipped": {"clipped"},
     "glitch": {"glitch", "glitch-in-contact", "spike"},
-    "lost samples": {"irregular-sampling", "gap", "gap-in-contact", "glitch", "missing-samples", "energy-mismatch"},
+    "lost samples": {"irregular-sampling", "gap-in-contact", "motion-mismatch", "impulse-mismatch", "late-channel", "glitch", "missing-samples", "energy-mismatch"},
     "late channel": {"late-channel", "energy-mismatch"},
     "correlated noise": {"threshold-in-noise", "threshold-raised"},
     "reversed signs": {"reversed"},

@@ -16,24 +16,6 @@ import fault_impacts
 import fault_kinds
 import numpy as np
 
-# Findings that take an impact out of means and cards.
-TAKES_OUT = {
-    "no-convergence",
-    "singular",
-    "at-bound",
-    "clipped",
-    "contact-at-start",
-    "contact-at-end",
-    "energy-mismatch",
-    "illegal-transitions",
-    "accelerometer-disagrees",
-    "glitch-in-contact",
-    "gap-in-contact",
-    "impulse-mismatch",
-    "threshold-in-noise",
-    "zero-unknown",
-}
-
 # k is a catastrophe when it is off by more than this part of the truth; 1.
 CATASTROPHE = 0.2
 
@@ -113,11 +95,11 @@ class Row:
             self.count["failed"] += 1
             return None
         self.count["fitted"] += 1
-        codes = {finding["code"] for finding in impact["findings"]}
+        out = {reason["code"] for reason in impact["left_out"]}
+        codes = {finding["code"] for finding in impact["findings"]} | out
         k = impact["parameters"]["k"]
         off = k["value"] / record.k - 1
-        out = bool(codes & TAKES_OUT)
-        self.count["taken out"] += out
+        self.count["taken out"] += bool(out)
         self.count["counted"] += not out
         verdict = None
         if abs(off) > CATASTROPHE and not out:
@@ -126,7 +108,7 @@ class Row:
         sd = k["sd"]
         if sd is None or not sd > 0 or abs(k["value"] - record.k) > 3 * sd:
             self.count["off"] += 1
-            if codes & (TAKES_OUT | fault_kinds.NAMES[fault]):
+            if out or codes & fault_kinds.NAMES[fault]:
                 self.count["named"] += 1
             else:
                 verdict = verdict or "unnamed"
@@ -221,7 +203,6 @@ def print_table(rows):
     if sound["made"]:
         lost = sound["failed"] + sound["taken out"]
         print(f"clean impacts taken out or failed: {lost} of {sound['made']} ({100 * lost / sound['made']:.2f} %)")
-    print("findings that take an impact out: " + ", ".join(sorted(TAKES_OUT)))
     return total
 
 

@@ -6,6 +6,7 @@ use crate::finding::Finding;
 use crate::force_loop::force_loop;
 use crate::impact::Measured;
 use crate::measure::Surroundings;
+use crate::motion_check::check_motion;
 use crate::options::ExtractOptions;
 use crate::track::{Signals, Track, mean_interval};
 use crate::uncertain::Uncertain;
@@ -18,6 +19,19 @@ const SIGNIFICANT: f64 = 3.0;
 
 /// Disagreement of energies that is told, as a part of the impact energy; 1.
 const MISMATCH: f64 = 0.1;
+
+/// Delay between channels that is told, as a part of the contact's duration; 1.
+const LATE: f64 = 1e-3;
+
+/// Departure of the force from mass times acceleration that is told; 1.
+const GAIN: f64 = 0.01;
+
+/// Root mean square between two channels of one motion that is told, as a part of the largest
+/// displacement; 1.
+const MOTION_MISFIT: f64 = 0.02;
+
+/// … and only if it is this many times the noise of the displacement; 1.
+const SCATTER: f64 = 5.0;
 
 /// Margin of the force loop on either side of the contact; part of the contact's duration.
 const GUARD: f64 = 0.05;
@@ -52,6 +66,10 @@ pub(crate) fn compare(
                 absorbed,
             });
         }
+    }
+    if whole && let (Some(force), Some(displacement)) = (&signals.force, &signals.displacement) {
+        let mass = options.effective_mass;
+        one_motion(force, displacement, place, mass, &mut measured, findings);
     }
     let Some(acceleration) = &signals.acceleration else {
         return measured;
@@ -105,6 +123,54 @@ pub(crate) fn compare(
         measured.integrated_displacement_drift = error.map(|error| error.drift);
     }
     measured
+}
+
+/// Adds what force and displacement say of one another by Newton's law.
+fn one_motion(
+    force: &Track,
+    displacement: &Track,
+    place: &Surroundings,
+    mass: Option<f64>,
+    measured: &mut Measured,
+    findings: &mut Vec<Finding>,
+) {
+    let Some(found) = check_motion(force, displacement, place, mass.unwrap_or(1.0)) else {
+        return;
+    };
+    let (delay, sd) = (found.delay.value, found.delay.sd);
+    if mass.is_some() {
+        measured.force_gain = Some(found.gain.value);
+        measured.force_gain_sd = Some(found.gain.sd);
+    }
+    measured.force_delay = Some(delay);
+    measured.force_delay_sd = Some(sd);
+    measured.motion_misfit = Some(found.misfit);
+    if delay.abs() > (SIGNIFICANT * sd).max(LATE * place.duration()) {
+        findings.push(Finding::LateChannel {
+            force: force.name.clone(),
+            displacement: displacement.name.clone(),
+            delay,
+            sd,
+        });
+    }
+    let apart = (found.gain.value - 1.0).abs();
+    if mass.is_some() && apart > (SIGNIFICANT * found.gain.sd).max(GAIN) {
+        findings.push(Finding::ImpulseMismatch {
+            force: force.name.clone(),
+            displacement: displacement.name.clone(),
+            gain: found.gain.value,
+            sd: found.gain.sd,
+        });
+    }
+    let largest = measured.max_displacement.unwrap_or(f64::INFINITY);
+    if found.misfit > (MOTION_MISFIT * largest).max(SCATTER * displacement.noise) {
+        findings.push(Finding::MotionMismatch {
+            force: force.name.clone(),
+            displacement: displacement.name.clone(),
+            misfit: found.misfit,
+            share: found.misfit / largest,
+        });
+    }
 }
 
 /// Relative standard uncertainties of the ratios of impulses and of peaks, from the

@@ -7,10 +7,8 @@ use crate::filter::zero_phase::filter_zero_phase;
 use crate::finding::Finding;
 use crate::kinematics::value_at;
 use crate::measure::Surroundings;
-use crate::noise::estimate::median;
-use crate::polynomial::{evenly_spaced, fit_polynomial};
+use crate::polynomial::evenly_spaced;
 use crate::track::{Track, Tracks, mean_interval};
-use crate::trigger::ContactWindow;
 use serde::Serialize;
 
 /// A zero-phase Butterworth filter of a channel.
@@ -39,15 +37,6 @@ pub struct Conditioning {
     /// Mass between force sensor and fruit; kg.
     pub tip_mass: Option<f64>,
 }
-
-/// A drift is fitted where this many samples lie on either side.
-const LEAST_QUIET: usize = 5;
-
-/// Part of the recording at either end from which a drift is first guessed; 1.
-const PILOT_SHARE: f64 = 0.05;
-
-/// Part of a contact's duration that is kept away from when a drift is fitted; 1.
-const DRIFT_GUARD: f64 = 0.25;
 
 /// Filters the channels that are to be filtered.
 pub(crate) fn filter_tracks(
@@ -101,63 +90,6 @@ fn filter_track(
     track.values = filtered;
     track.quantum = None;
     Ok(())
-}
-
-/// A force less the line through the medians of its first and last samples, for a first
-/// search for contacts. `None` with too few samples.
-pub(crate) fn less_pilot_line(track: &Track) -> Option<Vec<f64>> {
-    let n = track.times.len();
-    let part = ((PILOT_SHARE * n as f64) as usize).max(LEAST_QUIET);
-    if n < 2 * part {
-        return None;
-    }
-    let (first, last) = (0..part, n - part..n);
-    let middle = |range: &std::ops::Range<usize>| {
-        0.5 * (track.times[range.start] + track.times[range.end - 1])
-    };
-    let (from, to) = (middle(&first), middle(&last));
-    let (low, high) = (median(&track.values[first])?, median(&track.values[last])?);
-    let slope = (high - low) / (to - from);
-    let pairs = track.times.iter().zip(&track.values);
-    Some(pairs.map(|(t, v)| v - low - slope * (t - from)).collect())
-}
-
-/// Subtracts the straight line through the quiet stretches around all contacts.
-pub(crate) fn remove_drift(
-    track: &mut Track,
-    windows: &[ContactWindow],
-    findings: &mut Vec<Finding>,
-) {
-    let (Some(first), Some(last)) = (windows.first(), windows.last()) else {
-        return;
-    };
-    let guard = |window: &ContactWindow| DRIFT_GUARD * (window.end - window.onset);
-    let before = first.onset - guard(first);
-    let after = last.end + guard(last);
-    let early = track.times.partition_point(|t| *t < before);
-    let late = track.times.partition_point(|t| *t <= after);
-    if early < LEAST_QUIET || track.times.len() - late < LEAST_QUIET {
-        findings.push(Finding::DriftUnknown {
-            channel: track.name.clone(),
-            before: early,
-            after: track.times.len() - late,
-        });
-        return;
-    }
-    let quiet = |values: &[f64]| [&values[..early], &values[late..]].concat();
-    let (times, values) = (quiet(&track.times), quiet(&track.values));
-    let Some(line) = fit_polynomial(&times, &values, first.onset, 1) else {
-        return;
-    };
-    let (offset, slope) = (line.derivatives[0], line.derivatives[1]);
-    for (time, value) in track.times.iter().zip(&mut track.values) {
-        *value -= offset + slope * (time - first.onset);
-    }
-    findings.push(Finding::DriftRemoved {
-        channel: track.name.clone(),
-        slope,
-        slope_sd: line.standard_deviations[1],
-    });
 }
 
 /// Adds what accelerates the tip to the force of the sensor behind it:

@@ -2,11 +2,13 @@
 
 use crate::clipping::clipping;
 use crate::compare::compare;
-use crate::conditioning::{add_tip_force, filter_tracks, less_pilot_line, remove_drift};
+use crate::conditioning::{add_tip_force, filter_tracks};
 use crate::deceleration::deceleration;
 use crate::error::{Error, Times};
 use crate::finding::Finding;
+use crate::flight::free_flight;
 use crate::impact::{Impact, Measured, Series};
+use crate::jump::jump;
 use crate::kinematics::{Motion, smoothing_window};
 use crate::measure::{
     Side, Surroundings, Velocity, free_velocity, impulse, largest_displacement, with_energies,
@@ -19,12 +21,17 @@ use crate::orient::{
 use crate::polynomial::local_polynomial;
 use crate::rate::derived_rate;
 use crate::recording::Recording;
+use crate::spike::remove_spikes;
 use crate::track::{Geometry, Signals, Track, Tracks, mean_interval, missing, tracks};
 use crate::trigger::{
     Baseline, ContactChoice, ContactWindow, Contacts, Signal, Threshold, TriggerOptions,
     find_contacts,
 };
+use crate::zero::level_zero;
 
+/// A contact changes the velocity by at least this part of what the largest does, for the
+/// size of its force; 1.
+const TURNS: f64 = 0.3;
 /// Fewer samples in contact than this are reported.
 const FEW_SAMPLES: usize = 8;
 /// Noise below this part of the largest force leaves its peak alone; 1.
@@ -56,17 +63,29 @@ pub fn extract_impact(
         illegal: options.illegal,
     };
     let mut tracks = tracks(recording, &geometry, &mut findings)?;
+    for track in tracks.all_mut() {
+        remove_spikes(track, &mut findings);
+    }
     filter_tracks(&mut tracks, &options.conditioning, &mut findings)?;
-    if options.trigger.baseline == Baseline::Drift
-        && let Some(force) = &mut tracks.force
-    {
-        let windows = drifting_windows(force, &options.trigger)?;
-        remove_drift(force, &windows, &mut findings);
+    let mut trend_sd = 0.0;
+    if let Some(force) = &mut tracks.force {
+        let find = |force: &Track| {
+            find_contacts(
+                &signal(force, "N", &force.times, &force.values),
+                &options.trigger,
+            )
+        };
+        trend_sd = level_zero(force, &options.trigger, find, &mut findings)?;
     }
 
     // The contact, and the free motion around it.
     let (contacts, from_motion) = contacts(recording, &tracks, options)?;
-    let place = choose(&contacts, options, from_motion, &mut findings)?;
+    let contacts = Contacts {
+        trend_sd,
+        ..contacts
+    };
+    let turns = turning_contacts(&contacts, &tracks, &mut findings);
+    let place = choose(&contacts, &turns, options, from_motion, &mut findings)?;
     missing_samples(recording, &place, &mut findings)?;
 
     // Signs, zeros and noise; then what they say, and the rate to be fitted.
@@ -81,9 +100,15 @@ pub fn extract_impact(
     let measured_rate = signals.rate.is_some();
     signals.rate = rate(&mut signals, options, &place, &mut findings);
 
-    let cut = |track: Option<Track>| track.and_then(|track| series(&track, &place, options));
+    let margins = margins(&signals, &measured, &place, options, &mut findings);
+    let short = [options.margin_before, options.margin_after].map(|own| own * place.duration());
+    let used = (place.onset - margins[0], place.end + margins[1]);
+    findings.extend(signals.displacement.iter().find_map(|own| jump(own, used)));
+    let cut = |track: Option<Track>, kept: [f64; 2]| {
+        track.and_then(|track| series(&track, &place, kept, options))
+    };
     let removed = options.trigger.baseline != Baseline::Keep;
-    let force = cut(signals.force).map(|series| Series {
+    let force = cut(signals.force, short).map(|series| Series {
         zero_sd: if removed {
             offset_sd(&contacts, series.persistence)
         } else {
@@ -92,13 +117,13 @@ pub fn extract_impact(
         ..series
     });
     let impact = Impact {
-        displacement: cut(signals.displacement),
-        rate: cut(signals.rate).map(|series| Series {
+        displacement: cut(signals.displacement, margins),
+        rate: cut(signals.rate, margins).map(|series| Series {
             derived: !keeps_measured(options, measured_rate),
             ..series
         }),
         force,
-        acceleration: cut(signals.acceleration),
+        acceleration: cut(signals.acceleration, short),
         onset: place.onset,
         end: place.end,
         measured,
@@ -289,23 +314,6 @@ fn contacts(
     Ok((contacts, Some(window_finding(track, found.resolution))))
 }
 
-/// Contacts of a force whose zero drifts, after a first line is subtracted unless the
-/// recording then seems to begin or end in contact.
-fn drifting_windows(force: &Track, trigger: &TriggerOptions) -> Result<Vec<ContactWindow>, Error> {
-    let whole = |contacts: &Contacts| {
-        let ends = contacts.windows.first().zip(contacts.windows.last());
-        ends.is_some_and(|(first, last)| first.onset_seen && last.end_seen)
-    };
-    if let Some(level) = less_pilot_line(force)
-        && let Ok(found) = find_contacts(&signal(force, "N", &force.times, &level), trigger)
-        && whole(&found)
-    {
-        return Ok(found.windows);
-    }
-    let signal = signal(force, "N", &force.times, &force.values);
-    find_contacts(&signal, trigger).map(|found| found.windows)
-}
-
 fn signal<'a>(
     track: &'a Track,
     unit: &'static str,
@@ -327,20 +335,78 @@ fn window_finding(track: &Track, resolution: f64) -> Finding {
     }
 }
 
+/// Indices of the contacts in which the velocity changes, as far as a motion was measured;
+/// all of them where none does. A force without that is a knock on the bench.
+fn turning_contacts(
+    contacts: &Contacts,
+    tracks: &Tracks,
+    findings: &mut Vec<Finding>,
+) -> Vec<usize> {
+    let windows = &contacts.windows;
+    let all = || (0..windows.len()).collect();
+    let motion = match (&tracks.position, &tracks.rate) {
+        (Some(position), _) => (&position.track, Motion::Displacement),
+        (None, Some(rate)) => (rate, Motion::Rate),
+        (None, None) => return all(),
+    };
+    let Some(force) = tracks.force.as_ref().filter(|_| windows.len() > 1) else {
+        return all();
+    };
+    // Change of velocity for the size of the force.
+    let changes: Vec<Option<f64>> = (0..windows.len())
+        .map(|i| {
+            let (window, place) = (windows[i], surroundings(windows, i));
+            let velocity = |side| {
+                let samples = (&motion.0.times[..], &motion.0.values[..], motion.1);
+                free_velocity(samples, 0.0, &place, side, 0.0).map(|own| own.value)
+            };
+            let change = velocity(Side::After)? - velocity(Side::Before)?;
+            Some(change / (window.peak * place.duration()))
+        })
+        .collect();
+    let impulse = |i: &usize| windows[*i].peak * (windows[*i].end - windows[*i].onset);
+    let largest = (0..windows.len()).max_by(|a, b| impulse(a).total_cmp(&impulse(b)));
+    let Some(expected) = largest.and_then(|i| changes[i]) else {
+        return all();
+    };
+    let turns = |i: &usize| changes[*i].is_none_or(|own| own / expected > TURNS);
+    let (kept, knocks): (Vec<usize>, Vec<usize>) = (0..windows.len()).partition(turns);
+    if !knocks.is_empty() {
+        findings.push(Finding::Bump {
+            channel: force.name.clone(),
+            times: Times(knocks.iter().map(|&i| windows[i].onset).collect()),
+        });
+    }
+    kept
+}
+
+/// A contact and the free motion up to its neighbours.
+fn surroundings(windows: &[ContactWindow], index: usize) -> Surroundings {
+    let before = index.checked_sub(1).map(|i| windows[i].end);
+    let after = windows.get(index + 1).map(|w| w.onset);
+    Surroundings {
+        onset: windows[index].onset,
+        end: windows[index].end,
+        from: before.unwrap_or(f64::NEG_INFINITY),
+        until: after.unwrap_or(f64::INFINITY),
+    }
+}
+
 /// The contact that is used, up to its neighbours.
 fn choose(
     contacts: &Contacts,
+    turns: &[usize],
     options: &ExtractOptions,
     from_motion: Option<Finding>,
     findings: &mut Vec<Finding>,
 ) -> Result<Surroundings, Error> {
     findings.extend(from_motion);
     let windows = &contacts.windows;
-    let chosen = contacts.choose(options.trigger.choice)?;
+    let chosen = contacts.choose_among(turns, options.trigger.choice)?;
     let window = windows[chosen];
-    if windows.len() > 1 {
+    if turns.len() > 1 {
         findings.push(Finding::SeveralContacts {
-            onsets: Times(windows.iter().map(|w| w.onset).collect()),
+            onsets: Times(turns.iter().map(|&i| windows[i].onset).collect()),
             used: window.onset,
         });
     }
@@ -350,14 +416,7 @@ fn choose(
     if !window.end_seen {
         findings.push(Finding::ContactAtEnd { time: window.end });
     }
-    let before = chosen.checked_sub(1).map(|i| windows[i].end);
-    let after = windows.get(chosen + 1).map(|w| w.onset);
-    Ok(Surroundings {
-        onset: window.onset,
-        end: window.end,
-        from: before.unwrap_or(f64::NEG_INFINITY),
-        until: after.unwrap_or(f64::INFINITY),
-    })
+    Ok(surroundings(windows, chosen))
 }
 
 fn measure(
@@ -449,11 +508,48 @@ fn few_samples(track: &Track, place: &Surroundings) -> Option<Finding> {
     })
 }
 
+/// Free motion kept before and after the contact; s. The less of what displacement and
+/// measured rate show.
+fn margins(
+    signals: &Signals,
+    measured: &Measured,
+    place: &Surroundings,
+    options: &ExtractOptions,
+    findings: &mut Vec<Finding>,
+) -> [f64; 2] {
+    let peak = measured.peak_force.unwrap_or(f64::INFINITY);
+    [
+        (Side::Before, options.margin_before),
+        (Side::After, options.margin_after),
+    ]
+    .map(|(side, margin)| {
+        let least = margin * place.duration();
+        if options.free_flight <= margin {
+            return least;
+        }
+        let motions = [&signals.displacement, &signals.rate].into_iter().flatten();
+        let flights = motions.map(|motion| {
+            let force = signals.force.as_ref();
+            free_flight(motion, force, peak, place, side, options.free_flight)
+        });
+        let shortest = flights.min_by(|a, b| a.0.total_cmp(&b.0));
+        shortest.map_or(least, |(length, finding)| {
+            findings.extend(finding);
+            length.max(least)
+        })
+    })
+}
+
 /// The samples around the contact; `None` if there is none.
-fn series(track: &Track, place: &Surroundings, options: &ExtractOptions) -> Option<Series> {
+///
+/// * `kept`: before and after it; s
+fn series(
+    track: &Track,
+    place: &Surroundings,
+    [before, after]: [f64; 2],
+    options: &ExtractOptions,
+) -> Option<Series> {
     let times = &track.times;
-    let before = options.margin_before * place.duration();
-    let after = options.margin_after * place.duration();
     let from = place.onset - before.max(options.pre_trigger);
     let until = place.end + after.max(options.post_trigger);
     let onset = times.partition_point(|&t| t < place.onset);

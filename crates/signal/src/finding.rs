@@ -98,6 +98,20 @@ pub enum Finding {
         value: f64,
     },
     #[error(
+        "channel '{channel}': {samples} single sample(s) far from those beside them, the first at {} s ({value:.4e}); the median of their neighbours is used instead. Look at plugs, cables and the converter",
+        Rounded(*time)
+    )]
+    Spikes {
+        channel: String,
+        samples: usize,
+        time: f64,
+        value: f64,
+    },
+    #[error(
+        "at {times} s '{channel}' shows a force without a change of velocity: a knock on the bench or the cable, not taken for a contact"
+    )]
+    Bump { channel: String, times: Times },
+    #[error(
         "channel '{channel}' was {} (Butterworth of order {order}, forwards and backwards, no delay); {:.1} % of its range is left, and neighbouring samples share their noise",
         band_text(*band),
         100.0 * kept
@@ -115,6 +129,36 @@ pub enum Finding {
         channel: String,
         slope: f64,
         slope_sd: f64,
+    },
+    #[error(
+        "only {used} contact durations of free motion {} the contact are used of '{channel}', not {wanted}: {why}",
+        if *after { "after" } else { "before" }
+    )]
+    FlightHeldBack {
+        channel: String,
+        after: bool,
+        used: f64,
+        wanted: f64,
+        why: &'static str,
+    },
+    #[error(
+        "a hum of {frequency:.0} Hz and {amplitude:.3} ± {sd:.3} N in channel '{channel}' has been subtracted, as seen before and after contact. Look at the earth and the shield of its cable"
+    )]
+    HumRemoved {
+        channel: String,
+        frequency: f64,
+        amplitude: f64,
+        sd: f64,
+    },
+    #[error(
+        "channel '{channel}' reads {change:.4} ± {sd:.4} N more after contact than before ({:.1} % of the peak): something rests on the sensor, or its zero sags as that of a piezoelectric sensor does. The zero before contact is used",
+        100.0 * share
+    )]
+    ZeroShift {
+        channel: String,
+        change: f64,
+        sd: f64,
+        share: f64,
     },
     #[error(
         "no drift of channel '{channel}' can be told from {before} samples before and {after} after contact; only the mean before it has been subtracted. Record longer"
@@ -150,6 +194,48 @@ pub enum Finding {
     )]
     EnergyMismatch { area: f64, absorbed: f64 },
     #[error(
+        "channel '{channel}' jumps by {:.1} µm between two samples at {} s, much farther than before and after: rows are missing, or counts were lost. Record the time beside each row, and look at the buffer of the recorder",
+        1e6 * size,
+        Rounded(*time)
+    )]
+    GapInContact {
+        channel: String,
+        time: f64,
+        size: f64,
+    },
+    #[error(
+        "'{force}' comes {:.1} ± {:.1} µs {} than '{displacement}', by Newton's law: a delay between the channels shifts stiffness and damping. Sample both at once, and look for missing rows",
+        1e6 * delay.abs(),
+        1e6 * sd,
+        if *delay > 0.0 { "later" } else { "earlier" }
+    )]
+    LateChannel {
+        force: String,
+        displacement: String,
+        delay: f64,
+        sd: f64,
+    },
+    #[error(
+        "'{force}' is {gain:.3} ± {sd:.3} times mass times the acceleration of '{displacement}': look at the sensitivity of the force, at the mass or inertia, at the length of a count, and for missing rows"
+    )]
+    ImpulseMismatch {
+        force: String,
+        displacement: String,
+        gain: f64,
+        sd: f64,
+    },
+    #[error(
+        "'{force}' and '{displacement}' are not of one motion: the force, integrated twice, departs from the displacement by {:.1} µm ({:.1} % of the largest). Samples may be missing, the arm may ring, or the sensor may not see the whole force",
+        1e6 * misfit,
+        100.0 * share
+    )]
+    MotionMismatch {
+        force: String,
+        displacement: String,
+        misfit: f64,
+        share: f64,
+    },
+    #[error(
         "channel '{channel}' has only {samples} samples during contact: it says little about the shape of the force law"
     )]
     FewSamples { channel: String, samples: usize },
@@ -183,13 +269,21 @@ impl Finding {
             Self::OffsetRemoved { .. } => "offset-removed",
             Self::WindowFromMotion { .. } => "window-from-motion",
             Self::NoiseAtFloor { .. } => "noise-at-floor",
-            Self::Glitch { .. } => "glitch",
+            Self::Glitch { .. } | Self::Spikes { .. } => "glitch",
+            Self::Bump { .. } => "bump",
             Self::Filtered { .. } => "filtered",
             Self::DriftRemoved { .. } => "drift-removed",
+            Self::FlightHeldBack { .. } => "flight-held-back",
+            Self::HumRemoved { .. } => "hum-removed",
+            Self::ZeroShift { .. } => "zero-shift",
             Self::DriftUnknown { .. } => "drift-unknown",
             Self::TipMass { .. } => "tip-mass",
             Self::AccelerometerDisagrees { .. } => "accelerometer-disagrees",
             Self::EnergyMismatch { .. } => "energy-mismatch",
+            Self::GapInContact { .. } => "gap-in-contact",
+            Self::LateChannel { .. } => "late-channel",
+            Self::ImpulseMismatch { .. } => "impulse-mismatch",
+            Self::MotionMismatch { .. } => "motion-mismatch",
             Self::FewSamples { .. } => "few-samples",
             Self::MissingSamples { .. } => "missing-samples",
             Self::DecimalOrThousands { .. } => "decimal-or-thousands",

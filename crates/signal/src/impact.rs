@@ -60,6 +60,16 @@ pub struct Measured {
     pub acceleration_impulse_ratio_sd: Option<f64>,
     /// Standard uncertainty of the ratio of the peaks, from noise and zeros; 1.
     pub acceleration_peak_ratio_sd: Option<f64>,
+    /// Recorded force over mass times the acceleration of the displacement; 1.
+    pub force_gain: Option<f64>,
+    /// Time by which the force comes later than the displacement; s.
+    pub force_delay: Option<f64>,
+    /// Root mean square between the displacement and the twice integrated force; m.
+    pub motion_misfit: Option<f64>,
+    /// Standard uncertainty of the gain, from scatter; 1.
+    pub force_gain_sd: Option<f64>,
+    /// Standard uncertainty of the delay, from scatter; s.
+    pub force_delay_sd: Option<f64>,
     /// Standard uncertainty of the impact velocity, from the scatter about the line; m/s.
     pub impact_velocity_sd: Option<f64>,
     /// Standard uncertainty of the speed of rebound, likewise; m/s.

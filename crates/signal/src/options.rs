@@ -43,6 +43,10 @@ pub struct ExtractOptions {
     pub margin_before: f64,
     /// What is kept after the end, as a part of the contact's duration; 1.
     pub margin_after: f64,
+    /// Free motion of displacement and rate that is kept on either side where it is seen to
+    /// be free, as a part of the contact's duration; 1. It says how fast and from where the
+    /// impactor came and went, and so sharpens stiffness and damping. 0: the margins.
+    pub free_flight: f64,
     /// Samples kept at least on either side, where the recording has them.
     pub margin_samples: usize,
     /// The encoder, if there are phases or counts.
@@ -76,6 +80,7 @@ impl Default for ExtractOptions {
             orientation: Orientation::default(),
             margin_before: 0.2,
             margin_after: 0.2,
+            free_flight: 2.0,
             margin_samples: 3,
             encoder: None,
             illegal: IllegalTransition::default(),
@@ -97,6 +102,7 @@ pub(crate) fn check_options(options: &ExtractOptions) -> Result<(), Error> {
     for (option, margin) in [
         ("margin before contact", options.margin_before),
         ("margin after contact", options.margin_after),
+        ("free flight", options.free_flight),
     ] {
         if !(margin >= 0.0 && margin.is_finite()) {
             return bad(

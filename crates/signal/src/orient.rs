@@ -45,7 +45,8 @@ pub(crate) fn oriented_force(
 /// Standard uncertainty of the mean before contact, with correlated samples.
 pub(crate) fn offset_sd(contacts: &Contacts, persistence: Option<f64>) -> f64 {
     let inflation = mean_inflation(persistence.unwrap_or(0.0)).max(1.0);
-    contacts.deviation * (inflation / contacts.baseline_samples.max(1) as f64).sqrt()
+    let mean = contacts.deviation * (inflation / contacts.baseline_samples.max(1) as f64).sqrt();
+    mean.hypot(contacts.trend_sd)
 }
 
 pub(crate) fn orient(

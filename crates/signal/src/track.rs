@@ -36,6 +36,14 @@ pub(crate) struct Tracks {
     pub acceleration: Option<Track>,
 }
 
+impl Tracks {
+    pub fn all_mut(&mut self) -> impl Iterator<Item = &mut Track> {
+        let position = self.position.as_mut().map(|own| &mut own.track);
+        let others = [&mut self.rate, &mut self.force, &mut self.acceleration];
+        position.into_iter().chain(others.into_iter().flatten())
+    }
+}
+
 /// Channels in the convention of an impact, with their noise.
 pub(crate) struct Signals {
     pub displacement: Option<Track>,

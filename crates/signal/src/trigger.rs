@@ -6,11 +6,15 @@ use crate::noise::estimate::{baseline, median};
 use crate::polynomial::fit_polynomial;
 use crate::trigger_scale::{Level, PulseScale, moving_mean, pulse_scale, white_noise};
 use serde::Serialize;
+use std::f64::consts::TAU;
 
 pub use crate::contact_window::ContactWindow;
 
 /// Samples from which the baseline is first guessed, as a part of the signal; 1.
 const PILOT_SHARE: f64 = 0.05;
+
+/// The first samples are in contact if their level changes by this many standard deviations; 1.
+const PILOT_CLEAR: f64 = 6.0;
 
 /// Fewest samples of a baseline that is worth the name.
 const LEAST_BASELINE: usize = 5;
@@ -159,6 +163,8 @@ pub struct Contacts {
     /// Samples before the first contact from which offset and noise come; with
     /// none of them the offset is that of the end, if the signal rests there, or 0.
     pub baseline_samples: usize,
+    /// Standard uncertainty of a trend of the zero that was subtracted before; N.
+    pub trend_sd: f64,
     /// True if the force is negative in contact.
     pub reversed: bool,
     /// Samples over which the force was averaged to compare it.
@@ -171,6 +177,17 @@ impl Contacts {
     /// # Errors
     /// [`Error::NoContactInRange`] if none begins in the range asked for.
     pub fn choose(&self, choice: ContactChoice) -> Result<usize, Error> {
+        let all: Vec<usize> = (0..self.windows.len()).collect();
+        self.choose_among(&all, choice)
+    }
+
+    /// As [`Self::choose`], the first and the strongest of those given; at least one.
+    pub(crate) fn choose_among(
+        &self,
+        candidates: &[usize],
+        choice: ContactChoice,
+    ) -> Result<usize, Error> {
+        let first = candidates.first().copied().unwrap_or(0);
         let strongest = |best: usize, i: usize| {
             if self.windows[i].peak > self.windows[best].peak {
                 i
@@ -179,8 +196,8 @@ impl Contacts {
             }
         };
         match choice {
-            ContactChoice::First => Ok(0),
-            ContactChoice::Strongest => Ok((0..self.windows.len()).fold(0, strongest)),
+            ContactChoice::First => Ok(first),
+            ContactChoice::Strongest => Ok(candidates.iter().copied().fold(first, strongest)),
             ContactChoice::Within { from, to } => self
                 .windows
                 .iter()
@@ -273,6 +290,7 @@ pub fn find_contacts(signal: &Signal, options: &TriggerOptions) -> Result<Contac
         offset: 0.0,
         deviation: 0.0,
         baseline_samples: 0,
+        trend_sd: 0.0,
         reversed,
         smoothing,
     };
@@ -363,16 +381,20 @@ fn smoothed_noise(averaged: &[f64], noise: f64, smoothing: usize) -> f64 {
 fn pilot_level(values: &[f64]) -> (f64, bool) {
     let n = values.len();
     let samples = pilot_samples(n);
+    let middle = |part: &[f64]| median(part).unwrap_or(0.0);
+    // Level, and by how much it changes from the first half to the second.
     let level = |part: &[f64]| {
-        let middle = median(part).unwrap_or(0.0);
-        let distances: Vec<f64> = part.iter().map(|v| (v - middle).abs()).collect();
-        (middle, median(&distances).unwrap_or(0.0))
+        let (early, late) = part.split_at(part.len() / 2);
+        (middle(part), (middle(late) - middle(early)).abs())
     };
-    let (first, first_spread) = level(&values[..samples]);
-    let (last, last_spread) = level(&values[n - samples..]);
+    let (first, first_change) = level(&values[..samples]);
+    let (last, last_change) = level(&values[n - samples..]);
     let low = values.iter().copied().fold(f64::INFINITY, f64::min);
     let high = values.iter().copied().fold(f64::NEG_INFINITY, f64::max);
-    if first_spread > BASELINE_RISE * (high - low) && last_spread < first_spread / 3.0 {
+    // Of the difference of two medians, each of half of the samples.
+    let chance = white_noise(values) * (TAU / samples as f64).sqrt();
+    let changes = first_change > (BASELINE_RISE * (high - low)).max(PILOT_CLEAR * chance);
+    if changes && last_change < first_change / 3.0 {
         return (last, true);
     }
     (first, false)

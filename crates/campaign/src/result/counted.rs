@@ -14,7 +14,8 @@ use windfall_identify::rig::kind::Rig;
 pub const NOTE_COLUMN: &str = "note";
 
 /// Findings after which the values of a fit are no estimates.
-const NO_ESTIMATES: [&str; 5] = [
+const NO_ESTIMATES: [&str; 6] = [
+    "gap-in-contact",
     "no-convergence",
     "singular",
     "at-bound",
@@ -29,6 +30,12 @@ const SLACK: f64 = 0.05;
 /// Largest ratio of impulse to change of momentum, or its inverse, that a bench whose
 /// sensitivity or inertia is somewhat wrong may have; 1.
 const IMPULSE_RATIO: f64 = 1.25;
+/// Largest delay between force and displacement, as a part of the contact's duration; 1. A
+/// delay of 1 % shifts the stiffness by about a tenth.
+const DELAY: f64 = 0.015;
+/// Largest root mean square between the displacement and the twice integrated force, as a
+/// part of the largest displacement; 1.
+const MOTION: f64 = 0.04;
 /// Largest standard deviation of the stiffness, relative to it; 1.
 const UNCERTAIN: f64 = 0.5;
 /// Fewest impacts of a group with which each is compared.
@@ -196,6 +203,32 @@ fn impossible(impact: &ImpactOutcome, rig: &Rig) -> Vec<FindingOutcome> {
                 ),
             );
         }
+    }
+    if let (Some((delay, sd)), Some((duration, _))) = (
+        signal(impact, "force_delay"),
+        signal(impact, "contact_duration"),
+    ) && delay.abs() > (DEVIATIONS * sd).max(DELAY * duration)
+    {
+        let told = format!(
+            "the force is {:.0} ± {:.0} µs off the displacement, by Newton's law: {:.1} % of the contact",
+            1e6 * delay,
+            1e6 * sd,
+            100.0 * delay.abs() / duration
+        );
+        tell("late-channel", told);
+    }
+    if let (Some((misfit, _)), Some((largest, _))) = (
+        signal(impact, "motion_misfit"),
+        signal(impact, "max_displacement"),
+    ) && misfit > MOTION * largest
+    {
+        let told = format!(
+            "the force, integrated twice, departs from the displacement by {:.1} µm, {:.1} % of the \
+             largest: they are not of one motion",
+            1e6 * misfit,
+            100.0 * misfit / largest
+        );
+        tell("motion-mismatch", told);
     }
     if let (Some(most), Some((v1, sd))) =
         (rig.largest_velocity(), signal(impact, "impact_velocity"))

@@ -201,7 +201,7 @@ macro_rules! signal {
 }
 
 /// Every quantity, in the order of JSON and CSV.
-pub const QUANTITIES: [Quantity; 22] = [
+pub const QUANTITIES: [Quantity; 25] = [
     quantity(
         "impact_velocity",
         ("Impact velocity", "v₁", "m/s"),
@@ -280,6 +280,22 @@ pub const QUANTITIES: [Quantity; 22] = [
         "hysteresis_energy",
         ("Hysteresis energy", "Eₕ", "J"),
         signal!(hysteresis_energy, no_sd),
+    ),
+    quantity(
+        "force_gain",
+        ("Force over mass times acceleration", "F/mẍ", ""),
+        signal!(force_gain, |s| s.force_gain_sd),
+    ),
+    quantity(
+        "force_delay",
+        ("Delay of the force behind the displacement", "τ", "s"),
+        signal!(force_delay, |s| s.force_delay_sd),
+    )
+    .shown_in("µs", 1e6),
+    quantity(
+        "motion_misfit",
+        ("Displacement less twice integrated force, RMS", "Δx F", "m"),
+        signal!(motion_misfit, no_sd),
     ),
     quantity(
         "acceleration_impulse_ratio",

@@ -1,0 +1,155 @@
+//! Whether force and displacement tell of one motion.
+
+use crate::kinematics::value_at;
+use crate::linear_fit::{LinearFit, linear_fit, sum};
+use crate::measure::Surroundings;
+use crate::noise::colour::mean_inflation;
+use crate::track::Track;
+use crate::uncertain::Uncertain;
+
+/// Free motion on either side of the contact that is compared too; contact durations.
+const SIDES: f64 = 0.5;
+
+/// Fewest samples of either channel in contact.
+const LEAST_SAMPLES: usize = 20;
+
+/// Steps towards the delay; each is exact for small changes.
+const STEPS: usize = 20;
+
+/// What Newton's law says of force and displacement together.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct MotionCheck {
+    /// Recorded force over mass times acceleration; 1.
+    pub gain: Uncertain,
+    /// Time by which the force comes later than the displacement; s.
+    pub delay: Uncertain,
+    /// Root mean square of what remains between them; m.
+    pub misfit: f64,
+}
+
+/// Compares a displacement with the force of the same contact, integrated twice:
+///
+/// ```text
+/// m x(t) = a + b t + q t²/2 − (1/g) ∬ F(t + τ)
+/// ```
+///
+/// Gain g and delay τ are estimated with a, b and q by least squares; q takes up what the
+/// zero of the force and the driving acceleration leave. Standard uncertainties come from
+/// the scatter, from its correlation between samples, and from the noise of the force, which
+/// both integrations carry on to all later samples.
+///
+/// * `force`, `displacement`: repulsive, and positive into the fruit; N, m
+/// * `mass`: what the contact accelerates; kg
+///
+/// `None` with fewer than twenty samples of either in contact, or where they do not
+/// determine the coefficients.
+pub(crate) fn check_motion(
+    force: &Track,
+    displacement: &Track,
+    place: &Surroundings,
+    mass: f64,
+) -> Option<MotionCheck> {
+    let side = SIDES * place.duration();
+    let (from, until) = (
+        (place.onset - side).max(place.from),
+        (place.end + side).min(place.until),
+    );
+    let within = |times: &[f64], from: f64, until: f64| {
+        times.partition_point(|&t| t < from)..times.partition_point(|&t| t <= until)
+    };
+    for track in [force, displacement] {
+        if within(&track.times, place.onset, place.end).len() < LEAST_SAMPLES {
+            return None;
+        }
+    }
+    let part = within(&displacement.times, from, until);
+    let (times, places) = (
+        &displacement.times[part.clone()],
+        &displacement.values[part],
+    );
+    let [velocity_lost, way_lost] = integrals(force, from, mass);
+
+    let scale = until - from;
+    let mut delay = 0.0;
+    let mut found = None;
+    for _ in 0..STEPS {
+        // Place, velocity, acceleration beside the force, gain, gain × delay.
+        let row = |t: f64| {
+            let u = (t - place.onset) / scale;
+            let lost = |integral: &[f64]| value_at(&force.times, integral, t + delay);
+            [1.0, u, u * u, -lost(&way_lost), -lost(&velocity_lost)]
+        };
+        let fit = linear_fit(times, places, row)?;
+        let (inverse_gain, product) = (fit.coefficients[3], fit.coefficients[4]);
+        if inverse_gain <= 0.0 {
+            return None;
+        }
+        let shaken = shaken(&fit, times, row, force, mass);
+        let sd = |i: usize| fit.deviations[i].hypot(shaken[i]);
+        let step = product / inverse_gain;
+        delay += step.clamp(-0.5 * place.duration(), 0.5 * place.duration());
+        found = Some(MotionCheck {
+            gain: Uncertain::new(1.0 / inverse_gain, sd(3) / inverse_gain.powi(2)),
+            delay: Uncertain::new(delay, sd(4) / inverse_gain),
+            misfit: fit.scatter,
+        });
+        if step.abs() < 0.01 * sd(4) / inverse_gain {
+            break;
+        }
+    }
+    found.filter(|found| found.delay.value.abs() < place.duration())
+}
+
+/// Velocity and displacement that the force takes from a mass, from `from` on, at the
+/// times of the force; m/s, m.
+fn integrals(force: &Track, from: f64, mass: f64) -> [Vec<f64>; 2] {
+    let (mut velocity, mut way) = (0.0, 0.0);
+    let mut found = [Vec::new(), Vec::new()];
+    for (i, (&time, &value)) in force.times.iter().zip(&force.values).enumerate() {
+        if i > 0 && time >= from {
+            let interval = time - force.times[i - 1];
+            let gained = 0.5 * (value + force.values[i - 1]) / mass * interval;
+            way += (velocity + 0.5 * gained) * interval;
+            velocity += gained;
+        }
+        found[0].push(velocity);
+        found[1].push(way);
+    }
+    found
+}
+
+/// What the noise of the force leaves in each coefficient, after both integrations.
+///
+/// A sample that is off by σ moves every later place by σ h (t − tⱼ)/m.
+fn shaken<const P: usize>(
+    fit: &LinearFit<P>,
+    times: &[f64],
+    row: impl Fn(f64) -> [f64; P],
+    force: &Track,
+    mass: f64,
+) -> [f64; P] {
+    let inflation = mean_inflation(force.persistence.unwrap_or(0.0)).max(1.0);
+    let (first, last) = (times[0], times[times.len() - 1]);
+    let begin = force.times.partition_point(|&t| t < first);
+    let until = force.times.partition_point(|&t| t < last);
+    // Σ wᵢ and Σ wᵢ tᵢ over the samples after tⱼ, of the weights of each coefficient.
+    let (mut weights, mut moments, mut squares) = ([0.0; P], [0.0; P], [0.0; P]);
+    let mut next = times.len();
+    for j in (begin + 1..until).rev() {
+        let time = force.times[j];
+        while next > 0 && times[next - 1] > time {
+            next -= 1;
+            let row = row(times[next]);
+            for i in 0..P {
+                let weight = sum(&fit.inverse[i], &row);
+                weights[i] += weight;
+                moments[i] += weight * (times[next] - first);
+            }
+        }
+        let push = force.noise / mass * (time - force.times[j - 1]);
+        for i in 0..P {
+            squares[i] += (push * (moments[i] - weights[i] * (time - first))).powi(2);
+        }
+    }
+    squares.map(|square| (square * inflation).sqrt())
+}

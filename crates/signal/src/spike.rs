@@ -1,0 +1,115 @@
+//! Samples that no sensor could give: a single value far from its neighbours.
+
+use crate::finding::Finding;
+use crate::noise::estimate::median;
+use crate::track::Track;
+use crate::trigger_scale::white_noise;
+
+/// A spike departs from its neighbours by this many standard deviations of the noise; 1.
+const CLEAR: f64 = 10.0;
+/// … and by this many steps of a quantised signal; 1.
+const STEPS: f64 = 5.0;
+/// … and by this part of the range of all samples; 1.
+const SMALL: f64 = 0.05;
+/// … and by this many times what the samples around it depart from theirs; 1.
+const LONELY: f64 = 5.0;
+/// Samples on either side whose departures it is compared with.
+const AROUND: usize = 10;
+/// A larger part of the samples than this are no spikes but a noise of its own kind; 1.
+const RARE: f64 = 0.005;
+
+/// Replaces spikes by the median of the four samples next to them, and says so.
+///
+/// A spike is one sample. The top of a pulse that lasts only a few samples is none: the
+/// samples beside it depart from their neighbours too.
+pub(crate) fn remove_spikes(track: &mut Track, findings: &mut Vec<Finding>) {
+    let spikes = spikes(&track.values, track.quantum.unwrap_or(0.0));
+    let Some(&(first, _)) = spikes.first() else {
+        return;
+    };
+    findings.push(Finding::Spikes {
+        channel: track.name.clone(),
+        samples: spikes.len(),
+        time: track.times[first],
+        value: track.values[first],
+    });
+    for (index, value) in spikes {
+        track.values[index] = value;
+    }
+}
+
+/// Spikes with the values that belong there.
+pub fn spikes(values: &[f64], quantum: f64) -> Vec<(usize, f64)> {
+    let n = values.len();
+    if n < 2 * AROUND {
+        return Vec::new();
+    }
+    let low = values.iter().copied().fold(f64::INFINITY, f64::min);
+    let high = values.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+    let least = (CLEAR * white_noise(values))
+        .max(STEPS * quantum)
+        .max(SMALL * (high - low));
+    // Few samples are far enough from the mean of their neighbours to be looked at.
+    let departs = |i: usize| (values[i] - 0.5 * (values[i - 1] + values[i + 1])).abs();
+    let neighbours = |i: usize| {
+        let own = [values[i - 2], values[i - 1], values[i + 1], values[i + 2]];
+        median(&own).unwrap_or(values[i])
+    };
+    let mut found = Vec::new();
+    for i in 2..n - 2 {
+        if departs(i) <= 0.5 * least {
+            continue;
+        }
+        let expected = neighbours(i);
+        let size = (values[i] - expected).abs();
+        let around = i.saturating_sub(AROUND).max(2)..(i + AROUND + 1).min(n - 2);
+        let others = around.filter(|&j| j != i);
+        let rough = others.map(|j| (values[j] - neighbours(j)).abs());
+        if size > least && size > LONELY * rough.fold(0.0, f64::max) {
+            found.push((i, expected));
+        }
+    }
+    if found.len() as f64 > (RARE * n as f64).max(1.0) {
+        found.clear();
+    }
+    found
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn pulse(samples: usize) -> Vec<f64> {
+        let phase = |i: usize| (i as f64 - 100.0 + 0.5) / samples as f64;
+        let value = |p: f64| (std::f64::consts::PI * p).sin();
+        (0..400)
+            .map(|i| {
+                if (0.0..1.0).contains(&phase(i)) {
+                    value(phase(i))
+                } else {
+                    0.0
+                }
+            })
+            .collect()
+    }
+
+    #[test]
+    fn closed_form_short_pulses_are_no_spikes() {
+        for samples in [2, 3, 4, 5, 8, 20, 200] {
+            assert_eq!(spikes(&pulse(samples), 0.0), [], "{samples}");
+        }
+    }
+
+    #[test]
+    fn closed_form_a_spike_is_replaced_by_its_neighbours() {
+        for at in [50, 150, 290] {
+            let clean = pulse(200);
+            let mut values = clean.clone();
+            values[at] += 0.5;
+            let found = spikes(&values, 0.0);
+            assert_eq!(found.len(), 1, "{at}");
+            assert_eq!(found[0].0, at);
+            assert!((found[0].1 - clean[at]).abs() < 1e-3);
+        }
+    }
+}
