@@ -1,7 +1,7 @@
 //! How often intervals hold the truth, from simulated raw recordings:
 //!
 //! ```text
-//! cargo run --release -p windfall-identify --example interval_coverage -- CAMPAIGNS THREADS
+//! cargo run --release -p windfall-identify --example interval_coverage -- CAMPAIGNS THREADS [METHODS] [--seed S]
 //! ```
 //!
 //! Each campaign is one impact on its own fruit, recorded as an instrument writes
@@ -15,7 +15,7 @@
 #[path = "shared/pendulum.rs"]
 mod pendulum;
 
-use pendulum::{Bench, bench, on_threads, recorded, rig};
+use pendulum::{Bench, arguments, bench, on_threads, recorded, rig};
 use windfall_contact::expression::parse_law;
 use windfall_contact::laws::kind::LawKind;
 use windfall_identify::fit::interval::{IntervalDetail, IntervalMethod, IntervalOptions};
@@ -127,13 +127,13 @@ fn told(made: &Made, fit: &Fit) -> Told {
 
 fn campaigns(
     bench: &Bench,
-    count: u64,
+    (begin, count): (u64, u64),
     threads: u64,
     method: IntervalMethod,
     noise: NoiseModel,
 ) -> Vec<Option<Told>> {
     on_threads(count, threads, |seed| {
-        let made = made(bench, seed + 1)?;
+        let made = made(bench, begin + seed + 1)?;
         let fit = fit(&made, method, noise, seed)?;
         Some(told(&made, &fit))
     })
@@ -188,7 +188,8 @@ fn ranks(all: &[Option<Told>]) {
 }
 
 fn main() {
-    let mut arguments = std::env::args().skip(1);
+    let (arguments, begin) = arguments();
+    let mut arguments = arguments.into_iter();
     let count: u64 = arguments.next().map_or(200, |a| a.parse().unwrap());
     let threads: u64 = arguments.next().map_or(1, |a| a.parse().unwrap());
     let only = arguments.next();
@@ -229,7 +230,7 @@ fn main() {
             {
                 continue;
             }
-            let all = campaigns(&bench, count, threads, method, noise);
+            let all = campaigns(&bench, (begin, count), threads, method, noise);
             row(name, &all);
             if method == IntervalMethod::Posterior {
                 posterior = all;

@@ -1,7 +1,7 @@
 //! How often the right law is ranked first:
 //!
 //! ```text
-//! cargo run --release -p windfall-identify --example law_ranking_study -- CAMPAIGNS THREADS
+//! cargo run --release -p windfall-identify --example law_ranking_study -- CAMPAIGNS THREADS [--seed S]
 //! ```
 //!
 //! For each of six forms of a law, campaigns of 20 impacts over three velocities
@@ -14,7 +14,7 @@
 #[path = "shared/pendulum.rs"]
 mod pendulum;
 
-use pendulum::{Bench, bench, on_threads, recorded, rig};
+use pendulum::{Bench, arguments, bench, on_threads, recorded, rig};
 use windfall_contact::expression::parse_law;
 use windfall_contact::laws::kind::{Law, LawKind};
 use windfall_identify::compare::ranking::{
@@ -67,7 +67,8 @@ fn campaign(bench: &Bench, truth: Law, problems: &[LawProblem], seed: u64) -> Op
 }
 
 fn main() {
-    let mut arguments = std::env::args().skip(1);
+    let (arguments, begin) = arguments();
+    let mut arguments = arguments.into_iter();
     let count: u64 = arguments.next().map_or(20, |a| a.parse().unwrap());
     let threads: u64 = arguments.next().map_or(1, |a| a.parse().unwrap());
     let bench = bench("the 2003 study", 360_000.0, 1.0, 0.0);
@@ -83,7 +84,7 @@ fn main() {
     println!("|---|---|---|---|---|---|---|");
     for truth in laws {
         let results = on_threads(count, threads, |seed| {
-            campaign(&bench, truth, &problems, seed + 1)
+            campaign(&bench, truth, &problems, begin + seed + 1)
         });
         let rankings: Vec<&LawRanking> = results.iter().flatten().collect();
         row(truth.kind(), &rankings, results.len());

@@ -2,11 +2,11 @@
 //! campaign with known truth, nonlinear mixed effects beside the two-stage way or
 //! beside the posterior.
 //!
-//! `population_study [fine|coarse] [REPLICATES] [THREADS] [REACH]` prints a
+//! `population_study [fine|coarse] [REPLICATES] [THREADS] [REACH] [--seed S]` prints a
 //! Markdown table. REACH: standard errors around a fit in which it counts as a
 //! normal observation (2).
 //!
-//! `population_study posterior [REPLICATES] [THREADS]` draws the posterior of each
+//! `population_study posterior [REPLICATES] [THREADS] [--seed S]` draws the posterior of each
 //! replicate and compares.
 //!
 //! `fine`: encoder of 360,000 counts per revolution, force noise of 1 N.
@@ -17,7 +17,7 @@
 #[path = "shared/pendulum.rs"]
 mod pendulum;
 
-use pendulum::{Bench, bench, on_threads, recorded, rig};
+use pendulum::{Bench, arguments, bench, on_threads, recorded, rig};
 use windfall_contact::expression::parse_law;
 use windfall_contact::laws::kind::LawKind;
 use windfall_identify::fit::interval::mixes;
@@ -335,9 +335,9 @@ fn posterior(case: &(Bench, f64), seed: u64) -> (Vec<Pair>, usize, bool) {
 }
 
 /// Where the posterior is and how wide, against the estimate's interval.
-fn compare_posteriors(case: &(Bench, f64), count: u64, threads: u64) {
+fn compare_posteriors(case: &(Bench, f64), first: u64, count: u64, threads: u64) {
     let begin = std::time::Instant::now();
-    let replicates = on_threads(count, threads, |i| posterior(case, 1000 + i));
+    let replicates = on_threads(count, threads, |i| posterior(case, first + 1000 + i));
     println!(
         "| quantity | posterior median less estimate, standard errors | largest | width of the posterior's interval over that of the estimate | smallest | largest |"
     );
@@ -377,17 +377,19 @@ fn compare_posteriors(case: &(Bench, f64), count: u64, threads: u64) {
 }
 
 fn main() {
-    let arguments: Vec<String> = std::env::args().skip(1).collect();
+    let (arguments, first) = arguments();
     let argument = |i: usize| arguments.get(i).map(String::as_str);
     let case = case(argument(0).unwrap_or("fine"));
     let count: u64 = argument(1).map_or(200, |text| text.parse().unwrap());
     let threads: u64 = argument(2).map_or(2, |text| text.parse().unwrap());
     if argument(0) == Some("posterior") {
-        return compare_posteriors(&case, count, threads);
+        return compare_posteriors(&case, first, count, threads);
     }
     let reach: f64 = argument(3).map_or(NORMAL_REACH, |text| text.parse().unwrap());
     let begin = std::time::Instant::now();
-    let replicates = on_threads(count, threads, |i| replicate(&case, 1000 + i, reach));
+    let replicates = on_threads(count, threads, |i| {
+        replicate(&case, first + 1000 + i, reach)
+    });
     table(&replicates);
     let n = replicates.len() as f64;
     let mean = |f: &dyn Fn(&Replicate) -> f64| replicates.iter().map(f).sum::<f64>() / n;

@@ -57,7 +57,10 @@ fn signals(campaign: &ImpactCampaign) -> String {
     let trigger = &contact.trigger;
     let threshold = threshold_text(&trigger.threshold);
     let baseline = match trigger.baseline {
-        Baseline::Remove => "The mean force before contact was subtracted.",
+        Baseline::Remove => {
+            "The mean force before contact was subtracted, and a drift or a hum of its zero where \
+             the findings say so."
+        }
         Baseline::Drift => {
             "A straight line through the force before and after contact was subtracted."
         }
@@ -90,9 +93,17 @@ fn signals(campaign: &ImpactCampaign) -> String {
         .map_or_else(String::new, |mass| {
             format!(" The inertia of {mass} kg ahead of the force sensor was added to the force.",)
         });
+    let flight = if contact.free_flight > contact.margin_before.max(contact.margin_after) {
+        format!(
+            ", and of the motion up to {} durations as far as it was free",
+            contact.free_flight
+        )
+    } else {
+        String::new()
+    };
     format!(
         "Contact was taken to last while the force {threshold}; {} and {} of its duration were \
-         kept before and after it. {baseline}{sign} The displacement rate was {rate}. {filters}{tip}",
+         kept before and after it{flight}. {baseline}{sign} The displacement rate was {rate}. {filters}{tip}",
         contact.margin_before, contact.margin_after
     )
 }

@@ -17,6 +17,9 @@ const DISAGREES: f64 = 0.05;
 /// … and only if it is this many of its standard uncertainties; 1.
 const SIGNIFICANT: f64 = 3.0;
 
+/// Delay and gain of the force are told from this many on, as every impact has them; 1.
+const CLEAR: f64 = 4.0;
+
 /// Disagreement of energies that is told, as a part of the impact energy; 1.
 const MISMATCH: f64 = 0.1;
 
@@ -145,7 +148,7 @@ fn one_motion(
     measured.force_delay = Some(delay);
     measured.force_delay_sd = Some(sd);
     measured.motion_misfit = Some(found.misfit);
-    if delay.abs() > (SIGNIFICANT * sd).max(LATE * place.duration()) {
+    if delay.abs() > (CLEAR * sd).max(LATE * place.duration()) {
         findings.push(Finding::LateChannel {
             force: force.name.clone(),
             displacement: displacement.name.clone(),
@@ -154,7 +157,7 @@ fn one_motion(
         });
     }
     let apart = (found.gain.value - 1.0).abs();
-    if mass.is_some() && apart > (SIGNIFICANT * found.gain.sd).max(GAIN) {
+    if mass.is_some() && apart > (CLEAR * found.gain.sd).max(GAIN) {
         findings.push(Finding::ImpulseMismatch {
             force: force.name.clone(),
             displacement: displacement.name.clone(),

@@ -1,12 +1,13 @@
 //! Recording → Impact.
 
+use crate::choose::{choose, turning_contacts};
 use crate::clipping::clipping;
 use crate::compare::compare;
 use crate::conditioning::{add_tip_force, filter_tracks};
 use crate::deceleration::deceleration;
-use crate::error::{Error, Times};
+use crate::error::Error;
 use crate::finding::Finding;
-use crate::flight::free_flight;
+use crate::flight::margins;
 use crate::impact::{Impact, Measured, Series};
 use crate::jump::jump;
 use crate::kinematics::{Motion, smoothing_window};
@@ -24,14 +25,10 @@ use crate::recording::Recording;
 use crate::spike::remove_spikes;
 use crate::track::{Geometry, Signals, Track, Tracks, mean_interval, missing, tracks};
 use crate::trigger::{
-    Baseline, ContactChoice, ContactWindow, Contacts, Signal, Threshold, TriggerOptions,
-    find_contacts,
+    Baseline, ContactChoice, Contacts, Signal, Threshold, TriggerOptions, find_contacts,
 };
 use crate::zero::level_zero;
 
-/// A contact changes the velocity by at least this part of what the largest does, for the
-/// size of its force; 1.
-const TURNS: f64 = 0.3;
 /// Fewer samples in contact than this are reported.
 const FEW_SAMPLES: usize = 8;
 /// Noise below this part of the largest force leaves its peak alone; 1.
@@ -335,90 +332,6 @@ fn window_finding(track: &Track, resolution: f64) -> Finding {
     }
 }
 
-/// Indices of the contacts in which the velocity changes, as far as a motion was measured;
-/// all of them where none does. A force without that is a knock on the bench.
-fn turning_contacts(
-    contacts: &Contacts,
-    tracks: &Tracks,
-    findings: &mut Vec<Finding>,
-) -> Vec<usize> {
-    let windows = &contacts.windows;
-    let all = || (0..windows.len()).collect();
-    let motion = match (&tracks.position, &tracks.rate) {
-        (Some(position), _) => (&position.track, Motion::Displacement),
-        (None, Some(rate)) => (rate, Motion::Rate),
-        (None, None) => return all(),
-    };
-    let Some(force) = tracks.force.as_ref().filter(|_| windows.len() > 1) else {
-        return all();
-    };
-    // Change of velocity for the size of the force.
-    let changes: Vec<Option<f64>> = (0..windows.len())
-        .map(|i| {
-            let (window, place) = (windows[i], surroundings(windows, i));
-            let velocity = |side| {
-                let samples = (&motion.0.times[..], &motion.0.values[..], motion.1);
-                free_velocity(samples, 0.0, &place, side, 0.0).map(|own| own.value)
-            };
-            let change = velocity(Side::After)? - velocity(Side::Before)?;
-            Some(change / (window.peak * place.duration()))
-        })
-        .collect();
-    let impulse = |i: &usize| windows[*i].peak * (windows[*i].end - windows[*i].onset);
-    let largest = (0..windows.len()).max_by(|a, b| impulse(a).total_cmp(&impulse(b)));
-    let Some(expected) = largest.and_then(|i| changes[i]) else {
-        return all();
-    };
-    let turns = |i: &usize| changes[*i].is_none_or(|own| own / expected > TURNS);
-    let (kept, knocks): (Vec<usize>, Vec<usize>) = (0..windows.len()).partition(turns);
-    if !knocks.is_empty() {
-        findings.push(Finding::Bump {
-            channel: force.name.clone(),
-            times: Times(knocks.iter().map(|&i| windows[i].onset).collect()),
-        });
-    }
-    kept
-}
-
-/// A contact and the free motion up to its neighbours.
-fn surroundings(windows: &[ContactWindow], index: usize) -> Surroundings {
-    let before = index.checked_sub(1).map(|i| windows[i].end);
-    let after = windows.get(index + 1).map(|w| w.onset);
-    Surroundings {
-        onset: windows[index].onset,
-        end: windows[index].end,
-        from: before.unwrap_or(f64::NEG_INFINITY),
-        until: after.unwrap_or(f64::INFINITY),
-    }
-}
-
-/// The contact that is used, up to its neighbours.
-fn choose(
-    contacts: &Contacts,
-    turns: &[usize],
-    options: &ExtractOptions,
-    from_motion: Option<Finding>,
-    findings: &mut Vec<Finding>,
-) -> Result<Surroundings, Error> {
-    findings.extend(from_motion);
-    let windows = &contacts.windows;
-    let chosen = contacts.choose_among(turns, options.trigger.choice)?;
-    let window = windows[chosen];
-    if turns.len() > 1 {
-        findings.push(Finding::SeveralContacts {
-            onsets: Times(turns.iter().map(|&i| windows[i].onset).collect()),
-            used: window.onset,
-        });
-    }
-    if !window.onset_seen {
-        findings.push(Finding::ContactAtStart { time: window.onset });
-    }
-    if !window.end_seen {
-        findings.push(Finding::ContactAtEnd { time: window.end });
-    }
-    Ok(surroundings(windows, chosen))
-}
-
 fn measure(
     signals: &Signals,
     contacts: &Contacts,
@@ -505,38 +418,6 @@ fn few_samples(track: &Track, place: &Surroundings) -> Option<Finding> {
     (end - onset < FEW_SAMPLES).then(|| Finding::FewSamples {
         channel: track.name.clone(),
         samples: end - onset,
-    })
-}
-
-/// Free motion kept before and after the contact; s. The less of what displacement and
-/// measured rate show.
-fn margins(
-    signals: &Signals,
-    measured: &Measured,
-    place: &Surroundings,
-    options: &ExtractOptions,
-    findings: &mut Vec<Finding>,
-) -> [f64; 2] {
-    let peak = measured.peak_force.unwrap_or(f64::INFINITY);
-    [
-        (Side::Before, options.margin_before),
-        (Side::After, options.margin_after),
-    ]
-    .map(|(side, margin)| {
-        let least = margin * place.duration();
-        if options.free_flight <= margin {
-            return least;
-        }
-        let motions = [&signals.displacement, &signals.rate].into_iter().flatten();
-        let flights = motions.map(|motion| {
-            let force = signals.force.as_ref();
-            free_flight(motion, force, peak, place, side, options.free_flight)
-        });
-        let shortest = flights.min_by(|a, b| a.0.total_cmp(&b.0));
-        shortest.map_or(least, |(length, finding)| {
-            findings.extend(finding);
-            length.max(least)
-        })
     })
 }
 

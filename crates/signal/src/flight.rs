@@ -1,9 +1,11 @@
 //! How much of the free motion next to a contact is free.
 
 use crate::finding::Finding;
+use crate::impact::Measured;
 use crate::linear_fit::{linear_fit, sum};
 use crate::measure::{Side, Surroundings};
-use crate::track::Track;
+use crate::options::ExtractOptions;
+use crate::track::{Signals, Track};
 
 /// Lengths that are tried, from the longest, as parts of the contact's duration; 1.
 const LENGTHS: [f64; 4] = [2.0, 1.0, 0.5, 0.3];
@@ -20,6 +22,38 @@ const SILENT: f64 = 0.02;
 /// Stretches in which the force is looked at, as a part of the contact's duration; 1.
 const STRETCH: f64 = 0.1;
 
+/// Free motion kept before and after the contact; s. The less of what displacement and
+/// measured rate show.
+pub(crate) fn margins(
+    signals: &Signals,
+    measured: &Measured,
+    place: &Surroundings,
+    options: &ExtractOptions,
+    findings: &mut Vec<Finding>,
+) -> [f64; 2] {
+    let peak = measured.peak_force.unwrap_or(f64::INFINITY);
+    [
+        (Side::Before, options.margin_before),
+        (Side::After, options.margin_after),
+    ]
+    .map(|(side, margin)| {
+        let least = margin * place.duration();
+        if options.free_flight <= margin {
+            return least;
+        }
+        let motions = [&signals.displacement, &signals.rate].into_iter().flatten();
+        let flights = motions.map(|motion| {
+            let force = signals.force.as_ref();
+            free_flight(motion, force, peak, place, side, options.free_flight)
+        });
+        let shortest = flights.min_by(|a, b| a.0.total_cmp(&b.0));
+        shortest.map_or(least, |(length, finding)| {
+            findings.extend(finding);
+            length.max(least)
+        })
+    })
+}
+
 /// Free motion that may be used on one side of a contact, in s, and why it is not more.
 ///
 /// Free motion is smooth over a few contact durations: a parabola describes it, an arm that
@@ -27,7 +61,7 @@ const STRETCH: f64 = 0.1;
 ///
 /// * `motion`: displacement or rate
 /// * `wanted`: contact durations asked for
-pub(crate) fn free_flight(
+fn free_flight(
     motion: &Track,
     force: Option<&Track>,
     peak: f64,

@@ -14,6 +14,7 @@
 
 pub mod accelerometer;
 pub mod bounce;
+mod choose;
 pub mod clipping;
 mod compare;
 pub mod compression;

@@ -10,17 +10,20 @@ const CLEAR: f64 = 10.0;
 /// … and by this many steps of a quantised signal; 1.
 const STEPS: f64 = 5.0;
 /// … and by this part of the range of all samples; 1.
-const SMALL: f64 = 0.05;
+const SMALL: f64 = 0.1;
 /// … and by this many times what the samples around it depart from theirs; 1.
 const LONELY: f64 = 5.0;
 /// Samples on either side whose departures it is compared with.
 const AROUND: usize = 10;
+/// Fewest samples of pulses in which a single one is no part of a pulse.
+const DENSE: usize = 100;
 /// A larger part of the samples than this are no spikes but a noise of its own kind; 1.
 const RARE: f64 = 0.005;
 
 /// Replaces spikes by the median of the four samples next to them, and says so.
 ///
-/// A spike is one sample. The top of a pulse that lasts only a few samples is none: the
+/// A spike is one sample among many: where a contact has few samples, each may be its peak.
+/// The top of a pulse that lasts only a few samples is none: the
 /// samples beside it depart from their neighbours too.
 pub(crate) fn remove_spikes(track: &mut Track, findings: &mut Vec<Finding>) {
     let spikes = spikes(&track.values, track.quantum.unwrap_or(0.0));
@@ -69,10 +72,24 @@ pub fn spikes(values: &[f64], quantum: f64) -> Vec<(usize, f64)> {
             found.push((i, expected));
         }
     }
-    if found.len() as f64 > (RARE * n as f64).max(1.0) {
+    let noisy = found.len() as f64 > (RARE * n as f64).max(1.0);
+    if noisy || samples_of_pulses(values, &found) < DENSE {
         found.clear();
     }
     found
+}
+
+/// Samples that belong to pulses: farther from the median than a tenth of the farthest,
+/// spikes apart.
+fn samples_of_pulses(values: &[f64], spikes: &[(usize, f64)]) -> usize {
+    let mut values = values.to_vec();
+    for &(index, value) in spikes {
+        values[index] = value;
+    }
+    let middle = median(&values).unwrap_or(0.0);
+    let far = || values.iter().map(|v| (v - middle).abs());
+    let farthest = far().fold(0.0, f64::max);
+    far().filter(|distance| *distance > 0.1 * farthest).count()
 }
 
 #[cfg(test)]

@@ -34,6 +34,8 @@ const IN_CONTACT: f64 = 5.0;
 const DECISIVE: f64 = 25.0;
 /// Periods of the mains that quiet samples must span to tell a hum; 1.
 const PERIODS: f64 = 1.0;
+/// Means in a period of it; 1.
+const MEANS_IN_PERIOD: f64 = 5.0;
 /// A change of the zero over the contact that is told, as a part of the peak; 1.
 const SHIFT: f64 = 0.01;
 /// Ratio of standard deviation to median magnitude of Gaussian noise; 1.
@@ -51,6 +53,16 @@ enum Shape {
 impl Shape {
     fn all() -> impl Iterator<Item = Self> {
         [Self::Line].into_iter().chain(MAINS.map(Self::Hum))
+    }
+
+    /// Whether means at these times can show it: a hum needs a period, and five means in it.
+    fn shows(self, times: &[f64], span: f64) -> bool {
+        let Self::Hum(frequency) = self else {
+            return true;
+        };
+        let intervals: Vec<f64> = times.windows(2).map(|t| t[1] - t[0]).collect();
+        let interval = median(&intervals).unwrap_or(span);
+        span * frequency >= PERIODS && interval * frequency * MEANS_IN_PERIOD <= 1.0
     }
 
     /// Its functions at a time from the middle of `span`; those it lacks are 0.
@@ -251,7 +263,7 @@ fn first_guess(track: &Track, forced: bool) -> Option<Zero> {
     let span = times.last()? - times.first()?;
     let mut best: Option<(f64, Zero)> = None;
     for shape in Shape::all() {
-        if matches!(shape, Shape::Hum(frequency) if span * frequency < PERIODS) {
+        if !shape.shows(&times, span) {
             continue;
         }
         let Some((zero, departure)) = trimmed(shape, &times, &values) else {
@@ -355,7 +367,7 @@ fn chosen(times: &[f64], values: &[f64], forced: bool) -> Option<Zero> {
     let span = times.last()? - times.first()?;
     let mut best = Zero::through(Shape::Constant, times, values)?;
     for shape in Shape::all() {
-        if matches!(shape, Shape::Hum(frequency) if span * frequency < PERIODS) {
+        if !shape.shows(times, span) {
             continue;
         }
         let Some(zero) = Zero::through(shape, times, values) else {

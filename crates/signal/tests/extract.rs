@@ -389,8 +389,12 @@ fn recovers_wrong_signs_and_says_so() {
     };
     let (found, findings) = extract_impact(&wrong, &kept).unwrap();
     assert_eq!(codes(&findings), ["reversed", "reversed"]);
-    let negative =
-        |series: &Option<Series>| series.as_ref().unwrap().values.iter().sum::<f64>() < 0.0;
+    let negative = |series: &Option<Series>| {
+        let series = series.as_ref().unwrap();
+        let samples = series.times.iter().zip(&series.values);
+        let within = samples.filter(|(t, _)| (found.onset..found.end).contains(*t));
+        within.map(|(_, value)| value).sum::<f64>() < 0.0
+    };
     assert!(negative(&found.force) && negative(&found.displacement));
 }
 

@@ -126,10 +126,10 @@ fn pinned_numbers_are_those_of_the_revision() {
         digest(&drops, &[]),
     ];
     let expected = (
-        3,
+        4,
         [
-            "7052e8dc0caa4786",
-            "35206247a11a39db",
+            "51b77bc5c70aa8a2",
+            "3608fc2053045200",
             "91551cac97612078",
             "362e0649b943bd49",
             "3e453baf43c8c589",

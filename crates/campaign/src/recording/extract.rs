@@ -3,6 +3,7 @@
 use crate::recording::read::{read_with_gaps, recording_path};
 use crate::settings::model::{ImpactCampaign, ImpactEntry};
 use windfall_files::error::Error;
+use windfall_identify::fit::problem::{Treatment, Weighting};
 use windfall_signal::impact::Impact;
 use windfall_signal::recording::Recording;
 use windfall_signal::trigger::ContactChoice;
@@ -35,6 +36,12 @@ pub fn extract_entry(
 ) -> Result<(Impact, Vec<Finding>), Error> {
     let mut options = campaign.contact;
     options.effective_mass = effective_mass;
+    // Free motion tells where touch began: it contradicts an onset that is held at the
+    // threshold. Weights without the noise of a channel do not know how well it tells.
+    let fit = &campaign.fit.options;
+    if fit.onset == Treatment::Fixed || fit.weighting == Weighting::InverseMean {
+        options.free_flight = 0.0;
+    }
     if entry.from.is_some() || entry.to.is_some() {
         options.trigger.choice = ContactChoice::Within {
             from: entry.from.unwrap_or(f64::NEG_INFINITY),

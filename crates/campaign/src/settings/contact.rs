@@ -56,9 +56,12 @@ pub fn contact_plan(
     let (before, after) = (options.margin_before, options.margin_after);
     options.margin_before = margin(&contact.margin_before, "margin_before", before)?;
     options.margin_after = margin(&contact.margin_after, "margin_after", after)?;
-    if contact.margin_before.is_some() || contact.margin_after.is_some() {
-        options.free_flight = 0.0;
-    }
+    let usual = if contact.margin_before.is_some() || contact.margin_after.is_some() {
+        0.0
+    } else {
+        options.free_flight
+    };
+    options.free_flight = margin(&contact.free_flight, "free_flight", usual)?;
     let (key, fits) = ((TABLE, "release"), |part| part > 0.0 && part <= 1.0);
     let expected = "a part of the threshold above 0, at most 1, such as 0.5";
     let release = number_that(source, contact.release.as_ref(), key, fits, expected)?;

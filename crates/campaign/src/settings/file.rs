@@ -229,6 +229,8 @@ pub struct ContactFile {
     pub margin_before: Option<Spanned<f64>>,
     /// What is kept after the contact, as a part of its duration.
     pub margin_after: Option<Spanned<f64>>,
+    /// Free motion kept on either side, as a part of the contact's duration; 1.
+    pub free_flight: Option<Spanned<f64>>,
 }
 
 /// `[fit]`

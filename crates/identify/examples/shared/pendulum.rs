@@ -114,6 +114,18 @@ pub fn recorded(bench: &Bench, law: &Law, velocity: f64, seed: u64) -> Option<Im
         .map(|found| found.0)
 }
 
+/// Words of the command line, and the first number of all seeds, from `--seed S` (0): other
+/// studies of the same kind.
+pub fn arguments() -> (Vec<String>, u64) {
+    let mut words: Vec<String> = std::env::args().skip(1).collect();
+    let Some(at) = words.iter().position(|word| word == "--seed") else {
+        return (words, 0);
+    };
+    let seed: Vec<String> = words.drain(at..(at + 2).min(words.len())).collect();
+    let seed: u64 = seed.get(1).map_or(0, |text| text.parse().unwrap());
+    (words, seed * 1_000_000)
+}
+
 /// `work` on 0 … count − 1 on that many threads; results in order.
 pub fn on_threads<T: Send>(count: u64, threads: u64, work: impl Fn(u64) -> T + Sync) -> Vec<T> {
     let work = &work;

@@ -44,6 +44,11 @@ pub fn impact(seed: u64) -> Impact {
 
 /// One impact as another instrument records it.
 pub fn impact_of(instrument: &Instrument, seed: u64) -> Impact {
+    impact_with_flight(instrument, seed, 2.0)
+}
+
+/// One impact with so much free motion, in contact durations.
+pub fn impact_with_flight(instrument: &Instrument, seed: u64, free_flight: f64) -> Impact {
     let law = parse_law(&format!("kuwabara-kono(k={K}, c={C})")).unwrap();
     let times: Vec<f64> = (0..2400).map(|i| -3e-3 + 5e-6 * f64::from(i)).collect();
     let law = law.complete().unwrap();
@@ -67,6 +72,7 @@ pub fn impact_of(instrument: &Instrument, seed: u64) -> Impact {
         }),
         arm: Some(0.505),
         effective_mass: Some(rig().effective_mass()),
+        free_flight,
         ..ExtractOptions::default()
     };
     extract_impact(&recording, &options).unwrap().0
