@@ -213,7 +213,7 @@ class PageSaves:
         pendulum(program, folder)
 
     def earlier(self, program, folder):
-        problems = self.all_steps(program, folder, self.steps(folder, "earlier", "hertz", 2.0))
+        problems = self.all_steps(program, folder, self.steps(folder, "earlier", "hunt-crossley", 2.0))
         assert not problems, problems
 
     def steps(self, folder, name="new", law="kuwabara-kono", end=1.0):
@@ -323,12 +323,12 @@ SEED = ("c/scene.toml", "seed = 1", "seed = 2")
 RUN = "scene run c/scene.toml --threads 2"
 KINDS = {
     "fit": Command(pendulum, "fit c --threads 2 --figures figures --card law.toml",
-                   "fit c --law hertz --figures figures --card law.toml"),
+                   "fit c --law hunt-crossley --figures figures --card law.toml"),
     "fit of compressions": Command(compression, "fit c --threads 2 --figures figures",
                                    ("c/campaign.toml", 'title = "', 'title = "earlier ')),
-    "report": Command(pendulum, "report c --threads 2", "report c --law hertz"),
+    "report": Command(pendulum, "report c --threads 2", "report c --law hunt-crossley"),
     "population": Command(pendulum, "population c --threads 2 --card law.toml",
-                          "population c --law hertz --card law.toml"),
+                          "population c --law hunt-crossley --card law.toml"),
     "calibrate": Command(drops, "calibrate c --way waveform --figures figures --tables tables --card law.toml",
                          ("c/campaign.toml", "e=1.91", "e=1.9")),
     "scene run": Command(scene, RUN, SEED, resume="--resume"),
