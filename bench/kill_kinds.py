@@ -186,8 +186,9 @@ class Command:
         if seconds is None:
             own.end()
         else:
-            time.sleep(seconds)
-            if own.process.poll() is None:
+            try:
+                own.process.wait(seconds)
+            except subprocess.TimeoutExpired:
                 own.kill(alone)
         return own.was_killed(), int(own.process.returncode == 0)
 
