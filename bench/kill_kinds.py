@@ -119,6 +119,11 @@ def pendulum(program, folder):
         "--specimens", "1", "--repeats", "2")
 
 
+def several_fruit(program, folder):
+    run(program, folder, "simulate", "pendulum", "--law", "kuwabara-kono(k=753599, c=1524)", "--recordings", "c",
+        "--specimens", "4", "--repeats", "2", "--spread", "k=50000", "--spread", "c=100")
+
+
 def compression(program, folder):
     run(program, folder, "simulate", "compression", "c", "--law", "kuwabara-kono(k=300000, c=20000)",
         "--rate", "1 mm/s", "--rate", "20 mm/s")
@@ -186,8 +191,9 @@ class Command:
         if seconds is None:
             own.end()
         else:
-            time.sleep(seconds)
-            if own.process.poll() is None:
+            try:
+                own.process.wait(seconds)
+            except subprocess.TimeoutExpired:
                 own.kill(alone)
         return own.was_killed(), int(own.process.returncode == 0)
 
@@ -213,7 +219,7 @@ class PageSaves:
         pendulum(program, folder)
 
     def earlier(self, program, folder):
-        problems = self.all_steps(program, folder, self.steps(folder, "earlier", "hertz", 2.0))
+        problems = self.all_steps(program, folder, self.steps(folder, "earlier", "hunt-crossley", 2.0))
         assert not problems, problems
 
     def steps(self, folder, name="new", law="kuwabara-kono", end=1.0):
@@ -318,17 +324,17 @@ class PageSaves:
         return self.all_steps(program, folder, self.steps(folder)[done:])
 
 
-ENGINE = r"/engine/(screen\.txt|log\.\w+|frames\.\w+)$"
+ENGINE = r"/engine/(screen\.txt|log\.\w+|frames\.\w+|restart_forced_liggghts_\d+\.data)$"
 SEED = ("c/scene.toml", "seed = 1", "seed = 2")
 RUN = "scene run c/scene.toml --threads 2"
 KINDS = {
     "fit": Command(pendulum, "fit c --threads 2 --figures figures --card law.toml",
-                   "fit c --law hertz --figures figures --card law.toml"),
+                   "fit c --law hunt-crossley --figures figures --card law.toml"),
     "fit of compressions": Command(compression, "fit c --threads 2 --figures figures",
                                    ("c/campaign.toml", 'title = "', 'title = "earlier ')),
-    "report": Command(pendulum, "report c --threads 2", "report c --law hertz"),
-    "population": Command(pendulum, "population c --threads 2 --card law.toml",
-                          "population c --law hertz --card law.toml"),
+    "report": Command(pendulum, "report c --threads 2", "report c --law hunt-crossley"),
+    "population": Command(several_fruit, "population c --threads 2 --card law.toml",
+                          "population c --law hunt-crossley --card law.toml"),
     "calibrate": Command(drops, "calibrate c --way waveform --figures figures --tables tables --card law.toml",
                          ("c/campaign.toml", "e=1.91", "e=1.9")),
     "scene run": Command(scene, RUN, SEED, resume="--resume"),

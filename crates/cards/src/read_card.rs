@@ -137,7 +137,7 @@ fn check_signs(card: &LawCard, source: &TomlSource) -> Result<(), Error> {
     Ok(())
 }
 
-/// Matrices must be as large as what they are of.
+/// Lists and matrices must be as large as what they are of.
 fn check_sizes(card: &LawCard, source: &TomlSource) -> Result<(), Error> {
     let square = |matrix: &[Vec<f64>], size: usize| {
         matrix.len() == size && matrix.iter().all(|row| row.len() == size)
@@ -152,24 +152,32 @@ fn check_sizes(card: &LawCard, source: &TomlSource) -> Result<(), Error> {
             return Err(invalid_at(source, &keys, problem));
         }
     }
-    let bad = match () {
-        () if covariance.is_some_and(|c| !square(&c.matrix, c.of.len())) => {
-            ["covariance", "matrix"]
+    let mut lists = Vec::new();
+    if let Some(own) = covariance {
+        let matrix = square(&own.matrix, own.of.len());
+        lists.push((["covariance", "matrix"], matrix));
+    }
+    if let Some(own) = population {
+        let size = own.of.len();
+        let within = own.within_fruit.as_ref();
+        lists.push((["population", "median"], own.median.len() == size));
+        let between = square(&own.between_fruit, size);
+        lists.push((["population", "between_fruit"], between));
+        let within = within.is_none_or(|within| square(within, size));
+        lists.push((["population", "within_fruit"], within));
+    }
+    let mut odd = lists.iter().filter(|(_, fits)| !fits).map(|(keys, _)| keys);
+    match (odd.next(), odd.next()) {
+        (None, _) => Ok(()),
+        (Some(keys), None) => {
+            let problem = "it is not of the size of the list `of` of this table";
+            Err(invalid_at(source, keys, problem))
         }
-        () if population.is_some_and(|p| {
-            let size = p.of.len();
-            let within = p.within_fruit.as_ref();
-            p.median.len() != size
-                || !square(&p.between_fruit, size)
-                || within.is_some_and(|within| !square(within, size))
-        }) =>
-        {
-            ["population", "of"]
+        (Some([table, _]), Some(_)) => {
+            let problem = "the matrices of this table are not of the size of this list";
+            Err(invalid_at(source, &[*table, "of"], problem))
         }
-        () => return Ok(()),
-    };
-    let problem = "the matrices of this table are not of the size of its list `of`";
-    Err(invalid_at(source, &bad, problem))
+    }
 }
 
 fn parsed<T: serde::de::DeserializeOwned>(path: &Path, source: &TomlSource) -> Result<T, Error> {

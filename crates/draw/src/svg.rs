@@ -404,8 +404,15 @@ fn parts(text: &str) -> Vec<(String, bool)> {
     parts
 }
 
+/// Most characters of a text that is drawn; further ones would lie outside of the picture, and
+/// the time to lay them out grows with their square.
+const LONGEST: usize = 500;
+
 /// [`escaped`] text whose raised parts are set as such at font size `size`.
 fn set_text(text: &str, size: f64) -> String {
+    if let Some((end, _)) = text.char_indices().nth(LONGEST) {
+        return set_text(&text[..end], size) + "…";
+    }
     let rise = 0.36 * size;
     let (mut whole, mut above) = (String::new(), false);
     for (part, raised) in parts(text) {
@@ -438,6 +445,13 @@ mod tests {
         drawing.text((1.0, 2.0), Anchor::End, 9.0, "F < 3 & \u{1}g");
         let svg = drawing.svg(&LIGHT);
         assert!(svg.contains(">F &lt; 3 &amp;  g</text>"));
+    }
+
+    #[test]
+    fn closed_form_a_long_text_ends_with_an_ellipsis() {
+        let long = "y".repeat(LONGEST);
+        assert_eq!(set_text(&long, 9.0), long);
+        assert_eq!(set_text(&(long.clone() + "zz"), 9.0), long + "…");
     }
 
     #[test]

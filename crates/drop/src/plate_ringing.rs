@@ -72,7 +72,7 @@ pub fn plate_of(
     let heard = pooled(drops).map(|pooled| dynamics(&pooled, mass));
     let unknown = |name: &str| {
         let missing = format!("no drop tells the {name} of the plate: none rings above the noise");
-        let advice = format!("plate_{name} to [rig] of campaign.toml, or plate = \"rigid\"");
+        let advice = format!("add plate_{name} to [rig] of campaign.toml, or plate = \"rigid\"");
         Error::not_known(&campaign.shared.title, missing, advice)
     };
     let pick = |given: Option<Uncertain>, heard: Option<Uncertain>, name: &str| {

@@ -67,6 +67,7 @@ impl Frames {
             list_filled_by_others(&directory.join(name))?;
         }
         let _ = std::fs::remove_file(&pipe);
+        remove_restarts(directory);
         let made = Command::new("mkfifo").arg(&pipe).status();
         if !made.is_ok_and(|status| status.success()) {
             let problem = "this system has no named pipes (mkfifo); run the deck of `windfall scene \
@@ -261,5 +262,45 @@ impl Drop for Running {
             let _ = guard.wait();
         }
         let _ = std::fs::remove_file(self.directory.join(FRAMES));
+        remove_restarts(&self.directory);
+    }
+}
+
+/// Removes what LIGGGHTS leaves in its directory when it is asked to end: its state under the
+/// number of its process, which no run takes up.
+fn remove_restarts(directory: &Path) {
+    for entry in std::fs::read_dir(directory).into_iter().flatten().flatten() {
+        let name = entry.file_name();
+        let number = name.to_str().and_then(|own| {
+            own.strip_prefix("restart_forced_liggghts_")?
+                .strip_suffix(".data")
+        });
+        if number.is_some_and(|own| own.bytes().all(|b| b.is_ascii_digit())) {
+            let _ = std::fs::remove_file(entry.path());
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn conserves_all_files_but_the_states_of_liggghts() {
+        let name = format!("windfall-restarts-{}", std::process::id());
+        let folder = std::env::temp_dir().join(name);
+        std::fs::create_dir(&folder).unwrap();
+        let names = [
+            "restart_forced_liggghts_2153.data",
+            "restart_forced_liggghts_mine.data",
+            "restart.data",
+        ];
+        for name in names {
+            std::fs::write(folder.join(name), "x").unwrap();
+        }
+        remove_restarts(&folder);
+        let left = names.map(|name| folder.join(name).exists());
+        std::fs::remove_dir_all(&folder).unwrap();
+        assert_eq!(left, [false, true, true]);
     }
 }

@@ -341,7 +341,7 @@ pub enum Error {
         found: &'static str,
     },
     /// A value that a result needs is not in the tables.
-    #[error("{item}: {missing}; add {advice}")]
+    #[error("{item}: {missing}; {advice}")]
     ValueNotKnown {
         /// Id in impacts.csv, or of the specimen.
         item: String,

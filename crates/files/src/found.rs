@@ -44,9 +44,11 @@ pub struct FindingOutcome {
 impl FindingOutcome {
     /// A finding under its code.
     pub fn new(code: &str, message: impl Into<String>) -> Self {
+        let mut message = message.into();
+        message.shrink_to_fit();
         Self {
             code: code.to_owned(),
-            message: message.into(),
+            message,
         }
     }
 }

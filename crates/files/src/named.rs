@@ -20,7 +20,10 @@ impl<T> Default for Named<T> {
 impl<N: Into<SmolStr>, T> FromIterator<(N, T)> for Named<T> {
     fn from_iter<I: IntoIterator<Item = (N, T)>>(pairs: I) -> Self {
         let pairs = pairs.into_iter();
-        Self(pairs.map(|(name, value)| (name.into(), value)).collect())
+        let mut named: Vec<_> = pairs.map(|(name, value)| (name.into(), value)).collect();
+        // Thousands of results are held at once.
+        named.shrink_to_fit();
+        Self(named)
     }
 }
 

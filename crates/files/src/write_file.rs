@@ -2,7 +2,8 @@
 
 use crate::error::Error;
 use crate::inputs::check_output;
-use crate::written::{PARTIAL, check_written, list_written, list_written_as};
+use crate::option_value::unusable;
+use crate::written::{PARTIAL, check_written, is_own_file, list_written, list_written_as};
 use std::collections::BTreeSet;
 use std::fs::File;
 use std::io::{ErrorKind, Result as IoResult, Write};
@@ -15,8 +16,23 @@ use std::sync::{Mutex, PoisonError};
 /// # Errors
 /// It would replace an input or a file that windfall did not write, or lie among recordings.
 pub fn check_target(path: &Path) -> Result<(), Error> {
+    check_name(path)?;
     check_output(path)?;
     check_written(&behind_links(path), None)
+}
+
+/// Refuses names that no result may have.
+fn check_name(path: &Path) -> Result<(), Error> {
+    let problem = match () {
+        () if path == Path::new("-") => {
+            "no file is written under this name, which stands for a pipe; name a file, or ./-"
+        }
+        () if is_own_file(path) => {
+            "windfall keeps files of this name for itself; choose another name"
+        }
+        () => return Ok(()),
+    };
+    Err(unusable(path.display().to_string(), problem))
 }
 
 /// [`check_target`] of those files and directories that a command was given.
@@ -34,6 +50,7 @@ pub fn check_outputs<'a>(paths: impl IntoIterator<Item = Option<&'a Path>>) -> R
 /// It would replace an input, or a file that windfall did not write; the directory cannot
 /// be written, or is full. The file of before is as it was.
 pub fn write_whole(path: &Path, contents: &[u8]) -> Result<(), Error> {
+    check_name(path)?;
     check_output(path)?;
     if is_stream(path) {
         let stream = File::options().append(true).open(path);
@@ -208,6 +225,7 @@ pub fn make_directory(path: &Path) -> Result<(), Error> {
 /// # Errors
 /// It exists already, or cannot be written.
 pub fn write_new(path: &Path, contents: &[u8]) -> Result<(), Error> {
+    check_name(path)?;
     let failed = |source| create_error(path, source);
     sweep(path);
     let (partial, mut file) = partial_of(path).map_err(failed)?;
@@ -243,6 +261,16 @@ pub fn create_error(path: &Path, source: std::io::Error) -> Error {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn rejects_names_that_are_no_results() {
+        let folder = tempfile::tempdir().unwrap();
+        let list = folder.path().join(".windfall-wrote");
+        for path in [Path::new("-"), &list] {
+            assert!(write_whole(path, b"x").is_err() && write_new(path, b"x").is_err());
+            assert!(check_target(path).is_err() && !path.exists());
+        }
+    }
 
     #[test]
     fn keeps_the_file_of_before_where_the_new_one_cannot_be_moved() {

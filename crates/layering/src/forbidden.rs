@@ -126,7 +126,13 @@ fn writing(file: &SourceFile, ends: &[[&str; 2]], ways_out: &[&str], reason: &st
         // `csv::Writer::from_writer` has its end within.
         let segments: Vec<&str> = path.segments.iter().map(String::as_str).collect();
         let within = |end: &[&str; 2]| segments.windows(2).any(|pair| pair == end);
-        ends.iter().any(within)
+        // Behind another name, or none, its end could not be seen.
+        let hides = |[module, _]: &[&str; 2]| match segments[..] {
+            [.., last] if path.renamed => last == *module,
+            [.., last, "*"] => last == *module,
+            _ => false,
+        };
+        ends.iter().any(|end| within(end) || hides(end))
     });
     let message = |path: &NamedPath| {
         let found = path.segments.join("::");
@@ -240,6 +246,9 @@ mod tests {
             "fn f() { File::create(p); }",
             "use std::fs::{rename, write};",
             "fn f() { std::fs::OpenOptions::new(); }",
+            "use std::fs as disk; fn f() { disk::write(p, t); }",
+            "use std::{fs::{File as F}, io}; fn f() { F::create(p); }",
+            "use std::fs::*; fn f() { write(p, t); }",
         ] {
             assert!(found("crates/a/src/a.rs", text) > 0, "{text}");
             assert_eq!(found(WAY_OUT[0], text), 0, "{text}");

@@ -65,6 +65,8 @@ pub struct NamedPath {
     pub line: usize,
     /// How it is named.
     pub mention: Mention,
+    /// Whether it has another name from here on (`use std::fs as disk`).
+    pub renamed: bool,
 }
 
 /// How a path is named.
@@ -273,6 +275,7 @@ fn collect_paths(tokens: &[TokenTree], found: &mut Vec<NamedPath>) {
                         segments,
                         line,
                         mention,
+                        renamed: false,
                     });
                 }
                 i = next;
@@ -364,6 +367,7 @@ fn collect_words(group: &Group, found: &mut Vec<NamedPath>) {
                 segments: vec!["crate".to_owned(), word.to_string()],
                 line: word.span().start().line,
                 mention: Mention::Spliced,
+                renamed: false,
             }),
             TokenTree::Group(inside) => collect_words(&inside, found),
             _ => {}
@@ -443,6 +447,7 @@ fn use_tree(tokens: &[TokenTree], prefix: &[String], mention: Mention, found: &m
             segments,
             line,
             mention,
+            renamed: ident(branch.get(tail)).is_some_and(|word| word == "as"),
         });
     }
 }

@@ -263,7 +263,7 @@ fn rejects_bad_input_with_its_place() {
         (
             "a * b * c * text",
             2,
-            "6 rows are too few for 16 coefficients",
+            "table.csv: 6 rows are too few for 16 coefficients",
         ),
         (
             "a + b + c",

@@ -234,6 +234,17 @@ fn recovers_a_user_s_law_from_its_own_campaign_and_refits_a_changed_one() {
     assert!(text.contains("formula: k*x^1.5"), "{text}");
     assert!(text.contains("between fruit: sd of ln k"), "{text}");
 
+    // A list of another length is named by its own line.
+    let path = folder.path().join("short.toml");
+    let whole = std::fs::read_to_string(card).unwrap();
+    let is_median = |line: &&str| line.starts_with("median = ");
+    let median = whole.lines().find(is_median).unwrap();
+    std::fs::write(&path, whole.replace(median, "median = [5.0]")).unwrap();
+    let line = whole.lines().position(|line| line == median).unwrap() + 1;
+    let told = refused(&["card", "show", "--file", path.to_str().unwrap()]);
+    let place = format!("short.toml, line {line}: [population] median");
+    assert!(told.contains(&place), "{told}");
+
     // The same as JSON.
     let other = folder.path().join("law.json");
     let other = other.to_str().unwrap();

@@ -8,14 +8,13 @@ use crate::result::outcome::{ImpactOutcome, StatusOutcome};
 use crate::settings::kind::STORE_FILE;
 use crate::settings::model::{Campaign, ImpactEntry};
 use crate::store::documents::{DocumentRecord, StoredValue, find_documents};
-use crate::store::error::StoreError;
 use crate::store::runs::{RunRecord, find_results, latest_run, write_run};
 use serde::Serialize;
 use serde::de::DeserializeOwned;
 use serde_json::{Map, Value};
-use std::borrow::Cow;
-use std::collections::BTreeMap;
+use std::mem::take;
 use std::path::Path;
+use std::sync::{Mutex, PoisonError};
 use windfall_files::error::Error;
 use windfall_files::found::FailureOutcome;
 use windfall_files::progress::{Progress, for_each};
@@ -92,20 +91,14 @@ impl Stored for ImpactOutcome {
         _: &ImpactEntry,
         key: String,
     ) -> Result<(), Error> {
-        run.results.push((key, Cow::Borrowed(self)));
+        run.results.push((key, self));
         Ok(())
     }
 }
 
 impl<T: Document> Stored for T {
     fn find(store: &Path, keys: &[String]) -> Result<Vec<Option<Self>>, Error> {
-        let read = |text: String| {
-            let damaged = |error| format!("a result cannot be read: {error}");
-            serde_json::from_str(&text)
-                .map_err(|error: serde_json::Error| StoreError::damaged(store, damaged(error)))
-        };
-        let found = find_documents(store, keys)?;
-        found.into_iter().map(|t| t.map(read).transpose()).collect()
+        find_documents(store, keys, ("documents", "item"))
     }
 
     fn add<'a>(
@@ -179,18 +172,20 @@ pub fn evaluate<E: Evaluation>(
             },
         )
         .collect();
-    let stored = match reuse {
-        Some(reuse) => stored_results::<E::Found>(&store, reuse, &keys)?,
-        None => BTreeMap::new(),
-    };
+    let stored = stored_results::<E::Found>(&store, reuse, &keys)?;
     let results = for_each(progress, campaign.entries.len(), |position| {
         let entry = &campaign.entries[position];
         let keys = match &keys[position] {
             Ok(keys) => keys,
-            Err(problem) => return vec![Err(failure(entry, None, problem.clone()))],
+            Err(problem) => return vec![(false, Err(failure(entry, None, problem.clone())))],
         };
-        let known: Vec<_> = keys.iter().map(|key| stored.get(key).cloned()).collect();
-        match reuse {
+        let mut known = match stored.get(position) {
+            Some(own) => take(&mut *own.lock().unwrap_or_else(PoisonError::into_inner)),
+            None => Vec::new(),
+        };
+        known.resize_with(keys.len(), || None);
+        let was_known: Vec<bool> = known.iter().map(Option::is_some).collect();
+        let results = match reuse {
             Some(Reuse::Only) => {
                 let pending = || failure(entry, None, PENDING.to_owned());
                 known
@@ -199,7 +194,8 @@ pub fn evaluate<E: Evaluation>(
                     .collect()
             }
             _ => evaluation.evaluate(entry, known),
-        }
+        };
+        was_known.into_iter().zip(results).collect()
     })?;
 
     let mut evaluated = Evaluated {
@@ -209,16 +205,18 @@ pub fn evaluate<E: Evaluation>(
         digests,
     };
     let mut kept = Vec::new();
-    for (position, results) in results.into_iter().enumerate() {
-        for (part, result) in results.into_iter().enumerate() {
+    for (position, (results, keys)) in results.into_iter().zip(keys).enumerate() {
+        // A recording without a digest has no keys, and one failure.
+        let mut keys = keys.unwrap_or_default().into_iter();
+        for (was_known, result) in results {
+            let key = keys.next().unwrap_or_default();
             match result {
                 Ok(item) => {
-                    let key = keys[position].as_ref().map_or("", |keys| &keys[part]);
-                    match stored.contains_key(key) {
+                    match was_known {
                         true => evaluated.status.stored += 1,
                         false => evaluated.status.fitted += 1,
                     }
-                    kept.push(key.to_owned());
+                    kept.push(key);
                     evaluated.items.push((position, item));
                 }
                 // A recording that cannot be read is one failure, not one for each part.
@@ -246,22 +244,28 @@ pub fn failure(entry: &ImpactEntry, law: Option<&str>, message: String) -> Failu
     }
 }
 
-/// Results in the store by their keys.
+/// Results in the store, of all parts of each entry; nothing where all are to be made anew.
+///
+/// Each is taken out where it is used: of a result there is one copy.
 fn stored_results<T: Stored>(
     store: &Path,
-    reuse: Reuse,
+    reuse: Option<Reuse>,
     keys: &[Result<Vec<String>, String>],
-) -> Result<BTreeMap<String, T>, Error> {
-    if reuse == Reuse::Nothing {
-        // Fails before the work, not after it, on a store that cannot be written.
-        latest_run(store)?;
-        return Ok(BTreeMap::new());
+) -> Result<Vec<Mutex<Vec<Option<T>>>>, Error> {
+    match reuse {
+        None => return Ok(Vec::new()),
+        Some(Reuse::Nothing) => {
+            // Fails before the work, not after it, on a store that cannot be written.
+            latest_run(store)?;
+            return Ok(Vec::new());
+        }
+        Some(_) => {}
     }
-    let keys: Vec<String> = keys.iter().flatten().flatten().cloned().collect();
-    let found = T::find(store, &keys)?;
-    let known = keys.into_iter().zip(found);
-    Ok(known
-        .filter_map(|(key, found)| Some((key, found?)))
+    let all: Vec<String> = keys.iter().flatten().flatten().cloned().collect();
+    let mut found = T::find(store, &all)?.into_iter();
+    let parts = keys.iter().map(|own| own.as_ref().map_or(0, Vec::len));
+    Ok(parts
+        .map(|parts| Mutex::new(found.by_ref().take(parts).collect()))
         .collect())
 }
 

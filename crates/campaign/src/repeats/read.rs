@@ -153,9 +153,12 @@ fn align(source: &TomlSource, file: &ComparisonFile) -> Result<AlignOptions, Err
     })
 }
 
+/// Levels of a test: below, the quantiles of its intervals are beyond any number.
+const LEVELS: (f64, f64) = (1e-9, 0.5);
+
 fn test(source: &TomlSource, file: &ComparisonFile) -> Result<SignFlipOptions, Error> {
     let defaults = SignFlipOptions::default();
-    let level = number(source, file.level.as_ref(), "level", (0.0, 0.5))?;
+    let level = number(source, file.level.as_ref(), "level", LEVELS)?;
     let (key, fits) = ((TABLE, "draws"), |draws| (99..=1_000_000).contains(&draws));
     let expected = "a number from 99 to 1000000";
     let draws = number_that(source, file.draws.as_ref(), key, fits, expected)?;

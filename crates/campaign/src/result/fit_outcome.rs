@@ -127,7 +127,7 @@ fn correlations(fit: &Fit) -> Named<f64> {
             }
         }
     }
-    Named(pairs)
+    pairs.into_iter().collect()
 }
 
 fn residuals(fit: &Fit) -> Named<ResidualOutcome> {
@@ -170,11 +170,8 @@ fn derived_values(measured: &Measured, fitted: &Named<Option<f64>>) -> Derived {
         values.push((name(), value));
         sources.push((name(), source.into()));
     }
-    // Thousands of results are held at once.
-    values.shrink_to_fit();
-    sds.shrink_to_fit();
-    sources.shrink_to_fit();
-    (Named(values), Named(sds), Named(sources))
+    let (values, sds, sources) = (values.into_iter(), sds.into_iter(), sources.into_iter());
+    (values.collect(), sds.collect(), sources.collect())
 }
 
 fn findings(signal: &[Finding], fit: &Fit) -> Vec<FindingOutcome> {

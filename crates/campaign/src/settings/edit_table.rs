@@ -85,8 +85,9 @@ impl Text {
             line.starts_with('#') || line.trim().is_empty()
         });
         let (comments, body) = text.split_at(above.map(str::len).sum());
-        let line = body.lines().next().unwrap_or_default();
-        let (separator, _) = separator_of(line.as_bytes());
+        let mut lines = body.lines().filter(|line| !line.trim().is_empty());
+        let mut next = || lines.next().unwrap_or_default().as_bytes();
+        let (separator, _) = separator_of(next(), next());
         let mut reader = csv::ReaderBuilder::new();
         let reader = reader.delimiter(separator).flexible(true);
         let mut header = body.to_owned();

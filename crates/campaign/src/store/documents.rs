@@ -3,6 +3,7 @@
 use crate::store::error::StoreError;
 use crate::store::file::{open_existing, store_error};
 use rusqlite::{Connection, OptionalExtension, Row, Transaction, params};
+use serde::de::DeserializeOwned;
 use std::path::Path;
 use windfall_files::error::Error;
 use windfall_files::provenance::digest_text;
@@ -39,14 +40,6 @@ pub struct DocumentRecord {
     pub values: Vec<StoredValue>,
 }
 
-/// Documents of earlier runs under some keys, `None` where there is none.
-///
-/// # Errors
-/// The file is damaged, foreign, newer, or cannot be read.
-pub fn find_documents(path: &Path, keys: &[String]) -> Result<Vec<Option<String>>, Error> {
-    find_texts(path, keys, ("documents", "item"))
-}
-
 /// What a document and the key that it stands under are known by.
 pub(crate) fn document_digest(key: &str, document: &str) -> String {
     digest_text(&format!("{key}\n{document}"))
@@ -66,41 +59,45 @@ pub(crate) fn mend_document(
     Ok(())
 }
 
-/// Documents under some keys of a table; a store that does not exist yet holds none.
+/// Results of earlier runs under some keys, `None` where there is none; a store that does not
+/// exist yet holds none.
 ///
-/// * `item`: the column that names them
-pub(crate) fn find_texts(
+/// * `table`, `item`: the table that holds them, and the column that names them
+///
+/// # Errors
+/// The file is damaged, foreign, newer, or cannot be read.
+pub fn find_documents<T: DeserializeOwned>(
     path: &Path,
     keys: &[String],
     (table, item): (&str, &str),
-) -> Result<Vec<Option<String>>, Error> {
-    let nothing = Ok(vec![None; keys.len()]);
+) -> Result<Vec<Option<T>>, Error> {
+    let nothing = || Ok(keys.iter().map(|_| None).collect());
     let Some(connection) = open_existing(path)? else {
-        return nothing;
+        return nothing();
     };
     let failed = |source| store_error(path, "read", source);
     // Older stores have no digests to compare with.
     if version_of(&connection).map_err(failed)? < 3 {
-        return nothing;
+        return nothing();
     }
     let query = format!("SELECT document, sha256, {item} FROM {table} WHERE key = ?1");
     let mut query = connection.prepare(&query).map_err(failed)?;
-    let mut find = |key: &String| -> Result<Option<String>, Error> {
+    let mut find = |key: &String| -> Result<Option<T>, Error> {
         let row = |row: &Row| Ok((row.get(0)?, row.get(1)?, row.get(2)?));
         let found: Option<(String, Option<String>, String)> =
             query.query_row([key], row).optional().map_err(failed)?;
-        match found {
-            Some((document, Some(sha256), item)) => match document_digest(key, &document) == sha256
-            {
-                true => Ok(Some(document)),
-                false => Err(StoreError::Altered {
-                    path: path.to_path_buf(),
-                    item,
-                }
-                .into()),
-            },
-            _ => Ok(None),
+        let Some((document, Some(sha256), item)) = found else {
+            return Ok(None);
+        };
+        if document_digest(key, &document) != sha256 {
+            let path = path.to_path_buf();
+            return Err(StoreError::Altered { path, item }.into());
         }
+        // One text at a time: thousands of them are several times their results.
+        serde_json::from_str(&document).map(Some).map_err(|error| {
+            let detail = format!("the result {key} cannot be read: {error}");
+            StoreError::damaged(path, detail)
+        })
     };
     keys.iter().map(&mut find).collect()
 }

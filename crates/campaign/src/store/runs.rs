@@ -8,13 +8,11 @@
 use crate::recording::digests::RunOrigin;
 use crate::result::outcome::ImpactOutcome;
 use crate::store::documents::{
-    DocumentRecord, document_digest, document_keys, find_texts, insert_document, mend_document,
+    DocumentRecord, document_digest, document_keys, find_documents, insert_document, mend_document,
 };
-use crate::store::error::StoreError;
 use crate::store::file::{PATIENCE, create_schema, open_existing, store_error};
 use rusqlite::{Connection, OptionalExtension, Transaction, params};
 use smol_str::SmolStr;
-use std::borrow::Cow;
 use std::path::Path;
 use windfall_files::confined::discard;
 use windfall_files::error::Error;
@@ -33,7 +31,7 @@ pub struct RunRecord<'a> {
     /// Files read: name and SHA-256.
     pub inputs: Vec<(String, String)>,
     /// Keys and results, in the order of the campaign.
-    pub results: Vec<(String, Cow<'a, ImpactOutcome>)>,
+    pub results: Vec<(String, &'a ImpactOutcome)>,
     /// Results of campaigns that fit no impacts, in the order of the campaign.
     pub documents: Vec<DocumentRecord>,
     /// What could not be fitted.
@@ -66,24 +64,12 @@ pub struct RunIdentity {
     pub failures: Vec<FailureOutcome>,
 }
 
-/// Results of earlier runs under some keys, `None` where there is none.
-///
-/// A store that does not exist yet holds none.
+/// Fits of earlier runs under some keys, `None` where there is none.
 ///
 /// # Errors
-/// The file is damaged, foreign, newer, or cannot be read.
+/// Those of [`find_documents`].
 pub fn find_results(path: &Path, keys: &[String]) -> Result<Vec<Option<ImpactOutcome>>, Error> {
-    let texts = find_texts(path, keys, ("results", "impact"))?
-        .into_iter()
-        .zip(keys);
-    let read = |(text, key): (Option<String>, &String)| {
-        let result = text.map(|text| serde_json::from_str(&text)).transpose();
-        result.map_err(|error| {
-            let detail = format!("the result {key} cannot be read: {error}");
-            StoreError::damaged(path, detail)
-        })
-    };
-    texts.map(read).collect()
+    find_documents(path, keys, ("results", "impact"))
 }
 
 /// The newest run, if there is one.
@@ -339,7 +325,7 @@ mod tests {
             inputs: vec![("r.csv".to_owned(), "00".to_owned())],
             results: ids
                 .iter()
-                .map(|id| (format!("key-{id}"), Cow::Owned(outcome(id))))
+                .map(|id| (format!("key-{id}"), &*Box::leak(Box::new(outcome(id)))))
                 .collect(),
             documents: Vec::new(),
             failures: Vec::new(),

@@ -202,7 +202,7 @@ fn calibrated(
         recorded,
     } = seen;
     let Some(own) = &campaign.calibrate.law else {
-        let advice = "in campaign.toml: [fit] law = 'adams-impact(d=\"0.001 mm\")'";
+        let advice = "add to campaign.toml: [fit] law = 'adams-impact(d=\"0.001 mm\")'";
         let missing = "there is no law to calibrate";
         return Err(Error::not_known(&campaign.shared.title, missing, advice));
     };

@@ -122,7 +122,7 @@ pub fn target_condition(
     let features: Vec<MeasuredFeature> = features.collect();
     if features.len() < 2 {
         let missing = format!("no first peak and interval could be read off the {of}");
-        let advice = "recordings of such drops with two impacts or more, or name others with \
+        let advice = "add recordings of such drops with two impacts or more, or name others with \
                       target_height or target_drop";
         return Err(Error::not_known(
             "[calibrate] of campaign.toml",

@@ -105,10 +105,18 @@ pub(crate) fn open(path: &Path) -> Result<Open, Error> {
             });
         }
     }
-    let (byte, separator) = separator_of(&header);
+    let mut below = Vec::new();
+    while below.iter().all(u8::is_ascii_whitespace) {
+        let read = reader.read_until(b'\n', &mut below);
+        if read.map_err(|source| access(path, source))? == 0 {
+            break;
+        }
+    }
+    let (byte, separator) = separator_of(&header, &below);
     // The csv crate counts a line at its line feed, which it reads with the row after it.
     before += usize::from(header.ends_with(b"\r\n"));
-    let whole: Box<dyn Read> = Box::new(Cursor::new(header).chain(reader));
+    let whole: Box<dyn Read> =
+        Box::new(Cursor::new(header).chain(Cursor::new(below)).chain(reader));
     let mut reader = csv::ReaderBuilder::new()
         .delimiter(byte)
         .flexible(true)
@@ -161,23 +169,45 @@ fn utf8(path: &Path) -> Result<Box<dyn BufRead>, Error> {
     Ok(Box::new(Cursor::new(text.into_bytes())))
 }
 
-/// The separator that occurs most often outside quotes, and its name; a comma if none does.
-pub fn separator_of(header: &[u8]) -> (u8, &'static str) {
-    let mut best = (b',', "commas");
-    let mut most = 0;
-    for (byte, name) in [(b',', "commas"), (b';', "semicolons"), (b'\t', "tabs")] {
-        let mut quoted = false;
-        let mut count = 0;
-        for &b in header {
-            quoted ^= b == b'"';
-            count += usize::from(b == byte && !quoted);
-        }
-        if count > most {
-            most = count;
-            best = (byte, name);
-        }
+/// The separator of a table, and its name, from its header and the row below it.
+///
+/// A comma may stand in names and be the decimal mark: "Time, s;Force, N" over "0,5;1,5". Of the
+/// marks that both lines have equally often outside quotes, the one that leaves fewest cells
+/// of the row without a number; where there is none, the one that is most frequent in the header.
+pub fn separator_of(header: &[u8], row: &[u8]) -> (u8, &'static str) {
+    let found = [(b'\t', "tabs"), (b';', "semicolons"), (b',', "commas")];
+    let counted = found.map(|own| (own, outside_quotes(header, own.0)));
+    let fits = |&&((byte, _), count): &&((u8, &'static str), usize)| {
+        count > 0 && outside_quotes(row, byte) == count
+    };
+    let best = counted.iter().filter(fits).min_by(|(a, m), (b, n)| {
+        let words = words_of(row, a.0).total_cmp(&words_of(row, b.0));
+        words.then(n.cmp(m))
+    });
+    let most = || counted.iter().max_by_key(|(_, count)| *count);
+    best.or_else(most).map_or((b',', "commas"), |(own, _)| *own)
+}
+
+fn outside_quotes(line: &[u8], byte: u8) -> usize {
+    let mut quoted = false;
+    let counts = line.iter().filter(|&&b| {
+        quoted ^= b == b'"';
+        b == byte && !quoted
+    });
+    counts.count()
+}
+
+/// Part of the cells of a row that hold no number.
+fn words_of(row: &[u8], separator: u8) -> f64 {
+    let row = String::from_utf8_lossy(row);
+    let cells = row.split(char::from(separator));
+    let (mut words, mut all) = (0, 0);
+    for cell in cells {
+        let cell = plain_cell(cell.trim()).trim_matches('"').replace(',', ".");
+        all += 1;
+        words += usize::from(!cell.is_empty() && cell.parse::<f64>().is_err());
     }
-    best
+    f64::from(words as u32) / f64::from(all)
 }
 
 /// Reads the next row that is not blank; false at the end of the file.
@@ -274,6 +304,27 @@ mod tests {
             let table = read_table(&path).unwrap();
             assert_eq!(table.columns, ["id", "mass, wet"]);
             assert_eq!((table.rows[0].line, &table.rows[0].cells[0][..]), (2, "a"));
+        }
+    }
+
+    #[test]
+    fn closed_form_separators_where_names_and_numbers_have_commas() {
+        for (header, row, expected) in [
+            ("Time;Force, N", "0;1,5", b';'),
+            ("Time, s;Force, N", "0,5;1,5", b';'),
+            ("Time, s\tForce, N", "0\t1,5", b'\t'),
+            ("Time\tForce, N\n", "\t1,5\n", b'\t'),
+            ("fruit;mass, g", "a;1,5", b';'),
+            ("width (mm; mean),depth", "1.5,2", b','),
+            ("id,note;more", "1,ripe;soft", b','),
+            ("\"Force; N\",\"Time; s\"", "1,2", b','),
+            ("fruit;variety, from", "a;b, c", b';'),
+            ("a,b;c", "", b','),
+            ("a,b;c;d", "", b';'),
+            ("a", "1", b','),
+        ] {
+            let (found, _) = separator_of(header.as_bytes(), row.as_bytes());
+            assert_eq!(char::from(found), char::from(expected), "{header}");
         }
     }
 

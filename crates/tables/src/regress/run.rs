@@ -147,7 +147,7 @@ fn regress_linear(
         &wanted,
         request.confidence,
     )
-    .map_err(Error::Statistics)?;
+    .map_err(|error| data.told(error))?;
     outcome(request, data, formula, &rows, &reduced, &selection, &fit)
 }
 
@@ -276,7 +276,7 @@ fn variance_of(
     let (terms, kind) = (&selection.terms, request.anova);
     if kind == AnovaType::Partial && rows.frame.has_categories() {
         let summed = model_rows(formula, &data.table, Contrast::Sum, &[]);
-        let summed = summed.map_err(Error::Statistics)?;
+        let summed = summed.map_err(|error| data.told(error))?;
         let reduced = reduce(&summed.x, &summed.y);
         return Ok(anova(&summed.frame, &reduced, terms, kind).rows);
     }

@@ -176,7 +176,7 @@ pub fn fitted_surfaces(
             &y,
             request.confidence,
         )
-        .map_err(Error::Statistics)?;
+        .map_err(|error| data.told(error))?;
         let (outcome, found) = model_of(request, response, &fitted, &coded, &y, &data);
         findings.extend(found);
         models.push(outcome);
