@@ -250,6 +250,8 @@ impl Program {
             .env("OMP_NUM_THREADS", "1")
             .env("OMPI_ALLOW_RUN_AS_ROOT", "1")
             .env("OMPI_ALLOW_RUN_AS_ROOT_CONFIRM", "1")
+            // Ranks that wait leave a busy machine to those that work.
+            .env("OMPI_MCA_mpi_yield_when_idle", "1")
             .stdin(Stdio::null());
         command
     }

@@ -283,18 +283,18 @@ pub const QUANTITIES: [Quantity; 25] = [
     ),
     quantity(
         "force_gain",
-        ("Force over mass times acceleration", "F/mẍ", ""),
+        ("Gain of the force", "F/mẍ", ""),
         signal!(force_gain, |s| s.force_gain_sd),
     ),
     quantity(
         "force_delay",
-        ("Delay of the force behind the displacement", "τ", "s"),
+        ("Delay of the force", "τ", "s"),
         signal!(force_delay, |s| s.force_delay_sd),
     )
     .shown_in("µs", 1e6),
     quantity(
         "motion_misfit",
-        ("Displacement less twice integrated force, RMS", "Δx F", "m"),
+        ("Misfit of the motion", "Δx F", "m"),
         signal!(motion_misfit, no_sd),
     ),
     quantity(
