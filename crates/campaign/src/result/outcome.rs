@@ -85,7 +85,7 @@ pub struct ImpactOutcome {
     /// What a reader must know.
     pub findings: Vec<FindingOutcome>,
     /// Why the impact does not count in means, cards and figures; nothing if it does.
-    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    #[serde(default)]
     pub left_out: Vec<FindingOutcome>,
 }
 
