@@ -155,7 +155,7 @@ def main():
     with open(HERE / "real_recordings.csv", newline="", encoding="utf-8") as table:
         rows = [row for row in csv.DictReader(table) if (asked.only or "") in row["name"]]
     scratch = asked.keep or pathlib.Path(tempfile.mkdtemp(prefix="windfall-real-"))
-    tally = dict.fromkeys(("missing", "made", "right", "unsaid", "counting"), 0)
+    tally = dict.fromkeys(("missing", "made", "number", "right", "unsaid", "counting"), 0)
     panels = []
     print("| recording | by hand | windfall | at the same times | findings | counts |")
     print("|---|---|---|---|---|---|")
@@ -184,6 +184,7 @@ def main():
             cells = "not said | "
         else:
             agree = agreeing(hand, named, float(row["within"] or 0))
+            tally["number"] += len(hand) == number
             tally["right"] += agree == len(hand) == number
             part = f"{agree} of {len(hand)}" if hand else ""
             more = f", {len(named)} of {number} named" if number > len(named) else ""
@@ -191,9 +192,9 @@ def main():
         print(f"| {row['name']} | {row['contacts']} | {cells} | {codes} | {counts} |", flush=True)
         panels.append((row, folder / "raw", hand, named))
     print(
-        f"\n{tally['made']} recordings of {len(rows)}: the contacts counted by hand in {tally['right']}, "
-        f"others in {tally['made'] - tally['right'] - tally['unsaid']}, nothing said in {tally['unsaid']}; "
-        f"{tally['counting']} count. Not made: {tally['missing']}."
+        f"\n{tally['made']} recordings of {len(rows)}: the number counted by hand in {tally['number']}, also at the "
+        f"same times in {tally['right']}; another number in {tally['made'] - tally['number'] - tally['unsaid']}; "
+        f"nothing said in {tally['unsaid']}. {tally['counting']} count. Not made: {tally['missing']}."
     )
     if asked.figure:
         asked.figure.write_text(real_figure.sheet(asked.program, panels), encoding="utf-8")
