@@ -8,7 +8,7 @@ use windfall_formats::Error;
 use windfall_formats::contents::Format;
 use windfall_formats::open::{OpenOptions, open_source};
 use windfall_formats::reader::Sink;
-use windfall_formats::source::Source;
+use windfall_source::source::Source;
 
 const FORMATS: [(&str, Format); 12] = [
     ("text", Format::Text),

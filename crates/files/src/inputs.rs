@@ -10,7 +10,7 @@ use std::collections::BTreeMap;
 use std::fs::Metadata;
 use std::path::{Path, PathBuf};
 use std::sync::{Mutex, OnceLock, PoisonError};
-use windfall_formats::stream::STANDARD_INPUT;
+use windfall_source::stream::STANDARD_INPUT;
 
 /// What a file or folder is, whatever it is called.
 #[cfg(unix)]

@@ -6,8 +6,8 @@
 //! netCDF classic, LeCroy template LECROY_2_3, Tektronix 077-0220 (.wfm), SoMat
 //! SIE, imc2 (FAMOS); for the rest PRONOM of the National Archives (UK).
 
-use crate::error::Error;
-use crate::source::Source;
+use windfall_source::error::Error;
+use windfall_source::source::Source;
 
 /// Bytes at the end of an archive in which the names of its members stand.
 const DIRECTORY: u64 = 1 << 16;

@@ -12,7 +12,6 @@
 
 mod arrays;
 pub mod contents;
-pub mod error;
 mod foreign;
 mod hdf5;
 mod mat;
@@ -21,11 +20,8 @@ mod npy;
 mod number;
 pub mod open;
 pub mod reader;
-mod room;
 mod sheet;
 mod sigrok;
-pub mod source;
-pub mod stream;
 mod tables;
 mod tdms;
 pub mod text;
@@ -33,4 +29,4 @@ mod uff;
 mod wav;
 mod zip;
 
-pub use error::Error;
+pub use windfall_source::Error;

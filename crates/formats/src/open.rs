@@ -1,7 +1,6 @@
 //! Picks the reader for a file by its first bytes.
 
 use crate::contents::Format;
-use crate::error::Error;
 use crate::foreign::refuse_foreign;
 use crate::hdf5::read::Hdf5Reader;
 use crate::mat::read::MatReader;
@@ -9,7 +8,6 @@ use crate::npy::read::NpyReader;
 use crate::reader::Reader;
 use crate::sheet::read::{open_ods, open_xlsx};
 use crate::sigrok::read::SigrokReader;
-use crate::source::Source;
 use crate::tables::stacked::open_text;
 use crate::tdms::read::TdmsReader;
 use crate::text::lvm::LvmReader;
@@ -19,6 +17,8 @@ use crate::wav::read::WavReader;
 use crate::zip::entries::open_archive;
 use crate::zip::texts::{is_text, open_zip};
 use std::path::Path;
+use windfall_source::error::Error;
+use windfall_source::source::Source;
 
 /// Bytes used to detect the format.
 const HEAD: u64 = 4096;

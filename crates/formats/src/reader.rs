@@ -1,7 +1,7 @@
 //! An open file: its contents, and its samples in blocks.
 
 use crate::contents::Contents;
-use crate::error::Error;
+use windfall_source::error::Error;
 
 /// A sample that the instrument could not give, where a file says so: a NaN of its own,
 /// told from blank cells by its bits ([`is_missing`]), as R tells NA.

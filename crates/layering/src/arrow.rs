@@ -11,14 +11,15 @@ const ARROWS: &[(&str, &str)] = &[
     ("identify", "contact signal statistics numerics"),
     ("drop-rig", "statistics identify signal contact numerics"),
     ("scene", "contact numerics"),
-    ("formats", ""),
-    ("files", "statistics formats numerics"),
+    ("source", ""),
+    ("formats", "source"),
+    ("files", "statistics formats source numerics"),
     ("draw", "files"),
     ("cards", "files contact numerics"),
     ("tables", "design draw files statistics"),
     (
         "campaign",
-        "cards draw files formats identify contact signal statistics numerics",
+        "cards draw files formats source identify contact signal statistics numerics",
     ),
     ("inspect", "campaign draw files formats numerics statistics"),
     (

@@ -13,12 +13,12 @@ use windfall_files::inputs::check_piped;
 use windfall_files::option_value::{at_least_zero, chosen, positive, quantity, unusable};
 use windfall_files::text::toml_source::suggestion;
 use windfall_formats::open::OpenOptions;
-use windfall_formats::stream::is_stream;
 use windfall_identify::fit::problem::FitOptions;
 use windfall_identify::rig::kind::Pendulum;
 use windfall_signal::ExtractOptions;
 use windfall_signal::kinematics::Encoder;
 use windfall_signal::trigger::Threshold;
+use windfall_source::stream::is_stream;
 
 /// What campaign.toml would say of rig, channels and contact; texts with units.
 #[derive(Clone, Debug, Default)]

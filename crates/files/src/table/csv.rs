@@ -11,9 +11,9 @@ use crate::table::write::plain_cell;
 use std::fs::File;
 use std::io::{BufRead, BufReader, Cursor, Read};
 use std::path::{Path, PathBuf};
-use windfall_formats::stream::{is_stream, stream_bytes};
 use windfall_formats::text::encoding::{Encoding, tell_encoding};
 use windfall_numerics::unit::nearest_name::nearest_names;
+use windfall_source::stream::{is_stream, stream_bytes};
 
 /// A table of text, as specimens.csv and impacts.csv are.
 #[derive(Clone, Debug, PartialEq, Eq)]

@@ -9,9 +9,9 @@ use std::ops::Range;
 use std::path::{Path, PathBuf};
 use toml::Spanned;
 use toml::de::{DeTable, DeValue};
-use windfall_formats::stream::{is_stream, stream_bytes};
 use windfall_numerics::unit::nearest_name::nearest_names;
 use windfall_numerics::unit::quantity::{LARGEST, parse_as};
+use windfall_source::stream::{is_stream, stream_bytes};
 
 /// A TOML file in memory.
 pub struct TomlSource {

@@ -1,8 +1,8 @@
 //! Splits an array, read in storage order, into its channels.
 
 use crate::arrays::tree::Series;
-use crate::error::Error;
 use crate::reader::Sink;
+use windfall_source::error::Error;
 
 /// Passes the elements of an array on to the requested channels.
 pub(crate) struct Pass {

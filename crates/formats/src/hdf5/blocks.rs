@@ -1,9 +1,9 @@
 //! Reads a dataset in blocks, in storage order.
 
-use crate::error::Error;
 use crate::hdf5::cursor::Problem;
 use crate::hdf5::dataset::Dataset;
 use crate::hdf5::file::Hdf5File;
+use windfall_source::error::Error;
 
 /// Elements per block.
 const BLOCK: u64 = 1 << 16;

@@ -1,8 +1,8 @@
 //! Reads the structures of an HDF5 file field by field.
 
-use crate::error::Error;
 use crate::number::integer;
 use std::borrow::Cow;
+use windfall_source::error::Error;
 
 /// Why a part of an HDF5 file cannot be read.
 #[derive(Debug)]

@@ -4,11 +4,11 @@
 //! The HDF Group (2023), "HDF5 File Format Specification 3.0", for all files of this
 //! folder.
 
-use crate::error::{Error, Place};
 use crate::hdf5::checksum::lookup3;
 use crate::hdf5::cursor::{Cursor, Problem, Widths};
-use crate::source::Source;
 use std::borrow::Cow;
+use windfall_source::error::{Error, Place};
+use windfall_source::source::Source;
 
 /// Signature of HDF5: at byte 0, or after a user block at 512, 1024, 2048 and so on.
 const SIGNATURE: &[u8; 8] = b"\x89HDF\r\n\x1a\n";

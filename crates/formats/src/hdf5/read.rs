@@ -4,14 +4,14 @@ use crate::arrays::channels::list_channels;
 use crate::arrays::pass::Pass;
 use crate::arrays::tree::Series;
 use crate::contents::{Contents, Format, Note};
-use crate::error::Error;
 use crate::hdf5::blocks::each_block;
 use crate::hdf5::dataset::Dataset;
 use crate::hdf5::file::{self, Hdf5File};
 use crate::hdf5::number::{Number, decode};
 use crate::hdf5::tree::{Stored, list};
 use crate::reader::{Reader, Sink};
-use crate::source::Source;
+use windfall_source::error::Error;
+use windfall_source::source::Source;
 
 #[derive(Debug)]
 pub struct Hdf5Reader {

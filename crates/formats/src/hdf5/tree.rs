@@ -7,7 +7,6 @@
 //! inferred from its files.
 
 use crate::arrays::tree::{Array, BEGINNING, Scalar, Tree, count, first_fastest, last_fastest};
-use crate::error::Error;
 use crate::hdf5::attribute::{Attributes, Value, text_of};
 use crate::hdf5::blocks::each_block;
 use crate::hdf5::cursor::Problem;
@@ -19,6 +18,7 @@ use crate::hdf5::number::{Number, Part, decode, parts};
 use crate::hdf5::object::{Header, read_header};
 use crate::hdf5::value_type::Kind;
 use std::collections::BTreeSet;
+use windfall_source::error::Error;
 
 /// Deepest nesting of groups and cells.
 const DEEPEST: usize = 32;

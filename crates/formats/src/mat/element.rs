@@ -1,9 +1,9 @@
 //! Data elements of version 5 MAT files: a tag and its data.
 
-use crate::error::{Error, Place};
 use crate::mat::flow::{ADVICE, Flow, Region};
 use crate::number::integer;
-use crate::source::Source;
+use windfall_source::error::{Error, Place};
+use windfall_source::source::Source;
 
 pub(crate) const MATRIX: u32 = 14;
 

@@ -1,9 +1,9 @@
 //! The bytes of one variable of a MAT file, compressed or not.
 
-use crate::error::{Error, Place};
-use crate::source::Source;
 use flate2::read::ZlibDecoder;
 use std::io::Read;
+use windfall_source::error::{Error, Place};
+use windfall_source::source::Source;
 
 /// Bytes decompressed at a time while skipping.
 const SKIP: usize = 1 << 15;

@@ -1,11 +1,11 @@
 //! Variables of version 5 MAT files: numbers, texts, structs and cells.
 
 use crate::arrays::tree::{Array, BEGINNING, first_fastest};
-use crate::error::Error;
 use crate::mat::element::{Element, Elements, MATRIX};
 use crate::mat::number::{name_of, of_class, of_element};
 use crate::mat::stored::{MatTree, Stored};
 use crate::number::{Number, integer};
+use windfall_source::error::Error;
 
 /// Deepest nesting of structs and cells.
 const DEEPEST: usize = 32;

@@ -4,12 +4,12 @@ use crate::arrays::channels::list_channels;
 use crate::arrays::pass::Pass;
 use crate::arrays::tree::Series;
 use crate::contents::{Contents, Format};
-use crate::error::Error;
 use crate::mat::flow::{Flow, Region};
 use crate::mat::stored::Stored;
 use crate::mat::{version4, version5};
 use crate::reader::{Reader, Sink};
-use crate::source::Source;
+use windfall_source::error::Error;
+use windfall_source::source::Source;
 
 /// Numbers read at a time.
 const BLOCK: u64 = 1 << 16;

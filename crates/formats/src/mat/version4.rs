@@ -5,12 +5,12 @@
 
 use crate::arrays::tree::{Array, BEGINNING, first_fastest};
 use crate::contents::Note;
-use crate::error::{Error, Place};
 use crate::mat::flow::{ADVICE, Flow, Region};
 use crate::mat::number::{name_of, of_version_4};
 use crate::mat::stored::{MatTree, Stored};
 use crate::number::integer;
-use crate::source::Source;
+use windfall_source::error::{Error, Place};
+use windfall_source::source::Source;
 
 /// Bytes of a header.
 const HEADER: u64 = 20;

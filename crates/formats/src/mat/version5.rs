@@ -5,13 +5,13 @@
 //! The MathWorks (2023), "MAT-File Format", chapter 1, "Level 5 MAT-Files".
 
 use crate::contents::Note;
-use crate::error::{Error, Place};
 use crate::mat::element::{COMPRESSED, Elements, MATRIX};
 use crate::mat::flow::{Flow, Region};
 use crate::mat::matrix::{Walk, list_variable};
 use crate::mat::stored::MatTree;
 use crate::number::integer;
-use crate::source::Source;
+use windfall_source::error::{Error, Place};
+use windfall_source::source::Source;
 
 /// Bytes of the header of a file.
 const HEADER: u64 = 128;

@@ -3,8 +3,8 @@
 //! # Source
 //! NumPy enhancement proposal 1, "A simple file format for NumPy arrays", and `numpy.lib.format`.
 
-use crate::error::{Error, Place};
-use crate::source::Source;
+use windfall_source::error::{Error, Place};
+use windfall_source::source::Source;
 
 /// First bytes of an array.
 pub const MAGIC: &[u8] = b"\x93NUMPY";

@@ -4,13 +4,13 @@ use crate::arrays::channels::list_channels;
 use crate::arrays::pass::Pass;
 use crate::arrays::tree::{Array, BEGINNING, Series, Tree, count, first_fastest, last_fastest};
 use crate::contents::{Contents, Format};
-use crate::error::Error;
 use crate::npy::data_type::{Field, fields};
 use crate::npy::header::{Header, MAGIC, read_header};
 use crate::number::{Layout, Number};
 use crate::reader::{Reader, Sink};
-use crate::source::Source;
 use crate::zip::entries::{Entry, check_sizes, open_archive, read_entry};
+use windfall_source::error::Error;
+use windfall_source::source::Source;
 
 /// Bytes read at a time, unless one element is larger.
 const BLOCK: u64 = 1 << 20;

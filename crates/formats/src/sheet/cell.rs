@@ -1,7 +1,7 @@
 //! Cells of a sheet.
 
-use crate::error::{Error, Place};
-use crate::source::Source;
+use windfall_source::error::{Error, Place};
+use windfall_source::source::Source;
 
 /// Most rows and columns of a sheet, in every program.
 const MOST_ROWS: u64 = 1 << 20;

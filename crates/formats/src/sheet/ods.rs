@@ -3,11 +3,11 @@
 //! # Source
 //! OASIS, Open Document Format for Office Applications 1.3, part 3, sections 9 and 19.
 
-use crate::error::{Error, Place};
 use crate::sheet::cell::{Cell, Sheet, duration};
-use crate::source::Source;
 use quick_xml::Reader;
 use quick_xml::events::{BytesStart, Event};
+use windfall_source::error::{Error, Place};
+use windfall_source::source::Source;
 
 /// Most cells that repetitions may add.
 const MOST_REPEATED: u64 = 1 << 22;

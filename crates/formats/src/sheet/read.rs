@@ -1,12 +1,10 @@
 //! Reads spreadsheets as tables of text.
 
 use crate::contents::{Format, Note};
-use crate::error::Error;
 use crate::sheet::cell::Sheet;
 use crate::sheet::render::{text_marks, text_of};
 use crate::sheet::trust::check_part;
 use crate::sheet::{ods, xlsx};
-use crate::source::Source;
 use crate::tables::bundle::{Bundle, Part};
 use crate::tables::stacked::beginnings;
 use crate::text::encoding::Encoding;
@@ -14,6 +12,8 @@ use crate::text::options::TextOptions;
 use crate::text::read::TextReader;
 use crate::text::rows::Separator;
 use crate::zip::entries::{Entry, check_sizes, open_archive, read_entry};
+use windfall_source::error::Error;
+use windfall_source::source::Source;
 
 /// A character that begins no line: a sheet has no comments.
 const NO_COMMENT: &str = "\u{1}";

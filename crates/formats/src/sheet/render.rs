@@ -1,15 +1,15 @@
 //! A sheet as text: a line for each row, tabs between cells.
 
 use crate::contents::Note;
-use crate::error::{Error, Place};
 use crate::sheet::cell::{Cell, Placed, Sheet};
-use crate::source::Source;
 use crate::text::decimal::doubtful_mark;
 use crate::text::number::{Marks, bare, number};
 use crate::text::options::TextOptions;
 use crate::text::rows::ColumnKind;
 use std::collections::BTreeMap;
 use std::fmt::Write;
+use windfall_source::error::{Error, Place};
+use windfall_source::source::Source;
 
 const NANOSECONDS: f64 = 1e9;
 const DAY: u64 = 86_400;

@@ -1,13 +1,11 @@
 //! Checks what the library that reads workbooks trusts: places of cells, of which a row beyond
 //! its numbers would become another one, and the number of texts, for which it asks memory.
 
-use crate::error::{Error, Place};
-use crate::source::Source;
-use crate::zip::entries::{Entry, open_entry};
+use crate::zip::entries::{Archive, Entry, open_entry};
 use quick_xml::Reader;
 use quick_xml::events::Event;
-use rawzip::ZipArchive;
 use std::io::BufReader;
+use windfall_source::error::{Error, Place};
 
 /// Most letters of a column and digits of a row.
 const MOST_LETTERS: usize = 3;
@@ -18,7 +16,7 @@ const MOST_DIGITS: usize = 7;
 /// # Errors
 /// A place is none, or a number of texts is more than the part can hold; the part is no XML, or
 /// cannot be unpacked.
-pub fn check_part(archive: &ZipArchive<Source>, part: &Entry) -> Result<(), Error> {
+pub fn check_part(archive: &Archive, part: &Entry) -> Result<(), Error> {
     let broken = |problem: String| {
         archive.get_ref().malformed(
             Place::Object(part.name.clone()),

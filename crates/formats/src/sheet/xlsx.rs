@@ -1,10 +1,10 @@
 //! Workbooks of Excel.
 
-use crate::error::{Error, Place};
 use crate::sheet::cell::{Cell, Sheet, duration};
-use crate::source::Source;
 use calamine::{DataRef, Reader, SheetType, Xlsx, XlsxError};
 use std::io::{BufReader, Read, Seek, SeekFrom};
+use windfall_source::error::{Error, Place};
+use windfall_source::source::Source;
 
 const DAY: f64 = 86_400.0;
 

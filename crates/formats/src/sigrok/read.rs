@@ -4,12 +4,11 @@
 //! The sigrok project, "File format: sigrok/v2".
 
 use crate::contents::{ChannelContents, Contents, Format, Note, TimeBase};
-use crate::error::{Error, Place};
 use crate::reader::{Reader, Sink};
-use crate::source::Source;
-use crate::zip::entries::{Entry, open_archive, open_entry};
-use rawzip::ZipArchive;
+use crate::zip::entries::{Archive, Entry, open_archive, open_entry};
 use std::io::Read;
+use windfall_source::error::{Error, Place};
+use windfall_source::source::Source;
 
 /// Longest metadata of a capture; bytes.
 const LONGEST_METADATA: u64 = 1 << 20;
@@ -22,7 +21,7 @@ const BLOCK: usize = 1 << 15;
 /// A capture of a logic analyser.
 #[derive(Debug)]
 pub struct SigrokReader {
-    archive: ZipArchive<Source>,
+    archive: Archive,
     contents: Contents,
     /// Parts of the capture, in order.
     parts: Vec<Entry>,
@@ -108,7 +107,7 @@ impl SigrokReader {
     }
 }
 
-fn read_metadata(archive: &ZipArchive<Source>, entry: &Entry) -> Result<Metadata, Error> {
+fn read_metadata(archive: &Archive, entry: &Entry) -> Result<Metadata, Error> {
     let broken = |problem: String| {
         archive.get_ref().malformed(
             Place::Object("metadata".to_owned()),

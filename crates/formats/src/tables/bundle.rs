@@ -1,10 +1,10 @@
 //! Tables that are read as one file.
 
 use crate::contents::{ChannelContents, Contents, Format, Note, TimeBase};
-use crate::error::Error;
 use crate::names::Names;
 use crate::reader::{Reader, Sink};
 use crate::text::read::TextReader;
+use windfall_source::error::Error;
 
 /// A table of a file.
 #[derive(Debug)]

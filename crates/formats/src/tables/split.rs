@@ -1,12 +1,12 @@
 //! Finds the tables of a text: each a header, then rows.
 
-use crate::error::Error;
-use crate::source::Source;
 use crate::text::encoding::{Encoding, tell_encoding};
 use crate::text::lines::{Lines, stretch, stretches};
 use crate::text::missing::MissingWords;
 use crate::text::options::TextOptions;
 use crate::text::read::TextReader;
+use windfall_source::error::Error;
+use windfall_source::source::Source;
 
 /// Longest text in which several tables are looked for; bytes.
 const LONGEST: u64 = 1 << 26;

@@ -1,13 +1,13 @@
 //! Opens a text of one or several tables.
 
 use crate::contents::Format;
-use crate::error::Error;
 use crate::reader::Reader;
-use crate::source::Source;
 use crate::tables::bundle::{Bundle, Part};
 use crate::tables::split::{Stretch, part_options, split};
 use crate::text::options::TextOptions;
 use crate::text::read::TextReader;
+use windfall_source::error::Error;
+use windfall_source::source::Source;
 
 /// Opens a text: a table, or tables below each other, which are segments.
 ///

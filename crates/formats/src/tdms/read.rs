@@ -5,11 +5,8 @@
 //! National Instruments, "TDMS file format internal structure".
 
 use crate::contents::{ChannelContents, Contents, Format, Note, TimeBase};
-use crate::error::Error;
 use crate::number::Number;
 use crate::reader::{Reader, Sink};
-use crate::room::zeros;
-use crate::source::Source;
 use crate::tdms::layout::{Group, Member, Region};
 use crate::tdms::metadata::{Property, names_of};
 use crate::tdms::scale::{Scales, scales_of};
@@ -18,6 +15,9 @@ use crate::tdms::value_type::{Layout, ValueType, decode, timestamp};
 use rayon::prelude::*;
 use std::collections::BTreeMap;
 use std::sync::Arc;
+use windfall_source::error::Error;
+use windfall_source::room::zeros;
+use windfall_source::source::Source;
 
 /// Bytes read and decoded at a time, small enough for the processor's cache.
 const WINDOW: u64 = 1 << 18;

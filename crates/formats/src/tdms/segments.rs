@@ -1,14 +1,14 @@
 //! Segments of a TDMS file: lead-ins, incremental metadata, raw data.
 
 use crate::contents::Note;
-use crate::error::{Error, Place};
 use crate::number::integer;
-use crate::source::Source;
 use crate::tdms::layout::{Active, Flags, Group, Region, chunk, cut};
 use crate::tdms::metadata::{Cursor, Index, ObjectEntry, Property, read_objects};
 use crate::tdms::value_type::ValueType;
 use std::collections::BTreeMap;
 use std::sync::Arc;
+use windfall_source::error::{Error, Place};
+use windfall_source::source::Source;
 
 /// Bytes before the metadata of a segment.
 const LEAD_IN: u64 = 28;

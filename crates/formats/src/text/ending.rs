@@ -2,9 +2,9 @@
 //! lost power.
 
 use crate::contents::Note;
-use crate::error::Error;
-use crate::source::Source;
 use crate::text::encoding::Encoding;
+use windfall_source::error::Error;
+use windfall_source::source::Source;
 
 /// Bytes looked through at a time.
 const BLOCK: u64 = 1 << 16;

@@ -1,8 +1,8 @@
 //! Splits a text file of any length into stretches of whole lines.
 
-use crate::error::{Error, Place};
-use crate::source::Source;
 use crate::text::encoding::Encoding;
+use windfall_source::error::{Error, Place};
+use windfall_source::source::Source;
 
 /// Nominal size of a stretch; bytes.
 const STRETCH: u64 = 1 << 20;

@@ -4,10 +4,8 @@
 //! National Instruments, "Specification for the LabVIEW Measurement File (.lvm)".
 
 use crate::contents::{ChannelContents, Contents, Format, Note, TimeBase};
-use crate::error::{Error, Place};
 use crate::names::Names;
 use crate::reader::{Reader, Sink};
-use crate::source::Source;
 use crate::text::encoding::{Encoding, tell_encoding};
 use crate::text::lines::Lines;
 use crate::text::lvm_lines::{header_begin, split_lines};
@@ -17,6 +15,8 @@ use crate::text::number::{Marks, number};
 use crate::text::options::TextOptions;
 use crate::text::rows::{ColumnKind, RowPlan, Separator};
 use crate::text::table::{Table, read_table};
+use windfall_source::error::{Error, Place};
+use windfall_source::source::Source;
 
 const END_OF_HEADER: &[u8] = b"***End_of_Header***";
 

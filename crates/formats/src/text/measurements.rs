@@ -1,7 +1,7 @@
 //! Measurements of known length that follow one another without a header.
 
-use crate::error::Error;
-use crate::source::Source;
+use windfall_source::error::Error;
+use windfall_source::source::Source;
 
 /// Bytes read at a time.
 const BLOCK: u64 = 1 << 20;

@@ -1,10 +1,8 @@
 //! Text tables of numbers: CSV in all its dialects.
 
 use crate::contents::{ChannelContents, Contents, Format, Note, TimeBase};
-use crate::error::Error;
 use crate::names::Names;
 use crate::reader::{Reader, Sink};
-use crate::source::Source;
 use crate::text::dialect::find_dialect;
 use crate::text::encoding::{Encoding, tell_encoding};
 use crate::text::ending::ending;
@@ -14,6 +12,8 @@ use crate::text::number::number;
 use crate::text::options::{Dialect, TextOptions};
 use crate::text::rows::{ColumnKind, RowPlan, Separator};
 use crate::text::table::{Found, Table, read_table, read_whole_table, shortened};
+use windfall_source::error::Error;
+use windfall_source::source::Source;
 
 /// Bytes used to detect the dialect.
 const HEAD: u64 = 1 << 16;

@@ -1,15 +1,15 @@
 //! Reads the rows of a text table on all cores, in bounded memory.
 
 use crate::contents::Note;
-use crate::error::{Error, Place};
 use crate::reader::Sink;
-use crate::room::zeros;
-use crate::source::Source;
 use crate::text::lines::{Lines, stretch, stretch_in, stretches};
 use crate::text::midnight::Clock;
 use crate::text::missing::{MissingCells, add_missing};
 use crate::text::rows::{Column, Fault, RowPlan, Rows, most_rows, read_rows};
 use rayon::prelude::*;
+use windfall_source::error::{Error, Place};
+use windfall_source::room::zeros;
+use windfall_source::source::Source;
 
 /// Stretches read ahead per thread.
 const AHEAD: usize = 2;

@@ -1,8 +1,8 @@
 //! Header of a function in a universal file.
 
-use crate::error::{Error, Place};
-use crate::source::Source;
 use crate::text::number::{Marks, number};
+use windfall_source::error::{Error, Place};
+use windfall_source::source::Source;
 
 /// Contents of the eleven header lines.
 pub struct Header {

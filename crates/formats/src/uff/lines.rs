@@ -1,7 +1,7 @@
 //! Reads lines from files that mix text and binary data.
 
-use crate::error::{Error, Place};
-use crate::source::Source;
+use windfall_source::error::{Error, Place};
+use windfall_source::source::Source;
 
 /// Bytes read at a time.
 const BLOCK: u64 = 1 << 16;

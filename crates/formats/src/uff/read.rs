@@ -4,14 +4,14 @@
 //! Structural Dynamics Research Corporation, "Universal file format, data set 58".
 
 use crate::contents::{ChannelContents, Contents, Format, Note, TimeBase};
-use crate::error::{Error, Place};
 use crate::names::Names;
 use crate::number::Number;
 use crate::reader::{Reader, Sink};
-use crate::source::Source;
 use crate::text::number::{Cell, Marks, cell};
 use crate::uff::header::{Header, TIME, malformed, parse_header};
 use crate::uff::lines::LineReader;
+use windfall_source::error::{Error, Place};
+use windfall_source::source::Source;
 
 const HEADER_LINES: usize = 11;
 

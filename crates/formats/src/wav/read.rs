@@ -6,10 +6,10 @@
 //! A-law.
 
 use crate::contents::{ChannelContents, Contents, Format, Note, TimeBase};
-use crate::error::{Error, Place};
 use crate::number::integer;
 use crate::reader::{Reader, Sink};
-use crate::source::Source;
+use windfall_source::error::{Error, Place};
+use windfall_source::source::Source;
 
 /// Samples read at a time, over all channels.
 const BLOCK: u64 = 1 << 16;

@@ -1,10 +1,10 @@
 //! Reads entries of a zip archive as streams.
 
-use crate::error::{Error, Place};
-use crate::source::Source;
 use flate2::read::DeflateDecoder;
 use rawzip::{CompressionMethod, ReaderAt, ZipArchive, ZipArchiveEntryWayfinder, ZipLocator};
 use std::io::{BufReader, Read};
+use windfall_source::error::{Error, Place};
+use windfall_source::source::Source;
 
 const MOST_ENTRIES: usize = 1 << 18;
 
@@ -28,12 +28,30 @@ pub struct Entry {
     place: ZipArchiveEntryWayfinder,
 }
 
-impl ReaderAt for Source {
+/// The bytes of an archive, read by `rawzip`.
+#[derive(Debug)]
+pub struct Packed(Source);
+
+/// An opened archive.
+pub type Archive = ZipArchive<Packed>;
+
+impl std::ops::Deref for Packed {
+    type Target = Source;
+
+    fn deref(&self) -> &Source {
+        &self.0
+    }
+}
+
+impl ReaderAt for Packed {
     fn read_at(&self, buffer: &mut [u8], offset: u64) -> std::io::Result<usize> {
         let left = self.length().saturating_sub(offset);
         let count = left.min(buffer.len() as u64) as usize;
         if count > 0 {
-            Source::read_at(self, offset, &mut buffer[..count]).map_err(std::io::Error::other)?;
+            let buffer = &mut buffer[..count];
+            self.0
+                .read_at(offset, buffer)
+                .map_err(std::io::Error::other)?;
         }
         Ok(count)
     }
@@ -45,11 +63,11 @@ fn malformed(source: &Source, at: u64, problem: &str) -> Error {
 }
 
 /// Opens an archive and lists its entries in the order of its directory.
-pub fn open_archive(source: Source) -> Result<(ZipArchive<Source>, Vec<Entry>), Error> {
+pub fn open_archive(source: Source) -> Result<(Archive, Vec<Entry>), Error> {
     let mut buffer = vec![0; rawzip::MAX_CENTRAL_DIRECTORY_RECORD_SIZE];
     let length = source.length();
-    let archive = ZipLocator::new().locate_in_reader(source, &mut buffer, length);
-    let archive = archive.map_err(|(source, _)| {
+    let archive = ZipLocator::new().locate_in_reader(Packed(source), &mut buffer, length);
+    let archive = archive.map_err(|(Packed(source), _)| {
         let problem = "the archive has no directory at its end, or a damaged one";
         malformed(&source, length, problem)
     })?;
@@ -76,10 +94,7 @@ pub fn open_archive(source: Source) -> Result<(ZipArchive<Source>, Vec<Entry>), 
 }
 
 /// Opens an entry as a stream.
-pub fn open_entry<'a>(
-    archive: &'a ZipArchive<Source>,
-    entry: &Entry,
-) -> Result<Box<dyn Read + 'a>, Error> {
+pub fn open_entry<'a>(archive: &'a Archive, entry: &Entry) -> Result<Box<dyn Read + 'a>, Error> {
     let source = archive.get_ref();
     let found = archive
         .get_entry(entry.place)
@@ -106,7 +121,7 @@ pub fn open_entry<'a>(
 ///
 /// # Errors
 /// They would, one is damaged, or the file cannot be read.
-pub fn check_sizes(archive: &ZipArchive<Source>, entries: &[&Entry]) -> Result<(), Error> {
+pub fn check_sizes(archive: &Archive, entries: &[&Entry]) -> Result<(), Error> {
     let source = archive.get_ref();
     let declared = entries
         .iter()
@@ -142,7 +157,7 @@ pub fn check_sizes(archive: &ZipArchive<Source>, entries: &[&Entry]) -> Result<(
 ///
 /// # Errors
 /// It is damaged, too large, or packed in an unusual way; or the file cannot be read.
-pub fn read_entry(archive: &ZipArchive<Source>, entry: &Entry) -> Result<Vec<u8>, Error> {
+pub fn read_entry(archive: &Archive, entry: &Entry) -> Result<Vec<u8>, Error> {
     check_sizes(archive, &[entry])?;
     let source = archive.get_ref();
     let mut bytes = Vec::new();

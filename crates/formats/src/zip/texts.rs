@@ -1,12 +1,12 @@
 //! Zip archives of tables of text: recordings of phones (phyphox, Sensor Logger).
 
 use crate::contents::{Format, Note};
-use crate::error::Error;
-use crate::source::Source;
 use crate::tables::bundle::{Bundle, Part};
 use crate::tables::stacked::open_parts;
 use crate::text::options::TextOptions;
 use crate::zip::entries::{Entry, check_sizes, open_archive, read_entry};
+use windfall_source::error::Error;
+use windfall_source::source::Source;
 
 const ENDINGS: [&str; 4] = [".csv", ".txt", ".tsv", ".dat"];
 

@@ -4,7 +4,7 @@ use windfall_formats::Error;
 use windfall_formats::contents::{Format, TimeBase};
 use windfall_formats::open::{OpenOptions, open, open_source};
 use windfall_formats::reader::Reader;
-use windfall_formats::source::Source;
+use windfall_source::source::Source;
 
 /// Opens bytes as a format.
 pub fn open_bytes(name: &str, bytes: Vec<u8>, format: Format) -> Result<Box<dyn Reader>, Error> {

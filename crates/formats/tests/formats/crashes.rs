@@ -3,7 +3,7 @@
 use windfall_formats::Error;
 use windfall_formats::contents::Format;
 use windfall_formats::open::{OpenOptions, open_source};
-use windfall_formats::source::Source;
+use windfall_source::source::Source;
 
 /// Reads all of a file, as what it was taken for.
 fn read(name: &str, bytes: &[u8], format: Format) -> Result<usize, Error> {

@@ -6,7 +6,7 @@ use windfall_formats::Error;
 use windfall_formats::contents::Format;
 use windfall_formats::open::{OpenOptions, open_source};
 use windfall_formats::reader::Sink;
-use windfall_formats::source::Source;
+use windfall_source::source::Source;
 
 /// Samples per byte that a file can give: a bit of a digital line, or a short
 /// number with its separator, and several channels in one place.

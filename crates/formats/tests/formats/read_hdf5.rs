@@ -4,7 +4,7 @@
 use crate::channels::{check_file, open_bytes, samples};
 use windfall_formats::contents::{ChannelContents, Format, TimeBase};
 use windfall_formats::open::{OpenOptions, open, open_source};
-use windfall_formats::source::Source;
+use windfall_source::source::Source;
 
 /// Checksums by h5py 3.16.
 #[test]

@@ -5,7 +5,7 @@ use crate::seeds::{archive, ods_parts, xlsx_parts};
 use windfall_formats::contents::{Format, TimeBase};
 use windfall_formats::open::tell_format;
 use windfall_formats::reader::is_missing;
-use windfall_formats::source::Source;
+use windfall_source::source::Source;
 
 /// Samples of a channel by its name.
 fn channel(bytes: &[u8], format: Format, name: &str) -> Vec<f64> {

@@ -5,10 +5,10 @@ use windfall_formats::Error;
 use windfall_formats::contents::{Format, TimeBase};
 use windfall_formats::open::{OpenOptions, open_source};
 use windfall_formats::reader::{Reader, is_missing};
-use windfall_formats::source::Source;
 use windfall_formats::text::encoding::Encoding;
 use windfall_formats::text::options::TextOptions;
 use windfall_formats::text::rows::Separator;
+use windfall_source::source::Source;
 
 /// Every dialect of one little table: t = 0, 0.5, 1 s and F = 1234.5, -2.25, none.
 #[test]

@@ -4,8 +4,8 @@ use crate::channels::{open_bytes, samples};
 use crate::seeds::{archive, zip_parts};
 use windfall_formats::contents::{Format, TimeBase};
 use windfall_formats::open::{OpenOptions, open_source};
-use windfall_formats::source::Source;
 use windfall_formats::text::options::TextOptions;
+use windfall_source::source::Source;
 
 #[test]
 fn closed_form_tables_of_an_archive() {

@@ -50,13 +50,16 @@ pub fn stream_bytes(path: &Path) -> Result<Arc<[u8]>> {
     Ok(bytes)
 }
 
-#[cfg(all(test, unix))]
+#[cfg(test)]
 mod tests {
+    #[cfg(unix)]
     use super::*;
-    use std::io::Write;
 
+    #[cfg(unix)]
     #[test]
     fn repeats_what_came_out_of_a_pipe() {
+        use std::io::Write;
+
         let folder = tempfile::tempdir().unwrap();
         let pipe = folder.path().join("pipe");
         let made = std::process::Command::new("mkfifo").arg(&pipe).status();

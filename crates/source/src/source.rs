@@ -74,7 +74,7 @@ impl Source {
 
     /// The bytes from `start` to `end` as a source of their own; what lies beyond the end of
     /// this one is left off.
-    pub(crate) fn part(&self, start: u64, end: u64) -> Self {
+    pub fn part(&self, start: u64, end: u64) -> Self {
         let start = start.min(self.length);
         Self {
             path: self.path.clone(),
@@ -151,12 +151,8 @@ impl Source {
         }
     }
 
-    pub(crate) fn malformed(
-        &self,
-        place: Place,
-        problem: impl Into<String>,
-        advice: &str,
-    ) -> Error {
+    /// Error: the bytes at a place break the rules of their format.
+    pub fn malformed(&self, place: Place, problem: impl Into<String>, advice: &str) -> Error {
         Error::Malformed {
             path: self.path.clone(),
             place,
@@ -166,7 +162,7 @@ impl Source {
     }
 
     /// Error: the file uses an unsupported part of its format.
-    pub(crate) fn unsupported(&self, place: Place, what: impl Into<String>, advice: &str) -> Error {
+    pub fn unsupported(&self, place: Place, what: impl Into<String>, advice: &str) -> Error {
         Error::Unsupported {
             path: self.path.clone(),
             place,
@@ -176,7 +172,7 @@ impl Source {
     }
 
     /// Error: the format is unknown or unsupported.
-    pub(crate) fn unknown(&self, found: impl Into<String>, advice: &str) -> Error {
+    pub fn unknown(&self, found: impl Into<String>, advice: &str) -> Error {
         Error::UnknownFormat {
             path: self.path.clone(),
             found: found.into(),

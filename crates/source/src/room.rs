@@ -4,7 +4,7 @@
 const MANY: usize = 1 << 19;
 
 /// Zeros, on large pages where the system supports them: faulting in small ones is slow.
-pub(crate) fn zeros(count: usize) -> Vec<f64> {
+pub fn zeros(count: usize) -> Vec<f64> {
     let zeros = vec![0.0; count];
     if count >= MANY {
         ask_for_large_pages(&zeros);
