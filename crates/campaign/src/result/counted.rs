@@ -30,9 +30,12 @@ const SLACK: f64 = 0.05;
 /// Largest ratio of impulse to change of momentum, or its inverse, that a bench whose
 /// sensitivity or inertia is somewhat wrong may have; 1.
 const IMPULSE_RATIO: f64 = 1.25;
-/// Largest delay between force and displacement, as a part of the contact's duration; 1. A
-/// delay of 1 % shifts the stiffness by about a tenth.
-const DELAY: f64 = 0.015;
+/// Logarithm by which a delay between force and displacement shifts the stiffness, for each
+/// part of the contact's duration; 1.
+const SHIFT_OF_DELAY: f64 = 10.0;
+/// Largest shift of the stiffness, as a logarithm, that delay and gain of the force may cause;
+/// 1.
+const SHIFT: f64 = 0.15;
 /// Largest root mean square between the displacement and the twice integrated force, as a
 /// part of the largest displacement; 1.
 const MOTION: f64 = 0.04;
@@ -204,18 +207,34 @@ fn impossible(impact: &ImpactOutcome, rig: &Rig) -> Vec<FindingOutcome> {
             );
         }
     }
-    if let (Some((delay, sd)), Some((duration, _))) = (
+    if let (Some((gain, gain_sd)), Some((delay, delay_sd)), Some((duration, _))) = (
+        signal(impact, "force_gain"),
         signal(impact, "force_delay"),
         signal(impact, "contact_duration"),
-    ) && delay.abs() > (DEVIATIONS * sd).max(DELAY * duration)
-    {
-        let told = format!(
-            "the force is {:.0} ± {:.0} µs off the displacement, by Newton's law: {:.1} % of the contact",
-            1e6 * delay,
-            1e6 * sd,
-            100.0 * delay.abs() / duration
-        );
-        tell("late-channel", told);
+    ) {
+        let by_delay = SHIFT_OF_DELAY * delay.abs() / duration;
+        let by_gain = gain.ln().abs();
+        let sd = (SHIFT_OF_DELAY * delay_sd / duration).hypot(gain_sd / gain);
+        if by_delay + by_gain > (DEVIATIONS * sd).max(SHIFT) {
+            let told = format!(
+                "by Newton's law the force is {:.0} ± {:.0} µs off the displacement ({:.1} % of the \
+                 contact) and {gain:.3} ± {gain_sd:.3} times mass × acceleration: the stiffness may be \
+                 {:.0} % off",
+                1e6 * delay,
+                1e6 * delay_sd,
+                100.0 * delay.abs() / duration,
+                100.0 * (by_delay + by_gain).exp_m1()
+            );
+            let late = by_delay > by_gain;
+            tell(
+                if late {
+                    "late-channel"
+                } else {
+                    "impulse-contradicts-momentum"
+                },
+                told,
+            );
+        }
     }
     if let (Some((misfit, _)), Some((largest, _))) = (
         signal(impact, "motion_misfit"),
