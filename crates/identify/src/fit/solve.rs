@@ -25,7 +25,9 @@ const LONGEST_STEP: (f64, f64) = (2.0, 0.5);
 /// after contact the other directions are known so well that a tenth is not reached.
 const ROUGHNESS: f64 = 0.04;
 /// Steps over a cusp in the onset; sampling intervals.
-const CUSP_SHIFTS: [f64; 6] = [0.3, -0.3, 0.7, -0.7, 1.5, -1.5];
+const CUSP_SHIFTS: [f64; 8] = [0.3, -0.3, 0.7, -0.7, 1.5, -1.5, 3.0, -3.0];
+/// Difference of the law's parameters at which two minima are the same; standard deviations.
+const SAME: f64 = 0.2;
 /// Step of the search for another minimum; blocks of samples.
 const ONSET_SHIFT: f64 = 1.5;
 /// Steps of that search to either side.
@@ -213,8 +215,8 @@ fn intervals<L: BatchLaw<N>, const N: usize, const W: usize, const P: usize>(
     }
 }
 
-/// A minimum next to a cusp at which the minimiser is stuck: from a part of a sampling
-/// interval before and after it.
+/// A minimum next to a cusp at which the minimiser is stuck, from a part of a sampling
+/// interval before and after it: one as low, or one at which the law is the same.
 fn past_cusp<L: FreeLaw<N>, const N: usize, const W: usize, const P: usize>(
     estimator: &Estimator<L, N, W, P>,
     minimum: Minimum<P>,
@@ -233,13 +235,23 @@ fn past_cusp<L: FreeLaw<N>, const N: usize, const W: usize, const P: usize>(
         return (minimum, 0);
     };
     let highest = minimum.equations.cost * (1.0 + options.roughness);
+    let same_law = |other: &Minimum<P>| {
+        let covariance = other.equations.inverse(free.len());
+        covariance.is_some_and(|covariance| {
+            free.iter().enumerate().all(|(i, own)| {
+                let off = other.parameters[i] - minimum.parameters[i];
+                !matches!(own.target, Target::Law(_)) || off.abs() <= SAME * covariance[i][i].sqrt()
+            })
+        })
+    };
     let mut spent = 0;
     for shift in CUSP_SHIFTS {
         let mut start = minimum.parameters;
         start[onset] += shift * interval / scale;
         let other = estimator.clone().minimise_from(&start, options);
         spent += other.evaluations;
-        if other.stop == Stop::Converged && other.equations.cost <= highest {
+        let found = other.equations.cost <= highest || same_law(&other);
+        if other.stop == Stop::Converged && found {
             return (other, spent);
         }
     }
