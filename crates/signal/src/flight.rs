@@ -8,9 +8,10 @@ use crate::options::ExtractOptions;
 use crate::track::{Signals, Track};
 
 /// Lengths that are tried, from the longest, as parts of the contact's duration; 1.
-const LENGTHS: [f64; 4] = [2.0, 1.0, 0.5, 0.3];
-/// Kept away from onset and end, where the threshold was crossed late or early; likewise.
-const GUARD: f64 = 0.05;
+const LENGTHS: [f64; 3] = [2.0, 1.0, 0.5];
+/// Kept away from onset and end, where the threshold was crossed late or early: a force below
+/// it still acts there; likewise.
+const GUARD: f64 = 0.2;
 /// Fewest samples that tell whether a motion is free.
 const LEAST_SAMPLES: usize = 30;
 /// Terms of third and fourth order are none of a free motion; told at this many deviations…
@@ -44,7 +45,14 @@ pub(crate) fn margins(
         let motions = [&signals.displacement, &signals.rate].into_iter().flatten();
         let flights = motions.map(|motion| {
             let force = signals.force.as_ref();
-            free_flight(motion, force, peak, place, side, options.free_flight)
+            free_flight(
+                motion,
+                force,
+                peak,
+                place,
+                side,
+                (margin, options.free_flight),
+            )
         });
         let shortest = flights.min_by(|a, b| a.0.total_cmp(&b.0));
         shortest.map_or(least, |(length, finding)| {
@@ -60,38 +68,38 @@ pub(crate) fn margins(
 /// rings does not. Nothing presses on the impactor meanwhile.
 ///
 /// * `motion`: displacement or rate
-/// * `wanted`: contact durations asked for
+/// * `least`, `wanted`: contact durations that are kept in any case, and asked for
 fn free_flight(
     motion: &Track,
     force: Option<&Track>,
     peak: f64,
     place: &Surroundings,
     side: Side,
-    wanted: f64,
+    (least, wanted): (f64, f64),
 ) -> (f64, Option<Finding>) {
     let duration = place.duration();
-    let lengths = LENGTHS.iter().filter(|length| **length < wanted);
+    let lengths = LENGTHS.iter().copied();
+    let lengths = lengths.filter(|length| (least..wanted).contains(length));
+    let held_back = |used: f64, why| Finding::FlightHeldBack {
+        channel: motion.name.clone(),
+        after: side == Side::After,
+        used,
+        wanted,
+        why,
+    };
     let mut held: Option<&'static str> = None;
-    for length in [&wanted].into_iter().chain(lengths) {
+    for length in [wanted].into_iter().chain(lengths) {
         let span = stretch(place, side, length * duration);
         let why = if force.is_some_and(|force| presses(force, peak, span, duration)) {
             "the force is not zero there"
         } else if rings(motion, span) {
             "the motion is not free there, as where an arm rings"
         } else {
-            let finding = held.map(|why| Finding::FlightHeldBack {
-                channel: motion.name.clone(),
-                after: side == Side::After,
-                used: *length,
-                wanted,
-                why,
-            });
-            return (length * duration, finding);
+            return (length * duration, held.map(|why| held_back(length, why)));
         };
         held = held.or(Some(why));
     }
-    // Not worse than what is always kept.
-    (0.0, None)
+    (0.0, held.map(|why| held_back(least, why)))
 }
 
 /// Begin and end of a stretch next to the contact; s.
