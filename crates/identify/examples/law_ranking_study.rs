@@ -79,7 +79,7 @@ fn main() {
         .collect();
     println!("{count} campaigns of {IMPACTS} impacts for each law\n");
     println!(
-        "| made by | ranked first | called sure | wrong and sure | wrong and called undecided | best rival: ΔAICc, median | foretold: right, best rival |"
+        "| simulated with | ranked first | called sure | wrong and sure | wrong and called undecided | best rival: ΔAICc, median | prediction error: right law, best rival |"
     );
     println!("|---|---|---|---|---|---|---|");
     for truth in laws {

@@ -18,7 +18,7 @@ use windfall_signal::options::ExtractOptions;
 use windfall_signal::trigger::{Threshold, TriggerOptions};
 
 /// Recorded before first touch and after it; s.
-const SPAN: (f64, f64) = (3e-3, 14e-3);
+const SPAN: (f64, f64) = (12e-3, 24e-3);
 /// Sampling interval of encoder and force; s.
 const INTERVAL: f64 = 5e-6;
 /// Length of the arm; m.
@@ -32,6 +32,8 @@ pub struct Bench {
     instrument: Instrument,
     encoder: Encoder,
     threshold: Threshold,
+    /// Contact durations of free motion that are used.
+    free_flight: f64,
 }
 
 impl Bench {
@@ -39,6 +41,12 @@ impl Bench {
     /// of 1 N.
     pub fn with_found_threshold(mut self) -> Self {
         self.threshold = Threshold::default();
+        self
+    }
+
+    /// The same with that many contact durations of free motion.
+    pub fn with_flight(mut self, durations: f64) -> Self {
+        self.free_flight = durations;
         self
     }
 }
@@ -69,6 +77,7 @@ pub fn bench(
         instrument,
         encoder,
         threshold: Threshold::Fixed(1.0),
+        free_flight: ExtractOptions::default().free_flight,
     }
 }
 
@@ -106,6 +115,7 @@ pub fn recorded(bench: &Bench, law: &Law, velocity: f64, seed: u64) -> Option<Im
         },
         encoder: Some(bench.encoder),
         arm: Some(ARM),
+        free_flight: bench.free_flight,
         effective_mass: Some(rig().effective_mass()),
         ..ExtractOptions::default()
     };

@@ -9,7 +9,7 @@ use windfall_draw::files::FigureFolder;
 #[derive(Debug, Args)]
 #[command(
     after_help = "Fits each law to each impact, all with the same noise, and ranks them by AICc, by BIC, \
-and by how well parameters found at some velocities foretell the others. Velocity levels are those \
+and by how well parameters found at some velocities predict the others. Velocity levels are those \
 of the column `level` of impacts.csv, or groups of like velocities. Nothing is written but figures.
 
 Examples:
