@@ -126,7 +126,7 @@ fn pinned_numbers_are_those_of_the_revision() {
         digest(&drops, &[]),
     ];
     let expected = (
-        4,
+        5,
         [
             "51b77bc5c70aa8a2",
             "3608fc2053045200",

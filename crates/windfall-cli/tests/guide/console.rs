@@ -11,6 +11,8 @@ const LEFT_OUT: char = '…';
 struct Typed {
     command: String,
     shown: Vec<String>,
+    /// Line of the page at which `shown` begins, from 0.
+    begin: usize,
 }
 
 /// Does on an empty folder what a reader of the page does: writes the files that
@@ -20,35 +22,48 @@ struct Typed {
 pub fn follow(page: &Page) -> usize {
     let folder = tempfile::tempdir().unwrap();
     let mut count = 0;
+    let mut lines: Vec<String> = page.text.lines().map(str::to_owned).collect();
     for block in &page.blocks {
         let place = format!("docs/guide/src/{}, line {}", page.name, block.line);
         match block.kind() {
             "console" => {
                 let status = block.value("status").map_or(0, |s| s.parse().unwrap());
                 for typed in typed(block, &place) {
-                    run(&typed, status, folder.path(), &place);
+                    let shown = run(&typed, status, folder.path(), &place);
+                    lines[typed.begin..][..shown.len()].clone_from_slice(&shown);
                     count += 1;
                 }
             }
             _ => write_file(block, folder.path(), page, &place),
         }
     }
+    if writes() {
+        std::fs::write(source().join(&page.name), lines.join("\n") + "\n").unwrap();
+    }
     compare_pictures(page, folder.path());
     count
+}
+
+/// Whether pages are to be changed to what their commands print and draw.
+fn writes() -> bool {
+    std::env::var("WINDFALL_GUIDE").is_ok_and(|wish| wish == "write")
 }
 
 fn typed(block: &Block, place: &str) -> Vec<Typed> {
     let mut all: Vec<Typed> = Vec::new();
     let mut goes_on = false;
-    for line in &block.lines {
+    for (index, line) in block.lines.iter().enumerate() {
+        let begin = block.line + index + 1;
         let command = line.strip_prefix("$ ");
         match (command, goes_on) {
             (Some(command), _) => all.push(Typed {
                 command: command.to_owned(),
                 shown: Vec::new(),
+                begin,
             }),
             (None, true) => {
                 let last = all.last_mut().unwrap();
+                last.begin = begin;
                 last.command += "\n";
                 last.command += line;
             }
@@ -63,7 +78,8 @@ fn typed(block: &Block, place: &str) -> Vec<Typed> {
     all
 }
 
-fn run(typed: &Typed, status: i32, folder: &Path, place: &str) {
+/// Returns what the page is to show.
+fn run(typed: &Typed, status: i32, folder: &Path, place: &str) -> Vec<String> {
     let binary = Path::new(env!("CARGO_BIN_EXE_windfall"));
     let mut paths = vec![binary.parent().unwrap().to_path_buf()];
     paths.extend(std::env::split_paths(&std::env::var_os("PATH").unwrap()));
@@ -84,12 +100,57 @@ fn run(typed: &Typed, status: i32, folder: &Path, place: &str) {
     let printed: Vec<&str> = text.lines().map(str::trim_end).collect();
     if typed.shown.iter().any(|line| !line.is_empty()) {
         let shown: Vec<&str> = typed.shown.iter().map(String::as_str).collect();
+        let matches = lines_match(trimmed(&shown), trimmed(&printed));
+        if !matches && writes() {
+            return mended(&shown, trimmed(&printed));
+        }
         assert!(
-            lines_match(trimmed(&shown), trimmed(&printed)),
+            matches,
             "{place}: the page does not show what is printed by\n$ {}\n{text}",
             typed.command
         );
     }
+    typed.shown.clone()
+}
+
+/// Shown lines with the numbers that are printed now; what is left out stays so.
+fn mended(shown: &[&str], printed: &[&str]) -> Vec<String> {
+    let skeleton = |line: &str| line.replace(|c: char| !c.is_alphabetic(), "");
+    let mut lines = Vec::new();
+    let mut from = 0;
+    for (index, part) in shown.split(|line| line.trim() == "…").enumerate() {
+        let alike = |begin: &usize| {
+            let there = printed[*begin..].iter().zip(part);
+            there.filter(|(a, b)| skeleton(a) == skeleton(b)).count()
+        };
+        // The first of those that are most alike.
+        let begin = (from..printed.len()).rev().max_by_key(alike);
+        let now = &printed[begin.unwrap_or(from)..];
+        lines.extend((index > 0).then(|| "…".to_owned()));
+        for (place, line) in part.iter().enumerate() {
+            let now = now.get(place).filter(|now| !line_matches(line, now));
+            lines.push(now.map_or_else(|| (*line).to_owned(), |now| abridged(line, now)));
+        }
+        from = begin.unwrap_or(from) + part.len().min(now.len());
+    }
+    lines
+}
+
+/// A printed line with the omissions of the one shown: a number loses the same last digits.
+fn abridged(shown: &str, printed: &str) -> String {
+    let mut rest = printed.chars().peekable();
+    let mut line = String::new();
+    let mut shown = shown.chars().peekable();
+    while let Some(c) = shown.next() {
+        if c == LEFT_OUT {
+            line.push(c);
+            while rest.next_if(|next| shown.peek() != Some(next)).is_some() {}
+        } else {
+            line.extend(rest.next());
+        }
+    }
+    line.extend(rest);
+    line
 }
 
 /// Without empty lines at both ends.
@@ -165,7 +226,7 @@ fn compare_pictures(page: &Page, folder: &Path) {
         let kept = page_folder.join(path);
         let drawn = std::fs::read(folder.join(path.file_name().unwrap()));
         let drawn = drawn.unwrap_or_else(|_| panic!("{}: no command draws {target}", page.name));
-        if std::env::var("WINDFALL_GUIDE").is_ok_and(|wish| wish == "write") {
+        if writes() {
             std::fs::write(&kept, &drawn).unwrap();
         }
         assert!(
