@@ -229,9 +229,15 @@ impl NoisePlan {
                     let jitter = edges.jitter(residuals, speeds, parameters);
                     let variances = edges.variances(speeds, jitter);
                     group = edge_group(edges, &variances, impact.onset);
+                    let mut scale = 1.0;
                     if residuals.len() >= ENOUGH_EDGES {
+                        let before = group.weights[quantity as usize];
                         group = rescaled(group, quantity, residuals, freedom);
+                        scale = before / group.weights[quantity as usize];
                     }
+                    let shared = edges.variances_of_lines(speeds, jitter);
+                    let shared: Vec<f64> = shared.iter().map(|v| v * scale).collect();
+                    group = edge_group(edges, &shared, impact.onset);
                 } else if let Some(blocks) = self.coloured(impact, quantity, &group, residuals) {
                     let (own, noise, residuals) = blocks.group;
                     plan.noise[quantity as usize] = noise;

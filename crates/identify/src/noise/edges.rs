@@ -4,7 +4,10 @@
 //! small nor independent from sample to sample. Where the count changes, the
 //! displacement is known exactly, at a time known to one sampling interval Δt:
 //! an error of displacement uniform over v Δt, independent from edge to edge.
+//!
+//! A line that lies beside its place is passed twice, on the way in and out, with one error.
 
+use std::collections::HashMap;
 use windfall_signal::encoder::edge_rate::{CountTimes, edges};
 use windfall_signal::impact::Series;
 
@@ -35,6 +38,8 @@ pub(crate) struct EdgeSamples {
     pub intervals: Vec<f64>,
     /// Speed there by the neighbouring edges; m/s.
     pub speeds: Vec<f64>,
+    /// Whether the same line is passed a second time.
+    pub repeated: Vec<bool>,
     /// Length of a count; m.
     pub quantum: f64,
 }
@@ -68,7 +73,14 @@ pub(crate) fn edge_samples(series: &Series) -> Option<EdgeSamples> {
             (found.values[to] - found.values[from]).abs() / span
         })
         .collect();
+    let line = |value: f64| (2.0 * value / quantum).round() as i64;
+    let mut passes: HashMap<i64, u32> = HashMap::new();
+    for value in &found.values {
+        *passes.entry(line(*value)).or_default() += 1;
+    }
+    let repeated = found.values.iter().map(|value| passes[&line(*value)] > 1);
     Some(EdgeSamples {
+        repeated: repeated.collect(),
         times: found.times,
         values: found.values,
         intervals: steps.iter().map(|s| s.1).collect(),
@@ -83,6 +95,17 @@ impl EdgeSamples {
         let jitter = jitter.max(LINE_ACCURACY * self.quantum);
         let timed = self.timing_variances(speeds);
         timed.map(|variance| variance + jitter * jitter).collect()
+    }
+
+    /// The same where lines have errors of their own, of which two passes share one: no
+    /// combination of the edges has more, since for a pair of variance τ² each
+    /// (τ² + 2j²) 1 − [τ² + j², j²; j², τ² + j²] is positive semidefinite.
+    pub(crate) fn variances_of_lines(&self, speeds: &[f64], jitter: f64) -> Vec<f64> {
+        let square = jitter.max(LINE_ACCURACY * self.quantum).powi(2);
+        let once = self.variances(speeds, jitter).into_iter();
+        once.zip(&self.repeated)
+            .map(|(variance, again)| variance + if *again { square } else { 0.0 })
+            .collect()
     }
 
     /// Root mean square error of an edge by its time alone; m.
@@ -147,6 +170,29 @@ mod tests {
         }
         let ratio = square / f64::from(count) / ((speed * interval).powi(2) / 12.0);
         assert!((ratio - 1.0).abs() < 0.05, "{ratio}");
+    }
+
+    /// Ten lines in, the same ten out, and two beyond: an error of the lines counts twice
+    /// where they are passed twice.
+    #[test]
+    fn closed_form_lines_that_are_passed_twice() {
+        let position = |i: i32| f64::from(if i < 105 { i } else { 210 - i }) / 10.0;
+        let values = (0..230).map(|i| position(i).floor() * 1e-5).collect();
+        let series = Series {
+            times: (0..230).map(|i| 5e-6 * f64::from(i)).collect(),
+            values,
+            quantum: Some(1e-5),
+            ..Series::default()
+        };
+        let edges = edge_samples(&series).unwrap();
+        assert_eq!(edges.repeated.iter().filter(|again| **again).count(), 20);
+        let jitter = 3e-7;
+        let once = edges.variances(&edges.speeds, jitter);
+        let shared = edges.variances_of_lines(&edges.speeds, jitter);
+        for (i, again) in edges.repeated.iter().enumerate() {
+            let more = if *again { jitter * jitter } else { 0.0 };
+            assert!((shared[i] - once[i] - more).abs() < 1e-20, "{i}");
+        }
     }
 
     #[test]
