@@ -1,26 +1,69 @@
 //! A signal that stays at the limit of its instrument.
 
 use crate::finding::Finding;
-use crate::polynomial::fit_polynomial;
+use crate::polynomial::{PolynomialFit, fit_polynomial};
+use crate::trigger_scale::{moving_mean, white_noise};
+use std::ops::Range;
+
+/// Most samples of a recording that lie beyond a limit: single wrong ones.
+const MOST_BEYOND: usize = 3;
 
 /// Fewest successive samples at the largest value.
 const LEAST_SUCCESSIVE: usize = 3;
 
+/// Fewest samples at the largest value that need not be successive.
+const LEAST_PILED: usize = 8;
+
+/// So many times as many samples lie at a limit as at any value near below it; 1. A rounded
+/// top that is quantised has up to 2.4 times as many in its last step as in the one before.
+const PILED: usize = 6;
+
+/// Values near below the largest that are compared with it.
+const NEAR_BELOW: usize = 12;
+
+/// Part of the samples at the limit that is left out at either end of a plateau: noise
+/// reaches it early and late; 1.
+const EARLY: f64 = 0.05;
+
 /// Fewest samples on either side that are continued over the top.
 const LEAST_FLANK: usize = 4;
 
-/// The flanks must extrapolate above the limit by more than this part of it; 1.
+/// The flanks must extrapolate above the limit by more than this part of the height; 1.
 const EXCESS: f64 = 0.02;
 
 /// … and by more than this many standard deviations of the continuation; 1.
 const SIGNIFICANT: f64 = 3.0;
 
-/// Clipping of a signal in a contact: successive samples at the largest value,
-/// above which a parabola through the samples on both sides would rise.
+/// Fewest samples of a plateau that carries noise.
+const LEAST_NOISY: usize = 24;
+
+/// A plateau that carries noise is looked for in means over this part of the contact; 1.
+const SMOOTHING: f64 = 0.02;
+
+/// It reaches this many deviations of such a mean below its highest one; 1.
+const NOISE_BAND: f64 = 8.0;
+
+/// … and at most this part of its height; 1.
+const WIDEST_BAND: f64 = 0.1;
+
+/// Part of a plateau, in its middle, that must be straight and level; 1.
+const MIDDLE: f64 = 0.8;
+
+/// The flanks of such a plateau must bulge by this part of the height between its ends, and
+/// its middle be known to bulge by no more than a tenth of that; 1.
+const BULGE: f64 = 0.05;
+const LEVEL: f64 = 0.1;
+
+/// Clipping of a signal in a contact: a plateau at its largest value that a pulse with such
+/// flanks cannot have.
 ///
-/// The rounded top of a quantised signal stays on one value too; its flanks
-/// continue to that value and no further.
+/// A plateau is several successive samples at the largest value; many of them in pieces,
+/// where noise was in the signal before it met the limit; or a level stretch, where noise came
+/// after it. But for the pieces, a parabola through the samples on both sides must rise above
+/// it: the rounded top of a quantised signal stays on one value too, but its flanks continue to
+/// that value and no further.
 ///
+/// * `values`: samples as they were recorded, before anything is subtracted or filtered
 /// * `window`: onset and end of the contact; s
 /// * `negative`: true if the signal is negative in contact
 pub fn clipping(
@@ -37,41 +80,138 @@ pub fn clipping(
         .iter()
         .copied()
         .reduce(|a, b| if sign * b > sign * a { b } else { a })?;
-    let (from, to) = longest_run(values, first, last, limit);
-    let length = to - from;
-    if length < LEAST_SUCCESSIVE {
+    let beyond = |v: &&f64| sign * **v > sign * limit;
+    if values.iter().filter(beyond).count() > MOST_BEYOND {
         return None;
     }
-
-    // The flanks, without the plateau.
-    let flank = (length / 3).max(LEAST_FLANK);
-    let left = from.saturating_sub(flank).max(first)..from;
-    let right = to..(to + flank).min(last);
-    let flank_times = [&times[left.clone()], &times[right.clone()]].concat();
-    let flank_values = [&values[left], &values[right]].concat();
-    let middle = 0.5 * (times[from] + times[to - 1]);
-    let fit = fit_polynomial(&flank_times, &flank_values, middle, 2)?;
-    let excess = sign * (fit.derivatives[0] - limit);
-    let spread = fit.standard_deviations[0];
-    let clipped = excess > EXCESS * limit.abs() && excess > SIGNIFICANT * spread;
-    clipped.then(|| Finding::Clipped {
+    let height = sign * (limit - far_end(values, -sign)?);
+    let pulse = Pulse {
+        times,
+        values,
+        contact: first..last,
+        sign,
+        limit,
+        height,
+    };
+    let (plateau, samples) = pulse.at_limit().or_else(|| pulse.level())?;
+    Some(Finding::Clipped {
         channel: name.to_owned(),
         value: limit,
-        samples: length,
-        from: times[from],
-        to: times[to - 1],
+        samples,
+        from: times[plateau.start],
+        to: times[plateau.end - 1],
     })
 }
 
-/// The longest run of `limit` within `first..last`, as a range.
-fn longest_run(values: &[f64], first: usize, last: usize, limit: f64) -> (usize, usize) {
-    let mut longest = (first, first);
-    let mut begin = first;
-    for (i, &value) in values.iter().enumerate().take(last).skip(first) {
-        if value != limit {
+/// The extreme of a signal on the side of `sign`.
+fn far_end(values: &[f64], sign: f64) -> Option<f64> {
+    let further = |a: f64, b: f64| if sign * b > sign * a { b } else { a };
+    values.iter().copied().reduce(further)
+}
+
+/// A signal around the contact that is looked at.
+struct Pulse<'a> {
+    times: &'a [f64],
+    values: &'a [f64],
+    contact: Range<usize>,
+    sign: f64,
+    limit: f64,
+    height: f64,
+}
+
+impl Pulse<'_> {
+    /// Samples that equal the limit, one after the other or in pieces; their number.
+    fn at_limit(&self) -> Option<(Range<usize>, usize)> {
+        let run = longest_run(self.values, &self.contact, self.limit);
+        let length = run.len();
+        let (plateau, samples) = match self.pieces() {
+            Some(pieces) if pieces.1 > 2 * length => return Some(pieces),
+            Some(pieces) if pieces.1 > length => pieces,
+            _ => (run, length),
+        };
+        if samples < LEAST_SUCCESSIVE {
+            return None;
+        }
+        let flanks = self.flanks(&plateau)?;
+        let excess = self.sign * (flanks.derivatives[0] - self.limit);
+        let spread = flanks.standard_deviations[0];
+        let clipped = excess > EXCESS * self.height && excess > SIGNIFICANT * spread;
+        clipped.then_some((plateau, samples))
+    }
+
+    /// Samples at the limit with others between them, where many more lie there than at the
+    /// values just below.
+    fn pieces(&self) -> Option<(Range<usize>, usize)> {
+        let own = self.contact.clone();
+        let at: Vec<usize> = own.filter(|&i| self.values[i] == self.limit).collect();
+        let mut below: Vec<f64> = self.values[self.contact.clone()].to_vec();
+        below.sort_by(|a, b| (self.sign * b).total_cmp(&(self.sign * a)));
+        let levels = below.chunk_by(|a, b| a == b).skip(1).take(NEAR_BELOW);
+        let most = levels.map(<[f64]>::len).max().unwrap_or(0);
+        if at.len() < LEAST_PILED.max(PILED * most) {
+            return None;
+        }
+        let early = (EARLY * at.len() as f64) as usize;
+        let plateau = at[early]..at[at.len() - 1 - early] + 1;
+        Some((plateau, at.len()))
+    }
+
+    /// A parabola through the samples on either side of a plateau, about its middle.
+    fn flanks(&self, plateau: &Range<usize>) -> Option<PolynomialFit> {
+        let flank = (plateau.len() / 3).max(LEAST_FLANK);
+        let left = plateau.start.saturating_sub(flank).max(self.contact.start)..plateau.start;
+        let right = plateau.end..(plateau.end + flank).min(self.contact.end);
+        let times = [&self.times[left.clone()], &self.times[right.clone()]].concat();
+        let values = [&self.values[left], &self.values[right]].concat();
+        let middle = 0.5 * (self.times[plateau.start] + self.times[plateau.end - 1]);
+        fit_polynomial(&times, &values, middle, 2)
+    }
+
+    /// A straight and level stretch at the top, in noise; its samples.
+    fn level(&self) -> Option<(Range<usize>, usize)> {
+        let own = &self.values[self.contact.clone()];
+        let length = ((SMOOTHING * own.len() as f64) as usize) | 1;
+        let smooth = moving_mean(own, length);
+        let top = far_end(&smooth, self.sign)?;
+        let band = NOISE_BAND * white_noise(self.values) / (length as f64).sqrt();
+        if band > WIDEST_BAND * self.height {
+            return None;
+        }
+        let high = |v: &f64| self.sign * (top - v) <= band;
+        let start = self.contact.start + smooth.iter().position(high)?;
+        let plateau = start..self.contact.start + smooth.iter().rposition(high)? + 1;
+        if plateau.len() < LEAST_NOISY {
+            return None;
+        }
+        let flanks = self.flanks(&plateau)?;
+        let cut = (0.5 * (1.0 - MIDDLE) * plateau.len() as f64) as usize;
+        let middle = plateau.start + cut..plateau.end - cut;
+        let (times, values) = (&self.times[middle.clone()], &self.values[middle]);
+        let span = times[times.len() - 1] - times[0];
+        let centre = 0.5 * (times[0] + times[times.len() - 1]);
+        let inner = fit_polynomial(times, values, centre, 2)?;
+        // How far a parabola of this curvature rises between the ends, and a line.
+        let bulge = |curvature: f64| -self.sign * curvature * span * span / 8.0;
+        let (wanted, found) = (bulge(flanks.derivatives[2]), bulge(inner.derivatives[2]));
+        let unsure = SIGNIFICANT * bulge(-self.sign * inner.standard_deviations[2]);
+        let slope_unsure = SIGNIFICANT * inner.standard_deviations[1];
+        let steep = inner.derivatives[1].abs() > slope_unsure;
+        let clear = wanted > (BULGE * self.height)
+            && wanted > SIGNIFICANT * bulge(-self.sign * flanks.standard_deviations[2]);
+        let straight = found.abs() <= unsure && found.abs() + unsure <= LEVEL * wanted;
+        (clear && straight && !steep).then(|| (plateau.clone(), plateau.len()))
+    }
+}
+
+/// The longest run of `limit` in a range.
+fn longest_run(values: &[f64], within: &Range<usize>, limit: f64) -> Range<usize> {
+    let mut longest = within.start..within.start;
+    let mut begin = within.start;
+    for i in within.clone() {
+        if values[i] != limit {
             begin = i + 1;
-        } else if i + 1 - begin > longest.1 - longest.0 {
-            longest = (begin, i + 1);
+        } else if i + 1 - begin > longest.len() {
+            longest = begin..i + 1;
         }
     }
     longest
@@ -80,6 +220,73 @@ fn longest_run(values: &[f64], first: usize, last: usize, limit: f64) -> (usize,
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::noise::gaussian::{noise_source, normal};
+
+    /// Half a sine of 30 with noise before the limit and after it, in steps of a converter.
+    fn half_sine_in_noise(
+        limit: f64,
+        (before, after): (f64, f64),
+        step: f64,
+        seed: u64,
+    ) -> (Vec<f64>, Vec<f64>) {
+        let mut source = noise_source(seed, 0);
+        let times: Vec<f64> = (0..1201).map(|i| f64::from(i) * 5e-6).collect();
+        let values = times.iter().map(|t| {
+            let clean = 30.0 * (t / 6e-3 * std::f64::consts::PI).sin();
+            let limited = (clean + before * normal(&mut source)).min(limit);
+            let noisy = limited + after * normal(&mut source);
+            if step > 0.0 {
+                (noisy / step).round() * step
+            } else {
+                noisy
+            }
+        });
+        let values = values.collect();
+        (times, values)
+    }
+
+    const CONTACT: (f64, f64) = (0.0, 6e-3);
+
+    #[test]
+    fn recovers_a_limit_that_noise_meets() {
+        for part in [0.4, 0.6, 0.8, 0.9] {
+            for noise in [0.05, 0.5, 2.0] {
+                for seed in 0..10 {
+                    let own = half_sine_in_noise(30.0 * part, (noise, 0.0), 0.0, seed);
+                    let found = clipping("F", &own.0, &own.1, CONTACT, false);
+                    assert!(found.is_some(), "{part} {noise} {seed}");
+                    let negative: Vec<f64> = own.1.iter().map(|v| -v).collect();
+                    assert!(clipping("F", &own.0, &negative, CONTACT, true).is_some());
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn recovers_a_limit_under_noise() {
+        for part in [0.4, 0.6, 0.8] {
+            for noise in [0.02, 0.1, 0.3] {
+                for seed in 0..10 {
+                    let own = half_sine_in_noise(30.0 * part, (0.0, noise), 0.0, seed);
+                    let found = clipping("F", &own.0, &own.1, CONTACT, false);
+                    assert!(found.is_some(), "{part} {noise} {seed}");
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn rejects_no_pulse_for_its_noise_or_its_steps() {
+        for noise in [0.0, 0.02, 0.1, 0.5, 2.0] {
+            for step in [0.0, 0.01, 0.1, 0.5, 1.0] {
+                for seed in 0..20 {
+                    let own = half_sine_in_noise(1e9, (noise, 0.0), step, seed);
+                    let found = clipping("F", &own.0, &own.1, CONTACT, false);
+                    assert_eq!(found, None, "{noise} {step} {seed}");
+                }
+            }
+        }
+    }
 
     fn half_sine(limit: f64, step: f64) -> (Vec<f64>, Vec<f64>) {
         let times: Vec<f64> = (0..121).map(|i| f64::from(i) * 5e-5).collect();

@@ -14,6 +14,7 @@ use crate::kinematics::{Motion, smoothing_window};
 use crate::measure::{
     Side, Surroundings, Velocity, free_velocity, impulse, largest_displacement, with_energies,
 };
+use crate::noise::estimate::median;
 use crate::noise_track::{baseline_persistence, force_noise, noise_of};
 use crate::options::{ExtractOptions, RateMethod, check_options};
 use crate::orient::{
@@ -21,12 +22,13 @@ use crate::orient::{
 };
 use crate::polynomial::local_polynomial;
 use crate::rate::derived_rate;
-use crate::recording::Recording;
+use crate::recording::{Quantity, Recording};
 use crate::spike::remove_spikes;
 use crate::track::{Geometry, Signals, Track, Tracks, mean_interval, missing, tracks};
 use crate::trigger::{
     Baseline, ContactChoice, Contacts, Signal, Threshold, TriggerOptions, find_contacts,
 };
+use crate::trigger_scale::index_of_largest;
 use crate::zero::level_zero;
 
 /// Fewer samples in contact than this are reported.
@@ -84,6 +86,7 @@ pub fn extract_impact(
     let turns = turning_contacts(&contacts, &tracks, &mut findings);
     let place = choose(&contacts, &turns, options, from_motion, &mut findings)?;
     missing_samples(recording, &place, &mut findings)?;
+    clipped_channels(recording, &place, &mut findings);
 
     // Signs, zeros and noise; then what they say, and the rate to be fitted.
     let mut signals = oriented(tracks, &contacts, &place, options, &mut findings);
@@ -178,6 +181,27 @@ fn missing_samples(
     Ok(())
 }
 
+/// Reports forces and accelerations that stand at the end of their range in contact: as
+/// recorded, before anything was subtracted or filtered.
+fn clipped_channels(recording: &Recording, place: &Surroundings, findings: &mut Vec<Finding>) {
+    let window = (place.onset, place.end);
+    for channel in &recording.channels {
+        if !matches!(channel.quantity, Quantity::Force | Quantity::Acceleration) {
+            continue;
+        }
+        let times: Vec<f64> = (0..channel.samples.len())
+            .map(|i| channel.times.at(i))
+            .collect();
+        let values = &channel.samples;
+        let middle = median(values).unwrap_or(0.0);
+        let own =
+            times.partition_point(|&t| t < window.0)..times.partition_point(|&t| t <= window.1);
+        let largest = index_of_largest(&values[own.clone()], |v| (v - middle).abs());
+        let negative = values.get(own.start + largest).is_some_and(|v| *v < middle);
+        findings.extend(clipping(&channel.name, &times, values, window, negative));
+    }
+}
+
 fn oriented(
     tracks: Tracks,
     contacts: &Contacts,
@@ -186,15 +210,6 @@ fn oriented(
     findings: &mut Vec<Finding>,
 ) -> Signals {
     let force = tracks.force.map(|track| {
-        let window = (place.onset, place.end);
-        let (times, values) = (&track.times, &track.values);
-        findings.extend(clipping(
-            &track.name,
-            times,
-            values,
-            window,
-            contacts.reversed,
-        ));
         let mut track = oriented_force(track, contacts, options, findings);
         track.noise = force_noise(&track, contacts, place, findings);
         track.persistence = baseline_persistence(&track, contacts);
