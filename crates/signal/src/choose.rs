@@ -58,7 +58,7 @@ pub(crate) fn turning_contacts(
 }
 
 /// A contact and the free motion up to its neighbours.
-fn surroundings(windows: &[ContactWindow], index: usize) -> Surroundings {
+pub(crate) fn surroundings(windows: &[ContactWindow], index: usize) -> Surroundings {
     let before = index.checked_sub(1).map(|i| windows[i].end);
     let after = windows.get(index + 1).map(|w| w.onset);
     Surroundings {

@@ -1,13 +1,13 @@
 //! Recording → Impact.
 
-use crate::choose::{choose, turning_contacts};
+use crate::choose::choose;
 use crate::clipping::clipping;
 use crate::compare::compare;
-use crate::conditioning::{add_tip_force, filter_tracks};
-use crate::deceleration::deceleration;
+use crate::conditioning::add_tip_force;
 use crate::error::Error;
 use crate::finding::Finding;
 use crate::flight::margins;
+use crate::found::{Found, found};
 use crate::impact::{Impact, Measured, Series};
 use crate::jump::jump;
 use crate::kinematics::{Motion, smoothing_window};
@@ -16,20 +16,16 @@ use crate::measure::{
 };
 use crate::noise::estimate::median;
 use crate::noise_track::{baseline_persistence, force_noise, noise_of};
-use crate::options::{ExtractOptions, RateMethod, check_options};
+use crate::options::{ExtractOptions, RateMethod};
 use crate::orient::{
     leave_out_glitches, mean_between, offset_sd, orient, oriented_displacement, oriented_force,
 };
 use crate::polynomial::local_polynomial;
 use crate::rate::derived_rate;
 use crate::recording::{Quantity, Recording};
-use crate::spike::remove_spikes;
-use crate::track::{Geometry, Signals, Track, Tracks, mean_interval, missing, tracks};
-use crate::trigger::{
-    Baseline, ContactChoice, Contacts, Signal, Threshold, TriggerOptions, find_contacts,
-};
+use crate::track::{Signals, Track, Tracks, mean_interval};
+use crate::trigger::{Baseline, ContactChoice, Contacts};
 use crate::trigger_scale::index_of_largest;
-use crate::zero::level_zero;
 
 /// Fewer samples in contact than this are reported.
 const FEW_SAMPLES: usize = 8;
@@ -40,7 +36,7 @@ const PEAK_ORDER: usize = 2;
 
 /// Cuts one impact out of a recording.
 ///
-/// The contact window comes from the force ([`find_contacts`]); without a force
+/// The contact window comes from the force ([`crate::trigger::find_contacts`]); without a force
 /// channel from the deceleration, measured or by differences of block means of
 /// displacement or rate. The displacement is zeroed at onset, by interpolation
 /// between samples, and positive into the fruit; the force is repulsive, less
@@ -54,36 +50,15 @@ pub fn extract_impact(
     recording: &Recording,
     options: &ExtractOptions,
 ) -> Result<(Impact, Vec<Finding>), Error> {
-    check_options(options)?;
     let mut findings = Vec::new();
-    let geometry = Geometry {
-        encoder: options.encoder,
-        arm: options.arm,
-        illegal: options.illegal,
-    };
-    let mut tracks = tracks(recording, &geometry, &mut findings)?;
-    for track in tracks.all_mut() {
-        remove_spikes(track, &mut findings);
-    }
-    filter_tracks(&mut tracks, &options.conditioning, &mut findings)?;
-    let mut trend_sd = 0.0;
-    if let Some(force) = &mut tracks.force {
-        let find = |force: &Track| {
-            find_contacts(
-                &signal(force, "N", &force.times, &force.values),
-                &options.trigger,
-            )
-        };
-        trend_sd = level_zero(force, &options.trigger, find, &mut findings)?;
-    }
+    let Found {
+        tracks,
+        contacts,
+        turns,
+        from_motion,
+    } = found(recording, options, &mut findings)?;
 
     // The contact, and the free motion around it.
-    let (contacts, from_motion) = contacts(recording, &tracks, options)?;
-    let contacts = Contacts {
-        trend_sd,
-        ..contacts
-    };
-    let turns = turning_contacts(&contacts, &tracks, &mut findings);
     let place = choose(&contacts, &turns, options, from_motion, &mut findings)?;
     missing_samples(recording, &place, &mut findings)?;
     clipped_channels(recording, &place, &mut findings);
@@ -275,75 +250,6 @@ fn keeps_measured(options: &ExtractOptions, measured: bool) -> bool {
         | RateMethod::SmoothingSpline
         | RateMethod::EdgeTimes
         | RateMethod::LocalPolynomial { .. } => false,
-    }
-}
-
-/// Contacts from the force, else from the deceleration, with its resolution.
-fn contacts(
-    recording: &Recording,
-    tracks: &Tracks,
-    options: &ExtractOptions,
-) -> Result<(Contacts, Option<Finding>), Error> {
-    if let Some(force) = &tracks.force {
-        let signal = signal(force, "N", &force.times, &force.values);
-        return Ok((find_contacts(&signal, &options.trigger)?, None));
-    }
-    // A threshold in newtons means nothing to a deceleration; a tenth of the
-    // largest stays above what the differences smear before the onset.
-    let trigger = TriggerOptions {
-        threshold: Threshold::Automatic {
-            deviations: 5.0,
-            least: 0.0,
-            share: 0.1,
-        },
-        baseline: Baseline::Remove,
-        ..options.trigger
-    };
-    if let Some(track) = &tracks.acceleration {
-        let values: Vec<f64> = track.values.iter().map(|a| -a).collect();
-        let found = find_contacts(&signal(track, "m/s²", &track.times, &values), &trigger)?;
-        let interval = mean_interval(&track.times);
-        return Ok((found, Some(window_finding(track, interval))));
-    }
-    let (track, motion) = match (&tracks.position, &tracks.rate) {
-        (Some(position), _) => (&position.track, Motion::Displacement),
-        (None, Some(rate)) => (rate, Motion::Rate),
-        (None, None) => {
-            return Err(missing(
-                recording,
-                "force, acceleration, displacement or displacement rate",
-            ));
-        }
-    };
-    let scale = tracks.position.as_ref().and_then(|p| p.arm).unwrap_or(1.0);
-    let values: Vec<f64> = track.values.iter().map(|v| v * scale).collect();
-    let found = deceleration(&track.times, &values, motion)
-        .ok_or_else(|| Error::too_few_samples(track.name.clone(), track.values.len(), 3))?;
-    let contacts = find_contacts(
-        &signal(track, "m/s²", &found.times, &found.values),
-        &trigger,
-    )?;
-    Ok((contacts, Some(window_finding(track, found.resolution))))
-}
-
-fn signal<'a>(
-    track: &'a Track,
-    unit: &'static str,
-    times: &'a [f64],
-    values: &'a [f64],
-) -> Signal<'a> {
-    Signal {
-        name: &track.name,
-        unit,
-        times,
-        values,
-    }
-}
-
-fn window_finding(track: &Track, resolution: f64) -> Finding {
-    Finding::WindowFromMotion {
-        channel: track.name.clone(),
-        resolution,
     }
 }
 

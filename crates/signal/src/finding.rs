@@ -51,7 +51,7 @@ pub enum Finding {
         at: f64,
     },
     #[error(
-        "{} contacts, beginning at {onsets} s; the one at {} s is used. Give a time range to choose another",
+        "{} contacts, beginning at {onsets} s; the one at {} s is used. Give each a row of its own in impacts.csv, with from_s and to_s around it",
         onsets.0.len(),
         Rounded(*used)
     )]

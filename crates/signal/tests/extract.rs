@@ -426,7 +426,9 @@ fn recovers_two_contacts_and_chooses() {
     let text = findings[0].to_string();
     assert!(text.starts_with("2 contacts, beginning at "), "{text}");
     assert!(
-        text.ends_with(" s is used. Give a time range to choose another"),
+        text.ends_with(
+            " s is used. Give each a row of its own in impacts.csv, with from_s and to_s around it"
+        ),
         "{text}"
     );
     assert!(first.onset.abs() < 1e-4);

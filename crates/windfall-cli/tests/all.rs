@@ -27,5 +27,6 @@ mod report;
 mod revision;
 mod scene;
 mod serve;
+mod several_contacts;
 mod stopped_runs;
 mod user_laws;

@@ -200,11 +200,15 @@ fn recovers_recordings_that_are_added_later() {
         now.starts_with(&listed) && now.lines().count() == 9,
         "{now}"
     );
-    // What is listed already, or would replace a recording, is left out.
+    // What is listed already is told from what would replace a recording.
+    std::fs::write(&late[0], "force_V,phase_a_V,phase_b_V\n0,0,0\n").unwrap();
     let (status, out, _) = windfall(&words, folder);
     assert_eq!(status, Some(0));
+    let known = format!("{} recordings are listed already", late.len() - 1);
     assert!(
-        out.starts_with("0 impacts added") && out.contains("exists already"),
+        out.starts_with("0 impacts added")
+            && out.contains("exists already")
+            && out.contains(&known),
         "{out}"
     );
     let (status, out, told) = windfall(&["fit", "made", "--format", "json"], folder);

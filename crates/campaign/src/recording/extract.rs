@@ -48,6 +48,15 @@ pub fn extract_entry(
             to: entry.to.unwrap_or(f64::INFINITY),
         };
     }
-    extract_impact(recording, &options)
-        .map_err(|source| Error::signal(recording_path(&campaign.shared.files, entry), source))
+    let (impact, mut findings) = extract_impact(recording, &options)
+        .map_err(|source| Error::signal(recording_path(&campaign.shared.files, entry), source))?;
+    // Contacts outside of the range belong to other rows.
+    if let ContactChoice::Within { from, to } = options.trigger.choice {
+        let inside = |onset: &&f64| (from..=to).contains(*onset);
+        findings.retain(|finding| match finding {
+            Finding::SeveralContacts { onsets, .. } => onsets.0.iter().filter(inside).count() > 1,
+            _ => true,
+        });
+    }
+    Ok((impact, findings))
 }

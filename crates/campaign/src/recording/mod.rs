@@ -4,6 +4,7 @@ pub mod channel;
 pub mod digests;
 pub mod extract;
 pub mod find_channel;
+pub mod parts;
 pub mod pendulum_angles;
 pub mod read;
 pub mod request;

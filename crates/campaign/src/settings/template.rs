@@ -66,6 +66,9 @@ const HEIGHTS: &str = "id,specimen,file,drop_height_mm\n\
                        c-100-1,fruit-1,c-100-1.csv,100\n\
                        c-500-1,fruit-2,c-500-1.csv,500\n";
 
+/// Before a line of campaign.toml that a person has to write; behind it stands an example.
+pub const UNWRITTEN: &str = "# WRITE YOURS: ";
+
 /// Whether a file is an unchanged table of a template.
 pub fn is_template_file(path: &Path) -> bool {
     let tables = [

@@ -2,14 +2,16 @@
 
 use crate::gather::names::{NamePattern, NamedRecording};
 use crate::gather::new::{files_in, name_of};
+use crate::gather::rows::{ImpactRow, Rows};
 use itertools::Itertools;
 use serde::Serialize;
 use std::collections::{BTreeMap, BTreeSet};
 use std::fs::File;
-use std::io::Read;
+use std::io::{BufRead, BufReader, Read};
 use std::path::{Path, PathBuf};
 use windfall_campaign::recording::digests::campaign_text;
 use windfall_campaign::settings::edit_table::add_rows;
+use windfall_campaign::settings::kind::{CampaignKind, campaign_kind};
 use windfall_campaign::settings::template::is_template_file;
 use windfall_files::confined::Arriving;
 use windfall_files::error::Error;
@@ -28,14 +30,19 @@ pub struct Added {
     pub impacts: Vec<String>,
     /// Ids of specimens that were not known.
     pub specimens: Vec<String>,
+    /// Recordings that are listed already.
+    pub known: usize,
+    /// What was assumed.
+    pub assumed: Vec<String>,
     /// Files that were left out, and why.
     pub left_out: Vec<String>,
 }
 
-/// Lists further recordings in impacts.csv, and their specimens in specimens.csv.
+/// Lists further recordings in impacts.csv, a row for each contact in them, and their
+/// specimens in specimens.csv.
 ///
-/// * `files`: recordings that are copied into raw/; none for those that lie there and are not
-///   listed yet
+/// * `files`: recordings, or folders of them, that are copied into raw/; none for those that
+///   lie there and are not listed yet
 /// * `names`: pattern of their names, in place of `[files] names`
 ///
 /// # Errors
@@ -58,92 +65,107 @@ pub fn add_recordings(
         .transpose()?;
     let impacts = directory.join("impacts.csv");
     let table = read_table(&impacts)?;
-    let listed: BTreeSet<String> = match is_template_file(&impacts) {
-        true => BTreeSet::new(),
-        false => column(&table, "file")?,
+    let (listed, taken) = match is_template_file(&impacts) {
+        true => (BTreeSet::new(), BTreeSet::new()),
+        false => (column(&table, "file")?, column(&table, "id")?),
     };
     let mut added = Added::default();
-    let new = match files.is_empty() {
-        true => files_in(&directory.join("raw"))?
-            .iter()
-            .map(|file| name_of(file))
-            .collect(),
-        false => copied(directory, files, &mut added),
+    let raw = directory.join("raw");
+    let found = match files.is_empty() {
+        true => files_in(&raw)?,
+        false => files_of(files)?,
     };
-    let mut rows = Vec::new();
-    for name in new {
-        if listed.contains(&name) {
-            continue;
-        }
+    let mut new: Vec<(PathBuf, NamedRecording)> = Vec::new();
+    for file in found {
+        let name = name_of(&file);
         let read = match &pattern {
             None => Some(own_specimen(&name)),
             Some(pattern) => pattern.read(&name),
         };
-        match read {
-            Some(read) => rows.push((name, read)),
-            None => added
+        // A recording that is listed may be of another pattern, and be told again.
+        let arrived = match (&read, files.is_empty()) {
+            (_, true) => Ok(raw.join(&name)),
+            (None, _) => Ok(file),
+            (Some(_), false) => copied(&file, directory),
+        };
+        match (arrived, read) {
+            (Err(error), _) => added.left_out.push(format!("{name}: {error}")),
+            (Ok(_), _) if listed.contains(&name) => added.known += 1,
+            (Ok(_), None) => added
                 .left_out
                 .push(format!("{name}: not of the pattern of names")),
+            (Ok(path), Some(read)) => new.push((path, read)),
         }
     }
-    if rows.is_empty() {
+    if new.is_empty() {
         return Ok(added);
     }
     // Specimens first: stopped in between, the campaign still knows all that it names.
-    let specimens = directory.join("specimens.csv");
-    if specimens.exists() {
-        let known = match is_template_file(&specimens) {
-            true => BTreeSet::new(),
-            false => column(&read_table(&specimens)?, "id")?,
-        };
-        let new = rows
-            .iter()
-            .map(|(_, read)| read)
-            .unique_by(|read| &read.specimen);
-        let new: Vec<&NamedRecording> =
-            new.filter(|read| !known.contains(&read.specimen)).collect();
-        let cells = new
-            .iter()
-            .map(|read| row(&[("id", &read.specimen)], &read.of_specimen));
-        let cells: Vec<BTreeMap<String, String>> = cells.collect();
-        if !cells.is_empty() {
-            edit_file(&specimens, &add_rows(&specimens, &cells)?)?;
-        }
-        added
-            .specimens
-            .extend(new.iter().map(|read| read.specimen.clone()));
-    }
-    let cells = rows.iter().map(|(name, read)| {
-        let own = [
-            ("id", &read.id),
-            ("specimen", &read.specimen),
-            ("file", name),
+    added.specimens = add_specimens(directory, &new)?;
+    let of_impacts = campaign_kind(directory).is_ok_and(|kind| kind == CampaignKind::Impacts);
+    let mut rows = Rows::begin(directory, of_impacts.then_some(text.as_str()), taken);
+    let rows_of = |(path, read): &(PathBuf, NamedRecording)| rows.of(path, read);
+    let new: Vec<ImpactRow> = new.iter().flat_map(rows_of).collect();
+    added.assumed.extend(rows.assumed());
+    let cells = new.iter().map(|own| {
+        let places = [
+            ("id", &own.id),
+            ("specimen", &own.specimen),
+            ("file", &own.file),
         ];
-        row(&own, &read.of_impact)
+        row(&places, &own.cells)
     });
     let cells: Vec<BTreeMap<String, String>> = cells.collect();
     edit_file(&impacts, &add_rows(&impacts, &cells)?)?;
-    added
-        .impacts
-        .extend(rows.into_iter().map(|(_, read)| read.id));
+    added.impacts.extend(new.into_iter().map(|own| own.id));
     Ok(added)
 }
 
-/// Copies recordings into a campaign; their names there.
-fn copied(directory: &Path, files: &[PathBuf], added: &mut Added) -> Vec<String> {
-    let mut names = Vec::new();
-    for file in files {
-        match copy(file, directory) {
-            Ok(_) => names.push(name_of(file)),
-            Err(error) => added.left_out.push(format!("{}: {error}", name_of(file))),
-        }
+/// Lists specimens that specimens.csv lacks, where there is such a table; their ids.
+fn add_specimens(
+    directory: &Path,
+    new: &[(PathBuf, NamedRecording)],
+) -> Result<Vec<String>, Error> {
+    let specimens = directory.join("specimens.csv");
+    if !specimens.exists() {
+        return Ok(Vec::new());
     }
-    names
+    let known = match is_template_file(&specimens) {
+        true => BTreeSet::new(),
+        false => column(&read_table(&specimens)?, "id")?,
+    };
+    let new = new.iter().map(|(_, read)| read);
+    let new = new.unique_by(|read| &read.specimen);
+    let new: Vec<&NamedRecording> = new.filter(|read| !known.contains(&read.specimen)).collect();
+    let cells = new
+        .iter()
+        .map(|read| row(&[("id", &read.specimen)], &read.of_specimen));
+    let cells: Vec<BTreeMap<String, String>> = cells.collect();
+    if !cells.is_empty() {
+        edit_file(&specimens, &add_rows(&specimens, &cells)?)?;
+    }
+    Ok(new.iter().map(|read| read.specimen.clone()).collect())
 }
 
-/// Copies a recording into the campaign.
-fn copy(file: &Path, directory: &Path) -> Result<PathBuf, Error> {
+/// Files, and those in folders.
+fn files_of(given: &[PathBuf]) -> Result<Vec<PathBuf>, Error> {
+    let mut files = Vec::new();
+    for path in given {
+        match path.is_dir() {
+            true => files.extend(files_in(path)?),
+            false => files.push(path.clone()),
+        }
+    }
+    Ok(files)
+}
+
+/// Where a recording lies in the campaign, into which it is copied unless it is there already.
+fn copied(file: &Path, directory: &Path) -> Result<PathBuf, Error> {
     check_regular(file)?;
+    let there = directory.join("raw").join(name_of(file));
+    if there.is_file() && same_bytes(file, &there)? {
+        return Ok(there);
+    }
     let failed = |source| Error::access(file, "read", source);
     let mut from = File::open(file).map_err(failed)?;
     let mut arriving = Arriving::begin(directory, &format!("raw/{}", name_of(file)))?;
@@ -153,6 +175,36 @@ fn copy(file: &Path, directory: &Path) -> Result<PathBuf, Error> {
             0 => return arriving.end(),
             read => arriving.take(&chunk[..read])?,
         }
+    }
+}
+
+/// Whether two files hold the same bytes.
+fn same_bytes(one: &Path, other: &Path) -> Result<bool, Error> {
+    let open = |path: &Path| {
+        let file = File::open(path).map_err(|source| Error::access(path, "read", source))?;
+        let length = file.metadata();
+        let length = length.map_err(|source| Error::access(path, "read", source))?;
+        Ok::<_, Error>((BufReader::with_capacity(CHUNK, file), length.len()))
+    };
+    let ((mut first, of_first), (mut second, of_second)) = (open(one)?, open(other)?);
+    if of_first != of_second {
+        return Ok(false);
+    }
+    loop {
+        let failed = |source| Error::access(one, "read", source);
+        let (ours, theirs) = (
+            first.fill_buf().map_err(failed)?,
+            second.fill_buf().map_err(failed)?,
+        );
+        let length = ours.len().min(theirs.len());
+        if ours[..length] != theirs[..length] {
+            return Ok(false);
+        }
+        if length == 0 {
+            return Ok(ours.len() == theirs.len());
+        }
+        first.consume(length);
+        second.consume(length);
     }
 }
 

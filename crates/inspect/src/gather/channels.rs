@@ -3,6 +3,7 @@
 
 use crate::run::{ColumnInspection, Inspection};
 use std::fmt::Write;
+use windfall_campaign::settings::template::UNWRITTEN;
 use windfall_files::text::quote::string_text as quoted;
 use windfall_numerics::unit::quantity::{parse_as, parse_unit};
 
@@ -86,7 +87,7 @@ fn line_of(line: &str, section: &str, group: Option<&str>, guessed: &mut Guessed
     match (section, key) {
         ("rig", Some(key)) if key != "kind" && !key.starts_with('#') => {
             guessed.missing.push(format!("[rig] {key}"));
-            format!("# WRITE YOURS: {line}\n")
+            format!("{UNWRITTEN}{line}\n")
         }
         ("contact", Some("threshold")) => "threshold = \"auto\"\n".to_owned(),
         ("summary", Some("group")) => match group {
@@ -125,7 +126,7 @@ fn files_text(seen: &Inspection, names: &str, guessed: &mut Guessed) -> String {
         None if in_file => text += "# the recordings say themselves when samples were taken\n",
         None => {
             guessed.missing.push("[files] rate".to_owned());
-            text += "# WRITE YOURS: rate = \"200 kHz\"\n";
+            let _ = writeln!(text, "{UNWRITTEN}rate = \"200 kHz\"");
         }
     }
     text
@@ -163,12 +164,12 @@ fn channels_text(seen: &Inspection, guessed: &mut Guessed) -> String {
         guessed
             .missing
             .push("[encoder] counts_per_revolution".to_owned());
-        text +=
-            "\n[encoder]\n# WRITE YOURS: counts_per_revolution = 360000    # after x4 decoding\n";
+        let example = "counts_per_revolution = 360000    # after x4 decoding";
+        let _ = writeln!(text, "\n[encoder]\n{UNWRITTEN}{example}");
     }
     if text.is_empty() {
         guessed.missing.push("[channels.force] column".to_owned());
-        text += "\n[channels.force]\n# WRITE YOURS: column = \"force_N\"\n";
+        let _ = writeln!(text, "\n[channels.force]\n{UNWRITTEN}column = \"force_N\"");
     }
     text
 }
@@ -192,11 +193,11 @@ fn unit_text(
             guessed
                 .missing
                 .push(format!("[channels.{role}] sensitivity"));
-            format!("# WRITE YOURS: sensitivity = \"11 mV/{quantity}\"\n")
+            format!("{UNWRITTEN}sensitivity = \"11 mV/{quantity}\"\n")
         }
         _ => {
             guessed.missing.push(format!("[channels.{role}] unit"));
-            format!("# WRITE YOURS: unit = \"{quantity}\"\n")
+            format!("{UNWRITTEN}unit = \"{quantity}\"\n")
         }
     }
 }

@@ -5,5 +5,6 @@ pub mod add;
 pub mod channels;
 pub mod names;
 pub mod new;
+mod rows;
 pub mod text;
 pub mod watch;

@@ -2,9 +2,11 @@
 
 use crate::gather::channels::campaign_text;
 use crate::gather::names::{NamePattern, NamedRecording};
+use crate::gather::rows::{ImpactRow, Rows};
 use crate::run::{InspectRequest, inspect_recording};
 use itertools::Itertools;
 use serde::Serialize;
+use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 use windfall_campaign::settings::kind::CAMPAIGN_FILE;
 use windfall_campaign::settings::template::{TemplateKind, template};
@@ -14,6 +16,7 @@ use windfall_files::inputs::check_regular;
 use windfall_files::option_value::unusable;
 use windfall_files::scratch::NewDirectory;
 use windfall_files::table::write::csv_text;
+use windfall_files::text::quote::comment_text;
 use windfall_formats::open::{OpenOptions, open};
 
 /// A campaign that was made of recordings.
@@ -23,6 +26,8 @@ pub struct Gathered {
     pub written: Vec<PathBuf>,
     /// Recordings that were copied.
     pub recordings: usize,
+    /// Impacts in them.
+    pub impacts: usize,
     /// Specimens among them.
     pub specimens: usize,
     /// What was assumed.
@@ -93,25 +98,30 @@ pub fn gather(
         match plain.and_then(|()| new.copy(&name, file)) {
             Ok(path) => {
                 gathered.written.push(path);
-                copied.push((name_of(file), read));
+                copied.push((*file, read));
             }
             Err(error) => gathered
                 .left_out
                 .push(format!("{}: {error}", name_of(file))),
         }
     }
+    let of_impacts = matches!(kind, TemplateKind::Pendulum | TemplateKind::Carriage);
+    let text = of_impacts.then_some(guessed.text.as_str());
+    let mut rows = Rows::begin(from, text, BTreeSet::new());
+    let impacts = copied.iter().flat_map(|(file, read)| rows.of(file, read));
+    let impacts: Vec<ImpactRow> = impacts.collect();
+    gathered.assumed.extend(rows.assumed());
     gathered.recordings = copied.len();
-    let remarks = guessed
-        .assumed
-        .iter()
-        .map(|assumed| format!("# Assumed: {assumed}\n"));
+    gathered.impacts = impacts.len();
+    let remarks = gathered.assumed.iter();
+    let remarks = remarks.map(|assumed| format!("# Assumed: {}\n", comment_text(assumed)));
     let text = remarks.collect::<String>() + &guessed.text;
-    let (specimens, impacts) = tables(&copied)?;
+    let specimens = specimens_text(&copied)?;
     gathered.specimens = specimens.lines().count() - 1;
     for (name, text) in [
         (CAMPAIGN_FILE, text),
         ("specimens.csv", specimens),
-        ("impacts.csv", impacts),
+        ("impacts.csv", impacts_text(&impacts)?),
     ] {
         gathered.written.push(new.write(name, text.as_bytes())?);
     }
@@ -174,29 +184,37 @@ fn other_columns(first: &Path, recordings: &[(&PathBuf, NamedRecording)]) -> Opt
     ))
 }
 
-/// specimens.csv and impacts.csv.
-fn tables(recordings: &[(String, &NamedRecording)]) -> Result<(String, String), Error> {
+/// specimens.csv.
+fn specimens_text(recordings: &[(&PathBuf, &NamedRecording)]) -> Result<String, Error> {
     let specimens = recordings.iter().unique_by(|(_, read)| &read.specimen);
     let specimens: Vec<&NamedRecording> = specimens.map(|(_, read)| *read).collect();
-    let names =
-        |pairs: &[(String, String)]| pairs.iter().map(|(name, _)| name.clone()).collect_vec();
-    let cells =
-        |pairs: &[(String, String)]| pairs.iter().map(|(_, cell)| cell.clone()).collect_vec();
-    let first = specimens.first();
     let mut header = vec!["id".to_owned()];
-    header.extend(first.map_or(Vec::new(), |read| names(&read.of_specimen)));
+    let named = specimens.first().map(|read| &read.of_specimen);
+    header.extend(named.into_iter().flatten().map(|(name, _)| name.clone()));
     let rows = specimens.iter().map(|read| {
-        let mut row = vec![read.specimen.clone()];
-        row.extend(cells(&read.of_specimen));
-        row
+        let cells = read.of_specimen.iter().map(|(_, cell)| cell);
+        std::iter::once(&read.specimen)
+            .chain(cells)
+            .cloned()
+            .collect()
     });
-    let of_specimens = csv_text(&header, rows)?;
-    let mut header = ["id", "specimen", "file"].map(str::to_owned).to_vec();
-    header.extend(first.map_or(Vec::new(), |read| names(&read.of_impact)));
-    let rows = recordings.iter().map(|(file, read)| {
-        let mut row = vec![read.id.clone(), read.specimen.clone(), file.clone()];
-        row.extend(cells(&read.of_impact));
-        row
+    csv_text(&header, rows.collect::<Vec<Vec<String>>>())
+}
+
+/// impacts.csv.
+fn impacts_text(impacts: &[ImpactRow]) -> Result<String, Error> {
+    let cells = impacts.iter().flat_map(|row| &row.cells);
+    let further: Vec<&String> = cells.map(|(name, _)| name).unique().collect();
+    let own = ["id", "specimen", "file"].map(str::to_owned);
+    let header: Vec<String> = own.iter().chain(further.iter().copied()).cloned().collect();
+    let rows = impacts.iter().map(|row| {
+        let cell = |name: &&String| {
+            let mut cells = row.cells.iter();
+            let found = cells.find(|(own, _)| own == *name);
+            found.map_or_else(String::new, |(_, cell)| cell.clone())
+        };
+        let own = [&row.id, &row.specimen, &row.file].map(Clone::clone);
+        own.into_iter().chain(further.iter().map(cell)).collect()
     });
-    Ok((of_specimens, csv_text(&header, rows)?))
+    csv_text(&header, rows.collect::<Vec<Vec<String>>>())
 }

@@ -19,25 +19,16 @@ const NAMED: usize = 5;
 /// What was made, what was assumed, and what a person has to write.
 pub fn text_of_gathered(gathered: &Gathered, directory: &Path) -> String {
     let shown = directory.display();
+    let impacts = match gathered.impacts == gathered.recordings {
+        true => String::new(),
+        false => format!(" with {} impacts", gathered.impacts),
+    };
     let mut text = format!(
-        "{} recordings of {} specimens, copied into {shown}/raw; both tables are filled.\n",
+        "{} recordings{impacts} of {} specimens, copied into {shown}/raw; both tables are filled.\n",
         gathered.recordings, gathered.specimens
     );
-    for (title, lines) in [
-        ("Assumed", &gathered.assumed),
-        ("Left out", &gathered.left_out),
-    ] {
-        if lines.is_empty() {
-            continue;
-        }
-        let _ = writeln!(text, "\n{title}:");
-        for line in lines.iter().take(NAMED) {
-            let _ = writeln!(text, "  {line}");
-        }
-        if lines.len() > NAMED {
-            let _ = writeln!(text, "  and {} more", lines.len() - NAMED);
-        }
-    }
+    text += &listed("Assumed", &gathered.assumed);
+    text += &listed("Left out", &gathered.left_out);
     if gathered.missing.is_empty() {
         let _ = writeln!(text, "\nNext: {}", fit(directory));
         return text;
@@ -50,6 +41,21 @@ pub fn text_of_gathered(gathered: &Gathered, directory: &Path) -> String {
         let _ = writeln!(text, "  {line}");
     }
     let _ = writeln!(text, "then\n  {}", fit(directory));
+    text
+}
+
+/// Lines below a title; nothing without lines.
+fn listed(title: &str, lines: &[String]) -> String {
+    if lines.is_empty() {
+        return String::new();
+    }
+    let mut text = format!("\n{title}:\n");
+    for line in lines.iter().take(NAMED) {
+        let _ = writeln!(text, "  {line}");
+    }
+    if lines.len() > NAMED {
+        let _ = writeln!(text, "  and {} more", lines.len() - NAMED);
+    }
     text
 }
 
@@ -133,9 +139,11 @@ pub fn text_of_added(added: &Added, directory: &Path) -> String {
         added.impacts.len(),
         added.specimens.len()
     );
-    for line in &added.left_out {
-        let _ = writeln!(text, "Left out: {line}");
+    if added.known > 0 {
+        let _ = writeln!(text, "{} recordings are listed already.", added.known);
     }
-    let _ = writeln!(text, "Next: {}", fit(directory));
+    text += &listed("Assumed", &added.assumed);
+    text += &listed("Left out", &added.left_out);
+    let _ = writeln!(text, "\nNext: {}", fit(directory));
     text
 }
