@@ -133,7 +133,7 @@ fn pinned_numbers_are_those_of_the_revision() {
             "91551cac97612078",
             "362e0649b943bd49",
             "3e453baf43c8c589",
-            "73382ad8abe1acba",
+            "14c37f9ceb43806e",
         ]
         .map(str::to_owned),
     );
