@@ -1,7 +1,7 @@
 //! Recording → Impact.
 
-use crate::choose::{choose, turning_contacts};
-use crate::clipping::clipping;
+use crate::choose::{candidates, choose};
+use crate::clipping::clipped_channels;
 use crate::compare::compare;
 use crate::conditioning::{add_tip_force, filter_tracks};
 use crate::deceleration::deceleration;
@@ -14,7 +14,6 @@ use crate::kinematics::{Motion, smoothing_window};
 use crate::measure::{
     Side, Surroundings, Velocity, free_velocity, impulse, largest_displacement, with_energies,
 };
-use crate::noise::estimate::median;
 use crate::noise_track::{baseline_persistence, force_noise, noise_of};
 use crate::options::{ExtractOptions, RateMethod, check_options};
 use crate::orient::{
@@ -22,13 +21,12 @@ use crate::orient::{
 };
 use crate::polynomial::local_polynomial;
 use crate::rate::derived_rate;
-use crate::recording::{Quantity, Recording};
+use crate::recording::Recording;
 use crate::spike::remove_spikes;
 use crate::track::{Geometry, Signals, Track, Tracks, mean_interval, missing, tracks};
 use crate::trigger::{
     Baseline, ContactChoice, Contacts, Signal, Threshold, TriggerOptions, find_contacts,
 };
-use crate::trigger_scale::index_of_largest;
 use crate::zero::level_zero;
 
 /// Fewer samples in contact than this are reported.
@@ -80,13 +78,13 @@ pub fn extract_impact(
     // The contact, and the free motion around it.
     let (contacts, from_motion) = contacts(recording, &tracks, options)?;
     let contacts = Contacts {
-        trend_sd,
+        trend_sd: contacts.trend_sd.hypot(trend_sd),
         ..contacts
     };
-    let turns = turning_contacts(&contacts, &tracks, &mut findings);
+    let turns = candidates(&contacts, &tracks, &mut findings)?;
     let place = choose(&contacts, &turns, options, from_motion, &mut findings)?;
     missing_samples(recording, &place, &mut findings)?;
-    clipped_channels(recording, &place, &mut findings);
+    findings.extend(clipped_channels(recording, (place.onset, place.end)));
 
     // Signs, zeros and noise; then what they say, and the rate to be fitted.
     let mut signals = oriented(tracks, &contacts, &place, options, &mut findings);
@@ -179,27 +177,6 @@ fn missing_samples(
     let doubts = recording.doubts.iter().cloned();
     findings.extend(doubts.map(|doubt| Finding::DecimalOrThousands { doubt }));
     Ok(())
-}
-
-/// Reports forces and accelerations that stand at the end of their range in contact: as
-/// recorded, before anything was subtracted or filtered.
-fn clipped_channels(recording: &Recording, place: &Surroundings, findings: &mut Vec<Finding>) {
-    let window = (place.onset, place.end);
-    for channel in &recording.channels {
-        if !matches!(channel.quantity, Quantity::Force | Quantity::Acceleration) {
-            continue;
-        }
-        let times: Vec<f64> = (0..channel.samples.len())
-            .map(|i| channel.times.at(i))
-            .collect();
-        let values = &channel.samples;
-        let middle = median(values).unwrap_or(0.0);
-        let own =
-            times.partition_point(|&t| t < window.0)..times.partition_point(|&t| t <= window.1);
-        let largest = index_of_largest(&values[own.clone()], |v| (v - middle).abs());
-        let negative = values.get(own.start + largest).is_some_and(|v| *v < middle);
-        findings.extend(clipping(&channel.name, &times, values, window, negative));
-    }
 }
 
 fn oriented(
@@ -319,10 +296,11 @@ fn contacts(
     let values: Vec<f64> = track.values.iter().map(|v| v * scale).collect();
     let found = deceleration(&track.times, &values, motion)
         .ok_or_else(|| Error::too_few_samples(track.name.clone(), track.values.len(), 3))?;
-    let contacts = find_contacts(
-        &signal(track, "m/s²", &found.times, &found.values),
-        &trigger,
-    )?;
+    let derived = Signal {
+        name: &format!("{}, differentiated to accelerations", track.name),
+        ..signal(track, "m/s²", &found.times, &found.values)
+    };
+    let contacts = find_contacts(&derived, &trigger)?;
     Ok((contacts, Some(window_finding(track, found.resolution))))
 }
 

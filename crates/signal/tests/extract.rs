@@ -426,7 +426,7 @@ fn recovers_two_contacts_and_chooses() {
     let text = findings[0].to_string();
     assert!(text.starts_with("2 contacts, beginning at "), "{text}");
     assert!(
-        text.ends_with(" s is used. Give a time range to choose another"),
+        text.ends_with(" s is used. To choose another, give from_s and to_s in impacts.csv"),
         "{text}"
     );
     assert!(first.onset.abs() < 1e-4);
