@@ -26,6 +26,7 @@ ROUTINE = {
     "structured-residuals",
     "weak-direction",
     "window-from-motion",
+    "contact",
 }
 
 CAMPAIGN = """format = 1
@@ -108,19 +109,23 @@ def evaluate(program, row, data, folder, law):
     for impact in answer.get("impacts", []):
         return impact, None
     for failed in answer.get("failed", []):
-        return None, failed["message"]
+        return failed, failed["message"]
     return None, ran.stderr.strip()
 
 
 def onsets(impact, reason):
     """The contacts that windfall names and how many there are; None where it says neither."""
-    if impact is None:
+    findings = (impact or {}).get("findings", [])
+    if reason and not findings:
         return ([], 0) if "no contact" in reason else (None, None)
-    for finding in impact["findings"]:
+    for finding in findings:
         if finding["code"] == "several-contacts":
             named = re.search(r"beginning at (.*?)(?: and \d+ more)? s;", finding["message"]).group(1)
             number = int(re.match(r"\d+", finding["message"]).group())
             return [float(onset) for onset in named.split(", ")], number
+    if reason:
+        contact = next(own["message"] for own in findings if own["code"] == "contact")
+        return [float(re.search(r"from (\S+) s", contact).group(1))], 1
     return [impact["nuisances"]["onset"]["value"]], 1
 
 
@@ -171,11 +176,11 @@ def main():
         impact, reason = evaluate(asked.program, row, data, folder, asked.law)
         named, number = onsets(impact, reason)
         hand = [float(time) for time in row["begin"].split()]
-        if impact is None:
-            codes, counts = "", f"not fitted: {short(reason)}"
+        said = dict.fromkeys(f["code"] for f in (impact or {}).get("findings", []))
+        codes = ", ".join(code for code in said if code not in ROUTINE)
+        if reason:
+            counts = f"not fitted: {short(reason)}"
         else:
-            said = dict.fromkeys(f["code"] for f in impact["findings"])
-            codes = ", ".join(code for code in said if code not in ROUTINE)
             left = [f["code"] for f in impact["left_out"]]
             counts = "no: " + ", ".join(left) if left else "yes"
             tally["counting"] += not left

@@ -151,7 +151,16 @@ fn findings(report: &Report) -> Markup {
                         li { strong { (finding.code) } ": " (finding.message) }
                     }
                     @for failure in &report.failed {
-                        li { strong { "not fitted" } ": " (failure.id) ": " (failure.message) }
+                        li {
+                            strong { "not fitted" } ": " (failure.id) ": " (failure.message)
+                            @if !failure.findings.is_empty() {
+                                ul {
+                                    @for finding in &failure.findings {
+                                        li { strong { (finding.code) } ": " (finding.message) }
+                                    }
+                                }
+                            }
+                        }
                     }
                 }
             }

@@ -66,6 +66,19 @@ pub struct FailureOutcome {
     pub law: Option<String>,
     /// What is wrong and what to do.
     pub message: String,
+    /// What was found before it failed: contacts, zero, and what a reader must know of them.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub findings: Vec<FindingOutcome>,
+}
+
+impl FailureOutcome {
+    /// Itself without what was found before, which the store does not keep.
+    pub fn bare(&self) -> Self {
+        Self {
+            findings: Vec::new(),
+            ..self.clone()
+        }
+    }
 }
 
 /// Spread of one quantity over impacts.

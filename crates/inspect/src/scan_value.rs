@@ -16,6 +16,13 @@ const LEAST_FOR_SPIKES: u64 = 50;
 /// Part of the steps between samples that counts as usual.
 const USUAL_STEPS: f64 = 0.99;
 
+/// … and by this many times the steps beside it: the top of a short pulse does not.
+const LONELY: f64 = 5.0;
+
+/// A channel rests at an extreme that is nearer to its median than this part of the distance
+/// of the other extreme.
+const RESTS: f64 = 0.25;
+
 /// A spike has two large steps: those of two spikes are never usual.
 const STEPS_OF_SPIKES: usize = 5;
 
@@ -46,7 +53,8 @@ pub struct ValueScan {
     levels: Vec<f64>,
     // Counts of distances 1, 2, … between rows with a sample.
     gaps: Vec<u64>,
-    before: [Option<f64>; 2],
+    before: [Option<f64>; 4],
+    values: Decimated,
     steps: Decimated,
     spikes: BinaryHeap<StandingOut>,
     forgotten: bool,
@@ -122,13 +130,15 @@ impl ValueScan {
             self.levels.push(value);
         }
         self.extremes(value);
-        if let [Some(middle), before] = self.before {
-            self.steps.push((value - middle).abs());
-            if let Some(before) = before {
-                self.stands_out([before, middle, value]);
-            }
+        self.values.push(value);
+        if let Some(last) = self.before[0] {
+            self.steps.push((value - last).abs());
         }
-        self.before = [Some(value), self.before[0]];
+        if let [Some(after), Some(own), Some(before), first] = self.before {
+            let outer = [value - after, first.map_or(0.0, |first| before - first)];
+            self.stands_out([before, own, after], outer);
+        }
+        self.before = [Some(value), self.before[0], self.before[1], self.before[2]];
         self.samples += 1;
     }
 
@@ -151,13 +161,14 @@ impl ValueScan {
         }
     }
 
-    fn stands_out(&mut self, values: [f64; 3]) {
+    /// * `outer`: the steps beside the two that `values` make
+    fn stands_out(&mut self, values: [f64; 3], outer: [f64; 2]) {
         let (low, high) = (values[0].min(values[2]), values[0].max(values[2]));
         let by = (values[1] - high).max(low - values[1]);
-        if by <= 0.0 {
+        if by <= LONELY * outer[0].abs().max(outer[1].abs()) || by <= 0.0 {
             return;
         }
-        let sample = self.samples - 1;
+        let sample = self.samples - 2;
         self.spikes.push(StandingOut { by, sample, values });
         if self.spikes.len() > MOST_SPIKES {
             self.spikes.pop();
@@ -182,13 +193,22 @@ impl ValueScan {
     }
 
     /// An extreme value at which the channel stands, and for how many samples.
+    ///
+    /// That is no clipping where it is zero, as of a force plate that nobody stands on, or
+    /// where the channel rests there.
     pub fn clipped(&self) -> Option<(f64, u64)> {
         if self.levels.len() <= LOGIC_LEVELS {
             return None;
         }
-        let low = (self.smallest?, self.run_at_smallest);
-        let high = (self.largest?, self.run_at_largest);
-        [low, high].into_iter().find(|(_, run)| *run >= CLIPPED_RUN)
+        let (low, high) = (self.smallest?, self.largest?);
+        let middle = self.values.quantile(0.5, 1)?;
+        let far = (high - middle).max(middle - low);
+        let extremes = [(low, self.run_at_smallest), (high, self.run_at_largest)];
+        let clips = |(value, run): &(f64, u64)| {
+            let rests = (value - middle).abs() <= RESTS * far;
+            *run >= CLIPPED_RUN && *value != 0.0 && !rests
+        };
+        extremes.into_iter().find(clips)
     }
 
     /// Samples far from both neighbours, against what the channel usually does.
@@ -240,6 +260,12 @@ mod tests {
         assert_eq!(scan(&values, 4).clipped(), None);
         let values = [1.0, 2.0, 3.0, 9.0, f64::NAN, 9.0, 9.0, 9.0, 0.5];
         assert_eq!(scan(&values, 2).clipped(), Some((9.0, 4)));
+        // Rest at an extreme, and flight at zero.
+        let mut values = vec![1.3; 20];
+        values.extend([1.2, 0.0, -2.0, -3.0, -1.0, 1.1]);
+        assert_eq!(scan(&values, 4).clipped(), None);
+        let values = [4.0, 4.1, 4.2, 0.0, 0.0, 0.0, 0.0, 0.0, 6.0, 9.0, 4.0, 4.1];
+        assert_eq!(scan(&values, 4).clipped(), None);
         // Two levels are logic, not clipping.
         let values = [0.0, 0.0, 0.0, 0.0, 5.0, 5.0, 5.0, 5.0];
         assert_eq!(scan(&values, 3).clipped(), None);

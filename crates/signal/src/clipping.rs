@@ -1,8 +1,10 @@
 //! A signal that stays at the limit of its instrument.
 
 use crate::finding::Finding;
+use crate::noise::estimate::{median, quantum};
 use crate::polynomial::{PolynomialFit, fit_polynomial};
-use crate::trigger_scale::{moving_mean, white_noise};
+use crate::recording::{Quantity, Recording};
+use crate::trigger_scale::{index_of_largest, moving_mean, white_noise};
 use std::ops::Range;
 
 /// Most samples of a recording that lie beyond a limit: single wrong ones.
@@ -10,6 +12,13 @@ const MOST_BEYOND: usize = 3;
 
 /// Fewest successive samples at the largest value.
 const LEAST_SUCCESSIVE: usize = 3;
+
+/// Fewest successive samples at the largest value that are clipped whatever the flanks do, and
+/// how sharply they must begin and end: by this part of the height, and by more steps of a
+/// quantised signal than its rounded top has; 1.
+const LEAST_SHARP: usize = 4;
+const SHARP: f64 = 0.01;
+const SHARP_STEPS: f64 = 4.0;
 
 /// Fewest samples at the largest value that need not be successive.
 const LEAST_PILED: usize = 8;
@@ -103,6 +112,24 @@ pub fn clipping(
     })
 }
 
+/// Forces and accelerations that stand at the end of their range in a contact, as recorded.
+pub(crate) fn clipped_channels(recording: &Recording, window: (f64, f64)) -> Vec<Finding> {
+    let pushed = |quantity| matches!(quantity, Quantity::Force | Quantity::Acceleration);
+    let channels = recording.channels.iter().filter(|c| pushed(c.quantity));
+    let found = channels.filter_map(|channel| {
+        let values = &channel.samples;
+        let times: Vec<f64> = (0..values.len()).map(|i| channel.times.at(i)).collect();
+        let first = times.partition_point(|&t| t < window.0);
+        let last = times.partition_point(|&t| t <= window.1);
+        let middle = median(values)?;
+        let within = values.get(first..last).filter(|own| !own.is_empty())?;
+        let largest = index_of_largest(within, |v| (v - middle).abs());
+        let negative = within[largest] < middle;
+        clipping(&channel.name, &times, values, window, negative)
+    });
+    found.collect()
+}
+
 /// The extreme of a signal on the side of `sign`.
 fn far_end(values: &[f64], sign: f64) -> Option<f64> {
     let further = |a: f64, b: f64| if sign * b > sign * a { b } else { a };
@@ -124,6 +151,9 @@ impl Pulse<'_> {
     fn at_limit(&self) -> Option<(Range<usize>, usize)> {
         let run = longest_run(self.values, &self.contact, self.limit);
         let length = run.len();
+        if self.sharp(&run) {
+            return Some((run, length));
+        }
         let (plateau, samples) = match self.pieces() {
             Some(pieces) if pieces.1 > 2 * length => return Some(pieces),
             Some(pieces) if pieces.1 > length => pieces,
@@ -137,6 +167,16 @@ impl Pulse<'_> {
         let spread = flanks.standard_deviations[0];
         let clipped = excess > EXCESS * self.height && excess > SIGNIFICANT * spread;
         clipped.then_some((plateau, samples))
+    }
+
+    /// Whether a run at the limit begins and ends with a corner that no rounded top has.
+    fn sharp(&self, run: &Range<usize>) -> bool {
+        let least = SHARP_STEPS * quantum(self.values).unwrap_or(0.0);
+        let before = run.start.checked_sub(1).and_then(|i| self.values.get(i));
+        let corner = |beside: Option<&f64>| {
+            beside.is_some_and(|v| (v - self.limit).abs() > least.max(SHARP * self.height))
+        };
+        run.len() >= LEAST_SHARP && corner(before) && corner(self.values.get(run.end))
     }
 
     /// Samples at the limit with others between them, where many more lie there than at the
@@ -273,6 +313,20 @@ mod tests {
                 }
             }
         }
+    }
+
+    #[test]
+    fn recovers_a_limit_of_a_pulse_of_few_samples() {
+        // Half a swing of a circuit board at 50 kHz, as recorded: m/s².
+        let swing = [
+            0.0, -517.0, -1028.0, -1694.0, -2368.0, -3030.0, -3675.0, -4163.0, -4474.0, -4750.0,
+            -4955.0, -5125.0, -5358.4, -5358.4, -5358.4, -5358.4, -5358.4, -5358.4, -5358.4,
+            -5050.0, -4684.0, -4339.0, -3991.0, -4017.0, -4018.0, -3664.0, -3158.0, -2482.0,
+            -1804.0, -1102.0, -293.0, 2000.0, 5100.0, 5359.9, 5100.0,
+        ];
+        let times: Vec<f64> = (0..swing.len()).map(|i| 2e-5 * i as f64).collect();
+        let found = clipping("a", &times, &swing, (1e-5, 6.05e-4), true);
+        assert!(matches!(found, Some(Finding::Clipped { samples: 7, .. })));
     }
 
     #[test]

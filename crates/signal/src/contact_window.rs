@@ -21,6 +21,9 @@ pub struct ContactWindow {
     pub end: f64,
     /// Largest smoothed force; N.
     pub peak: f64,
+    /// Lowest smoothed force between its end and the next contact; after the last, for as long
+    /// as it lasted; N.
+    pub low_after: f64,
     /// False if the recording begins in this contact.
     pub onset_seen: bool,
     /// False if the recording ends in this contact.
@@ -60,6 +63,14 @@ pub(crate) fn windows(
             }
             _ => joined.push(next),
         }
+    }
+    for i in 0..joined.len() {
+        let own = joined[i];
+        let next = joined.get(i + 1).map(|w| w.onset);
+        let until = next.unwrap_or(2.0 * own.end - own.onset);
+        let first = times.partition_point(|&t| t < own.end);
+        let last = times.partition_point(|&t| t < until).max(first);
+        joined[i].low_after = smooth[first..last].iter().copied().fold(0.0, f64::min);
     }
     joined
 }
@@ -106,6 +117,7 @@ fn window(
             .iter()
             .copied()
             .fold(f64::NEG_INFINITY, f64::max),
+        low_after: 0.0,
         onset_seen: first > 0,
         end_seen,
     }

@@ -93,13 +93,24 @@ pub enum Error {
         needed: &'static str,
     },
     #[error(
-        "no contact in channel '{channel}': the largest value is {largest:.4} {unit} and the threshold {threshold:.4} {unit}; lower the threshold, or leave this recording out"
+        "no contact in channel '{channel}': the largest value is {largest:.4} {unit} and the threshold {threshold:.4} {unit}; {}",
+        no_contact_advice(*largest, *threshold)
     )]
     NoContact {
         channel: String,
         largest: f64,
         threshold: f64,
         unit: &'static str,
+    },
+    #[error(
+        "no contact in channel '{channel}': from {} s to {} s it stands at {level:.2} m/s², which is rest or free fall under gravity, and nothing else stands out; leave this recording out",
+        Rounded(*from), Rounded(*until)
+    )]
+    OnlyGravity {
+        channel: String,
+        level: f64,
+        from: f64,
+        until: f64,
     },
     #[error("no contact begins between {from} s and {to} s; the contacts found begin at {found} s")]
     NoContactInRange { from: f64, to: f64, found: Times },
@@ -174,6 +185,17 @@ impl Error {
             samples,
             least,
         }
+    }
+}
+
+/// What may help where no contact was found.
+fn no_contact_advice(largest: f64, threshold: f64) -> &'static str {
+    if largest >= threshold {
+        "no sample stands above it for long enough: a contact needs three successive samples above the threshold. Sample faster"
+    } else if largest > 0.0 {
+        "lower the threshold (`threshold` in [contact]), or leave this recording out"
+    } else {
+        "nothing rises out of the level at the begin; leave this recording out"
     }
 }
 

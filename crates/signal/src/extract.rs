@@ -1,7 +1,7 @@
 //! Recording → Impact.
 
 use crate::choose::choose;
-use crate::clipping::clipping;
+use crate::clipping::clipped_channels;
 use crate::compare::compare;
 use crate::conditioning::add_tip_force;
 use crate::error::Error;
@@ -14,7 +14,6 @@ use crate::kinematics::{Motion, smoothing_window};
 use crate::measure::{
     Side, Surroundings, Velocity, free_velocity, impulse, largest_displacement, with_energies,
 };
-use crate::noise::estimate::median;
 use crate::noise_track::{baseline_persistence, force_noise, noise_of};
 use crate::options::{ExtractOptions, RateMethod};
 use crate::orient::{
@@ -22,10 +21,9 @@ use crate::orient::{
 };
 use crate::polynomial::local_polynomial;
 use crate::rate::derived_rate;
-use crate::recording::{Quantity, Recording};
+use crate::recording::Recording;
 use crate::track::{Signals, Track, Tracks, mean_interval};
 use crate::trigger::{Baseline, ContactChoice, Contacts};
-use crate::trigger_scale::index_of_largest;
 
 /// Fewer samples in contact than this are reported.
 const FEW_SAMPLES: usize = 8;
@@ -61,7 +59,7 @@ pub fn extract_impact(
     // The contact, and the free motion around it.
     let place = choose(&contacts, &turns, options, from_motion, &mut findings)?;
     missing_samples(recording, &place, &mut findings)?;
-    clipped_channels(recording, &place, &mut findings);
+    findings.extend(clipped_channels(recording, (place.onset, place.end)));
 
     // Signs, zeros and noise; then what they say, and the rate to be fitted.
     let mut signals = oriented(tracks, &contacts, &place, options, &mut findings);
@@ -154,27 +152,6 @@ fn missing_samples(
     let doubts = recording.doubts.iter().cloned();
     findings.extend(doubts.map(|doubt| Finding::DecimalOrThousands { doubt }));
     Ok(())
-}
-
-/// Reports forces and accelerations that stand at the end of their range in contact: as
-/// recorded, before anything was subtracted or filtered.
-fn clipped_channels(recording: &Recording, place: &Surroundings, findings: &mut Vec<Finding>) {
-    let window = (place.onset, place.end);
-    for channel in &recording.channels {
-        if !matches!(channel.quantity, Quantity::Force | Quantity::Acceleration) {
-            continue;
-        }
-        let times: Vec<f64> = (0..channel.samples.len())
-            .map(|i| channel.times.at(i))
-            .collect();
-        let values = &channel.samples;
-        let middle = median(values).unwrap_or(0.0);
-        let own =
-            times.partition_point(|&t| t < window.0)..times.partition_point(|&t| t <= window.1);
-        let largest = index_of_largest(&values[own.clone()], |v| (v - middle).abs());
-        let negative = values.get(own.start + largest).is_some_and(|v| *v < middle);
-        findings.extend(clipping(&channel.name, &times, values, window, negative));
-    }
 }
 
 fn oriented(

@@ -67,9 +67,54 @@ pub enum Finding {
     )]
     ContactAtEnd { time: f64 },
     #[error(
-        "channel '{channel}' has only {samples} samples before contact: its zero and its noise are poorly known"
+        "{}",
+        short_baseline_text(channel, *samples, *before)
     )]
-    ShortBaseline { channel: String, samples: usize },
+    ShortBaseline {
+        channel: String,
+        samples: usize,
+        before: usize,
+    },
+    #[error(
+        "channel '{channel}' does not rest before contact: its zero is the mean of the last {samples} of {before} samples, from {} s on, and wanders by {sd:.4} N in as long. `baseline = \"drift\"` in [contact] subtracts a line through what is before and after contact",
+        Rounded(*from)
+    )]
+    LocalBaseline {
+        channel: String,
+        samples: usize,
+        before: usize,
+        from: f64,
+        sd: f64,
+    },
+    #[error(
+        "channel '{channel}' rings after the contact at {} s: {swings} further swing(s) with others in the opposite direction between them, until {} s and up to {:.0} % of its peak, are not taken for contacts. Mount sensor and specimen more rigidly, or look for the frequency of the bench",
+        Rounded(*time), Rounded(*until), 100.0 * share
+    )]
+    Ringing {
+        channel: String,
+        time: f64,
+        swings: usize,
+        until: f64,
+        share: f64,
+    },
+    #[error(
+        "channel '{channel}' swings to both sides {swings} times, at {times} s: the sensor is moved to and fro, and nothing tells a contact from such a movement. If one of them is an impact, cut it out with from_s and to_s in impacts.csv"
+    )]
+    Shaking {
+        channel: String,
+        swings: usize,
+        times: Times,
+    },
+    #[error(
+        "channel '{channel}' stands at {level:.2} m/s² from {} s to {} s: rest or free fall under gravity, not taken for a contact",
+        Rounded(*from), Rounded(*until)
+    )]
+    Gravity {
+        channel: String,
+        level: f64,
+        from: f64,
+        until: f64,
+    },
     #[error(
         "channel '{channel}' reads {offset:.4} ± {offset_sd:.4} N before contact; this offset has been subtracted"
     )]
@@ -102,6 +147,16 @@ pub enum Finding {
         Rounded(*time)
     )]
     Spikes {
+        channel: String,
+        samples: usize,
+        time: f64,
+        value: f64,
+    },
+    #[error(
+        "channel '{channel}': {samples} single sample(s) far from those beside them, the first at {} s ({value:.4e}); they are used as they are, since pulses have few samples here and one may be a peak. If it is a wrong value, blank it, or give a range of time without it (from_s and to_s in impacts.csv)",
+        Rounded(*time)
+    )]
+    SpikesKept {
         channel: String,
         samples: usize,
         time: f64,
@@ -266,10 +321,15 @@ impl Finding {
             Self::ContactAtStart { .. } => "contact-at-start",
             Self::ContactAtEnd { .. } => "contact-at-end",
             Self::ShortBaseline { .. } => "short-baseline",
+            Self::LocalBaseline { .. } => "local-baseline",
+            Self::Ringing { .. } => "ringing",
+            Self::Shaking { .. } => "shaking",
+            Self::Gravity { .. } => "gravity",
             Self::OffsetRemoved { .. } => "offset-removed",
             Self::WindowFromMotion { .. } => "window-from-motion",
             Self::NoiseAtFloor { .. } => "noise-at-floor",
             Self::Glitch { .. } | Self::Spikes { .. } => "glitch",
+            Self::SpikesKept { .. } => "spike",
             Self::Bump { .. } => "bump",
             Self::Filtered { .. } => "filtered",
             Self::DriftRemoved { .. } => "drift-removed",
@@ -289,6 +349,17 @@ impl Finding {
             Self::DecimalOrThousands { .. } => "decimal-or-thousands",
         }
     }
+}
+
+fn short_baseline_text(channel: &str, samples: usize, before: usize) -> String {
+    if samples == before {
+        return format!(
+            "channel '{channel}' has only {samples} samples before contact: its zero and its noise are poorly known"
+        );
+    }
+    format!(
+        "channel '{channel}' rises or falls over all of the {before} samples before contact: its zero and its noise are poorly known. Set `baseline = \"drift\"` in [contact], or cut the recording with from_s and to_s in impacts.csv"
+    )
 }
 
 fn added_text(added: i64) -> String {

@@ -1,6 +1,6 @@
 //! The contacts of a recording.
 
-use crate::choose::{surroundings, turning_contacts};
+use crate::choose::{candidates, surroundings};
 use crate::conditioning::filter_tracks;
 use crate::deceleration::deceleration;
 use crate::error::Error;
@@ -69,10 +69,10 @@ pub(crate) fn found(
 
     let (contacts, from_motion) = contacts(recording, &tracks, options)?;
     let contacts = Contacts {
-        trend_sd,
+        trend_sd: contacts.trend_sd.hypot(trend_sd),
         ..contacts
     };
-    let turns = turning_contacts(&contacts, &tracks, findings);
+    let turns = candidates(&contacts, &tracks, findings)?;
     Ok(Found {
         tracks,
         contacts,
@@ -122,10 +122,11 @@ fn contacts(
     let values: Vec<f64> = track.values.iter().map(|v| v * scale).collect();
     let found = deceleration(&track.times, &values, motion)
         .ok_or_else(|| Error::too_few_samples(track.name.clone(), track.values.len(), 3))?;
-    let contacts = find_contacts(
-        &signal(track, "m/s²", &found.times, &found.values),
-        &trigger,
-    )?;
+    let derived = Signal {
+        name: &format!("{}, differentiated to accelerations", track.name),
+        ..signal(track, "m/s²", &found.times, &found.values)
+    };
+    let contacts = find_contacts(&derived, &trigger)?;
     Ok((contacts, Some(window_finding(track, found.resolution))))
 }
 

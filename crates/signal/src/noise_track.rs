@@ -39,7 +39,7 @@ pub(crate) fn force_noise(
     place: &Surroundings,
     findings: &mut Vec<Finding>,
 ) -> f64 {
-    if contacts.baseline_samples < LEAST_BASELINE {
+    if contacts.quiet.len() < LEAST_BASELINE {
         return noise_of(track, place, findings);
     }
     let first = track.times.partition_point(|&t| t < place.onset);
@@ -50,9 +50,9 @@ pub(crate) fn force_noise(
 /// Correlation of a force's noise before contact; `None` where it is mostly rounding.
 pub(crate) fn baseline_persistence(track: &Track, contacts: &Contacts) -> Option<f64> {
     let rounding = track.quantum.map_or(0.0, |q| q / 12f64.sqrt());
-    let before = contacts.baseline_samples.min(track.values.len());
+    let quiet = track.values.get(contacts.quiet.clone())?;
     (contacts.deviation > 2.0 * rounding)
-        .then(|| persistence(&track.values[..before]))
+        .then(|| persistence(quiet))
         .flatten()
 }
 

@@ -24,10 +24,19 @@ pub(crate) fn oriented_force(
     for value in &mut track.values {
         *value -= contacts.offset;
     }
-    if contacts.baseline_samples < SHORT_BASELINE {
+    if contacts.quiet.len() < SHORT_BASELINE {
         findings.push(Finding::ShortBaseline {
             channel: track.name.clone(),
-            samples: contacts.baseline_samples,
+            samples: contacts.quiet.len(),
+            before: contacts.before,
+        });
+    } else if contacts.quiet.start > 0 {
+        findings.push(Finding::LocalBaseline {
+            channel: track.name.clone(),
+            samples: contacts.quiet.len(),
+            before: contacts.before,
+            from: track.times[contacts.quiet.start],
+            sd: contacts.trend_sd,
         });
     }
     let peak = contacts.windows.iter().map(|w| w.peak).fold(0.0, f64::max);
@@ -45,7 +54,7 @@ pub(crate) fn oriented_force(
 /// Standard uncertainty of the mean before contact, with correlated samples.
 pub(crate) fn offset_sd(contacts: &Contacts, persistence: Option<f64>) -> f64 {
     let inflation = mean_inflation(persistence.unwrap_or(0.0)).max(1.0);
-    let mean = contacts.deviation * (inflation / contacts.baseline_samples.max(1) as f64).sqrt();
+    let mean = contacts.deviation * (inflation / contacts.quiet.len().max(1) as f64).sqrt();
     mean.hypot(contacts.trend_sd)
 }
 

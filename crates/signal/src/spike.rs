@@ -22,19 +22,30 @@ const RARE: f64 = 0.005;
 
 /// Replaces spikes by the median of the four samples next to them, and says so.
 ///
-/// A spike is one sample among many: where a contact has few samples, each may be its peak.
-/// The top of a pulse that lasts only a few samples is none: the
+/// A spike is one sample among many: where a contact has few samples, each may be its peak, and
+/// what looks like a spike is said and kept. The top of a pulse that lasts only a few samples is none: the
 /// samples beside it depart from their neighbours too.
 pub(crate) fn remove_spikes(track: &mut Track, findings: &mut Vec<Finding>) {
     let spikes = spikes(&track.values, track.quantum.unwrap_or(0.0));
     let Some(&(first, _)) = spikes.first() else {
         return;
     };
+    let (channel, time, value) = (track.name.clone(), track.times[first], track.values[first]);
+    let samples = spikes.len();
+    if samples_of_pulses(&track.values, &spikes) < DENSE {
+        findings.push(Finding::SpikesKept {
+            channel,
+            samples,
+            time,
+            value,
+        });
+        return;
+    }
     findings.push(Finding::Spikes {
-        channel: track.name.clone(),
-        samples: spikes.len(),
-        time: track.times[first],
-        value: track.values[first],
+        channel,
+        samples,
+        time,
+        value,
     });
     for (index, value) in spikes {
         track.values[index] = value;
@@ -72,8 +83,7 @@ pub fn spikes(values: &[f64], quantum: f64) -> Vec<(usize, f64)> {
             found.push((i, expected));
         }
     }
-    let noisy = found.len() as f64 > (RARE * n as f64).max(1.0);
-    if noisy || samples_of_pulses(values, &found) < DENSE {
+    if found.len() as f64 > (RARE * n as f64).max(1.0) {
         found.clear();
     }
     found
@@ -115,6 +125,24 @@ mod tests {
         for samples in [2, 3, 4, 5, 8, 20, 200] {
             assert_eq!(spikes(&pulse(samples), 0.0), [], "{samples}");
         }
+    }
+
+    #[test]
+    fn closed_form_a_spike_beside_a_pulse_of_few_samples_is_said_and_kept() {
+        let mut values = pulse(12);
+        values[300] = -3.0;
+        let mut track = Track {
+            name: "force".to_owned(),
+            times: (0..400).map(f64::from).collect(),
+            values: values.clone(),
+            quantum: None,
+            noise: 0.0,
+            persistence: None,
+        };
+        let mut findings = Vec::new();
+        remove_spikes(&mut track, &mut findings);
+        assert_eq!(track.values, values);
+        assert_eq!(findings[0].code(), "spike");
     }
 
     #[test]

@@ -3,10 +3,13 @@
 use crate::contact_window::{LEAST_SAMPLES, RINGING_PEAK, windows};
 use crate::error::{Error, Times};
 use crate::noise::estimate::{baseline, median};
-use crate::polynomial::fit_polynomial;
-use crate::trigger_scale::{Level, PulseScale, moving_mean, pulse_scale, white_noise};
+use crate::quiet_stretch::{LEVEL, quiet_stretch, wander};
+use crate::trigger_scale::{
+    GAUSSIAN_OVER_MEDIAN, Level, PulseScale, moving_mean, pulse_scale, quieter, white_noise,
+};
 use serde::Serialize;
 use std::f64::consts::TAU;
+use std::ops::Range;
 
 pub use crate::contact_window::ContactWindow;
 
@@ -22,13 +25,18 @@ const LEAST_BASELINE: usize = 5;
 /// The baseline ends before the contact by this part of the contact's duration; 1.
 const BASELINE_GUARD: f64 = 0.1;
 
-/// A baseline that rises by more than this part of the largest force, and by
-/// more than its own scatter explains, is the begin of a contact; 1.
-const BASELINE_RISE: f64 = 0.01;
+/// A threshold that was given must be this many deviations of the averaged noise, or the
+/// signal is averaged over more samples: noise alone crosses it else, and cuts a contact into
+/// pieces; 1.
+const FIXED_CLEAR: f64 = 3.0;
 
 /// The noise of the averaged signal is measured where this many independent
 /// averages lie before contact.
 const LEAST_AVERAGES: usize = 40;
+
+/// Ratio of a standard deviation to that of Gaussian noise of the same median magnitude from
+/// which it is contacts, not noise, that it shows; 1.
+const CONTACTS_AMONG: f64 = 2.0;
 
 /// Above what a force counts as contact.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
@@ -160,10 +168,13 @@ pub struct Contacts {
     pub offset: f64,
     /// Noise of one sample before the first contact; N. May be zero.
     pub deviation: f64,
-    /// Samples before the first contact from which offset and noise come; with
-    /// none of them the offset is that of the end, if the signal rests there, or 0.
-    pub baseline_samples: usize,
-    /// Standard uncertainty of a trend of the zero that was subtracted before; N.
+    /// Samples before the first contact.
+    pub before: usize,
+    /// Those of them from which offset and noise come: the last ones, as many as are level;
+    /// with none of them the offset is that of the end, if the signal rests there, or 0.
+    pub quiet: Range<usize>,
+    /// Standard uncertainty of the zero in contact, beside that of its mean: how far it wanders,
+    /// and what a trend that was subtracted before leaves; N.
     pub trend_sd: f64,
     /// True if the force is negative in contact.
     pub reversed: bool,
@@ -228,7 +239,7 @@ pub struct Signal<'a> {
 ///
 /// The sign is that of the largest departure from the first samples (from the
 /// last, if the first are in contact). Offset and noise come from the samples
-/// before the first contact. The signal is averaged over 1/50 of the contact
+/// before the first contact, from the last of them where the zero drifts. The signal is averaged over 1/50 of the contact
 /// (not at all where that is less than a sample), over up to 1/5 of it where the
 /// noise asks for that, and compared with the threshold: a contact begins above
 /// it and is over below `release` of it. Excursions that are small or short
@@ -289,17 +300,23 @@ pub fn find_contacts(signal: &Signal, options: &TriggerOptions) -> Result<Contac
         threshold: 0.0,
         offset: 0.0,
         deviation: 0.0,
-        baseline_samples: 0,
+        before: 0,
+        quiet: 0..0,
         trend_sd: 0.0,
         reversed,
         smoothing,
     };
+    let mut rise = signal.times[top] - signal.times[before.min(top)];
     for _ in 0..2 {
-        before = flat_part(signal, before, (averaged[top] - centre).abs());
-        let (mean, deviation) = baseline(&signal.values[..before])
+        let height = averaged[top] - centre;
+        let quiet = quiet_stretch(signal.times, signal.values, before, (height, rise));
+        let (mean, deviation) = baseline(&signal.values[quiet.clone()])
             .unwrap_or((if zero_from_end { pilot } else { 0.0 }, 0.0));
+        let usual = usual_deviation(&signal.values[quiet.clone()]).unwrap_or(0.0);
         contacts.deviation = deviation;
-        contacts.baseline_samples = before;
+        contacts.before = before;
+        contacts.trend_sd = wander(signal.values, &quiet);
+        contacts.quiet = quiet.clone();
         contacts.offset = match options.baseline {
             Baseline::Remove | Baseline::Drift => mean,
             Baseline::Keep => 0.0,
@@ -309,10 +326,19 @@ pub fn find_contacts(signal: &Signal, options: &TriggerOptions) -> Result<Contac
             .iter()
             .map(|v| sign * (v - contacts.offset))
             .collect();
+        let noise = |length: usize| {
+            let averaged = moving_mean(signal.values, length);
+            smoothed_noise(&averaged[quiet.clone()], usual.max(sample_noise), length)
+        };
+        contacts.smoothing = match options.threshold {
+            Threshold::Fixed(force) => quieter(&raised, smoothing, force / FIXED_CLEAR, noise),
+            Threshold::Automatic { .. } => smoothing,
+        };
+        let smoothing = contacts.smoothing;
         let smooth = moving_mean(&raised, smoothing);
         let largest = smooth.iter().copied().fold(f64::NEG_INFINITY, f64::max);
-        let noise = smoothed_noise(&averaged[..before], deviation.max(sample_noise), smoothing);
-        let level = options.threshold.level(noise, largest);
+        let wandering = noise(smoothing).hypot(contacts.trend_sd);
+        let level = options.threshold.level(wandering, largest);
         contacts.threshold = level.max(f64::MIN_POSITIVE);
         let release = options.release * contacts.threshold;
         contacts.windows = windows(
@@ -331,6 +357,7 @@ pub fn find_contacts(signal: &Signal, options: &TriggerOptions) -> Result<Contac
             });
         };
         let until = first.onset - BASELINE_GUARD * (first.end - first.onset);
+        rise = 0.5 * (first.end - first.onset);
         before = signal.times.partition_point(|&t| t < until);
     }
     Ok(contacts)
@@ -373,7 +400,19 @@ fn smoothed_noise(averaged: &[f64], noise: f64, smoothing: usize) -> f64 {
     if averaged.len() < LEAST_AVERAGES * smoothing {
         return white;
     }
-    baseline(averaged).map_or(white, |(_, seen)| seen.max(white))
+    usual_deviation(averaged).map_or(white, |seen| seen.max(white))
+}
+
+/// Standard deviation of a baseline; where contacts are among it, of what most samples do.
+fn usual_deviation(values: &[f64]) -> Option<f64> {
+    let (centre, seen) = baseline(values)?;
+    let apart: Vec<f64> = values.iter().map(|v| (v - centre).abs()).collect();
+    let usual = GAUSSIAN_OVER_MEDIAN * median(&apart)?;
+    // None of most samples: they are steps of a converter.
+    Some(match usual > 0.0 && seen > CONTACTS_AMONG * usual {
+        true => usual,
+        false => seen,
+    })
 }
 
 /// Level of the signal outside contact, and whether it comes from the end: that
@@ -393,7 +432,7 @@ fn pilot_level(values: &[f64]) -> (f64, bool) {
     let high = values.iter().copied().fold(f64::NEG_INFINITY, f64::max);
     // Of the difference of two medians, each of half of the samples.
     let chance = white_noise(values) * (TAU / samples as f64).sqrt();
-    let changes = first_change > (BASELINE_RISE * (high - low)).max(PILOT_CLEAR * chance);
+    let changes = first_change > (LEVEL * (high - low)).max(PILOT_CLEAR * chance);
     if changes && last_change < first_change / 3.0 {
         return (last, true);
     }
@@ -414,24 +453,4 @@ fn pre_contact(values: &[f64], extreme: usize, centre: f64, sign: f64) -> usize 
         .map_or(0, |i| i + 1);
     let guard = BASELINE_GUARD * (extreme - start) as f64;
     start.saturating_sub(guard.ceil() as usize)
-}
-
-/// `before`, or 0 if the signal rises over these samples already: then they are
-/// in contact and tell nothing about the zero.
-fn flat_part(signal: &Signal, before: usize, largest: f64) -> usize {
-    let (times, values) = (&signal.times[..before], &signal.values[..before]);
-    let Some(fit) = times
-        .first()
-        .and_then(|&start| fit_polynomial(times, values, start, 1))
-    else {
-        return before;
-    };
-    let duration = times[before - 1] - times[0];
-    let rise = (fit.derivatives[1] * duration).abs();
-    let explained = 4.0 * fit.standard_deviations[1] * duration;
-    if rise > BASELINE_RISE * largest && rise > explained {
-        0
-    } else {
-        before
-    }
 }

@@ -17,8 +17,11 @@ const SMOOTHING_LIMIT: f64 = 0.2;
 /// Part of the peak that the threshold from the noise is to stay below; 1.
 const THRESHOLD_AIM: f64 = 0.1;
 
+/// Times that an average is lengthened against noise.
+const QUIETER: usize = 8;
+
 /// Ratio of standard deviation to median magnitude of Gaussian noise; 1.
-const GAUSSIAN_OVER_MEDIAN: f64 = 1.482_602_218_505_602;
+pub const GAUSSIAN_OVER_MEDIAN: f64 = 1.482_602_218_505_602;
 
 /// Where the strongest pulse of a signal is and how to average it.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -71,11 +74,7 @@ pub fn pulse_scale(values: &[f64], level: Level, noise: f64, deviations: f64) ->
         }
         let sign = if reversed { -1.0 } else { 1.0 };
         top = index_of_largest(&smooth, |v| sign * (v - centre));
-        let peak = sign * (smooth[top] - centre);
-        let above = |v: &&f64| sign * (**v - centre) >= 0.5 * peak;
-        let after = smooth[top..].iter().take_while(above).count();
-        let before = smooth[..top].iter().rev().take_while(above).count();
-        let duration = 1.5 * (after + before) as f64;
+        let (peak, duration) = height_and_duration(&smooth, top, centre, sign);
         // deviations · noise / √length ≤ aim · peak
         let quiet = (deviations * noise / (THRESHOLD_AIM * peak)).powi(2);
         let wanted = quiet.clamp(SMOOTHING_SHARE * duration, SMOOTHING_LIMIT * duration);
@@ -87,6 +86,47 @@ pub fn pulse_scale(values: &[f64], level: Level, noise: f64, deviations: f64) ->
         smoothing: length,
         visible,
     }
+}
+
+/// Height of the pulse at `top` and its duration in samples, as of a half sine that is above
+/// half its height for as long.
+fn height_and_duration(smooth: &[f64], top: usize, centre: f64, sign: f64) -> (f64, f64) {
+    let peak = sign * (smooth[top] - centre);
+    let above = |v: &&f64| sign * (**v - centre) >= 0.5 * peak;
+    let after = smooth[top..].iter().take_while(above).count();
+    let before = smooth[..top].iter().rev().take_while(above).count();
+    (peak, 1.5 * (after + before) as f64)
+}
+
+/// Samples to average over so that the noise is no more than `wanted`, up to 1/5 of the
+/// strongest pulse; no fewer than `smoothing`. A pulse that noise cuts into pieces is seen
+/// whole as the average lengthens.
+///
+/// * `values`: signal above its zero, positive in contact
+/// * `noise`: of an average over how many samples
+pub fn quieter(
+    values: &[f64],
+    smoothing: usize,
+    wanted: f64,
+    noise: impl Fn(usize) -> f64,
+) -> usize {
+    let mut length = smoothing;
+    for _ in 0..QUIETER {
+        let now = noise(length);
+        if now <= wanted {
+            break;
+        }
+        let smooth = moving_mean(values, length);
+        let top = index_of_largest(&smooth, |v| v);
+        let (_, duration) = height_and_duration(&smooth, top, 0.0, 1.0);
+        let most = SMOOTHING_LIMIT * duration;
+        let next = ((now / wanted).powi(2) * length as f64).min(most) as usize | 1;
+        if next <= length {
+            break;
+        }
+        length = next;
+    }
+    length
 }
 
 /// Standard deviation of white noise in a signal that is smooth otherwise, from

@@ -2,6 +2,7 @@
 
 #![allow(clippy::unwrap_used)]
 
+mod as_recorded;
 mod bounces;
 mod conditioning;
 mod encoder_capture;

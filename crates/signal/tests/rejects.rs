@@ -148,7 +148,7 @@ fn rejects_a_recording_without_contact() {
     options.trigger.threshold = Threshold::Fixed(1.0);
     assert_eq!(
         error(vec![channel(Quantity::Force, quiet.clone())], &options),
-        "no contact in channel 'the force': the largest value is 0.0100 N and the threshold 1.0000 N; lower the threshold, or leave this recording out"
+        "no contact in channel 'the force': the largest value is 0.0100 N and the threshold 1.0000 N; lower the threshold (`threshold` in [contact]), or leave this recording out"
     );
     // Automatic: five standard deviations, of which the largest sample is 1.2.
     // All is baseline then: -0.01 against a mean of -0.0001.

@@ -1,5 +1,6 @@
 //! Recording → impact → fits of the laws.
 
+use crate::impacts::failed_fit::{found_before, why_it_failed};
 use crate::impacts::key::{impact_key, run_options};
 use crate::impacts::mass::RigFound;
 use crate::pipeline::evaluate::{Evaluation, evaluate, failure};
@@ -69,7 +70,13 @@ impl Evaluation for Fits<'_> {
             (None, Ok((impact, findings))) => {
                 fit_law((campaign, rig), entry, (impact, findings), law)
                     .map(grouped)
-                    .map_err(|error| failure(entry, Some(law.kind.name()), error.to_string()))
+                    .map_err(|error| {
+                        let told = why_it_failed(&error, impact, findings);
+                        FailureOutcome {
+                            findings: found_before(impact, findings),
+                            ..failure(entry, Some(law.kind.name()), told)
+                        }
+                    })
             }
         })
         .collect()

@@ -2,6 +2,7 @@
 
 pub mod card;
 pub mod csv;
+pub mod failed_fit;
 pub mod figure_covariate;
 pub mod figure_impact;
 pub mod figure_parameters;

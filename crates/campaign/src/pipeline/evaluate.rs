@@ -241,6 +241,7 @@ pub fn failure(entry: &ImpactEntry, law: Option<&str>, message: String) -> Failu
         file: entry.file.clone(),
         law: law.map(str::to_owned),
         message,
+        findings: Vec::new(),
     }
 }
 
@@ -282,15 +283,15 @@ fn keep<E: Evaluation>(
     if keys.is_empty() {
         return Ok(());
     }
-    let same =
-        latest_run(store)?.is_some_and(|run| run.keys == keys && run.failures == evaluated.failed);
+    let failed: Vec<FailureOutcome> = evaluated.failed.iter().map(FailureOutcome::bare).collect();
+    let same = latest_run(store)?.is_some_and(|run| run.keys == keys && run.failures == failed);
     if same && evaluated.status.fitted == 0 {
         evaluated.status.up_to_date = true;
         return Ok(());
     }
     let campaign = evaluation.campaign();
     let origin = run_origin(campaign, &evaluated.digests, evaluation.options())?;
-    let mut run = RunRecord::new(origin, evaluated.failed.clone());
+    let mut run = RunRecord::new(origin, failed);
     for ((position, item), key) in evaluated.items.iter().zip(keys) {
         item.add(&mut run, campaign, &campaign.entries[*position], key)?;
     }

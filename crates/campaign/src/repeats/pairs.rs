@@ -100,6 +100,7 @@ fn add_pair(
             file: second.item.file.clone(),
             law: None,
             message: format!("not compared with {}: {error}", first.item.id),
+            findings: Vec::new(),
         }),
     }
 }

@@ -14,13 +14,14 @@ use windfall_identify::rig::kind::Rig;
 pub const NOTE_COLUMN: &str = "note";
 
 /// Findings after which the values of a fit are no estimates.
-const NO_ESTIMATES: [&str; 6] = [
+const NO_ESTIMATES: [&str; 7] = [
     "gap-in-contact",
     "no-convergence",
     "singular",
     "at-bound",
     "clipped",
     "contact-at-start",
+    "shaking",
 ];
 
 /// Deviations by which a quantity must pass its limit.
@@ -109,6 +110,7 @@ pub fn left_out_under_all_laws(
                 .map(|reason| &reason.message)
                 .join("; ")
         ),
+        findings: impact.findings.clone(),
     };
     out.map(|(_, own)| failure(own[0])).collect()
 }

@@ -264,6 +264,7 @@ fn read_latest(connection: &Connection) -> rusqlite::Result<Option<RunIdentity>>
                 file: row.get(2)?,
                 law: row.get(3)?,
                 message: row.get(4)?,
+                findings: Vec::new(),
             })
         })?
         .collect::<Result<_, _>>()?;

@@ -102,9 +102,16 @@ pub fn title_lines(campaign: &str, simulated: Option<&str>) -> String {
 
 /// A line for each recording that has no result, and why.
 pub fn failures_list(what: &str, failures: &[FailureOutcome], indent: usize) -> String {
-    let line = |failure: &FailureOutcome| format!("{what}: {}: {}", failure.id, failure.message);
-    let lines = failures.iter().map(line);
-    lines.map(|line| paragraph(&line, indent) + "\n").collect()
+    let mut text = String::new();
+    for failure in failures {
+        let line = format!("{what}: {}: {}", failure.id, failure.message);
+        text += &(paragraph(&line, indent) + "\n");
+        for finding in &failure.findings {
+            let line = format!("    {}: {}", finding.code, finding.message);
+            text += &(paragraph(&line, indent + 4) + "\n");
+        }
+    }
+    text
 }
 
 /// Findings as a list.

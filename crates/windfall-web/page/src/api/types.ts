@@ -108,6 +108,7 @@ export interface FactorOutcome {
 }
 export interface FailureOutcome {
   id: string; specimen: string; file: string; law: string | null; message: string;
+  findings?: FindingOutcome[];
 }
 export interface FamilyLine { dimension: number; words: string; members: FamilyMember[]; }
 export interface FamilyMember { parameters: number[]; law: string; heights: HeightFeatures[]; }

@@ -1,0 +1,65 @@
+//! What is told of an impact that was cut out of its recording but could not be fitted.
+
+use std::error::Error as _;
+use windfall_files::error::Error;
+use windfall_files::found::FindingOutcome;
+use windfall_identify::error::Error as IdentifyError;
+use windfall_signal::Finding;
+use windfall_signal::impact::Impact;
+
+/// Code of the finding that says where the contact was.
+pub const CONTACT: &str = "contact";
+
+/// The contact, and the findings on the signals.
+pub fn found_before(impact: &Impact, findings: &[Finding]) -> Vec<FindingOutcome> {
+    let told = format!(
+        "from {:.6} s to {:.6} s{}",
+        impact.onset,
+        impact.end,
+        impact.measured.peak_force.map_or_else(String::new, |peak| {
+            format!(", with a largest force of {peak:.4} N")
+        })
+    );
+    let contact = FindingOutcome::new(CONTACT, told);
+    let findings = findings
+        .iter()
+        .map(|finding| FindingOutcome::new(finding.code(), finding.to_string()));
+    std::iter::once(contact).chain(findings).collect()
+}
+
+/// The message of an error; where the bodies do not separate, the likeliest cause in place of
+/// the law, whose values nobody has chosen.
+pub fn why_it_failed(error: &Error, impact: &Impact, findings: &[Finding]) -> String {
+    let source = error.source().and_then(|own| own.downcast_ref());
+    let Some(IdentifyError::EndlessContact { duration }) = source else {
+        return error.to_string();
+    };
+    format!(
+        "no impact of a free body fits: with the law that is nearest to the signals, the bodies \
+         are still in contact after {duration} s. {}",
+        cause(impact, findings)
+    )
+}
+
+/// What makes a contact that no free body has, likeliest first.
+fn cause(impact: &Impact, findings: &[Finding]) -> &'static str {
+    let has = |codes: &[&str]| findings.iter().any(|own| codes.contains(&own.code()));
+    if has(&["contact-at-start", "contact-at-end"]) {
+        "Likeliest cause: a static load, as of something that stands, hangs or rests on the \
+         sensor where the recording begins or ends. If it holds an impact as well, cut that out \
+         with from_s and to_s in impacts.csv"
+    } else if has(&["shaking", "ringing", "reversed"]) {
+        "Likeliest cause: push and pull, as by a hand or a shaker, without free flight before \
+         and after. If the recording holds an impact as well, cut that out with from_s and to_s \
+         in impacts.csv"
+    } else if has(&["short-baseline", "local-baseline", "zero-shift"]) {
+        "Likeliest cause: a zero that does not stay. Set `baseline = \"drift\"` in [contact], or \
+         cut the recording with from_s and to_s in impacts.csv"
+    } else if impact.measured.impact_velocity.is_none() {
+        "Likeliest cause: a push without free flight before it, or a static load; else the mass, \
+         or a driving acceleration, in [rig]"
+    } else {
+        "Likeliest cause: the mass, or a driving acceleration, in [rig]; or a push without free \
+         flight before it"
+    }
+}
