@@ -6,6 +6,7 @@ pub mod calibrate_settings;
 pub mod evaluate;
 pub mod figure;
 pub mod file;
+pub mod intervals;
 pub mod measured;
 pub mod methods;
 pub mod plate_ringing;

@@ -44,6 +44,7 @@ fn main() -> ExitCode {
         Command::Regress(arguments) => command::regress::run(&arguments),
         Command::Surface(arguments) => command::surface::run(&arguments),
         Command::Radius(arguments) => command::geometry::run_radius(&arguments),
+        Command::Bounces(arguments) => command::bounces::run(&arguments),
         Command::Bruise(arguments) => command::bruise::run(&arguments),
         Command::Explain(arguments) => command::explain::run(&arguments),
         Command::Card(arguments) => command::card::run(&arguments),

@@ -195,7 +195,8 @@ fn read_categories(path: &Path, columns: &[usize]) -> Result<Vec<Categories>, Er
         .collect())
 }
 
-fn is_missing(cell: &str) -> bool {
+/// Whether a cell stands for a missing value.
+pub fn is_missing(cell: &str) -> bool {
     cell.len() <= 4 && MISSING.contains(&cell.to_ascii_lowercase().as_str())
 }
 

@@ -1,5 +1,6 @@
 //! The command line and its help.
 
+use crate::args::bounces::BouncesArguments;
 use crate::args::bruise::BruiseArguments;
 use crate::args::calibrate::CalibrateArguments;
 use crate::args::compare::{CompareArguments, SummaryArguments};
@@ -88,6 +89,8 @@ pub enum Command {
     Surface(Box<SurfaceArguments>),
     /// Radius of curvature from a chord gauge or three diameters
     Radius(RadiusArguments),
+    /// Restitution from the times between successive impacts of a bouncing fruit
+    Bounces(BouncesArguments),
     /// Volumes of bruises from their measured widths and depths
     Bruise(BruiseArguments),
     /// Show force laws, or take one to another geometry

@@ -10,7 +10,14 @@ const GROUPS: [(&str, &[&str]); 6] = [
     ),
     (
         "Laws and fruit",
-        &["laws", "population", "calibrate", "card", "radius"],
+        &[
+            "laws",
+            "population",
+            "calibrate",
+            "card",
+            "bounces",
+            "radius",
+        ],
     ),
     ("Simulation", &["simulate", "scene", "bruise"]),
     (

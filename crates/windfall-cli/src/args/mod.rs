@@ -1,5 +1,6 @@
 //! Arguments of the commands.
 
+pub mod bounces;
 pub mod bruise;
 pub mod calibrate;
 pub(crate) mod common;

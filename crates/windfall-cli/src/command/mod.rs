@@ -1,7 +1,8 @@
 //! The commands: each calls one workflow and shows what it returns.
 
 pub(crate) mod add;
-pub(crate) mod bruise;
+pub(crate) mod bounces;
+pub mod bruise;
 pub(crate) mod calibrate;
 pub(crate) mod card;
 pub(crate) mod compare;

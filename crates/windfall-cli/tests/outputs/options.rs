@@ -323,6 +323,7 @@ pub const READ: &[(&str, &str)] = &[
     ("regress", "table"),
     ("regress", "--predict"),
     ("surface", "table"),
+    ("bounces", "tables"),
     ("bruise", "--table"),
     ("card show", "--laws"),
     ("card show", "--file"),
