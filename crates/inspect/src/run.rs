@@ -18,7 +18,8 @@ use windfall_files::found::FindingOutcome;
 use windfall_files::inputs::{check_piped, protect};
 use windfall_files::named::Named;
 use windfall_files::option_value::unusable;
-use windfall_files::text::column_role::{role_of, role_of_unit, seconds_per_unit, unit_in};
+use windfall_files::text::column_guess::{ColumnHead, guess_columns};
+use windfall_files::text::column_role::{role_of, seconds_per_unit, unit_in};
 use windfall_formats::contents::{ChannelContents, Contents, TimeBase};
 use windfall_formats::open::{OpenOptions, open};
 use windfall_formats::reader::Sink;
@@ -39,6 +40,8 @@ pub struct Inspection {
     pub columns: Vec<ColumnInspection>,
     /// What the file says of itself.
     pub properties: Named<String>,
+    /// What a new campaign assumes of the columns, and what it leaves out.
+    pub assumed: Vec<String>,
     /// What looks wrong.
     pub findings: Vec<FindingOutcome>,
     /// Outlines of the channels that are no times, for plots.
@@ -53,8 +56,10 @@ pub struct ColumnInspection {
     pub column: String,
     /// Unit that the file gives, or guessed from the name.
     pub unit: Option<String>,
-    /// What the channel seems to be: "time", or the channel it could feed.
+    /// What the channel could be: "time", or a channel of a campaign.
     pub role: Option<&'static str>,
+    /// What it is taken for in a new campaign; of several that could be, one or none is.
+    pub channel: Option<&'static str>,
     /// How it is stored.
     pub stored_as: String,
     /// Samples that are numbers.
@@ -136,6 +141,7 @@ pub fn inspect_opened(
                        column of times in campaign.toml: [files] rate = \"200 kHz\"";
         findings.push(FindingOutcome::new("no-time", message.to_owned()));
     }
+    let assumed = guess_channels(&mut columns);
     let rows = scans.channels.iter().map(|scan| scan.values.rows).max();
     Ok(Inspection {
         file: path.display().to_string(),
@@ -145,6 +151,7 @@ pub fn inspect_opened(
         rows: rows.unwrap_or(0),
         columns,
         properties: contents.properties.into_iter().collect(),
+        assumed,
         findings,
         curves,
     })
@@ -294,10 +301,7 @@ fn column_inspection(
     clock: &Clock,
 ) -> ColumnInspection {
     let unit = unit_in(channel);
-    let role = match scan.times {
-        Some(_) => Some("time"),
-        None => role_of(&channel.name).or_else(|| role_of_unit(unit.as_deref()?)),
-    };
+    let role = scan.times.as_ref().map(|_| "time");
     let rows_between = scan.values.usual_gap().map(|gap| gap as f64);
     let interval = clock.interval().zip(rows_between).map(|(i, gap)| i * gap);
     let ends = scan.values.span();
@@ -307,6 +311,7 @@ fn column_inspection(
         column: channel.name.clone(),
         unit,
         role,
+        channel: None,
         stored_as: channel.stored_as.clone(),
         samples: scan.values.samples,
         smallest: scan.values.smallest,
@@ -315,6 +320,21 @@ fn column_inspection(
         length: start.zip(end).map(|(start, end)| end - start),
         start,
     }
+}
+
+/// Fills in what each column could be and is taken for; what was assumed.
+fn guess_channels(columns: &mut [ColumnInspection]) -> Vec<String> {
+    let heads = columns.iter().map(|column| ColumnHead {
+        name: &column.column,
+        unit: column.unit.as_deref(),
+        is_time: column.role == Some("time"),
+    });
+    let guess = guess_columns(&heads.collect::<Vec<_>>());
+    for (index, column) in columns.iter_mut().enumerate() {
+        column.role = guess.roles[index];
+        column.channel = guess.channels[index];
+    }
+    guess.assumed
 }
 
 fn curve_of(column: &ColumnInspection, scan: &ChannelScan, clock: &Clock) -> Curve {

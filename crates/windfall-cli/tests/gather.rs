@@ -259,3 +259,72 @@ fn recovers_each_recording_that_lands_while_one_watches() {
     child.kill().unwrap();
     child.wait().unwrap();
 }
+
+/// A recording of eight samples under a header.
+fn small(path: &Path, header: &str) {
+    let columns = header.split(';').count();
+    let rows = (0..8).map(|i| {
+        let cells = (0..columns).map(|c| format!("{}.5", i * (c + 1)));
+        cells.collect::<Vec<_>>().join(";") + "\n"
+    });
+    std::fs::create_dir_all(path.parent().unwrap()).unwrap();
+    std::fs::write(path, format!("{header}\n{}", rows.collect::<String>())).unwrap();
+}
+
+#[test]
+fn closed_form_channels_of_foreign_headers_in_new_campaigns_and_added_recordings() {
+    let laboratory = tempfile::tempdir().unwrap();
+    let folder = laboratory.path();
+    small(
+        &folder.join("french/a.csv"),
+        "Temps (s);Force (g);Course (mm);Température (°C)",
+    );
+    let (status, out, told) = windfall(&["new", "carriage", "new", "--from", "french"], folder);
+    assert_eq!(status, Some(0), "{told}");
+    // An empty template takes the channels of what is added first, by the same rule.
+    windfall(&["new", "carriage", "later"], folder);
+    let (status, added, told) = windfall(&["add", "later", "french"], folder);
+    assert_eq!(status, Some(0), "{told}");
+    for (name, said) in [("new", out), ("later", added)] {
+        assert!(
+            said.contains("position is \"Course (mm)\", by its unit alone"),
+            "{said}"
+        );
+        assert!(said.contains("g of \"Force (g)\" are gf"), "{said}");
+        assert!(
+            said.contains("nothing is taken from \"Température (°C)\""),
+            "{said}"
+        );
+        assert!(said.contains("[rig] mass"), "{said}");
+        let text = std::fs::read_to_string(folder.join(name).join("campaign.toml")).unwrap();
+        for line in [
+            "[channels.force]\ncolumn = \"Force (g)\"\nunit = \"gf\"\n",
+            "[channels.position]\ncolumn = \"Course (mm)\"\nunit = \"mm\"\n",
+            "time = \"Temps (s)\"\ntime_unit = \"s\"\n",
+        ] {
+            assert!(text.contains(line), "{text}");
+        }
+    }
+}
+
+#[test]
+fn rejects_to_guess_between_two_columns_of_one_unit() {
+    let laboratory = tempfile::tempdir().unwrap();
+    let folder = laboratory.path();
+    small(
+        &folder.join("two/a.csv"),
+        "Zeit [s];Kraft [N];Taster A [mm];Taster B [mm]",
+    );
+    let (status, out, told) = windfall(&["new", "carriage", "new", "--from", "two"], folder);
+    assert_eq!(status, Some(0), "{told}");
+    assert!(
+        out.contains("could be \"Taster A [mm]\" or \"Taster B [mm]\""),
+        "{out}"
+    );
+    assert!(out.contains("[channels.position] column"), "{out}");
+    let text = std::fs::read_to_string(folder.join("new/campaign.toml")).unwrap();
+    let line = "# WRITE YOURS: column = \"Taster A [mm]\"    # or Taster B [mm]\n";
+    assert!(text.contains(line), "{text}");
+    let (status, _, told) = windfall(&["fit", "new"], folder);
+    assert_eq!(status, Some(2), "{told}");
+}

@@ -1,6 +1,7 @@
 //! What the name of a channel says: its unit, and what it seems to be.
 
 use windfall_formats::contents::ChannelContents;
+use windfall_formats::text::is_time_name;
 use windfall_numerics::unit::quantity::parse_unit;
 
 /// The unit in "Force (N)", "force_N", `Force [N]` or "Force in N", and in
@@ -22,9 +23,8 @@ pub fn unit_of(name: &str) -> Option<String> {
 }
 
 /// Parts of names and what they usually stand for.
-const ROLES: [(&str, &str); 17] = [
+const ROLES: [(&str, &str); 16] = [
     ("time", "time"),
-    ("x_value", "time"),
     ("phase_a", "phase_a"),
     ("phase a", "phase_a"),
     ("phase_b", "phase_b"),
@@ -44,27 +44,41 @@ const ROLES: [(&str, &str); 17] = [
 
 /// Ends of words in German, French, Spanish and Italian, and what they stand for: what
 /// testing machines write there ("Standardkraft", "Prüfzeit").
-const FOREIGN: [(&str, &str); 14] = [
+const FOREIGN: [(&str, &str); 28] = [
     ("zeit", "time"),
-    ("temps", "time"),
-    ("tiempo", "time"),
-    ("tempo", "time"),
     ("kraft", "force"),
     ("fuerza", "force"),
     ("forza", "force"),
     ("weg", "position"),
     ("verschiebung", "position"),
+    ("verformung", "position"),
+    ("auslenkung", "position"),
     ("déplacement", "position"),
     ("deplacement", "position"),
     ("desplazamiento", "position"),
+    ("posición", "position"),
     ("spostamento", "position"),
+    ("posizione", "position"),
     ("geschwindigkeit", "velocity"),
+    ("vitesse", "velocity"),
+    ("velocidad", "velocity"),
+    ("velocità", "velocity"),
+    ("beschleunigung", "acceleration"),
+    ("accélération", "acceleration"),
+    ("aceleración", "acceleration"),
+    ("aceleracion", "acceleration"),
+    ("accelerazione", "acceleration"),
+    ("winkel", "angle"),
+    ("ángulo", "angle"),
+    ("angulo", "angle"),
+    ("angolo", "angle"),
+    ("zähler", "count"),
 ];
 
 /// What a channel seems to be: "time", or the campaign channel that it could feed.
 pub fn role_of(name: &str) -> Option<&'static str> {
     let lower = name.to_lowercase();
-    if matches!(lower.as_str(), "t" | "t_s" | "t (s)" | "t_ms" | "t [s]") {
+    if is_time_name(name) {
         return Some("time");
     }
     // "Run 1: Time (s)", "Sheet 1/Time (s)": the name itself, before names above it.
@@ -87,6 +101,7 @@ pub fn role_of_unit(unit: &str) -> Option<&'static str> {
         _ => false,
     };
     [
+        ("s", "time"),
         ("N", "force"),
         ("m/s^2", "acceleration"),
         ("m/s", "velocity"),

@@ -1,6 +1,7 @@
 //! Numbers, quantities and tables as text, and the text of TOML files with its places.
 
 pub mod cell_quantity;
+pub mod column_guess;
 pub mod column_role;
 pub mod column_title;
 pub mod columns;

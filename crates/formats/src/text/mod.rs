@@ -21,3 +21,5 @@ pub(crate) mod read;
 pub mod rows;
 pub mod spreadsheet;
 pub(crate) mod table;
+
+pub use read::is_time_name;

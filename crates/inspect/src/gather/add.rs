@@ -1,8 +1,10 @@
 //! `windfall add`: further recordings of a campaign.
 
+use crate::gather::channels::{campaign_text as guessed_text, remarks};
+use crate::gather::folder::{files_in, name_of};
 use crate::gather::names::{NamePattern, NamedRecording};
-use crate::gather::new::{files_in, name_of};
 use crate::gather::rows::{ImpactRow, Rows};
+use crate::run::{InspectRequest, inspect_recording};
 use itertools::Itertools;
 use serde::Serialize;
 use std::collections::{BTreeMap, BTreeSet};
@@ -11,8 +13,8 @@ use std::io::{BufRead, BufReader, Read};
 use std::path::{Path, PathBuf};
 use windfall_campaign::recording::digests::campaign_text;
 use windfall_campaign::settings::edit_table::add_rows;
-use windfall_campaign::settings::kind::{CampaignKind, campaign_kind};
-use windfall_campaign::settings::template::is_template_file;
+use windfall_campaign::settings::kind::{CAMPAIGN_FILE, CampaignKind, campaign_kind};
+use windfall_campaign::settings::template::{TEMPLATES, TemplateKind, is_template_file, template};
 use windfall_files::confined::Arriving;
 use windfall_files::error::Error;
 use windfall_files::inputs::check_regular;
@@ -34,6 +36,8 @@ pub struct Added {
     pub known: usize,
     /// What was assumed.
     pub assumed: Vec<String>,
+    /// What a person has to write into campaign.toml, which was a template until now.
+    pub missing: Vec<String>,
     /// Files that were left out, and why.
     pub left_out: Vec<String>,
 }
@@ -100,6 +104,10 @@ pub fn add_recordings(
     if new.is_empty() {
         return Ok(added);
     }
+    let text = match kind_of_template(&text) {
+        Some(kind) => written_channels(directory, kind, (&new[0].0, names), &mut added)?,
+        None => text,
+    };
     // Specimens first: stopped in between, the campaign still knows all that it names.
     added.specimens = add_specimens(directory, &new)?;
     let of_impacts = campaign_kind(directory).is_ok_and(|kind| kind == CampaignKind::Impacts);
@@ -119,6 +127,35 @@ pub fn add_recordings(
     edit_file(&impacts, &add_rows(&impacts, &cells)?)?;
     added.impacts.extend(new.into_iter().map(|own| own.id));
     Ok(added)
+}
+
+/// The kind of a campaign.toml that nobody has touched.
+fn kind_of_template(text: &str) -> Option<TemplateKind> {
+    let mut kinds = TEMPLATES.iter();
+    let found = kinds.find(|(_, kind)| template(*kind) == text);
+    found.map(|(_, kind)| *kind)
+}
+
+/// Writes the channels of a recording into a campaign.toml that is still its template, as a
+/// campaign of a folder has them; the new text.
+fn written_channels(
+    directory: &Path,
+    kind: TemplateKind,
+    (first, names): (&Path, Option<&str>),
+    added: &mut Added,
+) -> Result<String, Error> {
+    let seen = inspect_recording(first, &InspectRequest::default());
+    let Ok(seen) = seen else {
+        return Ok(template(kind).to_owned());
+    };
+    let ending = first.extension().unwrap_or_default().to_string_lossy();
+    let own = format!("{{specimen}}.{ending}");
+    let guessed = guessed_text(template(kind), &seen, None, names.unwrap_or(&own));
+    let text = remarks(&guessed.assumed) + &guessed.text;
+    edit_file(&directory.join(CAMPAIGN_FILE), &text)?;
+    added.assumed.extend(guessed.assumed);
+    added.missing = guessed.missing;
+    Ok(text)
 }
 
 /// Lists specimens that specimens.csv lacks, where there is such a table; their ids.

@@ -4,11 +4,12 @@
 use crate::run::{ColumnInspection, Inspection};
 use std::fmt::Write;
 use windfall_campaign::settings::template::UNWRITTEN;
-use windfall_files::text::quote::string_text as quoted;
+use windfall_files::text::column_guess::unit_meant;
+use windfall_files::text::quote::{comment_text, string_text as quoted};
 use windfall_numerics::unit::quantity::{parse_as, parse_unit};
 
 /// Channels that a campaign of impacts takes, with the SI units of their quantities.
-const TAKEN: [(&str, &str); 7] = [
+const TAKEN: [(&str, &str); 8] = [
     ("force", "N"),
     ("position", "m"),
     ("velocity", "m/s"),
@@ -16,6 +17,7 @@ const TAKEN: [(&str, &str); 7] = [
     ("angle", "rad"),
     ("phase_a", ""),
     ("phase_b", ""),
+    ("count", ""),
 ];
 
 /// What was taken from the recordings, and what a person has to write.
@@ -41,8 +43,11 @@ pub fn campaign_text(
     group: Option<&str>,
     names: &str,
 ) -> Guessed {
-    let mut guessed = Guessed::default();
-    let channels = channels_text(seen, &mut guessed);
+    let mut guessed = Guessed {
+        assumed: seen.assumed.clone(),
+        ..Guessed::default()
+    };
+    let channels = channels_text(seen, template, &mut guessed);
     let files = files_text(seen, names, &mut guessed);
     let (mut text, mut section, mut waiting) = (String::new(), "", String::new());
     for line in template.lines() {
@@ -81,6 +86,14 @@ pub fn campaign_text(
     guessed
 }
 
+/// What was assumed, as remarks of campaign.toml.
+pub(crate) fn remarks(assumed: &[String]) -> String {
+    let lines = assumed.iter();
+    lines
+        .map(|line| format!("# Assumed: {}\n", comment_text(line)))
+        .collect()
+}
+
 /// A line of the template as it stands in the campaign.
 fn line_of(line: &str, section: &str, group: Option<&str>, guessed: &mut Guessed) -> String {
     let key = line.split_once('=').map(|(key, _)| key.trim());
@@ -104,7 +117,7 @@ fn files_text(seen: &Inspection, names: &str, guessed: &mut Guessed) -> String {
     let column = seen
         .columns
         .iter()
-        .find(|column| column.role == Some("time"));
+        .find(|column| column.channel == Some("time"));
     let in_file = seen.columns.iter().any(|column| column.rate.is_some());
     match column {
         Some(time) => {
@@ -132,39 +145,56 @@ fn files_text(seen: &Inspection, names: &str, guessed: &mut Guessed) -> String {
     text
 }
 
-/// The tables of the channels that could be told.
-fn channels_text(seen: &Inspection, guessed: &mut Guessed) -> String {
+/// The tables of the channels that could be told, of those that the kind of rig takes.
+fn channels_text(seen: &Inspection, template: &str, guessed: &mut Guessed) -> String {
+    let any = ["pendulum", "carriage"].map(|kind| format!("kind = \"{kind}\""));
+    let any = any.iter().any(|kind| template.contains(kind));
+    let taken = |role: &str| any || template.contains(&format!("[channels.{role}]"));
     let mut text = String::new();
     let mut encoder = false;
-    for (role, quantity) in TAKEN.iter().chain(&[("count", "")]) {
-        let mut columns = seen
+    for (role, quantity) in TAKEN.iter().filter(|(role, _)| taken(role)) {
+        let mut columns = seen.columns.iter();
+        let column = columns.find(|column| column.channel == Some(role));
+        let could = seen
             .columns
             .iter()
             .filter(|column| column.role == Some(role));
-        let Some(column) = columns.next() else {
+        let could: Vec<&ColumnInspection> = could.collect();
+        let (Some(column), mark) = (match column {
+            Some(column) => (Some(column), ""),
+            None => (could.first().copied(), UNWRITTEN),
+        }) else {
             continue;
         };
-        let others = columns.count();
-        if others > 0 {
-            guessed.assumed.push(format!(
-                "{role} is \"{}\", the first of {} columns that could be",
-                column.column,
-                others + 1
-            ));
-        }
-        let _ = write!(
-            text,
-            "\n[channels.{role}]\ncolumn = {}\n",
-            quoted(&column.column)
-        );
+        let others: Vec<&str> = could
+            .iter()
+            .skip(1)
+            .map(|own| own.column.as_str())
+            .collect();
+        let rest = match mark {
+            "" => String::new(),
+            _ => {
+                guessed.missing.push(format!("[channels.{role}] column"));
+                format!("    # or {}", comment_text(&others.join(", ")))
+            }
+        };
+        let name = quoted(&column.column);
+        let _ = write!(text, "\n[channels.{role}]\n{mark}column = {name}{rest}\n");
         text += &unit_text(column, role, quantity, guessed);
         encoder |= ["phase_a", "count"].contains(role);
     }
+    if template.contains("[channels.sound]") {
+        text += &sound_text(seen, guessed);
+    }
     if encoder {
-        guessed
-            .missing
-            .push("[encoder] counts_per_revolution".to_owned());
-        let example = "counts_per_revolution = 360000    # after x4 decoding";
+        let (key, example) = match template.contains("kind = \"carriage\"") {
+            true => ("count_length", "count_length = \"0.17 mm\""),
+            false => (
+                "counts_per_revolution",
+                "counts_per_revolution = 360000    # after x4 decoding",
+            ),
+        };
+        guessed.missing.push(format!("[encoder] {key}"));
         let _ = writeln!(text, "\n[encoder]\n{UNWRITTEN}{example}");
     }
     if text.is_empty() {
@@ -172,6 +202,32 @@ fn channels_text(seen: &Inspection, guessed: &mut Guessed) -> String {
         let _ = writeln!(text, "\n[channels.force]\n{UNWRITTEN}column = \"force_N\"");
     }
     text
+}
+
+/// The channel of taps, which may be in any unit: the only column that holds no times.
+fn sound_text(seen: &Inspection, guessed: &mut Guessed) -> String {
+    let columns = seen.columns.iter();
+    let columns = columns.filter(|column| column.role != Some("time"));
+    let names: Vec<&str> = columns.map(|column| column.column.as_str()).collect();
+    let (mark, rest) = match &names[..] {
+        [_] => ("", String::new()),
+        [_, others @ ..] => (
+            UNWRITTEN,
+            format!("    # or {}", comment_text(&others.join(", "))),
+        ),
+        [] => (UNWRITTEN, String::new()),
+    };
+    if !mark.is_empty() {
+        guessed.missing.push("[channels.sound] column".to_owned());
+    }
+    let name = quoted(names.first().unwrap_or(&"channel 1"));
+    // Whatever it is called, it is used.
+    if mark.is_empty() {
+        guessed
+            .assumed
+            .retain(|said| !said.contains(&format!("\"{}\"", names[0])));
+    }
+    format!("\n[channels.sound]\n{mark}column = {name}{rest}\n")
 }
 
 fn unit_text(
@@ -187,7 +243,15 @@ fn unit_text(
         (Ok(unit), Ok(quantity)) => unit.dimension.matches(&quantity.dimension),
         _ => false,
     };
-    match column.unit.as_deref() {
+    let unit = column.unit.as_deref();
+    if let Some((unit, meant)) = unit.and_then(|unit| Some((unit, unit_meant(role, unit)?))) {
+        guessed.assumed.push(format!(
+            "{unit} of \"{}\" are {meant}: it is a channel of {role}",
+            column.column
+        ));
+        return format!("unit = {}\n", quoted(meant));
+    }
+    match unit {
         Some(unit) if same(unit) => format!("unit = {}\n", quoted(unit)),
         Some("V" | "mV") => {
             guessed

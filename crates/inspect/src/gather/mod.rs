@@ -3,6 +3,7 @@
 
 pub mod add;
 pub mod channels;
+mod folder;
 pub mod names;
 pub mod new;
 mod rows;

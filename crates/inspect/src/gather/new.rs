@@ -1,6 +1,7 @@
 //! `windfall new KIND DIR --from FOLDER`: a campaign of the recordings in a folder.
 
-use crate::gather::channels::campaign_text;
+use crate::gather::channels::{campaign_text, remarks};
+use crate::gather::folder::{files_in, name_of};
 use crate::gather::names::{NamePattern, NamedRecording};
 use crate::gather::rows::{ImpactRow, Rows};
 use crate::run::{InspectRequest, inspect_recording};
@@ -16,7 +17,6 @@ use windfall_files::inputs::check_regular;
 use windfall_files::option_value::unusable;
 use windfall_files::scratch::NewDirectory;
 use windfall_files::table::write::csv_text;
-use windfall_files::text::quote::comment_text;
 use windfall_formats::open::{OpenOptions, open};
 
 /// A campaign that was made of recordings.
@@ -113,9 +113,7 @@ pub fn gather(
     gathered.assumed.extend(rows.assumed());
     gathered.recordings = copied.len();
     gathered.impacts = impacts.len();
-    let remarks = gathered.assumed.iter();
-    let remarks = remarks.map(|assumed| format!("# Assumed: {}\n", comment_text(assumed)));
-    let text = remarks.collect::<String>() + &guessed.text;
+    let text = remarks(&gathered.assumed) + &guessed.text;
     let specimens = specimens_text(&copied)?;
     gathered.specimens = specimens.lines().count() - 1;
     for (name, text) in [
@@ -129,32 +127,11 @@ pub fn gather(
     Ok(gathered)
 }
 
-/// Files of a folder in the order of their names, hidden ones left out.
-pub(crate) fn files_in(folder: &Path) -> Result<Vec<PathBuf>, Error> {
-    let entries = std::fs::read_dir(folder);
-    let entries = entries.map_err(|source| Error::access(folder, "read", source))?;
-    let mut files = Vec::new();
-    for entry in entries {
-        let entry = entry.map_err(|source| Error::access(folder, "read", source))?;
-        if entry.path().is_file() && !name_of(&entry.path()).starts_with('.') {
-            files.push(entry.path());
-        }
-    }
-    files.sort();
-    Ok(files)
-}
-
 /// A specimen for each file, with the ending of the first.
 fn own_pattern(files: &[PathBuf]) -> Result<NamePattern, Error> {
     let ending = files.first().and_then(|file| file.extension());
     let ending = ending.map_or_else(String::new, |own| format!(".{}", own.to_string_lossy()));
     NamePattern::parse(&format!("{{specimen}}{ending}"))
-}
-
-/// The name of a file, as text.
-pub(crate) fn name_of(file: &Path) -> String {
-    let name = file.file_name().unwrap_or_default();
-    name.to_string_lossy().into_owned()
 }
 
 /// Recordings whose channels are not those of the first.

@@ -1,7 +1,7 @@
 //! Recordings → rows of impacts.csv: one for each contact that a recording holds.
 
+use crate::gather::folder::name_of;
 use crate::gather::names::NamedRecording;
-use crate::gather::new::name_of;
 use itertools::Itertools;
 use std::collections::BTreeSet;
 use std::path::Path;

@@ -29,15 +29,18 @@ pub fn text_of_gathered(gathered: &Gathered, directory: &Path) -> String {
     );
     text += &listed("Assumed", &gathered.assumed);
     text += &listed("Left out", &gathered.left_out);
-    if gathered.missing.is_empty() {
-        let _ = writeln!(text, "\nNext: {}", fit(directory));
-        return text;
+    text + &next(&gathered.missing, directory)
+}
+
+/// What is left to do.
+fn next(missing: &[String], directory: &Path) -> String {
+    if missing.is_empty() {
+        return format!("\nNext: {}\n", fit(directory));
     }
-    let _ = writeln!(
-        text,
-        "\nWrite into {shown}/campaign.toml, in the lines that say WRITE YOURS:"
-    );
-    for line in &gathered.missing {
+    let shown = directory.display();
+    let mut text =
+        format!("\nWrite into {shown}/campaign.toml, in the lines that say WRITE YOURS:\n");
+    for line in missing {
         let _ = writeln!(text, "  {line}");
     }
     let _ = writeln!(text, "then\n  {}", fit(directory));
@@ -144,6 +147,5 @@ pub fn text_of_added(added: &Added, directory: &Path) -> String {
     }
     text += &listed("Assumed", &added.assumed);
     text += &listed("Left out", &added.left_out);
-    let _ = writeln!(text, "\nNext: {}", fit(directory));
-    text
+    text + &next(&added.missing, directory)
 }

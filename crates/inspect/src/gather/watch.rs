@@ -1,7 +1,7 @@
 //! `windfall fit DIR --watch`: each recording is fitted as it is closed.
 
 use crate::gather::add::add_recordings;
-use crate::gather::new::files_in;
+use crate::gather::folder::files_in;
 use std::collections::BTreeSet;
 use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};

@@ -49,8 +49,8 @@ export interface ChannelView { quantity: string; column: string; unit: string; }
 export interface ChannelsGiven { channels: ChannelGiven[]; time?: string | null; rate?: string | null; }
 export interface ClosingOutcome { with: string; rank: number; sds: (number | null)[]; }
 export interface ColumnInspection {
-  column: string; unit: string | null; role: string | null; stored_as: string; samples: number; smallest: number | null;
-  largest: number | null; rate: number | null; length: number | null; start: number | null;
+  column: string; unit: string | null; role: string | null; channel: string | null; stored_as: string; samples: number;
+  smallest: number | null; largest: number | null; rate: number | null; length: number | null; start: number | null;
 }
 export interface ContactView {
   time: number; duration: number; lasting: boolean; partner: string; partner_fruit: number | null;
@@ -164,7 +164,7 @@ export interface ImpactsGiven { impacts: ImpactGiven[]; }
 export interface InflationOutcome { term: string; df: number; factor: number; }
 export interface Inspection {
   file: string; format: string; rows: number; columns: ColumnInspection[]; properties: Record<string, string>;
-  findings: FindingOutcome[];
+  assumed: string[]; findings: FindingOutcome[];
 }
 export interface IntervalOutcome {
   method: string; replicates?: number | null; failed?: number | null; chains?: number | null; draws?: number | null;
