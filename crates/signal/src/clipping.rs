@@ -4,7 +4,7 @@ use crate::finding::Finding;
 use crate::noise::estimate::{median, quantum};
 use crate::polynomial::{PolynomialFit, fit_polynomial};
 use crate::recording::{Quantity, Recording};
-use crate::trigger_scale::{index_of_largest, moving_mean, white_noise};
+use crate::trigger::scale::{index_of_largest, moving_mean, white_noise};
 use std::ops::Range;
 
 /// Most samples of a recording that lie beyond a limit: single wrong ones.

@@ -3,7 +3,7 @@
 use crate::finding::Finding;
 use crate::noise::estimate::median;
 use crate::track::Track;
-use crate::trigger_scale::white_noise;
+use crate::trigger::scale::white_noise;
 
 /// A spike departs from its neighbours by this many standard deviations of the noise; 1.
 const CLEAR: f64 = 10.0;

@@ -7,9 +7,6 @@ use windfall_identify::error::Error as IdentifyError;
 use windfall_signal::Finding;
 use windfall_signal::impact::Impact;
 
-/// Code of the finding that says where the contact was.
-pub const CONTACT: &str = "contact";
-
 /// The contact, and the findings on the signals.
 pub fn found_before(impact: &Impact, findings: &[Finding]) -> Vec<FindingOutcome> {
     let told = format!(
@@ -20,7 +17,7 @@ pub fn found_before(impact: &Impact, findings: &[Finding]) -> Vec<FindingOutcome
             format!(", with a largest force of {peak:.4} N")
         })
     );
-    let contact = FindingOutcome::new(CONTACT, told);
+    let contact = FindingOutcome::new("contact", told);
     let findings = findings
         .iter()
         .map(|finding| FindingOutcome::new(finding.code(), finding.to_string()));

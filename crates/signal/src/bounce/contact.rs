@@ -1,7 +1,7 @@
 //! Contact force from the force that supports a ringing plate.
 
 use crate::ringing::model::decay_rate;
-use crate::trigger_scale::moving_mean;
+use crate::trigger::scale::moving_mean;
 use std::f64::consts::TAU;
 
 /// Contact force behind a support force, smoothed.

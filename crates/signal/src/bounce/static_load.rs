@@ -1,7 +1,7 @@
 //! The level that a force has while nothing touches.
 
 use crate::noise::estimate::{baseline, combined_noise, median, quantum};
-use crate::trigger_scale::white_noise;
+use crate::trigger::scale::white_noise;
 use crate::uncertain::Uncertain;
 
 /// Part of the recording of which the level is first guessed; 1.

@@ -1,10 +1,13 @@
 //! Contact windows: when the force is above a threshold.
 
+mod quiet_stretch;
+pub(crate) mod scale;
+
 use crate::contact_window::{LEAST_SAMPLES, RINGING_PEAK, windows};
 use crate::error::{Error, Times};
 use crate::noise::estimate::{baseline, median};
-use crate::quiet_stretch::{LEVEL, quiet_stretch, wander};
-use crate::trigger_scale::{
+use crate::trigger::quiet_stretch::{LEVEL, quiet_stretch, wander};
+use crate::trigger::scale::{
     GAUSSIAN_OVER_MEDIAN, Level, PulseScale, moving_mean, pulse_scale, quieter, white_noise,
 };
 use serde::Serialize;
@@ -24,6 +27,9 @@ const LEAST_BASELINE: usize = 5;
 
 /// The baseline ends before the contact by this part of the contact's duration; 1.
 const BASELINE_GUARD: f64 = 0.1;
+
+/// Highest first threshold where the zero seems to wander; part of the largest force; 1.
+const WANDERING_SHARE: f64 = 0.5;
 
 /// A threshold that was given must be this many deviations of the averaged noise, or the
 /// signal is averaged over more samples: noise alone crosses it else, and cuts a contact into
@@ -254,15 +260,8 @@ pub struct Signal<'a> {
 /// [`Error::NoContact`] with the largest force and the threshold,
 /// [`Error::BadOption`], [`Error::TooFewSamples`].
 pub fn find_contacts(signal: &Signal, options: &TriggerOptions) -> Result<Contacts, Error> {
-    check_options(options)?;
+    check(signal, options)?;
     let n = signal.values.len();
-    if n < LEAST_SAMPLES {
-        return Err(Error::too_few_samples(
-            signal.name.to_owned(),
-            n,
-            LEAST_SAMPLES,
-        ));
-    }
 
     // A first guess of zero and sign.
     let (pilot, zero_from_end) = pilot_level(signal.values);
@@ -307,7 +306,7 @@ pub fn find_contacts(signal: &Signal, options: &TriggerOptions) -> Result<Contac
         smoothing,
     };
     let mut rise = signal.times[top] - signal.times[before.min(top)];
-    for _ in 0..2 {
+    for first_pass in [true, false] {
         let height = averaged[top] - centre;
         let quiet = quiet_stretch(signal.times, signal.values, before, (height, rise));
         let (mean, deviation) = baseline(&signal.values[quiet.clone()])
@@ -337,9 +336,7 @@ pub fn find_contacts(signal: &Signal, options: &TriggerOptions) -> Result<Contac
         let smoothing = contacts.smoothing;
         let smooth = moving_mean(&raised, smoothing);
         let largest = smooth.iter().copied().fold(f64::NEG_INFINITY, f64::max);
-        let wandering = noise(smoothing).hypot(contacts.trend_sd);
-        let level = options.threshold.level(wandering, largest);
-        contacts.threshold = level.max(f64::MIN_POSITIVE);
+        contacts.threshold = level(&contacts, options, noise(smoothing), largest, first_pass);
         let release = options.release * contacts.threshold;
         contacts.windows = windows(
             signal.times,
@@ -363,7 +360,31 @@ pub fn find_contacts(signal: &Signal, options: &TriggerOptions) -> Result<Contac
     Ok(contacts)
 }
 
-fn check_options(options: &TriggerOptions) -> Result<(), Error> {
+/// The threshold above the baseline; N.
+fn level(
+    contacts: &Contacts,
+    options: &TriggerOptions,
+    noise: f64,
+    largest: f64,
+    first_pass: bool,
+) -> f64 {
+    let wandering = noise.hypot(contacts.trend_sd);
+    let level = options.threshold.level(wandering, largest);
+    // Before the largest contact there may be others, which look like a zero that wanders.
+    let highest = if first_pass && contacts.trend_sd > 0.0 {
+        WANDERING_SHARE * largest
+    } else {
+        f64::INFINITY
+    };
+    level.min(highest).max(f64::MIN_POSITIVE)
+}
+
+fn check(signal: &Signal, options: &TriggerOptions) -> Result<(), Error> {
+    let n = signal.values.len();
+    if n < LEAST_SAMPLES {
+        let name = signal.name.to_owned();
+        return Err(Error::too_few_samples(name, n, LEAST_SAMPLES));
+    }
     let bad = |option, value, expected| Err(Error::bad_option(option, value, expected));
     match options.threshold {
         Threshold::Fixed(force) if !(force > 0.0 && force.is_finite()) => {
