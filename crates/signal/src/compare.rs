@@ -31,7 +31,7 @@ const GAIN: f64 = 0.01;
 
 /// Root mean square between two channels of one motion that is told, as a part of the largest
 /// displacement; 1.
-const MOTION_MISFIT: f64 = 0.02;
+const MOTION_MISFIT: f64 = 0.004;
 
 /// … and only if it is this many times the noise of the displacement; 1.
 const SCATTER: f64 = 5.0;
@@ -166,7 +166,7 @@ fn one_motion(
         });
     }
     let largest = measured.max_displacement.unwrap_or(f64::INFINITY);
-    if found.misfit > (MOTION_MISFIT * largest).max(SCATTER * displacement.noise) {
+    if found.misfit > (MOTION_MISFIT * largest).max(SCATTER * found.noise) {
         findings.push(Finding::MotionMismatch {
             force: force.name.clone(),
             displacement: displacement.name.clone(),

@@ -76,7 +76,8 @@ pub fn extract_impact(
     let margins = margins(&signals, &measured, &place, options, &mut findings);
     let short = [options.margin_before, options.margin_after].map(|own| own * place.duration());
     let used = (place.onset - margins[0], place.end + margins[1]);
-    findings.extend(signals.displacement.iter().find_map(|own| jump(own, used)));
+    let lost = |own| jump(own, used, place.duration());
+    findings.extend(signals.displacement.iter().find_map(lost));
     let cut = |track: Option<Track>, kept: [f64; 2]| {
         track.and_then(|track| series(&track, &place, kept, options))
     };

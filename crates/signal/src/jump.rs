@@ -1,7 +1,9 @@
 //! A position that moves farther between two samples than anything can.
 
+use crate::encoder::edge_rate::{CountTimes, edges};
 use crate::finding::Finding;
-use crate::track::Track;
+use crate::linear_fit::linear_fit;
+use crate::track::{Track, mean_interval};
 
 /// Steps on either side with which each is compared.
 const NEIGHBOURS: usize = 10;
@@ -13,13 +15,37 @@ const FACTOR: f64 = 3.0;
 const COUNTS: f64 = 1.5;
 const CLEAR: f64 = 8.0;
 
+/// Points on either side of a small jump, at least and at most.
+const POINTS: (usize, usize) = (8, 16);
+
+/// These points lie within this part of the contact's duration; 1.
+const NEAR: f64 = 0.12;
+
+/// A small jump is at least as long as the way in this many sampling intervals: the rows that
+/// are missing.
+const ROWS: f64 = 3.0;
+
 /// The largest jump of a position in a span of time: rows are missing there, or counts.
 ///
 /// A single sample that departs and comes back is none: it has a neighbour of its own size.
-pub(crate) fn jump(track: &Track, (from, until): (f64, f64)) -> Option<Finding> {
+///
+/// * `duration`: of the contact; s
+pub(crate) fn jump(track: &Track, (from, until): (f64, f64), duration: f64) -> Option<Finding> {
     let first = track.times.partition_point(|&t| t < from);
     let last = track.times.partition_point(|&t| t <= until).max(first);
     let (times, values) = (&track.times[first..last], &track.values[first..last]);
+    let (time, size) =
+        lonely_step(track, times, values).or_else(|| small_jump(track, times, values, duration))?;
+    Some(Finding::GapInContact {
+        channel: track.name.clone(),
+        time,
+        size,
+    })
+}
+
+/// Time and size of the largest step between two samples that is far larger than its
+/// neighbours; s, m.
+fn lonely_step(track: &Track, times: &[f64], values: &[f64]) -> Option<(f64, f64)> {
     let steps: Vec<f64> = values.windows(2).map(|x| (x[1] - x[0]).abs()).collect();
     let least = match track.quantum {
         Some(quantum) => COUNTS * quantum,
@@ -39,11 +65,43 @@ pub(crate) fn jump(track: &Track, (from, until): (f64, f64)) -> Option<Finding> 
     let (at, _) = jumps
         .filter(|(_, excess)| *excess > least)
         .max_by(|a, b| a.1.total_cmp(&b.1))?;
-    Some(Finding::GapInContact {
-        channel: track.name.clone(),
-        time: times[at],
-        size: steps[at],
-    })
+    Some((times[at], steps[at]))
+}
+
+/// Time and size of the clearest step in a motion that is smooth on either side, with a change
+/// of velocity at it: the motion went on while nothing was recorded; s, m. A counted position
+/// is taken where its count changes.
+fn small_jump(track: &Track, times: &[f64], values: &[f64], duration: f64) -> Option<(f64, f64)> {
+    track.quantum?;
+    let found = edges(times, values, CountTimes::Sampled);
+    let (points, places) = (&found.times, &found.values);
+    let interval = mean_interval(times);
+    let clearest = (0..points.len().saturating_sub(1)).filter_map(|i| {
+        let at = 0.5 * (points[i] + points[i + 1]);
+        let near = |t: f64| (t - at).abs() <= NEAR * duration;
+        let begin = (i + 1).saturating_sub(POINTS.1);
+        let end = (i + 1 + POINTS.1).min(points.len());
+        let begin = begin + points[begin..=i].iter().take_while(|t| !near(**t)).count();
+        let end = end
+            - points[i + 1..end]
+                .iter()
+                .rev()
+                .take_while(|t| !near(**t))
+                .count();
+        if i + 1 - begin < POINTS.0 || end - i - 1 < POINTS.0 {
+            return None;
+        }
+        let fit = linear_fit(&points[begin..end], &places[begin..end], |t| {
+            let u = (t - at) / (NEAR * duration);
+            let after = f64::from(u8::from(u > 0.0));
+            [1.0, u, u * u, u * u * u, after, after * u]
+        })?;
+        let (size, sd) = (fit.coefficients[4].abs(), fit.deviations[4]);
+        let speed = (places[end - 1] - places[begin]).abs() / (points[end - 1] - points[begin]);
+        (size > ROWS * speed * interval && size > CLEAR * sd).then_some((at, size, size / sd))
+    });
+    let (at, size, _) = clearest.max_by(|a, b| a.2.total_cmp(&b.2))?;
+    Some((at, size))
 }
 
 #[cfg(test)]
@@ -70,14 +128,30 @@ mod tests {
 
     #[test]
     fn closed_form_lost_rows_are_a_jump_and_a_glitch_is_none() {
-        assert_eq!(jump(&track(0..0, 0.0), SPAN), None);
-        assert_eq!(jump(&track(0..0, 3e-4), SPAN), None);
-        let Some(Finding::GapInContact { time, size, .. }) = jump(&track(200..250, 0.0), SPAN)
+        assert_eq!(jump(&track(0..0, 0.0), SPAN, 5e-3), None);
+        assert_eq!(jump(&track(0..0, 3e-4), SPAN, 5e-3), None);
+        let Some(Finding::GapInContact { time, size, .. }) =
+            jump(&track(200..250, 0.0), SPAN, 5e-3)
         else {
             panic!("no jump")
         };
         // 50 rows at 7e-4 π/1000 cos(0.225 π) m each.
         assert!((time - 199.0 * 5e-6).abs() < 1e-9);
         assert!((size - 8.36e-5).abs() < 1e-5, "{size}");
+    }
+
+    #[test]
+    fn closed_form_few_rows_that_are_lost() {
+        // Eight rows, on the way in and out: 8 times 7e-4 π/1000 cos(0.2 π) m.
+        for lost in [200..208, 792..800] {
+            let at = 5e-6 * lost.start as f64;
+            let Some(Finding::GapInContact { time, size, .. }) =
+                jump(&track(lost, 0.0), SPAN, 5e-3)
+            else {
+                panic!("no jump")
+            };
+            assert!((time - at).abs() < 5e-5, "{time}");
+            assert!((size - 1.42e-5).abs() < 3e-6, "{size}");
+        }
     }
 }

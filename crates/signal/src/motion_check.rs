@@ -1,11 +1,13 @@
 //! Whether force and displacement tell of one motion.
 
+use crate::encoder::edge_rate::{CountTimes, edges};
 use crate::kinematics::value_at;
 use crate::linear_fit::{LinearFit, linear_fit, sum};
 use crate::measure::Surroundings;
 use crate::noise::colour::mean_inflation;
 use crate::track::Track;
 use crate::uncertain::Uncertain;
+use std::ops::Range;
 
 /// Free motion on either side of the contact that is compared too; contact durations.
 const SIDES: f64 = 0.5;
@@ -25,6 +27,8 @@ pub struct MotionCheck {
     pub delay: Uncertain,
     /// Root mean square of what remains between them; m.
     pub misfit: f64,
+    /// What the noise of the displacement, or the timing of its counts, leaves of it; m.
+    pub noise: f64,
 }
 
 /// Compares a displacement with the force of the same contact, integrated twice:
@@ -63,10 +67,8 @@ pub(crate) fn check_motion(
         }
     }
     let part = within(&displacement.times, from, until);
-    let (times, places) = (
-        &displacement.times[part.clone()],
-        &displacement.values[part],
-    );
+    let (times, places, noise) = exact(displacement, part);
+    let (times, places) = (&times[..], &places[..]);
     let [velocity_lost, way_lost] = integrals(force, from, mass);
 
     let scale = until - from;
@@ -92,12 +94,30 @@ pub(crate) fn check_motion(
             gain: Uncertain::new(1.0 / inverse_gain, sd(3) / inverse_gain.powi(2)),
             delay: Uncertain::new(delay, sd(4) / inverse_gain),
             misfit: fit.scatter,
+            noise,
         });
         if step.abs() < 0.01 * sd(4) / inverse_gain {
             break;
         }
     }
     found.filter(|found| found.delay.value.abs() < place.duration())
+}
+
+/// Times and values of samples with their noise, or of the changes of a count where there are
+/// fewer of these: the displacement is known exactly there, at a time known to one sample.
+fn exact(track: &Track, part: Range<usize>) -> (Vec<f64>, Vec<f64>, f64) {
+    let (times, values) = (&track.times[part.clone()], &track.values[part]);
+    let found = edges(times, values, CountTimes::Sampled);
+    let count = found.times.len();
+    if track.quantum.is_some() && count >= LEAST_SAMPLES && 2 * count < times.len() {
+        let way: f64 = found.values.windows(2).map(|x| (x[1] - x[0]).abs()).sum();
+        return (
+            found.times,
+            found.values,
+            way / times.len() as f64 / 12f64.sqrt(),
+        );
+    }
+    (times.to_vec(), values.to_vec(), track.noise)
 }
 
 /// Velocity and displacement that the force takes from a mass, from `from` on, at the
