@@ -10,6 +10,7 @@ mod counted;
 mod design;
 mod drop;
 mod drop_eccentric;
+mod faults;
 mod figures;
 mod fit_campaign;
 mod fit_recording;
