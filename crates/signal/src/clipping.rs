@@ -14,8 +14,8 @@ const MOST_BEYOND: usize = 3;
 const LEAST_SUCCESSIVE: usize = 3;
 
 /// Fewest successive samples at the largest value that are clipped whatever the flanks do, and
-/// how sharply they must begin and end: by this part of the height, and by more steps of a
-/// quantised signal than its rounded top has; 1.
+/// how sharply they must begin or end: one side by this part of the height, both by more steps
+/// of a quantised signal than its rounded top has; 1.
 const LEAST_SHARP: usize = 4;
 const SHARP: f64 = 0.01;
 const SHARP_STEPS: f64 = 4.0;
@@ -173,10 +173,12 @@ impl Pulse<'_> {
     fn sharp(&self, run: &Range<usize>) -> bool {
         let least = SHARP_STEPS * quantum(self.values).unwrap_or(0.0);
         let before = run.start.checked_sub(1).and_then(|i| self.values.get(i));
-        let corner = |beside: Option<&f64>| {
-            beside.is_some_and(|v| (v - self.limit).abs() > least.max(SHARP * self.height))
+        let Some((before, after)) = before.zip(self.values.get(run.end)) else {
+            return false;
         };
-        run.len() >= LEAST_SHARP && corner(before) && corner(self.values.get(run.end))
+        let drops = [before, after].map(|v| (v - self.limit).abs());
+        let steep = drops[0].max(drops[1]) > SHARP * self.height;
+        run.len() >= LEAST_SHARP && steep && drops[0].min(drops[1]) > least
     }
 
     /// Samples at the limit with others between them, where many more lie there than at the
@@ -321,7 +323,7 @@ mod tests {
         let swing = [
             0.0, -517.0, -1028.0, -1694.0, -2368.0, -3030.0, -3675.0, -4163.0, -4474.0, -4750.0,
             -4955.0, -5125.0, -5358.4, -5358.4, -5358.4, -5358.4, -5358.4, -5358.4, -5358.4,
-            -5050.0, -4684.0, -4339.0, -3991.0, -4017.0, -4018.0, -3664.0, -3158.0, -2482.0,
+            -5339.0, -4684.0, -4339.0, -3991.0, -4017.0, -4018.0, -3664.0, -3158.0, -2482.0,
             -1804.0, -1102.0, -293.0, 2000.0, 5100.0, 5359.9, 5100.0,
         ];
         let times: Vec<f64> = (0..swing.len()).map(|i| 2e-5 * i as f64).collect();

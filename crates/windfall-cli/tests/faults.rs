@@ -216,3 +216,56 @@ fn recovers_the_law_in_noise_whose_samples_agree() {
         }
     });
 }
+
+#[test]
+fn rejects_a_person_who_stands_on_the_sensor_with_what_was_found() {
+    let folder = tempfile::tempdir().unwrap();
+    std::fs::create_dir(folder.path().join("raw")).unwrap();
+    // Stands, and jumps three times: flies for a quarter of a second and lands.
+    let force = |time: f64| {
+        let stands = 400.0 + 30.0 * (0.9 * time).sin();
+        [2.7, 6.2, 9.9]
+            .iter()
+            .fold(stands, |force, lands| match time - lands {
+                -0.25..0.0 => 0.0,
+                after @ 0.0..0.3 => force + 900.0 * (PI * after / 0.3).sin(),
+                _ => force,
+            })
+    };
+    let row = |i: u32| {
+        let time = 4e-3 * f64::from(i);
+        format!("{time:.3},{:.4}\n", force(time))
+    };
+    let rows: String = (0..3000).map(row).collect();
+    let write = |name: &str, text: String| std::fs::write(folder.path().join(name), text).unwrap();
+    write("raw/r.csv", format!("time_s,force_N\n{rows}"));
+    let rig = "[rig]\nkind = \"carriage\"\nmass = \"1 kg\"\ndriving_acceleration = \"0 m/s^2\"";
+    let files = "[files]\ndirectory = \"raw\"\ntime = \"time_s\"";
+    let channel = "[channels.force]\ncolumn = \"force_N\"\nunit = \"N\"";
+    let fit = "[fit]\nlaws = [\"kelvin-voigt\"]\nquantities = [\"force\"]";
+    let campaign = format!("format = 1\n{rig}\n{files}\n{channel}\n{fit}\n");
+    write("campaign.toml", campaign);
+    write(
+        "impacts.csv",
+        "id,specimen,file\nown,person,r.csv\n".to_owned(),
+    );
+    let fit = |line: &[&str]| {
+        let mut command = Command::cargo_bin("windfall").unwrap();
+        let output = command.args(line).current_dir(folder.path()).output();
+        String::from_utf8(output.unwrap().stdout).unwrap()
+    };
+    let outcome: Value = serde_json::from_str(&fit(&["fit", ".", "--format", "json"])).unwrap();
+    let failed = &outcome["failed"][0];
+    let message = failed["message"].as_str().unwrap();
+    assert!(
+        message.contains("Likeliest cause: a static load"),
+        "{outcome}"
+    );
+    let findings = failed["findings"].as_array().unwrap();
+    let has = |code: &str| findings.iter().any(|own| own["code"] == code);
+    assert!(has("contact") && has("contact-at-start"), "{failed}");
+    // The second time the same, although the store keeps no findings of failures.
+    let text = fit(&["fit", "."]);
+    assert!(text.contains("0 of 1 impacts count"), "{text}");
+    assert!(text.contains("contact-at-start: "), "{text}");
+}

@@ -45,7 +45,7 @@ fn cause(impact: &Impact, findings: &[Finding]) -> &'static str {
         "Likeliest cause: a static load, as of something that stands, hangs or rests on the \
          sensor where the recording begins or ends. If it holds an impact as well, cut that out \
          with from_s and to_s in impacts.csv"
-    } else if has(&["shaking", "ringing", "reversed"]) {
+    } else if has(&["shaking", "ringing"]) {
         "Likeliest cause: push and pull, as by a hand or a shaker, without free flight before \
          and after. If the recording holds an impact as well, cut that out with from_s and to_s \
          in impacts.csv"
@@ -58,5 +58,49 @@ fn cause(impact: &Impact, findings: &[Finding]) -> &'static str {
     } else {
         "Likeliest cause: the mass, or a driving acceleration, in [rig]; or a push without free \
          flight before it"
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use windfall_signal::impact::Measured;
+
+    #[test]
+    fn reference_the_likeliest_cause_is_named() {
+        let impact = Impact {
+            displacement: None,
+            rate: None,
+            force: None,
+            acceleration: None,
+            onset: 0.0,
+            end: 12.0,
+            measured: Measured::default(),
+        };
+        let endless =
+            || Error::identify("hertz", IdentifyError::EndlessContact { duration: 10.24 });
+        let told = |findings: &[Finding]| why_it_failed(&endless(), &impact, findings);
+        let standing = Finding::ContactAtStart { time: 0.0 };
+        assert!(told(std::slice::from_ref(&standing)).contains("static load, as of something"));
+        let drifting = Finding::ShortBaseline {
+            channel: "F".to_owned(),
+            samples: 0,
+            before: 300,
+        };
+        assert!(told(std::slice::from_ref(&drifting)).contains("`baseline = \"drift\"`"));
+        assert!(told(&[drifting, standing]).contains("static load"));
+        assert!(told(&[]).contains("without free flight"));
+        // Others say themselves what is wrong.
+        let other = Error::identify(
+            "hertz",
+            IdentifyError::UnorderedTimes {
+                index: 1,
+                time: 0.0,
+                before: 1.0,
+            },
+        );
+        assert_eq!(why_it_failed(&other, &impact, &[]), other.to_string());
+        let before = found_before(&impact, &[]);
+        assert_eq!(before[0].message, "from 0.000000 s to 12.000000 s");
     }
 }

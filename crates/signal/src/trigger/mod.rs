@@ -314,7 +314,7 @@ pub fn find_contacts(signal: &Signal, options: &TriggerOptions) -> Result<Contac
         let usual = usual_deviation(&signal.values[quiet.clone()]).unwrap_or(0.0);
         contacts.deviation = deviation;
         contacts.before = before;
-        contacts.trend_sd = wander(signal.values, &quiet);
+        contacts.trend_sd = wander(signal.values, &quiet, height.abs());
         contacts.quiet = quiet.clone();
         contacts.offset = match options.baseline {
             Baseline::Remove | Baseline::Drift => mean,

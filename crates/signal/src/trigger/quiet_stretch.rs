@@ -17,7 +17,8 @@ const LEAST: usize = 5;
 const LEAST_OF_RISE: f64 = 0.25;
 
 /// A zero that is told from a part of what lies before contact has nothing below it by more
-/// than this part of the largest force, anywhere: else it is a load that was taken off; 1.
+/// than this part of the largest force, anywhere: else it is a load that was taken off. Nor
+/// does a zero wander as far; 1.
 const BELOW: f64 = 0.2;
 
 /// Most parts whose means tell how far a zero wanders.
@@ -65,18 +66,20 @@ fn is_level(times: &[f64], values: &[f64], largest: f64) -> bool {
 }
 
 /// How far the zero goes, one deviation, in as long as the quiet stretch lasts: root mean square
-/// of the differences of means of such stretches, of those before it too. Zero where all before
-/// contact is one quiet stretch.
-pub(crate) fn wander(values: &[f64], quiet: &Range<usize>) -> f64 {
+/// of the differences of means of such stretches, of those before it too, back to a load. Zero
+/// where all before contact is one quiet stretch.
+pub(crate) fn wander(values: &[f64], quiet: &Range<usize>, largest: f64) -> f64 {
     if quiet.is_empty() || quiet.start < quiet.len() {
         return 0.0;
     }
+    let own = values[quiet.clone()].iter().sum::<f64>() / quiet.len() as f64;
     let parts = values[..quiet.end].rchunks_exact(quiet.len()).take(PARTS);
     let means: Vec<f64> = parts
         .map(|part| part.iter().sum::<f64>() / part.len() as f64)
+        .take_while(|mean| (mean - own).abs() <= BELOW * largest)
         .collect();
     let square: f64 = means.windows(2).map(|m| (m[1] - m[0]).powi(2)).sum();
-    (square / (means.len() - 1) as f64).sqrt()
+    (square / means.len().saturating_sub(1).max(1) as f64).sqrt()
 }
 
 #[cfg(test)]
@@ -96,7 +99,14 @@ mod tests {
         let quiet = quiet_stretch(&times, &values, 320, (5.0, 0.1));
         assert_eq!(quiet, 280..320);
         // Means of stretches of 0.4 s differ by 0.032 N.
-        assert!((wander(&values, &quiet) - 0.032).abs() < 1e-9);
+        assert!((wander(&values, &quiet, 5.0) - 0.032).abs() < 1e-9);
+        // Where a load of 3 N lies before it, nothing is known.
+        let loaded: Vec<f64> = values
+            .iter()
+            .enumerate()
+            .map(|(i, v)| if i < 280 { v + 3.0 } else { *v })
+            .collect();
+        assert_eq!(wander(&loaded, &quiet, 5.0), 0.0);
     }
 
     #[test]
@@ -104,7 +114,7 @@ mod tests {
         let (times, values) = at(320, |_| -1.1);
         let quiet = quiet_stretch(&times, &values, 320, (4.5, 0.1));
         assert_eq!(quiet, 0..320);
-        assert_eq!(wander(&values, &quiet), 0.0);
+        assert_eq!(wander(&values, &quiet, 4.5), 0.0);
     }
 
     #[test]
