@@ -44,6 +44,7 @@ mod orient;
 pub mod polynomial;
 mod rate;
 pub mod recording;
+pub mod relaxation;
 pub mod repeat;
 pub mod restitution;
 pub mod ringing;
