@@ -6,6 +6,7 @@ pub mod impacts;
 pub mod measure;
 pub mod pipeline;
 pub mod recording;
+pub mod relaxation;
 pub mod repeats;
 pub mod result;
 pub mod settings;

@@ -11,6 +11,7 @@ pub mod finding;
 pub mod fit;
 mod noise;
 pub mod population;
+pub mod relaxation;
 pub mod rig;
 pub mod sampler;
 pub mod samples;

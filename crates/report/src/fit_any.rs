@@ -8,6 +8,7 @@ use windfall_campaign::measure::kind::Measurement;
 use windfall_campaign::measure::measured::MeasuredOutcome;
 use windfall_campaign::measure::run::{ReportedItems, measure_campaign, reported_campaign};
 use windfall_campaign::pipeline::request::FitRequest;
+use windfall_campaign::relaxation::read::RelaxationCampaign;
 use windfall_campaign::repeats::read::RepeatsCampaign;
 use windfall_campaign::settings::kind::{CampaignKind, campaign_kind};
 use windfall_campaign::settings::model::Campaign;
@@ -41,6 +42,7 @@ pub fn measurement_of(kind: CampaignKind) -> Option<MeasurementWork> {
     match kind {
         CampaignKind::Impacts => None,
         CampaignKind::Compression => Some(MeasurementWork::of::<CompressionCampaign>()),
+        CampaignKind::Relaxation => Some(MeasurementWork::of::<RelaxationCampaign>()),
         CampaignKind::Acoustic => Some(MeasurementWork::of::<AcousticCampaign>()),
         CampaignKind::Repeats => Some(MeasurementWork::of::<RepeatsCampaign>()),
         CampaignKind::Drop => Some(MeasurementWork::of::<DropCampaign>()),

@@ -69,6 +69,8 @@ pub enum LoadingEnd {
     Rupture,
     /// The deformation decreased: unloading, or a controller that oscillates.
     Reversal,
+    /// The position was held, and the force fell: stress relaxation.
+    Hold,
     /// The recording ended.
     RecordingEnd,
 }
@@ -127,10 +129,19 @@ pub enum CompressionError {
     },
     #[error("the position does not change while the force rises; check its column")]
     NoMotion,
+    #[error(
+        "the position is held from the first sample on while the force falls from {first:.4} N to \
+         {last:.4} N: this is stress relaxation, not a loading; set kind = \"relaxation\" in [rig] \
+         (`windfall new relaxation DIR` writes a template)"
+    )]
+    Held { first: f64, last: f64 },
 }
 
 /// Fewest samples of a recording, and of its loading.
 pub const LEAST_SAMPLES: usize = 16;
+
+/// Samples over which a position that is held is judged.
+pub(crate) const SHORTEST_RUN: usize = 16;
 
 /// Samples of the shortest window for a local stiffness.
 const SHORTEST_WINDOW: usize = 8;
@@ -152,6 +163,9 @@ const PRELOADS: f64 = 2.0;
 
 /// Judgements over the length of a window.
 const JUDGEMENTS: usize = 50;
+
+/// A machine that stands has gone this part of its way, the inverse; 1.
+const STOPPED: f64 = 10.0;
 
 /// A decrease of the deformation by this part of it is a reversal; 1.
 const REVERSAL: f64 = 0.005;
@@ -194,7 +208,13 @@ pub fn compression_curve(
     let force_noise = second_difference_noise(&force[..head]);
     let position_noise = second_difference_noise(&deformation[..head]);
 
-    let walk = follow(&deformation, force, (force_noise, position_noise), options);
+    let walk = follow(
+        times,
+        &deformation,
+        force,
+        (force_noise, position_noise),
+        options,
+    );
     let end = walk.end;
     if end + 1 < LEAST_SAMPLES {
         return Err(CompressionError::NoLoading {
@@ -219,7 +239,10 @@ pub fn compression_curve(
         ended_by: walk.ended_by,
         bioyield: walk.bioyield.map(point),
         softening: walk.softening.map(point),
-        rupture: rupture(force, options.rupture).map(point),
+        rupture: match walk.ended_by {
+            LoadingEnd::Hold => None,
+            _ => rupture(force, options.rupture).map(point),
+        },
         stiffness: walk.stiffness,
         stiffness_end: walk.stiffness_end,
         energy,
@@ -268,6 +291,13 @@ fn direction(position: &[f64], force: &[f64]) -> Result<f64, CompressionError> {
     let quarter = force[0] + 0.25 * (largest - force[0]);
     let reached = force.iter().position(|f| *f >= quarter).unwrap_or(0);
     let travel = position[reached.max(1)] - position[0];
+    let (first, last) = (force[0], force[force.len() - 1]);
+    let low = position.iter().copied().fold(f64::INFINITY, f64::min);
+    let high = position.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+    let stands = high - low <= 2.0 * TOUCH * second_difference_noise(position);
+    if stands && last < 0.99 * first {
+        return Err(CompressionError::Held { first, last });
+    }
     if travel == 0.0 || !travel.is_finite() {
         return Err(CompressionError::NoMotion);
     }
@@ -275,7 +305,7 @@ fn direction(position: &[f64], force: &[f64]) -> Result<f64, CompressionError> {
 }
 
 /// Standard deviation of white noise, from the median of the second differences.
-fn second_difference_noise(values: &[f64]) -> f64 {
+pub(crate) fn second_difference_noise(values: &[f64]) -> f64 {
     let mut differences: Vec<f64> = values
         .windows(3)
         .map(|w| (w[0] - 2.0 * w[1] + w[2]).abs())
@@ -299,6 +329,7 @@ struct Walk {
 }
 
 fn follow(
+    times: &[f64],
     deformation: &[f64],
     force: &[f64],
     (force_noise, position_noise): (f64, f64),
@@ -329,6 +360,17 @@ fn follow(
         let back = deformation[furthest] - deformation[i];
         if back > (5.0 * position_noise).max(REVERSAL * deformation[furthest]) {
             (walk.end, walk.ended_by) = (furthest.min(strongest), LoadingEnd::Reversal);
+            break;
+        }
+        if held(
+            times,
+            deformation,
+            force,
+            (furthest, strongest, i),
+            force_noise,
+            position_noise,
+        ) {
+            (walk.end, walk.ended_by) = (strongest, LoadingEnd::Hold);
             break;
         }
         // A preload hides how much of the deformation came before the first sample.
@@ -372,6 +414,30 @@ fn follow(
         walk.stiffness_end = walk.end;
     }
     walk
+}
+
+/// Whether the machine stands at sample `i` while the force falls.
+///
+/// At the rate of the loading before, the position would have moved by [`STOPPED`] times what it
+/// has since the largest force.
+fn held(
+    times: &[f64],
+    deformation: &[f64],
+    force: &[f64],
+    (furthest, strongest, i): (usize, usize, usize),
+    force_noise: f64,
+    position_noise: f64,
+) -> bool {
+    let fallen = force[strongest] - force[i];
+    if i < strongest + SHORTEST_RUN
+        || fallen < (TOUCH * force_noise).max(CERTAIN * force[strongest])
+    {
+        return false;
+    }
+    let rate = deformation[strongest] / (times[strongest] - times[0]);
+    let expected = rate * (times[i] - times[strongest]);
+    let moved = deformation[furthest] - deformation[strongest];
+    expected > (STOPPED * moved).max(2.0 * STOPPED * position_noise)
 }
 
 /// Takes the local stiffness at sample `i` into account.
@@ -468,6 +534,27 @@ mod tests {
         assert_eq!(quiet.bioyield, wild.bioyield);
     }
 
+    /// A ramp that ends at 3 mm, and a hold in which half of the force relaxes: no rupture.
+    #[test]
+    fn closed_form_loading_ends_where_the_position_is_held() {
+        let (times, position, force) = recording(|_| 0.0);
+        let position: Vec<f64> = position.iter().map(|x| x.max(0.04 - 3e-3)).collect();
+        let force: Vec<f64> = times
+            .iter()
+            .zip(&force)
+            .map(|(t, f)| f * (0.5 + 0.5 * (-(t - 3.5).max(0.0) / 0.4).exp()))
+            .collect();
+        let options = CompressionOptions::default();
+        let curve = compression_curve(&times, &position, &force, &options).unwrap();
+        assert_eq!(curve.ended_by, LoadingEnd::Hold);
+        assert!((curve.loading_end.time - 3.5).abs() < 0.011);
+        assert_eq!(curve.bioyield, None);
+        // The same fall at an unchanged rate is a rupture.
+        let moving: Vec<f64> = times.iter().map(|t| 0.04 - 1e-3 * (t - 0.5)).collect();
+        let curve = compression_curve(&times, &moving, &force, &options).unwrap();
+        assert!(curve.bioyield.is_some() && curve.ended_by != LoadingEnd::Hold);
+    }
+
     #[test]
     fn closed_form_machine_in_series() {
         let (times, position, force) = recording(|d| -2e3 * d);
@@ -498,6 +585,12 @@ mod tests {
         let still = vec![0.0; times.len()];
         let refused = compression_curve(&times, &still, &force, &options).unwrap_err();
         assert_eq!(refused, CompressionError::NoMotion);
+        let falling: Vec<f64> = times.iter().map(|t| 20.0 + 5.0 * (-t).exp()).collect();
+        let refused = compression_curve(&times, &still, &falling, &options).unwrap_err();
+        assert!(
+            refused.to_string().contains("kind = \"relaxation\""),
+            "{refused}"
+        );
         let few = compression_curve(&times[..5], &position[..5], &force[..5], &options);
         assert!(few.unwrap_err().to_string().starts_with("5 samples"));
     }

@@ -25,6 +25,7 @@ mod messages;
 mod outputs;
 mod page_quantities;
 mod regress;
+mod relaxation;
 mod report;
 mod revision;
 mod scene;

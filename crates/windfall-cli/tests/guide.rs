@@ -392,6 +392,7 @@ fn reference_every_key_of_a_campaign_is_explained() {
         "drop/src",
         "cards/src/user_laws",
         "campaign/src/repeats",
+        "campaign/src/relaxation",
     ];
     for reader in readers {
         let file = format!("{reader}/file.rs");

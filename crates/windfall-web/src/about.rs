@@ -20,7 +20,7 @@ pub(crate) struct About {
     /// Size limit of an upload; bytes.
     upload_limit: u64,
     /// Kinds of campaigns that can be created.
-    kinds: [&'static str; 6],
+    kinds: [&'static str; 7],
     /// Force laws.
     laws: Vec<LawAbout>,
 }

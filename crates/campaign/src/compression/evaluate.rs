@@ -154,6 +154,7 @@ fn item(
         LoadingEnd::Bioyield => "bioyield",
         LoadingEnd::Rupture => "rupture",
         LoadingEnd::Reversal => "reversal",
+        LoadingEnd::Hold => "hold",
         LoadingEnd::RecordingEnd => "end of recording",
     };
     let mut derived = curve_values(curve, fit, part);
@@ -292,6 +293,10 @@ fn findings(
         LoadingEnd::Reversal => tell("loading_reversed", format!(
             "the deformation decreased {} s after the first touch or sample, before any yield: unloading, or a controller that oscillates; what follows is not used",
             plain(curve.loading_end.time - curve.times[0])
+        )),
+        LoadingEnd::Hold => tell("loading_held", format!(
+            "the position is held from {} s on and the force falls: loading ends there, before any yield; kind = \"relaxation\" in [rig] evaluates the hold",
+            plain(curve.loading_end.time)
         )),
         LoadingEnd::RecordingEnd => tell("no_yield", "the recording ends before the force ceases to increase: there is no bioyield point in it".to_owned()),
         LoadingEnd::Rupture | LoadingEnd::Bioyield => {}

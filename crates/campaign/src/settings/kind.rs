@@ -20,6 +20,8 @@ pub enum CampaignKind {
     Impacts,
     /// Slow compressions in a testing machine.
     Compression,
+    /// Force while a fruit is held at a deformation.
+    Relaxation,
     /// Taps, for acoustic firmness.
     Acoustic,
     /// Impacts repeated on one spot, for the critical impact energy.
@@ -34,6 +36,7 @@ impl CampaignKind {
         match self {
             Self::Impacts => "impacts",
             Self::Compression => "compression",
+            Self::Relaxation => "relaxation",
             Self::Acoustic => "acoustic",
             Self::Repeats => "repeats",
             Self::Drop => "drop",
@@ -53,11 +56,12 @@ struct RigKindFile {
 }
 
 /// Words of `[rig] kind`.
-const KINDS: [(&str, CampaignKind); 6] = [
+const KINDS: [(&str, CampaignKind); 7] = [
     ("pendulum", CampaignKind::Impacts),
     ("carriage", CampaignKind::Impacts),
     ("drop", CampaignKind::Drop),
     ("compression", CampaignKind::Compression),
+    ("relaxation", CampaignKind::Relaxation),
     ("acoustic", CampaignKind::Acoustic),
     ("repeats", CampaignKind::Repeats),
 ];

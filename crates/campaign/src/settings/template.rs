@@ -14,6 +14,8 @@ pub enum TemplateKind {
     Carriage,
     /// Testing machine that compresses fruit slowly.
     Compression,
+    /// Testing machine that compresses fruit and holds them.
+    Relaxation,
     /// Microphone that records taps.
     Acoustic,
     /// Drops repeated on one spot.
@@ -23,11 +25,12 @@ pub enum TemplateKind {
 }
 
 /// Words for the templates of campaigns.
-pub const TEMPLATES: [(&str, TemplateKind); 6] = [
+pub const TEMPLATES: [(&str, TemplateKind); 7] = [
     ("pendulum", TemplateKind::Pendulum),
     ("carriage", TemplateKind::Carriage),
     ("drop", TemplateKind::Drop),
     ("compression", TemplateKind::Compression),
+    ("relaxation", TemplateKind::Relaxation),
     ("acoustic", TemplateKind::Acoustic),
     ("repeats", TemplateKind::Repeats),
 ];
@@ -80,7 +83,9 @@ pub fn is_template_file(path: &Path) -> bool {
 /// The tables of specimens and of recordings of a rig.
 fn tables(kind: TemplateKind) -> (&'static str, &'static str) {
     match kind {
-        TemplateKind::Pendulum | TemplateKind::Carriage => (SPECIMENS, IMPACTS),
+        TemplateKind::Pendulum | TemplateKind::Carriage | TemplateKind::Relaxation => {
+            (SPECIMENS, IMPACTS)
+        }
         TemplateKind::Compression => (COMPRESSED, IMPACTS),
         TemplateKind::Acoustic => (SPECIMENS, TAPPED),
         TemplateKind::Repeats => (STRUCK, DROPS),
@@ -94,6 +99,7 @@ pub fn template(kind: TemplateKind) -> &'static str {
         TemplateKind::Pendulum => include_str!("../../templates/pendulum.toml"),
         TemplateKind::Carriage => include_str!("../../templates/carriage.toml"),
         TemplateKind::Compression => include_str!("../../templates/compression.toml"),
+        TemplateKind::Relaxation => include_str!("../../templates/relaxation.toml"),
         TemplateKind::Acoustic => include_str!("../../templates/acoustic.toml"),
         TemplateKind::Repeats => include_str!("../../templates/repeats.toml"),
         TemplateKind::Drop => include_str!("../../templates/drop.toml"),

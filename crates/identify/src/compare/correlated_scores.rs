@@ -55,11 +55,14 @@ pub(crate) type Square = [[f64; LARGEST_PARAMETERS]; LARGEST_PARAMETERS];
 
 /// A covariance with variances not below those given: in a short curve the
 /// sum over lags is itself uncertain, and more often too small.
-pub(crate) fn at_least(mut covariance: Square, variance: impl Fn(usize) -> f64) -> Square {
-    for i in 0..LARGEST_PARAMETERS {
+pub(crate) fn at_least<const N: usize>(
+    mut covariance: [[f64; N]; N],
+    variance: impl Fn(usize) -> f64,
+) -> [[f64; N]; N] {
+    for i in 0..N {
         let factor = (variance(i) / covariance[i][i]).sqrt();
         if factor > 1.0 && factor.is_finite() {
-            for j in 0..LARGEST_PARAMETERS {
+            for j in 0..N {
                 covariance[i][j] *= factor;
                 covariance[j][i] *= factor;
             }
@@ -69,11 +72,14 @@ pub(crate) fn at_least(mut covariance: Square, variance: impl Fn(usize) -> f64) 
 }
 
 /// bread⁻¹ over the free parameters; `None` when singular.
-pub(crate) fn inverse_of_free(bread: &Square, free: &[usize]) -> Option<Square> {
+pub(crate) fn inverse_of_free<const N: usize>(
+    bread: &[[f64; N]; N],
+    free: &[usize],
+) -> Option<[[f64; N]; N]> {
     let mut filled = *bread;
-    for i in 0..LARGEST_PARAMETERS {
+    for i in 0..N {
         if !free.contains(&i) {
-            filled[i] = [0.0; LARGEST_PARAMETERS];
+            filled[i] = [0.0; N];
             for row in &mut filled {
                 row[i] = 0.0;
             }
@@ -84,16 +90,16 @@ pub(crate) fn inverse_of_free(bread: &Square, free: &[usize]) -> Option<Square> 
 }
 
 /// bread⁻¹ meat bread⁻¹ over the free parameters; `None` when singular.
-pub(crate) fn sandwich(
-    bread: &Square,
-    meat: &Square,
+pub(crate) fn sandwich<const N: usize>(
+    bread: &[[f64; N]; N],
+    meat: &[[f64; N]; N],
     free: &[usize],
     scale: f64,
-) -> Option<Square> {
+) -> Option<[[f64; N]; N]> {
     let inverse = inverse_of_free(bread, free)?;
-    let mut out = [[0.0; LARGEST_PARAMETERS]; LARGEST_PARAMETERS];
-    for i in 0..LARGEST_PARAMETERS {
-        for j in 0..LARGEST_PARAMETERS {
+    let mut out = [[0.0; N]; N];
+    for i in 0..N {
+        for j in 0..N {
             for a in free {
                 for b in free {
                     out[i][j] += scale * inverse[i][*a] * meat[*a][*b] * inverse[*b][j];

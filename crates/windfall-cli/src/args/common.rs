@@ -157,6 +157,8 @@ pub enum NewKind {
     Carriage,
     /// Slow compression in a testing machine or a gripper
     Compression,
+    /// Compression to a deformation that is held: stress relaxation
+    Relaxation,
     /// Taps recorded by a microphone: acoustic firmness
     Acoustic,
     /// Drops repeated on one spot, for the critical impact energy

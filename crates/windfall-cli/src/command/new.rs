@@ -18,6 +18,7 @@ pub fn run(arguments: &NewArguments) -> anyhow::Result<()> {
         NewKind::Pendulum => Some(TemplateKind::Pendulum),
         NewKind::Carriage => Some(TemplateKind::Carriage),
         NewKind::Compression => Some(TemplateKind::Compression),
+        NewKind::Relaxation => Some(TemplateKind::Relaxation),
         NewKind::Acoustic => Some(TemplateKind::Acoustic),
         NewKind::Repeats => Some(TemplateKind::Repeats),
         NewKind::Drop => Some(TemplateKind::Drop),

@@ -1,0 +1,6 @@
+//! Models of stress relaxation, fitted to the force while the position is held.
+
+mod curve;
+pub mod maxwell;
+pub mod peleg;
+pub mod ramp;
