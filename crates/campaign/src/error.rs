@@ -136,7 +136,7 @@ pub enum CampaignError {
     },
     /// An impact on a specimen that specimens.csv does not list.
     #[error(
-        "{place}: the specimen \"{specimen}\" is not in specimens.csv{nearest}; add it there or correct the id"
+        "{place}: the specimen \"{specimen}\" is not in specimens.csv; add it there or correct the id{nearest}"
     )]
     SpecimenUnknown {
         /// Where.

@@ -45,10 +45,12 @@ pub enum Error {
     )]
     RecordingsElsewhere,
     /// No impact of that id.
-    #[error("impacts.csv has no impact \"{id}\"")]
+    #[error("impacts.csv has no impact \"{id}\"{known}")]
     ImpactUnknown {
         /// The id.
         id: String,
+        /// Those that there are, for the message, as [`crate::text::known_names::known_names`].
+        known: String,
     },
     /// No campaign of that name.
     #[error("there is no campaign \"{id}\" here")]
@@ -140,7 +142,7 @@ pub enum Error {
         column: String,
         /// Who asks, for the message: " (asked for by [channels.force])" or "".
         asked_by: String,
-        /// The columns with the most similar names, best first.
+        /// The columns, those with the most similar names first; not all of many.
         nearest: Vec<String>,
         /// How many columns the file has.
         columns: usize,

@@ -26,15 +26,12 @@ pub(crate) fn what_to_do(action: &str, source: &std::io::Error) -> &'static str 
     }
 }
 
+/// The columns of a file, of many the first that are named.
 pub(crate) fn nearest_columns(nearest: &[String], columns: usize) -> String {
-    match nearest {
-        [] => format!("the header has {columns} columns"),
-        some => format!(
-            "nearest in the header: {} ({columns} columns in all)",
-            some.iter()
-                .map(|name| format!("\"{name}\""))
-                .collect::<Vec<_>>()
-                .join(", ")
-        ),
+    let names: Vec<String> = nearest.iter().map(|name| format!("\"{name}\"")).collect();
+    match names.len() {
+        0 => format!("the header has {columns} columns"),
+        all if all == columns => format!("the columns are {}", names.join(", ")),
+        _ => format!("the nearest of {columns} columns are {}", names.join(", ")),
     }
 }

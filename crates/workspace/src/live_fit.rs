@@ -17,6 +17,7 @@ use windfall_campaign::settings::read::read_campaign;
 use windfall_files::error::Error;
 use windfall_files::found::FindingOutcome;
 use windfall_files::named::Named;
+use windfall_files::text::known_names::known_names;
 use windfall_files::text::quote::path_word;
 use windfall_identify::fit::interval::IntervalMethod;
 use windfall_identify::rig::simulate::Trajectory;
@@ -135,8 +136,12 @@ impl LiveCampaign {
 
     fn entry(&self, id: &str) -> Result<&ImpactEntry, Error> {
         let mut entries = self.campaign.shared.entries.iter();
+        let names = entries.clone().map(|entry| entry.id.as_str());
         let entry = entries.find(|entry| entry.id == id);
-        entry.ok_or_else(|| Error::ImpactUnknown { id: id.to_owned() })
+        entry.ok_or_else(|| Error::ImpactUnknown {
+            id: id.to_owned(),
+            known: known_names(id, names),
+        })
     }
 
     /// Where the recording of one of its impacts is.

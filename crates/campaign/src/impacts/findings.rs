@@ -4,7 +4,7 @@ use crate::result::outcome::CampaignOutcome;
 use itertools::Itertools;
 use windfall_files::found::FindingOutcome;
 use windfall_files::named::grouped;
-use windfall_files::text::table::{failures_list, findings_list};
+use windfall_files::text::table::{failures_list, findings_list, of_impacts};
 
 /// What a reader of the results must know, and what was left out.
 pub fn findings_text(outcome: &CampaignOutcome) -> String {
@@ -15,19 +15,17 @@ pub fn findings_text(outcome: &CampaignOutcome) -> String {
 /// Findings of the whole, then one of each kind on impacts, with how many share it.
 pub fn findings_once(outcome: &CampaignOutcome) -> Vec<FindingOutcome> {
     let mut findings = outcome.findings.clone();
-    findings.extend(kinds(outcome).into_iter().map(|(finding, first, impacts)| {
-        let more = match impacts {
-            1 => String::new(),
-            n if n == outcome.impacts.len() => " (all have one of this kind)".to_owned(),
-            n => format!(" (and {} more of this kind)", n - 1),
-        };
-        FindingOutcome::new(&finding.code, format!("{first}: {}{more}", finding.message))
+    findings.extend(kinds(outcome).into_iter().map(|(finding, impacts)| {
+        FindingOutcome::new(
+            &finding.code,
+            of_impacts(&finding.message, &impacts, outcome.impacts.len()),
+        )
     }));
     findings
 }
 
-/// The first finding of each kind, its impact, and how many impacts have one.
-fn kinds(outcome: &CampaignOutcome) -> Vec<(&FindingOutcome, &str, usize)> {
+/// The first finding of each kind, and the impacts that have one.
+fn kinds(outcome: &CampaignOutcome) -> Vec<(&FindingOutcome, Vec<&str>)> {
     let found = outcome.impacts.iter().flat_map(|impact| {
         let all = impact.findings.iter().chain(&impact.left_out);
         let own = all.unique_by(|finding| &finding.code);
@@ -35,6 +33,6 @@ fn kinds(outcome: &CampaignOutcome) -> Vec<(&FindingOutcome, &str, usize)> {
     });
     let kinds = grouped(found).into_iter();
     kinds
-        .map(|(_, all)| (all[0].0, all[0].1, all.len()))
+        .map(|(_, all)| (all[0].0, all.iter().map(|(_, id)| *id).collect()))
         .collect()
 }

@@ -12,7 +12,7 @@ use windfall_files::named::grouped;
 use windfall_files::table::write::{csv_text, number_cell};
 use windfall_files::text::number::{spread_percent, value_and_sd};
 use windfall_files::text::table::{
-    Cells, failures_list, findings_list, header_of, page_tables, title_lines,
+    Cells, failures_list, findings_list, header_of, of_impacts, page_tables, title_lines,
 };
 
 /// More results than this are shown as groups only.
@@ -199,17 +199,11 @@ pub fn findings_of_measured(outcome: &MeasuredOutcome) -> Vec<FindingOutcome> {
         findings.map(|finding| (&finding.code, (finding, item.id.as_str())))
     });
     for (_, kind) in grouped(all) {
-        let (finding, first) = kind[0];
-        let others: Vec<&str> = kind.iter().map(|(_, id)| *id).unique().skip(1).collect();
-        let more = match others.len() {
-            0 => String::new(),
-            1..=5 => format!(" (also {})", others.join(", ")),
-            n => format!(" (and {n} more of this kind)"),
-        };
-        found.push(FindingOutcome::new(
-            &finding.code,
-            format!("{first}: {}{more}", finding.message),
-        ));
+        let (finding, _) = kind[0];
+        let names: Vec<&str> = kind.iter().map(|(_, id)| *id).unique().collect();
+        // Items of the whole and of specimens stand beside those of recordings.
+        let message = of_impacts(&finding.message, &names, usize::MAX);
+        found.push(FindingOutcome::new(&finding.code, message));
     }
     found
 }

@@ -2,8 +2,8 @@
 
 use std::path::Path;
 use windfall_files::error::Error;
+use windfall_files::text::known_names::told_names;
 use windfall_formats::contents::Contents;
-use windfall_numerics::unit::nearest_name::nearest_names;
 
 /// Position of a channel by its whole name, or by the part behind "/" if that is unique.
 ///
@@ -33,10 +33,7 @@ pub fn find_channel(
         path: path.to_path_buf(),
         column: name.to_owned(),
         asked_by: asked_by.to_owned(),
-        nearest: nearest_names(name, names())
-            .into_iter()
-            .map(str::to_owned)
-            .collect(),
+        nearest: told_names(name, names()),
         columns: contents.channels.len(),
     })
 }

@@ -6,6 +6,7 @@ use std::path::Path;
 use windfall_files::error::Error;
 use windfall_files::table::csv::{column_index, read_table, separator_of};
 use windfall_files::table::write::{csv_line, guarded};
+use windfall_files::text::known_names::known_names;
 
 /// The text of a table with cells of one row set; columns that it lacks are added.
 ///
@@ -18,7 +19,11 @@ pub fn set_cells(path: &Path, id: &str, cells: &[(&str, String)]) -> Result<Stri
     let table = read_table(path)?;
     let ids = column_index(&table, "id")?;
     let Some(row) = table.rows.iter().position(|row| row.cells[ids] == id) else {
-        return Err(Error::ImpactUnknown { id: id.to_owned() });
+        let names = table.rows.iter().map(|row| row.cells[ids].as_str());
+        return Err(Error::ImpactUnknown {
+            id: id.to_owned(),
+            known: known_names(id, names),
+        });
     };
     // A column that would be blank in every row is not added.
     let present = |name: &str| text.columns.iter().any(|column| column == name);

@@ -6,7 +6,7 @@ use std::path::Path;
 use windfall_files::error::{Error, Place};
 use windfall_files::inputs::check_regular;
 use windfall_files::table::csv::{Row, Table, column_index, read_table};
-use windfall_files::text::toml_source::suggestion;
+use windfall_files::text::known_names::known_names;
 
 /// Columns of impacts.csv that bound the part of the recording to use; s.
 const RANGE_COLUMNS: [&str; 2] = ["from_s", "to_s"];
@@ -57,7 +57,7 @@ pub fn read_impacts(
                 return Err(Error::from(CampaignError::SpecimenUnknown {
                     place: place(&table, row),
                     specimen: row.cells[specimen].clone(),
-                    nearest: suggestion(&row.cells[specimen], known.iter().map(|s| s.id.as_str())),
+                    nearest: known_names(&row.cells[specimen], known.iter().map(|s| s.id.as_str())),
                 }));
             }
             Ok(ImpactEntry {
@@ -200,7 +200,7 @@ mod tests {
     fn rejects_unknown_specimen_and_blank_cells() {
         assert_eq!(
             message(impacts("id,specimen,file\ni1,aple1,r.csv\n", &["apple1"])),
-            ", line 2: the specimen \"aple1\" is not in specimens.csv (did you mean \"apple1\"?); add it there or correct the id"
+            ", line 2: the specimen \"aple1\" is not in specimens.csv; add it there or correct the id; there is only \"apple1\""
         );
         assert_eq!(
             message(impacts("id,specimen,file\ni1,a,\n", &["a"])),
@@ -208,7 +208,7 @@ mod tests {
         );
         assert_eq!(
             message(impacts("id,specimens,file\ni1,a,r.csv\n", &["a"])),
-            ": there is no column \"specimen\"; nearest in the header: \"specimens\" (3 columns in all)"
+            ": there is no column \"specimen\"; the columns are \"specimens\", \"id\", \"file\""
         );
     }
 }

@@ -8,11 +8,11 @@
 use crate::error::{Error, Place};
 use crate::inputs::{check_piped, protect};
 use crate::table::write::plain_cell;
+use crate::text::known_names::told_names;
 use std::fs::File;
 use std::io::{BufRead, BufReader, Cursor, Read};
 use std::path::{Path, PathBuf};
 use windfall_formats::text::encoding::{Encoding, tell_encoding};
-use windfall_numerics::unit::nearest_name::nearest_names;
 use windfall_source::stream::{is_stream, stream_bytes};
 
 /// A table of text, as specimens.csv and impacts.csv are.
@@ -248,10 +248,7 @@ fn index_of(path: &Path, columns: &[String], column: &str, by: &str) -> Result<u
             path: path.to_path_buf(),
             column: column.to_owned(),
             asked_by: by.to_owned(),
-            nearest: nearest_names(column, columns.iter().map(String::as_str))
-                .into_iter()
-                .map(str::to_owned)
-                .collect(),
+            nearest: told_names(column, columns.iter().map(String::as_str)),
             columns: columns.len(),
         })
 }

@@ -1,6 +1,8 @@
 //! Aligned tables for a terminal, none wider than a page.
 
 use crate::found::{FailureOutcome, FindingOutcome};
+use crate::named::grouped;
+use crate::text::known_names::few_names;
 use comfy_table::{CellAlignment, ContentArrangement, LineStyle, Table, TableStyle};
 
 /// Widest line of a table or a paragraph; characters.
@@ -100,18 +102,56 @@ pub fn title_lines(campaign: &str, simulated: Option<&str>) -> String {
     lines.map(|line| paragraph(line, 2) + "\n").collect()
 }
 
-/// A line for each recording that has no result, and why.
+/// The message of the first of several impacts that say the same, with how many do and who
+/// they are.
+///
+/// * `all`: impacts that there are
+pub fn of_impacts(message: &str, ids: &[&str], all: usize) -> String {
+    match ids {
+        [] => message.to_owned(),
+        [only] => format!("{only}: {message}"),
+        [first, ..] if ids.len() == all => {
+            format!("{first}: {message} (all have one of this kind)")
+        }
+        [first, second] => format!("{first}: {message} (so has {second})"),
+        [first, second, third] => format!("{first}: {message} (so have {second} and {third})"),
+        [first, second, third, others @ ..] => {
+            let more = others.len();
+            format!("{first}: {message} (so have {second}, {third} and {more} more)")
+        }
+    }
+}
+
+/// A line for each cause why recordings have no result, with how many share it, and what was
+/// found out before.
 pub fn failures_list(what: &str, failures: &[FailureOutcome], indent: usize) -> String {
+    let causes = grouped(failures.iter().map(|failure| (cause(failure), failure)));
     let mut text = String::new();
-    for failure in failures {
-        let line = format!("{what}: {}: {}", failure.id, failure.message);
+    for (_, all) in causes {
+        let ids: Vec<&str> = all.iter().map(|failure| failure.id.as_str()).collect();
+        let many = match ids.len() {
+            1 => String::new(),
+            several => format!("{several} recordings, "),
+        };
+        let line = format!("{what}: {many}{}: {}", few_names(&ids), all[0].message);
         text += &(paragraph(&line, indent) + "\n");
-        for finding in &failure.findings {
+        // Those of the first stand for all.
+        for finding in &all[0].findings {
             let line = format!("    {}: {}", finding.code, finding.message);
             text += &(paragraph(&line, indent + 4) + "\n");
         }
     }
     text
+}
+
+/// A message without what differs between recordings: their names and numbers.
+fn cause(failure: &FailureOutcome) -> String {
+    let named = failure.message.replace(&failure.file, "");
+    let named = named.replace(&failure.id, "");
+    named
+        .chars()
+        .filter(|c| !c.is_ascii_digit() && !"+-.".contains(*c))
+        .collect()
 }
 
 /// Findings as a list.
@@ -143,6 +183,40 @@ mod tests {
         assert!(text.lines().all(|line| line.chars().count() <= PAGE));
         assert_eq!(text.matches("first").count(), 2);
         assert_eq!(text.matches(&wide).count(), 3);
+    }
+
+    #[test]
+    fn closed_form_one_line_for_a_cause() {
+        let failure = |id: &str, message: &str| FailureOutcome {
+            id: id.to_owned(),
+            specimen: "s".to_owned(),
+            file: format!("{id}.csv"),
+            law: None,
+            message: message.to_owned(),
+        };
+        let failures = [
+            failure("a1", "raw/a1.csv: the largest value is 0.31 N"),
+            failure("a2", "raw/a2.csv: no column \"force\""),
+            failure("a3", "raw/a3.csv: the largest value is -2 N"),
+            failure("b", "raw/b.csv: the largest value is 12 N"),
+            failure("c", "raw/c.csv: the largest value is 1 N"),
+        ];
+        assert_eq!(
+            failures_list("not fitted", &failures, 4),
+            "not fitted: 4 recordings, a1, a3, b and 1 more: raw/a1.csv: the largest value is 0.31 N\n\
+             not fitted: a2: raw/a2.csv: no column \"force\"\n"
+        );
+        let said = |ids: &[&str]| of_impacts("odd", ids, 9);
+        assert_eq!(said(&["a"]), "a: odd");
+        assert_eq!(said(&["a", "b", "c"]), "a: odd (so have b and c)");
+        assert_eq!(
+            said(&["a", "b", "c", "d", "e"]),
+            "a: odd (so have b, c and 2 more)"
+        );
+        assert_eq!(
+            of_impacts("odd", &["a", "b"], 2),
+            "a: odd (all have one of this kind)"
+        );
     }
 
     #[test]

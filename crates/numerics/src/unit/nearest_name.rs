@@ -30,6 +30,24 @@ pub fn nearest_names<'a>(
     found.into_iter().take(3).map(|(_, name)| name).collect()
 }
 
+/// All candidates, those that differ least from `word` first, the others in their order.
+///
+/// # Example
+/// ```
+/// use windfall_numerics::unit::nearest_name::names_nearest_first;
+/// assert_eq!(names_nearest_first("Forse", ["time", "force"]), ["force", "time"]);
+/// ```
+pub fn names_nearest_first<'a>(
+    word: &str,
+    candidates: impl IntoIterator<Item = &'a str>,
+) -> Vec<&'a str> {
+    let all: Vec<&str> = candidates.into_iter().collect();
+    let mut names = nearest_names(word, all.iter().copied());
+    let others: Vec<&str> = all.into_iter().filter(|own| !names.contains(own)).collect();
+    names.extend(others);
+    names
+}
+
 /// Letters that are compared.
 fn folded(word: &str) -> Vec<char> {
     word.chars()
