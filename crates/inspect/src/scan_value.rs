@@ -10,8 +10,8 @@ pub const CLIPPED_RUN: u64 = 4;
 /// Distinct values up to which a channel is a logic level, never clipped.
 const LOGIC_LEVELS: usize = 3;
 
-/// Fewest samples among which a spike can be told.
-const LEAST_FOR_SPIKES: u64 = 50;
+/// Fewest samples among which a spike, or a level of rest, can be told.
+const LEAST_TOLD: u64 = 50;
 
 /// Part of the steps between samples that counts as usual.
 const USUAL_STEPS: f64 = 0.99;
@@ -205,7 +205,7 @@ impl ValueScan {
         let far = (high - middle).max(middle - low);
         let extremes = [(low, self.run_at_smallest), (high, self.run_at_largest)];
         let clips = |(value, run): &(f64, u64)| {
-            let rests = (value - middle).abs() <= RESTS * far;
+            let rests = self.samples >= LEAST_TOLD && (value - middle).abs() <= RESTS * far;
             *run >= CLIPPED_RUN && *value != 0.0 && !rests
         };
         extremes.into_iter().find(clips)
@@ -213,7 +213,7 @@ impl ValueScan {
 
     /// Samples far from both neighbours, against what the channel usually does.
     pub fn spikes(&self) -> Option<Spikes> {
-        if self.samples < LEAST_FOR_SPIKES {
+        if self.samples < LEAST_TOLD {
             return None;
         }
         let usual = self.steps.quantile(USUAL_STEPS, STEPS_OF_SPIKES)?;
@@ -261,7 +261,7 @@ mod tests {
         let values = [1.0, 2.0, 3.0, 9.0, f64::NAN, 9.0, 9.0, 9.0, 0.5];
         assert_eq!(scan(&values, 2).clipped(), Some((9.0, 4)));
         // Rest at an extreme, and flight at zero.
-        let mut values = vec![1.3; 20];
+        let mut values = vec![1.3; 60];
         values.extend([1.2, 0.0, -2.0, -3.0, -1.0, 1.1]);
         assert_eq!(scan(&values, 4).clipped(), None);
         let values = [4.0, 4.1, 4.2, 0.0, 0.0, 0.0, 0.0, 0.0, 6.0, 9.0, 4.0, 4.1];

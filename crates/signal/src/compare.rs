@@ -18,7 +18,7 @@ const DISAGREES: f64 = 0.05;
 const SIGNIFICANT: f64 = 3.0;
 
 /// Delay and gain of the force are told from this many on, as every impact has them; 1.
-const CLEAR: f64 = 4.0;
+const CLEAR: f64 = 3.0;
 
 /// Disagreement of energies that is told, as a part of the impact energy; 1.
 const MISMATCH: f64 = 0.1;
@@ -27,7 +27,7 @@ const MISMATCH: f64 = 0.1;
 const LATE: f64 = 1e-3;
 
 /// Departure of the force from mass times acceleration that is told; 1.
-const GAIN: f64 = 0.01;
+const GAIN: f64 = 0.005;
 
 /// Root mean square between two channels of one motion that is told, as a part of the largest
 /// displacement; 1.

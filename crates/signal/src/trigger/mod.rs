@@ -294,17 +294,7 @@ pub fn find_contacts(signal: &Signal, options: &TriggerOptions) -> Result<Contac
     } else {
         n
     };
-    let mut contacts = Contacts {
-        windows: Vec::new(),
-        threshold: 0.0,
-        offset: 0.0,
-        deviation: 0.0,
-        before: 0,
-        quiet: 0..0,
-        trend_sd: 0.0,
-        reversed,
-        smoothing,
-    };
+    let mut contacts = none_yet(reversed, smoothing);
     let mut rise = signal.times[top] - signal.times[before.min(top)];
     for first_pass in [true, false] {
         let height = averaged[top] - centre;
@@ -358,6 +348,21 @@ pub fn find_contacts(signal: &Signal, options: &TriggerOptions) -> Result<Contac
         before = signal.times.partition_point(|&t| t < until);
     }
     Ok(contacts)
+}
+
+/// No contacts, of a sign and a smoothing that are known.
+fn none_yet(reversed: bool, smoothing: usize) -> Contacts {
+    Contacts {
+        windows: Vec::new(),
+        threshold: 0.0,
+        offset: 0.0,
+        deviation: 0.0,
+        before: 0,
+        quiet: 0..0,
+        trend_sd: 0.0,
+        reversed,
+        smoothing,
+    }
 }
 
 /// The threshold above the baseline; N.
