@@ -167,7 +167,7 @@ fn rejects_what_is_no_hold() {
         ("elements = 4", "expected 1, 2 or 3"),
         ("exponent = 0.5", "a number from 1 to 5"),
         ("ramp = \"0.5 mm\"", "ramp"),
-        ("element = 2", "unknown"),
+        ("element = 2", "there is no key"),
     ] {
         let text = whole.replace("[relaxation]\n", &format!("[relaxation]\n{line}\n"));
         std::fs::write(&file, text).unwrap();

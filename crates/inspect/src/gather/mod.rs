@@ -5,5 +5,6 @@ pub mod add;
 pub mod channels;
 pub mod names;
 pub mod new;
+pub mod preset;
 pub mod text;
 pub mod watch;

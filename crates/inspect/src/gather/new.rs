@@ -2,7 +2,8 @@
 
 use crate::gather::channels::campaign_text;
 use crate::gather::names::{NamePattern, NamedRecording};
-use crate::run::{InspectRequest, inspect_recording};
+use crate::gather::preset::{Preset, inspect_by};
+use crate::run::InspectRequest;
 use itertools::Itertools;
 use serde::Serialize;
 use std::path::{Path, PathBuf};
@@ -36,6 +37,7 @@ pub struct Gathered {
 /// Makes a campaign of the recordings in a folder, which are copied.
 ///
 /// * `names`: pattern of their names; without one, each file has a specimen of its own
+/// * `preset`: what their columns are called, where that is known
 ///
 /// # Errors
 /// There is something in the directory already; no file of the folder is of the pattern; the
@@ -45,6 +47,7 @@ pub fn gather(
     directory: &Path,
     from: &Path,
     names: Option<&str>,
+    preset: Option<&Preset>,
 ) -> Result<Gathered, Error> {
     let files = files_in(from)?;
     let pattern = match names {
@@ -71,7 +74,7 @@ pub fn gather(
         );
         return Err(unusable(format!("--names {}", pattern.text()), problem));
     };
-    let seen = inspect_recording(first, &InspectRequest::default())?;
+    let seen = inspect_by(first, &InspectRequest::default(), preset)?;
     gathered.assumed.extend(other_columns(first, &recordings));
     let group = recordings[0].1.of_specimen.iter().map(|(name, _)| name);
     let group = group
