@@ -21,9 +21,10 @@ const TO_SCOPE_CSV: &str = "save the waveform as CSV on the oscilloscope";
 const TO_WAV: &str = "convert it to WAV, for example: ffmpeg -i FILE recording.wav";
 const LOSSY: &str = "compressed sound has lost what a fit needs; record as WAV";
 const FROM_OLD_OFFICE: &str = "save it as .xlsx, or save the sheet with the samples as CSV";
-const FROM_MDF: &str = "convert it with asammdf (free; in Python: \
-                        asammdf.MDF(\"FILE\").export(\"csv\", \"recording.csv\"), or \"mat\", \"hdf5\"), or \
-                        export it as MAT or CSV in the program that recorded it";
+const FROM_MDF: &str = "convert it with asammdf (free; in Python: asammdf.MDF(\"FILE\")\
+                        .export(\"csv\", \"recording.csv\", add_units=True), which writes a file for \
+                        each group of channels), or export it as MAT or CSV in the program that \
+                        recorded it";
 const FROM_PARQUET: &str = "save it as CSV, in Python: \
                             pandas.read_parquet(\"FILE\").to_csv(\"recording.csv\", index=False)";
 

@@ -328,3 +328,47 @@ fn rejects_to_guess_between_two_columns_of_one_unit() {
     let (status, _, told) = windfall(&["fit", "new"], folder);
     assert_eq!(status, Some(2), "{told}");
 }
+
+/// With a preset the columns are those of the program, not the first that could be: here the
+/// travel, not the crosshead. The columns are those of an export of testXpert, the numbers our own.
+#[test]
+fn reference_columns_by_a_preset() {
+    let folder = tempfile::tempdir().unwrap();
+    let from = folder.path().join("exports");
+    std::fs::create_dir(&from).unwrap();
+    let mut text = "\"Section\",6,\"mm\"\n\"Temps\",\"Traverse absolue\",\"Force standard\",\
+                    \"Course standard\"\n\"s\",\"mm\",\"N\",\"mm\"\n"
+        .to_owned();
+    for i in 0..50 {
+        let x = 0.01 * f64::from(i);
+        text += &format!("{:.2},{:.3},{:.3},{x:.3}\n", x, x - 70.0, 100.0 * x);
+    }
+    std::fs::write(from.join("a.TRA"), text).unwrap();
+    let made = |preset: &[&str], name: &str| {
+        let directory = folder.path().join(name);
+        let mut command = assert_cmd::Command::cargo_bin("windfall").unwrap();
+        command.args(["new", "compression"]).arg(&directory);
+        command.arg("--from").arg(&from).args(preset);
+        let output = command.output().unwrap();
+        let error = String::from_utf8(output.stderr).unwrap();
+        let file = std::fs::read_to_string(directory.join("campaign.toml"));
+        (file.unwrap_or_default(), error)
+    };
+    let (guessed, _) = made(&[], "guessed");
+    assert!(
+        guessed.contains("column = \"Traverse absolue\""),
+        "{guessed}"
+    );
+    let (told, _) = made(&["--preset", "zwick-roell"], "told");
+    assert!(
+        told.contains("column = \"Course standard\"")
+            && told.contains("column = \"Force standard\"")
+    );
+    assert!(!told.contains("Traverse absolue"), "{told}");
+    let (_, error) = made(&["--preset", "zwick"], "wrong");
+    assert!(error.contains("zwick-roell"), "{error}");
+    let mut command = assert_cmd::Command::cargo_bin("windfall").unwrap();
+    let listed = command.args(["inspect", "--presets"]).output().unwrap();
+    let listed = String::from_utf8(listed.stdout).unwrap();
+    assert!(listed.contains("a-hilhorst/Tensile-test-Analysis") && listed.contains("MIT"));
+}

@@ -6,6 +6,7 @@ pub mod channels;
 mod folder;
 pub mod names;
 pub mod new;
+pub mod preset;
 mod rows;
 pub mod text;
 pub mod watch;

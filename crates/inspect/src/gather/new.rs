@@ -3,8 +3,9 @@
 use crate::gather::channels::{campaign_text, remarks};
 use crate::gather::folder::{files_in, name_of};
 use crate::gather::names::{NamePattern, NamedRecording};
+use crate::gather::preset::{Preset, inspect_by};
 use crate::gather::rows::{ImpactRow, Rows};
-use crate::run::{InspectRequest, inspect_recording};
+use crate::run::InspectRequest;
 use itertools::Itertools;
 use serde::Serialize;
 use std::collections::BTreeSet;
@@ -41,6 +42,7 @@ pub struct Gathered {
 /// Makes a campaign of the recordings in a folder, which are copied.
 ///
 /// * `names`: pattern of their names; without one, each file has a specimen of its own
+/// * `preset`: what their columns are called, where that is known
 ///
 /// # Errors
 /// There is something in the directory already; no file of the folder is of the pattern; the
@@ -50,6 +52,7 @@ pub fn gather(
     directory: &Path,
     from: &Path,
     names: Option<&str>,
+    preset: Option<&Preset>,
 ) -> Result<Gathered, Error> {
     let files = files_in(from)?;
     let pattern = match names {
@@ -76,7 +79,7 @@ pub fn gather(
         );
         return Err(unusable(format!("--names {}", pattern.text()), problem));
     };
-    let seen = inspect_recording(first, &InspectRequest::default())?;
+    let seen = inspect_by(first, &InspectRequest::default(), preset)?;
     gathered.assumed.extend(other_columns(first, &recordings));
     let group = recordings[0].1.of_specimen.iter().map(|(name, _)| name);
     let group = group

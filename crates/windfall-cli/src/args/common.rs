@@ -123,6 +123,10 @@ pub struct NewArguments {
     /// What the names of the recordings say, such as '{variety}_f{fruit}_{height_mm}mm_{rep}.csv'
     #[arg(long, value_name = "PATTERN", requires = "from")]
     pub names: Option<String>,
+    /// Program that wrote the recordings, which says what their columns are called;
+    /// `windfall inspect --presets` lists them
+    #[arg(long, value_name = "NAME", requires = "from")]
+    pub preset: Option<String>,
     /// How the list of written files is shown
     #[arg(long, value_enum, default_value_t)]
     pub format: Format,
@@ -198,8 +202,14 @@ Formats: text (CSV and relatives), LVM, TDMS, MAT (4 to 7.3), HDF5, WAV, UFF58 a
 xlsx, ods, npy and npz, zip of CSV; found out from the first bytes of the file.")]
 pub struct InspectArguments {
     /// Recordings of any format
-    #[arg(required = true, value_hint = ValueHint::FilePath)]
+    #[arg(required_unless_present = "presets", value_hint = ValueHint::FilePath)]
     pub files: Vec<PathBuf>,
+    /// Program that wrote the recordings, which says what their columns are called
+    #[arg(long, value_name = "NAME")]
+    pub preset: Option<String>,
+    /// List the presets, with the exports that they were made from
+    #[arg(long, conflicts_with_all = ["files", "preset"])]
+    pub presets: bool,
     /// Show only this channel; may be repeated
     #[arg(long = "channel", value_name = "NAME")]
     pub channels: Vec<String>,

@@ -2,11 +2,14 @@
 
 use crate::args::common::InspectArguments;
 use crate::args::format::Format;
-use crate::show::{message, write_json, write_result};
+use crate::show::{message, show, write_json, write_result};
 use windfall_files::expand::expanded;
 use windfall_files::option_value::unusable;
 use windfall_inspect::export::export_recording;
-use windfall_inspect::run::{InspectRequest, inspect_recording, write_figure};
+use windfall_inspect::gather::preset::{
+    csv_of_presets, inspect_by, preset_of, presets, text_of_presets,
+};
+use windfall_inspect::run::{InspectRequest, write_figure};
 use windfall_inspect::text::{csv_of_inspections, text_of_inspection};
 
 /// Width of a terminal that does not say.
@@ -14,6 +17,10 @@ const COLUMNS: usize = 80;
 
 /// Looks through every file; one that cannot be read does not stop the others.
 pub fn run(arguments: &InspectArguments) -> anyhow::Result<()> {
+    if arguments.presets {
+        return show_presets(arguments.format);
+    }
+    let preset = arguments.preset.as_deref().map(preset_of).transpose()?;
     let request = InspectRequest {
         open: arguments.open.clone(),
         channels: arguments.channels.clone(),
@@ -22,7 +29,7 @@ pub fn run(arguments: &InspectArguments) -> anyhow::Result<()> {
     let mut first_failure = None;
     let files = expanded(&arguments.files)?;
     for file in &files {
-        match inspect_recording(file, &request) {
+        match inspect_by(file, &request, preset.as_ref()) {
             Ok(inspection) => inspections.push(inspection),
             Err(error) => {
                 // The first failure is the command's own and is shown at the end.
@@ -54,4 +61,15 @@ pub fn run(arguments: &InspectArguments) -> anyhow::Result<()> {
         }
     }
     first_failure.map_or(Ok(()), |error| Err(error.into()))
+}
+
+/// Says which presets there are, and whose exports they were made from.
+fn show_presets(format: Format) -> anyhow::Result<()> {
+    let all = presets()?;
+    show(
+        format,
+        &all,
+        |all| text_of_presets(all),
+        |all| csv_of_presets(all),
+    )
 }

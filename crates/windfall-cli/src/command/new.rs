@@ -9,6 +9,7 @@ use windfall_campaign::settings::template::{
 use windfall_files::option_value::unusable;
 use windfall_files::text::quote::{command, path_word};
 use windfall_inspect::gather::new::gather;
+use windfall_inspect::gather::preset::preset_of;
 use windfall_inspect::gather::text::{csv_of_gathered, text_of_gathered};
 
 /// Writes a template and names the files.
@@ -30,7 +31,8 @@ pub fn run(arguments: &NewArguments) -> anyhow::Result<()> {
             let problem = "a scene has no recordings; name a kind of rig";
             return Err(unusable(format!("--from {}", from.display()), problem).into());
         };
-        let gathered = gather(kind, directory, from, names)?;
+        let preset = arguments.preset.as_deref().map(preset_of).transpose()?;
+        let gathered = gather(kind, directory, from, names, preset.as_ref())?;
         return match arguments.format {
             Format::Json => write_json(&gathered),
             Format::Csv => write_result(&csv_of_gathered(&gathered)?),
