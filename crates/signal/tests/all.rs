@@ -18,3 +18,4 @@ mod ringing;
 mod scipy_filters;
 mod spectrum;
 mod tap;
+mod uncertainties;
