@@ -49,7 +49,7 @@ pub enum Error {
     ImpactUnknown {
         /// The id.
         id: String,
-        /// Those that there are, for the message, as [`crate::text::known_names::known_names`].
+        /// Those that there are, for the message, as [`crate::known_names::known_names`].
         known: String,
     },
     /// No campaign of that name.

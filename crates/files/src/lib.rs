@@ -6,6 +6,7 @@ mod error_words;
 pub mod expand;
 pub mod found;
 pub mod inputs;
+pub mod known_names;
 pub mod named;
 pub mod on_threads;
 pub mod option_value;

@@ -12,18 +12,21 @@ use crate::impact::{Impact, Measured, Series};
 use crate::jump::jump;
 use crate::kinematics::{Motion, smoothing_window};
 use crate::measure::{
-    Side, Surroundings, Velocity, free_velocity, impulse, largest_displacement, with_energies,
+    Side, Surroundings, Velocity, free_velocity, impulse, largest_displacement,
+    largest_displacement_sd, with_energies,
 };
 use crate::noise_track::{baseline_persistence, force_noise, noise_of};
 use crate::options::{ExtractOptions, RateMethod};
 use crate::orient::{
     leave_out_glitches, mean_between, offset_sd, orient, oriented_displacement, oriented_force,
 };
-use crate::polynomial::local_polynomial;
+use crate::polynomial::{PolynomialFit, fit_polynomial, local_polynomial};
 use crate::rate::derived_rate;
 use crate::recording::Recording;
 use crate::track::{Signals, Track, Tracks, mean_interval};
+use crate::trigger::scale::{index_of_largest, moving_mean};
 use crate::trigger::{Baseline, ContactChoice, Contacts};
+use crate::uncertain::{Uncertain, sd_of_largest};
 
 /// Fewer samples in contact than this are reported.
 const FEW_SAMPLES: usize = 8;
@@ -249,15 +252,25 @@ fn measure(
         let zero_sd = offset_sd(contacts, track.persistence);
         impulse(&track.times, &track.values, track.noise, zero_sd, place)
     });
+    let force = signals.force.as_ref();
+    let peak = force.and_then(|track| {
+        let zero_sd = offset_sd(contacts, track.persistence);
+        peak_force(track, place, zero_sd)
+    });
+    let crossings = force.map(|track| crossings_sd(track, contacts, place));
     let measured = Measured {
         impact_velocity: before.map(|v| v.value),
         rebound_velocity: rebound,
         restitution: before.zip(rebound).map(|(v, r)| r / v.value),
         contact_duration: whole.then(|| place.duration()),
-        peak_force: signals
-            .force
-            .as_ref()
-            .and_then(|track| peak_force(track, place)),
+        peak_force: peak.map(|own| own.value),
+        peak_force_sd: peak.map(|own| own.sd),
+        contact_duration_sd: crossings.filter(|_| whole).map(|[on, off]| on.hypot(off)),
+        max_displacement_sd: signals.displacement.as_ref().and_then(|track| {
+            let onset = before.map_or(0.0, |v| v.value.abs()) * crossings?[0];
+            let samples = (&track.times[..], &track.values[..]);
+            largest_displacement_sd(samples, track.noise, onset, place)
+        }),
         max_displacement: signals
             .displacement
             .as_ref()
@@ -297,18 +310,61 @@ fn velocity(
 
 /// Largest force of the contact; with much noise, that of a local quadratic over a
 /// tenth of the contact.
-fn peak_force(track: &Track, place: &Surroundings) -> Option<f64> {
+///
+/// * `zero_sd`: standard uncertainty of the zero; N
+fn peak_force(track: &Track, place: &Surroundings, zero_sd: f64) -> Option<Uncertain> {
     let first = track.times.partition_point(|&t| t < place.onset);
     let last = track.times.partition_point(|&t| t <= place.end);
     let (times, values) = (&track.times[first..last], &track.values[first..last]);
-    let largest = values.iter().copied().reduce(f64::max)?;
-    if track.noise <= CLEAN_PEAK * largest {
-        return Some(largest);
-    }
+    let top = index_of_largest(values, |v| v);
+    let largest = *values.get(top)?;
+    // The top of the signal without its noise.
     let window = smoothing_window(place.duration(), mean_interval(times));
+    let from = top.saturating_sub(window / 2);
+    let to = (top + window / 2 + 1).min(times.len());
+    let fit = fit_polynomial(&times[from..to], &values[from..to], times[top], PEAK_ORDER);
+    let level = |fit: &PolynomialFit| {
+        let d = &fit.derivatives;
+        let at = |t: &f64| d[0] + (t - times[top]) * (d[1] + 0.5 * d[2] * (t - times[top]));
+        times[from..to].iter().map(at).collect::<Vec<_>>()
+    };
+    let of_noise = fit
+        .as_ref()
+        .map_or(track.noise, |fit| sd_of_largest(&level(fit), track.noise));
+    let single = Uncertain::new(largest, of_noise.hypot(zero_sd));
+    if track.noise <= CLEAN_PEAK * largest {
+        return Some(single);
+    }
     let smooth = local_polynomial(times, values, window, PEAK_ORDER, 0);
     let smooth = smooth.and_then(|values| values.into_iter().reduce(f64::max));
-    smooth.or(Some(largest))
+    // Quadratics half a window apart hardly share their noise, and compete likewise.
+    let of_smooth = fit.map_or(track.noise, |fit| {
+        let all = level(&fit);
+        let apart: Vec<f64> = [0, all.len() / 2, all.len() - 1].map(|i| all[i]).to_vec();
+        sd_of_largest(&apart, fit.noise_gains[0] * track.noise)
+    });
+    let smooth = smooth.map(|value| Uncertain::new(value, of_smooth.hypot(zero_sd)));
+    smooth.or(Some(single))
+}
+
+/// Standard uncertainties of onset and end: what noise of the averaged force does to the
+/// crossings of the threshold; s.
+fn crossings_sd(track: &Track, contacts: &Contacts, place: &Surroundings) -> [f64; 2] {
+    let averaged = moving_mean(&track.values, contacts.smoothing);
+    let noise = track.noise / (contacts.smoothing as f64).sqrt();
+    let reach = contacts.smoothing / 2;
+    [place.onset, place.end].map(|crossing| {
+        let after = track.times.partition_point(|&t| t < crossing);
+        let last = (after + reach).min(averaged.len() - 1);
+        let first = after.saturating_sub(reach + 1);
+        let rise = (averaged[last] - averaged[first]).abs();
+        let time = track.times[last] - track.times[first];
+        match rise > noise {
+            true => noise * time / rise,
+            // The force hardly rises there: anywhere in between.
+            false => time,
+        }
+    })
 }
 
 fn few_samples(track: &Track, place: &Surroundings) -> Option<Finding> {

@@ -74,6 +74,13 @@ pub struct Measured {
     pub impact_velocity_sd: Option<f64>,
     /// Standard uncertainty of the speed of rebound, likewise; m/s.
     pub rebound_velocity_sd: Option<f64>,
+    /// Standard uncertainty of the duration, from noise at the crossings of the threshold; s.
+    pub contact_duration_sd: Option<f64>,
+    /// Standard uncertainty of the largest force, from noise and offset; N.
+    pub peak_force_sd: Option<f64>,
+    /// Standard uncertainty of the largest displacement, from noise at its top and at its
+    /// zero, and of the onset; m.
+    pub max_displacement_sd: Option<f64>,
     /// Standard uncertainty of the impulse, from noise and offset of the force; N s.
     pub impulse_sd: Option<f64>,
 }

@@ -190,6 +190,35 @@ fn free_samples(times: &[f64], place: &Surroundings, side: Side) -> (usize, usiz
 /// Largest displacement: the top of a parabola through the samples within 5 %
 /// of the contact's duration of the largest sample (at least one on each side).
 pub fn largest_displacement(times: &[f64], values: &[f64], place: &Surroundings) -> Option<f64> {
+    let summit = summit(times, values, place)?;
+    Some(summit.0)
+}
+
+/// Standard uncertainty of [`largest_displacement`]: of the parabola, of the zero between two
+/// samples, and of the onset at which the zero is.
+///
+/// * `noise`: standard deviation of one sample; m
+/// * `onset_sd`: displacement in the standard uncertainty of the onset; m
+pub fn largest_displacement_sd(
+    (times, values): (&[f64], &[f64]),
+    noise: f64,
+    onset_sd: f64,
+    place: &Surroundings,
+) -> Option<f64> {
+    let (_, gain) = summit(times, values, place)?;
+    let after = times.partition_point(|&t| t < place.onset);
+    let zero = match after.checked_sub(1).zip(times.get(after)) {
+        Some((before, next)) => {
+            let part = (place.onset - times[before]) / (next - times[before]);
+            part.hypot(1.0 - part)
+        }
+        None => 1.0,
+    };
+    Some((noise * gain.hypot(zero)).hypot(onset_sd))
+}
+
+/// Top of the parabola through the largest samples, and how it takes up unit noise.
+fn summit(times: &[f64], values: &[f64], place: &Surroundings) -> Option<(f64, f64)> {
     let first = times.partition_point(|&t| t < place.onset);
     let last = times.partition_point(|&t| t <= place.end);
     let top = (first..last).reduce(|best, i| if values[i] > values[best] { i } else { best })?;
@@ -202,13 +231,17 @@ pub fn largest_displacement(times: &[f64], values: &[f64], place: &Surroundings)
         .max(top + 2)
         .min(times.len());
     let parabola = fit_polynomial(&times[from..to], &values[from..to], times[top], 2);
-    let summit = parabola.and_then(|fit| {
+    let summit = parabola.as_ref().and_then(|fit| {
         let (value, slope, bend) = (fit.derivatives[0], fit.derivatives[1], fit.derivatives[2]);
         let shift = -slope / bend;
         let inside = bend < 0.0 && shift.abs() <= (times[to - 1] - times[from]);
         inside.then_some(value + 0.5 * slope * shift)
     });
-    Some(summit.unwrap_or(values[top]))
+    let gain = parabola.filter(|_| summit.is_some());
+    Some((
+        summit.unwrap_or(values[top]),
+        gain.map_or(1.0, |fit| fit.noise_gains[0]),
+    ))
 }
 
 /// Impulse of the contact force and its standard uncertainty; N s.

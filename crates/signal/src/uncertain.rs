@@ -1,5 +1,7 @@
 //! Values with their standard uncertainty.
 
+use windfall_statistics::distribution::tail::normal_lower;
+
 /// A value with its standard uncertainty.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Uncertain {
@@ -18,5 +20,73 @@ impl Uncertain {
     /// A value without uncertainty.
     pub const fn exact(value: f64) -> Self {
         Self::new(value, 0.0)
+    }
+}
+
+/// Standard deviation of the largest of samples that lie on a parabola but for white noise.
+///
+/// The noise moves the largest sample less than a sample, since several compete for it:
+///
+/// ```text
+/// P(max ≤ m) = Π Φ((m − fᵢ)/σ)
+/// ```
+///
+/// * `level`: fᵢ, the samples without their noise
+/// * `noise`: σ, of one sample
+///
+/// Zero without noise or samples.
+pub(crate) fn sd_of_largest(level: &[f64], noise: f64) -> f64 {
+    let top = level.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+    if !(noise > 0.0 && top.is_finite()) {
+        return 0.0;
+    }
+    // In units of the noise, below the top; those further down never win.
+    let below: Vec<f64> = level.iter().map(|f| (top - f) / noise).collect();
+    let near: Vec<f64> = below
+        .into_iter()
+        .filter(|own| *own < OUT_OF_REACH)
+        .collect();
+    let below_all = |m: f64| {
+        near.iter()
+            .map(|own| normal_lower(m + own))
+            .product::<f64>()
+    };
+    let steps = (2.0 * OUT_OF_REACH / STEP) as usize;
+    let (mut mean, mut square, mut before) = (0.0, 0.0, 0.0);
+    for i in 1..=steps {
+        let m = -OUT_OF_REACH + i as f64 * STEP;
+        let now = below_all(m);
+        let (weight, middle) = (now - before, m - 0.5 * STEP);
+        mean += weight * middle;
+        square += weight * middle * middle;
+        before = now;
+    }
+    noise * (square - mean * mean).max(0.0).sqrt()
+}
+
+/// No sample wins that lies further below the top; standard deviations of the noise.
+const OUT_OF_REACH: f64 = 8.0;
+/// Of the sum over the largest sample; standard deviations of the noise.
+const STEP: f64 = 0.05;
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Harter, H. L. (1961), Expected values of normal order statistics, Biometrika 48, 151:
+    /// the variance of the largest of 2 is 1 − 1/π, of 5 is 0.44753, of 10 is 0.34434.
+    #[test]
+    fn reference_deviations_of_the_largest_of_normal_samples() {
+        let variance = |n: usize| (sd_of_largest(&vec![3.0; n], 0.5) / 0.5).powi(2);
+        for (n, expected) in [(1, 1.0), (2, 0.681_69), (5, 0.447_53), (10, 0.344_34)] {
+            assert!(
+                (variance(n) / expected - 1.0).abs() < 2e-3,
+                "{n}: {}",
+                variance(n)
+            );
+        }
+        // Samples far below do not compete.
+        assert!((sd_of_largest(&[3.0, -30.0, -30.0], 0.5) / 0.5 - 1.0).abs() < 1e-3);
+        assert_eq!(sd_of_largest(&[1.0], 0.0), 0.0);
     }
 }

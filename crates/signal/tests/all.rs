@@ -19,3 +19,4 @@ mod ringing;
 mod scipy_filters;
 mod spectrum;
 mod tap;
+mod uncertainties;

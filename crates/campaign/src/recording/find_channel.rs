@@ -2,7 +2,7 @@
 
 use std::path::Path;
 use windfall_files::error::Error;
-use windfall_files::text::known_names::told_names;
+use windfall_files::known_names::told_names;
 use windfall_formats::contents::Contents;
 
 /// Position of a channel by its whole name, or by the part behind "/" if that is unique.

@@ -4,9 +4,9 @@ use crate::settings::template::is_template_file;
 use std::collections::BTreeMap;
 use std::path::Path;
 use windfall_files::error::Error;
+use windfall_files::known_names::known_names;
 use windfall_files::table::csv::{column_index, read_table, separator_of};
 use windfall_files::table::write::{csv_line, guarded};
-use windfall_files::text::known_names::known_names;
 
 /// The text of a table with cells of one row set; columns that it lacks are added.
 ///

@@ -5,8 +5,8 @@ use crate::settings::model::{ImpactEntry, Specimen};
 use std::path::Path;
 use windfall_files::error::{Error, Place};
 use windfall_files::inputs::check_regular;
+use windfall_files::known_names::known_names;
 use windfall_files::table::csv::{Row, Table, column_index, read_table};
-use windfall_files::text::known_names::known_names;
 
 /// Columns of impacts.csv that bound the part of the recording to use; s.
 const RANGE_COLUMNS: [&str; 2] = ["from_s", "to_s"];

@@ -7,8 +7,8 @@
 
 use crate::error::{Error, Place};
 use crate::inputs::{check_piped, protect};
+use crate::known_names::told_names;
 use crate::table::write::plain_cell;
-use crate::text::known_names::told_names;
 use std::fs::File;
 use std::io::{BufRead, BufReader, Cursor, Read};
 use std::path::{Path, PathBuf};

@@ -6,7 +6,6 @@ pub mod column_role;
 pub mod column_title;
 pub mod columns;
 pub mod file_quantity;
-pub mod known_names;
 pub mod number;
 pub mod quote;
 pub mod statistic;

@@ -1,8 +1,8 @@
 //! Aligned tables for a terminal, none wider than a page.
 
 use crate::found::{FailureOutcome, FindingOutcome};
+use crate::known_names::few_names;
 use crate::named::grouped;
-use crate::text::known_names::few_names;
 use comfy_table::{CellAlignment, ContentArrangement, LineStyle, Table, TableStyle};
 
 /// Widest line of a table or a paragraph; characters.
