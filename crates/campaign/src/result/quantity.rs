@@ -225,20 +225,24 @@ pub const QUANTITIES: [Quantity; 25] = [
     quantity(
         "contact_duration",
         ("Contact duration", "T", "s"),
-        both!(contact_duration, no_sd, |m| m.summary.contact_duration),
+        both!(contact_duration, |s| s.contact_duration_sd, |m| m
+            .summary
+            .contact_duration),
     )
     .headed("duration")
     .shown_in("ms", 1e3),
     quantity(
         "peak_force",
         ("Peak force", "F max", "N"),
-        both!(peak_force, no_sd, |m| m.summary.peak_force),
+        both!(peak_force, |s| s.peak_force_sd, |m| m.summary.peak_force),
     )
     .headed("peak force"),
     quantity(
         "max_displacement",
         ("Largest displacement", "x max", "m"),
-        both!(max_displacement, no_sd, |m| m.summary.max_displacement),
+        both!(max_displacement, |s| s.max_displacement_sd, |m| m
+            .summary
+            .max_displacement),
     )
     .headed("displacement")
     .shown_in("mm", 1e3),
