@@ -95,15 +95,14 @@ fn stated_over_spread(
     (stated / spread).sqrt()
 }
 
+/// One quantity of an impact.
+type Value = fn(&Measured) -> Option<f64>;
+
 #[test]
 fn recovers_the_spread_of_peaks_duration_velocities_and_impulse() {
     for (of_force, of_position) in [(0.1, 2e-6), (0.8, 2e-6)] {
         let measured = repeats(of_force, of_position);
-        let checks: [(
-            &str,
-            fn(&Measured) -> Option<f64>,
-            fn(&Measured) -> Option<f64>,
-        ); 6] = [
+        let checks: [(&str, Value, Value); 6] = [
             (
                 "impact velocity",
                 |m| m.impact_velocity,

@@ -193,6 +193,7 @@ mod tests {
             file: format!("{id}.csv"),
             law: None,
             message: message.to_owned(),
+            findings: Vec::new(),
         };
         let failures = [
             failure("a1", "raw/a1.csv: the largest value is 0.31 N"),
