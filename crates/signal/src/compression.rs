@@ -141,7 +141,7 @@ pub enum CompressionError {
 pub const LEAST_SAMPLES: usize = 16;
 
 /// Samples over which a position that is held is judged.
-pub(crate) const SHORTEST_RUN: usize = 16;
+pub const SHORTEST_RUN: usize = 16;
 
 /// Samples of the shortest window for a local stiffness.
 const SHORTEST_WINDOW: usize = 8;
@@ -305,7 +305,7 @@ fn direction(position: &[f64], force: &[f64]) -> Result<f64, CompressionError> {
 }
 
 /// Standard deviation of white noise, from the median of the second differences.
-pub(crate) fn second_difference_noise(values: &[f64]) -> f64 {
+pub fn second_difference_noise(values: &[f64]) -> f64 {
     let mut differences: Vec<f64> = values
         .windows(3)
         .map(|w| (w[0] - 2.0 * w[1] + w[2]).abs())

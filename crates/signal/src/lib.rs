@@ -46,7 +46,6 @@ mod oscillation;
 pub mod polynomial;
 mod rate;
 pub mod recording;
-pub mod relaxation;
 pub mod repeat;
 pub mod restitution;
 pub mod ringing;

@@ -128,8 +128,8 @@ fn pinned_numbers_are_those_of_the_revision() {
     let expected = (
         5,
         [
-            "51b77bc5c70aa8a2",
-            "3608fc2053045200",
+            "1f83269ac6971c5a",
+            "616e54ea922bd46c",
             "91551cac97612078",
             "362e0649b943bd49",
             "3e453baf43c8c589",

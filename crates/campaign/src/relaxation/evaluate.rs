@@ -10,11 +10,11 @@ use windfall_files::found::FindingOutcome;
 use windfall_files::named::Named;
 use windfall_files::text::number::plain;
 use windfall_identify::compression_fit::CompressionEstimate;
+use windfall_identify::relaxation::hold::{Hold, HoldEnd, find_hold};
 use windfall_identify::relaxation::maxwell::{HeldForce, MaxwellFit, fit_maxwell};
 use windfall_identify::relaxation::peleg::{PelegFit, fit_peleg};
 use windfall_signal::kinematics::value_at;
 use windfall_signal::recording::{Quantity, Recording};
-use windfall_signal::relaxation::{Hold, HoldEnd, find_hold};
 
 /// Samples of a hold at most that are fitted; more are averaged.
 const MOST_SAMPLES: usize = 4000;

@@ -78,12 +78,13 @@ const FOREIGN: [(&str, &str); 28] = [
 /// What a channel seems to be: "time", or the campaign channel that it could feed.
 pub fn role_of(name: &str) -> Option<&'static str> {
     let lower = name.to_lowercase();
-    if is_time_name(name) {
-        return Some("time");
-    }
-    // "Run 1: Time (s)", "Sheet 1/Time (s)": the name itself, before names above it.
+    // "Run 1: Time (s)", "Time series/Load (kN)": the name itself, before names above it.
     let bare = lower.split(['(', '[']).next().unwrap_or(&lower);
     let own = bare.rsplit([':', '/']).next().unwrap_or(bare);
+    let below = bare.contains('/').then(|| role_in(own)).flatten();
+    if below.is_none() && is_time_name(name) {
+        return Some("time");
+    }
     role_in(own).or_else(|| role_in(&lower))
 }
 

@@ -123,6 +123,8 @@ pub fn apply_preset(seen: &mut Inspection, preset: &Preset) -> Result<(), Error>
             return Err(unusable(format!("--preset {}", preset.name), problem));
         }
         let Some(place) = place else { continue };
+        let of_role = format!("{role} ");
+        seen.assumed.retain(|line| !line.starts_with(&of_role));
         for (other, column) in seen.columns.iter_mut().enumerate() {
             if other == place {
                 column.role = Some(role);

@@ -1,6 +1,6 @@
 //! Stress relaxation: the part of a recording in which the position is held and the force falls.
 
-use crate::compression::{SHORTEST_RUN, second_difference_noise};
+use windfall_signal::compression::{SHORTEST_RUN, second_difference_noise};
 
 /// Fewest samples of a hold.
 pub const LEAST_SAMPLES: usize = 20;
