@@ -72,8 +72,10 @@ pub struct DropEstimate {
 /// A body that is not slowed down by the air lands as fast as it left: with the flights T₁, T₂, …
 /// (the intervals without the contact)
 ///
-///     impact n+1:  v = g Tₙ/2,  e = Tₙ₊₁/Tₙ     impact 1:  v = √(2 g h),  e = g T₁/(2 v)
-///     drop:        e = exp(mean of ln e),       h = g T₁²/(8 e²)
+/// ```text
+/// impact n+1:  v = g Tₙ/2,  e = Tₙ₊₁/Tₙ     impact 1:  v = √(2 g h),  e = g T₁/(2 v)
+/// drop:        e = exp(mean of ln e),       h = g T₁²/(8 e²)
+/// ```
 ///
 /// Every impact lies between two intervals: with s the uncertainty of an instant, intervals have
 /// the variance 2 s² and neighbours the covariance −s², which is carried through all of these.

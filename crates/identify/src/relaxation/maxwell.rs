@@ -132,7 +132,9 @@ impl Curve for Maxwell {
 
 /// Fits a generalised Maxwell model to a hold.
 ///
-///     F(t) = Fₑ + Σ Aᵢ e^(−t/τᵢ),   Aᵢ = Fᵢ r(T/τᵢ),   F₀ = Fₑ + Σ Fᵢ
+/// ```text
+/// F(t) = Fₑ + Σ Aᵢ e^(−t/τᵢ),   Aᵢ = Fᵢ r(T/τᵢ),   F₀ = Fₑ + Σ Fᵢ
+/// ```
 ///
 /// A ramp of duration T leaves the part r of an element's force ([`left_after_ramp`]); fractions
 /// are those of a sudden step, Fₑ/F₀ and Fᵢ/F₀. Where the ramp is not known, r is 1.

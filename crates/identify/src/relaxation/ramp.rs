@@ -5,7 +5,9 @@ const LONG: f64 = 500.0;
 
 /// Part of an element's force that is left when the ramp ends, beside a sudden step.
 ///
-///     r(x) = ∫₀¹ n u^(n−1) e^(−(1−u) x) du = e^(−x) Σ xʲ/j! · n/(n + j),    x = T/τ
+/// ```text
+/// r(x) = ∫₀¹ n u^(n−1) e^(−(1−u) x) du = e^(−x) Σ xʲ/j! · n/(n + j),    x = T/τ
+/// ```
 ///
 /// for a ramp of duration T whose elastic force grows as timeⁿ. For n = 1 it is
 /// (1 − e^(−x))/x.

@@ -107,8 +107,7 @@ export interface FactorOutcome {
   letter: string; name: string; centre: number; half_range: number; lowest: number; highest: number;
 }
 export interface FailureOutcome {
-  id: string; specimen: string; file: string; law: string | null; message: string;
-  findings?: FindingOutcome[];
+  id: string; specimen: string; file: string; law: string | null; message: string; findings: FindingOutcome[];
 }
 export interface FamilyLine { dimension: number; words: string; members: FamilyMember[]; }
 export interface FamilyMember { parameters: number[]; law: string; heights: HeightFeatures[]; }
