@@ -4,7 +4,7 @@ use crate::compare::correlated_scores::{
     add_product, add_scores, at_least, correlation_lag, inverse_of_free, sandwich, student,
 };
 use crate::compression_fit::CompressionEstimate;
-use windfall_numerics::least_squares::{LeastSquares, NormalEquations};
+use windfall_numerics::least_squares::{LeastSquares, NormalEquations, Options};
 use windfall_signal::noise::colour::persistence;
 
 /// Parameters of the largest model.
@@ -16,6 +16,15 @@ pub(crate) type Parameters = [f64; SIZE];
 /// A force over the time since the hold began, with its derivatives by the parameters.
 pub(crate) trait Curve {
     fn force(&self, time: f64, parameters: &Parameters) -> (f64, Parameters);
+}
+
+/// Minimisation until the cost is known to its last digits: a model that leaves large residuals
+/// converges slowly, and its parameters are known to the root of what the cost is.
+pub(crate) fn options() -> Options<SIZE> {
+    Options {
+        cost_tolerance: 1e-15,
+        ..Options::default()
+    }
 }
 
 /// A model against samples.

@@ -1,10 +1,10 @@
 //! The generalised Maxwell model of stress relaxation.
 
 use crate::compression_fit::CompressionEstimate;
-use crate::relaxation::curve::{Curve, Parameters, Problem, SIZE};
+use crate::relaxation::curve::{Curve, Parameters, Problem, SIZE, options};
 use crate::relaxation::ramp::left_after_ramp;
 use windfall_numerics::cholesky;
-use windfall_numerics::least_squares::{Bounds, Minimum, Options, Stop, minimise};
+use windfall_numerics::least_squares::{Bounds, Minimum, Stop, minimise};
 use windfall_signal::noise::colour::{mean_inflation, persistence};
 
 /// Most elements of a model.
@@ -210,7 +210,7 @@ fn minimum(held: &HeldForce, elements: usize) -> Option<Minimum<SIZE>> {
             times: &held.times,
             force: &held.force,
         };
-        let own = minimise(&mut problem, &start, &bounds, &Options::default());
+        let own = minimise(&mut problem, &start, &bounds, &options());
         let better = found.is_none_or(|best| own.equations.cost < best.equations.cost);
         if own.stop != Stop::BadStart && better {
             found = Some(own);

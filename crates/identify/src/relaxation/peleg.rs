@@ -1,8 +1,8 @@
 //! Peleg's two constants of stress relaxation.
 
 use crate::compression_fit::CompressionEstimate;
-use crate::relaxation::curve::{Curve, Parameters, Problem, SIZE};
-use windfall_numerics::least_squares::{Bounds, Options, Stop, minimise};
+use crate::relaxation::curve::{Curve, Parameters, Problem, SIZE, options};
+use windfall_numerics::least_squares::{Bounds, Stop, minimise};
 
 /// Peleg's constants, fitted to a hold.
 #[derive(Clone, Debug, PartialEq)]
@@ -57,12 +57,7 @@ pub fn fit_peleg(times: &[f64], force: &[f64]) -> PelegFit {
     let mut bounds = Bounds::NONE;
     bounds.lower[1] = 1e-9;
     bounds.lower[2] = 1e-9;
-    let minimum = minimise(
-        &mut problem,
-        &start(times, force),
-        &bounds,
-        &Options::default(),
-    );
+    let minimum = minimise(&mut problem, &start(times, force), &bounds, &options());
     let found = minimum.parameters;
     let free = [0, 1, 2];
     let spread = problem.spread(&found, &free);
