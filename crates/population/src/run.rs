@@ -111,7 +111,7 @@ fn estimate(
     let velocities: Vec<f64> = members.iter().map(|member| member.velocity).collect();
     let found = find_covariates(campaign, &entries, &velocities, &campaign.covariates)?;
     for (i, reason) in &found.left_out {
-        failed.push(failure(entries[*i], None, reason.clone()));
+        failed.push(*failure(entries[*i], None, reason.clone()));
     }
     let members: Vec<&Member> = found.kept.iter().map(|&i| &members[i]).collect();
     let varying = varying(law, &problem);
@@ -189,7 +189,7 @@ fn members<'a>(
     for result in found {
         match result {
             Ok(member) => members.push(member),
-            Err(failure) => failed.push(failure),
+            Err(failure) => failed.push(*failure),
         }
     }
     Ok((members, failed))

@@ -50,7 +50,7 @@ impl Evaluation for Fits<'_> {
         &self,
         entry: &ImpactEntry,
         known: Vec<Option<ImpactOutcome>>,
-    ) -> Vec<Result<ImpactOutcome, FailureOutcome>> {
+    ) -> Vec<Result<ImpactOutcome, Box<FailureOutcome>>> {
         let (campaign, rig) = (self.campaign, &self.rig.rig);
         let group = campaign.shared.group_of(entry);
         let grouped = |outcome: ImpactOutcome| ImpactOutcome {
@@ -72,10 +72,9 @@ impl Evaluation for Fits<'_> {
                     .map(grouped)
                     .map_err(|error| {
                         let told = why_it_failed(&error, impact, findings);
-                        FailureOutcome {
-                            findings: found_before(impact, findings),
-                            ..failure(entry, Some(law.kind.name()), told)
-                        }
+                        let mut failure = failure(entry, Some(law.kind.name()), told);
+                        failure.findings = found_before(impact, findings);
+                        failure
                     })
             }
         })

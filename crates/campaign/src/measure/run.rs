@@ -68,7 +68,7 @@ impl<K: Measurement> Evaluation for Recordings<'_, K> {
         &self,
         entry: &ImpactEntry,
         known: Vec<Option<K::Found>>,
-    ) -> Vec<Result<K::Found, FailureOutcome>> {
+    ) -> Vec<Result<K::Found, Box<FailureOutcome>>> {
         if let Some(reason) = excluded(entry) {
             return vec![Err(failure(entry, None, reason.message)); known.len()];
         }

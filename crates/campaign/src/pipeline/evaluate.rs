@@ -44,7 +44,7 @@ pub trait Evaluation: Sync {
         &self,
         entry: &ImpactEntry,
         known: Vec<Option<Self::Found>>,
-    ) -> Vec<Result<Self::Found, FailureOutcome>>;
+    ) -> Vec<Result<Self::Found, Box<FailureOutcome>>>;
 
     /// Options that the run keeps beside campaign.toml.
     fn options(&self) -> Map<String, Value> {
@@ -221,7 +221,7 @@ pub fn evaluate<E: Evaluation>(
                 }
                 // A recording that cannot be read is one failure, not one for each part.
                 Err(failure) if evaluated.failed.contains(&failure) => {}
-                Err(failure) => evaluated.failed.push(failure),
+                Err(failure) => evaluated.failed.push(*failure),
             }
         }
     }
@@ -234,15 +234,15 @@ pub fn evaluate<E: Evaluation>(
 }
 
 /// An entry, or one law on it, that could not be evaluated.
-pub fn failure(entry: &ImpactEntry, law: Option<&str>, message: String) -> FailureOutcome {
-    FailureOutcome {
+pub fn failure(entry: &ImpactEntry, law: Option<&str>, message: String) -> Box<FailureOutcome> {
+    Box::new(FailureOutcome {
         id: entry.id.clone(),
         specimen: entry.specimen.clone(),
         file: entry.file.clone(),
         law: law.map(str::to_owned),
         message,
         findings: Vec::new(),
-    }
+    })
 }
 
 /// Results in the store, of all parts of each entry; nothing where all are to be made anew.

@@ -170,7 +170,7 @@ fn feature_drops(campaign: &DropCampaign, progress: Progress) -> Result<Seen, Er
             false => drops.push(drop_data(campaign, entry, features)?),
             true => {
                 let message = "no bounce of it is complete and below the limit of the instrument";
-                failed.push(failure(entry, None, message.to_owned()));
+                failed.push(*failure(entry, None, message.to_owned()));
             }
         }
     }

@@ -115,7 +115,7 @@ fn rank(
                 entries.push(entry);
             }
             (Ok(_), Some(reasons)) => failed.push(reasons.clone()),
-            (Err(failure), _) => failed.push(failure),
+            (Err(failure), _) => failed.push(*failure),
         }
     }
     let mut findings = rig.findings.clone();
@@ -191,7 +191,7 @@ fn fits(
     entry: &ImpactEntry,
     rig: &RigFound,
     problems: &[LawProblem],
-) -> Result<Fitted, FailureOutcome> {
+) -> Result<Fitted, Box<FailureOutcome>> {
     let mass = Some(rig.rig.effective_mass());
     let (impact, findings) = extract_recording(campaign, entry, mass)
         .map_err(|error| failure(entry, None, error.to_string()))?;
