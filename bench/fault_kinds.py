@@ -192,7 +192,7 @@ NAMES = {
     "clean": set(),
     "drift": {"drift-removed", "zero-shift"},
     "hum": {"hum-removed", "drift-removed"},
-    "bump": {"bump", "several-contacts", "drifting-zero", "local-baseline"},
+    "bump": {"bump", "several-contacts", "drifting-zero"},
     "double hit": {"several-contacts"},
     "start in contact": {"contact-at-start"},
     "clipped": {"clipped"},
