@@ -2,7 +2,9 @@
 
 import http.client
 import json
+import math
 import os
+import random
 import re
 import shutil
 import signal
@@ -127,6 +129,24 @@ def several_fruit(program, folder):
 def compression(program, folder):
     run(program, folder, "simulate", "compression", "c", "--law", "kuwabara-kono(k=300000, c=20000)",
         "--rate", "1 mm/s", "--rate", "20 mm/s")
+
+
+def relaxation(program, folder):
+    """Two fruit squeezed in half a second and held: a Maxwell solid of two elements, with noise."""
+    run(program, folder, "new", "relaxation", "c")
+    noise = random.Random(1)
+    for name, size in [("a", 1.0), ("b", 1.3)]:
+        lines = ["time_s,force_N,position_mm"]
+        for i in range(2000):
+            t = 0.01 * i
+            if t < 0.5:
+                force = 20 * (t / 0.5) ** 1.5
+            else:
+                force = 12 + 5 * math.exp(-(t - 0.5) / 0.8) + 3 * math.exp(-(t - 0.5) / 6)
+            lines.append(f"{t:.2f},{size * force + noise.gauss(0, 0.01):.4f},{3 * min(t / 0.5, 1):.4f}")
+        (folder / f"c/raw/{name}.csv").write_text("\n".join(lines) + "\n")
+    (folder / "c/impacts.csv").write_text("id,specimen,file\na,a,a.csv\nb,b,b.csv\n")
+    (folder / "c/specimens.csv").write_text("id,variety\na,Golden\nb,Golden\n")
 
 
 def drops(program, folder):
@@ -332,6 +352,8 @@ KINDS = {
                    "fit c --law hunt-crossley --figures figures --card law.toml"),
     "fit of compressions": Command(compression, "fit c --threads 2 --figures figures",
                                    ("c/campaign.toml", 'title = "', 'title = "earlier ')),
+    "fit of relaxations": Command(relaxation, "fit c --threads 2 --figures figures",
+                                  ("c/campaign.toml", 'title = "', 'title = "earlier ')),
     "report": Command(pendulum, "report c --threads 2", "report c --law hunt-crossley"),
     "population": Command(several_fruit, "population c --threads 2 --card law.toml",
                           "population c --law hunt-crossley --card law.toml"),

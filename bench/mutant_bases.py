@@ -4,7 +4,7 @@ import shutil
 import subprocess
 from pathlib import Path
 
-from kill_kinds import SCENE, STUDY, change, run
+from kill_kinds import SCENE, STUDY, change, relaxation, run
 
 ROOT = Path(__file__).resolve().parent.parent
 LAW = "kuwabara-kono(k=753599, c=1524)"
@@ -90,6 +90,7 @@ def campaigns(program, scratch):
               ["calibrate", "c", "--way", "waveform", *ONE, "--format", "json"])),
         ("compression", ["simulate", "compression", "c", "--law", "kuwabara-kono(k=300000, c=20000)",
                          "--rate", "1 mm/s"], ("[compression]",), fits()),
+        ("relaxation", relaxation, ("[relaxation]",), fits()),
         ("acoustic", ["simulate", "tap", "c", "--fruit", "2"], ("[acoustic]",), fits()),
         ("repeats", ["simulate", "repeats", "c", "--fruit", "2", "--energy", "0.04 J", "--energy", "0.08 J"],
          (), fits()),
@@ -97,7 +98,7 @@ def campaigns(program, scratch):
     for name, words, tables, commands in made:
         folder = scratch / name
         folder.mkdir()
-        run(program, folder, *words)
+        words(program, folder) if callable(words) else run(program, folder, *words)
         if name == "drop":
             change(folder / "c/campaign.toml", "adams-impact(d=1e-6)", "adams-impact(e=1.91, d=1e-6)")
         uncommented(folder / "c", f"{name}.toml", tables)

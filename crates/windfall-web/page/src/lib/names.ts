@@ -24,6 +24,7 @@ export const KINDS: Record<string, string> = {
   pendulum: "Impacts on a pendulum",
   carriage: "Impacts on a carriage",
   compression: "Slow compression",
+  relaxation: "Stress relaxation",
   acoustic: "Taps",
   repeats: "Repeated impacts",
   drop: "Drops on a force plate",
