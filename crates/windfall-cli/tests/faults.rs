@@ -269,3 +269,26 @@ fn rejects_a_person_who_stands_on_the_sensor_with_what_was_found() {
     assert!(text.contains("0 of 1 impacts count"), "{text}");
     assert!(text.contains("contact-at-start: "), "{text}");
 }
+
+/// Steps of the encoder of a quarter of the penetration are no second motion.
+#[test]
+fn reference_a_coarse_encoder_takes_no_impact_out() {
+    let laboratory = tempfile::tempdir().unwrap();
+    let law = format!("--law kuwabara-kono(k={STIFFNESS},c=1524)");
+    let rig = "--inertia 0.01435kg*m^2 --arm 0.505m --mass 0.08kg --centre-of-mass 0.35m";
+    let encoder = "--encoder counts --counts-per-revolution 20000 --noise 0.3N";
+    let line = format!(
+        "simulate pendulum {law} {rig} {encoder} --velocity 0.388m/s --specimens 1 --repeats 6 \
+         --recordings campaign"
+    );
+    windfall(&line, laboratory.path());
+    let outcome = windfall("fit campaign --format json", laboratory.path());
+    let outcome: Value = serde_json::from_str(&outcome).unwrap();
+    let impacts = outcome["impacts"].as_array().unwrap();
+    assert_eq!(impacts.len(), 6);
+    for impact in impacts {
+        assert_eq!(impact["left_out"], Value::Array(vec![]), "{}", impact["id"]);
+        let noise = impact["derived_sd"]["motion_misfit"].as_f64().unwrap();
+        assert!(noise > 2e-5, "{noise}");
+    }
+}

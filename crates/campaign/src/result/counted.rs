@@ -37,6 +37,8 @@ const SHIFT_OF_DELAY: f64 = 10.0;
 /// Largest shift of the stiffness, as a logarithm, that delay and gain of the force may cause;
 /// 1.
 const SHIFT: f64 = 0.15;
+/// The same where delay and gain both differ beyond three deviations, as after lost rows; 1.
+const SHIFT_OF_BOTH: f64 = 0.10;
 /// Largest root mean square between the displacement and the twice integrated force, as a
 /// part of the largest displacement; 1.
 const MOTION: f64 = 0.04;
@@ -217,7 +219,9 @@ fn impossible(impact: &ImpactOutcome, rig: &Rig) -> Vec<FindingOutcome> {
         let by_delay = SHIFT_OF_DELAY * delay.abs() / duration;
         let by_gain = gain.ln().abs();
         let sd = (SHIFT_OF_DELAY * delay_sd / duration).hypot(gain_sd / gain);
-        if by_delay + by_gain > (DEVIATIONS * sd).max(SHIFT) {
+        let both = delay.abs() > DEVIATIONS * delay_sd && (gain - 1.0).abs() > DEVIATIONS * gain_sd;
+        let limit = if both { SHIFT_OF_BOTH } else { SHIFT };
+        if by_delay + by_gain > (DEVIATIONS * sd).max(limit) {
             let told = format!(
                 "by Newton's law the force is {:.0} ± {:.0} µs off the displacement ({:.1} % of the \
                  contact) and {gain:.3} ± {gain_sd:.3} times mass × acceleration: the stiffness may be \
@@ -238,10 +242,10 @@ fn impossible(impact: &ImpactOutcome, rig: &Rig) -> Vec<FindingOutcome> {
             );
         }
     }
-    if let (Some((misfit, _)), Some((largest, _))) = (
+    if let (Some((misfit, noise)), Some((largest, _))) = (
         signal(impact, "motion_misfit"),
         signal(impact, "max_displacement"),
-    ) && misfit > MOTION * largest
+    ) && misfit > (DEVIATIONS * noise).max(MOTION * largest)
     {
         let told = format!(
             "the force, integrated twice, departs from the displacement by {:.1} µm, {:.1} % of the \

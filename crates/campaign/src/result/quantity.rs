@@ -299,7 +299,7 @@ pub const QUANTITIES: [Quantity; 25] = [
     quantity(
         "motion_misfit",
         ("Misfit of the motion", "Δx F", "m"),
-        signal!(motion_misfit, no_sd),
+        signal!(motion_misfit, |s| s.motion_misfit_sd),
     ),
     quantity(
         "acceleration_impulse_ratio",
