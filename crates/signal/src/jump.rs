@@ -15,6 +15,9 @@ const FACTOR: f64 = 3.0;
 const COUNTS: f64 = 1.5;
 const CLEAR: f64 = 8.0;
 
+/// Noise of a counted position, at most, in steps; the steps alone leave 0.29; 1.
+const ROUNDED: f64 = 0.5;
+
 /// Points on either side of a small jump, at least and at most.
 const POINTS: (usize, usize) = (8, 16);
 
@@ -47,7 +50,7 @@ pub(crate) fn jump(track: &Track, (from, until): (f64, f64), duration: f64) -> O
 /// neighbours; s, m.
 fn lonely_step(track: &Track, times: &[f64], values: &[f64]) -> Option<(f64, f64)> {
     let steps: Vec<f64> = values.windows(2).map(|x| (x[1] - x[0]).abs()).collect();
-    let least = match track.quantum {
+    let least = match counted(track) {
         Some(quantum) => COUNTS * quantum,
         None => CLEAR * track.noise,
     };
@@ -68,11 +71,19 @@ fn lonely_step(track: &Track, times: &[f64], values: &[f64]) -> Option<(f64, f64
     Some((times[at], steps[at]))
 }
 
+/// Step of a position that is counted; `None` where its noise drowns the steps, as those of
+/// a printed decimal.
+fn counted(track: &Track) -> Option<f64> {
+    track
+        .quantum
+        .filter(|quantum| track.noise < ROUNDED * quantum)
+}
+
 /// Time and size of the clearest step in a motion that is smooth on either side, with a change
 /// of velocity at it: the motion went on while nothing was recorded; s, m. A counted position
 /// is taken where its count changes.
 fn small_jump(track: &Track, times: &[f64], values: &[f64], duration: f64) -> Option<(f64, f64)> {
-    track.quantum?;
+    counted(track)?;
     let found = edges(times, values, CountTimes::Sampled);
     let (points, places) = (&found.times, &found.values);
     let interval = mean_interval(times);
@@ -138,6 +149,21 @@ mod tests {
         // 50 rows at 7e-4 π/1000 cos(0.225 π) m each.
         assert!((time - 199.0 * 5e-6).abs() < 1e-9);
         assert!((size - 8.36e-5).abs() < 1e-5, "{size}");
+    }
+
+    #[test]
+    fn closed_form_noise_above_the_printed_decimals_is_no_jump() {
+        for seed in 0..20 {
+            let mut source = crate::noise::gaussian::noise_source(seed, 0);
+            let mut noisy = track(0..0, 0.0);
+            for (i, value) in noisy.values.iter_mut().enumerate() {
+                let place = 7e-4 * (i as f64 / 1000.0 * std::f64::consts::PI).sin();
+                let read = place + 1e-6 * crate::noise::gaussian::normal(&mut source);
+                *value = (read / 1e-7).round() * 1e-7;
+            }
+            (noisy.quantum, noisy.noise) = (Some(1e-7), 1e-6);
+            assert_eq!(jump(&noisy, SPAN, 5e-3), None, "{seed}");
+        }
     }
 
     #[test]

@@ -159,3 +159,20 @@ fn rejects_a_copy_of_another_fruits_recording_as_a_finding() {
     let codes = outcome["findings"].to_string();
     assert!(codes.contains("same-recording"), "{codes}");
 }
+
+/// A weight that rests on the fruit while it rebounds adds its impulse to that of the motion.
+#[test]
+fn reference_a_slow_impact_under_gravity_counts() {
+    let laboratory = tempfile::tempdir().unwrap();
+    let folder = laboratory.path();
+    let line = "simulate carriage --law kuwabara-kono(k=100000,c=150) --mass 0.5kg --velocity \
+                0.2m/s --driving-acceleration 9.81m/s^2 --specimens 1 --repeats 3 --recordings \
+                campaign"
+        .replace("                ", "");
+    let (status, _, told) = windfall(&line, folder);
+    assert_eq!(status, Some(0), "{told}");
+    let outcome = fitted(folder);
+    for impact in 0..3 {
+        assert_eq!(reasons(&outcome, impact), [""; 0], "{outcome}");
+    }
+}

@@ -372,3 +372,27 @@ fn reference_columns_by_a_preset() {
     let listed = String::from_utf8(listed.stdout).unwrap();
     assert!(listed.contains("a-hilhorst/Tensile-test-Analysis") && listed.contains("MIT"));
 }
+
+#[test]
+fn added_recordings_leave_the_rows_that_a_person_wrote() {
+    let laboratory = tempfile::tempdir().unwrap();
+    let folder = laboratory.path();
+    recordings(folder, 1);
+    windfall(&["new", "pendulum", "bench"], folder);
+    let bench = folder.join("bench");
+    let impacts = bench.join("impacts.csv");
+    let text = std::fs::read_to_string(&impacts).unwrap() + "mine,fruit-1,a.csv,1\n";
+    std::fs::write(&impacts, text).unwrap();
+    let before = ["specimens.csv", "campaign.toml"].map(|name| bench.join(name));
+    let before = before.map(|path| (std::fs::read_to_string(&path).unwrap(), path));
+    let (status, _, told) = windfall(&["add", "bench", "recordings", "--names", NAMES], folder);
+    assert_eq!(status, Some(0), "{told}");
+    let [(specimens, path), (settings, campaign)] = before;
+    let now = std::fs::read_to_string(path).unwrap();
+    assert!(
+        now.contains("fruit-1,Golden") && now.contains("fruit-2,Golden"),
+        "{now}"
+    );
+    assert!(now.lines().count() > specimens.lines().count(), "{now}");
+    assert_eq!(std::fs::read_to_string(campaign).unwrap(), settings);
+}

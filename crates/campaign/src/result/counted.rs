@@ -119,8 +119,11 @@ pub fn left_out_under_all_laws(
 
 /// "3 no-convergence, 1 excluded": how many impacts each reason leaves out.
 pub fn reasons_counted<'a>(impacts: impl IntoIterator<Item = &'a ImpactOutcome>) -> String {
-    let reasons = impacts.into_iter().flat_map(|impact| &impact.left_out);
-    let counted = grouped(reasons.map(|reason| (reason.code.as_str(), ())));
+    let codes = |impact: &'a ImpactOutcome| impact.left_out.iter().map(|own| own.code.as_str());
+    let reasons = impacts
+        .into_iter()
+        .flat_map(|impact| codes(impact).unique());
+    let counted = grouped(reasons.map(|code| (code, ())));
     let counted = counted.into_iter();
     let mut told = counted.map(|(code, all)| format!("{} {code}", all.len()));
     told.join(", ")
@@ -197,7 +200,9 @@ fn impossible(impact: &ImpactOutcome, rig: &Rig) -> Vec<FindingOutcome> {
         (momentum, signal(impact, "impulse"))
     {
         let mass = rig.effective_mass();
-        let change = mass * (v1 + v2);
+        let driven = signal(impact, "contact_duration")
+            .map_or(0.0, |(duration, _)| rig.driving_acceleration() * duration);
+        let change = mass * (v1 + v2 + driven);
         let room = DEVIATIONS * (sd * sd + mass * mass * (s1 * s1 + s2 * s2)).sqrt();
         let ratio = impulse / change;
         let off = !(1.0 / IMPULSE_RATIO..=IMPULSE_RATIO).contains(&ratio);

@@ -72,8 +72,14 @@ const HEIGHTS: &str = "id,specimen,file,drop_height_mm\n\
 /// Before a line of campaign.toml that a person has to write; behind it stands an example.
 pub const UNWRITTEN: &str = "# WRITE YOURS: ";
 
-/// Whether a file is an unchanged table of a template.
+/// Whether a file is an unchanged table of a template, whose examples may give way. Those of
+/// specimens.csv may not once impacts.csv has rows that a person wrote: they may name them.
 pub fn is_template_file(path: &Path) -> bool {
+    let impacts = path.with_file_name("impacts.csv");
+    has_template_text(path) && has_template_text(&impacts)
+}
+
+fn has_template_text(path: &Path) -> bool {
     let tables = [
         SPECIMENS, IMPACTS, COMPRESSED, TAPPED, STRUCK, DROPS, FRUIT, HEIGHTS,
     ];

@@ -72,6 +72,15 @@ impl Rig {
         }
     }
 
+    /// Acceleration towards the fruit during contact, beside that of the contact: none for a
+    /// pendulum, whose arm hangs upright there; m/s².
+    pub fn driving_acceleration(&self) -> f64 {
+        match self {
+            Self::Pendulum(_) => 0.0,
+            Self::Carriage(rig) => rig.driving_acceleration,
+        }
+    }
+
     /// Velocity at the contact after a fall from the highest point of a pendulum,
     /// r (4 m g l / I)^½; m/s. `None` where it has no limit.
     pub fn largest_velocity(&self) -> Option<f64> {

@@ -2,7 +2,7 @@
 
 use crate::gather::channels::{campaign_text as guessed_text, remarks};
 use crate::gather::folder::{files_in, name_of};
-use crate::gather::names::{NamePattern, NamedRecording};
+use crate::gather::names::{NamePattern, NamedRecording, check_specimens, unfit_name};
 use crate::gather::rows::{ImpactRow, Rows};
 use crate::run::{InspectRequest, inspect_recording};
 use itertools::Itertools;
@@ -69,7 +69,8 @@ pub fn add_recordings(
         .transpose()?;
     let impacts = directory.join("impacts.csv");
     let table = read_table(&impacts)?;
-    let (listed, taken) = match is_template_file(&impacts) {
+    let untouched = is_template_file(&impacts);
+    let (listed, taken) = match untouched {
         true => (BTreeSet::new(), BTreeSet::new()),
         false => (column(&table, "file")?, column(&table, "id")?),
     };
@@ -79,13 +80,21 @@ pub fn add_recordings(
         true => files_in(&raw)?,
         false => files_of(files)?,
     };
+    let read_of = |name: &str| match &pattern {
+        None => Some(own_specimen(name)),
+        Some(pattern) => pattern.read(name),
+    };
+    let names_found: Vec<String> = found.iter().map(|file| name_of(file)).collect();
+    let reads: Vec<Option<NamedRecording>> = names_found.iter().map(|n| read_of(n)).collect();
+    let named = names_found.iter().map(String::as_str).zip(&reads);
+    check_specimens(named.filter_map(|(name, read)| Some((name, read.as_ref()?))))?;
     let mut new: Vec<(PathBuf, NamedRecording)> = Vec::new();
-    for file in found {
+    for (file, read) in found.into_iter().zip(reads) {
         let name = name_of(&file);
-        let read = match &pattern {
-            None => Some(own_specimen(&name)),
-            Some(pattern) => pattern.read(&name),
-        };
+        if let Some(problem) = unfit_name(&name) {
+            added.left_out.push(problem);
+            continue;
+        }
         // A recording that is listed may be of another pattern, and be told again.
         let arrived = match (&read, files.is_empty()) {
             (_, true) => Ok(raw.join(&name)),
@@ -104,7 +113,8 @@ pub fn add_recordings(
     if new.is_empty() {
         return Ok(added);
     }
-    let text = match kind_of_template(&text) {
+    // Rows that a person wrote go with the values of the template that stand above them.
+    let text = match kind_of_template(&text).filter(|_| untouched) {
         Some(kind) => written_channels(directory, kind, (&new[0].0, names), &mut added)?,
         None => text,
     };

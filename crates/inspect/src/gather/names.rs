@@ -1,5 +1,6 @@
 //! Patterns of file names: `{variety}_f{fruit}_{height_mm}mm_{rep}.csv`.
 
+use std::collections::BTreeMap;
 use windfall_files::error::Error;
 use windfall_files::option_value::unusable;
 
@@ -126,6 +127,38 @@ impl NamePattern {
     }
 }
 
+/// Refuses names by which one specimen would be two fruit.
+///
+/// * `recordings`: file names, and what they say
+///
+/// # Errors
+/// Two names give a specimen different values of a column.
+pub(crate) fn check_specimens<'a>(
+    recordings: impl IntoIterator<Item = (&'a str, &'a NamedRecording)>,
+) -> Result<(), Error> {
+    let mut known: BTreeMap<&str, (&str, &NamedRecording)> = BTreeMap::new();
+    for (name, read) in recordings {
+        let (first, seen) = *known.entry(&read.specimen).or_insert((name, read));
+        let mut pairs = seen.of_specimen.iter().zip(&read.of_specimen);
+        if let Some((one, other)) = pairs.find(|(one, other)| one.1 != other.1) {
+            let problem = format!(
+                "the specimen \"{}\" would have the {} \"{}\" by {first} and \"{}\" by {name}: two \
+                 fruit under one id. Call the placeholder that numbers the fruit {{fruit}} or \
+                 {{sample}}: the id then consists of all placeholders up to it",
+                read.specimen, one.0, one.1, other.1
+            );
+            return Err(unusable("--names", problem));
+        }
+    }
+    Ok(())
+}
+
+/// What is wrong with a file name for a table, in which a blank at either end is lost.
+pub(crate) fn unfit_name(name: &str) -> Option<String> {
+    let blank = name.trim() != name;
+    blank.then(|| format!("{name:?}: the name begins or ends with a blank; rename the file"))
+}
+
 /// Values of the placeholders, each as short as the rest allows.
 fn matched(parts: &[Part], name: &str) -> Option<Vec<String>> {
     let Some((first, rest)) = parts.split_first() else {
@@ -190,6 +223,24 @@ mod tests {
             .read("run12.tdms")
             .unwrap();
         assert_eq!((each.specimen.as_str(), each.of_impact.len()), ("run12", 1));
+    }
+
+    #[test]
+    fn rejects_two_fruit_under_one_id() {
+        let check = |pattern: &str, names: [&str; 2]| {
+            let pattern = NamePattern::parse(pattern).unwrap();
+            let read = names.map(|name| (name, pattern.read(name).unwrap()));
+            check_specimens(read.iter().map(|(name, read)| (*name, read)))
+        };
+        let by_sample = "{variety}_f{sample}_{rep}.csv";
+        let by_id = "{variety}_f{specimen}_{rep}.csv";
+        let names = ["Gala_f1_1.csv", "Elstar_f1_1.csv"];
+        assert!(check(by_sample, names).is_ok());
+        let told = check(by_id, names).unwrap_err().to_string();
+        assert!(told.contains("Gala") && told.contains("{sample}"), "{told}");
+        // The sign between the parts of an id may stand in them.
+        assert!(check(by_sample, ["A-1_f2_1.csv", "A_f1-2_1.csv"]).is_err());
+        assert!(unfit_name(" a.csv").is_some() && unfit_name("a b.csv").is_none());
     }
 
     #[test]

@@ -2,7 +2,7 @@
 
 use crate::gather::channels::{campaign_text, remarks};
 use crate::gather::folder::{files_in, name_of};
-use crate::gather::names::{NamePattern, NamedRecording};
+use crate::gather::names::{NamePattern, NamedRecording, check_specimens, unfit_name};
 use crate::gather::preset::{Preset, inspect_by};
 use crate::gather::rows::{ImpactRow, Rows};
 use crate::run::InspectRequest;
@@ -63,6 +63,10 @@ pub fn gather(
     let mut recordings: Vec<(&PathBuf, NamedRecording)> = Vec::new();
     for file in &files {
         let name = name_of(file);
+        if let Some(problem) = unfit_name(&name) {
+            gathered.left_out.push(problem);
+            continue;
+        }
         match pattern.read(&name) {
             Some(read) => recordings.push((file, read)),
             None => gathered
@@ -79,6 +83,9 @@ pub fn gather(
         );
         return Err(unusable(format!("--names {}", pattern.text()), problem));
     };
+    let named: Vec<String> = recordings.iter().map(|(file, _)| name_of(file)).collect();
+    let reads = recordings.iter().map(|(_, read)| read);
+    check_specimens(named.iter().map(String::as_str).zip(reads))?;
     let seen = inspect_by(first, &InspectRequest::default(), preset)?;
     gathered.assumed.extend(other_columns(first, &recordings));
     let group = recordings[0].1.of_specimen.iter().map(|(name, _)| name);

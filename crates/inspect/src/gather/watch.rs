@@ -10,11 +10,16 @@ use std::time::{Duration, SystemTime};
 use windfall_campaign::impacts::run::fit_campaign;
 use windfall_campaign::pipeline::request::FitRequest;
 use windfall_campaign::result::outcome::CampaignOutcome;
+use windfall_campaign::settings::kind::CAMPAIGN_FILE;
 use windfall_files::error::Error;
 use windfall_files::progress::Progress;
 
-/// Time between two looks; a file counts as closed when two looks find it the same.
+/// Time between two looks; a file counts as closed when two looks find it the same. One that
+/// grows later is fitted again.
 const LOOK: Duration = Duration::from_millis(150);
+
+/// What a person may have to mend before a campaign can be fitted again.
+const TABLES: [&str; 3] = [CAMPAIGN_FILE, "impacts.csv", "specimens.csv"];
 
 /// What is told after each fit.
 pub struct Watched<'a> {
@@ -43,13 +48,29 @@ pub fn watch(
     tell: &mut dyn FnMut(Result<&Watched, &Error>) -> ControlFlow<()>,
 ) -> Result<(), Error> {
     let raw = directory.join("raw");
-    let (mut fitted, mut before): (Option<Stamp>, Option<Stamp>) = (None, None);
+    let (mut tried, mut before): (Option<Stamp>, Option<Stamp>) = (None, None);
+    // What was last told of, and the tables of a campaign that could not be fitted since.
+    let (mut told_of, mut broken): (Option<Stamp>, Option<Stamp>) = (None, None);
     loop {
-        let now = stamp(&raw)?;
-        let closed = before.as_ref() == Some(&now) && fitted.as_ref() != Some(&now);
-        if closed {
-            let told = fit(directory, request, progress, (fitted.as_ref(), &now), tell);
-            fitted = Some(now.clone());
+        let now = stamp(files_in(&raw)?);
+        let tables = || stamp(TABLES.map(|name| directory.join(name)).to_vec());
+        let mended = broken.as_ref().is_some_and(|seen| *seen != tables());
+        let closed = before.as_ref() == Some(&now);
+        if closed && (mended || tried.as_ref() != Some(&now)) {
+            let seen = tables();
+            let earlier = told_of.as_ref();
+            let found = fit(directory, request, progress, (earlier, &now), tell);
+            tried = Some(now.clone());
+            let told = match found {
+                Ok(told) => {
+                    (told_of, broken) = (Some(now.clone()), None);
+                    told
+                }
+                Err(told) => {
+                    broken = Some(seen);
+                    told
+                }
+            };
             if told.is_break() {
                 return Ok(());
             }
@@ -59,19 +80,20 @@ pub fn watch(
     }
 }
 
+/// What `tell` says of a fit, or of an error of one.
 fn fit(
     directory: &Path,
     request: &FitRequest,
     progress: Progress,
     (earlier, now): (Option<&Stamp>, &Stamp),
     tell: &mut dyn FnMut(Result<&Watched, &Error>) -> ControlFlow<()>,
-) -> ControlFlow<()> {
+) -> Result<ControlFlow<()>, ControlFlow<()>> {
     let added = add_recordings(directory, &[], None);
     let outcome = added.and_then(|added| Ok((added, fit_campaign(directory, request, progress)?)));
     let (added, outcome) = match &outcome {
         Ok(found) => found,
         // A table that is being written, or a wrong one: the next look may find it right.
-        Err(error) => return tell(Err(error)),
+        Err(error) => return Err(tell(Err(error))),
     };
     let known: BTreeSet<_> = earlier.into_iter().flatten().collect();
     let changed = now.iter().filter(|own| !known.contains(own));
@@ -84,18 +106,18 @@ fn fit(
         .chain(failed)
         .filter(|(file, _)| changed.contains(file.as_str()));
     let new = new.map(|(_, id)| id.clone()).collect();
-    tell(Ok(&Watched {
+    Ok(tell(Ok(&Watched {
         new: &new,
         outcome,
         left_out: &added.left_out,
-    }))
+    })))
 }
 
-fn stamp(folder: &Path) -> Result<Stamp, Error> {
+fn stamp(files: Vec<PathBuf>) -> Stamp {
     let stamped = |path: PathBuf| {
         // What has just gone is gone.
         let found = std::fs::metadata(&path).ok()?;
         Some((path, found.len(), found.modified().ok()))
     };
-    Ok(files_in(folder)?.into_iter().filter_map(stamped).collect())
+    files.into_iter().filter_map(stamped).collect()
 }
