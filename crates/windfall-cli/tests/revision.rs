@@ -126,10 +126,10 @@ fn pinned_numbers_are_those_of_the_revision() {
         digest(&drops, &[]),
     ];
     let expected = (
-        5,
+        6,
         [
-            "1f83269ac6971c5a",
-            "616e54ea922bd46c",
+            "5a0aa323de63b000",
+            "e28d55e7a66a5d65",
             "91551cac97612078",
             "362e0649b943bd49",
             "3e453baf43c8c589",

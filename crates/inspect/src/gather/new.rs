@@ -75,12 +75,15 @@ pub fn gather(
         }
     }
     let Some((first, _)) = recordings.first() else {
-        let problem = format!(
-            "none of the {} files in {} is of this pattern; the first is called {}",
-            files.len(),
-            from.display(),
-            files.first().map_or_else(String::new, |file| name_of(file))
-        );
+        let folder = from.display();
+        let problem = match files.first() {
+            None => format!("there is no file in {folder}"),
+            Some(file) => format!(
+                "none of the {} files in {folder} is of this pattern; the first is called {}",
+                files.len(),
+                name_of(file)
+            ),
+        };
         return Err(unusable(format!("--names {}", pattern.text()), problem));
     };
     let named: Vec<String> = recordings.iter().map(|(file, _)| name_of(file)).collect();
