@@ -227,9 +227,10 @@ fn recovers_each_recording_that_lands_while_one_watches() {
         .args(["fit", "made", "--watch"])
         .current_dir(folder)
         .stdout(std::process::Stdio::piped())
-        .stderr(std::process::Stdio::null())
+        .stderr(std::process::Stdio::piped())
         .spawn()
         .unwrap();
+    let mut errors = BufReader::new(child.stderr.take().unwrap()).lines();
     let mut lines = BufReader::new(child.stdout.take().unwrap()).lines();
     let mut until = |what: &str| loop {
         let line = lines.next().unwrap().unwrap();
@@ -249,6 +250,14 @@ fn recovers_each_recording_that_lands_while_one_watches() {
         assert!(line.contains("N/m^1.5"), "{line}");
         until(&format!("All {} impacts count; mean k", 7 + place));
     }
+    // One that lands while campaign.toml is broken is told of once that is mended.
+    let campaign = folder.join("made/campaign.toml");
+    let text = std::fs::read_to_string(&campaign).unwrap();
+    std::fs::write(&campaign, "[").unwrap();
+    std::fs::copy(&late[0], folder.join("made/raw/meanwhile.csv")).unwrap();
+    while !errors.next().unwrap().unwrap().contains("campaign.toml") {}
+    std::fs::write(&campaign, text).unwrap();
+    until("meanwhile: k ");
     // A recording with nothing in it is said, and stops nothing.
     std::fs::write(
         folder.join("made/raw/empty.csv"),
@@ -371,6 +380,64 @@ fn reference_columns_by_a_preset() {
     let listed = command.args(["inspect", "--presets"]).output().unwrap();
     let listed = String::from_utf8(listed.stdout).unwrap();
     assert!(listed.contains("a-hilhorst/Tensile-test-Analysis") && listed.contains("MIT"));
+}
+
+#[test]
+fn rejects_names_that_put_two_fruit_under_one_id() {
+    let laboratory = tempfile::tempdir().unwrap();
+    let folder = laboratory.path();
+    recordings(folder, 2);
+    for (name, other) in [("f00", "f01"), ("f01", "f00")] {
+        // Both varieties have a fruit of each number.
+        for entry in std::fs::read_dir(folder.join("recordings")).unwrap() {
+            let path = entry.unwrap().path();
+            let own = path.file_name().unwrap().to_string_lossy().into_owned();
+            if own.contains(name) {
+                let _ = std::fs::copy(&path, path.with_file_name(own.replace(name, other)));
+            }
+        }
+    }
+    let by_id = "{variety}_f{specimen}_{height_mm}mm_{rep}.csv";
+    let new = |names| {
+        [
+            "new",
+            "pendulum",
+            "bench",
+            "--from",
+            "recordings",
+            "--names",
+            names,
+        ]
+    };
+    let (status, _, told) = windfall(&new(by_id), folder);
+    assert_eq!(status, Some(2), "{told}");
+    assert!(
+        told.contains("two fruit with one id") && told.contains("{sample}"),
+        "{told}"
+    );
+    let (status, _, told) = windfall(&new(NAMES), folder);
+    assert_eq!(status, Some(0), "{told}");
+    // Both of these would be Gala-00-1.
+    let clash = folder.join("Gala-00_f1_50mm_1.csv");
+    let any = folder.join("recordings/Gala_f00_50mm_1.csv");
+    std::fs::copy(&any, &clash).unwrap();
+    let second = folder.join("Gala_f00-1_50mm_1.csv");
+    std::fs::copy(&any, &second).unwrap();
+    let (status, out, told) = windfall(
+        &[
+            "add",
+            "bench",
+            "Gala-00_f1_50mm_1.csv",
+            "Gala_f00-1_50mm_1.csv",
+            "--names",
+            NAMES,
+        ],
+        folder,
+    );
+    assert_eq!(status, Some(0), "{told}");
+    let said = out + &told;
+    assert!(said.contains("two fruit with one id"), "{said}");
+    assert!(!folder.join("bench/raw/Gala_f00-1_50mm_1.csv").exists());
 }
 
 #[test]

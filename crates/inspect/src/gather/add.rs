@@ -2,7 +2,7 @@
 
 use crate::gather::channels::{campaign_text as guessed_text, remarks};
 use crate::gather::folder::{files_in, name_of};
-use crate::gather::names::{NamePattern, NamedRecording, check_specimens, unfit_name};
+use crate::gather::names::{KnownSpecimens, NamePattern, NamedRecording, unfit_name};
 use crate::gather::rows::{ImpactRow, Rows};
 use crate::run::{InspectRequest, inspect_recording};
 use itertools::Itertools;
@@ -84,14 +84,21 @@ pub fn add_recordings(
         None => Some(own_specimen(name)),
         Some(pattern) => pattern.read(name),
     };
-    let names_found: Vec<String> = found.iter().map(|file| name_of(file)).collect();
-    let reads: Vec<Option<NamedRecording>> = names_found.iter().map(|n| read_of(n)).collect();
-    let named = names_found.iter().map(String::as_str).zip(&reads);
-    check_specimens(named.filter_map(|(name, read)| Some((name, read.as_ref()?))))?;
+    let mut specimens = KnownSpecimens::default();
+    for (name, read) in listed
+        .iter()
+        .filter_map(|name| Some((name, read_of(name)?)))
+    {
+        // What is listed stands.
+        let _ = specimens.take(name, &read);
+    }
     let mut new: Vec<(PathBuf, NamedRecording)> = Vec::new();
-    for (file, read) in found.into_iter().zip(reads) {
+    for file in found {
         let name = name_of(&file);
-        if let Some(problem) = unfit_name(&name) {
+        let read = read_of(&name);
+        let clash = |read| specimens.take(&name, read);
+        let unlisted = read.as_ref().filter(|_| !listed.contains(&name));
+        if let Some(problem) = unfit_name(&name).or_else(|| unlisted.and_then(clash)) {
             added.left_out.push(problem);
             continue;
         }

@@ -127,36 +127,30 @@ impl NamePattern {
     }
 }
 
-/// Refuses names by which one specimen would be two fruit.
-///
-/// * `recordings`: file names, and what they say
-///
-/// # Errors
-/// Two names give a specimen different values of a column.
-pub(crate) fn check_specimens<'a>(
-    recordings: impl IntoIterator<Item = (&'a str, &'a NamedRecording)>,
-) -> Result<(), Error> {
-    let mut known: BTreeMap<&str, (&str, &NamedRecording)> = BTreeMap::new();
-    for (name, read) in recordings {
-        let (first, seen) = *known.entry(&read.specimen).or_insert((name, read));
+/// Specimens by the file names that were read so far.
+#[derive(Default)]
+pub(crate) struct KnownSpecimens(BTreeMap<String, (String, NamedRecording)>);
+
+impl KnownSpecimens {
+    /// Takes up a file name; what is wrong where it makes another fruit of a known specimen.
+    pub fn take(&mut self, name: &str, read: &NamedRecording) -> Option<String> {
+        let new = || (name.to_owned(), read.clone());
+        let (first, seen) = self.0.entry(read.specimen.clone()).or_insert_with(new);
         let mut pairs = seen.of_specimen.iter().zip(&read.of_specimen);
-        if let Some((one, other)) = pairs.find(|(one, other)| one.1 != other.1) {
-            let problem = format!(
-                "the specimen \"{}\" would have the {} \"{}\" by {first} and \"{}\" by {name}: two \
-                 fruit under one id. Call the placeholder that numbers the fruit {{fruit}} or \
-                 {{sample}}: the id then consists of all placeholders up to it",
-                read.specimen, one.0, one.1, other.1
-            );
-            return Err(unusable("--names", problem));
-        }
+        let (one, other) = pairs.find(|(one, other)| one.1 != other.1)?;
+        Some(format!(
+            "the specimen \"{}\" has the {} \"{}\" by {first} and \"{}\" by {name}: these are two \
+             fruit with one id. In the pattern, call the number of the fruit {{fruit}} or {{sample}}; \
+             all placeholders up to it then form the id",
+            read.specimen, one.0, one.1, other.1
+        ))
     }
-    Ok(())
 }
 
-/// What is wrong with a file name for a table, in which a blank at either end is lost.
+/// What is wrong with a file name in a table, where spaces at either end are lost.
 pub(crate) fn unfit_name(name: &str) -> Option<String> {
     let blank = name.trim() != name;
-    blank.then(|| format!("{name:?}: the name begins or ends with a blank; rename the file"))
+    blank.then(|| format!("{name:?}: the name begins or ends with a space; rename the file"))
 }
 
 /// Values of the placeholders, each as short as the rest allows.
@@ -229,17 +223,19 @@ mod tests {
     fn rejects_two_fruit_under_one_id() {
         let check = |pattern: &str, names: [&str; 2]| {
             let pattern = NamePattern::parse(pattern).unwrap();
-            let read = names.map(|name| (name, pattern.read(name).unwrap()));
-            check_specimens(read.iter().map(|(name, read)| (*name, read)))
+            let mut known = KnownSpecimens::default();
+            let [first, second] = names.map(|name| known.take(name, &pattern.read(name).unwrap()));
+            assert_eq!(first, None);
+            second
         };
         let by_sample = "{variety}_f{sample}_{rep}.csv";
         let by_id = "{variety}_f{specimen}_{rep}.csv";
         let names = ["Gala_f1_1.csv", "Elstar_f1_1.csv"];
-        assert!(check(by_sample, names).is_ok());
-        let told = check(by_id, names).unwrap_err().to_string();
+        assert_eq!(check(by_sample, names), None);
+        let told = check(by_id, names).unwrap();
         assert!(told.contains("Gala") && told.contains("{sample}"), "{told}");
-        // The sign between the parts of an id may stand in them.
-        assert!(check(by_sample, ["A-1_f2_1.csv", "A_f1-2_1.csv"]).is_err());
+        // The hyphen that joins the parts of an id may also stand in them.
+        assert!(check(by_sample, ["A-1_f2_1.csv", "A_f1-2_1.csv"]).is_some());
         assert!(unfit_name(" a.csv").is_some() && unfit_name("a b.csv").is_none());
     }
 

@@ -2,7 +2,7 @@
 
 use crate::gather::channels::{campaign_text, remarks};
 use crate::gather::folder::{files_in, name_of};
-use crate::gather::names::{NamePattern, NamedRecording, check_specimens, unfit_name};
+use crate::gather::names::{KnownSpecimens, NamePattern, NamedRecording, unfit_name};
 use crate::gather::preset::{Preset, inspect_by};
 use crate::gather::rows::{ImpactRow, Rows};
 use crate::run::InspectRequest;
@@ -86,9 +86,11 @@ pub fn gather(
         };
         return Err(unusable(format!("--names {}", pattern.text()), problem));
     };
-    let named: Vec<String> = recordings.iter().map(|(file, _)| name_of(file)).collect();
-    let reads = recordings.iter().map(|(_, read)| read);
-    check_specimens(named.iter().map(String::as_str).zip(reads))?;
+    let mut known = KnownSpecimens::default();
+    let mut clashes = recordings.iter();
+    if let Some(problem) = clashes.find_map(|(file, read)| known.take(&name_of(file), read)) {
+        return Err(unusable(format!("--names {}", pattern.text()), problem));
+    }
     let seen = inspect_by(first, &InspectRequest::default(), preset)?;
     gathered.assumed.extend(other_columns(first, &recordings));
     let group = recordings[0].1.of_specimen.iter().map(|(name, _)| name);

@@ -1,6 +1,6 @@
 //! `windfall fit DIR --watch`: each recording is fitted as it is closed.
 
-use crate::gather::add::add_recordings;
+use crate::gather::add::{Added, add_recordings};
 use crate::gather::folder::files_in;
 use std::collections::BTreeSet;
 use std::ops::ControlFlow;
@@ -58,43 +58,40 @@ pub fn watch(
         let closed = before.as_ref() == Some(&now);
         if closed && (mended || tried.as_ref() != Some(&now)) {
             let seen = tables();
-            let earlier = told_of.as_ref();
-            let found = fit(directory, request, progress, (earlier, &now), tell);
-            tried = Some(now.clone());
-            let told = match found {
-                Ok(told) => {
-                    (told_of, broken) = (Some(now.clone()), None);
-                    told
-                }
-                Err(told) => {
-                    broken = Some(seen);
-                    told
-                }
+            let found = fit(directory, request, progress, (told_of.as_ref(), &now));
+            let told = match &found {
+                Ok((new, outcome, added)) => tell(Ok(&Watched {
+                    new,
+                    outcome,
+                    left_out: &added.left_out,
+                })),
+                // A table that is being written, or a wrong one: a later look may find it right.
+                Err(error) => tell(Err(error)),
             };
             if told.is_break() {
                 return Ok(());
             }
+            broken = found.is_err().then_some(seen);
+            if found.is_ok() {
+                told_of = Some(now.clone());
+            }
+            tried = Some(now.clone());
         }
         before = Some(now);
         sleep(LOOK);
     }
 }
 
-/// What `tell` says of a fit, or of an error of one.
+/// Lists what is new and fits the campaign: ids of impacts whose recordings are new or have
+/// changed, results, and what was added.
 fn fit(
     directory: &Path,
     request: &FitRequest,
     progress: Progress,
     (earlier, now): (Option<&Stamp>, &Stamp),
-    tell: &mut dyn FnMut(Result<&Watched, &Error>) -> ControlFlow<()>,
-) -> Result<ControlFlow<()>, ControlFlow<()>> {
-    let added = add_recordings(directory, &[], None);
-    let outcome = added.and_then(|added| Ok((added, fit_campaign(directory, request, progress)?)));
-    let (added, outcome) = match &outcome {
-        Ok(found) => found,
-        // A table that is being written, or a wrong one: the next look may find it right.
-        Err(error) => return Err(tell(Err(error))),
-    };
+) -> Result<(BTreeSet<String>, CampaignOutcome, Added), Error> {
+    let added = add_recordings(directory, &[], None)?;
+    let outcome = fit_campaign(directory, request, progress)?;
     let known: BTreeSet<_> = earlier.into_iter().flatten().collect();
     let changed = now.iter().filter(|own| !known.contains(own));
     let changed: BTreeSet<&str> = changed
@@ -106,11 +103,7 @@ fn fit(
         .chain(failed)
         .filter(|(file, _)| changed.contains(file.as_str()));
     let new = new.map(|(_, id)| id.clone()).collect();
-    Ok(tell(Ok(&Watched {
-        new: &new,
-        outcome,
-        left_out: &added.left_out,
-    })))
+    Ok((new, outcome, added))
 }
 
 fn stamp(files: Vec<PathBuf>) -> Stamp {

@@ -43,8 +43,8 @@ pub struct FitArguments {
     /// How the result is shown
     #[arg(long, value_enum, default_value_t)]
     pub format: Format,
-    /// Fit each recording that lands in DIR/raw, as soon as it no longer grows, and show the mean so
-    /// far, until Ctrl-C
+    /// Fit each recording that lands in DIR/raw, as soon as it stops growing, and show the mean
+    /// so far, until Ctrl-C
     #[arg(long, conflicts_with_all = ["figures", "card", "rig"])]
     pub watch: bool,
     /// Rig and channels of a recording without a campaign
